@@ -1,0 +1,28 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# The one place for language level, warnings and floating-point rules.
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_C_STANDARD 11)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
+endif()
+
+option(MESHLODE_WERROR "Warnings are errors" ON)
+set(MESHLODE_SANITIZE "" CACHE STRING "Sanitizers, for example address,undefined")
+
+add_library(meshlode_flags INTERFACE)
+# I10: contraction and excess precision would let a byte depend on the compiler.
+target_compile_options(meshlode_flags INTERFACE -ffp-contract=off
+  $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wold-style-cast
+                            -Wnon-virtual-dtor -Woverloaded-virtual>
+  $<$<COMPILE_LANGUAGE:C>:-Wall -Wextra>)
+if(MESHLODE_WERROR)
+  target_compile_options(meshlode_flags INTERFACE -Werror)
+endif()
+if(MESHLODE_SANITIZE)
+  add_compile_options(-fsanitize=${MESHLODE_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  add_link_options(-fsanitize=${MESHLODE_SANITIZE})
+endif()

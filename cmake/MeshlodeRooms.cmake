@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# meshlode_add_room(NAME SOURCES a.cpp ... [ROOMS base mesh ...] [LIBS Some::target ...] [SYSTEM_INCLUDES dir ...])
+# One room = one folder under src/ = the target meshlode_<name>. ROOMS are public (their headers are included by this
+# room's headers); LIBS are third-party and private, because a library is seen through one wrapper file only.
+function(meshlode_add_room name)
+  cmake_parse_arguments(arg "" "" "SOURCES;ROOMS;LIBS;SYSTEM_INCLUDES" ${ARGN})
+  if(arg_SOURCES)
+    add_library(meshlode_${name} STATIC ${arg_SOURCES})
+    set(scope PUBLIC)
+    target_link_libraries(meshlode_${name} PRIVATE meshlode_flags ${arg_LIBS})
+    target_include_directories(meshlode_${name} SYSTEM PRIVATE ${arg_SYSTEM_INCLUDES})
+  else()
+    add_library(meshlode_${name} INTERFACE)
+    set(scope INTERFACE)
+  endif()
+  target_include_directories(meshlode_${name} ${scope}
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src> $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>)
+  foreach(room IN LISTS arg_ROOMS)
+    target_link_libraries(meshlode_${name} ${scope} meshlode_${room})
+  endforeach()
+  set_property(GLOBAL APPEND PROPERTY MESHLODE_ROOMS ${name})
+endfunction()
+
+# meshlode_add_test(NAME SOURCES a_test.cpp ... ROOMS ... [LIBS ...] [LABELS unit property ...] [TIMEOUT seconds])
+# One GoogleTest program per room or property; ctest runs each GoogleTest case on its own line.
+function(meshlode_add_test name)
+  cmake_parse_arguments(arg "" "TIMEOUT" "SOURCES;ROOMS;LIBS;LABELS" ${ARGN})
+  add_executable(${name} ${arg_SOURCES})
+  target_link_libraries(${name} PRIVATE meshlode_flags GTest::gtest_main ${arg_LIBS})
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+  foreach(room IN LISTS arg_ROOMS)
+    target_link_libraries(${name} PRIVATE meshlode_${room})
+  endforeach()
+  if(NOT arg_LABELS)
+    set(arg_LABELS unit)
+  endif()
+  if(NOT arg_TIMEOUT)
+    set(arg_TIMEOUT 300)
+  endif()
+  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES LABELS "${arg_LABELS}" TIMEOUT ${arg_TIMEOUT}
+                       SKIP_REGULAR_EXPRESSION "\\[  SKIPPED \\]")
+endfunction()

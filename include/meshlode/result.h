@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+// Errors as values. A bad world (a file, an option) yields an Error with code, place and detail; a programmer's mistake
+// is an assert. No exception leaves the library.
+#pragma once
+
+#include <cassert>
+#include <string>
+#include <utility>
+#include <variant>
+
+namespace meshlode {
+
+/// The kinds of failure; the value is the exit code of the command line.
+enum class ErrorCode : int {
+  kUsage = 1,        ///< an option that makes no sense
+  kIo = 2,           ///< a file could not be read or written
+  kInvalid = 3,      ///< input that breaks its own format's rules
+  kBuildFailed = 4,  ///< valid input that the build could not turn into an asset (cancelled, out of memory, a limit)
+  kUnsupported = 5,  ///< valid input that asks for something this program does not do
+  kCheckFailed = 6,  ///< a check or budget was not met
+};
+
+/// One failure. `where` names the file and the place in it ("scene.gltf: /accessors/3/count"), `detail` says why.
+struct Error {
+  ErrorCode code = ErrorCode::kInvalid;
+  std::string where;
+  std::string detail;
+
+  /// "where: detail", or the detail alone where the place is empty.
+  [[nodiscard]] std::string message() const { return where.empty() ? detail : where + ": " + detail; }
+};
+
+/// A value or an Error. `if (!r) return r.error();` hands an error on.
+template <class T>
+class [[nodiscard]] Result {
+ public:
+  Result(T value) : state_(std::in_place_index<0>, std::move(value)) {}  // NOLINT(google-explicit-constructor)
+  Result(Error error) : state_(std::in_place_index<1>, std::move(error)) {}  // NOLINT(google-explicit-constructor)
+
+  [[nodiscard]] bool ok() const { return state_.index() == 0; }
+  explicit operator bool() const { return ok(); }
+
+  /// \pre ok()
+  [[nodiscard]] T& value() & { assert(ok()); return *std::get_if<0>(&state_); }
+  [[nodiscard]] const T& value() const& { assert(ok()); return *std::get_if<0>(&state_); }
+  [[nodiscard]] T&& value() && { assert(ok()); return std::move(*std::get_if<0>(&state_)); }
+  T& operator*() & { return value(); }
+  const T& operator*() const& { return value(); }
+  T&& operator*() && { return std::move(*this).value(); }
+  T* operator->() { return &value(); }
+  const T* operator->() const { return &value(); }
+
+  /// \pre !ok()
+  [[nodiscard]] const Error& error() const { assert(!ok()); return *std::get_if<1>(&state_); }
+
+ private:
+  std::variant<T, Error> state_;
+};
+
+/// The value of a stage that yields nothing but success.
+struct Ok {};
+using Status = Result<Ok>;
+
+}  // namespace meshlode

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Encode: a mesh's DAG becomes quantized channels, bit-packed clusters and GPU-ready pages (docs/format.md, Pages).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <meshlode/format.h>
+#include <meshlode/result.h>
+
+#include "hierarchy/hierarchy.h"
+#include "mesh/dag.h"
+#include "mesh/prepared.h"
+
+namespace meshlode {
+
+struct EncodeOptions {
+  std::uint32_t normal_bits = 11;  ///< per octahedral axis, 4 … 16: 11 bits keep 0.1 degrees
+  std::uint32_t uv_bits = 16;      ///< the mesh's UV range gets at least 2^uv_bits steps, 4 … 24
+};
+
+/// One mesh, ready to be written: records with per-mesh ids (first_group = 0 and so on), pages not packed yet.
+struct EncodedMesh {
+  struct Page {
+    std::uint32_t first_group = 0, group_count = 0;      ///< per mesh
+    std::uint32_t first_cluster = 0, cluster_count = 0;  ///< per mesh
+    std::vector<std::uint8_t> bytes;                     ///< PageHeader and on; PageHeader::first_cluster is patched by write
+    std::vector<std::uint32_t> dependencies;             ///< pages of this mesh that hold the coarser clusters, ascending
+  };
+  format::MeshRecord record{};
+  std::vector<format::GroupRecord> groups;
+  std::vector<format::ClusterRecord> clusters;
+  std::vector<format::NodeRecord> nodes;
+  std::vector<Page> pages;
+};
+
+/// Errors: kUnsupported where a group does not fit a page.
+[[nodiscard]] Result<EncodedMesh> encode_mesh(const PreparedMesh& mesh, const LodDag& dag, const Hierarchy& hierarchy,
+                                              const EncodeOptions& options);
+
+}  // namespace meshlode

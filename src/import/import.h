@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Import: a file on disk becomes a validated Scene, or one error that names file, JSON path and reason.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+#include <meshlode/result.h>
+
+#include "mesh/scene.h"
+
+namespace meshlode {
+
+struct ImportOptions {
+  bool repair = false;  ///< drop (and count) triangles that touch non-finite positions or indices out of range
+};
+
+/// Reads .gltf, .glb, .ply, .obj or .stl (told apart by content where possible, else by extension).
+/// Errors: kIo the file (or one it refers to) cannot be read; kInvalid it breaks its format; kUnsupported it requires a
+/// geometry extension that is not known.
+[[nodiscard]] Result<Scene> import_scene(const std::filesystem::path& path, const ImportOptions& options);
+
+}  // namespace meshlode
