@@ -10,6 +10,11 @@
 #include <limits>
 #include <type_traits>
 
+#if defined(__GNUC__) && !defined(__clang__)  // GCC warns although scoped enumerators shadow nothing
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wshadow"
+#endif
+
 namespace meshlode::format {
 
 constexpr std::uint32_t four_cc(char a, char b, char c, char d) {
@@ -316,3 +321,7 @@ static_assert(sizeof(BlobRecord) == 48);
 static_assert(std::is_trivially_copyable_v<MeshRecord> && std::is_trivially_copyable_v<GroupRecord>);
 
 }  // namespace meshlode::format
+
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic pop
+#endif

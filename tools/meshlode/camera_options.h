@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Cameras on the command line (design, section 4): `--camera ex,ey,ez,tx,ty,tz[,fovy_deg[,near]]`, `--ortho HEIGHT`,
+// `--size WxH`, `--pixel-error t`.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <meshlode/result.h>
+
+#include "options.h"
+#include "read/asset.h"
+#include "select/select.h"
+
+namespace meshlode::cli {
+
+struct CameraOptions {
+  std::optional<std::string> camera;   ///< not given: an orbit that frames the scene
+  std::optional<double> ortho_height;  ///< world units that the picture's height spans
+  std::string size = "1280x720";
+  double pixel_error = 1.0;
+};
+void add_camera_options(OptionParser& parser, CameraOptions& options);
+
+/// The camera that the options mean for this asset. Errors: kUsage.
+[[nodiscard]] Result<Camera> make_camera(const CameraOptions& options, const Asset& asset);
+
+/// A camera from the front, above and right that frames every instance that can be drawn.
+[[nodiscard]] Camera frame_scene(const Asset& asset, std::uint32_t width, std::uint32_t height);
+
+}  // namespace meshlode::cli

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the verbs share: option parsing (CLI11 behind it), the options that several verbs have, and errors on stderr.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <meshlode/result.h>
+
+#include "verb.h"
+
+namespace meshlode::cli {
+
+/// Options and positional arguments of one verb. `--help` is always there. Targets keep their value where the option is
+/// not given, and must outlive parse().
+class OptionParser {
+ public:
+  explicit OptionParser(const Verb& verb);
+  ~OptionParser();
+  OptionParser(const OptionParser&) = delete;
+  OptionParser& operator=(const OptionParser&) = delete;
+
+  /// Names are CLI11's: "--size", or "-o,--output" for two spellings.
+  void add_flag(const char* name, bool& target, const char* help);
+  /// With `choices`, anything else is a usage error.
+  void add_value(const char* name, std::string& target, const char* help, const std::vector<std::string>& choices = {});
+  void add_value(const char* name, double& target, const char* help);
+  void add_value(const char* name, std::uint32_t& target, const char* help);
+  void add_value(const char* name, std::uint64_t& target, const char* help);
+  void add_value(const char* name, std::optional<double>& target, const char* help);
+  void add_value(const char* name, std::optional<std::uint32_t>& target, const char* help);
+  void add_value(const char* name, std::optional<std::string>& target, const char* help);
+  void add_positional(const char* name, std::string& target, const char* help);                ///< exactly one
+  void add_positionals(const char* name, std::vector<std::string>& target, const char* help);  ///< one or more
+
+  /// Nothing: go on. A value: leave with this exit code (help was printed, or a usage error).
+  [[nodiscard]] std::optional<int> parse(std::span<char* const> args);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// `--format text|json` and `--quiet`.
+struct OutputOptions {
+  std::string format = "text";
+  bool quiet = false;
+  [[nodiscard]] bool json() const { return format == "json"; }
+};
+void add_output_options(OptionParser& parser, OutputOptions& options);
+
+/// `--jobs N`: threads; 0 (the default) is one per core.
+void add_jobs_option(OptionParser& parser, std::uint32_t& jobs);
+
+/// Limits oneTBB to `jobs` threads while it lives; 0 leaves it alone.
+class JobLimit {
+ public:
+  explicit JobLimit(std::uint32_t jobs);
+  ~JobLimit();
+  JobLimit(const JobLimit&) = delete;
+  JobLimit& operator=(const JobLimit&) = delete;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// One line on stderr, "meshlode: where: detail", and the exit code to return.
+int print_error(const Error& error);
+
+/// Writes text to stdout; false (and an error on stderr) where that fails, such as on a full disk.
+[[nodiscard]] bool print_out(const std::string& text);
+
+}  // namespace meshlode::cli

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The table of verbs: `meshlode VERB …`. One verb = one file verb_<name>.cpp that defines `const Verb k<Name>Verb`.
+//
+// To add a verb:
+//   1. write verb_<name>.cpp: `const Verb kFooVerb{"foo", "one line", "meshlode foo a.lode", run_foo};` with
+//      `int run_foo(const Verb& verb, std::span<char* const> args)`; parse with OptionParser (options.h), print errors
+//      with print_error, return 0 or the ErrorCode's value;
+//   2. declare kFooVerb at the end of this header and name it in verb_table.cpp;
+//   3. add `meshlode_add_verb(foo ROOMS …)` to CMakeLists.txt.
+// Third-party headers stay out of verb files: CLI11 is in options.cpp, JSON output is report/json_writer.h.
+#pragma once
+
+#include <span>
+
+namespace meshlode::cli {
+
+struct Verb {
+  const char* name;
+  const char* summary;  ///< one line, shown in the list of verbs and at the top of the verb's help
+  const char* example;  ///< one or more command lines, shown at the end of the verb's help
+  /// Runs the verb on the arguments after its name and returns the exit code.
+  int (*run)(const Verb& verb, std::span<char* const> args);
+};
+
+/// Every verb that is built in, in the order of the help.
+[[nodiscard]] std::span<const Verb* const> all_verbs();
+
+extern const Verb kBuildVerb;
+extern const Verb kInfoVerb;
+extern const Verb kValidateVerb;
+extern const Verb kVerifyVerb;
+extern const Verb kRenderVerb;
+extern const Verb kExtractVerb;
+
+}  // namespace meshlode::cli
