@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `info` for people: totals, one table of levels per mesh, materials, sections.
+#include <array>
+#include <cstdarg>
+#include <cstdio>
+#include <map>
+
+#include "base/hash.h"
+#include "report/info.h"
+#include "report/meta.h"
+
+namespace meshlode {
+
+namespace {
+
+constexpr std::size_t kMaxRows = 40;  ///< of meshes, materials and the like: a city has thousands; JSON lists all
+
+__attribute__((format(printf, 2, 3))) void add(std::string& out, const char* format, ...) {
+  std::array<char, 512> line{};
+  va_list args;
+  va_start(args, format);
+  std::vsnprintf(line.data(), line.size(), format, args);
+  va_end(args);
+  out += line.data();
+}
+
+/// 1234567 -> "1,234,567".
+std::string grouped(std::uint64_t n) {
+  std::string digits = std::to_string(n);
+  for (std::size_t i = digits.size(); i > 3; i -= 3) digits.insert(i - 3, ",");
+  return digits;
+}
+
+/// Names come from a file: no control characters reach the terminal.
+std::string printable(std::string_view name, std::size_t limit = 60) {
+  std::string out;
+  for (const char c : name.substr(0, limit)) out += static_cast<unsigned char>(c) < 0x20 || c == 0x7F ? '?' : c;
+  return out.empty() ? "(no name)" : out;
+}
+
+void add_mesh(std::string& out, const Asset& asset, std::uint32_t id, const MeshInfo& info) {
+  const format::MeshRecord& mesh = asset.meshes()[id];
+  add(out, "\nmesh %u  %s\n", id, printable(asset.string(mesh.name)).c_str());
+  add(out, "  %s source triangles, %s stored (%.3fx), diagonal %.6g, grid step %u * 2^%d, tier %s\n",
+      grouped(mesh.source_triangles).c_str(), grouped(info.triangles).c_str(),
+      mesh.source_triangles == 0 ? 0.0 : static_cast<double>(info.triangles) / static_cast<double>(mesh.source_triangles),
+      mesh.diagonal, mesh.grid.mantissa, mesh.grid.log2, error_tier_name(mesh.error_tier));
+  add(out, "  %llu root(s) with %llu triangles, %zu stuck group(s), level 0 deviates by %.3g\n",
+      static_cast<unsigned long long>(info.roots), static_cast<unsigned long long>(info.root_triangles),
+      info.stuck.size(), static_cast<double>(mesh.level0_deviation));
+  if (!info.stuck.empty()) {
+    std::map<std::string, std::uint64_t> reasons;
+    for (const StuckGroupInfo& stuck : info.stuck) ++reasons[stuck_reason_name(stuck.reason)];
+    add(out, "  stuck:");
+    for (const auto& [reason, count] : reasons) {
+      add(out, " %s %llu", reason.c_str(), static_cast<unsigned long long>(count));
+    }
+    add(out, "\n");
+  }
+  add(out, "  level  clusters   triangles    vertices   full   fill  groups  stuck   error min   error max\n");
+  for (const LevelInfo& level : info.levels) {
+    add(out, "  %5u  %8s  %10s  %10s  %5llu  %5.3f  %6llu  %5llu  %10.4g  %10.4g\n", level.level,
+        grouped(level.clusters).c_str(), grouped(level.triangles).c_str(), grouped(level.vertices).c_str(),
+        static_cast<unsigned long long>(level.full_clusters), level.fill, static_cast<unsigned long long>(level.groups),
+        static_cast<unsigned long long>(level.stuck_groups), static_cast<double>(level.error_min),
+        static_cast<double>(level.error_max));
+  }
+}
+
+void add_more(std::string& out, std::size_t total, const char* what) {
+  if (total > kMaxRows) add(out, "  … and %zu more %s (--format json lists all)\n", total - kMaxRows, what);
+}
+
+}  // namespace
+
+std::string info_text(const Asset& asset, const AssetInfo& info, bool list_stuck) {
+  const MetaInfo meta = read_meta(asset.meta_json());
+  const format::FileHeader& header = asset.header();
+  Hash128 hash{};
+  for (std::size_t i = 0; i < hash.size(); ++i) hash[i] = header.content_hash[i];
+
+  std::string out;
+  add(out, "format version    %u   (%s)\n", header.version, printable(meta.generator).c_str());
+  add(out, "content hash      %s\n", to_hex(hash).c_str());
+  add(out, "source            %s   %s\n", printable(meta.source_file).c_str(), printable(meta.source_hash).c_str());
+  add(out, "bytes             %s: geometry %s, images %s\n", grouped(header.file_bytes).c_str(),
+      grouped(info.geometry_bytes).c_str(), grouped(info.image_bytes).c_str());
+  if (info.source_triangles > 0) {
+    add(out, "                  %.2f geometry bytes per source triangle\n",
+        static_cast<double>(info.geometry_bytes) / static_cast<double>(info.source_triangles));
+  }
+  add(out, "scene             %zu mesh(es), %zu instance(s), %zu material(s), %zu page(s)\n", asset.meshes().size(),
+      asset.instances().size(), asset.materials().size(), asset.pages().size());
+  add(out, "source            %s triangles, %s vertices\n", grouped(info.source_triangles).c_str(),
+      grouped(info.source_vertices).c_str());
+  add(out, "stored            %s triangles, %s vertices in %s clusters, %s groups, %s level(s)\n",
+      grouped(info.stored_triangles).c_str(), grouped(info.stored_vertices).c_str(),
+      grouped(asset.clusters().size()).c_str(), grouped(asset.groups().size()).c_str(), grouped(info.levels).c_str());
+  add(out, "roots             %s (at most %s a mesh), %s stuck group(s)\n", grouped(info.roots).c_str(),
+      grouped(info.max_roots_per_mesh).c_str(), grouped(info.stuck_groups).c_str());
+  add(out, "dropped           %s degenerate, %s duplicate, %s repaired\n", grouped(info.dropped_degenerate).c_str(),
+      grouped(info.dropped_duplicate).c_str(), grouped(info.dropped_repaired).c_str());
+  for (const MetaInfo::Decision& decision : meta.decisions) {
+    add(out, "plan              %s: %s; saves %s\n", printable(decision.decision, 120).c_str(),
+        printable(decision.reason, 160).c_str(), printable(decision.saves, 60).c_str());
+  }
+  for (const MetaInfo::LeftOut& left : meta.left_outs) {
+    add(out, "left out          %s: %s\n", printable(left.what, 120).c_str(), printable(left.why, 160).c_str());
+  }
+  for (std::uint32_t m = 0; m < info.meshes.size() && m < kMaxRows; ++m) add_mesh(out, asset, m, info.meshes[m]);
+  add_more(out, info.meshes.size(), "meshes");
+
+  if (list_stuck) {
+    add(out, "\nstuck groups\n");
+    for (const MeshInfo& mesh : info.meshes) {
+      for (const StuckGroupInfo& stuck : mesh.stuck) {
+        add(out, "  mesh %u  group %u  level %u  %s: %llu cluster(s), %llu triangles\n", stuck.mesh, stuck.group,
+            stuck.level, stuck_reason_name(stuck.reason), static_cast<unsigned long long>(stuck.clusters),
+            static_cast<unsigned long long>(stuck.triangles));
+      }
+    }
+    if (info.stuck_groups == 0) add(out, "  none\n");
+  }
+  add(out, "\nmaterials\n");
+  for (std::size_t i = 0; i < asset.materials().size() && i < kMaxRows; ++i) {
+    const format::MaterialRecord& material = asset.materials()[i];
+    add(out, "  %3zu  %s%s%s\n", i, printable(asset.string(material.name)).c_str(),
+        material.source_index == format::kNone ? " (default)" : "", material.double_sided != 0 ? ", double sided" : "");
+  }
+  add_more(out, asset.materials().size(), "materials");
+  add(out, "\nsections        bytes     decoded\n");
+  for (const format::SectionEntry& section : asset.sections()) {
+    add(out, "  %s  %12s %11s\n", section_name(section.id).c_str(), grouped(section.bytes).c_str(),
+        grouped(section_decoded_bytes(asset, section)).c_str());
+  }
+  return out;
+}
+
+}  // namespace meshlode

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "options.h"
+#include "read/asset.h"
+#include "report/info.h"
+#include "verb.h"
+
+namespace meshlode::cli {
+
+namespace {
+
+int run_info(const Verb& verb, std::span<char* const> args) {
+  std::string path;
+  OutputOptions output;
+  bool list_stuck = false;
+  OptionParser parser(verb);
+  parser.add_positional("file", path, "a .lode asset");
+  add_output_options(parser, output);
+  parser.add_flag("--stuck", list_stuck, "list every stuck group with its reason");
+  if (const auto exit_code = parser.parse(args)) return *exit_code;
+
+  const Result<Asset> asset = Asset::open(path);
+  if (!asset) return print_error(asset.error());
+  const AssetInfo info = describe_asset(*asset);
+  const std::string text = output.json() ? info_json(*asset, info, list_stuck) : info_text(*asset, info, list_stuck);
+  return print_out(text) ? 0 : static_cast<int>(ErrorCode::kIo);
+}
+
+}  // namespace
+
+const Verb kInfoVerb{"info", "what is in an asset: totals, levels, materials, sections",
+                     "meshlode info scene.lode\n  meshlode info scene.lode --format json", run_info};
+
+}  // namespace meshlode::cli
