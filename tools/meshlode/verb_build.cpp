@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// build: scenes in, assets out. One input with -o, or many inputs and folders with -O; a batch goes on after a failure
+// and exits with its worst code.
+#include <algorithm>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <set>
+
+#include "base/file.h"
+#include "import/import.h"
+#include "options.h"
+#include "pipeline/build.h"
+#include "progress.h"
+#include "report/json_writer.h"
+#include "verb.h"
+
+namespace meshlode::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Job {
+  fs::path input;
+  fs::path output;
+};
+
+struct JobResult {
+  Job job;
+  int exit_code = 0;
+  std::string error;
+  double seconds = 0.0;
+  std::uint64_t triangles = 0;
+  std::uint64_t meshes = 0, instances = 0;
+  std::uint64_t bytes = 0;
+  std::vector<StageTime> stages;
+  std::vector<LeftOut> left_out;
+};
+
+class Timer {
+ public:
+  [[nodiscard]] double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+bool is_scene_file(const fs::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  for (const char* known : {".gltf", ".glb", ".ply", ".obj", ".stl"}) {
+    if (extension == known) return true;
+  }
+  return false;
+}
+
+/// Every scene below a folder, in byte order of the paths so that a batch runs the same way everywhere.
+Result<std::vector<fs::path>> scan_folder(const fs::path& folder) {
+  std::vector<fs::path> found;
+  std::error_code ec;
+  for (fs::recursive_directory_iterator it(folder, ec), end; !ec && it != end; it.increment(ec)) {
+    std::error_code type_error;
+    if (it->is_regular_file(type_error) && is_scene_file(it->path())) found.push_back(it->path());
+  }
+  if (ec) return Error{ErrorCode::kIo, folder.string(), ec.message()};
+  std::sort(found.begin(), found.end(), [](const fs::path& a, const fs::path& b) { return a.native() < b.native(); });
+  return found;
+}
+
+fs::path with_lode_extension(const fs::path& path) {
+  fs::path out = path;
+  return out.replace_extension(".lode");
+}
+
+/// Which file becomes which. Below -O, a folder's inner structure is kept; `a.glb` and `a.ply` that would both become
+/// `a.lode` keep their extensions (`a.glb.lode`).
+Result<std::vector<Job>> plan_jobs(const std::vector<std::string>& inputs, const std::string& output,
+                                   const std::string& output_folder) {
+  std::vector<Job> jobs;
+  std::error_code ec;
+  for (const std::string& input : inputs) {
+    if (!fs::is_directory(input, ec)) {
+      const fs::path name = with_lode_extension(fs::path(input).filename());
+      jobs.push_back({input, !output.empty() ? fs::path(output)
+                             : output_folder.empty() ? with_lode_extension(input)
+                                                     : output_folder / name});
+      continue;
+    }
+    if (output_folder.empty()) return Error{ErrorCode::kUsage, input, "a folder as input needs -O FOLDER for the output"};
+    auto found = scan_folder(input);
+    if (!found) return found.error();
+    for (const fs::path& path : *found) {
+      jobs.push_back({path, output_folder / with_lode_extension(path.lexically_relative(input))});
+    }
+  }
+  if (!output.empty() && (jobs.size() != 1 || inputs.size() != 1)) {
+    return Error{ErrorCode::kUsage, "-o", "one output for several inputs; give -O FOLDER"};
+  }
+  std::set<fs::path> seen, twice;
+  for (const Job& job : jobs) {
+    if (!seen.insert(job.output.lexically_normal()).second) twice.insert(job.output.lexically_normal());
+  }
+  std::set<fs::path> final_names;
+  for (Job& job : jobs) {
+    if (twice.contains(job.output.lexically_normal())) {
+      job.output.replace_filename(job.input.filename().string() + ".lode");
+    }
+    if (!final_names.insert(job.output.lexically_normal()).second) {
+      return Error{ErrorCode::kUsage, job.input.string(), "two inputs would both become " + job.output.string()};
+    }
+  }
+  return jobs;
+}
+
+Status check_output(const Job& job, bool make_folders) {
+  std::error_code ec;
+  if (fs::equivalent(job.input, job.output, ec) && !ec) {
+    return Error{ErrorCode::kUsage, job.output.string(), "the output would overwrite the input"};
+  }
+  if (make_folders && job.output.has_parent_path()) {
+    fs::create_directories(job.output.parent_path(), ec);
+    if (ec) return Error{ErrorCode::kIo, job.output.parent_path().string(), ec.message()};
+  }
+  return Ok{};
+}
+
+Result<std::vector<std::uint8_t>> import_and_build(const fs::path& input, const PipelineOptions& options,
+                                                   Progress& progress, JobResult& result) {
+  const Timer import_timer;
+  Result<Scene> scene = import_scene(input, ImportOptions{options.repair});
+  if (!scene) return scene.error();
+  result.stages.push_back({"import", import_timer.seconds()});
+  result.meshes = scene->meshes.size();
+  result.instances = scene->instances.size();
+  for (const SourceMesh& mesh : scene->meshes) {
+    for (const Primitive& primitive : mesh.primitives) result.triangles += primitive.indices.size() / 3;
+  }
+  result.left_out = scene->left_out;
+  PipelineReport report;
+  auto bytes = build_lode(*scene, options, progress.callback(), report);
+  result.stages.insert(result.stages.end(), report.stages.begin(), report.stages.end());
+  return bytes;
+}
+
+JobResult run_job(const Job& job, const PipelineOptions& options, bool make_folders, Progress& progress) {
+  JobResult result;
+  result.job = job;
+  const Timer timer;
+  const auto fail = [&](const Error& error) {
+    progress.finish();
+    result.error = error.message();
+    result.exit_code = print_error(error);
+    result.seconds = timer.seconds();
+    return result;
+  };
+  if (const Status ok = check_output(job, make_folders); !ok) return fail(ok.error());
+  progress.start(job.input.filename().string());
+  auto bytes = import_and_build(job.input, options, progress, result);
+  if (!bytes) {
+    Error error = bytes.error();
+    if (error.where.empty()) error.where = job.input.string();
+    return fail(error);
+  }
+  const Timer write_timer;
+  if (const Status ok = write_file_atomically(job.output, *bytes); !ok) return fail(ok.error());
+  result.stages.push_back({"write_file", write_timer.seconds()});
+  result.bytes = bytes->size();
+  result.seconds = timer.seconds();
+  progress.finish();
+  return result;
+}
+
+void print_summary(const JobResult& r) {
+  std::fprintf(stderr, "%s: %llu triangles in %llu mesh(es) -> %s, %llu bytes, %.2f s (%.0f triangles/s)\n",
+               r.job.input.string().c_str(), static_cast<unsigned long long>(r.triangles),
+               static_cast<unsigned long long>(r.meshes), r.job.output.string().c_str(),
+               static_cast<unsigned long long>(r.bytes), r.seconds,
+               r.seconds > 0.0 ? static_cast<double>(r.triangles) / r.seconds : 0.0);
+  for (const LeftOut& left : r.left_out) {
+    std::fprintf(stderr, "  left out: %s: %s\n", left.what.c_str(), left.why.c_str());
+  }
+}
+
+/// docs/schemas/report.schema.json. Times and paths live here and never in an asset.
+std::string report_json(const std::vector<JobResult>& results, std::uint32_t jobs, int exit_code) {
+  JsonWriter w;
+  w.begin_object();
+  w.field("generator", "meshlode " MESHLODE_VERSION);
+  w.field("jobs", jobs);
+  w.field("exit_code", exit_code);
+  w.key("builds");
+  w.begin_array();
+  for (const JobResult& r : results) {
+    w.begin_object();
+    w.field("input", r.job.input.string());
+    w.field("output", r.job.output.string());
+    w.field("exit_code", r.exit_code);
+    w.key("error");
+    if (r.error.empty()) {
+      w.null();
+    } else {
+      w.value(r.error);
+    }
+    w.field("meshes", r.meshes);
+    w.field("instances", r.instances);
+    w.field("source_triangles", r.triangles);
+    w.field("file_bytes", r.bytes);
+    w.field("seconds", r.seconds);
+    w.key("triangles_per_second");
+    if (r.seconds > 0.0 && r.exit_code == 0) {
+      w.value(static_cast<double>(r.triangles) / r.seconds);
+    } else {
+      w.null();
+    }
+    w.key("stages");
+    w.begin_array();
+    for (const StageTime& stage : r.stages) {
+      w.begin_object();
+      w.field("stage", stage.stage);
+      w.field("seconds", stage.seconds);
+      w.end_object();
+    }
+    w.end_array();
+    w.key("left_out");
+    w.begin_array();
+    for (const LeftOut& left : r.left_out) {
+      w.begin_object();
+      w.field("what", left.what);
+      w.field("why", left.why);
+      w.end_object();
+    }
+    w.end_array();
+    w.end_object();
+  }
+  w.end_array();
+  w.end_object();
+  return w.text();
+}
+
+/// The words of the command line, before they mean anything.
+struct BuildWords {
+  std::string error_tier = "qem";
+  std::string preset = "default";
+  std::string attributes = "auto";
+  std::string grid = "auto";
+  std::string codec = "none";
+};
+
+Result<PipelineOptions> make_options(const BuildWords& words) {
+  const auto later = [](const char* option, const std::string& value) {
+    return Error{ErrorCode::kUnsupported, std::string(option) + " " + value, "unsupported yet"};
+  };
+  PipelineOptions options;
+  if (words.error_tier != "qem") return later("--error-tier", words.error_tier);
+  if (words.preset != "default") return later("--preset", words.preset);
+  if (words.codec == "draco") return later("--codec", words.codec);
+  options.codec = words.codec == "zstd"  ? format::Codec::kZstd
+                  : words.codec == "lz4" ? format::Codec::kLz4
+                                         : format::Codec::kNone;
+  options.attributes = words.attributes == "none"  ? AttributeChoice::kNone
+                       : words.attributes == "all" ? AttributeChoice::kAll
+                                                   : AttributeChoice::kAuto;
+  if (words.grid != "auto") {
+    const char* end = words.grid.data() + words.grid.size();
+    const auto [rest, error] = std::from_chars(words.grid.data(), end, options.grid_step);
+    if (error != std::errc{} || rest != end || !(options.grid_step > 0.0) || !std::isfinite(options.grid_step)) {
+      return Error{ErrorCode::kUsage, "--grid", "give auto or a step above 0 in mesh units"};
+    }
+  }
+  return options;
+}
+
+int run_build(const Verb& verb, std::span<char* const> args) {
+  std::vector<std::string> inputs;
+  std::string output, output_folder, report_path;
+  BuildWords words;
+  std::uint32_t jobs = 0;
+  OutputOptions out;
+  bool repair = false;
+  OptionParser parser(verb);
+  parser.add_positionals("input", inputs, ".gltf, .glb, .ply, .obj or .stl files, and folders of them with -O");
+  parser.add_value("-o,--output", output, "the asset to write; the input's name with .lode where not given");
+  parser.add_value("-O,--output-folder", output_folder, "folder for the assets of many inputs; made where missing");
+  parser.add_value("--error-tier", words.error_tier, "what the errors are worth: qem (measured, certified: later)",
+                   {"qem", "measured", "certified"});
+  parser.add_value("--preset", words.preset, "default (fast, best: later)", {"fast", "default", "best"});
+  parser.add_value("--attributes", words.attributes, "auto keeps what the materials call for, none positions only",
+                   {"auto", "none", "all"});
+  parser.add_value("--grid", words.grid, "auto, or a step in mesh units for meshes that must abut");
+  parser.add_value("--codec", words.codec, "disk codec of the pages", {"none", "lz4", "zstd", "draco"});
+  add_jobs_option(parser, jobs);
+  parser.add_value("--report", report_path, "write times and counts as JSON, the same that --format json prints");
+  parser.add_flag("--repair", repair, "drop and count triangles with non-finite positions or indices out of range");
+  add_output_options(parser, out);
+  if (const auto exit_code = parser.parse(args)) return *exit_code;
+  if (!output.empty() && !output_folder.empty()) {
+    return print_error({ErrorCode::kUsage, "", "give -o or -O, not both"});
+  }
+  Result<PipelineOptions> options = make_options(words);
+  if (!options) return print_error(options.error());
+  options->repair = repair;
+  const auto plan = plan_jobs(inputs, output, output_folder);
+  if (!plan) return print_error(plan.error());
+
+  const JobLimit limit(jobs);
+  std::vector<JobResult> results;
+  int worst = 0;
+  if (plan->empty()) worst = print_error({ErrorCode::kIo, inputs.front(), "no scene below this folder"});
+  for (std::size_t i = 0; i < plan->size(); ++i) {
+    Progress progress(out.quiet, i, plan->size());
+    results.push_back(run_job((*plan)[i], *options, !output_folder.empty(), progress));
+    worst = std::max(worst, results.back().exit_code);
+    if (!out.quiet && !out.json() && results.back().exit_code == 0) print_summary(results.back());
+  }
+  const std::string text = report_json(results, jobs, worst);
+  if (!report_path.empty()) {
+    const auto* data = reinterpret_cast<const std::uint8_t*>(text.data());
+    if (const Status ok = write_file_atomically(report_path, {data, text.size()}); !ok) {
+      worst = std::max(worst, print_error(ok.error()));
+    }
+  }
+  if (out.json() && !print_out(text)) worst = std::max(worst, static_cast<int>(ErrorCode::kIo));
+  return worst;
+}
+
+}  // namespace
+
+const Verb kBuildVerb{"build", "turn glTF, PLY, OBJ or STL scenes into .lode assets",
+                      "meshlode build scene.glb -o scene.lode\n  meshlode build a.glb b.glb folder/ -O out/", run_build};
+
+}  // namespace meshlode::cli
