@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The repository as the house tests read it: files, their rooms and their #include lines.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace meshlode::house {
+
+struct Include {
+  std::string path;
+  bool is_quoted = false;  ///< "…" rather than <…>
+  std::size_t line = 0;
+};
+
+struct SourceFile {
+  std::filesystem::path path;  ///< relative to the repository
+  std::string room;            ///< folder below src/; "cli" for tools/meshlode, "generate" for tools/generate; else empty
+  std::string text;
+  [[nodiscard]] std::vector<Include> includes() const;
+  [[nodiscard]] bool is_header() const { return path.extension() == ".h"; }
+};
+
+/// Files below the given folders of the repository whose extension is in `extensions` (or that are CMakeLists.txt, where
+/// ".txt" is), sorted by path.
+[[nodiscard]] std::vector<SourceFile> read_tree(const std::vector<std::string>& folders,
+                                                const std::vector<std::string>& extensions);
+
+[[nodiscard]] std::filesystem::path repository();
+
+/// #include lines of a text.
+[[nodiscard]] std::vector<Include> parse_includes(const std::string& text);
+
+}  // namespace meshlode::house

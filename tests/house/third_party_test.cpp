@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A third-party library is seen through one .cpp per room that uses it, never in a header: `grep -r "include <metis"`
+// hits one file. Excepted are GLM, whose types are our vectors, and base/parallel.h, whose templates are oneTBB's.
+#include <array>
+#include <map>
+#include <set>
+#include <string>
+#include <string_view>
+
+#include <gtest/gtest.h>
+
+#include "source_tree.h"
+
+namespace meshlode::house {
+namespace {
+
+struct Library {
+  std::string_view name, prefix;
+};
+constexpr std::array kLibraries = {
+    Library{"tinygltf", "tiny_gltf"},    Library{"draco", "draco/"},          Library{"metis", "metis.h"},
+    Library{"OpenMesh", "OpenMesh/"},    Library{"CGAL", "CGAL/"},            Library{"glm", "glm/"},
+    Library{"meshoptimizer", "meshoptimizer"}, Library{"embree", "embree3/"}, Library{"tbb", "tbb/"},
+    Library{"zstd", "zstd"},             Library{"lz4", "lz4"},               Library{"xxhash", "xxhash.h"},
+    Library{"nlohmann", "nlohmann/"},    Library{"CLI11", "CLI/"},            Library{"spdlog", "spdlog/"},
+    Library{"fmt", "fmt/"},              Library{"stb", "stb"},               Library{"vulkan", "vulkan/"},
+    Library{"boost", "boost/"},          Library{"gmp", "gmp"},
+};
+
+/// Standard C++ headers have neither dot nor slash; these are the C and POSIX headers in use.
+bool is_system(const std::string& path) {
+  static const std::set<std::string> posix = {"unistd.h", "fcntl.h", "sys/mman.h", "sys/stat.h", "sys/types.h",
+                                              "sys/resource.h", "fenv.h", "dlfcn.h", "pthread.h", "immintrin.h",
+                                              "stdint.h", "stddef.h", "stdlib.h"};
+  return path.find_first_of("./") == std::string::npos || posix.contains(path);
+}
+
+/// Name of the library, empty for the system's and our own headers, "?" for one nobody has named here.
+std::string library_of(const Include& include) {
+  if (include.is_quoted || include.path.starts_with("meshlode/") || is_system(include.path)) return {};
+  for (const Library& library : kLibraries) {
+    if (include.path.starts_with(library.prefix)) return std::string(library.name);
+  }
+  return "?";
+}
+
+TEST(ThirdParty, ALibraryIsSeenByOneFilePerRoomAndNeverInAHeader) {
+  std::map<std::pair<std::string, std::string>, std::set<std::string>> users;  // (room, library) -> files
+  for (const SourceFile& file : read_tree({"src", "tools"}, {".h", ".cpp", ".c"})) {
+    for (const Include& include : file.includes()) {
+      const std::string library = library_of(include);
+      const std::string path = file.path.generic_string();
+      if (library.empty() || library == "glm") continue;
+      EXPECT_NE(library, "?") << path << ":" << include.line << ": name <" << include.path << "> in this test";
+      if (path == "src/base/parallel.h") continue;
+      EXPECT_FALSE(file.is_header()) << path << ":" << include.line << " shows " << include.path << " to its users";
+      users[{file.room, library}].insert(path);
+    }
+  }
+  for (const auto& [key, files] : users) {
+    std::string list;
+    for (const std::string& path : files) list += " " + path;
+    EXPECT_EQ(files.size(), 1U) << "room " << key.first << " sees " << key.second << " in" << list;
+  }
+}
+
+TEST(ThirdParty, PublicHeadersShowNone) {
+  for (const SourceFile& file : read_tree({"include"}, {".h"})) {
+    for (const Include& include : file.includes()) {
+      EXPECT_EQ(library_of(include), "") << file.path.string() << ":" << include.line << " shows " << include.path;
+    }
+  }
+}
+
+TEST(ThirdParty, TheCheckKnowsALibrary) {
+  EXPECT_EQ(library_of(parse_includes("#include <metis.h>").at(0)), "metis");
+  EXPECT_EQ(library_of(parse_includes("#include <vector>").at(0)), "");
+  EXPECT_EQ(library_of(parse_includes("#include <nobody/knows.h>").at(0)), "?");
+}
+
+}  // namespace
+}  // namespace meshlode::house
