@@ -46,7 +46,9 @@ struct PreparedMesh {
   std::vector<std::uint32_t> triangle_material; ///< MaterialId value per triangle
   std::uint64_t source_triangles = 0;
   std::uint64_t source_vertices = 0;
-  std::uint64_t dropped_degenerate = 0;  ///< two corners at the same exact position, or zero area exactly
+  /// Two corners at the same exact position. A triangle of three distinct collinear corners stays: its border is not
+  /// zero, so that taking it away would open a crack (I6).
+  std::uint64_t dropped_degenerate = 0;
   std::uint64_t dropped_duplicate = 0;   ///< same positions, winding, wedges and material as an earlier triangle
   std::uint64_t dropped_repaired = 0;
   std::uint64_t grid_collapsed = 0;      ///< kept triangles that lost their area on the grid

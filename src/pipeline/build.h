@@ -11,10 +11,10 @@
 #include <meshlode/result.h>
 
 #include "mesh/scene.h"
+#include "plan/plan.h"
 
 namespace meshlode {
 
-enum class AttributeChoice : std::uint8_t { kAuto, kNone, kAll };
 
 struct PipelineOptions {
   format::ErrorTier error_tier = format::ErrorTier::kQem;

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which triangles share an edge, as a weighted graph for the partitioner.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "mesh/prepared.h"
+#include "partition/partition.h"
+
+namespace meshlode {
+
+/// Weight of a shared edge, and of a link that only keeps near pieces together.
+constexpr std::int32_t kSharedEdgeWeight = 8;
+constexpr std::int32_t kNearbyWeight = 1;
+
+/// Triangles as nodes, in the order given; position ids are compacted inside. An edge with more than two triangles links
+/// them in a chain, so that a fan of thousands stays linear. Triangles that follow each other but belong to different
+/// pieces are linked weakly: the caller's order is taken as spatial, and loose pieces near each other stay together.
+[[nodiscard]] Graph triangle_graph(std::span<const std::array<std::uint32_t, 3>> corner_positions);
+
+}  // namespace meshlode

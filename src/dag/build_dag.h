@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// DAG: cluster, then group, simplify and cluster again, until one cluster is left.
+//
+// The scheme is Nanite's (Karis 2021): borders between groups are locked while a group is simplified, and since groups
+// are drawn anew at every level, what was locked on one level is free on the next.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include <meshlode/result.h>
+
+#include "cluster/cluster.h"
+#include "group/group.h"
+#include "mesh/dag.h"
+#include "mesh/prepared.h"
+#include "simplify/simplify.h"
+
+namespace meshlode {
+
+struct DagOptions {
+  ClusterCaps caps;
+  GroupOptions grouping;
+  SimplifyOptions simplify;       ///< target_triangles and the relax_… flags are set by the DAG
+  double stuck_ratio = 0.85;      ///< a group that keeps more than this share of its triangles is retried
+  std::uint32_t max_group_bytes = 0;     ///< decoded bytes a group may take; 0 = no limit
+  std::uint32_t max_cluster_bytes = 0;   ///< worst case of one full cluster, for the limit above
+  /// Called after each level with the level's number and its triangles. Returning false cancels.
+  std::function<bool(std::uint32_t level, std::uint64_t triangles)> on_level;
+};
+
+/// Errors: kBuildFailed when cancelled.
+[[nodiscard]] Result<LodDag> build_dag(const PreparedMesh& mesh, const DagOptions& options);
+
+}  // namespace meshlode

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The growing store of a build: positions, wedges and clusters of all levels so far. Used by the dag room alone.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "cluster/cluster.h"
+#include "mesh/dag.h"
+#include "mesh/prepared.h"
+#include "simplify/simplify.h"
+
+namespace meshlode {
+
+/// A cluster under construction: a range of BuildPool::triangles.
+struct BuildCluster {
+  std::uint32_t level = 0;
+  std::uint32_t own_group = 0xFFFFFFFFU;
+  std::uint32_t first_triangle = 0, triangle_count = 0;
+};
+
+/// A group that has been replaced by coarser clusters.
+struct BuildGroup {
+  std::uint32_t level = 0;
+  std::vector<std::uint32_t> clusters;
+  double error = 0.0, quadric_error = 0.0;
+  bool is_terminal = false;
+  StuckReason stuck_reason = StuckReason::kNotStuck;
+};
+
+class BuildPool {
+ public:
+  explicit BuildPool(const PreparedMesh& mesh);
+
+  /// Adds the clusters of `triangles` (wedges of this pool), in the clustering's order.
+  void add_clusters(const std::vector<WedgeTriangle>& triangles, const std::vector<std::uint32_t>& materials,
+                    const Clustering& clustering, std::uint32_t level, std::uint32_t own_group);
+
+  /// Adds what a group became. Positions that are already known (locked ones, or a coincidence on the grid) keep their
+  /// id, so that equal integers are equal ids at every level.
+  void add_simplified(const SimplifyResult& result, const Clustering& clustering, std::uint32_t level,
+                      std::uint32_t own_group);
+
+  /// The distinct position ids of a cluster, ascending.
+  void positions_of(std::uint32_t cluster, std::vector<std::uint32_t>& out) const;
+
+  std::vector<Vec3i> positions;
+  std::vector<std::uint32_t> wedge_position;
+  std::vector<float> wedge_attributes;
+  std::vector<WedgeTriangle> triangles;
+  std::vector<std::uint32_t> triangle_material;
+  std::vector<BuildCluster> clusters;
+  std::vector<BuildGroup> groups;
+
+ private:
+  std::uint32_t position_id(const Vec3i& position);
+  void grow_table();
+
+  std::size_t stride_;
+  std::vector<std::uint32_t> table_;  ///< open addressing over positions; ids depend on the order of insertion alone
+};
+
+/// The pool as a LodDag: groups from coarse to fine, clusters by group, vertices by first use.
+[[nodiscard]] LodDag assemble_dag(const BuildPool& pool, const PreparedMesh& mesh);
+
+}  // namespace meshlode

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The simplifier's state and steps, for at most Capacity attributes. Used by simplify.cpp alone.
+//
+// Order of collapses: E / √W, E the area-weighted quadric error at the new place and W the summed area. It beats E
+// because E grows with the area behind a vertex, not only with how far the surface moves.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <queue>
+#include <span>
+#include <vector>
+
+#include "simplify/collapse_mesh.h"
+#include "simplify/quadric.h"
+#include "simplify/simplify.h"
+
+namespace meshlode {
+
+template <std::size_t Capacity>
+class GroupSimplifier {
+ public:
+  GroupSimplifier(const SimplifyInput& input, const SimplifyOptions& options);
+  void run();
+  [[nodiscard]] SimplifyResult result() const;
+
+ private:
+  using Wedge = WedgeQuadric<Capacity>;
+  using Values = std::array<double, Capacity>;
+
+  static constexpr std::uint32_t kSeveralWedges = 0xFFFFFFFFU;
+  /// Weight of the pull towards the collapsed edge: places vertices sensibly where the surface is flat, and lets short
+  /// edges go first there. A share of the squared edge length, far below any deviation that matters.
+  static constexpr double kRegularization = 1e-5;
+  /// How far from the edge's middle a new vertex may lie, in edge lengths.
+  static constexpr double kMaxOffset = 1.5;
+  static constexpr double kFlipCosine = 0.2;  ///< a triangle may turn by less than 78 degrees in one collapse
+  static constexpr int kMaxPasses = 8;
+
+  struct Candidate {
+    double cost;
+    std::uint32_t a, b;                  ///< a < b
+    std::uint32_t version_a, version_b;  ///< stale if a vertex has changed since
+    bool operator>(const Candidate& other) const {
+      if (cost != other.cost) return cost > other.cost;
+      return a != other.a ? a > other.a : b > other.b;
+    }
+  };
+  /// Wedges that become one. `fixed` is the locked wedge whose values rule, if any.
+  struct WedgeClass {
+    std::vector<std::uint32_t> members;
+    std::uint32_t fixed = kSeveralWedges;
+    bool is_ambiguous = false;  ///< two locked wedges would become one
+  };
+  struct Placement {
+    Vec3d position{0.0};
+    double cost = 0.0;
+  };
+  enum class Obstacle : std::uint8_t { kNone, kLocked, kFlips, kSeams, kTopology };
+
+  void set_frame();
+  void scale_attributes();
+  void add_face_quadrics();
+  void add_edge_quadrics();
+  void seed_candidates();
+  void push_candidate(std::uint32_t a, std::uint32_t b);
+  void collect_wedge_classes(std::uint32_t a, std::uint32_t b);
+  [[nodiscard]] Placement place(std::uint32_t a, std::uint32_t b);
+  [[nodiscard]] double total_error(const Quadric& total, const Vec3d& p) const;
+  [[nodiscard]] Obstacle try_collapse(std::uint32_t a, std::uint32_t b);
+  [[nodiscard]] bool keeps_topology(std::uint32_t a, std::uint32_t b);
+  [[nodiscard]] bool turns_over(std::uint32_t moved, std::uint32_t other, const std::vector<std::uint32_t>& corners,
+                                const Vec3d& target) const;
+  void collapse(std::uint32_t a, std::uint32_t b, const Vec3d& target);
+  void update_wedges(std::uint32_t vertex);
+  [[nodiscard]] Vec3d to_frame(const Vec3i& q) const { return (Vec3d(q) - center_) * inverse_scale_; }
+  [[nodiscard]] Vec3i to_grid(const Vec3d& p) const;
+  [[nodiscard]] StuckReason reason_for_stopping() const;
+
+  const SimplifyInput& input_;
+  const SimplifyOptions& options_;
+  CollapseMesh mesh_;
+  std::size_t attribute_count_;
+  Vec3d center_{0.0};
+  double scale_ = 1.0, inverse_scale_ = 1.0;  ///< grid units per frame unit
+  std::vector<double> attribute_scale_;       ///< stored value -> weighted value
+
+  std::vector<Vec3i> grid_position_;
+  std::vector<Vec3d> position_;
+  std::vector<Quadric> plane_, border_, seam_;  ///< per vertex; seam_ is empty where there is none
+  std::vector<double> radius_;                  ///< bound on how far a merged source vertex lies from this one
+  std::vector<std::uint32_t> version_;
+  std::vector<std::uint8_t> is_locked_, is_border_;
+  std::vector<std::uint32_t> only_wedge_;       ///< per vertex, or kSeveralWedges
+
+  std::vector<Wedge> wedge_;
+  std::vector<Values> value_;
+  std::vector<std::uint8_t> is_wedge_locked_;
+
+  std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> queue_;
+  double error_ = 0.0;  ///< frame units
+  std::array<std::uint64_t, 5> obstacles_{};
+
+  // Scratch of one collapse.
+  std::vector<std::uint32_t> corners_a_, corners_b_, neighbors_a_, neighbors_b_;
+  std::vector<WedgeClass> classes_;
+  std::size_t class_count_ = 0;
+};
+
+}  // namespace meshlode

@@ -1,0 +1,635 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Definitions of GroupSimplifier, included by simplify.cpp.
+
+namespace meshlode {
+
+template <std::size_t C>
+GroupSimplifier<C>::GroupSimplifier(const SimplifyInput& input, const SimplifyOptions& options)
+    : input_(input),
+      options_(options),
+      mesh_(input.triangles, input.wedge_position, input.positions.size()),
+      attribute_count_(input.layout.stride()),
+      grid_position_(input.positions),
+      position_(input.positions.size()),
+      plane_(input.positions.size()),
+      border_(input.positions.size()),
+      radius_(input.positions.size(), 0.0),
+      version_(input.positions.size(), 0),
+      is_locked_(input.is_locked),
+      is_border_(input.positions.size(), 0),
+      only_wedge_(input.positions.size(), kSeveralWedges),
+      wedge_(attribute_count_ == 0 ? 0 : input.wedge_position.size()),
+      value_(wedge_.size()),
+      is_wedge_locked_(input.wedge_position.size(), 0) {
+  set_frame();
+  scale_attributes();
+  add_face_quadrics();
+  add_edge_quadrics();
+  for (std::size_t w = 0; w < input.wedge_position.size(); ++w) {
+    is_wedge_locked_[w] = is_locked_[input.wedge_position[w]];
+  }
+  for (std::uint32_t v = 0; v < position_.size(); ++v) update_wedges(v);
+}
+
+template <std::size_t C>
+void GroupSimplifier<C>::set_frame() {
+  Vec3i low(0);
+  Vec3i high(0);
+  for (std::size_t v = 0; v < input_.positions.size(); ++v) {
+    low = v == 0 ? input_.positions[v] : glm::min(low, input_.positions[v]);
+    high = v == 0 ? input_.positions[v] : glm::max(high, input_.positions[v]);
+  }
+  center_ = (Vec3d(low) + Vec3d(high)) * 0.5;
+  const Vec3i extent = high - low;
+  scale_ = std::max(1.0, 0.5 * std::max({extent.x, extent.y, extent.z}));
+  inverse_scale_ = 1.0 / scale_;
+  for (std::size_t v = 0; v < position_.size(); ++v) position_[v] = to_frame(grid_position_[v]);
+}
+
+template <std::size_t C>
+Vec3i GroupSimplifier<C>::to_grid(const Vec3d& p) const {
+  const Vec3d q = p * scale_ + center_;
+  Vec3i out;
+  for (int k = 0; k < 3; ++k) {
+    const double rounded = std::floor(q[k] + 0.5);
+    out[k] = static_cast<int>(std::clamp<double>(rounded, -kMaxGridCoordinate, kMaxGridCoordinate));
+  }
+  return out;
+}
+
+/// Attribute units become distances: see SimplifyOptions.
+template <std::size_t C>
+void GroupSimplifier<C>::scale_attributes() {
+  attribute_scale_.assign(attribute_count_, 0.0);
+  if (attribute_count_ == 0) return;
+  const AttributeLayout& layout = input_.layout;
+  double area = 0.0;
+  std::array<double, kMaxUvSets> uv_area{};
+  for (std::uint32_t t = 0; t < mesh_.triangle_count(); ++t) {
+    if (!mesh_.is_alive(t)) continue;
+    const Vec3d& p = position_[mesh_.vertex(3 * t)];
+    const Vec3d n = glm::cross(position_[mesh_.vertex(3 * t + 1)] - p, position_[mesh_.vertex(3 * t + 2)] - p);
+    area += 0.5 * std::sqrt(glm::dot(n, n));
+    for (std::uint32_t set = 0; set < layout.uv_set_count; ++set) {
+      std::array<Vec2d, 3> uv;
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        const float* a = &input_.wedge_attributes[std::size_t{mesh_.wedge(3 * t + k)} * attribute_count_];
+        uv[k] = {a[layout.uv_offset() + 2 * set], a[layout.uv_offset() + 2 * set + 1]};
+      }
+      const Vec2d e = uv[1] - uv[0];
+      const Vec2d f = uv[2] - uv[0];
+      uv_area[set] += 0.5 * std::abs(e.x * f.y - e.y * f.x);
+    }
+  }
+  const double mean_side = std::sqrt(area / std::max(1U, mesh_.alive_count()));
+  for (std::size_t j = 0; j < attribute_count_; ++j) {
+    if (layout.has_normal && j < 3) {
+      attribute_scale_[j] = options_.normal_weight * mean_side;
+    } else if (j < layout.color_offset()) {
+      const double density = uv_area[(j - layout.uv_offset()) / 2];
+      attribute_scale_[j] = density > 0.0 ? options_.uv_weight * std::sqrt(area / density) : 0.0;
+    } else {
+      attribute_scale_[j] = options_.color_weight * mean_side;
+    }
+    if (!std::isfinite(attribute_scale_[j])) attribute_scale_[j] = 0.0;
+  }
+  for (std::size_t w = 0; w < wedge_.size(); ++w) {
+    for (std::size_t j = 0; j < attribute_count_; ++j) {
+      value_[w][j] = attribute_scale_[j] * static_cast<double>(input_.wedge_attributes[w * attribute_count_ + j]);
+    }
+  }
+}
+
+template <std::size_t C>
+void GroupSimplifier<C>::add_face_quadrics() {
+  for (std::uint32_t t = 0; t < mesh_.triangle_count(); ++t) {
+    if (!mesh_.is_alive(t)) continue;
+    const std::uint32_t v[3] = {mesh_.vertex(3 * t), mesh_.vertex(3 * t + 1), mesh_.vertex(3 * t + 2)};
+    const Vec3d& p = position_[v[0]];
+    const Vec3d e1 = position_[v[1]] - p;
+    const Vec3d e2 = position_[v[2]] - p;
+    const Vec3d cross = glm::cross(e1, e2);
+    const double twice_area = std::sqrt(glm::dot(cross, cross));
+    if (!(twice_area > 0.0)) continue;
+    const Vec3d n = cross / twice_area;
+    const double area = 0.5 * twice_area;
+    for (const std::uint32_t vertex : v) plane_[vertex].add_plane(n, -glm::dot(n, p), area);
+    if (attribute_count_ == 0) continue;
+
+    // Across a sliver a gradient means nothing: there the attribute is taken as constant.
+    const double longest2 = std::max({glm::dot(e1, e1), glm::dot(e2, e2), glm::dot(e2 - e1, e2 - e1)});
+    const bool is_sliver = twice_area < 1e-3 * longest2;
+    const Vec3d to_1 = glm::cross(e2, n) / twice_area;
+    const Vec3d to_2 = glm::cross(n, e1) / twice_area;
+    const std::uint32_t w[3] = {mesh_.wedge(3 * t), mesh_.wedge(3 * t + 1), mesh_.wedge(3 * t + 2)};
+    for (const std::uint32_t wedge : w) wedge_[wedge].base.weight += area;
+    for (std::size_t j = 0; j < attribute_count_; ++j) {
+      const double s0 = value_[w[0]][j];
+      const double s1 = value_[w[1]][j];
+      const double s2 = value_[w[2]][j];
+      Vec3d gradient(0.0);
+      double offset = (s0 + s1 + s2) / 3.0;
+      if (!is_sliver) {
+        gradient = to_1 * (s1 - s0) + to_2 * (s2 - s0);
+        offset = s0 - glm::dot(gradient, p);
+      }
+      for (const std::uint32_t wedge : w) wedge_[wedge].add_face(j, gradient, offset, area);
+    }
+  }
+}
+
+/// Borders of the source, of materials and of texture charts are held in place by planes that stand on them.
+template <std::size_t C>
+void GroupSimplifier<C>::add_edge_quadrics() {
+  struct Use {
+    std::uint32_t a, b;     // a < b
+    std::uint32_t corner;   // whose edge to the next corner this is
+  };
+  std::vector<Use> uses;
+  uses.reserve(3 * mesh_.alive_count());
+  for (std::uint32_t corner = 0; corner < 3 * mesh_.triangle_count(); ++corner) {
+    if (!mesh_.is_alive(corner / 3)) continue;
+    const std::uint32_t a = mesh_.vertex(corner);
+    const std::uint32_t b = mesh_.vertex(CollapseMesh::next_in_triangle(corner));
+    uses.push_back({std::min(a, b), std::max(a, b), corner});
+  }
+  std::sort(uses.begin(), uses.end(), [](const Use& x, const Use& y) {
+    if (x.a != y.a) return x.a < y.a;
+    if (x.b != y.b) return x.b < y.b;
+    return x.corner < y.corner;
+  });
+  const auto add_wall = [&](const Use& use, std::vector<Quadric>& quadrics, double weight) {
+    const std::uint32_t t = use.corner / 3;
+    const Vec3d& p = position_[mesh_.vertex(3 * t)];
+    const Vec3d n = glm::cross(position_[mesh_.vertex(3 * t + 1)] - p, position_[mesh_.vertex(3 * t + 2)] - p);
+    const Vec3d edge = position_[use.b] - position_[use.a];
+    Vec3d wall = glm::cross(n, edge);
+    const double length = std::sqrt(glm::dot(wall, wall));
+    if (!(length > 0.0)) return;
+    wall /= length;
+    const double d = -glm::dot(wall, position_[use.a]);
+    const double w = weight * glm::dot(edge, edge);
+    quadrics[use.a].add_plane(wall, d, w);
+    quadrics[use.b].add_plane(wall, d, w);
+  };
+  const auto add_seam = [&](const Use& use, double weight) {
+    if (seam_.empty()) seam_.resize(position_.size());
+    add_wall(use, seam_, weight);
+  };
+  const AttributeLayout& layout = input_.layout;
+  const auto differ = [&](std::uint32_t corner_x, std::uint32_t corner_y) {
+    const float* x = &input_.wedge_attributes[std::size_t{mesh_.wedge(corner_x)} * attribute_count_];
+    const float* y = &input_.wedge_attributes[std::size_t{mesh_.wedge(corner_y)} * attribute_count_];
+    return !std::equal(x + layout.uv_offset(), x + attribute_count_, y + layout.uv_offset());
+  };
+  for (std::size_t i = 0; i < uses.size();) {
+    std::size_t end = i + 1;
+    while (end < uses.size() && uses[end].a == uses[i].a && uses[end].b == uses[i].b) ++end;
+    if (end - i != 2) {
+      for (std::size_t k = i; k < end; ++k) add_wall(uses[k], border_, 1.0);
+      is_border_[uses[i].a] = is_border_[uses[i].b] = 1;
+    } else {
+      const Use& x = uses[i];
+      const Use& y = uses[i + 1];
+      double weight = 0.0;
+      if (input_.triangle_material[x.corner / 3] != input_.triangle_material[y.corner / 3]) {
+        weight = options_.border_weight;
+      } else if (attribute_count_ > layout.uv_offset()) {
+        const auto corner_at = [&](const Use& use, std::uint32_t vertex) {
+          return mesh_.vertex(use.corner) == vertex ? use.corner : CollapseMesh::next_in_triangle(use.corner);
+        };
+        if (differ(corner_at(x, x.a), corner_at(y, x.a)) || differ(corner_at(x, x.b), corner_at(y, x.b))) {
+          weight = options_.seam_weight;
+        }
+      }
+      if (weight > 0.0) {
+        add_seam(x, weight);
+        add_seam(y, weight);
+      }
+    }
+    i = end;
+  }
+}
+
+template <std::size_t C>
+void GroupSimplifier<C>::update_wedges(std::uint32_t vertex) {
+  if (attribute_count_ == 0) return;
+  mesh_.corners_of(vertex, corners_a_);
+  only_wedge_[vertex] = kSeveralWedges;
+  bool is_first = true;
+  for (const std::uint32_t corner : corners_a_) {
+    const std::uint32_t w = mesh_.wedge(corner);
+    if (is_first) only_wedge_[vertex] = w;
+    if (w != only_wedge_[vertex]) {
+      only_wedge_[vertex] = kSeveralWedges;
+      return;
+    }
+    is_first = false;
+  }
+}
+
+template <std::size_t C>
+void GroupSimplifier<C>::seed_candidates() {
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
+  edges.reserve(3 * mesh_.alive_count());
+  for (std::uint32_t corner = 0; corner < 3 * mesh_.triangle_count(); ++corner) {
+    if (!mesh_.is_alive(corner / 3)) continue;
+    const std::uint32_t a = mesh_.vertex(corner);
+    const std::uint32_t b = mesh_.vertex(CollapseMesh::next_in_triangle(corner));
+    edges.emplace_back(std::min(a, b), std::max(a, b));
+  }
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  for (const auto& [a, b] : edges) push_candidate(a, b);
+}
+
+template <std::size_t C>
+void GroupSimplifier<C>::push_candidate(std::uint32_t a, std::uint32_t b) {
+  if (is_locked_[a] != 0 && is_locked_[b] != 0) {
+    ++obstacles_[static_cast<std::size_t>(Obstacle::kLocked)];
+    return;
+  }
+  if (a > b) std::swap(a, b);
+  const Placement placement = place(a, b);
+  queue_.push({placement.cost, a, b, version_[a], version_[b]});
+}
+
+/// Which wedges of a and b become one: those that meet in a triangle on the edge.
+template <std::size_t C>
+void GroupSimplifier<C>::collect_wedge_classes(std::uint32_t a, std::uint32_t b) {
+  class_count_ = 0;
+  if (attribute_count_ == 0) return;
+  const auto new_class = [&]() -> WedgeClass& {
+    if (class_count_ == classes_.size()) classes_.emplace_back();
+    WedgeClass& c = classes_[class_count_++];
+    c.members.clear();
+    c.fixed = kSeveralWedges;
+    c.is_ambiguous = false;
+    return c;
+  };
+  if (only_wedge_[a] != kSeveralWedges && only_wedge_[b] != kSeveralWedges) {
+    new_class().members = {only_wedge_[a], only_wedge_[b]};
+  } else {
+    // One class per wedge first, joined along the triangles on the edge. Wedge counts are small: linear search will do.
+    mesh_.corners_of(a, corners_a_);
+    mesh_.corners_of(b, corners_b_);
+    const auto find_class = [&](std::uint32_t w) -> std::size_t {
+      for (std::size_t i = 0; i < class_count_; ++i) {
+        const auto& members = classes_[i].members;
+        if (std::find(members.begin(), members.end(), w) != members.end()) return i;
+      }
+      new_class().members.push_back(w);
+      return class_count_ - 1;
+    };
+    for (const std::uint32_t corner : corners_a_) find_class(mesh_.wedge(corner));
+    for (const std::uint32_t corner : corners_b_) find_class(mesh_.wedge(corner));
+    for (const std::uint32_t corner : corners_a_) {
+      const std::uint32_t next = CollapseMesh::next_in_triangle(corner);
+      const std::uint32_t previous = CollapseMesh::next_in_triangle(next);
+      const std::uint32_t other = mesh_.vertex(next) == b ? next : previous;
+      if (mesh_.vertex(other) != b) continue;
+      const std::size_t i = find_class(mesh_.wedge(corner));
+      const std::size_t j = find_class(mesh_.wedge(other));
+      if (i == j) continue;
+      classes_[i].members.insert(classes_[i].members.end(), classes_[j].members.begin(), classes_[j].members.end());
+      std::swap(classes_[j], classes_[class_count_ - 1]);
+      --class_count_;
+    }
+  }
+  for (std::size_t i = 0; i < class_count_; ++i) {
+    WedgeClass& c = classes_[i];
+    std::sort(c.members.begin(), c.members.end());
+    for (const std::uint32_t w : c.members) {
+      if (is_wedge_locked_[w] == 0) continue;
+      c.is_ambiguous |= c.fixed != kSeveralWedges && value_[c.fixed] != value_[w];
+      if (c.fixed == kSeveralWedges) c.fixed = w;
+    }
+  }
+}
+
+template <std::size_t C>
+typename GroupSimplifier<C>::Placement GroupSimplifier<C>::place(std::uint32_t a, std::uint32_t b) {
+  Quadric total = plane_[a];
+  total += plane_[b];
+  const double weight = total.weight;
+  total.add_scaled(border_[a], options_.border_weight);
+  total.add_scaled(border_[b], options_.border_weight);
+  if (!seam_.empty()) {
+    total.add_scaled(seam_[a], 1.0);
+    total.add_scaled(seam_[b], 1.0);
+  }
+  const Vec3d& pa = position_[a];
+  const Vec3d& pb = position_[b];
+  const Vec3d edge = pb - pa;
+  const double length2 = glm::dot(edge, edge);
+
+  double fixed_error = 0.0;  // of wedges whose values may not change; only where the place is given
+  const bool is_place_given = is_locked_[a] != 0 || is_locked_[b] != 0;
+  const Vec3d given = is_locked_[a] != 0 ? pa : pb;
+  collect_wedge_classes(a, b);
+  for (std::size_t i = 0; i < class_count_; ++i) {
+    const WedgeClass& c = classes_[i];
+    Wedge joined = wedge_[c.members[0]];
+    for (std::size_t k = 1; k < c.members.size(); ++k) joined.add(wedge_[c.members[k]], attribute_count_);
+    if (c.fixed != kSeveralWedges) {
+      fixed_error += joined.evaluate(given, value_[c.fixed].data(), attribute_count_);
+    } else {
+      joined.add_reduced_to(total, attribute_count_);
+    }
+  }
+
+  Placement placement;
+  if (is_place_given) {
+    placement.position = given;
+  } else {
+    const Vec3d middle = (pa + pb) * 0.5;
+    total.add_point(middle, kRegularization * weight);
+    const double reach2 = kMaxOffset * kMaxOffset * length2;
+    Vec3d best;
+    bool is_placed = total.minimize(best);
+    if (is_placed) {
+      const Vec3d offset = best - middle;
+      is_placed = glm::dot(offset, offset) <= reach2;
+    }
+    if (!is_placed) {
+      // The best point of the edge, then its ends: E along the edge is a parabola.
+      const double slope = glm::dot(edge, Vec3d(total.a00 * pa.x + total.a01 * pa.y + total.a02 * pa.z + total.b0,
+                                                total.a01 * pa.x + total.a11 * pa.y + total.a12 * pa.z + total.b1,
+                                                total.a02 * pa.x + total.a12 * pa.y + total.a22 * pa.z + total.b2));
+      const double bend = glm::dot(edge, Vec3d(total.a00 * edge.x + total.a01 * edge.y + total.a02 * edge.z,
+                                               total.a01 * edge.x + total.a11 * edge.y + total.a12 * edge.z,
+                                               total.a02 * edge.x + total.a12 * edge.y + total.a22 * edge.z));
+      const double t = bend > 0.0 ? std::clamp(-slope / bend, 0.0, 1.0) : 0.5;
+      best = pa + edge * t;
+      double best_error = total.evaluate(best);
+      for (const Vec3d& end : {pa, pb}) {
+        const double error = total.evaluate(end);
+        if (error < best_error) {
+          best = end;
+          best_error = error;
+        }
+      }
+    }
+    placement.position = best;
+  }
+  const double error = total.evaluate(placement.position) + fixed_error + kRegularization * weight * length2;
+  placement.cost = weight > 0.0 ? error / std::sqrt(weight) : error;
+  return placement;
+}
+
+/// The link condition (Dey et al. 1999): common neighbours are exactly the tips of the triangles on the edge, no two
+/// triangles become one, and two border vertices join along the border only.
+template <std::size_t C>
+bool GroupSimplifier<C>::keeps_topology(std::uint32_t a, std::uint32_t b) {
+  neighbors_a_.clear();
+  neighbors_b_.clear();
+  std::uint32_t shared = 0;
+  for (const std::uint32_t corner : corners_a_) {
+    const std::uint32_t x = mesh_.vertex(CollapseMesh::next_in_triangle(corner));
+    const std::uint32_t y = mesh_.vertex(CollapseMesh::next_in_triangle(CollapseMesh::next_in_triangle(corner)));
+    shared += x == b || y == b ? 1 : 0;
+    neighbors_a_.push_back(x);
+    neighbors_a_.push_back(y);
+  }
+  for (const std::uint32_t corner : corners_b_) {
+    neighbors_b_.push_back(mesh_.vertex(CollapseMesh::next_in_triangle(corner)));
+    neighbors_b_.push_back(mesh_.vertex(CollapseMesh::next_in_triangle(CollapseMesh::next_in_triangle(corner))));
+  }
+  if (shared >= 2 && is_border_[a] != 0 && is_border_[b] != 0) return false;
+  if (shared == 0) return false;
+  std::vector<std::uint32_t>& na = neighbors_a_;
+  std::vector<std::uint32_t>& nb = neighbors_b_;
+  std::sort(na.begin(), na.end());
+  na.erase(std::unique(na.begin(), na.end()), na.end());
+  std::sort(nb.begin(), nb.end());
+  nb.erase(std::unique(nb.begin(), nb.end()), nb.end());
+  std::uint32_t common[3];
+  std::uint32_t common_count = 0;
+  for (std::size_t i = 0, j = 0; i < na.size() && j < nb.size();) {
+    if (na[i] == nb[j]) {
+      if (common_count == shared || common_count == 3) return false;
+      common[common_count++] = na[i];
+      ++i;
+      ++j;
+    } else if (na[i] < nb[j]) {
+      ++i;
+    } else {
+      ++j;
+    }
+  }
+  if (common_count != shared) return false;
+  if (common_count < 2) return true;
+  // (a, c, d) and (b, c, d) would lie on each other.
+  const auto has_tip_edge = [&](const std::vector<std::uint32_t>& corners) {
+    for (const std::uint32_t corner : corners) {
+      const std::uint32_t x = mesh_.vertex(CollapseMesh::next_in_triangle(corner));
+      const std::uint32_t y = mesh_.vertex(CollapseMesh::next_in_triangle(CollapseMesh::next_in_triangle(corner)));
+      if (std::find(common, common + common_count, x) != common + common_count &&
+          std::find(common, common + common_count, y) != common + common_count) {
+        return true;
+      }
+    }
+    return false;
+  };
+  return !(has_tip_edge(corners_a_) && has_tip_edge(corners_b_));
+}
+
+template <std::size_t C>
+bool GroupSimplifier<C>::turns_over(std::uint32_t moved, std::uint32_t other, const std::vector<std::uint32_t>& corners,
+                                    const Vec3d& target) const {
+  for (const std::uint32_t corner : corners) {
+    const std::uint32_t x = mesh_.vertex(CollapseMesh::next_in_triangle(corner));
+    const std::uint32_t y = mesh_.vertex(CollapseMesh::next_in_triangle(CollapseMesh::next_in_triangle(corner)));
+    if (x == other || y == other) continue;
+    const Vec3d edge = position_[y] - position_[x];
+    const Vec3d before = glm::cross(edge, position_[moved] - position_[x]);
+    const Vec3d after = glm::cross(edge, target - position_[x]);
+    const double before2 = glm::dot(before, before);
+    const double after2 = glm::dot(after, after);
+    if (!(before2 > 0.0)) continue;  // had no area: any change is for the better
+    const double dot = glm::dot(before, after);
+    if (!(dot > 0.0) || dot * dot < kFlipCosine * kFlipCosine * before2 * after2) return true;
+  }
+  return false;
+}
+
+template <std::size_t C>
+typename GroupSimplifier<C>::Obstacle GroupSimplifier<C>::try_collapse(std::uint32_t a, std::uint32_t b) {
+  const Placement placement = place(a, b);  // leaves the wedge classes behind
+  for (std::size_t i = 0; i < class_count_; ++i) {
+    if (classes_[i].is_ambiguous && !options_.relax_topology) return Obstacle::kSeams;
+  }
+  Vec3d target = placement.position;
+  if (is_locked_[a] == 0 && is_locked_[b] == 0) target = to_frame(to_grid(target));
+  mesh_.corners_of(a, corners_a_);
+  mesh_.corners_of(b, corners_b_);
+  if (!options_.relax_topology && !keeps_topology(a, b)) return Obstacle::kTopology;
+  if (!options_.relax_flips && (turns_over(a, b, corners_a_, target) || turns_over(b, a, corners_b_, target))) {
+    return Obstacle::kFlips;
+  }
+  if (is_locked_[b] != 0) std::swap(a, b);
+  collapse(a, b, target);
+  return Obstacle::kNone;
+}
+
+/// Joins b into a at `target`. The wedge classes of the pair are in classes_.
+template <std::size_t C>
+void GroupSimplifier<C>::collapse(std::uint32_t a, std::uint32_t b, const Vec3d& target) {
+  plane_[a] += plane_[b];
+  border_[a] += border_[b];
+  if (!seam_.empty()) seam_[a] += seam_[b];
+  if (plane_[a].weight > 0.0) {
+    error_ = std::max(error_, std::sqrt(plane_[a].evaluate(target) / plane_[a].weight));
+  }
+  if (border_[a].weight > 0.0) {
+    error_ = std::max(error_, std::sqrt(border_[a].evaluate(target) / border_[a].weight));
+  }
+  const Vec3d move_a = target - position_[a];
+  const Vec3d move_b = target - position_[b];
+  radius_[a] = std::max(radius_[a] + std::sqrt(glm::dot(move_a, move_a)),
+                        radius_[b] + std::sqrt(glm::dot(move_b, move_b)));
+  is_border_[a] |= is_border_[b];
+  if (is_locked_[a] == 0) {
+    grid_position_[a] = to_grid(target);
+    position_[a] = to_frame(grid_position_[a]);
+  }
+  const auto relabel = [&](std::uint32_t vertex, std::uint32_t from, std::uint32_t to) {
+    for (const std::uint32_t corner : vertex == a ? corners_a_ : corners_b_) {
+      if (mesh_.wedge(corner) == from) mesh_.set_wedge(corner, to);
+    }
+  };
+  mesh_.corners_of(a, corners_a_);
+  mesh_.corners_of(b, corners_b_);
+  for (std::size_t i = 0; i < class_count_; ++i) {
+    const WedgeClass& c = classes_[i];
+    const std::uint32_t keeper = c.fixed != kSeveralWedges ? c.fixed : c.members[0];
+    for (const std::uint32_t w : c.members) {
+      if (w == keeper) continue;
+      wedge_[keeper].add(wedge_[w], attribute_count_);
+      relabel(a, w, keeper);
+      relabel(b, w, keeper);
+    }
+    if (c.fixed == kSeveralWedges && wedge_[keeper].base.weight > 0.0) {
+      for (std::size_t j = 0; j < attribute_count_; ++j) value_[keeper][j] = wedge_[keeper].best(j, position_[a]);
+    }
+  }
+  mesh_.merge_vertices(a, b);
+  ++version_[a];
+  ++version_[b];
+
+  double lost = 0.0;  // frame units: what vanishes has no plane error, but it was there
+  if (options_.relax_topology) {
+    mesh_.corners_of(a, corners_a_);
+    for (const std::uint32_t corner : corners_a_) {
+      const Vec3d side = position_[mesh_.vertex(CollapseMesh::next_in_triangle(corner))] - position_[a];
+      lost = std::max(lost, glm::dot(side, side));
+    }
+    lost = mesh_.drop_opposite_pairs(a) > 0 ? 0.5 * std::sqrt(lost) + radius_[a] : 0.0;
+  }
+  update_wedges(a);
+  mesh_.corners_of(a, corners_a_);
+  if (corners_a_.empty()) lost = std::max(lost, radius_[a]);
+  error_ = std::max(error_, lost);
+
+  neighbors_a_.clear();
+  for (const std::uint32_t corner : corners_a_) {
+    const std::uint32_t next = CollapseMesh::next_in_triangle(corner);
+    neighbors_a_.push_back(mesh_.vertex(next));
+    neighbors_a_.push_back(mesh_.vertex(CollapseMesh::next_in_triangle(next)));
+  }
+  std::sort(neighbors_a_.begin(), neighbors_a_.end());
+  neighbors_a_.erase(std::unique(neighbors_a_.begin(), neighbors_a_.end()), neighbors_a_.end());
+  const std::vector<std::uint32_t> around = neighbors_a_;
+  for (const std::uint32_t n : around) push_candidate(a, n);
+}
+
+template <std::size_t C>
+void GroupSimplifier<C>::run() {
+  for (int pass = 0; pass < kMaxPasses && mesh_.alive_count() > options_.target_triangles; ++pass) {
+    obstacles_.fill(0);
+    queue_ = {};
+    seed_candidates();
+    bool any = false;
+    while (!queue_.empty() && mesh_.alive_count() > options_.target_triangles) {
+      const Candidate candidate = queue_.top();
+      queue_.pop();
+      if (version_[candidate.a] != candidate.version_a || version_[candidate.b] != candidate.version_b) continue;
+      const Obstacle obstacle = try_collapse(candidate.a, candidate.b);
+      if (obstacle == Obstacle::kNone) {
+        any = true;
+      } else {
+        ++obstacles_[static_cast<std::size_t>(obstacle)];
+      }
+    }
+    if (!any) break;  // obstacles depend on neighbours too, so what was refused is tried again as long as something moved
+  }
+}
+
+template <std::size_t C>
+StuckReason GroupSimplifier<C>::reason_for_stopping() const {
+  if (mesh_.alive_count() <= options_.target_triangles) return StuckReason::kNotStuck;
+  const auto largest = std::max_element(obstacles_.begin() + 1, obstacles_.end());
+  if (*largest == 0) return StuckReason::kTooSmall;
+  switch (static_cast<Obstacle>(largest - obstacles_.begin())) {
+    case Obstacle::kLocked: return StuckReason::kLocked;
+    case Obstacle::kFlips: return StuckReason::kFlips;
+    case Obstacle::kSeams: return StuckReason::kSeams;
+    case Obstacle::kTopology: return StuckReason::kTopology;
+    case Obstacle::kNone: break;
+  }
+  return StuckReason::kTooSmall;
+}
+
+template <std::size_t C>
+SimplifyResult GroupSimplifier<C>::result() const {
+  SimplifyResult out;
+  out.quadric_error = error_ * scale_ * input_.grid.step();
+  out.reason = reason_for_stopping();
+  constexpr std::uint32_t kUnset = 0xFFFFFFFFU;
+  std::vector<std::uint32_t> new_position(position_.size(), kUnset);
+  // A wedge may have come to serve one vertex only, so a map per wedge is enough.
+  std::vector<std::uint32_t> new_wedge(input_.wedge_position.size(), kUnset);
+  const std::size_t stride = attribute_count_;
+  for (std::uint32_t t = 0; t < mesh_.triangle_count(); ++t) {
+    if (!mesh_.is_alive(t)) continue;
+    WedgeTriangle triangle{};
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const std::uint32_t v = mesh_.vertex(3 * t + k);
+      const std::uint32_t w = stride == 0 ? v : mesh_.wedge(3 * t + k);
+      if (new_position[v] == kUnset) {
+        new_position[v] = static_cast<std::uint32_t>(out.positions.size());
+        out.positions.push_back(grid_position_[v]);
+      }
+      std::uint32_t& slot = stride == 0 ? new_position[v] : new_wedge[w];
+      if (stride == 0 ? out.wedge_position.size() <= slot : slot == kUnset) {
+        slot = static_cast<std::uint32_t>(out.wedge_position.size());
+        out.wedge_position.push_back(new_position[v]);
+        for (std::size_t j = 0; j < stride; ++j) {
+          const bool is_kept = is_wedge_locked_[w] != 0 || !(attribute_scale_[j] > 0.0);
+          out.wedge_attributes.push_back(is_kept ? input_.wedge_attributes[w * stride + j]
+                                                 : static_cast<float>(value_[w][j] / attribute_scale_[j]));
+        }
+        if (input_.layout.has_normal && is_wedge_locked_[w] == 0) {
+          float* n = &out.wedge_attributes[out.wedge_attributes.size() - stride];
+          const double x = n[0];
+          const double y = n[1];
+          const double z = n[2];
+          const double length = std::sqrt(x * x + y * y + z * z);
+          if (length > 0.0) {
+            n[0] = static_cast<float>(x / length);
+            n[1] = static_cast<float>(y / length);
+            n[2] = static_cast<float>(z / length);
+          } else {
+            std::copy_n(&input_.wedge_attributes[w * stride], 3, n);
+          }
+        }
+      }
+      triangle[k] = slot;
+    }
+    out.triangles.push_back(triangle);
+    out.triangle_material.push_back(input_.triangle_material[t]);
+  }
+  return out;
+}
+
+}  // namespace meshlode

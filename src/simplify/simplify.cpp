@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "simplify/simplify.h"
+
+#include "simplify/group_simplifier.h"
+#include "simplify/group_simplifier.inl"
+
+namespace meshlode {
+
+namespace {
+
+template <std::size_t Capacity>
+SimplifyResult simplify_with(const SimplifyInput& input, const SimplifyOptions& options) {
+  GroupSimplifier<Capacity> simplifier(input, options);
+  simplifier.run();
+  return simplifier.result();
+}
+
+}  // namespace
+
+SimplifyResult simplify_group(const SimplifyInput& input, const SimplifyOptions& options) {
+  // Quadrics of few attributes are small, and copying them is most of the work.
+  const std::uint32_t attributes = input.layout.stride();
+  if (attributes <= 3) return simplify_with<3>(input, options);
+  if (attributes <= 5) return simplify_with<5>(input, options);
+  return simplify_with<3 + 2 * kMaxUvSets + 4>(input, options);
+}
+
+}  // namespace meshlode

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Simplify: a group's triangles are reduced by edge collapse in order of quadric error, to a new vertex at the best
+// place. What the group shares with others is locked: position and attributes stay bit for bit.
+//
+// A collapse maps vertices to vertices. The oriented border of a set of triangles commutes with such maps, so whatever is
+// collapsed inside, a border whose vertices are locked is kept exactly (I6); degenerate triangles have no border and may
+// go. Link condition and flip tests are about quality, not about cracks, and can be relaxed where nothing else helps.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "mesh/dag.h"
+#include "mesh/grid.h"
+#include "mesh/prepared.h"
+
+namespace meshlode {
+
+struct SimplifyOptions {
+  std::uint32_t target_triangles = 0;  ///< stop at or below this
+  /// Weights of attribute errors against distance. A normal that is off by δ (length of the difference) counts like a
+  /// distance of normal_weight · δ · √(mean triangle area).
+  double normal_weight = 0.7;
+  double uv_weight = 0.7;      ///< UV errors as distances on the surface (by the group's mean texel density)
+  double color_weight = 0.7;   ///< as normals
+  double border_weight = 8.0;  ///< of source borders and material borders, against area-weighted planes
+  double seam_weight = 1.0;    ///< of texture seams
+  bool relax_topology = false; ///< allow collapses that break the link condition
+  bool relax_flips = false;    ///< allow collapses that turn triangles over
+};
+
+/// A group with local ids. Wedges are per position; see PreparedMesh.
+struct SimplifyInput {
+  PositionGrid grid;
+  AttributeLayout layout;
+  std::vector<Vec3i> positions;
+  std::vector<std::uint8_t> is_locked;          ///< per position: shared with another group
+  std::vector<std::uint32_t> wedge_position;
+  std::vector<float> wedge_attributes;
+  std::vector<WedgeTriangle> triangles;
+  std::vector<std::uint32_t> triangle_material;
+};
+
+struct SimplifyResult {
+  std::vector<Vec3i> positions;                 ///< distinct ids, but two may have the same coordinates
+  std::vector<std::uint32_t> wedge_position;
+  std::vector<float> wedge_attributes;
+  std::vector<WedgeTriangle> triangles;
+  std::vector<std::uint32_t> triangle_material;
+  double quadric_error = 0.0;                   ///< object units: root of the largest mean squared distance of a collapse
+  StuckReason reason = StuckReason::kNotStuck;  ///< what stopped it short of the target: the commonest obstacle
+};
+
+[[nodiscard]] SimplifyResult simplify_group(const SimplifyInput& input, const SimplifyOptions& options);
+
+}  // namespace meshlode
