@@ -19,6 +19,8 @@ target_compile_options(meshlode_flags INTERFACE -ffp-contract=off
   $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wold-style-cast
                             -Wnon-virtual-dtor -Woverloaded-virtual>
   $<$<COMPILE_LANGUAGE:C>:-Wall -Wextra>)
+# GCC 12 sees overlapping copies in std::string's insert and operator+ that cannot be (GCC bug 105329).
+target_compile_options(meshlode_flags INTERFACE $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-restrict>)
 if(MESHLODE_WERROR)
   target_compile_options(meshlode_flags INTERFACE -Werror)
 endif()

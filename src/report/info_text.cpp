@@ -27,7 +27,7 @@ __attribute__((format(printf, 2, 3))) void add(std::string& out, const char* for
 /// 1234567 -> "1,234,567".
 std::string grouped(std::uint64_t n) {
   std::string digits = std::to_string(n);
-  for (std::size_t i = digits.size(); i > 3; i -= 3) digits.insert(i - 3, ",");
+  for (std::size_t i = digits.size(); i > 3; i -= 3) digits.insert(i - 3, 1, ',');
   return digits;
 }
 

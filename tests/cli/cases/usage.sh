@@ -1,0 +1,24 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Exit 1 with one line on stderr for everything that cannot be a command.
+code
+code --help
+code --version
+run frobnicate
+for verb in build info validate verify render extract; do
+  code "$verb" --help
+  code "$verb"
+  code "$verb" a.lode --no-such-option
+done
+run build
+run build a.glb --no-such-option
+run build a.glb -o a.lode -O out
+run build a.glb b.glb -o a.lode
+run build a.glb --codec gzip
+run build a.glb --jobs many
+run build a.glb --jobs -1
+run build a.glb --grid 0
+run build a.glb --grid nan
+run build a.glb --grid 1e-3x
+run build a.glb a.glb -O out
+run info --format yaml a.lode
+files

@@ -1,0 +1,31 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# install-deps.sh [--tests]: the Debian 12 packages that building meshlode needs; with --tests also what its tests need
+# (a second compiler for the comparison of content hashes, sample models). Nothing happens where all are there.
+set -euo pipefail
+
+packages=(
+  g++ cmake ninja-build
+  libtbb-dev libglm-dev libxxhash-dev        # base
+  nlohmann-json3-dev libtinygltf-dev libdraco-dev libopenmesh-dev  # import
+  libmetis-dev libcgal-dev                   # partition, hierarchy
+  libzstd-dev liblz4-dev                     # pack, unpack
+  libstb-dev libcli11-dev                    # raster, command line
+)
+if [ "${1:-}" = --tests ]; then
+  packages+=(libgtest-dev clang-14 assimp-testmodels)
+fi
+
+is_installed() { [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; }
+missing=()
+for package in "${packages[@]}"; do
+  is_installed "$package" || missing+=("$package")
+done
+[ ${#missing[@]} -eq 0 ] && exit 0
+
+sudo=()
+if [ "$(id -u)" -ne 0 ]; then sudo=(sudo); fi
+echo "installing ${missing[*]}"
+export DEBIAN_FRONTEND=noninteractive
+"${sudo[@]}" apt-get update -qq
+"${sudo[@]}" apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null

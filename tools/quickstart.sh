@@ -1,0 +1,28 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# quickstart.sh [SCENE]: installs what is missing, builds meshlode, turns a scene into an asset, prints its statistics,
+# proves it against its source and draws a picture of a LOD cut.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+scene=${1:-data/rock.glb}
+jobs=${JOBS:-$(nproc)}
+build=build/release
+
+tools/install-deps.sh
+cmake --preset release -DMESHLODE_TESTS=OFF >/dev/null
+ninja -C "$build" -j "$jobs" meshlode_cli
+meshlode=$build/meshlode
+
+mkdir -p out
+name=$(basename "${scene%.*}")
+asset=out/$name.lode
+picture=out/$name.png
+run() { echo; echo "\$ $*"; "$@"; }
+run "$meshlode" build "$scene" -o "$asset"
+run "$meshlode" info "$asset"
+run "$meshlode" verify "$asset" --source "$scene"
+run "$meshlode" render "$asset" -o "$picture" --size 1280x720 --pixel-error 4 --view clusters
+echo
+echo "program  $PWD/$meshlode"
+echo "asset    $PWD/$asset"
+echo "picture  $PWD/$picture   (a LOD cut at 4 pixels, a colour per cluster)"
