@@ -3,11 +3,15 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
+
+#include <meshlode/format.h>
 
 #include "base/ids.h"
 #include "base/vec.h"
 #include "read/asset.h"
+#include "select/metric.h"
 
 namespace meshlode {
 
@@ -22,16 +26,46 @@ struct Camera {
   std::uint32_t width = 1280, height = 720;
 };
 
+/// The records that selection reads: those of an asset, or of a test.
+struct SelectTables {
+  std::span<const format::MeshRecord> meshes;
+  std::span<const format::InstanceRecord> instances;
+  std::span<const format::GroupRecord> groups;
+  std::span<const format::ClusterRecord> clusters;
+  std::span<const format::NodeRecord> nodes;
+};
+[[nodiscard]] SelectTables tables_of(const Asset& asset);
+
+/// The camera and one instance, rounded once to the floats that the rule sees (metric.h); what a GPU is given too.
+/// `reach` bounds |center| + radius of every stored sphere of the mesh: see mesh_reach. A pixel error that is not above
+/// 0 lets only errors of 0 pass.
+[[nodiscard]] MetricView make_metric_view(const Camera& camera, double pixel_error,
+                                          const format::InstanceRecord& instance, const format::MeshRecord& mesh,
+                                          double reach);
+/// From the root of the mesh's BVH, object units; 0 for a mesh without groups.
+[[nodiscard]] double mesh_reach(const SelectTables& tables, const format::MeshRecord& mesh);
+
 struct ClusterInstance {
   InstanceId instance;
   ClusterId cluster;
   constexpr auto operator<=>(const ClusterInstance&) const = default;
 };
 
-/// Every drawn (instance, cluster) for the camera at `pixel_error`, ascending. No culling. Singular instances have none.
+/// Every drawn (instance, cluster) for the camera at `pixel_error`, ascending. No culling. Singular instances have
+/// none.
 [[nodiscard]] std::vector<ClusterInstance> select_flat(const Asset& asset, const Camera& camera, double pixel_error);
 /// The same set through the BVH (I8).
 [[nodiscard]] std::vector<ClusterInstance> select_bvh(const Asset& asset, const Camera& camera, double pixel_error);
+
+[[nodiscard]] std::vector<ClusterInstance> select_flat(const SelectTables& tables, const Camera& camera,
+                                                       double pixel_error);
+/// How much work a traversal was; for tests and benchmarks.
+struct TraversalCount {
+  std::uint64_t nodes = 0;     ///< BVH nodes tested
+  std::uint64_t clusters = 0;  ///< clusters tested
+};
+[[nodiscard]] std::vector<ClusterInstance> select_bvh(const SelectTables& tables, const Camera& camera,
+                                                      double pixel_error, TraversalCount* count = nullptr);
 
 enum class CutError : std::uint8_t { kSelection, kQuadric };  ///< which stored number decides a uniform cut
 
@@ -41,6 +75,8 @@ struct UniformCut {
 };
 /// The cut of one mesh where a group passes iff its error <= `error` (object units). No camera.
 [[nodiscard]] UniformCut select_uniform(const Asset& asset, MeshId mesh, double error,
+                                        CutError by = CutError::kSelection);
+[[nodiscard]] UniformCut select_uniform(const SelectTables& tables, MeshId mesh, double error,
                                         CutError by = CutError::kSelection);
 
 }  // namespace meshlode

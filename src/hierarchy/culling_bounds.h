@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Tight bounds of one cluster's own geometry, for culling: they decide nothing about the cut.
+#pragma once
+
+#include "hierarchy/hierarchy.h"
+#include "mesh/dag.h"
+#include "mesh/grid.h"
+
+namespace meshlode {
+
+/// Contains every vertex of the cluster as decoded, near-smallest.
+[[nodiscard]] Hierarchy::Sphere culling_sphere(const LodDag& dag, const DagCluster& cluster, const PositionGrid& grid);
+
+/// dot(view, axis / 127) >= cutoff / 127, view a unit vector from the eye, implies that every triangle of the cluster
+/// is back-facing or has no area. cutoff 127: there is no such view.
+[[nodiscard]] Hierarchy::Cone normal_cone(const LodDag& dag, const DagCluster& cluster);
+
+}  // namespace meshlode

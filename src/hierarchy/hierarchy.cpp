@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hierarchy/hierarchy.h"
+
+#include "base/parallel.h"
+#include "hierarchy/bvh.h"
+#include "hierarchy/culling_bounds.h"
+#include "hierarchy/lod_bounds.h"
+
+namespace meshlode {
+
+Hierarchy build_hierarchy(const LodDag& dag, const PreparedMesh& mesh) {
+  Hierarchy hierarchy;
+  const std::size_t cluster_count = dag.clusters.size();
+  hierarchy.cluster_spheres.resize(cluster_count);
+  hierarchy.cluster_cones.resize(cluster_count);
+  parallel_for_each_index(cluster_count, 16, [&](std::size_t i) {
+    hierarchy.cluster_spheres[i] = culling_sphere(dag, dag.clusters[i], mesh.grid);
+    hierarchy.cluster_cones[i] = normal_cone(dag, dag.clusters[i]);
+  });
+
+  LodBounds bounds = nest_lod_bounds(dag, hierarchy.cluster_spheres);
+  std::vector<std::uint32_t> levels(dag.groups.size());
+  for (std::size_t g = 0; g < levels.size(); ++g) levels[g] = dag.groups[g].level;
+  hierarchy.nodes = build_bvh(bounds.spheres, bounds.errors, levels);
+  hierarchy.group_spheres = std::move(bounds.spheres);
+  hierarchy.group_errors = std::move(bounds.errors);
+  return hierarchy;
+}
+
+}  // namespace meshlode

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: MIT
+// The cut of a scene for a camera, by looking at every group (the rule itself) or through the BVH (the same set, I8),
+// and the uniform cut of a mesh. One thread, no dependency: this is what an engine ships.
+#include "select/select.h"
+
+#include <algorithm>
+
+namespace meshlode {
+namespace {
+
+bool passes(const MetricView& view, const format::GroupRecord& group) {
+  return metric_passes(view, group.center[0], group.center[1], group.center[2], group.radius, group.error);
+}
+
+bool passes(const MetricView& view, const format::NodeRecord& node) {
+  return metric_passes(view, node.center[0], node.center[1], node.center[2], node.radius, node.error);
+}
+
+bool is_drawable(const SelectTables& tables, const format::InstanceRecord& instance) {
+  return (instance.flags & format::kInstanceSingular) == 0 && instance.mesh < tables.meshes.size() &&
+         tables.meshes[instance.mesh].group_count > 0;
+}
+
+// Draws the clusters of a mesh where the own group passes (or there is none) and the coarser one does not (I5).
+// `group_passes` is indexed from the mesh's first group.
+template <class Draw>
+void draw_cut(const SelectTables& tables, const format::MeshRecord& mesh, const std::vector<std::uint8_t>& group_passes,
+              const Draw& draw) {
+  for (std::uint32_t i = 0; i < mesh.cluster_count; ++i) {
+    const std::uint32_t id = mesh.first_cluster + i;
+    const format::ClusterRecord& cluster = tables.clusters[id];
+    if (group_passes[cluster.coarser_group - mesh.first_group] != 0) continue;
+    if (cluster.own_group != format::kNone && group_passes[cluster.own_group - mesh.first_group] == 0) continue;
+    draw(id, cluster);
+  }
+}
+
+}  // namespace
+
+SelectTables tables_of(const Asset& asset) {
+  return {asset.meshes(), asset.instances(), asset.groups(), asset.clusters(), asset.nodes()};
+}
+
+std::vector<ClusterInstance> select_flat(const SelectTables& tables, const Camera& camera, double pixel_error) {
+  std::vector<ClusterInstance> cut;
+  std::vector<std::uint8_t> group_passes;
+  for (std::size_t i = 0; i < tables.instances.size(); ++i) {
+    const format::InstanceRecord& instance = tables.instances[i];
+    if (!is_drawable(tables, instance)) continue;
+    const format::MeshRecord& mesh = tables.meshes[instance.mesh];
+    const MetricView view = make_metric_view(camera, pixel_error, instance, mesh, mesh_reach(tables, mesh));
+    group_passes.assign(mesh.group_count, 0);
+    for (std::uint32_t g = 0; g < mesh.group_count; ++g) {
+      group_passes[g] = passes(view, tables.groups[mesh.first_group + g]) ? 1 : 0;
+    }
+    draw_cut(tables, mesh, group_passes, [&](std::uint32_t id, const format::ClusterRecord&) {
+      cut.push_back({InstanceId(i), ClusterId(id)});
+    });
+  }
+  return cut;
+}
+
+std::vector<ClusterInstance> select_bvh(const SelectTables& tables, const Camera& camera, double pixel_error,
+                                        TraversalCount* count) {
+  std::vector<ClusterInstance> cut;
+  std::vector<std::uint32_t> stack;
+  TraversalCount work;
+  for (std::size_t i = 0; i < tables.instances.size(); ++i) {
+    const format::InstanceRecord& instance = tables.instances[i];
+    if (!is_drawable(tables, instance)) continue;
+    const format::MeshRecord& mesh = tables.meshes[instance.mesh];
+    const MetricView view = make_metric_view(camera, pixel_error, instance, mesh, mesh_reach(tables, mesh));
+    const std::size_t first_of_instance = cut.size();
+    stack.assign(mesh.node_count > 0 ? 1 : 0, mesh.first_node);
+    while (!stack.empty()) {
+      const std::uint32_t node_id = stack.back();
+      stack.pop_back();
+      const format::NodeRecord& node = tables.nodes[node_id];
+      ++work.nodes;
+      if (passes(view, node)) continue;  // then every group below passes, and none of their members is drawn
+      if (node.child_count > 0) {
+        // Children lie behind their node, which also keeps a damaged table from looping.
+        for (std::uint32_t c = 0; c < node.child_count && node.first > node_id; ++c) stack.push_back(node.first + c);
+        continue;
+      }
+      // A leaf has its group's own bits, so the group does not pass.
+      const format::GroupRecord& group = tables.groups[node.first];
+      for (std::uint32_t c = 0; c < group.cluster_count; ++c) {
+        const std::uint32_t id = group.first_cluster + c;
+        const format::ClusterRecord& cluster = tables.clusters[id];
+        ++work.clusters;
+        if (cluster.own_group == format::kNone || passes(view, tables.groups[cluster.own_group])) {
+          cut.push_back({InstanceId(i), ClusterId(id)});
+        }
+      }
+    }
+    std::sort(cut.begin() + static_cast<std::ptrdiff_t>(first_of_instance), cut.end());
+  }
+  if (count != nullptr) *count = work;
+  return cut;
+}
+
+UniformCut select_uniform(const SelectTables& tables, MeshId mesh_id, double error, CutError by) {
+  const format::MeshRecord& mesh = tables.meshes[mesh_id.value];
+  std::vector<std::uint8_t> group_passes(mesh.group_count, 0);
+  for (std::uint32_t g = 0; g < mesh.group_count; ++g) {
+    const format::GroupRecord& group = tables.groups[mesh.first_group + g];
+    const float value = by == CutError::kQuadric ? group.quadric_error : group.error;
+    // Terminal groups never pass, whatever their other numbers say.
+    group_passes[g] = group.error < format::kInfiniteError && double{value} <= error ? 1 : 0;
+  }
+  UniformCut cut;
+  cut.stored_error = mesh.level0_deviation;
+  draw_cut(tables, mesh, group_passes, [&](std::uint32_t id, const format::ClusterRecord& cluster) {
+    cut.clusters.push_back(ClusterId(id));
+    if (cluster.own_group != format::kNone) {
+      cut.stored_error = std::max(cut.stored_error, double{tables.groups[cluster.own_group].error});
+    }
+  });
+  return cut;
+}
+
+std::vector<ClusterInstance> select_flat(const Asset& asset, const Camera& camera, double pixel_error) {
+  return select_flat(tables_of(asset), camera, pixel_error);
+}
+
+std::vector<ClusterInstance> select_bvh(const Asset& asset, const Camera& camera, double pixel_error) {
+  return select_bvh(tables_of(asset), camera, pixel_error);
+}
+
+UniformCut select_uniform(const Asset& asset, MeshId mesh, double error, CutError by) {
+  return select_uniform(tables_of(asset), mesh, error, by);
+}
+
+}  // namespace meshlode
