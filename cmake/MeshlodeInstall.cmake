@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# What an installed meshlode offers: the program, and for find_package(meshlode)
+#   meshlode::runtime  static, MIT: read, unpack, select, decode behind <meshlode/runtime.h>. Needs nothing but the C and
+#                      C++ runtime (and zstd, lz4 where the codecs are built in).
+#   meshlode::build    shared, GPL-3.0-or-later: the builder behind <meshlode/build.h>. Shared, so that its third-party
+#                      libraries are its own affair.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+install(TARGETS meshlode_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(FILES LICENSES/GPL-3.0-or-later.txt LICENSES/MIT.txt DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY docs/schemas/ DESTINATION ${CMAKE_INSTALL_DATADIR}/meshlode/schemas FILES_MATCHING PATTERN "*.json")
+
+set(meshlode_runtime_rooms base read unpack select decode api_runtime)
+set(has_runtime TRUE)
+foreach(room IN LISTS meshlode_runtime_rooms)
+  if(NOT TARGET meshlode_${room})
+    set(has_runtime FALSE)
+  endif()
+endforeach()
+if(NOT has_runtime)
+  message(STATUS "install: no meshlode::runtime, a room of it is not there")
+  return()
+endif()
+
+add_library(meshlode_runtime STATIC)
+set_target_properties(meshlode_runtime PROPERTIES EXPORT_NAME runtime LINKER_LANGUAGE CXX)
+foreach(room IN LISTS meshlode_runtime_rooms)
+  get_target_property(type meshlode_${room} TYPE)
+  if(NOT type STREQUAL INTERFACE_LIBRARY)
+    target_sources(meshlode_runtime PRIVATE $<TARGET_OBJECTS:meshlode_${room}>)
+  endif()
+endforeach()
+target_include_directories(meshlode_runtime INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+target_compile_features(meshlode_runtime INTERFACE cxx_std_20)
+# The codecs of unpack, by their names for the linker.
+get_target_property(meshlode_codec_libs meshlode_unpack MESHLODE_CODEC_LIBS)
+if(meshlode_codec_libs)
+  target_link_libraries(meshlode_runtime INTERFACE ${meshlode_codec_libs})
+endif()
+set(meshlode_exports meshlode_runtime)
+install(FILES include/meshlode/format.h include/meshlode/result.h include/meshlode/runtime.h
+        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/meshlode)
+
+if(TARGET meshlode_api_build AND TARGET meshlode_pipeline)
+  add_library(meshlode_build SHARED $<TARGET_OBJECTS:meshlode_api_build>)
+  # meshlode_thread_rand stays out: a library must not replace its host's rand().
+  target_link_libraries(meshlode_build PRIVATE meshlode_api_build)
+  set_target_properties(meshlode_build PROPERTIES EXPORT_NAME build LINKER_LANGUAGE CXX
+                                                  VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})
+  target_include_directories(meshlode_build INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_compile_features(meshlode_build INTERFACE cxx_std_20)
+  list(APPEND meshlode_exports meshlode_build)
+  install(FILES include/meshlode/build.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/meshlode)
+endif()
+
+set(meshlode_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/meshlode)
+install(TARGETS ${meshlode_exports} EXPORT meshlodeTargets
+        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(EXPORT meshlodeTargets NAMESPACE meshlode:: FILE meshlodeConfig.cmake DESTINATION ${meshlode_package_dir})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/meshlodeConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/meshlodeConfigVersion.cmake DESTINATION ${meshlode_package_dir})

@@ -1,0 +1,25 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# install_test.sh CMAKE BUILD_FOLDER COMPILER CONSUMER: installs to a temporary prefix, builds and runs the consumer there,
+# and looks at what its two programs need at run time.
+set -euo pipefail
+cmake=$1 build=$2 compiler=$3 consumer=$4
+work=$(mktemp -d); trap 'rm -rf "$work"' EXIT
+"$cmake" --install "$build" --prefix "$work/prefix" >/dev/null
+"$work/prefix/bin/meshlode" --version
+"$cmake" -S "$consumer" -B "$work/consumer" -DCMAKE_PREFIX_PATH="$work/prefix" -DCMAKE_CXX_COMPILER="$compiler" >/dev/null
+"$cmake" --build "$work/consumer"
+"$work/consumer/use_build" "$work/triangle.lode"
+"$work/consumer/use_runtime" "$work/triangle.lode"
+
+needed() { readelf -d "$1" | sed -n 's/.*(NEEDED).*\[\(.*\)\].*/\1/p' | LC_ALL=C sort; }
+allowed='^(libc|libm|libstdc\+\+|libgcc_s|ld-linux-x86-64|libzstd|liblz4)\.so'
+if needed "$work/consumer/use_runtime" | grep -Ev "$allowed"; then
+  echo "FAILED: meshlode::runtime needs the libraries above"; exit 1
+fi
+# Its own symbols too: no oneTBB, no METIS, no JSON left open for someone else to provide.
+runtime=$(find "$work/prefix" -name 'libmeshlode_runtime.a')
+if nm -C --undefined-only "$runtime" | grep -E ' U (tbb::|METIS_|nlohmann|draco::|CGAL|OpenMesh)'; then
+  echo "FAILED: meshlode::runtime leaves the symbols above to others"; exit 1
+fi
+echo "PASSED: use_runtime needs $(needed "$work/consumer/use_runtime" | tr '\n' ' ')"
