@@ -14,11 +14,9 @@ namespace {
 /// How hard a round tries. Later ones give up something to get anywhere at all.
 struct Effort {
   std::uint32_t target_clusters;  ///< of groups: another size gives other neighbours
-  bool relax_topology;
-  bool relax_flips;
+  bool may_relax_flips;
 };
-constexpr Effort kEfforts[] = {{16, false, false}, {24, false, false}, {11, true, false}, {32, true, false},
-                               {24, true, true}};
+constexpr Effort kEfforts[] = {{16, false}, {24, false}, {11, false}, {32, true}, {24, true}};
 
 /// What one group became, before it is accepted.
 struct Attempt {
@@ -101,11 +99,17 @@ class GroupInputBuilder {
   const PreparedMesh& mesh_;
 };
 
-GroupInput grouping_input(const BuildPool& pool, const std::vector<std::uint32_t>& live, std::uint32_t cluster_bytes) {
+GroupInput grouping_input(const BuildPool& pool, const std::vector<std::uint32_t>& live, const DagOptions& options) {
   GroupInput input;
   input.position_count = static_cast<std::uint32_t>(pool.positions.size());
   std::vector<std::vector<std::uint32_t>> lists(live.size());
-  parallel_for_each_index(live.size(), 16, [&](std::size_t i) { pool.positions_of(live[i], lists[i]); });
+  input.weights.assign(live.size(), 0);
+  parallel_for_each_index(live.size(), 16, [&](std::size_t i) {
+    pool.positions_of(live[i], lists[i]);
+    if (options.max_group_bytes == 0) return;
+    input.weights[i] = options.cluster_bytes(pool.count_wedges(live[i]), pool.clusters[live[i]].triangle_count,
+                                             pool.count_materials(live[i]));
+  });
   input.first_position.push_back(0);
   for (std::size_t i = 0; i < live.size(); ++i) {
     input.positions.insert(input.positions.end(), lists[i].begin(), lists[i].end());
@@ -113,7 +117,6 @@ GroupInput grouping_input(const BuildPool& pool, const std::vector<std::uint32_t
     Vec3d sum(0.0);
     for (const std::uint32_t p : lists[i]) sum += Vec3d(pool.positions[p]);
     input.centers.push_back(sum / static_cast<double>(std::max<std::size_t>(1, lists[i].size())));
-    input.weights.push_back(cluster_bytes);
   }
   return input;
 }
@@ -140,8 +143,7 @@ Attempt simplify_and_cluster(const SimplifyInput& input, const DagOptions& optio
   attempt.source_triangles = static_cast<std::uint32_t>(input.triangles.size());
   SimplifyOptions simplify = options.simplify;
   simplify.target_triangles = target_triangles(attempt.source_triangles, options.caps);
-  simplify.relax_topology = effort.relax_topology;
-  simplify.relax_flips = effort.relax_flips;
+  simplify.may_relax_flips = effort.may_relax_flips;
   attempt.result = simplify_group(input, simplify);
   const auto kept = static_cast<double>(attempt.result.triangles.size());
   if (attempt.result.triangles.empty() || kept > options.stuck_ratio * attempt.source_triangles) return attempt;
@@ -153,8 +155,8 @@ Attempt simplify_and_cluster(const SimplifyInput& input, const DagOptions& optio
 
 /// Ends the DAG: what is left is never replaced.
 void add_terminal_groups(BuildPool& pool, const std::vector<std::uint32_t>& live, const GroupOptions& grouping,
-                         std::uint32_t cluster_bytes, const std::vector<StuckReason>& reasons) {
-  const std::vector<std::vector<std::uint32_t>> groups = group_clusters(grouping_input(pool, live, cluster_bytes), grouping);
+                         const DagOptions& options, const std::vector<StuckReason>& reasons) {
+  const std::vector<std::vector<std::uint32_t>> groups = group_clusters(grouping_input(pool, live, options), grouping);
   for (const std::vector<std::uint32_t>& members : groups) {
     BuildGroup group;
     group.is_terminal = true;
@@ -189,12 +191,12 @@ Result<LodDag> build_dag(const PreparedMesh& mesh, const DagOptions& options) {
     }
     if (live.size() == 1 || effort_index == std::size(kEfforts)) {
       if (live.size() == 1) reasons.assign(1, StuckReason::kNotStuck);
-      add_terminal_groups(pool, live, grouping, options.max_cluster_bytes, reasons);
+      add_terminal_groups(pool, live, grouping, options, reasons);
       break;
     }
     const Effort& effort = kEfforts[effort_index];
     grouping.target_clusters = effort.target_clusters;
-    const GroupInput input = grouping_input(pool, live, options.max_cluster_bytes);
+    const GroupInput input = grouping_input(pool, live, options);
     const std::vector<std::vector<std::uint32_t>> groups = group_clusters(input, grouping);
     const std::vector<std::uint8_t> is_shared = find_shared(input, groups);
 

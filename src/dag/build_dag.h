@@ -21,10 +21,11 @@ namespace meshlode {
 struct DagOptions {
   ClusterCaps caps;
   GroupOptions grouping;
-  SimplifyOptions simplify;       ///< target_triangles and the relax_… flags are set by the DAG
+  SimplifyOptions simplify;       ///< target_triangles and may_relax_flips are set by the DAG
   double stuck_ratio = 0.85;      ///< a group that keeps more than this share of its triangles is retried
-  std::uint32_t max_group_bytes = 0;     ///< decoded bytes a group may take; 0 = no limit
-  std::uint32_t max_cluster_bytes = 0;   ///< worst case of one full cluster, for the limit above
+  std::uint32_t max_group_bytes = 0;  ///< decoded bytes that a group's clusters may take together; 0 = no limit
+  /// Upper bound of the bytes of a cluster of so many vertices, triangles and materials. Needed with max_group_bytes.
+  std::function<std::uint32_t(std::uint32_t vertices, std::uint32_t triangles, std::uint32_t materials)> cluster_bytes;
   /// Called after each level with the level's number and its triangles. Returning false cancels.
   std::function<bool(std::uint32_t level, std::uint64_t triangles)> on_level;
 };

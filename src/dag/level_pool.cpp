@@ -92,4 +92,22 @@ void BuildPool::positions_of(std::uint32_t cluster, std::vector<std::uint32_t>& 
   out.erase(std::unique(out.begin(), out.end()), out.end());
 }
 
+std::uint32_t BuildPool::count_wedges(std::uint32_t cluster) const {
+  const BuildCluster& c = clusters[cluster];
+  std::vector<std::uint32_t> wedges;
+  for (std::uint32_t t = c.first_triangle; t < c.first_triangle + c.triangle_count; ++t) {
+    wedges.insert(wedges.end(), triangles[t].begin(), triangles[t].end());
+  }
+  std::sort(wedges.begin(), wedges.end());
+  return static_cast<std::uint32_t>(std::unique(wedges.begin(), wedges.end()) - wedges.begin());
+}
+
+std::uint32_t BuildPool::count_materials(std::uint32_t cluster) const {
+  const BuildCluster& c = clusters[cluster];
+  const auto first = triangle_material.begin() + c.first_triangle;
+  std::vector<std::uint32_t> materials(first, first + c.triangle_count);
+  std::sort(materials.begin(), materials.end());
+  return static_cast<std::uint32_t>(std::unique(materials.begin(), materials.end()) - materials.begin());
+}
+
 }  // namespace meshlode

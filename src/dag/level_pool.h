@@ -43,6 +43,8 @@ class BuildPool {
 
   /// The distinct position ids of a cluster, ascending.
   void positions_of(std::uint32_t cluster, std::vector<std::uint32_t>& out) const;
+  [[nodiscard]] std::uint32_t count_wedges(std::uint32_t cluster) const;     ///< an upper bound of its vertices
+  [[nodiscard]] std::uint32_t count_materials(std::uint32_t cluster) const;
 
   std::vector<Vec3i> positions;
   std::vector<std::uint32_t> wedge_position;

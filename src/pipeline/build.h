@@ -21,7 +21,11 @@ struct PipelineOptions {
   AttributeChoice attributes = AttributeChoice::kAuto;
   double grid_step = 0.0;  ///< 0: chosen from the budget; else this step in mesh units
   format::Codec codec = format::Codec::kNone;
-  bool repair = false;     ///< repair at the import and prepare stages
+  bool repair = false;     ///< the scene was imported with repair: recorded, because it changes the bytes
+  std::uint32_t max_cluster_triangles = 128;  ///< I2; at most format::kMaxClusterTriangles
+  std::uint32_t max_cluster_vertices = 256;   ///< I2; at most format::kMaxClusterVertices
+  std::uint32_t normal_bits = 11;  ///< per octahedral axis
+  std::uint32_t uv_bits = 16;      ///< steps across a mesh's UV range, as a power of two
 };
 
 /// Called from one thread at a time, in no promised order between meshes. Return false to cancel.

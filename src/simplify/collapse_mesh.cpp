@@ -75,10 +75,10 @@ void CollapseMesh::merge_vertices(std::uint32_t to, std::uint32_t from) {
   head_[from] = tail_[from] = kEnd;
 }
 
-std::uint32_t CollapseMesh::drop_opposite_pairs(std::uint32_t vertex) {
+void CollapseMesh::drop_opposite_pairs(std::uint32_t vertex, std::vector<std::uint32_t>& dropped) {
   std::vector<std::uint32_t> corners;
   corners_of(vertex, corners);
-  std::uint32_t dropped = 0;
+  dropped.clear();
   for (std::size_t i = 0; i < corners.size(); ++i) {
     if (!is_alive(corners[i] / 3)) continue;
     const std::uint32_t a = vertex_[next_in_triangle(corners[i])];
@@ -89,11 +89,10 @@ std::uint32_t CollapseMesh::drop_opposite_pairs(std::uint32_t vertex) {
       if (vertex_[next_in_triangle(next_in_triangle(corners[j]))] != a) continue;
       kill(corners[i] / 3);
       kill(corners[j] / 3);
-      dropped += 2;
+      dropped.push_back(corners[i] / 3);
       break;
     }
   }
-  return dropped;
 }
 
 }  // namespace meshlode

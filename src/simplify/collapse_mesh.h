@@ -37,8 +37,8 @@ class CollapseMesh {
   void merge_vertices(std::uint32_t to, std::uint32_t from);
 
   /// Drops pairs of triangles around `vertex` that cover the same three vertices in opposite orientation: together they
-  /// have no border and enclose nothing. Returns how many triangles went.
-  std::uint32_t drop_opposite_pairs(std::uint32_t vertex);
+  /// have no border and enclose nothing. `dropped` lists one triangle of each pair.
+  void drop_opposite_pairs(std::uint32_t vertex, std::vector<std::uint32_t>& dropped);
 
  private:
   void kill(std::uint32_t triangle) {

@@ -77,6 +77,8 @@ class GroupSimplifier {
   void update_wedges(std::uint32_t vertex);
   [[nodiscard]] Vec3d to_frame(const Vec3i& q) const { return (Vec3d(q) - center_) * inverse_scale_; }
   [[nodiscard]] Vec3i to_grid(const Vec3d& p) const;
+  void run_passes();
+  [[nodiscard]] double drop_collapsed_sheets(std::uint32_t vertex);
   [[nodiscard]] StuckReason reason_for_stopping() const;
 
   const SimplifyInput& input_;
@@ -90,7 +92,11 @@ class GroupSimplifier {
   std::vector<Vec3i> grid_position_;
   std::vector<Vec3d> position_;
   std::vector<Quadric> plane_, border_, seam_;  ///< per vertex; seam_ is empty where there is none
-  std::vector<double> radius_;                  ///< bound on how far a merged source vertex lies from this one
+  struct Box {
+    Vec3d low, high;
+    [[nodiscard]] double diagonal() const { return std::sqrt(glm::dot(high - low, high - low)); }
+  };
+  std::vector<Box> merged_;                     ///< box around all input vertices that a vertex stands for
   std::vector<std::uint32_t> version_;
   std::vector<std::uint8_t> is_locked_, is_border_;
   std::vector<std::uint32_t> only_wedge_;       ///< per vertex, or kSeveralWedges
@@ -101,10 +107,11 @@ class GroupSimplifier {
 
   std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> queue_;
   double error_ = 0.0;  ///< frame units
+  bool is_topology_relaxed_ = false, are_flips_relaxed_ = false;
   std::array<std::uint64_t, 5> obstacles_{};
 
   // Scratch of one collapse.
-  std::vector<std::uint32_t> corners_a_, corners_b_, neighbors_a_, neighbors_b_;
+  std::vector<std::uint32_t> corners_a_, corners_b_, neighbors_a_, neighbors_b_, dropped_;
   std::vector<WedgeClass> classes_;
   std::size_t class_count_ = 0;
 };

@@ -13,7 +13,7 @@ GroupSimplifier<C>::GroupSimplifier(const SimplifyInput& input, const SimplifyOp
       position_(input.positions.size()),
       plane_(input.positions.size()),
       border_(input.positions.size()),
-      radius_(input.positions.size(), 0.0),
+      merged_(input.positions.size()),
       version_(input.positions.size(), 0),
       is_locked_(input.is_locked),
       is_border_(input.positions.size(), 0),
@@ -43,7 +43,10 @@ void GroupSimplifier<C>::set_frame() {
   const Vec3i extent = high - low;
   scale_ = std::max(1.0, 0.5 * std::max({extent.x, extent.y, extent.z}));
   inverse_scale_ = 1.0 / scale_;
-  for (std::size_t v = 0; v < position_.size(); ++v) position_[v] = to_frame(grid_position_[v]);
+  for (std::size_t v = 0; v < position_.size(); ++v) {
+    position_[v] = to_frame(grid_position_[v]);
+    merged_[v] = {position_[v], position_[v]};
+  }
 }
 
 template <std::size_t C>
@@ -457,14 +460,14 @@ template <std::size_t C>
 typename GroupSimplifier<C>::Obstacle GroupSimplifier<C>::try_collapse(std::uint32_t a, std::uint32_t b) {
   const Placement placement = place(a, b);  // leaves the wedge classes behind
   for (std::size_t i = 0; i < class_count_; ++i) {
-    if (classes_[i].is_ambiguous && !options_.relax_topology) return Obstacle::kSeams;
+    if (classes_[i].is_ambiguous && !is_topology_relaxed_) return Obstacle::kSeams;
   }
   Vec3d target = placement.position;
   if (is_locked_[a] == 0 && is_locked_[b] == 0) target = to_frame(to_grid(target));
   mesh_.corners_of(a, corners_a_);
   mesh_.corners_of(b, corners_b_);
-  if (!options_.relax_topology && !keeps_topology(a, b)) return Obstacle::kTopology;
-  if (!options_.relax_flips && (turns_over(a, b, corners_a_, target) || turns_over(b, a, corners_b_, target))) {
+  if (!is_topology_relaxed_ && !keeps_topology(a, b)) return Obstacle::kTopology;
+  if (!are_flips_relaxed_ && (turns_over(a, b, corners_a_, target) || turns_over(b, a, corners_b_, target))) {
     return Obstacle::kFlips;
   }
   if (is_locked_[b] != 0) std::swap(a, b);
@@ -484,10 +487,8 @@ void GroupSimplifier<C>::collapse(std::uint32_t a, std::uint32_t b, const Vec3d&
   if (border_[a].weight > 0.0) {
     error_ = std::max(error_, std::sqrt(border_[a].evaluate(target) / border_[a].weight));
   }
-  const Vec3d move_a = target - position_[a];
-  const Vec3d move_b = target - position_[b];
-  radius_[a] = std::max(radius_[a] + std::sqrt(glm::dot(move_a, move_a)),
-                        radius_[b] + std::sqrt(glm::dot(move_b, move_b)));
+  merged_[a].low = glm::min(merged_[a].low, merged_[b].low);
+  merged_[a].high = glm::max(merged_[a].high, merged_[b].high);
   is_border_[a] |= is_border_[b];
   if (is_locked_[a] == 0) {
     grid_position_[a] = to_grid(target);
@@ -517,19 +518,10 @@ void GroupSimplifier<C>::collapse(std::uint32_t a, std::uint32_t b, const Vec3d&
   ++version_[a];
   ++version_[b];
 
-  double lost = 0.0;  // frame units: what vanishes has no plane error, but it was there
-  if (options_.relax_topology) {
-    mesh_.corners_of(a, corners_a_);
-    for (const std::uint32_t corner : corners_a_) {
-      const Vec3d side = position_[mesh_.vertex(CollapseMesh::next_in_triangle(corner))] - position_[a];
-      lost = std::max(lost, glm::dot(side, side));
-    }
-    lost = mesh_.drop_opposite_pairs(a) > 0 ? 0.5 * std::sqrt(lost) + radius_[a] : 0.0;
-  }
+  if (is_topology_relaxed_) error_ = std::max(error_, drop_collapsed_sheets(a));
   update_wedges(a);
   mesh_.corners_of(a, corners_a_);
-  if (corners_a_.empty()) lost = std::max(lost, radius_[a]);
-  error_ = std::max(error_, lost);
+  if (corners_a_.empty()) error_ = std::max(error_, merged_[a].diagonal());
 
   neighbors_a_.clear();
   for (const std::uint32_t corner : corners_a_) {
@@ -543,8 +535,43 @@ void GroupSimplifier<C>::collapse(std::uint32_t a, std::uint32_t b, const Vec3d&
   for (const std::uint32_t n : around) push_candidate(a, n);
 }
 
+/// Removes pairs of triangles that lie on each other. Such a sheet has no plane error, but it was there: returns its
+/// smallest height, or the size of what stood behind vertices that go with it, in frame units.
+template <std::size_t C>
+double GroupSimplifier<C>::drop_collapsed_sheets(std::uint32_t vertex) {
+  mesh_.drop_opposite_pairs(vertex, dropped_);
+  double lost = 0.0;
+  for (const std::uint32_t t : dropped_) {
+    const std::uint32_t v[3] = {mesh_.vertex(3 * t), mesh_.vertex(3 * t + 1), mesh_.vertex(3 * t + 2)};
+    const Vec3d e0 = position_[v[1]] - position_[v[0]];
+    const Vec3d e1 = position_[v[2]] - position_[v[1]];
+    const Vec3d e2 = position_[v[0]] - position_[v[2]];
+    const Vec3d cross = glm::cross(e0, e1);
+    const double longest2 = std::max({glm::dot(e0, e0), glm::dot(e1, e1), glm::dot(e2, e2)});
+    if (longest2 > 0.0) lost = std::max(lost, std::sqrt(glm::dot(cross, cross) / longest2));
+    for (const std::uint32_t corner_vertex : v) {
+      mesh_.corners_of(corner_vertex, corners_b_);
+      if (corners_b_.empty()) lost = std::max(lost, merged_[corner_vertex].diagonal());
+    }
+  }
+  return lost;
+}
+
 template <std::size_t C>
 void GroupSimplifier<C>::run() {
+  run_passes();
+  if (options_.may_relax_topology && mesh_.alive_count() > options_.target_triangles) {
+    is_topology_relaxed_ = true;
+    run_passes();
+  }
+  if (options_.may_relax_flips && mesh_.alive_count() > options_.target_triangles) {
+    are_flips_relaxed_ = true;
+    run_passes();
+  }
+}
+
+template <std::size_t C>
+void GroupSimplifier<C>::run_passes() {
   for (int pass = 0; pass < kMaxPasses && mesh_.alive_count() > options_.target_triangles; ++pass) {
     obstacles_.fill(0);
     queue_ = {};

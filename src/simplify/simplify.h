@@ -26,8 +26,9 @@ struct SimplifyOptions {
   double color_weight = 0.7;   ///< as normals
   double border_weight = 8.0;  ///< of source borders and material borders, against area-weighted planes
   double seam_weight = 1.0;    ///< of texture seams
-  bool relax_topology = false; ///< allow collapses that break the link condition
-  bool relax_flips = false;    ///< allow collapses that turn triangles over
+  /// Where the link condition keeps the target out of reach (small holes, handles, fans), go on without it.
+  bool may_relax_topology = true;
+  bool may_relax_flips = false;  ///< and then without the flip test: a last resort
 };
 
 /// A group with local ids. Wedges are per position; see PreparedMesh.

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/meta.h"
+
+#include <nlohmann/json.hpp>
+
+namespace meshlode {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const char* name_of(AttributeChoice choice) {
+  switch (choice) {
+    case AttributeChoice::kNone: return "none";
+    case AttributeChoice::kAll: return "all";
+    case AttributeChoice::kAuto: break;
+  }
+  return "auto";
+}
+
+const char* name_of(format::ErrorTier tier) {
+  switch (tier) {
+    case format::ErrorTier::kMeasured: return "measured";
+    case format::ErrorTier::kCertified: return "certified";
+    case format::ErrorTier::kQem: break;
+  }
+  return "qem";
+}
+
+const char* name_of(format::Codec codec) {
+  switch (codec) {
+    case format::Codec::kLz4: return "lz4";
+    case format::Codec::kZstd: return "zstd";
+    case format::Codec::kDraco: return "draco";
+    case format::Codec::kNone: break;
+  }
+  return "none";
+}
+
+}  // namespace
+
+std::string meta_json(const Scene& scene, const PipelineOptions& options, const std::vector<PlanDecision>& decisions) {
+  Json meta;
+  meta["generator"] = "meshlode 0.1.0";
+  meta["source"] = {{"file", scene.source_name}, {"hash", scene.source_hash}};
+  Json settings;
+  settings["error_tier"] = name_of(options.error_tier);
+  settings["attributes"] = name_of(options.attributes);
+  settings["grid"] = options.grid_step > 0.0 ? Json(options.grid_step) : Json("auto");
+  settings["codec"] = name_of(options.codec);
+  settings["repair"] = options.repair;
+  settings["cluster_triangles"] = options.max_cluster_triangles;
+  settings["cluster_vertices"] = options.max_cluster_vertices;
+  settings["normal_bits"] = options.normal_bits;
+  settings["uv_bits"] = options.uv_bits;
+  meta["settings"] = settings;
+  meta["plan"] = Json::array();
+  for (const PlanDecision& decision : decisions) {
+    meta["plan"].push_back({{"what", decision.what}, {"kept", decision.kept}, {"reason", decision.reason}});
+  }
+  meta["left_out"] = Json::array();
+  for (const LeftOut& item : scene.left_out) meta["left_out"].push_back({{"what", item.what}, {"why", item.why}});
+  for (const PlanDecision& decision : decisions) {
+    if (!decision.kept) meta["left_out"].push_back({{"what", decision.what}, {"why", decision.reason}});
+  }
+  // Names come from files: bytes that are not UTF-8 are replaced, never thrown on.
+  return meta.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace meshlode
