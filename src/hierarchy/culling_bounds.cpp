@@ -38,7 +38,10 @@ Hierarchy::Sphere culling_sphere(const LodDag& dag, const DagCluster& cluster, c
       {static_cast<float>(middle.x), static_cast<float>(middle.y), static_cast<float>(middle.z)}, 0.0F};
   const Vec3d center = center_of(sphere);
   double radius = 0.0;
-  for (const Ball& p : points) radius = std::max(radius, length_of(p.center - center));
+  for (const Ball& p : points) {
+    // On a coarse mantissa (--grid) a float position may round: both are held.
+    radius = std::max(radius, std::max(length_of(p.center - center), length_of(Vec3d(Vec3f(p.center)) - center)));
+  }
   return {{sphere.center[0], sphere.center[1], sphere.center[2]}, float_above(radius * (1.0 + kDoubleSlack))};
 }
 

@@ -8,7 +8,7 @@
 
 namespace meshlode {
 
-/// Contains every vertex of the cluster as decoded, near-smallest.
+/// Contains every vertex of the cluster as decoded, in doubles and in floats. Near-smallest.
 [[nodiscard]] Hierarchy::Sphere culling_sphere(const LodDag& dag, const DagCluster& cluster, const PositionGrid& grid);
 
 /// dot(view, axis / 127) >= cutoff / 127, view a unit vector from the eye, implies that every triangle of the cluster

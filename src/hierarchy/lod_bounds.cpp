@@ -57,7 +57,7 @@ Hierarchy::Sphere enclose_spheres(std::span<const Hierarchy::Sphere> inner) {
 
 float grow_error(double error, float finer) {
   double grown = double{finer} * (1.0 + kErrorGrowth);
-  if (error > grown) grown = std::min(error, double{kMaxStoredError});  // NaN and negative errors count as none
+  if (error > grown) grown = std::max(grown, std::min(error, double{kMaxStoredError}));  // NaN counts as none
   return grown > 0.0 ? std::max(kMinStoredError, float_above(grown)) : 0.0F;
 }
 
