@@ -34,9 +34,8 @@ endforeach()
 target_include_directories(meshlode_runtime INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
 target_compile_features(meshlode_runtime INTERFACE cxx_std_20)
 # The codecs of unpack, by their names for the linker.
-get_target_property(meshlode_codec_libs meshlode_unpack MESHLODE_CODEC_LIBS)
-if(meshlode_codec_libs)
-  target_link_libraries(meshlode_runtime INTERFACE ${meshlode_codec_libs})
+if(MESHLODE_UNPACK_CODECS)
+  target_link_libraries(meshlode_runtime INTERFACE zstd lz4)
 endif()
 set(meshlode_exports meshlode_runtime)
 install(FILES include/meshlode/format.h include/meshlode/result.h include/meshlode/runtime.h
