@@ -1,0 +1,477 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The glTF document of a cut: the asset's own scene document with its geometry put back. Everything that is not
+// geometry (nodes, materials, textures, cameras, lights, animations, extras) is carried through as it was imported.
+//
+// Far-away meshes: a float32 POSITION cannot hold both a large origin and small features. Where adding the origin would
+// cost more than the grid can bear, positions stay relative to the origin and the mesh moves into a child node that is
+// translated by it (see `choose_origin`); the node's own transform, animation and children are not touched.
+#include "export/export.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <string>
+#include <string_view>
+
+#include <nlohmann/json.hpp>
+
+#include "export/cut_geometry.h"
+#include "export/glb.h"
+#include "mesh/grid.h"
+
+namespace meshlode {
+namespace {
+
+using Json = nlohmann::json;  // keys sorted: deterministic bytes
+
+constexpr int kFloat = 5126, kUnsignedInt = 5125, kUnsignedShort = 5123, kUnsignedByte = 5121;
+constexpr int kArrayBuffer = 34962, kElementArrayBuffer = 34963;
+constexpr std::size_t kMaxDepth = 200;  // of JSON nesting: copying and writing a document are recursive
+
+/// Extensions that describe how geometry was stored; the exported geometry is plain.
+constexpr std::array<std::string_view, 4> kGeometryExtensions = {
+    "EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "KHR_draco_mesh_compression", "KHR_mesh_quantization"};
+
+struct ExportedMesh {
+  std::uint32_t index = format::kNone;  ///< in the glTF; kNone without primitives
+  Vec3d translation{0.0};               ///< of a node to put around it
+  [[nodiscard]] bool is_translated() const { return translation != Vec3d(0.0); }
+};
+
+bool nests_deeper_than(std::string_view text, std::size_t limit) {
+  std::size_t depth = 0;
+  bool is_string = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (is_string) {
+      if (c == '\\') ++i;
+      else if (c == '"') is_string = false;
+    } else if (c == '"') {
+      is_string = true;
+    } else if (c == '{' || c == '[') {
+      if (++depth > limit) return true;
+    } else if ((c == '}' || c == ']') && depth > 0) {
+      --depth;
+    }
+  }
+  return false;
+}
+
+/// Element `index` of the array `key` of an object, or null where there is none of that shape.
+const Json* find_element(const Json& object, const char* key, std::size_t index) {
+  const auto it = object.find(key);
+  return it != object.end() && it->is_array() && index < it->size() ? &(*it)[index] : nullptr;
+}
+
+/// The array under `key`, made empty where it is missing. Throws for another kind of value.
+Json& array_of(Json& object, const char* key) {
+  Json& value = object[key];
+  if (value.is_null()) value = Json::array();
+  if (!value.is_array()) throw std::invalid_argument(std::string("/") + key + " is not an array");
+  return value;
+}
+
+/// Largest TEXCOORD_n that a material's texture infos name, over extensions too (KHR_texture_transform may name another
+/// set than its texture info); -1 where nothing is sampled.
+int largest_texcoord(const Json& value, bool is_texture_info = false) {
+  int largest = is_texture_info ? 0 : -1;
+  if (!value.is_structured()) return largest;
+  for (const auto& [key, child] : value.items()) {
+    if (is_texture_info && key == "texCoord" && child.is_number_unsigned()) {
+      largest = std::max(largest, static_cast<int>(std::min<std::uint64_t>(child.get<std::uint64_t>(), 63)));
+    }
+    const bool is_info = child.is_object() && value.is_object() && key.ends_with("Texture") && child.contains("index");
+    largest = std::max(largest, largest_texcoord(child, is_texture_info || is_info));
+  }
+  return largest;
+}
+
+/// glTF wants a type for an image in a buffer; a source file with an unknown extension leaves it to the bytes.
+std::string sniff_mime_type(std::span<const std::uint8_t> bytes) {
+  const auto starts_with = [&](std::initializer_list<std::uint8_t> magic) {
+    return bytes.size() >= magic.size() && std::equal(magic.begin(), magic.end(), bytes.begin());
+  };
+  if (starts_with({0xFF, 0xD8, 0xFF})) return "image/jpeg";
+  if (starts_with({0xAB, 'K', 'T', 'X', ' ', '2', '0'})) return "image/ktx2";
+  if (starts_with({'R', 'I', 'F', 'F'})) return "image/webp";
+  return "image/png";
+}
+
+class Exporter {
+ public:
+  Exporter(const Asset& asset, std::span<const std::vector<ClusterId>> cuts) : asset_(asset), cuts_(cuts) {}
+  Result<std::vector<std::uint8_t>> run();
+
+ private:
+  Status add_mesh(MeshId mesh);
+  [[nodiscard]] Vec3d choose_origin(const format::MeshRecord& record, std::span<const CutPrimitive> primitives) const;
+  Result<Json> make_primitive(const format::MeshRecord& record, const CutPrimitive& primitive, const Vec3d& baked);
+  [[nodiscard]] Result<std::vector<Vec3f>> bake_positions(const format::MeshRecord& record,
+                                                          const DecodedCluster& vertices, const Vec3d& baked) const;
+  void carry_buffers();
+  void carry_images();
+  void complete_materials();
+  void attach_meshes();
+  void finish_document();
+  [[nodiscard]] int texcoords_needed(MaterialId material) const;
+  [[nodiscard]] const format::BlobRecord& blob_of(const Json& owner) const;
+  std::size_t add_view(GlbBinary::Range range, int target);
+  std::size_t add_accessor(Json accessor);
+
+  const Asset& asset_;
+  std::span<const std::vector<ClusterId>> cuts_;
+  Json document_;
+  Json meshes_ = Json::array();
+  std::vector<ExportedMesh> exported_;
+  GlbBinary binary_;
+};
+
+std::size_t Exporter::add_view(GlbBinary::Range range, int target) {
+  Json view = {{"buffer", 0}, {"byteOffset", range.offset}, {"byteLength", range.bytes}};
+  if (target != 0) view["target"] = target;
+  Json& views = array_of(document_, "bufferViews");
+  views.push_back(std::move(view));
+  return views.size() - 1;
+}
+
+std::size_t Exporter::add_accessor(Json accessor) {
+  Json& accessors = array_of(document_, "accessors");
+  accessors.push_back(std::move(accessor));
+  return accessors.size() - 1;
+}
+
+/// The blob that a document entry names with its member "blob".
+const format::BlobRecord& Exporter::blob_of(const Json& owner) const {
+  const auto index = owner.at("blob").get<std::uint64_t>();
+  if (index >= asset_.blobs().size()) throw std::invalid_argument("blob " + std::to_string(index) + " does not exist");
+  return asset_.blobs()[index];
+}
+
+/// The buffers of animations become stretches of the one BIN chunk; their views keep their indices.
+void Exporter::carry_buffers() {
+  std::vector<GlbBinary::Range> ranges;
+  if (const auto buffers = document_.find("buffers"); buffers != document_.end()) {
+    for (const Json& buffer : *buffers) ranges.push_back(binary_.append(asset_.blob_bytes(blob_of(buffer))));
+    document_.erase("buffers");
+  }
+  if (!document_.contains("bufferViews")) return;
+  for (Json& view : array_of(document_, "bufferViews")) {
+    const GlbBinary::Range range = ranges.at(view.at("buffer").get<std::size_t>());
+    const auto offset = view.value("byteOffset", std::uint64_t{0});
+    const auto bytes = view.at("byteLength").get<std::uint64_t>();
+    if (offset > range.bytes || bytes > range.bytes - offset) throw std::invalid_argument("a view leaves its buffer");
+    view["buffer"] = 0;
+    view["byteOffset"] = range.offset + offset;
+  }
+}
+
+void Exporter::carry_images() {
+  if (!document_.contains("images")) return;
+  for (Json& image : array_of(document_, "images")) {
+    if (!image.contains("blob")) continue;
+    const format::BlobRecord& record = blob_of(image);
+    const std::span<const std::uint8_t> bytes = asset_.blob_bytes(record);
+    image["bufferView"] = add_view(binary_.append(bytes), 0);
+    const std::string_view mime_type = asset_.string(record.mime_type);
+    if (!image.contains("mimeType")) image["mimeType"] = mime_type.empty() ? sniff_mime_type(bytes) : std::string(mime_type);
+    const std::string_view name = asset_.string(record.name);
+    if (!image.contains("name") && !name.empty()) image["name"] = std::string(name);
+    image.erase("blob");
+    image.erase("uri");
+  }
+}
+
+/// Assets that do not come from a glTF have no materials in their document: the records say what is known.
+void Exporter::complete_materials() {
+  if (document_.contains("materials")) return;
+  std::map<std::uint32_t, Json> by_index;
+  for (const format::MaterialRecord& record : asset_.materials()) {
+    if (record.source_index == format::kNone) continue;
+    Json material = Json::object();
+    if (const auto name = asset_.string(record.name); !name.empty()) material["name"] = std::string(name);
+    Json factor = Json::array();
+    for (const float c : record.base_color) factor.push_back(c);
+    material["pbrMetallicRoughness"] = {{"baseColorFactor", factor}, {"metallicFactor", 0}};
+    if (record.alpha_mode == format::AlphaMode::kMask) {
+      material["alphaMode"] = "MASK";
+      material["alphaCutoff"] = record.alpha_cutoff;
+    } else if (record.alpha_mode == format::AlphaMode::kBlend) {
+      material["alphaMode"] = "BLEND";
+    }
+    if (record.double_sided != 0) material["doubleSided"] = true;
+    by_index.emplace(record.source_index, std::move(material));
+  }
+  // Indices without gaps are what the builder writes; a gap cannot be filled with anything true.
+  Json materials = Json::array();
+  for (auto& [index, material] : by_index) {
+    if (index != materials.size()) throw std::invalid_argument("material indices have a gap and there is no document");
+    materials.push_back(std::move(material));
+  }
+  if (!materials.empty()) document_["materials"] = std::move(materials);
+}
+
+/// How many TEXCOORD sets, from 0 on, the material's textures ask for.
+int Exporter::texcoords_needed(MaterialId material) const {
+  const Json* json = find_element(document_, "materials", asset_.materials()[material.value].source_index);
+  return json == nullptr ? 0 : largest_texcoord(*json) + 1;
+}
+
+/// The origin that is added to the positions themselves. The origin goes into a node instead where a float32 sum would
+/// be off by more than a 64th of a grid step and by more than a float32 mesh of this size centred on zero would be
+/// (diagonal · 2^-24): below either, a moved origin would only make the file stranger, not better.
+Vec3d Exporter::choose_origin(const format::MeshRecord& record, std::span<const CutPrimitive> primitives) const {
+  const Vec3d origin(record.origin[0], record.origin[1], record.origin[2]);
+  const PositionGrid grid{record.grid.log2, record.grid.mantissa};
+  const double bearable = std::max(grid.step() / 64.0, record.diagonal * exp2_exact(-24));
+  for (const CutPrimitive& primitive : primitives) {
+    for (std::uint32_t i = 0; i < primitive.vertices.vertex_count; ++i) {
+      const Vec3d exact = origin + grid.decode(primitive.vertices.position(i));
+      for (int axis = 0; axis < 3; ++axis) {
+        const double stored = static_cast<double>(static_cast<float>(exact[axis]));
+        if (!(std::abs(stored - exact[axis]) <= bearable)) return Vec3d(0.0);
+      }
+    }
+  }
+  return origin;
+}
+
+Result<std::vector<Vec3f>> Exporter::bake_positions(const format::MeshRecord& record, const DecodedCluster& vertices,
+                                                    const Vec3d& baked) const {
+  const PositionGrid grid{record.grid.log2, record.grid.mantissa};
+  std::vector<Vec3f> positions(vertices.vertex_count);
+  for (std::uint32_t i = 0; i < vertices.vertex_count; ++i) {
+    positions[i] = Vec3f(baked + grid.decode(vertices.position(i)));
+    if (!std::isfinite(positions[i].x) || !std::isfinite(positions[i].y) || !std::isfinite(positions[i].z)) {
+      return Error{ErrorCode::kUnsupported, std::string(asset_.string(record.name)),
+                   "a position does not fit glTF's 32-bit floats"};
+    }
+  }
+  return positions;
+}
+
+Result<Json> Exporter::make_primitive(const format::MeshRecord& record, const CutPrimitive& primitive,
+                                      const Vec3d& baked) {
+  const DecodedCluster& vertices = primitive.vertices;
+  const std::size_t count = vertices.vertex_count;
+  Json attributes = Json::object();
+  const auto add = [&](const std::string& name, int component, const char* type, GlbBinary::Range range, Json extra) {
+    extra["bufferView"] = add_view(range, kArrayBuffer);
+    extra["componentType"] = component;
+    extra["count"] = count;
+    extra["type"] = type;
+    attributes[name] = add_accessor(std::move(extra));
+  };
+
+  auto positions = bake_positions(record, vertices, baked);
+  if (!positions) return positions.error();
+  Vec3f low = positions->front();
+  Vec3f high = low;
+  for (const Vec3f& p : *positions) {
+    low = glm::min(low, p);
+    high = glm::max(high, p);
+  }
+  add("POSITION", kFloat, "VEC3", binary_.append_values(std::span<const Vec3f>(*positions)),
+      {{"min", {low.x, low.y, low.z}}, {"max", {high.x, high.y, high.z}}});
+
+  ClusterAttributes floats;
+  decode_attributes(record, vertices, floats);
+  // No NORMAL means flat normals in glTF, which is what the other two modes ask for.
+  if (record.normal_mode == format::NormalMode::kStored) {
+    add("NORMAL", kFloat, "VEC3", binary_.append_values(std::span<const Vec3f>(floats.normals)), Json::object());
+  }
+  int texcoord_end = texcoords_needed(primitive.material);
+  for (std::uint32_t k = 0; k < record.uv_set_count; ++k) {
+    add("TEXCOORD_" + std::to_string(record.uv_set_source[k]), kFloat, "VEC2",
+        binary_.append_values(std::span<const Vec2f>(floats.uvs[k])), Json::object());
+    texcoord_end = std::max(texcoord_end, record.uv_set_source[k] + 1);
+  }
+  // glTF wants sets without gaps, and those that a material names. One that the asset did not keep is an accessor
+  // without a buffer view: zeros, at no cost.
+  for (int set = 0; set < texcoord_end; ++set) {
+    const std::string name = "TEXCOORD_" + std::to_string(set);
+    if (attributes.contains(name)) continue;
+    attributes[name] = add_accessor({{"componentType", kFloat}, {"count", count}, {"type", "VEC2"}});
+  }
+  if (record.has_color != 0) {
+    std::vector<std::array<std::uint8_t, 4>> colors(count);
+    const std::size_t first = record.channel_count - 4;  // colour is the last channel group
+    for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t c = 0; c < 4; ++c) {
+        const std::int32_t value = vertices.channels[i * record.channel_count + first + c];
+        colors[i][c] = static_cast<std::uint8_t>(std::clamp(value, 0, 255));
+      }
+    }
+    add("COLOR_0", kUnsignedByte, "VEC4", binary_.append_values(std::span<const std::array<std::uint8_t, 4>>(colors)),
+        {{"normalized", true}});
+  }
+
+  // The largest value of an index type means "restart" and may not be used.
+  const bool is_short = count <= 65535;
+  GlbBinary::Range range;
+  if (is_short) {
+    const std::vector<std::uint16_t> narrow(primitive.indices.begin(), primitive.indices.end());
+    range = binary_.append_values(std::span<const std::uint16_t>(narrow));
+  } else {
+    range = binary_.append_values(std::span<const std::uint32_t>(primitive.indices));
+  }
+  Json result = {{"attributes", std::move(attributes)}};
+  result["indices"] = add_accessor({{"bufferView", add_view(range, kElementArrayBuffer)},
+                                    {"componentType", is_short ? kUnsignedShort : kUnsignedInt},
+                                    {"count", primitive.indices.size()},
+                                    {"type", "SCALAR"}});
+  const std::uint32_t material = asset_.materials()[primitive.material.value].source_index;
+  if (material != format::kNone) {
+    if (find_element(document_, "materials", material) == nullptr) {
+      throw std::invalid_argument("material " + std::to_string(material) + " does not exist");
+    }
+    result["material"] = material;
+  }
+  return result;
+}
+
+Status Exporter::add_mesh(MeshId mesh) {
+  const format::MeshRecord& record = asset_.meshes()[mesh.value];
+  auto primitives = gather_cut(asset_, mesh, cuts_[mesh.value]);
+  if (!primitives) return primitives.error();
+  ExportedMesh& exported = exported_.emplace_back();
+  if (primitives->empty()) return Ok{};
+  const Vec3d baked = choose_origin(record, *primitives);
+  exported.translation = Vec3d(record.origin[0], record.origin[1], record.origin[2]) - baked;
+  Json json = Json::object();
+  if (const Json* source = find_element(document_, "meshes", mesh.value); source != nullptr && source->is_object()) {
+    for (const char* key : {"name", "extras"}) {
+      if (source->contains(key)) json[key] = source->at(key);
+    }
+  }
+  const std::string_view name = asset_.string(record.name);
+  if (!json.contains("name") && !name.empty()) json["name"] = std::string(name);
+  json["primitives"] = Json::array();
+  for (const CutPrimitive& primitive : *primitives) {
+    auto made = make_primitive(record, primitive, baked);
+    if (!made) return made.error();
+    json["primitives"].push_back(std::move(*made));
+  }
+  exported.index = static_cast<std::uint32_t>(meshes_.size());
+  meshes_.push_back(std::move(json));
+  return Ok{};
+}
+
+/// Gives every node that draws a mesh its exported mesh, or none where the cut is empty.
+void Exporter::attach_meshes() {
+  if (!document_.contains("nodes")) {
+    // No scene graph in the source (PLY, arrays in memory): one root node for each instance.
+    Json nodes = Json::array();
+    Json roots = Json::array();
+    for (const format::InstanceRecord& instance : asset_.instances()) {
+      Json node = {{"mesh", instance.mesh}};
+      if (const auto name = asset_.string(instance.name); !name.empty()) node["name"] = std::string(name);
+      Json matrix = Json::array();
+      bool is_identity = true;
+      for (std::size_t column = 0; column < 4; ++column) {
+        for (std::size_t row = 0; row < 4; ++row) {
+          const double value = row < 3 ? instance.transform[row * 4 + column] : (column == 3 ? 1.0 : 0.0);
+          if (!std::isfinite(value)) throw std::invalid_argument("an instance's transform is not finite");
+          is_identity = is_identity && value == (row == column ? 1.0 : 0.0);
+          matrix.push_back(value);
+        }
+      }
+      if (!is_identity) node["matrix"] = std::move(matrix);
+      roots.push_back(nodes.size());
+      nodes.push_back(std::move(node));
+    }
+    if (nodes.empty()) return;
+    document_["nodes"] = std::move(nodes);
+    document_["scenes"] = Json::array({{{"nodes", std::move(roots)}}});
+    document_["scene"] = 0;
+  }
+  Json& nodes = array_of(document_, "nodes");
+  for (const format::InstanceRecord& instance : asset_.instances()) {
+    if (instance.node < nodes.size() && !nodes[instance.node].contains("mesh")) {
+      nodes[instance.node]["mesh"] = instance.mesh;
+    }
+  }
+  const std::size_t node_count = nodes.size();
+  for (std::size_t i = 0; i < node_count; ++i) {
+    Json& node = nodes[i];
+    node.erase("skin");     // the static triangles were built: skins and morph targets are not in the asset
+    node.erase("weights");
+    if (!node.contains("mesh")) continue;
+    const ExportedMesh& mesh = exported_.at(node.at("mesh").get<std::size_t>());
+    node.erase("mesh");
+    if (mesh.index == format::kNone) continue;
+    if (!mesh.is_translated()) {
+      node["mesh"] = mesh.index;
+      continue;
+    }
+    Json child = {{"mesh", mesh.index}, {"translation", {mesh.translation.x, mesh.translation.y, mesh.translation.z}}};
+    if (node.contains("name")) child["name"] = node.at("name").get<std::string>() + " (origin)";
+    array_of(node, "children").push_back(nodes.size());
+    nodes.push_back(std::move(child));  // `node` dangles from here on
+  }
+}
+
+void Exporter::finish_document() {
+  document_.erase("meshes");
+  document_.erase("skins");
+  if (!meshes_.empty()) document_["meshes"] = std::move(meshes_);
+  if (!binary_.bytes().empty()) document_["buffers"] = Json::array({{{"byteLength", binary_.bytes().size()}}});
+  for (const char* key : {"extensionsUsed", "extensionsRequired"}) {
+    const auto it = document_.find(key);
+    if (it == document_.end()) continue;
+    Json kept = Json::array();
+    for (const Json& name : *it) {
+      const bool is_geometry = name.is_string() && std::find(kGeometryExtensions.begin(), kGeometryExtensions.end(),
+                                                             name.get<std::string>()) != kGeometryExtensions.end();
+      if (!is_geometry) kept.push_back(name);
+    }
+    if (kept.empty()) document_.erase(key);
+    else document_[key] = std::move(kept);
+  }
+  // glTF wants every top-level list to have an element.
+  for (auto it = document_.begin(); it != document_.end();) {
+    it = it->is_array() && it->empty() ? document_.erase(it) : std::next(it);
+  }
+  Json& asset = document_["asset"];
+  if (!asset.is_object()) asset = Json::object();
+  asset["version"] = "2.0";
+  asset["generator"] = "meshlode";
+}
+
+Result<std::vector<std::uint8_t>> Exporter::run() {
+  const std::string_view text = asset_.scene_json();
+  if (nests_deeper_than(text, kMaxDepth)) return Error{ErrorCode::kInvalid, "section SCNE", "JSON nests too deep"};
+  document_ = text.empty() ? Json::object() : Json::parse(text, nullptr, false);
+  if (!document_.is_object()) return Error{ErrorCode::kInvalid, "section SCNE", "not a JSON object"};
+  carry_buffers();
+  carry_images();
+  complete_materials();
+  exported_.reserve(asset_.meshes().size());
+  for (std::size_t m = 0; m < asset_.meshes().size(); ++m) {
+    if (auto status = add_mesh(MeshId(m)); !status) return status.error();
+  }
+  attach_meshes();
+  finish_document();
+  // Names of records need not be UTF-8; what is not is replaced, never refused.
+  const std::string json = document_.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return assemble_glb(json, binary_.bytes());
+}
+
+}  // namespace
+
+Result<std::vector<std::uint8_t>> export_glb(const Asset& asset, std::span<const std::vector<ClusterId>> cut_per_mesh) {
+  if (cut_per_mesh.size() != asset.meshes().size()) {
+    return Error{ErrorCode::kUsage, "", "one cut per mesh is needed"};
+  }
+  // The document is a file's: whatever shape it has that glTF does not allow ends as an exception of the JSON library.
+  try {
+    return Exporter(asset, cut_per_mesh).run();
+  } catch (const std::bad_alloc&) {
+    return Error{ErrorCode::kBuildFailed, "", "out of memory"};
+  } catch (const std::exception& failure) {
+    return Error{ErrorCode::kInvalid, "section SCNE", failure.what()};
+  }
+}
+
+}  // namespace meshlode
