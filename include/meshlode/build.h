@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The build half of meshlode: arrays in memory, or a scene file, become the bytes of a .lode asset.
+//
+//   meshlode::PrimitiveInput primitive{.positions = positions, .indices = indices};
+//   meshlode::MeshInput mesh{.name = "rock", .primitives = {&primitive, 1}};
+//   auto bytes = meshlode::build_asset({.meshes = {&mesh, 1}}, {});
+//   if (!bytes) puts(bytes.error().message().c_str());
+//
+// Ownership. Inputs are views: the caller keeps the arrays alive and unchanged until the call returns; nothing is kept
+// afterwards. Outputs are owned by the caller.
+//
+// Errors. Every input is checked before it is used: sizes that do not fit, indices out of range, numbers that are not
+// finite → ErrorCode::kInvalid with a place such as "meshes[0].primitives[2].indices[17]". kUsage: an option that makes
+// no sense. kUnsupported: an error tier or codec that this version does not have. kBuildFailed: cancelled, out of memory.
+// kIo: only from the functions that touch files. No exception leaves.
+//
+// Determinism (I10). The same input and options give the same bytes for any number of threads, and for builds that run
+// at the same time.
+//
+// Thread safety. Builds may run in several threads at once. Callbacks are called from one thread at a time for each
+// build, not always the same thread, and must not call back into the same build.
+//
+// Not promised: the bytes of another version of this library; the order or number of progress events.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <meshlode/format.h>
+#include <meshlode/result.h>
+
+namespace meshlode {
+
+/// "No material": the default one, opaque white.
+constexpr std::uint32_t kDefaultMaterial = format::kNone;
+
+/// A triangle list with one material. n vertices, m triangles; exactly one of the two position arrays is given.
+struct PrimitiveInput {
+  std::span<const float> positions;         ///< 3n: x y z, mesh space
+  std::span<const double> positions_double; ///< 3n: instead of `positions`, for meshes far from their origin
+  std::span<const float> normals;           ///< 3n, need not be unit length; empty: flat shading is meant
+  std::array<std::span<const float>, format::kMaxUvSets> uvs;  ///< 2n each; empty: no such set. Set k is TEXCOORD_k
+  std::span<const float> colors;            ///< 4n: r g b a, linear, clamped to 0 … 1; empty: white
+  std::span<const std::uint32_t> indices;   ///< 3m, counter-clockwise seen from outside, each below n
+  std::uint32_t material = kDefaultMaterial;///< into SceneInput::materials
+};
+
+/// One DAG is built across all primitives: there are no cracks between them in any cut.
+struct MeshInput {
+  std::string_view name;                      ///< UTF-8
+  std::span<const PrimitiveInput> primitives; ///< none: an empty mesh
+};
+
+struct MaterialInput {
+  std::string_view name;
+  std::array<float, 4> base_color{1.0F, 1.0F, 1.0F, 1.0F};  ///< linear
+  format::AlphaMode alpha_mode = format::AlphaMode::kOpaque;
+  float alpha_cutoff = 0.5F;                  ///< for kMask
+  bool double_sided = false;
+  /// Bit k: the caller's shaders sample TEXCOORD_k with this material. Sets that no material of a mesh uses are not
+  /// stored, unless BuildOptions::keep_all_attributes.
+  std::uint32_t uv_sets_used = 0xF;
+};
+
+struct InstanceInput {
+  std::string_view name;
+  std::uint32_t mesh = 0;                     ///< into SceneInput::meshes
+  /// Mesh space to world, column-major 4×4 (element 12 … 14 is the translation); the last row is 0 0 0 1. Mirrored
+  /// and singular ones are allowed, and marked in the asset.
+  std::array<double, 16> transform{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+};
+
+struct SceneInput {
+  std::string_view name;                      ///< what the asset calls its source, such as a file's base name
+  std::span<const MeshInput> meshes;
+  std::span<const MaterialInput> materials;
+  std::span<const InstanceInput> instances;   ///< empty: each mesh is drawn once, as it is
+};
+
+struct BuildProgress {
+  double fraction = 0.0;        ///< of the whole build, 0 … 1, never falling within a build
+  std::uint32_t mesh = 0;
+  std::uint32_t mesh_count = 0;
+  std::uint32_t level = 0;      ///< DAG level just finished
+  std::uint64_t triangles = 0;  ///< of that level
+  std::string_view mesh_name;   ///< valid during the call
+};
+
+struct BuildOptions {
+  format::ErrorTier error_tier = format::ErrorTier::kQem;
+  format::Codec codec = format::Codec::kNone;  ///< of the pages on disk
+  double grid_step = 0.0;       ///< distance of grid points, mesh units; 0: chosen from the mesh's size
+  bool strip_attributes = false;     ///< positions only
+  bool keep_all_attributes = false;  ///< also what no material asks for; not together with strip_attributes
+  bool repair = false;          ///< drop and count triangles that touch a bad index or a non-finite position, not refuse
+  std::uint32_t thread_count = 0;    ///< at most this many threads; 0: what oneTBB gives the calling thread
+  std::function<void(const BuildProgress&)> on_progress;  ///< may be empty
+  std::function<bool()> should_cancel;  ///< asked between steps; true ends the build with kBuildFailed. May be empty
+};
+
+/// The bytes of an asset, as a .lode file holds them (and AssetFile::take opens them).
+[[nodiscard]] Result<std::vector<std::uint8_t>> build_asset(const SceneInput& scene, const BuildOptions& options);
+
+/// build_asset, then a file that appears whole or not at all.
+[[nodiscard]] Status build_asset_file(const SceneInput& scene, const std::filesystem::path& output,
+                                      const BuildOptions& options);
+
+/// Reads a .gltf, .glb, .ply, .obj or .stl, builds it and writes the asset. Files that a glTF refers to are read from
+/// below its own folder only. Errors as above, and kUnsupported for a required extension that is not known.
+[[nodiscard]] Status build_file(const std::filesystem::path& input, const std::filesystem::path& output,
+                                const BuildOptions& options);
+
+}  // namespace meshlode
