@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "cluster/adjacency.h"
 #include "cluster/caps.h"
+#include "cluster/loose_pieces.h"
 #include "partition/partition.h"
 
 namespace meshlode {
@@ -67,8 +68,11 @@ std::size_t parts_for_vertices(std::span<const WedgeTriangle> triangles, std::ui
   return (count + room - 1) / room;
 }
 
+/// From so many pieces per part on, a chunk is a soup.
+constexpr std::size_t kPiecesPerPart = 4;
+
 Clustering cluster_chunk(std::span<const WedgeTriangle> triangles, std::span<const std::uint32_t> wedge_position,
-                         const ClusterCaps& caps) {
+                         std::span<const Vec3i> positions, const ClusterCaps& caps) {
   std::vector<std::array<std::uint32_t, 3>> corners(triangles.size());
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     for (std::size_t k = 0; k < 3; ++k) corners[t][k] = wedge_position[triangles[t][k]];
@@ -79,8 +83,14 @@ Clustering cluster_chunk(std::span<const WedgeTriangle> triangles, std::span<con
   const std::size_t parts =
       std::max(fits_one ? 1 : for_triangles, parts_for_vertices(triangles, caps.max_vertices));
   Clustering clustering;
-  clustering.count = static_cast<std::uint32_t>(std::min(parts, triangles.size()));
-  clustering.label = partition_graph(graph, clustering.count);
+  std::vector<std::uint32_t> piece;
+  const std::uint32_t piece_count = find_pieces(graph, piece);
+  if (parts > 1 && piece_count > kPiecesPerPart * parts) {
+    clustering = cluster_pieces(triangles, wedge_position, positions, piece, piece_count, std::min(parts, triangles.size()));
+  } else {
+    clustering.count = static_cast<std::uint32_t>(std::min(parts, triangles.size()));
+    clustering.label = partition_graph(graph, clustering.count);
+  }
   enforce_caps(triangles, graph, caps, clustering);
   return clustering;
 }
@@ -90,7 +100,7 @@ Clustering cluster_chunk(std::span<const WedgeTriangle> triangles, std::span<con
 Clustering cluster_triangles(std::span<const WedgeTriangle> triangles, std::span<const std::uint32_t> wedge_position,
                              std::span<const Vec3i> positions, const ClusterCaps& caps) {
   if (triangles.empty()) return {};
-  if (triangles.size() <= kChunkTriangles) return cluster_chunk(triangles, wedge_position, caps);
+  if (triangles.size() <= kChunkTriangles) return cluster_chunk(triangles, wedge_position, positions, caps);
 
   std::vector<glm::i64vec3> centers(triangles.size());  // times three: exact
   for (std::size_t t = 0; t < triangles.size(); ++t) {
@@ -105,7 +115,7 @@ Clustering cluster_triangles(std::span<const WedgeTriangle> triangles, std::span
     std::vector<WedgeTriangle> chunk;
     chunk.reserve(chunks[c].end - chunks[c].begin);
     for (std::size_t i = chunks[c].begin; i < chunks[c].end; ++i) chunk.push_back(triangles[order[i]]);
-    parts[c] = cluster_chunk(chunk, wedge_position, caps);
+    parts[c] = cluster_chunk(chunk, wedge_position, positions, caps);
   });
 
   Clustering clustering;

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Soups: many pieces that share no edge. A graph partitioner sees no distance between them; space has to decide.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/vec.h"
+#include "cluster/cluster.h"
+#include "partition/partition.h"
+
+namespace meshlode {
+
+/// The piece of each triangle: pieces are joined by shared edges, and numbered by their first triangle. Returns how many.
+[[nodiscard]] std::uint32_t find_pieces(const Graph& graph, std::vector<std::uint32_t>& piece);
+
+/// Cuts along medians of the pieces' centres, at multiples of the target, so that parts are compact and full and at most
+/// one piece is divided per cut.
+[[nodiscard]] Clustering cluster_pieces(std::span<const WedgeTriangle> triangles,
+                                        std::span<const std::uint32_t> wedge_position, std::span<const Vec3i> positions,
+                                        const std::vector<std::uint32_t>& piece, std::uint32_t piece_count,
+                                        std::size_t parts);
+
+}  // namespace meshlode
