@@ -116,7 +116,7 @@ struct Grid {
 };
 static_assert(sizeof(Grid) == 8);
 
-/// uv = offset + step · (channel integer), step = 2^log2, exact in float.
+/// uv = step · (channel integer), step = 2^log2; |channel integer| < 2^24, so that a float holds it exactly.
 struct UvGrid {
   std::int32_t log2;
   std::int32_t reserved;

@@ -25,8 +25,8 @@ struct EncodedMesh {
   struct Page {
     std::uint32_t first_group = 0, group_count = 0;      ///< per mesh
     std::uint32_t first_cluster = 0, cluster_count = 0;  ///< per mesh
-    std::vector<std::uint8_t> bytes;                     ///< PageHeader and on; PageHeader::first_cluster is patched by write
-    std::vector<std::uint32_t> dependencies;             ///< pages of this mesh that hold the coarser clusters, ascending
+    std::vector<std::uint8_t> bytes;          ///< PageHeader and on; PageHeader::first_cluster is patched by write
+    std::vector<std::uint32_t> dependencies;  ///< pages of this mesh that hold the coarser clusters, ascending
   };
   format::MeshRecord record{};
   std::vector<format::GroupRecord> groups;
@@ -35,7 +35,16 @@ struct EncodedMesh {
   std::vector<Page> pages;
 };
 
-/// Errors: kUnsupported where a group does not fit a page.
+/// Upper bound of the bytes that one cluster adds to a page, whatever its coordinates: a group fits a page where
+/// sizeof(format::PageHeader) + the sum over its members is at most format::kMaxPageBytes. `material_count` is how many
+/// materials the cluster holds at most.
+[[nodiscard]] std::uint32_t max_cluster_bytes(const AttributeLayout& layout, const EncodeOptions& options,
+                                              std::uint32_t vertex_count = format::kMaxClusterVertices,
+                                              std::uint32_t triangle_count = format::kMaxClusterTriangles,
+                                              std::uint32_t material_count = 4);
+
+/// Attributes that are not finite become 0 (a normal: +z). Errors: kUnsupported where a group does not fit a page,
+/// naming mesh and group, or where the grid leaves the range of floats; kBuildFailed where the DAG breaks the format's limits.
 [[nodiscard]] Result<EncodedMesh> encode_mesh(const PreparedMesh& mesh, const LodDag& dag, const Hierarchy& hierarchy,
                                               const EncodeOptions& options);
 

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "encode/uv_grid.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mesh/grid.h"
+
+namespace meshlode {
+
+namespace {
+
+/// Largest n with 2^n <= value. \pre value > 0 and finite
+std::int32_t floor_log2(double value) { return std::ilogb(value); }
+
+}  // namespace
+
+void UvRange::add(float value) {
+  if (!std::isfinite(value)) return;
+  min = is_empty ? value : std::min(min, value);
+  max = is_empty ? value : std::max(max, value);
+  is_empty = false;
+}
+
+std::int32_t choose_uv_log2(const UvRange& range, std::uint32_t bits) {
+  const double extent = double(range.max) - double(range.min);
+  std::int32_t log2 = -static_cast<std::int32_t>(bits);
+  if (extent > 0.0) log2 += std::min(0, floor_log2(extent));
+  log2 = std::clamp(log2, kMinUvLog2, kMaxUvLog2);
+  const double largest = std::max(std::abs(double(range.min)), std::abs(double(range.max)));
+  while (log2 < kMaxUvLog2 && largest > kMaxUvInteger * exp2_exact(log2)) ++log2;
+  return log2;
+}
+
+std::int32_t quantize_uv(float value, std::int32_t log2) {
+  if (!std::isfinite(value)) return 0;
+  const double q = std::floor(double(value) * exp2_exact(-log2) + 0.5);
+  return static_cast<std::int32_t>(std::clamp(q, -double(kMaxUvInteger), double(kMaxUvInteger)));
+}
+
+}  // namespace meshlode

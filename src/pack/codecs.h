@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The wrappers of the compression libraries, one file each.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <meshlode/result.h>
+
+namespace meshlode {
+
+[[nodiscard]] Result<std::vector<std::uint8_t>> pack_lz4(std::span<const std::uint8_t> bytes);
+[[nodiscard]] Result<std::vector<std::uint8_t>> pack_zstd(std::span<const std::uint8_t> bytes);
+
+}  // namespace meshlode

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+// The wrappers of the decompression libraries, one file each.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+namespace meshlode {
+
+enum class UnpackOutcome : std::uint8_t { kOk, kBroken, kNotBuiltIn };
+
+/// Fills `out` exactly; anything longer, shorter or malformed is kBroken. Never reads or writes outside the spans.
+[[nodiscard]] UnpackOutcome unpack_lz4(std::span<const std::uint8_t> stored, std::span<std::uint8_t> out);
+[[nodiscard]] UnpackOutcome unpack_zstd(std::span<const std::uint8_t> stored, std::span<std::uint8_t> out);
+
+}  // namespace meshlode

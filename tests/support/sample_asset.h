@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A small scene and its asset: the sample meshes, five instances, two materials and two blobs.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <meshlode/format.h>
+
+#include "encode/encode.h"
+#include "mesh/scene.h"
+#include "support/reseal.h"
+#include "support/sample_mesh.h"
+
+namespace meshlode::test {
+
+/// Meshes 0 patch, 1 sphere, 2 tetrahedron, 3 empty (no triangles). Instances: each once, the sphere once more mirrored
+/// and scaled, once more flattened to nothing (singular). Sources of the meshes are filled, so that verify can run.
+[[nodiscard]] Scene sample_scene();
+
+/// The asset of sample_scene(). Aborts the test program where it cannot be made.
+[[nodiscard]] std::vector<std::uint8_t> sample_asset_bytes(format::Codec codec = format::Codec::kNone);
+
+/// An asset with one instance of one mesh; materials are those of sample_scene().
+[[nodiscard]] std::vector<std::uint8_t> asset_bytes_of(const SampleMesh& sample,
+                                                       format::Codec codec = format::Codec::kNone,
+                                                       const EncodeOptions& options = {});
+
+}  // namespace meshlode::test
