@@ -56,7 +56,8 @@ inline RandomDag make_random_dag(Random& random, const RandomDagOptions& options
   const double span = 400000.0;
   std::vector<std::uint32_t> open;
   for (std::uint32_t i = 0; i < options.leaf_clusters; ++i) {
-    open.push_back(add_cluster(0, GroupId::kNone, random.in_cube(span), random.log_between(10.0, 20000.0)));
+    const Vec3d middle = random.in_cube(span);  // drawn before the size: the order of arguments is the compiler's
+    open.push_back(add_cluster(0, GroupId::kNone, middle, random.log_between(10.0, 20000.0)));
   }
   const double step = std::ldexp(1.0, options.grid_log2);
   while (!open.empty()) {

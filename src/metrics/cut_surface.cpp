@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "metrics/metrics.h"
+
+#include <cmath>
+
+namespace meshlode {
+
+Surface surface_of_clusters(const Asset& asset, std::span<const DecodedCluster> decoded, MeshId mesh,
+                            std::span<const ClusterId> clusters) {
+  const format::MeshRecord& record = asset.meshes()[mesh.value];
+  const Vec3d origin(record.origin[0], record.origin[1], record.origin[2]);
+  const double step = std::ldexp(static_cast<double>(record.grid.mantissa), record.grid.log2);
+  Surface surface;
+  for (const ClusterId id : clusters) {
+    const DecodedCluster& cluster = decoded[id.value];
+    const std::uint32_t base = static_cast<std::uint32_t>(surface.positions.size());
+    for (std::uint32_t v = 0; v < cluster.vertex_count; ++v) {
+      surface.positions.push_back(origin + Vec3d(cluster.position(v)) * step);
+    }
+    for (const auto& t : cluster.triangles) surface.triangles.push_back({base + t[0], base + t[1], base + t[2]});
+  }
+  return surface;
+}
+
+}  // namespace meshlode

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Distances against closed forms, brute force and CGAL.
+#include <gtest/gtest.h>
+#include <tbb/task_arena.h>
+
+#include <cmath>
+#include <limits>
+
+#include "metrics/cgal_distance.h"
+#include "metrics/metrics.h"
+#include "metrics/triangle_tree.h"
+#include "select/random.h"
+
+namespace meshlode {
+namespace {
+
+using test::Random;
+
+// A square of side `size` in the plane z = height, as 2·n·n triangles.
+Surface make_square(double size, double height, std::uint32_t n) {
+  Surface s;
+  for (std::uint32_t y = 0; y <= n; ++y) {
+    for (std::uint32_t x = 0; x <= n; ++x) s.positions.push_back({size * x / n, size * y / n, height});
+  }
+  for (std::uint32_t y = 0; y < n; ++y) {
+    for (std::uint32_t x = 0; x < n; ++x) {
+      const std::uint32_t a = y * (n + 1) + x, b = a + 1, c = a + n + 1, d = c + 1;
+      s.triangles.push_back({a, b, d});
+      s.triangles.push_back({a, d, c});
+    }
+  }
+  return s;
+}
+
+Surface make_soup(Random& random, std::uint32_t count, double size, const Vec3d& offset) {
+  Surface s;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const Vec3d at = offset + random.in_cube(size);
+    const double edge = size * random.log_between(1e-4, 1.0);
+    for (int k = 0; k < 3; ++k) s.positions.push_back(at + random.in_cube(edge));
+    s.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  return s;
+}
+
+TEST(Metrics, DistanceToATriangleHasItsClosedFormOverFaceEdgeAndCorner) {
+  const Vec3d a(0, 0, 0), b(4, 0, 0), c(0, 4, 0);
+  EXPECT_DOUBLE_EQ(distance2_to_triangle({1, 1, 3}, a, b, c), 9.0);
+  EXPECT_DOUBLE_EQ(distance2_to_triangle({1, 1, -3}, a, c, b), 9.0);
+  EXPECT_DOUBLE_EQ(distance2_to_triangle({2, -3, 4}, a, b, c), 25.0);
+  EXPECT_DOUBLE_EQ(distance2_to_triangle({7, 0, 4}, a, b, c), 25.0);
+  EXPECT_DOUBLE_EQ(distance2_to_triangle({4, 4, 0}, a, b, c), 8.0);
+  EXPECT_EQ(distance2_to_triangle({1, 1, 0}, a, b, c), 0.0);
+}
+
+TEST(Metrics, DistanceToNeedlesSegmentsAndPointsIsThatToWhatTheyAre) {
+  EXPECT_DOUBLE_EQ(distance2_to_triangle({1, 2, 0}, {0, 0, 0}, {2, 0, 0}, {4, 0, 0}), 4.0);
+  EXPECT_DOUBLE_EQ(distance2_to_triangle({1, 2, 2}, {1, 0, 2}, {1, 0, 2}, {1, 0, 2}), 4.0);
+  EXPECT_NEAR(distance2_to_triangle({0.5, 0, 3}, {0, 0, 0}, {1, 0, 0}, {0.5, 1e-12, 0}), 9.0, 1e-9);
+  Random random(51);
+  for (int i = 0; i < 20000; ++i) {  // a needle is never nearer than its bounding segment says
+    const Vec3d a = random.in_cube(1.0), b = a + random.direction();
+    const double width = random.log_between(1e-17, 1e-2);
+    const Vec3d c = a + (b - a) * random.unit() + random.direction() * width;
+    const Vec3d p = random.in_cube(3.0);
+    const double to_segment = std::sqrt(distance2_to_triangle(p, a, b, a));
+    EXPECT_NEAR(std::sqrt(distance2_to_triangle(p, a, b, c)), to_segment, width + 1e-7);
+  }
+}
+
+TEST(Metrics, NearestPointsAgreeWithCgalAtAnySizeAndOffset) {
+  Random random(52);
+  for (const double size : {1e-6, 1.0, 1e9}) {
+    for (const double offset : {0.0, 1e6}) {
+      const Surface s = make_soup(random, 2000, size, random.direction() * (offset * size));
+      const TriangleTree tree(s);
+      const test::CgalDistance oracle(s);
+      std::uint32_t hint = 0xFFFFFFFFu;
+      for (int i = 0; i < 3000; ++i) {
+        const Vec3d p = s.positions[random.below(6000)] + random.in_cube(size * random.log_between(1e-6, 10.0));
+        const NearestPoint nearest = tree.nearest(p, hint);
+        EXPECT_EQ(nearest.distance2, tree.nearest(p).distance2) << "a hint changes no result";
+        hint = nearest.triangle;
+        const double expected = std::sqrt(oracle.distance2(p));
+        EXPECT_NEAR(std::sqrt(nearest.distance2), expected, 1e-6 * expected + 1e-9 * size * (1.0 + 1e-6 * offset))
+            << "seed 52";
+      }
+    }
+  }
+}
+
+TEST(Metrics, NearestIsTheSmallestOverAllTrianglesIncludingDegenerateOnes) {
+  Random random(53);
+  Surface s = make_soup(random, 200, 1.0, Vec3d(0.0));
+  for (std::size_t t = 0; t < s.triangles.size(); t += 5) s.triangles[t][2] = s.triangles[t][random.below(2)];
+  const TriangleTree tree(s);
+  for (int i = 0; i < 3000; ++i) {
+    const Vec3d p = random.in_cube(2.0);
+    double expected = std::numeric_limits<double>::infinity();
+    for (const auto& t : s.triangles) {
+      expected = std::min(expected,
+                          distance2_to_triangle(p, s.positions[t[0]], s.positions[t[1]], s.positions[t[2]]));
+    }
+    EXPECT_EQ(tree.nearest(p).distance2, expected);
+  }
+}
+
+TEST(Metrics, ParallelSquaresAreTheirDistanceApartBothWays) {
+  const DeviationReport r = measure_deviation(make_square(10.0, 0.0, 7), make_square(10.0, 0.25, 3), {20000, 1});
+  for (const OneWayDeviation& d : {r.a_to_b, r.b_to_a}) {
+    EXPECT_NEAR(d.max, 0.25, 1e-12);
+    EXPECT_NEAR(d.rms, 0.25, 1e-12);
+  }
+  EXPECT_EQ(r.a_to_b.points, 20000U + 64U);
+  EXPECT_EQ(r.b_to_a.points, 20000U + 16U);
+}
+
+TEST(Metrics, ASurfaceIsAtDistanceZeroFromItselfAndItsRefinement) {
+  const DeviationReport r = measure_deviation(make_square(10.0, 1.0, 2), make_square(10.0, 1.0, 9), {20000, 1});
+  EXPECT_EQ(r.max(), 0.0);
+  EXPECT_EQ(r.rms(), 0.0);
+}
+
+TEST(Metrics, AMissingPartIsSeenFromOneSideOnlyAndItsRmsIsTheIntegral) {
+  // B is the left half: points of A at x > 5 are x - 5 away. rms² = ∫₅¹⁰ (x-5)² dx / 10 = 125/3/10.
+  Surface half = make_square(10.0, 0.0, 10);
+  for (Vec3d& p : half.positions) p.x *= 0.5;
+  const DeviationReport r = measure_deviation(make_square(10.0, 0.0, 10), half, {200000, 1});
+  EXPECT_DOUBLE_EQ(r.a_to_b.max, 5.0);
+  EXPECT_DOUBLE_EQ(r.a_to_b.worst.x, 10.0);
+  EXPECT_NEAR(r.a_to_b.rms, std::sqrt(125.0 / 30.0), 1e-4);
+  EXPECT_EQ(r.b_to_a.max, 0.0);
+}
+
+TEST(Metrics, SamplesAreUniformInAreaWhateverTheTriangles) {
+  // One big triangle, and its mirror image cut into many: half the area each, so rms is that of a uniform cover.
+  Surface s{{{0, 0, 0}, {8, 0, 0}, {8, 8, 0}}, {{0, 1, 2}}};
+  const Surface fine = make_square(8.0, 0.0, 40);
+  const std::uint32_t base = 3;
+  s.positions.insert(s.positions.end(), fine.positions.begin(), fine.positions.end());
+  for (const auto& t : fine.triangles) {
+    const Vec3d m = (fine.positions[t[0]] + fine.positions[t[1]] + fine.positions[t[2]]) / 3.0;
+    if (m.y > m.x) s.triangles.push_back({base + t[0], base + t[1], base + t[2]});
+  }
+  Surface edge{{{0, 0, 0}, {0, 8, 0}, {0, 4, 0}}, {{0, 1, 2}}};  // the line x = 0: distance is x, rms = 8/√3
+  EXPECT_NEAR(measure_deviation(s, edge, {200000, 3}).a_to_b.rms, 8.0 / std::sqrt(3.0), 5e-3);
+}
+
+TEST(Metrics, EmptyAndDegenerateSurfacesAreAnswered) {
+  const Surface none, square = make_square(1.0, 0.0, 1);
+  EXPECT_EQ(measure_deviation(none, none, {}).max(), 0.0);
+  EXPECT_TRUE(std::isinf(measure_deviation(square, none, {}).a_to_b.max));
+  EXPECT_EQ(measure_deviation(square, none, {}).b_to_a.max, 0.0);
+  const Surface point{{{0, 0, 2}, {9, 9, 9}}, {{0, 0, 0}}};  // the second position is not used
+  const DeviationReport r = measure_deviation(point, square, {1000, 1});
+  EXPECT_DOUBLE_EQ(r.a_to_b.max, 2.0);
+  EXPECT_DOUBLE_EQ(r.b_to_a.max, std::sqrt(6.0));
+}
+
+TEST(Metrics, DoesNotDependOnTheNumberOfThreads) {
+  Random random(54);
+  const Surface a = make_soup(random, 3000, 1.0, Vec3d(0.0)), b = make_soup(random, 3000, 1.0, Vec3d(0.1));
+  DeviationReport one, two;
+  tbb::task_arena(1).execute([&] { one = measure_deviation(a, b, {20000, 9}); });
+  tbb::task_arena(2).execute([&] { two = measure_deviation(a, b, {20000, 9}); });
+  EXPECT_EQ(one.a_to_b.max, two.a_to_b.max);
+  EXPECT_EQ(one.a_to_b.rms, two.a_to_b.rms);
+  EXPECT_EQ(one.b_to_a.rms, two.b_to_a.rms);
+  EXPECT_NE(one.a_to_b.rms, measure_deviation(a, b, {20000, 10}).a_to_b.rms) << "the seed is used";
+}
+
+}  // namespace
+}  // namespace meshlode
