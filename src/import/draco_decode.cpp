@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The one file of this room that sees Draco. The decoder believes the counts in its stream and allocates by them, so
+// it runs with guards: the header is read here first, and the two mesh decoders are derived from so that the counts
+// they arrive at are compared with glTF's own before the next, larger step begins.
+#include "import/draco_decode.h"
+
+#include <algorithm>
+#include <cstring>
+#include <exception>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <draco/compression/config/decoder_options.h>
+#include <draco/compression/mesh/mesh_edgebreaker_decoder.h>
+#include <draco/compression/mesh/mesh_sequential_decoder.h>
+#include <draco/core/decoder_buffer.h>
+#include <draco/mesh/mesh.h>
+
+#include "import/gltf.h"
+
+namespace meshlode {
+
+namespace {
+
+Error invalid(std::string detail) {
+  return {ErrorCode::kInvalid, "", "Draco: " + std::move(detail)};
+}
+
+constexpr int kMaxAttributes = 32;
+constexpr int kMaxComponents = 16;
+
+/// Reads the head of a stream as the bitstream specification 2.2 lays it out; every read is bounded.
+class HeadReader {
+ public:
+  explicit HeadReader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
+  [[nodiscard]] bool ok() const { return ok_; }
+  std::uint8_t byte() {
+    if (at_ >= bytes_.size()) {
+      ok_ = false;
+      return 0;
+    }
+    return bytes_[at_++];
+  }
+  std::uint32_t varint() {
+    std::uint64_t value = 0;
+    for (unsigned shift = 0; shift < 35; shift += 7) {
+      const std::uint8_t b = byte();
+      value |= std::uint64_t{b & 0x7Fu} << shift;
+      if ((b & 0x80u) == 0) {
+        if (value > 0xFFFFFFFFu) ok_ = false;
+        return static_cast<std::uint32_t>(value);
+      }
+    }
+    ok_ = false;
+    return 0;
+  }
+  void skip(std::uint64_t count) {
+    if (count > bytes_.size() - at_) {
+      ok_ = false;
+    } else {
+      at_ += count;
+    }
+  }
+  /// Names and values of anything; the depth is bounded because Draco walks it without a bound of ours.
+  void metadata(int depth) {
+    if (depth > 8) ok_ = false;
+    const std::uint32_t entries = varint();
+    for (std::uint32_t i = 0; ok_ && i < entries; ++i) {
+      skip(byte());
+      skip(varint());
+    }
+    const std::uint32_t children = varint();
+    for (std::uint32_t i = 0; ok_ && i < children; ++i) {
+      skip(byte());
+      metadata(depth + 1);
+    }
+  }
+
+ private:
+  std::span<const std::uint8_t> bytes_;
+  std::size_t at_ = 0;
+  bool ok_ = true;
+};
+
+enum class Method { kSequential, kEdgebreaker };
+
+/// Compares the stream's own counts with what is expected, before any of Draco's code sees them.
+Result<Method> check_head(std::span<const std::uint8_t> bytes, const DracoExpectation& expected) {
+  HeadReader head(bytes);
+  for (const char c : {'D', 'R', 'A', 'C', 'O'}) {
+    if (head.byte() != static_cast<std::uint8_t>(c)) return invalid("the bytes do not begin with DRACO");
+  }
+  const std::uint8_t major = head.byte();
+  const std::uint8_t minor = head.byte();
+  const std::uint8_t type = head.byte();
+  const std::uint8_t method = head.byte();
+  const unsigned flags = head.byte() | static_cast<unsigned>(head.byte()) << 8U;
+  if (!head.ok()) return invalid("the header is cut short");
+  if (major != 2 || minor != 2) {
+    return invalid("bitstream version " + std::to_string(major) + "." + std::to_string(minor) + ", glTF asks for 2.2");
+  }
+  if (type != 1) return invalid("not a triangular mesh");
+  if (method > 1) return invalid("an unknown encoding method");
+  if ((flags & 0x8000u) != 0) {
+    const std::uint32_t attribute_count = head.varint();
+    for (std::uint32_t i = 0; head.ok() && i < attribute_count; ++i) {
+      head.varint();
+      head.metadata(0);
+    }
+    head.metadata(0);
+  }
+  std::uint64_t faces = 0;
+  std::uint64_t points = 0;
+  if (method == 1) {
+    head.byte();  // traversal type
+    points = head.varint();
+    faces = head.varint();
+    head.byte();  // attribute data count
+    const std::uint64_t symbols = head.varint();
+    const std::uint64_t splits = head.varint();
+    if (symbols > faces || splits > symbols) return invalid("counts that contradict each other");
+  } else {
+    faces = head.varint();
+    points = head.varint();
+  }
+  if (!head.ok()) return invalid("the header is cut short");
+  if (faces > expected.max_face_count || (expected.is_face_count_exact && faces != expected.max_face_count)) {
+    return invalid("the stream has " + std::to_string(faces) + " triangles where the accessors say " +
+                   std::to_string(expected.max_face_count));
+  }
+  // Edgebreaker's vertices are split along seams afterwards; sequential points are final.
+  if (points > expected.point_count || (method == 0 && points != expected.point_count)) {
+    return invalid("the stream has " + std::to_string(points) + " points where the accessors say " +
+                   std::to_string(expected.point_count));
+  }
+  return method == 1 ? Method::kEdgebreaker : Method::kSequential;
+}
+
+/// A decoder that stops where the counts leave what the glTF says.
+template <class Decoder>
+class GuardedDecoder : public Decoder {
+ public:
+  explicit GuardedDecoder(const DracoExpectation& expected) : expected_(expected) {}
+
+ protected:
+  bool DecodeConnectivity() override {
+    if (!Decoder::DecodeConnectivity()) return false;
+    const draco::Mesh& mesh = *this->mesh();
+    if (mesh.num_points() != expected_.point_count || mesh.num_faces() > expected_.max_face_count) return false;
+    for (draco::FaceIndex f(0); f < mesh.num_faces(); ++f) {
+      for (const draco::PointIndex& point : mesh.face(f)) {
+        if (point.value() >= mesh.num_points()) return false;
+      }
+    }
+    return true;
+  }
+  bool DecodeAllAttributes() override {
+    const draco::PointCloud& cloud = *this->point_cloud();
+    if (cloud.num_attributes() > kMaxAttributes) return false;
+    for (int i = 0; i < cloud.num_attributes(); ++i) {
+      if (cloud.attribute(i)->num_components() > kMaxComponents) return false;
+    }
+    return Decoder::DecodeAllAttributes();
+  }
+
+ private:
+  const DracoExpectation& expected_;
+};
+
+template <class Decoder>
+bool run_decoder(std::span<const std::uint8_t> bytes, const DracoExpectation& expected, draco::Mesh& mesh,
+                 std::string& problem) {
+  draco::DecoderBuffer buffer;
+  buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const draco::DecoderOptions options;
+  GuardedDecoder<Decoder> decoder(expected);
+  const draco::Status status = decoder.Decode(options, &buffer, &mesh);
+  if (!status.ok()) problem = status.error_msg_string();
+  return status.ok();
+}
+
+std::uint32_t gltf_component(draco::DataType type) {
+  switch (type) {
+    case draco::DT_INT8: return kGltfByte;
+    case draco::DT_UINT8:
+    case draco::DT_BOOL: return kGltfUnsignedByte;
+    case draco::DT_INT16: return kGltfShort;
+    case draco::DT_UINT16: return kGltfUnsignedShort;
+    case draco::DT_UINT32: return kGltfUnsignedInt;
+    case draco::DT_FLOAT32: return kGltfFloat;
+    default: return 0;
+  }
+}
+
+Result<DracoAttribute> copy_attribute(const draco::PointAttribute& attribute, std::uint32_t point_count) {
+  DracoAttribute out;
+  out.component_type = gltf_component(attribute.data_type());
+  out.component_count = static_cast<std::uint32_t>(attribute.num_components());
+  const std::uint64_t size = std::uint64_t{component_size(out.component_type)} * out.component_count;
+  if (out.component_type == 0 || out.component_count < 1 || out.component_count > 4) {
+    return invalid("an attribute of a type that glTF does not have");
+  }
+  if (attribute.buffer() == nullptr || attribute.byte_stride() != static_cast<std::int64_t>(size)) {
+    return invalid("an attribute without data");
+  }
+  out.bytes.resize(size * point_count);
+  const std::uint64_t available = attribute.buffer()->data_size();
+  for (std::uint32_t p = 0; p < point_count; ++p) {
+    if (!attribute.is_mapping_identity() && p >= attribute.indices_map_size())
+      return invalid("a map that is too short");
+    const std::uint64_t value = attribute.mapped_index(draco::PointIndex(p)).value();
+    if (value >= attribute.size() || value * size > available || size > available - value * size) {
+      return invalid("an attribute value out of range");
+    }
+    std::memcpy(out.bytes.data() + p * size, attribute.buffer()->data() + value * size, size);
+  }
+  return out;
+}
+
+}  // namespace
+
+Result<DracoMesh> decode_draco(std::span<const std::uint8_t> bytes, const DracoExpectation& expected) {
+  const auto method = check_head(bytes, expected);
+  if (!method) return method.error();
+  try {
+    draco::Mesh mesh;
+    std::string problem;
+    const bool ok = *method == Method::kEdgebreaker
+                        ? run_decoder<draco::MeshEdgebreakerDecoder>(bytes, expected, mesh, problem)
+                        : run_decoder<draco::MeshSequentialDecoder>(bytes, expected, mesh, problem);
+    if (!ok) return invalid(problem + " (or its counts are not the accessors')");
+    if (mesh.num_points() != expected.point_count ||
+        (expected.is_face_count_exact && mesh.num_faces() != expected.max_face_count)) {
+      return invalid("it decodes to other counts than the accessors say");
+    }
+    DracoMesh out;
+    out.point_count = mesh.num_points();
+    out.indices.reserve(std::size_t{3} * mesh.num_faces());
+    for (draco::FaceIndex f(0); f < mesh.num_faces(); ++f) {
+      for (const draco::PointIndex& point : mesh.face(f)) {
+        if (point.value() >= out.point_count) return invalid("an index out of range");
+        out.indices.push_back(point.value());
+      }
+    }
+    for (const std::uint32_t id : expected.attribute_ids) {
+      const draco::PointAttribute* attribute = mesh.GetAttributeByUniqueId(id);
+      if (attribute == nullptr) return invalid("there is no attribute " + std::to_string(id));
+      auto copied = copy_attribute(*attribute, out.point_count);
+      if (!copied) return copied.error();
+      out.attributes.emplace(id, std::move(*copied));
+    }
+    return out;
+  } catch (const std::exception& error) {
+    return invalid(error.what());
+  }
+}
+
+}  // namespace meshlode

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Words, lines and numbers of hostile text; independent of the locale.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace meshlode {
+
+[[nodiscard]] inline bool is_blank(char c) {
+  return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\v' || c == '\f';
+}
+
+/// Takes the next word off the front; empty at the end.
+std::string_view take_word(std::string_view& text);
+/// Takes a line off the front, without its end.
+std::string_view take_line(std::string_view& text);
+/// A whole word as a number; "nan" and "inf" are numbers, "1x" is not. Too large: infinite; too small: zero.
+[[nodiscard]] std::optional<double> parse_number(std::string_view word);
+[[nodiscard]] std::optional<std::int64_t> parse_integer(std::string_view word);
+
+}  // namespace meshlode
