@@ -100,13 +100,19 @@ std::string info_text(const Asset& asset, const AssetInfo& info, bool list_stuck
       grouped(info.max_roots_per_mesh).c_str(), grouped(info.stuck_groups).c_str());
   add(out, "dropped           %s degenerate, %s duplicate, %s repaired\n", grouped(info.dropped_degenerate).c_str(),
       grouped(info.dropped_duplicate).c_str(), grouped(info.dropped_repaired).c_str());
+  // What the plan leaves out is among what was left out, with its reason.
+  std::size_t rows = 0;
   for (const MetaInfo::Decision& decision : meta.decisions) {
-    add(out, "plan              %s: %s; saves %s\n", printable(decision.decision, 120).c_str(),
-        printable(decision.reason, 160).c_str(), printable(decision.saves, 60).c_str());
+    if (!decision.is_kept || rows++ >= kMaxRows) continue;
+    add(out, "kept              %s: %s\n", printable(decision.what, 120).c_str(), printable(decision.reason, 160).c_str());
   }
+  add_more(out, rows, "kept attributes");
+  rows = 0;
   for (const MetaInfo::LeftOut& left : meta.left_outs) {
+    if (rows++ >= kMaxRows) continue;
     add(out, "left out          %s: %s\n", printable(left.what, 120).c_str(), printable(left.why, 160).c_str());
   }
+  add_more(out, rows, "left out");
   for (std::uint32_t m = 0; m < info.meshes.size() && m < kMaxRows; ++m) add_mesh(out, asset, m, info.meshes[m]);
   add_more(out, info.meshes.size(), "meshes");
 

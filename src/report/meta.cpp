@@ -79,7 +79,9 @@ MetaInfo read_meta(std::string_view meta_json) {
   if (const Json* plan = child(json, "plan", Json::value_t::array)) {
     meta.plan = dump(*plan);
     for (const Json& entry : *plan) {
-      meta.decisions.push_back({string_at(entry, "decision"), string_at(entry, "reason"), string_at(entry, "saves")});
+      const bool is_left_out = entry.is_object() && entry.contains("kept") && entry["kept"] == false;
+      meta.decisions.push_back(
+          {string_at(entry, "what"), string_at(entry, "reason"), string_at(entry, "saves"), !is_left_out});
     }
   }
   if (const Json* left_out = child(json, "left_out", Json::value_t::array)) {

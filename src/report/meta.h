@@ -10,7 +10,10 @@
 namespace meshlode {
 
 struct MetaInfo {
-  struct Decision { std::string decision, reason, saves; };
+  struct Decision {
+    std::string what, reason, saves;
+    bool is_kept = true;
+  };
   struct LeftOut { std::string what, why; };
   bool is_valid = false;            ///< false: not JSON, or not an object; everything below is then as here
   std::string generator, source_file, source_hash;

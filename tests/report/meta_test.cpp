@@ -12,7 +12,7 @@ namespace {
 TEST(Meta, ReadsWhatThePipelineWrites) {
   const MetaInfo meta = read_meta(
       R"({"generator":"meshlode 0.1.0","source":{"file":"a.glb","hash":"00ff"},"settings":{"cluster_triangles":64},)"
-      R"("plan":[{"decision":"no uv","reason":"no texture","saves":"8 bytes"}],"left_out":[{"what":"skin 0","why":"later"}]})");
+      R"("plan":[{"what":"uv","kept":false,"reason":"no texture"}],"left_out":[{"what":"skin 0","why":"later"}]})");
   EXPECT_TRUE(meta.is_valid);
   EXPECT_EQ(meta.source_file, "a.glb");
   EXPECT_EQ(meta.source_hash, "00ff");
@@ -20,6 +20,7 @@ TEST(Meta, ReadsWhatThePipelineWrites) {
   EXPECT_EQ(meta.cluster_triangles, 64U);
   ASSERT_EQ(meta.decisions.size(), 1U);
   EXPECT_EQ(meta.decisions[0].reason, "no texture");
+  EXPECT_FALSE(meta.decisions[0].is_kept);
   ASSERT_EQ(meta.left_outs.size(), 1U);
   EXPECT_EQ(meta.left_outs[0].what, "skin 0");
 }
@@ -32,7 +33,7 @@ TEST(Meta, AnswersEmptyForWhatIsNoMeta) {
     EXPECT_EQ(meta.left_out, "[]") << text;
     EXPECT_EQ(meta.source_file, "") << text;
   }
-  const MetaInfo odd = read_meta(R"({"plan":[1,null,{"decision":7}],"left_out":[[]]})");
+  const MetaInfo odd = read_meta(R"({"plan":[1,null,{"what":7}],"left_out":[[]]})");
   EXPECT_EQ(odd.decisions.size(), 3U);
   EXPECT_EQ(odd.left_outs.size(), 1U);
 }

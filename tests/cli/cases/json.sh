@@ -7,6 +7,10 @@ code build --quiet a.glb -o a.lode --report report.json
 json info info a.lode --format json
 json info info a.lode --format json --stuck
 json validate validate a.lode --format json
-json verify verify a.lode --source a.glb --format json
+json verify verify a.lode --source a.glb --cuts 10 --cameras 3 --format json
+json render render a.lode -o a.png --size 64x48 --format json
+json render render a.lode -o a.png --size 64x48 --ortho 3 --error 0.01 --relative --format json
+json extract extract a.lode --error 0.01 --relative -o cut.glb --format json
+json validate validate a.lode a.lode --format json
 json report build missing.glb --format json
 files
