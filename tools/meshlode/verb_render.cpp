@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// render: a cut as a picture, by the reference rasterizer.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+
+#include "base/file.h"
+#include "camera_options.h"
+#include "options.h"
+#include "raster/raster.h"
+#include "report/json_writer.h"
+#include "verb.h"
+
+namespace meshlode::cli {
+
+namespace {
+
+struct RenderOptions {
+  std::string input, output, view = "shaded";
+  CameraOptions camera;
+  std::optional<double> error;
+  bool is_relative = false;
+  std::uint32_t jobs = 0;
+  OutputOptions report;
+};
+
+struct RenderStats {
+  std::uint64_t clusters = 0, triangles = 0, covered_pixels = 0, visible_clusters = 0;
+  std::uint32_t finest_level = 0, coarsest_level = 0;
+  std::vector<std::uint64_t> triangles_of_level;
+};
+
+View view_of(const std::string& name) {
+  if (name == "clusters") return View::kClusters;
+  if (name == "triangles") return View::kTriangles;
+  return name == "levels" ? View::kLevels : View::kShaded;
+}
+
+/// The same cut of a mesh in each of its instances.
+std::vector<ClusterInstance> uniform_cut(const Asset& asset, double error, bool is_relative) {
+  std::vector<ClusterInstance> cut;
+  for (std::size_t i = 0; i < asset.instances().size(); ++i) {
+    const format::InstanceRecord& instance = asset.instances()[i];
+    if ((instance.flags & format::kInstanceSingular) != 0) continue;
+    const double diagonal = asset.meshes()[instance.mesh].diagonal;
+    const UniformCut mesh_cut = select_uniform(asset, MeshId(instance.mesh), is_relative ? error * diagonal : error);
+    for (const ClusterId cluster : mesh_cut.clusters) cut.push_back({InstanceId(i), cluster});
+  }
+  return cut;
+}
+
+RenderStats measure(const Asset& asset, const std::vector<ClusterInstance>& cut, const VisibilityBuffer& visibility) {
+  RenderStats stats;
+  stats.clusters = cut.size();
+  for (const ClusterInstance& entry : cut) {
+    const format::ClusterRecord& cluster = asset.clusters()[entry.cluster.value];
+    stats.triangles += cluster.triangle_count;
+    if (stats.triangles_of_level.size() <= cluster.level) stats.triangles_of_level.resize(cluster.level + 1u, 0);
+    stats.triangles_of_level[cluster.level] += cluster.triangle_count;
+  }
+  const auto is_used = [](std::uint64_t count) { return count != 0; };
+  const auto finest = std::ranges::find_if(stats.triangles_of_level, is_used);
+  if (finest != stats.triangles_of_level.end()) {
+    stats.finest_level = static_cast<std::uint32_t>(finest - stats.triangles_of_level.begin());
+    stats.coarsest_level = static_cast<std::uint32_t>(stats.triangles_of_level.size() - 1);
+  }
+  std::vector<std::uint8_t> is_visible(cut.size(), 0);
+  for (const std::uint32_t item : visibility.item) {
+    if (item == VisibilityBuffer::kNothing) continue;
+    ++stats.covered_pixels;
+    is_visible[item] = 1;
+  }
+  stats.visible_clusters = static_cast<std::uint64_t>(std::ranges::count(is_visible, 1));
+  return stats;
+}
+
+std::string stats_json(const RenderOptions& options, const Camera& camera, const RenderStats& stats) {
+  JsonWriter json;
+  json.begin_object();
+  json.field("output", std::filesystem::path(options.output).filename().string());
+  json.field("view", options.view);
+  json.field("width", camera.width);
+  json.field("height", camera.height);
+  if (options.error) {
+    json.field("error", *options.error);
+    json.field("relative", options.is_relative);
+  } else {
+    json.field("pixel_error", options.camera.pixel_error);
+  }
+  json.key("camera");
+  json.begin_object();
+  for (const auto& [name, point] : {std::pair{"eye", camera.eye}, std::pair{"target", camera.target}}) {
+    json.key(name);
+    json.begin_array();
+    for (int k = 0; k < 3; ++k) json.value(point[k]);
+    json.end_array();
+  }
+  if (camera.is_orthographic) {
+    json.field("ortho_height", camera.ortho_height);
+  } else {
+    json.field("fovy", camera.fovy);
+  }
+  json.field("near", camera.near_distance);
+  json.end_object();
+  json.field("clusters", stats.clusters);
+  json.field("triangles", stats.triangles);
+  json.field("visible_clusters", stats.visible_clusters);
+  json.field("covered_pixels", stats.covered_pixels);
+  json.key("levels");
+  json.begin_array();
+  for (std::size_t level = 0; level < stats.triangles_of_level.size(); ++level) {
+    if (stats.triangles_of_level[level] == 0) continue;
+    json.begin_object();
+    json.field("level", level);
+    json.field("triangles", stats.triangles_of_level[level]);
+    json.end_object();
+  }
+  json.end_array();
+  json.end_object();
+  return json.text();
+}
+
+std::string stats_text(const RenderOptions& options, const Camera& camera, const RenderStats& stats) {
+  char line[256];
+  const double pixels = static_cast<double>(camera.width) * camera.height;
+  std::snprintf(line, sizeof line,
+                ": %ux%u, %llu triangles in %llu clusters, levels %u to %u, %llu clusters seen, %.1f%% of the picture covered\n",
+                camera.width, camera.height, static_cast<unsigned long long>(stats.triangles),
+                static_cast<unsigned long long>(stats.clusters), stats.finest_level, stats.coarsest_level,
+                static_cast<unsigned long long>(stats.visible_clusters),
+                100.0 * static_cast<double>(stats.covered_pixels) / pixels);
+  return options.output + line;
+}
+
+int run_render(const Verb& verb, std::span<char* const> args) {
+  RenderOptions options;
+  OptionParser parser(verb);
+  parser.add_positional("file", options.input, "a .lode asset");
+  parser.add_value("-o,--output", options.output, "the PNG to write (required)");
+  parser.add_value("--view", options.view, "shaded, clusters, triangles or levels",
+                   {"shaded", "clusters", "triangles", "levels"});
+  add_camera_options(parser, options.camera);
+  parser.add_value("--error", options.error, "draw the uniform cut at this error in mesh units instead of --pixel-error");
+  parser.add_flag("--relative", options.is_relative, "--error is a fraction of each mesh's own diagonal");
+  add_jobs_option(parser, options.jobs);
+  add_output_options(parser, options.report);
+  if (const auto exit_code = parser.parse(args)) return *exit_code;
+  if (options.output.empty()) return print_error({ErrorCode::kUsage, "--output", "name the PNG to write"});
+  if (options.error && !(*options.error >= 0.0 && std::isfinite(*options.error))) {
+    return print_error({ErrorCode::kUsage, "--error", "give an error of 0 or more"});
+  }
+  if (options.is_relative && !options.error) return print_error({ErrorCode::kUsage, "--relative", "needs --error"});
+
+  const JobLimit limit(options.jobs);
+  const Result<Asset> asset = Asset::open(options.input);
+  if (!asset) return print_error(asset.error());
+  const Result<Camera> camera = make_camera(options.camera, *asset);
+  if (!camera) return print_error(camera.error());
+
+  const std::vector<ClusterInstance> cut = options.error ? uniform_cut(*asset, *options.error, options.is_relative)
+                                                         : select_bvh(*asset, *camera, options.camera.pixel_error);
+  const auto fail = [&](Error error) {
+    if (error.code == ErrorCode::kInvalid) error.where = options.input + (error.where.empty() ? "" : ": ") + error.where;
+    return print_error(error);
+  };
+  const Result<VisibilityBuffer> visibility = draw_cut(*asset, cut, *camera);
+  if (!visibility) return fail(visibility.error());
+  const Result<Image> image = shade_view(*asset, cut, *camera, *visibility, view_of(options.view));
+  if (!image) return fail(image.error());
+  const std::vector<std::uint8_t> png = encode_png(*image);
+  if (png.empty()) return print_error({ErrorCode::kIo, options.output, "the picture is too large to compress"});
+  if (const Status written = write_file_atomically(options.output, png); !written) return print_error(written.error());
+  if (options.report.quiet && !options.report.json()) return 0;
+  const RenderStats stats = measure(*asset, cut, *visibility);
+  const std::string text =
+      options.report.json() ? stats_json(options, *camera, stats) : stats_text(options, *camera, stats);
+  return print_out(text) ? 0 : static_cast<int>(ErrorCode::kIo);
+}
+
+}  // namespace
+
+const Verb kRenderVerb{"render", "a picture of a cut: shaded, or coloured by cluster, triangle or level",
+                       "meshlode render scene.lode -o scene.png --pixel-error 2 --view clusters\n"
+                       "  meshlode render scene.lode -o coarse.png --error 0.01 --relative --size 640x480",
+                       run_render};
+
+}  // namespace meshlode::cli
