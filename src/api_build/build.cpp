@@ -8,6 +8,7 @@
 #include <new>
 #include <utility>
 
+#include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
 #include "api_build/scene_input.h"
@@ -51,7 +52,9 @@ Result<std::vector<std::uint8_t>> run_pipeline(const Scene& scene, const BuildOp
   if (options.should_cancel && options.should_cancel()) return Error{ErrorCode::kBuildFailed, "", "cancelled"};
   PipelineReport report;
   if (options.thread_count == 0) return build_lode(scene, *pipeline, progress, report);
-  tbb::task_arena arena(static_cast<int>(options.thread_count));
+  // More than oneTBB has would only make it warn on stderr.
+  const std::size_t available = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  tbb::task_arena arena(static_cast<int>(std::min<std::size_t>(options.thread_count, available)));
   return arena.execute([&] { return build_lode(scene, *pipeline, progress, report); });
 }
 

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A sample shape as the plain arrays that a user of the API has.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <meshlode/build.h>
+
+#include "samples/samples.h"
+
+namespace meshlode::test {
+
+struct Arrays {
+  std::vector<double> exact;
+  std::vector<float> positions;
+  std::vector<float> normals;
+  std::vector<float> uvs;
+  std::vector<std::uint32_t> indices;
+
+  explicit Arrays(const Primitive& shape) : indices(shape.indices) {
+    for (const Vec3d& p : shape.positions) {
+      for (int c = 0; c < 3; ++c) {
+        exact.push_back(p[c]);
+        positions.push_back(static_cast<float>(p[c]));
+      }
+    }
+    for (const Vec3f& n : shape.normals) normals.insert(normals.end(), {n.x, n.y, n.z});
+    for (const Vec2f& uv : shape.uvs[0]) uvs.insert(uvs.end(), {uv.x, uv.y});
+  }
+  [[nodiscard]] PrimitiveInput primitive() const {
+    PrimitiveInput input;
+    input.positions = positions;
+    input.normals = normals;
+    input.uvs[0] = uvs;
+    input.indices = indices;
+    return input;
+  }
+};
+
+/// One primitive as a whole scene.
+inline Result<std::vector<std::uint8_t>> build_one(const PrimitiveInput& primitive, const BuildOptions& options = {}) {
+  MeshInput mesh;
+  mesh.name = "one";
+  mesh.primitives = {&primitive, 1};
+  SceneInput scene;
+  scene.meshes = {&mesh, 1};
+  return build_asset(scene, options);
+}
+
+}  // namespace meshlode::test

@@ -1,0 +1,320 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// <meshlode/build.h>: what may be passed, what is refused, and that builds do not disturb each other.
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include <meshlode/build.h>
+#include <meshlode/runtime.h>
+
+#include "arrays.h"
+
+namespace meshlode {
+namespace {
+
+using test::Arrays;
+using test::build_one;
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+Arrays sphere(std::uint32_t n = 24) { return Arrays(samples::with_smooth_normals(samples::make_sphere(n))); }
+
+void expect_refused(const Result<std::vector<std::uint8_t>>& result, ErrorCode code, const std::string& place) {
+  ASSERT_FALSE(result.ok()) << "expected an error at " << place;
+  EXPECT_EQ(result.error().code, code) << result.error().message();
+  EXPECT_NE(result.error().where.find(place), std::string::npos) << result.error().message();
+}
+
+TEST(ApiBuild, ASphereBecomesAnAssetWithOneMeshAndItsTriangles) {
+  const Arrays arrays = sphere();
+  auto bytes = build_one(arrays.primitive());
+  ASSERT_TRUE(bytes.ok()) << bytes.error().message();
+  auto asset = AssetFile::take(std::move(*bytes));
+  ASSERT_TRUE(asset.ok()) << asset.error().message();
+  ASSERT_EQ(asset->meshes().size(), 1U);
+  ASSERT_EQ(asset->instances().size(), 1U) << "without instances each mesh is drawn once";
+  EXPECT_EQ(asset->text(asset->meshes()[0].name), "one");
+  EXPECT_EQ(asset->meshes()[0].source_triangles, arrays.indices.size() / 3);
+  std::uint64_t finest = 0;
+  for (const auto& cluster : asset->clusters()) finest += cluster.level == 0 ? cluster.triangle_count : 0U;
+  EXPECT_EQ(finest, arrays.indices.size() / 3);
+}
+
+TEST(ApiBuild, FloatAndDoublePositionsOfTheSameValuesDecodeAlike) {
+  const Arrays arrays = sphere(8);
+  const std::vector<double> widened(arrays.positions.begin(), arrays.positions.end());
+  PrimitiveInput primitive = arrays.primitive();
+  const auto from_float = build_one(primitive);
+  primitive.positions = {};
+  primitive.positions_double = widened;
+  const auto from_double = build_one(primitive);
+  ASSERT_TRUE(from_float.ok() && from_double.ok());
+  const auto a = AssetFile::view(*from_float);
+  const auto b = AssetFile::view(*from_double);
+  ASSERT_TRUE(a.ok() && b.ok());
+  for (int i = 0; i < 16; ++i) EXPECT_EQ(a->header().content_hash[i], b->header().content_hash[i]);
+}
+
+TEST(ApiBuild, ArraysThatDoNotFitAreRefusedWithTheirPlace) {
+  const Arrays good = sphere(4);
+  PrimitiveInput p = good.primitive();
+  p.positions = p.positions.first(p.positions.size() - 1);
+  expect_refused(build_one(p), ErrorCode::kInvalid, "meshes[0].primitives[0].positions");
+  p = good.primitive();
+  p.normals = p.normals.first(p.normals.size() - 3);
+  expect_refused(build_one(p), ErrorCode::kInvalid, "meshes[0].primitives[0].normals");
+  p = good.primitive();
+  p.uvs[2] = p.positions.first(2);
+  expect_refused(build_one(p), ErrorCode::kInvalid, "primitives[0].uvs[2]");
+  p = good.primitive();
+  p.colors = p.positions.first(4);
+  expect_refused(build_one(p), ErrorCode::kInvalid, "primitives[0].colors");
+  p = good.primitive();
+  p.indices = p.indices.first(p.indices.size() - 1);
+  expect_refused(build_one(p), ErrorCode::kInvalid, "primitives[0].indices");
+  p = good.primitive();
+  p.positions_double = good.exact;
+  expect_refused(build_one(p), ErrorCode::kInvalid, "meshes[0].primitives[0]");
+  p = good.primitive();
+  p.material = 0;
+  expect_refused(build_one(p), ErrorCode::kInvalid, "primitives[0].material");
+}
+
+TEST(ApiBuild, BadNumbersAreRefusedWithTheirPlace) {
+  Arrays bad = sphere(4);
+  bad.positions[7] = kNan;
+  expect_refused(build_one(bad.primitive()), ErrorCode::kInvalid, "positions[7]");
+  bad = sphere(4);
+  bad.positions[8] = std::numeric_limits<float>::infinity();
+  expect_refused(build_one(bad.primitive()), ErrorCode::kInvalid, "positions[8]");
+  bad = sphere(4);
+  bad.normals[3] = kNan;
+  expect_refused(build_one(bad.primitive()), ErrorCode::kInvalid, "normals[3]");
+  bad = sphere(4);
+  bad.indices[5] = static_cast<std::uint32_t>(bad.positions.size() / 3);
+  expect_refused(build_one(bad.primitive()), ErrorCode::kInvalid, "indices[5]");
+}
+
+TEST(ApiBuild, RepairDropsAndCountsWhatTouchesABadNumberOrIndex) {
+  Arrays bad = sphere(8);
+  const auto triangles = static_cast<std::uint32_t>(bad.indices.size() / 3);
+  bad.positions[3 * bad.indices[0]] = kNan;
+  std::uint32_t touched = 0;
+  for (std::uint32_t t = 0; t < triangles; ++t) {
+    bool is_touched = false;
+    for (std::uint32_t c = 0; c < 3; ++c) is_touched = is_touched || bad.indices[3 * t + c] == bad.indices[0];
+    touched += is_touched ? 1U : 0U;
+  }
+  ASSERT_GT(touched, 0U);
+  bad.indices[bad.indices.size() - 1] = 0xFFFFFFFFU;  // one more triangle, far from the first
+  BuildOptions options;
+  options.repair = true;
+  auto bytes = build_one(bad.primitive(), options);
+  ASSERT_TRUE(bytes.ok()) << bytes.error().message();
+  const auto asset = AssetFile::take(std::move(*bytes));
+  ASSERT_TRUE(asset.ok());
+  EXPECT_EQ(asset->meshes()[0].dropped_repaired, touched + 1U);
+}
+
+TEST(ApiBuild, ScenesAreCheckedToo) {
+  const Arrays arrays = sphere(4);
+  const PrimitiveInput primitive = arrays.primitive();
+  MeshInput mesh;
+  mesh.primitives = {&primitive, 1};
+  InstanceInput instance;
+  SceneInput scene;
+  scene.meshes = {&mesh, 1};
+  scene.instances = {&instance, 1};
+  instance.mesh = 1;
+  expect_refused(build_asset(scene, {}), ErrorCode::kInvalid, "instances[0].mesh");
+  instance.mesh = 0;
+  instance.transform[5] = std::nan("");
+  expect_refused(build_asset(scene, {}), ErrorCode::kInvalid, "instances[0].transform[5]");
+  instance = {};
+  instance.transform[3] = 0.5;
+  expect_refused(build_asset(scene, {}), ErrorCode::kInvalid, "instances[0].transform");
+  instance = {};
+  MaterialInput material;
+  material.base_color[2] = kNan;
+  scene.materials = {&material, 1};
+  expect_refused(build_asset(scene, {}), ErrorCode::kInvalid, "materials[0].base_color[2]");
+}
+
+TEST(ApiBuild, OptionsThatMakeNoSenseAreUsageErrors) {
+  const Arrays arrays = sphere(4);
+  BuildOptions options;
+  options.grid_step = -1.0;
+  expect_refused(build_one(arrays.primitive(), options), ErrorCode::kUsage, "grid_step");
+  options = {};
+  options.strip_attributes = options.keep_all_attributes = true;
+  expect_refused(build_one(arrays.primitive(), options), ErrorCode::kUsage, "strip_attributes");
+  options = {};
+  options.error_tier = format::ErrorTier::kCertified;
+  const auto refused = build_one(arrays.primitive(), options);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().code, ErrorCode::kUnsupported);
+}
+
+TEST(ApiBuild, AnEmptySceneAndAnEmptyMeshAreNoErrors) {
+  EXPECT_TRUE(build_asset({}, {}).ok());
+  MeshInput mesh;
+  mesh.name = "nothing";
+  SceneInput scene;
+  scene.meshes = {&mesh, 1};
+  const auto bytes = build_asset(scene, {});
+  ASSERT_TRUE(bytes.ok()) << bytes.error().message();
+  EXPECT_TRUE(AssetFile::view(*bytes).ok());
+}
+
+TEST(ApiBuild, InstancesAndMaterialsArriveAsGiven) {
+  const Arrays arrays = sphere(6);
+  std::array<PrimitiveInput, 2> primitives{arrays.primitive(), arrays.primitive()};
+  primitives[0].material = 1;
+  primitives[1].material = kDefaultMaterial;
+  MeshInput mesh;
+  mesh.name = "two";
+  mesh.primitives = primitives;
+  std::array<MaterialInput, 2> materials;
+  materials[0].name = "unused";
+  materials[1].name = "leaf";
+  materials[1].alpha_mode = format::AlphaMode::kMask;
+  materials[1].alpha_cutoff = 0.25F;
+  materials[1].double_sided = true;
+  InstanceInput mirrored;
+  mirrored.name = "mirrored";
+  mirrored.transform = {-2, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 10, 20, 30, 1};
+  SceneInput scene;
+  scene.meshes = {&mesh, 1};
+  scene.materials = materials;
+  scene.instances = {&mirrored, 1};
+  auto bytes = build_asset(scene, {});
+  ASSERT_TRUE(bytes.ok()) << bytes.error().message();
+  const auto asset = AssetFile::take(std::move(*bytes));
+  ASSERT_TRUE(asset.ok()) << asset.error().message();
+  ASSERT_EQ(asset->materials().size(), 3U);
+  EXPECT_EQ(asset->text(asset->materials()[1].name), "leaf");
+  EXPECT_EQ(asset->materials()[1].alpha_mode, format::AlphaMode::kMask);
+  EXPECT_EQ(asset->materials()[1].alpha_cutoff, 0.25F);
+  EXPECT_EQ(asset->materials()[1].double_sided, 1U);
+  EXPECT_EQ(asset->materials()[2].source_index, format::kNone) << "the default material";
+  ASSERT_EQ(asset->instances().size(), 1U);
+  const format::InstanceRecord& instance = asset->instances()[0];
+  EXPECT_EQ(asset->text(instance.name), "mirrored");
+  EXPECT_NE(instance.flags & format::kInstanceMirrored, 0U);
+  EXPECT_GE(instance.scale, 2.0);
+  EXPECT_LT(instance.scale, 2.0 + 1e-9);
+  EXPECT_EQ(instance.transform[0], -2.0);
+  EXPECT_EQ(instance.transform[3], 10.0);
+  EXPECT_EQ(instance.transform[7], 20.0);
+  EXPECT_EQ(instance.transform[11], 30.0);
+}
+
+TEST(ApiBuild, CancelEndsTheBuildAtItsNextQuestion) {
+  const Arrays arrays = sphere(40);
+  BuildOptions options;
+  options.should_cancel = [] { return true; };
+  auto result = build_one(arrays.primitive(), options);
+  ASSERT_FALSE(result.ok());
+  EXPECT_EQ(result.error().code, ErrorCode::kBuildFailed);
+  int questions = 0;
+  options.should_cancel = [&] { return ++questions > 2; };
+  result = build_one(arrays.primitive(), options);
+  ASSERT_FALSE(result.ok()) << "a mesh of several levels asks more than twice";
+  EXPECT_EQ(result.error().code, ErrorCode::kBuildFailed);
+}
+
+TEST(ApiBuild, ProgressNeverFallsAndNamesTheMesh) {
+  const Arrays arrays = sphere(40);
+  BuildOptions options;
+  double last = 0.0;
+  int events = 0;
+  options.on_progress = [&](const BuildProgress& progress) {
+    ++events;
+    EXPECT_GE(progress.fraction, last);
+    EXPECT_LE(progress.fraction, 1.0);
+    EXPECT_EQ(progress.mesh, 0U);
+    EXPECT_EQ(progress.mesh_name, "one");
+    last = progress.fraction;
+  };
+  ASSERT_TRUE(build_one(arrays.primitive(), options).ok());
+  EXPECT_GT(events, 0);
+}
+
+TEST(ApiBuild, AThrowingCallbackIsAnError) {
+  const Arrays arrays = sphere(8);
+  BuildOptions options;
+  options.on_progress = [](const BuildProgress&) { throw std::runtime_error("from the callback"); };
+  const auto result = build_one(arrays.primitive(), options);
+  ASSERT_FALSE(result.ok());
+  EXPECT_EQ(result.error().code, ErrorCode::kBuildFailed);
+}
+
+// METIS draws from the C library's rand(): builds at the same time must not disturb each other (I10).
+TEST(ApiBuild, BuildsAtTheSameTimeGiveTheBytesOfBuildsOneAfterTheOther) {
+  const Arrays a = sphere(48);
+  const Arrays b(samples::make_torus(96, 40));
+  const auto a_alone = build_one(a.primitive());
+  const auto b_alone = build_one(b.primitive());
+  ASSERT_TRUE(a_alone.ok() && b_alone.ok());
+  for (int round = 0; round < 3; ++round) {
+    std::array<std::vector<std::uint8_t>, 4> together;
+    std::vector<std::thread> threads;
+    for (std::size_t i = 0; i < together.size(); ++i) {
+      threads.emplace_back([&, i] {
+        auto built = build_one(i % 2 == 0 ? a.primitive() : b.primitive());
+        if (built) together[i] = std::move(*built);
+      });
+    }
+    for (std::thread& thread : threads) thread.join();
+    for (std::size_t i = 0; i < together.size(); ++i) {
+      EXPECT_TRUE(together[i] == (i % 2 == 0 ? *a_alone : *b_alone)) << "build " << i << ", round " << round;
+    }
+  }
+}
+
+TEST(ApiBuild, ThreadCountDoesNotReachTheBytes) {
+  const Arrays a = sphere(48);
+  std::vector<std::uint8_t> first;
+  for (const std::uint32_t threads : {1U, 2U, 4U}) {
+    BuildOptions options;
+    options.thread_count = threads;
+    auto built = build_one(a.primitive(), options);
+    ASSERT_TRUE(built.ok());
+    if (first.empty()) first = std::move(*built);
+    else EXPECT_TRUE(first == *built) << threads << " threads";
+  }
+}
+
+TEST(ApiBuild, FilesAppearWholeOrNotAtAll) {
+  const auto folder = std::filesystem::path(testing::TempDir()) / "meshlode_api_files";
+  std::filesystem::create_directories(folder);
+  const auto output = folder / "a.lode";
+  std::filesystem::remove(output);
+  Arrays bad = sphere(4);
+  bad.indices[0] = 0xFFFFFFFFU;
+  PrimitiveInput primitive = bad.primitive();
+  MeshInput mesh;
+  mesh.primitives = {&primitive, 1};
+  SceneInput scene;
+  scene.meshes = {&mesh, 1};
+  EXPECT_FALSE(build_asset_file(scene, output, {}).ok());
+  EXPECT_FALSE(std::filesystem::exists(output));
+  const Arrays good = sphere(4);
+  primitive = good.primitive();
+  ASSERT_TRUE(build_asset_file(scene, output, {}).ok());
+  EXPECT_TRUE(AssetFile::open(output).ok());
+  EXPECT_EQ(build_asset_file(scene, folder / "no" / "such" / "folder.lode", {}).error().code, ErrorCode::kIo);
+  EXPECT_EQ(build_file(folder / "missing.glb", output, {}).error().code, ErrorCode::kIo);
+  std::ofstream(folder / "broken.glb") << "glTF but not really";
+  EXPECT_EQ(build_file(folder / "broken.glb", output, {}).error().code, ErrorCode::kInvalid);
+  EXPECT_TRUE(AssetFile::open(output).ok()) << "a failed build leaves the old file alone";
+  std::filesystem::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace meshlode

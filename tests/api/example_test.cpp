@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// docs/api.md shows the example that is compiled and run, to the letter.
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include <gtest/gtest.h>
+
+namespace meshlode {
+namespace {
+
+std::string read_text(const std::string& path) {
+  std::ifstream in(std::string(MESHLODE_SOURCE_DIR) + "/" + path);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+TEST(ApiDocs, ShowTheExampleThatIsCompiled) {
+  const std::string code = read_text("tests/api/example.cpp");
+  const std::string page = read_text("docs/api.md");
+  ASSERT_FALSE(code.empty());
+  ASSERT_FALSE(page.empty());
+  const std::string body = code.substr(code.find("#include"));
+  EXPECT_NE(page.find("```cpp\n" + body + "```"), std::string::npos) << "copy tests/api/example.cpp into docs/api.md";
+}
+
+}  // namespace
+}  // namespace meshlode
