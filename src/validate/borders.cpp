@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "validate/borders.h"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+
+namespace meshlode {
+
+namespace {
+
+using format::GroupRecord;
+
+std::vector<std::uint32_t> members_of(const MeshSurface& surface, const GroupRecord& group) {
+  std::vector<std::uint32_t> members(group.cluster_count);
+  std::iota(members.begin(), members.end(), group.first_cluster - surface.first_cluster);
+  return members;
+}
+
+/// Calls visit(edge, finer, coarser) for every edge of either chain, ascending.
+template <class Visit>
+void for_each_edge(std::span<const EdgeUse> finer, std::span<const EdgeUse> coarser, const Visit& visit) {
+  std::size_t i = 0;
+  std::size_t j = 0;
+  while (i < finer.size() || j < coarser.size()) {
+    const bool take_finer = j == coarser.size() || (i < finer.size() && finer[i].edge <= coarser[j].edge);
+    const bool take_coarser = i == finer.size() || (j < coarser.size() && coarser[j].edge <= finer[i].edge);
+    const std::uint32_t edge = take_finer ? finer[i].edge : coarser[j].edge;
+    visit(edge, take_finer ? finer[i].net : 0, take_coarser ? coarser[j].net : 0);
+    if (take_finer) ++i;
+    if (take_coarser) ++j;
+  }
+}
+
+struct Exchange {
+  std::uint32_t edge;
+  std::int32_t removed;  ///< of the finer chain, signed
+  std::int32_t added;    ///< by the coarser chain, signed
+};
+
+/// What changes on an edge: the part of the finer use that goes and the part of the coarser one that comes. Uses of one
+/// sign cancel as far as they agree.
+Exchange exchange_of(std::uint32_t edge, std::int32_t finer, std::int32_t coarser) {
+  const bool same_sign = (finer > 0) == (coarser > 0) && finer != 0 && coarser != 0;
+  if (!same_sign) return {edge, finer, coarser};
+  const std::int32_t kept = finer > 0 ? std::min(finer, coarser) : std::max(finer, coarser);
+  return {edge, finer - kept, coarser - kept};
+}
+
+class Components {
+ public:
+  std::uint32_t find(std::uint32_t x) {
+    auto it = parent_.find(x);
+    if (it == parent_.end()) {
+      parent_.emplace(x, x);
+      return x;
+    }
+    if (it->second == x) return x;
+    const std::uint32_t root = find(it->second);
+    parent_[x] = root;
+    return root;
+  }
+  void join(std::uint32_t a, std::uint32_t b) {
+    const std::uint32_t ra = find(a);
+    const std::uint32_t rb = find(b);
+    if (ra != rb) parent_[std::max(ra, rb)] = std::min(ra, rb);
+  }
+
+ private:
+  std::map<std::uint32_t, std::uint32_t> parent_;
+};
+
+/// The first reason why the exchanges of one group are not allowed; empty if they are.
+std::string refuse(const MeshSurface& surface, const BorderSet& border, std::span<const Exchange> exchanges) {
+  Components components;
+  std::vector<std::uint32_t> anchored;
+  for (const Exchange& exchange : exchanges) {
+    const auto& [a, b] = surface.edges[exchange.edge];
+    components.join(a, b);
+    if (exchange.removed == 0) continue;
+    if (!border.allows(exchange.edge, exchange.removed)) {
+      return "edge " + edge_text(surface, exchange.edge) + " of the finer set, used " + std::to_string(exchange.removed) +
+             " times, is missing in the coarser set and no border of the source";
+    }
+    anchored.push_back(a);
+  }
+  std::vector<std::uint32_t> roots;
+  for (const std::uint32_t position : anchored) roots.push_back(components.find(position));
+  std::sort(roots.begin(), roots.end());
+  for (const Exchange& exchange : exchanges) {
+    if (!std::binary_search(roots.begin(), roots.end(), components.find(surface.edges[exchange.edge][0]))) {
+      return "edge " + edge_text(surface, exchange.edge) + " of the coarser set opens a border where the finer set has none";
+    }
+  }
+  return {};
+}
+
+std::vector<std::uint32_t> groups_from_fine_to_coarse(const Asset& asset, const MeshSurface& surface) {
+  std::vector<std::uint32_t> order(surface.group_count);
+  std::iota(order.begin(), order.end(), surface.first_group);
+  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return asset.groups()[a].level < asset.groups()[b].level;
+  });
+  return order;
+}
+
+}  // namespace
+
+BorderProof prove_borders(const Asset& asset, const MeshSurface& surface) {
+  BorderProof proof;
+  BorderSet& border = proof.border;
+  border.plus.assign(surface.edges.size(), 0);
+  border.minus.assign(surface.edges.size(), 0);
+  std::vector<std::uint32_t> level0;
+  for (std::uint32_t c = 0; c < surface.cluster_count; ++c) {
+    if (asset.clusters()[surface.first_cluster + c].own_group == format::kNone) level0.push_back(c);
+  }
+  for (const EdgeUse& use : sum_chains(surface, level0)) {
+    (use.net > 0 ? border.plus : border.minus)[use.edge] = std::abs(use.net);
+    border.is_closed = false;
+  }
+
+  std::vector<Exchange> exchanges;
+  for (const std::uint32_t g : groups_from_fine_to_coarse(asset, surface)) {
+    const GroupRecord& group = asset.groups()[g];
+    if ((group.flags & format::kGroupTerminal) != 0) continue;
+    ++proof.groups;
+    const std::vector<EdgeUse> finer = sum_chains(surface, members_of(surface, group));
+    const std::vector<EdgeUse> coarser = sum_chains(surface, surface.made[g - surface.first_group]);
+    exchanges.clear();
+    for_each_edge(finer, coarser, [&](std::uint32_t edge, std::int32_t f, std::int32_t c) {
+      if (f != c) exchanges.push_back(exchange_of(edge, f, c));
+    });
+    if (exchanges.empty()) continue;
+    std::string reason = refuse(surface, border, exchanges);
+    if (!reason.empty()) {
+      proof.violations.push_back({g, std::move(reason)});
+      continue;  // what a broken group adds is no border of the source
+    }
+    for (const Exchange& exchange : exchanges) {
+      if (exchange.added > 0) border.plus[exchange.edge] += exchange.added;
+      if (exchange.added < 0) border.minus[exchange.edge] -= exchange.added;
+    }
+  }
+  std::sort(proof.violations.begin(), proof.violations.end(),
+            [](const BorderViolation& a, const BorderViolation& b) { return a.group < b.group; });
+  return proof;
+}
+
+namespace {
+
+/// A position with one set of attributes.
+struct Wedge {
+  std::uint32_t position;
+  std::uint64_t attributes;
+  auto operator<=>(const Wedge&) const = default;
+};
+
+/// The wedges of clusters at the given positions (ascending), ascending and distinct.
+std::vector<Wedge> wedges_at(const MeshSurface& surface, std::span<const std::uint32_t> clusters,
+                             std::span<const std::uint32_t> positions) {
+  std::vector<Wedge> out;
+  for (const std::uint32_t c : clusters) {
+    for (std::uint32_t v = surface.first_vertex[c]; v < surface.first_vertex[c + 1]; ++v) {
+      if (std::binary_search(positions.begin(), positions.end(), surface.vertex_position[v])) {
+        out.push_back({surface.vertex_position[v], surface.vertex_attributes[v]});
+      }
+    }
+  }
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  return out;
+}
+
+std::vector<std::uint32_t> positions_of(const MeshSurface& surface, std::span<const std::uint32_t> clusters) {
+  std::vector<std::uint32_t> out;
+  for (const std::uint32_t c : clusters) {
+    out.insert(out.end(), surface.vertex_position.begin() + surface.first_vertex[c],
+               surface.vertex_position.begin() + surface.first_vertex[c + 1]);
+  }
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  return out;
+}
+
+/// A border edge that a group shares is drawn by its neighbours too, so what the coarser set draws there must be what the
+/// finer set drew. At a seam a position has several wedges, and simplification may leave one of them unused.
+void check_attributes(const Asset& asset, const MeshSurface& surface, const BorderSet& border, std::vector<BorderViolation>& out) {
+  std::vector<std::uint32_t> shared;
+  for (std::uint32_t k = 0; k < surface.group_count; ++k) {
+    const std::uint32_t g = surface.first_group + k;
+    const GroupRecord& group = asset.groups()[g];
+    if ((group.flags & format::kGroupTerminal) != 0) continue;
+    const std::vector<std::uint32_t> members = members_of(surface, group);
+    shared.clear();
+    for_each_edge(sum_chains(surface, members), sum_chains(surface, surface.made[k]),
+                  [&](std::uint32_t edge, std::int32_t f, std::int32_t c) {
+                    // The source's own border is nobody's to share.
+                    if (f != c || border.plus[edge] != 0 || border.minus[edge] != 0) return;
+                    shared.insert(shared.end(), surface.edges[edge].begin(), surface.edges[edge].end());
+                  });
+    std::sort(shared.begin(), shared.end());
+    shared.erase(std::unique(shared.begin(), shared.end()), shared.end());
+    const std::vector<Wedge> finer = wedges_at(surface, members, shared);
+    for (const Wedge& wedge : wedges_at(surface, surface.made[k], shared)) {
+      if (std::binary_search(finer.begin(), finer.end(), wedge)) continue;
+      out.push_back({g, "position " + position_text(surface, wedge.position) + " of a shared border has attributes in the coarser set that it has not in the finer set"});
+      break;
+    }
+  }
+}
+
+void check_positions(const Asset& asset, const MeshSurface& surface, std::vector<BorderViolation>& out) {
+  struct Use {
+    std::uint32_t position, group;
+    auto operator<=>(const Use&) const = default;
+  };
+  std::map<std::uint16_t, std::vector<std::uint32_t>> groups_of_level;
+  for (std::uint32_t k = 0; k < surface.group_count; ++k) {
+    const GroupRecord& group = asset.groups()[surface.first_group + k];
+    if ((group.flags & format::kGroupTerminal) == 0) groups_of_level[group.level].push_back(k);
+  }
+  for (const auto& [level, groups] : groups_of_level) {
+    std::vector<Use> uses;
+    for (const std::uint32_t k : groups) {
+      for (const std::uint32_t p : positions_of(surface, members_of(surface, asset.groups()[surface.first_group + k]))) {
+        uses.push_back({p, k});
+      }
+    }
+    std::sort(uses.begin(), uses.end());
+    std::vector<Use> shared;
+    for (std::size_t i = 0; i < uses.size(); ++i) {
+      const bool with_before = i > 0 && uses[i - 1].position == uses[i].position;
+      const bool with_next = i + 1 < uses.size() && uses[i + 1].position == uses[i].position;
+      if (with_before || with_next) shared.push_back({uses[i].group, uses[i].position});  // by group from here on
+    }
+    std::sort(shared.begin(), shared.end());
+    for (std::size_t i = 0; i < shared.size();) {
+      const std::uint32_t k = shared[i].position;
+      const std::vector<std::uint32_t> coarser = positions_of(surface, surface.made[k]);
+      std::uint64_t lost = 0;
+      std::uint32_t first = 0;
+      for (; i < shared.size() && shared[i].position == k; ++i) {
+        if (!std::binary_search(coarser.begin(), coarser.end(), shared[i].group)) {
+          if (lost++ == 0) first = shared[i].group;
+        }
+      }
+      if (lost > 0) {
+        out.push_back({surface.first_group + k, std::to_string(lost) + " positions shared with other groups of level " +
+                                                    std::to_string(level) + " are lost, such as " + position_text(surface, first)});
+      }
+    }
+  }
+}
+
+}  // namespace
+
+SharedVertexReport check_shared_vertices(const Asset& asset, const MeshSurface& surface, const BorderSet& border) {
+  SharedVertexReport report;
+  check_attributes(asset, surface, border, report.attribute_violations);
+  check_positions(asset, surface, report.position_violations);
+  return report;
+}
+
+}  // namespace meshlode

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Exact predicates on floats: sums of products held as expansions of doubles (Shewchuk 1997), so that a containment is
+// proven and not estimated. Exact for |values| between 2^-500 and 2^500 and their differences, far beyond any float.
+#pragma once
+
+#include "base/vec.h"
+
+namespace meshlode {
+
+struct Ball {
+  float center[3];
+  float radius;
+};
+
+/// |outer.center - inner.center| + inner.radius <= outer.radius, exactly. \pre all finite, radii >= 0
+[[nodiscard]] bool contains_ball(const Ball& outer, const Ball& inner);
+/// |ball.center - point| <= ball.radius, exactly. \pre all finite, radius >= 0
+[[nodiscard]] bool contains_point(const Ball& ball, const Vec3d& point);
+/// Whether three points lie on one line (or coincide), exactly. \pre finite, |values| < 2^300
+[[nodiscard]] bool are_collinear(const Vec3d& a, const Vec3d& b, const Vec3d& c);
+/// Sign of sum(terms[i].x * terms[i].y): -1, 0 or 1. For tests.
+[[nodiscard]] int sign_of_dot(const Vec3d& a, const Vec3d& b);
+
+}  // namespace meshlode

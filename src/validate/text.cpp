@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The asset's JSON texts; the one file of this room that sees nlohmann-json.
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "validate/file_tables.h"
+
+namespace meshlode {
+
+bool is_utf8(std::string_view text) {
+  std::size_t i = 0;
+  const auto byte = [&](std::size_t k) { return static_cast<unsigned>(static_cast<unsigned char>(text[k])); };
+  while (i < text.size()) {
+    const unsigned lead = byte(i);
+    if (lead < 0x80U) { ++i; continue; }
+    const std::size_t count = lead >> 5 == 6U ? 1 : lead >> 4 == 14U ? 2 : lead >> 3 == 30U ? 3 : 0;
+    if (count == 0 || count >= text.size() - i) return false;
+    unsigned code = lead & (0x3FU >> count);
+    for (std::size_t k = 1; k <= count; ++k) {
+      if (byte(i + k) >> 6 != 2U) return false;
+      code = code << 6 | (byte(i + k) & 0x3FU);
+    }
+    constexpr unsigned kLeast[] = {0, 0x80, 0x800, 0x10000};
+    if (code < kLeast[count] || code > 0x10FFFFU || (code >= 0xD800U && code < 0xE000U)) return false;
+    i += count + 1;
+  }
+  return true;
+}
+
+namespace {
+
+/// Nesting beyond this is refused before the parser recurses.
+constexpr int kMaxDepth = 512;
+
+bool is_shallow(std::string_view text) {
+  int depth = 0;
+  bool in_string = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (in_string) {
+      if (c == '\\') ++i;
+      else if (c == '"') in_string = false;
+    } else if (c == '"') {
+      in_string = true;
+    } else if (c == '{' || c == '[') {
+      if (++depth > kMaxDepth) return false;
+    } else if (c == '}' || c == ']') {
+      --depth;
+    }
+  }
+  return true;
+}
+
+nlohmann::json parse(std::string_view text) {
+  if (!is_utf8(text) || !is_shallow(text)) return nlohmann::json(nlohmann::json::value_t::discarded);
+  return nlohmann::json::parse(text.begin(), text.end(), nullptr, false);
+}
+
+}  // namespace
+
+std::string source_hash_of(std::string_view meta) {
+  const nlohmann::json root = parse(meta);
+  if (!root.is_object() || !root.contains("source") || !root["source"].is_object()) return {};
+  const auto hash = root["source"].find("hash");
+  return hash != root["source"].end() && hash->is_string() ? hash->get<std::string>() : std::string();
+}
+
+void check_texts(const FileTables& file, RuleLog& log) {
+  const nlohmann::json meta = parse(file.meta);
+  if (log.expect(meta.is_object(), "L013", [] { return std::string("section META"); },
+                 [] { return std::string("is not a JSON object"); })) {
+    const auto has = [&](const char* key, nlohmann::json::value_t type) {
+      const auto found = meta.find(key);
+      log.expect(found != meta.end() && found->type() == type, "L013",
+                 [&] { return std::string("section META: /") + key; },
+                 [] { return std::string("is missing or of another type"); });
+      return found != meta.end() && found->type() == type;
+    };
+    has("generator", nlohmann::json::value_t::string);
+    has("settings", nlohmann::json::value_t::object);
+    has("plan", nlohmann::json::value_t::array);
+    has("left_out", nlohmann::json::value_t::array);
+    if (has("source", nlohmann::json::value_t::object)) {
+      for (const char* key : {"file", "hash"}) {
+        log.expect(meta["source"].contains(key) && meta["source"][key].is_string(), "L013",
+                   [&] { return std::string("section META: /source/") + key; },
+                   [] { return std::string("is missing or no string"); });
+      }
+    }
+  }
+  log.expect(parse(file.scene).is_object(), "L013", [] { return std::string("section SCNE"); },
+             [] { return std::string("is not a JSON object"); });
+}
+
+}  // namespace meshlode

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "base/file.h"
+#include "options.h"
+#include "report/json_writer.h"
+#include "validate/validate.h"
+#include "verb.h"
+
+namespace meshlode::cli {
+
+namespace {
+
+constexpr int kInvalid = static_cast<int>(ErrorCode::kInvalid);
+constexpr int kCheckFailed = static_cast<int>(ErrorCode::kCheckFailed);
+
+bool is_no_asset(const ValidationReport& report) {
+  return std::any_of(report.findings.begin(), report.findings.end(), [](const Finding& f) { return f.id == "L001"; });
+}
+
+void write_findings(JsonWriter& json, const std::vector<Finding>& findings) {
+  json.key("findings");
+  json.begin_array();
+  for (const Finding& finding : findings) {
+    json.begin_object();
+    json.field("id", finding.id);
+    json.field("invariant", finding.invariant);
+    json.field("where", finding.where);
+    json.field("detail", finding.detail);
+    json.end_object();
+  }
+  json.end_array();
+}
+
+std::string describe(const std::string& path, const ValidationReport& report, bool quiet) {
+  std::string text;
+  for (const Finding& finding : report.findings) {
+    text += path + ": " + finding.id + (finding.invariant.empty() ? "" : " (" + finding.invariant + ")") + ": " +
+            finding.where + ": " + finding.detail + "\n";
+  }
+  if (report.finding_count > report.findings.size()) {
+    text += path + ": and " + std::to_string(report.finding_count - report.findings.size()) + " more findings\n";
+  }
+  if (report.finding_count == 0 && !quiet) {
+    text += path + ": valid, " + std::to_string(report.checked.size()) + " rules hold\n";
+  }
+  return text;
+}
+
+int run_validate(const Verb& verb, std::span<char* const> args) {
+  std::vector<std::string> paths;
+  OutputOptions output;
+  OptionParser parser(verb);
+  parser.add_positionals("file", paths, "one or more .lode assets");
+  add_output_options(parser, output);
+  if (const auto exit_code = parser.parse(args)) return *exit_code;
+
+  int worst = 0;
+  std::string text;
+  JsonWriter json;
+  json.begin_object();
+  json.key("files");
+  json.begin_array();
+  for (const std::string& path : paths) {
+    const Result<MappedFile> file = MappedFile::open(path);
+    if (!file) {
+      worst = std::max(worst, print_error(file.error()));
+      continue;
+    }
+    const ValidationReport report = validate_asset(file->bytes());
+    if (report.finding_count > 0) worst = std::max(worst, is_no_asset(report) ? kInvalid : kCheckFailed);
+    text += describe(path, report, output.quiet);
+    json.begin_object();
+    json.field("file", path);
+    json.field("valid", report.finding_count == 0);
+    json.field("finding_count", report.finding_count);
+    write_findings(json, report.findings);
+    json.key("checked");
+    json.begin_array();
+    for (const std::string& id : report.checked) json.value(id);
+    json.end_array();
+    json.end_object();
+  }
+  json.end_array();
+  json.end_object();
+  if (!print_out(output.json() ? json.text() : text)) return static_cast<int>(ErrorCode::kIo);
+  return worst;
+}
+
+}  // namespace
+
+const Verb kValidateVerb{"validate", "check every structural rule of an asset, each finding with its id",
+                         "meshlode validate scene.lode\n  meshlode validate out/*.lode --format json", run_validate};
+
+}  // namespace meshlode::cli

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cstdio>
+#include <string>
+
+#include "import/import.h"
+#include "options.h"
+#include "read/asset.h"
+#include "report/json_writer.h"
+#include "verb.h"
+#include "verify/verify.h"
+
+namespace meshlode::cli {
+
+namespace {
+
+std::string describe(const VerifyReport& report, bool quiet) {
+  std::string text;
+  for (const VerifyReport::Check& check : report.checks) {
+    if (quiet && check.failures == 0) continue;
+    char head[64];
+    std::snprintf(head, sizeof head, "%-4s %-8s %12llu  ", check.invariant.empty() ? "-" : check.invariant.c_str(),
+                  check.skipped ? "skipped" : check.failures == 0 ? "ok" : "FAILED",
+                  static_cast<unsigned long long>(check.items));
+    text += head + check.what;
+    if (check.failures > 0) text += ": " + std::to_string(check.failures) + " failures";
+    text += "\n";
+  }
+  for (const Finding& finding : report.findings) {
+    text += finding.id + (finding.invariant.empty() ? "" : " (" + finding.invariant + ")") + ": " + finding.where + ": " +
+            finding.detail + "\n";
+  }
+  if (report.finding_count > report.findings.size()) {
+    text += "and " + std::to_string(report.finding_count - report.findings.size()) + " more findings\n";
+  }
+  if (!quiet) text += report.finding_count == 0 ? "verified: nothing found\n" : "NOT verified: " + std::to_string(report.finding_count) + " findings\n";
+  return text;
+}
+
+std::string to_json(const std::string& path, const std::string& source, const VerifyOptions& options, const VerifyReport& report) {
+  JsonWriter json;
+  json.begin_object();
+  json.field("file", path);
+  json.field("source", source);
+  json.field("uniform_cuts", options.uniform_cuts);
+  json.field("cameras", options.cameras);
+  json.field("seed", options.seed);
+  json.field("verified", report.finding_count == 0);
+  json.field("finding_count", report.finding_count);
+  json.key("checks");
+  json.begin_array();
+  for (const VerifyReport::Check& check : report.checks) {
+    json.begin_object();
+    json.field("invariant", check.invariant);
+    json.field("what", check.what);
+    json.field("items", check.items);
+    json.field("failures", check.failures);
+    json.field("skipped", check.skipped);
+    json.end_object();
+  }
+  json.end_array();
+  json.key("findings");
+  json.begin_array();
+  for (const Finding& finding : report.findings) {
+    json.begin_object();
+    json.field("id", finding.id);
+    json.field("invariant", finding.invariant);
+    json.field("where", finding.where);
+    json.field("detail", finding.detail);
+    json.end_object();
+  }
+  json.end_array();
+  json.end_object();
+  return json.text();
+}
+
+/// Triangles that --repair dropped are found again by repairing the source in the same way.
+bool was_repaired(const Asset& asset) {
+  const auto meshes = asset.meshes();
+  return std::any_of(meshes.begin(), meshes.end(), [](const format::MeshRecord& m) { return m.dropped_repaired > 0; });
+}
+
+int run_verify(const Verb& verb, std::span<char* const> args) {
+  std::string path;
+  std::string source_path;
+  bool gpu = false;
+  std::uint32_t jobs = 0;
+  VerifyOptions options;
+  OutputOptions output;
+  OptionParser parser(verb);
+  parser.add_positional("file", path, "a .lode asset");
+  parser.add_value("--source", source_path, "the scene it was built from");
+  parser.add_value("--cuts", options.uniform_cuts, "uniform cuts per mesh that cross-check the border proof");
+  parser.add_value("--cameras", options.cameras, "random cameras that cross-check selection and hierarchy");
+  parser.add_value("--seed", options.seed, "of the random cameras");
+  parser.add_flag("--gpu", gpu, "compare with the GPU too");
+  add_jobs_option(parser, jobs);
+  add_output_options(parser, output);
+  if (const auto exit_code = parser.parse(args)) return *exit_code;
+  if (gpu) return print_error({ErrorCode::kUnsupported, "--gpu", "the GPU judge is not built yet"});
+  if (source_path.empty()) return print_error({ErrorCode::kUsage, "--source", "the scene to verify against is missing"});
+
+  const JobLimit limit(jobs);
+  const Result<Asset> asset = Asset::open(path);
+  if (!asset) return print_error(asset.error());
+  Result<Scene> source = import_scene(source_path, {.repair = was_repaired(*asset)});
+  if (!source) return print_error(source.error());
+  const VerifyReport report = verify_asset(*asset, *source, options);
+  if (!print_out(output.json() ? to_json(path, source_path, options, report) : describe(report, output.quiet))) {
+    return static_cast<int>(ErrorCode::kIo);
+  }
+  return report.finding_count == 0 ? 0 : static_cast<int>(ErrorCode::kCheckFailed);
+}
+
+}  // namespace
+
+const Verb kVerifyVerb{"verify", "prove an asset against the scene it was built from",
+                       "meshlode verify scene.lode --source scene.glb\n"
+                       "  meshlode verify scene.lode --source scene.glb --cuts 1000 --cameras 500 --seed 7",
+                       run_verify};
+
+}  // namespace meshlode::cli
