@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "unpack/unpack.h"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -16,6 +17,15 @@ Error page_error(PageId page, const char* field, std::string detail, ErrorCode c
   return {code, "page " + std::to_string(page.value) + ", field " + field, std::move(detail)};
 }
 
+/// The bytes between the page before it and this one carry nothing: no checksum covers them, so they are looked at.
+bool is_padding_zero(const Asset& asset, PageId page) {
+  if (page.value == 0) return true;
+  const format::PageRecord& before = asset.pages()[page.value - 1];
+  const std::uint64_t end = before.offset + before.stored_bytes;
+  const auto padding = asset.bytes().subspan(end, asset.pages()[page.value].offset - end);
+  return std::all_of(padding.begin(), padding.end(), [](std::uint8_t byte) { return byte == 0; });
+}
+
 }  // namespace
 
 Result<PageBytes> load_page(const Asset& asset, PageId page) {
@@ -23,6 +33,7 @@ Result<PageBytes> load_page(const Asset& asset, PageId page) {
   const format::PageRecord& record = asset.pages()[page.value];
   const std::span<const std::uint8_t> stored = asset.stored_page(page);
   if (hash64(stored) != record.checksum) return page_error(page, "checksum", "does not match the stored bytes");
+  if (!is_padding_zero(asset, page)) return page_error(page, "offset", "the padding before it is not zero");
 
   if (record.codec == format::Codec::kNone) {
     if (record.decoded_checksum != record.checksum) {
