@@ -9,8 +9,7 @@ namespace meshlode {
 
 namespace {
 
-/// Appends one cluster: triangles sorted by material (stable), vertices numbered by first use. Wedges with the same
-/// position and attributes are one vertex.
+/// Appends one cluster: triangles sorted by material (stable), vertices numbered by first use.
 void append_cluster(const BuildPool& pool, const BuildCluster& source, std::size_t stride, GroupId group, LodDag& dag) {
   DagCluster cluster;
   cluster.level = source.level;
@@ -27,14 +26,8 @@ void append_cluster(const BuildPool& pool, const BuildCluster& source, std::size
   });
   std::vector<std::uint32_t> vertices;  // wedge ids; at most a few hundred, so that linear search is quick enough
   const auto local_vertex = [&](std::uint32_t wedge) {
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
-      if (vertices[i] == wedge) return i;
-      if (pool.wedge_position[vertices[i]] == pool.wedge_position[wedge] &&
-          std::equal(&pool.wedge_attributes[vertices[i] * stride], &pool.wedge_attributes[vertices[i] * stride] + stride,
-                     &pool.wedge_attributes[wedge * stride])) {
-        return i;
-      }
-    }
+    const auto found = std::find(vertices.begin(), vertices.end(), wedge);
+    if (found != vertices.end()) return static_cast<std::size_t>(found - vertices.begin());
     vertices.push_back(wedge);
     return vertices.size() - 1;
   };

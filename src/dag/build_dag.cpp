@@ -34,70 +34,53 @@ std::uint32_t target_triangles(std::uint32_t source, const ClusterCaps& caps) {
   return std::min(target, std::max(1U, source * 11 / 20));
 }
 
-/// Collects a group's triangles under local ids, in order of first use.
-class GroupInputBuilder {
- public:
-  GroupInputBuilder(const BuildPool& pool, const PreparedMesh& mesh) : pool_(pool), mesh_(mesh) {}
-
-  SimplifyInput build(const std::vector<std::uint32_t>& clusters, const std::vector<std::uint8_t>& is_shared) {
-    SimplifyInput input;
-    input.grid = mesh_.grid;
-    input.layout = mesh_.layout;
-    const std::size_t stride = mesh_.layout.stride();
-    std::vector<std::uint32_t> wedges;
-    for (const std::uint32_t c : clusters) {
-      const BuildCluster& cluster = pool_.clusters[c];
-      for (std::uint32_t t = cluster.first_triangle; t < cluster.first_triangle + cluster.triangle_count; ++t) {
-        wedges.insert(wedges.end(), pool_.triangles[t].begin(), pool_.triangles[t].end());
-        input.triangles.push_back(pool_.triangles[t]);
-        input.triangle_material.push_back(pool_.triangle_material[t]);
-      }
-    }
-    // Wedges by position and attributes: two clusters of different parents may hold the same wedge under two ids.
-    std::sort(wedges.begin(), wedges.end());
-    wedges.erase(std::unique(wedges.begin(), wedges.end()), wedges.end());
-    std::vector<std::uint32_t> by_content = wedges;
-    const auto compare = [&](std::uint32_t a, std::uint32_t b) {
-      if (pool_.wedge_position[a] != pool_.wedge_position[b]) return pool_.wedge_position[a] < pool_.wedge_position[b] ? -1 : 1;
-      const float* x = pool_.wedge_attributes.data() + a * stride;
-      const float* y = pool_.wedge_attributes.data() + b * stride;
-      for (std::size_t j = 0; j < stride; ++j) {
-        if (x[j] != y[j]) return x[j] < y[j] ? -1 : 1;
-      }
-      return 0;
-    };
-    std::sort(by_content.begin(), by_content.end(), [&](std::uint32_t a, std::uint32_t b) {
-      const int order = compare(a, b);
-      return order != 0 ? order < 0 : a < b;
-    });
-    std::vector<std::uint32_t> local(wedges.size());
-    for (std::size_t i = 0; i < by_content.size(); ++i) {
-      const std::uint32_t w = by_content[i];
-      const bool is_new_position = i == 0 || pool_.wedge_position[w] != pool_.wedge_position[by_content[i - 1]];
-      if (is_new_position) {
-        input.positions.push_back(pool_.positions[pool_.wedge_position[w]]);
-        input.is_locked.push_back(is_shared[pool_.wedge_position[w]]);
-      }
-      if (i == 0 || compare(w, by_content[i - 1]) != 0) {
-        input.wedge_position.push_back(static_cast<std::uint32_t>(input.positions.size() - 1));
-        input.wedge_attributes.insert(input.wedge_attributes.end(), pool_.wedge_attributes.begin() + static_cast<std::ptrdiff_t>(w * stride),
-                                      pool_.wedge_attributes.begin() + static_cast<std::ptrdiff_t>((w + 1) * stride));
-      }
-      const auto slot = std::lower_bound(wedges.begin(), wedges.end(), w) - wedges.begin();
-      local[static_cast<std::size_t>(slot)] = static_cast<std::uint32_t>(input.wedge_position.size() - 1);
-    }
-    for (WedgeTriangle& triangle : input.triangles) {
-      for (std::uint32_t& wedge : triangle) {
-        wedge = local[static_cast<std::size_t>(std::lower_bound(wedges.begin(), wedges.end(), wedge) - wedges.begin())];
-      }
-    }
-    return input;
-  }
-
- private:
-  const BuildPool& pool_;
-  const PreparedMesh& mesh_;
+/// What more than one group uses, per position and per wedge of the pool.
+struct Shared {
+  std::vector<std::uint8_t> position, wedge;
 };
+
+/// Collects a group's triangles under local ids. Ids of the pool are ascending, and so are the local ones.
+SimplifyInput group_input(const BuildPool& pool, const PreparedMesh& mesh, const std::vector<std::uint32_t>& clusters,
+                          const Shared& shared) {
+  SimplifyInput input;
+  input.grid = mesh.grid;
+  input.layout = mesh.layout;
+  const std::size_t stride = mesh.layout.stride();
+  for (const std::uint32_t c : clusters) {
+    const BuildCluster& cluster = pool.clusters[c];
+    const auto first = static_cast<std::ptrdiff_t>(cluster.first_triangle);
+    const auto last = first + static_cast<std::ptrdiff_t>(cluster.triangle_count);
+    input.triangles.insert(input.triangles.end(), pool.triangles.begin() + first, pool.triangles.begin() + last);
+    input.triangle_material.insert(input.triangle_material.end(), pool.triangle_material.begin() + first,
+                                   pool.triangle_material.begin() + last);
+  }
+  std::vector<std::uint32_t> wedges;
+  wedges.reserve(3 * input.triangles.size());
+  for (const WedgeTriangle& triangle : input.triangles) wedges.insert(wedges.end(), triangle.begin(), triangle.end());
+  std::sort(wedges.begin(), wedges.end());
+  wedges.erase(std::unique(wedges.begin(), wedges.end()), wedges.end());
+  std::vector<std::uint32_t> positions;
+  for (const std::uint32_t w : wedges) positions.push_back(pool.wedge_position[w]);
+  std::sort(positions.begin(), positions.end());
+  positions.erase(std::unique(positions.begin(), positions.end()), positions.end());
+  const auto index_in = [](const std::vector<std::uint32_t>& ids, std::uint32_t id) {
+    return static_cast<std::uint32_t>(std::lower_bound(ids.begin(), ids.end(), id) - ids.begin());
+  };
+  for (const std::uint32_t p : positions) {
+    input.positions.push_back(pool.positions[p]);
+    input.is_locked.push_back(shared.position[p]);
+  }
+  for (const std::uint32_t w : wedges) {
+    input.wedge_position.push_back(index_in(positions, pool.wedge_position[w]));
+    input.is_wedge_shared.push_back(shared.wedge[w]);
+    const auto first = pool.wedge_attributes.begin() + static_cast<std::ptrdiff_t>(w * stride);
+    input.wedge_attributes.insert(input.wedge_attributes.end(), first, first + static_cast<std::ptrdiff_t>(stride));
+  }
+  for (WedgeTriangle& triangle : input.triangles) {
+    for (std::uint32_t& wedge : triangle) wedge = index_in(wedges, wedge);
+  }
+  return input;
+}
 
 GroupInput grouping_input(const BuildPool& pool, const std::vector<std::uint32_t>& live, const DagOptions& options) {
   GroupInput input;
@@ -121,21 +104,28 @@ GroupInput grouping_input(const BuildPool& pool, const std::vector<std::uint32_t
   return input;
 }
 
-/// Per position: used by more than one group.
-std::vector<std::uint8_t> find_shared(const GroupInput& input, const std::vector<std::vector<std::uint32_t>>& groups) {
+Shared find_shared(const BuildPool& pool, const std::vector<std::uint32_t>& live,
+                   const std::vector<std::vector<std::uint32_t>>& groups) {
   constexpr std::uint32_t kNobody = 0xFFFFFFFFU;
-  std::vector<std::uint32_t> owner(input.position_count, kNobody);
-  std::vector<std::uint8_t> is_shared(input.position_count, 0);
+  Shared shared{std::vector<std::uint8_t>(pool.positions.size(), 0), std::vector<std::uint8_t>(pool.wedge_position.size(), 0)};
+  std::vector<std::uint32_t> position_owner(pool.positions.size(), kNobody);
+  std::vector<std::uint32_t> wedge_owner(pool.wedge_position.size(), kNobody);
+  const auto visit = [](std::uint32_t id, std::uint32_t group, std::vector<std::uint32_t>& owner, std::vector<std::uint8_t>& flag) {
+    if (owner[id] == kNobody) owner[id] = group;
+    if (owner[id] != group) flag[id] = 1;
+  };
   for (std::uint32_t g = 0; g < groups.size(); ++g) {
-    for (const std::uint32_t c : groups[g]) {
-      for (std::uint32_t i = input.first_position[c]; i < input.first_position[c + 1]; ++i) {
-        const std::uint32_t p = input.positions[i];
-        if (owner[p] == kNobody) owner[p] = g;
-        if (owner[p] != g) is_shared[p] = 1;
+    for (const std::uint32_t i : groups[g]) {
+      const BuildCluster& cluster = pool.clusters[live[i]];
+      for (std::uint32_t t = cluster.first_triangle; t < cluster.first_triangle + cluster.triangle_count; ++t) {
+        for (const std::uint32_t wedge : pool.triangles[t]) {
+          visit(wedge, g, wedge_owner, shared.wedge);
+          visit(pool.wedge_position[wedge], g, position_owner, shared.position);
+        }
       }
     }
   }
-  return is_shared;
+  return shared;
 }
 
 Attempt simplify_and_cluster(const SimplifyInput& input, const DagOptions& options, const Effort& effort) {
@@ -198,14 +188,13 @@ Result<LodDag> build_dag(const PreparedMesh& mesh, const DagOptions& options) {
     grouping.target_clusters = effort.target_clusters;
     const GroupInput input = grouping_input(pool, live, options);
     const std::vector<std::vector<std::uint32_t>> groups = group_clusters(input, grouping);
-    const std::vector<std::uint8_t> is_shared = find_shared(input, groups);
+    const Shared shared = find_shared(pool, live, groups);
 
     std::vector<Attempt> attempts(groups.size());
     parallel_for_each_index(groups.size(), 1, [&](std::size_t g) {
       std::vector<std::uint32_t> clusters;
       for (const std::uint32_t i : groups[g]) clusters.push_back(live[i]);
-      GroupInputBuilder builder(pool, mesh);
-      attempts[g] = simplify_and_cluster(builder.build(clusters, is_shared), options, effort);
+      attempts[g] = simplify_and_cluster(group_input(pool, mesh, clusters, shared), options, effort);
     });
 
     std::vector<std::uint32_t> next;

@@ -2,6 +2,9 @@
 #include "dag/level_pool.h"
 
 #include <algorithm>
+#include <bit>
+#include <cstring>
+#include <utility>
 
 namespace meshlode {
 
@@ -9,45 +12,80 @@ namespace {
 
 constexpr std::uint32_t kEmpty = 0xFFFFFFFFU;
 
-std::uint64_t mix(const Vec3i& p) {
-  std::uint64_t h = static_cast<std::uint32_t>(p.x);
-  h = h * 0x9E3779B97F4A7C15ULL + static_cast<std::uint32_t>(p.y);
-  h = (h ^ h >> 29U) * 0xBF58476D1CE4E5B9ULL + static_cast<std::uint32_t>(p.z);
-  h = (h ^ h >> 32U) * 0x94D049BB133111EBULL;
+std::uint64_t mix(std::uint64_t h, std::uint32_t value) {
+  h = (h ^ value) * 0x9E3779B97F4A7C15ULL;
   return h ^ h >> 29U;
+}
+
+/// Finds the id that `is_same` accepts, or inserts `next`. `hash_of` gives the hash of an id that is already in.
+template <class Table, class IsSame, class HashOf>
+std::uint32_t find_or_insert(Table& table, std::uint64_t hash, std::uint32_t next, const IsSame& is_same,
+                             const HashOf& hash_of) {
+  if (2 * (table.used + 1) > table.slots.size()) {
+    const std::vector<std::uint32_t> old = std::move(table.slots);
+    table.slots.assign(std::max<std::size_t>(64, 4 * old.size()), kEmpty);
+    for (const std::uint32_t id : old) {
+      if (id == kEmpty) continue;
+      std::size_t slot = hash_of(id) & (table.slots.size() - 1);
+      while (table.slots[slot] != kEmpty) slot = (slot + 1) & (table.slots.size() - 1);
+      table.slots[slot] = id;
+    }
+  }
+  std::size_t slot = hash & (table.slots.size() - 1);
+  while (table.slots[slot] != kEmpty) {
+    if (is_same(table.slots[slot])) return table.slots[slot];
+    slot = (slot + 1) & (table.slots.size() - 1);
+  }
+  table.slots[slot] = next;
+  ++table.used;
+  return next;
 }
 
 }  // namespace
 
-BuildPool::BuildPool(const PreparedMesh& mesh)
-    : positions(mesh.positions),
-      wedge_position(mesh.wedge_position),
-      wedge_attributes(mesh.wedge_attributes),
-      stride_(mesh.layout.stride()) {
-  grow_table();
+BuildPool::BuildPool(const PreparedMesh& mesh) : stride_(mesh.layout.stride()) {
+  for (const Vec3i& position : mesh.positions) (void)position_id(position);
+  for (std::size_t w = 0; w < mesh.wedge_position.size(); ++w) {
+    (void)wedge_id(mesh.wedge_position[w], mesh.wedge_attributes.data() + w * stride_);
+  }
 }
 
-void BuildPool::grow_table() {
-  std::size_t size = 64;
-  while (size < 4 * positions.size()) size *= 2;
-  table_.assign(size, kEmpty);
-  for (std::uint32_t id = 0; id < positions.size(); ++id) {
-    std::size_t slot = mix(positions[id]) & (size - 1);
-    while (table_[slot] != kEmpty) slot = (slot + 1) & (size - 1);
-    table_[slot] = id;
-  }
+std::uint64_t BuildPool::hash_position(std::uint32_t id) const {
+  const Vec3i& p = positions[id];
+  return mix(mix(mix(1, static_cast<std::uint32_t>(p.x)), static_cast<std::uint32_t>(p.y)), static_cast<std::uint32_t>(p.z));
+}
+
+std::uint64_t BuildPool::hash_wedge(std::uint32_t position, const float* attributes) const {
+  std::uint64_t h = mix(2, position);
+  for (std::size_t j = 0; j < stride_; ++j) h = mix(h, std::bit_cast<std::uint32_t>(attributes[j]));
+  return h;
 }
 
 std::uint32_t BuildPool::position_id(const Vec3i& position) {
-  if (2 * positions.size() > table_.size()) grow_table();
-  std::size_t slot = mix(position) & (table_.size() - 1);
-  while (table_[slot] != kEmpty) {
-    if (positions[table_[slot]] == position) return table_[slot];
-    slot = (slot + 1) & (table_.size() - 1);
-  }
-  table_[slot] = static_cast<std::uint32_t>(positions.size());
+  const auto next = static_cast<std::uint32_t>(positions.size());
   positions.push_back(position);
-  return table_[slot];
+  const std::uint32_t id = find_or_insert(
+      position_table_, hash_position(next), next, [&](std::uint32_t other) { return positions[other] == position; },
+      [&](std::uint32_t other) { return hash_position(other); });
+  if (id != next) positions.pop_back();
+  return id;
+}
+
+std::uint32_t BuildPool::wedge_id(std::uint32_t position, const float* attributes) {
+  const auto next = static_cast<std::uint32_t>(wedge_position.size());
+  const auto is_same = [&](std::uint32_t other) {
+    // Bits, not values: what differs in the sign of a zero is another wedge, as everywhere in the build.
+    return wedge_position[other] == position &&
+           (stride_ == 0 || std::memcmp(wedge_attributes.data() + other * stride_, attributes, stride_ * sizeof(float)) == 0);
+  };
+  const std::uint32_t id = find_or_insert(wedge_table_, hash_wedge(position, attributes), next, is_same, [&](std::uint32_t other) {
+    return hash_wedge(wedge_position[other], wedge_attributes.data() + other * stride_);
+  });
+  if (id == next) {
+    wedge_position.push_back(position);
+    wedge_attributes.insert(wedge_attributes.end(), attributes, attributes + stride_);
+  }
+  return id;
 }
 
 void BuildPool::add_clusters(const std::vector<WedgeTriangle>& source, const std::vector<std::uint32_t>& materials,
@@ -72,14 +110,15 @@ void BuildPool::add_simplified(const SimplifyResult& result, const Clustering& c
                                std::uint32_t own_group) {
   std::vector<std::uint32_t> ids(result.positions.size());
   for (std::size_t p = 0; p < ids.size(); ++p) ids[p] = position_id(result.positions[p]);
-  const auto first_wedge = static_cast<std::uint32_t>(wedge_position.size());
-  for (const std::uint32_t p : result.wedge_position) wedge_position.push_back(ids[p]);
-  wedge_attributes.insert(wedge_attributes.end(), result.wedge_attributes.begin(), result.wedge_attributes.end());
-  std::vector<WedgeTriangle> shifted = result.triangles;
-  for (WedgeTriangle& triangle : shifted) {
-    for (std::uint32_t& wedge : triangle) wedge += first_wedge;
+  std::vector<std::uint32_t> wedges(result.wedge_position.size());
+  for (std::size_t w = 0; w < wedges.size(); ++w) {
+    wedges[w] = wedge_id(ids[result.wedge_position[w]], result.wedge_attributes.data() + w * stride_);
   }
-  add_clusters(shifted, result.triangle_material, clustering, level, own_group);
+  std::vector<WedgeTriangle> renumbered = result.triangles;
+  for (WedgeTriangle& triangle : renumbered) {
+    for (std::uint32_t& wedge : triangle) wedge = wedges[wedge];
+  }
+  add_clusters(renumbered, result.triangle_material, clustering, level, own_group);
 }
 
 void BuildPool::positions_of(std::uint32_t cluster, std::vector<std::uint32_t>& out) const {

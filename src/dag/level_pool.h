@@ -36,8 +36,8 @@ class BuildPool {
   void add_clusters(const std::vector<WedgeTriangle>& triangles, const std::vector<std::uint32_t>& materials,
                     const Clustering& clustering, std::uint32_t level, std::uint32_t own_group);
 
-  /// Adds what a group became. Positions that are already known (locked ones, or a coincidence on the grid) keep their
-  /// id, so that equal integers are equal ids at every level.
+  /// Adds what a group became. Positions and wedges that are already known (locked ones, or a coincidence on the grid)
+  /// keep their id, so that equal integers are equal ids at every level, and equal attributes with them.
   void add_simplified(const SimplifyResult& result, const Clustering& clustering, std::uint32_t level,
                       std::uint32_t own_group);
 
@@ -55,11 +55,18 @@ class BuildPool {
   std::vector<BuildGroup> groups;
 
  private:
+  /// Open addressing over ids that are looked up by what they stand for; ids depend on the order of insertion alone.
+  struct IdTable {
+    std::vector<std::uint32_t> slots;
+    std::size_t used = 0;
+  };
   std::uint32_t position_id(const Vec3i& position);
-  void grow_table();
+  std::uint32_t wedge_id(std::uint32_t position, const float* attributes);
+  [[nodiscard]] std::uint64_t hash_position(std::uint32_t id) const;
+  [[nodiscard]] std::uint64_t hash_wedge(std::uint32_t position, const float* attributes) const;
 
   std::size_t stride_;
-  std::vector<std::uint32_t> table_;  ///< open addressing over positions; ids depend on the order of insertion alone
+  IdTable position_table_, wedge_table_;
 };
 
 /// The pool as a LodDag: groups from coarse to fine, clusters by group, vertices by first use.

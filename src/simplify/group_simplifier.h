@@ -70,6 +70,7 @@ class GroupSimplifier {
   [[nodiscard]] Placement place(std::uint32_t a, std::uint32_t b);
   [[nodiscard]] double total_error(const Quadric& total, const Vec3d& p) const;
   [[nodiscard]] Obstacle try_collapse(std::uint32_t a, std::uint32_t b);
+  [[nodiscard]] bool keeps_shared_corners(std::uint32_t locked, const std::vector<std::uint32_t>& around) const;
   [[nodiscard]] bool keeps_topology(std::uint32_t a, std::uint32_t b);
   [[nodiscard]] bool turns_over(std::uint32_t moved, std::uint32_t other, const std::vector<std::uint32_t>& corners,
                                 const Vec3d& target) const;

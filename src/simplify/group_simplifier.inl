@@ -380,6 +380,40 @@ typename GroupSimplifier<C>::Placement GroupSimplifier<C>::place(std::uint32_t a
   return placement;
 }
 
+/// I3 for attributes. A triangle (locked, moved, c) with c locked goes; the triangle across (moved, c) inherits the edge
+/// (locked, c), which may lie on the group's border. If another group shades that edge with the same wedges, the heir
+/// must bring them: (moved, c) may not be a crease. `around` are the corners at the moved vertex.
+template <std::size_t C>
+bool GroupSimplifier<C>::keeps_shared_corners(std::uint32_t locked,
+                                              const std::vector<std::uint32_t>& around) const {
+  if (attribute_count_ == 0) return true;
+  const auto corner_in = [&](std::uint32_t t, std::uint32_t vertex) {
+    for (std::uint32_t corner = 3 * t; corner < 3 * t + 3; ++corner) {
+      if (mesh_.vertex(corner) == vertex) return corner;
+    }
+    return CollapseMesh::kEnd;
+  };
+  for (const std::uint32_t corner : around) {
+    const std::uint32_t t = corner / 3;
+    const std::uint32_t at_locked = corner_in(t, locked);
+    if (at_locked == CollapseMesh::kEnd) continue;
+    const std::uint32_t at_tip = 3 * t + (3 - corner % 3 - at_locked % 3);
+    if (is_locked_[mesh_.vertex(at_tip)] == 0) continue;
+    const bool is_locked_shared = input_.is_wedge_shared[mesh_.wedge(at_locked)] != 0;
+    const bool is_tip_shared = input_.is_wedge_shared[mesh_.wedge(at_tip)] != 0;
+    if (!is_locked_shared && !is_tip_shared) continue;
+    for (const std::uint32_t other : around) {
+      const std::uint32_t heir = other / 3;
+      if (heir == t || corner_in(heir, locked) != CollapseMesh::kEnd) continue;
+      const std::uint32_t heir_tip = corner_in(heir, mesh_.vertex(at_tip));
+      if (heir_tip == CollapseMesh::kEnd) continue;
+      if (is_locked_shared && mesh_.wedge(other) != mesh_.wedge(corner)) return false;
+      if (is_tip_shared && mesh_.wedge(heir_tip) != mesh_.wedge(at_tip)) return false;
+    }
+  }
+  return true;
+}
+
 /// The link condition (Dey et al. 1999): common neighbours are exactly the tips of the triangles on the edge, no two
 /// triangles become one, and two border vertices join along the border only.
 template <std::size_t C>
@@ -460,12 +494,14 @@ template <std::size_t C>
 typename GroupSimplifier<C>::Obstacle GroupSimplifier<C>::try_collapse(std::uint32_t a, std::uint32_t b) {
   const Placement placement = place(a, b);  // leaves the wedge classes behind
   for (std::size_t i = 0; i < class_count_; ++i) {
-    if (classes_[i].is_ambiguous && !is_topology_relaxed_) return Obstacle::kSeams;
+    if (classes_[i].is_ambiguous) return Obstacle::kSeams;
   }
   Vec3d target = placement.position;
   if (is_locked_[a] == 0 && is_locked_[b] == 0) target = to_frame(to_grid(target));
   mesh_.corners_of(a, corners_a_);
   mesh_.corners_of(b, corners_b_);
+  if (is_locked_[a] != 0 && !keeps_shared_corners(a, corners_b_)) return Obstacle::kSeams;
+  if (is_locked_[b] != 0 && !keeps_shared_corners(b, corners_a_)) return Obstacle::kSeams;
   if (!is_topology_relaxed_ && !keeps_topology(a, b)) return Obstacle::kTopology;
   if (!are_flips_relaxed_ && (turns_over(a, b, corners_a_, target) || turns_over(b, a, corners_b_, target))) {
     return Obstacle::kFlips;

@@ -38,6 +38,7 @@ struct SimplifyInput {
   std::vector<Vec3i> positions;
   std::vector<std::uint8_t> is_locked;          ///< per position: shared with another group
   std::vector<std::uint32_t> wedge_position;
+  std::vector<std::uint8_t> is_wedge_shared;    ///< per wedge: another group has it too, so shading is smooth across
   std::vector<float> wedge_attributes;
   std::vector<WedgeTriangle> triangles;
   std::vector<std::uint32_t> triangle_material;

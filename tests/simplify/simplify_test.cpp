@@ -25,6 +25,7 @@ SimplifyInput as_input(const PreparedMesh& mesh) {
   input.positions = mesh.positions;
   input.is_locked.assign(mesh.positions.size(), 0);
   input.wedge_position = mesh.wedge_position;
+  input.is_wedge_shared.assign(mesh.wedge_position.size(), 0);
   input.wedge_attributes = mesh.wedge_attributes;
   input.triangles = mesh.triangles;
   input.triangle_material = mesh.triangle_material;
@@ -281,6 +282,7 @@ TEST(Simplify, NothingButDegenerateTrianglesIsFine) {
   input.positions = {{0, 0, 0}, {1, 1, 1}};
   input.is_locked = {0, 0};
   input.wedge_position = {0, 1};
+  input.is_wedge_shared = {0, 0};
   input.triangles = {{0, 1, 1}, {0, 0, 0}};
   input.triangle_material = {0, 0};
   EXPECT_TRUE(simplify_group(input, half_of(input)).triangles.empty());
