@@ -21,6 +21,8 @@ bool is_drawable(const SelectTables& tables, const format::InstanceRecord& insta
          tables.meshes[instance.mesh].group_count > 0;
 }
 
+enum class Answer : std::uint8_t { kUnknown, kPasses, kFails };
+
 // Draws the clusters of a mesh where the own group passes (or there is none) and the coarser one does not (I5).
 // `group_passes` is indexed from the mesh's first group.
 template <class Draw>
@@ -63,14 +65,16 @@ std::vector<ClusterInstance> select_flat(const SelectTables& tables, const Camer
 std::vector<ClusterInstance> select_bvh(const SelectTables& tables, const Camera& camera, double pixel_error,
                                         TraversalCount* count) {
   std::vector<ClusterInstance> cut;
-  std::vector<std::uint32_t> stack;
+  std::vector<std::uint32_t> stack, open_groups;
+  std::vector<Answer> answers;
   TraversalCount work;
   for (std::size_t i = 0; i < tables.instances.size(); ++i) {
     const format::InstanceRecord& instance = tables.instances[i];
     if (!is_drawable(tables, instance)) continue;
     const format::MeshRecord& mesh = tables.meshes[instance.mesh];
     const MetricView view = make_metric_view(camera, pixel_error, instance, mesh, mesh_reach(tables, mesh));
-    const std::size_t first_of_instance = cut.size();
+    answers.assign(mesh.group_count, Answer::kUnknown);
+    open_groups.clear();
     stack.assign(mesh.node_count > 0 ? 1 : 0, mesh.first_node);
     while (!stack.empty()) {
       const std::uint32_t node_id = stack.back();
@@ -78,23 +82,31 @@ std::vector<ClusterInstance> select_bvh(const SelectTables& tables, const Camera
       const format::NodeRecord& node = tables.nodes[node_id];
       ++work.nodes;
       if (passes(view, node)) continue;  // then every group below passes, and none of their members is drawn
-      if (node.child_count > 0) {
-        // Children lie behind their node, which also keeps a damaged table from looping.
-        for (std::uint32_t c = 0; c < node.child_count && node.first > node_id; ++c) stack.push_back(node.first + c);
+      if (node.child_count == 0) {
+        open_groups.push_back(node.first);
+        answers[node.first - mesh.first_group] = Answer::kFails;  // a leaf has its group's own bits
         continue;
       }
-      // A leaf has its group's own bits, so the group does not pass.
-      const format::GroupRecord& group = tables.groups[node.first];
-      for (std::uint32_t c = 0; c < group.cluster_count; ++c) {
-        const std::uint32_t id = group.first_cluster + c;
-        const format::ClusterRecord& cluster = tables.clusters[id];
+      // Children lie behind their node, which also keeps a damaged table from looping.
+      for (std::uint32_t c = 0; c < node.child_count && node.first > node_id; ++c) stack.push_back(node.first + c);
+    }
+    // Members are contiguous, so sorting the groups sorts the clusters.
+    std::sort(open_groups.begin(), open_groups.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return tables.groups[a].first_cluster < tables.groups[b].first_cluster;
+    });
+    for (const std::uint32_t g : open_groups) {
+      const format::GroupRecord& group = tables.groups[g];
+      for (std::uint32_t id = group.first_cluster; id < group.first_cluster + group.cluster_count; ++id) {
         ++work.clusters;
-        if (cluster.own_group == format::kNone || passes(view, tables.groups[cluster.own_group])) {
-          cut.push_back({InstanceId(i), ClusterId(id)});
+        const std::uint32_t own = tables.clusters[id].own_group;
+        if (own != format::kNone) {
+          Answer& answer = answers[own - mesh.first_group];
+          if (answer == Answer::kUnknown) answer = passes(view, tables.groups[own]) ? Answer::kPasses : Answer::kFails;
+          if (answer == Answer::kFails) continue;
         }
+        cut.push_back({InstanceId(i), ClusterId(id)});
       }
     }
-    std::sort(cut.begin() + static_cast<std::ptrdiff_t>(first_of_instance), cut.end());
   }
   if (count != nullptr) *count = work;
   return cut;

@@ -12,7 +12,7 @@
 namespace meshlode {
 namespace {
 
-using test::Random;
+using test::RandomSource;
 
 double radius_at(const std::vector<Ball>& balls, const Vec3d& center) {
   double radius = 0.0;
@@ -48,7 +48,7 @@ TEST(EnclosingBall, IsTheCircumscribedBallOfRegularPointSets) {
 }
 
 TEST(EnclosingBall, CannotBeImprovedByAnyStepAtAnySizeAndOffset) {
-  Random random(31);
+  RandomSource random(31);
   for (int i = 0; i < 3000; ++i) {
     const double size = std::vector<double>{1e-6, 1e-3, 1.0, 1e9}[random.below(4)];
     const Vec3d offset = random.chance(0.4) ? random.in_cube(size * 1e9) : Vec3d(0.0);
@@ -74,7 +74,7 @@ TEST(EnclosingBall, CannotBeImprovedByAnyStepAtAnySizeAndOffset) {
 }
 
 TEST(EnclosingBall, DoesNotDependOnTheScaleWhichIsAPowerOfTwo) {
-  Random random(32);
+  RandomSource random(32);
   for (int i = 0; i < 300; ++i) {
     std::vector<Ball> balls, scaled;
     const double s = std::ldexp(1.0, static_cast<int>(random.below(301)) - 150);

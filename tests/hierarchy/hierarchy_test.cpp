@@ -19,7 +19,7 @@ namespace meshlode {
 namespace {
 
 using Rational = boost::multiprecision::cpp_rational;
-using test::Random;
+using test::RandomSource;
 using test::RandomDag;
 
 static_assert(kSphereGrowth > kNestingRadiusMargin && kCenterGrowth > kNestingCenterMargin &&
@@ -42,7 +42,7 @@ bool contains_exactly(const StoredBound& outer, const StoredBound& inner) {
 }
 
 std::vector<RandomDag> make_dags(std::uint64_t seed) {
-  Random random(seed);
+  RandomSource random(seed);
   std::vector<RandomDag> dags;
   for (const int log2 : {-40, -20, 10}) {
     for (const std::uint32_t leaves : {1U, 3U, 120U}) {
@@ -143,7 +143,7 @@ TEST(Hierarchy, GroupSphereContainsAllGeometryBelowIt) {
 }
 
 TEST(Hierarchy, CullingSphereIsTightAroundTheDecodedVertices) {
-  Random random(43);
+  RandomSource random(43);
   for (int i = 0; i < 400; ++i) {
     PositionGrid grid;
     grid.log2 = std::vector<int>{-40, -20, 0, 10}[random.below(4)];
@@ -181,7 +181,7 @@ struct Patch {
 };
 
 // A fan of triangles around an axis, tilted by up to `tilt`, with duplicates and triangles without area among them.
-Patch make_patch(Random& random, double tilt) {
+Patch make_patch(RandomSource& random, double tilt) {
   Patch p;
   const Vec3d axis = random.direction();
   const Vec3d x = glm::normalize(glm::cross(axis, random.direction())), y = glm::cross(axis, x);
@@ -204,7 +204,7 @@ Patch make_patch(Random& random, double tilt) {
 }
 
 TEST(Hierarchy, NormalConeNeverCullsAVisibleTriangle) {
-  Random random(44);
+  RandomSource random(44);
   std::uint64_t culled = 0;
   for (int i = 0; i < 3000; ++i) {
     const Patch p = make_patch(random, random.between(0.0, 2.0));
@@ -291,7 +291,7 @@ bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
 }
 
 TEST(Hierarchy, DoesNotDependOnTheNumberOfThreads) {
-  Random random(46);
+  RandomSource random(46);
   test::RandomDagOptions options;
   options.leaf_clusters = 2000;
   const RandomDag d = test::make_random_dag(random, options);

@@ -14,7 +14,7 @@
 namespace meshlode {
 namespace {
 
-using test::Random;
+using test::RandomSource;
 
 // A square of side `size` in the plane z = height, as 2·n·n triangles.
 Surface make_square(double size, double height, std::uint32_t n) {
@@ -32,7 +32,7 @@ Surface make_square(double size, double height, std::uint32_t n) {
   return s;
 }
 
-Surface make_soup(Random& random, std::uint32_t count, double size, const Vec3d& offset) {
+Surface make_soup(RandomSource& random, std::uint32_t count, double size, const Vec3d& offset) {
   Surface s;
   for (std::uint32_t i = 0; i < count; ++i) {
     const Vec3d at = offset + random.in_cube(size);
@@ -57,7 +57,7 @@ TEST(Metrics, DistanceToNeedlesSegmentsAndPointsIsThatToWhatTheyAre) {
   EXPECT_DOUBLE_EQ(distance2_to_triangle({1, 2, 0}, {0, 0, 0}, {2, 0, 0}, {4, 0, 0}), 4.0);
   EXPECT_DOUBLE_EQ(distance2_to_triangle({1, 2, 2}, {1, 0, 2}, {1, 0, 2}, {1, 0, 2}), 4.0);
   EXPECT_NEAR(distance2_to_triangle({0.5, 0, 3}, {0, 0, 0}, {1, 0, 0}, {0.5, 1e-12, 0}), 9.0, 1e-9);
-  Random random(51);
+  RandomSource random(51);
   for (int i = 0; i < 20000; ++i) {  // a needle is never nearer than its bounding segment says
     const Vec3d a = random.in_cube(1.0), b = a + random.direction();
     const double width = random.log_between(1e-17, 1e-2);
@@ -69,7 +69,7 @@ TEST(Metrics, DistanceToNeedlesSegmentsAndPointsIsThatToWhatTheyAre) {
 }
 
 TEST(Metrics, NearestPointsAgreeWithCgalAtAnySizeAndOffset) {
-  Random random(52);
+  RandomSource random(52);
   for (const double size : {1e-6, 1.0, 1e9}) {
     for (const double offset : {0.0, 1e6}) {
       const Surface s = make_soup(random, 2000, size, random.direction() * (offset * size));
@@ -90,7 +90,7 @@ TEST(Metrics, NearestPointsAgreeWithCgalAtAnySizeAndOffset) {
 }
 
 TEST(Metrics, NearestIsTheSmallestOverAllTrianglesIncludingDegenerateOnes) {
-  Random random(53);
+  RandomSource random(53);
   Surface s = make_soup(random, 200, 1.0, Vec3d(0.0));
   for (std::size_t t = 0; t < s.triangles.size(); t += 5) s.triangles[t][2] = s.triangles[t][random.below(2)];
   const TriangleTree tree(s);
@@ -158,7 +158,7 @@ TEST(Metrics, EmptyAndDegenerateSurfacesAreAnswered) {
 }
 
 TEST(Metrics, DoesNotDependOnTheNumberOfThreads) {
-  Random random(54);
+  RandomSource random(54);
   const Surface a = make_soup(random, 3000, 1.0, Vec3d(0.0)), b = make_soup(random, 3000, 1.0, Vec3d(0.1));
   DeviationReport one, two;
   tbb::task_arena(1).execute([&] { one = measure_deviation(a, b, {20000, 9}); });

@@ -13,11 +13,11 @@
 namespace meshlode {
 namespace {
 
-using test::Random;
+using test::RandomSource;
 using test::TransformKind;
 
 format::InstanceRecord identity_instance() {
-  Random random(1);
+  RandomSource random(1);
   return test::make_random_instance(random, TransformKind::kIdentity, 0.0);
 }
 
@@ -92,7 +92,7 @@ TEST(Metric, PassesEverythingFiniteAtAnInfinitePixelErrorAndOnlyZeroAtZero) {
 }
 
 TEST(Metric, DoesNotChangeWhenTheWorldIsScaledByAPowerOfTwo) {
-  Random random(3);
+  RandomSource random(3);
   for (int i = 0; i < 2000; ++i) {
     format::InstanceRecord a = test::make_random_instance(random, TransformKind::kSheared, 10.0);
     format::InstanceRecord b = a;
@@ -119,7 +119,7 @@ float above(double x) {
 }
 
 // Two bounds that nest as tightly as the margins allow: times `margin`, to see that the margins are needed.
-Nested make_tight_pair(Random& random, double size, double offset, double margin) {
+Nested make_tight_pair(RandomSource& random, double size, double offset, double margin) {
   const Vec3d base = random.direction() * offset;
   const auto stored = [](const Vec3d& c) {
     return StoredBound{{static_cast<float>(c.x), static_cast<float>(c.y), static_cast<float>(c.z)}, 0.0F, 0.0F};
@@ -140,7 +140,7 @@ Nested make_tight_pair(Random& random, double size, double offset, double margin
 // Cameras at which the coarser bound is within a few ulp of passing, on the line through both centres where the
 // distance to the finer one is smallest: the worst case for monotonicity.
 std::uint64_t count_violations(std::uint64_t seed, std::uint32_t triples, double margin, std::uint64_t* decided) {
-  Random random(seed);
+  RandomSource random(seed);
   constexpr std::array kinds{TransformKind::kIdentity, TransformKind::kRigid, TransformKind::kMirrored,
                              TransformKind::kNonUniform, TransformKind::kSheared};
   std::uint64_t violations = 0;
@@ -204,7 +204,7 @@ TEST(Metric, IsNotMonotoneWithoutTheMargins) {
 
 // The other promise: what passes in floats passes in real numbers, for the part of the sphere inside the centre margin.
 TEST(Metric, PassesOnlyWhatTheRealRulePasses) {
-  Random random(5);
+  RandomSource random(5);
   int passing = 0;
   for (int i = 0; i < 300000; ++i) {
     const double size = random.log_between(1e-6, 1e9);

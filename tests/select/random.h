@@ -9,9 +9,9 @@
 
 namespace meshlode::test {
 
-class Random {  // splitmix64 (Steele, Lea and Flood 2014)
+class RandomSource {  // splitmix64 (Steele, Lea and Flood 2014)
  public:
-  explicit Random(std::uint64_t seed) : state_(seed) {}
+  explicit RandomSource(std::uint64_t seed) : state_(seed) {}
   std::uint64_t next() {
     state_ += 0x9E3779B97F4A7C15ULL;
     std::uint64_t z = state_;

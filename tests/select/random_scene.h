@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Random LOD DAGs, transforms and cameras, so that selection is tested without the stages that build real DAGs.
+// RandomSource LOD DAGs, transforms and cameras, so that selection is tested without the stages that build real DAGs.
 #pragma once
 
 #include <algorithm>
@@ -29,7 +29,7 @@ struct RandomDag {
 
 /// A DAG whose errors do not nest and whose coarser clusters leave the finer ones' bounds: the hierarchy has to mend
 /// both.
-inline RandomDag make_random_dag(Random& random, const RandomDagOptions& options) {
+inline RandomDag make_random_dag(RandomSource& random, const RandomDagOptions& options) {
   struct Cluster {
     std::uint32_t level = 0, own_group = GroupId::kNone;
     std::vector<Vec3i> points;
@@ -165,7 +165,7 @@ inline double largest_singular_value(const double* m) {
 
 enum class TransformKind { kIdentity, kRigid, kMirrored, kNonUniform, kSheared };
 
-inline format::InstanceRecord make_random_instance(Random& random, TransformKind kind, double offset) {
+inline format::InstanceRecord make_random_instance(RandomSource& random, TransformKind kind, double offset) {
   format::InstanceRecord record{};
   Mat3d m(1.0);
   if (kind != TransformKind::kIdentity) {
@@ -238,7 +238,8 @@ struct TestTables {
 };
 
 /// A camera somewhere telling: inside, beside, far from, or just at the border of a stored sphere of the instance.
-inline Camera make_random_camera(Random& random, const SelectTables& tables, const format::InstanceRecord& instance) {
+inline Camera make_random_camera(RandomSource& random, const SelectTables& tables,
+                                 const format::InstanceRecord& instance) {
   const format::MeshRecord& mesh = tables.meshes[instance.mesh];
   const format::GroupRecord& g = tables.groups[mesh.first_group + random.below(mesh.group_count)];
   const auto to_world = [&](const Vec3d& p) {

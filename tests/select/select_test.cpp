@@ -12,7 +12,7 @@
 namespace meshlode {
 namespace {
 
-using test::Random;
+using test::RandomSource;
 using test::TestTables;
 using test::TransformKind;
 
@@ -20,7 +20,7 @@ constexpr TransformKind kKinds[] = {TransformKind::kIdentity, TransformKind::kRi
                                     TransformKind::kNonUniform, TransformKind::kSheared};
 
 // Meshes of about 1e-6, 1 and 1e9 units, one far from its own origin, each with an instance of every kind.
-TestTables make_tables(Random& random, std::uint32_t leaf_clusters) {
+TestTables make_tables(RandomSource& random, std::uint32_t leaf_clusters) {
   TestTables tables;
   for (const int log2 : {-40, -20, 10}) {
     test::RandomDagOptions options;
@@ -38,10 +38,10 @@ TestTables make_tables(Random& random, std::uint32_t leaf_clusters) {
   return tables;
 }
 
-double random_pixel_error(Random& random) { return random.chance(0.05) ? 0.0 : random.log_between(1e-4, 1e5); }
+double random_pixel_error(RandomSource& random) { return random.chance(0.05) ? 0.0 : random.log_between(1e-4, 1e5); }
 
 // Walks from each level-0 cluster to a root, at random among the clusters made from each group.
-void expect_each_path_has_one_drawn_cluster(Random& random, const SelectTables& tables, std::uint32_t mesh_id,
+void expect_each_path_has_one_drawn_cluster(RandomSource& random, const SelectTables& tables, std::uint32_t mesh_id,
                                             const std::set<std::uint32_t>& drawn) {
   const format::MeshRecord& mesh = tables.meshes[mesh_id];
   std::vector<std::vector<std::uint32_t>> made(mesh.group_count);
@@ -63,7 +63,7 @@ void expect_each_path_has_one_drawn_cluster(Random& random, const SelectTables& 
 }
 
 TEST(Select, DrawsEachPieceOfSurfaceExactlyOnceForAnyCamera) {
-  Random random(21);
+  RandomSource random(21);
   const TestTables owned = make_tables(random, 150);
   const SelectTables tables = owned.view();
   std::set<std::size_t> cut_sizes;
@@ -84,7 +84,7 @@ TEST(Select, DrawsEachPieceOfSurfaceExactlyOnceForAnyCamera) {
 }
 
 TEST(Select, BvhSelectsExactlyWhatTheFlatRuleSelects) {
-  Random random(22);
+  RandomSource random(22);
   for (const std::uint32_t leaf_clusters : {1U, 2U, 7U, 40U, 300U}) {
     const TestTables owned = make_tables(random, leaf_clusters);
     const SelectTables tables = owned.view();
@@ -100,7 +100,7 @@ TEST(Select, BvhSelectsExactlyWhatTheFlatRuleSelects) {
 }
 
 TEST(Select, BvhLooksAtLittleWhenTheCameraIsFar) {
-  Random random(23);
+  RandomSource random(23);
   TestTables owned;
   test::RandomDagOptions options;
   options.leaf_clusters = 4000;
@@ -119,7 +119,7 @@ TEST(Select, BvhLooksAtLittleWhenTheCameraIsFar) {
 }
 
 TEST(Select, ANodeThatClaimsTooLittleIsNoticedAgainstTheFlatRule) {
-  Random random(24);
+  RandomSource random(24);
   TestTables owned = make_tables(random, 100);
   for (format::NodeRecord& node : owned.nodes) node.error *= node.error < format::kInfiniteError ? 0.01F : 1.0F;
   int different = 0;
@@ -132,7 +132,7 @@ TEST(Select, ANodeThatClaimsTooLittleIsNoticedAgainstTheFlatRule) {
 }
 
 TEST(Select, DrawsNothingOfASingularInstance) {
-  Random random(25);
+  RandomSource random(25);
   TestTables owned = make_tables(random, 20);
   owned.instances[1].flags |= format::kInstanceSingular;
   owned.instances[1].scale = std::nan("");
@@ -141,7 +141,7 @@ TEST(Select, DrawsNothingOfASingularInstance) {
 }
 
 TEST(Select, SurvivesCamerasThatMakeNoSense) {
-  Random random(26);
+  RandomSource random(26);
   const TestTables owned = make_tables(random, 60);
   const double bad[] = {0.0, -1.0, HUGE_VAL, -HUGE_VAL, std::nan(""), 1e300, 1e-300};
   for (int n = 0; n < 3000; ++n) {
@@ -155,7 +155,7 @@ TEST(Select, SurvivesCamerasThatMakeNoSense) {
 }
 
 TEST(Select, UniformCutFollowsItsDefinitionAndItsStoredErrorBoundsIt) {
-  Random random(27);
+  RandomSource random(27);
   TestTables owned = make_tables(random, 150);
   for (std::uint32_t m = 0; m < owned.meshes.size(); ++m) {
     owned.meshes[m].level0_deviation = static_cast<float>(std::ldexp(1.0, 10 * static_cast<int>(m)) * 1e-9);
@@ -193,7 +193,7 @@ TEST(Select, UniformCutFollowsItsDefinitionAndItsStoredErrorBoundsIt) {
 }
 
 TEST(Select, UniformCutsGrowNoFinerAsTheErrorGrows) {
-  Random random(28);
+  RandomSource random(28);
   const TestTables owned = make_tables(random, 150);
   for (std::uint32_t m = 0; m < owned.meshes.size(); ++m) {
     double stored = 0.0;
