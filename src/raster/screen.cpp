@@ -68,13 +68,15 @@ std::int64_t floor_divide(std::int64_t numerator, std::int64_t denominator) {
 }
 
 /// The perspective divide. The vertex is scaled by a power of two so that w is an integer of 31 bits; from there on the
-/// quotients are exact integer divisions. \pre w is normal and positive, |x| and |y| <= guard · w up to rounding
+/// quotients are exact integer divisions. Clipping edges of wildly different lengths may end a little outside the guard
+/// band; such a vertex is moved onto it. \pre w is normal and positive, and not above kLargest
 ScreenVertex divide(const ClipVertex& v, ImageSize size) {
   const int exponent = static_cast<int>(std::bit_cast<std::uint64_t>(v.w) >> 52) - 1023;  // w in [2^e, 2^(e + 1))
   const double scale = power_of_two(30 - exponent);
   const auto w = static_cast<std::int64_t>(std::floor(v.w * scale + 0.5));  // 2^30 … 2^31
   const auto pixel = [&](double c, std::uint32_t side) {
-    const auto scaled = static_cast<std::int64_t>(std::floor(c * scale * kSubpixels + 0.5));  // below 2^60
+    const double inside = std::clamp(c, -kGuardPixels * v.w, kGuardPixels * v.w);
+    const auto scaled = static_cast<std::int64_t>(std::floor(inside * scale * kSubpixels + 0.5));  // below 2^60
     const std::int64_t quotient = floor_divide(2 * scaled + w, 2 * w);                        // to the nearest
     return static_cast<std::int32_t>(quotient + static_cast<std::int64_t>(side) * (kSubpixels / 2));
   };

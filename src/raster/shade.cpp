@@ -77,11 +77,11 @@ Vec3d geometric_normal(const DecodedCluster& cluster, const std::array<std::uint
   return glm::cross(Vec3d(cluster.position(triangle[1])) - a, Vec3d(cluster.position(triangle[2])) - a);
 }
 
-/// How much light a surface with this normal sends back, 0 … 1.
+/// How much light a white surface with this normal sends back, at most 0.9.
 double lighting(const Projection& projection, const Vec3d& normal) {
   // From the upper left, behind the viewer; (-2, 3, 6) has length 7.
   const Vec3d light = (projection.right * -2.0 + projection.up * 3.0 - projection.forward * 6.0) / 7.0;
-  return 0.22 + 0.08 * normal.y + 0.70 * std::max(0.0, glm::dot(normal, light));
+  return 0.16 + 0.07 * normal.y + 0.67 * std::max(0.0, glm::dot(normal, light));
 }
 
 struct ShadeContext {
