@@ -172,82 +172,22 @@ std::vector<Wedge> wedges_at(const MeshSurface& surface, std::span<const std::ui
   return out;
 }
 
-std::vector<std::uint32_t> positions_of(const MeshSurface& surface, std::span<const std::uint32_t> clusters) {
-  std::vector<std::uint32_t> out;
-  for (const std::uint32_t c : clusters) {
-    out.insert(out.end(), surface.vertex_position.begin() + surface.first_vertex[c],
-               surface.vertex_position.begin() + surface.first_vertex[c + 1]);
-  }
-  std::sort(out.begin(), out.end());
-  out.erase(std::unique(out.begin(), out.end()), out.end());
-  return out;
-}
-
-/// A border edge that a group shares is drawn by its neighbours too, so what the coarser set draws there must be what the
-/// finer set drew. At a seam a position has several wedges, and simplification may leave one of them unused.
-void check_attributes(const Asset& asset, const MeshSurface& surface, const BorderSet& border, std::vector<BorderViolation>& out) {
-  std::vector<std::uint32_t> shared;
-  for (std::uint32_t k = 0; k < surface.group_count; ++k) {
-    const std::uint32_t g = surface.first_group + k;
-    const GroupRecord& group = asset.groups()[g];
-    if ((group.flags & format::kGroupTerminal) != 0) continue;
-    const std::vector<std::uint32_t> members = members_of(surface, group);
-    shared.clear();
-    for_each_edge(sum_chains(surface, members), sum_chains(surface, surface.made[k]),
-                  [&](std::uint32_t edge, std::int32_t f, std::int32_t c) {
-                    // The source's own border is nobody's to share.
-                    if (f != c || border.plus[edge] != 0 || border.minus[edge] != 0) return;
-                    shared.insert(shared.end(), surface.edges[edge].begin(), surface.edges[edge].end());
-                  });
-    std::sort(shared.begin(), shared.end());
-    shared.erase(std::unique(shared.begin(), shared.end()), shared.end());
-    const std::vector<Wedge> finer = wedges_at(surface, members, shared);
-    for (const Wedge& wedge : wedges_at(surface, surface.made[k], shared)) {
-      if (std::binary_search(finer.begin(), finer.end(), wedge)) continue;
-      out.push_back({g, "position " + position_text(surface, wedge.position) + " of a shared border has attributes in the coarser set that it has not in the finer set"});
-      break;
-    }
-  }
-}
-
-void check_positions(const Asset& asset, const MeshSurface& surface, std::vector<BorderViolation>& out) {
-  struct Use {
-    std::uint32_t position, group;
-    auto operator<=>(const Use&) const = default;
-  };
-  std::map<std::uint16_t, std::vector<std::uint32_t>> groups_of_level;
-  for (std::uint32_t k = 0; k < surface.group_count; ++k) {
-    const GroupRecord& group = asset.groups()[surface.first_group + k];
-    if ((group.flags & format::kGroupTerminal) == 0) groups_of_level[group.level].push_back(k);
-  }
-  for (const auto& [level, groups] : groups_of_level) {
-    std::vector<Use> uses;
-    for (const std::uint32_t k : groups) {
-      for (const std::uint32_t p : positions_of(surface, members_of(surface, asset.groups()[surface.first_group + k]))) {
-        uses.push_back({p, k});
-      }
-    }
-    std::sort(uses.begin(), uses.end());
-    std::vector<Use> shared;
-    for (std::size_t i = 0; i < uses.size(); ++i) {
-      const bool with_before = i > 0 && uses[i - 1].position == uses[i].position;
-      const bool with_next = i + 1 < uses.size() && uses[i + 1].position == uses[i].position;
-      if (with_before || with_next) shared.push_back({uses[i].group, uses[i].position});  // by group from here on
-    }
-    std::sort(shared.begin(), shared.end());
-    for (std::size_t i = 0; i < shared.size();) {
-      const std::uint32_t k = shared[i].position;
-      const std::vector<std::uint32_t> coarser = positions_of(surface, surface.made[k]);
-      std::uint64_t lost = 0;
-      std::uint32_t first = 0;
-      for (; i < shared.size() && shared[i].position == k; ++i) {
-        if (!std::binary_search(coarser.begin(), coarser.end(), shared[i].group)) {
-          if (lost++ == 0) first = shared[i].group;
-        }
-      }
-      if (lost > 0) {
-        out.push_back({surface.first_group + k, std::to_string(lost) + " positions shared with other groups of level " +
-                                                    std::to_string(level) + " are lost, such as " + position_text(surface, first)});
+/// Calls visit(lower vertex, higher vertex) for each use of one of `edges` (ascending) by a triangle of the clusters.
+template <class Visit>
+void for_each_use(const MeshSurface& surface, std::span<const DecodedCluster> clusters, std::span<const std::uint32_t> members,
+                  std::span<const std::uint32_t> edges, const Visit& visit) {
+  for (const std::uint32_t c : members) {
+    const std::uint32_t base = surface.first_vertex[c];
+    for (const auto& triangle : clusters[surface.first_cluster + c].triangles) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        std::uint32_t v = base + triangle[k];
+        std::uint32_t w = base + triangle[(k + 1) % 3];
+        if (surface.vertex_position[v] > surface.vertex_position[w]) std::swap(v, w);
+        // Edges of the surface are ascending, so `edges` are ascending by their positions too.
+        const std::array<std::uint32_t, 2> key{surface.vertex_position[v], surface.vertex_position[w]};
+        const auto found = std::lower_bound(edges.begin(), edges.end(), key,
+                                            [&](std::uint32_t e, const auto& k2) { return surface.edges[e] < k2; });
+        if (found != edges.end() && surface.edges[*found] == key) visit(v, w);
       }
     }
   }
@@ -255,11 +195,42 @@ void check_positions(const Asset& asset, const MeshSurface& surface, std::vector
 
 }  // namespace
 
-SharedVertexReport check_shared_vertices(const Asset& asset, const MeshSurface& surface, const BorderSet& border) {
-  SharedVertexReport report;
-  check_attributes(asset, surface, border, report.attribute_violations);
-  check_positions(asset, surface, report.position_violations);
-  return report;
+std::vector<BorderViolation> check_shared_attributes(const Asset& asset, const MeshSurface& surface,
+                                                     std::span<const DecodedCluster> clusters, const BorderSet& border) {
+  std::vector<BorderViolation> out;
+  std::vector<std::uint32_t> kept;
+  std::vector<std::uint32_t> ends;
+  for (std::uint32_t k = 0; k < surface.group_count; ++k) {
+    const std::uint32_t g = surface.first_group + k;
+    const GroupRecord& group = asset.groups()[g];
+    if ((group.flags & format::kGroupTerminal) != 0) continue;
+    const std::vector<std::uint32_t> members = members_of(surface, group);
+    kept.clear();
+    ends.clear();
+    for_each_edge(sum_chains(surface, members), sum_chains(surface, surface.made[k]),
+                  [&](std::uint32_t edge, std::int32_t f, std::int32_t c) {
+                    // The source's own border is nobody's to share.
+                    if (f != c || border.plus[edge] != 0 || border.minus[edge] != 0) return;
+                    kept.push_back(edge);
+                    ends.insert(ends.end(), surface.edges[edge].begin(), surface.edges[edge].end());
+                  });
+    std::sort(ends.begin(), ends.end());
+    ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+    const std::vector<Wedge> finer = wedges_at(surface, members, ends);
+    std::uint64_t changed = 0;
+    std::uint32_t first = 0;
+    for_each_use(surface, clusters, surface.made[k], kept, [&](std::uint32_t v, std::uint32_t w) {
+      for (const std::uint32_t vertex : {v, w}) {
+        const Wedge wedge{surface.vertex_position[vertex], surface.vertex_attributes[vertex]};
+        if (!std::binary_search(finer.begin(), finer.end(), wedge) && changed++ == 0) first = wedge.position;
+      }
+    });
+    if (changed > 0) {
+      out.push_back({g, std::to_string(changed) + " corners of shared border edges have attributes that the finer set has not in their place, such as at " +
+                            position_text(surface, first)});
+    }
+  }
+  return out;
 }
 
 }  // namespace meshlode

@@ -40,10 +40,11 @@ struct BorderProof {
 
 [[nodiscard]] BorderProof prove_borders(const Asset& asset, const MeshSurface& surface);
 
-/// Attributes on kept borders (I3, L506) and positions shared by groups of one level (L509).
-struct SharedVertexReport {
-  std::vector<BorderViolation> attribute_violations, position_violations;
-};
-[[nodiscard]] SharedVertexReport check_shared_vertices(const Asset& asset, const MeshSurface& surface, const BorderSet& border);
+/// Attributes on shared borders (I3, L506). A border edge that a group shares is drawn by its neighbours too, so what the
+/// coarser set has at its ends must be what the finer set has there. At a seam a position has several wedges, and the edge
+/// may come to use another of them. At most one violation per group, ascending.
+[[nodiscard]] std::vector<BorderViolation> check_shared_attributes(const Asset& asset, const MeshSurface& surface,
+                                                                   std::span<const DecodedCluster> clusters,
+                                                                   const BorderSet& border);
 
 }  // namespace meshlode

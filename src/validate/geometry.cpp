@@ -55,9 +55,7 @@ class MeshGeometry {
     const MeshSurface surface = build_surface(asset_, MeshId(static_cast<std::uint32_t>(m_)), clusters_);
     const BorderProof proof = prove_borders(asset_, surface);
     report("L507", proof.violations);
-    const SharedVertexReport shared = check_shared_vertices(asset_, surface, proof.border);
-    report("L506", shared.attribute_violations);
-    report("L509", shared.position_violations);
+    report("L506", check_shared_attributes(asset_, surface, clusters_, proof.border));
   }
 
  private:
@@ -134,7 +132,7 @@ class MeshGeometry {
 }  // namespace
 
 void check_geometry(const Asset& asset, std::span<const DecodedCluster> clusters, RuleLog& log) {
-  for (const char* rule : {"L116", "L501", "L502", "L503", "L504", "L505", "L506", "L507", "L508", "L509"}) log.check(rule);
+  for (const char* rule : {"L116", "L501", "L502", "L503", "L504", "L505", "L506", "L507", "L508"}) log.check(rule);
   for (std::size_t m = 0; m < asset.meshes().size(); ++m) MeshGeometry(asset, m, clusters, log).run();
 }
 

@@ -82,10 +82,9 @@ constexpr std::array kRules{
     Rule{"L503", "I8", "normal cones hold every triangle's normal, in exact arithmetic"},
     Rule{"L504", "", "the mesh's bounds are those of level 0"},
     Rule{"L505", "I1", "grid_collapsed counts level 0's triangles without area"},
-    Rule{"L506", "I3", "vertices on a border that a group shares have attributes that its finer set has there, too"},
+    Rule{"L506", "I3", "corners of a border edge that a group shares have attributes that its finer set has in their place"},
     Rule{"L507", "I6", "a group's coarser set has the border edges of its finer set, except where the source is open"},
     Rule{"L508", "I6", "triangles above level 0 have three distinct corner positions"},
-    Rule{"L509", "I3", "a position that two groups of one level share stays in both coarser sets"},
     // verify
     Rule{"V101", "I1", "every source triangle is in exactly one level-0 cluster, with its material and orientation"},
     Rule{"V102", "I1", "triangles dropped as degenerate or duplicate are counted truly"},

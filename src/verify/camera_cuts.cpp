@@ -123,10 +123,11 @@ void check_rule(const Asset& asset, const View& view, const format::InstanceReco
   }
 }
 
-CameraFaults judge_camera(const Asset& asset, std::span<const MeshJudge> judges, const View& view) {
+CameraFaults judge_camera(const Asset& asset, std::span<const MeshJudge> judges, const View& view,
+                          const Selectors& selectors) {
   CameraFaults out;
-  const std::vector<ClusterInstance> flat = select_flat(asset, view.camera, view.pixel_error);
-  const std::vector<ClusterInstance> bvh = select_bvh(asset, view.camera, view.pixel_error);
+  const std::vector<ClusterInstance> flat = selectors.flat(asset, view.camera, view.pixel_error);
+  const std::vector<ClusterInstance> bvh = selectors.bvh(asset, view.camera, view.pixel_error);
   if (flat != bvh) {
     const auto [a, b] = std::mismatch(flat.begin(), flat.end(), bvh.begin(), bvh.end());
     const ClusterInstance& first = b == bvh.end() || (a != flat.end() && *a < *b) ? *a : *b;
@@ -168,7 +169,7 @@ CameraFaults judge_camera(const Asset& asset, std::span<const MeshJudge> judges,
 }  // namespace
 
 CameraTotals check_cameras(const Asset& asset, std::span<const MeshJudge> judges, std::uint32_t count, std::uint64_t seed,
-                           RuleLog& log) {
+                           RuleLog& log, const Selectors& selectors) {
   CameraTotals totals;
   std::vector<std::uint32_t> drawable;
   for (std::uint32_t i = 0; i < asset.instances().size(); ++i) {
@@ -180,7 +181,7 @@ CameraTotals check_cameras(const Asset& asset, std::span<const MeshJudge> judges
   std::vector<View> views;
   for (std::uint32_t i = 0; i < count; ++i) views.push_back(random_view(asset, drawable, i, random));
   std::vector<CameraFaults> faults(views.size());
-  parallel_for_each_index(views.size(), 1, [&](std::size_t i) { faults[i] = judge_camera(asset, judges, views[i]); });
+  parallel_for_each_index(views.size(), 1, [&](std::size_t i) { faults[i] = judge_camera(asset, judges, views[i], selectors); });
   for (std::size_t i = 0; i < faults.size(); ++i) {
     const std::string camera = place("camera", i) + " (" + views[i].kind + ", seed " + std::to_string(seed) + ")";
     if (!faults[i].hierarchy.empty()) log.add("V203", camera, faults[i].hierarchy);

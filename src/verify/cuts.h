@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,6 +17,16 @@
 #include "validate/surface.h"
 
 namespace meshlode {
+
+/// What is judged, so that a test may put something wrong in its place.
+struct Selectors {
+  std::function<std::vector<ClusterInstance>(const Asset&, const Camera&, double)> flat =
+      [](const Asset& asset, const Camera& camera, double pixel_error) { return select_flat(asset, camera, pixel_error); };
+  std::function<std::vector<ClusterInstance>(const Asset&, const Camera&, double)> bvh =
+      [](const Asset& asset, const Camera& camera, double pixel_error) { return select_bvh(asset, camera, pixel_error); };
+  std::function<UniformCut(const Asset&, MeshId, double)> uniform =
+      [](const Asset& asset, MeshId mesh, double error) { return select_uniform(asset, mesh, error); };
+};
 
 /// Everything about one mesh that cuts are judged by.
 struct MeshJudge {
@@ -47,7 +58,8 @@ struct CutTotals {
 };
 
 /// `count` uniform cuts of one mesh: at 0, at exact group errors, just below them, and spread logarithmically.
-[[nodiscard]] CutTotals check_uniform_cuts(const Asset& asset, const MeshJudge& judge, std::uint32_t count, RuleLog& log);
+CutTotals check_uniform_cuts(const Asset& asset, const MeshJudge& judge, std::uint32_t count, RuleLog& log,
+                             const Selectors& selectors = {});
 
 struct CameraTotals {
   std::uint64_t cameras = 0;
@@ -57,7 +69,7 @@ struct CameraTotals {
 };
 
 /// `count` random cameras: inside, near, far and orthographic. `judges` has one entry per mesh.
-[[nodiscard]] CameraTotals check_cameras(const Asset& asset, std::span<const MeshJudge> judges, std::uint32_t count,
-                                         std::uint64_t seed, RuleLog& log);
+CameraTotals check_cameras(const Asset& asset, std::span<const MeshJudge> judges, std::uint32_t count,
+                           std::uint64_t seed, RuleLog& log, const Selectors& selectors = {});
 
 }  // namespace meshlode

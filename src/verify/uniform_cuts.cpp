@@ -39,11 +39,11 @@ std::vector<double> choose_thresholds(const Asset& asset, const MeshSurface& sur
   return thresholds;
 }
 
-CutFaults judge_uniform_cut(const Asset& asset, const MeshJudge& judge, double threshold) {
+CutFaults judge_uniform_cut(const Asset& asset, const MeshJudge& judge, double threshold, const Selectors& selectors) {
   const MeshSurface& surface = judge.surface;
   const format::MeshRecord& mesh = asset.meshes()[surface.mesh.value];
   CutFaults faults;
-  const UniformCut cut = select_uniform(asset, surface.mesh, threshold);
+  const UniformCut cut = selectors.uniform(asset, surface.mesh, threshold);
   std::vector<std::uint8_t> drawn(surface.cluster_count, 0);
   double error = mesh.level0_deviation;
   for (const ClusterId id : cut.clusters) {
@@ -73,13 +73,15 @@ CutFaults judge_uniform_cut(const Asset& asset, const MeshJudge& judge, double t
 
 }  // namespace
 
-CutTotals check_uniform_cuts(const Asset& asset, const MeshJudge& judge, std::uint32_t count, RuleLog& log) {
+CutTotals check_uniform_cuts(const Asset& asset, const MeshJudge& judge, std::uint32_t count, RuleLog& log,
+                             const Selectors& selectors) {
   for (const char* rule : {"V201", "V202", "V204", "V205"}) log.check(rule);
   CutTotals totals;
   if (count == 0 || judge.surface.cluster_count == 0) return totals;
   const std::vector<double> thresholds = choose_thresholds(asset, judge.surface, count);
   std::vector<CutFaults> faults(thresholds.size());
-  parallel_for_each_index(thresholds.size(), 4, [&](std::size_t i) { faults[i] = judge_uniform_cut(asset, judge, thresholds[i]); });
+  parallel_for_each_index(thresholds.size(), 4,
+                          [&](std::size_t i) { faults[i] = judge_uniform_cut(asset, judge, thresholds[i], selectors); });
   for (std::size_t i = 0; i < faults.size(); ++i) {
     const auto report = [&](const char* rule, const std::string& fault) {
       if (fault.empty()) return;

@@ -265,10 +265,6 @@ const std::vector<Break>& breaks() {
          const auto at = e.triangle_stream_offset(cluster_above(e, shared_group(e)));
          e.bytes()[at] = e.bytes()[at + 1];
        }},
-      {"L509", "a shared position is lost", [](AssetEdit& e) {
-         const auto c = cluster_above(e, shared_group(e));
-         e.change_at<format::Channel>(e.channel_offset(c, 0), [](auto& channel) { channel.minimum += 1; });
-       }},
   };
   return all;
 }

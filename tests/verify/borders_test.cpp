@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The border proof on surfaces drawn by hand: what may be exchanged on an open border, and what may not.
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "decode/decode.h"
+#include "encode/encode.h"
+#include "hierarchy/hierarchy.h"
+#include "read/asset.h"
+#include "validate/borders.h"
+#include "write/write.h"
+
+namespace meshlode {
+namespace {
+
+using Corner = std::array<int, 3>;
+using Triangle = std::array<Corner, 3>;
+using Patch = std::vector<Triangle>;
+
+void append_cluster(const Patch& patch, std::uint32_t level, GroupId own, GroupId coarser, LodDag& dag) {
+  DagCluster cluster;
+  cluster.level = level;
+  cluster.own_group = own;
+  cluster.coarser_group = coarser;
+  cluster.first_vertex = static_cast<std::uint32_t>(dag.vertex_position.size());
+  cluster.first_triangle = static_cast<std::uint32_t>(dag.triangles.size());
+  cluster.triangle_count = static_cast<std::uint32_t>(patch.size());
+  std::vector<Corner> corners;
+  for (const Triangle& triangle : patch) {
+    std::array<std::uint8_t, 3> local{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      auto found = std::find(corners.begin(), corners.end(), triangle[k]);
+      if (found == corners.end()) found = corners.insert(corners.end(), triangle[k]);
+      local[k] = static_cast<std::uint8_t>(found - corners.begin());
+    }
+    dag.triangles.push_back(local);
+    dag.triangle_material.push_back(0);
+  }
+  for (const Corner& c : corners) dag.vertex_position.emplace_back(c[0], c[1], c[2]);
+  cluster.vertex_count = static_cast<std::uint32_t>(corners.size());
+  dag.clusters.push_back(cluster);
+}
+
+/// One group that replaces `finer` by `coarser`, beside `rest`, which stays as it is.
+BorderProof prove(const std::vector<Patch>& finer, const Patch& coarser, const std::vector<Patch>& rest = {}) {
+  LodDag dag;
+  append_cluster(coarser, 1, GroupId(1U), GroupId(0U), dag);
+  for (const Patch& patch : rest) append_cluster(patch, 0, GroupId(), GroupId(0U), dag);
+  const auto terminal_count = static_cast<std::uint32_t>(dag.clusters.size());
+  for (const Patch& patch : finer) append_cluster(patch, 0, GroupId(), GroupId(1U), dag);
+  DagGroup top;
+  top.level = 1;
+  top.cluster_count = terminal_count;
+  top.is_terminal = true;
+  top.error = top.quadric_error = top.deviation = std::numeric_limits<double>::infinity();
+  DagGroup group;
+  group.first_cluster = terminal_count;
+  group.cluster_count = static_cast<std::uint32_t>(finer.size());
+  group.error = group.quadric_error = 1.0;
+  group.deviation = std::numeric_limits<double>::infinity();
+  dag.groups = {top, group};
+  dag.level_count = 2;
+
+  PreparedMesh mesh;
+  Scene scene;
+  scene.materials.resize(1);
+  WriteInput input;
+  auto encoded = encode_mesh(mesh, dag, build_hierarchy(dag, mesh), {});
+  EXPECT_TRUE(encoded.ok()) << encoded.error().message();
+  input.meshes.push_back(std::move(*encoded));
+  input.mesh_names = {"drawn"};
+  input.scene = &scene;
+  input.meta_json = "{}";
+  auto bytes = write_asset(std::move(input));
+  EXPECT_TRUE(bytes.ok());
+  const auto asset = Asset::from_vector(std::move(*bytes));
+  EXPECT_TRUE(asset.ok()) << asset.error().message();
+  const auto clusters = decode_all(*asset);
+  EXPECT_TRUE(clusters.ok());
+  return prove_borders(*asset, build_surface(*asset, MeshId(0U), *clusters));
+}
+
+/// A fan around the origin of the plane: the square's rim in `steps` straight pieces per side, oriented upwards.
+Patch square(int steps, int size = 8) {
+  std::vector<Corner> rim;
+  const int d = 2 * size / steps;
+  for (int i = 0; i < steps; ++i) rim.push_back({-size + i * d, -size, 0});
+  for (int i = 0; i < steps; ++i) rim.push_back({size, -size + i * d, 0});
+  for (int i = 0; i < steps; ++i) rim.push_back({size - i * d, size, 0});
+  for (int i = 0; i < steps; ++i) rim.push_back({-size, size - i * d, 0});
+  Patch patch;
+  for (std::size_t i = 0; i < rim.size(); ++i) patch.push_back({Corner{0, 0, 0}, rim[i], rim[(i + 1) % rim.size()]});
+  return patch;
+}
+
+/// The rest of a closed surface over the square: the same rim, oriented downwards, around a lower point.
+Patch lid(int steps, int size = 8) {
+  Patch patch = square(steps, size);
+  for (Triangle& triangle : patch) {
+    triangle[0] = {0, 0, -5};
+    std::swap(triangle[1], triangle[2]);
+  }
+  return patch;
+}
+
+TEST(BorderProof, TheSameBorderOfAClosedSurfacePasses) {
+  Patch coarser = square(4);
+  for (Triangle& triangle : coarser) triangle[0] = {1, 1, 3};  // another inside, the same rim
+  const BorderProof proof = prove({square(4)}, coarser, {lid(4)});
+  EXPECT_TRUE(proof.border.is_closed);
+  EXPECT_EQ(proof.groups, 1U);
+  EXPECT_TRUE(proof.violations.empty());
+}
+
+TEST(BorderProof, ASimplifiedRimOfAClosedSurfaceIsACrack) {
+  EXPECT_EQ(prove({square(4)}, square(2), {lid(4)}).violations.size(), 1U);
+}
+
+TEST(BorderProof, ATJunctionIsACrackThoughNoGapIsSeen) {
+  // The same area to the last point, with a vertex of the rim left out on a straight side.
+  EXPECT_EQ(prove({square(2)}, square(1), {lid(2)}).violations.size(), 1U);
+}
+
+TEST(BorderProof, ASimplifiedRimOfAnOpenSurfacePasses) {
+  const BorderProof proof = prove({square(4)}, square(2));
+  EXPECT_FALSE(proof.border.is_closed);
+  EXPECT_TRUE(proof.violations.empty());
+}
+
+TEST(BorderProof, AnOpenRimMayVanish) {
+  // Only a far piece of two is left: the rim of the other went with it.
+  Patch two = square(2);
+  Patch far = square(1, 4);
+  for (Triangle& triangle : far) {
+    for (Corner& c : triangle) c[0] += 100;
+  }
+  two.insert(two.end(), far.begin(), far.end());
+  EXPECT_TRUE(prove({two}, far).violations.empty());
+}
+
+TEST(BorderProof, AHoleInsideAnOpenSurfaceIsNoBorder) {
+  // The fan's triangles are split by a smaller square inside; the inner part goes.
+  const Patch finer = square(4);
+  Patch outer;
+  for (std::size_t i = 0; i < finer.size(); ++i) {
+    const Corner a = finer[i][1];
+    const Corner b = finer[i][2];
+    const Corner c{a[0] / 2, a[1] / 2, 0};
+    const Corner d{b[0] / 2, b[1] / 2, 0};
+    outer.push_back({c, a, b});
+    outer.push_back({c, b, d});
+  }
+  Patch whole = outer;
+  for (std::size_t i = 0; i < finer.size(); ++i) whole.push_back({Corner{0, 0, 0}, outer[2 * i][0], outer[2 * i + 1][2]});
+  EXPECT_TRUE(prove({whole}, whole).violations.empty());
+  EXPECT_EQ(prove({whole}, outer).violations.size(), 1U);
+}
+
+TEST(BorderProof, ACrackBesideAnOpenBorderIsFound) {
+  // Two halves of an open square: the group's half drops a vertex of the seam that the other half keeps.
+  const Patch left{{Corner{0, 0, 0}, Corner{0, 4, 0}, Corner{-8, 0, 0}}, {Corner{0, 4, 0}, Corner{0, 8, 0}, Corner{-8, 0, 0}}};
+  const Patch right{{Corner{0, 4, 0}, Corner{0, 0, 0}, Corner{8, 0, 0}}, {Corner{0, 8, 0}, Corner{0, 4, 0}, Corner{8, 0, 0}}};
+  EXPECT_TRUE(prove({left}, left, {right}).violations.empty());
+  const Patch coarse_left{{Corner{0, 0, 0}, Corner{0, 8, 0}, Corner{-8, 0, 0}}};
+  EXPECT_EQ(prove({left}, coarse_left, {right}).violations.size(), 1U);
+}
+
+TEST(BorderProof, ATurnedTriangleIsFound) {
+  Patch coarser = square(4);
+  std::swap(coarser[0][1], coarser[0][2]);
+  EXPECT_EQ(prove({square(4)}, coarser, {lid(4)}).violations.size(), 1U);
+}
+
+TEST(BorderProof, MembersMeetWithoutABorderBetweenThem) {
+  const Patch all = square(4);
+  const Patch a(all.begin(), all.begin() + 7);
+  const Patch b(all.begin() + 7, all.end());
+  EXPECT_TRUE(prove({a, b}, all, {lid(4)}).violations.empty());
+}
+
+TEST(BorderProof, SheetsOnOneEdgeAreCounted) {
+  // Three sheets on an edge, two of one orientation: the net use is one, and a sheet that goes away is missed.
+  const Patch one{{Corner{0, 0, 0}, Corner{0, 8, 0}, Corner{-8, 4, 0}}};
+  const Patch two{{Corner{0, 8, 0}, Corner{0, 0, 0}, Corner{8, 4, 0}}};
+  const Patch three{{Corner{0, 0, 0}, Corner{0, 8, 0}, Corner{0, 4, 8}}};
+  EXPECT_TRUE(prove({one, two}, Patch{one[0], two[0]}, {three}).violations.empty());
+  // The edge between the first two is inside the group; without one of them it is open, and no border of the source:
+  // the source's net use of it goes the other way.
+  EXPECT_EQ(prove({one, three}, one, {two}).violations.size(), 0U);  // one of two equal uses may go: B has one
+  EXPECT_EQ(prove({two}, Patch{{Corner{0, 8, 0}, Corner{0, 1, 0}, Corner{8, 4, 0}}}, {one, three}).violations.size(), 1U);
+}
+
+TEST(BorderProof, EdgesWithoutLengthAreLeftOut) {
+  // A triangle that the grid collapsed to a line folds onto itself and has no border.
+  Patch finer = square(4);
+  finer.push_back({Corner{3, 3, 0}, Corner{3, 3, 0}, Corner{5, 5, 0}});
+  EXPECT_TRUE(prove({finer}, square(4), {lid(4)}).violations.empty());
+}
+
+}  // namespace
+}  // namespace meshlode
