@@ -2,8 +2,10 @@
 #include "validate/borders.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <map>
 #include <numeric>
+#include <utility>
 
 namespace meshlode {
 
@@ -70,6 +72,25 @@ class Components {
   std::map<std::uint32_t, std::uint32_t> parent_;
 };
 
+/// How many independent loops a set of edges has: E - V + components, edges counted as often as they are removed.
+std::int64_t count_loops(const MeshSurface& surface, std::span<const Exchange> exchanges) {
+  Components components;
+  std::vector<std::uint32_t> positions;
+  std::int64_t loops = 0;
+  for (const Exchange& exchange : exchanges) {
+    if (exchange.removed == 0) continue;
+    const auto& [a, b] = surface.edges[exchange.edge];
+    loops += std::abs(exchange.removed);
+    components.join(a, b);
+    positions.push_back(a);
+    positions.push_back(b);
+  }
+  std::sort(positions.begin(), positions.end());
+  positions.erase(std::unique(positions.begin(), positions.end()), positions.end());
+  for (const std::uint32_t position : positions) loops += components.find(position) == position ? 0 : -1;
+  return loops;
+}
+
 /// The first reason why the exchanges of one group are not allowed; empty if they are.
 std::string refuse(const MeshSurface& surface, const BorderSet& border, std::span<const Exchange> exchanges) {
   Components components;
@@ -84,13 +105,22 @@ std::string refuse(const MeshSurface& surface, const BorderSet& border, std::spa
     }
     anchored.push_back(a);
   }
-  std::vector<std::uint32_t> roots;
-  for (const std::uint32_t position : anchored) roots.push_back(components.find(position));
-  std::sort(roots.begin(), roots.end());
+  for (std::uint32_t& position : anchored) position = components.find(position);
+  std::sort(anchored.begin(), anchored.end());
+  // What is added hangs together with what it replaces, or is a whole loop whose every vertex moved. Collapsing edges
+  // never makes more loops of a border than there were.
+  std::vector<std::uint32_t> new_loops;
+  std::uint32_t last_edge = 0;
   for (const Exchange& exchange : exchanges) {
-    if (!std::binary_search(roots.begin(), roots.end(), components.find(surface.edges[exchange.edge][0]))) {
-      return "edge " + edge_text(surface, exchange.edge) + " of the coarser set opens a border where the finer set has none";
-    }
+    const std::uint32_t root = components.find(surface.edges[exchange.edge][0]);
+    if (std::binary_search(anchored.begin(), anchored.end(), root)) continue;
+    new_loops.push_back(root);
+    last_edge = exchange.edge;
+  }
+  std::sort(new_loops.begin(), new_loops.end());
+  new_loops.erase(std::unique(new_loops.begin(), new_loops.end()), new_loops.end());
+  if (std::cmp_greater(new_loops.size(), count_loops(surface, exchanges))) {
+    return "edge " + edge_text(surface, last_edge) + " of the coarser set opens a border where the finer set has none";
   }
   return {};
 }

@@ -4,8 +4,8 @@
 // what each replaced group adds, which is zero.
 //
 // Where the source is open, its border may be simplified. B starts as the chain of all level-0 clusters. Going from fine
-// to coarse, a group may exchange border edges that are in B for others, which then belong to B too. What is exchanged
-// must hang together with what it replaces, so that no hole can open inside.
+// to coarse, a group may exchange border edges that are in B for others, which then belong to B too. What comes must hang
+// together with what goes, or be a whole loop in place of a whole loop, so that no hole can open inside.
 #pragma once
 
 #include <cstdint>

@@ -142,6 +142,21 @@ TEST(BorderProof, AnOpenRimMayVanish) {
   EXPECT_TRUE(prove({two}, far).violations.empty());
 }
 
+TEST(BorderProof, AnOpenRimMayMoveAsAWhole) {
+  EXPECT_TRUE(prove({square(4)}, square(2, 7)).violations.empty());
+}
+
+TEST(BorderProof, ARimThatMovesDoesNotHideAHole) {
+  Patch ring;  // the moved rim, and a hole inside
+  for (const Triangle& t : square(2, 6)) {
+    const Corner c{t[1][0] / 2, t[1][1] / 2, 0};
+    const Corner d{t[2][0] / 2, t[2][1] / 2, 0};
+    ring.push_back({c, t[1], t[2]});
+    ring.push_back({c, t[2], d});
+  }
+  EXPECT_EQ(prove({square(4)}, ring).violations.size(), 1U);
+}
+
 TEST(BorderProof, AHoleInsideAnOpenSurfaceIsNoBorder) {
   // The fan's triangles are split by a smaller square inside; the inner part goes.
   const Patch finer = square(4);
