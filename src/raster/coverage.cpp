@@ -17,9 +17,9 @@ __extension__ typedef unsigned __int128 Wide;
 
 /// E(p) of the edge from a to b, positive on the inner side of a triangle of positive area, as a plane over the pixels.
 struct Edge {
-  std::int64_t at_origin = 0;         ///< at the centre of pixel (0, 0)
+  std::int64_t at_origin = 0;           ///< at the centre of pixel (0, 0)
   std::int64_t step_x = 0, step_y = 0;  ///< to the next pixel
-  std::int64_t bias = 0;              ///< -1 where a centre on the edge is outside (neither a top nor a left edge)
+  std::int64_t bias = 0;                ///< -1 where a centre on the edge is outside (neither a top nor a left edge)
 
   Edge() = default;
   Edge(const ScreenVertex& a, const ScreenVertex& b) {
@@ -37,8 +37,9 @@ void put_pixel(VisibilityBuffer& buffer, std::size_t pixel, std::uint32_t depth,
   std::uint32_t& old_depth = buffer.depth[pixel];
   std::uint32_t& old_item = buffer.item[pixel];
   std::uint32_t& old_triangle = buffer.triangle[pixel];
-  const bool is_nearer = depth != old_depth ? depth > old_depth
-                                            : key.item != old_item ? key.item < old_item : key.triangle < old_triangle;
+  const bool is_nearer = depth != old_depth     ? depth > old_depth
+                         : key.item != old_item ? key.item < old_item
+                                                : key.triangle < old_triangle;
   if (!is_nearer) return;
   old_depth = depth;
   old_item = key.item;
@@ -165,7 +166,8 @@ std::uint32_t interpolate_depth(const ScreenTriangle& triangle, const std::int64
     const std::uint64_t sum = w[0] * triangle.v[0].depth + w[1] * triangle.v[1].depth + w[2] * triangle.v[2].depth;
     return static_cast<std::uint32_t>(sum / whole);
   }
-  const Wide sum = Wide{w[0]} * triangle.v[0].depth + Wide{w[1]} * triangle.v[1].depth + Wide{w[2]} * triangle.v[2].depth;
+  const Wide sum =
+      Wide{w[0]} * triangle.v[0].depth + Wide{w[1]} * triangle.v[1].depth + Wide{w[2]} * triangle.v[2].depth;
   return static_cast<std::uint32_t>(sum / whole);
 }
 

@@ -16,9 +16,12 @@ std::uint32_t page_of(const Asset& asset, ClusterId cluster) {
 Result<CutPages> CutPages::load(const Asset& asset, std::span<const ClusterInstance> cut) {
   std::vector<std::uint8_t> is_needed(asset.pages().size(), 0);
   for (std::size_t i = 0; i < cut.size(); ++i) {
-    const bool is_known = cut[i].instance.value < asset.instances().size() && cut[i].cluster.value < asset.clusters().size();
+    const bool is_known =
+        cut[i].instance.value < asset.instances().size() && cut[i].cluster.value < asset.clusters().size();
     const std::uint32_t mesh = is_known ? asset.instances()[cut[i].instance.value].mesh : format::kNone;
-    const auto covers = [&](const format::MeshRecord& m) { return cut[i].cluster.value - m.first_cluster < m.cluster_count; };
+    const auto covers = [&](const format::MeshRecord& m) {
+      return cut[i].cluster.value - m.first_cluster < m.cluster_count;
+    };
     if (!is_known || !covers(asset.meshes()[mesh])) {
       return Error{ErrorCode::kUsage, "cut entry " + std::to_string(i), "no such cluster in this instance"};
     }

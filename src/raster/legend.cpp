@@ -48,7 +48,8 @@ Rgb hash_color(std::uint32_t a, std::uint32_t b) {
 }
 
 Rgb level_color(std::uint32_t level, std::uint32_t level_count) {
-  static constexpr Rgb kStops[5] = {{0.05, 0.12, 0.75}, {0.05, 0.6, 0.8}, {0.15, 0.65, 0.1}, {0.9, 0.75, 0.05}, {0.8, 0.06, 0.04}};
+  static constexpr Rgb kStops[5] = {
+      {0.05, 0.12, 0.75}, {0.05, 0.6, 0.8}, {0.15, 0.65, 0.1}, {0.9, 0.75, 0.05}, {0.8, 0.06, 0.04}};
   const double t = level_count < 2 ? 0.0 : 4.0 * std::min(level, level_count - 1) / (level_count - 1);
   const auto stop = std::min<std::size_t>(3, static_cast<std::size_t>(t));
   const double s = t - static_cast<double>(stop);

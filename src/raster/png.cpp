@@ -24,9 +24,9 @@ std::vector<std::uint8_t> encode_png(const Image& image) {
     for (std::size_t i = 0; i < 3 * pixels; ++i) packed[i] = image.rgba[i / 3 * 4 + i % 3];
   }
   int bytes = 0;
-  unsigned char* png = stbi_write_png_to_mem(is_opaque ? packed.data() : image.rgba.data(),
-                                             static_cast<int>(image.width) * channels, static_cast<int>(image.width),
-                                             static_cast<int>(image.height), channels, &bytes);
+  unsigned char* png =
+      stbi_write_png_to_mem(is_opaque ? packed.data() : image.rgba.data(), static_cast<int>(image.width) * channels,
+                            static_cast<int>(image.width), static_cast<int>(image.height), channels, &bytes);
   if (png == nullptr) return {};
   std::vector<std::uint8_t> out(png, png + bytes);
   std::free(png);

@@ -18,7 +18,9 @@ bool is_bounded(const Vec3d& v) {
   return std::abs(v.x) <= kLargest && std::abs(v.y) <= kLargest && std::abs(v.z) <= kLargest;  // false for NaN
 }
 
-bool is_bounded_positive(double v) { return v >= kSmallest && v <= kLargest; }
+bool is_bounded_positive(double v) {
+  return v >= kSmallest && v <= kLargest;
+}
 
 /// Unit vector of v, whose largest component is scaled to 1 first so that no square over- or underflows.
 Vec3d unit(const Vec3d& v) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Cameras and instances as the rows that take grid integers to clip coordinates.
 //
-// Everything that depends on camera and instance is composed once, in doubles, relative to the eye: a mesh far away from
-// the world's origin keeps its features. A vertex then costs one fixed formula, ((r0·x + r1·y) + r2·z) + r3 a row.
+// Everything that depends on camera and instance is composed once, in doubles, relative to the eye: a mesh far away
+// from the world's origin keeps its features. A vertex then costs one fixed formula, ((r0·x + r1·y) + r2·z) + r3 a row.
 #pragma once
 
 #include <meshlode/format.h>
@@ -19,7 +19,7 @@ struct Projection {
   bool is_orthographic = false;
   double pixels_per_unit = 1.0;  ///< perspective: at distance 1
   double near_distance = 1e-3;
-  double far_distance = 1.0;     ///< orthographic only: where depth is 0
+  double far_distance = 1.0;  ///< orthographic only: where depth is 0
   ImageSize size;
 };
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Raster: the CPU reference rasterizer. What it draws is defined by integers, so that another machine can draw the same:
+// Raster: the CPU reference rasterizer. What it draws is defined by integers, so that another machine can draw the
+// same:
 //
 //   grid integers → clip coordinates (doubles, + and * in a fixed order; projection.h)
 //   → 1/256 pixel and 32-bit depth (quantized once per vertex, then exact integer division; screen.h)

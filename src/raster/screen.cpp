@@ -13,7 +13,8 @@ namespace {
 constexpr double kLargest = 1e150;  ///< products of two such numbers are finite
 
 bool is_usable(const ClipVertex& v) {
-  return std::abs(v.x) <= kLargest && std::abs(v.y) <= kLargest && std::abs(v.z) <= kLargest && std::abs(v.w) <= kLargest;
+  return std::abs(v.x) <= kLargest && std::abs(v.y) <= kLargest && std::abs(v.z) <= kLargest &&
+         std::abs(v.w) <= kLargest;
 }
 
 constexpr int kPlaneCount = 5;
@@ -29,8 +30,8 @@ double plane_distance(const ClipVertex& v, int plane) {
   }
 }
 
-/// Where the edge from `inner` to `outer` meets the plane: always computed from the inner end, so that both triangles of
-/// the edge get the same bits.
+/// Where the edge from `inner` to `outer` meets the plane: always computed from the inner end, so that both triangles
+/// of the edge get the same bits.
 ClipVertex cut_edge(const ClipVertex& inner, const ClipVertex& outer, double inner_distance, double outer_distance) {
   const double t = inner_distance / (inner_distance - outer_distance);
   return {inner.x + t * (outer.x - inner.x), inner.y + t * (outer.y - inner.y), inner.z + t * (outer.z - inner.z),
@@ -60,7 +61,9 @@ ClipPolygon clip_by_plane(const ClipPolygon& in, int plane) {
 }
 
 /// 2^exponent. \pre -1022 <= exponent <= 1023
-double power_of_two(int exponent) { return std::bit_cast<double>(static_cast<std::uint64_t>(exponent + 1023) << 52); }
+double power_of_two(int exponent) {
+  return std::bit_cast<double>(static_cast<std::uint64_t>(exponent + 1023) << 52);
+}
 
 std::int64_t floor_divide(std::int64_t numerator, std::int64_t denominator) {
   const std::int64_t quotient = numerator / denominator;
@@ -77,7 +80,7 @@ ScreenVertex divide(const ClipVertex& v, ImageSize size) {
   const auto pixel = [&](double c, std::uint32_t side) {
     const double inside = std::clamp(c, -kGuardPixels * v.w, kGuardPixels * v.w);
     const auto scaled = static_cast<std::int64_t>(std::floor(inside * scale * kSubpixels + 0.5));  // below 2^60
-    const std::int64_t quotient = floor_divide(2 * scaled + w, 2 * w);                        // to the nearest
+    const std::int64_t quotient = floor_divide(2 * scaled + w, 2 * w);                             // to the nearest
     return static_cast<std::int32_t>(quotient + static_cast<std::int64_t>(side) * (kSubpixels / 2));
   };
   const double z = std::clamp(v.z * scale, 0.0, v.w * scale);
@@ -87,7 +90,8 @@ ScreenVertex divide(const ClipVertex& v, ImageSize size) {
 }
 
 bool is_culled(std::int64_t area, Culling culling) {
-  return area == 0 || (area > 0 && culling == Culling::kClockwise) || (area < 0 && culling == Culling::kCounterClockwise);
+  return area == 0 || (area > 0 && culling == Culling::kClockwise) ||
+         (area < 0 && culling == Culling::kCounterClockwise);
 }
 
 void add_clipped(const ClipPolygon& clipped, Culling culling, TriangleKey key, ImageSize size, ScreenSoup& out) {
@@ -99,7 +103,8 @@ void add_clipped(const ClipPolygon& clipped, Culling culling, TriangleKey key, I
     polygon.v[polygon.count++] = divide(clipped.v[i], size);
   }
   std::int64_t area = 0;
-  for (std::uint32_t i = 1; i + 1 < polygon.count; ++i) area += doubled_area(polygon.v[0], polygon.v[i], polygon.v[i + 1]);
+  for (std::uint32_t i = 1; i + 1 < polygon.count; ++i)
+    area += doubled_area(polygon.v[0], polygon.v[i], polygon.v[i + 1]);
   if (is_culled(area, culling)) return;
   if (area < 0) std::reverse(polygon.v.begin() + 1, polygon.v.begin() + polygon.count);
   out.polygons.push_back(polygon);
@@ -140,7 +145,8 @@ void add_snapped(const ScreenVertex& a, const ScreenVertex& b, const ScreenVerte
   }
 }
 
-void add_triangle(const std::array<ClipVertex, 3>& v, Culling culling, TriangleKey key, ImageSize size, ScreenSoup& out) {
+void add_triangle(const std::array<ClipVertex, 3>& v, Culling culling, TriangleKey key, ImageSize size,
+                  ScreenSoup& out) {
   const auto a = snap_vertex(v[0], size), b = snap_vertex(v[1], size), c = snap_vertex(v[2], size);
   if (a && b && c) {
     add_snapped(*a, *b, *c, culling, key, size, out);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // From clip coordinates to triangles in integers: near-plane clipping, the perspective divide and facing.
 //
-// A vertex is quantized once, from its own numbers alone: triangles that share a vertex share its integers. An edge that
-// is clipped is cut from its inner to its outer end whichever triangle it belongs to, so that neighbours share the new
-// vertex too. With that, and with the top-left rule of coverage.h, two triangles on both sides of an edge never leave a
-// pixel out and never draw one twice.
+// A vertex is quantized once, from its own numbers alone: triangles that share a vertex share its integers. An edge
+// that is clipped is cut from its inner to its outer end whichever triangle it belongs to, so that neighbours share the
+// new vertex too. With that, and with the top-left rule of coverage.h, two triangles on both sides of an edge never
+// leave a pixel out and never draw one twice.
 #pragma once
 
 #include <array>
@@ -25,8 +25,8 @@ struct ImageSize {
   std::uint32_t width = 0, height = 0;
 };
 
-/// Homogeneous: the pixel is (width/2 + x/w, height/2 + y/w) with y down, the depth is z/w, larger = nearer. In front of
-/// the near plane iff z <= w. \pre w > 0 or z > w: what is not behind the near plane has a positive w
+/// Homogeneous: the pixel is (width/2 + x/w, height/2 + y/w) with y down, the depth is z/w, larger = nearer. In front
+/// of the near plane iff z <= w. \pre w > 0 or z > w: what is not behind the near plane has a positive w
 struct ClipVertex {
   double x = 0.0, y = 0.0, z = 0.0, w = 1.0;
 };
@@ -76,7 +76,8 @@ void add_snapped(const ScreenVertex& a, const ScreenVertex& b, const ScreenVerte
                  ImageSize size, ScreenSoup& out);
 
 /// Adds any triangle: clips it where it has to be.
-void add_triangle(const std::array<ClipVertex, 3>& v, Culling culling, TriangleKey key, ImageSize size, ScreenSoup& out);
+void add_triangle(const std::array<ClipVertex, 3>& v, Culling culling, TriangleKey key, ImageSize size,
+                  ScreenSoup& out);
 
 /// Rows or columns whose pixel centres lie in [low, high] subpixels, clamped to `count`; empty where first > last.
 struct PixelRange {

@@ -106,7 +106,8 @@ void shade_item(const ShadeContext& context, const CutPages& pages, const Cluste
   for (const std::uint32_t pixel : pixels) {
     const std::uint32_t triangle_index = context.visibility.triangle[pixel];
     const auto& triangle = cluster.triangles[triangle_index];
-    const double px = pixel % image.width + 0.5 - 0.5 * image.width, py = pixel / image.width + 0.5 - 0.5 * image.height;
+    const double px = pixel % image.width + 0.5 - 0.5 * image.width,
+                 py = pixel / image.width + 0.5 - 0.5 * image.height;
     const Vec3d to_viewer = direction_to_viewer(context.projection, px, py);
     const Vec3d face = to_world.apply(geometric_normal(cluster, triangle));
     const bool is_back = glm::dot(face, to_viewer) < 0.0;
@@ -115,16 +116,14 @@ void shade_item(const ShadeContext& context, const CutPages& pages, const Cluste
     switch (context.view) {
       case View::kClusters: color = hash_color(entry.cluster.value, 0x636C); break;
       case View::kTriangles: color = hash_color(entry.cluster.value, 0x10000 + triangle_index); break;
-      case View::kLevels:
-        color = level_color(asset.clusters()[entry.cluster.value].level, context.level_count);
-        break;
+      case View::kLevels: color = level_color(asset.clusters()[entry.cluster.value].level, context.level_count); break;
       case View::kShaded: {
         const format::MaterialRecord& material = asset.materials()[cluster.triangle_material[triangle_index]];
         for (std::size_t k = 0; k < 3; ++k) color[k] = static_cast<double>(material.base_color[k]);
         if (attributes.normals.empty() && attributes.colors.empty()) break;
-        const Vec3d weights =
-            corner_weights(to_clip.project(cluster.position(triangle[0])), to_clip.project(cluster.position(triangle[1])),
-                           to_clip.project(cluster.position(triangle[2])), px, py);
+        const Vec3d weights = corner_weights(to_clip.project(cluster.position(triangle[0])),
+                                             to_clip.project(cluster.position(triangle[1])),
+                                             to_clip.project(cluster.position(triangle[2])), px, py);
         Vec3d sum(0.0), tint(0.0);
         for (int k = 0; k < 3; ++k) {
           if (!attributes.normals.empty()) sum += Vec3d(attributes.normals[triangle[k]]) * weights[k];

@@ -16,8 +16,8 @@ using namespace raster;
 
 constexpr std::size_t kBatchClusters = 2048;  ///< about 12 MB of screen triangles
 
-void project_cluster(const Asset& asset, const Projection& projection, const CutPages& pages, const ClusterInstance& entry,
-                     std::uint32_t item, ScreenSoup& out) {
+void project_cluster(const Asset& asset, const Projection& projection, const CutPages& pages,
+                     const ClusterInstance& entry, std::uint32_t item, ScreenSoup& out) {
   const format::InstanceRecord& instance = asset.instances()[entry.instance.value];
   if ((instance.flags & format::kInstanceSingular) != 0) return;
   DecodedCluster cluster;
@@ -33,8 +33,9 @@ void project_cluster(const Asset& asset, const Projection& projection, const Cut
   for (std::uint32_t t = 0; t < cluster.triangle_count; ++t) {
     const auto [a, b, c] = cluster.triangles[t];
     const bool is_double_sided = asset.materials()[cluster.triangle_material[t]].double_sided != 0;
-    const Culling culling =
-        is_double_sided ? Culling::kNone : is_mirrored ? Culling::kCounterClockwise : Culling::kClockwise;
+    const Culling culling = is_double_sided ? Culling::kNone
+                            : is_mirrored   ? Culling::kCounterClockwise
+                                            : Culling::kClockwise;
     const TriangleKey key{item, t};
     if (snapped[a] && snapped[b] && snapped[c]) {
       add_snapped(*snapped[a], *snapped[b], *snapped[c], culling, key, projection.size, out);

@@ -37,8 +37,8 @@ GlbMesh make_tower() {
     const Vec3d a = low[side], b = low[(side + 1) % 4];
     const Vec3d inward = -unit(glm::cross(b - a, rise)) * kRecess;
     const auto point = [&](std::uint32_t i, std::uint32_t j) {
-      return FacetBuilder::mix(FacetBuilder::mix(a, b, i, kColumns),
-                               FacetBuilder::mix(a + rise, b + rise, i, kColumns), j, kRows);
+      return FacetBuilder::mix(FacetBuilder::mix(a, b, i, kColumns), FacetBuilder::mix(a + rise, b + rise, i, kColumns),
+                               j, kRows);
     };
     for (std::uint32_t j = 0; j < kRows; ++j) {
       for (std::uint32_t i = 0; i < kColumns; ++i) {
@@ -132,13 +132,16 @@ GlbMesh make_ground() {
   GlbMesh mesh;
   mesh.name = "ground";
   Primitive ground;
-  FacetBuilder{ground}.quad({-100.0, 0.0, 100.0}, {100.0, 0.0, 100.0}, {100.0, 0.0, -100.0}, {-100.0, 0.0, -100.0}, 16, 16);
+  FacetBuilder{ground}.quad({-100.0, 0.0, 100.0}, {100.0, 0.0, 100.0}, {100.0, 0.0, -100.0}, {-100.0, 0.0, -100.0}, 16,
+                            16);
   ground.material = MaterialId(static_cast<std::uint32_t>(kGrass));
   mesh.primitives.push_back(std::move(ground));
   return mesh;
 }
 
-std::array<double, 4> yaw(double turns) { return {0.0, sin_turns(0.5 * turns), 0.0, cos_turns(0.5 * turns)}; }
+std::array<double, 4> yaw(double turns) {
+  return {0.0, sin_turns(0.5 * turns), 0.0, cos_turns(0.5 * turns)};
+}
 
 class CityBuilder {
  public:

@@ -10,7 +10,9 @@
 
 namespace meshlode::samples {
 
-[[nodiscard]] inline Vec3d unit(const Vec3d& v) { return v / std::sqrt(glm::dot(v, v)); }
+[[nodiscard]] inline Vec3d unit(const Vec3d& v) {
+  return v / std::sqrt(glm::dot(v, v));
+}
 
 /// Adds flat facets that have vertices and a normal of their own.
 struct FacetBuilder {

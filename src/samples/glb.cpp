@@ -83,7 +83,9 @@ void widen(Accessor& accessor, const double* values, int count) {
   }
 }
 
-std::int32_t round_to(double value, double scale) { return static_cast<std::int32_t>(std::floor(value * scale + 0.5)); }
+std::int32_t round_to(double value, double scale) {
+  return static_cast<std::int32_t>(std::floor(value * scale + 0.5));
+}
 
 Dequantization dequantization_of(const GlbMesh& mesh) {
   Dequantization out;
@@ -136,7 +138,8 @@ std::uint32_t write_normals(BinaryChunk& chunk, const Primitive& primitive, bool
     }
     if (quantize) chunk.put(std::int8_t{0});
   }
-  return chunk.add_accessor({chunk.end_view(), quantize ? kByte : kFloat, primitive.normals.size(), "VEC3", quantize, {}, {}});
+  return chunk.add_accessor(
+      {chunk.end_view(), quantize ? kByte : kFloat, primitive.normals.size(), "VEC3", quantize, {}, {}});
 }
 
 std::uint32_t write_uvs(BinaryChunk& chunk, const Primitive& primitive, bool quantize) {
@@ -189,8 +192,9 @@ void write_materials(JsonWriter& json, const GlbScene& scene) {
     json.field("name", material.name);
     json.key("pbrMetallicRoughness");
     json.begin_object();
-    number_array(json, "baseColorFactor", std::array{material.base_color.x, material.base_color.y,
-                                                      material.base_color.z, material.base_color.w});
+    number_array(
+        json, "baseColorFactor",
+        std::array{material.base_color.x, material.base_color.y, material.base_color.z, material.base_color.w});
     json.field("metallicFactor", material.metallic);
     json.field("roughnessFactor", material.roughness);
     if (material.base_color_image) {

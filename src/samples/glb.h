@@ -30,8 +30,8 @@ struct GlbImage {
 struct GlbMesh {
   std::string name;
   std::vector<Primitive> primitives;
-  /// Writes positions as 16-bit integers, normals as 8-bit and UVs as 16-bit (KHR_mesh_quantization). Nodes then draw it
-  /// through a child that scales it back. UVs must be in [0, 1].
+  /// Writes positions as 16-bit integers, normals as 8-bit and UVs as 16-bit (KHR_mesh_quantization). Nodes then draw
+  /// it through a child that scales it back. UVs must be in [0, 1].
   bool quantize = false;
 };
 
@@ -39,10 +39,10 @@ struct GlbNode {
   std::string name;
   std::vector<std::uint32_t> children;
   std::optional<std::uint32_t> mesh, camera;
-  bool has_light = false;                           ///< the scene's one directional light
-  std::optional<std::array<double, 16>> matrix;     ///< column-major; else translation, rotation, scale
+  bool has_light = false;                        ///< the scene's one directional light
+  std::optional<std::array<double, 16>> matrix;  ///< column-major; else translation, rotation, scale
   std::optional<std::array<double, 3>> translation, scale;
-  std::optional<std::array<double, 4>> rotation;    ///< x y z w, unit
+  std::optional<std::array<double, 4>> rotation;  ///< x y z w, unit
 };
 
 struct GlbCamera {

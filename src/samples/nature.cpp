@@ -24,8 +24,8 @@ void smooth_by_position(Primitive& shape) {
   };
   for (std::size_t t = 0; t + 2 < shape.indices.size(); t += 3) {
     const std::uint32_t* v = &shape.indices[t];
-    const Vec3d cross = glm::cross(shape.positions[v[1]] - shape.positions[v[0]],
-                                   shape.positions[v[2]] - shape.positions[v[0]]);
+    const Vec3d cross =
+        glm::cross(shape.positions[v[1]] - shape.positions[v[0]], shape.positions[v[2]] - shape.positions[v[0]]);
     for (int k = 0; k < 3; ++k) {
       Vec3d& sum = sums.try_emplace(key(v[k]), 0.0).first->second;
       sum += cross;

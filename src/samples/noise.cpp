@@ -57,7 +57,9 @@ double sin_turns(double turns) {
   }
 }
 
-double cos_turns(double turns) { return sin_turns(turns + 0.25); }
+double cos_turns(double turns) {
+  return sin_turns(turns + 0.25);
+}
 
 double value_noise(const Vec3d& p, std::uint64_t seed) {
   const Vec3d base(std::floor(p.x), std::floor(p.y), std::floor(p.z));

@@ -21,8 +21,8 @@ class Random {
   std::uint64_t state_;
 };
 
-/// Sine and cosine of an angle in whole turns (1 = 360 degrees): Taylor series on an eighth of a turn, error below 1e-15.
-/// Quarter turns are exact.
+/// Sine and cosine of an angle in whole turns (1 = 360 degrees): Taylor series on an eighth of a turn, error below
+/// 1e-15. Quarter turns are exact.
 [[nodiscard]] double sin_turns(double turns);
 [[nodiscard]] double cos_turns(double turns);
 

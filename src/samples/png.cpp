@@ -64,8 +64,9 @@ Texture make_leaf_texture(std::uint32_t size) {
 
 std::vector<std::uint8_t> encode_png(const Texture& texture) {
   int bytes = 0;
-  unsigned char* png = stbi_write_png_to_mem(texture.rgba.data(), static_cast<int>(texture.width * 4),
-                                             static_cast<int>(texture.width), static_cast<int>(texture.height), 4, &bytes);
+  unsigned char* png =
+      stbi_write_png_to_mem(texture.rgba.data(), static_cast<int>(texture.width * 4), static_cast<int>(texture.width),
+                            static_cast<int>(texture.height), 4, &bytes);
   std::vector<std::uint8_t> out(png, png + bytes);
   std::free(png);
   return out;

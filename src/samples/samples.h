@@ -69,7 +69,8 @@ namespace meshlode::samples {
 /// `count` loose quads, leaf cards, with normals and UVs.
 [[nodiscard]] Primitive make_foliage(std::uint32_t count, std::uint64_t seed = 5);
 
-// --------------------------------------------------------------------------------------------------- the files of data/
+// --------------------------------------------------------------------------------------------------- the files of
+// data/
 
 struct SampleFile {
   std::string name;                 ///< for example "rock.glb"

@@ -39,7 +39,9 @@ GlbScene textured_scene_of(const char* name, Primitive shape, GlbMaterial materi
   return scene;
 }
 
-GlbScene make_rock_scene() { return textured_scene_of("rock", make_rock(41), {}, make_stone_texture(128)); }
+GlbScene make_rock_scene() {
+  return textured_scene_of("rock", make_rock(41), {}, make_stone_texture(128));
+}
 
 GlbScene make_terrain_scene(std::uint32_t columns, std::uint32_t rows) {
   return textured_scene_of("terrain", make_terrain(columns, rows), {}, make_ground_texture(128));

@@ -107,8 +107,8 @@ Primitive with_smooth_normals(Primitive shape) {
   std::vector<Vec3d> sums(shape.positions.size(), Vec3d(0.0));
   for (std::size_t t = 0; t + 2 < shape.indices.size(); t += 3) {
     const std::uint32_t* v = &shape.indices[t];
-    const Vec3d cross = glm::cross(shape.positions[v[1]] - shape.positions[v[0]],
-                                   shape.positions[v[2]] - shape.positions[v[0]]);
+    const Vec3d cross =
+        glm::cross(shape.positions[v[1]] - shape.positions[v[0]], shape.positions[v[2]] - shape.positions[v[0]]);
     for (int k = 0; k < 3; ++k) sums[v[k]] += cross;
   }
   shape.normals.clear();

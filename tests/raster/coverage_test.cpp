@@ -15,7 +15,8 @@ using namespace test;
 constexpr ImageSize kSize{64, 64};
 
 ScreenVertex pixel_vertex(double x, double y, std::uint32_t depth = 1000) {
-  return {static_cast<std::int32_t>(std::lround(x * kSubpixels)), static_cast<std::int32_t>(std::lround(y * kSubpixels)), depth};
+  return {static_cast<std::int32_t>(std::lround(x * kSubpixels)),
+          static_cast<std::int32_t>(std::lround(y * kSubpixels)), depth};
 }
 
 ScreenSoup one_triangle(const ScreenVertex& a, const ScreenVertex& b, const ScreenVertex& c,
@@ -48,8 +49,10 @@ TEST(Raster, TopAndLeftEdgesOwnTheirPixels) {
 
 // The diagonal runs from the upper right to the lower left: it is a left edge of the lower triangle only.
 TEST(Raster, DiagonalPixelsBelongToTheTriangleOnTheirRight) {
-  const VisibilityBuffer upper = draw(one_triangle(pixel_vertex(0.5, 0.5), pixel_vertex(4.5, 0.5), pixel_vertex(0.5, 4.5)), kSize);
-  const VisibilityBuffer lower = draw(one_triangle(pixel_vertex(4.5, 0.5), pixel_vertex(4.5, 4.5), pixel_vertex(0.5, 4.5)), kSize);
+  const VisibilityBuffer upper =
+      draw(one_triangle(pixel_vertex(0.5, 0.5), pixel_vertex(4.5, 0.5), pixel_vertex(0.5, 4.5)), kSize);
+  const VisibilityBuffer lower =
+      draw(one_triangle(pixel_vertex(4.5, 0.5), pixel_vertex(4.5, 4.5), pixel_vertex(0.5, 4.5)), kSize);
   EXPECT_EQ(count_drawn(upper), 4u + 3u + 2u + 1u);  // nothing of the diagonal
   EXPECT_EQ(count_drawn(lower), 1u + 2u + 3u);       // the diagonal, without its ends on the right and bottom sides
   EXPECT_EQ(lower.item[1 * 64 + 3], 0u);
@@ -85,7 +88,8 @@ TEST(Raster, AreaInPixelsIsTheClosedForm) {
   for (int i = 0; i < 200; ++i) {
     constexpr ImageSize size{600, 600};
     const ScreenVertex a{random.between(0, 153600), random.between(0, 153600), 1},
-        b{random.between(0, 153600), random.between(0, 153600), 1}, c{random.between(0, 153600), random.between(0, 153600), 1};
+        b{random.between(0, 153600), random.between(0, 153600), 1},
+        c{random.between(0, 153600), random.between(0, 153600), 1};
     const double area = 0.5 * std::abs(static_cast<double>(doubled_area(a, b, c))) / (kSubpixels * kSubpixels);
     const auto length = [](const ScreenVertex& p, const ScreenVertex& q) {
       return std::hypot(p.x - q.x, p.y - q.y) / kSubpixels;
@@ -125,7 +129,8 @@ TEST(Raster, FansCoverEveryPixelExactlyOnce) {
     const std::vector<int> counts = count_coverage(soup, kSize);
     EXPECT_LE(*std::max_element(counts.begin(), counts.end()), 1) << "round " << round;
     EXPECT_EQ(counts, count_coverage(reversed, kSize)) << "round " << round;
-    // No hole: a pixel centre strictly inside the polygon is drawn. Independent oracle: winding by crossings in doubles.
+    // No hole: a pixel centre strictly inside the polygon is drawn. Independent oracle: winding by crossings in
+    // doubles.
     for (std::uint32_t y = 0; y < kSize.height; ++y) {
       for (std::uint32_t x = 0; x < kSize.width; ++x) {
         const double px = x + 0.5 + 1e-7, py = y + 0.5 + 1e-11;  // the top-left rule's infinitesimal, made finite
@@ -180,7 +185,9 @@ TEST(Raster, DegenerateTrianglesDrawNothing) {
   EXPECT_TRUE(one_triangle(a, a, a).triangles.empty());
   EXPECT_TRUE(one_triangle(a, b, b).triangles.empty());
   EXPECT_TRUE(one_triangle(a, b, c).triangles.empty());  // collinear
-  EXPECT_EQ(count_drawn(draw(one_triangle(pixel_vertex(3.6, 3.6), pixel_vertex(3.9, 3.6), pixel_vertex(3.6, 3.9)), kSize)), 0u);
+  EXPECT_EQ(
+      count_drawn(draw(one_triangle(pixel_vertex(3.6, 3.6), pixel_vertex(3.9, 3.6), pixel_vertex(3.6, 3.9)), kSize)),
+      0u);
 }
 
 TEST(Raster, CullingFollowsTheOrientation) {
@@ -195,7 +202,8 @@ TEST(Raster, CullingFollowsTheOrientation) {
 
 TEST(Raster, NearerTrianglesWinAndEqualDepthsGoToTheLowestKey) {
   const auto square = [](std::uint32_t depth, TriangleKey key, ScreenSoup& soup) {
-    add_snapped(pixel_vertex(2, 2, depth), pixel_vertex(60, 2, depth), pixel_vertex(2, 60, depth), Culling::kNone, key, kSize, soup);
+    add_snapped(pixel_vertex(2, 2, depth), pixel_vertex(60, 2, depth), pixel_vertex(2, 60, depth), Culling::kNone, key,
+                kSize, soup);
   };
   ScreenSoup soup;
   square(500, {3, 0}, soup);
@@ -247,7 +255,8 @@ TEST(Raster, WideAndNarrowDepthArithmeticAgree) {
 }
 
 TEST(Raster, OnePixelAndOddPicturesAreDrawn) {
-  for (const ImageSize size : {ImageSize{1, 1}, ImageSize{1, 7}, ImageSize{7, 1}, ImageSize{13, 17}, ImageSize{3, 33}}) {
+  for (const ImageSize size :
+       {ImageSize{1, 1}, ImageSize{1, 7}, ImageSize{7, 1}, ImageSize{13, 17}, ImageSize{3, 33}}) {
     ScreenSoup soup;
     const ScreenVertex a{-100000, -100000, 5}, b{500000, -100000, 5}, c{-100000, 500000, 5};
     add_snapped(a, b, c, Culling::kNone, {0, 0}, size, soup);

@@ -38,7 +38,8 @@ struct Hit {
 };
 
 /// Moeller and Trumbore's ray against every triangle of the cut, culling as the rasterizer says it does.
-std::vector<Hit> cast_rays(const Asset& asset, std::span<const ClusterInstance> cut, const Camera& camera, double px, double py) {
+std::vector<Hit> cast_rays(const Asset& asset, std::span<const ClusterInstance> cut, const Camera& camera, double px,
+                           double py) {
   const Vec3d forward = glm::normalize(camera.target - camera.eye);
   const Vec3d right = glm::normalize(glm::cross(forward, Vec3d(0, 1, 0)));
   const Vec3d up = glm::cross(right, forward);
@@ -216,8 +217,9 @@ TEST(RasterCut, IdsThatTheAssetDoesNotHaveAreRefused) {
   const Asset asset = open_asset(test::sample_asset_bytes());
   const ClusterInstance first{InstanceId(0u), ClusterId(asset.meshes()[asset.instances()[0].mesh].first_cluster)};
   EXPECT_TRUE(draw_cut(asset, std::vector{first}, ball_camera()).ok());
-  for (const ClusterInstance bad : {ClusterInstance{InstanceId(99u), first.cluster}, ClusterInstance{first.instance, ClusterId(99999u)},
-                                    ClusterInstance{InstanceId(1u), first.cluster}, ClusterInstance{}}) {
+  for (const ClusterInstance bad :
+       {ClusterInstance{InstanceId(99u), first.cluster}, ClusterInstance{first.instance, ClusterId(99999u)},
+        ClusterInstance{InstanceId(1u), first.cluster}, ClusterInstance{}}) {
     EXPECT_FALSE(draw_cut(asset, std::vector{bad}, ball_camera()).ok());
   }
 }

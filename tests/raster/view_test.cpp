@@ -35,7 +35,8 @@ Drawn draw_sample() {
 }
 
 std::uint32_t color_at(const Image& image, std::size_t pixel) {
-  return static_cast<std::uint32_t>(image.rgba[4 * pixel] << 16 | image.rgba[4 * pixel + 1] << 8 | image.rgba[4 * pixel + 2]);
+  return static_cast<std::uint32_t>(image.rgba[4 * pixel] << 16 | image.rgba[4 * pixel + 1] << 8 |
+                                    image.rgba[4 * pixel + 2]);
 }
 
 TEST(RasterView, EveryViewPaintsExactlyWhatIsVisible) {

@@ -138,8 +138,8 @@ TEST(Samples, SliversAreThinAndLieFlat) {
   ASSERT_EQ(slivers.indices.size(), 30u);
   for (std::size_t t = 0; t < slivers.indices.size(); t += 3) {
     const Vec3d& a = slivers.positions[slivers.indices[t]];
-    const Vec3d cross = glm::cross(slivers.positions[slivers.indices[t + 1]] - a,
-                                   slivers.positions[slivers.indices[t + 2]] - a);
+    const Vec3d cross =
+        glm::cross(slivers.positions[slivers.indices[t + 1]] - a, slivers.positions[slivers.indices[t + 2]] - a);
     EXPECT_GT(cross.y, 0.0);
     EXPECT_LT(cross.y, 3e-5);
   }
@@ -151,8 +151,7 @@ TEST(Samples, DuplicatesAndZeroAreasAreThere) {
   std::size_t none = 0;
   for (std::size_t t = 0; t < zero.indices.size(); t += 3) {
     const Vec3d& a = zero.positions[zero.indices[t]];
-    const Vec3d cross =
-        glm::cross(zero.positions[zero.indices[t + 1]] - a, zero.positions[zero.indices[t + 2]] - a);
+    const Vec3d cross = glm::cross(zero.positions[zero.indices[t + 1]] - a, zero.positions[zero.indices[t + 2]] - a);
     if (cross == Vec3d(0.0)) ++none;
   }
   EXPECT_EQ(none, 11u);

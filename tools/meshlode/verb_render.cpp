@@ -124,12 +124,13 @@ std::string stats_json(const RenderOptions& options, const Camera& camera, const
 std::string stats_text(const RenderOptions& options, const Camera& camera, const RenderStats& stats) {
   char line[256];
   const double pixels = static_cast<double>(camera.width) * camera.height;
-  std::snprintf(line, sizeof line,
-                ": %ux%u, %llu triangles in %llu clusters, levels %u to %u, %llu clusters seen, %.1f%% of the picture covered\n",
-                camera.width, camera.height, static_cast<unsigned long long>(stats.triangles),
-                static_cast<unsigned long long>(stats.clusters), stats.finest_level, stats.coarsest_level,
-                static_cast<unsigned long long>(stats.visible_clusters),
-                100.0 * static_cast<double>(stats.covered_pixels) / pixels);
+  std::snprintf(
+      line, sizeof line,
+      ": %ux%u, %llu triangles in %llu clusters, levels %u to %u, %llu clusters seen, %.1f%% of the picture covered\n",
+      camera.width, camera.height, static_cast<unsigned long long>(stats.triangles),
+      static_cast<unsigned long long>(stats.clusters), stats.finest_level, stats.coarsest_level,
+      static_cast<unsigned long long>(stats.visible_clusters),
+      100.0 * static_cast<double>(stats.covered_pixels) / pixels);
   return options.output + line;
 }
 
@@ -141,7 +142,8 @@ int run_render(const Verb& verb, std::span<char* const> args) {
   parser.add_value("--view", options.view, "shaded, clusters, triangles or levels",
                    {"shaded", "clusters", "triangles", "levels"});
   add_camera_options(parser, options.camera);
-  parser.add_value("--error", options.error, "draw the uniform cut at this error in mesh units instead of --pixel-error");
+  parser.add_value("--error", options.error,
+                   "draw the uniform cut at this error in mesh units instead of --pixel-error");
   parser.add_flag("--relative", options.is_relative, "--error is a fraction of each mesh's own diagonal");
   add_jobs_option(parser, options.jobs);
   add_output_options(parser, options.report);
@@ -161,7 +163,8 @@ int run_render(const Verb& verb, std::span<char* const> args) {
   const std::vector<ClusterInstance> cut = options.error ? uniform_cut(*asset, *options.error, options.is_relative)
                                                          : select_bvh(*asset, *camera, options.camera.pixel_error);
   const auto fail = [&](Error error) {
-    if (error.code == ErrorCode::kInvalid) error.where = options.input + (error.where.empty() ? "" : ": ") + error.where;
+    if (error.code == ErrorCode::kInvalid)
+      error.where = options.input + (error.where.empty() ? "" : ": ") + error.where;
     return print_error(error);
   };
   const Result<VisibilityBuffer> visibility = draw_cut(*asset, cut, *camera);
