@@ -69,6 +69,7 @@ SimplifyInput group_input(const BuildPool& pool, const PreparedMesh& mesh, const
   for (const std::uint32_t p : positions) {
     input.positions.push_back(pool.positions[p]);
     input.is_locked.push_back(shared.position[p]);
+    input.witnesses.push_back(pool.witnesses[p]);
   }
   for (const std::uint32_t w : wedges) {
     input.wedge_position.push_back(index_in(positions, pool.wedge_position[w]));

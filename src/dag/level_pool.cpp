@@ -44,7 +44,10 @@ std::uint32_t find_or_insert(Table& table, std::uint64_t hash, std::uint32_t nex
 }  // namespace
 
 BuildPool::BuildPool(const PreparedMesh& mesh) : stride_(mesh.layout.stride()) {
-  for (const Vec3i& position : mesh.positions) (void)position_id(position);
+  for (const Vec3i& position : mesh.positions) {
+    (void)position_id(position);
+    witnesses.push_back({{position}, 1});
+  }
   for (std::size_t w = 0; w < mesh.wedge_position.size(); ++w) {
     (void)wedge_id(mesh.wedge_position[w], mesh.wedge_attributes.data() + w * stride_);
   }
@@ -109,7 +112,19 @@ void BuildPool::add_clusters(const std::vector<WedgeTriangle>& source, const std
 void BuildPool::add_simplified(const SimplifyResult& result, const Clustering& clustering, std::uint32_t level,
                                std::uint32_t own_group) {
   std::vector<std::uint32_t> ids(result.positions.size());
-  for (std::size_t p = 0; p < ids.size(); ++p) ids[p] = position_id(result.positions[p]);
+  for (std::size_t p = 0; p < ids.size(); ++p) {
+    ids[p] = position_id(result.positions[p]);
+    if (ids[p] == witnesses.size()) witnesses.emplace_back();
+    // A locked position keeps what it had and takes over what this group left at it, as far as there is room.
+    Witnesses& known = witnesses[ids[p]];
+    for (std::uint32_t i = 0; i < result.witnesses[p].count; ++i) {
+      const Vec3i& point = result.witnesses[p].points[i];
+      const auto end = known.points.begin() + known.count;
+      if (known.count < Witnesses::kCapacity && std::find(known.points.begin(), end, point) == end) {
+        known.points[known.count++] = point;
+      }
+    }
+  }
   std::vector<std::uint32_t> wedges(result.wedge_position.size());
   for (std::size_t w = 0; w < wedges.size(); ++w) {
     wedges[w] = wedge_id(ids[result.wedge_position[w]], result.wedge_attributes.data() + w * stride_);

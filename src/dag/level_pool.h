@@ -47,6 +47,7 @@ class BuildPool {
   [[nodiscard]] std::uint32_t count_materials(std::uint32_t cluster) const;
 
   std::vector<Vec3i> positions;
+  std::vector<Witnesses> witnesses;  ///< per position
   std::vector<std::uint32_t> wedge_position;
   std::vector<float> wedge_attributes;
   std::vector<WedgeTriangle> triangles;

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "simplify/collapse_mesh.h"
+#include "simplify/point_triangle.h"
 #include "simplify/quadric.h"
 #include "simplify/simplify.h"
 
@@ -38,11 +39,14 @@ class GroupSimplifier {
   static constexpr double kMaxOffset = 1.5;
   static constexpr double kFlipCosine = 0.2;  ///< a triangle may turn by less than 78 degrees in one collapse
   static constexpr int kMaxPasses = 8;
+  /// A collapse costs at least this share of what its largest displacement would cost as a mean distance.
+  static constexpr double kGuardShare = 0.5;
 
   struct Candidate {
     double cost;
     std::uint32_t a, b;                  ///< a < b
     std::uint32_t version_a, version_b;  ///< stale if a vertex has changed since
+    bool is_guarded = false;             ///< the cost already counts how far the old surface would be left behind
     bool operator>(const Candidate& other) const {
       if (cost != other.cost) return cost > other.cost;
       return a != other.a ? a > other.a : b > other.b;
@@ -58,7 +62,7 @@ class GroupSimplifier {
     Vec3d position{0.0};
     double cost = 0.0;
   };
-  enum class Obstacle : std::uint8_t { kNone, kLocked, kFlips, kSeams, kTopology };
+  enum class Obstacle : std::uint8_t { kNone, kLocked, kFlips, kSeams, kTopology, kPutBack };
 
   void set_frame();
   void scale_attributes();
@@ -69,7 +73,9 @@ class GroupSimplifier {
   void collect_wedge_classes(std::uint32_t a, std::uint32_t b);
   [[nodiscard]] Placement place(std::uint32_t a, std::uint32_t b);
   [[nodiscard]] double total_error(const Quadric& total, const Vec3d& p) const;
-  [[nodiscard]] Obstacle try_collapse(std::uint32_t a, std::uint32_t b);
+  [[nodiscard]] Obstacle try_collapse(const Candidate& candidate);
+  [[nodiscard]] double distance2_to_new_star(std::uint32_t a, std::uint32_t b, const Vec3d& from, const Vec3d& target) const;
+  [[nodiscard]] double weigh_witnesses(std::uint32_t a, std::uint32_t b, const Vec3d& target);
   [[nodiscard]] bool keeps_shared_corners(std::uint32_t locked, const std::vector<std::uint32_t>& around) const;
   [[nodiscard]] bool keeps_topology(std::uint32_t a, std::uint32_t b);
   [[nodiscard]] bool turns_over(std::uint32_t moved, std::uint32_t other, const std::vector<std::uint32_t>& corners,
@@ -97,6 +103,8 @@ class GroupSimplifier {
     Vec3d low, high;
     [[nodiscard]] double diagonal() const { return std::sqrt(glm::dot(high - low, high - low)); }
   };
+  std::vector<Witnesses> witnesses_;            ///< per vertex
+  double total_weight_ = 0.0;                   ///< of all plane quadrics
   std::vector<Box> merged_;                     ///< box around all input vertices that a vertex stands for
   std::vector<std::uint32_t> version_;
   std::vector<std::uint8_t> is_locked_, is_border_;
@@ -109,9 +117,10 @@ class GroupSimplifier {
   std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> queue_;
   double error_ = 0.0;  ///< frame units
   bool is_topology_relaxed_ = false, are_flips_relaxed_ = false;
-  std::array<std::uint64_t, 5> obstacles_{};
+  std::array<std::uint64_t, 6> obstacles_{};
 
   // Scratch of one collapse.
+  std::vector<std::pair<double, Vec3i>> left_behind_;  ///< squared distance to the new star, and the witness
   std::vector<std::uint32_t> corners_a_, corners_b_, neighbors_a_, neighbors_b_, dropped_;
   std::vector<WedgeClass> classes_;
   std::size_t class_count_ = 0;

@@ -13,6 +13,7 @@ GroupSimplifier<C>::GroupSimplifier(const SimplifyInput& input, const SimplifyOp
       position_(input.positions.size()),
       plane_(input.positions.size()),
       border_(input.positions.size()),
+      witnesses_(input.witnesses),
       merged_(input.positions.size()),
       version_(input.positions.size(), 0),
       is_locked_(input.is_locked),
@@ -117,6 +118,7 @@ void GroupSimplifier<C>::add_face_quadrics() {
     const Vec3d n = cross / twice_area;
     const double area = 0.5 * twice_area;
     for (const std::uint32_t vertex : v) plane_[vertex].add_plane(n, -glm::dot(n, p), area);
+    total_weight_ += 3.0 * area;
     if (attribute_count_ == 0) continue;
 
     // Across a sliver a gradient means nothing: there the attribute is taken as constant.
@@ -254,7 +256,7 @@ void GroupSimplifier<C>::push_candidate(std::uint32_t a, std::uint32_t b) {
   }
   if (a > b) std::swap(a, b);
   const Placement placement = place(a, b);
-  queue_.push({placement.cost, a, b, version_[a], version_[b]});
+  queue_.push({placement.cost, a, b, version_[a], version_[b], false});
 }
 
 /// Which wedges of a and b become one: those that meet in a triangle on the edge.
@@ -490,8 +492,41 @@ bool GroupSimplifier<C>::turns_over(std::uint32_t moved, std::uint32_t other, co
   return false;
 }
 
+/// Squared distance from a point to the triangles that would surround the joined vertex.
 template <std::size_t C>
-typename GroupSimplifier<C>::Obstacle GroupSimplifier<C>::try_collapse(std::uint32_t a, std::uint32_t b) {
+double GroupSimplifier<C>::distance2_to_new_star(std::uint32_t a, std::uint32_t b, const Vec3d& from,
+                                                 const Vec3d& target) const {
+  double best = glm::dot(from - target, from - target);
+  for (const auto* corners : {&corners_a_, &corners_b_}) {
+    for (const std::uint32_t corner : *corners) {
+      const std::uint32_t x = mesh_.vertex(CollapseMesh::next_in_triangle(corner));
+      const std::uint32_t y = mesh_.vertex(CollapseMesh::next_in_triangle(CollapseMesh::next_in_triangle(corner)));
+      if (x == a || x == b || y == a || y == b) continue;
+      best = std::min(best, distance2_to_triangle(from, target, position_[x], position_[y]));
+    }
+  }
+  return best;
+}
+
+/// The largest squared distance from the witnesses of both vertices to the new star; left_behind_ holds all of them.
+template <std::size_t C>
+double GroupSimplifier<C>::weigh_witnesses(std::uint32_t a, std::uint32_t b, const Vec3d& target) {
+  left_behind_.clear();
+  double largest = 0.0;
+  for (const std::uint32_t vertex : {a, b}) {
+    const Witnesses& w = witnesses_[vertex];
+    for (std::uint32_t i = 0; i < w.count; ++i) {
+      left_behind_.emplace_back(distance2_to_new_star(a, b, to_frame(w.points[i]), target), w.points[i]);
+      largest = std::max(largest, left_behind_.back().first);
+    }
+  }
+  return largest;
+}
+
+template <std::size_t C>
+typename GroupSimplifier<C>::Obstacle GroupSimplifier<C>::try_collapse(const Candidate& candidate) {
+  std::uint32_t a = candidate.a;
+  std::uint32_t b = candidate.b;
   const Placement placement = place(a, b);  // leaves the wedge classes behind
   for (std::size_t i = 0; i < class_count_; ++i) {
     if (classes_[i].is_ambiguous) return Obstacle::kSeams;
@@ -505,6 +540,17 @@ typename GroupSimplifier<C>::Obstacle GroupSimplifier<C>::try_collapse(std::uint
   if (!is_topology_relaxed_ && !keeps_topology(a, b)) return Obstacle::kTopology;
   if (!are_flips_relaxed_ && (turns_over(a, b, corners_a_, target) || turns_over(b, a, corners_b_, target))) {
     return Obstacle::kFlips;
+  }
+  // Thin closed features vanish almost free of plane error. What the source points behind both vertices would be left at
+  // is the truth of it: where that is far more than the quadrics say, the collapse waits for its turn at that price.
+  const double left_behind2 = weigh_witnesses(a, b, target);
+  if (!candidate.is_guarded) {
+    const double mean_weight = 2.0 * total_weight_ / mesh_.alive_count();
+    const double price = kGuardShare * left_behind2 * std::sqrt(std::max(mean_weight, plane_[a].weight + plane_[b].weight));
+    if (price > placement.cost) {
+      queue_.push({price, a, b, version_[a], version_[b], true});
+      return Obstacle::kPutBack;
+    }
   }
   if (is_locked_[b] != 0) std::swap(a, b);
   collapse(a, b, target);
@@ -523,6 +569,10 @@ void GroupSimplifier<C>::collapse(std::uint32_t a, std::uint32_t b, const Vec3d&
   if (border_[a].weight > 0.0) {
     error_ = std::max(error_, std::sqrt(border_[a].evaluate(target) / border_[a].weight));
   }
+  std::stable_sort(left_behind_.begin(), left_behind_.end(),
+                   [](const auto& x, const auto& y) { return x.first > y.first; });
+  witnesses_[a].count = static_cast<std::uint32_t>(std::min(left_behind_.size(), Witnesses::kCapacity));
+  for (std::uint32_t i = 0; i < witnesses_[a].count; ++i) witnesses_[a].points[i] = left_behind_[i].second;
   merged_[a].low = glm::min(merged_[a].low, merged_[b].low);
   merged_[a].high = glm::max(merged_[a].high, merged_[b].high);
   is_border_[a] |= is_border_[b];
@@ -617,7 +667,7 @@ void GroupSimplifier<C>::run_passes() {
       const Candidate candidate = queue_.top();
       queue_.pop();
       if (version_[candidate.a] != candidate.version_a || version_[candidate.b] != candidate.version_b) continue;
-      const Obstacle obstacle = try_collapse(candidate.a, candidate.b);
+      const Obstacle obstacle = try_collapse(candidate);
       if (obstacle == Obstacle::kNone) {
         any = true;
       } else {
@@ -631,14 +681,15 @@ void GroupSimplifier<C>::run_passes() {
 template <std::size_t C>
 StuckReason GroupSimplifier<C>::reason_for_stopping() const {
   if (mesh_.alive_count() <= options_.target_triangles) return StuckReason::kNotStuck;
-  const auto largest = std::max_element(obstacles_.begin() + 1, obstacles_.end());
+  const auto largest = std::max_element(obstacles_.begin() + 1, obstacles_.begin() + 5);
   if (*largest == 0) return StuckReason::kTooSmall;
   switch (static_cast<Obstacle>(largest - obstacles_.begin())) {
     case Obstacle::kLocked: return StuckReason::kLocked;
     case Obstacle::kFlips: return StuckReason::kFlips;
     case Obstacle::kSeams: return StuckReason::kSeams;
     case Obstacle::kTopology: return StuckReason::kTopology;
-    case Obstacle::kNone: break;
+    case Obstacle::kNone:
+    case Obstacle::kPutBack: break;
   }
   return StuckReason::kTooSmall;
 }
@@ -662,6 +713,7 @@ SimplifyResult GroupSimplifier<C>::result() const {
       if (new_position[v] == kUnset) {
         new_position[v] = static_cast<std::uint32_t>(out.positions.size());
         out.positions.push_back(grid_position_[v]);
+        out.witnesses.push_back(witnesses_[v]);
       }
       std::uint32_t& slot = stride == 0 ? new_position[v] : new_wedge[w];
       if (stride == 0 ? out.wedge_position.size() <= slot : slot == kUnset) {

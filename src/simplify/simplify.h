@@ -7,6 +7,7 @@
 // go. Link condition and flip tests are about quality, not about cracks, and can be relaxed where nothing else helps.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -31,12 +32,21 @@ struct SimplifyOptions {
   bool may_relax_flips = false;  ///< and then without the flip test: a last resort
 };
 
+/// Source points that a vertex has come to stand for: those farthest from the surface around it. They are carried up the
+/// DAG, so that a collapse is judged by what it leaves behind of the source and not only of the level before.
+struct Witnesses {
+  static constexpr std::size_t kCapacity = 3;
+  std::array<Vec3i, kCapacity> points;  ///< grid units
+  std::uint32_t count = 0;
+};
+
 /// A group with local ids. Wedges are per position; see PreparedMesh.
 struct SimplifyInput {
   PositionGrid grid;
   AttributeLayout layout;
   std::vector<Vec3i> positions;
   std::vector<std::uint8_t> is_locked;          ///< per position: shared with another group
+  std::vector<Witnesses> witnesses;             ///< per position
   std::vector<std::uint32_t> wedge_position;
   std::vector<std::uint8_t> is_wedge_shared;    ///< per wedge: another group has it too, so shading is smooth across
   std::vector<float> wedge_attributes;
@@ -46,6 +56,7 @@ struct SimplifyInput {
 
 struct SimplifyResult {
   std::vector<Vec3i> positions;                 ///< distinct ids, but two may have the same coordinates
+  std::vector<Witnesses> witnesses;             ///< per position
   std::vector<std::uint32_t> wedge_position;
   std::vector<float> wedge_attributes;
   std::vector<WedgeTriangle> triangles;

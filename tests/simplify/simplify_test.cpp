@@ -24,6 +24,7 @@ SimplifyInput as_input(const PreparedMesh& mesh) {
   input.layout = mesh.layout;
   input.positions = mesh.positions;
   input.is_locked.assign(mesh.positions.size(), 0);
+  for (const Vec3i& p : mesh.positions) input.witnesses.push_back({{p}, 1});
   input.wedge_position = mesh.wedge_position;
   input.is_wedge_shared.assign(mesh.wedge_position.size(), 0);
   input.wedge_attributes = mesh.wedge_attributes;
@@ -281,6 +282,7 @@ TEST(Simplify, NothingButDegenerateTrianglesIsFine) {
   SimplifyInput input;
   input.positions = {{0, 0, 0}, {1, 1, 1}};
   input.is_locked = {0, 0};
+  input.witnesses.resize(2);
   input.wedge_position = {0, 1};
   input.is_wedge_shared = {0, 0};
   input.triangles = {{0, 1, 1}, {0, 0, 0}};
