@@ -11,8 +11,8 @@
 //
 // Errors. Every input is checked before it is used: sizes that do not fit, indices out of range, numbers that are not
 // finite → ErrorCode::kInvalid with a place such as "meshes[0].primitives[2].indices[17]". kUsage: an option that makes
-// no sense. kUnsupported: an error tier or codec that this version does not have. kBuildFailed: cancelled, out of memory.
-// kIo: only from the functions that touch files. No exception leaves.
+// no sense. kUnsupported: an error tier or codec that this version does not have. kBuildFailed: cancelled, out of
+// memory. kIo: only from the functions that touch files. No exception leaves.
 //
 // Determinism (I10). The same input and options give the same bytes for any number of threads, and for builds that run
 // at the same time.
@@ -42,26 +42,26 @@ constexpr std::uint32_t kDefaultMaterial = format::kNone;
 
 /// A triangle list with one material. n vertices, m triangles; exactly one of the two position arrays is given.
 struct PrimitiveInput {
-  std::span<const float> positions;         ///< 3n: x y z, mesh space
-  std::span<const double> positions_double; ///< 3n: instead of `positions`, for meshes far from their origin
-  std::span<const float> normals;           ///< 3n, need not be unit length; empty: flat shading is meant
+  std::span<const float> positions;          ///< 3n: x y z, mesh space
+  std::span<const double> positions_double;  ///< 3n: instead of `positions`, for meshes far from their origin
+  std::span<const float> normals;            ///< 3n, need not be unit length; empty: flat shading is meant
   std::array<std::span<const float>, format::kMaxUvSets> uvs;  ///< 2n each; empty: no such set. Set k is TEXCOORD_k
-  std::span<const float> colors;            ///< 4n: r g b a, linear, clamped to 0 … 1; empty: white
-  std::span<const std::uint32_t> indices;   ///< 3m, counter-clockwise seen from outside, each below n
-  std::uint32_t material = kDefaultMaterial;///< into SceneInput::materials
+  std::span<const float> colors;              ///< 4n: r g b a, linear, clamped to 0 … 1; empty: white
+  std::span<const std::uint32_t> indices;     ///< 3m, counter-clockwise seen from outside, each below n
+  std::uint32_t material = kDefaultMaterial;  ///< into SceneInput::materials
 };
 
 /// One DAG is built across all primitives: there are no cracks between them in any cut.
 struct MeshInput {
-  std::string_view name;                      ///< UTF-8
-  std::span<const PrimitiveInput> primitives; ///< none: an empty mesh
+  std::string_view name;                       ///< UTF-8
+  std::span<const PrimitiveInput> primitives;  ///< none: an empty mesh
 };
 
 struct MaterialInput {
   std::string_view name;
   std::array<float, 4> base_color{1.0F, 1.0F, 1.0F, 1.0F};  ///< linear
   format::AlphaMode alpha_mode = format::AlphaMode::kOpaque;
-  float alpha_cutoff = 0.5F;                  ///< for kMask
+  float alpha_cutoff = 0.5F;  ///< for kMask
   bool double_sided = false;
   /// Bit k: the caller's shaders sample TEXCOORD_k with this material. Sets that no material of a mesh uses are not
   /// stored, unless BuildOptions::keep_all_attributes.
@@ -70,21 +70,21 @@ struct MaterialInput {
 
 struct InstanceInput {
   std::string_view name;
-  std::uint32_t mesh = 0;                     ///< into SceneInput::meshes
+  std::uint32_t mesh = 0;  ///< into SceneInput::meshes
   /// Mesh space to world, column-major 4×4 (element 12 … 14 is the translation); the last row is 0 0 0 1. Mirrored
   /// and singular ones are allowed, and marked in the asset.
   std::array<double, 16> transform{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 };
 
 struct SceneInput {
-  std::string_view name;                      ///< what the asset calls its source, such as a file's base name
+  std::string_view name;  ///< what the asset calls its source, such as a file's base name
   std::span<const MeshInput> meshes;
   std::span<const MaterialInput> materials;
-  std::span<const InstanceInput> instances;   ///< empty: each mesh is drawn once, as it is
+  std::span<const InstanceInput> instances;  ///< empty: each mesh is drawn once, as it is
 };
 
 struct BuildProgress {
-  double fraction = 0.0;        ///< of the whole build, 0 … 1, never falling within a build
+  double fraction = 0.0;  ///< of the whole build, 0 … 1, never falling within a build
   std::uint32_t mesh = 0;
   std::uint32_t mesh_count = 0;
   std::uint32_t level = 0;      ///< DAG level just finished
@@ -95,11 +95,11 @@ struct BuildProgress {
 struct BuildOptions {
   format::ErrorTier error_tier = format::ErrorTier::kQem;
   format::Codec codec = format::Codec::kNone;  ///< of the pages on disk
-  double grid_step = 0.0;       ///< distance of grid points, mesh units; 0: chosen from the mesh's size
-  bool strip_attributes = false;     ///< positions only
-  bool keep_all_attributes = false;  ///< also what no material asks for; not together with strip_attributes
-  bool repair = false;          ///< drop and count triangles that touch a bad index or a non-finite position, not refuse
-  std::uint32_t thread_count = 0;    ///< at most this many threads; 0: what oneTBB gives the calling thread
+  double grid_step = 0.0;                      ///< distance of grid points, mesh units; 0: chosen from the mesh's size
+  bool strip_attributes = false;               ///< positions only
+  bool keep_all_attributes = false;            ///< also what no material asks for; not together with strip_attributes
+  bool repair = false;  ///< drop and count triangles that touch a bad index or a non-finite position, not refuse
+  std::uint32_t thread_count = 0;  ///< at most this many threads; 0: what oneTBB gives the calling thread
   std::function<void(const BuildProgress&)> on_progress;  ///< may be empty
   std::function<bool()> should_cancel;  ///< asked between steps; true ends the build with kBuildFailed. May be empty
 };

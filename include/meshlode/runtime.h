@@ -5,18 +5,18 @@
 //   if (!asset) { puts(asset.error().message().c_str()); return 1; }
 //   for (const meshlode::DrawItem& item : asset->select({.eye = {0, 1, 5}}, 1.0)) …
 //
-// Units. *Mesh space* is the space of the source mesh, in its own ("object") units; stored spheres and decoded positions
-// are mesh space relative to MeshRecord::origin. *World space* is after InstanceRecord::transform. Errors are distances
-// in object units; format::kInfiniteError means "never passes".
+// Units. *Mesh space* is the space of the source mesh, in its own ("object") units; stored spheres and decoded
+// positions are mesh space relative to MeshRecord::origin. *World space* is after InstanceRecord::transform. Errors are
+// distances in object units; format::kInfiniteError means "never passes".
 //
 // Ids are indices into the tables below, all global to the asset. The records are described in <meshlode/format.h>.
 //
-// Errors. Functions that can fail return Result. Every byte of an asset is treated as hostile: opening checks the tables
-// and loading a page checks the page, so that nothing behind them can crash, hang or read outside. No exception leaves
-// but std::bad_alloc.
+// Errors. Functions that can fail return Result. Every byte of an asset is treated as hostile: opening checks the
+// tables and loading a page checks the page, so that nothing behind them can crash, hang or read outside. No exception
+// leaves but std::bad_alloc.
 //
-// Thread safety. An AssetFile and a PageData are immutable: any number of threads may call const members at once. Moving
-// or destroying one while another thread uses it is a race.
+// Thread safety. An AssetFile and a PageData are immutable: any number of threads may call const members at once.
+// Moving or destroying one while another thread uses it is a race.
 //
 // Not promised: the order of DrawItems beyond "ascending"; any caching (a page loaded twice is unpacked twice); that a
 // future format version keeps the layout of the records; a stable ABI before version 1.
@@ -41,10 +41,10 @@ namespace meshlode {
 struct ViewPoint {
   std::array<double, 3> eye{0.0, 0.0, 0.0};  ///< world space; unused where orthographic
   bool is_orthographic = false;
-  double fovy_radians = 0.78539816339744831; ///< full vertical angle, in (0, pi); perspective only
-  double ortho_height = 1.0;                 ///< world units that the picture's height spans; orthographic only
-  double near_distance = 1e-3;               ///< world units, above 0: surfaces nearer than this count as this far
-  std::uint32_t height_px = 720;             ///< of the picture, at least 1
+  double fovy_radians = 0.78539816339744831;  ///< full vertical angle, in (0, pi); perspective only
+  double ortho_height = 1.0;                  ///< world units that the picture's height spans; orthographic only
+  double near_distance = 1e-3;                ///< world units, above 0: surfaces nearer than this count as this far
+  std::uint32_t height_px = 720;              ///< of the picture, at least 1
 };
 
 /// Draw this cluster with this instance's transform.
@@ -59,8 +59,8 @@ struct MeshCutResult {
   double stored_error = 0.0;            ///< object units: the largest error in it, at least the mesh's level0_deviation
 };
 
-/// A page in its decoded, GPU-ready form (docs/format.md, Pages): a view into the asset's bytes where the file stores it
-/// uncompressed (the AssetFile's storage must then outlive it), else memory of its own.
+/// A page in its decoded, GPU-ready form (docs/format.md, Pages): a view into the asset's bytes where the file stores
+/// it uncompressed (the AssetFile's storage must then outlive it), else memory of its own.
 class PageData {
  public:
   PageData(PageData&&) noexcept;
@@ -91,9 +91,9 @@ struct ClusterIntegers {
 struct ClusterFloats {
   std::vector<std::array<float, 3>> positions;  ///< mesh space relative to MeshRecord::origin; exact while |m·q| < 2^24
   std::vector<std::array<float, 3>> normals;    ///< unit; empty too where normals are flat (NormalMode::kFlat)
-  std::array<std::vector<std::array<float, 2>>, format::kMaxUvSets> uvs;  ///< stored set k, the source's TEXCOORD_n with
-                                                                          ///< n = MeshRecord::uv_set_source[k]
-  std::vector<std::array<float, 4>> colors;     ///< linear, 0 … 1
+  std::array<std::vector<std::array<float, 2>>, format::kMaxUvSets> uvs;  ///< stored set k, the source's TEXCOORD_n
+                                                                          ///< with n = MeshRecord::uv_set_source[k]
+  std::vector<std::array<float, 4>> colors;  ///< linear, 0 … 1
   std::vector<std::array<std::uint8_t, 3>> triangles;
   std::vector<std::uint32_t> triangle_material;
 };
@@ -140,7 +140,8 @@ class AssetFile {
   [[nodiscard]] Result<std::vector<DrawItem>> select(const ViewPoint& view, double pixel_error) const;
 
   /// The cut of one mesh where each group whose error is at most `error` (object units) is replaced by what is coarser.
-  /// Errors: kUsage for a mesh that does not exist or an error that is not a number >= 0 (infinity is the coarsest cut).
+  /// Errors: kUsage for a mesh that does not exist or an error that is not a number >= 0 (infinity is the coarsest
+  /// cut).
   [[nodiscard]] Result<MeshCutResult> select_uniform_cut(std::uint32_t mesh, double error) const;
 
   /// The page that holds a cluster. \pre cluster < clusters().size()
@@ -150,7 +151,8 @@ class AssetFile {
   /// not built in.
   [[nodiscard]] Result<PageData> load_page_data(std::uint32_t page) const;
 
-  /// Decodes a cluster of a loaded page; reuses the memory of `out`. Errors: kUsage where the page is not the cluster's.
+  /// Decodes a cluster of a loaded page; reuses the memory of `out`. Errors: kUsage where the page is not the
+  /// cluster's.
   [[nodiscard]] Status decode(const PageData& page, std::uint32_t cluster, ClusterIntegers& out) const;
   /// The same as floats.
   [[nodiscard]] Status decode(const PageData& page, std::uint32_t cluster, ClusterFloats& out) const;

@@ -10,14 +10,17 @@
 namespace meshlode {
 namespace {
 
-std::string at(const std::string& array, std::size_t index) { return array + '[' + std::to_string(index) + ']'; }
+std::string at(const std::string& array, std::size_t index) {
+  return array + '[' + std::to_string(index) + ']';
+}
 
 Error invalid(std::string where, std::string detail) {
   return Error{ErrorCode::kInvalid, std::move(where), std::move(detail)};
 }
 
 template <class T>
-Status check_array(std::span<const T> values, std::size_t components, std::size_t vertex_count, const std::string& where) {
+Status check_array(std::span<const T> values, std::size_t components, std::size_t vertex_count,
+                   const std::string& where) {
   if (values.empty()) return Ok{};
   if (values.size() != components * vertex_count) {
     return invalid(where, "has " + std::to_string(values.size()) + " numbers, " + std::to_string(vertex_count) +
@@ -58,10 +61,10 @@ Result<Primitive> make_primitive(const PrimitiveInput& input, const std::string&
   if (!input.positions.empty() && !input.positions_double.empty()) {
     return invalid(where, "has both positions and positions_double");
   }
-  auto status = input.positions_double.empty()
-                    ? copy_positions(input.positions, where + ".positions", repair, primitive.positions, is_usable)
-                    : copy_positions(input.positions_double, where + ".positions_double", repair, primitive.positions,
-                                     is_usable);
+  auto status =
+      input.positions_double.empty()
+          ? copy_positions(input.positions, where + ".positions", repair, primitive.positions, is_usable)
+          : copy_positions(input.positions_double, where + ".positions_double", repair, primitive.positions, is_usable);
   if (!status) return status.error();
   const std::size_t count = primitive.positions.size();
   if (count >= format::kNone) return invalid(where, "has too many vertices for 32-bit indices");
@@ -102,9 +105,11 @@ Result<Primitive> make_primitive(const PrimitiveInput& input, const std::string&
       }
       is_good = is_good && index < count && is_usable[index];
     }
-    if (is_good) primitive.indices.insert(primitive.indices.end(), input.indices.begin() + static_cast<std::ptrdiff_t>(t),
-                                          input.indices.begin() + static_cast<std::ptrdiff_t>(t + 3));
-    else ++repaired;
+    if (is_good)
+      primitive.indices.insert(primitive.indices.end(), input.indices.begin() + static_cast<std::ptrdiff_t>(t),
+                               input.indices.begin() + static_cast<std::ptrdiff_t>(t + 3));
+    else
+      ++repaired;
   }
   if (input.material != kDefaultMaterial && input.material >= material_count) {
     return invalid(where + ".material", std::to_string(input.material) + " does not exist");
@@ -148,7 +153,8 @@ Result<SceneInstance> make_instance(const InstanceInput& input, std::size_t inde
   for (std::size_t i = 0; i < 16; ++i) {
     const double value = input.transform[i];
     if (!std::isfinite(value)) return invalid(at(where + ".transform", i), "is not finite");
-    if (i % 4 == 3 && value != (i == 15 ? 1.0 : 0.0)) return invalid(where + ".transform", "its last row is not 0 0 0 1");
+    if (i % 4 == 3 && value != (i == 15 ? 1.0 : 0.0))
+      return invalid(where + ".transform", "its last row is not 0 0 0 1");
     instance.transform[static_cast<int>(i / 4)][static_cast<int>(i % 4)] = value;
   }
   return instance;

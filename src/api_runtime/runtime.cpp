@@ -15,9 +15,13 @@
 namespace meshlode {
 namespace {
 
-Error usage(const char* where, const char* detail) { return Error{ErrorCode::kUsage, where, detail}; }
+Error usage(const char* where, const char* detail) {
+  return Error{ErrorCode::kUsage, where, detail};
+}
 
-bool is_positive(double value) { return value > 0.0 && std::isfinite(value); }
+bool is_positive(double value) {
+  return value > 0.0 && std::isfinite(value);
+}
 
 Result<Camera> make_camera(const ViewPoint& view) {
   for (const double c : view.eye) {
@@ -63,8 +67,12 @@ PageData::PageData(std::unique_ptr<State> state) : state_(std::move(state)) {}
 PageData::PageData(PageData&&) noexcept = default;
 PageData& PageData::operator=(PageData&&) noexcept = default;
 PageData::~PageData() = default;
-std::span<const std::uint8_t> PageData::bytes() const { return state_->bytes.bytes(); }
-std::uint32_t PageData::page() const { return state_->page; }
+std::span<const std::uint8_t> PageData::bytes() const {
+  return state_->bytes.bytes();
+}
+std::uint32_t PageData::page() const {
+  return state_->page;
+}
 
 struct AssetFile::State {
   Asset asset;
@@ -90,28 +98,58 @@ AssetFile::AssetFile(AssetFile&&) noexcept = default;
 AssetFile& AssetFile::operator=(AssetFile&&) noexcept = default;
 AssetFile::~AssetFile() = default;
 
-Result<AssetFile> AssetFile::open(const std::filesystem::path& path) { return State::wrap(Asset::open(path)); }
-Result<AssetFile> AssetFile::view(std::span<const std::uint8_t> bytes) { return State::wrap(Asset::from_bytes(bytes)); }
+Result<AssetFile> AssetFile::open(const std::filesystem::path& path) {
+  return State::wrap(Asset::open(path));
+}
+Result<AssetFile> AssetFile::view(std::span<const std::uint8_t> bytes) {
+  return State::wrap(Asset::from_bytes(bytes));
+}
 Result<AssetFile> AssetFile::take(std::vector<std::uint8_t> bytes) {
   return State::wrap(Asset::from_vector(std::move(bytes)));
 }
 
-const format::FileHeader& AssetFile::header() const { return state_->asset.header(); }
-std::span<const format::MeshRecord> AssetFile::meshes() const { return state_->asset.meshes(); }
-std::span<const format::MaterialRecord> AssetFile::materials() const { return state_->asset.materials(); }
-std::span<const format::InstanceRecord> AssetFile::instances() const { return state_->asset.instances(); }
-std::span<const format::GroupRecord> AssetFile::groups() const { return state_->asset.groups(); }
-std::span<const format::ClusterRecord> AssetFile::clusters() const { return state_->asset.clusters(); }
-std::span<const format::NodeRecord> AssetFile::nodes() const { return state_->asset.nodes(); }
-std::span<const format::PageRecord> AssetFile::pages() const { return state_->asset.pages(); }
-std::span<const std::uint32_t> AssetFile::page_dependencies() const { return state_->asset.page_dependencies(); }
-std::span<const format::BlobRecord> AssetFile::blobs() const { return state_->asset.blobs(); }
-std::string_view AssetFile::text(format::StringRef ref) const { return state_->asset.string(ref); }
+const format::FileHeader& AssetFile::header() const {
+  return state_->asset.header();
+}
+std::span<const format::MeshRecord> AssetFile::meshes() const {
+  return state_->asset.meshes();
+}
+std::span<const format::MaterialRecord> AssetFile::materials() const {
+  return state_->asset.materials();
+}
+std::span<const format::InstanceRecord> AssetFile::instances() const {
+  return state_->asset.instances();
+}
+std::span<const format::GroupRecord> AssetFile::groups() const {
+  return state_->asset.groups();
+}
+std::span<const format::ClusterRecord> AssetFile::clusters() const {
+  return state_->asset.clusters();
+}
+std::span<const format::NodeRecord> AssetFile::nodes() const {
+  return state_->asset.nodes();
+}
+std::span<const format::PageRecord> AssetFile::pages() const {
+  return state_->asset.pages();
+}
+std::span<const std::uint32_t> AssetFile::page_dependencies() const {
+  return state_->asset.page_dependencies();
+}
+std::span<const format::BlobRecord> AssetFile::blobs() const {
+  return state_->asset.blobs();
+}
+std::string_view AssetFile::text(format::StringRef ref) const {
+  return state_->asset.string(ref);
+}
 std::span<const std::uint8_t> AssetFile::blob_bytes(const format::BlobRecord& blob) const {
   return state_->asset.blob_bytes(blob);
 }
-std::string_view AssetFile::meta_json() const { return state_->asset.meta_json(); }
-std::string_view AssetFile::scene_json() const { return state_->asset.scene_json(); }
+std::string_view AssetFile::meta_json() const {
+  return state_->asset.meta_json();
+}
+std::string_view AssetFile::scene_json() const {
+  return state_->asset.scene_json();
+}
 
 Result<std::vector<DrawItem>> AssetFile::select(const ViewPoint& view, double pixel_error) const {
   const auto camera = make_camera(view);
@@ -135,7 +173,9 @@ Result<MeshCutResult> AssetFile::select_uniform_cut(std::uint32_t mesh, double e
   return result;
 }
 
-std::uint32_t AssetFile::page_of(std::uint32_t cluster) const { return state_->page_of(cluster); }
+std::uint32_t AssetFile::page_of(std::uint32_t cluster) const {
+  return state_->page_of(cluster);
+}
 
 Result<PageData> AssetFile::load_page_data(std::uint32_t page) const {
   if (page >= state_->asset.pages().size()) return usage("page", "does not exist");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One cut per mesh for a glTF, which has one mesh for all its instances. Uniform cuts are select_uniform's; here are the
-// ones that a camera or a DAG level decides. All follow the one rule (I5): a set of groups that pass, closed towards
-// the finer side, draws each piece of surface once.
+// One cut per mesh for a glTF, which has one mesh for all its instances. Uniform cuts are select_uniform's; here are
+// the ones that a camera or a DAG level decides. All follow the one rule (I5): a set of groups that pass, closed
+// towards the finer side, draws each piece of surface once.
 #pragma once
 
 #include <cstdint>

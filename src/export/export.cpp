@@ -31,8 +31,8 @@ constexpr int kArrayBuffer = 34962, kElementArrayBuffer = 34963;
 constexpr std::size_t kMaxDepth = 200;  // of JSON nesting: copying and writing a document are recursive
 
 /// Extensions that describe how geometry was stored; the exported geometry is plain.
-constexpr std::array<std::string_view, 4> kGeometryExtensions = {
-    "EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "KHR_draco_mesh_compression", "KHR_mesh_quantization"};
+constexpr std::array<std::string_view, 4> kGeometryExtensions = {"EXT_mesh_gpu_instancing", "EXT_meshopt_compression",
+                                                                 "KHR_draco_mesh_compression", "KHR_mesh_quantization"};
 
 struct ExportedMesh {
   std::uint32_t index = format::kNone;  ///< in the glTF; kNone without primitives
@@ -46,8 +46,10 @@ bool nests_deeper_than(std::string_view text, std::size_t limit) {
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
     if (is_string) {
-      if (c == '\\') ++i;
-      else if (c == '"') is_string = false;
+      if (c == '\\')
+        ++i;
+      else if (c == '"')
+        is_string = false;
     } else if (c == '"') {
       is_string = true;
     } else if (c == '{' || c == '[') {
@@ -175,7 +177,8 @@ void Exporter::carry_images() {
     const std::span<const std::uint8_t> bytes = asset_.blob_bytes(record);
     image["bufferView"] = add_view(binary_.append(bytes), 0);
     const std::string_view mime_type = asset_.string(record.mime_type);
-    if (!image.contains("mimeType")) image["mimeType"] = mime_type.empty() ? sniff_mime_type(bytes) : std::string(mime_type);
+    if (!image.contains("mimeType"))
+      image["mimeType"] = mime_type.empty() ? sniff_mime_type(bytes) : std::string(mime_type);
     const std::string_view name = asset_.string(record.name);
     if (!image.contains("name") && !name.empty()) image["name"] = std::string(name);
     image.erase("blob");
@@ -395,7 +398,7 @@ void Exporter::attach_meshes() {
   const std::size_t node_count = nodes.size();
   for (std::size_t i = 0; i < node_count; ++i) {
     Json& node = nodes[i];
-    node.erase("skin");     // the static triangles were built: skins and morph targets are not in the asset
+    node.erase("skin");  // the static triangles were built: skins and morph targets are not in the asset
     node.erase("weights");
     if (!node.contains("mesh")) continue;
     const ExportedMesh& mesh = exported_.at(node.at("mesh").get<std::size_t>());
@@ -426,8 +429,10 @@ void Exporter::finish_document() {
                                                              name.get<std::string>()) != kGeometryExtensions.end();
       if (!is_geometry) kept.push_back(name);
     }
-    if (kept.empty()) document_.erase(key);
-    else document_[key] = std::move(kept);
+    if (kept.empty())
+      document_.erase(key);
+    else
+      document_[key] = std::move(kept);
   }
   // glTF wants every top-level list to have an element.
   for (auto it = document_.begin(); it != document_.end();) {

@@ -8,7 +8,9 @@ constexpr std::uint32_t kGlbMagic = 0x46546C67U;   // "glTF"
 constexpr std::uint32_t kJsonChunk = 0x4E4F534AU;  // "JSON"
 constexpr std::uint32_t kBinChunk = 0x004E4942U;   // "BIN\0"
 
-std::size_t pad4(std::size_t n) { return (n + 3) / 4 * 4; }
+std::size_t pad4(std::size_t n) {
+  return (n + 3) / 4 * 4;
+}
 
 void put_u32(std::vector<std::uint8_t>& out, std::size_t value) {
   for (unsigned shift = 0; shift < 32; shift += 8) out.push_back(static_cast<std::uint8_t>(value >> shift));

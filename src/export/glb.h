@@ -33,6 +33,7 @@ class GlbBinary {
 
 /// Header, JSON chunk (padded with spaces), BIN chunk (padded with zeros; absent where empty).
 /// Errors: kUnsupported beyond the 4 GiB that a GLB can hold.
-[[nodiscard]] Result<std::vector<std::uint8_t>> assemble_glb(std::string_view json, std::span<const std::uint8_t> binary);
+[[nodiscard]] Result<std::vector<std::uint8_t>> assemble_glb(std::string_view json,
+                                                             std::span<const std::uint8_t> binary);
 
 }  // namespace meshlode

@@ -22,7 +22,9 @@ using test::build_one;
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-Arrays sphere(std::uint32_t n = 24) { return Arrays(samples::with_smooth_normals(samples::make_sphere(n))); }
+Arrays sphere(std::uint32_t n = 24) {
+  return Arrays(samples::with_smooth_normals(samples::make_sphere(n)));
+}
 
 void expect_refused(const Result<std::vector<std::uint8_t>>& result, ErrorCode code, const std::string& place) {
   ASSERT_FALSE(result.ok()) << "expected an error at " << place;
@@ -285,8 +287,10 @@ TEST(ApiBuild, ThreadCountDoesNotReachTheBytes) {
     options.thread_count = threads;
     auto built = build_one(a.primitive(), options);
     ASSERT_TRUE(built.ok());
-    if (first.empty()) first = std::move(*built);
-    else EXPECT_TRUE(first == *built) << threads << " threads";
+    if (first.empty())
+      first = std::move(*built);
+    else
+      EXPECT_TRUE(first == *built) << threads << " threads";
   }
 }
 

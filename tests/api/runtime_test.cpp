@@ -54,8 +54,10 @@ class EdgeSum {
     return {v[0], v[1], v[2]};
   }
   void add_edge(const Point& a, const Point& b) {
-    if (a < b) ++sum_[{a, b}];
-    else if (b < a) --sum_[{b, a}];
+    if (a < b)
+      ++sum_[{a, b}];
+    else if (b < a)
+      --sum_[{b, a}];
   }
   std::map<std::pair<Point, Point>, int> sum_;
 };

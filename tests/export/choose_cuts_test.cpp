@@ -18,8 +18,10 @@ bool is_closed(const Asset& asset, const std::vector<ClusterId>& cut) {
     for (std::size_t k = 0; k < 3; ++k) {
       const test::Point& a = t.corners[k];
       const test::Point& b = t.corners[(k + 1) % 3];
-      if (a < b) ++edges[{a, b}];
-      else if (b < a) --edges[{b, a}];
+      if (a < b)
+        ++edges[{a, b}];
+      else if (b < a)
+        --edges[{b, a}];
     }
   }
   return std::all_of(edges.begin(), edges.end(), [](const auto& edge) { return edge.second == 0; });

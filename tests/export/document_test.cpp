@@ -64,8 +64,8 @@ TEST(ExportDocument, ImagesAnimationsLightsAndCamerasStay) {
   document["extensionsRequired"] = {"KHR_draco_mesh_compression"};
   document["extensions"] = json::parse(R"({"KHR_lights_punctual": {"lights": [{"type": "point"}]}})");
   document["buffers"] = json::parse(R"([{"blob": 2, "byteLength": 28}])");
-  document["bufferViews"] = json::parse(
-      R"([{"buffer": 0, "byteLength": 8}, {"buffer": 0, "byteOffset": 8, "byteLength": 20}])");
+  document["bufferViews"] =
+      json::parse(R"([{"buffer": 0, "byteLength": 8}, {"buffer": 0, "byteOffset": 8, "byteLength": 20}])");
   document["accessors"] = json::parse(
       R"([{"bufferView": 0, "componentType": 5126, "count": 2, "type": "SCALAR", "min": [0], "max": [1]},
           {"bufferView": 1, "componentType": 5126, "count": 1, "type": "VEC3"}])");
@@ -114,15 +114,38 @@ TEST(ExportDocument, WithoutADocumentInstancesBecomeNodesAndRecordsMaterials) {
 
 TEST(ExportDocument, ADocumentOfAnotherShapeIsAnError) {
   const std::string deep = R"({"nodes": )" + std::string(100000, '[') + std::string(100000, ']') + "}";
-  const char* const documents[] = {
-      "",  // this one is as good as {}
-      "[]", "{", "7", "null", "\"text\"", R"({"nodes": 7})", R"({"nodes": [7]})", R"({"nodes": [{"mesh": 9}]})",
-      R"({"nodes": [{"mesh": -1}]})", R"({"nodes": [{"mesh": "a"}]})", R"({"nodes": [], "images": [{"blob": 3}]})",
-      R"({"images": [{"blob": -1}]})", R"({"images": [{"blob": "x"}]})", R"({"images": [3]})", R"({"images": {}})",
-      R"({"buffers": [{"blob": 0}]})", R"({"buffers": 3})", R"({"bufferViews": [{"buffer": 0, "byteLength": 3}]})",
-      R"({"bufferViews": [{}]})", R"({"bufferViews": {}})", R"({"accessors": 3})", R"({"materials": 3})",
-      R"({"materials": []})", R"({"meshes": 3})", R"({"meshes": [3]})", R"({"meshes": [{"name": 3}]})",
-      R"({"asset": 3})", R"({"extensionsUsed": 3})", R"({"extensionsUsed": [3]})", R"({"scenes": 3})", deep.c_str()};
+  const char* const documents[] = {"",  // this one is as good as {}
+                                   "[]",
+                                   "{",
+                                   "7",
+                                   "null",
+                                   "\"text\"",
+                                   R"({"nodes": 7})",
+                                   R"({"nodes": [7]})",
+                                   R"({"nodes": [{"mesh": 9}]})",
+                                   R"({"nodes": [{"mesh": -1}]})",
+                                   R"({"nodes": [{"mesh": "a"}]})",
+                                   R"({"nodes": [], "images": [{"blob": 3}]})",
+                                   R"({"images": [{"blob": -1}]})",
+                                   R"({"images": [{"blob": "x"}]})",
+                                   R"({"images": [3]})",
+                                   R"({"images": {}})",
+                                   R"({"buffers": [{"blob": 0}]})",
+                                   R"({"buffers": 3})",
+                                   R"({"bufferViews": [{"buffer": 0, "byteLength": 3}]})",
+                                   R"({"bufferViews": [{}]})",
+                                   R"({"bufferViews": {}})",
+                                   R"({"accessors": 3})",
+                                   R"({"materials": 3})",
+                                   R"({"materials": []})",
+                                   R"({"meshes": 3})",
+                                   R"({"meshes": [3]})",
+                                   R"({"meshes": [{"name": 3}]})",
+                                   R"({"asset": 3})",
+                                   R"({"extensionsUsed": 3})",
+                                   R"({"extensionsUsed": [3]})",
+                                   R"({"scenes": 3})",
+                                   deep.c_str()};
   int refused = 0;
   for (const char* document : documents) {
     Scene scene = test::make_rock_scene(4);

@@ -15,7 +15,9 @@ std::uint32_t u32(std::span<const std::uint8_t> bytes, std::size_t at) {
   return value;
 }
 
-std::size_t component_bytes(int type) { return type == 5126 || type == 5125 ? 4 : type == 5123 ? 2 : 1; }
+std::size_t component_bytes(int type) {
+  return type == 5126 || type == 5125 ? 4 : type == 5123 ? 2 : 1;
+}
 
 std::size_t component_count(const std::string& type) {
   return type == "SCALAR" ? 1 : type == "VEC2" ? 2 : type == "VEC3" ? 3 : 4;
@@ -94,7 +96,8 @@ std::vector<std::vector<double>> Glb::rows(std::size_t accessor) const {
   std::vector<std::vector<double>> rows(count, std::vector<double>(width, 0.0));
   if (!a.contains("bufferView")) return rows;  // zeros, says the specification
   const std::vector<std::uint8_t> bytes = view_bytes(a.at("bufferView"));
-  const std::size_t stride = json.at("bufferViews").at(a.at("bufferView").get<std::size_t>())
+  const std::size_t stride = json.at("bufferViews")
+                                 .at(a.at("bufferView").get<std::size_t>())
                                  .value("byteStride", width * component_bytes(type));
   const std::size_t offset = a.value("byteOffset", std::size_t{0});
   if (count > 0 && offset + (count - 1) * stride + width * component_bytes(type) > bytes.size()) {

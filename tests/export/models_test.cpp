@@ -42,8 +42,8 @@ TEST_P(ExportModels, AnExportedFinestCutImportsAsTheSceneItCameFrom) {
   std::string file_name = GetParam();
   std::replace(file_name.begin(), file_name.end(), '/', '_');
   const auto path = std::filesystem::path(testing::TempDir()) / ("meshlode_export_" + file_name + ".glb");
-  std::ofstream(path, std::ios::binary).write(reinterpret_cast<const char*>(glb->data()),
-                                              static_cast<std::streamsize>(glb->size()));
+  std::ofstream(path, std::ios::binary)
+      .write(reinterpret_cast<const char*>(glb->data()), static_cast<std::streamsize>(glb->size()));
   const auto again = import_scene(path, {});
   std::filesystem::remove(path);
   ASSERT_TRUE(again.ok()) << again.error().message();

@@ -46,7 +46,9 @@ struct MeshCut {
   std::uint64_t triangles = 0;
 };
 
-Error usage(const char* option, const char* detail) { return Error{ErrorCode::kUsage, option, detail}; }
+Error usage(const char* option, const char* detail) {
+  return Error{ErrorCode::kUsage, option, detail};
+}
 
 Status check_options(const ExtractOptions& o) {
   if (!o.output) return usage("-o", "say where the GLB goes");
@@ -144,8 +146,10 @@ std::string describe_json(const Asset& asset, const std::vector<MeshCut>& cuts, 
     w.field("triangles", cut.triangles);
     w.field("source_triangles", asset.meshes()[cut.mesh.value].source_triangles);
     w.key("asked_error");
-    if (cut.asked) w.value(*cut.asked);
-    else w.null();
+    if (cut.asked)
+      w.value(*cut.asked);
+    else
+      w.null();
     w.field("stored_error", cut.cut.stored_error);
     w.field("stored_error_relative", relative_error(asset, cut));
     w.field("level0_deviation", asset.meshes()[cut.mesh.value].level0_deviation);
@@ -168,13 +172,14 @@ std::string describe_text(const Asset& asset, const std::vector<MeshCut>& cuts, 
     const format::MeshRecord& mesh = asset.meshes()[cut.mesh.value];
     if (!chosen[cut.mesh.value]) continue;
     triangles += cut.triangles;
-    std::snprintf(numbers, sizeof numbers, ": %" PRIu64 " of %" PRIu64 " triangles, error %.6g units, %.6g of the diagonal\n",
-                  cut.triangles, mesh.source_triangles, cut.cut.stored_error, relative_error(asset, cut));
+    std::snprintf(numbers, sizeof numbers,
+                  ": %" PRIu64 " of %" PRIu64 " triangles, error %.6g units, %.6g of the diagonal\n", cut.triangles,
+                  mesh.source_triangles, cut.cut.stored_error, relative_error(asset, cut));
     text += "mesh " + std::to_string(cut.mesh.value) + " \"" + std::string(asset.string(mesh.name)) + '"' + numbers;
     if (is_below_level0(asset, cut)) {
       std::snprintf(numbers, sizeof numbers,
-                    "  the error asked for (%.6g) is below what level 0 itself deviates (%.6g, quantization)\n", *cut.asked,
-                    static_cast<double>(mesh.level0_deviation));
+                    "  the error asked for (%.6g) is below what level 0 itself deviates (%.6g, quantization)\n",
+                    *cut.asked, static_cast<double>(mesh.level0_deviation));
       text += numbers;
     }
   }
@@ -190,7 +195,8 @@ int run_extract(const Verb& verb, std::span<char* const> args) {
   parser.add_value("--error", o.error, "uniform cut: the largest error allowed, in mesh units");
   parser.add_flag("--relative", o.is_relative, "--error is a fraction of each mesh's own diagonal");
   parser.add_flag("--world", o.is_world, "--error is in world units: the largest instance of a mesh decides");
-  parser.add_value("--by", o.by, "the stored number that --error is compared with (selection)", {"selection", "quadric"});
+  parser.add_value("--by", o.by, "the stored number that --error is compared with (selection)",
+                   {"selection", "quadric"});
   parser.add_value("--level", o.level, "cut at one level of the DAG, 0 the finest");
   parser.add_value("--mesh", o.mesh, "this mesh only, by name or index; the nodes of others stay, without a mesh");
   add_camera_options(parser, o.camera);
