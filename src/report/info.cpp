@@ -19,10 +19,8 @@ bool is_geometry(std::uint32_t id) {
     case SectionId::kNodes:
     case SectionId::kPages:
     case SectionId::kPageDeps:
-    case SectionId::kPageData:
-      return true;
-    default:
-      return false;
+    case SectionId::kPageData: return true;
+    default: return false;
   }
 }
 
@@ -58,8 +56,8 @@ MeshInfo describe_mesh(const Asset& asset, std::uint32_t mesh_id, std::uint32_t 
     const format::GroupRecord& group = asset.groups()[g];
     const bool is_stuck = (group.flags & format::kGroupStuck) != 0;
     if (is_stuck) {
-      info.stuck.push_back({mesh_id, g, group.level, group.stuck_reason, group.cluster_count,
-                            group_triangles[g - mesh.first_group]});
+      info.stuck.push_back(
+          {mesh_id, g, group.level, group.stuck_reason, group.cluster_count, group_triangles[g - mesh.first_group]});
     }
     if (group.level >= info.levels.size()) continue;
     info.levels[group.level].groups += 1;

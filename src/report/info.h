@@ -42,7 +42,7 @@ struct AssetInfo {
   std::uint64_t stored_triangles = 0, stored_vertices = 0;
   std::uint64_t levels = 0, roots = 0, max_roots_per_mesh = 0, stuck_groups = 0;
   std::uint64_t dropped_degenerate = 0, dropped_duplicate = 0, dropped_repaired = 0;
-  std::uint32_t cluster_cap = 0;     ///< triangles: from the settings, else the smallest of 128 and 256 that holds
+  std::uint32_t cluster_cap = 0;  ///< triangles: from the settings, else the smallest of 128 and 256 that holds
   std::vector<MeshInfo> meshes;
 };
 

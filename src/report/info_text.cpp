@@ -43,7 +43,8 @@ void add_mesh(std::string& out, const Asset& asset, std::uint32_t id, const Mesh
   add(out, "\nmesh %u  %s\n", id, printable(asset.string(mesh.name)).c_str());
   add(out, "  %s source triangles, %s stored (%.3fx), diagonal %.6g, grid step %u * 2^%d, tier %s\n",
       grouped(mesh.source_triangles).c_str(), grouped(info.triangles).c_str(),
-      mesh.source_triangles == 0 ? 0.0 : static_cast<double>(info.triangles) / static_cast<double>(mesh.source_triangles),
+      mesh.source_triangles == 0 ? 0.0
+                                 : static_cast<double>(info.triangles) / static_cast<double>(mesh.source_triangles),
       mesh.diagonal, mesh.grid.mantissa, mesh.grid.log2, error_tier_name(mesh.error_tier));
   add(out, "  %llu root(s) with %llu triangles, %zu stuck group(s), level 0 deviates by %.3g\n",
       static_cast<unsigned long long>(info.roots), static_cast<unsigned long long>(info.root_triangles),
@@ -104,7 +105,8 @@ std::string info_text(const Asset& asset, const AssetInfo& info, bool list_stuck
   std::size_t rows = 0;
   for (const MetaInfo::Decision& decision : meta.decisions) {
     if (!decision.is_kept || rows++ >= kMaxRows) continue;
-    add(out, "kept              %s: %s\n", printable(decision.what, 120).c_str(), printable(decision.reason, 160).c_str());
+    add(out, "kept              %s: %s\n", printable(decision.what, 120).c_str(),
+        printable(decision.reason, 160).c_str());
   }
   add_more(out, rows, "kept attributes");
   rows = 0;

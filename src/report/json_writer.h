@@ -26,10 +26,11 @@ class JsonWriter {
   void value(double number);
   void value(float number);  ///< the shortest decimal that reads back as the same float
   template <std::same_as<bool> T>
-  void value(T truth) { literal(truth ? "true" : "false"); }
+  void value(T truth) {
+    literal(truth ? "true" : "false");
+  }
   template <std::integral T>
-    requires(!std::same_as<T, bool>)
-  void value(T number) { literal(std::to_string(number)); }
+  requires(!std::same_as<T, bool>) void value(T number) { literal(std::to_string(number)); }
   void null() { literal("null"); }
   void raw(std::string_view json) { literal(json); }  ///< \pre valid JSON
 

@@ -14,19 +14,24 @@ struct MetaInfo {
     std::string what, reason, saves;
     bool is_kept = true;
   };
-  struct LeftOut { std::string what, why; };
-  bool is_valid = false;            ///< false: not JSON, or not an object; everything below is then as here
+  struct LeftOut {
+    std::string what, why;
+  };
+  bool is_valid = false;  ///< false: not JSON, or not an object; everything below is then as here
   std::string generator, source_file, source_hash;
-  std::string settings = "{}";      ///< JSON object
-  std::string plan = "[]";          ///< JSON array
-  std::string left_out = "[]";      ///< JSON array
-  std::vector<Decision> decisions;  ///< of `plan`, for text
-  std::vector<LeftOut> left_outs;   ///< of `left_out`, for text
+  std::string settings = "{}";          ///< JSON object
+  std::string plan = "[]";              ///< JSON array
+  std::string left_out = "[]";          ///< JSON array
+  std::vector<Decision> decisions;      ///< of `plan`, for text
+  std::vector<LeftOut> left_outs;       ///< of `left_out`, for text
   std::uint32_t cluster_triangles = 0;  ///< of the settings; 0 where it is not said
 };
 [[nodiscard]] MetaInfo read_meta(std::string_view meta_json);
 
-struct TextureInfo { std::string name; std::int64_t image = -1, sampler = -1; };
+struct TextureInfo {
+  std::string name;
+  std::int64_t image = -1, sampler = -1;
+};
 [[nodiscard]] std::vector<TextureInfo> read_textures(std::string_view scene_json);
 
 }  // namespace meshlode

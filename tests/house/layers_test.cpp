@@ -88,8 +88,8 @@ TEST(Layers, TheTableKeepsTheDesignsBorders) {
     for (const std::string& target : layers.at(room)) EXPECT_TRUE(run.contains(target)) << room << " -> " << target;
   }
   for (const char* room : {"metrics", "validate", "verify", "raster", "report"}) {
-    for (const char* builder : {"cluster", "group", "simplify", "dag", "hierarchy", "encode", "pack", "partition",
-                                "prepare", "write", "pipeline", "*"}) {
+    for (const char* builder : {"cluster", "group", "simplify", "deviation", "dag", "hierarchy", "encode", "pack",
+                                "partition", "prepare", "write", "pipeline", "*"}) {
       EXPECT_FALSE(layers.at(room).contains(builder)) << room << " -> " << builder;
     }
   }

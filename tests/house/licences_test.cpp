@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The border between the licences: the runtime half is MIT, so that an engine may ship it; the rest is GPL-3.0-or-later.
+// The border between the licences: the runtime half is MIT, so that an engine may ship it; the rest is
+// GPL-3.0-or-later.
 #include <fstream>
 #include <set>
 #include <string>
@@ -12,11 +13,13 @@ namespace meshlode::house {
 namespace {
 
 bool is_mit(const SourceFile& file) {
-  static const std::set<std::string> rooms = {"read", "unpack", "select", "decode", "api_runtime", "shaders"};
-  static const std::set<std::string> headers = {"include/meshlode/format.h", "include/meshlode/result.h",
-                                                "include/meshlode/runtime.h", "include/meshlode/runtime_c.h",
-                                                "src/mesh/grid.h", "tests/install/consumer/use_runtime.cpp"};
+  static const std::set<std::string> rooms = {"read", "unpack", "select", "decode", "api_runtime"};
+  static const std::set<std::string> headers = {
+      "include/meshlode/format.h",    "include/meshlode/result.h", "include/meshlode/runtime.h",
+      "include/meshlode/runtime_c.h", "src/mesh/grid.h",           "tests/install/consumer/use_runtime.cpp"};
+  static const std::set<std::string> shaders = {".glsl", ".comp", ".vert", ".frag"};
   const std::string path = file.path.generic_string();
+  if (shaders.contains(file.path.extension().string())) return true;
   if (file.room == "base") return path != "src/base/parallel.h";  // oneTBB: of the builder alone
   return rooms.contains(file.room) || headers.contains(path);
 }

@@ -9,7 +9,9 @@ namespace meshlode::house {
 
 namespace fs = std::filesystem;
 
-fs::path repository() { return MESHLODE_SOURCE_DIR; }
+fs::path repository() {
+  return MESHLODE_SOURCE_DIR;
+}
 
 namespace {
 
@@ -52,7 +54,9 @@ std::vector<Include> parse_includes(const std::string& text) {
   return includes;
 }
 
-std::vector<Include> SourceFile::includes() const { return parse_includes(text); }
+std::vector<Include> SourceFile::includes() const {
+  return parse_includes(text);
+}
 
 std::vector<SourceFile> read_tree(const std::vector<std::string>& folders, const std::vector<std::string>& extensions) {
   std::vector<SourceFile> files;

@@ -16,13 +16,14 @@ struct Include {
 
 struct SourceFile {
   std::filesystem::path path;  ///< relative to the repository
-  std::string room;            ///< folder below src/; "cli" for tools/meshlode, "generate" for tools/generate; else empty
+  std::string room;  ///< folder below src/; "cli" for tools/meshlode, "generate" for tools/generate; else empty
   std::string text;
   [[nodiscard]] std::vector<Include> includes() const;
   [[nodiscard]] bool is_header() const { return path.extension() == ".h"; }
 };
 
-/// Files below the given folders of the repository whose extension is in `extensions` (or that are CMakeLists.txt, where
+/// Files below the given folders of the repository whose extension is in `extensions` (or that are CMakeLists.txt,
+/// where
 /// ".txt" is), sorted by path.
 [[nodiscard]] std::vector<SourceFile> read_tree(const std::vector<std::string>& folders,
                                                 const std::vector<std::string>& extensions);

@@ -18,20 +18,33 @@ struct Library {
   std::string_view name, prefix;
 };
 constexpr std::array kLibraries = {
-    Library{"tinygltf", "tiny_gltf"},    Library{"draco", "draco/"},          Library{"metis", "metis.h"},
-    Library{"OpenMesh", "OpenMesh/"},    Library{"CGAL", "CGAL/"},            Library{"glm", "glm/"},
-    Library{"meshoptimizer", "meshoptimizer"}, Library{"embree", "embree3/"}, Library{"tbb", "tbb/"},
-    Library{"zstd", "zstd"},             Library{"lz4", "lz4"},               Library{"xxhash", "xxhash.h"},
-    Library{"nlohmann", "nlohmann/"},    Library{"CLI11", "CLI/"},            Library{"spdlog", "spdlog/"},
-    Library{"fmt", "fmt/"},              Library{"stb", "stb"},               Library{"vulkan", "vulkan/"},
-    Library{"boost", "boost/"},          Library{"gmp", "gmp"},
+    Library{"tinygltf", "tiny_gltf"},
+    Library{"draco", "draco/"},
+    Library{"metis", "metis.h"},
+    Library{"OpenMesh", "OpenMesh/"},
+    Library{"CGAL", "CGAL/"},
+    Library{"glm", "glm/"},
+    Library{"meshoptimizer", "meshoptimizer"},
+    Library{"embree", "embree3/"},
+    Library{"tbb", "tbb/"},
+    Library{"zstd", "zstd"},
+    Library{"lz4", "lz4"},
+    Library{"xxhash", "xxhash.h"},
+    Library{"nlohmann", "nlohmann/"},
+    Library{"CLI11", "CLI/"},
+    Library{"spdlog", "spdlog/"},
+    Library{"fmt", "fmt/"},
+    Library{"stb", "stb"},
+    Library{"vulkan", "vulkan/"},
+    Library{"boost", "boost/"},
+    Library{"gmp", "gmp"},
 };
 
 /// Standard C++ headers have neither dot nor slash; these are the C and POSIX headers in use.
 bool is_system(const std::string& path) {
-  static const std::set<std::string> posix = {"unistd.h", "fcntl.h", "sys/mman.h", "sys/stat.h", "sys/types.h",
-                                              "sys/resource.h", "fenv.h", "dlfcn.h", "pthread.h", "immintrin.h",
-                                              "stdint.h", "stddef.h", "stdlib.h"};
+  static const std::set<std::string> posix = {"unistd.h",       "fcntl.h",  "sys/mman.h", "sys/stat.h", "sys/types.h",
+                                              "sys/resource.h", "fenv.h",   "dlfcn.h",    "pthread.h",  "immintrin.h",
+                                              "stdint.h",       "stddef.h", "stdlib.h"};
   return path.find_first_of("./") == std::string::npos || posix.contains(path);
 }
 

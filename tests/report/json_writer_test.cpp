@@ -33,8 +33,7 @@ TEST(JsonWriter, NestsAndSeparates) {
   w.key("raw");
   w.raw("{\"b\":[]}");
   w.end_object();
-  EXPECT_EQ(w.text(),
-            "{\n  \"a\": 1,\n  \"list\": [\n    true,\n    null,\n    {}\n  ],\n  \"raw\": {\"b\":[]}\n}\n");
+  EXPECT_EQ(w.text(), "{\n  \"a\": 1,\n  \"list\": [\n    true,\n    null,\n    {}\n  ],\n  \"raw\": {\"b\":[]}\n}\n");
 }
 
 TEST(JsonWriter, WritesInfinityAndNanAsNull) {

@@ -26,7 +26,8 @@ TEST(Meta, ReadsWhatThePipelineWrites) {
 }
 
 TEST(Meta, AnswersEmptyForWhatIsNoMeta) {
-  for (const char* text : {"", "[]", "{", "null", "\"a\"", "{\"source\":[1],\"settings\":3,\"plan\":{},\"left_out\":\"x\"}"}) {
+  for (const char* text :
+       {"", "[]", "{", "null", "\"a\"", "{\"source\":[1],\"settings\":3,\"plan\":{},\"left_out\":\"x\"}"}) {
     const MetaInfo meta = read_meta(text);
     EXPECT_EQ(meta.settings, "{}") << text;
     EXPECT_EQ(meta.plan, "[]") << text;

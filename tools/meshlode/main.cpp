@@ -12,12 +12,16 @@ namespace meshlode::cli {
 namespace {
 
 void print_help(std::FILE* out) {
-  std::fputs("meshlode: glTF in, a streamable LOD DAG of meshlets out, and a judge that proves it right.\n\n"
-             "usage: meshlode VERB [ARGUMENTS]\n\nverbs:\n", out);
+  std::fputs(
+      "meshlode: glTF in, a streamable LOD DAG of meshlets out, and a judge that proves it right.\n\n"
+      "usage: meshlode VERB [ARGUMENTS]\n\nverbs:\n",
+      out);
   for (const Verb* verb : all_verbs()) std::fprintf(out, "  %-10s %s\n", verb->name, verb->summary);
-  std::fputs("\n`meshlode VERB --help` shows a verb's options and an example.\n"
-             "exit codes: 0 ok, 1 usage, 2 input or output failed, 3 invalid input, 4 build failed, 5 unsupported,\n"
-             "            6 a check failed\n", out);
+  std::fputs(
+      "\n`meshlode VERB --help` shows a verb's options and an example.\n"
+      "exit codes: 0 ok, 1 usage, 2 input or output failed, 3 invalid input, 4 build failed, 5 unsupported,\n"
+      "            6 a check failed\n",
+      out);
 }
 
 int run(std::span<char* const> args) {

@@ -2,12 +2,20 @@
 // CLI11 and oneTBB's thread limit, seen by this file alone.
 #include "options.h"
 
+#include <algorithm>
 #include <cstdio>
 
-#include <CLI/CLI.hpp>
 #include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+#include <CLI/CLI.hpp>
 
 namespace meshlode::cli {
+
+namespace {
+
+constexpr std::uint32_t kMaxJobs = 256;  ///< threads beyond that only cost memory
+
+}  // namespace
 
 struct OptionParser::State {
   explicit State(const Verb& verb) : app(verb.summary, std::string("meshlode ") + verb.name) {
@@ -88,12 +96,20 @@ void add_jobs_option(OptionParser& parser, std::uint32_t& jobs) {
 }
 
 struct JobLimit::State {
-  explicit State(std::uint32_t jobs) : control(tbb::global_control::max_allowed_parallelism, jobs) {}
+  explicit State(std::uint32_t jobs)
+      : control(tbb::global_control::max_allowed_parallelism, jobs), arena(static_cast<int>(jobs)) {}
   tbb::global_control control;
+  tbb::task_arena arena;
 };
 
-JobLimit::JobLimit(std::uint32_t jobs) : state_(jobs == 0 ? nullptr : std::make_unique<State>(jobs)) {}
+JobLimit::JobLimit(std::uint32_t jobs)
+    : state_(jobs == 0 ? nullptr : std::make_unique<State>(std::min(jobs, kMaxJobs))) {}
 JobLimit::~JobLimit() = default;
+
+void JobLimit::run(const std::function<void()>& work) {
+  if (!state_) return work();
+  state_->arena.execute(work);
+}
 
 int print_error(const Error& error) {
   // One line whatever the detail holds: file names and JSON texts may have line breaks and control characters.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -61,6 +62,8 @@ class JobLimit {
  public:
   explicit JobLimit(std::uint32_t jobs);
   ~JobLimit();
+  /// Runs the work on exactly that many threads, more than there are cores too, as tests of determinism want.
+  void run(const std::function<void()>& work);
   JobLimit(const JobLimit&) = delete;
   JobLimit& operator=(const JobLimit&) = delete;
 

@@ -40,8 +40,8 @@ void Progress::show(const ProgressEvent& event) {
   fraction_ = std::max(fraction_, std::clamp(event.fraction, 0.0, 1.0));
   constexpr int kWidth = 24;
   const int done = static_cast<int>(fraction_ * kWidth);
-  const std::string bar = std::string(static_cast<std::size_t>(done), '#') +
-                          std::string(static_cast<std::size_t>(kWidth - done), '.');
+  const std::string bar =
+      std::string(static_cast<std::size_t>(done), '#') + std::string(static_cast<std::size_t>(kWidth - done), '.');
   std::fprintf(stderr, "\r\033[K%s%.20s [%s] %3d%% mesh %u/%u %.12s level %u", prefix_.c_str(), name_.c_str(),
                bar.c_str(), static_cast<int>(100.0 * fraction_), event.mesh + 1, event.mesh_count, mesh.c_str(),
                event.level);

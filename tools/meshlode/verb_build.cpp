@@ -87,12 +87,13 @@ Result<std::vector<Job>> plan_jobs(const std::vector<std::string>& inputs, const
   for (const std::string& input : inputs) {
     if (!fs::is_directory(input, ec)) {
       const fs::path name = with_lode_extension(fs::path(input).filename());
-      jobs.push_back({input, !output.empty() ? fs::path(output)
+      jobs.push_back({input, !output.empty()         ? fs::path(output)
                              : output_folder.empty() ? with_lode_extension(input)
                                                      : output_folder / name});
       continue;
     }
-    if (output_folder.empty()) return Error{ErrorCode::kUsage, input, "a folder as input needs -O FOLDER for the output"};
+    if (output_folder.empty())
+      return Error{ErrorCode::kUsage, input, "a folder as input needs -O FOLDER for the output"};
     auto found = scan_folder(input);
     if (!found) return found.error();
     for (const fs::path& path : *found) {
@@ -308,13 +309,13 @@ int run_build(const Verb& verb, std::span<char* const> args) {
   const auto plan = plan_jobs(inputs, output, output_folder);
   if (!plan) return print_error(plan.error());
 
-  const JobLimit limit(jobs);
+  JobLimit limit(jobs);
   std::vector<JobResult> results;
   int worst = 0;
   if (plan->empty()) worst = print_error({ErrorCode::kIo, inputs.front(), "no scene below this folder"});
   for (std::size_t i = 0; i < plan->size(); ++i) {
     Progress progress(out.quiet, i, plan->size());
-    results.push_back(run_job((*plan)[i], *options, !output_folder.empty(), progress));
+    limit.run([&] { results.push_back(run_job((*plan)[i], *options, !output_folder.empty(), progress)); });
     worst = std::max(worst, results.back().exit_code);
     if (!out.quiet && !out.json() && results.back().exit_code == 0) print_summary(results.back());
   }
@@ -332,6 +333,7 @@ int run_build(const Verb& verb, std::span<char* const> args) {
 }  // namespace
 
 const Verb kBuildVerb{"build", "turn glTF, PLY, OBJ or STL scenes into .lode assets",
-                      "meshlode build scene.glb -o scene.lode\n  meshlode build a.glb b.glb folder/ -O out/", run_build};
+                      "meshlode build scene.glb -o scene.lode\n  meshlode build a.glb b.glb folder/ -O out/",
+                      run_build};
 
 }  // namespace meshlode::cli

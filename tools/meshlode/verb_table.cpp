@@ -32,6 +32,8 @@ const Verb* const kVerbs[] = {
 
 }  // namespace
 
-std::span<const Verb* const> all_verbs() { return std::span(kVerbs).first(std::size(kVerbs) - 1); }
+std::span<const Verb* const> all_verbs() {
+  return std::span(kVerbs).first(std::size(kVerbs) - 1);
+}
 
 }  // namespace meshlode::cli

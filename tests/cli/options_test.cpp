@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "meshlode/options.h"
+
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace meshlode::cli {
+namespace {
+
+int run_nothing(const Verb&, std::span<char* const>) {
+  return 0;
+}
+const Verb kTestVerb{"test", "a verb of this test", "meshlode test a", run_nothing};
+
+struct Parsed {
+  std::optional<int> exit_code;
+  std::string file, choice = "a";
+  double number = 0.0;
+  std::optional<double> maybe;
+  std::uint32_t count = 7;
+  bool flag = false;
+};
+
+Parsed parse(std::vector<std::string> words) {
+  std::vector<char*> args;
+  for (std::string& word : words) args.push_back(word.data());
+  Parsed p;
+  OptionParser parser(kTestVerb);
+  parser.add_positional("file", p.file, "a file");
+  parser.add_value("--choice", p.choice, "one of two", {"a", "b"});
+  parser.add_value("--number", p.number, "any");
+  parser.add_value("--maybe", p.maybe, "any");
+  parser.add_value("-c,--count", p.count, "not negative");
+  parser.add_flag("--flag", p.flag, "on");
+  p.exit_code = parser.parse(args);
+  return p;
+}
+
+TEST(OptionParser, FillsWhatIsGivenAndLeavesTheRest) {
+  const Parsed p = parse({"--number", "-1.5", "in.glb", "--choice=b", "-c", "3"});
+  EXPECT_FALSE(p.exit_code.has_value());
+  EXPECT_EQ(p.file, "in.glb");
+  EXPECT_EQ(p.choice, "b");
+  EXPECT_EQ(p.number, -1.5);
+  EXPECT_EQ(p.count, 3U);
+  EXPECT_FALSE(p.maybe.has_value());
+  EXPECT_FALSE(p.flag);
+  EXPECT_EQ(parse({"x", "--maybe", "0", "--flag"}).maybe, 0.0);
+}
+
+TEST(OptionParser, AnswersUsageForWhatItDoesNotKnow) {
+  const std::vector<std::vector<std::string>> wrong = {{},
+                                                       {"a", "b"},
+                                                       {"a", "--no"},
+                                                       {"a", "--choice", "c"},
+                                                       {"a", "--number"},
+                                                       {"a", "--number", "x"},
+                                                       {"a", "-c", "-1"},
+                                                       {"a", "-c", "4294967296"},
+                                                       {"a", "--number", "1", "--number", "2"}};
+  for (const auto& words : wrong) {
+    const Parsed p = parse(words);
+    std::string line;
+    for (const std::string& word : words) line += word + " ";
+    EXPECT_EQ(p.exit_code, static_cast<int>(ErrorCode::kUsage)) << line;
+  }
+  EXPECT_EQ(parse({"--help"}).exit_code, 0);
+}
+
+TEST(JobLimit, RunsTheWorkOnce) {
+  for (const std::uint32_t jobs : {0U, 1U, 2U, 4U, 4'000'000'000U}) {
+    int runs = 0;
+    JobLimit limit(jobs);
+    limit.run([&] { ++runs; });
+    EXPECT_EQ(runs, 1) << jobs;
+  }
+}
+
+}  // namespace
+}  // namespace meshlode::cli
