@@ -4,7 +4,6 @@
 #include <cstring>
 #include <set>
 #include <string>
-#include <tuple>
 
 #include "base/hash.h"
 #include "validate/file_tables.h"
@@ -81,8 +80,7 @@ bool read_section_table(FileTables& file, RuleLog& log) {
   const std::uint64_t table_bytes = std::uint64_t{header.section_count} * sizeof(SectionEntry);
   bool sound = log.expect(header.section_entry_bytes == sizeof(SectionEntry), "L004", where,
                           [&] { return "stride is " + std::to_string(header.section_entry_bytes) + ", not 64"; });
-  sound &= log.expect(header.section_table_offset % 8 == 0 && header.section_table_offset >= sizeof header &&
-                          header.section_table_offset <= size && table_bytes <= size - header.section_table_offset,
+  sound &= log.expect(header.section_table_offset == sizeof header && sizeof header <= size && table_bytes <= size - header.section_table_offset,
                       "L004", where, [&] {
                         return "offset " + std::to_string(header.section_table_offset) + " with " +
                                std::to_string(header.section_count) + " entries does not fit " + std::to_string(size);
@@ -110,19 +108,15 @@ struct Extent {
 
 void check_extents(const FileTables& file, RuleLog& log) {
   std::vector<Extent> extents;
-  extents.push_back({0, sizeof(format::FileHeader), "header"});
-  const std::uint64_t table = file.header.section_table_offset;
-  extents.push_back({table, table + file.sections.size() * sizeof(SectionEntry), "section table"});
-  for (const SectionEntry& entry : file.sections) {
-    if (entry.bytes > 0) extents.push_back({entry.offset, entry.offset + entry.bytes, section_name(entry.id)});
-  }
-  std::sort(extents.begin(), extents.end(), [](const Extent& a, const Extent& b) {
-    return std::tie(a.begin, a.end, a.name) < std::tie(b.begin, b.end, b.name);
-  });
+  extents.push_back({0, sizeof(format::FileHeader) + file.sections.size() * sizeof(SectionEntry), "section table"});
+  for (const SectionEntry& entry : file.sections) extents.push_back({entry.offset, entry.offset + entry.bytes, section_name(entry.id)});
   log.check("L007");
   log.check("L014");
   std::uint64_t end = 0;
   const auto check_gap = [&](std::uint64_t from, std::uint64_t to, const std::string& name) {
+    if (to - from >= format::kSectionAlignment) {
+      log.add("L014", "before " + name, std::to_string(to - from) + " bytes where alignment needs fewer");
+    }
     for (std::uint64_t i = from; i < to; ++i) {
       if (file.bytes[i] != 0) {
         log.add("L014", "before " + name, "byte " + std::to_string(i) + " is not zero");
@@ -132,13 +126,15 @@ void check_extents(const FileTables& file, RuleLog& log) {
   };
   for (const Extent& extent : extents) {
     if (extent.begin < end) {
-      log.add("L007", extent.name, "starts at " + std::to_string(extent.begin) + ", before " + std::to_string(end));
+      log.add("L007", extent.name, "starts at " + std::to_string(extent.begin) + ", before " + std::to_string(end) + " where the one before it ends");
     } else {
       check_gap(end, extent.begin, extent.name);
     }
     end = std::max(end, extent.end);
   }
-  check_gap(end, file.bytes.size(), "the end of the file");
+  log.expect(end == file.bytes.size(), "L014", [] { return std::string("end of the file"); }, [&] {
+    return differs("end of the last section", end, "size of the file", std::uint64_t{file.bytes.size()});
+  });
 }
 
 bool check_section(const FileTables& file, const SectionEntry& entry, RuleLog& log) {

@@ -96,24 +96,6 @@ bool contains_point(const Ball& ball, const Vec3d& point) {
   return value.sign() >= 0;
 }
 
-bool are_collinear(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
-  std::array<Expansion, 3> u;
-  std::array<Expansion, 3> v;
-  for (int i = 0; i < 3; ++i) {
-    u[static_cast<std::size_t>(i)] = difference(b[i], a[i]);
-    v[static_cast<std::size_t>(i)] = difference(c[i], a[i]);
-  }
-  for (std::size_t i = 0; i < 3; ++i) {
-    const std::size_t j = (i + 1) % 3;
-    const std::size_t k = (i + 2) % 3;
-    Expansion component;
-    component.add_product(u[j], v[k], 1.0);
-    component.add_product(u[k], v[j], -1.0);
-    if (component.sign() != 0) return false;
-  }
-  return true;
-}
-
 int sign_of_dot(const Vec3d& a, const Vec3d& b) {
   Expansion value;
   for (int i = 0; i < 3; ++i) value.add_product(a[i], b[i]);

@@ -16,8 +16,6 @@ struct Ball {
 [[nodiscard]] bool contains_ball(const Ball& outer, const Ball& inner);
 /// |ball.center - point| <= ball.radius, exactly. \pre all finite, radius >= 0
 [[nodiscard]] bool contains_point(const Ball& ball, const Vec3d& point);
-/// Whether three points lie on one line (or coincide), exactly. \pre finite, |values| < 2^300
-[[nodiscard]] bool are_collinear(const Vec3d& a, const Vec3d& b, const Vec3d& c);
 /// Sign of sum(terms[i].x * terms[i].y): -1, 0 or 1. For tests.
 [[nodiscard]] int sign_of_dot(const Vec3d& a, const Vec3d& b);
 

@@ -267,7 +267,7 @@ LoadedPages load_pages(const FileTables& file, const Asset* asset, RuleLog& log)
     log.expect(hash64(stored) == page.checksum, "L203", at, [] { return std::string("checksum of the stored bytes does not match"); });
     const bool is_plain = page.codec == format::Codec::kNone;
     // A page that does not shrink is stored plain.
-    const bool sized = page.bytes <= format::kMaxPageBytes &&
+    const bool sized = page.bytes <= format::kMaxPageBytes && page.bytes % 4 == 0 &&
                        (is_plain ? page.stored_bytes == page.bytes : page.stored_bytes < page.bytes);
     log.expect(sized, "L204", at, [&] {
       return differs("bytes", std::uint64_t{page.bytes}, "stored_bytes", std::uint64_t{page.stored_bytes});

@@ -63,11 +63,9 @@ bool check_places(const FileTables& file, RuleLog& log) {
   for (std::size_t p = 0; p < file.pages.size(); ++p) {
     const PageRecord& page = file.pages[p];
     const auto at = [&] { return place("page", p); };
-    sound &= log.expect(page.offset % format::kSectionAlignment == 0, "L202", at,
-                        [&] { return "offset " + std::to_string(page.offset) + " is no multiple of 16"; });
-    const bool inside = page.offset >= next && page.offset <= limit && page.stored_bytes <= limit - page.offset;
-    sound &= log.expect(inside, "L202", at, [] { return std::string("leaves the section or overlaps the page before"); });
-    if (!inside) return false;
+    const std::uint64_t start = (next + format::kSectionAlignment - 1) / format::kSectionAlignment * format::kSectionAlignment;
+    const bool inside = page.offset == start && start <= limit && page.stored_bytes <= limit - start;
+    if (!log.expect(inside, "L202", at, [] { return std::string("does not follow the page before it inside the section"); })) return false;
     for (std::uint64_t i = next; i < page.offset; ++i) {
       if (!log.expect(file.bytes[i] == 0, "L214", at, [] { return std::string("padding before the page is not zero"); })) break;
     }
@@ -75,6 +73,7 @@ bool check_places(const FileTables& file, RuleLog& log) {
     sound &= log.expect(static_cast<std::uint32_t>(page.codec) <= 3, "L102", at,
                         [&] { return "codec " + std::to_string(static_cast<std::uint32_t>(page.codec)); });
   }
+  sound &= log.expect(next == limit, "L202", [] { return std::string("section PAGE"); }, [] { return std::string("does not end with the last page"); });
   return sound;
 }
 

@@ -21,6 +21,8 @@ Ball ball_of(const Record& r) {
   return {{r.center[0], r.center[1], r.center[2]}, r.radius};
 }
 
+constexpr std::uint32_t kMaxDepth = 64;  ///< nodes from the root to a leaf, both counted
+
 bool is_sound(const NodeRecord& node) {
   return std::isfinite(node.center[0]) && std::isfinite(node.center[1]) && std::isfinite(node.center[2]) &&
          std::isfinite(node.radius) && node.radius >= 0.0F && std::isfinite(node.error) && node.error >= 0.0F;
@@ -34,6 +36,7 @@ class TreeChecker {
   void run() {
     std::vector<std::uint32_t> parents(mesh_.node_count, 0);
     std::vector<std::uint32_t> leaves(mesh_.group_count, 0);
+    depths_.assign(mesh_.node_count, 1);
     for (std::uint32_t k = 0; k < mesh_.node_count; ++k) check_node(k, parents, leaves);
     for (std::uint32_t k = 0; k < mesh_.node_count; ++k) {
       log_.expect(parents[k] == (k == 0 ? 0U : 1U), "L401", [&] { return at(k); },
@@ -80,6 +83,8 @@ class TreeChecker {
     bool infinite_below = false;
     for (std::uint32_t child = first; child < first + node.child_count; ++child) {
       ++parents[child];
+      depths_[child] = depths_[k] + 1;  // nodes come parents first
+      log_.expect(depths_[child] <= kMaxDepth, "L401", where, [] { return std::string("lies more than 64 nodes deep"); });
       infinite_below |= file_.nodes[mesh_.first_node + child].error == kInfiniteError;
       const NodeRecord& below = file_.nodes[mesh_.first_node + child];
       if (sound && is_sound(below)) bound(k, ball_of(below), below.error, [&] { return at(child); });
@@ -108,6 +113,7 @@ class TreeChecker {
   std::size_t m_;
   const format::MeshRecord& mesh_;
   RuleLog& log_;
+  std::vector<std::uint32_t> depths_;  ///< nodes from the root, the root counted
 };
 
 }  // namespace

@@ -52,6 +52,32 @@ std::uint64_t AssetEdit::triangle_stream_offset(std::uint64_t cluster) const {
   return page_offset_of_cluster(cluster) + get<format::PageCluster>(page_cluster_offset(cluster)).triangle_offset;
 }
 
+AssetEdit::BitPlace AssetEdit::bit_place(std::uint64_t cluster, std::uint64_t vertex, std::uint64_t k) const {
+  const auto head = get<format::PageCluster>(page_cluster_offset(cluster));
+  std::uint64_t bit = vertex_stream_offset(cluster) * 8 + vertex * head.vertex_bits;
+  for (std::uint64_t c = 0; c < k; ++c) bit += get<format::Channel>(channel_offset(cluster, c)).bits;
+  return {bit, get<format::Channel>(channel_offset(cluster, k)).bits};
+}
+
+std::uint32_t AssetEdit::vertex_bits(std::uint64_t cluster, std::uint64_t vertex, std::uint64_t k) const {
+  const BitPlace at = bit_place(cluster, vertex, k);
+  std::uint32_t value = 0;
+  for (std::uint32_t i = 0; i < at.count; ++i) {
+    const std::uint64_t bit = at.first_bit + i;
+    value |= (bytes_[bit / 8] >> (bit % 8) & 1U) << i;
+  }
+  return value;
+}
+
+void AssetEdit::put_vertex_bits(std::uint64_t cluster, std::uint64_t vertex, std::uint64_t k, std::uint32_t value) {
+  const BitPlace at = bit_place(cluster, vertex, k);
+  for (std::uint32_t i = 0; i < at.count; ++i) {
+    const std::uint64_t bit = at.first_bit + i;
+    const auto mask = static_cast<std::uint8_t>(1U << (bit % 8));
+    bytes_[bit / 8] = static_cast<std::uint8_t>((value >> i & 1U) != 0 ? bytes_[bit / 8] | mask : bytes_[bit / 8] & ~mask);
+  }
+}
+
 void AssetEdit::seal() {
   reseal(bytes_);
   RuleLog log;

@@ -69,6 +69,9 @@ class AssetEdit {
   [[nodiscard]] std::uint64_t range_offset(std::uint64_t cluster, std::uint64_t k) const;
   [[nodiscard]] std::uint64_t vertex_stream_offset(std::uint64_t cluster) const;
   [[nodiscard]] std::uint64_t triangle_stream_offset(std::uint64_t cluster) const;
+  /// Channel `k` of a vertex as stored, without the channel's minimum.
+  [[nodiscard]] std::uint32_t vertex_bits(std::uint64_t cluster, std::uint64_t vertex, std::uint64_t k) const;
+  void put_vertex_bits(std::uint64_t cluster, std::uint64_t vertex, std::uint64_t k, std::uint32_t value);
   [[nodiscard]] std::uint64_t page_offset_of_cluster(std::uint64_t cluster) const;
 
   /// Makes every checksum and the content hash true again, as far as the tables can still be read.
@@ -81,6 +84,11 @@ class AssetEdit {
     if (!records.empty()) std::memcpy(records.data(), bytes_.data() + section(id).offset, records.size() * sizeof(Record));
     return records;
   }
+  struct BitPlace {
+    std::uint64_t first_bit;  ///< from the start of the file
+    std::uint32_t count;
+  };
+  [[nodiscard]] BitPlace bit_place(std::uint64_t cluster, std::uint64_t vertex, std::uint64_t k) const;
   std::vector<std::uint8_t> bytes_;
 };
 

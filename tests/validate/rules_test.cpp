@@ -212,6 +212,19 @@ const std::vector<Break>& breaks() {
       {"L211", "ranges cover too much", [](AssetEdit& e) { e.change_at<format::MaterialRange>(e.range_offset(0, 0), [](auto& r) { r.triangle_count += 1; }); }},
       {"L212", "beyond 24 bits", [](AssetEdit& e) { e.change_at<format::Channel>(e.channel_offset(0, 0), [](auto& c) { c.minimum = 1 << 24; }); }},
       {"L212", "normal out of range", [](AssetEdit& e) { e.change_at<format::Channel>(e.channel_offset(0, 3), [](auto& c) { c.minimum = -1; }); }},
+      {"L215", "a normal by another name", [](AssetEdit& e) {
+         // The vertex with the largest second value gets the pair (-1, M): X is 0 there, so its one name is (1, M).
+         const std::int32_t m = (1 << (e.meshes()[0].normal_bits - 1)) - 1;
+         std::int32_t a = 0;
+         std::int32_t b = -1;
+         for (std::uint32_t v = 0; v < e.clusters()[0].vertex_count; ++v) {
+           const auto value = static_cast<std::int32_t>(e.vertex_bits(0, v, 4));
+           if (value > b) a = static_cast<std::int32_t>(e.vertex_bits(0, v, 3));
+           b = std::max(b, value);
+         }
+         e.change_at<format::Channel>(e.channel_offset(0, 3), [&](auto& channel) { channel.minimum = m - 1 - a; });
+         e.change_at<format::Channel>(e.channel_offset(0, 4), [&](auto& channel) { channel.minimum = 2 * m - b; });
+       }},
       {"L301", "level 0 with an own group", [](AssetEdit& e) { const auto c = level0_cluster(e); e.cluster(c, [](auto& r) { r.level = 1; }); }},
       {"L301", "orphan", [](AssetEdit& e) { const auto c = cluster_above(e, inner_group(e)); e.cluster(c, [](auto& r) { r.own_group = format::kNone; }); }},
       {"L302", "member of another group", [](AssetEdit& e) { const auto g = inner_group(e); const auto c = level0_cluster(e); e.cluster(c, [&](auto& r) { r.coarser_group = r.coarser_group == g ? g + 1 : g; }); }},
