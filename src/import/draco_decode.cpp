@@ -28,7 +28,7 @@ Error invalid(std::string detail) {
 }
 
 constexpr int kMaxAttributes = 32;
-constexpr int kMaxComponents = 16;
+constexpr int kMaxComponents = 64;  // of all attributes together: Draco allocates them all per point
 
 /// Reads the head of a stream as the bitstream specification 2.2 lays it out; every read is bounded.
 class HeadReader {
@@ -158,9 +158,9 @@ class GuardedDecoder : public Decoder {
   bool DecodeAllAttributes() override {
     const draco::PointCloud& cloud = *this->point_cloud();
     if (cloud.num_attributes() > kMaxAttributes) return false;
-    for (int i = 0; i < cloud.num_attributes(); ++i) {
-      if (cloud.attribute(i)->num_components() > kMaxComponents) return false;
-    }
+    int component_count = 0;
+    for (int i = 0; i < cloud.num_attributes(); ++i) component_count += cloud.attribute(i)->num_components();
+    if (component_count > kMaxComponents) return false;
     return Decoder::DecodeAllAttributes();
   }
 

@@ -2,6 +2,8 @@
 // What the asset carries without understanding it: the glTF tree without its geometry, and the bytes of its images.
 #include <algorithm>
 #include <map>
+#include <optional>
+#include <utility>
 
 #include "import/gltf_check_base.h"
 #include "import/gltf_import.h"
@@ -58,64 +60,67 @@ std::string image_name(const Json& image) {
   return path.substr(path.find_last_of('/') + 1);  // npos + 1 == 0
 }
 
+/// The bytes of an image where it names any.
+Result<std::optional<std::span<const std::uint8_t>>> find_image_bytes(const GltfAsset& asset, GltfFiles& files,
+                                                                      const Json& image, const std::string& path) {
+  using Found = std::optional<std::span<const std::uint8_t>>;
+  if (const Json* uri = image.find("uri")) {
+    auto opened = files.open(*uri->string());
+    if (!opened) return asset.error(opened.error().code, path + "/uri", opened.error().detail);
+    return Found(*opened);
+  }
+  const Json* view = image.find("bufferView");
+  if (view == nullptr) return Found{};
+  const auto index = static_cast<std::uint32_t>(view->index().value_or(0));
+  const GltfBufferView& v = asset.model.views[index];
+  if (v.length > 0 && asset.buffers[v.buffer].empty()) {
+    return asset.invalid(path + "/bufferView", "its buffer has no data");
+  }
+  return Found(asset.view_bytes(index));
+}
+
 Status carry_images(const GltfAsset& asset, GltfFiles& files, Json& document, Scene& scene) {
   Json::Array out;
-  std::map<std::string, std::size_t> blob_of;  // images that share their bytes share a blob
-  const auto& images = asset.root.items("images");
+  // Images that share their bytes share a blob, however their URIs are spelled; views that merely overlap do not, so
+  // what they add up to is bounded by the buffers they lie in (I11).
+  std::map<std::pair<const std::uint8_t*, std::size_t>, std::size_t> blob_of;
   std::uint64_t view_bytes = 0;
-  for (std::size_t i = 0; i < images.size(); ++i) {
-    const std::string path = "/images/" + std::to_string(i);
-    Json image = images[i];
-    std::span<const std::uint8_t> bytes;
-    std::string key;  // a uri, or a newline (which no uri has) and the view
-    if (const Json* uri = images[i].find("uri")) {
-      key = *uri->string();
-    } else if (const Json* view = images[i].find("bufferView")) {
-      key = "\nview " + std::to_string(view->index().value_or(0));
-    }
+  std::uint64_t view_limit = std::uint64_t{1} << 20U;
+  for (const auto& buffer : asset.buffers) view_limit += buffer.size();
+  for (const Json& source : asset.root.items("images")) {
+    const std::string path = "/images/" + std::to_string(out.size());
+    auto found = find_image_bytes(asset, files, source, path);
+    if (!found) return found.error();
+    Json image = source;
     image.erase("uri");
     image.erase("bufferView");
-    if (key.empty()) {
-      scene.left_out.push_back({"image " + std::to_string(i), "it names no bytes"});
+    if (!*found) {
+      scene.left_out.push_back({"image " + std::to_string(out.size()), "it names no bytes"});
       out.push_back(std::move(image));
       continue;
     }
-    auto known = blob_of.find(key);
-    if (known == blob_of.end()) {
-      if (images[i].find("uri") != nullptr) {
-        auto opened = files.open(key);
-        if (!opened) return asset.error(opened.error().code, path + "/uri", opened.error().detail);
-        bytes = *opened;
-      } else {
-        const auto view = static_cast<std::uint32_t>(images[i].find("bufferView")->index().value_or(0));
-        const GltfBufferView& v = asset.model.views[view];
-        if (v.length > 0 && asset.buffers[v.buffer].empty()) {
-          return asset.invalid(path + "/bufferView", "its buffer has no data");
-        }
-        bytes = asset.view_bytes(view);
-        // Views may overlap; the same bytes under many names must not grow without bound (I11).
-        view_bytes += bytes.size();
-        std::uint64_t limit = std::uint64_t{1} << 20U;
-        for (const auto& buffer : asset.buffers) limit += buffer.size();
-        if (view_bytes > limit)
-          return asset.invalid(path, "images that overlap are larger than the buffers they lie in");
+    const std::span<const std::uint8_t> bytes = **found;
+    const auto [known, is_new] = blob_of.try_emplace({bytes.data(), bytes.size()}, scene.blobs.size());
+    if (is_new) {
+      if (source.find("uri") == nullptr) view_bytes += bytes.size();
+      if (view_bytes > view_limit) {
+        return asset.invalid(path, "images that overlap are larger than the buffers they lie in");
       }
       SceneBlob blob;
       blob.kind = SceneBlob::Kind::kImage;
-      blob.name = image_name(images[i]);
-      const Json* mime = images[i].find("mimeType");
+      blob.name = image_name(source);
+      const Json* mime = source.find("mimeType");
       blob.mime_type = mime != nullptr ? *mime->string() : std::string(sniff_mime(bytes));
-      blob.source_index = static_cast<std::uint32_t>(i);
+      blob.source_index = static_cast<std::uint32_t>(out.size());
       blob.bytes.assign(bytes.begin(), bytes.end());
-      known = blob_of.emplace(key, scene.blobs.size()).first;
       scene.blobs.push_back(std::move(blob));
     }
     const SceneBlob& blob = scene.blobs[known->second];
     if (image.find("mimeType") == nullptr && !blob.mime_type.empty()) {
       image.set("mimeType", Json::make_string(blob.mime_type));
     }
-    if (image.find("name") == nullptr && !image_name(images[i]).empty()) {
-      image.set("name", Json::make_string(image_name(images[i])));
+    if (image.find("name") == nullptr && !image_name(source).empty()) {
+      image.set("name", Json::make_string(image_name(source)));
     }
     image.set("blob", Json::make_index(known->second));
     out.push_back(std::move(image));
