@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <queue>
 #include <span>
 #include <vector>
@@ -41,12 +42,15 @@ class GroupSimplifier {
   static constexpr int kMaxPasses = 8;
   /// A collapse costs at least this share of what its largest displacement would cost as a mean distance.
   static constexpr double kGuardShare = 0.5;
+  /// What breaking the link condition costs, as a factor: small holes and handles close when everything else has become
+  /// about ten times as far off.
+  static constexpr double kTopologyPrice = 10.0;
 
   struct Candidate {
     double cost;
     std::uint32_t a, b;                  ///< a < b
     std::uint32_t version_a, version_b;  ///< stale if a vertex has changed since
-    bool is_guarded = false;             ///< the cost already counts how far the old surface would be left behind
+    bool may_break_topology = false;     ///< the cost already counts that the link condition is broken
     bool operator>(const Candidate& other) const {
       if (cost != other.cost) return cost > other.cost;
       return a != other.a ? a > other.a : b > other.b;
@@ -74,7 +78,8 @@ class GroupSimplifier {
   [[nodiscard]] Placement place(std::uint32_t a, std::uint32_t b);
   [[nodiscard]] double total_error(const Quadric& total, const Vec3d& p) const;
   [[nodiscard]] Obstacle try_collapse(const Candidate& candidate);
-  [[nodiscard]] double distance2_to_new_star(std::uint32_t a, std::uint32_t b, const Vec3d& from, const Vec3d& target) const;
+  void collect_new_star(std::uint32_t a, std::uint32_t b, bool drops_sheets);
+  [[nodiscard]] double collect_vanishing(std::uint32_t a, std::uint32_t b, const Vec3d& target);
   [[nodiscard]] double weigh_witnesses(std::uint32_t a, std::uint32_t b, const Vec3d& target);
   [[nodiscard]] bool keeps_shared_corners(std::uint32_t locked, const std::vector<std::uint32_t>& around) const;
   [[nodiscard]] bool keeps_topology(std::uint32_t a, std::uint32_t b);
@@ -116,10 +121,13 @@ class GroupSimplifier {
 
   std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> queue_;
   double error_ = 0.0;  ///< frame units
-  bool is_topology_relaxed_ = false, are_flips_relaxed_ = false;
+  bool has_broken_topology_ = false, are_flips_relaxed_ = false;
   std::array<std::uint64_t, 6> obstacles_{};
 
   // Scratch of one collapse.
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> star_;   ///< outer edges of the triangles that will be around it
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> sheet_;  ///< outer edges of the sheets that will be dropped
+  std::vector<std::uint32_t> vanishing_;  ///< vertices that lose their last triangle with a dropped sheet
   std::vector<std::pair<double, Vec3i>> left_behind_;  ///< squared distance to the new star, and the witness
   std::vector<std::uint32_t> corners_a_, corners_b_, neighbors_a_, neighbors_b_, dropped_;
   std::vector<WedgeClass> classes_;

@@ -256,7 +256,7 @@ void GroupSimplifier<C>::push_candidate(std::uint32_t a, std::uint32_t b) {
   }
   if (a > b) std::swap(a, b);
   const Placement placement = place(a, b);
-  queue_.push({placement.cost, a, b, version_[a], version_[b], false});
+  queue_.push({placement.cost, a, b, version_[a], version_[b]});
 }
 
 /// Which wedges of a and b become one: those that meet in a triangle on the edge.
@@ -492,20 +492,66 @@ bool GroupSimplifier<C>::turns_over(std::uint32_t moved, std::uint32_t other, co
   return false;
 }
 
-/// Squared distance from a point to the triangles that would surround the joined vertex.
+/// The triangles that would surround the joined vertex, by their outer edges. Where sheets are dropped, pairs that would
+/// lie on each other do not count: they will be gone.
 template <std::size_t C>
-double GroupSimplifier<C>::distance2_to_new_star(std::uint32_t a, std::uint32_t b, const Vec3d& from,
-                                                 const Vec3d& target) const {
-  double best = glm::dot(from - target, from - target);
+void GroupSimplifier<C>::collect_new_star(std::uint32_t a, std::uint32_t b, bool drops_sheets) {
+  star_.clear();
+  sheet_.clear();
   for (const auto* corners : {&corners_a_, &corners_b_}) {
     for (const std::uint32_t corner : *corners) {
       const std::uint32_t x = mesh_.vertex(CollapseMesh::next_in_triangle(corner));
       const std::uint32_t y = mesh_.vertex(CollapseMesh::next_in_triangle(CollapseMesh::next_in_triangle(corner)));
       if (x == a || x == b || y == a || y == b) continue;
-      best = std::min(best, distance2_to_triangle(from, target, position_[x], position_[y]));
+      if (drops_sheets) {
+        const auto opposite = std::find(star_.begin(), star_.end(), std::pair(y, x));
+        if (opposite != star_.end()) {
+          sheet_.push_back(*opposite);
+          *opposite = star_.back();
+          star_.pop_back();
+          continue;
+        }
+      }
+      star_.emplace_back(x, y);
     }
   }
-  return best;
+}
+
+/// What goes without a vertex noticing: an edge to a neighbour that no triangle covers any more, a dropped sheet, and
+/// neighbours whose triangles all go (their witnesses are weighed too). Returns the largest squared distance at which
+/// such points are left, taken to the middle of what goes.
+template <std::size_t C>
+double GroupSimplifier<C>::collect_vanishing(std::uint32_t a, std::uint32_t b, const Vec3d& target) {
+  vanishing_.clear();
+  double lost2 = 0.0;
+  const auto is_in_star = [&](std::uint32_t v) {
+    return std::any_of(star_.begin(), star_.end(), [v](const auto& edge) { return edge.first == v || edge.second == v; });
+  };
+  for (const auto* corners : {&corners_a_, &corners_b_}) {
+    for (const std::uint32_t corner : *corners) {
+      const std::uint32_t next = CollapseMesh::next_in_triangle(corner);
+      for (const std::uint32_t v : {mesh_.vertex(next), mesh_.vertex(CollapseMesh::next_in_triangle(next))}) {
+        if (v == a || v == b || is_in_star(v)) continue;
+        if (std::find(vanishing_.begin(), vanishing_.end(), v) != vanishing_.end()) continue;
+        mesh_.corners_of(v, dropped_);
+        const bool has_others = std::any_of(dropped_.begin(), dropped_.end(), [&](std::uint32_t c) {
+          const std::uint32_t x = mesh_.vertex(CollapseMesh::next_in_triangle(c));
+          const std::uint32_t y = mesh_.vertex(CollapseMesh::next_in_triangle(CollapseMesh::next_in_triangle(c)));
+          return x != a && x != b && y != a && y != b;
+        });
+        const Vec3d uncovered = position_[v] - target;
+        lost2 = std::max(lost2, (has_others ? 0.25 : 1.0) * glm::dot(uncovered, uncovered));
+        if (!has_others) vanishing_.push_back(v);
+      }
+    }
+  }
+  for (const auto& [x, y] : sheet_) {
+    const Vec3d base = position_[y] - position_[x];
+    const Vec3d cross = glm::cross(base, target - position_[x]);
+    const double base2 = glm::dot(base, base);
+    if (base2 > 0.0) lost2 = std::max(lost2, 0.25 * glm::dot(cross, cross) / base2);
+  }
+  return lost2;
 }
 
 /// The largest squared distance from the witnesses of both vertices to the new star; left_behind_ holds all of them.
@@ -513,12 +559,24 @@ template <std::size_t C>
 double GroupSimplifier<C>::weigh_witnesses(std::uint32_t a, std::uint32_t b, const Vec3d& target) {
   left_behind_.clear();
   double largest = 0.0;
-  for (const std::uint32_t vertex : {a, b}) {
+  const auto weigh = [&](std::uint32_t vertex) {
     const Witnesses& w = witnesses_[vertex];
     for (std::uint32_t i = 0; i < w.count; ++i) {
-      left_behind_.emplace_back(distance2_to_new_star(a, b, to_frame(w.points[i]), target), w.points[i]);
-      largest = std::max(largest, left_behind_.back().first);
+      const Vec3d point = to_frame(w.points[i]);
+      double nearest = std::numeric_limits<double>::infinity();
+      for (const auto& [x, y] : star_) {
+        nearest = std::min(nearest, distance2_to_triangle(point, target, position_[x], position_[y]));
+      }
+      left_behind_.emplace_back(nearest, w.points[i]);
+      largest = std::max(largest, nearest);
     }
+  };
+  weigh(a);
+  weigh(b);
+  for (const std::uint32_t v : vanishing_) weigh(v);
+  if (star_.empty()) {  // the piece vanishes: its size is what is lost
+    const Box both{glm::min(merged_[a].low, merged_[b].low), glm::max(merged_[a].high, merged_[b].high)};
+    largest = both.diagonal() * both.diagonal();
   }
   return largest;
 }
@@ -537,21 +595,30 @@ typename GroupSimplifier<C>::Obstacle GroupSimplifier<C>::try_collapse(const Can
   mesh_.corners_of(b, corners_b_);
   if (is_locked_[a] != 0 && !keeps_shared_corners(a, corners_b_)) return Obstacle::kSeams;
   if (is_locked_[b] != 0 && !keeps_shared_corners(b, corners_a_)) return Obstacle::kSeams;
-  if (!is_topology_relaxed_ && !keeps_topology(a, b)) return Obstacle::kTopology;
+  bool breaks_topology = false;
+  if (!keeps_topology(a, b)) {
+    if (!options_.may_relax_topology) return Obstacle::kTopology;
+    if (!candidate.may_break_topology) {
+      queue_.push({kTopologyPrice * candidate.cost, a, b, version_[a], version_[b], true});
+      return Obstacle::kPutBack;
+    }
+    breaks_topology = true;
+  }
   if (!are_flips_relaxed_ && (turns_over(a, b, corners_a_, target) || turns_over(b, a, corners_b_, target))) {
     return Obstacle::kFlips;
   }
   // Thin closed features vanish almost free of plane error. What the source points behind both vertices would be left at
   // is the truth of it: where that is far more than the quadrics say, the collapse waits for its turn at that price.
-  const double left_behind2 = weigh_witnesses(a, b, target);
-  if (!candidate.is_guarded) {
-    const double mean_weight = 2.0 * total_weight_ / mesh_.alive_count();
-    const double price = kGuardShare * left_behind2 * std::sqrt(std::max(mean_weight, plane_[a].weight + plane_[b].weight));
-    if (price > placement.cost) {
-      queue_.push({price, a, b, version_[a], version_[b], true});
-      return Obstacle::kPutBack;
-    }
+  collect_new_star(a, b, breaks_topology || has_broken_topology_);
+  const double lost2 = collect_vanishing(a, b, target);
+  const double left_behind2 = std::max(lost2, weigh_witnesses(a, b, target));
+  const double mean_weight = 2.0 * total_weight_ / mesh_.alive_count();
+  const double price = kGuardShare * left_behind2 * std::sqrt(std::max(mean_weight, plane_[a].weight + plane_[b].weight));
+  if (price > candidate.cost) {
+    queue_.push({price, a, b, version_[a], version_[b], candidate.may_break_topology});
+    return Obstacle::kPutBack;
   }
+  has_broken_topology_ |= breaks_topology;
   if (is_locked_[b] != 0) std::swap(a, b);
   collapse(a, b, target);
   return Obstacle::kNone;
@@ -604,7 +671,7 @@ void GroupSimplifier<C>::collapse(std::uint32_t a, std::uint32_t b, const Vec3d&
   ++version_[a];
   ++version_[b];
 
-  if (is_topology_relaxed_) error_ = std::max(error_, drop_collapsed_sheets(a));
+  if (has_broken_topology_) error_ = std::max(error_, drop_collapsed_sheets(a));
   update_wedges(a);
   mesh_.corners_of(a, corners_a_);
   if (corners_a_.empty()) error_ = std::max(error_, merged_[a].diagonal());
@@ -646,10 +713,6 @@ double GroupSimplifier<C>::drop_collapsed_sheets(std::uint32_t vertex) {
 template <std::size_t C>
 void GroupSimplifier<C>::run() {
   run_passes();
-  if (options_.may_relax_topology && mesh_.alive_count() > options_.target_triangles) {
-    is_topology_relaxed_ = true;
-    run_passes();
-  }
   if (options_.may_relax_flips && mesh_.alive_count() > options_.target_triangles) {
     are_flips_relaxed_ = true;
     run_passes();

@@ -27,9 +27,8 @@ struct SimplifyOptions {
   double color_weight = 0.7;   ///< as normals
   double border_weight = 8.0;  ///< of source borders and material borders, against area-weighted planes
   double seam_weight = 1.0;    ///< of texture seams
-  /// Where the link condition keeps the target out of reach (small holes, handles, fans), go on without it.
-  bool may_relax_topology = true;
-  bool may_relax_flips = false;  ///< and then without the flip test: a last resort
+  bool may_relax_topology = true;  ///< break the link condition (small holes, handles, fans) where that is far cheaper
+  bool may_relax_flips = false;    ///< where the target is out of reach, go on without the flip test: a last resort
 };
 
 /// Source points that a vertex has come to stand for: those farthest from the surface around it. They are carried up the
