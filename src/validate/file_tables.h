@@ -41,8 +41,10 @@ struct FileTables {
 /// L013.
 void check_texts(const FileTables& file, RuleLog& log);
 [[nodiscard]] bool is_utf8(std::string_view text);
-/// META's /source/hash; empty where there is none.
-[[nodiscard]] std::string source_hash_of(std::string_view meta);
+/// META's /section/key where it is a string; empty elsewhere.
+[[nodiscard]] std::string meta_text(std::string_view meta, const char* section, const char* key);
+/// META's /section/key where it is a whole number; nothing elsewhere.
+[[nodiscard]] std::optional<std::uint64_t> meta_number(std::string_view meta, const char* section, const char* key);
 
 /// L101 … L115. True where every id and range is sound, so that the later rules may index.
 [[nodiscard]] bool check_tables(const FileTables& file, RuleLog& log);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <set>
 #include <string>
 
 #include "mesh/grid.h"
@@ -56,12 +57,33 @@ class MeshGeometry {
     const MeshSurface surface = build_surface(asset_, MeshId(static_cast<std::uint32_t>(m_)), clusters_);
     const BorderProof proof = prove_borders(asset_, surface);
     report("L507", proof.violations);
+    check_materials(surface);
     report("L506", check_shared_attributes(asset_, surface, clusters_, proof.border));
   }
 
  private:
   void report(std::string_view rule, const std::vector<BorderViolation>& violations) {
     for (const BorderViolation& v : violations) log_.add(rule, place("mesh", m_, "group", v.group), v.detail);
+  }
+
+  [[nodiscard]] std::set<std::uint32_t> materials_of(std::uint32_t cluster) const {
+    const auto& materials = clusters_[cluster].triangle_material;
+    return {materials.begin(), materials.end()};
+  }
+
+  void check_materials(const MeshSurface& surface) {
+    for (std::uint32_t k = 0; k < surface.group_count; ++k) {
+      const format::GroupRecord& group = asset_.groups()[surface.first_group + k];
+      if (surface.made[k].empty()) continue;
+      std::set<std::uint32_t> finer;
+      for (std::uint32_t i = 0; i < group.cluster_count; ++i) finer.merge(materials_of(group.first_cluster + i));
+      for (const std::uint32_t c : surface.made[k]) {
+        const std::set<std::uint32_t> coarser = materials_of(surface.first_cluster + c);
+        log_.expect(std::includes(finer.begin(), finer.end(), coarser.begin(), coarser.end()), "L509",
+                    [&] { return place("mesh", m_, "cluster", surface.first_cluster + c); },
+                    [] { return std::string("has a material that its finer set has not"); });
+      }
+    }
   }
 
   void check_cluster(std::uint32_t c) {
@@ -153,7 +175,7 @@ class MeshGeometry {
 }  // namespace
 
 void check_geometry(const Asset& asset, std::span<const DecodedCluster> clusters, RuleLog& log) {
-  for (const char* rule : {"L116", "L501", "L502", "L503", "L504", "L505", "L506", "L507", "L508", "L215"}) log.check(rule);
+  for (const char* rule : {"L116", "L501", "L502", "L503", "L504", "L505", "L506", "L507", "L508", "L509", "L215"}) log.check(rule);
   for (std::size_t m = 0; m < asset.meshes().size(); ++m) MeshGeometry(asset, m, clusters, log).run();
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Geometry rules on decoded integers (L116, L501 … L508). Internal to the judge.
+// Geometry rules on decoded integers (L116, L501 … L509). Internal to the judge.
 #pragma once
 
 #include <span>

@@ -86,6 +86,7 @@ constexpr std::array kRules{
     Rule{"L506", "I3", "corners of a border edge that a group shares have attributes that its finer set has in their place"},
     Rule{"L507", "I6", "a group's coarser set has the border edges of its finer set, except where the source is open"},
     Rule{"L508", "I6", "triangles above level 0 have three distinct corner positions"},
+    Rule{"L509", "", "the coarser set of a group has the materials of its finer set alone"},
     // verify
     Rule{"V101", "I1", "every source triangle is in exactly one level-0 cluster, with its material and orientation"},
     Rule{"V102", "I1", "triangles dropped as degenerate or duplicate are counted truly"},
@@ -96,6 +97,8 @@ constexpr std::array kRules{
     Rule{"V107", "", "instances are the source's, and their transforms"},
     Rule{"V108", "", "the source hash in META is the source's"},
     Rule{"V109", "", "images and buffers are the source's bytes"},
+    Rule{"V110", "", "normals, UV sets and colours that the source's shading needs are stored, unless left out by option"},
+    Rule{"V111", "I2", "clusters keep the caps of the settings"},
     Rule{"V201", "I5", "a cut draws each piece of surface exactly once and is never empty"},
     Rule{"V202", "I6", "the border of a cut consists of edges of the source's border alone"},
     Rule{"V203", "I8", "hierarchy traversal selects what the flat rule selects"},

@@ -57,13 +57,22 @@ nlohmann::json parse(std::string_view text) {
   return nlohmann::json::parse(text.begin(), text.end(), nullptr, false);
 }
 
+nlohmann::json value_at(std::string_view meta, const char* section, const char* key) {
+  const nlohmann::json root = parse(meta);
+  if (!root.is_object() || !root.contains(section) || !root[section].is_object() || !root[section].contains(key)) return {};
+  return root[section][key];
+}
+
 }  // namespace
 
-std::string source_hash_of(std::string_view meta) {
-  const nlohmann::json root = parse(meta);
-  if (!root.is_object() || !root.contains("source") || !root["source"].is_object()) return {};
-  const auto hash = root["source"].find("hash");
-  return hash != root["source"].end() && hash->is_string() ? hash->get<std::string>() : std::string();
+std::string meta_text(std::string_view meta, const char* section, const char* key) {
+  const nlohmann::json value = value_at(meta, section, key);
+  return value.is_string() ? value.get<std::string>() : std::string();
+}
+
+std::optional<std::uint64_t> meta_number(std::string_view meta, const char* section, const char* key) {
+  const nlohmann::json value = value_at(meta, section, key);
+  return value.is_number_unsigned() ? std::optional(value.get<std::uint64_t>()) : std::nullopt;
 }
 
 void check_texts(const FileTables& file, RuleLog& log) {

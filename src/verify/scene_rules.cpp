@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What surrounds the geometry: materials, instances, images and the source's name for itself (V106 … V109).
+// What surrounds the geometry: materials, instances, images and the source's name for itself (V106 … V111).
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -84,13 +84,75 @@ void check_blobs(const Asset& asset, const Scene& source, RuleLog& log) {
              [] { return std::string("is not the source's scene document"); });
 }
 
+/// Whether a corner's normal is not its triangle's: beyond one degree shading would tell. Triangles without area say
+/// nothing.
+bool has_own_shading(const SourceMesh& mesh) {
+  constexpr double kCosine = 0.99984;
+  for (const Primitive& primitive : mesh.primitives) {
+    if (primitive.normals.empty()) continue;
+    for (std::size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
+      const Vec3d a = primitive.positions[primitive.indices[i]];
+      const Vec3d n = glm::cross(primitive.positions[primitive.indices[i + 1]] - a, primitive.positions[primitive.indices[i + 2]] - a);
+      const double n_length = std::sqrt(glm::dot(n, n));
+      if (!(n_length > 0.0) || !std::isfinite(n_length)) continue;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3d normal(primitive.normals[primitive.indices[i + k]]);
+        const double length = std::sqrt(glm::dot(normal, normal));
+        if (length > 0.0 && std::isfinite(length) && glm::dot(normal, n) < kCosine * length * n_length) return true;
+      }
+    }
+  }
+  return false;
+}
+
+bool has_color(const Primitive& primitive) {
+  return std::any_of(primitive.colors.begin(), primitive.colors.end(), [](const Vec4f& c) { return c != Vec4f(1.0F); });
+}
+
+void check_attributes(const Asset& asset, const Scene& source, RuleLog& log) {
+  if (meta_text(asset.meta_json(), "settings", "attributes") == "none") return;
+  for (std::size_t m = 0; m < std::min(asset.meshes().size(), source.meshes.size()); ++m) {
+    const format::MeshRecord& mesh = asset.meshes()[m];
+    if (mesh.cluster_count == 0) continue;
+    const auto at = [&] { return place("mesh", m); };
+    log.expect(mesh.normal_mode != format::NormalMode::kNone, "V110", at, [] { return std::string("normals are left out"); });
+    log.expect(mesh.normal_mode == format::NormalMode::kStored || !has_own_shading(source.meshes[m]), "V110", at,
+               [] { return std::string("normals differ from the triangles' own and are not stored"); });
+    for (const Primitive& primitive : source.meshes[m].primitives) {
+      log.expect(mesh.has_color != 0 || !has_color(primitive), "V110", at, [] { return std::string("colours are not stored"); });
+      if (primitive.material.value >= source.materials.size()) continue;
+      for (std::uint32_t set = 0; set < kMaxUvSets; ++set) {
+        const bool is_used = (source.materials[primitive.material.value].uv_sets_used >> set & 1U) != 0 && !primitive.uvs[set].empty();
+        const auto* end = mesh.uv_set_source + mesh.uv_set_count;
+        log.expect(!is_used || std::find(mesh.uv_set_source, end, set) != end, "V110", at,
+                   [&] { return "TEXCOORD_" + std::to_string(set) + " is sampled and not stored"; });
+      }
+    }
+  }
+}
+
+void check_caps(const Asset& asset, RuleLog& log) {
+  const std::uint64_t triangles = meta_number(asset.meta_json(), "settings", "cluster_triangles").value_or(format::kMaxClusterTriangles);
+  const std::uint64_t vertices = meta_number(asset.meta_json(), "settings", "cluster_vertices").value_or(format::kMaxClusterVertices);
+  for (std::size_t c = 0; c < asset.clusters().size(); ++c) {
+    const format::ClusterRecord& cluster = asset.clusters()[c];
+    log.expect(cluster.triangle_count <= triangles && cluster.vertex_count <= vertices, "V111", [&] { return place("cluster", c); }, [&] {
+      return differs("triangles", std::uint64_t{cluster.triangle_count}, "vertices", std::uint64_t{cluster.vertex_count}) + "; the caps are " +
+             std::to_string(triangles) + " and " + std::to_string(vertices);
+    });
+  }
+}
+
 }  // namespace
 
 void check_scene(const Asset& asset, const Scene& source, RuleLog& log) {
   check_materials(asset, source, log);
   check_instances(asset, source, log);
   check_blobs(asset, source, log);
-  const std::string hash = source_hash_of(asset.meta_json());
+  log.check("V110");
+  check_attributes(asset, source, log);
+  check_caps(asset, log);
+  const std::string hash = meta_text(asset.meta_json(), "source", "hash");
   log.expect(hash == source.source_hash, "V108", [] { return std::string("section META: /source/hash"); },
              [&] { return "is \"" + hash + "\", the source given has \"" + source.source_hash + "\""; });
 }

@@ -101,6 +101,19 @@ const std::vector<Break>& breaks() {
       {"V107", "an instance of another mesh", [](Scene& s) { s.instances[0].mesh = MeshId(2U); }, keep},
       {"V107", "an instance more", [](Scene& s) { s.instances.push_back(s.instances[0]); }, keep},
       {"V108", "another source", [](Scene& s) { s.source_hash[0] = 'f'; }, keep},
+      {"V110", "a vertex colour that matters", [](Scene& s) { s.meshes[0].primitives[0].colors.assign(s.meshes[0].primitives[0].positions.size(), Vec4f(0.5F)); }, keep},
+      {"V110", "flat normals left out", keep, [](AssetEdit& e) { e.mesh(2, [](auto& m) { m.normal_mode = format::NormalMode::kNone; }); }},
+      {"V110", "a UV set that a material came to sample", [](Scene& s) { s.meshes[0].primitives[0].uvs[1] = s.meshes[0].primitives[0].uvs[0]; for (auto& m : s.materials) m.uv_sets_used = 3; }, keep},
+      {"V111", "caps below the clusters", keep, [](AssetEdit& e) {
+         auto& bytes = e.bytes();
+         const std::string from = "\"cluster_triangles\":256";
+         const auto found = std::search(bytes.begin(), bytes.end(), from.begin(), from.end());
+         ASSERT_NE(found, bytes.end());
+         found[static_cast<std::ptrdiff_t>(from.size()) - 3] = '0';
+         found[static_cast<std::ptrdiff_t>(from.size()) - 2] = '1';
+         // "016" is no JSON number: a space keeps the length
+         found[static_cast<std::ptrdiff_t>(from.size()) - 3] = ' ';
+       }},
       {"V109", "an image's byte", [](Scene& s) { s.blobs[0].bytes[0] ^= 1U; }, keep},
       {"V109", "the scene document", [](Scene& s) { s.document += " "; }, keep},
   };

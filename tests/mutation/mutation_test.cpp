@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Can the judge fail? One field of a sound asset is changed at random, every checksum and hash is made true again, and
+// validate and verify must find it. Mutants that are as valid as the original are counted apart, by kind, with the reason.
+#include <algorithm>
+#include <cstdio>
+#include <map>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "mutation/mutators.h"
+#include "pipeline/build.h"
+#include "read/asset.h"
+#include "samples/samples.h"
+#include "support/sample_asset.h"
+#include "validate/judged_sample.h"
+#include "validate/validate.h"
+#include "verify/verify.h"
+
+namespace meshlode {
+namespace {
+
+#ifndef MESHLODE_MUTANTS_PER_KIND
+#define MESHLODE_MUTANTS_PER_KIND 8
+#endif
+
+constexpr std::uint64_t kSeed = 20260101;
+
+struct Original {
+  const char* name;
+  std::vector<std::uint8_t> bytes;
+  Scene scene;
+};
+
+/// The rule that finds it, the structural ones first; empty where nothing is found.
+std::string find_killer(const std::vector<std::uint8_t>& bytes, const Scene& scene) {
+  const ValidationReport structure = validate_asset(bytes);
+  if (structure.finding_count > 0) return structure.findings.front().id;
+  const Result<Asset> asset = Asset::from_bytes(bytes);
+  if (!asset) return "L099";
+  const VerifyReport report = verify_asset(*asset, scene, {.uniform_cuts = 4, .cameras = 2});
+  return report.finding_count > 0 ? report.findings.front().id : std::string();
+}
+
+struct Tally {
+  std::uint64_t mutants = 0, killed = 0;
+  std::map<std::string, std::uint64_t> by_rule;
+};
+
+std::string name_killers(const Tally& tally) {
+  std::vector<std::pair<std::uint64_t, std::string>> order;
+  for (const auto& [rule, count] : tally.by_rule) order.emplace_back(count, rule);
+  std::sort(order.rbegin(), order.rend());
+  std::string text;
+  for (const auto& [count, rule] : order) text += (text.empty() ? "" : " ") + rule + ":" + std::to_string(count);
+  return text;
+}
+
+void run_kind(const test::MutantKind& kind, const Original& original, std::uint64_t seed, std::uint64_t count, Tally& tally) {
+  SplitMix64 random(seed);
+  std::uint64_t made = 0;
+  for (std::uint64_t draw = 0; made < count && draw < 20 * count; ++draw) {
+    test::AssetEdit edit(original.bytes);
+    if (!kind.mutate(edit, random) || edit.bytes() == original.bytes) continue;
+    edit.seal();
+    ++made;
+    ++tally.mutants;
+    const std::string killer = find_killer(edit.bytes(), original.scene);
+    if (!killer.empty()) {
+      ++tally.killed;
+      ++tally.by_rule[killer];
+    } else if (kind.equivalent == nullptr) {
+      ADD_FAILURE() << kind.name << ": mutant " << made << " of " << original.name << ", seed " << seed << ", is not found";
+    }
+  }
+}
+
+/// A built asset of several pages, so that there are dependencies.
+const Original& several_pages();
+
+void run_mutants(const std::vector<Original>& originals, std::uint64_t per_kind) {
+  std::uint64_t must = 0;
+  std::uint64_t must_killed = 0;
+  std::uint64_t may = 0;
+  std::uint64_t may_killed = 0;
+  std::printf("%s", "| kind | mutants | found | by rule | those not found |\n| --- | ---: | ---: | --- | --- |\n");
+  for (const test::MutantKind& kind : test::mutant_kinds()) {
+    Tally tally;
+    for (std::size_t o = 0; o < originals.size(); ++o) run_kind(kind, originals[o], kSeed + o, per_kind, tally);
+    if (tally.mutants == 0) run_kind(kind, several_pages(), kSeed, per_kind, tally);
+    EXPECT_GT(tally.mutants, 0U) << kind.name;
+    (kind.equivalent == nullptr ? must : may) += tally.mutants;
+    (kind.equivalent == nullptr ? must_killed : may_killed) += tally.killed;
+    const char* reason = kind.equivalent != nullptr && tally.killed < tally.mutants ? kind.equivalent : "";
+    std::printf("| %s | %llu | %llu | %s | %s |\n", kind.name, static_cast<unsigned long long>(tally.mutants),
+                static_cast<unsigned long long>(tally.killed), name_killers(tally).c_str(), reason);
+  }
+  std::printf("\nof kinds that change the meaning: %llu mutants, %llu found; of kinds that may keep it: %llu mutants, %llu found\n",
+              static_cast<unsigned long long>(must), static_cast<unsigned long long>(must_killed),
+              static_cast<unsigned long long>(may), static_cast<unsigned long long>(may_killed));
+  EXPECT_EQ(must_killed, must);
+}
+
+Original make_hand_made() { return {"the hand-made sample", test::judged_sample_bytes(), test::sample_scene()}; }
+
+Original make_built(const char* name, Primitive shape) {
+  Original out{name, {}, samples::as_scene(samples::as_mesh(std::move(shape)))};
+  PipelineReport report;
+  Result<std::vector<std::uint8_t>> bytes = build_lode(out.scene, {}, {}, report);
+  EXPECT_TRUE(bytes.ok()) << bytes.error().message();
+  if (bytes) out.bytes = std::move(*bytes);
+  EXPECT_EQ(find_killer(out.bytes, out.scene), "") << name;
+  return out;
+}
+
+const Original& several_pages() {
+  static const Original rock = make_built("a rock of several pages", samples::make_rock(48));
+  return rock;
+}
+
+#if MESHLODE_MUTANTS_PER_KIND < 50
+TEST(Mutation, AFewMutantsOfEachKindAreFound) { run_mutants({make_hand_made()}, MESHLODE_MUTANTS_PER_KIND); }
+
+TEST(Mutation, ADependencyLeftOutIsFoundByItsRule) {
+  test::AssetEdit edit(several_pages().bytes);
+  const auto pages = edit.pages();
+  ASSERT_GT(pages.size(), 1U);
+  const auto needy = std::find_if(pages.begin(), pages.end(), [](const format::PageRecord& p) { return p.dependency_count > 0; });
+  ASSERT_NE(needy, pages.end());
+  edit.put<std::uint32_t>(edit.section(format::SectionId::kPageDeps).offset + 4 * needy->first_dependency,
+                          static_cast<std::uint32_t>(needy - pages.begin()));
+  edit.seal();
+  const ValidationReport report = validate_asset(edit.bytes());
+  EXPECT_TRUE(std::any_of(report.findings.begin(), report.findings.end(), [](const Finding& f) { return f.id == "L213"; }));
+}
+#else
+TEST(Mutation, ThousandsOfMutantsAreFound) {
+  run_mutants({make_hand_made(), make_built("a rock", samples::make_rock(24)), make_built("a terrain", samples::make_terrain(96, 96))},
+              MESHLODE_MUTANTS_PER_KIND);
+}
+#endif
+
+}  // namespace
+}  // namespace meshlode
