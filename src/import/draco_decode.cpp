@@ -11,6 +11,10 @@
 #include <optional>
 #include <string>
 
+#include <draco/compression/attributes/prediction_schemes/prediction_scheme_decoder_interface.h>
+#include <draco/compression/attributes/sequential_attribute_decoders_controller.h>
+#include <draco/compression/attributes/sequential_integer_attribute_decoder.h>
+#include <draco/compression/attributes/sequential_quantization_attribute_decoder.h>
 #include <draco/compression/config/decoder_options.h>
 #include <draco/compression/mesh/mesh_edgebreaker_decoder.h>
 #include <draco/compression/mesh/mesh_sequential_decoder.h>
@@ -137,6 +141,93 @@ Result<Method> check_head(std::span<const std::uint8_t> bytes, const DracoExpect
   return method == 1 ? Method::kEdgebreaker : Method::kSequential;
 }
 
+/// Texture coordinates are predicted with one flag per vertex, whose count Draco reads and loops over unchecked: two
+/// thousand million turns for four bytes. Looks at the count first, and hands everything else through.
+class GuardedPrediction : public draco::PredictionSchemeTypedDecoderInterface<std::int32_t> {
+ public:
+  using Inner = draco::PredictionSchemeTypedDecoderInterface<std::int32_t>;
+  GuardedPrediction(std::unique_ptr<Inner> inner, std::int64_t max_flags)
+      : inner_(std::move(inner)), max_flags_(max_flags) {}
+
+  bool DecodePredictionData(draco::DecoderBuffer* buffer) override {
+    std::int32_t flag_count = 0;
+    if (!buffer->Peek(&flag_count) || flag_count < 0 || flag_count > max_flags_) return false;
+    return inner_->DecodePredictionData(buffer);
+  }
+  bool ComputeOriginalValues(const std::int32_t* corrections, std::int32_t* out, int size, int component_count,
+                             const draco::PointIndex* points) override {
+    return inner_->ComputeOriginalValues(corrections, out, size, component_count, points);
+  }
+  draco::PredictionSchemeMethod GetPredictionMethod() const override { return inner_->GetPredictionMethod(); }
+  const draco::PointAttribute* GetAttribute() const override { return inner_->GetAttribute(); }
+  bool IsInitialized() const override { return inner_->IsInitialized(); }
+  int GetNumParentAttributes() const override { return inner_->GetNumParentAttributes(); }
+  draco::GeometryAttribute::Type GetParentAttributeType(int i) const override {
+    return inner_->GetParentAttributeType(i);
+  }
+  bool SetParentAttribute(const draco::PointAttribute* attribute) override {
+    return inner_->SetParentAttribute(attribute);
+  }
+  bool AreCorrectionsPositive() override { return inner_->AreCorrectionsPositive(); }
+  draco::PredictionSchemeTransformType GetTransformType() const override { return inner_->GetTransformType(); }
+
+ private:
+  std::unique_ptr<Inner> inner_;
+  std::int64_t max_flags_;
+};
+
+/// Draco's integer or quantization decoder with that guard.
+template <class Decoder>
+class GuardedAttribute : public Decoder {
+ public:
+  explicit GuardedAttribute(std::int64_t max_flags) : max_flags_(max_flags) {}
+
+ protected:
+  std::unique_ptr<GuardedPrediction::Inner> CreateIntPredictionScheme(
+      draco::PredictionSchemeMethod method, draco::PredictionSchemeTransformType transform) override {
+    // The deprecated scheme is older than bitstream 2.2 and counts in another way.
+    if (method == draco::MESH_PREDICTION_TEX_COORDS_DEPRECATED) return nullptr;
+    auto scheme = Decoder::CreateIntPredictionScheme(method, transform);
+    if (scheme == nullptr || scheme->GetPredictionMethod() != draco::MESH_PREDICTION_TEX_COORDS_PORTABLE) return scheme;
+    return std::make_unique<GuardedPrediction>(std::move(scheme), max_flags_);
+  }
+
+ private:
+  std::int64_t max_flags_;
+};
+
+class GuardedController : public draco::SequentialAttributeDecodersController {
+ public:
+  GuardedController(std::unique_ptr<draco::PointsSequencer> sequencer, std::int64_t max_flags)
+      : SequentialAttributeDecodersController(std::move(sequencer)), max_flags_(max_flags) {}
+
+ protected:
+  std::unique_ptr<draco::SequentialAttributeDecoder> CreateSequentialDecoder(std::uint8_t type) override {
+    switch (type) {
+      case draco::SEQUENTIAL_ATTRIBUTE_ENCODER_INTEGER:
+        return std::make_unique<GuardedAttribute<draco::SequentialIntegerAttributeDecoder>>(max_flags_);
+      case draco::SEQUENTIAL_ATTRIBUTE_ENCODER_QUANTIZATION:
+        return std::make_unique<GuardedAttribute<draco::SequentialQuantizationAttributeDecoder>>(max_flags_);
+      default: return SequentialAttributeDecodersController::CreateSequentialDecoder(type);
+    }
+  }
+
+ private:
+  std::int64_t max_flags_;
+};
+
+/// The mesh decoders make their controllers themselves, so a guarded one can only take the place of Draco's and with it
+/// its sequencer, which is private. An explicit instantiation may name private members (C++20, [temp.spec.general]).
+struct SequencerOf {
+  using Member = std::unique_ptr<draco::PointsSequencer> draco::SequentialAttributeDecodersController::*;
+  friend Member member_of(SequencerOf);
+};
+template <class Tag, typename Tag::Member kMember>
+struct NamePrivateMember {
+  friend typename Tag::Member member_of(Tag) { return kMember; }
+};
+template struct NamePrivateMember<SequencerOf, &draco::SequentialAttributeDecodersController::sequencer_>;
+
 /// A decoder that stops where the counts leave what the glTF says.
 template <class Decoder>
 class GuardedDecoder : public Decoder {
@@ -154,6 +245,15 @@ class GuardedDecoder : public Decoder {
       }
     }
     return true;
+  }
+  bool CreateAttributesDecoder(std::int32_t id) override {
+    if (!Decoder::CreateAttributesDecoder(id) || id < 0 || id >= this->num_attributes_decoders()) return false;
+    auto* made = dynamic_cast<draco::SequentialAttributeDecodersController*>(
+        const_cast<draco::AttributesDecoderInterface*>(this->attributes_decoder(id)));
+    if (made == nullptr) return false;
+    auto sequencer = std::move(made->*member_of(SequencerOf{}));
+    const std::int64_t corner_count = std::int64_t{3} * this->mesh()->num_faces();
+    return this->SetAttributesDecoder(id, std::make_unique<GuardedController>(std::move(sequencer), corner_count));
   }
   bool DecodeAllAttributes() override {
     const draco::PointCloud& cloud = *this->point_cloud();

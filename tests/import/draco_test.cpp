@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <cstring>
+
 #include "gltf_builder.h"
 #include "import/draco_decode.h"
 
@@ -61,6 +64,22 @@ TEST(ImportDraco, EveryTruncationIsAnError) {
       }
     }
   }
+}
+
+// Guards against Draco 1.5.5 believing the count of texture coordinate flags: four bytes made it loop for seconds.
+TEST(ImportDraco, AHugeCountAtAnyPlaceIsRefusedAtOnce) {
+  const DracoSample sample = make_draco_sample(4, true, 0, 11);
+  const auto start = std::chrono::steady_clock::now();
+  for (std::size_t at = 11; at + 4 <= sample.bytes.size(); ++at) {
+    auto bytes = sample.bytes;
+    const std::uint32_t huge = 0x7FFFFFFFu;
+    std::memcpy(bytes.data() + at, &huge, 4);
+    const auto mesh = decode_draco(bytes, expectation(sample));
+    if (mesh) {
+      EXPECT_EQ(mesh->point_count, sample.point_count);
+    }
+  }
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(3));
 }
 
 TEST(ImportDraco, AForeignVersionMethodOrTypeIsRefused) {
