@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Deviation: how far a simplified group is from the source, both ways. What the `measured` and `certified` tiers store.
+//
+// Source to group: points of the source are carried up the DAG with the clusters that stand for them and projected onto
+// each simplified group. Group to source: points of the group's triangles against a tree over the whole source. Both are
+// refined where the maximum may lie; nothing is spent where a bound says that it does not.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "base/vec.h"
+
+namespace meshlode {
+
+/// The source's surface before the grid, relative to the mesh's origin, in object units. Built once per mesh; queries are
+/// const and may run side by side. Deterministic: same bits for any thread count, compiler and processor (I10).
+class SourceTree {
+ public:
+  SourceTree(std::span<const Vec3d> positions, std::span<const std::array<std::uint32_t, 3>> triangles);
+  ~SourceTree();
+  SourceTree(SourceTree&&) noexcept;
+  SourceTree& operator=(SourceTree&&) noexcept;
+
+  struct Impl;
+  [[nodiscard]] const Impl& impl() const { return *impl_; }
+
+ private:
+  std::unique_ptr<Impl> impl_;
+};
+
+/// A point of the source on its way up the DAG.
+struct CarriedSample {
+  Vec3d point;                  ///< on the source, relative to the origin, object units
+  std::uint32_t triangle = 0;   ///< of the surface that carries it: the one its nearest point lies on
+  float distance = 0.0F;        ///< to that surface, for thinning
+  std::uint32_t place = 0;      ///< of the SourceTree: where a search for the source near this point may begin
+};
+
+/// A simplified group. Triangle ids are indices into `triangles`.
+struct GroupSurface {
+  std::span<const Vec3d> positions;  ///< relative to the origin, object units (grid point times step)
+  std::span<const std::array<std::uint32_t, 3>> triangles;
+};
+
+struct DeviationTierOptions {
+  bool certified = false;       ///< an upper bound instead of an estimate from below
+  double floor = 0.0;           ///< object units: the running maximum so far. What is below it need not be known exactly.
+  std::uint32_t samples_per_triangle = 2;  ///< carried samples are thinned to so many per triangle, the farthest first
+};
+
+struct GroupDeviation {
+  double deviation = 0.0;       ///< object units; at least what was found, or `floor` if nothing exceeds it
+  std::vector<CarriedSample> carried;  ///< thinned, triangle = index into the group's triangles
+};
+
+/// Level 0: the samples that each source triangle starts with (its corners and more), carried by itself. `triangle` of a
+/// sample is the index of the source triangle.
+[[nodiscard]] std::vector<CarriedSample> initial_samples(const SourceTree& source);
+
+/// Measures one simplified group. `samples` are those of all its members. Errors cannot happen: degenerate triangles are
+/// points or segments. An empty surface with samples has an infinite deviation.
+[[nodiscard]] GroupDeviation measure_group(const SourceTree& source, const GroupSurface& group,
+                                           std::span<const CarriedSample> samples, const DeviationTierOptions& options);
+
+}  // namespace meshlode

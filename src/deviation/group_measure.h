@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The two directions of a group's deviation, each with the maximum so far: whoever cannot raise it is dismissed early.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "deviation/deviation.h"
+#include "deviation/surface_tree.h"
+
+namespace meshlode {
+
+/// Source to group. Sets each sample's triangle and distance; returns the largest distance.
+[[nodiscard]] double project_samples(const SurfaceTree& group_tree, std::vector<CarriedSample>& samples);
+
+/// What goes on to the next level: for each triangle of the group the farthest samples, some spread, and whatever is
+/// near the group's maximum. Ordered by triangle.
+[[nodiscard]] std::vector<CarriedSample> thin_samples(std::span<const CarriedSample> samples, std::size_t triangle_count,
+                                                      std::uint32_t samples_per_triangle, double maximum);
+
+/// Group to source: the larger of `maximum` and what is found, by adaptive subdivision near the maximum. `places` has
+/// for each triangle of the group where its search may begin.
+[[nodiscard]] double measure_to_source(const SurfaceTree& source, const GroupSurface& group,
+                                       std::vector<std::uint32_t> places, double maximum);
+
+}  // namespace meshlode

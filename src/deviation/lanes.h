@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Four floats side by side, as GCC and Clang offer them on every processor. No intrinsics and no dispatch: the bits are
+// those of four scalar operations (I10).
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+
+namespace meshlode {
+
+using Lanes = float __attribute__((vector_size(16)));
+using LaneMask = std::int32_t __attribute__((vector_size(16)));
+
+[[nodiscard]] inline Lanes lanes(float x) { return Lanes{x, x, x, x}; }
+
+[[nodiscard]] inline Lanes load_lanes(const float* from) {
+  Lanes value;
+  std::memcpy(&value, from, sizeof(value));
+  return value;
+}
+
+/// Lane by lane: a where the mask is set, else b. (Vector ?: of a vector_size type is not in every Clang.)
+[[nodiscard]] inline Lanes choose(LaneMask mask, Lanes a, Lanes b) {
+  LaneMask bits_a, bits_b;
+  std::memcpy(&bits_a, &a, sizeof(a));
+  std::memcpy(&bits_b, &b, sizeof(b));
+  const LaneMask bits = (mask & bits_a) | (~mask & bits_b);
+  Lanes result;
+  std::memcpy(&result, &bits, sizeof(bits));
+  return result;
+}
+
+[[nodiscard]] inline Lanes min_lanes(Lanes a, Lanes b) { return choose(a < b, a, b); }
+[[nodiscard]] inline Lanes max_lanes(Lanes a, Lanes b) { return choose(a > b, a, b); }
+
+}  // namespace meshlode

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Distance from a point to one triangle in doubles: the numbers that are stored come from here alone.
+#pragma once
+
+#include <algorithm>
+#include <array>
+
+#include "base/vec.h"
+
+namespace meshlode {
+
+using TriangleCorners = std::array<Vec3d, 3>;
+
+[[nodiscard]] inline double point_segment_distance2(const Vec3d& pa, const Vec3d& edge) {
+  const double length2 = glm::dot(edge, edge);
+  const double along = glm::dot(pa, edge);
+  const double t = along > 0.0 && length2 > 0.0 ? std::min(along / length2, 1.0) : 0.0;
+  const Vec3d away = pa - edge * t;
+  return glm::dot(away, away);
+}
+
+/// Squared distance. The triangle may be a needle, a segment or a point: an inside that rounding could have invented is
+/// not trusted, and the edges, which are points of the triangle, answer instead. So the result is never too small by
+/// more than rounding.
+[[nodiscard]] inline double point_triangle_distance2(const Vec3d& p, const TriangleCorners& corners) {
+  const Vec3d ab = corners[1] - corners[0];
+  const Vec3d ac = corners[2] - corners[0];
+  const Vec3d bc = corners[2] - corners[1];
+  const Vec3d pa = p - corners[0];
+  const Vec3d n = glm::cross(ab, ac);
+  const double nn = glm::dot(n, n);
+  const double longest2 = std::max(glm::dot(ab, ab), std::max(glm::dot(ac, ac), glm::dot(bc, bc)));
+  // Twice the area against the longest edge: below a sine of 1e-9 the normal is mostly rounding.
+  if (nn > 1e-18 * longest2 * longest2) {
+    const double u = glm::dot(glm::cross(ab, pa), n);
+    const double v = glm::dot(glm::cross(pa, ac), n);
+    if (u >= 0.0 && v >= 0.0 && glm::dot(glm::cross(bc, p - corners[1]), n) >= 0.0) {
+      const double height = glm::dot(pa, n);
+      return height * height / nn;
+    }
+  }
+  return std::min(point_segment_distance2(pa, ab),
+                  std::min(point_segment_distance2(pa, ac), point_segment_distance2(p - corners[1], bc)));
+}
+
+}  // namespace meshlode
