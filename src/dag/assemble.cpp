@@ -76,7 +76,7 @@ LodDag assemble_dag(const BuildPool& pool, const PreparedMesh& mesh) {
     const double infinity = std::numeric_limits<double>::infinity();
     group.error = source.is_terminal ? infinity : source.error;
     group.quadric_error = source.is_terminal ? infinity : source.quadric_error;
-    group.deviation = infinity;
+    group.deviation = source.deviation;
     for (const std::uint32_t c : source.clusters) {
       append_cluster(pool, pool.clusters[c], stride, GroupId(new_group[g]), dag);
       DagCluster& cluster = dag.clusters.back();

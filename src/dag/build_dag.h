@@ -18,7 +18,15 @@
 
 namespace meshlode {
 
+/// Where a group's selection error comes from (design, section 5).
+enum class ErrorSource : std::uint8_t {
+  kQuadric,    ///< the quadric's own estimate
+  kMeasured,   ///< the deviation from the source, as samples find it
+  kCertified,  ///< an upper bound of the deviation
+};
+
 struct DagOptions {
+  ErrorSource error = ErrorSource::kQuadric;
   ClusterCaps caps;
   GroupOptions grouping;
   SimplifyOptions simplify;       ///< target_triangles and may_relax_flips are set by the DAG

@@ -92,13 +92,18 @@ std::uint32_t BuildPool::wedge_id(std::uint32_t position, const float* attribute
 }
 
 void BuildPool::add_clusters(const std::vector<WedgeTriangle>& source, const std::vector<std::uint32_t>& materials,
-                             const Clustering& clustering, std::uint32_t level, std::uint32_t own_group) {
+                             const std::vector<CarriedSample>& samples, const Clustering& clustering,
+                             std::uint32_t level, std::uint32_t own_group) {
+  const auto first_cluster = clusters.size();
   std::vector<std::uint32_t> start(clustering.count + 1, 0);
   for (const std::uint32_t label : clustering.label) ++start[label + 1];
   for (std::size_t i = 1; i < start.size(); ++i) start[i] += start[i - 1];
   const auto base = static_cast<std::uint32_t>(triangles.size());
   for (std::uint32_t c = 0; c < clustering.count; ++c) {
-    clusters.push_back({level, own_group, base + start[c], start[c + 1] - start[c]});
+    clusters.push_back({level, own_group, base + start[c], start[c + 1] - start[c], {}});
+  }
+  for (const CarriedSample& sample : samples) {
+    clusters[first_cluster + clustering.label[sample.triangle]].samples.push_back(sample);
   }
   triangles.resize(base + source.size());
   triangle_material.resize(base + source.size());
@@ -109,8 +114,8 @@ void BuildPool::add_clusters(const std::vector<WedgeTriangle>& source, const std
   }
 }
 
-void BuildPool::add_simplified(const SimplifyResult& result, const Clustering& clustering, std::uint32_t level,
-                               std::uint32_t own_group) {
+void BuildPool::add_simplified(const SimplifyResult& result, const std::vector<CarriedSample>& samples,
+                               const Clustering& clustering, std::uint32_t level, std::uint32_t own_group) {
   std::vector<std::uint32_t> ids(result.positions.size());
   for (std::size_t p = 0; p < ids.size(); ++p) {
     ids[p] = position_id(result.positions[p]);
@@ -133,7 +138,7 @@ void BuildPool::add_simplified(const SimplifyResult& result, const Clustering& c
   for (WedgeTriangle& triangle : renumbered) {
     for (std::uint32_t& wedge : triangle) wedge = wedges[wedge];
   }
-  add_clusters(renumbered, result.triangle_material, clustering, level, own_group);
+  add_clusters(renumbered, result.triangle_material, samples, clustering, level, own_group);
 }
 
 void BuildPool::positions_of(std::uint32_t cluster, std::vector<std::uint32_t>& out) const {

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "cluster/cluster.h"
+#include "deviation/deviation.h"
 #include "mesh/dag.h"
 #include "mesh/prepared.h"
 #include "simplify/simplify.h"
@@ -17,6 +19,7 @@ struct BuildCluster {
   std::uint32_t level = 0;
   std::uint32_t own_group = 0xFFFFFFFFU;
   std::uint32_t first_triangle = 0, triangle_count = 0;
+  std::vector<CarriedSample> samples;  ///< of the source, where deviations are measured
 };
 
 /// A group that has been replaced by coarser clusters.
@@ -24,6 +27,7 @@ struct BuildGroup {
   std::uint32_t level = 0;
   std::vector<std::uint32_t> clusters;
   double error = 0.0, quadric_error = 0.0;
+  double deviation = std::numeric_limits<double>::infinity();
   bool is_terminal = false;
   StuckReason stuck_reason = StuckReason::kNotStuck;
 };
@@ -32,14 +36,16 @@ class BuildPool {
  public:
   explicit BuildPool(const PreparedMesh& mesh);
 
-  /// Adds the clusters of `triangles` (wedges of this pool), in the clustering's order.
+  /// Adds the clusters of `triangles` (wedges of this pool), in the clustering's order. Samples name those triangles and
+  /// go with their clusters.
   void add_clusters(const std::vector<WedgeTriangle>& triangles, const std::vector<std::uint32_t>& materials,
-                    const Clustering& clustering, std::uint32_t level, std::uint32_t own_group);
+                    const std::vector<CarriedSample>& samples, const Clustering& clustering, std::uint32_t level,
+                    std::uint32_t own_group);
 
   /// Adds what a group became. Positions and wedges that are already known (locked ones, or a coincidence on the grid)
   /// keep their id, so that equal integers are equal ids at every level, and equal attributes with them.
-  void add_simplified(const SimplifyResult& result, const Clustering& clustering, std::uint32_t level,
-                      std::uint32_t own_group);
+  void add_simplified(const SimplifyResult& result, const std::vector<CarriedSample>& samples,
+                      const Clustering& clustering, std::uint32_t level, std::uint32_t own_group);
 
   /// The distinct position ids of a cluster, ascending.
   void positions_of(std::uint32_t cluster, std::vector<std::uint32_t>& out) const;

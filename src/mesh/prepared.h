@@ -44,6 +44,9 @@ struct PreparedMesh {
   std::vector<float> wedge_attributes;          ///< per wedge, layout.stride() floats
   std::vector<WedgeTriangle> triangles;         ///< wedge ids
   std::vector<std::uint32_t> triangle_material; ///< MaterialId value per triangle
+  /// The same triangles before the grid: what deviations are measured against. Relative to the origin, object units.
+  std::vector<Vec3d> exact_positions;
+  std::vector<std::array<std::uint32_t, 3>> exact_triangles;  ///< as long as triangles, corner by corner
   std::uint64_t source_triangles = 0;
   std::uint64_t source_vertices = 0;
   /// Two corners at the same exact position. A triangle of three distinct collinear corners stays: its border is not

@@ -93,6 +93,15 @@ std::string label_of(const SourceMesh& mesh, std::size_t index) {
   return "mesh " + std::to_string(index) + (mesh.name.empty() ? "" : " '" + mesh.name + "'");
 }
 
+ErrorSource error_source_of(format::ErrorTier tier) {
+  switch (tier) {
+    case format::ErrorTier::kMeasured: return ErrorSource::kMeasured;
+    case format::ErrorTier::kCertified: return ErrorSource::kCertified;
+    case format::ErrorTier::kQem: break;
+  }
+  return ErrorSource::kQuadric;
+}
+
 Result<BuiltMesh> build_mesh(const Scene& scene, std::size_t index, const PipelineOptions& options,
                              ProgressMeter& progress) {
   const SourceMesh& source = scene.meshes[index];
@@ -110,6 +119,7 @@ Result<BuiltMesh> build_mesh(const Scene& scene, std::size_t index, const Pipeli
 
   const EncodeOptions encode_options{.normal_bits = options.normal_bits, .uv_bits = options.uv_bits};
   DagOptions dag_options;
+  dag_options.error = error_source_of(options.error_tier);
   dag_options.caps.max_triangles = options.max_cluster_triangles;
   dag_options.caps.max_vertices = options.max_cluster_vertices;
   dag_options.caps.target_triangles = options.max_cluster_triangles - std::min(2U, options.max_cluster_triangles / 16);
@@ -130,6 +140,7 @@ Result<BuiltMesh> build_mesh(const Scene& scene, std::size_t index, const Pipeli
   Result<EncodedMesh> encoded = encode_mesh(*mesh, *dag, hierarchy, encode_options);
   if (!encoded) return encoded.error();
   built.encoded = std::move(*encoded);
+  built.encoded.record.error_tier = options.error_tier;
   built.clock.end(kEncode);
   return built;
 }
@@ -138,9 +149,6 @@ Result<BuiltMesh> build_mesh(const Scene& scene, std::size_t index, const Pipeli
 
 Result<std::vector<std::uint8_t>> build_lode(const Scene& scene, const PipelineOptions& options,
                                              const ProgressCallback& progress, PipelineReport& report) {
-  if (options.error_tier != format::ErrorTier::kQem) {
-    return Error{ErrorCode::kUnsupported, "", "only the error tier 'qem' can be built yet"};
-  }
   if (options.max_cluster_triangles == 0 || options.max_cluster_triangles > format::kMaxClusterTriangles ||
       options.max_cluster_vertices < 3 || options.max_cluster_vertices > format::kMaxClusterVertices) {
     return Error{ErrorCode::kUsage, "", "a cluster holds 1 to 256 triangles and 3 to 256 vertices"};

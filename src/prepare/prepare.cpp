@@ -228,7 +228,10 @@ Result<PreparedMesh> prepare_mesh(const SourceMesh& source, const AttributeLayou
                                      corners.attributes.begin() + static_cast<std::ptrdiff_t>(std::size_t{v} * stride),
                                      corners.attributes.begin() + static_cast<std::ptrdiff_t>((std::size_t{v} + 1) * stride));
       }
-      if (!same_exact) wedge_of_exact.push_back(static_cast<std::uint32_t>(mesh.wedge_position.size() - 1));
+      if (!same_exact) {
+        wedge_of_exact.push_back(static_cast<std::uint32_t>(mesh.wedge_position.size() - 1));
+        mesh.exact_positions.push_back(corners.positions[v] - mesh.origin);
+      }
       exact_of[v] = static_cast<std::uint32_t>(wedge_of_exact.size() - 1);
       previous = v;
       has_previous = true;
@@ -256,6 +259,7 @@ Result<PreparedMesh> prepare_mesh(const SourceMesh& source, const AttributeLayou
   triangles.erase(unique_end, triangles.end());
 
   mesh.triangles.reserve(triangles.size());
+  mesh.exact_triangles.reserve(triangles.size());
   mesh.triangle_material.reserve(triangles.size());
   for (const CanonicalTriangle& triangle : triangles) {
     WedgeTriangle wedges{};
@@ -269,6 +273,7 @@ Result<PreparedMesh> prepare_mesh(const SourceMesh& source, const AttributeLayou
     const bool has_area = ab.y * ac.z != ab.z * ac.y || ab.z * ac.x != ab.x * ac.z || ab.x * ac.y != ab.y * ac.x;
     if (!has_area) ++mesh.grid_collapsed;
     mesh.triangles.push_back(wedges);
+    mesh.exact_triangles.push_back(triangle.exact);
     mesh.triangle_material.push_back(triangle.material);
   }
   return mesh;

@@ -104,6 +104,7 @@ constexpr std::array kRules{
     Rule{"V203", "I8", "hierarchy traversal selects what the flat rule selects"},
     Rule{"V204", "I5", "the selection is the one the rule gives in double precision, but for rounding"},
     Rule{"V205", "I5", "a uniform cut's stored error is its largest selected error, or level 0's deviation"},
+    Rule{"V206", "I7", "a uniform cut deviates from the source by no more than it stores (measured: within 5%)"},
 };
 
 std::size_t index_of(std::string_view id) {

@@ -3,10 +3,12 @@
 #include "verify/verify.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <initializer_list>
 #include <iterator>
 
 #include "verify/cuts.h"
+#include "verify/deviations.h"
 #include "verify/source_rules.h"
 
 namespace meshlode {
@@ -114,6 +116,23 @@ void add_cuts(const Asset& asset, std::span<const DecodedCluster> clusters, cons
   report.take(camera_log);
 }
 
+void add_deviations(const Asset& asset, const Scene& source, std::span<const DecodedCluster> clusters,
+                    const VerifyOptions& options, Report& report) {
+  const auto meshes = asset.meshes();
+  const bool is_qem = std::all_of(meshes.begin(), meshes.end(),
+                                  [](const format::MeshRecord& m) { return m.error_tier == format::ErrorTier::kQem; });
+  if (is_qem) return report.skip("I7", "not checked: tier qem states the quadric's estimate");
+  if (options.deviation_cuts == 0) return report.skip("I7", "not checked: no cut was to be measured");
+  RuleLog log;
+  const DeviationTotals totals =
+      check_deviations(asset, source, clusters, options.deviation_cuts, options.deviation_samples, log);
+  char text[160];
+  std::snprintf(text, sizeof text, "cuts deviate by what they store: true/stored median %.2f, largest %.3f, above 1 in %llu cuts",
+                totals.median, totals.worst, static_cast<unsigned long long>(totals.exceeded));
+  report.add_check("I7", text, totals.cuts, failures_of(log, {"V206"}));
+  report.take(log);
+}
+
 }  // namespace
 
 VerifyReport verify_asset(const Asset& asset, const Scene& source, const VerifyOptions& options) {
@@ -123,6 +142,7 @@ VerifyReport verify_asset(const Asset& asset, const Scene& source, const VerifyO
   if (clusters) {
     add_source(asset, source, *clusters, report);
     add_cuts(asset, *clusters, options, report);
+    add_deviations(asset, source, *clusters, options, report);
   } else {
     report.add_check("I1", "not reached: " + clusters.error().message(), 0, 1);
     if (report.out.finding_count == 0) {
@@ -130,11 +150,6 @@ VerifyReport verify_asset(const Asset& asset, const Scene& source, const VerifyO
       report.out.finding_count = 1;
     }
   }
-  const auto meshes = asset.meshes();
-  const bool is_qem = std::all_of(meshes.begin(), meshes.end(),
-                                  [](const format::MeshRecord& m) { return m.error_tier == format::ErrorTier::kQem; });
-  report.skip("I7", is_qem ? "not checked: tier qem states the quadric's estimate"
-                           : "not checked: measuring against the source is not built into verify yet");
   std::stable_sort(report.out.checks.begin(), report.out.checks.end(), [](const VerifyReport::Check& a, const VerifyReport::Check& b) {
     return a.invariant < b.invariant;
   });

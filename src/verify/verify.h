@@ -17,6 +17,8 @@ namespace meshlode {
 struct VerifyOptions {
   std::uint32_t uniform_cuts = 300;  ///< cuts per mesh that cross-check I6
   std::uint32_t cameras = 100;       ///< cameras that cross-check I5, I6 and I8
+  std::uint32_t deviation_cuts = 12;         ///< uniform cuts per mesh that are measured for I7, where the tier promises it
+  std::uint64_t deviation_samples = 200000;  ///< area-uniform samples each way of each such cut, beside all vertices
   std::uint64_t seed = 1;
 };
 

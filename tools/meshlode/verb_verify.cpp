@@ -92,6 +92,7 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
   parser.add_value("--source", source_path, "the scene it was built from");
   parser.add_value("--cuts", options.uniform_cuts, "uniform cuts per mesh that cross-check the border proof");
   parser.add_value("--cameras", options.cameras, "random cameras that cross-check selection and hierarchy");
+  parser.add_value("--deviation-cuts", options.deviation_cuts, "uniform cuts per mesh that are measured against the source");
   parser.add_value("--seed", options.seed, "of the random cameras");
   parser.add_flag("--gpu", gpu, "compare with the GPU too");
   add_jobs_option(parser, jobs);
