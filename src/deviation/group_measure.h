@@ -7,12 +7,20 @@
 #include <vector>
 
 #include "deviation/deviation.h"
+#include "deviation/group_edges.h"
+#include "deviation/source_tree.h"
 #include "deviation/surface_tree.h"
 
 namespace meshlode {
 
 /// Source to group. Sets each sample's triangle and distance; returns the largest distance.
 [[nodiscard]] double project_samples(const SurfaceTree& group_tree, std::vector<CarriedSample>& samples);
+
+/// Source to group around the farthest samples: the larger of `maximum` and what is found. Points that raised it are
+/// appended to the samples.
+[[nodiscard]] double search_source(const SourceTree::Impl& source, const GroupSurface& group,
+                                   const SurfaceTree& group_tree, const GroupEdges& edges, double maximum,
+                                   std::vector<CarriedSample>& samples);
 
 /// What goes on to the next level: for each triangle of the group the farthest samples, some spread, and whatever is
 /// near the group's maximum. Ordered by triangle.
@@ -22,6 +30,6 @@ namespace meshlode {
 /// Group to source: the larger of `maximum` and what is found, by adaptive subdivision near the maximum. `places` has
 /// for each triangle of the group where its search may begin.
 [[nodiscard]] double measure_to_source(const SurfaceTree& source, const GroupSurface& group,
-                                       std::vector<std::uint32_t> places, double maximum);
+                                       const GroupEdges& edges, std::vector<std::uint32_t> places, double maximum);
 
 }  // namespace meshlode

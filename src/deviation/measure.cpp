@@ -2,13 +2,11 @@
 // Group to source, estimated from below: points on the group's triangles, and adaptive subdivision where they say that
 // the maximum may lie (in the manner of Metro, Cignoni, Rocchini and Scopigno 1998, but with the effort where it counts).
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "deviation/group_measure.h"
-#include "deviation/source_tree.h"
 
 namespace meshlode {
 
@@ -77,30 +75,6 @@ struct Patch {
   }
 };
 
-/// The middles of edges, each measured once for both of its sides.
-class EdgeProbes {
- public:
-  explicit EdgeProbes(std::size_t triangle_count) : slots_(std::bit_ceil(6 * triangle_count + 1), {kEmpty, {}}) {}
-
-  template <class Measure>
-  const Probe& find(std::uint32_t a, std::uint32_t b, const Measure& measure) {
-    const std::uint64_t key = static_cast<std::uint64_t>(std::min(a, b)) << 32U | std::max(a, b);
-    std::uint64_t h = key * 0x9E3779B97F4A7C15ULL;
-    h ^= h >> 32U;
-    std::size_t at = h & (slots_.size() - 1);
-    while (slots_[at].first != kEmpty) {
-      if (slots_[at].first == key) return slots_[at].second;
-      at = (at + 1) & (slots_.size() - 1);
-    }
-    slots_[at] = {key, measure()};
-    return slots_[at].second;
-  }
-
- private:
-  static constexpr std::uint64_t kEmpty = ~std::uint64_t{0};
-  std::vector<std::pair<std::uint64_t, Probe>> slots_;
-};
-
 /// Into four, with nine new points.
 void split(const Patch& patch, SourceProbe& probe, std::uint32_t& order, std::vector<Patch>& heap) {
   std::array<Vec3d, 3> middle;
@@ -130,14 +104,14 @@ void split(const Patch& patch, SourceProbe& probe, std::uint32_t& order, std::ve
 
 }  // namespace
 
-double measure_to_source(const SurfaceTree& source, const GroupSurface& group, std::vector<std::uint32_t> places,
-                         double maximum) {
+double measure_to_source(const SurfaceTree& source, const GroupSurface& group, const GroupEdges& edges,
+                         std::vector<std::uint32_t> places, double maximum) {
   SourceProbe probe(source, maximum);
   const std::size_t count = group.triangles.size();
   constexpr std::uint32_t kUnknown = 0xFFFFFFFFU;
   std::vector<Probe> at_vertex(group.positions.size(), {0.0, kUnknown});
   std::vector<Patch> patches(count);
-  EdgeProbes edges(count);
+  std::vector<Probe> at_edge(edges.use_count.size(), {0.0, kUnknown});
   std::uint32_t place = 0;
   // Every patch is made before any is split: what is highest is refined first.
   std::vector<std::pair<double, double>> range(count);
@@ -154,7 +128,9 @@ double measure_to_source(const SurfaceTree& source, const GroupSurface& group, s
       patch.at_corner[k] = vertex;
     }
     for (std::size_t k = 0; k < 3; ++k) {
-      patch.at_middle[k] = edges.find(ids[k], ids[(k + 1) % 3], [&] { return probe.measure(patch.middle(k), place); });
+      Probe& middle = at_edge[edges.of_triangle[t][k]];
+      if (middle.place == kUnknown) middle = probe.measure(patch.middle(k), place);
+      patch.at_middle[k] = middle;
     }
     range[t] = {center.value, center.value};
   }
@@ -188,11 +164,13 @@ GroupDeviation measure_group(const SourceTree& source, const GroupSurface& group
   SurfaceTree group_tree;
   group_tree.build({group.positions, group.triangles});
   std::vector<CarriedSample> projected(samples.begin(), samples.end());
-  const double to_group = project_samples(group_tree, projected);
+  const GroupEdges edges(group);
+  double to_group = project_samples(group_tree, projected);
+  to_group = std::max(to_group, search_source(source.impl(), group, group_tree, edges, std::max(options.floor, to_group), projected));
   result.carried = thin_samples(projected, group.triangles.size(), options.samples_per_triangle, to_group);
   std::vector<std::uint32_t> places(group.triangles.size(), SurfaceTree::kNone);
   for (const CarriedSample& sample : result.carried) places[sample.triangle] = sample.place;
-  result.deviation = measure_to_source(source_tree, group, std::move(places), std::max(options.floor, to_group));
+  result.deviation = measure_to_source(source_tree, group, edges, std::move(places), std::max(options.floor, to_group));
   return result;
 }
 

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <cstdint>
 
 #include "base/vec.h"
 
@@ -41,6 +43,30 @@ using TriangleCorners = std::array<Vec3d, 3>;
   }
   return std::min(point_segment_distance2(pa, ab),
                   std::min(point_segment_distance2(pa, ac), point_segment_distance2(p - corners[1], bc)));
+}
+
+/// What of a triangle is nearest to a point: its inside, or an edge (k: from corner k to the next) or a corner.
+struct NearestFeature {
+  enum class Kind : std::uint8_t { kInside, kEdge, kCorner };
+  Kind kind = Kind::kInside;
+  std::size_t index = 0;
+};
+
+[[nodiscard]] inline NearestFeature nearest_feature(const Vec3d& p, const TriangleCorners& corners) {
+  const double distance2 = point_triangle_distance2(p, corners);
+  NearestFeature feature;
+  double best2 = distance2 * (1.0 + 1e-9);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3d edge = corners[(k + 1) % 3] - corners[k], pa = p - corners[k];
+    const double edge2 = point_segment_distance2(pa, edge);
+    if (!(edge2 <= best2)) continue;
+    const double along = glm::dot(pa, edge);
+    if (!(along > 0.0)) return {NearestFeature::Kind::kCorner, k};
+    if (!(along < glm::dot(edge, edge))) return {NearestFeature::Kind::kCorner, (k + 1) % 3};
+    feature = {NearestFeature::Kind::kEdge, k};
+    best2 = edge2;
+  }
+  return feature;
 }
 
 }  // namespace meshlode

@@ -44,6 +44,19 @@ SourceTree::SourceTree(std::span<const Vec3d> positions, std::span<const std::ar
   impl_->positions.assign(positions.begin(), positions.end());
   impl_->triangles.assign(triangles.begin(), triangles.end());
   impl_->tree.build({impl_->positions, impl_->triangles});
+  std::vector<std::uint32_t>& first = impl_->first_corner;
+  first.assign(positions.size() + 2, 0);
+  for (const auto& t : triangles) {
+    for (const std::uint32_t v : t) ++first[v + 2];
+  }
+  for (std::size_t v = 2; v < first.size(); ++v) first[v] += first[v - 1];
+  impl_->triangle_of_corner.resize(3 * triangles.size());
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+    for (const std::uint32_t v : triangles[t]) impl_->triangle_of_corner[first[v + 1]++] = t;
+  }
+  first.pop_back();
+  impl_->place.resize(triangles.size());
+  for (std::uint32_t slot = 0; slot < impl_->tree.size(); ++slot) impl_->place[impl_->tree.triangle_at(slot)] = slot;
 }
 
 SourceTree::~SourceTree() = default;
@@ -54,15 +67,13 @@ std::vector<CarriedSample> initial_samples(const SourceTree& source) {
   const SourceTree::Impl& impl = source.impl();
   std::vector<CarriedSample> samples;
   if (impl.triangles.empty()) return samples;
-  std::vector<std::uint32_t> place(impl.triangles.size());
-  for (std::uint32_t slot = 0; slot < impl.tree.size(); ++slot) place[impl.tree.triangle_at(slot)] = slot;
   const Spacing spacing = choose_spacing(impl);
   std::vector<std::uint8_t> is_taken(impl.positions.size(), 0);
   samples.reserve(impl.positions.size());
   for (std::uint32_t t = 0; t < impl.triangles.size(); ++t) {
     const auto& corners = impl.triangles[t];
     const std::array<Vec3d, 3> p{impl.positions[corners[0]], impl.positions[corners[1]], impl.positions[corners[2]]};
-    const auto add = [&](const Vec3d& point) { samples.push_back({point, t, 0.0F, place[t]}); };
+    const auto add = [&](const Vec3d& point) { samples.push_back({point, t, 0.0F, impl.place_of(t)}); };
     for (std::size_t k = 0; k < 3; ++k) {
       if (is_taken[corners[k]] == 0) add(p[k]);
       is_taken[corners[k]] = 1;

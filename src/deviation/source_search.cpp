@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Source to group, second part: carried samples are few, so the source around the farthest of them is searched whole,
+// from vertex to vertex. Only the neighbourhoods of a few samples are looked at, so that this costs little; and since
+// it is the source itself that is looked at, thinning costs no accuracy where the maximum is.
+//
+// The source does not say which of its points a group stands for. A point whose nearest place on the group is the
+// group's border may belong to the neighbour, and one that faces the other way to another sheet: both are left out.
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "deviation/group_measure.h"
+
+namespace meshlode {
+
+namespace {
+
+constexpr std::size_t kMaxSeeds = 32;
+constexpr std::size_t kMaxPointsPerSeed = 4096;
+// A seed nearer than this share of the maximum is not searched around.
+constexpr double kSeedShare = 0.5;
+// Points nearer than this share of the maximum need not be known exactly.
+constexpr double kDismissShare = 0.7;
+// A source triangle is looked at inside where its edges are longer than this share of the search radius.
+constexpr double kLargeShare = 0.25;
+
+/// A set of numbers below 2^32 - 1.
+class IdSet {
+ public:
+  bool insert(std::uint32_t id) {
+    if (2 * (count_ + 1) > slots_.size()) grow();
+    std::size_t at = place(id);
+    while (slots_[at] != kEmpty) {
+      if (slots_[at] == id) return false;
+      at = (at + 1) & (slots_.size() - 1);
+    }
+    slots_[at] = id;
+    ++count_;
+    return true;
+  }
+
+ private:
+  static constexpr std::uint32_t kEmpty = 0xFFFFFFFFU;
+  [[nodiscard]] std::size_t place(std::uint32_t id) const {
+    return (id * 0x9E3779B97F4A7C15ULL >> 20U) & (slots_.size() - 1);
+  }
+  void grow() {
+    std::vector<std::uint32_t> old(std::max<std::size_t>(256, 4 * slots_.size()), kEmpty);
+    old.swap(slots_);
+    for (const std::uint32_t id : old) {
+      if (id == kEmpty) continue;
+      std::size_t at = place(id);
+      while (slots_[at] != kEmpty) at = (at + 1) & (slots_.size() - 1);
+      slots_[at] = id;
+    }
+  }
+  std::vector<std::uint32_t> slots_;
+  std::size_t count_ = 0;
+};
+
+class SourceSearch {
+ public:
+  SourceSearch(const SourceTree::Impl& source, const GroupSurface& group, const SurfaceTree& group_tree,
+               const GroupEdges& edges, double maximum)
+      : source_(source), group_(group), tree_(group_tree), edges_(edges) {
+    raise(maximum);
+  }
+
+  [[nodiscard]] double maximum() const { return maximum_; }
+
+  /// Returns the farthest point found around a seed, if it is farther than the maximum was.
+  void search_around(const CarriedSample& seed, double radius, std::vector<CarriedSample>& found) {
+    CarriedSample best;
+    best.distance = -1.0F;
+    frontier_.clear();
+    const std::uint32_t first = source_.tree.triangle_at(seed.place);
+    const double radius2 = radius * radius;
+    std::size_t points = 0;
+    const auto visit = [&](std::uint32_t vertex, std::uint32_t through, std::uint32_t place) {
+      if (!seen_.insert(vertex)) return;
+      ++points;
+      const Vec3d& at = source_.positions[vertex];
+      const Vec3d away = at - seed.point;
+      if (glm::dot(away, away) > radius2) return;
+      if (!measure(at, through, place, best)) return;
+      frontier_.push_back({vertex, place_});
+    };
+    const std::uint32_t start = place_of_triangle(seed);
+    for (const std::uint32_t vertex : source_.triangles[first]) visit(vertex, first, start);
+    look_inside(first, radius, start, best);
+    for (std::size_t next = 0; next < frontier_.size() && points < kMaxPointsPerSeed; ++next) {
+      const Reached reached = frontier_[next];
+      for (const std::uint32_t triangle : source_.triangles_around(reached.vertex)) {
+        for (const std::uint32_t vertex : source_.triangles[triangle]) visit(vertex, triangle, reached.place);
+        look_inside(triangle, radius, reached.place, best);
+      }
+    }
+    if (best.distance >= 0.0F) found.push_back(best);
+  }
+
+ private:
+  struct Reached {
+    std::uint32_t vertex, place;
+  };
+
+  // A seed knows its triangle of the group; the tree's places are near each other where triangles are, so that any place
+  // will do to begin with.
+  [[nodiscard]] std::uint32_t place_of_triangle(const CarriedSample& seed) const {
+    return tree_.find_nearest(tree_.to_frame(seed.point), {}, 0.0F).slot;
+  }
+
+  void raise(double maximum) {
+    maximum_ = maximum;
+    const double enough = kDismissShare * maximum * tree_.scale();
+    enough_ = static_cast<float>(enough * enough);
+  }
+
+  /// Whether the search may go on from here. Raises the maximum.
+  bool measure(const Vec3d& point, std::uint32_t through, std::uint32_t place, CarriedSample& best) {
+    const Vec3f at = tree_.to_frame(point);
+    SurfaceTree::Hit hit = tree_.look_around(at, place, {});
+    if (!(hit.distance2 <= enough_)) hit = tree_.find_nearest(at, hit, enough_);
+    place_ = hit.slot == SurfaceTree::kNone ? place : hit.slot;
+    if (hit.distance2 <= enough_) return true;
+    if (!is_ours(point, through)) return false;
+    const double distance = std::sqrt(tree_.distance2_at(point, place_));
+    if (distance > maximum_) {
+      raise(distance);
+      best = {point, tree_.triangle_at(place_), static_cast<float>(distance), 0};
+      best.place = through;
+    }
+    return true;
+  }
+
+  [[nodiscard]] bool is_ours(const Vec3d& point, std::uint32_t through) const {
+    const std::uint32_t triangle = tree_.triangle_at(place_);
+    const TriangleCorners corners = tree_.corners_at(place_);
+    const NearestFeature feature = nearest_feature(point, corners);
+    if (feature.kind == NearestFeature::Kind::kEdge && edges_.is_border(triangle, feature.index)) return false;
+    if (feature.kind == NearestFeature::Kind::kCorner &&
+        edges_.is_border_position[group_.triangles[triangle][feature.index]] != 0) {
+      return false;
+    }
+    const TriangleCorners facing = source_.corners(through);
+    return glm::dot(glm::cross(corners[1] - corners[0], corners[2] - corners[0]),
+                    glm::cross(facing[1] - facing[0], facing[2] - facing[0])) >= 0.0;
+  }
+
+  /// Large triangles of the source: the maximum may lie between their corners.
+  void look_inside(std::uint32_t triangle, double radius, std::uint32_t place, CarriedSample& best) {
+    const TriangleCorners corners = source_.corners(triangle);
+    double longest2 = 0.0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3d edge = corners[(k + 1) % 3] - corners[k];
+      longest2 = std::max(longest2, glm::dot(edge, edge));
+    }
+    if (!(longest2 > kLargeShare * kLargeShare * radius * radius) || !seen_inside_.insert(triangle)) return;
+    constexpr int kParts = 4;
+    for (int i = 0; i <= kParts; ++i) {
+      for (int j = 0; i + j <= kParts; ++j) {
+        if (i + j == 0 || i == kParts || j == kParts) continue;
+        const Vec3d point = corners[0] + (corners[1] - corners[0]) * (static_cast<double>(i) / kParts) +
+                            (corners[2] - corners[0]) * (static_cast<double>(j) / kParts);
+        (void)measure(point, triangle, place, best);
+      }
+    }
+  }
+
+  const SourceTree::Impl& source_;
+  const GroupSurface& group_;
+  const SurfaceTree& tree_;
+  const GroupEdges& edges_;
+  double maximum_ = 0.0;
+  float enough_ = 0.0F;      ///< squared, in the group tree's frame
+  std::uint32_t place_ = 0;  ///< of the last point measured
+  IdSet seen_, seen_inside_;
+  std::vector<Reached> frontier_;
+};
+
+/// How far apart the group's triangles are: about one edge.
+double triangle_spacing(const GroupSurface& group) {
+  double area = 0.0;
+  for (const auto& t : group.triangles) {
+    const Vec3d& a = group.positions[t[0]];
+    area += 0.5 * glm::length(glm::cross(group.positions[t[1]] - a, group.positions[t[2]] - a));
+  }
+  return 1.5 * std::sqrt(area / static_cast<double>(group.triangles.size()));
+}
+
+}  // namespace
+
+double search_source(const SourceTree::Impl& source, const GroupSurface& group, const SurfaceTree& group_tree,
+                     const GroupEdges& edges, double maximum, std::vector<CarriedSample>& samples) {
+  std::vector<std::uint32_t> seeds;
+  for (std::uint32_t i = 0; i < samples.size(); ++i) {
+    if (static_cast<double>(samples[i].distance) > kSeedShare * maximum) seeds.push_back(i);
+  }
+  const auto is_farther = [&](std::uint32_t a, std::uint32_t b) {
+    return samples[a].distance != samples[b].distance ? samples[a].distance > samples[b].distance : a < b;
+  };
+  const std::size_t count = std::min(seeds.size(), kMaxSeeds);
+  std::partial_sort(seeds.begin(), seeds.begin() + static_cast<std::ptrdiff_t>(count), seeds.end(), is_farther);
+  seeds.resize(count);
+  const double radius = triangle_spacing(group);
+  SourceSearch search(source, group, group_tree, edges, maximum);
+  std::vector<CarriedSample> found;
+  for (const std::uint32_t seed : seeds) search.search_around(samples[seed], radius, found);
+  for (CarriedSample& sample : found) sample.place = source.place_of(sample.place);
+  samples.insert(samples.end(), found.begin(), found.end());
+  return search.maximum();
+}
+
+}  // namespace meshlode
