@@ -54,6 +54,7 @@ struct PreparedMesh {
   std::uint64_t dropped_degenerate = 0;
   std::uint64_t dropped_duplicate = 0;   ///< same positions, winding, wedges and material as an earlier triangle
   std::uint64_t dropped_repaired = 0;
+  std::uint64_t piece_count = 0;         ///< parts of the surface that share no position with each other
   std::uint64_t grid_collapsed = 0;      ///< kept triangles that lost their area on the grid
 };
 

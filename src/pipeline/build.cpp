@@ -93,6 +93,13 @@ std::string label_of(const SourceMesh& mesh, std::size_t index) {
   return "mesh " + std::to_string(index) + (mesh.name.empty() ? "" : " '" + mesh.name + "'");
 }
 
+/// Foliage and soups: so many pieces so small that they are seen together, not one by one.
+bool is_aggregate(const PreparedMesh& mesh) {
+  constexpr std::uint64_t kFewestPieces = 64;
+  constexpr std::uint64_t kLargestPiece = 64;  // triangles, on average
+  return mesh.piece_count >= kFewestPieces && mesh.triangles.size() <= kLargestPiece * mesh.piece_count;
+}
+
 ErrorSource error_source_of(format::ErrorTier tier) {
   switch (tier) {
     case format::ErrorTier::kMeasured: return ErrorSource::kMeasured;
@@ -123,6 +130,11 @@ Result<BuiltMesh> build_mesh(const Scene& scene, std::size_t index, const Pipeli
   dag_options.caps.max_triangles = options.max_cluster_triangles;
   dag_options.caps.max_vertices = options.max_cluster_vertices;
   dag_options.caps.target_triangles = options.max_cluster_triangles - std::min(2U, options.max_cluster_triangles / 16);
+  dag_options.simplify.keep_area = is_aggregate(*mesh);
+  if (dag_options.simplify.keep_area) {
+    built.decisions.push_back({label_of(source, index) + ": covered area", true,
+                               std::to_string(mesh->piece_count) + " loose pieces: those that stay grow when others go"});
+  }
   dag_options.max_group_bytes = format::kMaxPageBytes - static_cast<std::uint32_t>(sizeof(format::PageHeader));
   dag_options.cluster_bytes = [&](std::uint32_t vertices, std::uint32_t triangles, std::uint32_t materials) {
     return max_cluster_bytes(mesh->layout, encode_options, vertices, triangles, materials);

@@ -144,6 +144,30 @@ std::vector<std::uint32_t> canonical_vertex_order(const Corners& corners, const 
   return order;
 }
 
+std::uint64_t count_pieces(const PreparedMesh& mesh) {
+  std::vector<std::uint32_t> parent(mesh.positions.size());
+  std::iota(parent.begin(), parent.end(), 0U);
+  const auto root_of = [&](std::uint32_t p) {
+    while (parent[p] != p) {
+      parent[p] = parent[parent[p]];
+      p = parent[p];
+    }
+    return p;
+  };
+  std::vector<std::uint8_t> is_used(mesh.positions.size(), 0);
+  for (const WedgeTriangle& triangle : mesh.triangles) {
+    const std::uint32_t first = mesh.wedge_position[triangle[0]];
+    is_used[first] = 1;
+    for (const std::uint32_t wedge : {triangle[1], triangle[2]}) {
+      is_used[mesh.wedge_position[wedge]] = 1;
+      parent[root_of(mesh.wedge_position[wedge])] = root_of(first);
+    }
+  }
+  std::uint64_t count = 0;
+  for (std::uint32_t p = 0; p < parent.size(); ++p) count += is_used[p] != 0 && parent[p] == p ? 1 : 0;
+  return count;
+}
+
 /// A triangle in canonical form: rotated so that its smallest exact vertex comes first; sorted by these fields.
 struct CanonicalTriangle {
   std::array<std::uint32_t, 3> exact;  ///< ids of (exact position, attributes): what tells duplicates apart
@@ -276,6 +300,7 @@ Result<PreparedMesh> prepare_mesh(const SourceMesh& source, const AttributeLayou
     mesh.exact_triangles.push_back(triangle.exact);
     mesh.triangle_material.push_back(triangle.material);
   }
+  mesh.piece_count = count_pieces(mesh);
   return mesh;
 }
 

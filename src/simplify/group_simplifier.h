@@ -40,6 +40,7 @@ class GroupSimplifier {
   static constexpr double kMaxOffset = 1.5;
   static constexpr double kFlipCosine = 0.2;  ///< a triangle may turn by less than 78 degrees in one collapse
   static constexpr int kMaxPasses = 8;
+  static constexpr double kMaxGrowth = 2.0;   ///< of a piece's size in one level
   /// A collapse costs at least this share of what its largest displacement would cost as a mean distance.
   static constexpr double kGuardShare = 0.5;
   /// What breaking the link condition costs, as a factor: small holes and handles close when everything else has become
@@ -90,6 +91,7 @@ class GroupSimplifier {
   [[nodiscard]] Vec3d to_frame(const Vec3i& q) const { return (Vec3d(q) - center_) * inverse_scale_; }
   [[nodiscard]] Vec3i to_grid(const Vec3d& p) const;
   void run_passes();
+  void grow_pieces();
   [[nodiscard]] double drop_collapsed_sheets(std::uint32_t vertex);
   [[nodiscard]] StuckReason reason_for_stopping() const;
 

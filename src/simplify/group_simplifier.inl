@@ -710,6 +710,63 @@ double GroupSimplifier<C>::drop_collapsed_sheets(std::uint32_t vertex) {
   return lost;
 }
 
+/// Scales the pieces that can grow about their centres until the group covers as much as it did.
+template <std::size_t C>
+void GroupSimplifier<C>::grow_pieces() {
+  const auto area_of = [&](const Vec3d& p, const Vec3d& q, const Vec3d& r) {
+    const Vec3d n = glm::cross(q - p, r - p);
+    return 0.5 * std::sqrt(glm::dot(n, n));
+  };
+  double covered = 0.0;
+  for (const WedgeTriangle& t : input_.triangles) {
+    covered += area_of(to_frame(input_.positions[input_.wedge_position[t[0]]]),
+                       to_frame(input_.positions[input_.wedge_position[t[1]]]),
+                       to_frame(input_.positions[input_.wedge_position[t[2]]]));
+  }
+  std::vector<std::uint32_t> parent(position_.size());
+  for (std::uint32_t v = 0; v < parent.size(); ++v) parent[v] = v;
+  const auto root_of = [&](std::uint32_t v) {
+    while (parent[v] != v) {
+      parent[v] = parent[parent[v]];
+      v = parent[v];
+    }
+    return v;
+  };
+  struct Piece {
+    double area = 0.0;
+    Vec3d moment{0.0};  ///< area times centre
+    bool is_locked = false;
+  };
+  std::vector<Piece> pieces(position_.size());
+  for (std::uint32_t t = 0; t < mesh_.triangle_count(); ++t) {
+    if (!mesh_.is_alive(t)) continue;
+    for (const std::uint32_t corner : {3 * t + 1, 3 * t + 2}) parent[root_of(mesh_.vertex(corner))] = root_of(mesh_.vertex(3 * t));
+  }
+  double fixed = 0.0;
+  double free = 0.0;
+  for (std::uint32_t t = 0; t < mesh_.triangle_count(); ++t) {
+    if (!mesh_.is_alive(t)) continue;
+    const Vec3d p[3] = {position_[mesh_.vertex(3 * t)], position_[mesh_.vertex(3 * t + 1)], position_[mesh_.vertex(3 * t + 2)]};
+    Piece& piece = pieces[root_of(mesh_.vertex(3 * t))];
+    const double area = area_of(p[0], p[1], p[2]);
+    piece.area += area;
+    piece.moment += (p[0] + p[1] + p[2]) * (area / 3.0);
+    for (std::uint32_t k = 0; k < 3; ++k) piece.is_locked |= is_locked_[mesh_.vertex(3 * t + k)] != 0;
+  }
+  for (const Piece& piece : pieces) (piece.is_locked ? fixed : free) += piece.area;
+  if (!(free > 0.0) || !(covered - fixed > free)) return;
+  const double growth = std::min(kMaxGrowth, std::sqrt((covered - fixed) / free));
+  for (std::uint32_t v = 0; v < position_.size(); ++v) {
+    const Piece& piece = pieces[root_of(v)];
+    if (piece.is_locked || !(piece.area > 0.0)) continue;
+    const Vec3d center = piece.moment / piece.area;
+    const Vec3d moved = (position_[v] - center) * (growth - 1.0);
+    error_ = std::max(error_, std::sqrt(glm::dot(moved, moved)));
+    grid_position_[v] = to_grid(center + (position_[v] - center) * growth);
+    position_[v] = to_frame(grid_position_[v]);
+  }
+}
+
 template <std::size_t C>
 void GroupSimplifier<C>::run() {
   run_passes();
@@ -717,6 +774,7 @@ void GroupSimplifier<C>::run() {
     are_flips_relaxed_ = true;
     run_passes();
   }
+  if (options_.keep_area) grow_pieces();
 }
 
 template <std::size_t C>

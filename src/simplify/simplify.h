@@ -27,6 +27,9 @@ struct SimplifyOptions {
   double color_weight = 0.7;   ///< as normals
   double border_weight = 8.0;  ///< of source borders and material borders, against area-weighted planes
   double seam_weight = 1.0;    ///< of texture seams
+  /// Foliage and soups: grow the pieces that stay by as much as the ones that went covered, so that the whole neither
+  /// thins out nor fades (Cook, Halstead, Planck and Ryu 2007). Only pieces without a locked vertex can grow.
+  bool keep_area = false;
   bool may_relax_topology = true;  ///< break the link condition (small holes, handles, fans) where that is far cheaper
   bool may_relax_flips = false;    ///< where the target is out of reach, go on without the flip test: a last resort
 };

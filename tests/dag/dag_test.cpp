@@ -244,6 +244,27 @@ TEST(Dag, ItCanBeCancelled) {
   EXPECT_EQ(calls, 3);
 }
 
+TEST(Dag, FoliageAndSoupsKeepTheirAreaAtEveryLevel) {
+  DagOptions options;
+  options.simplify.keep_area = true;
+  for (const Primitive& shape : {samples::make_box_soup(1500), samples::make_foliage(1200)}) {
+    const Built built = build(shape, options);
+    expect_sound(built);
+    EXPECT_LE(count_roots(built.dag), 4U);
+    std::map<std::uint32_t, double> area;
+    for (const DagCluster& cluster : built.dag.clusters) {
+      for (std::uint32_t t = cluster.first_triangle; t < cluster.first_triangle + cluster.triangle_count; ++t) {
+        const auto p = [&](std::size_t k) {
+          return Vec3d(built.dag.vertex_position[cluster.first_vertex + built.dag.triangles[t][k]]);
+        };
+        area[cluster.level] += 0.5 * glm::length(glm::cross(p(1) - p(0), p(2) - p(0)));
+      }
+    }
+    EXPECT_GE(area.size(), 4U);
+    for (const auto& [level, covered] : area) EXPECT_NEAR(covered / area[0], 1.0, 0.1) << "level " << level;
+  }
+}
+
 TEST(Dag, GroupsStayWithinTheirBytes) {
   DagOptions options;
   options.max_group_bytes = 128 * 6;

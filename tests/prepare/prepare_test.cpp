@@ -166,6 +166,12 @@ TEST(Prepare, AnEmptyMeshAndASinglePointAreFine) {
   EXPECT_EQ(mesh.dropped_degenerate, 1U);
 }
 
+TEST(Prepare, CountsPiecesByWhatTouches) {
+  EXPECT_EQ(prepare(samples::make_sphere(4)).piece_count, 1U);
+  EXPECT_EQ(prepare(samples::make_box_soup(37)).piece_count, 37U);
+  EXPECT_EQ(prepare(samples::make_double_cone(12)).piece_count, 1U) << "two cones that share their tip";
+}
+
 TEST(ChooseGrid, AGivenStepIsASmallOddMantissa) {
   PrepareOptions options;
   options.grid_step = 0.75;
