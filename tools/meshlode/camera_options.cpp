@@ -40,34 +40,90 @@ bool parse_size(std::string_view text, std::uint32_t& width, std::uint32_t& heig
   return parse(text.substr(0, x), width) && parse(text.substr(x + 1), height);
 }
 
-struct Box {
-  Vec3d low{std::numeric_limits<double>::infinity()};
-  Vec3d high{-std::numeric_limits<double>::infinity()};
+struct WorldSphere {
+  Vec3d center{0.0};
+  double radius = 0.0;
 };
 
-Box world_bounds(const Asset& asset) {
-  Box box;
+Vec3d to_world(const format::InstanceRecord& instance, const Vec3d& p) {
+  Vec3d world{0.0};
+  for (int row = 0; row < 3; ++row) {
+    const double* m = instance.transform + 4 * row;
+    world[row] = m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3];
+  }
+  return world;
+}
+
+bool is_finite(const Vec3d& p) {
+  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+}
+
+/// Corners of the boxes of everything that can be drawn.
+std::vector<WorldSphere> world_corners(const Asset& asset) {
+  std::vector<WorldSphere> corners;
   for (const format::InstanceRecord& instance : asset.instances()) {
-    if ((instance.flags & format::kInstanceSingular) != 0) continue;
     const format::MeshRecord& mesh = asset.meshes()[instance.mesh];
-    if (mesh.cluster_count == 0) continue;
+    if ((instance.flags & format::kInstanceSingular) != 0 || mesh.cluster_count == 0) continue;
     const double step = std::ldexp(static_cast<double>(mesh.grid.mantissa), mesh.grid.log2);
     for (int corner = 0; corner < 8; ++corner) {
-      double p[3];
+      Vec3d p{0.0};
       for (int axis = 0; axis < 3; ++axis) {
-        const std::int32_t q = ((corner >> axis) & 1) != 0 ? mesh.bounds_max[axis] : mesh.bounds_min[axis];
-        p[axis] = mesh.origin[axis] + step * q;
+        p[axis] =
+            mesh.origin[axis] + step * (((corner >> axis) & 1) != 0 ? mesh.bounds_max[axis] : mesh.bounds_min[axis]);
       }
-      for (int row = 0; row < 3; ++row) {
-        const double* m = instance.transform + 4 * row;
-        const double w = m[0] * p[0] + m[1] * p[1] + m[2] * p[2] + m[3];
-        if (!std::isfinite(w)) continue;
-        box.low[row] = std::min(box.low[row], w);
-        box.high[row] = std::max(box.high[row], w);
+      if (const Vec3d world = to_world(instance, p); is_finite(world)) corners.push_back({world, 0.0});
+    }
+  }
+  return corners;
+}
+
+/// Spheres of the level-0 clusters of everything that can be drawn; empty where there are very many.
+std::vector<WorldSphere> world_spheres(const Asset& asset) {
+  constexpr std::uint64_t kMaxSpheres = 4'000'000;
+  std::uint64_t count = 0;
+  for (const format::InstanceRecord& instance : asset.instances()) count += asset.meshes()[instance.mesh].cluster_count;
+  std::vector<WorldSphere> spheres;
+  if (count > kMaxSpheres) return spheres;
+  for (const format::InstanceRecord& instance : asset.instances()) {
+    const format::MeshRecord& mesh = asset.meshes()[instance.mesh];
+    if ((instance.flags & format::kInstanceSingular) != 0) continue;
+    for (const format::ClusterRecord& c : asset.clusters().subspan(mesh.first_cluster, mesh.cluster_count)) {
+      if (c.level != 0) continue;
+      const Vec3d p =
+          Vec3d(mesh.origin[0], mesh.origin[1], mesh.origin[2]) + Vec3d(c.center[0], c.center[1], c.center[2]);
+      const double radius = static_cast<double>(c.radius) * instance.scale;
+      if (const Vec3d world = to_world(instance, p); is_finite(world) && std::isfinite(radius)) {
+        spheres.push_back({world, radius});
       }
     }
   }
-  return box;
+  return spheres;
+}
+
+/// An orthonormal frame at the middle of the scene, looking at it against `back`.
+struct ViewFrame {
+  Vec3d center{0.0}, back{0.0}, right{0.0}, up{0.0};
+  double tan_x = 1.0, tan_y = 1.0;  ///< of half the field of view
+};
+
+struct Fit {
+  double distance = 0.0;     ///< of the eye, perspective
+  double half_height = 0.0;  ///< of the picture, orthographic
+};
+
+/// How far away the eye must be, and how high the picture, for each sphere to be inside. A sphere at height y and depth
+/// z is below a plane through the eye at the angle a where y cos a + r <= z sin a.
+Fit fit_spheres(const std::vector<WorldSphere>& spheres, const ViewFrame& view) {
+  Fit fit;
+  const double secant_x = std::sqrt(1.0 + view.tan_x * view.tan_x), secant_y = std::sqrt(1.0 + view.tan_y * view.tan_y);
+  for (const WorldSphere& sphere : spheres) {
+    const Vec3d d = sphere.center - view.center;
+    const double x = std::abs(glm::dot(d, view.right)), y = std::abs(glm::dot(d, view.up)), r = sphere.radius;
+    const double depth = std::max((x + r * secant_x) / view.tan_x, (y + r * secant_y) / view.tan_y);
+    fit.distance = std::max(fit.distance, depth + glm::dot(d, view.back));
+    fit.half_height = std::max({fit.half_height, y + r, (x + r) * view.tan_y / view.tan_x});
+  }
+  return fit;
 }
 
 }  // namespace
@@ -85,21 +141,35 @@ Camera frame_scene(const Asset& asset, std::uint32_t width, std::uint32_t height
   Camera camera;
   camera.width = width;
   camera.height = height;
-  const Box box = world_bounds(asset);
-  Vec3d center{0.0};
-  double radius = 1.0;
-  if (box.low.x <= box.high.x && box.low.y <= box.high.y && box.low.z <= box.high.z) {
-    center = 0.5 * (box.low + box.high);
-    radius = 0.5 * glm::length(box.high - box.low);
-    if (!(radius > 0.0) || !std::isfinite(radius)) radius = 1.0;
+  const std::vector<WorldSphere> corners = world_corners(asset);
+  Vec3d low{0.0}, high{0.0};
+  if (!corners.empty()) low = high = corners.front().center;
+  for (const WorldSphere& corner : corners) {
+    low = {std::min(low.x, corner.center.x), std::min(low.y, corner.center.y), std::min(low.z, corner.center.z)};
+    high = {std::max(high.x, corner.center.x), std::max(high.y, corner.center.y), std::max(high.z, corner.center.z)};
   }
-  // The sphere has to fit the narrower side of the picture.
-  const double tangent = std::tan(0.5 * camera.fovy);
-  const double narrow = std::min(1.0, static_cast<double>(width) / height) * tangent;
-  const double distance = radius * std::sqrt(1.0 + narrow * narrow) / narrow;
-  camera.target = center;
-  camera.eye = center + glm::normalize(Vec3d(0.55, 0.40, 1.0)) * distance;
-  camera.ortho_height = 2.0 * radius / std::min(1.0, static_cast<double>(width) / height);
+  double radius = 0.5 * glm::length(high - low);
+  if (!(radius > 0.0) || !std::isfinite(radius)) radius = 1.0;
+
+  ViewFrame view;
+  view.center = 0.5 * (low + high);
+  view.back = glm::normalize(Vec3d(0.55, 0.40, 1.0));
+  view.right = glm::normalize(glm::cross(Vec3d(0.0, 1.0, 0.0), view.back));
+  view.up = glm::cross(view.back, view.right);
+  view.tan_y = std::tan(0.5 * camera.fovy);
+  view.tan_x = view.tan_y * width / height;
+  // Boxes are closer to what is flat and square, clusters to what is round; both hold everything.
+  Fit fit = fit_spheres(corners, view);
+  if (const std::vector<WorldSphere> spheres = world_spheres(asset); !spheres.empty()) {
+    const Fit closer = fit_spheres(spheres, view);
+    fit.distance = std::min(fit.distance, closer.distance);
+    fit.half_height = std::min(fit.half_height, closer.half_height);
+  }
+  constexpr double kMargin = 1.05;
+  const double distance = kMargin * std::max(fit.distance, 1e-2 * radius);
+  camera.target = view.center;
+  camera.eye = view.center + view.back * distance;
+  camera.ortho_height = 2.0 * kMargin * std::max(fit.half_height, 1e-2 * radius);
   camera.near_distance = std::max(1e-3 * radius, std::numeric_limits<double>::min());
   return camera;
 }
