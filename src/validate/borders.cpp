@@ -100,8 +100,8 @@ std::string refuse(const MeshSurface& surface, const BorderSet& border, std::spa
     components.join(a, b);
     if (exchange.removed == 0) continue;
     if (!border.allows(exchange.edge, exchange.removed)) {
-      return "edge " + edge_text(surface, exchange.edge) + " of the finer set, used " + std::to_string(exchange.removed) +
-             " times, is missing in the coarser set and no border of the source";
+      return "edge " + edge_text(surface, exchange.edge) + " of the finer set, used " +
+             std::to_string(exchange.removed) + " times, is missing in the coarser set and no border of the source";
     }
     anchored.push_back(a);
   }
@@ -128,9 +128,8 @@ std::string refuse(const MeshSurface& surface, const BorderSet& border, std::spa
 std::vector<std::uint32_t> groups_from_fine_to_coarse(const Asset& asset, const MeshSurface& surface) {
   std::vector<std::uint32_t> order(surface.group_count);
   std::iota(order.begin(), order.end(), surface.first_group);
-  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return asset.groups()[a].level < asset.groups()[b].level;
-  });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return asset.groups()[a].level < asset.groups()[b].level; });
   return order;
 }
 
@@ -204,8 +203,8 @@ std::vector<Wedge> wedges_at(const MeshSurface& surface, std::span<const std::ui
 
 /// Calls visit(lower vertex, higher vertex) for each use of one of `edges` (ascending) by a triangle of the clusters.
 template <class Visit>
-void for_each_use(const MeshSurface& surface, std::span<const DecodedCluster> clusters, std::span<const std::uint32_t> members,
-                  std::span<const std::uint32_t> edges, const Visit& visit) {
+void for_each_use(const MeshSurface& surface, std::span<const DecodedCluster> clusters,
+                  std::span<const std::uint32_t> members, std::span<const std::uint32_t> edges, const Visit& visit) {
   for (const std::uint32_t c : members) {
     const std::uint32_t base = surface.first_vertex[c];
     for (const auto& triangle : clusters[surface.first_cluster + c].triangles) {
@@ -226,7 +225,8 @@ void for_each_use(const MeshSurface& surface, std::span<const DecodedCluster> cl
 }  // namespace
 
 std::vector<BorderViolation> check_shared_attributes(const Asset& asset, const MeshSurface& surface,
-                                                     std::span<const DecodedCluster> clusters, const BorderSet& border) {
+                                                     std::span<const DecodedCluster> clusters,
+                                                     const BorderSet& border) {
   std::vector<BorderViolation> out;
   std::vector<std::uint32_t> kept;
   std::vector<std::uint32_t> ends;
@@ -256,7 +256,9 @@ std::vector<BorderViolation> check_shared_attributes(const Asset& asset, const M
       }
     });
     if (changed > 0) {
-      out.push_back({g, std::to_string(changed) + " corners of shared border edges have attributes that the finer set has not in their place, such as at " +
+      out.push_back({g, std::to_string(changed) +
+                            " corners of shared border edges have attributes that the finer set has not in their "
+                            "place, such as at " +
                             position_text(surface, first)});
     }
   }

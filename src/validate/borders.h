@@ -3,9 +3,9 @@
 // source itself is open. Then every cut of a closed source is closed: the chain of a cut is the chain of level 0 plus
 // what each replaced group adds, which is zero.
 //
-// Where the source is open, its border may be simplified. B starts as the chain of all level-0 clusters. Going from fine
-// to coarse, a group may exchange border edges that are in B for others, which then belong to B too. What comes must hang
-// together with what goes, or be a whole loop in place of a whole loop, so that no hole can open inside.
+// Where the source is open, its border may be simplified. B starts as the chain of all level-0 clusters. Going from
+// fine to coarse, a group may exchange border edges that are in B for others, which then belong to B too. What comes
+// must hang together with what goes, or be a whole loop in place of a whole loop, so that no hole can open inside.
 #pragma once
 
 #include <cstdint>
@@ -40,9 +40,9 @@ struct BorderProof {
 
 [[nodiscard]] BorderProof prove_borders(const Asset& asset, const MeshSurface& surface);
 
-/// Attributes on shared borders (I3, L506). A border edge that a group shares is drawn by its neighbours too, so what the
-/// coarser set has at its ends must be what the finer set has there. At a seam a position has several wedges, and the edge
-/// may come to use another of them. At most one violation per group, ascending.
+/// Attributes on shared borders (I3, L506). A border edge that a group shares is drawn by its neighbours too, so what
+/// the coarser set has at its ends must be what the finer set has there. At a seam a position has several wedges, and
+/// the edge may come to use another of them. At most one violation per group, ascending.
 [[nodiscard]] std::vector<BorderViolation> check_shared_attributes(const Asset& asset, const MeshSurface& surface,
                                                                    std::span<const DecodedCluster> clusters,
                                                                    const BorderSet& border);

@@ -61,7 +61,8 @@ bool read_header(std::span<const std::uint8_t> bytes, format::FileHeader& header
     return false;
   }
   std::memcpy(&header, bytes.data(), sizeof header);
-  bool sound = log.expect(header.magic == format::kMagic, "L001", where, [] { return std::string("the magic is not LODE"); });
+  bool sound =
+      log.expect(header.magic == format::kMagic, "L001", where, [] { return std::string("the magic is not LODE"); });
   if (!sound) return false;
   sound = log.expect(header.version == format::kVersion, "L001", where,
                      [&] { return "version " + std::to_string(header.version) + " is not 0"; });
@@ -80,7 +81,8 @@ bool read_section_table(FileTables& file, RuleLog& log) {
   const std::uint64_t table_bytes = std::uint64_t{header.section_count} * sizeof(SectionEntry);
   bool sound = log.expect(header.section_entry_bytes == sizeof(SectionEntry), "L004", where,
                           [&] { return "stride is " + std::to_string(header.section_entry_bytes) + ", not 64"; });
-  sound &= log.expect(header.section_table_offset == sizeof header && sizeof header <= size && table_bytes <= size - header.section_table_offset,
+  sound &= log.expect(header.section_table_offset == sizeof header && sizeof header <= size &&
+                          table_bytes <= size - header.section_table_offset,
                       "L004", where, [&] {
                         return "offset " + std::to_string(header.section_table_offset) + " with " +
                                std::to_string(header.section_count) + " entries does not fit " + std::to_string(size);
@@ -96,8 +98,9 @@ bool read_section_table(FileTables& file, RuleLog& log) {
   std::vector<std::uint8_t> covered(sizeof plain + table_bytes);
   std::memcpy(covered.data(), &plain, sizeof plain);
   if (table_bytes > 0) std::memcpy(covered.data() + sizeof plain, file.sections.data(), table_bytes);
-  log.expect(hash64(covered) == header.header_checksum, "L005", [] { return std::string("header"); },
-             [] { return std::string("header_checksum does not match"); });
+  log.expect(
+      hash64(covered) == header.header_checksum, "L005", [] { return std::string("header"); },
+      [] { return std::string("header_checksum does not match"); });
   return true;
 }
 
@@ -109,7 +112,8 @@ struct Extent {
 void check_extents(const FileTables& file, RuleLog& log) {
   std::vector<Extent> extents;
   extents.push_back({0, sizeof(format::FileHeader) + file.sections.size() * sizeof(SectionEntry), "section table"});
-  for (const SectionEntry& entry : file.sections) extents.push_back({entry.offset, entry.offset + entry.bytes, section_name(entry.id)});
+  for (const SectionEntry& entry : file.sections)
+    extents.push_back({entry.offset, entry.offset + entry.bytes, section_name(entry.id)});
   log.check("L007");
   log.check("L014");
   std::uint64_t end = 0;
@@ -126,15 +130,17 @@ void check_extents(const FileTables& file, RuleLog& log) {
   };
   for (const Extent& extent : extents) {
     if (extent.begin < end) {
-      log.add("L007", extent.name, "starts at " + std::to_string(extent.begin) + ", before " + std::to_string(end) + " where the one before it ends");
+      log.add("L007", extent.name,
+              "starts at " + std::to_string(extent.begin) + ", before " + std::to_string(end) +
+                  " where the one before it ends");
     } else {
       check_gap(end, extent.begin, extent.name);
     }
     end = std::max(end, extent.end);
   }
-  log.expect(end == file.bytes.size(), "L014", [] { return std::string("end of the file"); }, [&] {
-    return differs("end of the last section", end, "size of the file", std::uint64_t{file.bytes.size()});
-  });
+  log.expect(
+      end == file.bytes.size(), "L014", [] { return std::string("end of the file"); },
+      [&] { return differs("end of the last section", end, "size of the file", std::uint64_t{file.bytes.size()}); });
 }
 
 bool check_section(const FileTables& file, const SectionEntry& entry, RuleLog& log) {
@@ -218,13 +224,14 @@ std::optional<FileTables> read_tables(std::span<const std::uint8_t> bytes, RuleL
   std::set<std::uint32_t> seen;
   for (const SectionEntry& entry : file.sections) {
     sound &= check_section(file, entry, log);
-    sound &= log.expect(seen.insert(entry.id).second, "L008", [&] { return section_name(entry.id); },
-                        [] { return std::string("occurs twice"); });
+    sound &= log.expect(
+        seen.insert(entry.id).second, "L008", [&] { return section_name(entry.id); },
+        [] { return std::string("occurs twice"); });
   }
   for (const KnownSection& known : kKnownSections) {
     const auto id = static_cast<std::uint32_t>(known.id);
-    sound &= log.expect(seen.contains(id), "L008",
-                        [&] { return section_name(id); }, [] { return std::string("is missing"); });
+    sound &= log.expect(
+        seen.contains(id), "L008", [&] { return section_name(id); }, [] { return std::string("is missing"); });
   }
   if (!sound) return std::nullopt;
   check_extents(file, log);

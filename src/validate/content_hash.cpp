@@ -19,7 +19,9 @@ std::span<const std::uint8_t> bytes_of(std::span<const T> values) {
 class ContentHasher {
  public:
   template <class T>
-  void value(const T& v) { hasher_.update(bytes_of(std::span<const T>(&v, 1))); }
+  void value(const T& v) {
+    hasher_.update(bytes_of(std::span<const T>(&v, 1)));
+  }
   template <class T>
   void section(SectionId id, std::span<const T> records) {
     head(id, records.size_bytes());
@@ -73,10 +75,12 @@ Hash128 content_hash_of(const FileTables& file, std::span<const std::span<const 
   return hasher.digest();
 }
 
-void check_content_hash(const FileTables& file, std::span<const std::span<const std::uint8_t>> page_bytes, RuleLog& log) {
+void check_content_hash(const FileTables& file, std::span<const std::span<const std::uint8_t>> page_bytes,
+                        RuleLog& log) {
   const Hash128 hash = content_hash_of(file, page_bytes);
-  log.expect(std::memcmp(hash.data(), file.header.content_hash, hash.size()) == 0, "L012",
-             [] { return std::string("header"); }, [] { return std::string("content_hash is not that of the content"); });
+  log.expect(
+      std::memcmp(hash.data(), file.header.content_hash, hash.size()) == 0, "L012",
+      [] { return std::string("header"); }, [] { return std::string("content_hash is not that of the content"); });
 }
 
 }  // namespace meshlode

@@ -30,7 +30,9 @@ bool is_ball(const Ball& b) {
          std::isfinite(b.radius) && b.radius >= 0.0F;
 }
 
-bool is_terminal(const GroupRecord& group) { return (group.flags & kGroupTerminal) != 0; }
+bool is_terminal(const GroupRecord& group) {
+  return (group.flags & kGroupTerminal) != 0;
+}
 
 void check_groups(const FileTables& file, RuleLog& log) {
   for (std::size_t m = 0; m < file.meshes.size(); ++m) {
@@ -50,20 +52,24 @@ void check_groups(const FileTables& file, RuleLog& log) {
       for (std::uint32_t c = 0; c < group.cluster_count; ++c) {
         level = std::max<std::uint32_t>(level, file.clusters[group.first_cluster + c].level);
       }
-      log.expect(group.level == level, "L304", at,
-                 [&] { return differs("level", std::uint64_t{group.level}, "largest of its members", std::uint64_t{level}); });
-      log.expect(group.level <= level_before, "L304", at, [] { return std::string("is coarser than the group before"); });
+      log.expect(group.level == level, "L304", at, [&] {
+        return differs("level", std::uint64_t{group.level}, "largest of its members", std::uint64_t{level});
+      });
+      log.expect(group.level <= level_before, "L304", at,
+                 [] { return std::string("is coarser than the group before"); });
       level_before = group.level;
 
       const bool terminal = is_terminal(group);
       const bool stuck = (group.flags & kGroupStuck) != 0;
-      log.expect(terminal == (group.error == kInfiniteError), "L305", at,
-                 [&] { return std::string(terminal ? "terminal with a finite error" : "infinite error and not terminal"); });
+      log.expect(terminal == (group.error == kInfiniteError), "L305", at, [&] {
+        return std::string(terminal ? "terminal with a finite error" : "infinite error and not terminal");
+      });
       log.expect(!stuck || terminal, "L305", at, [] { return std::string("stuck and not terminal"); });
       log.expect(stuck == (group.stuck_reason != format::StuckReason::kNotStuck), "L305", at,
                  [] { return std::string("the stuck flag and its reason disagree"); });
       log.expect(terminal == (made[k] == 0), "L306", at, [&] {
-        return std::string(terminal ? "terminal, yet clusters were made from it" : "nothing was made from it and it is not terminal");
+        return std::string(terminal ? "terminal, yet clusters were made from it"
+                                    : "nothing was made from it and it is not terminal");
       });
 
       log.expect(std::isfinite(group.error) && group.error >= 0.0F && !std::signbit(group.error), "L307", at,
@@ -79,8 +85,9 @@ void check_groups(const FileTables& file, RuleLog& log) {
         log.expect(group.deviation == kInfiniteError, "L311", at,
                    [] { return std::string("the qem tier measures nothing, yet a deviation is stored"); });
       } else {
-        log.expect(terminal ? group.deviation == kInfiniteError : group.deviation >= 0.0F && group.deviation <= group.error,
-                   "L311", at, [&] { return differs("deviation", double{group.deviation}, "error", double{group.error}); });
+        log.expect(
+            terminal ? group.deviation == kInfiniteError : group.deviation >= 0.0F && group.deviation <= group.error,
+            "L311", at, [&] { return differs("deviation", double{group.deviation}, "error", double{group.error}); });
       }
       log.expect(group.attribute_error == 0.0F, "L311", at, [] { return std::string("attribute_error is not zero"); });
     }
@@ -91,8 +98,10 @@ void check_cluster(const FileTables& file, std::size_t m, std::size_t c, RuleLog
   const ClusterRecord& cluster = file.clusters[c];
   const GroupRecord& coarser = file.groups[cluster.coarser_group];
   const auto at = [&] { return place("mesh", m, "cluster", c); };
-  log.expect((cluster.level == 0) == (cluster.own_group == kNone), "L301", at,
-             [&] { return "level " + std::to_string(cluster.level) + (cluster.own_group == kNone ? " without" : " with") + " an own group"; });
+  log.expect((cluster.level == 0) == (cluster.own_group == kNone), "L301", at, [&] {
+    return "level " + std::to_string(cluster.level) + (cluster.own_group == kNone ? " without" : " with") +
+           " an own group";
+  });
   log.expect(c >= coarser.first_cluster && c - coarser.first_cluster < coarser.cluster_count, "L302", at,
              [&] { return "is not a member of its " + place("coarser group", cluster.coarser_group); });
   const bool is_level0 = cluster.own_group == kNone;
@@ -107,7 +116,9 @@ void check_cluster(const FileTables& file, std::size_t m, std::size_t c, RuleLog
   log.expect(cluster.level == own.level + 1U, "L303", at, [&] {
     return differs("level", std::uint64_t{cluster.level}, "level of its own group", std::uint64_t{own.level});
   });
-  const auto pair = [&] { return place("mesh", m, "group", cluster.own_group) + ", " + place("coarser group", cluster.coarser_group); };
+  const auto pair = [&] {
+    return place("mesh", m, "group", cluster.own_group) + ", " + place("coarser group", cluster.coarser_group);
+  };
   const float fine = own.error;
   const float coarse = coarser.error;
   log.expect(coarse > fine || (coarse == 0.0F && fine == 0.0F), "L307", pair,
@@ -118,7 +129,8 @@ void check_cluster(const FileTables& file, std::size_t m, std::size_t c, RuleLog
   const Ball outer = ball_of(coarser);
   const Ball inner = ball_of(own);
   if (!is_ball(outer) || !is_ball(inner)) return;
-  if (log.expect(contains_ball(outer, inner), "L308", pair, [] { return std::string("the coarser sphere does not contain the finer one"); })) {
+  if (log.expect(contains_ball(outer, inner), "L308", pair,
+                 [] { return std::string("the coarser sphere does not contain the finer one"); })) {
     log.expect(has_error_margin(fine, coarse) && has_sphere_margin(outer, inner), "L309", pair,
                [] { return std::string("contained, but without the margin"); });
   }
@@ -133,7 +145,8 @@ void check_dag(const FileTables& file, RuleLog& log) {
   check_groups(file, log);
   for (std::size_t m = 0; m < file.meshes.size(); ++m) {
     const format::MeshRecord& mesh = file.meshes[m];
-    for (std::uint32_t k = 0; k < mesh.cluster_count; ++k) check_cluster(file, m, std::size_t{mesh.first_cluster} + k, log);
+    for (std::uint32_t k = 0; k < mesh.cluster_count; ++k)
+      check_cluster(file, m, std::size_t{mesh.first_cluster} + k, log);
   }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A file's tables as copied records, read by the judge's own few lines: `read` refuses at the first fault, validate names
-// every one. Internal to the judge.
+// A file's tables as copied records, read by the judge's own few lines: `read` refuses at the first fault, validate
+// names every one. Internal to the judge.
 #pragma once
 
 #include <cstdint>
@@ -50,9 +50,11 @@ void check_texts(const FileTables& file, RuleLog& log);
 [[nodiscard]] bool check_tables(const FileTables& file, RuleLog& log);
 
 /// The content hash as docs/format.md defines it. `page_bytes` has the decoded bytes of every page. \pre L114 holds
-[[nodiscard]] Hash128 content_hash_of(const FileTables& file, std::span<const std::span<const std::uint8_t>> page_bytes);
+[[nodiscard]] Hash128 content_hash_of(const FileTables& file,
+                                      std::span<const std::span<const std::uint8_t>> page_bytes);
 /// L012. `page_bytes` has the decoded bytes of every page.
-void check_content_hash(const FileTables& file, std::span<const std::span<const std::uint8_t>> page_bytes, RuleLog& log);
+void check_content_hash(const FileTables& file, std::span<const std::span<const std::uint8_t>> page_bytes,
+                        RuleLog& log);
 
 /// L301 … L311. \pre check_tables()
 void check_dag(const FileTables& file, RuleLog& log);

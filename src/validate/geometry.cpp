@@ -29,10 +29,12 @@ Int64Vec3 area_vector(const Vec3i& a, const Vec3i& b, const Vec3i& c) {
   return {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
 }
 
-bool is_zero(const Int64Vec3& v) { return v.x == 0 && v.y == 0 && v.z == 0; }
+bool is_zero(const Int64Vec3& v) {
+  return v.x == 0 && v.y == 0 && v.z == 0;
+}
 
-/// Whether a cone holds a normal: every unit view direction v with v·axis >= cutoff has v·n >= 0. With axis A and cutoff
-/// C in 1/127 that is, for C < 127 and |A| >= C: A·n > 0 and (A·n)² >= (|A|² - C²)·|n|². Integers below 2^127.
+/// Whether a cone holds a normal: every unit view direction v with v·axis >= cutoff has v·n >= 0. With axis A and
+/// cutoff C in 1/127 that is, for C < 127 and |A| >= C: A·n > 0 and (A·n)² >= (|A|² - C²)·|n|². Integers below 2^127.
 bool cone_holds(const format::ClusterRecord& cluster, const Int64Vec3& n) {
   const std::int64_t cutoff = cluster.cone_cutoff;
   if (cutoff == 127) return true;
@@ -40,7 +42,8 @@ bool cone_holds(const format::ClusterRecord& cluster, const Int64Vec3& n) {
   const std::int64_t axis2 = a[0] * a[0] + a[1] * a[1] + a[2] * a[2];
   if (cutoff > 0 && axis2 < cutoff * cutoff) return true;  // no unit vector reaches the cutoff: never culled
   if (cutoff < 0) return false;
-  const Int128 dot = static_cast<Int128>(a[0]) * n.x + static_cast<Int128>(a[1]) * n.y + static_cast<Int128>(a[2]) * n.z;
+  const Int128 dot =
+      static_cast<Int128>(a[0]) * n.x + static_cast<Int128>(a[1]) * n.y + static_cast<Int128>(a[2]) * n.z;
   const Int128 n2 = static_cast<Int128>(n.x) * n.x + static_cast<Int128>(n.y) * n.y + static_cast<Int128>(n.z) * n.z;
   return dot > 0 && dot * dot >= static_cast<Int128>(axis2 - cutoff * cutoff) * n2;
 }
@@ -48,7 +51,11 @@ bool cone_holds(const format::ClusterRecord& cluster, const Int64Vec3& n) {
 class MeshGeometry {
  public:
   MeshGeometry(const Asset& asset, std::size_t mesh, std::span<const DecodedCluster> clusters, RuleLog& log)
-      : asset_(asset), m_(mesh), mesh_(asset.meshes()[mesh]), clusters_(clusters), log_(log),
+      : asset_(asset),
+        m_(mesh),
+        mesh_(asset.meshes()[mesh]),
+        clusters_(clusters),
+        log_(log),
         step_(exp2_exact(mesh_.grid.log2) * mesh_.grid.mantissa) {}
 
   void run() {
@@ -79,9 +86,10 @@ class MeshGeometry {
       for (std::uint32_t i = 0; i < group.cluster_count; ++i) finer.merge(materials_of(group.first_cluster + i));
       for (const std::uint32_t c : surface.made[k]) {
         const std::set<std::uint32_t> coarser = materials_of(surface.first_cluster + c);
-        log_.expect(std::includes(finer.begin(), finer.end(), coarser.begin(), coarser.end()), "L509",
-                    [&] { return place("mesh", m_, "cluster", surface.first_cluster + c); },
-                    [] { return std::string("has a material that its finer set has not"); });
+        log_.expect(
+            std::includes(finer.begin(), finer.end(), coarser.begin(), coarser.end()), "L509",
+            [&] { return place("mesh", m_, "cluster", surface.first_cluster + c); },
+            [] { return std::string("has a material that its finer set has not"); });
       }
     }
   }
@@ -91,12 +99,14 @@ class MeshGeometry {
     const DecodedCluster& cluster = clusters_[c];
     const auto at = [&] { return place("mesh", m_, "cluster", c); };
     const Ball ball{{record.center[0], record.center[1], record.center[2]}, record.radius};
-    const bool finite = std::isfinite(ball.center[0]) && std::isfinite(ball.center[1]) && std::isfinite(ball.center[2]) &&
-                        std::isfinite(ball.radius) && ball.radius >= 0.0F;
+    const bool finite = std::isfinite(ball.center[0]) && std::isfinite(ball.center[1]) &&
+                        std::isfinite(ball.center[2]) && std::isfinite(ball.radius) && ball.radius >= 0.0F;
     if (log_.expect(finite, "L502", at, [] { return std::string("sphere is not finite or negative"); })) {
       for (std::uint32_t v = 0; v < cluster.vertex_count; ++v) {
         const Vec3d p = Vec3d(cluster.position(v)) * step_;  // exact: below 2^47 times a power of two
-        if (!log_.expect(contains_point(ball, p), "L502", at, [&] { return "vertex " + std::to_string(v) + " is outside"; })) break;
+        if (!log_.expect(contains_point(ball, p), "L502", at,
+                         [&] { return "vertex " + std::to_string(v) + " is outside"; }))
+          break;
       }
     }
     check_normals(c);
@@ -110,10 +120,12 @@ class MeshGeometry {
       if (record.own_group == format::kNone) {
         collapsed_ += is_zero(n) ? 1 : 0;
       } else {
-        log_.expect(a != b && b != d && d != a, "L508", at, [&] { return "triangle " + std::to_string(t) + " has two corners in one place"; });
+        log_.expect(a != b && b != d && d != a, "L508", at,
+                    [&] { return "triangle " + std::to_string(t) + " has two corners in one place"; });
       }
       if (!is_zero(n) && !cone_broken) {
-        cone_broken = !log_.expect(cone_holds(record, n), "L503", at, [&] { return "triangle " + std::to_string(t) + " is outside the cone"; });
+        cone_broken = !log_.expect(cone_holds(record, n), "L503", at,
+                                   [&] { return "triangle " + std::to_string(t) + " is outside the cone"; });
       }
     }
     if (record.own_group != format::kNone) return;
@@ -138,8 +150,9 @@ class MeshGeometry {
       if (m - std::abs(a) - std::abs(b) >= 0) continue;
       // X = 0 where |v| = M, Y = 0 where |u| = M.
       const bool canonical = (std::abs(b) != m || a >= 0) && (std::abs(a) != m || b >= 0);
-      if (!log_.expect(canonical, "L215", [&] { return place("mesh", m_, "cluster", c); },
-                       [&] { return "vertex " + std::to_string(v) + " has another pair for its normal"; })) {
+      if (!log_.expect(
+              canonical, "L215", [&] { return place("mesh", m_, "cluster", c); },
+              [&] { return "vertex " + std::to_string(v) + " has another pair for its normal"; })) {
         return;
       }
     }
@@ -154,11 +167,13 @@ class MeshGeometry {
       }
       log_.expect(same, "L504", at, [] { return std::string("bounds are not those of level 0's vertices"); });
     }
-    log_.expect(mesh_.grid_collapsed == collapsed_, "L505", at,
-                [&] { return differs("grid_collapsed", mesh_.grid_collapsed, "triangles of level 0 without area", collapsed_); });
+    log_.expect(mesh_.grid_collapsed == collapsed_, "L505", at, [&] {
+      return differs("grid_collapsed", mesh_.grid_collapsed, "triangles of level 0 without area", collapsed_);
+    });
     const std::uint64_t dropped = mesh_.dropped_degenerate + mesh_.dropped_duplicate + mesh_.dropped_repaired;
-    log_.expect(mesh_.source_triangles == level0_triangles_ + dropped, "L116", at,
-                [&] { return differs("source_triangles", mesh_.source_triangles, "level 0 and dropped", level0_triangles_ + dropped); });
+    log_.expect(mesh_.source_triangles == level0_triangles_ + dropped, "L116", at, [&] {
+      return differs("source_triangles", mesh_.source_triangles, "level 0 and dropped", level0_triangles_ + dropped);
+    });
   }
 
   const Asset& asset_;
@@ -175,7 +190,8 @@ class MeshGeometry {
 }  // namespace
 
 void check_geometry(const Asset& asset, std::span<const DecodedCluster> clusters, RuleLog& log) {
-  for (const char* rule : {"L116", "L501", "L502", "L503", "L504", "L505", "L506", "L507", "L508", "L509", "L215"}) log.check(rule);
+  for (const char* rule : {"L116", "L501", "L502", "L503", "L504", "L505", "L506", "L507", "L508", "L509", "L215"})
+    log.check(rule);
   for (std::size_t m = 0; m < asset.meshes().size(); ++m) MeshGeometry(asset, m, clusters, log).run();
 }
 

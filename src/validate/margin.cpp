@@ -17,7 +17,9 @@ constexpr long double kErrorMargin = 12.0L * 0x1p-24L;  ///< of the finer error
 /// The square roots below are rounded, 2^-60 relative at most, which is 2^-36 of the margin itself.
 constexpr long double kOwnRounding = 0x1p-58L;
 
-long double length(long double x, long double y, long double z) { return std::sqrt(x * x + y * y + z * z); }
+long double length(long double x, long double y, long double z) {
+  return std::sqrt(x * x + y * y + z * z);
+}
 
 }  // namespace
 
@@ -36,6 +38,8 @@ bool has_sphere_margin(const Ball& coarser, const Ball& finer) {
   return coarser.radius * (1.0L - kRadiusMargin) >= needed * (1.0L - kOwnRounding);
 }
 
-bool are_same_bits(const Ball& a, const Ball& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+bool are_same_bits(const Ball& a, const Ball& b) {
+  return std::memcmp(&a, &b, sizeof a) == 0;
+}
 
 }  // namespace meshlode

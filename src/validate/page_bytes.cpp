@@ -32,7 +32,8 @@ Record read_at(std::span<const std::uint8_t> bytes, std::size_t offset) {
 std::uint32_t read_bits(std::span<const std::uint8_t> stream, std::uint64_t bit, std::uint32_t count) {
   std::uint64_t window = 0;
   const std::uint64_t first = bit / 8;
-  for (std::uint64_t i = 0; i < 5 && first + i < stream.size(); ++i) window |= std::uint64_t{stream[first + i]} << (8 * i);
+  for (std::uint64_t i = 0; i < 5 && first + i < stream.size(); ++i)
+    window |= std::uint64_t{stream[first + i]} << (8 * i);
   return static_cast<std::uint32_t>(window >> (bit % 8) & ((std::uint64_t{1} << count) - 1));
 }
 
@@ -55,8 +56,12 @@ std::vector<ChannelLimits> channel_limits(const format::MeshRecord& mesh) {
 class ClusterBytesChecker {
  public:
   ClusterBytesChecker(const FileTables& file, std::size_t page, std::span<const std::uint8_t> bytes, RuleLog& log)
-      : file_(file), page_(page), bytes_(bytes), log_(log),
-        mesh_(file.meshes[file.groups[file.pages[page].first_group].mesh]), limits_(channel_limits(mesh_)) {}
+      : file_(file),
+        page_(page),
+        bytes_(bytes),
+        log_(log),
+        mesh_(file.meshes[file.groups[file.pages[page].first_group].mesh]),
+        limits_(channel_limits(mesh_)) {}
 
   /// Checks the cluster that starts at `offset`; its end, or nothing where it is broken.
   std::optional<std::size_t> run(std::size_t cluster, std::size_t offset) {
@@ -73,7 +78,8 @@ class ClusterBytesChecker {
 
   template <class Detail>
   bool expect(bool holds, std::string_view rule, const Detail& detail) {
-    log_.expect(holds, rule, [&] { return at(); }, detail);
+    log_.expect(
+        holds, rule, [&] { return at(); }, detail);
     return holds;
   }
 
@@ -85,17 +91,22 @@ class ClusterBytesChecker {
       return false;
     }
     head_ = read_at<PageCluster>(bytes_, offset);
-    sound_ &= expect(head_.vertex_count == record.vertex_count && head_.triangle_count == record.triangle_count, "L206", [&] {
-      return differs("vertices", std::uint64_t{head_.vertex_count}, "record", std::uint64_t{record.vertex_count}) + "; " +
-             differs("triangles", std::uint64_t{head_.triangle_count}, "record", std::uint64_t{record.triangle_count});
-    });
+    sound_ &=
+        expect(head_.vertex_count == record.vertex_count && head_.triangle_count == record.triangle_count, "L206", [&] {
+          return differs("vertices", std::uint64_t{head_.vertex_count}, "record", std::uint64_t{record.vertex_count}) +
+                 "; " +
+                 differs("triangles", std::uint64_t{head_.triangle_count}, "record",
+                         std::uint64_t{record.triangle_count});
+        });
     sound_ &= expect(head_.channel_count == mesh_.channel_count, "L206", [&] {
       return differs("channels", std::uint64_t{head_.channel_count}, "mesh", std::uint64_t{mesh_.channel_count});
     });
     if (!sound_) return false;
     std::size_t cursor = offset + sizeof(PageCluster);
-    const std::size_t tables = head_.channel_count * sizeof(Channel) + head_.material_range_count * sizeof(MaterialRange);
-    if (!expect(tables <= bytes_.size() - cursor, "L208", [] { return std::string("channels or ranges leave the page"); })) {
+    const std::size_t tables =
+        head_.channel_count * sizeof(Channel) + head_.material_range_count * sizeof(MaterialRange);
+    if (!expect(tables <= bytes_.size() - cursor, "L208",
+                [] { return std::string("channels or ranges leave the page"); })) {
       return sound_ = false;
     }
     channels_.clear();
@@ -103,14 +114,16 @@ class ClusterBytesChecker {
     std::uint64_t bits = 0;
     for (std::uint32_t i = 0; i < head_.channel_count; ++i, cursor += sizeof(Channel)) {
       channels_.push_back(read_at<Channel>(bytes_, cursor));
-      sound_ &= expect(channels_.back().bits <= 25, "L207", [&] { return "channel " + std::to_string(i) + " has more than 25 bits"; });
+      sound_ &= expect(channels_.back().bits <= 25, "L207",
+                       [&] { return "channel " + std::to_string(i) + " has more than 25 bits"; });
       bits += channels_.back().bits;
     }
     for (std::uint32_t i = 0; i < head_.material_range_count; ++i, cursor += sizeof(MaterialRange)) {
       ranges_.push_back(read_at<MaterialRange>(bytes_, cursor));
     }
-    sound_ &= expect(head_.vertex_bits == bits, "L207",
-                     [&] { return differs("vertex_bits", std::uint64_t{head_.vertex_bits}, "sum of the channels", bits); });
+    sound_ &= expect(head_.vertex_bits == bits, "L207", [&] {
+      return differs("vertex_bits", std::uint64_t{head_.vertex_bits}, "sum of the channels", bits);
+    });
     if (!sound_) return false;
 
     const std::uint64_t vertex_bytes = (bits * head_.vertex_count + 7) / 8;
@@ -118,11 +131,13 @@ class ClusterBytesChecker {
     const auto stream_fits = [&](std::uint64_t from, std::uint64_t size) {
       return from % 4 == 0 && from >= cursor && from <= bytes_.size() && size <= bytes_.size() - from;
     };
-    sound_ &= expect(stream_fits(head_.vertex_offset, vertex_bytes), "L208", [] { return std::string("vertex stream is misplaced"); });
+    sound_ &= expect(stream_fits(head_.vertex_offset, vertex_bytes), "L208",
+                     [] { return std::string("vertex stream is misplaced"); });
     if (!sound_) return false;
     expect_zero(cursor, head_.vertex_offset);
     cursor = head_.vertex_offset + vertex_bytes;
-    sound_ &= expect(stream_fits(head_.triangle_offset, triangle_bytes), "L208", [] { return std::string("triangle stream is misplaced"); });
+    sound_ &= expect(stream_fits(head_.triangle_offset, triangle_bytes), "L208",
+                     [] { return std::string("triangle stream is misplaced"); });
     if (!sound_) return false;
     expect_zero(cursor, head_.triangle_offset);
     vertices_ = bytes_.subspan(head_.vertex_offset, vertex_bytes);
@@ -130,14 +145,16 @@ class ClusterBytesChecker {
     end_ = head_.triangle_offset + triangle_bytes;
     const std::uint64_t used = bits * head_.vertex_count;
     if (used % 8 != 0) {
-      expect(vertices_.back() >> (used % 8) == 0, "L214", [] { return std::string("bits after the last vertex are not zero"); });
+      expect(vertices_.back() >> (used % 8) == 0, "L214",
+             [] { return std::string("bits after the last vertex are not zero"); });
     }
     return true;
   }
 
   void expect_zero(std::size_t from, std::size_t to) {
     for (std::size_t i = from; i < to; ++i) {
-      if (!expect(bytes_[i] == 0, "L214", [&] { return "padding at byte " + std::to_string(i) + " is not zero"; })) return;
+      if (!expect(bytes_[i] == 0, "L214", [&] { return "padding at byte " + std::to_string(i) + " is not zero"; }))
+        return;
     }
   }
 
@@ -170,14 +187,15 @@ class ClusterBytesChecker {
       std::uint32_t lowest = 0xFFFFFFFFU;
       std::uint32_t highest = 0;
       for (std::uint32_t v = 0; v < head_.vertex_count; ++v) {
-        const std::uint32_t value = read_bits(vertices_, std::uint64_t{v} * head_.vertex_bits + channel_start, channel.bits);
+        const std::uint32_t value =
+            read_bits(vertices_, std::uint64_t{v} * head_.vertex_bits + channel_start, channel.bits);
         lowest = std::min(lowest, value);
         highest = std::max(highest, value);
       }
       channel_start += channel.bits;
       expect(lowest == 0 && std::cmp_equal(std::bit_width(highest), channel.bits), "L207", [&] {
-        return "channel " + std::to_string(c) + " stores " + std::to_string(lowest) + " … " + std::to_string(highest) + " in " +
-               std::to_string(channel.bits) + " bits";
+        return "channel " + std::to_string(c) + " stores " + std::to_string(lowest) + " … " + std::to_string(highest) +
+               " in " + std::to_string(channel.bits) + " bits";
       });
       const std::int64_t smallest = std::int64_t{channel.minimum} + lowest;
       const std::int64_t largest = std::int64_t{channel.minimum} + highest;
@@ -191,10 +209,10 @@ class ClusterBytesChecker {
     std::uint64_t triangles = 0;
     log_.check("L211");
     for (std::size_t i = 0; i < ranges_.size(); ++i) {
-      sound_ &= expect(ranges_[i].material < file_.materials.size(), "L211", [&] {
-        return "material " + std::to_string(ranges_[i].material) + " does not exist";
-      });
-      expect(i == 0 || ranges_[i].material > ranges_[i - 1].material, "L211", [] { return std::string("materials are not ascending"); });
+      sound_ &= expect(ranges_[i].material < file_.materials.size(), "L211",
+                       [&] { return "material " + std::to_string(ranges_[i].material) + " does not exist"; });
+      expect(i == 0 || ranges_[i].material > ranges_[i - 1].material, "L211",
+             [] { return std::string("materials are not ascending"); });
       expect(ranges_[i].triangle_count > 0, "L211", [] { return std::string("a range is empty"); });
       triangles += ranges_[i].triangle_count;
     }
@@ -223,7 +241,8 @@ bool check_decoded_page(const FileTables& file, std::size_t p, std::span<const s
   const auto at = [&] { return place("page", p); };
   bool sound = true;
   const std::uint64_t head_bytes = sizeof(format::PageHeader) + std::uint64_t{4} * page.cluster_count;
-  if (!log.expect(head_bytes <= bytes.size(), "L205", at, [] { return std::string("is shorter than its header and offsets"); })) {
+  if (!log.expect(head_bytes <= bytes.size(), "L205", at,
+                  [] { return std::string("is shorter than its header and offsets"); })) {
     return false;
   }
   const auto head = read_at<format::PageHeader>(bytes, 0);
@@ -234,8 +253,8 @@ bool check_decoded_page(const FileTables& file, std::size_t p, std::span<const s
   for (std::uint32_t k = 0; k < page.cluster_count; ++k) {
     const auto offset = read_at<std::uint32_t>(bytes, sizeof(format::PageHeader) + std::size_t{4} * k);
     if (!log.expect(offset % 4 == 0 && offset >= next && offset - next < 4, "L205", at, [&] {
-          return "offset " + std::to_string(offset) + " of " + place("cluster", page.first_cluster + k) + " should be " +
-                 std::to_string((next + 3) / 4 * 4);
+          return "offset " + std::to_string(offset) + " of " + place("cluster", page.first_cluster + k) +
+                 " should be " + std::to_string((next + 3) / 4 * 4);
         })) {
       return false;
     }
@@ -247,7 +266,9 @@ bool check_decoded_page(const FileTables& file, std::size_t p, std::span<const s
     next = *end;
   }
   for (std::uint64_t i = next; i < bytes.size(); ++i) {
-    if (!log.expect(bytes[i] == 0, "L214", at, [&] { return "byte " + std::to_string(i) + " after the last cluster is not zero"; })) break;
+    if (!log.expect(bytes[i] == 0, "L214", at,
+                    [&] { return "byte " + std::to_string(i) + " after the last cluster is not zero"; }))
+      break;
   }
   return sound;
 }
@@ -264,7 +285,8 @@ LoadedPages load_pages(const FileTables& file, const Asset* asset, RuleLog& log)
     const auto at = [&] { return place("page", p); };
     const auto stored = file.bytes.subspan(page.offset, page.stored_bytes);
     loaded.pages.emplace_back(std::span<const std::uint8_t>{});
-    log.expect(hash64(stored) == page.checksum, "L203", at, [] { return std::string("checksum of the stored bytes does not match"); });
+    log.expect(hash64(stored) == page.checksum, "L203", at,
+               [] { return std::string("checksum of the stored bytes does not match"); });
     const bool is_plain = page.codec == format::Codec::kNone;
     // A page that does not shrink is stored plain.
     const bool sized = page.bytes <= format::kMaxPageBytes && page.bytes % 4 == 0 &&
@@ -285,7 +307,8 @@ LoadedPages load_pages(const FileTables& file, const Asset* asset, RuleLog& log)
       loaded.is_complete = false;
       continue;
     }
-    log.expect(hash64(bytes) == page.decoded_checksum, "L203", at, [] { return std::string("checksum of the decoded bytes does not match"); });
+    log.expect(hash64(bytes) == page.decoded_checksum, "L203", at,
+               [] { return std::string("checksum of the decoded bytes does not match"); });
   }
   return loaded;
 }

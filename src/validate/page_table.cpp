@@ -21,14 +21,17 @@ bool check_ranges(const FileTables& file, RuleLog& log) {
   for (std::size_t p = 0; p < file.pages.size(); ++p) {
     const PageRecord& page = file.pages[p];
     const auto at = [&] { return place("page", p); };
-    const bool groups_fit = page.first_group == group && page.group_count > 0 && page.group_count <= file.groups.size() - group;
-    const bool clusters_fit = page.first_cluster == cluster && page.cluster_count > 0 &&
-                              page.cluster_count <= file.clusters.size() - cluster;
+    const bool groups_fit =
+        page.first_group == group && page.group_count > 0 && page.group_count <= file.groups.size() - group;
+    const bool clusters_fit =
+        page.first_cluster == cluster && page.cluster_count > 0 && page.cluster_count <= file.clusters.size() - cluster;
     sound &= log.expect(groups_fit, "L201", at, [&] { return "groups do not follow on " + std::to_string(group); });
-    sound &= log.expect(clusters_fit, "L201", at, [&] { return "clusters do not follow on " + std::to_string(cluster); });
-    const bool deps_fit = page.first_dependency == dependency &&
-                          page.dependency_count <= file.page_dependencies.size() - dependency;
-    sound &= log.expect(deps_fit, "L213", at, [&] { return "dependencies do not follow on " + std::to_string(dependency); });
+    sound &=
+        log.expect(clusters_fit, "L201", at, [&] { return "clusters do not follow on " + std::to_string(cluster); });
+    const bool deps_fit =
+        page.first_dependency == dependency && page.dependency_count <= file.page_dependencies.size() - dependency;
+    sound &=
+        log.expect(deps_fit, "L213", at, [&] { return "dependencies do not follow on " + std::to_string(dependency); });
     log.expect(page.reserved == 0, "L103", at, [] { return std::string("reserved is not zero"); });
     if (!groups_fit || !clusters_fit || !deps_fit) return false;
     std::uint64_t members = 0;
@@ -48,10 +51,12 @@ bool check_ranges(const FileTables& file, RuleLog& log) {
     cluster += page.cluster_count;
     dependency += page.dependency_count;
   }
-  sound &= log.expect(group == file.groups.size() && cluster == file.clusters.size(), "L201",
-                      [] { return std::string("pages"); }, [] { return std::string("do not hold every group and cluster"); });
-  sound &= log.expect(dependency == file.page_dependencies.size(), "L213", [] { return std::string("PDEP"); },
-                      [] { return std::string("holds entries that no page names"); });
+  sound &= log.expect(
+      group == file.groups.size() && cluster == file.clusters.size(), "L201", [] { return std::string("pages"); },
+      [] { return std::string("do not hold every group and cluster"); });
+  sound &= log.expect(
+      dependency == file.page_dependencies.size(), "L213", [] { return std::string("PDEP"); },
+      [] { return std::string("holds entries that no page names"); });
   return sound;
 }
 
@@ -63,17 +68,24 @@ bool check_places(const FileTables& file, RuleLog& log) {
   for (std::size_t p = 0; p < file.pages.size(); ++p) {
     const PageRecord& page = file.pages[p];
     const auto at = [&] { return place("page", p); };
-    const std::uint64_t start = (next + format::kSectionAlignment - 1) / format::kSectionAlignment * format::kSectionAlignment;
+    const std::uint64_t start =
+        (next + format::kSectionAlignment - 1) / format::kSectionAlignment * format::kSectionAlignment;
     const bool inside = page.offset == start && start <= limit && page.stored_bytes <= limit - start;
-    if (!log.expect(inside, "L202", at, [] { return std::string("does not follow the page before it inside the section"); })) return false;
+    if (!log.expect(inside, "L202", at,
+                    [] { return std::string("does not follow the page before it inside the section"); }))
+      return false;
     for (std::uint64_t i = next; i < page.offset; ++i) {
-      if (!log.expect(file.bytes[i] == 0, "L214", at, [] { return std::string("padding before the page is not zero"); })) break;
+      if (!log.expect(file.bytes[i] == 0, "L214", at,
+                      [] { return std::string("padding before the page is not zero"); }))
+        break;
     }
     next = page.offset + page.stored_bytes;
     sound &= log.expect(static_cast<std::uint32_t>(page.codec) <= 3, "L102", at,
                         [&] { return "codec " + std::to_string(static_cast<std::uint32_t>(page.codec)); });
   }
-  sound &= log.expect(next == limit, "L202", [] { return std::string("section PAGE"); }, [] { return std::string("does not end with the last page"); });
+  sound &= log.expect(
+      next == limit, "L202", [] { return std::string("section PAGE"); },
+      [] { return std::string("does not end with the last page"); });
   return sound;
 }
 
@@ -88,11 +100,14 @@ void check_dependencies(const FileTables& file, RuleLog& log) {
   for (std::size_t p = 0; p < file.pages.size(); ++p) {
     const PageRecord& page = file.pages[p];
     const auto first = file.page_dependencies.begin() + page.first_dependency;
-    log.expect(std::equal(needed[p].begin(), needed[p].end(), first, first + page.dependency_count), "L213",
-               [&] { return place("page", p); }, [&] {
-                 return differs("dependencies", std::uint64_t{page.dependency_count}, "needed",
-                                std::uint64_t{needed[p].size()}) + ", or they differ or are not ascending";
-               });
+    log.expect(
+        std::equal(needed[p].begin(), needed[p].end(), first, first + page.dependency_count), "L213",
+        [&] { return place("page", p); },
+        [&] {
+          return differs("dependencies", std::uint64_t{page.dependency_count}, "needed",
+                         std::uint64_t{needed[p].size()}) +
+                 ", or they differ or are not ascending";
+        });
   }
 }
 

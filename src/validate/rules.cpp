@@ -20,7 +20,8 @@ constexpr std::array kRules{
     Rule{"L006", "I11", "every section lies inside the file on a multiple of 16"},
     Rule{"L007", "I11", "sections follow the section table in its order, without overlap"},
     Rule{"L008", "I11", "each section id occurs once, and every section of version 0 is there"},
-    Rule{"L009", "I11", "unknown sections are not required ones; flags, version, codec and reserved field are as specified"},
+    Rule{"L009", "I11",
+         "unknown sections are not required ones; flags, version, codec and reserved field are as specified"},
     Rule{"L010", "I11", "section checksums match"},
     Rule{"L011", "I11", "stride, count and size of a table agree with the records of version 0"},
     Rule{"L012", "I10", "the content hash is the hash of the decoded content"},
@@ -65,25 +66,32 @@ constexpr std::array kRules{
     Rule{"L302", "I5", "a cluster's coarser group is the group that lists it"},
     Rule{"L303", "I5", "a cluster's level is its own group's level plus one: the DAG has no cycle"},
     Rule{"L304", "", "a group's level is the largest of its members, and groups are stored from coarse to fine"},
-    Rule{"L305", "I5", "a group is terminal if and only if its error is infinite; stuck only with a reason, and terminal"},
-    Rule{"L306", "I5", "every group that is not terminal has coarser clusters, and no terminal one has: no cut is empty"},
+    Rule{"L305", "I5",
+         "a group is terminal if and only if its error is infinite; stuck only with a reason, and terminal"},
+    Rule{"L306", "I5",
+         "every group that is not terminal has coarser clusters, and no terminal one has: no cut is empty"},
     Rule{"L307", "I4", "errors are finite numbers, never negative, and grow strictly along the DAG except from 0 to 0"},
     Rule{"L308", "I4", "LOD spheres are finite and contain those of the finer groups, in exact arithmetic"},
     Rule{"L309", "I4", "LOD spheres and errors keep the margin that covers the rounding of the run-time rule"},
-    Rule{"L310", "I4", "LOD spheres contain the culling spheres of level-0 members and of the clusters made from them, exactly"},
+    Rule{"L310", "I4",
+         "LOD spheres contain the culling spheres of level-0 members and of the clusters made from them, exactly"},
     Rule{"L311", "I4", "quadric errors never fall along the DAG; deviation and attribute error are as the tier says"},
     // hierarchy
-    Rule{"L401", "I8", "a mesh's BVH is one tree: children after their parent, at most 8, each node reached once, 64 deep at most"},
+    Rule{"L401", "I8",
+         "a mesh's BVH is one tree: children after their parent, at most 8, each node reached once, 64 deep at most"},
     Rule{"L402", "I8", "every group is in exactly one leaf"},
     Rule{"L403", "I8", "a node's sphere contains those below it with the margin; a leaf's is its group's, bit for bit"},
-    Rule{"L404", "I8", "a node's error bounds those below it and is infinite exactly where one is; a leaf's is its group's"},
+    Rule{"L404", "I8",
+         "a node's error bounds those below it and is infinite exactly where one is; a leaf's is its group's"},
     // geometry
-    Rule{"L501", "I2", "a cluster has 1 to 256 triangles and 1 to 256 vertices, three a triangle at most; a group has a cluster"},
+    Rule{"L501", "I2",
+         "a cluster has 1 to 256 triangles and 1 to 256 vertices, three a triangle at most; a group has a cluster"},
     Rule{"L502", "I8", "culling spheres contain their vertices, in exact arithmetic"},
     Rule{"L503", "I8", "normal cones hold every triangle's normal, in exact arithmetic"},
     Rule{"L504", "", "the mesh's bounds are those of level 0"},
     Rule{"L505", "I1", "grid_collapsed counts level 0's triangles without area"},
-    Rule{"L506", "I3", "corners of a border edge that a group shares have attributes that its finer set has in their place"},
+    Rule{"L506", "I3",
+         "corners of a border edge that a group shares have attributes that its finer set has in their place"},
     Rule{"L507", "I6", "a group's coarser set has the border edges of its finer set, except where the source is open"},
     Rule{"L508", "I6", "triangles above level 0 have three distinct corner positions"},
     Rule{"L509", "", "the coarser set of a group has the materials of its finer set alone"},
@@ -97,8 +105,10 @@ constexpr std::array kRules{
     Rule{"V107", "", "instances are the source's, and their transforms"},
     Rule{"V108", "", "the source hash in META is the source's"},
     Rule{"V109", "", "images and buffers are the source's bytes"},
-    Rule{"V110", "", "normals, UV sets and colours that the source's shading needs are stored, unless left out by option"},
+    Rule{"V110", "",
+         "normals, UV sets and colours that the source's shading needs are stored, unless left out by option"},
     Rule{"V111", "I2", "clusters keep the caps of the settings"},
+    Rule{"V112", "I7", "a mesh's error tier is that of the settings"},
     Rule{"V201", "I5", "a cut draws each piece of surface exactly once and is never empty"},
     Rule{"V202", "I6", "the border of a cut consists of edges of the source's border alone"},
     Rule{"V203", "I8", "hierarchy traversal selects what the flat rule selects"},
@@ -116,11 +126,15 @@ std::size_t index_of(std::string_view id) {
 
 }  // namespace
 
-std::span<const Rule> all_rules() { return kRules; }
+std::span<const Rule> all_rules() {
+  return kRules;
+}
 
 RuleLog::RuleLog() : counts_(kRules.size(), 0), checked_(kRules.size(), false) {}
 
-void RuleLog::check(std::string_view id) { checked_[index_of(id)] = true; }
+void RuleLog::check(std::string_view id) {
+  checked_[index_of(id)] = true;
+}
 
 void RuleLog::add(std::string_view id, std::string where, std::string detail) {
   const std::size_t rule = index_of(id);
@@ -131,7 +145,9 @@ void RuleLog::add(std::string_view id, std::string where, std::string detail) {
   }
 }
 
-std::uint64_t RuleLog::count_of(std::string_view id) const { return counts_[index_of(id)]; }
+std::uint64_t RuleLog::count_of(std::string_view id) const {
+  return counts_[index_of(id)];
+}
 
 std::vector<std::string> RuleLog::checked() const {
   std::vector<std::string> ids;
@@ -141,7 +157,9 @@ std::vector<std::string> RuleLog::checked() const {
   return ids;
 }
 
-std::string place(std::string_view what, std::size_t index) { return std::string(what) + " " + std::to_string(index); }
+std::string place(std::string_view what, std::size_t index) {
+  return std::string(what) + " " + std::to_string(index);
+}
 
 std::string place(std::string_view what, std::size_t index, std::string_view inner, std::size_t inner_index) {
   return place(what, index) + ", " + place(inner, inner_index);

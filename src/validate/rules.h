@@ -35,8 +35,10 @@ class RuleLog {
   /// check(), and add() where `holds` is false. `where` and `detail` are callables, so that good files cost no strings.
   template <class Where, class Detail>
   bool expect(bool holds, std::string_view id, const Where& where, const Detail& detail) {
-    if (holds) check(id);
-    else add(id, where(), detail());
+    if (holds)
+      check(id);
+    else
+      add(id, where(), detail());
     return holds;
   }
 
@@ -54,7 +56,8 @@ class RuleLog {
 
 /// "group 17", "mesh 0, group 17": places in the words of the format.
 [[nodiscard]] std::string place(std::string_view what, std::size_t index);
-[[nodiscard]] std::string place(std::string_view what, std::size_t index, std::string_view inner, std::size_t inner_index);
+[[nodiscard]] std::string place(std::string_view what, std::size_t index, std::string_view inner,
+                                std::size_t inner_index);
 /// "a = x, b = y" of two numbers that should agree.
 [[nodiscard]] std::string differs(std::string_view a, double x, std::string_view b, double y);
 [[nodiscard]] std::string differs(std::string_view a, std::uint64_t x, std::string_view b, std::uint64_t y);

@@ -25,7 +25,8 @@ struct KeyUse {
 
 void name_positions(std::span<const DecodedCluster> clusters, MeshSurface& out) {
   out.first_vertex.assign(1, 0);
-  for (const DecodedCluster& cluster : clusters) out.first_vertex.push_back(out.first_vertex.back() + cluster.vertex_count);
+  for (const DecodedCluster& cluster : clusters)
+    out.first_vertex.push_back(out.first_vertex.back() + cluster.vertex_count);
   std::vector<PositionKey> keys(out.first_vertex.back());
   out.vertex_position.resize(keys.size());
   out.vertex_attributes.resize(keys.size());
@@ -37,7 +38,8 @@ void name_positions(std::span<const DecodedCluster> clusters, MeshSurface& out) 
       keys[vertex] = {p.x, p.y, p.z, vertex};
       const std::int32_t* channels = &cluster.channels[std::size_t{v} * cluster.channel_count];
       const std::span attributes(channels + 3, cluster.channel_count - 3);
-      out.vertex_attributes[vertex] = hash64({reinterpret_cast<const std::uint8_t*>(attributes.data()), attributes.size_bytes()});
+      out.vertex_attributes[vertex] =
+          hash64({reinterpret_cast<const std::uint8_t*>(attributes.data()), attributes.size_bytes()});
     }
   });
   std::sort(keys.begin(), keys.end());
@@ -98,7 +100,8 @@ MeshSurface build_surface(const Asset& asset, MeshId mesh, std::span<const Decod
     out.edges.push_back({static_cast<std::uint32_t>(key >> 32), static_cast<std::uint32_t>(key & 0xFFFFFFFFU)});
   }
   out.first_use.assign(1, 0);
-  for (const auto& chain : chains) out.first_use.push_back(out.first_use.back() + static_cast<std::uint32_t>(chain.size()));
+  for (const auto& chain : chains)
+    out.first_use.push_back(out.first_use.back() + static_cast<std::uint32_t>(chain.size()));
   out.uses.resize(out.first_use.back());
   parallel_for_each_index(clusters.size(), 64, [&](std::size_t c) {
     std::size_t slot = out.first_use[c];

@@ -30,14 +30,14 @@ struct MeshSurface {
   MeshId mesh;
   std::uint32_t first_cluster = 0, cluster_count = 0;
   std::uint32_t first_group = 0, group_count = 0;
-  std::vector<Vec3i> positions;                             ///< distinct, ascending
-  std::vector<std::uint32_t> first_vertex;                  ///< per cluster of the mesh, one more at the end
-  std::vector<std::uint32_t> vertex_position;               ///< into positions
-  std::vector<std::uint64_t> vertex_attributes;             ///< hash of the channels after the position
-  std::vector<std::array<std::uint32_t, 2>> edges;          ///< positions, ascending; those of some cluster's chain
-  std::vector<std::uint32_t> first_use;                     ///< per cluster of the mesh, one more at the end
-  std::vector<EdgeUse> uses;                                ///< ascending by edge within a cluster
-  std::vector<std::vector<std::uint32_t>> made;             ///< per group of the mesh: clusters (of the mesh) made from it
+  std::vector<Vec3i> positions;                     ///< distinct, ascending
+  std::vector<std::uint32_t> first_vertex;          ///< per cluster of the mesh, one more at the end
+  std::vector<std::uint32_t> vertex_position;       ///< into positions
+  std::vector<std::uint64_t> vertex_attributes;     ///< hash of the channels after the position
+  std::vector<std::array<std::uint32_t, 2>> edges;  ///< positions, ascending; those of some cluster's chain
+  std::vector<std::uint32_t> first_use;             ///< per cluster of the mesh, one more at the end
+  std::vector<EdgeUse> uses;                        ///< ascending by edge within a cluster
+  std::vector<std::vector<std::uint32_t>> made;     ///< per group of the mesh: clusters (of the mesh) made from it
 
   [[nodiscard]] std::span<const EdgeUse> chain(std::uint32_t cluster) const {
     return std::span(uses).subspan(first_use[cluster], first_use[cluster + 1] - first_use[cluster]);

@@ -35,22 +35,28 @@ class TableChecker {
 
   void check_string(format::StringRef ref, const Text& where) {
     const bool inside = ref.offset <= file_.strings.size() && ref.bytes <= file_.strings.size() - ref.offset;
-    log_.expect(inside, "L101", [&] { return where; }, [&] {
-      return differs("end", std::uint64_t{ref.offset} + ref.bytes, "bytes of STRS", std::uint64_t{file_.strings.size()});
-    });
+    log_.expect(
+        inside, "L101", [&] { return where; },
+        [&] {
+          return differs("end", std::uint64_t{ref.offset} + ref.bytes, "bytes of STRS",
+                         std::uint64_t{file_.strings.size()});
+        });
     if (inside) {
-      log_.expect(is_utf8(file_.strings.substr(ref.offset, ref.bytes)), "L101", [&] { return where; },
-                  [] { return Text("is not UTF-8"); });
+      log_.expect(
+          is_utf8(file_.strings.substr(ref.offset, ref.bytes)), "L101", [&] { return where; },
+          [] { return Text("is not UTF-8"); });
     }
   }
 
   bool is_range_next(std::uint32_t first, std::uint32_t count, std::uint64_t& next, std::uint64_t size,
                      std::string_view rule, const Text& where) {
     const bool fits = first == next && count <= size - next;
-    log_.expect(fits, rule, [&] { return where; }, [&] {
-      return "range " + std::to_string(first) + " + " + std::to_string(count) + " should start at " +
-             std::to_string(next) + " and end by " + std::to_string(size);
-    });
+    log_.expect(
+        fits, rule, [&] { return where; },
+        [&] {
+          return "range " + std::to_string(first) + " + " + std::to_string(count) + " should start at " +
+                 std::to_string(next) + " and end by " + std::to_string(size);
+        });
     if (fits) next += count;
     return fits;
   }
@@ -60,15 +66,17 @@ class TableChecker {
     const bool finite = std::isfinite(mesh.origin[0]) && std::isfinite(mesh.origin[1]) && std::isfinite(mesh.origin[2]);
     log_.expect(finite, "L104", at, [] { return Text("origin is not finite"); });
     // Positions are decoded in floats: every step · q must be a normal float.
-    const bool has_grid = mesh.grid.mantissa >= 1 && mesh.grid.mantissa < (1U << 24) && mesh.grid.log2 >= -126 &&
-                          mesh.grid.log2 <= 104;
+    const bool has_grid =
+        mesh.grid.mantissa >= 1 && mesh.grid.mantissa < (1U << 24) && mesh.grid.log2 >= -126 && mesh.grid.log2 <= 104;
     log_.expect(has_grid, "L104", at, [&] {
-      return "grid " + std::to_string(mesh.grid.mantissa) + " * 2^" + std::to_string(mesh.grid.log2) + " is out of range";
+      return "grid " + std::to_string(mesh.grid.mantissa) + " * 2^" + std::to_string(mesh.grid.log2) +
+             " is out of range";
     });
     for (int axis = 0; axis < 3; ++axis) {
       const std::int64_t lo = mesh.bounds_min[axis];
       const std::int64_t hi = mesh.bounds_max[axis];
-      log_.expect(lo <= hi || mesh.cluster_count == 0, "L104", at, [&] { return "bounds are upside down on axis " + std::to_string(axis); });
+      log_.expect(lo <= hi || mesh.cluster_count == 0, "L104", at,
+                  [&] { return "bounds are upside down on axis " + std::to_string(axis); });
       const std::int64_t limit = (std::int64_t{1} << 24) / std::max<std::uint32_t>(mesh.grid.mantissa, 1);
       log_.expect(lo >= -limit && hi <= limit && lo >= -kMaxGridCoordinate && hi <= kMaxGridCoordinate, "L104", at,
                   [&] { return "bounds leave the 24 bits that float decode keeps, axis " + std::to_string(axis); });
@@ -106,17 +114,21 @@ class TableChecker {
     log_.expect(mesh.uv_set_count <= format::kMaxUvSets, "L106", at,
                 [&] { return "uv_set_count " + std::to_string(mesh.uv_set_count); });
     log_.expect(mesh.has_color <= 1, "L106", at, [&] { return "has_color " + std::to_string(mesh.has_color); });
-    const std::uint64_t channels = 3U + (stored ? 2U : 0U) + 2U * std::uint64_t{mesh.uv_set_count} + 4U * std::uint64_t{mesh.has_color};
+    const std::uint64_t channels =
+        3U + (stored ? 2U : 0U) + 2U * std::uint64_t{mesh.uv_set_count} + 4U * std::uint64_t{mesh.has_color};
     log_.expect(mesh.channel_count == channels, "L106", at,
                 [&] { return differs("channel_count", std::uint64_t{mesh.channel_count}, "channels", channels); });
     for (std::uint32_t set = 0; set < format::kMaxUvSets; ++set) {
       const format::UvGrid& grid = mesh.uv_grid[set];
       log_.expect(grid.reserved == 0, "L103", at, [] { return Text("uv_grid[].reserved is not zero"); });
       if (set < mesh.uv_set_count) {
-        log_.expect(grid.log2 >= -126 && grid.log2 <= 104, "L106", at, [&] { return "uv grid 2^" + std::to_string(grid.log2); });
+        log_.expect(grid.log2 >= -126 && grid.log2 <= 104, "L106", at,
+                    [&] { return "uv grid 2^" + std::to_string(grid.log2); });
         bool is_new = mesh.uv_set_source[set] < format::kMaxUvSets;
-        for (std::uint32_t before = 0; before < set; ++before) is_new &= mesh.uv_set_source[before] != mesh.uv_set_source[set];
-        log_.expect(is_new, "L106", at, [&] { return "uv_set_source[" + std::to_string(set) + "] is stored already or above 3"; });
+        for (std::uint32_t before = 0; before < set; ++before)
+          is_new &= mesh.uv_set_source[before] != mesh.uv_set_source[set];
+        log_.expect(is_new, "L106", at,
+                    [&] { return "uv_set_source[" + std::to_string(set) + "] is stored already or above 3"; });
       } else {
         log_.expect(grid.log2 == 0 && mesh.uv_set_source[set] == 0, "L103", at,
                     [&] { return "unused UV set " + std::to_string(set) + " is not zero"; });
@@ -140,17 +152,22 @@ class TableChecker {
       sound &= is_range_next(mesh.first_group, mesh.group_count, group, file_.groups.size(), "L107", where);
       sound &= is_range_next(mesh.first_cluster, mesh.cluster_count, cluster, file_.clusters.size(), "L108", where);
       sound &= is_range_next(mesh.first_node, mesh.node_count, node, file_.nodes.size(), "L109", where);
-      log_.expect((mesh.cluster_count == 0) == (mesh.group_count == 0), "L110", [&] { return where; }, [&] {
-        return differs("clusters", std::uint64_t{mesh.cluster_count}, "groups", std::uint64_t{mesh.group_count});
-      });
-      log_.expect((mesh.node_count == 0) == (mesh.group_count == 0), "L401", [&] { return where; }, [&] {
-        return differs("nodes", std::uint64_t{mesh.node_count}, "groups", std::uint64_t{mesh.group_count});
-      });
+      log_.expect((mesh.cluster_count == 0) == (mesh.group_count == 0), "L110", [&] { return where; },
+                  [&] {
+                    return differs("clusters", std::uint64_t{mesh.cluster_count}, "groups",
+                                   std::uint64_t{mesh.group_count});
+                  });
+      log_.expect(
+          (mesh.node_count == 0) == (mesh.group_count == 0), "L401", [&] { return where; },
+          [&] { return differs("nodes", std::uint64_t{mesh.node_count}, "groups", std::uint64_t{mesh.group_count}); });
     }
     const auto whole = [&](std::uint64_t end, std::size_t size, std::string_view rule, const char* what) {
-      return log_.expect(end == size, rule, [] { return Text("meshes"); }, [&] {
-        return differs(std::string(what) + " of meshes", end, std::string(what) + " in the table", std::uint64_t{size});
-      });
+      return log_.expect(
+          end == size, rule, [] { return Text("meshes"); },
+          [&] {
+            return differs(std::string(what) + " of meshes", end, std::string(what) + " in the table",
+                           std::uint64_t{size});
+          });
     };
     sound &= whole(group, file_.groups.size(), "L107", "groups");
     sound &= whole(cluster, file_.clusters.size(), "L108", "clusters");
@@ -260,9 +277,7 @@ class TableChecker {
     }
     if (singular) return;
     const long double truth = sigma * largest;
-    log_.expect(instance.scale >= truth * (1.0L - 1e-16L) &&
-                    instance.scale <= truth * (1.0L + 1.1e-11L),
-                "L113", at,
+    log_.expect(instance.scale >= truth * (1.0L - 1e-16L) && instance.scale <= truth * (1.0L + 1.1e-11L), "L113", at,
                 [&] { return differs("scale", instance.scale, "largest singular value", static_cast<double>(truth)); });
   }
 
@@ -277,7 +292,8 @@ class TableChecker {
       check_string(blob.mime_type, at() + ", mime_type");
       const auto kind = static_cast<std::uint32_t>(blob.kind);
       log_.expect(kind == 1 || kind == 2, "L102", at, [&] { return "kind " + std::to_string(kind); });
-      const std::uint64_t start = (end + format::kSectionAlignment - 1) / format::kSectionAlignment * format::kSectionAlignment;
+      const std::uint64_t start =
+          (end + format::kSectionAlignment - 1) / format::kSectionAlignment * format::kSectionAlignment;
       const bool inside = log_.expect(blob.offset == start && start <= limit && blob.bytes <= limit - start, "L114", at,
                                       [] { return Text("does not follow the blob before it inside the section"); });
       if (!inside) return;
@@ -288,7 +304,9 @@ class TableChecker {
       log_.expect(hash64(file_.bytes.subspan(blob.offset, blob.bytes)) == blob.checksum, "L114", at,
                   [] { return Text("checksum does not match"); });
     }
-    log_.expect(end == limit, "L114", [] { return Text("section BLOB"); }, [] { return Text("does not end with the last blob"); });
+    log_.expect(
+        end == limit, "L114", [] { return Text("section BLOB"); },
+        [] { return Text("does not end with the last blob"); });
   }
 
   bool check_groups() {
@@ -314,8 +332,9 @@ class TableChecker {
         sound &= log_.expect(group.page < file_.pages.size(), "L111", at,
                              [&] { return "page " + std::to_string(group.page) + " does not exist"; });
       }
-      sound &= log_.expect(next == end, "L110", [&] { return place("mesh", m); },
-                           [&] { return differs("clusters in groups", next, "end of the mesh's", end); });
+      sound &= log_.expect(
+          next == end, "L110", [&] { return place("mesh", m); },
+          [&] { return differs("clusters in groups", next, "end of the mesh's", end); });
     }
     return sound;
   }
@@ -332,8 +351,9 @@ class TableChecker {
         const std::size_t c = std::size_t{mesh.first_cluster} + k;
         const format::ClusterRecord& cluster = file_.clusters[c];
         const auto at = [&] { return place("mesh", m, "cluster", c); };
-        sound &= log_.expect(is_group_of_mesh(cluster.coarser_group), "L111", at,
-                             [&] { return "coarser_group " + std::to_string(cluster.coarser_group) + " is not of its mesh"; });
+        sound &= log_.expect(is_group_of_mesh(cluster.coarser_group), "L111", at, [&] {
+          return "coarser_group " + std::to_string(cluster.coarser_group) + " is not of its mesh";
+        });
         sound &= log_.expect(cluster.own_group == kNone || is_group_of_mesh(cluster.own_group), "L111", at,
                              [&] { return "own_group " + std::to_string(cluster.own_group) + " is not of its mesh"; });
         sound &= log_.expect(cluster.triangle_count >= 1 && cluster.triangle_count <= format::kMaxClusterTriangles &&
@@ -358,8 +378,9 @@ class TableChecker {
       for (std::uint32_t k = 0; k < mesh.cluster_count; ++k) {
         levels = std::max(levels, std::uint64_t{file_.clusters[mesh.first_cluster + k].level} + 1U);
       }
-      log_.expect(mesh.level_count == levels, "L115", [&] { return place("mesh", m); },
-                  [&] { return differs("level_count", std::uint64_t{mesh.level_count}, "levels", levels); });
+      log_.expect(
+          mesh.level_count == levels, "L115", [&] { return place("mesh", m); },
+          [&] { return differs("level_count", std::uint64_t{mesh.level_count}, "levels", levels); });
     }
   }
 
@@ -369,6 +390,8 @@ class TableChecker {
 
 }  // namespace
 
-bool check_tables(const FileTables& file, RuleLog& log) { return TableChecker(file, log).run(); }
+bool check_tables(const FileTables& file, RuleLog& log) {
+  return TableChecker(file, log).run();
+}
 
 }  // namespace meshlode

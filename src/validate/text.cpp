@@ -13,7 +13,10 @@ bool is_utf8(std::string_view text) {
   const auto byte = [&](std::size_t k) { return static_cast<unsigned>(static_cast<unsigned char>(text[k])); };
   while (i < text.size()) {
     const unsigned lead = byte(i);
-    if (lead < 0x80U) { ++i; continue; }
+    if (lead < 0x80U) {
+      ++i;
+      continue;
+    }
     const std::size_t count = lead >> 5 == 6U ? 1 : lead >> 4 == 14U ? 2 : lead >> 3 == 30U ? 3 : 0;
     if (count == 0 || count >= text.size() - i) return false;
     unsigned code = lead & (0x3FU >> count);
@@ -39,8 +42,10 @@ bool is_shallow(std::string_view text) {
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
     if (in_string) {
-      if (c == '\\') ++i;
-      else if (c == '"') in_string = false;
+      if (c == '\\')
+        ++i;
+      else if (c == '"')
+        in_string = false;
     } else if (c == '"') {
       in_string = true;
     } else if (c == '{' || c == '[') {
@@ -59,7 +64,8 @@ nlohmann::json parse(std::string_view text) {
 
 nlohmann::json value_at(std::string_view meta, const char* section, const char* key) {
   const nlohmann::json root = parse(meta);
-  if (!root.is_object() || !root.contains(section) || !root[section].is_object() || !root[section].contains(key)) return {};
+  if (!root.is_object() || !root.contains(section) || !root[section].is_object() || !root[section].contains(key))
+    return {};
   return root[section][key];
 }
 
@@ -77,13 +83,15 @@ std::optional<std::uint64_t> meta_number(std::string_view meta, const char* sect
 
 void check_texts(const FileTables& file, RuleLog& log) {
   const nlohmann::json meta = file.meta.empty() ? nlohmann::json::object() : parse(file.meta);
-  if (log.expect(meta.is_object(), "L013", [] { return std::string("section META"); },
-                 [] { return std::string("is not a JSON object"); })) {
+  if (log.expect(
+          meta.is_object(), "L013", [] { return std::string("section META"); },
+          [] { return std::string("is not a JSON object"); })) {
     const auto has = [&](const char* key, nlohmann::json::value_t type) {
       const auto found = meta.find(key);
       if (found == meta.end()) return false;
-      return log.expect(found->type() == type, "L013", [&] { return std::string("section META: /") + key; },
-                        [] { return std::string("is of another type"); });
+      return log.expect(
+          found->type() == type, "L013", [&] { return std::string("section META: /") + key; },
+          [] { return std::string("is of another type"); });
     };
     has("generator", nlohmann::json::value_t::string);
     has("settings", nlohmann::json::value_t::object);
@@ -91,14 +99,15 @@ void check_texts(const FileTables& file, RuleLog& log) {
     has("left_out", nlohmann::json::value_t::array);
     if (has("source", nlohmann::json::value_t::object)) {
       for (const char* key : {"file", "hash"}) {
-        log.expect(!meta["source"].contains(key) || meta["source"][key].is_string(), "L013",
-                   [&] { return std::string("section META: /source/") + key; },
-                   [] { return std::string("is no string"); });
+        log.expect(
+            !meta["source"].contains(key) || meta["source"][key].is_string(), "L013",
+            [&] { return std::string("section META: /source/") + key; }, [] { return std::string("is no string"); });
       }
     }
   }
-  log.expect(parse(file.scene).is_object(), "L013", [] { return std::string("section SCNE"); },
-             [] { return std::string("is not a JSON object"); });
+  log.expect(
+      parse(file.scene).is_object(), "L013", [] { return std::string("section SCNE"); },
+      [] { return std::string("is not a JSON object"); });
 }
 
 }  // namespace meshlode

@@ -39,23 +39,28 @@ class TreeChecker {
     depths_.assign(mesh_.node_count, 1);
     for (std::uint32_t k = 0; k < mesh_.node_count; ++k) check_node(k, parents, leaves);
     for (std::uint32_t k = 0; k < mesh_.node_count; ++k) {
-      log_.expect(parents[k] == (k == 0 ? 0U : 1U), "L401", [&] { return at(k); },
-                  [&] { return "has " + std::to_string(parents[k]) + " parents"; });
+      log_.expect(
+          parents[k] == (k == 0 ? 0U : 1U), "L401", [&] { return at(k); },
+          [&] { return "has " + std::to_string(parents[k]) + " parents"; });
     }
     for (std::uint32_t k = 0; k < mesh_.group_count; ++k) {
-      log_.expect(leaves[k] == 1, "L402", [&] { return place("mesh", m_, "group", std::size_t{mesh_.first_group} + k); },
-                  [&] { return "is in " + std::to_string(leaves[k]) + " leaves"; });
+      log_.expect(
+          leaves[k] == 1, "L402", [&] { return place("mesh", m_, "group", std::size_t{mesh_.first_group} + k); },
+          [&] { return "is in " + std::to_string(leaves[k]) + " leaves"; });
     }
   }
 
  private:
-  [[nodiscard]] std::string at(std::uint32_t k) const { return place("mesh", m_, "node", std::size_t{mesh_.first_node} + k); }
+  [[nodiscard]] std::string at(std::uint32_t k) const {
+    return place("mesh", m_, "node", std::size_t{mesh_.first_node} + k);
+  }
 
   void check_node(std::uint32_t k, std::vector<std::uint32_t>& parents, std::vector<std::uint32_t>& leaves) {
     const NodeRecord& node = file_.nodes[mesh_.first_node + k];
     const auto where = [&] { return at(k); };
     log_.expect(node.reserved == 0, "L103", where, [] { return std::string("reserved is not zero"); });
-    const bool sound = log_.expect(is_sound(node), "L403", where, [] { return std::string("sphere or error is no number"); });
+    const bool sound =
+        log_.expect(is_sound(node), "L403", where, [] { return std::string("sphere or error is no number"); });
     if (node.child_count == 0) {
       const std::uint32_t local = node.first - mesh_.first_group;  // wraps to a large number when below
       if (!log_.expect(local < mesh_.group_count, "L402", where,
@@ -84,12 +89,14 @@ class TreeChecker {
     for (std::uint32_t child = first; child < first + node.child_count; ++child) {
       ++parents[child];
       depths_[child] = depths_[k] + 1;  // nodes come parents first
-      log_.expect(depths_[child] <= kMaxDepth, "L401", where, [] { return std::string("lies more than 64 nodes deep"); });
+      log_.expect(depths_[child] <= kMaxDepth, "L401", where,
+                  [] { return std::string("lies more than 64 nodes deep"); });
       infinite_below |= file_.nodes[mesh_.first_node + child].error == kInfiniteError;
       const NodeRecord& below = file_.nodes[mesh_.first_node + child];
       if (sound && is_sound(below)) bound(k, ball_of(below), below.error, [&] { return at(child); });
     }
-    // An infinite error above finite ones only would cost traversal, never a wrong cut: yet it is not what was specified.
+    // An infinite error above finite ones only would cost traversal, never a wrong cut: yet it is not what was
+    // specified.
     log_.expect(infinite_below || node.error != kInfiniteError, "L404", where,
                 [] { return std::string("infinite without a terminal group below"); });
   }

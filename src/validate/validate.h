@@ -19,9 +19,9 @@ struct Finding {
 };
 
 struct ValidationReport {
-  std::vector<Finding> findings;      ///< at most kMaxFindingsPerRule of each id are kept…
-  std::uint64_t finding_count = 0;    ///< …all are counted
-  std::vector<std::string> checked;   ///< ids of the rules that ran
+  std::vector<Finding> findings;     ///< at most kMaxFindingsPerRule of each id are kept…
+  std::uint64_t finding_count = 0;   ///< …all are counted
+  std::vector<std::string> checked;  ///< ids of the rules that ran
 };
 
 /// Never fails: a file that cannot even be opened yields a finding.

@@ -39,21 +39,39 @@ bool is_drawable(const Asset& asset, const format::InstanceRecord& instance) {
 }
 
 /// A camera around a random cluster of a random instance, so that cuts are mixed more often than not.
-View random_view(const Asset& asset, std::span<const std::uint32_t> instances, std::uint32_t index, SplitMix64& random) {
+View random_view(const Asset& asset, std::span<const std::uint32_t> instances, std::uint32_t index,
+                 SplitMix64& random) {
   const format::InstanceRecord& instance = asset.instances()[instances[random.below(instances.size())]];
   const format::MeshRecord& mesh = asset.meshes()[instance.mesh];
   const format::ClusterRecord& cluster = asset.clusters()[mesh.first_cluster + random.below(mesh.cluster_count)];
   const Vec3d origin(mesh.origin[0], mesh.origin[1], mesh.origin[2]);
-  const Vec3d center = transform_point(instance, origin + Vec3d(cluster.center[0], cluster.center[1], cluster.center[2]));
+  const Vec3d center =
+      transform_point(instance, origin + Vec3d(cluster.center[0], cluster.center[1], cluster.center[2]));
   const double size = std::max(mesh.diagonal * instance.scale, 1e-300);
   View view;
   double distance = 0.0;
   switch (index % 5) {
-    case 0: view.kind = "inside"; distance = random.between(0.0, 1.0) * double{cluster.radius} * instance.scale; break;
-    case 1: view.kind = "near"; distance = size * random.log_between(1e-2, 1.0); break;
-    case 2: view.kind = "mid"; distance = size * random.log_between(1.0, 20.0); break;
-    case 3: view.kind = "far"; distance = size * random.log_between(20.0, 1e5); break;
-    default: view.kind = "orthographic"; distance = size * random.log_between(0.5, 5.0); view.camera.is_orthographic = true; break;
+    case 0:
+      view.kind = "inside";
+      distance = random.between(0.0, 1.0) * double{cluster.radius} * instance.scale;
+      break;
+    case 1:
+      view.kind = "near";
+      distance = size * random.log_between(1e-2, 1.0);
+      break;
+    case 2:
+      view.kind = "mid";
+      distance = size * random.log_between(1.0, 20.0);
+      break;
+    case 3:
+      view.kind = "far";
+      distance = size * random.log_between(20.0, 1e5);
+      break;
+    default:
+      view.kind = "orthographic";
+      distance = size * random.log_between(0.5, 5.0);
+      view.camera.is_orthographic = true;
+      break;
   }
   view.camera.eye = center + random_direction(random) * distance;
   view.camera.target = center;
@@ -75,7 +93,8 @@ Answer decide(const View& view, const format::InstanceRecord& instance, const fo
   if (group.error >= format::kInfiniteError) return Answer::kFails;
   const Camera& camera = view.camera;
   const double sigma = instance.scale;
-  const double k = camera.is_orthographic ? camera.height / camera.ortho_height : camera.height / (2.0 * std::tan(0.5 * camera.fovy));
+  const double k = camera.is_orthographic ? camera.height / camera.ortho_height
+                                          : camera.height / (2.0 * std::tan(0.5 * camera.fovy));
   const double left = group.error * sigma * k;
   double right = view.pixel_error;
   double slack = 0.0;
@@ -101,8 +120,9 @@ struct CameraFaults {
   CameraTotals totals;
 };
 
-void check_rule(const Asset& asset, const View& view, const format::InstanceRecord& instance, const MeshSurface& surface,
-                std::span<const std::uint8_t> drawn, CutFaults& faults, CameraTotals& totals) {
+void check_rule(const Asset& asset, const View& view, const format::InstanceRecord& instance,
+                const MeshSurface& surface, std::span<const std::uint8_t> drawn, CutFaults& faults,
+                CameraTotals& totals) {
   const format::MeshRecord& mesh = asset.meshes()[instance.mesh];
   std::vector<Answer> answers(surface.group_count);
   for (std::uint32_t k = 0; k < surface.group_count; ++k) {
@@ -112,7 +132,8 @@ void check_rule(const Asset& asset, const View& view, const format::InstanceReco
   }
   for (std::uint32_t c = 0; c < surface.cluster_count; ++c) {
     const format::ClusterRecord& cluster = asset.clusters()[surface.first_cluster + c];
-    const Answer own = cluster.own_group == format::kNone ? Answer::kPasses : answers[cluster.own_group - surface.first_group];
+    const Answer own =
+        cluster.own_group == format::kNone ? Answer::kPasses : answers[cluster.own_group - surface.first_group];
     const Answer coarser = answers[cluster.coarser_group - surface.first_group];
     const bool surely_drawn = own == Answer::kPasses && coarser == Answer::kFails;
     const bool surely_not = own == Answer::kFails || coarser == Answer::kPasses;
@@ -131,7 +152,8 @@ CameraFaults judge_camera(const Asset& asset, std::span<const MeshJudge> judges,
   if (flat != bvh) {
     const auto [a, b] = std::mismatch(flat.begin(), flat.end(), bvh.begin(), bvh.end());
     const ClusterInstance& first = b == bvh.end() || (a != flat.end() && *a < *b) ? *a : *b;
-    out.hierarchy = std::to_string(flat.size()) + " flat, " + std::to_string(bvh.size()) + " by hierarchy; first difference at " +
+    out.hierarchy = std::to_string(flat.size()) + " flat, " + std::to_string(bvh.size()) +
+                    " by hierarchy; first difference at " +
                     place("instance", first.instance.value, "cluster", first.cluster.value);
   }
   std::size_t next = 0;
@@ -150,26 +172,33 @@ CameraFaults judge_camera(const Asset& asset, std::span<const MeshJudge> judges,
       bool foreign = false;
       for (std::size_t k = begin; k < next; ++k) {
         const std::uint32_t c = flat[k].cluster.value - surface.first_cluster;
-        if (c < surface.cluster_count) ++drawn[c];
-        else foreign = true;
+        if (c < surface.cluster_count)
+          ++drawn[c];
+        else
+          foreign = true;
       }
-      if (begin == next) faults.coverage = "the cut is empty";
-      else if (foreign) faults.coverage = "clusters of another mesh are drawn";
-      else faults.coverage = find_coverage_fault(asset, judge, drawn);
+      if (begin == next)
+        faults.coverage = "the cut is empty";
+      else if (foreign)
+        faults.coverage = "clusters of another mesh are drawn";
+      else
+        faults.coverage = find_coverage_fault(asset, judge, drawn);
       faults.border = find_border_fault(judge, drawn);
       check_rule(asset, view, instance, surface, drawn, faults, out.totals);
       ++out.totals.cuts;
     }
-    if (!faults.coverage.empty() || !faults.border.empty() || !faults.rule.empty()) out.of_instance.emplace_back(i, faults);
+    if (!faults.coverage.empty() || !faults.border.empty() || !faults.rule.empty())
+      out.of_instance.emplace_back(i, faults);
   }
-  if (next != flat.size()) out.hierarchy = "the flat selection is not ascending or names an instance that does not exist";
+  if (next != flat.size())
+    out.hierarchy = "the flat selection is not ascending or names an instance that does not exist";
   return out;
 }
 
 }  // namespace
 
-CameraTotals check_cameras(const Asset& asset, std::span<const MeshJudge> judges, std::uint32_t count, std::uint64_t seed,
-                           RuleLog& log, const Selectors& selectors) {
+CameraTotals check_cameras(const Asset& asset, std::span<const MeshJudge> judges, std::uint32_t count,
+                           std::uint64_t seed, RuleLog& log, const Selectors& selectors) {
   CameraTotals totals;
   std::vector<std::uint32_t> drawable;
   for (std::uint32_t i = 0; i < asset.instances().size(); ++i) {
@@ -181,7 +210,8 @@ CameraTotals check_cameras(const Asset& asset, std::span<const MeshJudge> judges
   std::vector<View> views;
   for (std::uint32_t i = 0; i < count; ++i) views.push_back(random_view(asset, drawable, i, random));
   std::vector<CameraFaults> faults(views.size());
-  parallel_for_each_index(views.size(), 1, [&](std::size_t i) { faults[i] = judge_camera(asset, judges, views[i], selectors); });
+  parallel_for_each_index(views.size(), 1,
+                          [&](std::size_t i) { faults[i] = judge_camera(asset, judges, views[i], selectors); });
   for (std::size_t i = 0; i < faults.size(); ++i) {
     const std::string camera = place("camera", i) + " (" + views[i].kind + ", seed " + std::to_string(seed) + ")";
     if (!faults[i].hierarchy.empty()) log.add("V203", camera, faults[i].hierarchy);

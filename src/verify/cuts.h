@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cross-checks by cuts (V2…): what the group proofs promise is looked at once more on whole cuts. Internal to the judge.
+// Cross-checks by cuts (V2…): what the group proofs promise is looked at once more on whole cuts. Internal to the
+// judge.
 #pragma once
 
 #include <cstdint>
@@ -21,11 +22,16 @@ namespace meshlode {
 /// What is judged, so that a test may put something wrong in its place.
 struct Selectors {
   std::function<std::vector<ClusterInstance>(const Asset&, const Camera&, double)> flat =
-      [](const Asset& asset, const Camera& camera, double pixel_error) { return select_flat(asset, camera, pixel_error); };
+      [](const Asset& asset, const Camera& camera, double pixel_error) {
+        return select_flat(asset, camera, pixel_error);
+      };
   std::function<std::vector<ClusterInstance>(const Asset&, const Camera&, double)> bvh =
-      [](const Asset& asset, const Camera& camera, double pixel_error) { return select_bvh(asset, camera, pixel_error); };
-  std::function<UniformCut(const Asset&, MeshId, double)> uniform =
-      [](const Asset& asset, MeshId mesh, double error) { return select_uniform(asset, mesh, error); };
+      [](const Asset& asset, const Camera& camera, double pixel_error) {
+        return select_bvh(asset, camera, pixel_error);
+      };
+  std::function<UniformCut(const Asset&, MeshId, double)> uniform = [](const Asset& asset, MeshId mesh, double error) {
+    return select_uniform(asset, mesh, error);
+  };
 };
 
 /// Everything about one mesh that cuts are judged by.
@@ -48,13 +54,14 @@ struct CutFaults {
 /// `drawn` has one entry per cluster of the mesh.
 /// Coverage: on every path from a level-0 cluster to a root exactly one cluster is drawn. With `least` and `most` the
 /// fewest and most drawn on any path up to a cluster, both must be 1 at every root.
-[[nodiscard]] std::string find_coverage_fault(const Asset& asset, const MeshJudge& judge, std::span<const std::uint8_t> drawn);
+[[nodiscard]] std::string find_coverage_fault(const Asset& asset, const MeshJudge& judge,
+                                              std::span<const std::uint8_t> drawn);
 /// Border: the chain of the cut has only edges that the source's border allows.
 [[nodiscard]] std::string find_border_fault(const MeshJudge& judge, std::span<const std::uint8_t> drawn);
 
 struct CutTotals {
-  std::uint64_t cuts = 0;           ///< judged
-  std::uint64_t open_cuts = 0;      ///< of meshes whose source is open
+  std::uint64_t cuts = 0;       ///< judged
+  std::uint64_t open_cuts = 0;  ///< of meshes whose source is open
 };
 
 /// `count` uniform cuts of one mesh: at 0, at exact group errors, just below them, and spread logarithmically.
@@ -63,9 +70,9 @@ CutTotals check_uniform_cuts(const Asset& asset, const MeshJudge& judge, std::ui
 
 struct CameraTotals {
   std::uint64_t cameras = 0;
-  std::uint64_t cuts = 0;           ///< of instances
-  std::uint64_t decisions = 0;      ///< of groups, repeated in double precision
-  std::uint64_t too_close = 0;      ///< within rounding of the threshold: either answer is right
+  std::uint64_t cuts = 0;       ///< of instances
+  std::uint64_t decisions = 0;  ///< of groups, repeated in double precision
+  std::uint64_t too_close = 0;  ///< within rounding of the threshold: either answer is right
 };
 
 /// `count` random cameras: inside, near, far and orthographic. `judges` has one entry per mesh.

@@ -67,16 +67,19 @@ DeviationTotals check_deviations(const Asset& asset, const Scene& source, std::s
       const double deviation = measure_deviation(truth, surface, {.samples = samples}).max();
       // Decoded positions carry the last bit of a double; a flat cut deviates by that and stores 0.
       const double rounding = 1e-12 * mesh.diagonal;
-      const double ratio = cut.stored_error > 0.0 ? deviation / cut.stored_error : (deviation <= rounding ? 0.0 : HUGE_VAL);
+      const double ratio =
+          cut.stored_error > 0.0 ? deviation / cut.stored_error : (deviation <= rounding ? 0.0 : HUGE_VAL);
       ratios.push_back(ratio);
       ++totals.cuts;
       if (deviation > cut.stored_error + rounding) ++totals.exceeded;
-      log.expect(deviation <= limit * cut.stored_error + rounding, "V206", [&] { return place("mesh", m); }, [&] {
-        char text[160];
-        std::snprintf(text, sizeof text, "the cut at error %.6g stores %.6g and deviates by %.6g, %.3f times that", threshold,
-                      cut.stored_error, deviation, ratio);
-        return std::string(text);
-      });
+      log.expect(
+          deviation <= limit * cut.stored_error + rounding, "V206", [&] { return place("mesh", m); },
+          [&] {
+            char text[160];
+            std::snprintf(text, sizeof text, "the cut at error %.6g stores %.6g and deviates by %.6g, %.3f times that",
+                          threshold, cut.stored_error, deviation, ratio);
+            return std::string(text);
+          });
     }
   }
   std::sort(ratios.begin(), ratios.end());

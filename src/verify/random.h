@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Seeded random numbers, the same everywhere (Steele, Lea and Flood 2014, "Fast Splittable Pseudorandom Number Generators").
+// Seeded random numbers, the same everywhere (Steele, Lea and Flood 2014, "Fast Splittable Pseudorandom Number
+// Generators").
 #pragma once
 
 #include <cmath>

@@ -14,14 +14,14 @@ namespace meshlode {
 struct SourceCounts {
   std::uint64_t source_triangles = 0;  ///< looked for
   std::uint64_t level0_triangles = 0;
-  std::uint64_t corners = 0;           ///< whose attributes were compared
+  std::uint64_t corners = 0;  ///< whose attributes were compared
 };
 
 /// V101 … V105 for one mesh. \pre `clusters` is decode_all of the asset
 [[nodiscard]] SourceCounts check_source_triangles(const Asset& asset, MeshId mesh, const SourceMesh& source,
                                                   std::span<const DecodedCluster> clusters, RuleLog& log);
 
-/// V106 … V111.
+/// V106 … V112.
 void check_scene(const Asset& asset, const Scene& source, RuleLog& log);
 
 }  // namespace meshlode

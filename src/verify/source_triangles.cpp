@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// I1: every source triangle is in exactly one level-0 cluster. The source is quantized here once more and both sides are
-// sorted by (material, corners on the grid): equal keys must occur equally often, after what may be dropped (exact
+// I1: every source triangle is in exactly one level-0 cluster. The source is quantized here once more and both sides
+// are sorted by (material, corners on the grid): equal keys must occur equally often, after what may be dropped (exact
 // degenerates and exact duplicates) was found from the source alone.
 #include <algorithm>
 #include <array>
@@ -64,8 +64,14 @@ struct StoredTriangle {
 
 class SourceMatcher {
  public:
-  SourceMatcher(const Asset& asset, MeshId mesh, const SourceMesh& source, std::span<const DecodedCluster> clusters, RuleLog& log)
-      : asset_(asset), mesh_id_(mesh), mesh_(asset.meshes()[mesh.value]), source_(source), clusters_(clusters), log_(log),
+  SourceMatcher(const Asset& asset, MeshId mesh, const SourceMesh& source, std::span<const DecodedCluster> clusters,
+                RuleLog& log)
+      : asset_(asset),
+        mesh_id_(mesh),
+        mesh_(asset.meshes()[mesh.value]),
+        source_(source),
+        clusters_(clusters),
+        log_(log),
         step_(exp2_exact(mesh_.grid.log2) * mesh_.grid.mantissa),
         origin_(mesh_.origin[0], mesh_.origin[1], mesh_.origin[2]) {}
 
@@ -100,11 +106,15 @@ class SourceMatcher {
       vertices += primitive.positions.size();
     }
     const auto at = [&] { return where(); };
-    log_.expect(mesh_.source_triangles == triangles, "V103", at, [&] { return differs("source_triangles", mesh_.source_triangles, "source", triangles); });
-    log_.expect(mesh_.source_vertices == vertices, "V103", at, [&] { return differs("source_vertices", mesh_.source_vertices, "source", vertices); });
-    log_.expect(asset_.string(mesh_.name) == source_.name, "V103", at, [&] { return "name is not \"" + source_.name + "\""; });
-    log_.expect(mesh_.dropped_repaired == source_.drops.repaired, "V102", at,
-                [&] { return differs("dropped_repaired", mesh_.dropped_repaired, "repaired by import", source_.drops.repaired); });
+    log_.expect(mesh_.source_triangles == triangles, "V103", at,
+                [&] { return differs("source_triangles", mesh_.source_triangles, "source", triangles); });
+    log_.expect(mesh_.source_vertices == vertices, "V103", at,
+                [&] { return differs("source_vertices", mesh_.source_vertices, "source", vertices); });
+    log_.expect(asset_.string(mesh_.name) == source_.name, "V103", at,
+                [&] { return "name is not \"" + source_.name + "\""; });
+    log_.expect(mesh_.dropped_repaired == source_.drops.repaired, "V102", at, [&] {
+      return differs("dropped_repaired", mesh_.dropped_repaired, "repaired by import", source_.drops.repaired);
+    });
   }
 
   void gather_source() {
@@ -142,8 +152,9 @@ class SourceMatcher {
                 [&] { return differs("diagonal", mesh_.diagonal, "source", diagonal); });
     const double moved = std::sqrt(moved2);
     const double stored = mesh_.level0_deviation;  // a float, rounded up
-    log_.expect(stored >= moved * (1.0 - 1e-12) && stored <= moved * (1.0 + 0x1p-22) + 0x1p-148, "V105", at,
-                [&] { return differs("level0_deviation", double{mesh_.level0_deviation}, "largest move of a vertex", moved); });
+    log_.expect(stored >= moved * (1.0 - 1e-12) && stored <= moved * (1.0 + 0x1p-22) + 0x1p-148, "V105", at, [&] {
+      return differs("level0_deviation", double{mesh_.level0_deviation}, "largest move of a vertex", moved);
+    });
     std::sort(sources_.begin(), sources_.end(), [](const SourceTriangle& a, const SourceTriangle& b) {
       return std::tie(a.key, a.primitive, a.triangle) < std::tie(b.key, b.primitive, b.triangle);
     });
@@ -202,7 +213,10 @@ class SourceMatcher {
     const Vec3f flat = length > 0.0 && std::isfinite(length) ? Vec3f(cross / length) : Vec3f(0.0F);
     ExactTriangle out{exact_corner(primitive, index[0], flat), exact_corner(primitive, index[1], flat),
                       exact_corner(primitive, index[2], flat)};
-    std::rotate(out.begin(), std::min_element(out.begin(), out.end(), [](const Corner& x, const Corner& y) { return (x <=> y) < 0; }), out.end());
+    std::rotate(
+        out.begin(),
+        std::min_element(out.begin(), out.end(), [](const Corner& x, const Corner& y) { return (x <=> y) < 0; }),
+        out.end());
     return out;
   }
 
@@ -265,7 +279,8 @@ class SourceMatcher {
     return text + " of " + place("material", key.material);
   }
 
-  void match_key(const TriangleKey& key, std::span<const SourceTriangle> sources, std::span<const StoredTriangle> stored) {
+  void match_key(const TriangleKey& key, std::span<const SourceTriangle> sources,
+                 std::span<const StoredTriangle> stored) {
     const std::vector<SourceClass> classes = classes_of(sources);
     std::uint64_t least = 0;  // copies that must be there
     std::uint64_t most = 0;   // and that may
@@ -275,8 +290,9 @@ class SourceMatcher {
       duplicates_most_ += one.count - 1;
     }
     if (stored.size() < least || stored.size() > most) {
-      log_.add("V101", key_text(key), std::to_string(stored.size()) + " times among level-0 clusters, expected " +
-                                          std::to_string(least) + (most == least ? "" : " to " + std::to_string(most)));
+      log_.add("V101", key_text(key),
+               std::to_string(stored.size()) + " times among level-0 clusters, expected " + std::to_string(least) +
+                   (most == least ? "" : " to " + std::to_string(most)));
       return;
     }
     if (classes.empty() || classes.size() > kMaxClassesCompared) return;
@@ -285,8 +301,9 @@ class SourceMatcher {
       const bool found = std::any_of(classes.begin(), classes.end(),
                                      [&](const SourceClass& one) { return has_attributes_of(triangle, one); });
       if (!found) {
-        log_.add("V104", key_text(key), place("cluster", triangle.cluster, "triangle", triangle.triangle) +
-                                            " has attributes of no source triangle in its place");
+        log_.add("V104", key_text(key),
+                 place("cluster", triangle.cluster, "triangle", triangle.triangle) +
+                     " has attributes of no source triangle in its place");
       }
     }
   }
@@ -319,8 +336,8 @@ class SourceMatcher {
       // A zero normal has no direction to keep; a computed one of a sliver neither.
       if (length > 1e-30 && std::isfinite(length) && has_own_normals) {
         const Vec3d d = Vec3d(decoded_.normals[vertex]) - n / length;
-        // The lattice's points are the covering radius sqrt(2/3)/M apart at most, stretched by sqrt(3) on the way to the
-        // sphere: sqrt(2)/M. A little is added for second order and floats.
+        // The lattice's points are the covering radius sqrt(2/3)/M apart at most, stretched by sqrt(3) on the way to
+        // the sphere: sqrt(2)/M. A little is added for second order and floats.
         const double cells = static_cast<double>((std::uint64_t{1} << (mesh_.normal_bits - 1)) - 1);
         const double bound = std::sqrt(2.0) / cells * (1.0 + 1.0 / cells) + 1e-6;
         if (glm::dot(d, d) > bound * bound) return false;
@@ -345,13 +362,16 @@ class SourceMatcher {
 
   void check_dropped() {
     const auto at = [&] { return where(); };
-    log_.expect(mesh_.dropped_degenerate == degenerate_, "V102", at,
-                [&] { return differs("dropped_degenerate", mesh_.dropped_degenerate, "degenerate in the source", degenerate_); });
-    const std::uint64_t gone = sources_.size() + degenerate_ - std::min<std::uint64_t>(stored_.size(), sources_.size() + degenerate_);
-    log_.expect(mesh_.dropped_degenerate + mesh_.dropped_duplicate == gone && mesh_.dropped_duplicate <= duplicates_most_,
-                "V102", at, [&] {
-                  return differs("dropped", mesh_.dropped_degenerate + mesh_.dropped_duplicate, "missing from level 0", gone);
-                });
+    log_.expect(mesh_.dropped_degenerate == degenerate_, "V102", at, [&] {
+      return differs("dropped_degenerate", mesh_.dropped_degenerate, "degenerate in the source", degenerate_);
+    });
+    const std::uint64_t gone =
+        sources_.size() + degenerate_ - std::min<std::uint64_t>(stored_.size(), sources_.size() + degenerate_);
+    log_.expect(
+        mesh_.dropped_degenerate + mesh_.dropped_duplicate == gone && mesh_.dropped_duplicate <= duplicates_most_,
+        "V102", at, [&] {
+          return differs("dropped", mesh_.dropped_degenerate + mesh_.dropped_duplicate, "missing from level 0", gone);
+        });
   }
 
   const Asset& asset_;

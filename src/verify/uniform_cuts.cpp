@@ -61,7 +61,8 @@ CutFaults judge_uniform_cut(const Asset& asset, const MeshJudge& judge, double t
     };
     const bool is_level0 = cluster.own_group == format::kNone;
     const bool should = (is_level0 || passes(cluster.own_group)) && !passes(cluster.coarser_group);
-    if (drawn[c] != (should ? 1 : 0)) faults.rule = place("cluster", surface.first_cluster + c) + (should ? " is not drawn" : " is drawn");
+    if (drawn[c] != (should ? 1 : 0))
+      faults.rule = place("cluster", surface.first_cluster + c) + (should ? " is not drawn" : " is drawn");
     if (should && !is_level0) error = std::max(error, double{asset.groups()[cluster.own_group].error});
   }
   if (cut.stored_error != error) faults.error = differs("stored error", cut.stored_error, "largest selected", error);
@@ -80,8 +81,9 @@ CutTotals check_uniform_cuts(const Asset& asset, const MeshJudge& judge, std::ui
   if (count == 0 || judge.surface.cluster_count == 0) return totals;
   const std::vector<double> thresholds = choose_thresholds(asset, judge.surface, count);
   std::vector<CutFaults> faults(thresholds.size());
-  parallel_for_each_index(thresholds.size(), 4,
-                          [&](std::size_t i) { faults[i] = judge_uniform_cut(asset, judge, thresholds[i], selectors); });
+  parallel_for_each_index(thresholds.size(), 4, [&](std::size_t i) {
+    faults[i] = judge_uniform_cut(asset, judge, thresholds[i], selectors);
+  });
   for (std::size_t i = 0; i < faults.size(); ++i) {
     const auto report = [&](const char* rule, const std::string& fault) {
       if (fault.empty()) return;

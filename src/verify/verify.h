@@ -15,9 +15,9 @@
 namespace meshlode {
 
 struct VerifyOptions {
-  std::uint32_t uniform_cuts = 300;  ///< cuts per mesh that cross-check I6
-  std::uint32_t cameras = 100;       ///< cameras that cross-check I5, I6 and I8
-  std::uint32_t deviation_cuts = 12;         ///< uniform cuts per mesh that are measured for I7, where the tier promises it
+  std::uint32_t uniform_cuts = 300;   ///< cuts per mesh that cross-check I6
+  std::uint32_t cameras = 100;        ///< cameras that cross-check I5, I6 and I8
+  std::uint32_t deviation_cuts = 12;  ///< uniform cuts per mesh that are measured for I7, where the tier promises it
   std::uint64_t deviation_samples = 200000;  ///< area-uniform samples each way of each such cut, beside all vertices
   std::uint64_t seed = 1;
 };
@@ -26,11 +26,11 @@ struct VerifyReport {
   std::vector<Finding> findings;
   std::uint64_t finding_count = 0;
   struct Check {
-    std::string invariant;     ///< "I1"
-    std::string what;          ///< one line: what was checked
-    std::uint64_t items = 0;   ///< how many groups, cuts, triangles …
+    std::string invariant;    ///< "I1"
+    std::string what;         ///< one line: what was checked
+    std::uint64_t items = 0;  ///< how many groups, cuts, triangles …
     std::uint64_t failures = 0;
-    bool skipped = false;      ///< with the reason in `what`: I7 in the qem tier
+    bool skipped = false;  ///< with the reason in `what`: I7 in the qem tier
   };
   std::vector<Check> checks;
 };

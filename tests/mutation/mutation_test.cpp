@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Can the judge fail? One field of a sound asset is changed at random, every checksum and hash is made true again, and
-// validate and verify must find it. Mutants that are as valid as the original are counted apart, by kind, with the reason.
+// validate and verify must find it. Mutants that are as valid as the original are counted apart, by kind, with the
+// reason.
 #include <algorithm>
 #include <cstdio>
 #include <map>
@@ -56,7 +57,26 @@ std::string name_killers(const Tally& tally) {
   return text;
 }
 
-void run_kind(const test::MutantKind& kind, const Original& original, std::uint64_t seed, std::uint64_t count, Tally& tally) {
+/// The first byte that differs behind the header and section table: what was changed, before checksums.
+std::string describe_change(const test::AssetEdit& before, const test::AssetEdit& after) {
+  for (const format::SectionId id :
+       {format::SectionId::kMeta, format::SectionId::kScene, format::SectionId::kStrings, format::SectionId::kMeshes,
+        format::SectionId::kMaterials, format::SectionId::kInstances, format::SectionId::kGroups,
+        format::SectionId::kClusters, format::SectionId::kNodes, format::SectionId::kPageDeps,
+        format::SectionId::kBlobs, format::SectionId::kPageData, format::SectionId::kBlobData}) {
+    const format::SectionEntry section = before.section(id);
+    for (std::uint64_t i = 0; i < section.bytes; ++i) {
+      if (before.bytes()[section.offset + i] == after.bytes()[section.offset + i]) continue;
+      const std::uint64_t stride = std::max<std::uint64_t>(section.record_bytes, 1);
+      return "section " + std::string(reinterpret_cast<const char*>(&section.id), 4) + ", record " +
+             std::to_string(i / stride) + ", byte " + std::to_string(i % stride);
+    }
+  }
+  return "header or tables";
+}
+
+void run_kind(const test::MutantKind& kind, const Original& original, std::uint64_t seed, std::uint64_t count,
+              Tally& tally) {
   SplitMix64 random(seed);
   std::uint64_t made = 0;
   for (std::uint64_t draw = 0; made < count && draw < 20 * count; ++draw) {
@@ -70,7 +90,8 @@ void run_kind(const test::MutantKind& kind, const Original& original, std::uint6
       ++tally.killed;
       ++tally.by_rule[killer];
     } else if (kind.equivalent == nullptr) {
-      ADD_FAILURE() << kind.name << ": mutant " << made << " of " << original.name << ", seed " << seed << ", is not found";
+      ADD_FAILURE() << kind.name << ": mutant " << made << " of " << original.name << ", seed " << seed
+                    << ", is not found: " << describe_change(test::AssetEdit(original.bytes), edit);
     }
   }
 }
@@ -95,13 +116,17 @@ void run_mutants(const std::vector<Original>& originals, std::uint64_t per_kind)
     std::printf("| %s | %llu | %llu | %s | %s |\n", kind.name, static_cast<unsigned long long>(tally.mutants),
                 static_cast<unsigned long long>(tally.killed), name_killers(tally).c_str(), reason);
   }
-  std::printf("\nof kinds that change the meaning: %llu mutants, %llu found; of kinds that may keep it: %llu mutants, %llu found\n",
-              static_cast<unsigned long long>(must), static_cast<unsigned long long>(must_killed),
-              static_cast<unsigned long long>(may), static_cast<unsigned long long>(may_killed));
+  std::printf(
+      "\nof kinds that change the meaning: %llu mutants, %llu found; of kinds that may keep it: %llu mutants, %llu "
+      "found\n",
+      static_cast<unsigned long long>(must), static_cast<unsigned long long>(must_killed),
+      static_cast<unsigned long long>(may), static_cast<unsigned long long>(may_killed));
   EXPECT_EQ(must_killed, must);
 }
 
-Original make_hand_made() { return {"the hand-made sample", test::judged_sample_bytes(), test::sample_scene()}; }
+Original make_hand_made() {
+  return {"the hand-made sample", test::judged_sample_bytes(), test::sample_scene()};
+}
 
 Original make_built(const char* name, Primitive shape) {
   Original out{name, {}, samples::as_scene(samples::as_mesh(std::move(shape)))};
@@ -119,23 +144,28 @@ const Original& several_pages() {
 }
 
 #if MESHLODE_MUTANTS_PER_KIND < 50
-TEST(Mutation, AFewMutantsOfEachKindAreFound) { run_mutants({make_hand_made()}, MESHLODE_MUTANTS_PER_KIND); }
+TEST(Mutation, AFewMutantsOfEachKindAreFound) {
+  run_mutants({make_hand_made()}, MESHLODE_MUTANTS_PER_KIND);
+}
 
 TEST(Mutation, ADependencyLeftOutIsFoundByItsRule) {
   test::AssetEdit edit(several_pages().bytes);
   const auto pages = edit.pages();
   ASSERT_GT(pages.size(), 1U);
-  const auto needy = std::find_if(pages.begin(), pages.end(), [](const format::PageRecord& p) { return p.dependency_count > 0; });
+  const auto needy =
+      std::find_if(pages.begin(), pages.end(), [](const format::PageRecord& p) { return p.dependency_count > 0; });
   ASSERT_NE(needy, pages.end());
   edit.put<std::uint32_t>(edit.section(format::SectionId::kPageDeps).offset + 4 * needy->first_dependency,
                           static_cast<std::uint32_t>(needy - pages.begin()));
   edit.seal();
   const ValidationReport report = validate_asset(edit.bytes());
-  EXPECT_TRUE(std::any_of(report.findings.begin(), report.findings.end(), [](const Finding& f) { return f.id == "L213"; }));
+  EXPECT_TRUE(
+      std::any_of(report.findings.begin(), report.findings.end(), [](const Finding& f) { return f.id == "L213"; }));
 }
 #else
 TEST(Mutation, ThousandsOfMutantsAreFound) {
-  run_mutants({make_hand_made(), make_built("a rock", samples::make_rock(24)), make_built("a terrain", samples::make_terrain(96, 96))},
+  run_mutants({make_hand_made(), make_built("a rock", samples::make_rock(24)),
+               make_built("a terrain", samples::make_terrain(96, 96))},
               MESHLODE_MUTANTS_PER_KIND);
 }
 #endif

@@ -13,9 +13,15 @@ using format::SectionId;
 using Edit = AssetEdit;
 using Random = SplitMix64;
 
-std::uint32_t pick(Random& r, std::size_t count) { return static_cast<std::uint32_t>(r.below(count)); }
-float shrink(Random& r) { return static_cast<float>(r.between(0.3, 0.999)); }
-float grow(Random& r) { return static_cast<float>(r.between(1.001, 3.0)); }
+std::uint32_t pick(Random& r, std::size_t count) {
+  return static_cast<std::uint32_t>(r.below(count));
+}
+float shrink(Random& r) {
+  return static_cast<float>(r.between(0.3, 0.999));
+}
+float grow(Random& r) {
+  return static_cast<float>(r.between(1.001, 3.0));
+}
 
 /// Another value than `value` below `bound`; or `value` itself where there is no other.
 std::uint32_t other(Random& r, std::uint32_t value, std::uint32_t first, std::uint32_t count) {
@@ -68,7 +74,8 @@ void with_leaf(Edit& e, std::uint32_t g, const Change& change) {
 template <class Record>
 bool move_center(Record& record, Random& r) {
   if (record.radius == 0.0F) return false;
-  record.center[r.below(3)] += record.radius * static_cast<float>(r.between(0.02, 1.0)) * (r.below(2) == 0 ? 1.0F : -1.0F);
+  record.center[r.below(3)] +=
+      record.radius * static_cast<float>(r.between(0.02, 1.0)) * (r.below(2) == 0 ? 1.0F : -1.0F);
   return true;
 }
 
@@ -91,17 +98,20 @@ float largest_finer_error(const Edit& e, std::uint32_t g) {
   return largest;
 }
 
-// ------------------------------------------------------------------------------------------------------------- vertices
+// -------------------------------------------------------------------------------------------------------------
+// vertices
 
 using Position = std::array<std::int64_t, 3>;
 
 Position position_of(const Edit& e, std::uint32_t c, std::uint32_t v) {
   Position p{};
-  for (std::uint32_t k = 0; k < 3; ++k) p[k] = e.get<format::Channel>(e.channel_offset(c, k)).minimum + std::int64_t{e.vertex_bits(c, v, k)};
+  for (std::uint32_t k = 0; k < 3; ++k)
+    p[k] = e.get<format::Channel>(e.channel_offset(c, k)).minimum + std::int64_t{e.vertex_bits(c, v, k)};
   return p;
 }
 
-/// Vertices of a cluster that clusters of other own groups of the mesh and level have, too; or those that they have not.
+/// Vertices of a cluster that clusters of other own groups of the mesh and level have, too; or those that they have
+/// not.
 std::vector<std::uint32_t> vertices_where(const Edit& e, std::uint32_t c, bool shared) {
   const auto clusters = e.clusters();
   const auto mesh = e.meshes()[mesh_of_cluster(e, c)];
@@ -166,46 +176,197 @@ bool change_text(Edit& e, Random& r, SectionId id) {
   return false;
 }
 
-// ---------------------------------------------------------------------------------------------------------------- kinds
+// ----------------------------------------------------------------------------------------------------------------
+// kinds
 
 std::vector<MutantKind> make_kinds() {
   std::vector<MutantKind> kinds;
-  const auto always = [&](const char* name, std::function<bool(Edit&, Random&)> mutate) { kinds.push_back({name, nullptr, std::move(mutate)}); };
-  const auto mostly = [&](const char* name, const char* why, std::function<bool(Edit&, Random&)> mutate) { kinds.push_back({name, why, std::move(mutate)}); };
+  const auto always = [&](const char* name, std::function<bool(Edit&, Random&)> mutate) {
+    kinds.push_back({name, nullptr, std::move(mutate)});
+  };
+  const auto mostly = [&](const char* name, const char* why, std::function<bool(Edit&, Random&)> mutate) {
+    kinds.push_back({name, why, std::move(mutate)});
+  };
   const auto any_group = [](const Edit& e, Random& r) { return pick(r, e.groups().size()); };
   const auto any_cluster = [](const Edit& e, Random& r) { return pick(r, e.clusters().size()); };
 
   // bounds and errors
-  always("group sphere", [=](Edit& e, Random& r) { bool done = false; e.group(any_group(e, r), [&](auto& g) { done = g.radius > 0.0F; if (r.below(2) == 0) g.radius *= r.below(2) == 0 ? shrink(r) : grow(r); else done = move_center(g, r); }); return done; });
-  always("group error", [=](Edit& e, Random& r) { bool done = false; e.group(any_group(e, r), [&](auto& g) { done = g.error > 0.0F && g.error < 1e30F; g.error *= r.below(2) == 0 ? shrink(r) : grow(r); }); return done; });
-  always("LOD sphere shrunk, leaf too", [=](Edit& e, Random& r) { const auto g = any_group(e, r); if (e.groups()[g].radius == 0.0F) return false; const float f = shrink(r); with_leaf(e, g, [&](auto& x) { x.radius *= f; }); return true; });
-  always("LOD sphere moved, leaf too", [=](Edit& e, Random& r) { const auto g = any_group(e, r); bool done = false; with_leaf(e, g, [&](auto& x) { done = move_center(x, r); }); return done; });
-  mostly("LOD sphere grown, leaf too", "a larger sphere that the coarser ones still contain is valid", [=](Edit& e, Random& r) { const auto g = any_group(e, r); const float f = grow(r); with_leaf(e, g, [&](auto& x) { x.radius *= f; }); return e.groups()[g].radius > 0.0F; });
-  always("error below a finer one, leaf too", [=](Edit& e, Random& r) { const auto g = any_group(e, r); const float finer = largest_finer_error(e, g); if (finer == 0.0F) return false; with_leaf(e, g, [&](auto& x) { x.error = finer * shrink(r); }); return true; });
-  mostly("error raised, leaf too", "any error between the finer and the coarser ones is valid in the qem tier", [=](Edit& e, Random& r) { const auto g = any_group(e, r); if (e.groups()[g].error > 1e30F) return false; with_leaf(e, g, [&](auto& x) { x.error = x.error * grow(r) + 1e-6F; }); return true; });
-  mostly("quadric error", "any quadric error between the finer and the coarser ones is valid in the qem tier", [=](Edit& e, Random& r) { const auto g = any_group(e, r); if (e.groups()[g].quadric_error > 1e30F || e.groups()[g].quadric_error == 0.0F) return false; e.group(g, [&](auto& x) { x.quadric_error *= r.below(2) == 0 ? shrink(r) : grow(r); }); return true; });
-  always("deviation, attribute error", [=](Edit& e, Random& r) { e.group(any_group(e, r), [&](auto& g) { (r.below(2) == 0 ? g.deviation : g.attribute_error) = static_cast<float>(r.between(0.1, 2.0)); }); return true; });
-  always("culling sphere shrunk", [=](Edit& e, Random& r) { e.cluster(any_cluster(e, r), [&](auto& c) { c.radius *= shrink(r); }); return true; });
-  always("culling sphere moved", [=](Edit& e, Random& r) { bool done = false; e.cluster(any_cluster(e, r), [&](auto& c) { done = move_center(c, r); }); return done; });
-  mostly("culling sphere grown", "a larger sphere inside the LOD sphere is valid", [=](Edit& e, Random& r) { e.cluster(any_cluster(e, r), [&](auto& c) { c.radius *= grow(r); }); return true; });
-  mostly("normal cone", "a cone that still holds every normal is valid", [=](Edit& e, Random& r) { bool done = false; e.cluster(any_cluster(e, r), [&](auto& c) { done = r.below(2) == 0 ? nudge(c.cone_cutoff, r) : nudge(c.cone_axis[r.below(3)], r); }); return done; });
-  always("node shrunk", [](Edit& e, Random& r) { const auto n = pick_inner_node(e, r); if (n == format::kNone) return false; e.node(n, [&](auto& x) { x.radius *= shrink(r); }); return true; });
-  always("node moved", [](Edit& e, Random& r) { const auto n = pick_inner_node(e, r); bool done = false; if (n != format::kNone) e.node(n, [&](auto& x) { done = move_center(x, r); }); return done; });
-  mostly("node grown", "a larger sphere inside its parent's is valid", [](Edit& e, Random& r) { const auto n = pick_inner_node(e, r); if (n == format::kNone) return false; e.node(n, [&](auto& x) { x.radius *= grow(r); }); return true; });
-  always("leaf", [](Edit& e, Random& r) { const auto nodes = e.nodes(); const auto n = pick(r, nodes.size()); if (nodes[n].child_count > 0 || nodes[n].radius == 0.0F) return false; e.node(n, [&](auto& x) { if (r.below(2) == 0) x.radius *= grow(r); else x.center[0] += x.radius; }); return true; });
-  always("node error lowered", [](Edit& e, Random& r) { const auto n = pick(r, e.nodes().size()); if (e.nodes()[n].error == 0.0F) return false; e.node(n, [&](auto& x) { x.error *= shrink(r); }); return true; });
-  always("node links", [](Edit& e, Random& r) { bool done = false; e.node(pick(r, e.nodes().size()), [&](auto& x) { done = r.below(2) == 0 ? nudge(x.first, r) : nudge(x.child_count, r); }); return done; });
+  always("group sphere", [=](Edit& e, Random& r) {
+    bool done = false;
+    e.group(any_group(e, r), [&](auto& g) {
+      done = g.radius > 0.0F;
+      if (r.below(2) == 0)
+        g.radius *= r.below(2) == 0 ? shrink(r) : grow(r);
+      else
+        done = move_center(g, r);
+    });
+    return done;
+  });
+  always("group error", [=](Edit& e, Random& r) {
+    bool done = false;
+    e.group(any_group(e, r), [&](auto& g) {
+      done = g.error > 0.0F && g.error < 1e30F;
+      g.error *= r.below(2) == 0 ? shrink(r) : grow(r);
+    });
+    return done;
+  });
+  always("LOD sphere shrunk, leaf too", [=](Edit& e, Random& r) {
+    const auto g = any_group(e, r);
+    if (e.groups()[g].radius == 0.0F) return false;
+    const float f = shrink(r);
+    with_leaf(e, g, [&](auto& x) { x.radius *= f; });
+    return true;
+  });
+  always("LOD sphere moved, leaf too", [=](Edit& e, Random& r) {
+    const auto g = any_group(e, r);
+    bool done = false;
+    with_leaf(e, g, [&](auto& x) { done = move_center(x, r); });
+    return done;
+  });
+  mostly("LOD sphere grown, leaf too", "a larger sphere that the coarser ones still contain is valid",
+         [=](Edit& e, Random& r) {
+           const auto g = any_group(e, r);
+           const float f = grow(r);
+           with_leaf(e, g, [&](auto& x) { x.radius *= f; });
+           return e.groups()[g].radius > 0.0F;
+         });
+  always("error below a finer one, leaf too", [=](Edit& e, Random& r) {
+    const auto g = any_group(e, r);
+    const float finer = largest_finer_error(e, g);
+    if (finer == 0.0F) return false;
+    with_leaf(e, g, [&](auto& x) { x.error = finer * shrink(r); });
+    return true;
+  });
+  mostly("error raised, leaf too", "any error between the finer and the coarser ones is valid in the qem tier",
+         [=](Edit& e, Random& r) {
+           const auto g = any_group(e, r);
+           if (e.groups()[g].error > 1e30F) return false;
+           with_leaf(e, g, [&](auto& x) { x.error = x.error * grow(r) + 1e-6F; });
+           return true;
+         });
+  mostly("quadric error", "any quadric error between the finer and the coarser ones is valid in the qem tier",
+         [=](Edit& e, Random& r) {
+           const auto g = any_group(e, r);
+           if (e.groups()[g].quadric_error > 1e30F || e.groups()[g].quadric_error == 0.0F) return false;
+           e.group(g, [&](auto& x) { x.quadric_error *= r.below(2) == 0 ? shrink(r) : grow(r); });
+           return true;
+         });
+  always("deviation, attribute error", [=](Edit& e, Random& r) {
+    e.group(any_group(e, r), [&](auto& g) {
+      (r.below(2) == 0 ? g.deviation : g.attribute_error) = static_cast<float>(r.between(0.1, 2.0));
+    });
+    return true;
+  });
+  always("culling sphere shrunk", [=](Edit& e, Random& r) {
+    e.cluster(any_cluster(e, r), [&](auto& c) { c.radius *= shrink(r); });
+    return true;
+  });
+  always("culling sphere moved", [=](Edit& e, Random& r) {
+    bool done = false;
+    e.cluster(any_cluster(e, r), [&](auto& c) { done = move_center(c, r); });
+    return done;
+  });
+  mostly("culling sphere grown", "a larger sphere inside the LOD sphere is valid", [=](Edit& e, Random& r) {
+    e.cluster(any_cluster(e, r), [&](auto& c) { c.radius *= grow(r); });
+    return true;
+  });
+  mostly("normal cone", "a cone that still holds every normal is valid", [=](Edit& e, Random& r) {
+    bool done = false;
+    e.cluster(any_cluster(e, r),
+              [&](auto& c) { done = r.below(2) == 0 ? nudge(c.cone_cutoff, r) : nudge(c.cone_axis[r.below(3)], r); });
+    return done;
+  });
+  always("node shrunk", [](Edit& e, Random& r) {
+    const auto n = pick_inner_node(e, r);
+    if (n == format::kNone) return false;
+    e.node(n, [&](auto& x) { x.radius *= shrink(r); });
+    return true;
+  });
+  always("node moved", [](Edit& e, Random& r) {
+    const auto n = pick_inner_node(e, r);
+    bool done = false;
+    if (n != format::kNone) e.node(n, [&](auto& x) { done = move_center(x, r); });
+    return done;
+  });
+  mostly("node grown", "a larger sphere inside its parent's is valid", [](Edit& e, Random& r) {
+    const auto n = pick_inner_node(e, r);
+    if (n == format::kNone) return false;
+    e.node(n, [&](auto& x) { x.radius *= grow(r); });
+    return true;
+  });
+  always("leaf", [](Edit& e, Random& r) {
+    const auto nodes = e.nodes();
+    const auto n = pick(r, nodes.size());
+    if (nodes[n].child_count > 0 || nodes[n].radius == 0.0F) return false;
+    e.node(n, [&](auto& x) {
+      if (r.below(2) == 0)
+        x.radius *= grow(r);
+      else
+        x.center[0] += x.radius;
+    });
+    return true;
+  });
+  always("node error lowered", [](Edit& e, Random& r) {
+    const auto n = pick(r, e.nodes().size());
+    if (e.nodes()[n].error == 0.0F) return false;
+    e.node(n, [&](auto& x) { x.error *= shrink(r); });
+    return true;
+  });
+  always("node links", [](Edit& e, Random& r) {
+    bool done = false;
+    e.node(pick(r, e.nodes().size()),
+           [&](auto& x) { done = r.below(2) == 0 ? nudge(x.first, r) : nudge(x.child_count, r); });
+    return done;
+  });
 
   // the DAG
-  always("own group", [=](Edit& e, Random& r) { const auto c = any_cluster(e, r); const auto mesh = e.meshes()[mesh_of_cluster(e, c)]; bool done = false; e.cluster(c, [&](auto& x) { const auto before = x.own_group; x.own_group = before == format::kNone ? mesh.first_group + pick(r, mesh.group_count) : r.below(4) == 0 ? format::kNone : other(r, before, mesh.first_group, mesh.group_count); done = x.own_group != before; }); return done; });
-  always("coarser group", [=](Edit& e, Random& r) { const auto c = any_cluster(e, r); const auto mesh = e.meshes()[mesh_of_cluster(e, c)]; bool done = false; e.cluster(c, [&](auto& x) { const auto before = x.coarser_group; x.coarser_group = other(r, before, mesh.first_group, mesh.group_count); done = x.coarser_group != before; }); return done; });
-  always("cluster level", [=](Edit& e, Random& r) { e.cluster(any_cluster(e, r), [&](auto& x) { nudge(x.level, r); }); return true; });
-  always("group level", [=](Edit& e, Random& r) { e.group(any_group(e, r), [&](auto& x) { nudge(x.level, r); }); return true; });
-  always("group flags", [=](Edit& e, Random& r) { e.group(any_group(e, r), [&](auto& x) { x.flags = static_cast<std::uint16_t>(x.flags ^ 1U << r.below(16)); }); return true; });
-  always("stuck reason", [=](Edit& e, Random& r) { e.group(any_group(e, r), [&](auto& x) { x.stuck_reason = static_cast<format::StuckReason>(static_cast<std::uint32_t>(x.stuck_reason) + 1 + pick(r, 6)); }); return true; });
+  always("own group", [=](Edit& e, Random& r) {
+    const auto c = any_cluster(e, r);
+    const auto mesh = e.meshes()[mesh_of_cluster(e, c)];
+    bool done = false;
+    e.cluster(c, [&](auto& x) {
+      const auto before = x.own_group;
+      x.own_group = before == format::kNone ? mesh.first_group + pick(r, mesh.group_count)
+                    : r.below(4) == 0       ? format::kNone
+                                            : other(r, before, mesh.first_group, mesh.group_count);
+      done = x.own_group != before;
+    });
+    return done;
+  });
+  always("coarser group", [=](Edit& e, Random& r) {
+    const auto c = any_cluster(e, r);
+    const auto mesh = e.meshes()[mesh_of_cluster(e, c)];
+    bool done = false;
+    e.cluster(c, [&](auto& x) {
+      const auto before = x.coarser_group;
+      x.coarser_group = other(r, before, mesh.first_group, mesh.group_count);
+      done = x.coarser_group != before;
+    });
+    return done;
+  });
+  always("cluster level", [=](Edit& e, Random& r) {
+    e.cluster(any_cluster(e, r), [&](auto& x) { nudge(x.level, r); });
+    return true;
+  });
+  always("group level", [=](Edit& e, Random& r) {
+    e.group(any_group(e, r), [&](auto& x) { nudge(x.level, r); });
+    return true;
+  });
+  always("group flags", [=](Edit& e, Random& r) {
+    e.group(any_group(e, r), [&](auto& x) { x.flags = static_cast<std::uint16_t>(x.flags ^ 1U << r.below(16)); });
+    return true;
+  });
+  always("stuck reason", [=](Edit& e, Random& r) {
+    e.group(any_group(e, r), [&](auto& x) {
+      x.stuck_reason = static_cast<format::StuckReason>(static_cast<std::uint32_t>(x.stuck_reason) + 1 + pick(r, 6));
+    });
+    return true;
+  });
   always("cluster flags, reserved fields", [=](Edit& e, Random& r) {
     switch (r.below(6)) {
-      case 0: e.cluster(any_cluster(e, r), [&](auto& x) { x.flags = static_cast<std::uint16_t>(1U << r.below(16)); }); break;
+      case 0:
+        e.cluster(any_cluster(e, r), [&](auto& x) { x.flags = static_cast<std::uint16_t>(1U << r.below(16)); });
+        break;
       case 1: e.cluster(any_cluster(e, r), [&](auto& x) { x.reserved = 1U << r.below(32); }); break;
       case 2: e.group(any_group(e, r), [&](auto& x) { x.reserved[r.below(2)] = 1U << r.below(32); }); break;
       case 3: e.node(pick(r, e.nodes().size()), [&](auto& x) { x.reserved = 1U << r.below(32); }); break;
@@ -229,7 +390,9 @@ std::vector<MutantKind> make_kinds() {
   always("mesh ranges and counts", [](Edit& e, Random& r) {
     bool done = false;
     e.mesh(pick(r, e.meshes().size()), [&](auto& m) {
-      std::uint32_t* fields[] = {&m.first_group, &m.group_count, &m.first_cluster, &m.cluster_count, &m.first_node, &m.node_count, &m.level_count, &m.channel_count, &m.uv_set_count, &m.has_color, &m.normal_bits};
+      std::uint32_t* fields[] = {&m.first_group,  &m.group_count, &m.first_cluster, &m.cluster_count,
+                                 &m.first_node,   &m.node_count,  &m.level_count,   &m.channel_count,
+                                 &m.uv_set_count, &m.has_color,   &m.normal_bits};
       done = nudge(*fields[r.below(std::size(fields))], r);
     });
     return done;
@@ -237,7 +400,8 @@ std::vector<MutantKind> make_kinds() {
   always("mesh source counts", [](Edit& e, Random& r) {
     bool done = false;
     e.mesh(pick(r, e.meshes().size()), [&](auto& m) {
-      std::uint64_t* fields[] = {&m.source_triangles, &m.source_vertices, &m.dropped_degenerate, &m.dropped_duplicate, &m.dropped_repaired, &m.grid_collapsed};
+      std::uint64_t* fields[] = {&m.source_triangles,  &m.source_vertices,  &m.dropped_degenerate,
+                                 &m.dropped_duplicate, &m.dropped_repaired, &m.grid_collapsed};
       done = nudge(*fields[r.below(std::size(fields))], r);
     });
     return done;
@@ -264,21 +428,37 @@ std::vector<MutantKind> make_kinds() {
       switch (r.below(4)) {
         case 0: x.level0_deviation = x.level0_deviation * 1.01F + 1e-7F; break;
         case 1: x.error_tier = static_cast<format::ErrorTier>(1 + r.below(5)); break;
-        case 2: x.normal_mode = static_cast<format::NormalMode>(x.normal_mode == format::NormalMode::kStored ? 2 * r.below(2) : 1); break;
+        case 2:
+          x.normal_mode =
+              static_cast<format::NormalMode>(x.normal_mode == format::NormalMode::kStored ? 2 * r.below(2) : 1);
+          break;
         default: x.uv_grid[r.below(4)].log2 += 1; break;
       }
     });
     return true;
   });
-  always("group ranges", [=](Edit& e, Random& r) { e.group(any_group(e, r), [&](auto& x) { std::uint32_t* fields[] = {&x.first_cluster, &x.cluster_count, &x.mesh, &x.page}; nudge(*fields[r.below(4)], r); }); return true; });
-  always("cluster counts", [=](Edit& e, Random& r) { e.cluster(any_cluster(e, r), [&](auto& x) { nudge(r.below(2) == 0 ? x.vertex_count : x.triangle_count, r); }); return true; });
+  always("group ranges", [=](Edit& e, Random& r) {
+    e.group(any_group(e, r), [&](auto& x) {
+      std::uint32_t* fields[] = {&x.first_cluster, &x.cluster_count, &x.mesh, &x.page};
+      nudge(*fields[r.below(4)], r);
+    });
+    return true;
+  });
+  always("cluster counts", [=](Edit& e, Random& r) {
+    e.cluster(any_cluster(e, r), [&](auto& x) { nudge(r.below(2) == 0 ? x.vertex_count : x.triangle_count, r); });
+    return true;
+  });
   always("page table", [](Edit& e, Random& r) {
     e.page(pick(r, e.pages().size()), [&](auto& x) {
-      std::uint32_t* fields[] = {&x.stored_bytes, &x.bytes, &x.first_group, &x.group_count, &x.first_cluster, &x.cluster_count, &x.first_dependency, &x.dependency_count};
+      std::uint32_t* fields[] = {&x.stored_bytes,  &x.bytes,         &x.first_group,      &x.group_count,
+                                 &x.first_cluster, &x.cluster_count, &x.first_dependency, &x.dependency_count};
       const auto f = r.below(std::size(fields) + 2);
-      if (f < std::size(fields)) nudge(*fields[f], r);
-      else if (f == std::size(fields)) nudge(x.offset, r);
-      else x.codec = static_cast<format::Codec>(1 + r.below(4));
+      if (f < std::size(fields))
+        nudge(*fields[f], r);
+      else if (f == std::size(fields))
+        nudge(x.offset, r);
+      else
+        x.codec = static_cast<format::Codec>(1 + r.below(4));
     });
     return true;
   });
@@ -290,19 +470,20 @@ std::vector<MutantKind> make_kinds() {
   });
   always("section table", [](Edit& e, Random& r) {
     const auto header = e.get<format::FileHeader>(0);
-    e.change_at<format::SectionEntry>(header.section_table_offset + sizeof(format::SectionEntry) * r.below(header.section_count), [&](auto& s) {
-      switch (r.below(9)) {
-        case 0: s.id ^= 1U << r.below(32); break;
-        case 1: nudge(s.version, r); break;
-        case 2: s.flags ^= 2U << r.below(31); break;
-        case 3: nudge(s.codec, r); break;
-        case 4: nudge(s.offset, r); break;
-        case 5: nudge(s.bytes, r); break;
-        case 6: nudge(s.decoded_bytes, r); break;
-        case 7: r.below(2) == 0 ? nudge(s.record_bytes, r) : nudge(s.record_count, r); break;
-        default: s.reserved = 1ULL << r.below(64); break;
-      }
-    });
+    e.change_at<format::SectionEntry>(
+        header.section_table_offset + sizeof(format::SectionEntry) * r.below(header.section_count), [&](auto& s) {
+          switch (r.below(9)) {
+            case 0: s.id ^= 1U << r.below(32); break;
+            case 1: nudge(s.version, r); break;
+            case 2: s.flags ^= 2U << r.below(31); break;
+            case 3: nudge(s.codec, r); break;
+            case 4: nudge(s.offset, r); break;
+            case 5: nudge(s.bytes, r); break;
+            case 6: nudge(s.decoded_bytes, r); break;
+            case 7: r.below(2) == 0 ? nudge(s.record_bytes, r) : nudge(s.record_count, r); break;
+            default: s.reserved = 1ULL << r.below(64); break;
+          }
+        });
     return true;
   });
   always("header", [](Edit& e, Random& r) {
@@ -331,28 +512,45 @@ std::vector<MutantKind> make_kinds() {
       std::uint16_t* small[] = {&c.vertex_count, &c.triangle_count, &c.channel_count, &c.material_range_count};
       std::uint32_t* large[] = {&c.vertex_bits, &c.vertex_offset, &c.triangle_offset};
       const auto f = r.below(7);
-      if (f < 4) nudge(*small[f], r);
-      else nudge(*large[f - 4], r);
+      if (f < 4)
+        nudge(*small[f], r);
+      else
+        nudge(*large[f - 4], r);
     });
     return true;
   });
-  always("channel bits", [=](Edit& e, Random& r) { const auto c = any_cluster(e, r); const auto n = e.get<format::PageCluster>(e.page_cluster_offset(c)).channel_count; e.change_at<format::Channel>(e.channel_offset(c, r.below(n)), [&](auto& x) { nudge(x.bits, r); }); return true; });
-  always("channel minimum of positions", [=](Edit& e, Random& r) { e.change_at<format::Channel>(e.channel_offset(any_cluster(e, r), r.below(3)), [&](auto& x) { nudge(x.minimum, r); }); return true; });
+  always("channel bits", [=](Edit& e, Random& r) {
+    const auto c = any_cluster(e, r);
+    const auto n = e.get<format::PageCluster>(e.page_cluster_offset(c)).channel_count;
+    e.change_at<format::Channel>(e.channel_offset(c, r.below(n)), [&](auto& x) { nudge(x.bits, r); });
+    return true;
+  });
+  always("channel minimum of positions", [=](Edit& e, Random& r) {
+    e.change_at<format::Channel>(e.channel_offset(any_cluster(e, r), r.below(3)),
+                                 [&](auto& x) { nudge(x.minimum, r); });
+    return true;
+  });
   always("channel minimum of attributes, level 0", [](Edit& e, Random& r) {
     const auto c = pick_cluster(e, r, true);
     const auto n = e.get<format::PageCluster>(e.page_cluster_offset(c)).channel_count;
     if (n < 4) return false;
-    e.change_at<format::Channel>(e.channel_offset(c, 3 + r.below(n - 3U)), [&](auto& x) { x.minimum += r.below(2) == 0 ? 6 : -6; });
+    e.change_at<format::Channel>(e.channel_offset(c, 3 + r.below(n - 3U)),
+                                 [&](auto& x) { x.minimum += r.below(2) == 0 ? 6 : -6; });
     return true;
   });
-  mostly("channel minimum of attributes, above", "attributes above level 0 that no neighbour shares are the simplifier's choice", [](Edit& e, Random& r) {
-    const auto c = pick_cluster(e, r, false);
-    const auto n = e.get<format::PageCluster>(e.page_cluster_offset(c)).channel_count;
-    if (n < 4) return false;
-    e.change_at<format::Channel>(e.channel_offset(c, 3 + r.below(n - 3U)), [&](auto& x) { nudge(x.minimum, r); });
-    return true;
+  mostly("channel minimum of attributes, above",
+         "attributes above level 0 that no neighbour shares are the simplifier's choice", [](Edit& e, Random& r) {
+           const auto c = pick_cluster(e, r, false);
+           const auto n = e.get<format::PageCluster>(e.page_cluster_offset(c)).channel_count;
+           if (n < 4) return false;
+           e.change_at<format::Channel>(e.channel_offset(c, 3 + r.below(n - 3U)),
+                                        [&](auto& x) { nudge(x.minimum, r); });
+           return true;
+         });
+  always("vertex position, level 0", [](Edit& e, Random& r) {
+    const auto c = pick_cluster(e, r, true);
+    return flip_bit(e, r, c, pick(r, e.clusters()[c].vertex_count), pick(r, 3), 0);
   });
-  always("vertex position, level 0", [](Edit& e, Random& r) { const auto c = pick_cluster(e, r, true); return flip_bit(e, r, c, pick(r, e.clusters()[c].vertex_count), pick(r, 3), 0); });
   always("vertex attribute, level 0", [](Edit& e, Random& r) {
     const auto c = pick_cluster(e, r, true);
     const auto n = e.get<format::PageCluster>(e.page_cluster_offset(c)).channel_count;
@@ -360,20 +558,41 @@ std::vector<MutantKind> make_kinds() {
     const auto k = 3 + pick(r, n - 3U);
     return flip_bit(e, r, c, pick(r, e.clusters()[c].vertex_count), k, lowest_telling_bit(e, c, k));
   });
-  always("vertex position, shared, above", [](Edit& e, Random& r) { const auto c = pick_cluster(e, r, false); const auto v = vertices_where(e, c, true); return !v.empty() && flip_bit(e, r, c, v[pick(r, v.size())], pick(r, 3), 0); });
-  mostly("vertex position, inside, above", "a vertex above level 0 that no neighbour shares is the simplifier's choice: only its deviation tells (I7)", [](Edit& e, Random& r) { const auto c = pick_cluster(e, r, false); const auto v = vertices_where(e, c, false); return !v.empty() && flip_bit(e, r, c, v[pick(r, v.size())], pick(r, 3), 0); });
-  mostly("vertex attribute, above", "attributes above level 0 that no neighbour shares are the simplifier's choice", [](Edit& e, Random& r) {
+  always("vertex position, shared, above", [](Edit& e, Random& r) {
     const auto c = pick_cluster(e, r, false);
-    const auto n = e.get<format::PageCluster>(e.page_cluster_offset(c)).channel_count;
-    return n > 3 && flip_bit(e, r, c, pick(r, e.clusters()[c].vertex_count), 3 + pick(r, n - 3U), 0);
+    const auto v = vertices_where(e, c, true);
+    return !v.empty() && flip_bit(e, r, c, v[pick(r, v.size())], pick(r, 3), 0);
   });
+  mostly("vertex position, inside, above",
+         "a vertex above level 0 that no neighbour shares is the simplifier's choice: only its deviation tells (I7)",
+         [](Edit& e, Random& r) {
+           const auto c = pick_cluster(e, r, false);
+           const auto v = vertices_where(e, c, false);
+           return !v.empty() && flip_bit(e, r, c, v[pick(r, v.size())], pick(r, 3), 0);
+         });
+  mostly("vertex attribute, above", "attributes above level 0 that no neighbour shares are the simplifier's choice",
+         [](Edit& e, Random& r) {
+           const auto c = pick_cluster(e, r, false);
+           const auto n = e.get<format::PageCluster>(e.page_cluster_offset(c)).channel_count;
+           return n > 3 && flip_bit(e, r, c, pick(r, e.clusters()[c].vertex_count), 3 + pick(r, n - 3U), 0);
+         });
   always("triangle index, level 0", [](Edit& e, Random& r) { return change_index(e, r, pick_cluster(e, r, true)); });
   always("triangle turned, level 0", [](Edit& e, Random& r) { return turn_triangle(e, r, pick_cluster(e, r, true)); });
-  mostly("triangle index, above", "beside a border of the source that was simplified, another shape of the border is valid", [](Edit& e, Random& r) { return change_index(e, r, pick_cluster(e, r, false)); });
-  mostly("triangle turned, above", "beside a border of the source that was simplified, another shape of the border is valid", [](Edit& e, Random& r) { return turn_triangle(e, r, pick_cluster(e, r, false)); });
-  always("material range counts", [=](Edit& e, Random& r) { const auto c = any_cluster(e, r); const auto n = e.get<format::PageCluster>(e.page_cluster_offset(c)).material_range_count; e.change_at<format::MaterialRange>(e.range_offset(c, r.below(n)), [&](auto& x) { nudge(x.triangle_count, r); }); return true; });
+  mostly("triangle index, above",
+         "beside a border of the source that was simplified, another shape of the border is valid",
+         [](Edit& e, Random& r) { return change_index(e, r, pick_cluster(e, r, false)); });
+  mostly("triangle turned, above",
+         "beside a border of the source that was simplified, another shape of the border is valid",
+         [](Edit& e, Random& r) { return turn_triangle(e, r, pick_cluster(e, r, false)); });
+  always("material range counts", [=](Edit& e, Random& r) {
+    const auto c = any_cluster(e, r);
+    const auto n = e.get<format::PageCluster>(e.page_cluster_offset(c)).material_range_count;
+    e.change_at<format::MaterialRange>(e.range_offset(c, r.below(n)), [&](auto& x) { nudge(x.triangle_count, r); });
+    return true;
+  });
   always("material, level 0", [](Edit& e, Random& r) { return change_material(e, r, pick_cluster(e, r, true)); });
-  mostly("material, above", "a triangle above level 0 may have any material of its group", [](Edit& e, Random& r) { return change_material(e, r, pick_cluster(e, r, false)); });
+  mostly("material, above", "a triangle above level 0 may have any material of its group",
+         [](Edit& e, Random& r) { return change_material(e, r, pick_cluster(e, r, false)); });
 
   // the scene around
   always("instances", [](Edit& e, Random& r) {
@@ -382,7 +601,12 @@ std::vector<MutantKind> make_kinds() {
     e.instance(pick(r, e.instances().size()), [&](auto& x) {
       switch (r.below(6)) {
         case 0: x.transform[r.below(12)] += r.between(0.01, 2.0); break;
-        case 1: if ((x.flags & format::kInstanceSingular) != 0) done = false; else x.scale *= r.below(2) == 0 ? shrink(r) : grow(r); break;
+        case 1:
+          if ((x.flags & format::kInstanceSingular) != 0)
+            done = false;
+          else
+            x.scale *= r.below(2) == 0 ? shrink(r) : grow(r);
+          break;
         case 2: nudge(x.mesh, r); break;
         case 3: nudge(x.node, r); break;
         case 4: x.flags ^= 1U << r.below(32); break;
@@ -394,11 +618,16 @@ std::vector<MutantKind> make_kinds() {
   always("materials", [](Edit& e, Random& r) {
     e.material(pick(r, e.materials().size()), [&](auto& x) {
       switch (r.below(7)) {
-        case 0: x.base_color[r.below(4)] *= 0.5F; x.base_color[3] += 0.125F; break;
+        case 0:
+          x.base_color[r.below(4)] *= 0.5F;
+          x.base_color[3] += 0.125F;
+          break;
         case 1: x.alpha_cutoff += 0.125F; break;
         case 2: x.double_sided ^= 1U; break;
         case 3: x.source_index ^= 1U << r.below(31); break;
-        case 4: x.alpha_mode = static_cast<format::AlphaMode>((static_cast<std::uint32_t>(x.alpha_mode) + 1) % 3); break;
+        case 4:
+          x.alpha_mode = static_cast<format::AlphaMode>((static_cast<std::uint32_t>(x.alpha_mode) + 1) % 3);
+          break;
         case 5: x.base_color_texture ^= 1U << r.below(31); break;
         default: x.base_color_uv_set ^= 1U << r.below(31); break;
       }
@@ -424,7 +653,8 @@ std::vector<MutantKind> make_kinds() {
   });
   always("names", [](Edit& e, Random& r) { return change_text(e, r, SectionId::kStrings); });
   always("scene text", [](Edit& e, Random& r) { return change_text(e, r, SectionId::kScene); });
-  mostly("META text", "what META tells of the making besides the source's hash is not in the geometry", [](Edit& e, Random& r) { return change_text(e, r, SectionId::kMeta); });
+  mostly("META text", "what META tells of the making besides the source's hash is not in the geometry",
+         [](Edit& e, Random& r) { return change_text(e, r, SectionId::kMeta); });
   return kinds;
 }
 

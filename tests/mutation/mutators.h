@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Kinds of mutants: each changes one field of a sound asset. What a kind means for the judge is part of it: a mutant that
-// changes the meaning must be found; where some mutants are as good as the original, the kind says which and why.
+// Kinds of mutants: each changes one field of a sound asset. What a kind means for the judge is part of it: a mutant
+// that changes the meaning must be found; where some mutants are as good as the original, the kind says which and why.
 #pragma once
 
 #include <functional>

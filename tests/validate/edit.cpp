@@ -74,7 +74,8 @@ void AssetEdit::put_vertex_bits(std::uint64_t cluster, std::uint64_t vertex, std
   for (std::uint32_t i = 0; i < at.count; ++i) {
     const std::uint64_t bit = at.first_bit + i;
     const auto mask = static_cast<std::uint8_t>(1U << (bit % 8));
-    bytes_[bit / 8] = static_cast<std::uint8_t>((value >> i & 1U) != 0 ? bytes_[bit / 8] | mask : bytes_[bit / 8] & ~mask);
+    bytes_[bit / 8] =
+        static_cast<std::uint8_t>((value >> i & 1U) != 0 ? bytes_[bit / 8] | mask : bytes_[bit / 8] & ~mask);
   }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An asset's bytes as records that a test may change, and sealed again so that only the meaning is broken: checksums and
-// the content hash are true afterwards. Pages must be stored plain.
+// An asset's bytes as records that a test may change, and sealed again so that only the meaning is broken: checksums
+// and the content hash are true afterwards. Pages must be stored plain.
 #pragma once
 
 #include <cstdint>
@@ -17,6 +17,7 @@ class AssetEdit {
   explicit AssetEdit(std::vector<std::uint8_t> bytes) : bytes_(std::move(bytes)) {}
 
   [[nodiscard]] std::vector<std::uint8_t>& bytes() { return bytes_; }
+  [[nodiscard]] const std::vector<std::uint8_t>& bytes() const { return bytes_; }
   [[nodiscard]] format::SectionEntry section(format::SectionId id) const;
   [[nodiscard]] std::uint64_t section_entry_offset(format::SectionId id) const;
 
@@ -27,7 +28,9 @@ class AssetEdit {
     return record;
   }
   template <class Record>
-  void put(std::uint64_t offset, const Record& record) { std::memcpy(bytes_.data() + offset, &record, sizeof record); }
+  void put(std::uint64_t offset, const Record& record) {
+    std::memcpy(bytes_.data() + offset, &record, sizeof record);
+  }
   /// Reads the record, changes it, writes it back.
   template <class Record, class Change>
   void change_at(std::uint64_t offset, const Change& change) {
@@ -36,31 +39,79 @@ class AssetEdit {
     put(offset, record);
   }
 
-  [[nodiscard]] std::uint64_t count(format::SectionId id, std::uint64_t record_bytes) const { return section(id).bytes / record_bytes; }
+  [[nodiscard]] std::uint64_t count(format::SectionId id, std::uint64_t record_bytes) const {
+    return section(id).bytes / record_bytes;
+  }
   template <class Record>
   [[nodiscard]] std::uint64_t offset_of(format::SectionId id, std::uint64_t index) const {
     return section(id).offset + index * sizeof(Record);
   }
 
-  template <class Change> void header(const Change& c) { change_at<format::FileHeader>(0, c); }
-  template <class Change> void entry(format::SectionId id, const Change& c) { change_at<format::SectionEntry>(section_entry_offset(id), c); }
-  template <class Change> void mesh(std::uint64_t i, const Change& c) { change_at<format::MeshRecord>(offset_of<format::MeshRecord>(format::SectionId::kMeshes, i), c); }
-  template <class Change> void material(std::uint64_t i, const Change& c) { change_at<format::MaterialRecord>(offset_of<format::MaterialRecord>(format::SectionId::kMaterials, i), c); }
-  template <class Change> void instance(std::uint64_t i, const Change& c) { change_at<format::InstanceRecord>(offset_of<format::InstanceRecord>(format::SectionId::kInstances, i), c); }
-  template <class Change> void group(std::uint64_t i, const Change& c) { change_at<format::GroupRecord>(offset_of<format::GroupRecord>(format::SectionId::kGroups, i), c); }
-  template <class Change> void cluster(std::uint64_t i, const Change& c) { change_at<format::ClusterRecord>(offset_of<format::ClusterRecord>(format::SectionId::kClusters, i), c); }
-  template <class Change> void node(std::uint64_t i, const Change& c) { change_at<format::NodeRecord>(offset_of<format::NodeRecord>(format::SectionId::kNodes, i), c); }
-  template <class Change> void page(std::uint64_t i, const Change& c) { change_at<format::PageRecord>(offset_of<format::PageRecord>(format::SectionId::kPages, i), c); }
-  template <class Change> void blob(std::uint64_t i, const Change& c) { change_at<format::BlobRecord>(offset_of<format::BlobRecord>(format::SectionId::kBlobs, i), c); }
+  template <class Change>
+  void header(const Change& c) {
+    change_at<format::FileHeader>(0, c);
+  }
+  template <class Change>
+  void entry(format::SectionId id, const Change& c) {
+    change_at<format::SectionEntry>(section_entry_offset(id), c);
+  }
+  template <class Change>
+  void mesh(std::uint64_t i, const Change& c) {
+    change_at<format::MeshRecord>(offset_of<format::MeshRecord>(format::SectionId::kMeshes, i), c);
+  }
+  template <class Change>
+  void material(std::uint64_t i, const Change& c) {
+    change_at<format::MaterialRecord>(offset_of<format::MaterialRecord>(format::SectionId::kMaterials, i), c);
+  }
+  template <class Change>
+  void instance(std::uint64_t i, const Change& c) {
+    change_at<format::InstanceRecord>(offset_of<format::InstanceRecord>(format::SectionId::kInstances, i), c);
+  }
+  template <class Change>
+  void group(std::uint64_t i, const Change& c) {
+    change_at<format::GroupRecord>(offset_of<format::GroupRecord>(format::SectionId::kGroups, i), c);
+  }
+  template <class Change>
+  void cluster(std::uint64_t i, const Change& c) {
+    change_at<format::ClusterRecord>(offset_of<format::ClusterRecord>(format::SectionId::kClusters, i), c);
+  }
+  template <class Change>
+  void node(std::uint64_t i, const Change& c) {
+    change_at<format::NodeRecord>(offset_of<format::NodeRecord>(format::SectionId::kNodes, i), c);
+  }
+  template <class Change>
+  void page(std::uint64_t i, const Change& c) {
+    change_at<format::PageRecord>(offset_of<format::PageRecord>(format::SectionId::kPages, i), c);
+  }
+  template <class Change>
+  void blob(std::uint64_t i, const Change& c) {
+    change_at<format::BlobRecord>(offset_of<format::BlobRecord>(format::SectionId::kBlobs, i), c);
+  }
 
-  [[nodiscard]] std::vector<format::MeshRecord> meshes() const { return all<format::MeshRecord>(format::SectionId::kMeshes); }
-  [[nodiscard]] std::vector<format::GroupRecord> groups() const { return all<format::GroupRecord>(format::SectionId::kGroups); }
-  [[nodiscard]] std::vector<format::ClusterRecord> clusters() const { return all<format::ClusterRecord>(format::SectionId::kClusters); }
-  [[nodiscard]] std::vector<format::NodeRecord> nodes() const { return all<format::NodeRecord>(format::SectionId::kNodes); }
-  [[nodiscard]] std::vector<format::PageRecord> pages() const { return all<format::PageRecord>(format::SectionId::kPages); }
-  [[nodiscard]] std::vector<format::BlobRecord> blobs() const { return all<format::BlobRecord>(format::SectionId::kBlobs); }
-  [[nodiscard]] std::vector<format::InstanceRecord> instances() const { return all<format::InstanceRecord>(format::SectionId::kInstances); }
-  [[nodiscard]] std::vector<format::MaterialRecord> materials() const { return all<format::MaterialRecord>(format::SectionId::kMaterials); }
+  [[nodiscard]] std::vector<format::MeshRecord> meshes() const {
+    return all<format::MeshRecord>(format::SectionId::kMeshes);
+  }
+  [[nodiscard]] std::vector<format::GroupRecord> groups() const {
+    return all<format::GroupRecord>(format::SectionId::kGroups);
+  }
+  [[nodiscard]] std::vector<format::ClusterRecord> clusters() const {
+    return all<format::ClusterRecord>(format::SectionId::kClusters);
+  }
+  [[nodiscard]] std::vector<format::NodeRecord> nodes() const {
+    return all<format::NodeRecord>(format::SectionId::kNodes);
+  }
+  [[nodiscard]] std::vector<format::PageRecord> pages() const {
+    return all<format::PageRecord>(format::SectionId::kPages);
+  }
+  [[nodiscard]] std::vector<format::BlobRecord> blobs() const {
+    return all<format::BlobRecord>(format::SectionId::kBlobs);
+  }
+  [[nodiscard]] std::vector<format::InstanceRecord> instances() const {
+    return all<format::InstanceRecord>(format::SectionId::kInstances);
+  }
+  [[nodiscard]] std::vector<format::MaterialRecord> materials() const {
+    return all<format::MaterialRecord>(format::SectionId::kMaterials);
+  }
 
   /// Where a cluster starts in the file.
   [[nodiscard]] std::uint64_t page_cluster_offset(std::uint64_t cluster) const;
@@ -81,7 +132,8 @@ class AssetEdit {
   template <class Record>
   [[nodiscard]] std::vector<Record> all(format::SectionId id) const {
     std::vector<Record> records(section(id).bytes / sizeof(Record));
-    if (!records.empty()) std::memcpy(records.data(), bytes_.data() + section(id).offset, records.size() * sizeof(Record));
+    if (!records.empty())
+      std::memcpy(records.data(), bytes_.data() + section(id).offset, records.size() * sizeof(Record));
     return records;
   }
   struct BitPlace {

@@ -52,14 +52,17 @@ TEST(Exact, RandomBallsAgreeWithIntegers) {
     // Radii are set to the floor or the ceiling of the exact distance, so that half the cases are within one unit.
     std::int64_t d[3];
     for (std::int64_t& v : d) v = static_cast<std::int64_t>(random.below(1U << 21)) - (1 << 20);
-    const Int128 squared = static_cast<Int128>(d[0]) * d[0] + static_cast<Int128>(d[1]) * d[1] + static_cast<Int128>(d[2]) * d[2];
+    const Int128 squared =
+        static_cast<Int128>(d[0]) * d[0] + static_cast<Int128>(d[1]) * d[1] + static_cast<Int128>(d[2]) * d[2];
     const auto inner = static_cast<std::int64_t>(random.below(1U << 20));
-    const auto outer = inner + static_cast<std::int64_t>(std::sqrt(static_cast<double>(squared))) + static_cast<std::int64_t>(random.below(3)) - 1;
+    const auto outer = inner + static_cast<std::int64_t>(std::sqrt(static_cast<double>(squared))) +
+                       static_cast<std::int64_t>(random.below(3)) - 1;
     const Int128 room = outer - inner;
     const bool truth = room >= 0 && squared <= room * room;
     const float scale = std::ldexp(1.0F, static_cast<int>(random.below(120)) - 60);
     const Ball a{{0, 0, 0}, static_cast<float>(outer) * scale};
-    const Ball b{{static_cast<float>(d[0]) * scale, static_cast<float>(d[1]) * scale, static_cast<float>(d[2]) * scale}, static_cast<float>(inner) * scale};
+    const Ball b{{static_cast<float>(d[0]) * scale, static_cast<float>(d[1]) * scale, static_cast<float>(d[2]) * scale},
+                 static_cast<float>(inner) * scale};
     ASSERT_EQ(contains_ball(a, b), truth) << "case " << i;
     contained += truth ? 1 : 0;
   }

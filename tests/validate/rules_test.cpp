@@ -70,7 +70,8 @@ TEST(Validate, KeepsFewFindingsAndCountsAll) {
   for (std::size_t c = 0; c < count; ++c) edit.cluster(c, [](auto& r) { r.radius = 0.0F; });
   edit.seal();
   const ValidationReport report = validate_asset(edit.bytes());
-  const auto kept = std::count_if(report.findings.begin(), report.findings.end(), [](const Finding& f) { return f.id == "L502"; });
+  const auto kept =
+      std::count_if(report.findings.begin(), report.findings.end(), [](const Finding& f) { return f.id == "L502"; });
   EXPECT_EQ(kept, std::min<std::ptrdiff_t>(kMaxFindingsPerRule, static_cast<std::ptrdiff_t>(count)));
   EXPECT_GE(report.finding_count, count);
 }
@@ -140,35 +141,68 @@ const std::vector<Break>& breaks() {
       {"L001", "truncated to nothing", [](AssetEdit& e) { e.bytes().resize(63); }, false},
       {"L002", "a byte more", [](AssetEdit& e) { e.bytes().push_back(0); }},
       {"L003", "header flag", [](AssetEdit& e) { e.header([](auto& h) { h.flags = 1; }); }},
-      {"L004", "table outside", [](AssetEdit& e) { e.header([](auto& h) { h.section_table_offset = 1ULL << 60; }); }, false},
-      {"L004", "too many sections", [](AssetEdit& e) { e.header([](auto& h) { h.section_count = 0x7FFFFFFF; }); }, false},
+      {"L004", "table outside", [](AssetEdit& e) { e.header([](auto& h) { h.section_table_offset = 1ULL << 60; }); },
+       false},
+      {"L004", "too many sections", [](AssetEdit& e) { e.header([](auto& h) { h.section_count = 0x7FFFFFFF; }); },
+       false},
       {"L004", "stride", [](AssetEdit& e) { e.header([](auto& h) { h.section_entry_bytes = 72; }); }},
       {"L005", "header checksum", [](AssetEdit& e) { e.header([](auto& h) { h.header_checksum ^= 1U; }); }, false},
-      {"L006", "section outside", [](AssetEdit& e) { e.entry(SectionId::kMeta, [](auto& s) { s.offset = ~0ULL - 15; }); }},
+      {"L006", "section outside",
+       [](AssetEdit& e) { e.entry(SectionId::kMeta, [](auto& s) { s.offset = ~0ULL - 15; }); }},
       {"L006", "section unaligned", [](AssetEdit& e) { e.entry(SectionId::kScene, [](auto& s) { s.offset += 1; }); }},
-      {"L007", "sections overlap", [](AssetEdit& e) { const auto at = e.section(SectionId::kScene).offset; e.entry(SectionId::kMeta, [&](auto& s) { s.offset = at; }); }},
-      {"L008", "section twice", [](AssetEdit& e) { e.entry(SectionId::kBlobs, [](auto& s) { s.id = static_cast<std::uint32_t>(SectionId::kMeshes); }); }},
-      {"L008", "section missing", [](AssetEdit& e) { e.entry(SectionId::kNodes, [](auto& s) { s.id = 77; s.flags = 0; }); }},
-      {"L009", "unknown required", [](AssetEdit& e) { e.entry(SectionId::kNodes, [](auto& s) { s.id = 77; s.flags = 1; }); }},
+      {"L007", "sections overlap",
+       [](AssetEdit& e) {
+         const auto at = e.section(SectionId::kScene).offset;
+         e.entry(SectionId::kMeta, [&](auto& s) { s.offset = at; });
+       }},
+      {"L008", "section twice",
+       [](AssetEdit& e) {
+         e.entry(SectionId::kBlobs, [](auto& s) { s.id = static_cast<std::uint32_t>(SectionId::kMeshes); });
+       }},
+      {"L008", "section missing",
+       [](AssetEdit& e) {
+         e.entry(SectionId::kNodes, [](auto& s) {
+           s.id = 77;
+           s.flags = 0;
+         });
+       }},
+      {"L009", "unknown required",
+       [](AssetEdit& e) {
+         e.entry(SectionId::kNodes, [](auto& s) {
+           s.id = 77;
+           s.flags = 1;
+         });
+       }},
       {"L009", "section codec", [](AssetEdit& e) { e.entry(SectionId::kMeta, [](auto& s) { s.codec = 2; }); }},
       {"L009", "section version", [](AssetEdit& e) { e.entry(SectionId::kMeta, [](auto& s) { s.version = 3; }); }},
-      {"L010", "section checksum", [](AssetEdit& e) { e.entry(SectionId::kGroups, [](auto& s) { s.checksum ^= 1U; }); }, false},
+      {"L010", "section checksum", [](AssetEdit& e) { e.entry(SectionId::kGroups, [](auto& s) { s.checksum ^= 1U; }); },
+       false},
       {"L011", "stride", [](AssetEdit& e) { e.entry(SectionId::kMeshes, [](auto& s) { s.record_bytes = 208; }); }},
       {"L011", "count", [](AssetEdit& e) { e.entry(SectionId::kMeshes, [](auto& s) { s.record_count += 1; }); }},
-      {"L012", "content hash", [](AssetEdit& e) { e.header([](auto& h) { h.content_hash[3] ^= 1U; }); test::reseal(e.bytes()); }, false},
+      {"L012", "content hash",
+       [](AssetEdit& e) {
+         e.header([](auto& h) { h.content_hash[3] ^= 1U; });
+         test::reseal(e.bytes());
+       },
+       false},
       {"L013", "META is no JSON", [](AssetEdit& e) { e.bytes()[e.section(SectionId::kMeta).offset] = 'x'; }},
       {"L013", "SCNE is no UTF-8", [](AssetEdit& e) { e.bytes()[e.section(SectionId::kScene).offset + 1] = 0xFF; }},
       {"L101", "name outside", [](AssetEdit& e) { e.mesh(0, [](auto& m) { m.name.bytes = 0xFFFFFFF0U; }); }},
-      {"L102", "normal mode", [](AssetEdit& e) { e.mesh(2, [](auto& m) { m.normal_mode = static_cast<format::NormalMode>(9); }); }},
-      {"L102", "tier", [](AssetEdit& e) { e.mesh(0, [](auto& m) { m.error_tier = static_cast<format::ErrorTier>(3); }); }},
-      {"L102", "alpha mode", [](AssetEdit& e) { e.material(0, [](auto& m) { m.alpha_mode = static_cast<format::AlphaMode>(3); }); }},
+      {"L102", "normal mode",
+       [](AssetEdit& e) { e.mesh(2, [](auto& m) { m.normal_mode = static_cast<format::NormalMode>(9); }); }},
+      {"L102", "tier",
+       [](AssetEdit& e) { e.mesh(0, [](auto& m) { m.error_tier = static_cast<format::ErrorTier>(3); }); }},
+      {"L102", "alpha mode",
+       [](AssetEdit& e) { e.material(0, [](auto& m) { m.alpha_mode = static_cast<format::AlphaMode>(3); }); }},
       {"L103", "mesh reserved", [](AssetEdit& e) { e.mesh(0, [](auto& m) { m.reserved = 1; }); }},
       {"L103", "cluster flags", [](AssetEdit& e) { e.cluster(0, [](auto& c) { c.flags = 1; }); }},
       {"L103", "group flags", [](AssetEdit& e) { e.group(0, [](auto& g) { g.flags |= 4U; }); }},
-      {"L104", "origin not finite", [](AssetEdit& e) { e.mesh(0, [](auto& m) { m.origin[1] = std::numeric_limits<double>::quiet_NaN(); }); }},
+      {"L104", "origin not finite",
+       [](AssetEdit& e) { e.mesh(0, [](auto& m) { m.origin[1] = std::numeric_limits<double>::quiet_NaN(); }); }},
       {"L104", "grid of no step", [](AssetEdit& e) { e.mesh(0, [](auto& m) { m.grid.mantissa = 0; }); }},
       {"L105", "negative diagonal", [](AssetEdit& e) { e.mesh(0, [](auto& m) { m.diagonal = -1.0; }); }},
-      {"L105", "deviation beyond the grid", [](AssetEdit& e) { e.mesh(0, [](auto& m) { m.level0_deviation = 1e9F; }); }},
+      {"L105", "deviation beyond the grid",
+       [](AssetEdit& e) { e.mesh(0, [](auto& m) { m.level0_deviation = 1e9F; }); }},
       {"L106", "channel count", [](AssetEdit& e) { e.mesh(0, [](auto& m) { m.channel_count += 1; }); }},
       {"L106", "five UV sets", [](AssetEdit& e) { e.mesh(0, [](auto& m) { m.uv_set_count = 5; }); }},
       {"L107", "groups not partitioned", [](AssetEdit& e) { e.mesh(1, [](auto& m) { m.first_group += 1; }); }},
@@ -176,12 +210,16 @@ const std::vector<Break>& breaks() {
       {"L109", "nodes not partitioned", [](AssetEdit& e) { e.mesh(1, [](auto& m) { m.node_count += 1; }); }},
       {"L110", "group of another mesh", [](AssetEdit& e) { e.group(0, [](auto& g) { g.mesh = 1; }); }},
       {"L110", "groups overlap", [](AssetEdit& e) { e.group(0, [](auto& g) { g.cluster_count += 1; }); }},
-      {"L111", "coarser group of no mesh", [](AssetEdit& e) { e.cluster(0, [](auto& c) { c.coarser_group = 0xFFFFFFF0U; }); }},
+      {"L111", "coarser group of no mesh",
+       [](AssetEdit& e) { e.cluster(0, [](auto& c) { c.coarser_group = 0xFFFFFFF0U; }); }},
       {"L111", "instance of no mesh", [](AssetEdit& e) { e.instance(0, [](auto& i) { i.mesh = 99; }); }},
-      {"L112", "colour not finite", [](AssetEdit& e) { e.material(0, [](auto& m) { m.base_color[2] = std::numeric_limits<float>::quiet_NaN(); }); }},
+      {"L112", "colour not finite",
+       [](AssetEdit& e) { e.material(0, [](auto& m) { m.base_color[2] = std::numeric_limits<float>::quiet_NaN(); }); }},
       {"L113", "scale too small", [](AssetEdit& e) { e.instance(0, [](auto& i) { i.scale *= 0.999; }); }},
-      {"L113", "mirror mark", [](AssetEdit& e) { e.instance(0, [](auto& i) { i.flags ^= format::kInstanceMirrored; }); }},
-      {"L113", "singular mark", [](AssetEdit& e) { e.instance(0, [](auto& i) { i.flags ^= format::kInstanceSingular; }); }},
+      {"L113", "mirror mark",
+       [](AssetEdit& e) { e.instance(0, [](auto& i) { i.flags ^= format::kInstanceMirrored; }); }},
+      {"L113", "singular mark",
+       [](AssetEdit& e) { e.instance(0, [](auto& i) { i.flags ^= format::kInstanceSingular; }); }},
       {"L114", "blob outside", [](AssetEdit& e) { e.blob(0, [](auto& b) { b.bytes = 1ULL << 50; }); }},
       {"L114", "blob checksum", [](AssetEdit& e) { e.bytes()[e.blobs()[0].offset] ^= 1U; }, false},
       {"L115", "level count", [](AssetEdit& e) { e.mesh(0, [](auto& m) { m.level_count += 1; }); }},
@@ -189,30 +227,60 @@ const std::vector<Break>& breaks() {
       {"L116", "a drop that was not", [](AssetEdit& e) { e.mesh(0, [](auto& m) { m.dropped_duplicate += 1; }); }},
       {"L201", "group of another page", [](AssetEdit& e) { e.page(0, [](auto& p) { p.group_count += 1; }); }},
       {"L202", "page outside", [](AssetEdit& e) { e.page(0, [](auto& p) { p.offset -= 16; }); }},
-      {"L203", "page checksum", [](AssetEdit& e) { e.bytes()[e.pages()[0].offset + e.pages()[0].bytes - 1] ^= 1U; }, false},
+      {"L203", "page checksum", [](AssetEdit& e) { e.bytes()[e.pages()[0].offset + e.pages()[0].bytes - 1] ^= 1U; },
+       false},
       {"L204", "sizes differ", [](AssetEdit& e) { e.page(0, [](auto& p) { p.bytes -= 1; }); }},
-      {"L204", "packed bytes are none", [](AssetEdit& e) { e.page(0, [](auto& p) { p.codec = format::Codec::kZstd; }); }},
+      {"L204", "packed bytes are none",
+       [](AssetEdit& e) { e.page(0, [](auto& p) { p.codec = format::Codec::kZstd; }); }},
       {"L205", "page names other clusters", [](AssetEdit& e) { e.bytes()[e.pages()[0].offset] ^= 1U; }},
-      {"L205", "cluster offset", [](AssetEdit& e) { e.bytes()[e.pages()[0].offset + sizeof(format::PageHeader)] += 4; }},
+      {"L205", "cluster offset",
+       [](AssetEdit& e) { e.bytes()[e.pages()[0].offset + sizeof(format::PageHeader)] += 4; }},
       {"L206", "triangle count", [](AssetEdit& e) { e.cluster(0, [](auto& c) { c.triangle_count -= 1; }); }},
-      {"L206", "vertex count", [](AssetEdit& e) { e.change_at<format::PageCluster>(e.page_cluster_offset(0), [](auto& c) { c.vertex_count -= 1; }); }},
-      {"L206", "channel count", [](AssetEdit& e) { e.change_at<format::PageCluster>(e.page_cluster_offset(0), [](auto& c) { c.channel_count += 1; }); }},
-      {"L207", "vertex bits", [](AssetEdit& e) { e.change_at<format::PageCluster>(e.page_cluster_offset(0), [](auto& c) { c.vertex_bits += 1; }); }},
-      {"L208", "stream outside", [](AssetEdit& e) { e.change_at<format::PageCluster>(e.page_cluster_offset(0), [](auto& c) { c.triangle_offset = 0x7FFFFFF0U; }); }},
-      {"L208", "stream unaligned", [](AssetEdit& e) { e.change_at<format::PageCluster>(e.page_cluster_offset(0), [](auto& c) { c.vertex_offset += 1; }); }},
+      {"L206", "vertex count",
+       [](AssetEdit& e) {
+         e.change_at<format::PageCluster>(e.page_cluster_offset(0), [](auto& c) { c.vertex_count -= 1; });
+       }},
+      {"L206", "channel count",
+       [](AssetEdit& e) {
+         e.change_at<format::PageCluster>(e.page_cluster_offset(0), [](auto& c) { c.channel_count += 1; });
+       }},
+      {"L207", "vertex bits",
+       [](AssetEdit& e) {
+         e.change_at<format::PageCluster>(e.page_cluster_offset(0), [](auto& c) { c.vertex_bits += 1; });
+       }},
+      {"L208", "stream outside",
+       [](AssetEdit& e) {
+         e.change_at<format::PageCluster>(e.page_cluster_offset(0), [](auto& c) { c.triangle_offset = 0x7FFFFFF0U; });
+       }},
+      {"L208", "stream unaligned",
+       [](AssetEdit& e) {
+         e.change_at<format::PageCluster>(e.page_cluster_offset(0), [](auto& c) { c.vertex_offset += 1; });
+       }},
       {"L209", "index too large", [](AssetEdit& e) { e.bytes()[e.triangle_stream_offset(0)] = 255; }},
-      {"L210", "vertex not used", [](AssetEdit& e) {
+      {"L210", "vertex not used",
+       [](AssetEdit& e) {
          const std::uint64_t at = e.triangle_stream_offset(0);
          const std::uint32_t n = 3U * e.clusters()[0].triangle_count;
          for (std::uint32_t i = 0; i < n; ++i) {
            if (e.bytes()[at + i] == 0) e.bytes()[at + i] = 1;
          }
        }},
-      {"L211", "no such material", [](AssetEdit& e) { e.change_at<format::MaterialRange>(e.range_offset(0, 0), [](auto& r) { r.material = 99; }); }},
-      {"L211", "ranges cover too much", [](AssetEdit& e) { e.change_at<format::MaterialRange>(e.range_offset(0, 0), [](auto& r) { r.triangle_count += 1; }); }},
-      {"L212", "beyond 24 bits", [](AssetEdit& e) { e.change_at<format::Channel>(e.channel_offset(0, 0), [](auto& c) { c.minimum = 1 << 24; }); }},
-      {"L212", "normal out of range", [](AssetEdit& e) { e.change_at<format::Channel>(e.channel_offset(0, 3), [](auto& c) { c.minimum = -1; }); }},
-      {"L215", "a normal by another name", [](AssetEdit& e) {
+      {"L211", "no such material",
+       [](AssetEdit& e) {
+         e.change_at<format::MaterialRange>(e.range_offset(0, 0), [](auto& r) { r.material = 99; });
+       }},
+      {"L211", "ranges cover too much",
+       [](AssetEdit& e) {
+         e.change_at<format::MaterialRange>(e.range_offset(0, 0), [](auto& r) { r.triangle_count += 1; });
+       }},
+      {"L212", "beyond 24 bits",
+       [](AssetEdit& e) {
+         e.change_at<format::Channel>(e.channel_offset(0, 0), [](auto& c) { c.minimum = 1 << 24; });
+       }},
+      {"L212", "normal out of range",
+       [](AssetEdit& e) { e.change_at<format::Channel>(e.channel_offset(0, 3), [](auto& c) { c.minimum = -1; }); }},
+      {"L215", "a normal by another name",
+       [](AssetEdit& e) {
          // The vertex with the largest second value gets the pair (-1, M): X is 0 there, so its one name is (1, M).
          const std::int32_t m = (1 << (e.meshes()[0].normal_bits - 1)) - 1;
          std::int32_t a = 0;
@@ -225,14 +293,33 @@ const std::vector<Break>& breaks() {
          e.change_at<format::Channel>(e.channel_offset(0, 3), [&](auto& channel) { channel.minimum = m - 1 - a; });
          e.change_at<format::Channel>(e.channel_offset(0, 4), [&](auto& channel) { channel.minimum = 2 * m - b; });
        }},
-      {"L301", "level 0 with an own group", [](AssetEdit& e) { const auto c = level0_cluster(e); e.cluster(c, [](auto& r) { r.level = 1; }); }},
-      {"L301", "orphan", [](AssetEdit& e) { const auto c = cluster_above(e, inner_group(e)); e.cluster(c, [](auto& r) { r.own_group = format::kNone; }); }},
-      {"L302", "member of another group", [](AssetEdit& e) { const auto g = inner_group(e); const auto c = level0_cluster(e); e.cluster(c, [&](auto& r) { r.coarser_group = r.coarser_group == g ? g + 1 : g; }); }},
-      {"L303", "level too high", [](AssetEdit& e) { const auto c = cluster_above(e, inner_group(e)); e.cluster(c, [](auto& r) { r.level += 1; }); }},
+      {"L301", "level 0 with an own group",
+       [](AssetEdit& e) {
+         const auto c = level0_cluster(e);
+         e.cluster(c, [](auto& r) { r.level = 1; });
+       }},
+      {"L301", "orphan",
+       [](AssetEdit& e) {
+         const auto c = cluster_above(e, inner_group(e));
+         e.cluster(c, [](auto& r) { r.own_group = format::kNone; });
+       }},
+      {"L302", "member of another group",
+       [](AssetEdit& e) {
+         const auto g = inner_group(e);
+         const auto c = level0_cluster(e);
+         e.cluster(c, [&](auto& r) { r.coarser_group = r.coarser_group == g ? g + 1 : g; });
+       }},
+      {"L303", "level too high",
+       [](AssetEdit& e) {
+         const auto c = cluster_above(e, inner_group(e));
+         e.cluster(c, [](auto& r) { r.level += 1; });
+       }},
       {"L304", "group level", [](AssetEdit& e) { e.group(inner_group(e), [](auto& g) { g.level += 1; }); }},
       {"L305", "terminal with a finite error", [](AssetEdit& e) { e.group(0, [](auto& g) { g.error = 1.0F; }); }},
-      {"L305", "stuck without a reason", [](AssetEdit& e) { e.group(0, [](auto& g) { g.flags |= format::kGroupStuck; }); }},
-      {"L306", "nothing above", [](AssetEdit& e) {
+      {"L305", "stuck without a reason",
+       [](AssetEdit& e) { e.group(0, [](auto& g) { g.flags |= format::kGroupStuck; }); }},
+      {"L306", "nothing above",
+       [](AssetEdit& e) {
          const auto g = inner_group(e);
          const auto clusters = e.clusters();
          for (std::uint32_t c = 0; c < clusters.size(); ++c) {
@@ -240,45 +327,65 @@ const std::vector<Break>& breaks() {
          }
        }},
       {"L307", "error falls", [](AssetEdit& e) { e.group(inner_group(e), [](auto& g) { g.error = 0.0F; }); }},
-      {"L307", "error is NaN", [](AssetEdit& e) { e.group(inner_group(e), [](auto& g) { g.error = std::numeric_limits<float>::quiet_NaN(); }); }},
+      {"L307", "error is NaN",
+       [](AssetEdit& e) {
+         e.group(inner_group(e), [](auto& g) { g.error = std::numeric_limits<float>::quiet_NaN(); });
+       }},
       {"L307", "error is negative", [](AssetEdit& e) { e.group(inner_group(e), [](auto& g) { g.error = -1.0F; }); }},
       {"L308", "sphere shrunk", [](AssetEdit& e) { e.group(0, [](auto& g) { g.radius *= 0.5F; }); }},
       {"L308", "sphere moved", [](AssetEdit& e) { e.group(inner_group(e), [](auto& g) { g.center[1] += g.radius; }); }},
       {"L309", "sphere without margin", [](AssetEdit& e) { e.group(0, [](auto& g) { g.radius *= 1.0F - 0x1p-21F; }); }},
-      {"L310", "level 0 sticks out", [](AssetEdit& e) { e.cluster(level0_cluster(e), [](auto& c) { c.radius *= 8.0F; }); }},
-      {"L311", "quadric error falls", [](AssetEdit& e) { e.group(inner_group(e), [](auto& g) { g.quadric_error = -1.0F; }); }},
-      {"L311", "measured in the qem tier", [](AssetEdit& e) { e.group(inner_group(e), [](auto& g) { g.deviation = 0.25F; }); }},
-      {"L401", "child before its parent", [](AssetEdit& e) { const auto n = inner_node(e); e.node(n, [&](auto& r) { r.first = n; }); }},
+      {"L310", "level 0 sticks out",
+       [](AssetEdit& e) { e.cluster(level0_cluster(e), [](auto& c) { c.radius *= 8.0F; }); }},
+      {"L311", "quadric error falls",
+       [](AssetEdit& e) { e.group(inner_group(e), [](auto& g) { g.quadric_error = -1.0F; }); }},
+      {"L311", "measured in the qem tier",
+       [](AssetEdit& e) { e.group(inner_group(e), [](auto& g) { g.deviation = 0.25F; }); }},
+      {"L401", "child before its parent",
+       [](AssetEdit& e) {
+         const auto n = inner_node(e);
+         e.node(n, [&](auto& r) { r.first = n; });
+       }},
       {"L401", "nine children", [](AssetEdit& e) { e.node(inner_node(e), [&](auto& r) { r.child_count = 9; }); }},
       {"L402", "group left out", [](AssetEdit& e) { e.node(leaf_node(e), [](auto& r) { r.first += 1; }); }},
       {"L403", "node shrunk", [](AssetEdit& e) { e.node(inner_node(e), [](auto& r) { r.radius *= 0.5F; }); }},
       {"L403", "leaf grown", [](AssetEdit& e) { e.node(leaf_node(e), [](auto& r) { r.radius *= 1.001F; }); }},
       {"L404", "node error too small", [](AssetEdit& e) { e.node(inner_node(e), [](auto& r) { r.error = 1e-20F; }); }},
-      {"L404", "leaf error grown", [](AssetEdit& e) { e.node(leaf_node(e), [](auto& r) { r.error = r.error < 1e30F ? r.error * 2.0F + 1.0F : 1.0F; }); }},
+      {"L404", "leaf error grown",
+       [](AssetEdit& e) {
+         e.node(leaf_node(e), [](auto& r) { r.error = r.error < 1e30F ? r.error * 2.0F + 1.0F : 1.0F; });
+       }},
       {"L501", "no triangle", [](AssetEdit& e) { e.cluster(0, [](auto& c) { c.triangle_count = 0; }); }},
       {"L501", "257 vertices", [](AssetEdit& e) { e.cluster(0, [](auto& c) { c.vertex_count = 257; }); }},
-      {"L502", "culling sphere shrunk by 0.1%", [](AssetEdit& e) { e.cluster(0, [](auto& c) { c.radius *= 0.999F; }); }},
+      {"L502", "culling sphere shrunk by 0.1%",
+       [](AssetEdit& e) { e.cluster(0, [](auto& c) { c.radius *= 0.999F; }); }},
       {"L503", "cone too narrow", [](AssetEdit& e) { e.cluster(0, [](auto& c) { c.cone_cutoff = -1; }); }},
       {"L504", "bounds", [](AssetEdit& e) { e.mesh(0, [](auto& m) { m.bounds_max[0] += 1; }); }},
       {"L505", "collapsed", [](AssetEdit& e) { e.mesh(0, [](auto& m) { m.grid_collapsed += 1; }); }},
-      {"L506", "a normal on a shared border", [](AssetEdit& e) {
+      {"L506", "a normal on a shared border",
+       [](AssetEdit& e) {
          // The whole channel of one cluster moves: every corner on its border changes.
          const auto c = cluster_above(e, shared_group(e));
-         e.change_at<format::Channel>(e.channel_offset(c, 3), [](auto& channel) { channel.minimum += channel.minimum > 4 ? -1 : 1; });
+         e.change_at<format::Channel>(e.channel_offset(c, 3),
+                                      [](auto& channel) { channel.minimum += channel.minimum > 4 ? -1 : 1; });
        }},
-      {"L507", "a vertex on a shared border", [](AssetEdit& e) {
+      {"L507", "a vertex on a shared border",
+       [](AssetEdit& e) {
          const auto c = cluster_above(e, shared_group(e));
          e.change_at<format::Channel>(e.channel_offset(c, 0), [](auto& channel) { channel.minimum += 1; });
        }},
-      {"L507", "a triangle turned over", [](AssetEdit& e) {
+      {"L507", "a triangle turned over",
+       [](AssetEdit& e) {
          const auto at = e.triangle_stream_offset(cluster_above(e, shared_group(e)));
          std::swap(e.bytes()[at], e.bytes()[at + 1]);
        }},
-      {"L508", "two corners in one place", [](AssetEdit& e) {
+      {"L508", "two corners in one place",
+       [](AssetEdit& e) {
          const auto at = e.triangle_stream_offset(cluster_above(e, shared_group(e)));
          e.bytes()[at] = e.bytes()[at + 1];
        }},
-      {"L509", "a material from nowhere", [](AssetEdit& e) {
+      {"L509", "a material from nowhere",
+       [](AssetEdit& e) {
          const auto sphere = e.meshes()[1];  // one material
          e.change_at<format::MaterialRange>(e.range_offset(sphere.first_cluster, 0), [](auto& r) { r.material ^= 1U; });
        }},
@@ -312,7 +419,10 @@ TEST(Validate, BytesBetweenSectionsAreZero) {
   const auto meta = edit.section(SectionId::kMeta);
   const std::uint64_t gap = meta.offset + meta.bytes;
   if (gap % 16 == 0) {  // the sample's META ends on a boundary: make it one byte shorter and keep it JSON
-    edit.entry(SectionId::kMeta, [](auto& s) { s.bytes -= 1; s.decoded_bytes -= 1; });
+    edit.entry(SectionId::kMeta, [](auto& s) {
+      s.bytes -= 1;
+      s.decoded_bytes -= 1;
+    });
     edit.seal();
     EXPECT_TRUE(has(validate_asset(edit.bytes()), "L014"));
     return;
@@ -369,8 +479,9 @@ TEST(Validate, DocumentListsEveryRule) {
   std::stringstream text;
   text << file.rdbuf();
   for (const Rule& rule : all_rules()) {
-    const std::string row = "| " + std::string(rule.id) + " | " + (rule.invariant.empty() ? "" : std::string(rule.invariant) + " ") +
-                            "| " + std::string(rule.text) + " |";
+    const std::string row = "| " + std::string(rule.id) + " | " +
+                            (rule.invariant.empty() ? "" : std::string(rule.invariant) + " ") + "| " +
+                            std::string(rule.text) + " |";
     EXPECT_NE(text.str().find(row), std::string::npos) << row;
   }
 }

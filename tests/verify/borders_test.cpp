@@ -170,15 +170,18 @@ TEST(BorderProof, AHoleInsideAnOpenSurfaceIsNoBorder) {
     outer.push_back({c, b, d});
   }
   Patch whole = outer;
-  for (std::size_t i = 0; i < finer.size(); ++i) whole.push_back({Corner{0, 0, 0}, outer[2 * i][0], outer[2 * i + 1][2]});
+  for (std::size_t i = 0; i < finer.size(); ++i)
+    whole.push_back({Corner{0, 0, 0}, outer[2 * i][0], outer[2 * i + 1][2]});
   EXPECT_TRUE(prove({whole}, whole).violations.empty());
   EXPECT_EQ(prove({whole}, outer).violations.size(), 1U);
 }
 
 TEST(BorderProof, ACrackBesideAnOpenBorderIsFound) {
   // Two halves of an open square: the group's half drops a vertex of the seam that the other half keeps.
-  const Patch left{{Corner{0, 0, 0}, Corner{0, 4, 0}, Corner{-8, 0, 0}}, {Corner{0, 4, 0}, Corner{0, 8, 0}, Corner{-8, 0, 0}}};
-  const Patch right{{Corner{0, 4, 0}, Corner{0, 0, 0}, Corner{8, 0, 0}}, {Corner{0, 8, 0}, Corner{0, 4, 0}, Corner{8, 0, 0}}};
+  const Patch left{{Corner{0, 0, 0}, Corner{0, 4, 0}, Corner{-8, 0, 0}},
+                   {Corner{0, 4, 0}, Corner{0, 8, 0}, Corner{-8, 0, 0}}};
+  const Patch right{{Corner{0, 4, 0}, Corner{0, 0, 0}, Corner{8, 0, 0}},
+                    {Corner{0, 8, 0}, Corner{0, 4, 0}, Corner{8, 0, 0}}};
   EXPECT_TRUE(prove({left}, left, {right}).violations.empty());
   const Patch coarse_left{{Corner{0, 0, 0}, Corner{0, 8, 0}, Corner{-8, 0, 0}}};
   EXPECT_EQ(prove({left}, coarse_left, {right}).violations.size(), 1U);
@@ -206,7 +209,8 @@ TEST(BorderProof, SheetsOnOneEdgeAreCounted) {
   // The edge between the first two is inside the group; without one of them it is open, and no border of the source:
   // the source's net use of it goes the other way.
   EXPECT_EQ(prove({one, three}, one, {two}).violations.size(), 0U);  // one of two equal uses may go: B has one
-  EXPECT_EQ(prove({two}, Patch{{Corner{0, 8, 0}, Corner{0, 1, 0}, Corner{8, 4, 0}}}, {one, three}).violations.size(), 1U);
+  EXPECT_EQ(prove({two}, Patch{{Corner{0, 8, 0}, Corner{0, 1, 0}, Corner{8, 4, 0}}}, {one, three}).violations.size(),
+            1U);
 }
 
 TEST(BorderProof, EdgesWithoutLengthAreLeftOut) {

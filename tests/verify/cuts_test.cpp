@@ -17,8 +17,10 @@ namespace {
 
 class CutChecks : public testing::Test {
  protected:
-  CutChecks() : asset_(std::move(*Asset::from_vector(test::judged_sample_bytes()))), clusters_(std::move(*decode_all(asset_))) {
-    for (std::uint32_t m = 0; m < asset_.meshes().size(); ++m) judges_.push_back(make_mesh_judge(asset_, MeshId(m), clusters_));
+  CutChecks()
+      : asset_(std::move(*Asset::from_vector(test::judged_sample_bytes()))), clusters_(std::move(*decode_all(asset_))) {
+    for (std::uint32_t m = 0; m < asset_.meshes().size(); ++m)
+      judges_.push_back(make_mesh_judge(asset_, MeshId(m), clusters_));
   }
 
   RuleLog check_cameras_with(const Selectors& selectors) {
@@ -62,7 +64,8 @@ TEST_F(CutChecks, AHoleInAClosedMeshIsABorder) {
   Selectors wrong;
   wrong.flat = [](const Asset& asset, const Camera& camera, double t) {
     auto cut = select_flat(asset, camera, t);
-    const auto ball = std::find_if(cut.begin(), cut.end(), [](const ClusterInstance& c) { return c.instance.value == 1; });
+    const auto ball =
+        std::find_if(cut.begin(), cut.end(), [](const ClusterInstance& c) { return c.instance.value == 1; });
     cut.erase(ball);
     return cut;
   };

@@ -30,7 +30,8 @@ bool has(const VerifyReport& report, const std::string& id) {
   return std::any_of(report.findings.begin(), report.findings.end(), [&](const Finding& f) { return f.id == id; });
 }
 
-VerifyReport verify_bytes(const std::vector<std::uint8_t>& bytes, const Scene& scene, const VerifyOptions& options = {}) {
+VerifyReport verify_bytes(const std::vector<std::uint8_t>& bytes, const Scene& scene,
+                          const VerifyOptions& options = {}) {
   Result<Asset> asset = Asset::from_vector(bytes);
   EXPECT_TRUE(asset.ok()) << asset.error().message();
   return verify_asset(*asset, scene, options);
@@ -49,14 +50,16 @@ TEST(Verify, FindsNothingInTheSample) {
     invariants.insert(check.invariant);
     EXPECT_EQ(check.failures, 0U) << check.what;
     EXPECT_TRUE(check.skipped || check.items > 0) << check.what;
-    EXPECT_EQ(check.skipped, check.invariant == "I7") << check.what;
+    EXPECT_TRUE(!check.skipped || check.invariant == "I7") << check.what;
   }
   for (const char* id : {"I1", "I2", "I3", "I4", "I5", "I6", "I7", "I8"}) EXPECT_TRUE(invariants.contains(id)) << id;
 }
 
 TEST(Verify, CutsAndCamerasAreCounted) {
-  const VerifyReport report = verify_bytes(sample(), test::sample_scene(), {.uniform_cuts = 17, .cameras = 9, .seed = 5});
-  EXPECT_TRUE(std::any_of(report.checks.begin(), report.checks.end(), [](const auto& c) { return c.invariant == "I8" && c.items == 9; }));
+  const VerifyReport report =
+      verify_bytes(sample(), test::sample_scene(), {.uniform_cuts = 17, .cameras = 9, .seed = 5});
+  EXPECT_TRUE(std::any_of(report.checks.begin(), report.checks.end(),
+                          [](const auto& c) { return c.invariant == "I8" && c.items == 9; }));
 }
 
 struct Break {
@@ -69,12 +72,28 @@ struct Break {
 const std::vector<Break>& breaks() {
   static const auto keep = [](auto&) {};
   static const std::vector<Break> all{
-      {"V101", "a triangle turned over", [](Scene& s) { auto& i = s.meshes[1].primitives[0].indices; std::swap(i[0], i[1]); }, keep},
-      {"V101", "a triangle lost from the source", [](Scene& s) { auto& i = s.meshes[1].primitives[0].indices; i.resize(i.size() - 3); }, keep},
-      {"V101", "a triangle of another material", [](Scene& s) { auto& p = s.meshes[1].primitives[0]; p.material = MaterialId(1 - p.material.value); }, keep},
+      {"V101", "a triangle turned over",
+       [](Scene& s) {
+         auto& i = s.meshes[1].primitives[0].indices;
+         std::swap(i[0], i[1]);
+       },
+       keep},
+      {"V101", "a triangle lost from the source",
+       [](Scene& s) {
+         auto& i = s.meshes[1].primitives[0].indices;
+         i.resize(i.size() - 3);
+       },
+       keep},
+      {"V101", "a triangle of another material",
+       [](Scene& s) {
+         auto& p = s.meshes[1].primitives[0];
+         p.material = MaterialId(1 - p.material.value);
+       },
+       keep},
       {"V101", "a vertex moved by a step", [](Scene& s) { s.meshes[1].primitives[0].positions[0].x += 1.0; }, keep},
       {"V101", "another origin", keep, [](AssetEdit& e) { e.mesh(1, [](auto& m) { m.origin[0] += 1.0; }); }},
-      {"V101", "two grid points swapped", keep, [](AssetEdit& e) {
+      {"V101", "two grid points swapped", keep,
+       [](AssetEdit& e) {
          // In a level-0 cluster: the triangle that used vertex 0 now uses another.
          const auto clusters = e.clusters();
          for (std::uint32_t c = 0; c < clusters.size(); ++c) {
@@ -84,16 +103,43 @@ const std::vector<Break>& breaks() {
            return;
          }
        }},
-      {"V102", "a degenerate triangle more", [](Scene& s) { auto& i = s.meshes[1].primitives[0].indices; i.insert(i.end(), {0, 0, 1}); }, keep},
-      {"V102", "a duplicate counted as degenerate", keep, [](AssetEdit& e) { e.mesh(3, [](auto& m) { m.dropped_degenerate = 0; m.dropped_duplicate = 1; }); }},
+      {"V102", "a degenerate triangle more",
+       [](Scene& s) {
+         auto& i = s.meshes[1].primitives[0].indices;
+         i.insert(i.end(), {0, 0, 1});
+       },
+       keep},
+      {"V102", "a duplicate counted as degenerate", keep,
+       [](AssetEdit& e) {
+         e.mesh(3, [](auto& m) {
+           m.dropped_degenerate = 0;
+           m.dropped_duplicate = 1;
+         });
+       }},
       {"V102", "a repair that was not", [](Scene& s) { s.meshes[1].drops.repaired = 1; }, keep},
       {"V103", "another name", [](Scene& s) { s.meshes[0].name += "x"; }, keep},
       {"V103", "a mesh more", [](Scene& s) { s.meshes.emplace_back(); }, keep},
       {"V103", "another diagonal", keep, [](AssetEdit& e) { e.mesh(0, [](auto& m) { m.diagonal *= 1.0 + 1e-6; }); }},
       {"V103", "source vertices", keep, [](AssetEdit& e) { e.mesh(0, [](auto& m) { m.source_vertices += 1; }); }},
-      {"V104", "a normal by ten degrees", [](Scene& s) { auto& n = s.meshes[1].primitives[0].normals[0]; n = glm::normalize(n + Vec3f(0.1F, -0.1F, 0.1F)); }, keep},
-      {"V104", "a colour by one step", [](Scene& s) { auto& c = s.meshes[1].primitives[0].colors[0]; c.x = c.x > 0.5F ? c.x - 1.0F / 255.0F : c.x + 1.0F / 255.0F; }, keep},
-      {"V104", "a UV by two steps", [](Scene& s) { for (auto& p : s.meshes[0].primitives) { if (!p.uvs[0].empty()) p.uvs[0][0].x += 1e-3F; } }, keep},
+      {"V104", "a normal by ten degrees",
+       [](Scene& s) {
+         auto& n = s.meshes[1].primitives[0].normals[0];
+         n = glm::normalize(n + Vec3f(0.1F, -0.1F, 0.1F));
+       },
+       keep},
+      {"V104", "a colour by one step",
+       [](Scene& s) {
+         auto& c = s.meshes[1].primitives[0].colors[0];
+         c.x = c.x > 0.5F ? c.x - 1.0F / 255.0F : c.x + 1.0F / 255.0F;
+       },
+       keep},
+      {"V104", "a UV by two steps",
+       [](Scene& s) {
+         for (auto& p : s.meshes[0].primitives) {
+           if (!p.uvs[0].empty()) p.uvs[0][0].x += 1e-3F;
+         }
+       },
+       keep},
       {"V105", "a vertex off the grid", [](Scene& s) { s.meshes[1].primitives[0].positions[0].x += 1e-4; }, keep},
       {"V106", "a material's colour", [](Scene& s) { s.materials[0].base_color.x *= 0.5F; }, keep},
       {"V106", "a material more", [](Scene& s) { s.materials.emplace_back(); }, keep},
@@ -101,10 +147,21 @@ const std::vector<Break>& breaks() {
       {"V107", "an instance of another mesh", [](Scene& s) { s.instances[0].mesh = MeshId(2U); }, keep},
       {"V107", "an instance more", [](Scene& s) { s.instances.push_back(s.instances[0]); }, keep},
       {"V108", "another source", [](Scene& s) { s.source_hash[0] = 'f'; }, keep},
-      {"V110", "a vertex colour that matters", [](Scene& s) { s.meshes[0].primitives[0].colors.assign(s.meshes[0].primitives[0].positions.size(), Vec4f(0.5F)); }, keep},
-      {"V110", "flat normals left out", keep, [](AssetEdit& e) { e.mesh(2, [](auto& m) { m.normal_mode = format::NormalMode::kNone; }); }},
-      {"V110", "a UV set that a material came to sample", [](Scene& s) { s.meshes[0].primitives[0].uvs[1] = s.meshes[0].primitives[0].uvs[0]; for (auto& m : s.materials) m.uv_sets_used = 3; }, keep},
-      {"V111", "caps below the clusters", keep, [](AssetEdit& e) {
+      {"V110", "a vertex colour that matters",
+       [](Scene& s) {
+         s.meshes[0].primitives[0].colors.assign(s.meshes[0].primitives[0].positions.size(), Vec4f(0.5F));
+       },
+       keep},
+      {"V110", "flat normals left out", keep,
+       [](AssetEdit& e) { e.mesh(2, [](auto& m) { m.normal_mode = format::NormalMode::kNone; }); }},
+      {"V110", "a UV set that a material came to sample",
+       [](Scene& s) {
+         s.meshes[0].primitives[0].uvs[1] = s.meshes[0].primitives[0].uvs[0];
+         for (auto& m : s.materials) m.uv_sets_used = 3;
+       },
+       keep},
+      {"V111", "caps below the clusters", keep,
+       [](AssetEdit& e) {
          auto& bytes = e.bytes();
          const std::string from = "\"cluster_triangles\":256";
          const auto found = std::search(bytes.begin(), bytes.end(), from.begin(), from.end());
@@ -114,6 +171,8 @@ const std::vector<Break>& breaks() {
          // "016" is no JSON number: a space keeps the length
          found[static_cast<std::ptrdiff_t>(from.size()) - 3] = ' ';
        }},
+      {"V112", "another tier", keep,
+       [](AssetEdit& e) { e.mesh(2, [](auto& m) { m.error_tier = format::ErrorTier::kCertified; }); }},
       {"V109", "an image's byte", [](Scene& s) { s.blobs[0].bytes[0] ^= 1U; }, keep},
       {"V109", "the scene document", [](Scene& s) { s.document += " "; }, keep},
   };
@@ -143,7 +202,8 @@ TEST(Verify, EachSourceRuleHasABreak) {
 /// What may be dropped and what may not, on a grid of two triangles.
 class VerifyDrops : public testing::Test {
  protected:
-  static VerifyReport verify_with(const std::function<void(Primitive&)>& change, const std::function<void(format::MeshRecord&)>& counts) {
+  static VerifyReport verify_with(const std::function<void(Primitive&)>& change,
+                                  const std::function<void(format::MeshRecord&)>& counts) {
     Scene scene = test::sample_scene();
     change(scene.meshes[1].primitives[0]);
     AssetEdit edit(sample());
@@ -154,16 +214,31 @@ class VerifyDrops : public testing::Test {
 };
 
 TEST_F(VerifyDrops, ARotatedDuplicateIsDroppedOnce) {
-  const auto duplicate = [](Primitive& p) { p.indices.insert(p.indices.end(), {p.indices[1], p.indices[2], p.indices[0]}); };
-  const VerifyReport told = verify_with(duplicate, [](auto& m) { m.source_triangles += 1; m.dropped_duplicate += 1; });
+  const auto duplicate = [](Primitive& p) {
+    p.indices.insert(p.indices.end(), {p.indices[1], p.indices[2], p.indices[0]});
+  };
+  const VerifyReport told = verify_with(duplicate, [](auto& m) {
+    m.source_triangles += 1;
+    m.dropped_duplicate += 1;
+  });
   EXPECT_EQ(told.finding_count, 0U) << describe(told);
-  EXPECT_TRUE(has(verify_with(duplicate, [](auto& m) { m.source_triangles += 1; m.dropped_degenerate += 1; }), "V102"));
+  EXPECT_TRUE(has(verify_with(duplicate,
+                              [](auto& m) {
+                                m.source_triangles += 1;
+                                m.dropped_degenerate += 1;
+                              }),
+                  "V102"));
   EXPECT_GT(verify_with(duplicate, [](auto&) {}).finding_count, 0U);
 }
 
 TEST_F(VerifyDrops, AReversedTwinIsNoDuplicate) {
   const auto twin = [](Primitive& p) { p.indices.insert(p.indices.end(), {p.indices[1], p.indices[0], p.indices[2]}); };
-  EXPECT_TRUE(has(verify_with(twin, [](auto& m) { m.source_triangles += 1; m.dropped_duplicate += 1; }), "V101"));
+  EXPECT_TRUE(has(verify_with(twin,
+                              [](auto& m) {
+                                m.source_triangles += 1;
+                                m.dropped_duplicate += 1;
+                              }),
+                  "V101"));
 }
 
 TEST_F(VerifyDrops, ATriangleOnALineStays) {
@@ -179,7 +254,11 @@ TEST_F(VerifyDrops, ATriangleOnALineStays) {
     }
     p.indices.insert(p.indices.end(), {first, first + 1, first + 2});
   };
-  const VerifyReport told = verify_with(line, [](auto& m) { m.source_triangles += 1; m.dropped_degenerate += 1; m.source_vertices += 3; });
+  const VerifyReport told = verify_with(line, [](auto& m) {
+    m.source_triangles += 1;
+    m.dropped_degenerate += 1;
+    m.source_vertices += 3;
+  });
   EXPECT_TRUE(has(told, "V101"));
   EXPECT_TRUE(has(told, "V102"));
 }

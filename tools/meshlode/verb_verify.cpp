@@ -20,24 +20,29 @@ std::string describe(const VerifyReport& report, bool quiet) {
     if (quiet && check.failures == 0) continue;
     char head[64];
     std::snprintf(head, sizeof head, "%-4s %-8s %12llu  ", check.invariant.empty() ? "-" : check.invariant.c_str(),
-                  check.skipped ? "skipped" : check.failures == 0 ? "ok" : "FAILED",
+                  check.skipped         ? "skipped"
+                  : check.failures == 0 ? "ok"
+                                        : "FAILED",
                   static_cast<unsigned long long>(check.items));
     text += head + check.what;
     if (check.failures > 0) text += ": " + std::to_string(check.failures) + " failures";
     text += "\n";
   }
   for (const Finding& finding : report.findings) {
-    text += finding.id + (finding.invariant.empty() ? "" : " (" + finding.invariant + ")") + ": " + finding.where + ": " +
-            finding.detail + "\n";
+    text += finding.id + (finding.invariant.empty() ? "" : " (" + finding.invariant + ")") + ": " + finding.where +
+            ": " + finding.detail + "\n";
   }
   if (report.finding_count > report.findings.size()) {
     text += "and " + std::to_string(report.finding_count - report.findings.size()) + " more findings\n";
   }
-  if (!quiet) text += report.finding_count == 0 ? "verified: nothing found\n" : "NOT verified: " + std::to_string(report.finding_count) + " findings\n";
+  if (!quiet)
+    text += report.finding_count == 0 ? "verified: nothing found\n"
+                                      : "NOT verified: " + std::to_string(report.finding_count) + " findings\n";
   return text;
 }
 
-std::string to_json(const std::string& path, const std::string& source, const VerifyOptions& options, const VerifyReport& report) {
+std::string to_json(const std::string& path, const std::string& source, const VerifyOptions& options,
+                    const VerifyReport& report) {
   JsonWriter json;
   json.begin_object();
   json.field("file", path);
@@ -92,14 +97,16 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
   parser.add_value("--source", source_path, "the scene it was built from");
   parser.add_value("--cuts", options.uniform_cuts, "uniform cuts per mesh that cross-check the border proof");
   parser.add_value("--cameras", options.cameras, "random cameras that cross-check selection and hierarchy");
-  parser.add_value("--deviation-cuts", options.deviation_cuts, "uniform cuts per mesh that are measured against the source");
+  parser.add_value("--deviation-cuts", options.deviation_cuts,
+                   "uniform cuts per mesh that are measured against the source");
   parser.add_value("--seed", options.seed, "of the random cameras");
   parser.add_flag("--gpu", gpu, "compare with the GPU too");
   add_jobs_option(parser, jobs);
   add_output_options(parser, output);
   if (const auto exit_code = parser.parse(args)) return *exit_code;
   if (gpu) return print_error({ErrorCode::kUnsupported, "--gpu", "the GPU judge is not built yet"});
-  if (source_path.empty()) return print_error({ErrorCode::kUsage, "--source", "the scene to verify against is missing"});
+  if (source_path.empty())
+    return print_error({ErrorCode::kUsage, "--source", "the scene to verify against is missing"});
 
   const JobLimit limit(jobs);
   const Result<Asset> asset = Asset::open(path);
