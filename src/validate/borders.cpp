@@ -201,7 +201,8 @@ std::vector<Wedge> wedges_at(const MeshSurface& surface, std::span<const std::ui
   return out;
 }
 
-/// Calls visit(lower vertex, higher vertex) for each use of one of `edges` (ascending) by a triangle of the clusters.
+/// Calls visit(edge, lower vertex, higher vertex) for each use of one of `edges` (ascending) by a triangle of the
+/// clusters.
 template <class Visit>
 void for_each_use(const MeshSurface& surface, std::span<const DecodedCluster> clusters,
                   std::span<const std::uint32_t> members, std::span<const std::uint32_t> edges, const Visit& visit) {
@@ -216,7 +217,7 @@ void for_each_use(const MeshSurface& surface, std::span<const DecodedCluster> cl
         const std::array<std::uint32_t, 2> key{surface.vertex_position[v], surface.vertex_position[w]};
         const auto found = std::lower_bound(edges.begin(), edges.end(), key,
                                             [&](std::uint32_t e, const auto& k2) { return surface.edges[e] < k2; });
-        if (found != edges.end() && surface.edges[*found] == key) visit(v, w);
+        if (found != edges.end() && surface.edges[*found] == key) visit(*found, v, w);
       }
     }
   }
@@ -230,6 +231,11 @@ std::vector<BorderViolation> check_shared_attributes(const Asset& asset, const M
   std::vector<BorderViolation> out;
   std::vector<std::uint32_t> kept;
   std::vector<std::uint32_t> ends;
+  struct Use {
+    std::uint32_t edge, lower, higher;
+    auto operator<=>(const Use&) const = default;
+  };
+  std::vector<Use> uses;
   for (std::uint32_t k = 0; k < surface.group_count; ++k) {
     const std::uint32_t g = surface.first_group + k;
     const GroupRecord& group = asset.groups()[g];
@@ -247,14 +253,23 @@ std::vector<BorderViolation> check_shared_attributes(const Asset& asset, const M
     std::sort(ends.begin(), ends.end());
     ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
     const std::vector<Wedge> finer = wedges_at(surface, members, ends);
+    uses.clear();
+    for_each_use(surface, clusters, surface.made[k], kept, [&](std::uint32_t edge, std::uint32_t v, std::uint32_t w) {
+      uses.push_back({edge, v, w});
+    });
+    std::sort(uses.begin(), uses.end());
     std::uint64_t changed = 0;
     std::uint32_t first = 0;
-    for_each_use(surface, clusters, surface.made[k], kept, [&](std::uint32_t v, std::uint32_t w) {
-      for (const std::uint32_t vertex : {v, w}) {
+    for (std::size_t i = 0; i < uses.size(); ++i) {
+      // Where sheets of the same set meet on the edge too, which use is the border's cannot be told.
+      const bool is_alone =
+          (i == 0 || uses[i - 1].edge != uses[i].edge) && (i + 1 == uses.size() || uses[i + 1].edge != uses[i].edge);
+      if (!is_alone) continue;
+      for (const std::uint32_t vertex : {uses[i].lower, uses[i].higher}) {
         const Wedge wedge{surface.vertex_position[vertex], surface.vertex_attributes[vertex]};
         if (!std::binary_search(finer.begin(), finer.end(), wedge) && changed++ == 0) first = wedge.position;
       }
-    });
+    }
     if (changed > 0) {
       out.push_back({g, std::to_string(changed) +
                             " corners of shared border edges have attributes that the finer set has not in their "
