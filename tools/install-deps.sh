@@ -13,7 +13,7 @@ packages=(
   libstb-dev libcli11-dev                    # raster, command line
 )
 if [ "${1:-}" = --tests ]; then
-  packages+=(libgtest-dev clang-14 assimp-testmodels)
+  packages+=(libgtest-dev clang-14 libclang-rt-14-dev assimp-testmodels)
 fi
 
 is_installed() { [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; }
