@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Deviation: how far a simplified group is from the source, both ways. What the `measured` and `certified` tiers store.
 //
-// Source to group: points of the source are carried up the DAG with the clusters that stand for them and projected onto
-// each simplified group. Group to source: points of the group's triangles against a tree over the whole source. Both are
-// refined where the maximum may lie; nothing is spent where a bound says that it does not.
+// measured: points of the source are carried up the DAG with the clusters that stand for them and projected onto each
+// simplified group; points of the group's triangles are measured against a tree over the whole source. Both are refined
+// where the maximum may lie; nothing is spent where a bound says that it does not.
+// certified: what is proven of the triangles of a group is handed on to the triangles that replace them.
 #pragma once
 
 #include <array>
@@ -16,8 +17,8 @@
 
 namespace meshlode {
 
-/// The source's surface before the grid, relative to the mesh's origin, in object units. Built once per mesh; queries are
-/// const and may run side by side. Deterministic: same bits for any thread count, compiler and processor (I10).
+/// The source's surface before the grid, relative to the mesh's origin, in object units. Built once per mesh; queries
+/// are const and may run side by side. Deterministic: same bits for any thread count, compiler and processor (I10).
 class SourceTree {
  public:
   SourceTree(std::span<const Vec3d> positions, std::span<const std::array<std::uint32_t, 3>> triangles);
@@ -34,10 +35,10 @@ class SourceTree {
 
 /// A point of the source on its way up the DAG.
 struct CarriedSample {
-  Vec3d point;                  ///< on the source, relative to the origin, object units
-  std::uint32_t triangle = 0;   ///< of the surface that carries it: the one its nearest point lies on
-  float distance = 0.0F;        ///< to that surface, for thinning
-  std::uint32_t place = 0;      ///< of the SourceTree: where a search for the source near this point may begin
+  Vec3d point;                 ///< on the source, relative to the origin, object units
+  std::uint32_t triangle = 0;  ///< of the surface that carries it: the one its nearest point lies on
+  float distance = 0.0F;       ///< to that surface, for thinning
+  std::uint32_t place = 0;     ///< of the SourceTree: where a search for the source near this point may begin
 };
 
 /// A simplified group. Triangle ids are indices into `triangles`.
@@ -47,23 +48,44 @@ struct GroupSurface {
 };
 
 struct DeviationTierOptions {
-  bool certified = false;       ///< an upper bound instead of an estimate from below
-  double floor = 0.0;           ///< object units: the running maximum so far. What is below it need not be known exactly.
+  bool certified = false;  ///< not of measure_group, which only estimates: certify_group is that tier
+  double floor = 0.0;      ///< object units: the running maximum so far. What is below it need not be known exactly.
   std::uint32_t samples_per_triangle = 2;  ///< carried samples are thinned to so many per triangle, the farthest first
 };
 
 struct GroupDeviation {
-  double deviation = 0.0;       ///< object units; at least what was found, or `floor` if nothing exceeds it
+  double deviation = 0.0;              ///< object units; at least what was found, or `floor` if nothing exceeds it
   std::vector<CarriedSample> carried;  ///< thinned, triangle = index into the group's triangles
 };
 
-/// Level 0: the samples that each source triangle starts with (its corners and more), carried by itself. `triangle` of a
-/// sample is the index of the source triangle.
+/// Level 0: the samples that each source triangle starts with (its corners and more), carried by itself. `triangle` of
+/// a sample is the index of the source triangle.
 [[nodiscard]] std::vector<CarriedSample> initial_samples(const SourceTree& source);
 
-/// Measures one simplified group. `samples` are those of all its members. Errors cannot happen: degenerate triangles are
-/// points or segments. An empty surface with samples has an infinite deviation.
+/// Measures one simplified group. `samples` are those of all its members. Errors cannot happen: degenerate triangles
+/// are points or segments. An empty surface with samples has an infinite deviation.
 [[nodiscard]] GroupDeviation measure_group(const SourceTree& source, const GroupSurface& group,
                                            std::span<const CarriedSample> samples, const DeviationTierOptions& options);
+
+/// What is proven of one triangle of a level. Object units.
+struct TriangleBound {
+  double from_source = 0.0;  ///< every source point that was handed to it is so near
+  double to_source = 0.0;    ///< every point of it is so near to the source
+};
+
+using TriangleCorners3 = std::array<Vec3d, 3>;
+
+/// Level 0: a triangle of the source and what the grid made of it, corner by corner.
+[[nodiscard]] TriangleBound initial_bound(const TriangleCorners3& exact, const TriangleCorners3& on_grid);
+
+struct CertifiedGroup {
+  double deviation = 0.0;             ///< the largest of all its bounds
+  std::vector<TriangleBound> bounds;  ///< per coarser triangle
+};
+
+/// The `certified` tier: from what is proven of the triangles of a group to what is proven of what replaces them. Needs
+/// no samples and no source: the source's part was taken into account at level 0.
+[[nodiscard]] CertifiedGroup certify_group(const GroupSurface& finer, std::span<const TriangleBound> finer_bounds,
+                                           const GroupSurface& coarser);
 
 }  // namespace meshlode

@@ -24,12 +24,13 @@ namespace meshlode {
 
 /// What goes on to the next level: for each triangle of the group the farthest samples, some spread, and whatever is
 /// near the group's maximum. Ordered by triangle.
-[[nodiscard]] std::vector<CarriedSample> thin_samples(std::span<const CarriedSample> samples, std::size_t triangle_count,
-                                                      std::uint32_t samples_per_triangle, double maximum);
+[[nodiscard]] std::vector<CarriedSample> thin_samples(std::span<const CarriedSample> samples,
+                                                      std::size_t triangle_count, std::uint32_t samples_per_triangle,
+                                                      double maximum);
 
 /// Group to source: the larger of `maximum` and what is found, by adaptive subdivision near the maximum. `places` has
 /// for each triangle of the group where its search may begin.
-[[nodiscard]] double measure_to_source(const SurfaceTree& source, const GroupSurface& group,
-                                       const GroupEdges& edges, std::vector<std::uint32_t> places, double maximum);
+[[nodiscard]] double measure_to_source(const SurfaceTree& source, const GroupSurface& group, const GroupEdges& edges,
+                                       std::vector<std::uint32_t> places, double maximum);
 
 }  // namespace meshlode

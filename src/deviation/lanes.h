@@ -11,7 +11,9 @@ namespace meshlode {
 using Lanes = float __attribute__((vector_size(16)));
 using LaneMask = std::int32_t __attribute__((vector_size(16)));
 
-[[nodiscard]] inline Lanes lanes(float x) { return Lanes{x, x, x, x}; }
+[[nodiscard]] inline Lanes lanes(float x) {
+  return Lanes{x, x, x, x};
+}
 
 [[nodiscard]] inline Lanes load_lanes(const float* from) {
   Lanes value;
@@ -30,7 +32,11 @@ using LaneMask = std::int32_t __attribute__((vector_size(16)));
   return result;
 }
 
-[[nodiscard]] inline Lanes min_lanes(Lanes a, Lanes b) { return choose(a < b, a, b); }
-[[nodiscard]] inline Lanes max_lanes(Lanes a, Lanes b) { return choose(a > b, a, b); }
+[[nodiscard]] inline Lanes min_lanes(Lanes a, Lanes b) {
+  return choose(a < b, a, b);
+}
+[[nodiscard]] inline Lanes max_lanes(Lanes a, Lanes b) {
+  return choose(a > b, a, b);
+}
 
 }  // namespace meshlode

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Group to source, estimated from below: points on the group's triangles, and adaptive subdivision where they say that
-// the maximum may lie (in the manner of Metro, Cignoni, Rocchini and Scopigno 1998, but with the effort where it counts).
+// the maximum may lie (in the manner of Metro, Cignoni, Rocchini and Scopigno 1998, but with the effort where it
+// counts).
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -152,8 +153,8 @@ double measure_to_source(const SurfaceTree& source, const GroupSurface& group, c
   return probe.maximum();
 }
 
-GroupDeviation measure_group(const SourceTree& source, const GroupSurface& group, std::span<const CarriedSample> samples,
-                             const DeviationTierOptions& options) {
+GroupDeviation measure_group(const SourceTree& source, const GroupSurface& group,
+                             std::span<const CarriedSample> samples, const DeviationTierOptions& options) {
   GroupDeviation result;
   result.deviation = options.floor;
   const SurfaceTree& source_tree = source.impl().tree;
@@ -166,7 +167,8 @@ GroupDeviation measure_group(const SourceTree& source, const GroupSurface& group
   std::vector<CarriedSample> projected(samples.begin(), samples.end());
   const GroupEdges edges(group);
   double to_group = project_samples(group_tree, projected);
-  to_group = std::max(to_group, search_source(source.impl(), group, group_tree, edges, std::max(options.floor, to_group), projected));
+  to_group = std::max(
+      to_group, search_source(source.impl(), group, group_tree, edges, std::max(options.floor, to_group), projected));
   result.carried = thin_samples(projected, group.triangles.size(), options.samples_per_triangle, to_group);
   std::vector<std::uint32_t> places(group.triangles.size(), SurfaceTree::kNone);
   for (const CarriedSample& sample : result.carried) places[sample.triangle] = sample.place;

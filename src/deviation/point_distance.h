@@ -32,8 +32,9 @@ using TriangleCorners = std::array<Vec3d, 3>;
   const Vec3d n = glm::cross(ab, ac);
   const double nn = glm::dot(n, n);
   const double longest2 = std::max(glm::dot(ab, ab), std::max(glm::dot(ac, ac), glm::dot(bc, bc)));
-  // Twice the area against the longest edge: below a sine of 1e-9 the normal is mostly rounding.
-  if (nn > 1e-18 * longest2 * longest2) {
+  // Twice the area against the longest edge: a sine. Below 1e-5 the normal begins to feel the rounding, and the inside
+  // is that close to the edges anyway.
+  if (nn > 1e-10 * longest2 * longest2) {
     const double u = glm::dot(glm::cross(ab, pa), n);
     const double v = glm::dot(glm::cross(pa, ac), n);
     if (u >= 0.0 && v >= 0.0 && glm::dot(glm::cross(bc, p - corners[1]), n) >= 0.0) {

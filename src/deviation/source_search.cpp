@@ -103,8 +103,8 @@ class SourceSearch {
     std::uint32_t vertex, place;
   };
 
-  // A seed knows its triangle of the group; the tree's places are near each other where triangles are, so that any place
-  // will do to begin with.
+  // A seed knows its triangle of the group; the tree's places are near each other where triangles are, so that any
+  // place will do to begin with.
   [[nodiscard]] std::uint32_t place_of_triangle(const CarriedSample& seed) const {
     return tree_.find_nearest(tree_.to_frame(seed.point), {}, 0.0F).slot;
   }

@@ -3,6 +3,7 @@
 #include "deviation/source_tree.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "base/parallel.h"
@@ -37,22 +38,47 @@ Spacing choose_spacing(const SourceTree::Impl& source) {
   return {std::min(2.0 * mean_edge, std::sqrt(area / kLeastSamples))};
 }
 
+/// Copies the source with one id for each position, numbered by first use: seams of attributes do not stop a search.
+void weld(std::span<const Vec3d> positions, std::span<const std::array<std::uint32_t, 3>> triangles,
+          SourceTree::Impl& out) {
+  constexpr std::uint32_t kEmpty = 0xFFFFFFFFU;
+  std::vector<std::uint32_t> slots(std::bit_ceil(2 * positions.size() + 1), kEmpty);
+  std::vector<std::uint32_t> id(positions.size());
+  out.positions.reserve(positions.size());
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const Vec3d p = positions[i] + 0.0;  // one zero, not two
+    std::uint64_t h = 0;
+    for (int k = 0; k < 3; ++k) {
+      h = (h ^ std::bit_cast<std::uint64_t>(p[k])) * 0x9E3779B97F4A7C15ULL;
+      h ^= h >> 32U;
+    }
+    std::size_t at = h & (slots.size() - 1);
+    while (slots[at] != kEmpty && out.positions[slots[at]] != p) at = (at + 1) & (slots.size() - 1);
+    if (slots[at] == kEmpty) {
+      slots[at] = static_cast<std::uint32_t>(out.positions.size());
+      out.positions.push_back(p);
+    }
+    id[i] = slots[at];
+  }
+  out.triangles.reserve(triangles.size());
+  for (const auto& t : triangles) out.triangles.push_back({id[t[0]], id[t[1]], id[t[2]]});
+}
+
 }  // namespace
 
 SourceTree::SourceTree(std::span<const Vec3d> positions, std::span<const std::array<std::uint32_t, 3>> triangles)
     : impl_(std::make_unique<Impl>()) {
-  impl_->positions.assign(positions.begin(), positions.end());
-  impl_->triangles.assign(triangles.begin(), triangles.end());
+  weld(positions, triangles, *impl_);
   impl_->tree.build({impl_->positions, impl_->triangles});
   std::vector<std::uint32_t>& first = impl_->first_corner;
-  first.assign(positions.size() + 2, 0);
-  for (const auto& t : triangles) {
+  first.assign(impl_->positions.size() + 2, 0);
+  for (const auto& t : impl_->triangles) {
     for (const std::uint32_t v : t) ++first[v + 2];
   }
   for (std::size_t v = 2; v < first.size(); ++v) first[v] += first[v - 1];
   impl_->triangle_of_corner.resize(3 * triangles.size());
   for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-    for (const std::uint32_t v : triangles[t]) impl_->triangle_of_corner[first[v + 1]++] = t;
+    for (const std::uint32_t v : impl_->triangles[t]) impl_->triangle_of_corner[first[v + 1]++] = t;
   }
   first.pop_back();
   impl_->place.resize(triangles.size());
@@ -85,7 +111,8 @@ std::vector<CarriedSample> initial_samples(const SourceTree& source) {
       for (std::uint32_t i = 1; i < parts; ++i) add(p[k] + (p[(k + 1) % 3] - p[k]) * (static_cast<double>(i) / parts));
     }
     // The inside: a lattice along the two shorter edges, where the height asks for one.
-    const double longest = std::max(glm::length(p[1] - p[0]), std::max(glm::length(p[2] - p[1]), glm::length(p[0] - p[2])));
+    const double longest =
+        std::max(glm::length(p[1] - p[0]), std::max(glm::length(p[2] - p[1]), glm::length(p[0] - p[2])));
     const double height = longest > 0.0 ? glm::length(glm::cross(p[1] - p[0], p[2] - p[0])) / longest : 0.0;
     const std::uint32_t parts = height > spacing.length ? spacing.parts(longest) : 1;
     for (std::uint32_t i = 1; i < parts; ++i) {

@@ -26,8 +26,12 @@ struct Vec3Lanes {
 inline Vec3Lanes load3(const std::array<std::array<float, 4>, 3>& from) {
   return {load_lanes(from[0].data()), load_lanes(from[1].data()), load_lanes(from[2].data())};
 }
-inline Vec3Lanes operator-(const Vec3Lanes& a, const Vec3Lanes& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-inline Lanes dot(const Vec3Lanes& a, const Vec3Lanes& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline Vec3Lanes operator-(const Vec3Lanes& a, const Vec3Lanes& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+inline Lanes dot(const Vec3Lanes& a, const Vec3Lanes& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
 inline Vec3Lanes cross(const Vec3Lanes& a, const Vec3Lanes& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
@@ -60,7 +64,8 @@ void SurfaceTree::build(const Surface& surface) {
   std::vector<Item> items(surface.triangles.size());
   parallel_for_each_index(items.size(), 4096, [&](std::size_t i) {
     const auto& t = surface.triangles[i];
-    const Vec3f center = to_frame(surface.positions[t[0]]) + to_frame(surface.positions[t[1]]) + to_frame(surface.positions[t[2]]);
+    const Vec3f center =
+        to_frame(surface.positions[t[0]]) + to_frame(surface.positions[t[1]]) + to_frame(surface.positions[t[2]]);
     items[i] = {{center.x, center.y, center.z}, static_cast<std::uint32_t>(i)};
   });
   // Whole levels, so that places follow from numbers: 4^depth leaves have room for all.
@@ -153,7 +158,8 @@ void SurfaceTree::fill_nodes() {
   const std::size_t depth = level_start_.size() - 1;
   for (std::size_t level = depth; level-- > 0;) {
     const std::size_t count = level_start_[level + 1] - level_start_[level];
-    const std::size_t child_count = level + 1 == depth ? leaves_.size() : level_start_[level + 2] - level_start_[level + 1];
+    const std::size_t child_count =
+        level + 1 == depth ? leaves_.size() : level_start_[level + 2] - level_start_[level + 1];
     parallel_for_each_index(count, 1024, [&](std::size_t i) {
       Node& node = nodes_[level_start_[level] + i];
       for (std::size_t k = 0; k < 4; ++k) {
@@ -195,11 +201,12 @@ SurfaceTree::Hit SurfaceTree::test_leaf(const Vec3f& point, std::uint32_t index,
   const Lanes longest2 = max_lanes(ab2, max_lanes(ac2, bc2));
   const Lanes u = dot(cross(ab, pa), n), v = dot(cross(pa, ac), n), w = nn - u - v;
   const Lanes height = dot(pa, n);
-  const LaneMask is_over = (u >= 0.0F) & (v >= 0.0F) & (w >= 0.0F) & (nn > kNeedleSine * kNeedleSine * longest2 * longest2);
+  const LaneMask is_over =
+      (u >= 0.0F) & (v >= 0.0F) & (w >= 0.0F) & (nn > kNeedleSine * kNeedleSine * longest2 * longest2);
   const Lanes by_plane = height * height / max_lanes(nn, lanes(1e-37F));
-  const Lanes by_edge = min_lanes(segment_distance2(pa, ab, dot(pa, ab), ab2),
-                                  min_lanes(segment_distance2(pa, ac, dot(pa, ac), ac2),
-                                            segment_distance2(pb, bc, dot(pb, bc), bc2)));
+  const Lanes by_edge =
+      min_lanes(segment_distance2(pa, ab, dot(pa, ab), ab2),
+                min_lanes(segment_distance2(pa, ac, dot(pa, ac), ac2), segment_distance2(pb, bc, dot(pb, bc), bc2)));
   const Lanes distance2 = choose(is_over, by_plane, by_edge);
   for (std::uint32_t k = 0; k < kLeafSize; ++k) {
     if (distance2[k] < best.distance2) best = {std::min(4 * index + k, size() - 1), distance2[k]};
@@ -226,14 +233,18 @@ SurfaceTree::Hit SurfaceTree::find_nearest(const Vec3f& point, Hit best, float e
     } else {
       const Node& node = nodes_[level_start_[entry.level] + entry.index];
       const Lanes zero = lanes(0.0F);
-      const Lanes dx = max_lanes(max_lanes(load_lanes(node.low[0].data()) - px, px - load_lanes(node.high[0].data())), zero);
-      const Lanes dy = max_lanes(max_lanes(load_lanes(node.low[1].data()) - py, py - load_lanes(node.high[1].data())), zero);
-      const Lanes dz = max_lanes(max_lanes(load_lanes(node.low[2].data()) - pz, pz - load_lanes(node.high[2].data())), zero);
+      const Lanes dx =
+          max_lanes(max_lanes(load_lanes(node.low[0].data()) - px, px - load_lanes(node.high[0].data())), zero);
+      const Lanes dy =
+          max_lanes(max_lanes(load_lanes(node.low[1].data()) - py, py - load_lanes(node.high[1].data())), zero);
+      const Lanes dz =
+          max_lanes(max_lanes(load_lanes(node.low[2].data()) - pz, pz - load_lanes(node.high[2].data())), zero);
       const Lanes d = dx * dx + dy * dy + dz * dz;
       // Non-negative floats order like their bits: the child's number goes into the lowest two, and four integers are
       // sorted with the far ones first.
       std::array<std::uint32_t, 4> keys;
-      for (std::uint32_t k = 0; k < 4; ++k) keys[k] = (std::bit_cast<std::uint32_t>(static_cast<float>(d[k])) & ~3U) | k;
+      for (std::uint32_t k = 0; k < 4; ++k)
+        keys[k] = (std::bit_cast<std::uint32_t>(static_cast<float>(d[k])) & ~3U) | k;
       const auto order = [&](std::size_t i, std::size_t j) {
         const std::uint32_t a = std::max(keys[i], keys[j]);
         keys[j] = std::min(keys[i], keys[j]);

@@ -36,8 +36,11 @@ class SurfaceTree {
 
   [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(slot_triangle_.size()); }
   [[nodiscard]] std::uint32_t triangle_at(std::uint32_t slot) const { return slot_triangle_[slot]; }
+  [[nodiscard]] const std::array<std::uint32_t, 3>& indices_at(std::uint32_t slot) const {
+    return surface_.triangles[slot_triangle_[slot]];
+  }
   [[nodiscard]] TriangleCorners corners_at(std::uint32_t slot) const {
-    const auto& t = surface_.triangles[slot_triangle_[slot]];
+    const auto& t = indices_at(slot);
     return {surface_.positions[t[0]], surface_.positions[t[1]], surface_.positions[t[2]]};
   }
   [[nodiscard]] double distance2_at(const Vec3d& point, std::uint32_t slot) const {

@@ -116,7 +116,9 @@ TEST(Measured, RandomSimplificationsAreWithinFivePercentOfTheDenseTruth) {
       case 0: shape = samples::make_sphere(4 * n), simple = samples::make_sphere(n); break;
       case 1: shape = samples::make_torus(12 * n, 8 * n), simple = samples::make_torus(3 * n, 2 * n); break;
       case 2: shape = samples::make_rock(6 * n, 7), simple = samples::make_rock(2 * n, 7); break;
-      default: shape = samples::make_terrain(12 * n, 9 * n, 11), simple = samples::make_terrain(4 * n, 3 * n, 11); break;
+      default:
+        shape = samples::make_terrain(12 * n, 9 * n, 11), simple = samples::make_terrain(4 * n, 3 * n, 11);
+        break;
     }
     Surface fine = as_surface(shape), coarse = as_surface(simple);
     for (Vec3d& p : coarse.positions) {
@@ -142,8 +144,8 @@ TEST(Measured, SamplesAreThinnedButTheFarthestStay) {
   for (const CarriedSample& sample : result.carried) {
     ASSERT_LT(sample.triangle, coarse.triangles.size());
     const auto& t = coarse.triangles[sample.triangle];
-    const double truth = std::sqrt(distance2_to_triangle(sample.point, coarse.positions[t[0]], coarse.positions[t[1]],
-                                                         coarse.positions[t[2]]));
+    const double truth = std::sqrt(
+        distance2_to_triangle(sample.point, coarse.positions[t[0]], coarse.positions[t[1]], coarse.positions[t[2]]));
     EXPECT_NEAR(sample.distance, truth, 1e-6);
     farthest = std::max(farthest, sample.distance);
   }
@@ -162,6 +164,19 @@ TEST(Measured, AChainOfLevelsKeepsWhatTheFirstHad) {
     EXPECT_GE(result.deviation, 0.999 * dense_truth(fine, coarse)) << n;
     samples = std::move(result.carried);
   }
+}
+
+TEST(Measured, SeamsDoNotStopTheSearch) {
+  // The same sphere with a vertex of its own for every corner: what is found must not depend on it.
+  Primitive shape = samples::make_sphere(24);
+  shape.positions[500] *= 1.25;
+  const Surface coarse = as_surface(samples::make_sphere(4));
+  const Surface whole = as_surface(shape), split = as_surface(samples::with_split_normals(shape));
+  const GroupDeviation a = measure_one_step(whole, coarse), b = measure_one_step(split, coarse);
+  EXPECT_NEAR(a.deviation, b.deviation, 1e-3 * a.deviation);
+  EXPECT_NEAR(a.deviation, 0.25, 0.03);
+  const SourceTree tree(split.positions, split.triangles);
+  EXPECT_EQ(initial_samples(tree).size(), initial_samples(SourceTree(whole.positions, whole.triangles)).size());
 }
 
 TEST(Measured, TheSameBitsForAnyThreadCount) {

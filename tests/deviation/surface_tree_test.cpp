@@ -16,8 +16,8 @@ using test::Random;
 double brute_force(const Surface& surface, const Vec3d& p) {
   double best = std::numeric_limits<double>::infinity();
   for (const auto& t : surface.triangles) {
-    best = std::min(best, point_triangle_distance2(
-                              p, {surface.positions[t[0]], surface.positions[t[1]], surface.positions[t[2]]}));
+    best = std::min(
+        best, point_triangle_distance2(p, {surface.positions[t[0]], surface.positions[t[1]], surface.positions[t[2]]}));
   }
   return std::sqrt(best);
 }
@@ -89,7 +89,8 @@ TEST(SurfaceTree, AnEarlyStopIsWithinWhatWasAskedFor) {
     EXPECT_GE(hit.distance2, nearest.distance2);
     EXPECT_TRUE(hit.distance2 <= enough || hit.distance2 == nearest.distance2);
     // A hint changes nothing but the time.
-    const SurfaceTree::Hit hinted = tree.find_nearest(tree.to_frame(p), tree.look_around(tree.to_frame(p), 7, {}), 0.0F);
+    const SurfaceTree::Hit hinted =
+        tree.find_nearest(tree.to_frame(p), tree.look_around(tree.to_frame(p), 7, {}), 0.0F);
     EXPECT_EQ(hinted.distance2, nearest.distance2);
   }
 }

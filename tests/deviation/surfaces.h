@@ -28,10 +28,13 @@ inline Surface transformed(Surface surface, double factor, const Vec3d& offset) 
   return surface;
 }
 
-inline GroupSurface as_group(const Surface& surface) { return {surface.positions, surface.triangles}; }
+inline GroupSurface as_group(const Surface& surface) {
+  return {surface.positions, surface.triangles};
+}
 
 /// `coarse` as the one group of level 1 over all of `fine`.
-inline GroupDeviation measure_one_step(const Surface& fine, const Surface& coarse, const DeviationTierOptions& options = {}) {
+inline GroupDeviation measure_one_step(const Surface& fine, const Surface& coarse,
+                                       const DeviationTierOptions& options = {}) {
   const SourceTree source(fine.positions, fine.triangles);
   return measure_group(source, as_group(coarse), initial_samples(source), options);
 }
