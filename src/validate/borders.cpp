@@ -72,15 +72,17 @@ class Components {
   std::map<std::uint32_t, std::uint32_t> parent_;
 };
 
-/// How many independent loops a set of edges has: E - V + components, edges counted as often as they are removed.
-std::int64_t count_loops(const MeshSurface& surface, std::span<const Exchange> exchanges) {
+/// How many independent loops the removed (or the added) edges have: E - V + components, edges counted as often as
+/// used.
+std::int64_t count_loops(const MeshSurface& surface, std::span<const Exchange> exchanges,
+                         std::int32_t Exchange::*uses) {
   Components components;
   std::vector<std::uint32_t> positions;
   std::int64_t loops = 0;
   for (const Exchange& exchange : exchanges) {
-    if (exchange.removed == 0) continue;
+    if (exchange.*uses == 0) continue;
     const auto& [a, b] = surface.edges[exchange.edge];
-    loops += std::abs(exchange.removed);
+    loops += std::abs(exchange.*uses);
     components.join(a, b);
     positions.push_back(a);
     positions.push_back(b);
@@ -107,8 +109,7 @@ std::string refuse(const MeshSurface& surface, const BorderSet& border, std::spa
   }
   for (std::uint32_t& position : anchored) position = components.find(position);
   std::sort(anchored.begin(), anchored.end());
-  // What is added hangs together with what it replaces, or is a whole loop whose every vertex moved. Collapsing edges
-  // never makes more loops of a border than there were.
+  // What is added hangs together with what it replaces, or is a whole loop whose every vertex moved.
   std::vector<std::uint32_t> new_loops;
   std::uint32_t last_edge = 0;
   for (const Exchange& exchange : exchanges) {
@@ -119,8 +120,16 @@ std::string refuse(const MeshSurface& surface, const BorderSet& border, std::spa
   }
   std::sort(new_loops.begin(), new_loops.end());
   new_loops.erase(std::unique(new_loops.begin(), new_loops.end()), new_loops.end());
-  if (std::cmp_greater(new_loops.size(), count_loops(surface, exchanges))) {
+  const std::int64_t removed_loops = count_loops(surface, exchanges, &Exchange::removed);
+  if (std::cmp_greater(new_loops.size(), removed_loops)) {
     return "edge " + edge_text(surface, last_edge) + " of the coarser set opens a border where the finer set has none";
+  }
+  // A path stands for a path and a loop for a loop: a hole that hangs on a simplified border by a vertex is one loop
+  // more.
+  const std::int64_t added_loops = count_loops(surface, exchanges, &Exchange::added);
+  if (added_loops > removed_loops) {
+    return "the coarser set has " + std::to_string(added_loops) + " new loops of border for " +
+           std::to_string(removed_loops) + " of the finer set, by edge " + edge_text(surface, exchanges.back().edge);
   }
   return {};
 }

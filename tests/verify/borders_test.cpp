@@ -157,6 +157,16 @@ TEST(BorderProof, ARimThatMovesDoesNotHideAHole) {
   EXPECT_EQ(prove({square(4)}, ring).violations.size(), 1U);
 }
 
+TEST(BorderProof, AHoleThatHangsOnASimplifiedRimIsNoPartOfIt) {
+  // The rim is simplified and one triangle of the fan is missing: its hole has a rim edge, so it hangs on what changed.
+  Patch open = square(2);
+  open.pop_back();
+  open.push_back({Corner{0, 0, 0}, Corner{-8, 0, 0}, Corner{-4, -2, 0}});
+  open.push_back({Corner{-4, -2, 0}, Corner{-8, 0, 0}, Corner{-8, -8, 0}});
+  EXPECT_TRUE(prove({square(4)}, square(2)).violations.empty());
+  EXPECT_EQ(prove({square(4)}, open).violations.size(), 1U);
+}
+
 TEST(BorderProof, AHoleInsideAnOpenSurfaceIsNoBorder) {
   // The fan's triangles are split by a smaller square inside; the inner part goes.
   const Patch finer = square(4);
