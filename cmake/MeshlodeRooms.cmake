@@ -37,7 +37,7 @@ function(meshlode_add_test name)
   if(NOT arg_TIMEOUT)
     set(arg_TIMEOUT 300)
   endif()
-  if("unit" IN_LIST arg_LABELS OR "malformed" IN_LIST arg_LABELS)
+  if(NOT "slow" IN_LIST arg_LABELS AND ("unit" IN_LIST arg_LABELS OR "malformed" IN_LIST arg_LABELS))
     set_property(GLOBAL APPEND PROPERTY MESHLODE_CORE_TESTS ${name})
   endif()
   gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST TEST_LIST ${name}_cases
