@@ -5,7 +5,8 @@
 //
 // Where the source is open, its border may be simplified. B starts as the chain of all level-0 clusters. Going from
 // fine to coarse, a group may exchange border edges that are in B for others, which then belong to B too. What comes
-// must hang together with what goes, or be a whole loop in place of a whole loop, so that no hole can open inside.
+// must hang together with what goes or be a loop whose every vertex moved, and it may have no more loops than what goes,
+// so that no hole can open inside.
 #pragma once
 
 #include <cstdint>
