@@ -384,7 +384,7 @@ typename GroupSimplifier<C>::Placement GroupSimplifier<C>::place(std::uint32_t a
 
 /// I3 for attributes. A triangle (locked, moved, c) with c locked goes; the triangle across (moved, c) inherits the edge
 /// (locked, c), which may lie on the group's border. If another group shades that edge with the same wedges, the heir
-/// must bring them: (moved, c) may not be a crease. `around` are the corners at the moved vertex.
+/// must bring them: (moved, c) may not be a crease. And no border edge gets a corner with attributes that nothing had there. `around` are the corners at the moved vertex.
 template <std::size_t C>
 bool GroupSimplifier<C>::keeps_shared_corners(std::uint32_t locked,
                                               const std::vector<std::uint32_t>& around) const {
@@ -395,10 +395,22 @@ bool GroupSimplifier<C>::keeps_shared_corners(std::uint32_t locked,
     }
     return CollapseMesh::kEnd;
   };
+  const auto joins_locked_wedge = [&](std::uint32_t wedge) {
+    return std::any_of(classes_.begin(), classes_.begin() + static_cast<std::ptrdiff_t>(class_count_), [&](const WedgeClass& c) {
+      return c.fixed != kSeveralWedges && std::find(c.members.begin(), c.members.end(), wedge) != c.members.end();
+    });
+  };
   for (const std::uint32_t corner : around) {
     const std::uint32_t t = corner / 3;
     const std::uint32_t at_locked = corner_in(t, locked);
-    if (at_locked == CollapseMesh::kEnd) continue;
+    if (at_locked == CollapseMesh::kEnd) {
+      // The triangle will stand on the locked vertex. If it has another locked one, their edge may be the border.
+      const std::uint32_t next = CollapseMesh::next_in_triangle(corner);
+      const bool may_be_border = is_locked_[mesh_.vertex(next)] != 0 ||
+                                 is_locked_[mesh_.vertex(CollapseMesh::next_in_triangle(next))] != 0;
+      if (may_be_border && !joins_locked_wedge(mesh_.wedge(corner))) return false;
+      continue;
+    }
     const std::uint32_t at_tip = 3 * t + (3 - corner % 3 - at_locked % 3);
     if (is_locked_[mesh_.vertex(at_tip)] == 0) continue;
     const bool is_locked_shared = input_.is_wedge_shared[mesh_.wedge(at_locked)] != 0;
