@@ -16,12 +16,6 @@ namespace meshlode {
 /// Source to group. Sets each sample's triangle and distance; returns the largest distance.
 [[nodiscard]] double project_samples(const SurfaceTree& group_tree, std::vector<CarriedSample>& samples);
 
-/// Source to group around the farthest samples: the larger of `maximum` and what is found. Points that raised it are
-/// appended to the samples.
-[[nodiscard]] double search_source(const SourceTree::Impl& source, const GroupSurface& group,
-                                   const SurfaceTree& group_tree, const GroupEdges& edges, double maximum,
-                                   std::vector<CarriedSample>& samples);
-
 /// What goes on to the next level: for each triangle of the group the farthest samples, some spread, and whatever is
 /// near the group's maximum. Ordered by triangle.
 [[nodiscard]] std::vector<CarriedSample> thin_samples(std::span<const CarriedSample> samples,
@@ -29,8 +23,16 @@ namespace meshlode {
                                                       double maximum);
 
 /// Group to source: the larger of `maximum` and what is found, by adaptive subdivision near the maximum. `places` has
-/// for each triangle of the group where its search may begin.
+/// for each triangle of the group where its search may begin. `high` gets points of the group near the maximum; their
+/// places are those of their nearest triangles of the source.
 [[nodiscard]] double measure_to_source(const SurfaceTree& source, const GroupSurface& group, const GroupEdges& edges,
-                                       std::vector<std::uint32_t> places, double maximum);
+                                       const std::vector<std::uint32_t>& places, double maximum,
+                                       std::vector<CarriedSample>& high);
+
+/// Source to group around the farthest samples and around `high`: the larger of `maximum` and what is found. Points
+/// that raised it are appended to the samples.
+[[nodiscard]] double search_source(const SourceTree::Impl& source, const GroupSurface& group,
+                                   const SurfaceTree& group_tree, const GroupEdges& edges, double maximum,
+                                   std::span<const CarriedSample> high, std::vector<CarriedSample>& samples);
 
 }  // namespace meshlode

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "deviation/group_measure.h"
+#include "deviation/patch.h"
 
 namespace meshlode {
 
@@ -15,23 +16,14 @@ namespace {
 
 // Points nearer than this share of the maximum are not measured exactly: nothing beside them will exceed it.
 constexpr double kDismissShare = 0.5;
-// How far a patch may rise above its six points, as a share of how much they differ. A parabola's top lies at most 1/3
-// above, the ridge of a crease 1/2 in the worst case.
-constexpr double kRise = 0.4;
-// A patch that cannot raise the maximum by more than this is left alone.
-constexpr double kWorthwhile = 1.01;
-
-struct Probe {
-  double value = 0.0;
-  std::uint32_t place = 0;
-};
-
+// Points above this share of the maximum are told: the other direction may have its maximum beside them.
+constexpr double kNearMaximum = 0.9;
 /// Distances to the source, with the maximum so far.
 class SourceProbe {
  public:
   SourceProbe(const SurfaceTree& tree, double maximum) : tree_(tree) { raise(maximum); }
 
-  [[nodiscard]] Probe measure(const Vec3d& point, std::uint32_t place) {
+  [[nodiscard]] Probe measure(const Vec3d& point, std::uint32_t place, std::uint32_t /*owner*/ = 0) {
     const Vec3f at = tree_.to_frame(point);
     SurfaceTree::Hit hit = tree_.look_around(at, place, {});
     if (!(hit.distance2 <= enough_)) hit = tree_.find_nearest(at, hit, enough_);
@@ -39,9 +31,11 @@ class SourceProbe {
     if (hit.distance2 <= enough_) return {std::sqrt(static_cast<double>(hit.distance2)) / tree_.scale(), hit.slot};
     const double value = std::sqrt(tree_.distance2_at(point, hit.slot));
     if (value > maximum_) raise(value);
+    if (value > kNearMaximum * maximum_) high_.push_back({point, 0, static_cast<float>(value), hit.slot});
     return {value, hit.slot};
   }
   [[nodiscard]] double maximum() const { return maximum_; }
+  [[nodiscard]] std::vector<CarriedSample> take_high() { return std::move(high_); }
 
  private:
   void raise(double maximum) {
@@ -52,61 +46,14 @@ class SourceProbe {
 
   const SurfaceTree& tree_;
   double maximum_ = 0.0;
-  float enough_ = 0.0F;  ///< squared, in the tree's frame
+  float enough_ = 0.0F;              ///< squared, in the tree's frame
+  std::vector<CarriedSample> high_;  ///< near what was the maximum then
 };
-
-/// A triangle with six points: its corners, and the middles of its edges (of the edge that starts at corner k).
-struct Patch {
-  std::array<Vec3d, 3> corner;
-  std::array<Probe, 3> at_corner, at_middle;
-  double estimate = 0.0;
-  std::uint32_t order = 0;  ///< of creation: ties are decided by it
-
-  void set_estimate(double extra_low, double extra_high) {
-    double low = extra_low, high = extra_high;
-    for (std::size_t k = 0; k < 3; ++k) {
-      low = std::min(low, std::min(at_corner[k].value, at_middle[k].value));
-      high = std::max(high, std::max(at_corner[k].value, at_middle[k].value));
-    }
-    estimate = high + kRise * (high - low);
-  }
-  [[nodiscard]] Vec3d middle(std::size_t k) const { return (corner[k] + corner[(k + 1) % 3]) * 0.5; }
-  [[nodiscard]] bool operator<(const Patch& other) const {
-    return estimate != other.estimate ? estimate < other.estimate : order > other.order;
-  }
-};
-
-/// Into four, with nine new points.
-void split(const Patch& patch, SourceProbe& probe, std::uint32_t& order, std::vector<Patch>& heap) {
-  std::array<Vec3d, 3> middle;
-  for (std::size_t k = 0; k < 3; ++k) middle[k] = patch.middle(k);
-  std::array<Patch, 4> parts;
-  for (std::size_t k = 0; k < 3; ++k) {  // at corner k: the corner, the middle after it, the middle before it
-    const std::size_t before = (k + 2) % 3;
-    parts[k].corner = {patch.corner[k], middle[k], middle[before]};
-    parts[k].at_corner = {patch.at_corner[k], patch.at_middle[k], patch.at_middle[before]};
-    for (std::size_t j = 0; j < 3; ++j) {
-      parts[k].at_middle[j] = probe.measure(parts[k].middle(j), parts[k].at_corner[j].place);
-    }
-  }
-  parts[3].corner = middle;
-  parts[3].at_corner = patch.at_middle;
-  // The middle part's edge from middle k to middle k+1 is the inner edge of the part at corner k+1.
-  for (std::size_t k = 0; k < 3; ++k) parts[3].at_middle[k] = parts[(k + 1) % 3].at_middle[1];
-  for (Patch& part : parts) {
-    part.set_estimate(part.at_corner[0].value, part.at_corner[0].value);
-    part.order = order++;
-    if (part.estimate > kWorthwhile * probe.maximum()) {
-      heap.push_back(part);
-      std::push_heap(heap.begin(), heap.end());
-    }
-  }
-}
 
 }  // namespace
 
 double measure_to_source(const SurfaceTree& source, const GroupSurface& group, const GroupEdges& edges,
-                         std::vector<std::uint32_t> places, double maximum) {
+                         const std::vector<std::uint32_t>& places, double maximum, std::vector<CarriedSample>& high) {
   SourceProbe probe(source, maximum);
   const std::size_t count = group.triangles.size();
   constexpr std::uint32_t kUnknown = 0xFFFFFFFFU;
@@ -114,8 +61,6 @@ double measure_to_source(const SurfaceTree& source, const GroupSurface& group, c
   std::vector<Patch> patches(count);
   std::vector<Probe> at_edge(edges.use_count.size(), {0.0, kUnknown});
   std::uint32_t place = 0;
-  // Every patch is made before any is split: what is highest is refined first.
-  std::vector<std::pair<double, double>> range(count);
   for (std::size_t t = 0; t < count; ++t) {
     const auto& ids = group.triangles[t];
     Patch& patch = patches[t];
@@ -133,23 +78,13 @@ double measure_to_source(const SurfaceTree& source, const GroupSurface& group, c
       if (middle.place == kUnknown) middle = probe.measure(patch.middle(k), place);
       patch.at_middle[k] = middle;
     }
-    range[t] = {center.value, center.value};
+    patch.set_estimate(center.value);
   }
-  std::uint32_t order = 0;
-  std::vector<Patch> heap;
-  for (std::size_t t = 0; t < count; ++t) {
-    patches[t].set_estimate(range[t].first, range[t].second);
-    patches[t].order = order++;
-    if (patches[t].estimate > kWorthwhile * probe.maximum()) heap.push_back(patches[t]);
-  }
-  std::make_heap(heap.begin(), heap.end());
-  for (std::size_t budget = 24 + count / 16; budget > 0 && !heap.empty(); --budget) {
-    std::pop_heap(heap.begin(), heap.end());
-    const Patch patch = heap.back();
-    heap.pop_back();
-    if (!(patch.estimate > kWorthwhile * probe.maximum())) break;
-    split(patch, probe, order, heap);
-  }
+  // Every patch is made before any is divided: what promises most comes first.
+  PatchQueue<SourceProbe> queue(probe);
+  for (const Patch& patch : patches) queue.add(patch);
+  queue.refine(24 + count / 16);
+  high = probe.take_high();
   return probe.maximum();
 }
 
@@ -166,13 +101,14 @@ GroupDeviation measure_group(const SourceTree& source, const GroupSurface& group
   group_tree.build({group.positions, group.triangles});
   std::vector<CarriedSample> projected(samples.begin(), samples.end());
   const GroupEdges edges(group);
-  double to_group = project_samples(group_tree, projected);
-  to_group = std::max(
-      to_group, search_source(source.impl(), group, group_tree, edges, std::max(options.floor, to_group), projected));
-  result.carried = thin_samples(projected, group.triangles.size(), options.samples_per_triangle, to_group);
+  double maximum = std::max(options.floor, project_samples(group_tree, projected));
   std::vector<std::uint32_t> places(group.triangles.size(), SurfaceTree::kNone);
-  for (const CarriedSample& sample : result.carried) places[sample.triangle] = sample.place;
-  result.deviation = measure_to_source(source_tree, group, edges, std::move(places), std::max(options.floor, to_group));
+  for (const CarriedSample& sample : projected) places[sample.triangle] = sample.place;
+  std::vector<CarriedSample> high;
+  maximum = measure_to_source(source_tree, group, edges, places, maximum, high);
+  maximum = search_source(source.impl(), group, group_tree, edges, maximum, high, projected);
+  result.carried = thin_samples(projected, group.triangles.size(), options.samples_per_triangle, maximum);
+  result.deviation = maximum;
   return result;
 }
 

