@@ -212,7 +212,8 @@ struct GroupRecord {
   float error;                 ///< selection error, object units, strictly growing along the DAG; kInfiniteError if terminal
   float quadric_error;         ///< the quadric's own estimate, object units
   float deviation;             ///< two-sided distance to the source, quantization included; kInfiniteError if not measured
-  float attribute_error;       ///< reserved for the attribute deviation; 0 in version 0
+  float normal_deviation;      ///< shading normals against the source's, largest angle in degrees, never falling along
+                               ///< the DAG; kInfiniteError if terminal or not measured
   std::uint32_t first_cluster; ///< members, contiguous
   std::uint32_t cluster_count;
   std::uint32_t mesh;
@@ -220,7 +221,8 @@ struct GroupRecord {
   std::uint16_t level;         ///< largest level of a member
   std::uint16_t flags;         ///< kGroup…
   StuckReason stuck_reason;
-  std::uint32_t reserved[2];
+  float uv_deviation;          ///< UVs against the source's, largest distance over all sets in UV units; the same rules
+  std::uint32_t reserved;
 };
 static_assert(sizeof(GroupRecord) == 64);
 

@@ -106,6 +106,8 @@ format::GroupRecord group_record(const DagGroup& group, const Hierarchy::Sphere&
   record.error = group.is_terminal ? format::kInfiniteError : to_stored_error(error);
   record.quadric_error = group.is_terminal ? format::kInfiniteError : to_stored_error(group.quadric_error);
   record.deviation = to_float_up(group.deviation);
+  record.normal_deviation = group.is_terminal ? format::kInfiniteError : to_float_up(group.normal_deviation);
+  record.uv_deviation = group.is_terminal ? format::kInfiniteError : to_float_up(group.uv_deviation);
   record.first_cluster = group.first_cluster;
   record.cluster_count = group.cluster_count;
   record.level = static_cast<std::uint16_t>(group.level);

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "base/ids.h"
@@ -30,6 +31,10 @@ struct DagGroup {
   double error = 0.0;               ///< selection error, object units; +inf if terminal
   double quadric_error = 0.0;       ///< the quadric's own estimate, object units; +inf if terminal
   double deviation = 0.0;           ///< +inf where not measured
+  /// Shading normals and UVs against the source's, largest, degrees and UV units. Running maxima along the DAG; +inf if
+  /// terminal, and where not measured: then for all groups of the mesh.
+  double normal_deviation = std::numeric_limits<double>::infinity();
+  double uv_deviation = std::numeric_limits<double>::infinity();
   bool is_terminal = false;
   StuckReason stuck_reason = StuckReason::kNotStuck;  ///< not kNotStuck only where terminal
 };

@@ -32,7 +32,8 @@ Status check_group(const RawTables& tables, std::size_t g, std::uint32_t mesh_id
   if (!is_error(group.error)) return fail("error", "must be finite and not negative");
   if (!is_error(group.quadric_error)) return fail("quadric_error", "must be finite and not negative");
   if (!is_error(group.deviation)) return fail("deviation", "must be finite and not negative");
-  if (!is_error(group.attribute_error)) return fail("attribute_error", "must be finite and not negative");
+  if (!is_error(group.normal_deviation)) return fail("normal_deviation", "must be finite and not negative");
+  if (!is_error(group.uv_deviation)) return fail("uv_deviation", "must be finite and not negative");
   if (group.page >= tables.pages.size()) return fail("page", "is out of range");
   if ((group.flags & ~(format::kGroupTerminal | format::kGroupStuck)) != 0) return fail("flags", "has an unknown bit");
   const bool is_terminal = (group.flags & format::kGroupTerminal) != 0;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// DAG rules (L301 … L311): who replaces whom, levels, errors and LOD spheres (I4, I5).
+// DAG rules (L301 … L312): who replaces whom, levels, errors, attribute deviations and LOD spheres (I4, I5).
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,24 @@ bool is_terminal(const GroupRecord& group) {
   return (group.flags & kGroupTerminal) != 0;
 }
 
+// A renderer compares these with a bound. Measured for some groups of a mesh alone they would be no bound for the others.
+template <class Place>
+void check_attribute_deviation(const char* name, float value, bool is_terminal_group, std::optional<bool>& is_measured,
+                               const Place& at, RuleLog& log) {
+  const auto detail = [&](const char* what) { return std::string(name) + " is " + std::to_string(value) + what; };
+  if (!log.expect(std::isfinite(value) && value >= 0.0F && !std::signbit(value), "L312", at,
+                  [&] { return detail(""); })) {
+    return;
+  }
+  if (is_terminal_group) {
+    log.expect(value == kInfiniteError, "L312", at, [&] { return detail(" in a terminal group"); });
+    return;
+  }
+  const bool is_here = value != kInfiniteError;
+  if (!is_measured) is_measured = is_here;
+  log.expect(*is_measured == is_here, "L312", at, [&] { return detail(": measured in some groups of the mesh alone"); });
+}
+
 void check_groups(const FileTables& file, RuleLog& log) {
   for (std::size_t m = 0; m < file.meshes.size(); ++m) {
     const format::MeshRecord& mesh = file.meshes[m];
@@ -42,6 +61,7 @@ void check_groups(const FileTables& file, RuleLog& log) {
       const std::uint32_t own = file.clusters[mesh.first_cluster + k].own_group;
       if (own != kNone) ++made[own - mesh.first_group];
     }
+    std::optional<bool> is_normal_measured, is_uv_measured;  // by the first group that is not terminal
     std::uint32_t level_before = 0xFFFFU;
     for (std::uint32_t k = 0; k < mesh.group_count; ++k) {
       const std::size_t g = std::size_t{mesh.first_group} + k;
@@ -89,7 +109,8 @@ void check_groups(const FileTables& file, RuleLog& log) {
             terminal ? group.deviation == kInfiniteError : group.deviation >= 0.0F && group.deviation <= group.error,
             "L311", at, [&] { return differs("deviation", double{group.deviation}, "error", double{group.error}); });
       }
-      log.expect(group.attribute_error == 0.0F, "L311", at, [] { return std::string("attribute_error is not zero"); });
+      check_attribute_deviation("normal_deviation", group.normal_deviation, terminal, is_normal_measured, at, log);
+      check_attribute_deviation("uv_deviation", group.uv_deviation, terminal, is_uv_measured, at, log);
     }
   }
 }
@@ -126,6 +147,12 @@ void check_cluster(const FileTables& file, std::size_t m, std::size_t c, RuleLog
   log.expect(coarser.quadric_error >= own.quadric_error, "L311", pair, [&] {
     return differs("finer quadric error", double{own.quadric_error}, "coarser", double{coarser.quadric_error});
   });
+  log.expect(coarser.normal_deviation >= own.normal_deviation, "L312", pair, [&] {
+    return differs("finer normal deviation", double{own.normal_deviation}, "coarser", double{coarser.normal_deviation});
+  });
+  log.expect(coarser.uv_deviation >= own.uv_deviation, "L312", pair, [&] {
+    return differs("finer UV deviation", double{own.uv_deviation}, "coarser", double{coarser.uv_deviation});
+  });
   const Ball outer = ball_of(coarser);
   const Ball inner = ball_of(own);
   if (!is_ball(outer) || !is_ball(inner)) return;
@@ -139,7 +166,8 @@ void check_cluster(const FileTables& file, std::size_t m, std::size_t c, RuleLog
 }  // namespace
 
 void check_dag(const FileTables& file, RuleLog& log) {
-  for (const char* rule : {"L301", "L302", "L303", "L304", "L305", "L306", "L307", "L308", "L309", "L310", "L311"}) {
+  for (const char* rule :
+       {"L301", "L302", "L303", "L304", "L305", "L306", "L307", "L308", "L309", "L310", "L311", "L312"}) {
     log.check(rule);
   }
   check_groups(file, log);

@@ -75,7 +75,9 @@ constexpr std::array kRules{
     Rule{"L309", "I4", "LOD spheres and errors keep the margin that covers the rounding of the run-time rule"},
     Rule{"L310", "I4",
          "LOD spheres contain the culling spheres of level-0 members and of the clusters made from them, exactly"},
-    Rule{"L311", "I4", "quadric errors never fall along the DAG; deviation and attribute error are as the tier says"},
+    Rule{"L311", "I4", "quadric errors never fall along the DAG; deviations are as the tier says"},
+    Rule{"L312", "I4",
+         "normal and UV deviations never fall along the DAG; infinite where terminal, and measured for all or none"},
     // hierarchy
     Rule{"L401", "I8",
          "a mesh's BVH is one tree: children after their parent, at most 8, each node reached once, 64 deep at most"},

@@ -323,7 +323,7 @@ class TableChecker {
         sound &= log_.expect(group.mesh == m, "L110", at, [&] { return "names mesh " + std::to_string(group.mesh); });
         sound &= is_range_next(group.first_cluster, group.cluster_count, next, end, "L110", at());
         log_.expect(group.cluster_count > 0, "L501", at, [] { return Text("has no member"); });
-        log_.expect(group.reserved[0] == 0 && group.reserved[1] == 0, "L103", at,
+        log_.expect(group.reserved == 0, "L103", at,
                     [] { return Text("reserved is not zero"); });
         log_.expect((group.flags & ~(format::kGroupTerminal | format::kGroupStuck)) == 0, "L103", at,
                     [] { return Text("unknown flags"); });

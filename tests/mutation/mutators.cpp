@@ -251,9 +251,12 @@ std::vector<MutantKind> make_kinds() {
            e.group(g, [&](auto& x) { x.quadric_error *= r.below(2) == 0 ? shrink(r) : grow(r); });
            return true;
          });
-  always("deviation, attribute error", [=](Edit& e, Random& r) {
-    e.group(any_group(e, r), [&](auto& g) {
-      (r.below(2) == 0 ? g.deviation : g.attribute_error) = static_cast<float>(r.between(0.1, 2.0));
+  always("deviation in the qem tier, attribute deviation of a root", [=](Edit& e, Random& r) {
+    const auto id = any_group(e, r);
+    const bool is_root = (e.groups()[id].flags & format::kGroupTerminal) != 0;
+    e.group(id, [&](auto& g) {
+      float& value = !is_root || r.below(3) == 0 ? g.deviation : r.below(2) == 0 ? g.normal_deviation : g.uv_deviation;
+      value = static_cast<float>(r.between(0.1, 2.0));
     });
     return true;
   });
@@ -368,7 +371,7 @@ std::vector<MutantKind> make_kinds() {
         e.cluster(any_cluster(e, r), [&](auto& x) { x.flags = static_cast<std::uint16_t>(1U << r.below(16)); });
         break;
       case 1: e.cluster(any_cluster(e, r), [&](auto& x) { x.reserved = 1U << r.below(32); }); break;
-      case 2: e.group(any_group(e, r), [&](auto& x) { x.reserved[r.below(2)] = 1U << r.below(32); }); break;
+      case 2: e.group(any_group(e, r), [&](auto& x) { x.reserved = 1U << r.below(32); }); break;
       case 3: e.node(pick(r, e.nodes().size()), [&](auto& x) { x.reserved = 1U << r.below(32); }); break;
       case 4: e.page(pick(r, e.pages().size()), [&](auto& x) { x.reserved = 1U << r.below(32); }); break;
       default: e.mesh(pick(r, e.meshes().size()), [&](auto& x) { x.reserved = 1U << r.below(32); }); break;

@@ -64,6 +64,24 @@ TEST(Validate, SealingAnUnchangedFileChangesNothing) {
   EXPECT_EQ(edit.bytes(), sample());
 }
 
+/// Attribute deviations as a build would measure them: they grow with the level. Sound by themselves.
+void set_attribute_deviations(AssetEdit& edit) {
+  for (std::size_t g = 0; g < edit.groups().size(); ++g) {
+    edit.group(g, [](auto& r) {
+      if ((r.flags & format::kGroupTerminal) != 0) return;
+      r.normal_deviation = r.uv_deviation = 1.0F + static_cast<float>(r.level);
+    });
+  }
+}
+
+TEST(Validate, FindsNothingInMeasuredAttributeDeviations) {
+  AssetEdit edit(sample());
+  set_attribute_deviations(edit);
+  edit.seal();
+  const ValidationReport report = validate_asset(edit.bytes());
+  EXPECT_EQ(report.finding_count, 0U) << describe(report);
+}
+
 TEST(Validate, KeepsFewFindingsAndCountsAll) {
   AssetEdit edit(sample());
   const std::size_t count = edit.clusters().size();
@@ -341,6 +359,22 @@ const std::vector<Break>& breaks() {
        [](AssetEdit& e) { e.group(inner_group(e), [](auto& g) { g.quadric_error = -1.0F; }); }},
       {"L311", "measured in the qem tier",
        [](AssetEdit& e) { e.group(inner_group(e), [](auto& g) { g.deviation = 0.25F; }); }},
+      {"L312", "normal deviation falls",
+       [](AssetEdit& e) {
+         set_attribute_deviations(e);
+         e.group(inner_group(e), [](auto& g) { g.normal_deviation = 0.5F; });
+       }},
+      {"L312", "UV deviation falls",
+       [](AssetEdit& e) {
+         set_attribute_deviations(e);
+         e.group(inner_group(e), [](auto& g) { g.uv_deviation = 0.5F; });
+       }},
+      {"L312", "a root with a normal deviation",
+       [](AssetEdit& e) { e.group(0, [](auto& g) { g.normal_deviation = 1.0F; }); }},
+      {"L312", "UV deviation of one group alone",
+       [](AssetEdit& e) { e.group(inner_group(e), [](auto& g) { g.uv_deviation = 1.0F; }); }},
+      {"L312", "normal deviation is negative",
+       [](AssetEdit& e) { e.group(inner_group(e), [](auto& g) { g.normal_deviation = -0.0F; }); }},
       {"L401", "child before its parent",
        [](AssetEdit& e) {
          const auto n = inner_node(e);
