@@ -4,7 +4,7 @@
 //
 // Far-away meshes: a float32 POSITION cannot hold both a large origin and small features. Where adding the origin would
 // cost more than the grid can bear, positions stay relative to the origin and the mesh moves into a child node that is
-// translated by it (see `choose_origin`); the node's own transform, animation and children are not touched.
+// translated by it (`choose_origin`); the node's own transform, animation and children are not touched.
 #include "export/export.h"
 
 #include <algorithm>
@@ -18,8 +18,9 @@
 #include <nlohmann/json.hpp>
 
 #include "export/cut_geometry.h"
+#include "export/float_positions.h"
 #include "export/glb.h"
-#include "mesh/grid.h"
+#include "export/sniff.h"
 
 namespace meshlode {
 namespace {
@@ -35,31 +36,12 @@ constexpr std::array<std::string_view, 4> kGeometryExtensions = {"EXT_mesh_gpu_i
                                                                  "KHR_draco_mesh_compression", "KHR_mesh_quantization"};
 
 struct ExportedMesh {
-  std::uint32_t index = format::kNone;  ///< in the glTF; kNone without primitives
-  Vec3d translation{0.0};               ///< of a node to put around it
+  std::vector<std::uint32_t> levels;  ///< indices in the glTF, the finest first; empty without primitives
+  Vec3d translation{0.0};             ///< of a node to put around it
+  std::string name;
+  std::span<const double> screen_coverage;
   [[nodiscard]] bool is_translated() const { return translation != Vec3d(0.0); }
 };
-
-bool nests_deeper_than(std::string_view text, std::size_t limit) {
-  std::size_t depth = 0;
-  bool is_string = false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (is_string) {
-      if (c == '\\')
-        ++i;
-      else if (c == '"')
-        is_string = false;
-    } else if (c == '"') {
-      is_string = true;
-    } else if (c == '{' || c == '[') {
-      if (++depth > limit) return true;
-    } else if ((c == '}' || c == ']') && depth > 0) {
-      --depth;
-    }
-  }
-  return false;
-}
 
 /// Element `index` of the array `key` of an object, or null where there is none of that shape.
 const Json* find_element(const Json& object, const char* key, std::size_t index) {
@@ -90,32 +72,32 @@ int largest_texcoord(const Json& value, bool is_texture_info = false) {
   return largest;
 }
 
-/// glTF wants a type for an image in a buffer; a source file with an unknown extension leaves it to the bytes.
-std::string sniff_mime_type(std::span<const std::uint8_t> bytes) {
-  const auto starts_with = [&](std::initializer_list<std::uint8_t> magic) {
-    return bytes.size() >= magic.size() && std::equal(magic.begin(), magic.end(), bytes.begin());
-  };
-  if (starts_with({0xFF, 0xD8, 0xFF})) return "image/jpeg";
-  if (starts_with({0xAB, 'K', 'T', 'X', ' ', '2', '0'})) return "image/ktx2";
-  if (starts_with({'R', 'I', 'F', 'F'})) return "image/webp";
-  return "image/png";
+std::string level_name(const std::string& name, std::size_t level) {
+  return name + " (level " + std::to_string(level) + ")";
+}
+
+/// Nothing but a name: no transform, no children, nothing that something else could replace.
+bool is_plain_node(const Json& node) {
+  return node.size() == node.count("name");
 }
 
 class Exporter {
  public:
-  Exporter(const Asset& asset, std::span<const std::vector<ClusterId>> cuts) : asset_(asset), cuts_(cuts) {}
+  Exporter(const Asset& asset, std::span<const LodChain> chains) : asset_(asset), chains_(chains) {}
   Result<std::vector<std::uint8_t>> run();
 
  private:
   Status add_mesh(MeshId mesh);
-  [[nodiscard]] Vec3d choose_origin(const format::MeshRecord& record, std::span<const CutPrimitive> primitives) const;
+  Result<Json> make_mesh(const format::MeshRecord& record, std::span<const CutPrimitive> primitives, const Vec3d& baked);
   Result<Json> make_primitive(const format::MeshRecord& record, const CutPrimitive& primitive, const Vec3d& baked);
-  [[nodiscard]] Result<std::vector<Vec3f>> bake_positions(const format::MeshRecord& record,
-                                                          const DecodedCluster& vertices, const Vec3d& baked) const;
   void carry_buffers();
   void carry_images();
+  void move_texture_sources();
+  void use_extension(const char* name, bool is_required);
   void complete_materials();
+  void make_instance_nodes();
   void attach_meshes();
+  void attach_levels(std::size_t node, const ExportedMesh& mesh);
   void finish_document();
   [[nodiscard]] int texcoords_needed(MaterialId material) const;
   [[nodiscard]] const format::BlobRecord& blob_of(const Json& owner) const;
@@ -123,11 +105,12 @@ class Exporter {
   std::size_t add_accessor(Json accessor);
 
   const Asset& asset_;
-  std::span<const std::vector<ClusterId>> cuts_;
+  std::span<const LodChain> chains_;
   Json document_;
   Json meshes_ = Json::array();
   std::vector<ExportedMesh> exported_;
   GlbBinary binary_;
+  bool has_lods_ = false;
 };
 
 std::size_t Exporter::add_view(GlbBinary::Range range, int target) {
@@ -186,6 +169,33 @@ void Exporter::carry_images() {
   }
 }
 
+void Exporter::use_extension(const char* name, bool is_required) {
+  for (const char* list : {"extensionsUsed", "extensionsRequired"}) {
+    if (!is_required && list == std::string_view("extensionsRequired")) continue;
+    Json& names = array_of(document_, list);
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  }
+}
+
+/// A texture's own source may be PNG or JPEG only. A source file that refers to others by a URI without a type gets away
+/// with more; inside a GLB each image has a type, and the other types have extensions to name them by.
+void Exporter::move_texture_sources() {
+  if (!document_.contains("textures")) return;
+  for (Json& texture : array_of(document_, "textures")) {
+    const auto source = texture.find("source");
+    if (source == texture.end() || !source->is_number_unsigned()) continue;
+    const Json* image = find_element(document_, "images", source->get<std::size_t>());
+    if (image == nullptr || !image->is_object()) continue;
+    const Json type = image->value("mimeType", Json());
+    const char* extension = type == "image/ktx2" ? "KHR_texture_basisu" : type == "image/webp" ? "EXT_texture_webp" : "";
+    if (*extension == 0) continue;
+    Json& named = texture["extensions"][extension];
+    if (named.is_null()) named = {{"source", *source}};
+    texture.erase("source");
+    use_extension(extension, true);
+  }
+}
+
 /// Assets that do not come from a glTF have no materials in their document: the records say what is known.
 void Exporter::complete_materials() {
   if (document_.contains("materials")) return;
@@ -221,39 +231,6 @@ int Exporter::texcoords_needed(MaterialId material) const {
   return json == nullptr ? 0 : largest_texcoord(*json) + 1;
 }
 
-/// The origin that is added to the positions themselves. The origin goes into a node instead where a float32 sum would
-/// be off by more than a 64th of a grid step and by more than a float32 mesh of this size centred on zero would be
-/// (diagonal · 2^-24): below either, a moved origin would only make the file stranger, not better.
-Vec3d Exporter::choose_origin(const format::MeshRecord& record, std::span<const CutPrimitive> primitives) const {
-  const Vec3d origin(record.origin[0], record.origin[1], record.origin[2]);
-  const PositionGrid grid{record.grid.log2, record.grid.mantissa};
-  const double bearable = std::max(grid.step() / 64.0, record.diagonal * exp2_exact(-24));
-  for (const CutPrimitive& primitive : primitives) {
-    for (std::uint32_t i = 0; i < primitive.vertices.vertex_count; ++i) {
-      const Vec3d exact = origin + grid.decode(primitive.vertices.position(i));
-      for (int axis = 0; axis < 3; ++axis) {
-        const double stored = static_cast<double>(static_cast<float>(exact[axis]));
-        if (!(std::abs(stored - exact[axis]) <= bearable)) return Vec3d(0.0);
-      }
-    }
-  }
-  return origin;
-}
-
-Result<std::vector<Vec3f>> Exporter::bake_positions(const format::MeshRecord& record, const DecodedCluster& vertices,
-                                                    const Vec3d& baked) const {
-  const PositionGrid grid{record.grid.log2, record.grid.mantissa};
-  std::vector<Vec3f> positions(vertices.vertex_count);
-  for (std::uint32_t i = 0; i < vertices.vertex_count; ++i) {
-    positions[i] = Vec3f(baked + grid.decode(vertices.position(i)));
-    if (!std::isfinite(positions[i].x) || !std::isfinite(positions[i].y) || !std::isfinite(positions[i].z)) {
-      return Error{ErrorCode::kUnsupported, std::string(asset_.string(record.name)),
-                   "a position does not fit glTF's 32-bit floats"};
-    }
-  }
-  return positions;
-}
-
 Result<Json> Exporter::make_primitive(const format::MeshRecord& record, const CutPrimitive& primitive,
                                       const Vec3d& baked) {
   const DecodedCluster& vertices = primitive.vertices;
@@ -268,7 +245,10 @@ Result<Json> Exporter::make_primitive(const format::MeshRecord& record, const Cu
   };
 
   auto positions = bake_positions(record, vertices, baked);
-  if (!positions) return positions.error();
+  if (!positions) {
+    return Error{ErrorCode::kUnsupported, std::string(asset_.string(record.name)),
+                 "a position does not fit glTF's 32-bit floats"};
+  }
   Vec3f low = positions->front();
   Vec3f high = low;
   for (const Vec3f& p : *positions) {
@@ -334,60 +314,99 @@ Result<Json> Exporter::make_primitive(const format::MeshRecord& record, const Cu
   return result;
 }
 
-Status Exporter::add_mesh(MeshId mesh) {
-  const format::MeshRecord& record = asset_.meshes()[mesh.value];
-  auto primitives = gather_cut(asset_, mesh, cuts_[mesh.value]);
-  if (!primitives) return primitives.error();
-  ExportedMesh& exported = exported_.emplace_back();
-  if (primitives->empty()) return Ok{};
-  const Vec3d baked = choose_origin(record, *primitives);
-  exported.translation = Vec3d(record.origin[0], record.origin[1], record.origin[2]) - baked;
+Result<Json> Exporter::make_mesh(const format::MeshRecord& record, std::span<const CutPrimitive> primitives,
+                                 const Vec3d& baked) {
   Json json = Json::object();
-  if (const Json* source = find_element(document_, "meshes", mesh.value); source != nullptr && source->is_object()) {
-    for (const char* key : {"name", "extras"}) {
-      if (source->contains(key)) json[key] = source->at(key);
-    }
-  }
-  const std::string_view name = asset_.string(record.name);
-  if (!json.contains("name") && !name.empty()) json["name"] = std::string(name);
   json["primitives"] = Json::array();
-  for (const CutPrimitive& primitive : *primitives) {
+  for (const CutPrimitive& primitive : primitives) {
     auto made = make_primitive(record, primitive, baked);
     if (!made) return made.error();
     json["primitives"].push_back(std::move(*made));
   }
-  exported.index = static_cast<std::uint32_t>(meshes_.size());
-  meshes_.push_back(std::move(json));
+  return json;
+}
+
+Status Exporter::add_mesh(MeshId mesh) {
+  const format::MeshRecord& record = asset_.meshes()[mesh.value];
+  const LodChain& chain = chains_[mesh.value];
+  ExportedMesh& exported = exported_.emplace_back();
+  std::vector<std::vector<CutPrimitive>> levels;
+  for (const std::vector<ClusterId>& cut : chain.cuts) {
+    auto primitives = gather_cut(asset_, mesh, cut);
+    if (!primitives) return primitives.error();
+    if (!primitives->empty()) levels.push_back(std::move(*primitives));
+  }
+  if (levels.empty()) return Ok{};
+  const Vec3d baked = choose_origin(record, levels);
+  exported.translation = Vec3d(record.origin[0], record.origin[1], record.origin[2]) - baked;
+  exported.screen_coverage = chain.screen_coverage;
+  const Json* source = find_element(document_, "meshes", mesh.value);
+  if (source != nullptr && source->is_object() && source->contains("name")) exported.name = source->at("name");
+  if (exported.name.empty()) exported.name = asset_.string(record.name);
+  for (std::size_t k = 0; k < levels.size(); ++k) {
+    auto json = make_mesh(record, levels[k], baked);
+    if (!json) return json.error();
+    const std::string name = k == 0 || exported.name.empty() ? exported.name : level_name(exported.name, k);
+    if (!name.empty()) (*json)["name"] = name;
+    if (source != nullptr && source->is_object() && source->contains("extras")) (*json)["extras"] = source->at("extras");
+    exported.levels.push_back(static_cast<std::uint32_t>(meshes_.size()));
+    meshes_.push_back(std::move(*json));
+  }
   return Ok{};
+}
+
+/// No scene graph in the source (PLY, arrays in memory): one root node for each instance.
+void Exporter::make_instance_nodes() {
+  Json nodes = Json::array();
+  Json roots = Json::array();
+  for (const format::InstanceRecord& instance : asset_.instances()) {
+    Json node = {{"mesh", instance.mesh}};
+    if (const auto name = asset_.string(instance.name); !name.empty()) node["name"] = std::string(name);
+    Json matrix = Json::array();
+    bool is_identity = true;
+    for (std::size_t column = 0; column < 4; ++column) {
+      for (std::size_t row = 0; row < 4; ++row) {
+        const double value = row < 3 ? instance.transform[row * 4 + column] : (column == 3 ? 1.0 : 0.0);
+        if (!std::isfinite(value)) throw std::invalid_argument("an instance's transform is not finite");
+        is_identity = is_identity && value == (row == column ? 1.0 : 0.0);
+        matrix.push_back(value);
+      }
+    }
+    if (!is_identity) node["matrix"] = std::move(matrix);
+    roots.push_back(nodes.size());
+    nodes.push_back(std::move(node));
+  }
+  if (nodes.empty()) return;
+  document_["nodes"] = std::move(nodes);
+  document_["scenes"] = Json::array({{{"nodes", std::move(roots)}}});
+  document_["scene"] = 0;
+}
+
+/// The coarser levels become nodes that no scene has: MSFT_lod names them. Whether such a node stands in the frame of
+/// the node that names it, or in that of its parent, and whether it replaces the children too, readers see differently;
+/// so the node that names them is one without transform or children, where the two are the same.
+void Exporter::attach_levels(std::size_t node, const ExportedMesh& mesh) {
+  Json& nodes = array_of(document_, "nodes");
+  nodes[node]["mesh"] = mesh.levels.front();
+  if (mesh.levels.size() == 1) return;
+  Json ids = Json::array();
+  for (std::size_t k = 1; k < mesh.levels.size(); ++k) {
+    Json level = {{"mesh", mesh.levels[k]}};
+    const Json name = nodes[node].value("name", Json());
+    if (name.is_string()) level["name"] = level_name(name.get<std::string>(), k);
+    ids.push_back(nodes.size());
+    nodes.push_back(std::move(level));
+  }
+  nodes[node]["extensions"]["MSFT_lod"] = {{"ids", std::move(ids)}};
+  if (!mesh.screen_coverage.empty()) nodes[node]["extras"]["MSFT_screencoverage"] = mesh.screen_coverage;
+  has_lods_ = true;
 }
 
 /// Gives every node that draws a mesh its exported mesh, or none where the cut is empty.
 void Exporter::attach_meshes() {
   if (!document_.contains("nodes")) {
-    // No scene graph in the source (PLY, arrays in memory): one root node for each instance.
-    Json nodes = Json::array();
-    Json roots = Json::array();
-    for (const format::InstanceRecord& instance : asset_.instances()) {
-      Json node = {{"mesh", instance.mesh}};
-      if (const auto name = asset_.string(instance.name); !name.empty()) node["name"] = std::string(name);
-      Json matrix = Json::array();
-      bool is_identity = true;
-      for (std::size_t column = 0; column < 4; ++column) {
-        for (std::size_t row = 0; row < 4; ++row) {
-          const double value = row < 3 ? instance.transform[row * 4 + column] : (column == 3 ? 1.0 : 0.0);
-          if (!std::isfinite(value)) throw std::invalid_argument("an instance's transform is not finite");
-          is_identity = is_identity && value == (row == column ? 1.0 : 0.0);
-          matrix.push_back(value);
-        }
-      }
-      if (!is_identity) node["matrix"] = std::move(matrix);
-      roots.push_back(nodes.size());
-      nodes.push_back(std::move(node));
-    }
-    if (nodes.empty()) return;
-    document_["nodes"] = std::move(nodes);
-    document_["scenes"] = Json::array({{{"nodes", std::move(roots)}}});
-    document_["scene"] = 0;
+    make_instance_nodes();
+    if (!document_.contains("nodes")) return;
   }
   Json& nodes = array_of(document_, "nodes");
   for (const format::InstanceRecord& instance : asset_.instances()) {
@@ -403,15 +422,27 @@ void Exporter::attach_meshes() {
     if (!node.contains("mesh")) continue;
     const ExportedMesh& mesh = exported_.at(node.at("mesh").get<std::size_t>());
     node.erase("mesh");
-    if (mesh.index == format::kNone) continue;
-    if (!mesh.is_translated()) {
-      node["mesh"] = mesh.index;
+    if (mesh.levels.empty()) continue;
+    const bool is_fixed = is_plain_node(node) && !document_.contains("animations");
+    const bool needs_frame = mesh.levels.size() > 1 && !is_fixed;
+    if (!mesh.is_translated() && !needs_frame) {
+      attach_levels(i, mesh);
       continue;
     }
-    Json child = {{"mesh", mesh.index}, {"translation", {mesh.translation.x, mesh.translation.y, mesh.translation.z}}};
-    if (node.contains("name")) child["name"] = node.at("name").get<std::string>() + " (origin)";
-    array_of(node, "children").push_back(nodes.size());
-    nodes.push_back(std::move(child));  // `node` dangles from here on
+    std::size_t holder = i;
+    const auto add_child = [&](const char* suffix) {
+      Json child = Json::object();
+      if (nodes[i].contains("name")) child["name"] = nodes[i].at("name").get<std::string>() + suffix;
+      array_of(nodes[holder], "children").push_back(nodes.size());
+      holder = nodes.size();
+      nodes.push_back(std::move(child));  // `node` dangles from here on
+    };
+    if (mesh.is_translated()) {
+      add_child(" (origin)");
+      nodes[holder]["translation"] = {mesh.translation.x, mesh.translation.y, mesh.translation.z};
+    }
+    if (mesh.levels.size() > 1) add_child(" (levels)");
+    attach_levels(holder, mesh);
   }
 }
 
@@ -434,6 +465,7 @@ void Exporter::finish_document() {
     else
       document_[key] = std::move(kept);
   }
+  if (has_lods_) use_extension("MSFT_lod", false);
   // glTF wants every top-level list to have an element.
   for (auto it = document_.begin(); it != document_.end();) {
     it = it->is_array() && it->empty() ? document_.erase(it) : std::next(it);
@@ -451,6 +483,7 @@ Result<std::vector<std::uint8_t>> Exporter::run() {
   if (!document_.is_object()) return Error{ErrorCode::kInvalid, "section SCNE", "not a JSON object"};
   carry_buffers();
   carry_images();
+  move_texture_sources();
   complete_materials();
   exported_.reserve(asset_.meshes().size());
   for (std::size_t m = 0; m < asset_.meshes().size(); ++m) {
@@ -463,15 +496,37 @@ Result<std::vector<std::uint8_t>> Exporter::run() {
   return assemble_glb(json, binary_.bytes());
 }
 
+bool is_sound(const LodChain& chain) {
+  const std::vector<double>& coverage = chain.screen_coverage;
+  const auto falls = [](double a, double b) { return a < b; };
+  return coverage.empty() ||
+         (coverage.size() == chain.cuts.size() && std::is_sorted(coverage.rbegin(), coverage.rend(), falls) &&
+          std::all_of(coverage.begin(), coverage.end(), [](double c) { return c >= 0.0 && c <= 1.0; }));
+}
+
 }  // namespace
 
 Result<std::vector<std::uint8_t>> export_glb(const Asset& asset, std::span<const std::vector<ClusterId>> cut_per_mesh) {
-  if (cut_per_mesh.size() != asset.meshes().size()) {
+  std::vector<LodChain> chains(cut_per_mesh.size());
+  for (std::size_t m = 0; m < chains.size(); ++m) chains[m].cuts = {cut_per_mesh[m]};
+  return export_glb_lods(asset, chains);
+}
+
+Result<std::vector<std::uint8_t>> export_glb_lods(const Asset& asset, std::span<const LodChain> chain_per_mesh) {
+  if (chain_per_mesh.size() != asset.meshes().size()) {
     return Error{ErrorCode::kUsage, "", "one cut per mesh is needed"};
+  }
+  for (std::size_t m = 0; m < chain_per_mesh.size(); ++m) {
+    const LodChain& chain = chain_per_mesh[m];
+    const bool has_gap = chain.cuts.size() > 1 && std::any_of(chain.cuts.begin(), chain.cuts.end(),
+                                                              [](const auto& cut) { return cut.empty(); });
+    if (has_gap || !is_sound(chain)) {
+      return Error{ErrorCode::kUsage, "mesh " + std::to_string(m), "its levels and coverage values are not a chain"};
+    }
   }
   // The document is a file's: whatever shape it has that glTF does not allow ends as an exception of the JSON library.
   try {
-    return Exporter(asset, cut_per_mesh).run();
+    return Exporter(asset, chain_per_mesh).run();
   } catch (const std::bad_alloc&) {
     return Error{ErrorCode::kBuildFailed, "", "out of memory"};
   } catch (const std::exception& failure) {

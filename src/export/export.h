@@ -18,4 +18,18 @@ namespace meshlode {
 [[nodiscard]] Result<std::vector<std::uint8_t>> export_glb(const Asset& asset,
                                                            std::span<const std::vector<ClusterId>> cut_per_mesh);
 
+/// The discrete levels of one mesh, the finest first, for MSFT_lod.
+struct LodChain {
+  std::vector<std::vector<ClusterId>> cuts;
+  /// Switch values in [0, 1], one per cut, falling: cut k is meant while its coverage of the screen is at least
+  /// screen_coverage[k] (0 for the last: it is never switched off). Empty: no hints are written.
+  std::vector<double> screen_coverage;
+};
+
+/// Discrete levels of detail: each node with a mesh gets its coarser levels as further nodes, named by MSFT_lod, and the
+/// coverage hints as MSFT_screencoverage. A reader without that extension sees the finest level. A mesh with one level
+/// is exported as export_glb does. Errors: kUsage for chains and coverage that are not as described.
+[[nodiscard]] Result<std::vector<std::uint8_t>> export_glb_lods(const Asset& asset,
+                                                                std::span<const LodChain> chain_per_mesh);
+
 }  // namespace meshlode

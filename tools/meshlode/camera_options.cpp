@@ -15,21 +15,6 @@ namespace {
 
 constexpr std::uint32_t kMaxSize = 16384;  ///< pixels a side: larger pictures do not fit the rasterizer's fixed point
 
-/// Numbers apart by commas; nothing where one of them is not a finite number.
-std::optional<std::vector<double>> parse_numbers(std::string_view text) {
-  std::vector<double> numbers;
-  while (true) {
-    const std::size_t comma = text.find(',');
-    const std::string_view part = text.substr(0, comma);
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), value);
-    if (error != std::errc{} || end != part.data() + part.size() || !std::isfinite(value)) return std::nullopt;
-    numbers.push_back(value);
-    if (comma == std::string_view::npos) return numbers;
-    text.remove_prefix(comma + 1);
-  }
-}
-
 bool parse_size(std::string_view text, std::uint32_t& width, std::uint32_t& height) {
   const std::size_t x = text.find('x');
   if (x == std::string_view::npos) return false;

@@ -3,6 +3,8 @@
 #include "options.h"
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <cstdio>
 
 #include <tbb/global_control.h>
@@ -62,6 +64,9 @@ void OptionParser::add_value(const char* name, std::optional<double>& target, co
 void OptionParser::add_value(const char* name, std::optional<std::uint32_t>& target, const char* help) {
   add_option(state_->app, name, target, help);
 }
+void OptionParser::add_value(const char* name, std::optional<std::uint64_t>& target, const char* help) {
+  add_option(state_->app, name, target, help);
+}
 void OptionParser::add_value(const char* name, std::optional<std::string>& target, const char* help) {
   add_option(state_->app, name, target, help);
 }
@@ -109,6 +114,20 @@ JobLimit::~JobLimit() = default;
 void JobLimit::run(const std::function<void()>& work) {
   if (!state_) return work();
   state_->arena.execute(work);
+}
+
+std::optional<std::vector<double>> parse_numbers(std::string_view text) {
+  std::vector<double> numbers;
+  while (true) {
+    const std::size_t comma = text.find(',');
+    const std::string_view part = text.substr(0, comma);
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), value);
+    if (error != std::errc{} || end != part.data() + part.size() || !std::isfinite(value)) return std::nullopt;
+    numbers.push_back(value);
+    if (comma == std::string_view::npos) return numbers;
+    text.remove_prefix(comma + 1);
+  }
 }
 
 int print_error(const Error& error) {

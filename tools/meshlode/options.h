@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <meshlode/result.h>
@@ -34,6 +35,7 @@ class OptionParser {
   void add_value(const char* name, std::uint64_t& target, const char* help);
   void add_value(const char* name, std::optional<double>& target, const char* help);
   void add_value(const char* name, std::optional<std::uint32_t>& target, const char* help);
+  void add_value(const char* name, std::optional<std::uint64_t>& target, const char* help);
   void add_value(const char* name, std::optional<std::string>& target, const char* help);
   void add_positional(const char* name, std::string& target, const char* help);                ///< exactly one
   void add_positionals(const char* name, std::vector<std::string>& target, const char* help);  ///< one or more
@@ -71,6 +73,9 @@ class JobLimit {
   struct State;
   std::unique_ptr<State> state_;
 };
+
+/// "1,0.5,2e-3": numbers between commas; nothing where a part is not a finite number.
+[[nodiscard]] std::optional<std::vector<double>> parse_numbers(std::string_view text);
 
 /// One line on stderr, "meshlode: where: detail", and the exit code to return.
 int print_error(const Error& error);

@@ -1,24 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // `meshlode extract`: a cut of an asset as a GLB with the scene's nodes, names, instances, materials and textures.
 // `--error T` is a distance in mesh units, of that mesh's diagonal with --relative, in world units with --world
-// (design, section 4).
-#include <algorithm>
+// (design, section 4); `--triangles N` is a budget; `--lods`, `--lod-ratios` and `--lod-errors` write a discrete chain.
 #include <charconv>
 #include <cinttypes>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include "base/file.h"
-#include "camera_options.h"
-#include "export/choose_cuts.h"
 #include "export/export.h"
+#include "extract_cuts.h"
 #include "options.h"
 #include "read/asset.h"
 #include "report/json_writer.h"
-#include "select/select.h"
 #include "verb.h"
 
 namespace meshlode::cli {
@@ -28,22 +24,9 @@ namespace {
 struct ExtractOptions {
   std::string input;
   std::optional<std::string> output;
-  std::optional<double> error;
-  std::optional<std::uint32_t> level;
-  bool is_relative = false;
-  bool is_world = false;
-  std::string by = "selection";
   std::optional<std::string> mesh;
-  CameraOptions camera;
+  CutRequest request;
   OutputOptions out;
-};
-
-/// What one mesh became.
-struct MeshCut {
-  MeshId mesh;
-  UniformCut cut;
-  std::optional<double> asked;  ///< mesh units; nothing for camera and level cuts
-  std::uint64_t triangles = 0;
 };
 
 Error usage(const char* option, const char* detail) {
@@ -52,14 +35,7 @@ Error usage(const char* option, const char* detail) {
 
 Status check_options(const ExtractOptions& o) {
   if (!o.output) return usage("-o", "say where the GLB goes");
-  const bool has_camera = o.camera.camera || o.camera.ortho_height;
-  const int ways = (o.error ? 1 : 0) + (o.level ? 1 : 0) + (has_camera ? 1 : 0);
-  if (ways != 1) return usage("--error", "give one of --error, --level and a camera");
-  if (o.error && (!(*o.error >= 0.0) || !std::isfinite(*o.error))) return usage("--error", "give a number, 0 or more");
-  if (o.is_relative && o.is_world) return usage("--relative", "not together with --world");
-  if (!o.error && (o.is_relative || o.is_world || o.by != "selection")) {
-    return usage("--relative", "--relative, --world and --by belong to --error");
-  }
+  if (auto status = check_request(o.request); !status) return status.error();
   std::error_code ignored;
   if (std::filesystem::equivalent(o.input, *o.output, ignored)) return usage("-o", "is the input itself");
   return Ok{};
@@ -85,75 +61,54 @@ Result<std::vector<bool>> choose_meshes(const Asset& asset, const std::optional<
   return chosen;
 }
 
-/// `--error` in the units of one mesh. Several instances: the largest asks for the smallest error.
-double error_in_mesh_units(const ExtractOptions& o, const Asset& asset, std::size_t mesh) {
-  if (o.is_relative) return *o.error * asset.meshes()[mesh].diagonal;
-  if (!o.is_world) return *o.error;
-  double scale = 0.0;
-  for (const format::InstanceRecord& instance : asset.instances()) {
-    if (instance.mesh == mesh && (instance.flags & format::kInstanceSingular) == 0) {
-      scale = std::max(scale, instance.scale);
-    }
-  }
-  return scale > 0.0 ? *o.error / scale : *o.error;
+bool is_below_level0(const Asset& asset, MeshId mesh, const CutLevel& level) {
+  return level.asked && !level.cut.clusters.empty() && *level.asked < asset.meshes()[mesh.value].level0_deviation;
 }
 
-std::vector<MeshCut> choose_cuts(const ExtractOptions& o, const Asset& asset, const std::vector<bool>& chosen,
-                                 const Camera& camera) {
-  std::vector<UniformCut> by_camera;
-  if (!o.error && !o.level) by_camera = choose_camera_cuts(asset, camera, o.camera.pixel_error);
-  std::vector<MeshCut> cuts(asset.meshes().size());
-  for (std::size_t m = 0; m < cuts.size(); ++m) {
-    cuts[m].mesh = MeshId(m);
-    if (!chosen[m]) continue;
-    if (o.error) {
-      const CutError by = o.by == "quadric" ? CutError::kQuadric : CutError::kSelection;
-      cuts[m].asked = error_in_mesh_units(o, asset, m);
-      cuts[m].cut = select_uniform(asset, MeshId(m), *cuts[m].asked, by);
-    } else if (o.level) {
-      cuts[m].cut = choose_level_cut(asset, MeshId(m), *o.level);
-    } else {
-      cuts[m].cut = std::move(by_camera[m]);
-    }
-    for (const ClusterId c : cuts[m].cut.clusters) cuts[m].triangles += asset.clusters()[c.value].triangle_count;
-  }
-  return cuts;
+double relative_error(const Asset& asset, MeshId mesh, const CutLevel& level) {
+  const double diagonal = asset.meshes()[mesh.value].diagonal;
+  return diagonal > 0.0 ? level.cut.stored_error / diagonal : 0.0;
 }
 
-bool is_below_level0(const Asset& asset, const MeshCut& cut) {
-  return cut.asked && !cut.cut.clusters.empty() && *cut.asked < asset.meshes()[cut.mesh.value].level0_deviation;
+void write_level(JsonWriter& w, const Asset& asset, MeshId mesh, const CutLevel& level) {
+  w.field("clusters", level.cut.clusters.size());
+  w.field("triangles", level.triangles);
+  w.key("asked_error");
+  if (level.asked)
+    w.value(*level.asked);
+  else
+    w.null();
+  w.field("stored_error", level.cut.stored_error);
+  w.field("stored_error_relative", relative_error(asset, mesh, level));
+  w.field("asked_below_level0_deviation", is_below_level0(asset, mesh, level));
 }
 
-double relative_error(const Asset& asset, const MeshCut& cut) {
-  const double diagonal = asset.meshes()[cut.mesh.value].diagonal;
-  return diagonal > 0.0 ? cut.cut.stored_error / diagonal : 0.0;
-}
-
-std::string describe_json(const Asset& asset, const std::vector<MeshCut>& cuts, const std::vector<bool>& chosen,
-                          std::size_t bytes) {
+std::string describe_json(const Asset& asset, const std::vector<MeshCuts>& cuts, bool is_chain, std::size_t bytes) {
   JsonWriter w;
   std::uint64_t triangles = 0;
   w.begin_object();
   w.key("meshes");
   w.begin_array();
-  for (const MeshCut& cut : cuts) {
-    if (!chosen[cut.mesh.value]) continue;
-    triangles += cut.triangles;
+  for (const MeshCuts& mesh : cuts) {
+    if (mesh.levels.empty()) continue;
     w.begin_object();
-    w.field("mesh", cut.mesh.value);
-    w.field("name", asset.string(asset.meshes()[cut.mesh.value].name));
-    w.field("clusters", cut.cut.clusters.size());
-    w.field("triangles", cut.triangles);
-    w.field("source_triangles", asset.meshes()[cut.mesh.value].source_triangles);
-    w.key("asked_error");
-    if (cut.asked)
-      w.value(*cut.asked);
-    else
-      w.null();
-    w.field("stored_error", cut.cut.stored_error);
-    w.field("stored_error_relative", relative_error(asset, cut));
-    w.field("level0_deviation", asset.meshes()[cut.mesh.value].level0_deviation);
-    w.field("asked_below_level0_deviation", is_below_level0(asset, cut));
+    w.field("mesh", mesh.mesh.value);
+    w.field("name", asset.string(asset.meshes()[mesh.mesh.value].name));
+    w.field("source_triangles", asset.meshes()[mesh.mesh.value].source_triangles);
+    w.field("level0_deviation", asset.meshes()[mesh.mesh.value].level0_deviation);
+    write_level(w, asset, mesh.mesh, mesh.levels.front());
+    for (const CutLevel& level : mesh.levels) triangles += level.triangles;
+    if (is_chain) {
+      w.key("levels");
+      w.begin_array();
+      for (const CutLevel& level : mesh.levels) {
+        w.begin_object();
+        write_level(w, asset, mesh.mesh, level);
+        w.field("screen_coverage", level.screen_coverage);
+        w.end_object();
+      }
+      w.end_array();
+    }
     w.end_object();
   }
   w.end_array();
@@ -163,43 +118,76 @@ std::string describe_json(const Asset& asset, const std::vector<MeshCut>& cuts, 
   return w.text();
 }
 
-std::string describe_text(const Asset& asset, const std::vector<MeshCut>& cuts, const std::vector<bool>& chosen,
-                          std::size_t bytes, const std::string& output) {
+std::string describe_level(const Asset& asset, MeshId mesh, const CutLevel& level) {
+  char numbers[160];
+  std::snprintf(numbers, sizeof numbers, "%" PRIu64 " of %" PRIu64 " triangles, error %.6g units, %.6g of the diagonal",
+                level.triangles, asset.meshes()[mesh.value].source_triangles, level.cut.stored_error,
+                relative_error(asset, mesh, level));
+  return numbers;
+}
+
+std::string describe_text(const Asset& asset, const std::vector<MeshCuts>& cuts, bool is_chain, std::size_t bytes,
+                          const std::string& output) {
   std::string text;
   std::uint64_t triangles = 0;
   char numbers[160];
-  for (const MeshCut& cut : cuts) {
-    const format::MeshRecord& mesh = asset.meshes()[cut.mesh.value];
-    if (!chosen[cut.mesh.value]) continue;
-    triangles += cut.triangles;
-    std::snprintf(numbers, sizeof numbers,
-                  ": %" PRIu64 " of %" PRIu64 " triangles, error %.6g units, %.6g of the diagonal\n", cut.triangles,
-                  mesh.source_triangles, cut.cut.stored_error, relative_error(asset, cut));
-    text += "mesh " + std::to_string(cut.mesh.value) + " \"" + std::string(asset.string(mesh.name)) + '"' + numbers;
-    if (is_below_level0(asset, cut)) {
-      std::snprintf(numbers, sizeof numbers,
-                    "  the error asked for (%.6g) is below what level 0 itself deviates (%.6g, quantization)\n",
-                    *cut.asked, static_cast<double>(mesh.level0_deviation));
-      text += numbers;
+  for (const MeshCuts& mesh : cuts) {
+    if (mesh.levels.empty()) continue;
+    const format::MeshRecord& record = asset.meshes()[mesh.mesh.value];
+    text += "mesh " + std::to_string(mesh.mesh.value) + " \"" + std::string(asset.string(record.name)) + '"';
+    text += is_chain ? "\n" : ": ";
+    for (std::size_t k = 0; k < mesh.levels.size(); ++k) {
+      const CutLevel& level = mesh.levels[k];
+      triangles += level.triangles;
+      if (is_chain) text += "  level " + std::to_string(k) + ": ";
+      text += describe_level(asset, mesh.mesh, level);
+      if (is_chain) {
+        std::snprintf(numbers, sizeof numbers, ", down to %.4g of the picture's height", level.screen_coverage);
+        text += numbers;
+      }
+      text += '\n';
+      if (is_below_level0(asset, mesh.mesh, level)) {
+        std::snprintf(numbers, sizeof numbers,
+                      "  the error asked for (%.6g) is below what level 0 itself deviates (%.6g, quantization)\n",
+                      *level.asked, static_cast<double>(record.level0_deviation));
+        text += numbers;
+      }
     }
   }
   text += output + ": " + std::to_string(triangles) + " triangles, " + std::to_string(bytes) + " bytes\n";
   return text;
 }
 
+Result<std::vector<std::uint8_t>> export_cuts(const Asset& asset, const std::vector<MeshCuts>& cuts) {
+  std::vector<LodChain> chains(cuts.size());
+  for (std::size_t m = 0; m < cuts.size(); ++m) {
+    for (const CutLevel& level : cuts[m].levels) {
+      chains[m].cuts.push_back(level.cut.clusters);
+      chains[m].screen_coverage.push_back(level.screen_coverage);
+    }
+  }
+  return export_glb_lods(asset, chains);
+}
+
 int run_extract(const Verb& verb, std::span<char* const> args) {
   ExtractOptions o;
+  CutRequest& r = o.request;
   OptionParser parser(verb);
   parser.add_positional("FILE", o.input, "a .lode asset");
   parser.add_value("-o,--output", o.output, "the GLB to write");
-  parser.add_value("--error", o.error, "uniform cut: the largest error allowed, in mesh units");
-  parser.add_flag("--relative", o.is_relative, "--error is a fraction of each mesh's own diagonal");
-  parser.add_flag("--world", o.is_world, "--error is in world units: the largest instance of a mesh decides");
-  parser.add_value("--by", o.by, "the stored number that --error is compared with (selection)",
+  parser.add_value("--error", r.error, "uniform cut: the largest error allowed, in mesh units");
+  parser.add_value("--triangles", r.triangles,
+                   "the finest uniform cut with at most this many triangles over all exported meshes together");
+  parser.add_value("--level", r.level, "cut at one level of the DAG, 0 the finest");
+  parser.add_value("--lods", r.lods, "MSFT_lod chain: this many levels, each half the triangles of the one before");
+  parser.add_value("--lod-ratios", r.lod_ratios, "MSFT_lod chain by shares of each mesh's triangles, such as 1,0.3,0.1");
+  parser.add_value("--lod-errors", r.lod_errors, "MSFT_lod chain by errors, such as 0,0.001,0.01");
+  parser.add_flag("--relative", r.is_relative, "errors are fractions of each mesh's own diagonal");
+  parser.add_flag("--world", r.is_world, "errors are in world units: the largest instance of a mesh decides");
+  parser.add_value("--by", r.by, "the stored number that --error is compared with (selection)",
                    {"selection", "quadric"});
-  parser.add_value("--level", o.level, "cut at one level of the DAG, 0 the finest");
   parser.add_value("--mesh", o.mesh, "this mesh only, by name or index; the nodes of others stay, without a mesh");
-  add_camera_options(parser, o.camera);
+  add_camera_options(parser, r.camera);
   add_output_options(parser, o.out);
   if (const auto exit_code = parser.parse(args)) return *exit_code;
   if (auto status = check_options(o); !status) return print_error(status.error());
@@ -208,14 +196,9 @@ int run_extract(const Verb& verb, std::span<char* const> args) {
   if (!asset) return print_error(asset.error());
   auto chosen = choose_meshes(*asset, o.mesh);
   if (!chosen) return print_error(chosen.error());
-  auto camera = make_camera(o.camera, *asset);
-  if (!camera) return print_error(camera.error());
-
-  const std::vector<MeshCut> cuts = choose_cuts(o, *asset, *chosen, *camera);
-  std::vector<std::vector<ClusterId>> clusters;
-  clusters.reserve(cuts.size());
-  for (const MeshCut& cut : cuts) clusters.push_back(cut.cut.clusters);
-  auto glb = export_glb(*asset, clusters);
+  const auto cuts = choose_cuts(r, *asset, *chosen);
+  if (!cuts) return print_error(cuts.error());
+  auto glb = export_cuts(*asset, *cuts);
   if (!glb) {
     Error error = glb.error();
     error.where = error.where.empty() ? o.input : o.input + ": " + error.where;
@@ -223,9 +206,9 @@ int run_extract(const Verb& verb, std::span<char* const> args) {
   }
   if (auto status = write_file_atomically(*o.output, *glb); !status) return print_error(status.error());
   if (o.out.json()) {
-    if (!print_out(describe_json(*asset, cuts, *chosen, glb->size()))) return static_cast<int>(ErrorCode::kIo);
+    if (!print_out(describe_json(*asset, *cuts, r.is_chain(), glb->size()))) return static_cast<int>(ErrorCode::kIo);
   } else if (!o.out.quiet) {
-    if (!print_out(describe_text(*asset, cuts, *chosen, glb->size(), *o.output))) {
+    if (!print_out(describe_text(*asset, *cuts, r.is_chain(), glb->size(), *o.output))) {
       return static_cast<int>(ErrorCode::kIo);
     }
   }
@@ -235,6 +218,9 @@ int run_extract(const Verb& verb, std::span<char* const> args) {
 }  // namespace
 
 const Verb kExtractVerb{"extract", "write a cut of an asset as a GLB",
-                        "meshlode extract scene.lode --error 0.001 --relative -o cut.glb", run_extract};
+                        "meshlode extract scene.lode --error 0.001 --relative -o cut.glb\n"
+                        "  meshlode extract scene.lode --triangles 20000 -o fallback.glb\n"
+                        "  meshlode extract scene.lode --lods 4 -o levels.glb",
+                        run_extract};
 
 }  // namespace meshlode::cli
