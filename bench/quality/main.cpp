@@ -1,68 +1,74 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Quality: uniform cuts of an asset against its source. For each threshold: triangles, true maximum and RMS deviation
-// (both ways, share of the diagonal), stored error, and true over stored. Then triangles at equal deviation.
-//
-//   bench_quality SCENE.glb ASSET.lode [--cuts N] [--samples N] [--from T] [--to T] [--by selection|quadric]
+// both ways, stored error. Then triangles at equal deviation: the fewest over all actual cuts whose true figure is at
+// most x, maxima with cuts by the selection error, RMS with cuts by the quadric's, and what that very cut does to
+// shading normals and UVs. docs/quality.md explains the measures.
 #include <algorithm>
+#include <charconv>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
-#include <cstring>
-#include <limits>
+#include <filesystem>
+#include <fstream>
 #include <string>
 #include <vector>
 
+#include <tbb/global_control.h>
+
+#include "cut_judge.h"
+#include "cut_search.h"
 #include "decode/decode.h"
 #include "import/import.h"
-#include "metrics/metrics.h"
+#include "metrics/attribute_drift.h"
+#include "quality_report.h"
+#include "report/info.h"
 #include "select/select.h"
 
 namespace {
 
 using namespace meshlode;
+using namespace meshlode::bench;
+
+constexpr const char* kUsage =
+    "usage: bench_quality SCENE ASSET [options]\n"
+    "  --cuts N          cuts in the table, thresholds evenly in logarithms (24; 0 for none)\n"
+    "  --from T --to T   their range, shares of the diagonal (1e-4, 2e-2)\n"
+    "  --by selection|quadric   the stored number that the table's cuts go by (selection)\n"
+    "  --max X,...       triangles at equal true maximum (1e-3,2e-3,5e-3; none)\n"
+    "  --rms X,...       triangles at equal true RMS (1e-4,3e-4,1e-3; none)\n"
+    "  --drift all|equal|none   normals and UVs of every cut, of those at equal deviation, of none (equal)\n"
+    "  --samples N       area-uniform samples each way, all vertices on top (200000)\n"
+    "  --jobs N          threads (one per core)\n"
+    "  --json FILE       write the figures there too\n";
 
 struct Options {
-  std::string scene, asset;
-  int cuts = 24;
+  std::string scene, asset, json, by = "selection", drift = "equal";
+  int cuts = 24, jobs = 0;
   std::uint64_t samples = 200000;
   double from = 1e-4, to = 2e-2;
-  CutError by = CutError::kSelection;
+  std::vector<double> at_max{1e-3, 2e-3, 5e-3}, at_rms{1e-4, 3e-4, 1e-3};
 };
 
-struct Row {
-  double threshold = 0.0, max = 0.0, rms = 0.0, stored = 0.0;
-  std::size_t triangles = 0;
-};
-
-Surface surface_of_source(const SourceMesh& mesh) {
-  Surface surface;
-  for (const Primitive& primitive : mesh.primitives) {
-    const auto base = static_cast<std::uint32_t>(surface.positions.size());
-    surface.positions.insert(surface.positions.end(), primitive.positions.begin(), primitive.positions.end());
-    for (std::size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
-      surface.triangles.push_back(
-          {base + primitive.indices[i], base + primitive.indices[i + 1], base + primitive.indices[i + 2]});
-    }
-  }
-  return surface;
+template <class Number>
+bool read_number(const std::string& text, Number& out) {
+  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), out);
+  return error == std::errc{} && stop == text.data() + text.size();
 }
 
-/// The fewest triangles over all cuts whose figure is at most x; between two cuts, interpolated in logarithms.
-double triangles_at(const std::vector<Row>& rows, double Row::*figure, double x) {
-  double best = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (rows[i].*figure <= x) best = std::min(best, static_cast<double>(rows[i].triangles));
-    if (i + 1 < rows.size() && rows[i].*figure <= x && rows[i + 1].*figure > x && rows[i].*figure > 0.0) {
-      const double t = std::log(x / (rows[i].*figure)) / std::log(rows[i + 1].*figure / (rows[i].*figure));
-      const double a = std::log(static_cast<double>(rows[i].triangles));
-      const double b = std::log(static_cast<double>(rows[i + 1].triangles));
-      best = std::min(best, std::exp(a + t * (b - a)));
-    }
+bool read_list(const std::string& text, std::vector<double>& out) {
+  out.clear();
+  if (text == "none") return true;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', at), text.size());
+    double x = 0.0;
+    if (!read_number(text.substr(at, comma - at), x) || !(x > 0.0)) return false;
+    out.push_back(x);
+    at = comma + 1;
   }
-  return best;
+  return true;
 }
 
-bool parse(int argc, char** argv, Options& options) {
+bool parse(int argc, char** argv, Options& o) {
   std::vector<std::string> files;
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
@@ -71,40 +77,130 @@ bool parse(int argc, char** argv, Options& options) {
       continue;
     }
     if (i + 1 >= argc) return false;
-    const char* value = argv[++i];
-    if (word == "--cuts") {
-      options.cuts = std::atoi(value);
-    } else if (word == "--samples") {
-      options.samples = std::strtoull(value, nullptr, 10);
-    } else if (word == "--from") {
-      options.from = std::atof(value);
-    } else if (word == "--to") {
-      options.to = std::atof(value);
-    } else if (word == "--by") {
-      options.by = std::strcmp(value, "quadric") == 0 ? CutError::kQuadric : CutError::kSelection;
-    } else {
-      return false;
-    }
+    const std::string value = argv[++i];
+    const bool is_read = word == "--cuts"      ? read_number(value, o.cuts)
+                         : word == "--samples" ? read_number(value, o.samples)
+                         : word == "--from"    ? read_number(value, o.from)
+                         : word == "--to"      ? read_number(value, o.to)
+                         : word == "--jobs"    ? read_number(value, o.jobs)
+                         : word == "--max"     ? read_list(value, o.at_max)
+                         : word == "--rms"     ? read_list(value, o.at_rms)
+                         : word == "--json"    ? (o.json = value, true)
+                         : word == "--by"      ? (o.by = value, value == "selection" || value == "quadric")
+                         : word == "--drift" ? (o.drift = value, value == "all" || value == "equal" || value == "none")
+                                             : false;
+    if (!is_read) return false;
   }
-  if (files.size() != 2 || options.cuts < 2) return false;
-  options.scene = files[0];
-  options.asset = files[1];
+  if (files.size() != 2 || o.cuts < 0 || !(o.from > 0.0) || !(o.to >= o.from)) return false;
+  o.scene = files[0];
+  o.asset = files[1];
   return true;
 }
+
+/// One mesh with everything that its cuts are measured against.
+class MeshBench {
+ public:
+  MeshBench(const SourceMesh& source, const Asset& asset, std::span<const DecodedCluster> decoded, MeshId mesh,
+            const Options& options)
+      : asset_(asset),
+        decoded_(decoded),
+        mesh_(mesh),
+        options_(options),
+        source_(plain_surface(source)),
+        shaded_(shaded_surface_of_source(source)),
+        judge_(source_, asset, decoded, mesh, options.samples) {}
+
+  MeshQuality run() {
+    const format::MeshRecord& record = asset_.meshes()[mesh_.value];
+    MeshQuality out;
+    out.name = std::string(asset_.string(record.name));
+    out.diagonal = record.diagonal;
+    out.source_triangles = record.source_triangles;
+    out.tier = error_tier_name(record.error_tier);
+    if (!(record.diagonal > 0.0) || source_.triangles.empty()) return out;
+    const CutError by = options_.by == "quadric" ? CutError::kQuadric : CutError::kSelection;
+    for (int i = 0; i < options_.cuts; ++i) {
+      const double share = options_.cuts > 1 ? static_cast<double>(i) / (options_.cuts - 1) : 0.0;
+      const double threshold = options_.from * std::pow(options_.to / options_.from, share);
+      const UniformCut cut = select_uniform(asset_, mesh_, threshold * record.diagonal, by);
+      const CutFigures figures = judge_.measure(cut.clusters);
+      if (!out.cuts.empty() && out.cuts.back().figures.triangles == figures.triangles) continue;
+      out.cuts.push_back(measured(threshold, cut, figures, options_.drift == "all"));
+    }
+    for (const double x : options_.at_max) out.equal.push_back(equal(CutError::kSelection, Figure::kMax, x));
+    for (const double x : options_.at_rms) out.equal.push_back(equal(CutError::kQuadric, Figure::kRms, x));
+    return out;
+  }
+
+ private:
+  static Surface plain_surface(const SourceMesh& mesh) {
+    Surface surface;
+    for (const Primitive& primitive : mesh.primitives) {
+      const auto base = static_cast<std::uint32_t>(surface.positions.size());
+      surface.positions.insert(surface.positions.end(), primitive.positions.begin(), primitive.positions.end());
+      for (std::size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
+        surface.triangles.push_back(
+            {base + primitive.indices[i], base + primitive.indices[i + 1], base + primitive.indices[i + 2]});
+      }
+    }
+    return surface;
+  }
+
+  MeasuredCut measured(double threshold, const UniformCut& cut, const CutFigures& figures, bool with_drift) {
+    const double diagonal = asset_.meshes()[mesh_.value].diagonal;
+    MeasuredCut out{threshold, cut.stored_error / diagonal, figures, {}};
+    if (with_drift) {
+      const DriftSurface surface(shaded_surface_of_clusters(asset_, decoded_, mesh_, cut.clusters));
+      // A seam may have moved sideways by as much as the surface has moved at all.
+      out.drift = measure_drift(shaded_, surface,
+                                {.samples = options_.samples, .tie = 1e-7 * diagonal, .seam_reach = figures.max()});
+    }
+    return out;
+  }
+
+  EqualDeviation equal(CutError by, Figure figure, double x) {
+    const auto start = std::chrono::steady_clock::now();
+    const double diagonal = asset_.meshes()[mesh_.value].diagonal;
+    EqualDeviation out{"cuts", figure == Figure::kMax ? "max" : "rms", x, {}, 0, 0, 0.0};
+    const auto found = find_fewest_triangles(judge_, asset_, mesh_, {by, figure, x * diagonal});
+    if (found) {
+      out.cut = measured(found->threshold / diagonal, found->cut, found->figures, options_.drift != "none");
+      out.cuts_measured = found->cuts_measured;
+      out.cuts_of_mesh = found->cuts_of_mesh;
+    }
+    out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return out;
+  }
+
+  const Asset& asset_;
+  std::span<const DecodedCluster> decoded_;
+  MeshId mesh_;
+  const Options& options_;
+  Surface source_;
+  DriftSurface shaded_;
+  CutJudge judge_;
+};
 
 }  // namespace
 
 int main(int argc, char** argv) {
   Options options;
   if (!parse(argc, argv, options)) {
-    std::fputs("usage: bench_quality SCENE ASSET [--cuts N] [--samples N] [--from T] [--to T] [--by selection|quadric]\n",
-               stderr);
+    std::fputs(kUsage, stderr);
     return 1;
   }
+  const auto threads = static_cast<std::size_t>(std::max(options.jobs, 0));
+  const std::size_t allowed =
+      threads > 0 ? threads : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, allowed);
   const Result<Scene> scene = import_scene(options.scene, {});
   const Result<Asset> asset = Asset::open(options.asset);
   if (!scene || !asset) {
     std::fprintf(stderr, "%s\n", (!scene ? scene.error() : asset.error()).message().c_str());
+    return 2;
+  }
+  if (scene->meshes.size() != asset->meshes().size()) {
+    std::fputs("the scene and the asset have different numbers of meshes\n", stderr);
     return 2;
   }
   const Result<std::vector<DecodedCluster>> decoded = decode_all(*asset);
@@ -112,37 +208,20 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "%s\n", decoded.error().message().c_str());
     return 3;
   }
+  std::vector<MeshQuality> meshes;
   for (std::uint32_t m = 0; m < asset->meshes().size(); ++m) {
-    const double diagonal = asset->meshes()[m].diagonal;
-    const Surface source = surface_of_source(scene->meshes[m]);
-    std::vector<Row> rows;
-    for (int i = 0; i < options.cuts; ++i) {
-      Row row;
-      row.threshold = options.from * std::pow(options.to / options.from, static_cast<double>(i) / (options.cuts - 1));
-      const UniformCut cut = select_uniform(*asset, MeshId(m), row.threshold * diagonal, options.by);
-      const Surface surface = surface_of_clusters(*asset, *decoded, MeshId(m), cut.clusters);
-      if (!rows.empty() && rows.back().triangles == surface.triangles.size()) continue;
-      const DeviationReport report = measure_deviation(source, surface, {.samples = options.samples});
-      row.triangles = surface.triangles.size();
-      row.max = report.max() / diagonal;
-      row.rms = report.rms() / diagonal;
-      row.stored = cut.stored_error / diagonal;
-      rows.push_back(row);
-      std::printf("mesh %u  T %.3e  triangles %8zu  max %.3e (fwd %.2e back %.2e)  rms %.3e  stored %.3e  true/stored %.3f\n",
-                  m, row.threshold, row.triangles, row.max, report.a_to_b.max / diagonal, report.b_to_a.max / diagonal,
-                  row.rms, row.stored, row.max / row.stored);
-      std::fflush(stdout);
-    }
-    std::printf("mesh %u  triangles at max   1e-3: %.0f   2e-3: %.0f   5e-3: %.0f\n", m, triangles_at(rows, &Row::max, 1e-3),
-                triangles_at(rows, &Row::max, 2e-3), triangles_at(rows, &Row::max, 5e-3));
-    std::printf("mesh %u  triangles at rms   1e-4: %.0f   3e-4: %.0f   1e-3: %.0f\n", m, triangles_at(rows, &Row::rms, 1e-4),
-                triangles_at(rows, &Row::rms, 3e-4), triangles_at(rows, &Row::rms, 1e-3));
-    std::vector<double> ratios;
-    for (const Row& row : rows) ratios.push_back(row.max / row.stored);
-    std::sort(ratios.begin(), ratios.end());
-    if (!ratios.empty()) {
-      std::printf("mesh %u  true/stored: median %.3f  worst %.3f over %zu cuts\n", m, ratios[ratios.size() / 2], ratios.back(),
-                  ratios.size());
+    MeshBench bench(scene->meshes[m], *asset, *decoded, MeshId(m), options);
+    meshes.push_back(bench.run());
+    std::fputs(quality_text(meshes.back()).c_str(), stdout);
+    std::fflush(stdout);
+  }
+  if (!options.json.empty()) {
+    std::ofstream file(options.json, std::ios::binary);
+    file << quality_json(std::filesystem::path(options.scene).filename().string(),
+                         std::filesystem::path(options.asset).filename().string(), meshes);
+    if (!file.flush()) {
+      std::fprintf(stderr, "%s: cannot be written\n", options.json.c_str());
+      return 2;
     }
   }
   return 0;

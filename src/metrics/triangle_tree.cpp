@@ -141,4 +141,24 @@ NearestPoint TriangleTree::nearest(const Vec3d& point, std::uint32_t hint) const
   return best;
 }
 
+void TriangleTree::find_within(const Vec3d& point, double distance2, std::vector<NearestPoint>& found) const {
+  if (nodes_.empty()) return;
+  std::array<std::uint32_t, 64> stack;
+  std::size_t size = 0;
+  stack[size++] = 0;
+  while (size > 0) {
+    const Node& node = nodes_[stack[--size]];
+    if (distance2_to_box(node, point) > distance2) continue;
+    if (node.count == 0) {
+      stack[size++] = node.first;
+      stack[size++] = node.first + 1;
+      continue;
+    }
+    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+      const double d = distance2_to_triangle(point, corners_[i].a, corners_[i].b, corners_[i].c);
+      if (d <= distance2) found.push_back({d, triangle_[i]});
+    }
+  }
+}
+
 }  // namespace meshlode

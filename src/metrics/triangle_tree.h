@@ -26,6 +26,8 @@ class TriangleTree {
   /// The nearest triangle. `hint` names a triangle that is probably near, and changes the time taken alone; it may be
   /// none. Infinite for an empty tree. Safe from several threads.
   [[nodiscard]] NearestPoint nearest(const Vec3d& point, std::uint32_t hint = 0xFFFFFFFFu) const;
+  /// Every triangle within a squared distance (inclusive), appended in no particular order that is always the same.
+  void find_within(const Vec3d& point, double distance2, std::vector<NearestPoint>& found) const;
 
  private:
   struct Node {

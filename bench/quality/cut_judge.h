@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The true deviation of uniform cuts of one mesh, for many cuts of it: what two cuts share is measured once.
+// Cut to source, the figures of a cluster do not depend on the cut that it is in, and are kept. Source to cut, the
+// farthest points of earlier cuts are asked first, so that a cut that is too far off is mostly refused by a few points.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "decode/decode.h"
+#include "metrics/area_samples.h"
+#include "metrics/metrics.h"
+#include "metrics/triangle_tree.h"
+#include "select/select.h"
+
+namespace meshlode::bench {
+
+/// Object units. RMS over area-uniform samples; maxima over samples and all vertices.
+struct CutFigures {
+  std::uint64_t triangles = 0;
+  double max_to_cut = 0.0, max_to_source = 0.0;
+  double rms_to_cut = 0.0, rms_to_source = 0.0;
+  [[nodiscard]] double max() const { return max_to_cut > max_to_source ? max_to_cut : max_to_source; }
+  [[nodiscard]] double rms() const { return rms_to_cut > rms_to_source ? rms_to_cut : rms_to_source; }
+};
+
+class CutJudge {
+ public:
+  /// At least `samples` area-uniform samples each way for cuts that have three quarters of the source's area or more.
+  /// \pre the arguments outlive this
+  CutJudge(const Surface& source, const Asset& asset, std::span<const DecodedCluster> decoded, MeshId mesh,
+           std::uint64_t samples);
+
+  [[nodiscard]] CutFigures measure(std::span<const ClusterId> clusters) { return *measure_within(clusters, kNoLimit); }
+  /// Nothing where the maximum is above `limit`.
+  [[nodiscard]] std::optional<CutFigures> measure_within(std::span<const ClusterId> clusters, double limit);
+  /// The same for a surface that is no cut (nothing is kept).
+  [[nodiscard]] CutFigures measure(const Surface& surface) const;
+
+ private:
+  static constexpr double kNoLimit = 1e300;
+  struct ClusterFigures {
+    bool is_known = false;
+    double area = 0.0, mean2 = 0.0, max2 = 0.0;
+  };
+  struct Forward {
+    double sum2 = 0.0, max2 = 0.0;
+    bool is_within = true;
+  };
+  [[nodiscard]] ClusterFigures measure_cluster(ClusterId cluster) const;
+  [[nodiscard]] Forward measure_to_cut(const TriangleTree& cut, double limit2, std::vector<std::uint32_t>* worst) const;
+
+  const Surface& source_;
+  const Asset& asset_;
+  std::span<const DecodedCluster> decoded_;
+  MeshId mesh_;
+  std::uint64_t samples_;
+  double density_ = 0.0;  ///< samples per unit of area, on cuts
+  TriangleTree source_tree_;
+  std::vector<Vec3d> points_;  ///< of the source: samples, then vertices
+  std::size_t sample_count_ = 0;
+  std::vector<ClusterFigures> clusters_;
+  std::vector<std::uint32_t> suspects_;  ///< points that were far from some cut, latest last
+};
+
+}  // namespace meshlode::bench
