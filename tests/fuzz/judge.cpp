@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The structural judge and the exporter on any bytes: what `validate` and `extract` do with a hostile file. Both read
+// what the runtime does not: the JSON sections, texts, and pages that were found wrong.
+#include <algorithm>
+#include <vector>
+
+#include "export/choose_cuts.h"
+#include "export/export.h"
+#include "harness.h"
+#include "support/reseal.h"
+#include "validate/validate.h"
+
+extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t max_size);
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace meshlode;
+  const std::vector<std::uint8_t> bytes(data, data + size);
+  const ValidationReport report = validate_asset(bytes);
+  const auto asset = Asset::from_bytes(bytes);
+  fuzz::require(asset.ok() || report.finding_count > 0, "the judge finds nothing in a file that does not open");
+  if (!asset || asset->instances().size() > 1000) return 0;
+  std::vector<LodChain> chains(asset->meshes().size());
+  for (std::size_t m = 0; m < chains.size(); ++m) {
+    chains[m].cuts = {choose_level_cut(*asset, MeshId(m), 0).clusters};
+    const auto coarse = choose_level_cut(*asset, MeshId(m), 0xFFFF).clusters;
+    if (!coarse.empty() && coarse != chains[m].cuts[0] && !chains[m].cuts[0].empty()) chains[m].cuts.push_back(coarse);
+  }
+  const auto glb = export_glb_lods(*asset, chains);
+  fuzz::require(glb.ok() || !glb.error().message().empty(), "a refusal without a reason");
+  return 0;
+}
+
+#ifdef MESHLODE_FUZZ
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t max_size,
+                                               unsigned int seed) {
+  size = LLVMFuzzerMutate(data, size, max_size);
+  if (seed % 16 == 0) return size;
+  std::vector<std::uint8_t> bytes(data, data + size);
+  meshlode::test::reseal(bytes);
+  std::copy(bytes.begin(), bytes.end(), data);
+  return size;
+}
+#endif
