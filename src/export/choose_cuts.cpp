@@ -113,8 +113,9 @@ UniformCut choose_level_cut(const Asset& asset, MeshId mesh, std::uint32_t level
   return collect_cut(asset, record, passes);
 }
 
-std::vector<UniformCut> choose_camera_cuts(const Asset& asset, const Camera& camera, double pixel_error) {
-  const std::vector<ClusterInstance> drawn = select_flat(asset, camera, pixel_error);
+std::vector<UniformCut> choose_camera_cuts(const Asset& asset, const Camera& camera, double pixel_error,
+                                           const AttributeBounds& bounds) {
+  const std::vector<ClusterInstance> drawn = select_flat(asset, camera, pixel_error, bounds);
   std::vector<std::vector<bool>> passes(asset.meshes().size());  // empty: no instance yet
   for (std::size_t first = 0; first < drawn.size();) {
     std::size_t last = first;

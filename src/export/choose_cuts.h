@@ -19,7 +19,8 @@ namespace meshlode {
 
 /// Per mesh the coarsest cut that is at least as fine, everywhere, as what each of its instances draws for the camera:
 /// a group passes iff it passes for all of them. Meshes without a drawn instance have an empty cut.
-[[nodiscard]] std::vector<UniformCut> choose_camera_cuts(const Asset& asset, const Camera& camera, double pixel_error);
+[[nodiscard]] std::vector<UniformCut> choose_camera_cuts(const Asset& asset, const Camera& camera, double pixel_error,
+                                                         const AttributeBounds& bounds = {});
 
 /// Uniform cuts of several meshes under one budget.
 struct BudgetCuts {

@@ -47,6 +47,11 @@ MeshInfo describe_mesh(const Asset& asset, std::uint32_t mesh_id, std::uint32_t 
     const float error = cluster.own_group == format::kNone ? 0.0F : asset.groups()[cluster.own_group].error;
     level.error_min = level.clusters == 0 ? error : std::min(level.error_min, error);
     level.error_max = level.clusters == 0 ? error : std::max(level.error_max, error);
+    if (cluster.own_group != format::kNone) {
+      const format::GroupRecord& own = asset.groups()[cluster.own_group];
+      level.normal_deviation_max = std::max(level.normal_deviation_max, own.normal_deviation);
+      level.uv_deviation_max = std::max(level.uv_deviation_max, own.uv_deviation);
+    }
     level.clusters += 1;
     level.triangles += cluster.triangle_count;
     level.vertices += cluster.vertex_count;

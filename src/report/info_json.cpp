@@ -144,6 +144,8 @@ void write_level(JsonWriter& w, const LevelInfo& level) {
   w.field("stuck_groups", level.stuck_groups);
   w.field("error_min", level.error_min);
   w.field("error_max", level.error_max);
+  w.field("normal_deviation_max", level.normal_deviation_max);
+  w.field("uv_deviation_max", level.uv_deviation_max);
   w.end_object();
 }
 

@@ -58,13 +58,24 @@ void add_mesh(std::string& out, const Asset& asset, std::uint32_t id, const Mesh
     }
     add(out, "\n");
   }
-  add(out, "  level  clusters   triangles    vertices   full   fill  groups  stuck   error min   error max\n");
+  // Columns for what was measured alone.
+  const auto is_measured = [&](float LevelInfo::*deviation) {
+    return info.levels.size() > 1 && info.levels.back().*deviation < format::kInfiniteError;
+  };
+  const bool has_normals =
+      mesh.normal_mode != format::NormalMode::kNone && is_measured(&LevelInfo::normal_deviation_max);
+  const bool has_uvs = mesh.uv_set_count > 0 && is_measured(&LevelInfo::uv_deviation_max);
+  add(out, "  level  clusters   triangles    vertices   full   fill  groups  stuck   error min   error max%s%s\n",
+      has_normals ? "  normals/deg" : "", has_uvs ? "         UVs" : "");
   for (const LevelInfo& level : info.levels) {
-    add(out, "  %5u  %8s  %10s  %10s  %5llu  %5.3f  %6llu  %5llu  %10.4g  %10.4g\n", level.level,
+    add(out, "  %5u  %8s  %10s  %10s  %5llu  %5.3f  %6llu  %5llu  %10.4g  %10.4g", level.level,
         grouped(level.clusters).c_str(), grouped(level.triangles).c_str(), grouped(level.vertices).c_str(),
         static_cast<unsigned long long>(level.full_clusters), level.fill, static_cast<unsigned long long>(level.groups),
         static_cast<unsigned long long>(level.stuck_groups), static_cast<double>(level.error_min),
         static_cast<double>(level.error_max));
+    if (has_normals) add(out, "  %11.4g", static_cast<double>(level.normal_deviation_max));
+    if (has_uvs) add(out, "  %10.4g", static_cast<double>(level.uv_deviation_max));
+    out += '\n';
   }
 }
 

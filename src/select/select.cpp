@@ -43,7 +43,8 @@ SelectTables tables_of(const Asset& asset) {
   return {asset.meshes(), asset.instances(), asset.groups(), asset.clusters(), asset.nodes()};
 }
 
-std::vector<ClusterInstance> select_flat(const SelectTables& tables, const Camera& camera, double pixel_error) {
+std::vector<ClusterInstance> select_flat(const SelectTables& tables, const Camera& camera, double pixel_error,
+                                         const AttributeBounds& bounds) {
   std::vector<ClusterInstance> cut;
   std::vector<std::uint8_t> group_passes;
   for (std::size_t i = 0; i < tables.instances.size(); ++i) {
@@ -51,9 +52,11 @@ std::vector<ClusterInstance> select_flat(const SelectTables& tables, const Camer
     if (!is_drawable(tables, instance)) continue;
     const format::MeshRecord& mesh = tables.meshes[instance.mesh];
     const MetricView view = make_metric_view(camera, pixel_error, instance, mesh, mesh_reach(tables, mesh));
+    const AttributeBounds own_bounds = bounds_for(bounds, mesh);
     group_passes.assign(mesh.group_count, 0);
     for (std::uint32_t g = 0; g < mesh.group_count; ++g) {
-      group_passes[g] = passes(view, tables.groups[mesh.first_group + g]) ? 1 : 0;
+      const format::GroupRecord& group = tables.groups[mesh.first_group + g];
+      group_passes[g] = passes(view, group) && is_within(own_bounds, group) ? 1 : 0;
     }
     draw_cut(tables, mesh, group_passes, [&](std::uint32_t id, const format::ClusterRecord&) {
       cut.push_back({InstanceId(i), ClusterId(id)});
@@ -63,16 +66,24 @@ std::vector<ClusterInstance> select_flat(const SelectTables& tables, const Camer
 }
 
 std::vector<ClusterInstance> select_bvh(const SelectTables& tables, const Camera& camera, double pixel_error,
-                                        TraversalCount* count) {
+                                        TraversalCount* count, const AttributeBounds& bounds) {
   std::vector<ClusterInstance> cut;
   std::vector<std::uint32_t> stack, open_groups;
   std::vector<Answer> answers;
+  std::vector<std::uint8_t> nodes_within;
+  std::uint32_t nodes_within_mesh = format::kNone;
   TraversalCount work;
   for (std::size_t i = 0; i < tables.instances.size(); ++i) {
     const format::InstanceRecord& instance = tables.instances[i];
     if (!is_drawable(tables, instance)) continue;
     const format::MeshRecord& mesh = tables.meshes[instance.mesh];
     const MetricView view = make_metric_view(camera, pixel_error, instance, mesh, mesh_reach(tables, mesh));
+    const AttributeBounds own_bounds = bounds_for(bounds, mesh);
+    // Per node of this mesh, where there are bounds at all; instances of a mesh that follow each other share it.
+    if (own_bounds.has_any() && (nodes_within.empty() || nodes_within_mesh != instance.mesh)) {
+      nodes_within = find_nodes_within(tables, mesh, own_bounds);
+      nodes_within_mesh = instance.mesh;
+    }
     answers.assign(mesh.group_count, Answer::kUnknown);
     open_groups.clear();
     stack.assign(mesh.node_count > 0 ? 1 : 0, mesh.first_node);
@@ -81,7 +92,9 @@ std::vector<ClusterInstance> select_bvh(const SelectTables& tables, const Camera
       stack.pop_back();
       const format::NodeRecord& node = tables.nodes[node_id];
       ++work.nodes;
-      if (passes(view, node)) continue;  // then every group below passes, and none of their members is drawn
+      const bool is_node_within = !own_bounds.has_any() || nodes_within[node_id - mesh.first_node] != 0;
+      // Then every group below passes, and none of their members is drawn.
+      if (is_node_within && passes(view, node)) continue;
       if (node.child_count == 0) {
         open_groups.push_back(node.first);
         answers[node.first - mesh.first_group] = Answer::kFails;  // a leaf has its group's own bits
@@ -101,7 +114,10 @@ std::vector<ClusterInstance> select_bvh(const SelectTables& tables, const Camera
         const std::uint32_t own = tables.clusters[id].own_group;
         if (own != format::kNone) {
           Answer& answer = answers[own - mesh.first_group];
-          if (answer == Answer::kUnknown) answer = passes(view, tables.groups[own]) ? Answer::kPasses : Answer::kFails;
+          if (answer == Answer::kUnknown) {
+            const format::GroupRecord& own_group = tables.groups[own];
+            answer = passes(view, own_group) && is_within(own_bounds, own_group) ? Answer::kPasses : Answer::kFails;
+          }
           if (answer == Answer::kFails) continue;
         }
         cut.push_back({InstanceId(i), ClusterId(id)});
@@ -112,14 +128,17 @@ std::vector<ClusterInstance> select_bvh(const SelectTables& tables, const Camera
   return cut;
 }
 
-UniformCut select_uniform(const SelectTables& tables, MeshId mesh_id, double error, CutError by) {
+UniformCut select_uniform(const SelectTables& tables, MeshId mesh_id, double error, CutError by,
+                          const AttributeBounds& bounds) {
   const format::MeshRecord& mesh = tables.meshes[mesh_id.value];
+  const AttributeBounds own_bounds = bounds_for(bounds, mesh);
   std::vector<std::uint8_t> group_passes(mesh.group_count, 0);
   for (std::uint32_t g = 0; g < mesh.group_count; ++g) {
     const format::GroupRecord& group = tables.groups[mesh.first_group + g];
     const float value = by == CutError::kQuadric ? group.quadric_error : group.error;
     // Terminal groups never pass, whatever their other numbers say.
-    group_passes[g] = group.error < format::kInfiniteError && double{value} <= error ? 1 : 0;
+    const bool is_passing = group.error < format::kInfiniteError && double{value} <= error;
+    group_passes[g] = is_passing && is_within(own_bounds, group) ? 1 : 0;
   }
   UniformCut cut;
   cut.stored_error = mesh.level0_deviation;
@@ -132,16 +151,18 @@ UniformCut select_uniform(const SelectTables& tables, MeshId mesh_id, double err
   return cut;
 }
 
-std::vector<ClusterInstance> select_flat(const Asset& asset, const Camera& camera, double pixel_error) {
-  return select_flat(tables_of(asset), camera, pixel_error);
+std::vector<ClusterInstance> select_flat(const Asset& asset, const Camera& camera, double pixel_error,
+                                         const AttributeBounds& bounds) {
+  return select_flat(tables_of(asset), camera, pixel_error, bounds);
 }
 
-std::vector<ClusterInstance> select_bvh(const Asset& asset, const Camera& camera, double pixel_error) {
-  return select_bvh(tables_of(asset), camera, pixel_error);
+std::vector<ClusterInstance> select_bvh(const Asset& asset, const Camera& camera, double pixel_error,
+                                        const AttributeBounds& bounds) {
+  return select_bvh(tables_of(asset), camera, pixel_error, nullptr, bounds);
 }
 
-UniformCut select_uniform(const Asset& asset, MeshId mesh, double error, CutError by) {
-  return select_uniform(tables_of(asset), mesh, error, by);
+UniformCut select_uniform(const Asset& asset, MeshId mesh, double error, CutError by, const AttributeBounds& bounds) {
+  return select_uniform(tables_of(asset), mesh, error, by, bounds);
 }
 
 }  // namespace meshlode

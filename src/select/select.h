@@ -11,6 +11,7 @@
 #include "base/ids.h"
 #include "base/vec.h"
 #include "read/asset.h"
+#include "select/attribute_bounds.h"
 #include "select/metric.h"
 
 namespace meshlode {
@@ -52,20 +53,23 @@ struct ClusterInstance {
 };
 
 /// Every drawn (instance, cluster) for the camera at `pixel_error`, ascending. No culling. Singular instances have
-/// none.
-[[nodiscard]] std::vector<ClusterInstance> select_flat(const Asset& asset, const Camera& camera, double pixel_error);
+/// none. With bounds, a group passes only where its attribute deviations are within them too.
+[[nodiscard]] std::vector<ClusterInstance> select_flat(const Asset& asset, const Camera& camera, double pixel_error,
+                                                       const AttributeBounds& bounds = {});
 /// The same set through the BVH (I8).
-[[nodiscard]] std::vector<ClusterInstance> select_bvh(const Asset& asset, const Camera& camera, double pixel_error);
+[[nodiscard]] std::vector<ClusterInstance> select_bvh(const Asset& asset, const Camera& camera, double pixel_error,
+                                                      const AttributeBounds& bounds = {});
 
 [[nodiscard]] std::vector<ClusterInstance> select_flat(const SelectTables& tables, const Camera& camera,
-                                                       double pixel_error);
+                                                       double pixel_error, const AttributeBounds& bounds = {});
 /// How much work a traversal was; for tests and benchmarks.
 struct TraversalCount {
   std::uint64_t nodes = 0;     ///< BVH nodes tested
   std::uint64_t clusters = 0;  ///< clusters tested
 };
 [[nodiscard]] std::vector<ClusterInstance> select_bvh(const SelectTables& tables, const Camera& camera,
-                                                      double pixel_error, TraversalCount* count = nullptr);
+                                                      double pixel_error, TraversalCount* count = nullptr,
+                                                      const AttributeBounds& bounds = {});
 
 enum class CutError : std::uint8_t { kSelection, kQuadric };  ///< which stored number decides a uniform cut
 
@@ -73,10 +77,11 @@ struct UniformCut {
   std::vector<ClusterId> clusters;  ///< ascending
   double stored_error = 0.0;        ///< max(largest selected own error, level-0 deviation), object units
 };
-/// The cut of one mesh where a group passes iff its error <= `error` (object units). No camera.
+/// The cut of one mesh where a group passes iff its error <= `error` (object units) and its attribute deviations are
+/// within the bounds. No camera.
 [[nodiscard]] UniformCut select_uniform(const Asset& asset, MeshId mesh, double error,
-                                        CutError by = CutError::kSelection);
+                                        CutError by = CutError::kSelection, const AttributeBounds& bounds = {});
 [[nodiscard]] UniformCut select_uniform(const SelectTables& tables, MeshId mesh, double error,
-                                        CutError by = CutError::kSelection);
+                                        CutError by = CutError::kSelection, const AttributeBounds& bounds = {});
 
 }  // namespace meshlode

@@ -219,6 +219,7 @@ struct TestTables {
       r.cluster_count = dag.groups[g].cluster_count;
       r.mesh = static_cast<std::uint32_t>(meshes.size());
       r.level = static_cast<std::uint16_t>(dag.groups[g].level);
+      r.normal_deviation = r.uv_deviation = format::kInfiniteError;
       r.flags = dag.groups[g].is_terminal ? format::kGroupTerminal : std::uint16_t{0};
       groups.push_back(r);
     }

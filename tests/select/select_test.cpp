@@ -38,7 +38,9 @@ TestTables make_tables(RandomSource& random, std::uint32_t leaf_clusters) {
   return tables;
 }
 
-double random_pixel_error(RandomSource& random) { return random.chance(0.05) ? 0.0 : random.log_between(1e-4, 1e5); }
+double random_pixel_error(RandomSource& random) {
+  return random.chance(0.05) ? 0.0 : random.log_between(1e-4, 1e5);
+}
 
 // Walks from each level-0 cluster to a root, at random among the clusters made from each group.
 void expect_each_path_has_one_drawn_cluster(RandomSource& random, const SelectTables& tables, std::uint32_t mesh_id,
@@ -151,6 +153,105 @@ TEST(Select, SurvivesCamerasThatMakeNoSense) {
       if (random.chance(0.4)) *field = bad[random.below(7)];
     }
     ASSERT_EQ(select_flat(owned.view(), camera, t), select_bvh(owned.view(), camera, t)) << n;
+  }
+}
+
+/// Measured attribute deviations for every group: random, running maxima along the DAG, infinite at the roots.
+void add_attribute_deviations(RandomSource& random, TestTables& tables) {
+  for (format::MeshRecord& mesh : tables.meshes) {
+    mesh.normal_mode = format::NormalMode::kStored;
+    mesh.uv_set_count = 1;
+  }
+  for (format::GroupRecord& group : tables.groups) {
+    if ((group.flags & format::kGroupTerminal) != 0) continue;
+    group.normal_deviation = static_cast<float>(random.log_between(1e-2, 10.0));
+    group.uv_deviation = static_cast<float>(random.log_between(1e-6, 1e-2));
+  }
+  for (std::size_t g = tables.groups.size(); g-- > 0;) {  // finer groups lie behind coarser ones
+    format::GroupRecord& group = tables.groups[g];
+    for (std::uint32_t c = group.first_cluster; c < group.first_cluster + group.cluster_count; ++c) {
+      const std::uint32_t own = tables.clusters[c].own_group;
+      if (own == format::kNone) continue;
+      group.normal_deviation = std::max(group.normal_deviation, tables.groups[own].normal_deviation);
+      group.uv_deviation = std::max(group.uv_deviation, tables.groups[own].uv_deviation);
+    }
+  }
+}
+
+AttributeBounds random_bounds(RandomSource& random) {
+  AttributeBounds bounds;
+  if (random.chance(0.7)) bounds.normal_degrees = random.chance(0.1) ? 0.0 : random.log_between(1e-2, 20.0);
+  if (random.chance(0.7)) bounds.uv = random.chance(0.1) ? 0.0 : random.log_between(1e-6, 2e-2);
+  return bounds;
+}
+
+TEST(Select, WithAttributeBoundsEachPieceIsDrawnOnceAndTheBvhAgrees) {
+  RandomSource random(29);
+  TestTables owned = make_tables(random, 150);
+  add_attribute_deviations(random, owned);
+  const SelectTables tables = owned.view();
+  int changed = 0;
+  for (int n = 0; n < 600; ++n) {
+    const std::size_t i = random.below(static_cast<std::uint32_t>(tables.instances.size()));
+    const Camera camera = test::make_random_camera(random, tables, tables.instances[i]);
+    const double t = random_pixel_error(random);
+    const AttributeBounds bounds = random_bounds(random);
+    const auto cut = select_flat(tables, camera, t, bounds);
+    ASSERT_EQ(cut, select_bvh(tables, camera, t, nullptr, bounds)) << "camera " << n << ", seed 29";
+    changed += cut != select_flat(tables, camera, t) ? 1 : 0;
+    std::set<std::uint32_t> drawn;
+    for (const ClusterInstance& d : cut) {
+      if (d.instance.value == i) drawn.insert(d.cluster.value);
+    }
+    std::vector<ClusterId> ids;
+    for (const std::uint32_t id : drawn) ids.emplace_back(id);
+    const AttributeDeviation deviation = attribute_deviation_of(tables, ids);
+    ASSERT_LE(deviation.normal_degrees, bounds.normal_degrees) << "camera " << n << ", seed 29";
+    ASSERT_LE(deviation.uv, bounds.uv) << "camera " << n << ", seed 29";
+    expect_each_path_has_one_drawn_cluster(random, tables, tables.instances[i].mesh, drawn);
+    if (HasFatalFailure()) FAIL() << "instance " << i << ", camera " << n << ", seed 29";
+  }
+  EXPECT_GT(changed, 100) << "the bounds do ask for finer cuts";
+}
+
+TEST(Select, UniformCutsKeepAttributeBoundsAndAreTheCoarsestThatDo) {
+  RandomSource random(30);
+  TestTables owned = make_tables(random, 100);
+  add_attribute_deviations(random, owned);
+  const SelectTables tables = owned.view();
+  for (std::uint32_t m = 0; m < tables.meshes.size(); ++m) {
+    for (int n = 0; n < 100; ++n) {
+      const AttributeBounds bounds = random_bounds(random);
+      const double error = random.chance(0.5) ? 1e30 : random.log_between(1e-9, 1e6);
+      const UniformCut cut = select_uniform(tables, MeshId(m), error, CutError::kSelection, bounds);
+      std::set<std::uint32_t> drawn;
+      for (const ClusterId id : cut.clusters) {
+        drawn.insert(id.value);
+        const format::ClusterRecord& c = tables.clusters[id.value];
+        const format::GroupRecord& coarser = tables.groups[c.coarser_group];
+        EXPECT_FALSE(coarser.error <= error && is_within(bounds, coarser)) << "a coarser cluster would have done";
+      }
+      const AttributeDeviation deviation = attribute_deviation_of(tables, cut.clusters);
+      EXPECT_LE(deviation.normal_degrees, bounds.normal_degrees);
+      EXPECT_LE(deviation.uv, bounds.uv);
+      expect_each_path_has_one_drawn_cluster(random, tables, m, drawn);
+      if (HasFatalFailure()) FAIL() << "seed 30";
+    }
+  }
+}
+
+TEST(Select, BoundsOnWhatAMeshDoesNotStoreAreNone) {
+  RandomSource random(31);
+  TestTables owned = make_tables(random, 60);  // no normals, no UVs, nothing measured
+  const AttributeBounds bounds{.normal_degrees = 1.0, .uv = 1e-3};
+  for (std::uint32_t m = 0; m < owned.meshes.size(); ++m) {
+    const auto roots = select_uniform(owned.view(), MeshId(m), 1e30).clusters;
+    EXPECT_EQ(select_uniform(owned.view(), MeshId(m), 1e30, CutError::kSelection, bounds).clusters, roots);
+    owned.meshes[m].normal_mode = format::NormalMode::kStored;
+    const UniformCut cut = select_uniform(owned.view(), MeshId(m), 1e30, CutError::kSelection, bounds);
+    for (const ClusterId id : cut.clusters) {
+      EXPECT_EQ(owned.clusters[id.value].own_group, format::kNone) << "not measured: level 0 alone is sure";
+    }
   }
 }
 

@@ -39,17 +39,18 @@ CutLevel make_level(const Asset& asset, UniformCut cut, std::optional<double> as
   return level;
 }
 
-CutLevel cut_at_error(const CutRequest& request, const Asset& asset, MeshId mesh, double error) {
+CutLevel cut_at_error(const CutRequest& request, const AttributeBounds& bounds, const Asset& asset, MeshId mesh,
+                      double error) {
   const CutError by = request.by == "quadric" ? CutError::kQuadric : CutError::kSelection;
   const double asked = error * error_unit(request, asset, mesh.value);
-  return make_level(asset, select_uniform(asset, mesh, asked, by), asked);
+  return make_level(asset, select_uniform(asset, mesh, asked, by, bounds), asked);
 }
 
-Status choose_by_camera(const CutRequest& request, const Asset& asset, const std::vector<bool>& chosen,
-                        std::vector<MeshCuts>& out) {
+Status choose_by_camera(const CutRequest& request, const AttributeBounds& bounds, const Asset& asset,
+                        const std::vector<bool>& chosen, std::vector<MeshCuts>& out) {
   const auto camera = make_camera(request.camera, asset);
   if (!camera) return camera.error();
-  std::vector<UniformCut> cuts = choose_camera_cuts(asset, *camera, request.camera.pixel_error);
+  std::vector<UniformCut> cuts = choose_camera_cuts(asset, *camera, request.camera.pixel_error, bounds);
   for (std::size_t m = 0; m < out.size(); ++m) {
     if (chosen[m]) out[m].levels.push_back(make_level(asset, std::move(cuts[m])));
   }
@@ -80,7 +81,8 @@ CutLevel cut_at_ratio(const Asset& asset, MeshId mesh, double ratio, std::uint64
   std::vector<double> units(asset.meshes().size(), 0.0);
   units[mesh.value] = 1.0;
   const double budget = std::floor(ratio * static_cast<double>(finest_triangles));
-  return make_level(asset, std::move(choose_budget_cuts(asset, units, static_cast<std::uint64_t>(budget)).cuts[mesh.value]));
+  return make_level(asset,
+                    std::move(choose_budget_cuts(asset, units, static_cast<std::uint64_t>(budget)).cuts[mesh.value]));
 }
 
 /// A level may be shown where it is off by at most t pixels: at a distance where t pixels are its error, the mesh's
@@ -100,8 +102,8 @@ Result<std::vector<double>> parse_list(const char* option, const std::string& te
   return std::move(*numbers);
 }
 
-Status choose_chains(const CutRequest& request, const Asset& asset, const std::vector<bool>& chosen,
-                     std::vector<MeshCuts>& out) {
+Status choose_chains(const CutRequest& request, const AttributeBounds& bounds, const Asset& asset,
+                     const std::vector<bool>& chosen, std::vector<MeshCuts>& out) {
   std::vector<double> errors;
   std::vector<double> ratios;
   if (request.lod_errors) {
@@ -131,7 +133,7 @@ Status choose_chains(const CutRequest& request, const Asset& asset, const std::v
     const auto add = [&](CutLevel level) {  // a mesh that is coarse already has fewer levels
       if (levels.empty() || level.cut.clusters != levels.back().cut.clusters) levels.push_back(std::move(level));
     };
-    for (const double error : errors) add(cut_at_error(request, asset, mesh, error));
+    for (const double error : errors) add(cut_at_error(request, bounds, asset, mesh, error));
     const std::uint64_t finest = ratios.empty() ? 0 : make_level(asset, choose_level_cut(asset, mesh, 0)).triangles;
     for (const double ratio : ratios) add(cut_at_ratio(asset, mesh, ratio, finest));
     set_coverage(request, asset.meshes()[m].diagonal, camera->height, levels);
@@ -145,7 +147,8 @@ Status check_request(const CutRequest& r) {
   const int ways = (r.error ? 1 : 0) + (r.level ? 1 : 0) + (r.has_camera() ? 1 : 0) + (r.triangles ? 1 : 0) +
                    (r.lods ? 1 : 0) + (r.lod_errors ? 1 : 0) + (r.lod_ratios ? 1 : 0);
   if (ways != 1) {
-    return usage("--error", "give one of --error, --level, --triangles, --lods, --lod-errors, --lod-ratios and a camera");
+    return usage("--error",
+                 "give one of --error, --level, --triangles, --lods, --lod-errors, --lod-ratios and a camera");
   }
   if (r.error && (!(*r.error >= 0.0) || !std::isfinite(*r.error))) return usage("--error", "give a number, 0 or more");
   if (r.lods && (*r.lods == 0 || *r.lods > kMaxLods)) return usage("--lods", "give 1 to 16 levels");
@@ -156,6 +159,9 @@ Status check_request(const CutRequest& r) {
   if (!r.error && !r.lod_errors && r.by != "selection") {
     return usage("--by", "belongs to --error and --lod-errors");
   }
+  if (!r.error && !r.lod_errors && !r.has_camera() && r.bounds.has_any()) {
+    return usage("--normal-error", "--normal-error and --uv-error belong to --error, --lod-errors and a camera");
+  }
   return Ok{};
 }
 
@@ -163,17 +169,19 @@ Result<std::vector<MeshCuts>> choose_cuts(const CutRequest& request, const Asset
                                           const std::vector<bool>& chosen) {
   std::vector<MeshCuts> cuts(asset.meshes().size());
   for (std::size_t m = 0; m < cuts.size(); ++m) cuts[m].mesh = MeshId(m);
+  const Result<AttributeBounds> bounds = make_bounds(request.bounds, asset);
+  if (!bounds) return bounds.error();
   Status status = Ok{};
   if (request.has_camera()) {
-    status = choose_by_camera(request, asset, chosen, cuts);
+    status = choose_by_camera(request, *bounds, asset, chosen, cuts);
   } else if (request.triangles) {
     status = choose_by_budget(request, asset, chosen, cuts);
   } else if (request.is_chain()) {
-    status = choose_chains(request, asset, chosen, cuts);
+    status = choose_chains(request, *bounds, asset, chosen, cuts);
   } else {
     for (std::size_t m = 0; m < cuts.size(); ++m) {
       if (!chosen[m]) continue;
-      cuts[m].levels.push_back(request.error ? cut_at_error(request, asset, MeshId(m), *request.error)
+      cuts[m].levels.push_back(request.error ? cut_at_error(request, *bounds, asset, MeshId(m), *request.error)
                                              : make_level(asset, choose_level_cut(asset, MeshId(m), *request.level)));
     }
   }

@@ -10,6 +10,7 @@
 #include <meshlode/result.h>
 
 #include "base/ids.h"
+#include "bounds_options.h"
 #include "camera_options.h"
 #include "read/asset.h"
 #include "select/select.h"
@@ -27,6 +28,7 @@ struct CutRequest {
   bool is_relative = false;
   bool is_world = false;
   std::string by = "selection";
+  BoundsOptions bounds;  ///< beside --error, --lod-errors or a camera
   CameraOptions camera;  ///< its size and pixel error serve the coverage values of a chain too
   [[nodiscard]] bool has_camera() const { return camera.camera || camera.ortho_height; }
   [[nodiscard]] bool is_chain() const { return lods || lod_errors || lod_ratios; }

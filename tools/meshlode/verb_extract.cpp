@@ -70,6 +70,15 @@ double relative_error(const Asset& asset, MeshId mesh, const CutLevel& level) {
   return diagonal > 0.0 ? level.cut.stored_error / diagonal : 0.0;
 }
 
+/// Null where the asset does not say.
+void write_deviation(JsonWriter& w, const char* name, double deviation) {
+  w.key(name);
+  if (deviation >= double{format::kInfiniteError})
+    w.null();
+  else
+    w.value(deviation);
+}
+
 void write_level(JsonWriter& w, const Asset& asset, MeshId mesh, const CutLevel& level) {
   w.field("clusters", level.cut.clusters.size());
   w.field("triangles", level.triangles);
@@ -80,6 +89,9 @@ void write_level(JsonWriter& w, const Asset& asset, MeshId mesh, const CutLevel&
     w.null();
   w.field("stored_error", level.cut.stored_error);
   w.field("stored_error_relative", relative_error(asset, mesh, level));
+  const AttributeDeviation attributes = attribute_deviation_of(tables_of(asset), level.cut.clusters);
+  write_deviation(w, "stored_normal_deviation", attributes.normal_degrees);
+  write_deviation(w, "stored_uv_deviation", attributes.uv);
   w.field("asked_below_level0_deviation", is_below_level0(asset, mesh, level));
 }
 
@@ -187,6 +199,7 @@ int run_extract(const Verb& verb, std::span<char* const> args) {
   parser.add_value("--by", r.by, "the stored number that --error is compared with (selection)",
                    {"selection", "quadric"});
   parser.add_value("--mesh", o.mesh, "this mesh only, by name or index; the nodes of others stay, without a mesh");
+  add_bounds_options(parser, r.bounds);
   add_camera_options(parser, r.camera);
   add_output_options(parser, o.out);
   if (const auto exit_code = parser.parse(args)) return *exit_code;

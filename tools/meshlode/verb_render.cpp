@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "base/file.h"
+#include "bounds_options.h"
 #include "camera_options.h"
 #include "options.h"
 #include "raster/raster.h"
@@ -19,6 +20,7 @@ namespace {
 struct RenderOptions {
   std::string input, output, view = "shaded";
   CameraOptions camera;
+  BoundsOptions bounds;
   std::optional<double> error;
   bool is_relative = false;
   std::uint32_t jobs = 0;
@@ -38,13 +40,15 @@ View view_of(const std::string& name) {
 }
 
 /// The same cut of a mesh in each of its instances.
-std::vector<ClusterInstance> uniform_cut(const Asset& asset, double error, bool is_relative) {
+std::vector<ClusterInstance> uniform_cut(const Asset& asset, double error, bool is_relative,
+                                         const AttributeBounds& bounds) {
   std::vector<ClusterInstance> cut;
   for (std::size_t i = 0; i < asset.instances().size(); ++i) {
     const format::InstanceRecord& instance = asset.instances()[i];
     if ((instance.flags & format::kInstanceSingular) != 0) continue;
     const double diagonal = asset.meshes()[instance.mesh].diagonal;
-    const UniformCut mesh_cut = select_uniform(asset, MeshId(instance.mesh), is_relative ? error * diagonal : error);
+    const UniformCut mesh_cut = select_uniform(asset, MeshId(instance.mesh), is_relative ? error * diagonal : error,
+                                               CutError::kSelection, bounds);
     for (const ClusterId cluster : mesh_cut.clusters) cut.push_back({InstanceId(i), cluster});
   }
   return cut;
@@ -145,6 +149,7 @@ int run_render(const Verb& verb, std::span<char* const> args) {
   parser.add_value("--error", options.error,
                    "draw the uniform cut at this error in mesh units instead of --pixel-error");
   parser.add_flag("--relative", options.is_relative, "--error is a fraction of each mesh's own diagonal");
+  add_bounds_options(parser, options.bounds);
   add_jobs_option(parser, options.jobs);
   add_output_options(parser, options.report);
   if (const auto exit_code = parser.parse(args)) return *exit_code;
@@ -160,8 +165,12 @@ int run_render(const Verb& verb, std::span<char* const> args) {
   const Result<Camera> camera = make_camera(options.camera, *asset);
   if (!camera) return print_error(camera.error());
 
-  const std::vector<ClusterInstance> cut = options.error ? uniform_cut(*asset, *options.error, options.is_relative)
-                                                         : select_bvh(*asset, *camera, options.camera.pixel_error);
+  const Result<AttributeBounds> bounds = make_bounds(options.bounds, *asset);
+  if (!bounds) return print_error(bounds.error());
+
+  const std::vector<ClusterInstance> cut = options.error
+                                               ? uniform_cut(*asset, *options.error, options.is_relative, *bounds)
+                                               : select_bvh(*asset, *camera, options.camera.pixel_error, *bounds);
   const auto fail = [&](Error error) {
     if (error.code == ErrorCode::kInvalid)
       error.where = options.input + (error.where.empty() ? "" : ": ") + error.where;

@@ -20,5 +20,7 @@ run extract a.lode --lod-errors 0.1,0 -o x.glb
 run extract a.lode --lod-errors 0,x -o x.glb
 run extract a.lode --lods 3 --relative -o x.glb
 run extract a.lode --triangles 5 --by quadric -o x.glb
+run extract a.lode --triangles 5 --normal-error 3 -o x.glb
+run extract a.lode --error 0.1 --uv-error -1 -o x.glb
 code extract a.lode --triangles 5 -o x.glb
 files

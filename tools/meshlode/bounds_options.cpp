@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bounds_options.h"
+
+#include <cmath>
+#include <string>
+
+namespace meshlode::cli {
+
+namespace {
+
+Status check_number(const char* option, const std::optional<double>& value) {
+  if (value && (!(*value >= 0.0) || !std::isfinite(*value))) {
+    return Error{ErrorCode::kUsage, option, "give a number, 0 or more"};
+  }
+  return Ok{};
+}
+
+/// A mesh without any group to pass says nothing either way.
+Status check_measured(const char* option, const Asset& asset, std::size_t mesh, float format::GroupRecord::*deviation) {
+  const format::MeshRecord& record = asset.meshes()[mesh];
+  for (const format::GroupRecord& group : asset.groups().subspan(record.first_group, record.group_count)) {
+    if ((group.flags & format::kGroupTerminal) != 0 || group.*deviation < format::kInfiniteError) continue;
+    return Error{ErrorCode::kUnsupported, option,
+                 "mesh " + std::to_string(mesh) + ": the asset does not say how far it deviates: " +
+                     "this was not measured when it was built"};
+  }
+  return Ok{};
+}
+
+}  // namespace
+
+void add_bounds_options(OptionParser& parser, BoundsOptions& options) {
+  parser.add_value("--normal-error", options.normal_error,
+                   "also: shading normals deviate by at most this many degrees, as the asset states it");
+  parser.add_value("--uv-error", options.uv_error, "also: UVs deviate by at most this, in UV units");
+}
+
+Result<AttributeBounds> make_bounds(const BoundsOptions& options, const Asset& asset) {
+  if (Status status = check_number("--normal-error", options.normal_error); !status) return status.error();
+  if (Status status = check_number("--uv-error", options.uv_error); !status) return status.error();
+  AttributeBounds bounds;
+  if (options.normal_error) bounds.normal_degrees = *options.normal_error;
+  if (options.uv_error) bounds.uv = *options.uv_error;
+  for (std::size_t m = 0; m < asset.meshes().size(); ++m) {
+    const AttributeBounds own = bounds_for(bounds, asset.meshes()[m]);
+    if (options.normal_error && own.normal_degrees == *options.normal_error) {
+      const Status status = check_measured("--normal-error", asset, m, &format::GroupRecord::normal_deviation);
+      if (!status) return status.error();
+    }
+    if (options.uv_error && own.uv == *options.uv_error) {
+      if (const Status status = check_measured("--uv-error", asset, m, &format::GroupRecord::uv_deviation); !status) {
+        return status.error();
+      }
+    }
+  }
+  return bounds;
+}
+
+}  // namespace meshlode::cli
