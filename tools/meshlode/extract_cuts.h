@@ -31,6 +31,7 @@ struct CutRequest {
   BoundsOptions bounds;  ///< beside --error, --lod-errors or a camera
   CameraOptions camera;  ///< its size and pixel error serve the coverage values of a chain too
   [[nodiscard]] bool has_camera() const { return camera.camera || camera.ortho_height; }
+  [[nodiscard]] bool has_way() const { return error || level || triangles || is_chain() || has_camera(); }
   [[nodiscard]] bool is_chain() const { return lods || lod_errors || lod_ratios; }
 };
 

@@ -12,6 +12,7 @@
 #include "base/file.h"
 #include "export/export.h"
 #include "extract_cuts.h"
+#include "extract_stuck.h"
 #include "options.h"
 #include "read/asset.h"
 #include "report/json_writer.h"
@@ -25,6 +26,7 @@ struct ExtractOptions {
   std::string input;
   std::optional<std::string> output;
   std::optional<std::string> mesh;
+  bool is_stuck = false;
   CutRequest request;
   OutputOptions out;
 };
@@ -35,7 +37,11 @@ Error usage(const char* option, const char* detail) {
 
 Status check_options(const ExtractOptions& o) {
   if (!o.output) return usage("-o", "say where the GLB goes");
-  if (auto status = check_request(o.request); !status) return status.error();
+  if (o.is_stuck) {
+    if (o.request.has_way() || o.request.bounds.has_any() || o.mesh) return usage("--stuck", "stands alone");
+  } else if (auto status = check_request(o.request); !status) {
+    return status.error();
+  }
   std::error_code ignored;
   if (std::filesystem::equivalent(o.input, *o.output, ignored)) return usage("-o", "is the input itself");
   return Ok{};
@@ -192,13 +198,16 @@ int run_extract(const Verb& verb, std::span<char* const> args) {
                    "the finest uniform cut with at most this many triangles over all exported meshes together");
   parser.add_value("--level", r.level, "cut at one level of the DAG, 0 the finest");
   parser.add_value("--lods", r.lods, "MSFT_lod chain: this many levels, each half the triangles of the one before");
-  parser.add_value("--lod-ratios", r.lod_ratios, "MSFT_lod chain by shares of each mesh's triangles, such as 1,0.3,0.1");
+  parser.add_value("--lod-ratios", r.lod_ratios,
+                   "MSFT_lod chain by shares of each mesh's triangles, such as 1,0.3,0.1");
   parser.add_value("--lod-errors", r.lod_errors, "MSFT_lod chain by errors, such as 0,0.001,0.01");
   parser.add_flag("--relative", r.is_relative, "errors are fractions of each mesh's own diagonal");
   parser.add_flag("--world", r.is_world, "errors are in world units: the largest instance of a mesh decides");
   parser.add_value("--by", r.by, "the stored number that --error is compared with (selection)",
                    {"selection", "quadric"});
   parser.add_value("--mesh", o.mesh, "this mesh only, by name or index; the nodes of others stay, without a mesh");
+  parser.add_flag("--stuck", o.is_stuck,
+                  "instead of a cut the groups where simplification is stuck, coloured by reason");
   add_bounds_options(parser, r.bounds);
   add_camera_options(parser, r.camera);
   add_output_options(parser, o.out);
@@ -207,6 +216,7 @@ int run_extract(const Verb& verb, std::span<char* const> args) {
 
   auto asset = Asset::open(o.input);
   if (!asset) return print_error(asset.error());
+  if (o.is_stuck) return extract_stuck(*asset, *o.output, o.out);
   auto chosen = choose_meshes(*asset, o.mesh);
   if (!chosen) return print_error(chosen.error());
   const auto cuts = choose_cuts(r, *asset, *chosen);
@@ -233,7 +243,8 @@ int run_extract(const Verb& verb, std::span<char* const> args) {
 const Verb kExtractVerb{"extract", "write a cut of an asset as a GLB",
                         "meshlode extract scene.lode --error 0.001 --relative -o cut.glb\n"
                         "  meshlode extract scene.lode --triangles 20000 -o fallback.glb\n"
-                        "  meshlode extract scene.lode --lods 4 -o levels.glb",
+                        "  meshlode extract scene.lode --lods 4 -o levels.glb\n"
+                        "  meshlode extract scene.lode --stuck -o stuck.glb",
                         run_extract};
 
 }  // namespace meshlode::cli

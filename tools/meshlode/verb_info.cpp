@@ -15,7 +15,7 @@ int run_info(const Verb& verb, std::span<char* const> args) {
   OptionParser parser(verb);
   parser.add_positional("file", path, "a .lode asset");
   add_output_options(parser, output);
-  parser.add_flag("--stuck", list_stuck, "list every stuck group with its reason");
+  parser.add_flag("--stuck", list_stuck, "list every stuck group with its reason (extract --stuck shows them)");
   if (const auto exit_code = parser.parse(args)) return *exit_code;
 
   const Result<Asset> asset = Asset::open(path);

@@ -8,10 +8,13 @@ code extract a.lode --lods 3 -o levels.glb
 json extract extract a.lode --lods 3 -o levels.glb --format json
 json extract extract a.lode --lod-errors 0,0.01 --relative -o errors.glb --format json
 json extract extract a.lode --lod-ratios 1,0.2 --size 640x480 --pixel-error 2 -o ratios.glb --format json
+run extract a.lode --stuck -o stuck.glb
+json extract extract a.lode --stuck -o stuck.glb --format json
 "$MESHLODE" build --quiet levels.glb -o again.lode && echo "a chain builds again"
 echo "nothing is written from here on"
 run extract a.lode -o x.glb
 run extract a.lode --error 0.1 --triangles 5 -o x.glb
+run extract a.lode --stuck --error 0.1 -o x.glb
 run extract a.lode --lods 0 -o x.glb
 run extract a.lode --lods 17 -o x.glb
 run extract a.lode --lod-ratios 0.5,0.5 -o x.glb

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "extract_stuck.h"
+
+#include <array>
+#include <cinttypes>
+#include <cstdio>
+#include <vector>
+
+#include "base/file.h"
+#include "export/colored_sets.h"
+#include "report/info.h"
+#include "report/json_writer.h"
+
+namespace meshlode::cli {
+
+namespace {
+
+struct Look {
+  format::StuckReason reason;
+  const char* color_name;
+  std::array<float, 3> color;  ///< linear
+};
+
+constexpr std::array<Look, 6> kLooks{{
+    {format::StuckReason::kLocked, "red", {0.80F, 0.03F, 0.03F}},
+    {format::StuckReason::kFlips, "orange", {0.90F, 0.30F, 0.01F}},
+    {format::StuckReason::kSeams, "blue", {0.02F, 0.15F, 0.80F}},
+    {format::StuckReason::kComponents, "green", {0.03F, 0.45F, 0.05F}},
+    {format::StuckReason::kTooSmall, "grey", {0.35F, 0.35F, 0.35F}},
+    {format::StuckReason::kTopology, "purple", {0.35F, 0.05F, 0.55F}},
+}};
+
+struct ReasonCount {
+  std::uint64_t groups = 0, triangles = 0;
+};
+
+}  // namespace
+
+int extract_stuck(const Asset& asset, const std::string& output, const OutputOptions& out) {
+  const AssetInfo info = describe_asset(asset);
+  std::array<ReasonCount, kLooks.size()> counts{};
+  std::vector<ColoredSet> sets;
+  for (const MeshInfo& mesh : info.meshes) {
+    for (std::size_t k = 0; k < kLooks.size(); ++k) {
+      ColoredSet set{MeshId(), stuck_reason_name(kLooks[k].reason), kLooks[k].color, {}};
+      for (const StuckGroupInfo& stuck : mesh.stuck) {
+        if (stuck.reason != kLooks[k].reason) continue;
+        set.mesh = MeshId(stuck.mesh);
+        const format::GroupRecord& group = asset.groups()[stuck.group];
+        for (std::uint32_t c = 0; c < group.cluster_count; ++c) set.clusters.emplace_back(group.first_cluster + c);
+        ++counts[k].groups;
+        counts[k].triangles += stuck.triangles;
+      }
+      if (!set.clusters.empty()) sets.push_back(std::move(set));
+    }
+  }
+  const auto glb = export_colored_sets(asset, sets);
+  if (!glb) return print_error(glb.error());
+  if (const Status status = write_file_atomically(output, *glb); !status) return print_error(status.error());
+
+  std::uint64_t triangles = 0;
+  for (const ReasonCount& count : counts) triangles += count.triangles;
+  if (out.json()) {
+    JsonWriter w;
+    w.begin_object();
+    w.key("meshes");
+    w.begin_array();
+    w.end_array();
+    w.key("stuck");
+    w.begin_object();
+    for (std::size_t k = 0; k < kLooks.size(); ++k) {
+      if (counts[k].groups == 0) continue;
+      w.key(stuck_reason_name(kLooks[k].reason));
+      w.begin_object();
+      w.field("groups", counts[k].groups);
+      w.field("triangles", counts[k].triangles);
+      w.field("color", kLooks[k].color_name);
+      w.end_object();
+    }
+    w.end_object();
+    w.field("triangles", triangles);
+    w.field("bytes", glb->size());
+    w.end_object();
+    return print_out(w.text()) ? 0 : static_cast<int>(ErrorCode::kIo);
+  }
+  if (out.quiet) return 0;
+  std::string text;
+  char line[160];
+  for (std::size_t k = 0; k < kLooks.size(); ++k) {
+    if (counts[k].groups == 0) continue;
+    std::snprintf(line, sizeof line, "%s: %" PRIu64 " group(s), %" PRIu64 " triangles, %s\n",
+                  stuck_reason_name(kLooks[k].reason), counts[k].groups, counts[k].triangles, kLooks[k].color_name);
+    text += line;
+  }
+  if (info.stuck_groups == 0) text += "no stuck group: a glTF without meshes\n";
+  text += output + ": " + std::to_string(triangles) + " triangles, " + std::to_string(glb->size()) + " bytes\n";
+  return print_out(text) ? 0 : static_cast<int>(ErrorCode::kIo);
+}
+
+}  // namespace meshlode::cli

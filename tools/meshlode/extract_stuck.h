@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `meshlode extract --stuck`: the groups where simplification is stuck, coloured by reason.
+#pragma once
+
+#include "options.h"
+#include "read/asset.h"
+
+namespace meshlode::cli {
+
+/// Writes the GLB and tells what is in it. The exit code.
+[[nodiscard]] int extract_stuck(const Asset& asset, const std::string& output, const OutputOptions& out);
+
+}  // namespace meshlode::cli
