@@ -21,6 +21,7 @@
 #include "import/import.h"
 #include "metrics/attribute_drift.h"
 #include "quality_report.h"
+#include "reference.h"
 #include "report/info.h"
 #include "select/select.h"
 
@@ -37,12 +38,14 @@ constexpr const char* kUsage =
     "  --max X,...       triangles at equal true maximum (1e-3,2e-3,5e-3; none)\n"
     "  --rms X,...       triangles at equal true RMS (1e-4,3e-4,1e-3; none)\n"
     "  --drift all|equal|none   normals and UVs of every cut, of those at equal deviation, of none (equal)\n"
+    "  --reference       OpenMesh's decimater (quadrics, whole mesh) at the same deviations\n"
     "  --samples N       area-uniform samples each way, all vertices on top (200000)\n"
     "  --jobs N          threads (one per core)\n"
     "  --json FILE       write the figures there too\n";
 
 struct Options {
   std::string scene, asset, json, by = "selection", drift = "equal";
+  bool with_reference = false;
   int cuts = 24, jobs = 0;
   std::uint64_t samples = 200000;
   double from = 1e-4, to = 2e-2;
@@ -74,6 +77,10 @@ bool parse(int argc, char** argv, Options& o) {
     const std::string word = argv[i];
     if (word.rfind("--", 0) != 0) {
       files.push_back(word);
+      continue;
+    }
+    if (word == "--reference") {
+      o.with_reference = true;
       continue;
     }
     if (i + 1 >= argc) return false;
@@ -129,10 +136,45 @@ class MeshBench {
     }
     for (const double x : options_.at_max) out.equal.push_back(equal(CutError::kSelection, Figure::kMax, x));
     for (const double x : options_.at_rms) out.equal.push_back(equal(CutError::kQuadric, Figure::kRms, x));
+    if (options_.with_reference) add_reference(out);
     return out;
   }
 
  private:
+  /// One decimation from fine to coarse, measured at every step: a step is 7% of the faces, so a count is that coarse.
+  void add_reference(MeshQuality& out) {
+    constexpr double kStep = 0.93;
+    const auto start = std::chrono::steady_clock::now();
+    ReferenceSimplifier reference(source_);
+    out.notes.push_back("reference: OpenMesh decimater, quadric module; left out before it: " +
+                        std::to_string(reference.degenerate_count()) + " faces without area, refused by it: " +
+                        std::to_string(reference.refused_count()) + " (complex edges or vertices)");
+    std::vector<EqualDeviation> wanted;
+    for (const double x : options_.at_max) wanted.push_back({"openmesh", "max", x, {}, 0, 0, 0.0});
+    for (const double x : options_.at_rms) wanted.push_back({"openmesh", "rms", x, {}, 0, 0, 0.0});
+    bool goes_on = !wanted.empty();
+    for (std::size_t steps = 1; goes_on; ++steps) {
+      const auto faces =
+          static_cast<std::size_t>(static_cast<double>(reference.face_count()) * (steps == 1 ? 0.6 : kStep));
+      goes_on = reference.decimate_to(faces);
+      const CutFigures figures = judge_.measure(reference.surface());
+      bool is_any_within = false;
+      for (EqualDeviation& one : wanted) {
+        const double figure = (one.figure == "max" ? figures.max() : figures.rms()) / out.diagonal;
+        one.cuts_measured = steps;
+        // A figure may fall again, but not from far above.
+        is_any_within = is_any_within || figure <= 2.0 * one.x;
+        if (figure <= one.x) one.cut = MeasuredCut{0.0, 0.0, figures, {}};
+      }
+      goes_on = goes_on && is_any_within && reference.face_count() > 16;
+    }
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    for (EqualDeviation& one : wanted) {
+      one.seconds = seconds;
+      out.equal.push_back(std::move(one));
+    }
+  }
+
   static Surface plain_surface(const SourceMesh& mesh) {
     Surface surface;
     for (const Primitive& primitive : mesh.primitives) {

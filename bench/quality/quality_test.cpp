@@ -9,6 +9,7 @@
 #include "cut_judge.h"
 #include "cut_search.h"
 #include "pipeline/build.h"
+#include "reference.h"
 #include "samples/samples.h"
 
 namespace meshlode::bench {
@@ -21,7 +22,7 @@ struct Sample {
 };
 
 Sample make_sample() {
-  Scene scene = samples::as_scene(samples::as_mesh(samples::make_torus(160, 80)));
+  Scene scene = samples::as_scene(samples::as_mesh(samples::make_torus(130, 66)));
   for (Vec3d& p : scene.meshes[0].primitives[0].positions) p += 0.01 * glm::sin(p * 17.0);  // not too smooth
   const Primitive& primitive = scene.meshes[0].primitives[0];
   Surface source{primitive.positions, {}};
@@ -76,7 +77,8 @@ TEST(QualityBench, FindsTheFewestTrianglesOverAllCuts) {
       const CutFigures f = judge.measure(select_uniform(s.asset, MeshId(0U), t, by).clusters);
       all.push_back({figure == Figure::kMax ? f.max() : f.rms(), f.triangles});
     }
-    for (const double x : {1e-9, all[all.size() / 4].true_figure * 1.0001, all[all.size() / 2].true_figure * 1.01, 1e3}) {
+    for (const double x :
+         {1e-9, all[all.size() / 4].true_figure * 1.0001, all[all.size() / 2].true_figure * 1.01, 1e3}) {
       std::optional<std::uint64_t> expected;
       for (const One& one : all) {
         if (one.true_figure <= x && (!expected || one.triangles < *expected)) expected = one.triangles;
@@ -91,6 +93,33 @@ TEST(QualityBench, FindsTheFewestTrianglesOverAllCuts) {
       }
     }
   }
+}
+
+TEST(QualityBench, TheReferenceSimplifiesAndSaysWhatItLeftOut) {
+  const Primitive shape = samples::make_torus(60, 30);
+  Surface source{shape.positions, {}};
+  for (std::size_t i = 0; i < shape.indices.size(); i += 3) {
+    source.triangles.push_back({shape.indices[i], shape.indices[i + 1], shape.indices[i + 2]});
+  }
+  const std::size_t sound = source.triangles.size();
+  source.triangles.push_back({0, 0, 1});                                               // no area
+  source.triangles.push_back({source.triangles[0][0], source.triangles[0][1], 1000});  // a third face on an edge
+  ReferenceSimplifier reference(source);
+  EXPECT_EQ(reference.degenerate_count(), 1U);
+  EXPECT_EQ(reference.refused_count(), 1U);
+  EXPECT_EQ(reference.face_count(), sound);
+  source.triangles.resize(sound);
+  EXPECT_LT(measure_deviation(source, reference.surface(), {.samples = 5000}).max(), 1e-12);
+  double before = 0.0;
+  for (const std::size_t faces : {sound / 2, sound / 4, sound / 16}) {
+    EXPECT_TRUE(reference.decimate_to(faces));
+    EXPECT_LE(reference.face_count(), faces);
+    EXPECT_GE(reference.face_count(), faces - 2);
+    const double deviation = measure_deviation(source, reference.surface(), {.samples = 5000}).rms();
+    EXPECT_GT(deviation, before);
+    before = deviation;
+  }
+  EXPECT_LT(before, 0.05);
 }
 
 }  // namespace
