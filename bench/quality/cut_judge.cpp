@@ -48,14 +48,17 @@ CutJudge::ClusterFigures CutJudge::measure_cluster(ClusterId cluster) const {
   return out;
 }
 
-CutJudge::Forward CutJudge::measure_to_cut(const TriangleTree& cut, double limit2,
+CutJudge::Forward CutJudge::measure_to_cut(const TriangleTree& cut, const Limit& limit,
                                            std::vector<std::uint32_t>* worst) const {
+  const double max2 = limit.max * limit.max;
+  const double sum2 = limit.rms * limit.rms * static_cast<double>(sample_count_);
   struct Partial {
     double sum2 = 0.0, max2 = -1.0;
     std::uint32_t worst = 0;
   };
   std::vector<Partial> partials((points_.size() + kChunk - 1) / kChunk);
   std::atomic<bool> is_within = true;
+  std::atomic<double> sum2_so_far = 0.0;  // in any order: it decides only far from the limit, the exact sum below at it
   parallel_for_each_index(partials.size(), 1, [&](std::size_t chunk) {
     Partial& partial = partials[chunk];
     std::uint32_t hint = 0xFFFFFFFFu;
@@ -68,15 +71,16 @@ CutJudge::Forward CutJudge::measure_to_cut(const TriangleTree& cut, double limit
         partial.max2 = nearest.distance2;
         partial.worst = static_cast<std::uint32_t>(i);
       }
-      if (nearest.distance2 > limit2) is_within.store(false, std::memory_order_relaxed);
+      if (nearest.distance2 > max2) is_within.store(false, std::memory_order_relaxed);
     }
+    if (sum2_so_far.fetch_add(partial.sum2) + partial.sum2 > 1.001 * sum2) is_within.store(false);
   });
   Forward out;
   for (const Partial& p : partials) {
     out.sum2 += p.sum2;
     out.max2 = std::max(out.max2, p.max2);
   }
-  out.is_within = is_within && out.max2 <= limit2;
+  out.is_within = is_within && out.max2 <= max2 && out.sum2 <= sum2;
   if (worst != nullptr) {
     // The farthest points of their chunks, farthest last.
     std::vector<Partial> far(partials);
@@ -91,8 +95,8 @@ CutJudge::Forward CutJudge::measure_to_cut(const TriangleTree& cut, double limit
   return out;
 }
 
-std::optional<CutFigures> CutJudge::measure_within(std::span<const ClusterId> clusters, double limit) {
-  const double limit2 = limit * limit;
+std::optional<CutFigures> CutJudge::measure_within(std::span<const ClusterId> clusters, const Limit& limit) {
+  const double limit2 = limit.max * limit.max;
   CutFigures out;
   std::vector<ClusterId> unknown;
   for (const ClusterId c : clusters) {
@@ -112,15 +116,15 @@ std::optional<CutFigures> CutJudge::measure_within(std::span<const ClusterId> cl
     area += figures.area;
     max2 = std::max(max2, figures.max2);
   }
-  if (max2 > limit2) return std::nullopt;
   out.max_to_source = std::sqrt(max2);
   out.rms_to_source = area > 0.0 ? std::sqrt(sum2 / area) : 0.0;
+  if (max2 > limit2 || out.rms_to_source > limit.rms) return std::nullopt;
 
   const TriangleTree tree(surface_of_clusters(asset_, decoded_, mesh_, clusters));
   for (std::size_t i = suspects_.size(); i-- > 0;) {
     if (tree.nearest(points_[suspects_[i]]).distance2 > limit2) return std::nullopt;
   }
-  const Forward forward = measure_to_cut(tree, limit2, &suspects_);
+  const Forward forward = measure_to_cut(tree, limit, &suspects_);
   if (suspects_.size() > kMaxSuspects) {
     suspects_.erase(suspects_.begin(), suspects_.end() - static_cast<std::ptrdiff_t>(kMaxSuspects));
   }
@@ -134,7 +138,7 @@ CutFigures CutJudge::measure(const Surface& surface) const {
   CutFigures out;
   out.triangles = surface.triangles.size();
   const TriangleTree tree(surface);
-  const Forward forward = measure_to_cut(tree, kNoLimit, nullptr);
+  const Forward forward = measure_to_cut(tree, {}, nullptr);
   out.max_to_cut = std::sqrt(forward.max2);
   out.rms_to_cut = sample_count_ > 0 ? std::sqrt(forward.sum2 / static_cast<double>(sample_count_)) : 0.0;
 

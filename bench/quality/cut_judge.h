@@ -33,14 +33,16 @@ class CutJudge {
   CutJudge(const Surface& source, const Asset& asset, std::span<const DecodedCluster> decoded, MeshId mesh,
            std::uint64_t samples);
 
-  [[nodiscard]] CutFigures measure(std::span<const ClusterId> clusters) { return *measure_within(clusters, kNoLimit); }
-  /// Nothing where the maximum is above `limit`.
-  [[nodiscard]] std::optional<CutFigures> measure_within(std::span<const ClusterId> clusters, double limit);
+  [[nodiscard]] CutFigures measure(std::span<const ClusterId> clusters) { return *measure_within(clusters, {}); }
+  struct Limit {
+    double max = 1e150, rms = 1e150;  ///< object units
+  };
+  /// Nothing where the maximum or the RMS is above its limit.
+  [[nodiscard]] std::optional<CutFigures> measure_within(std::span<const ClusterId> clusters, const Limit& limit);
   /// The same for a surface that is no cut (nothing is kept).
   [[nodiscard]] CutFigures measure(const Surface& surface) const;
 
  private:
-  static constexpr double kNoLimit = 1e300;
   struct ClusterFigures {
     bool is_known = false;
     double area = 0.0, mean2 = 0.0, max2 = 0.0;
@@ -50,7 +52,8 @@ class CutJudge {
     bool is_within = true;
   };
   [[nodiscard]] ClusterFigures measure_cluster(ClusterId cluster) const;
-  [[nodiscard]] Forward measure_to_cut(const TriangleTree& cut, double limit2, std::vector<std::uint32_t>* worst) const;
+  [[nodiscard]] Forward measure_to_cut(const TriangleTree& cut, const Limit& limit,
+                                       std::vector<std::uint32_t>* worst) const;
 
   const Surface& source_;
   const Asset& asset_;

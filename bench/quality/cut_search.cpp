@@ -33,13 +33,9 @@ std::optional<FoundCut> find_fewest_triangles(CutJudge& judge, const Asset& asse
   const auto is_within = [&, by = by, figure = figure, x = x](std::size_t i) {
     ++measured;
     UniformCut cut = select_uniform(asset, mesh, thresholds[i], by);
-    std::optional<CutFigures> figures;
-    if (figure == Figure::kMax) {
-      figures = judge.measure_within(cut.clusters, x);
-    } else {
-      figures = judge.measure(cut.clusters);
-      if (figures->rms() > x) figures.reset();
-    }
+    CutJudge::Limit limit;
+    (figure == Figure::kMax ? limit.max : limit.rms) = x;
+    const std::optional<CutFigures> figures = judge.measure_within(cut.clusters, limit);
     if (!figures) return false;
     if (!found || figures->triangles < found->figures.triangles) {
       found = FoundCut{thresholds[i], std::move(cut), *figures, 0, thresholds.size()};
@@ -52,9 +48,10 @@ std::optional<FoundCut> find_fewest_triangles(CutJudge& judge, const Asset& asse
     if (found) found->cuts_measured = measured;
     return found;
   }
-  // Stored errors are near true ones, so the search starts at x and steps away from it, wider and wider. In the end low
-  // is within x and high is not, or does not exist.
-  const auto above = std::upper_bound(thresholds.begin(), thresholds.end(), x);
+  // Stored errors are near true ones, so the search starts there and steps away from it, wider and wider. In the end
+  // low is within x and high is not, or does not exist. A quadric error is a few times the RMS that comes with it.
+  const double start = figure == Figure::kMax ? x : 3.0 * x;
+  const auto above = std::upper_bound(thresholds.begin(), thresholds.end(), start);
   std::size_t low = static_cast<std::size_t>(above - thresholds.begin()) - 1;  // x > 0 is above the first, 0
   std::size_t high = thresholds.size();
   if (is_within(low)) {

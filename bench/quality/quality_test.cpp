@@ -58,8 +58,10 @@ TEST(QualityBench, JudgesCutsAsMetricsDoes) {
     EXPECT_DOUBLE_EQ(whole.max_to_cut, figures.max_to_cut);
     EXPECT_NEAR(whole.rms_to_source, figures.rms_to_source, 0.05 * figures.rms_to_source);
     // Refused exactly where the maximum is above the limit, whatever was measured before.
-    EXPECT_TRUE(judge.measure_within(cut.clusters, figures.max() * (1.0 + 1e-9)).has_value());
-    EXPECT_FALSE(judge.measure_within(cut.clusters, figures.max() * (1.0 - 1e-9)).has_value());
+    EXPECT_TRUE(judge.measure_within(cut.clusters, {.max = figures.max() * (1.0 + 1e-9)}).has_value());
+    EXPECT_TRUE(judge.measure_within(cut.clusters, {.rms = figures.rms() * (1.0 + 1e-9)}).has_value());
+    EXPECT_FALSE(judge.measure_within(cut.clusters, {.rms = figures.rms() * (1.0 - 1e-9)}).has_value());
+    EXPECT_FALSE(judge.measure_within(cut.clusters, {.max = figures.max() * (1.0 - 1e-9)}).has_value());
   }
 }
 
