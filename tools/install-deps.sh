@@ -11,9 +11,11 @@ packages=(
   libmetis-dev libcgal-dev                   # partition, hierarchy
   libzstd-dev liblz4-dev                     # pack, unpack
   libstb-dev libcli11-dev                    # raster, command line
+  libvulkan-dev glslc                        # gpu: headers and the shader compiler; the loader is opened at run time
 )
 if [ "${1:-}" = --tests ]; then
-  packages+=(libgtest-dev clang-14 libclang-rt-14-dev assimp-testmodels)
+  packages+=(libgtest-dev clang-14 libclang-rt-14-dev assimp-testmodels
+             mesa-vulkan-drivers vulkan-validationlayers)  # a Vulkan device on any machine, and its judge
 fi
 
 is_installed() { [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; }

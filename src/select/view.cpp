@@ -61,9 +61,11 @@ MetricView make_metric_view(const Camera& camera, double pixel_error, const form
     view.near_distance = static_cast<float>(kMinNear);
     return view;
   }
+  // Divided once per camera: a GPU makes these views by the million, and only + and * are exact there.
+  const double pixels_per_error = pixels / pixel_error;
   if (camera.is_orthographic) {
     // The rows and the scale stay 0: E <= 1 decides alone, since a larger E has a square above 0.
-    view.error_scale = float_above(clamp_or_high(sigma * pixels / pixel_error * kGrowth, kMinFactor, kMaxFactor));
+    view.error_scale = float_above(clamp_or_high(sigma * pixels_per_error * kGrowth, kMinFactor, kMaxFactor));
     view.near_distance = 1.0F;
     return view;
   }
@@ -86,7 +88,7 @@ MetricView make_metric_view(const Camera& camera, double pixel_error, const form
   }
   view.scale = float_above(clamp_or_high(sigma * unit * kGrowth, 0.0, kMaxFactor));
   view.error_scale =
-      float_above(clamp_or_high(sigma * pixels / pixel_error * unit * kGrowth, kMinFactor, kMaxFactor));
+      float_above(clamp_or_high(sigma * pixels_per_error * unit * kGrowth, kMinFactor, kMaxFactor));
   view.near_distance = static_cast<float>(clamp_or_high(camera.near_distance * unit, kMinNear, kMaxNear));
   return view;
 }

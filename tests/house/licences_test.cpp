@@ -17,9 +17,9 @@ bool is_mit(const SourceFile& file) {
   static const std::set<std::string> headers = {
       "include/meshlode/format.h",    "include/meshlode/result.h", "include/meshlode/runtime.h",
       "include/meshlode/runtime_c.h", "src/mesh/grid.h",           "tests/install/consumer/use_runtime.cpp"};
-  static const std::set<std::string> shaders = {".glsl", ".comp", ".vert", ".frag"};
+  static const std::set<std::string> shaders = {".glsl", ".comp", ".vert", ".frag", ".mesh"};
   const std::string path = file.path.generic_string();
-  if (shaders.contains(file.path.extension().string())) return true;
+  if (shaders.contains(file.path.extension().string()) || path.starts_with("src/gpu/shaders/")) return true;
   if (file.room == "base") return path != "src/base/parallel.h";  // oneTBB: of the builder alone
   return rooms.contains(file.room) || headers.contains(path);
 }
@@ -35,7 +35,7 @@ std::string first_comment(const SourceFile& file) {
 
 TEST(Licences, EveryFileSaysItsLicenceInItsFirstLine) {
   const auto files = read_tree({"src", "include", "tools", "tests", "cmake", "bench"},
-                               {".h", ".cpp", ".c", ".txt", ".cmake", ".sh", ".glsl", ".comp", ".vert", ".frag"});
+                               {".h", ".cpp", ".c", ".txt", ".cmake", ".sh", ".glsl", ".comp", ".vert", ".frag", ".mesh"});
   ASSERT_FALSE(files.empty());
   for (const SourceFile& file : files) {
     const std::string line = first_comment(file);

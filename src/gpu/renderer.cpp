@@ -1,0 +1,358 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gpu/renderer.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstring>
+
+#include "gpu/frame.h"
+#include "gpu/shaders.h"
+
+namespace meshlode::gpu {
+
+namespace {
+
+struct Push {
+  std::uint64_t frame = 0;
+  std::uint32_t pass = 0, depth = 0, a = 0, b = 0;
+};
+
+constexpr std::uint32_t kGroupSize = 64;
+constexpr std::uint32_t kGroupRow = 32768;  ///< as in common.glsl
+
+std::uint64_t arguments_of(std::uint32_t stage) {
+  return offsetof(GpuCounters, stages) + sizeof(GpuStage) * stage + offsetof(GpuStage, x);
+}
+
+std::uint32_t round_up(std::uint64_t value, std::uint64_t limit) {
+  return static_cast<std::uint32_t>(std::min<std::uint64_t>((value + 63) / 64 * 64, limit));
+}
+
+}  // namespace
+
+std::string describe_overflow(std::uint32_t overflow) {
+  constexpr std::array kNames = {"visible instances", "traversal queue", "open groups", "visible clusters",
+                                 "retried nodes and clusters"};
+  std::string out;
+  for (std::size_t i = 0; i < kNames.size(); ++i) {
+    if ((overflow >> i & 1u) != 0) out += (out.empty() ? "" : ", ") + std::string(kNames[i]);
+  }
+  return out;
+}
+
+Result<Renderer> Renderer::make(Device device, GpuScene scene, const RendererOptions& options) {
+  Renderer out;
+  out.device_ = std::move(device);
+  out.scene_ = std::move(scene);
+  out.options_ = options;
+  if (const Status s = out.make_pipelines(); !s) return s.error();
+  if (const Status s = out.resize(options.width, options.height); !s) return s.error();
+  return out;
+}
+
+Status Renderer::resize(std::uint32_t width, std::uint32_t height) {
+  if (width < 1 || width > 16384 || height < 1 || height > 16384) {
+    return Error{ErrorCode::kUsage, "--size", "a picture has 1 to 16384 pixels a side"};
+  }
+  options_.width = width;
+  options_.height = height;
+  lists_.clear();
+  has_last_ = false;
+  if (const Status s = make_buffers(); !s) return s;
+  return record();
+}
+
+Status Renderer::make_buffers() {
+  const std::uint64_t limit = std::min<std::uint64_t>(options_.max_items, MAX_ITEMS);
+  GpuFrame& f = frame_;
+  f.width = options_.width;
+  f.height = options_.height;
+  f.instance_count = scene_.instance_count;
+  f.slot_capacity = round_up(scene_.instance_count, limit);
+  f.group_capacity = round_up(scene_.group_instances, limit);
+  f.queue_capacity = round_up(2 * (scene_.group_instances + scene_.instance_count), limit);  // nodes of one depth
+  f.item_capacity = round_up(scene_.cluster_instances, limit);
+  f.retry_capacity = options_.occlusion ? round_up(2 * scene_.group_instances + scene_.cluster_instances, limit) : 64;
+  std::uint32_t words = 0;
+  for (std::uint32_t level = 1; level < MAX_PYRAMID; ++level) {
+    const std::uint32_t width = (f.width + (1u << level) - 1) >> level,
+                        height = (f.height + (1u << level) - 1) >> level;
+    f.pyramid_offset[level] = words;
+    words += width * height;
+    f.pyramid_levels = level;
+    if (width == 1 && height == 1) break;
+  }
+  const auto make = [&](Buffer& slot, std::uint64_t bytes, Memory memory = Memory::kDevice) -> Status {
+    auto buffer = device_.make_buffer(bytes, memory);
+    if (!buffer) return buffer.error();
+    slot = *buffer;
+    return Ok{};
+  };
+  struct Wanted {
+    Buffer* slot;
+    std::uint64_t bytes;
+  };
+  const Wanted wanted[] = {
+      {&frame_block_, sizeof(GpuFrame)},
+      {&counters_block_, sizeof(GpuCounters)},
+      {&visible_, std::uint64_t{f.slot_capacity} * sizeof(GpuVisible)},
+      {&queue_, std::uint64_t{f.queue_capacity} * 2 * 8},
+      {&open_groups_, std::uint64_t{f.group_capacity} * 8},
+      {&items_, std::uint64_t{f.item_capacity} * 8},
+      {&retry_nodes_, std::uint64_t{f.retry_capacity} * 8},
+      {&retry_clusters_, std::uint64_t{f.retry_capacity} * 8},
+      {&retry_instances_, std::uint64_t{options_.occlusion ? f.instance_count : 1} * 4},
+      {&clipped_, std::uint64_t{f.item_capacity} * 4},
+      {&pixels_, std::uint64_t{f.width} * f.height * 8},
+      {&pyramid_, std::uint64_t{words} * 4},
+  };
+  for (const Wanted& w : wanted) {
+    if (const Status s = make(*w.slot, w.bytes); !s) return s.error();
+  }
+  if (const Status s = make(upload_, sizeof(GpuFrame) + sizeof(GpuCounters), Memory::kHost); !s) return s.error();
+  f.meshes = scene_.meshes.address();
+  f.instances = scene_.instances.address();
+  f.nodes = scene_.nodes.address();
+  f.groups = scene_.groups.address();
+  f.clusters = scene_.clusters.address();
+  f.materials = scene_.materials.address();
+  f.pages = scene_.pages.address();
+  f.visible = visible_.address();
+  f.queue = queue_.address();
+  f.open_groups = open_groups_.address();
+  f.items = items_.address();
+  f.retry_nodes = retry_nodes_.address();
+  f.retry_clusters = retry_clusters_.address();
+  f.retry_instances = retry_instances_.address();
+  f.clipped = clipped_.address();
+  f.pixels = pixels_.address();
+  f.pyramid = pyramid_.address();
+  f.counters = counters_block_.address();
+  for (GpuStage& stage : counters_.stages) stage.z = 1;
+  for (std::uint32_t pass = 0; pass < 2; ++pass) {
+    counters_.stages[STAGE_DRAW + pass] = {3 * scene_.max_cluster_triangles, 0, 0, 0};
+  }
+  return Ok{};
+}
+
+Status Renderer::make_pipelines() {
+  const std::uint32_t frustum = options_.frustum ? 1 : 0, occlusion = options_.occlusion ? 1 : 0;
+  const std::array<std::uint32_t, 4> constants = {options_.double_sided ? 1u : 0u, frustum, occlusion, 0u};
+  struct Wanted {
+    Pipeline* slot;
+    std::span<const std::uint32_t> spirv;
+  };
+  const Wanted wanted[] = {{&instances_, shaders::instances()},     {&traverse_, shaders::traverse()},
+                           {&clusters_, shaders::clusters()},       {&raster_, shaders::raster()},
+                           {&raster_clip_, shaders::raster_clip()}, {&pyramid_build_, shaders::pyramid()},
+                           {&pyramid_top_, shaders::pyramid_top()}};
+  for (const Wanted& w : wanted) {
+    auto pipeline = device_.make_compute(w.spirv, constants);
+    if (!pipeline) return pipeline.error();
+    *w.slot = *pipeline;
+  }
+  return Ok{};
+}
+
+void Renderer::record_begin(Commands& list) {
+  list.stamp("begin");
+  list.copy(upload_, 0, frame_block_, 0, sizeof(GpuFrame));
+  list.copy(upload_, sizeof(GpuFrame), counters_block_, 0, sizeof(GpuCounters));
+  list.fill(pixels_, 0, pixels_.bytes(), 0);
+  list.barrier();
+  list.stamp("clear");
+}
+
+void Renderer::record_selection(Commands& list, std::uint32_t pass) {
+  const char* suffix = pass == 0 ? "" : " 2";
+  Push push{frame_block_.address(), pass};
+  if (pass == 0) {
+    list.dispatch(instances_, bytes_of(push), (scene_.instance_count + kGroupSize - 1) / kGroupSize);
+  } else {
+    list.dispatch_indirect(instances_, bytes_of(push), counters_block_, arguments_of(STAGE_RETRY_INSTANCES));
+    push.a = 1;
+    list.dispatch_indirect(clusters_, bytes_of(push), counters_block_, arguments_of(STAGE_RETRY_CLUSTERS));
+    push.a = 0;
+  }
+  list.barrier();
+  list.stamp(std::string("instances") + suffix);
+  for (push.depth = 0; push.depth < scene_.bvh_depth; ++push.depth) {
+    list.dispatch_indirect(traverse_, bytes_of(push), counters_block_,
+                           arguments_of(STAGE_QUEUE + MAX_DEPTH * pass + push.depth));
+    list.barrier();
+  }
+  list.stamp(std::string("traverse") + suffix);
+  list.dispatch_indirect(clusters_, bytes_of(push), counters_block_, arguments_of(STAGE_GROUPS + pass));
+  list.barrier();
+  list.stamp(std::string("clusters") + suffix);
+}
+
+void Renderer::record_raster(Commands& list, std::uint32_t pass) {
+  const Push push{frame_block_.address(), pass};
+  list.dispatch_indirect(raster_, bytes_of(push), counters_block_, arguments_of(STAGE_SOFTWARE + pass));
+  list.barrier();
+  list.stamp(pass == 0 ? "software" : "software 2");
+  list.dispatch_indirect(raster_clip_, bytes_of(push), counters_block_, arguments_of(STAGE_CLIPPED + pass));
+  list.barrier();
+  list.stamp(pass == 0 ? "clipped" : "clipped 2");
+}
+
+void Renderer::record_pyramid(Commands& list, std::uint32_t pass) {
+  const Push push{frame_block_.address(), pass};
+  const std::uint32_t tiles = ((frame_.width + 63) / 64) * ((frame_.height + 63) / 64);
+  list.dispatch(pyramid_build_, bytes_of(push), tiles);
+  list.barrier();
+  if (frame_.pyramid_levels > 6) {
+    list.dispatch(pyramid_top_, bytes_of(push), 1);
+    list.barrier();
+  }
+  list.stamp(pass == 0 ? "pyramid" : "pyramid 2");
+}
+
+Status Renderer::record() {
+  for (int i = 0; i < 2; ++i) {
+    auto list = Commands::begin(device_);
+    if (!list) return list.error();
+    lists_.push_back(*list);
+  }
+  Commands& list = lists_[0];
+  record_begin(list);
+  record_selection(list, 0);
+  record_raster(list, 0);
+  if (options_.occlusion) {
+    record_pyramid(list, 0);
+    record_selection(list, 1);
+    record_raster(list, 1);
+    record_pyramid(list, 1);
+  }
+  record_begin(lists_[1]);
+  record_raster(lists_[1], 0);
+  if (!options_.occlusion) return Ok{};
+  auto clear = Commands::begin(device_);  // before the first frame nothing hides anything
+  if (!clear) return clear.error();
+  clear->fill(pyramid_, 0, pyramid_.bytes(), 0);
+  clear->barrier();
+  if (const auto ran = clear->run(); !ran) return ran.error();
+  return Ok{};
+}
+
+Result<FrameReport> Renderer::draw(const Camera& camera, double pixel_error, double scene_depth) {
+  const auto gpu_camera = make_gpu_camera(camera, pixel_error, scene_depth);
+  if (!gpu_camera) return gpu_camera.error();
+  frame_.last = has_last_ ? frame_.camera : *gpu_camera;
+  frame_.camera = *gpu_camera;
+  has_last_ = true;
+  std::memcpy(upload_.mapped(), &frame_, sizeof frame_);
+  std::memcpy(upload_.mapped() + sizeof frame_, &counters_, sizeof counters_);
+  auto times = lists_[0].run();
+  if (!times) return times.error();
+  const auto counters = read_counters();
+  if (!counters) return counters.error();
+  FrameReport out;
+  out.times = std::move(*times);
+  out.visible_instances = counters->stages[STAGE_SLOTS].count;
+  out.open_groups = counters->stages[STAGE_GROUPS].count + counters->stages[STAGE_GROUPS + 1].count;
+  out.items = counters->stages[STAGE_SOFTWARE].count + counters->stages[STAGE_HARDWARE].count;
+  if (options_.occlusion)
+    out.second_pass_items = out.items - counters->software_before[1] - counters->hardware_before[1];
+  out.clipped_items = counters->stages[STAGE_CLIPPED].count + counters->stages[STAGE_CLIPPED + 1].count;
+  for (std::uint32_t i = STAGE_QUEUE; i < STAGE_COUNT; ++i) out.traversed_nodes += counters->stages[i].count;
+  out.not_finite = counters->not_finite;
+  out.overflow = counters->overflow;
+  if (out.items > frame_.item_capacity) out.overflow |= OVERFLOW_CLUSTERS;  // both ends together
+  return out;
+}
+
+Result<GpuCounters> Renderer::read_counters() {
+  GpuCounters out{};
+  const std::span<std::uint8_t> bytes(reinterpret_cast<std::uint8_t*>(&out), sizeof out);
+  if (const Status s = device_.download(counters_block_, bytes); !s) return s.error();
+  return out;
+}
+
+Result<std::vector<GpuVisible>> Renderer::read_visible() {
+  const auto counters = read_counters();
+  if (!counters) return counters.error();
+  std::vector<GpuVisible> out(std::min(counters->stages[STAGE_SLOTS].count, frame_.slot_capacity));
+  const std::span<std::uint8_t> bytes(reinterpret_cast<std::uint8_t*>(out.data()), out.size() * sizeof(GpuVisible));
+  if (const Status s = device_.download(visible_, bytes); !s) return s.error();
+  return out;
+}
+
+Result<std::vector<Renderer::Item>> Renderer::read_items() {
+  const auto counters = read_counters();
+  if (!counters) return counters.error();
+  const auto visible = read_visible();
+  if (!visible) return visible.error();
+  const std::uint32_t front = std::min(counters->stages[STAGE_SOFTWARE].count, frame_.item_capacity);
+  const std::uint32_t back = std::min(counters->stages[STAGE_HARDWARE].count, frame_.item_capacity - front);
+  std::vector<std::array<std::uint32_t, 2>> pairs(std::size_t{front} + back);
+  const std::span<std::uint8_t> bytes(reinterpret_cast<std::uint8_t*>(pairs.data()), pairs.size() * 8);
+  if (const Status s = device_.download(items_, bytes.first(std::size_t{front} * 8)); !s) return s.error();
+  if (const Status s = device_.download(items_, bytes.subspan(std::size_t{front} * 8),
+                                        std::uint64_t{frame_.item_capacity - back} * 8);
+      !s) {
+    return s.error();
+  }
+  std::vector<Item> out;
+  for (const auto& [slot, cluster] : pairs) {
+    if (slot >= visible->size()) return Error{ErrorCode::kCheckFailed, "items", "a slot that no instance has"};
+    out.push_back({{InstanceId((*visible)[slot].instance), ClusterId(cluster)}, slot});
+  }
+  std::sort(out.begin(), out.end(), [](const Item& a, const Item& b) { return a.key < b.key; });
+  return out;
+}
+
+Result<std::vector<ClusterInstance>> Renderer::read_cut() {
+  const auto items = read_items();
+  if (!items) return items.error();
+  std::vector<ClusterInstance> out;
+  for (const Item& item : *items) out.push_back(item.key);
+  return out;
+}
+
+Status Renderer::redraw_in_order() {
+  const auto items = read_items();
+  if (!items) return items.error();
+  std::vector<std::array<std::uint32_t, 2>> pairs;
+  for (const Item& item : *items) pairs.push_back({item.slot, item.key.cluster.value});
+  const std::span<const std::uint8_t> bytes(reinterpret_cast<const std::uint8_t*>(pairs.data()), pairs.size() * 8);
+  if (const Status s = device_.upload(items_, bytes); !s) return s.error();
+  GpuCounters counters = counters_;
+  const auto count = static_cast<std::uint32_t>(pairs.size());
+  counters.stages[STAGE_SOFTWARE] = {count, std::min(count, kGroupRow), (count + kGroupRow - 1) / kGroupRow, 1};
+  const auto before = read_counters();  // the slots stay
+  if (!before) return before.error();
+  counters.stages[STAGE_SLOTS] = before->stages[STAGE_SLOTS];
+  std::memcpy(upload_.mapped(), &frame_, sizeof frame_);
+  std::memcpy(upload_.mapped() + sizeof frame_, &counters, sizeof counters);
+  if (const auto ran = lists_[1].run(); !ran) return ran.error();
+  return Ok{};
+}
+
+Result<VisibilityBuffer> Renderer::read_pixels() {
+  std::vector<std::uint64_t> values(std::size_t{frame_.width} * frame_.height);
+  const std::span<std::uint8_t> bytes(reinterpret_cast<std::uint8_t*>(values.data()), values.size() * 8);
+  if (const Status s = device_.download(pixels_, bytes); !s) return s.error();
+  VisibilityBuffer out = make_visibility_buffer(frame_.width, frame_.height);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (values[i] == 0) continue;
+    const std::uint32_t key = ~static_cast<std::uint32_t>(values[i]);
+    out.depth[i] = static_cast<std::uint32_t>(values[i] >> 32);
+    out.item[i] = key >> 8;
+    out.triangle[i] = key & 0xFFu;
+  }
+  return out;
+}
+
+std::uint64_t Renderer::list_bytes() const {
+  std::uint64_t bytes = 0;
+  for (const Buffer* b : {&visible_, &queue_, &open_groups_, &items_, &retry_nodes_, &retry_clusters_,
+                          &retry_instances_, &clipped_, &pixels_, &pyramid_}) {
+    bytes += b->bytes();
+  }
+  return bytes;
+}
+
+}  // namespace meshlode::gpu

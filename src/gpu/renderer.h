@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The frame: instances → BVH traversal with the LOD rule → clusters → software and hardware rasterizers → depth
+// pyramid, and with occlusion culling once more for what last frame's depth had hidden. Which passes run is the plan's
+// decision.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <meshlode/result.h>
+
+#include "gpu/scene.h"
+#include "gpu/shaders/frame.h"
+#include "gpu/vulkan.h"
+#include "raster/raster.h"
+#include "select/select.h"
+
+namespace meshlode::gpu {
+
+struct RendererOptions {
+  std::uint32_t width = 0, height = 0;
+  bool frustum = true;
+  bool occlusion = false;
+  bool double_sided = false;           ///< some material is; where none is, nobody looks
+  std::uint32_t max_items = 1u << 22;  ///< of each list, at most; lists are no longer than the scene can fill
+};
+
+struct FrameReport {
+  std::vector<Commands::Time> times;
+  std::uint32_t visible_instances = 0;
+  std::uint32_t open_groups = 0;
+  std::uint32_t items = 0;  ///< clusters drawn, both passes
+  std::uint32_t second_pass_items = 0;
+  std::uint32_t clipped_items = 0;
+  std::uint32_t traversed_nodes = 0;
+  std::uint32_t not_finite = 0;
+  std::uint32_t overflow = 0;  ///< OVERFLOW_…: the picture is not complete
+};
+/// "": nothing overflowed; else which list.
+[[nodiscard]] std::string describe_overflow(std::uint32_t overflow);
+
+class Renderer {
+ public:
+  /// Errors: kUnsupported where the device has no room.
+  [[nodiscard]] static Result<Renderer> make(Device device, GpuScene scene, const RendererOptions& options);
+
+  /// Another picture size; the pipelines stay.
+  [[nodiscard]] Status resize(std::uint32_t width, std::uint32_t height);
+
+  /// One frame. `scene_depth` as in make_gpu_camera(). An overflow is reported, not an error.
+  [[nodiscard]] Result<FrameReport> draw(const Camera& camera, double pixel_error, double scene_depth);
+
+  /// What the last frame drew, ascending.
+  [[nodiscard]] Result<std::vector<ClusterInstance>> read_cut();
+  /// Draws what the last frame drew again, with items in ascending order, so that equal depths resolve as on the CPU;
+  /// then the picture's items are indices into read_cut().
+  [[nodiscard]] Status redraw_in_order();
+  [[nodiscard]] Result<VisibilityBuffer> read_pixels();
+  /// The views that the last frame's instances were given, by slot (for tests).
+  [[nodiscard]] Result<std::vector<GpuVisible>> read_visible();
+
+  [[nodiscard]] const GpuScene& scene() const { return scene_; }
+  [[nodiscard]] const RendererOptions& options() const { return options_; }
+  [[nodiscard]] std::uint64_t list_bytes() const;  ///< of every buffer that depends on camera or size
+
+ private:
+  [[nodiscard]] Status make_buffers();
+  [[nodiscard]] Status make_pipelines();
+  void record_begin(Commands& list);
+  void record_selection(Commands& list, std::uint32_t pass);
+  void record_raster(Commands& list, std::uint32_t pass);
+  void record_pyramid(Commands& list, std::uint32_t pass);
+  [[nodiscard]] Status record();
+  [[nodiscard]] Result<GpuCounters> read_counters();
+  struct Item {
+    ClusterInstance key;
+    std::uint32_t slot = 0;
+  };
+  [[nodiscard]] Result<std::vector<Item>> read_items();
+
+  Device device_;
+  GpuScene scene_;
+  RendererOptions options_;
+  GpuFrame frame_{};
+  GpuCounters counters_{};  ///< as every frame begins
+  Buffer frame_block_, counters_block_, upload_;
+  Buffer visible_, queue_, open_groups_, items_, retry_nodes_, retry_clusters_, retry_instances_, clipped_, pixels_,
+      pyramid_;
+  Pipeline instances_, traverse_, clusters_, raster_, raster_clip_, pyramid_build_, pyramid_top_;
+  std::vector<Commands> lists_;  ///< 0: the frame, 1: drawing in order
+  bool has_last_ = false;
+};
+
+}  // namespace meshlode::gpu

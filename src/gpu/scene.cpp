@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gpu/scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "gpu/shaders/frame.h"
+#include "select/select.h"
+#include "unpack/unpack.h"
+
+namespace meshlode::gpu {
+
+namespace {
+
+template <class T>
+Result<Buffer> make_table(Device& device, const std::vector<T>& table) {
+  auto buffer = device.make_buffer(table.size() * sizeof(T), Memory::kDevice);
+  if (!buffer) return buffer.error();
+  const std::span<const std::uint8_t> bytes(reinterpret_cast<const std::uint8_t*>(table.data()),
+                                            table.size() * sizeof(T));
+  if (const Status done = device.upload(*buffer, bytes); !done) return done.error();
+  return buffer;
+}
+
+std::vector<GpuMesh> mesh_table(const Asset& asset) {
+  std::vector<GpuMesh> out;
+  const SelectTables tables = tables_of(asset);
+  for (const format::MeshRecord& mesh : asset.meshes()) {
+    GpuMesh m{};
+    std::copy(mesh.origin, mesh.origin + 3, m.origin);
+    m.step = std::ldexp(static_cast<double>(mesh.grid.mantissa), mesh.grid.log2);
+    m.reach = mesh_reach(tables, mesh);
+    if (mesh.node_count > 0) {
+      const format::NodeRecord& root = asset.nodes()[mesh.first_node];
+      std::copy(root.center, root.center + 3, m.root_center);
+      m.root_radius = root.radius;
+    }
+    m.first_node = mesh.first_node;
+    m.node_count = mesh.group_count > 0 ? mesh.node_count : 0;
+    m.first_group = mesh.first_group;
+    m.first_cluster = mesh.first_cluster;
+    m.channel_count = mesh.channel_count;
+    m.normal_mode = static_cast<std::uint32_t>(mesh.normal_mode);
+    m.normal_scale = mesh.normal_bits;
+    m.uv_set_count = mesh.uv_set_count;
+    m.has_color = mesh.has_color;
+    out.push_back(m);
+  }
+  return out;
+}
+
+std::vector<GpuInstance> instance_table(std::span<const format::InstanceRecord> instances) {
+  std::vector<GpuInstance> out(instances.size());
+  for (std::size_t i = 0; i < instances.size(); ++i) {
+    std::copy(instances[i].transform, instances[i].transform + 12, out[i].transform);
+    out[i].scale = instances[i].scale;
+    out[i].mesh = instances[i].mesh;
+    out[i].flags = instances[i].flags;
+  }
+  return out;
+}
+
+std::vector<GpuNode> node_table(const Asset& asset) {
+  std::vector<GpuNode> out;
+  for (const format::NodeRecord& node : asset.nodes()) {
+    GpuNode n{};
+    std::copy(node.center, node.center + 3, n.center);
+    n.radius = node.radius;
+    n.error = node.error;
+    n.first = node.first;
+    n.child_count = node.child_count;
+    out.push_back(n);
+  }
+  return out;
+}
+
+/// Nodes on the longest way down. Children lie behind their node, so one pass from the back sees them first.
+std::uint32_t bvh_depth(const Asset& asset) {
+  const auto nodes = asset.nodes();
+  std::vector<std::uint32_t> height(nodes.size(), 1);
+  std::uint32_t deepest = 0;
+  for (std::size_t i = nodes.size(); i-- > 0;) {
+    for (std::uint32_t c = 0; c < nodes[i].child_count && nodes[i].first > i; ++c) {
+      height[i] = std::max(height[i], height[nodes[i].first + c] + 1);
+    }
+    deepest = std::max(deepest, height[i]);
+  }
+  return deepest;
+}
+
+struct Pages {
+  Buffer buffer;
+  std::vector<std::uint32_t> word;  ///< where each page begins
+  std::uint64_t bytes = 0;
+};
+
+Result<Pages> upload_pages(Device& device, const Asset& asset) {
+  Pages out;
+  std::uint64_t words = 0;
+  for (const format::PageRecord& page : asset.pages()) {
+    out.word.push_back(static_cast<std::uint32_t>(words));
+    words += (std::uint64_t{page.bytes} + 15) / 16 * 4;
+  }
+  if (words + 4 > 0xFFFFFFFFu) return Error{ErrorCode::kUnsupported, "pages", "more than 16 GiB of pages"};
+  out.bytes = words * 4;
+  auto buffer = device.make_buffer(out.bytes + 16, Memory::kDevice);  // a reader may look at one word behind a page
+  if (!buffer) return buffer.error();
+  out.buffer = *buffer;
+  std::vector<std::uint8_t> chunk;
+  std::uint64_t chunk_at = 0;
+  constexpr std::size_t kChunk = 8u << 20;
+  for (std::size_t p = 0; p < asset.pages().size(); ++p) {
+    const auto page = load_page(asset, PageId(p));
+    if (!page) return page.error();
+    const std::span<const std::uint8_t> bytes = page->bytes();
+    chunk.insert(chunk.end(), bytes.begin(), bytes.end());
+    chunk.resize((chunk.size() + 15) / 16 * 16, 0);
+    if (chunk.size() < kChunk && p + 1 < asset.pages().size()) continue;
+    if (const Status done = device.upload(out.buffer, chunk, chunk_at); !done) return done.error();
+    chunk_at += chunk.size();
+    chunk.clear();
+  }
+  return out;
+}
+
+}  // namespace
+
+Result<GpuScene> upload_scene(Device& device, const Asset& asset, std::span<const format::InstanceRecord> instances) {
+  if (instances.empty()) instances = asset.instances();
+  GpuScene out;
+  out.instance_count = static_cast<std::uint32_t>(instances.size());
+  out.cluster_count = static_cast<std::uint32_t>(asset.clusters().size());
+  out.bvh_depth = bvh_depth(asset);
+  if (out.bvh_depth > MAX_DEPTH) {
+    return Error{
+        ErrorCode::kUnsupported, "hierarchy",
+        std::to_string(out.bvh_depth) + " nodes deep, the GPU traversal has room for " + std::to_string(MAX_DEPTH)};
+  }
+  for (const format::InstanceRecord& instance : instances) {
+    if ((instance.flags & format::kInstanceSingular) != 0) continue;
+    out.group_instances += asset.meshes()[instance.mesh].group_count;
+    out.cluster_instances += asset.meshes()[instance.mesh].cluster_count;
+  }
+  auto pages = upload_pages(device, asset);
+  if (!pages) return pages.error();
+  out.pages = pages->buffer;
+  out.page_bytes = pages->bytes;
+
+  std::vector<GpuGroup> groups;
+  for (const format::GroupRecord& group : asset.groups()) {
+    GpuGroup g{};
+    std::copy(group.center, group.center + 3, g.center);
+    g.radius = group.radius;
+    g.error = group.error;
+    g.first_cluster = group.first_cluster;
+    g.cluster_count = group.cluster_count;
+    g.page_word = pages->word[group.page];
+    groups.push_back(g);
+  }
+  std::vector<GpuCluster> clusters;
+  for (const format::ClusterRecord& cluster : asset.clusters()) {
+    GpuCluster c{};
+    std::copy(cluster.center, cluster.center + 3, c.center);
+    c.radius = cluster.radius;
+    c.own_group = cluster.own_group;
+    c.page_word = groups[cluster.coarser_group].page_word;
+    c.level = cluster.level;
+    c.triangle_count = cluster.triangle_count;
+    out.max_cluster_triangles = std::max(out.max_cluster_triangles, c.triangle_count);
+    clusters.push_back(c);
+  }
+  std::vector<GpuMaterial> materials;
+  for (const format::MaterialRecord& material : asset.materials()) {
+    GpuMaterial m{};
+    m.base_color = {material.base_color[0], material.base_color[1], material.base_color[2], material.base_color[3]};
+    m.double_sided = material.double_sided;
+    materials.push_back(m);
+    out.has_double_sided = out.has_double_sided || material.double_sided != 0;
+    out.has_alpha_mask = out.has_alpha_mask || material.alpha_mode == format::AlphaMode::kMask;
+    out.has_textures = out.has_textures || material.base_color_texture != format::kNone;
+  }
+  for (const format::MeshRecord& mesh : asset.meshes()) {
+    out.has_stored_normals = out.has_stored_normals || mesh.normal_mode == format::NormalMode::kStored;
+  }
+
+  const auto put = [&](Buffer& slot, auto&& table) -> Status {
+    auto buffer = make_table(device, table);
+    if (!buffer) return buffer.error();
+    slot = *buffer;
+    return Ok{};
+  };
+  if (const Status s = put(out.meshes, mesh_table(asset)); !s) return s.error();
+  if (const Status s = put(out.instances, instance_table(instances)); !s) return s.error();
+  if (const Status s = put(out.nodes, node_table(asset)); !s) return s.error();
+  if (const Status s = put(out.groups, groups); !s) return s.error();
+  if (const Status s = put(out.clusters, clusters); !s) return s.error();
+  if (const Status s = put(out.materials, materials); !s) return s.error();
+  return out;
+}
+
+}  // namespace meshlode::gpu

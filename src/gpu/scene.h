@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// An asset on the device: its pages as they lie in the file, one after the other, and the tables that selection and
+// culling read, in a form of their own (shaders/frame.h).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <meshlode/result.h>
+
+#include "gpu/vulkan.h"
+#include "read/asset.h"
+
+namespace meshlode::gpu {
+
+struct GpuScene {
+  Buffer meshes, instances, nodes, groups, clusters, materials, pages;
+  std::uint32_t instance_count = 0;
+  std::uint32_t cluster_count = 0;
+  std::uint32_t bvh_depth = 0;  ///< nodes on the longest way from a root
+  std::uint32_t max_cluster_triangles = 0;
+  std::uint64_t group_instances = 0;  ///< groups of all instances together: no cut opens more
+  std::uint64_t cluster_instances = 0;
+  std::uint64_t page_bytes = 0;
+  bool has_double_sided = false;
+  bool has_alpha_mask = false;
+  bool has_textures = false;
+  bool has_stored_normals = false;
+};
+
+/// `instances` replaces the asset's own where it is not empty: a benchmark's scene. Their meshes are the asset's.
+/// Errors: kInvalid for a broken page; kUnsupported where the device has no room or a limit is passed.
+[[nodiscard]] Result<GpuScene> upload_scene(Device& device, const Asset& asset,
+                                            std::span<const format::InstanceRecord> instances = {});
+
+}  // namespace meshlode::gpu

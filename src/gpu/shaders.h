@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The SPIR-V that was built from shaders/.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+namespace meshlode::gpu::shaders {
+
+[[nodiscard]] std::span<const std::uint32_t> instances();
+[[nodiscard]] std::span<const std::uint32_t> traverse();
+[[nodiscard]] std::span<const std::uint32_t> clusters();
+[[nodiscard]] std::span<const std::uint32_t> raster();
+[[nodiscard]] std::span<const std::uint32_t> raster_clip();
+[[nodiscard]] std::span<const std::uint32_t> pyramid();
+[[nodiscard]] std::span<const std::uint32_t> pyramid_top();
+[[nodiscard]] std::span<const std::uint32_t> decode();
+
+}  // namespace meshlode::gpu::shaders

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: MIT
+// Software rasterizer: a workgroup draws a cluster. Vertices are snapped once into shared memory; a small triangle is one
+// invocation's, in 32-bit integers; a larger one is everybody's, in 64-bit integers. Triangles that have to be clipped
+// are left to raster_clip.comp.
+#version 460
+#define GROUP_SIZE 128
+#include "common.glsl"
+#include "page.glsl"
+#include "screen.glsl"
+
+layout(constant_id = 0) const uint kDoubleSided = 0u;  // 1: some material of the scene is
+
+const int kSmallSide = 64 * 256;  // subpixels: products of differences stay below 2^29
+const int kSmallPixels = 256;      // more than this is shared by the workgroup
+const int kScanlinePixels = 6;    // from this width on a row's ends are computed
+
+shared int shared_x[256], shared_y[256];
+shared uint shared_depth[256];
+shared uint shared_snapped[8];
+shared uint large_count, has_clipped;
+shared uint large[256];
+
+struct Triangle {
+  ivec3 x, y;
+  uvec3 depth;
+};
+
+int edge_bias(int dx, int dy) { return dy < 0 || (dy == 0 && dx > 0) ? 0 : -1; }
+
+void draw_small(Triangle t, ivec2 columns, ivec2 rows, int area, uint item, uint triangle) {
+  // Edge k is opposite to vertex k: E = dx * (py - ay) - dy * (px - ax).
+  const ivec3 ax = t.x.yzx, ay = t.y.yzx;
+  const ivec3 dx = t.x.zxy - ax, dy = t.y.zxy - ay;
+  const ivec3 bias = ivec3(edge_bias(dx.x, dy.x), edge_bias(dx.y, dy.y), edge_bias(dx.z, dy.z));
+  const int px = columns.x * kSubpixels + kSubpixels / 2, py = rows.x * kSubpixels + kSubpixels / 2;
+  const ivec3 start = dx * (py - ay) - dy * (px - ax);
+  const ivec3 step_x = -dy * kSubpixels, step_y = dx * kSubpixels;
+  const double inverse = 1.0lf / double(area);
+  const bool is_wide = columns.y - columns.x >= kScanlinePixels;
+  const vec3 inverse_step = 1.0 / vec3(step_x);
+  ivec3 row = start;
+  for (int y = rows.x; y <= rows.y; ++y) {
+    int first = columns.x, last = columns.y;
+    if (is_wide) {
+      // Where each edge crosses the row, as floats, one pixel wider than they say: the exact test comes below.
+      [[unroll]] for (int k = 0; k < 3; ++k) {
+        const float crossing = -float(row[k]) * inverse_step[k];
+        if (step_x[k] > 0) first = max(first, columns.x + int(clamp(floor(crossing), -1.0, 128.0)) - 1);
+        else if (step_x[k] < 0) last = min(last, columns.x + int(clamp(ceil(crossing), -1.0, 128.0)) + 1);
+      }
+    }
+    ivec3 e = row + step_x * (first - columns.x);
+    for (int x = first; x <= last; ++x) {
+      const ivec3 biased = e + bias;
+      if ((biased.x | biased.y | biased.z) >= 0) {
+        const uint64_t sum = uint64_t(uint(e.x)) * t.depth.x + uint64_t(uint(e.y)) * t.depth.y +
+                             uint64_t(uint(e.z)) * t.depth.z;
+        put_pixel(x, y, pixel_value(divide_depth(sum, double(sum) * inverse, int64_t(area)), item, triangle));
+      }
+      e += step_x;
+    }
+    row += step_y;
+  }
+}
+
+void draw_large(Triangle t, ivec2 columns, ivec2 rows, int64_t area, uint item, uint triangle) {
+  const ivec3 ax = t.x.yzx, ay = t.y.yzx;
+  const ivec3 dx = t.x.zxy - ax, dy = t.y.zxy - ay;
+  const int width = columns.y - columns.x + 1, pixels = width * (rows.y - rows.x + 1);
+  const double inverse = 1.0lf / double(area);
+  for (int p = int(gl_LocalInvocationID.x); p < pixels; p += GROUP_SIZE) {
+    const int x = columns.x + p % width, y = rows.x + p / width;
+    const int px = x * kSubpixels + kSubpixels / 2, py = y * kSubpixels + kSubpixels / 2;
+    int64_t e[3];
+    bool is_inside = true;
+    [[unroll]] for (int k = 0; k < 3; ++k) {
+      e[k] = int64_t(dx[k]) * int64_t(py - ay[k]) - int64_t(dy[k]) * int64_t(px - ax[k]);
+      is_inside = is_inside && e[k] + int64_t(edge_bias(dx[k], dy[k])) >= 0l;
+    }
+    if (is_inside) {
+      const uint64_t sum = uint64_t(e[0]) * t.depth.x + uint64_t(e[1]) * t.depth.y + uint64_t(e[2]) * t.depth.z;
+      const double estimate = (double(e[0]) * double(t.depth.x) + double(e[1]) * double(t.depth.y) +
+                               double(e[2]) * double(t.depth.z)) * inverse;
+      put_pixel(x, y, pixel_value(divide_depth(sum, estimate, area), item, triangle));
+    }
+  }
+}
+
+int64_t doubled_area(Triangle t) {
+  return int64_t(t.x.y - t.x.x) * int64_t(t.y.z - t.y.x) - int64_t(t.x.z - t.x.x) * int64_t(t.y.y - t.y.x);
+}
+
+Triangle load_triangle(uvec3 v) {
+  Triangle t;
+  t.x = ivec3(shared_x[v.x], shared_x[v.y], shared_x[v.z]);
+  t.y = ivec3(shared_y[v.x], shared_y[v.y], shared_y[v.z]);
+  t.depth = uvec3(shared_depth[v.x], shared_depth[v.y], shared_depth[v.z]);
+  return t;
+}
+
+// Of positive area; swapping two corners changes neither coverage nor depth.
+void orient(inout Triangle t, inout int64_t area) {
+  if (area < 0l) {
+    t.x = t.x.xzy;
+    t.y = t.y.xzy;
+    t.depth = t.depth.xzy;
+    area = -area;
+  }
+}
+
+bool is_snapped(uint v) { return (shared_snapped[v >> 5u] >> (v & 31u) & 1u) != 0u; }
+
+void draw_item(uint item) {
+  const uint lane = gl_LocalInvocationID.x;
+  const uvec2 entry = frame.items.at[item];
+  const uint slot = entry.x, cluster = entry.y;
+  const ClusterData data =
+      open_cluster(frame.meshes.at[frame.visible.at[slot].mesh], frame.clusters.at[cluster].page_word, cluster);
+  if (lane < 8u) shared_snapped[lane] = 0u;
+  if (lane == 0u) {
+    large_count = 0u;
+    has_clipped = 0u;
+  }
+  barrier();
+  for (uint v = lane; v < data.vertex_count; v += uint(GROUP_SIZE)) {
+    const ScreenVertex s = snap_vertex(clip_vertex(slot, cluster_position(data, v)));
+    shared_x[v] = s.x;
+    shared_y[v] = s.y;
+    shared_depth[v] = s.depth;
+    if (s.is_snapped) atomicOr(shared_snapped[v >> 5u], 1u << (v & 31u));
+  }
+  barrier();
+  const bool is_mirrored = (frame.visible.at[slot].flags & kInstanceMirrored) != 0u;
+  for (uint i = lane; i < data.triangle_count; i += uint(GROUP_SIZE)) {
+    const uvec3 v = cluster_triangle(data, i);
+    if (is_snapped(v.x) && is_snapped(v.y) && is_snapped(v.z)) {
+      Triangle t = load_triangle(v);
+      const int low_x = min(t.x.x, min(t.x.y, t.x.z)), high_x = max(t.x.x, max(t.x.y, t.x.z));
+      const int low_y = min(t.y.x, min(t.y.y, t.y.z)), high_y = max(t.y.x, max(t.y.y, t.y.z));
+      const ivec2 columns = pixels_between(low_x, high_x, frame.width);
+      const ivec2 rows = pixels_between(low_y, high_y, frame.height);
+      int64_t area = doubled_area(t);
+      bool is_drawn = columns.x <= columns.y && rows.x <= rows.y && area != 0l;
+      if (is_drawn && (area > 0l) != is_mirrored) {
+        is_drawn = kDoubleSided != 0u && frame.materials.at[cluster_material(data, i)].double_sided != 0u;
+      }
+      if (is_drawn) {
+        const bool is_small = max(high_x - low_x, high_y - low_y) <= kSmallSide &&
+                              (columns.y - columns.x + 1) * (rows.y - rows.x + 1) <= kSmallPixels;
+        if (is_small) {
+          orient(t, area);
+          draw_small(t, columns, rows, int(area), item, i);
+        } else {
+          large[atomicAdd(large_count, 1u)] = i;
+        }
+      }
+    } else {
+      has_clipped = 1u;
+    }
+  }
+  barrier();
+  for (uint i = 0u; i < large_count; ++i) {
+    const uint triangle = large[i];
+    Triangle t = load_triangle(cluster_triangle(data, triangle));
+    int64_t area = doubled_area(t);
+    orient(t, area);
+    const int low_x = min(t.x.x, min(t.x.y, t.x.z)), high_x = max(t.x.x, max(t.x.y, t.x.z));
+    const int low_y = min(t.y.x, min(t.y.y, t.y.z)), high_y = max(t.y.x, max(t.y.y, t.y.z));
+    draw_large(t, pixels_between(low_x, high_x, frame.width), pixels_between(low_y, high_y, frame.height), area, item,
+               triangle);
+  }
+  if (lane == 0u && has_clipped != 0u) {
+    const uint at = atomicAdd(counters.stages[STAGE_CLIPPED + pass].count, 1u);
+    cover(STAGE_CLIPPED + pass, at + 1u, 1u);
+    frame.clipped.at[at] = item;  // as long as the list of items: it cannot overflow
+  }
+}
+
+void main() {
+  const uint item = counters.software_before[pass] + group_index();
+  if (item < min(counters.stages[STAGE_SOFTWARE].count, frame.item_capacity)) draw_item(item);
+}

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A device for tests: Mesa's lavapipe unless VK_DRIVER_FILES says otherwise, with validation and synchronization
+// validation, and scenes to draw.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "gpu/vulkan.h"
+#include "read/asset.h"
+#include "select/select.h"
+
+namespace meshlode::gpu::test {
+
+/// One device for the whole program; nothing where there is no Vulkan (then `why` says why).
+[[nodiscard]] std::optional<Device> shared_device(std::string& why);
+
+/// Tests of this fixture are skipped where there is no device, unless MESHLODE_REQUIRE_GPU is 1; and they fail if the
+/// validation layer says anything.
+class GpuTest : public testing::Test {
+ protected:
+  void SetUp() override;
+  void TearDown() override;
+  std::optional<Device> device_;
+};
+
+/// The box of everything that can be drawn, world units.
+struct Box {
+  Vec3d low{0.0}, high{0.0};
+};
+[[nodiscard]] Box world_box(const Asset& asset);
+
+struct NamedCamera {
+  std::string name;
+  Camera camera;
+};
+/// Around, inside, on the near plane, far away, through a keyhole, wide, orthographic.
+[[nodiscard]] std::vector<NamedCamera> adversarial_cameras(const Asset& asset, std::uint32_t width,
+                                                           std::uint32_t height);
+
+/// Bytes of the asset built from a scene file; empty where that failed (the test is failed too).
+[[nodiscard]] std::vector<std::uint8_t> build_file(const std::string& path);
+
+}  // namespace meshlode::gpu::test
