@@ -9,6 +9,7 @@
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 #include <OpenMesh/Core/System/omstream.hh>
 #include <OpenMesh/Tools/Decimater/DecimaterT.hh>
+#include <OpenMesh/Tools/Decimater/ModNormalFlippingT.hh>
 #include <OpenMesh/Tools/Decimater/ModQuadricT.hh>
 
 namespace meshlode::bench {
@@ -23,6 +24,7 @@ struct DoubleTraits : om::DefaultTraits {
 };
 using Mesh = om::TriMesh_ArrayKernelT<DoubleTraits>;
 using Decimater = om::Decimater::DecimaterT<Mesh>;
+using FlipModule = om::Decimater::ModNormalFlippingT<Mesh>;
 using QuadricModule = om::Decimater::ModQuadricT<Mesh>;
 
 /// For every vertex the first one at the same position.
@@ -79,6 +81,8 @@ ReferenceSimplifier::ReferenceSimplifier(const Surface& source) : state_(std::ma
   mesh.garbage_collection();
   mesh.update_face_normals();
   state_->decimater = std::make_unique<Decimater>(mesh);
+  FlipModule::Handle flip;  // without it flat regions fold over, because that costs no quadric error
+  state_->decimater->add(flip);
   QuadricModule::Handle quadric;
   state_->decimater->add(quadric);
   state_->decimater->module(quadric).unset_max_err();  // a priority, no limit

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An independent simplifier to compare with: OpenMesh's decimater with its quadric module, over the whole mesh at once.
+// An independent simplifier to compare with: OpenMesh's decimater with its quadric module (and the one that refuses to
+// turn faces over), over the whole mesh at once.
 // It has no clusters, no locked borders and no attributes, and keeps vertices where they were (half-edge collapses).
 #pragma once
 
