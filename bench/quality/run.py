@@ -60,7 +60,7 @@ class Bench:
         if not path.exists():
             folder = self.out / "generated"
             folder.mkdir(exist_ok=True)
-            subprocess.run([self.program("tools/generate/meshlode_generate"), folder, "--terrain", str(TERRAIN_TRIANGLES)],
+            subprocess.run([self.program("meshlode_generate"), folder, "--terrain", str(TERRAIN_TRIANGLES)],
                            check=True)
             next(folder.glob("*.glb")).rename(path)
         return path
@@ -89,6 +89,8 @@ class Bench:
         figures = json.loads(raw.read_text())
         raw.unlink()
         figures["build_cpu_seconds"] = seconds
+        figures["commit"] = subprocess.run(["git", "-C", ROOT, "rev-parse", "--short", "HEAD"], capture_output=True,
+                                           text=True).stdout.strip()
         info = subprocess.run([self.program("meshlode"), "info", asset, "--format", "json"], check=True,
                               capture_output=True)
         totals = json.loads(info.stdout)["totals"]
@@ -217,7 +219,9 @@ def write_document(figures, options):
     for model in models:
         ours = figures.get((model, "none", "measured"))
         notes += [f"- {model}: {note}" for note in (ours["meshes"][0]["notes"] if ours else [])]
+    commits = sorted({value["commit"] for value in figures.values() if value.get("commit")})
     parts = [
+        f"With the programs of commit {', '.join(commits)}. A dash is a figure that was not measured.\n",
         "### Triangles at equal true maximum, `--attributes none`\n", equal_table(figures, models, "max", AT_MAX),
         "### Triangles at equal true RMS, `--attributes none`\n", equal_table(figures, models, "rms", AT_RMS),
         "\n".join(notes) + "\n" if notes else "",
