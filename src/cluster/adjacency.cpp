@@ -44,7 +44,7 @@ std::uint32_t find_root(std::vector<std::uint32_t>& parent, std::uint32_t i) {
 
 }  // namespace
 
-Graph triangle_graph(std::span<const Corner3> corner_positions) {
+Graph triangle_graph(std::span<const Corner3> corner_positions, std::span<const TriangleLink> links) {
   std::vector<Corner3> corners;
   const std::uint32_t position_count = compact(corner_positions, corners);
   const auto triangle_count = static_cast<std::uint32_t>(corners.size());
@@ -66,7 +66,7 @@ Graph triangle_graph(std::span<const Corner3> corner_positions) {
   std::vector<std::uint32_t> cursor(bucket_start.begin(), bucket_start.end() - 1);
   for_each_edge([&](std::uint32_t low, std::uint32_t high, std::uint32_t t) { uses[cursor[low]++] = {high, t}; });
 
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> strong;
+  std::vector<TriangleLink> strong;
   strong.reserve(uses.size() / 2 + 1);
   std::vector<std::uint32_t> parent(triangle_count);
   std::iota(parent.begin(), parent.end(), 0U);
@@ -80,7 +80,11 @@ Graph triangle_graph(std::span<const Corner3> corner_positions) {
       parent[find_root(parent, use->triangle)] = find_root(parent, (use + 1)->triangle);
     }
   }
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> weak;
+  for (const auto& [a, b] : links) {
+    strong.emplace_back(a, b);
+    parent[find_root(parent, a)] = find_root(parent, b);
+  }
+  std::vector<TriangleLink> weak;
   for (std::uint32_t t = 0; t + 1 < triangle_count; ++t) {
     if (find_root(parent, t) != find_root(parent, t + 1)) weak.emplace_back(t, t + 1);
   }

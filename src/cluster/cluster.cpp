@@ -88,6 +88,9 @@ Clustering cluster_chunk(std::span<const WedgeTriangle> triangles, std::span<con
   if (parts > 1 && piece_count > kPiecesPerPart * parts) {
     clustering = cluster_pieces(triangles, wedge_position, positions, piece, piece_count, std::min(parts, triangles.size()));
   } else {
+    if (parts > 1 && piece_count > 1) {
+      graph = triangle_graph(corners, link_to_nearest(corners, positions, piece, piece_count));
+    }
     clustering.count = static_cast<std::uint32_t>(std::min(parts, triangles.size()));
     clustering.label = partition_graph(graph, clustering.count);
   }

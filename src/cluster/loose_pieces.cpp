@@ -2,9 +2,8 @@
 #include "cluster/loose_pieces.h"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
-
-#include "cluster/adjacency.h"
 
 namespace meshlode {
 
@@ -30,6 +29,42 @@ std::uint32_t find_pieces(const Graph& graph, std::vector<std::uint32_t>& piece)
     ++count;
   }
   return count;
+}
+
+std::vector<TriangleLink> link_to_nearest(std::span<const std::array<std::uint32_t, 3>> corner_positions,
+                                          std::span<const Vec3i> positions, const std::vector<std::uint32_t>& piece,
+                                          std::uint32_t piece_count) {
+  constexpr std::size_t kProbes = 4;  // triangles of a piece that look for a neighbour
+  std::vector<std::vector<std::uint32_t>> probes(piece_count);
+  std::vector<std::uint32_t> size(piece_count, 0);
+  for (std::uint32_t t = 0; t < piece.size(); ++t) {
+    if (probes[piece[t]].size() < kProbes) probes[piece[t]].push_back(t);
+    ++size[piece[t]];
+  }
+  const auto largest = static_cast<std::uint32_t>(std::max_element(size.begin(), size.end()) - size.begin());
+  std::vector<TriangleLink> links;
+  for (std::uint32_t p = 0; p < piece_count; ++p) {
+    if (p == largest) continue;
+    std::int64_t nearest = std::numeric_limits<std::int64_t>::max();
+    TriangleLink link{};
+    for (const std::uint32_t mine : probes[p]) {
+      for (const std::uint32_t corner : corner_positions[mine]) {
+        const glm::i64vec3 from(positions[corner]);
+        for (std::uint32_t other = 0; other < piece.size(); ++other) {
+          if (piece[other] == p) continue;
+          for (const std::uint32_t there : corner_positions[other]) {
+            const glm::i64vec3 apart = glm::i64vec3(positions[there]) - from;
+            const std::int64_t distance2 = apart.x * apart.x + apart.y * apart.y + apart.z * apart.z;
+            if (distance2 >= nearest) continue;
+            nearest = distance2;
+            link = {mine, other};
+          }
+        }
+      }
+    }
+    links.push_back(link);
+  }
+  return links;
 }
 
 Clustering cluster_pieces(std::span<const WedgeTriangle> triangles, std::span<const std::uint32_t> wedge_position,

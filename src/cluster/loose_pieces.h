@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/vec.h"
+#include "cluster/adjacency.h"
 #include "cluster/cluster.h"
 #include "partition/partition.h"
 
@@ -14,6 +15,13 @@ namespace meshlode {
 
 /// The piece of each triangle: pieces are joined by shared edges, and numbered by their first triangle. Returns how many.
 [[nodiscard]] std::uint32_t find_pieces(const Graph& graph, std::vector<std::uint32_t>& piece);
+
+/// From every piece but the largest to the nearest triangle of another: debris beside a surface belongs to the cluster
+/// that lies there, or nothing near it would stand for it once it is gone.
+[[nodiscard]] std::vector<TriangleLink> link_to_nearest(std::span<const std::array<std::uint32_t, 3>> corner_positions,
+                                                        std::span<const Vec3i> positions,
+                                                        const std::vector<std::uint32_t>& piece,
+                                                        std::uint32_t piece_count);
 
 /// Cuts along medians of the pieces' centres, at multiples of the target, so that parts are compact and full and at most
 /// one piece is divided per cut.

@@ -77,6 +77,8 @@ LodDag assemble_dag(const BuildPool& pool, const PreparedMesh& mesh) {
     group.error = source.is_terminal ? infinity : source.error;
     group.quadric_error = source.is_terminal ? infinity : source.quadric_error;
     group.deviation = source.deviation;
+    group.normal_deviation = source.normal_deviation;
+    group.uv_deviation = source.uv_deviation;
     for (const std::uint32_t c : source.clusters) {
       append_cluster(pool, pool.clusters[c], stride, GroupId(new_group[g]), dag);
       DagCluster& cluster = dag.clusters.back();

@@ -2,12 +2,11 @@
 #include "dag/build_dag.h"
 
 #include <algorithm>
-#include <optional>
 #include <utility>
 
 #include "base/parallel.h"
+#include "dag/group_errors.h"
 #include "dag/level_pool.h"
-#include "deviation/deviation.h"
 
 namespace meshlode {
 
@@ -24,32 +23,10 @@ constexpr Effort kEfforts[] = {{16, false}, {24, false}, {11, false}, {32, true}
 struct Attempt {
   SimplifyResult result;
   Clustering clustering;
-  GroupDeviation deviation;
+  GroupErrors errors;
   std::uint32_t source_triangles = 0;
   bool is_accepted = false;
 };
-
-/// Measures what a group became against the source, and says where its samples went.
-GroupDeviation measure(const SourceTree& source, const PreparedMesh& mesh, const BuildPool& pool,
-                       const std::vector<std::uint32_t>& clusters, const SimplifyResult& result, bool certified) {
-  std::vector<Vec3d> positions;
-  positions.reserve(result.positions.size());
-  for (const Vec3i& q : result.positions) positions.push_back(mesh.grid.decode(q));
-  std::vector<std::array<std::uint32_t, 3>> triangles;
-  triangles.reserve(result.triangles.size());
-  for (const WedgeTriangle& t : result.triangles) {
-    triangles.push_back({result.wedge_position[t[0]], result.wedge_position[t[1]], result.wedge_position[t[2]]});
-  }
-  std::vector<CarriedSample> samples;
-  DeviationTierOptions options;
-  options.certified = certified;
-  for (const std::uint32_t c : clusters) {
-    samples.insert(samples.end(), pool.clusters[c].samples.begin(), pool.clusters[c].samples.end());
-    const std::uint32_t own = pool.clusters[c].own_group;
-    if (own != 0xFFFFFFFFU) options.floor = std::max(options.floor, pool.groups[own].error);
-  }
-  return measure_group(source, {positions, triangles}, samples, options);
-}
 
 /// How many triangles a group should keep: half, as a whole number of full clusters, so that levels stay full.
 std::uint32_t target_triangles(std::uint32_t source, const ClusterCaps& caps) {
@@ -190,13 +167,8 @@ void add_terminal_groups(BuildPool& pool, const std::vector<std::uint32_t>& live
 Result<LodDag> build_dag(const PreparedMesh& mesh, const DagOptions& options) {
   BuildPool pool(mesh);
   if (mesh.triangles.empty()) return LodDag{};
-  std::optional<SourceTree> source;
-  std::vector<CarriedSample> samples;
-  if (options.error != ErrorSource::kQuadric) {
-    source.emplace(mesh.exact_positions, mesh.exact_triangles);
-    samples = initial_samples(*source);
-  }
-  pool.add_clusters(mesh.triangles, mesh.triangle_material, samples,
+  const GroupMeter meter(mesh, options.error);
+  pool.add_clusters(mesh.triangles, mesh.triangle_material, meter.level0(),
                     cluster_triangles(mesh.triangles, mesh.wedge_position, mesh.positions, options.caps), 0, 0xFFFFFFFFU);
   std::vector<std::uint32_t> live(pool.clusters.size());
   for (std::uint32_t c = 0; c < live.size(); ++c) live[c] = c;
@@ -226,11 +198,9 @@ Result<LodDag> build_dag(const PreparedMesh& mesh, const DagOptions& options) {
     parallel_for_each_index(groups.size(), 1, [&](std::size_t g) {
       std::vector<std::uint32_t> clusters;
       for (const std::uint32_t i : groups[g]) clusters.push_back(live[i]);
-      attempts[g] = simplify_and_cluster(group_input(pool, mesh, clusters, shared), options, effort);
-      if (attempts[g].is_accepted && source) {
-        attempts[g].deviation = measure(*source, mesh, pool, clusters, attempts[g].result,
-                                        options.error == ErrorSource::kCertified);
-      }
+      const SimplifyInput finer = group_input(pool, mesh, clusters, shared);
+      attempts[g] = simplify_and_cluster(finer, options, effort);
+      if (attempts[g].is_accepted) attempts[g].errors = meter.measure(pool, clusters, finer, attempts[g].result);
     });
 
     std::vector<std::uint32_t> next;
@@ -258,9 +228,11 @@ Result<LodDag> build_dag(const PreparedMesh& mesh, const DagOptions& options) {
         }
       }
       group.error = group.quadric_error;
-      if (source) {
-        group.deviation = attempt.deviation.deviation;
+      if (meter.is_measuring()) {
+        group.deviation = attempt.errors.deviation;
         group.error = group.deviation;
+        group.normal_deviation = attempt.errors.normal_deviation;
+        group.uv_deviation = attempt.errors.uv_deviation;
         for (const std::uint32_t c : group.clusters) {
           const std::uint32_t own = pool.clusters[c].own_group;
           if (own != 0xFFFFFFFFU) group.error = std::max(group.error, pool.groups[own].error);
@@ -271,7 +243,7 @@ Result<LodDag> build_dag(const PreparedMesh& mesh, const DagOptions& options) {
       const std::uint32_t level = group.level + 1;
       pool.groups.push_back(std::move(group));
       const auto first = static_cast<std::uint32_t>(pool.clusters.size());
-      pool.add_simplified(attempt.result, attempt.deviation.carried, attempt.clustering, level, group_id);
+      pool.add_simplified(attempt.result, attempt.errors.carried, attempt.clustering, level, group_id);
       for (std::uint32_t c = first; c < pool.clusters.size(); ++c) {
         next.push_back(c);
         next_reasons.push_back(StuckReason::kNotStuck);

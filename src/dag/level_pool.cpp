@@ -92,8 +92,7 @@ std::uint32_t BuildPool::wedge_id(std::uint32_t position, const float* attribute
 }
 
 void BuildPool::add_clusters(const std::vector<WedgeTriangle>& source, const std::vector<std::uint32_t>& materials,
-                             const std::vector<CarriedSample>& samples, const Clustering& clustering,
-                             std::uint32_t level, std::uint32_t own_group) {
+                             const CarriedTruth& carried, const Clustering& clustering, std::uint32_t level, std::uint32_t own_group) {
   const auto first_cluster = clusters.size();
   std::vector<std::uint32_t> start(clustering.count + 1, 0);
   for (const std::uint32_t label : clustering.label) ++start[label + 1];
@@ -102,20 +101,22 @@ void BuildPool::add_clusters(const std::vector<WedgeTriangle>& source, const std
   for (std::uint32_t c = 0; c < clustering.count; ++c) {
     clusters.push_back({level, own_group, base + start[c], start[c + 1] - start[c], {}});
   }
-  for (const CarriedSample& sample : samples) {
+  for (const CarriedSample& sample : carried.samples) {
     clusters[first_cluster + clustering.label[sample.triangle]].samples.push_back(sample);
   }
   triangles.resize(base + source.size());
   triangle_material.resize(base + source.size());
+  if (!carried.bounds.empty()) triangle_bounds.resize(base + source.size());
   for (std::size_t t = 0; t < source.size(); ++t) {
     const std::uint32_t slot = base + start[clustering.label[t]]++;
     triangles[slot] = source[t];
     triangle_material[slot] = materials[t];
+    if (!carried.bounds.empty()) triangle_bounds[slot] = carried.bounds[t];
   }
 }
 
-void BuildPool::add_simplified(const SimplifyResult& result, const std::vector<CarriedSample>& samples,
-                               const Clustering& clustering, std::uint32_t level, std::uint32_t own_group) {
+void BuildPool::add_simplified(const SimplifyResult& result, const CarriedTruth& carried, const Clustering& clustering,
+                               std::uint32_t level, std::uint32_t own_group) {
   std::vector<std::uint32_t> ids(result.positions.size());
   for (std::size_t p = 0; p < ids.size(); ++p) {
     ids[p] = position_id(result.positions[p]);
@@ -138,7 +139,7 @@ void BuildPool::add_simplified(const SimplifyResult& result, const std::vector<C
   for (WedgeTriangle& triangle : renumbered) {
     for (std::uint32_t& wedge : triangle) wedge = wedges[wedge];
   }
-  add_clusters(renumbered, result.triangle_material, samples, clustering, level, own_group);
+  add_clusters(renumbered, result.triangle_material, carried, clustering, level, own_group);
 }
 
 void BuildPool::positions_of(std::uint32_t cluster, std::vector<std::uint32_t>& out) const {

@@ -22,12 +22,20 @@ struct BuildCluster {
   std::vector<CarriedSample> samples;  ///< of the source, where deviations are measured
 };
 
+/// What a tier knows of triangles and hands on with them; empty where it needs none.
+struct CarriedTruth {
+  std::vector<CarriedSample> samples;  ///< each names its triangle
+  std::vector<TriangleBound> bounds;   ///< per triangle
+};
+
 /// A group that has been replaced by coarser clusters.
 struct BuildGroup {
   std::uint32_t level = 0;
   std::vector<std::uint32_t> clusters;
   double error = 0.0, quadric_error = 0.0;
   double deviation = std::numeric_limits<double>::infinity();
+  double normal_deviation = std::numeric_limits<double>::infinity();  ///< running maxima, +inf where not measured
+  double uv_deviation = std::numeric_limits<double>::infinity();
   bool is_terminal = false;
   StuckReason stuck_reason = StuckReason::kNotStuck;
 };
@@ -36,16 +44,16 @@ class BuildPool {
  public:
   explicit BuildPool(const PreparedMesh& mesh);
 
-  /// Adds the clusters of `triangles` (wedges of this pool), in the clustering's order. Samples name those triangles and
-  /// go with their clusters.
+  /// Adds the clusters of `triangles` (wedges of this pool), in the clustering's order. What is carried names those
+  /// triangles and goes with their clusters.
   void add_clusters(const std::vector<WedgeTriangle>& triangles, const std::vector<std::uint32_t>& materials,
-                    const std::vector<CarriedSample>& samples, const Clustering& clustering, std::uint32_t level,
+                    const CarriedTruth& carried, const Clustering& clustering, std::uint32_t level,
                     std::uint32_t own_group);
 
   /// Adds what a group became. Positions and wedges that are already known (locked ones, or a coincidence on the grid)
   /// keep their id, so that equal integers are equal ids at every level, and equal attributes with them.
-  void add_simplified(const SimplifyResult& result, const std::vector<CarriedSample>& samples,
-                      const Clustering& clustering, std::uint32_t level, std::uint32_t own_group);
+  void add_simplified(const SimplifyResult& result, const CarriedTruth& carried, const Clustering& clustering,
+                      std::uint32_t level, std::uint32_t own_group);
 
   /// The distinct position ids of a cluster, ascending.
   void positions_of(std::uint32_t cluster, std::vector<std::uint32_t>& out) const;
@@ -58,6 +66,7 @@ class BuildPool {
   std::vector<float> wedge_attributes;
   std::vector<WedgeTriangle> triangles;
   std::vector<std::uint32_t> triangle_material;
+  std::vector<TriangleBound> triangle_bounds;  ///< certified tier only
   std::vector<BuildCluster> clusters;
   std::vector<BuildGroup> groups;
 

@@ -131,7 +131,10 @@ class OneWay {
       has_one |= balance[i] < 0.0;
       has_other |= balance[i] > 0.0;
     }
-    if (!has_one || !has_other || piece.count + 2 > kMaxCorners) return split_longest(piece);
+    // Distances are not linear: where they balance more than twice along the outline, no line separates the two sides.
+    std::size_t crossings = 0;
+    for (std::size_t i = 0; i < piece.count; ++i) crossings += balance[i] * balance[(i + 1) % piece.count] < 0.0 ? 1 : 0;
+    if (!has_one || !has_other || crossings > 2 || piece.count + 2 > kMaxCorners) return split_longest(piece);
     Piece a, b;
     a.depth = b.depth = piece.depth + 1;
     for (std::size_t i = 0; i < piece.count; ++i) {

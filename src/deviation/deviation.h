@@ -51,6 +51,10 @@ struct DeviationTierOptions {
   bool certified = false;  ///< not of measure_group, which only estimates: certify_group is that tier
   double floor = 0.0;      ///< object units: the running maximum so far. What is below it need not be known exactly.
   std::uint32_t samples_per_triangle = 2;  ///< carried samples are thinned to so many per triangle, the farthest first
+  /// What the group replaces: its members' triangles. With `floor`, it says which points of the source the group stands
+  /// for: those that were within `floor` of it. Without it only the carried samples are looked at. The grid's own
+  /// deviation belongs into `floor`, then.
+  GroupSurface finer;
 };
 
 struct GroupDeviation {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -29,10 +30,27 @@ namespace meshlode {
                                        const std::vector<std::uint32_t>& places, double maximum,
                                        std::vector<CarriedSample>& high);
 
+/// Which points of the source a group stands for: those that were near enough to what it replaces, on the same side and
+/// not beyond its border.
+class OwnerTest {
+ public:
+  OwnerTest(const GroupSurface& finer, double reach) : finer_(finer), reach_(reach) {}
+  [[nodiscard]] bool is_known() const { return !finer_.triangles.empty(); }
+  /// `facing` is the direction of the source's surface there, of any length.
+  [[nodiscard]] bool is_ours(const Vec3d& point, const Vec3d& facing);
+
+ private:
+  GroupSurface finer_;
+  double reach_;
+  SurfaceTree tree_;  ///< over it and its edges, built when first asked
+  std::optional<GroupEdges> edges_;
+  std::uint32_t place_ = 0;
+};
+
 /// Source to group around the farthest samples and around `high`: the larger of `maximum` and what is found. Points
 /// that raised it are appended to the samples.
 [[nodiscard]] double search_source(const SourceTree::Impl& source, const GroupSurface& group,
-                                   const SurfaceTree& group_tree, const GroupEdges& edges, double maximum,
+                                   const SurfaceTree& group_tree, OwnerTest& owner, double maximum,
                                    std::span<const CarriedSample> high, std::vector<CarriedSample>& samples);
 
 }  // namespace meshlode

@@ -18,6 +18,8 @@ namespace {
 constexpr double kDismissShare = 0.5;
 // Points above this share of the maximum are told: the other direction may have its maximum beside them.
 constexpr double kNearMaximum = 0.9;
+// What was within the errors of the finer levels, which are estimates from below.
+constexpr double kReach = 1.3;
 /// Distances to the source, with the maximum so far.
 class SourceProbe {
  public:
@@ -106,7 +108,8 @@ GroupDeviation measure_group(const SourceTree& source, const GroupSurface& group
   for (const CarriedSample& sample : projected) places[sample.triangle] = sample.place;
   std::vector<CarriedSample> high;
   maximum = measure_to_source(source_tree, group, edges, places, maximum, high);
-  maximum = search_source(source.impl(), group, group_tree, edges, maximum, high, projected);
+  OwnerTest owner(options.finer, kReach * options.floor);
+  maximum = search_source(source.impl(), group, group_tree, owner, maximum, high, projected);
   result.carried = thin_samples(projected, group.triangles.size(), options.samples_per_triangle, maximum);
   result.deviation = maximum;
   return result;

@@ -3,8 +3,9 @@
 // from vertex to vertex. Only the neighbourhoods of a few samples are looked at, so that this costs little; and since
 // it is the source itself that is looked at, thinning costs no accuracy where the maximum is.
 //
-// The source does not say which of its points a group stands for. A point whose nearest place on the group is the
-// group's border may belong to the neighbour, and one that faces the other way to another sheet: both are left out.
+// The source does not say which of its points a group stands for. But the triangles that the group replaces are known,
+// and how far the source was from them: a point that was farther from them belongs to somebody else. So may one whose
+// nearest place on them is their border, and one that faces the other way lies on another sheet.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -63,9 +64,8 @@ class IdSet {
 
 class SourceSearch {
  public:
-  SourceSearch(const SourceTree::Impl& source, const GroupSurface& group, const SurfaceTree& group_tree,
-               const GroupEdges& edges, double maximum)
-      : source_(source), group_(group), tree_(group_tree), edges_(edges) {
+  SourceSearch(const SourceTree::Impl& source, const SurfaceTree& group_tree, OwnerTest& owner_test, double maximum)
+      : source_(source), tree_(group_tree), owner_test_(owner_test) {
     raise(maximum);
   }
 
@@ -116,7 +116,8 @@ class SourceSearch {
     const Probe dismissed{kDismissShare * maximum_, hit.slot == SurfaceTree::kNone ? place : hit.slot};
     is_ours_ = true;
     if (hit.distance2 <= enough_) return dismissed;
-    is_ours_ = is_nearest_ours(point, owner, dismissed.place);
+    const TriangleCorners facing = source_.corners(owner);
+    is_ours_ = owner_test_.is_ours(point, glm::cross(facing[1] - facing[0], facing[2] - facing[0]));
     if (!is_ours_) return dismissed;
     const double distance = std::sqrt(tree_.distance2_at(point, dismissed.place));
     if (distance > maximum_) {
@@ -143,20 +144,6 @@ class SourceSearch {
     enough_ = static_cast<float>(enough * enough);
   }
 
-  [[nodiscard]] bool is_nearest_ours(const Vec3d& point, std::uint32_t owner, std::uint32_t place) const {
-    const std::uint32_t triangle = tree_.triangle_at(place);
-    const TriangleCorners corners = tree_.corners_at(place);
-    const NearestFeature feature = nearest_feature(point, corners);
-    if (feature.kind == NearestFeature::Kind::kEdge && edges_.is_border(triangle, feature.index)) return false;
-    if (feature.kind == NearestFeature::Kind::kCorner &&
-        edges_.is_border_position[group_.triangles[triangle][feature.index]] != 0) {
-      return false;
-    }
-    const TriangleCorners facing = source_.corners(owner);
-    return glm::dot(glm::cross(corners[1] - corners[0], corners[2] - corners[0]),
-                    glm::cross(facing[1] - facing[0], facing[2] - facing[0])) >= 0.0;
-  }
-
   void look_inside(std::uint32_t triangle, double radius, std::uint32_t place) {
     Patch patch;
     patch.corner = source_.corners(triangle);
@@ -176,9 +163,8 @@ class SourceSearch {
   }
 
   const SourceTree::Impl& source_;
-  const GroupSurface& group_;
   const SurfaceTree& tree_;
-  const GroupEdges& edges_;
+  OwnerTest& owner_test_;
   double maximum_ = 0.0;
   float enough_ = 0.0F;     ///< squared, in the group tree's frame
   bool is_ours_ = true;     ///< the last point measured: the search may go on from there
@@ -216,11 +202,33 @@ double triangle_spacing(const GroupSurface& group) {
 
 }  // namespace
 
+bool OwnerTest::is_ours(const Vec3d& point, const Vec3d& facing) {
+  if (tree_.size() == 0) {
+    tree_.build({finer_.positions, finer_.triangles});
+    edges_.emplace(finer_);
+  }
+  const Vec3f at = tree_.to_frame(point);
+  const SurfaceTree::Hit hit = tree_.find_nearest(at, tree_.look_around(at, place_, {}), 0.0F);
+  if (hit.slot == SurfaceTree::kNone) return false;
+  place_ = hit.slot;
+  const TriangleCorners corners = tree_.corners_at(place_);
+  if (!(std::sqrt(point_triangle_distance2(point, corners)) <= reach_)) return false;
+  const std::uint32_t triangle = tree_.triangle_at(place_);
+  const NearestFeature feature = nearest_feature(point, corners);
+  if (feature.kind == NearestFeature::Kind::kEdge && edges_->is_border(triangle, feature.index)) return false;
+  if (feature.kind == NearestFeature::Kind::kCorner &&
+      edges_->is_border_position[finer_.triangles[triangle][feature.index]] != 0) {
+    return false;
+  }
+  return glm::dot(glm::cross(corners[1] - corners[0], corners[2] - corners[0]), facing) >= 0.0;
+}
+
 double search_source(const SourceTree::Impl& source, const GroupSurface& group, const SurfaceTree& group_tree,
-                     const GroupEdges& edges, double maximum, std::span<const CarriedSample> high,
+                     OwnerTest& owner, double maximum, std::span<const CarriedSample> high,
                      std::vector<CarriedSample>& samples) {
+  if (!owner.is_known()) return maximum;
   const double radius = triangle_spacing(group);
-  SourceSearch search(source, group, group_tree, edges, maximum);
+  SourceSearch search(source, group_tree, owner, maximum);
   std::vector<CarriedSample> found;
   for (const CarriedSample& seed : choose_seeds(samples, kSeedShare * maximum)) {
     search.search_around(seed, radius, found);

@@ -31,8 +31,8 @@ struct DagGroup {
   double error = 0.0;               ///< selection error, object units; +inf if terminal
   double quadric_error = 0.0;       ///< the quadric's own estimate, object units; +inf if terminal
   double deviation = 0.0;           ///< +inf where not measured
-  /// Shading normals and UVs against the source's, largest, degrees and UV units. Running maxima along the DAG; +inf if
-  /// terminal, and where not measured: then for all groups of the mesh.
+  /// Shading normals (root mean square angle, degrees) and UVs (95% of the surface is within it, UV units) against the
+  /// source's. Running maxima along the DAG; +inf if terminal, and where not measured: then for all groups of the mesh.
   double normal_deviation = std::numeric_limits<double>::infinity();
   double uv_deviation = std::numeric_limits<double>::infinity();
   bool is_terminal = false;

@@ -161,9 +161,6 @@ Result<BuiltMesh> build_mesh(const Scene& scene, std::size_t index, const Pipeli
 
 Result<std::vector<std::uint8_t>> build_lode(const Scene& scene, const PipelineOptions& options,
                                              const ProgressCallback& progress, PipelineReport& report) {
-  if (options.error_tier == format::ErrorTier::kCertified) {
-    return Error{ErrorCode::kUnsupported, "", "the error tier 'certified' cannot be built yet"};
-  }
   if (options.max_cluster_triangles == 0 || options.max_cluster_triangles > format::kMaxClusterTriangles ||
       options.max_cluster_vertices < 3 || options.max_cluster_vertices > format::kMaxClusterVertices) {
     return Error{ErrorCode::kUsage, "", "a cluster holds 1 to 256 triangles and 3 to 256 vertices"};

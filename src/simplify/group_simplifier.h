@@ -81,6 +81,7 @@ class GroupSimplifier {
   [[nodiscard]] Obstacle try_collapse(const Candidate& candidate);
   void collect_new_star(std::uint32_t a, std::uint32_t b, bool drops_sheets);
   [[nodiscard]] double collect_vanishing(std::uint32_t a, std::uint32_t b, const Vec3d& target);
+  [[nodiscard]] double distance2_to_rest(std::uint32_t a, std::uint32_t b) const;
   [[nodiscard]] double weigh_witnesses(std::uint32_t a, std::uint32_t b, const Vec3d& target);
   [[nodiscard]] bool keeps_shared_corners(std::uint32_t locked, const std::vector<std::uint32_t>& around) const;
   [[nodiscard]] bool keeps_topology(std::uint32_t a, std::uint32_t b);

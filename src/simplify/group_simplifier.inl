@@ -566,6 +566,24 @@ double GroupSimplifier<C>::collect_vanishing(std::uint32_t a, std::uint32_t b, c
   return lost2;
 }
 
+/// The largest squared distance from what is left behind to the group's triangles away from both vertices.
+template <std::size_t C>
+double GroupSimplifier<C>::distance2_to_rest(std::uint32_t a, std::uint32_t b) const {
+  double largest = 0.0;
+  for (const auto& [unused, point] : left_behind_) {
+    const Vec3d p = to_frame(point);
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::uint32_t t = 0; t < mesh_.triangle_count(); ++t) {
+      if (!mesh_.is_alive(t)) continue;
+      const std::array<std::uint32_t, 3> v{mesh_.vertex(3 * t), mesh_.vertex(3 * t + 1), mesh_.vertex(3 * t + 2)};
+      if (std::any_of(v.begin(), v.end(), [&](std::uint32_t x) { return x == a || x == b; })) continue;
+      nearest = std::min(nearest, distance2_to_triangle(p, position_[v[0]], position_[v[1]], position_[v[2]]));
+    }
+    largest = std::max(largest, nearest);
+  }
+  return largest;
+}
+
 /// The largest squared distance from the witnesses of both vertices to the new star; left_behind_ holds all of them.
 template <std::size_t C>
 double GroupSimplifier<C>::weigh_witnesses(std::uint32_t a, std::uint32_t b, const Vec3d& target) {
@@ -586,11 +604,12 @@ double GroupSimplifier<C>::weigh_witnesses(std::uint32_t a, std::uint32_t b, con
   weigh(a);
   weigh(b);
   for (const std::uint32_t v : vanishing_) weigh(v);
-  if (star_.empty()) {  // the piece vanishes: its size is what is lost
-    const Box both{glm::min(merged_[a].low, merged_[b].low), glm::max(merged_[a].high, merged_[b].high)};
-    largest = both.diagonal() * both.diagonal();
-  }
-  return largest;
+  if (!star_.empty()) return largest;
+  // The piece vanishes. Of foliage its size is what is lost: its neighbours grow instead. Else what it leaves is as far
+  // off as the nearest of what stays.
+  const Box both{glm::min(merged_[a].low, merged_[b].low), glm::max(merged_[a].high, merged_[b].high)};
+  if (options_.keep_area) return both.diagonal() * both.diagonal();
+  return std::min(distance2_to_rest(a, b), 1e30);
 }
 
 template <std::size_t C>

@@ -33,9 +33,9 @@ inline GroupSurface as_group(const Surface& surface) {
 }
 
 /// `coarse` as the one group of level 1 over all of `fine`.
-inline GroupDeviation measure_one_step(const Surface& fine, const Surface& coarse,
-                                       const DeviationTierOptions& options = {}) {
+inline GroupDeviation measure_one_step(const Surface& fine, const Surface& coarse, DeviationTierOptions options = {}) {
   const SourceTree source(fine.positions, fine.triangles);
+  options.finer = as_group(fine);
   return measure_group(source, as_group(coarse), initial_samples(source), options);
 }
 

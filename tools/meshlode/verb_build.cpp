@@ -258,8 +258,9 @@ Result<PipelineOptions> make_options(const BuildWords& words) {
     return Error{ErrorCode::kUnsupported, std::string(option) + " " + value, "unsupported yet"};
   };
   PipelineOptions options;
-  if (words.error_tier == "certified") return later("--error-tier", words.error_tier);
-  options.error_tier = words.error_tier == "measured" ? format::ErrorTier::kMeasured : format::ErrorTier::kQem;
+  options.error_tier = words.error_tier == "qem"        ? format::ErrorTier::kQem
+                       : words.error_tier == "measured" ? format::ErrorTier::kMeasured
+                                                        : format::ErrorTier::kCertified;
   if (words.preset != "default") return later("--preset", words.preset);
   if (words.codec == "draco") return later("--codec", words.codec);
   options.codec = words.codec == "zstd"  ? format::Codec::kZstd
@@ -289,7 +290,7 @@ int run_build(const Verb& verb, std::span<char* const> args) {
   parser.add_positionals("input", inputs, ".gltf, .glb, .ply, .obj or .stl files, and folders of them with -O");
   parser.add_value("-o,--output", output, "the asset to write; the input's name with .lode where not given");
   parser.add_value("-O,--output-folder", output_folder, "folder for the assets of many inputs; made where missing");
-  parser.add_value("--error-tier", words.error_tier, "what the errors are worth: qem estimates, measured measures (certified: later)",
+  parser.add_value("--error-tier", words.error_tier, "what the errors are worth: qem estimates, measured measures, certified proves",
                    {"qem", "measured", "certified"});
   parser.add_value("--preset", words.preset, "default (fast, best: later)", {"fast", "default", "best"});
   parser.add_value("--attributes", words.attributes, "auto keeps what the materials call for, none positions only",
