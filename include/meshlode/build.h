@@ -93,7 +93,7 @@ struct BuildProgress {
 };
 
 struct BuildOptions {
-  format::ErrorTier error_tier = format::ErrorTier::kQem;
+  format::ErrorTier error_tier = format::ErrorTier::kMeasured;
   format::Codec codec = format::Codec::kNone;  ///< of the pages on disk
   double grid_step = 0.0;                      ///< distance of grid points, mesh units; 0: chosen from the mesh's size
   bool strip_attributes = false;               ///< positions only

@@ -28,8 +28,12 @@ struct Attempt {
   bool is_accepted = false;
 };
 
-/// How many triangles a group should keep: half, as a whole number of full clusters, so that levels stay full.
-std::uint32_t target_triangles(std::uint32_t source, const ClusterCaps& caps) {
+/// How many triangles a group should keep: half, as a whole number of full clusters, so that levels stay full. Where the
+/// mesh has come to be one group, two thirds: then a level is one step of every cut, and small meshes have few.
+std::uint32_t target_triangles(std::uint32_t source, bool is_whole, const ClusterCaps& caps) {
+  constexpr std::uint32_t kFewest = 7, kMost = 12;  // clusters; below and above, a level more would gain little
+  const std::uint32_t before = (source + caps.target_triangles / 2) / caps.target_triangles;
+  if (is_whole && before >= kFewest && before <= kMost) return (2 * before + 1) / 3 * caps.target_triangles;
   const std::uint32_t clusters = std::max(1U, (source + caps.target_triangles) / (2 * caps.target_triangles));
   const std::uint32_t target = clusters * caps.target_triangles;
   // One cluster at the end of it all may be small; but never ask for more than half.
@@ -131,11 +135,11 @@ Shared find_shared(const BuildPool& pool, const std::vector<std::uint32_t>& live
   return shared;
 }
 
-Attempt simplify_and_cluster(const SimplifyInput& input, const DagOptions& options, const Effort& effort) {
+Attempt simplify_and_cluster(const SimplifyInput& input, bool is_whole, const DagOptions& options, const Effort& effort) {
   Attempt attempt;
   attempt.source_triangles = static_cast<std::uint32_t>(input.triangles.size());
   SimplifyOptions simplify = options.simplify;
-  simplify.target_triangles = target_triangles(attempt.source_triangles, options.caps);
+  simplify.target_triangles = target_triangles(attempt.source_triangles, is_whole, options.caps);
   simplify.may_relax_flips = effort.may_relax_flips;
   attempt.result = simplify_group(input, simplify);
   const auto kept = static_cast<double>(attempt.result.triangles.size());
@@ -199,7 +203,7 @@ Result<LodDag> build_dag(const PreparedMesh& mesh, const DagOptions& options) {
       std::vector<std::uint32_t> clusters;
       for (const std::uint32_t i : groups[g]) clusters.push_back(live[i]);
       const SimplifyInput finer = group_input(pool, mesh, clusters, shared);
-      attempts[g] = simplify_and_cluster(finer, options, effort);
+      attempts[g] = simplify_and_cluster(finer, groups.size() == 1, options, effort);
       if (attempts[g].is_accepted) attempts[g].errors = meter.measure(pool, clusters, finer, attempts[g].result);
     });
 

@@ -17,7 +17,7 @@ namespace meshlode {
 
 
 struct PipelineOptions {
-  format::ErrorTier error_tier = format::ErrorTier::kQem;
+  format::ErrorTier error_tier = format::ErrorTier::kMeasured;
   AttributeChoice attributes = AttributeChoice::kAuto;
   double grid_step = 0.0;  ///< 0: chosen from the budget; else this step in mesh units
   format::Codec codec = format::Codec::kNone;

@@ -35,14 +35,14 @@ class GroupSimplifier {
   static constexpr std::uint32_t kSeveralWedges = 0xFFFFFFFFU;
   /// Weight of the pull towards the collapsed edge: places vertices sensibly where the surface is flat, and lets short
   /// edges go first there. A share of the squared edge length, far below any deviation that matters.
-  static constexpr double kRegularization = 1e-5;
+  static constexpr double kRegularization = 1e-6;
   /// How far from the edge's middle a new vertex may lie, in edge lengths.
   static constexpr double kMaxOffset = 1.5;
   static constexpr double kFlipCosine = 0.2;  ///< a triangle may turn by less than 78 degrees in one collapse
   static constexpr int kMaxPasses = 8;
   static constexpr double kMaxGrowth = 2.0;   ///< of a piece's size in one level
   /// A collapse costs at least this share of what its largest displacement would cost as a mean distance.
-  static constexpr double kGuardShare = 0.5;
+  static constexpr double kGuardShare = 0.7;
   /// What breaking the link condition costs, as a factor: small holes and handles close when everything else has become
   /// about ten times as far off.
   static constexpr double kTopologyPrice = 10.0;

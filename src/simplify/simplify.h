@@ -22,7 +22,7 @@ struct SimplifyOptions {
   std::uint32_t target_triangles = 0;  ///< stop at or below this
   /// Weights of attribute errors against distance. A normal that is off by δ (length of the difference) counts like a
   /// distance of normal_weight · δ · √(mean triangle area).
-  double normal_weight = 0.7;
+  double normal_weight = 2.0;
   double uv_weight = 0.7;      ///< UV errors as distances on the surface (by the group's mean texel density)
   double color_weight = 0.7;   ///< as normals
   double border_weight = 8.0;  ///< of source borders and material borders, against area-weighted planes

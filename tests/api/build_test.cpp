@@ -155,11 +155,19 @@ TEST(ApiBuild, OptionsThatMakeNoSenseAreUsageErrors) {
   options = {};
   options.strip_attributes = options.keep_all_attributes = true;
   expect_refused(build_one(arrays.primitive(), options), ErrorCode::kUsage, "strip_attributes");
-  options = {};
-  options.error_tier = format::ErrorTier::kCertified;
-  const auto refused = build_one(arrays.primitive(), options);
-  ASSERT_FALSE(refused.ok());
-  EXPECT_EQ(refused.error().code, ErrorCode::kUnsupported);
+}
+
+TEST(ApiBuild, EveryErrorTierIsStored) {
+  const Arrays arrays = sphere(16);
+  for (const auto tier : {format::ErrorTier::kQem, format::ErrorTier::kMeasured, format::ErrorTier::kCertified}) {
+    BuildOptions options;
+    options.error_tier = tier;
+    const auto built = build_one(arrays.primitive(), options);
+    ASSERT_TRUE(built.ok()) << built.error().message();
+    const auto file = AssetFile::view(*built);
+    ASSERT_TRUE(file.ok()) << file.error().message();
+    EXPECT_EQ(file->meshes()[0].error_tier, tier);
+  }
 }
 
 TEST(ApiBuild, AnEmptySceneAndAnEmptyMeshAreNoErrors) {

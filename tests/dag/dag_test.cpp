@@ -153,7 +153,8 @@ TEST(Dag, SmoothShapesEndInOneRoot) {
     const Built built = build(shape);
     expect_sound(built);
     EXPECT_EQ(count_roots(built.dag), 1U);
-    EXPECT_LE(built.dag.triangles.size(), built.mesh.triangles.size() * 202 / 100);
+    // Halving gives twice the source; the last dozen clusters go by thirds, which costs so many clusters more.
+    EXPECT_LE(built.dag.triangles.size(), built.mesh.triangles.size() * 202 / 100 + 8 * std::size_t{126});
   }
 }
 

@@ -246,7 +246,7 @@ std::string report_json(const std::vector<JobResult>& results, std::uint32_t job
 
 /// The words of the command line, before they mean anything.
 struct BuildWords {
-  std::string error_tier = "qem";
+  std::string error_tier = "measured";
   std::string preset = "default";
   std::string attributes = "auto";
   std::string grid = "auto";
