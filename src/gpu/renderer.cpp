@@ -69,6 +69,7 @@ Status Renderer::make_buffers() {
   f.width = options_.width;
   f.height = options_.height;
   f.instance_count = scene_.instance_count;
+  f.hardware_pixels = options_.hardware_pixels;
   f.slot_capacity = round_up(scene_.instance_count, limit);
   f.group_capacity = round_up(scene_.group_instances, limit);
   f.queue_capacity = round_up(2 * (scene_.group_instances + scene_.instance_count), limit);  // nodes of one depth
@@ -138,20 +139,34 @@ Status Renderer::make_buffers() {
 
 Status Renderer::make_pipelines() {
   const std::uint32_t frustum = options_.frustum ? 1 : 0, occlusion = options_.occlusion ? 1 : 0;
-  const std::array<std::uint32_t, 4> constants = {options_.double_sided ? 1u : 0u, frustum, occlusion, 0u};
+  const std::array<std::uint32_t, 4> constants = {options_.double_sided ? 1u : 0u, frustum, occlusion,
+                                                  options_.hardware != HardwarePath::kNone ? 1u : 0u};
   struct Wanted {
     Pipeline* slot;
     std::span<const std::uint32_t> spirv;
   };
-  const Wanted wanted[] = {{&instances_, shaders::instances()},     {&traverse_, shaders::traverse()},
-                           {&clusters_, shaders::clusters()},       {&raster_, shaders::raster()},
-                           {&raster_clip_, shaders::raster_clip()}, {&pyramid_build_, shaders::pyramid()},
+  const Wanted wanted[] = {{&instances_, shaders::instances()},
+                           {&traverse_, shaders::traverse()},
+                           {&flat_, shaders::flat()},
+                           {&clusters_, shaders::clusters()},
+                           {&raster_, shaders::raster()},
+                           {&raster_clip_, shaders::raster_clip()},
+                           {&pyramid_build_, shaders::pyramid()},
                            {&pyramid_top_, shaders::pyramid_top()}};
   for (const Wanted& w : wanted) {
     auto pipeline = device_.make_compute(w.spirv, constants);
     if (!pipeline) return pipeline.error();
     *w.slot = *pipeline;
   }
+  if (options_.hardware == HardwarePath::kNone) return Ok{};
+  const bool is_mesh = options_.hardware == HardwarePath::kMesh;
+  if (is_mesh && !device_.info().has_mesh_shaders) {
+    return Error{ErrorCode::kUnsupported, device_.info().name, "no mesh shaders"};
+  }
+  auto draw = device_.make_draw(is_mesh ? shaders::hardware_mesh() : shaders::hardware_vert(),
+                                is_mesh ? shaders::hardware_mesh_frag() : shaders::hardware_frag(), constants, is_mesh);
+  if (!draw) return draw.error();
+  hardware_ = *draw;
   return Ok{};
 }
 
@@ -177,7 +192,11 @@ void Renderer::record_selection(Commands& list, std::uint32_t pass) {
   }
   list.barrier();
   list.stamp(std::string("instances") + suffix);
-  for (push.depth = 0; push.depth < scene_.bvh_depth; ++push.depth) {
+  if (options_.flat_selection) {
+    list.dispatch_indirect(flat_, bytes_of(push), counters_block_, arguments_of(STAGE_SLOTS));
+    list.barrier();
+  }
+  for (push.depth = 0; push.depth < scene_.bvh_depth && !options_.flat_selection; ++push.depth) {
     list.dispatch_indirect(traverse_, bytes_of(push), counters_block_,
                            arguments_of(STAGE_QUEUE + MAX_DEPTH * pass + push.depth));
     list.barrier();
@@ -194,6 +213,16 @@ void Renderer::record_raster(Commands& list, std::uint32_t pass) {
   list.barrier();
   list.stamp(pass == 0 ? "software" : "software 2");
   list.dispatch_indirect(raster_clip_, bytes_of(push), counters_block_, arguments_of(STAGE_CLIPPED + pass));
+  if (options_.hardware != HardwarePath::kNone) {
+    list.stamp(pass == 0 ? "clipped" : "clipped 2");
+    const bool is_mesh = options_.hardware == HardwarePath::kMesh;
+    const std::uint64_t arguments =
+        is_mesh ? arguments_of(STAGE_HARDWARE + pass) : arguments_of(STAGE_DRAW + pass) - offsetof(GpuStage, x);
+    list.draw_indirect(hardware_, bytes_of(push), counters_block_, arguments, frame_.width, frame_.height);
+    list.barrier();
+    list.stamp(pass == 0 ? "hardware" : "hardware 2");
+    return;
+  }
   list.barrier();
   list.stamp(pass == 0 ? "clipped" : "clipped 2");
 }
@@ -256,6 +285,7 @@ Result<FrameReport> Renderer::draw(const Camera& camera, double pixel_error, dou
   out.items = counters->stages[STAGE_SOFTWARE].count + counters->stages[STAGE_HARDWARE].count;
   if (options_.occlusion)
     out.second_pass_items = out.items - counters->software_before[1] - counters->hardware_before[1];
+  out.hardware_items = counters->stages[STAGE_HARDWARE].count;
   out.clipped_items = counters->stages[STAGE_CLIPPED].count + counters->stages[STAGE_CLIPPED + 1].count;
   for (std::uint32_t i = STAGE_QUEUE; i < STAGE_COUNT; ++i) out.traversed_nodes += counters->stages[i].count;
   out.not_finite = counters->not_finite;

@@ -18,11 +18,21 @@
 
 namespace meshlode::gpu {
 
+/// How clusters that are wide on the screen, or cross the near plane, are drawn.
+enum class HardwarePath : std::uint8_t {
+  kNone,    ///< in software as all others: the only way that is bit for bit the CPU's
+  kVertex,  ///< vertex pulling, on any device
+  kMesh,    ///< mesh shaders, where the device has them
+};
+
 struct RendererOptions {
   std::uint32_t width = 0, height = 0;
   bool frustum = true;
   bool occlusion = false;
-  bool double_sided = false;           ///< some material is; where none is, nobody looks
+  bool double_sided = false;    ///< some material is; where none is, nobody looks
+  bool flat_selection = false;  ///< every group of every instance instead of the BVH; not with occlusion
+  HardwarePath hardware = HardwarePath::kNone;
+  float hardware_pixels = 256.0F;      ///< a cluster wider than this on the screen is the hardware's; 0: all are
   std::uint32_t max_items = 1u << 22;  ///< of each list, at most; lists are no longer than the scene can fill
 };
 
@@ -32,6 +42,7 @@ struct FrameReport {
   std::uint32_t open_groups = 0;
   std::uint32_t items = 0;  ///< clusters drawn, both passes
   std::uint32_t second_pass_items = 0;
+  std::uint32_t hardware_items = 0;
   std::uint32_t clipped_items = 0;
   std::uint32_t traversed_nodes = 0;
   std::uint32_t not_finite = 0;
@@ -87,7 +98,7 @@ class Renderer {
   Buffer frame_block_, counters_block_, upload_;
   Buffer visible_, queue_, open_groups_, items_, retry_nodes_, retry_clusters_, retry_instances_, clipped_, pixels_,
       pyramid_;
-  Pipeline instances_, traverse_, clusters_, raster_, raster_clip_, pyramid_build_, pyramid_top_;
+  Pipeline instances_, traverse_, flat_, hardware_, clusters_, raster_, raster_clip_, pyramid_build_, pyramid_top_;
   std::vector<Commands> lists_;  ///< 0: the frame, 1: drawing in order
   bool has_last_ = false;
 };

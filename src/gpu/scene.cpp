@@ -45,6 +45,7 @@ std::vector<GpuMesh> mesh_table(const Asset& asset) {
     m.normal_scale = mesh.normal_bits;
     m.uv_set_count = mesh.uv_set_count;
     m.has_color = mesh.has_color;
+    m.group_count = mesh.group_count;
     out.push_back(m);
   }
   return out;

@@ -29,6 +29,21 @@ constexpr std::uint32_t kPyramidTop[] = {
 constexpr std::uint32_t kDecode[] = {
 #include "decode.comp.inc"
 };
+constexpr std::uint32_t kFlat[] = {
+#include "flat.comp.inc"
+};
+constexpr std::uint32_t kHardwareVert[] = {
+#include "hardware.vert.inc"
+};
+constexpr std::uint32_t kHardwareMesh[] = {
+#include "hardware.mesh.inc"
+};
+constexpr std::uint32_t kHardwareFrag[] = {
+#include "hardware.frag.inc"
+};
+constexpr std::uint32_t kHardwareMeshFrag[] = {
+#include "hardware_mesh.frag.inc"
+};
 
 }  // namespace
 
@@ -55,6 +70,21 @@ std::span<const std::uint32_t> pyramid_top() {
 }
 std::span<const std::uint32_t> decode() {
   return kDecode;
+}
+std::span<const std::uint32_t> flat() {
+  return kFlat;
+}
+std::span<const std::uint32_t> hardware_vert() {
+  return kHardwareVert;
+}
+std::span<const std::uint32_t> hardware_mesh() {
+  return kHardwareMesh;
+}
+std::span<const std::uint32_t> hardware_frag() {
+  return kHardwareFrag;
+}
+std::span<const std::uint32_t> hardware_mesh_frag() {
+  return kHardwareMeshFrag;
 }
 
 }  // namespace meshlode::gpu::shaders

@@ -15,5 +15,10 @@ namespace meshlode::gpu::shaders {
 [[nodiscard]] std::span<const std::uint32_t> pyramid();
 [[nodiscard]] std::span<const std::uint32_t> pyramid_top();
 [[nodiscard]] std::span<const std::uint32_t> decode();
+[[nodiscard]] std::span<const std::uint32_t> flat();
+[[nodiscard]] std::span<const std::uint32_t> hardware_vert();
+[[nodiscard]] std::span<const std::uint32_t> hardware_mesh();
+[[nodiscard]] std::span<const std::uint32_t> hardware_frag();
+[[nodiscard]] std::span<const std::uint32_t> hardware_mesh_frag();  ///< behind a mesh shader
 
 }  // namespace meshlode::gpu::shaders

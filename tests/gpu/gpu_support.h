@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "gpu/cameras.h"
 #include "gpu/vulkan.h"
 #include "read/asset.h"
 #include "select/select.h"
@@ -26,20 +27,6 @@ class GpuTest : public testing::Test {
   void TearDown() override;
   std::optional<Device> device_;
 };
-
-/// The box of everything that can be drawn, world units.
-struct Box {
-  Vec3d low{0.0}, high{0.0};
-};
-[[nodiscard]] Box world_box(const Asset& asset);
-
-struct NamedCamera {
-  std::string name;
-  Camera camera;
-};
-/// Around, inside, on the near plane, far away, through a keyhole, wide, orthographic.
-[[nodiscard]] std::vector<NamedCamera> adversarial_cameras(const Asset& asset, std::uint32_t width,
-                                                           std::uint32_t height);
 
 /// Bytes of the asset built from a scene file; empty where that failed (the test is failed too).
 [[nodiscard]] std::vector<std::uint8_t> build_file(const std::string& path);

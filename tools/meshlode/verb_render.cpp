@@ -8,6 +8,8 @@
 #include "base/file.h"
 #include "bounds_options.h"
 #include "camera_options.h"
+#include "gpu/frame.h"
+#include "gpu/plan.h"
 #include "options.h"
 #include "raster/raster.h"
 #include "report/json_writer.h"
@@ -23,6 +25,8 @@ struct RenderOptions {
   BoundsOptions bounds;
   std::optional<double> error;
   bool is_relative = false;
+  bool gpu = false, explain = false;
+  std::string device, force;
   std::uint32_t jobs = 0;
   OutputOptions report;
 };
@@ -138,6 +142,49 @@ std::string stats_text(const RenderOptions& options, const Camera& camera, const
   return options.output + line;
 }
 
+struct Drawn {
+  std::vector<ClusterInstance> cut;
+  VisibilityBuffer visibility;
+};
+
+/// Selected and drawn by the device; colours are the CPU's, from the same kind of buffer.
+Result<Drawn> draw_on_gpu(const Asset& asset, const Camera& camera, const RenderOptions& options) {
+  auto device = gpu::Device::open({.device = options.device, .validate = false});
+  if (!device) return device.error();
+  auto scene = gpu::upload_scene(*device, asset);
+  if (!scene) return scene.error();
+  const std::vector<std::string> force = options.force.empty() ? std::vector<std::string>{}
+                                                               : std::vector<std::string>{options.force};
+  const auto plan = gpu::plan_passes(*scene, device->info(), camera.width, camera.height, force);
+  if (!plan) return plan.error();
+  if (options.explain) std::fprintf(stderr, "%s", gpu::describe_plan(*plan).c_str());
+  auto renderer = gpu::Renderer::make(*device, *scene, plan->options);
+  if (!renderer) return renderer.error();
+  const auto depth = gpu::depth_of_scene(asset, camera);
+  if (!depth) return depth.error();
+  const auto frame = renderer->draw(camera, options.camera.pixel_error, *depth);
+  if (!frame) return frame.error();
+  if (frame->overflow != 0) {
+    return Error{ErrorCode::kUnsupported, device->info().name,
+                 "the picture is not complete: overflow of " + gpu::describe_overflow(frame->overflow)};
+  }
+  auto cut = renderer->read_cut();
+  if (!cut) return cut.error();
+  if (const Status s = renderer->redraw_in_order(); !s) return s.error();
+  auto visibility = renderer->read_pixels();
+  if (!visibility) return visibility.error();
+  return Drawn{std::move(*cut), std::move(*visibility)};
+}
+
+Result<Drawn> draw_on_cpu(const Asset& asset, const Camera& camera, const RenderOptions& options,
+                          const AttributeBounds& bounds) {
+  std::vector<ClusterInstance> cut = options.error ? uniform_cut(asset, *options.error, options.is_relative, bounds)
+                                                   : select_bvh(asset, camera, options.camera.pixel_error, bounds);
+  auto visibility = draw_cut(asset, cut, camera);
+  if (!visibility) return visibility.error();
+  return Drawn{std::move(cut), std::move(*visibility)};
+}
+
 int run_render(const Verb& verb, std::span<char* const> args) {
   RenderOptions options;
   OptionParser parser(verb);
@@ -150,6 +197,11 @@ int run_render(const Verb& verb, std::span<char* const> args) {
                    "draw the uniform cut at this error in mesh units instead of --pixel-error");
   parser.add_flag("--relative", options.is_relative, "--error is a fraction of each mesh's own diagonal");
   add_bounds_options(parser, options.bounds);
+  parser.add_flag("--gpu", options.gpu, "select and draw on a Vulkan device");
+  parser.add_value("--device", options.device, "of --gpu: an index or a part of the name (the first that can)");
+  parser.add_flag("--explain", options.explain, "of --gpu: say which passes run, and why");
+  parser.add_value("--force", options.force, "of --gpu: a pass that the scene does not call for",
+                   {"double-sided", "occlusion", "hardware", "all"});
   add_jobs_option(parser, options.jobs);
   add_output_options(parser, options.report);
   if (const auto exit_code = parser.parse(args)) return *exit_code;
@@ -158,6 +210,10 @@ int run_render(const Verb& verb, std::span<char* const> args) {
     return print_error({ErrorCode::kUsage, "--error", "give an error of 0 or more"});
   }
   if (options.is_relative && !options.error) return print_error({ErrorCode::kUsage, "--relative", "needs --error"});
+
+  if (options.gpu && (options.error || options.bounds.has_any())) {
+    return print_error({ErrorCode::kUnsupported, "--gpu", "selects by --pixel-error alone"});
+  }
 
   const JobLimit limit(options.jobs);
   const Result<Asset> asset = Asset::open(options.input);
@@ -168,23 +224,23 @@ int run_render(const Verb& verb, std::span<char* const> args) {
   const Result<AttributeBounds> bounds = make_bounds(options.bounds, *asset);
   if (!bounds) return print_error(bounds.error());
 
-  const std::vector<ClusterInstance> cut = options.error
-                                               ? uniform_cut(*asset, *options.error, options.is_relative, *bounds)
-                                               : select_bvh(*asset, *camera, options.camera.pixel_error, *bounds);
   const auto fail = [&](Error error) {
     if (error.code == ErrorCode::kInvalid)
       error.where = options.input + (error.where.empty() ? "" : ": ") + error.where;
     return print_error(error);
   };
-  const Result<VisibilityBuffer> visibility = draw_cut(*asset, cut, *camera);
-  if (!visibility) return fail(visibility.error());
-  const Result<Image> image = shade_view(*asset, cut, *camera, *visibility, view_of(options.view));
+  const Result<Drawn> drawn =
+      options.gpu ? draw_on_gpu(*asset, *camera, options) : draw_on_cpu(*asset, *camera, options, *bounds);
+  if (!drawn) return fail(drawn.error());
+  const std::vector<ClusterInstance>& cut = drawn->cut;
+  const VisibilityBuffer& visibility = drawn->visibility;
+  const Result<Image> image = shade_view(*asset, cut, *camera, visibility, view_of(options.view));
   if (!image) return fail(image.error());
   const std::vector<std::uint8_t> png = encode_png(*image);
   if (png.empty()) return print_error({ErrorCode::kIo, options.output, "the picture is too large to compress"});
   if (const Status written = write_file_atomically(options.output, png); !written) return print_error(written.error());
   if (options.report.quiet && !options.report.json()) return 0;
-  const RenderStats stats = measure(*asset, cut, *visibility);
+  const RenderStats stats = measure(*asset, cut, visibility);
   const std::string text =
       options.report.json() ? stats_json(options, *camera, stats) : stats_text(options, *camera, stats);
   return print_out(text) ? 0 : static_cast<int>(ErrorCode::kIo);

@@ -3,6 +3,8 @@
 #include <cstdio>
 #include <string>
 
+#include "base/file.h"
+#include "gpu/verify_gpu.h"
 #include "import/import.h"
 #include "options.h"
 #include "read/asset.h"
@@ -79,6 +81,56 @@ std::string to_json(const std::string& path, const std::string& source, const Ve
   return json.text();
 }
 
+struct GpuOptions {
+  bool is_on = false;
+  std::string device, path;
+  std::uint32_t orbits = 6;
+  double pixel_error = 1.0;
+};
+
+Surface surface_of(const SourceMesh& mesh) {
+  Surface surface;
+  for (const Primitive& primitive : mesh.primitives) {
+    const auto base = static_cast<std::uint32_t>(surface.positions.size());
+    surface.positions.insert(surface.positions.end(), primitive.positions.begin(), primitive.positions.end());
+    for (std::size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
+      surface.triangles.push_back(
+          {base + primitive.indices[i], base + primitive.indices[i + 1], base + primitive.indices[i + 2]});
+    }
+  }
+  return surface;
+}
+
+/// What the GPU finds, as checks and findings of the same report.
+Status verify_with_gpu(const Asset& asset, const Scene& source, const GpuOptions& options, VerifyReport& report) {
+  gpu::GpuVerifyOptions judge;
+  judge.device.device = options.device;
+  judge.orbits = options.orbits;
+  judge.pixel_error = options.pixel_error;
+  if (!options.path.empty()) {
+    const auto file = MappedFile::open(options.path);
+    if (!file) return file.error();
+    const std::span<const std::uint8_t> bytes = file->bytes();
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    Camera base;
+    auto path = gpu::parse_camera_path(text, base);
+    if (!path) return Error{path.error().code, options.path + ": " + path.error().where, path.error().detail};
+    judge.path = std::move(*path);
+  }
+  std::vector<Surface> surfaces;
+  for (const SourceMesh& mesh : source.meshes) surfaces.push_back(surface_of(mesh));
+  const auto verified = gpu::verify_on_gpu(asset, surfaces, judge);
+  if (!verified) return verified.error();
+  for (const gpu::GpuCheck& check : verified->checks) {
+    report.checks.push_back({check.invariant, verified->device.name + ": " + check.what, check.items, check.failures,
+                             check.is_skipped});
+    if (check.failures == 0) continue;
+    report.findings.push_back({check.id, check.invariant, verified->device.name, check.first});
+    ++report.finding_count;
+  }
+  return Ok{};
+}
+
 /// Triangles that --repair dropped are found again by repairing the source in the same way.
 bool was_repaired(const Asset& asset) {
   const auto meshes = asset.meshes();
@@ -88,7 +140,7 @@ bool was_repaired(const Asset& asset) {
 int run_verify(const Verb& verb, std::span<char* const> args) {
   std::string path;
   std::string source_path;
-  bool gpu = false;
+  GpuOptions gpu_options;
   std::uint32_t jobs = 0;
   VerifyOptions options;
   OutputOptions output;
@@ -100,11 +152,14 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
   parser.add_value("--deviation-cuts", options.deviation_cuts,
                    "uniform cuts per mesh that are measured against the source");
   parser.add_value("--seed", options.seed, "of the random cameras");
-  parser.add_flag("--gpu", gpu, "compare with the GPU too");
+  parser.add_flag("--gpu", gpu_options.is_on, "let a Vulkan device decode, select and draw the same, and compare");
+  parser.add_value("--device", gpu_options.device, "of --gpu: an index or a part of the name (the first that can)");
+  parser.add_value("--orbits", gpu_options.orbits, "of --gpu: cameras around the scene, judged against the source");
+  parser.add_value("--path", gpu_options.path, "of --gpu: a file of cameras, ex ey ez tx ty tz [fovy [near]] a line");
+  parser.add_value("--pixel-error", gpu_options.pixel_error, "of --gpu: allowed displacement in pixels (1)");
   add_jobs_option(parser, jobs);
   add_output_options(parser, output);
   if (const auto exit_code = parser.parse(args)) return *exit_code;
-  if (gpu) return print_error({ErrorCode::kUnsupported, "--gpu", "the GPU judge is not built yet"});
   if (source_path.empty())
     return print_error({ErrorCode::kUsage, "--source", "the scene to verify against is missing"});
 
@@ -113,7 +168,12 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
   if (!asset) return print_error(asset.error());
   Result<Scene> source = import_scene(source_path, {.repair = was_repaired(*asset)});
   if (!source) return print_error(source.error());
-  const VerifyReport report = verify_asset(*asset, *source, options);
+  VerifyReport report = verify_asset(*asset, *source, options);
+  if (gpu_options.is_on) {
+    if (const Status judged = verify_with_gpu(*asset, *source, gpu_options, report); !judged) {
+      return print_error(judged.error());
+    }
+  }
   if (!print_out(output.json() ? to_json(path, source_path, options, report) : describe(report, output.quiet))) {
     return static_cast<int>(ErrorCode::kIo);
   }
@@ -124,7 +184,8 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
 
 const Verb kVerifyVerb{"verify", "prove an asset against the scene it was built from",
                        "meshlode verify scene.lode --source scene.glb\n"
-                       "  meshlode verify scene.lode --source scene.glb --cuts 1000 --cameras 500 --seed 7",
+                       "  meshlode verify scene.lode --source scene.glb --cuts 1000 --cameras 500 --seed 7\n"
+                       "  meshlode verify scene.lode --source scene.glb --gpu --orbits 50",
                        run_verify};
 
 }  // namespace meshlode::cli

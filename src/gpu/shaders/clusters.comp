@@ -77,7 +77,7 @@ void consider(uint slot, uint id, bool is_there) {
 void main() {
   // One body for both lists, without an early return: every invocation takes part in the votes of append().
   const bool is_retry = a == 1u;
-  const uint index = is_retry ? thread_index() : thread_index() >> 5u;
+  const uint index = is_retry ? thread_index() : thread_index() / kGroupLanes;
   uvec2 entry = uvec2(0u);
   uint first = 0u, end = 0u;
   if (is_retry) {
@@ -89,10 +89,10 @@ void main() {
   } else if (index < min(counters.stages[STAGE_GROUPS + pass].count, frame.group_capacity)) {
     entry = frame.open_groups.at[index];
     const uint begin = frame.groups.at[entry.y].first_cluster;
-    first = begin + (thread_index() & 31u);
+    first = begin + thread_index() % kGroupLanes;
     end = begin + frame.groups.at[entry.y].cluster_count;
   }
-  for (uint id = first; subgroupBallotBitCount(subgroupBallot(id < end)) > 0u; id += 32u) {
+  for (uint id = first; subgroupBallotBitCount(subgroupBallot(id < end)) > 0u; id += kGroupLanes) {
     consider(entry.x, id, id < end);
   }
 }

@@ -21,6 +21,7 @@ layout(push_constant, scalar) uniform Push {
 #define frame block.all
 #define counters block.all.counters.all
 
+const uint kGroupLanes = 8u;  // invocations that share an open group's clusters
 const uint kNone = 0xFFFFFFFFu;
 const uint kInstanceMirrored = 1u;
 const uint kInstanceSingular = 2u;

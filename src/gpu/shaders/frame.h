@@ -34,7 +34,7 @@ struct GpuMesh {
   uint normal_scale;    // what a normal's integers are of: octahedral bits
   uint uv_set_count;
   uint has_color;
-  uint reserved;
+  uint group_count;
 };
 
 struct GpuInstance {

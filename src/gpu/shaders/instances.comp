@@ -210,7 +210,7 @@ void main() {
     if (is_retried) frame.retry_instances.at[at] = id;  // as long as the scene's list of instances
     is_there = is_there && !is_hidden_before;
   }
-  const uint slot = append(STAGE_SLOTS, is_there, 1u, 64u);
+  const uint slot = append(STAGE_SLOTS, is_there, 1u, 1u);
   const bool fits = is_there && slot < frame.slot_capacity;
   if (is_there && !fits) report_overflow(OVERFLOW_SLOTS);
   const uint stage = STAGE_QUEUE + MAX_DEPTH * pass;

@@ -18,7 +18,7 @@ void put(uint level, uint x, uint y, uint value) {
   if (x < width && y < height) frame.pyramid.at[frame.pyramid_offset[level] + y * width + x] = value;
 }
 
-void main() {
+void build_tile() {
   const uint tiles = (frame.width + 63u) / 64u;
   const uint tile_x = group_index() % tiles, tile_y = group_index() / tiles;
   const uint tx = gl_LocalInvocationID.x & 15u, ty = gl_LocalInvocationID.x >> 4u;
@@ -52,4 +52,9 @@ void main() {
     barrier();
     if (gl_LocalInvocationID.x < side * side) farthest[gl_LocalInvocationID.x] = value;
   }
+}
+
+void main() {
+  // Where the second pass drew nothing the pyramid is already that of the whole picture.
+  if (pass == 0u || counters.stages[STAGE_SOFTWARE + 1u].x + counters.stages[STAGE_HARDWARE + 1u].x > 0u) build_tile();
 }

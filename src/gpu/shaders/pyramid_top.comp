@@ -4,7 +4,7 @@
 #define GROUP_SIZE 256
 #include "common.glsl"
 
-void main() {
+void build_levels() {
   for (uint level = 7u; level <= frame.pyramid_levels; ++level) {
     const uint fine_width = (frame.width + (1u << (level - 1u)) - 1u) >> (level - 1u);
     const uint fine_height = (frame.height + (1u << (level - 1u)) - 1u) >> (level - 1u);
@@ -20,4 +20,8 @@ void main() {
     memoryBarrierBuffer();
     barrier();
   }
+}
+
+void main() {
+  if (pass == 0u || counters.stages[STAGE_SOFTWARE + 1u].x + counters.stages[STAGE_HARDWARE + 1u].x > 0u) build_levels();
 }

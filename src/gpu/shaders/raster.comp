@@ -11,7 +11,8 @@
 layout(constant_id = 0) const uint kDoubleSided = 0u;  // 1: some material of the scene is
 
 const int kSmallSide = 64 * 256;  // subpixels: products of differences stay below 2^29
-const int kSmallPixels = 256;      // more than this is shared by the workgroup
+const int kSmallPixels = 64;      // more than this is shared by kSliceSize invocations, or by the workgroup
+const int kSliceSize = 32;
 const int kScanlinePixels = 6;    // from this width on a row's ends are computed
 
 shared int shared_x[256], shared_y[256];
@@ -60,6 +61,26 @@ void draw_small(Triangle t, ivec2 columns, ivec2 rows, int area, uint item, uint
       e += step_x;
     }
     row += step_y;
+  }
+}
+
+// A triangle of at most kSmallSide, by kSliceSize invocations in 32-bit integers.
+void draw_medium(Triangle t, ivec2 columns, ivec2 rows, int area, uint item, uint triangle) {
+  const ivec3 ax = t.x.yzx, ay = t.y.yzx;
+  const ivec3 dx = t.x.zxy - ax, dy = t.y.zxy - ay;
+  const ivec3 bias = ivec3(edge_bias(dx.x, dy.x), edge_bias(dx.y, dy.y), edge_bias(dx.z, dy.z));
+  const int width = columns.y - columns.x + 1, pixels = width * (rows.y - rows.x + 1);
+  const double inverse = 1.0lf / double(area);
+  for (int p = int(gl_LocalInvocationID.x) % kSliceSize; p < pixels; p += kSliceSize) {
+    const int x = columns.x + p % width, y = rows.x + p / width;
+    const int px = x * kSubpixels + kSubpixels / 2, py = y * kSubpixels + kSubpixels / 2;
+    const ivec3 e = dx * (py - ay) - dy * (px - ax);
+    const ivec3 biased = e + bias;
+    if ((biased.x | biased.y | biased.z) >= 0) {
+      const uint64_t sum = uint64_t(uint(e.x)) * t.depth.x + uint64_t(uint(e.y)) * t.depth.y +
+                           uint64_t(uint(e.z)) * t.depth.z;
+      put_pixel(x, y, pixel_value(divide_depth(sum, double(sum) * inverse, int64_t(area)), item, triangle));
+    }
   }
 }
 
@@ -159,15 +180,22 @@ void draw_item(uint item) {
     }
   }
   barrier();
-  for (uint i = 0u; i < large_count; ++i) {
-    const uint triangle = large[i];
-    Triangle t = load_triangle(cluster_triangle(data, triangle));
-    int64_t area = doubled_area(t);
-    orient(t, area);
-    const int low_x = min(t.x.x, min(t.x.y, t.x.z)), high_x = max(t.x.x, max(t.x.y, t.x.z));
-    const int low_y = min(t.y.x, min(t.y.y, t.y.z)), high_y = max(t.y.x, max(t.y.y, t.y.z));
-    draw_large(t, pixels_between(low_x, high_x, frame.width), pixels_between(low_y, high_y, frame.height), area, item,
-               triangle);
+  // Medium ones by slices of the workgroup side by side, then large ones by all of it.
+  const uint slice = lane / uint(kSliceSize), slices = uint(GROUP_SIZE / kSliceSize);
+  for (uint round = 0u; round < 2u; ++round) {
+    for (uint i = round == 0u ? slice : 0u; i < large_count; i += round == 0u ? slices : 1u) {
+      const uint triangle = large[i];
+      Triangle t = load_triangle(cluster_triangle(data, triangle));
+      int64_t area = doubled_area(t);
+      orient(t, area);
+      const int low_x = min(t.x.x, min(t.x.y, t.x.z)), high_x = max(t.x.x, max(t.x.y, t.x.z));
+      const int low_y = min(t.y.x, min(t.y.y, t.y.z)), high_y = max(t.y.x, max(t.y.y, t.y.z));
+      const ivec2 columns = pixels_between(low_x, high_x, frame.width);
+      const ivec2 rows = pixels_between(low_y, high_y, frame.height);
+      const bool is_medium = max(high_x - low_x, high_y - low_y) <= kSmallSide;
+      if (is_medium && round == 0u) draw_medium(t, columns, rows, int(area), item, triangle);
+      if (!is_medium && round == 1u) draw_large(t, columns, rows, area, item, triangle);
+    }
   }
   if (lane == 0u && has_clipped != 0u) {
     const uint at = atomicAdd(counters.stages[STAGE_CLIPPED + pass].count, 1u);

@@ -126,3 +126,9 @@ void put_pixel(int x, int y, uint64_t value) {
   const uint at = uint(y) * frame.width + uint(x);
   if (frame.pixels.at[at] < value) atomicMax(frame.pixels.at[at], value);
 }
+
+// For the hardware's own clipping and divide: the same clip coordinates, rounded to float.
+vec4 hardware_position(dvec4 clip) {
+  return vec4(float(clip.x * (2.0lf / double(frame.width))), float(clip.y * (2.0lf / double(frame.height))),
+              float(clip.z), float(clip.w));
+}

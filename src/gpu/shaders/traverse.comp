@@ -32,7 +32,7 @@ void main() {
       }
     }
   }
-  const uint group_at = append(STAGE_GROUPS + pass, is_leaf, 32u, 64u);
+  const uint group_at = append(STAGE_GROUPS + pass, is_leaf, kGroupLanes, 64u);
   if (is_leaf) {
     if (group_at < frame.group_capacity) frame.open_groups.at[group_at] = uvec2(slot, first);
     else report_overflow(OVERFLOW_GROUPS);

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gpu/picture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "base/parallel.h"
+#include "decode/decode.h"
+#include "raster/cut_pages.h"
+#include "raster/projection.h"
+
+namespace meshlode::gpu {
+
+namespace {
+
+using raster::ClipVertex;
+
+/// Weights of a triangle's corners at a picture point, perspective-correct: sum(b · (x, y, w)) ∝ (px, py, 1).
+Vec3d corner_weights(const ClipVertex& a, const ClipVertex& b, const ClipVertex& c, double px, double py) {
+  const Vec3d p(px, py, 1.0), va(a.x, a.y, a.w), vb(b.x, b.y, b.w), vc(c.x, c.y, c.w);
+  Vec3d weights(glm::dot(p, glm::cross(vb, vc)), glm::dot(p, glm::cross(vc, va)), glm::dot(p, glm::cross(va, vb)));
+  if (weights.x + weights.y + weights.z < 0.0) weights = -weights;
+  for (int k = 0; k < 3; ++k) weights[k] = std::max(weights[k], 0.0);  // snapping moves edges by parts of a pixel
+  const double sum = weights.x + weights.y + weights.z;
+  return sum > 0.0 && sum < 1e300 ? weights / sum : Vec3d(1.0 / 3.0);
+}
+
+/// A pixel's point on the surface it shows, mesh space with the origin.
+struct PixelPoint {
+  std::uint32_t instance = 0xFFFFFFFFu;
+  Vec3d point{0.0};
+};
+
+Result<std::vector<PixelPoint>> unproject(const Asset& asset, std::span<const ClusterInstance> cut,
+                                          const VisibilityBuffer& drawn, const raster::Projection& projection) {
+  const auto pages = raster::CutPages::load(asset, cut);
+  if (!pages) return pages.error();
+  std::vector<std::vector<std::uint32_t>> pixels_of(cut.size());
+  for (std::size_t i = 0; i < drawn.pixel_count(); ++i) {
+    if (drawn.item[i] < cut.size()) pixels_of[drawn.item[i]].push_back(static_cast<std::uint32_t>(i));
+  }
+  std::vector<PixelPoint> out(drawn.pixel_count());
+  parallel_for_each_index(cut.size(), 4, [&](std::size_t item) {
+    if (pixels_of[item].empty()) return;
+    const format::InstanceRecord& instance = asset.instances()[cut[item].instance.value];
+    const format::MeshRecord& mesh = asset.meshes()[instance.mesh];
+    const raster::GridToClip to_clip = raster::make_grid_to_clip(projection, mesh, instance);
+    const double step = std::ldexp(static_cast<double>(mesh.grid.mantissa), mesh.grid.log2);
+    DecodedCluster cluster;
+    pages->decode(asset, cut[item].cluster, cluster);
+    for (const std::uint32_t pixel : pixels_of[item]) {
+      const auto& t = cluster.triangles[drawn.triangle[pixel]];
+      const double px = pixel % drawn.width + 0.5 - 0.5 * drawn.width;
+      const double py = pixel / drawn.width + 0.5 - 0.5 * drawn.height;
+      const Vec3d weights =
+          corner_weights(to_clip.project(cluster.position(t[0])), to_clip.project(cluster.position(t[1])),
+                         to_clip.project(cluster.position(t[2])), px, py);
+      Vec3d q(0.0);
+      for (int k = 0; k < 3; ++k) q += Vec3d(cluster.position(t[static_cast<std::size_t>(k)])) * weights[k];
+      out[pixel] = {cut[item].instance.value, Vec3d(mesh.origin[0], mesh.origin[1], mesh.origin[2]) + step * q};
+    }
+  });
+  return out;
+}
+
+/// Pixels that a length in mesh units covers at a point of an instance: k · σ / max(distance, near).
+double pixels_per_unit_at(const raster::Projection& projection, const format::InstanceRecord& instance,
+                          const Vec3d& p) {
+  if (projection.is_orthographic) return projection.pixels_per_unit * instance.scale;
+  Vec3d world(0.0);
+  for (int row = 0; row < 3; ++row) {
+    const double* m = instance.transform + 4 * row;
+    world[row] = m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3] - projection.eye[row];
+  }
+  return projection.pixels_per_unit * instance.scale / std::max(glm::length(world), projection.near_distance);
+}
+
+struct Displacement {
+  double px = 0.0, allowed = 0.0;
+};
+
+std::vector<Displacement> displace(const Asset& asset, const raster::Projection& projection,
+                                   const std::vector<PixelPoint>& points, double pixel_error,
+                                   const std::vector<const TriangleTree*>& tree_of) {
+  std::vector<Displacement> out(points.size());
+  parallel_for_each_index(points.size(), 256, [&](std::size_t i) {
+    if (points[i].instance >= tree_of.size() || tree_of[points[i].instance] == nullptr) return;
+    const format::InstanceRecord& instance = asset.instances()[points[i].instance];
+    const double scale = pixels_per_unit_at(projection, instance, points[i].point);
+    out[i].px = std::sqrt(tree_of[points[i].instance]->nearest(points[i].point).distance2) * scale;
+    const double level0 = static_cast<double>(asset.meshes()[instance.mesh].level0_deviation) * scale;
+    out[i].allowed = std::max(pixel_error, level0);
+  });
+  return out;
+}
+
+bool is_covered_around(const VisibilityBuffer& buffer, std::uint32_t x, std::uint32_t y) {
+  for (int dy = -kHoleRadius; dy <= kHoleRadius; ++dy) {
+    for (int dx = -kHoleRadius; dx <= kHoleRadius; ++dx) {
+      const std::int64_t px = std::int64_t{x} + dx, py = std::int64_t{y} + dy;
+      if (px < 0 || py < 0 || px >= buffer.width || py >= buffer.height) return false;
+      const std::size_t at = static_cast<std::size_t>(py) * buffer.width + static_cast<std::size_t>(px);
+      if (buffer.item[at] == VisibilityBuffer::kNothing) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+Result<PictureReport> judge_picture(const Asset& asset, std::span<const TriangleTree> source,
+                                    std::span<const ClusterInstance> cut, const VisibilityBuffer& drawn,
+                                    const Camera& camera, double pixel_error, double tolerance) {
+  auto projection = raster::make_projection(camera);
+  if (!projection) return projection.error();
+  projection->far_distance = raster::scene_depth(asset, *projection);
+  std::vector<ClusterInstance> finest;
+  for (std::size_t i = 0; i < asset.instances().size(); ++i) {
+    const format::InstanceRecord& instance = asset.instances()[i];
+    if ((instance.flags & format::kInstanceSingular) != 0) continue;
+    const format::MeshRecord& mesh = asset.meshes()[instance.mesh];
+    for (std::uint32_t c = mesh.first_cluster; c < mesh.first_cluster + mesh.cluster_count; ++c) {
+      if (asset.clusters()[c].level == 0) finest.push_back({InstanceId(i), ClusterId(c)});
+    }
+  }
+  const auto full = draw_cut(asset, finest, camera);
+  if (!full) return full.error();
+  const auto cut_points = unproject(asset, cut, drawn, *projection);
+  if (!cut_points) return cut_points.error();
+  const auto full_points = unproject(asset, finest, *full, *projection);
+  if (!full_points) return full_points.error();
+  const auto decoded = decode_all(asset);
+  if (!decoded) return decoded.error();
+
+  // The cut of an instance as a surface, for the way back.
+  std::map<std::uint32_t, std::vector<ClusterId>> clusters_of;
+  for (const ClusterInstance& entry : cut) clusters_of[entry.instance.value].push_back(entry.cluster);
+  std::map<std::uint32_t, TriangleTree> trees;
+  std::vector<const TriangleTree*> source_of(asset.instances().size(), nullptr),
+      cut_of(asset.instances().size(), nullptr);
+  for (const auto& [instance, clusters] : clusters_of) {
+    const std::uint32_t mesh = asset.instances()[instance].mesh;
+    cut_of[instance] =
+        &trees.try_emplace(instance, surface_of_clusters(asset, *decoded, MeshId(mesh), clusters)).first->second;
+    if (mesh < source.size()) source_of[instance] = &source[mesh];
+  }
+  const auto there = displace(asset, *projection, *cut_points, pixel_error, source_of);
+  const auto back = displace(asset, *projection, *full_points, pixel_error, cut_of);
+
+  PictureReport out;
+  out.displacement_px.resize(there.size(), 0.0F);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < there.size(); ++i) {
+    const bool is_cut = drawn.item[i] != VisibilityBuffer::kNothing,
+               is_full = full->item[i] != VisibilityBuffer::kNothing;
+    out.covered += is_cut ? 1 : 0;
+    out.covered_source += is_full ? 1 : 0;
+    out.only_cut += is_cut && !is_full ? 1 : 0;
+    out.only_source += is_full && !is_cut ? 1 : 0;
+    const auto x = static_cast<std::uint32_t>(i % drawn.width), y = static_cast<std::uint32_t>(i / drawn.width);
+    if (!is_cut && is_covered_around(*full, x, y)) ++out.holes;
+    if (is_cut && is_full && drawn.depth[i] > 0) {
+      const double difference = std::abs(double{drawn.depth[i] * 1.0} - full->depth[i] * 1.0);
+      out.largest_depth = std::max(out.largest_depth, difference / std::max(1.0, full->depth[i] * 1.0));
+    }
+    out.displacement_px[i] = static_cast<float>(there[i].px);
+    for (const Displacement& d : {there[i], back[i]}) {
+      if (d.allowed == 0.0) continue;
+      ++out.points;
+      out.largest_px = std::max(out.largest_px, d.px);
+      out.allowed_px = std::max(out.allowed_px, d.allowed);
+      if (d.px > d.allowed * tolerance * (1.0 + 1e-9)) ++out.exceeded;
+    }
+    sum += there[i].px;
+  }
+  out.mean_px = out.covered > 0 ? sum / static_cast<double>(out.covered) : 0.0;
+  return out;
+}
+
+}  // namespace meshlode::gpu

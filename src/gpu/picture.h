@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The picture of a cut against the source, from the same camera: how far anything moved, and what shows through.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <meshlode/result.h>
+
+#include "metrics/triangle_tree.h"
+#include "raster/raster.h"
+#include "read/asset.h"
+#include "select/select.h"
+
+namespace meshlode::gpu {
+
+struct PictureReport {
+  std::uint64_t covered = 0;                    ///< pixels of the cut
+  std::uint64_t covered_source = 0;             ///< pixels of the full resolution
+  std::uint64_t only_cut = 0, only_source = 0;  ///< covered in one alone: the silhouettes differ there
+  /// Background in the cut where the full resolution covers every pixel within `kHoleRadius`: seen through a mesh.
+  std::uint64_t holes = 0;
+  double largest_px = 0.0;             ///< displacement of any pixel's surface point, both ways
+  double mean_px = 0.0;                ///< over the cut's pixels
+  double allowed_px = 0.0;             ///< the largest that the promise allows at that pixel's distance: see judge
+  std::uint64_t exceeded = 0;          ///< pixels displaced by more than max(t, level 0's own deviation) allows
+  std::uint64_t points = 0;            ///< compared, both ways
+  double largest_depth = 0.0;          ///< difference over distance, where both are covered
+  std::vector<float> displacement_px;  ///< of the cut's pixels, 0 elsewhere: a heat map
+};
+
+/// Silhouettes may move by a pixel, and a pixel is one sample.
+constexpr int kHoleRadius = 2;
+
+/// `source`: one tree per mesh over its source, mesh space. `cut` was drawn into `drawn`; the full resolution is level
+/// 0. `tolerance`: of the promise, 1.05 in the measured tier.
+[[nodiscard]] Result<PictureReport> judge_picture(const Asset& asset, std::span<const TriangleTree> source,
+                                                  std::span<const ClusterInstance> cut, const VisibilityBuffer& drawn,
+                                                  const Camera& camera, double pixel_error, double tolerance);
+
+}  // namespace meshlode::gpu

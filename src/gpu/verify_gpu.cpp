@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gpu/verify_gpu.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <tuple>
+
+#include "gpu/judge.h"
+#include "gpu/picture.h"
+
+namespace meshlode::gpu {
+
+namespace {
+
+struct Size {
+  std::uint32_t width, height;
+};
+constexpr Size kSizes[] = {{640, 360}, {321, 243}, {128, 512}};  // one of them odd
+
+void add(GpuCheck& check, const Comparison& comparison, const std::string& where) {
+  check.items += comparison.items;
+  check.failures += comparison.differences;
+  if (comparison.differences > 0 && check.first.empty()) check.first = where + ": " + comparison.first;
+}
+
+std::string format_px(const char* text, double value) {
+  char out[64];
+  std::snprintf(out, sizeof out, text, value);
+  return out;
+}
+
+/// Every edge, by the positions of its ends, is used as often one way as the other.
+bool is_closed(const Surface& surface) {
+  std::vector<std::uint32_t> order(surface.positions.size()), id(surface.positions.size());
+  for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = i;
+  const auto key = [&](std::uint32_t i) {
+    const Vec3d& p = surface.positions[i];
+    return std::tuple(p.x, p.y, p.z);
+  };
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    id[order[i]] = i > 0 && key(order[i]) == key(order[i - 1]) ? id[order[i - 1]] : static_cast<std::uint32_t>(i);
+  }
+  std::vector<std::tuple<std::uint32_t, std::uint32_t, int>> edges;
+  for (const auto& t : surface.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = id[t[k]], b = id[t[(k + 1) % 3]];
+      if (a != b) edges.emplace_back(std::min(a, b), std::max(a, b), a < b ? 1 : -1);
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  for (std::size_t i = 0; i < edges.size();) {
+    int sum = 0;
+    std::size_t end = i;
+    for (; end < edges.size() && std::get<0>(edges[end]) == std::get<0>(edges[i]) &&
+           std::get<1>(edges[end]) == std::get<1>(edges[i]);
+         ++end) {
+      sum += std::get<2>(edges[end]);
+    }
+    if (sum != 0) return false;
+    i = end;
+  }
+  return !edges.empty();
+}
+
+}  // namespace
+
+Result<GpuVerifyReport> verify_on_gpu(const Asset& asset, std::span<const Surface> source,
+                                      const GpuVerifyOptions& options) {
+  auto device = Device::open(options.device);
+  if (!device) return device.error();
+  auto scene = upload_scene(*device, asset);
+  if (!scene) return scene.error();
+  GpuVerifyReport out;
+  out.device = device->info();
+
+  const auto decode = compare_decode(*device, *scene, asset);
+  if (!decode) return decode.error();
+  GpuCheck decoded{"V401", "I9", "the GPU decodes every cluster to the CPU's integers"};
+  add(decoded, *decode, "decode");
+  out.checks.push_back(decoded);
+
+  GpuCheck cuts{"V402", "I8", "the GPU's traversal selects what the flat rule selects"};
+  GpuCheck pixels{"V403", "I9", "the GPU's software rasterizer draws the CPU's ids and depths (pixels)"};
+  GpuCheck culled{"V404", "I9", "frustum and two-pass occlusion culling change no pixel"};
+  GpuCheck displaced{"V405", "I7", ""};
+  GpuCheck holes{"V406", "I6", "no background is seen through the cut where the source covers it (pixels)"};
+
+  bool has_promise = !source.empty();
+  double tolerance = 1.0;
+  for (const format::MeshRecord& mesh : asset.meshes()) {
+    if (mesh.cluster_count == 0) continue;
+    if (mesh.error_tier == format::ErrorTier::kQem) has_promise = false;
+    if (mesh.error_tier == format::ErrorTier::kMeasured) tolerance = 1.05;
+  }
+  const bool all_closed = std::all_of(source.begin(), source.end(), [](const Surface& surface) {
+    return surface.triangles.empty() || is_closed(surface);
+  });
+  const bool has_holes_rule = has_promise && all_closed;
+  std::vector<TriangleTree> trees;
+  trees.reserve(source.size());
+  for (const Surface& surface : source) trees.emplace_back(surface);
+
+  RendererOptions plain;
+  plain.width = kSizes[0].width;
+  plain.height = kSizes[0].height;
+  plain.frustum = false;
+  plain.double_sided = scene->has_double_sided;
+  RendererOptions culling = plain;
+  culling.frustum = culling.occlusion = true;
+  auto renderer = Renderer::make(*device, *scene, plain);
+  if (!renderer) return renderer.error();
+  auto culler = Renderer::make(*device, *scene, culling);
+  if (!culler) return culler.error();
+  for (const Size size : kSizes) {
+    if (const Status s = renderer->resize(size.width, size.height); !s) return s.error();
+    if (const Status s = culler->resize(size.width, size.height); !s) return s.error();
+    std::vector<NamedCamera> cameras = adversarial_cameras(asset, size.width, size.height);
+    const std::size_t first_judged = cameras.size();
+    for (NamedCamera& named : orbit_cameras(asset, options.orbits, size.width, size.height)) cameras.push_back(named);
+    for (NamedCamera named : options.path) {
+      named.camera.width = size.width;
+      named.camera.height = size.height;
+      cameras.push_back(named);
+    }
+    for (std::size_t i = 0; i < cameras.size(); ++i) {
+      const NamedCamera& named = cameras[i];
+      const std::string where = named.name + " at " + std::to_string(size.width) + "x" + std::to_string(size.height);
+      const auto frame = compare_frame(*renderer, asset, named.camera, options.pixel_error);
+      if (!frame) return frame.error();
+      add(cuts, frame->cut, where);
+      add(pixels, frame->pixels, where);
+      const auto culled_frame = compare_frame(*culler, asset, named.camera, options.pixel_error);
+      if (!culled_frame) return culled_frame.error();
+      add(culled, culled_frame->cut, where);
+      add(culled, culled_frame->pixels, where);
+      if (i < first_judged || source.empty()) continue;
+      const auto cut = renderer->read_cut();
+      const auto drawn = renderer->read_pixels();
+      if (!cut) return cut.error();
+      if (!drawn) return drawn.error();
+      const auto picture = judge_picture(asset, trees, *cut, *drawn, named.camera, options.pixel_error, tolerance);
+      if (!picture) return picture.error();
+      out.largest_px = std::max(out.largest_px, picture->largest_px);
+      displaced.items += picture->points;
+      displaced.failures += has_promise ? picture->exceeded : 0;
+      if (has_promise && picture->exceeded > 0 && displaced.first.empty()) {
+        displaced.first = where + ": " + format_px("%.3f px", picture->largest_px);
+      }
+      holes.items += picture->covered_source;
+      holes.failures += has_holes_rule ? picture->holes : 0;
+      if (has_holes_rule && picture->holes > 0 && holes.first.empty()) holes.first = where;
+    }
+  }
+  displaced.is_skipped = !has_promise;
+  holes.is_skipped = !has_holes_rule;
+  if (!has_holes_rule) holes.what += all_closed ? " (not judged: tier qem)" : " (not judged: the source is open)";
+  displaced.what = format_px("pixels are displaced by %.3f px at most", out.largest_px) +
+                   format_px(", allowed is %.3g or level 0's own", options.pixel_error) +
+                   (has_promise ? "" : " (not judged: tier qem states the quadric's estimate)");
+  for (const GpuCheck& check : {cuts, pixels, culled, holes, displaced}) out.checks.push_back(check);
+  return out;
+}
+
+}  // namespace meshlode::gpu
