@@ -11,7 +11,7 @@
 layout(constant_id = 0) const uint kDoubleSided = 0u;  // 1: some material of the scene is
 
 const int kSmallSide = 64 * 256;  // subpixels: products of differences stay below 2^29
-const int kSmallPixels = 64;      // more than this is shared by kSliceSize invocations, or by the workgroup
+const int kSmallPixels = 256;     // more than this is shared by kSliceSize invocations, or by the workgroup
 const int kSliceSize = 32;
 const int kScanlinePixels = 6;    // from this width on a row's ends are computed
 

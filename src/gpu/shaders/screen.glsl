@@ -124,7 +124,7 @@ uint64_t pixel_value(uint depth, uint item, uint triangle) {
 
 void put_pixel(int x, int y, uint64_t value) {
   const uint at = uint(y) * frame.width + uint(x);
-  if (frame.pixels.at[at] < value) atomicMax(frame.pixels.at[at], value);
+  atomicMax(frame.pixels.at[at], value);  // no look at the old value first: that would wait for memory, this does not
 }
 
 // For the hardware's own clipping and divide: the same clip coordinates, rounded to float.

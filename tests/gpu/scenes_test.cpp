@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// I8 and I9 over whole scenes, and tests in which the judge must find something.
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+
+#include <gtest/gtest.h>
+
+#include "gpu/cameras.h"
+#include "gpu/judge.h"
+#include "gpu/plan.h"
+#include "gpu_support.h"
+#include "support/sample_asset.h"
+
+namespace meshlode::gpu::test {
+namespace {
+
+using Scenes = GpuTest;
+
+void expect_equal(Device& device, const Asset& asset, std::uint32_t orbits) {
+  auto scene = upload_scene(device, asset);
+  ASSERT_TRUE(scene) << scene.error().message();
+  const auto decode = compare_decode(device, *scene, asset);
+  ASSERT_TRUE(decode) << decode.error().message();
+  EXPECT_EQ(decode->differences, 0U) << decode->first;
+  RendererOptions options;
+  options.width = 192;
+  options.height = 108;
+  options.occlusion = true;
+  options.double_sided = scene->has_double_sided;
+  auto renderer = Renderer::make(device, *scene, options);
+  ASSERT_TRUE(renderer) << renderer.error().message();
+  constexpr std::uint32_t kSizes[][2] = {{192, 108}, {131, 77}, {64, 200}};
+  for (const auto& [width, height] : kSizes) {
+    ASSERT_TRUE(renderer->resize(width, height));
+    std::vector<NamedCamera> cameras = adversarial_cameras(asset, width, height);
+    for (const NamedCamera& named : orbit_cameras(asset, orbits, width, height)) cameras.push_back(named);
+    for (const NamedCamera& named : cameras) {
+      SCOPED_TRACE(named.name + " at " + std::to_string(width) + "x" + std::to_string(height));
+      const auto result = compare_frame(*renderer, asset, named.camera, 1.0);
+      ASSERT_TRUE(result) << result.error().message();
+      EXPECT_EQ(result->cut.differences, 0U) << result->cut.first;
+      EXPECT_EQ(result->pixels.differences, 0U) << result->pixels.first;
+    }
+  }
+}
+
+void expect_equal_file(Device& device, const std::string& path, std::uint32_t orbits) {
+  const std::vector<std::uint8_t> bytes = build_file(path);
+  ASSERT_FALSE(bytes.empty());
+  const auto asset = Asset::from_vector(bytes);
+  ASSERT_TRUE(asset) << asset.error().message();
+  expect_equal(device, *asset, orbits);
+}
+
+TEST_F(Scenes, TheCityIsDrawnAsTheCpuDrawsIt) {
+  expect_equal_file(*device_, MESHLODE_DATA "/city.glb", 2);
+}
+TEST_F(Scenes, FoliageIsDrawnAsTheCpuDrawsIt) {
+  expect_equal_file(*device_, MESHLODE_DATA "/foliage.glb", 2);
+}
+
+class Models : public GpuTest, public testing::WithParamInterface<const char*> {};
+TEST_P(Models, AreDrawnAsTheCpuDrawsThem) {
+  const char* models = std::getenv("MESHLODE_MODELS");
+  const char* required = std::getenv("MESHLODE_REQUIRE_MODELS");
+  ASSERT_TRUE(models != nullptr || required == nullptr || std::string(required) != "1") << "MESHLODE_MODELS is not set";
+  if (models == nullptr) GTEST_SKIP() << "MESHLODE_MODELS is not set";
+  expect_equal_file(*device_, std::string(models) + "/" + GetParam(), 2);
+}
+INSTANTIATE_TEST_SUITE_P(All, Models, testing::Values("bunny.glb", "FlightHelmet/FlightHelmet.gltf"));
+
+/// The judge must see one changed bit of a page.
+TEST_F(Scenes, AChangedPageBitIsFound) {
+  const auto asset = Asset::from_vector(meshlode::test::sample_asset_bytes());
+  ASSERT_TRUE(asset);
+  const auto scene = upload_scene(*device_, *asset);
+  ASSERT_TRUE(scene);
+  std::vector<std::uint8_t> pages(scene->page_bytes);
+  ASSERT_TRUE(device_->download(scene->pages, pages));
+  pages[pages.size() / 2] ^= 1U;
+  ASSERT_TRUE(device_->upload(scene->pages, pages));
+  const auto result = compare_decode(*device_, *scene, *asset);
+  ASSERT_TRUE(result);
+  EXPECT_GT(result->differences, 0U);
+}
+
+/// A group error that is a little larger on the GPU alone changes some cut, and the judge sees it.
+TEST_F(Scenes, AChangedGroupErrorIsFound) {
+  const auto asset = Asset::from_vector(meshlode::test::sample_asset_bytes());
+  ASSERT_TRUE(asset);
+  const auto scene = upload_scene(*device_, *asset);
+  ASSERT_TRUE(scene);
+  std::vector<GpuGroup> groups(asset->groups().size());
+  const std::span<std::uint8_t> bytes(reinterpret_cast<std::uint8_t*>(groups.data()), groups.size() * sizeof(GpuGroup));
+  ASSERT_TRUE(device_->download(scene->groups, bytes));
+  for (GpuGroup& group : groups) group.error = 0.0F;  // passes always, also where its leaf says that it is open
+  ASSERT_TRUE(device_->upload(scene->groups, bytes));
+  auto renderer = Renderer::make(*device_, *scene, {.width = 96, .height = 64, .frustum = false, .double_sided = true});
+  ASSERT_TRUE(renderer);
+  std::uint64_t differences = 0;
+  for (const NamedCamera& named : orbit_cameras(*asset, 6, 96, 64)) {
+    const auto result = compare_frame(*renderer, *asset, named.camera, 2.0);
+    ASSERT_TRUE(result) << result.error().message();
+    differences += result->cut.differences + result->pixels.differences;
+  }
+  EXPECT_GT(differences, 0U);
+}
+
+/// Culling spheres that are too small drop what should be seen, and the judge sees the holes.
+TEST_F(Scenes, TooSmallCullingSpheresAreFound) {
+  const auto asset = Asset::from_vector(meshlode::test::sample_asset_bytes());
+  ASSERT_TRUE(asset);
+  const auto scene = upload_scene(*device_, *asset);
+  ASSERT_TRUE(scene);
+  std::vector<GpuCluster> clusters(asset->clusters().size());
+  const std::span<std::uint8_t> bytes(reinterpret_cast<std::uint8_t*>(clusters.data()),
+                                      clusters.size() * sizeof(GpuCluster));
+  ASSERT_TRUE(device_->download(scene->clusters, bytes));
+  for (GpuCluster& cluster : clusters) {
+    cluster.radius = 0.0F;
+    for (float& c : cluster.center) c *= 50.0F;
+  }
+  ASSERT_TRUE(device_->upload(scene->clusters, bytes));
+  auto renderer = Renderer::make(*device_, *scene, {.width = 96, .height = 64, .double_sided = true});
+  ASSERT_TRUE(renderer);
+  const auto result = compare_frame(*renderer, *asset, orbit_cameras(*asset, 1, 96, 64)[0].camera, 1.0);
+  ASSERT_TRUE(result);
+  EXPECT_GT(result->pixels.differences, 0U);
+}
+
+TEST_F(Scenes, AListThatOverflowsSaysSo) {
+  const auto asset = Asset::from_vector(meshlode::test::sample_asset_bytes());
+  ASSERT_TRUE(asset);
+  const auto scene = upload_scene(*device_, *asset);
+  ASSERT_TRUE(scene);
+  const std::vector<format::InstanceRecord> many(200, asset->instances()[0]);
+  const auto crowd = upload_scene(*device_, *asset, many);
+  ASSERT_TRUE(crowd);
+  RendererOptions options{.width = 96, .height = 64, .frustum = false};
+  options.max_items = 64;
+  auto renderer = Renderer::make(*device_, *crowd, options);
+  ASSERT_TRUE(renderer);
+  const auto frame = renderer->draw(orbit_cameras(*asset, 1, 96, 64)[0].camera, 0.5, 0.0);
+  ASSERT_TRUE(frame);
+  EXPECT_NE(frame->overflow, 0U);
+  EXPECT_NE(describe_overflow(frame->overflow), "");
+}
+
+/// The flat selection and the BVH open the same groups.
+TEST_F(Scenes, FlatSelectionDrawsTheSame) {
+  const auto asset = Asset::from_vector(meshlode::test::sample_asset_bytes());
+  ASSERT_TRUE(asset);
+  const auto scene = upload_scene(*device_, *asset);
+  ASSERT_TRUE(scene);
+  RendererOptions options{.width = 96, .height = 64, .frustum = false, .double_sided = true};
+  options.flat_selection = true;
+  auto renderer = Renderer::make(*device_, *scene, options);
+  ASSERT_TRUE(renderer);
+  for (const NamedCamera& named : orbit_cameras(*asset, 4, 96, 64)) {
+    const auto result = compare_frame(*renderer, *asset, named.camera, 2.0);
+    ASSERT_TRUE(result);
+    EXPECT_EQ(result->cut.differences + result->pixels.differences, 0U) << result->cut.first << result->pixels.first;
+  }
+}
+
+/// Hardware coverage follows its own rules: pixels may differ along edges alone, which are few.
+TEST_F(Scenes, TheHardwareDrawsNearlyTheSamePicture) {
+  const auto asset = Asset::from_vector(meshlode::test::sample_asset_bytes());
+  ASSERT_TRUE(asset);
+  const auto scene = upload_scene(*device_, *asset);
+  ASSERT_TRUE(scene);
+  RendererOptions options{.width = 160, .height = 120, .frustum = false, .double_sided = true};
+  options.hardware = HardwarePath::kVertex;
+  options.hardware_pixels = 0.0F;
+  auto renderer = Renderer::make(*device_, *scene, options);
+  ASSERT_TRUE(renderer) << renderer.error().message();
+  const Camera camera = orbit_cameras(*asset, 1, 160, 120)[0].camera;
+  const auto frame = renderer->draw(camera, 1.0, 0.0);
+  ASSERT_TRUE(frame);
+  EXPECT_EQ(frame->hardware_items, frame->items);
+  const auto hardware = renderer->read_pixels();
+  ASSERT_TRUE(hardware);
+  const auto software = draw_cut(*asset, select_flat(*asset, camera, 1.0), camera);
+  ASSERT_TRUE(software);
+  std::size_t covered = 0, differ = 0, far = 0;
+  for (std::size_t i = 0; i < software->pixel_count(); ++i) {
+    const bool a = software->item[i] != VisibilityBuffer::kNothing, b = hardware->item[i] != VisibilityBuffer::kNothing;
+    covered += a ? 1 : 0;
+    differ += a != b ? 1 : 0;
+    if (!a || !b) continue;
+    const double ratio = software->depth[i] / std::max(1.0, hardware->depth[i] * 1.0);
+    far += ratio < 0.98 || ratio > 1.02 ? 1 : 0;
+  }
+  EXPECT_GT(covered, 1000U);
+  EXPECT_LE(differ, covered / 100);
+  EXPECT_LE(far, covered / 100);
+}
+
+TEST(CameraPath, ReadsALineAFrame) {
+  const auto path = parse_camera_path("# a path\n0 0 5 0 0 0\n\n1,2,3, 0 0 0 40 0.5\r\n", {});
+  ASSERT_TRUE(path) << path.error().message();
+  ASSERT_EQ(path->size(), 2U);
+  EXPECT_EQ((*path)[1].camera.eye, Vec3d(1.0, 2.0, 3.0));
+  EXPECT_EQ((*path)[1].camera.near_distance, 0.5);
+  for (const char* bad :
+       {"", "1 2 3", "1 2 3 4 5 x", "0 0 0 0 0 0", "1 2 3 4 5 6 200", "1 2 3 4 5 6 40 -1", "nan 0 0 1 1 1"}) {
+    EXPECT_FALSE(parse_camera_path(bad, {})) << bad;
+  }
+}
+
+TEST(Plan, AsksForWhatTheSceneCallsFor) {
+  GpuScene scene;
+  scene.instance_count = 1;
+  scene.cluster_instances = 5000;
+  auto plan = plan_passes(scene, {}, 64, 64);
+  ASSERT_TRUE(plan);
+  EXPECT_FALSE(plan->options.occlusion);
+  EXPECT_FALSE(plan->options.double_sided);
+  scene.instance_count = 5000;
+  scene.cluster_instances = 5000000;
+  scene.has_double_sided = true;
+  plan = plan_passes(scene, {}, 64, 64);
+  ASSERT_TRUE(plan);
+  EXPECT_TRUE(plan->options.occlusion);
+  EXPECT_TRUE(plan->options.double_sided);
+  EXPECT_EQ(plan->options.hardware, HardwarePath::kNone);
+  plan = plan_passes(scene, {}, 64, 64, {"all"});
+  ASSERT_TRUE(plan);
+  EXPECT_EQ(plan->options.hardware, HardwarePath::kVertex);
+  EXPECT_FALSE(plan_passes(scene, {}, 64, 64, {"magic"}));
+  for (const PassDecision& decision : plan->decisions) EXPECT_FALSE(decision.reason.empty()) << decision.pass;
+}
+
+}  // namespace
+}  // namespace meshlode::gpu::test
