@@ -170,12 +170,12 @@ TEST_F(Scenes, TheHardwareDrawsNearlyTheSamePicture) {
   ASSERT_TRUE(asset);
   const auto scene = upload_scene(*device_, *asset);
   ASSERT_TRUE(scene);
-  RendererOptions options{.width = 160, .height = 120, .frustum = false, .double_sided = true};
+  RendererOptions options{.width = 320, .height = 240, .frustum = false, .double_sided = true};
   options.hardware = HardwarePath::kVertex;
   options.hardware_pixels = 0.0F;
   auto renderer = Renderer::make(*device_, *scene, options);
   ASSERT_TRUE(renderer) << renderer.error().message();
-  const Camera camera = orbit_cameras(*asset, 1, 160, 120)[0].camera;
+  const Camera camera = adversarial_cameras(*asset, 320, 240)[0].camera;
   const auto frame = renderer->draw(camera, 1.0, 0.0);
   ASSERT_TRUE(frame);
   EXPECT_EQ(frame->hardware_items, frame->items);
