@@ -146,11 +146,11 @@ def equal_table(figures, models, figure, xs):
             peer = BEST_PEER.get(model)
             row += [f'**{count(equal(ours, "cuts", figure, x))}**', count(equal(ours, "openmesh", figure, x)),
                     f"{peer[figure][i]:,}" if peer else "–"]
-        rows.append(row)
+        rows.append(row + [ours.get("commit", "–")])
     header = ["mesh", "source"]
     for x in xs:
         header += [f"≤ {x:.0e}", "OpenMesh", "best peer"]
-    return table(header, rows)
+    return table(header + ["commit"], rows)
 
 
 def attribute_table(figures, models):
@@ -166,26 +166,29 @@ def attribute_table(figures, models):
                     normal, uv = one.get("normal_degrees"), one.get("uv")
                     rows.append([model + (", all attributes" if attributes == "all" else ""), f"{figure} ≤ {x:.0e}", count(one),
                                  *(f"{normal[k]:.2f}" if normal else "–" for k in ("rms", "p99")),
-                                 *(f"{uv[k]:.1e}" if uv else "–" for k in ("rms", "p99"))])
-    return table(["mesh", "true deviation", "triangles", "normals/deg RMS", "99%", "UV RMS", "99%"], rows)
+                                 *(f"{uv[k]:.1e}" if uv else "–" for k in ("rms", "p99")),
+                                 ours.get("commit", "–")])
+    return table(["mesh", "true deviation", "triangles", "normals/deg RMS", "99%", "UV RMS", "99%",
+                  "commit"], rows)
 
 
 def tier_table(figures, models):
     rows = []
     for model in models:
         base = figures.get((model, "none", "qem"))
-        for tier in TIERS:
+        for tier in TIERS:  # a ratio compares builds of one commit
             ours = figures.get((model, "none", tier))
             if not ours:
                 continue
             ratios = [c["max"] / c["stored"] for c in ours["meshes"][0]["cuts"] if c["stored"] > 0]
             seconds = ours["build_cpu_seconds"]
-            ratio = f'{seconds / base["build_cpu_seconds"]:.2f}' if base else "–"
+            is_comparable = base is not None and base.get("commit") == ours.get("commit")
+            ratio = f'{seconds / base["build_cpu_seconds"]:.2f}' if is_comparable else "–"
             rows.append([model, tier, str(len(ratios)), f"{statistics.median(ratios):.2f}", f"{max(ratios):.3f}",
                          str(sum(r > 1.0 for r in ratios)), str(sum(r > 1.05 for r in ratios)), f"{seconds:.2f}", ratio,
-                         str(ours["roots"]), str(ours["stuck_groups"])])
+                         str(ours["roots"]), str(ours["stuck_groups"]), ours.get("commit", "–")])
     return table(["mesh", "tier", "cuts", "true/stored median", "largest", "> 1", "> 1.05", "build CPU s", "× qem", "roots",
-                  "stuck"], rows)
+                  "stuck", "commit"], rows)
 
 
 def write_pictures(figures, models):
@@ -219,9 +222,8 @@ def write_document(figures, options):
     for model in models:
         ours = figures.get((model, "none", "measured"))
         notes += [f"- {model}: {note}" for note in (ours["meshes"][0]["notes"] if ours else [])]
-    commits = sorted({value["commit"] for value in figures.values() if value.get("commit")})
     parts = [
-        f"With the programs of commit {', '.join(commits)}. A dash is a figure that was not measured.\n",
+        "Each row names the commit whose programs made it. A dash is a figure that was not measured.\n",
         "### Triangles at equal true maximum, `--attributes none`\n", equal_table(figures, models, "max", AT_MAX),
         "### Triangles at equal true RMS, `--attributes none`\n", equal_table(figures, models, "rms", AT_RMS),
         "\n".join(notes) + "\n" if notes else "",
