@@ -38,7 +38,8 @@ if(MESHLODE_UNPACK_CODECS)
   target_link_libraries(meshlode_runtime INTERFACE zstd lz4)
 endif()
 set(meshlode_exports meshlode_runtime)
-install(FILES include/meshlode/format.h include/meshlode/result.h include/meshlode/runtime.h
+install(FILES include/meshlode/format.h include/meshlode/page.h include/meshlode/decode.glsl
+              include/meshlode/result.h include/meshlode/runtime.h
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/meshlode)
 
 if(TARGET meshlode_api_build AND TARGET meshlode_pipeline)

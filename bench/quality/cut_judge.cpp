@@ -100,7 +100,7 @@ std::optional<CutFigures> CutJudge::measure_within(std::span<const ClusterId> cl
   CutFigures out;
   std::vector<ClusterId> unknown;
   for (const ClusterId c : clusters) {
-    out.triangles += asset_.clusters()[c.value].triangle_count;
+    out.triangles += asset_.clusters()[c.value].triangle_count();
     if (!clusters_[c.value].is_known) {
       unknown.push_back(c);
     } else if (clusters_[c.value].max2 > limit2) {

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The bytes of a .lode asset, version 0. docs/format.md is the normative text; this header is the same thing as structs.
+// The bytes of a .lode asset, version 1. docs/format.md is the normative text; this header is the same thing as structs.
 //
 // Everything is little-endian. Every struct here is copied as it lies in the file: sizes are asserted, there is no
 // implicit padding, and reserved fields are written as zero and ignored on reading.
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -25,7 +26,7 @@ constexpr std::uint32_t four_cc(char a, char b, char c, char d) {
 }
 
 constexpr std::uint32_t kMagic = four_cc('L', 'O', 'D', 'E');
-constexpr std::uint32_t kVersion = 0;
+constexpr std::uint32_t kVersion = 1;
 constexpr std::uint32_t kNone = 0xFFFFFFFFu;  ///< "no such id"
 
 /// A root's coarser error: it never passes. Written as null in JSON.
@@ -116,16 +117,13 @@ struct Grid {
 };
 static_assert(sizeof(Grid) == 8);
 
-/// uv = step · (channel integer), step = 2^log2; |channel integer| < 2^24, so that a float holds it exactly.
-struct UvGrid {
-  std::int32_t log2;
-  std::int32_t reserved;
-};
-static_assert(sizeof(UvGrid) == 8);
-
-/// Channels of a vertex, in this order, each present or absent for the whole mesh:
-///   position x y z · normal a b (octahedral) · uv0 u v · … uv3 u v · colour r g b a
-/// MeshRecord::channel_count = 3 + 2·(normal_mode == kStored) + 2·uv_set_count + 4·has_color.
+/// Integers of a vertex, in this order, each attribute present or absent for the whole mesh:
+///   position x y z · normal X Y Z · uv0 u v · … uv3 u v · colour r g b a
+///   position  origin + step · (x, y, z)
+///   normal    the direction of (X, Y, Z), an integer point of |X| + |Y| + |Z| = normal_scale
+///   uv        2^uv_log2 · (u, v), below 2^24 in magnitude, so that a float holds it exactly
+///   colour    c / 255, linear as in the source
+/// A vertex that two clusters share has the same integers in both (I3).
 struct MeshRecord {
   StringRef name;
   double origin[3];                 ///< mesh space, object units
@@ -136,12 +134,14 @@ struct MeshRecord {
   float level0_deviation;           ///< how far quantization alone moves the surface at most, object units
   ErrorTier error_tier;
   NormalMode normal_mode;
-  std::uint32_t normal_bits;        ///< per octahedral axis: values 0 … 2^bits - 2, see docs/format.md
+  std::uint32_t normal_scale;       ///< M, 1 … kMaxNormalScale where normals are stored, else 0; angle <= √2 / M
   std::uint32_t uv_set_count;
-  std::uint32_t has_color;          ///< 0 or 1; channels are c · 255 rounded, linear as in the source
-  UvGrid uv_grid[kMaxUvSets];
+  std::uint32_t has_color;          ///< 0 or 1
+  std::int32_t uv_log2[kMaxUvSets]; ///< step of each stored set; 0 from uv_set_count on
   std::uint8_t uv_set_source[kMaxUvSets];  ///< the TEXCOORD_n that stored set k was
-  std::uint32_t channel_count;
+  std::uint32_t material;           ///< of every triangle; kNone: clusters hold material ranges
+  std::int32_t sphere_log2;         ///< unit of the clusters' culling spheres: 2^sphere_log2 object units
+  std::uint32_t level_count;
   std::uint64_t source_triangles;   ///< after triangulation, before anything was dropped
   std::uint64_t source_vertices;
   std::uint64_t dropped_degenerate;
@@ -154,10 +154,8 @@ struct MeshRecord {
   std::uint32_t cluster_count;
   std::uint32_t first_node;         ///< BVH nodes of this mesh are contiguous, the root is the first
   std::uint32_t node_count;
-  std::uint32_t level_count;
-  std::uint32_t reserved;
 };
-static_assert(sizeof(MeshRecord) == 216);
+static_assert(sizeof(MeshRecord) == 200);
 
 enum class AlphaMode : std::uint32_t { kOpaque = 0, kMask = 1, kBlend = 2 };
 
@@ -194,7 +192,7 @@ constexpr std::uint16_t kGroupTerminal = 1u;  ///< nothing coarser replaces its 
 constexpr std::uint16_t kGroupStuck = 2u;     ///< terminal, and not because the top was reached
 
 /// Why a group could not be simplified further.
-enum class StuckReason : std::uint32_t {
+enum class StuckReason : std::uint16_t {
   kNotStuck = 0,
   kLocked = 1,       ///< too much of it is shared with other groups
   kFlips = 2,        ///< every collapse left would turn a triangle over
@@ -214,33 +212,35 @@ struct GroupRecord {
   float deviation;             ///< two-sided distance to the source, quantization included; kInfiniteError if not measured
   float normal_deviation;      ///< shading normals against the source's, largest angle in degrees, never falling along
                                ///< the DAG; kInfiniteError if terminal or not measured
+  float uv_deviation;          ///< UVs against the source's, largest distance over all sets in UV units; the same rules
   std::uint32_t first_cluster; ///< members, contiguous
-  std::uint32_t cluster_count;
   std::uint32_t mesh;
   std::uint32_t page;
+  std::uint16_t cluster_count; ///< at least 1
   std::uint16_t level;         ///< largest level of a member
   std::uint16_t flags;         ///< kGroup…
   StuckReason stuck_reason;
-  float uv_deviation;          ///< UVs against the source's, largest distance over all sets in UV units; the same rules
-  std::uint32_t reserved;
 };
-static_assert(sizeof(GroupRecord) == 64);
+static_assert(sizeof(GroupRecord) == 56);
 
 /// A cluster (meshlet). Drawn iff its own group's error passes (or it has none) and its coarser group's does not (I5).
 struct ClusterRecord {
-  float center[3];               ///< culling sphere, mesh space relative to MeshRecord::origin
-  float radius;
+  std::int16_t center[3];        ///< culling sphere, units of 2^MeshRecord::sphere_log2, relative to MeshRecord::origin
+  std::uint16_t radius;          ///< same units
   std::int8_t cone_axis[3];      ///< normal cone, /127
   std::int8_t cone_cutoff;       ///< /127, rounded up: back-facing iff dot(view, axis) >= cutoff; 127 = never culled
   std::uint32_t own_group;       ///< the group it was made from; kNone at level 0
   std::uint32_t coarser_group;   ///< the group that replaces it: the group it is a member of
-  std::uint16_t vertex_count;    ///< 1 … kMaxClusterVertices
-  std::uint16_t triangle_count;  ///< 1 … kMaxClusterTriangles
+  std::uint8_t vertices_less_1;  ///< as in the page; here too because drawing is planned before pages are there
+  std::uint8_t triangles_less_1;
   std::uint16_t level;
-  std::uint16_t flags;           ///< zero
-  std::uint32_t reserved;
+
+  [[nodiscard]] constexpr std::uint32_t vertex_count() const { return vertices_less_1 + 1U; }
+  [[nodiscard]] constexpr std::uint32_t triangle_count() const { return triangles_less_1 + 1U; }
 };
-static_assert(sizeof(ClusterRecord) == 40);
+static_assert(sizeof(ClusterRecord) == 24);
+constexpr std::int32_t kMinSphereLog2 = -126;  ///< 2^sphere_log2 and spheres in it are normal floats
+constexpr std::int32_t kMaxSphereLog2 = 104;
 
 /// BVH over the groups of a mesh. Sphere and error bound those of everything below, so a node that passes has nothing
 /// to draw below it.
@@ -250,9 +250,8 @@ struct NodeRecord {
   float error;               ///< largest group error below; kInfiniteError above a terminal group
   std::uint32_t first;       ///< first child node (children are contiguous), or the group id where child_count == 0
   std::uint32_t child_count; ///< 0 = leaf
-  std::uint32_t reserved;
 };
-static_assert(sizeof(NodeRecord) == 32);
+static_assert(sizeof(NodeRecord) == 28);
 
 // --------------------------------------------------------------------------------------------------------------- pages
 
@@ -273,39 +272,115 @@ struct PageRecord {
 };
 static_assert(sizeof(PageRecord) == 64);
 
-/// Start of a decoded page; u32 offsets[cluster_count] follow (bytes from the page's start, multiples of 4).
+/// A decoded page is an array of u32 words, read as it lies by CPU and GPU:
+///   PageHeader · cluster heads, kHeadWords (+ 1 where normals are stored) words each · each cluster's data · one zero word.
+/// The zero word is there so that any field can be had from two words without a look at the page's end.
 struct PageHeader {
   std::uint32_t first_cluster;
   std::uint32_t cluster_count;
 };
 static_assert(sizeof(PageHeader) == 8);
 
-/// Start of a cluster in a page; Channel[channel_count], MaterialRange[material_range_count], then the two streams.
-struct PageCluster {
-  std::uint16_t vertex_count;
-  std::uint16_t triangle_count;
-  std::uint16_t channel_count;
-  std::uint16_t material_range_count;
-  std::uint32_t vertex_bits;      ///< bits of a vertex = sum over channels
-  std::uint32_t vertex_offset;    ///< of the vertex bit stream, bytes from the page's start, multiple of 4
-  std::uint32_t triangle_offset;  ///< of the triangles: 3 × u8 local vertex indices each, multiple of 4
+/// A field of a packed head: `bits` bits from bit `shift` (0 the lowest) of word `word`. Signed: two's complement.
+struct BitField {
+  std::uint8_t word, shift, bits;
+  bool is_signed;
+  [[nodiscard]] constexpr std::uint32_t mask() const { return bits == 32 ? 0xFFFFFFFFu : (1u << bits) - 1u; }
 };
-static_assert(sizeof(PageCluster) == 20);
 
-/// value = minimum + (bits-wide unsigned integer). Vertex i starts at bit i · vertex_bits of the stream; bit k of the
-/// stream is bit k mod 8 of byte k / 8. Channels follow each other in the mesh's channel order.
-struct Channel {
-  std::int32_t minimum;
-  std::uint32_t bits;  ///< 0 … 25
-};
-static_assert(sizeof(Channel) == 8);
+[[nodiscard]] constexpr std::int32_t get_field(const std::uint32_t* words, BitField field) {
+  const std::uint32_t value = words[field.word] >> field.shift & field.mask();
+  const std::uint32_t sign = field.is_signed ? 1u << (field.bits - 1u) : 0u;
+  return static_cast<std::int32_t>((value ^ sign) - sign);
+}
+/// The bits that do not fit are cut off. \pre the field's bits are zero
+constexpr void put_field(std::uint32_t* words, BitField field, std::int32_t value) {
+  words[field.word] |= (static_cast<std::uint32_t>(value) & field.mask()) << field.shift;
+}
 
-/// Triangles of a cluster are sorted by material; the ranges cover them in order.
-struct MaterialRange {
-  std::uint32_t material;        ///< into kMaterials
-  std::uint32_t triangle_count;  ///< at least 1
-};
-static_assert(sizeof(MaterialRange) == 8);
+/// The head of a cluster. Unnamed bits are zero.
+///   raw position r[axis]    `bits[axis]` bits of the stream
+///   u, v                    the raw values of the two axes that are not `shear_axis`, in the order x y z
+///   position[axis]          minimum[axis] + r[axis], and for shear_axis + ((shear_u · u + shear_v · v) >> kShearShift)
+/// All arithmetic here and below is modulo 2^32, >> is arithmetic.
+constexpr std::uint32_t kHeadWords = 5;        ///< of a cluster without stored normals
+constexpr std::uint32_t kNormalHeadWords = 1;  ///< more with
+constexpr std::uint32_t kShearShift = 7;
+constexpr std::uint32_t kMaxNormalScale = 8191;
+namespace head {
+inline constexpr BitField kVerticesLess1{0, 0, 8, false};
+inline constexpr BitField kTrianglesLess1{0, 8, 8, false};
+inline constexpr BitField kDataWord{0, 16, 16, false};  ///< where the cluster's data starts, words from the page's start
+inline constexpr BitField kMinimum[3] = {{1, 0, 24, true}, {2, 0, 24, true}, {3, 0, 24, true}};
+inline constexpr BitField kBits[3] = {{1, 24, 5, false}, {2, 24, 5, false}, {3, 24, 5, false}};  ///< 0 … 24
+inline constexpr BitField kChart{1, 29, 3, false};      ///< of normals: 2 · axis + (pole on the negative side); 0 without
+inline constexpr BitField kShearAxis{2, 29, 2, false};  ///< 0 … 2
+inline constexpr BitField kShearU{4, 0, 8, true};
+inline constexpr BitField kShearV{4, 8, 8, true};
+inline constexpr BitField kStripsLess1{4, 16, 8, false};
+inline constexpr BitField kReferenceBits{4, 24, 4, false};  ///< 1 … 8
+inline constexpr BitField kNormalBitsA{4, 28, 4, false};    ///< 0 … 14; 0 without normals
+inline constexpr BitField kNormalMinimumA{5, 0, 14, false}; ///< the word is there only where normals are stored
+inline constexpr BitField kNormalMinimumB{5, 14, 14, false};
+inline constexpr BitField kNormalBitsB{5, 28, 4, false};    ///< 0 … 14
+}  // namespace head
+
+/// A cluster's data, without gaps: material ranges (words), UV ranges of set 0, 1, … (words), colour range (words), then
+/// one bit stream, then zero bits up to a whole word. Bit k of the stream is bit k mod 32 of word k / 32; fields lie
+/// lowest bit first. In the stream, one after the other:
+///   positions    vertex by vertex: x y z
+///   normals      vertex by vertex: a b
+///   UVs          set by set, range by range, vertex by vertex: u v
+///   colours      vertex by vertex: r g b a
+///   topology     see Strips
+
+/// Only where MeshRecord::material is kNone. Triangles are sorted by material; ranges follow until all are covered.
+namespace material_range {
+constexpr std::uint32_t kWords = 1;
+inline constexpr BitField kTrianglesLess1{0, 0, 8, false};
+inline constexpr BitField kMaterial{0, 8, 24, false};
+}  // namespace material_range
+
+/// Vertices are in islands that lie one after the other; each range has its own box and its own fit. Ranges follow until
+/// all vertices are covered. With the raw position values r:
+///   u = minimum_u + (bits_u bits of the stream) + ((u0 · r[x] + u1 · r[y] + u2 · r[z]) >> shift_u), v the same;
+/// the last term and its two words are there only where has_fit is 1.
+namespace uv_range {
+constexpr std::uint32_t kWords = 3;
+constexpr std::uint32_t kFitWords = 2;  ///< more where has_fit is 1
+inline constexpr BitField kVerticesLess1{0, 0, 8, false};
+inline constexpr BitField kBitsU{0, 8, 5, false};  ///< 0 … 25
+inline constexpr BitField kBitsV{0, 13, 5, false}; ///< 0 … 25
+inline constexpr BitField kShiftU{0, 18, 5, false};
+inline constexpr BitField kShiftV{0, 23, 5, false};
+inline constexpr BitField kHasFit{0, 28, 1, false};
+inline constexpr BitField kMinimumU{1, 0, 32, true};
+inline constexpr BitField kMinimumV{2, 0, 32, true};
+inline constexpr BitField kFitU[3] = {{3, 0, 10, true}, {3, 10, 10, true}, {3, 20, 10, true}};
+inline constexpr BitField kFitV[3] = {{4, 0, 10, true}, {4, 10, 10, true}, {4, 20, 10, true}};
+}  // namespace uv_range
+
+/// Only where has_color is 1. value = minimum + (bits of the stream).
+namespace color_range {
+constexpr std::uint32_t kWords = 2;
+inline constexpr BitField kMinimum[4] = {{0, 0, 8, false}, {0, 8, 8, false}, {0, 16, 8, false}, {0, 24, 8, false}};
+inline constexpr BitField kBits[4] = {{1, 0, 4, false}, {1, 4, 4, false}, {1, 8, 4, false}, {1, 12, 4, false}};  ///< 0 … 8
+}  // namespace color_range
+
+/// Normals: the pole of the chart is the axis kChart / 2, on its negative side where kChart is odd. With the other two
+/// axes in cyclic order (x: y z, y: z x, z: x y), a' = a - M, b' = b - M with a and b = minimum + stream bits,
+/// C = M - |a'| - |b'|:  C >= 0: (A, B) = (a', b'); else A = (M - |b'|) · sign(a'), B = (M - |a'|) · sign(b'),
+/// sign(0) = 1. The pole's coordinate is C, or -C on the negative side; the first other axis has A, the second B.
+
+/// Strips. A cluster's T triangles are dealt to strips, S = T + 2 · strips *slots* name their vertices. In the stream:
+///   T bits        turn[t]: 0 left, 1 right; 0 for the first triangle of a strip
+///   S bits        fresh[s]: 1 the next vertex that was not named before, 0 a reference
+///   strips - 1    first triangle of strip 1, 2, …: bit_width(T - 1) bits each, ascending
+///   references    for each slot with fresh = 0, in order: kReferenceBits bits d; vertex = (fresh ones before it) - 1 - d
+/// Triangle t of strip k (from 0) has its last corner in slot n(t) = t + 2 · k + 2. With t0 the first triangle of k:
+///   turn[t] = 0:  q = n(t) - 1;  p = n(r) - 1 for the last r in (t0, t) with turn[r] = 1, else n(t0) - 2
+///   turn[t] = 1:  p = n(t) - 1;  q = n(r) - 1 for the last r in [t0, t) with turn[r] = 0
+/// and is (p, q, n(t)), counter-clockwise.
 
 enum class BlobKind : std::uint32_t { kImage = 1, kBuffer = 2 };
 
@@ -320,7 +395,28 @@ struct BlobRecord {
 };
 static_assert(sizeof(BlobRecord) == 48);
 
-static_assert(std::is_trivially_copyable_v<MeshRecord> && std::is_trivially_copyable_v<GroupRecord>);
+static_assert(std::is_trivially_copyable_v<MeshRecord> && std::is_trivially_copyable_v<GroupRecord> &&
+              std::is_trivially_copyable_v<ClusterRecord>);
+
+/// Integers of a vertex, see MeshRecord.
+[[nodiscard]] constexpr std::uint32_t channel_count(const MeshRecord& mesh) {
+  return 3U + (mesh.normal_mode == NormalMode::kStored ? 3U : 0U) + 2U * mesh.uv_set_count + 4U * mesh.has_color;
+}
+/// A cluster's culling sphere, mesh space relative to MeshRecord::origin; exact in float.
+struct CullSphere {
+  float center[3];
+  float radius;
+};
+[[nodiscard]] constexpr CullSphere cull_sphere(const MeshRecord& mesh, const ClusterRecord& cluster) {
+  const auto unit = std::bit_cast<float>(static_cast<std::uint32_t>(mesh.sphere_log2 + 127) << 23U);  // 2^sphere_log2
+  return {{unit * static_cast<float>(cluster.center[0]), unit * static_cast<float>(cluster.center[1]),
+           unit * static_cast<float>(cluster.center[2])},
+          unit * static_cast<float>(cluster.radius)};
+}
+/// Words of a cluster's head.
+[[nodiscard]] constexpr std::uint32_t head_words(const MeshRecord& mesh) {
+  return kHeadWords + (mesh.normal_mode == NormalMode::kStored ? kNormalHeadWords : 0U);
+}
 
 }  // namespace meshlode::format
 

@@ -12,10 +12,10 @@
 
 namespace meshlode {
 
-/// Vertex i has channels[i * channel_count + c], in the order of MeshRecord.
+/// Vertex i has channels[i * channel_count + c], the integers of format::MeshRecord in their order.
 struct DecodedCluster {
   std::uint32_t vertex_count = 0, triangle_count = 0, channel_count = 0;
-  std::vector<std::int32_t> channels;                     ///< the integers as stored
+  std::vector<std::int32_t> channels;
   std::vector<std::array<std::uint8_t, 3>> triangles;     ///< local vertex indices
   std::vector<std::uint32_t> triangle_material;           ///< into Asset::materials()
 

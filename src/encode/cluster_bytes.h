@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One cluster as the bytes that stand in a page: header, channels, material ranges, vertex bits, triangles.
+// One cluster as the words that stand in a page: its head and its data.
 #pragma once
 
 #include <array>
@@ -18,16 +18,22 @@ namespace meshlode {
 /// What every cluster of a mesh is encoded with.
 struct ChannelPlan {
   AttributeLayout layout;
-  std::uint32_t normal_bits = 0;
+  std::int32_t normal_scale = 0;
   std::array<std::int32_t, kMaxUvSets> uv_log2{};
-  std::uint32_t channel_count = 3;
+  std::uint32_t material = format::kNone;  ///< of every triangle of the mesh, or kNone
+  std::uint32_t strip_trials = 1;
+
+  [[nodiscard]] std::uint32_t head_words() const {
+    return format::kHeadWords + (layout.has_normal ? format::kNormalHeadWords : 0U);
+  }
 };
 
-[[nodiscard]] constexpr std::uint32_t align4(std::uint32_t bytes) { return (bytes + 3U) & ~3U; }
+struct ClusterWords {
+  std::array<std::uint32_t, format::kHeadWords + format::kNormalHeadWords> head{};  ///< kDataWord is left zero
+  std::vector<std::uint32_t> data;
+};
 
-/// Appends the cluster; PageCluster::vertex_offset and triangle_offset count from the cluster's own start until the
-/// page is put together. Errors: kBuildFailed where the cluster breaks a limit of the format; `where` is left to the caller.
-[[nodiscard]] Status append_cluster(const LodDag& dag, const DagCluster& cluster, const ChannelPlan& plan,
-                                    std::vector<std::uint8_t>& out);
+/// Errors: kBuildFailed where the cluster breaks a limit of the format; `where` is left to the caller.
+[[nodiscard]] Result<ClusterWords> encode_cluster(const LodDag& dag, const DagCluster& cluster, const ChannelPlan& plan);
 
 }  // namespace meshlode

@@ -7,12 +7,14 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
 
 #include "base/parallel.h"
 #include "encode/cluster_bytes.h"
+#include "encode/octahedral.h"
 #include "encode/uv_grid.h"
 
 namespace meshlode {
@@ -40,9 +42,8 @@ float to_float_up(double value) {
 ChannelPlan plan_channels(const PreparedMesh& mesh, const LodDag& dag, const EncodeOptions& options) {
   ChannelPlan plan;
   plan.layout = mesh.layout;
-  plan.normal_bits = mesh.layout.has_normal ? options.normal_bits : 0U;
-  plan.channel_count = 3U + (mesh.layout.has_normal ? 2U : 0U) + 2U * mesh.layout.uv_set_count +
-                       (mesh.layout.has_color ? 4U : 0U);
+  plan.normal_scale = mesh.layout.has_normal ? normal_scale_of(options) : 0;
+  plan.strip_trials = options.strip_trials;
   const std::size_t stride = mesh.layout.stride();
   for (std::uint32_t set = 0; set < mesh.layout.uv_set_count; ++set) {
     UvRange range;
@@ -50,8 +51,12 @@ ChannelPlan plan_channels(const PreparedMesh& mesh, const LodDag& dag, const Enc
       range.add(dag.vertex_attributes[at]);
       range.add(dag.vertex_attributes[at + 1]);
     }
-    plan.uv_log2[set] = choose_uv_log2(range, options.uv_bits);
+    const double error = options.uv_error[set];
+    plan.uv_log2[set] = choose_uv_log2(range, error > 0.0 ? error : default_uv_error(range));
   }
+  const auto& material = dag.triangle_material;
+  const bool is_one = std::adjacent_find(material.begin(), material.end(), std::not_equal_to<>()) == material.end();
+  plan.material = !material.empty() && is_one ? material.front() : format::kNone;
   return plan;
 }
 
@@ -81,14 +86,14 @@ format::MeshRecord mesh_record(const PreparedMesh& mesh, const LodDag& dag, cons
   record.normal_mode = mesh.layout.has_normal    ? format::NormalMode::kStored
                        : mesh.layout.flat_normal ? format::NormalMode::kFlat
                                                  : format::NormalMode::kNone;
-  record.normal_bits = plan.normal_bits;
+  record.normal_scale = static_cast<std::uint32_t>(plan.normal_scale);
   record.uv_set_count = mesh.layout.uv_set_count;
   record.has_color = mesh.layout.has_color ? 1U : 0U;
   for (std::uint32_t set = 0; set < mesh.layout.uv_set_count; ++set) {
-    record.uv_grid[set].log2 = plan.uv_log2[set];
+    record.uv_log2[set] = plan.uv_log2[set];
     record.uv_set_source[set] = mesh.layout.uv_set_source[set];
   }
-  record.channel_count = plan.channel_count;
+  record.material = plan.material;
   record.source_triangles = mesh.source_triangles;
   record.source_vertices = mesh.source_vertices;
   record.dropped_degenerate = mesh.dropped_degenerate;
@@ -109,7 +114,7 @@ format::GroupRecord group_record(const DagGroup& group, const Hierarchy::Sphere&
   record.normal_deviation = group.is_terminal ? format::kInfiniteError : to_float_up(group.normal_deviation);
   record.uv_deviation = group.is_terminal ? format::kInfiniteError : to_float_up(group.uv_deviation);
   record.first_cluster = group.first_cluster;
-  record.cluster_count = group.cluster_count;
+  record.cluster_count = static_cast<std::uint16_t>(group.cluster_count);
   record.level = static_cast<std::uint16_t>(group.level);
   if (group.is_terminal) record.flags |= format::kGroupTerminal;
   if (group.is_terminal && group.stuck_reason != StuckReason::kNotStuck) record.flags |= format::kGroupStuck;
@@ -118,16 +123,19 @@ format::GroupRecord group_record(const DagGroup& group, const Hierarchy::Sphere&
 }
 
 format::ClusterRecord cluster_record(const DagCluster& cluster, const Hierarchy::Sphere& sphere,
-                                     const Hierarchy::Cone& cone) {
+                                     const Hierarchy::Cone& cone, std::int32_t sphere_log2) {
   format::ClusterRecord record{};
-  std::copy(std::begin(sphere.center), std::end(sphere.center), std::begin(record.center));
-  record.radius = sphere.radius;
+  const double unit = exp2_exact(sphere_log2);  // the hierarchy's spheres are whole units: nothing is rounded here
+  for (int axis = 0; axis < 3; ++axis) {
+    record.center[axis] = static_cast<std::int16_t>(double{sphere.center[axis]} / unit);
+  }
+  record.radius = static_cast<std::uint16_t>(double{sphere.radius} / unit);
   std::copy(std::begin(cone.axis), std::end(cone.axis), std::begin(record.cone_axis));
   record.cone_cutoff = cone.cutoff;
   record.own_group = cluster.own_group.is_valid() ? cluster.own_group.value : format::kNone;
   record.coarser_group = cluster.coarser_group.value;
-  record.vertex_count = static_cast<std::uint16_t>(cluster.vertex_count);
-  record.triangle_count = static_cast<std::uint16_t>(cluster.triangle_count);
+  record.vertices_less_1 = static_cast<std::uint8_t>(cluster.vertex_count - 1U);
+  record.triangles_less_1 = static_cast<std::uint8_t>(cluster.triangle_count - 1U);
   record.level = static_cast<std::uint16_t>(cluster.level);
   return record;
 }
@@ -136,10 +144,15 @@ format::ClusterRecord cluster_record(const DagCluster& cluster, const Hierarchy:
 Status check_input(const PreparedMesh& mesh, const LodDag& dag, const Hierarchy& hierarchy,
                    const EncodeOptions& options) {
   const auto fail = [&](ErrorCode code, const char* detail) { return Error{code, name_mesh(mesh), detail}; };
-  if (options.normal_bits < 4 || options.normal_bits > 16) {
-    return fail(ErrorCode::kUsage, "normal bits must be 4 to 16");
+  if (!(options.normal_error > 0.0) || options.strip_trials < 1) {
+    return fail(ErrorCode::kUsage, "the normal error must be above 0, and the strip trials at least 1");
   }
-  if (options.uv_bits < 4 || options.uv_bits > 24) return fail(ErrorCode::kUsage, "UV bits must be 4 to 24");
+  if (mesh.layout.has_normal && octahedral_scale_for(options.normal_error) > format::kMaxNormalScale) {
+    return fail(ErrorCode::kUnsupported, "a normal error below 0.01 degrees needs more bits than the format has");
+  }
+  for (const double error : options.uv_error) {
+    if (!(error >= 0.0)) return fail(ErrorCode::kUsage, "a UV error must not be negative");
+  }
   if (mesh.grid.log2 < kMinGridLog2 || mesh.grid.log2 > kMaxGridLog2 || mesh.grid.mantissa < 1 ||
       mesh.grid.mantissa >= (1U << 24U)) {
     return fail(ErrorCode::kUnsupported, "the grid's step leaves the range of floats");
@@ -155,10 +168,26 @@ Status check_input(const PreparedMesh& mesh, const LodDag& dag, const Hierarchy&
       hierarchy.cluster_cones.size() != dag.clusters.size()) {
     return fail(ErrorCode::kBuildFailed, "the hierarchy does not match the DAG");
   }
+  if (hierarchy.sphere_log2 < format::kMinSphereLog2 || hierarchy.sphere_log2 > format::kMaxSphereLog2) {
+    return fail(ErrorCode::kBuildFailed, "the hierarchy's spheres leave the range of floats");
+  }
+  for (const Hierarchy::Sphere& sphere : hierarchy.cluster_spheres) {
+    const double unit = exp2_exact(hierarchy.sphere_log2);
+    const auto is_whole = [&](float value, double most) {
+      const double units = double{value} / unit;
+      return std::abs(units) <= most && std::floor(units) == units;
+    };
+    bool fits = is_whole(sphere.radius, 65535.0);
+    for (const float c : sphere.center) fits &= is_whole(c, 32767.0);
+    if (!fits) return fail(ErrorCode::kBuildFailed, "a culling sphere is not in whole units of 16 bits");
+  }
   std::size_t next_cluster = 0;
   for (const DagGroup& group : dag.groups) {
     if (group.first_cluster != next_cluster || group.cluster_count < 1) {
       return fail(ErrorCode::kBuildFailed, "the DAG's groups do not partition its clusters");
+    }
+    if (group.cluster_count > std::numeric_limits<std::uint16_t>::max()) {
+      return fail(ErrorCode::kUnsupported, "a group has more than 65,535 clusters");
     }
     next_cluster += group.cluster_count;
     if (group.level > std::numeric_limits<std::uint16_t>::max() - 1U) {
@@ -181,39 +210,39 @@ Status check_input(const PreparedMesh& mesh, const LodDag& dag, const Hierarchy&
   return Ok{};
 }
 
-/// The encoded members of one group, one after the other.
-struct GroupBytes {
-  std::vector<std::uint8_t> bytes;
-  std::vector<std::uint32_t> starts;  ///< of each member in `bytes`
+/// The encoded members of one group.
+struct GroupWords {
+  std::vector<ClusterWords> clusters;
+  std::size_t bytes_in_page = 0;
   std::optional<Error> error;
-  [[nodiscard]] std::size_t size_in_page() const { return bytes.size() + starts.size() * sizeof(std::uint32_t); }
 };
 
-GroupBytes encode_group(const LodDag& dag, const DagGroup& group, const ChannelPlan& plan) {
-  GroupBytes out;
-  out.starts.reserve(group.cluster_count);
+GroupWords encode_group(const LodDag& dag, const DagGroup& group, const ChannelPlan& plan) {
+  GroupWords out;
+  out.clusters.reserve(group.cluster_count);
   for (std::uint32_t c = group.first_cluster; c < group.first_cluster + group.cluster_count; ++c) {
-    out.starts.push_back(static_cast<std::uint32_t>(out.bytes.size()));
-    if (Status status = append_cluster(dag, dag.clusters[c], plan, out.bytes); !status) {
-      out.error = status.error();
+    Result<ClusterWords> cluster = encode_cluster(dag, dag.clusters[c], plan);
+    if (!cluster) {
+      out.error = cluster.error();
       out.error->where = "cluster " + std::to_string(c);
       break;
     }
+    out.bytes_in_page += 4 * (plan.head_words() + cluster->data.size());
+    out.clusters.push_back(std::move(*cluster));
   }
-  out.bytes.shrink_to_fit();
   return out;
 }
 
 /// Groups in order, as many as fit each page.
 Result<std::vector<EncodedMesh::Page>> deal_pages(const PreparedMesh& mesh, const LodDag& dag,
-                                                  const std::vector<GroupBytes>& groups) {
+                                                  const std::vector<GroupWords>& groups) {
   std::vector<EncodedMesh::Page> pages;
   std::size_t page_bytes = 0;
   for (std::size_t g = 0; g < groups.size(); ++g) {
-    const std::size_t group_bytes = groups[g].size_in_page();
-    if (sizeof(format::PageHeader) + group_bytes > format::kMaxPageBytes) {
+    const std::size_t group_bytes = groups[g].bytes_in_page;
+    if (kPageFrameBytes + group_bytes > format::kMaxPageBytes) {
       return Error{ErrorCode::kUnsupported, name_mesh(mesh) + ", group " + std::to_string(g),
-                   "its " + std::to_string(groups[g].starts.size()) + " clusters take " + std::to_string(group_bytes) +
+                   "its " + std::to_string(groups[g].clusters.size()) + " clusters take " + std::to_string(group_bytes) +
                        " bytes and a page holds " + std::to_string(format::kMaxPageBytes)};
     }
     if (pages.empty() || page_bytes + group_bytes > format::kMaxPageBytes) {
@@ -221,7 +250,7 @@ Result<std::vector<EncodedMesh::Page>> deal_pages(const PreparedMesh& mesh, cons
       page.first_group = static_cast<std::uint32_t>(g);
       page.first_cluster = dag.groups[g].first_cluster;
       pages.push_back(std::move(page));
-      page_bytes = sizeof(format::PageHeader);
+      page_bytes = kPageFrameBytes;
     }
     ++pages.back().group_count;
     pages.back().cluster_count += dag.groups[g].cluster_count;
@@ -230,31 +259,27 @@ Result<std::vector<EncodedMesh::Page>> deal_pages(const PreparedMesh& mesh, cons
   return pages;
 }
 
-void assemble_page(const std::vector<GroupBytes>& groups, EncodedMesh::Page& page) {
-  std::size_t total = sizeof(format::PageHeader);
-  for (std::uint32_t g = page.first_group; g < page.first_group + page.group_count; ++g) {
-    total += groups[g].size_in_page();
-  }
-  page.bytes.resize(total);
-  const format::PageHeader header{page.first_cluster, page.cluster_count};
-  std::memcpy(page.bytes.data(), &header, sizeof(header));
-  std::size_t offset_at = sizeof(header);
-  std::size_t at = sizeof(header) + page.cluster_count * sizeof(std::uint32_t);
-  for (std::uint32_t g = page.first_group; g < page.first_group + page.group_count; ++g) {
-    const GroupBytes& group = groups[g];
-    std::memcpy(page.bytes.data() + at, group.bytes.data(), group.bytes.size());
-    for (const std::uint32_t start : group.starts) {
-      const auto cluster_at = static_cast<std::uint32_t>(at + start);
-      std::memcpy(page.bytes.data() + offset_at, &cluster_at, sizeof(cluster_at));
-      offset_at += sizeof(cluster_at);
-      format::PageCluster cluster{};
-      std::memcpy(&cluster, page.bytes.data() + cluster_at, sizeof(cluster));
-      cluster.vertex_offset += cluster_at;
-      cluster.triangle_offset += cluster_at;
-      std::memcpy(page.bytes.data() + cluster_at, &cluster, sizeof(cluster));
+void assemble_page(const std::vector<GroupWords>& groups, const ChannelPlan& plan, EncodedMesh::Page& page) {
+  std::vector<std::uint32_t> words{page.first_cluster, page.cluster_count};
+  std::size_t data_word = words.size() + std::size_t{page.cluster_count} * plan.head_words();
+  const auto for_each_cluster = [&](const auto& visit) {
+    for (std::uint32_t g = page.first_group; g < page.first_group + page.group_count; ++g) {
+      for (const ClusterWords& cluster : groups[g].clusters) visit(cluster);
     }
-    at += group.bytes.size();
-  }
+  };
+  for_each_cluster([&](const ClusterWords& cluster) {
+    auto head = cluster.head;
+    format::put_field(head.data(), format::head::kDataWord, static_cast<std::int32_t>(data_word));
+    words.insert(words.end(), head.begin(), head.begin() + plan.head_words());
+    data_word += cluster.data.size();
+  });
+  for_each_cluster([&](const ClusterWords& cluster) {
+    words.insert(words.end(), cluster.data.begin(), cluster.data.end());
+  });
+  words.push_back(0);
+  static_assert(std::endian::native == std::endian::little, "words are written as they lie in memory");
+  page.bytes.resize(4 * words.size());
+  std::memcpy(page.bytes.data(), words.data(), page.bytes.size());
 }
 
 /// A page needs the pages that hold the clusters made from its groups: with them loaded, its own clusters may be drawn.
@@ -273,15 +298,20 @@ void fill_dependencies(const LodDag& dag, EncodedMesh& out) {
 
 }  // namespace
 
+std::int32_t normal_scale_of(const EncodeOptions& options) {
+  return static_cast<std::int32_t>(
+      std::min(octahedral_scale_for(options.normal_error), std::uint64_t{format::kMaxNormalScale}));
+}
+
 Result<EncodedMesh> encode_mesh(const PreparedMesh& mesh, const LodDag& dag, const Hierarchy& hierarchy,
                                 const EncodeOptions& options) {
   if (Status status = check_input(mesh, dag, hierarchy, options); !status) return status.error();
   const ChannelPlan plan = plan_channels(mesh, dag, options);
 
-  std::vector<GroupBytes> group_bytes(dag.groups.size());
+  std::vector<GroupWords> group_words(dag.groups.size());
   parallel_for_each_index(dag.groups.size(), 4,
-                          [&](std::size_t g) { group_bytes[g] = encode_group(dag, dag.groups[g], plan); });
-  for (const GroupBytes& group : group_bytes) {
+                          [&](std::size_t g) { group_words[g] = encode_group(dag, dag.groups[g], plan); });
+  for (const GroupWords& group : group_words) {
     if (group.error) {
       return Error{group.error->code, name_mesh(mesh) + ", " + group.error->where, group.error->detail};
     }
@@ -289,10 +319,10 @@ Result<EncodedMesh> encode_mesh(const PreparedMesh& mesh, const LodDag& dag, con
 
   EncodedMesh out;
   out.record = mesh_record(mesh, dag, plan);
-  auto pages = deal_pages(mesh, dag, group_bytes);
+  auto pages = deal_pages(mesh, dag, group_words);
   if (!pages) return pages.error();
   out.pages = std::move(*pages);
-  parallel_for_each_index(out.pages.size(), 1, [&](std::size_t p) { assemble_page(group_bytes, out.pages[p]); });
+  parallel_for_each_index(out.pages.size(), 1, [&](std::size_t p) { assemble_page(group_words, plan, out.pages[p]); });
 
   out.groups.reserve(dag.groups.size());
   for (std::size_t g = 0; g < dag.groups.size(); ++g) {
@@ -304,9 +334,11 @@ Result<EncodedMesh> encode_mesh(const PreparedMesh& mesh, const LodDag& dag, con
       out.groups[g].page = static_cast<std::uint32_t>(p);
     }
   }
+  out.record.sphere_log2 = hierarchy.sphere_log2;
   out.clusters.reserve(dag.clusters.size());
   for (std::size_t c = 0; c < dag.clusters.size(); ++c) {
-    out.clusters.push_back(cluster_record(dag.clusters[c], hierarchy.cluster_spheres[c], hierarchy.cluster_cones[c]));
+    out.clusters.push_back(cluster_record(dag.clusters[c], hierarchy.cluster_spheres[c], hierarchy.cluster_cones[c],
+                                          out.record.sphere_log2));
   }
   fill_dependencies(dag, out);
   out.nodes = hierarchy.nodes;

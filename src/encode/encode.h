@@ -2,6 +2,7 @@
 // Encode: a mesh's DAG becomes quantized channels, bit-packed clusters and GPU-ready pages (docs/format.md, Pages).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -15,10 +16,16 @@
 
 namespace meshlode {
 
+/// Accuracy budgets; the bits follow from them.
 struct EncodeOptions {
-  std::uint32_t normal_bits = 11;  ///< per octahedral axis, 4 … 16: 11 bits keep 0.1 degrees
-  std::uint32_t uv_bits = 16;      ///< the mesh's UV range gets at least 2^uv_bits steps, 4 … 24
+  double normal_error = 0.1;  ///< degrees, largest; above 0, at least 0.01 (kMaxNormalScale)
+  /// UV units, largest, for each stored set; 0: invisible, see default_uv_error
+  std::array<double, kMaxUvSets> uv_error{};
+  std::uint32_t strip_trials = 8;  ///< see StripOptions
 };
+
+/// The M of the normals that keeps EncodeOptions::normal_error, at most format::kMaxNormalScale.
+[[nodiscard]] std::int32_t normal_scale_of(const EncodeOptions& options);
 
 /// One mesh, ready to be written: records with per-mesh ids (first_group = 0 and so on), pages not packed yet.
 struct EncodedMesh {
@@ -35,8 +42,11 @@ struct EncodedMesh {
   std::vector<Page> pages;
 };
 
+/// The header of a page and the zero word behind it.
+constexpr std::uint32_t kPageFrameBytes = static_cast<std::uint32_t>(sizeof(format::PageHeader)) + 4U;
+
 /// Upper bound of the bytes that one cluster adds to a page, whatever its coordinates: a group fits a page where
-/// sizeof(format::PageHeader) + the sum over its members is at most format::kMaxPageBytes. `material_count` is how many
+/// kPageFrameBytes + the sum over its members is at most format::kMaxPageBytes. `material_count` is how many
 /// materials the cluster holds at most.
 [[nodiscard]] std::uint32_t max_cluster_bytes(const AttributeLayout& layout, const EncodeOptions& options,
                                               std::uint32_t vertex_count = format::kMaxClusterVertices,

@@ -40,22 +40,34 @@ std::int32_t with_sign_of(std::int32_t magnitude, double sign) { return sign < 0
 
 }  // namespace
 
-std::array<std::int32_t, 2> encode_octahedral(const Vec3f& normal, std::uint32_t bits) {
-  const std::int32_t m = (1 << (bits - 1)) - 1;
+std::array<std::int32_t, 3> nearest_octahedral_point(const Vec3f& normal, std::int32_t scale) {
   const double x = normal.x;
   const double y = normal.y;
   const double z = normal.z;
   const double sum = std::abs(x) + std::abs(y) + std::abs(z);
-  if (!(sum > 0.0) || !std::isfinite(sum)) return {m, m};  // +z: NaN fails the first comparison
+  if (!(sum > 0.0) || !std::isfinite(sum)) return {0, 0, scale};  // +z: NaN fails the first comparison
   const double largest = std::max({std::abs(x), std::abs(y), std::abs(z)});  // scaled: no square leaves double's range
-  const Lattice p = nearest_in_octant(std::abs(x) / largest, std::abs(y) / largest, std::abs(z) / largest, m);
-  const std::int32_t px = with_sign_of(p[0], x);
-  const std::int32_t py = with_sign_of(p[1], y);
-  if (z >= 0.0 || p[2] == 0) return {px + m, py + m};
-  // The lower half unfolds outward. A zero counts as positive: -0 and the two images of a fold edge become one.
-  const std::int32_t fx = px < 0 ? -(m - p[1]) : m - p[1];
-  const std::int32_t fy = py < 0 ? -(m - p[0]) : m - p[0];
-  return {fx + m, fy + m};
+  const Lattice p = nearest_in_octant(std::abs(x) / largest, std::abs(y) / largest, std::abs(z) / largest, scale);
+  return {with_sign_of(p[0], x), with_sign_of(p[1], y), with_sign_of(p[2], z)};
+}
+
+std::array<std::int32_t, 2> chart_coordinates(const std::array<std::int32_t, 3>& point, std::uint32_t chart,
+                                              std::int32_t scale) {
+  const std::size_t pole = chart / 2;
+  const std::int32_t a = point[(pole + 1) % 3];
+  const std::int32_t b = point[(pole + 2) % 3];
+  const std::int32_t c = chart % 2 == 0 ? point[pole] : -point[pole];
+  if (c >= 0) return {a + scale, b + scale};
+  // The far half unfolds outward. A zero counts as positive: the two images of a fold edge become one.
+  const std::int32_t fa = a < 0 ? std::abs(b) - scale : scale - std::abs(b);
+  const std::int32_t fb = b < 0 ? std::abs(a) - scale : scale - std::abs(a);
+  return {fa + scale, fb + scale};
+}
+
+std::uint64_t octahedral_scale_for(double degrees) {
+  constexpr double kDegreesTimesScale = 81.028468454139;  // sqrt(2) * 180 / pi, rounded up
+  const double scale = std::ceil(kDegreesTimesScale / degrees);
+  return scale < 1.0 ? 1U : scale > 1e18 ? std::uint64_t{1} << 60U : static_cast<std::uint64_t>(scale);
 }
 
 }  // namespace meshlode

@@ -9,12 +9,19 @@
 
 namespace meshlode {
 
-/// The two stored values, each 0 … 2^bits - 2, of the representable direction that lies nearest to `normal`.
-///
-/// The representable directions are the integer points of |X| + |Y| + |Z| = M with M = 2^(bits-1) - 1. Each has exactly
-/// one pair of values: where the unfolding of the lower half has two, the non-negative side is taken. So equal
-/// directions have equal integers (I3). The angle to the input is at most sqrt(2) / M radians.
-/// Zero and non-finite normals become +z.
-[[nodiscard]] std::array<std::int32_t, 2> encode_octahedral(const Vec3f& normal, std::uint32_t bits);
+/// The nearest direction to `normal` among the integer points of |X| + |Y| + |Z| = scale. The set is closed under the
+/// octahedron's symmetries, so that it is the same seen from each of six charts, and a normal that two clusters share
+/// has the same integers in both (I3). The angle to the input is at most sqrt(2) / scale radians.
+/// Zero and non-finite normals become +z. \pre scale >= 1
+[[nodiscard]] std::array<std::int32_t, 3> nearest_octahedral_point(const Vec3f& normal, std::int32_t scale);
+
+/// The two stored values, each 0 … 2 · scale, of a point in one of the six charts (docs/format.md, Normals). Where the
+/// unfolding has two spellings, the non-negative side is taken.
+[[nodiscard]] std::array<std::int32_t, 2> chart_coordinates(const std::array<std::int32_t, 3>& point,
+                                                            std::uint32_t chart, std::int32_t scale);
+
+/// The smallest scale whose nearest point is never farther than the angle: ceil(sqrt(2) / angle), at least 1.
+/// \pre degrees > 0
+[[nodiscard]] std::uint64_t octahedral_scale_for(double degrees);
 
 }  // namespace meshlode

@@ -22,11 +22,13 @@ void UvRange::add(float value) {
   is_empty = false;
 }
 
-std::int32_t choose_uv_log2(const UvRange& range, std::uint32_t bits) {
+double default_uv_error(const UvRange& range) {
   const double extent = double(range.max) - double(range.min);
-  std::int32_t log2 = -static_cast<std::int32_t>(bits);
-  if (extent > 0.0) log2 += std::min(0, floor_log2(extent));
-  log2 = std::clamp(log2, kMinUvLog2, kMaxUvLog2);
+  return exp2_exact(-14 + (extent > 0.0 ? std::min(0, floor_log2(extent)) : 0));
+}
+
+std::int32_t choose_uv_log2(const UvRange& range, double error) {
+  std::int32_t log2 = std::clamp(floor_log2(2.0 * error), kMinUvLog2, kMaxUvLog2);
   const double largest = std::max(std::abs(double(range.min)), std::abs(double(range.max)));
   while (log2 < kMaxUvLog2 && largest > kMaxUvInteger * exp2_exact(log2)) ++log2;
   return log2;

@@ -18,9 +18,13 @@ struct UvRange {
   void add(float value);  ///< a value that is not finite is left out
 };
 
-/// Step 2^-bits · min(1, the largest power of two <= the range's extent): the range gets at least 2^bits steps, and so
-/// does every unit square of a tiled texture. Coordinates too large for that get the finest step that keeps |q| < 2^24.
-[[nodiscard]] std::int32_t choose_uv_log2(const UvRange& range, std::uint32_t bits);
+/// The largest error that nobody sees where no texture's size is known: an eighth of a texel of a texture with 2,048
+/// texels a side, and as much finer as the coordinates span less than a unit square.
+[[nodiscard]] double default_uv_error(const UvRange& range);
+
+/// The coarsest step 2^log2 that moves no coordinate by more than `error`. Where that would need |q| >= 2^24, or a step
+/// that floats lack, the finest step that is possible. \pre error > 0
+[[nodiscard]] std::int32_t choose_uv_log2(const UvRange& range, double error);
 
 /// Nearest integer, halves upward; clamped to the format's range; 0 where the value is not finite.
 [[nodiscard]] std::int32_t quantize_uv(float value, std::int32_t log2);

@@ -64,8 +64,8 @@ void add_budget_events(const Asset& asset, const format::MeshRecord& mesh, doubl
         cluster.own_group == format::kNone ? -1.0 : scaled_error(asset.groups()[cluster.own_group], unit);
     const double last = scaled_error(asset.groups()[cluster.coarser_group], unit);
     if (!(first < last)) continue;
-    events.push_back({first, cluster.triangle_count});
-    if (last < std::numeric_limits<double>::infinity()) events.push_back({last, -std::int64_t{cluster.triangle_count}});
+    events.push_back({first, cluster.triangle_count()});
+    if (last < std::numeric_limits<double>::infinity()) events.push_back({last, -std::int64_t{cluster.triangle_count()}});
   }
 }
 

@@ -86,7 +86,7 @@ Result<std::vector<CutPrimitive>> gather_cut(const Asset& asset, MeshId mesh, st
                    "cluster " + std::to_string(id) + (is_member ? " is in the cut twice" : " is not of this mesh")};
     }
   }
-  auto decoded = decode_cut(asset, record.channel_count, clusters);
+  auto decoded = decode_cut(asset, format::channel_count(record), clusters);
   if (!decoded) return decoded.error();
   const Soup& soup = *decoded;
   const std::vector<std::uint32_t> representative = find_representatives(soup);
@@ -104,7 +104,7 @@ Result<std::vector<CutPrimitive>> gather_cut(const Asset& asset, MeshId mesh, st
     const MaterialId material(soup.triangle_material[t]);
     if (primitives.empty() || primitives.back().material != material) {
       primitives.emplace_back().material = material;
-      primitives.back().vertices.channel_count = record.channel_count;
+      primitives.back().vertices.channel_count = soup.channel_count;
     }
     CutPrimitive& primitive = primitives.back();
     const auto primitive_index = static_cast<std::uint32_t>(primitives.size() - 1);

@@ -279,10 +279,10 @@ Result<Json> Exporter::make_primitive(const format::MeshRecord& record, const Cu
   }
   if (record.has_color != 0) {
     std::vector<std::array<std::uint8_t, 4>> colors(count);
-    const std::size_t first = record.channel_count - 4;  // colour is the last channel group
+    const std::size_t first = vertices.channel_count - 4;  // colour is the last channel group
     for (std::size_t i = 0; i < count; ++i) {
       for (std::size_t c = 0; c < 4; ++c) {
-        const std::int32_t value = vertices.channels[i * record.channel_count + first + c];
+        const std::int32_t value = vertices.channels[i * vertices.channel_count + first + c];
         colors[i][c] = static_cast<std::uint8_t>(std::clamp(value, 0, 255));
       }
     }

@@ -40,12 +40,13 @@ std::vector<GpuMesh> mesh_table(const Asset& asset) {
     m.node_count = mesh.group_count > 0 ? mesh.node_count : 0;
     m.first_group = mesh.first_group;
     m.first_cluster = mesh.first_cluster;
-    m.channel_count = mesh.channel_count;
+    m.channel_count = format::channel_count(mesh);
     m.normal_mode = static_cast<std::uint32_t>(mesh.normal_mode);
-    m.normal_scale = mesh.normal_bits;
+    m.normal_scale = mesh.normal_scale;
     m.uv_set_count = mesh.uv_set_count;
     m.has_color = mesh.has_color;
     m.group_count = mesh.group_count;
+    m.material = mesh.material;
     out.push_back(m);
   }
   return out;
@@ -162,12 +163,14 @@ Result<GpuScene> upload_scene(Device& device, const Asset& asset, std::span<cons
   std::vector<GpuCluster> clusters;
   for (const format::ClusterRecord& cluster : asset.clusters()) {
     GpuCluster c{};
-    std::copy(cluster.center, cluster.center + 3, c.center);
-    c.radius = cluster.radius;
+    const format::MeshRecord& mesh = asset.meshes()[asset.groups()[cluster.coarser_group].mesh];
+    const format::CullSphere sphere = format::cull_sphere(mesh, cluster);
+    std::copy(sphere.center, sphere.center + 3, c.center);
+    c.radius = sphere.radius;
     c.own_group = cluster.own_group;
     c.page_word = groups[cluster.coarser_group].page_word;
     c.level = cluster.level;
-    c.triangle_count = cluster.triangle_count;
+    c.triangle_count = cluster.triangle_count();
     out.max_cluster_triangles = std::max(out.max_cluster_triangles, c.triangle_count);
     clusters.push_back(c);
   }

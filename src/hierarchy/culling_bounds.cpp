@@ -45,6 +45,34 @@ Hierarchy::Sphere culling_sphere(const LodDag& dag, const DagCluster& cluster, c
   return {{sphere.center[0], sphere.center[1], sphere.center[2]}, float_above(radius * (1.0 + kDoubleSlack))};
 }
 
+std::int32_t choose_sphere_log2(std::span<const Hierarchy::Sphere> spheres) {
+  constexpr double kLargestCenter = 32766.0;  // one unit less than i16 holds: rounding may add half a one
+  constexpr double kLargestRadius = 65533.0;  // u16, less what snapping adds: √3 / 2 and the rounding up
+  double center = 0.0;
+  double radius = 0.0;
+  for (const Hierarchy::Sphere& sphere : spheres) {
+    for (const float c : sphere.center) center = std::max(center, std::abs(double{c}));
+    radius = std::max(radius, double{sphere.radius});
+  }
+  std::int32_t log2 = format::kMinSphereLog2;
+  while (log2 < format::kMaxSphereLog2 &&
+         (center > kLargestCenter * exp2_exact(log2) || radius > kLargestRadius * exp2_exact(log2))) {
+    ++log2;
+  }
+  return log2;
+}
+
+Hierarchy::Sphere snap_sphere(const Hierarchy::Sphere& sphere, std::int32_t log2) {
+  const double unit = exp2_exact(log2);
+  const Vec3d center = center_of(sphere);
+  Vec3d snapped(0.0);
+  for (int axis = 0; axis < 3; ++axis) snapped[axis] = std::floor(center[axis] / unit + 0.5) * unit;
+  const double radius = (length_of(center - snapped) + double{sphere.radius}) * (1.0 + kDoubleSlack);
+  // Whole units below 2^16 and a power of two: floats hold all four exactly.
+  return {{static_cast<float>(snapped.x), static_cast<float>(snapped.y), static_cast<float>(snapped.z)},
+          static_cast<float>(std::ceil(radius / unit) * unit)};
+}
+
 Hierarchy::Cone normal_cone(const LodDag& dag, const DagCluster& cluster) {
   std::vector<Vec3d> normals;
   normals.reserve(cluster.triangle_count);

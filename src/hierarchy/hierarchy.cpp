@@ -18,6 +18,9 @@ Hierarchy build_hierarchy(const LodDag& dag, const PreparedMesh& mesh) {
     hierarchy.cluster_cones[i] = normal_cone(dag, dag.clusters[i]);
   });
 
+  hierarchy.sphere_log2 = choose_sphere_log2(hierarchy.cluster_spheres);
+  for (Hierarchy::Sphere& sphere : hierarchy.cluster_spheres) sphere = snap_sphere(sphere, hierarchy.sphere_log2);
+
   LodBounds bounds = nest_lod_bounds(dag, hierarchy.cluster_spheres);
   std::vector<std::uint32_t> levels(dag.groups.size());
   for (std::size_t g = 0; g < levels.size(); ++g) levels[g] = dag.groups[g].level;

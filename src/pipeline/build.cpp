@@ -3,6 +3,7 @@
 #include "pipeline/build.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <mutex>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "hierarchy/hierarchy.h"
 #include "pipeline/meta.h"
 #include "plan/plan.h"
+#include "plan/texel_sizes.h"
 #include "prepare/prepare.h"
 #include "write/write.h"
 
@@ -109,6 +111,27 @@ ErrorSource error_source_of(format::ErrorTier tier) {
   return ErrorSource::kQuadric;
 }
 
+/// The budget of each stored UV set in UV units; 0 leaves it to encode, where no texture's size is known.
+std::array<double, kMaxUvSets> uv_errors(const Scene& scene, const SourceMesh& source, const AttributeLayout& layout,
+                                         const PipelineOptions& options) {
+  std::array<double, kMaxUvSets> errors{};
+  if (!options.uv_error_is_texels) {
+    errors.fill(options.uv_error);
+    return errors;
+  }
+  constexpr double kUsualTexels = 2048.0;  // of a texture whose size is not known
+  const std::array<double, kMaxUvSets> texels = texels_per_unit(scene, source);
+  for (std::uint32_t set = 0; set < layout.uv_set_count; ++set) {
+    const double known = texels[layout.uv_set_source[set]];
+    if (options.uv_error_is_default) {
+      errors[set] = known > 0.0 ? options.uv_error / std::max(known, kUsualTexels) : 0.0;
+    } else {
+      errors[set] = options.uv_error / (known > 0.0 ? known : kUsualTexels);
+    }
+  }
+  return errors;
+}
+
 Result<BuiltMesh> build_mesh(const Scene& scene, std::size_t index, const PipelineOptions& options,
                              ProgressMeter& progress) {
   const SourceMesh& source = scene.meshes[index];
@@ -120,11 +143,14 @@ Result<BuiltMesh> build_mesh(const Scene& scene, std::size_t index, const Pipeli
 
   PrepareOptions prepare_options;
   prepare_options.grid_step = options.grid_step;
+  prepare_options.position_error = options.position_error;
   Result<PreparedMesh> mesh = prepare_mesh(source, plan.layout, prepare_options);
   if (!mesh) return mesh.error();
   built.clock.end(kPrepare);
 
-  const EncodeOptions encode_options{.normal_bits = options.normal_bits, .uv_bits = options.uv_bits};
+  EncodeOptions encode_options;
+  encode_options.normal_error = options.normal_error;
+  encode_options.uv_error = uv_errors(scene, source, plan.layout, options);
   DagOptions dag_options;
   dag_options.error = error_source_of(options.error_tier);
   dag_options.caps.max_triangles = options.max_cluster_triangles;
@@ -135,7 +161,7 @@ Result<BuiltMesh> build_mesh(const Scene& scene, std::size_t index, const Pipeli
     built.decisions.push_back({label_of(source, index) + ": covered area", true,
                                std::to_string(mesh->piece_count) + " loose pieces: those that stay grow when others go"});
   }
-  dag_options.max_group_bytes = format::kMaxPageBytes - static_cast<std::uint32_t>(sizeof(format::PageHeader));
+  dag_options.max_group_bytes = format::kMaxPageBytes - kPageFrameBytes;
   dag_options.cluster_bytes = [&](std::uint32_t vertices, std::uint32_t triangles, std::uint32_t materials) {
     return max_cluster_bytes(mesh->layout, encode_options, vertices, triangles, materials);
   };

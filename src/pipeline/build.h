@@ -24,8 +24,11 @@ struct PipelineOptions {
   bool repair = false;     ///< the scene was imported with repair: recorded, because it changes the bytes
   std::uint32_t max_cluster_triangles = 128;  ///< I2; at most format::kMaxClusterTriangles
   std::uint32_t max_cluster_vertices = 256;   ///< I2; at most format::kMaxClusterVertices
-  std::uint32_t normal_bits = 11;  ///< per octahedral axis
-  std::uint32_t uv_bits = 16;      ///< steps across a mesh's UV range, as a power of two
+  double position_error = 0.0;  ///< mesh units, the largest distance a vertex moves; 0: chosen, invisible
+  double normal_error = 0.1;    ///< degrees, the largest angle between a stored normal and the source's
+  double uv_error = 0.125;      ///< the largest move of a texture coordinate, in the unit below
+  bool uv_error_is_texels = true;  ///< of the material's largest texture; else UV units
+  bool uv_error_is_default = true; ///< no texture counts as smaller than 2,048 texels then
 };
 
 /// Called from one thread at a time, in no promised order between meshes. Return false to cancel.

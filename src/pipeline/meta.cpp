@@ -51,8 +51,10 @@ std::string meta_json(const Scene& scene, const PipelineOptions& options, const 
   settings["repair"] = options.repair;
   settings["cluster_triangles"] = options.max_cluster_triangles;
   settings["cluster_vertices"] = options.max_cluster_vertices;
-  settings["normal_bits"] = options.normal_bits;
-  settings["uv_bits"] = options.uv_bits;
+  settings["position_error"] = options.position_error > 0.0 ? Json(options.position_error) : Json("auto");
+  settings["normal_error"] = options.normal_error;
+  settings["uv_error"] = options.uv_error;
+  settings["uv_error_unit"] = options.uv_error_is_texels ? "texels" : "uv";
   meta["settings"] = settings;
   meta["plan"] = Json::array();
   for (const PlanDecision& decision : decisions) {

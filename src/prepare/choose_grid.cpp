@@ -24,31 +24,46 @@ int floor_log2(double x) {
   return exponent - 1;
 }
 
+/// mantissa · 2^log2 with a mantissa of at most kMantissaBits, made odd so that it is the only spelling: nearest to the
+/// step, or the largest not above it.
+PositionGrid spell_step(double step, bool may_round_up) {
+  PositionGrid grid;
+  grid.log2 = floor_log2(step) - (kMantissaBits - 1);
+  auto mantissa = static_cast<std::uint32_t>(std::floor(std::ldexp(step, -grid.log2) + (may_round_up ? 0.5 : 0.0)));
+  while (mantissa % 2 == 0) {
+    mantissa /= 2;
+    ++grid.log2;
+  }
+  grid.mantissa = mantissa;
+  return grid;
+}
+
+/// Errors where coordinates would need more than 24 bits.
+Result<PositionGrid> checked_grid(const PositionGrid& grid, double largest_half_extent, const char* what, double value) {
+  if (largest_half_extent / grid.step() > kMaxGridCoordinate / grid.mantissa || grid.log2 < kSmallestLog2 ||
+      grid.log2 > kLargestLog2) {
+    char text[160];
+    std::snprintf(text, sizeof text, "a %s of %g needs more than 24 bits for an extent of %g", what, value,
+                  2.0 * largest_half_extent);
+    return Error{ErrorCode::kUnsupported, "", text};
+  }
+  return grid;
+}
+
 }  // namespace
 
 Result<PositionGrid> choose_grid(double largest_half_extent, double diagonal, double median_edge,
                                  const PrepareOptions& options) {
-  PositionGrid grid;
   if (options.grid_step > 0.0) {
-    // Nearest mantissa · 2^log2 with a mantissa of at most kMantissaBits, made odd so that it is the only spelling.
-    grid.log2 = floor_log2(options.grid_step) - (kMantissaBits - 1);
-    auto mantissa = static_cast<std::uint32_t>(std::floor(std::ldexp(options.grid_step, -grid.log2) + 0.5));
-    while (mantissa % 2 == 0) {
-      mantissa /= 2;
-      ++grid.log2;
-    }
-    grid.mantissa = mantissa;
-    if (largest_half_extent / grid.step() > kMaxGridCoordinate / grid.mantissa || grid.log2 < kSmallestLog2 ||
-        grid.log2 > kLargestLog2) {
-      char text[160];
-      std::snprintf(text, sizeof text, "a grid step of %g needs more than 24 bits for an extent of %g", options.grid_step,
-                    2.0 * largest_half_extent);
-      return Error{ErrorCode::kUnsupported, "", text};
-    }
-    return grid;
+    return checked_grid(spell_step(options.grid_step, true), largest_half_extent, "grid step", options.grid_step);
   }
+  if (options.position_error > 0.0) {
+    // The farthest a vertex moves is half the diagonal of a cell: step · √3 / 2.
+    const double step = options.position_error * 2.0 / std::sqrt(3.0) * (1.0 - 1e-12);
+    return checked_grid(spell_step(step, false), largest_half_extent, "position error", options.position_error);
+  }
+  PositionGrid grid;
   if (!(diagonal > 0.0)) return grid;  // a single point: any grid will do
-  // The farthest a vertex moves is half the diagonal of a cell: step · √3 / 2.
   double step = options.position_budget * diagonal * 2.0 / std::sqrt(3.0);
   if (median_edge > 0.0) step = std::min(step, median_edge / kStepsPerEdge);
   grid.log2 = std::clamp(floor_log2(step), kSmallestLog2, kLargestLog2);

@@ -14,13 +14,14 @@
 namespace meshlode {
 
 struct PrepareOptions {
-  double grid_step = 0.0;  ///< object units; 0: chosen from the budget below
-  /// Largest distance that the grid may move a vertex, as a share of the diagonal of the bounding box.
+  double grid_step = 0.0;       ///< object units; 0: chosen from the budgets below
+  double position_error = 0.0;  ///< largest distance that the grid may move a vertex, object units; 0: the share below
+  /// The same as a share of the diagonal of the bounding box; the grid gets finer where edges are short.
   double position_budget = 2.5e-5;
 };
 
 /// Position of the grid for a mesh whose bounding box has the given half extent, diagonal and median edge length.
-/// Errors: kUnsupported where the step asked for needs more than 24 bits.
+/// Errors: kUnsupported where the step or the position error asked for needs more than 24 bits.
 [[nodiscard]] Result<PositionGrid> choose_grid(double largest_half_extent, double diagonal, double median_edge,
                                                const PrepareOptions& options);
 

@@ -84,19 +84,9 @@ Status check_clusters(const RawTables& tables) {
       const auto fail = [&](const char* field, const char* detail) {
         return invalid_record(SectionId::kClusters, c, field, detail);
       };
-      if (!is_sphere(cluster.center, cluster.radius)) {
-        return fail("radius", "center and radius must be finite, radius not negative");
+      if (cluster.vertex_count() > 3U * cluster.triangle_count()) {
+        return fail("vertices_less_1", "is more than the triangles can use");
       }
-      if (cluster.vertex_count < 1 || cluster.vertex_count > format::kMaxClusterVertices) {
-        return fail("vertex_count", "must be 1 to 256");
-      }
-      if (cluster.triangle_count < 1 || cluster.triangle_count > format::kMaxClusterTriangles) {
-        return fail("triangle_count", "must be 1 to 256");
-      }
-      if (cluster.vertex_count > 3U * cluster.triangle_count) {
-        return fail("vertex_count", "is more than the triangles can use");
-      }
-      if (cluster.flags != 0) return fail("flags", "must be 0");
       if (cluster.coarser_group != g) return fail("coarser_group", "is not the group whose range holds the cluster");
       if (cluster.level > group.level) return fail("level", "is larger than its group's");
       if (cluster.level > largest_level) largest_level = cluster.level;

@@ -51,8 +51,9 @@ Status check_page_bytes(const RawTables& tables, std::size_t p, std::uint64_t& d
     return fail("stored_bytes", "reaches beyond section PAGE");
   }
   if (page.codec > format::Codec::kDraco) return fail("codec", "is unknown");
-  const std::uint64_t least = sizeof(format::PageHeader) +
-                              std::uint64_t{page.cluster_count} * (sizeof(std::uint32_t) + sizeof(format::PageCluster));
+  const format::MeshRecord& mesh = tables.meshes[tables.groups[page.first_group].mesh];
+  const std::uint64_t least =
+      sizeof(format::PageHeader) + 4U + std::uint64_t{page.cluster_count} * 4U * format::head_words(mesh);
   if (page.bytes < least || page.bytes > format::kMaxPageBytes || page.bytes % 4 != 0) {
     return fail("bytes", "must hold the page's clusters, at most 128 KiB, a multiple of 4");
   }

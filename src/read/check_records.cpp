@@ -51,19 +51,17 @@ Status check_mesh_values(std::size_t m, const format::MeshRecord& mesh) {
   if (mesh.error_tier > format::ErrorTier::kCertified) return fail("error_tier", "is unknown");
   if (mesh.normal_mode > format::NormalMode::kFlat) return fail("normal_mode", "is unknown");
   const bool has_normal = mesh.normal_mode == format::NormalMode::kStored;
-  if (has_normal ? mesh.normal_bits < 4 || mesh.normal_bits > 16 : mesh.normal_bits != 0) {
-    return fail("normal_bits", "must be 4 to 16 where normals are stored, else 0");
+  if (has_normal ? mesh.normal_scale < 1 || mesh.normal_scale > format::kMaxNormalScale : mesh.normal_scale != 0) {
+    return fail("normal_scale", "must be 1 to 8191 where normals are stored, else 0");
   }
   if (mesh.uv_set_count > format::kMaxUvSets) return fail("uv_set_count", "must be 0 to 4");
   if (mesh.has_color > 1) return fail("has_color", "must be 0 or 1");
   for (std::uint32_t set = 0; set < mesh.uv_set_count; ++set) {
-    if (mesh.uv_grid[set].log2 < kMinLog2 || mesh.uv_grid[set].log2 > kMaxLog2) {
-      return fail("uv_grid", "must be -126 to 104");
-    }
+    if (mesh.uv_log2[set] < kMinLog2 || mesh.uv_log2[set] > kMaxLog2) return fail("uv_log2", "must be -126 to 104");
   }
-  const std::uint32_t channels =
-      3U + (has_normal ? 2U : 0U) + 2U * mesh.uv_set_count + (mesh.has_color != 0U ? 4U : 0U);
-  if (mesh.channel_count != channels) return fail("channel_count", "does not follow from the attributes");
+  if (mesh.sphere_log2 < format::kMinSphereLog2 || mesh.sphere_log2 > format::kMaxSphereLog2) {
+    return fail("sphere_log2", "must be -126 to 104");
+  }
   return Ok{};
 }
 
@@ -79,6 +77,9 @@ Status check_meshes(const RawTables& tables) {
       return invalid_record(SectionId::kMeshes, m, field, detail);
     };
     if (!is_string(tables, mesh.name)) return fail("name", "reaches beyond the strings");
+    if (mesh.material != format::kNone && mesh.material >= tables.materials.size()) {
+      return fail("material", "is out of range");
+    }
     if (Status status = check_mesh_values(m, mesh); !status) return status;
     if (!extends(mesh.first_group, mesh.group_count, group_end, tables.groups.size())) {
       return fail("first_group", "meshes do not partition the groups");

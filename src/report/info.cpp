@@ -34,14 +34,14 @@ MeshInfo describe_mesh(const Asset& asset, std::uint32_t mesh_id, std::uint32_t 
   for (std::uint32_t c = mesh.first_cluster; c < mesh.first_cluster + mesh.cluster_count; ++c) {
     const format::ClusterRecord& cluster = asset.clusters()[c];
     info.clusters += 1;
-    info.triangles += cluster.triangle_count;
-    info.vertices += cluster.vertex_count;
+    info.triangles += cluster.triangle_count();
+    info.vertices += cluster.vertex_count();
     const format::GroupRecord& coarser = asset.groups()[cluster.coarser_group];
     if ((coarser.flags & format::kGroupTerminal) != 0) {
       info.roots += 1;
-      info.root_triangles += cluster.triangle_count;
+      info.root_triangles += cluster.triangle_count();
     }
-    group_triangles[cluster.coarser_group - mesh.first_group] += cluster.triangle_count;
+    group_triangles[cluster.coarser_group - mesh.first_group] += cluster.triangle_count();
     if (cluster.level >= info.levels.size()) continue;  // validate reports it
     LevelInfo& level = info.levels[cluster.level];
     const float error = cluster.own_group == format::kNone ? 0.0F : asset.groups()[cluster.own_group].error;
@@ -53,9 +53,9 @@ MeshInfo describe_mesh(const Asset& asset, std::uint32_t mesh_id, std::uint32_t 
       level.uv_deviation_max = std::max(level.uv_deviation_max, own.uv_deviation);
     }
     level.clusters += 1;
-    level.triangles += cluster.triangle_count;
-    level.vertices += cluster.vertex_count;
-    level.full_clusters += cluster.triangle_count >= cap ? 1U : 0U;
+    level.triangles += cluster.triangle_count();
+    level.vertices += cluster.vertex_count();
+    level.full_clusters += cluster.triangle_count() >= cap ? 1U : 0U;
   }
   for (std::uint32_t g = mesh.first_group; g < mesh.first_group + mesh.group_count; ++g) {
     const format::GroupRecord& group = asset.groups()[g];
@@ -84,7 +84,7 @@ AssetInfo describe_asset(const Asset& asset) {
   if (info.cluster_cap == 0) {
     info.cluster_cap = 128;
     for (const format::ClusterRecord& cluster : asset.clusters()) {
-      if (cluster.triangle_count > info.cluster_cap) info.cluster_cap = format::kMaxClusterTriangles;
+      if (cluster.triangle_count() > info.cluster_cap) info.cluster_cap = format::kMaxClusterTriangles;
     }
   }
   for (const format::SectionEntry& section : asset.sections()) {

@@ -4,12 +4,14 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <meshlode/format.h>
 
 #include "read/asset.h"
+#include "report/byte_map.h"
 
 namespace meshlode {
 
@@ -46,6 +48,7 @@ struct AssetInfo {
   std::uint64_t dropped_degenerate = 0, dropped_duplicate = 0, dropped_repaired = 0;
   std::uint32_t cluster_cap = 0;  ///< triangles: from the settings, else the smallest of 128 and 256 that holds
   std::vector<MeshInfo> meshes;
+  std::optional<ByteMap> byte_map;  ///< left to the caller: it takes loading every page
 };
 
 [[nodiscard]] AssetInfo describe_asset(const Asset& asset);

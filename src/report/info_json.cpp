@@ -166,7 +166,7 @@ void write_mesh(JsonWriter& w, const Asset& asset, std::uint32_t id, const MeshI
   w.field("error_tier", error_tier_name(mesh.error_tier));
   w.field("level0_deviation", mesh.level0_deviation);
   w.field("normals", normal_mode_name(mesh.normal_mode));
-  w.field("normal_bits", mesh.normal_bits);
+  w.field("normal_scale", mesh.normal_scale);
   w.key("uv_sets");
   w.begin_array();
   for (std::uint32_t k = 0; k < mesh.uv_set_count && k < format::kMaxUvSets; ++k) w.value(mesh.uv_set_source[k]);
@@ -191,6 +191,40 @@ void write_mesh(JsonWriter& w, const Asset& asset, std::uint32_t id, const MeshI
   w.key("levels");
   w.begin_array();
   for (const LevelInfo& level : info.levels) write_level(w, level);
+  w.end_array();
+  w.end_object();
+}
+
+/// Bytes of decoded pages; fractions of a byte where a stream ends inside one.
+void write_page_bits(JsonWriter& w, const PageBits& bits) {
+  const auto field = [&](const char* name, std::uint64_t count) { w.field(name, static_cast<double>(count) / 8.0); };
+  field("total", bits.total());
+  field("heads", bits.heads);
+  field("materials", bits.materials);
+  field("positions", bits.positions);
+  field("normals", bits.normals);
+  field("uvs", bits.uvs);
+  field("colors", bits.colors);
+  field("topology", bits.topology);
+  field("padding", bits.padding);
+}
+
+void write_byte_map(JsonWriter& w, const ByteMap& map) {
+  w.begin_object();
+  w.field("table_bytes", map.table_bytes);
+  w.field("stored_page_bytes", map.stored_page_bytes);
+  w.key("pages");
+  w.begin_object();
+  write_page_bits(w, map.total);
+  w.end_object();
+  w.key("levels");
+  w.begin_array();
+  for (std::size_t level = 0; level < map.levels.size(); ++level) {
+    w.begin_object();
+    w.field("level", level);
+    write_page_bits(w, map.levels[level]);
+    w.end_object();
+  }
   w.end_array();
   w.end_object();
 }
@@ -252,6 +286,12 @@ std::string info_json(const Asset& asset, const AssetInfo& info, bool list_stuck
       }
     }
     w.end_array();
+  }
+  w.key("byte_map");
+  if (info.byte_map) {
+    write_byte_map(w, *info.byte_map);
+  } else {
+    w.null();
   }
   w.key("sections");
   w.begin_array();

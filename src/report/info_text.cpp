@@ -79,6 +79,29 @@ void add_mesh(std::string& out, const Asset& asset, std::uint32_t id, const Mesh
   }
 }
 
+void add_byte_map(std::string& out, const ByteMap& map, const AssetInfo& info) {
+  add(out, "\nbytes of decoded pages\n  level       total   positions     normals         UVs     colours    topology"
+           "       heads   materials     padding\n");
+  const auto row = [&](const char* name, const PageBits& bits, double divisor, int digits) {
+    add(out, "  %-5s", name);
+    for (const std::uint64_t count : {bits.total(), bits.positions, bits.normals, bits.uvs, bits.colors, bits.topology,
+                                      bits.heads, bits.materials, bits.padding}) {
+      add(out, "  %10.*f", digits, static_cast<double>(count) / 8.0 / divisor);
+    }
+    out += '\n';
+  };
+  for (std::size_t level = 0; level < map.levels.size(); ++level) {
+    row(std::to_string(level).c_str(), map.levels[level], 1.0, 0);
+  }
+  row("all", map.total, 1.0, 0);
+  if (info.source_triangles > 0) row("/src", map.total, static_cast<double>(info.source_triangles), 3);
+  if (info.stored_triangles > 0) {
+    row("/tri", map.total, static_cast<double>(info.stored_triangles), 3);
+    add(out, "  (/src, /tri: bytes per source and per stored triangle; tables beside the pages: %s bytes)\n",
+        grouped(map.table_bytes).c_str());
+  }
+}
+
 void add_more(std::string& out, std::size_t total, const char* what) {
   if (total > kMaxRows) add(out, "  … and %zu more %s (--format json lists all)\n", total - kMaxRows, what);
 }
@@ -147,6 +170,7 @@ std::string info_text(const Asset& asset, const AssetInfo& info, bool list_stuck
         material.source_index == format::kNone ? " (default)" : "", material.double_sided != 0 ? ", double sided" : "");
   }
   add_more(out, asset.materials().size(), "materials");
+  if (info.byte_map) add_byte_map(out, *info.byte_map, info);
   add(out, "\nsections        bytes     decoded\n");
   for (const format::SectionEntry& section : asset.sections()) {
     add(out, "  %s  %12s %11s\n", section_name(section.id).c_str(), grouped(section.bytes).c_str(),

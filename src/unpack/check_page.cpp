@@ -1,49 +1,39 @@
 // SPDX-License-Identifier: MIT
 #include "unpack/check_page.h"
 
-#include <algorithm>
-#include <bitset>
+#include <bit>
 #include <cstring>
 #include <string>
+
+#include <meshlode/page.h>
 
 namespace meshlode {
 
 namespace {
 
-constexpr std::int64_t kMaxChannelMinimum = (std::int64_t{1} << 24) - 1;  ///< with 25 bits above it: never overflows
-constexpr std::uint32_t kMaxChannelBits = 25;  ///< a 32-bit load at any byte holds the value, whatever its first bit
+static_assert(std::endian::native == std::endian::little, "pages are read as they lie in memory");
 
-template <class T>
-T load(std::span<const std::uint8_t> bytes, std::size_t at) {
-  T value;
-  std::memcpy(&value, bytes.data() + at, sizeof(T));
-  return value;
-}
-
-std::uint64_t align4(std::uint64_t bytes) { return (bytes + 3U) & ~std::uint64_t{3}; }
-
-bool is_zero(std::span<const std::uint8_t> bytes, std::uint64_t first, std::uint64_t end) {
-  const auto range = bytes.subspan(first, end - first);
-  return std::all_of(range.begin(), range.end(), [](std::uint8_t byte) { return byte == 0; });
-}
+using format::get_field;
 
 class PageChecker {
  public:
-  PageChecker(const Asset& asset, PageId page, std::span<const std::uint8_t> bytes)
-      : asset_(asset), record_(asset.pages()[page.value]), page_(page), bytes_(bytes) {}
+  PageChecker(const Asset& asset, PageId page, std::span<const std::uint32_t> words)
+      : asset_(asset),
+        record_(asset.pages()[page.value]),
+        mesh_(asset.meshes()[asset.groups()[record_.first_group].mesh]),
+        page_(page),
+        words_(words) {}
 
   Status run() {
-    const auto header = load<format::PageHeader>(bytes_, 0);
-    if (header.first_cluster != record_.first_cluster) return fail("first_cluster", "does not match the page table");
-    if (header.cluster_count != record_.cluster_count) return fail("cluster_count", "does not match the page table");
-    // check_pages made sure that the offsets lie inside.
-    std::uint64_t at = sizeof(format::PageHeader) + std::uint64_t{record_.cluster_count} * sizeof(std::uint32_t);
+    // check_pages made sure that the page holds its header, the heads and a word more.
+    if (words_[0] != record_.first_cluster) return fail("first_cluster", "does not match the page table");
+    if (words_[1] != record_.cluster_count) return fail("cluster_count", "does not match the page table");
+    std::uint32_t at = 2 + record_.cluster_count * format::head_words(mesh_);
     for (cluster_ = 0; cluster_ < record_.cluster_count; ++cluster_) {
-      const auto offset = load<std::uint32_t>(bytes_, sizeof(format::PageHeader) + cluster_ * sizeof(std::uint32_t));
-      if (offset != at) return fail("offset", "does not follow the cluster before it");
       if (Status status = check_cluster(at); !status) return status;
     }
-    if (at != bytes_.size()) return fail("offset", "bytes are left over behind the last cluster");
+    if (at + 1 != words_.size()) return fail("data_word", "words are left over behind the last cluster");
+    if (words_.back() != 0) return fail("data_word", "the page's last word is not zero");
     return Ok{};
   }
 
@@ -54,99 +44,101 @@ class PageChecker {
     return {ErrorCode::kInvalid, where + ", field " + field, detail};
   }
 
-  /// Checks the cluster that starts at `at` and moves `at` behind it.
-  Status check_cluster(std::uint64_t& at) {
-    if (bytes_.size() - at < sizeof(format::PageCluster)) return fail("offset", "reaches beyond the page");
-    const auto header = load<format::PageCluster>(bytes_, at);
+  /// Checks the cluster whose data must start at word `at`, and moves `at` behind it.
+  Status check_cluster(std::uint32_t& at) {
+    const std::uint32_t head = 2 + cluster_ * format::head_words(mesh_);  // check_pages made sure of the heads
+    if (static_cast<std::uint32_t>(get_field(&words_[head], format::head::kDataWord)) != at) {
+      return fail("data_word", "does not follow the data before it");
+    }
+    format::ClusterLayout layout;
+    if (const char* field = format::read_cluster_layout(mesh_, words_, cluster_, layout)) {
+      return fail(field, "is out of range, or the cluster reaches beyond the page");
+    }
     const format::ClusterRecord& cluster = asset_.clusters()[record_.first_cluster + cluster_];
-    const format::MeshRecord& mesh = asset_.meshes()[asset_.groups()[cluster.coarser_group].mesh];
-    if (header.vertex_count != cluster.vertex_count) return fail("vertex_count", "does not match the cluster's record");
-    if (header.triangle_count != cluster.triangle_count) {
-      return fail("triangle_count", "does not match the cluster's record");
-    }
-    if (header.channel_count != mesh.channel_count) return fail("channel_count", "does not match the mesh");
-    if (header.material_range_count < 1 || header.material_range_count > header.triangle_count) {
-      return fail("material_range_count", "must be 1 to triangle_count");
-    }
-    const std::uint64_t channels_at = at + sizeof(format::PageCluster);
-    const std::uint64_t ranges_at = channels_at + header.channel_count * sizeof(format::Channel);
-    const std::uint64_t vertices_at = ranges_at + header.material_range_count * sizeof(format::MaterialRange);
-    if (vertices_at > bytes_.size()) return fail("channel_count", "the cluster's header reaches beyond the page");
-    if (Status status = check_channels(header, mesh, channels_at); !status) return status;
-    if (Status status = check_ranges(header, ranges_at); !status) return status;
-
-    const std::uint64_t vertex_bits = std::uint64_t{header.vertex_count} * header.vertex_bits;
-    const std::uint64_t triangles_at = vertices_at + align4((vertex_bits + 7U) / 8U);
-    const std::uint64_t triangles_end = triangles_at + 3U * header.triangle_count;
-    if (header.vertex_offset != vertices_at) return fail("vertex_offset", "does not follow the material ranges");
-    if (header.triangle_offset != triangles_at) return fail("triangle_offset", "does not follow the vertices");
-    if (align4(triangles_end) > bytes_.size()) return fail("triangle_offset", "the triangles reach beyond the page");
-    const std::uint64_t vertices_end = vertices_at + (vertex_bits + 7U) / 8U;
-    if (!is_zero(bytes_, vertices_end, triangles_at) || !is_zero(bytes_, triangles_end, align4(triangles_end)) ||
-        (vertex_bits % 8U != 0 && bytes_[vertices_end - 1] >> vertex_bits % 8U != 0)) {
-      return fail("vertex_offset", "padding is not zero");
-    }
-    if (Status status = check_triangles(header, triangles_at); !status) return status;
-    at = align4(triangles_end);
+    if (layout.vertex_count != cluster.vertex_count()) return fail("vertices_less_1", "does not match the record");
+    if (layout.triangle_count != cluster.triangle_count()) return fail("triangles_less_1", "does not match the record");
+    if (Status status = check_unused_bits(layout); !status) return status;
+    if (Status status = check_materials(layout); !status) return status;
+    if (Status status = check_topology(layout); !status) return status;
+    at = layout.end_word;
     return Ok{};
   }
 
-  Status check_channels(const format::PageCluster& header, const format::MeshRecord& mesh, std::uint64_t at) {
-    std::uint32_t total = 0;
-    for (std::uint32_t c = 0; c < header.channel_count; ++c) {
-      const auto channel = load<format::Channel>(bytes_, at + c * sizeof(format::Channel));
-      if (channel.bits > kMaxChannelBits) return fail("bits", "must be 0 to 25");
-      const bool may_be_negative = c < 3 || is_uv(c, mesh);
-      if (channel.minimum > kMaxChannelMinimum || channel.minimum < (may_be_negative ? -kMaxChannelMinimum : 0)) {
-        return fail("minimum", "is out of range");
+  Status check_unused_bits(const format::ClusterLayout& layout) {
+    const std::uint32_t* const head = &words_[layout.head_word];
+    if (head[2] >> 31 != 0 || head[3] >> 29 != 0) return fail("head", "an unnamed bit is not zero");
+    for (std::uint32_t set = 0; set < mesh_.uv_set_count; ++set) {
+      std::uint32_t at = layout.uv_word[set];
+      for (std::uint32_t r = 0; r < layout.uv_range_count[set]; ++r) {
+        const std::uint32_t* const range = &words_[at];
+        const bool has_fit = get_field(range, format::uv_range::kHasFit) != 0;
+        if (range[0] >> 29 != 0 || (has_fit && (range[3] >> 30 != 0 || range[4] >> 30 != 0))) {
+          return fail("uv_range", "an unnamed bit is not zero");
+        }
+        at += format::uv_range::kWords + (has_fit ? format::uv_range::kFitWords : 0U);
       }
-      total += channel.bits;
     }
-    if (total != header.vertex_bits) return fail("vertex_bits", "is not the sum over the channels");
+    if (mesh_.has_color != 0 && words_[layout.color_word + 1] >> 16 != 0) {
+      return fail("color_range", "an unnamed bit is not zero");
+    }
+    if (layout.end_bit % 32 != 0 && words_[layout.end_bit / 32] >> layout.end_bit % 32 != 0) {
+      return fail("data_word", "a bit behind the stream is not zero");
+    }
     return Ok{};
   }
 
-  static bool is_uv(std::uint32_t channel, const format::MeshRecord& mesh) {
-    const std::uint32_t first = mesh.normal_mode == format::NormalMode::kStored ? 5U : 3U;
-    return channel >= first && channel < first + 2U * mesh.uv_set_count;
-  }
-
-  Status check_ranges(const format::PageCluster& header, std::uint64_t at) {
-    std::uint64_t covered = 0;
-    std::uint32_t previous = 0;
-    for (std::uint32_t r = 0; r < header.material_range_count; ++r) {
-      const auto range = load<format::MaterialRange>(bytes_, at + r * sizeof(format::MaterialRange));
-      if (range.material >= asset_.materials().size()) return fail("material", "is out of range");
-      if (r > 0 && range.material <= previous) return fail("material", "must be larger than the one before it");
-      if (range.triangle_count < 1) return fail("triangle_count", "of a material range must be at least 1");
-      covered += range.triangle_count;
-      previous = range.material;
+  Status check_materials(const format::ClusterLayout& layout) {
+    std::int64_t previous = -1;
+    for (std::uint32_t r = 0; r < layout.material_count; ++r) {
+      const std::int32_t material =
+          get_field(&words_[layout.material_word + r * format::material_range::kWords], format::material_range::kMaterial);
+      if (static_cast<std::uint32_t>(material) >= asset_.materials().size()) return fail("material", "is out of range");
+      if (material <= previous) return fail("material", "must be larger than the one before it");
+      previous = material;
     }
-    if (covered != header.triangle_count) return fail("material_range_count", "the ranges do not cover the triangles");
     return Ok{};
   }
 
-  Status check_triangles(const format::PageCluster& header, std::uint64_t at) {
-    std::bitset<format::kMaxClusterVertices> used;
-    for (std::uint64_t i = at; i < at + 3U * header.triangle_count; ++i) {
-      if (bytes_[i] >= header.vertex_count) return fail("triangles", "a vertex index is out of range");
-      used.set(bytes_[i]);
+  /// Strips start in order, every vertex is named first by a fresh slot, and every reference names one before it.
+  Status check_topology(const format::ClusterLayout& layout) {
+    const auto bits = [&](std::uint32_t at, std::uint32_t count) { return format::get_bits(words_.data(), at, count); };
+    std::uint32_t first = 0;
+    if (bits(layout.turn_bit, 1) != 0) return fail("turn", "the first triangle of a strip turns left");
+    for (std::uint32_t k = 1; k < layout.strip_count; ++k) {
+      const std::uint32_t next = bits(layout.restart_bit + (k - 1) * layout.restart_bits, layout.restart_bits);
+      if (next <= first || next >= layout.triangle_count) return fail("restart", "strips must start in order");
+      first = next;
+      if (bits(layout.turn_bit + first, 1) != 0) return fail("turn", "the first triangle of a strip turns left");
     }
-    if (used.count() != header.vertex_count) return fail("triangles", "a vertex belongs to no triangle");
+    std::uint32_t fresh = 0;
+    std::uint32_t reference = 0;
+    for (std::uint32_t slot = 0; slot < layout.slot_count; ++slot) {
+      if (bits(layout.fresh_bit + slot, 1) != 0) {
+        if (++fresh > layout.vertex_count) return fail("fresh", "there are more fresh slots than vertices");
+        continue;
+      }
+      // There are slot_count - vertex_count references in the stream, and no more are read.
+      if (reference >= layout.reference_count) return fail("fresh", "there are fewer fresh slots than vertices");
+      const std::uint32_t distance =
+          bits(layout.reference_bit + reference * layout.reference_bits, layout.reference_bits);
+      if (distance >= fresh) return fail("reference", "names a vertex before the first");
+      ++reference;
+    }
     return Ok{};
   }
 
   const Asset& asset_;
   const format::PageRecord& record_;
+  const format::MeshRecord& mesh_;
   PageId page_;
-  std::span<const std::uint8_t> bytes_;
+  std::span<const std::uint32_t> words_;
   std::uint32_t cluster_ = format::kNone;  ///< in the page; kNone while the page's own header is checked
 };
 
 }  // namespace
 
-Status check_page(const Asset& asset, PageId page, std::span<const std::uint8_t> bytes) {
-  return PageChecker(asset, page, bytes).run();
+Status check_page(const Asset& asset, PageId page, std::span<const std::uint32_t> words) {
+  return PageChecker(asset, page, words).run();
 }
 
 }  // namespace meshlode

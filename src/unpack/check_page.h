@@ -9,8 +9,8 @@
 
 namespace meshlode {
 
-/// The layout of a page leaves no freedom: every offset is the only one possible and every padding byte is zero, so no
-/// byte of a page is without meaning. Errors: kInvalid with the place.
-[[nodiscard]] Status check_page(const Asset& asset, PageId page, std::span<const std::uint8_t> bytes);
+/// The layout of a page leaves no freedom: every offset is the only one possible and every unnamed bit is zero, so no
+/// bit of a page is without meaning. Errors: kInvalid with the place.
+[[nodiscard]] Status check_page(const Asset& asset, PageId page, std::span<const std::uint32_t> words);
 
 }  // namespace meshlode

@@ -39,7 +39,8 @@ Result<PageBytes> load_page(const Asset& asset, PageId page) {
     if (record.decoded_checksum != record.checksum) {
       return page_error(page, "decoded_checksum", "does not match the decoded bytes");
     }
-    if (Status status = check_page(asset, page, stored); !status) return status.error();
+    const PageBytes view(stored);  // offsets are multiples of 16 in bytes that lie at multiples of 8
+    if (Status status = check_page(asset, page, view.words()); !status) return status.error();
     return PageBytes(stored);
   }
 
@@ -54,8 +55,9 @@ Result<PageBytes> load_page(const Asset& asset, PageId page) {
   if (hash64(decoded) != record.decoded_checksum) {
     return page_error(page, "decoded_checksum", "does not match the decoded bytes");
   }
-  if (Status status = check_page(asset, page, decoded); !status) return status.error();
-  return PageBytes(std::move(decoded));
+  PageBytes owned(std::move(decoded));
+  if (Status status = check_page(asset, page, owned.words()); !status) return status.error();
+  return owned;
 }
 
 }  // namespace meshlode

@@ -12,7 +12,8 @@
 
 namespace meshlode {
 
-/// A page in its decoded form: a view of the file where it is stored uncompressed, else bytes of its own.
+/// A page in its decoded form: a view of the file where it is stored uncompressed, else bytes of its own. They are whole
+/// u32 words, aligned as such.
 class PageBytes {
  public:
   explicit PageBytes(std::span<const std::uint8_t> view) : view_(view) {}
@@ -20,6 +21,9 @@ class PageBytes {
   PageBytes(PageBytes&&) = default;  // moving a vector keeps its buffer, so the view stays valid
   PageBytes& operator=(PageBytes&&) = default;
   [[nodiscard]] std::span<const std::uint8_t> bytes() const { return view_; }
+  [[nodiscard]] std::span<const std::uint32_t> words() const {
+    return {reinterpret_cast<const std::uint32_t*>(view_.data()), view_.size() / 4};
+  }
 
  private:
   std::vector<std::uint8_t> owned_;

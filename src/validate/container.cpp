@@ -65,7 +65,7 @@ bool read_header(std::span<const std::uint8_t> bytes, format::FileHeader& header
       log.expect(header.magic == format::kMagic, "L001", where, [] { return std::string("the magic is not LODE"); });
   if (!sound) return false;
   sound = log.expect(header.version == format::kVersion, "L001", where,
-                     [&] { return "version " + std::to_string(header.version) + " is not 0"; });
+                     [&] { return "version " + std::to_string(header.version) + " is not 1"; });
   sound &= log.expect(header.header_bytes == sizeof header, "L001", where,
                       [&] { return "header_bytes is " + std::to_string(header.header_bytes) + ", not 64"; });
   log.expect(header.file_bytes == bytes.size(), "L002", where,
@@ -170,7 +170,7 @@ bool check_section(const FileTables& file, const SectionEntry& entry, RuleLog& l
     log.expect(entry.checksum == 0, "L010", where, [] { return std::string("page data has a checksum of its own"); });
   }
   bool sound = log.expect(entry.record_bytes == known->record_bytes, "L011", where, [&] {
-    return differs("record_bytes", std::uint64_t{entry.record_bytes}, "record of version 0",
+    return differs("record_bytes", std::uint64_t{entry.record_bytes}, "record of version 1",
                    std::uint64_t{known->record_bytes});
   });
   if (known->record_bytes == 0) {

@@ -129,7 +129,7 @@ void check_cluster(const FileTables& file, std::size_t m, std::size_t c, RuleLog
   // Both ends of what a replacement moves lie in the LOD sphere: the finest surface, and what was made of it.
   const std::uint32_t around = is_level0 ? cluster.coarser_group : cluster.own_group;
   const Ball lod = ball_of(file.groups[around]);
-  const Ball culling = ball_of(cluster);
+  const Ball culling = ball_of(format::cull_sphere(file.meshes[m], cluster));
   log.expect(!is_ball(lod) || !is_ball(culling) || contains_ball(lod, culling), "L310", at,
              [&] { return "culling sphere leaves the LOD sphere of " + place("group", around); });
   if (is_level0) return;

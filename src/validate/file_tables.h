@@ -45,6 +45,7 @@ void check_texts(const FileTables& file, RuleLog& log);
 [[nodiscard]] std::string meta_text(std::string_view meta, const char* section, const char* key);
 /// META's /section/key where it is a whole number; nothing elsewhere.
 [[nodiscard]] std::optional<std::uint64_t> meta_number(std::string_view meta, const char* section, const char* key);
+[[nodiscard]] std::optional<double> meta_real(std::string_view meta, const char* section, const char* key);
 
 /// L101 … L115. True where every id and range is sound, so that the later rules may index.
 [[nodiscard]] bool check_tables(const FileTables& file, RuleLog& log);

@@ -98,18 +98,14 @@ class MeshGeometry {
     const format::ClusterRecord& record = asset_.clusters()[c];
     const DecodedCluster& cluster = clusters_[c];
     const auto at = [&] { return place("mesh", m_, "cluster", c); };
-    const Ball ball{{record.center[0], record.center[1], record.center[2]}, record.radius};
-    const bool finite = std::isfinite(ball.center[0]) && std::isfinite(ball.center[1]) &&
-                        std::isfinite(ball.center[2]) && std::isfinite(ball.radius) && ball.radius >= 0.0F;
-    if (log_.expect(finite, "L502", at, [] { return std::string("sphere is not finite or negative"); })) {
-      for (std::uint32_t v = 0; v < cluster.vertex_count; ++v) {
-        const Vec3d p = Vec3d(cluster.position(v)) * step_;  // exact: below 2^47 times a power of two
-        if (!log_.expect(contains_point(ball, p), "L502", at,
-                         [&] { return "vertex " + std::to_string(v) + " is outside"; }))
-          break;
-      }
+    const format::CullSphere sphere = format::cull_sphere(mesh_, record);
+    const Ball ball{{sphere.center[0], sphere.center[1], sphere.center[2]}, sphere.radius};
+    for (std::uint32_t v = 0; v < cluster.vertex_count; ++v) {
+      const Vec3d p = Vec3d(cluster.position(v)) * step_;  // exact: below 2^47 times a power of two
+      if (!log_.expect(contains_point(ball, p), "L502", at,
+                       [&] { return "vertex " + std::to_string(v) + " is outside"; }))
+        break;
     }
-    check_normals(c);
     bool cone_broken = false;
     for (std::size_t t = 0; t < cluster.triangles.size(); ++t) {
       const auto& triangle = cluster.triangles[t];
@@ -135,26 +131,6 @@ class MeshGeometry {
       lowest_ = has_vertex_ ? glm::min(lowest_, p) : p;
       highest_ = has_vertex_ ? glm::max(highest_, p) : p;
       has_vertex_ = true;
-    }
-  }
-
-  /// On the lower half of the octahedron a direction with X = 0 or Y = 0 could be written in several ways (format, 13).
-  void check_normals(std::uint32_t c) {
-    if (mesh_.normal_mode != format::NormalMode::kStored) return;
-    const DecodedCluster& cluster = clusters_[c];
-    const std::int32_t m = (1 << (mesh_.normal_bits - 1)) - 1;
-    for (std::uint32_t v = 0; v < cluster.vertex_count; ++v) {
-      const std::int32_t* channels = &cluster.channels[std::size_t{v} * cluster.channel_count];
-      const std::int32_t a = channels[3] - m;
-      const std::int32_t b = channels[4] - m;
-      if (m - std::abs(a) - std::abs(b) >= 0) continue;
-      // X = 0 where |v| = M, Y = 0 where |u| = M.
-      const bool canonical = (std::abs(b) != m || a >= 0) && (std::abs(a) != m || b >= 0);
-      if (!log_.expect(
-              canonical, "L215", [&] { return place("mesh", m_, "cluster", c); },
-              [&] { return "vertex " + std::to_string(v) + " has another pair for its normal"; })) {
-        return;
-      }
     }
   }
 
@@ -190,7 +166,7 @@ class MeshGeometry {
 }  // namespace
 
 void check_geometry(const Asset& asset, std::span<const DecodedCluster> clusters, RuleLog& log) {
-  for (const char* rule : {"L116", "L501", "L502", "L503", "L504", "L505", "L506", "L507", "L508", "L509", "L215"})
+  for (const char* rule : {"L116", "L501", "L502", "L503", "L504", "L505", "L506", "L507", "L508", "L509"})
     log.check(rule);
   for (std::size_t m = 0; m < asset.meshes().size(); ++m) MeshGeometry(asset, m, clusters, log).run();
 }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The bytes of pages (L203 … L212, L214), parsed by the judge's own lines and not by `decode`.
+// The bytes of pages (L203 … L212, L214 … L216), parsed by the judge's own lines and not by `decode`.
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cstdlib>
 #include <cstring>
 #include <optional>
 #include <string>
@@ -17,59 +18,79 @@ namespace meshlode {
 
 namespace {
 
-using format::Channel;
-using format::MaterialRange;
-using format::PageCluster;
+/// A page as words, read by the letter of docs/format.md: nothing of <meshlode/page.h> or of decode.
+class Words {
+ public:
+  explicit Words(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
+  [[nodiscard]] std::uint64_t size() const { return bytes_.size() / 4; }
+  /// \pre index < size()
+  [[nodiscard]] std::uint32_t operator[](std::uint64_t index) const {
+    std::uint32_t word;
+    std::memcpy(&word, bytes_.data() + 4 * index, sizeof word);
+    return word;
+  }
+  /// `count` bits of word `index` from bit `shift`.
+  [[nodiscard]] std::uint32_t field(std::uint64_t index, std::uint32_t shift, std::uint32_t count) const {
+    return static_cast<std::uint32_t>((*this)[index] >> shift & ((std::uint64_t{1} << count) - 1));
+  }
+  [[nodiscard]] std::int64_t signed_field(std::uint64_t index, std::uint32_t shift, std::uint32_t count) const {
+    const std::int64_t value = field(index, shift, count);
+    return value >= std::int64_t{1} << (count - 1) ? value - (std::int64_t{1} << count) : value;
+  }
+  /// \pre bit + count <= 32 * size()
+  [[nodiscard]] std::uint32_t stream(std::uint64_t bit, std::uint32_t count) const {
+    if (count == 0) return 0;
+    std::uint64_t window = (*this)[bit / 32];
+    if (bit % 32 + count > 32) window |= std::uint64_t{(*this)[bit / 32 + 1]} << 32;
+    return static_cast<std::uint32_t>(window >> bit % 32 & ((std::uint64_t{1} << count) - 1));
+  }
 
-template <class Record>
-Record read_at(std::span<const std::uint8_t> bytes, std::size_t offset) {
-  Record record;
-  std::memcpy(&record, bytes.data() + offset, sizeof record);
-  return record;
-}
-
-/// `count` bits at `bit`, at most 25, without reading beyond the stream's bytes.
-std::uint32_t read_bits(std::span<const std::uint8_t> stream, std::uint64_t bit, std::uint32_t count) {
-  std::uint64_t window = 0;
-  const std::uint64_t first = bit / 8;
-  for (std::uint64_t i = 0; i < 5 && first + i < stream.size(); ++i)
-    window |= std::uint64_t{stream[first + i]} << (8 * i);
-  return static_cast<std::uint32_t>(window >> (bit % 8) & ((std::uint64_t{1} << count) - 1));
-}
-
-struct ChannelLimits {
-  std::int64_t lowest, highest;
+ private:
+  std::span<const std::uint8_t> bytes_;
 };
 
-/// What the channels of a mesh may hold, in channel order.
-std::vector<ChannelLimits> channel_limits(const format::MeshRecord& mesh) {
-  std::vector<ChannelLimits> limits(3, {-kMaxGridCoordinate, kMaxGridCoordinate});
-  if (mesh.normal_mode == format::NormalMode::kStored) {
-    limits.insert(limits.end(), 2, {0, (std::int64_t{1} << mesh.normal_bits) - 2});
-  }
-  constexpr std::int64_t kMaxUv = (1 << 24) - 1;  // a float holds every decoded coordinate exactly
-  limits.insert(limits.end(), 2U * mesh.uv_set_count, {-kMaxUv, kMaxUv});
-  if (mesh.has_color != 0) limits.insert(limits.end(), 4, {0, 255});
-  return limits;
+/// The low 32 bits as a signed integer: what arithmetic modulo 2^32 leaves.
+std::int64_t wrap(std::int64_t value) {
+  return static_cast<std::int32_t>(static_cast<std::uint32_t>(value));
 }
+
+struct Spread {
+  std::uint32_t lowest = 0xFFFFFFFFU, highest = 0;
+  void add(std::uint32_t value) {
+    lowest = std::min(lowest, value);
+    highest = std::max(highest, value);
+  }
+};
+
+struct UvRangeWords {
+  std::uint32_t vertices, bits[2], shift[2];
+  std::int64_t minimum[2];
+  std::int64_t slope[2][3];
+};
 
 class ClusterBytesChecker {
  public:
   ClusterBytesChecker(const FileTables& file, std::size_t page, std::span<const std::uint8_t> bytes, RuleLog& log)
       : file_(file),
         page_(page),
-        bytes_(bytes),
+        words_(bytes),
         log_(log),
         mesh_(file.meshes[file.groups[file.pages[page].first_group].mesh]),
-        limits_(channel_limits(mesh_)) {}
+        has_normal_(mesh_.normal_mode == format::NormalMode::kStored) {}
 
-  /// Checks the cluster that starts at `offset`; its end, or nothing where it is broken.
-  std::optional<std::size_t> run(std::size_t cluster, std::size_t offset) {
+  [[nodiscard]] std::uint64_t head_words() const { return has_normal_ ? 6 : 5; }
+
+  /// Checks the cluster whose data should start at word `data`; the word behind them, or nothing where it is broken.
+  std::optional<std::uint64_t> run(std::size_t cluster, std::uint64_t index, std::uint64_t data) {
     cluster_ = cluster;
-    if (!parse(offset)) return std::nullopt;
-    check_triangles();
-    check_vertices();
-    check_materials();
+    head_ = 2 + index * head_words();
+    sound_ = true;
+    if (!parse_head(data) || !parse_ranges() || !parse_stream()) return std::nullopt;
+    check_positions();
+    if (has_normal_) check_normals();
+    for (std::uint32_t set = 0; set < mesh_.uv_set_count; ++set) check_uvs(set);
+    if (mesh_.has_color != 0) check_colors();
+    check_strips();
     return sound_ ? std::optional(end_) : std::nullopt;
   }
 
@@ -79,197 +100,337 @@ class ClusterBytesChecker {
   template <class Detail>
   bool expect(bool holds, std::string_view rule, const Detail& detail) {
     log_.expect(
-        holds, rule, [&] { return at(); }, detail);
+        holds, rule, [&] { return at(); }, [&] { return std::string(detail()); });
+    return holds;
+  }
+  /// For rules without which nothing more of the cluster can be trusted.
+  template <class Detail>
+  bool require(bool holds, std::string_view rule, const Detail& detail) {
+    if (!expect(holds, rule, detail)) sound_ = false;
     return holds;
   }
 
-  bool parse(std::size_t offset) {
-    sound_ = true;
+  bool parse_head(std::uint64_t data) {
     const format::ClusterRecord& record = file_.clusters[cluster_];
-    if (!expect(offset <= bytes_.size() && sizeof(PageCluster) <= bytes_.size() - offset, "L205",
-                [] { return std::string("starts outside the page"); })) {
+    vertices_ = words_.field(head_, 0, 8) + 1;
+    triangles_ = words_.field(head_, 8, 8) + 1;
+    if (!require(vertices_ == record.vertex_count() && triangles_ == record.triangle_count(), "L206", [&] {
+          return differs("vertices", std::uint64_t{vertices_}, "record", std::uint64_t{record.vertex_count()}) + "; " +
+                 differs("triangles", std::uint64_t{triangles_}, "record", std::uint64_t{record.triangle_count()});
+        })) {
       return false;
     }
-    head_ = read_at<PageCluster>(bytes_, offset);
-    sound_ &=
-        expect(head_.vertex_count == record.vertex_count && head_.triangle_count == record.triangle_count, "L206", [&] {
-          return differs("vertices", std::uint64_t{head_.vertex_count}, "record", std::uint64_t{record.vertex_count}) +
-                 "; " +
-                 differs("triangles", std::uint64_t{head_.triangle_count}, "record",
-                         std::uint64_t{record.triangle_count});
-        });
-    sound_ &= expect(head_.channel_count == mesh_.channel_count, "L206", [&] {
-      return differs("channels", std::uint64_t{head_.channel_count}, "mesh", std::uint64_t{mesh_.channel_count});
-    });
-    if (!sound_) return false;
-    std::size_t cursor = offset + sizeof(PageCluster);
-    const std::size_t tables =
-        head_.channel_count * sizeof(Channel) + head_.material_range_count * sizeof(MaterialRange);
-    if (!expect(tables <= bytes_.size() - cursor, "L208",
-                [] { return std::string("channels or ranges leave the page"); })) {
-      return sound_ = false;
+    const std::uint64_t start = words_.field(head_, 16, 16);
+    if (!require(start == data, "L205", [&] { return differs("data word", start, "should be", data); })) return false;
+    cursor_ = start;
+    bool known = true;
+    for (std::uint32_t axis = 0; axis < 3; ++axis) {
+      minimum_[axis] = words_.signed_field(head_ + 1 + axis, 0, 24);
+      bits_[axis] = words_.field(head_ + 1 + axis, 24, 5);
+      known &= bits_[axis] <= 24;
     }
-    channels_.clear();
-    ranges_.clear();
-    std::uint64_t bits = 0;
-    for (std::uint32_t i = 0; i < head_.channel_count; ++i, cursor += sizeof(Channel)) {
-      channels_.push_back(read_at<Channel>(bytes_, cursor));
-      sound_ &= expect(channels_.back().bits <= 25, "L207",
-                       [&] { return "channel " + std::to_string(i) + " has more than 25 bits"; });
-      bits += channels_.back().bits;
+    chart_ = words_.field(head_ + 1, 29, 3);
+    shear_axis_ = words_.field(head_ + 2, 29, 2);
+    expect(words_.field(head_ + 2, 31, 1) == 0 && words_.field(head_ + 3, 29, 3) == 0, "L214",
+           [] { return "an unnamed bit of the head is not zero"; });
+    shear_[0] = words_.signed_field(head_ + 4, 0, 8);
+    shear_[1] = words_.signed_field(head_ + 4, 8, 8);
+    strips_ = words_.field(head_ + 4, 16, 8) + 1;
+    reference_bits_ = words_.field(head_ + 4, 24, 4);
+    normal_bits_[0] = words_.field(head_ + 4, 28, 4);
+    normal_bits_[1] = 0;
+    if (has_normal_) {
+      normal_minimum_[0] = words_.field(head_ + 5, 0, 14);
+      normal_minimum_[1] = words_.field(head_ + 5, 14, 14);
+      normal_bits_[1] = words_.field(head_ + 5, 28, 4);
     }
-    for (std::uint32_t i = 0; i < head_.material_range_count; ++i, cursor += sizeof(MaterialRange)) {
-      ranges_.push_back(read_at<MaterialRange>(bytes_, cursor));
-    }
-    sound_ &= expect(head_.vertex_bits == bits, "L207", [&] {
-      return differs("vertex_bits", std::uint64_t{head_.vertex_bits}, "sum of the channels", bits);
-    });
-    if (!sound_) return false;
+    known &= chart_ < (has_normal_ ? 6U : 1U) && shear_axis_ < 3 && reference_bits_ >= 1 && reference_bits_ <= 8 &&
+             normal_bits_[0] <= (has_normal_ ? 14U : 0U) && normal_bits_[1] <= 14;
+    return require(known, "L208", [] { return "a bit count, the chart or the shear axis is unknown"; });
+  }
 
-    const std::uint64_t vertex_bytes = (bits * head_.vertex_count + 7) / 8;
-    const std::uint64_t triangle_bytes = std::uint64_t{3} * head_.triangle_count;
-    const auto stream_fits = [&](std::uint64_t from, std::uint64_t size) {
-      return from % 4 == 0 && from >= cursor && from <= bytes_.size() && size <= bytes_.size() - from;
-    };
-    sound_ &= expect(stream_fits(head_.vertex_offset, vertex_bytes), "L208",
-                     [] { return std::string("vertex stream is misplaced"); });
-    if (!sound_) return false;
-    expect_zero(cursor, head_.vertex_offset);
-    cursor = head_.vertex_offset + vertex_bytes;
-    sound_ &= expect(stream_fits(head_.triangle_offset, triangle_bytes), "L208",
-                     [] { return std::string("triangle stream is misplaced"); });
-    if (!sound_) return false;
-    expect_zero(cursor, head_.triangle_offset);
-    vertices_ = bytes_.subspan(head_.vertex_offset, vertex_bytes);
-    triangles_ = bytes_.subspan(head_.triangle_offset, triangle_bytes);
-    end_ = head_.triangle_offset + triangle_bytes;
-    const std::uint64_t used = bits * head_.vertex_count;
-    if (used % 8 != 0) {
-      expect(vertices_.back() >> (used % 8) == 0, "L214",
-             [] { return std::string("bits after the last vertex are not zero"); });
-    }
+  /// Takes `count` words at the cursor, where the page has them before its last one.
+  bool take(std::uint64_t count) {
+    const bool fits = cursor_ <= words_.size() - 1 && count <= words_.size() - 1 - cursor_;
+    if (!require(fits, "L208", [] { return "reaches beyond the page"; })) return false;
+    cursor_ += count;
     return true;
   }
 
-  void expect_zero(std::size_t from, std::size_t to) {
-    for (std::size_t i = from; i < to; ++i) {
-      if (!expect(bytes_[i] == 0, "L214", [&] { return "padding at byte " + std::to_string(i) + " is not zero"; }))
-        return;
+  bool parse_ranges() {
+    if (mesh_.material == format::kNone && !parse_materials()) return false;
+    for (std::uint32_t set = 0; set < mesh_.uv_set_count; ++set) {
+      if (!parse_uv_ranges(set)) return false;
     }
+    if (mesh_.has_color == 0) return true;
+    const std::uint64_t word = cursor_;
+    if (!take(2)) return false;
+    bool known = true;
+    for (std::uint32_t k = 0; k < 4; ++k) {
+      color_minimum_[k] = words_.field(word, 8 * k, 8);
+      color_bits_[k] = words_.field(word + 1, 4 * k, 4);
+      known &= color_bits_[k] <= 8;
+    }
+    expect(words_.field(word + 1, 16, 16) == 0, "L214",
+           [] { return "an unnamed bit of the colour range is not zero"; });
+    return require(known, "L208", [] { return "a colour has more than 8 bits"; });
   }
 
-  void check_triangles() {
-    std::array<bool, 65536> used{};
-    log_.check("L209");
-    log_.check("L210");
-    for (std::size_t i = 0; i < triangles_.size(); ++i) {
-      if (triangles_[i] >= head_.vertex_count) {
-        sound_ = expect(false, "L209", [&] {
-          return "triangle " + std::to_string(i / 3) + " uses vertex " + std::to_string(triangles_[i]) + " of " +
-                 std::to_string(head_.vertex_count);
-        });
-        return;
-      }
-      used[triangles_[i]] = true;
+  bool parse_materials() {
+    std::uint64_t covered = 0;
+    std::int64_t before = -1;
+    while (covered < triangles_) {
+      const std::uint64_t word = cursor_;
+      if (!take(1)) return false;
+      const std::int64_t material = words_.field(word, 8, 24);
+      covered += words_.field(word, 0, 8) + 1;
+      require(std::cmp_less(material, file_.materials.size()), "L211",
+              [&] { return "material " + std::to_string(material) + " does not exist"; });
+      expect(material > before, "L211", [] { return "materials are not ascending"; });
+      before = material;
     }
-    for (std::uint32_t v = 0; v < head_.vertex_count; ++v) {
-      if (!expect(used[v], "L210", [&] { return "vertex " + std::to_string(v) + " is not used"; })) return;
-    }
-  }
-
-  void check_vertices() {
-    log_.check("L207");
-    log_.check("L212");
-    const std::size_t count = channels_.size();
-    std::uint64_t channel_start = 0;
-    for (std::size_t c = 0; c < count; ++c) {
-      const Channel& channel = channels_[c];
-      std::uint32_t lowest = 0xFFFFFFFFU;
-      std::uint32_t highest = 0;
-      for (std::uint32_t v = 0; v < head_.vertex_count; ++v) {
-        const std::uint32_t value =
-            read_bits(vertices_, std::uint64_t{v} * head_.vertex_bits + channel_start, channel.bits);
-        lowest = std::min(lowest, value);
-        highest = std::max(highest, value);
-      }
-      channel_start += channel.bits;
-      expect(lowest == 0 && std::cmp_equal(std::bit_width(highest), channel.bits), "L207", [&] {
-        return "channel " + std::to_string(c) + " stores " + std::to_string(lowest) + " … " + std::to_string(highest) +
-               " in " + std::to_string(channel.bits) + " bits";
-      });
-      const std::int64_t smallest = std::int64_t{channel.minimum} + lowest;
-      const std::int64_t largest = std::int64_t{channel.minimum} + highest;
-      sound_ &= expect(smallest >= limits_[c].lowest && largest <= limits_[c].highest, "L212", [&] {
-        return "channel " + std::to_string(c) + " holds " + std::to_string(smallest) + " … " + std::to_string(largest);
-      });
-    }
-  }
-
-  void check_materials() {
-    std::uint64_t triangles = 0;
-    log_.check("L211");
-    for (std::size_t i = 0; i < ranges_.size(); ++i) {
-      sound_ &= expect(ranges_[i].material < file_.materials.size(), "L211",
-                       [&] { return "material " + std::to_string(ranges_[i].material) + " does not exist"; });
-      expect(i == 0 || ranges_[i].material > ranges_[i - 1].material, "L211",
-             [] { return std::string("materials are not ascending"); });
-      expect(ranges_[i].triangle_count > 0, "L211", [] { return std::string("a range is empty"); });
-      triangles += ranges_[i].triangle_count;
-    }
-    sound_ &= expect(triangles == head_.triangle_count, "L211", [&] {
-      return differs("triangles in ranges", triangles, "triangles", std::uint64_t{head_.triangle_count});
+    return require(covered == triangles_, "L211", [&] {
+      return differs("triangles in ranges", covered, "triangles", std::uint64_t{triangles_});
     });
+  }
+
+  bool parse_uv_ranges(std::uint32_t set) {
+    ranges_[set].clear();
+    std::uint64_t covered = 0;
+    while (covered < vertices_) {
+      const std::uint64_t word = cursor_;
+      if (!take(3)) return false;
+      UvRangeWords range{};
+      range.vertices = words_.field(word, 0, 8) + 1;
+      const bool has_fit = words_.field(word, 28, 1) != 0;
+      if (has_fit && !take(2)) return false;
+      for (std::uint32_t c = 0; c < 2; ++c) {
+        range.bits[c] = words_.field(word, 8 + 5 * c, 5);
+        range.shift[c] = words_.field(word, 18 + 5 * c, 5);
+        range.minimum[c] = words_.signed_field(word + 1 + c, 0, 32);
+        for (std::uint32_t k = 0; k < 3 && has_fit; ++k) {
+          range.slope[c][k] = words_.signed_field(word + 3 + c, 10 * k, 10);
+        }
+      }
+      expect(words_.field(word, 29, 3) == 0 &&
+                 (!has_fit || (words_.field(word + 3, 30, 2) == 0 && words_.field(word + 4, 30, 2) == 0)),
+             "L214", [] { return "an unnamed bit of a UV range is not zero"; });
+      covered += range.vertices;
+      ranges_[set].push_back(range);
+      if (!require(range.bits[0] <= 25 && range.bits[1] <= 25, "L208",
+                   [] { return "a UV range has more than 25 bits"; })) {
+        return false;
+      }
+    }
+    return require(covered == vertices_, "L208", [&] {
+      return differs("vertices in UV ranges", covered, "vertices", std::uint64_t{vertices_});
+    });
+  }
+
+  bool parse_stream() {
+    slots_ = triangles_ + 2 * strips_;
+    if (!require(strips_ <= triangles_ && slots_ >= vertices_, "L216",
+                 [] { return "has more strips than triangles, or fewer slots than vertices"; })) {
+      return false;
+    }
+    const std::uint64_t first = cursor_;
+    std::uint64_t bit = 32 * first;
+    const auto part = [&](std::uint64_t count) { return std::exchange(bit, bit + count); };
+    position_bit_ = part(std::uint64_t{vertices_} * (bits_[0] + bits_[1] + bits_[2]));
+    normal_bit_ = part(std::uint64_t{vertices_} * (normal_bits_[0] + normal_bits_[1]));
+    for (std::uint32_t set = 0; set < mesh_.uv_set_count; ++set) {
+      uv_bit_[set] = bit;
+      for (const UvRangeWords& range : ranges_[set]) part(std::uint64_t{range.vertices} * (range.bits[0] + range.bits[1]));
+    }
+    const std::uint32_t color_bits = color_bits_[0] + color_bits_[1] + color_bits_[2] + color_bits_[3];
+    color_bit_ = part(mesh_.has_color == 0 ? 0 : std::uint64_t{vertices_} * color_bits);
+    turn_bit_ = part(triangles_);
+    fresh_bit_ = part(slots_);
+    restart_bits_ = static_cast<std::uint32_t>(std::bit_width(triangles_ - 1));
+    restart_bit_ = part(std::uint64_t{strips_ - 1} * restart_bits_);
+    reference_bit_ = part(std::uint64_t{slots_ - vertices_} * reference_bits_);
+    if (!take((bit + 31) / 32 - first)) return false;
+    end_ = cursor_;
+    expect(bit % 32 == 0 || words_[bit / 32] >> (bit % 32) == 0, "L214",
+           [] { return "bits behind the stream are not zero"; });
+    return true;
+  }
+
+  void expect_spread(const Spread& spread, std::uint32_t bits, std::uint32_t fewest, const char* what) {
+    expect(spread.lowest == 0 && std::max(fewest, static_cast<std::uint32_t>(std::bit_width(spread.highest))) == bits,
+           "L207", [&] {
+             return std::string(what) + " are " + std::to_string(spread.lowest) + " … " +
+                    std::to_string(spread.highest) + " in " + std::to_string(bits) + " bits";
+           });
+  }
+
+  void expect_value(std::int64_t value, std::int64_t lowest, std::int64_t highest, const char* what, std::uint32_t v) {
+    if (value >= lowest && value <= highest) return;
+    require(false, "L212",
+            [&] { return std::string(what) + " of vertex " + std::to_string(v) + " is " + std::to_string(value); });
+  }
+
+  void check_positions() {
+    constexpr std::uint32_t kOthers[3][2] = {{1, 2}, {0, 2}, {0, 1}};
+    Spread spread[3];
+    raw_.assign(std::size_t{3} * vertices_, 0);
+    std::uint64_t bit = position_bit_;
+    for (std::uint32_t v = 0; v < vertices_; ++v) {
+      std::int64_t* const raw = &raw_[std::size_t{3} * v];
+      for (std::uint32_t axis = 0; axis < 3; ++axis) {
+        const std::uint32_t value = words_.stream(bit, bits_[axis]);
+        bit += bits_[axis];
+        spread[axis].add(value);
+        raw[axis] = value;
+      }
+      const std::int64_t shear = shear_[0] * raw[kOthers[shear_axis_][0]] + shear_[1] * raw[kOthers[shear_axis_][1]];
+      for (std::uint32_t axis = 0; axis < 3; ++axis) {
+        const std::int64_t value = minimum_[axis] + raw[axis] + (axis == shear_axis_ ? wrap(shear) >> 7 : 0);
+        expect_value(wrap(value), -kMaxGridCoordinate, kMaxGridCoordinate, "a coordinate", v);
+      }
+    }
+    for (std::uint32_t axis = 0; axis < 3; ++axis) expect_spread(spread[axis], bits_[axis], 0, "coordinates");
+  }
+
+  void check_normals() {
+    const std::int64_t scale = mesh_.normal_scale;
+    Spread spread[2];
+    std::uint64_t bit = normal_bit_;
+    for (std::uint32_t v = 0; v < vertices_; ++v) {
+      std::int64_t ab[2];
+      for (std::uint32_t c = 0; c < 2; ++c) {
+        const std::uint32_t value = words_.stream(bit, normal_bits_[c]);
+        bit += normal_bits_[c];
+        spread[c].add(value);
+        expect_value(normal_minimum_[c] + value, 0, 2 * scale, "a normal", v);
+        ab[c] = normal_minimum_[c] + value - scale;
+      }
+      if (std::abs(ab[0]) + std::abs(ab[1]) <= scale) continue;
+      // Where the far half of the octahedron unfolds, a direction could be written in several ways.
+      expect((std::abs(ab[1]) != scale || ab[0] >= 0) && (std::abs(ab[0]) != scale || ab[1] >= 0), "L215",
+             [&] { return "vertex " + std::to_string(v) + " has another pair for its normal"; });
+    }
+    for (std::uint32_t c = 0; c < 2; ++c) expect_spread(spread[c], normal_bits_[c], 0, "normals");
+  }
+
+  void check_uvs(std::uint32_t set) {
+    constexpr std::int64_t kMaxUv = (1 << 24) - 1;  // a float holds every decoded coordinate exactly
+    std::uint64_t bit = uv_bit_[set];
+    std::uint32_t v = 0;
+    for (const UvRangeWords& range : ranges_[set]) {
+      Spread spread[2];
+      for (const std::uint32_t end = v + range.vertices; v < end; ++v) {
+        for (std::uint32_t c = 0; c < 2; ++c) {
+          const std::uint32_t value = words_.stream(bit, range.bits[c]);
+          bit += range.bits[c];
+          spread[c].add(value);
+          std::int64_t sum = 0;
+          for (std::uint32_t k = 0; k < 3; ++k) sum += range.slope[c][k] * raw_[std::size_t{3} * v + k];
+          expect_value(wrap(range.minimum[c] + value + (wrap(sum) >> range.shift[c])), -kMaxUv, kMaxUv,
+                       "a texture coordinate", v);
+        }
+      }
+      for (std::uint32_t c = 0; c < 2; ++c) expect_spread(spread[c], range.bits[c], 0, "texture coordinates");
+    }
+  }
+
+  void check_colors() {
+    Spread spread[4];
+    std::uint64_t bit = color_bit_;
+    for (std::uint32_t v = 0; v < vertices_; ++v) {
+      for (std::uint32_t k = 0; k < 4; ++k) {
+        const std::uint32_t value = words_.stream(bit, color_bits_[k]);
+        bit += color_bits_[k];
+        spread[k].add(value);
+        expect_value(std::int64_t{color_minimum_[k]} + value, 0, 255, "a colour", v);
+      }
+    }
+    for (std::uint32_t k = 0; k < 4; ++k) expect_spread(spread[k], color_bits_[k], 0, "colours");
+  }
+
+  void check_strips() {
+    std::uint32_t start = 0;
+    for (std::uint32_t k = 0; k < strips_; ++k) {
+      const std::uint32_t next =
+          k == 0 ? 0 : words_.stream(restart_bit_ + std::uint64_t{k - 1} * restart_bits_, restart_bits_);
+      if (!require((k == 0 || next > start) && next < triangles_, "L216",
+                   [&] { return "strip " + std::to_string(k) + " starts at triangle " + std::to_string(next); })) {
+        return;
+      }
+      start = next;
+      require(words_.stream(turn_bit_ + start, 1) == 0, "L216",
+              [&] { return "strip " + std::to_string(k) + " starts with a right turn"; });
+    }
+    std::uint32_t fresh = 0;
+    for (std::uint32_t s = 0; s < slots_; ++s) fresh += words_.stream(fresh_bit_ + s, 1);
+    if (!require(fresh == vertices_, "L210", [&] {
+          return differs("fresh slots", std::uint64_t{fresh}, "vertices", std::uint64_t{vertices_});
+        })) {
+      return;
+    }
+    Spread spread;
+    spread.lowest = 0;  // the shortest reference need not be 0
+    std::uint64_t bit = reference_bit_;
+    std::uint32_t named = 0;
+    for (std::uint32_t s = 0; s < slots_; ++s) {
+      if (words_.stream(fresh_bit_ + s, 1) != 0) {
+        ++named;
+        continue;
+      }
+      const std::uint32_t distance = words_.stream(bit, reference_bits_);
+      bit += reference_bits_;
+      spread.add(distance);
+      require(distance < named, "L209",
+              [&] { return "slot " + std::to_string(s) + " names a vertex before the first"; });
+    }
+    expect_spread(spread, reference_bits_, 1, "references");
   }
 
   const FileTables& file_;
   std::size_t page_;
-  std::span<const std::uint8_t> bytes_;
+  Words words_;
   RuleLog& log_;
   const format::MeshRecord& mesh_;
-  std::vector<ChannelLimits> limits_;
+  bool has_normal_;
   std::size_t cluster_ = 0;
-  PageCluster head_{};
-  std::vector<Channel> channels_;
-  std::vector<MaterialRange> ranges_;
-  std::span<const std::uint8_t> vertices_, triangles_;
-  std::size_t end_ = 0;
+  std::uint64_t head_ = 0, cursor_ = 0, end_ = 0;
+  std::uint32_t vertices_ = 0, triangles_ = 0, strips_ = 0, slots_ = 0;
+  std::int64_t minimum_[3] = {}, shear_[2] = {};
+  std::uint32_t bits_[3] = {}, shear_axis_ = 0, chart_ = 0;
+  std::int64_t normal_minimum_[2] = {};
+  std::uint32_t normal_bits_[2] = {};
+  std::array<std::vector<UvRangeWords>, format::kMaxUvSets> ranges_;
+  std::uint32_t color_minimum_[4] = {}, color_bits_[4] = {};
+  std::uint32_t reference_bits_ = 0, restart_bits_ = 0;
+  std::uint64_t position_bit_ = 0, normal_bit_ = 0, uv_bit_[format::kMaxUvSets] = {}, color_bit_ = 0, turn_bit_ = 0,
+                fresh_bit_ = 0, restart_bit_ = 0, reference_bit_ = 0;
+  std::vector<std::int64_t> raw_;  ///< positions as stored: texture coordinates are predicted from them
   bool sound_ = true;
 };
 
 bool check_decoded_page(const FileTables& file, std::size_t p, std::span<const std::uint8_t> bytes, RuleLog& log) {
   const format::PageRecord& page = file.pages[p];
   const auto at = [&] { return place("page", p); };
-  bool sound = true;
-  const std::uint64_t head_bytes = sizeof(format::PageHeader) + std::uint64_t{4} * page.cluster_count;
-  if (!log.expect(head_bytes <= bytes.size(), "L205", at,
-                  [] { return std::string("is shorter than its header and offsets"); })) {
+  ClusterBytesChecker checker(file, p, bytes, log);
+  const Words words(bytes);
+  const std::uint64_t heads = 2 + page.cluster_count * checker.head_words();
+  if (!log.expect(heads < words.size(), "L205", at,
+                  [] { return std::string("is shorter than its header and cluster heads"); })) {
     return false;
   }
-  const auto head = read_at<format::PageHeader>(bytes, 0);
-  sound &= log.expect(head.first_cluster == page.first_cluster && head.cluster_count == page.cluster_count, "L205", at,
-                      [] { return std::string("its header names other clusters"); });
-  ClusterBytesChecker checker(file, p, bytes, log);
-  std::uint64_t next = head_bytes;
+  const bool sound = log.expect(words[0] == page.first_cluster && words[1] == page.cluster_count, "L205", at,
+                                [] { return std::string("its header names other clusters"); });
+  std::uint64_t next = heads;
   for (std::uint32_t k = 0; k < page.cluster_count; ++k) {
-    const auto offset = read_at<std::uint32_t>(bytes, sizeof(format::PageHeader) + std::size_t{4} * k);
-    if (!log.expect(offset % 4 == 0 && offset >= next && offset - next < 4, "L205", at, [&] {
-          return "offset " + std::to_string(offset) + " of " + place("cluster", page.first_cluster + k) +
-                 " should be " + std::to_string((next + 3) / 4 * 4);
-        })) {
-      return false;
-    }
-    for (std::uint64_t i = next; i < offset; ++i) {
-      log.expect(bytes[i] == 0, "L214", at, [&] { return "padding at byte " + std::to_string(i) + " is not zero"; });
-    }
-    const std::optional<std::size_t> end = checker.run(page.first_cluster + k, offset);
+    const std::optional<std::uint64_t> end = checker.run(std::size_t{page.first_cluster} + k, k, next);
     if (!end) return false;
     next = *end;
   }
-  for (std::uint64_t i = next; i < bytes.size(); ++i) {
-    if (!log.expect(bytes[i] == 0, "L214", at,
-                    [&] { return "byte " + std::to_string(i) + " after the last cluster is not zero"; }))
-      break;
+  if (!log.expect(next + 1 == words.size(), "L205", at,
+                  [&] { return differs("words", words.size(), "used", next + 1); })) {
+    return false;
   }
+  log.expect(words[next] == 0, "L214", at, [] { return std::string("the last word is not zero"); });
   return sound;
 }
 
@@ -314,7 +475,7 @@ LoadedPages load_pages(const FileTables& file, const Asset* asset, RuleLog& log)
 }
 
 bool check_page_bytes(const FileTables& file, const LoadedPages& loaded, RuleLog& log) {
-  for (const char* rule : {"L205", "L206", "L207", "L208", "L209", "L210", "L211", "L212", "L214"}) log.check(rule);
+  for (const char* rule : {"L205", "L206", "L207", "L208", "L209", "L210", "L211", "L212", "L214", "L215", "L216"}) log.check(rule);
   bool sound = loaded.is_complete;
   for (std::size_t p = 0; p < file.pages.size(); ++p) {
     const auto bytes = loaded.pages[p].bytes();

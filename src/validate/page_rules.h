@@ -19,7 +19,7 @@ struct LoadedPages {
 };
 /// L203, L204. `asset` serves packed pages and may be null; then those cannot be had. \pre check_page_table()
 [[nodiscard]] LoadedPages load_pages(const FileTables& file, const Asset* asset, RuleLog& log);
-/// L205 … L212, L214: what is in every page. True where all clusters can be decoded.
+/// L205 … L212, L214 … L216: what is in every page. True where all clusters can be decoded.
 [[nodiscard]] bool check_page_bytes(const FileTables& file, const LoadedPages& loaded, RuleLog& log);
 
 }  // namespace meshlode

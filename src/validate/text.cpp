@@ -81,6 +81,11 @@ std::optional<std::uint64_t> meta_number(std::string_view meta, const char* sect
   return value.is_number_unsigned() ? std::optional(value.get<std::uint64_t>()) : std::nullopt;
 }
 
+std::optional<double> meta_real(std::string_view meta, const char* section, const char* key) {
+  const nlohmann::json value = value_at(meta, section, key);
+  return value.is_number() ? std::optional(value.get<double>()) : std::nullopt;
+}
+
 void check_texts(const FileTables& file, RuleLog& log) {
   const nlohmann::json meta = file.meta.empty() ? nlohmann::json::object() : parse(file.meta);
   if (log.expect(

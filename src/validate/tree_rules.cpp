@@ -58,7 +58,6 @@ class TreeChecker {
   void check_node(std::uint32_t k, std::vector<std::uint32_t>& parents, std::vector<std::uint32_t>& leaves) {
     const NodeRecord& node = file_.nodes[mesh_.first_node + k];
     const auto where = [&] { return at(k); };
-    log_.expect(node.reserved == 0, "L103", where, [] { return std::string("reserved is not zero"); });
     const bool sound =
         log_.expect(is_sound(node), "L403", where, [] { return std::string("sphere or error is no number"); });
     if (node.child_count == 0) {

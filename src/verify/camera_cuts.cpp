@@ -45,15 +45,15 @@ View random_view(const Asset& asset, std::span<const std::uint32_t> instances, s
   const format::MeshRecord& mesh = asset.meshes()[instance.mesh];
   const format::ClusterRecord& cluster = asset.clusters()[mesh.first_cluster + random.below(mesh.cluster_count)];
   const Vec3d origin(mesh.origin[0], mesh.origin[1], mesh.origin[2]);
-  const Vec3d center =
-      transform_point(instance, origin + Vec3d(cluster.center[0], cluster.center[1], cluster.center[2]));
+  const format::CullSphere sphere = format::cull_sphere(mesh, cluster);
+  const Vec3d center = transform_point(instance, origin + Vec3d(sphere.center[0], sphere.center[1], sphere.center[2]));
   const double size = std::max(mesh.diagonal * instance.scale, 1e-300);
   View view;
   double distance = 0.0;
   switch (index % 5) {
     case 0:
       view.kind = "inside";
-      distance = random.between(0.0, 1.0) * double{cluster.radius} * instance.scale;
+      distance = random.between(0.0, 1.0) * double{sphere.radius} * instance.scale;
       break;
     case 1:
       view.kind = "near";

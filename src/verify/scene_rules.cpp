@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What surrounds the geometry: materials, instances, images and the source's name for itself (V106 … V112).
+// What surrounds the geometry: materials, instances, images and the source's name for itself (V106 … V113).
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <iterator>
+#include <optional>
 #include <string>
 
+#include "mesh/grid.h"
 #include "validate/file_tables.h"
 #include "verify/source_rules.h"
 
@@ -159,11 +161,11 @@ void check_caps(const Asset& asset, RuleLog& log) {
   for (std::size_t c = 0; c < asset.clusters().size(); ++c) {
     const format::ClusterRecord& cluster = asset.clusters()[c];
     log.expect(
-        cluster.triangle_count <= triangles && cluster.vertex_count <= vertices, "V111",
+        cluster.triangle_count() <= triangles && cluster.vertex_count() <= vertices, "V111",
         [&] { return place("cluster", c); },
         [&] {
-          return differs("triangles", std::uint64_t{cluster.triangle_count}, "vertices",
-                         std::uint64_t{cluster.vertex_count}) +
+          return differs("triangles", std::uint64_t{cluster.triangle_count()}, "vertices",
+                         std::uint64_t{cluster.vertex_count()}) +
                  "; the caps are " + std::to_string(triangles) + " and " + std::to_string(vertices);
         });
   }
@@ -183,6 +185,38 @@ void check_tiers(const Asset& asset, RuleLog& log) {
   }
 }
 
+/// V104 and V105 measure every vertex of level 0 against the bounds of the mesh's record; here those bounds are held
+/// against what was asked for. Budgets in texels depend on images and are not in UV units: they are not looked at.
+void check_budgets(const Asset& asset, RuleLog& log) {
+  log.check("V113");
+  const auto setting = [&](const char* key) { return meta_real(asset.meta_json(), "settings", key); };
+  const std::optional<double> position = setting("position_error");
+  const std::optional<double> normal = setting("normal_error");
+  std::optional<double> uv = setting("uv_error");
+  if (meta_text(asset.meta_json(), "settings", "uv_error_unit") != "uv") uv.reset();
+  constexpr double kRounding = 1.0 + 1e-6;
+  for (std::size_t m = 0; m < asset.meshes().size(); ++m) {
+    const format::MeshRecord& mesh = asset.meshes()[m];
+    if (mesh.cluster_count == 0) continue;
+    const auto at = [&] { return place("mesh", m); };
+    if (position) {
+      log.expect(double{mesh.level0_deviation} <= *position * kRounding, "V113", at, [&] {
+        return differs("level-0 deviation", double{mesh.level0_deviation}, "position_error", *position);
+      });
+    }
+    if (normal && mesh.normal_mode == format::NormalMode::kStored && mesh.normal_scale > 0) {
+      const double degrees = std::sqrt(2.0) / mesh.normal_scale * 180.0 / 3.14159265358979323846;
+      log.expect(degrees <= *normal * kRounding, "V113", at,
+                 [&] { return differs("largest angle", degrees, "normal_error", *normal); });
+    }
+    for (std::uint32_t set = 0; uv && set < mesh.uv_set_count; ++set) {
+      const double half_step = 0.5 * exp2_exact(mesh.uv_log2[set]);
+      log.expect(half_step <= *uv * kRounding, "V113", at,
+                 [&] { return differs("half a UV step", half_step, "uv_error", *uv); });
+    }
+  }
+}
+
 }  // namespace
 
 void check_scene(const Asset& asset, const Scene& source, RuleLog& log) {
@@ -193,6 +227,7 @@ void check_scene(const Asset& asset, const Scene& source, RuleLog& log) {
   check_attributes(asset, source, log);
   check_caps(asset, log);
   check_tiers(asset, log);
+  check_budgets(asset, log);
   const std::string hash = meta_text(asset.meta_json(), "source", "hash");
   log.expect(
       hash == source.source_hash, "V108", [] { return std::string("section META: /source/hash"); },

@@ -338,13 +338,13 @@ class SourceMatcher {
         const Vec3d d = Vec3d(decoded_.normals[vertex]) - n / length;
         // The lattice's points are the covering radius sqrt(2/3)/M apart at most, stretched by sqrt(3) on the way to
         // the sphere: sqrt(2)/M. A little is added for second order and floats.
-        const double cells = static_cast<double>((std::uint64_t{1} << (mesh_.normal_bits - 1)) - 1);
+        const double cells = mesh_.normal_scale;
         const double bound = std::sqrt(2.0) / cells * (1.0 + 1.0 / cells) + 1e-6;
         if (glm::dot(d, d) > bound * bound) return false;
       }
     }
     for (std::uint32_t set = 0; set < mesh_.uv_set_count; ++set) {
-      const double half_step = 0.5 * exp2_exact(mesh_.uv_grid[set].log2);
+      const double half_step = 0.5 * exp2_exact(mesh_.uv_log2[set]);
       for (int axis = 0; axis < 2; ++axis) {
         const double value = source.attributes[slot++];
         if (!std::isfinite(value)) continue;

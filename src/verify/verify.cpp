@@ -93,6 +93,7 @@ void add_source(const Asset& asset, const Scene& source, std::span<const Decoded
                    failures_of(log, {"V104"}));
   report.add_check("", "attributes that the source's shading needs are stored", count, failures_of(log, {"V110"}));
   report.add_check("I2", "clusters keep the caps of the settings", asset.clusters().size(), failures_of(log, {"V111"}));
+  report.add_check("", "level 0 is within the accuracy budgets of the settings", count, failures_of(log, {"V113"}));
   report.add_check("I7", "the error tier is that of the settings", count, failures_of(log, {"V112"}));
   report.add_check("", "level-0 deviation is the largest move of a vertex onto the grid", count,
                    failures_of(log, {"V105"}));

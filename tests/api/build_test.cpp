@@ -43,7 +43,7 @@ TEST(ApiBuild, ASphereBecomesAnAssetWithOneMeshAndItsTriangles) {
   EXPECT_EQ(asset->text(asset->meshes()[0].name), "one");
   EXPECT_EQ(asset->meshes()[0].source_triangles, arrays.indices.size() / 3);
   std::uint64_t finest = 0;
-  for (const auto& cluster : asset->clusters()) finest += cluster.level == 0 ? cluster.triangle_count : 0U;
+  for (const auto& cluster : asset->clusters()) finest += cluster.level == 0 ? cluster.triangle_count() : 0U;
   EXPECT_EQ(finest, arrays.indices.size() / 3);
 }
 

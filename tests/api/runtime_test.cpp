@@ -146,8 +146,8 @@ TEST(ApiRuntime, FloatsAreTheIntegersOnTheGrid) {
     ASSERT_TRUE(page.ok());
     ASSERT_TRUE(asset->decode(*page, c, integers).ok());
     ASSERT_TRUE(asset->decode(*page, c, floats).ok());
-    ASSERT_EQ(integers.vertex_count, asset->clusters()[c].vertex_count);
-    ASSERT_EQ(integers.triangle_count, asset->clusters()[c].triangle_count);
+    ASSERT_EQ(integers.vertex_count, asset->clusters()[c].vertex_count());
+    ASSERT_EQ(integers.triangle_count, asset->clusters()[c].triangle_count());
     ASSERT_EQ(floats.positions.size(), integers.vertex_count);
     ASSERT_EQ(floats.normals.size(), integers.vertex_count);
     EXPECT_EQ(floats.triangles, integers.triangles);

@@ -126,9 +126,9 @@ TEST_F(Sample, LevelZeroIsTheSourceTriangleForTriangle) {  // I1
 
 TEST_F(Sample, TheMeshesHaveTheirKindsOfAttributes) {
   ASSERT_EQ(asset_.meshes().size(), 4U);
-  EXPECT_EQ(asset_.meshes()[0].channel_count, 7U);   // position, normal, one UV set
-  EXPECT_EQ(asset_.meshes()[1].channel_count, 9U);   // position, normal, colour
-  EXPECT_EQ(asset_.meshes()[2].channel_count, 3U);
+  EXPECT_EQ(format::channel_count(asset_.meshes()[0]), 8U);   // position, normal, one UV set
+  EXPECT_EQ(format::channel_count(asset_.meshes()[1]), 10U);   // position, normal, colour
+  EXPECT_EQ(format::channel_count(asset_.meshes()[2]), 3U);
   EXPECT_EQ(asset_.meshes()[2].normal_mode, format::NormalMode::kFlat);
   EXPECT_EQ(asset_.meshes()[3].group_count, 0U);
   EXPECT_EQ(asset_.instances()[2].flags, format::kInstanceMirrored);

@@ -20,17 +20,19 @@ UvRange range_of(float a, float b) {
 
 float decode(std::int32_t q, std::int32_t log2) { return static_cast<float>(std::ldexp(double(q), log2)); }
 
-TEST(UvGrid, TheUnitSquareGetsTwoToTheBitsSteps) {
-  EXPECT_EQ(choose_uv_log2(range_of(0.0F, 1.0F), 16), -16);
-  EXPECT_EQ(choose_uv_log2(range_of(0.0F, 0.5F), 16), -17);
-  EXPECT_EQ(choose_uv_log2(range_of(0.25F, 0.75F), 12), -13);
+TEST(UvGrid, TheStepIsTheCoarsestPowerOfTwoThatKeepsTheError) {
+  EXPECT_EQ(choose_uv_log2(range_of(0.0F, 1.0F), 0x1p-17), -16);
+  EXPECT_EQ(choose_uv_log2(range_of(0.0F, 1.0F), 0x1.8p-17), -16);
+  EXPECT_EQ(choose_uv_log2(range_of(0.0F, 1.0F), 0x1.fffp-18), -17);
+  EXPECT_EQ(choose_uv_log2(UvRange{}, 0.125), -2);
 }
 
-TEST(UvGrid, TilingDoesNotCoarsenATile) { EXPECT_EQ(choose_uv_log2(range_of(-50.0F, 50.0F), 16), -16); }
-
-TEST(UvGrid, EqualOrMissingCoordinatesGetTheDefaultStep) {
-  EXPECT_EQ(choose_uv_log2(range_of(0.1F, 0.1F), 16), -16);
-  EXPECT_EQ(choose_uv_log2(UvRange{}, 16), -16);
+TEST(UvGrid, TheDefaultIsAnEighthOfATexelAndFinerForSmallCharts) {
+  EXPECT_EQ(default_uv_error(range_of(0.0F, 1.0F)), 1.0 / (8 * 2048));
+  EXPECT_EQ(default_uv_error(range_of(-50.0F, 50.0F)), 1.0 / (8 * 2048)) << "tiling does not coarsen a tile";
+  EXPECT_EQ(default_uv_error(range_of(0.25F, 0.5F)), 0.25 / (8 * 2048));
+  EXPECT_EQ(default_uv_error(range_of(0.1F, 0.1F)), 1.0 / (8 * 2048));
+  EXPECT_EQ(default_uv_error(UvRange{}), 1.0 / (8 * 2048));
 }
 
 TEST(UvGrid, EveryDecodedValueIsExactAndWithinHalfAStep) {
@@ -45,7 +47,7 @@ TEST(UvGrid, EveryDecodedValueIsExactAndWithinHalfAStep) {
         values.push_back(value);
         range.add(value);
       }
-      const std::int32_t log2 = choose_uv_log2(range, 16);
+      const std::int32_t log2 = choose_uv_log2(range, 0x1p-17);
       ASSERT_GE(log2, kMinUvLog2);
       ASSERT_LE(log2, kMaxUvLog2);
       for (const float value : values) {
@@ -60,7 +62,7 @@ TEST(UvGrid, EveryDecodedValueIsExactAndWithinHalfAStep) {
 
 // At 1e6 a float itself has no more than 2^-4: the grid keeps every value that the source could say.
 TEST(UvGrid, LargeOffsetsKeepEveryFloat) {
-  const std::int32_t log2 = choose_uv_log2(range_of(1e6F, 1e6F + 1.0F), 16);
+  const std::int32_t log2 = choose_uv_log2(range_of(1e6F, 1e6F + 1.0F), 0x1p-17);
   EXPECT_EQ(log2, -4);
   for (float value = 1e6F; value <= 1e6F + 1.0F; value = std::nextafter(value, 2e6F)) {
     EXPECT_EQ(decode(quantize_uv(value, log2), log2), value);
@@ -74,13 +76,13 @@ TEST(UvGrid, WhatIsNotFiniteBecomesZeroAndWidensNothing) {
   range.add(inf);
   range.add(-inf);
   range.add(nan);
-  EXPECT_EQ(choose_uv_log2(range, 16), -16);
+  EXPECT_EQ(choose_uv_log2(range, 0x1p-17), -16);
   for (const float value : {inf, -inf, nan}) EXPECT_EQ(quantize_uv(value, -16), 0);
 }
 
 TEST(UvGrid, TheLargestFloatsFit) {
   const float most = std::numeric_limits<float>::max();
-  const std::int32_t log2 = choose_uv_log2(range_of(-most, most), 16);
+  const std::int32_t log2 = choose_uv_log2(range_of(-most, most), 0x1p-17);
   EXPECT_EQ(log2, kMaxUvLog2);
   EXPECT_EQ(decode(quantize_uv(most, log2), log2), most);
   EXPECT_EQ(decode(quantize_uv(-most, log2), log2), -most);

@@ -73,9 +73,9 @@ TEST(ChooseCuts, TwoInstancesShareACutThatIsFineEnoughForBoth) {
     // was replaced by finer ones, so the shared cut has at least as many triangles.
     std::uint64_t own = 0, shared = 0;
     for (const ClusterInstance& d : drawn) {
-      if (d.instance.value == instance) own += asset->clusters()[d.cluster.value].triangle_count;
+      if (d.instance.value == instance) own += asset->clusters()[d.cluster.value].triangle_count();
     }
-    for (const ClusterId c : cut) shared += asset->clusters()[c.value].triangle_count;
+    for (const ClusterId c : cut) shared += asset->clusters()[c.value].triangle_count();
     return shared >= own;
   };
   for (const double x : {1.5, -15.0, -28.0, 40.0}) {

@@ -15,7 +15,7 @@ namespace {
 bool is_mit(const SourceFile& file) {
   static const std::set<std::string> rooms = {"read", "unpack", "select", "decode", "api_runtime"};
   static const std::set<std::string> headers = {
-      "include/meshlode/format.h",    "include/meshlode/result.h", "include/meshlode/runtime.h",
+      "include/meshlode/format.h", "include/meshlode/page.h",    "include/meshlode/result.h", "include/meshlode/runtime.h",
       "include/meshlode/runtime_c.h", "src/mesh/grid.h",           "tests/install/consumer/use_runtime.cpp"};
   static const std::set<std::string> shaders = {".glsl", ".comp", ".vert", ".frag", ".mesh"};
   const std::string path = file.path.generic_string();

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <set>
 
 namespace meshlode::test {
@@ -106,7 +107,12 @@ using Position = std::array<std::int64_t, 3>;
 Position position_of(const Edit& e, std::uint32_t c, std::uint32_t v) {
   Position p{};
   for (std::uint32_t k = 0; k < 3; ++k)
-    p[k] = e.get<format::Channel>(e.channel_offset(c, k)).minimum + std::int64_t{e.vertex_bits(c, v, k)};
+    p[k] = e.minimum(c, k) + std::int64_t{e.stored(c, v, k)};
+  const auto at = e.layout(c);
+  const std::uint32_t u = at.shear_axis == 0 ? 1 : 0;
+  const std::uint32_t w = at.shear_axis == 2 ? 1 : 2;
+  p[at.shear_axis] +=
+      (at.shear_u * std::int64_t{e.stored(c, v, u)} + at.shear_v * std::int64_t{e.stored(c, v, w)}) >> format::kShearShift;
   return p;
 }
 
@@ -118,49 +124,71 @@ std::vector<std::uint32_t> vertices_where(const Edit& e, std::uint32_t c, bool s
   std::set<Position> others;
   for (std::uint32_t k = mesh.first_cluster; k < mesh.first_cluster + mesh.cluster_count; ++k) {
     if (clusters[k].level != clusters[c].level || clusters[k].own_group == clusters[c].own_group) continue;
-    for (std::uint32_t v = 0; v < clusters[k].vertex_count; ++v) others.insert(position_of(e, k, v));
+    for (std::uint32_t v = 0; v < clusters[k].vertex_count(); ++v) others.insert(position_of(e, k, v));
   }
   std::vector<std::uint32_t> out;
-  for (std::uint32_t v = 0; v < clusters[c].vertex_count; ++v) {
+  for (std::uint32_t v = 0; v < clusters[c].vertex_count(); ++v) {
     if (others.contains(position_of(e, c, v)) == shared) out.push_back(v);
   }
   return out;
 }
 
-/// Flips one bit of a channel at or above `lowest`.
+/// Flips one bit of a stored value at or above `lowest`.
 bool flip_bit(Edit& e, Random& r, std::uint32_t c, std::uint32_t v, std::uint32_t k, std::uint32_t lowest) {
-  const std::uint32_t bits = e.get<format::Channel>(e.channel_offset(c, k)).bits;
+  const std::uint32_t bits = e.place_of(c, v, k).count;
   if (bits <= lowest) return false;
-  e.put_vertex_bits(c, v, k, e.vertex_bits(c, v, k) ^ 1U << (lowest + pick(r, bits - lowest)));
+  e.put_stored(c, v, k, e.stored(c, v, k) ^ 1U << (lowest + pick(r, bits - lowest)));
   return true;
 }
 
-/// The smallest bit of a channel whose flip leaves the rounding of quantization: a normal's value may be two off.
+/// The smallest bit of a value whose flip leaves the rounding of quantization: a normal's value may be two off.
 std::uint32_t lowest_telling_bit(const Edit& e, std::uint32_t c, std::uint32_t k) {
   const auto mesh = e.meshes()[mesh_of_cluster(e, c)];
   const bool is_normal = mesh.normal_mode == format::NormalMode::kStored && (k == 3 || k == 4);
   return is_normal ? 3 : 1;
 }
 
+/// A reference names another vertex.
 bool change_index(Edit& e, Random& r, std::uint32_t c) {
-  const auto record = e.clusters()[c];
-  const std::uint64_t at = e.triangle_stream_offset(c) + r.below(3U * record.triangle_count);
-  e.bytes()[at] = static_cast<std::uint8_t>(other(r, e.bytes()[at], 0, record.vertex_count));
+  const auto at = e.layout(c);
+  if (at.reference_count == 0) return false;
+  const std::uint32_t bit = at.reference_bit + pick(r, at.reference_count) * at.reference_bits;
+  const std::uint32_t value = e.page_bits(c, bit, at.reference_bits);
+  e.put_page_bits(c, bit, at.reference_bits, other(r, value, 0, 1U << at.reference_bits));
   return true;
 }
 
+/// A strip goes the other way at one of its triangles.
 bool turn_triangle(Edit& e, Random& r, std::uint32_t c) {
-  const std::uint64_t at = e.triangle_stream_offset(c) + 3 * r.below(e.clusters()[c].triangle_count);
-  std::swap(e.bytes()[at], e.bytes()[at + 1]);
-  return e.bytes()[at] != e.bytes()[at + 1];
+  const auto at = e.layout(c);
+  const std::uint32_t bit = at.turn_bit + pick(r, at.triangle_count);
+  e.put_page_bits(c, bit, 1, 1U - e.page_bits(c, bit, 1));
+  return true;
 }
 
 bool change_material(Edit& e, Random& r, std::uint32_t c) {
-  const auto head = e.get<format::PageCluster>(e.page_cluster_offset(c));
+  const auto at = e.layout(c);
   const auto count = static_cast<std::uint32_t>(e.materials().size());
-  e.change_at<format::MaterialRange>(e.range_offset(c, r.below(head.material_range_count)),
-                                     [&](auto& range) { range.material = other(r, range.material, 0, count); });
-  return count > 1;
+  if (count < 2) return false;
+  if (at.material_count == 0) {
+    bool done = false;
+    e.mesh(mesh_of_cluster(e, c), [&](auto& m) {
+      m.material = other(r, m.material, 0, count);
+      done = true;
+    });
+    return done;
+  }
+  const std::uint32_t word = at.material_word + pick(r, at.material_count);
+  const auto material = static_cast<std::uint32_t>(e.field(c, word, format::material_range::kMaterial));
+  e.put_field(c, word, format::material_range::kMaterial, static_cast<std::int32_t>(other(r, material, 0, count)));
+  return true;
+}
+
+/// Another value in a field.
+bool change_field(Edit& e, Random& r, std::uint32_t c, std::uint32_t word, format::BitField field) {
+  const auto value = static_cast<std::uint32_t>(e.field(c, word, field)) & field.mask();
+  e.put_field(c, word, field, static_cast<std::int32_t>(value ^ 1U << pick(r, field.bits)));
+  return true;
 }
 
 bool change_text(Edit& e, Random& r, SectionId id) {
@@ -261,16 +289,28 @@ std::vector<MutantKind> make_kinds() {
     return true;
   });
   always("culling sphere shrunk", [=](Edit& e, Random& r) {
-    e.cluster(any_cluster(e, r), [&](auto& c) { c.radius *= shrink(r); });
-    return true;
+    bool done = false;
+    e.cluster(any_cluster(e, r), [&](auto& c) {
+      const auto smaller = static_cast<std::uint16_t>(static_cast<float>(c.radius) * shrink(r));
+      done = smaller + 8 < c.radius;  // a unit or two may be what snapping added
+      c.radius = smaller;
+    });
+    return done;
   });
   always("culling sphere moved", [=](Edit& e, Random& r) {
     bool done = false;
-    e.cluster(any_cluster(e, r), [&](auto& c) { done = move_center(c, r); });
+    e.cluster(any_cluster(e, r), [&](auto& c) {
+      const auto by = static_cast<std::int32_t>(c.radius * r.between(0.02, 1.0)) * (r.below(2) == 0 ? 1 : -1);
+      std::int16_t& center = c.center[r.below(3)];
+      done = std::abs(by) > 8 && std::abs(center + by) <= 32767;
+      center = static_cast<std::int16_t>(center + by);
+    });
     return done;
   });
   mostly("culling sphere grown", "a larger sphere inside the LOD sphere is valid", [=](Edit& e, Random& r) {
-    e.cluster(any_cluster(e, r), [&](auto& c) { c.radius *= grow(r); });
+    e.cluster(any_cluster(e, r), [&](auto& c) {
+      c.radius = static_cast<std::uint16_t>(std::min(65535.0F, static_cast<float>(c.radius) * grow(r)));
+    });
     return true;
   });
   mostly("normal cone", "a cone that still holds every normal is valid", [=](Edit& e, Random& r) {
@@ -365,17 +405,8 @@ std::vector<MutantKind> make_kinds() {
     });
     return true;
   });
-  always("cluster flags, reserved fields", [=](Edit& e, Random& r) {
-    switch (r.below(6)) {
-      case 0:
-        e.cluster(any_cluster(e, r), [&](auto& x) { x.flags = static_cast<std::uint16_t>(1U << r.below(16)); });
-        break;
-      case 1: e.cluster(any_cluster(e, r), [&](auto& x) { x.reserved = 1U << r.below(32); }); break;
-      case 2: e.group(any_group(e, r), [&](auto& x) { x.reserved = 1U << r.below(32); }); break;
-      case 3: e.node(pick(r, e.nodes().size()), [&](auto& x) { x.reserved = 1U << r.below(32); }); break;
-      case 4: e.page(pick(r, e.pages().size()), [&](auto& x) { x.reserved = 1U << r.below(32); }); break;
-      default: e.mesh(pick(r, e.meshes().size()), [&](auto& x) { x.reserved = 1U << r.below(32); }); break;
-    }
+  always("reserved fields", [=](Edit& e, Random& r) {
+    e.page(pick(r, e.pages().size()), [&](auto& x) { x.reserved = 1U << r.below(32); });
     return true;
   });
   always("two members of groups swapped", [=](Edit& e, Random& r) {
@@ -394,8 +425,8 @@ std::vector<MutantKind> make_kinds() {
     bool done = false;
     e.mesh(pick(r, e.meshes().size()), [&](auto& m) {
       std::uint32_t* fields[] = {&m.first_group,  &m.group_count, &m.first_cluster, &m.cluster_count,
-                                 &m.first_node,   &m.node_count,  &m.level_count,   &m.channel_count,
-                                 &m.uv_set_count, &m.has_color,   &m.normal_bits};
+                                 &m.first_node,   &m.node_count,  &m.level_count,   &m.uv_set_count,
+                                 &m.has_color,    &m.normal_scale};
       done = nudge(*fields[r.below(std::size(fields))], r);
     });
     return done;
@@ -435,20 +466,24 @@ std::vector<MutantKind> make_kinds() {
           x.normal_mode =
               static_cast<format::NormalMode>(x.normal_mode == format::NormalMode::kStored ? 2 * r.below(2) : 1);
           break;
-        default: x.uv_grid[r.below(4)].log2 += 1; break;
+        default: x.uv_log2[r.below(4)] += 1; break;
       }
     });
     return true;
   });
   always("group ranges", [=](Edit& e, Random& r) {
     e.group(any_group(e, r), [&](auto& x) {
-      std::uint32_t* fields[] = {&x.first_cluster, &x.cluster_count, &x.mesh, &x.page};
-      nudge(*fields[r.below(4)], r);
+      std::uint32_t* fields[] = {&x.first_cluster, &x.mesh, &x.page};
+      const auto f = r.below(4);
+      if (f < 3)
+        nudge(*fields[f], r);
+      else
+        nudge(x.cluster_count, r);
     });
     return true;
   });
   always("cluster counts", [=](Edit& e, Random& r) {
-    e.cluster(any_cluster(e, r), [&](auto& x) { nudge(r.below(2) == 0 ? x.vertex_count : x.triangle_count, r); });
+    e.cluster(any_cluster(e, r), [&](auto& x) { nudge(r.below(2) == 0 ? x.vertices_less_1 : x.triangles_less_1, r); });
     return true;
   });
   always("page table", [](Edit& e, Random& r) {
@@ -505,61 +540,83 @@ std::vector<MutantKind> make_kinds() {
   });
 
   // pages
-  always("page header and offsets", [](Edit& e, Random& r) {
+  always("page header", [](Edit& e, Random& r) {
     const auto page = e.pages()[pick(r, e.pages().size())];
-    e.change_at<std::uint32_t>(page.offset + 4 * r.below(2U + page.cluster_count), [&](auto& x) { nudge(x, r); });
+    e.change_at<std::uint32_t>(page.offset + 4 * r.below(2U), [&](auto& x) { nudge(x, r); });
     return true;
   });
-  always("cluster header", [=](Edit& e, Random& r) {
-    e.change_at<format::PageCluster>(e.page_cluster_offset(any_cluster(e, r)), [&](auto& c) {
-      std::uint16_t* small[] = {&c.vertex_count, &c.triangle_count, &c.channel_count, &c.material_range_count};
-      std::uint32_t* large[] = {&c.vertex_bits, &c.vertex_offset, &c.triangle_offset};
-      const auto f = r.below(7);
-      if (f < 4)
-        nudge(*small[f], r);
-      else
-        nudge(*large[f - 4], r);
-    });
-    return true;
-  });
-  always("channel bits", [=](Edit& e, Random& r) {
+  always("head: counts, data word, strips, reference bits", [=](Edit& e, Random& r) {
     const auto c = any_cluster(e, r);
-    const auto n = e.get<format::PageCluster>(e.page_cluster_offset(c)).channel_count;
-    e.change_at<format::Channel>(e.channel_offset(c, r.below(n)), [&](auto& x) { nudge(x.bits, r); });
-    return true;
+    const format::BitField fields[] = {format::head::kVerticesLess1, format::head::kTrianglesLess1,
+                                       format::head::kDataWord, format::head::kStripsLess1,
+                                       format::head::kReferenceBits};
+    return change_field(e, r, c, e.layout(c).head_word, fields[r.below(std::size(fields))]);
   });
-  always("channel minimum of positions", [=](Edit& e, Random& r) {
-    e.change_at<format::Channel>(e.channel_offset(any_cluster(e, r), r.below(3)),
-                                 [&](auto& x) { nudge(x.minimum, r); });
-    return true;
+  always("head: bits of positions and normals", [=](Edit& e, Random& r) {
+    const auto c = any_cluster(e, r);
+    const bool has_normal = e.meshes()[mesh_of_cluster(e, c)].normal_mode == format::NormalMode::kStored;
+    const format::BitField fields[] = {format::head::kBits[0], format::head::kBits[1], format::head::kBits[2],
+                                       format::head::kNormalBitsA, format::head::kNormalBitsB};
+    return change_field(e, r, c, e.layout(c).head_word, fields[r.below(has_normal ? 5 : 4)]);
   });
-  always("channel minimum of attributes, level 0", [](Edit& e, Random& r) {
+  always("head: chart and shear, level 0", [](Edit& e, Random& r) {
     const auto c = pick_cluster(e, r, true);
-    const auto n = e.get<format::PageCluster>(e.page_cluster_offset(c)).channel_count;
-    if (n < 4) return false;
-    e.change_at<format::Channel>(e.channel_offset(c, 3 + r.below(n - 3U)),
-                                 [&](auto& x) { x.minimum += r.below(2) == 0 ? 6 : -6; });
+    const auto at = e.layout(c);
+    // Slopes of axes that have no bits change nothing.
+    if (at.bits[0] == 0 || at.bits[1] == 0 || at.bits[2] == 0) return false;
+    const bool has_normal = e.meshes()[mesh_of_cluster(e, c)].normal_mode == format::NormalMode::kStored;
+    const format::BitField fields[] = {format::head::kShearU, format::head::kShearV, format::head::kChart};
+    const auto f = r.below(has_normal ? 3 : 2);
+    // The lowest bits of a slope may round away over a short cluster.
+    if (f < 2) {
+      const auto value = static_cast<std::uint32_t>(e.head(c, fields[f])) & fields[f].mask();
+      e.put_head(c, fields[f], static_cast<std::int32_t>(value ^ 0x40U));
+      return at.bits[f == 0 ? (at.shear_axis == 0 ? 1 : 0) : (at.shear_axis == 2 ? 1 : 2)] > 2;
+    }
+    return change_field(e, r, c, at.head_word, fields[f]);
+  });
+  always("UV ranges: counts, bits", [](Edit& e, Random& r) {
+    const auto c = pick_cluster(e, r, r.below(2) == 0);
+    const auto mesh = e.meshes()[mesh_of_cluster(e, c)];
+    if (mesh.uv_set_count == 0) return false;
+    const format::BitField fields[] = {format::uv_range::kVerticesLess1, format::uv_range::kBitsU,
+                                       format::uv_range::kBitsV, format::uv_range::kHasFit};
+    return change_field(e, r, c, e.layout(c).uv_word[0], fields[r.below(std::size(fields))]);
+  });
+  always("colour ranges: bits", [](Edit& e, Random& r) {
+    const auto c = pick_cluster(e, r, r.below(2) == 0);
+    if (e.meshes()[mesh_of_cluster(e, c)].has_color == 0) return false;
+    return change_field(e, r, c, e.layout(c).color_word, format::color_range::kBits[r.below(4)]);
+  });
+  always("minimum of positions", [=](Edit& e, Random& r) {
+    e.move_minimum(any_cluster(e, r), pick(r, 3), r.below(2) == 0 ? 1 : -1);
     return true;
   });
-  mostly("channel minimum of attributes, above",
-         "attributes above level 0 that no neighbour shares are the simplifier's choice", [](Edit& e, Random& r) {
+  always("minimum of attributes, level 0", [](Edit& e, Random& r) {
+    const auto c = pick_cluster(e, r, true);
+    const auto n = e.stored_count(c);
+    if (n < 4) return false;
+    e.move_minimum(c, 3 + pick(r, n - 3U), r.below(2) == 0 ? 6 : -6);
+    return true;
+  });
+  mostly("minimum of attributes, above", "attributes above level 0 that no neighbour shares are the simplifier's choice",
+         [](Edit& e, Random& r) {
            const auto c = pick_cluster(e, r, false);
-           const auto n = e.get<format::PageCluster>(e.page_cluster_offset(c)).channel_count;
+           const auto n = e.stored_count(c);
            if (n < 4) return false;
-           e.change_at<format::Channel>(e.channel_offset(c, 3 + r.below(n - 3U)),
-                                        [&](auto& x) { nudge(x.minimum, r); });
+           e.move_minimum(c, 3 + pick(r, n - 3U), r.below(2) == 0 ? 3 : -3);
            return true;
          });
   always("vertex position, level 0", [](Edit& e, Random& r) {
     const auto c = pick_cluster(e, r, true);
-    return flip_bit(e, r, c, pick(r, e.clusters()[c].vertex_count), pick(r, 3), 0);
+    return flip_bit(e, r, c, pick(r, e.clusters()[c].vertex_count()), pick(r, 3), 0);
   });
   always("vertex attribute, level 0", [](Edit& e, Random& r) {
     const auto c = pick_cluster(e, r, true);
-    const auto n = e.get<format::PageCluster>(e.page_cluster_offset(c)).channel_count;
+    const auto n = e.stored_count(c);
     if (n < 4) return false;
     const auto k = 3 + pick(r, n - 3U);
-    return flip_bit(e, r, c, pick(r, e.clusters()[c].vertex_count), k, lowest_telling_bit(e, c, k));
+    return flip_bit(e, r, c, pick(r, e.clusters()[c].vertex_count()), k, lowest_telling_bit(e, c, k));
   });
   always("vertex position, shared, above", [](Edit& e, Random& r) {
     const auto c = pick_cluster(e, r, false);
@@ -576,8 +633,8 @@ std::vector<MutantKind> make_kinds() {
   mostly("vertex attribute, above", "attributes above level 0 that no neighbour shares are the simplifier's choice",
          [](Edit& e, Random& r) {
            const auto c = pick_cluster(e, r, false);
-           const auto n = e.get<format::PageCluster>(e.page_cluster_offset(c)).channel_count;
-           return n > 3 && flip_bit(e, r, c, pick(r, e.clusters()[c].vertex_count), 3 + pick(r, n - 3U), 0);
+           const auto n = e.stored_count(c);
+           return n > 3 && flip_bit(e, r, c, pick(r, e.clusters()[c].vertex_count()), 3 + pick(r, n - 3U), 0);
          });
   always("triangle index, level 0", [](Edit& e, Random& r) { return change_index(e, r, pick_cluster(e, r, true)); });
   always("triangle turned, level 0", [](Edit& e, Random& r) { return turn_triangle(e, r, pick_cluster(e, r, true)); });
@@ -589,9 +646,10 @@ std::vector<MutantKind> make_kinds() {
          [](Edit& e, Random& r) { return turn_triangle(e, r, pick_cluster(e, r, false)); });
   always("material range counts", [=](Edit& e, Random& r) {
     const auto c = any_cluster(e, r);
-    const auto n = e.get<format::PageCluster>(e.page_cluster_offset(c)).material_range_count;
-    e.change_at<format::MaterialRange>(e.range_offset(c, r.below(n)), [&](auto& x) { nudge(x.triangle_count, r); });
-    return true;
+    const auto at = e.layout(c);
+    if (at.material_count == 0) return false;
+    const std::uint32_t word = at.material_word + pick(r, at.material_count);
+    return change_field(e, r, c, word, format::material_range::kTrianglesLess1);
   });
   always("material, level 0", [](Edit& e, Random& r) { return change_material(e, r, pick_cluster(e, r, true)); });
   mostly("material, above", "a triangle above level 0 may have any material of its group",

@@ -71,7 +71,7 @@ std::vector<std::uint8_t> prove(const Scene& scene, const PipelineOptions& optio
     const format::MeshRecord& mesh = asset->meshes()[m];
     std::uint64_t finest = 0;
     for (const auto& cluster : asset->clusters().subspan(mesh.first_cluster, mesh.cluster_count)) {
-      finest += cluster.level == 0 ? cluster.triangle_count : 0U;
+      finest += cluster.level == 0 ? cluster.triangle_count() : 0U;
     }
     EXPECT_EQ(finest + mesh.dropped_degenerate + mesh.dropped_duplicate, triangles) << "I1, mesh " << m;
   }

@@ -183,6 +183,31 @@ TEST(ChooseGrid, AGivenStepIsASmallOddMantissa) {
   EXPECT_NEAR(choose_grid(1.0, 2.0, 0.1, options)->step(), 0.01, 0.01 * 0.004);
 }
 
+TEST(ChooseGrid, APositionErrorIsKeptAndNearlyUsed) {
+  for (const double error : {1e-4, 0.001, 1.0 / 1600.0, 0.37, 5.0}) {
+    PrepareOptions options;
+    options.position_error = error;
+    const auto grid = choose_grid(1.0, 2.0, 0.1, options);
+    ASSERT_TRUE(grid.ok()) << error;
+    const double farthest = grid->step() * std::sqrt(3.0) / 2.0;
+    EXPECT_LE(farthest, error);
+    EXPECT_GE(farthest, 0.99 * error) << "a mantissa of eight bits";
+  }
+  PrepareOptions options;
+  options.position_error = 1e-9;
+  EXPECT_EQ(choose_grid(1.0, 2.0, 0.1, options).error().code, ErrorCode::kUnsupported);
+}
+
+TEST(Prepare, NoVertexMovesFartherThanThePositionError) {
+  for (const double error : {0.05, 0.001}) {
+    PrepareOptions options;
+    options.position_error = error;
+    const PreparedMesh mesh = prepare(samples::make_sphere(16), options);
+    EXPECT_LE(mesh.level0_deviation, error);
+    EXPECT_GT(mesh.level0_deviation, 0.2 * error) << "the budget is used";
+  }
+}
+
 TEST(ChooseGrid, HoldsMeshesOfAnySize) {
   for (const double scale : {1e-30, 1e-6, 1.0, 1e9, 1e30}) {
     const auto grid = choose_grid(scale, 2 * scale, 0.0, {});

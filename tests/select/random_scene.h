@@ -216,7 +216,7 @@ struct TestTables {
       r.error = hierarchy.group_errors[g];
       r.quadric_error = r.error >= format::kInfiniteError ? r.error : 0.5F * r.error;
       r.first_cluster = mesh.first_cluster + dag.groups[g].first_cluster;
-      r.cluster_count = dag.groups[g].cluster_count;
+      r.cluster_count = static_cast<std::uint16_t>(dag.groups[g].cluster_count);
       r.mesh = static_cast<std::uint32_t>(meshes.size());
       r.level = static_cast<std::uint16_t>(dag.groups[g].level);
       r.normal_deviation = r.uv_deviation = format::kInfiniteError;

@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "hierarchy/culling_bounds.h"
+
 namespace meshlode::test {
 
 namespace {
@@ -246,6 +248,8 @@ void fill_hierarchy(SampleMesh& sample) {
     const Vec3d center = box_center(c, 1);
     out.cluster_spheres.push_back(to_sphere(center, radius_around(center, sample, dag.clusters[c])));
   }
+  out.sphere_log2 = choose_sphere_log2(out.cluster_spheres);
+  for (Hierarchy::Sphere& sphere : out.cluster_spheres) sphere = snap_sphere(sphere, out.sphere_log2);
   out.group_spheres.resize(dag.groups.size());
   out.group_errors.resize(dag.groups.size());
   for (std::size_t g = dag.groups.size(); g-- > 0;) {  // fine to coarse: the spheres below exist already

@@ -2,6 +2,7 @@
 #include "validate/edit.h"
 
 #include <optional>
+#include <span>
 
 #include "support/reseal.h"
 #include "validate/file_tables.h"
@@ -29,54 +30,140 @@ std::uint64_t AssetEdit::page_offset_of_cluster(std::uint64_t cluster) const {
   return 0;
 }
 
-std::uint64_t AssetEdit::page_cluster_offset(std::uint64_t cluster) const {
+const format::MeshRecord AssetEdit::mesh_of(std::uint64_t cluster) const {
+  for (const format::MeshRecord& mesh : meshes()) {
+    if (cluster >= mesh.first_cluster && cluster - mesh.first_cluster < mesh.cluster_count) return mesh;
+  }
+  return {};
+}
+
+std::vector<std::uint32_t> AssetEdit::page_words(std::uint64_t cluster) const {
+  for (const format::PageRecord& page : pages()) {
+    if (cluster < page.first_cluster || cluster - page.first_cluster >= page.cluster_count) continue;
+    std::vector<std::uint32_t> words(page.bytes / 4);
+    std::memcpy(words.data(), bytes_.data() + page.offset, 4 * words.size());
+    return words;
+  }
+  return {};
+}
+
+format::ClusterLayout AssetEdit::layout(std::uint64_t cluster) const {
+  const auto words = page_words(cluster);
+  format::ClusterLayout layout;
+  (void)format::read_cluster_layout(mesh_of(cluster), words, static_cast<std::uint32_t>(cluster - words[0]), layout);
+  return layout;
+}
+
+std::int32_t AssetEdit::field(std::uint64_t cluster, std::uint32_t word, format::BitField f) const {
+  const auto words = page_words(cluster);
+  return format::get_field(&words[word], f);
+}
+
+void AssetEdit::put_field(std::uint64_t cluster, std::uint32_t word, format::BitField f, std::int32_t value) {
+  change_at<std::uint32_t>(page_offset_of_cluster(cluster) + 4U * (word + f.word), [&](std::uint32_t& w) {
+    w &= ~(f.mask() << f.shift);
+    w |= (static_cast<std::uint32_t>(value) & f.mask()) << f.shift;
+  });
+}
+
+std::int32_t AssetEdit::head(std::uint64_t cluster, format::BitField f) const {
+  return field(cluster, layout(cluster).head_word, f);
+}
+
+void AssetEdit::put_head(std::uint64_t cluster, format::BitField f, std::int32_t value) {
+  put_field(cluster, layout(cluster).head_word, f, value);
+}
+
+std::uint32_t AssetEdit::page_bits(std::uint64_t cluster, std::uint32_t bit, std::uint32_t count) const {
+  return count == 0 ? 0 : format::get_bits(page_words(cluster).data(), bit, count);
+}
+
+void AssetEdit::put_page_bits(std::uint64_t cluster, std::uint32_t bit, std::uint32_t count, std::uint32_t value) {
   const std::uint64_t page = page_offset_of_cluster(cluster);
-  const auto head = get<format::PageHeader>(page);
-  return page + get<std::uint32_t>(page + sizeof head + 4 * (cluster - head.first_cluster));
-}
-
-std::uint64_t AssetEdit::channel_offset(std::uint64_t cluster, std::uint64_t k) const {
-  return page_cluster_offset(cluster) + sizeof(format::PageCluster) + k * sizeof(format::Channel);
-}
-
-std::uint64_t AssetEdit::range_offset(std::uint64_t cluster, std::uint64_t k) const {
-  const auto head = get<format::PageCluster>(page_cluster_offset(cluster));
-  return channel_offset(cluster, head.channel_count) + k * sizeof(format::MaterialRange);
-}
-
-std::uint64_t AssetEdit::vertex_stream_offset(std::uint64_t cluster) const {
-  return page_offset_of_cluster(cluster) + get<format::PageCluster>(page_cluster_offset(cluster)).vertex_offset;
-}
-
-std::uint64_t AssetEdit::triangle_stream_offset(std::uint64_t cluster) const {
-  return page_offset_of_cluster(cluster) + get<format::PageCluster>(page_cluster_offset(cluster)).triangle_offset;
-}
-
-AssetEdit::BitPlace AssetEdit::bit_place(std::uint64_t cluster, std::uint64_t vertex, std::uint64_t k) const {
-  const auto head = get<format::PageCluster>(page_cluster_offset(cluster));
-  std::uint64_t bit = vertex_stream_offset(cluster) * 8 + vertex * head.vertex_bits;
-  for (std::uint64_t c = 0; c < k; ++c) bit += get<format::Channel>(channel_offset(cluster, c)).bits;
-  return {bit, get<format::Channel>(channel_offset(cluster, k)).bits};
-}
-
-std::uint32_t AssetEdit::vertex_bits(std::uint64_t cluster, std::uint64_t vertex, std::uint64_t k) const {
-  const BitPlace at = bit_place(cluster, vertex, k);
-  std::uint32_t value = 0;
-  for (std::uint32_t i = 0; i < at.count; ++i) {
-    const std::uint64_t bit = at.first_bit + i;
-    value |= (bytes_[bit / 8] >> (bit % 8) & 1U) << i;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    std::uint8_t& byte = bytes_[page + (bit + i) / 8];
+    const auto mask = static_cast<std::uint8_t>(1U << (bit + i) % 8);
+    byte = static_cast<std::uint8_t>((value >> i & 1U) != 0 ? byte | mask : byte & ~mask);
   }
-  return value;
 }
 
-void AssetEdit::put_vertex_bits(std::uint64_t cluster, std::uint64_t vertex, std::uint64_t k, std::uint32_t value) {
-  const BitPlace at = bit_place(cluster, vertex, k);
-  for (std::uint32_t i = 0; i < at.count; ++i) {
-    const std::uint64_t bit = at.first_bit + i;
-    const auto mask = static_cast<std::uint8_t>(1U << (bit % 8));
-    bytes_[bit / 8] =
-        static_cast<std::uint8_t>((value >> i & 1U) != 0 ? bytes_[bit / 8] | mask : bytes_[bit / 8] & ~mask);
+std::uint32_t AssetEdit::stored_count(std::uint64_t cluster) const {
+  const auto mesh = mesh_of(cluster);
+  return 3U + (mesh.normal_mode == format::NormalMode::kStored ? 2U : 0U) + 2U * mesh.uv_set_count + 4U * mesh.has_color;
+}
+
+AssetEdit::BitPlace AssetEdit::place_of(std::uint64_t cluster, std::uint32_t vertex, std::uint32_t k) const {
+  const auto at = layout(cluster);
+  const auto mesh = mesh_of(cluster);
+  const auto in_row = [vertex](std::uint32_t first, std::span<const std::uint32_t> bits, std::uint32_t column) {
+    std::uint32_t row = 0;
+    std::uint32_t before = 0;
+    for (std::uint32_t i = 0; i < bits.size(); ++i) {
+      row += bits[i];
+      if (i < column) before += bits[i];
+    }
+    return BitPlace{first + vertex * row + before, bits[column]};
+  };
+  if (k < 3) return in_row(at.position_bit, at.bits, k);
+  k -= 3;
+  if (mesh.normal_mode == format::NormalMode::kStored) {
+    if (k < 2) return in_row(at.normal_bit, at.normal_bits, k);
+    k -= 2;
   }
+  if (k < 2 * mesh.uv_set_count) {
+    std::uint32_t word = at.uv_word[k / 2];
+    std::uint32_t first = at.uv_bit[k / 2];
+    while (true) {
+      const auto get = [&](format::BitField f) { return static_cast<std::uint32_t>(field(cluster, word, f)); };
+      const std::uint32_t count = get(format::uv_range::kVerticesLess1) + 1U;
+      const std::uint32_t bits[2] = {get(format::uv_range::kBitsU), get(format::uv_range::kBitsV)};
+      if (vertex < count) return in_row(first, bits, k % 2);
+      vertex -= count;
+      first += count * (bits[0] + bits[1]);
+      word += format::uv_range::kWords + (get(format::uv_range::kHasFit) != 0 ? format::uv_range::kFitWords : 0U);
+    }
+  }
+  k -= 2 * mesh.uv_set_count;
+  std::uint32_t bits[4];
+  for (std::size_t i = 0; i < 4; ++i) {
+    bits[i] = static_cast<std::uint32_t>(field(cluster, at.color_word, format::color_range::kBits[i]));
+  }
+  return in_row(at.color_bit, bits, k);
+}
+
+std::uint32_t AssetEdit::stored(std::uint64_t cluster, std::uint32_t vertex, std::uint32_t k) const {
+  const BitPlace at = place_of(cluster, vertex, k);
+  return page_bits(cluster, at.bit, at.count);
+}
+
+void AssetEdit::put_stored(std::uint64_t cluster, std::uint32_t vertex, std::uint32_t k, std::uint32_t value) {
+  const BitPlace at = place_of(cluster, vertex, k);
+  put_page_bits(cluster, at.bit, at.count, value);
+}
+
+std::pair<std::uint32_t, format::BitField> AssetEdit::minimum_field(std::uint64_t cluster, std::uint32_t k) const {
+  const auto at = layout(cluster);
+  const auto mesh = mesh_of(cluster);
+  if (k < 3) return {at.head_word, format::head::kMinimum[k]};
+  k -= 3;
+  if (mesh.normal_mode == format::NormalMode::kStored) {
+    if (k < 2) return {at.head_word, k == 0 ? format::head::kNormalMinimumA : format::head::kNormalMinimumB};
+    k -= 2;
+  }
+  if (k < 2 * mesh.uv_set_count) {
+    return {at.uv_word[k / 2], k % 2 == 0 ? format::uv_range::kMinimumU : format::uv_range::kMinimumV};
+  }
+  return {at.color_word, format::color_range::kMinimum[k - 2 * mesh.uv_set_count]};
+}
+
+std::int32_t AssetEdit::minimum(std::uint64_t cluster, std::uint32_t k) const {
+  const auto [word, f] = minimum_field(cluster, k);
+  return field(cluster, word, f);
+}
+
+void AssetEdit::move_minimum(std::uint64_t cluster, std::uint32_t k, std::int32_t by) {
+  const auto [word, f] = minimum_field(cluster, k);
+  put_field(cluster, word, f, field(cluster, word, f) + by);
 }
 
 void AssetEdit::seal() {

@@ -6,9 +6,11 @@
 #include <cstdint>
 #include <cstring>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include <meshlode/format.h>
+#include <meshlode/page.h>
 
 namespace meshlode::test {
 
@@ -113,17 +115,31 @@ class AssetEdit {
     return all<format::MaterialRecord>(format::SectionId::kMaterials);
   }
 
-  /// Where a cluster starts in the file.
-  [[nodiscard]] std::uint64_t page_cluster_offset(std::uint64_t cluster) const;
-  /// Where channel `k`, material range `k` and the streams of a cluster are in the file.
-  [[nodiscard]] std::uint64_t channel_offset(std::uint64_t cluster, std::uint64_t k) const;
-  [[nodiscard]] std::uint64_t range_offset(std::uint64_t cluster, std::uint64_t k) const;
-  [[nodiscard]] std::uint64_t vertex_stream_offset(std::uint64_t cluster) const;
-  [[nodiscard]] std::uint64_t triangle_stream_offset(std::uint64_t cluster) const;
-  /// Channel `k` of a vertex as stored, without the channel's minimum.
-  [[nodiscard]] std::uint32_t vertex_bits(std::uint64_t cluster, std::uint64_t vertex, std::uint64_t k) const;
-  void put_vertex_bits(std::uint64_t cluster, std::uint64_t vertex, std::uint64_t k, std::uint32_t value);
+  /// Where everything of a cluster lies in its page. \pre the page is sound
+  [[nodiscard]] format::ClusterLayout layout(std::uint64_t cluster) const;
   [[nodiscard]] std::uint64_t page_offset_of_cluster(std::uint64_t cluster) const;
+  /// A field of the head, or of the words at `word` of the cluster's page.
+  [[nodiscard]] std::int32_t head(std::uint64_t cluster, format::BitField field) const;
+  void put_head(std::uint64_t cluster, format::BitField field, std::int32_t value);
+  [[nodiscard]] std::int32_t field(std::uint64_t cluster, std::uint32_t word, format::BitField field) const;
+  void put_field(std::uint64_t cluster, std::uint32_t word, format::BitField field, std::int32_t value);
+  /// `count` bits of the cluster's page.
+  [[nodiscard]] std::uint32_t page_bits(std::uint64_t cluster, std::uint32_t bit, std::uint32_t count) const;
+  void put_page_bits(std::uint64_t cluster, std::uint32_t bit, std::uint32_t count, std::uint32_t value);
+
+  /// What a vertex has in the stream: 0 … 2 raw positions, then a and b of the normal, u and v of each UV set, and the
+  /// colour, as far as the mesh has them.
+  struct BitPlace {
+    std::uint32_t bit = 0;    ///< of the page
+    std::uint32_t count = 0;
+  };
+  [[nodiscard]] std::uint32_t stored_count(std::uint64_t cluster) const;
+  [[nodiscard]] BitPlace place_of(std::uint64_t cluster, std::uint32_t vertex, std::uint32_t k) const;
+  [[nodiscard]] std::uint32_t stored(std::uint64_t cluster, std::uint32_t vertex, std::uint32_t k) const;
+  void put_stored(std::uint64_t cluster, std::uint32_t vertex, std::uint32_t k, std::uint32_t value);
+  /// Adds to the minimum of value `k` of all vertices (of the first UV range).
+  void move_minimum(std::uint64_t cluster, std::uint32_t k, std::int32_t by);
+  [[nodiscard]] std::int32_t minimum(std::uint64_t cluster, std::uint32_t k) const;
 
   /// Makes every checksum and the content hash true again, as far as the tables can still be read.
   void seal();
@@ -136,11 +152,10 @@ class AssetEdit {
       std::memcpy(records.data(), bytes_.data() + section(id).offset, records.size() * sizeof(Record));
     return records;
   }
-  struct BitPlace {
-    std::uint64_t first_bit;  ///< from the start of the file
-    std::uint32_t count;
-  };
-  [[nodiscard]] BitPlace bit_place(std::uint64_t cluster, std::uint64_t vertex, std::uint64_t k) const;
+  [[nodiscard]] const format::MeshRecord mesh_of(std::uint64_t cluster) const;
+  [[nodiscard]] std::vector<std::uint32_t> page_words(std::uint64_t cluster) const;
+  /// The word (of the page) and field that hold the minimum of value `k`.
+  [[nodiscard]] std::pair<std::uint32_t, format::BitField> minimum_field(std::uint64_t cluster, std::uint32_t k) const;
   std::vector<std::uint8_t> bytes_;
 };
 

@@ -40,7 +40,7 @@ std::vector<std::uint8_t> judged_sample_bytes(format::Codec codec) {
   input.mesh_names.emplace_back("empty");
   input.scene = &scene;
   input.meta_json = R"({"generator":"a test","source":{"file":"sample.glb","hash":")" + scene.source_hash +
-                    R"("},"settings":{"error_tier":"qem","cluster_triangles":256},"plan":[],"left_out":[]})";
+                    R"("},"settings":{"error_tier":"qem","cluster_triangles":256,"normal_error":0.1,"uv_error":0.0001,"uv_error_unit":"uv"},"plan":[],"left_out":[]})";
   input.codec = codec;
   return value_or_abort(write_asset(std::move(input)));
 }

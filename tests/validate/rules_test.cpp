@@ -20,6 +20,7 @@ namespace {
 
 using format::SectionId;
 using test::AssetEdit;
+namespace head = format::head;
 
 const std::vector<std::uint8_t>& sample() {
   static const std::vector<std::uint8_t> bytes = test::judged_sample_bytes();
@@ -85,7 +86,7 @@ TEST(Validate, FindsNothingInMeasuredAttributeDeviations) {
 TEST(Validate, KeepsFewFindingsAndCountsAll) {
   AssetEdit edit(sample());
   const std::size_t count = edit.clusters().size();
-  for (std::size_t c = 0; c < count; ++c) edit.cluster(c, [](auto& r) { r.radius = 0.0F; });
+  for (std::size_t c = 0; c < count; ++c) edit.cluster(c, [](auto& r) { r.radius = 0; });
   edit.seal();
   const ValidationReport report = validate_asset(edit.bytes());
   const auto kept =
@@ -154,7 +155,8 @@ std::uint32_t leaf_node(const AssetEdit& edit) {
 const std::vector<Break>& breaks() {
   static const std::vector<Break> all{
       {"L001", "wrong magic", [](AssetEdit& e) { e.header([](auto& h) { h.magic ^= 1U; }); }},
-      {"L001", "version 1", [](AssetEdit& e) { e.header([](auto& h) { h.version = 1; }); }},
+      {"L001", "version 0", [](AssetEdit& e) { e.header([](auto& h) { h.version = 0; }); }},
+      {"L001", "version 2", [](AssetEdit& e) { e.header([](auto& h) { h.version = 2; }); }},
       {"L001", "longer header", [](AssetEdit& e) { e.header([](auto& h) { h.header_bytes = 72; }); }},
       {"L001", "truncated to nothing", [](AssetEdit& e) { e.bytes().resize(63); }, false},
       {"L002", "a byte more", [](AssetEdit& e) { e.bytes().push_back(0); }},
@@ -212,8 +214,7 @@ const std::vector<Break>& breaks() {
        [](AssetEdit& e) { e.mesh(0, [](auto& m) { m.error_tier = static_cast<format::ErrorTier>(3); }); }},
       {"L102", "alpha mode",
        [](AssetEdit& e) { e.material(0, [](auto& m) { m.alpha_mode = static_cast<format::AlphaMode>(3); }); }},
-      {"L103", "mesh reserved", [](AssetEdit& e) { e.mesh(0, [](auto& m) { m.reserved = 1; }); }},
-      {"L103", "cluster flags", [](AssetEdit& e) { e.cluster(0, [](auto& c) { c.flags = 1; }); }},
+      {"L103", "an unused UV set", [](AssetEdit& e) { e.mesh(0, [](auto& m) { m.uv_log2[3] = 1; }); }},
       {"L103", "group flags", [](AssetEdit& e) { e.group(0, [](auto& g) { g.flags |= 4U; }); }},
       {"L104", "origin not finite",
        [](AssetEdit& e) { e.mesh(0, [](auto& m) { m.origin[1] = std::numeric_limits<double>::quiet_NaN(); }); }},
@@ -221,7 +222,9 @@ const std::vector<Break>& breaks() {
       {"L105", "negative diagonal", [](AssetEdit& e) { e.mesh(0, [](auto& m) { m.diagonal = -1.0; }); }},
       {"L105", "deviation beyond the grid",
        [](AssetEdit& e) { e.mesh(0, [](auto& m) { m.level0_deviation = 1e9F; }); }},
-      {"L106", "channel count", [](AssetEdit& e) { e.mesh(0, [](auto& m) { m.channel_count += 1; }); }},
+      {"L106", "normal scale", [](AssetEdit& e) { e.mesh(0, [](auto& m) { m.normal_scale = 8192; }); }},
+      {"L106", "material", [](AssetEdit& e) { e.mesh(1, [](auto& m) { m.material = 99; }); }},
+      {"L106", "sphere unit", [](AssetEdit& e) { e.mesh(1, [](auto& m) { m.sphere_log2 = 105; }); }},
       {"L106", "five UV sets", [](AssetEdit& e) { e.mesh(0, [](auto& m) { m.uv_set_count = 5; }); }},
       {"L107", "groups not partitioned", [](AssetEdit& e) { e.mesh(1, [](auto& m) { m.first_group += 1; }); }},
       {"L108", "clusters not partitioned", [](AssetEdit& e) { e.mesh(1, [](auto& m) { m.cluster_count -= 1; }); }},
@@ -251,66 +254,67 @@ const std::vector<Break>& breaks() {
       {"L204", "packed bytes are none",
        [](AssetEdit& e) { e.page(0, [](auto& p) { p.codec = format::Codec::kZstd; }); }},
       {"L205", "page names other clusters", [](AssetEdit& e) { e.bytes()[e.pages()[0].offset] ^= 1U; }},
-      {"L205", "cluster offset",
-       [](AssetEdit& e) { e.bytes()[e.pages()[0].offset + sizeof(format::PageHeader)] += 4; }},
-      {"L206", "triangle count", [](AssetEdit& e) { e.cluster(0, [](auto& c) { c.triangle_count -= 1; }); }},
+      {"L205", "data word",
+       [](AssetEdit& e) { e.put_head(0, head::kDataWord, e.head(0, head::kDataWord) + 1); }},
+      {"L206", "triangle count", [](AssetEdit& e) { e.cluster(0, [](auto& c) { c.triangles_less_1 -= 1; }); }},
       {"L206", "vertex count",
+       [](AssetEdit& e) { e.put_head(0, head::kVerticesLess1, e.head(0, head::kVerticesLess1) - 1); }},
+      {"L207", "a bit that no vertex needs",
        [](AssetEdit& e) {
-         e.change_at<format::PageCluster>(e.page_cluster_offset(0), [](auto& c) { c.vertex_count -= 1; });
-       }},
-      {"L206", "channel count",
-       [](AssetEdit& e) {
-         e.change_at<format::PageCluster>(e.page_cluster_offset(0), [](auto& c) { c.channel_count += 1; });
-       }},
-      {"L207", "vertex bits",
-       [](AssetEdit& e) {
-         e.change_at<format::PageCluster>(e.page_cluster_offset(0), [](auto& c) { c.vertex_bits += 1; });
-       }},
-      {"L208", "stream outside",
-       [](AssetEdit& e) {
-         e.change_at<format::PageCluster>(e.page_cluster_offset(0), [](auto& c) { c.triangle_offset = 0x7FFFFFF0U; });
-       }},
-      {"L208", "stream unaligned",
-       [](AssetEdit& e) {
-         e.change_at<format::PageCluster>(e.page_cluster_offset(0), [](auto& c) { c.vertex_offset += 1; });
-       }},
-      {"L209", "index too large", [](AssetEdit& e) { e.bytes()[e.triangle_stream_offset(0)] = 255; }},
-      {"L210", "vertex not used",
-       [](AssetEdit& e) {
-         const std::uint64_t at = e.triangle_stream_offset(0);
-         const std::uint32_t n = 3U * e.clusters()[0].triangle_count;
-         for (std::uint32_t i = 0; i < n; ++i) {
-           if (e.bytes()[at + i] == 0) e.bytes()[at + i] = 1;
+         // The largest value of an axis loses its top bit.
+         const std::uint32_t top = 1U << (e.place_of(0, 0, 0).count - 1);
+         for (std::uint32_t v = 0; v < e.clusters()[0].vertex_count(); ++v) {
+           e.put_stored(0, v, 0, e.stored(0, v, 0) & ~top);
          }
+       }},
+      {"L208", "25 bits", [](AssetEdit& e) { e.put_head(0, head::kBits[1], 25); }},
+      {"L208", "a chart that is none", [](AssetEdit& e) { e.put_head(0, head::kChart, 6); }},
+      {"L208", "an axis that is none", [](AssetEdit& e) { e.put_head(0, head::kShearAxis, 3); }},
+      {"L208", "beyond the page",
+       [](AssetEdit& e) {
+         // The last cluster of the sphere's page: all its axes claim as many bits as there are.
+         const auto page = e.pages()[1];
+         const auto c = page.first_cluster + page.cluster_count - 1;
+         for (const auto& field : head::kBits) e.put_head(c, field, 24);
+       }},
+      {"L208", "UV ranges cover too much",
+       [](AssetEdit& e) { e.put_field(0, e.layout(0).uv_word[0], format::uv_range::kVerticesLess1, 255); }},
+      {"L209", "a reference to what was not named",
+       [](AssetEdit& e) {
+         const auto at = e.layout(0);
+         e.put_page_bits(0, at.reference_bit, at.reference_bits, 0xFFU);
+       }},
+      {"L210", "a vertex too few",
+       [](AssetEdit& e) {
+         const auto at = e.layout(0);
+         std::uint32_t slot = at.slot_count;
+         while (e.page_bits(0, at.fresh_bit + slot - 1, 1) == 0) --slot;
+         e.put_page_bits(0, at.fresh_bit + slot - 1, 1, 0);
        }},
       {"L211", "no such material",
-       [](AssetEdit& e) {
-         e.change_at<format::MaterialRange>(e.range_offset(0, 0), [](auto& r) { r.material = 99; });
-       }},
+       [](AssetEdit& e) { e.put_field(0, e.layout(0).material_word, format::material_range::kMaterial, 99); }},
       {"L211", "ranges cover too much",
-       [](AssetEdit& e) {
-         e.change_at<format::MaterialRange>(e.range_offset(0, 0), [](auto& r) { r.triangle_count += 1; });
-       }},
-      {"L212", "beyond 24 bits",
-       [](AssetEdit& e) {
-         e.change_at<format::Channel>(e.channel_offset(0, 0), [](auto& c) { c.minimum = 1 << 24; });
-       }},
-      {"L212", "normal out of range",
-       [](AssetEdit& e) { e.change_at<format::Channel>(e.channel_offset(0, 3), [](auto& c) { c.minimum = -1; }); }},
+       [](AssetEdit& e) { e.put_field(0, e.layout(0).material_word, format::material_range::kTrianglesLess1, 255); }},
+      {"L212", "beyond 24 bits", [](AssetEdit& e) { e.put_head(0, head::kMinimum[0], (1 << 23) - 1); }},
+      {"L212", "normal out of range", [](AssetEdit& e) { e.put_head(0, head::kNormalMinimumA, (1 << 14) - 1); }},
+      {"L212", "UV out of range", [](AssetEdit& e) { e.move_minimum(0, 5, 1 << 25); }},
       {"L215", "a normal by another name",
        [](AssetEdit& e) {
-         // The vertex with the largest second value gets the pair (-1, M): X is 0 there, so its one name is (1, M).
-         const std::int32_t m = (1 << (e.meshes()[0].normal_bits - 1)) - 1;
+         // The vertex with the largest second value gets the pair (-1, M): A is 0 there, so its one name is (1, M).
+         const auto m = static_cast<std::int32_t>(e.meshes()[0].normal_scale);
          std::int32_t a = 0;
          std::int32_t b = -1;
-         for (std::uint32_t v = 0; v < e.clusters()[0].vertex_count; ++v) {
-           const auto value = static_cast<std::int32_t>(e.vertex_bits(0, v, 4));
-           if (value > b) a = static_cast<std::int32_t>(e.vertex_bits(0, v, 3));
+         for (std::uint32_t v = 0; v < e.clusters()[0].vertex_count(); ++v) {
+           const auto value = static_cast<std::int32_t>(e.stored(0, v, 4));
+           if (value > b) a = static_cast<std::int32_t>(e.stored(0, v, 3));
            b = std::max(b, value);
          }
-         e.change_at<format::Channel>(e.channel_offset(0, 3), [&](auto& channel) { channel.minimum = m - 1 - a; });
-         e.change_at<format::Channel>(e.channel_offset(0, 4), [&](auto& channel) { channel.minimum = 2 * m - b; });
+         e.put_head(0, head::kNormalMinimumA, m - 1 - a);
+         e.put_head(0, head::kNormalMinimumB, 2 * m - b);
        }},
+      {"L216", "a strip starts with a right turn",
+       [](AssetEdit& e) { e.put_page_bits(0, e.layout(0).turn_bit, 1, 1); }},
+      {"L216", "more strips than triangles", [](AssetEdit& e) { e.put_head(0, head::kStripsLess1, 255); }},
       {"L301", "level 0 with an own group",
        [](AssetEdit& e) {
          const auto c = level0_cluster(e);
@@ -354,7 +358,7 @@ const std::vector<Break>& breaks() {
       {"L308", "sphere moved", [](AssetEdit& e) { e.group(inner_group(e), [](auto& g) { g.center[1] += g.radius; }); }},
       {"L309", "sphere without margin", [](AssetEdit& e) { e.group(0, [](auto& g) { g.radius *= 1.0F - 0x1p-21F; }); }},
       {"L310", "level 0 sticks out",
-       [](AssetEdit& e) { e.cluster(level0_cluster(e), [](auto& c) { c.radius *= 8.0F; }); }},
+       [](AssetEdit& e) { e.cluster(level0_cluster(e), [](auto& c) { c.radius = 65535; }); }},
       {"L311", "quadric error falls",
        [](AssetEdit& e) { e.group(inner_group(e), [](auto& g) { g.quadric_error = -1.0F; }); }},
       {"L311", "measured in the qem tier",
@@ -389,39 +393,53 @@ const std::vector<Break>& breaks() {
        [](AssetEdit& e) {
          e.node(leaf_node(e), [](auto& r) { r.error = r.error < 1e30F ? r.error * 2.0F + 1.0F : 1.0F; });
        }},
-      {"L501", "no triangle", [](AssetEdit& e) { e.cluster(0, [](auto& c) { c.triangle_count = 0; }); }},
-      {"L501", "257 vertices", [](AssetEdit& e) { e.cluster(0, [](auto& c) { c.vertex_count = 257; }); }},
+      {"L501", "more vertices than corners", [](AssetEdit& e) { e.cluster(0, [](auto& c) { c.vertices_less_1 = 255; }); }},
       {"L502", "culling sphere shrunk by 0.1%",
-       [](AssetEdit& e) { e.cluster(0, [](auto& c) { c.radius *= 0.999F; }); }},
+       [](AssetEdit& e) { e.cluster(0, [](auto& c) { c.radius = static_cast<std::uint16_t>(c.radius * 0.998); }); }},
       {"L503", "cone too narrow", [](AssetEdit& e) { e.cluster(0, [](auto& c) { c.cone_cutoff = -1; }); }},
       {"L504", "bounds", [](AssetEdit& e) { e.mesh(0, [](auto& m) { m.bounds_max[0] += 1; }); }},
       {"L505", "collapsed", [](AssetEdit& e) { e.mesh(0, [](auto& m) { m.grid_collapsed += 1; }); }},
       {"L506", "a normal on a shared border",
        [](AssetEdit& e) {
-         // The whole channel of one cluster moves: every corner on its border changes.
+         // The normals of one whole cluster move: every corner on its border changes.
          const auto c = cluster_above(e, shared_group(e));
-         e.change_at<format::Channel>(e.channel_offset(c, 3),
-                                      [](auto& channel) { channel.minimum += channel.minimum > 4 ? -1 : 1; });
+         e.move_minimum(c, 3, e.minimum(c, 3) > 4 ? -1 : 1);
        }},
       {"L507", "a vertex on a shared border",
+       [](AssetEdit& e) { e.move_minimum(cluster_above(e, shared_group(e)), 0, 1); }},
+      {"L507", "a turn the other way",
        [](AssetEdit& e) {
          const auto c = cluster_above(e, shared_group(e));
-         e.change_at<format::Channel>(e.channel_offset(c, 0), [](auto& channel) { channel.minimum += 1; });
-       }},
-      {"L507", "a triangle turned over",
-       [](AssetEdit& e) {
-         const auto at = e.triangle_stream_offset(cluster_above(e, shared_group(e)));
-         std::swap(e.bytes()[at], e.bytes()[at + 1]);
+         const auto at = e.layout(c);
+         e.put_page_bits(c, at.turn_bit + 1, 1, 1U - e.page_bits(c, at.turn_bit + 1, 1));
        }},
       {"L508", "two corners in one place",
        [](AssetEdit& e) {
-         const auto at = e.triangle_stream_offset(cluster_above(e, shared_group(e)));
-         e.bytes()[at] = e.bytes()[at + 1];
+         // The triangle of the first reference that can name the slot before it.
+         const auto c = cluster_above(e, shared_group(e));
+         const auto at = e.layout(c);
+         std::uint32_t reference = 0;
+         for (std::uint32_t s = 3; s < at.slot_count; ++s) {
+           if (e.page_bits(c, at.fresh_bit + s, 1) != 0) continue;
+           const bool fresh_before = e.page_bits(c, at.fresh_bit + s - 1, 1) != 0;
+           if (fresh_before) {
+             e.put_page_bits(c, at.reference_bit + reference * at.reference_bits, at.reference_bits, 0);
+             return;
+           }
+           ++reference;
+         }
        }},
       {"L509", "a material from nowhere",
        [](AssetEdit& e) {
-         const auto sphere = e.meshes()[1];  // one material
-         e.change_at<format::MaterialRange>(e.range_offset(sphere.first_cluster, 0), [](auto& r) { r.material ^= 1U; });
+         // A cluster of level 0 in the patch says it has the other material: what replaces it has both.
+         const auto patch = e.meshes()[0];
+         const auto clusters = e.clusters();
+         for (std::uint32_t c = patch.first_cluster; c < patch.first_cluster + patch.cluster_count; ++c) {
+           if (clusters[c].own_group == format::kNone) continue;
+           const auto word = e.layout(c).material_word;
+           const auto material = e.field(c, word, format::material_range::kMaterial);
+           e.put_field(c, word, format::material_range::kMaterial, 1 - material);
+         }
        }},
   };
   return all;
@@ -466,29 +484,28 @@ TEST(Validate, BytesBetweenSectionsAreZero) {
   EXPECT_TRUE(has(validate_asset(edit.bytes()), "L014"));
 }
 
-TEST(Validate, PaddingInsideAPageIsZero) {
-  // Some cluster's triangles do not fill their last four bytes.
+TEST(Validate, UnnamedBitsOfAPageAreZero) {
+  const auto expect_found = [](const char* what, const std::function<void(AssetEdit&)>& change) {
+    AssetEdit edit(sample());
+    change(edit);
+    edit.seal();
+    EXPECT_TRUE(has(validate_asset(edit.bytes()), "L214")) << what;
+  };
+  expect_found("head, word 2", [](AssetEdit& e) { e.put_head(0, {2, 31, 1, false}, 1); });
+  expect_found("head, word 3", [](AssetEdit& e) { e.put_head(0, {3, 29, 3, false}, 4); });
+  expect_found("UV range", [](AssetEdit& e) { e.put_field(0, e.layout(0).uv_word[0], {0, 29, 3, false}, 1); });
+  expect_found("the page's last word", [](AssetEdit& e) {
+    const auto page = e.pages()[0];
+    e.bytes()[page.offset + page.bytes - 4] = 1;
+  });
+  const auto sphere = AssetEdit(sample()).meshes()[1].first_cluster;
+  expect_found("colour range", [&](AssetEdit& e) {
+    e.put_field(sphere, e.layout(sphere).color_word, {1, 16, 16, false}, 1);
+  });
   AssetEdit edit(sample());
-  const auto clusters = edit.clusters();
-  for (std::uint32_t c = 0; c < clusters.size(); ++c) {
-    const std::uint64_t end = edit.triangle_stream_offset(c) + 3U * clusters[c].triangle_count;
-    if (end % 4 == 0) continue;
-    edit.bytes()[end] = 1;
-    edit.seal();
-    EXPECT_TRUE(has(validate_asset(edit.bytes()), "L214"));
-    return;
-  }
-  // Otherwise the last bits of a vertex stream.
-  for (std::uint32_t c = 0; c < clusters.size(); ++c) {
-    const auto head = edit.get<format::PageCluster>(edit.page_cluster_offset(c));
-    const std::uint64_t bits = std::uint64_t{head.vertex_bits} * head.vertex_count;
-    if (bits % 8 == 0) continue;
-    edit.bytes()[edit.vertex_stream_offset(c) + bits / 8] |= 0x80U;
-    edit.seal();
-    EXPECT_TRUE(has(validate_asset(edit.bytes()), "L214"));
-    return;
-  }
-  FAIL() << "the sample has no padding";
+  std::uint32_t c = 0;
+  while (edit.layout(c).end_bit % 32 == 0) ++c;
+  expect_found("behind a stream", [&](AssetEdit& e) { e.put_page_bits(c, e.layout(c).end_bit, 1, 1); });
 }
 
 TEST(Validate, NoTruncationPasses) {

@@ -150,7 +150,7 @@ TEST_F(CutChecks, AMovedBorderVertexOpensCuts) {
   const auto mesh = edit.meshes()[1];
   for (std::uint32_t c = mesh.first_cluster; c < mesh.first_cluster + mesh.cluster_count; ++c) {
     if (clusters[c].level != 1) continue;
-    edit.change_at<format::Channel>(edit.channel_offset(c, 0), [](auto& channel) { channel.minimum += 1; });
+    edit.move_minimum(c, 0, 1);
     break;
   }
   edit.seal();

@@ -92,14 +92,13 @@ const std::vector<Break>& breaks() {
        keep},
       {"V101", "a vertex moved by a step", [](Scene& s) { s.meshes[1].primitives[0].positions[0].x += 1.0; }, keep},
       {"V101", "another origin", keep, [](AssetEdit& e) { e.mesh(1, [](auto& m) { m.origin[0] += 1.0; }); }},
-      {"V101", "two grid points swapped", keep,
+      {"V101", "a strip that goes the other way", keep,
        [](AssetEdit& e) {
-         // In a level-0 cluster: the triangle that used vertex 0 now uses another.
          const auto clusters = e.clusters();
          for (std::uint32_t c = 0; c < clusters.size(); ++c) {
            if (clusters[c].own_group != format::kNone) continue;
-           const auto at = e.triangle_stream_offset(c);
-           std::swap(e.bytes()[at], e.bytes()[at + 1]);
+           const auto bit = e.layout(c).turn_bit + 1;
+           e.put_page_bits(c, bit, 1, 1U - e.page_bits(c, bit, 1));
            return;
          }
        }},
@@ -170,6 +169,20 @@ const std::vector<Break>& breaks() {
          found[static_cast<std::ptrdiff_t>(from.size()) - 2] = '1';
          // "016" is no JSON number: a space keeps the length
          found[static_cast<std::ptrdiff_t>(from.size()) - 3] = ' ';
+       }},
+      {"V113", "a budget that the normals do not keep", keep,
+       [](AssetEdit& e) {
+         const std::string from = "\"normal_error\":0.1";
+         const auto found = std::search(e.bytes().begin(), e.bytes().end(), from.begin(), from.end());
+         ASSERT_NE(found, e.bytes().end());
+         found[static_cast<std::ptrdiff_t>(from.size()) - 1] = '0';
+       }},
+      {"V113", "a budget that the UVs do not keep", keep,
+       [](AssetEdit& e) {
+         const std::string from = "\"uv_error\":0.0001";
+         const auto found = std::search(e.bytes().begin(), e.bytes().end(), from.begin(), from.end());
+         ASSERT_NE(found, e.bytes().end());
+         found[static_cast<std::ptrdiff_t>(from.size()) - 1] = '0';
        }},
       {"V112", "another tier", keep,
        [](AssetEdit& e) { e.mesh(2, [](auto& m) { m.error_tier = format::ErrorTier::kCertified; }); }},

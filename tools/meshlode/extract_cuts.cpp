@@ -33,7 +33,7 @@ double error_unit(const CutRequest& request, const Asset& asset, std::size_t mes
 
 CutLevel make_level(const Asset& asset, UniformCut cut, std::optional<double> asked = {}) {
   CutLevel level;
-  for (const ClusterId c : cut.clusters) level.triangles += asset.clusters()[c.value].triangle_count;
+  for (const ClusterId c : cut.clusters) level.triangles += asset.clusters()[c.value].triangle_count();
   level.cut = std::move(cut);
   level.asked = asked;
   return level;

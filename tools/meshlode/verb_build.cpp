@@ -7,7 +7,9 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <set>
+#include <string_view>
 
 #include "base/file.h"
 #include "import/import.h"
@@ -250,8 +252,44 @@ struct BuildWords {
   std::string preset = "default";
   std::string attributes = "auto";
   std::string grid = "auto";
+  std::string position_error = "auto";
+  std::string normal_error = "0.1";
+  std::string uv_error = "auto";
   std::string codec = "none";
 };
+
+/// A finite number above 0, all of the text.
+std::optional<double> parse_positive(std::string_view text) {
+  double value = 0.0;
+  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || rest != text.data() + text.size() || !(value > 0.0) || !std::isfinite(value)) {
+    return std::nullopt;
+  }
+  return value;
+}
+
+/// The accuracy budgets.
+Status set_budgets(const BuildWords& words, PipelineOptions& options) {
+  if (words.position_error != "auto") {
+    if (words.grid != "auto") return Error{ErrorCode::kUsage, "--position-error", "give this or --grid, not both"};
+    const auto error = parse_positive(words.position_error);
+    if (!error) return Error{ErrorCode::kUsage, "--position-error", "give auto or a distance above 0 in mesh units"};
+    options.position_error = *error;
+  }
+  const auto normal = parse_positive(words.normal_error);
+  if (!normal) return Error{ErrorCode::kUsage, "--normal-error", "give an angle above 0 in degrees"};
+  options.normal_error = *normal;
+  if (words.uv_error != "auto") {
+    std::string_view text = words.uv_error;
+    options.uv_error_is_texels = text.ends_with("px");
+    options.uv_error_is_default = false;
+    if (options.uv_error_is_texels) text.remove_suffix(2);
+    const auto error = parse_positive(text);
+    if (!error) return Error{ErrorCode::kUsage, "--uv-error", "give auto, a number above 0 in UV units, or texels as 0.25px"};
+    options.uv_error = *error;
+  }
+  return Ok{};
+}
 
 Result<PipelineOptions> make_options(const BuildWords& words) {
   const auto later = [](const char* option, const std::string& value) {
@@ -269,6 +307,7 @@ Result<PipelineOptions> make_options(const BuildWords& words) {
   options.attributes = words.attributes == "none"  ? AttributeChoice::kNone
                        : words.attributes == "all" ? AttributeChoice::kAll
                                                    : AttributeChoice::kAuto;
+  if (Status status = set_budgets(words, options); !status) return status.error();
   if (words.grid != "auto") {
     const char* end = words.grid.data() + words.grid.size();
     const auto [rest, error] = std::from_chars(words.grid.data(), end, options.grid_step);
@@ -296,6 +335,9 @@ int run_build(const Verb& verb, std::span<char* const> args) {
   parser.add_value("--attributes", words.attributes, "auto keeps what the materials call for, none positions only",
                    {"auto", "none", "all"});
   parser.add_value("--grid", words.grid, "auto, or a step in mesh units for meshes that must abut");
+  parser.add_value("--position-error", words.position_error, "auto, or the largest distance a vertex may move, mesh units");
+  parser.add_value("--normal-error", words.normal_error, "the largest angle a stored normal may be off, degrees");
+  parser.add_value("--uv-error", words.uv_error, "auto, or the largest move of a UV: UV units, or 0.25px for texels");
   parser.add_value("--codec", words.codec, "disk codec of the pages", {"none", "lz4", "zstd", "draco"});
   add_jobs_option(parser, jobs);
   parser.add_value("--report", report_path, "write times and counts as JSON, the same that --format json prints");

@@ -20,7 +20,13 @@ int run_info(const Verb& verb, std::span<char* const> args) {
 
   const Result<Asset> asset = Asset::open(path);
   if (!asset) return print_error(asset.error());
-  const AssetInfo info = describe_asset(*asset);
+  AssetInfo info = describe_asset(*asset);
+  Result<ByteMap> byte_map = map_bytes(*asset);
+  if (byte_map) {
+    info.byte_map = std::move(*byte_map);
+  } else {
+    (void)print_error(byte_map.error());  // what the tables say is still true
+  }
   const std::string text = output.json() ? info_json(*asset, info, list_stuck) : info_text(*asset, info, list_stuck);
   return print_out(text) ? 0 : static_cast<int>(ErrorCode::kIo);
 }

@@ -63,9 +63,9 @@ RenderStats measure(const Asset& asset, const std::vector<ClusterInstance>& cut,
   stats.clusters = cut.size();
   for (const ClusterInstance& entry : cut) {
     const format::ClusterRecord& cluster = asset.clusters()[entry.cluster.value];
-    stats.triangles += cluster.triangle_count;
+    stats.triangles += cluster.triangle_count();
     if (stats.triangles_of_level.size() <= cluster.level) stats.triangles_of_level.resize(cluster.level + 1u, 0);
-    stats.triangles_of_level[cluster.level] += cluster.triangle_count;
+    stats.triangles_of_level[cluster.level] += cluster.triangle_count();
   }
   const auto is_used = [](std::uint64_t count) { return count != 0; };
   const auto finest = std::ranges::find_if(stats.triangles_of_level, is_used);

@@ -31,10 +31,12 @@ struct GpuMesh {
   uint first_node, node_count, first_group, first_cluster;
   uint channel_count;
   uint normal_mode;     // format::NormalMode
-  uint normal_scale;    // what a normal's integers are of: octahedral bits
+  uint normal_scale;    // |X| + |Y| + |Z| of stored normals; 0: none are
   uint uv_set_count;
   uint has_color;
   uint group_count;
+  uint material;        // of every triangle; 0xFFFFFFFF: the clusters say
+  uint reserved;
 };
 
 struct GpuInstance {
@@ -189,7 +191,7 @@ struct GpuFrame {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(GpuMesh) == 96 && sizeof(GpuInstance) == 112 && sizeof(GpuNode) == 32 && sizeof(GpuGroup) == 32);
+static_assert(sizeof(GpuMesh) == 104 && sizeof(GpuInstance) == 112 && sizeof(GpuNode) == 32 && sizeof(GpuGroup) == 32);
 static_assert(sizeof(GpuCluster) == 32 && sizeof(GpuMaterial) == 32 && sizeof(GpuCamera) == 144);
 static_assert(sizeof(GpuVisible) == 384 && sizeof(GpuStage) == 16);
 }  // namespace meshlode::gpu

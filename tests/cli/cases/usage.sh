@@ -19,6 +19,11 @@ run build a.glb --jobs -1
 run build a.glb --grid 0
 run build a.glb --grid nan
 run build a.glb --grid 1e-3x
+run build a.glb --position-error -1
+run build a.glb --position-error 1 --grid 1
+run build a.glb --normal-error 0
+run build a.glb --uv-error 1pxl
+run build a.glb --uv-error 0px
 run build a.glb a.glb -O out
 run info --format yaml a.lode
 files

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How many texels a unit of texture coordinates spans, so that a budget can be given in texels.
+#pragma once
+
+#include <array>
+
+#include "mesh/scene.h"
+
+namespace meshlode {
+
+/// For each TEXCOORD_n: the most texels that a unit of it spans, over every texture that the mesh's materials sample with
+/// it, KHR_texture_transform's scale included. 0 where no texture of known size is sampled.
+[[nodiscard]] std::array<double, kMaxUvSets> texels_per_unit(const Scene& scene, const SourceMesh& mesh);
+
+}  // namespace meshlode
