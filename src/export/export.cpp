@@ -88,7 +88,8 @@ class Exporter {
 
  private:
   Status add_mesh(MeshId mesh);
-  Result<Json> make_mesh(const format::MeshRecord& record, std::span<const CutPrimitive> primitives, const Vec3d& baked);
+  Result<Json> make_mesh(const format::MeshRecord& record, std::span<const CutPrimitive> primitives,
+                         const Vec3d& baked);
   Result<Json> make_primitive(const format::MeshRecord& record, const CutPrimitive& primitive, const Vec3d& baked);
   void carry_buffers();
   void carry_images();
@@ -177,8 +178,8 @@ void Exporter::use_extension(const char* name, bool is_required) {
   }
 }
 
-/// A texture's own source may be PNG or JPEG only. A source file that refers to others by a URI without a type gets away
-/// with more; inside a GLB each image has a type, and the other types have extensions to name them by.
+/// A texture's own source may be PNG or JPEG only. A source file that refers to others by a URI without a type gets
+/// away with more; inside a GLB each image has a type, and the other types have extensions to name them by.
 void Exporter::move_texture_sources() {
   if (!document_.contains("textures")) return;
   for (Json& texture : array_of(document_, "textures")) {
@@ -187,7 +188,9 @@ void Exporter::move_texture_sources() {
     const Json* image = find_element(document_, "images", source->get<std::size_t>());
     if (image == nullptr || !image->is_object()) continue;
     const Json type = image->value("mimeType", Json());
-    const char* extension = type == "image/ktx2" ? "KHR_texture_basisu" : type == "image/webp" ? "EXT_texture_webp" : "";
+    const char* extension = type == "image/ktx2"   ? "KHR_texture_basisu"
+                            : type == "image/webp" ? "EXT_texture_webp"
+                                                   : "";
     if (*extension == 0) continue;
     Json& named = texture["extensions"][extension];
     if (named.is_null()) named = {{"source", *source}};
@@ -348,7 +351,8 @@ Status Exporter::add_mesh(MeshId mesh) {
     if (!json) return json.error();
     const std::string name = k == 0 || exported.name.empty() ? exported.name : level_name(exported.name, k);
     if (!name.empty()) (*json)["name"] = name;
-    if (source != nullptr && source->is_object() && source->contains("extras")) (*json)["extras"] = source->at("extras");
+    if (source != nullptr && source->is_object() && source->contains("extras"))
+      (*json)["extras"] = source->at("extras");
     exported.levels.push_back(static_cast<std::uint32_t>(meshes_.size()));
     meshes_.push_back(std::move(*json));
   }
@@ -518,8 +522,8 @@ Result<std::vector<std::uint8_t>> export_glb_lods(const Asset& asset, std::span<
   }
   for (std::size_t m = 0; m < chain_per_mesh.size(); ++m) {
     const LodChain& chain = chain_per_mesh[m];
-    const bool has_gap = chain.cuts.size() > 1 && std::any_of(chain.cuts.begin(), chain.cuts.end(),
-                                                              [](const auto& cut) { return cut.empty(); });
+    const bool has_gap = chain.cuts.size() > 1 &&
+                         std::any_of(chain.cuts.begin(), chain.cuts.end(), [](const auto& cut) { return cut.empty(); });
     if (has_gap || !is_sound(chain)) {
       return Error{ErrorCode::kUsage, "mesh " + std::to_string(m), "its levels and coverage values are not a chain"};
     }

@@ -26,9 +26,9 @@ struct LodChain {
   std::vector<double> screen_coverage;
 };
 
-/// Discrete levels of detail: each node with a mesh gets its coarser levels as further nodes, named by MSFT_lod, and the
-/// coverage hints as MSFT_screencoverage. A reader without that extension sees the finest level. A mesh with one level
-/// is exported as export_glb does. Errors: kUsage for chains and coverage that are not as described.
+/// Discrete levels of detail: each node with a mesh gets its coarser levels as further nodes, named by MSFT_lod, and
+/// the coverage hints as MSFT_screencoverage. A reader without that extension sees the finest level. A mesh with one
+/// level is exported as export_glb does. Errors: kUsage for chains and coverage that are not as described.
 [[nodiscard]] Result<std::vector<std::uint8_t>> export_glb_lods(const Asset& asset,
                                                                 std::span<const LodChain> chain_per_mesh);
 

@@ -8,8 +8,7 @@
 
 namespace meshlode {
 
-Vec3d choose_origin(const format::MeshRecord& record,
-                    std::span<const std::vector<CutPrimitive>> levels) {
+Vec3d choose_origin(const format::MeshRecord& record, std::span<const std::vector<CutPrimitive>> levels) {
   const Vec3d origin(record.origin[0], record.origin[1], record.origin[2]);
   const PositionGrid grid{record.grid.log2, record.grid.mantissa};
   const double bearable = std::max(grid.step() / 64.0, record.diagonal * exp2_exact(-24));

@@ -21,10 +21,10 @@ struct CutRequest {
   // Exactly one of these, or a camera.
   std::optional<double> error;
   std::optional<std::uint32_t> level;
-  std::optional<std::uint64_t> triangles;   ///< budget of all chosen meshes together
-  std::optional<std::uint32_t> lods;        ///< a chain of this many levels, each half of the one before
-  std::optional<std::string> lod_errors;    ///< a chain by errors, rising
-  std::optional<std::string> lod_ratios;    ///< a chain by shares of each mesh's finest cut, falling
+  std::optional<std::uint64_t> triangles;  ///< budget of all chosen meshes together
+  std::optional<std::uint32_t> lods;       ///< a chain of this many levels, each half of the one before
+  std::optional<std::string> lod_errors;   ///< a chain by errors, rising
+  std::optional<std::string> lod_ratios;   ///< a chain by shares of each mesh's finest cut, falling
   bool is_relative = false;
   bool is_world = false;
   std::string by = "selection";
