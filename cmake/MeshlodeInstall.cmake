@@ -2,6 +2,8 @@
 # What an installed meshlode offers: the program, and for find_package(meshlode)
 #   meshlode::runtime  static, MIT: read, unpack, select, decode behind <meshlode/runtime.h>. Needs nothing but the C and
 #                      C++ runtime (and zstd, lz4 where the codecs are built in).
+#   meshlode::c        shared, MIT: the same behind <meshlode/meshlode.h>, for C. Its C++ runtime is inside; what it needs
+#                      is libc (and zstd, lz4).
 #   meshlode::build    shared, GPL-3.0-or-later: the builder behind <meshlode/build.h>. Shared, so that its third-party
 #                      libraries are its own affair.
 include(GNUInstallDirs)
@@ -38,8 +40,32 @@ if(MESHLODE_UNPACK_CODECS)
   target_link_libraries(meshlode_runtime INTERFACE zstd lz4)
 endif()
 set(meshlode_exports meshlode_runtime)
+
+# Exports meshlode_* and nothing else.
+add_library(meshlode_c SHARED)
+foreach(room IN LISTS meshlode_runtime_rooms)
+  get_target_property(type meshlode_${room} TYPE)
+  if(NOT type STREQUAL INTERFACE_LIBRARY)
+    target_sources(meshlode_c PRIVATE $<TARGET_OBJECTS:meshlode_${room}>)
+  endif()
+endforeach()
+set_target_properties(meshlode_c PROPERTIES OUTPUT_NAME meshlode EXPORT_NAME c LINKER_LANGUAGE CXX
+                                            VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})
+target_include_directories(meshlode_c INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
+                                                $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+set(meshlode_c_symbols ${CMAKE_CURRENT_LIST_DIR}/meshlode_c.map)
+target_link_options(meshlode_c PRIVATE -Wl,--version-script=${meshlode_c_symbols})
+set_property(TARGET meshlode_c APPEND PROPERTY LINK_DEPENDS ${meshlode_c_symbols})
+if(NOT MESHLODE_SANITIZE)
+  target_link_options(meshlode_c PRIVATE -static-libstdc++ -static-libgcc)
+endif()
+if(MESHLODE_UNPACK_CODECS)
+  target_link_libraries(meshlode_c PRIVATE zstd lz4)
+endif()
+list(APPEND meshlode_exports meshlode_c)
+
 install(FILES include/meshlode/format.h include/meshlode/page.h include/meshlode/decode.glsl
-              include/meshlode/result.h include/meshlode/runtime.h
+              include/meshlode/result.h include/meshlode/runtime.h include/meshlode/meshlode.h
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/meshlode)
 
 if(TARGET meshlode_api_build AND TARGET meshlode_pipeline)

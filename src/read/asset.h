@@ -41,6 +41,7 @@ class Asset {
   [[nodiscard]] std::span<const format::BlobRecord> blobs() const { return blobs_; }
   [[nodiscard]] std::string_view meta_json() const { return meta_; }
   [[nodiscard]] std::string_view scene_json() const { return scene_; }
+  [[nodiscard]] std::string_view strings() const { return strings_; }  ///< what StringRef points into
   [[nodiscard]] std::string_view string(format::StringRef ref) const { return strings_.substr(ref.offset, ref.bytes); }
   [[nodiscard]] std::span<const std::uint8_t> blob_bytes(const format::BlobRecord& blob) const;
   [[nodiscard]] std::span<const std::uint8_t> stored_page(PageId page) const;  ///< as on disk

@@ -25,5 +25,13 @@ TEST(ApiDocs, ShowTheExampleThatIsCompiled) {
   EXPECT_NE(page.find("```cpp\n" + body + "```"), std::string::npos) << "copy tests/api/example.cpp into docs/api.md";
 }
 
+TEST(ApiDocs, ShowTheCExampleThatIsCompiled) {
+  const std::string code = read_text("tests/api/c_example.c");
+  ASSERT_FALSE(code.empty());
+  const std::string body = code.substr(code.find("#include"));
+  EXPECT_NE(read_text("docs/api.md").find("```c\n" + body + "```"), std::string::npos)
+      << "copy tests/api/c_example.c into docs/api.md";
+}
+
 }  // namespace
 }  // namespace meshlode

@@ -12,6 +12,8 @@ work=$(mktemp -d); trap 'rm -rf "$work"' EXIT
 "$work/consumer/use_build" "$work/triangle.lode"
 "$work/consumer/use_runtime" "$work/triangle.lode"
 
+"$work/consumer/use_c" "$work/triangle.lode"
+
 needed() { readelf -d "$1" | sed -n 's/.*(NEEDED).*\[\(.*\)\].*/\1/p' | LC_ALL=C sort; }
 allowed='^(libc|libm|libstdc\+\+|libgcc_s|ld-linux-x86-64|libzstd|liblz4)\.so'
 if needed "$work/consumer/use_runtime" | grep -Ev "$allowed"; then
@@ -22,4 +24,13 @@ runtime=$(find "$work/prefix" -name 'libmeshlode_runtime.a')
 if nm -C --undefined-only "$runtime" | grep -E ' U (tbb::|METIS_|nlohmann|draco::|CGAL|OpenMesh)'; then
   echo "FAILED: meshlode::runtime leaves the symbols above to others"; exit 1
 fi
+# The C library has its C++ runtime inside, and shows nothing but its own functions.
+c_library=$(find "$work/prefix" -name 'libmeshlode.so')
+if needed "$c_library" | grep -Ev '^(libc|libm|ld-linux-x86-64|libzstd|liblz4)\.so'; then
+  echo "FAILED: meshlode::c needs the libraries above"; exit 1
+fi
+if nm -D --defined-only "$c_library" | grep -v ' [AT] meshlode_'; then
+  echo "FAILED: meshlode::c shows the symbols above"; exit 1
+fi
+echo "meshlode::c needs $(needed "$c_library" | tr '\n' ' ')"
 echo "PASSED: use_runtime needs $(needed "$work/consumer/use_runtime" | tr '\n' ' ')"
