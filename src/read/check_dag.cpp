@@ -43,7 +43,9 @@ Status check_group(const RawTables& tables, std::size_t g, std::uint32_t mesh_id
   if (is_stuck != (group.stuck_reason != format::StuckReason::kNotStuck)) {
     return fail("stuck_reason", "does not match the flags");
   }
-  if (is_terminal && group.error != format::kInfiniteError) return fail("error", "a terminal group's must be infinite");
+  if (is_terminal != (group.error == format::kInfiniteError)) {
+    return fail("error", "must be infinite in terminal groups and nowhere else");
+  }
   if (group.level >= tables.meshes[mesh_id].level_count) return fail("level", "is not below the mesh's level_count");
   return Ok{};
 }

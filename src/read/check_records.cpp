@@ -59,6 +59,9 @@ Status check_mesh_values(std::size_t m, const format::MeshRecord& mesh) {
   for (std::uint32_t set = 0; set < mesh.uv_set_count; ++set) {
     if (mesh.uv_log2[set] < kMinLog2 || mesh.uv_log2[set] > kMaxLog2) return fail("uv_log2", "must be -126 to 104");
   }
+  for (std::uint32_t set = mesh.uv_set_count; set < format::kMaxUvSets; ++set) {
+    if (mesh.uv_log2[set] != 0) return fail("uv_log2", "must be 0 from uv_set_count on");
+  }
   if (mesh.sphere_log2 < format::kMinSphereLog2 || mesh.sphere_log2 > format::kMaxSphereLog2) {
     return fail("sphere_log2", "must be -126 to 104");
   }
@@ -142,6 +145,9 @@ Status check_instances(const RawTables& tables) {
       return fail("flags", "has an unknown bit");
     }
     const bool is_singular = (instance.flags & format::kInstanceSingular) != 0U;
+    if (is_singular && (instance.flags & format::kInstanceMirrored) != 0U) {
+      return fail("flags", "a singular instance is not mirrored");
+    }
     if (!std::isfinite(instance.scale) || instance.scale < 0.0 || (instance.scale == 0.0 && !is_singular)) {
       return fail("scale", "must be finite and above 0");
     }

@@ -94,6 +94,7 @@ Status check_known(std::span<const std::uint8_t> bytes, const format::SectionEnt
     return Error{ErrorCode::kUnsupported, "section " + section_name(entry.id) + ", field version",
                  "version " + std::to_string(entry.version) + ", this reader knows version 0"};
   }
+  if ((entry.flags & ~format::kSectionRequired) != 0U) return invalid_section(entry.id, "flags", "has an unknown bit");
   if (entry.codec != 0 || entry.decoded_bytes != entry.bytes) {
     return invalid_section(entry.id, "codec", "sections are stored as they are");
   }

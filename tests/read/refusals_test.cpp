@@ -125,6 +125,7 @@ TEST(Read, RefusesABrokenSectionTable) {
   expect_refused(broken(kMesh, [](auto& e) { e.offset = ~std::uint64_t{15}; }), "section MESH, field offset");
   expect_refused(broken(kLast, [](auto& e) { e.bytes += 1; }), "section BLOB, field bytes");
   expect_refused(broken(kLast, [](auto& e) { e.bytes = ~std::uint64_t{0}; }), "section BLOB, field bytes");
+  expect_refused(broken(kMesh, [](auto& e) { e.flags |= 2U; }), "section MESH, field flags");
   expect_refused(broken(kMesh, [](auto& e) { e.codec = 2; }), "section MESH, field codec");
   expect_refused(broken(kMesh, [](auto& e) { e.decoded_bytes += 1; }), "section MESH, field codec");
   expect_refused(broken(kMesh, [](auto& e) { e.record_bytes = 208; }), "section MESH, field record_bytes");
@@ -211,6 +212,7 @@ TEST(Read, RefusesBrokenMeshes) {
        {"uv_set_count", 0, [](M& m) { m.uv_set_count = 5; }},
        {"has_color", 0, [](M& m) { m.has_color = 2; }},
        {"uv_log2", 0, [](M& m) { m.uv_log2[0] = 105; }},
+       {"uv_log2", 0, [](M& m) { m.uv_log2[3] = 1; }},
        {"sphere_log2", 0, [](M& m) { m.sphere_log2 = -127; }},
        {"sphere_log2", 2, [](M& m) { m.sphere_log2 = 105; }},
        {"material", 1, [](M& m) { m.material = 2; }},
@@ -240,6 +242,7 @@ TEST(Read, RefusesBrokenMaterialsInstancesAndBlobs) {
                         {{"name", 0, [](I& i) { i.name.offset = 0x7FFFFFFFU; }},
                          {"transform", 1, [](I& i) { i.transform[11] = std::numeric_limits<double>::infinity(); }},
                          {"flags", 1, [](I& i) { i.flags = 4; }},
+                         {"flags", 1, [](I& i) { i.flags = format::kInstanceMirrored | format::kInstanceSingular; }},
                          {"scale", 1, [](I& i) { i.scale = 0.0; }},
                          {"scale", 1, [](I& i) { i.scale = -1.0; }},
                          {"scale", 1, [](I& i) { i.scale = std::numeric_limits<double>::quiet_NaN(); }},
@@ -268,6 +271,7 @@ TEST(Read, RefusesBrokenGroups) {
        {"error", 1, [](G& g) { g.error = kNan; }},
        {"error", 1, [](G& g) { g.error = -0.5F; }},
        {"error", 0, [](G& g) { g.error = 1.0F; }},
+       {"error", 1, [](G& g) { g.error = format::kInfiniteError; }},
        {"quadric_error", 1, [](G& g) { g.quadric_error = kInf; }},
        {"deviation", 1, [](G& g) { g.deviation = kNan; }},
        {"normal_deviation", 1, [](G& g) { g.normal_deviation = kNan; }},

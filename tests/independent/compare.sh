@@ -1,0 +1,34 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# compare.sh MESHLODE CANONICAL_DUMP FUZZ_SEEDS DATA: builds golden files and asks both readers for every integer in them.
+# Then bytes are changed behind their checksums, and both must refuse the same files (differ.py; STRIDE=1 for every byte).
+set -uo pipefail
+meshlode=$(realpath "$1"); dump=$(realpath "$2"); seeds=$(realpath "$3"); data=$(realpath "$4")
+here=$(dirname "$(realpath "$0")")
+python=$(command -v python3) || { echo "SKIPPED: no python3"; exit 77; }
+export PYTHONDONTWRITEBYTECODE=1
+work=$(mktemp -d); trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 2
+"$seeds" seeds || exit 2
+cp seeds/reader/*-none.lode .
+for name in rock city crystal foliage; do
+  "$meshlode" build "$data/$name.glb" -o "$name.lode" --codec none --quiet || exit 2
+done
+failed=0 count=0
+for file in *.lode; do
+  if ! "$dump" "$file" >cpp.txt || ! "$python" "$here/lode.py" "$file" >python.txt; then
+    echo "FAILED: $file cannot be read"; failed=1; continue
+  fi
+  if cmp -s cpp.txt python.txt; then
+    echo "$file: $(wc -c <"$file") bytes, $(wc -l <cpp.txt) lines agree"
+    count=$((count + 1))
+  else
+    echo "FAILED: $file"; diff cpp.txt python.txt | head -n 6; failed=1
+  fi
+done
+[ "$count" -ge 7 ] || { echo "FAILED: only $count files"; failed=1; }
+# Bytes changed, checksums made to fit: the line between what a file may say and what not is the same for both.
+"$python" "$here/differ.py" "$dump" tetrahedron-none.lode "${STRIDE:-11}" || failed=1
+"$python" "$here/differ.py" "$dump" patch-none.lode $((${STRIDE:-11} * 19)) || failed=1
+[ $failed -eq 0 ] && echo PASSED
+exit $failed
