@@ -2,10 +2,14 @@
 // Touches all that an asset has, as a program that trusts what Asset and load_page let through would.
 #pragma once
 
+#include <cstdint>
+#include <span>
+
 #include "read/asset.h"
 
 namespace meshlode::fuzz {
 
 void read_all(const Asset& asset);
+void read_all_c(std::span<const std::uint8_t> bytes);
 
 }  // namespace meshlode::fuzz

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The reader on any bytes: open, touch all tables, select, load and decode every page (I11). The mutator makes the
-// checksums true again, so that the fuzzer gets behind them; the rest of its mutants keep their broken ones.
+// The reader on any bytes, in C++ and in C: open, touch all tables, select, load and decode every page (I11). The
+// mutator makes the checksums true again, so that the fuzzer gets behind them; the rest of its mutants keep their
+// broken ones.
 #include <algorithm>
 #include <vector>
 
@@ -17,6 +18,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   } else {
     meshlode::fuzz::require(!asset.error().detail.empty(), "a refusal without a reason");
   }
+  meshlode::fuzz::read_all_c({data, size});
   return 0;
 }
 
