@@ -210,9 +210,9 @@ struct GroupRecord {
   float error;                 ///< selection error, object units, strictly growing along the DAG; kInfiniteError if terminal
   float quadric_error;         ///< the quadric's own estimate, object units
   float deviation;             ///< two-sided distance to the source, quantization included; kInfiniteError if not measured
-  float normal_deviation;      ///< shading normals against the source's, largest angle in degrees, never falling along
+  float normal_deviation;      ///< shading normals against the source's, RMS over a group in degrees, never falling along
                                ///< the DAG; kInfiniteError if terminal or not measured
-  float uv_deviation;          ///< UVs against the source's, largest distance over all sets in UV units; the same rules
+  float uv_deviation;          ///< UVs against the source's, UV units, 95% of a group is within it; the same rules
   std::uint32_t first_cluster; ///< members, contiguous
   std::uint32_t mesh;
   std::uint32_t page;
