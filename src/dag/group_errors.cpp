@@ -11,6 +11,9 @@ namespace meshlode {
 
 namespace {
 
+/// Carried on at least: where few triangles stand for many vanished pieces, each stands for more than two samples say.
+constexpr std::size_t kSamplesPerGroup = 4096;
+
 /// A surface as the deviation room wants it, off the grid.
 struct Decoded {
   template <class Group>
@@ -82,8 +85,10 @@ GroupErrors GroupMeter::measure(const BuildPool& pool, const std::vector<std::ui
     for (const std::uint32_t c : clusters) {
       samples.insert(samples.end(), pool.clusters[c].samples.begin(), pool.clusters[c].samples.end());
     }
+    const auto per_triangle = static_cast<std::uint32_t>(kSamplesPerGroup / std::max<std::size_t>(1, after.triangles.size()));
     GroupDeviation group =
-        measure_group(*source_, after.surface(), samples, {.floor = floor, .finer = before.surface()});
+        measure_group(*source_, after.surface(), samples,
+                      {.floor = floor, .samples_per_triangle = std::clamp(per_triangle, 2U, 32U), .finer = before.surface()});
     errors.deviation = group.deviation;
     errors.carried.samples = std::move(group.carried);
   }

@@ -26,6 +26,9 @@ namespace {
 constexpr std::size_t kMaxCorners = 10;
 constexpr int kMaxDepth = 24;  // of cuts; a piece that deep is given away as it is
 constexpr int kMaxCuts = 16;   // beyond, pieces are halved: lines of equal distance have not got them anywhere
+// Where everything crosses everything, a triangle would fall into any number of pieces: beyond so many each is given
+// away as it is. The bound still holds; it is only larger.
+constexpr std::size_t kMaxPieces = 512;
 // A piece is good enough when it is bounded to this share above its own farthest corner, or this share of the largest.
 constexpr double kTolerance = 0.05;
 constexpr double kShareOfLargest = 0.03;
@@ -67,7 +70,7 @@ class OneWay {
   template <class Give>
   void cover(const Piece& whole, const Give& give) {
     stack_.assign(1, whole);
-    while (!stack_.empty()) {
+    for (std::size_t pieces = 1; !stack_.empty(); ++pieces) {
       const Piece piece = stack_.back();
       stack_.pop_back();
       double low = 0.0;
@@ -82,7 +85,7 @@ class OneWay {
         for (std::size_t i = 0; i < piece.count; ++i) middle += piece.corner[i];
         try_triangle(piece, nearest(middle / static_cast<double>(piece.count), best.place), best);
       }
-      if (is_good(best.bound, low) || piece.depth >= kMaxDepth) {
+      if (is_good(best.bound, low) || piece.depth >= kMaxDepth || pieces >= kMaxPieces) {
         give(tree_.triangle_at(best.place), best.bound);
         continue;
       }

@@ -85,7 +85,9 @@ void GroupSimplifier<C>::scale_attributes() {
       uv_area[set] += 0.5 * std::abs(e.x * f.y - e.y * f.x);
     }
   }
-  const double mean_side = std::sqrt(area / std::max(1U, mesh_.alive_count()));
+  // Where few triangles are left, what a normal says holds for less than they cover: the shape comes first then.
+  constexpr double kMaxSide = 0.05;  // of half the group's extent: a full group has about this
+  const double mean_side = std::min(kMaxSide, std::sqrt(area / std::max(1U, mesh_.alive_count())));
   for (std::size_t j = 0; j < attribute_count_; ++j) {
     if (layout.has_normal && j < 3) {
       attribute_scale_[j] = options_.normal_weight * mean_side;

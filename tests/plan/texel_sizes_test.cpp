@@ -19,8 +19,11 @@ std::vector<std::uint8_t> png_of(std::uint8_t width_high, std::uint8_t width_low
 
 /// SOI, an APP0 segment of 16 bytes, a fill byte, then the frame header: 300 lines of 513 samples.
 std::vector<std::uint8_t> jpeg(std::uint8_t frame_marker) {
-  std::vector<std::uint8_t> bytes{0xFF, 0xD8, 0xFF, 0xE0, 0, 16};
-  bytes.resize(bytes.size() + 14, 0);
+  std::vector<std::uint8_t> bytes(20, 0);
+  bytes[0] = bytes[2] = 0xFF;
+  bytes[1] = 0xD8;
+  bytes[3] = 0xE0;
+  bytes[5] = 16;
   for (const int b : {0xFF, 0xFF, int{frame_marker}, 0, 17, 8, 1, 44, 2, 1, 3}) bytes.push_back(static_cast<std::uint8_t>(b));
   return bytes;
 }
