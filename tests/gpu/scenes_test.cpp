@@ -68,8 +68,7 @@ TEST_P(Models, AreDrawnAsTheCpuDrawsThem) {
   if (models == nullptr) GTEST_SKIP() << "MESHLODE_MODELS is not set";
   expect_equal_file(*device_, std::string(models) + "/" + GetParam(), 2);
 }
-// FlightHelmet/FlightHelmet.gltf is not here: docs/gpu.md, "Known to be wrong".
-INSTANTIATE_TEST_SUITE_P(All, Models, testing::Values("bunny.glb"));
+INSTANTIATE_TEST_SUITE_P(All, Models, testing::Values("bunny.glb", "FlightHelmet/FlightHelmet.gltf"));
 
 /// The judge must see one changed bit of a page.
 TEST_F(Scenes, AChangedPageBitIsFound) {

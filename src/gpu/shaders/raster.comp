@@ -26,8 +26,6 @@ struct Triangle {
   uvec3 depth;
 };
 
-int edge_bias(int dx, int dy) { return dy < 0 || (dy == 0 && dx > 0) ? 0 : -1; }
-
 void draw_small(Triangle t, ivec2 columns, ivec2 rows, int area, uint item, uint triangle) {
   // Edge k is opposite to vertex k: E = dx * (py - ay) - dy * (px - ax).
   const ivec3 ax = t.x.yzx, ay = t.y.yzx;

@@ -125,9 +125,9 @@ void clip_triangle(uint slot, ivec3 a, ivec3 b, ivec3 c, bool is_mirrored, bool 
 
 // The edge from i to j at a pixel centre; `bias` decides on the edge itself.
 int64_t edge(uint i, uint j, int px, int py, out int bias) {
-  const int64_t dx = int64_t(polygon_x[j] - polygon_x[i]), dy = int64_t(polygon_y[j] - polygon_y[i]);
-  bias = dy < 0l || (dy == 0l && dx > 0l) ? 0 : -1;
-  return dx * int64_t(py - polygon_y[i]) - dy * int64_t(px - polygon_x[i]);
+  const int dx = polygon_x[j] - polygon_x[i], dy = polygon_y[j] - polygon_y[i];
+  bias = edge_bias(dx, dy);
+  return int64_t(dx) * int64_t(py - polygon_y[i]) - int64_t(dy) * int64_t(px - polygon_x[i]);
 }
 
 // A pixel is covered iff the signed sum over the fan is positive; its depth is the first positive triangle's.

@@ -109,6 +109,10 @@ ivec2 pixels_between(int low, int high, uint count) {
   return ivec2(max((low + kSubpixels / 2 - 1) >> kSubpixelBits, 0), min((high - kSubpixels / 2) >> kSubpixelBits, int(count) - 1));
 }
 
+// -1 where a pixel centre on the edge is outside: neither a top nor a left edge. In 32 bits, which hold every difference:
+// Mesa 22.3's lavapipe takes the 64-bit comparison of a widened negative number with 0 for false.
+int edge_bias(int dx, int dy) { return dy < 0 || (dy == 0 && dx > 0) ? 0 : -1; }
+
 // floor(sum / area) where the sum is known modulo 2^64 only: the estimate is off by less than 2, so the remainder is not.
 uint divide_depth(uint64_t sum, double estimate, int64_t area) {
   int64_t q = int64_t(floor(estimate));
