@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A third-party library is seen through one .cpp per room that uses it, never in a header: `grep -r "include <metis"`
-// hits one file. Excepted are GLM, whose types are our vectors, and base/parallel.h, whose templates are oneTBB's.
+// hits one file. Excepted are GLM, whose types are our vectors, base/parallel.h, whose templates are oneTBB's, and
+// gpu/vulkan_types.h: the Vulkan wrapper is four files, which share that header with nobody.
 #include <array>
 #include <map>
 #include <set>
@@ -57,6 +58,8 @@ std::string library_of(const Include& include) {
   return "?";
 }
 
+constexpr std::string_view kVulkanTypes = "src/gpu/vulkan_types.h";
+
 TEST(ThirdParty, ALibraryIsSeenByOneFilePerRoomAndNeverInAHeader) {
   std::map<std::pair<std::string, std::string>, std::set<std::string>> users;  // (room, library) -> files
   for (const SourceFile& file : read_tree({"src", "tools"}, {".h", ".cpp", ".c"})) {
@@ -65,7 +68,7 @@ TEST(ThirdParty, ALibraryIsSeenByOneFilePerRoomAndNeverInAHeader) {
       const std::string path = file.path.generic_string();
       if (library.empty() || library == "glm") continue;
       EXPECT_NE(library, "?") << path << ":" << include.line << ": name <" << include.path << "> in this test";
-      if (path == "src/base/parallel.h") continue;
+      if (path == "src/base/parallel.h" || path == kVulkanTypes) continue;
       EXPECT_FALSE(file.is_header()) << path << ":" << include.line << " shows " << include.path << " to its users";
       users[{file.room, library}].insert(path);
     }
@@ -75,6 +78,22 @@ TEST(ThirdParty, ALibraryIsSeenByOneFilePerRoomAndNeverInAHeader) {
     for (const std::string& path : files) list += " " + path;
     EXPECT_EQ(files.size(), 1U) << "room " << key.first << " sees " << key.second << " in" << list;
   }
+}
+
+TEST(ThirdParty, VulkanIsSeenByItsWrapperAlone) {
+  std::size_t users = 0;
+  for (const SourceFile& file : read_tree({"src", "tools", "bench", "tests"}, {".h", ".cpp", ".c"})) {
+    for (const Include& include : file.includes()) {
+      const std::string path = file.path.generic_string();
+      if (library_of(include) == "vulkan") {
+        EXPECT_EQ(path, kVulkanTypes);
+      }
+      if (include.path != "gpu/vulkan_types.h") continue;
+      EXPECT_TRUE(path.starts_with("src/gpu/vulkan_") && path.ends_with(".cpp")) << path << ":" << include.line;
+      ++users;
+    }
+  }
+  EXPECT_GT(users, 0U);
 }
 
 TEST(ThirdParty, PublicHeadersShowNone) {
