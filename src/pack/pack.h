@@ -16,7 +16,13 @@ struct PackedPage {
   std::vector<std::uint8_t> bytes;             ///< empty where `codec` is kNone: the page is stored as it is
 };
 
-/// Errors: kUnsupported for a codec that cannot be written; kBuildFailed where the codec itself fails.
-[[nodiscard]] Result<PackedPage> pack_page(std::span<const std::uint8_t> page, format::Codec codec);
+/// Stores a page even where that makes it longer. \pre codec is not kNone. Errors: those of pack_page.
+[[nodiscard]] Result<std::vector<std::uint8_t>> store_page(const format::MeshRecord& mesh,
+                                                           std::span<const std::uint8_t> page, format::Codec codec);
+
+/// `mesh` is the page's, `page` as encode makes it. Errors: kBuildFailed where the page is not in the
+/// form that the format prescribes, or where the codec itself fails.
+[[nodiscard]] Result<PackedPage> pack_page(const format::MeshRecord& mesh, std::span<const std::uint8_t> page,
+                                           format::Codec codec);
 
 }  // namespace meshlode

@@ -3,7 +3,9 @@
 
 #include <utility>
 
+#include "coding/section_columns.h"
 #include "read/check_tables.h"
+#include "read/place.h"
 #include "read/sections.h"
 
 namespace meshlode {
@@ -11,16 +13,15 @@ namespace meshlode {
 namespace {
 
 template <class T>
-std::span<const T> view_table(std::span<const std::uint8_t> bytes, const SectionIndex& index, format::SectionId id) {
-  const format::SectionEntry& entry = index.entry(id);
-  // Aligned: sections start at multiples of 16 of bytes that are aligned to 8, which no record exceeds.
+std::span<const T> view_table(std::span<const std::uint8_t> bytes) {
+  // Aligned: sections start at multiples of 16 of bytes that are aligned to 8, which no record exceeds, and decoded ones
+  // at the start of a vector.
   static_assert(alignof(T) <= 8);
-  return {reinterpret_cast<const T*>(bytes.data() + entry.offset), entry.record_count};
+  return {reinterpret_cast<const T*>(bytes.data()), bytes.size() / sizeof(T)};
 }
 
-std::string_view view_text(std::span<const std::uint8_t> bytes, const SectionIndex& index, format::SectionId id) {
-  const format::SectionEntry& entry = index.entry(id);
-  return {reinterpret_cast<const char*>(bytes.data() + entry.offset), entry.bytes};
+std::string_view view_text(std::span<const std::uint8_t> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
 }  // namespace
@@ -63,21 +64,37 @@ std::span<const std::uint8_t> Asset::stored_page(PageId page) const {
   return bytes_.subspan(record.offset, record.stored_bytes);
 }
 
+std::span<const std::uint8_t> Asset::section_bytes(const format::SectionEntry& entry) const {
+  const auto decoded = decoded_.find(entry.offset);
+  return decoded != decoded_.end() ? std::span<const std::uint8_t>(decoded->second)
+                                   : bytes_.subspan(entry.offset, entry.bytes);
+}
+
 Status Asset::index() {
   const auto sections = index_sections(bytes_);
   if (!sections) return sections.error();
   using enum format::SectionId;
+  for (const auto& [id, entry] : sections->known) {
+    if (entry->codec == static_cast<std::uint32_t>(SectionCodec::kNone)) continue;
+    std::vector<std::uint8_t> decoded(entry->decoded_bytes);
+    if (!decode_section(bytes_.subspan(entry->offset, entry->bytes), entry->record_bytes, decoded)) {
+      return Error{ErrorCode::kInvalid, "section " + section_name(entry->id) + ", field codec",
+                   "the stored bytes do not decode"};
+    }
+    decoded_.emplace(entry->offset, std::move(decoded));
+  }
+  const auto bytes_of = [&](format::SectionId id) { return section_bytes(sections->entry(id)); };
   RawTables tables;
-  tables.meshes = view_table<format::MeshRecord>(bytes_, *sections, kMeshes);
-  tables.materials = view_table<format::MaterialRecord>(bytes_, *sections, kMaterials);
-  tables.instances = view_table<format::InstanceRecord>(bytes_, *sections, kInstances);
-  tables.groups = view_table<format::GroupRecord>(bytes_, *sections, kGroups);
-  tables.clusters = view_table<format::ClusterRecord>(bytes_, *sections, kClusters);
-  tables.nodes = view_table<format::NodeRecord>(bytes_, *sections, kNodes);
-  tables.pages = view_table<format::PageRecord>(bytes_, *sections, kPages);
-  tables.page_dependencies = view_table<std::uint32_t>(bytes_, *sections, kPageDeps);
-  tables.blobs = view_table<format::BlobRecord>(bytes_, *sections, kBlobs);
-  tables.string_bytes = sections->entry(kStrings).bytes;
+  tables.meshes = view_table<format::MeshRecord>(bytes_of(kMeshes));
+  tables.materials = view_table<format::MaterialRecord>(bytes_of(kMaterials));
+  tables.instances = view_table<format::InstanceRecord>(bytes_of(kInstances));
+  tables.groups = view_table<format::GroupRecord>(bytes_of(kGroups));
+  tables.clusters = view_table<format::ClusterRecord>(bytes_of(kClusters));
+  tables.nodes = view_table<format::NodeRecord>(bytes_of(kNodes));
+  tables.pages = view_table<format::PageRecord>(bytes_of(kPages));
+  tables.page_dependencies = view_table<std::uint32_t>(bytes_of(kPageDeps));
+  tables.blobs = view_table<format::BlobRecord>(bytes_of(kBlobs));
+  tables.string_bytes = sections->entry(kStrings).decoded_bytes;
   tables.page_data = &sections->entry(kPageData);
   tables.blob_data = &sections->entry(kBlobData);
 
@@ -98,9 +115,9 @@ Status Asset::index() {
   pages_ = tables.pages;
   page_dependencies_ = tables.page_dependencies;
   blobs_ = tables.blobs;
-  meta_ = view_text(bytes_, *sections, kMeta);
-  scene_ = view_text(bytes_, *sections, kScene);
-  strings_ = view_text(bytes_, *sections, kStrings);
+  meta_ = view_text(bytes_of(kMeta));
+  scene_ = view_text(bytes_of(kScene));
+  strings_ = view_text(bytes_of(kStrings));
   return Ok{};
 }
 

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <span>
 #include <string_view>
 #include <variant>
@@ -46,6 +47,8 @@ class Asset {
   [[nodiscard]] std::span<const std::uint8_t> blob_bytes(const format::BlobRecord& blob) const;
   [[nodiscard]] std::span<const std::uint8_t> stored_page(PageId page) const;  ///< as on disk
   [[nodiscard]] std::span<const std::uint8_t> bytes() const { return bytes_; } ///< the whole file
+  /// The decoded bytes of one of sections() that is known; PAGE and BLOB as they are stored.
+  [[nodiscard]] std::span<const std::uint8_t> section_bytes(const format::SectionEntry& entry) const;
 
  private:
   Asset() = default;
@@ -53,6 +56,8 @@ class Asset {
 
   std::variant<std::monostate, MappedFile, std::vector<std::uint8_t>> storage_;
   std::span<const std::uint8_t> bytes_;
+  /// Of sections that are stored by columns, by their offset in the file; the others are viewed where they lie.
+  std::map<std::uint64_t, std::vector<std::uint8_t>> decoded_;
   const format::FileHeader* header_ = nullptr;
   std::span<const format::SectionEntry> sections_;
   std::span<const format::MeshRecord> meshes_;

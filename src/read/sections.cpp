@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/hash.h"
+#include "coding/section_columns.h"
 #include "read/place.h"
 
 namespace meshlode {
@@ -95,19 +96,27 @@ Status check_known(std::span<const std::uint8_t> bytes, const format::SectionEnt
                  "version " + std::to_string(entry.version) + ", this reader knows version 0"};
   }
   if ((entry.flags & ~format::kSectionRequired) != 0U) return invalid_section(entry.id, "flags", "has an unknown bit");
-  if (entry.codec != 0 || entry.decoded_bytes != entry.bytes) {
-    return invalid_section(entry.id, "codec", "sections are stored as they are");
+  const auto id = static_cast<SectionId>(entry.id);
+  const bool is_raw = id == SectionId::kPageData || id == SectionId::kBlobData;
+  if (entry.codec == static_cast<std::uint32_t>(SectionCodec::kColumns) && !is_raw) {
+    if (entry.decoded_bytes / kMaxSectionRatio > entry.bytes || entry.decoded_bytes == 0) {
+      return invalid_section(entry.id, "decoded_bytes", "cannot come from so few bytes");
+    }
+  } else if (entry.codec != static_cast<std::uint32_t>(SectionCodec::kNone)) {
+    return Error{ErrorCode::kUnsupported, "section " + section_name(entry.id) + ", field codec",
+                 "codec " + std::to_string(entry.codec) + " is not known to this reader"};
+  } else if (entry.decoded_bytes != entry.bytes) {
+    return invalid_section(entry.id, "decoded_bytes", "must be bytes where the section is stored as it is");
   }
   if (entry.record_bytes != record_bytes) {
     return invalid_section(entry.id, "record_bytes",
                            "is " + std::to_string(entry.record_bytes) + ", must be " + std::to_string(record_bytes));
   }
   if (record_bytes == 0 ? entry.record_count != 0
-                        : std::uint64_t{entry.record_count} * record_bytes != entry.bytes) {
+                        : std::uint64_t{entry.record_count} * record_bytes != entry.decoded_bytes) {
     return invalid_section(entry.id, "record_count", "does not match the section's bytes");
   }
   if (entry.record_count == format::kNone) return invalid_section(entry.id, "record_count", "is too large");
-  const auto id = static_cast<SectionId>(entry.id);
   if (id == SectionId::kPageData) {
     if (entry.checksum != 0) return invalid_section(entry.id, "checksum", "must be 0: pages carry their own");
   } else if (id != SectionId::kBlobData && hash64(bytes.subspan(entry.offset, entry.bytes)) != entry.checksum) {

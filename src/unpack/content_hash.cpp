@@ -24,7 +24,7 @@ Result<Hash128> hash_asset_content(const Asset& asset) {
     for (const format::SectionEntry& entry : asset.sections()) {
       if (entry.id != static_cast<std::uint32_t>(id)) continue;
       add(hasher, entry.id);
-      add(hasher, entry.bytes);
+      add(hasher, entry.decoded_bytes);
       if (id == kPages) {
         for (format::PageRecord page : asset.pages()) {
           page.offset = 0;
@@ -39,7 +39,7 @@ Result<Hash128> hash_asset_content(const Asset& asset) {
           add(hasher, blob);
         }
       } else {
-        hasher.update(asset.bytes().subspan(entry.offset, entry.bytes));
+        hasher.update(asset.section_bytes(entry));
       }
     }
   };

@@ -8,6 +8,7 @@
 #include "base/hash.h"
 #include "unpack/check_page.h"
 #include "unpack/codecs.h"
+#include "unpack/stored_page.h"
 
 namespace meshlode {
 
@@ -45,9 +46,9 @@ Result<PageBytes> load_page(const Asset& asset, PageId page) {
   }
 
   std::vector<std::uint8_t> decoded(record.bytes);  // at most 128 KiB, which Asset has checked
-  UnpackOutcome outcome = UnpackOutcome::kNotBuiltIn;
-  if (record.codec == format::Codec::kLz4) outcome = unpack_lz4(stored, decoded);
-  if (record.codec == format::Codec::kZstd) outcome = unpack_zstd(stored, decoded);
+  const format::MeshRecord& mesh = asset.meshes()[asset.groups()[record.first_group].mesh];
+  const std::span<std::uint32_t> words{reinterpret_cast<std::uint32_t*>(decoded.data()), decoded.size() / 4};
+  const UnpackOutcome outcome = unpack_page(mesh, record, stored, words);
   if (outcome == UnpackOutcome::kNotBuiltIn) {
     return page_error(page, "codec", "this reader was built without the page's codec", ErrorCode::kUnsupported);
   }

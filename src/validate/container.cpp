@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/hash.h"
+#include "coding/section_columns.h"
 #include "validate/file_tables.h"
 
 namespace meshlode {
@@ -159,58 +160,76 @@ bool check_section(const FileTables& file, const SectionEntry& entry, RuleLog& l
   if (known == nullptr || !inside) return inside;
 
   log.expect(entry.version == 0, "L009", where, [&] { return "version " + std::to_string(entry.version); });
-  log.expect(entry.codec == static_cast<std::uint32_t>(format::Codec::kNone), "L009", where,
-             [&] { return "codec " + std::to_string(entry.codec); });
+  const bool is_raw = known->id == SectionId::kPageData || known->id == SectionId::kBlobData;
+  const bool is_packed = !is_raw && entry.codec == static_cast<std::uint32_t>(SectionCodec::kColumns);
+  bool sound = log.expect(is_packed || entry.codec == static_cast<std::uint32_t>(SectionCodec::kNone), "L009", where,
+                          [&] { return "codec " + std::to_string(entry.codec); });
   if (known->id != SectionId::kPageData) {
-    log.expect(entry.decoded_bytes == entry.bytes, "L011", where,
-               [&] { return differs("bytes", entry.bytes, "decoded_bytes", entry.decoded_bytes); });
+    sound &= log.expect(is_packed ? entry.decoded_bytes > 0 && entry.decoded_bytes / kMaxSectionRatio <= entry.bytes
+                                  : entry.decoded_bytes == entry.bytes,
+                        "L011", where,
+                        [&] { return differs("bytes", entry.bytes, "decoded_bytes", entry.decoded_bytes); });
     log.expect(hash64(file.bytes.subspan(entry.offset, entry.bytes)) == entry.checksum, "L010", where,
                [] { return std::string("checksum does not match"); });
   } else {
     log.expect(entry.checksum == 0, "L010", where, [] { return std::string("page data has a checksum of its own"); });
   }
-  bool sound = log.expect(entry.record_bytes == known->record_bytes, "L011", where, [&] {
+  sound &= log.expect(entry.record_bytes == known->record_bytes, "L011", where, [&] {
     return differs("record_bytes", std::uint64_t{entry.record_bytes}, "record of version 1",
                    std::uint64_t{known->record_bytes});
   });
   if (known->record_bytes == 0) {
     log.expect(entry.record_count == 0, "L011", where, [] { return std::string("raw bytes with a record count"); });
   } else {
-    sound &= log.expect(std::uint64_t{entry.record_count} * entry.record_bytes == entry.bytes, "L011", where, [&] {
-      return differs("records' bytes", std::uint64_t{entry.record_count} * entry.record_bytes, "bytes", entry.bytes);
+    sound &= log.expect(std::uint64_t{entry.record_count} * entry.record_bytes == entry.decoded_bytes, "L011", where, [&] {
+      return differs("records' bytes", std::uint64_t{entry.record_count} * entry.record_bytes, "decoded_bytes",
+                     entry.decoded_bytes);
     });
   }
   return sound;
 }
 
+/// The section's bytes, decoded where it is stored by columns; `file` keeps them.
+std::span<const std::uint8_t> section_bytes(FileTables& file, const SectionEntry& entry, bool& is_broken) {
+  const auto stored = file.bytes.subspan(entry.offset, entry.bytes);
+  if (entry.codec == static_cast<std::uint32_t>(SectionCodec::kNone)) return stored;
+  std::vector<std::uint8_t>& decoded = file.decoded.emplace_back(entry.decoded_bytes);
+  is_broken |= !decode_section(stored, entry.record_bytes, decoded);
+  return decoded;
+}
+
 template <class Record>
-void copy_records(const FileTables& file, const SectionEntry& entry, std::vector<Record>& out) {
-  out.resize(entry.bytes / sizeof(Record));
-  if (!out.empty()) std::memcpy(out.data(), file.bytes.data() + entry.offset, out.size() * sizeof(Record));
+void copy_records(std::span<const std::uint8_t> bytes, std::vector<Record>& out) {
+  out.resize(bytes.size() / sizeof(Record));
+  if (!out.empty()) std::memcpy(out.data(), bytes.data(), out.size() * sizeof(Record));
 }
 
-std::string_view text_of(const FileTables& file, const SectionEntry& entry) {
+std::string_view text_of(std::span<const std::uint8_t> bytes) {
   // The one place where bytes of the file are seen as characters.
-  return {reinterpret_cast<const char*>(file.bytes.data() + entry.offset), entry.bytes};
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-void take_section(FileTables& file, const SectionEntry& entry) {
+/// False where the section's bytes do not decode.
+bool take_section(FileTables& file, const SectionEntry& entry) {
+  bool is_broken = false;
+  const std::span<const std::uint8_t> bytes = section_bytes(file, entry, is_broken);
   switch (static_cast<SectionId>(entry.id)) {
-    case SectionId::kMeta: file.meta = text_of(file, entry); break;
-    case SectionId::kScene: file.scene = text_of(file, entry); break;
-    case SectionId::kStrings: file.strings = text_of(file, entry); break;
-    case SectionId::kMeshes: copy_records(file, entry, file.meshes); break;
-    case SectionId::kMaterials: copy_records(file, entry, file.materials); break;
-    case SectionId::kInstances: copy_records(file, entry, file.instances); break;
-    case SectionId::kGroups: copy_records(file, entry, file.groups); break;
-    case SectionId::kClusters: copy_records(file, entry, file.clusters); break;
-    case SectionId::kNodes: copy_records(file, entry, file.nodes); break;
-    case SectionId::kPages: copy_records(file, entry, file.pages); break;
-    case SectionId::kPageDeps: copy_records(file, entry, file.page_dependencies); break;
+    case SectionId::kMeta: file.meta = text_of(bytes); break;
+    case SectionId::kScene: file.scene = text_of(bytes); break;
+    case SectionId::kStrings: file.strings = text_of(bytes); break;
+    case SectionId::kMeshes: copy_records(bytes, file.meshes); break;
+    case SectionId::kMaterials: copy_records(bytes, file.materials); break;
+    case SectionId::kInstances: copy_records(bytes, file.instances); break;
+    case SectionId::kGroups: copy_records(bytes, file.groups); break;
+    case SectionId::kClusters: copy_records(bytes, file.clusters); break;
+    case SectionId::kNodes: copy_records(bytes, file.nodes); break;
+    case SectionId::kPages: copy_records(bytes, file.pages); break;
+    case SectionId::kPageDeps: copy_records(bytes, file.page_dependencies); break;
     case SectionId::kPageData: file.page_data = entry; break;
-    case SectionId::kBlobs: copy_records(file, entry, file.blobs); break;
+    case SectionId::kBlobs: copy_records(bytes, file.blobs); break;
     case SectionId::kBlobData: file.blob_data = entry; break;
   }
+  return !is_broken;
 }
 
 }  // namespace
@@ -235,7 +254,13 @@ std::optional<FileTables> read_tables(std::span<const std::uint8_t> bytes, RuleL
   }
   if (!sound) return std::nullopt;
   check_extents(file, log);
-  for (const SectionEntry& entry : file.sections) take_section(file, entry);
+  for (const SectionEntry& entry : file.sections) {
+    if (find_known(entry.id) == nullptr) continue;
+    sound &= log.expect(
+        take_section(file, entry), "L011", [&] { return section_name(entry.id); },
+        [] { return std::string("the stored bytes do not decode"); });
+  }
+  if (!sound) return std::nullopt;
   check_texts(file, log);
   return file;
 }

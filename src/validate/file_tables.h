@@ -19,6 +19,7 @@ namespace meshlode {
 
 struct FileTables {
   std::span<const std::uint8_t> bytes;
+  std::vector<std::vector<std::uint8_t>> decoded;  ///< sections that are stored by columns
   format::FileHeader header{};
   std::vector<format::SectionEntry> sections;
   std::vector<format::MeshRecord> meshes;

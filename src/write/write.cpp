@@ -9,7 +9,9 @@
 
 #include "base/hash.h"
 #include "base/parallel.h"
+#include "coding/section_columns.h"
 #include "pack/pack.h"
+#include "pack/pack_section.h"
 #include "write/content_hash.h"
 #include "write/tables.h"
 
@@ -30,6 +32,8 @@ struct SectionPlan {
   const void* data = nullptr;
   std::uint32_t record_bytes = 0;
   std::uint64_t record_count = 0;
+  std::vector<std::uint8_t> packed{};  ///< what is stored instead of `data`, where not empty
+  [[nodiscard]] std::uint64_t stored_bytes() const { return packed.empty() ? bytes : packed.size(); }
 };
 
 template <class T>
@@ -45,7 +49,8 @@ Result<std::vector<PackedPage>> pack_pages(const AssetTables& tables, format::Co
   std::vector<PackedPage> packed(tables.page_bytes.size());
   std::vector<std::optional<Error>> errors(packed.size());
   parallel_for_each_index(packed.size(), 1, [&](std::size_t p) {
-    auto page = pack_page(tables.page_bytes[p], codec);
+    const format::MeshRecord& mesh = tables.meshes[tables.groups[tables.pages[p].first_group].mesh];
+    auto page = pack_page(mesh, tables.page_bytes[p], codec);
     if (page) {
       packed[p] = std::move(*page);
     } else {
@@ -95,10 +100,6 @@ void copy_bytes(std::vector<std::uint8_t>& file, std::uint64_t offset, const voi
 }  // namespace
 
 Result<std::vector<std::uint8_t>> write_asset(WriteInput input) {
-  if (input.codec != format::Codec::kNone && input.codec != format::Codec::kLz4 &&
-      input.codec != format::Codec::kZstd) {
-    return Error{ErrorCode::kUnsupported, "--codec", "this page codec is not written yet; none, lz4 and zstd are"};
-  }
   auto made = make_tables(input);
   if (!made) return made.error();
   AssetTables tables = std::move(*made);
@@ -110,7 +111,7 @@ Result<std::vector<std::uint8_t>> write_asset(WriteInput input) {
   const std::uint64_t blob_data_bytes = place_blobs(tables);
 
   using enum format::SectionId;
-  const std::array plans{
+  std::array plans{
       text_section(kMeta, input.meta_json),
       text_section(kScene, scene.document),
       text_section(kStrings, tables.strings.bytes()),
@@ -127,6 +128,15 @@ Result<std::vector<std::uint8_t>> write_asset(WriteInput input) {
       SectionPlan{kBlobData, blob_data_bytes, nullptr, 0, 0},
   };
 
+  // The page table stays as it is: places and checksums of pages hardly shrink.
+  if (input.codec != format::Codec::kNone) {
+    parallel_for_each_index(plans.size(), 1, [&](std::size_t s) {
+      SectionPlan& plan = plans[s];
+      if (plan.data == nullptr || plan.id == kPages || plan.id == kBlobs) return;
+      plan.packed = pack_section({static_cast<const std::uint8_t*>(plan.data), plan.bytes}, plan.record_bytes);
+    });
+  }
+
   std::array<format::SectionEntry, plans.size()> entries{};
   std::uint64_t end = sizeof(format::FileHeader) + sizeof(entries);
   for (std::size_t s = 0; s < plans.size(); ++s) {
@@ -134,7 +144,8 @@ Result<std::vector<std::uint8_t>> write_asset(WriteInput input) {
     format::SectionEntry& entry = entries[s];
     entry.id = static_cast<std::uint32_t>(plan.id);
     entry.offset = align_section(end);
-    entry.bytes = plan.bytes;
+    entry.codec = static_cast<std::uint32_t>(plan.packed.empty() ? SectionCodec::kNone : SectionCodec::kColumns);
+    entry.bytes = plan.stored_bytes();
     entry.decoded_bytes = plan.bytes;
     entry.flags = format::kSectionRequired;
     entry.record_bytes = plan.record_bytes;
@@ -151,7 +162,9 @@ Result<std::vector<std::uint8_t>> write_asset(WriteInput input) {
 
   std::vector<std::uint8_t> file(end);
   for (std::size_t s = 0; s < plans.size(); ++s) {
-    copy_bytes(file, entries[s].offset, plans[s].data, plans[s].data == nullptr ? 0 : plans[s].bytes);
+    const SectionPlan& plan = plans[s];
+    const void* data = plan.packed.empty() ? plan.data : plan.packed.data();
+    copy_bytes(file, entries[s].offset, data, data == nullptr ? 0 : plan.stored_bytes());
   }
   for (std::size_t p = 0; p < tables.pages.size(); ++p) {
     const auto bytes = stored_bytes(tables, *packed, p);

@@ -106,7 +106,8 @@ TEST(Malformed, EveryChangedByteIsSeen) {
 }
 
 TEST(Malformed, EveryFlippedBitWithChecksumsMadeToFitIsRefusedOrRead) {
-  for (const format::Codec codec : {format::Codec::kNone, format::Codec::kLz4, format::Codec::kZstd}) {
+  for (const format::Codec codec : {format::Codec::kNone, format::Codec::kLz4, format::Codec::kZstd,
+                                    format::Codec::kDraco}) {
     const auto bytes = test::sample_asset_bytes(codec);
     test::Random random(21);
     std::size_t counts[3] = {};

@@ -54,7 +54,8 @@ void expect_all_refused(SectionId id, const char* name, const std::vector<Rule<R
 }
 
 TEST(Read, OpensASoundAsset) {
-  for (const format::Codec codec : {format::Codec::kNone, format::Codec::kLz4, format::Codec::kZstd}) {
+  for (const format::Codec codec : {format::Codec::kNone, format::Codec::kLz4, format::Codec::kZstd,
+                                    format::Codec::kDraco}) {
     const auto asset = Asset::from_vector(test::sample_asset_bytes(codec));
     EXPECT_TRUE(asset.ok()) << asset.error().message();
   }
@@ -126,8 +127,15 @@ TEST(Read, RefusesABrokenSectionTable) {
   expect_refused(broken(kLast, [](auto& e) { e.bytes += 1; }), "section BLOB, field bytes");
   expect_refused(broken(kLast, [](auto& e) { e.bytes = ~std::uint64_t{0}; }), "section BLOB, field bytes");
   expect_refused(broken(kMesh, [](auto& e) { e.flags |= 2U; }), "section MESH, field flags");
-  expect_refused(broken(kMesh, [](auto& e) { e.codec = 2; }), "section MESH, field codec");
-  expect_refused(broken(kMesh, [](auto& e) { e.decoded_bytes += 1; }), "section MESH, field codec");
+  expect_refused(broken(kMesh, [](auto& e) { e.codec = 2; }), "section MESH, field codec", ErrorCode::kUnsupported);
+  expect_refused(broken(kLast, [](auto& e) { e.codec = 1; }), "section BLOB, field codec", ErrorCode::kUnsupported);
+  expect_refused(broken(kMesh, [](auto& e) { e.codec = 1; }), "section MESH, field codec");
+  expect_refused(broken(kMesh, [](auto& e) { e.decoded_bytes += 1; }), "section MESH, field decoded_bytes");
+  expect_refused(broken(kMesh, [](auto& e) {
+                   e.codec = 1;
+                   e.decoded_bytes = 256 * (e.bytes + 1);
+                 }),
+                 "section MESH, field decoded_bytes");
   expect_refused(broken(kMesh, [](auto& e) { e.record_bytes = 208; }), "section MESH, field record_bytes");
   expect_refused(broken(kMesh, [](auto& e) { e.record_count = 5; }), "section MESH, field record_count");
   expect_refused(broken(0, [](auto& e) { e.record_count = 1; }), "section META, field record_count");

@@ -9,6 +9,7 @@
 
 #include "base/hash.h"
 #include "decode/decode.h"
+#include "coding/section_columns.h"
 #include "pack/pack.h"
 #include "support/random.h"
 #include "support/sample_asset.h"
@@ -17,7 +18,8 @@
 namespace meshlode {
 namespace {
 
-constexpr format::Codec kCodecs[] = {format::Codec::kNone, format::Codec::kLz4, format::Codec::kZstd};
+constexpr format::Codec kCodecs[] = {format::Codec::kNone, format::Codec::kLz4, format::Codec::kZstd,
+                                     format::Codec::kDraco};
 
 WriteInput patch_input(const Scene& scene) {
   const test::SampleMesh sample = test::sample_patch();
@@ -135,30 +137,28 @@ TEST(Write, ContentHashSeesEveryPartOfTheContent) {
   EXPECT_NE(content_hash(*write_asset(std::move(input))), hash);
 }
 
-TEST(Write, PagesShrinkOrStayAsTheyAre) {
-  test::Random random(9);
-  std::vector<std::uint8_t> noise(60000);
-  for (std::uint8_t& byte : noise) byte = static_cast<std::uint8_t>(random.next());
-  const std::vector<std::uint8_t> zeros(60000, 0);
-  for (const format::Codec codec : {format::Codec::kLz4, format::Codec::kZstd}) {
-    const auto packed_noise = pack_page(noise, codec);
-    ASSERT_TRUE(packed_noise.ok());
-    EXPECT_EQ(packed_noise->codec, format::Codec::kNone) << "noise would grow";
-    const auto packed_zeros = pack_page(zeros, codec);
-    ASSERT_TRUE(packed_zeros.ok());
-    EXPECT_EQ(packed_zeros->codec, codec);
-    EXPECT_LT(packed_zeros->bytes.size(), 1000U);
+/// Tables of a packed file are stored by columns where that is shorter, and say the same.
+TEST(Write, TablesShrinkWhereACodecIsChosen) {
+  const auto plain = Asset::from_vector(test::sample_asset_bytes());
+  ASSERT_TRUE(plain.ok());
+  for (const format::SectionEntry& entry : plain->sections()) {
+    EXPECT_EQ(entry.codec, static_cast<std::uint32_t>(SectionCodec::kNone));
   }
-  EXPECT_EQ(pack_page(zeros, format::Codec::kNone)->codec, format::Codec::kNone);
-}
-
-TEST(Write, DracoPagesAreNotWrittenYet) {
-  const Scene scene = one_instance_scene();
-  WriteInput input = patch_input(scene);
-  input.codec = format::Codec::kDraco;
-  const auto bytes = write_asset(std::move(input));
-  ASSERT_FALSE(bytes.ok());
-  EXPECT_EQ(bytes.error().code, ErrorCode::kUnsupported);
+  const auto packed = Asset::from_vector(test::sample_asset_bytes(format::Codec::kZstd));
+  ASSERT_TRUE(packed.ok()) << packed.error().message();
+  std::size_t packed_count = 0;
+  ASSERT_EQ(packed->sections().size(), plain->sections().size());
+  for (std::size_t s = 0; s < packed->sections().size(); ++s) {
+    const format::SectionEntry& entry = packed->sections()[s];
+    const format::SectionEntry& twin = plain->sections()[s];
+    if (entry.codec == static_cast<std::uint32_t>(SectionCodec::kNone)) continue;
+    ++packed_count;
+    EXPECT_LT(entry.bytes, entry.decoded_bytes);
+    const auto a = packed->section_bytes(entry);
+    const auto b = plain->section_bytes(twin);
+    EXPECT_TRUE(std::equal(a.begin(), a.end(), b.begin(), b.end())) << s;
+  }
+  EXPECT_GE(packed_count, 3U) << "at least clusters, nodes and the scene";
 }
 
 TEST(Write, AnInstanceOfNoMeshIsRefused) {

@@ -300,10 +300,10 @@ Result<PipelineOptions> make_options(const BuildWords& words) {
                        : words.error_tier == "measured" ? format::ErrorTier::kMeasured
                                                         : format::ErrorTier::kCertified;
   if (words.preset != "default") return later("--preset", words.preset);
-  if (words.codec == "draco") return later("--codec", words.codec);
-  options.codec = words.codec == "zstd"  ? format::Codec::kZstd
-                  : words.codec == "lz4" ? format::Codec::kLz4
-                                         : format::Codec::kNone;
+  options.codec = words.codec == "zstd"    ? format::Codec::kZstd
+                  : words.codec == "lz4"   ? format::Codec::kLz4
+                  : words.codec == "draco" ? format::Codec::kDraco
+                                           : format::Codec::kNone;
   options.attributes = words.attributes == "none"  ? AttributeChoice::kNone
                        : words.attributes == "all" ? AttributeChoice::kAll
                                                    : AttributeChoice::kAuto;

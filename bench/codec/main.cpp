@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the disk codecs cost and save on the pages of assets: bytes, and decoding on one thread. And how long it takes to
+// open each asset and have its root page. Medians over repetitions, in seconds of the thread's own time, because other work
+// on the machine is not the codec's.
+//
+//   bench_codec bunny.lode dragon.lode ...     assets of any codec
+#include <time.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "pack/pack.h"
+#include "read/asset.h"
+#include "unpack/stored_page.h"
+#include "unpack/unpack.h"
+
+namespace {
+
+using namespace meshlode;
+
+double thread_seconds() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+double median(std::vector<double> values) {
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+  return values[values.size() / 2];
+}
+
+[[noreturn]] void fail(const std::string& where, const std::string& detail) {
+  std::fprintf(stderr, "bench_codec: %s: %s\n", where.c_str(), detail.c_str());
+  std::exit(1);
+}
+
+struct Totals {
+  double source_triangles = 0.0, stored_triangles = 0.0;
+};
+
+Totals count_triangles(const Asset& asset) {
+  Totals totals;
+  for (const format::MeshRecord& mesh : asset.meshes()) totals.source_triangles += static_cast<double>(mesh.source_triangles);
+  for (const format::ClusterRecord& cluster : asset.clusters()) totals.stored_triangles += cluster.triangle_count();
+  return totals;
+}
+
+void measure_codec(const Asset& asset, const std::vector<std::vector<std::uint32_t>>& pages, format::Codec codec,
+                   const char* name) {
+  constexpr int kRepetitions = 15;
+  const Totals totals = count_triangles(asset);
+  std::vector<PackedPage> packed;
+  double decoded_bytes = 0.0;
+  double stored_bytes = 0.0;
+  for (std::size_t p = 0; p < pages.size(); ++p) {
+    const auto& mesh = asset.meshes()[asset.groups()[asset.pages()[p].first_group].mesh];
+    const std::span<const std::uint8_t> bytes{reinterpret_cast<const std::uint8_t*>(pages[p].data()), pages[p].size() * 4};
+    auto page = pack_page(mesh, bytes, codec);
+    if (!page) fail(name, page.error().detail);
+    decoded_bytes += static_cast<double>(bytes.size());
+    stored_bytes += static_cast<double>(page->codec == format::Codec::kNone ? bytes.size() : page->bytes.size());
+    packed.push_back(std::move(*page));
+  }
+  std::vector<double> seconds;
+  std::vector<std::uint32_t> out(format::kMaxPageBytes / 4);
+  for (int r = 0; r < kRepetitions; ++r) {
+    double sum = 0.0;
+    for (std::size_t p = 0; p < pages.size(); ++p) {
+      if (packed[p].codec == format::Codec::kNone) continue;
+      format::PageRecord record = asset.pages()[p];
+      record.codec = codec;
+      const auto& mesh = asset.meshes()[asset.groups()[record.first_group].mesh];
+      const std::span<std::uint32_t> page = std::span(out).first(pages[p].size());
+      const double start = thread_seconds();
+      std::fill(page.begin(), page.end(), 0U);
+      const UnpackOutcome outcome = unpack_page(mesh, record, packed[p].bytes, page);
+      sum += thread_seconds() - start;
+      if (outcome != UnpackOutcome::kOk || !std::equal(page.begin(), page.end(), pages[p].begin())) {
+        fail(name, "page " + std::to_string(p) + " did not come back");
+      }
+    }
+    seconds.push_back(sum);
+  }
+  const double time = median(seconds);
+  std::printf("  %-6s %8.3f B/source triangle %6.3f B/stored triangle", name, stored_bytes / totals.source_triangles,
+              stored_bytes / totals.stored_triangles);
+  if (time > 0.0) {
+    std::printf("  decode %7.0f MB/s of page bytes %7.1f M stored triangles/s", decoded_bytes / time * 1e-6,
+                totals.stored_triangles / time * 1e-6);
+  }
+  std::printf("\n");
+}
+
+void measure_opening(const std::string& path) {
+  constexpr int kRepetitions = 101;
+  std::vector<double> seconds;
+  for (int r = 0; r < kRepetitions; ++r) {
+    const double start = thread_seconds();
+    const auto asset = Asset::open(path);
+    if (!asset) fail(path, asset.error().detail);
+    if (!asset->pages().empty()) {
+      const auto page = load_page(*asset, PageId{0U});
+      if (!page) fail(path, page.error().detail);
+    }
+    seconds.push_back(thread_seconds() - start);
+  }
+  std::printf("  opening the file as it is and loading its root page: %.3f ms\n", median(seconds) * 1e3);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  for (int i = 1; i < argc; ++i) {
+    const std::string path = argv[i];
+    const auto asset = Asset::open(path);
+    if (!asset) fail(path, asset.error().detail);
+    const Totals totals = count_triangles(*asset);
+    std::vector<std::vector<std::uint32_t>> pages;
+    for (std::size_t p = 0; p < asset->pages().size(); ++p) {
+      const auto page = load_page(*asset, PageId{p});
+      if (!page) fail(path, page.error().detail);
+      pages.emplace_back(page->words().begin(), page->words().end());
+    }
+    std::printf("%s: %.0f source triangles, %.0f stored, %zu pages, file %.3f B/source triangle\n",
+                std::filesystem::path(path).filename().c_str(), totals.source_triangles, totals.stored_triangles,
+                pages.size(), static_cast<double>(asset->bytes().size()) / totals.source_triangles);
+    measure_codec(*asset, pages, format::Codec::kNone, "none");
+    measure_codec(*asset, pages, format::Codec::kLz4, "lz4");
+    measure_codec(*asset, pages, format::Codec::kZstd, "zstd");
+    measure_codec(*asset, pages, format::Codec::kDraco, "draco");
+    measure_opening(path);
+  }
+  return 0;
+}

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+// Prefix-coded streams read from one padded buffer. Reading never checks for the end: the buffer is padded by more than one
+// cluster can take, and whoever reads a cluster looks at the end once behind it.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <span>
+
+#include "coding/prefix_code.h"
+
+namespace meshlode {
+
+static_assert(std::endian::native == std::endian::little, "bits are loaded as they lie in memory");
+
+/// By the next kMaxCodeBits bits: symbols as length | symbol << 4, numbers as length | raw bits << 4 | leading bits << 9.
+using CodeTable = std::array<std::uint16_t, std::size_t{1} << kMaxCodeBits>;
+
+/// \pre the buffer goes on for 8 bytes behind `at`
+[[nodiscard]] inline std::uint64_t load_bits(const std::uint8_t* buffer, std::uint64_t at) {
+  std::uint64_t word;
+  std::memcpy(&word, buffer + at / 8, sizeof(word));
+  return word >> at % 8;  // at least 57 bits: a code, and raw bits
+}
+
+[[nodiscard]] inline std::uint32_t take_symbol(const std::uint8_t* buffer, std::uint64_t& at, const CodeTable& table) {
+  const std::uint32_t entry = table[load_bits(buffer, at) & (table.size() - 1)];
+  at += entry & 15U;
+  return entry >> 4U;
+}
+
+[[nodiscard]] inline std::uint32_t take_value(const std::uint8_t* buffer, std::uint64_t& at, const CodeTable& table) {
+  const std::uint64_t bits = load_bits(buffer, at);
+  const std::uint32_t entry = table[bits & (table.size() - 1)];
+  const std::uint32_t length = entry & 15U;
+  const std::uint32_t raw_bits = entry >> 4U & 31U;
+  at += length + raw_bits;
+  return entry >> 9U << raw_bits | (static_cast<std::uint32_t>(bits >> length) & ((1U << raw_bits) - 1U));
+}
+
+/// False where the lengths are no prefix code. `is_value`: symbols are those of token_of.
+[[nodiscard]] bool fill_code_table(std::span<const std::uint8_t> lengths, bool is_value, CodeTable& table);
+
+}  // namespace meshlode
