@@ -75,8 +75,13 @@ TEST_P(CApi, TablesAreThoseOfTheFile) {
   const auto expected = AssetFile::view(bytes_);
   ASSERT_TRUE(expected.ok());
   const auto same = [&](const auto* records, std::uint32_t count, auto view) {
-    EXPECT_EQ(count, view.size());
-    EXPECT_EQ(static_cast<const void*>(records), static_cast<const void*>(view.data())) << "no copy";
+    ASSERT_EQ(count, view.size());
+    if (GetParam() == format::Codec::kNone) {
+      EXPECT_EQ(static_cast<const void*>(records), static_cast<const void*>(view.data())) << "no copy";
+    }
+    if (!view.empty()) {
+      EXPECT_EQ(std::memcmp(records, view.data(), view.size_bytes()), 0);
+    }
   };
   std::uint32_t count = 0;
   const meshlode_mesh* meshes = meshlode_meshes(asset_, &count);
