@@ -48,6 +48,17 @@ std::vector<Variant> all_variants() {
     r.occlusion = false;
     r.flat_selection = true;
   });
+  add("persistent", [](auto& r) { r.persistent = true; });
+  add("no-far", [](auto& r) { r.far_instances = false; });
+  add("no-far-persistent", [](auto& r) {
+    r.far_instances = false;
+    r.persistent = true;
+  });
+  add("no-far-raster", [](auto& r) { r.far_raster = false; });
+  add("far-64", [](auto& r) { r.far_lanes = 64; });
+  add("far-16", [](auto& r) { r.far_lanes = 16; });
+  add("group-32", [](auto& r) { r.raster_group = 32; });
+  add("group-64", [](auto& r) { r.raster_group = 64; });
   add("mixed-vertex", [](auto& r) { r.hardware = gpu::HardwarePath::kVertex; });
   add("hardware-vertex", [](auto& r) {
     r.hardware = gpu::HardwarePath::kVertex;
@@ -121,6 +132,7 @@ void write_measured(JsonWriter& json, const char* key, const Measured& m) {
   json.field("clusters", m.last.items);
   json.field("second_pass_clusters", m.last.second_pass_items);
   json.field("hardware_clusters", m.last.hardware_items);
+  json.field("far_clusters", m.last.far_items);
   json.field("clipped_clusters", m.last.clipped_items);
   json.field("overflow", gpu::describe_overflow(m.last.overflow));
   json.end_object();

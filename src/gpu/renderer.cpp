@@ -19,6 +19,7 @@ struct Push {
 };
 
 constexpr std::uint32_t kGroupSize = 64;
+constexpr std::uint32_t kPersistentGroups = 1024;  ///< more than any device runs at once do no harm: they find nothing
 constexpr std::uint32_t kGroupRow = 32768;  ///< as in common.glsl
 
 std::uint64_t arguments_of(std::uint32_t stage) {
@@ -48,6 +49,9 @@ Result<Renderer> Renderer::make(Device device, GpuScene scene, const RendererOpt
   out.options_ = options;
   if (const Status s = out.make_pipelines(); !s) return s.error();
   if (const Status s = out.resize(options.width, options.height); !s) return s.error();
+  if (out.has_far_raster()) {
+    if (const Status s = out.decode_roots(); !s) return s.error();
+  }
   return out;
 }
 
@@ -119,6 +123,7 @@ Status Renderer::make_buffers() {
   f.clusters = scene_.clusters.address();
   f.materials = scene_.materials.address();
   f.pages = scene_.pages.address();
+  f.roots = scene_.roots.address();
   f.visible = visible_.address();
   f.queue = queue_.address();
   f.open_groups = open_groups_.address();
@@ -137,28 +142,54 @@ Status Renderer::make_buffers() {
   return Ok{};
 }
 
+// With hardware raster every cluster is asked for its size on the screen; flat selection asks every instance.
+bool Renderer::has_far() const {
+  return options_.far_instances && options_.hardware == HardwarePath::kNone && !options_.flat_selection;
+}
+bool Renderer::has_far_raster() const {
+  return has_far() && options_.far_raster;
+}
+
 Status Renderer::make_pipelines() {
+  const bool has_hardware = options_.hardware != HardwarePath::kNone;
   const std::uint32_t frustum = options_.frustum ? 1 : 0, occlusion = options_.occlusion ? 1 : 0;
-  const std::array<std::uint32_t, 4> constants = {options_.double_sided ? 1u : 0u, frustum, occlusion,
-                                                  options_.hardware != HardwarePath::kNone ? 1u : 0u};
+  const auto room = [](std::uint32_t count) { return std::max((count + 15) / 16 * 16, 16u); };
+  const std::array<std::uint32_t, 8> constants = {options_.double_sided ? 1u : 0u,
+                                                  frustum,
+                                                  occlusion,
+                                                  has_hardware ? 1u : 0u,
+                                                  options_.raster_group,
+                                                  room(scene_.max_cluster_triangles),
+                                                  room(scene_.max_cluster_vertices),
+                                                  0};
+  std::array<std::uint32_t, 8> far_constants = constants;
+  far_constants[3] = has_far() ? 1 : 0;
+  far_constants[4] = options_.far_lanes;
+  far_constants[5] = has_far_raster() ? 1 : 0;
+  far_constants[6] = room(scene_.max_root_vertices);
+  far_constants[7] = room(scene_.max_root_triangles);
   struct Wanted {
     Pipeline* slot;
     std::span<const std::uint32_t> spirv;
   };
   const Wanted wanted[] = {{&instances_, shaders::instances()},
                            {&traverse_, shaders::traverse()},
+                           {&persistent_, shaders::persistent()},
                            {&flat_, shaders::flat()},
                            {&clusters_, shaders::clusters()},
                            {&raster_, shaders::raster()},
+                           {&raster_far_, shaders::raster_far()},
+                           {&roots_, shaders::roots()},
                            {&raster_clip_, shaders::raster_clip()},
                            {&pyramid_build_, shaders::pyramid()},
                            {&pyramid_top_, shaders::pyramid_top()}};
   for (const Wanted& w : wanted) {
-    auto pipeline = device_.make_compute(w.spirv, constants);
+    const bool is_far = w.slot == &instances_ || w.slot == &raster_far_;
+    auto pipeline = device_.make_compute(w.spirv, is_far ? far_constants : constants);
     if (!pipeline) return pipeline.error();
     *w.slot = *pipeline;
   }
-  if (options_.hardware == HardwarePath::kNone) return Ok{};
+  if (!has_hardware) return Ok{};
   const bool is_mesh = options_.hardware == HardwarePath::kMesh;
   if (is_mesh && !device_.info().has_mesh_shaders) {
     return Error{ErrorCode::kUnsupported, device_.info().name, "no mesh shaders"};
@@ -196,7 +227,13 @@ void Renderer::record_selection(Commands& list, std::uint32_t pass) {
     list.dispatch_indirect(flat_, bytes_of(push), counters_block_, arguments_of(STAGE_SLOTS));
     list.barrier();
   }
-  for (push.depth = 0; push.depth < scene_.bvh_depth && !options_.flat_selection; ++push.depth) {
+  if (options_.persistent && !options_.flat_selection) {
+    list.dispatch(persistent_, bytes_of(push), kPersistentGroups);
+    list.barrier();
+  }
+  // The leaves of the last depth are tested with the nodes above them.
+  const std::uint32_t depths = options_.flat_selection || options_.persistent ? 0 : std::max(scene_.bvh_depth, 2u) - 1;
+  for (push.depth = 0; push.depth < depths; ++push.depth) {
     list.dispatch_indirect(traverse_, bytes_of(push), counters_block_,
                            arguments_of(STAGE_QUEUE + MAX_DEPTH * pass + push.depth));
     list.barrier();
@@ -207,11 +244,19 @@ void Renderer::record_selection(Commands& list, std::uint32_t pass) {
   list.stamp(std::string("clusters") + suffix);
 }
 
-void Renderer::record_raster(Commands& list, std::uint32_t pass) {
-  const Push push{frame_block_.address(), pass};
+void Renderer::record_raster(Commands& list, std::uint32_t pass, bool in_order) {
+  const Push push{frame_block_.address(), pass, 0, in_order ? 1u : 0u};
   list.dispatch_indirect(raster_, bytes_of(push), counters_block_, arguments_of(STAGE_SOFTWARE + pass));
-  list.barrier();
-  list.stamp(pass == 0 ? "software" : "software 2");
+  if (has_far_raster()) {
+    // They write pixels by atomicMax alone, so nobody waits for anybody.
+    list.stamp(pass == 0 ? "software" : "software 2");
+    list.dispatch_indirect(raster_far_, bytes_of(push), counters_block_, arguments_of(STAGE_HARDWARE + pass));
+    list.barrier();
+    list.stamp(pass == 0 ? "far" : "far 2");
+  } else {
+    list.barrier();
+    list.stamp(pass == 0 ? "software" : "software 2");
+  }
   list.dispatch_indirect(raster_clip_, bytes_of(push), counters_block_, arguments_of(STAGE_CLIPPED + pass));
   if (options_.hardware != HardwarePath::kNone) {
     list.stamp(pass == 0 ? "clipped" : "clipped 2");
@@ -256,11 +301,26 @@ Status Renderer::record() {
     record_pyramid(list, 1);
   }
   record_begin(lists_[1]);
-  record_raster(lists_[1], 0);
-  if (!options_.occlusion) return Ok{};
-  auto clear = Commands::begin(device_);  // before the first frame nothing hides anything
+  record_raster(lists_[1], 0, true);
+  return clear_lists();
+}
+
+Status Renderer::decode_roots() {
+  if (const Status s = device_.upload(frame_block_, bytes_of(frame_)); !s) return s;
+  auto list = Commands::begin(device_);
+  if (!list) return list.error();
+  const Push push{frame_block_.address()};
+  list->dispatch(roots_, bytes_of(push), scene_.mesh_count);
+  list->barrier();
+  if (const auto ran = list->run(); !ran) return ran.error();
+  return Ok{};
+}
+
+Status Renderer::clear_lists() {
+  auto clear = Commands::begin(device_);
   if (!clear) return clear.error();
-  clear->fill(pyramid_, 0, pyramid_.bytes(), 0);
+  if (options_.occlusion) clear->fill(pyramid_, 0, pyramid_.bytes(), 0);  // before the first frame nothing hides anything
+  if (options_.persistent) clear->fill(queue_, 0, queue_.bytes(), 0);     // places that nobody has filled
   clear->barrier();
   if (const auto ran = clear->run(); !ran) return ran.error();
   return Ok{};
@@ -285,12 +345,17 @@ Result<FrameReport> Renderer::draw(const Camera& camera, double pixel_error, dou
   out.items = counters->stages[STAGE_SOFTWARE].count + counters->stages[STAGE_HARDWARE].count;
   if (options_.occlusion)
     out.second_pass_items = out.items - counters->software_before[1] - counters->hardware_before[1];
-  out.hardware_items = counters->stages[STAGE_HARDWARE].count;
+  (has_far_raster() ? out.far_items : out.hardware_items) = counters->stages[STAGE_HARDWARE].count;
   out.clipped_items = counters->stages[STAGE_CLIPPED].count + counters->stages[STAGE_CLIPPED + 1].count;
   for (std::uint32_t i = STAGE_QUEUE; i < STAGE_COUNT; ++i) out.traversed_nodes += counters->stages[i].count;
   out.not_finite = counters->not_finite;
   out.overflow = counters->overflow;
+  for (const std::uint32_t added : counters->added) out.traversed_nodes += added;
   if (out.items > frame_.item_capacity) out.overflow |= OVERFLOW_CLUSTERS;  // both ends together
+  if (options_.persistent && (out.overflow & OVERFLOW_QUEUE) != 0) {
+    if (const Status s = clear_lists(); !s) return s.error();  // places may be left that nobody took
+    has_last_ = false;
+  }
   return out;
 }
 
@@ -326,9 +391,10 @@ Result<std::vector<Renderer::Item>> Renderer::read_items() {
     return s.error();
   }
   std::vector<Item> out;
-  for (const auto& [slot, cluster] : pairs) {
+  for (const auto& [marked_slot, cluster] : pairs) {
+    const std::uint32_t slot = marked_slot & ITEM_SLOT;
     if (slot >= visible->size()) return Error{ErrorCode::kCheckFailed, "items", "a slot that no instance has"};
-    out.push_back({{InstanceId((*visible)[slot].instance), ClusterId(cluster)}, slot});
+    out.push_back({{InstanceId((*visible)[slot].instance), ClusterId(cluster)}, marked_slot});
   }
   std::sort(out.begin(), out.end(), [](const Item& a, const Item& b) { return a.key < b.key; });
   return out;
@@ -352,6 +418,8 @@ Status Renderer::redraw_in_order() {
   GpuCounters counters = counters_;
   const auto count = static_cast<std::uint32_t>(pairs.size());
   counters.stages[STAGE_SOFTWARE] = {count, std::min(count, kGroupRow), (count + kGroupRow - 1) / kGroupRow, 1};
+  counters.stages[STAGE_HARDWARE] = counters.stages[STAGE_SOFTWARE];  // the far ones' pass looks at all items too
+  counters.stages[STAGE_HARDWARE].count = 0;
   const auto before = read_counters();  // the slots stay
   if (!before) return before.error();
   counters.stages[STAGE_SLOTS] = before->stages[STAGE_SLOTS];

@@ -31,6 +31,11 @@ struct RendererOptions {
   bool occlusion = false;
   bool double_sided = false;    ///< some material is; where none is, nobody looks
   bool flat_selection = false;  ///< every group of every instance instead of the BVH; not with occlusion
+  bool persistent = false;      ///< the BVH in one dispatch with a queue, instead of one dispatch a depth
+  bool far_instances = true;    ///< where a mesh's root alone is open, its instance goes past the BVH
+  bool far_raster = true;           ///< and is drawn by a rasterizer of its own where it has a few pixels
+  std::uint32_t raster_group = 128;  ///< invocations of the software rasterizer's workgroup: 32, 64 or 128
+  std::uint32_t far_lanes = 32;      ///< invocations a far root is drawn by: 16, 32, 64 or 128
   HardwarePath hardware = HardwarePath::kNone;
   float hardware_pixels = 256.0F;      ///< a cluster wider than this on the screen is the hardware's; 0: all are
   std::uint32_t max_items = 1u << 22;  ///< of each list, at most; lists are no longer than the scene can fill
@@ -43,8 +48,9 @@ struct FrameReport {
   std::uint32_t items = 0;  ///< clusters drawn, both passes
   std::uint32_t second_pass_items = 0;
   std::uint32_t hardware_items = 0;
+  std::uint32_t far_items = 0;  ///< roots of a few pixels
   std::uint32_t clipped_items = 0;
-  std::uint32_t traversed_nodes = 0;
+  std::uint32_t traversed_nodes = 0;  ///< that were open: their children were tested
   std::uint32_t not_finite = 0;
   std::uint32_t overflow = 0;  ///< OVERFLOW_…: the picture is not complete
 };
@@ -80,13 +86,17 @@ class Renderer {
   [[nodiscard]] Status make_pipelines();
   void record_begin(Commands& list);
   void record_selection(Commands& list, std::uint32_t pass);
-  void record_raster(Commands& list, std::uint32_t pass);
+  void record_raster(Commands& list, std::uint32_t pass, bool in_order = false);
   void record_pyramid(Commands& list, std::uint32_t pass);
   [[nodiscard]] Status record();
+  [[nodiscard]] Status clear_lists();
+  [[nodiscard]] Status decode_roots();
+  [[nodiscard]] bool has_far() const;
+  [[nodiscard]] bool has_far_raster() const;
   [[nodiscard]] Result<GpuCounters> read_counters();
   struct Item {
     ClusterInstance key;
-    std::uint32_t slot = 0;
+    std::uint32_t slot = 0;  ///< and its marks
   };
   [[nodiscard]] Result<std::vector<Item>> read_items();
 
@@ -98,7 +108,7 @@ class Renderer {
   Buffer frame_block_, counters_block_, upload_;
   Buffer visible_, queue_, open_groups_, items_, retry_nodes_, retry_clusters_, retry_instances_, clipped_, pixels_,
       pyramid_;
-  Pipeline instances_, traverse_, flat_, hardware_, clusters_, raster_, raster_clip_, pyramid_build_, pyramid_top_;
+  Pipeline instances_, traverse_, persistent_, flat_, roots_, raster_far_, hardware_, clusters_, raster_, raster_clip_, pyramid_build_, pyramid_top_;
   std::vector<Commands> lists_;  ///< 0: the frame, 1: drawing in order
   bool has_last_ = false;
 };

@@ -23,6 +23,8 @@ Result<Buffer> make_table(Device& device, const std::vector<T>& table) {
   return buffer;
 }
 
+constexpr std::uint32_t kNoGroup = 0xFFFFFFFFu;
+
 std::vector<GpuMesh> mesh_table(const Asset& asset) {
   std::vector<GpuMesh> out;
   const SelectTables tables = tables_of(asset);
@@ -47,6 +49,16 @@ std::vector<GpuMesh> mesh_table(const Asset& asset) {
     m.has_color = mesh.has_color;
     m.group_count = mesh.group_count;
     m.material = mesh.material;
+    m.only_root = kNoGroup;
+    std::uint32_t roots = 0;
+    for (std::uint32_t g = mesh.first_group; g < mesh.first_group + mesh.group_count; ++g) {
+      const float error = asset.groups()[g].error;
+      if (error < format::kInfiniteError) {
+        m.coarse_error = std::max(m.coarse_error, error);
+      } else {
+        m.only_root = roots++ == 0 ? g : kNoGroup;
+      }
+    }
     out.push_back(m);
   }
   return out;
@@ -160,6 +172,8 @@ Result<GpuScene> upload_scene(Device& device, const Asset& asset, std::span<cons
     g.page_word = pages->word[group.page];
     groups.push_back(g);
   }
+  const std::vector<GpuMesh> meshes = mesh_table(asset);
+  std::uint64_t root_words = 1;
   std::vector<GpuCluster> clusters;
   for (const format::ClusterRecord& cluster : asset.clusters()) {
     GpuCluster c{};
@@ -169,9 +183,17 @@ Result<GpuScene> upload_scene(Device& device, const Asset& asset, std::span<cons
     c.radius = sphere.radius;
     c.own_group = cluster.own_group;
     c.page_word = groups[cluster.coarser_group].page_word;
-    c.level = cluster.level;
-    c.triangle_count = cluster.triangle_count();
-    out.max_cluster_triangles = std::max(out.max_cluster_triangles, c.triangle_count);
+    c.index = static_cast<std::uint32_t>(clusters.size()) -
+              asset.pages()[asset.groups()[cluster.coarser_group].page].first_cluster;
+    out.max_cluster_triangles = std::max(out.max_cluster_triangles, cluster.triangle_count());
+    out.max_cluster_vertices = std::max(out.max_cluster_vertices, cluster.vertex_count());
+    const std::uint32_t only = meshes[asset.groups()[cluster.coarser_group].mesh].only_root;
+    if (only == cluster.coarser_group && groups[only].cluster_count == 1) {
+      out.max_root_triangles = std::max(out.max_root_triangles, cluster.triangle_count());
+      out.max_root_vertices = std::max(out.max_root_vertices, cluster.vertex_count());
+      c.root_word = static_cast<std::uint32_t>(root_words);
+      root_words += 1 + 3 * cluster.vertex_count() + cluster.triangle_count();
+    }
     clusters.push_back(c);
   }
   std::vector<GpuMaterial> materials;
@@ -194,7 +216,11 @@ Result<GpuScene> upload_scene(Device& device, const Asset& asset, std::span<cons
     slot = *buffer;
     return Ok{};
   };
-  if (const Status s = put(out.meshes, mesh_table(asset)); !s) return s.error();
+  auto roots = device.make_buffer(root_words * 4, Memory::kDevice);  // filled by the renderer
+  if (!roots) return roots.error();
+  out.roots = *roots;
+  out.mesh_count = static_cast<std::uint32_t>(meshes.size());
+  if (const Status s = put(out.meshes, meshes); !s) return s.error();
   if (const Status s = put(out.instances, instance_table(instances)); !s) return s.error();
   if (const Status s = put(out.nodes, node_table(asset)); !s) return s.error();
   if (const Status s = put(out.groups, groups); !s) return s.error();

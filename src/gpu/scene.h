@@ -15,11 +15,13 @@
 namespace meshlode::gpu {
 
 struct GpuScene {
-  Buffer meshes, instances, nodes, groups, clusters, materials, pages;
+  Buffer meshes, instances, nodes, groups, clusters, materials, pages, roots;
   std::uint32_t instance_count = 0;
   std::uint32_t cluster_count = 0;
+  std::uint32_t mesh_count = 0;
   std::uint32_t bvh_depth = 0;  ///< nodes on the longest way from a root
-  std::uint32_t max_cluster_triangles = 0;
+  std::uint32_t max_cluster_triangles = 0, max_cluster_vertices = 0;
+  std::uint32_t max_root_triangles = 0, max_root_vertices = 0;  ///< of decoded roots
   std::uint64_t group_instances = 0;  ///< groups of all instances together: no cut opens more
   std::uint64_t cluster_instances = 0;
   std::uint64_t page_bytes = 0;

@@ -29,8 +29,17 @@ constexpr std::uint32_t kPyramidTop[] = {
 constexpr std::uint32_t kDecode[] = {
 #include "decode.comp.inc"
 };
+constexpr std::uint32_t kRoots[] = {
+#include "roots.comp.inc"
+};
+constexpr std::uint32_t kRasterFar[] = {
+#include "raster_far.comp.inc"
+};
 constexpr std::uint32_t kFlat[] = {
 #include "flat.comp.inc"
+};
+constexpr std::uint32_t kPersistent[] = {
+#include "persistent.comp.inc"
 };
 constexpr std::uint32_t kHardwareVert[] = {
 #include "hardware.vert.inc"
@@ -71,8 +80,17 @@ std::span<const std::uint32_t> pyramid_top() {
 std::span<const std::uint32_t> decode() {
   return kDecode;
 }
+std::span<const std::uint32_t> roots() {
+  return kRoots;
+}
+std::span<const std::uint32_t> raster_far() {
+  return kRasterFar;
+}
 std::span<const std::uint32_t> flat() {
   return kFlat;
+}
+std::span<const std::uint32_t> persistent() {
+  return kPersistent;
 }
 std::span<const std::uint32_t> hardware_vert() {
   return kHardwareVert;

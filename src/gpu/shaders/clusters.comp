@@ -25,18 +25,6 @@ bool is_for_hardware(uint slot, vec3 center, float radius) {
   return 2.0 * max(b.reach.x, b.reach.y) > frame.hardware_pixels * (b.center.w - b.reach.w);
 }
 
-// append() to one end of the items; the count goes on from pass 0, the dispatch covers this pass alone.
-uint append_item(uint stage, bool wants, uint before) {
-  const uvec4 votes = subgroupBallot(wants);
-  const uint total = subgroupBallotBitCount(votes);
-  uint base = 0u;
-  if (subgroupElect() && total > 0u) {
-    base = atomicAdd(counters.stages[stage].count, total);
-    cover(stage + pass, base + total - before, 1u);
-  }
-  return subgroupBroadcastFirst(base) + subgroupBallotExclusiveBitCount(votes);
-}
-
 void consider(uint slot, uint id, bool is_there) {
   bool is_hidden_before = false, is_hardware = false;
   if (is_there) {
@@ -58,14 +46,14 @@ void consider(uint slot, uint id, bool is_there) {
     }
   }
   const bool is_software = is_there && !is_hardware;
-  const uint at = append_item(STAGE_SOFTWARE, is_software, counters.software_before[pass]);
+  const uint at = append_item(STAGE_SOFTWARE, is_software, counters.software_before[pass], 1u);
   if (is_software) {
     if (at < frame.item_capacity) frame.items.at[at] = uvec2(slot, id);
     else report_overflow(OVERFLOW_CLUSTERS);
   }
   if (kHardware != 0u) {
     const bool wants = is_there && is_hardware;
-    const uint back = append_item(STAGE_HARDWARE, wants, counters.hardware_before[pass]);
+    const uint back = append_item(STAGE_HARDWARE, wants, counters.hardware_before[pass], 1u);
     if (wants) {
       if (back < frame.item_capacity) frame.items.at[frame.item_capacity - 1u - back] = uvec2(slot, id);
       else report_overflow(OVERFLOW_CLUSTERS);

@@ -36,11 +36,15 @@ uint group_index() { return gl_WorkGroupID.y * kGroupRow + gl_WorkGroupID.x; }
 uint thread_index() { return group_index() * uint(GROUP_SIZE) + gl_LocalInvocationID.x; }
 #endif
 
-// Makes the dispatch arguments of a stage cover `count` entries, `per_group` of them a workgroup.
-void cover(uint stage, uint count, uint per_group) {
-  const uint groups = (count + per_group - 1u) / per_group;
-  atomicMax(counters.stages[stage].x, min(groups, kGroupRow));
-  atomicMax(counters.stages[stage].y, (groups + kGroupRow - 1u) / kGroupRow);
+// Makes the dispatch arguments of a stage cover invocations base … base + total - 1, `per_group` of them a workgroup.
+// Every invocation is added by one call, so who crosses a border says so, and nobody else touches the arguments: on them
+// all workgroups would wait for each other.
+void cover(uint stage, uint base, uint total, uint per_group) {
+  const uint before = (base + per_group - 1u) / per_group, after = (base + total + per_group - 1u) / per_group;
+  if (after == before) return;
+  if (before < kGroupRow) atomicMax(counters.stages[stage].x, min(after, kGroupRow));
+  const uint rows = (after + kGroupRow - 1u) / kGroupRow;
+  if (rows != (before + kGroupRow - 1u) / kGroupRow) atomicMax(counters.stages[stage].y, rows);
 }
 
 // Room for one entry where `wants`: its index. Dispatch arguments follow, for `factor` invocations an entry.
@@ -50,7 +54,19 @@ uint append(uint stage, bool wants, uint factor, uint per_group) {
   uint base = 0u;
   if (subgroupElect() && total > 0u) {
     base = atomicAdd(counters.stages[stage].count, total);
-    cover(stage, (base + total) * factor, per_group);
+    cover(stage, base * factor, total * factor, per_group);
+  }
+  return subgroupBroadcastFirst(base) + subgroupBallotExclusiveBitCount(votes);
+}
+
+// append() to one end of the items; the count goes on from pass 0, the dispatch covers this pass alone.
+uint append_item(uint stage, bool wants, uint before, uint per_group) {
+  const uvec4 votes = subgroupBallot(wants);
+  const uint total = subgroupBallotBitCount(votes);
+  uint base = 0u;
+  if (subgroupElect() && total > 0u) {
+    base = atomicAdd(counters.stages[stage].count, total);
+    cover(stage + pass, base - before, total, per_group);
   }
   return subgroupBroadcastFirst(base) + subgroupBallotExclusiveBitCount(votes);
 }

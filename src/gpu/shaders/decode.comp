@@ -12,7 +12,7 @@ void main() {
   const uint cluster = a + group_index();
   const uvec2 entry = frame.retry_clusters.at[cluster];
   const GpuMesh mesh = frame.meshes.at[entry.x];
-  const ClusterData data = open_cluster(mesh, frame.clusters.at[cluster].page_word, cluster);
+  const ClusterData data = open_cluster(mesh, cluster);
   const uint vertices = entry.y + 2u, triangles = vertices + data.vertex_count * mesh.channel_count;
   if (gl_LocalInvocationID.x == 0u) {
     frame.clipped.at[entry.y] = data.vertex_count;

@@ -36,6 +36,10 @@ struct GpuMesh {
   uint has_color;
   uint group_count;
   uint material;        // of every triangle; 0xFFFFFFFF: the clusters say
+  // Of a mesh with one terminal group: where an instance is so far away that `coarse_error`, the largest finite error of a
+  // group, passes for the BVH's root sphere, every other group passes and that one alone is open.
+  float coarse_error;
+  uint only_root;       // that group; 0xFFFFFFFF: there is not exactly one
   uint reserved;
 };
 
@@ -69,8 +73,8 @@ struct GpuCluster {
   float radius;
   uint own_group;       // 0xFFFFFFFF at level 0
   uint page_word;
-  uint level;
-  uint triangle_count;
+  uint index;           // in the page
+  uint root_word;       // in the decoded roots; of a mesh's only root cluster
 };
 
 struct GpuMaterial {
@@ -118,7 +122,7 @@ struct GpuStage {
 #define STAGE_RETRY_CLUSTERS 3
 #define STAGE_GROUPS 4        // + pass
 #define STAGE_SOFTWARE 6      // + pass: .count of pass 0 counts both
-#define STAGE_HARDWARE 8      // + pass, as above; x y z are those of a mesh draw
+#define STAGE_HARDWARE 8      // + pass, as above; x y z are those of a mesh draw. Without hardware raster: far roots
 #define STAGE_CLIPPED 10      // + pass
 #define STAGE_DRAW 12         // + pass: VkDrawIndirectCommand
 #define STAGE_QUEUE 16        // + kMaxDepth * pass + depth
@@ -136,11 +140,21 @@ struct GpuCounters {
   uint overflow;
   GPU_ARRAY(uint, software_before, 2);  // [pass]: items of earlier passes
   GPU_ARRAY(uint, hardware_before, 2);
-  uint tested_nodes, tested_clusters, occluded, not_finite;
-  GPU_ARRAY(uint, persistent, 4);       // head, tail, done
+  uint not_finite;
+  // Of the persistent traversal, [pass]: entries taken; entries added behind those that the list began with; entries
+  // added less entries done.
+  GPU_ARRAY(uint, taken, 2);
+  GPU_ARRAY(uint, added, 2);
+  GPU_ARRAY(int, balance, 2);
 };
 
 #define MAX_PYRAMID 15
+// Of an item's slot: drawn by raster_far.comp, and then whether the instance is mirrored.
+#define ITEM_IS_FAR 0x80000000u
+#define ITEM_IS_MIRRORED 0x40000000u
+#define ITEM_SLOT 0x3FFFFFFFu
+#define FAR_PIXELS 16.0  // wider clusters are raster.comp's
+
 
 // Payload of a pixel: (depth << 32) | ~(item << 8 | triangle), so that atomicMax keeps the nearest, then the lowest key.
 #define MAX_ITEMS 16777215
@@ -171,10 +185,11 @@ struct GpuFrame {
   GPU_POINTER(ClusterArray) clusters;
   GPU_POINTER(MaterialArray) materials;
   GPU_POINTER(PageWords) pages;
+  GPU_POINTER(WordArray) roots;          // decoded: roots.comp
   GPU_POINTER(VisibleArray) visible;
   GPU_POINTER(PairArray) queue;          // two halves of queue_capacity: (slot, node)
   GPU_POINTER(PairArray) open_groups;    // (slot, group)
-  GPU_POINTER(PairArray) items;          // (slot, cluster): software from the front, hardware from the back
+  GPU_POINTER(PairArray) items;          // (slot, cluster): software from the front; from the back hardware or far ones
   GPU_POINTER(PairArray) retry_nodes;    // (slot, node)
   GPU_POINTER(PairArray) retry_clusters; // (slot, cluster)
   GPU_POINTER(WordArray) retry_instances;
@@ -191,7 +206,7 @@ struct GpuFrame {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(GpuMesh) == 104 && sizeof(GpuInstance) == 112 && sizeof(GpuNode) == 32 && sizeof(GpuGroup) == 32);
+static_assert(sizeof(GpuMesh) == 112 && sizeof(GpuInstance) == 112 && sizeof(GpuNode) == 32 && sizeof(GpuGroup) == 32);
 static_assert(sizeof(GpuCluster) == 32 && sizeof(GpuMaterial) == 32 && sizeof(GpuCamera) == 144);
 static_assert(sizeof(GpuVisible) == 384 && sizeof(GpuStage) == 16);
 }  // namespace meshlode::gpu

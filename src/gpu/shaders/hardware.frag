@@ -23,7 +23,7 @@ void main() {
   bool is_drawn = gl_FrontFacing != is_mirrored;
   if (kDoubleSided != 0u && !is_drawn) {
     const ClusterData data =
-        open_cluster(frame.meshes.at[frame.visible.at[slot].mesh], frame.clusters.at[cluster].page_word, cluster);
+        open_cluster(frame.meshes.at[frame.visible.at[slot].mesh], cluster);
     is_drawn = frame.materials.at[cluster_material(data, in_triangle)].double_sided != 0u;
   }
   // Below 2^32 as floats go; the sky is 0.

@@ -13,7 +13,7 @@ void main() {
   const uint item = frame.item_capacity - 1u - (counters.hardware_before[pass] + gl_InstanceIndex);
   const uint slot = frame.items.at[item].x, cluster = frame.items.at[item].y;
   const ClusterData data =
-      open_cluster(frame.meshes.at[frame.visible.at[slot].mesh], frame.clusters.at[cluster].page_word, cluster);
+      open_cluster(frame.meshes.at[frame.visible.at[slot].mesh], cluster);
   const uint triangle = gl_VertexIndex / 3u;
   out_item = item;
   out_triangle = triangle;

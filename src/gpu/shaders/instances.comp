@@ -7,6 +7,10 @@
 #include "common.glsl"
 #include "cull.glsl"
 
+layout(constant_id = 3) const uint kFarInstances = 0u;
+layout(constant_id = 4) const uint kFarLanes = 32u;  // as in raster_far.comp
+layout(constant_id = 5) const uint kFarRaster = 0u;
+
 const double kGrowth = 1.00000095367431640625lf;  // 1 + 2^-20
 const double kMinFactor = 1.1754943508222875e-38lf, kMaxFactor = 8.507059173023462e37lf;  // 2^-126, 2^126
 const double kMinNear = 9.094947017729282379150390625e-13lf;                              // 2^-40
@@ -160,6 +164,58 @@ vec4 cull_row(Clip clip, uint row, double inverse_step) {
 }
 float gradient(vec4 row) { return length(row.xyz) * 1.00001; }
 
+// The terminal group of a far instance, if it alone is open: every other group passes where the largest of their errors
+// passes for the BVH's root sphere, which contains theirs (I4). Most instances of a large scene are of this kind.
+uint only_open_group(uint id, MetricView view) {
+  const uint group = MESH.only_root;
+  if (group == kNone) return kNone;
+  return metric_passes(view, MESH.root_center[0], MESH.root_center[1], MESH.root_center[2], MESH.root_radius,
+                       MESH.coarse_error)
+             ? group
+             : kNone;
+}
+
+// What raster_far.comp can draw: certainly in front of the near plane, near the picture, and small.
+bool is_few_pixels(ClipBounds b) {
+  const float low_w = (b.center.w - b.reach.w) * 0.99999;
+  if (!(b.center.z + b.reach.z < low_w)) return false;
+  const vec2 side = abs(b.center.xy);
+  const vec2 extent = b.reach.xy + side * (b.reach.w / b.center.w);
+  return max(side.x + extent.x, side.y + extent.y) <= 8000.0 * low_w && 2.0 * max(extent.x, extent.y) <= FAR_PIXELS * low_w;
+}
+
+// Its one cluster is drawn as it is, several go the way of an open group's.
+void append_far(uint id, uint slot, uint group, bool is_far, vec4 x, vec4 y, vec4 z, vec4 w, vec4 norm) {
+  uint cluster_count = 0u, cluster = 0u;
+  bool is_small = false;
+  if (is_far) {
+    cluster_count = frame.groups.at[group].cluster_count;
+    cluster = frame.groups.at[group].first_cluster;
+    const GpuCluster c = frame.clusters.at[cluster];
+    is_small = kFarRaster != 0u && cluster_count == 1u &&
+               is_few_pixels(bounds_of(x, y, z, w, norm, vec3(c.center[0], c.center[1], c.center[2]), c.radius));
+  }
+  const bool is_large = cluster_count == 1u && !is_small;
+  const uint item = append_item(STAGE_SOFTWARE, is_large, counters.software_before[pass], 1u);
+  if (is_large) {
+    if (item < frame.item_capacity) frame.items.at[item] = uvec2(slot, cluster);
+    else report_overflow(OVERFLOW_CLUSTERS);
+  }
+  if (kFarRaster != 0u) {
+    const uint back = append_item(STAGE_HARDWARE, is_small, counters.hardware_before[pass], 128u / kFarLanes);
+    if (is_small) {
+      const uint mirrored = (INSTANCE.flags & kInstanceMirrored) != 0u ? ITEM_IS_MIRRORED : 0u;
+      if (back < frame.item_capacity) frame.items.at[frame.item_capacity - 1u - back] = uvec2(slot | ITEM_IS_FAR | mirrored, cluster);
+      else report_overflow(OVERFLOW_CLUSTERS);
+    }
+  }
+  const uint at = append(STAGE_GROUPS + pass, cluster_count > 1u, kGroupLanes, 64u);
+  if (cluster_count > 1u) {
+    if (at < frame.group_capacity) frame.open_groups.at[at] = uvec2(slot, group);
+    else report_overflow(OVERFLOW_GROUPS);
+  }
+}
+
 void main() {
   uint id = thread_index();
   bool is_there = id < (pass == 0u ? frame.instance_count : counters.stages[STAGE_RETRY_INSTANCES].count);
@@ -213,18 +269,32 @@ void main() {
   const uint slot = append(STAGE_SLOTS, is_there, 1u, 1u);
   const bool fits = is_there && slot < frame.slot_capacity;
   if (is_there && !fits) report_overflow(OVERFLOW_SLOTS);
+  MetricView view;
+  uint group = kNone;
+  if (fits) {
+    view = make_view(id);
+    if (kFarInstances != 0u) group = only_open_group(id, view);
+  }
+  const bool is_far = group != kNone;
+  if (kFarInstances != 0u) append_far(id, slot, group, is_far, cull_x, cull_y, cull_z, cull_w, row_norm);
   const uint stage = STAGE_QUEUE + MAX_DEPTH * pass;
-  const uint at = append(stage, fits, 1u, 64u);
+  const uint at = append(stage, fits && !is_far, 1u, 64u);
   if (!fits) return;
-  if (pass == 1u) {
-    if (at < frame.retry_capacity) frame.retry_nodes.at[at] = uvec2(slot, MESH.first_node);
-    else report_overflow(OVERFLOW_RETRY);
-  } else {
-    if (at < frame.queue_capacity) frame.queue.at[at] = uvec2(slot, MESH.first_node);
-    else report_overflow(OVERFLOW_QUEUE);
+  if (!is_far) {
+    if (pass == 1u) {
+      if (at < frame.retry_capacity) frame.retry_nodes.at[at] = uvec2(slot, MESH.first_node);
+      else report_overflow(OVERFLOW_RETRY);
+    } else {
+      if (at < frame.queue_capacity) frame.queue.at[at] = uvec2(slot, MESH.first_node);
+      else report_overflow(OVERFLOW_QUEUE);
+    }
   }
   frame.visible.at[slot].clip = clip.at;
-  frame.visible.at[slot].view = make_view(id);
+  frame.visible.at[slot].view = view;
+  frame.visible.at[slot].instance = id;
+  frame.visible.at[slot].mesh = INSTANCE.mesh;
+  frame.visible.at[slot].flags = INSTANCE.flags;
+  if (is_far && frame.groups.at[group].cluster_count == 1u) return;  // nobody will cull anything of it
   frame.visible.at[slot].cull_x = cull_x;
   frame.visible.at[slot].cull_y = cull_y;
   frame.visible.at[slot].cull_z = cull_z;
@@ -238,7 +308,4 @@ void main() {
     frame.visible.at[slot].last_w = last_w;
     frame.visible.at[slot].last_norm = last_norm;
   }
-  frame.visible.at[slot].instance = id;
-  frame.visible.at[slot].mesh = INSTANCE.mesh;
-  frame.visible.at[slot].flags = INSTANCE.flags;
 }

@@ -8,14 +8,14 @@
 
 #define ClusterData LodeCluster
 
-// Pages are uploaded back to back, so that bits of one are counted from its own start: `page` is a word.
-LodeCluster open_cluster(GpuMesh mesh, uint page, uint cluster) {
+// Pages are uploaded back to back, so that bits of one are counted from its own start.
+LodeCluster open_cluster(GpuMesh mesh, uint cluster) {
   LodeMesh m;
   m.normal_scale = mesh.normal_scale;
   m.uv_set_count = mesh.uv_set_count;
   m.has_color = mesh.has_color;
   m.material = mesh.material;
-  return lode_read_cluster(m, page, cluster - frame.pages.at[page]);
+  return lode_read_cluster(m, frame.clusters.at[cluster].page_word, frame.clusters.at[cluster].index);
 }
 
 ivec3 cluster_position(LodeCluster c, uint vertex) { return lode_position(c, lode_raw_position(c, vertex)); }

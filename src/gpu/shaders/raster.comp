@@ -1,12 +1,21 @@
 // SPDX-License-Identifier: MIT
-// Software rasterizer: a workgroup draws a cluster. Vertices are snapped once into shared memory; a small triangle is one
-// invocation's, in 32-bit integers; a larger one is everybody's, in 64-bit integers. Triangles that have to be clipped
-// are left to raster_clip.comp.
+// Software rasterizer: a workgroup draws a cluster. Vertices are snapped and strips resolved once, into shared memory; a
+// small triangle is one invocation's, in 32-bit integers; a larger one is everybody's, in 64-bit integers. Triangles that
+// have to be clipped are left to raster_clip.comp.
 #version 460
-#define GROUP_SIZE 128
 #include "common.glsl"
 #include "page.glsl"
 #include "screen.glsl"
+
+// A multiple of kSliceSize. Few invocations waste little on small clusters, many hide a cluster's
+// latency.
+layout(local_size_x_id = 4) in;
+// Of a cluster of this scene: little shared memory is many workgroups at once.
+layout(constant_id = 5) const uint kMaxTriangles = 256u;
+layout(constant_id = 6) const uint kMaxVertices = 256u;
+#include "strips.glsl"
+
+#define GROUP_SIZE int(gl_WorkGroupSize.x)
 
 layout(constant_id = 0) const uint kDoubleSided = 0u;  // 1: some material of the scene is
 
@@ -15,11 +24,11 @@ const int kSmallPixels = 256;     // more than this is shared by kSliceSize invo
 const int kSliceSize = 32;
 const int kScanlinePixels = 6;    // from this width on a row's ends are computed
 
-shared int shared_x[256], shared_y[256];
-shared uint shared_depth[256];
+shared int shared_x[kMaxVertices], shared_y[kMaxVertices];
+shared uint shared_depth[kMaxVertices];
 shared uint shared_snapped[8];
 shared uint large_count, has_clipped;
-shared uint large[256];
+shared uint large[kMaxTriangles];
 
 struct Triangle {
   ivec3 x, y;
@@ -34,7 +43,7 @@ void draw_small(Triangle t, ivec2 columns, ivec2 rows, int area, uint item, uint
   const int px = columns.x * kSubpixels + kSubpixels / 2, py = rows.x * kSubpixels + kSubpixels / 2;
   const ivec3 start = dx * (py - ay) - dy * (px - ax);
   const ivec3 step_x = -dy * kSubpixels, step_y = dx * kSubpixels;
-  const double inverse = 1.0lf / double(area);
+  const double inverse = estimate_reciprocal(double(area));
   const bool is_wide = columns.y - columns.x >= kScanlinePixels;
   const vec3 inverse_step = 1.0 / vec3(step_x);
   ivec3 row = start;
@@ -54,7 +63,7 @@ void draw_small(Triangle t, ivec2 columns, ivec2 rows, int area, uint item, uint
       if ((biased.x | biased.y | biased.z) >= 0) {
         const uint64_t sum = uint64_t(uint(e.x)) * t.depth.x + uint64_t(uint(e.y)) * t.depth.y +
                              uint64_t(uint(e.z)) * t.depth.z;
-        put_pixel(x, y, pixel_value(divide_depth(sum, double(sum) * inverse, int64_t(area)), item, triangle));
+        put_pixel(x, y, pixel_value(divide_depth_small(sum, inverse, uint(area)), item, triangle));
       }
       e += step_x;
     }
@@ -68,7 +77,7 @@ void draw_medium(Triangle t, ivec2 columns, ivec2 rows, int area, uint item, uin
   const ivec3 dx = t.x.zxy - ax, dy = t.y.zxy - ay;
   const ivec3 bias = ivec3(edge_bias(dx.x, dy.x), edge_bias(dx.y, dy.y), edge_bias(dx.z, dy.z));
   const int width = columns.y - columns.x + 1, pixels = width * (rows.y - rows.x + 1);
-  const double inverse = 1.0lf / double(area);
+  const double inverse = estimate_reciprocal(double(area));
   for (int p = int(gl_LocalInvocationID.x) % kSliceSize; p < pixels; p += kSliceSize) {
     const int x = columns.x + p % width, y = rows.x + p / width;
     const int px = x * kSubpixels + kSubpixels / 2, py = y * kSubpixels + kSubpixels / 2;
@@ -77,7 +86,7 @@ void draw_medium(Triangle t, ivec2 columns, ivec2 rows, int area, uint item, uin
     if ((biased.x | biased.y | biased.z) >= 0) {
       const uint64_t sum = uint64_t(uint(e.x)) * t.depth.x + uint64_t(uint(e.y)) * t.depth.y +
                            uint64_t(uint(e.z)) * t.depth.z;
-      put_pixel(x, y, pixel_value(divide_depth(sum, double(sum) * inverse, int64_t(area)), item, triangle));
+      put_pixel(x, y, pixel_value(divide_depth_small(sum, inverse, uint(area)), item, triangle));
     }
   }
 }
@@ -109,13 +118,15 @@ int64_t doubled_area(Triangle t) {
   return int64_t(t.x.y - t.x.x) * int64_t(t.y.z - t.y.x) - int64_t(t.x.z - t.x.x) * int64_t(t.y.y - t.y.x);
 }
 
+// Corners on the screen; their depths are looked up for those that are drawn alone.
 Triangle load_triangle(uvec3 v) {
   Triangle t;
   t.x = ivec3(shared_x[v.x], shared_x[v.y], shared_x[v.z]);
   t.y = ivec3(shared_y[v.x], shared_y[v.y], shared_y[v.z]);
-  t.depth = uvec3(shared_depth[v.x], shared_depth[v.y], shared_depth[v.z]);
+  t.depth = uvec3(0u);
   return t;
 }
+void load_depth(inout Triangle t, uvec3 v) { t.depth = uvec3(shared_depth[v.x], shared_depth[v.y], shared_depth[v.z]); }
 
 // Of positive area; swapping two corners changes neither coverage nor depth.
 void orient(inout Triangle t, inout int64_t area) {
@@ -130,60 +141,68 @@ void orient(inout Triangle t, inout int64_t area) {
 bool is_snapped(uint v) { return (shared_snapped[v >> 5u] >> (v & 31u) & 1u) != 0u; }
 
 void draw_item(uint item) {
-  const uint lane = gl_LocalInvocationID.x;
+  const uint lane = gl_LocalInvocationID.x, lanes = gl_WorkGroupSize.x;
   const uvec2 entry = frame.items.at[item];
+  if ((entry.x & ITEM_IS_FAR) != 0u) return;  // in verify mode: all items are at the front
   const uint slot = entry.x, cluster = entry.y;
-  const ClusterData data =
-      open_cluster(frame.meshes.at[frame.visible.at[slot].mesh], frame.clusters.at[cluster].page_word, cluster);
+  const ClusterData data = open_cluster(frame.meshes.at[frame.visible.at[slot].mesh], cluster);
   if (lane < 8u) shared_snapped[lane] = 0u;
   if (lane == 0u) {
     large_count = 0u;
     has_clipped = 0u;
   }
+  begin_strips(data, lane, lanes);
   barrier();
-  for (uint v = lane; v < data.vertex_count; v += uint(GROUP_SIZE)) {
+  for (uint v = lane; v < data.vertex_count; v += lanes) {
     const ScreenVertex s = snap_vertex(clip_vertex(slot, cluster_position(data, v)));
     shared_x[v] = s.x;
     shared_y[v] = s.y;
     shared_depth[v] = s.depth;
     if (s.is_snapped) atomicOr(shared_snapped[v >> 5u], 1u << (v & 31u));
   }
+  count_strips(data, lane, lanes);
+  barrier();
+  resolve_slots(data, lane, lanes);
   barrier();
   const bool is_mirrored = (frame.visible.at[slot].flags & kInstanceMirrored) != 0u;
-  for (uint i = lane; i < data.triangle_count; i += uint(GROUP_SIZE)) {
-    const uvec3 v = cluster_triangle(data, i);
-    if (is_snapped(v.x) && is_snapped(v.y) && is_snapped(v.z)) {
-      Triangle t = load_triangle(v);
-      const int low_x = min(t.x.x, min(t.x.y, t.x.z)), high_x = max(t.x.x, max(t.x.y, t.x.z));
-      const int low_y = min(t.y.x, min(t.y.y, t.y.z)), high_y = max(t.y.x, max(t.y.y, t.y.z));
-      const ivec2 columns = pixels_between(low_x, high_x, frame.width);
-      const ivec2 rows = pixels_between(low_y, high_y, frame.height);
-      int64_t area = doubled_area(t);
-      bool is_drawn = columns.x <= columns.y && rows.x <= rows.y && area != 0l;
-      if (is_drawn && (area > 0l) != is_mirrored) {
-        is_drawn = kDoubleSided != 0u && frame.materials.at[cluster_material(data, i)].double_sided != 0u;
-      }
-      if (is_drawn) {
-        const bool is_small = max(high_x - low_x, high_y - low_y) <= kSmallSide &&
-                              (columns.y - columns.x + 1) * (rows.y - rows.x + 1) <= kSmallPixels;
-        if (is_small) {
-          orient(t, area);
-          draw_small(t, columns, rows, int(area), item, i);
-        } else {
-          large[atomicAdd(large_count, 1u)] = i;
-        }
-      }
-    } else {
+  for (uint i = lane; i < data.triangle_count; i += lanes) {
+    const uvec3 v = strip_triangle(i);
+    if (!is_snapped(v.x) || !is_snapped(v.y) || !is_snapped(v.z)) {
       has_clipped = 1u;
+      continue;
+    }
+    Triangle t = load_triangle(v);
+    const int low_x = min(t.x.x, min(t.x.y, t.x.z)), high_x = max(t.x.x, max(t.x.y, t.x.z));
+    const ivec2 columns = pixels_between(low_x, high_x, frame.width);
+    if (columns.x > columns.y) continue;  // most triangles of a far cluster lie between pixel centres
+    const int low_y = min(t.y.x, min(t.y.y, t.y.z)), high_y = max(t.y.x, max(t.y.y, t.y.z));
+    const ivec2 rows = pixels_between(low_y, high_y, frame.height);
+    if (rows.x > rows.y) continue;
+    int64_t area = doubled_area(t);
+    if (area == 0l) continue;
+    if ((area > 0l) != is_mirrored &&
+        (kDoubleSided == 0u || frame.materials.at[cluster_material(data, i)].double_sided == 0u)) {
+      continue;
+    }
+    const bool is_small = max(high_x - low_x, high_y - low_y) <= kSmallSide &&
+                          (columns.y - columns.x + 1) * (rows.y - rows.x + 1) <= kSmallPixels;
+    if (is_small) {
+      load_depth(t, v);
+      orient(t, area);
+      draw_small(t, columns, rows, int(area), item, i);
+    } else {
+      large[atomicAdd(large_count, 1u)] = i;
     }
   }
   barrier();
   // Medium ones by slices of the workgroup side by side, then large ones by all of it.
-  const uint slice = lane / uint(kSliceSize), slices = uint(GROUP_SIZE / kSliceSize);
+  const uint slice = lane / uint(kSliceSize), slices = lanes / uint(kSliceSize);
   for (uint round = 0u; round < 2u; ++round) {
     for (uint i = round == 0u ? slice : 0u; i < large_count; i += round == 0u ? slices : 1u) {
       const uint triangle = large[i];
-      Triangle t = load_triangle(cluster_triangle(data, triangle));
+      const uvec3 v = strip_triangle(triangle);
+      Triangle t = load_triangle(v);
+      load_depth(t, v);
       int64_t area = doubled_area(t);
       orient(t, area);
       const int low_x = min(t.x.x, min(t.x.y, t.x.z)), high_x = max(t.x.x, max(t.x.y, t.x.z));
@@ -197,12 +216,12 @@ void draw_item(uint item) {
   }
   if (lane == 0u && has_clipped != 0u) {
     const uint at = atomicAdd(counters.stages[STAGE_CLIPPED + pass].count, 1u);
-    cover(STAGE_CLIPPED + pass, at + 1u, 1u);
+    cover(STAGE_CLIPPED + pass, at, 1u, 1u);
     frame.clipped.at[at] = item;  // as long as the list of items: it cannot overflow
   }
 }
 
 void main() {
-  const uint item = counters.software_before[pass] + group_index();
+  const uint item = counters.software_before[pass] + gl_WorkGroupID.y * kGroupRow + gl_WorkGroupID.x;
   if (item < min(counters.stages[STAGE_SOFTWARE].count, frame.item_capacity)) draw_item(item);
 }

@@ -161,7 +161,7 @@ void draw_pixel(int x, int y, uint item, uint triangle) {
 void draw_item(uint item) {
   const uint slot = frame.items.at[item].x, cluster = frame.items.at[item].y;
   const ClusterData data =
-      open_cluster(frame.meshes.at[frame.visible.at[slot].mesh], frame.clusters.at[cluster].page_word, cluster);
+      open_cluster(frame.meshes.at[frame.visible.at[slot].mesh], cluster);
   const bool is_mirrored = (frame.visible.at[slot].flags & kInstanceMirrored) != 0u;
   for (uint t = 0u; t < data.triangle_count; ++t) {
     const uvec3 v = cluster_triangle(data, t);

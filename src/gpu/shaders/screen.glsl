@@ -48,6 +48,13 @@ double plane_distance(dvec4 v, int plane) {
   return d;
 }
 
+// 1 / x to some 40 bits: where an integer remainder corrects the quotient anyway, a division of doubles is wasted.
+// \pre 1 <= x < 2^62
+double estimate_reciprocal(double x) {
+  const double first = double(1.0 / float(x));
+  return first * (2.0lf - x * first);
+}
+
 // floor((2 s + w) / (2 w)), from an estimate of 1 / (2 w)
 int64_t nearest_quotient(int64_t s, int64_t w, double inverse) {
   const int64_t numerator = 2l * s + w, denominator = 2l * w;
@@ -74,7 +81,7 @@ ScreenVertex divide(dvec4 v) {
   precise double w_scaled = v.w * scale;
   precise double w_shifted = w_scaled + 0.5lf;
   const int64_t w = int64_t(floor(w_shifted));
-  const double inverse = 0.5lf / double(w);
+  const double inverse = 0.5lf * estimate_reciprocal(double(w));
   o.x = divide_axis(v.x, v.w, scale, w, inverse, frame.width);
   o.y = divide_axis(v.y, v.w, scale, w, inverse, frame.height);
   precise double z = v.z * scale;
@@ -120,6 +127,13 @@ uint divide_depth(uint64_t sum, double estimate, int64_t area) {
   while (r < 0l) { q -= 1l; r += area; }
   while (r >= area) { q += 1l; r -= area; }
   return uint(q);
+}
+
+// The same where the area has 31 bits: then so has the remainder. \pre inverse = estimate_reciprocal(area)
+uint divide_depth_small(uint64_t sum, double inverse, uint area) {
+  const uint q = uint(min(double(sum) * inverse, 4294967295.0lf));
+  const int r = int(uint(sum) - q * area);
+  return r < 0 ? q - 1u : r >= int(area) ? q + 1u : q;
 }
 
 uint64_t pixel_value(uint depth, uint item, uint triangle) {
