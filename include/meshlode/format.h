@@ -91,7 +91,7 @@ struct SectionEntry {
 static_assert(sizeof(SectionEntry) == 64);
 
 /// Disk codec of a page. Values are stable.
-enum class Codec : std::uint32_t { kNone = 0, kLz4 = 1, kZstd = 2, kDraco = 3 };
+enum class Codec : std::uint32_t { kNone = 0, kLz4 = 1, kZstd = 2, kDraco = 3, kStrips = 4 };
 
 struct StringRef {
   std::uint32_t offset;  ///< into kStrings

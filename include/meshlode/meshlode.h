@@ -203,7 +203,7 @@ typedef struct meshlode_page {
   uint64_t offset; /* from the start of the file */
   uint32_t stored_bytes;
   uint32_t bytes; /* decoded, at most MESHLODE_MAX_PAGE_BYTES */
-  uint32_t codec; /* 0 none, 1 lz4, 2 zstd, 3 draco */
+  uint32_t codec; /* 0 none, 1 lz4, 2 zstd, 3 draco, 4 strips */
   uint32_t first_group;
   uint32_t group_count;
   uint32_t first_cluster;

@@ -22,22 +22,29 @@ using CodeTable = std::array<std::uint16_t, std::size_t{1} << kMaxCodeBits>;
 [[nodiscard]] inline std::uint64_t load_bits(const std::uint8_t* buffer, std::uint64_t at) {
   std::uint64_t word;
   std::memcpy(&word, buffer + at / 8, sizeof(word));
-  return word >> at % 8;  // at least 57 bits: a code, and raw bits
+  return word >> at % 8;  // at least 57 bits: a code and its raw bits, or two codes whose numbers are below 2^20
 }
 
-[[nodiscard]] inline std::uint32_t take_symbol(const std::uint8_t* buffer, std::uint64_t& at, const CodeTable& table) {
-  const std::uint32_t entry = table[load_bits(buffer, at) & (table.size() - 1)];
-  at += entry & 15U;
-  return entry >> 4U;
-}
-
-[[nodiscard]] inline std::uint32_t take_value(const std::uint8_t* buffer, std::uint64_t& at, const CodeTable& table) {
-  const std::uint64_t bits = load_bits(buffer, at);
+/// Takes the code and raw bits at the front of `bits` and moves on.
+[[nodiscard]] inline std::uint32_t next_value(std::uint64_t& bits, std::uint64_t& at, const CodeTable& table) {
   const std::uint32_t entry = table[bits & (table.size() - 1)];
   const std::uint32_t length = entry & 15U;
   const std::uint32_t raw_bits = entry >> 4U & 31U;
+  const std::uint64_t raw = bits >> length;
   at += length + raw_bits;
-  return entry >> 9U << raw_bits | (static_cast<std::uint32_t>(bits >> length) & ((1U << raw_bits) - 1U));
+  bits = raw >> raw_bits;
+  return entry >> 9U << raw_bits | (static_cast<std::uint32_t>(raw) & ((1U << raw_bits) - 1U));
+}
+[[nodiscard]] inline std::uint32_t next_symbol(std::uint64_t& bits, std::uint64_t& at, const CodeTable& table) {
+  const std::uint32_t entry = table[bits & (table.size() - 1)];
+  at += entry & 15U;
+  bits >>= entry & 15U;
+  return entry >> 4U;
+}
+
+[[nodiscard]] inline std::uint32_t take_symbol(const std::uint8_t* buffer, std::uint64_t& at, const CodeTable& table) {
+  std::uint64_t bits = load_bits(buffer, at);
+  return next_symbol(bits, at, table);
 }
 
 /// False where the lengths are no prefix code. `is_value`: symbols are those of token_of.

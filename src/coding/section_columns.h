@@ -3,8 +3,12 @@
 // Stored sections).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
+#include <vector>
+
+#include "coding/bit_source.h"
 
 namespace meshlode {
 
@@ -31,6 +35,22 @@ enum class ColumnMode : std::uint8_t {
 
 /// A section never shrinks by more than this: what is decoded must be justified by what is stored.
 constexpr std::uint64_t kMaxSectionRatio = 256;
+
+/// Columns one behind the other.
+class ColumnSource {
+ public:
+  explicit ColumnSource(std::span<const std::uint8_t> stored);
+  /// Fills `count` bytes that lie `stride` apart. False where the stored bytes do not say them.
+  [[nodiscard]] bool read(std::uint8_t* out, std::size_t count, std::size_t stride);
+  [[nodiscard]] bool is_at_end() const { return at_ == size_; }
+
+ private:
+  bool read_codes(std::uint8_t* out, std::size_t count, std::size_t stride);
+
+  std::size_t size_, at_ = 0;
+  std::vector<std::uint8_t> buffer_;  ///< padded
+  CodeTable table_;
+};
 
 /// Fills `out`, a whole number of records; `record_bytes` 0: a text, one column without differences. False where the bytes
 /// do not say exactly that. \pre record_bytes is even

@@ -28,6 +28,11 @@ enum class PageMethod : std::uint32_t {
   kStrips = 2,   ///< predicted along the strips
 };
 
+/// \pre codec is not kNone
+[[nodiscard]] constexpr PageMethod method_of(format::Codec codec) {
+  return codec == format::Codec::kLz4 || codec == format::Codec::kZstd ? PageMethod::kColumns : PageMethod::kStrips;
+}
+
 /// A slot of a strip names its vertex in one of three ways.
 enum class SlotKind : std::uint8_t {
   kReference = 0,  ///< a vertex named before in this cluster

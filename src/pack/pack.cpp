@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "pack/codecs.h"
+#include "pack/pack_section.h"
 #include "pack/page_model.h"
 #include "pack/prefix_streams.h"
 #include "pack/side_bytes.h"
@@ -34,28 +35,37 @@ Bytes store_strips(const Bytes& side, std::size_t side_bytes, const PageModel& m
   return out;
 }
 
-/// Speed is what this codec is for: only what shrinks without a model of the geometry is touched.
-Result<Bytes> store_lz4(const format::MeshRecord& mesh, const PageModel& model) {
-  Bytes columns;
-  put_columns(mesh, model, columns);
-  const auto side = pack_lz4(columns);
+Bytes join(const std::vector<Bytes>& columns) {
+  Bytes out;
+  for (const Bytes& column : columns) append(out, column);
+  return out;
+}
+
+/// Speed is what these codecs are for: only what shrinks without a model of the geometry is touched.
+Result<Bytes> store_columns(const format::MeshRecord& mesh, const PageModel& model, format::Codec codec) {
+  const Bytes columns = join(make_columns(mesh, model));
+  const auto side = codec == format::Codec::kLz4 ? pack_lz4(columns) : pack_zstd(columns);
   if (!side) return side.error();
   Bytes out = start_stored(PageMethod::kColumns, *side, columns.size(), 0);
   for (const std::uint32_t word : model.stream_words) put_u32(out, word);
   return out;
 }
 
-Result<Bytes> store_zstd(const format::MeshRecord& mesh, const PageModel& model) {
-  PrefixStreams coded = write_prefix_streams(mesh, model);
-  put_columns(mesh, model, coded.code_lengths);
-  const auto side = pack_zstd(coded.code_lengths);
-  if (!side) return side.error();
-  return store_strips(*side, coded.code_lengths.size(), model, coded.streams);
+Bytes store_prefix_codes(const format::MeshRecord& mesh, const PageModel& model) {
+  const PrefixStreams coded = write_prefix_streams(mesh, model);
+  Bytes side;
+  put_column(coded.code_lengths, side);
+  std::size_t side_bytes = coded.code_lengths.size();
+  for (const Bytes& column : make_columns(mesh, model)) {
+    if (column.empty()) continue;
+    put_column(column, side);
+    side_bytes += column.size();
+  }
+  return store_strips(side, side_bytes, model, coded.streams);
 }
 
 Result<Bytes> store_draco(const format::MeshRecord& mesh, const PageModel& model) {
-  Bytes columns;
-  put_columns(mesh, model, columns);
+  const Bytes columns = join(make_columns(mesh, model));
   const auto side = pack_draco({columns.begin(), columns.end()});
   if (!side) return side.error();
   std::vector<Bytes> streams;
@@ -75,9 +85,11 @@ Result<std::vector<std::uint8_t>> store_page(const format::MeshRecord& mesh, std
   std::memcpy(words.data(), page.data(), words.size() * sizeof(std::uint32_t));
   const std::optional<PageModel> model = page.size() % 4 == 0 ? model_page(mesh, words) : std::nullopt;
   if (!model) return Error{ErrorCode::kBuildFailed, "pack", "the page is not in the form that the format prescribes"};
-  return codec == format::Codec::kLz4    ? store_lz4(mesh, *model)
-         : codec == format::Codec::kZstd ? store_zstd(mesh, *model)
-                                         : store_draco(mesh, *model);
+  switch (codec) {
+    case format::Codec::kStrips: return store_prefix_codes(mesh, *model);
+    case format::Codec::kDraco: return store_draco(mesh, *model);
+    default: return store_columns(mesh, *model, codec);
+  }
 }
 
 Result<PackedPage> pack_page(const format::MeshRecord& mesh, std::span<const std::uint8_t> page, format::Codec codec) {

@@ -57,6 +57,21 @@ Bytes prefix_column(const Bytes& column) {
 
 }  // namespace
 
+void put_column(const Bytes& column, Bytes& out) {
+  if (std::all_of(column.begin(), column.end(), [&](std::uint8_t byte) { return byte == column.front(); })) {
+    out.push_back(static_cast<std::uint8_t>(ColumnMode::kSame));
+    out.push_back(column.empty() ? std::uint8_t{0} : column.front());
+    return;
+  }
+  const Bytes coded = prefix_column(column);
+  if (coded.size() < column.size() + 1) {
+    out.insert(out.end(), coded.begin(), coded.end());
+  } else {
+    out.push_back(static_cast<std::uint8_t>(ColumnMode::kRaw));
+    out.insert(out.end(), column.begin(), column.end());
+  }
+}
+
 std::vector<std::uint8_t> pack_section(std::span<const std::uint8_t> bytes, std::uint32_t record_bytes) {
   if (bytes.empty()) return {};
   const std::size_t columns = record_bytes == 0 ? 1 : record_bytes;
@@ -65,18 +80,7 @@ std::vector<std::uint8_t> pack_section(std::span<const std::uint8_t> bytes, std:
   for (std::size_t c = 0; c < columns; ++c) {
     Bytes column;
     for (std::size_t at = c; at < source.size(); at += columns) column.push_back(source[at]);
-    if (std::all_of(column.begin(), column.end(), [&](std::uint8_t byte) { return byte == column.front(); })) {
-      out.push_back(static_cast<std::uint8_t>(ColumnMode::kSame));
-      out.push_back(column.front());
-      continue;
-    }
-    const Bytes coded = prefix_column(column);
-    if (coded.size() < column.size() + 1) {
-      out.insert(out.end(), coded.begin(), coded.end());
-    } else {
-      out.push_back(static_cast<std::uint8_t>(ColumnMode::kRaw));
-      out.insert(out.end(), column.begin(), column.end());
-    }
+    put_column(column, out);
   }
   const bool is_worth_it = out.size() < bytes.size() && bytes.size() / kMaxSectionRatio < out.size();
   return is_worth_it ? out : Bytes{};

@@ -12,4 +12,7 @@ namespace meshlode {
 /// (kMaxSectionRatio): it is then stored as it is.
 [[nodiscard]] std::vector<std::uint8_t> pack_section(std::span<const std::uint8_t> bytes, std::uint32_t record_bytes);
 
+/// Appends one column in the shortest of its modes.
+void put_column(const std::vector<std::uint8_t>& column, std::vector<std::uint8_t>& out);
+
 }  // namespace meshlode

@@ -8,8 +8,10 @@ namespace meshlode {
 namespace {
 
 /// Byte `plane` of every word.
-void put_plane(std::vector<std::uint8_t>& out, const std::vector<std::uint32_t>& words, std::uint32_t plane) {
-  for (const std::uint32_t word : words) out.push_back(static_cast<std::uint8_t>(word >> 8U * plane & 0xFFU));
+std::vector<std::uint8_t> plane_of(const std::vector<std::uint32_t>& words, std::uint32_t plane) {
+  std::vector<std::uint8_t> bytes;
+  for (const std::uint32_t word : words) bytes.push_back(static_cast<std::uint8_t>(word >> 8U * plane & 0xFFU));
+  return bytes;
 }
 
 /// Head word `index` of every cluster, as it is stored.
@@ -34,11 +36,12 @@ void put_u32(std::vector<std::uint8_t>& out, std::uint32_t value) {
   for (std::uint32_t shift = 0; shift < 32; shift += 8) out.push_back(static_cast<std::uint8_t>(value >> shift & 0xFFU));
 }
 
-void put_columns(const format::MeshRecord& mesh, const PageModel& model, std::vector<std::uint8_t>& out) {
-  for (const auto& words : model.range_words) put_u32(out, static_cast<std::uint32_t>(words.size()));
+std::vector<std::vector<std::uint8_t>> make_columns(const format::MeshRecord& mesh, const PageModel& model) {
+  std::vector<std::vector<std::uint8_t>> out(1);
+  for (const auto& words : model.range_words) put_u32(out.front(), static_cast<std::uint32_t>(words.size()));
   for (std::uint32_t index = 0; index < format::head_words(mesh); ++index) {
     const std::vector<std::uint32_t> column = head_column(model, index);
-    for (std::uint32_t plane = 0; plane < (index == 0 ? 2U : 4U); ++plane) put_plane(out, column, plane);
+    for (std::uint32_t plane = 0; plane < (index == 0 ? 2U : 4U); ++plane) out.push_back(plane_of(column, plane));
   }
   for (std::uint32_t kind = 0; kind < kRangeWordKinds; ++kind) {
     std::vector<std::uint32_t> words = model.range_words[kind];
@@ -50,8 +53,9 @@ void put_columns(const format::MeshRecord& mesh, const PageModel& model, std::ve
         before = value;
       }
     }
-    for (std::uint32_t plane = 0; plane < 4; ++plane) put_plane(out, words, plane);
+    for (std::uint32_t plane = 0; plane < 4; ++plane) out.push_back(plane_of(words, plane));
   }
+  return out;
 }
 
 }  // namespace meshlode

@@ -11,7 +11,7 @@ namespace meshlode {
 
 void put_u32(std::vector<std::uint8_t>& out, std::uint32_t value);
 
-/// Counts of the range words, heads, range words: what every method's side information ends with.
-void put_columns(const format::MeshRecord& mesh, const PageModel& model, std::vector<std::uint8_t>& out);
+/// Counts of the range words, heads, range words: one column after the other. All of them make up the side information.
+[[nodiscard]] std::vector<std::vector<std::uint8_t>> make_columns(const format::MeshRecord& mesh, const PageModel& model);
 
 }  // namespace meshlode

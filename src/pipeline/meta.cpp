@@ -32,6 +32,7 @@ const char* name_of(format::Codec codec) {
     case format::Codec::kLz4: return "lz4";
     case format::Codec::kZstd: return "zstd";
     case format::Codec::kDraco: return "draco";
+    case format::Codec::kStrips: return "strips";
     case format::Codec::kNone: break;
   }
   return "none";

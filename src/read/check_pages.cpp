@@ -50,7 +50,7 @@ Status check_page_bytes(const RawTables& tables, std::size_t p, std::uint64_t& d
   if (page.offset > section_end || page.stored_bytes > section_end - page.offset) {
     return fail("stored_bytes", "reaches beyond section PAGE");
   }
-  if (page.codec > format::Codec::kDraco) return fail("codec", "is unknown");
+  if (page.codec > format::Codec::kStrips) return fail("codec", "is unknown");
   const format::MeshRecord& mesh = tables.meshes[tables.groups[page.first_group].mesh];
   const std::uint64_t least =
       sizeof(format::PageHeader) + 4U + std::uint64_t{page.cluster_count} * 4U * format::head_words(mesh);

@@ -46,9 +46,6 @@ class PageColumns {
   [[nodiscard]] std::uint32_t triangle_count(std::uint32_t cluster) const {
     return (head(cluster)[0] >> 8U & 0xFFU) + 1U;
   }
-  [[nodiscard]] std::uint32_t strip_count(std::uint32_t cluster) const {
-    return static_cast<std::uint32_t>(format::get_field(head(cluster), format::head::kStripsLess1)) + 1U;
-  }
 
  private:
   [[nodiscard]] std::uint32_t* head(std::uint32_t cluster) const {

@@ -10,6 +10,8 @@
 
 #include "coding/stored_page.h"
 #include "unpack/page_columns.h"
+#include "unpack/page_plan.h"
+#include "unpack/side_columns.h"
 #include "unpack/strip_values.h"
 #include "unpack/unpack_strips.h"
 
@@ -32,7 +34,10 @@ class StoredPage {
     if (stored_.size() < sizeof(header_) || page_.size() < 3) return UnpackOutcome::kBroken;
     std::memcpy(&header_, stored_.data(), sizeof(header_));
     stored_ = stored_.subspan(sizeof(header_));
-    if (header_.side_stored > stored_.size() || header_.side_bytes > kMaxSideBytes) return UnpackOutcome::kBroken;
+    if (record_.codec == format::Codec::kNone || header_.method != static_cast<std::uint32_t>(method_of(record_.codec)) ||
+        header_.side_stored > stored_.size() || header_.side_bytes > kMaxSideBytes) {
+      return UnpackOutcome::kBroken;
+    }
     side_.resize(header_.side_bytes);
     const auto side = stored_.first(header_.side_stored);
     stored_ = stored_.subspan(header_.side_stored);
@@ -40,10 +45,8 @@ class StoredPage {
 
     page_[0] = record_.first_cluster;
     page_[1] = record_.cluster_count;
-    const auto method = static_cast<PageMethod>(header_.method);
-    if (method == PageMethod::kColumns) return unpack_columns() ? UnpackOutcome::kOk : UnpackOutcome::kBroken;
-    if (method == PageMethod::kStrips) return unpack_strip_page() ? UnpackOutcome::kOk : UnpackOutcome::kBroken;
-    return UnpackOutcome::kBroken;
+    const bool is_ok = method_of(record_.codec) == PageMethod::kColumns ? unpack_columns() : unpack_strip_page();
+    return is_ok ? UnpackOutcome::kOk : UnpackOutcome::kBroken;
   }
 
  private:
@@ -51,10 +54,19 @@ class StoredPage {
     switch (record_.codec) {
       case format::Codec::kLz4: return unpack_lz4(side, side_);
       case format::Codec::kZstd: return unpack_zstd(side, side_);
-      case format::Codec::kDraco: return unpack_draco_bytes(side, side_);
+      case format::Codec::kStrips:
+        return unpack_side_columns(mesh_, record_.cluster_count, side, side_) ? UnpackOutcome::kOk : UnpackOutcome::kBroken;
+      case format::Codec::kDraco: return unpack_draco_side(side);
       case format::Codec::kNone: break;
     }
-    return UnpackOutcome::kNotBuiltIn;
+    return UnpackOutcome::kBroken;
+  }
+
+  UnpackOutcome unpack_draco_side(std::span<const std::uint8_t> side) {
+    std::vector<std::uint32_t> numbers(side_.size());
+    const UnpackOutcome outcome = unpack_draco(side, numbers);
+    for (std::size_t i = 0; i < side_.size(); ++i) side_[i] = static_cast<std::uint8_t>(numbers[i] & 0xFFU);
+    return outcome;
   }
 
   bool unpack_columns() {
@@ -77,7 +89,7 @@ class StoredPage {
   bool unpack_strip_page() {
     std::span<const std::uint8_t> side = side_;
     std::span<const std::uint8_t> code_lengths;
-    if (record_.codec == format::Codec::kZstd) {
+    if (record_.codec == format::Codec::kStrips) {
       if (side.size() < code_length_bytes(mesh_)) return false;
       code_lengths = side.first(code_length_bytes(mesh_));
       side = side.subspan(code_lengths.size());
@@ -85,12 +97,46 @@ class StoredPage {
     ColumnReader reader(side);
     StreamBytes streams;
     StreamCounts counts;
-    if (!columns_.read(reader) || !read_stream_sizes(streams) || !count_numbers(counts)) return false;
-    StripValues values;
-    const bool is_ok = record_.codec == format::Codec::kZstd
+    PagePlan plan;
+    if (!columns_.read(reader) || !plan_page(mesh_, record_.cluster_count, columns_, page_, plan)) return false;
+    if (!read_stream_sizes(streams) || !count_numbers(plan, counts)) return false;
+    const bool is_narrow = plan.max_bits <= kMaxNarrowBits && plan.max_normal_bits <= kMaxNarrowNormalBits;
+    return is_narrow ? unpack_lanes<NarrowLanes>(code_lengths, streams, counts, plan)
+                     : unpack_lanes<WideLanes>(code_lengths, streams, counts, plan);
+  }
+
+  template <class L>
+  bool unpack_lanes(std::span<const std::uint8_t> code_lengths, const StreamBytes& streams, const StreamCounts& counts,
+                    const PagePlan& plan) {
+    StripValues<L> values;
+    const bool is_ok = record_.codec == format::Codec::kStrips
                            ? read_prefix_streams(mesh_, code_lengths, streams, counts, values)
-                           : record_.codec == format::Codec::kDraco && read_draco_streams(mesh_, streams, counts, values);
-    return is_ok && unpack_strips(mesh_, record_.cluster_count, columns_, values, page_);
+                           : read_draco_streams(streams, counts, values);
+    return is_ok && unpack_strips(mesh_, plan, values, page_);
+  }
+
+  template <class L>
+  bool read_draco_streams(const StreamBytes& streams, const StreamCounts& counts, StripValues<L>& out) const {
+    const std::uint32_t fields = field_count(mesh_);
+    for (std::uint32_t quad = 0; quad <= slot_of(fields - 1) / L::kLanes; ++quad) {
+      out.errors[quad].resize_zeroed(counts.count[kFieldStreams]);
+    }
+    std::span<const std::uint8_t> rest = streams.bytes;
+    Room<std::uint32_t> numbers;
+    for (std::uint32_t s = 0; s < kFieldStreams + fields; ++s) {
+      const auto stored = rest.first(streams.size[s]);
+      rest = rest.subspan(streams.size[s]);
+      Room<std::uint32_t>& target = s < kFieldStreams ? out.streams[s] : numbers;
+      target.resize(counts.count[s]);
+      if (unpack_draco(stored, target.all()) != UnpackOutcome::kOk) return false;
+      if (s < kFieldStreams) continue;
+      const std::uint32_t slot = slot_of(s - kFieldStreams);
+      Quad<L>* const errors = out.errors[slot / L::kLanes].data();
+      for (std::size_t i = 0; i < numbers.size(); ++i) {
+        errors[i].lane[slot % L::kLanes] = static_cast<typename L::Word>(numbers.data()[i]);
+      }
+    }
+    return true;
   }
 
   bool read_stream_sizes(StreamBytes& streams) {
@@ -105,19 +151,15 @@ class StoredPage {
   }
 
   /// The heads know how many numbers each stream holds.
-  bool count_numbers(StreamCounts& counts) const {
-    std::uint32_t vertices = 0;
-    for (std::uint32_t c = 0; c < record_.cluster_count; ++c) {
-      const std::uint32_t strips = columns_.strip_count(c);
-      const std::uint32_t triangles = columns_.triangle_count(c);
-      const std::uint32_t slots = triangles + 2 * strips;
-      if (strips > triangles || slots < columns_.vertex_count(c)) return false;
-      counts.count[kTripleStream] += (triangles - strips + 2) / 3;
-      counts.count[kStartStream] += strips;
-      counts.count[kLengthStream] += strips - 1;
-      counts.count[kReferenceStream] += slots - columns_.vertex_count(c);
-      vertices += columns_.vertex_count(c);
+  bool count_numbers(const PagePlan& plan, StreamCounts& counts) const {
+    for (const ClusterFields& cluster : plan.clusters) {
+      const format::ClusterLayout& layout = cluster.layout;
+      counts.count[kTripleStream] += (layout.triangle_count - layout.strip_count + 2) / 3;
+      counts.count[kStartStream] += layout.strip_count;
+      counts.count[kLengthStream] += layout.strip_count - 1;
+      counts.count[kReferenceStream] += layout.reference_count;
     }
+    const std::uint32_t vertices = plan.first_vertex.back();
     if (header_.twin_count > vertices) return false;
     counts.count[kTwinStream] = header_.twin_count;
     for (std::uint32_t f = 0; f < field_count(mesh_); ++f) {

@@ -4,28 +4,72 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
-#include <vector>
 
 #include "coding/stored_page.h"
 
 namespace meshlode {
 
-/// Four fields of a vertex: one vector register.
-union Quad {
-  using Lanes = std::uint32_t __attribute__((vector_size(16)));
-  std::uint32_t lane[4];
-  Lanes lanes;
+/// The fields of a vertex as lanes of 16-byte vectors. Position fields are slots 0 to 2, in the order of their streams;
+/// slot 3 is not used; the others follow from slot 4 on, so that the pairs of normals and UVs never part.
+[[nodiscard]] constexpr std::uint32_t slot_of(std::uint32_t field) { return field < 3 ? field : field + 1; }
+constexpr std::uint32_t kMaxSlotsOfVertex = kMaxFields + 1;
+constexpr std::uint32_t kNormalSlot = 4;
+
+/// Any page.
+struct WideLanes {
+  using Word = std::uint32_t;
+  using Vector = std::uint32_t __attribute__((vector_size(16)));
+  using SignedVector = std::int32_t __attribute__((vector_size(16)));
+  static constexpr std::uint32_t kLanes = 4;
 };
 
-/// Position fields are lanes 0 to 2 of quad 0, in the order of their streams; the others follow each other from quad 1 on.
-constexpr std::uint32_t kMaxQuads = 1 + (kMaxFields - 3 + 3) / 4;
-[[nodiscard]] constexpr std::uint32_t quad_of(std::uint32_t field) { return field < 3 ? 0U : 1U + (field - 3U) / 4U; }
-[[nodiscard]] constexpr std::uint32_t lane_of(std::uint32_t field) { return field < 3 ? field : (field - 3U) % 4U; }
+/// Pages whose fields have few bits (kMaxNarrowBits): twice as many to a vector. Everything but the half of a normal's
+/// prediction is right modulo 2^16, and that has six times a field at most; a folded error has two bits more than a field.
+struct NarrowLanes {
+  using Word = std::uint16_t;
+  using Vector = std::uint16_t __attribute__((vector_size(16)));
+  using SignedVector = std::int16_t __attribute__((vector_size(16)));
+  static constexpr std::uint32_t kLanes = 8;
+};
+constexpr std::uint32_t kMaxNarrowBits = 14;
+constexpr std::uint32_t kMaxNarrowNormalBits = 12;
 
+template <class L>
+union Quad {
+  typename L::Word lane[L::kLanes];
+  typename L::Vector vector;
+};
+template <class L>
+constexpr std::uint32_t kMaxQuads = (kMaxSlotsOfVertex + L::kLanes - 1) / L::kLanes;
+
+/// An array that need not be filled before it is written.
+template <class T>
+class Room {
+ public:
+  void resize(std::size_t size) {
+    items_ = std::make_unique_for_overwrite<T[]>(size);
+    size_ = size;
+  }
+  void resize_zeroed(std::size_t size) {
+    items_ = std::make_unique<T[]>(size);
+    size_ = size;
+  }
+  [[nodiscard]] T* data() { return items_.get(); }
+  [[nodiscard]] const T* data() const { return items_.get(); }
+  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] std::span<T> all() { return {items_.get(), size_}; }
+
+ private:
+  std::unique_ptr<T[]> items_;
+  std::size_t size_ = 0;
+};
+
+template <class L>
 struct StripValues {
-  std::array<std::vector<std::uint32_t>, kFieldStreams> streams;  ///< as stored: symbols, folded numbers
-  std::array<std::vector<Quad>, kMaxQuads> errors;                ///< folded, of each new vertex
+  std::array<Room<std::uint32_t>, kFieldStreams> streams;   ///< as stored: symbols, folded numbers
+  std::array<Room<Quad<L>>, kMaxQuads<L>> errors;           ///< folded, of each new vertex
 };
 
 /// How many numbers each stream holds: the heads say it, and of twins the stored header.
@@ -41,7 +85,11 @@ struct StreamBytes {
 
 /// `code_lengths` as in the side information. False where the streams are broken or end early.
 [[nodiscard]] bool read_prefix_streams(const format::MeshRecord& mesh, std::span<const std::uint8_t> code_lengths,
-                                       const StreamBytes& streams, const StreamCounts& counts, StripValues& out);
+                                       const StreamBytes& streams, const StreamCounts& counts,
+                                       StripValues<WideLanes>& out);
+[[nodiscard]] bool read_prefix_streams(const format::MeshRecord& mesh, std::span<const std::uint8_t> code_lengths,
+                                       const StreamBytes& streams, const StreamCounts& counts,
+                                       StripValues<NarrowLanes>& out);
 
 /// Bytes of code lengths.
 [[nodiscard]] std::uint32_t code_length_bytes(const format::MeshRecord& mesh);

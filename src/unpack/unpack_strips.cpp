@@ -8,6 +8,9 @@
 #include <meshlode/page.h>
 
 #include "coding/vertex_fields.h"
+#include "unpack/byte_sink.h"
+#include "unpack/processor.h"
+#include "unpack/twin_fields.h"
 
 namespace meshlode {
 
@@ -16,35 +19,10 @@ namespace {
 using format::ClusterLayout;
 
 constexpr std::uint32_t kMaxSlots = format::kMaxClusterTriangles * 3;  ///< every triangle a strip of its own
-using Lanes = Quad::Lanes;
-using SignedLanes = std::int32_t __attribute__((vector_size(16)));
-
-Lanes unfold_lanes(Lanes value) { return (value >> 1U) ^ (0U - (value & 1U)); }
-
-/// Writes fields into words, lowest bit first. Stores the word at hand every time: cheaper than a branch nobody foresees.
-class WordSink {
- public:
-  explicit WordSink(std::uint32_t* at) : at_(at) {}
-  /// \pre value < 2^bits, bits <= 32
-  void put(std::uint32_t value, std::uint32_t bits) {
-    pending_ |= std::uint64_t{value} << count_;
-    count_ += bits;
-    *at_ = static_cast<std::uint32_t>(pending_);
-    at_ += count_ >> 5U;
-    pending_ >>= count_ & 32U;
-    count_ &= 31U;
-  }
-  void flush() {
-    if (count_ > 0) *at_ = static_cast<std::uint32_t>(pending_);
-  }
-
- private:
-  std::uint32_t* at_;
-  std::uint64_t pending_ = 0;
-  std::uint32_t count_ = 0;
-};
-
-constexpr std::uint32_t low_mask(std::uint32_t bits) { return static_cast<std::uint32_t>((std::uint64_t{1} << bits) - 1U); }
+/// Bits of a cluster's stream at most: 256 vertices of all fields, and its topology; and what a sink stores behind.
+constexpr std::size_t kMaxStreamBytes =
+    format::kMaxClusterVertices * (3 * 24 + 2 * 14 + format::kMaxUvSets * 2 * 25 + 4 * 8) / 8 +
+    (format::kMaxClusterTriangles + kMaxSlots * (1 + 8) + format::kMaxClusterTriangles * 8) / 8 + 32;
 
 /// The three triangles in a triple, one a byte: 4 · turn + kind.
 constexpr std::array<std::uint32_t, kTripleSymbols> make_triple_table() {
@@ -59,36 +37,47 @@ constexpr std::array<std::uint32_t, kTripleSymbols> make_triple_table() {
 }
 constexpr auto kTripleTableWords = make_triple_table();
 
+template <class L>
 class StripUnpacker {
  public:
-  StripUnpacker(const format::MeshRecord& mesh, std::uint32_t cluster_count, PageColumns& columns,
-                const StripValues& values, std::span<std::uint32_t> page)
-      : mesh_(mesh), cluster_count_(cluster_count), columns_(columns), values_(values), page_(page),
-        fields_(field_count(mesh)) {}
+  StripUnpacker(const format::MeshRecord& mesh, const PagePlan& plan, const StripValues<L>& values,
+                std::span<std::uint32_t> page)
+      : mesh_(mesh), plan_(plan), values_(values), page_(page), fields_(field_count(mesh)),
+        vertex_count_(plan.first_vertex.back()) {
+    name_ranges();
+  }
 
   bool run() {
-    clusters_.resize(cluster_count_);
-    ranges_.reserve(std::size_t{cluster_count_} * mesh_.uv_set_count);
-    first_vertex_.resize(cluster_count_ + std::size_t{1});
-    word_ = columns_.first_data_word();
-    for (std::uint32_t c = 0; c < cluster_count_; ++c) {
-      if (!unpack_cluster(c)) return false;
+    for (std::uint32_t c = 0; c < plan_.clusters.size(); ++c) {
+      const ClusterFields& cluster = plan_.clusters[c];
+      if (!read_topology(cluster.layout) || !place_twins(c) || !predict(cluster)) return false;
+      write_stream(cluster);
+      std::fill_n(cluster_of_.begin() + plan_.first_vertex[c], cluster.layout.vertex_count, static_cast<std::uint16_t>(c));
     }
-    return word_ + 1 == page_.size();
+    return true;
   }
 
  private:
-  bool unpack_cluster(std::uint32_t c) {
-    if (!columns_.place_cluster(c, word_)) return false;
-    ClusterFields& cluster = clusters_[c];
-    ClusterLayout& layout = cluster.layout;
-    if (format::read_cluster_layout(mesh_, page_, c, layout) != nullptr || layout.stream_word != word_) return false;
-    read_cluster_fields(mesh_, page_.data(), cluster, ranges_);
-    if (!read_topology(layout) || !place_twins(c) || !predict(cluster)) return false;
-    write_stream(cluster);
-    word_ = layout.end_word;
-    first_vertex_[c + 1] = first_vertex_[c] + layout.vertex_count;
-    return true;
+  using Word = typename L::Word;
+  using Vector = typename L::Vector;
+  using SignedVector = typename L::SignedVector;
+  static constexpr std::uint32_t kNormalQuad = kNormalSlot / L::kLanes;
+
+  static Vector unfold_lanes(Vector value) { return (value >> 1) ^ (Vector{} - (value & (Vector{} + 1))); }
+
+  /// Both are of the page's vertices, so that twins find their cluster and its ranges without a search.
+  void name_ranges() {
+    cluster_of_.resize(vertex_count_);
+    range_of_.resize(std::size_t{vertex_count_} * mesh_.uv_set_count);
+    for (std::size_t c = 0; c < plan_.clusters.size(); ++c) {
+      for (std::uint32_t set = 0; set < mesh_.uv_set_count; ++set) {
+        std::uint32_t range = plan_.clusters[c].first_range[set];
+        for (std::uint32_t v = 0; v < plan_.clusters[c].layout.vertex_count; v = plan_.ranges[range++].end_vertex) {
+          std::fill_n(range_of_.begin() + set * vertex_count_ + plan_.first_vertex[c] + v,
+                      plan_.ranges[range].end_vertex - v, static_cast<std::uint16_t>(range));
+        }
+      }
+    }
   }
 
   /// Reads the strips of a cluster and walks them: gates_, kinds_, and what the page's topology bits say.
@@ -101,10 +90,11 @@ class StripUnpacker {
       if (triple >= kTripleSymbols) return false;
       std::memcpy(symbols.data() + i, &kTripleTableWords[triple], 4);
     }
-    std::array<std::uint8_t, kMaxSlots> steps{};  // from one reference to the next, modulo 256
-    for (std::uint32_t i = 0; i < layout.reference_count; ++i) {
-      steps[i] = static_cast<std::uint8_t>(unfold(take(kReferenceStream)));
-    }
+    std::array<std::uint8_t, kMaxSlots + 1> steps;  // from one reference to the next, modulo 256
+    const std::uint32_t* const folded = values_.streams[kReferenceStream].data() + next_[kReferenceStream];
+    for (std::uint32_t i = 0; i < layout.reference_count; ++i) steps[i] = static_cast<std::uint8_t>(unfold(folded[i]));
+    steps[layout.reference_count] = 0;  // looked at, and of no effect, behind the last one
+    next_[kReferenceStream] += layout.reference_count;
 
     const std::uint8_t* symbol = symbols.data();
     std::uint32_t next = 0;       // vertices named so far
@@ -163,8 +153,9 @@ class StripUnpacker {
 
   /// The fields of vertices that earlier clusters hold. Also the list of those that none does.
   bool place_twins(std::uint32_t c) {
-    const ClusterFields& cluster = clusters_[c];
-    const FieldContext context{mesh_, page_.data(), ranges_};
+    const ClusterFields& cluster = plan_.clusters[c];
+    const std::uint32_t first = plan_.first_vertex[c];
+    const TwinFields fields(mesh_, page_.data(), plan_.ranges, range_of_, vertex_count_);
     std::array<std::uint8_t, format::kMaxClusterVertices + 1> twins;
     std::uint32_t twin_count = 0;
     new_count_ = 0;
@@ -175,166 +166,146 @@ class StripUnpacker {
       twin_count += is_twin;
       new_count_ += 1U - is_twin;
     }
-    const std::array<std::uint32_t, 3> axes = axes_by_role(cluster.layout.shear_axis);
-    RawVertex raw;
-    RawVertex here;
-    FullVertex full;
-    std::uint32_t other = 0;
+    if (twin_count > values_.streams[kTwinStream].size() - next_[kTwinStream]) return false;
     for (std::uint32_t i = 0; i < twin_count; ++i) {
-      if (next_[kTwinStream] >= values_.streams[kTwinStream].size()) return false;
       last_twin_ += unfold(take(kTwinStream));
-      if (last_twin_ >= first_vertex_[c]) return false;
-      if (last_twin_ < first_vertex_[other] || last_twin_ >= first_vertex_[other + 1]) {
-        const auto behind = std::upper_bound(first_vertex_.begin(), first_vertex_.begin() + c + 1, last_twin_);
-        other = static_cast<std::uint32_t>(behind - first_vertex_.begin()) - 1U;
-      }
-      const std::uint32_t there = last_twin_ - first_vertex_[other];
-      read_raw_vertex(context, clusters_[other], there, raw);
-      full_from_raw(context, clusters_[other], there, raw, full);
-      raw_from_full(context, cluster, twins[i], full, here);
-      for (std::uint32_t f = 0; f < 3; ++f) raw_[0][twins[i]].lane[f] = here[axes[f]];
-      for (std::uint32_t f = 3; f < fields_; ++f) raw_[quad_of(f)][twins[i]].lane[lane_of(f)] = here[f];
+      if (last_twin_ >= first) return false;
+      const std::uint32_t other = cluster_of_[last_twin_];
+      const std::uint32_t v = twins[i];
+      fields.move(plan_.clusters[other], plan_.first_vertex[other], last_twin_, cluster, first + v,
+                  [this, v](std::uint32_t field, std::uint32_t value) {
+                    const std::uint32_t slot = slot_of(field);
+                    raw_[slot / L::kLanes][v].lane[slot % L::kLanes] = static_cast<Word>(value);
+                  });
     }
     return true;
   }
 
-  [[nodiscard]] std::uint32_t take(std::uint32_t stream) { return values_.streams[stream][next_[stream]++]; }
+  [[nodiscard]] std::uint32_t take(std::uint32_t stream) { return values_.streams[stream].data()[next_[stream]++]; }
 
-  /// Errors and predictions become fields, four at a time.
+  /// Errors and predictions become fields, a vector at a time.
   bool predict(const ClusterFields& cluster) {
     if (new_count_ > values_.errors[0].size() - next_error_) return false;
-    const RawVertex bits = first_field_bits({mesh_, page_.data(), ranges_}, cluster);
+    const RawVertex bits = first_field_bits({mesh_, page_.data(), plan_.ranges}, cluster);
     const std::array<std::uint32_t, 3> axes = axes_by_role(cluster.layout.shear_axis);
     for (std::uint32_t f = 0; f < fields_; ++f) {
-      raw_[quad_of(f)][kNobody].lane[lane_of(f)] = (1U << bits[f < 3 ? axes[f] : f]) >> 1U;
+      const std::uint32_t slot = slot_of(f);
+      raw_[slot / L::kLanes][kNobody].lane[slot % L::kLanes] = static_cast<Word>((1U << bits[f < 3 ? axes[f] : f]) >> 1U);
     }
-    for (std::uint32_t quad = 0; quad <= quad_of(fields_ - 1); ++quad) {
-      const Quad* const errors = values_.errors[quad].data() + next_error_;
-      Quad* const raw = raw_[quad].data();
-      if (quad == 1 && mesh_.normal_mode == format::NormalMode::kStored) {
-        constexpr Lanes kNormals = {~0U, ~0U, 0U, 0U};
-        for (std::uint32_t i = 0; i < new_count_; ++i) {
-          const Gate gate = gates_[new_vertices_[i]];
-          const Lanes sum = raw[gate.a].lanes + raw[gate.b].lanes;
-          const Lanes c = raw[gate.c].lanes;
-          const auto half = reinterpret_cast<Lanes>(reinterpret_cast<SignedLanes>(3U * sum - 2U * c) >> 2);
-          raw[new_vertices_[i]].lanes = ((half & kNormals) | ((sum - c) & ~kNormals)) + unfold_lanes(errors[i].lanes);
-        }
+    for (std::uint32_t quad = 0; quad <= slot_of(fields_ - 1) / L::kLanes; ++quad) {
+      if (quad == kNormalQuad && mesh_.normal_mode == format::NormalMode::kStored) {
+        predict_quad<true>(quad);
       } else {
-        for (std::uint32_t i = 0; i < new_count_; ++i) {
-          const Gate gate = gates_[new_vertices_[i]];
-          raw[new_vertices_[i]].lanes =
-              raw[gate.a].lanes + raw[gate.b].lanes - raw[gate.c].lanes + unfold_lanes(errors[i].lanes);
-        }
+        predict_quad<false>(quad);
       }
     }
     next_error_ += new_count_;
     return true;
   }
 
+  template <bool kHasNormals>
+  void predict_quad(std::uint32_t quad) {
+    Vector normals{};
+    normals[kNormalSlot % L::kLanes] = normals[kNormalSlot % L::kLanes + 1] = static_cast<Word>(~Word{0});
+    const Quad<L>* const errors = values_.errors[quad].data() + next_error_;
+    Quad<L>* const raw = raw_[quad].data();
+    for (std::uint32_t i = 0; i < new_count_; ++i) {
+      const std::uint32_t v = new_vertices_[i];
+      const Gate gate = gates_[v];
+      const Vector sum = raw[gate.a].vector + raw[gate.b].vector;
+      const Vector c = raw[gate.c].vector;
+      Vector prediction = sum - c;
+      if constexpr (kHasNormals) {
+        const auto half = reinterpret_cast<Vector>(reinterpret_cast<SignedVector>(sum + prediction + prediction) >> 2);
+        prediction = (half & normals) | (prediction & ~normals);
+      }
+      raw[v].vector = prediction + unfold_lanes(errors[i].vector);
+    }
+  }
+
   void write_stream(const ClusterFields& cluster) {
     const ClusterLayout& layout = cluster.layout;
-    WordSink sink(page_.data() + layout.stream_word);
+    ByteSink sink(stream_.data());
     put_positions(sink, layout);
-    std::uint32_t field = 3;
+    std::uint32_t slot = kNormalSlot;
     if (mesh_.normal_mode == format::NormalMode::kStored) {
-      put_pairs(sink, field, layout.normal_bits, 0, layout.vertex_count);
-      field += 2;
+      put_pairs(sink, slot, layout.normal_bits, 0, layout.vertex_count);
+      slot += 2;
     }
-    for (std::uint32_t set = 0; set < mesh_.uv_set_count; ++set, field += 2) {
+    for (std::uint32_t set = 0; set < mesh_.uv_set_count; ++set, slot += 2) {
       std::uint32_t range = cluster.first_range[set];
       for (std::uint32_t end = 0; end < layout.vertex_count; ++range) {
-        put_pairs(sink, field, ranges_[range].bits, end, ranges_[range].end_vertex);
-        end = ranges_[range].end_vertex;
+        put_pairs(sink, slot, plan_.ranges[range].bits, end, plan_.ranges[range].end_vertex);
+        end = plan_.ranges[range].end_vertex;
       }
     }
     if (mesh_.has_color != 0) {
       for (std::uint32_t v = 0; v < layout.vertex_count; ++v) {
-        for (std::uint32_t k = 0; k < 4; ++k) {
-          const std::uint32_t bits = cluster.color_bits[k];
-          sink.put(raw_[quad_of(field + k)][v].lane[lane_of(field + k)] & low_mask(bits), bits);
-        }
+        for (std::uint32_t k = 0; k < 4; ++k) sink.put(field_of(v, slot + k, cluster.color_bits[k]), cluster.color_bits[k]);
       }
     }
-    put_flags(sink, turns_.data(), layout.triangle_count);
-    put_flags(sink, fresh_.data(), layout.slot_count);
-    for (std::uint32_t k = 0; k + 1 < layout.strip_count; ++k) sink.put(restarts_[k], layout.restart_bits);
-    const std::uint32_t mask = low_mask(layout.reference_bits);
-    for (std::uint32_t i = 0; i < layout.reference_count; ++i) sink.put(distances_[i] & mask, layout.reference_bits);
+    sink.put_flags(turns_.data(), layout.triangle_count);
+    sink.put_flags(fresh_.data(), layout.slot_count);
+    for (std::uint32_t k = 0; k + 1 < layout.strip_count; ++k) {
+      sink.put(restarts_[k] & low_mask(layout.restart_bits), layout.restart_bits);
+    }
+    const std::uint64_t mask = low_mask(layout.reference_bits);
+    sink.put_each(0, layout.reference_count, layout.reference_bits,
+                  [this, mask](std::uint32_t i) { return distances_[i] & mask; });
     sink.flush();
+    std::memcpy(page_.data() + layout.stream_word, stream_.data(),
+                std::size_t{layout.end_word - layout.stream_word} * sizeof(std::uint32_t));
   }
 
-  void put_positions(WordSink& sink, const ClusterLayout& layout) const {
-    std::array<std::uint32_t, 3> lane_of_axis{};
+  [[nodiscard]] std::uint64_t field_of(std::uint32_t v, std::uint32_t slot, std::uint32_t bits) const {
+    return raw_[slot / L::kLanes][v].lane[slot % L::kLanes] & low_mask(bits);
+  }
+
+  void put_positions(ByteSink& sink, const ClusterLayout& layout) const {
+    std::array<std::uint32_t, 3> lane{};
     const std::array<std::uint32_t, 3> axes = axes_by_role(layout.shear_axis);
-    for (std::uint32_t f = 0; f < 3; ++f) lane_of_axis[axes[f]] = f;
+    for (std::uint32_t f = 0; f < 3; ++f) lane[axes[f]] = f;
     const std::uint32_t x_bits = layout.bits[0];
-    const std::uint32_t y_bits = layout.bits[1];
-    const std::uint32_t z_bits = layout.bits[2];
-    const std::uint32_t x_mask = low_mask(x_bits);
-    const std::uint32_t y_mask = low_mask(y_bits);
-    const std::uint32_t z_mask = low_mask(z_bits);
-    const bool is_one_word = x_bits + y_bits + z_bits <= 32;
+    const std::uint32_t xy_bits = x_bits + layout.bits[1];
+    const std::uint32_t all_bits = xy_bits + layout.bits[2];
+    const std::uint64_t x_mask = low_mask(x_bits);
+    const std::uint64_t y_mask = low_mask(layout.bits[1]);
+    const std::uint64_t z_mask = low_mask(layout.bits[2]);
+    const Quad<L>* const raw = raw_[0].data();
+    if (all_bits <= ByteSink::kMaxBits) {
+      sink.put_each(0, layout.vertex_count, all_bits, [&](std::uint32_t v) {
+        const Word* const at = raw[v].lane;
+        return (at[lane[0]] & x_mask) | (at[lane[1]] & y_mask) << x_bits | (at[lane[2]] & z_mask) << xy_bits;
+      });
+      return;
+    }
     for (std::uint32_t v = 0; v < layout.vertex_count; ++v) {
-      const std::uint32_t* const lane = raw_[0][v].lane;
-      if (is_one_word) {
-        const std::uint64_t yz = (lane[lane_of_axis[1]] & y_mask) | std::uint64_t{lane[lane_of_axis[2]] & z_mask} << y_bits;
-        sink.put((lane[lane_of_axis[0]] & x_mask) | static_cast<std::uint32_t>(yz << x_bits), x_bits + y_bits + z_bits);
-      } else {
-        sink.put(lane[lane_of_axis[0]] & x_mask, x_bits);
-        sink.put(lane[lane_of_axis[1]] & y_mask, y_bits);
-        sink.put(lane[lane_of_axis[2]] & z_mask, z_bits);
-      }
+      sink.put((raw[v].lane[lane[0]] & x_mask) | (raw[v].lane[lane[1]] & y_mask) << x_bits, xy_bits);
+      sink.put(raw[v].lane[lane[2]] & z_mask, layout.bits[2]);
     }
   }
 
-  /// \pre both fields are in one quad
-  void put_pairs(WordSink& sink, std::uint32_t field, const std::uint32_t* bits, std::uint32_t from,
-                 std::uint32_t to) const {
-    const Quad* const raw = raw_[quad_of(field)].data();
-    const std::uint32_t lane = lane_of(field);
-    const std::uint32_t a_bits = bits[0];
-    const std::uint32_t b_bits = bits[1];
-    const std::uint32_t a_mask = low_mask(a_bits);
-    const std::uint32_t b_mask = low_mask(b_bits);
-    const bool is_one_word = a_bits + b_bits <= 32;
-    for (std::uint32_t v = from; v < to; ++v) {
-      const std::uint32_t a = raw[v].lane[lane] & a_mask;
-      const std::uint32_t b = raw[v].lane[lane + 1] & b_mask;
-      if (is_one_word) {
-        sink.put(static_cast<std::uint32_t>(a | std::uint64_t{b} << a_bits), a_bits + b_bits);
-      } else {
-        sink.put(a, a_bits);
-        sink.put(b, b_bits);
-      }
-    }
-  }
-
-  /// Bytes of 0 or 1 as bits, eight at a time by one product.
-  static void put_flags(WordSink& sink, const std::uint8_t* flags, std::uint32_t count) {
-    for (; count > 0; flags += 8) {
-      std::uint64_t eight;
-      std::memcpy(&eight, flags, sizeof(eight));
-      const std::uint32_t bits = std::min(count, 8U);
-      sink.put(static_cast<std::uint32_t>(eight * 0x0102040810204080U >> 56U) & low_mask(bits), bits);
-      count -= bits;
-    }
+  /// Fields of two slots that share a vector.
+  void put_pairs(ByteSink& sink, std::uint32_t slot, const std::uint32_t* bits, std::uint32_t from, std::uint32_t to) const {
+    const Quad<L>* const raw = raw_[slot / L::kLanes].data();
+    const std::uint32_t lane = slot % L::kLanes;
+    const std::uint32_t first_bits = bits[0];
+    const std::uint64_t first_mask = low_mask(bits[0]);
+    const std::uint64_t second_mask = low_mask(bits[1]);
+    sink.put_each(from, to, bits[0] + bits[1], [=](std::uint32_t v) {
+      return (raw[v].lane[lane] & first_mask) | (raw[v].lane[lane + 1] & second_mask) << first_bits;
+    });
   }
 
   const format::MeshRecord& mesh_;
-  std::uint32_t cluster_count_;
-  PageColumns& columns_;
-  const StripValues& values_;
+  const PagePlan& plan_;
+  const StripValues<L>& values_;
   std::span<std::uint32_t> page_;
-  std::uint32_t fields_;
+  std::uint32_t fields_, vertex_count_;
   std::array<std::uint32_t, kFieldStreams> next_{};  ///< number of each stream
   std::uint32_t next_error_ = 0;
-
-  std::uint32_t word_ = 0;  ///< where the next cluster's data goes
-  std::vector<ClusterFields> clusters_;
-  std::vector<UvRangeFields> ranges_;
-  std::vector<std::uint32_t> first_vertex_;  ///< in the page, of each cluster; one more for the end
   std::uint32_t last_twin_ = 0;
+  std::vector<std::uint16_t> cluster_of_, range_of_;
 
   // Of the cluster at hand. Longer than a valid one needs: a broken one is only noticed behind its last slot.
   static constexpr std::size_t kSlotRoom = format::kMaxClusterVertices + kMaxSlots;
@@ -344,14 +315,36 @@ class StripUnpacker {
   std::array<std::uint8_t, format::kMaxClusterTriangles> restarts_;
   std::array<std::uint8_t, format::kMaxClusterVertices + 1> new_vertices_;
   std::uint32_t new_count_ = 0;
-  std::array<std::array<Quad, kNobody + 1>, kMaxQuads> raw_{};
+  std::array<std::array<Quad<L>, kNobody + 1>, kMaxQuads<L>> raw_{};
+  std::array<std::uint8_t, kMaxStreamBytes> stream_;
 };
+
+#if MESHLODE_HAS_BMI2_PATH
+template <class L>
+MESHLODE_FOR_BMI2 bool run_with_bmi2(StripUnpacker<L>& unpacker) {
+  return unpacker.run();
+}
+#endif
+
+template <class L>
+bool unpack_page_strips(const format::MeshRecord& mesh, const PagePlan& plan, const StripValues<L>& values,
+                        std::span<std::uint32_t> page) {
+  StripUnpacker<L> unpacker(mesh, plan, values, page);
+#if MESHLODE_HAS_BMI2_PATH
+  if (has_bmi2()) return run_with_bmi2(unpacker);
+#endif
+  return unpacker.run();
+}
 
 }  // namespace
 
-bool unpack_strips(const format::MeshRecord& mesh, std::uint32_t cluster_count, PageColumns& columns,
-                   const StripValues& values, std::span<std::uint32_t> page) {
-  return StripUnpacker(mesh, cluster_count, columns, values, page).run();
+bool unpack_strips(const format::MeshRecord& mesh, const PagePlan& plan, const StripValues<WideLanes>& values,
+                   std::span<std::uint32_t> page) {
+  return unpack_page_strips(mesh, plan, values, page);
+}
+bool unpack_strips(const format::MeshRecord& mesh, const PagePlan& plan, const StripValues<NarrowLanes>& values,
+                   std::span<std::uint32_t> page) {
+  return unpack_page_strips(mesh, plan, values, page);
 }
 
 }  // namespace meshlode

@@ -80,7 +80,7 @@ bool check_places(const FileTables& file, RuleLog& log) {
         break;
     }
     next = page.offset + page.stored_bytes;
-    sound &= log.expect(static_cast<std::uint32_t>(page.codec) <= 3, "L102", at,
+    sound &= log.expect(static_cast<std::uint32_t>(page.codec) <= 4, "L102", at,
                         [&] { return "codec " + std::to_string(static_cast<std::uint32_t>(page.codec)); });
   }
   sound &= log.expect(

@@ -173,7 +173,7 @@ TEST(ApiRuntime, FloatsAreTheIntegersOnTheGrid) {
 TEST(ApiRuntime, EveryCodecDecodesToTheSameIntegers) {
   const auto plain = AssetFile::view(sphere_bytes());
   ASSERT_TRUE(plain.ok());
-  for (const format::Codec codec : {format::Codec::kLz4, format::Codec::kZstd}) {
+  for (const format::Codec codec : {format::Codec::kLz4, format::Codec::kZstd, format::Codec::kStrips}) {
     const auto packed = AssetFile::view(sphere_bytes(codec));
     ASSERT_TRUE(packed.ok());
     ASSERT_EQ(packed->pages().size(), plain->pages().size());

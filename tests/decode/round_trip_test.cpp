@@ -36,7 +36,8 @@ struct Case {
 };
 constexpr Case kCases[] = {
     {"patch", test::sample_patch}, {"sphere", test::sample_sphere}, {"tetrahedron", test::sample_tetrahedron}};
-constexpr format::Codec kCodecs[] = {format::Codec::kNone, format::Codec::kLz4, format::Codec::kZstd};
+constexpr format::Codec kCodecs[] = {format::Codec::kNone, format::Codec::kLz4, format::Codec::kZstd,
+                                     format::Codec::kStrips, format::Codec::kDraco};
 
 using Vertex = std::vector<std::int64_t>;  ///< a position, and attributes as the bits of floats where a test has them
 /// Corners from the smallest on, in their order, and the material: whatever the order of triangles and vertices.

@@ -66,7 +66,8 @@ TEST_P(Exhaustive, EveryChangedByteIsRefusedOrReadWithItsChecksumsMadeToFit) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Codecs, Exhaustive,
-                         testing::Values(format::Codec::kNone, format::Codec::kLz4, format::Codec::kZstd),
+                         testing::Values(format::Codec::kNone, format::Codec::kLz4, format::Codec::kZstd,
+                                         format::Codec::kStrips),
                          [](const auto& codec) { return "codec" + std::to_string(static_cast<int>(codec.param)); });
 
 }  // namespace

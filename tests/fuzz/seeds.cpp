@@ -26,8 +26,12 @@ void write(const std::filesystem::path& path, std::span<const std::uint8_t> byte
 /// The stored bytes of a page as the codec harness wants them.
 Bytes codec_input(const Asset& asset, PageId page) {
   const format::PageRecord& record = asset.pages()[page.value];
-  const std::uint8_t codec = record.codec == format::Codec::kLz4 ? 0 : 1;
-  Bytes bytes = {codec, static_cast<std::uint8_t>(record.bytes), static_cast<std::uint8_t>(record.bytes >> 8U)};
+  const format::MeshRecord& mesh = asset.meshes()[asset.groups()[record.first_group].mesh];
+  const std::uint32_t shape = (mesh.normal_mode == format::NormalMode::kStored ? 1U : 0U) | mesh.uv_set_count << 1U |
+                              mesh.has_color << 4U | (mesh.material == format::kNone ? 32U : 0U);
+  Bytes bytes = {static_cast<std::uint8_t>(2U + static_cast<std::uint32_t>(record.codec)), static_cast<std::uint8_t>(shape),
+                 static_cast<std::uint8_t>(record.cluster_count - 1U), static_cast<std::uint8_t>(record.bytes),
+                 static_cast<std::uint8_t>(record.bytes >> 8U)};
   const auto stored = asset.stored_page(page);
   bytes.insert(bytes.end(), stored.begin(), stored.end());
   return bytes;
@@ -62,7 +66,8 @@ int main(int argc, char** argv) {
   const struct {
     const char* name;
     format::Codec codec;
-  } codecs[] = {{"none", format::Codec::kNone}, {"lz4", format::Codec::kLz4}, {"zstd", format::Codec::kZstd}};
+  } codecs[] = {{"none", format::Codec::kNone}, {"lz4", format::Codec::kLz4}, {"zstd", format::Codec::kZstd},
+                 {"strips", format::Codec::kStrips}, {"draco", format::Codec::kDraco}};
   for (const auto& [name, codec] : codecs) {
     const std::string suffix = std::string("-") + name + ".lode";
     const std::pair<const char*, Bytes> assets[] = {

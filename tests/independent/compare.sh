@@ -10,9 +10,13 @@ export PYTHONDONTWRITEBYTECODE=1
 work=$(mktemp -d); trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 2
 "$seeds" seeds || exit 2
-cp seeds/reader/*-none.lode .
+cp seeds/reader/*-none.lode seeds/reader/*-lz4.lode seeds/reader/*-strips.lode .
 for name in rock city crystal foliage; do
   "$meshlode" build "$data/$name.glb" -o "$name.lode" --codec none --quiet || exit 2
+done
+"$meshlode" build "$data/rock.glb" -o rock-lz4.lode --codec lz4 --quiet || exit 2
+for name in crystal foliage; do
+  "$meshlode" build "$data/$name.glb" -o "$name-strips.lode" --codec strips --quiet || exit 2
 done
 failed=0 count=0
 for file in *.lode; do
@@ -26,9 +30,17 @@ for file in *.lode; do
     echo "FAILED: $file"; diff cpp.txt python.txt | head -n 6; failed=1
   fi
 done
-[ "$count" -ge 7 ] || { echo "FAILED: only $count files"; failed=1; }
+[ "$count" -ge 16 ] || { echo "FAILED: only $count files"; failed=1; }
 # Bytes changed, checksums made to fit: the line between what a file may say and what not is the same for both.
 "$python" "$here/differ.py" "$dump" tetrahedron-none.lode "${STRIDE:-11}" || failed=1
 "$python" "$here/differ.py" "$dump" patch-none.lode $((${STRIDE:-11} * 19)) || failed=1
+for codec in lz4 strips; do
+  "$python" "$here/differ.py" "$dump" patch-$codec.lode $((${STRIDE:-11} * 19)) || failed=1
+done
+# What it cannot read it says so.
+for codec in zstd draco; do
+  "$python" "$here/lode.py" "seeds/reader/scene-$codec.lode" >/dev/null 2>refused.txt
+  [ $? -eq 5 ] || { echo "FAILED: $codec is not refused as unsupported"; failed=1; }
+done
 [ $failed -eq 0 ] && echo PASSED
 exit $failed

@@ -23,18 +23,20 @@ def reseal(data):
     entries = {}
     for i in range(count):
         at = 64 + 64 * i
-        entries[bytes(data[at:at + 4])] = at, *struct.unpack_from("<QQ", data, at + 16)
+        entries[bytes(data[at:at + 4])] = at, *struct.unpack_from("<QQ", data, at + 16), data[at + 12]
 
     def sum_of(offset, size):
         return xxh3_64(data[offset:offset + size]) if offset + size <= len(data) else 0
 
-    if b"PAGT" in entries:
-        _, offset, size = entries[b"PAGT"]
+    if b"PAGT" in entries and entries[b"PAGT"][3] == 0:  # a stored table is left alone, and with it its pages
+        _, offset, size, _ = entries[b"PAGT"]
         for at in range(offset, min(offset + size, len(data)) - 63, 64):
             stored, length = struct.unpack_from("<QI", data, at)
             checksum = sum_of(stored, length)
-            struct.pack_into("<QQ", data, at + 48, checksum, checksum)
-    for name, (at, offset, size) in entries.items():
+            struct.pack_into("<Q", data, at + 48, checksum)
+            if struct.unpack_from("<I", data, at + 16)[0] == 0:
+                struct.pack_into("<Q", data, at + 56, checksum)
+    for name, (at, offset, size, _) in entries.items():
         if name != b"PAGE":
             struct.pack_into("<Q", data, at + 40, sum_of(offset, size))
     end = 64 + 64 * count

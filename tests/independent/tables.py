@@ -129,7 +129,7 @@ def check_pages(tables):
         check(page["first_cluster"] == members[0]["first_cluster"], place + "first_cluster")
         check(sum(g["cluster_count"] for g in members) == page["cluster_count"], place + "cluster_count")
         check(page["bytes"] % 4 == 0 and page["bytes"] <= MAX_PAGE, place + "bytes")
-        check(page["codec"] <= 3, place + "codec")
+        check(page["codec"] <= 4, place + "codec")
         check(page["stored_bytes"] == page["bytes"] if page["codec"] == 0 else page["stored_bytes"] < page["bytes"],
               place + "stored_bytes")
         check(page["offset"] == (end + 15) // 16 * 16, place + "offset")

@@ -82,7 +82,10 @@ TEST(PrefixCode, NumbersOfEverySizeComeBack) {
   CodeTable table;
   ASSERT_TRUE(fill_code_table(lengths, true, table));
   std::uint64_t at = 0;
-  for (const std::uint32_t v : values) ASSERT_EQ(take_value(bytes.data(), at, table), v);
+  for (const std::uint32_t v : values) {
+    std::uint64_t bits = load_bits(bytes.data(), at);
+    ASSERT_EQ(next_value(bits, at, table), v);
+  }
 }
 
 TEST(PrefixCode, LengthsThatAreNoCodeAreRefused) {

@@ -90,7 +90,7 @@ TEST(Malformed, EveryTruncationIsRefusedWithTheHeaderMadeToFit) {
 
 // Checksums cover every byte but those of blobs, whose own checksums the reader leaves to validate.
 TEST(Malformed, EveryChangedByteIsSeen) {
-  for (const format::Codec codec : {format::Codec::kNone, format::Codec::kZstd}) {
+  for (const format::Codec codec : {format::Codec::kNone, format::Codec::kZstd, format::Codec::kStrips}) {
     auto bytes = test::sample_asset_bytes(codec);
     const std::uint64_t blobs = test::section_offset(bytes, format::SectionId::kBlobData);
     const std::size_t stride = codec == format::Codec::kNone ? 1 : 5;
@@ -107,7 +107,7 @@ TEST(Malformed, EveryChangedByteIsSeen) {
 
 TEST(Malformed, EveryFlippedBitWithChecksumsMadeToFitIsRefusedOrRead) {
   for (const format::Codec codec : {format::Codec::kNone, format::Codec::kLz4, format::Codec::kZstd,
-                                    format::Codec::kDraco}) {
+                                    format::Codec::kStrips, format::Codec::kDraco}) {
     const auto bytes = test::sample_asset_bytes(codec);
     test::Random random(21);
     std::size_t counts[3] = {};
@@ -126,7 +126,7 @@ TEST(Malformed, EveryFlippedBitWithChecksumsMadeToFitIsRefusedOrRead) {
 TEST(Malformed, RandomWordsWithChecksumsMadeToFitAreRefusedOrRead) {
   const char* more = std::getenv("MESHLODE_FUZZ_ROUNDS");
   const int rounds = more != nullptr ? std::atoi(more) : 6000;
-  for (const format::Codec codec : {format::Codec::kNone, format::Codec::kZstd}) {
+  for (const format::Codec codec : {format::Codec::kNone, format::Codec::kZstd, format::Codec::kStrips}) {
     const auto bytes = test::sample_asset_bytes(codec);
     const std::uint64_t pages = test::section_offset(bytes, format::SectionId::kPageData);
     test::Random random(22);

@@ -179,7 +179,7 @@ TEST_F(PageRefusals, ChecksumsAreChecked) {
 
 TEST_F(PageRefusals, PackedPagesUnpackToTheirSizeOrNotAtAll) {
   using P = format::PageRecord;
-  for (const format::Codec codec : {format::Codec::kLz4, format::Codec::kZstd}) {
+  for (const format::Codec codec : {format::Codec::kLz4, format::Codec::kZstd, format::Codec::kStrips}) {
     const auto packed = test::sample_asset_bytes(codec);
     const auto sound = Asset::from_bytes(packed);
     ASSERT_TRUE(sound.ok());

@@ -55,7 +55,7 @@ void expect_all_refused(SectionId id, const char* name, const std::vector<Rule<R
 
 TEST(Read, OpensASoundAsset) {
   for (const format::Codec codec : {format::Codec::kNone, format::Codec::kLz4, format::Codec::kZstd,
-                                    format::Codec::kDraco}) {
+                                    format::Codec::kStrips, format::Codec::kDraco}) {
     const auto asset = Asset::from_vector(test::sample_asset_bytes(codec));
     EXPECT_TRUE(asset.ok()) << asset.error().message();
   }
@@ -355,7 +355,7 @@ TEST(Read, RefusesBrokenPages) {
                          {"offset", 1, [](P& p) { p.offset = ~std::uint64_t{15}; }},
                          {"stored_bytes", 2, [](P& p) { p.stored_bytes = 0xFFFFFFFFU; }},
                          {"stored_bytes", 2, [](P& p) { p.codec = format::Codec::kZstd; }},
-                         {"codec", 1, [](P& p) { p.codec = static_cast<format::Codec>(4); }},
+                         {"codec", 1, [](P& p) { p.codec = static_cast<format::Codec>(5); }},
                          {"bytes", 1, [](P& p) { p.bytes = 8; }},
                          {"bytes", 1, [](P& p) { p.bytes = 1U << 30U; }},
                          {"bytes", 1, [](P& p) { p.bytes += 2; }},

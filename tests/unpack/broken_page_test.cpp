@@ -43,7 +43,7 @@ std::vector<std::uint32_t> unpacked(const Stored& stored, std::span<const std::u
   return out;
 }
 
-constexpr Codec kCodecs[] = {Codec::kLz4, Codec::kZstd, Codec::kDraco};
+constexpr Codec kCodecs[] = {Codec::kLz4, Codec::kZstd, Codec::kStrips, Codec::kDraco};
 
 const test::RandomPageOptions kSmall{.seed = 31, .cluster_count = 12, .uv_set_count = 2, .has_color = true,
                                      .has_material_ranges = true, .max_triangles = 30, .max_field_bits = 2};

@@ -39,7 +39,7 @@ bool has(const ValidationReport& report, const std::string& id) {
 
 TEST(Validate, FindsNothingInTheSample) {
   for (const format::Codec codec : {format::Codec::kNone, format::Codec::kLz4, format::Codec::kZstd,
-                                    format::Codec::kDraco}) {
+                                    format::Codec::kStrips, format::Codec::kDraco}) {
     const ValidationReport report = validate_asset(test::judged_sample_bytes(codec));
     EXPECT_EQ(report.finding_count, 0U) << describe(report);
   }

@@ -19,7 +19,7 @@ namespace meshlode {
 namespace {
 
 constexpr format::Codec kCodecs[] = {format::Codec::kNone, format::Codec::kLz4, format::Codec::kZstd,
-                                     format::Codec::kDraco};
+                                     format::Codec::kStrips, format::Codec::kDraco};
 
 WriteInput patch_input(const Scene& scene) {
   const test::SampleMesh sample = test::sample_patch();

@@ -300,10 +300,11 @@ Result<PipelineOptions> make_options(const BuildWords& words) {
                        : words.error_tier == "measured" ? format::ErrorTier::kMeasured
                                                         : format::ErrorTier::kCertified;
   if (words.preset != "default") return later("--preset", words.preset);
-  options.codec = words.codec == "zstd"    ? format::Codec::kZstd
-                  : words.codec == "lz4"   ? format::Codec::kLz4
-                  : words.codec == "draco" ? format::Codec::kDraco
-                                           : format::Codec::kNone;
+  options.codec = words.codec == "zstd"     ? format::Codec::kZstd
+                  : words.codec == "lz4"    ? format::Codec::kLz4
+                  : words.codec == "draco"  ? format::Codec::kDraco
+                  : words.codec == "strips" ? format::Codec::kStrips
+                                            : format::Codec::kNone;
   options.attributes = words.attributes == "none"  ? AttributeChoice::kNone
                        : words.attributes == "all" ? AttributeChoice::kAll
                                                    : AttributeChoice::kAuto;
@@ -338,7 +339,7 @@ int run_build(const Verb& verb, std::span<char* const> args) {
   parser.add_value("--position-error", words.position_error, "auto, or the largest distance a vertex may move, mesh units");
   parser.add_value("--normal-error", words.normal_error, "the largest angle a stored normal may be off, degrees");
   parser.add_value("--uv-error", words.uv_error, "auto, or the largest move of a UV: UV units, or 0.25px for texels");
-  parser.add_value("--codec", words.codec, "disk codec of the pages", {"none", "lz4", "zstd", "draco"});
+  parser.add_value("--codec", words.codec, "disk codec of the pages", {"none", "lz4", "zstd", "strips", "draco"});
   add_jobs_option(parser, jobs);
   parser.add_value("--report", report_path, "write times and counts as JSON, the same that --format json prints");
   parser.add_flag("--repair", repair, "drop and count triangles with non-finite positions or indices out of range");

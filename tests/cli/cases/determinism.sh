@@ -10,7 +10,7 @@ for scene in rock crystal city; do
   code build --quiet "elsewhere/$scene/$scene.glb" -o again.lode
   for other in two four again; do cmp one.lode $other.lode && echo "$scene: $other equals one"; done
 done
-for codec in lz4 zstd draco; do
+for codec in lz4 zstd strips draco; do
   code build --quiet crystal.glb -o plain.lode
   code build --quiet crystal.glb -o packed.lode --codec $codec
   plain=$("$MESHLODE" info plain.lode --format json | grep content_hash)
