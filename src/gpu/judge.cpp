@@ -110,7 +110,8 @@ Result<Comparison> compare_decode(Device& device, const GpuScene& scene, const A
   return out;
 }
 
-Result<CutComparison> compare_frame(Renderer& renderer, const Asset& asset, const Camera& camera, double pixel_error) {
+Result<CutComparison> compare_frame(Renderer& renderer, const Asset& asset, const Camera& camera, double pixel_error,
+                                    const AttributeBounds& bounds) {
   CutComparison out;
   const auto depth = depth_of_scene(asset, camera);
   if (!depth) return depth.error();
@@ -120,7 +121,7 @@ Result<CutComparison> compare_frame(Renderer& renderer, const Asset& asset, cons
   const auto cut = renderer.read_cut();
   if (!cut) return cut.error();
 
-  const std::vector<ClusterInstance> expected = select_flat(asset, camera, pixel_error);
+  const std::vector<ClusterInstance> expected = select_flat(asset, camera, pixel_error, bounds);
   out.cut.items = expected.size();
   std::vector<ClusterInstance> extra, missing;
   std::set_difference(cut->begin(), cut->end(), expected.begin(), expected.end(), std::back_inserter(extra));

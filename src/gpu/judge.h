@@ -32,8 +32,8 @@ struct CutComparison {
   FrameReport frame;
 };
 /// Draws with `renderer` and compares with select_flat() and draw_cut() of the same camera. With culling the picture
-/// must still be the same: what is culled would not have been seen.
+/// must still be the same: what is culled would not have been seen. `bounds` are those that the scene was uploaded with.
 [[nodiscard]] Result<CutComparison> compare_frame(Renderer& renderer, const Asset& asset, const Camera& camera,
-                                                  double pixel_error);
+                                                  double pixel_error, const AttributeBounds& bounds = {});
 
 }  // namespace meshlode::gpu

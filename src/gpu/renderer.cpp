@@ -111,6 +111,8 @@ Status Renderer::make_buffers() {
       {&clipped_, std::uint64_t{f.item_capacity} * 4},
       {&pixels_, std::uint64_t{f.width} * f.height * 8},
       {&pyramid_, std::uint64_t{words} * 4},
+      {&overdraw_, options_.overdraw ? std::uint64_t{f.width} * f.height * 4 : 4},
+      {&colors_, std::uint64_t{f.width} * f.height * 4},
   };
   for (const Wanted& w : wanted) {
     if (const Status s = make(*w.slot, w.bytes); !s) return s.error();
@@ -134,6 +136,8 @@ Status Renderer::make_buffers() {
   f.clipped = clipped_.address();
   f.pixels = pixels_.address();
   f.pyramid = pyramid_.address();
+  f.overdraw = overdraw_.address();
+  f.colors = colors_.address();
   f.counters = counters_block_.address();
   for (GpuStage& stage : counters_.stages) stage.z = 1;
   for (std::uint32_t pass = 0; pass < 2; ++pass) {
@@ -154,15 +158,16 @@ Status Renderer::make_pipelines() {
   const bool has_hardware = options_.hardware != HardwarePath::kNone;
   const std::uint32_t frustum = options_.frustum ? 1 : 0, occlusion = options_.occlusion ? 1 : 0;
   const auto room = [](std::uint32_t count) { return std::max((count + 15) / 16 * 16, 16u); };
-  const std::array<std::uint32_t, 8> constants = {options_.double_sided ? 1u : 0u,
+  const std::array<std::uint32_t, 9> constants = {options_.double_sided ? 1u : 0u,
                                                   frustum,
                                                   occlusion,
                                                   has_hardware ? 1u : 0u,
                                                   options_.raster_group,
                                                   room(scene_.max_cluster_triangles),
                                                   room(scene_.max_cluster_vertices),
-                                                  0};
-  std::array<std::uint32_t, 8> far_constants = constants;
+                                                  0,
+                                                  options_.overdraw ? 1u : 0u};
+  std::array<std::uint32_t, 9> far_constants = constants;
   far_constants[3] = has_far() ? 1 : 0;
   far_constants[4] = options_.far_lanes;
   far_constants[5] = has_far_raster() ? 1 : 0;
@@ -206,6 +211,7 @@ void Renderer::record_begin(Commands& list) {
   list.copy(upload_, 0, frame_block_, 0, sizeof(GpuFrame));
   list.copy(upload_, sizeof(GpuFrame), counters_block_, 0, sizeof(GpuCounters));
   list.fill(pixels_, 0, pixels_.bytes(), 0);
+  if (options_.overdraw) list.fill(overdraw_, 0, overdraw_.bytes(), 0);
   list.barrier();
   list.stamp("clear");
 }
@@ -441,6 +447,28 @@ Result<VisibilityBuffer> Renderer::read_pixels() {
     out.item[i] = key >> 8;
     out.triangle[i] = key & 0xFFu;
   }
+  return out;
+}
+
+Result<Renderer::Resolved> Renderer::resolve(std::uint32_t view, std::uint32_t level_count) {
+  const std::array<std::uint32_t, 4> constants = {0, 0, 0, view};
+  const auto pipeline = device_.make_compute(shaders::resolve(), constants);
+  if (!pipeline) return pipeline.error();
+  auto list = Commands::begin(device_);
+  if (!list) return list.error();
+  const Push push{frame_block_.address(), 0, 0, 0, level_count};
+  list->stamp("begin");
+  list->dispatch(*pipeline, bytes_of(push), (frame_.width * frame_.height + kGroupSize - 1) / kGroupSize);
+  list->barrier();
+  list->stamp("resolve");
+  const auto times = list->run();
+  if (!times) return times.error();
+  Resolved out;
+  out.milliseconds = times->empty() ? 0.0 : times->front().milliseconds;
+  out.image.width = frame_.width;
+  out.image.height = frame_.height;
+  out.image.rgba.resize(std::size_t{frame_.width} * frame_.height * 4);
+  if (const Status s = device_.download(colors_, out.image.rgba); !s) return s.error();
   return out;
 }
 

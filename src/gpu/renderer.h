@@ -36,6 +36,7 @@ struct RendererOptions {
   bool far_raster = true;           ///< and is drawn by a rasterizer of its own where it has a few pixels
   std::uint32_t raster_group = 128;  ///< invocations of the software rasterizer's workgroup: 32, 64 or 128
   std::uint32_t far_lanes = 32;      ///< invocations a far root is drawn by: 16, 32, 64 or 128
+  bool overdraw = false;  ///< count how often each pixel is drawn, for that view
   HardwarePath hardware = HardwarePath::kNone;
   float hardware_pixels = 256.0F;      ///< a cluster wider than this on the screen is the hardware's; 0: all are
   std::uint32_t max_items = 1u << 22;  ///< of each list, at most; lists are no longer than the scene can fill
@@ -74,6 +75,13 @@ class Renderer {
   /// then the picture's items are indices into read_cut().
   [[nodiscard]] Status redraw_in_order();
   [[nodiscard]] Result<VisibilityBuffer> read_pixels();
+  /// The last picture in colours: materials, normals and colours at each pixel's own barycentrics, no textures. `view`
+  /// is a VIEW_… of shaders/frame.h; those of a frame's passes are lost by redraw_in_order().
+  struct Resolved {
+    Image image;
+    double milliseconds = 0.0;
+  };
+  [[nodiscard]] Result<Resolved> resolve(std::uint32_t view, std::uint32_t level_count);
   /// The views that the last frame's instances were given, by slot (for tests).
   [[nodiscard]] Result<std::vector<GpuVisible>> read_visible();
 
@@ -107,7 +115,7 @@ class Renderer {
   GpuCounters counters_{};  ///< as every frame begins
   Buffer frame_block_, counters_block_, upload_;
   Buffer visible_, queue_, open_groups_, items_, retry_nodes_, retry_clusters_, retry_instances_, clipped_, pixels_,
-      pyramid_;
+      pyramid_, overdraw_, colors_;
   Pipeline instances_, traverse_, persistent_, flat_, roots_, raster_far_, hardware_, clusters_, raster_, raster_clip_, pyramid_build_, pyramid_top_;
   std::vector<Commands> lists_;  ///< 0: the frame, 1: drawing in order
   bool has_last_ = false;

@@ -25,7 +25,31 @@ Result<Buffer> make_table(Device& device, const std::vector<T>& table) {
 
 constexpr std::uint32_t kNoGroup = 0xFFFFFFFFu;
 
-std::vector<GpuMesh> mesh_table(const Asset& asset) {
+/// Selection errors of groups and nodes: infinite, so that they never pass, where an attribute deviates by too much.
+struct Errors {
+  std::vector<float> group, node;
+};
+
+Errors find_errors(const Asset& asset, const AttributeBounds& bounds) {
+  Errors out;
+  for (const format::GroupRecord& group : asset.groups()) out.group.push_back(group.error);
+  for (const format::NodeRecord& node : asset.nodes()) out.node.push_back(node.error);
+  const SelectTables tables = tables_of(asset);
+  for (const format::MeshRecord& mesh : asset.meshes()) {
+    const AttributeBounds own = bounds_for(bounds, mesh);
+    if (!own.has_any()) continue;
+    for (std::uint32_t g = mesh.first_group; g < mesh.first_group + mesh.group_count; ++g) {
+      if (!is_within(own, asset.groups()[g])) out.group[g] = format::kInfiniteError;
+    }
+    const std::vector<std::uint8_t> within = find_nodes_within(tables, mesh, own);
+    for (std::uint32_t n = 0; n < mesh.node_count; ++n) {
+      if (within[n] == 0) out.node[mesh.first_node + n] = format::kInfiniteError;
+    }
+  }
+  return out;
+}
+
+std::vector<GpuMesh> mesh_table(const Asset& asset, const Errors& errors) {
   std::vector<GpuMesh> out;
   const SelectTables tables = tables_of(asset);
   for (const format::MeshRecord& mesh : asset.meshes()) {
@@ -52,7 +76,7 @@ std::vector<GpuMesh> mesh_table(const Asset& asset) {
     m.only_root = kNoGroup;
     std::uint32_t roots = 0;
     for (std::uint32_t g = mesh.first_group; g < mesh.first_group + mesh.group_count; ++g) {
-      const float error = asset.groups()[g].error;
+      const float error = errors.group[g];
       if (error < format::kInfiniteError) {
         m.coarse_error = std::max(m.coarse_error, error);
       } else {
@@ -75,13 +99,13 @@ std::vector<GpuInstance> instance_table(std::span<const format::InstanceRecord> 
   return out;
 }
 
-std::vector<GpuNode> node_table(const Asset& asset) {
+std::vector<GpuNode> node_table(const Asset& asset, const Errors& errors) {
   std::vector<GpuNode> out;
   for (const format::NodeRecord& node : asset.nodes()) {
     GpuNode n{};
     std::copy(node.center, node.center + 3, n.center);
     n.radius = node.radius;
-    n.error = node.error;
+    n.error = errors.node[out.size()];
     n.first = node.first;
     n.child_count = node.child_count;
     out.push_back(n);
@@ -140,7 +164,8 @@ Result<Pages> upload_pages(Device& device, const Asset& asset) {
 
 }  // namespace
 
-Result<GpuScene> upload_scene(Device& device, const Asset& asset, std::span<const format::InstanceRecord> instances) {
+Result<GpuScene> upload_scene(Device& device, const Asset& asset, std::span<const format::InstanceRecord> instances,
+                              const AttributeBounds& bounds) {
   if (instances.empty()) instances = asset.instances();
   GpuScene out;
   out.instance_count = static_cast<std::uint32_t>(instances.size());
@@ -161,18 +186,19 @@ Result<GpuScene> upload_scene(Device& device, const Asset& asset, std::span<cons
   out.pages = pages->buffer;
   out.page_bytes = pages->bytes;
 
+  const Errors errors = find_errors(asset, bounds);
   std::vector<GpuGroup> groups;
   for (const format::GroupRecord& group : asset.groups()) {
     GpuGroup g{};
     std::copy(group.center, group.center + 3, g.center);
     g.radius = group.radius;
-    g.error = group.error;
+    g.error = errors.group[groups.size()];
     g.first_cluster = group.first_cluster;
     g.cluster_count = group.cluster_count;
     g.page_word = pages->word[group.page];
     groups.push_back(g);
   }
-  const std::vector<GpuMesh> meshes = mesh_table(asset);
+  const std::vector<GpuMesh> meshes = mesh_table(asset, errors);
   std::uint64_t root_words = 1;
   std::vector<GpuCluster> clusters;
   for (const format::ClusterRecord& cluster : asset.clusters()) {
@@ -185,6 +211,7 @@ Result<GpuScene> upload_scene(Device& device, const Asset& asset, std::span<cons
     c.page_word = groups[cluster.coarser_group].page_word;
     c.index = static_cast<std::uint32_t>(clusters.size()) -
               asset.pages()[asset.groups()[cluster.coarser_group].page].first_cluster;
+    c.index |= static_cast<std::uint32_t>(cluster.level) << 16u;
     out.max_cluster_triangles = std::max(out.max_cluster_triangles, cluster.triangle_count());
     out.max_cluster_vertices = std::max(out.max_cluster_vertices, cluster.vertex_count());
     const std::uint32_t only = meshes[asset.groups()[cluster.coarser_group].mesh].only_root;
@@ -222,7 +249,7 @@ Result<GpuScene> upload_scene(Device& device, const Asset& asset, std::span<cons
   out.mesh_count = static_cast<std::uint32_t>(meshes.size());
   if (const Status s = put(out.meshes, meshes); !s) return s.error();
   if (const Status s = put(out.instances, instance_table(instances)); !s) return s.error();
-  if (const Status s = put(out.nodes, node_table(asset)); !s) return s.error();
+  if (const Status s = put(out.nodes, node_table(asset, errors)); !s) return s.error();
   if (const Status s = put(out.groups, groups); !s) return s.error();
   if (const Status s = put(out.clusters, clusters); !s) return s.error();
   if (const Status s = put(out.materials, materials); !s) return s.error();

@@ -11,6 +11,7 @@
 
 #include "gpu/vulkan.h"
 #include "read/asset.h"
+#include "select/attribute_bounds.h"
 
 namespace meshlode::gpu {
 
@@ -32,8 +33,10 @@ struct GpuScene {
 };
 
 /// `instances` replaces the asset's own where it is not empty: a benchmark's scene. Their meshes are the asset's.
+/// `bounds`: a group that deviates by more never passes, as in select_flat().
 /// Errors: kInvalid for a broken page; kUnsupported where the device has no room or a limit is passed.
 [[nodiscard]] Result<GpuScene> upload_scene(Device& device, const Asset& asset,
-                                            std::span<const format::InstanceRecord> instances = {});
+                                            std::span<const format::InstanceRecord> instances = {},
+                                            const AttributeBounds& bounds = {});
 
 }  // namespace meshlode::gpu

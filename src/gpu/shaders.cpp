@@ -35,6 +35,9 @@ constexpr std::uint32_t kRoots[] = {
 constexpr std::uint32_t kRasterFar[] = {
 #include "raster_far.comp.inc"
 };
+constexpr std::uint32_t kResolve[] = {
+#include "resolve.comp.inc"
+};
 constexpr std::uint32_t kFlat[] = {
 #include "flat.comp.inc"
 };
@@ -85,6 +88,9 @@ std::span<const std::uint32_t> roots() {
 }
 std::span<const std::uint32_t> raster_far() {
   return kRasterFar;
+}
+std::span<const std::uint32_t> resolve() {
+  return kResolve;
 }
 std::span<const std::uint32_t> flat() {
   return kFlat;

@@ -10,7 +10,9 @@
 #include "camera_options.h"
 #include "gpu/frame.h"
 #include "gpu/plan.h"
+#include "gpu/shaders/frame.h"
 #include "options.h"
+#include "raster/legend.h"
 #include "raster/raster.h"
 #include "report/json_writer.h"
 #include "verb.h"
@@ -36,6 +38,10 @@ struct RenderStats {
   std::uint32_t finest_level = 0, coarsest_level = 0;
   std::vector<std::uint64_t> triangles_of_level;
 };
+
+/// By their VIEW_… numbers; the CPU has the first four.
+const std::string kGpuViews[] = {"shaded",  "clusters", "triangles", "levels",  "normals",
+                                 "pages",   "overdraw", "paths",     "occluded"};
 
 View view_of(const std::string& name) {
   if (name == "clusters") return View::kClusters;
@@ -145,23 +151,43 @@ std::string stats_text(const RenderOptions& options, const Camera& camera, const
 struct Drawn {
   std::vector<ClusterInstance> cut;
   VisibilityBuffer visibility;
+  std::optional<Image> image;  ///< coloured already
 };
 
-/// Selected and drawn by the device; colours are the CPU's, from the same kind of buffer.
-Result<Drawn> draw_on_gpu(const Asset& asset, const Camera& camera, const RenderOptions& options) {
+/// Views that tell of a frame's passes; the others are drawn again in order, so that equal depths resolve as on the CPU.
+bool is_view_of_passes(std::uint32_t view) {
+  return view == VIEW_OVERDRAW || view == VIEW_PATHS || view == VIEW_OCCLUDED;
+}
+
+/// Selected, drawn and coloured by the device.
+Result<Drawn> draw_on_gpu(const Asset& asset, const Camera& camera, const RenderOptions& options,
+                          const AttributeBounds& bounds) {
+  const auto view = static_cast<std::uint32_t>(
+      std::find(std::begin(kGpuViews), std::end(kGpuViews), options.view) - std::begin(kGpuViews));
   auto device = gpu::Device::open({.device = options.device, .validate = false});
   if (!device) return device.error();
-  auto scene = gpu::upload_scene(*device, asset);
+  auto scene = gpu::upload_scene(*device, asset, {}, bounds);
   if (!scene) return scene.error();
   const std::vector<std::string> force = options.force.empty() ? std::vector<std::string>{}
                                                                : std::vector<std::string>{options.force};
-  const auto plan = gpu::plan_passes(*scene, device->info(), camera.width, camera.height, force);
+  auto plan = gpu::plan_passes(*scene, device->info(), camera.width, camera.height, force);
   if (!plan) return plan.error();
+  plan->options.overdraw = view == VIEW_OVERDRAW;
+  if (view == VIEW_OCCLUDED) plan->options.occlusion = true;
   if (options.explain) std::fprintf(stderr, "%s", gpu::describe_plan(*plan).c_str());
   auto renderer = gpu::Renderer::make(*device, *scene, plan->options);
   if (!renderer) return renderer.error();
   const auto depth = gpu::depth_of_scene(asset, camera);
   if (!depth) return depth.error();
+  if (view == VIEW_OCCLUDED) {
+    // A frame from a little to the side first: what it could not see, the second pass of this one brings back.
+    Camera before = camera;
+    const Vec3d ahead = camera.target - camera.eye;
+    const Vec3d side(ahead.z, 0.0, -ahead.x);
+    before.eye = camera.eye + 0.1 * side;
+    const auto first = renderer->draw(before, options.camera.pixel_error, *depth);
+    if (!first) return first.error();
+  }
   const auto frame = renderer->draw(camera, options.camera.pixel_error, *depth);
   if (!frame) return frame.error();
   if (frame->overflow != 0) {
@@ -170,10 +196,22 @@ Result<Drawn> draw_on_gpu(const Asset& asset, const Camera& camera, const Render
   }
   auto cut = renderer->read_cut();
   if (!cut) return cut.error();
-  if (const Status s = renderer->redraw_in_order(); !s) return s.error();
+  std::uint32_t level_count = 1;
+  for (const format::MeshRecord& mesh : asset.meshes()) level_count = std::max(level_count, mesh.level_count);
+  std::optional<Image> image;
+  for (const bool in_order : {false, true}) {
+    if (in_order) {
+      if (const Status s = renderer->redraw_in_order(); !s) return s.error();
+    }
+    if (is_view_of_passes(view) == in_order) continue;
+    auto resolved = renderer->resolve(view, level_count);
+    if (!resolved) return resolved.error();
+    image = std::move(resolved->image);
+  }
+  if (view == VIEW_LEVELS) raster::draw_level_legend(*image, level_count);
   auto visibility = renderer->read_pixels();
   if (!visibility) return visibility.error();
-  return Drawn{std::move(*cut), std::move(*visibility)};
+  return Drawn{std::move(*cut), std::move(*visibility), std::move(image)};
 }
 
 Result<Drawn> draw_on_cpu(const Asset& asset, const Camera& camera, const RenderOptions& options,
@@ -182,7 +220,7 @@ Result<Drawn> draw_on_cpu(const Asset& asset, const Camera& camera, const Render
                                                    : select_bvh(asset, camera, options.camera.pixel_error, bounds);
   auto visibility = draw_cut(asset, cut, camera);
   if (!visibility) return visibility.error();
-  return Drawn{std::move(cut), std::move(*visibility)};
+  return Drawn{std::move(cut), std::move(*visibility), std::nullopt};
 }
 
 int run_render(const Verb& verb, std::span<char* const> args) {
@@ -190,8 +228,9 @@ int run_render(const Verb& verb, std::span<char* const> args) {
   OptionParser parser(verb);
   parser.add_positional("file", options.input, "a .lode asset");
   parser.add_value("-o,--output", options.output, "the PNG to write (required)");
-  parser.add_value("--view", options.view, "shaded, clusters, triangles or levels",
-                   {"shaded", "clusters", "triangles", "levels"});
+  parser.add_value("--view", options.view,
+                   "shaded, clusters, triangles or levels; with --gpu also normals, pages, overdraw, paths, occluded",
+                   {std::begin(kGpuViews), std::end(kGpuViews)});
   add_camera_options(parser, options.camera);
   parser.add_value("--error", options.error,
                    "draw the uniform cut at this error in mesh units instead of --pixel-error");
@@ -211,8 +250,12 @@ int run_render(const Verb& verb, std::span<char* const> args) {
   }
   if (options.is_relative && !options.error) return print_error({ErrorCode::kUsage, "--relative", "needs --error"});
 
-  if (options.gpu && (options.error || options.bounds.has_any())) {
-    return print_error({ErrorCode::kUnsupported, "--gpu", "selects by --pixel-error alone"});
+  if (options.gpu && options.error) {
+    return print_error({ErrorCode::kUnsupported, "--gpu", "selects by a camera, not by --error"});
+  }
+  if (!options.gpu && std::find(std::begin(kGpuViews), std::begin(kGpuViews) + VIEW_NORMALS, options.view) ==
+                          std::begin(kGpuViews) + VIEW_NORMALS) {
+    return print_error({ErrorCode::kUsage, "--view", options.view + " needs --gpu"});
   }
 
   const JobLimit limit(options.jobs);
@@ -230,11 +273,12 @@ int run_render(const Verb& verb, std::span<char* const> args) {
     return print_error(error);
   };
   const Result<Drawn> drawn =
-      options.gpu ? draw_on_gpu(*asset, *camera, options) : draw_on_cpu(*asset, *camera, options, *bounds);
+      options.gpu ? draw_on_gpu(*asset, *camera, options, *bounds) : draw_on_cpu(*asset, *camera, options, *bounds);
   if (!drawn) return fail(drawn.error());
   const std::vector<ClusterInstance>& cut = drawn->cut;
   const VisibilityBuffer& visibility = drawn->visibility;
-  const Result<Image> image = shade_view(*asset, cut, *camera, visibility, view_of(options.view));
+  const Result<Image> image = drawn->image ? Result<Image>(*drawn->image)
+                                           : shade_view(*asset, cut, *camera, visibility, view_of(options.view));
   if (!image) return fail(image.error());
   const std::vector<std::uint8_t> png = encode_png(*image);
   if (png.empty()) return print_error({ErrorCode::kIo, options.output, "the picture is too large to compress"});

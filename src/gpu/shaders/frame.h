@@ -73,7 +73,7 @@ struct GpuCluster {
   float radius;
   uint own_group;       // 0xFFFFFFFF at level 0
   uint page_word;
-  uint index;           // in the page
+  uint index;           // in the page; level << 16
   uint root_word;       // in the decoded roots; of a mesh's only root cluster
 };
 
@@ -148,6 +148,17 @@ struct GpuCounters {
   GPU_ARRAY(int, balance, 2);
 };
 
+// What resolve.comp shows; the first four are View of raster/raster.h.
+#define VIEW_SHADED 0
+#define VIEW_CLUSTERS 1
+#define VIEW_TRIANGLES 2
+#define VIEW_LEVELS 3
+#define VIEW_NORMALS 4
+#define VIEW_PAGES 5
+#define VIEW_OVERDRAW 6   // blue once, red 16 times and more
+#define VIEW_PATHS 7      // blue software, green far roots, red hardware
+#define VIEW_OCCLUDED 8   // orange: last frame's depth had hidden it, the second pass brought it back
+
 #define MAX_PYRAMID 15
 // Of an item's slot: drawn by raster_far.comp, and then whether the instance is mirrored.
 #define ITEM_IS_FAR 0x80000000u
@@ -196,6 +207,8 @@ struct GpuFrame {
   GPU_POINTER(WordArray) clipped;        // items with a triangle that has to be clipped
   GPU_POINTER(PixelArray) pixels;
   GPU_POINTER(PyramidArray) pyramid;
+  GPU_POINTER(WordArray) overdraw;       // how often each pixel was drawn, where it is counted
+  GPU_POINTER(WordArray) colors;         // RGBA, 8 bits each: resolve.comp
   GPU_POINTER(CounterBlock) counters;
   uint width, height;
   uint instance_count;

@@ -2,6 +2,8 @@
 // src/raster/screen.cpp and the planes of src/raster/projection.cpp again, bit for bit (I9): doubles with + and * in a
 // fixed order, then integers. Quotients are estimates that an exact integer remainder corrects.
 
+layout(constant_id = 8) const uint kOverdraw = 0u;  // 1: how often each pixel is drawn is counted
+
 const int kSubpixelBits = 8;
 const int kSubpixels = 256;
 const double kGuardPixels = 1048576.0lf;
@@ -142,6 +144,7 @@ uint64_t pixel_value(uint depth, uint item, uint triangle) {
 
 void put_pixel(int x, int y, uint64_t value) {
   const uint at = uint(y) * frame.width + uint(x);
+  if (kOverdraw != 0u) atomicAdd(frame.overdraw.at[at], 1u);
   atomicMax(frame.pixels.at[at], value);  // no look at the old value first: that would wait for memory, this does not
 }
 
