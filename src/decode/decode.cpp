@@ -40,39 +40,101 @@ class BitReader {
 std::int32_t wrap(std::uint32_t value) { return static_cast<std::int32_t>(value); }
 std::uint32_t bits_of(std::int32_t value) { return static_cast<std::uint32_t>(value); }
 
-/// Leaves the raw values behind: texture coordinates are predicted from them.
-void decode_positions(const ClusterLayout& layout, const std::uint32_t* words, std::size_t stride, std::uint32_t* raw,
-                      std::int32_t* out) {
-  BitReader reader(words, layout.position_bit);
-  const std::uint32_t axis = layout.shear_axis;
-  const std::uint32_t u = axis == 0 ? 1 : 0;
-  const std::uint32_t v = axis == 2 ? 1 : 2;
-  for (std::uint32_t i = 0; i < layout.vertex_count; ++i, raw += 3, out += stride) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      raw[k] = reader.take(layout.bits[k]);
-      out[k] = wrap(bits_of(layout.minimum[k]) + raw[k]);
+std::uint64_t low_mask(std::uint32_t bits) { return (std::uint64_t{1} << bits) - 1U; }
+
+/// Calls use(i, first, second) with two fields of `bits` bits for each i below `count`. \pre each at most 32
+template <class Use>
+void each_pair(const std::uint32_t* words, std::uint32_t bit, const std::uint32_t* bits, std::uint32_t count, Use use) {
+  const std::uint32_t first_bits = bits[0];
+  const std::uint32_t all_bits = bits[0] + bits[1];
+  const std::uint64_t first_mask = low_mask(bits[0]);
+  const std::uint64_t second_mask = low_mask(bits[1]);
+  if (all_bits > 32) {
+    BitReader reader(words, bit);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const std::uint32_t first = reader.take(bits[0]);
+      use(i, first, reader.take(bits[1]));
     }
-    const std::int32_t shear =
-        wrap(bits_of(layout.shear_u) * raw[u] + bits_of(layout.shear_v) * raw[v]) >> format::kShearShift;
-    out[axis] = wrap(bits_of(out[axis]) + bits_of(shear));
+    return;
+  }
+  for (std::uint32_t i = 0; i < count; ++i, bit += all_bits) {
+    std::uint64_t pair;
+    std::memcpy(&pair, words + bit / 32, sizeof(pair));
+    pair >>= bit % 32;
+    use(i, static_cast<std::uint32_t>(pair & first_mask), static_cast<std::uint32_t>(pair >> first_bits & second_mask));
   }
 }
 
+/// Leaves the raw values behind: texture coordinates are predicted from them.
+void decode_positions(const ClusterLayout& layout, const std::uint32_t* words, std::size_t stride, std::uint32_t* raw,
+                      std::int32_t* out) {
+  const std::uint32_t axis = layout.shear_axis;
+  const std::uint32_t u = axis == 0 ? 1 : 0;
+  const std::uint32_t v = axis == 2 ? 1 : 2;
+  const std::uint32_t shear_u = bits_of(layout.shear_u);
+  const std::uint32_t shear_v = bits_of(layout.shear_v);
+  const std::uint32_t minimum[3] = {bits_of(layout.minimum[0]), bits_of(layout.minimum[1]), bits_of(layout.minimum[2])};
+  const auto place = [&] {
+    const std::int32_t shear = wrap(shear_u * raw[u] + shear_v * raw[v]) >> format::kShearShift;
+    for (std::size_t k = 0; k < 3; ++k) out[k] = wrap(minimum[k] + raw[k]);
+    out[axis] = wrap(bits_of(out[axis]) + bits_of(shear));
+    raw += 3;
+    out += stride;
+  };
+  const std::uint32_t x_bits = layout.bits[0];
+  const std::uint32_t xy_bits = x_bits + layout.bits[1];
+  const std::uint32_t all_bits = xy_bits + layout.bits[2];
+  if (all_bits > 32) {
+    BitReader reader(words, layout.position_bit);
+    for (std::uint32_t i = 0; i < layout.vertex_count; ++i) {
+      for (std::size_t k = 0; k < 3; ++k) raw[k] = reader.take(layout.bits[k]);
+      place();
+    }
+    return;
+  }
+  std::uint32_t bit = layout.position_bit;
+  for (std::uint32_t i = 0; i < layout.vertex_count; ++i, bit += all_bits) {
+    std::uint64_t pair;
+    std::memcpy(&pair, words + bit / 32, sizeof(pair));
+    pair >>= bit % 32;
+    raw[0] = static_cast<std::uint32_t>(pair & low_mask(x_bits));
+    raw[1] = static_cast<std::uint32_t>(pair >> x_bits & low_mask(layout.bits[1]));
+    raw[2] = static_cast<std::uint32_t>(pair >> xy_bits & low_mask(layout.bits[2]));
+    place();
+  }
+}
+
+/// octahedral_point with its choices as masks, and the axes of the chart for all vertices at once.
 void decode_normals(const ClusterLayout& layout, const std::uint32_t* words, std::int32_t scale, std::size_t stride,
                     std::int32_t* out) {
-  BitReader reader(words, layout.normal_bit);
-  for (std::uint32_t i = 0; i < layout.vertex_count; ++i, out += stride) {
-    const std::int32_t a = layout.normal_minimum[0] + wrap(reader.take(layout.normal_bits[0]));
-    const std::int32_t b = layout.normal_minimum[1] + wrap(reader.take(layout.normal_bits[1]));
-    const auto point = octahedral_point(a, b, layout.chart, scale);
-    for (std::size_t k = 0; k < 3; ++k) out[k] = point[k];
-  }
+  const std::int32_t low[2] = {layout.normal_minimum[0] - scale, layout.normal_minimum[1] - scale};
+  const std::uint32_t pole = layout.chart / 2;
+  const std::int32_t side = layout.chart % 2 != 0 ? -1 : 1;
+  std::int32_t* const first = out + (pole + 1) % 3;
+  std::int32_t* const second = out + (pole + 2) % 3;
+  std::int32_t* const third = out + pole;
+  each_pair(words, layout.normal_bit, layout.normal_bits, layout.vertex_count,
+            [=](std::uint32_t i, std::uint32_t a, std::uint32_t b) {
+              const std::int32_t x = low[0] + wrap(a);
+              const std::int32_t y = low[1] + wrap(b);
+              const std::int32_t x_sign = x >> 31;  // all ones where negative
+              const std::int32_t y_sign = y >> 31;
+              const std::int32_t x_size = (x ^ x_sign) - x_sign;
+              const std::int32_t y_size = (y ^ y_sign) - y_sign;
+              const std::int32_t z = scale - x_size - y_size;
+              const std::int32_t far = z >> 31;
+              const std::int32_t far_x = ((scale - y_size) ^ x_sign) - x_sign;
+              const std::int32_t far_y = ((scale - x_size) ^ y_sign) - y_sign;
+              first[i * stride] = x ^ ((x ^ far_x) & far);
+              second[i * stride] = y ^ ((y ^ far_y) & far);
+              third[i * stride] = z * side;
+            });
 }
 
 void decode_uvs(const ClusterLayout& layout, const std::uint32_t* words, std::uint32_t set, std::size_t stride,
                 const std::uint32_t* raw, std::int32_t* out) {
   namespace f = format::uv_range;
-  BitReader reader(words, layout.uv_bit[set]);
+  std::uint32_t bit = layout.uv_bit[set];
   const std::uint32_t* range = words + layout.uv_word[set];
   for (std::uint32_t r = 0; r < layout.uv_range_count[set]; ++r) {
     const auto get = [range](format::BitField field) { return bits_of(format::get_field(range, field)); };
@@ -86,19 +148,24 @@ void decode_uvs(const ClusterLayout& layout, const std::uint32_t* words, std::ui
         slope[0][k] = get(f::kFitU[k]);
         slope[1][k] = get(f::kFitV[k]);
       }
-      for (std::uint32_t i = 0; i < count; ++i, raw += 3, out += stride) {
-        for (std::size_t c = 0; c < 2; ++c) {
-          const std::uint32_t sum = slope[c][0] * raw[0] + slope[c][1] * raw[1] + slope[c][2] * raw[2];
-          out[c] = wrap(minimum[c] + reader.take(bits[c]) + bits_of(wrap(sum) >> shift[c]));
-        }
-      }
+      each_pair(words, bit, bits, count, [&](std::uint32_t i, std::uint32_t u, std::uint32_t v) {
+        const std::uint32_t* const r3 = raw + std::size_t{i} * 3;
+        const std::uint32_t u_sum = slope[0][0] * r3[0] + slope[0][1] * r3[1] + slope[0][2] * r3[2];
+        const std::uint32_t v_sum = slope[1][0] * r3[0] + slope[1][1] * r3[1] + slope[1][2] * r3[2];
+        out[i * stride] = wrap(minimum[0] + u + bits_of(wrap(u_sum) >> shift[0]));
+        out[i * stride + 1] = wrap(minimum[1] + v + bits_of(wrap(v_sum) >> shift[1]));
+      });
       range += f::kWords + f::kFitWords;
     } else {
-      for (std::uint32_t i = 0; i < count; ++i, raw += 3, out += stride) {
-        for (std::size_t c = 0; c < 2; ++c) out[c] = wrap(minimum[c] + reader.take(bits[c]));
-      }
+      each_pair(words, bit, bits, count, [&](std::uint32_t i, std::uint32_t u, std::uint32_t v) {
+        out[i * stride] = wrap(minimum[0] + u);
+        out[i * stride + 1] = wrap(minimum[1] + v);
+      });
       range += f::kWords;
     }
+    bit += count * (bits[0] + bits[1]);
+    raw += std::size_t{count} * 3;
+    out += count * stride;
   }
 }
 
@@ -164,22 +231,39 @@ void decode_materials(const format::MeshRecord& mesh, const ClusterLayout& layou
 
 }  // namespace
 
-Vec3f octahedral_normal(const std::array<std::int32_t, 3>& point) {
-  const double x = point[0];
-  const double y = point[1];
-  const double z = point[2];
-  const double length = std::sqrt(x * x + y * y + z * z);  // the sum of squares is an integer: exact
-  return {static_cast<float>(x / length), static_cast<float>(y / length), static_cast<float>(z / length)};
+namespace {
+
+/// Each coordinate divided on its own: a product with the reciprocal would round once more. Two coordinates share a vector.
+Vec3f normal_of(std::int32_t x, std::int32_t y, std::int32_t z) {
+  using Two = double __attribute__((vector_size(16)));
+  const auto dx = static_cast<double>(x);
+  const auto dy = static_cast<double>(y);
+  const auto dz = static_cast<double>(z);
+  const double length = std::sqrt(dx * dx + dy * dy + dz * dz);  // the sum of squares is an integer: exact
+  const Two xy = Two{dx, dy} / length;
+  return {static_cast<float>(xy[0]), static_cast<float>(xy[1]), static_cast<float>(dz / length)};
 }
 
-void decode_cluster(const Asset& asset, const PageBytes& page, ClusterId cluster, DecodedCluster& out) {
-  const std::span<const std::uint32_t> words = page.words();
-  const format::MeshRecord& mesh = asset.meshes()[asset.groups()[asset.clusters()[cluster.value].coarser_group].mesh];
+}  // namespace
+
+Vec3f octahedral_normal(const std::array<std::int32_t, 3>& point) { return normal_of(point[0], point[1], point[2]); }
+
+namespace {
+
+const format::MeshRecord& mesh_of(const Asset& asset, ClusterId cluster) {
+  return asset.meshes()[asset.groups()[asset.clusters()[cluster.value].coarser_group].mesh];
+}
+
+ClusterLayout layout_of(const format::MeshRecord& mesh, std::span<const std::uint32_t> words, ClusterId cluster) {
   assert(cluster.value >= words[0] && cluster.value - words[0] < words[1]);
   ClusterLayout layout;
   [[maybe_unused]] const char* const wrong = format::read_cluster_layout(mesh, words, cluster.value - words[0], layout);
   assert(wrong == nullptr);  // load_page has looked at every cluster
+  return layout;
+}
 
+void decode_channels(const format::MeshRecord& mesh, const ClusterLayout& layout, std::span<const std::uint32_t> words,
+                     DecodedCluster& out) {
   const std::size_t stride = format::channel_count(mesh);
   out.vertex_count = layout.vertex_count;
   out.triangle_count = layout.triangle_count;
@@ -197,6 +281,20 @@ void decode_cluster(const Asset& asset, const PageBytes& page, ClusterId cluster
     decode_uvs(layout, words.data(), set, stride, raw.data(), channel);
   }
   if (mesh.has_color != 0) decode_colors(layout, words.data(), stride, channel);
+}
+
+}  // namespace
+
+void decode_vertices(const Asset& asset, const PageBytes& page, ClusterId cluster, DecodedCluster& out) {
+  const format::MeshRecord& mesh = mesh_of(asset, cluster);
+  decode_channels(mesh, layout_of(mesh, page.words(), cluster), page.words(), out);
+}
+
+void decode_cluster(const Asset& asset, const PageBytes& page, ClusterId cluster, DecodedCluster& out) {
+  const std::span<const std::uint32_t> words = page.words();
+  const format::MeshRecord& mesh = mesh_of(asset, cluster);
+  const ClusterLayout layout = layout_of(mesh, words, cluster);
+  decode_channels(mesh, layout, words, out);
   decode_topology(layout, words.data(), out.triangles);
   decode_materials(mesh, layout, words.data(), out.triangle_material);
 }
@@ -209,23 +307,33 @@ void decode_attributes(const format::MeshRecord& mesh, const DecodedCluster& clu
   for (std::uint32_t set = 0; set < format::kMaxUvSets; ++set) out.uvs[set].resize(set < mesh.uv_set_count ? count : 0);
   out.colors.resize(mesh.has_color != 0U ? count : 0);
 
+  const std::size_t stride = cluster.channel_count;
+  const std::int32_t* value = cluster.channels.data();
   // mantissa · q has at most 49 bits and the power of two is exact, so this product of doubles is exact; the one
   // rounding is to float, and it too is exact while |mantissa · q| < 2^24.
   const double step = std::ldexp(1.0, mesh.grid.log2) * mesh.grid.mantissa;
   for (std::size_t i = 0; i < count; ++i) {
-    const std::int32_t* value = &cluster.channels[i * cluster.channel_count];
-    for (int axis = 0; axis < 3; ++axis) out.positions[i][axis] = static_cast<float>(step * *value++);
-    if (has_normal) {
-      out.normals[i] = octahedral_normal({value[0], value[1], value[2]});
-      value += 3;
+    const std::int32_t* const q = value + i * stride;
+    out.positions[i] = {static_cast<float>(step * q[0]), static_cast<float>(step * q[1]), static_cast<float>(step * q[2])};
+  }
+  value += 3;
+  if (has_normal) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::int32_t* const q = value + i * stride;
+      out.normals[i] = normal_of(q[0], q[1], q[2]);
     }
-    for (std::uint32_t set = 0; set < mesh.uv_set_count; ++set) {
-      const double uv_step = std::ldexp(1.0, mesh.uv_log2[set]);
-      out.uvs[set][i] = {static_cast<float>(uv_step * value[0]), static_cast<float>(uv_step * value[1])};
-      value += 2;
+    value += 3;
+  }
+  for (std::uint32_t set = 0; set < mesh.uv_set_count; ++set, value += 2) {
+    const double uv_step = std::ldexp(1.0, mesh.uv_log2[set]);
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::int32_t* const q = value + i * stride;
+      out.uvs[set][i] = {static_cast<float>(uv_step * q[0]), static_cast<float>(uv_step * q[1])};
     }
-    if (mesh.has_color != 0U) {
-      for (int k = 0; k < 4; ++k) out.colors[i][k] = static_cast<float>(value[k]) / 255.0F;
+  }
+  if (mesh.has_color != 0U) {
+    for (std::size_t i = 0; i < count; ++i) {
+      for (int k = 0; k < 4; ++k) out.colors[i][k] = static_cast<float>(value[i * stride + static_cast<std::size_t>(k)]) / 255.0F;
     }
   }
 }

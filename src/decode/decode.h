@@ -28,6 +28,9 @@ struct DecodedCluster {
 /// \pre `page` is the loaded page of the cluster's group. Reuses the vectors of `out`.
 void decode_cluster(const Asset& asset, const PageBytes& page, ClusterId cluster, DecodedCluster& out);
 
+/// The same without triangles and materials, for who reads them elsewhere: `out` has its counts and channels.
+void decode_vertices(const Asset& asset, const PageBytes& page, ClusterId cluster, DecodedCluster& out);
+
 /// Float attributes of one cluster, in mesh space (positions relative to MeshRecord::origin).
 struct ClusterAttributes {
   std::vector<Vec3f> positions;
