@@ -10,6 +10,7 @@
 #include "mesh/grid.h"
 #include "validate/file_tables.h"
 #include "verify/source_rules.h"
+#include "verify/texel_budget.h"
 
 namespace meshlode {
 
@@ -186,14 +187,16 @@ void check_tiers(const Asset& asset, RuleLog& log) {
 }
 
 /// V104 and V105 measure every vertex of level 0 against the bounds of the mesh's record; here those bounds are held
-/// against what was asked for. Budgets in texels depend on images and are not in UV units: they are not looked at.
-void check_budgets(const Asset& asset, RuleLog& log) {
+/// against what was asked for, budgets in texels with the source's images at hand.
+void check_budgets(const Asset& asset, const Scene& source, RuleLog& log) {
   log.check("V113");
   const auto setting = [&](const char* key) { return meta_real(asset.meta_json(), "settings", key); };
   const std::optional<double> position = setting("position_error");
   const std::optional<double> normal = setting("normal_error");
   std::optional<double> uv = setting("uv_error");
-  if (meta_text(asset.meta_json(), "settings", "uv_error_unit") != "uv") uv.reset();
+  const std::string uv_unit = meta_text(asset.meta_json(), "settings", "uv_error_unit");
+  if (uv && uv_unit == "texels") check_texel_budget(asset, source, *uv, log);
+  if (uv_unit != "uv") uv.reset();
   constexpr double kRounding = 1.0 + 1e-6;
   for (std::size_t m = 0; m < asset.meshes().size(); ++m) {
     const format::MeshRecord& mesh = asset.meshes()[m];
@@ -227,7 +230,7 @@ void check_scene(const Asset& asset, const Scene& source, RuleLog& log) {
   check_attributes(asset, source, log);
   check_caps(asset, log);
   check_tiers(asset, log);
-  check_budgets(asset, log);
+  check_budgets(asset, source, log);
   const std::string hash = meta_text(asset.meta_json(), "source", "hash");
   log.expect(
       hash == source.source_hash, "V108", [] { return std::string("section META: /source/hash"); },

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "verify/texel_budget.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "mesh/grid.h"
+
+namespace meshlode {
+
+namespace {
+
+using Json = nlohmann::json;
+
+/// A value by its path, or null.
+const Json& at(const Json& value, const char* key) {
+  static const Json nothing;
+  return value.is_object() && value.contains(key) ? value[key] : nothing;
+}
+const Json& at(const Json& value, const Json& index) {
+  static const Json nothing;
+  return value.is_array() && index.is_number_unsigned() && index.get<std::size_t>() < value.size()
+             ? value[index.get<std::size_t>()]
+             : nothing;
+}
+
+struct TextureUse {
+  std::uint64_t set;
+  double texels;
+};
+
+/// What a unit of texture coordinates crosses in the texture that `info` (a glTF textureInfo) names.
+std::optional<TextureUse> texture_use(const Scene& scene, const Json& document, const Json& info) {
+  const Json& image = at(at(document, "images"), at(at(at(document, "textures"), at(info, "index")), "source"));
+  const Json& blob = at(image, "blob");
+  if (!blob.is_number_unsigned() || blob.get<std::size_t>() >= scene.blobs.size()) return std::nullopt;
+  const auto size = stated_image_size(scene.blobs[blob.get<std::size_t>()].bytes);
+  if (!size) return std::nullopt;
+  TextureUse use{0, 0.0};
+  const Json& transform = at(at(info, "extensions"), "KHR_texture_transform");
+  for (const Json* const place : {&info, &transform}) {
+    const Json& set = at(*place, "texCoord");
+    if (set.is_null()) continue;
+    if (!set.is_number_unsigned()) return std::nullopt;
+    use.set = set.get<std::uint64_t>();
+  }
+  const Json& scale = at(transform, "scale");
+  const bool is_scaled = scale.is_array() && scale.size() == 2 && scale[0].is_number() && scale[1].is_number();
+  const double across = size->first * (is_scaled ? std::abs(scale[0].get<double>()) : 1.0);
+  const double down = size->second * (is_scaled ? std::abs(scale[1].get<double>()) : 1.0);
+  use.texels = std::max(across, down);
+  return use;
+}
+
+}  // namespace
+
+std::array<double, kMaxUvSets> most_texels(const Scene& scene, const SourceMesh& mesh) {
+  std::array<double, kMaxUvSets> most{};
+  const Json document = Json::parse(scene.document, nullptr, false);
+  for (const Primitive& primitive : mesh.primitives) {
+    if (primitive.material.value >= scene.materials.size()) continue;
+    // Whatever an extension calls its textures, a textureInfo has an index.
+    std::vector<const Json*> open{&at(at(document, "materials"), Json(scene.materials[primitive.material.value].source_index))};
+    while (!open.empty()) {
+      const Json& value = *open.back();
+      open.pop_back();
+      if (!value.is_structured()) continue;
+      for (const Json& inner : value) open.push_back(&inner);
+      const auto use = texture_use(scene, document, value);
+      if (use && use->set < kMaxUvSets && std::isfinite(use->texels)) most[use->set] = std::max(most[use->set], use->texels);
+    }
+  }
+  return most;
+}
+
+void check_texel_budget(const Asset& asset, const Scene& source, double texels, RuleLog& log) {
+  constexpr double kRounding = 1.0 + 1e-6;
+  for (std::size_t m = 0; m < asset.meshes().size() && m < source.meshes.size(); ++m) {
+    const format::MeshRecord& mesh = asset.meshes()[m];
+    if (mesh.cluster_count == 0 || mesh.uv_set_count == 0) continue;
+    const auto most = most_texels(source, source.meshes[m]);
+    for (std::uint32_t set = 0; set < mesh.uv_set_count; ++set) {
+      if (mesh.uv_set_source[set] >= kMaxUvSets) continue;
+      const double moved = 0.5 * exp2_exact(mesh.uv_log2[set]) * most[mesh.uv_set_source[set]];
+      log.expect(moved <= texels * kRounding, "V113", [&] { return place("mesh", m); },
+                 [&] { return differs("texels that a UV moves", moved, "uv_error in texels", texels); });
+    }
+  }
+}
+
+}  // namespace meshlode

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// UV budgets in texels, held against the images of the source. Finds textures on its own: what the build took them for is
+// what is judged. Internal to the judge.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "mesh/scene.h"
+#include "validate/rules.h"
+#include "read/asset.h"
+
+namespace meshlode {
+
+/// Width and height that an image states. Nothing where this reader (stb_image) does not know its kind.
+[[nodiscard]] std::optional<std::pair<std::uint32_t, std::uint32_t>> stated_image_size(std::span<const std::uint8_t> bytes);
+
+/// For each TEXCOORD_n the most texels that one unit of it crosses in any texture that the mesh's materials name; 0 where
+/// none has a known size.
+[[nodiscard]] std::array<double, kMaxUvSets> most_texels(const Scene& scene, const SourceMesh& mesh);
+
+/// V113 for UVs: half a step of each stored set is at most `texels` texels.
+void check_texel_budget(const Asset& asset, const Scene& source, double texels, RuleLog& log);
+
+}  // namespace meshlode
