@@ -37,6 +37,9 @@ done
 for codec in lz4 strips; do
   "$python" "$here/differ.py" "$dump" patch-$codec.lode $((${STRIDE:-11} * 19)) || failed=1
 done
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >triangle.obj
+"$meshlode" build triangle.obj -o triangle.out --grid 1 --quiet || exit 2
+"$python" "$here/hex_dump.py" "$here/../../docs/format.md" triangle.out || failed=1
 # What it cannot read it says so.
 for codec in zstd draco; do
   "$python" "$here/lode.py" "seeds/reader/scene-$codec.lode" >/dev/null 2>refused.txt
