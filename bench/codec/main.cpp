@@ -7,13 +7,16 @@
 #include <time.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "coding/stored_page.h"
 #include "pack/pack.h"
 #include "read/asset.h"
 #include "unpack/stored_page.h"
@@ -54,6 +57,36 @@ Totals count_triangles(const Asset& asset) {
   for (const format::MeshRecord& mesh : asset.meshes()) totals.source_triangles += static_cast<double>(mesh.source_triangles);
   for (const format::ClusterRecord& cluster : asset.clusters()) totals.stored_triangles += cluster.triangle_count();
   return totals;
+}
+
+/// What the streams of the codec strips weigh, over all pages.
+void print_streams(const Asset& asset, const std::vector<PackedPage>& packed) {
+  static constexpr const char* kNames[] = {"triples", "starts", "lengths", "references", "twins"};
+  const double triangles = count_triangles(asset).source_triangles;
+  std::array<double, kMaxStreams> bytes{};
+  double side = 0.0;
+  double twins = 0.0;
+  double vertices = 0.0;
+  for (const format::ClusterRecord& cluster : asset.clusters()) vertices += cluster.vertex_count();
+  const std::uint32_t streams = kFieldStreams + field_count(asset.meshes()[0]);
+  for (const PackedPage& page : packed) {
+    if (page.codec != format::Codec::kStrips) continue;
+    StoredHeader header;
+    std::memcpy(&header, page.bytes.data(), sizeof(header));
+    side += static_cast<double>(sizeof(header) + header.side_stored + streams * sizeof(std::uint32_t));
+    twins += header.twin_count;
+    for (std::uint32_t s = 0; s < streams; ++s) {
+      std::uint32_t size = 0;
+      std::memcpy(&size, page.bytes.data() + sizeof(header) + header.side_stored + s * sizeof(size), sizeof(size));
+      bytes[s] += size;
+    }
+  }
+  std::printf("    heads, ranges, code lengths %.3f", side / triangles);
+  for (std::uint32_t s = 0; s < streams; ++s) {
+    if (s < kFieldStreams) std::printf(" · %s %.3f", kNames[s], bytes[s] / triangles);
+    else std::printf(" · field %u %.3f", s - kFieldStreams, bytes[s] / triangles);
+  }
+  std::printf(" B/source triangle; %.0f of %.0f vertices are twins\n", twins, vertices);
 }
 
 void measure_codec(const Asset& asset, const std::vector<std::vector<std::uint32_t>>& pages, format::Codec codec,
@@ -100,6 +133,7 @@ void measure_codec(const Asset& asset, const std::vector<std::vector<std::uint32
                 totals.stored_triangles / time * 1e-6);
   }
   std::printf("\n");
+  if (codec == format::Codec::kStrips && asset.meshes().size() == 1) print_streams(asset, packed);
 }
 
 void measure_opening(const std::string& path) {

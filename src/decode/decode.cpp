@@ -10,6 +10,7 @@
 #include <meshlode/page.h>
 
 #include "decode/octahedral.h"
+#include "unpack/processor.h"
 
 namespace meshlode {
 
@@ -65,58 +66,79 @@ void each_pair(const std::uint32_t* words, std::uint32_t bit, const std::uint32_
   }
 }
 
-/// Leaves the raw values behind: texture coordinates are predicted from them.
-void decode_positions(const ClusterLayout& layout, const std::uint32_t* words, std::size_t stride, std::uint32_t* raw,
-                      std::int32_t* out) {
-  const std::uint32_t axis = layout.shear_axis;
-  const std::uint32_t u = axis == 0 ? 1 : 0;
-  const std::uint32_t v = axis == 2 ? 1 : 2;
+/// The shear axis as a constant, everything in registers: this is most of what decoding costs.
+template <std::uint32_t kAxis>
+void decode_sheared(const ClusterLayout& layout, const std::uint32_t* __restrict words, std::size_t stride,
+                    std::uint32_t* __restrict raw, std::int32_t* __restrict out) {
   const std::uint32_t shear_u = bits_of(layout.shear_u);
   const std::uint32_t shear_v = bits_of(layout.shear_v);
-  const std::uint32_t minimum[3] = {bits_of(layout.minimum[0]), bits_of(layout.minimum[1]), bits_of(layout.minimum[2])};
-  const auto place = [&] {
-    const std::int32_t shear = wrap(shear_u * raw[u] + shear_v * raw[v]) >> format::kShearShift;
-    for (std::size_t k = 0; k < 3; ++k) out[k] = wrap(minimum[k] + raw[k]);
-    out[axis] = wrap(bits_of(out[axis]) + bits_of(shear));
-    raw += 3;
-    out += stride;
+  const std::uint32_t low_x = bits_of(layout.minimum[0]);
+  const std::uint32_t low_y = bits_of(layout.minimum[1]);
+  const std::uint32_t low_z = bits_of(layout.minimum[2]);
+  const auto place = [=](std::uint32_t i, std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+    const std::uint32_t u = kAxis == 0 ? y : x;
+    const std::uint32_t v = kAxis == 2 ? y : z;
+    const std::uint32_t shear = bits_of(wrap(shear_u * u + shear_v * v) >> format::kShearShift);
+    std::uint32_t* const raw_at = raw + std::size_t{i} * 3;
+    raw_at[0] = x;
+    raw_at[1] = y;
+    raw_at[2] = z;
+    std::int32_t* const at = out + i * stride;
+    at[0] = wrap(low_x + x + (kAxis == 0 ? shear : 0U));
+    at[1] = wrap(low_y + y + (kAxis == 1 ? shear : 0U));
+    at[2] = wrap(low_z + z + (kAxis == 2 ? shear : 0U));
   };
   const std::uint32_t x_bits = layout.bits[0];
-  const std::uint32_t xy_bits = x_bits + layout.bits[1];
-  const std::uint32_t all_bits = xy_bits + layout.bits[2];
+  const std::uint32_t y_bits = layout.bits[1];
+  const std::uint32_t z_bits = layout.bits[2];
+  const std::uint32_t all_bits = x_bits + y_bits + z_bits;
+  const std::uint32_t count = layout.vertex_count;
   if (all_bits > 32) {
     BitReader reader(words, layout.position_bit);
-    for (std::uint32_t i = 0; i < layout.vertex_count; ++i) {
-      for (std::size_t k = 0; k < 3; ++k) raw[k] = reader.take(layout.bits[k]);
-      place();
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const std::uint32_t x = reader.take(x_bits);
+      const std::uint32_t y = reader.take(y_bits);
+      place(i, x, y, reader.take(z_bits));
     }
     return;
   }
+  const std::uint64_t x_mask = low_mask(x_bits);
+  const std::uint64_t y_mask = low_mask(y_bits);
+  const std::uint64_t z_mask = low_mask(z_bits);
   std::uint32_t bit = layout.position_bit;
-  for (std::uint32_t i = 0; i < layout.vertex_count; ++i, bit += all_bits) {
+  for (std::uint32_t i = 0; i < count; ++i, bit += all_bits) {
     std::uint64_t pair;
     std::memcpy(&pair, words + bit / 32, sizeof(pair));
     pair >>= bit % 32;
-    raw[0] = static_cast<std::uint32_t>(pair & low_mask(x_bits));
-    raw[1] = static_cast<std::uint32_t>(pair >> x_bits & low_mask(layout.bits[1]));
-    raw[2] = static_cast<std::uint32_t>(pair >> xy_bits & low_mask(layout.bits[2]));
-    place();
+    place(i, static_cast<std::uint32_t>(pair & x_mask), static_cast<std::uint32_t>(pair >> x_bits & y_mask),
+          static_cast<std::uint32_t>(pair >> (x_bits + y_bits) & z_mask));
+  }
+}
+
+/// Leaves the raw values behind: texture coordinates are predicted from them.
+void decode_positions(const ClusterLayout& layout, const std::uint32_t* words, std::size_t stride, std::uint32_t* raw,
+                      std::int32_t* out) {
+  switch (layout.shear_axis) {
+    case 0: return decode_sheared<0>(layout, words, stride, raw, out);
+    case 1: return decode_sheared<1>(layout, words, stride, raw, out);
+    default: return decode_sheared<2>(layout, words, stride, raw, out);
   }
 }
 
 /// octahedral_point with its choices as masks, and the axes of the chart for all vertices at once.
 void decode_normals(const ClusterLayout& layout, const std::uint32_t* words, std::int32_t scale, std::size_t stride,
                     std::int32_t* out) {
-  const std::int32_t low[2] = {layout.normal_minimum[0] - scale, layout.normal_minimum[1] - scale};
+  const std::int32_t low_a = layout.normal_minimum[0] - scale;
+  const std::int32_t low_b = layout.normal_minimum[1] - scale;
   const std::uint32_t pole = layout.chart / 2;
-  const std::int32_t side = layout.chart % 2 != 0 ? -1 : 1;
+  const std::int32_t mirror = layout.chart % 2 != 0 ? -1 : 0;
   std::int32_t* const first = out + (pole + 1) % 3;
   std::int32_t* const second = out + (pole + 2) % 3;
   std::int32_t* const third = out + pole;
   each_pair(words, layout.normal_bit, layout.normal_bits, layout.vertex_count,
             [=](std::uint32_t i, std::uint32_t a, std::uint32_t b) {
-              const std::int32_t x = low[0] + wrap(a);
-              const std::int32_t y = low[1] + wrap(b);
+              const std::int32_t x = low_a + wrap(a);
+              const std::int32_t y = low_b + wrap(b);
               const std::int32_t x_sign = x >> 31;  // all ones where negative
               const std::int32_t y_sign = y >> 31;
               const std::int32_t x_size = (x ^ x_sign) - x_sign;
@@ -127,7 +149,7 @@ void decode_normals(const ClusterLayout& layout, const std::uint32_t* words, std
               const std::int32_t far_y = ((scale - x_size) ^ y_sign) - y_sign;
               first[i * stride] = x ^ ((x ^ far_x) & far);
               second[i * stride] = y ^ ((y ^ far_y) & far);
-              third[i * stride] = z * side;
+              third[i * stride] = (z ^ mirror) - mirror;
             });
 }
 
@@ -140,26 +162,27 @@ void decode_uvs(const ClusterLayout& layout, const std::uint32_t* words, std::ui
     const auto get = [range](format::BitField field) { return bits_of(format::get_field(range, field)); };
     const std::uint32_t count = get(f::kVerticesLess1) + 1U;
     const std::uint32_t bits[2] = {get(f::kBitsU), get(f::kBitsV)};
-    const std::uint32_t minimum[2] = {get(f::kMinimumU), get(f::kMinimumV)};
+    const std::uint32_t low_u = get(f::kMinimumU);
+    const std::uint32_t low_v = get(f::kMinimumV);
     if (get(f::kHasFit) != 0) {
-      const std::uint32_t shift[2] = {get(f::kShiftU), get(f::kShiftV)};
-      std::uint32_t slope[2][3];
-      for (std::size_t k = 0; k < 3; ++k) {
-        slope[0][k] = get(f::kFitU[k]);
-        slope[1][k] = get(f::kFitV[k]);
-      }
-      each_pair(words, bit, bits, count, [&](std::uint32_t i, std::uint32_t u, std::uint32_t v) {
-        const std::uint32_t* const r3 = raw + std::size_t{i} * 3;
-        const std::uint32_t u_sum = slope[0][0] * r3[0] + slope[0][1] * r3[1] + slope[0][2] * r3[2];
-        const std::uint32_t v_sum = slope[1][0] * r3[0] + slope[1][1] * r3[1] + slope[1][2] * r3[2];
-        out[i * stride] = wrap(minimum[0] + u + bits_of(wrap(u_sum) >> shift[0]));
-        out[i * stride + 1] = wrap(minimum[1] + v + bits_of(wrap(v_sum) >> shift[1]));
+      const std::uint32_t u_shift = get(f::kShiftU);
+      const std::uint32_t v_shift = get(f::kShiftV);
+      const std::uint32_t ux = get(f::kFitU[0]);
+      const std::uint32_t uy = get(f::kFitU[1]);
+      const std::uint32_t uz = get(f::kFitU[2]);
+      const std::uint32_t vx = get(f::kFitV[0]);
+      const std::uint32_t vy = get(f::kFitV[1]);
+      const std::uint32_t vz = get(f::kFitV[2]);
+      each_pair(words, bit, bits, count, [=](std::uint32_t i, std::uint32_t u, std::uint32_t v) {
+        const std::uint32_t* const at = raw + std::size_t{i} * 3;
+        out[i * stride] = wrap(low_u + u + bits_of(wrap(ux * at[0] + uy * at[1] + uz * at[2]) >> u_shift));
+        out[i * stride + 1] = wrap(low_v + v + bits_of(wrap(vx * at[0] + vy * at[1] + vz * at[2]) >> v_shift));
       });
       range += f::kWords + f::kFitWords;
     } else {
-      each_pair(words, bit, bits, count, [&](std::uint32_t i, std::uint32_t u, std::uint32_t v) {
-        out[i * stride] = wrap(minimum[0] + u);
-        out[i * stride + 1] = wrap(minimum[1] + v);
+      each_pair(words, bit, bits, count, [=](std::uint32_t i, std::uint32_t u, std::uint32_t v) {
+        out[i * stride] = wrap(low_u + u);
+        out[i * stride + 1] = wrap(low_v + v);
       });
       range += f::kWords;
     }
@@ -262,8 +285,8 @@ ClusterLayout layout_of(const format::MeshRecord& mesh, std::span<const std::uin
   return layout;
 }
 
-void decode_channels(const format::MeshRecord& mesh, const ClusterLayout& layout, std::span<const std::uint32_t> words,
-                     DecodedCluster& out) {
+void decode_fields(const format::MeshRecord& mesh, const ClusterLayout& layout, std::span<const std::uint32_t> words,
+                   DecodedCluster& out) {
   const std::size_t stride = format::channel_count(mesh);
   out.vertex_count = layout.vertex_count;
   out.triangle_count = layout.triangle_count;
@@ -281,6 +304,21 @@ void decode_channels(const format::MeshRecord& mesh, const ClusterLayout& layout
     decode_uvs(layout, words.data(), set, stride, raw.data(), channel);
   }
   if (mesh.has_color != 0) decode_colors(layout, words.data(), stride, channel);
+}
+
+#if MESHLODE_HAS_BMI2_PATH
+MESHLODE_FOR_BMI2 void decode_fields_with_bmi2(const format::MeshRecord& mesh, const ClusterLayout& layout,
+                                               std::span<const std::uint32_t> words, DecodedCluster& out) {
+  decode_fields(mesh, layout, words, out);
+}
+#endif
+
+void decode_channels(const format::MeshRecord& mesh, const ClusterLayout& layout, std::span<const std::uint32_t> words,
+                     DecodedCluster& out) {
+#if MESHLODE_HAS_BMI2_PATH
+  if (has_bmi2()) return decode_fields_with_bmi2(mesh, layout, words, out);
+#endif
+  decode_fields(mesh, layout, words, out);
 }
 
 }  // namespace
