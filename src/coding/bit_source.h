@@ -22,7 +22,7 @@ using CodeTable = std::array<std::uint16_t, std::size_t{1} << kMaxCodeBits>;
 [[nodiscard]] inline std::uint64_t load_bits(const std::uint8_t* buffer, std::uint64_t at) {
   std::uint64_t word;
   std::memcpy(&word, buffer + at / 8, sizeof(word));
-  return word >> at % 8;  // at least 57 bits: a code and its raw bits, or two codes whose numbers are below 2^20
+  return word >> at % 8;  // at least 57 bits: a code and its raw bits, or five times kQuickBits
 }
 
 /// Takes the code and raw bits at the front of `bits` and moves on.
@@ -46,6 +46,14 @@ using CodeTable = std::array<std::uint16_t, std::size_t{1} << kMaxCodeBits>;
   std::uint64_t bits = load_bits(buffer, at);
   return next_symbol(bits, at, table);
 }
+
+/// What most numbers are read by: the next kQuickBits bits say a whole number, raw bits too, as its bits | number << 4. 0
+/// where the number is longer than that, and is read by the CodeTable.
+constexpr std::uint32_t kQuickBits = 11;
+using QuickTable = std::array<std::uint16_t, std::size_t{1} << kQuickBits>;
+
+/// \pre fill_code_table was content with the same
+void fill_quick_table(std::span<const std::uint8_t> lengths, bool is_value, QuickTable& table);
 
 /// False where the lengths are no prefix code. `is_value`: symbols are those of token_of.
 [[nodiscard]] bool fill_code_table(std::span<const std::uint8_t> lengths, bool is_value, CodeTable& table);

@@ -20,27 +20,42 @@ constexpr std::size_t kPaddingBytes = kChunk * 5 + 16;
 template <class Word>
 struct Lane {
   const CodeTable* table = nullptr;
+  const QuickTable* quick = nullptr;
   std::uint64_t at = 0, end = 0;  ///< bits from the buffer's start
   Word* out = nullptr;
 };
 
+/// Numbers taken from one look at a stream; a long one looks again.
+constexpr std::uint32_t kAtOnce = 4;
+static_assert(kAtOnce * kQuickBits <= 57);
+
 /// Reads the numbers from `first` to `count` of each lane and writes them kStride words apart. Lanes in the mask kSymbols
-/// hold symbols. kAtOnce numbers are taken from one look at a stream: 2 where they are below 2^20, else 1.
-template <std::uint32_t kAtOnce, std::uint32_t kSymbols, std::size_t kStride, std::size_t kLanes, class Word>
+/// hold symbols.
+template <std::uint32_t kSymbols, std::size_t kStride, std::size_t kLanes, class Word>
 bool read_lanes(const std::uint8_t* buffer, std::array<Lane<Word>, kLanes>& lanes, std::uint32_t first, std::uint32_t count) {
   for (std::uint32_t done = first; done < count;) {
     const std::uint32_t chunk = std::min(kChunk, count - done);
     std::array<std::uint64_t, kLanes> at;
-    std::array<const CodeTable*, kLanes> tables;
+    std::array<const QuickTable*, kLanes> quick;
     std::array<Word*, kLanes> out;
     for (std::size_t k = 0; k < kLanes; ++k) {
       at[k] = lanes[k].at;
-      tables[k] = lanes[k].table;
+      quick[k] = lanes[k].quick;
       out[k] = lanes[k].out + done * kStride;
     }
     const auto take = [&](std::uint64_t& bits, std::size_t k) {
-      return static_cast<Word>((kSymbols >> k & 1U) != 0 ? next_symbol(bits, at[k], *tables[k])
-                                                         : next_value(bits, at[k], *tables[k]));
+      const std::uint32_t entry = (*quick[k])[bits & ((std::uint64_t{1} << kQuickBits) - 1)];
+      const std::uint32_t size = entry & 15U;
+      if (size != 0) [[likely]] {
+        at[k] += size;
+        bits >>= size;
+        return static_cast<Word>(entry >> 4U);
+      }
+      bits = load_bits(buffer, at[k]);
+      const std::uint32_t value = (kSymbols >> k & 1U) != 0 ? next_symbol(bits, at[k], *lanes[k].table)
+                                                            : next_value(bits, at[k], *lanes[k].table);
+      bits = load_bits(buffer, at[k]);
+      return static_cast<Word>(value);
     };
     std::size_t i = 0;
     for (; i + kAtOnce <= chunk; i += kAtOnce) {
@@ -67,11 +82,8 @@ bool read_lanes(const std::uint8_t* buffer, std::array<Lane<Word>, kLanes>& lane
 template <class L>
 class PrefixReader {
  public:
-  /// Fields of few bits have numbers of few bits.
-  static constexpr std::uint32_t kFieldsAtOnce = L::kLanes == NarrowLanes::kLanes ? 2 : 1;
-
   PrefixReader(const format::MeshRecord& mesh, const StreamBytes& streams, const StreamCounts& counts, StripValues<L>& out)
-      : mesh_(mesh), streams_(streams), counts_(counts), out_(out), tables_(new CodeTable[kMaxTables]) {
+      : mesh_(mesh), streams_(streams), counts_(counts), out_(out), tables_(new CodeTable[kMaxTables]), quick_(new QuickTable[kMaxTables]) {
     buffer_.resize(streams.bytes.size() + kPaddingBytes);
     std::copy(streams.bytes.begin(), streams.bytes.end(), buffer_.data());
     std::fill_n(buffer_.data() + streams.bytes.size(), kPaddingBytes, std::uint8_t{0});
@@ -87,6 +99,7 @@ class PrefixReader {
     for (std::uint32_t t = 0; t < kUvTables + mesh_.uv_set_count; ++t) {
       const bool is_value = symbol_count(t) == kValueSymbols;
       if (!fill_code_table(code_lengths.first(symbol_count(t)), is_value, tables_[t])) return false;
+      fill_quick_table(code_lengths.first(symbol_count(t)), is_value, quick_[t]);
       code_lengths = code_lengths.subspan(symbol_count(t));
     }
     for (std::uint32_t s = 0; s < kFieldStreams; ++s) out_.streams[s].resize(counts_.count[s]);
@@ -115,8 +128,8 @@ class PrefixReader {
  private:
   template <class Word>
   Lane<Word> lane(std::uint32_t stream, Word* out) const {
-    return {&tables_[table_of_stream(mesh_, stream)], starts_[stream],
-            starts_[stream] + std::uint64_t{streams_.size[stream]} * 8, out};
+    const std::uint32_t table = table_of_stream(mesh_, stream);
+    return {&tables_[table], &quick_[table], starts_[stream], starts_[stream] + std::uint64_t{streams_.size[stream]} * 8, out};
   }
 
   /// Two streams side by side as far as both go, then the rest of the longer one. The same stream twice: once.
@@ -124,11 +137,11 @@ class PrefixReader {
   bool read_pair(std::uint32_t a, std::uint32_t b) {
     std::array<Lane<std::uint32_t>, 2> lanes{lane(a, out_.streams[a].data()), lane(b, out_.streams[b].data())};
     const std::uint32_t both = a == b ? 0U : std::min(counts_.count[a], counts_.count[b]);
-    if (!read_lanes<2, kSymbols, 1>(buffer_.data(), lanes, 0, both)) return false;
+    if (!read_lanes<kSymbols, 1>(buffer_.data(), lanes, 0, both)) return false;
     std::array<Lane<std::uint32_t>, 1> first{lanes[0]};
     std::array<Lane<std::uint32_t>, 1> second{lanes[1]};
-    return read_lanes<2, kSymbols & 1U, 1>(buffer_.data(), first, both, counts_.count[a]) &&
-           (a == b || read_lanes<2, kSymbols / 2, 1>(buffer_.data(), second, both, counts_.count[b]));
+    return read_lanes<kSymbols & 1U, 1>(buffer_.data(), first, both, counts_.count[a]) &&
+           (a == b || read_lanes<kSymbols / 2, 1>(buffer_.data(), second, both, counts_.count[b]));
   }
 
   template <std::size_t kLanes>
@@ -138,7 +151,7 @@ class PrefixReader {
       const std::uint32_t slot = slot_of(first + k);
       lanes[k] = lane(kFieldStreams + first + k, out_.errors[slot / L::kLanes].data()->lane + slot % L::kLanes);
     }
-    return read_lanes<kFieldsAtOnce, 0, L::kLanes>(buffer_.data(), lanes, 0, counts_.count[kFieldStreams]);
+    return read_lanes<0, L::kLanes>(buffer_.data(), lanes, 0, counts_.count[kFieldStreams]);
   }
 
   const format::MeshRecord& mesh_;
@@ -148,6 +161,7 @@ class PrefixReader {
   Room<std::uint8_t> buffer_;
   std::array<std::uint64_t, kMaxStreams> starts_{};
   std::unique_ptr<CodeTable[]> tables_;
+  std::unique_ptr<QuickTable[]> quick_;
 };
 
 #if MESHLODE_HAS_BMI2_PATH

@@ -88,6 +88,35 @@ TEST(PrefixCode, NumbersOfEverySizeComeBack) {
   }
 }
 
+/// The quick table says what the other one says, or nothing.
+TEST(PrefixCode, QuickTablesAgree) {
+  test::Random random(11);
+  for (int round = 0; round < 200; ++round) {
+    const bool is_value = round % 2 == 0;
+    std::vector<std::uint64_t> counts(is_value ? kValueSymbols : 216U);
+    const std::uint64_t used = round < 4 ? 1 : 1 + random.below(counts.size());
+    for (std::uint64_t k = 0; k < used; ++k) counts[random.below(counts.size())] += 1 + random.below(1000);
+    const auto lengths = choose_code_lengths(counts);
+    CodeTable slow;
+    QuickTable quick;
+    ASSERT_TRUE(fill_code_table(lengths, is_value, slow));
+    fill_quick_table(lengths, is_value, quick);
+    std::size_t said = 0;
+    for (std::uint64_t bits = 0; bits < quick.size(); ++bits) {
+      if (quick[bits] == 0) continue;
+      ++said;
+      std::uint64_t rest = bits;
+      std::uint64_t at = 0;
+      const std::uint32_t value = is_value ? next_value(rest, at, slow) : next_symbol(rest, at, slow);
+      ASSERT_EQ(quick[bits] >> 4U, value) << "round " << round << ", bits " << bits;
+      ASSERT_EQ(quick[bits] & 15U, at);
+    }
+    if (!is_value) {
+      EXPECT_EQ(said, quick.size()) << "symbols are never longer";
+    }
+  }
+}
+
 TEST(PrefixCode, LengthsThatAreNoCodeAreRefused) {
   CodeTable table;
   std::vector<std::uint8_t> lengths(kValueSymbols, 0);
