@@ -7,20 +7,14 @@
 #include <cstring>
 
 #include "gpu/frame.h"
+#include "gpu/push.h"
 #include "gpu/shaders.h"
 
 namespace meshlode::gpu {
 
 namespace {
 
-struct Push {
-  std::uint64_t frame = 0;
-  std::uint32_t pass = 0, depth = 0, a = 0, b = 0;
-};
-
-constexpr std::uint32_t kGroupSize = 64;
 constexpr std::uint32_t kPersistentGroups = 1024;  ///< more than any device runs at once do no harm: they find nothing
-constexpr std::uint32_t kGroupRow = 32768;  ///< as in common.glsl
 
 std::uint64_t arguments_of(std::uint32_t stage) {
   return offsetof(GpuCounters, stages) + sizeof(GpuStage) * stage + offsetof(GpuStage, x);
@@ -183,6 +177,7 @@ Status Renderer::make_pipelines() {
                            {&flat_, shaders::flat()},
                            {&clusters_, shaders::clusters()},
                            {&raster_, shaders::raster()},
+                           {&sort_, shaders::sort()},
                            {&raster_far_, shaders::raster_far()},
                            {&roots_, shaders::roots()},
                            {&raster_clip_, shaders::raster_clip()},
@@ -362,113 +357,6 @@ Result<FrameReport> Renderer::draw(const Camera& camera, double pixel_error, dou
     if (const Status s = clear_lists(); !s) return s.error();  // places may be left that nobody took
     has_last_ = false;
   }
-  return out;
-}
-
-Result<GpuCounters> Renderer::read_counters() {
-  GpuCounters out{};
-  const std::span<std::uint8_t> bytes(reinterpret_cast<std::uint8_t*>(&out), sizeof out);
-  if (const Status s = device_.download(counters_block_, bytes); !s) return s.error();
-  return out;
-}
-
-Result<std::vector<GpuVisible>> Renderer::read_visible() {
-  const auto counters = read_counters();
-  if (!counters) return counters.error();
-  std::vector<GpuVisible> out(std::min(counters->stages[STAGE_SLOTS].count, frame_.slot_capacity));
-  const std::span<std::uint8_t> bytes(reinterpret_cast<std::uint8_t*>(out.data()), out.size() * sizeof(GpuVisible));
-  if (const Status s = device_.download(visible_, bytes); !s) return s.error();
-  return out;
-}
-
-Result<std::vector<Renderer::Item>> Renderer::read_items() {
-  const auto counters = read_counters();
-  if (!counters) return counters.error();
-  const auto visible = read_visible();
-  if (!visible) return visible.error();
-  const std::uint32_t front = std::min(counters->stages[STAGE_SOFTWARE].count, frame_.item_capacity);
-  const std::uint32_t back = std::min(counters->stages[STAGE_HARDWARE].count, frame_.item_capacity - front);
-  std::vector<std::array<std::uint32_t, 2>> pairs(std::size_t{front} + back);
-  const std::span<std::uint8_t> bytes(reinterpret_cast<std::uint8_t*>(pairs.data()), pairs.size() * 8);
-  if (const Status s = device_.download(items_, bytes.first(std::size_t{front} * 8)); !s) return s.error();
-  if (const Status s = device_.download(items_, bytes.subspan(std::size_t{front} * 8),
-                                        std::uint64_t{frame_.item_capacity - back} * 8);
-      !s) {
-    return s.error();
-  }
-  std::vector<Item> out;
-  for (const auto& [marked_slot, cluster] : pairs) {
-    const std::uint32_t slot = marked_slot & ITEM_SLOT;
-    if (slot >= visible->size()) return Error{ErrorCode::kCheckFailed, "items", "a slot that no instance has"};
-    out.push_back({{InstanceId((*visible)[slot].instance), ClusterId(cluster)}, marked_slot});
-  }
-  std::sort(out.begin(), out.end(), [](const Item& a, const Item& b) { return a.key < b.key; });
-  return out;
-}
-
-Result<std::vector<ClusterInstance>> Renderer::read_cut() {
-  const auto items = read_items();
-  if (!items) return items.error();
-  std::vector<ClusterInstance> out;
-  for (const Item& item : *items) out.push_back(item.key);
-  return out;
-}
-
-Status Renderer::redraw_in_order() {
-  const auto items = read_items();
-  if (!items) return items.error();
-  std::vector<std::array<std::uint32_t, 2>> pairs;
-  for (const Item& item : *items) pairs.push_back({item.slot, item.key.cluster.value});
-  const std::span<const std::uint8_t> bytes(reinterpret_cast<const std::uint8_t*>(pairs.data()), pairs.size() * 8);
-  if (const Status s = device_.upload(items_, bytes); !s) return s.error();
-  GpuCounters counters = counters_;
-  const auto count = static_cast<std::uint32_t>(pairs.size());
-  counters.stages[STAGE_SOFTWARE] = {count, std::min(count, kGroupRow), (count + kGroupRow - 1) / kGroupRow, 1};
-  counters.stages[STAGE_HARDWARE] = counters.stages[STAGE_SOFTWARE];  // the far ones' pass looks at all items too
-  counters.stages[STAGE_HARDWARE].count = 0;
-  const auto before = read_counters();  // the slots stay
-  if (!before) return before.error();
-  counters.stages[STAGE_SLOTS] = before->stages[STAGE_SLOTS];
-  std::memcpy(upload_.mapped(), &frame_, sizeof frame_);
-  std::memcpy(upload_.mapped() + sizeof frame_, &counters, sizeof counters);
-  if (const auto ran = lists_[1].run(); !ran) return ran.error();
-  return Ok{};
-}
-
-Result<VisibilityBuffer> Renderer::read_pixels() {
-  std::vector<std::uint64_t> values(std::size_t{frame_.width} * frame_.height);
-  const std::span<std::uint8_t> bytes(reinterpret_cast<std::uint8_t*>(values.data()), values.size() * 8);
-  if (const Status s = device_.download(pixels_, bytes); !s) return s.error();
-  VisibilityBuffer out = make_visibility_buffer(frame_.width, frame_.height);
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (values[i] == 0) continue;
-    const std::uint32_t key = ~static_cast<std::uint32_t>(values[i]);
-    out.depth[i] = static_cast<std::uint32_t>(values[i] >> 32);
-    out.item[i] = key >> 8;
-    out.triangle[i] = key & 0xFFu;
-  }
-  return out;
-}
-
-Result<Renderer::Resolved> Renderer::resolve(std::uint32_t view, std::uint32_t level_count) {
-  const std::array<std::uint32_t, 4> constants = {0, 0, 0, view};
-  const auto pipeline = device_.make_compute(shaders::resolve(), constants);
-  if (!pipeline) return pipeline.error();
-  auto list = Commands::begin(device_);
-  if (!list) return list.error();
-  const Push push{frame_block_.address(), 0, 0, 0, level_count};
-  list->stamp("begin");
-  list->dispatch(*pipeline, bytes_of(push), (frame_.width * frame_.height + kGroupSize - 1) / kGroupSize);
-  list->barrier();
-  list->stamp("resolve");
-  const auto times = list->run();
-  if (!times) return times.error();
-  Resolved out;
-  out.milliseconds = times->empty() ? 0.0 : times->front().milliseconds;
-  out.image.width = frame_.width;
-  out.image.height = frame_.height;
-  out.image.rgba.resize(std::size_t{frame_.width} * frame_.height * 4);
-  if (const Status s = device_.download(colors_, out.image.rgba); !s) return s.error();
   return out;
 }
 

@@ -116,7 +116,7 @@ class Renderer {
   Buffer frame_block_, counters_block_, upload_;
   Buffer visible_, queue_, open_groups_, items_, retry_nodes_, retry_clusters_, retry_instances_, clipped_, pixels_,
       pyramid_, overdraw_, colors_;
-  Pipeline instances_, traverse_, persistent_, flat_, roots_, raster_far_, hardware_, clusters_, raster_, raster_clip_, pyramid_build_, pyramid_top_;
+  Pipeline instances_, traverse_, persistent_, flat_, roots_, raster_far_, sort_, hardware_, clusters_, raster_, raster_clip_, pyramid_build_, pyramid_top_;
   std::vector<Commands> lists_;  ///< 0: the frame, 1: drawing in order
   bool has_last_ = false;
 };

@@ -38,6 +38,9 @@ constexpr std::uint32_t kRasterFar[] = {
 constexpr std::uint32_t kResolve[] = {
 #include "resolve.comp.inc"
 };
+constexpr std::uint32_t kSort[] = {
+#include "sort.comp.inc"
+};
 constexpr std::uint32_t kFlat[] = {
 #include "flat.comp.inc"
 };
@@ -91,6 +94,9 @@ std::span<const std::uint32_t> raster_far() {
 }
 std::span<const std::uint32_t> resolve() {
   return kResolve;
+}
+std::span<const std::uint32_t> sort() {
+  return kSort;
 }
 std::span<const std::uint32_t> flat() {
   return kFlat;

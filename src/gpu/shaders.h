@@ -16,6 +16,7 @@ namespace meshlode::gpu::shaders {
 [[nodiscard]] std::span<const std::uint32_t> pyramid_top();
 [[nodiscard]] std::span<const std::uint32_t> decode();
 [[nodiscard]] std::span<const std::uint32_t> flat();
+[[nodiscard]] std::span<const std::uint32_t> sort();
 [[nodiscard]] std::span<const std::uint32_t> resolve();
 [[nodiscard]] std::span<const std::uint32_t> raster_far();
 [[nodiscard]] std::span<const std::uint32_t> roots();
