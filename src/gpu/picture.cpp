@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "decode/decode.h"
 #include "raster/cut_pages.h"
+#include "raster/legend.h"
 #include "raster/projection.h"
 
 namespace meshlode::gpu {
@@ -31,6 +32,7 @@ Vec3d corner_weights(const ClipVertex& a, const ClipVertex& b, const ClipVertex&
 struct PixelPoint {
   std::uint32_t instance = 0xFFFFFFFFu;
   Vec3d point{0.0};
+  Vec3d normal{0.0};  ///< for shading, mesh space, any length
 };
 
 Result<std::vector<PixelPoint>> unproject(const Asset& asset, std::span<const ClusterInstance> cut,
@@ -50,6 +52,8 @@ Result<std::vector<PixelPoint>> unproject(const Asset& asset, std::span<const Cl
     const double step = std::ldexp(static_cast<double>(mesh.grid.mantissa), mesh.grid.log2);
     DecodedCluster cluster;
     pages->decode(asset, cut[item].cluster, cluster);
+    ClusterAttributes attributes;
+    decode_attributes(mesh, cluster, attributes);
     for (const std::uint32_t pixel : pixels_of[item]) {
       const auto& t = cluster.triangles[drawn.triangle[pixel]];
       const double px = pixel % drawn.width + 0.5 - 0.5 * drawn.width;
@@ -59,7 +63,13 @@ Result<std::vector<PixelPoint>> unproject(const Asset& asset, std::span<const Cl
                          to_clip.project(cluster.position(t[2])), px, py);
       Vec3d q(0.0);
       for (int k = 0; k < 3; ++k) q += Vec3d(cluster.position(t[static_cast<std::size_t>(k)])) * weights[k];
-      out[pixel] = {cut[item].instance.value, Vec3d(mesh.origin[0], mesh.origin[1], mesh.origin[2]) + step * q};
+      const Vec3d a(cluster.position(t[0])), b(cluster.position(t[1])), c(cluster.position(t[2]));
+      Vec3d normal = glm::cross(b - a, c - a);
+      if (!attributes.normals.empty()) {
+        normal = Vec3d(0.0);
+        for (int k = 0; k < 3; ++k) normal += Vec3d(attributes.normals[t[static_cast<std::size_t>(k)]]) * weights[k];
+      }
+      out[pixel] = {cut[item].instance.value, Vec3d(mesh.origin[0], mesh.origin[1], mesh.origin[2]) + step * q, normal};
     }
   });
   return out;
@@ -75,6 +85,11 @@ double pixels_per_unit_at(const raster::Projection& projection, const format::In
     world[row] = m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3] - projection.eye[row];
   }
   return projection.pixels_per_unit * instance.scale / std::max(glm::length(world), projection.near_distance);
+}
+
+double degrees_between(const Vec3d& a, const Vec3d& b) {
+  const double sine = glm::length(glm::cross(a, b)), cosine = glm::dot(a, b);
+  return std::atan2(sine, cosine) * (180.0 / 3.14159265358979323846);
 }
 
 struct Displacement {
@@ -96,13 +111,22 @@ std::vector<Displacement> displace(const Asset& asset, const raster::Projection&
   return out;
 }
 
-bool is_covered_around(const VisibilityBuffer& buffer, std::uint32_t x, std::uint32_t y) {
+/// One surface around a pixel of the full resolution: covered within kHoleRadius, and without a jump to a neighbour.
+bool is_one_surface_around(const Asset& asset, const raster::Projection& projection, const VisibilityBuffer& full,
+                           const std::vector<PixelPoint>& points, std::uint32_t x, std::uint32_t y) {
   for (int dy = -kHoleRadius; dy <= kHoleRadius; ++dy) {
     for (int dx = -kHoleRadius; dx <= kHoleRadius; ++dx) {
       const std::int64_t px = std::int64_t{x} + dx, py = std::int64_t{y} + dy;
-      if (px < 0 || py < 0 || px >= buffer.width || py >= buffer.height) return false;
-      const std::size_t at = static_cast<std::size_t>(py) * buffer.width + static_cast<std::size_t>(px);
-      if (buffer.item[at] == VisibilityBuffer::kNothing) return false;
+      if (px < 0 || py < 0 || px >= full.width || py >= full.height) return false;
+      const std::size_t at = static_cast<std::size_t>(py) * full.width + static_cast<std::size_t>(px);
+      if (full.item[at] == VisibilityBuffer::kNothing) return false;
+      for (const std::size_t next : {at + 1, at + full.width}) {
+        if (dx == kHoleRadius || dy == kHoleRadius) continue;
+        if (full.item[next] == VisibilityBuffer::kNothing || points[next].instance != points[at].instance) return false;
+        const format::InstanceRecord& instance = asset.instances()[points[at].instance];
+        const double apart = glm::length(points[next].point - points[at].point);
+        if (apart * pixels_per_unit_at(projection, instance, points[at].point) > kJumpPixels) return false;
+      }
     }
   }
   return true;
@@ -150,8 +174,10 @@ Result<PictureReport> judge_picture(const Asset& asset, std::span<const Triangle
   const auto back = displace(asset, *projection, *full_points, pixel_error, cut_of);
 
   PictureReport out;
-  out.displacement_px.resize(there.size(), 0.0F);
-  double sum = 0.0;
+  out.displacement_px.resize(there.size(), -1.0F);
+  out.depth_difference.resize(there.size(), -1.0F);
+  out.normal_degrees.resize(there.size(), -1.0F);
+  double sum = 0.0, normal_sum = 0.0;
   for (std::size_t i = 0; i < there.size(); ++i) {
     const bool is_cut = drawn.item[i] != VisibilityBuffer::kNothing,
                is_full = full->item[i] != VisibilityBuffer::kNothing;
@@ -160,12 +186,24 @@ Result<PictureReport> judge_picture(const Asset& asset, std::span<const Triangle
     out.only_cut += is_cut && !is_full ? 1 : 0;
     out.only_source += is_full && !is_cut ? 1 : 0;
     const auto x = static_cast<std::uint32_t>(i % drawn.width), y = static_cast<std::uint32_t>(i / drawn.width);
-    if (!is_cut && is_covered_around(*full, x, y)) ++out.holes;
+    if (!is_cut && is_one_surface_around(asset, *projection, *full, *full_points, x, y)) ++out.holes;
     if (is_cut && is_full && drawn.depth[i] > 0) {
       const double difference = std::abs(double{drawn.depth[i] * 1.0} - full->depth[i] * 1.0);
-      out.largest_depth = std::max(out.largest_depth, difference / std::max(1.0, full->depth[i] * 1.0));
+      const double relative = difference / std::max(1.0, full->depth[i] * 1.0);
+      out.largest_depth = std::max(out.largest_depth, relative);
+      out.depth_difference[i] = static_cast<float>(relative);
     }
-    out.displacement_px[i] = static_cast<float>(there[i].px);
+    const PixelPoint& p = (*cut_points)[i];
+    const PixelPoint& q = (*full_points)[i];
+    if (is_cut && is_full && p.instance == q.instance && glm::dot(p.normal, p.normal) > 0.0 &&
+        glm::dot(q.normal, q.normal) > 0.0) {
+      const double degrees = degrees_between(p.normal, q.normal);
+      out.normal_degrees[i] = static_cast<float>(degrees);
+      out.largest_normal_degrees = std::max(out.largest_normal_degrees, degrees);
+      normal_sum += degrees;
+      ++out.normals;
+    }
+    if (is_cut) out.displacement_px[i] = static_cast<float>(there[i].px);
     for (const Displacement& d : {there[i], back[i]}) {
       if (d.allowed == 0.0) continue;
       ++out.points;
@@ -175,8 +213,26 @@ Result<PictureReport> judge_picture(const Asset& asset, std::span<const Triangle
     }
     sum += there[i].px;
   }
+  out.mean_normal_degrees = out.normals > 0 ? normal_sum / static_cast<double>(out.normals) : 0.0;
   out.mean_px = out.covered > 0 ? sum / static_cast<double>(out.covered) : 0.0;
   return out;
+}
+
+Image heat_map(std::span<const float> values, std::uint32_t width, std::uint32_t height, float full) {
+  Image image;
+  image.width = width;
+  image.height = height;
+  image.rgba.assign(values.size() * 4, 255);
+  constexpr std::uint32_t kSteps = 256;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    raster::Rgb color{0.85, 0.85, 0.85};
+    if (values[i] >= 0.0F) {
+      const double share = std::min(1.0, static_cast<double>(values[i]) / static_cast<double>(full));
+      color = raster::level_color(static_cast<std::uint32_t>(share * (kSteps - 1)), kSteps);
+    }
+    for (std::size_t k = 0; k < 3; ++k) image.rgba[4 * i + k] = raster::to_display(color[k]);
+  }
+  return image;
 }
 
 }  // namespace meshlode::gpu

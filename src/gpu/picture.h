@@ -19,7 +19,8 @@ struct PictureReport {
   std::uint64_t covered = 0;                    ///< pixels of the cut
   std::uint64_t covered_source = 0;             ///< pixels of the full resolution
   std::uint64_t only_cut = 0, only_source = 0;  ///< covered in one alone: the silhouettes differ there
-  /// Background in the cut where the full resolution covers every pixel within `kHoleRadius`: seen through a mesh.
+  /// Background in the cut where the full resolution shows one surface without a jump within `kHoleRadius`: seen through
+  /// a mesh. Where one part of a mesh hides another's border, moving both by a pixel may open a gap that is no hole.
   std::uint64_t holes = 0;
   double largest_px = 0.0;             ///< displacement of any pixel's surface point, both ways
   double mean_px = 0.0;                ///< over the cut's pixels
@@ -27,16 +28,25 @@ struct PictureReport {
   std::uint64_t exceeded = 0;          ///< pixels displaced by more than max(t, level 0's own deviation) allows
   std::uint64_t points = 0;            ///< compared, both ways
   double largest_depth = 0.0;          ///< difference over distance, where both are covered
-  std::vector<float> displacement_px;  ///< of the cut's pixels, 0 elsewhere: a heat map
+  double mean_normal_degrees = 0.0;    ///< between shading normals (faces', where none are stored), where both cover
+  double largest_normal_degrees = 0.0;
+  std::uint64_t normals = 0;           ///< compared
+  /// Heat maps, a value a pixel: of the cut's pixels; of those that both cover; -1 elsewhere.
+  std::vector<float> displacement_px, depth_difference, normal_degrees;
 };
 
 /// Silhouettes may move by a pixel, and a pixel is one sample.
 constexpr int kHoleRadius = 2;
+/// Points of neighbouring pixels that are farther from each other than this, in pixels, are a jump.
+constexpr double kJumpPixels = 6.0;
 
 /// `source`: one tree per mesh over its source, mesh space. `cut` was drawn into `drawn`; the full resolution is level
 /// 0. `tolerance`: of the promise, 1.05 in the measured tier.
 [[nodiscard]] Result<PictureReport> judge_picture(const Asset& asset, std::span<const TriangleTree> source,
                                                   std::span<const ClusterInstance> cut, const VisibilityBuffer& drawn,
                                                   const Camera& camera, double pixel_error, double tolerance);
+
+/// Blue at 0, red at `full` and above, grey where there is nothing.
+[[nodiscard]] Image heat_map(std::span<const float> values, std::uint32_t width, std::uint32_t height, float full);
 
 }  // namespace meshlode::gpu

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <tuple>
 
+#include "base/file.h"
 #include "gpu/judge.h"
 #include "gpu/picture.h"
 
@@ -27,6 +28,61 @@ std::string format_px(const char* text, double value) {
   char out[64];
   std::snprintf(out, sizeof out, text, value);
   return out;
+}
+
+PictureReport without_maps(const PictureReport& picture) {
+  PictureReport out = picture;
+  out.displacement_px.clear();
+  out.depth_difference.clear();
+  out.normal_degrees.clear();
+  return out;
+}
+
+Status write_maps(const GpuVerifyOptions& options, const PictureReport& picture, JudgedCamera& judged) {
+  if (options.out_folder.empty()) return Ok{};
+  const Camera& camera = judged.camera.camera;
+  std::string name = judged.camera.name;
+  std::replace(name.begin(), name.end(), ' ', '-');
+  name += "-" + std::to_string(camera.width) + "x" + std::to_string(camera.height) + ".png";
+  const struct {
+    const char* kind;
+    const std::vector<float>& values;
+    double full;
+  } maps[] = {{"displacement-", picture.displacement_px, options.pixel_error},
+              {"depth-", picture.depth_difference, 0.01},
+              {"normal-", picture.normal_degrees, 30.0}};
+  for (const auto& map : maps) {
+    const Image image = heat_map(map.values, camera.width, camera.height, static_cast<float>(map.full));
+    if (const Status s = write_file_atomically(options.out_folder + "/" + map.kind + name, encode_png(image)); !s) return s;
+    judged.maps.push_back(map.kind + name);
+  }
+  return Ok{};
+}
+
+/// Every cluster by the hardware, from the adversarial cameras that the hardware's floats can hold.
+Status judge_hardware(Device& device, const GpuScene& scene, const Asset& asset, const GpuVerifyOptions& options,
+                      bool by_mesh_shaders, GpuCheck& check) {
+  check.is_skipped = by_mesh_shaders && !device.info().has_mesh_shaders;
+  if (check.is_skipped) {
+    check.what += " (the device has none)";
+    return Ok{};
+  }
+  RendererOptions raster;
+  raster.width = kSizes[0].width;
+  raster.height = kSizes[0].height;
+  raster.frustum = false;
+  raster.double_sided = scene.has_double_sided;
+  raster.hardware = by_mesh_shaders ? HardwarePath::kMesh : HardwarePath::kVertex;
+  raster.hardware_pixels = 0.0F;
+  auto renderer = Renderer::make(device, scene, raster);
+  if (!renderer) return renderer.error();
+  for (const NamedCamera& named : adversarial_cameras(asset, raster.width, raster.height)) {
+    if (named.name == "keyhole" || named.name == "wide") continue;  // floats of the clip coordinates are too coarse there
+    const auto result = compare_hardware(*renderer, asset, named.camera, options.pixel_error);
+    if (!result) return result.error();
+    add(check, *result, named.name);
+  }
+  return Ok{};
 }
 
 /// Every edge, by the positions of its ends, is used as often one way as the other.
@@ -96,6 +152,8 @@ Result<GpuVerifyReport> verify_on_gpu(const Asset& asset, std::span<const Surfac
   const bool all_closed = std::all_of(source.begin(), source.end(), [](const Surface& surface) {
     return surface.triangles.empty() || is_closed(surface);
   });
+  GpuCheck by_vertex{"V407", "I9", "hardware raster, vertices pulled: pixels as the specification allows"};
+  GpuCheck by_mesh{"V408", "I9", "hardware raster, mesh shaders: pixels as the specification allows"};
   const bool has_holes_rule = has_promise && all_closed;
   std::vector<TriangleTree> trees;
   trees.reserve(source.size());
@@ -112,7 +170,12 @@ Result<GpuVerifyReport> verify_on_gpu(const Asset& asset, std::span<const Surfac
   if (!renderer) return renderer.error();
   auto culler = Renderer::make(*device, *scene, culling);
   if (!culler) return culler.error();
+  for (GpuCheck* check : {&by_vertex, &by_mesh}) {
+    if (const Status s = judge_hardware(*device, *scene, asset, options, check == &by_mesh, *check); !s) return s.error();
+  }
   for (const Size size : kSizes) {
+    std::size_t worst = out.cameras.size();
+    PictureReport worst_picture;
     if (const Status s = renderer->resize(size.width, size.height); !s) return s.error();
     if (const Status s = culler->resize(size.width, size.height); !s) return s.error();
     std::vector<NamedCamera> cameras = adversarial_cameras(asset, size.width, size.height);
@@ -142,6 +205,16 @@ Result<GpuVerifyReport> verify_on_gpu(const Asset& asset, std::span<const Surfac
       const auto picture = judge_picture(asset, trees, *cut, *drawn, named.camera, options.pixel_error, tolerance);
       if (!picture) return picture.error();
       out.largest_px = std::max(out.largest_px, picture->largest_px);
+      const bool is_worse = out.cameras.size() == worst || picture->largest_px > worst_picture.largest_px;
+      out.cameras.push_back({named, without_maps(*picture), {}});
+      if (is_worse) {
+        worst = out.cameras.size() - 1;
+        worst_picture = *picture;
+      }
+      const bool has_failed = (has_promise && picture->exceeded > 0) || (has_holes_rule && picture->holes > 0);
+      if (has_failed && !is_worse) {
+        if (const Status s = write_maps(options, *picture, out.cameras.back()); !s) return s.error();
+      }
       displaced.items += picture->points;
       displaced.failures += has_promise ? picture->exceeded : 0;
       if (has_promise && picture->exceeded > 0 && displaced.first.empty()) {
@@ -151,14 +224,19 @@ Result<GpuVerifyReport> verify_on_gpu(const Asset& asset, std::span<const Surfac
       holes.failures += has_holes_rule ? picture->holes : 0;
       if (has_holes_rule && picture->holes > 0 && holes.first.empty()) holes.first = where;
     }
+    if (worst < out.cameras.size()) {
+      if (const Status s = write_maps(options, worst_picture, out.cameras[worst]); !s) return s.error();
+    }
   }
+  by_vertex.failures = by_vertex.failures * 1000000 > kHardwareSlivers * by_vertex.items ? by_vertex.failures : 0;
+  by_mesh.failures = by_mesh.failures * 1000000 > kHardwareSlivers * by_mesh.items ? by_mesh.failures : 0;
   displaced.is_skipped = !has_promise;
   holes.is_skipped = !has_holes_rule;
   if (!has_holes_rule) holes.what += all_closed ? " (not judged: tier qem)" : " (not judged: the source is open)";
   displaced.what = format_px("pixels are displaced by %.3f px at most", out.largest_px) +
                    format_px(", allowed is %.3g or level 0's own", options.pixel_error) +
                    (has_promise ? "" : " (not judged: tier qem states the quadric's estimate)");
-  for (const GpuCheck& check : {cuts, pixels, culled, holes, displaced}) out.checks.push_back(check);
+  for (const GpuCheck& check : {cuts, pixels, culled, by_vertex, by_mesh, holes, displaced}) out.checks.push_back(check);
   return out;
 }
 

@@ -11,6 +11,7 @@
 
 #include "gpu/cameras.h"
 #include "gpu/vulkan.h"
+#include "gpu/picture.h"
 #include "metrics/metrics.h"
 
 namespace meshlode::gpu {
@@ -20,6 +21,15 @@ struct GpuVerifyOptions {
   std::uint32_t orbits = 6;       ///< cameras around the scene, beside the adversarial ones
   std::vector<NamedCamera> path;  ///< a fly-through, judged as the orbits are
   double pixel_error = 1.0;
+  /// Heat maps (PNG) of the camera with the largest displacement at each size, and of each that failed; empty: none.
+  std::string out_folder;
+};
+
+/// One picture against the source.
+struct JudgedCamera {
+  NamedCamera camera;
+  PictureReport picture;  ///< without its maps
+  std::vector<std::string> maps;  ///< files in out_folder
 };
 
 struct GpuCheck {
@@ -33,6 +43,7 @@ struct GpuVerifyReport {
   DeviceInfo device;
   std::vector<GpuCheck> checks;
   double largest_px = 0.0;
+  std::vector<JudgedCamera> cameras;
 };
 
 /// `source`: each mesh's source surface, mesh space. Errors: kUnsupported without a device, kInvalid for a broken page.

@@ -83,7 +83,7 @@ std::string to_json(const std::string& path, const std::string& source, const Ve
 
 struct GpuOptions {
   bool is_on = false;
-  std::string device, path;
+  std::string device, path, out_folder;
   std::uint32_t orbits = 6;
   double pixel_error = 1.0;
 };
@@ -101,12 +101,67 @@ Surface surface_of(const SourceMesh& mesh) {
   return surface;
 }
 
+/// Each judged camera with its numbers; pixels unless the name says otherwise.
+std::string gpu_json(const GpuOptions& options, const gpu::GpuVerifyReport& verified) {
+  JsonWriter json;
+  json.begin_object();
+  json.field("device", verified.device.name);
+  json.field("driver", verified.device.driver);
+  json.field("pixel_error", options.pixel_error);
+  json.field("largest_displacement_px", verified.largest_px);
+  json.key("checks");
+  json.begin_array();
+  for (const gpu::GpuCheck& check : verified.checks) {
+    json.begin_object();
+    json.field("id", check.id);
+    json.field("invariant", check.invariant);
+    json.field("what", check.what);
+    json.field("items", check.items);
+    json.field("failures", check.failures);
+    json.field("skipped", check.is_skipped);
+    json.field("first", check.first);
+    json.end_object();
+  }
+  json.end_array();
+  json.key("cameras");
+  json.begin_array();
+  for (const gpu::JudgedCamera& judged : verified.cameras) {
+    const gpu::PictureReport& p = judged.picture;
+    json.begin_object();
+    json.field("name", judged.camera.name);
+    json.field("width", judged.camera.camera.width);
+    json.field("height", judged.camera.camera.height);
+    json.field("covered", p.covered);
+    json.field("covered_source", p.covered_source);
+    json.field("only_cut", p.only_cut);
+    json.field("only_source", p.only_source);
+    json.field("holes", p.holes);
+    json.field("points", p.points);
+    json.field("exceeded", p.exceeded);
+    json.field("largest_displacement_px", p.largest_px);
+    json.field("mean_displacement_px", p.mean_px);
+    json.field("allowed_px", p.allowed_px);
+    json.field("largest_relative_depth_difference", p.largest_depth);
+    json.field("mean_normal_degrees", p.mean_normal_degrees);
+    json.field("largest_normal_degrees", p.largest_normal_degrees);
+    json.key("maps");
+    json.begin_array();
+    for (const std::string& map : judged.maps) json.value(map);
+    json.end_array();
+    json.end_object();
+  }
+  json.end_array();
+  json.end_object();
+  return json.text();
+}
+
 /// What the GPU finds, as checks and findings of the same report.
 Status verify_with_gpu(const Asset& asset, const Scene& source, const GpuOptions& options, VerifyReport& report) {
   gpu::GpuVerifyOptions judge;
   judge.device.device = options.device;
   judge.orbits = options.orbits;
   judge.pixel_error = options.pixel_error;
+  judge.out_folder = options.out_folder;
   if (!options.path.empty()) {
     const auto file = MappedFile::open(options.path);
     if (!file) return file.error();
@@ -121,6 +176,11 @@ Status verify_with_gpu(const Asset& asset, const Scene& source, const GpuOptions
   for (const SourceMesh& mesh : source.meshes) surfaces.push_back(surface_of(mesh));
   const auto verified = gpu::verify_on_gpu(asset, surfaces, judge);
   if (!verified) return verified.error();
+  if (!options.out_folder.empty()) {
+    const std::string text = gpu_json(options, *verified);
+    const std::span<const std::uint8_t> bytes(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
+    if (const Status written = write_file_atomically(options.out_folder + "/gpu.json", bytes); !written) return written;
+  }
   for (const gpu::GpuCheck& check : verified->checks) {
     report.checks.push_back({check.invariant, verified->device.name + ": " + check.what, check.items, check.failures,
                              check.is_skipped});
@@ -156,6 +216,8 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
   parser.add_value("--device", gpu_options.device, "of --gpu: an index or a part of the name (the first that can)");
   parser.add_value("--orbits", gpu_options.orbits, "of --gpu: cameras around the scene, judged against the source");
   parser.add_value("--path", gpu_options.path, "of --gpu: a file of cameras, ex ey ez tx ty tz [fovy [near]] a line");
+  parser.add_value("--out-dir", gpu_options.out_folder,
+                   "of --gpu: an existing folder for heat maps of the worst cameras and a report, gpu.json");
   parser.add_value("--pixel-error", gpu_options.pixel_error, "of --gpu: allowed displacement in pixels (1)");
   add_jobs_option(parser, jobs);
   add_output_options(parser, output);

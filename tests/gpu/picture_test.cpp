@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The judge of pictures, which needs no device: it must see what it is there for.
+#include <gtest/gtest.h>
+
+#include "gpu/picture.h"
+#include "gpu_support.h"
+#include "metrics/metrics.h"
+
+namespace meshlode::gpu::test {
+namespace {
+
+struct Drawn {
+  std::vector<std::uint8_t> bytes;
+  std::optional<Asset> asset;
+  std::vector<TriangleTree> source;
+  std::vector<ClusterInstance> cut;
+  VisibilityBuffer picture;
+  Camera camera;
+};
+
+/// The rock's level 0, judged against itself.
+Drawn draw_rock() {
+  Drawn out;
+  out.bytes = build_file(MESHLODE_DATA "/rock.glb");
+  auto asset = Asset::from_vector(out.bytes);
+  EXPECT_TRUE(asset);
+  out.asset = std::move(*asset);
+  out.camera = adversarial_cameras(*out.asset, 160, 120)[0].camera;
+  out.cut = select_flat(*out.asset, out.camera, 0.0);
+  const auto decoded = decode_all(*out.asset);
+  EXPECT_TRUE(decoded);
+  std::vector<ClusterId> clusters;
+  for (const ClusterInstance& entry : out.cut) clusters.push_back(entry.cluster);
+  out.source.emplace_back(surface_of_clusters(*out.asset, *decoded, MeshId(std::uint32_t{0}), clusters));
+  auto picture = draw_cut(*out.asset, out.cut, out.camera);
+  EXPECT_TRUE(picture);
+  out.picture = std::move(*picture);
+  return out;
+}
+
+TEST(Picture, TheSourceItselfHasNoFault) {
+  const Drawn rock = draw_rock();
+  const auto report = judge_picture(*rock.asset, rock.source, rock.cut, rock.picture, rock.camera, 1.0, 1.0);
+  ASSERT_TRUE(report);
+  EXPECT_GT(report->covered, 1000U);
+  EXPECT_EQ(report->covered, report->covered_source);
+  EXPECT_EQ(report->holes + report->exceeded + report->only_cut + report->only_source, 0U);
+  EXPECT_LT(report->largest_px, 1e-6);
+  EXPECT_GT(report->normals, 1000U);
+  EXPECT_LT(report->largest_normal_degrees, 1e-4);
+}
+
+TEST(Picture, ErasedPixelsAreHoles) {
+  Drawn rock = draw_rock();
+  std::size_t erased = 0;
+  for (std::uint32_t y = 58; y < 61; ++y) {
+    const std::size_t at = std::size_t{y} * 160 + 80;  // in the middle of the rock
+    erased += rock.picture.item[at] != VisibilityBuffer::kNothing ? 1 : 0;
+    rock.picture.item[at] = VisibilityBuffer::kNothing;
+    rock.picture.depth[at] = 0;
+  }
+  ASSERT_EQ(erased, 3U);
+  const auto report = judge_picture(*rock.asset, rock.source, rock.cut, rock.picture, rock.camera, 1.0, 1.0);
+  ASSERT_TRUE(report);
+  EXPECT_EQ(report->holes, 3U);
+}
+
+TEST(Picture, ACutThatIsTooCoarseExceedsThePromise) {
+  Drawn rock = draw_rock();
+  rock.cut = select_flat(*rock.asset, rock.camera, 20.0);
+  auto picture = draw_cut(*rock.asset, rock.cut, rock.camera);
+  ASSERT_TRUE(picture);
+  const auto report = judge_picture(*rock.asset, rock.source, rock.cut, *picture, rock.camera, 1.0, 1.05);
+  ASSERT_TRUE(report);
+  EXPECT_GT(report->largest_px, 1.05);
+  EXPECT_GT(report->exceeded, 0U);
+  EXPECT_GT(report->mean_normal_degrees, 0.1);
+}
+
+TEST(Picture, AHeatMapGoesFromBlueToRed) {
+  const std::vector<float> values = {-1.0F, 0.0F, 1.0F, 7.0F};
+  const Image image = heat_map(values, 4, 1, 1.0F);
+  ASSERT_EQ(image.rgba.size(), 16U);
+  EXPECT_EQ(image.rgba[0], image.rgba[1]) << "grey: nothing there";
+  EXPECT_GT(image.rgba[4 + 2], image.rgba[4 + 0]) << "blue at 0";
+  EXPECT_GT(image.rgba[8 + 0], image.rgba[8 + 2]) << "red at full";
+  EXPECT_TRUE(std::equal(&image.rgba[8], &image.rgba[12], &image.rgba[12])) << "and above";
+}
+
+}  // namespace
+}  // namespace meshlode::gpu::test
