@@ -8,6 +8,7 @@
 
 #include "base/parallel.h"
 #include "decode/decode.h"
+#include "raster/coverage.h"
 #include "raster/cut_pages.h"
 #include "raster/legend.h"
 #include "raster/projection.h"
@@ -111,25 +112,39 @@ std::vector<Displacement> displace(const Asset& asset, const raster::Projection&
   return out;
 }
 
-/// One surface around a pixel of the full resolution: covered within kHoleRadius, and without a jump to a neighbour.
-bool is_one_surface_around(const Asset& asset, const raster::Projection& projection, const VisibilityBuffer& full,
-                           const std::vector<PixelPoint>& points, std::uint32_t x, std::uint32_t y) {
+bool is_covered_around(const VisibilityBuffer& buffer, std::uint32_t x, std::uint32_t y) {
   for (int dy = -kHoleRadius; dy <= kHoleRadius; ++dy) {
     for (int dx = -kHoleRadius; dx <= kHoleRadius; ++dx) {
       const std::int64_t px = std::int64_t{x} + dx, py = std::int64_t{y} + dy;
-      if (px < 0 || py < 0 || px >= full.width || py >= full.height) return false;
-      const std::size_t at = static_cast<std::size_t>(py) * full.width + static_cast<std::size_t>(px);
-      if (full.item[at] == VisibilityBuffer::kNothing) return false;
-      for (const std::size_t next : {at + 1, at + full.width}) {
-        if (dx == kHoleRadius || dy == kHoleRadius) continue;
-        if (full.item[next] == VisibilityBuffer::kNothing || points[next].instance != points[at].instance) return false;
-        const format::InstanceRecord& instance = asset.instances()[points[at].instance];
-        const double apart = glm::length(points[next].point - points[at].point);
-        if (apart * pixels_per_unit_at(projection, instance, points[at].point) > kJumpPixels) return false;
-      }
+      if (px < 0 || py < 0 || px >= buffer.width || py >= buffer.height) return false;
+      const std::size_t at = static_cast<std::size_t>(py) * buffer.width + static_cast<std::size_t>(px);
+      if (buffer.item[at] == VisibilityBuffer::kNothing) return false;
     }
   }
   return true;
+}
+
+/// The cut with its back faces too: what a ray meets at all.
+Result<VisibilityBuffer> draw_both_sides(const Asset& asset, std::span<const ClusterInstance> cut,
+                                         const raster::Projection& projection) {
+  const auto pages = raster::CutPages::load(asset, cut);
+  if (!pages) return pages.error();
+  VisibilityBuffer out = make_visibility_buffer(projection.size.width, projection.size.height);
+  for (std::size_t item = 0; item < cut.size(); ++item) {
+    const format::InstanceRecord& instance = asset.instances()[cut[item].instance.value];
+    const raster::GridToClip to_clip = raster::make_grid_to_clip(projection, asset.meshes()[instance.mesh], instance);
+    DecodedCluster cluster;
+    pages->decode(asset, cut[item].cluster, cluster);
+    raster::ScreenSoup soup;
+    for (std::uint32_t t = 0; t < cluster.triangle_count; ++t) {
+      const auto& [i, j, k] = cluster.triangles[t];
+      raster::add_triangle({to_clip.project(cluster.position(i)), to_clip.project(cluster.position(j)),
+                            to_clip.project(cluster.position(k))},
+                           raster::Culling::kNone, {static_cast<std::uint32_t>(item), t}, projection.size, soup);
+    }
+    raster::draw_soup(soup, out);
+  }
+  return out;
 }
 
 }  // namespace
@@ -178,6 +193,7 @@ Result<PictureReport> judge_picture(const Asset& asset, std::span<const Triangle
   out.depth_difference.resize(there.size(), -1.0F);
   out.normal_degrees.resize(there.size(), -1.0F);
   double sum = 0.0, normal_sum = 0.0;
+  std::optional<VisibilityBuffer> both_sides;  // drawn where it is asked for
   for (std::size_t i = 0; i < there.size(); ++i) {
     const bool is_cut = drawn.item[i] != VisibilityBuffer::kNothing,
                is_full = full->item[i] != VisibilityBuffer::kNothing;
@@ -186,7 +202,14 @@ Result<PictureReport> judge_picture(const Asset& asset, std::span<const Triangle
     out.only_cut += is_cut && !is_full ? 1 : 0;
     out.only_source += is_full && !is_cut ? 1 : 0;
     const auto x = static_cast<std::uint32_t>(i % drawn.width), y = static_cast<std::uint32_t>(i / drawn.width);
-    if (!is_cut && is_one_surface_around(asset, *projection, *full, *full_points, x, y)) ++out.holes;
+    if (!is_cut && is_covered_around(*full, x, y)) {
+      if (!both_sides) {
+        auto buffer = draw_both_sides(asset, cut, *projection);
+        if (!buffer) return buffer.error();
+        both_sides = std::move(*buffer);
+      }
+      if (both_sides->item[i] != VisibilityBuffer::kNothing) ++out.holes;
+    }
     if (is_cut && is_full && drawn.depth[i] > 0) {
       const double difference = std::abs(double{drawn.depth[i] * 1.0} - full->depth[i] * 1.0);
       const double relative = difference / std::max(1.0, full->depth[i] * 1.0);

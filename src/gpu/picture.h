@@ -19,8 +19,9 @@ struct PictureReport {
   std::uint64_t covered = 0;                    ///< pixels of the cut
   std::uint64_t covered_source = 0;             ///< pixels of the full resolution
   std::uint64_t only_cut = 0, only_source = 0;  ///< covered in one alone: the silhouettes differ there
-  /// Background in the cut where the full resolution shows one surface without a jump within `kHoleRadius`: seen through
-  /// a mesh. Where one part of a mesh hides another's border, moving both by a pixel may open a gap that is no hole.
+  /// Background in the cut where the full resolution covers every pixel within `kHoleRadius` and the ray hits the cut
+  /// from behind: it came in through a hole. Where it hits nothing, two parts of a mesh that hid each other's borders
+  /// have moved apart, which the promise allows. \pre of closed meshes
   std::uint64_t holes = 0;
   double largest_px = 0.0;             ///< displacement of any pixel's surface point, both ways
   double mean_px = 0.0;                ///< over the cut's pixels
@@ -37,8 +38,6 @@ struct PictureReport {
 
 /// Silhouettes may move by a pixel, and a pixel is one sample.
 constexpr int kHoleRadius = 2;
-/// Points of neighbouring pixels that are farther from each other than this, in pixels, are a jump.
-constexpr double kJumpPixels = 6.0;
 
 /// `source`: one tree per mesh over its source, mesh space. `cut` was drawn into `drawn`; the full resolution is level
 /// 0. `tolerance`: of the promise, 1.05 in the measured tier.

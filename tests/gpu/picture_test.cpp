@@ -65,6 +65,22 @@ TEST(Picture, ErasedPixelsAreHoles) {
   EXPECT_EQ(report->holes, 3U);
 }
 
+/// A cluster that is missing lets the eye in: the far side is seen from behind.
+TEST(Picture, AMissingClusterIsAHole) {
+  Drawn rock = draw_rock();
+  std::vector<ClusterInstance> cut;
+  const std::uint32_t missing = rock.picture.item[60 * 160 + 80];
+  ASSERT_LT(missing, rock.cut.size());
+  for (std::size_t i = 0; i < rock.cut.size(); ++i) {
+    if (i != missing) cut.push_back(rock.cut[i]);
+  }
+  const auto picture = draw_cut(*rock.asset, cut, rock.camera);
+  ASSERT_TRUE(picture);
+  const auto report = judge_picture(*rock.asset, rock.source, cut, *picture, rock.camera, 1.0, 1.0);
+  ASSERT_TRUE(report);
+  EXPECT_GT(report->holes, 10U);
+}
+
 TEST(Picture, ACutThatIsTooCoarseExceedsThePromise) {
   Drawn rock = draw_rock();
   rock.cut = select_flat(*rock.asset, rock.camera, 20.0);
