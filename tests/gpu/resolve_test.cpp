@@ -8,6 +8,7 @@
 
 #include "gpu/judge.h"
 #include "gpu_support.h"
+#include "raster/legend.h"
 #include "support/sample_asset.h"
 
 namespace meshlode::gpu::test {
@@ -52,9 +53,10 @@ void expect_equal_colors(Device& device, const Asset& asset) {
     ASSERT_TRUE(cut);
     const auto visibility = draw_cut(asset, *cut, camera);
     ASSERT_TRUE(visibility);
-    for (const std::uint32_t view : {VIEW_SHADED, VIEW_CLUSTERS, VIEW_TRIANGLES}) {
-      const auto got = renderer->resolve(view, level_count_of(asset));
+    for (const std::uint32_t view : {VIEW_SHADED, VIEW_CLUSTERS, VIEW_TRIANGLES, VIEW_LEVELS}) {
+      auto got = renderer->resolve(view, level_count_of(asset));
       ASSERT_TRUE(got) << got.error().message();
+      if (view == VIEW_LEVELS) raster::draw_level_legend(got->image, level_count_of(asset));
       const auto want = shade_view(asset, *cut, camera, *visibility, static_cast<View>(view));
       ASSERT_TRUE(want);
       ASSERT_EQ(got->image.rgba.size(), want->rgba.size());
