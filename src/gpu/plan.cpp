@@ -33,9 +33,12 @@ Result<PassPlan> plan_passes(const GpuScene& scene, const DeviceInfo& device, st
     return wanted || forced;
   };
   decide("instances", true, false, std::to_string(scene.instance_count) + " instances to cull and set up");
-  decide("traverse", true, false, std::to_string(scene.bvh_depth) + " depths of the BVH, one dispatch each");
+  decide("traverse", true, false, std::to_string(scene.bvh_depth) + " depths of the BVH, a dispatch for all but the last");
   decide("clusters", true, false, "members of open groups");
   decide("software", true, false, "every cluster that is not the hardware's");
+  decide("far", scene.max_root_triangles > 0 && !is_forced("hardware"), false,
+         scene.max_root_triangles > 0 ? "a mesh has one root: where it covers a few pixels it goes past the BVH"
+                                      : "no mesh has one root cluster alone");
   decide("clipped", true, false, "triangles across the near plane; no work where there are none");
   plan.options.double_sided =
       decide("double-sided", scene.has_double_sided, is_forced("double-sided"),
