@@ -12,7 +12,7 @@
 namespace meshlode {
 
 /// "GRUP"; bytes that are not printable become '?'.
-[[nodiscard]] inline std::string section_name(std::uint32_t id) {
+[[nodiscard]] inline std::string section_tag(std::uint32_t id) {
   std::string name;
   for (std::uint32_t shift = 0; shift < 32; shift += 8) {
     const auto c = static_cast<char>(id >> shift & 0xFFU);
@@ -26,13 +26,13 @@ namespace meshlode {
 }
 
 [[nodiscard]] inline Error invalid_section(std::uint32_t id, const char* field, std::string detail) {
-  return {ErrorCode::kInvalid, "section " + section_name(id) + ", field " + field, std::move(detail)};
+  return {ErrorCode::kInvalid, "section " + section_tag(id) + ", field " + field, std::move(detail)};
 }
 
 [[nodiscard]] inline Error invalid_record(format::SectionId id, std::size_t record, const char* field,
                                           std::string detail) {
   return {ErrorCode::kInvalid,
-          "section " + section_name(static_cast<std::uint32_t>(id)) + ", record " + std::to_string(record) +
+          "section " + section_tag(static_cast<std::uint32_t>(id)) + ", record " + std::to_string(record) +
               ", field " + field,
           std::move(detail)};
 }

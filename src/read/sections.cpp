@@ -92,7 +92,7 @@ Status check_extent(std::span<const std::uint8_t> bytes, const format::SectionEn
 
 Status check_known(std::span<const std::uint8_t> bytes, const format::SectionEntry& entry, std::uint32_t record_bytes) {
   if (entry.version != 0) {
-    return Error{ErrorCode::kUnsupported, "section " + section_name(entry.id) + ", field version",
+    return Error{ErrorCode::kUnsupported, "section " + section_tag(entry.id) + ", field version",
                  "version " + std::to_string(entry.version) + ", this reader knows version 0"};
   }
   if ((entry.flags & ~format::kSectionRequired) != 0U) return invalid_section(entry.id, "flags", "has an unknown bit");
@@ -150,7 +150,7 @@ Result<SectionIndex> index_sections(std::span<const std::uint8_t> bytes) {
     });
     if (known == kKnownSections.end()) {
       if ((entry.flags & format::kSectionRequired) != 0U) {
-        return Error{ErrorCode::kUnsupported, "section " + section_name(entry.id),
+        return Error{ErrorCode::kUnsupported, "section " + section_tag(entry.id),
                      "is required and not known to this reader"};
       }
       continue;
@@ -161,7 +161,7 @@ Result<SectionIndex> index_sections(std::span<const std::uint8_t> bytes) {
   if (end != bytes.size()) return invalid_header("file_bytes", "the last section does not end the file");
   for (const KnownSection& section : kKnownSections) {
     if (index.known.find(section.id) == index.known.end()) {
-      return Error{ErrorCode::kInvalid, "section " + section_name(static_cast<std::uint32_t>(section.id)),
+      return Error{ErrorCode::kInvalid, "section " + section_tag(static_cast<std::uint32_t>(section.id)),
                    "is missing"};
     }
   }

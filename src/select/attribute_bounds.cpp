@@ -31,8 +31,8 @@ std::vector<std::uint8_t> find_nodes_within(const SelectTables& tables, const fo
   return within;
 }
 
-AttributeDeviation attribute_deviation_of(const SelectTables& tables, std::span<const ClusterId> clusters) {
-  AttributeDeviation out;
+CutAttributeDeviation attribute_deviation_of(const SelectTables& tables, std::span<const ClusterId> clusters) {
+  CutAttributeDeviation out;
   for (const ClusterId id : clusters) {
     const std::uint32_t own = tables.clusters[id.value].own_group;
     if (own == format::kNone) continue;

@@ -40,10 +40,10 @@ struct AttributeBounds {
 
 /// The largest deviations of the groups that the clusters were made from; 0 for clusters of level 0, kInfiniteError
 /// where one was not measured.
-struct AttributeDeviation {
+struct CutAttributeDeviation {
   double normal_degrees = 0.0, uv = 0.0;
 };
-[[nodiscard]] AttributeDeviation attribute_deviation_of(const SelectTables& tables,
+[[nodiscard]] CutAttributeDeviation attribute_deviation_of(const SelectTables& tables,
                                                         std::span<const ClusterId> clusters);
 
 }  // namespace meshlode

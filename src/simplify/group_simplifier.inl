@@ -579,7 +579,7 @@ double GroupSimplifier<C>::distance2_to_rest(std::uint32_t a, std::uint32_t b) c
       if (!mesh_.is_alive(t)) continue;
       const std::array<std::uint32_t, 3> v{mesh_.vertex(3 * t), mesh_.vertex(3 * t + 1), mesh_.vertex(3 * t + 2)};
       if (std::any_of(v.begin(), v.end(), [&](std::uint32_t x) { return x == a || x == b; })) continue;
-      nearest = std::min(nearest, distance2_to_triangle(p, position_[v[0]], position_[v[1]], position_[v[2]]));
+      nearest = std::min(nearest, distance2_to_facet(p, position_[v[0]], position_[v[1]], position_[v[2]]));
     }
     largest = std::max(largest, nearest);
   }
@@ -597,7 +597,7 @@ double GroupSimplifier<C>::weigh_witnesses(std::uint32_t a, std::uint32_t b, con
       const Vec3d point = to_frame(w.points[i]);
       double nearest = std::numeric_limits<double>::infinity();
       for (const auto& [x, y] : star_) {
-        nearest = std::min(nearest, distance2_to_triangle(point, target, position_[x], position_[y]));
+        nearest = std::min(nearest, distance2_to_facet(point, target, position_[x], position_[y]));
       }
       left_behind_.emplace_back(nearest, w.points[i]);
       largest = std::max(largest, nearest);

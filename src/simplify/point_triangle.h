@@ -7,7 +7,7 @@
 
 namespace meshlode {
 
-[[nodiscard]] inline double distance2_to_triangle(const Vec3d& p, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+[[nodiscard]] inline double distance2_to_facet(const Vec3d& p, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   const auto distance2 = [&](const Vec3d& q) { return glm::dot(p - q, p - q); };
   const Vec3d ab = b - a;
   const Vec3d ac = c - a;

@@ -22,11 +22,11 @@ using format::kInfiniteError;
 using format::kNone;
 
 template <class Record>
-Ball ball_of(const Record& r) {
+ExactBall ball_of(const Record& r) {
   return {{r.center[0], r.center[1], r.center[2]}, r.radius};
 }
 
-bool is_ball(const Ball& b) {
+bool is_ball(const ExactBall& b) {
   return std::isfinite(b.center[0]) && std::isfinite(b.center[1]) && std::isfinite(b.center[2]) &&
          std::isfinite(b.radius) && b.radius >= 0.0F;
 }
@@ -128,8 +128,8 @@ void check_cluster(const FileTables& file, std::size_t m, std::size_t c, RuleLog
   const bool is_level0 = cluster.own_group == kNone;
   // Both ends of what a replacement moves lie in the LOD sphere: the finest surface, and what was made of it.
   const std::uint32_t around = is_level0 ? cluster.coarser_group : cluster.own_group;
-  const Ball lod = ball_of(file.groups[around]);
-  const Ball culling = ball_of(format::cull_sphere(file.meshes[m], cluster));
+  const ExactBall lod = ball_of(file.groups[around]);
+  const ExactBall culling = ball_of(format::cull_sphere(file.meshes[m], cluster));
   log.expect(!is_ball(lod) || !is_ball(culling) || contains_ball(lod, culling), "L310", at,
              [&] { return "culling sphere leaves the LOD sphere of " + place("group", around); });
   if (is_level0) return;
@@ -153,8 +153,8 @@ void check_cluster(const FileTables& file, std::size_t m, std::size_t c, RuleLog
   log.expect(coarser.uv_deviation >= own.uv_deviation, "L312", pair, [&] {
     return differs("finer UV deviation", double{own.uv_deviation}, "coarser", double{coarser.uv_deviation});
   });
-  const Ball outer = ball_of(coarser);
-  const Ball inner = ball_of(own);
+  const ExactBall outer = ball_of(coarser);
+  const ExactBall inner = ball_of(own);
   if (!is_ball(outer) || !is_ball(inner)) return;
   if (log.expect(contains_ball(outer, inner), "L308", pair,
                  [] { return std::string("the coarser sphere does not contain the finer one"); })) {

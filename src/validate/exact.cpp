@@ -64,7 +64,7 @@ Expansion difference(double a, double b) {
 
 }  // namespace
 
-bool contains_ball(const Ball& outer, const Ball& inner) {
+bool contains_ball(const ExactBall& outer, const ExactBall& inner) {
   const double room = double{outer.radius} - double{inner.radius};
   if (outer.radius < inner.radius) return false;
   double squared = 0.0;
@@ -81,7 +81,7 @@ bool contains_ball(const Ball& outer, const Ball& inner) {
   return value.sign() >= 0;
 }
 
-bool contains_point(const Ball& ball, const Vec3d& point) {
+bool contains_point(const ExactBall& ball, const Vec3d& point) {
   const double room = double{ball.radius};
   double squared = 0.0;
   for (int i = 0; i < 3; ++i) {

@@ -7,15 +7,15 @@
 
 namespace meshlode {
 
-struct Ball {
+struct ExactBall {
   float center[3];
   float radius;
 };
 
 /// |outer.center - inner.center| + inner.radius <= outer.radius, exactly. \pre all finite, radii >= 0
-[[nodiscard]] bool contains_ball(const Ball& outer, const Ball& inner);
+[[nodiscard]] bool contains_ball(const ExactBall& outer, const ExactBall& inner);
 /// |ball.center - point| <= ball.radius, exactly. \pre all finite, radius >= 0
-[[nodiscard]] bool contains_point(const Ball& ball, const Vec3d& point);
+[[nodiscard]] bool contains_point(const ExactBall& ball, const Vec3d& point);
 /// Sign of sum(terms[i].x * terms[i].y): -1, 0 or 1. For tests.
 [[nodiscard]] int sign_of_dot(const Vec3d& a, const Vec3d& b);
 

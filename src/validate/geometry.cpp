@@ -99,7 +99,7 @@ class MeshGeometry {
     const DecodedCluster& cluster = clusters_[c];
     const auto at = [&] { return place("mesh", m_, "cluster", c); };
     const format::CullSphere sphere = format::cull_sphere(mesh_, record);
-    const Ball ball{{sphere.center[0], sphere.center[1], sphere.center[2]}, sphere.radius};
+    const ExactBall ball{{sphere.center[0], sphere.center[1], sphere.center[2]}, sphere.radius};
     for (std::uint32_t v = 0; v < cluster.vertex_count; ++v) {
       const Vec3d p = Vec3d(cluster.position(v)) * step_;  // exact: below 2^47 times a power of two
       if (!log_.expect(contains_point(ball, p), "L502", at,

@@ -28,7 +28,7 @@ bool has_error_margin(float finer, float coarser) {
   return static_cast<long double>(coarser) >= static_cast<long double>(finer) * (1.0L + kErrorMargin);
 }
 
-bool has_sphere_margin(const Ball& coarser, const Ball& finer) {
+bool has_sphere_margin(const ExactBall& coarser, const ExactBall& finer) {
   const long double distance = length(static_cast<long double>(coarser.center[0]) - finer.center[0],
                                       static_cast<long double>(coarser.center[1]) - finer.center[1],
                                       static_cast<long double>(coarser.center[2]) - finer.center[2]);
@@ -38,7 +38,7 @@ bool has_sphere_margin(const Ball& coarser, const Ball& finer) {
   return coarser.radius * (1.0L - kRadiusMargin) >= needed * (1.0L - kOwnRounding);
 }
 
-bool are_same_bits(const Ball& a, const Ball& b) {
+bool are_same_bits(const ExactBall& a, const ExactBall& b) {
   return std::memcmp(&a, &b, sizeof a) == 0;
 }
 

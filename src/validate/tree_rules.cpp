@@ -17,7 +17,7 @@ using format::kInfiniteError;
 using format::NodeRecord;
 
 template <class Record>
-Ball ball_of(const Record& r) {
+ExactBall ball_of(const Record& r) {
   return {{r.center[0], r.center[1], r.center[2]}, r.radius};
 }
 
@@ -101,9 +101,9 @@ class TreeChecker {
   }
 
   template <class Name>
-  void bound(std::uint32_t k, const Ball& below, float error, const Name& name) {
+  void bound(std::uint32_t k, const ExactBall& below, float error, const Name& name) {
     const NodeRecord& node = file_.nodes[mesh_.first_node + k];
-    const Ball ball = ball_of(node);
+    const ExactBall ball = ball_of(node);
     const auto where = [&] { return at(k); };
     if (std::isfinite(below.radius) && below.radius >= 0.0F) {
       if (log_.expect(contains_ball(ball, below), "L403", where, [&] { return "does not contain " + name(); })) {

@@ -205,7 +205,7 @@ TEST(Select, WithAttributeBoundsEachPieceIsDrawnOnceAndTheBvhAgrees) {
     }
     std::vector<ClusterId> ids;
     for (const std::uint32_t id : drawn) ids.emplace_back(id);
-    const AttributeDeviation deviation = attribute_deviation_of(tables, ids);
+    const CutAttributeDeviation deviation = attribute_deviation_of(tables, ids);
     ASSERT_LE(deviation.normal_degrees, bounds.normal_degrees) << "camera " << n << ", seed 29";
     ASSERT_LE(deviation.uv, bounds.uv) << "camera " << n << ", seed 29";
     expect_each_path_has_one_drawn_cluster(random, tables, tables.instances[i].mesh, drawn);
@@ -231,7 +231,7 @@ TEST(Select, UniformCutsKeepAttributeBoundsAndAreTheCoarsestThatDo) {
         const format::GroupRecord& coarser = tables.groups[c.coarser_group];
         EXPECT_FALSE(coarser.error <= error && is_within(bounds, coarser)) << "a coarser cluster would have done";
       }
-      const AttributeDeviation deviation = attribute_deviation_of(tables, cut.clusters);
+      const CutAttributeDeviation deviation = attribute_deviation_of(tables, cut.clusters);
       EXPECT_LE(deviation.normal_degrees, bounds.normal_degrees);
       EXPECT_LE(deviation.uv, bounds.uv);
       expect_each_path_has_one_drawn_cluster(random, tables, m, drawn);

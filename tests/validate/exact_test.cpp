@@ -60,8 +60,8 @@ TEST(Exact, RandomBallsAgreeWithIntegers) {
     const Int128 room = outer - inner;
     const bool truth = room >= 0 && squared <= room * room;
     const float scale = std::ldexp(1.0F, static_cast<int>(random.below(120)) - 60);
-    const Ball a{{0, 0, 0}, static_cast<float>(outer) * scale};
-    const Ball b{{static_cast<float>(d[0]) * scale, static_cast<float>(d[1]) * scale, static_cast<float>(d[2]) * scale},
+    const ExactBall a{{0, 0, 0}, static_cast<float>(outer) * scale};
+    const ExactBall b{{static_cast<float>(d[0]) * scale, static_cast<float>(d[1]) * scale, static_cast<float>(d[2]) * scale},
                  static_cast<float>(inner) * scale};
     ASSERT_EQ(contains_ball(a, b), truth) << "case " << i;
     contained += truth ? 1 : 0;

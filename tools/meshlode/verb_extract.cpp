@@ -95,7 +95,7 @@ void write_level(JsonWriter& w, const Asset& asset, MeshId mesh, const CutLevel&
     w.null();
   w.field("stored_error", level.cut.stored_error);
   w.field("stored_error_relative", relative_error(asset, mesh, level));
-  const AttributeDeviation attributes = attribute_deviation_of(tables_of(asset), level.cut.clusters);
+  const CutAttributeDeviation attributes = attribute_deviation_of(tables_of(asset), level.cut.clusters);
   write_deviation(w, "stored_normal_deviation", attributes.normal_degrees);
   write_deviation(w, "stored_uv_deviation", attributes.uv);
   w.field("asked_below_level0_deviation", is_below_level0(asset, mesh, level));
