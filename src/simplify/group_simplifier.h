@@ -42,7 +42,7 @@ class GroupSimplifier {
   static constexpr int kMaxPasses = 8;
   static constexpr double kMaxGrowth = 2.0;   ///< of a piece's size in one level
   /// A collapse costs at least this share of what its largest displacement would cost as a mean distance.
-  static constexpr double kGuardShare = 0.5;
+  static constexpr double kGuardShare = 0.7;
   /// What breaking the link condition costs, as a factor: small holes and handles close when everything else has become
   /// about ten times as far off.
   static constexpr double kTopologyPrice = 10.0;
