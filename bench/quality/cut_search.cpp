@@ -25,18 +25,18 @@ std::vector<double> cut_thresholds(const Asset& asset, MeshId mesh, CutError by)
 
 std::optional<FoundCut> find_fewest_triangles(CutJudge& judge, const Asset& asset, MeshId mesh,
                                               const CutSearch& search) {
-  const auto [by, figure, x, few_cuts] = search;
+  const auto& [by, figure, x, few_cuts, accepts] = search;
   const std::vector<double> thresholds = cut_thresholds(asset, mesh, by);
   std::optional<FoundCut> found;
   std::size_t measured = 0;
   // A cut that is within x and coarser than what was found becomes what was found.
-  const auto is_within = [&, by = by, figure = figure, x = x](std::size_t i) {
+  const auto is_within = [&, by = by, figure = figure, x = x, &accepts = accepts](std::size_t i) {
     ++measured;
     UniformCut cut = select_uniform(asset, mesh, thresholds[i], by);
     CutJudge::Limit limit;
     (figure == Figure::kMax ? limit.max : limit.rms) = x;
     const std::optional<CutFigures> figures = judge.measure_within(cut.clusters, limit);
-    if (!figures) return false;
+    if (!figures || (accepts && !accepts(cut, *figures))) return false;
     if (!found || figures->triangles < found->figures.triangles) {
       found = FoundCut{thresholds[i], std::move(cut), *figures, 0, thresholds.size()};
     }
@@ -49,8 +49,9 @@ std::optional<FoundCut> find_fewest_triangles(CutJudge& judge, const Asset& asse
     return found;
   }
   // Stored errors are near true ones, so the search starts there and steps away from it, wider and wider. In the end
-  // low is within x and high is not, or does not exist. A quadric error is a few times the RMS that comes with it.
-  const double start = figure == Figure::kMax ? x : 3.0 * x;
+  // low is within x and high is not, or does not exist. A quadric error is a few times the RMS that comes with it, a
+  // measured one several times.
+  const double start = figure == Figure::kMax ? x : by == CutError::kQuadric ? 3.0 * x : 7.0 * x;
   const auto above = std::upper_bound(thresholds.begin(), thresholds.end(), start);
   std::size_t low = static_cast<std::size_t>(above - thresholds.begin()) - 1;  // x > 0 is above the first, 0
   std::size_t high = thresholds.size();

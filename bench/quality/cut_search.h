@@ -3,6 +3,7 @@
 // many uniform cuts as its groups have distinct stored errors, plus the finest.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -28,6 +29,8 @@ struct CutSearch {
   Figure figure = Figure::kMax;
   double x = 0.0;             ///< object units, above 0
   std::size_t few_cuts = 32;  ///< a mesh with no more has all of them measured
+  /// What else must hold of a cut that is within x; nothing where empty. Finer cuts should pass where coarser ones do.
+  std::function<bool(const UniformCut&, const CutFigures&)> accepts = {};
 };
 
 /// Among many cuts the search goes outward from x and bisects; then, because true figures are not quite monotone, every

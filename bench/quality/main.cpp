@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Quality: uniform cuts of an asset against its source. For each threshold: triangles, true maximum and RMS deviation
 // both ways, stored error. Then triangles at equal deviation: the fewest over all actual cuts whose true figure is at
-// most x, maxima with cuts by the selection error, RMS with cuts by the quadric's, and what that very cut does to
-// shading normals and UVs. docs/quality.md explains the measures.
+// most x, by the selection error and for the RMS by the quadric's too, and what that very cut does to shading normals
+// and UVs; with --normals the fewest that keep the normals as well. docs/quality.md explains the measures.
 #include <algorithm>
 #include <charconv>
 #include <chrono>
@@ -38,6 +38,7 @@ constexpr const char* kUsage =
     "  --max X,...       triangles at equal true maximum (1e-3,2e-3,5e-3; none)\n"
     "  --rms X,...       triangles at equal true RMS (1e-4,3e-4,1e-3; none)\n"
     "  --drift all|equal|none   normals and UVs of every cut, of those at equal deviation, of none (equal)\n"
+    "  --normals DEG     cuts at equal maximum must also keep normals within DEG degrees RMS, the worse way\n"
     "  --reference       OpenMesh's decimater (quadrics, whole mesh) at the same deviations\n"
     "  --samples N       area-uniform samples each way, all vertices on top (200000)\n"
     "  --jobs N          threads (one per core)\n"
@@ -49,6 +50,7 @@ struct Options {
   int cuts = 24, jobs = 0;
   std::uint64_t samples = 200000;
   double from = 1e-4, to = 2e-2;
+  double normals = 0.0;  ///< degrees; 0: no bound
   std::vector<double> at_max{1e-3, 2e-3, 5e-3}, at_rms{1e-4, 3e-4, 1e-3};
 };
 
@@ -89,6 +91,7 @@ bool parse(int argc, char** argv, Options& o) {
                          : word == "--samples" ? read_number(value, o.samples)
                          : word == "--from"    ? read_number(value, o.from)
                          : word == "--to"      ? read_number(value, o.to)
+                         : word == "--normals" ? read_number(value, o.normals)
                          : word == "--jobs"    ? read_number(value, o.jobs)
                          : word == "--max"     ? read_list(value, o.at_max)
                          : word == "--rms"     ? read_list(value, o.at_rms)
@@ -135,7 +138,10 @@ class MeshBench {
       out.cuts.push_back(measured(threshold, cut, figures, options_.drift == "all"));
     }
     for (const double x : options_.at_max) out.equal.push_back(equal(CutError::kSelection, Figure::kMax, x));
-    for (const double x : options_.at_rms) out.equal.push_back(equal(CutError::kQuadric, Figure::kRms, x));
+    for (const double x : options_.at_rms) {
+      out.equal.push_back(equal(CutError::kSelection, Figure::kRms, x));
+      out.equal.push_back(equal(CutError::kQuadric, Figure::kRms, x));
+    }
     if (options_.with_reference) add_reference(out);
     return out;
   }
@@ -204,8 +210,16 @@ class MeshBench {
   EqualDeviation equal(CutError by, Figure figure, double x) {
     const auto start = std::chrono::steady_clock::now();
     const double diagonal = asset_.meshes()[mesh_.value].diagonal;
-    EqualDeviation out{"cuts", figure == Figure::kMax ? "max" : "rms", x, {}, 0, 0, 0.0};
-    const auto found = find_fewest_triangles(judge_, asset_, mesh_, {by, figure, x * diagonal});
+    EqualDeviation out{by == CutError::kQuadric ? "quadric cuts" : "cuts", figure == Figure::kMax ? "max" : "rms",
+                       x, {}, 0, 0, 0.0};
+    CutSearch search{by, figure, x * diagonal};
+    if (options_.normals > 0.0 && figure == Figure::kMax) {
+      search.accepts = [&](const UniformCut& cut, const CutFigures& figures) {
+        const MeasuredCut one = measured(0.0, cut, figures, true);
+        return one.drift && std::max(one.drift->normal_a_to_b.rms, one.drift->normal_b_to_a.rms) <= options_.normals;
+      };
+    }
+    const auto found = find_fewest_triangles(judge_, asset_, mesh_, search);
     if (found) {
       out.cut = measured(found->threshold / diagonal, found->cut, found->figures, options_.drift != "none");
       out.cuts_measured = found->cuts_measured;

@@ -10,6 +10,7 @@
 #include "cluster/adjacency.h"
 #include "cluster/caps.h"
 #include "cluster/loose_pieces.h"
+#include "cluster/satellites.h"
 #include "partition/partition.h"
 
 namespace meshlode {
@@ -71,37 +72,59 @@ std::size_t parts_for_vertices(std::span<const WedgeTriangle> triangles, std::ui
 /// From so many pieces per part on, a chunk is a soup.
 constexpr std::size_t kPiecesPerPart = 4;
 
-Clustering cluster_chunk(std::span<const WedgeTriangle> triangles, std::span<const std::uint32_t> wedge_position,
-                         std::span<const Vec3i> positions, const ClusterCaps& caps) {
-  std::vector<std::array<std::uint32_t, 3>> corners(triangles.size());
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    for (std::size_t k = 0; k < 3; ++k) corners[t][k] = wedge_position[triangles[t][k]];
-  }
-  Graph graph = triangle_graph(corners);
-  const std::size_t for_triangles = (triangles.size() + caps.target_triangles - 1) / caps.target_triangles;
-  const bool fits_one = triangles.size() <= caps.max_triangles;
-  const std::size_t parts =
-      std::max(fits_one ? 1 : for_triangles, parts_for_vertices(triangles, caps.max_vertices));
+Clustering partition_chunk(std::span<const WedgeTriangle> triangles, Graph graph, std::size_t parts,
+                           const ClusterCaps& caps) {
   Clustering clustering;
-  std::vector<std::uint32_t> piece;
-  const std::uint32_t piece_count = find_pieces(graph, piece);
-  if (parts > 1 && piece_count > kPiecesPerPart * parts) {
-    clustering = cluster_pieces(triangles, wedge_position, positions, piece, piece_count, std::min(parts, triangles.size()));
-  } else {
-    if (parts > 1 && piece_count > 1) {
-      graph = triangle_graph(corners, link_to_nearest(corners, positions, piece, piece_count));
-    }
-    clustering.count = static_cast<std::uint32_t>(std::min(parts, triangles.size()));
-    clustering.label = partition_graph(graph, clustering.count);
-  }
+  clustering.count = static_cast<std::uint32_t>(std::min(parts, triangles.size()));
+  clustering.label = partition_graph(graph, clustering.count);
   enforce_caps(triangles, graph, caps, clustering);
   return clustering;
 }
 
-}  // namespace
+Clustering cluster_chunk(std::span<const WedgeTriangle> triangles, std::span<const std::uint32_t> wedge_position,
+                         std::span<const Vec3i> positions, const ClusterCaps& caps) {
+  const auto corners_of = [&](std::span<const WedgeTriangle> some) {
+    std::vector<std::array<std::uint32_t, 3>> corners(some.size());
+    for (std::size_t t = 0; t < some.size(); ++t) {
+      for (std::size_t k = 0; k < 3; ++k) corners[t][k] = wedge_position[some[t][k]];
+    }
+    return corners;
+  };
+  const std::vector<std::array<std::uint32_t, 3>> corners = corners_of(triangles);
+  const Graph graph = triangle_graph(corners);
+  const std::size_t for_triangles = (triangles.size() + caps.target_triangles - 1) / caps.target_triangles;
+  const std::size_t parts = std::max(triangles.size() <= caps.max_triangles ? 1 : for_triangles,
+                                     parts_for_vertices(triangles, caps.max_vertices));
+  std::vector<std::uint32_t> piece;
+  const std::uint32_t piece_count = find_pieces(graph, piece);
+  if (parts == 1 || piece_count == 1) return partition_chunk(triangles, graph, parts, caps);
+  if (piece_count > kPiecesPerPart * parts) {
+    Clustering clustering = cluster_pieces(triangles, wedge_position, positions, piece, piece_count,
+                                           std::min(parts, triangles.size()));
+    enforce_caps(triangles, graph, caps, clustering);
+    return clustering;
+  }
+  const std::vector<TriangleLink> links = link_to_nearest(corners, positions, piece, piece_count);
+  const Hosts hosts = host_debris(piece, piece_count, links);
+  if (hosts.empty()) return partition_chunk(triangles, triangle_graph(corners, links), parts, caps);
+  const auto cluster_core = [&](std::span<const WedgeTriangle> core, std::span<const std::int32_t> weights) {
+    std::vector<TriangleLink> core_links;
+    std::vector<std::uint32_t> place(triangles.size(), kNoHost);
+    for (std::uint32_t t = 0, next = 0; t < hosts.size(); ++t) {
+      if (hosts[t] == kNoHost) place[t] = next++;
+    }
+    for (const auto& [a, b] : links) {
+      if (place[a] != kNoHost && place[b] != kNoHost) core_links.emplace_back(place[a], place[b]);
+    }
+    Graph weighted = triangle_graph(corners_of(core), core_links);
+    weighted.node_weight.assign(weights.begin(), weights.end());
+    return partition_chunk(core, weighted, parts, caps);
+  };
+  return cluster_with_satellites(triangles, wedge_position, hosts, caps, cluster_core);
+}
 
-Clustering cluster_triangles(std::span<const WedgeTriangle> triangles, std::span<const std::uint32_t> wedge_position,
-                             std::span<const Vec3i> positions, const ClusterCaps& caps) {
+Clustering cluster_surface(std::span<const WedgeTriangle> triangles, std::span<const std::uint32_t> wedge_position,
+                           std::span<const Vec3i> positions, const ClusterCaps& caps) {
   if (triangles.empty()) return {};
   if (triangles.size() <= kChunkTriangles) return cluster_chunk(triangles, wedge_position, positions, caps);
 
@@ -130,6 +153,18 @@ Clustering cluster_triangles(std::span<const WedgeTriangle> triangles, std::span
     clustering.count += parts[c].count;
   }
   return clustering;
+}
+
+}  // namespace
+
+Clustering cluster_triangles(std::span<const WedgeTriangle> triangles, std::span<const std::uint32_t> wedge_position,
+                             std::span<const Vec3i> positions, const ClusterCaps& caps) {
+  const Hosts hosts = host_collapsed(triangles, wedge_position, positions.size());
+  // What the grid collapsed are few: clusters have room for them beside their target.
+  const auto cluster_core = [&](std::span<const WedgeTriangle> core, std::span<const std::int32_t>) {
+    return cluster_surface(core, wedge_position, positions, caps);
+  };
+  return cluster_with_satellites(triangles, wedge_position, hosts, caps, cluster_core);
 }
 
 }  // namespace meshlode

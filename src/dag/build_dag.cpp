@@ -17,7 +17,7 @@ struct Effort {
   std::uint32_t target_clusters;  ///< of groups: another size gives other neighbours
   bool may_relax_flips;
 };
-constexpr Effort kEfforts[] = {{16, false}, {24, false}, {11, false}, {32, true}, {24, true}};
+constexpr Effort kEfforts[] = {{20, false}, {28, false}, {13, false}, {32, true}, {24, true}};
 
 /// What one group became, before it is accepted.
 struct Attempt {
@@ -28,16 +28,26 @@ struct Attempt {
   bool is_accepted = false;
 };
 
-/// How many triangles a group should keep: half, as a whole number of full clusters, so that levels stay full. Where the
-/// mesh has come to be one group, two thirds: then a level is one step of every cut, and small meshes have few.
-std::uint32_t target_triangles(std::uint32_t source, bool is_whole, const ClusterCaps& caps) {
+/// What the first round's groups keep: from 0.69 down to 0.35, a half on average, evenly in logarithms from the first
+/// group to the last. Groups are in spatial order. If all kept a half, all errors of a level would be about equal, and a
+/// cut would double its triangles at once as the threshold passes them; so the regions of a mesh are out of step, and
+/// the mean deviation of a cut is close to what its threshold allows, whatever that is.
+double first_share(std::size_t group, std::size_t groups) {
+  constexpr double kSteps[] = {0.693, 0.635, 0.583, 0.534, 0.490, 0.449, 0.412, 0.378, 0.347};  // 0.49 * 2^(0.5 ... -0.5)
+  constexpr std::size_t kFewest = 8;
+  return groups < kFewest ? 0.5 : kSteps[group * std::size(kSteps) / groups];
+}
+
+/// How many triangles a group should keep: the share, as a whole number of full clusters, so that levels stay full. Where
+/// the mesh has come to be one group, two thirds: then a level is one step of every cut, and small meshes have few.
+std::uint32_t target_triangles(std::uint32_t source, double share, bool is_whole, const ClusterCaps& caps) {
   constexpr std::uint32_t kFewest = 7, kMost = 12;  // clusters; below and above, a level more would gain little
   const std::uint32_t before = (source + caps.target_triangles / 2) / caps.target_triangles;
   if (is_whole && before >= kFewest && before <= kMost) return (2 * before + 1) / 3 * caps.target_triangles;
-  const std::uint32_t clusters = std::max(1U, (source + caps.target_triangles) / (2 * caps.target_triangles));
-  const std::uint32_t target = clusters * caps.target_triangles;
-  // One cluster at the end of it all may be small; but never ask for more than half.
-  return std::min(target, std::max(1U, source * 11 / 20));
+  const auto clusters = static_cast<std::uint32_t>(share * source / caps.target_triangles + 0.5);
+  const std::uint32_t target = std::max(1U, clusters) * caps.target_triangles;
+  // One cluster at the end of it all may be small; but never ask for much more than the share.
+  return std::min(target, std::max(1U, static_cast<std::uint32_t>(1.1 * share * source)));
 }
 
 /// What more than one group uses, per position and per wedge of the pool.
@@ -135,11 +145,12 @@ Shared find_shared(const BuildPool& pool, const std::vector<std::uint32_t>& live
   return shared;
 }
 
-Attempt simplify_and_cluster(const SimplifyInput& input, bool is_whole, const DagOptions& options, const Effort& effort) {
+Attempt simplify_and_cluster(const SimplifyInput& input, double share, bool is_whole, const DagOptions& options,
+                             const Effort& effort) {
   Attempt attempt;
   attempt.source_triangles = static_cast<std::uint32_t>(input.triangles.size());
   SimplifyOptions simplify = options.simplify;
-  simplify.target_triangles = target_triangles(attempt.source_triangles, is_whole, options.caps);
+  simplify.target_triangles = target_triangles(attempt.source_triangles, share, is_whole, options.caps);
   simplify.may_relax_flips = effort.may_relax_flips;
   attempt.result = simplify_group(input, simplify);
   const auto kept = static_cast<double>(attempt.result.triangles.size());
@@ -203,7 +214,8 @@ Result<LodDag> build_dag(const PreparedMesh& mesh, const DagOptions& options) {
       std::vector<std::uint32_t> clusters;
       for (const std::uint32_t i : groups[g]) clusters.push_back(live[i]);
       const SimplifyInput finer = group_input(pool, mesh, clusters, shared);
-      attempts[g] = simplify_and_cluster(finer, groups.size() == 1, options, effort);
+      attempts[g] = simplify_and_cluster(finer, round == 0 ? first_share(g, groups.size()) : 0.5, groups.size() == 1,
+                                         options, effort);
       if (attempts[g].is_accepted) attempts[g].errors = meter.measure(pool, clusters, finer, attempts[g].result);
     });
 

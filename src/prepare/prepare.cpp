@@ -12,6 +12,7 @@
 #include <tbb/parallel_sort.h>
 
 #include "base/parallel.h"
+#include "prepare/separate_needles.h"
 
 namespace meshlode {
 
@@ -220,12 +221,18 @@ Result<PreparedMesh> prepare_mesh(const SourceMesh& source, const AttributeLayou
   std::vector<Vec3i> quantized(corners.positions.size(), Vec3i(0));
   std::vector<std::uint8_t> is_used(corners.positions.size(), 0);
   for (const std::uint32_t vertex : corners.triangles) is_used[vertex] = 1;
+  std::vector<Vec3d> relative(corners.positions.size(), Vec3d(0.0));
+  for (std::size_t v = 0; v < quantized.size(); ++v) {
+    if (is_used[v] == 0) continue;
+    relative[v] = corners.positions[v] - mesh.origin;
+    quantized[v] = mesh.grid.quantize(relative[v]);
+  }
+  // Meshes that must abut share nothing but the grid: there each vertex goes to its own point and nowhere else.
+  if (!(options.grid_step > 0.0)) separate_needles(relative, corners.triangles, mesh.grid, quantized);
   double deviation2 = 0.0;
   for (std::size_t v = 0; v < quantized.size(); ++v) {
     if (is_used[v] == 0) continue;
-    const Vec3d p = corners.positions[v] - mesh.origin;
-    quantized[v] = mesh.grid.quantize(p);
-    const Vec3d moved = mesh.grid.decode(quantized[v]) - p;
+    const Vec3d moved = mesh.grid.decode(quantized[v]) - relative[v];
     deviation2 = std::max(deviation2, glm::dot(moved, moved));
   }
   mesh.level0_deviation = std::sqrt(deviation2);

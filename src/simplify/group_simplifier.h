@@ -41,7 +41,8 @@ class GroupSimplifier {
   static constexpr double kFlipCosine = 0.2;  ///< a triangle may turn by less than 78 degrees in one collapse
   static constexpr int kMaxPasses = 8;
   static constexpr double kMaxGrowth = 2.0;   ///< of a piece's size in one level
-  /// A collapse costs at least this share of what its largest displacement would cost as a mean distance.
+  /// A collapse costs at least this share of what its largest displacement, of the old surface from the new or of the new
+  /// from the old, would cost as a mean distance.
   static constexpr double kGuardShare = 0.7;
   /// What breaking the link condition costs, as a factor: small holes and handles close when everything else has become
   /// about ten times as far off.
@@ -83,6 +84,7 @@ class GroupSimplifier {
   [[nodiscard]] double collect_vanishing(std::uint32_t a, std::uint32_t b, const Vec3d& target);
   [[nodiscard]] double distance2_to_rest(std::uint32_t a, std::uint32_t b) const;
   [[nodiscard]] double weigh_witnesses(std::uint32_t a, std::uint32_t b, const Vec3d& target);
+  [[nodiscard]] double new_surface_distance2(const Vec3d& target, double least) const;
   [[nodiscard]] bool keeps_shared_corners(std::uint32_t locked, const std::vector<std::uint32_t>& around) const;
   [[nodiscard]] bool keeps_topology(std::uint32_t a, std::uint32_t b);
   [[nodiscard]] bool turns_over(std::uint32_t moved, std::uint32_t other, const std::vector<std::uint32_t>& corners,

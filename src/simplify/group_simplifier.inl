@@ -614,6 +614,31 @@ double GroupSimplifier<C>::weigh_witnesses(std::uint32_t a, std::uint32_t b, con
   return std::min(distance2_to_rest(a, b), 1e30);
 }
 
+/// How far the new star is from the triangles that it replaces, squared, where that exceeds `least`; else `least`. By the
+/// middles of its triangles and of their edges at the target.
+template <std::size_t C>
+double GroupSimplifier<C>::new_surface_distance2(const Vec3d& target, double least) const {
+  double farthest = least;
+  const auto reach = [&](const Vec3d& point) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const auto* corners : {&corners_a_, &corners_b_}) {
+      for (const std::uint32_t corner : *corners) {
+        const std::uint32_t t = corner / 3;
+        nearest = std::min(nearest, distance2_to_facet(point, position_[mesh_.vertex(3 * t)],
+                                                       position_[mesh_.vertex(3 * t + 1)], position_[mesh_.vertex(3 * t + 2)]));
+        if (nearest <= farthest) return;
+      }
+    }
+    if (nearest < std::numeric_limits<double>::infinity()) farthest = nearest;
+  };
+  for (const auto& [x, y] : star_) {
+    reach((target + position_[x] + position_[y]) / 3.0);
+    reach((target + position_[x]) * 0.5);
+    reach((target + position_[y]) * 0.5);
+  }
+  return farthest;
+}
+
 template <std::size_t C>
 typename GroupSimplifier<C>::Obstacle GroupSimplifier<C>::try_collapse(const Candidate& candidate) {
   std::uint32_t a = candidate.a;
@@ -640,13 +665,20 @@ typename GroupSimplifier<C>::Obstacle GroupSimplifier<C>::try_collapse(const Can
   if (!are_flips_relaxed_ && (turns_over(a, b, corners_a_, target) || turns_over(b, a, corners_b_, target))) {
     return Obstacle::kFlips;
   }
-  // Thin closed features vanish almost free of plane error. What the source points behind both vertices would be left at
-  // is the truth of it: where that is far more than the quadrics say, the collapse waits for its turn at that price.
+  // Thin closed features vanish almost free of plane error, and crevices and tunnels close so. What the source points
+  // behind both vertices would be left at, and how far the new triangles are from the old, is the truth of it: where that
+  // is far more than the quadrics say, the collapse waits for its turn at that price.
   collect_new_star(a, b, breaks_topology || has_broken_topology_);
   const double lost2 = collect_vanishing(a, b, target);
   const double left_behind2 = std::max(lost2, weigh_witnesses(a, b, target));
   const double mean_weight = 2.0 * total_weight_ / mesh_.alive_count();
-  const double price = kGuardShare * left_behind2 * std::sqrt(std::max(mean_weight, plane_[a].weight + plane_[b].weight));
+  const double price_of_distance2 = kGuardShare * std::sqrt(std::max(mean_weight, plane_[a].weight + plane_[b].weight));
+  double price = price_of_distance2 * left_behind2;
+  if (price <= candidate.cost) {
+    const double affordable2 = price_of_distance2 > 0.0 ? candidate.cost / price_of_distance2 : 0.0;
+    const double reached2 = new_surface_distance2(target, affordable2);
+    if (reached2 > affordable2) price = price_of_distance2 * reached2;
+  }
   if (price > candidate.cost) {
     queue_.push({price, a, b, version_[a], version_[b], candidate.may_break_topology});
     return Obstacle::kPutBack;

@@ -100,6 +100,50 @@ TEST(Cluster, LoosePiecesNearEachOtherStayTogether) {
   EXPECT_LE(std::count_if(sides.begin(), sides.end(), [](const auto& s) { return s.size() == 2; }), 1);
 }
 
+/// A sphere with debris beside it: triangles that the grid collapsed, and pieces of one to three triangles.
+TEST(Cluster, WhatCoversLittleIsWhereItsSurfaceIs) {
+  Primitive shape = samples::make_sphere(40);
+  const std::size_t surface = shape.indices.size() / 3;
+  const std::size_t vertices = shape.positions.size();
+  for (std::size_t i = 0; i < vertices; i += 21) {
+    const Vec3d p = shape.positions[i];
+    const auto first = static_cast<std::uint32_t>(shape.positions.size());
+    const double size = i % 2 == 0 ? 1e-9 : 1e-3;  // far below a cell of the grid, and above
+    const Vec3d at = i % 2 == 0 ? p : p * 1.01;
+    shape.positions.push_back(at);
+    shape.positions.push_back(at + Vec3d(size, 0, 0));
+    shape.positions.push_back(at + Vec3d(0, size, size));
+    for (std::uint32_t k = 0; k < 3; ++k) shape.indices.push_back(first + k);
+  }
+  ASSERT_GT(shape.indices.size() / 3, surface + 400);
+  const PreparedMesh mesh = prepare(shape);
+  const Clustering clustering = cluster(mesh);
+  expect_caps(mesh, clustering, {});
+  // The cluster of each collapsed triangle and of each floating one has a triangle of the sphere within an edge or so.
+  const auto center = [&](std::size_t t) {
+    Vec3d sum(0.0);
+    for (const std::uint32_t w : mesh.triangles[t]) sum += mesh.grid.decode(mesh.positions[mesh.wedge_position[w]]);
+    return sum / 3.0;
+  };
+  std::size_t debris = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto extent = [&](std::size_t s) {
+      const auto& corners = mesh.triangles[s];
+      const auto at = [&](std::size_t k) { return mesh.grid.decode(mesh.positions[mesh.wedge_position[corners[k]]]); };
+      return std::max(glm::distance(at(0), at(1)), glm::distance(at(1), at(2)));
+    };
+    if (extent(t) > 5e-3) continue;
+    ++debris;
+    double nearest = 10.0;
+    for (std::size_t s = 0; s < mesh.triangles.size(); ++s) {
+      if (clustering.label[s] != clustering.label[t] || extent(s) <= 5e-3) continue;
+      nearest = std::min(nearest, glm::distance(center(s), center(t)));
+    }
+    EXPECT_LT(nearest, 0.06) << "triangle " << t;
+  }
+  EXPECT_GT(debris, 400U);
+}
+
 TEST(TriangleGraph, AnEdgeOfManyTrianglesStaysLinear) {
   std::vector<std::array<std::uint32_t, 3>> fan;
   for (std::uint32_t i = 0; i < 5000; ++i) fan.push_back({0, 1, i + 2});

@@ -79,6 +79,41 @@ TEST(Prepare, CountsRepeatedCornersAndKeepsCollinearTriangles) {
   EXPECT_EQ(mesh.grid_collapsed, 1U) << "the collinear one has no area but its border is not zero";
 }
 
+/// A sheet from which a needle stands out: 1 long, and narrower than a cell of the grid, beside other needles' corners.
+Primitive sheet_with_needles(int count) {
+  Primitive shape = samples::make_plane(8);
+  const auto at = [&](double x, double y, double z) {
+    shape.positions.emplace_back(x, y, z);
+    return static_cast<std::uint32_t>(shape.positions.size() - 1);
+  };
+  for (int i = 0; i < count; ++i) {
+    const double x = 0.1 + 0.01 * i;
+    const std::uint32_t a = at(x, 0.5, 0.0);
+    const std::uint32_t b = at(x + 3e-6, 0.5 + 1e-6 * (i % 3), 0.0);
+    const std::uint32_t tip = at(x, 0.5, 1.0);
+    for (const std::uint32_t v : {a, b, tip}) shape.indices.push_back(v);
+  }
+  return shape;
+}
+
+TEST(Prepare, NeedlesNarrowerThanACellKeepTheirTips) {
+  const Primitive shape = sheet_with_needles(20);
+  const PreparedMesh mesh = prepare(shape);
+  ASSERT_GT(mesh.grid.step(), 3e-6) << "or the test says nothing";
+  EXPECT_LE(mesh.grid_collapsed, 6U) << "where no corner has a free cell within the grid's bound";
+  EXPECT_LE(mesh.level0_deviation, mesh.grid.step() * std::sqrt(0.75) * (1 + 1e-12)) << "the grid's own bound";
+  const PreparedMesh other = prepare(shuffled(shape));
+  EXPECT_EQ(mesh.positions, other.positions);
+  EXPECT_EQ(mesh.triangles, other.triangles);
+}
+
+TEST(Prepare, NeedlesOfMeshesThatAbutStayOnTheirGridPoints) {
+  PrepareOptions options;
+  options.grid_step = 1.0 / 1024;
+  const PreparedMesh mesh = prepare(sheet_with_needles(4), options);
+  EXPECT_EQ(mesh.grid_collapsed, 4U);
+}
+
 TEST(Prepare, NegativeZeroIsZero) {
   Primitive shape;
   shape.positions = {{0.0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-0.0, 0, 0}, {0, -1, 0}};
