@@ -85,7 +85,7 @@ double measure_to_source(const SurfaceTree& source, const GroupSurface& group, c
   // Every patch is made before any is divided: what promises most comes first.
   PatchQueue<SourceProbe> queue(probe);
   for (const Patch& patch : patches) queue.add(patch);
-  queue.refine(24 + count / 16);
+  queue.refine(64 + count / 4);
   high = probe.take_high();
   return probe.maximum();
 }

@@ -78,7 +78,7 @@ Status Asset::index() {
     if (entry->codec == static_cast<std::uint32_t>(SectionCodec::kNone)) continue;
     std::vector<std::uint8_t> decoded(entry->decoded_bytes);
     if (!decode_section(bytes_.subspan(entry->offset, entry->bytes), entry->record_bytes, decoded)) {
-      return Error{ErrorCode::kInvalid, "section " + section_name(entry->id) + ", field codec",
+      return Error{ErrorCode::kInvalid, "section " + section_tag(entry->id) + ", field codec",
                    "the stored bytes do not decode"};
     }
     decoded_.emplace(entry->offset, std::move(decoded));

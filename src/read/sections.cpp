@@ -103,7 +103,7 @@ Status check_known(std::span<const std::uint8_t> bytes, const format::SectionEnt
       return invalid_section(entry.id, "decoded_bytes", "cannot come from so few bytes");
     }
   } else if (entry.codec != static_cast<std::uint32_t>(SectionCodec::kNone)) {
-    return Error{ErrorCode::kUnsupported, "section " + section_name(entry.id) + ", field codec",
+    return Error{ErrorCode::kUnsupported, "section " + section_tag(entry.id) + ", field codec",
                  "codec " + std::to_string(entry.codec) + " is not known to this reader"};
   } else if (entry.decoded_bytes != entry.bytes) {
     return invalid_section(entry.id, "decoded_bytes", "must be bytes where the section is stored as it is");
