@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // I1: every source triangle is in exactly one level-0 cluster. The source is quantized here once more and both sides
 // are sorted by (material, corners on the grid): equal keys must occur equally often, after what may be dropped (exact
-// degenerates and exact duplicates) was found from the source alone.
+// degenerates and exact duplicates) was found from the source alone. Vertices that are not at the grid point nearest to
+// them are looked for where triangles are missing.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,7 +13,9 @@
 
 #include "base/parallel.h"
 #include "mesh/grid.h"
+#include "verify/moved_vertices.h"
 #include "verify/source_rules.h"
+#include "verify/triangle_key.h"
 
 namespace meshlode {
 
@@ -20,20 +23,6 @@ namespace {
 
 /// Beyond this many different triangles on one place of the grid, their attributes are not told apart.
 constexpr std::size_t kMaxClassesCompared = 1024;
-
-using GridCorners = std::array<std::array<std::int32_t, 3>, 3>;
-
-struct TriangleKey {
-  std::uint32_t material = 0;
-  GridCorners corners{};  ///< rotated so that the smallest rotation comes first: orientation is kept
-  auto operator<=>(const TriangleKey&) const = default;
-};
-
-GridCorners rotate_to_smallest(const GridCorners& c) {
-  const GridCorners b{c[1], c[2], c[0]};
-  const GridCorners a{c[2], c[0], c[1]};
-  return std::min({c, b, a});
-}
 
 struct Corner {
   Vec3d position{0.0};
@@ -73,12 +62,15 @@ class SourceMatcher {
         clusters_(clusters),
         log_(log),
         step_(exp2_exact(mesh_.grid.log2) * mesh_.grid.mantissa),
-        origin_(mesh_.origin[0], mesh_.origin[1], mesh_.origin[2]) {}
+        origin_(mesh_.origin[0], mesh_.origin[1], mesh_.origin[2]),
+        vertices_(origin_, step_) {}
 
   SourceCounts run() {
     check_counts();
     gather_source();
     gather_stored();
+    find_moved();
+    check_moves();
     match();
     check_dropped();
     return counts_;
@@ -87,16 +79,6 @@ class SourceMatcher {
  private:
   [[nodiscard]] std::string where() const { return place("mesh", mesh_id_.value); }
   [[nodiscard]] bool stores_normals() const { return mesh_.normal_mode == format::NormalMode::kStored; }
-
-  [[nodiscard]] std::array<std::int32_t, 3> quantize(const Vec3d& position) const {
-    std::array<std::int32_t, 3> q{};
-    for (int i = 0; i < 3; ++i) {
-      const double rounded = std::floor((position[i] + 0.0 - origin_[i]) / step_ + 0.5);
-      // A source that is not the asset's may lie anywhere; such a corner matches nothing.
-      q[static_cast<std::size_t>(i)] = std::fabs(rounded) <= 1e9 ? static_cast<std::int32_t>(rounded) : 2000000000;
-    }
-    return q;
-  }
 
   void check_counts() {
     std::uint64_t triangles = source_.drops.repaired;
@@ -121,7 +103,6 @@ class SourceMatcher {
     Vec3d low(0.0);
     Vec3d high(0.0);
     bool has_bounds = false;
-    double moved2 = 0.0;
     for (std::uint32_t p = 0; p < source_.primitives.size(); ++p) {
       const Primitive& primitive = source_.primitives[p];
       for (std::uint32_t t = 0; t < primitive.indices.size() / 3; ++t) {
@@ -132,11 +113,7 @@ class SourceMatcher {
           low = has_bounds ? glm::min(low, corner[k]) : corner[k];
           high = has_bounds ? glm::max(high, corner[k]) : corner[k];
           has_bounds = true;
-          grid[k] = quantize(corner[k]);
-        }
-        for (std::size_t k = 0; k < 3; ++k) {
-          const Vec3d moved = Vec3d(grid[k][0], grid[k][1], grid[k][2]) * step_ - (corner[k] - origin_);
-          moved2 = std::max(moved2, glm::dot(moved, moved));
+          grid[k] = vertices_.point_of(corner[k]);
         }
         if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0]) {
           ++degenerate_;
@@ -150,13 +127,71 @@ class SourceMatcher {
     const double diagonal = has_bounds ? std::sqrt(glm::dot(high - low, high - low)) : 0.0;
     log_.expect(std::fabs(mesh_.diagonal - diagonal) <= 1e-9 * diagonal, "V103", at,
                 [&] { return differs("diagonal", mesh_.diagonal, "source", diagonal); });
-    const double moved = std::sqrt(moved2);
-    const double stored = mesh_.level0_deviation;  // a float, rounded up
-    log_.expect(stored >= moved * (1.0 - 1e-12) && stored <= moved * (1.0 + 0x1p-22) + 0x1p-148, "V105", at, [&] {
-      return differs("level0_deviation", double{mesh_.level0_deviation}, "largest move of a vertex", moved);
-    });
+    sort_sources();
+  }
+
+  void sort_sources() {
     std::sort(sources_.begin(), sources_.end(), [](const SourceTriangle& a, const SourceTriangle& b) {
       return std::tie(a.key, a.primitive, a.triangle) < std::tie(b.key, b.primitive, b.triangle);
+    });
+  }
+
+  [[nodiscard]] std::array<Vec3d, 3> corners_of(const SourceTriangle& s) const {
+    const Primitive& primitive = source_.primitives[s.primitive];
+    const std::uint32_t* index = &primitive.indices[3 * std::size_t{s.triangle}];
+    return {primitive.positions[index[0]], primitive.positions[index[1]], primitive.positions[index[2]]};
+  }
+
+  /// Keys that only one side has say which vertices are elsewhere; their triangles get other keys.
+  void find_moved() {
+    std::vector<MissingTriangle> missing;
+    std::vector<TriangleKey> unmatched;
+    std::vector<std::size_t> who;
+    for (std::size_t i = 0, j = 0; i < sources_.size() || j < stored_.size();) {
+      if (j == stored_.size() || (i < sources_.size() && sources_[i].key < stored_[j].key)) {
+        missing.push_back({sources_[i].key.material, corners_of(sources_[i])});
+        who.push_back(i++);
+      } else if (i == sources_.size() || stored_[j].key < sources_[i].key) {
+        unmatched.push_back(stored_[j++].key);
+      } else {
+        const TriangleKey key = sources_[i].key;
+        const std::size_t i0 = i;
+        const std::size_t j0 = j;
+        while (i < sources_.size() && sources_[i].key == key) ++i;
+        while (j < stored_.size() && stored_[j].key == key) ++j;
+        if (i - i0 <= j - j0) continue;
+        unmatched.push_back(key);  // of some it is the place, of the others it is not, or they are duplicates
+        for (std::size_t k = i0; k < i; ++k) {
+          missing.push_back({key.material, corners_of(sources_[k])});
+          who.push_back(k);
+        }
+      }
+    }
+    if (missing.empty() || unmatched.empty()) return;
+    vertices_.find(missing, unmatched);
+    for (const std::size_t i : who) {
+      const std::array<Vec3d, 3> corner = corners_of(sources_[i]);
+      sources_[i].key.corners = rotate_to_smallest(
+          {vertices_.point_of(corner[0]), vertices_.point_of(corner[1]), vertices_.point_of(corner[2])});
+    }
+    sort_sources();
+  }
+
+  void check_moves() {
+    double moved2 = 0.0;
+    for (const Primitive& primitive : source_.primitives) {
+      for (const std::uint32_t vertex : primitive.indices) {
+        const Vec3d& p = primitive.positions[vertex];
+        const GridPoint q = vertices_.point_of(p);
+        const Vec3d moved = Vec3d(q[0], q[1], q[2]) * step_ - (p - origin_);
+        moved2 = std::max(moved2, glm::dot(moved, moved));
+      }
+    }
+    const double moved = std::sqrt(moved2);
+    const double stored = mesh_.level0_deviation;  // a float, rounded up
+    log_.expect(stored >= moved * (1.0 - 1e-12) && stored <= moved * (1.0 + 0x1p-22) + 0x1p-148, "V105",
+                [&] { return where(); }, [&] {
+      return differs("level0_deviation", double{mesh_.level0_deviation}, "largest move of a vertex", moved);
     });
   }
 
@@ -319,7 +354,7 @@ class SourceMatcher {
       for (std::size_t k = 0; k < 3 && matches; ++k) {
         const std::uint32_t vertex = triangle[(k + shift) % 3];
         const Vec3i p = clusters_[stored.cluster].position(vertex);
-        matches = quantize(one.triangle[k].position) == std::array<std::int32_t, 3>{p.x, p.y, p.z} &&
+        matches = vertices_.point_of(one.triangle[k].position) == GridPoint{p.x, p.y, p.z} &&
                   is_near(one.triangle[k], vertex, one.has_own_normals);
       }
       if (matches) return true;
@@ -382,6 +417,7 @@ class SourceMatcher {
   RuleLog& log_;
   double step_;
   Vec3d origin_;
+  MovedVertices vertices_;
   std::vector<SourceTriangle> sources_;
   std::vector<StoredTriangle> stored_;
   std::uint64_t degenerate_ = 0, duplicates_most_ = 0;

@@ -107,6 +107,22 @@ Scene mirrored_instances() {
   return scene;
 }
 
+/// A rock with needles along its edges: an edge long and far narrower than a cell of the grid.
+Scene rock_with_needles() {
+  Primitive shape = samples::make_rock(16);
+  const std::size_t triangles = shape.indices.size() / 3;
+  for (std::size_t t = 0; t < triangles; t += 3) {
+    const std::uint32_t a = shape.indices[3 * t];
+    const std::uint32_t tip = shape.indices[3 * t + 1];
+    const double width = 1e-6 * static_cast<double>(1 + t % 50);
+    shape.positions.push_back(shape.positions[a] + Vec3d(width, 0.5 * width, -0.7 * width));
+    if (!shape.normals.empty()) shape.normals.push_back(shape.normals[a]);
+    const auto beside = static_cast<std::uint32_t>(shape.positions.size() - 1);
+    for (const std::uint32_t v : {a, beside, tip}) shape.indices.push_back(v);
+  }
+  return alone(std::move(shape));
+}
+
 Scene two_scales() {
   Scene scene = alone(samples::scaled(samples::make_sphere(12), 1e-6));
   scene.meshes.push_back(samples::as_mesh(samples::scaled(samples::make_sphere(12), 1e9), "huge"));
@@ -146,6 +162,7 @@ const HardCase kCases[] = {
     {"ZeroAreas", [] { return alone(samples::make_zero_areas(16)); }},
     {"Duplicates", [] { return alone(samples::make_duplicates(16)); }},
     {"Slivers", [] { return alone(samples::make_slivers(3000)); }},
+    {"Needles", rock_with_needles},
     {"SplitNormals", [] { return alone(samples::with_split_normals(samples::make_rock(16))); }},
     {"Crystal", [] { return alone(samples::make_crystal(5, 12)); }},
     {"ThreeSheets", [] { return alone(samples::make_three_sheets(24)); }},
