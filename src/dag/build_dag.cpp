@@ -216,7 +216,9 @@ Result<LodDag> build_dag(const PreparedMesh& mesh, const DagOptions& options) {
       const SimplifyInput finer = group_input(pool, mesh, clusters, shared);
       attempts[g] = simplify_and_cluster(finer, round == 0 ? first_share(g, groups.size()) : 0.5, groups.size() == 1,
                                          options, effort);
-      if (attempts[g].is_accepted) attempts[g].errors = meter.measure(pool, clusters, finer, attempts[g].result);
+      if (attempts[g].is_accepted) {
+        attempts[g].errors = meter.measure(pool, clusters, finer, attempts[g].result, groups.size());
+      }
     });
 
     std::vector<std::uint32_t> next;

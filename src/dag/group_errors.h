@@ -32,7 +32,8 @@ class GroupMeter {
   [[nodiscard]] CarriedTruth level0() const;
   /// `clusters` of the pool, with their triangles in `finer`, became `coarser`.
   [[nodiscard]] GroupErrors measure(const BuildPool& pool, const std::vector<std::uint32_t>& clusters,
-                                    const SimplifyInput& finer, const SimplifyResult& coarser) const;
+                                    const SimplifyInput& finer, const SimplifyResult& coarser,
+                                     std::size_t groups_of_round) const;
 
  private:
   const PreparedMesh& mesh_;

@@ -51,6 +51,9 @@ struct DeviationTierOptions {
   bool certified = false;  ///< not of measure_group, which only estimates: certify_group is that tier
   double floor = 0.0;      ///< object units: the running maximum so far. What is below it need not be known exactly.
   std::uint32_t samples_per_triangle = 2;  ///< carried samples are thinned to so many per triangle, the farthest first
+  /// Triangles of the group that may be divided in search of the maximum, on top of a share of all. Groups of large
+  /// triangles need many: a narrow peak lies between the points of several that promise more.
+  std::uint32_t extra_effort = 0;
   /// What the group replaces: its members' triangles. With `floor`, it says which points of the source the group stands
   /// for: those that were within `floor` of it. Without it only the carried samples are looked at. The grid's own
   /// deviation belongs into `floor`, then.

@@ -23,11 +23,11 @@ namespace meshlode {
                                                       std::size_t triangle_count, std::uint32_t samples_per_triangle,
                                                       double maximum);
 
-/// Group to source: the larger of `maximum` and what is found, by adaptive subdivision near the maximum. `places` has
-/// for each triangle of the group where its search may begin. `high` gets points of the group near the maximum; their
+/// Group to source: the larger of `maximum` and what is found, by adaptive subdivision near the maximum of at most
+/// `budget` triangles and their parts. `places` has for each triangle of the group where its search may begin. `high` gets points of the group near the maximum; their
 /// places are those of their nearest triangles of the source.
 [[nodiscard]] double measure_to_source(const SurfaceTree& source, const GroupSurface& group, const GroupEdges& edges,
-                                       const std::vector<std::uint32_t>& places, double maximum,
+                                       const std::vector<std::uint32_t>& places, double maximum, std::size_t budget,
                                        std::vector<CarriedSample>& high);
 
 /// Which points of the source a group stands for: those that were near enough to what it replaces, on the same side and

@@ -55,7 +55,8 @@ class SourceProbe {
 }  // namespace
 
 double measure_to_source(const SurfaceTree& source, const GroupSurface& group, const GroupEdges& edges,
-                         const std::vector<std::uint32_t>& places, double maximum, std::vector<CarriedSample>& high) {
+                         const std::vector<std::uint32_t>& places, double maximum, std::size_t budget,
+                         std::vector<CarriedSample>& high) {
   SourceProbe probe(source, maximum);
   const std::size_t count = group.triangles.size();
   constexpr std::uint32_t kUnknown = 0xFFFFFFFFU;
@@ -85,7 +86,7 @@ double measure_to_source(const SurfaceTree& source, const GroupSurface& group, c
   // Every patch is made before any is divided: what promises most comes first.
   PatchQueue<SourceProbe> queue(probe);
   for (const Patch& patch : patches) queue.add(patch);
-  queue.refine(64 + count / 4);
+  queue.refine(budget);
   high = probe.take_high();
   return probe.maximum();
 }
@@ -107,7 +108,8 @@ GroupDeviation measure_group(const SourceTree& source, const GroupSurface& group
   std::vector<std::uint32_t> places(group.triangles.size(), SurfaceTree::kNone);
   for (const CarriedSample& sample : projected) places[sample.triangle] = sample.place;
   std::vector<CarriedSample> high;
-  maximum = measure_to_source(source_tree, group, edges, places, maximum, high);
+  const std::size_t budget = 64 + group.triangles.size() / 4 + options.extra_effort;
+  maximum = measure_to_source(source_tree, group, edges, places, maximum, budget, high);
   OwnerTest owner(options.finer, kReach * options.floor);
   maximum = search_source(source.impl(), group, group_tree, owner, maximum, high, projected);
   result.carried = thin_samples(projected, group.triangles.size(), options.samples_per_triangle, maximum);
