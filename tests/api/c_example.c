@@ -12,6 +12,13 @@ static int fail(const char *what, const meshlode_error *error) {
   return (int)error->status;
 }
 
+static void free_pages(const meshlode_asset *asset, void **loaded) {
+  uint32_t count, i;
+  (void)meshlode_pages(asset, &count);
+  for (i = 0; loaded && i < count; ++i) free(loaded[i]);
+  free(loaded);
+}
+
 /* Loads every page in streaming order into memory of its own. NULL where one cannot be had. */
 static void **load_pages(const meshlode_asset *asset, meshlode_error *error) {
   uint32_t count, i;
@@ -25,7 +32,9 @@ static void **load_pages(const meshlode_asset *asset, meshlode_error *error) {
     ok = loaded[page] && meshlode_load_page(asset, page, loaded[page], pages[page].bytes, error) == MESHLODE_OK;
   }
   free(order);
-  return ok ? loaded : NULL; /* a program that goes on would free the pages here */
+  if (ok) return loaded;
+  free_pages(asset, loaded);
+  return NULL;
 }
 
 int main(int argc, char **argv) {
@@ -68,6 +77,8 @@ int main(int argc, char **argv) {
   }
   printf("%lu clusters, %lu triangles, %.4f square units seen from above\n", (unsigned long)count, triangles,
          0.5 * area_x2);
+  free_pages(asset, pages);
+  free(items);
   meshlode_close(asset);
-  return count > 0 ? 0 : 1; /* the pages and items go with the process */
+  return count > 0 ? 0 : 1;
 }
