@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "base/parallel.h"
 #include "cluster/adjacency.h"
@@ -91,13 +92,13 @@ Clustering cluster_chunk(std::span<const WedgeTriangle> triangles, std::span<con
     return corners;
   };
   const std::vector<std::array<std::uint32_t, 3>> corners = corners_of(triangles);
-  const Graph graph = triangle_graph(corners);
+  Graph graph = triangle_graph(corners);
   const std::size_t for_triangles = (triangles.size() + caps.target_triangles - 1) / caps.target_triangles;
   const std::size_t parts = std::max(triangles.size() <= caps.max_triangles ? 1 : for_triangles,
                                      parts_for_vertices(triangles, caps.max_vertices));
   std::vector<std::uint32_t> piece;
   const std::uint32_t piece_count = find_pieces(graph, piece);
-  if (parts == 1 || piece_count == 1) return partition_chunk(triangles, graph, parts, caps);
+  if (parts == 1 || piece_count == 1) return partition_chunk(triangles, std::move(graph), parts, caps);
   if (piece_count > kPiecesPerPart * parts) {
     Clustering clustering = cluster_pieces(triangles, wedge_position, positions, piece, piece_count,
                                            std::min(parts, triangles.size()));
@@ -118,7 +119,7 @@ Clustering cluster_chunk(std::span<const WedgeTriangle> triangles, std::span<con
     }
     Graph weighted = triangle_graph(corners_of(core), core_links);
     weighted.node_weight.assign(weights.begin(), weights.end());
-    return partition_chunk(core, weighted, parts, caps);
+    return partition_chunk(core, std::move(weighted), parts, caps);
   };
   return cluster_with_satellites(triangles, wedge_position, hosts, caps, cluster_core);
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <span>
 #include <utility>
 
 namespace meshlode {
@@ -81,21 +82,26 @@ Hosts host_collapsed(std::span<const WedgeTriangle> triangles, std::span<const s
   Hosts hosts(triangles.size(), kNoHost);
   for (const std::uint32_t t : collapsed) {
     const auto own = positions_of(triangles[t], wedge_position);
-    const auto shares = [&](std::uint32_t other) {
-      const auto theirs = positions_of(triangles[other], wedge_position);
+    using User = std::pair<std::uint32_t, std::uint32_t>;
+    const auto users_of = [&](std::uint32_t position) {
+      const auto first = std::lower_bound(users.begin(), users.end(), User{position, 0U});
+      return std::span<const User>(first, std::lower_bound(first, users.end(), User{position + 1, 0U}));
+    };
+    // One that covers all of it has all its positions, so that the one with the fewest users will do: a fan of needles
+    // around one vertex stays linear.
+    std::span<const User> fewest = users_of(own[0]);
+    for (const std::uint32_t position : own) {
+      const std::span<const User> these = users_of(position);
+      if (these.size() < fewest.size()) fewest = these;
+      if (hosts[t] == kNoHost && !these.empty()) hosts[t] = these[0].second;
+    }
+    const auto covering = std::find_if(fewest.begin(), fewest.end(), [&](const User& user) {
+      const auto theirs = positions_of(triangles[user.second], wedge_position);
       return std::all_of(own.begin(), own.end(), [&](std::uint32_t position) {
         return std::find(theirs.begin(), theirs.end(), position) != theirs.end();
       });
-    };
-    // One that covers all of it, or one that touches it.
-    bool covers = false;
-    for (const std::uint32_t position : own) {
-      for (auto user = std::lower_bound(users.begin(), users.end(), std::pair(position, 0U));
-           user != users.end() && user->first == position && !covers; ++user) {
-        covers = shares(user->second);
-        if (covers || hosts[t] == kNoHost) hosts[t] = user->second;
-      }
-    }
+    });
+    if (covering != fewest.end()) hosts[t] = covering->second;
   }
   return hosts;
 }

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "cluster/adjacency.h"
+#include "cluster/satellites.h"
 #include "prepare/prepare.h"
 #include "samples/samples.h"
 
@@ -142,6 +143,26 @@ TEST(Cluster, WhatCoversLittleIsWhereItsSurfaceIs) {
     EXPECT_LT(nearest, 0.06) << "triangle " << t;
   }
   EXPECT_GT(debris, 400U);
+}
+
+/// Every needle of a fan shares the hub, so that looking through the hub's triangles for each would be quadratic.
+TEST(Cluster, AFanOfNeedlesStaysLinear) {
+  constexpr std::uint32_t kSpokes = 200000;
+  std::vector<Vec3i> positions{{0, 0, 0}};
+  std::vector<std::uint32_t> wedge_position{0};
+  std::vector<WedgeTriangle> triangles;
+  for (std::uint32_t i = 1; i <= kSpokes; ++i) {
+    positions.push_back({static_cast<int>(i), 1000, static_cast<int>(i % 7)});
+    wedge_position.push_back(i);
+  }
+  for (std::uint32_t i = 1; i < kSpokes; ++i) triangles.push_back({0, i, i + 1});
+  for (std::uint32_t i = 1; i <= kSpokes; ++i) triangles.push_back({0, i, i});
+  const Hosts hosts = host_collapsed(triangles, wedge_position, positions.size());
+  for (std::uint32_t i = 1; i <= kSpokes; ++i) {
+    const std::uint32_t host = hosts[kSpokes - 1 + i - 1];
+    ASSERT_NE(host, kNoHost);
+    EXPECT_TRUE(triangles[host][1] == i || triangles[host][2] == i) << "the host has the whole segment";
+  }
 }
 
 TEST(TriangleGraph, AnEdgeOfManyTrianglesStaysLinear) {
