@@ -14,19 +14,6 @@ namespace meshlode {
 
 namespace {
 
-Surface surface_of(const SourceMesh& mesh) {
-  Surface surface;
-  for (const Primitive& primitive : mesh.primitives) {
-    const auto base = static_cast<std::uint32_t>(surface.positions.size());
-    surface.positions.insert(surface.positions.end(), primitive.positions.begin(), primitive.positions.end());
-    for (std::size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
-      surface.triangles.push_back(
-          {base + primitive.indices[i], base + primitive.indices[i + 1], base + primitive.indices[i + 2]});
-    }
-  }
-  return surface;
-}
-
 /// Errors to cut at: from the smallest positive to the largest finite one, evenly in the logarithm.
 std::vector<double> thresholds_of(const Asset& asset, const format::MeshRecord& mesh, std::uint32_t count) {
   float low = format::kInfiniteError;
@@ -57,7 +44,7 @@ DeviationTotals check_deviations(const Asset& asset, const Scene& source, std::s
     if (mesh.error_tier == format::ErrorTier::kQem) continue;
     const bool is_certified = mesh.error_tier == format::ErrorTier::kCertified;
     const double limit = is_certified ? 1.0 : 1.0 + kMeasuredShortfall;
-    const Surface truth = surface_of(source.meshes[m]);
+    const Surface truth = surface_of_source(source.meshes[m]);
     std::vector<ClusterId> previous;
     for (const double threshold : thresholds_of(asset, mesh, cuts)) {
       const UniformCut cut = select_uniform(asset, MeshId(m), threshold);

@@ -10,6 +10,8 @@ namespace meshlode {
 namespace {
 
 constexpr std::int32_t kNowhere = 2000000000;
+/// In which forced moves may force others: enough for real chains, few enough for a source that is not the asset's.
+constexpr int kRounds = 32;
 
 auto tuple_of(const Vec3d& p) { return std::tuple(p.x, p.y, p.z); }
 
@@ -36,7 +38,7 @@ std::vector<GridPoint> MovedVertices::choices(const Vec3d& position) const {
   if (const auto found = moved_.find(tuple_of(position + 0.0)); found != moved_.end()) return {found->second};
   const GridPoint q = nearest(position);
   std::vector<GridPoint> out{q};
-  if (std::find(q.begin(), q.end(), kNowhere) != q.end()) return out;
+  if (std::find(q.begin(), q.end(), kNowhere) != q.end() || !may_move_.contains(tuple_of(position + 0.0))) return out;
   for (int axis = 0; axis < 3; ++axis) {
     for (const int side : {-1, 1}) {
       GridPoint next = q;
@@ -49,6 +51,15 @@ std::vector<GridPoint> MovedVertices::choices(const Vec3d& position) const {
 }
 
 void MovedVertices::find(std::span<const MissingTriangle> missing, std::span<const TriangleKey> unmatched) {
+  for (const MissingTriangle& triangle : missing) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3d& a = triangle.corner[k];
+      const Vec3d& b = triangle.corner[(k + 1) % 3];
+      if (a == b || nearest(a) != nearest(b)) continue;
+      may_move_.insert(tuple_of(a + 0.0));
+      may_move_.insert(tuple_of(b + 0.0));
+    }
+  }
   const auto fits = [&](const MissingTriangle& triangle) {
     std::vector<GridCorners> out;
     const std::array<std::vector<GridPoint>, 3> at{choices(triangle.corner[0]), choices(triangle.corner[1]),
@@ -70,18 +81,19 @@ void MovedVertices::find(std::span<const MissingTriangle> missing, std::span<con
   };
   std::vector<std::size_t> open(missing.size());
   for (std::size_t i = 0; i < open.size(); ++i) open[i] = i;
-  while (!open.empty()) {
+  for (int round = 0; round < kRounds && !open.empty(); ++round) {
     std::vector<std::size_t> rest;
     for (const std::size_t i : open) {
       const std::vector<GridCorners> found = fits(missing[i]);
       if (found.size() == 1) bind(missing[i], found[0]);
       if (found.size() > 1) rest.push_back(i);
     }
-    if (rest.size() == open.size()) {  // nothing forces anything any more: the first choice, and see
-      bind(missing[rest[0]], fits(missing[rest[0]])[0]);
-      rest.erase(rest.begin());
-    }
+    if (rest.size() == open.size()) break;
     open = std::move(rest);
+  }
+  for (const std::size_t i : open) {  // nothing forces anything any more: the first choice, and see
+    const std::vector<GridCorners> found = fits(missing[i]);
+    if (!found.empty()) bind(missing[i], found[0]);
   }
 }
 

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <map>
+#include <set>
 #include <span>
 #include <tuple>
 #include <vector>
@@ -25,8 +26,9 @@ class MovedVertices {
   MovedVertices() = default;
   MovedVertices(const Vec3d& origin, double step) : origin_(origin), step_(step) {}
 
-  /// Finds the moves that take `missing` to triangles among `unmatched` (sorted). A vertex has one place: a move that one
-  /// triangle leaves no choice about binds the others at that vertex.
+  /// Finds the moves that take `missing` to triangles among `unmatched` (sorted). Only corners that share their nearest
+  /// point with another corner of a missing triangle may have moved. A vertex has one place: a move that one triangle
+  /// leaves no choice about binds the others at that vertex.
   void find(std::span<const MissingTriangle> missing, std::span<const TriangleKey> unmatched);
 
   /// The vertex's point on the grid. A source that is not the asset's may lie anywhere; such a corner matches nothing.
@@ -39,6 +41,7 @@ class MovedVertices {
 
   Vec3d origin_{0.0};
   double step_ = 1.0;
+  std::set<std::tuple<double, double, double>> may_move_;
   std::map<std::tuple<double, double, double>, GridPoint> moved_;
 };
 

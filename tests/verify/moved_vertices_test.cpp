@@ -43,6 +43,17 @@ TEST(MovedVertices, NoneMovesFartherThanHalfACellsDiagonal) {
   }
 }
 
+TEST(MovedVertices, OnlyCornersThatWouldHaveMetMayMove) {
+  // This corner's nearest point is nobody else's: it has no reason to be elsewhere, however near.
+  MovedVertices vertices(Vec3d(0.0), 1.0);
+  const Vec3d apart{0.55, 0.45, 0.0};
+  const std::vector<MissingTriangle> missing{{0, {kA, apart, kTip}}};
+  const std::vector<TriangleKey> stored{{0, rotate_to_smallest({kCell, GridPoint{1, 1, 0}, kTipCell})}};
+  vertices.find(missing, stored);
+  EXPECT_EQ(vertices.point_of(kA), kCell);
+  EXPECT_EQ(vertices.point_of(apart), kNext);
+}
+
 TEST(MovedVertices, AnotherMaterialOrWindingIsAnotherTriangle) {
   MovedVertices vertices(Vec3d(0.0), 1.0);
   const std::vector<MissingTriangle> missing{{0, {kA, kB, kTip}}};
