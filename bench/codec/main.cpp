@@ -21,16 +21,12 @@
 #include "read/asset.h"
 #include "unpack/stored_page.h"
 #include "unpack/unpack.h"
+#include "thread_clock.h"
 
 namespace {
 
 using namespace meshlode;
-
-double thread_seconds() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
+using bench::thread_seconds;
 
 double median(std::vector<double> values) {
   std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());

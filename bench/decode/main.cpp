@@ -16,16 +16,12 @@
 #include "decode/decode.h"
 #include "read/asset.h"
 #include "unpack/unpack.h"
+#include "thread_clock.h"
 
 namespace {
 
 using namespace meshlode;
-
-double thread_seconds() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
+using bench::thread_seconds;
 
 [[noreturn]] void fail(const std::string& where, const std::string& detail) {
   std::fprintf(stderr, "bench_decode: %s: %s\n", where.c_str(), detail.c_str());

@@ -116,7 +116,7 @@ class MeshBench {
         decoded_(decoded),
         mesh_(mesh),
         options_(options),
-        source_(plain_surface(source)),
+        source_(surface_of_source(source)),
         shaded_(shaded_surface_of_source(source)),
         judge_(source_, asset, decoded, mesh, options.samples) {}
 
@@ -180,19 +180,6 @@ class MeshBench {
       one.seconds = seconds;
       out.equal.push_back(std::move(one));
     }
-  }
-
-  static Surface plain_surface(const SourceMesh& mesh) {
-    Surface surface;
-    for (const Primitive& primitive : mesh.primitives) {
-      const auto base = static_cast<std::uint32_t>(surface.positions.size());
-      surface.positions.insert(surface.positions.end(), primitive.positions.begin(), primitive.positions.end());
-      for (std::size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
-        surface.triangles.push_back(
-            {base + primitive.indices[i], base + primitive.indices[i + 1], base + primitive.indices[i + 2]});
-      }
-    }
-    return surface;
   }
 
   MeasuredCut measured(double threshold, const UniformCut& cut, const CutFigures& figures, bool with_drift) {

@@ -22,4 +22,17 @@ Surface surface_of_clusters(const Asset& asset, std::span<const DecodedCluster> 
   return surface;
 }
 
+Surface surface_of_source(const SourceMesh& mesh) {
+  Surface surface;
+  for (const Primitive& primitive : mesh.primitives) {
+    const auto base = static_cast<std::uint32_t>(surface.positions.size());
+    surface.positions.insert(surface.positions.end(), primitive.positions.begin(), primitive.positions.end());
+    for (std::size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
+      surface.triangles.push_back(
+          {base + primitive.indices[i], base + primitive.indices[i + 1], base + primitive.indices[i + 2]});
+    }
+  }
+  return surface;
+}
+
 }  // namespace meshlode

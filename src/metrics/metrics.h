@@ -11,6 +11,7 @@
 #include "base/ids.h"
 #include "base/vec.h"
 #include "decode/decode.h"
+#include "mesh/scene.h"
 #include "read/asset.h"
 
 namespace meshlode {
@@ -47,5 +48,8 @@ struct DeviationReport {
 /// of the asset, as decode_all gives them.
 [[nodiscard]] Surface surface_of_clusters(const Asset& asset, std::span<const DecodedCluster> decoded, MeshId mesh,
                                           std::span<const ClusterId> clusters);
+
+/// The source's triangles, all primitives of the mesh together, as read.
+[[nodiscard]] Surface surface_of_source(const SourceMesh& mesh);
 
 }  // namespace meshlode

@@ -186,6 +186,36 @@ TEST_F(Scenes, PersistentTraversalDrawsTheSame) {
   }
 }
 
+/// Hardware raster covers what the CPU covers, but for borders, at its depths; and the comparison finds another picture.
+TEST_F(Scenes, HardwareRasterHoldsAndItsJudgeCanFail) {
+  const auto asset = Asset::from_vector(meshlode::test::sample_asset_bytes());
+  ASSERT_TRUE(asset);
+  const auto scene = upload_scene(*device_, *asset);
+  ASSERT_TRUE(scene);
+  RendererOptions options{.width = 640, .height = 360, .frustum = false, .double_sided = true};
+  options.hardware = HardwarePath::kVertex;
+  options.hardware_pixels = 0.0F;
+  auto renderer = Renderer::make(*device_, *scene, options);
+  ASSERT_TRUE(renderer);
+  options.double_sided = false;
+  auto one_sided = Renderer::make(*device_, *scene, options);
+  ASSERT_TRUE(one_sided);
+  std::uint64_t missed = 0, differences = 0, items = 0;
+  for (const NamedCamera& named : orbit_cameras(*asset, 4, 640, 360)) {
+    SCOPED_TRACE(named.name);
+    const auto result = compare_hardware(*renderer, *asset, named.camera, 1.0);
+    ASSERT_TRUE(result);
+    differences += result->differences;
+    items += result->items;
+    const auto other = compare_hardware(*one_sided, *asset, named.camera, 1.0);
+    ASSERT_TRUE(other);
+    missed += other->differences;
+  }
+  EXPECT_GT(items, 100000U);
+  EXPECT_LE(differences * 1000000, kHardwareSlivers * items) << differences << " pixels";
+  EXPECT_GT(missed * 1000000, kHardwareSlivers * items) << "the sample is double-sided in part, and the other culls";
+}
+
 /// From far away a mesh's root alone is open: then its instance goes past the hierarchy, to the same cut.
 TEST_F(Scenes, AFarInstanceIsNotTraversed) {
   const std::vector<std::uint8_t> bytes = build_file(MESHLODE_DATA "/rock.glb");

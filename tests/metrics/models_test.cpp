@@ -26,18 +26,6 @@ bool are_models_required() {
   return value != nullptr && std::string(value) == "1";
 }
 
-Surface surface_of_source(const SourceMesh& mesh) {
-  Surface s;
-  for (const Primitive& p : mesh.primitives) {
-    const std::uint32_t base = static_cast<std::uint32_t>(s.positions.size());
-    s.positions.insert(s.positions.end(), p.positions.begin(), p.positions.end());
-    for (std::size_t i = 0; i + 2 < p.indices.size(); i += 3) {
-      s.triangles.push_back({base + p.indices[i], base + p.indices[i + 1], base + p.indices[i + 2]});
-    }
-  }
-  return s;
-}
-
 void expect_sound_model(const std::filesystem::path& path, double root_limit) {
   const Result<Scene> scene = import_scene(path, {});
   ASSERT_TRUE(scene.ok()) << scene.error().message();

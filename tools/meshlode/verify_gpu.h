@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What verify --gpu adds to verify.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include <meshlode/result.h>
+
+#include "mesh/scene.h"
+#include "read/asset.h"
+#include "verify/verify.h"
+
+namespace meshlode::cli {
+
+struct GpuOptions {
+  bool is_on = false;
+  std::string device, path, out_folder;
+  std::uint32_t orbits = 6;
+  double pixel_error = 1.0;
+};
+
+/// What the GPU finds, as checks and findings of the same report; heat maps and gpu.json where a folder is given.
+[[nodiscard]] Status verify_with_gpu(const Asset& asset, const Scene& source, const GpuOptions& options,
+                                     VerifyReport& report);
+
+}  // namespace meshlode::cli
