@@ -49,6 +49,7 @@ std::vector<Variant> all_variants() {
     r.flat_selection = true;
   });
   add("persistent", [](auto& r) { r.persistent = true; });
+  add("second-by-depth", [](auto& r) { r.persistent_second = false; });
   add("no-far", [](auto& r) { r.far_instances = false; });
   add("no-far-persistent", [](auto& r) {
     r.far_instances = false;

@@ -15,6 +15,7 @@ namespace meshlode::gpu {
 namespace {
 
 constexpr std::uint32_t kPersistentGroups = 1024;  ///< more than any device runs at once do no harm: they find nothing
+constexpr std::uint32_t kSecondGroups = 256;       ///< what last frame's depth hid is little work
 
 std::uint64_t arguments_of(std::uint32_t stage) {
   return offsetof(GpuCounters, stages) + sizeof(GpuStage) * stage + offsetof(GpuStage, x);
@@ -96,7 +97,7 @@ Status Renderer::make_buffers() {
       {&frame_block_, sizeof(GpuFrame)},
       {&counters_block_, sizeof(GpuCounters)},
       {&visible_, std::uint64_t{f.slot_capacity} * sizeof(GpuVisible)},
-      {&queue_, std::uint64_t{f.queue_capacity} * 2 * 8},
+      {&queue_, std::uint64_t{f.queue_capacity} * queue_parts() * 8},
       {&open_groups_, std::uint64_t{f.group_capacity} * 8},
       {&items_, std::uint64_t{f.item_capacity} * 8},
       {&retry_nodes_, std::uint64_t{f.retry_capacity} * 8},
@@ -144,6 +145,10 @@ Status Renderer::make_buffers() {
 bool Renderer::has_far() const {
   return options_.far_instances && options_.hardware == HardwarePath::kNone && !options_.flat_selection;
 }
+// The dispatches of single depths fill two parts in turn; the persistent traversal keeps one of its own empty.
+std::uint32_t Renderer::queue_parts() const {
+  return options_.occlusion && options_.persistent_second && !options_.persistent ? 3 : 2;
+}
 bool Renderer::has_far_raster() const {
   return has_far() && options_.far_raster;
 }
@@ -181,8 +186,7 @@ Status Renderer::make_pipelines() {
                            {&raster_far_, shaders::raster_far()},
                            {&roots_, shaders::roots()},
                            {&raster_clip_, shaders::raster_clip()},
-                           {&pyramid_build_, shaders::pyramid()},
-                           {&pyramid_top_, shaders::pyramid_top()}};
+                           {&pyramid_build_, shaders::pyramid()}};
   for (const Wanted& w : wanted) {
     const bool is_far = w.slot == &instances_ || w.slot == &raster_far_;
     auto pipeline = device_.make_compute(w.spirv, is_far ? far_constants : constants);
@@ -228,12 +232,15 @@ void Renderer::record_selection(Commands& list, std::uint32_t pass) {
     list.dispatch_indirect(flat_, bytes_of(push), counters_block_, arguments_of(STAGE_SLOTS));
     list.barrier();
   }
-  if (options_.persistent && !options_.flat_selection) {
-    list.dispatch(persistent_, bytes_of(push), kPersistentGroups);
+  const bool is_persistent = options_.persistent || (pass == 1 && options_.persistent_second);
+  if (is_persistent && !options_.flat_selection) {
+    push.a = queue_parts() - 1;
+    list.dispatch(persistent_, bytes_of(push), pass == 0 ? kPersistentGroups : kSecondGroups);
+    push.a = 0;
     list.barrier();
   }
   // The leaves of the last depth are tested with the nodes above them.
-  const std::uint32_t depths = options_.flat_selection || options_.persistent ? 0 : std::max(scene_.bvh_depth, 2u) - 1;
+  const std::uint32_t depths = options_.flat_selection || is_persistent ? 0 : std::max(scene_.bvh_depth, 2u) - 1;
   for (push.depth = 0; push.depth < depths; ++push.depth) {
     list.dispatch_indirect(traverse_, bytes_of(push), counters_block_,
                            arguments_of(STAGE_QUEUE + MAX_DEPTH * pass + push.depth));
@@ -273,16 +280,12 @@ void Renderer::record_raster(Commands& list, std::uint32_t pass, bool in_order) 
   list.stamp(pass == 0 ? "clipped" : "clipped 2");
 }
 
-void Renderer::record_pyramid(Commands& list, std::uint32_t pass) {
-  const Push push{frame_block_.address(), pass};
+void Renderer::record_pyramid(Commands& list) {
+  const Push push{frame_block_.address()};
   const std::uint32_t tiles = ((frame_.width + 63) / 64) * ((frame_.height + 63) / 64);
   list.dispatch(pyramid_build_, bytes_of(push), tiles);
   list.barrier();
-  if (frame_.pyramid_levels > 6) {
-    list.dispatch(pyramid_top_, bytes_of(push), 1);
-    list.barrier();
-  }
-  list.stamp(pass == 0 ? "pyramid" : "pyramid 2");
+  list.stamp("pyramid");
 }
 
 Status Renderer::record() {
@@ -296,10 +299,11 @@ Status Renderer::record() {
   record_selection(list, 0);
   record_raster(list, 0);
   if (options_.occlusion) {
-    record_pyramid(list, 0);
+    // The next frame's first pass is tested against this pyramid too: what the second pass drew is not in it, so it hides
+    // less than it could, never more. One more pyramid costs more than the few clusters that it would hide.
+    record_pyramid(list);
     record_selection(list, 1);
     record_raster(list, 1);
-    record_pyramid(list, 1);
   }
   record_begin(lists_[1]);
   record_raster(lists_[1], 0, true);
@@ -321,7 +325,8 @@ Status Renderer::clear_lists() {
   auto clear = Commands::begin(device_);
   if (!clear) return clear.error();
   if (options_.occlusion) clear->fill(pyramid_, 0, pyramid_.bytes(), 0);  // before the first frame nothing hides anything
-  if (options_.persistent) clear->fill(queue_, 0, queue_.bytes(), 0);     // places that nobody has filled
+  // Places that nobody has filled.
+  if (options_.persistent || options_.persistent_second) clear->fill(queue_, 0, queue_.bytes(), 0);
   clear->barrier();
   if (const auto ran = clear->run(); !ran) return ran.error();
   return Ok{};
@@ -353,7 +358,7 @@ Result<FrameReport> Renderer::draw(const Camera& camera, double pixel_error, dou
   out.overflow = counters->overflow;
   for (const std::uint32_t added : counters->added) out.traversed_nodes += added;
   if (out.items > frame_.item_capacity) out.overflow |= OVERFLOW_CLUSTERS;  // both ends together
-  if (options_.persistent && (out.overflow & OVERFLOW_QUEUE) != 0) {
+  if ((options_.persistent || options_.persistent_second) && (out.overflow & OVERFLOW_QUEUE) != 0) {
     if (const Status s = clear_lists(); !s) return s.error();  // places may be left that nobody took
     has_last_ = false;
   }

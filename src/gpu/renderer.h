@@ -32,6 +32,7 @@ struct RendererOptions {
   bool double_sided = false;    ///< some material is; where none is, nobody looks
   bool flat_selection = false;  ///< every group of every instance instead of the BVH; not with occlusion
   bool persistent = false;      ///< the BVH in one dispatch with a queue, instead of one dispatch a depth
+  bool persistent_second = true;  ///< so in the second pass of occlusion culling, which has little to do at each depth
   bool far_instances = true;    ///< where a mesh's root alone is open, its instance goes past the BVH
   bool far_raster = true;           ///< and is drawn by a rasterizer of its own where it has a few pixels
   std::uint32_t raster_group = 128;  ///< invocations of the software rasterizer's workgroup: 32, 64 or 128
@@ -95,11 +96,12 @@ class Renderer {
   void record_begin(Commands& list);
   void record_selection(Commands& list, std::uint32_t pass);
   void record_raster(Commands& list, std::uint32_t pass, bool in_order = false);
-  void record_pyramid(Commands& list, std::uint32_t pass);
+  void record_pyramid(Commands& list);
   [[nodiscard]] Status record();
   [[nodiscard]] Status clear_lists();
   [[nodiscard]] Status decode_roots();
   [[nodiscard]] bool has_far() const;
+  [[nodiscard]] std::uint32_t queue_parts() const;
   [[nodiscard]] bool has_far_raster() const;
   [[nodiscard]] Result<GpuCounters> read_counters();
   struct Item {
@@ -116,7 +118,7 @@ class Renderer {
   Buffer frame_block_, counters_block_, upload_;
   Buffer visible_, queue_, open_groups_, items_, retry_nodes_, retry_clusters_, retry_instances_, clipped_, pixels_,
       pyramid_, overdraw_, colors_;
-  Pipeline instances_, traverse_, persistent_, flat_, roots_, raster_far_, sort_, hardware_, clusters_, raster_, raster_clip_, pyramid_build_, pyramid_top_;
+  Pipeline instances_, traverse_, persistent_, flat_, roots_, raster_far_, sort_, hardware_, clusters_, raster_, raster_clip_, pyramid_build_;
   std::vector<Commands> lists_;  ///< 0: the frame, 1: drawing in order
   bool has_last_ = false;
 };

@@ -23,9 +23,6 @@ constexpr std::uint32_t kRasterClip[] = {
 constexpr std::uint32_t kPyramid[] = {
 #include "pyramid.comp.inc"
 };
-constexpr std::uint32_t kPyramidTop[] = {
-#include "pyramid_top.comp.inc"
-};
 constexpr std::uint32_t kDecode[] = {
 #include "decode.comp.inc"
 };
@@ -79,9 +76,6 @@ std::span<const std::uint32_t> raster_clip() {
 }
 std::span<const std::uint32_t> pyramid() {
   return kPyramid;
-}
-std::span<const std::uint32_t> pyramid_top() {
-  return kPyramidTop;
 }
 std::span<const std::uint32_t> decode() {
   return kDecode;

@@ -13,7 +13,6 @@ namespace meshlode::gpu::shaders {
 [[nodiscard]] std::span<const std::uint32_t> raster();
 [[nodiscard]] std::span<const std::uint32_t> raster_clip();
 [[nodiscard]] std::span<const std::uint32_t> pyramid();
-[[nodiscard]] std::span<const std::uint32_t> pyramid_top();
 [[nodiscard]] std::span<const std::uint32_t> decode();
 [[nodiscard]] std::span<const std::uint32_t> flat();
 [[nodiscard]] std::span<const std::uint32_t> sort();

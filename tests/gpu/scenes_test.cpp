@@ -171,9 +171,15 @@ TEST_F(Scenes, PersistentTraversalDrawsTheSame) {
   ASSERT_TRUE(asset);
   const auto scene = upload_scene(*device_, *asset);
   ASSERT_TRUE(scene);
-  for (const bool occlusion : {false, true}) {
-    RendererOptions options{.width = 97, .height = 64, .frustum = occlusion, .occlusion = occlusion};
-    options.double_sided = options.persistent = true;
+  struct Case {
+    bool occlusion, persistent, persistent_second;
+  };
+  for (const Case c : {Case{false, true, false}, Case{true, true, true}, Case{true, false, true}, Case{true, false, false}}) {
+    SCOPED_TRACE(testing::Message() << c.occlusion << c.persistent << c.persistent_second);
+    RendererOptions options{.width = 97, .height = 64, .frustum = c.occlusion, .occlusion = c.occlusion};
+    options.double_sided = true;
+    options.persistent = c.persistent;
+    options.persistent_second = c.persistent_second;
     options.far_instances = false;
     auto renderer = Renderer::make(*device_, *scene, options);
     ASSERT_TRUE(renderer);

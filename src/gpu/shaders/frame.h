@@ -146,6 +146,7 @@ struct GpuCounters {
   GPU_ARRAY(uint, taken, 2);
   GPU_ARRAY(uint, added, 2);
   GPU_ARRAY(int, balance, 2);
+  uint pyramid_tiles;  // done: whose is the last one builds the levels above all tiles
 };
 
 // What resolve.comp shows; the first four are View of raster/raster.h.
@@ -198,7 +199,7 @@ struct GpuFrame {
   GPU_POINTER(PageWords) pages;
   GPU_POINTER(WordArray) roots;          // decoded: roots.comp
   GPU_POINTER(VisibleArray) visible;
-  GPU_POINTER(PairArray) queue;          // two halves of queue_capacity: (slot, node)
+  GPU_POINTER(PairArray) queue;          // parts of queue_capacity: (slot, node)
   GPU_POINTER(PairArray) open_groups;    // (slot, group)
   GPU_POINTER(PairArray) items;          // (slot, cluster): software from the front; from the back hardware or far ones
   GPU_POINTER(PairArray) retry_nodes;    // (slot, node)

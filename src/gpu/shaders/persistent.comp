@@ -23,8 +23,8 @@ void main() {
   const bool is_retry = pass == 1u;
   const uint initial = min(counters.stages[STAGE_QUEUE + MAX_DEPTH * pass].count,
                            is_retry ? frame.retry_capacity : frame.queue_capacity);
-  // What is added lies in the second half of the queue; pass 0 begins with the first half.
-  Places places = Places(uint64_t(frame.queue) + 8ul * uint64_t(frame.queue_capacity));
+  // What is added lies in part `a` of the queue; pass 0 begins with part 0.
+  Places places = Places(uint64_t(frame.queue) + 8ul * uint64_t(a) * uint64_t(frame.queue_capacity));
   bool is_waiting = false;
   uint index = 0u;
   for (uint idle = 0u; idle < kMaxIdleRounds;) {

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Levels 1 to 6 of the depth pyramid, a workgroup per 64 × 64 pixels. A texel of level l is the farthest depth (the
-// smallest number) of the pixels (x >> l, y >> l): with sizes rounded up nothing is left out at any resolution.
+// The depth pyramid. A texel of level l is the farthest depth (the smallest number) of the pixels (x >> l, y >> l): with
+// sizes rounded up nothing is left out at any resolution. A workgroup makes levels 1 to 6 of 64 × 64 pixels; the one that
+// is done last makes the levels above, which are small (one pass for all levels: AMD's single pass downsampler).
 #version 460
 #define GROUP_SIZE 256
 #include "common.glsl"
 
 shared uint farthest[256];
+shared bool is_last;
 
 uint depth_at(uint x, uint y) {
   if (x >= frame.width || y >= frame.height) return 0xFFFFFFFFu;
@@ -22,7 +24,7 @@ void build_tile() {
   const uint tiles = (frame.width + 63u) / 64u;
   const uint tile_x = group_index() % tiles, tile_y = group_index() / tiles;
   const uint tx = gl_LocalInvocationID.x & 15u, ty = gl_LocalInvocationID.x >> 4u;
-  if (group_index() == 0u && gl_LocalInvocationID.x == 0u && pass == 0u) {
+  if (group_index() == 0u && gl_LocalInvocationID.x == 0u) {
     counters.software_before[1] = counters.stages[STAGE_SOFTWARE].count;
     counters.hardware_before[1] = counters.stages[STAGE_HARDWARE].count;
   }
@@ -54,7 +56,32 @@ void build_tile() {
   }
 }
 
+void build_levels() {
+  for (uint level = 7u; level <= frame.pyramid_levels; ++level) {
+    const uint fine_width = (frame.width + (1u << (level - 1u)) - 1u) >> (level - 1u);
+    const uint fine_height = (frame.height + (1u << (level - 1u)) - 1u) >> (level - 1u);
+    const uint width = (fine_width + 1u) / 2u, height = (fine_height + 1u) / 2u;
+    const uint fine = frame.pyramid_offset[level - 1u];
+    for (uint i = gl_LocalInvocationID.x; i < width * height; i += uint(GROUP_SIZE)) {
+      const uint x = i % width, y = i / width;
+      const uint x1 = min(2u * x + 1u, fine_width - 1u), y1 = min(2u * y + 1u, fine_height - 1u);
+      frame.pyramid.at[frame.pyramid_offset[level] + i] =
+          min(min(frame.pyramid.at[fine + 2u * y * fine_width + 2u * x], frame.pyramid.at[fine + 2u * y * fine_width + x1]),
+              min(frame.pyramid.at[fine + y1 * fine_width + 2u * x], frame.pyramid.at[fine + y1 * fine_width + x1]));
+    }
+    memoryBarrierBuffer();
+    barrier();
+  }
+}
+
 void main() {
-  // Where the second pass drew nothing the pyramid is already that of the whole picture.
-  if (pass == 0u || counters.stages[STAGE_SOFTWARE + 1u].x + counters.stages[STAGE_HARDWARE + 1u].x > 0u) build_tile();
+  build_tile();
+  memoryBarrierBuffer();
+  barrier();
+  if (gl_LocalInvocationID.x == 0u) {
+    is_last = atomicAdd(counters.pyramid_tiles, 1u) + 1u == gl_NumWorkGroups.x * gl_NumWorkGroups.y;
+  }
+  barrier();
+  memoryBarrierBuffer();
+  if (is_last) build_levels();
 }
