@@ -176,6 +176,15 @@ class GuardedPrediction : public draco::PredictionSchemeTypedDecoderInterface<st
   std::int64_t max_flags_;
 };
 
+/// Whether the number that `value` holds is in [first, end), looked at as bytes.
+template <class Number, class Enum>
+[[nodiscard]] bool is_between(const Enum& value, Number first, Number end) {
+  static_assert(sizeof(Enum) == sizeof(Number));
+  Number number;
+  std::memcpy(&number, &value, sizeof(number));
+  return first <= number && number < end;
+}
+
 /// Draco's integer or quantization decoder with that guard.
 template <class Decoder>
 class GuardedAttribute : public Decoder {
@@ -185,6 +194,12 @@ class GuardedAttribute : public Decoder {
  protected:
   std::unique_ptr<GuardedPrediction::Inner> CreateIntPredictionScheme(
       draco::PredictionSchemeMethod method, draco::PredictionSchemeTransformType transform) override {
+    // Draco makes both of any byte of the stream and leaves what they mean to this function: until they are known to be
+    // enumerators, even to look at them as such is undefined.
+    if (!is_between<int>(method, draco::PREDICTION_NONE, draco::NUM_PREDICTION_SCHEMES) ||
+        !is_between<int>(transform, draco::PREDICTION_TRANSFORM_NONE, draco::NUM_PREDICTION_SCHEME_TRANSFORM_TYPES)) {
+      return nullptr;
+    }
     // The deprecated scheme is older than bitstream 2.2 and counts in another way.
     if (method == draco::MESH_PREDICTION_TEX_COORDS_DEPRECATED) return nullptr;
     auto scheme = Decoder::CreateIntPredictionScheme(method, transform);
