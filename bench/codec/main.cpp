@@ -3,7 +3,7 @@
 // open each asset and have its root page. The best of many repetitions, in seconds of the thread's own time, because other
 // work on the machine is not the codec's.
 //
-//   bench_codec [--codec NAME] bunny.lode dragon.lode ...     assets of any codec
+//   bench_codec [--codec NAME] [--repetitions 51] bunny.lode dragon.lode ...     assets of any codec
 #include <time.h>
 
 #include <algorithm>
@@ -86,8 +86,7 @@ void print_streams(const Asset& asset, const std::vector<PackedPage>& packed) {
 }
 
 void measure_codec(const Asset& asset, const std::vector<std::vector<std::uint32_t>>& pages, format::Codec codec,
-                   const char* name) {
-  constexpr int kRepetitions = 51;
+                   const char* name, int repetitions) {
   const Totals totals = count_triangles(asset);
   std::vector<PackedPage> packed;
   double decoded_bytes = 0.0;
@@ -103,7 +102,7 @@ void measure_codec(const Asset& asset, const std::vector<std::vector<std::uint32
   }
   std::vector<double> seconds;
   std::vector<std::uint32_t> out(format::kMaxPageBytes / 4);
-  for (int r = 0; r < kRepetitions; ++r) {
+  for (int r = 0; r < repetitions; ++r) {
     double sum = 0.0;
     for (std::size_t p = 0; p < pages.size(); ++p) {
       if (packed[p].codec == format::Codec::kNone) continue;
@@ -132,10 +131,9 @@ void measure_codec(const Asset& asset, const std::vector<std::vector<std::uint32
   if (codec == format::Codec::kStrips && asset.meshes().size() == 1) print_streams(asset, packed);
 }
 
-void measure_opening(const std::string& path) {
-  constexpr int kRepetitions = 101;
+void measure_opening(const std::string& path, int repetitions) {
   std::vector<double> seconds;
-  for (int r = 0; r < kRepetitions; ++r) {
+  for (int r = 0; r < repetitions; ++r) {
     const double start = thread_seconds();
     const auto asset = Asset::open(path);
     if (!asset) fail(path, asset.error().detail);
@@ -152,9 +150,15 @@ void measure_opening(const std::string& path) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const bool is_one_codec = argc > 2 && std::string(argv[1]) == "--codec";
-  const std::string only = is_one_codec ? argv[2] : "";
-  for (int i = is_one_codec ? 3 : 1; i < argc; ++i) {
+  std::string only;
+  int repetitions = 51;
+  int first = 1;
+  for (; first + 2 < argc && std::string(argv[first]).starts_with("--"); first += 2) {
+    if (std::string(argv[first]) == "--codec") only = argv[first + 1];
+    else if (std::string(argv[first]) == "--repetitions") repetitions = std::max(1, std::atoi(argv[first + 1]));
+    else fail(argv[first], "is no option");
+  }
+  for (int i = first; i < argc; ++i) {
     const std::string path = argv[i];
     const auto asset = Asset::open(path);
     if (!asset) fail(path, asset.error().detail);
@@ -169,9 +173,9 @@ int main(int argc, char** argv) {
                 std::filesystem::path(path).filename().c_str(), totals.source_triangles, totals.stored_triangles,
                 pages.size(), static_cast<double>(asset->bytes().size()) / totals.source_triangles);
     for (const auto& [name, codec] : kCodecs) {
-      if (only.empty() || only == name) measure_codec(*asset, pages, codec, name);
+      if (only.empty() || only == name) measure_codec(*asset, pages, codec, name, repetitions);
     }
-    measure_opening(path);
+    measure_opening(path, 2 * repetitions);
   }
   return 0;
 }

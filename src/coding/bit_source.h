@@ -15,8 +15,11 @@ namespace meshlode {
 
 static_assert(std::endian::native == std::endian::little, "bits are loaded as they lie in memory");
 
-/// By the next kMaxCodeBits bits: symbols as length | symbol << 4, numbers as length | raw bits << 4 | leading bits << 9.
-using CodeTable = std::array<std::uint16_t, std::size_t{1} << kMaxCodeBits>;
+/// By the next bits: symbols as length | symbol << 4, numbers as length | raw bits << 4 | leading bits << 9.
+struct CodeTable {
+  std::uint32_t mask = 0;  ///< which of the next bits: as many as the longest word has
+  std::array<std::uint16_t, std::size_t{1} << kMaxCodeBits> entries;
+};
 
 /// \pre the buffer goes on for 8 bytes behind `at`
 [[nodiscard]] inline std::uint64_t load_bits(const std::uint8_t* buffer, std::uint64_t at) {
@@ -27,7 +30,7 @@ using CodeTable = std::array<std::uint16_t, std::size_t{1} << kMaxCodeBits>;
 
 /// Takes the code and raw bits at the front of `bits` and moves on.
 [[nodiscard]] inline std::uint32_t next_value(std::uint64_t& bits, std::uint64_t& at, const CodeTable& table) {
-  const std::uint32_t entry = table[bits & (table.size() - 1)];
+  const std::uint32_t entry = table.entries[bits & table.mask];
   const std::uint32_t length = entry & 15U;
   const std::uint32_t raw_bits = entry >> 4U & 31U;
   const std::uint64_t raw = bits >> length;
@@ -36,7 +39,7 @@ using CodeTable = std::array<std::uint16_t, std::size_t{1} << kMaxCodeBits>;
   return entry >> 9U << raw_bits | (static_cast<std::uint32_t>(raw) & ((1U << raw_bits) - 1U));
 }
 [[nodiscard]] inline std::uint32_t next_symbol(std::uint64_t& bits, std::uint64_t& at, const CodeTable& table) {
-  const std::uint32_t entry = table[bits & (table.size() - 1)];
+  const std::uint32_t entry = table.entries[bits & table.mask];
   at += entry & 15U;
   bits >>= entry & 15U;
   return entry >> 4U;
@@ -47,15 +50,28 @@ using CodeTable = std::array<std::uint16_t, std::size_t{1} << kMaxCodeBits>;
   return next_symbol(bits, at, table);
 }
 
-/// What most numbers are read by: the next kQuickBits bits say a whole number, raw bits too, as its bits | number << 4. 0
-/// where the number is longer than that, and is read by the CodeTable.
+/// What the symbols of a code mean.
+enum class Meaning : std::uint8_t {
+  kSymbol,  ///< themselves
+  kNumber,  ///< those of token_of, with raw bits
+  kFolded,  ///< the same, unfolded when it is read
+};
+[[nodiscard]] inline std::uint32_t next_meant(std::uint64_t& bits, std::uint64_t& at, const CodeTable& table, Meaning meaning) {
+  if (meaning == Meaning::kSymbol) return next_symbol(bits, at, table);
+  const std::uint32_t number = next_value(bits, at, table);
+  return meaning == Meaning::kFolded ? unfold(number) : number;
+}
+
+/// What most numbers are read by: the next kQuickBits bits say a whole number, raw bits and all. An entry is its size in
+/// bits | number << kQuickSizeBits, signed; 0 where it does not fit, and is read by the CodeTable. The size stands lowest,
+/// and sums of a few sizes stay below the number: shifts and positions take entries as they are.
 constexpr std::uint32_t kQuickBits = 11;
-using QuickTable = std::array<std::uint16_t, std::size_t{1} << kQuickBits>;
+constexpr std::uint32_t kQuickSizeBits = 6;
+using QuickTable = std::array<std::int16_t, std::size_t{1} << kQuickBits>;
 
-/// \pre fill_code_table was content with the same
-void fill_quick_table(std::span<const std::uint8_t> lengths, bool is_value, QuickTable& table);
-
-/// False where the lengths are no prefix code. `is_value`: symbols are those of token_of.
-[[nodiscard]] bool fill_code_table(std::span<const std::uint8_t> lengths, bool is_value, CodeTable& table);
+/// False where the lengths are no prefix code.
+[[nodiscard]] bool fill_code_table(std::span<const std::uint8_t> lengths, Meaning meaning, CodeTable& table);
+/// False as above, and then neither table can be used.
+[[nodiscard]] bool fill_code_tables(std::span<const std::uint8_t> lengths, Meaning meaning, CodeTable& table, QuickTable& quick);
 
 }  // namespace meshlode

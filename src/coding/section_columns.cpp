@@ -14,6 +14,9 @@ namespace {
 
 /// Symbols between two looks at the code's end, and what the buffer must be longer for that.
 constexpr std::size_t kChunk = 256;
+/// Symbols from one look at the code.
+constexpr std::size_t kAtOnce = 4;
+static_assert(kAtOnce * kMaxCodeBits <= 57);
 constexpr std::size_t kPaddingBytes = kChunk * kMaxCodeBits / 8 + 16;
 
 void add_up(std::span<std::uint8_t> records, std::size_t record_bytes) {
@@ -60,19 +63,25 @@ bool ColumnSource::read_codes(std::uint8_t* out, std::size_t count, std::size_t 
   const std::size_t symbols = std::size_t{buffer_[at_ + 1]} + 1;
   at_ += 2;
   if (first + symbols > 256 || size_ - at_ < (symbols + 1) / 2 + 4) return false;
-  std::array<std::uint8_t, 256> lengths{};
-  for (std::size_t s = 0; s < symbols; ++s) lengths[first + s] = buffer_[at_ + s / 2] >> s % 2 * 4 & 15U;
+  std::array<std::uint8_t, 256> lengths;
+  for (std::size_t s = 0; s < symbols; ++s) lengths[s] = buffer_[at_ + s / 2] >> s % 2 * 4 & 15U;
   at_ += (symbols + 1) / 2;
   std::uint32_t code_bytes;
   std::memcpy(&code_bytes, &buffer_[at_], sizeof(code_bytes));
   at_ += sizeof(code_bytes);
-  if (code_bytes > size_ - at_ || !fill_code_table(lengths, false, table_)) return false;
+  if (code_bytes > size_ - at_ || !fill_code_table(std::span(lengths).first(symbols), Meaning::kSymbol, table_)) return false;
   std::uint64_t bit = at_ * 8;
   at_ += code_bytes;
   for (std::size_t done = 0; done < count;) {
     const std::size_t chunk_end = std::min(done + kChunk, count);
+    for (; done + kAtOnce <= chunk_end; done += kAtOnce) {
+      std::uint64_t bits = load_bits(buffer_.data(), bit);
+      for (std::size_t i = 0; i < kAtOnce; ++i) {
+        out[(done + i) * stride] = static_cast<std::uint8_t>(first + next_symbol(bits, bit, table_));
+      }
+    }
     for (; done < chunk_end; ++done) {
-      out[done * stride] = static_cast<std::uint8_t>(take_symbol(buffer_.data(), bit, table_));
+      out[done * stride] = static_cast<std::uint8_t>(first + take_symbol(buffer_.data(), bit, table_));
     }
     if (bit > at_ * 8) return false;
   }

@@ -2,7 +2,6 @@
 // Fields become bytes, lowest bit first, without a branch: each put stores eight bytes and moves on by the full ones.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <cstring>
 
@@ -41,21 +40,6 @@ class ByteSink {
       for (; i + 2 <= to; i += 2) put(get(i) | get(i + 1) << bits, 2 * bits);
     }
     for (; i < to; ++i) put(get(i), bits);
-  }
-
-  /// Bytes of 0 or 1 as bits. \pre 8 bytes can be read behind `flags`
-  void put_flags(const std::uint8_t* flags, std::uint32_t count) {
-    while (count > 0) {
-      const std::uint32_t bits = std::min(count, 48U);
-      std::uint64_t word = 0;
-      for (std::uint32_t k = 0; k < bits; k += 8, flags += 8) {
-        std::uint64_t eight;
-        std::memcpy(&eight, flags, sizeof(eight));
-        word |= (eight * 0x0102040810204080U >> 56U) << k;
-      }
-      put(word & low_mask(bits), bits);
-      count -= bits;
-    }
   }
 
   void flush() { std::memcpy(at_, &pending_, sizeof(pending_)); }

@@ -6,7 +6,7 @@
 #if defined(__x86_64__) && defined(__GNUC__)
 #define MESHLODE_HAS_BMI2_PATH 1
 /// Everything that the function calls is compiled into it.
-#define MESHLODE_FOR_BMI2 __attribute__((target("bmi,bmi2"), flatten))
+#define MESHLODE_FOR_BMI2 __attribute__((target("bmi,bmi2,popcnt"), flatten))
 #else
 #define MESHLODE_HAS_BMI2_PATH 0
 #endif
@@ -15,7 +15,8 @@ namespace meshlode {
 
 [[nodiscard]] inline bool has_bmi2() {
 #if MESHLODE_HAS_BMI2_PATH
-  return __builtin_cpu_supports("bmi") != 0 && __builtin_cpu_supports("bmi2") != 0;
+  return __builtin_cpu_supports("bmi") != 0 && __builtin_cpu_supports("bmi2") != 0 &&
+         __builtin_cpu_supports("popcnt") != 0;
 #else
   return false;
 #endif

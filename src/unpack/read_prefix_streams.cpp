@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Streams are read up to four at a time: each number waits for the one before it in its stream, so that only other streams
-// can fill the time.
+// All streams of a kind are read side by side: each number waits for the one before it in its stream, so that only other
+// streams can fill the time.
 #include <algorithm>
 #include <memory>
 
@@ -23,56 +23,61 @@ struct Lane {
   const QuickTable* quick = nullptr;
   std::uint64_t at = 0, end = 0;  ///< bits from the buffer's start
   Word* out = nullptr;
+  std::uint32_t count = 0;
+  Meaning meaning = Meaning::kNumber;
 };
 
-/// Numbers taken from one look at a stream; a long one looks again.
+/// Numbers taken from one look at a stream.
 constexpr std::uint32_t kAtOnce = 4;
-static_assert(kAtOnce * kQuickBits <= 57);
+static_assert(kAtOnce * kQuickBits <= 57 && kAtOnce * kQuickBits < 1U << kQuickSizeBits);
 
-/// Reads the numbers from `first` to `count` of each lane and writes them kStride words apart. Lanes in the mask kSymbols
-/// hold symbols.
-template <std::uint32_t kSymbols, std::size_t kStride, std::size_t kLanes, class Word>
-bool read_lanes(const std::uint8_t* buffer, std::array<Lane<Word>, kLanes>& lanes, std::uint32_t first, std::uint32_t count) {
-  for (std::uint32_t done = first; done < count;) {
+/// One number, of any size.
+template <class Word>
+Word read_number(const std::uint8_t* buffer, Lane<Word>& lane) {
+  std::uint64_t bits = load_bits(buffer, lane.at);
+  return static_cast<Word>(next_meant(bits, lane.at, *lane.table, lane.meaning));
+}
+
+/// kAtOnce numbers, kStride words apart.
+template <std::size_t kStride, class Word>
+void read_group(const std::uint8_t* buffer, Lane<Word>& lane) {
+  constexpr std::uint64_t kMask = (std::uint64_t{1} << kQuickBits) - 1;
+  const QuickTable& quick = *lane.quick;
+  std::uint64_t bits = load_bits(buffer, lane.at);
+  std::int32_t entry[kAtOnce];
+  for (std::int32_t& e : entry) {
+    e = quick[bits & kMask];
+    bits >>= static_cast<std::uint32_t>(e) & ((1U << kQuickSizeBits) - 1U);
+  }
+  // An entry that does not say a number is 0 and takes no bits, so that all behind it are the same.
+  if (entry[kAtOnce - 1] != 0) [[likely]] {
+    std::int32_t sum = 0;
+    for (std::size_t i = 0; i < kAtOnce; ++i) {
+      sum += entry[i];
+      lane.out[i * kStride] = static_cast<Word>(entry[i] >> kQuickSizeBits);
+    }
+    lane.at += static_cast<std::uint32_t>(sum) & ((1U << kQuickSizeBits) - 1U);
+  } else {
+    for (std::size_t i = 0; i < kAtOnce; ++i) {
+      const std::int32_t e = quick[load_bits(buffer, lane.at) & kMask];
+      lane.out[i * kStride] = e != 0 ? static_cast<Word>(e >> kQuickSizeBits) : read_number(buffer, lane);
+      lane.at += static_cast<std::uint32_t>(e) & ((1U << kQuickSizeBits) - 1U);
+    }
+  }
+  lane.out += kAtOnce * kStride;
+}
+
+/// Reads `count` more numbers of each lane. False where a lane goes beyond its end.
+template <std::size_t kStride, class Word>
+bool read_lanes(const std::uint8_t* buffer, std::span<Lane<Word>> lanes, std::uint32_t count) {
+  for (std::uint32_t done = 0; done < count;) {
     const std::uint32_t chunk = std::min(kChunk, count - done);
-    std::array<std::uint64_t, kLanes> at;
-    std::array<const QuickTable*, kLanes> quick;
-    std::array<Word*, kLanes> out;
-    for (std::size_t k = 0; k < kLanes; ++k) {
-      at[k] = lanes[k].at;
-      quick[k] = lanes[k].quick;
-      out[k] = lanes[k].out + done * kStride;
+    for (std::uint32_t i = 0; i < chunk / kAtOnce; ++i) {
+      for (Lane<Word>& lane : lanes) read_group<kStride>(buffer, lane);
     }
-    const auto take = [&](std::uint64_t& bits, std::size_t k) {
-      const std::uint32_t entry = (*quick[k])[bits & ((std::uint64_t{1} << kQuickBits) - 1)];
-      const std::uint32_t size = entry & 15U;
-      if (size != 0) [[likely]] {
-        at[k] += size;
-        bits >>= size;
-        return static_cast<Word>(entry >> 4U);
-      }
-      bits = load_bits(buffer, at[k]);
-      const std::uint32_t value = (kSymbols >> k & 1U) != 0 ? next_symbol(bits, at[k], *lanes[k].table)
-                                                            : next_value(bits, at[k], *lanes[k].table);
-      bits = load_bits(buffer, at[k]);
-      return static_cast<Word>(value);
-    };
-    std::size_t i = 0;
-    for (; i + kAtOnce <= chunk; i += kAtOnce) {
-      for (std::size_t k = 0; k < kLanes; ++k) {
-        std::uint64_t bits = load_bits(buffer, at[k]);
-        for (std::size_t n = 0; n < kAtOnce; ++n) out[k][(i + n) * kStride] = take(bits, k);
-      }
-    }
-    for (; i < chunk; ++i) {
-      for (std::size_t k = 0; k < kLanes; ++k) {
-        std::uint64_t bits = load_bits(buffer, at[k]);
-        out[k][i * kStride] = take(bits, k);
-      }
-    }
-    for (std::size_t k = 0; k < kLanes; ++k) {
-      lanes[k].at = at[k];
-      if (at[k] > lanes[k].end) return false;
+    for (Lane<Word>& lane : lanes) {
+      for (std::uint32_t i = 0; i < chunk % kAtOnce; ++i, lane.out += kStride) *lane.out = read_number(buffer, lane);
+      if (lane.at > lane.end) return false;
     }
     done += chunk;
   }
@@ -83,7 +88,8 @@ template <class L>
 class PrefixReader {
  public:
   PrefixReader(const format::MeshRecord& mesh, const StreamBytes& streams, const StreamCounts& counts, StripValues<L>& out)
-      : mesh_(mesh), streams_(streams), counts_(counts), out_(out), tables_(new CodeTable[kMaxTables]), quick_(new QuickTable[kMaxTables]) {
+      : mesh_(mesh), streams_(streams), counts_(counts), out_(out), tables_(new CodeTable[kMaxTables]),
+        quick_(new QuickTable[kMaxTables]) {
     buffer_.resize(streams.bytes.size() + kPaddingBytes);
     std::copy(streams.bytes.begin(), streams.bytes.end(), buffer_.data());
     std::fill_n(buffer_.data() + streams.bytes.size(), kPaddingBytes, std::uint8_t{0});
@@ -97,61 +103,52 @@ class PrefixReader {
   bool prepare(std::span<const std::uint8_t> code_lengths) {
     if (code_lengths.size() != code_length_bytes(mesh_)) return false;
     for (std::uint32_t t = 0; t < kUvTables + mesh_.uv_set_count; ++t) {
-      const bool is_value = symbol_count(t) == kValueSymbols;
-      if (!fill_code_table(code_lengths.first(symbol_count(t)), is_value, tables_[t])) return false;
-      fill_quick_table(code_lengths.first(symbol_count(t)), is_value, quick_[t]);
+      if (!fill_code_tables(code_lengths.first(symbol_count(t)), meaning_of(t), tables_[t], quick_[t])) return false;
       code_lengths = code_lengths.subspan(symbol_count(t));
     }
     for (std::uint32_t s = 0; s < kFieldStreams; ++s) out_.streams[s].resize(counts_.count[s]);
-    const std::uint32_t last_slot = slot_of(field_count(mesh_) - 1);
-    for (std::uint32_t quad = 0; quad <= last_slot / L::kLanes; ++quad) {
-      out_.errors[quad].resize_zeroed(counts_.count[kFieldStreams]);
-    }
+    for (std::uint32_t q = 0; q < quad_count<L>(mesh_); ++q) out_.errors[q].resize(counts_.count[kFieldStreams]);
     return true;
   }
 
-  bool run() {
-    if (!read_pair<1>(kTripleStream, kReferenceStream) || !read_pair<0>(kLengthStream, kTwinStream) ||
-        !read_pair<3>(kStartStream, kStartStream)) {
-      return false;
-    }
-    const std::uint32_t fields = field_count(mesh_);
-    for (std::uint32_t first = 0; first < fields; first += first == 0 ? 3 : 4) {
-      const std::uint32_t together = first == 0 ? 3 : std::min(4U, fields - first);
-      const bool is_ok = together == 4 ? read_fields<4>(first) : together == 3 ? read_fields<3>(first)
-                       : together == 2 ? read_fields<2>(first) : read_fields<1>(first);
-      if (!is_ok) return false;
-    }
-    return true;
-  }
+  bool run() { return read_topology() && read_fields(); }
 
  private:
+  static constexpr Meaning meaning_of(std::uint32_t table) {
+    return symbol_count(table) != kValueSymbols ? Meaning::kSymbol
+           : is_folded(table)                   ? Meaning::kFolded  // the first tables have their streams' numbers
+                                                : Meaning::kNumber;
+  }
+
   template <class Word>
   Lane<Word> lane(std::uint32_t stream, Word* out) const {
     const std::uint32_t table = table_of_stream(mesh_, stream);
-    return {&tables_[table], &quick_[table], starts_[stream], starts_[stream] + std::uint64_t{streams_.size[stream]} * 8, out};
+    return {&tables_[table], &quick_[table], starts_[stream], starts_[stream] + std::uint64_t{streams_.size[stream]} * 8,
+            out, counts_.count[stream], meaning_of(table)};
   }
 
-  /// Two streams side by side as far as both go, then the rest of the longer one. The same stream twice: once.
-  template <std::uint32_t kSymbols>
-  bool read_pair(std::uint32_t a, std::uint32_t b) {
-    std::array<Lane<std::uint32_t>, 2> lanes{lane(a, out_.streams[a].data()), lane(b, out_.streams[b].data())};
-    const std::uint32_t both = a == b ? 0U : std::min(counts_.count[a], counts_.count[b]);
-    if (!read_lanes<kSymbols, 1>(buffer_.data(), lanes, 0, both)) return false;
-    std::array<Lane<std::uint32_t>, 1> first{lanes[0]};
-    std::array<Lane<std::uint32_t>, 1> second{lanes[1]};
-    return read_lanes<kSymbols & 1U, 1>(buffer_.data(), first, both, counts_.count[a]) &&
-           (a == b || read_lanes<kSymbols / 2, 1>(buffer_.data(), second, both, counts_.count[b]));
-  }
-
-  template <std::size_t kLanes>
-  bool read_fields(std::uint32_t first) {
-    std::array<Lane<typename L::Word>, kLanes> lanes;
-    for (std::uint32_t k = 0; k < kLanes; ++k) {
-      const std::uint32_t slot = slot_of(first + k);
-      lanes[k] = lane(kFieldStreams + first + k, out_.errors[slot / L::kLanes].data()->lane + slot % L::kLanes);
+  /// Streams of different lengths: the longest first, and fewer and fewer of them.
+  bool read_topology() {
+    std::array<Lane<std::uint32_t>, kFieldStreams> lanes;
+    for (std::uint32_t s = 0; s < kFieldStreams; ++s) lanes[s] = lane(s, out_.streams[s].data());
+    std::sort(lanes.begin(), lanes.end(), [](const auto& a, const auto& b) { return a.count > b.count; });
+    std::uint32_t done = 0;
+    for (std::size_t left = kFieldStreams; left > 0; --left) {
+      const std::uint32_t count = lanes[left - 1].count;
+      if (!read_lanes<1>(buffer_.data(), std::span(lanes).first(left), count - done)) return false;
+      done = count;
     }
-    return read_lanes<0, L::kLanes>(buffer_.data(), lanes, 0, counts_.count[kFieldStreams]);
+    return true;
+  }
+
+  bool read_fields() {
+    std::array<Lane<typename L::Word>, kMaxFields> lanes;
+    const std::uint32_t fields = field_count(mesh_);
+    for (std::uint32_t f = 0; f < fields; ++f) {
+      const std::uint32_t slot = slot_of(f);
+      lanes[f] = lane(kFieldStreams + f, out_.errors[slot / L::kLanes].data()->lane + slot % L::kLanes);
+    }
+    return read_lanes<L::kLanes>(buffer_.data(), std::span(lanes).first(fields), counts_.count[kFieldStreams]);
   }
 
   const format::MeshRecord& mesh_;

@@ -118,9 +118,7 @@ class StoredPage {
   template <class L>
   bool read_draco_streams(const StreamBytes& streams, const StreamCounts& counts, StripValues<L>& out) const {
     const std::uint32_t fields = field_count(mesh_);
-    for (std::uint32_t quad = 0; quad <= slot_of(fields - 1) / L::kLanes; ++quad) {
-      out.errors[quad].resize_zeroed(counts.count[kFieldStreams]);
-    }
+    for (std::uint32_t q = 0; q < quad_count<L>(mesh_); ++q) out.errors[q].resize(counts.count[kFieldStreams]);
     std::span<const std::uint8_t> rest = streams.bytes;
     Room<std::uint32_t> numbers;
     for (std::uint32_t s = 0; s < kFieldStreams + fields; ++s) {
@@ -129,6 +127,9 @@ class StoredPage {
       Room<std::uint32_t>& target = s < kFieldStreams ? out.streams[s] : numbers;
       target.resize(counts.count[s]);
       if (unpack_draco(stored, target.all()) != UnpackOutcome::kOk) return false;
+      if (is_folded(s)) {
+        for (std::uint32_t& number : target.all()) number = unfold(number);
+      }
       if (s < kFieldStreams) continue;
       const std::uint32_t slot = slot_of(s - kFieldStreams);
       Quad<L>* const errors = out.errors[slot / L::kLanes].data();

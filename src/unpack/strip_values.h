@@ -43,6 +43,10 @@ union Quad {
 };
 template <class L>
 constexpr std::uint32_t kMaxQuads = (kMaxSlotsOfVertex + L::kLanes - 1) / L::kLanes;
+template <class L>
+[[nodiscard]] constexpr std::uint32_t quad_count(const format::MeshRecord& mesh) {
+  return slot_of(field_count(mesh) - 1) / L::kLanes + 1;
+}
 
 /// An array that need not be filled before it is written.
 template <class T>
@@ -50,10 +54,6 @@ class Room {
  public:
   void resize(std::size_t size) {
     items_ = std::make_unique_for_overwrite<T[]>(size);
-    size_ = size;
-  }
-  void resize_zeroed(std::size_t size) {
-    items_ = std::make_unique<T[]>(size);
     size_ = size;
   }
   [[nodiscard]] T* data() { return items_.get(); }
@@ -68,9 +68,12 @@ class Room {
 
 template <class L>
 struct StripValues {
-  std::array<Room<std::uint32_t>, kFieldStreams> streams;   ///< as stored: symbols, folded numbers
-  std::array<Room<Quad<L>>, kMaxQuads<L>> errors;           ///< folded, of each new vertex
+  std::array<Room<std::uint32_t>, kFieldStreams> streams;   ///< symbols, and numbers unfolded
+  std::array<Room<Quad<L>>, kMaxQuads<L>> errors;           ///< unfolded, of each new vertex; unused lanes have any value
 };
+
+/// Whether the numbers of a stream are folded.
+[[nodiscard]] constexpr bool is_folded(std::uint32_t stream) { return stream >= kReferenceStream; }
 
 /// How many numbers each stream holds: the heads say it, and of twins the stored header.
 struct StreamCounts {

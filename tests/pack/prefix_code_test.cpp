@@ -80,7 +80,7 @@ TEST(PrefixCode, NumbersOfEverySizeComeBack) {
   auto bytes = sink.finish();
   bytes.resize(bytes.size() + 16);
   CodeTable table;
-  ASSERT_TRUE(fill_code_table(lengths, true, table));
+  ASSERT_TRUE(fill_code_table(lengths, Meaning::kNumber, table));
   std::uint64_t at = 0;
   for (const std::uint32_t v : values) {
     std::uint64_t bits = load_bits(bytes.data(), at);
@@ -91,27 +91,26 @@ TEST(PrefixCode, NumbersOfEverySizeComeBack) {
 /// The quick table says what the other one says, or nothing.
 TEST(PrefixCode, QuickTablesAgree) {
   test::Random random(11);
-  for (int round = 0; round < 200; ++round) {
-    const bool is_value = round % 2 == 0;
-    std::vector<std::uint64_t> counts(is_value ? kValueSymbols : 216U);
-    const std::uint64_t used = round < 4 ? 1 : 1 + random.below(counts.size());
+  for (int round = 0; round < 300; ++round) {
+    const Meaning meaning = round % 3 == 0 ? Meaning::kSymbol : round % 3 == 1 ? Meaning::kNumber : Meaning::kFolded;
+    std::vector<std::uint64_t> counts(meaning == Meaning::kSymbol ? 216U : kValueSymbols);
+    const std::uint64_t used = round < 6 ? 1 : 1 + random.below(counts.size());
     for (std::uint64_t k = 0; k < used; ++k) counts[random.below(counts.size())] += 1 + random.below(1000);
     const auto lengths = choose_code_lengths(counts);
     CodeTable slow;
     QuickTable quick;
-    ASSERT_TRUE(fill_code_table(lengths, is_value, slow));
-    fill_quick_table(lengths, is_value, quick);
+    ASSERT_TRUE(fill_code_tables(lengths, meaning, slow, quick));
     std::size_t said = 0;
     for (std::uint64_t bits = 0; bits < quick.size(); ++bits) {
       if (quick[bits] == 0) continue;
       ++said;
       std::uint64_t rest = bits;
       std::uint64_t at = 0;
-      const std::uint32_t value = is_value ? next_value(rest, at, slow) : next_symbol(rest, at, slow);
-      ASSERT_EQ(quick[bits] >> 4U, value) << "round " << round << ", bits " << bits;
-      ASSERT_EQ(quick[bits] & 15U, at);
+      const std::uint32_t value = next_meant(rest, at, slow, meaning);
+      ASSERT_EQ(static_cast<std::uint32_t>(quick[bits] >> kQuickSizeBits), value) << "round " << round << ", bits " << bits;
+      ASSERT_EQ(static_cast<std::uint32_t>(quick[bits]) & ((1U << kQuickSizeBits) - 1U), at);
     }
-    if (!is_value) {
+    if (meaning == Meaning::kSymbol) {
       EXPECT_EQ(said, quick.size()) << "symbols are never longer";
     }
   }
@@ -120,15 +119,15 @@ TEST(PrefixCode, QuickTablesAgree) {
 TEST(PrefixCode, LengthsThatAreNoCodeAreRefused) {
   CodeTable table;
   std::vector<std::uint8_t> lengths(kValueSymbols, 0);
-  EXPECT_TRUE(fill_code_table(lengths, true, table)) << "nothing is coded";
+  EXPECT_TRUE(fill_code_table(lengths, Meaning::kNumber, table)) << "nothing is coded";
   lengths[5] = 1;
-  EXPECT_TRUE(fill_code_table(lengths, true, table)) << "one symbol";
+  EXPECT_TRUE(fill_code_table(lengths, Meaning::kNumber, table)) << "one symbol";
   lengths[5] = 2;
-  EXPECT_FALSE(fill_code_table(lengths, true, table)) << "half of the codes mean nothing";
+  EXPECT_FALSE(fill_code_table(lengths, Meaning::kNumber, table)) << "half of the codes mean nothing";
   lengths[5] = lengths[6] = lengths[7] = 1;
-  EXPECT_FALSE(fill_code_table(lengths, true, table)) << "more codes than there are";
+  EXPECT_FALSE(fill_code_table(lengths, Meaning::kNumber, table)) << "more codes than there are";
   lengths[5] = kMaxCodeBits + 1;
-  EXPECT_FALSE(fill_code_table(lengths, true, table)) << "too long";
+  EXPECT_FALSE(fill_code_table(lengths, Meaning::kNumber, table)) << "too long";
 }
 
 }  // namespace
