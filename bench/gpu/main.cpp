@@ -71,7 +71,7 @@ std::vector<Variant> all_variants() {
     r.hardware_pixels = 0.0F;
   });
   add("force-all", [](auto& r) {
-    r.double_sided = true;
+    r.double_sided = r.alpha_mask = true;
     r.hardware = gpu::HardwarePath::kVertex;
   });
   add(
@@ -239,6 +239,7 @@ int run(int count, char** args) {
     variant.renderer.width = options.width;
     variant.renderer.height = options.height;
     variant.renderer.double_sided = variant.renderer.double_sided || uploaded->has_double_sided;
+    variant.renderer.alpha_mask = variant.renderer.alpha_mask || uploaded->has_alpha_mask;
     const double pixel_error = variant.has_lod ? options.pixel_error : 0.0;
     json.begin_object();
     json.field("name", variant.name);

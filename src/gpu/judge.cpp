@@ -136,7 +136,7 @@ Result<CutComparison> compare_frame(Renderer& renderer, const Asset& asset, cons
   if (const Status s = renderer.redraw_in_order(); !s) return s.error();
   const auto pixels = renderer.read_pixels();
   if (!pixels) return pixels.error();
-  const auto reference = draw_cut(asset, expected, camera);
+  const auto reference = draw_cut(asset, expected, camera, *renderer.scene().alpha_masks);
   if (!reference) return reference.error();
   out.pixels.items = reference->pixel_count();
   const auto key_at = [](const VisibilityBuffer& buffer, std::span<const ClusterInstance> items, std::size_t i) {
@@ -166,7 +166,7 @@ Result<Comparison> compare_hardware(Renderer& renderer, const Asset& asset, cons
   if (!pixels) return pixels.error();
   const std::vector<ClusterInstance> expected = select_flat(asset, camera, pixel_error);
   if (frame->hardware_items != expected.size() || *cut != expected) note(out, "another cut");
-  const auto reference = draw_cut(asset, expected, camera);
+  const auto reference = draw_cut(asset, expected, camera, *renderer.scene().alpha_masks);
   if (!reference) return reference.error();
   const auto width = static_cast<std::int64_t>(camera.width), height = static_cast<std::int64_t>(camera.height);
   for (std::int64_t y = 0; y < height; ++y) {

@@ -151,7 +151,8 @@ Result<VisibilityBuffer> draw_both_sides(const Asset& asset, std::span<const Clu
 
 Result<PictureReport> judge_picture(const Asset& asset, std::span<const TriangleTree> source,
                                     std::span<const ClusterInstance> cut, const VisibilityBuffer& drawn,
-                                    const Camera& camera, double pixel_error, double tolerance) {
+                                    const Camera& camera, double pixel_error, double tolerance,
+                                    const AlphaMasks& masks) {
   auto projection = raster::make_projection(camera);
   if (!projection) return projection.error();
   projection->far_distance = raster::scene_depth(asset, *projection);
@@ -164,7 +165,7 @@ Result<PictureReport> judge_picture(const Asset& asset, std::span<const Triangle
       if (asset.clusters()[c].level == 0) finest.push_back({InstanceId(i), ClusterId(c)});
     }
   }
-  const auto full = draw_cut(asset, finest, camera);
+  const auto full = draw_cut(asset, finest, camera, masks);
   if (!full) return full.error();
   const auto cut_points = unproject(asset, cut, drawn, *projection);
   if (!cut_points) return cut_points.error();

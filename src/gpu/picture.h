@@ -21,7 +21,7 @@ struct PictureReport {
   std::uint64_t only_cut = 0, only_source = 0;  ///< covered in one alone: the silhouettes differ there
   /// Background in the cut where the full resolution covers every pixel within `kHoleRadius` and the ray hits the cut
   /// from behind: it came in through a hole. Where it hits nothing, two parts of a mesh that hid each other's borders
-  /// have moved apart, which the promise allows. \pre of closed meshes
+  /// have moved apart, which the promise allows. \pre of closed meshes; a masked material is no closed surface
   std::uint64_t holes = 0;
   double largest_px = 0.0;             ///< displacement of any pixel's surface point, both ways
   double mean_px = 0.0;                ///< over the cut's pixels
@@ -40,10 +40,11 @@ struct PictureReport {
 constexpr int kHoleRadius = 2;
 
 /// `source`: one tree per mesh over its source, mesh space. `cut` was drawn into `drawn`; the full resolution is level
-/// 0. `tolerance`: of the promise, 1.05 in the measured tier.
+/// 0. `tolerance`: of the promise, 1.05 in the measured tier. `masks`: those that `cut` was drawn with.
 [[nodiscard]] Result<PictureReport> judge_picture(const Asset& asset, std::span<const TriangleTree> source,
                                                   std::span<const ClusterInstance> cut, const VisibilityBuffer& drawn,
-                                                  const Camera& camera, double pixel_error, double tolerance);
+                                                  const Camera& camera, double pixel_error, double tolerance,
+                                                  const AlphaMasks& masks = {});
 
 /// Blue at 0, red at `full` and above, grey where there is nothing.
 [[nodiscard]] Image heat_map(std::span<const float> values, std::uint32_t width, std::uint32_t height, float full);

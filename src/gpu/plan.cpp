@@ -15,10 +15,10 @@ constexpr std::uint64_t kOcclusionClusters = 1000000;
 
 Result<PassPlan> plan_passes(const GpuScene& scene, const DeviceInfo& device, std::uint32_t width, std::uint32_t height,
                              const std::vector<std::string>& force) {
-  constexpr std::array kNames = {"double-sided", "occlusion", "hardware", "all"};
+  constexpr std::array kNames = {"double-sided", "alpha-mask", "occlusion", "hardware", "all"};
   for (const std::string& name : force) {
     if (std::find(kNames.begin(), kNames.end(), name) == kNames.end()) {
-      return Error{ErrorCode::kUsage, "--force", "no pass " + name + ": double-sided, occlusion, hardware or all"};
+      return Error{ErrorCode::kUsage, "--force", "no pass " + name + ": double-sided, alpha-mask, occlusion, hardware or all"};
     }
   }
   const auto is_forced = [&](const char* name) {
@@ -44,6 +44,10 @@ Result<PassPlan> plan_passes(const GpuScene& scene, const DeviceInfo& device, st
       decide("double-sided", scene.has_double_sided, is_forced("double-sided"),
              scene.has_double_sided ? "a material is double sided: back faces look their material up"
                                     : "no material is double sided: back faces are dropped unseen");
+  plan.options.alpha_mask =
+      decide("alpha-mask", scene.has_alpha_mask, is_forced("alpha-mask"),
+             scene.has_alpha_mask ? "a material is masked: its samples look their texel up before they are written"
+                                  : "no material is masked: no shader knows of masks");
   plan.options.occlusion = decide(
       "occlusion", scene.cluster_instances >= kOcclusionClusters && scene.instance_count > 1, is_forced("occlusion"),
       std::to_string(scene.cluster_instances) + " clusters in " + std::to_string(scene.instance_count) +
@@ -54,8 +58,6 @@ Result<PassPlan> plan_passes(const GpuScene& scene, const DeviceInfo& device, st
              "small")) {
     plan.options.hardware = device.has_mesh_shaders ? HardwarePath::kMesh : HardwarePath::kVertex;
   }
-  decide("alpha mask", false, false,
-         scene.has_alpha_mask ? "not done: masked materials are drawn opaque, as on the CPU" : "no material is masked");
   decide("textures", false, false,
          scene.has_textures ? "not done: base colours are drawn, as on the CPU" : "no material has a texture");
   return plan;

@@ -20,7 +20,8 @@ struct PassPlan {
   std::vector<PassDecision> decisions;
 };
 
-/// `force`: passes to run although the scene does not call for them: "double-sided", "occlusion", "hardware", "all".
+/// `force`: passes to run although the scene does not call for them: "double-sided", "alpha-mask", "occlusion",
+/// "hardware", "all".
 /// Errors: kUsage for another name.
 [[nodiscard]] Result<PassPlan> plan_passes(const GpuScene& scene, const DeviceInfo& device, std::uint32_t width,
                                            std::uint32_t height, const std::vector<std::string>& force = {});

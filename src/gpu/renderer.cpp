@@ -121,6 +121,9 @@ Status Renderer::make_buffers() {
   f.materials = scene_.materials.address();
   f.pages = scene_.pages.address();
   f.roots = scene_.roots.address();
+  f.mesh_uvs = scene_.mesh_uvs.address();
+  f.masks = scene_.masks.address();
+  f.mask_texels = scene_.mask_texels.address();
   f.visible = visible_.address();
   f.queue = queue_.address();
   f.open_groups = open_groups_.address();
@@ -172,6 +175,7 @@ Status Renderer::make_pipelines() {
   far_constants[5] = has_far_raster() ? 1 : 0;
   far_constants[6] = room(scene_.max_root_vertices);
   far_constants[7] = room(scene_.max_root_triangles);
+  const bool is_masked = options_.alpha_mask;
   struct Wanted {
     Pipeline* slot;
     std::span<const std::uint32_t> spirv;
@@ -181,11 +185,11 @@ Status Renderer::make_pipelines() {
                            {&persistent_, shaders::persistent()},
                            {&flat_, shaders::flat()},
                            {&clusters_, shaders::clusters()},
-                           {&raster_, shaders::raster()},
+                           {&raster_, is_masked ? shaders::raster_mask() : shaders::raster()},
                            {&sort_, shaders::sort()},
-                           {&raster_far_, shaders::raster_far()},
+                           {&raster_far_, is_masked ? shaders::raster_far_mask() : shaders::raster_far()},
                            {&roots_, shaders::roots()},
-                           {&raster_clip_, shaders::raster_clip()},
+                           {&raster_clip_, is_masked ? shaders::raster_clip_mask() : shaders::raster_clip()},
                            {&pyramid_build_, shaders::pyramid()}};
   for (const Wanted& w : wanted) {
     const bool is_far = w.slot == &instances_ || w.slot == &raster_far_;
@@ -198,8 +202,11 @@ Status Renderer::make_pipelines() {
   if (is_mesh && !device_.info().has_mesh_shaders) {
     return Error{ErrorCode::kUnsupported, device_.info().name, "no mesh shaders"};
   }
+  const std::span<const std::uint32_t> fragments[] = {shaders::hardware_frag(), shaders::hardware_mesh_frag(),
+                                                      shaders::hardware_mask_frag(),
+                                                      shaders::hardware_mesh_mask_frag()};
   auto draw = device_.make_draw(is_mesh ? shaders::hardware_mesh() : shaders::hardware_vert(),
-                                is_mesh ? shaders::hardware_mesh_frag() : shaders::hardware_frag(), constants, is_mesh);
+                                fragments[(is_masked ? 2 : 0) + (is_mesh ? 1 : 0)], constants, is_mesh);
   if (!draw) return draw.error();
   hardware_ = *draw;
   return Ok{};

@@ -30,6 +30,7 @@ struct RendererOptions {
   bool frustum = true;
   bool occlusion = false;
   bool double_sided = false;    ///< some material is; where none is, nobody looks
+  bool alpha_mask = false;      ///< some sample of a masked material may be missing: without, they are drawn opaque
   bool flat_selection = false;  ///< every group of every instance instead of the BVH; not with occlusion
   bool persistent = false;      ///< the BVH in one dispatch with a queue, instead of one dispatch a depth
   bool persistent_second = true;  ///< so in the second pass of occlusion culling, which has little to do at each depth

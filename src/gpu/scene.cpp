@@ -162,6 +162,50 @@ Result<Pages> upload_pages(Device& device, const Asset& asset) {
   return out;
 }
 
+std::vector<GpuMeshUvs> mesh_uv_table(const Asset& asset) {
+  std::vector<GpuMeshUvs> out;
+  for (const format::MeshRecord& mesh : asset.meshes()) {
+    GpuMeshUvs m{};
+    for (std::uint32_t set = 0; set < mesh.uv_set_count; ++set) {
+      m.log2[set] = mesh.uv_log2[set];
+      m.source |= std::uint32_t{mesh.uv_set_source[set]} << 8 * set;
+    }
+    out.push_back(m);
+  }
+  return out;
+}
+
+struct MaskTables {
+  std::vector<GpuMask> masks;
+  std::vector<std::uint8_t> texels;  ///< images one after the other, each from a word on
+};
+
+MaskTables mask_tables(const AlphaMasks& alpha) {
+  MaskTables out;
+  std::vector<std::uint32_t> first_word;
+  for (const AlphaImage& image : alpha.images) {
+    first_word.push_back(static_cast<std::uint32_t>(out.texels.size() / 4));
+    out.texels.insert(out.texels.end(), image.texels.begin(), image.texels.end());
+    out.texels.resize((out.texels.size() + 3) / 4 * 4, 0);
+  }
+  for (const AlphaMask& mask : alpha.masks) {
+    GpuMask m{};
+    std::copy(mask.row_u.begin(), mask.row_u.end(), m.rows);
+    std::copy(mask.row_v.begin(), mask.row_v.end(), m.rows + 3);
+    m.threshold = mask.threshold;
+    m.uv_set = mask.uv_set;
+    m.wrap[0] = static_cast<std::uint32_t>(mask.wrap[0]);
+    m.wrap[1] = static_cast<std::uint32_t>(mask.wrap[1]);
+    if (mask.image != format::kNone) {
+      m.width = alpha.images[mask.image].width;
+      m.height = alpha.images[mask.image].height;
+      m.first_word = first_word[mask.image];
+    }
+    out.masks.push_back(m);
+  }
+  return out;
+}
+
 }  // namespace
 
 Result<GpuScene> upload_scene(Device& device, const Asset& asset, std::span<const format::InstanceRecord> instances,
@@ -223,14 +267,17 @@ Result<GpuScene> upload_scene(Device& device, const Asset& asset, std::span<cons
     }
     clusters.push_back(c);
   }
+  out.alpha_masks = std::make_shared<const AlphaMasks>(load_alpha_masks(asset));
+  out.has_alpha_mask = !out.alpha_masks->is_empty();
+  const MaskTables mask = mask_tables(*out.alpha_masks);
   std::vector<GpuMaterial> materials;
   for (const format::MaterialRecord& material : asset.materials()) {
     GpuMaterial m{};
     m.base_color = {material.base_color[0], material.base_color[1], material.base_color[2], material.base_color[3]};
     m.double_sided = material.double_sided;
+    m.mask = out.has_alpha_mask ? out.alpha_masks->of_material[materials.size()] : format::kNone;
     materials.push_back(m);
     out.has_double_sided = out.has_double_sided || material.double_sided != 0;
-    out.has_alpha_mask = out.has_alpha_mask || material.alpha_mode == format::AlphaMode::kMask;
     out.has_textures = out.has_textures || material.base_color_texture != format::kNone;
   }
   for (const format::MeshRecord& mesh : asset.meshes()) {
@@ -253,6 +300,9 @@ Result<GpuScene> upload_scene(Device& device, const Asset& asset, std::span<cons
   if (const Status s = put(out.groups, groups); !s) return s.error();
   if (const Status s = put(out.clusters, clusters); !s) return s.error();
   if (const Status s = put(out.materials, materials); !s) return s.error();
+  if (const Status s = put(out.mesh_uvs, mesh_uv_table(asset)); !s) return s.error();
+  if (const Status s = put(out.masks, mask.masks); !s) return s.error();
+  if (const Status s = put(out.mask_texels, mask.texels); !s) return s.error();
   return out;
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -12,11 +13,14 @@
 #include "gpu/vulkan.h"
 #include "read/asset.h"
 #include "select/attribute_bounds.h"
+#include "textures/alpha_mask.h"
 
 namespace meshlode::gpu {
 
 struct GpuScene {
   Buffer meshes, instances, nodes, groups, clusters, materials, pages, roots;
+  Buffer mesh_uvs, masks, mask_texels;  ///< read where materials are masked
+  std::shared_ptr<const AlphaMasks> alpha_masks;  ///< of the asset, for who compares; never null
   std::uint32_t instance_count = 0;
   std::uint32_t cluster_count = 0;
   std::uint32_t mesh_count = 0;
@@ -27,7 +31,7 @@ struct GpuScene {
   std::uint64_t cluster_instances = 0;
   std::uint64_t page_bytes = 0;
   bool has_double_sided = false;
-  bool has_alpha_mask = false;
+  bool has_alpha_mask = false;  ///< some sample may fail the alpha test
   bool has_textures = false;
   bool has_stored_normals = false;
 };

@@ -56,6 +56,21 @@ constexpr std::uint32_t kHardwareFrag[] = {
 constexpr std::uint32_t kHardwareMeshFrag[] = {
 #include "hardware_mesh.frag.inc"
 };
+constexpr std::uint32_t kRasterMask[] = {
+#include "raster_mask.comp.inc"
+};
+constexpr std::uint32_t kRasterFarMask[] = {
+#include "raster_far_mask.comp.inc"
+};
+constexpr std::uint32_t kRasterClipMask[] = {
+#include "raster_clip_mask.comp.inc"
+};
+constexpr std::uint32_t kHardwareMaskFrag[] = {
+#include "hardware_mask.frag.inc"
+};
+constexpr std::uint32_t kHardwareMeshMaskFrag[] = {
+#include "hardware_mesh_mask.frag.inc"
+};
 
 }  // namespace
 
@@ -109,6 +124,21 @@ std::span<const std::uint32_t> hardware_frag() {
 }
 std::span<const std::uint32_t> hardware_mesh_frag() {
   return kHardwareMeshFrag;
+}
+std::span<const std::uint32_t> raster_mask() {
+  return kRasterMask;
+}
+std::span<const std::uint32_t> raster_far_mask() {
+  return kRasterFarMask;
+}
+std::span<const std::uint32_t> raster_clip_mask() {
+  return kRasterClipMask;
+}
+std::span<const std::uint32_t> hardware_mask_frag() {
+  return kHardwareMaskFrag;
+}
+std::span<const std::uint32_t> hardware_mesh_mask_frag() {
+  return kHardwareMeshMaskFrag;
 }
 
 }  // namespace meshlode::gpu::shaders

@@ -24,5 +24,11 @@ namespace meshlode::gpu::shaders {
 [[nodiscard]] std::span<const std::uint32_t> hardware_mesh();
 [[nodiscard]] std::span<const std::uint32_t> hardware_frag();
 [[nodiscard]] std::span<const std::uint32_t> hardware_mesh_frag();  ///< behind a mesh shader
+// The same with the alpha test of masked materials.
+[[nodiscard]] std::span<const std::uint32_t> raster_mask();
+[[nodiscard]] std::span<const std::uint32_t> raster_far_mask();
+[[nodiscard]] std::span<const std::uint32_t> raster_clip_mask();
+[[nodiscard]] std::span<const std::uint32_t> hardware_mask_frag();
+[[nodiscard]] std::span<const std::uint32_t> hardware_mesh_mask_frag();
 
 }  // namespace meshlode::gpu::shaders

@@ -72,6 +72,7 @@ Status judge_hardware(Device& device, const GpuScene& scene, const Asset& asset,
   raster.height = kSizes[0].height;
   raster.frustum = false;
   raster.double_sided = scene.has_double_sided;
+  raster.alpha_mask = scene.has_alpha_mask;
   raster.hardware = by_mesh_shaders ? HardwarePath::kMesh : HardwarePath::kVertex;
   raster.hardware_pixels = 0.0F;
   auto renderer = Renderer::make(device, scene, raster);
@@ -129,6 +130,7 @@ Result<GpuVerifyReport> verify_on_gpu(const Asset& asset, std::span<const Surfac
   if (!scene) return scene.error();
   GpuVerifyReport out;
   out.device = device->info();
+  out.warnings = scene->alpha_masks->warnings;
 
   const auto decode = compare_decode(*device, *scene, asset);
   if (!decode) return decode.error();
@@ -154,7 +156,7 @@ Result<GpuVerifyReport> verify_on_gpu(const Asset& asset, std::span<const Surfac
   });
   GpuCheck by_vertex{"V407", "I9", "hardware raster, vertices pulled: pixels as the specification allows"};
   GpuCheck by_mesh{"V408", "I9", "hardware raster, mesh shaders: pixels as the specification allows"};
-  const bool has_holes_rule = has_promise && all_closed;
+  const bool has_holes_rule = has_promise && all_closed && !scene->has_alpha_mask;
   std::vector<TriangleTree> trees;
   trees.reserve(source.size());
   for (const Surface& surface : source) trees.emplace_back(surface);
@@ -164,6 +166,7 @@ Result<GpuVerifyReport> verify_on_gpu(const Asset& asset, std::span<const Surfac
   plain.height = kSizes[0].height;
   plain.frustum = false;
   plain.double_sided = scene->has_double_sided;
+  plain.alpha_mask = scene->has_alpha_mask;
   RendererOptions culling = plain;
   culling.frustum = culling.occlusion = true;
   auto renderer = Renderer::make(*device, *scene, plain);
@@ -202,7 +205,8 @@ Result<GpuVerifyReport> verify_on_gpu(const Asset& asset, std::span<const Surfac
       const auto drawn = renderer->read_pixels();
       if (!cut) return cut.error();
       if (!drawn) return drawn.error();
-      const auto picture = judge_picture(asset, trees, *cut, *drawn, named.camera, options.pixel_error, tolerance);
+      const auto picture = judge_picture(asset, trees, *cut, *drawn, named.camera, options.pixel_error, tolerance,
+                                         *scene->alpha_masks);
       if (!picture) return picture.error();
       out.largest_px = std::max(out.largest_px, picture->largest_px);
       const bool is_worse = out.cameras.size() == worst || picture->largest_px > worst_picture.largest_px;

@@ -44,6 +44,7 @@ struct GpuVerifyReport {
   std::vector<GpuCheck> checks;
   double largest_px = 0.0;
   std::vector<JudgedCamera> cameras;
+  std::vector<std::string> warnings;  ///< images that could not be had
 };
 
 /// `source`: each mesh's source surface, mesh space. Errors: kUnsupported without a device, kInvalid for a broken page.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "raster/alpha_test.h"
 
 namespace meshlode::raster {
 
@@ -33,14 +34,22 @@ struct Edge {
   [[nodiscard]] std::int64_t at(std::int32_t x, std::int32_t y) const { return at_origin + step_x * x + step_y * y; }
 };
 
-void put_pixel(VisibilityBuffer& buffer, std::size_t pixel, std::uint32_t depth, TriangleKey key) {
+/// Whether the triangle is there at all: asked last, because it costs most.
+bool is_there(const ScreenSoup& soup, const VisibilityBuffer& buffer, std::size_t pixel, TriangleKey key) {
+  if (key.mask == TriangleKey::kOpaque) return true;
+  return passes_alpha(soup.masked[key.mask], static_cast<double>(pixel % buffer.width) + 0.5 - 0.5 * buffer.width,
+                      static_cast<double>(pixel / buffer.width) + 0.5 - 0.5 * buffer.height);
+}
+
+void put_pixel(const ScreenSoup& soup, VisibilityBuffer& buffer, std::size_t pixel, std::uint32_t depth,
+               TriangleKey key) {
   std::uint32_t& old_depth = buffer.depth[pixel];
   std::uint32_t& old_item = buffer.item[pixel];
   std::uint32_t& old_triangle = buffer.triangle[pixel];
   const bool is_nearer = depth != old_depth     ? depth > old_depth
                          : key.item != old_item ? key.item < old_item
                                                 : key.triangle < old_triangle;
-  if (!is_nearer) return;
+  if (!is_nearer || !is_there(soup, buffer, pixel, key)) return;
   old_depth = depth;
   old_item = key.item;
   old_triangle = key.triangle;
@@ -50,7 +59,7 @@ PixelRange rows_of_band(PixelRange rows, std::int32_t band) {
   return {std::max(rows.first, band * kBandRows), std::min(rows.last, band * kBandRows + kBandRows - 1)};
 }
 
-void draw_triangle(const ScreenTriangle& t, std::int32_t band, VisibilityBuffer& buffer) {
+void draw_triangle(const ScreenSoup& soup, const ScreenTriangle& t, std::int32_t band, VisibilityBuffer& buffer) {
   const auto [low_x, high_x] = std::minmax({t.v[0].x, t.v[1].x, t.v[2].x});
   const auto [low_y, high_y] = std::minmax({t.v[0].y, t.v[1].y, t.v[2].y});
   const PixelRange columns = pixels_between(low_x, high_x, buffer.width);
@@ -64,7 +73,7 @@ void draw_triangle(const ScreenTriangle& t, std::int32_t band, VisibilityBuffer&
     for (std::int32_t x = columns.first; x <= columns.last; ++x) {
       // The sign bit of the union is set iff one of them is negative.
       if (((e[0] + edges[0].bias) | (e[1] + edges[1].bias) | (e[2] + edges[2].bias)) >= 0) {
-        put_pixel(buffer, row + static_cast<std::size_t>(x), interpolate_depth(t, e, area), t.key);
+        put_pixel(soup, buffer, row + static_cast<std::size_t>(x), interpolate_depth(t, e, area), t.key);
       }
       for (int k = 0; k < 3; ++k) e[k] += edges[k].step_x;
     }
@@ -73,7 +82,8 @@ void draw_triangle(const ScreenTriangle& t, std::int32_t band, VisibilityBuffer&
 
 /// A clipped polygon: triangles (0, i, i + 1) with the sign of their areas. A pixel is covered iff the signed sum is
 /// positive; its depth is that of the first positive triangle that covers it.
-void draw_polygon(const ScreenPolygon& polygon, std::int32_t band, VisibilityBuffer& buffer) {
+void draw_polygon(const ScreenSoup& soup, const ScreenPolygon& polygon, std::int32_t band,
+                  VisibilityBuffer& buffer) {
   struct Part {
     ScreenTriangle triangle;
     Edge edges[3];
@@ -124,7 +134,7 @@ void draw_polygon(const ScreenPolygon& polygon, std::int32_t band, VisibilityBuf
         }
       }
       const std::size_t pixel = static_cast<std::size_t>(y) * buffer.width + static_cast<std::size_t>(x);
-      if (winding > 0) put_pixel(buffer, pixel, depth, polygon.key);
+      if (winding > 0) put_pixel(soup, buffer, pixel, depth, polygon.key);
     }
   }
 }
@@ -188,10 +198,10 @@ void draw_soup(const ScreenSoup& soup, VisibilityBuffer& buffer) {
   parallel_for_each_index(band_count, 1, [&](std::size_t band) {
     const auto rows = static_cast<std::int32_t>(band);
     for (std::uint32_t i = triangles.first[band]; i < triangles.first[band + 1]; ++i) {
-      draw_triangle(soup.triangles[triangles.entries[i]], rows, buffer);
+      draw_triangle(soup, soup.triangles[triangles.entries[i]], rows, buffer);
     }
     for (std::uint32_t i = polygons.first[band]; i < polygons.first[band + 1]; ++i) {
-      draw_polygon(soup.polygons[polygons.entries[i]], rows, buffer);
+      draw_polygon(soup, soup.polygons[polygons.entries[i]], rows, buffer);
     }
   });
 }

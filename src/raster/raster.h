@@ -5,10 +5,11 @@
 //   grid integers → clip coordinates (doubles, + and * in a fixed order; projection.h)
 //   → 1/256 pixel and 32-bit depth (quantized once per vertex, then exact integer division; screen.h)
 //   → coverage by int64 edge functions with the top-left rule, depth by exact integer interpolation (coverage.h)
+//   → the alpha test of masked materials, its texel found by integers too (alpha_test.h)
 //   → a visibility buffer: the nearest triangle of each pixel, ties broken by (item of the cut, triangle).
 //
-// Back faces are culled unless the material is double sided; a mirrored instance flips the sense. No textures are
-// sampled: alpha-masked materials are drawn as opaque. There is no antialiasing: one sample in the middle of a pixel.
+// Back faces are culled unless the material is double sided; a mirrored instance flips the sense. Blended materials are
+// drawn as opaque. There is no antialiasing: one sample in the middle of a pixel.
 #pragma once
 
 #include <cstdint>
@@ -19,6 +20,7 @@
 
 #include "read/asset.h"
 #include "select/select.h"
+#include "textures/alpha_mask.h"
 
 namespace meshlode {
 
@@ -52,10 +54,11 @@ struct VisibilityBuffer {
 [[nodiscard]] VisibilityBuffer make_visibility_buffer(std::uint32_t width, std::uint32_t height);
 
 /// Draws the given cut; the order of its entries decides between equal depths, so pass it as selection returns it.
+/// `masks`: load_alpha_masks() of the asset; without them masked materials are drawn as opaque.
 /// Errors: kUsage for a camera that is not finite, has no direction, or is out of range (size 1 … 16384, near distance
 /// 1e-100 … 1e100) and for ids that the asset does not have; kInvalid for a broken page.
 [[nodiscard]] Result<VisibilityBuffer> draw_cut(const Asset& asset, std::span<const ClusterInstance> cut,
-                                                const Camera& camera);
+                                                const Camera& camera, const AlphaMasks& masks = {});
 
 /// Colours what draw_cut() found. \pre `visibility` was drawn from the same asset, cut and camera
 [[nodiscard]] Result<Image> shade_view(const Asset& asset, std::span<const ClusterInstance> cut, const Camera& camera,
@@ -63,7 +66,7 @@ struct VisibilityBuffer {
 
 /// draw_cut() and shade_view().
 [[nodiscard]] Result<Image> render_cut(const Asset& asset, std::span<const ClusterInstance> cut, const Camera& camera,
-                                       View view);
+                                       View view, const AlphaMasks& masks = {});
 
 /// The same bytes for the same image everywhere; without alpha where all of it is opaque.
 [[nodiscard]] std::vector<std::uint8_t> encode_png(const Image& image);

@@ -12,6 +12,8 @@
 #include <optional>
 #include <vector>
 
+#include "raster/masked_triangle.h"
+
 namespace meshlode::raster {
 
 constexpr int kSubpixelBits = 8;
@@ -37,9 +39,11 @@ struct ScreenVertex {
   std::uint32_t depth = 0;
 };
 
-/// Decides between equal depths; lower wins.
+/// Whose a pixel is. Item and triangle decide between equal depths; lower wins.
 struct TriangleKey {
+  static constexpr std::uint32_t kOpaque = 0xFFFFFFFFu;
   std::uint32_t item = 0, triangle = 0;
+  std::uint32_t mask = kOpaque;  ///< into ScreenSoup::masked: what passes_alpha() is asked
 };
 
 struct ScreenTriangle {
@@ -59,6 +63,7 @@ struct ScreenPolygon {
 struct ScreenSoup {
   std::vector<ScreenTriangle> triangles;
   std::vector<ScreenPolygon> polygons;
+  std::vector<MaskedTriangle> masked;
   std::uint64_t not_finite = 0;  ///< triangles left out because a coordinate overflowed
 };
 

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "base/parallel.h"
+#include "raster/alpha_test.h"
 #include "raster/coverage.h"
 #include "raster/cut_pages.h"
 #include "raster/projection.h"
@@ -16,13 +17,14 @@ using namespace raster;
 
 constexpr std::size_t kBatchClusters = 2048;  ///< about 12 MB of screen triangles
 
-void project_cluster(const Asset& asset, const Projection& projection, const CutPages& pages,
+void project_cluster(const Asset& asset, const AlphaMasks& masks, const Projection& projection, const CutPages& pages,
                      const ClusterInstance& entry, std::uint32_t item, ScreenSoup& out) {
   const format::InstanceRecord& instance = asset.instances()[entry.instance.value];
   if ((instance.flags & format::kInstanceSingular) != 0) return;
   DecodedCluster cluster;
   pages.decode(asset, entry.cluster, cluster);
-  const GridToClip to_clip = make_grid_to_clip(projection, asset.meshes()[instance.mesh], instance);
+  const format::MeshRecord& mesh = asset.meshes()[instance.mesh];
+  const GridToClip to_clip = make_grid_to_clip(projection, mesh, instance);
   std::vector<ClipVertex> clip(cluster.vertex_count);
   std::vector<std::optional<ScreenVertex>> snapped(cluster.vertex_count);
   for (std::uint32_t v = 0; v < cluster.vertex_count; ++v) {
@@ -36,18 +38,31 @@ void project_cluster(const Asset& asset, const Projection& projection, const Cut
     const Culling culling = is_double_sided ? Culling::kNone
                             : is_mirrored   ? Culling::kCounterClockwise
                                             : Culling::kClockwise;
-    const TriangleKey key{item, t};
+    TriangleKey key{item, t};
+    const std::size_t drawn = out.triangles.size() + out.polygons.size();
+    const auto mask = find_mask(masks, mesh, cluster, t, to_clip);
+    if (mask) key.mask = static_cast<std::uint32_t>(out.masked.size());
     if (snapped[a] && snapped[b] && snapped[c]) {
       add_snapped(*snapped[a], *snapped[b], *snapped[c], culling, key, projection.size, out);
     } else {
       add_triangle({clip[a], clip[b], clip[c]}, culling, key, projection.size, out);
     }
+    if (mask && out.triangles.size() + out.polygons.size() > drawn) out.masked.push_back(*mask);
   }
 }
 
 void append(ScreenSoup& out, const ScreenSoup& part) {
-  out.triangles.insert(out.triangles.end(), part.triangles.begin(), part.triangles.end());
-  out.polygons.insert(out.polygons.end(), part.polygons.begin(), part.polygons.end());
+  const auto first_mask = static_cast<std::uint32_t>(out.masked.size());
+  const auto add = [&](auto& to, const auto& from) {
+    const std::size_t first = to.size();
+    to.insert(to.end(), from.begin(), from.end());
+    for (std::size_t i = first; first_mask > 0 && i < to.size(); ++i) {
+      if (to[i].key.mask != TriangleKey::kOpaque) to[i].key.mask += first_mask;
+    }
+  };
+  add(out.triangles, part.triangles);
+  add(out.polygons, part.polygons);
+  out.masked.insert(out.masked.end(), part.masked.begin(), part.masked.end());
   out.not_finite += part.not_finite;
 }
 
@@ -64,7 +79,8 @@ VisibilityBuffer make_visibility_buffer(std::uint32_t width, std::uint32_t heigh
   return buffer;
 }
 
-Result<VisibilityBuffer> draw_cut(const Asset& asset, std::span<const ClusterInstance> cut, const Camera& camera) {
+Result<VisibilityBuffer> draw_cut(const Asset& asset, std::span<const ClusterInstance> cut, const Camera& camera,
+                                  const AlphaMasks& masks) {
   Result<Projection> projection = make_projection(camera);
   if (!projection) return projection.error();
   projection->far_distance = scene_depth(asset, *projection);
@@ -77,7 +93,7 @@ Result<VisibilityBuffer> draw_cut(const Asset& asset, std::span<const ClusterIns
     const std::size_t count = std::min(kBatchClusters, cut.size() - first);
     parts.assign(count, {});
     parallel_for_each_index(count, 8, [&](std::size_t i) {
-      project_cluster(asset, *projection, *pages, cut[first + i], static_cast<std::uint32_t>(first + i), parts[i]);
+      project_cluster(asset, masks, *projection, *pages, cut[first + i], static_cast<std::uint32_t>(first + i), parts[i]);
     });
     ScreenSoup soup;
     for (const ScreenSoup& part : parts) append(soup, part);
@@ -86,8 +102,9 @@ Result<VisibilityBuffer> draw_cut(const Asset& asset, std::span<const ClusterIns
   return buffer;
 }
 
-Result<Image> render_cut(const Asset& asset, std::span<const ClusterInstance> cut, const Camera& camera, View view) {
-  const Result<VisibilityBuffer> visibility = draw_cut(asset, cut, camera);
+Result<Image> render_cut(const Asset& asset, std::span<const ClusterInstance> cut, const Camera& camera, View view,
+                         const AlphaMasks& masks) {
+  const Result<VisibilityBuffer> visibility = draw_cut(asset, cut, camera, masks);
   if (!visibility) return visibility.error();
   return shade_view(asset, cut, camera, *visibility, view);
 }

@@ -31,6 +31,7 @@ void expect_equal_frames(Device& device, const Asset& asset, RendererOptions opt
   options.width = kSizes[0].width;
   options.height = kSizes[0].height;
   options.double_sided = scene->has_double_sided;
+  options.alpha_mask = scene->has_alpha_mask;
   auto renderer = Renderer::make(device, *scene, options);
   ASSERT_TRUE(renderer) << renderer.error().message();
   for (const Size size : kSizes) {

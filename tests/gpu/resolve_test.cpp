@@ -42,6 +42,7 @@ void expect_equal_colors(Device& device, const Asset& asset) {
   ASSERT_TRUE(scene);
   RendererOptions options{.width = 121, .height = 83, .frustum = false};
   options.double_sided = scene->has_double_sided;
+  options.alpha_mask = scene->has_alpha_mask;
   auto renderer = Renderer::make(device, *scene, options);
   ASSERT_TRUE(renderer);
   const std::vector<NamedCamera> cameras = adversarial_cameras(asset, 121, 83);
@@ -51,7 +52,7 @@ void expect_equal_colors(Device& device, const Asset& asset) {
     ASSERT_TRUE(frame) << frame.error().message();
     const auto cut = renderer->read_cut();
     ASSERT_TRUE(cut);
-    const auto visibility = draw_cut(asset, *cut, camera);
+    const auto visibility = draw_cut(asset, *cut, camera, *scene->alpha_masks);
     ASSERT_TRUE(visibility);
     for (const std::uint32_t view : {VIEW_SHADED, VIEW_CLUSTERS, VIEW_TRIANGLES, VIEW_LEVELS}) {
       auto got = renderer->resolve(view, level_count_of(asset));
@@ -87,6 +88,7 @@ TEST_F(Resolve, OverdrawIsThereExactlyWhereSomethingIsSeen) {
   RendererOptions options{.width = 121, .height = 83};
   options.overdraw = true;
   options.double_sided = scene->has_double_sided;
+  options.alpha_mask = scene->has_alpha_mask;
   auto renderer = Renderer::make(*device_, *scene, options);
   ASSERT_TRUE(renderer);
   ASSERT_TRUE(renderer->draw(adversarial_cameras(*city.asset, 121, 83)[0].camera, 1.0, 0.0));

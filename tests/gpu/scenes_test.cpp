@@ -29,6 +29,7 @@ void expect_equal(Device& device, const Asset& asset, std::uint32_t orbits) {
   options.height = 108;
   options.occlusion = true;
   options.double_sided = scene->has_double_sided;
+  options.alpha_mask = scene->has_alpha_mask;
   auto renderer = Renderer::make(device, *scene, options);
   ASSERT_TRUE(renderer) << renderer.error().message();
   constexpr std::uint32_t kSizes[][2] = {{192, 108}, {131, 77}, {64, 200}};
@@ -97,7 +98,7 @@ TEST_F(Scenes, AChangedGroupErrorIsFound) {
   ASSERT_TRUE(device_->download(scene->groups, bytes));
   for (GpuGroup& group : groups) group.error = 0.0F;  // passes always, also where its leaf says that it is open
   ASSERT_TRUE(device_->upload(scene->groups, bytes));
-  auto renderer = Renderer::make(*device_, *scene, {.width = 96, .height = 64, .frustum = false, .double_sided = true});
+  auto renderer = Renderer::make(*device_, *scene, {.width = 96, .height = 64, .frustum = false, .double_sided = true, .alpha_mask = true});
   ASSERT_TRUE(renderer);
   std::uint64_t differences = 0;
   for (const NamedCamera& named : orbit_cameras(*asset, 6, 96, 64)) {
@@ -123,7 +124,7 @@ TEST_F(Scenes, TooSmallCullingSpheresAreFound) {
     for (float& c : cluster.center) c *= 50.0F;
   }
   ASSERT_TRUE(device_->upload(scene->clusters, bytes));
-  auto renderer = Renderer::make(*device_, *scene, {.width = 96, .height = 64, .double_sided = true});
+  auto renderer = Renderer::make(*device_, *scene, {.width = 96, .height = 64, .double_sided = true, .alpha_mask = true});
   ASSERT_TRUE(renderer);
   const auto result = compare_frame(*renderer, *asset, orbit_cameras(*asset, 1, 96, 64)[0].camera, 1.0);
   ASSERT_TRUE(result);
@@ -154,7 +155,7 @@ TEST_F(Scenes, FlatSelectionDrawsTheSame) {
   ASSERT_TRUE(asset);
   const auto scene = upload_scene(*device_, *asset);
   ASSERT_TRUE(scene);
-  RendererOptions options{.width = 96, .height = 64, .frustum = false, .double_sided = true};
+  RendererOptions options{.width = 96, .height = 64, .frustum = false, .double_sided = true, .alpha_mask = true};
   options.flat_selection = true;
   auto renderer = Renderer::make(*device_, *scene, options);
   ASSERT_TRUE(renderer);
@@ -177,7 +178,7 @@ TEST_F(Scenes, PersistentTraversalDrawsTheSame) {
   for (const Case c : {Case{false, true, false}, Case{true, true, true}, Case{true, false, true}, Case{true, false, false}}) {
     SCOPED_TRACE(testing::Message() << c.occlusion << c.persistent << c.persistent_second);
     RendererOptions options{.width = 97, .height = 64, .frustum = c.occlusion, .occlusion = c.occlusion};
-    options.double_sided = true;
+    options.double_sided = options.alpha_mask = true;
     options.persistent = c.persistent;
     options.persistent_second = c.persistent_second;
     options.far_instances = false;
@@ -198,7 +199,7 @@ TEST_F(Scenes, HardwareRasterHoldsAndItsJudgeCanFail) {
   ASSERT_TRUE(asset);
   const auto scene = upload_scene(*device_, *asset);
   ASSERT_TRUE(scene);
-  RendererOptions options{.width = 640, .height = 360, .frustum = false, .double_sided = true};
+  RendererOptions options{.width = 640, .height = 360, .frustum = false, .double_sided = true, .alpha_mask = true};
   options.hardware = HardwarePath::kVertex;
   options.hardware_pixels = 0.0F;
   auto renderer = Renderer::make(*device_, *scene, options);
@@ -234,6 +235,7 @@ TEST_F(Scenes, AFarInstanceIsNotTraversed) {
   for (const bool goes_past : {false, true}) {
     RendererOptions options{.width = 97, .height = 64, .frustum = false};
     options.double_sided = scene->has_double_sided;
+    options.alpha_mask = scene->has_alpha_mask;
     options.far_instances = goes_past;
     auto renderer = Renderer::make(*device_, *scene, options);
     ASSERT_TRUE(renderer);
@@ -257,6 +259,7 @@ TEST_F(Scenes, RootsOfAFewPixelsAreDrawnBitForBit) {
   ASSERT_TRUE(scene);
   RendererOptions options{.width = 61, .height = 40, .frustum = false};
   options.double_sided = scene->has_double_sided;
+  options.alpha_mask = scene->has_alpha_mask;
   auto renderer = Renderer::make(*device_, *scene, options);
   ASSERT_TRUE(renderer);
   const WorldBox box = world_box(*asset);
@@ -292,7 +295,7 @@ TEST_F(Scenes, TheHardwareDrawsNearlyTheSamePicture) {
   ASSERT_TRUE(asset);
   const auto scene = upload_scene(*device_, *asset);
   ASSERT_TRUE(scene);
-  RendererOptions options{.width = 320, .height = 240, .frustum = false, .double_sided = true};
+  RendererOptions options{.width = 320, .height = 240, .frustum = false, .double_sided = true, .alpha_mask = true};
   options.hardware = HardwarePath::kVertex;
   options.hardware_pixels = 0.0F;
   auto renderer = Renderer::make(*device_, *scene, options);
@@ -303,7 +306,7 @@ TEST_F(Scenes, TheHardwareDrawsNearlyTheSamePicture) {
   EXPECT_EQ(frame->hardware_items, frame->items);
   const auto hardware = renderer->read_pixels();
   ASSERT_TRUE(hardware);
-  const auto software = draw_cut(*asset, select_flat(*asset, camera, 1.0), camera);
+  const auto software = draw_cut(*asset, select_flat(*asset, camera, 1.0), camera, *scene->alpha_masks);
   ASSERT_TRUE(software);
   std::size_t covered = 0, differ = 0, far = 0;
   for (std::size_t i = 0; i < software->pixel_count(); ++i) {

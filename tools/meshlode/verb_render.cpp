@@ -159,6 +159,10 @@ bool is_view_of_passes(std::uint32_t view) {
   return view == VIEW_OVERDRAW || view == VIEW_PATHS || view == VIEW_OCCLUDED;
 }
 
+void print_warnings(const AlphaMasks& masks) {
+  for (const std::string& warning : masks.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+}
+
 /// Selected, drawn and coloured by the device.
 Result<Drawn> draw_on_gpu(const Asset& asset, const Camera& camera, const RenderOptions& options,
                           const AttributeBounds& bounds) {
@@ -168,6 +172,7 @@ Result<Drawn> draw_on_gpu(const Asset& asset, const Camera& camera, const Render
   if (!device) return device.error();
   auto scene = gpu::upload_scene(*device, asset, {}, bounds);
   if (!scene) return scene.error();
+  print_warnings(*scene->alpha_masks);
   const std::vector<std::string> force = options.force.empty() ? std::vector<std::string>{}
                                                                : std::vector<std::string>{options.force};
   auto plan = gpu::plan_passes(*scene, device->info(), camera.width, camera.height, force);
@@ -218,7 +223,9 @@ Result<Drawn> draw_on_cpu(const Asset& asset, const Camera& camera, const Render
                           const AttributeBounds& bounds) {
   std::vector<ClusterInstance> cut = options.error ? uniform_cut(asset, *options.error, options.is_relative, bounds)
                                                    : select_bvh(asset, camera, options.camera.pixel_error, bounds);
-  auto visibility = draw_cut(asset, cut, camera);
+  const AlphaMasks masks = load_alpha_masks(asset);
+  print_warnings(masks);
+  auto visibility = draw_cut(asset, cut, camera, masks);
   if (!visibility) return visibility.error();
   return Drawn{std::move(cut), std::move(*visibility), std::nullopt};
 }
@@ -240,7 +247,7 @@ int run_render(const Verb& verb, std::span<char* const> args) {
   parser.add_value("--device", options.device, "of --gpu: an index or a part of the name (the first that can)");
   parser.add_flag("--explain", options.explain, "of --gpu: say which passes run, and why");
   parser.add_value("--force", options.force, "of --gpu: a pass that the scene does not call for",
-                   {"double-sided", "occlusion", "hardware", "all"});
+                   {"double-sided", "alpha-mask", "occlusion", "hardware", "all"});
   add_jobs_option(parser, options.jobs);
   add_output_options(parser, options.report);
   if (const auto exit_code = parser.parse(args)) return *exit_code;

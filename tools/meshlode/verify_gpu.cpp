@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "verify_gpu.h"
 
+#include <cstdio>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -90,6 +91,7 @@ Status verify_with_gpu(const Asset& asset, const Scene& source, const GpuOptions
   for (const SourceMesh& mesh : source.meshes) surfaces.push_back(surface_of_source(mesh));
   const auto verified = gpu::verify_on_gpu(asset, surfaces, judge);
   if (!verified) return verified.error();
+  for (const std::string& warning : verified->warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
   if (!options.out_folder.empty()) {
     const std::string text = gpu_json(options, *verified);
     const std::span<const std::uint8_t> bytes(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());

@@ -80,8 +80,29 @@ struct GpuCluster {
 struct GpuMaterial {
   vec4 base_color;
   uint double_sided;
-  GPU_ARRAY(uint, reserved, 3);
+  uint mask;            // of the masks; 0xFFFFFFFF: not masked
+  GPU_ARRAY(uint, reserved, 2);
 };
+
+// How a mesh stores UVs.
+struct GpuMeshUvs {
+  GPU_ARRAY(int, log2, 4);  // step of each stored set
+  uint source;              // the TEXCOORD_n that stored set k was, 8 bits each
+};
+
+// AlphaMask of textures/alpha_mask.h. Doubles first.
+struct GpuMask {
+  GPU_ARRAY(double, rows, 6);  // UVs to texels, row_u and row_v
+  uint threshold;
+  uint uv_set;
+  uint width, height;          // 0: every texel is opaque
+  GPU_ARRAY(uint, wrap, 2);
+  uint first_word;             // of its texels, four to a word
+  uint reserved;
+};
+#define WRAP_REPEAT 0
+#define WRAP_MIRROR 1
+#define WRAP_CLAMP 2
 
 // A camera's part of raster/projection.h, and what of select/view.cpp does not depend on the instance.
 struct GpuCamera {
@@ -178,6 +199,8 @@ layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer No
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer GroupArray { GpuGroup at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer ClusterArray { GpuCluster at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer MaterialArray { GpuMaterial at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer MeshUvsArray { GpuMeshUvs at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer MaskArray { GpuMask at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer PageWords { uint at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) buffer VisibleArray { GpuVisible at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) buffer PairArray { uvec2 at[]; };
@@ -211,6 +234,9 @@ struct GpuFrame {
   GPU_POINTER(WordArray) overdraw;       // how often each pixel was drawn, where it is counted
   GPU_POINTER(WordArray) colors;         // RGBA, 8 bits each: resolve.comp
   GPU_POINTER(CounterBlock) counters;
+  GPU_POINTER(MeshUvsArray) mesh_uvs;
+  GPU_POINTER(MaskArray) masks;
+  GPU_POINTER(PageWords) mask_texels;
   uint width, height;
   uint instance_count;
   uint slot_capacity, queue_capacity, group_capacity, item_capacity, retry_capacity;
@@ -222,6 +248,7 @@ struct GpuFrame {
 #ifdef __cplusplus
 static_assert(sizeof(GpuMesh) == 112 && sizeof(GpuInstance) == 112 && sizeof(GpuNode) == 32 && sizeof(GpuGroup) == 32);
 static_assert(sizeof(GpuCluster) == 32 && sizeof(GpuMaterial) == 32 && sizeof(GpuCamera) == 144);
+static_assert(sizeof(GpuMeshUvs) == 20 && sizeof(GpuMask) == 80);
 static_assert(sizeof(GpuVisible) == 384 && sizeof(GpuStage) == 16);
 }  // namespace meshlode::gpu
 #else

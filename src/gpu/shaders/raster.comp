@@ -14,6 +14,7 @@ layout(local_size_x_id = 4) in;
 layout(constant_id = 5) const uint kMaxTriangles = 256u;
 layout(constant_id = 6) const uint kMaxVertices = 256u;
 #include "strips.glsl"
+#include "alpha.glsl"
 
 #define GROUP_SIZE int(gl_WorkGroupSize.x)
 
@@ -60,7 +61,7 @@ void draw_small(Triangle t, ivec2 columns, ivec2 rows, int area, uint item, uint
     ivec3 e = row + step_x * (first - columns.x);
     for (int x = first; x <= last; ++x) {
       const ivec3 biased = e + bias;
-      if ((biased.x | biased.y | biased.z) >= 0) {
+      if ((biased.x | biased.y | biased.z) >= 0 AND_ALPHA(x, y)) {
         const uint64_t sum = uint64_t(uint(e.x)) * t.depth.x + uint64_t(uint(e.y)) * t.depth.y +
                              uint64_t(uint(e.z)) * t.depth.z;
         put_pixel(x, y, pixel_value(divide_depth_small(sum, inverse, uint(area)), item, triangle));
@@ -83,7 +84,7 @@ void draw_medium(Triangle t, ivec2 columns, ivec2 rows, int area, uint item, uin
     const int px = x * kSubpixels + kSubpixels / 2, py = y * kSubpixels + kSubpixels / 2;
     const ivec3 e = dx * (py - ay) - dy * (px - ax);
     const ivec3 biased = e + bias;
-    if ((biased.x | biased.y | biased.z) >= 0) {
+    if ((biased.x | biased.y | biased.z) >= 0 AND_ALPHA(x, y)) {
       const uint64_t sum = uint64_t(uint(e.x)) * t.depth.x + uint64_t(uint(e.y)) * t.depth.y +
                            uint64_t(uint(e.z)) * t.depth.z;
       put_pixel(x, y, pixel_value(divide_depth_small(sum, inverse, uint(area)), item, triangle));
@@ -105,7 +106,7 @@ void draw_large(Triangle t, ivec2 columns, ivec2 rows, int64_t area, uint item, 
       e[k] = int64_t(dx[k]) * int64_t(py - ay[k]) - int64_t(dy[k]) * int64_t(px - ax[k]);
       is_inside = is_inside && e[k] + int64_t(edge_bias(dx[k], dy[k])) >= 0l;
     }
-    if (is_inside) {
+    if (is_inside AND_ALPHA(x, y)) {
       const uint64_t sum = uint64_t(e[0]) * t.depth.x + uint64_t(e[1]) * t.depth.y + uint64_t(e[2]) * t.depth.z;
       const double estimate = (double(e[0]) * double(t.depth.x) + double(e[1]) * double(t.depth.y) +
                                double(e[2]) * double(t.depth.z)) * inverse;
@@ -189,6 +190,7 @@ void draw_item(uint item) {
     if (is_small) {
       load_depth(t, v);
       orient(t, area);
+      BEGIN_ALPHA(slot, data, i, v);
       draw_small(t, columns, rows, int(area), item, i);
     } else {
       large[atomicAdd(large_count, 1u)] = i;
@@ -205,6 +207,7 @@ void draw_item(uint item) {
       load_depth(t, v);
       int64_t area = doubled_area(t);
       orient(t, area);
+      BEGIN_ALPHA(slot, data, triangle, v);
       const int low_x = min(t.x.x, min(t.x.y, t.x.z)), high_x = max(t.x.x, max(t.x.y, t.x.z));
       const int low_y = min(t.y.x, min(t.y.y, t.y.z)), high_y = max(t.y.x, max(t.y.y, t.y.z));
       const ivec2 columns = pixels_between(low_x, high_x, frame.width);

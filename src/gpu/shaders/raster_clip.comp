@@ -6,6 +6,7 @@
 #include "common.glsl"
 #include "page.glsl"
 #include "screen.glsl"
+#include "alpha.glsl"
 
 layout(constant_id = 0) const uint kDoubleSided = 0u;
 
@@ -155,7 +156,7 @@ void draw_pixel(int x, int y, uint item, uint triangle) {
       has_depth = true;
     }
   }
-  if (winding > 0) put_pixel(x, y, pixel_value(depth, item, triangle));
+  if (winding > 0 AND_ALPHA(x, y)) put_pixel(x, y, pixel_value(depth, item, triangle));
 }
 
 void draw_item(uint item) {
@@ -177,6 +178,7 @@ void draw_item(uint item) {
     }
     barrier();
     if (polygon_count >= 3u) {
+      BEGIN_ALPHA(slot, data, t, v);
       int low_x = polygon_x[0], high_x = low_x, low_y = polygon_y[0], high_y = low_y;
       for (uint i = 1u; i < polygon_count; ++i) {
         low_x = min(low_x, polygon_x[i]);

@@ -7,6 +7,10 @@
 #version 460
 #include "common.glsl"
 #include "screen.glsl"
+#ifdef ALPHA_MASK
+#include "page.glsl"
+#endif
+#include "alpha.glsl"
 
 layout(constant_id = 0) const uint kDoubleSided = 0u;
 layout(local_size_x = 128) in;
@@ -75,7 +79,7 @@ void draw_box(ivec3 x, ivec3 y, uvec3 depth, uint item, uint triangle) {
     ivec3 e = row;
     for (int px = columns.x; px <= columns.y; ++px) {
       const ivec3 biased = e + bias;
-      if ((biased.x | biased.y | biased.z) >= 0) {
+      if ((biased.x | biased.y | biased.z) >= 0 AND_ALPHA(px, py)) {
         const uint64_t sum = uint64_t(uint(e.x)) * depth.x + uint64_t(uint(e.y)) * depth.y + uint64_t(uint(e.z)) * depth.z;
         put_pixel(px, py, pixel_value(divide_depth_small(sum, inverse, uint(area)), item, triangle));
       }
@@ -132,6 +136,7 @@ void main() {
     const uint corners = far_drawn[triangles + i];
     const uvec3 v = uvec3(corners, corners >> 8u, corners >> 16u) & 255u;
     const ivec2 v0 = far_xy[vertices + v.x], v1 = far_xy[vertices + v.y], v2 = far_xy[vertices + v.z];
+    BEGIN_ALPHA(slot, open_cluster(frame.meshes.at[frame.visible.at[slot].mesh], entry.y), corners >> 24u, v);
     draw_box(ivec3(v0.x, v1.x, v2.x), ivec3(v0.y, v1.y, v2.y),
              uvec3(far_depth[vertices + v.x], far_depth[vertices + v.y], far_depth[vertices + v.z]), item, corners >> 24u);
   }

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "image/image.h"
+
+#include <algorithm>
+#include <array>
+
+#include "image/formats.h"
+
+namespace meshlode {
+
+namespace image {
+
+Status check_image_size(std::uint64_t width, std::uint64_t height) {
+  if (width == 0 || height == 0) return Error{ErrorCode::kInvalid, "image", "no texels"};
+  if (width > kMaxTextureSide || height > kMaxTextureSide) {
+    return Error{ErrorCode::kUnsupported, "image",
+                 std::to_string(width) + " x " + std::to_string(height) + " texels, at most " +
+                     std::to_string(kMaxTextureSide) + " a side are read"};
+  }
+  return Ok{};
+}
+
+}  // namespace image
+
+Result<DecodedImage> decode_image(std::span<const std::uint8_t> bytes) {
+  constexpr std::array<std::uint8_t, 8> kPng{0x89, 'P', 'N', 'G', 0x0D, 0x0A, 0x1A, 0x0A};
+  constexpr std::array<std::uint8_t, 2> kJpeg{0xFF, 0xD8};
+  const auto begins_with = [&](std::span<const std::uint8_t> first) {
+    return bytes.size() >= first.size() && std::equal(first.begin(), first.end(), bytes.begin());
+  };
+  if (begins_with(kPng)) return image::decode_png(bytes);
+  if (begins_with(kJpeg)) return image::decode_jpeg(bytes);
+  return Error{ErrorCode::kUnsupported, "image", "neither PNG nor JPEG"};
+}
+
+}  // namespace meshlode
