@@ -107,7 +107,7 @@ class PrefixReader {
       code_lengths = code_lengths.subspan(symbol_count(t));
     }
     for (std::uint32_t s = 0; s < kFieldStreams; ++s) out_.streams[s].resize(counts_.count[s]);
-    for (std::uint32_t q = 0; q < quad_count<L>(mesh_); ++q) out_.errors[q].resize(counts_.count[kFieldStreams]);
+    for (std::uint32_t q = 0; q < quad_count<L>(mesh_); ++q) out_.errors[q].resize(counts_.count[kFieldStreams], kErrorsBehind);
     return true;
   }
 

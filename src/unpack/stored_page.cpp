@@ -118,7 +118,7 @@ class StoredPage {
   template <class L>
   bool read_draco_streams(const StreamBytes& streams, const StreamCounts& counts, StripValues<L>& out) const {
     const std::uint32_t fields = field_count(mesh_);
-    for (std::uint32_t q = 0; q < quad_count<L>(mesh_); ++q) out.errors[q].resize(counts.count[kFieldStreams]);
+    for (std::uint32_t q = 0; q < quad_count<L>(mesh_); ++q) out.errors[q].resize(counts.count[kFieldStreams], kErrorsBehind);
     std::span<const std::uint8_t> rest = streams.bytes;
     Room<std::uint32_t> numbers;
     for (std::uint32_t s = 0; s < kFieldStreams + fields; ++s) {

@@ -52,8 +52,9 @@ template <class L>
 template <class T>
 class Room {
  public:
-  void resize(std::size_t size) {
-    items_ = std::make_unique_for_overwrite<T[]>(size);
+  /// `behind`: items that can be read but do not count.
+  void resize(std::size_t size, std::size_t behind = 0) {
+    items_ = std::make_unique_for_overwrite<T[]>(size + behind);
     size_ = size;
   }
   [[nodiscard]] T* data() { return items_.get(); }
@@ -71,6 +72,9 @@ struct StripValues {
   std::array<Room<std::uint32_t>, kFieldStreams> streams;   ///< symbols, and numbers unfolded
   std::array<Room<Quad<L>>, kMaxQuads<L>> errors;           ///< unfolded, of each new vertex; unused lanes have any value
 };
+
+/// Errors can be read one beyond the last: a walk looks at the next one before it knows whether it is called for.
+constexpr std::size_t kErrorsBehind = 1;
 
 /// Whether the numbers of a stream are folded.
 [[nodiscard]] constexpr bool is_folded(std::uint32_t stream) { return stream >= kReferenceStream; }
