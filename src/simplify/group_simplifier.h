@@ -78,7 +78,6 @@ class GroupSimplifier {
   void push_candidate(std::uint32_t a, std::uint32_t b);
   void collect_wedge_classes(std::uint32_t a, std::uint32_t b);
   [[nodiscard]] Placement place(std::uint32_t a, std::uint32_t b);
-  [[nodiscard]] double total_error(const Quadric& total, const Vec3d& p) const;
   [[nodiscard]] Obstacle try_collapse(const Candidate& candidate);
   void collect_new_star(std::uint32_t a, std::uint32_t b, bool drops_sheets);
   [[nodiscard]] double collect_vanishing(std::uint32_t a, std::uint32_t b, const Vec3d& target);
@@ -94,6 +93,7 @@ class GroupSimplifier {
   [[nodiscard]] Vec3d to_frame(const Vec3i& q) const { return (Vec3d(q) - center_) * inverse_scale_; }
   [[nodiscard]] Vec3i to_grid(const Vec3d& p) const;
   void run_passes();
+  [[nodiscard]] std::vector<std::uint32_t> find_pieces() const;
   void grow_pieces();
   [[nodiscard]] double drop_collapsed_sheets(std::uint32_t vertex);
   [[nodiscard]] StuckReason reason_for_stopping() const;

@@ -2,7 +2,13 @@
 #include "simplify/simplify.h"
 
 #include "simplify/group_simplifier.h"
-#include "simplify/group_simplifier.inl"
+// The members, by idea; templates, and hot, so that one translation unit sees them all.
+#include "simplify/quadrics.inl"
+#include "simplify/placement.inl"
+#include "simplify/guards.inl"
+#include "simplify/left_behind.inl"
+#include "simplify/collapse.inl"
+#include "simplify/result.inl"
 
 namespace meshlode {
 

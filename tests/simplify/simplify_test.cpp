@@ -266,6 +266,37 @@ TEST(Simplify, EverythingLockedIsLeftAloneAndSaysSo) {
   EXPECT_EQ(result.reason, StuckReason::kLocked);
 }
 
+TEST(Simplify, LoosePiecesThatLeaveNoRoomAreTheReason) {
+  SimplifyInput input;
+  input.layout = {};
+  constexpr int kPieces = 50;
+  for (int i = 0; i < kPieces; ++i) {  // a tetrahedron each, as small as closed pieces get under the link condition
+    const auto first = static_cast<std::uint32_t>(input.positions.size());
+    for (const Vec3i& p : {Vec3i(0, 0, 0), Vec3i(60, 0, 0), Vec3i(0, 60, 0), Vec3i(0, 0, 60)}) {
+      input.positions.push_back(p + Vec3i(1000 * i, 0, 0));
+      input.wedge_position.push_back(static_cast<std::uint32_t>(input.wedge_position.size()));
+      input.witnesses.push_back({{input.positions.back()}, 1});
+    }
+    for (const WedgeTriangle& t : {WedgeTriangle{0, 2, 1}, WedgeTriangle{0, 1, 3}, WedgeTriangle{0, 3, 2}, WedgeTriangle{1, 2, 3}}) {
+      input.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    }
+  }
+  input.is_locked.assign(input.positions.size(), 0);
+  input.is_wedge_shared.assign(input.wedge_position.size(), 0);
+  input.triangle_material.assign(input.triangles.size(), 0);
+  SimplifyOptions options;
+  options.may_relax_topology = false;
+  options.target_triangles = 2 * kPieces - 1;
+  const SimplifyResult stuck = simplify_group(input, options);
+  EXPECT_EQ(stuck.triangles.size(), 4U * kPieces);
+  EXPECT_EQ(stuck.reason, StuckReason::kComponents);
+  options.target_triangles = 2 * kPieces;
+  EXPECT_EQ(simplify_group(input, options).reason, StuckReason::kTopology);
+  options.target_triangles = 2 * kPieces - 1;
+  options.may_relax_topology = true;
+  EXPECT_EQ(simplify_group(input, options).reason, StuckReason::kNotStuck);
+}
+
 TEST(Simplify, ScaleChangesNothing) {
   const Primitive shape = samples::make_torus(24, 12);
   SimplifyInput reference = as_input(prepare(shape));
