@@ -14,11 +14,11 @@ constexpr std::uint64_t kOcclusionClusters = 1000000;
 }  // namespace
 
 Result<PassPlan> plan_passes(const GpuScene& scene, const DeviceInfo& device, std::uint32_t width, std::uint32_t height,
-                             const std::vector<std::string>& force) {
-  constexpr std::array kNames = {"double-sided", "alpha-mask", "occlusion", "hardware", "all"};
+                             const std::vector<std::string>& force, bool has_colors) {
+  constexpr std::array kNames = {"double-sided", "alpha-mask", "occlusion", "hardware", "textures", "all"};
   for (const std::string& name : force) {
     if (std::find(kNames.begin(), kNames.end(), name) == kNames.end()) {
-      return Error{ErrorCode::kUsage, "--force", "no pass " + name + ": double-sided, alpha-mask, occlusion, hardware or all"};
+      return Error{ErrorCode::kUsage, "--force", "no pass " + name + ": double-sided, alpha-mask, occlusion, hardware, textures or all"};
     }
   }
   const auto is_forced = [&](const char* name) {
@@ -58,8 +58,10 @@ Result<PassPlan> plan_passes(const GpuScene& scene, const DeviceInfo& device, st
              "small")) {
     plan.options.hardware = device.has_mesh_shaders ? HardwarePath::kMesh : HardwarePath::kVertex;
   }
-  decide("textures", false, false,
-         scene.has_textures ? "not done: base colours are drawn, as on the CPU" : "no material has a texture");
+  plan.textures = decide("textures", scene.has_textures && has_colors, scene.has_textures && is_forced("textures"),
+                         !scene.has_textures ? "no material has a base colour or normal texture"
+                         : has_colors        ? "colours are resolved: base colours and normals, with their mip levels"
+                                             : "no colours are resolved: no image is decoded but those of masks");
   return plan;
 }
 

@@ -112,7 +112,8 @@ Result<VisibilityBuffer> Renderer::read_pixels() {
 
 Result<Renderer::Resolved> Renderer::resolve(std::uint32_t view, std::uint32_t level_count) {
   const std::array<std::uint32_t, 4> constants = {0, 0, 0, view};
-  const auto pipeline = device_.make_compute(shaders::resolve(), constants);
+  const bool is_textured = scene_.surfaces && (view == VIEW_SHADED || view == VIEW_NORMALS);
+  const auto pipeline = device_.make_compute(is_textured ? shaders::resolve_textures() : shaders::resolve(), constants);
   if (!pipeline) return pipeline.error();
   auto list = Commands::begin(device_);
   if (!list) return list.error();

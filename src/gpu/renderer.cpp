@@ -124,6 +124,11 @@ Status Renderer::make_buffers() {
   f.mesh_uvs = scene_.mesh_uvs.address();
   f.masks = scene_.masks.address();
   f.mask_texels = scene_.mask_texels.address();
+  if (scene_.surfaces) {
+    f.surfaces = scene_.surfaces.address();
+    f.textures = scene_.textures.address();
+    f.texels = scene_.texels.address();
+  }
   f.visible = visible_.address();
   f.queue = queue_.address();
   f.open_groups = open_groups_.address();

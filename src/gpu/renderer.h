@@ -77,7 +77,8 @@ class Renderer {
   /// then the picture's items are indices into read_cut().
   [[nodiscard]] Status redraw_in_order();
   [[nodiscard]] Result<VisibilityBuffer> read_pixels();
-  /// The last picture in colours: materials, normals and colours at each pixel's own barycentrics, no textures. `view`
+  /// The last picture in colours: materials, normals and colours at each pixel's own barycentrics, and the textures that
+  /// upload_textures() gave the scene. `view`
   /// is a VIEW_… of shaders/frame.h; those of a frame's passes are lost by redraw_in_order().
   struct Resolved {
     Image image;

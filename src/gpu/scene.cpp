@@ -269,6 +269,7 @@ Result<GpuScene> upload_scene(Device& device, const Asset& asset, std::span<cons
   }
   out.alpha_masks = std::make_shared<const AlphaMasks>(load_alpha_masks(asset));
   out.has_alpha_mask = !out.alpha_masks->is_empty();
+  out.has_textures = has_textures(asset);
   const MaskTables mask = mask_tables(*out.alpha_masks);
   std::vector<GpuMaterial> materials;
   for (const format::MaterialRecord& material : asset.materials()) {
@@ -278,7 +279,6 @@ Result<GpuScene> upload_scene(Device& device, const Asset& asset, std::span<cons
     m.mask = out.has_alpha_mask ? out.alpha_masks->of_material[materials.size()] : format::kNone;
     materials.push_back(m);
     out.has_double_sided = out.has_double_sided || material.double_sided != 0;
-    out.has_textures = out.has_textures || material.base_color_texture != format::kNone;
   }
   for (const format::MeshRecord& mesh : asset.meshes()) {
     out.has_stored_normals = out.has_stored_normals || mesh.normal_mode == format::NormalMode::kStored;

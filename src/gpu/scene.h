@@ -14,11 +14,13 @@
 #include "read/asset.h"
 #include "select/attribute_bounds.h"
 #include "textures/alpha_mask.h"
+#include "textures/texture_set.h"
 
 namespace meshlode::gpu {
 
 struct GpuScene {
   Buffer meshes, instances, nodes, groups, clusters, materials, pages, roots;
+  Buffer surfaces, textures, texels;    ///< after upload_textures()
   Buffer mesh_uvs, masks, mask_texels;  ///< read where materials are masked
   std::shared_ptr<const AlphaMasks> alpha_masks;  ///< of the asset, for who compares; never null
   std::uint32_t instance_count = 0;
@@ -32,7 +34,7 @@ struct GpuScene {
   std::uint64_t page_bytes = 0;
   bool has_double_sided = false;
   bool has_alpha_mask = false;  ///< some sample may fail the alpha test
-  bool has_textures = false;
+  bool has_textures = false;    ///< some material has a base colour or a normal texture
   bool has_stored_normals = false;
 };
 
@@ -42,5 +44,9 @@ struct GpuScene {
 [[nodiscard]] Result<GpuScene> upload_scene(Device& device, const Asset& asset,
                                             std::span<const format::InstanceRecord> instances = {},
                                             const AttributeBounds& bounds = {});
+
+/// Textures for colours, which a visibility buffer does not need: before Renderer::make(), where colours are wanted.
+/// Errors: kUnsupported where the device has no room.
+[[nodiscard]] Status upload_textures(Device& device, const TextureSet& textures, GpuScene& scene);
 
 }  // namespace meshlode::gpu

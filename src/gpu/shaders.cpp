@@ -56,6 +56,9 @@ constexpr std::uint32_t kHardwareFrag[] = {
 constexpr std::uint32_t kHardwareMeshFrag[] = {
 #include "hardware_mesh.frag.inc"
 };
+constexpr std::uint32_t kResolveTextures[] = {
+#include "resolve_textures.comp.inc"
+};
 constexpr std::uint32_t kRasterMask[] = {
 #include "raster_mask.comp.inc"
 };
@@ -124,6 +127,9 @@ std::span<const std::uint32_t> hardware_frag() {
 }
 std::span<const std::uint32_t> hardware_mesh_frag() {
   return kHardwareMeshFrag;
+}
+std::span<const std::uint32_t> resolve_textures() {
+  return kResolveTextures;
 }
 std::span<const std::uint32_t> raster_mask() {
   return kRasterMask;

@@ -17,6 +17,7 @@ namespace meshlode::gpu::shaders {
 [[nodiscard]] std::span<const std::uint32_t> flat();
 [[nodiscard]] std::span<const std::uint32_t> sort();
 [[nodiscard]] std::span<const std::uint32_t> resolve();
+[[nodiscard]] std::span<const std::uint32_t> resolve_textures();  ///< with base colour and normal textures
 [[nodiscard]] std::span<const std::uint32_t> raster_far();
 [[nodiscard]] std::span<const std::uint32_t> roots();
 [[nodiscard]] std::span<const std::uint32_t> persistent();

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "textures/texture_image.h"
+
 namespace meshlode::raster {
 
 namespace {
@@ -43,14 +45,6 @@ std::int64_t floor_quotient(double value, double divisor) {
   while (q * divisor > value) q -= 1.0;
   while ((q + 1.0) * divisor <= value) q += 1.0;
   return static_cast<std::int64_t>(q);
-}
-
-std::uint32_t wrap_texel(std::int64_t i, std::uint32_t count, Wrap wrap) {
-  const std::int64_t n = count;
-  if (wrap == Wrap::kClamp) return static_cast<std::uint32_t>(std::clamp<std::int64_t>(i, 0, n - 1));
-  const std::int64_t period = wrap == Wrap::kMirror ? 2 * n : n;
-  const std::int64_t rest = i < 0 ? period - 1 - (-1 - i) % period : i % period;
-  return static_cast<std::uint32_t>(rest < n ? rest : period - 1 - rest);
 }
 
 std::optional<MaskedTriangle> find_mask(const AlphaMasks& masks, const format::MeshRecord& mesh,

@@ -30,7 +30,4 @@ namespace meshlode::raster {
 /// \pre divisor > 0 and finite
 [[nodiscard]] std::int64_t floor_quotient(double value, double divisor);
 
-/// Where texel `i` of an endless row lies in one of `count`. \pre count > 0
-[[nodiscard]] std::uint32_t wrap_texel(std::int64_t i, std::uint32_t count, Wrap wrap);
-
 }  // namespace meshlode::raster

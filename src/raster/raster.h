@@ -21,11 +21,12 @@
 #include "read/asset.h"
 #include "select/select.h"
 #include "textures/alpha_mask.h"
+#include "textures/texture_set.h"
 
 namespace meshlode {
 
 enum class View : std::uint8_t {
-  kShaded,     ///< base colour, one directional light from the camera's upper left, ambient
+  kShaded,     ///< base colour, normals, one directional light from the camera's upper left, ambient
   kClusters,   ///< a colour per cluster
   kTriangles,  ///< a colour per triangle
   kLevels,     ///< a ramp from fine (blue) to coarse (red) with a legend
@@ -60,9 +61,10 @@ struct VisibilityBuffer {
 [[nodiscard]] Result<VisibilityBuffer> draw_cut(const Asset& asset, std::span<const ClusterInstance> cut,
                                                 const Camera& camera, const AlphaMasks& masks = {});
 
-/// Colours what draw_cut() found. \pre `visibility` was drawn from the same asset, cut and camera
+/// Colours what draw_cut() found. `textures`: load_textures() of the asset, for kShaded; without, base colours are factors
+/// and vertex colours alone. \pre `visibility` was drawn from the same asset, cut and camera
 [[nodiscard]] Result<Image> shade_view(const Asset& asset, std::span<const ClusterInstance> cut, const Camera& camera,
-                                       const VisibilityBuffer& visibility, View view);
+                                       const VisibilityBuffer& visibility, View view, const TextureSet& textures = {});
 
 /// draw_cut() and shade_view().
 [[nodiscard]] Result<Image> render_cut(const Asset& asset, std::span<const ClusterInstance> cut, const Camera& camera,

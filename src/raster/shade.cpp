@@ -7,6 +7,7 @@
 #include "base/parallel.h"
 #include "raster/cut_pages.h"
 #include "raster/legend.h"
+#include "raster/pixel_surface.h"
 #include "raster/projection.h"
 
 namespace meshlode {
@@ -39,17 +40,6 @@ ItemPixels gather_pixels(const VisibilityBuffer& visibility, std::size_t item_co
   return out;
 }
 
-/// Weights of a triangle's corners at a picture point, perspective-correct: the solution of sum(b · (x, y, w)) ∝
-/// (px, py, 1). Works for triangles that cross the near plane too.
-Vec3d corner_weights(const ClipVertex& a, const ClipVertex& b, const ClipVertex& c, double px, double py) {
-  const Vec3d p(px, py, 1.0), va(a.x, a.y, a.w), vb(b.x, b.y, b.w), vc(c.x, c.y, c.w);
-  Vec3d weights(glm::dot(p, glm::cross(vb, vc)), glm::dot(p, glm::cross(vc, va)), glm::dot(p, glm::cross(va, vb)));
-  if (weights.x + weights.y + weights.z < 0.0) weights = -weights;
-  for (int k = 0; k < 3; ++k) weights[k] = std::max(weights[k], 0.0);  // snapping moves edges by parts of a pixel
-  const double sum = weights.x + weights.y + weights.z;
-  return sum > 0.0 && sum < 1e300 ? weights / sum : Vec3d(1.0 / 3.0);
-}
-
 /// Takes normals of mesh space to world space up to their length: the cofactors of the 3×3 part, turned outwards again
 /// where the instance is mirrored.
 struct NormalTransform {
@@ -72,6 +62,17 @@ struct NormalTransform {
   }
 };
 
+/// How a triangle's point changes along `change` of its weights, world, in units of the grid's step.
+Vec3d surface_change(const format::InstanceRecord& instance, const DecodedCluster& cluster,
+                     const std::array<std::uint8_t, 3>& triangle, const Vec3d& change) {
+  const Vec3d a(cluster.position(triangle[0]));
+  const Vec3d moved = (Vec3d(cluster.position(triangle[1])) - a) * change[1] +
+                      (Vec3d(cluster.position(triangle[2])) - a) * change[2];  // changes sum up to 0
+  const double* m = instance.transform;
+  return {m[0] * moved.x + m[1] * moved.y + m[2] * moved.z, m[4] * moved.x + m[5] * moved.y + m[6] * moved.z,
+          m[8] * moved.x + m[9] * moved.y + m[10] * moved.z};
+}
+
 Vec3d geometric_normal(const DecodedCluster& cluster, const std::array<std::uint8_t, 3>& triangle) {
   const Vec3d a(cluster.position(triangle[0]));
   return glm::cross(Vec3d(cluster.position(triangle[1])) - a, Vec3d(cluster.position(triangle[2])) - a);
@@ -90,6 +91,7 @@ struct ShadeContext {
   const VisibilityBuffer& visibility;
   View view;
   std::uint32_t level_count;
+  const TextureSet& textures;
 };
 
 void shade_item(const ShadeContext& context, const CutPages& pages, const ClusterInstance& entry,
@@ -103,6 +105,7 @@ void shade_item(const ShadeContext& context, const CutPages& pages, const Cluste
   if (context.view == View::kShaded) decode_attributes(mesh, cluster, attributes);
   const GridToClip to_clip = make_grid_to_clip(context.projection, mesh, instance);
   const NormalTransform to_world(instance);
+  const PixelTextures textures(context.textures, mesh, attributes);
   for (const std::uint32_t pixel : pixels) {
     const std::uint32_t triangle_index = context.visibility.triangle[pixel];
     const auto& triangle = cluster.triangles[triangle_index];
@@ -118,20 +121,26 @@ void shade_item(const ShadeContext& context, const CutPages& pages, const Cluste
       case View::kTriangles: color = hash_color(entry.cluster.value, 0x10000 + triangle_index); break;
       case View::kLevels: color = level_color(asset.clusters()[entry.cluster.value].level, context.level_count); break;
       case View::kShaded: {
-        const format::MaterialRecord& material = asset.materials()[cluster.triangle_material[triangle_index]];
-        for (std::size_t k = 0; k < 3; ++k) color[k] = static_cast<double>(material.base_color[k]);
-        if (attributes.normals.empty() && attributes.colors.empty()) break;
-        const Vec3d weights = corner_weights(to_clip.project(cluster.position(triangle[0])),
-                                             to_clip.project(cluster.position(triangle[1])),
-                                             to_clip.project(cluster.position(triangle[2])), px, py);
+        const std::uint32_t material = cluster.triangle_material[triangle_index];
+        for (std::size_t k = 0; k < 3; ++k) color[k] = static_cast<double>(asset.materials()[material].base_color[k]);
+        const PixelWeights weights =
+            find_pixel_weights(to_clip.project(cluster.position(triangle[0])), to_clip.project(cluster.position(triangle[1])),
+                               to_clip.project(cluster.position(triangle[2])), px, py);
         Vec3d sum(0.0), tint(0.0);
         for (int k = 0; k < 3; ++k) {
-          if (!attributes.normals.empty()) sum += Vec3d(attributes.normals[triangle[k]]) * weights[k];
-          if (!attributes.colors.empty()) tint += Vec3d(attributes.colors[triangle[k]]) * weights[k];
+          const std::uint8_t vertex = triangle[static_cast<std::size_t>(k)];
+          if (!attributes.normals.empty()) sum += Vec3d(attributes.normals[vertex]) * weights.at[k];
+          if (!attributes.colors.empty()) tint += Vec3d(attributes.colors[vertex]) * weights.at[k];
         }
         if (!attributes.normals.empty()) normal = to_world.apply(sum);
         if (!attributes.colors.empty()) {
           for (int k = 0; k < 3; ++k) color[static_cast<std::size_t>(k)] *= tint[k];
+        }
+        textures.tint(material, triangle, weights, color);
+        if (textures.bends(material)) {
+          normal = textures.bend(material, triangle, weights, normal,
+                                 surface_change(instance, cluster, triangle, weights.right),
+                                 surface_change(instance, cluster, triangle, weights.down));
         }
         break;
       }
@@ -144,7 +153,7 @@ void shade_item(const ShadeContext& context, const CutPages& pages, const Cluste
 }  // namespace
 
 Result<Image> shade_view(const Asset& asset, std::span<const ClusterInstance> cut, const Camera& camera,
-                         const VisibilityBuffer& visibility, View view) {
+                         const VisibilityBuffer& visibility, View view, const TextureSet& textures) {
   const Result<Projection> projection = make_projection(camera);
   if (!projection) return projection.error();
   const Result<CutPages> pages = CutPages::load(asset, cut);
@@ -161,7 +170,7 @@ Result<Image> shade_view(const Asset& asset, std::span<const ClusterInstance> cu
   for (const format::MeshRecord& mesh : asset.meshes()) level_count = std::max(level_count, mesh.level_count);
 
   const ItemPixels by_item = gather_pixels(visibility, cut.size());
-  const ShadeContext context{asset, *projection, visibility, view, level_count};
+  const ShadeContext context{asset, *projection, visibility, view, level_count, textures};
   parallel_for_each_index(cut.size(), 4, [&](std::size_t item) {
     const std::span<const std::uint32_t> pixels =
         std::span(by_item.pixels).subspan(by_item.first[item], by_item.first[item + 1] - by_item.first[item]);

@@ -7,8 +7,10 @@
 #include <gtest/gtest.h>
 
 #include "gpu/judge.h"
+#include "gpu/plan.h"
 #include "gpu_support.h"
 #include "raster/legend.h"
+#include "support/mask_scene.h"
 #include "support/sample_asset.h"
 
 namespace meshlode::gpu::test {
@@ -37,9 +39,12 @@ std::uint32_t level_count_of(const Asset& asset) {
 }
 
 /// The CPU shades in doubles, the GPU in floats behind exact barycentrics: at most a step of 255, hardly anywhere more.
-void expect_equal_colors(Device& device, const Asset& asset) {
-  const auto scene = upload_scene(device, asset);
+void expect_equal_colors(Device& device, const Asset& asset, const std::vector<std::uint32_t>& views = {
+                                                                 VIEW_SHADED, VIEW_CLUSTERS, VIEW_TRIANGLES, VIEW_LEVELS}) {
+  auto scene = upload_scene(device, asset);
   ASSERT_TRUE(scene);
+  const TextureSet textures = load_textures(asset);
+  ASSERT_TRUE(upload_textures(device, textures, *scene));
   RendererOptions options{.width = 121, .height = 83, .frustum = false};
   options.double_sided = scene->has_double_sided;
   options.alpha_mask = scene->has_alpha_mask;
@@ -54,11 +59,11 @@ void expect_equal_colors(Device& device, const Asset& asset) {
     ASSERT_TRUE(cut);
     const auto visibility = draw_cut(asset, *cut, camera, *scene->alpha_masks);
     ASSERT_TRUE(visibility);
-    for (const std::uint32_t view : {VIEW_SHADED, VIEW_CLUSTERS, VIEW_TRIANGLES, VIEW_LEVELS}) {
+    for (const std::uint32_t view : views) {
       auto got = renderer->resolve(view, level_count_of(asset));
       ASSERT_TRUE(got) << got.error().message();
       if (view == VIEW_LEVELS) raster::draw_level_legend(got->image, level_count_of(asset));
-      const auto want = shade_view(asset, *cut, camera, *visibility, static_cast<View>(view));
+      const auto want = shade_view(asset, *cut, camera, *visibility, static_cast<View>(view), textures);
       ASSERT_TRUE(want);
       ASSERT_EQ(got->image.rgba.size(), want->rgba.size());
       std::size_t off = 0;
@@ -77,6 +82,55 @@ TEST_F(Resolve, ColoursAreTheCpusUpToAStep) {
   const Opened city = open_file("city.glb");
   ASSERT_TRUE(city.asset);
   expect_equal_colors(*device_, *city.asset);
+}
+
+/// Base colour textures of every wrap mode, transformed, on masked materials; what resolves without them is another picture.
+TEST_F(Resolve, TexturesAreTheCpusUpToAStep) {
+  meshlode::test::MaskSceneOptions options;
+  options.transform = R"({"offset":[0.25,-0.5],"rotation":0.3,"scale":[2.7,-1.3]})";
+  const auto asset = Asset::from_vector(meshlode::test::built(mask_scene(options)));
+  ASSERT_TRUE(asset);
+  expect_equal_colors(*device_, *asset, {VIEW_SHADED});
+  const Opened rock = open_file("rock.glb");
+  ASSERT_TRUE(rock.asset);
+  expect_equal_colors(*device_, *rock.asset, {VIEW_SHADED});
+
+  auto scene = upload_scene(*device_, *rock.asset);
+  ASSERT_TRUE(scene);
+  EXPECT_TRUE(scene->has_textures);
+  const Camera camera = adversarial_cameras(*rock.asset, 121, 83)[0].camera;
+  std::vector<std::uint8_t> pictures[2];
+  for (const bool is_textured : {false, true}) {
+    const auto plan = plan_passes(*scene, device_->info(), 121, 83, {}, is_textured);
+    ASSERT_TRUE(plan);
+    EXPECT_EQ(plan->textures, is_textured);
+    if (plan->textures) {
+      ASSERT_TRUE(upload_textures(*device_, load_textures(*rock.asset), *scene));
+    }
+    auto renderer = Renderer::make(*device_, *scene, plan->options);
+    ASSERT_TRUE(renderer);
+    ASSERT_TRUE(renderer->draw(camera, 1.0, 0.0));
+    const auto resolved = renderer->resolve(VIEW_SHADED, 1);
+    ASSERT_TRUE(resolved);
+    pictures[is_textured ? 1 : 0] = resolved->image.rgba;
+  }
+  std::size_t differ = 0;
+  for (std::size_t i = 0; i < pictures[0].size(); ++i) differ += std::abs(pictures[0][i] - pictures[1][i]) > 20 ? 1 : 0;
+  EXPECT_GT(differ, 1000U);
+}
+
+/// Base colours and normal maps of a real model.
+TEST_F(Resolve, FlightHelmetsTexturesAreTheCpusUpToAStep) {
+  const char* models = std::getenv("MESHLODE_MODELS");
+  const char* required = std::getenv("MESHLODE_REQUIRE_MODELS");
+  ASSERT_TRUE(models != nullptr || required == nullptr || std::string(required) != "1") << "MESHLODE_MODELS is not set";
+  if (models == nullptr) GTEST_SKIP() << "MESHLODE_MODELS is not set";
+  const auto asset = Asset::from_vector(build_file(std::string(models) + "/FlightHelmet/FlightHelmet.gltf"));
+  ASSERT_TRUE(asset);
+  const TextureSet textures = load_textures(*asset);
+  EXPECT_TRUE(textures.warnings.empty());
+  EXPECT_EQ(textures.images.size(), 10U) << "a base colour and a normal for each of five materials";
+  expect_equal_colors(*device_, *asset, {VIEW_SHADED});
 }
 
 /// What the overdraw view counts: every pixel that is seen was drawn once at least, and nothing else was drawn.

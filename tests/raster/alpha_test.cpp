@@ -8,6 +8,7 @@
 
 #include "raster/raster.h"
 #include "support/mask_scene.h"
+#include "textures/texture_image.h"
 
 namespace meshlode {
 namespace {
@@ -23,9 +24,9 @@ TEST(AlphaTest, WrappedTexelsAreThoseOfAnEndlessRow) {
       while (mirror < 0) mirror += 2 * n;
       while (mirror >= 2 * n) mirror -= 2 * n;
       if (mirror >= n) mirror = 2 * n - 1 - mirror;
-      EXPECT_EQ(raster::wrap_texel(i, count, Wrap::kRepeat), repeat);
-      EXPECT_EQ(raster::wrap_texel(i, count, Wrap::kMirror), mirror);
-      EXPECT_EQ(raster::wrap_texel(i, count, Wrap::kClamp), i < 0 ? 0 : i >= n ? n - 1 : i);
+      EXPECT_EQ(wrap_texel(i, count, Wrap::kRepeat), repeat);
+      EXPECT_EQ(wrap_texel(i, count, Wrap::kMirror), mirror);
+      EXPECT_EQ(wrap_texel(i, count, Wrap::kClamp), i < 0 ? 0 : i >= n ? n - 1 : i);
     }
   }
 }

@@ -151,7 +151,7 @@ std::string stats_text(const RenderOptions& options, const Camera& camera, const
 struct Drawn {
   std::vector<ClusterInstance> cut;
   VisibilityBuffer visibility;
-  std::optional<Image> image;  ///< coloured already
+  Image image;
 };
 
 /// Views that tell of a frame's passes; the others are drawn again in order, so that equal depths resolve as on the CPU.
@@ -159,8 +159,8 @@ bool is_view_of_passes(std::uint32_t view) {
   return view == VIEW_OVERDRAW || view == VIEW_PATHS || view == VIEW_OCCLUDED;
 }
 
-void print_warnings(const AlphaMasks& masks) {
-  for (const std::string& warning : masks.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+void print_warnings(const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
 }
 
 /// Selected, drawn and coloured by the device.
@@ -172,14 +172,20 @@ Result<Drawn> draw_on_gpu(const Asset& asset, const Camera& camera, const Render
   if (!device) return device.error();
   auto scene = gpu::upload_scene(*device, asset, {}, bounds);
   if (!scene) return scene.error();
-  print_warnings(*scene->alpha_masks);
+  print_warnings(scene->alpha_masks->warnings);
   const std::vector<std::string> force = options.force.empty() ? std::vector<std::string>{}
                                                                : std::vector<std::string>{options.force};
-  auto plan = gpu::plan_passes(*scene, device->info(), camera.width, camera.height, force);
+  auto plan = gpu::plan_passes(*scene, device->info(), camera.width, camera.height, force,
+                               view == VIEW_SHADED || view == VIEW_NORMALS);
   if (!plan) return plan.error();
   plan->options.overdraw = view == VIEW_OVERDRAW;
   if (view == VIEW_OCCLUDED) plan->options.occlusion = true;
   if (options.explain) std::fprintf(stderr, "%s", gpu::describe_plan(*plan).c_str());
+  if (plan->textures) {
+    const TextureSet textures = load_textures(asset);
+    print_warnings(textures.warnings);
+    if (const Status s = gpu::upload_textures(*device, textures, *scene); !s) return s.error();
+  }
   auto renderer = gpu::Renderer::make(*device, *scene, plan->options);
   if (!renderer) return renderer.error();
   const auto depth = gpu::depth_of_scene(asset, camera);
@@ -216,7 +222,7 @@ Result<Drawn> draw_on_gpu(const Asset& asset, const Camera& camera, const Render
   if (view == VIEW_LEVELS) raster::draw_level_legend(*image, level_count);
   auto visibility = renderer->read_pixels();
   if (!visibility) return visibility.error();
-  return Drawn{std::move(*cut), std::move(*visibility), std::move(image)};
+  return Drawn{std::move(*cut), std::move(*visibility), std::move(*image)};
 }
 
 Result<Drawn> draw_on_cpu(const Asset& asset, const Camera& camera, const RenderOptions& options,
@@ -224,10 +230,15 @@ Result<Drawn> draw_on_cpu(const Asset& asset, const Camera& camera, const Render
   std::vector<ClusterInstance> cut = options.error ? uniform_cut(asset, *options.error, options.is_relative, bounds)
                                                    : select_bvh(asset, camera, options.camera.pixel_error, bounds);
   const AlphaMasks masks = load_alpha_masks(asset);
-  print_warnings(masks);
+  print_warnings(masks.warnings);
   auto visibility = draw_cut(asset, cut, camera, masks);
   if (!visibility) return visibility.error();
-  return Drawn{std::move(cut), std::move(*visibility), std::nullopt};
+  TextureSet textures;
+  if (view_of(options.view) == View::kShaded) textures = load_textures(asset);
+  print_warnings(textures.warnings);
+  auto image = shade_view(asset, cut, camera, *visibility, view_of(options.view), textures);
+  if (!image) return image.error();
+  return Drawn{std::move(cut), std::move(*visibility), std::move(*image)};
 }
 
 int run_render(const Verb& verb, std::span<char* const> args) {
@@ -247,7 +258,7 @@ int run_render(const Verb& verb, std::span<char* const> args) {
   parser.add_value("--device", options.device, "of --gpu: an index or a part of the name (the first that can)");
   parser.add_flag("--explain", options.explain, "of --gpu: say which passes run, and why");
   parser.add_value("--force", options.force, "of --gpu: a pass that the scene does not call for",
-                   {"double-sided", "alpha-mask", "occlusion", "hardware", "all"});
+                   {"double-sided", "alpha-mask", "occlusion", "hardware", "textures", "all"});
   add_jobs_option(parser, options.jobs);
   add_output_options(parser, options.report);
   if (const auto exit_code = parser.parse(args)) return *exit_code;
@@ -284,10 +295,7 @@ int run_render(const Verb& verb, std::span<char* const> args) {
   if (!drawn) return fail(drawn.error());
   const std::vector<ClusterInstance>& cut = drawn->cut;
   const VisibilityBuffer& visibility = drawn->visibility;
-  const Result<Image> image = drawn->image ? Result<Image>(*drawn->image)
-                                           : shade_view(*asset, cut, *camera, visibility, view_of(options.view));
-  if (!image) return fail(image.error());
-  const std::vector<std::uint8_t> png = encode_png(*image);
+  const std::vector<std::uint8_t> png = encode_png(drawn->image);
   if (png.empty()) return print_error({ErrorCode::kIo, options.output, "the picture is too large to compress"});
   if (const Status written = write_file_atomically(options.output, png); !written) return print_error(written.error());
   if (options.report.quiet && !options.report.json()) return 0;

@@ -100,6 +100,29 @@ struct GpuMask {
   uint first_word;             // of its texels, four to a word
   uint reserved;
 };
+
+// A texture as resolve.comp samples it: SampledTexture of textures/texture_set.h. Doubles first.
+struct GpuTextureUse {
+  GPU_ARRAY(double, rows, 6);  // UVs to the texture's, row_u and row_v
+  uint image;                  // of the textures; 0xFFFFFFFF: not sampled
+  uint uv_set;
+  GPU_ARRAY(uint, wrap, 2);
+};
+
+// The textures of a material.
+struct GpuSurface {
+  GpuTextureUse base_color, normal;
+  float normal_scale;
+  uint reserved;
+};
+
+#define MAX_MIPS 15
+struct GpuTexture {
+  uint width, height, levels, is_srgb;
+  GPU_ARRAY(uint, first, MAX_MIPS);  // of each level, a word a texel
+  uint reserved;
+};
+
 #define WRAP_REPEAT 0
 #define WRAP_MIRROR 1
 #define WRAP_CLAMP 2
@@ -202,6 +225,8 @@ layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer Ma
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer MeshUvsArray { GpuMeshUvs at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer MaskArray { GpuMask at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer PageWords { uint at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer SurfaceArray { GpuSurface at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer TextureArray { GpuTexture at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) buffer VisibleArray { GpuVisible at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) buffer PairArray { uvec2 at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) buffer WordArray { uint at[]; };
@@ -237,6 +262,9 @@ struct GpuFrame {
   GPU_POINTER(MeshUvsArray) mesh_uvs;
   GPU_POINTER(MaskArray) masks;
   GPU_POINTER(PageWords) mask_texels;
+  GPU_POINTER(SurfaceArray) surfaces;    // where textures were uploaded
+  GPU_POINTER(TextureArray) textures;
+  GPU_POINTER(PageWords) texels;
   uint width, height;
   uint instance_count;
   uint slot_capacity, queue_capacity, group_capacity, item_capacity, retry_capacity;
@@ -249,6 +277,7 @@ struct GpuFrame {
 static_assert(sizeof(GpuMesh) == 112 && sizeof(GpuInstance) == 112 && sizeof(GpuNode) == 32 && sizeof(GpuGroup) == 32);
 static_assert(sizeof(GpuCluster) == 32 && sizeof(GpuMaterial) == 32 && sizeof(GpuCamera) == 144);
 static_assert(sizeof(GpuMeshUvs) == 20 && sizeof(GpuMask) == 80);
+static_assert(sizeof(GpuTextureUse) == 64 && sizeof(GpuSurface) == 136 && sizeof(GpuTexture) == 80);
 static_assert(sizeof(GpuVisible) == 384 && sizeof(GpuStage) == 16);
 }  // namespace meshlode::gpu
 #else

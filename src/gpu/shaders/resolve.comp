@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 // From the visibility buffer to colours, a pixel an invocation: the triangle is decoded again, its corners are projected
-// again, and the pixel's own barycentrics (perspective-correct, Heckbert 1989) weigh normals and colours. The views are
-// those of src/raster/shade.cpp, and those that only a GPU's frame has.
+// again, and the pixel's own barycentrics (perspective-correct, Heckbert 1989) weigh normals, colours and UVs; their
+// derivatives are the map's own, so textures need no neighbouring pixel. The views are those of src/raster/shade.cpp, and
+// those that only a GPU's frame has.
 #version 460
 #define GROUP_SIZE 64
 #include "common.glsl"
 #include "page.glsl"
 #include "screen.glsl"
+#include "texture.glsl"
 
 layout(constant_id = 3) const uint kView = 0u;
 
@@ -40,15 +42,29 @@ uint to_display(vec3 linear) {
   return c.r | c.g << 8u | c.b << 16u | 0xFF000000u;
 }
 
-// Weights of a triangle's corners at a picture point: the solution of sum(b · (x, y, w)) ∝ (px, py, 1). In doubles: far
-// corners of a long triangle cancel.
-vec3 corner_weights(dvec3 va, dvec3 vb, dvec3 vc, dvec2 p) {
-  const dvec3 at = dvec3(p, 1.0lf);
-  dvec3 weights = dvec3(dot(at, cross(vb, vc)), dot(at, cross(vc, va)), dot(at, cross(va, vb)));
-  if (weights.x + weights.y + weights.z < 0.0lf) weights = -weights;
+// Weights of a triangle's corners at a picture point, the solution of sum(b · (x, y, w)) ∝ (px, py, 1), and their change to
+// the next pixels. In doubles: far corners of a long triangle cancel.
+struct PixelWeights {
+  dvec3 at, right, down;
+};
+PixelWeights find_pixel_weights(dvec3 va, dvec3 vb, dvec3 vc, dvec2 p) {
+  PixelWeights o;
+  const dvec3 at = dvec3(p, 1.0lf), bc = cross(vb, vc), ca = cross(vc, va), ab = cross(va, vb);
+  dvec3 weights = dvec3(dot(at, bc), dot(at, ca), dot(at, ab));
+  const double signed_sum = weights.x + weights.y + weights.z;
+  o.right = o.down = dvec3(0.0lf);
+#ifdef TEXTURES
+  if (abs(signed_sum) > 0.0lf && abs(signed_sum) < 1e300lf) {
+    const dvec3 share = weights / signed_sum, right = dvec3(bc.x, ca.x, ab.x), down = dvec3(bc.y, ca.y, ab.y);
+    o.right = (right - share * (right.x + right.y + right.z)) / signed_sum;
+    o.down = (down - share * (down.x + down.y + down.z)) / signed_sum;
+  }
+#endif
+  if (signed_sum < 0.0lf) weights = -weights;
   weights = max(weights, dvec3(0.0lf));  // snapping moves edges by parts of a pixel
   const double sum = weights.x + weights.y + weights.z;
-  return sum > 0.0lf && sum < 1e300lf ? vec3(weights / sum) : vec3(1.0 / 3.0);
+  o.at = sum > 0.0lf && sum < 1e300lf ? weights / sum : dvec3(1.0lf / 3.0lf);
+  return o;
 }
 
 // Normals of mesh space to world space: the cofactors of the 3×3 part, turned outwards again where it mirrors.
@@ -93,10 +109,12 @@ vec3 shade(uint item, uint triangle, dvec2 p, uint level_count) {
   vec3 normal = face, color = vec3(0.0);
   const bool is_front_list = item < counters.stages[STAGE_SOFTWARE].count;
   if (kView == VIEW_SHADED || kView == VIEW_NORMALS) {
-    const GpuMaterial material = frame.materials.at[cluster_material(data, triangle)];
+    const uint material_id = cluster_material(data, triangle);
+    const GpuMaterial material = frame.materials.at[material_id];
     color = vec3(material.base_color.x, material.base_color.y, material.base_color.z);
     const dvec4 va = clip_vertex(slot, a), vb = clip_vertex(slot, b), vc = clip_vertex(slot, c);
-    const vec3 weights = corner_weights(va.xyw, vb.xyw, vc.xyw, p);
+    const PixelWeights exact = find_pixel_weights(va.xyw, vb.xyw, vc.xyw, p);
+    const vec3 weights = vec3(exact.at);
     vec3 sum = vec3(0.0), tint = vec3(0.0);
     [[unroll]] for (uint k = 0u; k < 3u; ++k) {
       if (mesh.normal_scale != 0u) sum += weights[k] * normalize(vec3(lode_normal(data, corners[k])));
@@ -104,6 +122,22 @@ vec3 shade(uint item, uint triangle, dvec2 p, uint level_count) {
     }
     if (mesh.normal_scale != 0u) normal = to_world(instance, dvec3(sum));
     if (mesh.has_color != 0u) color *= tint;
+#ifdef TEXTURES
+    const uint mesh_id = frame.visible.at[slot].mesh;
+    if (kView == VIEW_SHADED) {
+      const GpuTextureUse base = frame.surfaces.at[material_id].base_color;
+      const Footprint where = footprint(base, mesh_id, data, corners, exact.at, exact.right, exact.down);
+      if (where.is_there) color *= sample_texture(base, where).rgb;
+    }
+    const GpuTextureUse bump = frame.surfaces.at[material_id].normal;
+    const Footprint where = footprint(bump, mesh_id, data, corners, exact.at, exact.right, exact.down);
+    if (where.is_there) {
+      const dvec3 ab = dvec3(b) - dvec3(a), ac = dvec3(c) - dvec3(a);  // changes sum up to 0
+      normal = bend_normal(bump, frame.surfaces.at[material_id].normal_scale, where, normal,
+                           to_world_direction(instance, ab * exact.right.y + ac * exact.right.z),
+                           to_world_direction(instance, ab * exact.down.y + ac * exact.down.z));
+    }
+#endif
     if (kView == VIEW_NORMALS) {
       const vec3 shown = 0.5 + 0.5 * (is_back ? -normal : normal);
       return shown * shown;  // to_display() takes the root

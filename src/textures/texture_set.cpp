@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "textures/texture_set.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "base/parallel.h"
+#include "image/image.h"
+
+namespace meshlode {
+
+namespace {
+
+/// An image as base colours read it and as normals do are two.
+struct Wanted {
+  std::uint32_t blob = 0;
+  bool is_srgb = false;
+  std::optional<TextureImage> image;
+  std::string warning;
+};
+
+void load(const Asset& asset, Wanted& wanted) {
+  const format::BlobRecord& blob = asset.blobs()[wanted.blob];
+  const auto decoded = decode_image(asset.blob_bytes(blob));
+  if (decoded) {
+    wanted.image = make_texture_image(*decoded, wanted.is_srgb);
+  } else {
+    wanted.warning = "image '" + std::string(asset.string(blob.name)) + "': " + decoded.error().message() + ", not drawn";
+  }
+}
+
+}  // namespace
+
+bool has_textures(const Asset& asset) {
+  const std::vector<MaterialTextures> materials = read_material_textures(asset);
+  return std::any_of(materials.begin(), materials.end(), [](const MaterialTextures& m) {
+    return (m.base_color && m.base_color->blob != format::kNone) || (m.normal && m.normal->blob != format::kNone);
+  });
+}
+
+TextureSet load_textures(const Asset& asset) {
+  TextureSet out;
+  const std::vector<MaterialTextures> materials = read_material_textures(asset);
+  std::map<std::pair<std::uint32_t, bool>, std::uint32_t> index;  // of (blob, is sRGB)
+  std::vector<Wanted> wanted;
+  const auto want = [&](const std::optional<TextureUse>& use, bool is_srgb, std::size_t material) {
+    std::optional<SampledTexture> sampled;
+    if (!use) return sampled;
+    if (use->blob == format::kNone) {
+      out.warnings.push_back("material " + std::to_string(material) + ": an image is not in the asset, not drawn");
+      return sampled;
+    }
+    const auto [found, is_new] = index.try_emplace({use->blob, is_srgb}, static_cast<std::uint32_t>(wanted.size()));
+    if (is_new) wanted.push_back({use->blob, is_srgb, std::nullopt, {}});
+    sampled = SampledTexture{*use, found->second};
+    return sampled;
+  };
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    SampledMaterial m;
+    m.base_color = want(materials[i].base_color, true, i);
+    m.normal = want(materials[i].normal, false, i);
+    m.normal_scale = materials[i].normal_scale;
+    out.materials.push_back(m);
+  }
+  parallel_for_each_index(wanted.size(), 1, [&](std::size_t i) { load(asset, wanted[i]); });
+
+  std::vector<std::uint32_t> image_of(wanted.size(), format::kNone);
+  std::uint64_t bytes = 0;
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    if (wanted[i].image && bytes + 4 * wanted[i].image->texels.size() > kMaxTextureBytes) {
+      wanted[i].image.reset();
+      wanted[i].warning = "more than 8 GiB of textures: an image is not drawn";
+    }
+    if (!wanted[i].warning.empty()) out.warnings.push_back(wanted[i].warning);
+    if (!wanted[i].image) continue;
+    bytes += 4 * wanted[i].image->texels.size();
+    image_of[i] = static_cast<std::uint32_t>(out.images.size());
+    out.images.push_back(std::move(*wanted[i].image));
+  }
+  for (SampledMaterial& m : out.materials) {
+    for (std::optional<SampledTexture>* texture : {&m.base_color, &m.normal}) {
+      if (!*texture) continue;
+      (*texture)->image = image_of[(*texture)->image];
+      if ((*texture)->image == format::kNone) texture->reset();
+    }
+  }
+  return out;
+}
+
+}  // namespace meshlode
