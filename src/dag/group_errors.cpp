@@ -95,7 +95,7 @@ GroupErrors GroupMeter::measure(const BuildPool& pool, const std::vector<std::ui
         measure_group(*source_, after.surface(), samples,
                       {.floor = floor, .samples_per_triangle = std::clamp(per_triangle, 2U, 32U),
                        .extra_effort = static_cast<std::uint32_t>(kExtraEffort / std::max<std::size_t>(1, groups_of_round)),
-                       .finer = before.surface()});
+                       .finer = before.surface(), .finer_is_shared = finer.is_locked});
     errors.deviation = group.deviation > floor ? group.deviation * kMargin : floor;
     errors.carried.samples = std::move(group.carried);
   }

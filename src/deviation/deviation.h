@@ -58,6 +58,9 @@ struct DeviationTierOptions {
   /// for: those that were within `floor` of it. Without it only the carried samples are looked at. The grid's own
   /// deviation belongs into `floor`, then.
   GroupSurface finer;
+  /// Per position of `finer`: another group has it too, so it stays where it is. A point whose nearest place is on such a
+  /// border is no nearer to this group than to the other, and gets no farther away. Empty: all of the border is taken so.
+  std::span<const std::uint8_t> finer_is_shared;
 };
 
 struct GroupDeviation {

@@ -31,16 +31,20 @@ namespace meshlode {
                                        std::vector<CarriedSample>& high);
 
 /// Which points of the source a group stands for: those that were near enough to what it replaces, on the same side and
-/// not beyond its border.
+/// not beyond the border that it shares with other groups. Beyond the source's own border there is nobody else.
 class OwnerTest {
  public:
-  OwnerTest(const GroupSurface& finer, double reach) : finer_(finer), reach_(reach) {}
+  OwnerTest(const GroupSurface& finer, std::span<const std::uint8_t> is_shared, double reach)
+      : finer_(finer), is_shared_(is_shared), reach_(reach) {}
   [[nodiscard]] bool is_known() const { return !finer_.triangles.empty(); }
   /// `facing` is the direction of the source's surface there, of any length.
   [[nodiscard]] bool is_ours(const Vec3d& point, const Vec3d& facing);
 
  private:
+  [[nodiscard]] bool is_shared(std::uint32_t position) const { return is_shared_.empty() || is_shared_[position] != 0; }
+
   GroupSurface finer_;
+  std::span<const std::uint8_t> is_shared_;
   double reach_;
   SurfaceTree tree_;  ///< over it and its edges, built when first asked
   std::optional<GroupEdges> edges_;

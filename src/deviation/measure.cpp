@@ -110,7 +110,7 @@ GroupDeviation measure_group(const SourceTree& source, const GroupSurface& group
   std::vector<CarriedSample> high;
   const std::size_t budget = 64 + group.triangles.size() / 4 + options.extra_effort;
   maximum = measure_to_source(source_tree, group, edges, places, maximum, budget, high);
-  OwnerTest owner(options.finer, kReach * options.floor);
+  OwnerTest owner(options.finer, options.finer_is_shared, kReach * options.floor);
   maximum = search_source(source.impl(), group, group_tree, owner, maximum, high, projected);
   result.carried = thin_samples(projected, group.triangles.size(), options.samples_per_triangle, maximum);
   result.deviation = maximum;

@@ -5,7 +5,7 @@
 //
 // The source does not say which of its points a group stands for. But the triangles that the group replaces are known,
 // and how far the source was from them: a point that was farther from them belongs to somebody else. So may one whose
-// nearest place on them is their border, and one that faces the other way lies on another sheet.
+// nearest place on them is a border that they share, and one that faces the other way lies on another sheet.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -215,9 +215,13 @@ bool OwnerTest::is_ours(const Vec3d& point, const Vec3d& facing) {
   if (!(std::sqrt(point_triangle_distance2(point, corners)) <= reach_)) return false;
   const std::uint32_t triangle = tree_.triangle_at(place_);
   const NearestFeature feature = nearest_feature(point, corners);
-  if (feature.kind == NearestFeature::Kind::kEdge && edges_->is_border(triangle, feature.index)) return false;
-  if (feature.kind == NearestFeature::Kind::kCorner &&
-      edges_->is_border_position[finer_.triangles[triangle][feature.index]] != 0) {
+  const auto& ids = finer_.triangles[triangle];
+  if (feature.kind == NearestFeature::Kind::kEdge && edges_->is_border(triangle, feature.index) &&
+      is_shared(ids[feature.index]) && is_shared(ids[(feature.index + 1) % 3])) {
+    return false;
+  }
+  if (feature.kind == NearestFeature::Kind::kCorner && edges_->is_border_position[ids[feature.index]] != 0 &&
+      is_shared(ids[feature.index])) {
     return false;
   }
   return glm::dot(glm::cross(corners[1] - corners[0], corners[2] - corners[0]), facing) >= 0.0;

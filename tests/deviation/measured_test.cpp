@@ -166,6 +166,36 @@ TEST(Measured, AChainOfLevelsKeepsWhatTheFirstHad) {
   }
 }
 
+TEST(Measured, TheSourcesOwnBorderBelongsToTheGroup) {
+  // A strip with a spike on its open border, which the levels before have flattened to half of it. No sample sits on the
+  // tip. Where the border is shared with another group its points stay as near as they are, and nobody looks.
+  const auto strip = [](double spike) {
+    Surface surface;
+    for (int i = 0; i <= 4; ++i) {
+      surface.positions.emplace_back(i, 0.0, 0.0);
+      surface.positions.emplace_back(i, i == 2 ? 1.0 + spike : 1.0, 0.0);
+    }
+    for (std::uint32_t i = 0; i < 8; i += 2) {
+      surface.triangles.push_back({i, i + 2, i + 1});
+      surface.triangles.push_back({i + 1, i + 2, i + 3});
+    }
+    return surface;
+  };
+  const Surface exact = strip(0.2), finer = strip(0.1), group = strip(0.0);
+  const SourceTree source(exact.positions, exact.triangles);
+  std::vector<CarriedSample> samples = initial_samples(source);
+  std::erase_if(samples, [](const CarriedSample& sample) { return sample.point.y > 1.15; });
+  const std::vector<std::uint8_t> nothing(finer.positions.size(), 0), everything(finer.positions.size(), 1);
+  const auto measure = [&](std::span<const std::uint8_t> is_shared) {
+    return measure_group(source, as_group(group), samples,
+                         {.floor = 0.1, .finer = as_group(finer), .finer_is_shared = is_shared})
+        .deviation;
+  };
+  EXPECT_NEAR(measure(nothing), 0.2, 1e-12);
+  EXPECT_LT(measure(everything), 0.15);
+  EXPECT_EQ(measure({}), measure(everything));
+}
+
 TEST(Measured, SeamsDoNotStopTheSearch) {
   // The same sphere with a vertex of its own for every corner: what is found must not depend on it.
   Primitive shape = samples::make_sphere(24);
