@@ -61,6 +61,19 @@ void read_base_color(const Json& owner, std::string_view factor, std::string_vie
 
 }  // namespace
 
+namespace {
+
+bool has_direction(const Json& material) {
+  if (material.find("normalTexture") != nullptr) return true;
+  const Json* extensions = material.find("extensions");
+  if (extensions == nullptr) return false;
+  const Json* coat = extensions->find("KHR_materials_clearcoat");
+  return extensions->find("KHR_materials_anisotropy") != nullptr ||
+         (coat != nullptr && coat->find("clearcoatNormalTexture") != nullptr);
+}
+
+}  // namespace
+
 std::vector<SceneMaterial> read_materials(const GltfAsset& asset, std::vector<LeftOut>& left_out) {
   std::vector<SceneMaterial> out;
   for (const Json& material : asset.root.items("materials")) {
@@ -79,6 +92,7 @@ std::vector<SceneMaterial> read_materials(const GltfAsset& asset, std::vector<Le
     const Json* extensions = material.find("extensions");
     const Json* specular = extensions != nullptr ? extensions->find("KHR_materials_pbrSpecularGlossiness") : nullptr;
     if (specular != nullptr) read_base_color(*specular, "diffuseFactor", "diffuseTexture", m);
+    m.needs_tangents = has_direction(material);
     bool has_high_set = false;
     collect_uv_sets(material, m.uv_sets_used, has_high_set);
     if (has_high_set) {

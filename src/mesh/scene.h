@@ -50,6 +50,7 @@ struct SceneMaterial {
   std::uint32_t base_color_texture = 0xFFFFFFFFu;  ///< glTF texture index
   std::uint32_t base_color_uv_set = 0xFFFFFFFFu;   ///< TEXCOORD_n of the base colour texture
   std::uint32_t uv_sets_used = 0;  ///< bit n: some texture of the material (unknown extensions too) samples TEXCOORD_n
+  bool needs_tangents = false;     ///< a normal map or anisotropy: shading has a direction along the surface
 };
 
 /// A node that draws a mesh, with its world transform composed in doubles.

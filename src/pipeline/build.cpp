@@ -208,6 +208,7 @@ Result<std::vector<std::uint8_t>> build_lode(const Scene& scene, const PipelineO
     input.mesh_names.push_back(scene.meshes[i].name);
   }
   input.meta_json = meta_json(scene, options, decisions);
+  report.decisions = std::move(decisions);
   StageClock clock;
   Result<std::vector<std::uint8_t>> bytes = write_asset(std::move(input));
   clock.end(kWrite);

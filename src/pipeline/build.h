@@ -48,6 +48,7 @@ struct StageTime {
 };
 struct PipelineReport {
   std::vector<StageTime> stages;
+  std::vector<PlanDecision> decisions;  ///< of all meshes, in order
 };
 
 /// Thread count is the caller's: run inside a tbb::task_arena or under tbb::global_control.

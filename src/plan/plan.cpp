@@ -49,13 +49,14 @@ MeshPlan plan_mesh(const SourceMesh& mesh, const std::vector<SceneMaterial>& mat
                    const std::string& mesh_label) {
   MeshPlan plan;
   const auto decide = [&](const std::string& what, bool kept, const char* reason) {
-    plan.decisions.push_back({mesh_label + ": " + what, kept, reason});
+    plan.decisions.push_back({mesh_label + ": " + what, kept, reason, false});
     return kept;
   };
 
   bool any_normals = false;
   bool any_colors = false;
   bool any_tangents = false;
+  bool shown_tangents = false;
   std::uint32_t uv_sets_present = 0;
   std::uint32_t uv_sets_sampled = 0;
   for (const Primitive& primitive : mesh.primitives) {
@@ -66,7 +67,9 @@ MeshPlan plan_mesh(const SourceMesh& mesh, const std::vector<SceneMaterial>& mat
       if (!primitive.uvs[set].empty()) uv_sets_present |= 1U << set;
     }
     if (primitive.material.is_valid() && primitive.material.value < materials.size()) {
-      uv_sets_sampled |= materials[primitive.material.value].uv_sets_used;
+      const SceneMaterial& material = materials[primitive.material.value];
+      uv_sets_sampled |= material.uv_sets_used;
+      shown_tangents |= primitive.has_tangents && material.needs_tangents;
     }
   }
 
@@ -107,7 +110,14 @@ MeshPlan plan_mesh(const SourceMesh& mesh, const std::vector<SceneMaterial>& mat
       layout.has_color = decide("COLOR_0", true, "not all white");
     }
   }
-  if (any_tangents) decide("TANGENT", false, "derived from normals and texture coordinates when shading");
+  if (any_tangents && choice == AttributeChoice::kNone) {
+    decide("TANGENT", false, "left out by option");
+  } else if (shown_tangents) {
+    decide("TANGENT", false, "the format has none: shading derives tangents from normals and texture coordinates");
+    plan.decisions.back().is_loss = true;
+  } else if (any_tangents) {
+    decide("TANGENT", false, "no material has a normal map or anisotropy");
+  }
   return plan;
 }
 

@@ -21,6 +21,7 @@ struct PlanDecision {
   std::string what;    ///< "mesh 0: TEXCOORD_0"
   bool kept = false;
   std::string reason;  ///< "no material samples a texture through it"
+  bool is_loss = false;  ///< left out although the scene's materials can show it
 };
 
 struct MeshPlan {

@@ -41,6 +41,29 @@ TEST(Plan, KeepsEverythingWhenAskedTo) {
   EXPECT_TRUE(plan.layout.has_normal);
 }
 
+/// What can be seen and is not kept is told from what nobody misses.
+TEST(Plan, TangentsAreALossOnlyWhereAMaterialShowsThem) {
+  SourceMesh mesh = textured_sphere();
+  std::vector<SceneMaterial> materials = one_material(1);
+  const auto loss_of = [&](AttributeChoice choice) {
+    const MeshPlan plan = plan_mesh(mesh, materials, choice, "m");
+    int losses = 0;
+    int tangents = 0;
+    for (const PlanDecision& decision : plan.decisions) {
+      losses += decision.is_loss ? 1 : 0;
+      tangents += decision.what == "m: TANGENT" && !decision.kept ? 1 : 0;
+    }
+    return std::pair(losses, tangents);
+  };
+  EXPECT_EQ(loss_of(AttributeChoice::kAuto), std::pair(0, 0)) << "the source has none";
+  mesh.primitives[0].has_tangents = true;
+  EXPECT_EQ(loss_of(AttributeChoice::kAuto), std::pair(0, 1)) << "no normal map";
+  materials[0].needs_tangents = true;
+  EXPECT_EQ(loss_of(AttributeChoice::kAuto), std::pair(1, 1));
+  EXPECT_EQ(loss_of(AttributeChoice::kAll), std::pair(1, 1));
+  EXPECT_EQ(loss_of(AttributeChoice::kNone), std::pair(0, 1)) << "asked for";
+}
+
 TEST(Plan, DerivesNormalsThatAreTheTrianglesOwn) {
   const SourceMesh facets = samples::as_mesh(samples::with_split_normals(samples::make_sphere(4)));
   const MeshPlan plan = plan_mesh(facets, {}, AttributeChoice::kAuto, "m");

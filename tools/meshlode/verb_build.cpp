@@ -39,7 +39,9 @@ struct JobResult {
   std::uint64_t meshes = 0, instances = 0;
   std::uint64_t bytes = 0;
   std::vector<StageTime> stages;
-  std::vector<LeftOut> left_out;
+  std::vector<LeftOut> left_out;     ///< by the importer
+  std::vector<LeftOut> planned_out;  ///< by the plan
+  std::vector<LeftOut> losses;       ///< those of them that the scene's materials can show
 };
 
 class Timer {
@@ -148,6 +150,11 @@ Result<std::vector<std::uint8_t>> import_and_build(const fs::path& input, const 
   PipelineReport report;
   auto bytes = build_lode(*scene, options, progress.callback(), report);
   result.stages.insert(result.stages.end(), report.stages.begin(), report.stages.end());
+  for (const PlanDecision& decision : report.decisions) {
+    if (decision.kept) continue;
+    result.planned_out.push_back({decision.what, decision.reason});
+    if (decision.is_loss) result.losses.push_back(result.planned_out.back());
+  }
   return bytes;
 }
 
@@ -187,6 +194,18 @@ void print_summary(const JobResult& r) {
                r.seconds > 0.0 ? static_cast<double>(r.triangles) / r.seconds : 0.0);
   for (const LeftOut& left : r.left_out) {
     std::fprintf(stderr, "  left out: %s: %s\n", left.what.c_str(), left.why.c_str());
+  }
+  if (r.losses.empty()) return;  // one line for all meshes of a scene
+  const std::string more = r.losses.size() > 1 ? " and " + std::to_string(r.losses.size() - 1) + " more" : "";
+  std::fprintf(stderr, "  left out: %s%s: %s\n", r.losses[0].what.c_str(), more.c_str(), r.losses[0].why.c_str());
+}
+
+void write_left_out(JsonWriter& w, const std::vector<LeftOut>& items) {
+  for (const LeftOut& left : items) {
+    w.begin_object();
+    w.field("what", left.what);
+    w.field("why", left.why);
+    w.end_object();
   }
 }
 
@@ -232,12 +251,8 @@ std::string report_json(const std::vector<JobResult>& results, std::uint32_t job
     w.end_array();
     w.key("left_out");
     w.begin_array();
-    for (const LeftOut& left : r.left_out) {
-      w.begin_object();
-      w.field("what", left.what);
-      w.field("why", left.why);
-      w.end_object();
-    }
+    write_left_out(w, r.left_out);
+    write_left_out(w, r.planned_out);
     w.end_array();
     w.end_object();
   }
