@@ -174,6 +174,25 @@ TEST_F(Masks, FarRootsAreTheCpusBitForBit) {
   EXPECT_GT(differences_without, 20U);
 }
 
+/// Reproducer: amid the leaves some thousand pixels belong to clipped triangles of one cluster, and Mesa's lavapipe ends the
+/// loops of an invocation after 65,535 iterations. Walking along strips again and again for each triangle used them up.
+TEST_F(Masks, ClippedLeavesAreDrawnToTheEnd) {
+  const std::vector<std::uint8_t> bytes = build_file(MESHLODE_DATA "/foliage.glb");
+  const auto asset = Asset::from_vector(bytes);
+  ASSERT_TRUE(asset);
+  const auto scene = upload_scene(*device_, *asset);
+  ASSERT_TRUE(scene);
+  RendererOptions options{.width = 640, .height = 360, .frustum = false, .double_sided = true, .alpha_mask = true};
+  auto renderer = Renderer::make(*device_, *scene, options);
+  ASSERT_TRUE(renderer);
+  const NamedCamera inside = adversarial_cameras(*asset, 640, 360)[2];
+  ASSERT_EQ(inside.name, "inside");
+  const auto result = compare_frame(*renderer, *asset, inside.camera, 1.0);
+  ASSERT_TRUE(result) << result.error().message();
+  EXPECT_EQ(result->pixels.differences, 0U) << result->pixels.first;
+  EXPECT_GT(result->frame.clipped_items, 10U);
+}
+
 TEST_F(Masks, TheHardwareCutsTheSameHoles) {
   const Asset asset = open({});
   const auto scene = upload_scene(*device_, asset);

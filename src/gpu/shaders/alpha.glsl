@@ -32,7 +32,7 @@ AlphaTest open_alpha(uint slot, ClusterData data, uint triangle, uvec3 corners) 
     t.unit = power_of_two(frame.mesh_uvs.at[mesh].log2[stored_set]);
   }
   const bool has_color = frame.meshes.at[mesh].has_color != 0u;
-  for (uint k = 0u; k < 3u; ++k) {
+  [[unroll]] for (uint k = 0u; k < 3u; ++k) {
     const uvec3 raw = lode_raw_position(data, corners[k]);
     const dvec3 p = dvec3(lode_position(data, raw));
     t.x[k] = clip_row(slot, 0u, p);
@@ -72,7 +72,7 @@ double sum_of(dvec3 weight) {
 
 dvec3 find_weights(AlphaTest t, double px, double py) {
   dvec3 x, y;
-  for (uint k = 0u; k < 3u; ++k) {
+  [[unroll]] for (uint k = 0u; k < 3u; ++k) {
     precise double moved_x = px * t.w[k];
     precise double moved_y = py * t.w[k];
     precise double at_x = t.x[k] - moved_x;
@@ -83,11 +83,16 @@ dvec3 find_weights(AlphaTest t, double px, double py) {
   dvec3 weight = dvec3(cross_term(x[1], y[2], x[2], y[1]), cross_term(x[2], y[0], x[0], y[2]),
                        cross_term(x[0], y[1], x[1], y[0]));
   if (sum_of(weight) < 0.0lf) weight = -weight;
-  for (uint k = 0u; k < 3u; ++k) {
+  [[unroll]] for (uint k = 0u; k < 3u; ++k) {
     if (!(weight[k] >= kLeastWeight)) weight[k] = 0.0lf;
   }
   const double sum = sum_of(weight);
   return sum >= kLeastSum && sum <= kLargestSum ? weight : dvec3(1.0lf);
+}
+
+double product_of(double a, double b) {
+  precise double product = a * b;
+  return product;
 }
 
 // The q with q · divisor <= value < (q + 1) · divisor in rounded products. \pre divisor > 0
@@ -95,17 +100,11 @@ double floor_quotient(double value, double divisor) {
   precise double most = kLargestQuotient * divisor;
   if (!(abs(value) <= most)) return 0.0lf;
   double q = floor(value / divisor);
-  for (int i = 0; i < 4; ++i) {
-    precise double product = q * divisor;
-    if (!(product > value)) break;
-    q -= 1.0lf;
-  }
-  for (int i = 0; i < 4; ++i) {
-    precise double next = q + 1.0lf;
-    precise double product = next * divisor;
-    if (!(product <= value)) break;
-    q = next;
-  }
+  // Off by one at most. Straight code: lavapipe counts every iteration of every loop (frame.h, CLIP_SLICES).
+  q = product_of(q, divisor) > value ? q - 1.0lf : q;
+  q = product_of(q, divisor) > value ? q - 1.0lf : q;
+  q = product_of(q + 1.0lf, divisor) <= value ? q + 1.0lf : q;
+  q = product_of(q + 1.0lf, divisor) <= value ? q + 1.0lf : q;
   return q;
 }
 
