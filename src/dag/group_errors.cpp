@@ -15,6 +15,8 @@ namespace {
 constexpr std::size_t kSamplesPerGroup = 4096;
 /// Samples find a maximum from below. Over the cuts of docs/quality.md they missed up to 6% of it, mostly nothing.
 constexpr double kMargin = 1.04;
+/// Of loose cards, and of sheets thinner than their own noise, samples missed up to 9%.
+constexpr double kRaggedMargin = 1.1;
 /// Spread over the groups of a round: coarse rounds have few, of large triangles, and cost next to nothing.
 constexpr std::size_t kExtraEffort = 3000;
 
@@ -90,13 +92,15 @@ GroupErrors GroupMeter::measure(const BuildPool& pool, const std::vector<std::ui
     for (const std::uint32_t c : clusters) {
       samples.insert(samples.end(), pool.clusters[c].samples.begin(), pool.clusters[c].samples.end());
     }
-    const auto per_triangle = static_cast<std::uint32_t>(kSamplesPerGroup / std::max<std::size_t>(1, after.triangles.size()));
+    // Cards and the like: no neighbour leads to a piece that went, so more of their points have to be carried.
+    const std::size_t wanted = before.positions.size() > before.triangles.size() ? 16 * kSamplesPerGroup : kSamplesPerGroup;
+    const auto per_triangle = static_cast<std::uint32_t>(wanted / std::max<std::size_t>(1, after.triangles.size()));
     GroupDeviation group =
         measure_group(*source_, after.surface(), samples,
-                      {.floor = floor, .samples_per_triangle = std::clamp(per_triangle, 2U, 32U),
+                      {.floor = floor, .samples_per_triangle = std::clamp(per_triangle, 2U, 64U),
                        .extra_effort = static_cast<std::uint32_t>(kExtraEffort / std::max<std::size_t>(1, groups_of_round)),
                        .finer = before.surface(), .finer_is_shared = finer.is_locked});
-    errors.deviation = group.deviation > floor ? group.deviation * kMargin : floor;
+    errors.deviation = group.deviation > floor ? group.deviation * (group.is_ragged ? kRaggedMargin : kMargin) : floor;
     errors.carried.samples = std::move(group.carried);
   }
   const AttributeDeviation attributes =

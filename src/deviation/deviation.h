@@ -66,6 +66,7 @@ struct DeviationTierOptions {
 struct GroupDeviation {
   double deviation = 0.0;              ///< object units; at least what was found, or `floor` if nothing exceeds it
   std::vector<CarriedSample> carried;  ///< thinned, triangle = index into the group's triangles
+  bool is_ragged = false;              ///< most triangles of `finer` are at folds or borders: samples miss more there
 };
 
 /// Level 0: the samples that each source triangle starts with (its corners and more), carried by itself. `triangle` of

@@ -39,4 +39,31 @@ GroupEdges::GroupEdges(const GroupSurface& group)
   }
 }
 
+std::vector<std::uint8_t> find_folded(const GroupSurface& surface) {
+  const GroupEdges edges(surface);
+  std::vector<Vec3d> normals;
+  normals.reserve(surface.triangles.size());
+  for (const auto& t : surface.triangles) {
+    const Vec3d& p = surface.positions[t[0]];
+    normals.push_back(glm::cross(surface.positions[t[1]] - p, surface.positions[t[2]] - p));
+  }
+  constexpr std::uint32_t kNobody = 0xFFFFFFFFU;
+  std::vector<std::uint32_t> first(edges.use_count.size(), kNobody);
+  std::vector<std::uint8_t> is_folded(surface.triangles.size(), 0);
+  for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
+    for (const std::uint32_t edge : edges.of_triangle[t]) {
+      if (edges.use_count[edge] != 2) {
+        is_folded[t] = 1;
+      } else if (first[edge] == kNobody) {
+        first[edge] = t;
+      } else {
+        const Vec3d &m = normals[first[edge]], &n = normals[t];
+        const double dot = glm::dot(m, n);
+        if (!(dot > 0.0 && dot * dot > 0.25 * glm::dot(m, m) * glm::dot(n, n))) is_folded[t] = is_folded[first[edge]] = 1;
+      }
+    }
+  }
+  return is_folded;
+}
+
 }  // namespace meshlode

@@ -36,6 +36,7 @@ class OwnerTest {
  public:
   OwnerTest(const GroupSurface& finer, std::span<const std::uint8_t> is_shared, double reach)
       : finer_(finer), is_shared_(is_shared), reach_(reach) {}
+  [[nodiscard]] const GroupSurface& finer() const { return finer_; }
   [[nodiscard]] bool is_known() const { return !finer_.triangles.empty(); }
   /// `facing` is the direction of the source's surface there, of any length.
   [[nodiscard]] bool is_ours(const Vec3d& point, const Vec3d& facing);
@@ -51,10 +52,11 @@ class OwnerTest {
   std::uint32_t place_ = 0;
 };
 
-/// Source to group around the farthest samples and around `high`: the larger of `maximum` and what is found. Points
-/// that raised it are appended to the samples.
+/// Source to group around the farthest samples, around `high` and behind what the group replaces where that is folded
+/// (find_folded()): the larger of `maximum` and what is found. Points that raised it are appended to the samples.
 [[nodiscard]] double search_source(const SourceTree::Impl& source, const GroupSurface& group,
-                                   const SurfaceTree& group_tree, OwnerTest& owner, double maximum,
+                                   const SurfaceTree& group_tree, OwnerTest& owner,
+                                   std::span<const std::uint8_t> is_folded, double maximum,
                                    std::span<const CarriedSample> high, std::vector<CarriedSample>& samples);
 
 }  // namespace meshlode

@@ -111,7 +111,10 @@ GroupDeviation measure_group(const SourceTree& source, const GroupSurface& group
   const std::size_t budget = 64 + group.triangles.size() / 4 + options.extra_effort;
   maximum = measure_to_source(source_tree, group, edges, places, maximum, budget, high);
   OwnerTest owner(options.finer, options.finer_is_shared, kReach * options.floor);
-  maximum = search_source(source.impl(), group, group_tree, owner, maximum, high, projected);
+  const std::vector<std::uint8_t> is_folded = find_folded(options.finer);
+  const auto folded = std::count(is_folded.begin(), is_folded.end(), 1);
+  result.is_ragged = 2 * folded > static_cast<std::ptrdiff_t>(is_folded.size());
+  maximum = search_source(source.impl(), group, group_tree, owner, is_folded, maximum, high, projected);
   result.carried = thin_samples(projected, group.triangles.size(), options.samples_per_triangle, maximum);
   result.deviation = maximum;
   return result;

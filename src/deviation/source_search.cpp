@@ -21,6 +21,8 @@ constexpr std::size_t kMaxSeeds = 64;
 constexpr std::size_t kMaxPointsPerSeed = 4096;
 // A seed nearer than this share of the maximum is not searched around.
 constexpr double kSeedShare = 0.5;
+// And a point of what the group replaces.
+constexpr double kFarShare = 0.8;
 // Points nearer than this share of the maximum need not be known exactly.
 constexpr double kDismissShare = 0.7;
 // Source triangles that may be divided.
@@ -97,6 +99,18 @@ class SourceSearch {
       }
     }
     if (maximum_ > before) found.push_back(farthest_);
+  }
+
+  /// The triangle of the source that is nearest to a point of what the group replaces, and those around it.
+  void search_behind(const Vec3d& point) {
+    const SurfaceTree::Hit hit = source_.tree.find_nearest(source_.tree.to_frame(point), {}, 0.0F);
+    if (hit.slot == SurfaceTree::kNone) return;
+    const std::uint32_t triangle = source_.tree.triangle_at(hit.slot);
+    const std::uint32_t place = tree_.find_nearest(tree_.to_frame(point), {}, 0.0F).slot;
+    look_inside(triangle, 0.0, place);
+    for (const std::uint32_t corner : source_.triangles[triangle]) {
+      for (const std::uint32_t around : source_.triangles_around(corner)) look_inside(around, 0.0, place);
+    }
   }
 
   /// Large triangles of the source that were met: the maximum may lie between their corners.
@@ -190,6 +204,47 @@ std::vector<CarriedSample> choose_seeds(std::span<const CarriedSample> samples, 
   return seeds;
 }
 
+/// Of the triangles that the group replaces, those at folds and borders: the middles and corners that are farthest from
+/// it, if farther than `least`. A notch, a tunnel or a gap between loose pieces may open there that no carried sample
+/// lies in; elsewhere what lies between samples is no farther than their surroundings.
+std::vector<Vec3d> choose_far_points(const GroupSurface& finer, std::span<const std::uint8_t> is_folded,
+                                     const SurfaceTree& group_tree, double least) {
+  struct Far {
+    double minus_distance2;
+    std::uint32_t order;
+    Vec3d point;
+    [[nodiscard]] bool operator<(const Far& other) const {
+      return minus_distance2 != other.minus_distance2 ? minus_distance2 < other.minus_distance2 : order < other.order;
+    }
+  };
+  std::vector<Far> far;
+  const auto enough2 = static_cast<float>(least * least * group_tree.scale() * group_tree.scale());
+  std::uint32_t place = 0, order = 0;
+  const auto consider = [&](const Vec3d& point) {
+    const Vec3f at = group_tree.to_frame(point);
+    SurfaceTree::Hit hit = group_tree.look_around(at, place, {});
+    if (!(hit.distance2 <= enough2)) hit = group_tree.find_nearest(at, hit, enough2);
+    if (hit.slot == SurfaceTree::kNone) return;
+    place = hit.slot;
+    if (!(hit.distance2 <= enough2)) far.push_back({-group_tree.distance2_at(point, place), order++, point});
+  };
+  std::vector<std::uint8_t> is_seen(finer.positions.size(), 0);
+  for (std::uint32_t t = 0; t < finer.triangles.size(); ++t) {
+    if (is_folded[t] == 0) continue;
+    const auto& ids = finer.triangles[t];
+    consider((finer.positions[ids[0]] + finer.positions[ids[1]] + finer.positions[ids[2]]) / 3.0);
+    for (const std::uint32_t v : ids) {
+      if (is_seen[v] == 0) consider(finer.positions[v]);
+      is_seen[v] = 1;
+    }
+  }
+  const auto count = static_cast<std::ptrdiff_t>(std::min(far.size(), kMaxSeeds));
+  std::partial_sort(far.begin(), far.begin() + count, far.end());
+  std::vector<Vec3d> points;
+  for (std::ptrdiff_t i = 0; i < count; ++i) points.push_back(far[static_cast<std::size_t>(i)].point);
+  return points;
+}
+
 /// How far apart the group's triangles are: about one edge.
 double triangle_spacing(const GroupSurface& group) {
   double area = 0.0;
@@ -228,8 +283,8 @@ bool OwnerTest::is_ours(const Vec3d& point, const Vec3d& facing) {
 }
 
 double search_source(const SourceTree::Impl& source, const GroupSurface& group, const SurfaceTree& group_tree,
-                     OwnerTest& owner, double maximum, std::span<const CarriedSample> high,
-                     std::vector<CarriedSample>& samples) {
+                     OwnerTest& owner, std::span<const std::uint8_t> is_folded, double maximum,
+                     std::span<const CarriedSample> high, std::vector<CarriedSample>& samples) {
   if (!owner.is_known()) return maximum;
   const double radius = triangle_spacing(group);
   SourceSearch search(source, group_tree, owner, maximum);
@@ -239,6 +294,9 @@ double search_source(const SourceTree::Impl& source, const GroupSurface& group, 
   }
   for (const CarriedSample& seed : choose_seeds(high, kSeedShare * maximum)) {
     search.search_around(seed, 0.5 * radius, found);
+  }
+  for (const Vec3d& point : choose_far_points(owner.finer(), is_folded, group_tree, kFarShare * search.maximum())) {
+    search.search_behind(point);
   }
   search.refine(found);
   samples.insert(samples.end(), found.begin(), found.end());

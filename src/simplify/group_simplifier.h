@@ -84,6 +84,7 @@ class GroupSimplifier {
   [[nodiscard]] double distance2_to_rest(std::uint32_t a, std::uint32_t b) const;
   [[nodiscard]] double weigh_witnesses(std::uint32_t a, std::uint32_t b, const Vec3d& target);
   [[nodiscard]] double new_surface_distance2(const Vec3d& target, double least) const;
+  [[nodiscard]] bool keeps_shared_edges(std::uint32_t locked, const std::vector<std::uint32_t>& around) const;
   [[nodiscard]] bool keeps_shared_corners(std::uint32_t locked, const std::vector<std::uint32_t>& around) const;
   [[nodiscard]] bool keeps_topology(std::uint32_t a, std::uint32_t b);
   [[nodiscard]] bool turns_over(std::uint32_t moved, std::uint32_t other, const std::vector<std::uint32_t>& corners,

@@ -4,6 +4,38 @@
 
 namespace meshlode {
 
+/// I6. A triangle (locked, moved, tip) goes with the collapse of its edge to `locked`. Where its tip is locked too, the
+/// edge (locked, tip) may be one that another group's triangle leans on: the triangles across (moved, tip) must inherit
+/// it. On an open border there may be none: such an ear stays. `around` are the corners at the moved vertex.
+template <std::size_t C>
+bool GroupSimplifier<C>::keeps_shared_edges(std::uint32_t locked, const std::vector<std::uint32_t>& around) const {
+  // How often a triangle runs from its vertex `tip` to its vertex `to`: 1, or -1 for the other way, 0 where it does not.
+  const auto uses = [&](std::uint32_t t, std::uint32_t tip, std::uint32_t to) {
+    int sum = 0;
+    for (std::uint32_t corner = 3 * t; corner < 3 * t + 3; ++corner) {
+      const std::uint32_t from = mesh_.vertex(corner), next = mesh_.vertex(CollapseMesh::next_in_triangle(corner));
+      sum += from == tip && next == to ? 1 : from == to && next == tip ? -1 : 0;
+    }
+    return sum;
+  };
+  for (const std::uint32_t corner : around) {
+    const std::uint32_t next = CollapseMesh::next_in_triangle(corner);
+    const std::uint32_t x = mesh_.vertex(next), y = mesh_.vertex(CollapseMesh::next_in_triangle(next));
+    if (x != locked && y != locked) continue;
+    const std::uint32_t tip = x == locked ? y : x;
+    if (is_locked_[tip] == 0) continue;
+    const std::uint32_t moved = mesh_.vertex(corner);
+    int lost = 0, inherited = 0;
+    for (const std::uint32_t other : around) {
+      const int at_locked = uses(other / 3, tip, locked);
+      lost += at_locked;
+      if (at_locked == 0) inherited += uses(other / 3, tip, moved);
+    }
+    if (lost != inherited) return false;
+  }
+  return true;
+}
+
 /// I3 for attributes. A triangle (locked, moved, c) with c locked goes; the triangle across (moved, c) inherits the edge
 /// (locked, c), which may lie on the group's border. If another group shades that edge with the same wedges, the heir
 /// must bring them: (moved, c) may not be a crease. And no border edge gets a corner with attributes that nothing had

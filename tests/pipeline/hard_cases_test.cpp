@@ -179,6 +179,7 @@ const HardCase kCases[] = {
     {"AMaterialForEveryFewTriangles", [] { return test::make_striped_plane(30, 900); }},
     {"CoincidentSpheres", [] { return alone(test::make_coincident_spheres(12, 4)); }},
     {"LineOfTriangles", [] { return alone(test::make_line_of_triangles(500)); }},
+    {"Cards", [] { return alone(test::make_cards(12000, 2)); }},
     {"OpenTerrain", [] { return alone(samples::make_terrain(96, 96)); }},
     {"LatticeChaos", [] { return alone(test::make_lattice_chaos(1500, 6, 5)); }},
     {"LatticeChaosSparse", [] { return alone(test::make_lattice_chaos(1000, 12, 6)); }},

@@ -84,6 +84,24 @@ Primitive make_line_of_triangles(std::uint32_t count) {
   return shape;
 }
 
+Primitive make_cards(std::uint32_t count, std::uint64_t seed) {
+  samples::Random random(seed);
+  const auto vector = [&](double size) {
+    Vec3d v;
+    for (int k = 0; k < 3; ++k) v[k] = size * (2.0 * random.below(1U << 20U) / (1U << 20U) - 1.0);
+    return v;
+  };
+  Primitive shape;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const Vec3d center = vector(10.0), u = vector(0.2), v = vector(0.2);
+    const std::uint32_t first = 4 * i;
+    for (const Vec3d& corner : {-u - v, u - v, u + v, v - u}) shape.positions.push_back(center + corner);
+    for (const std::uint32_t k : {0U, 1U, 2U, 0U, 2U, 3U}) shape.indices.push_back(first + k);
+  }
+  shape.material = MaterialId(0U);
+  return shape;
+}
+
 Primitive make_lattice_chaos(std::uint32_t count, std::uint32_t side, std::uint64_t seed) {
   samples::Random random(seed);
   Primitive shape;

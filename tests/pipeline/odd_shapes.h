@@ -20,6 +20,8 @@ namespace meshlode::test {
 [[nodiscard]] Primitive make_coincident_spheres(std::uint32_t n, std::uint32_t sheets);
 /// All corners of `count` triangles are random points on one line.
 [[nodiscard]] Primitive make_line_of_triangles(std::uint32_t count);
+/// Loose parallelograms of all sizes and directions: some are parted by a border between clusters.
+[[nodiscard]] Primitive make_cards(std::uint32_t count, std::uint64_t seed);
 /// `count` triangles between random points of a small lattice: non-manifold everywhere, in every way.
 [[nodiscard]] Primitive make_lattice_chaos(std::uint32_t count, std::uint32_t side, std::uint64_t seed);
 

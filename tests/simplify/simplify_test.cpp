@@ -266,6 +266,29 @@ TEST(Simplify, EverythingLockedIsLeftAloneAndSaysSo) {
   EXPECT_EQ(result.reason, StuckReason::kLocked);
 }
 
+TEST(Simplify, AnEarOnASharedEdgeStays) {
+  // Two open triangles of a card that another group has the other half of: their diagonal is shared, their tips are free.
+  // One tip folded onto the diagonal's end would take the diagonal away from the other group's triangle.
+  SimplifyInput input;
+  input.positions = {{0, 0, 0}, {100, 100, 0}, {0, 100, 0}, {1000, 0, 0}, {1100, 100, 0}, {1000, 100, 0}};
+  input.is_locked = {1, 1, 0, 1, 1, 0};
+  input.triangles = {{0, 1, 2}, {3, 4, 5}};
+  for (std::uint32_t v = 0; v < 6; ++v) {
+    input.witnesses.push_back({{input.positions[v]}, 1});
+    input.wedge_position.push_back(v);
+  }
+  input.is_wedge_shared.assign(6, 0);
+  input.triangle_material.assign(2, 0);
+  for (const bool may_relax : {false, true}) {
+    SimplifyOptions options;
+    options.may_relax_topology = options.may_relax_flips = options.keep_area = may_relax;
+    const SimplifyResult result = simplify_group(input, options);
+    ASSERT_EQ(result.triangles.size(), 2U);
+    EXPECT_EQ(result.reason, StuckReason::kLocked);
+    EXPECT_EQ(border_of(result), border_of(input));
+  }
+}
+
 TEST(Simplify, LoosePiecesThatLeaveNoRoomAreTheReason) {
   SimplifyInput input;
   input.layout = {};
