@@ -21,7 +21,7 @@ struct EncodeOptions {
   double normal_error = 0.1;  ///< degrees, largest; above 0, at least 0.01 (kMaxNormalScale)
   /// UV units, largest, for each stored set; 0: invisible, see default_uv_error
   std::array<double, kMaxUvSets> uv_error{};
-  std::uint32_t strip_trials = 32;  ///< see StripOptions; four times as many in a cluster of several materials
+  std::uint32_t strip_trials = 48;  ///< see StripOptions; four times as many in a cluster of several materials
 };
 
 /// The M of the normals that keeps EncodeOptions::normal_error, at most format::kMaxNormalScale.
