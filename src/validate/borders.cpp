@@ -3,9 +3,10 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <map>
 #include <numeric>
 #include <utility>
+
+#include "base/disjoint_sets.h"
 
 namespace meshlode {
 
@@ -49,53 +50,51 @@ Exchange exchange_of(std::uint32_t edge, std::int32_t finer, std::int32_t coarse
   return {edge, finer - kept, coarser - kept};
 }
 
+/// What hangs together by edges of exchanges, by name of position.
 class Components {
  public:
-  std::uint32_t find(std::uint32_t x) {
-    auto it = parent_.find(x);
-    if (it == parent_.end()) {
-      parent_.emplace(x, x);
-      return x;
-    }
-    if (it->second == x) return x;
-    const std::uint32_t root = find(it->second);
-    parent_[x] = root;
-    return root;
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    const std::uint32_t ra = find(a);
-    const std::uint32_t rb = find(b);
-    if (ra != rb) parent_[std::max(ra, rb)] = std::min(ra, rb);
-  }
+  Components(const MeshSurface& surface, std::span<const Exchange> exchanges)
+      : positions_(ends_of(surface, exchanges)), sets_(positions_.size()) {}
+
+  /// \pre x is an end of one of the exchanges
+  [[nodiscard]] std::uint32_t find(std::uint32_t x) { return positions_[sets_.find(index(x))]; }
+  bool join(std::uint32_t a, std::uint32_t b) { return sets_.join(index(a), index(b)); }
 
  private:
-  std::map<std::uint32_t, std::uint32_t> parent_;
+  static std::vector<std::uint32_t> ends_of(const MeshSurface& surface, std::span<const Exchange> exchanges) {
+    std::vector<std::uint32_t> ends;
+    for (const Exchange& exchange : exchanges) {
+      ends.insert(ends.end(), surface.edges[exchange.edge].begin(), surface.edges[exchange.edge].end());
+    }
+    std::sort(ends.begin(), ends.end());
+    ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+    return ends;
+  }
+  [[nodiscard]] std::uint32_t index(std::uint32_t x) const {
+    return static_cast<std::uint32_t>(std::lower_bound(positions_.begin(), positions_.end(), x) - positions_.begin());
+  }
+
+  std::vector<std::uint32_t> positions_;  ///< ascending, distinct
+  DisjointSets sets_;
 };
 
 /// How many independent loops the removed (or the added) edges have: E - V + components, edges counted as often as
-/// used.
+/// used. V - components is the number of joins that tied two of them together.
 std::int64_t count_loops(const MeshSurface& surface, std::span<const Exchange> exchanges,
                          std::int32_t Exchange::*uses) {
-  Components components;
-  std::vector<std::uint32_t> positions;
+  Components components(surface, exchanges);
   std::int64_t loops = 0;
   for (const Exchange& exchange : exchanges) {
     if (exchange.*uses == 0) continue;
     const auto& [a, b] = surface.edges[exchange.edge];
-    loops += std::abs(exchange.*uses);
-    components.join(a, b);
-    positions.push_back(a);
-    positions.push_back(b);
+    loops += std::abs(exchange.*uses) - (components.join(a, b) ? 1 : 0);
   }
-  std::sort(positions.begin(), positions.end());
-  positions.erase(std::unique(positions.begin(), positions.end()), positions.end());
-  for (const std::uint32_t position : positions) loops += components.find(position) == position ? 0 : -1;
   return loops;
 }
 
 /// The first reason why the exchanges of one group are not allowed; empty if they are.
 std::string refuse(const MeshSurface& surface, const BorderSet& border, std::span<const Exchange> exchanges) {
-  Components components;
+  Components components(surface, exchanges);
   std::vector<std::uint32_t> anchored;
   for (const Exchange& exchange : exchanges) {
     const auto& [a, b] = surface.edges[exchange.edge];

@@ -46,7 +46,7 @@ void append_cluster(const Patch& patch, std::uint32_t level, GroupId own, GroupI
 }
 
 /// One group that replaces `finer` by `coarser`, beside `rest`, which stays as it is.
-BorderProof prove(const std::vector<Patch>& finer, const Patch& coarser, const std::vector<Patch>& rest = {}) {
+Asset asset_of(const std::vector<Patch>& finer, const Patch& coarser, const std::vector<Patch>& rest = {}) {
   LodDag dag;
   append_cluster(coarser, 1, GroupId(1U), GroupId(0U), dag);
   for (const Patch& patch : rest) append_cluster(patch, 0, GroupId(), GroupId(0U), dag);
@@ -77,11 +77,16 @@ BorderProof prove(const std::vector<Patch>& finer, const Patch& coarser, const s
   input.meta_json = "{}";
   auto bytes = write_asset(std::move(input));
   EXPECT_TRUE(bytes.ok());
-  const auto asset = Asset::from_vector(std::move(*bytes));
+  auto asset = Asset::from_vector(std::move(*bytes));
   EXPECT_TRUE(asset.ok()) << asset.error().message();
-  const auto clusters = decode_all(*asset);
+  return std::move(*asset);
+}
+
+BorderProof prove(const std::vector<Patch>& finer, const Patch& coarser, const std::vector<Patch>& rest = {}) {
+  const Asset asset = asset_of(finer, coarser, rest);
+  const auto clusters = decode_all(asset);
   EXPECT_TRUE(clusters.ok());
-  return prove_borders(*asset, build_surface(*asset, MeshId(0U), *clusters));
+  return prove_borders(asset, build_surface(asset, MeshId(0U), *clusters));
 }
 
 /// A fan around the origin of the plane: the square's rim in `steps` straight pieces per side, oriented upwards.
@@ -105,6 +110,46 @@ Patch lid(int steps, int size = 8) {
     std::swap(triangle[1], triangle[2]);
   }
   return patch;
+}
+
+/// The surface of asset_of(one patch, one patch), but the finer cluster's border is a path of 2 * `links` edges whose
+/// edges, in their order, tie the links from the last to the first: each lower position meets the path as it is so far.
+MeshSurface path_surface(const Asset& asset, std::uint32_t links) {
+  MeshSurface surface;
+  surface.mesh = MeshId(0U);
+  surface.cluster_count = asset.meshes()[0].cluster_count;
+  surface.group_count = asset.meshes()[0].group_count;
+  for (std::uint32_t i = 0; i < 3 * links; ++i) surface.positions.push_back({static_cast<std::int32_t>(i), 0, 0});
+  const auto left = [&](std::uint32_t i) { return links + 2 * (links - 1 - i); };
+  for (std::uint32_t i = 0; i < links; ++i) {
+    surface.edges.push_back({i, left(i)});
+    surface.edges.push_back({i, left(i) + 1});
+  }
+  for (std::uint32_t i = links - 1; i > 0; --i) surface.edges.push_back({left(i) + 1, left(i - 1)});
+  surface.made.resize(surface.group_count);
+  surface.first_use.assign(1, 0);
+  for (std::uint32_t c = 0; c < surface.cluster_count; ++c) {
+    const std::uint32_t own = asset.clusters()[c].own_group;
+    if (own != format::kNone) {
+      surface.made[own].push_back(c);
+    } else {
+      for (std::uint32_t e = 0; e < surface.edges.size(); ++e) surface.uses.push_back({e, 1});
+    }
+    surface.first_use.push_back(static_cast<std::uint32_t>(surface.uses.size()));
+  }
+  return surface;
+}
+
+// Components were linked without their sizes and found by recursion, as deep as the path: a file of 5.6 MB overflowed
+// the stack.
+TEST(BorderProof, APathAsLongAsAFileLikesIsNoDeeperForTheProof) {
+  const Asset asset = asset_of({square(1)}, square(1));
+  const MeshSurface surface = path_surface(asset, 400000);
+  ASSERT_TRUE(std::is_sorted(surface.edges.begin(), surface.edges.end()));
+  const BorderProof proof = prove_borders(asset, surface);
+  EXPECT_EQ(proof.groups, 1U);
+  EXPECT_FALSE(proof.border.is_closed);
+  EXPECT_TRUE(proof.violations.empty());
 }
 
 TEST(BorderProof, TheSameBorderOfAClosedSurfacePasses) {
