@@ -112,20 +112,23 @@ Patch lid(int steps, int size = 8) {
   return patch;
 }
 
-/// The surface of asset_of(one patch, one patch), but the finer cluster's border is a path of 2 * `links` edges whose
-/// edges, in their order, tie the links from the last to the first: each lower position meets the path as it is so far.
+/// The surface of asset_of(one patch, one patch), but the finer cluster's border is a path of 3 * `links` edges that, in
+/// their order, tie the links from the last to the first: each lower position meets the path as it is so far. The last
+/// edge of all hangs on the last link, which sets linked by name have by then put `links` deep.
 MeshSurface path_surface(const Asset& asset, std::uint32_t links) {
   MeshSurface surface;
   surface.mesh = MeshId(0U);
   surface.cluster_count = asset.meshes()[0].cluster_count;
   surface.group_count = asset.meshes()[0].group_count;
-  for (std::uint32_t i = 0; i < 3 * links; ++i) surface.positions.push_back({static_cast<std::int32_t>(i), 0, 0});
+  for (std::uint32_t i = 0; i < 3 * links + 2; ++i) surface.positions.push_back({static_cast<std::int32_t>(i), 0, 0});
   const auto left = [&](std::uint32_t i) { return links + 2 * (links - 1 - i); };
   for (std::uint32_t i = 0; i < links; ++i) {
     surface.edges.push_back({i, left(i)});
     surface.edges.push_back({i, left(i) + 1});
   }
+  surface.edges.push_back({links - 1, 3 * links});
   for (std::uint32_t i = links - 1; i > 0; --i) surface.edges.push_back({left(i) + 1, left(i - 1)});
+  surface.edges.push_back({3 * links, 3 * links + 1});
   surface.made.resize(surface.group_count);
   surface.first_use.assign(1, 0);
   for (std::uint32_t c = 0; c < surface.cluster_count; ++c) {
