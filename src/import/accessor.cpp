@@ -64,15 +64,15 @@ Result<AccessorReader> AccessorReader::open(const GltfAsset& asset, std::uint32_
   reader.component_count_ = accessor.component_count;
   const std::uint64_t size = std::uint64_t{reader.component_size_} * reader.component_count_;
   if (accessor.view != kNoIndex && accessor.count > 0) {
-    if (!has_data(accessor.view)) return asset.invalid(path + "/bufferView", "its buffer has no data");
+    if (!has_data(accessor.view)) return asset.no_data(accessor.view, path + "/bufferView");
     reader.base_ = asset.view_bytes(accessor.view).data() + accessor.offset;
     reader.stride_ = asset.model.views[accessor.view].stride;
     if (reader.stride_ == 0) reader.stride_ = size;
   }
   if (accessor.sparse && accessor.sparse->count > 0) {
     const GltfSparse& sparse = *accessor.sparse;
-    if (!has_data(sparse.index_view) || !has_data(sparse.value_view)) {
-      return asset.invalid(path + "/sparse", "its buffer has no data");
+    for (const std::uint32_t view : {sparse.index_view, sparse.value_view}) {
+      if (!has_data(view)) return asset.no_data(view, path + "/sparse");
     }
     reader.sparse_indices_ = asset.view_bytes(sparse.index_view).data() + sparse.index_offset;
     reader.sparse_values_ = asset.view_bytes(sparse.value_view).data() + sparse.value_offset;

@@ -134,6 +134,8 @@ struct GltfAsset {
   [[nodiscard]] Error invalid(const std::string& json_path, std::string detail) const {
     return error(ErrorCode::kInvalid, json_path, std::move(detail));
   }
+  /// To read from a view whose buffer has no data: where an extension compresses the view, that is what is not read.
+  [[nodiscard]] Error no_data(std::uint32_t view, const std::string& json_path) const;
   /// The bytes of a buffer view. \pre the asset is checked and its buffers are loaded
   [[nodiscard]] std::span<const std::uint8_t> view_bytes(std::uint32_t view) const {
     const GltfBufferView& v = model.views[view];
@@ -148,6 +150,8 @@ struct GltfAsset {
 [[nodiscard]] Status check_gltf_extensions(const Json& root, const std::string& file);
 [[nodiscard]] Status check_gltf_accessors(const Json& root, const std::string& file);
 [[nodiscard]] Status check_gltf_nodes(const Json& root, const std::string& file);
+/// Optional extensions that geometry would be lost without. \pre the other checks passed. Errors: kUnsupported.
+[[nodiscard]] Status check_gltf_lost_geometry(const Json& root, const std::string& file);
 
 /// Geometry and nodes of a checked tree, through tinygltf. Nothing that tinygltf would open is handed to it.
 [[nodiscard]] Result<GltfModel> parse_gltf_model(const Json& root);

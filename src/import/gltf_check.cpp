@@ -257,7 +257,8 @@ Status check_gltf(const Json& root, const std::string& file) {
   GltfChecker checker(root, file);
   checker.run();
   if (!checker.ok()) return checker.status();
-  return check_gltf_nodes(root, file);
+  if (auto status = check_gltf_nodes(root, file); !status) return status;
+  return check_gltf_lost_geometry(root, file);
 }
 
 }  // namespace meshlode

@@ -150,6 +150,16 @@ Status read_meshes(const GltfAsset& asset, const ImportOptions& options, DecodeB
 
 }  // namespace
 
+Error GltfAsset::no_data(std::uint32_t view, const std::string& json_path) const {
+  const Json* extensions = root.items("bufferViews")[view].find("extensions");
+  if (extensions != nullptr && extensions->object() != nullptr && !extensions->object()->empty()) {
+    return error(ErrorCode::kUnsupported, json_path,
+                 "its buffer has no data: the bytes lie in " + pointer_part(extensions->object()->front().key) +
+                     ", an extension that is not read, though optional here");
+  }
+  return invalid(json_path, "its buffer has no data");
+}
+
 Result<Scene> import_gltf(const std::filesystem::path& path, std::span<const std::uint8_t> bytes,
                           const ImportOptions& options) {
   GltfAsset asset;

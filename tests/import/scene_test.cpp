@@ -137,6 +137,56 @@ TEST(ImportScene, OptionalExtensionsFallBackAndRequiredLooksAreCarried) {
   }
 }
 
+TEST(ImportScene, OptionalExtensionsThatHoldTheGeometryAreRefused) {
+  const auto expect_refused = [](const Result<Scene>& scene, const std::string& where) {
+    ASSERT_FALSE(scene) << where;
+    EXPECT_EQ(scene.error().code, ErrorCode::kUnsupported) << describe(scene);
+    EXPECT_NE(scene.error().message().find(where), std::string::npos) << describe(scene);
+  };
+  // Four copies that would become one, whether the name is in extensionsUsed or not.
+  for (const std::string name : {"EXT_mesh_gpu_instancing", "KHR_mesh_gpu_instancing"}) {
+    for (const std::string& used : {std::string(), ",\"extensionsUsed\":[\"" + name + "\"]"}) {
+      GltfBuilder b = square();
+      const int moves = b.floats({0, 0, 0, 2, 0, 0, 4, 0, 0, 6, 0, 0}, "VEC3", 3);
+      expect_refused(b.import(kMesh + ",\"nodes\":[{},{\"mesh\":0,\"extensions\":{\"" + name +
+                              "\":{\"attributes\":{\"TRANSLATION\":" + std::to_string(moves) + "}}}}]" + used),
+                     "/nodes/1/extensions/" + name);
+    }
+  }
+  // Vertices that a compression holds: the accessor alone is all zero.
+  GltfBuilder hollow;
+  hollow.accessor(-1, 5126, 4, "VEC3");
+  hollow.array(kSquareIndices, 5123, "SCALAR", 1);
+  expect_refused(hollow.import(mesh_text("\"POSITION\":0", ",\"indices\":1,\"extensions\":{\"ACME_packed\":{}}")),
+                 "/meshes/0/primitives/0/extensions/ACME_packed");
+  GltfBuilder elsewhere;
+  elsewhere.accessor(-1, 5126, 4, "VEC3", ",\"extensions\":{\"ACME_stream\":{}}");
+  elsewhere.array(kSquareIndices, 5123, "SCALAR", 1);
+  expect_refused(elsewhere.import(mesh_text("\"POSITION\":0", ",\"indices\":1")), "/accessors/0/extensions/ACME_stream");
+  GltfBuilder coded = square();
+  coded.array(std::vector<std::uint16_t>(12), 5123, "VEC3", 3, ",\"extensions\":{\"WEB3D_quantized_attributes\":{}}");
+  expect_refused(coded.import(kMesh), "/accessors/2/extensions/WEB3D_quantized_attributes");
+  // A compressed view whose fallback buffer was not written.
+  const std::string views =
+      "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":36,\"extensions\":{\"EXT_meshopt_compression\":{"
+      "\"fallback\":true}}}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":36,\"extensions\":{"
+      "\"EXT_meshopt_compression\":{\"buffer\":1}}}],\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,"
+      "\"type\":\"VEC3\"}]," +
+      mesh_text("\"POSITION\":0") + "}";
+  const TempFolder folder;
+  expect_refused(import_scene(folder.write("scene.gltf", views), {}), "EXT_meshopt_compression");
+}
+
+TEST(ImportScene, OptionalExtensionsWithAFallbackAreLeftOut) {
+  // The compressed view's own buffer has its bytes, so nothing is lost without the extension.
+  GltfBuilder b = square();
+  b.views[0].insert(b.views[0].size() - 1, ",\"extensions\":{\"EXT_meshopt_compression\":{\"buffer\":0}}");
+  const auto scene = b.import(kMesh + ",\"extensionsUsed\":[\"EXT_meshopt_compression\"]");
+  ASSERT_TRUE(scene) << describe(scene);
+  EXPECT_EQ(scene->meshes[0].primitives[0].indices.size(), 6U);
+  EXPECT_TRUE(square().import(mesh_text("\"POSITION\":0", ",\"indices\":1,\"extensions\":{\"ACME_outline\":{}}")));
+}
+
 TEST(ImportScene, TheSourceHashCoversEveryFileReferredTo) {
   const TempFolder folder;
   GltfBuilder b = square();
