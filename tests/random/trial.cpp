@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "trial.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <thread>
+
+#include <nlohmann/json.hpp>
+
+namespace meshlode::test {
+
+namespace {
+
+using nlohmann::json;
+
+struct StepResult {
+  int exit_code = -1;  ///< -1 where a signal ended it
+  int signal = 0;
+  bool timed_out = false;
+  double cpu_seconds = 0.0;
+  std::string out, err;
+};
+
+std::string read_text(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+double seconds_of(const timeval& time) {
+  return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+}
+
+void redirect(const char* path, int descriptor) {
+  const int file = open(path, O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  if (file < 0 || dup2(file, descriptor) < 0) _exit(127);
+}
+
+/// Waits until the child ends or `deadline` passes; then kills it.
+bool wait_or_kill(pid_t child, double wall_seconds, int& status, rusage& usage) {
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::duration<double>(wall_seconds);
+  auto pause = std::chrono::milliseconds(1);
+  for (;;) {
+    if (wait4(child, &status, WNOHANG, &usage) == child) return false;
+    if (std::chrono::steady_clock::now() > deadline) break;
+    std::this_thread::sleep_for(pause);
+    pause = std::min(pause * 2, std::chrono::milliseconds(20));
+  }
+  kill(child, SIGKILL);
+  wait4(child, &status, 0, &usage);
+  return true;
+}
+
+StepResult run_step(const TrialOptions& options, std::vector<std::string> arguments) {
+  const std::filesystem::path out = options.folder / "stdout", err = options.folder / "stderr";
+  arguments.insert(arguments.begin(), options.program.string());
+  std::vector<char*> argv;
+  for (std::string& argument : arguments) argv.push_back(argument.data());
+  argv.push_back(nullptr);
+  const std::string out_name = out.string(), err_name = err.string();
+  const rlimit cpu{static_cast<rlim_t>(std::ceil(options.cpu_seconds)),
+                   static_cast<rlim_t>(std::ceil(options.cpu_seconds)) + 1};
+  const pid_t child = fork();
+  StepResult result;
+  if (child < 0) return result;
+  if (child == 0) {  // only what is safe between fork and exec
+    redirect(out_name.c_str(), STDOUT_FILENO);
+    redirect(err_name.c_str(), STDERR_FILENO);
+    setrlimit(RLIMIT_CPU, &cpu);
+    const rlimit no_core{0, 0};
+    setrlimit(RLIMIT_CORE, &no_core);
+    execv(argv[0], argv.data());
+    _exit(127);
+  }
+  int status = 0;
+  rusage usage{};
+  result.timed_out = wait_or_kill(child, 4.0 * options.cpu_seconds, status, usage);
+  if (WIFEXITED(status)) result.exit_code = WEXITSTATUS(status);
+  if (WIFSIGNALED(status)) result.signal = WTERMSIG(status);
+  if (result.signal == SIGXCPU) result.timed_out = true;
+  result.cpu_seconds = seconds_of(usage.ru_utime) + seconds_of(usage.ru_stime);
+  result.out = read_text(out);
+  result.err = read_text(err);
+  return result;
+}
+
+void note(TrialResult& result, const std::string& rule, const std::string& detail, std::uint64_t count = 1) {
+  result.rules[rule] += count;
+  if (result.detail.empty()) result.detail = detail;
+}
+
+/// True where the step ended by itself with one of the exit codes that mean something here.
+bool ended_well(TrialResult& result, const std::string& step, const StepResult& ran, bool may_find) {
+  result.total_seconds += ran.cpu_seconds;
+  if (ran.timed_out) {
+    note(result, step + ":time", step + " took longer than allowed");
+  } else if (ran.exit_code < 0) {
+    note(result, step + ":signal " + std::to_string(ran.signal), ran.err.substr(0, 300));
+  } else if (ran.exit_code != 0 && !(may_find && ran.exit_code == 6)) {
+    note(result, step + ":exit " + std::to_string(ran.exit_code), ran.err.substr(0, 300));
+  } else {
+    return true;
+  }
+  return false;
+}
+
+void note_findings(TrialResult& result, const json& findings) {
+  for (const json& finding : findings) {
+    note(result, finding.value("id", "?"),
+         finding.value("id", "") + " " + finding.value("where", "") + ": " + finding.value("detail", ""));
+  }
+}
+
+/// "… true/stored median 0.92, largest 1.059, above 1 in 1 cuts" with the number of cuts beside it.
+void note_deviations(TrialResult& result, const json& checks) {
+  for (const json& check : checks) {
+    const std::string what = check.value("what", "");
+    const std::size_t largest = what.find("largest "), above = what.find("above 1 in ");
+    if (check.value("invariant", "") != "I7" || largest == std::string::npos || above == std::string::npos) continue;
+    result.cuts += check.value("items", std::uint64_t{0});
+    result.cuts_above += std::strtoull(what.c_str() + above + 11, nullptr, 10);
+    result.largest_ratio = std::max(result.largest_ratio, std::strtod(what.c_str() + largest + 8, nullptr));
+  }
+}
+
+/// The line without the paths of this trial and without numbers, so that equal refusals count as one.
+std::string reason_of(const std::string& line) {
+  std::string text = line.substr(0, line.find('\n'));
+  if (const std::size_t at = text.find("scene.glb: "); at != std::string::npos) text = text.substr(at + 11);
+  std::string out;
+  for (const char c : text) {
+    const bool is_digit =
+        (c >= '0' && c <= '9') || (!out.empty() && out.back() == '#' && (c == '.' || c == 'e' || c == '-' || c == '+'));
+    if (!is_digit) {
+      out += c;
+    } else if (out.empty() || out.back() != '#') {
+      out += '#';
+    }
+  }
+  return out;
+}
+
+bool build(TrialResult& result, const TrialOptions& options, const std::string& asset, const char* jobs) {
+  std::vector<std::string> arguments = {
+      "build", (options.folder / "scene.glb").string(), "-o", asset, "--quiet", "--jobs", jobs};
+  arguments.insert(arguments.end(), options.build_options.begin(), options.build_options.end());
+  const StepResult ran = run_step(options, arguments);
+  result.build_seconds += ran.cpu_seconds;
+  if (ran.exit_code >= 3 && ran.exit_code <= 5) {
+    result.total_seconds += ran.cpu_seconds;
+    result.refusal = "exit " + std::to_string(ran.exit_code) + ": " + reason_of(ran.err);
+    return false;
+  }
+  return ended_well(result, "build", ran, false);
+}
+
+void validate(TrialResult& result, const TrialOptions& options, const std::string& asset) {
+  const StepResult ran = run_step(options, {"validate", asset, "--format", "json"});
+  if (!ended_well(result, "validate", ran, true)) return;
+  const json report = json::parse(ran.out, nullptr, false);
+  if (!report.is_object() || !report.contains("files")) return note(result, "validate:output", "no JSON of validate's");
+  std::uint64_t before = result.rules.size();
+  for (const json& file : report["files"]) note_findings(result, file.value("findings", json::array()));
+  if (ran.exit_code == 6 && result.rules.size() == before) note(result, "validate:silent", "exit 6 without a finding");
+}
+
+void verify(TrialResult& result, const TrialOptions& options, const std::string& asset) {
+  std::vector<std::string> arguments = {"verify",   asset,  "--source", (options.folder / "scene.glb").string(),
+                                        "--format", "json", "--jobs",   "1"};
+  if (options.depth == Depth::kVerifyWithoutDeviation) arguments.insert(arguments.end(), {"--deviation-cuts", "0"});
+  const StepResult ran = run_step(options, arguments);
+  if (!ended_well(result, "verify", ran, true)) return;
+  const json report = json::parse(ran.out, nullptr, false);
+  if (!report.is_object() || !report.contains("findings")) return note(result, "verify:output", "no JSON of verify's");
+  note_findings(result, report["findings"]);
+  note_deviations(result, report["checks"]);
+  if (ran.exit_code == 6 && report["findings"].empty()) note(result, "verify:silent", "exit 6 without a finding");
+}
+
+}  // namespace
+
+Depth depth_of(const std::string& rule) {
+  if (rule.starts_with("build:")) return Depth::kBuild;
+  if (rule.starts_with("L") || rule.starts_with("validate:")) return Depth::kValidate;
+  if (rule.starts_with("V206") || rule.find(':') != std::string::npos) return Depth::kAll;
+  return Depth::kVerifyWithoutDeviation;
+}
+
+TrialResult try_scene(const std::vector<std::uint8_t>& glb, const TrialOptions& options) {
+  TrialResult result;
+  const std::filesystem::path source = options.folder / "scene.glb";
+  const std::string asset = (options.folder / "scene.lode").string(), again = (options.folder / "again.lode").string();
+  const std::string cut = (options.folder / "cut.glb").string();
+  {
+    std::ofstream out(source, std::ios::binary);
+    out.write(reinterpret_cast<const char*>(glb.data()), static_cast<std::streamsize>(glb.size()));
+  }
+  const bool is_built = build(result, options, asset, "1");
+  if (is_built && options.other_jobs_too && options.depth <= Depth::kAll) {
+    TrialResult other;
+    if (!build(other, options, again, "3") || read_text(asset) != read_text(again)) {
+      note(result, "build:jobs", "another number of threads, other bytes");
+    }
+  }
+  if (is_built && options.depth >= Depth::kValidate) validate(result, options, asset);
+  if (is_built && options.depth >= Depth::kVerifyWithoutDeviation) verify(result, options, asset);
+  if (is_built && options.depth >= Depth::kAll) {
+    const StepResult ran = run_step(options, {"extract", asset, "--error", "0.01", "--relative", "-o", cut, "--quiet"});
+    ended_well(result, "extract", ran, false);
+  }
+  for (const std::filesystem::path& path :
+       {source, std::filesystem::path(asset), std::filesystem::path(again), std::filesystem::path(cut),
+        options.folder / "stdout", options.folder / "stderr"}) {
+    std::error_code ignored;
+    std::filesystem::remove(path, ignored);
+  }
+  return result;
+}
+
+}  // namespace meshlode::test
