@@ -91,7 +91,12 @@ std::vector<SceneMaterial> read_materials(const GltfAsset& asset, std::vector<Le
     }
     const Json* extensions = material.find("extensions");
     const Json* specular = extensions != nullptr ? extensions->find("KHR_materials_pbrSpecularGlossiness") : nullptr;
-    if (specular != nullptr) read_base_color(*specular, "diffuseFactor", "diffuseTexture", m);
+    if (specular != nullptr) {
+      // It stands in the place of metallic-roughness, with defaults of its own: nothing of the two is mixed.
+      m.base_color = Vec4f(1.0F);
+      m.base_color_texture = m.base_color_uv_set = kNoIndex;
+      read_base_color(*specular, "diffuseFactor", "diffuseTexture", m);
+    }
     m.needs_tangents = has_direction(material);
     bool has_high_set = false;
     collect_uv_sets(material, m.uv_sets_used, has_high_set);

@@ -101,7 +101,7 @@ std::vector<MaterialTextures> read_material_textures(const Asset& asset) {
     if (material == nullptr) continue;
     const Json* info = member(member(material, "pbrMetallicRoughness"), "baseColorTexture");
     const Json* glossiness = member(member(material, "extensions"), "KHR_materials_pbrSpecularGlossiness");
-    if (const Json* diffuse = member(glossiness, "diffuseTexture")) info = diffuse;  // as the importer has it
+    if (glossiness != nullptr) info = member(glossiness, "diffuseTexture");  // nothing of the two is mixed
     out[i].base_color = read_use(asset, document, info);
     const Json* normal = member(material, "normalTexture");
     out[i].normal = read_use(asset, document, normal);

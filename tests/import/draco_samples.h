@@ -20,6 +20,18 @@ struct DracoSample {
 /// `speed` 0 … 10 picks other predictors; quantization_bits 0 keeps positions as floats.
 [[nodiscard]] DracoSample make_draco_sample(int n, bool edgebreaker, int speed, int quantization_bits);
 
+/// One mesh stored twice: as plain accessors, a corner after the other, and compressed by Draco's encoder.
+struct DracoPair {
+  std::string plain_glb;
+  std::string draco_glb;
+  std::uint32_t face_count = 0;
+};
+
+/// Two bumpy patches of n × n quads, one with a hole, with positions, normals, two UV sets and colours of bytes. UVs,
+/// normals and colours have seams of their own, so that corners at one position differ. Vertices are at whole x and y.
+/// quantization_bits 0: floats stay as they are.
+[[nodiscard]] DracoPair make_draco_pair(int n, bool edgebreaker, int speed, int quantization_bits);
+
 /// A whole GLB around a sample.
 [[nodiscard]] std::string make_draco_glb(const DracoSample& sample);
 

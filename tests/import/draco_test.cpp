@@ -4,8 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <chrono>
+#include <cmath>
 #include <cstring>
+#include <map>
+#include <string>
 
 #include "gltf_builder.h"
 #include "import/draco_decode.h"
@@ -15,6 +20,51 @@ namespace {
 
 DracoExpectation expectation(const DracoSample& s) {
   return {s.point_count, s.face_count, true, {s.position_id, s.normal_id, s.uv_id}};
+}
+
+/// Corners by their places, rotated so that the smallest comes first.
+using Places = std::array<std::array<long, 2>, 3>;
+
+std::map<Places, std::array<std::uint32_t, 3>> triangles_by_place(const Primitive& p) {
+  std::map<Places, std::array<std::uint32_t, 3>> out;
+  for (std::size_t t = 0; t < p.indices.size(); t += 3) {
+    std::array<std::uint32_t, 3> corners{p.indices[t], p.indices[t + 1], p.indices[t + 2]};
+    const auto place = [&](std::uint32_t v) {
+      return std::array{std::lround(p.positions[v].x), std::lround(p.positions[v].y)};
+    };
+    std::rotate(corners.begin(),
+                std::min_element(corners.begin(), corners.end(),
+                                 [&](std::uint32_t a, std::uint32_t b) { return place(a) < place(b); }),
+                corners.end());
+    EXPECT_TRUE(out.try_emplace({place(corners[0]), place(corners[1]), place(corners[2])}, corners).second);
+  }
+  return out;
+}
+
+void expect_same_triangles(const Primitive& packed, const Primitive& plain, int bits, std::size_t face_count) {
+  // A value moves by half a step of (largest - smallest) / (2^bits - 1); a little is added for floats.
+  const double step = bits == 0 ? 0.0 : 1.0 / ((1 << bits) - 1);
+  const double positions = 0.51 * 20.0 * step;
+  const double uvs = 0.51 * 2.0 * step;
+  const double normals = bits == 0 ? 1e-6 : 4.0 * step;  // octahedral: both coordinates of -1 … 1, stretched
+  const auto ours = triangles_by_place(packed);
+  const auto theirs = triangles_by_place(plain);
+  ASSERT_EQ(ours.size(), face_count);
+  ASSERT_EQ(theirs.size(), face_count);
+  for (const auto& [place, corners] : ours) {
+    const auto found = theirs.find(place);
+    ASSERT_NE(found, theirs.end()) << place[0][0] << " " << place[0][1];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = corners[k];
+      const std::uint32_t b = found->second[k];
+      ASSERT_LE(glm::length(packed.positions[a] - plain.positions[b]), 1.8 * positions);
+      ASSERT_LE(glm::length(Vec3d(packed.normals[a]) - Vec3d(plain.normals[b])), normals);
+      for (const std::size_t set : {0U, 1U}) {
+        ASSERT_LE(glm::length(glm::dvec2(packed.uvs[set][a]) - glm::dvec2(plain.uvs[set][b])), 1.5 * uvs) << set;
+      }
+      ASSERT_EQ(packed.colors[a], plain.colors[b]);
+    }
+  }
 }
 
 TEST(ImportDraco, BothMethodsDecodeToWhatDracosOwnDecoderGives) {
@@ -34,6 +84,27 @@ TEST(ImportDraco, BothMethodsDecodeToWhatDracosOwnDecoderGives) {
         }
         EXPECT_NEAR(p.normals[0].z, 1.0F, 0.02F);
         EXPECT_EQ(p.uvs[0].size(), p.positions.size());
+      }
+    }
+  }
+}
+
+// The second opinion: the plain file of the same mesh, read without Draco. A triangle is found by its corners' places,
+// which are whole numbers, and every attribute of its corners must be the plain one within what quantization may move.
+TEST(ImportDraco, TheTrianglesAndAllTheirAttributesAreThoseOfTheSameMeshStoredPlain) {
+  const TempFolder folder;
+  for (const bool edgebreaker : {true, false}) {
+    for (const int speed : {0, 3, 5, 8, 10}) {
+      for (const int bits : {0, 8, 14}) {
+        SCOPED_TRACE(std::string(edgebreaker ? "edgebreaker" : "sequential") + ", speed " + std::to_string(speed) + ", " +
+                     std::to_string(bits) + " bits");
+        const DracoPair pair = make_draco_pair(9, edgebreaker, speed, bits);
+        const auto plain = import_scene(folder.write("plain.glb", pair.plain_glb), {});
+        const auto packed = import_scene(folder.write("packed.glb", pair.draco_glb), {});
+        ASSERT_TRUE(plain) << describe(plain);
+        ASSERT_TRUE(packed) << describe(packed);
+        EXPECT_LT(packed->meshes[0].primitives[0].positions.size(), plain->meshes[0].primitives[0].positions.size());
+        expect_same_triangles(packed->meshes[0].primitives[0], plain->meshes[0].primitives[0], bits, pair.face_count);
       }
     }
   }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -262,6 +263,101 @@ TEST(ImportModels, PositionsAndIndicesEqualAnIndependentReadersOnEveryPlainPrimi
     }
   }
   EXPECT_GT(compared, 1000000U);
+}
+
+/// A triangle with its corners' normals, in a list that is sorted by the x of its centre.
+struct LooseTriangle {
+  double x;
+  std::array<Vec3d, 3> corners, normals;
+};
+
+std::vector<LooseTriangle> loose_triangles(const SourceMesh& mesh) {
+  std::vector<LooseTriangle> out;
+  for (const Primitive& p : mesh.primitives) {
+    for (std::size_t t = 0; t < p.indices.size(); t += 3) {
+      LooseTriangle triangle{};
+      for (std::size_t k = 0; k < 3; ++k) {
+        triangle.corners[k] = p.positions[p.indices[t + k]];
+        triangle.normals[k] = Vec3d(p.normals[p.indices[t + k]]);
+        triangle.x += triangle.corners[k].x / 3.0;
+      }
+      out.push_back(triangle);
+    }
+  }
+  std::sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
+  return out;
+}
+
+/// Whether `b` is `a` with corners within `far` and normals within `turn`, in some rotation.
+bool is_near(const LooseTriangle& a, const LooseTriangle& b, double far, double turn) {
+  for (std::size_t shift = 0; shift < 3; ++shift) {
+    bool is_same = true;
+    for (std::size_t k = 0; k < 3; ++k) {
+      is_same = is_same && glm::length(a.corners[k] - b.corners[(k + shift) % 3]) <= far &&
+                glm::length(a.normals[k] - b.normals[(k + shift) % 3]) <= turn;
+    }
+    if (is_same) return true;
+  }
+  return false;
+}
+
+std::size_t count_without_partner(const std::vector<LooseTriangle>& from, const std::vector<LooseTriangle>& to,
+                                  double far, double turn, bool may_collapse) {
+  std::size_t alone = 0;
+  for (const LooseTriangle& a : from) {
+    const auto first = std::lower_bound(to.begin(), to.end(), a.x - far, [](const auto& t, double x) { return t.x < x; });
+    bool found = false;
+    for (auto b = first; b != to.end() && b->x <= a.x + far && !found; ++b) found = is_near(a, *b, far, turn);
+    for (std::size_t k = 0; k < 3 && may_collapse && !found; ++k) {
+      found = glm::length(a.corners[k] - a.corners[(k + 1) % 3]) <= 2.0 * far;
+    }
+    alone += found ? 0 : 1;
+  }
+  return alone;
+}
+
+/// Models that their makers stored both ways. Draco's encoder drops triangles that quantization collapses.
+void expect_same_model(const fs::path& plain_path, const fs::path& draco_path, std::size_t least) {
+  const auto plain = import_scene(plain_path, {});
+  const auto draco = import_scene(draco_path, {});
+  ASSERT_TRUE(plain) << plain.error().message();
+  ASSERT_TRUE(draco) << draco.error().message();
+  ASSERT_EQ(plain->meshes.size(), draco->meshes.size());
+  std::size_t compared = 0;
+  for (std::size_t m = 0; m < plain->meshes.size(); ++m) {
+    const auto ours = loose_triangles(draco->meshes[m]);
+    const auto theirs = loose_triangles(plain->meshes[m]);
+    Vec3d low(HUGE_VAL);
+    Vec3d high(-HUGE_VAL);
+    for (const LooseTriangle& t : theirs) {
+      for (const Vec3d& p : t.corners) {
+        low = glm::min(low, p);
+        high = glm::max(high, p);
+      }
+    }
+    // 11 bits along the longest side, and what 8 octahedral bits make of a normal, a little over a degree: the coarsest
+    // that such files are made with.
+    const Vec3d size = high - low;
+    const double far = 0.51 * std::sqrt(3.0) * std::max({size.x, size.y, size.z}) / 2047.0;
+    EXPECT_EQ(count_without_partner(ours, theirs, far, 0.02, false), 0U) << draco_path << " mesh " << m;
+    EXPECT_EQ(count_without_partner(theirs, ours, far, 0.02, true), 0U) << draco_path << " mesh " << m;
+    compared += ours.size();
+  }
+  EXPECT_GE(compared, least);
+}
+
+TEST(ImportModels, AModelStoredPlainAndByDracoHasTheSameTrianglesAndNormals) {
+  const std::string folder = models_folder();
+  MESHLODE_NEEDS(folder, "MESHLODE_MODELS");
+  const std::string box = folder + "/draco/Box/glTF_Binary/";
+  expect_same_model(box + "Box.glb", box + "Box_Draco.glb", 12);
+}
+
+TEST(ImportModels, AnEngineOfTwentyNineMeshesStoredPlainAndByDracoHasTheSameTrianglesAndNormals) {
+  const std::string folder = assimp_folder() + "/glTF2";
+  MESHLODE_NEEDS(folder, "MESHLODE_ASSIMP_MODELS");
+  expect_same_model(folder + "/2CylinderEngine-glTF-Binary/2CylinderEngine.glb", folder + "/draco/2CylinderEngine.gltf",
+                    60000);
 }
 
 }  // namespace

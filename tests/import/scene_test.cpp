@@ -105,6 +105,22 @@ TEST(ImportScene, UvSetsAreFoundInExtensionsNobodyKnowsHere) {
   EXPECT_EQ(scene->meshes[0].primitives[0].material, MaterialId(2U));
 }
 
+TEST(ImportScene, SpecularGlossinessStandsInThePlaceOfMetallicRoughnessWithDefaultsOfItsOwn) {
+  GltfBuilder b;
+  b.floats(kSquare, "VEC3", 3);
+  const auto scene = b.import(
+      mesh_text("\"POSITION\":0") +
+      ",\"images\":[{\"uri\":\"data:image/png;base64,iVBORw==\"}],\"textures\":[{\"source\":0}],\"materials\":["
+      "{\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.5,0.25,1,0.75],\"baseColorTexture\":{\"index\":0,\"texCoord\":2}},"
+      "\"extensions\":{\"KHR_materials_pbrSpecularGlossiness\":{}}}]");
+  ASSERT_TRUE(scene) << describe(scene);
+  const SceneMaterial& m = scene->materials[0];
+  EXPECT_EQ(m.base_color, Vec4f(1.0F)) << "not metallic-roughness's";
+  EXPECT_EQ(m.base_color_texture, 0xFFFFFFFFu);
+  EXPECT_EQ(m.base_color_uv_set, 0xFFFFFFFFu);
+  EXPECT_EQ(m.uv_sets_used, 4U) << "a renderer without the extension still samples it";
+}
+
 TEST(ImportScene, SkinsAndMorphTargetsLeaveTheStaticTriangles) {
   GltfBuilder b = square();
   const int target = b.floats(kSquare, "VEC3", 3);

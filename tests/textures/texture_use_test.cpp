@@ -71,6 +71,10 @@ TEST(TextureUse, SetsAndTexturesAreThoseOfTheReference) {
   const auto glossy = textures_with(
       R"({"extensions":{"KHR_materials_pbrSpecularGlossiness":{"diffuseTexture":{"index":0}}}})", kTables);
   EXPECT_TRUE(glossy.base_color);
+  const auto bare = textures_with(
+      R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":0}},"extensions":{"KHR_materials_pbrSpecularGlossiness":{}}})",
+      kTables);
+  EXPECT_FALSE(bare.base_color) << "specular-glossiness stands in the place of metallic-roughness";
 }
 
 TEST(TextureUse, NonsenseCountsAsNotThere) {
