@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "metrics/triangle_area.h"
+
 namespace meshlode {
 
 Surface surface_of_clusters(const Asset& asset, std::span<const DecodedCluster> decoded, MeshId mesh,
@@ -28,8 +30,10 @@ Surface surface_of_source(const SourceMesh& mesh) {
     const auto base = static_cast<std::uint32_t>(surface.positions.size());
     surface.positions.insert(surface.positions.end(), primitive.positions.begin(), primitive.positions.end());
     for (std::size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
-      surface.triangles.push_back(
-          {base + primitive.indices[i], base + primitive.indices[i + 1], base + primitive.indices[i + 2]});
+      const std::uint32_t* corner = &primitive.indices[i];
+      const Vec3d* at = primitive.positions.data();
+      if (!has_area(at[corner[0]], at[corner[1]], at[corner[2]])) continue;
+      surface.triangles.push_back({base + corner[0], base + corner[1], base + corner[2]});
     }
   }
   return surface;

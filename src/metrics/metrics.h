@@ -49,7 +49,8 @@ struct DeviationReport {
 [[nodiscard]] Surface surface_of_clusters(const Asset& asset, std::span<const DecodedCluster> decoded, MeshId mesh,
                                           std::span<const ClusterId> clusters);
 
-/// The source's triangles, all primitives of the mesh together, as read.
+/// The source: the triangles that have area, exactly (docs/format.md, "The source"), all primitives of the mesh
+/// together, as read.
 [[nodiscard]] Surface surface_of_source(const SourceMesh& mesh);
 
 }  // namespace meshlode

@@ -3,6 +3,8 @@
 
 #include <limits>
 
+#include "metrics/triangle_area.h"
+
 namespace meshlode {
 namespace {
 
@@ -44,7 +46,9 @@ ShadedSurface shaded_surface_of_source(const SourceMesh& mesh) {
     const std::size_t first_triangle = s.triangles.size();
     s.positions.insert(s.positions.end(), p.positions.begin(), p.positions.end());
     for (std::size_t i = 0; i + 2 < p.indices.size(); i += 3) {
-      s.triangles.push_back({base + p.indices[i], base + p.indices[i + 1], base + p.indices[i + 2]});
+      const std::uint32_t* corner = &p.indices[i];
+      if (!has_area(p.positions[corner[0]], p.positions[corner[1]], p.positions[corner[2]])) continue;
+      s.triangles.push_back({base + corner[0], base + corner[1], base + corner[2]});
     }
     for (std::size_t n = 0; n < kMaxUvSets; ++n) {
       if (!has_uvs[n]) continue;

@@ -13,6 +13,7 @@
 
 #include "base/parallel.h"
 #include "prepare/separate_needles.h"
+#include "prepare/zero_area.h"
 
 namespace meshlode {
 
@@ -104,6 +105,20 @@ int compare_attributes(const float* a, const float* b, std::uint32_t stride) {
   return stride == 0 ? 0 : std::memcmp(a, b, stride * sizeof(float));
 }
 
+/// Takes the triangles away that are no part of the source; returns how many.
+std::uint64_t drop_undrawn(Corners& corners) {
+  const std::vector<std::uint8_t> is_undrawn = find_undrawn(corners.positions, corners.triangles);
+  std::size_t kept = 0;
+  for (std::size_t t = 0; t < is_undrawn.size(); ++t) {
+    if (is_undrawn[t] != 0) continue;
+    for (std::size_t k = 0; k < 3; ++k) corners.triangles[3 * kept + k] = corners.triangles[3 * t + k];
+    corners.materials[kept++] = corners.materials[t];
+  }
+  corners.triangles.resize(3 * kept);
+  corners.materials.resize(kept);
+  return is_undrawn.size() - kept;
+}
+
 double median_edge_length(const Corners& corners) {
   // A sample of the edges is enough to choose a power of two.
   std::vector<double> lengths2;
@@ -189,21 +204,24 @@ Result<PreparedMesh> prepare_mesh(const SourceMesh& source, const AttributeLayou
   }
   mesh.source_triangles += source.drops.repaired;
 
-  const Corners corners = gather_corners(source, layout);
+  Corners corners = gather_corners(source, layout);
   const std::uint32_t stride = layout.stride();
-
-  // Bounds over the vertices that triangles use, so that stray points do not coarsen the grid.
-  Vec3d low(std::numeric_limits<double>::infinity());
-  Vec3d high(-std::numeric_limits<double>::infinity());
   for (const std::uint32_t vertex : corners.triangles) {
     const Vec3d& p = corners.positions[vertex];
     if (!(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z))) {
       return Error{ErrorCode::kInvalid, "mesh '" + source.name + "'", "a position is not finite"};
     }
-    low = glm::min(low, p);
-    high = glm::max(high, p);
   }
+  mesh.dropped_degenerate = drop_undrawn(corners);
   if (corners.triangles.empty()) return mesh;
+
+  // Bounds over the vertices that the source's triangles use, so that stray points do not coarsen the grid.
+  Vec3d low(std::numeric_limits<double>::infinity());
+  Vec3d high(-std::numeric_limits<double>::infinity());
+  for (const std::uint32_t vertex : corners.triangles) {
+    low = glm::min(low, corners.positions[vertex]);
+    high = glm::max(high, corners.positions[vertex]);
+  }
 
   const Vec3d half = (high - low) * 0.5;
   mesh.diagonal = 2.0 * std::sqrt(glm::dot(half, half));
@@ -273,13 +291,6 @@ Result<PreparedMesh> prepare_mesh(const SourceMesh& source, const AttributeLayou
   triangles.reserve(corners.materials.size());
   for (std::size_t t = 0; t < corners.materials.size(); ++t) {
     const std::uint32_t* c = &corners.triangles[3 * t];
-    const Vec3d& p0 = corners.positions[c[0]];
-    const Vec3d& p1 = corners.positions[c[1]];
-    const Vec3d& p2 = corners.positions[c[2]];
-    if (p0 == p1 || p1 == p2 || p2 == p0) {
-      ++mesh.dropped_degenerate;
-      continue;
-    }
     std::array<std::uint32_t, 3> exact{exact_of[c[0]], exact_of[c[1]], exact_of[c[2]]};
     std::rotate(exact.begin(), std::min_element(exact.begin(), exact.end()), exact.end());
     triangles.push_back({exact, corners.materials[t]});

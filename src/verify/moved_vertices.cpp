@@ -4,96 +4,107 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <utility>
+#include <vector>
 
 namespace meshlode {
 
 namespace {
 
 constexpr std::int32_t kNowhere = 2000000000;
-/// In which forced moves may force others: enough for real chains, few enough for a source that is not the asset's.
-constexpr int kRounds = 32;
+constexpr std::int32_t kLargestCoordinate = (1 << 23) - 1;
+/// Along some axis, in steps: from here on a narrow triangle is a needle.
+constexpr std::int64_t kNeedleLength = 4;
+/// Squared half diagonal of a cell, in steps.
+constexpr double kReach2 = 0.75;
 
 auto tuple_of(const Vec3d& p) { return std::tuple(p.x, p.y, p.z); }
 
+bool is_long(const GridPoint& from, const GridPoint& to) {
+  std::int64_t longest = 0;
+  for (std::size_t i = 0; i < 3; ++i) longest = std::max(longest, std::abs(std::int64_t{to[i]} - from[i]));
+  return longest >= kNeedleLength;
+}
+
 }  // namespace
 
-GridPoint MovedVertices::nearest(const Vec3d& position) const {
+GridPoint MovedVertices::nearest(const Vec3d& relative) const {
   GridPoint q{};
   for (int i = 0; i < 3; ++i) {
-    const double rounded = std::floor((position[i] + 0.0 - origin_[i]) / step_ + 0.5);
+    const double rounded = std::floor(relative[i] / step_ + 0.5);
     q[static_cast<std::size_t>(i)] = std::fabs(rounded) <= 1e9 ? static_cast<std::int32_t>(rounded) : kNowhere;
   }
   return q;
 }
 
-GridPoint MovedVertices::point_of(const Vec3d& position) const {
+GridPoint MovedVertices::point_at(const Vec3d& relative) const {
   if (!moved_.empty()) {
-    const auto found = moved_.find(tuple_of(position + 0.0));
+    const auto found = moved_.find(tuple_of(relative));
     if (found != moved_.end()) return found->second;
   }
-  return nearest(position);
+  return nearest(relative);
 }
 
-std::vector<GridPoint> MovedVertices::choices(const Vec3d& position) const {
-  if (const auto found = moved_.find(tuple_of(position + 0.0)); found != moved_.end()) return {found->second};
-  const GridPoint q = nearest(position);
-  std::vector<GridPoint> out{q};
-  if (std::find(q.begin(), q.end(), kNowhere) != q.end() || !may_move_.contains(tuple_of(position + 0.0))) return out;
-  for (int axis = 0; axis < 3; ++axis) {
-    for (const int side : {-1, 1}) {
-      GridPoint next = q;
-      next[static_cast<std::size_t>(axis)] += side;
-      const Vec3d away = (position - origin_) / step_ - Vec3d(next[0], next[1], next[2]);
-      if (glm::dot(away, away) <= 0.75 * (1.0 + 1e-9)) out.push_back(next);
-    }
-  }
-  return out;
-}
+GridPoint MovedVertices::point_of(const Vec3d& position) const { return point_at(relative(position)); }
 
-void MovedVertices::find(std::span<const MissingTriangle> missing, std::span<const TriangleKey> unmatched) {
-  for (const MissingTriangle& triangle : missing) {
+void MovedVertices::find(std::span<const std::array<Vec3d, 3>> triangles) {
+  moved_.clear();
+  std::vector<std::pair<Place, Place>> narrow;  // ends of needles whose two corners are nearest to one point
+  std::vector<GridPoint> taken;                 // points that a vertex is nearest to
+  taken.reserve(3 * triangles.size());
+  for (const std::array<Vec3d, 3>& triangle : triangles) {
+    std::array<Vec3d, 3> corner;
+    std::array<GridPoint, 3> point;
     for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3d& a = triangle.corner[k];
-      const Vec3d& b = triangle.corner[(k + 1) % 3];
-      if (a == b || nearest(a) != nearest(b)) continue;
-      may_move_.insert(tuple_of(a + 0.0));
-      may_move_.insert(tuple_of(b + 0.0));
+      corner[k] = relative(triangle[k]);
+      point[k] = nearest(corner[k]);
+      taken.push_back(point[k]);
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t next = (k + 1) % 3;
+      const std::size_t tip = (k + 2) % 3;
+      if (point[k] != point[next] || corner[k] == corner[next] || !is_long(point[k], point[tip])) continue;
+      narrow.emplace_back(std::minmax({tuple_of(corner[k]), tuple_of(corner[next])}));
     }
   }
-  const auto fits = [&](const MissingTriangle& triangle) {
-    std::vector<GridCorners> out;
-    const std::array<std::vector<GridPoint>, 3> at{choices(triangle.corner[0]), choices(triangle.corner[1]),
-                                                   choices(triangle.corner[2])};
-    for (const GridPoint& a : at[0]) {
-      for (const GridPoint& b : at[1]) {
-        for (const GridPoint& c : at[2]) {
-          if (std::binary_search(unmatched.begin(), unmatched.end(),
-                                 TriangleKey{triangle.material, rotate_to_smallest({a, b, c})})) {
-            out.push_back({a, b, c});
-          }
-        }
-      }
-    }
-    return out;
+  if (narrow.empty()) return;
+  std::sort(narrow.begin(), narrow.end());
+  narrow.erase(std::unique(narrow.begin(), narrow.end()), narrow.end());
+  std::sort(taken.begin(), taken.end());
+  taken.erase(std::unique(taken.begin(), taken.end()), taken.end());
+
+  struct Move {
+    double distance2;
+    Place who;
+    GridPoint to;
   };
-  const auto bind = [&](const MissingTriangle& triangle, const GridCorners& corners) {
-    for (std::size_t k = 0; k < 3; ++k) moved_.try_emplace(tuple_of(triangle.corner[k] + 0.0), corners[k]);
-  };
-  std::vector<std::size_t> open(missing.size());
-  for (std::size_t i = 0; i < open.size(); ++i) open[i] = i;
-  for (int round = 0; round < kRounds && !open.empty(); ++round) {
-    std::vector<std::size_t> rest;
-    for (const std::size_t i : open) {
-      const std::vector<GridCorners> found = fits(missing[i]);
-      if (found.size() == 1) bind(missing[i], found[0]);
-      if (found.size() > 1) rest.push_back(i);
+  std::set<GridPoint> arrived;
+  for (const auto& [first, second] : narrow) {
+    const Vec3d a = std::make_from_tuple<Vec3d>(first);
+    const Vec3d b = std::make_from_tuple<Vec3d>(second);
+    const GridPoint from = point_at(a);
+    if (from != point_at(b)) continue;  // one of them has moved already
+    std::optional<Move> best;
+    for (std::size_t turn = 0; turn < 6; ++turn) {  // the first corner's moves come first, along x, y, z
+      const auto axis = static_cast<int>(turn % 3);
+      const Vec3d& who = turn < 3 ? a : b;
+      const Vec3d& other = turn < 3 ? b : a;
+      const double side = who[axis] / step_ > from[turn % 3] ? 1.0 : -1.0;
+      if (!((who[axis] - other[axis]) * side > 0.0)) continue;  // towards the other corner the needle would turn over
+      GridPoint to = from;
+      to[turn % 3] += side > 0.0 ? 1 : -1;
+      const Vec3d away = who / step_ - Vec3d(to[0], to[1], to[2]);
+      const double distance2 = glm::dot(away, away);
+      if (!(distance2 <= kReach2) || std::abs(to[turn % 3]) > kLargestCoordinate) continue;
+      if (std::binary_search(taken.begin(), taken.end(), to) || arrived.contains(to)) continue;
+      if (!best || distance2 < best->distance2) best = Move{distance2, tuple_of(who), to};
     }
-    if (rest.size() == open.size()) break;
-    open = std::move(rest);
-  }
-  for (const std::size_t i : open) {  // nothing forces anything any more: the first choice, and see
-    const std::vector<GridCorners> found = fits(missing[i]);
-    if (!found.empty()) bind(missing[i], found[0]);
+    if (!best) continue;
+    moved_.emplace(best->who, best->to);
+    arrived.insert(best->to);
   }
 }
 

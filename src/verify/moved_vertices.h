@@ -1,48 +1,46 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where the source's vertices went on the grid: each to the point nearest to it, or, where two corners of a narrow
-// triangle would have met in one, to the next point along an axis that is no farther than half a cell's diagonal. Which
-// did is not stored; it is found here from the triangles that are missing at the nearest points.
+// Where the source's vertices are on the grid: each at the point nearest to it, but for those that the writer moved by
+// one point so that a needle keeps its width. Which did is not stored; docs/format.md ("Grid points", section 17) says
+// which it has to be, as a function of the level-0 triangles alone.
+//
+// Nothing is believed because of that rule: it gives one point for each exact position, and V101 then asks whether the
+// source on those points is level 0, triangle by triangle. To look for such points in level 0 itself would be to solve
+// a puzzle: where a grid collapses hundreds of triangles into one cell, what is left of them fits many places.
 #pragma once
 
 #include <array>
 #include <map>
-#include <set>
 #include <span>
 #include <tuple>
-#include <vector>
 
 #include "base/vec.h"
 #include "verify/triangle_key.h"
 
 namespace meshlode {
 
-struct MissingTriangle {
-  std::uint32_t material = 0;
-  std::array<Vec3d, 3> corner;  ///< of the source
-};
-
 class MovedVertices {
  public:
   MovedVertices() = default;
   MovedVertices(const Vec3d& origin, double step) : origin_(origin), step_(step) {}
 
-  /// Finds the moves that take `missing` to triangles among `unmatched` (sorted). Only corners that share their nearest
-  /// point with another corner of a missing triangle may have moved. A vertex has one place: a move that one triangle
-  /// leaves no choice about binds the others at that vertex.
-  void find(std::span<const MissingTriangle> missing, std::span<const TriangleKey> unmatched);
+  /// Finds the vertices that the rule moves. `triangles` are the corners, in the source, of those in level 0; their
+  /// order does not matter. O(n log n).
+  void find(std::span<const std::array<Vec3d, 3>> triangles);
 
   /// The vertex's point on the grid. A source that is not the asset's may lie anywhere; such a corner matches nothing.
   [[nodiscard]] GridPoint point_of(const Vec3d& position) const;
   [[nodiscard]] bool empty() const { return moved_.empty(); }
 
  private:
-  [[nodiscard]] GridPoint nearest(const Vec3d& position) const;
-  [[nodiscard]] std::vector<GridPoint> choices(const Vec3d& position) const;
+  using Place = std::tuple<double, double, double>;  ///< relative to the origin
+
+  [[nodiscard]] Vec3d relative(const Vec3d& position) const { return position + 0.0 - origin_; }
+  [[nodiscard]] GridPoint nearest(const Vec3d& relative) const;
+  [[nodiscard]] GridPoint point_at(const Vec3d& relative) const;
 
   Vec3d origin_{0.0};
   double step_ = 1.0;
-  std::set<std::tuple<double, double, double>> may_move_;
-  std::map<std::tuple<double, double, double>, GridPoint> moved_;
+  std::map<Place, GridPoint> moved_;
 };
 
 }  // namespace meshlode

@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // I1: every source triangle is in exactly one level-0 cluster. The source is quantized here once more and both sides
 // are sorted by (material, corners on the grid): equal keys must occur equally often, after what may be dropped (exact
-// degenerates and exact duplicates) was found from the source alone. Vertices that are not at the grid point nearest to
-// them are looked for where triangles are missing.
+// degenerates and exact duplicates) was found from the source alone. Every exact position has one point on the grid:
+// the one nearest to it, or the one that the writer's rule for needles gives it (moved_vertices.h).
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <compare>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "base/parallel.h"
 #include "mesh/grid.h"
+#include "verify/drawn_triangles.h"
 #include "verify/moved_vertices.h"
 #include "verify/source_rules.h"
 #include "verify/triangle_key.h"
@@ -100,34 +102,36 @@ class SourceMatcher {
   }
 
   void gather_source() {
-    Vec3d low(0.0);
-    Vec3d high(0.0);
-    bool has_bounds = false;
+    std::vector<std::array<Vec3d, 3>> corners;
     for (std::uint32_t p = 0; p < source_.primitives.size(); ++p) {
       const Primitive& primitive = source_.primitives[p];
       for (std::uint32_t t = 0; t < primitive.indices.size() / 3; ++t) {
-        std::array<Vec3d, 3> corner;
-        GridCorners grid{};
-        for (std::size_t k = 0; k < 3; ++k) {
-          corner[k] = primitive.positions[primitive.indices[3 * std::size_t{t} + k]];
-          low = has_bounds ? glm::min(low, corner[k]) : corner[k];
-          high = has_bounds ? glm::max(high, corner[k]) : corner[k];
-          has_bounds = true;
-          grid[k] = vertices_.point_of(corner[k]);
-        }
-        if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0]) {
-          ++degenerate_;
-          continue;
-        }
-        sources_.push_back({{primitive.material.value, rotate_to_smallest(grid)}, p, t});
+        sources_.push_back({{primitive.material.value, {}}, p, t});
+        corners.push_back(corners_of(sources_.back()));
       }
     }
+    const std::vector<std::uint8_t> is_drawn = find_drawn(corners);
+    Vec3d low(0.0);
+    Vec3d high(0.0);
+    bool has_bounds = false;
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      if (is_drawn[i] == 0) continue;
+      sources_[kept++] = sources_[i];
+      for (const Vec3d& corner : corners[i]) {
+        low = has_bounds ? glm::min(low, corner) : corner;
+        high = has_bounds ? glm::max(high, corner) : corner;
+        has_bounds = true;
+      }
+    }
+    degenerate_ = sources_.size() - kept;
+    sources_.resize(kept);
     counts_.source_triangles = sources_.size();
     const auto at = [&] { return where(); };
     const double diagonal = has_bounds ? std::sqrt(glm::dot(high - low, high - low)) : 0.0;
     log_.expect(std::fabs(mesh_.diagonal - diagonal) <= 1e-9 * diagonal, "V103", at,
                 [&] { return differs("diagonal", mesh_.diagonal, "source", diagonal); });
-    sort_sources();
+    put_on_grid();
   }
 
   void sort_sources() {
@@ -142,36 +146,42 @@ class SourceMatcher {
     return {primitive.positions[index[0]], primitive.positions[index[1]], primitive.positions[index[2]]};
   }
 
-  /// Keys that only one side has say which vertices are elsewhere; their triangles get other keys.
+  /// Where the points nearest to the source's vertices do not explain level 0, the vertices that the writer moves do,
+  /// or explain more of it.
   void find_moved() {
-    std::vector<MissingTriangle> missing;
-    std::vector<TriangleKey> unmatched;
-    std::vector<std::size_t> who;
+    const std::size_t unexplained = count_unexplained();
+    if (unexplained == 0) return;
+    std::vector<std::array<Vec3d, 3>> corners;
+    corners.reserve(sources_.size());
+    for (const SourceTriangle& s : sources_) corners.push_back(corners_of(s));
+    MovedVertices nearest = std::exchange(vertices_, MovedVertices(origin_, step_));
+    vertices_.find(corners);
+    if (vertices_.empty()) return;
+    put_on_grid();
+    if (count_unexplained() <= unexplained) return;
+    vertices_ = std::move(nearest);
+    put_on_grid();
+  }
+
+  /// Distinct triangles on the grid that only the source or only level 0 has.
+  [[nodiscard]] std::size_t count_unexplained() const {
+    std::size_t count = 0;
     for (std::size_t i = 0, j = 0; i < sources_.size() || j < stored_.size();) {
-      if (j == stored_.size() || (i < sources_.size() && sources_[i].key < stored_[j].key)) {
-        missing.push_back({sources_[i].key.material, corners_of(sources_[i])});
-        who.push_back(i++);
-      } else if (i == sources_.size() || stored_[j].key < sources_[i].key) {
-        unmatched.push_back(stored_[j++].key);
-      } else {
-        const TriangleKey key = sources_[i].key;
-        const std::size_t i0 = i;
-        const std::size_t j0 = j;
-        while (i < sources_.size() && sources_[i].key == key) ++i;
-        while (j < stored_.size() && stored_[j].key == key) ++j;
-        if (i - i0 <= j - j0) continue;
-        unmatched.push_back(key);  // of some it is the place, of the others it is not, or they are duplicates
-        for (std::size_t k = i0; k < i; ++k) {
-          missing.push_back({key.material, corners_of(sources_[k])});
-          who.push_back(k);
-        }
-      }
+      const bool take_source = j == stored_.size() || (i < sources_.size() && sources_[i].key <= stored_[j].key);
+      const TriangleKey key = take_source ? sources_[i].key : stored_[j].key;
+      const std::size_t i0 = i;
+      const std::size_t j0 = j;
+      while (i < sources_.size() && sources_[i].key == key) ++i;
+      while (j < stored_.size() && stored_[j].key == key) ++j;
+      count += i == i0 || j == j0 ? 1 : 0;
     }
-    if (missing.empty() || unmatched.empty()) return;
-    vertices_.find(missing, unmatched);
-    for (const std::size_t i : who) {
-      const std::array<Vec3d, 3> corner = corners_of(sources_[i]);
-      sources_[i].key.corners = rotate_to_smallest(
+    return count;
+  }
+
+  void put_on_grid() {
+    for (SourceTriangle& s : sources_) {
+      const std::array<Vec3d, 3> corner = corners_of(s);
+      s.key.corners = rotate_to_smallest(
           {vertices_.point_of(corner[0]), vertices_.point_of(corner[1]), vertices_.point_of(corner[2])});
     }
     sort_sources();
@@ -179,9 +189,8 @@ class SourceMatcher {
 
   void check_moves() {
     double moved2 = 0.0;
-    for (const Primitive& primitive : source_.primitives) {
-      for (const std::uint32_t vertex : primitive.indices) {
-        const Vec3d& p = primitive.positions[vertex];
+    for (const SourceTriangle& s : sources_) {
+      for (const Vec3d& p : corners_of(s)) {
         const GridPoint q = vertices_.point_of(p);
         const Vec3d moved = Vec3d(q[0], q[1], q[2]) * step_ - (p - origin_);
         moved2 = std::max(moved2, glm::dot(moved, moved));

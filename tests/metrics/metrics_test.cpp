@@ -8,6 +8,7 @@
 
 #include "metrics/cgal_distance.h"
 #include "metrics/metrics.h"
+#include "metrics/shaded_surface.h"
 #include "metrics/triangle_tree.h"
 #include "select/random.h"
 
@@ -155,6 +156,18 @@ TEST(Metrics, EmptyAndDegenerateSurfacesAreAnswered) {
   const DeviationReport r = measure_deviation(point, square, {1000, 1});
   EXPECT_DOUBLE_EQ(r.a_to_b.max, 2.0);
   EXPECT_DOUBLE_EQ(r.b_to_a.max, std::sqrt(6.0));
+}
+
+TEST(Metrics, TheSourceIsItsTrianglesWithArea) {
+  SourceMesh mesh;
+  Primitive& shape = mesh.primitives.emplace_back();
+  shape.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}, {9, 0, 0}, {9, 1e-300, 0}, {5, 0, 0}};
+  shape.indices = {0, 1, 2, 0, 3, 4, 0, 4, 4, 0, 6, 4, 0, 4, 5};
+  const Surface source = surface_of_source(mesh);
+  ASSERT_EQ(source.triangles.size(), 2U) << "a repeated corner, one place twice, a line; a sliver has area";
+  EXPECT_EQ(source.triangles[0], (std::array<std::uint32_t, 3>{0, 1, 2}));
+  EXPECT_EQ(source.triangles[1], (std::array<std::uint32_t, 3>{0, 4, 5}));
+  EXPECT_EQ(shaded_surface_of_source(mesh).surface.triangles.size(), 2U);
 }
 
 TEST(Metrics, DoesNotDependOnTheNumberOfThreads) {

@@ -163,6 +163,11 @@ const HardCase kCases[] = {
     {"Duplicates", [] { return alone(samples::make_duplicates(16)); }},
     {"Slivers", [] { return alone(samples::make_slivers(3000)); }},
     {"Needles", rock_with_needles},
+    {"FineRingsBesideAPatch", [] { return alone(test::make_fine_rings_beside_a_patch(3)); }},
+    {"FineRingsCertified", [] { return alone(test::make_fine_rings_beside_a_patch(4)); }, format::ErrorTier::kCertified},
+    {"BallWithHairs", [] { return alone(test::make_ball_with_hairs()); }},
+    {"BallWithHairsCertified", [] { return alone(test::make_ball_with_hairs()); }, format::ErrorTier::kCertified},
+    {"CubeWithTJunctions", [] { return alone(test::make_cube_with_t_junctions()); }},
     {"SplitNormals", [] { return alone(samples::with_split_normals(samples::make_rock(16))); }},
     {"Crystal", [] { return alone(samples::make_crystal(5, 12)); }},
     {"ThreeSheets", [] { return alone(samples::make_three_sheets(24)); }},
@@ -191,6 +196,28 @@ const HardCase kCases[] = {
 
 INSTANTIATE_TEST_SUITE_P(Pipeline, HardCases, testing::ValuesIn(kCases),
                          [](const auto& param_info) { return std::string(param_info.param.name); });
+
+TEST(HardNumbers, HairsWithoutAreaAreCountedAndNothingElseChanges) {
+  const Primitive shape = test::make_ball_with_hairs();
+  Primitive ball = shape;
+  ball.indices.resize(samples::make_sphere(16).indices.size());
+  const auto bytes = prove(alone(shape)), ball_bytes = prove(alone(ball));
+  const auto asset = Asset::from_bytes(bytes), ball_asset = Asset::from_bytes(ball_bytes);
+  ASSERT_TRUE(asset.ok() && ball_asset.ok());
+  const format::MeshRecord &mesh = asset->meshes()[0], &other = ball_asset->meshes()[0];
+  EXPECT_EQ(mesh.dropped_degenerate, 4U);
+  EXPECT_EQ(mesh.diagonal, other.diagonal);
+  EXPECT_EQ(mesh.cluster_count, other.cluster_count);
+  EXPECT_LT(mesh.level0_deviation, 1e-3);
+}
+
+TEST(HardNumbers, TrianglesWithoutAreaThatCloseASurfaceStay) {
+  const auto bytes = prove(alone(test::make_cube_with_t_junctions()));
+  const auto asset = Asset::from_bytes(bytes);
+  ASSERT_TRUE(asset.ok());
+  EXPECT_EQ(asset->meshes()[0].dropped_degenerate, 0U);
+  EXPECT_EQ(asset->meshes()[0].grid_collapsed, 6U);
+}
 
 TEST(HardNumbers, AllIdenticalTrianglesAreOneTriangleAndTheRestIsCounted) {
   const auto bytes = prove(alone(test::make_identical(3000)));

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "odd_shapes.h"
 
+#include <utility>
+
 #include "samples/noise.h"
 #include "samples/samples.h"
 
@@ -81,6 +83,89 @@ Primitive make_line_of_triangles(std::uint32_t count) {
     shape.indices.push_back(i);
   }
   shape.material = MaterialId(0U);
+  return shape;
+}
+
+Primitive make_fine_rings_beside_a_patch(std::uint64_t seed) {
+  samples::Random random(seed);
+  Primitive shape = samples::make_plane(12);
+  shape.material = MaterialId(0U);
+  for (Vec3d& p : shape.positions) p = p * 15.0 + Vec3d(0.0, 0.2 * random.unit(), 0.0);
+  constexpr std::uint32_t kAround = 24, kAcross = 9;
+  for (std::uint32_t ring = 0; ring < 6; ++ring) {
+    const double radius = 0.03 + 0.01 * ring, thickness = 0.0002 + 0.0001 * ring;
+    const auto first = static_cast<std::uint32_t>(shape.positions.size());
+    for (std::uint32_t i = 0; i < kAround; ++i) {
+      const Vec3d out(samples::cos_turns(static_cast<double>(i) / kAround), 0.0, samples::sin_turns(static_cast<double>(i) / kAround));
+      for (std::uint32_t j = 0; j < kAcross; ++j) {
+        const double beside = radius + thickness * samples::cos_turns(static_cast<double>(j) / kAcross);
+        shape.positions.push_back(Vec3d(2.0 * ring, 3.0, 5.0) + out * beside +
+                                  Vec3d(0.0, thickness * samples::sin_turns(static_cast<double>(j) / kAcross), 0.0));
+      }
+    }
+    for (std::uint32_t i = 0; i < kAround; ++i) {
+      for (std::uint32_t j = 0; j < kAcross; ++j) {
+        const std::uint32_t a = first + i * kAcross + j, b = first + i * kAcross + (j + 1) % kAcross;
+        const std::uint32_t c = first + (i + 1) % kAround * kAcross + j;
+        const std::uint32_t d = first + (i + 1) % kAround * kAcross + (j + 1) % kAcross;
+        for (const std::uint32_t v : {a, b, c, b, d, c}) shape.indices.push_back(v);
+      }
+    }
+  }
+  const std::size_t count = shape.indices.size() / 3;
+  const auto corner = [&](std::size_t t, std::size_t k) { return shape.indices[3 * t + k]; };
+  for (std::size_t t = 0; t < count; t += 7) {
+    for (const std::uint32_t v : {corner(t, 1), corner(t, 0), corner(t, 2)}) shape.indices.push_back(v);
+  }
+  for (std::size_t t = 0; t < count; t += 11) {
+    for (const std::uint32_t v : {corner(t, 0), corner(t, 1), corner(t, 1)}) shape.indices.push_back(v);
+  }
+  return shape;
+}
+
+Primitive make_ball_with_hairs() {
+  Primitive shape = samples::make_sphere(16);
+  shape.normals.clear();
+  shape.material = MaterialId(0U);
+  const auto at = [&](double x, double y, double z) {
+    shape.positions.emplace_back(x, y, z);
+    return static_cast<std::uint32_t>(shape.positions.size() - 1);
+  };
+  const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    for (const std::uint32_t v : {a, b, c}) shape.indices.push_back(v);
+  };
+  add(at(0, 1, 0), at(0, 1, 0), at(3, 0, 0));
+  add(at(0, 0.5, 0), at(0, 2, 0), at(0, 3, 0));
+  const std::uint32_t p = at(0, 0, 2), q = at(0, 0, 2.5), r = at(0, 0, 3), s = at(0, 0, 2.25);
+  add(p, r, q);
+  add(p, q, s);
+  return shape;
+}
+
+Primitive make_cube_with_t_junctions() {
+  Primitive shape = samples::make_cube(1);
+  shape.normals.clear();
+  shape.material = MaterialId(0U);
+  // Every edge of the first triangle gets two more vertices, which its neighbours do not have.
+  const std::uint32_t a = shape.indices[0], b = shape.indices[1], c = shape.indices[2];
+  shape.indices.erase(shape.indices.begin(), shape.indices.begin() + 3);
+  const auto add = [&](std::uint32_t i, std::uint32_t j, std::uint32_t k) {
+    for (const std::uint32_t v : {i, j, k}) shape.indices.push_back(v);
+  };
+  const auto between = [&](std::uint32_t i, std::uint32_t j, double t) {
+    shape.positions.push_back(shape.positions[i] * (1.0 - t) + shape.positions[j] * t);
+    return static_cast<std::uint32_t>(shape.positions.size() - 1);
+  };
+  shape.positions.push_back((shape.positions[a] * 2.0 + shape.positions[b] + shape.positions[c]) * 0.25);
+  const auto inside = static_cast<std::uint32_t>(shape.positions.size() - 1);
+  for (const auto& [i, j] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) {
+    const std::uint32_t first = between(i, j, 0.25), second = between(i, j, 0.5);
+    add(i, first, inside);
+    add(first, second, inside);
+    add(second, j, inside);
+    add(i, second, first);
+    add(i, j, second);
+  }
   return shape;
 }
 

@@ -69,14 +69,29 @@ TEST(Prepare, CountsDuplicatesByWindingAndKeepsTheRest) {
   EXPECT_EQ(mesh.triangles.size(), 2U);
 }
 
-TEST(Prepare, CountsRepeatedCornersAndKeepsCollinearTriangles) {
+TEST(Prepare, CountsTrianglesWithoutAreaAndKeepsThoseAlongAnEdge) {
   Primitive shape;
-  shape.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {2, 0, 0}, {0, 0, 0}};
-  shape.indices = {0, 1, 2, 0, 4, 1, 1, 1, 2, 0, 1, 3};
+  shape.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.5, 0, 0}, {0, 0, 0}, {2, 0, 0}};
+  shape.indices = {0, 1, 2, 0, 4, 1, 1, 1, 2, 0, 3, 1, 0, 1, 5};
   const PreparedMesh mesh = prepare(shape);
-  EXPECT_EQ(mesh.dropped_degenerate, 2U);
+  EXPECT_EQ(mesh.dropped_degenerate, 3U) << "two corners in one place, and one that sticks out";
   EXPECT_EQ(mesh.triangles.size(), 2U);
-  EXPECT_EQ(mesh.grid_collapsed, 1U) << "the collinear one has no area but its border is not zero";
+  EXPECT_EQ(mesh.grid_collapsed, 1U) << "the one along the edge has no area but its border is not zero";
+  EXPECT_DOUBLE_EQ(mesh.diagonal, std::sqrt(2.0)) << "what is no part of the source is not in its box";
+}
+
+TEST(Prepare, ATriangleWithoutAreaFarAwayDoesNotCoarsenTheGrid) {
+  Primitive shape = samples::make_sphere(5);
+  const PreparedMesh before = prepare(shape);
+  shape.positions.push_back({1e300, 1e300, 0});
+  shape.positions.push_back({1e300, 1e300, 0});
+  for (const std::uint32_t v : {0U, 1U, 2U}) shape.indices.push_back(shape.indices[0] + 0 * v);
+  const auto first = static_cast<std::uint32_t>(shape.positions.size() - 2);
+  for (const std::uint32_t v : {0U, first, first + 1}) shape.indices.push_back(v);
+  const PreparedMesh after = prepare(shape);
+  EXPECT_EQ(after.dropped_degenerate, 2U);
+  EXPECT_EQ(before.positions, after.positions);
+  EXPECT_EQ(before.diagonal, after.diagonal);
 }
 
 /// A sheet from which a needle stands out: 1 long, and narrower than a cell of the grid, beside other needles' corners.

@@ -254,26 +254,33 @@ TEST_F(VerifyDrops, AReversedTwinIsNoDuplicate) {
                   "V101"));
 }
 
-TEST_F(VerifyDrops, ATriangleOnALineStays) {
-  // Three positions on one line, all distinct: no degenerate, so it may not go missing, whatever is counted.
-  const auto line = [](Primitive& p) {
-    const auto first = static_cast<std::uint32_t>(p.positions.size());
-    const Vec3d a = p.positions[p.indices[0]];
-    const Vec3d b = p.positions[p.indices[1]];
-    for (const Vec3d& q : {a, b, a + (a - b)}) {
-      p.positions.push_back(q);
-      p.normals.push_back(p.normals[0]);
-      p.colors.push_back(p.colors[0]);
-    }
-    p.indices.insert(p.indices.end(), {first, first + 1, first + 2});
+TEST_F(VerifyDrops, ATriangleOnALineStaysWhereItLiesAlongAnEdge) {
+  // Three positions on one line, all distinct, by how far the third is along the edge from the first to the second.
+  const auto verify_line = [](double at) {
+    const auto line = [at](Primitive& p) {
+      const auto first = static_cast<std::uint32_t>(p.positions.size());
+      const Vec3d a = p.positions[p.indices[0]];
+      const Vec3d b = p.positions[p.indices[1]];
+      for (const Vec3d& q : {a, b, a + (b - a) * at}) {
+        p.positions.push_back(q);
+        p.normals.push_back(p.normals[0]);
+        p.colors.push_back(p.colors[0]);
+      }
+      p.indices.insert(p.indices.end(), {first, first + 1, first + 2});
+    };
+    return verify_with(line, [](auto& m) {
+      m.source_triangles += 1;
+      m.dropped_degenerate += 1;
+      m.source_vertices += 3;
+    });
   };
-  const VerifyReport told = verify_with(line, [](auto& m) {
-    m.source_triangles += 1;
-    m.dropped_degenerate += 1;
-    m.source_vertices += 3;
-  });
-  EXPECT_TRUE(has(told, "V101"));
-  EXPECT_TRUE(has(told, "V102"));
+  const VerifyReport inside = verify_line(0.5);  // it may not go missing, whatever is counted
+  EXPECT_TRUE(has(inside, "V101"));
+  EXPECT_TRUE(has(inside, "V102"));
+  for (const double beyond : {-1.0, 2.0}) {
+    const VerifyReport outside = verify_line(beyond);
+    EXPECT_EQ(outside.finding_count, 0U) << beyond << ": " << describe(outside);
+  }
 }
 
 }  // namespace

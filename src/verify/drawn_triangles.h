@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which triangles of a source belong into level 0, by the definition of docs/format.md ("The source"): those with area,
+// and those without that lie along edges of these. Internal to the judge.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/vec.h"
+
+namespace meshlode {
+
+/// Per triangle 1 if it belongs into level 0. `triangles` are corners as the file has them. O(n log n).
+[[nodiscard]] std::vector<std::uint8_t> find_drawn(std::span<const std::array<Vec3d, 3>> triangles);
+
+}  // namespace meshlode
