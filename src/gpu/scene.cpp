@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "gpu/shaders/frame.h"
+#include "select/far_instance.h"
 #include "select/select.h"
 #include "unpack/unpack.h"
 
@@ -22,8 +23,6 @@ Result<Buffer> make_table(Device& device, const std::vector<T>& table) {
   if (const Status done = device.upload(*buffer, bytes); !done) return done.error();
   return buffer;
 }
-
-constexpr std::uint32_t kNoGroup = 0xFFFFFFFFu;
 
 /// Selection errors of groups and nodes: infinite, so that they never pass, where an attribute deviates by too much.
 struct Errors {
@@ -57,11 +56,11 @@ std::vector<GpuMesh> mesh_table(const Asset& asset, const Errors& errors) {
     std::copy(mesh.origin, mesh.origin + 3, m.origin);
     m.step = std::ldexp(static_cast<double>(mesh.grid.mantissa), mesh.grid.log2);
     m.reach = mesh_reach(tables, mesh);
-    if (mesh.node_count > 0) {
-      const format::NodeRecord& root = asset.nodes()[mesh.first_node];
-      std::copy(root.center, root.center + 3, m.root_center);
-      m.root_radius = root.radius;
-    }
+    const FarBound far = find_far_bound(tables, mesh, errors.group);
+    std::copy(far.bound.center, far.bound.center + 3, m.root_center);
+    m.root_radius = far.bound.radius;
+    m.coarse_error = far.bound.error;
+    m.only_root = far.only_root;
     m.first_node = mesh.first_node;
     m.node_count = mesh.group_count > 0 ? mesh.node_count : 0;
     m.first_group = mesh.first_group;
@@ -73,16 +72,6 @@ std::vector<GpuMesh> mesh_table(const Asset& asset, const Errors& errors) {
     m.has_color = mesh.has_color;
     m.group_count = mesh.group_count;
     m.material = mesh.material;
-    m.only_root = kNoGroup;
-    std::uint32_t roots = 0;
-    for (std::uint32_t g = mesh.first_group; g < mesh.first_group + mesh.group_count; ++g) {
-      const float error = errors.group[g];
-      if (error < format::kInfiniteError) {
-        m.coarse_error = std::max(m.coarse_error, error);
-      } else {
-        m.only_root = roots++ == 0 ? g : kNoGroup;
-      }
-    }
     out.push_back(m);
   }
   return out;

@@ -23,6 +23,7 @@ struct DeviceInfo {
   bool is_software = false;
   bool has_mesh_shaders = false;
   std::uint32_t subgroup_size = 0;
+  std::uint32_t subpixel_bits = 4;  ///< of the hardware rasterizer: subPixelPrecisionBits
   double timestamp_ns = 1.0;  ///< of one tick
 };
 

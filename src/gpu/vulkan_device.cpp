@@ -121,7 +121,10 @@ Candidate describe(const Functions& f, VkPhysicalDevice device) {
       tagged<VkPhysicalDeviceVulkan11Properties>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES);
   VkPhysicalDeviceDriverProperties driver =
       tagged<VkPhysicalDeviceDriverProperties>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES);
+  VkPhysicalDeviceFloatControlsProperties floats =
+      tagged<VkPhysicalDeviceFloatControlsProperties>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FLOAT_CONTROLS_PROPERTIES);
   v11.pNext = &driver;
+  driver.pNext = &floats;
   VkPhysicalDeviceProperties2 properties =
       tagged<VkPhysicalDeviceProperties2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2);
   properties.pNext = &v11;
@@ -131,6 +134,7 @@ Candidate describe(const Functions& f, VkPhysicalDevice device) {
   info.driver = std::string(driver.driverName) + " " + driver.driverInfo;
   info.is_software = properties.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
   info.subgroup_size = v11.subgroupSize;
+  info.subpixel_bits = properties.properties.limits.subPixelPrecisionBits;
   info.timestamp_ns = static_cast<double>(properties.properties.limits.timestampPeriod);
   if (properties.properties.apiVersion < VK_API_VERSION_1_3) {
     info.missing = "Vulkan 1.3";
@@ -151,6 +155,9 @@ Candidate describe(const Functions& f, VkPhysicalDevice device) {
   };
   need(features.core.features.shaderInt64, "shaderInt64");
   need(features.core.features.shaderFloat64, "shaderFloat64");
+  // Without these a device may round towards zero, and ids rest on sums and products rounded to nearest.
+  need(floats.shaderRoundingModeRTEFloat32, "shaderRoundingModeRTEFloat32");
+  need(floats.shaderRoundingModeRTEFloat64, "shaderRoundingModeRTEFloat64");
   need(features.core.features.fragmentStoresAndAtomics, "fragmentStoresAndAtomics");
   need(features.v12.bufferDeviceAddress, "bufferDeviceAddress");
   need(features.v12.shaderBufferInt64Atomics, "shaderBufferInt64Atomics");

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Pipelines: one layout of push constants for all.
 #include <array>
+#include <vector>
 
+#include "gpu/float_controls.h"
 #include "gpu/vulkan_types.h"
 
 namespace meshlode::gpu {
@@ -13,9 +15,10 @@ struct ShaderModule {
   VkShaderModule module = VK_NULL_HANDLE;
 
   ShaderModule(DeviceImpl& d, std::span<const std::uint32_t> spirv) : device(d) {
+    const std::vector<std::uint32_t> words = declare_round_to_nearest_even(spirv);
     VkShaderModuleCreateInfo create = tagged<VkShaderModuleCreateInfo>(VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO);
-    create.codeSize = spirv.size_bytes();
-    create.pCode = spirv.data();
+    create.codeSize = words.size() * sizeof(std::uint32_t);
+    create.pCode = words.data();
     if (d.f.vkCreateShaderModule(d.device, &create, nullptr, &module) != VK_SUCCESS) module = VK_NULL_HANDLE;
   }
   ShaderModule(const ShaderModule&) = delete;

@@ -16,6 +16,9 @@ constexpr double kNestingCenterMargin = 6.0 / 16777216.0;  // 6u; the proof need
 /// A coarser error is at least (1 + this) times a finer one, or both are 0.
 constexpr double kNestingErrorMargin = 12.0 / 16777216.0;  // 12u; the proof needs 10.3u
 
+/// What a bound that is made from stored ones grows by; the builder's own growth from a finer error to a coarser one.
+constexpr double kNestingErrorGrowth = 0x1p-18;  // 64u
+
 struct StoredBound {
   float center[3];
   float radius;
@@ -50,6 +53,15 @@ struct StoredBound {
   if (outer >= format::kInfiniteError) return true;
   if (inner == 0.0F) return true;
   return double{outer} >= double{inner} * (1.0 + kNestingErrorMargin);
+}
+
+/// The smallest float above `inner` by the growth: an error that is nested over it and over every smaller one. 0 stays 0,
+/// since errors of 0 pass for every camera; infinite where no finite float is above. \pre not negative, not NaN
+[[nodiscard]] inline float coarser_error(float inner) {
+  const double grown = double{inner} * (1.0 + kNestingErrorGrowth);
+  if (!(grown < double{format::kInfiniteError})) return format::kInfiniteError;
+  const float nearest = static_cast<float>(grown);
+  return double{nearest} < grown ? std::nextafter(nearest, format::kInfiniteError) : nearest;
 }
 
 /// \pre for bounds that are not the same bits: a sphere is not nested in itself, though its rule agrees with itself.

@@ -37,7 +37,8 @@ struct GpuMesh {
   uint group_count;
   uint material;        // of every triangle; 0xFFFFFFFF: the clusters say
   // Of a mesh with one terminal group: where an instance is so far away that `coarse_error`, the largest finite error of a
-  // group, passes for the BVH's root sphere, every other group passes and that one alone is open.
+  // group grown as an inner node's is, passes for the BVH's root sphere, every other group passes and that one alone is
+  // open (select/far_instance.h).
   float coarse_error;
   uint only_root;       // that group; 0xFFFFFFFF: there is not exactly one
   uint reserved;

@@ -164,8 +164,8 @@ vec4 cull_row(Clip clip, uint row, double inverse_step) {
 }
 float gradient(vec4 row) { return length(row.xyz) * 1.00001; }
 
-// The terminal group of a far instance, if it alone is open: every other group passes where the largest of their errors
-// passes for the BVH's root sphere, which contains theirs (I4). Most instances of a large scene are of this kind.
+// The terminal group of a far instance, if it alone is open: every other group passes where a bound that nests over all of
+// them does (I4; select/far_instance.h). Most instances of a large scene are of this kind.
 uint only_open_group(uint id, MetricView view) {
   const uint group = MESH.only_root;
   if (group == kNone) return kNone;
