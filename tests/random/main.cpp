@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // random_scenes: scenes nobody chose, through the program.
 //   random_scenes run FIRST COUNT …   each seed is built, validated, verified and decoded; exit 6 where one fails
+//   random_scenes seeds SEED…         the same for the seeds named
 //   random_scenes replay FOLDER …     the same for the GLBs of a folder, with the build options of NAME.options beside
 //   them random_scenes write SEED OUT.glb  the scene and, on stdout, its contents and build options random_scenes
 //   shrink SEED OUT.glb --rule ID …   the smallest scene that still breaks the rule
@@ -196,12 +197,12 @@ TrialOptions trial_options(const Arguments& arguments, const fs::path& folder, c
   return options;
 }
 
-int run_seeds(const Arguments& arguments, std::uint64_t first, std::uint64_t count) {
+int run_seeds(const Arguments& arguments, const std::vector<std::uint64_t>& seeds) {
   const WorkFolder work;
-  std::vector<Entry> entries(count);
-  for_each(count, arguments.jobs, work.path(), [&](std::size_t i, const fs::path& folder) {
+  std::vector<Entry> entries(seeds.size());
+  for_each(seeds.size(), arguments.jobs, work.path(), [&](std::size_t i, const fs::path& folder) {
     Entry& entry = entries[i];
-    const std::uint64_t seed = first + i;
+    const std::uint64_t seed = seeds[i];
     const RandomScene scene = random_scene(seed);
     entry.name = "seed " + std::to_string(seed);
     entry.contents = scene.contents;
@@ -297,6 +298,7 @@ int usage() {
   std::fputs(
       "usage: random_scenes run FIRST COUNT [--jobs N] [--max-triangles N] [--max-refused PERCENT]\n"
       "                     [--shrink-into FOLDER] [--verbose]\n"
+      "       random_scenes seeds SEED... [the same]\n"
       "       random_scenes replay FOLDER [--jobs N] [--verbose]\n"
       "       random_scenes write SEED OUT.glb\n"
       "       random_scenes shrink SEED OUT.glb --rule ID [--shrink-seconds N]\n"
@@ -308,8 +310,16 @@ int usage() {
 int dispatch(const Arguments& arguments) {
   const auto& words = arguments.positional;
   std::uint64_t first = 0, count = 0;
+  std::vector<std::uint64_t> seeds;
   if (words[0] == "run" && words.size() == 3 && parse(words[1], first) && parse(words[2], count)) {
-    return run_seeds(arguments, first, count);
+    for (std::uint64_t i = 0; i < count; ++i) seeds.push_back(first + i);
+    return run_seeds(arguments, seeds);
+  }
+  if (words[0] == "seeds" && words.size() > 1) {
+    for (std::size_t i = 1; i < words.size(); ++i) {
+      if (!parse(words[i], seeds.emplace_back())) return usage();
+    }
+    return run_seeds(arguments, seeds);
   }
   if (words[0] == "replay" && words.size() == 2) return replay(arguments, words[1]);
   if (words.size() != 3 || !parse(words[1], first)) return usage();

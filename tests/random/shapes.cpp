@@ -260,7 +260,10 @@ Shape make_blocks(Dice& dice, std::uint32_t triangles) {
       }
     }
   }
-  if (shape.triangles.empty()) shape.triangle(shape.add({0, 0, 0}), shape.add({1, 0, 0}), shape.add({0, 1, 0}));
+  if (shape.triangles.empty()) {
+    for (const Vec3d& p : {Vec3d(0, 0, 0), Vec3d(1, 0, 0), Vec3d(0, 1, 0)}) shape.add(p);
+    shape.triangle(0, 1, 2);
+  }
   return shape;
 }
 
@@ -316,13 +319,13 @@ Shape make_plate(Dice& dice, std::uint32_t triangles) {
     return it->second;
   };
   const auto wall = [&](int i, int j, int k, int l) {
-    if (!is_open) shape.quad(corner(i, j, 0), corner(i, j, 1), corner(k, l, 1), corner(k, l, 0));
+    if (!is_open) shape.quad({corner(i, j, 0), corner(i, j, 1), corner(k, l, 1), corner(k, l, 0)});
   };
   for (int j = 0; j < static_cast<int>(n); ++j) {
     for (int i = 0; i < static_cast<int>(n); ++i) {
       if (is_hole(i, j)) continue;
-      shape.quad(corner(i, j, 1), corner(i, j + 1, 1), corner(i + 1, j + 1, 1), corner(i + 1, j, 1));
-      shape.quad(corner(i, j, 0), corner(i + 1, j, 0), corner(i + 1, j + 1, 0), corner(i, j + 1, 0));
+      shape.quad({corner(i, j, 1), corner(i, j + 1, 1), corner(i + 1, j + 1, 1), corner(i + 1, j, 1)});
+      shape.quad({corner(i, j, 0), corner(i + 1, j, 0), corner(i + 1, j + 1, 0), corner(i, j + 1, 0)});
       if (is_hole(i, j - 1)) wall(i, j, i + 1, j);
       if (is_hole(i, j + 1)) wall(i + 1, j + 1, i, j + 1);
       if (is_hole(i - 1, j)) wall(i, j + 1, i, j);

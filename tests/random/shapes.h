@@ -22,7 +22,8 @@ struct Shape {
     return static_cast<std::uint32_t>(points.size() - 1);
   }
   void triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) { triangles.push_back({a, b, c}); }
-  /// Corners in turn.
+  /// Corners in turn; for corners that are made on the way, whose order a braced list fixes.
+  void quad(const std::array<std::uint32_t, 4>& c) { quad(c[0], c[1], c[2], c[3]); }
   void quad(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
     triangle(a, b, c);
     triangle(a, c, d);
