@@ -147,11 +147,36 @@ class Scene:
         r.shuffle(triangles)
         return mode, [v for t in triangles for v in t] + [0] * r.choice((0, 0, 1, 2))
 
+    def awkward(self, vertices, corners, n):
+        """Needles narrower than any grid, hairs of no area, and one that closes a T-junction where the patch is flat."""
+        r = self.random
+
+        def add(like, position):
+            vertices.append((position,) + vertices[like][1:])
+            return len(vertices) - 1
+
+        for _ in range(r.randrange(1, 4)):
+            v, far = r.sample(range((n + 1) ** 2), 2)
+            x, y, z = vertices[v][0]
+            kind = r.randrange(3)
+            if kind == 0:
+                turn = [r.uniform(-1e-5, 1e-5) for _ in range(3)]
+                corners += [v, add(v, (x + turn[0], y + turn[1], z + turn[2])), far]
+            elif kind == 1:
+                corners += [v, add(v, (r.uniform(-1.1, 1.1), y, z)), add(v, (r.uniform(-1.1, 1.1), y, z))]
+            else:
+                v -= v % (n + 1) == n
+                a, b = vertices[v][0], vertices[v + 1][0]
+                corners += [v, v + 1, add(v, ((a[0] + b[0]) / 2, a[1], a[2]))]
+
     def primitive(self, material_count):
         r = self.random
         n = r.randrange(2, 11)
         vertices = self.patch(n)
         mode, corners = self.corners(n)
+        if mode == 4 and r.random() < 0.3:
+            corners = corners[:len(corners) - len(corners) % 3]
+            self.awkward(vertices, corners, n)
         if r.random() < 0.3:  # vertices that nothing names, in front and behind
             vertices = [vertices[0]] * 3 + vertices + [vertices[-1]] * r.choice((1, 900))
             corners = [v + 3 for v in corners]

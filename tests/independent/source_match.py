@@ -15,6 +15,7 @@ import sys
 from gltf import Gltf, as_f32
 from lode import Lode
 from rules import NONE, Unsupported
+from source import grid_points, is_kept
 
 MAX_FINDINGS = 8
 
@@ -86,14 +87,11 @@ class MeshMatch:
         self.source, self.index = source, index
         self.default_material = len(source.root.get("materials", []))
 
-    def grid_point(self, position):
-        return tuple(math.floor((p - o) / self.step + 0.5) for p, o in zip(position, self.origin))
-
     def moved(self, position, point):
         return math.sqrt(sum((q * self.step - (p - o)) ** 2 for p, o, q in zip(position, self.origin, point)))
 
     def source_corners(self):
-        """Triangles as ((three corners), material), with what the asset stores of each corner."""
+        """All triangles as ((three corners), material), with what the asset stores of each corner."""
         record, out = self.record, []
         stored_sets = record["uv_set_source"][:record["uv_set_count"]]
         self.vertices = 0
@@ -168,13 +166,15 @@ class MeshMatch:
                                                               f"where the source has {len(source)}")
         log.expect(record["source_vertices"] == self.vertices, f"{place}: {record['source_vertices']} source vertices "
                                                                f"where the source has {self.vertices}")
+        kept = is_kept([tuple(c.position for c in corners) for corners, _ in source])
+        degenerate = kept.count(False)
+        source = [s for s, is_there in zip(source, kept) if is_there]
         self.check_diagonal(source)
-        whole, degenerate, loose = {}, 0, 0
+        self.points, moved = grid_points([tuple(c.position for c in corners) for corners, _ in source], self.origin,
+                                         self.step)
+        log.count("corners of needles kept apart", moved)
+        whole, loose = {}, 0
         for corners, material in source:
-            points = [c.position for c in corners]
-            if len(set(points)) < 3:
-                degenerate += 1
-                continue
             exact = min(rotations(tuple((c.exact, i) for i, c in enumerate(corners))))
             first = exact[0][1]
             order = corners[first:] + corners[:first]
@@ -182,14 +182,14 @@ class MeshMatch:
             # Copies whose normals are computed may differ in their last bits, and then both stay.
             loose += key in whole and not corners[0].has_own_normal
             whole.setdefault(key, order)
-        duplicate = len(source) - degenerate - len(whole)
+        duplicate = len(source) - len(whole)
         log.expect(record["dropped_degenerate"] == degenerate,
                    f"{place}: {record['dropped_degenerate']} degenerate triangles dropped, the source has {degenerate}")
         log.expect(duplicate - loose <= record["dropped_duplicate"] <= duplicate,
                    f"{place}: {record['dropped_duplicate']} duplicates dropped, the source has {duplicate}")
         stored = self.stored_triangles(clusters)
-        kept = len(source) - degenerate - record["dropped_duplicate"]
-        log.expect(len(stored) == kept, f"{place}: level 0 has {len(stored)} triangles, the source {kept}")
+        expected = len(source) - record["dropped_duplicate"]
+        log.expect(len(stored) == expected, f"{place}: level 0 has {len(stored)} triangles, the source {expected}")
         self.match(whole, stored)
         log.count("triangles", len(stored))
         log.count("dropped", degenerate + duplicate)
@@ -201,31 +201,26 @@ class MeshMatch:
         self.log.expect(abs(stored - diagonal) <= 1e-12 * diagonal, f"{self.place}: diagonal {stored}, not {diagonal}")
 
     def match(self, whole, stored):
-        """Each source triangle to a stored one of its own: first by the nearest grid points, then what is left by places
-        within level 0's deviation, where the builder keeps corners of needles apart."""
+        """Each source triangle to a stored one of its own, on its grid points."""
         sources, places = {}, {}
         for (_, material), corners in whole.items():
-            key = material, min(rotations(tuple(self.grid_point(c.position) for c in corners)))
+            key = material, min(rotations(tuple(self.points[c.position] for c in corners)))
             sources.setdefault(key, []).append(corners)
         for vertices, material in stored:
             key = material, min(rotations(tuple(v[:3] for v in vertices)))
             places.setdefault(key, []).append(vertices)
-        left_sources, left_places = [], []
         for key in set(sources) | set(places):
-            a, b = pair(sources.get(key, []), places.get(key, []), self.fits)
-            left_sources += [(key[0], corners) for corners in a]
-            left_places += [(key[0], vertices) for vertices in b]
-        a, _ = pair(left_sources, left_places,
-                    lambda s, t: s[0] == t[0] and self.fits(s[1], t[1]))
-        self.log.count("moved off the nearest grid point", len(left_sources) - len(a))
-        for material, corners in a:
-            self.log.expect(False, f"{self.place}: no triangle of level 0 is the source's "
-                                   f"{[c.position for c in corners]} of material {material} with its attributes")
+            lonely, _ = pair(sources.get(key, []), places.get(key, []), self.fits)
+            for corners in lonely:
+                self.log.expect(False, f"{self.place}: no triangle of level 0 is the source's "
+                                       f"{[c.position for c in corners]} of material {key[0]} with its attributes")
 
     def fits(self, corners, vertices):
         return any(all(self.corner_fits(c, v) for c, v in zip(corners, turned)) for turned in rotations(vertices))
 
     def corner_fits(self, corner, vertex):
+        if self.points[corner.position] != vertex[:3]:
+            return False
         if self.moved(corner.position, vertex[:3]) > self.deviation * (1 + 1e-9) + 1e-300:
             return False
         at = 3
