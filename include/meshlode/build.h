@@ -112,7 +112,8 @@ struct BuildOptions {
                                       const BuildOptions& options);
 
 /// Reads a .gltf, .glb, .ply, .obj or .stl, builds it and writes the asset. Files that a glTF refers to are read from
-/// below its own folder only. Errors as above, and kUnsupported for a required extension that is not known.
+/// below its own folder only. Errors as above, kUnsupported for an extension that cannot be done
+/// without, and kUsage where the output is one of the files that were read, by whatever name.
 [[nodiscard]] Status build_file(const std::filesystem::path& input, const std::filesystem::path& output,
                                 const BuildOptions& options);
 

@@ -12,7 +12,7 @@
 #include <tbb/task_arena.h>
 
 #include "api_build/scene_input.h"
-#include "base/file.h"
+#include "base/output_files.h"
 #include "import/import.h"
 #include "pipeline/build.h"
 
@@ -70,9 +70,9 @@ auto guarded(const Body& body) -> decltype(body()) {
   }
 }
 
-Status write_result(Result<std::vector<std::uint8_t>> bytes, const std::filesystem::path& output) {
+Status write_result(Result<std::vector<std::uint8_t>> bytes, OutputFiles& files, const std::filesystem::path& output) {
   if (!bytes) return bytes.error();
-  return write_file_atomically(output, *bytes);
+  return files.write(output, *bytes);
 }
 
 }  // namespace
@@ -86,7 +86,11 @@ Result<std::vector<std::uint8_t>> build_asset(const SceneInput& scene, const Bui
 }
 
 Status build_asset_file(const SceneInput& scene, const std::filesystem::path& output, const BuildOptions& options) {
-  return guarded([&] { return write_result(build_asset(scene, options), output); });
+  return guarded([&]() -> Status {
+    OutputFiles files;
+    if (Status status = files.claim(output); !status) return status;
+    return write_result(build_asset(scene, options), files, output);
+  });
 }
 
 Status build_file(const std::filesystem::path& input, const std::filesystem::path& output,
@@ -94,9 +98,14 @@ Status build_file(const std::filesystem::path& input, const std::filesystem::pat
   return guarded([&]() -> Status {
     ImportOptions import_options;
     import_options.repair = options.repair;
+    std::vector<FileId> files_read;
+    import_options.files_read = &files_read;
     auto scene = import_scene(input, import_options);
     if (!scene) return scene.error();
-    return write_result(run_pipeline(*scene, options), output);
+    OutputFiles files;
+    files.keep(files_read);
+    if (Status status = files.claim(output); !status) return status;
+    return write_result(run_pipeline(*scene, options), files, output);
   });
 }
 

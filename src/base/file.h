@@ -2,14 +2,24 @@
 // Files appear whole or not at all; inputs are mapped, not copied.
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
-#include <vector>
 
 #include <meshlode/result.h>
 
 namespace meshlode {
+
+/// Which file it is, whatever it is called: the same for every link to it. Of this machine and moment only.
+struct FileId {
+  std::uint64_t device = 0, inode = 0;
+  friend auto operator<=>(const FileId&, const FileId&) = default;
+};
+
+/// Links are followed; nothing where there is no such file.
+[[nodiscard]] std::optional<FileId> find_file_id(const std::filesystem::path& path);
 
 /// A file mapped read-only. Regular files only: a pipe or a folder is an error. An empty file maps to an empty span.
 class MappedFile {
@@ -21,13 +31,15 @@ class MappedFile {
   MappedFile& operator=(const MappedFile&) = delete;
   ~MappedFile();
   [[nodiscard]] std::span<const std::uint8_t> bytes() const { return bytes_; }
+  [[nodiscard]] FileId id() const { return id_; }
 
  private:
   MappedFile() = default;
   std::span<const std::uint8_t> bytes_;
+  FileId id_;
 };
 
-/// Writes to a temporary file beside `path`, fsyncs it, and renames it over `path`. On error nothing is left behind.
+/// One file by itself (base/output_files.h): whole or not at all, and on error nothing is left behind.
 [[nodiscard]] Status write_file_atomically(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
 
 }  // namespace meshlode

@@ -40,6 +40,8 @@ PictureReport without_maps(const PictureReport& picture) {
 
 Status write_maps(const GpuVerifyOptions& options, const PictureReport& picture, JudgedCamera& judged) {
   if (options.out_folder.empty()) return Ok{};
+  OutputFiles own;
+  OutputFiles& files = options.files != nullptr ? *options.files : own;
   const Camera& camera = judged.camera.camera;
   std::string name = judged.camera.name;
   std::replace(name.begin(), name.end(), ' ', '-');
@@ -53,7 +55,7 @@ Status write_maps(const GpuVerifyOptions& options, const PictureReport& picture,
               {"normal-", picture.normal_degrees, 30.0}};
   for (const auto& map : maps) {
     const Image image = heat_map(map.values, camera.width, camera.height, static_cast<float>(map.full));
-    if (const Status s = write_file_atomically(options.out_folder + "/" + map.kind + name, encode_png(image)); !s) return s;
+    if (const Status s = files.write(options.out_folder + "/" + map.kind + name, encode_png(image)); !s) return s;
     judged.maps.push_back(map.kind + name);
   }
   return Ok{};

@@ -9,6 +9,7 @@
 
 #include <meshlode/result.h>
 
+#include "base/output_files.h"
 #include "gpu/cameras.h"
 #include "gpu/vulkan.h"
 #include "gpu/picture.h"
@@ -23,6 +24,7 @@ struct GpuVerifyOptions {
   double pixel_error = 1.0;
   /// Heat maps (PNG) of the camera with the largest displacement at each size, and of each that failed; empty: none.
   std::string out_folder;
+  OutputFiles* files = nullptr;  ///< what they are written by; null: by an object of their own
 };
 
 /// One picture against the source.

@@ -89,7 +89,9 @@ struct GltfModel {
 /// Files and data URIs, each opened and hashed once, in the order in which they are asked for.
 class GltfFiles {
  public:
-  explicit GltfFiles(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  /// `files_read`, where given, gets every file that is opened.
+  explicit GltfFiles(std::filesystem::path folder, std::vector<FileId>* files_read = nullptr)
+      : folder_(std::move(folder)), files_read_(files_read) {}
   /// The bytes of a URI; they live as long as this object.
   [[nodiscard]] Result<std::span<const std::uint8_t>> open(const std::string& uri);
   void hash(std::span<const std::uint8_t> bytes) { hasher_.update(bytes); }
@@ -98,6 +100,7 @@ class GltfFiles {
 
  private:
   std::filesystem::path folder_;
+  std::vector<FileId>* files_read_;
   std::map<std::string, std::size_t> by_path_;  ///< canonical path -> mapped_
   std::vector<MappedFile> mapped_;
   std::vector<std::vector<std::uint8_t>> decoded_;

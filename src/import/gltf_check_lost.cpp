@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Optional extensions that geometry would be lost without. A reader that leaves out an optional extension still shows the
-// scene, only plainer; but some hold the scene itself: copies of a mesh, or the bytes of its vertices. Those are refused
-// wherever they are used, whether the file requires them or not, so that nothing is lost with an exit code of 0.
+// Optional extensions that geometry would be lost without. A reader that leaves out an optional extension still shows
+// the scene, only plainer; but some hold the scene itself: copies of a mesh, or the bytes of its vertices. Those are
+// refused wherever they are used, whether the file requires them or not, so that nothing is lost with an exit code of 0.
 #include <algorithm>
 #include <set>
 
@@ -63,7 +63,8 @@ class LostGeometryChecker : public JsonChecker {
       const Json::Object* extensions = extensions_of(nodes[n]);
       if (extensions == nullptr) continue;
       for (const JsonMember& member : *extensions) {
-        if (is_instancing(member.key)) unread("/nodes/" + std::to_string(n), member.key, "the mesh's instances are lost");
+        if (!is_instancing(member.key)) continue;
+        unread("/nodes/" + std::to_string(n), member.key, "the mesh's instances are lost");
       }
     }
   }

@@ -17,6 +17,7 @@ Result<std::span<const std::uint8_t>> GltfFiles::open(const std::string& uri) {
   if (known != by_path_.end()) return mapped_[known->second].bytes();
   auto file = MappedFile::open(*path);
   if (!file) return Error{file.error().code, "", file.error().message()};
+  if (files_read_ != nullptr) files_read_->push_back(file->id());
   mapped_.push_back(std::move(*file));
   by_path_[path->string()] = mapped_.size() - 1;
   const auto bytes = mapped_.back().bytes();

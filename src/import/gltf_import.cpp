@@ -173,7 +173,7 @@ Result<Scene> import_gltf(const std::filesystem::path& path, std::span<const std
   asset.root = std::move(*root);
   if (auto status = check_gltf(asset.root, asset.file); !status) return status.error();
 
-  GltfFiles files(path.parent_path());
+  GltfFiles files(path.parent_path(), options.files_read);
   files.hash(bytes);
   if (auto status = load_buffers(asset, files, *container); !status) return status.error();
   auto model = parse_gltf_model(asset.root);

@@ -79,6 +79,7 @@ Result<Scene> import_scene(const std::filesystem::path& path, const ImportOption
   try {
     auto file = MappedFile::open(path);
     if (!file) return file.error();
+    if (options.files_read != nullptr) options.files_read->push_back(file->id());
     const auto bytes = file->bytes();
     const auto format = find_format(path, bytes);
     if (!format) {

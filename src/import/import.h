@@ -4,15 +4,18 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <vector>
 
 #include <meshlode/result.h>
 
+#include "base/file.h"
 #include "mesh/scene.h"
 
 namespace meshlode {
 
 struct ImportOptions {
   bool repair = false;  ///< drop (and count) triangles that touch non-finite positions or indices out of range
+  std::vector<FileId>* files_read = nullptr;  ///< gets every file that was opened, also where the import fails
 };
 
 /// Reads .gltf, .glb, .ply, .obj or .stl (told apart by content where possible, else by extension).

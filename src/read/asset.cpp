@@ -55,6 +55,11 @@ Result<Asset> Asset::from_vector(std::vector<std::uint8_t> bytes) {
   return asset;
 }
 
+std::optional<FileId> Asset::file_id() const {
+  const auto* file = std::get_if<MappedFile>(&storage_);
+  return file != nullptr ? std::optional(file->id()) : std::nullopt;
+}
+
 std::span<const std::uint8_t> Asset::blob_bytes(const format::BlobRecord& blob) const {
   return bytes_.subspan(blob.offset, blob.bytes);
 }

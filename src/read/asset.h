@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <variant>
@@ -28,6 +29,9 @@ class Asset {
   [[nodiscard]] static Result<Asset> from_bytes(std::span<const std::uint8_t> bytes);
   /// Takes the bytes.
   [[nodiscard]] static Result<Asset> from_vector(std::vector<std::uint8_t> bytes);
+
+  /// The file that open() mapped; nothing for bytes.
+  [[nodiscard]] std::optional<FileId> file_id() const;
 
   [[nodiscard]] const format::FileHeader& header() const { return *header_; }
   [[nodiscard]] std::span<const format::SectionEntry> sections() const { return sections_; }

@@ -325,6 +325,10 @@ TEST(ApiBuild, FilesAppearWholeOrNotAtAll) {
   std::ofstream(folder / "broken.glb") << "glTF but not really";
   EXPECT_EQ(build_file(folder / "broken.glb", output, {}).error().code, ErrorCode::kInvalid);
   EXPECT_TRUE(AssetFile::open(output).ok()) << "a failed build leaves the old file alone";
+  std::filesystem::copy_file(MESHLODE_SOURCE_DIR "/data/crystal.glb", folder / "scene.glb");
+  std::filesystem::create_hard_link(folder / "scene.glb", folder / "alias");
+  EXPECT_EQ(build_file(folder / "scene.glb", folder / "alias", {}).error().code, ErrorCode::kUsage);
+  EXPECT_EQ(std::filesystem::file_size(folder / "alias"), std::filesystem::file_size(MESHLODE_SOURCE_DIR "/data/crystal.glb"));
   std::filesystem::remove_all(folder);
 }
 

@@ -5,6 +5,7 @@
 #   run ARGS…     the command, its output and errors, and its exit code
 #   code ARGS…    the command and its exit code; where it failed also how many lines it printed on stderr
 #   files         the files in the folder, so that nothing partial is left unseen
+#   skip REASON   what cannot be tried here; the exit code is 77
 # UPDATE=1 writes CASE.expected instead.
 set -uo pipefail
 MESHLODE=$(realpath "$1"); JSON_CHECK=$(realpath "$2"); case_file=$(realpath "$3")
@@ -27,6 +28,7 @@ code() {
     echo "exit 0"
   fi
 }
+skip() { echo "SKIPPED: $(basename "$case_file"): $*" >&3; exit 77; }
 files() { echo "files:"; find . -type f | LC_ALL=C sort; }
 # json SCHEMA ARGS…: stdout must be one JSON document that the schema accepts.
 json() {
@@ -35,6 +37,7 @@ json() {
   "$MESHLODE" "$@" 2>../stderr | "$JSON_CHECK" "$SCHEMAS/$schema.schema.json"
 }
 
+exec 3>&1
 # shellcheck disable=SC1090
 source "$case_file" >../actual 2>&1
 if [ "${UPDATE:-0}" = 1 ]; then

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "base/file.h"
+#include "outputs.h"
 #include "export/colored_sets.h"
 #include "report/info.h"
 #include "report/json_writer.h"
@@ -56,7 +56,7 @@ int extract_stuck(const Asset& asset, const std::string& output, const OutputOpt
   }
   const auto glb = export_colored_sets(asset, sets);
   if (!glb) return print_error(glb.error());
-  if (const Status status = write_file_atomically(output, *glb); !status) return print_error(status.error());
+  if (const Status status = output_files().write(output, *glb); !status) return print_error(status.error());
 
   std::uint64_t triangles = 0;
   for (const ReasonCount& count : counts) triangles += count.triangles;

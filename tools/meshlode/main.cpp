@@ -1,43 +1,46 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // meshlode VERB ARGUMENTS: finds the verb and runs it. Exit codes are ErrorCode's values (include/meshlode/result.h).
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <string>
 #include <string_view>
 
 #include "options.h"
+#include "outputs.h"
 #include "verb.h"
 
 namespace meshlode::cli {
 namespace {
 
-void print_help(std::FILE* out) {
-  std::fputs(
+std::string help() {
+  std::string text =
       "meshlode: glTF in, a streamable LOD DAG of meshlets out, and a judge that proves it right.\n\n"
-      "usage: meshlode VERB [ARGUMENTS]\n\nverbs:\n",
-      out);
-  for (const Verb* verb : all_verbs()) std::fprintf(out, "  %-10s %s\n", verb->name, verb->summary);
-  std::fputs(
-      "\n`meshlode VERB --help` shows a verb's options and an example.\n"
-      "exit codes: 0 ok, 1 usage, 2 input or output failed, 3 invalid input, 4 build failed, 5 unsupported,\n"
-      "            6 a check failed\n",
-      out);
+      "usage: meshlode VERB [ARGUMENTS]\n\nverbs:\n";
+  for (const Verb* verb : all_verbs()) {
+    std::string name = verb->name;
+    name.resize(std::max<std::size_t>(name.size(), 10), ' ');
+    text += "  " + name + " " + verb->summary + "\n";
+  }
+  return text +
+         "\n`meshlode VERB --help` shows a verb's options and an example.\n"
+         "exit codes: 0 ok, 1 usage, 2 input or output failed (an interrupt too), 3 invalid input, 4 build failed,\n"
+         "            5 unsupported, 6 a check failed\n";
+}
+
+int print_or_fail(const std::string& text) {
+  return print_out(text) ? 0 : static_cast<int>(ErrorCode::kIo);
 }
 
 int run(std::span<char* const> args) {
   if (args.empty()) {
-    print_help(stderr);
+    std::fputs(help().c_str(), stderr);
     return static_cast<int>(ErrorCode::kUsage);
   }
   const std::string_view name = args[0];
-  if (name == "--help" || name == "-h" || name == "help") {
-    print_help(stdout);
-    return 0;
-  }
-  if (name == "--version") {
-    std::puts("meshlode " MESHLODE_VERSION);
-    return 0;
-  }
+  if (name == "--help" || name == "-h" || name == "help") return print_or_fail(help());
+  if (name == "--version") return print_or_fail("meshlode " MESHLODE_VERSION "\n");
   for (const Verb* verb : all_verbs()) {
     if (name == verb->name) return verb->run(*verb, args.subspan(1));
   }
@@ -50,6 +53,7 @@ int run(std::span<char* const> args) {
 int main(int argc, char** argv) {
   using meshlode::ErrorCode;
   using meshlode::cli::print_error;
+  meshlode::cli::watch_signals();
   // Rooms return errors as values; what may still arrive here is memory running out, and standard library surprises.
   try {
     return meshlode::cli::run(std::span<char* const>(argv, static_cast<std::size_t>(argc)).subspan(argc > 0 ? 1 : 0));

@@ -3,9 +3,11 @@
 #include "options.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
@@ -143,7 +145,7 @@ int print_error(const Error& error) {
 
 bool print_out(const std::string& text) {
   const bool ok = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
-  if (!ok) print_error({ErrorCode::kIo, "stdout", "cannot write"});
+  if (!ok) print_error({ErrorCode::kIo, "stdout", std::string("cannot write: ") + std::strerror(errno)});
   return ok;
 }
 

@@ -11,9 +11,9 @@
 #include <set>
 #include <string_view>
 
-#include "base/file.h"
 #include "import/import.h"
 #include "options.h"
+#include "outputs.h"
 #include "pipeline/build.h"
 #include "progress.h"
 #include "report/json_writer.h"
@@ -34,6 +34,7 @@ struct JobResult {
   Job job;
   int exit_code = 0;
   std::string error;
+  bool is_report_refused = false;  ///< --report names a file of the scene
   double seconds = 0.0;
   std::uint64_t triangles = 0;
   std::uint64_t meshes = 0, instances = 0;
@@ -123,22 +124,45 @@ Result<std::vector<Job>> plan_jobs(const std::vector<std::string>& inputs, const
   return jobs;
 }
 
-Status check_output(const Job& job, bool make_folders) {
-  std::error_code ec;
-  if (fs::equivalent(job.input, job.output, ec) && !ec) {
-    return Error{ErrorCode::kUsage, job.output.string(), "the output would overwrite the input"};
+/// No output may be any input, nor the report an asset: checked before the first job has written anything.
+Status check_outputs(const std::vector<Job>& jobs, const std::string& report_path) {
+  for (const Job& job : jobs) {
+    if (const auto id = find_file_id(job.input)) output_files().keep(*id);
   }
-  if (make_folders && job.output.has_parent_path()) {
-    fs::create_directories(job.output.parent_path(), ec);
-    if (ec) return Error{ErrorCode::kIo, job.output.parent_path().string(), ec.message()};
+  if (report_path.empty()) return Ok{};
+  if (Status free = output_files().claim(report_path); !free) return free;
+  for (const Job& job : jobs) {
+    if (is_same_place(job.output, report_path)) {
+      return Error{ErrorCode::kUsage, "--report", "the report would overwrite the asset " + job.output.string()};
+    }
   }
   return Ok{};
 }
 
-Result<std::vector<std::uint8_t>> import_and_build(const fs::path& input, const PipelineOptions& options,
-                                                   Progress& progress, JobResult& result) {
+Status make_folder(const fs::path& folder) {
+  std::error_code ec;
+  if (!folder.empty()) fs::create_directories(folder, ec);
+  if (ec) return Error{ErrorCode::kIo, folder.string(), ec.message()};
+  return Ok{};
+}
+
+/// What the import has opened, the scene's buffers and images among it, is no place for an output.
+Status check_against_read(const fs::path& output, const std::string& report_path, JobResult& result) {
+  if (Status free = output_files().claim(output); !free) return free;
+  if (report_path.empty()) return Ok{};
+  Status free = output_files().claim(report_path);
+  result.is_report_refused = !free;
+  return free;
+}
+
+Result<std::vector<std::uint8_t>> import_and_build(const Job& job, const PipelineOptions& options,
+                                                   const std::string& report_path, Progress& progress,
+                                                   JobResult& result) {
   const Timer import_timer;
-  Result<Scene> scene = import_scene(input, ImportOptions{options.repair});
+  std::vector<FileId> files_read;
+  Result<Scene> scene = import_scene(job.input, ImportOptions{options.repair, &files_read});
+  output_files().keep(files_read);
+  if (const Status free = check_against_read(job.output, report_path, result); !free) return free.error();
   if (!scene) return scene.error();
   result.stages.push_back({"import", import_timer.seconds()});
   result.meshes = scene->meshes.size();
@@ -158,7 +182,13 @@ Result<std::vector<std::uint8_t>> import_and_build(const fs::path& input, const 
   return bytes;
 }
 
-JobResult run_job(const Job& job, const PipelineOptions& options, bool make_folders, Progress& progress) {
+struct JobOptions {
+  PipelineOptions pipeline;
+  std::string report_path;
+  bool make_folders = false;  ///< for the output, below -O
+};
+
+JobResult run_job(const Job& job, const JobOptions& options, Progress& progress) {
   JobResult result;
   result.job = job;
   const Timer timer;
@@ -169,16 +199,19 @@ JobResult run_job(const Job& job, const PipelineOptions& options, bool make_fold
     result.seconds = timer.seconds();
     return result;
   };
-  if (const Status ok = check_output(job, make_folders); !ok) return fail(ok.error());
+  if (options.make_folders) {
+    if (const Status made = make_folder(job.output.parent_path()); !made) return fail(made.error());
+  }
+  if (const Status free = output_files().claim(job.output); !free) return fail(free.error());
   progress.start(job.input.filename().string());
-  auto bytes = import_and_build(job.input, options, progress, result);
+  auto bytes = import_and_build(job, options.pipeline, options.report_path, progress, result);
   if (!bytes) {
     Error error = bytes.error();
     if (error.where.empty()) error.where = job.input.string();
     return fail(error);
   }
   const Timer write_timer;
-  if (const Status ok = write_file_atomically(job.output, *bytes); !ok) return fail(ok.error());
+  if (const Status ok = output_files().write(job.output, *bytes); !ok) return fail(ok.error());
   result.stages.push_back({"write_file", write_timer.seconds()});
   result.bytes = bytes->size();
   result.seconds = timer.seconds();
@@ -369,20 +402,25 @@ int run_build(const Verb& verb, std::span<char* const> args) {
   const auto plan = plan_jobs(inputs, output, output_folder);
   if (!plan) return print_error(plan.error());
 
+  if (const Status made = make_folder(output_folder); !made) return print_error(made.error());
+  if (const Status free = check_outputs(*plan, report_path); !free) return print_error(free.error());
+  const JobOptions job_options{*options, report_path, !output_folder.empty()};
+
   JobLimit limit(jobs);
   std::vector<JobResult> results;
   int worst = 0;
+  bool is_report_refused = false;
   if (plan->empty()) worst = print_error({ErrorCode::kIo, inputs.front(), "no scene below this folder"});
   for (std::size_t i = 0; i < plan->size(); ++i) {
     Progress progress(out.quiet, i, plan->size());
-    limit.run([&] { results.push_back(run_job((*plan)[i], *options, !output_folder.empty(), progress)); });
+    limit.run([&] { results.push_back(run_job((*plan)[i], job_options, progress)); });
     worst = std::max(worst, results.back().exit_code);
+    is_report_refused = is_report_refused || results.back().is_report_refused;
     if (!out.quiet && !out.json() && results.back().exit_code == 0) print_summary(results.back());
   }
   const std::string text = report_json(results, jobs, worst);
-  if (!report_path.empty()) {
-    const auto* data = reinterpret_cast<const std::uint8_t*>(text.data());
-    if (const Status ok = write_file_atomically(report_path, {data, text.size()}); !ok) {
+  if (!report_path.empty() && !is_report_refused) {
+    if (const Status ok = write_text(report_path, text); !ok) {
       worst = std::max(worst, print_error(ok.error()));
     }
   }

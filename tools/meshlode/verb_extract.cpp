@@ -5,15 +5,14 @@
 #include <charconv>
 #include <cinttypes>
 #include <cstdio>
-#include <filesystem>
 #include <string>
 #include <vector>
 
-#include "base/file.h"
 #include "export/export.h"
 #include "extract_cuts.h"
 #include "extract_stuck.h"
 #include "options.h"
+#include "outputs.h"
 #include "read/asset.h"
 #include "report/json_writer.h"
 #include "verb.h"
@@ -42,8 +41,6 @@ Status check_options(const ExtractOptions& o) {
   } else if (auto status = check_request(o.request); !status) {
     return status.error();
   }
-  std::error_code ignored;
-  if (std::filesystem::equivalent(o.input, *o.output, ignored)) return usage("-o", "is the input itself");
   return Ok{};
 }
 
@@ -216,6 +213,8 @@ int run_extract(const Verb& verb, std::span<char* const> args) {
 
   auto asset = Asset::open(o.input);
   if (!asset) return print_error(asset.error());
+  if (const auto id = asset->file_id()) output_files().keep(*id);
+  if (const Status free = output_files().claim(*o.output); !free) return print_error(free.error());
   if (o.is_stuck) return extract_stuck(*asset, *o.output, o.out);
   auto chosen = choose_meshes(*asset, o.mesh);
   if (!chosen) return print_error(chosen.error());
@@ -227,7 +226,7 @@ int run_extract(const Verb& verb, std::span<char* const> args) {
     error.where = error.where.empty() ? o.input : o.input + ": " + error.where;
     return print_error(error);
   }
-  if (auto status = write_file_atomically(*o.output, *glb); !status) return print_error(status.error());
+  if (auto status = output_files().write(*o.output, *glb); !status) return print_error(status.error());
   if (o.out.json()) {
     if (!print_out(describe_json(*asset, *cuts, r.is_chain(), glb->size()))) return static_cast<int>(ErrorCode::kIo);
   } else if (!o.out.quiet) {

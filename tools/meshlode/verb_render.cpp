@@ -5,13 +5,13 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "base/file.h"
 #include "bounds_options.h"
 #include "camera_options.h"
 #include "gpu/frame.h"
 #include "gpu/plan.h"
 #include "gpu/shaders/frame.h"
 #include "options.h"
+#include "outputs.h"
 #include "raster/legend.h"
 #include "raster/raster.h"
 #include "report/json_writer.h"
@@ -279,6 +279,8 @@ int run_render(const Verb& verb, std::span<char* const> args) {
   const JobLimit limit(options.jobs);
   const Result<Asset> asset = Asset::open(options.input);
   if (!asset) return print_error(asset.error());
+  if (const auto id = asset->file_id()) output_files().keep(*id);
+  if (const Status free = output_files().claim(options.output); !free) return print_error(free.error());
   const Result<Camera> camera = make_camera(options.camera, *asset);
   if (!camera) return print_error(camera.error());
 
@@ -297,7 +299,7 @@ int run_render(const Verb& verb, std::span<char* const> args) {
   const VisibilityBuffer& visibility = drawn->visibility;
   const std::vector<std::uint8_t> png = encode_png(drawn->image);
   if (png.empty()) return print_error({ErrorCode::kIo, options.output, "the picture is too large to compress"});
-  if (const Status written = write_file_atomically(options.output, png); !written) return print_error(written.error());
+  if (const Status written = output_files().write(options.output, png); !written) return print_error(written.error());
   if (options.report.quiet && !options.report.json()) return 0;
   const RenderStats stats = measure(*asset, cut, visibility);
   const std::string text =

@@ -2,10 +2,12 @@
 #include <algorithm>
 #include <cstdio>
 #include <string>
+#include <vector>
 
 #include "base/file.h"
 #include "import/import.h"
 #include "options.h"
+#include "outputs.h"
 #include "read/asset.h"
 #include "report/json_writer.h"
 #include "verb.h"
@@ -118,7 +120,10 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
   const JobLimit limit(jobs);
   const Result<Asset> asset = Asset::open(path);
   if (!asset) return print_error(asset.error());
-  Result<Scene> source = import_scene(source_path, {.repair = was_repaired(*asset)});
+  if (const auto id = asset->file_id()) output_files().keep(*id);
+  std::vector<FileId> files_read;
+  Result<Scene> source = import_scene(source_path, {.repair = was_repaired(*asset), .files_read = &files_read});
+  output_files().keep(files_read);
   if (!source) return print_error(source.error());
   VerifyReport report = verify_asset(*asset, *source, options);
   if (gpu_options.is_on) {

@@ -9,6 +9,7 @@
 
 #include "base/file.h"
 #include "gpu/verify_gpu.h"
+#include "outputs.h"
 #include "report/json_writer.h"
 
 namespace meshlode::cli {
@@ -77,9 +78,11 @@ Status verify_with_gpu(const Asset& asset, const Scene& source, const GpuOptions
   judge.orbits = options.orbits;
   judge.pixel_error = options.pixel_error;
   judge.out_folder = options.out_folder;
+  judge.files = &output_files();
   if (!options.path.empty()) {
     const auto file = MappedFile::open(options.path);
     if (!file) return file.error();
+    output_files().keep(file->id());
     const std::span<const std::uint8_t> bytes = file->bytes();
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     Camera base;
@@ -87,15 +90,17 @@ Status verify_with_gpu(const Asset& asset, const Scene& source, const GpuOptions
     if (!path) return Error{path.error().code, options.path + ": " + path.error().where, path.error().detail};
     judge.path = std::move(*path);
   }
+  const std::string report_path = options.out_folder + "/gpu.json";
+  if (!options.out_folder.empty()) {
+    if (const Status free = output_files().claim(report_path); !free) return free;
+  }
   std::vector<Surface> surfaces;
   for (const SourceMesh& mesh : source.meshes) surfaces.push_back(surface_of_source(mesh));
   const auto verified = gpu::verify_on_gpu(asset, surfaces, judge);
   if (!verified) return verified.error();
   for (const std::string& warning : verified->warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
   if (!options.out_folder.empty()) {
-    const std::string text = gpu_json(options, *verified);
-    const std::span<const std::uint8_t> bytes(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
-    if (const Status written = write_file_atomically(options.out_folder + "/gpu.json", bytes); !written) return written;
+    if (const Status written = write_text(report_path, gpu_json(options, *verified)); !written) return written;
   }
   for (const gpu::GpuCheck& check : verified->checks) {
     report.checks.push_back({check.invariant, verified->device.name + ": " + check.what, check.items, check.failures,
