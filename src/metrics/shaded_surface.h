@@ -21,7 +21,8 @@ struct ShadedSurface {
   std::array<std::vector<Vec2f>, kMaxUvSets> uvs;  ///< by TEXCOORD_n
 };
 
-/// Triangles with area alone, as surface_of_source. A primitive without normals is shaded flat (glTF 2.0, 3.7.2.1): its triangles get vertices of their own.
+/// Triangles with area alone, as surface_of_source. A primitive without normals is shaded flat (glTF 2.0, 3.7.2.1): its
+/// triangles get vertices of their own.
 [[nodiscard]] ShadedSurface shaded_surface_of_source(const SourceMesh& mesh);
 
 /// Clusters of one mesh as decoded, in mesh space (origin included). No normals where the asset has none by option, a

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Collinearity by a filter in doubles and, where that cannot tell, in whole numbers of any length (Boost.Multiprecision;
-// the one file of this room that sees Boost).
+// Collinearity by a filter in doubles and, where that cannot tell, in whole numbers of any length
+// (Boost.Multiprecision; the one file of this room that sees Boost).
 #include "prepare/zero_area.h"
 
 #include <algorithm>
@@ -59,7 +59,9 @@ bool are_exactly_collinear(const std::array<Vec3d, 3>& corners) {
   return u[1] * v[2] == u[2] * v[1] && u[2] * v[0] == u[0] * v[2] && u[0] * v[1] == u[1] * v[0];
 }
 
-auto tuple_of(const Vec3d& p) { return std::tuple(p.x, p.y, p.z); }
+auto tuple_of(const Vec3d& p) {
+  return std::tuple(p.x, p.y, p.z);
+}
 
 /// Triangles on a line, by the numbers of their corners. Numbers ascend by x, y, z, and so along every line: the middle
 /// number is the middle corner, and the two others end the longest edge.
@@ -133,9 +135,8 @@ class Lines {
   }
   [[nodiscard]] std::uint32_t number_of(std::uint32_t vertex) const {
     const Vec3d& p = positions_[vertex];
-    const auto found = std::lower_bound(points_.begin(), points_.end(), p, [](const Vec3d& a, const Vec3d& b) {
-      return tuple_of(a) < tuple_of(b);
-    });
+    const auto found = std::lower_bound(points_.begin(), points_.end(), p,
+                                        [](const Vec3d& a, const Vec3d& b) { return tuple_of(a) < tuple_of(b); });
     return found != points_.end() && *found == p ? static_cast<std::uint32_t>(found - points_.begin()) : kNone;
   }
   [[nodiscard]] std::uint32_t id_of(const Edge& edge) const {
@@ -145,12 +146,12 @@ class Lines {
 
   std::span<const Vec3d> positions_;
   std::span<const std::uint32_t> triangles_;
-  std::vector<Vec3d> points_;                                    ///< corners of the triangles on a line, ascending
-  std::vector<std::array<Edge, 3>> lines_;                       ///< per triangle on a line: two short edges, the long one
-  std::vector<Edge> edges_;                                      ///< of them, ascending
+  std::vector<Vec3d> points_;               ///< corners of the triangles on a line, ascending
+  std::vector<std::array<Edge, 3>> lines_;  ///< per triangle on a line: two short edges, the long one
+  std::vector<Edge> edges_;                 ///< of them, ascending
   std::vector<std::pair<std::uint32_t, std::uint32_t>> users_;  ///< edge, triangle on a line
-  std::vector<std::uint8_t> is_covered_;                         ///< per edge
-  std::vector<std::uint32_t> to_visit_;                          ///< edges covered since
+  std::vector<std::uint8_t> is_covered_;                        ///< per edge
+  std::vector<std::uint32_t> to_visit_;                         ///< edges covered since
 };
 
 enum class Shape : std::uint8_t { kArea, kLine, kRepeatedCorner };

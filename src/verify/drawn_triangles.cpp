@@ -20,7 +20,9 @@ struct Point {
   auto operator<=>(const Point&) const = default;
 };
 
-Point as_point(const Vec3d& p) { return {p.x + 0.0, p.y + 0.0, p.z + 0.0}; }
+Point as_point(const Vec3d& p) {
+  return {p.x + 0.0, p.y + 0.0, p.z + 0.0};
+}
 
 struct Segment {
   Point low, high;

@@ -21,7 +21,9 @@ constexpr std::int64_t kNeedleLength = 4;
 /// Squared half diagonal of a cell, in steps.
 constexpr double kReach2 = 0.75;
 
-auto tuple_of(const Vec3d& p) { return std::tuple(p.x, p.y, p.z); }
+auto tuple_of(const Vec3d& p) {
+  return std::tuple(p.x, p.y, p.z);
+}
 
 bool is_long(const GridPoint& from, const GridPoint& to) {
   std::int64_t longest = 0;
@@ -48,7 +50,9 @@ GridPoint MovedVertices::point_at(const Vec3d& relative) const {
   return nearest(relative);
 }
 
-GridPoint MovedVertices::point_of(const Vec3d& position) const { return point_at(relative(position)); }
+GridPoint MovedVertices::point_of(const Vec3d& position) const {
+  return point_at(relative(position));
+}
 
 void MovedVertices::find(std::span<const std::array<Vec3d, 3>> triangles) {
   moved_.clear();

@@ -96,7 +96,8 @@ Primitive make_fine_rings_beside_a_patch(std::uint64_t seed) {
     const double radius = 0.03 + 0.01 * ring, thickness = 0.0002 + 0.0001 * ring;
     const auto first = static_cast<std::uint32_t>(shape.positions.size());
     for (std::uint32_t i = 0; i < kAround; ++i) {
-      const Vec3d out(samples::cos_turns(static_cast<double>(i) / kAround), 0.0, samples::sin_turns(static_cast<double>(i) / kAround));
+      const Vec3d out(samples::cos_turns(static_cast<double>(i) / kAround), 0.0,
+                      samples::sin_turns(static_cast<double>(i) / kAround));
       for (std::uint32_t j = 0; j < kAcross; ++j) {
         const double beside = radius + thickness * samples::cos_turns(static_cast<double>(j) / kAcross);
         shape.positions.push_back(Vec3d(2.0 * ring, 3.0, 5.0) + out * beside +

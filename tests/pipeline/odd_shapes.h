@@ -20,8 +20,8 @@ namespace meshlode::test {
 [[nodiscard]] Primitive make_coincident_spheres(std::uint32_t n, std::uint32_t sheets);
 /// All corners of `count` triangles are random points on one line.
 [[nodiscard]] Primitive make_line_of_triangles(std::uint32_t count);
-/// Rings that are many steps of the grid long and less than one wide, beside a patch 600 times their size; every seventh
-/// triangle once more from behind, every eleventh with a corner repeated.
+/// Rings that are many steps of the grid long and less than one wide, beside a patch 600 times their size; every
+/// seventh triangle once more from behind, every eleventh with a corner repeated.
 [[nodiscard]] Primitive make_fine_rings_beside_a_patch(std::uint64_t seed);
 /// A ball, and triangles without area that stick out of it by twice its radius: with two corners at one place, with
 /// three on a line, and in a chain. Its level 0 is the ball.

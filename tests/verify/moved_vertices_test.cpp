@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The judge's points on the grid: by the rule of docs/format.md ("Grid points"), case by case, and against the builder's,
-// which shares no line of code with it.
+// The judge's points on the grid: by the rule of docs/format.md ("Grid points"), case by case, and against the
+// builder's, which shares no line of code with it.
 #include "verify/moved_vertices.h"
 
 #include <algorithm>
@@ -50,7 +50,8 @@ TEST(MovedVertices, AShortTriangleIsNoNeedle) {
 
 TEST(MovedVertices, APointThatAVertexIsNearestToIsNotFree) {
   const Vec3d beside{0.9, 0.0, 0.0};
-  EXPECT_TRUE(moved({{kA, kB, kTip}, {beside, {5, 5, 5}, {5, 6, 9}}}).empty()) << "up by 0.9 is too far, and a has only b's side";
+  EXPECT_TRUE(moved({{kA, kB, kTip}, {beside, {5, 5, 5}, {5, 6, 9}}}).empty())
+      << "up by 0.9 is too far, and a has only b's side";
   // A vertex that has moved does not hold the point it came from against anybody, but holds the one it went to.
   const Vec3d other{0.46, 0.1, 0.0};
   const MovedVertices vertices = moved({{kA, kB, kTip}, {kA, other, kTip}});
