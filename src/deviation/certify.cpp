@@ -32,10 +32,23 @@ constexpr std::size_t kMaxPieces = 512;
 // A piece is good enough when it is bounded to this share above its own farthest corner, or this share of the largest.
 constexpr double kTolerance = 0.05;
 constexpr double kShareOfLargest = 0.03;
-// Distances are computed in doubles. Over the inside of a triangle the error is the largest: about 1e-16 over the sine
-// of its sharpest corner, which is at least 1e-5 there (point_distance.h), times its length. Twenty times that,
-// outward.
-constexpr double kRelativeMargin = 2e-10;
+// What doubles may lose in one simplification, with u = 2^-53 and C the largest coordinate (relative to the origin):
+// a distance 8u of itself and 9u of the triangle's longest edge, which is 2√3 C at most (point_distance.h): 31u C. A new
+// corner of a piece 1.8u C where an edge is halved, 8.7u C where a plane cuts it and five times that where the cut is
+// searched for (find_balance): over kMaxDepth cuts, kMaxCuts of them not halvings, 16 · 44 + 8 · 1.8 < 720u C. A point of
+// the triangle is that near to the hull of a piece, whose corners bound its distance. Roots, squares, sums and this
+// margin itself: 8u. And at level 0 the source's corners relative to the origin: 2u C.
+constexpr double kRelativeMargin = 0x1p-49;    // 16u
+constexpr double kCoordinateMargin = 0x1p-43;  // 1024u, of C
+
+/// The margin added; what is not a number, or not finite, is no bound.
+double rounded_up(double bound, double largest_coordinate) {
+  const double up = bound * (1.0 + kRelativeMargin) + largest_coordinate * kCoordinateMargin;
+  return up <= std::numeric_limits<double>::max() ? up : std::numeric_limits<double>::infinity();
+}
+
+/// The larger one, or what is not a number.
+double larger(double a, double b) { return b <= a ? a : b; }
 
 struct Piece {
   std::array<Vec3d, kMaxCorners> corner;
@@ -113,8 +126,8 @@ class OneWay {
     for (std::size_t j = 0; j < piece.count; ++j) {
       const double d2 = piece.place[j] == place ? piece.distance[j] * piece.distance[j]
                                                 : point_triangle_distance2(piece.corner[j], corners);
-      if (d2 > farthest2) {
-        if (d2 >= beaten2) return;
+      if (!(d2 <= farthest2)) {
+        if (!(d2 < beaten2)) return;  // not a number either
         farthest2 = d2;
         corner = j;
       }
@@ -286,15 +299,14 @@ CertifiedGroup certify_group(const GroupSurface& finer, std::span<const Triangle
   SurfaceTree finer_tree, coarser_tree;
   finer_tree.build({finer.positions, finer.triangles});
   coarser_tree.build({coarser.positions, coarser.triangles});
-  const double margin = kRelativeMargin * std::max(largest_coordinate(finer), largest_coordinate(coarser));
-  const auto rounded_up = [&](double bound) { return bound * (1.0 + kRelativeMargin) + margin; };
+  const double coordinate = std::max(largest_coordinate(finer), largest_coordinate(coarser));
   cover_surface(finer, coarser_tree, [&](std::size_t t, std::uint32_t target, double bound) {
     double& known = result.bounds[target].from_source;
-    known = std::max(known, rounded_up(finer_bounds[t].from_source + bound));
+    known = std::max(known, rounded_up(finer_bounds[t].from_source + bound, coordinate));
   });
   cover_surface(coarser, finer_tree, [&](std::size_t t, std::uint32_t target, double bound) {
     double& known = result.bounds[t].to_source;
-    known = std::max(known, rounded_up(bound + finer_bounds[target].to_source));
+    known = std::max(known, rounded_up(bound + finer_bounds[target].to_source, coordinate));
   });
   for (const TriangleBound& bound : result.bounds) {
     result.deviation = std::max(result.deviation, std::max(bound.from_source, bound.to_source));
@@ -306,11 +318,11 @@ TriangleBound initial_bound(const TriangleCorners3& exact, const TriangleCorners
   double largest2 = 0.0, coordinate = 0.0;
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec3d moved = exact[k] - on_grid[k];
-    largest2 = std::max(largest2, glm::dot(moved, moved));
+    largest2 = larger(largest2, glm::dot(moved, moved));
     const Vec3d p = glm::abs(exact[k]);
-    coordinate = std::max(coordinate, std::max(p.x, std::max(p.y, p.z)));
+    coordinate = larger(coordinate, std::max(p.x, std::max(p.y, p.z)));
   }
-  const double bound = std::sqrt(largest2) * (1.0 + kRelativeMargin) + kRelativeMargin * coordinate;
+  const double bound = rounded_up(std::sqrt(largest2), coordinate);
   return {bound, bound};
 }
 

@@ -21,9 +21,12 @@ using TriangleCorners = std::array<Vec3d, 3>;
   return glm::dot(away, away);
 }
 
-/// Squared distance. The triangle may be a needle, a segment or a point: an inside that rounding could have invented is
-/// not trusted, and the edges, which are points of the triangle, answer instead. So the result is never too small by
-/// more than rounding.
+/// Squared distance. The triangle may be a needle, a segment or a point. Whatever is returned is the distance to a point of
+/// the triangle that was worked out, so that an ill-conditioned triangle makes it larger than need be, never smaller:
+/// with u = 2^-53, d what is returned and L the longest edge, the true distance is at most √d² · (1 + 8u) + 9u · L.
+/// (Weights are at least 0 and add up to 1 + u at most: the point misses the triangle by u · L. Differences are exact but
+/// for u each; pa, the two products and the two subtractions lose 2|pa| + 5L + √d² times u, where |pa| <= √d² + L; and the
+/// sum of squares 3u of d².) Tested against exact arithmetic.
 [[nodiscard]] inline double point_triangle_distance2(const Vec3d& p, const TriangleCorners& corners) {
   const Vec3d ab = corners[1] - corners[0];
   const Vec3d ac = corners[2] - corners[0];
@@ -35,11 +38,11 @@ using TriangleCorners = std::array<Vec3d, 3>;
   // Twice the area against the longest edge: a sine. Below 1e-5 the normal begins to feel the rounding, and the inside
   // is that close to the edges anyway.
   if (nn > 1e-10 * longest2 * longest2) {
-    const double u = glm::dot(glm::cross(ab, pa), n);
-    const double v = glm::dot(glm::cross(pa, ac), n);
-    if (u >= 0.0 && v >= 0.0 && glm::dot(glm::cross(bc, p - corners[1]), n) >= 0.0) {
-      const double height = glm::dot(pa, n);
-      return height * height / nn;
+    const double v = glm::dot(glm::cross(pa, ac), n) / nn;
+    const double w = glm::dot(glm::cross(ab, pa), n) / nn;
+    if (v >= 0.0 && w >= 0.0 && w <= 1.0 - v) {
+      const Vec3d away = pa - ab * v - ac * w;
+      return glm::dot(away, away);
     }
   }
   return std::min(point_segment_distance2(pa, ab),

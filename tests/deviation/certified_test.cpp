@@ -132,6 +132,24 @@ TEST(Certified, AnUnderstatedBoundIsFound) {
   EXPECT_LT(0.5 * certify_one_step(fine, coarse).deviation, dense_truth(fine, coarse, 5000));
 }
 
+TEST(Certified, WhatIsNotANumberIsNoBound) {
+  const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
+  const Surface fine = as_surface(samples::make_sphere(2)), coarse = as_surface(samples::make_sphere(1));
+  // From below: one finer triangle whose bounds are not known.
+  for (const double unknown : {nan, infinity}) {
+    std::vector<TriangleBound> bounds = no_bounds(fine);
+    bounds[3] = {unknown, unknown};
+    EXPECT_EQ(certify_group(as_group(fine), bounds, as_group(coarse)).deviation, infinity);
+    const TriangleBound first = initial_bound({{{0, 0, 0}, {1, 0, 0}, {0, 1, unknown}}}, {});
+    EXPECT_EQ(first.from_source, infinity);
+    EXPECT_EQ(first.to_source, infinity);
+  }
+  // From the geometry: squares that overflow.
+  const Surface huge = test::transformed(fine, 1e200, Vec3d(0.0));
+  EXPECT_EQ(certify_one_step(huge, coarse).deviation, infinity);
+  EXPECT_EQ(certify_one_step(coarse, huge).deviation, infinity);
+}
+
 TEST(Certified, NothingLeftIsInfinitelyFar) {
   const Surface fine = as_surface(samples::make_sphere(2));
   EXPECT_EQ(certify_one_step(fine, {}).deviation, std::numeric_limits<double>::infinity());
