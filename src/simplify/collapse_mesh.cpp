@@ -2,6 +2,7 @@
 #include "simplify/collapse_mesh.h"
 
 #include <algorithm>
+#include <tuple>
 
 namespace meshlode {
 
@@ -76,20 +77,31 @@ void CollapseMesh::merge_vertices(std::uint32_t to, std::uint32_t from) {
 }
 
 void CollapseMesh::drop_opposite_pairs(std::uint32_t vertex, std::vector<std::uint32_t>& dropped) {
+  // By the two other vertices, then in the order around `vertex`: a hub may have thousands.
+  struct Spoke {
+    std::uint32_t low, high, order, triangle;
+    bool is_turned;
+  };
   std::vector<std::uint32_t> corners;
   corners_of(vertex, corners);
+  std::vector<Spoke> spokes;
+  spokes.reserve(corners.size());
+  for (const std::uint32_t corner : corners) {
+    const std::uint32_t a = vertex_[next_in_triangle(corner)];
+    const std::uint32_t b = vertex_[next_in_triangle(next_in_triangle(corner))];
+    spokes.push_back({std::min(a, b), std::max(a, b), static_cast<std::uint32_t>(spokes.size()), corner / 3, a > b});
+  }
+  std::sort(spokes.begin(), spokes.end(), [](const Spoke& s, const Spoke& t) {
+    return std::tie(s.low, s.high, s.order) < std::tie(t.low, t.high, t.order);
+  });
   dropped.clear();
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    if (!is_alive(corners[i] / 3)) continue;
-    const std::uint32_t a = vertex_[next_in_triangle(corners[i])];
-    const std::uint32_t b = vertex_[next_in_triangle(next_in_triangle(corners[i]))];
-    for (std::size_t j = i + 1; j < corners.size(); ++j) {
-      if (!is_alive(corners[j] / 3)) continue;
-      if (vertex_[next_in_triangle(corners[j])] != b) continue;
-      if (vertex_[next_in_triangle(next_in_triangle(corners[j]))] != a) continue;
-      kill(corners[i] / 3);
-      kill(corners[j] / 3);
-      dropped.push_back(corners[i] / 3);
+  for (std::size_t i = 0; i < spokes.size(); ++i) {
+    if (!is_alive(spokes[i].triangle)) continue;
+    for (std::size_t j = i + 1; j < spokes.size() && spokes[j].low == spokes[i].low && spokes[j].high == spokes[i].high; ++j) {
+      if (!is_alive(spokes[j].triangle) || spokes[j].is_turned == spokes[i].is_turned) continue;
+      kill(spokes[i].triangle);
+      kill(spokes[j].triangle);
+      dropped.push_back(spokes[i].triangle);
       break;
     }
   }

@@ -80,6 +80,7 @@ class GroupSimplifier {
   [[nodiscard]] Placement place(std::uint32_t a, std::uint32_t b);
   [[nodiscard]] Obstacle try_collapse(const Candidate& candidate);
   void collect_new_star(std::uint32_t a, std::uint32_t b, bool drops_sheets);
+  void move_sheets_out_of_star();
   [[nodiscard]] double collect_vanishing(std::uint32_t a, std::uint32_t b, const Vec3d& target);
   [[nodiscard]] double distance2_to_rest(std::uint32_t a, std::uint32_t b) const;
   [[nodiscard]] double weigh_witnesses(std::uint32_t a, std::uint32_t b, const Vec3d& target);
@@ -131,13 +132,20 @@ class GroupSimplifier {
   std::array<std::uint64_t, 6> obstacles_{};
 
   // Scratch of one collapse.
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> star_;   ///< outer edges of the triangles that will be around it
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> sheet_;  ///< outer edges of the sheets that will be dropped
+  struct OuterEdge {
+    std::uint32_t x, y;
+    std::uint32_t corner;  ///< of the triangle that has it, at one of the two vertices
+  };
+  std::vector<OuterEdge> star_;   ///< of the triangles that will be around it
+  std::vector<OuterEdge> sheet_;  ///< of the sheets that will be dropped
   std::vector<std::uint32_t> vanishing_;  ///< vertices that lose their last triangle with a dropped sheet
   std::vector<std::pair<double, Vec3i>> left_behind_;  ///< squared distance to the new star, and the witness
   std::vector<std::uint32_t> corners_a_, corners_b_, neighbors_a_, neighbors_b_, dropped_;
   std::vector<WedgeClass> classes_;
   std::size_t class_count_ = 0;
+  std::uint64_t stamp_ = 0;  ///< what is marked with it was marked in this search, not in one before
+  std::vector<std::uint64_t> wedge_stamp_, vertex_stamp_;
+  std::vector<std::uint32_t> class_of_;  ///< per wedge, where its stamp is the search's
 };
 
 }  // namespace meshlode

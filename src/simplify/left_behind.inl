@@ -15,18 +15,37 @@ void GroupSimplifier<C>::collect_new_star(std::uint32_t a, std::uint32_t b, bool
       const std::uint32_t x = mesh_.vertex(CollapseMesh::next_in_triangle(corner));
       const std::uint32_t y = mesh_.vertex(CollapseMesh::next_in_triangle(CollapseMesh::next_in_triangle(corner)));
       if (x == a || x == b || y == a || y == b) continue;
-      if (drops_sheets) {
-        const auto opposite = std::find(star_.begin(), star_.end(), std::pair(y, x));
-        if (opposite != star_.end()) {
-          sheet_.push_back(*opposite);
-          *opposite = star_.back();
-          star_.pop_back();
-          continue;
-        }
-      }
-      star_.emplace_back(x, y);
+      star_.push_back({x, y, corner});
     }
   }
+  if (drops_sheets) move_sheets_out_of_star();
+}
+
+/// Of every two outer edges that run along each other in opposite directions the first stands for the sheet between them,
+/// and both leave the star. Sorted, because a hub may have thousands.
+template <std::size_t C>
+void GroupSimplifier<C>::move_sheets_out_of_star() {
+  std::stable_sort(star_.begin(), star_.end(), [](const OuterEdge& s, const OuterEdge& t) {
+    const auto s_low = std::min(s.x, s.y), t_low = std::min(t.x, t.y);
+    return s_low != t_low ? s_low < t_low : std::max(s.x, s.y) < std::max(t.x, t.y);
+  });
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < star_.size();) {
+    // Edges kept of this pair of vertices all run the same way: one the other way takes one of them off.
+    const std::size_t first_kept = kept;
+    const OuterEdge edge = star_[i];
+    for (; i < star_.size(); ++i) {
+      const OuterEdge next = star_[i];
+      const bool is_along = next.x == edge.x && next.y == edge.y, is_against = next.x == edge.y && next.y == edge.x;
+      if (!is_along && !is_against) break;
+      if (kept > first_kept && star_[kept - 1].x == next.y) {
+        sheet_.push_back(star_[--kept]);
+      } else {
+        star_[kept++] = next;
+      }
+    }
+  }
+  star_.resize(kept);
 }
 
 /// What goes without a vertex noticing: an edge to a neighbour that no triangle covers any more, a dropped sheet, and
@@ -36,15 +55,14 @@ template <std::size_t C>
 double GroupSimplifier<C>::collect_vanishing(std::uint32_t a, std::uint32_t b, const Vec3d& target) {
   vanishing_.clear();
   double lost2 = 0.0;
-  const auto is_in_star = [&](std::uint32_t v) {
-    return std::any_of(star_.begin(), star_.end(), [v](const auto& edge) { return edge.first == v || edge.second == v; });
-  };
+  const std::uint64_t stamp = ++stamp_;  // of vertices that stay in the star, or have been looked at
+  for (const OuterEdge& edge : star_) vertex_stamp_[edge.x] = vertex_stamp_[edge.y] = stamp;
   for (const auto* corners : {&corners_a_, &corners_b_}) {
     for (const std::uint32_t corner : *corners) {
       const std::uint32_t next = CollapseMesh::next_in_triangle(corner);
       for (const std::uint32_t v : {mesh_.vertex(next), mesh_.vertex(CollapseMesh::next_in_triangle(next))}) {
-        if (v == a || v == b || is_in_star(v)) continue;
-        if (std::find(vanishing_.begin(), vanishing_.end(), v) != vanishing_.end()) continue;
+        if (v == a || v == b || vertex_stamp_[v] == stamp) continue;
+        vertex_stamp_[v] = stamp;
         mesh_.corners_of(v, dropped_);
         const bool has_others = std::any_of(dropped_.begin(), dropped_.end(), [&](std::uint32_t c) {
           const std::uint32_t x = mesh_.vertex(CollapseMesh::next_in_triangle(c));
@@ -57,9 +75,9 @@ double GroupSimplifier<C>::collect_vanishing(std::uint32_t a, std::uint32_t b, c
       }
     }
   }
-  for (const auto& [x, y] : sheet_) {
-    const Vec3d base = position_[y] - position_[x];
-    const Vec3d cross = glm::cross(base, target - position_[x]);
+  for (const OuterEdge& edge : sheet_) {
+    const Vec3d base = position_[edge.y] - position_[edge.x];
+    const Vec3d cross = glm::cross(base, target - position_[edge.x]);
     const double base2 = glm::dot(base, base);
     if (base2 > 0.0) lost2 = std::max(lost2, 0.25 * glm::dot(cross, cross) / base2);
   }
@@ -94,8 +112,8 @@ double GroupSimplifier<C>::weigh_witnesses(std::uint32_t a, std::uint32_t b, con
     for (std::uint32_t i = 0; i < w.count; ++i) {
       const Vec3d point = to_frame(w.points[i]);
       double nearest = std::numeric_limits<double>::infinity();
-      for (const auto& [x, y] : star_) {
-        nearest = std::min(nearest, distance2_to_facet(point, target, position_[x], position_[y]));
+      for (const OuterEdge& edge : star_) {
+        nearest = std::min(nearest, distance2_to_facet(point, target, position_[edge.x], position_[edge.y]));
       }
       left_behind_.emplace_back(nearest, w.points[i]);
       largest = std::max(largest, nearest);
@@ -117,22 +135,25 @@ double GroupSimplifier<C>::weigh_witnesses(std::uint32_t a, std::uint32_t b, con
 template <std::size_t C>
 double GroupSimplifier<C>::new_surface_distance2(const Vec3d& target, double least) const {
   double farthest = least;
-  const auto reach = [&](const Vec3d& point) {
+  const auto reach = [&](const Vec3d& point, std::uint32_t likely) {
     double nearest = std::numeric_limits<double>::infinity();
+    // True where the triangle is so near that the point does not count.
+    const auto is_near = [&](std::uint32_t corner) {
+      const std::uint32_t t = corner / 3;
+      nearest = std::min(nearest, distance2_to_facet(point, position_[mesh_.vertex(3 * t)],
+                                                     position_[mesh_.vertex(3 * t + 1)], position_[mesh_.vertex(3 * t + 2)]));
+      return nearest <= farthest;
+    };
+    if (is_near(likely)) return;
     for (const auto* corners : {&corners_a_, &corners_b_}) {
-      for (const std::uint32_t corner : *corners) {
-        const std::uint32_t t = corner / 3;
-        nearest = std::min(nearest, distance2_to_facet(point, position_[mesh_.vertex(3 * t)],
-                                                       position_[mesh_.vertex(3 * t + 1)], position_[mesh_.vertex(3 * t + 2)]));
-        if (nearest <= farthest) return;
-      }
+      if (std::any_of(corners->begin(), corners->end(), is_near)) return;
     }
     if (nearest < std::numeric_limits<double>::infinity()) farthest = nearest;
   };
-  for (const auto& [x, y] : star_) {
-    reach((target + position_[x] + position_[y]) / 3.0);
-    reach((target + position_[x]) * 0.5);
-    reach((target + position_[y]) * 0.5);
+  for (const OuterEdge& edge : star_) {  // what a triangle is replaced by is mostly near it
+    reach((target + position_[edge.x] + position_[edge.y]) / 3.0, edge.corner);
+    reach((target + position_[edge.x]) * 0.5, edge.corner);
+    reach((target + position_[edge.y]) * 0.5, edge.corner);
   }
   return farthest;
 }

@@ -37,16 +37,18 @@ void GroupSimplifier<C>::collect_wedge_classes(std::uint32_t a, std::uint32_t b)
   if (only_wedge_[a] != kSeveralWedges && only_wedge_[b] != kSeveralWedges) {
     new_class().members = {only_wedge_[a], only_wedge_[b]};
   } else {
-    // One class per wedge first, joined along the triangles on the edge. Wedge counts are small: linear search will do.
+    // One class per wedge first, joined along the triangles on the edge. At the hub of a wheel there are thousands: each
+    // wedge knows its class.
     mesh_.corners_of(a, corners_a_);
     mesh_.corners_of(b, corners_b_);
+    const std::uint64_t stamp = ++stamp_;
     const auto find_class = [&](std::uint32_t w) -> std::size_t {
-      for (std::size_t i = 0; i < class_count_; ++i) {
-        const auto& members = classes_[i].members;
-        if (std::find(members.begin(), members.end(), w) != members.end()) return i;
+      if (wedge_stamp_[w] != stamp) {
+        wedge_stamp_[w] = stamp;
+        class_of_[w] = static_cast<std::uint32_t>(class_count_);
+        new_class().members.push_back(w);
       }
-      new_class().members.push_back(w);
-      return class_count_ - 1;
+      return class_of_[w];
     };
     for (const std::uint32_t corner : corners_a_) find_class(mesh_.wedge(corner));
     for (const std::uint32_t corner : corners_b_) find_class(mesh_.wedge(corner));
@@ -58,9 +60,12 @@ void GroupSimplifier<C>::collect_wedge_classes(std::uint32_t a, std::uint32_t b)
       const std::size_t i = find_class(mesh_.wedge(corner));
       const std::size_t j = find_class(mesh_.wedge(other));
       if (i == j) continue;
+      for (const std::uint32_t w : classes_[j].members) class_of_[w] = static_cast<std::uint32_t>(i);
       classes_[i].members.insert(classes_[i].members.end(), classes_[j].members.begin(), classes_[j].members.end());
       std::swap(classes_[j], classes_[class_count_ - 1]);
       --class_count_;
+      if (j == class_count_) continue;
+      for (const std::uint32_t w : classes_[j].members) class_of_[w] = static_cast<std::uint32_t>(j);
     }
   }
   for (std::size_t i = 0; i < class_count_; ++i) {

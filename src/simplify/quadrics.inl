@@ -23,7 +23,10 @@ GroupSimplifier<C>::GroupSimplifier(const SimplifyInput& input, const SimplifyOp
       only_wedge_(input.positions.size(), kSeveralWedges),
       wedge_(attribute_count_ == 0 ? 0 : input.wedge_position.size()),
       value_(wedge_.size()),
-      is_wedge_locked_(input.wedge_position.size(), 0) {
+      is_wedge_locked_(input.wedge_position.size(), 0),
+      wedge_stamp_(input.wedge_position.size(), 0),
+      vertex_stamp_(input.positions.size(), 0),
+      class_of_(input.wedge_position.size(), 0) {
   set_frame();
   scale_attributes();
   add_face_quadrics();
