@@ -154,48 +154,4 @@ Result<CutComparison> compare_frame(Renderer& renderer, const Asset& asset, cons
   return out;
 }
 
-Result<Comparison> compare_hardware(Renderer& renderer, const Asset& asset, const Camera& camera, double pixel_error) {
-  Comparison out;
-  const auto depth = depth_of_scene(asset, camera);
-  if (!depth) return depth.error();
-  const auto frame = renderer.draw(camera, pixel_error, *depth);
-  if (!frame) return frame.error();
-  const auto cut = renderer.read_cut();
-  if (!cut) return cut.error();
-  const auto pixels = renderer.read_pixels();
-  if (!pixels) return pixels.error();
-  const std::vector<ClusterInstance> expected = select_flat(asset, camera, pixel_error);
-  if (frame->hardware_items != expected.size() || *cut != expected) note(out, "another cut");
-  const auto reference = draw_cut(asset, expected, camera, *renderer.scene().alpha_masks);
-  if (!reference) return reference.error();
-  const auto width = static_cast<std::int64_t>(camera.width), height = static_cast<std::int64_t>(camera.height);
-  for (std::int64_t y = 0; y < height; ++y) {
-    for (std::int64_t x = 0; x < width; ++x) {
-      const auto at = static_cast<std::size_t>(y * width + x);
-      const bool has = pixels->item[at] != VisibilityBuffer::kNothing;
-      const bool wants = reference->item[at] != VisibilityBuffer::kNothing;
-      out.items += wants ? 1 : 0;
-      bool is_border = false;
-      double nearest = 0.0, farthest = 1e300;
-      for (std::int64_t v = std::max<std::int64_t>(y - 1, 0); v <= std::min(y + 1, height - 1); ++v) {
-        for (std::int64_t u = std::max<std::int64_t>(x - 1, 0); u <= std::min(x + 1, width - 1); ++u) {
-          const auto around = static_cast<std::size_t>(v * width + u);
-          const bool is_covered = reference->item[around] != VisibilityBuffer::kNothing;
-          is_border = is_border || is_covered != wants;
-          if (!is_covered) continue;
-          nearest = std::max(nearest, reference->depth[around] * 1.0);
-          farthest = std::min(farthest, reference->depth[around] * 1.0);
-        }
-      }
-      const double d = pixels->depth[at] * 1.0;
-      // 24 bits of a float, and what the hardware's own clipping and interpolation may lose.
-      const bool is_depth_known = d <= nearest * (1.0 + 1e-4) + 512.0 && d >= farthest * (1.0 - 1e-4) - 512.0;
-      if (has == wants ? !has || is_depth_known : is_border) continue;
-      note(out, "pixel " + std::to_string(x) + "," + std::to_string(y) + ": depth " + std::to_string(pixels->depth[at]) +
-                    ", CPU " + std::to_string(reference->depth[at]));
-    }
-  }
-  return out;
-}
-
 }  // namespace meshlode::gpu

@@ -36,12 +36,4 @@ struct CutComparison {
 [[nodiscard]] Result<CutComparison> compare_frame(Renderer& renderer, const Asset& asset, const Camera& camera,
                                                   double pixel_error, const AttributeBounds& bounds = {});
 
-/// Draws the whole cut by a `renderer` with a hardware path and no culling, everything in hardware, and compares within
-/// what the specification leaves free: a pixel that one covers and the other does not lies at a silhouette, and a depth
-/// is one that the CPU has within a pixel around. Pixels elsewhere are differences; so is a cut that is not the CPU's.
-[[nodiscard]] Result<Comparison> compare_hardware(Renderer& renderer, const Asset& asset, const Camera& camera,
-                                                  double pixel_error);
-/// Of a million covered pixels this many may differ: slivers that reach one picture's sample and not the other's.
-constexpr std::uint64_t kHardwareSlivers = 100;
-
 }  // namespace meshlode::gpu

@@ -42,10 +42,12 @@ Result<std::vector<Renderer::Item>> Renderer::read_items() {
     return s.error();
   }
   std::vector<Item> out;
-  for (const auto& [marked_slot, cluster] : pairs) {
+  for (std::uint32_t i = 0; i < pairs.size(); ++i) {
+    const auto& [marked_slot, cluster] = pairs[i];
     const std::uint32_t slot = marked_slot & ITEM_SLOT;
     if (slot >= visible->size()) return Error{ErrorCode::kCheckFailed, "items", "a slot that no instance has"};
-    out.push_back({{InstanceId((*visible)[slot].instance), ClusterId(cluster)}, marked_slot});
+    const std::uint32_t place = i < front ? i : frame_.item_capacity - back + (i - front);
+    out.push_back({{InstanceId((*visible)[slot].instance), ClusterId(cluster)}, marked_slot, place});
   }
   std::sort(out.begin(), out.end(), [](const Item& a, const Item& b) { return a.key < b.key; });
   return out;
@@ -106,6 +108,23 @@ Result<VisibilityBuffer> Renderer::read_pixels() {
     out.depth[i] = static_cast<std::uint32_t>(values[i] >> 32);
     out.item[i] = key >> 8;
     out.triangle[i] = key & 0xFFu;
+  }
+  return out;
+}
+
+Result<VisibilityBuffer> Renderer::read_pixels_of_cut() {
+  const auto items = read_items();
+  if (!items) return items.error();
+  std::vector<std::uint32_t> index(frame_.item_capacity, VisibilityBuffer::kNothing);
+  for (std::size_t i = 0; i < items->size(); ++i) index[(*items)[i].place] = static_cast<std::uint32_t>(i);
+  auto out = read_pixels();
+  if (!out) return out.error();
+  for (std::uint32_t& item : out->item) {
+    if (item == VisibilityBuffer::kNothing) continue;
+    if (item >= index.size() || index[item] == VisibilityBuffer::kNothing) {
+      return Error{ErrorCode::kCheckFailed, "pixels", "an item that no list has"};
+    }
+    item = index[item];
   }
   return out;
 }

@@ -77,6 +77,8 @@ class Renderer {
   /// then the picture's items are indices into read_cut().
   [[nodiscard]] Status redraw_in_order();
   [[nodiscard]] Result<VisibilityBuffer> read_pixels();
+  /// The last picture as it is, not drawn again; items are indices into read_cut().
+  [[nodiscard]] Result<VisibilityBuffer> read_pixels_of_cut();
   /// The last picture in colours: materials, normals and colours at each pixel's own barycentrics, and the textures that
   /// upload_textures() gave the scene. `view`
   /// is a VIEW_… of shaders/frame.h; those of a frame's passes are lost by redraw_in_order().
@@ -109,6 +111,7 @@ class Renderer {
   struct Item {
     ClusterInstance key;
     std::uint32_t slot = 0;  ///< and its marks
+    std::uint32_t place = 0;  ///< in the list, which is what pixels name
   };
   [[nodiscard]] Result<std::vector<Item>> read_items();
 

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "base/file.h"
+#include "gpu/hardware_judge.h"
 #include "gpu/judge.h"
 #include "gpu/picture.h"
 
@@ -61,7 +62,7 @@ Status write_maps(const GpuVerifyOptions& options, const PictureReport& picture,
   return Ok{};
 }
 
-/// Every cluster by the hardware, from the adversarial cameras that the hardware's floats can hold.
+/// Every cluster by the hardware, from the adversarial cameras and those of the path.
 Status judge_hardware(Device& device, const GpuScene& scene, const Asset& asset, const GpuVerifyOptions& options,
                       bool by_mesh_shaders, GpuCheck& check) {
   check.is_skipped = by_mesh_shaders && !device.info().has_mesh_shaders;
@@ -79,9 +80,15 @@ Status judge_hardware(Device& device, const GpuScene& scene, const Asset& asset,
   raster.hardware_pixels = 0.0F;
   auto renderer = Renderer::make(device, scene, raster);
   if (!renderer) return renderer.error();
-  for (const NamedCamera& named : adversarial_cameras(asset, raster.width, raster.height)) {
-    if (named.name == "keyhole" || named.name == "wide") continue;  // floats of the clip coordinates are too coarse there
-    const auto result = compare_hardware(*renderer, asset, named.camera, options.pixel_error);
+  std::vector<NamedCamera> cameras = adversarial_cameras(asset, raster.width, raster.height);
+  for (NamedCamera named : options.path) {
+    named.camera.width = raster.width;
+    named.camera.height = raster.height;
+    cameras.push_back(named);
+  }
+  for (const NamedCamera& named : cameras) {
+    const auto result =
+        compare_hardware(*renderer, asset, named.camera, options.pixel_error, device.info().subpixel_bits);
     if (!result) return result.error();
     add(check, *result, named.name);
   }
@@ -234,8 +241,6 @@ Result<GpuVerifyReport> verify_on_gpu(const Asset& asset, std::span<const Surfac
       if (const Status s = write_maps(options, worst_picture, out.cameras[worst]); !s) return s.error();
     }
   }
-  by_vertex.failures = by_vertex.failures * 1000000 > kHardwareSlivers * by_vertex.items ? by_vertex.failures : 0;
-  by_mesh.failures = by_mesh.failures * 1000000 > kHardwareSlivers * by_mesh.items ? by_mesh.failures : 0;
   displaced.is_skipped = !has_promise;
   holes.is_skipped = !has_holes_rule;
   if (!has_holes_rule) holes.what += all_closed ? " (not judged: tier qem)" : " (not judged: the source is open)";
