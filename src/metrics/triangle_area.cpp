@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 
 namespace meshlode {
 namespace {
@@ -54,28 +55,38 @@ class ExactSum {
   std::array<std::int64_t, (2 * (1074 + 53) + 2 * 1024) / 32 + 6> digits_{};
 };
 
-/// (b - a) × (c - a) in the plane of two axes.
-bool is_flat_along(const Vec3d& a, const Vec3d& b, const Vec3d& c, int u, int v) {
+struct Axes {
+  int u, v;
+};
+constexpr std::array kPlanes = {Axes{1, 2}, Axes{2, 0}, Axes{0, 1}};
+
+/// Whether doubles can tell that (b - a) × (c - a) is not 0 in the plane of two axes.
+bool is_clearly_wide(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Axes& axes) {
+  const auto [u, v] = axes;
   const double left = (b[u] - a[u]) * (c[v] - a[v]);
   const double right = (b[v] - a[v]) * (c[u] - a[u]);
   const double size = std::fabs(left) + std::fabs(right);
   // Four roundings at most lie between these and the truth, unless a product was too small to be normal.
-  if (size > 1e-250 && std::fabs(left - right) > 0x1p-50 * size) return false;
+  return size > 1e-250 && std::fabs(left - right) > 0x1p-50 * size;
+}
+
+bool is_exactly_flat(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Axes& axes) {
+  const auto [u, v] = axes;
   ExactSum sum;
-  const auto add = [&](const Vec3d& p, const Vec3d& q) {
+  for (const auto& [p, q] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) {
     sum.add_product(p[u], q[v]);
     sum.add_product(-p[v], q[u]);
-  };
-  add(a, b);
-  add(b, c);
-  add(c, a);
+  }
   return sum.is_zero();
 }
 
 }  // namespace
 
 bool has_area(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
-  return !(is_flat_along(a, b, c, 1, 2) && is_flat_along(a, b, c, 2, 0) && is_flat_along(a, b, c, 0, 1));
+  for (const Axes& axes : kPlanes) {
+    if (is_clearly_wide(a, b, c, axes)) return true;
+  }
+  return !std::all_of(kPlanes.begin(), kPlanes.end(), [&](const Axes& axes) { return is_exactly_flat(a, b, c, axes); });
 }
 
 }  // namespace meshlode

@@ -5,15 +5,18 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <ostream>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "odd_shapes.h"
 #include "pipeline/build.h"
 #include "read/asset.h"
+#include "samples/noise.h"
 #include "samples/samples.h"
 #include "validate/validate.h"
 #include "verify/verify.h"
@@ -196,6 +199,40 @@ const HardCase kCases[] = {
 
 INSTANTIATE_TEST_SUITE_P(Pipeline, HardCases, testing::ValuesIn(kCases),
                          [](const auto& param_info) { return std::string(param_info.param.name); });
+
+/// The rules that the asset breaks against another source.
+std::set<std::string> rules_broken(const Asset& asset, const Scene& source) {
+  const VerifyReport report = verify_asset(asset, source, {.uniform_cuts = 1, .cameras = 1, .deviation_cuts = 0});
+  std::set<std::string> rules;
+  for (const Finding& finding : report.findings) rules.insert(finding.id);
+  return rules;
+}
+
+TEST(HardNumbers, AChangedNeedleIsFoundHoweverManyShareItsCell) {
+  // Thousands of triangles in few cells, many of them moved apart: each of these is another source all the same.
+  const Primitive shape = test::make_fine_rings_beside_a_patch(5);
+  const auto bytes = prove(alone(shape));
+  const auto asset = Asset::from_bytes(bytes);
+  ASSERT_TRUE(asset.ok());
+  ASSERT_TRUE(rules_broken(*asset, alone(shape)).empty());
+  const format::MeshRecord& mesh = asset->meshes()[0];
+  const double step = std::ldexp(mesh.grid.mantissa, mesh.grid.log2);
+  const std::size_t first_ring = samples::make_plane(12).positions.size();
+  samples::Random random(6);
+  for (int round = 0; round < 40; ++round) {
+    Primitive moved = shape;
+    const auto vertex = first_ring + random.below(static_cast<std::uint32_t>(shape.positions.size() - first_ring));
+    moved.positions[vertex][static_cast<int>(random.below(3))] += round % 2 == 0 ? 3.0 * step : -3.0 * step;
+    EXPECT_TRUE(rules_broken(*asset, alone(moved)).contains("V101")) << "vertex " << vertex;
+
+    Primitive lost = shape;
+    const auto triangle = random.below(static_cast<std::uint32_t>(shape.indices.size() / 3));
+    const auto at = lost.indices.begin() + static_cast<std::ptrdiff_t>(3 * triangle);
+    const bool is_degenerate = at[1] == at[2];
+    lost.indices.erase(at, at + 3);
+    EXPECT_TRUE(rules_broken(*asset, alone(lost)).contains(is_degenerate ? "V102" : "V101")) << "triangle " << triangle;
+  }
+}
 
 TEST(HardNumbers, HairsWithoutAreaAreCountedAndNothingElseChanges) {
   const Primitive shape = test::make_ball_with_hairs();
