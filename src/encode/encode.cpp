@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <functional>
 #include <limits>
@@ -296,6 +297,18 @@ void fill_dependencies(const LodDag& dag, EncodedMesh& out) {
   }
 }
 
+/// Budgets that may not fall short, held against the steps that the coordinates leave.
+Status check_uv_steps(const PreparedMesh& mesh, const ChannelPlan& plan, const EncodeOptions& options) {
+  for (std::uint32_t set = 0; set < mesh.layout.uv_set_count && !options.uv_error_may_fall_short; ++set) {
+    if (!(options.uv_error[set] > 0.0) || 0.5 * exp2_exact(plan.uv_log2[set]) <= options.uv_error[set]) continue;
+    char text[160];
+    std::snprintf(text, sizeof text, "a UV error of %g needs more than 24 bits for the coordinates of TEXCOORD_%u",
+                  options.uv_error[set], static_cast<unsigned>(mesh.layout.uv_set_source[set]));
+    return Error{ErrorCode::kUnsupported, name_mesh(mesh), text};
+  }
+  return Ok{};
+}
+
 }  // namespace
 
 std::int32_t normal_scale_of(const EncodeOptions& options) {
@@ -307,6 +320,7 @@ Result<EncodedMesh> encode_mesh(const PreparedMesh& mesh, const LodDag& dag, con
                                 const EncodeOptions& options) {
   if (Status status = check_input(mesh, dag, hierarchy, options); !status) return status.error();
   const ChannelPlan plan = plan_channels(mesh, dag, options);
+  if (Status status = check_uv_steps(mesh, plan, options); !status) return status.error();
 
   std::vector<GroupWords> group_words(dag.groups.size());
   parallel_for_each_index(dag.groups.size(), 4,

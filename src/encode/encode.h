@@ -21,6 +21,9 @@ struct EncodeOptions {
   double normal_error = 0.1;  ///< degrees, largest; above 0, at least 0.01 (kMaxNormalScale)
   /// UV units, largest, for each stored set; 0: invisible, see default_uv_error
   std::array<double, kMaxUvSets> uv_error{};
+  /// Coordinates so large that 24 bits cannot keep the error are kept as finely as floats hold the largest of them; false:
+  /// refused.
+  bool uv_error_may_fall_short = true;
   std::uint32_t strip_trials = 48;  ///< see StripOptions; four times as many in a cluster of several materials
 };
 

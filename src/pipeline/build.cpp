@@ -12,6 +12,7 @@
 #include "dag/build_dag.h"
 #include "encode/encode.h"
 #include "hierarchy/hierarchy.h"
+#include "mesh/grid.h"
 #include "pipeline/meta.h"
 #include "plan/plan.h"
 #include "plan/texel_sizes.h"
@@ -151,6 +152,7 @@ Result<BuiltMesh> build_mesh(const Scene& scene, std::size_t index, const Pipeli
   EncodeOptions encode_options;
   encode_options.normal_error = options.normal_error;
   encode_options.uv_error = uv_errors(scene, source, plan.layout, options);
+  encode_options.uv_error_may_fall_short = options.uv_error_is_default;
   DagOptions dag_options;
   dag_options.error = error_source_of(options.error_tier);
   dag_options.caps.max_triangles = options.max_cluster_triangles;
@@ -178,6 +180,12 @@ Result<BuiltMesh> build_mesh(const Scene& scene, std::size_t index, const Pipeli
   Result<EncodedMesh> encoded = encode_mesh(*mesh, *dag, hierarchy, encode_options);
   if (!encoded) return encoded.error();
   built.encoded = std::move(*encoded);
+  for (std::uint32_t set = 0; set < mesh->layout.uv_set_count; ++set) {
+    const double asked = encode_options.uv_error[set], kept = 0.5 * exp2_exact(built.encoded.record.uv_log2[set]);
+    if (!(asked > 0.0) || kept <= asked) continue;
+    built.decisions.push_back({label_of(source, index) + ": TEXCOORD_" + std::to_string(mesh->layout.uv_set_source[set]) + ", accuracy", true,
+                               "its coordinates are so large that they are kept as finely as floats hold the largest"});
+  }
   built.encoded.record.error_tier = options.error_tier;
   built.clock.end(kEncode);
   return built;

@@ -114,7 +114,7 @@ constexpr std::array kRules{
     Rule{"V112", "I7", "a mesh's error tier is that of the settings"},
     Rule{"V113", "",
          "what V104 and V105 hold level 0 to is within the accuracy budgets of the settings; UV budgets in texels are held "
-         "against the images of the source"},
+         "against the images of the source, and a set so large that 24 bits leave no finer step is within any"},
     Rule{"V201", "I5", "a cut draws each piece of surface exactly once and is never empty"},
     Rule{"V202", "I6", "the border of a cut consists of edges of the source's border alone"},
     Rule{"V203", "I8", "hierarchy traversal selects what the flat rule selects"},

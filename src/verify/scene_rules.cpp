@@ -188,14 +188,14 @@ void check_tiers(const Asset& asset, RuleLog& log) {
 
 /// V104 and V105 measure every vertex of level 0 against the bounds of the mesh's record; here those bounds are held
 /// against what was asked for, budgets in texels with the source's images at hand.
-void check_budgets(const Asset& asset, const Scene& source, RuleLog& log) {
+void check_budgets(const Asset& asset, const Scene& source, std::span<const DecodedCluster> clusters, RuleLog& log) {
   log.check("V113");
   const auto setting = [&](const char* key) { return meta_real(asset.meta_json(), "settings", key); };
   const std::optional<double> position = setting("position_error");
   const std::optional<double> normal = setting("normal_error");
   std::optional<double> uv = setting("uv_error");
   const std::string uv_unit = meta_text(asset.meta_json(), "settings", "uv_error_unit");
-  if (uv && uv_unit == "texels") check_texel_budget(asset, source, *uv, log);
+  if (uv && uv_unit == "texels") check_texel_budget(asset, source, *uv, clusters, log);
   if (uv_unit != "uv") uv.reset();
   constexpr double kRounding = 1.0 + 1e-6;
   for (std::size_t m = 0; m < asset.meshes().size(); ++m) {
@@ -212,9 +212,11 @@ void check_budgets(const Asset& asset, const Scene& source, RuleLog& log) {
       log.expect(degrees <= *normal * kRounding, "V113", at,
                  [&] { return differs("largest angle", degrees, "normal_error", *normal); });
     }
+    std::array<bool, kMaxUvSets> is_finest{};
+    if (uv) is_finest = has_finest_step(asset, MeshId(m), clusters);
     for (std::uint32_t set = 0; uv && set < mesh.uv_set_count; ++set) {
       const double half_step = 0.5 * exp2_exact(mesh.uv_log2[set]);
-      log.expect(half_step <= *uv * kRounding, "V113", at,
+      log.expect(half_step <= *uv * kRounding || is_finest[set], "V113", at,
                  [&] { return differs("half a UV step", half_step, "uv_error", *uv); });
     }
   }
@@ -222,7 +224,7 @@ void check_budgets(const Asset& asset, const Scene& source, RuleLog& log) {
 
 }  // namespace
 
-void check_scene(const Asset& asset, const Scene& source, RuleLog& log) {
+void check_scene(const Asset& asset, const Scene& source, std::span<const DecodedCluster> clusters, RuleLog& log) {
   check_materials(asset, source, log);
   check_instances(asset, source, log);
   check_blobs(asset, source, log);
@@ -230,7 +232,7 @@ void check_scene(const Asset& asset, const Scene& source, RuleLog& log) {
   check_attributes(asset, source, log);
   check_caps(asset, log);
   check_tiers(asset, log);
-  check_budgets(asset, source, log);
+  check_budgets(asset, source, clusters, log);
   const std::string hash = meta_text(asset.meta_json(), "source", "hash");
   log.expect(
       hash == source.source_hash, "V108", [] { return std::string("section META: /source/hash"); },

@@ -21,7 +21,7 @@ struct SourceCounts {
 [[nodiscard]] SourceCounts check_source_triangles(const Asset& asset, MeshId mesh, const SourceMesh& source,
                                                   std::span<const DecodedCluster> clusters, RuleLog& log);
 
-/// V106 … V113.
-void check_scene(const Asset& asset, const Scene& source, RuleLog& log);
+/// V106 … V113. \pre `clusters` is decode_all of the asset
+void check_scene(const Asset& asset, const Scene& source, std::span<const DecodedCluster> clusters, RuleLog& log);
 
 }  // namespace meshlode

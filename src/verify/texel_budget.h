@@ -9,6 +9,7 @@
 #include <span>
 #include <utility>
 
+#include "decode/decode.h"
 #include "mesh/scene.h"
 #include "validate/rules.h"
 #include "read/asset.h"
@@ -22,7 +23,13 @@ namespace meshlode {
 /// none has a known size.
 [[nodiscard]] std::array<double, kMaxUvSets> most_texels(const Scene& scene, const SourceMesh& mesh);
 
-/// V113 for UVs: half a step of each stored set is at most `texels` texels.
-void check_texel_budget(const Asset& asset, const Scene& source, double texels, RuleLog& log);
+/// For each stored UV set of the mesh: is one of its coordinates so large that a step half as wide could not hold it in 24
+/// bits? Then no step keeps a smaller budget. \pre `clusters` is decode_all of the asset
+[[nodiscard]] std::array<bool, kMaxUvSets> has_finest_step(const Asset& asset, MeshId mesh,
+                                                           std::span<const DecodedCluster> clusters);
+
+/// V113 for UVs: half a step of each stored set is at most `texels` texels, or as fine as 24 bits hold the coordinates.
+void check_texel_budget(const Asset& asset, const Scene& source, double texels, std::span<const DecodedCluster> clusters,
+                        RuleLog& log);
 
 }  // namespace meshlode

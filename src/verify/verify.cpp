@@ -85,7 +85,7 @@ void add_source(const Asset& asset, const Scene& source, std::span<const Decoded
     totals.level0_triangles += counts.level0_triangles;
     totals.corners += counts.corners;
   }
-  check_scene(asset, source, log);
+  check_scene(asset, source, clusters, log);
   report.add_check("I1", "every source triangle is in exactly one level-0 cluster", totals.source_triangles,
                    failures_of(log, {"V101"}));
   report.add_check("I1", "dropped and source triangles are counted truly", count, failures_of(log, {"V102", "V103"}));

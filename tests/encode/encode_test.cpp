@@ -186,6 +186,27 @@ TEST(Encode, TheLargestCoordinatesComeBackExactly) {
   EXPECT_EQ(stored, expected);
 }
 
+// Floats hold 24 bits: coordinates in the millions cannot be kept to a thousandth. Who asked for it hears so.
+TEST(Encode, AUvBudgetThatTheCoordinatesLeaveNoBitsForIsRefusedUnlessItMayFallShort) {
+  AttributeLayout layout;
+  layout.uv_set_count = 1;
+  test::SampleMesh sample = heavy_mesh(1, 1, layout);
+  for (float& value : sample.dag.vertex_attributes) value = 3e6F;
+  EncodeOptions options;
+  options.uv_error.fill(1e-3);
+  options.uv_error_may_fall_short = false;
+  const auto refused = encode(sample, options);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().code, ErrorCode::kUnsupported);
+  options.uv_error.fill(0.25);
+  EXPECT_TRUE(encode(sample, options).ok());
+  options.uv_error.fill(1e-3);
+  options.uv_error_may_fall_short = true;
+  const auto kept = encode(sample, options);
+  ASSERT_TRUE(kept.ok());
+  EXPECT_EQ(kept->record.uv_log2[0], -2) << "2^24 quarters hold 3 million, 2^24 eighths do not";
+}
+
 TEST(Encode, ValuesThatAreNotFiniteBecomeNeutral) {
   test::SampleMesh sample = heavy_mesh(1, 1, full_layout());
   const float nan = std::numeric_limits<float>::quiet_NaN();

@@ -71,6 +71,8 @@ TEST(TexelBudget, ImagesOfUnknownKindsHaveNoSize) {
 TEST(TexelBudget, AStepThatIsTooCoarseForATextureIsFound) {
   const auto asset = Asset::from_vector(test::judged_sample_bytes());
   ASSERT_TRUE(asset.ok());
+  const auto clusters = decode_all(*asset);
+  ASSERT_TRUE(clusters.ok());
   std::int32_t coarsest = -1000;
   for (const format::MeshRecord& mesh : asset->meshes()) {
     for (std::uint32_t set = 0; set < mesh.uv_set_count; ++set) coarsest = std::max(coarsest, mesh.uv_log2[set]);
@@ -79,8 +81,31 @@ TEST(TexelBudget, AStepThatIsTooCoarseForATextureIsFound) {
   const auto width = static_cast<std::uint32_t>(std::ldexp(0.25, 1 - coarsest));
   for (const bool is_too_wide : {false, true}) {
     RuleLog log;
-    check_texel_budget(*asset, scene_with(is_too_wide ? 2 * width : width), 0.25, log);
+    check_texel_budget(*asset, scene_with(is_too_wide ? 2 * width : width), 0.25, *clusters, log);
     EXPECT_EQ(log.count_of("V113") > 0, is_too_wide) << width;
+  }
+}
+
+// A coordinate of more than half of what 24 bits hold leaves no finer step; one of less does.
+TEST(TexelBudget, AStepAsFineAsTheCoordinatesLeaveIsWithinAnyBudget) {
+  const auto asset = Asset::from_vector(test::judged_sample_bytes());
+  ASSERT_TRUE(asset.ok());
+  auto clusters = decode_all(*asset);
+  ASSERT_TRUE(clusters.ok());
+  for (const std::int32_t largest : {(1 << 23) - 1, 1 << 23, -(1 << 23)}) {
+    bool is_any_set = false;
+    for (std::size_t m = 0; m < asset->meshes().size(); ++m) {
+      const format::MeshRecord& mesh = asset->meshes()[m];
+      const std::size_t first_uv = mesh.normal_mode == format::NormalMode::kStored ? 6 : 3;
+      for (std::uint32_t set = 0; set < mesh.uv_set_count; ++set) {
+        is_any_set = true;
+        (*clusters)[mesh.first_cluster].channels[first_uv + 2 * set + 1] = largest;
+      }
+    }
+    ASSERT_TRUE(is_any_set);
+    RuleLog log;
+    check_texel_budget(*asset, scene_with(1U << 20U), 1e-6, *clusters, log);
+    EXPECT_EQ(log.count_of("V113") == 0, largest != (1 << 23) - 1) << largest;
   }
 }
 
