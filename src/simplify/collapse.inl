@@ -42,8 +42,8 @@ typename GroupSimplifier<C>::Obstacle GroupSimplifier<C>::try_collapse(const Can
   if (is_locked_[a] == 0 && is_locked_[b] == 0) target = to_frame(to_grid(target));
   mesh_.corners_of(a, corners_a_);
   mesh_.corners_of(b, corners_b_);
-  if (is_locked_[a] != 0 && !keeps_shared_edges(a, corners_b_)) return Obstacle::kLocked;
-  if (is_locked_[b] != 0 && !keeps_shared_edges(b, corners_a_)) return Obstacle::kLocked;
+  if (is_locked_[a] != 0 && !keeps_shared_edges(a, corners_a_, corners_b_)) return Obstacle::kLocked;
+  if (is_locked_[b] != 0 && !keeps_shared_edges(b, corners_b_, corners_a_)) return Obstacle::kLocked;
   if (is_locked_[a] != 0 && !keeps_shared_corners(a, corners_b_)) return Obstacle::kSeams;
   if (is_locked_[b] != 0 && !keeps_shared_corners(b, corners_a_)) return Obstacle::kSeams;
   bool breaks_topology = false;

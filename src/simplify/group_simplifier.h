@@ -85,7 +85,8 @@ class GroupSimplifier {
   [[nodiscard]] double distance2_to_rest(std::uint32_t a, std::uint32_t b) const;
   [[nodiscard]] double weigh_witnesses(std::uint32_t a, std::uint32_t b, const Vec3d& target);
   [[nodiscard]] double new_surface_distance2(const Vec3d& target, double least) const;
-  [[nodiscard]] bool keeps_shared_edges(std::uint32_t locked, const std::vector<std::uint32_t>& around) const;
+  [[nodiscard]] bool keeps_shared_edges(std::uint32_t locked, const std::vector<std::uint32_t>& at_locked,
+                                        const std::vector<std::uint32_t>& around) const;
   [[nodiscard]] bool keeps_shared_corners(std::uint32_t locked, const std::vector<std::uint32_t>& around) const;
   [[nodiscard]] bool keeps_topology(std::uint32_t a, std::uint32_t b);
   [[nodiscard]] bool turns_over(std::uint32_t moved, std::uint32_t other, const std::vector<std::uint32_t>& corners,
@@ -94,6 +95,7 @@ class GroupSimplifier {
   void update_wedges(std::uint32_t vertex);
   [[nodiscard]] Vec3d to_frame(const Vec3i& q) const { return (Vec3d(q) - center_) * inverse_scale_; }
   [[nodiscard]] Vec3i to_grid(const Vec3d& p) const;
+  [[nodiscard]] bool has_corners_in_one_place(std::uint32_t triangle) const;
   void run_passes();
   [[nodiscard]] std::vector<std::uint32_t> find_pieces() const;
   void grow_pieces();

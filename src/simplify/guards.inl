@@ -4,11 +4,14 @@
 
 namespace meshlode {
 
-/// I6. A triangle (locked, moved, tip) goes with the collapse of its edge to `locked`. Where its tip is locked too, the
-/// edge (locked, tip) may be one that another group's triangle leans on: the triangles across (moved, tip) must inherit
-/// it. On an open border there may be none: such an ear stays. `around` are the corners at the moved vertex.
+/// I6. An edge between two locked vertices may be one that another group's triangle leans on, so that its uses here stay
+/// what they are. A triangle (locked, moved, tip) goes with the collapse of its edge to `locked`: where its tip is locked
+/// too, the triangles across (moved, tip) must inherit the edge (locked, tip). On an open border there may be none: such an
+/// ear stays. And an open edge (moved, tip) that comes to lie on (locked, tip) may not close that one's border.
+/// `around` are the corners at the moved vertex, `at_locked` those at the locked one.
 template <std::size_t C>
-bool GroupSimplifier<C>::keeps_shared_edges(std::uint32_t locked, const std::vector<std::uint32_t>& around) const {
+bool GroupSimplifier<C>::keeps_shared_edges(std::uint32_t locked, const std::vector<std::uint32_t>& at_locked,
+                                            const std::vector<std::uint32_t>& around) const {
   // How often a triangle runs from its vertex `tip` to its vertex `to`: 1, or -1 for the other way, 0 where it does not.
   const auto uses = [&](std::uint32_t t, std::uint32_t tip, std::uint32_t to) {
     int sum = 0;
@@ -18,20 +21,26 @@ bool GroupSimplifier<C>::keeps_shared_edges(std::uint32_t locked, const std::vec
     }
     return sum;
   };
+  const auto keeps_edge_to = [&](std::uint32_t tip, std::uint32_t moved) {
+    int lost = 0, inherited = 0;
+    bool is_covered = false;  // by a triangle that goes
+    for (const std::uint32_t corner : around) {
+      const int going = uses(corner / 3, tip, locked);
+      lost += going;
+      is_covered |= going != 0;
+      if (going == 0) inherited += uses(corner / 3, tip, moved);
+    }
+    if (is_covered) return lost == inherited;
+    if (inherited == 0) return true;
+    int kept = 0;
+    for (const std::uint32_t corner : at_locked) kept += uses(corner / 3, tip, locked);
+    return kept == 0 || (kept > 0) == (inherited > 0);
+  };
   for (const std::uint32_t corner : around) {
     const std::uint32_t next = CollapseMesh::next_in_triangle(corner);
-    const std::uint32_t x = mesh_.vertex(next), y = mesh_.vertex(CollapseMesh::next_in_triangle(next));
-    if (x != locked && y != locked) continue;
-    const std::uint32_t tip = x == locked ? y : x;
-    if (is_locked_[tip] == 0) continue;
-    const std::uint32_t moved = mesh_.vertex(corner);
-    int lost = 0, inherited = 0;
-    for (const std::uint32_t other : around) {
-      const int at_locked = uses(other / 3, tip, locked);
-      lost += at_locked;
-      if (at_locked == 0) inherited += uses(other / 3, tip, moved);
+    for (const std::uint32_t tip : {mesh_.vertex(next), mesh_.vertex(CollapseMesh::next_in_triangle(next))}) {
+      if (tip != locked && is_locked_[tip] != 0 && !keeps_edge_to(tip, mesh_.vertex(corner))) return false;
     }
-    if (lost != inherited) return false;
   }
   return true;
 }

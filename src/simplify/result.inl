@@ -96,6 +96,15 @@ StuckReason GroupSimplifier<C>::reason_for_stopping() const {
   return StuckReason::kTooSmall;
 }
 
+/// Two vertices may have come to lie on one point of the grid. A triangle with both has no area and no border by then.
+template <std::size_t C>
+bool GroupSimplifier<C>::has_corners_in_one_place(std::uint32_t triangle) const {
+  const Vec3i& p = grid_position_[mesh_.vertex(3 * triangle)];
+  const Vec3i& q = grid_position_[mesh_.vertex(3 * triangle + 1)];
+  const Vec3i& r = grid_position_[mesh_.vertex(3 * triangle + 2)];
+  return p == q || q == r || r == p;
+}
+
 template <std::size_t C>
 SimplifyResult GroupSimplifier<C>::result() const {
   SimplifyResult out;
@@ -107,7 +116,7 @@ SimplifyResult GroupSimplifier<C>::result() const {
   std::vector<std::uint32_t> new_wedge(input_.wedge_position.size(), kUnset);
   const std::size_t stride = attribute_count_;
   for (std::uint32_t t = 0; t < mesh_.triangle_count(); ++t) {
-    if (!mesh_.is_alive(t)) continue;
+    if (!mesh_.is_alive(t) || has_corners_in_one_place(t)) continue;
     WedgeTriangle triangle{};
     for (std::uint32_t k = 0; k < 3; ++k) {
       const std::uint32_t v = mesh_.vertex(3 * t + k);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "simplify/simplify.h"
 
+#include "simplify/border_rule.h"
 #include "simplify/group_simplifier.h"
 // The members, by idea; templates, and hot, so that one translation unit sees them all.
 #include "simplify/quadrics.inl"
@@ -21,14 +22,26 @@ SimplifyResult simplify_with(const SimplifyInput& input, const SimplifyOptions& 
   return simplifier.result();
 }
 
-}  // namespace
-
-SimplifyResult simplify_group(const SimplifyInput& input, const SimplifyOptions& options) {
+SimplifyResult simplify_once(const SimplifyInput& input, const SimplifyOptions& options) {
   // Quadrics of few attributes are small, and copying them is most of the work.
   const std::uint32_t attributes = input.layout.stride();
   if (attributes <= 3) return simplify_with<3>(input, options);
   if (attributes <= 5) return simplify_with<5>(input, options);
   return simplify_with<3 + 2 * kMaxUvSets + 4>(input, options);
+}
+
+}  // namespace
+
+SimplifyResult simplify_group(const SimplifyInput& input, const SimplifyOptions& options) {
+  SimplifyResult result = simplify_once(input, options);
+  if (keeps_border(input, result)) return result;
+  // Where the link condition was broken, or vertices came to lie on each other, the border can be another one. Under the
+  // condition it seldom is; where its vertices do not move, never.
+  SimplifyOptions careful = options;
+  careful.may_relax_topology = false;
+  result = simplify_once(input, careful);
+  if (keeps_border(input, result)) return result;
+  return simplify_once(with_locked_border(input), careful);
 }
 
 }  // namespace meshlode

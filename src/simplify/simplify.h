@@ -67,6 +67,8 @@ struct SimplifyResult {
   StuckReason reason = StuckReason::kNotStuck;  ///< what stopped it short of the target: the commonest obstacle
 };
 
+/// The result has the input's border (I6, docs/validation.md): edge by edge where both ends are locked, simplified where
+/// the surface is open. No triangle of it has two corners in one place.
 [[nodiscard]] SimplifyResult simplify_group(const SimplifyInput& input, const SimplifyOptions& options);
 
 }  // namespace meshlode

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <utility>
 
-#include "base/disjoint_sets.h"
+#include "validate/border_exchange.h"
 
 namespace meshlode {
 
@@ -20,117 +20,17 @@ std::vector<std::uint32_t> members_of(const MeshSurface& surface, const GroupRec
   return members;
 }
 
-/// Calls visit(edge, finer, coarser) for every edge of either chain, ascending.
-template <class Visit>
-void for_each_edge(std::span<const EdgeUse> finer, std::span<const EdgeUse> coarser, const Visit& visit) {
-  std::size_t i = 0;
-  std::size_t j = 0;
-  while (i < finer.size() || j < coarser.size()) {
-    const bool take_finer = j == coarser.size() || (i < finer.size() && finer[i].edge <= coarser[j].edge);
-    const bool take_coarser = i == finer.size() || (j < coarser.size() && coarser[j].edge <= finer[i].edge);
-    const std::uint32_t edge = take_finer ? finer[i].edge : coarser[j].edge;
-    visit(edge, take_finer ? finer[i].net : 0, take_coarser ? coarser[j].net : 0);
-    if (take_finer) ++i;
-    if (take_coarser) ++j;
-  }
-}
-
-struct Exchange {
-  std::uint32_t edge;
-  std::int32_t removed;  ///< of the finer chain, signed
-  std::int32_t added;    ///< by the coarser chain, signed
-};
-
-/// What changes on an edge: the part of the finer use that goes and the part of the coarser one that comes. Uses of one
-/// sign cancel as far as they agree.
-Exchange exchange_of(std::uint32_t edge, std::int32_t finer, std::int32_t coarser) {
-  const bool same_sign = (finer > 0) == (coarser > 0) && finer != 0 && coarser != 0;
-  if (!same_sign) return {edge, finer, coarser};
-  const std::int32_t kept = finer > 0 ? std::min(finer, coarser) : std::max(finer, coarser);
-  return {edge, finer - kept, coarser - kept};
-}
-
-/// What hangs together by edges of exchanges, by name of position.
-class Components {
- public:
-  Components(const MeshSurface& surface, std::span<const Exchange> exchanges)
-      : positions_(ends_of(surface, exchanges)), sets_(positions_.size()) {}
-
-  /// \pre x is an end of one of the exchanges
-  [[nodiscard]] std::uint32_t find(std::uint32_t x) { return positions_[sets_.find(index(x))]; }
-  bool join(std::uint32_t a, std::uint32_t b) { return sets_.join(index(a), index(b)); }
-
- private:
-  static std::vector<std::uint32_t> ends_of(const MeshSurface& surface, std::span<const Exchange> exchanges) {
-    std::vector<std::uint32_t> ends;
-    for (const Exchange& exchange : exchanges) {
-      ends.insert(ends.end(), surface.edges[exchange.edge].begin(), surface.edges[exchange.edge].end());
+ClusterSet set_of(const MeshSurface& surface, std::span<const DecodedCluster> clusters,
+                  std::span<const std::uint32_t> members) {
+  ClusterSet set;
+  set.chain = sum_chains(surface, members);
+  for (const std::uint32_t c : members) {
+    const std::uint32_t* position = surface.vertex_position.data() + surface.first_vertex[c];
+    for (const auto& t : clusters[surface.first_cluster + c].triangles) {
+      set.triangles.push_back({position[t[0]], position[t[1]], position[t[2]]});
     }
-    std::sort(ends.begin(), ends.end());
-    ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
-    return ends;
   }
-  [[nodiscard]] std::uint32_t index(std::uint32_t x) const {
-    return static_cast<std::uint32_t>(std::lower_bound(positions_.begin(), positions_.end(), x) - positions_.begin());
-  }
-
-  std::vector<std::uint32_t> positions_;  ///< ascending, distinct
-  DisjointSets sets_;
-};
-
-/// How many independent loops the removed (or the added) edges have: E - V + components, edges counted as often as
-/// used. V - components is the number of joins that tied two of them together.
-std::int64_t count_loops(const MeshSurface& surface, std::span<const Exchange> exchanges,
-                         std::int32_t Exchange::*uses) {
-  Components components(surface, exchanges);
-  std::int64_t loops = 0;
-  for (const Exchange& exchange : exchanges) {
-    if (exchange.*uses == 0) continue;
-    const auto& [a, b] = surface.edges[exchange.edge];
-    loops += std::abs(exchange.*uses) - (components.join(a, b) ? 1 : 0);
-  }
-  return loops;
-}
-
-/// The first reason why the exchanges of one group are not allowed; empty if they are.
-std::string refuse(const MeshSurface& surface, const BorderSet& border, std::span<const Exchange> exchanges) {
-  Components components(surface, exchanges);
-  std::vector<std::uint32_t> anchored;
-  for (const Exchange& exchange : exchanges) {
-    const auto& [a, b] = surface.edges[exchange.edge];
-    components.join(a, b);
-    if (exchange.removed == 0) continue;
-    if (!border.allows(exchange.edge, exchange.removed)) {
-      return "edge " + edge_text(surface, exchange.edge) + " of the finer set, used " +
-             std::to_string(exchange.removed) + " times, is missing in the coarser set and no border of the source";
-    }
-    anchored.push_back(a);
-  }
-  for (std::uint32_t& position : anchored) position = components.find(position);
-  std::sort(anchored.begin(), anchored.end());
-  // What is added hangs together with what it replaces, or is a whole loop whose every vertex moved.
-  std::vector<std::uint32_t> new_loops;
-  std::uint32_t last_edge = 0;
-  for (const Exchange& exchange : exchanges) {
-    const std::uint32_t root = components.find(surface.edges[exchange.edge][0]);
-    if (std::binary_search(anchored.begin(), anchored.end(), root)) continue;
-    new_loops.push_back(root);
-    last_edge = exchange.edge;
-  }
-  std::sort(new_loops.begin(), new_loops.end());
-  new_loops.erase(std::unique(new_loops.begin(), new_loops.end()), new_loops.end());
-  const std::int64_t removed_loops = count_loops(surface, exchanges, &Exchange::removed);
-  if (std::cmp_greater(new_loops.size(), removed_loops)) {
-    return "edge " + edge_text(surface, last_edge) + " of the coarser set opens a border where the finer set has none";
-  }
-  // A path stands for a path and a loop for a loop: a hole that hangs on a simplified border by a vertex is one loop
-  // more.
-  const std::int64_t added_loops = count_loops(surface, exchanges, &Exchange::added);
-  if (added_loops > removed_loops) {
-    return "the coarser set has " + std::to_string(added_loops) + " new loops of border for " +
-           std::to_string(removed_loops) + " of the finer set, by edge " + edge_text(surface, exchanges.back().edge);
-  }
-  return {};
+  return set;
 }
 
 std::vector<std::uint32_t> groups_from_fine_to_coarse(const Asset& asset, const MeshSurface& surface) {
@@ -143,7 +43,7 @@ std::vector<std::uint32_t> groups_from_fine_to_coarse(const Asset& asset, const 
 
 }  // namespace
 
-BorderProof prove_borders(const Asset& asset, const MeshSurface& surface) {
+BorderProof prove_borders(const Asset& asset, const MeshSurface& surface, std::span<const DecodedCluster> clusters) {
   BorderProof proof;
   BorderSet& border = proof.border;
   border.plus.assign(surface.edges.size(), 0);
@@ -157,19 +57,16 @@ BorderProof prove_borders(const Asset& asset, const MeshSurface& surface) {
     border.is_closed = false;
   }
 
-  std::vector<Exchange> exchanges;
   for (const std::uint32_t g : groups_from_fine_to_coarse(asset, surface)) {
     const GroupRecord& group = asset.groups()[g];
     if ((group.flags & format::kGroupTerminal) != 0) continue;
     ++proof.groups;
-    const std::vector<EdgeUse> finer = sum_chains(surface, members_of(surface, group));
-    const std::vector<EdgeUse> coarser = sum_chains(surface, surface.made[g - surface.first_group]);
-    exchanges.clear();
-    for_each_edge(finer, coarser, [&](std::uint32_t edge, std::int32_t f, std::int32_t c) {
-      if (f != c) exchanges.push_back(exchange_of(edge, f, c));
-    });
+    const std::vector<std::uint32_t> members = members_of(surface, group);
+    const std::vector<std::uint32_t>& made = surface.made[g - surface.first_group];
+    const std::vector<Exchange> exchanges = exchanges_of(sum_chains(surface, members), sum_chains(surface, made));
     if (exchanges.empty()) continue;
-    std::string reason = refuse(surface, border, exchanges);
+    std::string reason = refuse_exchange(surface, border, exchanges, set_of(surface, clusters, members),
+                                         set_of(surface, clusters, made));
     if (!reason.empty()) {
       proof.violations.push_back({g, std::move(reason)});
       continue;  // what a broken group adds is no border of the source

@@ -5,8 +5,8 @@
 //
 // Where the source is open, its border may be simplified. B starts as the chain of all level-0 clusters. Going from
 // fine to coarse, a group may exchange border edges that are in B for others, which then belong to B too. What comes
-// must hang together with what goes or be a loop whose every vertex moved, and it may have no more loops than what goes,
-// so that no hole can open inside.
+// must hang together with what goes and have no more edges, or be a loop that moved as a whole; and the coarser set may
+// have no more holes than the finer one, so that none can open inside.
 #pragma once
 
 #include <cstdint>
@@ -39,7 +39,9 @@ struct BorderProof {
   std::uint64_t groups = 0;                 ///< checked
 };
 
-[[nodiscard]] BorderProof prove_borders(const Asset& asset, const MeshSurface& surface);
+/// \pre `clusters` is decode_all of the asset
+[[nodiscard]] BorderProof prove_borders(const Asset& asset, const MeshSurface& surface,
+                                        std::span<const DecodedCluster> clusters);
 
 /// Attributes on shared borders (I3, L506). A border edge that a group shares is drawn by its neighbours too, so what
 /// the coarser set has at its ends must be what the finer set has there. At a seam a position has several wedges, and

@@ -62,7 +62,7 @@ class MeshGeometry {
     for (std::uint32_t k = 0; k < mesh_.cluster_count; ++k) check_cluster(mesh_.first_cluster + k);
     check_mesh_counts();
     const MeshSurface surface = build_surface(asset_, MeshId(static_cast<std::uint32_t>(m_)), clusters_);
-    const BorderProof proof = prove_borders(asset_, surface);
+    const BorderProof proof = prove_borders(asset_, surface, clusters_);
     report("L507", proof.violations);
     check_materials(surface);
     report("L506", check_shared_attributes(asset_, surface, clusters_, proof.border));

@@ -50,6 +50,21 @@ struct MeshSurface {
 /// The sum of the chains of clusters (indices within the mesh), ascending, without zeros.
 [[nodiscard]] std::vector<EdgeUse> sum_chains(const MeshSurface& surface, std::span<const std::uint32_t> clusters);
 
+/// Calls visit(edge, finer, coarser) for every edge of either chain, ascending.
+template <class Visit>
+void for_each_edge(std::span<const EdgeUse> finer, std::span<const EdgeUse> coarser, const Visit& visit) {
+  std::size_t i = 0;
+  std::size_t j = 0;
+  while (i < finer.size() || j < coarser.size()) {
+    const bool take_finer = j == coarser.size() || (i < finer.size() && finer[i].edge <= coarser[j].edge);
+    const bool take_coarser = i == finer.size() || (j < coarser.size() && coarser[j].edge <= finer[i].edge);
+    const std::uint32_t edge = take_finer ? finer[i].edge : coarser[j].edge;
+    visit(edge, take_finer ? finer[i].net : 0, take_coarser ? coarser[j].net : 0);
+    if (take_finer) ++i;
+    if (take_coarser) ++j;
+  }
+}
+
 /// "(1 2 3)"
 [[nodiscard]] std::string position_text(const MeshSurface& surface, std::uint32_t position);
 /// "(1 2 3)-(4 5 6)"

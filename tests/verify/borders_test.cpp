@@ -1,92 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The border proof on surfaces drawn by hand: what may be exchanged on an open border, and what may not.
 #include <algorithm>
-#include <array>
-#include <limits>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "decode/decode.h"
-#include "encode/encode.h"
-#include "hierarchy/hierarchy.h"
+#include "drawn_surface.h"
 #include "read/asset.h"
 #include "validate/borders.h"
-#include "write/write.h"
 
 namespace meshlode {
 namespace {
 
-using Corner = std::array<int, 3>;
-using Triangle = std::array<Corner, 3>;
-using Patch = std::vector<Triangle>;
-
-void append_cluster(const Patch& patch, std::uint32_t level, GroupId own, GroupId coarser, LodDag& dag) {
-  DagCluster cluster;
-  cluster.level = level;
-  cluster.own_group = own;
-  cluster.coarser_group = coarser;
-  cluster.first_vertex = static_cast<std::uint32_t>(dag.vertex_position.size());
-  cluster.first_triangle = static_cast<std::uint32_t>(dag.triangles.size());
-  cluster.triangle_count = static_cast<std::uint32_t>(patch.size());
-  std::vector<Corner> corners;
-  for (const Triangle& triangle : patch) {
-    std::array<std::uint8_t, 3> local{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      auto found = std::find(corners.begin(), corners.end(), triangle[k]);
-      if (found == corners.end()) found = corners.insert(corners.end(), triangle[k]);
-      local[k] = static_cast<std::uint8_t>(found - corners.begin());
-    }
-    dag.triangles.push_back(local);
-    dag.triangle_material.push_back(0);
-  }
-  for (const Corner& c : corners) dag.vertex_position.emplace_back(c[0], c[1], c[2]);
-  cluster.vertex_count = static_cast<std::uint32_t>(corners.size());
-  dag.clusters.push_back(cluster);
-}
-
-/// One group that replaces `finer` by `coarser`, beside `rest`, which stays as it is.
-Asset asset_of(const std::vector<Patch>& finer, const Patch& coarser, const std::vector<Patch>& rest = {}) {
-  LodDag dag;
-  append_cluster(coarser, 1, GroupId(1U), GroupId(0U), dag);
-  for (const Patch& patch : rest) append_cluster(patch, 0, GroupId(), GroupId(0U), dag);
-  const auto terminal_count = static_cast<std::uint32_t>(dag.clusters.size());
-  for (const Patch& patch : finer) append_cluster(patch, 0, GroupId(), GroupId(1U), dag);
-  DagGroup top;
-  top.level = 1;
-  top.cluster_count = terminal_count;
-  top.is_terminal = true;
-  top.error = top.quadric_error = top.deviation = std::numeric_limits<double>::infinity();
-  DagGroup group;
-  group.first_cluster = terminal_count;
-  group.cluster_count = static_cast<std::uint32_t>(finer.size());
-  group.error = group.quadric_error = 1.0;
-  group.deviation = std::numeric_limits<double>::infinity();
-  dag.groups = {top, group};
-  dag.level_count = 2;
-
-  PreparedMesh mesh;
-  Scene scene;
-  scene.materials.resize(1);
-  WriteInput input;
-  auto encoded = encode_mesh(mesh, dag, build_hierarchy(dag, mesh), {});
-  EXPECT_TRUE(encoded.ok()) << encoded.error().message();
-  input.meshes.push_back(std::move(*encoded));
-  input.mesh_names = {"drawn"};
-  input.scene = &scene;
-  input.meta_json = "{}";
-  auto bytes = write_asset(std::move(input));
-  EXPECT_TRUE(bytes.ok());
-  auto asset = Asset::from_vector(std::move(*bytes));
-  EXPECT_TRUE(asset.ok()) << asset.error().message();
-  return std::move(*asset);
-}
+using test::asset_of;
+using test::Corner;
+using test::Patch;
+using test::Triangle;
 
 BorderProof prove(const std::vector<Patch>& finer, const Patch& coarser, const std::vector<Patch>& rest = {}) {
   const Asset asset = asset_of(finer, coarser, rest);
   const auto clusters = decode_all(asset);
   EXPECT_TRUE(clusters.ok());
-  return prove_borders(asset, build_surface(asset, MeshId(0U), *clusters));
+  return prove_borders(asset, build_surface(asset, MeshId(0U), *clusters), *clusters);
 }
 
 /// A fan around the origin of the plane: the square's rim in `steps` straight pieces per side, oriented upwards.
@@ -114,7 +50,7 @@ Patch lid(int steps, int size = 8) {
 
 /// The surface of asset_of(one patch, one patch), but the finer cluster's border is a path of 3 * `links` edges that, in
 /// their order, tie the links from the last to the first: each lower position meets the path as it is so far. The last
-/// edge of all hangs on the last link, which sets linked by name have by then put `links` deep.
+/// edge of all hangs on the last link, which sets linked by name have by then put `links` deep. The triangles are nowhere.
 MeshSurface path_surface(const Asset& asset, std::uint32_t links) {
   MeshSurface surface;
   surface.mesh = MeshId(0U);
@@ -130,6 +66,8 @@ MeshSurface path_surface(const Asset& asset, std::uint32_t links) {
   for (std::uint32_t i = links - 1; i > 0; --i) surface.edges.push_back({left(i) + 1, left(i - 1)});
   surface.edges.push_back({3 * links, 3 * links + 1});
   surface.made.resize(surface.group_count);
+  surface.first_vertex.assign(surface.cluster_count + 1, 0);
+  surface.vertex_position.assign(256, 0);
   surface.first_use.assign(1, 0);
   for (std::uint32_t c = 0; c < surface.cluster_count; ++c) {
     const std::uint32_t own = asset.clusters()[c].own_group;
@@ -149,7 +87,7 @@ TEST(BorderProof, APathAsLongAsAFileLikesIsNoDeeperForTheProof) {
   const Asset asset = asset_of({square(1)}, square(1));
   const MeshSurface surface = path_surface(asset, 400000);
   ASSERT_TRUE(std::is_sorted(surface.edges.begin(), surface.edges.end()));
-  const BorderProof proof = prove_borders(asset, surface);
+  const BorderProof proof = prove_borders(asset, surface, *decode_all(asset));
   EXPECT_EQ(proof.groups, 1U);
   EXPECT_FALSE(proof.border.is_closed);
   EXPECT_TRUE(proof.violations.empty());
@@ -213,6 +151,64 @@ TEST(BorderProof, AHoleThatHangsOnASimplifiedRimIsNoPartOfIt) {
   open.push_back({Corner{-4, -2, 0}, Corner{-8, 0, 0}, Corner{-8, -8, 0}});
   EXPECT_TRUE(prove({square(4)}, square(2)).violations.empty());
   EXPECT_EQ(prove({square(4)}, open).violations.size(), 1U);
+}
+
+TEST(BorderProof, APieceThatVanishesDoesNotPayForAHole) {
+  // As above, and a card beside the square goes: one loop less, and none of it may be spent on the hole.
+  Patch open = square(2);
+  open.pop_back();
+  open.push_back({Corner{0, 0, 0}, Corner{-8, 0, 0}, Corner{-4, -2, 0}});
+  open.push_back({Corner{-4, -2, 0}, Corner{-8, 0, 0}, Corner{-8, -8, 0}});
+  Patch card = square(1, 4);
+  for (Triangle& triangle : card) {
+    for (Corner& c : triangle) c[0] += 100;
+  }
+  EXPECT_TRUE(prove({square(4), card}, square(2)).violations.empty());
+  EXPECT_EQ(prove({square(4), card}, open).violations.size(), 1U);
+}
+
+TEST(BorderProof, ANeckMayShrinkToAPoint) {
+  // Two quads that meet in an edge become two triangles that meet in a vertex, and everything has moved. What was one
+  // loop of border is two, around two pieces: no hole.
+  const Patch two_quads{{Corner{-30, -10, 0}, Corner{0, -4, 0}, Corner{0, 4, 0}},
+                        {Corner{-30, -10, 0}, Corner{0, 4, 0}, Corner{-30, 10, 0}},
+                        {Corner{0, -4, 0}, Corner{30, -10, 0}, Corner{30, 10, 0}},
+                        {Corner{0, -4, 0}, Corner{30, 10, 0}, Corner{0, 4, 0}}};
+  const Patch two_triangles{{Corner{-29, -9, 0}, Corner{0, 0, 0}, Corner{-29, 9, 0}},
+                            {Corner{0, 0, 0}, Corner{29, -9, 0}, Corner{29, 9, 0}}};
+  EXPECT_TRUE(prove({two_quads}, two_triangles).violations.empty());
+}
+
+TEST(BorderProof, AHoleMayCloseOrJoinTheRim) {
+  Patch ring;
+  for (const Triangle& t : square(4)) {
+    const Corner c{t[1][0] / 2, t[1][1] / 2, 0};
+    const Corner d{t[2][0] / 2, t[2][1] / 2, 0};
+    ring.push_back({c, t[1], t[2]});
+    ring.push_back({c, t[2], d});
+  }
+  EXPECT_TRUE(prove({ring}, square(2)).violations.empty());
+  const Corner a{-8, -8, 0}, b{8, -8, 0}, c{8, 8, 0}, d{-8, 8, 0}, e{2, -2, 0}, f{-2, 2, 0};
+  const Patch joined{{a, b, e}, {b, c, e}, {e, c, f}, {c, d, f}, {d, a, f}};
+  EXPECT_TRUE(prove({ring}, joined).violations.empty());
+  EXPECT_EQ(prove({square(4)}, joined).violations.size(), 1U) << "where there was no hole, there is none to join";
+}
+
+TEST(BorderProof, ACrackFromRimToRimIsFound) {
+  const Corner low{0, -8, 0}, middle{0, 0, 0}, high{0, 8, 0};
+  const Patch parted{{Corner{-8, -8, 0}, low, high},
+                     {Corner{-8, -8, 0}, high, Corner{-8, 8, 0}},
+                     {low, Corner{8, -8, 0}, middle},
+                     {middle, Corner{8, -8, 0}, Corner{8, 8, 0}},
+                     {middle, Corner{8, 8, 0}, high}};
+  EXPECT_EQ(prove({square(4)}, parted).violations.size(), 1U);
+}
+
+TEST(BorderProof, ABorderNeverGetsMoreEdges) {
+  // Without a triangle at its rim the square has one border edge less and two more.
+  Patch notched = square(2);
+  notched.pop_back();
+  EXPECT_EQ(prove({square(2)}, notched).violations.size(), 1U);
 }
 
 TEST(BorderProof, AHoleInsideAnOpenSurfaceIsNoBorder) {
