@@ -67,6 +67,8 @@ auto guarded(const Body& body) -> decltype(body()) {
     return Error{ErrorCode::kBuildFailed, "", "out of memory"};
   } catch (const std::exception& failure) {
     return Error{ErrorCode::kBuildFailed, "", failure.what()};
+  } catch (...) {  // a caller's callback may throw anything
+    return Error{ErrorCode::kBuildFailed, "", "an exception of an unknown type"};
   }
 }
 

@@ -262,6 +262,10 @@ TEST(ApiBuild, AThrowingCallbackIsAnError) {
   const auto result = build_one(arrays.primitive(), options);
   ASSERT_FALSE(result.ok());
   EXPECT_EQ(result.error().code, ErrorCode::kBuildFailed);
+  options.on_progress = [](const BuildProgress&) { throw 7; };  // NOLINT: what no library throws
+  const auto odd = build_one(arrays.primitive(), options);
+  ASSERT_FALSE(odd.ok());
+  EXPECT_EQ(odd.error().code, ErrorCode::kBuildFailed);
 }
 
 // METIS draws from the C library's rand(): builds at the same time must not disturb each other (I10).

@@ -265,25 +265,48 @@ std::vector<MutantKind> make_kinds() {
     with_leaf(e, g, [&](auto& x) { x.error = finer * shrink(r); });
     return true;
   });
-  mostly("error raised, leaf too", "any error between the finer and the coarser ones is valid in the qem tier",
+  mostly("error raised, leaf too", "an error may be larger than need be, as long as the coarser ones are larger still",
          [=](Edit& e, Random& r) {
            const auto g = any_group(e, r);
            if (e.groups()[g].error > 1e30F) return false;
            with_leaf(e, g, [&](auto& x) { x.error = x.error * grow(r) + 1e-6F; });
            return true;
          });
-  mostly("quadric error", "any quadric error between the finer and the coarser ones is valid in the qem tier",
+  // A forged measurement: nothing in the asset contradicts it, so only the surface can.
+  mostly("error and deviation lowered, leaf too",
+         "less than 5% too low, or another group's error is as large in every cut that was measured",
+         [=](Edit& e, Random& r) {
+           const auto g = any_group(e, r);
+           const float error = e.groups()[g].error;
+           const auto f = static_cast<float>(r.between(0.3, 0.9));
+           if (error > 1e30F || error == 0.0F || error * f <= 1.001F * largest_finer_error(e, g)) return false;
+           with_leaf(e, g, [&](auto& x) { x.error *= f; });
+           e.group(g, [&](auto& x) { x.deviation *= x.deviation < 1e30F ? f : 1.0F; });
+           return true;
+         });
+  mostly("deviation lowered", "it is a figure to read: what cuts are chosen by is the error, and that is measured",
+         [=](Edit& e, Random& r) {
+           const auto g = any_group(e, r);
+           if (e.groups()[g].deviation > 1e30F || e.groups()[g].deviation == 0.0F) return false;
+           e.group(g, [&](auto& x) { x.deviation *= shrink(r); });
+           return true;
+         });
+  mostly("quadric error", "an estimate alone: any between the finer and the coarser ones is valid",
          [=](Edit& e, Random& r) {
            const auto g = any_group(e, r);
            if (e.groups()[g].quadric_error > 1e30F || e.groups()[g].quadric_error == 0.0F) return false;
            e.group(g, [&](auto& x) { x.quadric_error *= r.below(2) == 0 ? shrink(r) : grow(r); });
            return true;
          });
-  always("deviation in the qem tier, attribute deviation of a root", [=](Edit& e, Random& r) {
+  always("deviation above the error, attribute deviation of a root", [=](Edit& e, Random& r) {
     const auto id = any_group(e, r);
     const bool is_root = (e.groups()[id].flags & format::kGroupTerminal) != 0;
     e.group(id, [&](auto& g) {
-      float& value = !is_root || r.below(3) == 0 ? g.deviation : r.below(2) == 0 ? g.normal_deviation : g.uv_deviation;
+      if (!is_root) {  // the qem tier has no deviation at all
+        g.deviation = g.error * static_cast<float>(r.between(1.01, 3.0)) + 1e-6F;
+        return;
+      }
+      float& value = r.below(3) == 0 ? g.deviation : r.below(2) == 0 ? g.normal_deviation : g.uv_deviation;
       value = static_cast<float>(r.between(0.1, 2.0));
     });
     return true;
