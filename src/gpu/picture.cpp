@@ -76,6 +76,27 @@ Result<std::vector<PixelPoint>> unproject(const Asset& asset, std::span<const Cl
   return out;
 }
 
+/// The points of the source's picture.
+std::vector<PixelPoint> unproject_source(const Asset& asset, std::span<const SourceSurface> source,
+                                         const VisibilityBuffer& drawn, const raster::Projection& projection) {
+  std::vector<PixelPoint> out(drawn.pixel_count());
+  parallel_for_each_index(drawn.pixel_count(), 1024, [&](std::size_t i) {
+    if (drawn.item[i] == VisibilityBuffer::kNothing) return;
+    const format::InstanceRecord& instance = asset.instances()[drawn.item[i]];
+    const Surface& surface = source[instance.mesh].surface;
+    const auto& t = surface.triangles[drawn.triangle[i]];
+    const Vec3d corners[3] = {surface.positions[t[0]], surface.positions[t[1]], surface.positions[t[2]]};
+    const auto x = static_cast<double>(i % drawn.width), y = static_cast<double>(i / drawn.width);
+    const Vec3d weights = corner_weights(project_source(projection, instance, corners[0]),
+                                         project_source(projection, instance, corners[1]),
+                                         project_source(projection, instance, corners[2]),
+                                         x + 0.5 - 0.5 * drawn.width, y + 0.5 - 0.5 * drawn.height);
+    out[i].instance = drawn.item[i];
+    out[i].point = corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2];
+  });
+  return out;
+}
+
 /// Pixels that a length in mesh units covers at a point of an instance: k · σ / max(distance, near).
 double pixels_per_unit_at(const raster::Projection& projection, const format::InstanceRecord& instance,
                           const Vec3d& p) {
@@ -97,19 +118,36 @@ struct Displacement {
   double px = 0.0, allowed = 0.0;
 };
 
+/// From each point to the nearest of its instance's surface: infinite where there is none.
 std::vector<Displacement> displace(const Asset& asset, const raster::Projection& projection,
                                    const std::vector<PixelPoint>& points, double pixel_error,
                                    const std::vector<const TriangleTree*>& tree_of) {
   std::vector<Displacement> out(points.size());
   parallel_for_each_index(points.size(), 256, [&](std::size_t i) {
-    if (points[i].instance >= tree_of.size() || tree_of[points[i].instance] == nullptr) return;
+    if (points[i].instance >= tree_of.size()) return;
     const format::InstanceRecord& instance = asset.instances()[points[i].instance];
+    const TriangleTree* tree = tree_of[points[i].instance];
     const double scale = pixels_per_unit_at(projection, instance, points[i].point);
-    out[i].px = std::sqrt(tree_of[points[i].instance]->nearest(points[i].point).distance2) * scale;
+    out[i].px = tree == nullptr ? HUGE_VAL : std::sqrt(tree->nearest(points[i].point).distance2) * scale;
     const double level0 = static_cast<double>(asset.meshes()[instance.mesh].level0_deviation) * scale;
     out[i].allowed = std::max(pixel_error, level0);
   });
   return out;
+}
+
+/// Whether a surface point may have moved through the near plane, as far as the promise lets it.
+bool may_cross_near(const Asset& asset, const raster::Projection& projection, const PixelPoint& point,
+                          double allowed_px) {
+  const format::InstanceRecord& instance = asset.instances()[point.instance];
+  const double world = allowed_px * instance.scale / pixels_per_unit_at(projection, instance, point.point);
+  const double* m = instance.transform;
+  double distance = 0.0;
+  for (int row = 0; row < 3; ++row) {
+    const double* r = m + 4 * row;
+    distance += projection.forward[row] *
+                (r[0] * point.point.x + r[1] * point.point.y + r[2] * point.point.z + r[3] - projection.eye[row]);
+  }
+  return distance - world <= projection.near_distance;
 }
 
 bool is_covered_around(const VisibilityBuffer& buffer, std::uint32_t x, std::uint32_t y) {
@@ -122,6 +160,19 @@ bool is_covered_around(const VisibilityBuffer& buffer, std::uint32_t x, std::uin
     }
   }
   return true;
+}
+
+/// \pre every pixel within kHoleRadius shows the source
+bool may_cross_near_around(const Asset& asset, const raster::Projection& projection,
+                           const std::vector<PixelPoint>& points, const std::vector<Displacement>& moves,
+                           double tolerance, std::uint32_t x, std::uint32_t y) {
+  for (std::uint32_t v = y - kHoleRadius; v <= y + kHoleRadius; ++v) {
+    for (std::uint32_t u = x - kHoleRadius; u <= x + kHoleRadius; ++u) {
+      const std::size_t at = std::size_t{v} * projection.size.width + u;
+      if (may_cross_near(asset, projection, points[at], moves[at].allowed * tolerance)) return true;
+    }
+  }
+  return false;
 }
 
 /// The cut with its back faces too: what a ray meets at all.
@@ -149,10 +200,9 @@ Result<VisibilityBuffer> draw_both_sides(const Asset& asset, std::span<const Clu
 
 }  // namespace
 
-Result<PictureReport> judge_picture(const Asset& asset, std::span<const TriangleTree> source,
+Result<PictureReport> judge_picture(const Asset& asset, const PictureSource& source,
                                     std::span<const ClusterInstance> cut, const VisibilityBuffer& drawn,
-                                    const Camera& camera, double pixel_error, double tolerance,
-                                    const AlphaMasks& masks) {
+                                    const Camera& camera, double pixel_error, const AlphaMasks& masks) {
   auto projection = raster::make_projection(camera);
   if (!projection) return projection.error();
   projection->far_distance = raster::scene_depth(asset, *projection);
@@ -171,8 +221,8 @@ Result<PictureReport> judge_picture(const Asset& asset, std::span<const Triangle
   if (!cut_points) return cut_points.error();
   const auto full_points = unproject(asset, finest, *full, *projection);
   if (!full_points) return full_points.error();
-  const auto decoded = decode_all(asset);
-  if (!decoded) return decoded.error();
+  const VisibilityBuffer truth = draw_source(asset, source.meshes, *projection);
+  const std::vector<PixelPoint> truth_points = unproject_source(asset, source.meshes, truth, *projection);
 
   // The cut of an instance as a surface, for the way back.
   std::map<std::uint32_t, std::vector<ClusterId>> clusters_of;
@@ -183,11 +233,11 @@ Result<PictureReport> judge_picture(const Asset& asset, std::span<const Triangle
   for (const auto& [instance, clusters] : clusters_of) {
     const std::uint32_t mesh = asset.instances()[instance].mesh;
     cut_of[instance] =
-        &trees.try_emplace(instance, surface_of_clusters(asset, *decoded, MeshId(mesh), clusters)).first->second;
-    if (mesh < source.size()) source_of[instance] = &source[mesh];
+        &trees.try_emplace(instance, surface_of_clusters(asset, source.decoded, MeshId(mesh), clusters)).first->second;
+    if (mesh < source.meshes.size()) source_of[instance] = &source.meshes[mesh].tree;
   }
   const auto there = displace(asset, *projection, *cut_points, pixel_error, source_of);
-  const auto back = displace(asset, *projection, *full_points, pixel_error, cut_of);
+  const auto back = displace(asset, *projection, truth_points, pixel_error, cut_of);
 
   PictureReport out;
   out.displacement_px.resize(there.size(), -1.0F);
@@ -199,11 +249,12 @@ Result<PictureReport> judge_picture(const Asset& asset, std::span<const Triangle
     const bool is_cut = drawn.item[i] != VisibilityBuffer::kNothing,
                is_full = full->item[i] != VisibilityBuffer::kNothing;
     out.covered += is_cut ? 1 : 0;
-    out.covered_source += is_full ? 1 : 0;
+    out.covered_source += truth.item[i] != VisibilityBuffer::kNothing ? 1 : 0;
     out.only_cut += is_cut && !is_full ? 1 : 0;
     out.only_source += is_full && !is_cut ? 1 : 0;
     const auto x = static_cast<std::uint32_t>(i % drawn.width), y = static_cast<std::uint32_t>(i / drawn.width);
-    if (!is_cut && is_covered_around(*full, x, y)) {
+    if (!is_cut && is_covered_around(truth, x, y) &&
+        !may_cross_near_around(asset, *projection, truth_points, back, source.tolerance, x, y)) {
       if (!both_sides) {
         auto buffer = draw_both_sides(asset, cut, *projection);
         if (!buffer) return buffer.error();
@@ -232,8 +283,9 @@ Result<PictureReport> judge_picture(const Asset& asset, std::span<const Triangle
       if (d.allowed == 0.0) continue;
       ++out.points;
       out.largest_px = std::max(out.largest_px, d.px);
+      out.largest_share = std::max(out.largest_share, d.px / d.allowed);
       out.allowed_px = std::max(out.allowed_px, d.allowed);
-      if (d.px > d.allowed * tolerance * (1.0 + 1e-9)) ++out.exceeded;
+      if (d.px > d.allowed * source.tolerance * (1.0 + 1e-9)) ++out.exceeded;
     }
     sum += there[i].px;
   }

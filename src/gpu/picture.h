@@ -8,7 +8,8 @@
 
 #include <meshlode/result.h>
 
-#include "metrics/triangle_tree.h"
+#include "decode/decode.h"
+#include "gpu/source_picture.h"
 #include "raster/raster.h"
 #include "read/asset.h"
 #include "select/select.h"
@@ -17,13 +18,16 @@ namespace meshlode::gpu {
 
 struct PictureReport {
   std::uint64_t covered = 0;                    ///< pixels of the cut
-  std::uint64_t covered_source = 0;             ///< pixels of the full resolution
-  std::uint64_t only_cut = 0, only_source = 0;  ///< covered in one alone: the silhouettes differ there
-  /// Background in the cut where the full resolution covers every pixel within `kHoleRadius` and the ray hits the cut
-  /// from behind: it came in through a hole. Where it hits nothing, two parts of a mesh that hid each other's borders
-  /// have moved apart, which the promise allows. \pre of closed meshes; a masked material is no closed surface
+  std::uint64_t covered_source = 0;             ///< pixels of the source's own triangles
+  std::uint64_t only_cut = 0, only_source = 0;  ///< covered in one alone, cut or level 0: the silhouettes differ there
+  /// Background in the cut where the source covers every pixel within `kHoleRadius` and the ray hits the cut from behind:
+  /// it came in through a hole. Where it hits nothing, two parts of a mesh that hid each other's borders have moved apart,
+  /// which the promise allows; so it does where the surface may have moved through the near plane, which opens what it
+  /// cuts. \pre of closed meshes; a masked material is no closed surface
   std::uint64_t holes = 0;
-  double largest_px = 0.0;             ///< displacement of any pixel's surface point, both ways
+  /// Displacement of any pixel's surface point: of the cut's picture to the source, and of the source's picture to the cut.
+  double largest_px = 0.0;
+  double largest_share = 0.0;          ///< of what is allowed at its point: above the tolerance, it exceeds
   double mean_px = 0.0;                ///< over the cut's pixels
   double allowed_px = 0.0;             ///< the largest that the promise allows at that pixel's distance: see judge
   std::uint64_t exceeded = 0;          ///< pixels displaced by more than max(t, level 0's own deviation) allows
@@ -39,11 +43,18 @@ struct PictureReport {
 /// Silhouettes may move by a pixel, and a pixel is one sample.
 constexpr int kHoleRadius = 2;
 
-/// `source`: one tree per mesh over its source, mesh space. `cut` was drawn into `drawn`; the full resolution is level
-/// 0. `tolerance`: of the promise, 1.05 in the measured tier. `masks`: those that `cut` was drawn with.
-[[nodiscard]] Result<PictureReport> judge_picture(const Asset& asset, std::span<const TriangleTree> source,
+/// What pictures of an asset are judged by.
+struct PictureSource {
+  std::span<const SourceSurface> meshes;     ///< the source, one a mesh of the asset
+  std::span<const DecodedCluster> decoded;   ///< decode_all() of the asset
+  double tolerance = 1.0;                    ///< of the promise, 1.05 in the measured tier
+};
+
+/// `cut` was drawn into `drawn`. Displacement and holes are judged by the source's own triangles, normals and silhouettes
+/// by level 0, which has the same materials and masks. `masks`: those that `cut` was drawn with.
+[[nodiscard]] Result<PictureReport> judge_picture(const Asset& asset, const PictureSource& source,
                                                   std::span<const ClusterInstance> cut, const VisibilityBuffer& drawn,
-                                                  const Camera& camera, double pixel_error, double tolerance,
+                                                  const Camera& camera, double pixel_error,
                                                   const AlphaMasks& masks = {});
 
 /// Blue at 0, red at `full` and above, grey where there is nothing.

@@ -14,11 +14,6 @@ namespace meshlode::gpu {
 
 namespace {
 
-struct Size {
-  std::uint32_t width, height;
-};
-constexpr Size kSizes[] = {{640, 360}, {321, 243}, {128, 512}};  // one of them odd
-
 void add(GpuCheck& check, const Comparison& comparison, const std::string& where) {
   check.items += comparison.items;
   check.failures += comparison.differences;
@@ -71,8 +66,8 @@ Status judge_hardware(Device& device, const GpuScene& scene, const Asset& asset,
     return Ok{};
   }
   RendererOptions raster;
-  raster.width = kSizes[0].width;
-  raster.height = kSizes[0].height;
+  raster.width = options.sizes[0].width;
+  raster.height = options.sizes[0].height;
   raster.frustum = false;
   raster.double_sided = scene.has_double_sided;
   raster.alpha_mask = scene.has_alpha_mask;
@@ -131,7 +126,7 @@ bool is_closed(const Surface& surface) {
 
 }  // namespace
 
-Result<GpuVerifyReport> verify_on_gpu(const Asset& asset, std::span<const Surface> source,
+Result<GpuVerifyReport> verify_on_gpu(const Asset& asset, const Scene& source,
                                       const GpuVerifyOptions& options) {
   auto device = Device::open(options.device);
   if (!device) return device.error();
@@ -153,26 +148,27 @@ Result<GpuVerifyReport> verify_on_gpu(const Asset& asset, std::span<const Surfac
   GpuCheck displaced{"V405", "I7", ""};
   GpuCheck holes{"V406", "I6", "no background is seen through the cut where the source covers it (pixels)"};
 
-  bool has_promise = !source.empty();
+  bool has_promise = !source.meshes.empty();
   double tolerance = 1.0;
   for (const format::MeshRecord& mesh : asset.meshes()) {
     if (mesh.cluster_count == 0) continue;
     if (mesh.error_tier == format::ErrorTier::kQem) has_promise = false;
     if (mesh.error_tier == format::ErrorTier::kMeasured) tolerance = 1.05;
   }
-  const bool all_closed = std::all_of(source.begin(), source.end(), [](const Surface& surface) {
-    return surface.triangles.empty() || is_closed(surface);
+  const std::vector<SourceSurface> meshes = source_surfaces(source);
+  const bool all_closed = std::all_of(meshes.begin(), meshes.end(), [](const SourceSurface& mesh) {
+    return mesh.surface.triangles.empty() || is_closed(mesh.surface);
   });
   GpuCheck by_vertex{"V407", "I9", "hardware raster, vertices pulled: pixels as the specification allows"};
   GpuCheck by_mesh{"V408", "I9", "hardware raster, mesh shaders: pixels as the specification allows"};
   const bool has_holes_rule = has_promise && all_closed && !scene->has_alpha_mask;
-  std::vector<TriangleTree> trees;
-  trees.reserve(source.size());
-  for (const Surface& surface : source) trees.emplace_back(surface);
+  const auto every_cluster = decode_all(asset);
+  if (!every_cluster) return every_cluster.error();
+  const PictureSource truth{meshes, *every_cluster, tolerance};
 
   RendererOptions plain;
-  plain.width = kSizes[0].width;
-  plain.height = kSizes[0].height;
+  plain.width = options.sizes[0].width;
+  plain.height = options.sizes[0].height;
   plain.frustum = false;
   plain.double_sided = scene->has_double_sided;
   plain.alpha_mask = scene->has_alpha_mask;
@@ -185,13 +181,12 @@ Result<GpuVerifyReport> verify_on_gpu(const Asset& asset, std::span<const Surfac
   for (GpuCheck* check : {&by_vertex, &by_mesh}) {
     if (const Status s = judge_hardware(*device, *scene, asset, options, check == &by_mesh, *check); !s) return s.error();
   }
-  for (const Size size : kSizes) {
+  for (const PictureSize size : options.sizes) {
     std::size_t worst = out.cameras.size();
     PictureReport worst_picture;
     if (const Status s = renderer->resize(size.width, size.height); !s) return s.error();
     if (const Status s = culler->resize(size.width, size.height); !s) return s.error();
     std::vector<NamedCamera> cameras = adversarial_cameras(asset, size.width, size.height);
-    const std::size_t first_judged = cameras.size();
     for (NamedCamera& named : orbit_cameras(asset, options.orbits, size.width, size.height)) cameras.push_back(named);
     for (NamedCamera named : options.path) {
       named.camera.width = size.width;
@@ -209,16 +204,16 @@ Result<GpuVerifyReport> verify_on_gpu(const Asset& asset, std::span<const Surfac
       if (!culled_frame) return culled_frame.error();
       add(culled, culled_frame->cut, where);
       add(culled, culled_frame->pixels, where);
-      if (i < first_judged || source.empty()) continue;
+      if (source.meshes.empty()) continue;
       const auto cut = renderer->read_cut();
       const auto drawn = renderer->read_pixels();
       if (!cut) return cut.error();
       if (!drawn) return drawn.error();
-      const auto picture = judge_picture(asset, trees, *cut, *drawn, named.camera, options.pixel_error, tolerance,
-                                         *scene->alpha_masks);
+      const auto picture = judge_picture(asset, truth, *cut, *drawn, named.camera, options.pixel_error, *scene->alpha_masks);
       if (!picture) return picture.error();
       out.largest_px = std::max(out.largest_px, picture->largest_px);
-      const bool is_worse = out.cameras.size() == worst || picture->largest_px > worst_picture.largest_px;
+      out.largest_share = std::max(out.largest_share, picture->largest_share);
+      const bool is_worse = out.cameras.size() == worst || picture->largest_share > worst_picture.largest_share;
       out.cameras.push_back({named, without_maps(*picture), {}});
       if (is_worse) {
         worst = out.cameras.size() - 1;
@@ -231,7 +226,8 @@ Result<GpuVerifyReport> verify_on_gpu(const Asset& asset, std::span<const Surfac
       displaced.items += picture->points;
       displaced.failures += has_promise ? picture->exceeded : 0;
       if (has_promise && picture->exceeded > 0 && displaced.first.empty()) {
-        displaced.first = where + ": " + format_px("%.3f px", picture->largest_px);
+        displaced.first = where + ": " + format_px("%.3f px", picture->largest_px) +
+                          format_px(" in all, %.3f of what is allowed at its point", picture->largest_share);
       }
       holes.items += picture->covered_source;
       holes.failures += has_holes_rule ? picture->holes : 0;
@@ -245,7 +241,8 @@ Result<GpuVerifyReport> verify_on_gpu(const Asset& asset, std::span<const Surfac
   holes.is_skipped = !has_holes_rule;
   if (!has_holes_rule) holes.what += all_closed ? " (not judged: tier qem)" : " (not judged: the source is open)";
   displaced.what = format_px("pixels are displaced by %.3f px at most", out.largest_px) +
-                   format_px(", allowed is %.3g or level 0's own", options.pixel_error) +
+                   format_px(", %.3f of what is allowed:", out.largest_share) +
+                   format_px(" %.3g or level 0's own", options.pixel_error) +
                    (has_promise ? "" : " (not judged: tier qem states the quadric's estimate)");
   for (const GpuCheck& check : {cuts, pixels, culled, by_vertex, by_mesh, holes, displaced}) out.checks.push_back(check);
   return out;

@@ -17,12 +17,18 @@
 
 namespace meshlode::gpu {
 
+struct PictureSize {
+  std::uint32_t width = 0, height = 0;
+};
+
 struct GpuVerifyOptions {
   DeviceOptions device;
   std::uint32_t orbits = 6;       ///< cameras around the scene, beside the adversarial ones
-  std::vector<NamedCamera> path;  ///< a fly-through, judged as the orbits are
+  std::vector<NamedCamera> path;  ///< a fly-through, judged as the others are
   double pixel_error = 1.0;
-  /// Heat maps (PNG) of the camera with the largest displacement at each size, and of each that failed; empty: none.
+  /// Pictures of each camera; hardware raster draws the first. One has odd sides. \pre not empty
+  std::vector<PictureSize> sizes = {{640, 360}, {321, 243}, {128, 512}};
+  /// Heat maps (PNG) of the camera with the largest share of its allowance at each size, and of each that failed; empty: none.
   std::string out_folder;
   OutputFiles* files = nullptr;  ///< what they are written by; null: by an object of their own
 };
@@ -44,13 +50,14 @@ struct GpuCheck {
 struct GpuVerifyReport {
   DeviceInfo device;
   std::vector<GpuCheck> checks;
-  double largest_px = 0.0;
+  double largest_px = 0.0, largest_share = 0.0;  ///< of all cameras: PictureReport's
   std::vector<JudgedCamera> cameras;
   std::vector<std::string> warnings;  ///< images that could not be had
 };
 
-/// `source`: each mesh's source surface, mesh space. Errors: kUnsupported without a device, kInvalid for a broken page.
-[[nodiscard]] Result<GpuVerifyReport> verify_on_gpu(const Asset& asset, std::span<const Surface> source,
+/// `source`: what the asset was built from; without meshes no picture is judged by it. Errors: kUnsupported without a
+/// device, kInvalid for a broken page.
+[[nodiscard]] Result<GpuVerifyReport> verify_on_gpu(const Asset& asset, const Scene& source,
                                                     const GpuVerifyOptions& options);
 
 }  // namespace meshlode::gpu

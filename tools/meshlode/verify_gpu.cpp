@@ -24,6 +24,7 @@ std::string gpu_json(const GpuOptions& options, const gpu::GpuVerifyReport& veri
   json.field("driver", verified.device.driver);
   json.field("pixel_error", options.pixel_error);
   json.field("largest_displacement_px", verified.largest_px);
+  json.field("largest_share_of_allowed", verified.largest_share);
   json.key("checks");
   json.begin_array();
   for (const gpu::GpuCheck& check : verified.checks) {
@@ -56,6 +57,7 @@ std::string gpu_json(const GpuOptions& options, const gpu::GpuVerifyReport& veri
     json.field("largest_displacement_px", p.largest_px);
     json.field("mean_displacement_px", p.mean_px);
     json.field("allowed_px", p.allowed_px);
+    json.field("largest_share_of_allowed", p.largest_share);
     json.field("largest_relative_depth_difference", p.largest_depth);
     json.field("mean_normal_degrees", p.mean_normal_degrees);
     json.field("largest_normal_degrees", p.largest_normal_degrees);
@@ -94,9 +96,7 @@ Status verify_with_gpu(const Asset& asset, const Scene& source, const GpuOptions
   if (!options.out_folder.empty()) {
     if (const Status free = output_files().claim(report_path); !free) return free;
   }
-  std::vector<Surface> surfaces;
-  for (const SourceMesh& mesh : source.meshes) surfaces.push_back(surface_of_source(mesh));
-  const auto verified = gpu::verify_on_gpu(asset, surfaces, judge);
+  const auto verified = gpu::verify_on_gpu(asset, source, judge);
   if (!verified) return verified.error();
   for (const std::string& warning : verified->warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
   if (!options.out_folder.empty()) {
