@@ -153,7 +153,8 @@ bool keeps_border(const SimplifyInput& finer, const SimplifyResult& coarser) {
     std::vector<std::uint32_t> names;
     names.reserve(positions.size());
     for (const Vec3i& p : positions) {
-      names.push_back(static_cast<std::uint32_t>(std::lower_bound(places.begin(), places.end(), p, precedes) - places.begin()));
+      names.push_back(
+          static_cast<std::uint32_t>(std::lower_bound(places.begin(), places.end(), p, precedes) - places.begin()));
     }
     return names;
   };
@@ -175,7 +176,8 @@ bool keeps_border(const SimplifyInput& finer, const SimplifyResult& coarser) {
 SimplifyInput with_locked_border(SimplifyInput input) {
   std::vector<std::uint32_t> names(input.positions.size());
   for (std::uint32_t p = 0; p < names.size(); ++p) names[p] = p;
-  for (const BorderEdge& edge : find_border(input, names).edges) input.is_locked[edge.low] = input.is_locked[edge.high] = 1;
+  for (const BorderEdge& edge : find_border(input, names).edges)
+    input.is_locked[edge.low] = input.is_locked[edge.high] = 1;
   return input;
 }
 

@@ -27,6 +27,8 @@ class GroupSimplifier {
   GroupSimplifier(const SimplifyInput& input, const SimplifyOptions& options);
   void run();
   [[nodiscard]] SimplifyResult result() const;
+  /// Whether an edge of the border has an end that may move. Without one the border's image is the border.
+  [[nodiscard]] bool has_free_border() const { return has_free_border_; }
 
  private:
   using Wedge = WedgeQuadric<Capacity>;
@@ -130,7 +132,7 @@ class GroupSimplifier {
 
   std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> queue_;
   double error_ = 0.0;  ///< frame units
-  bool has_broken_topology_ = false, are_flips_relaxed_ = false;
+  bool has_free_border_ = false, has_broken_topology_ = false, are_flips_relaxed_ = false;
   std::array<std::uint64_t, 6> obstacles_{};
 
   // Scratch of one collapse.

@@ -197,6 +197,9 @@ void GroupSimplifier<C>::add_edge_quadrics() {
   for (std::size_t i = 0; i < uses.size();) {
     std::size_t end = i + 1;
     while (end < uses.size() && uses[end].a == uses[i].a && uses[end].b == uses[i].b) ++end;
+    int net = 0;
+    for (std::size_t k = i; k < end; ++k) net += mesh_.vertex(uses[k].corner) == uses[k].a ? 1 : -1;
+    has_free_border_ |= net != 0 && (is_locked_[uses[i].a] == 0 || is_locked_[uses[i].b] == 0);
     if (end - i != 2) {
       for (std::size_t k = i; k < end; ++k) add_wall(uses[k], border_, 1.0);
       is_border_[uses[i].a] = is_border_[uses[i].b] = 1;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "simplify/simplify.h"
 
+#include <utility>
+
 #include "simplify/border_rule.h"
 #include "simplify/group_simplifier.h"
 // The members, by idea; templates, and hot, so that one translation unit sees them all.
@@ -15,14 +17,21 @@ namespace meshlode {
 
 namespace {
 
+struct Attempt {
+  SimplifyResult result;
+  bool keeps_border = false;
+};
+
 template <std::size_t Capacity>
-SimplifyResult simplify_with(const SimplifyInput& input, const SimplifyOptions& options) {
+Attempt simplify_with(const SimplifyInput& input, const SimplifyOptions& options) {
   GroupSimplifier<Capacity> simplifier(input, options);
   simplifier.run();
-  return simplifier.result();
+  Attempt attempt{simplifier.result()};
+  attempt.keeps_border = !simplifier.has_free_border() || keeps_border(input, attempt.result);
+  return attempt;
 }
 
-SimplifyResult simplify_once(const SimplifyInput& input, const SimplifyOptions& options) {
+Attempt simplify_once(const SimplifyInput& input, const SimplifyOptions& options) {
   // Quadrics of few attributes are small, and copying them is most of the work.
   const std::uint32_t attributes = input.layout.stride();
   if (attributes <= 3) return simplify_with<3>(input, options);
@@ -33,15 +42,15 @@ SimplifyResult simplify_once(const SimplifyInput& input, const SimplifyOptions& 
 }  // namespace
 
 SimplifyResult simplify_group(const SimplifyInput& input, const SimplifyOptions& options) {
-  SimplifyResult result = simplify_once(input, options);
-  if (keeps_border(input, result)) return result;
+  Attempt attempt = simplify_once(input, options);
+  if (attempt.keeps_border) return std::move(attempt.result);
   // Where the link condition was broken, or vertices came to lie on each other, the border can be another one. Under the
   // condition it seldom is; where its vertices do not move, never.
   SimplifyOptions careful = options;
   careful.may_relax_topology = false;
-  result = simplify_once(input, careful);
-  if (keeps_border(input, result)) return result;
-  return simplify_once(with_locked_border(input), careful);
+  attempt = simplify_once(input, careful);
+  if (attempt.keeps_border) return std::move(attempt.result);
+  return simplify_once(with_locked_border(input), careful).result;
 }
 
 }  // namespace meshlode

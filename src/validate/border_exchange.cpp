@@ -75,7 +75,8 @@ std::int64_t count_pieces_with_border(const MeshSurface& surface, const ClusterS
   auto side = sides.begin();
   for (const EdgeUse& use : set.chain) {  // both are ascending by positions
     while (side != sides.end() && side->ends < surface.edges[use.edge]) ++side;
-    if (side != sides.end() && side->ends == surface.edges[use.edge]) with_border.push_back(pieces.find(side->triangle));
+    if (side != sides.end() && side->ends == surface.edges[use.edge])
+      with_border.push_back(pieces.find(side->triangle));
   }
   std::sort(with_border.begin(), with_border.end());
   return std::unique(with_border.begin(), with_border.end()) - with_border.begin();
@@ -107,8 +108,8 @@ std::string refuse_parts(const MeshSurface& surface, std::span<const Exchange> e
     added += std::abs(std::int64_t{exchange.added});
   }
   if (added > removed) {
-    return std::to_string(added) + " edges of border come for " + std::to_string(removed) +
-           " that go, such as " + edge_text(surface, exchanges.back().edge);
+    return std::to_string(added) + " edges of border come for " + std::to_string(removed) + " that go, such as " +
+           edge_text(surface, exchanges.back().edge);
   }
   for (const Exchange& exchange : exchanges) {
     if (exchange.removed != 0) is_anchored[components.find(surface.edges[exchange.edge][0])] = 1;
@@ -153,8 +154,8 @@ std::string refuse_exchange(const MeshSurface& surface, const BorderSet& border,
   const std::int64_t before = count_holes(surface, finer);
   const std::int64_t after = count_holes(surface, coarser);
   if (after <= before) return {};
-  return "the coarser set has " + std::to_string(after - before) + " holes more than the finer set, of which one may be at " +
-         edge_text(surface, exchanges.back().edge);
+  return "the coarser set has " + std::to_string(after - before) +
+         " holes more than the finer set, of which one may be at " + edge_text(surface, exchanges.back().edge);
 }
 
 }  // namespace meshlode

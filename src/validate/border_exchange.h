@@ -22,13 +22,13 @@ struct Exchange {
 
 /// A set of clusters: its chain and its triangles, by positions.
 struct ClusterSet {
-  std::vector<EdgeUse> chain;                              ///< ascending by edge
-  std::vector<std::array<std::uint32_t, 3>> triangles;     ///< into MeshSurface::positions
+  std::vector<EdgeUse> chain;                           ///< ascending by edge
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< into MeshSurface::positions
 };
 
 /// Loops less pieces: the independent loops of the set's border (edges counted as often as used, less positions, plus
-/// connected parts), less the pieces of surface, connected across edges, that have a border. A disc has none, a ring one,
-/// two discs that touch in a vertex none. At least 0 for a manifold.
+/// connected parts), less the pieces of surface, connected across edges, that have a border. A disc has none, a ring
+/// one, two discs that touch in a vertex none. At least 0 for a manifold.
 [[nodiscard]] std::int64_t count_holes(const MeshSurface& surface, const ClusterSet& set);
 
 /// Ascending by edge; empty if the chains are equal.

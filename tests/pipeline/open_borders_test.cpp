@@ -22,7 +22,8 @@ template <class Report>
 void expect_nothing(const Report& report, const std::string& scene) {
   EXPECT_EQ(report.finding_count, 0U) << scene;
   for (std::size_t i = 0; i < std::min<std::size_t>(report.findings.size(), 3); ++i) {
-    ADD_FAILURE() << scene << ": " << report.findings[i].id << ' ' << report.findings[i].where << ": " << report.findings[i].detail;
+    ADD_FAILURE() << scene << ": " << report.findings[i].id << ' ' << report.findings[i].where << ": "
+                  << report.findings[i].detail;
   }
 }
 

@@ -114,7 +114,8 @@ SimplifyInput group_of(const IntegerMesh& mesh, Random& random) {
   // What lies on one point of the grid is one position, as in the whole build.
   std::map<Point, std::uint32_t> first;
   std::vector<std::uint32_t> name;
-  for (std::uint32_t p = 0; p < mesh.positions.size(); ++p) name.push_back(first.emplace(point(mesh.positions[p]), p).first->second);
+  for (std::uint32_t p = 0; p < mesh.positions.size(); ++p)
+    name.push_back(first.emplace(point(mesh.positions[p]), p).first->second);
   input.is_locked.assign(mesh.positions.size(), 0);
   for (std::uint32_t p = 0; p < mesh.positions.size(); ++p) {
     input.wedge_position.push_back(p);

@@ -19,9 +19,9 @@ struct IntegerMesh {
 };
 
 struct OpenSurfaceOptions {
-  std::uint32_t side = 12;      ///< cells of the sheet along x and z
-  std::int32_t spacing = 40;    ///< of its vertices
-  std::int32_t noise = 20;      ///< vertices are moved by less than this, on each axis
+  std::uint32_t side = 12;           ///< cells of the sheet along x and z
+  std::int32_t spacing = 40;         ///< of its vertices
+  std::int32_t noise = 20;           ///< vertices are moved by less than this, on each axis
   std::uint32_t cell_holes = 0;      ///< per cent of the cells that are missing
   std::uint32_t triangle_holes = 0;  ///< per cent of the triangles that are missing
   std::uint32_t stars = 0;           ///< fans of triangles that meet in a vertex of the sheet and nowhere else
@@ -88,7 +88,9 @@ struct OpenSurfaceOptions {
   constexpr std::uint32_t kShares[] = {0, 5, 20, 40, 60};
   options.cell_holes = kShares[random.below(5)];
   options.triangle_holes = kShares[random.below(3)];
-  const auto some = [&] { return random.below(2) == 0 ? 0U : static_cast<std::uint32_t>(random.below(2 * options.side)); };
+  const auto some = [&] {
+    return random.below(2) == 0 ? 0U : static_cast<std::uint32_t>(random.below(2 * options.side));
+  };
   options.stars = some();
   options.fins = some();
   options.twins = some();

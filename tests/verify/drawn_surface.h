@@ -45,7 +45,8 @@ inline void append_cluster(const Patch& patch, std::uint32_t level, GroupId own,
 }
 
 /// One group that replaces `finer` by `coarser`, beside `rest`, which stays as it is.
-[[nodiscard]] inline Asset asset_of(const std::vector<Patch>& finer, const Patch& coarser, const std::vector<Patch>& rest = {}) {
+[[nodiscard]] inline Asset asset_of(const std::vector<Patch>& finer, const Patch& coarser,
+                                    const std::vector<Patch>& rest = {}) {
   LodDag dag;
   append_cluster(coarser, 1, GroupId(1U), GroupId(0U), dag);
   for (const Patch& patch : rest) append_cluster(patch, 0, GroupId(), GroupId(0U), dag);
