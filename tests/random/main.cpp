@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // random_scenes: scenes nobody chose, through the program.
-//   random_scenes run FIRST COUNT …   each seed is built, validated, verified and decoded; exit 6 where one fails
-//   random_scenes seeds SEED…         the same for the seeds named
-//   random_scenes replay FOLDER …     the same for the GLBs of a folder, with the build options of NAME.options beside
-//   them random_scenes write SEED OUT.glb  the scene and, on stdout, its contents and build options random_scenes
-//   shrink SEED OUT.glb --rule ID …   the smallest scene that still breaks the rule
+//   run FIRST COUNT        each seed is built, validated, verified and decoded; exit 6 where one fails
+//   seeds SEED...          the same for the seeds named
+//   replay FOLDER          the same for the GLBs of a folder, with the build options of NAME.options beside them
+//   pieces TRIANGLES       what each kind of piece costs alone, at so many triangles and at four times as many
+//   write SEED OUT.glb     the scene and, on stdout, its contents and build options
+//   shrink SEED OUT.glb    the smallest scene that still breaks the rule named by --rule
 #include <unistd.h>
 
 #include <atomic>
@@ -18,6 +19,7 @@
 #include <thread>
 
 #include "scene.h"
+#include "shapes.h"
 #include "shrink.h"
 #include "trial.h"
 
@@ -250,6 +252,31 @@ int replay(const Arguments& arguments, const fs::path& folder) {
   return verdict(print_summary(entries), arguments);
 }
 
+/// Seconds to build 10,000 triangles of each kind, at a size and at four times that: what grows with the square shows.
+int time_pieces(const Arguments& arguments, std::uint32_t triangles) {
+  const WorkFolder work;
+  std::printf("%-18s %28s   %s\n", "seconds a 10,000", "one position, one vertex",
+              "texture coordinates of each corner's own");
+  for (std::size_t kind = 0; kind < shape_kinds().size(); ++kind) {
+    std::printf("%-18s", shape_kinds()[kind].name);
+    for (const bool torn : {false, true}) {
+      for (const std::uint32_t count : {triangles, 4 * triangles}) {
+        const RandomScene scene = scene_of_one_piece(kind, count, torn);
+        TrialOptions options{.program = arguments.program, .folder = work.path(), .build_options = {}};
+        options.depth = Depth::kBuild;
+        options.cpu_seconds = arguments.cpu_seconds;
+        const TrialResult result = try_scene(write_glb(scene), options);
+        const double seconds = 1e4 * result.build_seconds / static_cast<double>(scene.triangle_count());
+        std::printf("   %8.2f at %6llu", seconds, static_cast<unsigned long long>(scene.triangle_count()));
+        if (!result.is_clean()) std::printf(" %s", result.refusal ? "refused" : result.rules.begin()->first.c_str());
+        std::fflush(stdout);
+      }
+    }
+    std::printf("\n");
+  }
+  return 0;
+}
+
 bool parse(std::string_view text, std::uint64_t& value) {
   const auto parsed = std::from_chars(text.data(), text.data() + text.size(), value);
   return parsed.ec == std::errc{} && parsed.ptr == text.data() + text.size();
@@ -300,6 +327,7 @@ int usage() {
       "                     [--shrink-into FOLDER] [--verbose]\n"
       "       random_scenes seeds SEED... [the same]\n"
       "       random_scenes replay FOLDER [--jobs N] [--verbose]\n"
+      "       random_scenes pieces TRIANGLES\n"
       "       random_scenes write SEED OUT.glb\n"
       "       random_scenes shrink SEED OUT.glb --rule ID [--shrink-seconds N]\n"
       "all:   [--program MESHLODE] [--seconds N]   processor time that a step may take\n",
@@ -322,6 +350,9 @@ int dispatch(const Arguments& arguments) {
     return run_seeds(arguments, seeds);
   }
   if (words[0] == "replay" && words.size() == 2) return replay(arguments, words[1]);
+  if (words[0] == "pieces" && words.size() == 2 && parse(words[1], count) && count > 0 && count <= 1000000) {
+    return time_pieces(arguments, static_cast<std::uint32_t>(count));
+  }
   if (words.size() != 3 || !parse(words[1], first)) return usage();
   if (words[0] == "write") {
     const RandomScene scene = random_scene(first);

@@ -321,4 +321,26 @@ RandomScene random_scene(std::uint64_t seed) {
   return scene;
 }
 
+RandomScene scene_of_one_piece(std::size_t kind, std::uint32_t triangles, bool torn) {
+  Dice dice(Random(kind).next());
+  const Shape shape = shape_kinds()[kind].make(dice, triangles);
+  RandomScene scene;
+  scene.contents = shape_kinds()[kind].name;
+  RandomPrimitive& primitive = scene.meshes.emplace_back().primitives.emplace_back();
+  for (const Vec3d& point : shape.points) primitive.positions.push_back(to_float(point));
+  primitive.triangles = shape.triangles;
+  if (torn) {
+    split_corners(primitive);
+    for (std::size_t i = 0; i < primitive.positions.size(); ++i) {
+      Vec2f uv;
+      for (int k = 0; k < 2; ++k) uv[k] = static_cast<float>(dice.unit());
+      primitive.uvs.push_back(uv);
+    }
+  }
+  scene.materials.resize(1);
+  scene.materials[0].is_textured = torn;
+  scene.instances.resize(1);
+  return scene;
+}
+
 }  // namespace meshlode::test

@@ -49,6 +49,10 @@ struct RandomScene {
 /// than 50,000. The same on every machine and with every compiler.
 [[nodiscard]] RandomScene random_scene(std::uint64_t seed);
 
+/// The scene of one piece alone, undamaged, of about so many triangles: what kinds cost is compared with it. `torn`
+/// gives every corner texture coordinates of its own. \pre kind < shape_kinds().size()
+[[nodiscard]] RandomScene scene_of_one_piece(std::size_t kind, std::uint32_t triangles, bool torn);
+
 /// glTF 2.0 in one binary file. Empty primitives and meshes are left out, and so are instances of such meshes.
 [[nodiscard]] std::vector<std::uint8_t> write_glb(const RandomScene& scene);
 
