@@ -94,7 +94,7 @@ TEST(ApiRuntime, GarbageIsRefused) {
   EXPECT_EQ(AssetFile::take(std::move(cut)).error().code, ErrorCode::kInvalid);
 }
 
-TEST(ApiRuntime, EveryCameraDrawsAClosedSphere) {
+TEST(ApiRuntime, CutsFromTwentyOneViewpointsAreClosedSpheres) {
   const auto asset = AssetFile::view(sphere_bytes());
   ASSERT_TRUE(asset.ok());
   std::set<std::size_t> sizes;

@@ -189,7 +189,7 @@ std::uint64_t count_violations(std::uint64_t seed, std::uint32_t triples, double
   return violations;
 }
 
-TEST(Metric, IsMonotoneInFloatsForEveryCameraAndTransform) {
+TEST(Metric, IsMonotoneInFloatsForTwoMillionPairsThatBarelyNest) {
   constexpr std::uint32_t kTriples = 2000000;
   std::uint64_t passing = 0;
   EXPECT_EQ(count_violations(11, kTriples, 1.0, &passing), 0U) << "seed 11";

@@ -64,7 +64,7 @@ void expect_each_path_has_one_drawn_cluster(RandomSource& random, const SelectTa
   }
 }
 
-TEST(Select, DrawsEachPieceOfSurfaceExactlyOnceForAnyCamera) {
+TEST(Select, DrawsEachPieceOfSurfaceExactlyOnceForRandomCameras) {
   RandomSource random(21);
   const TestTables owned = make_tables(random, 150);
   const SelectTables tables = owned.view();
