@@ -209,7 +209,8 @@ struct GroupRecord {
   float radius;
   float error;                 ///< selection error, object units, strictly growing along the DAG; kInfiniteError if terminal
   float quadric_error;         ///< the quadric's own estimate, object units
-  float deviation;             ///< two-sided distance to the source, quantization included; kInfiniteError if not measured
+  float deviation;             ///< two-sided distance of this group alone to the source, quantization included and without
+                               ///< the margin that `error` has; kInfiniteError if terminal or not measured
   float normal_deviation;      ///< shading normals against the source's, RMS over a group in degrees, never falling along
                                ///< the DAG; kInfiniteError if terminal or not measured
   float uv_deviation;          ///< UVs against the source's, UV units, 95% of a group is within it; the same rules

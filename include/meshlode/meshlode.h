@@ -165,7 +165,7 @@ typedef struct meshlode_group {
   float radius;
   float error;            /* selection error, object units; MESHLODE_INFINITE_ERROR if terminal */
   float quadric_error;    /* object units */
-  float deviation;        /* object units; MESHLODE_INFINITE_ERROR if not measured */
+  float deviation;        /* object units, of this group alone and without margin; MESHLODE_INFINITE_ERROR if not measured */
   float normal_deviation; /* degrees; 0 if not measured */
   float uv_deviation;     /* UV units; 0 if not measured */
   uint32_t first_cluster; /* members, contiguous */

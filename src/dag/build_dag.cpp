@@ -248,12 +248,10 @@ Result<LodDag> build_dag(const PreparedMesh& mesh, const DagOptions& options) {
       group.error = group.quadric_error;
       if (meter.is_measuring()) {
         group.deviation = attempt.errors.deviation;
-        group.error = group.deviation;
+        group.error = attempt.errors.error;
         group.normal_deviation = attempt.errors.normal_deviation;
         group.uv_deviation = attempt.errors.uv_deviation;
         for (const std::uint32_t c : group.clusters) {
-          const std::uint32_t own = pool.clusters[c].own_group;
-          if (own != 0xFFFFFFFFU) group.error = std::max(group.error, pool.groups[own].error);
           pool.clusters[c].samples = {};  // carried on by the coarser clusters
         }
       }

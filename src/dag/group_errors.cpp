@@ -13,10 +13,6 @@ namespace {
 
 /// Carried on at least: where few triangles stand for many vanished pieces, each stands for more than two samples say.
 constexpr std::size_t kSamplesPerGroup = 4096;
-/// Samples find a maximum from below. Over the cuts of docs/quality.md they missed up to 6% of it, mostly nothing.
-constexpr double kMargin = 1.04;
-/// Of loose cards, and of sheets thinner than their own noise, samples missed up to 9%.
-constexpr double kRaggedMargin = 1.1;
 /// Spread over the groups of a round: coarse rounds have few, of large triangles, and cost next to nothing.
 constexpr std::size_t kExtraEffort = 3000;
 
@@ -85,7 +81,8 @@ GroupErrors GroupMeter::measure(const BuildPool& pool, const std::vector<std::ui
       bounds.insert(bounds.end(), first, first + pool.clusters[c].triangle_count);
     }
     CertifiedGroup group = certify_group(before.surface(), bounds, after.surface());
-    errors.deviation = std::max(floor, group.deviation);
+    errors.deviation = group.deviation;
+    errors.error = std::max(floor, group.deviation);
     errors.carried.bounds = std::move(group.bounds);
   } else {
     std::vector<CarriedSample> samples;
@@ -97,10 +94,12 @@ GroupErrors GroupMeter::measure(const BuildPool& pool, const std::vector<std::ui
     const auto per_triangle = static_cast<std::uint32_t>(wanted / std::max<std::size_t>(1, after.triangles.size()));
     GroupDeviation group =
         measure_group(*source_, after.surface(), samples,
-                      {.floor = floor, .samples_per_triangle = std::clamp(per_triangle, 2U, 64U),
+                      {.floor = floor, .least = floor / kMeasuredMargin, .samples_per_triangle = std::clamp(per_triangle, 2U, 64U),
                        .extra_effort = static_cast<std::uint32_t>(kExtraEffort / std::max<std::size_t>(1, groups_of_round)),
-                       .finer = before.surface(), .finer_is_shared = finer.is_locked});
-    errors.deviation = group.deviation > floor ? group.deviation * (group.is_ragged ? kRaggedMargin : kMargin) : floor;
+                       .finer = before.surface(), .finer_is_shared = finer.is_locked,
+                       .is_whole = groups_of_round == 1});
+    errors.deviation = group.deviation;
+    errors.error = std::max(floor, kMeasuredMargin * group.deviation);
     errors.carried.samples = std::move(group.carried);
   }
   const AttributeDeviation attributes =

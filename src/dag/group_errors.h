@@ -16,7 +16,8 @@ namespace meshlode {
 
 /// Of one simplified group.
 struct GroupErrors {
-  double deviation = 0.0;         ///< object units
+  double deviation = 0.0;         ///< object units: of this group alone
+  double error = 0.0;             ///< object units: with the tier's margin, and not below those of the finer groups
   double normal_deviation = 0.0;  ///< degrees
   double uv_deviation = 0.0;      ///< UV units
   CarriedTruth carried;           ///< for the triangles of the result

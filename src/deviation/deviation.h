@@ -49,24 +49,26 @@ struct GroupSurface {
 
 struct DeviationTierOptions {
   bool certified = false;  ///< not of measure_group, which only estimates: certify_group is that tier
-  double floor = 0.0;      ///< object units: the running maximum so far. What is below it need not be known exactly.
+  /// Object units: the largest error of what the group replaces, the grid's included. The source was within it of `finer`.
+  double floor = 0.0;
+  /// Object units: a maximum below this is of no use. What the samples say of it is still told, but no more are taken.
+  double least = 0.0;
   std::uint32_t samples_per_triangle = 2;  ///< carried samples are thinned to so many per triangle, the farthest first
   /// Triangles of the group that may be divided in search of the maximum, on top of a share of all. Groups of large
   /// triangles need many: a narrow peak lies between the points of several that promise more.
   std::uint32_t extra_effort = 0;
   /// What the group replaces: its members' triangles. With `floor`, it says which points of the source the group stands
-  /// for: those that were within `floor` of it. Without it only the carried samples are looked at. The grid's own
-  /// deviation belongs into `floor`, then.
+  /// for: those that were within `floor` of it. Without it only the carried samples are looked at.
   GroupSurface finer;
   /// Per position of `finer`: another group has it too, so it stays where it is. A point whose nearest place is on such a
   /// border is no nearer to this group than to the other, and gets no farther away. Empty: all of the border is taken so.
   std::span<const std::uint8_t> finer_is_shared;
+  bool is_whole = false;  ///< the group is all of its mesh: every point of the source is its own
 };
 
 struct GroupDeviation {
-  double deviation = 0.0;              ///< object units; at least what was found, or `floor` if nothing exceeds it
+  double deviation = 0.0;              ///< object units: the largest distance that was found, of whichever direction
   std::vector<CarriedSample> carried;  ///< thinned, triangle = index into the group's triangles
-  bool is_ragged = false;              ///< most triangles of `finer` are at folds or borders: samples miss more there
 };
 
 /// Level 0: the samples that each source triangle starts with (its corners and more), carried by itself. `triangle` of

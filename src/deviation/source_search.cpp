@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 #include "deviation/group_measure.h"
 #include "deviation/patch.h"
@@ -29,6 +30,10 @@ constexpr double kDismissShare = 0.7;
 constexpr std::size_t kRefineBudget = 48;
 // A source triangle is looked at inside where its edges are longer than this share of the search radius.
 constexpr double kLargeShare = 0.25;
+// Of a part of the source that is searched from above, to be compared with dividing a triangle.
+constexpr std::size_t kPointsPerPart = 4;
+// What cannot raise the maximum by more than this is left alone.
+constexpr double kWorthwhile = 1.002;
 
 /// A set of numbers below 2^32 - 1.
 class IdSet {
@@ -66,16 +71,19 @@ class IdSet {
 
 class SourceSearch {
  public:
-  SourceSearch(const SourceTree::Impl& source, const SurfaceTree& group_tree, OwnerTest& owner_test, double maximum)
-      : source_(source), tree_(group_tree), owner_test_(owner_test) {
-    raise(maximum);
+  SourceSearch(const SourceTree::Impl& source, const SurfaceTree& group_tree, OwnerTest& owner_test,
+               const Farthest& farthest)
+      : source_(source), tree_(group_tree), owner_test_(owner_test), farthest_(farthest) {
+    set_enough();
   }
 
-  [[nodiscard]] double maximum() const { return maximum_; }
+  [[nodiscard]] double convex_bound(const Patch& patch) const { return bound_by_one_triangle(tree_, patch); }
+  [[nodiscard]] double maximum() const { return farthest_.to_beat(); }
+  [[nodiscard]] const Farthest& farthest() const { return farthest_; }
 
   /// Returns the farthest point found around a seed, if it is farther than the maximum was.
   void search_around(const CarriedSample& seed, double radius, std::vector<CarriedSample>& found) {
-    const double before = maximum_;
+    const double before = maximum();
     frontier_.clear();
     const std::uint32_t first = source_.tree.triangle_at(seed.place);
     const double radius2 = radius * radius;
@@ -98,7 +106,7 @@ class SourceSearch {
         look_inside(triangle, radius, reached.place);
       }
     }
-    if (maximum_ > before) found.push_back(farthest_);
+    if (maximum() > before) found.push_back(farthest_point_);
   }
 
   /// The triangle of the source that is nearest to a point of what the group replaces, and those around it.
@@ -113,13 +121,59 @@ class SourceSearch {
     }
   }
 
+  /// All of the source, from above: whatever a ball around a part of it says cannot be farther than the maximum is left
+  /// alone, and what may be farthest comes first. About `budget` points are measured. Complete where the deviation is
+  /// large against the source's triangles; where it is small the samples are dense against the group's.
+  void search_everywhere(std::size_t budget, std::vector<CarriedSample>& found) {
+    struct Part {
+      double bound;
+      std::uint32_t level, index, place, order;
+      [[nodiscard]] bool operator<(const Part& other) const {
+        return bound != other.bound ? bound < other.bound : order > other.order;
+      }
+    };
+    const double before = maximum();
+    const SurfaceTree& tree = source_.tree;
+    std::vector<Part> heap{{std::numeric_limits<double>::infinity(), 0, 0, 0, 0}};
+    std::uint32_t order = 0;
+    std::size_t measured = 0;
+    while (measured < budget && !heap.empty()) {
+      std::pop_heap(heap.begin(), heap.end());
+      const Part part = heap.back();
+      heap.pop_back();
+      if (!(part.bound > kWorthwhile * maximum())) break;
+      if (part.level == tree.depth()) {
+        for (std::uint32_t slot = 4 * part.index; slot < std::min(4 * part.index + 4, tree.size()); ++slot) {
+          measured += look_at(tree.triangle_at(slot), part.place);
+        }
+        continue;
+      }
+      for (std::uint32_t child = 0; child < 4; ++child) {
+        const SurfaceTree::Ball ball = tree.ball_of_child(part.level, part.index, child);
+        if (ball.radius < 0.0) continue;
+        ++measured;
+        const Vec3f at = tree_.to_frame(ball.center);
+        const double near = std::max(0.0, kWorthwhile * maximum() - ball.radius) * tree_.scale();
+        const auto enough = static_cast<float>(near * near);
+        SurfaceTree::Hit hit = tree_.look_around(at, part.place, {});
+        if (!(hit.distance2 <= enough)) hit = tree_.find_nearest(at, hit, enough);
+        if (hit.distance2 <= enough || hit.slot == SurfaceTree::kNone) continue;
+        const double bound = std::sqrt(static_cast<double>(hit.distance2)) / tree_.scale() + ball.radius;
+        heap.push_back({bound, part.level + 1, 4 * part.index + child, hit.slot, ++order});
+        std::push_heap(heap.begin(), heap.end());
+      }
+    }
+    if (maximum() > before) found.push_back(farthest_point_);
+  }
+
   /// Large triangles of the source that were met: the maximum may lie between their corners.
-  void refine(std::vector<CarriedSample>& found) {
-    const double before = maximum_;
-    PatchQueue<SourceSearch> queue(*this);
+  void refine(Effort effort, std::vector<CarriedSample>& found) {
+    const double before = maximum();
+    PatchQueue<SourceSearch> queue(*this, effort.spare);
     for (const Patch& patch : large_) queue.add(patch);
-    queue.refine(kRefineBudget);
-    if (maximum_ > before) found.push_back(farthest_);
+    large_.clear();
+    queue.refine(effort.promising);
+    if (maximum() > before) found.push_back(farthest_point_);
   }
 
   /// A point of a triangle of the source. Raises the maximum.
@@ -127,16 +181,18 @@ class SourceSearch {
     const Vec3f at = tree_.to_frame(point);
     SurfaceTree::Hit hit = tree_.look_around(at, place, {});
     if (!(hit.distance2 <= enough_)) hit = tree_.find_nearest(at, hit, enough_);
-    const Probe dismissed{kDismissShare * maximum_, hit.slot == SurfaceTree::kNone ? place : hit.slot};
+    const Probe dismissed{kDismissShare * maximum(), hit.slot == SurfaceTree::kNone ? place : hit.slot};
     is_ours_ = true;
     if (hit.distance2 <= enough_) return dismissed;
     const TriangleCorners facing = source_.corners(owner);
     is_ours_ = owner_test_.is_ours(point, glm::cross(facing[1] - facing[0], facing[2] - facing[0]));
     if (!is_ours_) return dismissed;
     const double distance = std::sqrt(tree_.distance2_at(point, dismissed.place));
-    if (distance > maximum_) {
-      raise(distance);
-      farthest_ = {point, tree_.triangle_at(dismissed.place), static_cast<float>(distance), source_.place_of(owner)};
+    const bool is_higher = distance > maximum();
+    farthest_.take(distance);
+    if (is_higher) {
+      set_enough();
+      farthest_point_ = {point, tree_.triangle_at(dismissed.place), static_cast<float>(distance), source_.place_of(owner)};
     }
     return {distance, dismissed.place};
   }
@@ -152,10 +208,23 @@ class SourceSearch {
     return tree_.find_nearest(tree_.to_frame(seed.point), {}, 0.0F).slot;
   }
 
-  void raise(double maximum) {
-    maximum_ = maximum;
-    const double enough = kDismissShare * maximum * tree_.scale();
+  void set_enough() {
+    const double enough = kDismissShare * maximum() * tree_.scale();
     enough_ = static_cast<float>(enough * enough);
+  }
+
+  /// A triangle of the source: its corners, and its inside where that may be farther than the maximum. Returns how many
+  /// points were measured.
+  std::size_t look_at(std::uint32_t triangle, std::uint32_t place) {
+    Patch patch;
+    patch.corner = source_.corners(triangle);
+    for (std::size_t k = 0; k < 3; ++k) {
+      patch.at_corner[k] = patch.at_middle[k] = measure(patch.corner[k], place, triangle);
+    }
+    const double enough = kWorthwhile * maximum();
+    if (!(bound_by_one_triangle(tree_, patch) > enough)) return 3;
+    look_inside(triangle, 0.0, place);
+    return 10;
   }
 
   void look_inside(std::uint32_t triangle, double radius, std::uint32_t place) {
@@ -179,10 +248,10 @@ class SourceSearch {
   const SourceTree::Impl& source_;
   const SurfaceTree& tree_;
   OwnerTest& owner_test_;
-  double maximum_ = 0.0;
-  float enough_ = 0.0F;     ///< squared, in the group tree's frame
-  bool is_ours_ = true;     ///< the last point measured: the search may go on from there
-  CarriedSample farthest_;  ///< of all points measured here
+  Farthest farthest_;
+  float enough_ = 0.0F;           ///< squared, in the group tree's frame
+  bool is_ours_ = true;           ///< the last point measured: the search may go on from there
+  CarriedSample farthest_point_;  ///< of all points measured here
   IdSet seen_, seen_inside_;
   std::vector<Reached> frontier_;
   std::vector<Patch> large_;
@@ -258,6 +327,7 @@ double triangle_spacing(const GroupSurface& group) {
 }  // namespace
 
 bool OwnerTest::is_ours(const Vec3d& point, const Vec3d& facing) {
+  if (is_whole_) return true;
   if (tree_.size() == 0) {
     tree_.build({finer_.positions, finer_.triangles});
     edges_.emplace(finer_);
@@ -282,25 +352,31 @@ bool OwnerTest::is_ours(const Vec3d& point, const Vec3d& facing) {
   return glm::dot(glm::cross(corners[1] - corners[0], corners[2] - corners[0]), facing) >= 0.0;
 }
 
-double search_source(const SourceTree::Impl& source, const GroupSurface& group, const SurfaceTree& group_tree,
-                     OwnerTest& owner, std::span<const std::uint8_t> is_folded, double maximum,
-                     std::span<const CarriedSample> high, std::vector<CarriedSample>& samples) {
-  if (!owner.is_known()) return maximum;
+Farthest search_source(const SourceTree::Impl& source, const GroupSurface& group, const SurfaceTree& group_tree,
+                       OwnerTest& owner, std::span<const std::uint8_t> is_folded, Farthest farthest,
+                       std::span<const CarriedSample> high, std::size_t budget,
+                       std::vector<CarriedSample>& samples) {
+  if (!owner.is_known()) return farthest;
   const double radius = triangle_spacing(group);
-  SourceSearch search(source, group_tree, owner, maximum);
+  SourceSearch search(source, group_tree, owner, farthest);
   std::vector<CarriedSample> found;
-  for (const CarriedSample& seed : choose_seeds(samples, kSeedShare * maximum)) {
+  for (const CarriedSample& seed : choose_seeds(samples, kSeedShare * farthest.to_beat())) {
     search.search_around(seed, radius, found);
   }
-  for (const CarriedSample& seed : choose_seeds(high, kSeedShare * maximum)) {
+  for (const CarriedSample& seed : choose_seeds(high, kSeedShare * farthest.to_beat())) {
     search.search_around(seed, 0.5 * radius, found);
   }
   for (const Vec3d& point : choose_far_points(owner.finer(), is_folded, group_tree, kFarShare * search.maximum())) {
     search.search_behind(point);
   }
-  search.refine(found);
+  if (owner.is_whole()) {
+    search.search_everywhere(kPointsPerPart * budget, found);
+    search.refine({kRefineBudget + budget / 4, budget / 4}, found);
+  } else {
+    search.refine({kRefineBudget, 0}, found);
+  }
   samples.insert(samples.end(), found.begin(), found.end());
-  return search.maximum();
+  return search.farthest();
 }
 
 }  // namespace meshlode

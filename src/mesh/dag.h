@@ -30,7 +30,7 @@ struct DagGroup {
   std::uint32_t first_cluster = 0, cluster_count = 0;  ///< members, contiguous in LodDag::clusters
   double error = 0.0;               ///< selection error, object units; +inf if terminal
   double quadric_error = 0.0;       ///< the quadric's own estimate, object units; +inf if terminal
-  double deviation = 0.0;           ///< +inf where not measured
+  double deviation = 0.0;           ///< of this group alone, without margin; +inf where not measured
   /// Shading normals (root mean square angle, degrees) and UVs (95% of the surface is within it, UV units) against the
   /// source's. Running maxima along the DAG; +inf if terminal, and where not measured: then for all groups of the mesh.
   double normal_deviation = std::numeric_limits<double>::infinity();

@@ -3,6 +3,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "dag/build_dag.h"
+
 namespace meshlode {
 
 namespace {
@@ -27,6 +29,9 @@ const char* name_of(format::ErrorTier tier) {
   return "qem";
 }
 
+/// What a group's deviation is multiplied by on the way to its error. The tier qem has no deviations.
+double error_margin_of(format::ErrorTier tier) { return tier == format::ErrorTier::kMeasured ? kMeasuredMargin : 1.0; }
+
 const char* name_of(format::Codec codec) {
   switch (codec) {
     case format::Codec::kLz4: return "lz4";
@@ -46,6 +51,7 @@ std::string meta_json(const Scene& scene, const PipelineOptions& options, const 
   meta["source"] = {{"file", scene.source_name}, {"hash", scene.source_hash}};
   Json settings;
   settings["error_tier"] = name_of(options.error_tier);
+  settings["error_margin"] = error_margin_of(options.error_tier);
   settings["attributes"] = name_of(options.attributes);
   settings["grid"] = options.grid_step > 0.0 ? Json(options.grid_step) : Json("auto");
   settings["codec"] = name_of(options.codec);

@@ -21,6 +21,8 @@ using format::kGroupTerminal;
 using format::kInfiniteError;
 using format::kNone;
 
+constexpr double kLargestError = 0x1p120;  // of what is finite: a larger deviation cannot have a larger one
+
 template <class Record>
 ExactBall ball_of(const Record& r) {
   return {{r.center[0], r.center[1], r.center[2]}, r.radius};
@@ -53,7 +55,37 @@ void check_attribute_deviation(const char* name, float value, bool is_terminal_g
   log.expect(*is_measured == is_here, "L312", at, [&] { return detail(": measured in some groups of the mesh alone"); });
 }
 
+// A deviation is of its group alone, so it may fall going coarser; the error has the margin of the settings, and is the
+// largest of all below. The deviation was rounded up to a float after the error was made of it.
+template <class Place>
+void check_deviation(const GroupRecord& group, bool is_terminal_group, double margin, const Place& at, RuleLog& log) {
+  if (is_terminal_group) {
+    log.expect(group.deviation == kInfiniteError, "L311", at,
+               [&] { return "deviation is " + std::to_string(group.deviation) + " in a terminal group"; });
+    return;
+  }
+  constexpr double kRounding = 1.0 + 0x1p-22;
+  const double needed = std::min(margin * double{group.deviation}, kLargestError);
+  log.expect(group.deviation >= 0.0F && !std::signbit(group.deviation) && group.deviation < kInfiniteError &&
+                 needed <= kRounding * double{group.error},
+             "L311", at, [&] {
+               return differs("deviation", double{group.deviation}, "error", double{group.error}) + "; the margin is " +
+                      std::to_string(margin);
+             });
+}
+
+/// META's error_margin; 1 where it says nothing. \pre META is sound, or it says nothing
+double margin_of(const FileTables& file, RuleLog& log) {
+  const std::optional<double> margin = meta_real(file.meta, "settings", "error_margin");
+  if (!margin) return 1.0;
+  const bool is_sound = log.expect(*margin >= 1.0 && *margin <= 2.0, "L311",
+                                   [] { return std::string("section META: /settings/error_margin"); },
+                                   [&] { return "is " + std::to_string(*margin) + ", not in 1 to 2"; });
+  return is_sound ? *margin : 1.0;
+}
+
 void check_groups(const FileTables& file, RuleLog& log) {
+  const double margin = margin_of(file, log);
   for (std::size_t m = 0; m < file.meshes.size(); ++m) {
     const format::MeshRecord& mesh = file.meshes[m];
     std::vector<std::uint32_t> made(mesh.group_count, 0);
@@ -105,9 +137,7 @@ void check_groups(const FileTables& file, RuleLog& log) {
         log.expect(group.deviation == kInfiniteError, "L311", at,
                    [] { return std::string("the qem tier measures nothing, yet a deviation is stored"); });
       } else {
-        log.expect(
-            terminal ? group.deviation == kInfiniteError : group.deviation >= 0.0F && group.deviation <= group.error,
-            "L311", at, [&] { return differs("deviation", double{group.deviation}, "error", double{group.error}); });
+        check_deviation(group, terminal, margin, at, log);
       }
       check_attribute_deviation("normal_deviation", group.normal_deviation, terminal, is_normal_measured, at, log);
       check_attribute_deviation("uv_deviation", group.uv_deviation, terminal, is_uv_measured, at, log);

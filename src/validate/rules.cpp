@@ -76,7 +76,9 @@ constexpr std::array kRules{
     Rule{"L309", "I4", "LOD spheres and errors keep the margin that covers the rounding of the run-time rule"},
     Rule{"L310", "I4",
          "LOD spheres contain the culling spheres of level-0 members and of the clusters made from them, exactly"},
-    Rule{"L311", "I4", "quadric errors never fall along the DAG; deviations are as the tier says"},
+    Rule{"L311", "I4",
+         "quadric errors never fall along the DAG; deviations are as the tier says, and no error is below its group's times "
+         "META's error_margin"},
     Rule{"L312", "I4",
          "normal and UV deviations never fall along the DAG; infinite where terminal, and measured for all or none"},
     // hierarchy

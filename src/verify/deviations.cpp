@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "metrics/metrics.h"
 #include "select/select.h"
 
 namespace meshlode {
@@ -35,36 +34,42 @@ std::vector<double> thresholds_of(const Asset& asset, const format::MeshRecord& 
 
 }  // namespace
 
+std::vector<CutDeviation> measure_cuts(const Asset& asset, MeshId mesh, const SourceMesh& source,
+                                       std::span<const DecodedCluster> clusters, std::uint32_t cuts,
+                                       std::uint64_t samples) {
+  const format::MeshRecord& record = asset.meshes()[mesh.value];
+  const Surface truth = surface_of_source(source);
+  std::vector<CutDeviation> measured;
+  std::vector<ClusterId> previous;
+  for (const double threshold : thresholds_of(asset, record, cuts)) {
+    const UniformCut cut = select_uniform(asset, mesh, threshold);
+    if (cut.clusters == previous) continue;
+    previous = cut.clusters;
+    const Surface surface = surface_of_clusters(asset, clusters, mesh, cut.clusters);
+    measured.push_back({threshold, cut.stored_error, measure_deviation(truth, surface, {.samples = samples}),
+                        1e-12 * record.diagonal});
+  }
+  return measured;
+}
+
 DeviationTotals check_deviations(const Asset& asset, const Scene& source, std::span<const DecodedCluster> clusters,
                                  std::uint32_t cuts, std::uint64_t samples, RuleLog& log) {
   DeviationTotals totals;
   std::vector<double> ratios;
   for (std::uint32_t m = 0; m < std::min(asset.meshes().size(), source.meshes.size()); ++m) {
-    const format::MeshRecord& mesh = asset.meshes()[m];
-    if (mesh.error_tier == format::ErrorTier::kQem) continue;
-    const bool is_certified = mesh.error_tier == format::ErrorTier::kCertified;
-    const double limit = is_certified ? 1.0 : 1.0 + kMeasuredShortfall;
-    const Surface truth = surface_of_source(source.meshes[m]);
-    std::vector<ClusterId> previous;
-    for (const double threshold : thresholds_of(asset, mesh, cuts)) {
-      const UniformCut cut = select_uniform(asset, MeshId(m), threshold);
-      if (cut.clusters == previous) continue;
-      previous = cut.clusters;
-      const Surface surface = surface_of_clusters(asset, clusters, MeshId(m), cut.clusters);
-      const double deviation = measure_deviation(truth, surface, {.samples = samples}).max();
-      // Decoded positions carry the last bit of a double; a flat cut deviates by that and stores 0.
-      const double rounding = 1e-12 * mesh.diagonal;
-      const double ratio =
-          cut.stored_error > 0.0 ? deviation / cut.stored_error : (deviation <= rounding ? 0.0 : HUGE_VAL);
-      ratios.push_back(ratio);
+    const format::ErrorTier tier = asset.meshes()[m].error_tier;
+    if (tier == format::ErrorTier::kQem) continue;
+    const double limit = tier == format::ErrorTier::kCertified ? 1.0 : 1.0 + kMeasuredShortfall;
+    for (const CutDeviation& cut : measure_cuts(asset, MeshId(m), source.meshes[m], clusters, cuts, samples)) {
+      ratios.push_back(cut.ratio());
       ++totals.cuts;
-      if (deviation > cut.stored_error + rounding) ++totals.exceeded;
+      if (cut.is_above(1.0)) ++totals.exceeded;
       log.expect(
-          deviation <= limit * cut.stored_error + rounding, "V206", [&] { return place("mesh", m); },
+          !cut.is_above(limit), "V206", [&] { return place("mesh", m); },
           [&] {
             char text[160];
             std::snprintf(text, sizeof text, "the cut at error %.6g stores %.6g and deviates by %.6g, %.3f times that",
-                          threshold, cut.stored_error, deviation, ratio);
+                          cut.threshold, cut.stored, cut.truth.max(), cut.ratio());
             return std::string(text);
           });
     }

@@ -266,6 +266,31 @@ TEST(Dag, FoliageAndSoupsKeepTheirAreaAtEveryLevel) {
   }
 }
 
+/// The error of every group is the largest of what was found for it, times the margin, and of the errors below it; what
+/// was found is stored as it is. So it is told whether an error is a group's own or another's.
+TEST(Dag, AnErrorIsTheDeviationWithTheMarginAndTheLargestBelow) {
+  for (const ErrorSource tier : {ErrorSource::kMeasured, ErrorSource::kCertified}) {
+    const double margin = tier == ErrorSource::kMeasured ? kMeasuredMargin : 1.0;
+    for (const Primitive& shape : {samples::make_rock(9), samples::make_loose_pieces(600)}) {
+      DagOptions options;
+      options.error = tier;
+      const Built built = build(shape, options);
+      std::size_t replaced = 0;
+      for (const DagGroup& group : built.dag.groups) {
+        if (group.is_terminal) continue;
+        ++replaced;
+        double expected = std::max(built.mesh.level0_deviation, margin * group.deviation);
+        for (std::uint32_t c = group.first_cluster; c < group.first_cluster + group.cluster_count; ++c) {
+          if (!built.dag.clusters[c].own_group.is_valid()) continue;
+          expected = std::max(expected, built.dag.groups[built.dag.clusters[c].own_group.value].error);
+        }
+        EXPECT_EQ(group.error, expected);
+      }
+      EXPECT_GE(replaced, 2U);
+    }
+  }
+}
+
 TEST(Dag, GroupsStayWithinTheirBytes) {
   DagOptions options;
   options.max_group_bytes = 128 * 6;

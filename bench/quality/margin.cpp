@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Margin: how true the errors of the tier `measured` are, over many scenes. Builds each scene, measures uniform cuts as
+// `verify` does (V206) and prints true over stored, then how many of the whole series are above 1 and 1.05. Errors are
+// the deviations that were found times the margin, so that one series tells what any other margin would give.
+#include <algorithm>
+#include <charconv>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include <tbb/global_control.h>
+
+#include "dag/build_dag.h"
+#include "decode/decode.h"
+#include "import/import.h"
+#include "pipeline/build.h"
+#include "random/scene.h"
+#include "read/asset.h"
+#include "verify/deviations.h"
+
+namespace {
+
+using namespace meshlode;
+
+constexpr const char* kUsage =
+    "usage: bench_margin [SCENE...] [options]\n"
+    "  --random FIRST,COUNT,STEP   scenes of the tests' generator (tests/random): seeds FIRST, FIRST + STEP, ...\n"
+    "  --cuts N       uniform cuts of each mesh (12)\n"
+    "  --samples N    area-uniform samples each way, all vertices on top (200000)\n"
+    "  --jobs N       threads (one per core)\n"
+    "  --above X      print only cuts whose true over stored is above X (0)\n";
+
+struct Options {
+  std::vector<std::string> scenes;
+  std::vector<std::uint64_t> random;  ///< first seed, count, step
+  std::uint32_t cuts = 12;
+  std::uint64_t samples = 200000;
+  std::size_t jobs = 0;
+  double above = 0.0;
+};
+
+template <class Number>
+bool read_number(const std::string& text, Number& out) {
+  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), out);
+  return error == std::errc{} && stop == text.data() + text.size();
+}
+
+bool read_list(const std::string& text, std::vector<std::uint64_t>& out) {
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', at), text.size());
+    out.emplace_back();
+    if (!read_number(text.substr(at, comma - at), out.back())) return false;
+    at = comma + 1;
+  }
+  return true;
+}
+
+bool parse(int argc, char** argv, Options& o) {
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    if (word.rfind("--", 0) != 0) {
+      o.scenes.push_back(word);
+      continue;
+    }
+    if (i + 1 >= argc) return false;
+    const std::string value = argv[++i];
+    const bool is_read = word == "--cuts"      ? read_number(value, o.cuts)
+                         : word == "--samples" ? read_number(value, o.samples)
+                         : word == "--jobs"    ? read_number(value, o.jobs)
+                         : word == "--above"   ? read_number(value, o.above)
+                         : word == "--random"  ? read_list(value, o.random) && o.random.size() == 3
+                                               : false;
+    if (!is_read) return false;
+  }
+  return (!o.scenes.empty() || !o.random.empty()) && o.cuts > 0;
+}
+
+struct Series {
+  std::size_t scenes = 0, refused = 0;
+  std::vector<double> ratios;  ///< true over stored, of every cut
+  double build_seconds = 0.0;
+  std::uint64_t triangles = 0;
+};
+
+void measure_scene(const std::string& name, const Scene& scene, const Options& options, Series& series) {
+  PipelineReport report;
+  const auto start = std::chrono::steady_clock::now();
+  auto bytes = build_lode(scene, {}, {}, report);
+  series.build_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  ++series.scenes;
+  if (!bytes) {
+    ++series.refused;
+    return;
+  }
+  const Result<Asset> asset = Asset::from_vector(std::move(*bytes));
+  if (!asset) return;
+  const Result<std::vector<DecodedCluster>> decoded = decode_all(*asset);
+  if (!decoded) return;
+  for (std::uint32_t m = 0; m < scene.meshes.size(); ++m) {
+    series.triangles += asset->meshes()[m].source_triangles;
+    for (const CutDeviation& cut :
+         measure_cuts(*asset, MeshId(m), scene.meshes[m], *decoded, options.cuts, options.samples)) {
+      const double ratio = cut.is_above(1.0) ? cut.ratio() : std::min(cut.ratio(), 1.0);
+      series.ratios.push_back(ratio);
+      if (!(ratio > options.above)) continue;
+      const bool is_from_source = cut.truth.a_to_b.max >= cut.truth.b_to_a.max;
+      const Vec3d& at = is_from_source ? cut.truth.a_to_b.worst : cut.truth.b_to_a.worst;
+      std::printf("%s mesh %u: stored %.6g true %.6g ratio %.4f %s at %.9g %.9g %.9g\n", name.c_str(), m, cut.stored,
+                  cut.truth.max(), ratio, is_from_source ? "source" : "cut", at.x, at.y, at.z);
+    }
+  }
+  std::fflush(stdout);
+}
+
+/// Each through a file, as a user's scene would come. The generator's build options are not used: the tier's defaults are
+/// what is measured.
+bool measure_random_scenes(const Options& options, Series& series) {
+  std::string path = (std::filesystem::temp_directory_path() / "bench_margin.XXXXXX").string();
+  if (mkdtemp(path.data()) == nullptr) return false;
+  const std::filesystem::path folder(path), file = folder / "scene.glb";
+  bool is_written = true;
+  for (std::uint64_t i = 0; i < options.random[1] && is_written; ++i) {
+    const std::uint64_t seed = options.random[0] + i * options.random[2];
+    const std::vector<std::uint8_t> glb = test::write_glb(test::random_scene(seed));
+    std::ofstream out(file, std::ios::binary);
+    out.write(reinterpret_cast<const char*>(glb.data()), static_cast<std::streamsize>(glb.size()));
+    out.close();
+    is_written = out.good();
+    const Result<Scene> scene = import_scene(file, {});
+    if (scene) measure_scene("seed " + std::to_string(seed), *scene, options, series);
+  }
+  std::error_code ignored;
+  std::filesystem::remove_all(folder, ignored);
+  return is_written;
+}
+
+std::size_t count_above(const Series& series, double limit) {
+  return static_cast<std::size_t>(
+      std::count_if(series.ratios.begin(), series.ratios.end(), [&](double r) { return r > limit; }));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  if (!parse(argc, argv, options)) {
+    std::fputs(kUsage, stderr);
+    return 1;
+  }
+  const std::size_t allowed =
+      options.jobs > 0 ? options.jobs
+                       : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, allowed);
+  Series series;
+  for (const std::string& path : options.scenes) {
+    const Result<Scene> scene = import_scene(path, {});
+    if (!scene) {
+      std::fprintf(stderr, "%s\n", scene.error().message().c_str());
+      return 2;
+    }
+    measure_scene(path, *scene, options, series);
+  }
+  if (!options.random.empty() && !measure_random_scenes(options, series)) return 2;
+  std::sort(series.ratios.begin(), series.ratios.end());
+  if (series.ratios.empty()) return 0;
+  std::printf("%zu scenes (%zu refused), %llu triangles, built in %.2f s\n", series.scenes, series.refused,
+              static_cast<unsigned long long>(series.triangles), series.build_seconds);
+  std::printf("%zu cuts, margin %.3f: true/stored median %.3f, largest %.4f\n", series.ratios.size(), kMeasuredMargin,
+              series.ratios[series.ratios.size() / 2], series.ratios.back());
+  for (const double x : {0.97, 0.98, 0.99, 1.0, 1.01, 1.02, 1.05}) {
+    std::printf("above %.2f: %zu (%.2f%%)\n", x, count_above(series, x),
+                100.0 * static_cast<double>(count_above(series, x)) / static_cast<double>(series.ratios.size()));
+  }
+  return 0;
+}
