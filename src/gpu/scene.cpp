@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "decode/decode.h"
 #include "gpu/shaders/frame.h"
 #include "select/far_instance.h"
 #include "select/select.h"
@@ -131,6 +132,7 @@ Result<Pages> upload_pages(Device& device, const Asset& asset) {
   }
   if (words + 4 > 0xFFFFFFFFu) return Error{ErrorCode::kUnsupported, "pages", "more than 16 GiB of pages"};
   out.bytes = words * 4;
+  if (const Status status = check_decoded_bytes(asset, out.bytes); !status) return status.error();
   auto buffer = device.make_buffer(out.bytes + 16, Memory::kDevice);  // a reader may look at one word behind a page
   if (!buffer) return buffer.error();
   out.buffer = *buffer;
@@ -198,7 +200,7 @@ MaskTables mask_tables(const AlphaMasks& alpha) {
 }  // namespace
 
 Result<GpuScene> upload_scene(Device& device, const Asset& asset, std::span<const format::InstanceRecord> instances,
-                              const AttributeBounds& bounds) {
+                              const AttributeBounds& bounds, ImageBudget* images) {
   if (instances.empty()) instances = asset.instances();
   GpuScene out;
   out.instance_count = static_cast<std::uint32_t>(instances.size());
@@ -256,7 +258,8 @@ Result<GpuScene> upload_scene(Device& device, const Asset& asset, std::span<cons
     }
     clusters.push_back(c);
   }
-  out.alpha_masks = std::make_shared<const AlphaMasks>(load_alpha_masks(asset));
+  ImageBudget own_budget;
+  out.alpha_masks = std::make_shared<const AlphaMasks>(load_alpha_masks(asset, images != nullptr ? *images : own_budget));
   out.has_alpha_mask = !out.alpha_masks->is_empty();
   out.has_textures = has_textures(asset);
   const MaskTables mask = mask_tables(*out.alpha_masks);

@@ -39,11 +39,12 @@ struct GpuScene {
 };
 
 /// `instances` replaces the asset's own where it is not empty: a benchmark's scene. Their meshes are the asset's.
-/// `bounds`: a group that deviates by more never passes, as in select_flat().
+/// `bounds`: a group that deviates by more never passes, as in select_flat(). `images`: what decoded masks may take; one of
+/// kDefaultMaxDecoded where it is null.
 /// Errors: kInvalid for a broken page; kUnsupported where the device has no room or a limit is passed.
 [[nodiscard]] Result<GpuScene> upload_scene(Device& device, const Asset& asset,
                                             std::span<const format::InstanceRecord> instances = {},
-                                            const AttributeBounds& bounds = {});
+                                            const AttributeBounds& bounds = {}, ImageBudget* images = nullptr);
 
 /// Textures for colours, which a visibility buffer does not need: before Renderer::make(), where colours are wanted.
 /// Errors: kUnsupported where the device has no room.

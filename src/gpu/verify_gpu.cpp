@@ -130,7 +130,8 @@ Result<GpuVerifyReport> verify_on_gpu(const Asset& asset, const Scene& source,
                                       const GpuVerifyOptions& options) {
   auto device = Device::open(options.device);
   if (!device) return device.error();
-  auto scene = upload_scene(*device, asset);
+  ImageBudget images(options.max_decoded);
+  auto scene = upload_scene(*device, asset, {}, {}, &images);
   if (!scene) return scene.error();
   GpuVerifyReport out;
   out.device = device->info();

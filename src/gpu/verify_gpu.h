@@ -14,6 +14,7 @@
 #include "gpu/vulkan.h"
 #include "gpu/picture.h"
 #include "metrics/metrics.h"
+#include "read/limits.h"
 
 namespace meshlode::gpu {
 
@@ -28,6 +29,7 @@ struct GpuVerifyOptions {
   double pixel_error = 1.0;
   /// Pictures of each camera; hardware raster draws the first. One has odd sides. \pre not empty
   std::vector<PictureSize> sizes = {{640, 360}, {321, 243}, {128, 512}};
+  std::uint64_t max_decoded = kDefaultMaxDecoded;  ///< bytes of decoded images
   /// Heat maps (PNG) of the camera with the largest share of its allowance at each size, and of each that failed; empty: none.
   std::string out_folder;
   OutputFiles* files = nullptr;  ///< what they are written by; null: by an object of their own

@@ -15,13 +15,31 @@ constexpr std::uint32_t kMaxTextureSide = 16384;
 /// As the file has them: no colour profile and no gamma is applied (glTF 2.0, 3.8.3 forbids it).
 struct DecodedImage {
   std::uint32_t width = 0, height = 0;
-  std::vector<std::uint8_t> rgba;  ///< 4 bytes a texel, top row first; alpha 255 where the file has none
+  /// red | green << 8 | blue << 16 | alpha << 24, top row first; alpha 255 where the file has none
+  std::vector<std::uint32_t> texels;
+
+  /// The same as 4 bytes a texel.
+  [[nodiscard]] std::span<const std::uint8_t> rgba() const {
+    return {reinterpret_cast<const std::uint8_t*>(texels.data()), 4 * texels.size()};
+  }
 };
+
+/// What the first bytes of a file say.
+struct ImageHeader {
+  std::uint32_t width = 0, height = 0;
+  /// What the library keeps beside the texels while it decodes: coefficients of a JPEG of several scans. An upper bound.
+  std::uint64_t decoder_bytes = 0;
+};
+
+/// Errors: as decode_image(), as far as the file's head shows them. An image of which this is known takes
+/// 4 · width · height + decoder_bytes to decode.
+[[nodiscard]] Result<ImageHeader> read_image_header(std::span<const std::uint8_t> bytes);
 
 /// PNG of every kind (16-bit channels are scaled to 8) and JPEG of grey or colour, by their first bytes. Safe on any
 /// bytes: memory and time are bounded by what a file of this size can hold.
 /// Errors: kInvalid for a damaged file; kUnsupported for another format, a JPEG of four colours or with arithmetic coding,
 /// and more than kMaxTextureSide texels a side.
-[[nodiscard]] Result<DecodedImage> decode_image(std::span<const std::uint8_t> bytes);
+/// `capacity`: texels that there is room for, where that is more, so that what is appended need not move them.
+[[nodiscard]] Result<DecodedImage> decode_image(std::span<const std::uint8_t> bytes, std::uint64_t capacity = 0);
 
 }  // namespace meshlode

@@ -88,7 +88,7 @@ bool read_rows(Reader& reader, std::uint8_t* rgba) {
 
 }  // namespace
 
-Result<DecodedImage> decode_jpeg(std::span<const std::uint8_t> bytes) {
+Result<ImageHeader> read_jpeg(std::span<const std::uint8_t> bytes, std::vector<std::uint32_t>* texels) {
   Reader reader;
   const auto damaged = [&] { return Error{ErrorCode::kInvalid, "image", std::string("JPEG: ") + reader.message}; };
   if (!read_header(reader, bytes.data(), static_cast<unsigned long>(bytes.size()))) return damaged();
@@ -101,12 +101,17 @@ Result<DecodedImage> decode_jpeg(std::span<const std::uint8_t> bytes) {
   if (width * height > std::uint64_t{512} * bytes.size()) {
     return Error{ErrorCode::kInvalid, "image", "JPEG: too short for its size"};
   }
-  DecodedImage out;
-  out.width = static_cast<std::uint32_t>(width);
-  out.height = static_cast<std::uint32_t>(height);
-  out.rgba.resize(4 * width * height);
-  if (!read_rows(reader, out.rgba.data())) return damaged();
-  return out;
+  ImageHeader header{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), 0};
+  // Coefficients of all scans are kept until the last one: 2 bytes each, in blocks of 8 × 8 whose rows and columns are
+  // filled up to the largest sampling factor, which is at most 4.
+  if (jpeg_has_multiple_scans(&reader.info) != FALSE) {
+    const auto filled = [](std::uint64_t side) { return (side + 31) / 32 * 32; };
+    header.decoder_bytes = 2 * static_cast<std::uint64_t>(reader.info.num_components) * filled(width) * filled(height);
+  }
+  if (texels == nullptr) return header;
+  texels->resize(std::size_t{header.width} * header.height);
+  if (!read_rows(reader, reinterpret_cast<std::uint8_t*>(texels->data()))) return damaged();
+  return header;
 }
 
 }  // namespace meshlode::image

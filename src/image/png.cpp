@@ -76,7 +76,7 @@ bool read_rows(Reader& reader, png_bytepp rows) {
 
 }  // namespace
 
-Result<DecodedImage> decode_png(std::span<const std::uint8_t> bytes) {
+Result<ImageHeader> read_png(std::span<const std::uint8_t> bytes, std::vector<std::uint32_t>* texels) {
   Reader reader;
   reader.at = bytes.data();
   reader.left = bytes.size();
@@ -91,14 +91,13 @@ Result<DecodedImage> decode_png(std::span<const std::uint8_t> bytes) {
   if (std::uint64_t{reader.stored_row_bytes} * reader.height > kMostInflation * bytes.size()) {
     return Error{ErrorCode::kInvalid, "image", "PNG: too short for its size"};
   }
-  DecodedImage out;
-  out.width = reader.width;
-  out.height = reader.height;
-  out.rgba.resize(std::size_t{4} * out.width * out.height);
-  std::vector<png_bytep> rows(out.height);
-  for (std::size_t y = 0; y < rows.size(); ++y) rows[y] = out.rgba.data() + y * 4 * out.width;
+  const ImageHeader header{reader.width, reader.height, 0};  // rows are expanded where they belong
+  if (texels == nullptr) return header;
+  texels->resize(std::size_t{header.width} * header.height);
+  std::vector<png_bytep> rows(header.height);
+  for (std::size_t y = 0; y < rows.size(); ++y) rows[y] = reinterpret_cast<png_bytep>(texels->data() + y * header.width);
   if (!read_rows(reader, rows.data())) return damaged();
-  return out;
+  return header;
 }
 
 }  // namespace meshlode::image

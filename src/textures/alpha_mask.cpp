@@ -11,23 +11,35 @@ namespace meshlode {
 namespace {
 
 /// Alpha of a blob's image; empty texels where all are opaque, a warning where there is none.
-AlphaImage load_image(const Asset& asset, std::uint32_t blob, const std::string& material,
+AlphaImage load_image(const Asset& asset, std::uint32_t blob, const std::string& material, ImageBudget& budget,
                       std::vector<std::string>& warnings) {
   AlphaImage out;
   if (blob >= asset.blobs().size()) {
     warnings.push_back("material " + material + ": the image of its mask is not in the asset, drawn opaque");
     return out;
   }
-  const auto image = decode_image(asset.blob_bytes(asset.blobs()[blob]));
-  if (!image) {
-    warnings.push_back("material " + material + ": " + image.error().message() + ", drawn opaque");
-    return out;
+  const auto refuse = [&](const std::string& why) {
+    warnings.push_back("material " + material + ": " + why + ", drawn opaque");
+    return AlphaImage{};
+  };
+  const auto bytes = asset.blob_bytes(asset.blobs()[blob]);
+  const auto header = read_image_header(bytes);
+  if (!header) return refuse(header.error().message());
+  const std::uint64_t texel_count = std::uint64_t{header->width} * header->height;
+  const std::uint64_t passing = 4 * texel_count + header->decoder_bytes;
+  if (!budget.take(passing + texel_count)) {
+    return refuse(budget.refusal(image_name(asset, blob), *header, passing + texel_count));
   }
-  out.width = image->width;
-  out.height = image->height;
-  out.texels.resize(std::size_t{out.width} * out.height);
-  for (std::size_t i = 0; i < out.texels.size(); ++i) out.texels[i] = image->rgba[4 * i + 3];
-  if (std::all_of(out.texels.begin(), out.texels.end(), [](std::uint8_t a) { return a == 255; })) out.texels.clear();
+  const auto image = decode_image(bytes);
+  if (image) {
+    out.width = image->width;
+    out.height = image->height;
+    out.texels.resize(image->texels.size());
+    for (std::size_t i = 0; i < out.texels.size(); ++i) out.texels[i] = static_cast<std::uint8_t>(image->texels[i] >> 24U);
+    if (std::all_of(out.texels.begin(), out.texels.end(), [](std::uint8_t a) { return a == 255; })) out.texels = {};
+  }
+  budget.give_back(passing + (out.texels.empty() ? texel_count : 0));
+  if (!image) return refuse(image.error().message());
   return out;
 }
 
@@ -55,6 +67,11 @@ std::uint32_t mask_threshold(float factor, float cutoff) {
 }
 
 AlphaMasks load_alpha_masks(const Asset& asset) {
+  ImageBudget budget;
+  return load_alpha_masks(asset, budget);
+}
+
+AlphaMasks load_alpha_masks(const Asset& asset, ImageBudget& budget) {
   AlphaMasks out;
   const auto is_masked = [](const format::MaterialRecord& m) { return m.alpha_mode == format::AlphaMode::kMask; };
   if (std::none_of(asset.materials().begin(), asset.materials().end(), is_masked)) return out;
@@ -69,7 +86,7 @@ AlphaMasks load_alpha_masks(const Asset& asset) {
     if (mask.threshold == 0) continue;
     if (const std::optional<TextureUse>& use = textures[i].base_color) {
       const auto [found, is_new] = image_of_blob.try_emplace(use->blob, static_cast<std::uint32_t>(out.images.size()));
-      if (is_new) out.images.push_back(load_image(asset, use->blob, name_of(asset, i), out.warnings));
+      if (is_new) out.images.push_back(load_image(asset, use->blob, name_of(asset, i), budget, out.warnings));
       const AlphaImage& image = out.images[found->second];
       if (!image.texels.empty()) mask.image = found->second;
       mask.uv_set = use->uv_set;

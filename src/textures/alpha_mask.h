@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "textures/image_budget.h"
 #include "textures/texture_use.h"
 
 namespace meshlode {
@@ -45,8 +46,10 @@ struct AlphaMasks {
   [[nodiscard]] bool is_empty() const { return masks.empty(); }
 };
 
-/// Only images that a masked material samples are decoded. A mask that every sample passes (cutoff 0) is none.
-[[nodiscard]] AlphaMasks load_alpha_masks(const Asset& asset);
+/// Only images that a masked material samples are decoded, one after the other; of each its alpha is kept. One that the
+/// budget has no room for counts as opaque. A mask that every sample passes (cutoff 0) is none.
+[[nodiscard]] AlphaMasks load_alpha_masks(const Asset& asset, ImageBudget& budget);
+[[nodiscard]] AlphaMasks load_alpha_masks(const Asset& asset);  ///< with a budget of kDefaultMaxDecoded
 
 /// The least product a · c, 0 … 65025, with product / 65025 · factor >= cutoff in floats; kMaskThresholdNever where there is
 /// none.

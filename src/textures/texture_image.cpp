@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace meshlode {
 
@@ -75,7 +76,6 @@ void add_level(TextureImage& image, std::uint32_t level) {
   const std::uint32_t width = image.width_of(level), height = image.height_of(level);
   const std::size_t fine = image.first[level - 1];
   image.first.push_back(image.texels.size());
-  image.texels.reserve(image.texels.size() + std::size_t{width} * height);
   for (std::uint32_t y = 0; y < height; ++y) {
     const Taps rows = taps_of(y, fine_height, height);
     for (std::uint32_t x = 0; x < width; ++x) {
@@ -125,20 +125,24 @@ std::array<double, 4> sample_level(const TextureImage& image, std::uint32_t leve
 
 }  // namespace
 
-TextureImage make_texture_image(const DecodedImage& image, bool is_srgb) {
+TextureImage make_texture_image(DecodedImage image, bool is_srgb) {
   TextureImage out;
   out.width = image.width;
   out.height = image.height;
   out.is_srgb = is_srgb;
-  const std::size_t count = std::size_t{image.width} * image.height;
-  out.texels.reserve(count + count / 3 + 64);
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::uint8_t* c = &image.rgba[4 * i];
-    out.texels.push_back(c[0] | std::uint32_t{c[1]} << 8 | std::uint32_t{c[2]} << 16 | std::uint32_t{c[3]} << 24);
-  }
+  out.texels = std::move(image.texels);
+  out.texels.reserve(count_mip_texels(out.width, out.height));
   out.first.push_back(0);
   for (std::uint32_t level = 1; std::max(out.width, out.height) >> level > 0; ++level) add_level(out, level);
   return out;
+}
+
+std::uint64_t count_mip_texels(std::uint32_t width, std::uint32_t height) {
+  std::uint64_t sum = 0;
+  for (std::uint32_t level = 0; std::max(width, height) >> level > 0; ++level) {
+    sum += std::uint64_t{std::max(1u, width >> level)} * std::max(1u, height >> level);
+  }
+  return sum;
 }
 
 double level_of_detail(const TextureImage& image, const TextureFootprint& footprint) {

@@ -26,7 +26,11 @@ struct TextureImage {
   [[nodiscard]] std::uint32_t height_of(std::uint32_t level) const { return std::max(1u, height >> level); }
 };
 
-[[nodiscard]] TextureImage make_texture_image(const DecodedImage& image, bool is_srgb);
+/// The image's texels become level 0 where they lie: decode_image() with count_mip_texels() leaves room for the others.
+[[nodiscard]] TextureImage make_texture_image(DecodedImage image, bool is_srgb);
+
+/// Texels of all levels. \pre both sides are at least 1
+[[nodiscard]] std::uint64_t count_mip_texels(std::uint32_t width, std::uint32_t height);
 
 /// Where a pixel looks at a texture, and how far the next pixels to the right and below look from there. UV units.
 struct TextureFootprint {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "textures/image_budget.h"
 #include "textures/texture_image.h"
 #include "textures/texture_use.h"
 
@@ -29,9 +30,11 @@ struct TextureSet {
   [[nodiscard]] bool is_empty() const { return images.empty(); }
 };
 
-/// Decodes each image once. At most kMaxTextureBytes of texels: images beyond count as not there.
+/// Decodes each image once, in the order in which materials name them: one that the budget has no room for, its mip levels
+/// included, counts as not there. So do images beyond kMaxTextureBytes of texels, whatever the budget.
 constexpr std::uint64_t kMaxTextureBytes = std::uint64_t{8} << 30;
-[[nodiscard]] TextureSet load_textures(const Asset& asset);
+[[nodiscard]] TextureSet load_textures(const Asset& asset, ImageBudget& budget);
+[[nodiscard]] TextureSet load_textures(const Asset& asset);  ///< with a budget of kDefaultMaxDecoded
 
 /// Whether load_textures() would find anything to decode.
 [[nodiscard]] bool has_textures(const Asset& asset);

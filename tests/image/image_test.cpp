@@ -21,7 +21,7 @@ constexpr std::uint32_t kWidth = 37, kHeight = 11;  // rows of 1, 2 and 4 bits d
 using Texel = std::array<std::uint8_t, 4>;
 
 Texel texel(const DecodedImage& image, std::uint32_t x, std::uint32_t y) {
-  const std::uint8_t* t = &image.rgba[4 * (std::size_t{y} * image.width + x)];
+  const std::uint8_t* t = &image.rgba()[4 * (std::size_t{y} * image.width + x)];
   return {t[0], t[1], t[2], t[3]};
 }
 
@@ -114,9 +114,9 @@ TEST(Jpeg, GreyAndColourAreReadNearlyAsTheyWere) {
       const auto channels = static_cast<std::size_t>(components);
       for (std::size_t i = 0; i < std::size_t{kWidth} * kHeight; ++i) {
         for (std::size_t c = 0; c < 3; ++c) {
-          EXPECT_LE(std::abs(int{image->rgba[4 * i + c]} - int{pixels[channels * i + c % channels]}), 3) << i;
+          EXPECT_LE(std::abs(int{image->rgba()[4 * i + c]} - int{pixels[channels * i + c % channels]}), 3) << i;
         }
-        EXPECT_EQ(image->rgba[4 * i + 3], 255);
+        EXPECT_EQ(image->rgba()[4 * i + 3], 255);
       }
     }
   }

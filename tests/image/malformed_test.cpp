@@ -36,7 +36,7 @@ void expect_harmless(const Bytes& bytes) {
     EXPECT_FALSE(image.error().detail.empty());
     return;
   }
-  EXPECT_EQ(image->rgba.size(), std::size_t{4} * image->width * image->height);
+  EXPECT_EQ(image->rgba().size(), std::size_t{4} * image->width * image->height);
   EXPECT_LE(image->width, kMaxTextureSide);
   EXPECT_LE(image->height, kMaxTextureSide);
 }

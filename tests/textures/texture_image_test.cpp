@@ -14,7 +14,7 @@ DecodedImage image_of(std::uint32_t width, std::uint32_t height, std::uint8_t (*
   for (std::uint32_t y = 0; y < height; ++y) {
     for (std::uint32_t x = 0; x < width; ++x) {
       const std::uint8_t v = value(x, y);
-      out.rgba.insert(out.rgba.end(), {v, static_cast<std::uint8_t>(255 - v), 0, v});
+      out.texels.push_back(v | (255U - v) << 8U | std::uint32_t{v} << 24U);
     }
   }
   return out;

@@ -13,6 +13,8 @@
 #include <tbb/task_arena.h>
 #include <CLI/CLI.hpp>
 
+#include "base/byte_size.h"
+
 namespace meshlode::cli {
 
 namespace {
@@ -77,6 +79,17 @@ void OptionParser::add_positional(const char* name, std::string& target, const c
 }
 void OptionParser::add_positionals(const char* name, std::vector<std::string>& target, const char* help) {
   add_option(state_->app, name, target, help)->required();
+}
+
+void add_max_decoded_option(OptionParser& parser, std::string& size) {
+  parser.add_value("--max-decoded", size,
+                   "what images, and geometry beyond 64 times the file, may take in memory: bytes, or with KiB, MiB, GiB (512MiB)");
+}
+
+Result<std::uint64_t> parse_max_decoded(const std::string& size) {
+  const std::optional<std::uint64_t> bytes = parse_byte_size(size);
+  if (!bytes) return Error{ErrorCode::kUsage, "--max-decoded", "give a size, such as 512MiB"};
+  return *bytes;
 }
 
 std::optional<int> OptionParser::parse(std::span<char* const> args) {

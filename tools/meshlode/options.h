@@ -59,6 +59,12 @@ void add_output_options(OptionParser& parser, OutputOptions& options);
 /// `--jobs N`: threads; 0 (the default) is one per core.
 void add_jobs_option(OptionParser& parser, std::uint32_t& jobs);
 
+/// `--max-decoded SIZE`: what images and geometry may take decoded.
+void add_max_decoded_option(OptionParser& parser, std::string& size);
+/// Errors: kUsage for what is no size.
+[[nodiscard]] Result<std::uint64_t> parse_max_decoded(const std::string& size);
+constexpr const char* kDefaultMaxDecodedText = "512MiB";
+
 /// Limits oneTBB to `jobs` threads while it lives; 0 leaves it alone.
 class JobLimit {
  public:

@@ -27,6 +27,7 @@ struct ExtractOptions {
   std::optional<std::string> mesh;
   bool is_stuck = false;
   CutRequest request;
+  std::string max_decoded = kDefaultMaxDecodedText;
   OutputOptions out;
 };
 
@@ -207,11 +208,14 @@ int run_extract(const Verb& verb, std::span<char* const> args) {
                   "instead of a cut the groups where simplification is stuck, coloured by reason");
   add_bounds_options(parser, r.bounds);
   add_camera_options(parser, r.camera);
+  add_max_decoded_option(parser, o.max_decoded);
   add_output_options(parser, o.out);
   if (const auto exit_code = parser.parse(args)) return *exit_code;
   if (auto status = check_options(o); !status) return print_error(status.error());
 
-  auto asset = Asset::open(o.input);
+  const Result<std::uint64_t> max_decoded = parse_max_decoded(o.max_decoded);
+  if (!max_decoded) return print_error(max_decoded.error());
+  auto asset = Asset::open(o.input, *max_decoded);
   if (!asset) return print_error(asset.error());
   if (const auto id = asset->file_id()) output_files().keep(*id);
   if (const Status free = output_files().claim(*o.output); !free) return print_error(free.error());

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 
+#include "base/byte_size.h"
 #include "bounds_options.h"
 #include "camera_options.h"
 #include "gpu/frame.h"
@@ -30,6 +32,7 @@ struct RenderOptions {
   bool gpu = false, explain = false;
   std::string device, force;
   std::uint32_t jobs = 0;
+  std::string max_decoded = kDefaultMaxDecodedText;
   OutputOptions report;
 };
 
@@ -49,17 +52,30 @@ View view_of(const std::string& name) {
   return name == "levels" ? View::kLevels : View::kShaded;
 }
 
+Error too_many_clusters(const Asset& asset) {
+  return {ErrorCode::kUnsupported, "cut",
+          "the clusters of all instances take more than " + byte_size_text(asset.max_decoded_bytes()) +
+              ", the larger of --max-decoded and 64 times the file"};
+}
+
+std::size_t max_clusters(const Asset& asset) { return asset.max_decoded_bytes() / sizeof(ClusterInstance); }
+
 /// The same cut of a mesh in each of its instances.
-std::vector<ClusterInstance> uniform_cut(const Asset& asset, double error, bool is_relative,
-                                         const AttributeBounds& bounds) {
+Result<std::vector<ClusterInstance>> uniform_cut(const Asset& asset, double error, bool is_relative,
+                                                 const AttributeBounds& bounds) {
   std::vector<ClusterInstance> cut;
+  std::map<std::uint32_t, UniformCut> cut_of_mesh;
   for (std::size_t i = 0; i < asset.instances().size(); ++i) {
     const format::InstanceRecord& instance = asset.instances()[i];
     if ((instance.flags & format::kInstanceSingular) != 0) continue;
     const double diagonal = asset.meshes()[instance.mesh].diagonal;
-    const UniformCut mesh_cut = select_uniform(asset, MeshId(instance.mesh), is_relative ? error * diagonal : error,
-                                               CutError::kSelection, bounds);
-    for (const ClusterId cluster : mesh_cut.clusters) cut.push_back({InstanceId(i), cluster});
+    const auto [found, is_new] = cut_of_mesh.try_emplace(instance.mesh);
+    if (is_new) {
+      found->second = select_uniform(asset, MeshId(instance.mesh), is_relative ? error * diagonal : error,
+                                     CutError::kSelection, bounds);
+    }
+    if (found->second.clusters.size() > max_clusters(asset) - cut.size()) return too_many_clusters(asset);
+    for (const ClusterId cluster : found->second.clusters) cut.push_back({InstanceId(i), cluster});
   }
   return cut;
 }
@@ -165,12 +181,12 @@ void print_warnings(const std::vector<std::string>& warnings) {
 
 /// Selected, drawn and coloured by the device.
 Result<Drawn> draw_on_gpu(const Asset& asset, const Camera& camera, const RenderOptions& options,
-                          const AttributeBounds& bounds) {
+                          const AttributeBounds& bounds, ImageBudget& images) {
   const auto view = static_cast<std::uint32_t>(
       std::find(std::begin(kGpuViews), std::end(kGpuViews), options.view) - std::begin(kGpuViews));
   auto device = gpu::Device::open({.device = options.device, .validate = false});
   if (!device) return device.error();
-  auto scene = gpu::upload_scene(*device, asset, {}, bounds);
+  auto scene = gpu::upload_scene(*device, asset, {}, bounds, &images);
   if (!scene) return scene.error();
   print_warnings(scene->alpha_masks->warnings);
   const std::vector<std::string> force = options.force.empty() ? std::vector<std::string>{}
@@ -182,7 +198,7 @@ Result<Drawn> draw_on_gpu(const Asset& asset, const Camera& camera, const Render
   if (view == VIEW_OCCLUDED) plan->options.occlusion = true;
   if (options.explain) std::fprintf(stderr, "%s", gpu::describe_plan(*plan).c_str());
   if (plan->textures) {
-    const TextureSet textures = load_textures(asset);
+    const TextureSet textures = load_textures(asset, images);
     print_warnings(textures.warnings);
     if (const Status s = gpu::upload_textures(*device, textures, *scene); !s) return s.error();
   }
@@ -226,15 +242,23 @@ Result<Drawn> draw_on_gpu(const Asset& asset, const Camera& camera, const Render
 }
 
 Result<Drawn> draw_on_cpu(const Asset& asset, const Camera& camera, const RenderOptions& options,
-                          const AttributeBounds& bounds) {
-  std::vector<ClusterInstance> cut = options.error ? uniform_cut(asset, *options.error, options.is_relative, bounds)
-                                                   : select_bvh(asset, camera, options.camera.pixel_error, bounds);
-  const AlphaMasks masks = load_alpha_masks(asset);
+                          const AttributeBounds& bounds, ImageBudget& images) {
+  std::vector<ClusterInstance> cut;
+  if (options.error) {
+    auto uniform = uniform_cut(asset, *options.error, options.is_relative, bounds);
+    if (!uniform) return uniform.error();
+    cut = std::move(*uniform);
+  } else {
+    auto seen = select_bvh_within(tables_of(asset), camera, options.camera.pixel_error, max_clusters(asset), bounds);
+    if (!seen) return too_many_clusters(asset);
+    cut = std::move(*seen);
+  }
+  const AlphaMasks masks = load_alpha_masks(asset, images);
   print_warnings(masks.warnings);
   auto visibility = draw_cut(asset, cut, camera, masks);
   if (!visibility) return visibility.error();
   TextureSet textures;
-  if (view_of(options.view) == View::kShaded) textures = load_textures(asset);
+  if (view_of(options.view) == View::kShaded) textures = load_textures(asset, images);
   print_warnings(textures.warnings);
   auto image = shade_view(asset, cut, camera, *visibility, view_of(options.view), textures);
   if (!image) return image.error();
@@ -259,6 +283,7 @@ int run_render(const Verb& verb, std::span<char* const> args) {
   parser.add_flag("--explain", options.explain, "of --gpu: say which passes run, and why");
   parser.add_value("--force", options.force, "of --gpu: a pass that the scene does not call for",
                    {"double-sided", "alpha-mask", "occlusion", "hardware", "textures", "all"});
+  add_max_decoded_option(parser, options.max_decoded);
   add_jobs_option(parser, options.jobs);
   add_output_options(parser, options.report);
   if (const auto exit_code = parser.parse(args)) return *exit_code;
@@ -276,8 +301,11 @@ int run_render(const Verb& verb, std::span<char* const> args) {
     return print_error({ErrorCode::kUsage, "--view", options.view + " needs --gpu"});
   }
 
+  const Result<std::uint64_t> max_decoded = parse_max_decoded(options.max_decoded);
+  if (!max_decoded) return print_error(max_decoded.error());
+
   const JobLimit limit(options.jobs);
-  const Result<Asset> asset = Asset::open(options.input);
+  const Result<Asset> asset = Asset::open(options.input, *max_decoded);
   if (!asset) return print_error(asset.error());
   if (const auto id = asset->file_id()) output_files().keep(*id);
   if (const Status free = output_files().claim(options.output); !free) return print_error(free.error());
@@ -292,8 +320,9 @@ int run_render(const Verb& verb, std::span<char* const> args) {
       error.where = options.input + (error.where.empty() ? "" : ": ") + error.where;
     return print_error(error);
   };
-  const Result<Drawn> drawn =
-      options.gpu ? draw_on_gpu(*asset, *camera, options, *bounds) : draw_on_cpu(*asset, *camera, options, *bounds);
+  ImageBudget images(*max_decoded);
+  const Result<Drawn> drawn = options.gpu ? draw_on_gpu(*asset, *camera, options, *bounds, images)
+                                          : draw_on_cpu(*asset, *camera, options, *bounds, images);
   if (!drawn) return fail(drawn.error());
   const std::vector<ClusterInstance>& cut = drawn->cut;
   const VisibilityBuffer& visibility = drawn->visibility;

@@ -5,11 +5,13 @@
 #include <vector>
 
 #include "base/file.h"
+#include "decode/decode.h"
 #include "import/import.h"
 #include "options.h"
 #include "outputs.h"
 #include "read/asset.h"
 #include "report/json_writer.h"
+#include "select/select.h"
 #include "verb.h"
 #include "verify/verify.h"
 #include "verify_gpu.h"
@@ -89,11 +91,21 @@ bool was_repaired(const Asset& asset) {
   return std::any_of(meshes.begin(), meshes.end(), [](const format::MeshRecord& m) { return m.dropped_repaired > 0; });
 }
 
+/// Clusters decoded, and a cut that draws each in every instance: what verify keeps at once.
+Status check_size(const Asset& asset) {
+  if (Status geometry = check_decoded_bytes(asset, count_decoded_bytes(asset)); !geometry) return geometry;
+  std::uint64_t clusters = 0;
+  for (const format::InstanceRecord& instance : asset.instances()) clusters += asset.meshes()[instance.mesh].cluster_count;
+  const Status cuts = check_decoded_bytes(asset, clusters * sizeof(ClusterInstance));
+  return cuts ? cuts : Status(Error{cuts.error().code, "cuts of all instances", cuts.error().detail});
+}
+
 int run_verify(const Verb& verb, std::span<char* const> args) {
   std::string path;
   std::string source_path;
   GpuOptions gpu_options;
   std::uint32_t jobs = 0;
+  std::string max_decoded_text = kDefaultMaxDecodedText;
   VerifyOptions options;
   OutputOptions output;
   OptionParser parser(verb);
@@ -111,18 +123,27 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
   parser.add_value("--out-dir", gpu_options.out_folder,
                    "of --gpu: an existing folder for heat maps of the worst cameras and a report, gpu.json");
   parser.add_value("--pixel-error", gpu_options.pixel_error, "of --gpu: allowed displacement in pixels (1)");
+  add_max_decoded_option(parser, max_decoded_text);
   add_jobs_option(parser, jobs);
   add_output_options(parser, output);
   if (const auto exit_code = parser.parse(args)) return *exit_code;
   if (source_path.empty())
     return print_error({ErrorCode::kUsage, "--source", "the scene to verify against is missing"});
 
+  const Result<std::uint64_t> max_decoded = parse_max_decoded(max_decoded_text);
+  if (!max_decoded) return print_error(max_decoded.error());
+  gpu_options.max_decoded = *max_decoded;
+
   const JobLimit limit(jobs);
-  const Result<Asset> asset = Asset::open(path);
+  const Result<Asset> asset = Asset::open(path, *max_decoded);
   if (!asset) return print_error(asset.error());
   if (const auto id = asset->file_id()) output_files().keep(*id);
+  if (const Status size = check_size(*asset); !size) {
+    return print_error({size.error().code, path + ": " + size.error().where, size.error().detail});
+  }
   std::vector<FileId> files_read;
-  Result<Scene> source = import_scene(source_path, {.repair = was_repaired(*asset), .files_read = &files_read});
+  Result<Scene> source = import_scene(
+      source_path, {.repair = was_repaired(*asset), .files_read = &files_read, .max_decoded = *max_decoded});
   output_files().keep(files_read);
   if (!source) return print_error(source.error());
   VerifyReport report = verify_asset(*asset, *source, options);

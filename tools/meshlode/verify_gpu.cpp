@@ -81,6 +81,7 @@ Status verify_with_gpu(const Asset& asset, const Scene& source, const GpuOptions
   judge.pixel_error = options.pixel_error;
   judge.out_folder = options.out_folder;
   judge.files = &output_files();
+  judge.max_decoded = options.max_decoded;
   if (!options.path.empty()) {
     const auto file = MappedFile::open(options.path);
     if (!file) return file.error();

@@ -18,6 +18,7 @@ struct GpuOptions {
   std::string device, path, out_folder;
   std::uint32_t orbits = 6;
   double pixel_error = 1.0;
+  std::uint64_t max_decoded = 0;  ///< bytes of decoded images
 };
 
 /// What the GPU finds, as checks and findings of the same report; heat maps and gpu.json where a folder is given.

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+#include "base/byte_size.h"
+
+#include <charconv>
+#include <system_error>
+#include <utility>
+
+namespace meshlode {
+
+namespace {
+
+constexpr std::pair<std::string_view, unsigned> kUnits[] = {{"GiB", 30}, {"MiB", 20}, {"KiB", 10}, {"B", 0}};
+constexpr std::uint64_t kLargest = std::uint64_t{1} << 62U;
+
+}  // namespace
+
+std::optional<std::uint64_t> parse_byte_size(std::string_view text) {
+  unsigned shift = 0;
+  for (const auto& [unit, bits] : kUnits) {
+    if (!text.ends_with(unit)) continue;
+    text.remove_suffix(unit.size());
+    shift = bits;
+    break;
+  }
+  std::uint64_t number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size() || number > kLargest >> shift) return std::nullopt;
+  return number << shift;
+}
+
+std::string byte_size_text(std::uint64_t bytes) {
+  for (const auto& [unit, shift] : kUnits) {
+    const std::uint64_t one = std::uint64_t{1} << shift;
+    if (bytes < one && shift != 0) continue;
+    const std::uint64_t whole = bytes >> shift, rest = bytes & (one - 1);
+    if (rest == 0) return std::to_string(whole) + std::string(unit);
+    const std::uint64_t tenths = (rest * 10 + one - 1) >> shift;  // rest < 2^30
+    return tenths == 10 ? std::to_string(whole + 1) + std::string(unit)
+                        : std::to_string(whole) + "." + std::to_string(tenths) + std::string(unit);
+  }
+  return "0B";
+}
+
+}  // namespace meshlode

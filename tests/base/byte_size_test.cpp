@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/byte_size.h"
+
+#include <gtest/gtest.h>
+
+namespace meshlode {
+namespace {
+
+constexpr std::uint64_t kMiB = 1u << 20u;
+
+TEST(ByteSize, ReadsUnitsAndNothingElse) {
+  EXPECT_EQ(parse_byte_size("0"), 0u);
+  EXPECT_EQ(parse_byte_size("71"), 71u);
+  EXPECT_EQ(parse_byte_size("71B"), 71u);
+  EXPECT_EQ(parse_byte_size("3KiB"), 3072u);
+  EXPECT_EQ(parse_byte_size("512MiB"), 512 * kMiB);
+  EXPECT_EQ(parse_byte_size("8GiB"), 8192 * kMiB);
+  EXPECT_EQ(parse_byte_size("4294967296GiB"), std::uint64_t{1} << 62u);
+  for (const char* text : {"", "MiB", "-1", "+1", "1.5GiB", "1 MiB", "1mib", "1MB", "0x10", "4294967297GiB",
+                           "18446744073709551616", "1MiBB"}) {
+    EXPECT_FALSE(parse_byte_size(text)) << text;
+  }
+}
+
+TEST(ByteSize, TextsAreExactOrRoundedUp) {
+  EXPECT_EQ(byte_size_text(0), "0B");
+  EXPECT_EQ(byte_size_text(1023), "1023B");
+  EXPECT_EQ(byte_size_text(512 * kMiB), "512MiB");
+  EXPECT_EQ(byte_size_text(512 * kMiB + 1), "512.1MiB");
+  EXPECT_EQ(byte_size_text(1024 * kMiB - 1), "1024MiB");
+  EXPECT_EQ(byte_size_text(1024 * kMiB), "1GiB");
+  EXPECT_EQ(byte_size_text(1024 * kMiB + kMiB), "1.1GiB");
+  for (std::uint64_t bytes = 1; bytes < std::uint64_t{1} << 62u; bytes = bytes * 7 + 3) {
+    const std::string text = byte_size_text(bytes);
+    if (text.find('.') == std::string::npos && bytes % 1024 == 0) {
+      EXPECT_EQ(parse_byte_size(text), bytes);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace meshlode
