@@ -88,6 +88,37 @@ bool ColumnSource::read_codes(std::uint8_t* out, std::size_t count, std::size_t 
   return true;
 }
 
+bool is_section_sound(std::span<const std::uint8_t> stored, std::uint32_t record_bytes, std::uint64_t decoded_bytes) {
+  if (decoded_bytes == 0 || (record_bytes != 0 && decoded_bytes % record_bytes != 0)) return false;
+  const std::uint64_t columns = record_bytes == 0 ? 1 : record_bytes;
+  const std::uint64_t count = decoded_bytes / columns;
+  std::uint64_t at = 0;
+  const auto skip = [&](std::uint64_t bytes) {
+    if (bytes > stored.size() - at) return false;
+    at += bytes;
+    return true;
+  };
+  for (std::uint64_t column = 0; column < columns; ++column) {
+    if (!skip(1)) return false;
+    const auto mode = static_cast<ColumnMode>(stored[at - 1]);
+    if (mode == ColumnMode::kRaw) {
+      if (!skip(count)) return false;
+    } else if (mode == ColumnMode::kSame) {
+      if (!skip(1)) return false;
+    } else if (mode == ColumnMode::kPrefix) {
+      const std::uint64_t head = at;
+      if (!skip(2) || !skip((std::uint64_t{stored[head + 1]} + 2) / 2 + 4)) return false;
+      std::uint32_t code_bytes;
+      std::memcpy(&code_bytes, &stored[at - 4], sizeof(code_bytes));
+      // No code is shorter than a bit.
+      if (count > std::uint64_t{8} * code_bytes || !skip(code_bytes)) return false;
+    } else {
+      return false;
+    }
+  }
+  return at == stored.size();
+}
+
 bool decode_section(std::span<const std::uint8_t> stored, std::uint32_t record_bytes, std::span<std::uint8_t> out) {
   if (out.empty() || record_bytes % 2 != 0 || (record_bytes != 0 && out.size() % record_bytes != 0)) return false;
   ColumnSource source(stored);

@@ -52,6 +52,11 @@ class ColumnSource {
   CodeTable table_;
 };
 
+/// Whether the stored bytes are whole columns of `decoded_bytes` together, without decoding any: what they ask for is
+/// looked at before room is made for it.
+[[nodiscard]] bool is_section_sound(std::span<const std::uint8_t> stored, std::uint32_t record_bytes,
+                                    std::uint64_t decoded_bytes);
+
 /// Fills `out`, a whole number of records; `record_bytes` 0: a text, one column without differences. False where the bytes
 /// do not say exactly that. \pre record_bytes is even
 [[nodiscard]] bool decode_section(std::span<const std::uint8_t> stored, std::uint32_t record_bytes,

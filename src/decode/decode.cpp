@@ -9,6 +9,7 @@
 
 #include <meshlode/page.h>
 
+#include "base/byte_size.h"
 #include "decode/octahedral.h"
 #include "unpack/processor.h"
 
@@ -376,7 +377,39 @@ void decode_attributes(const format::MeshRecord& mesh, const DecodedCluster& clu
   }
 }
 
+namespace {
+
+std::uint64_t decoded_bytes(const Asset& asset, ClusterId id) {
+  const format::ClusterRecord& cluster = asset.clusters()[id.value];
+  constexpr std::uint64_t kTriangleBytes = sizeof(std::array<std::uint8_t, 3>) + sizeof(std::uint32_t);
+  return sizeof(DecodedCluster) + kTriangleBytes * cluster.triangle_count() +
+         sizeof(std::int32_t) * format::channel_count(mesh_of(asset, id)) * std::uint64_t{cluster.vertex_count()};
+}
+
+}  // namespace
+
+std::uint64_t count_decoded_bytes(const Asset& asset) {
+  std::uint64_t sum = 0;
+  for (const format::PageRecord& page : asset.pages()) sum += page.bytes;
+  for (std::size_t c = 0; c < asset.clusters().size(); ++c) sum += decoded_bytes(asset, ClusterId(c));
+  return sum;
+}
+
+std::uint64_t count_decoded_bytes(const Asset& asset, std::span<const ClusterId> clusters) {
+  std::uint64_t sum = 0;
+  for (const ClusterId id : clusters) sum += decoded_bytes(asset, id);
+  return sum;
+}
+
+Status check_decoded_bytes(const Asset& asset, std::uint64_t bytes) {
+  if (bytes <= asset.max_decoded_bytes()) return Ok{};
+  return Error{ErrorCode::kUnsupported, "geometry",
+               byte_size_text(bytes) + " decoded, at most " + byte_size_text(asset.max_decoded_bytes()) +
+                   " are read: the larger of --max-decoded and " + std::to_string(kJustifiedRatio) + " times the file"};
+}
+
 Result<std::vector<DecodedCluster>> decode_all(const Asset& asset) {
+  if (Status status = check_decoded_bytes(asset, count_decoded_bytes(asset)); !status) return status.error();
   std::vector<DecodedCluster> clusters(asset.clusters().size());
   for (std::size_t p = 0; p < asset.pages().size(); ++p) {
     const auto page = load_page(asset, PageId{p});

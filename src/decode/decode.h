@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "base/ids.h"
@@ -40,7 +41,15 @@ struct ClusterAttributes {
 };
 void decode_attributes(const format::MeshRecord& mesh, const DecodedCluster& cluster, ClusterAttributes& out);
 
-/// Loads and decodes every cluster of an asset, for tools and judges: clusters[i] is ClusterId(i).
+/// What pages and decode_all() take in memory, from the tables alone.
+[[nodiscard]] std::uint64_t count_decoded_bytes(const Asset& asset);
+/// The same for clusters alone, as often as they are named. \pre each is one of the asset's
+[[nodiscard]] std::uint64_t count_decoded_bytes(const Asset& asset, std::span<const ClusterId> clusters);
+/// Error: kUnsupported, in one line, where `bytes` are more than Asset::max_decoded_bytes().
+[[nodiscard]] Status check_decoded_bytes(const Asset& asset, std::uint64_t bytes);
+
+/// Loads and decodes every cluster of an asset, for tools and judges: clusters[i] is ClusterId(i). Errors: as load_page(),
+/// and check_decoded_bytes() before any work.
 [[nodiscard]] Result<std::vector<DecodedCluster>> decode_all(const Asset& asset);
 
 }  // namespace meshlode

@@ -12,8 +12,10 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -100,7 +102,8 @@ class Exporter {
   void attach_meshes();
   void attach_levels(std::size_t node, const ExportedMesh& mesh);
   void finish_document();
-  [[nodiscard]] int texcoords_needed(MaterialId material) const;
+  [[nodiscard]] int texcoords_needed(MaterialId material);
+  GlbBinary::Range carry_blob(const format::BlobRecord& blob);
   [[nodiscard]] const format::BlobRecord& blob_of(const Json& owner) const;
   std::size_t add_view(GlbBinary::Range range, int target);
   std::size_t add_accessor(Json accessor);
@@ -111,6 +114,8 @@ class Exporter {
   Json meshes_ = Json::array();
   std::vector<ExportedMesh> exported_;
   GlbBinary binary_;
+  std::map<std::pair<std::uint64_t, std::uint64_t>, GlbBinary::Range> carried_;  ///< blobs in it, by offset and bytes
+  std::map<std::uint32_t, int> texcoords_;             ///< that materials ask for: each is walked once
   bool has_lods_ = false;
 };
 
@@ -135,11 +140,18 @@ const format::BlobRecord& Exporter::blob_of(const Json& owner) const {
   return asset_.blobs()[index];
 }
 
+/// The bytes of a blob in the BIN chunk: once, however many entries of the document name it.
+GlbBinary::Range Exporter::carry_blob(const format::BlobRecord& blob) {
+  const auto [found, is_new] = carried_.try_emplace({blob.offset, blob.bytes});
+  if (is_new) found->second = binary_.append(asset_.blob_bytes(blob));
+  return found->second;
+}
+
 /// The buffers of animations become stretches of the one BIN chunk; their views keep their indices.
 void Exporter::carry_buffers() {
   std::vector<GlbBinary::Range> ranges;
   if (const auto buffers = document_.find("buffers"); buffers != document_.end()) {
-    for (const Json& buffer : *buffers) ranges.push_back(binary_.append(asset_.blob_bytes(blob_of(buffer))));
+    for (const Json& buffer : *buffers) ranges.push_back(carry_blob(blob_of(buffer)));
     document_.erase("buffers");
   }
   if (!document_.contains("bufferViews")) return;
@@ -155,16 +167,17 @@ void Exporter::carry_buffers() {
 
 void Exporter::carry_images() {
   if (!document_.contains("images")) return;
+  constexpr std::size_t kLongestName = 4096;  // a name that many images share must not be multiplied by them
   for (Json& image : array_of(document_, "images")) {
     if (!image.contains("blob")) continue;
     const format::BlobRecord& record = blob_of(image);
     const std::span<const std::uint8_t> bytes = asset_.blob_bytes(record);
-    image["bufferView"] = add_view(binary_.append(bytes), 0);
+    image["bufferView"] = add_view(carry_blob(record), 0);
     const std::string_view mime_type = asset_.string(record.mime_type);
     if (!image.contains("mimeType"))
-      image["mimeType"] = mime_type.empty() ? sniff_mime_type(bytes) : std::string(mime_type);
+      image["mimeType"] = mime_type.empty() || mime_type.size() > kLongestName ? sniff_mime_type(bytes) : std::string(mime_type);
     const std::string_view name = asset_.string(record.name);
-    if (!image.contains("name") && !name.empty()) image["name"] = std::string(name);
+    if (!image.contains("name") && !name.empty() && name.size() <= kLongestName) image["name"] = std::string(name);
     image.erase("blob");
     image.erase("uri");
   }
@@ -182,6 +195,7 @@ void Exporter::use_extension(const char* name, bool is_required) {
 /// away with more; inside a GLB each image has a type, and the other types have extensions to name them by.
 void Exporter::move_texture_sources() {
   if (!document_.contains("textures")) return;
+  std::set<std::string_view> used;
   for (Json& texture : array_of(document_, "textures")) {
     const auto source = texture.find("source");
     if (source == texture.end() || !source->is_number_unsigned()) continue;
@@ -195,8 +209,9 @@ void Exporter::move_texture_sources() {
     Json& named = texture["extensions"][extension];
     if (named.is_null()) named = {{"source", *source}};
     texture.erase("source");
-    use_extension(extension, true);
+    used.insert(extension);
   }
+  for (const std::string_view extension : used) use_extension(extension.data(), true);  // of literals
 }
 
 /// Assets that do not come from a glTF have no materials in their document: the records say what is known.
@@ -229,9 +244,12 @@ void Exporter::complete_materials() {
 }
 
 /// How many TEXCOORD sets, from 0 on, the material's textures ask for.
-int Exporter::texcoords_needed(MaterialId material) const {
-  const Json* json = find_element(document_, "materials", asset_.materials()[material.value].source_index);
-  return json == nullptr ? 0 : largest_texcoord(*json) + 1;
+int Exporter::texcoords_needed(MaterialId material) {
+  const std::uint32_t index = asset_.materials()[material.value].source_index;
+  const auto [found, is_new] = texcoords_.try_emplace(index, 0);
+  const Json* json = is_new ? find_element(document_, "materials", index) : nullptr;
+  if (json != nullptr) found->second = largest_texcoord(*json) + 1;
+  return found->second;
 }
 
 Result<Json> Exporter::make_primitive(const format::MeshRecord& record, const CutPrimitive& primitive,
@@ -528,6 +546,14 @@ Result<std::vector<std::uint8_t>> export_glb_lods(const Asset& asset, std::span<
       return Error{ErrorCode::kUsage, "mesh " + std::to_string(m), "its levels and coverage values are not a chain"};
     }
   }
+  std::uint64_t bytes = 0;
+  for (const LodChain& chain : chain_per_mesh) {
+    for (const auto& cut : chain.cuts) {
+      const bool is_known = std::all_of(cut.begin(), cut.end(), [&](ClusterId id) { return id.value < asset.clusters().size(); });
+      if (is_known) bytes += count_decoded_bytes(asset, cut);  // others are refused where they are gathered
+    }
+  }
+  if (Status status = check_decoded_bytes(asset, bytes); !status) return status.error();
   // The document is a file's: whatever shape it has that glTF does not allow ends as an exception of the JSON library.
   try {
     return Exporter(asset, chain_per_mesh).run();

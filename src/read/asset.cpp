@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "base/byte_size.h"
 #include "coding/section_columns.h"
 #include "read/check_tables.h"
 #include "read/place.h"
@@ -26,10 +27,11 @@ std::string_view view_text(std::span<const std::uint8_t> bytes) {
 
 }  // namespace
 
-Result<Asset> Asset::open(const std::filesystem::path& path) {
+Result<Asset> Asset::open(const std::filesystem::path& path, std::uint64_t max_decoded) {
   auto file = MappedFile::open(path);
   if (!file) return file.error();
   Asset asset;
+  asset.max_decoded_ = max_decoded;
   asset.bytes_ = file->bytes();
   asset.storage_ = std::move(*file);
   if (Status status = asset.index(); !status) {
@@ -79,8 +81,21 @@ Status Asset::index() {
   const auto sections = index_sections(bytes_);
   if (!sections) return sections.error();
   using enum format::SectionId;
+  std::uint64_t left = max_decoded_bytes();
   for (const auto& [id, entry] : sections->known) {
     if (entry->codec == static_cast<std::uint32_t>(SectionCodec::kNone)) continue;
+    const auto stored = bytes_.subspan(entry->offset, entry->bytes);
+    if (!is_section_sound(stored, entry->record_bytes, entry->decoded_bytes)) {
+      return Error{ErrorCode::kInvalid, "section " + section_tag(entry->id) + ", field codec",
+                   "the stored bytes do not decode"};
+    }
+    if (entry->decoded_bytes > left) {
+      return Error{ErrorCode::kUnsupported, "section " + section_tag(entry->id),
+                   byte_size_text(entry->decoded_bytes) + " decoded, " + byte_size_text(left) + " of " +
+                       byte_size_text(max_decoded_bytes()) + " are left: the larger of --max-decoded and " +
+                       std::to_string(kJustifiedRatio) + " times the file"};
+    }
+    left -= entry->decoded_bytes;
     std::vector<std::uint8_t> decoded(entry->decoded_bytes);
     if (!decode_section(bytes_.subspan(entry->offset, entry->bytes), entry->record_bytes, decoded)) {
       return Error{ErrorCode::kInvalid, "section " + section_tag(entry->id) + ", field codec",
@@ -107,6 +122,12 @@ Status Asset::index() {
   for (const Check check : {Check{check_meshes}, Check{check_materials}, Check{check_instances}, Check{check_blobs},
                             Check{check_groups}, Check{check_clusters}, Check{check_nodes}, Check{check_pages}}) {
     if (Status status = check(tables); !status) return status;
+  }
+
+  if (const std::uint64_t names = count_name_bytes(tables); names > max_decoded_bytes()) {
+    return Error{ErrorCode::kUnsupported, "section STRS",
+                 "names that share bytes take " + byte_size_text(names) + ", at most " +
+                     byte_size_text(max_decoded_bytes()) + " are read"};
   }
 
   header_ = sections->header;

@@ -17,14 +17,16 @@
 
 #include "base/file.h"
 #include "base/ids.h"
+#include "read/limits.h"
 
 namespace meshlode {
 
 class Asset {
  public:
   /// Maps the file. Errors: kIo; kInvalid with the place in the file; kUnsupported for a newer version or an unknown
-  /// required section.
-  [[nodiscard]] static Result<Asset> open(const std::filesystem::path& path);
+  /// required section, and where sections decode to more than decoded_limit() of the file's size and `max_decoded`.
+  [[nodiscard]] static Result<Asset> open(const std::filesystem::path& path,
+                                          std::uint64_t max_decoded = kDefaultMaxDecoded);
   /// Views `bytes`, which must outlive the asset and be aligned to 8 bytes.
   [[nodiscard]] static Result<Asset> from_bytes(std::span<const std::uint8_t> bytes);
   /// Takes the bytes.
@@ -51,6 +53,8 @@ class Asset {
   [[nodiscard]] std::span<const std::uint8_t> blob_bytes(const format::BlobRecord& blob) const;
   [[nodiscard]] std::span<const std::uint8_t> stored_page(PageId page) const;  ///< as on disk
   [[nodiscard]] std::span<const std::uint8_t> bytes() const { return bytes_; } ///< the whole file
+  /// What whoever decodes the asset as a whole may take for it.
+  [[nodiscard]] std::uint64_t max_decoded_bytes() const { return decoded_limit(bytes_.size(), max_decoded_); }
   /// The decoded bytes of one of sections() that is known; PAGE and BLOB as they are stored.
   [[nodiscard]] std::span<const std::uint8_t> section_bytes(const format::SectionEntry& entry) const;
 
@@ -60,6 +64,7 @@ class Asset {
 
   std::variant<std::monostate, MappedFile, std::vector<std::uint8_t>> storage_;
   std::span<const std::uint8_t> bytes_;
+  std::uint64_t max_decoded_ = kDefaultMaxDecoded;
   /// Of sections that are stored by columns, by their offset in the file; the others are viewed where they lie.
   std::map<std::uint64_t, std::vector<std::uint8_t>> decoded_;
   const format::FileHeader* header_ = nullptr;

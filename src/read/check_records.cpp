@@ -70,6 +70,15 @@ Status check_mesh_values(std::size_t m, const format::MeshRecord& mesh) {
 
 }  // namespace
 
+std::uint64_t count_name_bytes(const RawTables& tables) {
+  std::uint64_t sum = 0;
+  for (const format::MeshRecord& mesh : tables.meshes) sum += mesh.name.bytes;
+  for (const format::MaterialRecord& material : tables.materials) sum += material.name.bytes;
+  for (const format::InstanceRecord& instance : tables.instances) sum += instance.name.bytes;
+  for (const format::BlobRecord& blob : tables.blobs) sum += std::uint64_t{blob.name.bytes} + blob.mime_type.bytes;
+  return sum;
+}
+
 Status check_meshes(const RawTables& tables) {
   std::uint64_t group_end = 0;
   std::uint64_t cluster_end = 0;

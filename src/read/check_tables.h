@@ -30,6 +30,9 @@ struct RawTables {
 /// A BVH deeper than this is refused: a traversal may use a stack of fixed size.
 constexpr std::uint32_t kMaxBvhDepth = 64;
 
+/// Bytes of all names together. Names may share their bytes, so that their sum is a product that a small file chooses.
+[[nodiscard]] std::uint64_t count_name_bytes(const RawTables& tables);
+
 [[nodiscard]] Status check_meshes(const RawTables& tables);     ///< meshes partition groups, clusters and nodes
 [[nodiscard]] Status check_materials(const RawTables& tables);
 [[nodiscard]] Status check_instances(const RawTables& tables);

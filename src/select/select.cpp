@@ -4,6 +4,8 @@
 #include "select/select.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <map>
 
 namespace meshlode {
 namespace {
@@ -65,26 +67,35 @@ std::vector<ClusterInstance> select_flat(const SelectTables& tables, const Camer
   return cut;
 }
 
-std::vector<ClusterInstance> select_bvh(const SelectTables& tables, const Camera& camera, double pixel_error,
-                                        TraversalCount* count, const AttributeBounds& bounds) {
+namespace {
+
+/// Stops behind the instance that makes the cut larger than `max_clusters`.
+std::vector<ClusterInstance> traverse(const SelectTables& tables, const Camera& camera, double pixel_error,
+                                      TraversalCount* count, const AttributeBounds& bounds, std::size_t max_clusters) {
   std::vector<ClusterInstance> cut;
   std::vector<std::uint32_t> stack, open_groups;
+  // All unknown between instances: only what was answered is taken back, so that a far instance costs what it looks at.
   std::vector<Answer> answers;
-  std::vector<std::uint8_t> nodes_within;
-  std::uint32_t nodes_within_mesh = format::kNone;
+  std::vector<std::uint32_t> answered;
+  std::map<std::uint32_t, std::vector<std::uint8_t>> nodes_within_mesh;
   TraversalCount work;
   for (std::size_t i = 0; i < tables.instances.size(); ++i) {
     const format::InstanceRecord& instance = tables.instances[i];
     if (!is_drawable(tables, instance)) continue;
+    if (cut.size() > max_clusters) break;
     const format::MeshRecord& mesh = tables.meshes[instance.mesh];
     const MetricView view = make_metric_view(camera, pixel_error, instance, mesh, mesh_reach(tables, mesh));
     const AttributeBounds own_bounds = bounds_for(bounds, mesh);
-    // Per node of this mesh, where there are bounds at all; instances of a mesh that follow each other share it.
-    if (own_bounds.has_any() && (nodes_within.empty() || nodes_within_mesh != instance.mesh)) {
-      nodes_within = find_nodes_within(tables, mesh, own_bounds);
-      nodes_within_mesh = instance.mesh;
+    // Per node of this mesh, where there are bounds at all; instances of a mesh share it.
+    const std::uint8_t* nodes_within = nullptr;
+    if (own_bounds.has_any()) {
+      const auto [found, is_new] = nodes_within_mesh.try_emplace(instance.mesh);
+      if (is_new) found->second = find_nodes_within(tables, mesh, own_bounds);
+      nodes_within = found->second.data();
     }
-    answers.assign(mesh.group_count, Answer::kUnknown);
+    for (const std::uint32_t g : answered) answers[g] = Answer::kUnknown;
+    answered.clear();
+    if (answers.size() < mesh.group_count) answers.resize(mesh.group_count, Answer::kUnknown);
     open_groups.clear();
     stack.assign(mesh.node_count > 0 ? 1 : 0, mesh.first_node);
     while (!stack.empty()) {
@@ -92,12 +103,13 @@ std::vector<ClusterInstance> select_bvh(const SelectTables& tables, const Camera
       stack.pop_back();
       const format::NodeRecord& node = tables.nodes[node_id];
       ++work.nodes;
-      const bool is_node_within = !own_bounds.has_any() || nodes_within[node_id - mesh.first_node] != 0;
+      const bool is_node_within = nodes_within == nullptr || nodes_within[node_id - mesh.first_node] != 0;
       // Then every group below passes, and none of their members is drawn.
       if (is_node_within && passes(view, node)) continue;
       if (node.child_count == 0) {
         open_groups.push_back(node.first);
         answers[node.first - mesh.first_group] = Answer::kFails;  // a leaf has its group's own bits
+        answered.push_back(node.first - mesh.first_group);
         continue;
       }
       // Children lie behind their node, which also keeps a damaged table from looping.
@@ -117,6 +129,7 @@ std::vector<ClusterInstance> select_bvh(const SelectTables& tables, const Camera
           if (answer == Answer::kUnknown) {
             const format::GroupRecord& own_group = tables.groups[own];
             answer = passes(view, own_group) && is_within(own_bounds, own_group) ? Answer::kPasses : Answer::kFails;
+            answered.push_back(own - mesh.first_group);
           }
           if (answer == Answer::kFails) continue;
         }
@@ -125,6 +138,21 @@ std::vector<ClusterInstance> select_bvh(const SelectTables& tables, const Camera
     }
   }
   if (count != nullptr) *count = work;
+  return cut;
+}
+
+}  // namespace
+
+std::vector<ClusterInstance> select_bvh(const SelectTables& tables, const Camera& camera, double pixel_error,
+                                        TraversalCount* count, const AttributeBounds& bounds) {
+  return traverse(tables, camera, pixel_error, count, bounds, SIZE_MAX);
+}
+
+std::optional<std::vector<ClusterInstance>> select_bvh_within(const SelectTables& tables, const Camera& camera,
+                                                              double pixel_error, std::size_t max_clusters,
+                                                              const AttributeBounds& bounds) {
+  std::vector<ClusterInstance> cut = traverse(tables, camera, pixel_error, nullptr, bounds, max_clusters);
+  if (cut.size() > max_clusters) return std::nullopt;
   return cut;
 }
 

@@ -7,6 +7,7 @@
 
 #include "base/hash.h"
 #include "coding/section_columns.h"
+#include "read/limits.h"
 #include "validate/file_tables.h"
 
 namespace meshlode {
@@ -193,6 +194,13 @@ bool check_section(const FileTables& file, const SectionEntry& entry, RuleLog& l
 std::span<const std::uint8_t> section_bytes(FileTables& file, const SectionEntry& entry, bool& is_broken) {
   const auto stored = file.bytes.subspan(entry.offset, entry.bytes);
   if (entry.codec == static_cast<std::uint32_t>(SectionCodec::kNone)) return stored;
+  std::uint64_t before = 0;
+  for (const std::vector<std::uint8_t>& other : file.decoded) before += other.size();
+  if (!is_section_sound(stored, entry.record_bytes, entry.decoded_bytes) ||
+      entry.decoded_bytes > decoded_limit(file.bytes.size(), kDefaultMaxDecoded) - before) {
+    is_broken = true;
+    return {};
+  }
   std::vector<std::uint8_t>& decoded = file.decoded.emplace_back(entry.decoded_bytes);
   is_broken |= !decode_section(stored, entry.record_bytes, decoded);
   return decoded;

@@ -7,6 +7,7 @@
 
 #include "base/hash.h"
 #include "mesh/grid.h"
+#include "read/limits.h"
 #include "validate/file_tables.h"
 
 namespace meshlode {
@@ -41,10 +42,15 @@ class TableChecker {
           return differs("end", std::uint64_t{ref.offset} + ref.bytes, "bytes of STRS",
                          std::uint64_t{file_.strings.size()});
         });
-    if (inside) {
+    if (inside && ref.bytes <= name_bytes_left_) {
+      name_bytes_left_ -= ref.bytes;
       log_.expect(
           is_utf8(file_.strings.substr(ref.offset, ref.bytes)), "L101", [&] { return where; },
           [] { return Text("is not UTF-8"); });
+    } else if (inside) {
+      log_.expect(
+          false, "L101", [&] { return where; },
+          [] { return Text("names that share bytes are more than the file's size justifies"); });
     }
   }
 
@@ -377,6 +383,8 @@ class TableChecker {
 
   const FileTables& file_;
   RuleLog& log_;
+  /// Names may share their bytes: their sum is a product that a small file chooses.
+  std::uint64_t name_bytes_left_ = decoded_limit(file_.bytes.size(), kDefaultMaxDecoded);
 };
 
 }  // namespace

@@ -24,6 +24,10 @@ void run_rules(std::span<const std::uint8_t> bytes, RuleLog& log) {
   if (!check_page_table(*file, log)) return;
 
   const Result<Asset> asset = Asset::from_bytes(bytes);
+  if (asset) {
+    const Status size = check_decoded_bytes(*asset, count_decoded_bytes(*asset));
+    if (!log.expect(size.ok(), "L099", [&] { return size.error().where; }, [&] { return size.error().detail; })) return;
+  }
   const LoadedPages loaded = load_pages(*file, asset ? &asset.value() : nullptr, log);
   if (loaded.is_complete && log.count_of("L114") == 0) {
     std::vector<std::span<const std::uint8_t>> page_bytes;

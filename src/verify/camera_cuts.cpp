@@ -114,6 +114,8 @@ Answer decide(const View& view, const format::InstanceRecord& instance, const fo
   return left <= right ? Answer::kPasses : Answer::kFails;
 }
 
+constexpr std::size_t kMostFaultyInstances = 1000;  ///< of a camera; the rest is not looked at
+
 struct CameraFaults {
   std::string hierarchy;  ///< V203
   std::vector<std::pair<std::uint32_t, CutFaults>> of_instance;
@@ -189,6 +191,8 @@ CameraFaults judge_camera(const Asset& asset, std::span<const MeshJudge> judges,
     }
     if (!faults.coverage.empty() || !faults.border.empty() || !faults.rule.empty())
       out.of_instance.emplace_back(i, faults);
+    // Texts of instances times cameras are a product that a file chooses; so many say enough.
+    if (out.of_instance.size() >= kMostFaultyInstances) return out;
   }
   if (next != flat.size())
     out.hierarchy = "the flat selection is not ascending or names an instance that does not exist";

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -33,12 +34,17 @@ struct TextureUse {
   double texels;
 };
 
-/// What a unit of texture coordinates crosses in the texture that `info` (a glTF textureInfo) names.
-std::optional<TextureUse> texture_use(const Scene& scene, const Json& document, const Json& info) {
+using ImageSizes = std::map<std::size_t, std::optional<std::pair<std::uint32_t, std::uint32_t>>>;
+
+/// What a unit of texture coordinates crosses in the texture that `info` (a glTF textureInfo) names. `sizes`: of images
+/// that were looked at already, by blob.
+std::optional<TextureUse> texture_use(const Scene& scene, const Json& document, const Json& info, ImageSizes& sizes) {
   const Json& image = at(at(document, "images"), at(at(at(document, "textures"), at(info, "index")), "source"));
   const Json& blob = at(image, "blob");
   if (!blob.is_number_unsigned() || blob.get<std::size_t>() >= scene.blobs.size()) return std::nullopt;
-  const auto size = stated_image_size(scene.blobs[blob.get<std::size_t>()].bytes);
+  const auto [known, is_new] = sizes.try_emplace(blob.get<std::size_t>());
+  if (is_new) known->second = stated_image_size(scene.blobs[known->first].bytes);
+  const auto& size = known->second;
   if (!size) return std::nullopt;
   TextureUse use{0, 0.0};
   const Json& transform = at(at(info, "extensions"), "KHR_texture_transform");
@@ -58,21 +64,33 @@ std::optional<TextureUse> texture_use(const Scene& scene, const Json& document, 
 
 }  // namespace
 
-std::array<double, kMaxUvSets> most_texels(const Scene& scene, const SourceMesh& mesh) {
-  std::array<double, kMaxUvSets> most{};
+std::vector<std::array<double, kMaxUvSets>> most_texels_of_materials(const Scene& scene) {
   const Json document = Json::parse(scene.document, nullptr, false);
-  for (const Primitive& primitive : mesh.primitives) {
-    if (primitive.material.value >= scene.materials.size()) continue;
+  ImageSizes sizes;
+  std::vector<std::array<double, kMaxUvSets>> out(scene.materials.size());
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    std::array<double, kMaxUvSets>& most = out[i];
     // Whatever an extension calls its textures, a textureInfo has an index.
-    std::vector<const Json*> open{&at(at(document, "materials"), Json(scene.materials[primitive.material.value].source_index))};
+    std::vector<const Json*> open{&at(at(document, "materials"), Json(scene.materials[i].source_index))};
     while (!open.empty()) {
       const Json& value = *open.back();
       open.pop_back();
       if (!value.is_structured()) continue;
       for (const Json& inner : value) open.push_back(&inner);
-      const auto use = texture_use(scene, document, value);
+      const auto use = texture_use(scene, document, value, sizes);
       if (use && use->set < kMaxUvSets && std::isfinite(use->texels)) most[use->set] = std::max(most[use->set], use->texels);
     }
+  }
+  return out;
+}
+
+std::array<double, kMaxUvSets> most_texels(std::span<const std::array<double, kMaxUvSets>> of_materials,
+                                           const SourceMesh& mesh) {
+  std::array<double, kMaxUvSets> most{};
+  for (const Primitive& primitive : mesh.primitives) {
+    if (primitive.material.value >= of_materials.size()) continue;
+    const auto& own = of_materials[primitive.material.value];
+    for (std::size_t set = 0; set < most.size(); ++set) most[set] = std::max(most[set], own[set]);
   }
   return most;
 }
@@ -96,10 +114,11 @@ std::array<bool, kMaxUvSets> has_finest_step(const Asset& asset, MeshId mesh, st
 void check_texel_budget(const Asset& asset, const Scene& source, double texels, std::span<const DecodedCluster> clusters,
                         RuleLog& log) {
   constexpr double kRounding = 1.0 + 1e-6;
+  const auto of_materials = most_texels_of_materials(source);
   for (std::size_t m = 0; m < asset.meshes().size() && m < source.meshes.size(); ++m) {
     const format::MeshRecord& mesh = asset.meshes()[m];
     if (mesh.cluster_count == 0 || mesh.uv_set_count == 0) continue;
-    const auto most = most_texels(source, source.meshes[m]);
+    const auto most = most_texels(of_materials, source.meshes[m]);
     const auto is_finest = has_finest_step(asset, MeshId(m), clusters);
     for (std::uint32_t set = 0; set < mesh.uv_set_count; ++set) {
       if (mesh.uv_set_source[set] >= kMaxUvSets) continue;

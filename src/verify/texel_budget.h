@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "decode/decode.h"
 #include "mesh/scene.h"
@@ -19,9 +20,12 @@ namespace meshlode {
 /// Width and height that an image states. Nothing where this reader (stb_image) does not know its kind.
 [[nodiscard]] std::optional<std::pair<std::uint32_t, std::uint32_t>> stated_image_size(std::span<const std::uint8_t> bytes);
 
-/// For each TEXCOORD_n the most texels that one unit of it crosses in any texture that the mesh's materials name; 0 where
-/// none has a known size.
-[[nodiscard]] std::array<double, kMaxUvSets> most_texels(const Scene& scene, const SourceMesh& mesh);
+/// For each TEXCOORD_n the most texels that one unit of it crosses in any texture that a material names; 0 where none has
+/// a known size. One entry for each of Scene::materials.
+[[nodiscard]] std::vector<std::array<double, kMaxUvSets>> most_texels_of_materials(const Scene& scene);
+/// The same for the materials of a mesh together.
+[[nodiscard]] std::array<double, kMaxUvSets> most_texels(std::span<const std::array<double, kMaxUvSets>> of_materials,
+                                                         const SourceMesh& mesh);
 
 /// For each stored UV set of the mesh: is one of its coordinates so large that a step half as wide could not hold it in 24
 /// bits? Then no step keeps a smaller budget. \pre `clusters` is decode_all of the asset

@@ -42,6 +42,34 @@ class Sample : public testing::Test {
   std::vector<DecodedCluster> clusters_;
 };
 
+TEST_F(Sample, WhatDecodingTakesIsKnownFromTheTables) {
+  std::uint64_t bytes = 0;
+  for (const format::PageRecord& page : asset_.pages()) bytes += page.bytes;
+  std::vector<ClusterId> all;
+  std::uint64_t clusters = 0;
+  for (std::size_t c = 0; c < clusters_.size(); ++c) {
+    all.emplace_back(c);
+    const DecodedCluster& cluster = clusters_[c];
+    clusters += sizeof cluster + cluster.channels.size() * sizeof(cluster.channels[0]) +
+                cluster.triangles.size() * sizeof(cluster.triangles[0]) +
+                cluster.triangle_material.size() * sizeof(cluster.triangle_material[0]);
+  }
+  EXPECT_EQ(count_decoded_bytes(asset_, all), clusters);
+  EXPECT_EQ(count_decoded_bytes(asset_), bytes + clusters);
+  EXPECT_TRUE(check_decoded_bytes(asset_, kDefaultMaxDecoded));
+  const Status refused = check_decoded_bytes(asset_, kDefaultMaxDecoded + 1);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::kUnsupported);
+  EXPECT_NE(refused.error().detail.find("--max-decoded"), std::string::npos);
+}
+
+TEST_F(Sample, AFileJustifies64TimesItsSizeWhateverIsAllowed) {
+  EXPECT_EQ(decoded_limit(1000, 0), 64000u);
+  EXPECT_EQ(decoded_limit(1000, 64001), 64001u);
+  EXPECT_EQ(decoded_limit(UINT64_MAX, 5), UINT64_MAX);
+  EXPECT_EQ(asset_.max_decoded_bytes(), kDefaultMaxDecoded);
+}
+
 TEST_F(Sample, GroupsAndWhatReplacesThemHaveTheSameBorder) {  // I6
   std::size_t compared = 0;
   for (std::size_t g = 0; g < asset_.groups().size(); ++g) {

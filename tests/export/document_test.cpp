@@ -95,6 +95,29 @@ TEST(ExportDocument, ImagesAnimationsLightsAndCamerasStay) {
   EXPECT_EQ(glb.rows(1)[0], (std::vector<double>{2, 3, 4}));
 }
 
+TEST(ExportDocument, ABlobIsWrittenOnceHoweverManyImagesNameIt) {
+  Scene scene = test::make_rock_scene(6);
+  scene.blobs.resize(1);
+  scene.blobs[0].kind = SceneBlob::Kind::kImage;
+  scene.blobs[0].name = std::string(5000, 'n');  // nor is a long name multiplied
+  scene.blobs[0].bytes.assign(100000, 7);
+  std::string images;
+  for (int i = 0; i < 200; ++i) images += std::string(images.empty() ? "" : ",") + R"({"blob":0})";
+  scene.document = R"({"images":[)" + images + "]}";
+  const auto bytes = test::build_bytes(scene);
+  const auto asset = Asset::from_bytes(bytes);
+  ASSERT_TRUE(asset.ok());
+  const auto glb = export_glb(*asset, std::vector<std::vector<ClusterId>>(asset->meshes().size()));
+  ASSERT_TRUE(glb.ok()) << glb.error().message();
+  EXPECT_LT(glb->size(), 150000u);
+  const Glb parsed = Glb::parse(*glb);
+  ASSERT_EQ(parsed.json["images"].size(), 200u);
+  for (const auto& image : parsed.json["images"]) {
+    const auto& view = parsed.json["bufferViews"][image["bufferView"].get<std::size_t>()];
+    EXPECT_EQ(view["byteLength"], 100000);
+  }
+}
+
 TEST(ExportDocument, WithoutADocumentInstancesBecomeNodesAndRecordsMaterials) {
   Scene scene = test::make_rock_scene(6);
   scene.document = "{}";

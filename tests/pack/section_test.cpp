@@ -47,6 +47,44 @@ TEST(PackSection, ASectionThatShrinksBeyondTheLimitIsStoredAsItIs) {
   EXPECT_TRUE(pack_section(Bytes(1 << 16U, 0), 4).empty());
 }
 
+// What a section asks for is held against its own bytes before there is room for it.
+TEST(PackSection, SoundnessIsKnownWithoutDecoding) {
+  for (const std::uint32_t record_bytes : {0U, 8U, 24U, 56U}) {
+    const Bytes bytes = record_bytes == 0 ? table(400, 8, 1) : table(400, record_bytes, 3);
+    const Bytes packed = pack_section(bytes, record_bytes);
+    ASSERT_FALSE(packed.empty());
+    EXPECT_TRUE(is_section_sound(packed, record_bytes, bytes.size()));
+    for (std::size_t size = 0; size < packed.size(); ++size) {
+      ASSERT_FALSE(is_section_sound(std::span(packed).first(size), record_bytes, bytes.size())) << size;
+    }
+    Bytes longer = packed;
+    longer.push_back(0);
+    EXPECT_FALSE(is_section_sound(longer, record_bytes, bytes.size()));
+    EXPECT_FALSE(is_section_sound(packed, record_bytes, 0));
+    // Eight records for each byte of a prefix code are the most that it can say.
+    EXPECT_FALSE(is_section_sound(packed, record_bytes, std::uint64_t{1} << 40U));
+    if (record_bytes != 0) {
+      EXPECT_FALSE(is_section_sound(packed, record_bytes, bytes.size() + 1));
+    }
+  }
+}
+
+TEST(PackSection, WhatIsUnsoundDoesNotDecode) {
+  const Bytes bytes = table(200, 24, 2);
+  const Bytes packed = pack_section(bytes, 24);
+  Bytes out(bytes.size());
+  test::Random random(4);
+  std::size_t unsound = 0;
+  for (int i = 0; i < 3000; ++i) {
+    Bytes changed = packed;
+    changed[random.below(changed.size())] = static_cast<std::uint8_t>(random.next());
+    if (is_section_sound(changed, 24, out.size())) continue;
+    ++unsound;
+    EXPECT_FALSE(decode_section(changed, 24, out));
+  }
+  EXPECT_GT(unsound, 20u);
+}
+
 TEST(PackSection, BrokenSectionsAreRefused) {
   const Bytes bytes = table(200, 24, 2);
   const Bytes packed = pack_section(bytes, 24);

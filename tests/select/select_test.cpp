@@ -101,6 +101,21 @@ TEST(Select, BvhSelectsExactlyWhatTheFlatRuleSelects) {
   }
 }
 
+TEST(Select, ACutOfMoreClustersThanAllowedIsNone) {
+  RandomSource random(29);
+  const TestTables owned = make_tables(random, 40U);
+  const SelectTables tables = owned.view();
+  for (int n = 0; n < 200; ++n) {
+    const Camera camera = test::make_random_camera(random, tables, tables.instances[0]);
+    const double t = random_pixel_error(random);
+    const auto cut = select_bvh(tables, camera, t);
+    EXPECT_EQ(select_bvh_within(tables, camera, t, cut.size()), cut);
+    if (!cut.empty()) {
+      EXPECT_FALSE(select_bvh_within(tables, camera, t, cut.size() - 1));
+    }
+  }
+}
+
 TEST(Select, BvhLooksAtLittleWhenTheCameraIsFar) {
   RandomSource random(23);
   TestTables owned;

@@ -97,8 +97,9 @@ Scene sample_scene() {
   return scene;
 }
 
-std::vector<std::uint8_t> sample_asset_bytes(format::Codec codec) {
-  const Scene scene = sample_scene();
+std::vector<std::uint8_t> sample_asset_bytes(format::Codec codec) { return sample_asset_bytes(sample_scene(), codec); }
+
+std::vector<std::uint8_t> sample_asset_bytes(const Scene& scene, format::Codec codec) {
   WriteInput input;
   for (const SampleMesh& sample : {sample_patch(), sample_sphere(), sample_tetrahedron()}) {
     input.meshes.push_back(value_or_abort(encode_mesh(sample.mesh, sample.dag, sample.hierarchy, {})));

@@ -21,6 +21,8 @@ namespace meshlode::test {
 
 /// The asset of sample_scene(). Aborts the test program where it cannot be made.
 [[nodiscard]] std::vector<std::uint8_t> sample_asset_bytes(format::Codec codec = format::Codec::kNone);
+/// The same for another scene of the same meshes.
+[[nodiscard]] std::vector<std::uint8_t> sample_asset_bytes(const Scene& scene, format::Codec codec);
 
 /// An asset with one instance of one mesh; materials are those of sample_scene().
 [[nodiscard]] std::vector<std::uint8_t> asset_bytes_of(const SampleMesh& sample,
