@@ -275,7 +275,9 @@ class GuardedDecoder : public Decoder {
     if (cloud.num_attributes() > kMaxAttributes) return false;
     int component_count = 0;
     for (int i = 0; i < cloud.num_attributes(); ++i) component_count += cloud.attribute(i)->num_components();
-    if (component_count > kMaxComponents) return false;
+    // As integers of 32 bits while they are predicted, and as what they become.
+    const std::uint64_t bytes_each = 2 * sizeof(std::int32_t) * static_cast<std::uint64_t>(component_count);
+    if (component_count > kMaxComponents || bytes_each * cloud.num_points() > expected_.max_bytes) return false;
     return Decoder::DecodeAllAttributes();
   }
 

@@ -29,6 +29,7 @@ struct DracoExpectation {
   std::uint64_t max_face_count = 0;
   bool is_face_count_exact = true;
   std::vector<std::uint32_t> attribute_ids;  ///< unique ids to extract
+  std::uint64_t max_bytes = UINT64_MAX;      ///< of all attributes in the stream, those that nobody asked for too
 };
 
 /// Errors: kInvalid, with `where` left to the caller.

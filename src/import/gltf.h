@@ -2,6 +2,7 @@
 // A glTF file on its way to a Scene: its text as a checked tree, its buffers as mapped bytes, its geometry as structs.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <filesystem>
@@ -110,10 +111,16 @@ class GltfFiles {
 
 /// How much may be decoded: a bound that grows with the file, so that a small file cannot ask for gigabytes by naming
 /// the same bytes again and again, or by a count that no byte stands behind (I11). Counted in vertices and indices.
+/// A byte of Draco's may stand for 60 of them, but only as long as they take less than `max_decoded` bytes; beyond that
+/// the stream's size must justify them as that of other buffers does.
 class DecodeBudget {
  public:
-  explicit DecodeBudget(std::uint64_t file_bytes, std::uint64_t draco_bytes)
-      : left_((std::uint64_t{1} << 20U) + 4 * file_bytes + 60 * draco_bytes) {}
+  static constexpr std::uint64_t kElementBytes = 24;  ///< of a position, the largest of them
+
+  DecodeBudget(std::uint64_t file_bytes, std::uint64_t draco_bytes, std::uint64_t max_decoded)
+      : left_((std::uint64_t{1} << 20U) + 4 * file_bytes +
+              std::min(60 * draco_bytes, std::max(4 * draco_bytes, max_decoded / kElementBytes))) {}
+  [[nodiscard]] std::uint64_t left_bytes() const { return left_ * kElementBytes; }
   [[nodiscard]] bool take(std::uint64_t elements) {
     if (elements > left_) return false;
     left_ -= elements;

@@ -29,7 +29,11 @@ bool JsonChecker::objects(const Json& object, const std::string& path, std::stri
   const std::string here = path + "/" + std::string(key);
   if (!member->is_array()) return fail(here, "not an array");
   for (std::size_t i = 0; i < member->array()->size(); ++i) {
-    if (!(*member->array())[i].is_object()) return fail(here + "/" + std::to_string(i), "not an object");
+    const Json::Object* item = (*member->array())[i].object();
+    if (item == nullptr) return fail(here + "/" + std::to_string(i), "not an object");
+    if (item->size() > kMaxMembers) {
+      return fail(here + "/" + std::to_string(i), "more than " + std::to_string(kMaxMembers) + " members");
+    }
   }
   return true;
 }

@@ -16,6 +16,8 @@ namespace meshlode {
 
 class JsonChecker {
  public:
+  static constexpr std::size_t kMaxMembers = 256;
+
   explicit JsonChecker(std::string file) : file_(std::move(file)) {}
 
   [[nodiscard]] Status status() const {
@@ -26,7 +28,8 @@ class JsonChecker {
 
   bool fail(const std::string& path, std::string detail, ErrorCode code = ErrorCode::kInvalid);
 
-  /// The member is absent or an array of objects.
+  /// The member is absent or an array of objects of at most kMaxMembers members: they are looked up again and again, by
+  /// name in a list, so they must be few for the checks to be linear in the text.
   bool objects(const Json& object, const std::string& path, std::string_view key);
   bool optional_object(const Json& object, const std::string& path, std::string_view key);
   bool optional_string(const Json& object, const std::string& path, std::string_view key);

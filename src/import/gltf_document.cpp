@@ -33,9 +33,10 @@ void drop_binary_extensions(Json& object, const std::string& what, std::vector<L
     if (member.key == "EXT_mesh_gpu_instancing" || names_binary(member.value)) dropped.push_back(member.key);
   }
   for (const std::string& key : dropped) {
-    extensions->erase(key);
     left_out.push_back({what + " " + pointer_part(key), "an extension with binary data that is not kept"});
   }
+  std::sort(dropped.begin(), dropped.end());
+  extensions->erase_all(dropped);
   if (extensions->object()->empty()) object.erase("extensions");
 }
 

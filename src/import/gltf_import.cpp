@@ -112,18 +112,20 @@ std::uint64_t count_draco_bytes(const GltfAsset& asset) {
 Status read_meshes(const GltfAsset& asset, const ImportOptions& options, DecodeBudget& budget, Scene& scene) {
   const PrimitiveContext context{&asset, &options, &budget, &scene.left_out};
   bool needs_default_material = false;
+  const Json::Array& meshes = asset.root.items("meshes");  // looked up once: an object's members are a list
   for (std::size_t m = 0; m < asset.model.meshes.size(); ++m) {
     SourceMesh mesh;
     mesh.name = asset.model.meshes[m].name;
     bool has_targets = false;
     std::set<std::string> extensions;
+    const Json::Array& primitives = meshes[m].items("primitives");
     for (std::size_t p = 0; p < asset.model.meshes[m].primitives.size(); ++p) {
       has_targets = has_targets || asset.model.meshes[m].primitives[p].target_count > 0;
-      const Json& json = asset.root.items("meshes")[m].items("primitives")[p];
+      const Json& json = primitives[p];
       if (const Json* object = json.find("extensions")) {
         for (const JsonMember& member : *object->object()) extensions.insert(pointer_part(member.key));
       }
-      auto primitive = read_primitive(context, m, p, mesh.drops);
+      auto primitive = read_primitive(context, m, p, json, mesh.drops);
       if (!primitive) return primitive.error();
       if (!*primitive) continue;
       needs_default_material = needs_default_material || !(*primitive)->material.is_valid();
@@ -181,7 +183,7 @@ Result<Scene> import_gltf(const std::filesystem::path& path, std::span<const std
   asset.model = std::move(*model);
 
   Scene scene;
-  DecodeBudget budget(bytes.size() + files.total_bytes(), count_draco_bytes(asset));
+  DecodeBudget budget(bytes.size() + files.total_bytes(), count_draco_bytes(asset), options.max_decoded);
   scene.materials = read_materials(asset, scene.left_out);
   if (auto status = read_meshes(asset, options, budget, scene); !status) return status.error();
   scene.instances = read_instances(asset, scene.left_out);

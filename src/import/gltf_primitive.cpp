@@ -9,6 +9,7 @@
 #include <limits>
 #include <numeric>
 
+#include "base/byte_size.h"
 #include "import/accessor.h"
 #include "import/draco_decode.h"
 
@@ -28,14 +29,15 @@ struct PrimitiveSource {
 
 class PrimitiveReader {
  public:
-  PrimitiveReader(const PrimitiveContext& context, std::size_t mesh, std::size_t primitive, ImportDrops& drops)
+  PrimitiveReader(const PrimitiveContext& context, std::size_t mesh, std::size_t primitive, const Json& json,
+                  ImportDrops& drops)
       : asset_(*context.asset),
         context_(context),
         drops_(drops),
         path_("/meshes/" + std::to_string(mesh) + "/primitives/" + std::to_string(primitive)),
         what_("mesh " + std::to_string(mesh) + " primitive " + std::to_string(primitive)),
         source_(asset_.model.meshes[mesh].primitives[primitive]),
-        json_(asset_.root.items("meshes")[mesh].items("primitives")[primitive]) {}
+        json_(json) {}
 
   Result<std::optional<Primitive>> run();
 
@@ -46,7 +48,8 @@ class PrimitiveReader {
     context_.left_out->push_back({part.empty() ? what_ : what_ + " " + part, std::move(why)});
   }
   Error no_budget(const std::string& path) const {
-    return asset_.invalid(path, "it decodes to more than the size of the file justifies");
+    return asset_.invalid(path, "it decodes to more than the size of the file justifies (and, for Draco, " +
+                                    byte_size_text(context_.options->max_decoded) + " of --max-decoded)");
   }
   const Json* draco_json() const {
     const Json* extensions = json_.find("extensions");
@@ -120,6 +123,7 @@ Status PrimitiveReader::open_draco(const Json& draco) {
     expected.attribute_ids.push_back(ids[member.key]);
   }
   if (!ids.contains("POSITION")) return asset_.invalid(path + "/attributes", "POSITION is missing");
+  expected.max_bytes = context_.budget->left_bytes();
   if (!context_.budget->take(expected.point_count + 3 * expected.max_face_count)) return no_budget(path);
   if (asset_.buffers[asset_.model.views[view].buffer].empty()) {
     return asset_.invalid(path + "/bufferView", "its buffer has no data");
@@ -397,8 +401,8 @@ Result<std::optional<Primitive>> PrimitiveReader::run() {
 }  // namespace
 
 Result<std::optional<Primitive>> read_primitive(const PrimitiveContext& context, std::size_t mesh,
-                                                std::size_t primitive, ImportDrops& drops) {
-  return PrimitiveReader(context, mesh, primitive, drops).run();
+                                                std::size_t primitive, const Json& json, ImportDrops& drops) {
+  return PrimitiveReader(context, mesh, primitive, json, drops).run();
 }
 
 }  // namespace meshlode

@@ -19,9 +19,10 @@ struct PrimitiveContext {
 };
 
 /// Nothing where the primitive has no triangles to give (points, lines, no POSITION), which is said in left_out.
-/// The material is glTF's index, or invalid where there is none.
+/// The material is glTF's index, or invalid where there is none. `json`: the primitive's own text.
 /// Errors: kInvalid; with options.repair broken triangles are dropped and counted in `drops` instead.
 [[nodiscard]] Result<std::optional<Primitive>> read_primitive(const PrimitiveContext& context, std::size_t mesh,
-                                                              std::size_t primitive, ImportDrops& drops);
+                                                              std::size_t primitive, const Json& json,
+                                                              ImportDrops& drops);
 
 }  // namespace meshlode

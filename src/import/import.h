@@ -16,6 +16,8 @@ namespace meshlode {
 struct ImportOptions {
   bool repair = false;  ///< drop (and count) triangles that touch non-finite positions or indices out of range
   std::vector<FileId>* files_read = nullptr;  ///< gets every file that was opened, also where the import fails
+  /// Bytes of indices and vertices that compressed geometry may take beyond what its own size justifies.
+  std::uint64_t max_decoded = std::uint64_t{512} << 20U;
 };
 
 /// Reads .gltf, .glb, .ply, .obj or .stl (told apart by content where possible, else by extension).

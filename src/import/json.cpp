@@ -176,6 +176,12 @@ void Json::erase(std::string_view key) {
   }
 }
 
+void Json::erase_all(const std::vector<std::string>& keys) {
+  if (auto* members = std::get_if<Object>(&value)) {
+    std::erase_if(*members, [&](const JsonMember& m) { return std::binary_search(keys.begin(), keys.end(), m.key); });
+  }
+}
+
 Json Json::make_object() {
   return Json{Object{}};
 }

@@ -44,6 +44,8 @@ struct Json {
   void set(std::string_view key, Json member);
   /// Removes a member where there is one.
   void erase(std::string_view key);
+  /// Removes all of these at once. \pre `keys` is ascending
+  void erase_all(const std::vector<std::string>& keys);
 
   [[nodiscard]] static Json make_object();
   [[nodiscard]] static Json make_array();

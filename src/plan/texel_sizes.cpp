@@ -6,7 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <set>
+#include <map>
+#include <optional>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -51,6 +52,8 @@ class TexelSizes {
   std::array<double, kMaxUvSets> texels{};
 
  private:
+  using Size = std::optional<ImageSize>;
+
   void add_texture(const Json& reference, std::size_t texture_index) {
     constexpr auto kNowhere = static_cast<std::size_t>(-1);
     std::size_t set = index_in(reference, "texCoord", 0);
@@ -73,7 +76,9 @@ class TexelSizes {
                                                  : element(document_, "images", index_in(*texture, "source", kNowhere));
     const std::size_t blob = image == nullptr ? kNowhere : index_in(*image, "blob", kNowhere);
     if (blob >= scene_.blobs.size()) return;
-    const auto size = read_image_size(scene_.blobs[blob].bytes);
+    const auto [known, is_new] = sizes_.try_emplace(blob);
+    if (is_new) known->second = read_image_size(scene_.blobs[blob].bytes);
+    const Size& size = known->second;
     if (!size) return;
     const double most = std::max(size->width * scale[0], size->height * scale[1]);
     if (std::isfinite(most)) texels[set] = std::max(texels[set], most);
@@ -81,24 +86,40 @@ class TexelSizes {
 
   const Scene& scene_;
   const Json& document_;
+  std::map<std::size_t, Size> sizes_;  ///< of images that were looked at already
 };
 
 }  // namespace
 
-std::array<double, kMaxUvSets> texels_per_unit(const Scene& scene, const SourceMesh& mesh) {
+std::vector<std::array<double, kMaxUvSets>> texels_of_materials(const Scene& scene) {
+  std::vector<std::array<double, kMaxUvSets>> out(scene.materials.size());
   const Json document = Json::parse(scene.document, nullptr, false);
-  if (!document.is_object()) return {};
+  if (!document.is_object()) return out;
   TexelSizes sizes(scene, document);
-  std::set<std::uint32_t> materials;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    sizes.texels = {};
+    if (const Json* const found = element(document, "materials", scene.materials[i].source_index)) {
+      sizes.add_material(*found);
+    }
+    out[i] = sizes.texels;
+  }
+  return out;
+}
+
+std::array<double, kMaxUvSets> texels_per_unit(std::span<const std::array<double, kMaxUvSets>> of_materials,
+                                               const SourceMesh& mesh) {
+  std::array<double, kMaxUvSets> out{};
   for (const Primitive& primitive : mesh.primitives) {
-    if (primitive.material.value < scene.materials.size()) {
-      materials.insert(scene.materials[primitive.material.value].source_index);
+    if (primitive.material.value >= of_materials.size()) continue;
+    for (std::size_t set = 0; set < out.size(); ++set) {
+      out[set] = std::max(out[set], of_materials[primitive.material.value][set]);
     }
   }
-  for (const std::uint32_t material : materials) {
-    if (const Json* const found = element(document, "materials", material)) sizes.add_material(*found);
-  }
-  return sizes.texels;
+  return out;
+}
+
+std::array<double, kMaxUvSets> texels_per_unit(const Scene& scene, const SourceMesh& mesh) {
+  return texels_per_unit(texels_of_materials(scene), mesh);
 }
 
 }  // namespace meshlode

@@ -5,6 +5,7 @@
 #include <chrono>
 
 #include "gltf_builder.h"
+#include "import/gltf.h"
 #include "import/uri.h"
 
 namespace meshlode::testing {
@@ -139,6 +140,49 @@ TEST(ImportRefuses, AttributesOfDifferentLengthsOrTypes) {
   expect_refused(b.import(mesh_text("\"POSITION\":0,\"NORMAL\":2")), {"type", path + "NORMAL"});
   expect_refused(b.import(mesh_text("\"POSITION\":2")), {"type", path + "POSITION"});
   expect_refused(b.import(mesh_text("\"POSITION\":0", ",\"indices\":0")), {"indices", "/indices"});
+}
+
+std::string members(int count, const std::string& value) {
+  std::string text;
+  for (int i = 0; i < count; ++i) text += (i == 0 ? "\"m" : ",\"m") + std::to_string(i) + "\":" + value;
+  return text;
+}
+
+// Members are a list that is searched by name for every index that leads to the object: a view of a hundred thousand
+// members that a hundred thousand accessors name would take hours.
+TEST(ImportRefuses, ObjectsOfMoreMembersThanAnybodyWrites) {
+  const std::string many = members(260, "0"), few = members(250, "0");
+  expect_refused(GltfBuilder().import("\"meshes\":[{\"primitives\":[]," + many + "}]"), {"mesh", "/meshes/0"});
+  expect_refused(GltfBuilder().import("\"nodes\":[{" + many + "}]"), {"node", "/nodes/0"});
+  expect_refused(GltfBuilder().import("\"animations\":[{" + many + "}]"), {"animation", "/animations/0"});
+  expect_refused(GltfBuilder().import("\"extensions\":{\"KHR_lights_punctual\":{" + many + "}}"), {"lights", "/"});
+  EXPECT_TRUE(GltfBuilder().import("\"nodes\":[{" + few + "}]"));
+  EXPECT_TRUE(GltfBuilder().import("\"nodes\":[{\"extras\":{" + many + "}}]")) << "what is carried may be of any size";
+}
+
+TEST(ImportRefuses, ManyExtensionsAreLeftOutInOnePass) {
+  const auto start = std::chrono::steady_clock::now();
+  const auto scene = GltfBuilder().import("\"nodes\":[{\"extensions\":{" + members(60000, "{\"accessor\":0}") + "}}]");
+  ASSERT_TRUE(scene) << describe(scene);
+  EXPECT_EQ(scene->left_out.size(), 60000u);
+  EXPECT_EQ(scene->document.find("extensions"), std::string::npos);
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  EXPECT_LT(seconds.count(), 10.0);
+}
+
+TEST(ImportRefuses, DracoBeyondTheBudgetMustBeJustifiedAsOtherBytesAre) {
+  constexpr std::uint64_t kBase = std::uint64_t{1} << 20U, kMega = 1000000;
+  const auto left = [](std::uint64_t file, std::uint64_t draco, std::uint64_t max_decoded) {
+    return DecodeBudget(file, draco, max_decoded).left_bytes() / DecodeBudget::kElementBytes;
+  };
+  EXPECT_EQ(left(0, 0, 512 * kMega), kBase);
+  EXPECT_EQ(left(kMega, 0, 512 * kMega), kBase + 4 * kMega);
+  EXPECT_EQ(left(0, 100, 512 * kMega), kBase + 6000) << "sixty elements a byte";
+  EXPECT_EQ(left(0, 10 * kMega, 240 * kMega), kBase + 40 * kMega) << "four, where they take more than what is allowed";
+  EXPECT_EQ(left(0, kMega, 240 * kMega), kBase + 10 * kMega) << "what is allowed, between";
+  DecodeBudget budget(0, 0, 0);
+  EXPECT_TRUE(budget.take(kBase));
+  EXPECT_FALSE(budget.take(1));
 }
 
 TEST(ImportRefuses, ASmallFileThatAsksForGigabytes) {
