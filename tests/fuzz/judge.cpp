@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The structural judge and the exporter on any bytes: what `validate` and `extract` do with a hostile file. Both read
 // what the runtime does not: the JSON sections, texts, and pages that were found wrong.
-#include <algorithm>
 #include <vector>
 
+#include "asset_mutator.h"
 #include "export/choose_cuts.h"
 #include "export/export.h"
 #include "harness.h"
-#include "support/reseal.h"
 #include "validate/validate.h"
-
-extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t max_size);
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace meshlode;
@@ -33,11 +30,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 #ifdef MESHLODE_FUZZ
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t max_size,
                                                unsigned int seed) {
-  size = LLVMFuzzerMutate(data, size, max_size);
-  if (seed % 16 == 0) return size;
-  std::vector<std::uint8_t> bytes(data, data + size);
-  meshlode::test::reseal(bytes);
-  std::copy(bytes.begin(), bytes.end(), data);
-  return size;
+  return meshlode::fuzz::mutate_asset(data, size, max_size, seed, 0);
 }
 #endif

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// fuzz_seeds FOLDER: writes the valid inputs that fuzzing starts from: FOLDER/{reader,judge,importer,codecs}/*.
+// fuzz_seeds FOLDER: writes the valid inputs that fuzzing starts from, FOLDER/HARNESS/*.
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "image/image_samples.h"
 #include "import/mutant_seeds.h"
 #include "read/asset.h"
 #include "support/sample_asset.h"
@@ -55,6 +56,70 @@ Bytes importer_input(const testing::SeedFile& seed) {
   return bytes;
 }
 
+/// Images of the kinds that are read.
+std::vector<std::pair<std::string, Bytes>> make_images() {
+  std::vector<std::pair<std::string, Bytes>> images;
+  Bytes pixels(std::size_t{4} * 21 * 13);
+  for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i] = static_cast<std::uint8_t>(i * i / 7 + i);
+  const struct {
+    const char* name;
+    test::PngKind kind;
+    std::uint32_t row_bytes;
+  } kinds[] = {{"grey1", {.color_type = 0, .bit_depth = 1}, 3},
+               {"palette", {.color_type = 3, .bit_depth = 4, .has_transparency = true}, 11},
+               {"rgb", {.color_type = 2}, 63},
+               {"rgba-interlaced", {.color_type = 6, .is_interlaced = true}, 84}};
+  for (const auto& [name, kind, row_bytes] : kinds) {
+    Bytes rows(pixels.begin(), pixels.begin() + std::ptrdiff_t{13} * row_bytes);
+    images.emplace_back(std::string("image-") + name + ".png", test::make_png(21, 13, kind, rows));
+  }
+  for (const int components : {1, 3}) {
+    for (const bool is_progressive : {false, true}) {
+      const Bytes part(pixels.begin(), pixels.begin() + std::ptrdiff_t{21} * 13 * components);
+      images.emplace_back("image-" + std::to_string(components) + (is_progressive ? "-progressive.jpg" : ".jpg"),
+                          test::make_jpeg(21, 13, components, is_progressive, part));
+    }
+  }
+  return images;
+}
+
+/// The sample scene with textures, normals and masks on its materials.
+Scene textured_scene(const std::vector<std::pair<std::string, Bytes>>& images) {
+  Scene scene = test::sample_scene();
+  SceneBlob buffer = scene.blobs[1];
+  scene.blobs.clear();
+  std::string listed, textures;
+  for (const auto& [name, bytes] : images) {
+    const std::string index = std::to_string(scene.blobs.size());
+    SceneBlob blob;
+    blob.name = name;
+    blob.bytes = bytes;
+    scene.blobs.push_back(blob);
+    listed += (listed.empty() ? "" : ",") + std::string(R"({"blob":)") + index + "}";
+    textures += (textures.empty() ? "" : ",") + std::string(R"({"sampler":0,"source":)") + index + "}";
+  }
+  scene.blobs.push_back(buffer);
+  std::string materials;
+  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+    scene.materials[i].source_index = static_cast<std::uint32_t>(i);
+    scene.materials[i].base_color_texture = static_cast<std::uint32_t>(i);
+    scene.materials[i].base_color_uv_set = 0;
+    scene.materials[i].alpha_mode = i % 2 == 0 ? AlphaMode::kMask : AlphaMode::kOpaque;
+    const std::string texture = std::to_string(i % images.size()), normal = std::to_string((i + 2) % images.size());
+    materials += (materials.empty() ? "" : ",") + std::string(R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":)") +
+                 texture + R"(,"extensions":{"KHR_texture_transform":{"scale":[2,0.5],"rotation":1}}}},"normalTexture":{"index":)" +
+                 normal + R"(,"scale":0.5}})";
+  }
+  scene.document = R"({"asset":{"version":"2.0"},"samplers":[{"wrapS":33648,"wrapT":33071}],"images":[)" + listed +
+                   R"(],"textures":[)" + textures + R"(],"materials":[)" + materials + "]}";
+  return scene;
+}
+
+Bytes behind(Bytes prefix, std::span<const std::uint8_t> bytes) {
+  prefix.insert(prefix.end(), bytes.begin(), bytes.end());
+  return prefix;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -63,6 +128,16 @@ int main(int argc, char** argv) {
     return 1;
   }
   const std::filesystem::path folder = argv[1];
+  const auto images = make_images();
+  for (const auto& [name, bytes] : images) write(folder / "textures" / name, behind({0}, bytes));
+  const Bytes near_camera = {63, 47, 128, 150, 170, 12, 1, 10}, far_camera = {40, 30, 180, 140, 128, 20, 4, 3};
+  for (const format::Codec codec : {format::Codec::kNone, format::Codec::kStrips}) {
+    const std::string name = codec == format::Codec::kNone ? "textured-none.lode" : "textured-strips.lode";
+    const Bytes textured = test::sample_asset_bytes(textured_scene(images), codec);
+    write(folder / "textures" / name, behind({1}, textured));
+    write(folder / "render" / name, behind(near_camera, textured));
+    write(folder / "verify" / name, behind({0, 0, 0, 0, 0, 0, 0, 0}, textured));
+  }
   const struct {
     const char* name;
     format::Codec codec;
@@ -77,6 +152,11 @@ int main(int argc, char** argv) {
     for (const auto& [shape, bytes] : assets) {
       write(folder / "reader" / (shape + suffix), bytes);
       write(folder / "judge" / (shape + suffix), bytes);
+      write(folder / "render" / (shape + suffix), behind(shape[0] == 't' ? near_camera : far_camera, bytes));
+      if (shape[0] == 's') {
+        write(folder / "verify" / (shape + suffix), behind({0, 0, 0, 0, 0, 0, 0, 0}, bytes));
+        write(folder / "verify" / ("other-" + (shape + suffix)), behind({127, 1, 5, 2, 3, 9, 4, 3}, bytes));
+      }
       const auto asset = Asset::from_bytes(bytes);
       if (!asset) return 2;
       for (std::size_t p = 0; p < asset->pages().size() && codec != format::Codec::kNone; ++p) {
