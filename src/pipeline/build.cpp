@@ -6,6 +6,7 @@
 #include <array>
 #include <chrono>
 #include <mutex>
+#include <span>
 #include <utility>
 
 #include "base/parallel.h"
@@ -14,6 +15,7 @@
 #include "hierarchy/hierarchy.h"
 #include "mesh/grid.h"
 #include "pipeline/meta.h"
+#include "pipeline/needs.h"
 #include "plan/plan.h"
 #include "plan/texel_sizes.h"
 #include "prepare/prepare.h"
@@ -113,7 +115,8 @@ ErrorSource error_source_of(format::ErrorTier tier) {
 }
 
 /// The budget of each stored UV set in UV units; 0 leaves it to encode, where no texture's size is known.
-std::array<double, kMaxUvSets> uv_errors(const Scene& scene, const SourceMesh& source, const AttributeLayout& layout,
+std::array<double, kMaxUvSets> uv_errors(std::span<const std::array<double, kMaxUvSets>> texels_of_materials,
+                                         const SourceMesh& source, const AttributeLayout& layout,
                                          const PipelineOptions& options) {
   std::array<double, kMaxUvSets> errors{};
   if (!options.uv_error_is_texels) {
@@ -121,7 +124,7 @@ std::array<double, kMaxUvSets> uv_errors(const Scene& scene, const SourceMesh& s
     return errors;
   }
   constexpr double kUsualTexels = 2048.0;  // of a texture whose size is not known
-  const std::array<double, kMaxUvSets> texels = texels_per_unit(scene, source);
+  const std::array<double, kMaxUvSets> texels = texels_per_unit(texels_of_materials, source);
   for (std::uint32_t set = 0; set < layout.uv_set_count; ++set) {
     const double known = texels[layout.uv_set_source[set]];
     if (options.uv_error_is_default) {
@@ -133,7 +136,8 @@ std::array<double, kMaxUvSets> uv_errors(const Scene& scene, const SourceMesh& s
   return errors;
 }
 
-Result<BuiltMesh> build_mesh(const Scene& scene, std::size_t index, const PipelineOptions& options,
+Result<BuiltMesh> build_mesh(const Scene& scene, std::size_t index,
+                             std::span<const std::array<double, kMaxUvSets>> texels, const PipelineOptions& options,
                              ProgressMeter& progress) {
   const SourceMesh& source = scene.meshes[index];
   BuiltMesh built;
@@ -151,7 +155,7 @@ Result<BuiltMesh> build_mesh(const Scene& scene, std::size_t index, const Pipeli
 
   EncodeOptions encode_options;
   encode_options.normal_error = options.normal_error;
-  encode_options.uv_error = uv_errors(scene, source, plan.layout, options);
+  encode_options.uv_error = uv_errors(texels, source, plan.layout, options);
   encode_options.uv_error_may_fall_short = options.uv_error_is_default;
   DagOptions dag_options;
   dag_options.error = error_source_of(options.error_tier);
@@ -200,9 +204,17 @@ Result<std::vector<std::uint8_t>> build_lode(const Scene& scene, const PipelineO
     return Error{ErrorCode::kUsage, "", "a cluster holds 1 to 256 triangles and 3 to 256 vertices"};
   }
 
+  for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
+    const Status counts = check_mesh_counts(count_mesh(scene.meshes[i]), label_of(scene.meshes[i], i));
+    if (!counts) return counts.error();
+  }
+  report.memory_estimate = estimate_memory(scene, options, static_cast<std::uint32_t>(tbb::this_task_arena::max_concurrency()));
+  if (const Status memory = check_memory(report.memory_estimate, options); !memory) return memory.error();
+
   ProgressMeter meter(scene, progress);
+  const auto texels = texels_of_materials(scene);
   std::vector<Result<BuiltMesh>> meshes(scene.meshes.size(), Error{});
-  parallel_for_each_index(scene.meshes.size(), 1, [&](std::size_t i) { meshes[i] = build_mesh(scene, i, options, meter); });
+  parallel_for_each_index(scene.meshes.size(), 1, [&](std::size_t i) { meshes[i] = build_mesh(scene, i, texels, options, meter); });
 
   WriteInput input;
   input.scene = &scene;

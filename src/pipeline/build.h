@@ -29,6 +29,7 @@ struct PipelineOptions {
   double uv_error = 0.125;      ///< the largest move of a texture coordinate, in the unit below
   bool uv_error_is_texels = true;  ///< of the material's largest texture; else UV units
   bool uv_error_is_default = true; ///< no texture counts as smaller than 2,048 texels then
+  std::uint64_t max_memory = 0;    ///< bytes that the process may take (pipeline/needs.h); 0: what the machine has
 };
 
 /// Called from one thread at a time, in no promised order between meshes. Return false to cancel.
@@ -47,6 +48,7 @@ struct StageTime {
   double seconds = 0.0;
 };
 struct PipelineReport {
+  std::uint64_t memory_estimate = 0;    ///< bytes that the process takes at most, as estimated before the build
   std::vector<StageTime> stages;
   std::vector<PlanDecision> decisions;  ///< of all meshes, in order
 };

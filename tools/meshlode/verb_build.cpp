@@ -11,6 +11,7 @@
 #include <set>
 #include <string_view>
 
+#include "base/byte_size.h"
 #include "import/import.h"
 #include "options.h"
 #include "outputs.h"
@@ -39,6 +40,7 @@ struct JobResult {
   std::uint64_t triangles = 0;
   std::uint64_t meshes = 0, instances = 0;
   std::uint64_t bytes = 0;
+  std::uint64_t memory_estimate = 0;  ///< 0: not reached
   std::vector<StageTime> stages;
   std::vector<LeftOut> left_out;     ///< by the importer
   std::vector<LeftOut> planned_out;  ///< by the plan
@@ -155,14 +157,22 @@ Status check_against_read(const fs::path& output, const std::string& report_path
   return free;
 }
 
-Result<std::vector<std::uint8_t>> import_and_build(const Job& job, const PipelineOptions& options,
-                                                   const std::string& report_path, Progress& progress,
+struct JobOptions {
+  PipelineOptions pipeline;
+  ImportOptions import;
+  std::string report_path;
+  bool make_folders = false;  ///< for the output, below -O
+};
+
+Result<std::vector<std::uint8_t>> import_and_build(const Job& job, const JobOptions& options, Progress& progress,
                                                    JobResult& result) {
   const Timer import_timer;
   std::vector<FileId> files_read;
-  Result<Scene> scene = import_scene(job.input, ImportOptions{options.repair, &files_read});
+  ImportOptions import_options = options.import;
+  import_options.files_read = &files_read;
+  Result<Scene> scene = import_scene(job.input, import_options);
   output_files().keep(files_read);
-  if (const Status free = check_against_read(job.output, report_path, result); !free) return free.error();
+  if (const Status free = check_against_read(job.output, options.report_path, result); !free) return free.error();
   if (!scene) return scene.error();
   result.stages.push_back({"import", import_timer.seconds()});
   result.meshes = scene->meshes.size();
@@ -172,7 +182,8 @@ Result<std::vector<std::uint8_t>> import_and_build(const Job& job, const Pipelin
   }
   result.left_out = scene->left_out;
   PipelineReport report;
-  auto bytes = build_lode(*scene, options, progress.callback(), report);
+  auto bytes = build_lode(*scene, options.pipeline, progress.callback(), report);
+  result.memory_estimate = report.memory_estimate;
   result.stages.insert(result.stages.end(), report.stages.begin(), report.stages.end());
   for (const PlanDecision& decision : report.decisions) {
     if (decision.kept) continue;
@@ -181,12 +192,6 @@ Result<std::vector<std::uint8_t>> import_and_build(const Job& job, const Pipelin
   }
   return bytes;
 }
-
-struct JobOptions {
-  PipelineOptions pipeline;
-  std::string report_path;
-  bool make_folders = false;  ///< for the output, below -O
-};
 
 JobResult run_job(const Job& job, const JobOptions& options, Progress& progress) {
   JobResult result;
@@ -204,7 +209,7 @@ JobResult run_job(const Job& job, const JobOptions& options, Progress& progress)
   }
   if (const Status free = output_files().claim(job.output); !free) return fail(free.error());
   progress.start(job.input.filename().string());
-  auto bytes = import_and_build(job, options.pipeline, options.report_path, progress, result);
+  auto bytes = import_and_build(job, options, progress, result);
   if (!bytes) {
     Error error = bytes.error();
     if (error.where.empty()) error.where = job.input.string();
@@ -266,6 +271,12 @@ std::string report_json(const std::vector<JobResult>& results, std::uint32_t job
     w.field("instances", r.instances);
     w.field("source_triangles", r.triangles);
     w.field("file_bytes", r.bytes);
+    w.key("memory_estimate_bytes");
+    if (r.memory_estimate > 0) {
+      w.value(r.memory_estimate);
+    } else {
+      w.null();
+    }
     w.field("seconds", r.seconds);
     w.key("triangles_per_second");
     if (r.seconds > 0.0 && r.exit_code == 0) {
@@ -374,6 +385,7 @@ int run_build(const Verb& verb, std::span<char* const> args) {
   std::uint32_t jobs = 0;
   OutputOptions out;
   bool repair = false;
+  std::string max_memory = "auto", max_decoded = kDefaultMaxDecodedText;
   OptionParser parser(verb);
   parser.add_positionals("input", inputs, ".gltf, .glb, .ply, .obj or .stl files, and folders of them with -O");
   parser.add_value("-o,--output", output, "the asset to write; the input's name with .lode where not given");
@@ -388,6 +400,9 @@ int run_build(const Verb& verb, std::span<char* const> args) {
   parser.add_value("--normal-error", words.normal_error, "the largest angle a stored normal may be off, degrees");
   parser.add_value("--uv-error", words.uv_error, "auto, or the largest move of a UV: UV units, or 0.25px for texels");
   parser.add_value("--codec", words.codec, "disk codec of the pages", {"none", "lz4", "zstd", "strips", "draco"});
+  parser.add_value("--max-memory", max_memory,
+                   "auto refuses a build that needs more memory than the machine has; or a size, such as 8GiB");
+  add_max_decoded_option(parser, max_decoded);
   add_jobs_option(parser, jobs);
   parser.add_value("--report", report_path, "write times and counts as JSON, the same that --format json prints");
   parser.add_flag("--repair", repair, "drop and count triangles with non-finite positions or indices out of range");
@@ -399,12 +414,19 @@ int run_build(const Verb& verb, std::span<char* const> args) {
   Result<PipelineOptions> options = make_options(words);
   if (!options) return print_error(options.error());
   options->repair = repair;
+  if (max_memory != "auto") {
+    const auto bytes = parse_byte_size(max_memory);
+    if (!bytes || *bytes == 0) return print_error({ErrorCode::kUsage, "--max-memory", "give auto or a size above 0, such as 8GiB"});
+    options->max_memory = *bytes;
+  }
+  const Result<std::uint64_t> decoded = parse_max_decoded(max_decoded);
+  if (!decoded) return print_error(decoded.error());
   const auto plan = plan_jobs(inputs, output, output_folder);
   if (!plan) return print_error(plan.error());
 
   if (const Status made = make_folder(output_folder); !made) return print_error(made.error());
   if (const Status free = check_outputs(*plan, report_path); !free) return print_error(free.error());
-  const JobOptions job_options{*options, report_path, !output_folder.empty()};
+  const JobOptions job_options{*options, {.repair = repair, .max_decoded = *decoded}, report_path, !output_folder.empty()};
 
   JobLimit limit(jobs);
   std::vector<JobResult> results;
