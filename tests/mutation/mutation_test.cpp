@@ -167,8 +167,8 @@ TEST(Mutation, ADependencyLeftOutIsFoundByItsRule) {
       std::any_of(report.findings.begin(), report.findings.end(), [](const Finding& f) { return f.id == "L213"; }));
 }
 #else
-/// Small clusters, so that few triangles make a DAG of many groups. The sample's scene has what one mesh has not: several
-/// materials, two UV sets, colours, mirrored and singular instances, an empty mesh, blobs.
+/// Small clusters, so that few triangles make a DAG of many groups. The sample's scene has what one mesh has not:
+/// several materials, two UV sets, colours, mirrored and singular instances, an empty mesh, blobs.
 TEST(Mutation, ThousandsOfMutantsOfTheMeasuredTierAreFound) {
   const PipelineOptions options{.max_cluster_triangles = 48};
   run_mutants({make_built("the sample's scene", test::sample_scene(), {.max_cluster_triangles = 16}),

@@ -4,7 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <map>
 #include <set>
+#include <utility>
+
+#include "decode/decode.h"
+#include "read/asset.h"
 
 namespace meshlode::test {
 
@@ -106,13 +111,12 @@ using Position = std::array<std::int64_t, 3>;
 
 Position position_of(const Edit& e, std::uint32_t c, std::uint32_t v) {
   Position p{};
-  for (std::uint32_t k = 0; k < 3; ++k)
-    p[k] = e.minimum(c, k) + std::int64_t{e.stored(c, v, k)};
+  for (std::uint32_t k = 0; k < 3; ++k) p[k] = e.minimum(c, k) + std::int64_t{e.stored(c, v, k)};
   const auto at = e.layout(c);
   const std::uint32_t u = at.shear_axis == 0 ? 1 : 0;
   const std::uint32_t w = at.shear_axis == 2 ? 1 : 2;
-  p[at.shear_axis] +=
-      (at.shear_u * std::int64_t{e.stored(c, v, u)} + at.shear_v * std::int64_t{e.stored(c, v, w)}) >> format::kShearShift;
+  p[at.shear_axis] += (at.shear_u * std::int64_t{e.stored(c, v, u)} + at.shear_v * std::int64_t{e.stored(c, v, w)}) >>
+                      format::kShearShift;
   return p;
 }
 
@@ -129,6 +133,59 @@ std::vector<std::uint32_t> vertices_where(const Edit& e, std::uint32_t c, bool s
   std::vector<std::uint32_t> out;
   for (std::uint32_t v = 0; v < clusters[c].vertex_count(); ++v) {
     if (others.contains(position_of(e, c, v)) == shared) out.push_back(v);
+  }
+  return out;
+}
+
+/// Positions on the border of the cut in which the own group of a cluster is replaced, and nothing that is coarser or
+/// beside it: where the source is open, its border as simplified there. \pre the asset is sound
+std::set<Position> rim_around(const Edit& e, std::uint32_t c) {
+  const Result<Asset> asset = Asset::from_bytes(e.bytes());
+  const Result<std::vector<DecodedCluster>> decoded =
+      asset ? decode_all(*asset) : Result<std::vector<DecodedCluster>>(asset.error());
+  std::set<Position> rim;
+  if (!decoded) return rim;
+  const auto clusters = e.clusters();
+  const auto groups = e.groups();
+  const auto mesh = e.meshes()[mesh_of_cluster(e, c)];
+  std::vector<bool> passes(groups.size(), false);
+  passes[clusters[c].own_group] = true;
+  for (std::uint32_t g = 0; g < groups.size(); ++g) {  // from coarse to fine
+    for (std::uint32_t k = 0; passes[g] && k < groups[g].cluster_count; ++k) {
+      const std::uint32_t own = clusters[groups[g].first_cluster + k].own_group;
+      if (own != format::kNone) passes[own] = true;
+    }
+  }
+  std::map<std::pair<Position, Position>, int> net;  // uses from the smaller to the larger position minus those back
+  for (std::uint32_t k = mesh.first_cluster; k < mesh.first_cluster + mesh.cluster_count; ++k) {
+    const bool is_drawn =
+        (clusters[k].own_group == format::kNone || passes[clusters[k].own_group]) && !passes[clusters[k].coarser_group];
+    if (!is_drawn) continue;
+    const DecodedCluster& cluster = (*decoded)[k];
+    for (const auto& triangle : cluster.triangles) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        const Vec3i p = cluster.position(triangle[i]);
+        const Vec3i q = cluster.position(triangle[(i + 1) % 3]);
+        const Position a{p.x, p.y, p.z};
+        const Position b{q.x, q.y, q.z};
+        if (a != b) net[std::minmax(a, b)] += a < b ? 1 : -1;
+      }
+    }
+  }
+  for (const auto& [edge, uses] : net) {
+    if (uses != 0) rim.insert({edge.first, edge.second});
+  }
+  return rim;
+}
+
+/// Shared vertices on the border of the source as simplified there, or those that are not.
+std::vector<std::uint32_t> shared_vertices_where(const Edit& e, std::uint32_t c, bool on_rim) {
+  std::vector<std::uint32_t> out;
+  const std::vector<std::uint32_t> shared = vertices_where(e, c, true);
+  if (shared.empty()) return out;
+  const std::set<Position> rim = rim_around(e, c);
+  for (const std::uint32_t v : shared) {
+    if (rim.contains(position_of(e, c, v)) == on_rim) out.push_back(v);
   }
   return out;
 }
@@ -447,9 +504,8 @@ std::vector<MutantKind> make_kinds() {
   always("mesh ranges and counts", [](Edit& e, Random& r) {
     bool done = false;
     e.mesh(pick(r, e.meshes().size()), [&](auto& m) {
-      std::uint32_t* fields[] = {&m.first_group,  &m.group_count, &m.first_cluster, &m.cluster_count,
-                                 &m.first_node,   &m.node_count,  &m.level_count,   &m.uv_set_count,
-                                 &m.has_color,    &m.normal_scale};
+      std::uint32_t* fields[] = {&m.first_group, &m.group_count, &m.first_cluster, &m.cluster_count, &m.first_node,
+                                 &m.node_count,  &m.level_count, &m.uv_set_count,  &m.has_color,     &m.normal_scale};
       done = nudge(*fields[r.below(std::size(fields))], r);
     });
     return done;
@@ -622,8 +678,8 @@ std::vector<MutantKind> make_kinds() {
     e.move_minimum(c, 3 + pick(r, n - 3U), r.below(2) == 0 ? 6 : -6);
     return true;
   });
-  mostly("minimum of attributes, above", "attributes above level 0 that no neighbour shares are the simplifier's choice",
-         [](Edit& e, Random& r) {
+  mostly("minimum of attributes, above",
+         "attributes above level 0 that no neighbour shares are the simplifier's choice", [](Edit& e, Random& r) {
            const auto c = pick_cluster(e, r, false);
            const auto n = e.stored_count(c);
            if (n < 4) return false;
@@ -643,9 +699,16 @@ std::vector<MutantKind> make_kinds() {
   });
   always("vertex position, shared, above", [](Edit& e, Random& r) {
     const auto c = pick_cluster(e, r, false);
-    const auto v = vertices_where(e, c, true);
+    const auto v = shared_vertices_where(e, c, false);
     return !v.empty() && flip_bit(e, r, c, v[pick(r, v.size())], pick(r, 3), 0);
   });
+  mostly("vertex position, shared and on a rim, above",
+         "a notch in a rim of the source that lost edges elsewhere: how deep it is only the deviation tells (I7)",
+         [](Edit& e, Random& r) {
+           const auto c = pick_cluster(e, r, false);
+           const auto v = shared_vertices_where(e, c, true);
+           return !v.empty() && flip_bit(e, r, c, v[pick(r, v.size())], pick(r, 3), 0);
+         });
   mostly("vertex position, inside, above",
          "a vertex above level 0 that no neighbour shares is the simplifier's choice: only its deviation tells (I7)",
          [](Edit& e, Random& r) {
