@@ -120,13 +120,14 @@ TriangleFreedom::TriangleFreedom(const std::array<ClipVertex, 3>& v, raster::Ima
     high_x = std::max(high_x, corners_[i].x);
     low_y = std::min(low_y, corners_[i].y);
     high_y = std::max(high_y, corners_[i].y);
+    min_z_ = std::min(min_z_, corners_[i].z);
     max_z_ = std::max(max_z_, corners_[i].z);
     max_inverse_w_ = std::max(max_inverse_w_, corners_[i].inverse_w);
   }
-  const double extent = std::min(std::max(high_x - low_x, high_y - low_y), kFarthestCorner);
+  extent_ = std::min(std::max(high_x - low_x, high_y - low_y), kFarthestCorner);
   // A step of the device's grid, whichever way it rounds; the CPU's picture has to be one of those that are allowed.
   const int bits = static_cast<int>(std::min<std::uint32_t>(subpixel_bits, raster::kSubpixelBits));
-  interpolation_ = kE * kInterpolationOperations * (extent + side);
+  interpolation_ = kE * kInterpolationOperations * (extent_ + side);
   snap_ = std::ldexp(1.0, -bits) + interpolation_;
   find_planes();
   find_facing();
@@ -188,6 +189,10 @@ void TriangleFreedom::find_facing() {
     room += move * (std::abs(after.x - before.x) + std::abs(after.y - before.y)) + 2.0 * move * next;
   }
   is_facing_open_ = !(std::abs(area_) > room);
+  // Barycentric coordinates are quotients by the area of what was rounded, a difference of products of lengths.
+  if (!is_facing_open_) {
+    weight_error_ = std::min(1.0, kE * kInterpolationOperations * extent_ * extent_ / (std::abs(area_) - room));
+  }
 }
 
 void TriangleFreedom::find_bounds(raster::ImageSize size) {
@@ -268,13 +273,16 @@ std::optional<TriangleFreedom::Sample> TriangleFreedom::at(std::int32_t pixel_x,
       low = std::min(low, part[i].z);
       high = std::max(high, part[i].z);
     }
-    // Barycentric coordinates may be those of the corners before they were rounded: the plane's own depth at p, which lies
-    // beyond the triangle where rounding alone has made it cover p.
-    if (has_planes_) {
-      const double z = z_.at(px, py), change = z_.change(interpolation_);
-      low = std::min(low, z - change);
-      high = std::max(high, z + change);
-    }
+  }
+  const double vague = weight_error_ * (max_z_ - min_z_);
+  low = std::max(low - vague, std::min(low, min_z_));
+  high = std::min(high + vague, std::max(high, max_z_));
+  // Barycentric coordinates may be those of the corners before they were rounded: the plane's own depth at p, which lies
+  // beyond the triangle where rounding alone has made it cover p.
+  if (!is_inside && has_planes_) {
+    const double z = z_.at(px, py), change = z_.change(interpolation_) + vague;
+    low = std::min(low, z - change);
+    high = std::max(high, z + change);
   }
   // What clip coordinates are off moves z / w too; then interpolation, relative to the largest depth that it sees.
   const double inverse_w = std::min(max_inverse_w_, has_planes_ ? std::max(inverse_w_.at(px, py), 0.0) +

@@ -76,7 +76,9 @@ class TriangleFreedom {
   double snap_ = 0.0;           ///< pixels: the subpixel grid, and interpolation
   double clip_error_ = 0.0;  ///< pixels · w: over w it is what clip coordinates may be off
   double largest_w_ = 0.0, largest_z_ = 0.0, operations_ = 0.0;
-  double max_inverse_w_ = 0.0, max_z_ = 0.0;
+  double max_inverse_w_ = 0.0, min_z_ = 1.0, max_z_ = 0.0;
+  double extent_ = 0.0;        ///< pixels, the longer side of its bounds
+  double weight_error_ = 1.0;  ///< of barycentric coordinates, by the arithmetic of areas
   raster::PixelRange columns_, rows_;
 };
 

@@ -285,5 +285,25 @@ TEST(HardwareFreedom, HoldsEveryTriangleWhoseCornersMovedByLessThanTheGrid) {
   EXPECT_GT(certain * 10, covering * 8) << "most samples leave no freedom of coverage";
 }
 
+/// A needle whose area rounding makes up has no barycentric coordinates of its own; one that is wide enough has.
+TEST(HardwareFreedom, ANeedleHasAnyDepthOfItsCornersWhereItsAreaIsOpen) {
+  const raster::ImageSize size{64, 64};
+  for (const double width : {0.0, 1e-4, 1e-1, 10.0}) {
+    const TriangleFreedom freedom({ClipVertex{-25.0, -25.0, 0.2, 1.0}, ClipVertex{25.0, 25.0, 0.4, 1.0},
+                                   ClipVertex{25.0 - width, 25.0 + width, 0.4, 1.0}},
+                                  size, kBits);
+    const auto sample = freedom.at(31, 31);
+    ASSERT_TRUE(sample) << width;
+    const double range = (sample->high - sample->low) / 4294967296.0;
+    EXPECT_EQ(freedom.is_facing_open(), width < 1e-2) << width;
+    if (freedom.is_facing_open()) {
+      EXPECT_GE(range, 0.2) << width;
+    } else {
+      EXPECT_LT(range, 2e-3) << width;
+    }
+    EXPECT_FALSE(freedom.at(31, 10)) << "and is nowhere else";
+  }
+}
+
 }  // namespace
 }  // namespace meshlode::gpu::test
