@@ -2,6 +2,23 @@
 # meshlode_add_room(NAME SOURCES a.cpp ... [ROOMS base mesh ...] [LIBS Some::target ...] [SYSTEM_INCLUDES dir ...])
 # One room = one folder under src/ = the target meshlode_<name>. ROOMS are public (their headers are included by this
 # room's headers); LIBS are third-party and private, because a library is seen through one wrapper file only.
+# Under sanitizers the rooms share a precompiled header too: reading the standard library is a third of what compiling
+# them costs there. Release builds do without, so that every file is also seen to include what it needs.
+function(meshlode_share_room_headers name)
+  if(NOT MESHLODE_SANITIZE OR CMAKE_CXX_COMPILER_LAUNCHER OR NOT CMAKE_CXX_COMPILER_ID MATCHES Clang)
+    return()
+  endif()
+  if(NOT TARGET meshlode_room_headers)
+    file(WRITE "${PROJECT_BINARY_DIR}/room_headers.cpp" "")
+    add_library(meshlode_room_headers STATIC EXCLUDE_FROM_ALL "${PROJECT_BINARY_DIR}/room_headers.cpp")
+    target_link_libraries(meshlode_room_headers PRIVATE meshlode_flags)
+    target_precompile_headers(meshlode_room_headers PRIVATE <algorithm> <array> <cmath> <cstdint> <cstring> <filesystem>
+                              <functional> <map> <optional> <set> <span> <string> <string_view> <utility> <variant>
+                              <vector> <glm/glm.hpp>)
+  endif()
+  target_precompile_headers(${name} REUSE_FROM meshlode_room_headers)
+endfunction()
+
 function(meshlode_add_room name)
   cmake_parse_arguments(arg "" "" "SOURCES;ROOMS;LIBS;SYSTEM_INCLUDES" ${ARGN})
   if(arg_SOURCES)
@@ -9,6 +26,9 @@ function(meshlode_add_room name)
     set(scope PUBLIC)
     target_link_libraries(meshlode_${name} PRIVATE meshlode_flags ${arg_LIBS})
     target_include_directories(meshlode_${name} SYSTEM PRIVATE ${arg_SYSTEM_INCLUDES})
+    if(NOT "CGAL::CGAL" IN_LIST arg_LIBS)  # its options for rounding would not fit
+      meshlode_share_room_headers(meshlode_${name})
+    endif()
   else()
     add_library(meshlode_${name} INTERFACE)
     set(scope INTERFACE)
@@ -32,16 +52,29 @@ function(meshlode_share_test_headers name)
     file(WRITE "${PROJECT_BINARY_DIR}/test_headers.cpp" "")
     add_executable(meshlode_test_headers EXCLUDE_FROM_ALL "${PROJECT_BINARY_DIR}/test_headers.cpp")
     target_link_libraries(meshlode_test_headers PRIVATE meshlode_flags GTest::gtest_main)
+    meshlode_compile_quickly(meshlode_test_headers)
     target_precompile_headers(meshlode_test_headers PRIVATE <gtest/gtest.h>)
   endif()
   target_precompile_headers(${name} REUSE_FROM meshlode_test_headers)
 endfunction()
 
-# meshlode_add_test(NAME SOURCES a_test.cpp ... ROOMS ... [LIBS ...] [LABELS unit property ...] [TIMEOUT seconds])
-# One GoogleTest program per room or property; ctest runs each GoogleTest case on its own line.
+# A sanitized test's own code is instrumented and run, but not worth optimising: that is half of what compiling it costs.
+# What it tests, the rooms, is optimised.
+function(meshlode_compile_quickly name)
+  if(MESHLODE_SANITIZE)
+    target_compile_options(${name} PRIVATE -O0)
+  endif()
+endfunction()
+
+# meshlode_add_test(NAME SOURCES a_test.cpp ... ROOMS ... [LIBS ...] [LABELS unit property ...] [TIMEOUT seconds]
+#                   [SANITIZED])
+# One GoogleTest program per room or property; ctest runs each GoogleTest case on its own line. SANITIZED: tools/test.sh
+# runs it under sanitizers too, as it does everything labelled malformed: for rooms whose own arithmetic makes indices.
+# Programs labelled slow are built by the target slow_tests alone.
 function(meshlode_add_test name)
-  cmake_parse_arguments(arg "" "TIMEOUT" "SOURCES;ROOMS;LIBS;LABELS" ${ARGN})
+  cmake_parse_arguments(arg "SANITIZED" "TIMEOUT" "SOURCES;ROOMS;LIBS;LABELS" ${ARGN})
   add_executable(${name} ${arg_SOURCES})
+  meshlode_compile_quickly(${name})
   meshlode_share_test_headers(${name})
   target_link_libraries(${name} PRIVATE meshlode_flags GTest::gtest_main ${arg_LIBS})
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
@@ -54,7 +87,11 @@ function(meshlode_add_test name)
   if(NOT arg_TIMEOUT)
     set(arg_TIMEOUT 300)
   endif()
-  if(NOT "slow" IN_LIST arg_LABELS AND ("unit" IN_LIST arg_LABELS OR "malformed" IN_LIST arg_LABELS))
+  if("slow" IN_LIST arg_LABELS)
+    set_target_properties(${name} PROPERTIES EXCLUDE_FROM_ALL TRUE)
+    set_property(GLOBAL APPEND PROPERTY MESHLODE_SLOW_TESTS ${name})
+  elseif(arg_SANITIZED OR "malformed" IN_LIST arg_LABELS)
+    list(APPEND arg_LABELS sanitized)
     set_property(GLOBAL APPEND PROPERTY MESHLODE_CORE_TESTS ${name})
   endif()
   gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST TEST_LIST ${name}_cases
@@ -62,6 +99,8 @@ function(meshlode_add_test name)
   # gtest_discover_tests takes lists apart, so that a second label would be lost: labels are set after the discovery.
   set(labels_file "${CMAKE_CURRENT_BINARY_DIR}/${name}_labels.cmake")
   file(WRITE "${labels_file}"
-       "if(${name}_cases)\n  set_tests_properties(\${${name}_cases} PROPERTIES LABELS \"${arg_LABELS}\")\nendif()\n")
+       "if(${name}_cases)\n  set_tests_properties(\${${name}_cases} PROPERTIES LABELS \"${arg_LABELS}\")\n"
+       "elseif(NOT EXISTS \"${CMAKE_CURRENT_BINARY_DIR}/${name}\")\n"
+       "  set_tests_properties(${name}_NOT_BUILT PROPERTIES LABELS \"${arg_LABELS}\")\nendif()\n")
   set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES "${labels_file}")
 endfunction()

@@ -15,7 +15,9 @@ packages=(
   libvulkan-dev glslc                        # gpu: headers and the shader compiler; the loader is opened at run time
 )
 if [ "${1:-}" = --tests ]; then
-  packages+=(libgtest-dev clang-14 libclang-rt-14-dev assimp-testmodels
+  packages+=(libgtest-dev clang-14 libclang-rt-14-dev lld-14 assimp-testmodels
+             python3                                       # the independent readers of the format and of glTF
+             make                                          # a stranger's project, built by what CMake takes by itself
              mesa-vulkan-drivers vulkan-validationlayers)  # a Vulkan device on any machine, and its judge
 fi
 

@@ -4,6 +4,7 @@
 # proves it against its source and draws a picture of a LOD cut.
 set -euo pipefail
 cd "$(dirname "$0")/.."
+echo "meshlode: quickstart in $PWD"
 scene=${1:-data/rock.glb}
 jobs=${JOBS:-$(nproc)}
 build=build/release

@@ -1,20 +1,27 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# test.sh [--all]: installs what is missing, then
-#   1. a release build and its tests (--all: the long ones too),
-#   2. a sanitized core: the unit tests of the rooms, built by clang with address and undefined behaviour sanitizers,
+# test.sh [--all | --all=GROUP]: installs what is missing, then
+#   1. a release build and its tests (--all: the long ones too; --all=GROUP: those of them whose names have GROUP in them),
+#   2. a sanitized core, built by clang with address and undefined behaviour sanitizers: the programs that read hostile
+#      bytes and those of the rooms that do arithmetic on indices (label `sanitized`; --all: every program),
 #   3. GCC against clang: the optimised program of part 1 and the sanitized one of part 2 must build assets with equal
 #      content hashes (I10).
-# All parts run even where one fails; the exit code is 0 only where all passed. The last lines are ctest's summaries.
+# All parts run even where one fails; the exit code is 0 only where all passed. What was skipped is named with its reason.
+# The last lines are ctest's summaries. Without --all no part can hang: each has a limit, an hour and a quarter in all.
 set -uo pipefail
 cd "$(dirname "$0")/.."
 jobs=${JOBS:-$(nproc)}
-filter=(-LE slow)
-[ "${1:-}" = --all ] && filter=()
+all=no group=
+case ${1:-} in
+  '') ;;
+  --all) all=yes ;;
+  --all=?*) group=${1#--all=} ;;
+  *) echo "usage: tools/test.sh [--all | --all=GROUP]" >&2; exit 1 ;;
+esac
 failed=()
 logs=build/logs
 mkdir -p "$logs"
-rm -f "$logs"/*.log
+rm -f "$logs"/*.log "$logs"/*.said
 export ASAN_OPTIONS=${ASAN_OPTIONS:-detect_leaks=1:allocator_may_return_null=1}
 export UBSAN_OPTIONS=${UBSAN_OPTIONS:-print_stacktrace=1:halt_on_error=1}
 
@@ -26,32 +33,73 @@ part() {
   "$@" 2>&1 | tee "$logs/${name// /-}.log"
   [ "${PIPESTATUS[0]}" -eq 0 ] || { failed+=("$name"); return 1; }
 }
+# within MINUTES COMMAND...: a command that is not done by then is ended; --all takes as long as it takes.
+within() {
+  local minutes=$1 status; shift
+  if [ $all = yes ]; then "$@"; return; fi
+  timeout --kill-after=30 "${minutes}m" "$@"; status=$?
+  [ $status -ne 124 ] && [ $status -ne 137 ] || echo "FAILED: not done after $minutes minutes: $*"
+  return $status
+}
+# run_ctest MINUTES BUILD NAME FILTER...: what each test said stays beside the log of the part NAME.
+run_ctest() {
+  local minutes=$1 build=$2 name=$3 status; shift 3
+  within "$minutes" ctest --test-dir "$build" -j "$jobs" --output-on-failure --no-tests=error "$@"; status=$?
+  cp "$build/Testing/Temporary/LastTest.log" "$logs/${name// /-}.said"
+  return $status
+}
 
-build_release() { cmake --preset release -DMESHLODE_TESTS=ON && ninja -C build/release -j "$jobs"; }
-test_release() {
-  ctest --test-dir build/release -j "$jobs" --output-on-failure --no-tests=error "${filter[@]}"
+release_targets=(all)
+[ "$all$group" = no ] || release_targets=(all slow_tests)
+build_release() {
+  cmake --preset release -DMESHLODE_TESTS=ON && within 25 ninja -C build/release -j "$jobs" "${release_targets[@]}"
 }
-# The rooms' unit tests and hostile bytes; whole builds of models and long series of mutants are for --all.
-if [ "${1:-}" = --all ]; then
-  sanitized_targets=(all) sanitized_filter=(-LE "models|install")
+release_filter=(-LE slow)
+[ $all = yes ] && release_filter=()
+test_release() { run_ctest 25 build/release "release tests" "${release_filter[@]}"; }
+test_group() { run_ctest 60 build/release "long tests" -L slow -R "$group"; }
+if [ $all = yes ]; then
+  sanitized_targets=(all slow_tests) sanitized_skip= sanitized_filter=(-LE "models|install")
 else
-  sanitized_targets=(sanitized_core meshlode_cli) sanitized_filter=(-L "unit|malformed" -LE "slow|models")
+  # Of the program what compare_compilers.sh asks of it; the Vulkan room is not run here.
+  sanitized_targets=(sanitized_core meshlode_cli) sanitized_skip="src/gpu;tests/gpu" sanitized_filter=(-L sanitized)
 fi
-build_sanitized() { cmake --preset sanitize && ninja -C build/sanitize -j "$jobs" "${sanitized_targets[@]}"; }
-test_sanitized() {
-  ctest --test-dir build/sanitize -j "$jobs" --output-on-failure --no-tests=error "${sanitized_filter[@]}"
+build_sanitized() {
+  cmake --preset sanitize -DMESHLODE_SKIP="$sanitized_skip" &&
+    within 15 ninja -C build/sanitize -j "$jobs" "${sanitized_targets[@]}"
 }
-compare_compilers() { tests/cli/compare_compilers.sh build/release build/sanitize; }
+test_sanitized() { run_ctest 8 build/sanitize "sanitized tests" "${sanitized_filter[@]}"; }
+compare_compilers() { within 5 tests/cli/compare_compilers.sh build/release build/sanitize; }
+
+# skipped NAME: the tests of a part that did not run, with the reason that each gave.
+skipped() {
+  awk '
+    FNR == NR && / Testing: / { name = $0; sub(/.* Testing: /, "", name) }
+    FNR == NR && /^SKIPPED: / && !(name in reason) { reason[name] = substr($0, 10) }
+    FNR == NR && /: Skipped$/ && !(name in reason) { getline; reason[name] = $0 }
+    FNR != NR && / \((Skipped|Disabled)\)$/ {
+      sub(/^[ \t]*[0-9]+ - /, ""); sub(/ \([A-Za-z]+\)$/, "")
+      print "  " $0 ": " ($0 in reason ? reason[$0] : "no reason given"); count++
+    }
+    END { if (count == 0) print "  none" }
+  ' "$logs/$1.said" "$logs/$1.log"
+}
 
 tools/install-deps.sh --tests || exit 1
 part "release build" build_release && part "release tests" test_release
+[ -z "$group" ] || part "long tests" test_group
 if part "sanitized build" build_sanitized; then
   part "gcc against clang" compare_compilers
   part "sanitized tests" test_sanitized
 fi
 
 step "done"
-for log in "$logs/gcc-against-clang.log" "$logs/sanitized-tests.log" "$logs/release-tests.log"; do
+for name in release-tests long-tests sanitized-tests; do
+  [ -f "$logs/$name.said" ] && [ -f "$logs/$name.log" ] || continue
+  echo "-- skipped of the ${name//-/ }:"
+  skipped "$name"
+done
+for log in "$logs/gcc-against-clang.log" "$logs/sanitized-tests.log" "$logs/long-tests.log" "$logs/release-tests.log"; do
   [ -f "$log" ] || continue
   echo "-- $(basename "$log" .log)"
   if grep -q '% tests passed' "$log"; then

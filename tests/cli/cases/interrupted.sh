@@ -4,6 +4,7 @@ cp "$DATA/rock.glb" r.glb
 cp "$DATA/crystal.glb" a.glb
 # interrupt SIGNAL ENV_OPTION: a build that is sent a signal once it has said something.
 interrupt() {
+  : >../stderr
   env "$2" "$MESHLODE" build r.glb -o r.lode --report r.json >../stdout 2>../stderr &
   local child=$! status
   for _ in $(seq 500); do [ -s ../stderr ] && break; sleep 0.02; done
