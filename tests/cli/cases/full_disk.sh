@@ -1,14 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # A full disk, a read-only folder, a limit on file sizes: exit 2, one line, no temporary file, and the old file as it was.
-if [ "$(id -u)" -eq 0 ]; then apart=(unshare -m); else apart=(unshare -rm); fi
-mkdir full readonly limited
-"${apart[@]}" mount -t tmpfs none full 2>/dev/null || skip "no file system can be mounted here"
+mkdir full readonly
+# In a mount namespace of its own, which takes its mounts with it; in a chroot, which cannot have one, root mounts here.
+apart=()
+for way in "unshare -m" "unshare -rm" env; do
+  # shellcheck disable=SC2086
+  $way sh -c 'mount -t tmpfs none full && umount full' 2>/dev/null && { read -ra apart <<<"$way"; break; }
+done
+[ ${#apart[@]} -ne 0 ] || skip "no file system can be mounted here"
 cp "$DATA/crystal.glb" a.glb
 code build --quiet a.glb -o a.lode
 export MESHLODE
 export -f code files
-# In a mount namespace of its own, which takes its mounts with it.
 "${apart[@]}" bash -uc '
+  trap "umount full readonly" EXIT
   mount -t tmpfs -o size=16k none full
   echo old >full/old.lode
   for output in full/new.lode full/old.lode; do
