@@ -59,7 +59,7 @@ release_filter=(-LE slow)
 test_release() { run_ctest 25 build/release "release tests" "${release_filter[@]}"; }
 test_group() { run_ctest 60 build/release "long tests" -L slow -R "$group"; }
 if [ $all = yes ]; then
-  sanitized_targets=(all slow_tests) sanitized_skip= sanitized_filter=(-LE "models|install")
+  sanitized_targets=(all slow_tests) sanitized_skip= sanitized_filter=(-LE "models|install" -E TwoThousandScenes)
 else
   # Of the program what compare_compilers.sh asks of it; the Vulkan room is not run here.
   sanitized_targets=(sanitized_core meshlode_cli) sanitized_skip="src/gpu;tests/gpu" sanitized_filter=(-L sanitized)
