@@ -68,7 +68,7 @@ endfunction()
 
 # The same for files of a room that are large third-party headers above all (20 s of compiling each, at -O1).
 function(meshlode_compile_files_quickly)
-  if(MESHLODE_SANITIZE)
+  if(MESHLODE_SANITIZE AND NOT MESHLODE_FUZZ)
     foreach(file IN LISTS ARGN)
       set_property(SOURCE ${file} APPEND PROPERTY COMPILE_OPTIONS -O0)
       set_source_files_properties(${file} PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
