@@ -18,7 +18,9 @@ struct NearestPoint {
 /// Squared distance from a point to a triangle, which may be a needle, a segment or a point.
 [[nodiscard]] double distance2_to_triangle(const Vec3d& p, const Vec3d& a, const Vec3d& b, const Vec3d& c);
 
-/// A bounding volume hierarchy with a fixed shape (median splits along the longest axis of the centres).
+/// A bounding volume hierarchy with a fixed shape (median splits along the longest axis of the centres). A triangle that
+/// fills little of its box, a spoke of a wheel say, stands in several leaves, in each for a piece of its length: else every
+/// point near the hub would lie in the boxes of a quarter of the spokes.
 class TriangleTree {
  public:
   explicit TriangleTree(const Surface& surface);
@@ -38,14 +40,19 @@ class TriangleTree {
   struct Corners {
     Vec3d a, b, c;
   };
+  struct Piece {
+    Vec3d low, high, center;
+    std::uint32_t triangle;
+  };
 
-  void split(std::uint32_t node, std::vector<Vec3d>& centers, std::uint32_t first, std::uint32_t count);
+  [[nodiscard]] static std::vector<Piece> cut_to_pieces(const Surface& surface);
+  void split(std::uint32_t node, std::vector<Piece>& pieces, std::uint32_t first, std::uint32_t count);
   [[nodiscard]] double distance2_to_box(const Node& node, const Vec3d& p) const;
 
   std::vector<Node> nodes_;
   std::vector<Corners> corners_;         ///< in leaf order
   std::vector<std::uint32_t> triangle_;  ///< leaf order -> surface
-  std::vector<std::uint32_t> place_;     ///< surface -> leaf order
+  std::vector<std::uint32_t> place_;     ///< surface -> leaf order, a place of several
 };
 
 }  // namespace meshlode
