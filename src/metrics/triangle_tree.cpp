@@ -47,7 +47,7 @@ namespace {
 
 // A box may have this many times the area of its triangle before it is cut; an equilateral triangle has up to 3.5.
 constexpr double kMaxWaste = 16.0;
-constexpr double kMostPieces = 32.0;  // of one triangle
+constexpr double kMostPieces = 8.0;  // of one triangle
 // In all: twice the triangles, or this many where the triangles are few.
 constexpr double kPieceBudget = 262144.0;
 
