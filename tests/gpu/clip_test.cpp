@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Triangles across the near plane, where the covered pixels can be told in closed form.
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
@@ -49,6 +50,42 @@ TEST_F(Clip, AnEdgeThroughPixelCentresFollowsTheTopLeftRule) {
       EXPECT_EQ(pixels->item[y * 64 + x] != VisibilityBuffer::kNothing, is_inside) << x << "," << y;
     }
   }
+}
+
+/// Twenty triangles of one cluster, each cut by the near plane and as large as the picture.
+/// (Guards: one driver ends an invocation after 65,535 iterations of all its loops, and each pixel had seven.)
+TEST_F(Clip, ManyClippedTrianglesOfAClusterThatCoverThePictureAreDrawnToTheEnd) {
+  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "meshlode_clip_walls.obj";
+  {
+    std::ofstream out(path);
+    for (int i = 0; i < 10; ++i) {  // on the planes z = y / 10 + 1 - i / 10
+      const double low = -1.0 - 0.1 * i, high = 3.0 - 0.1 * i;
+      out << "v -20 -20 " << low << "\nv 20 -20 " << low << "\nv 20 20 " << high << "\nv -20 20 " << high << "\n";
+      out << "f " << 4 * i + 1 << " " << 4 * i + 2 << " " << 4 * i + 3 << " " << 4 * i + 4 << "\n";
+    }
+  }
+  const auto asset = Asset::from_vector(build_file(path.string()));
+  std::filesystem::remove(path);
+  ASSERT_TRUE(asset) << asset.error().message();
+  Camera camera;
+  camera.eye = {0.0, 0.0, 10.0};
+  camera.target = {0.0, 0.0, 0.0};
+  camera.is_orthographic = true;
+  camera.ortho_height = 8.0;
+  camera.near_distance = 8.0;
+  camera.width = 640;
+  camera.height = 360;
+  const auto scene = upload_scene(*device_, *asset);
+  ASSERT_TRUE(scene) << scene.error().message();
+  auto renderer = Renderer::make(*device_, *scene, {.width = 640, .height = 360, .frustum = false});
+  ASSERT_TRUE(renderer) << renderer.error().message();
+  const auto result = compare_frame(*renderer, *asset, camera, 1e-9);
+  ASSERT_TRUE(result) << result.error().message();
+  EXPECT_EQ(result->frame.clipped_items, 1U);
+  EXPECT_EQ(result->pixels.differences, 0U) << result->pixels.first;
+  const auto pixels = renderer->read_pixels();
+  ASSERT_TRUE(pixels);
+  EXPECT_EQ(std::count(pixels->item.begin(), pixels->item.end(), VisibilityBuffer::kNothing), 0);
 }
 
 }  // namespace

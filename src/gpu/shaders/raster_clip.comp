@@ -2,7 +2,7 @@
 // The triangles of a cluster that are not wholly in front of the near plane and inside the guard band, as
 // src/raster/screen.cpp clips and src/raster/coverage.cpp draws them. Few but wide: one at a time, by a
 // workgroup. All its invocations together look for them: Mesa's lavapipe ends the loops of an invocation that has run 65,535
-// iterations, and walking along the strips of all triangles took a third of them.
+// iterations, and walking along the strips of all triangles took a third of them. So few loops are left for each pixel.
 #version 460
 #define GROUP_SIZE 128
 #include "common.glsl"
@@ -134,32 +134,25 @@ int64_t edge(uint i, uint j, int px, int py, out int bias) {
   return int64_t(dx) * int64_t(py - polygon_y[i]) - int64_t(dy) * int64_t(px - polygon_x[i]);
 }
 
-// A pixel is covered iff the signed sum over the fan is positive; its depth is the first positive triangle's.
-void draw_pixel(int x, int y, uint item, uint triangle) {
-  const int px = x * kSubpixels + kSubpixels / 2, py = y * kSubpixels + kSubpixels / 2;
-  int winding = 0;
-  bool has_depth = false;
-  uint depth = 0u;
-  for (uint i = 1u; i + 1u < polygon_count; ++i) {
-    int64_t area = doubled_area(0u, i, i + 1u);
-    const bool is_positive = area > 0l;
-    const uint b = is_positive ? i : i + 1u, c = is_positive ? i + 1u : i;
-    if (!is_positive) area = -area;
-    int bias_a, bias_b, bias_c;
-    const int64_t ea = edge(b, c, px, py, bias_a), eb = edge(c, 0u, px, py, bias_b), ec = edge(0u, b, px, py, bias_c);
-    const bool is_inside =
-        area != 0l && ea + int64_t(bias_a) >= 0l && eb + int64_t(bias_b) >= 0l && ec + int64_t(bias_c) >= 0l;
-    if (is_inside) winding += is_positive ? 1 : -1;
-    if (is_inside && is_positive && !has_depth) {
-      const uint64_t sum = uint64_t(ea) * polygon_depth[0] + uint64_t(eb) * polygon_depth[b] +
-                           uint64_t(ec) * polygon_depth[c];
-      const double estimate = (double(ea) * double(polygon_depth[0]) + double(eb) * double(polygon_depth[b]) +
-                               double(ec) * double(polygon_depth[c])) / double(area);
-      depth = divide_depth(sum, estimate, area);
-      has_depth = true;
-    }
+// What triangle i of the fan adds to a pixel. Of depths the first positive triangle's counts.
+void add_part(uint i, int px, int py, inout int winding, inout bool has_depth, inout uint depth) {
+  int64_t area = doubled_area(0u, i, i + 1u);
+  const bool is_positive = area > 0l;
+  const uint b = is_positive ? i : i + 1u, c = is_positive ? i + 1u : i;
+  if (!is_positive) area = -area;
+  int bias_a, bias_b, bias_c;
+  const int64_t ea = edge(b, c, px, py, bias_a), eb = edge(c, 0u, px, py, bias_b), ec = edge(0u, b, px, py, bias_c);
+  const bool is_inside =
+      area != 0l && ea + int64_t(bias_a) >= 0l && eb + int64_t(bias_b) >= 0l && ec + int64_t(bias_c) >= 0l;
+  if (is_inside) winding += is_positive ? 1 : -1;
+  if (is_inside && is_positive && !has_depth) {
+    const uint64_t sum = uint64_t(ea) * polygon_depth[0] + uint64_t(eb) * polygon_depth[b] +
+                         uint64_t(ec) * polygon_depth[c];
+    const double estimate = (double(ea) * double(polygon_depth[0]) + double(eb) * double(polygon_depth[b]) +
+                             double(ec) * double(polygon_depth[c])) / double(area);
+    depth = divide_depth(sum, estimate, area);
+    has_depth = true;
   }
-  if (winding > 0 AND_ALPHA(x, y)) put_pixel(x, y, pixel_value(depth, item, triangle));
 }
 
 bool is_snapped(uint slot, ClusterData data, uint vertex) {
@@ -202,9 +195,29 @@ void draw_item(uint item) {
       }
       const ivec2 columns = pixels_between(low_x, high_x, frame.width), rows = pixels_between(low_y, high_y, frame.height);
       if (columns.x <= columns.y && rows.x <= rows.y) {
+        // A pixel is covered iff the signed sum over the fan is positive. What the near plane alone cuts has two triangles at
+        // most: then a pixel has no loop.
         const int width = columns.y - columns.x + 1, pixels = width * (rows.y - rows.x + 1);
-        for (int p = int(gl_LocalInvocationID.x); p < pixels; p += GROUP_SIZE) {
-          draw_pixel(columns.x + p % width, rows.x + p / width, item, t);
+        const uint parts = polygon_count - 2u;
+        const bool is_simple = parts <= 2u;
+        for (int p = int(gl_LocalInvocationID.x); p < (is_simple ? pixels : 0); p += GROUP_SIZE) {
+          const int x = columns.x + p % width, y = rows.x + p / width;
+          const int px = x * kSubpixels + kSubpixels / 2, py = y * kSubpixels + kSubpixels / 2;
+          int winding = 0;
+          bool has_depth = false;
+          uint depth = 0u;
+          add_part(1u, px, py, winding, has_depth, depth);
+          if (parts == 2u) add_part(2u, px, py, winding, has_depth, depth);
+          if (winding > 0 AND_ALPHA(x, y)) put_pixel(x, y, pixel_value(depth, item, t));
+        }
+        for (int p = int(gl_LocalInvocationID.x); p < (is_simple ? 0 : pixels); p += GROUP_SIZE) {
+          const int x = columns.x + p % width, y = rows.x + p / width;
+          const int px = x * kSubpixels + kSubpixels / 2, py = y * kSubpixels + kSubpixels / 2;
+          int winding = 0;
+          bool has_depth = false;
+          uint depth = 0u;
+          for (uint i = 1u; i <= parts; ++i) add_part(i, px, py, winding, has_depth, depth);
+          if (winding > 0 AND_ALPHA(x, y)) put_pixel(x, y, pixel_value(depth, item, t));
         }
       }
     }

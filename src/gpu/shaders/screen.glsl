@@ -123,11 +123,15 @@ ivec2 pixels_between(int low, int high, uint count) {
 int edge_bias(int dx, int dy) { return dy < 0 || (dy == 0 && dx > 0) ? 0 : -1; }
 
 // floor(sum / area) where the sum is known modulo 2^64 only: the estimate is off by less than 2, so the remainder is not.
+// Straight code: lavapipe counts the iterations of every loop, and one for a loop that is not entered (raster_clip.comp).
 uint divide_depth(uint64_t sum, double estimate, int64_t area) {
   int64_t q = int64_t(floor(estimate));
   int64_t r = int64_t(sum - uint64_t(q) * uint64_t(area));
-  while (r < 0l) { q -= 1l; r += area; }
-  while (r >= area) { q += 1l; r -= area; }
+  [[unroll]] for (int step = 0; step < 2; ++step) {
+    const int64_t add = r < 0l ? -1l : r >= area ? 1l : 0l;
+    q += add;
+    r -= add * area;
+  }
   return uint(q);
 }
 
