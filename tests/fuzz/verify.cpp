@@ -33,8 +33,9 @@ Scene source_of(const std::uint8_t* bytes) {
   }
   if ((bytes[0] & 8U) != 0) scene.instances.resize(bytes[6] % 8, scene.instances[0]);
   if ((bytes[0] & 16U) != 0) scene.materials.resize(1 + bytes[6] % 4, scene.materials[0]);
-  if ((bytes[0] & 32U) != 0) scene.meshes.resize(bytes[7] % 6);
   if ((bytes[0] & 64U) != 0) mesh.primitives.push_back(Primitive(mesh.primitives[0]));
+  if ((bytes[0] & 32U) != 0) scene.meshes.resize(bytes[7] % 6);  // `mesh` and `primitive` are gone from here on
+  if (scene.meshes.empty()) scene.instances.clear();
   for (SourceMesh& m : scene.meshes) {
     for (Primitive& p : m.primitives) {
       if (p.material.value >= scene.materials.size()) p.material = MaterialId(0U);
