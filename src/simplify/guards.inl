@@ -64,6 +64,9 @@ bool GroupSimplifier<C>::keeps_shared_corners(std::uint32_t locked,
       return c.fixed != kSeveralWedges && std::find(c.members.begin(), c.members.end(), wedge) != c.members.end();
     });
   };
+  const auto is_newcomer = [&](std::uint32_t corner) {
+    return is_locked_[mesh_.vertex(corner)] != 0 && is_wedge_locked_[mesh_.wedge(corner)] == 0;
+  };
   for (const std::uint32_t corner : around) {
     const std::uint32_t t = corner / 3;
     const std::uint32_t at_locked = corner_in(t, locked);
@@ -73,6 +76,8 @@ bool GroupSimplifier<C>::keeps_shared_corners(std::uint32_t locked,
       const bool may_be_border = is_locked_[mesh_.vertex(next)] != 0 ||
                                  is_locked_[mesh_.vertex(CollapseMesh::next_in_triangle(next))] != 0;
       if (may_be_border && !joins_locked_wedge(mesh_.wedge(corner))) return false;
+      // Nor may the other end bring attributes that came to it with a vertex that was joined into it.
+      if (is_newcomer(next) || is_newcomer(CollapseMesh::next_in_triangle(next))) return false;
       continue;
     }
     const std::uint32_t at_tip = 3 * t + (3 - corner % 3 - at_locked % 3);
