@@ -3,7 +3,8 @@
 # One room = one folder under src/ = the target meshlode_<name>. ROOMS are public (their headers are included by this
 # room's headers); LIBS are third-party and private, because a library is seen through one wrapper file only.
 # Under sanitizers the rooms share a precompiled header too: reading the standard library is a third of what compiling
-# them costs there. Release builds do without, so that every file is also seen to include what it needs.
+# them costs there. Release builds do without, so that every file is also seen to include what it needs. GLM comes by the
+# house's own header, which sets its options first: with others its types would be passed in another way.
 function(meshlode_share_room_headers name)
   if(NOT MESHLODE_SANITIZE OR CMAKE_CXX_COMPILER_LAUNCHER OR NOT CMAKE_CXX_COMPILER_ID MATCHES Clang)
     return()
@@ -12,9 +13,10 @@ function(meshlode_share_room_headers name)
     file(WRITE "${PROJECT_BINARY_DIR}/room_headers.cpp" "")
     add_library(meshlode_room_headers STATIC EXCLUDE_FROM_ALL "${PROJECT_BINARY_DIR}/room_headers.cpp")
     target_link_libraries(meshlode_room_headers PRIVATE meshlode_flags)
+    target_include_directories(meshlode_room_headers PRIVATE ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR}/include)
     target_precompile_headers(meshlode_room_headers PRIVATE <algorithm> <array> <cmath> <cstdint> <cstring> <filesystem>
                               <functional> <map> <optional> <set> <span> <string> <string_view> <utility> <variant>
-                              <vector> <glm/glm.hpp>)
+                              <vector> ${PROJECT_SOURCE_DIR}/src/base/vec.h)
   endif()
   target_precompile_headers(${name} REUSE_FROM meshlode_room_headers)
 endfunction()
