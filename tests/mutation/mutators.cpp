@@ -190,6 +190,14 @@ std::vector<std::uint32_t> shared_vertices_where(const Edit& e, std::uint32_t c,
   return out;
 }
 
+/// The one cluster that was made from its group.
+bool is_alone_in_place_of_its_group(const Edit& e, std::uint32_t c) {
+  const auto clusters = e.clusters();
+  const std::uint32_t own = clusters[c].own_group;
+  return own != format::kNone &&
+         std::count_if(clusters.begin(), clusters.end(), [&](const auto& x) { return x.own_group == own; }) == 1;
+}
+
 /// Flips one bit of a stored value at or above `lowest`.
 bool flip_bit(Edit& e, Random& r, std::uint32_t c, std::uint32_t v, std::uint32_t k, std::uint32_t lowest) {
   const std::uint32_t bits = e.place_of(c, v, k).count;
@@ -668,9 +676,19 @@ std::vector<MutantKind> make_kinds() {
     return change_field(e, r, c, e.layout(c).color_word, format::color_range::kBits[r.below(4)]);
   });
   always("minimum of positions", [=](Edit& e, Random& r) {
-    e.move_minimum(any_cluster(e, r), pick(r, 3), r.below(2) == 0 ? 1 : -1);
+    const auto c = any_cluster(e, r);
+    if (is_alone_in_place_of_its_group(e, c)) return false;
+    e.move_minimum(c, pick(r, 3), r.below(2) == 0 ? 1 : -1);
     return true;
   });
+  mostly("minimum of positions, a group's only cluster",
+         "where it has no border but the source's it may lie a step aside: the simplifier's choice",
+         [=](Edit& e, Random& r) {
+           const auto c = any_cluster(e, r);
+           if (!is_alone_in_place_of_its_group(e, c)) return false;
+           e.move_minimum(c, pick(r, 3), r.below(2) == 0 ? 1 : -1);
+           return true;
+         });
   always("minimum of attributes, level 0", [](Edit& e, Random& r) {
     const auto c = pick_cluster(e, r, true);
     const auto n = e.stored_count(c);
