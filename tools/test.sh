@@ -7,7 +7,7 @@
 #   3. GCC against clang: the optimised program of part 1 and the sanitized one of part 2 must build assets with equal
 #      content hashes (I10).
 # All parts run even where one fails; the exit code is 0 only where all passed. What was skipped is named with its reason.
-# The last lines are ctest's summaries. Without --all no part can hang: each has a limit, an hour and a quarter in all.
+# The last lines are ctest's summaries. Without --all no part can hang: each has a limit, 79 minutes in all.
 set -uo pipefail
 cd "$(dirname "$0")/.."
 jobs=${JOBS:-$(nproc)}
@@ -66,9 +66,9 @@ else
 fi
 build_sanitized() {
   cmake --preset sanitize -DMESHLODE_SKIP="$sanitized_skip" &&
-    within 15 ninja -C build/sanitize -j "$jobs" "${sanitized_targets[@]}"
+    within 12 ninja -C build/sanitize -j "$jobs" "${sanitized_targets[@]}"
 }
-test_sanitized() { run_ctest 8 build/sanitize "sanitized tests" "${sanitized_filter[@]}"; }
+test_sanitized() { run_ctest 12 build/sanitize "sanitized tests" "${sanitized_filter[@]}"; }
 compare_compilers() { within 5 tests/cli/compare_compilers.sh build/release build/sanitize; }
 
 # skipped NAME: the tests of a part that did not run, with the reason that each gave.
