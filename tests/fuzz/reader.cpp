@@ -2,14 +2,9 @@
 // The reader on any bytes, in C++ and in C: open, touch all tables, select, load and decode every page (I11). The
 // mutator makes the checksums true again, so that the fuzzer gets behind them; the rest of its mutants keep their
 // broken ones.
-#include <algorithm>
-#include <vector>
-
+#include "asset_mutator.h"
 #include "harness.h"
 #include "read_all.h"
-#include "support/reseal.h"
-
-extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t max_size);
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto asset = meshlode::Asset::from_vector({data, data + size});
@@ -25,11 +20,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 #ifdef MESHLODE_FUZZ
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t max_size,
                                                unsigned int seed) {
-  size = LLVMFuzzerMutate(data, size, max_size);
-  if (seed % 16 == 0) return size;
-  std::vector<std::uint8_t> bytes(data, data + size);
-  meshlode::test::reseal(bytes);
-  std::copy(bytes.begin(), bytes.end(), data);
-  return size;
+  return meshlode::fuzz::mutate_asset(data, size, max_size, seed, 0);
 }
 #endif

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Triangles across the near plane, where the covered pixels can be told in closed form.
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 
@@ -14,6 +15,19 @@ namespace {
 
 using Clip = GpuTest;
 
+/// Looks along -z, eight units high; its near plane is z = 2.
+Camera cutting_camera(std::uint32_t width, std::uint32_t height) {
+  Camera camera;
+  camera.eye = {0.0, 0.0, 10.0};
+  camera.target = {0.0, 0.0, 0.0};
+  camera.is_orthographic = true;
+  camera.ortho_height = 8.0;
+  camera.near_distance = 8.0;
+  camera.width = width;
+  camera.height = height;
+  return camera;
+}
+
 /// A rectangle on the plane z = 4 y, seen along -z at 8 pixels a unit: its left, right and lower edges run exactly
 /// through pixel centres, and the near plane cuts both its triangles at y = 1/2, between two rows of centres. By the
 /// top-left rule the left edge's centres are in and those of the right and the lower one are out.
@@ -26,13 +40,7 @@ TEST_F(Clip, AnEdgeThroughPixelCentresFollowsTheTopLeftRule) {
   ASSERT_FALSE(bytes.empty());
   const auto asset = Asset::from_vector(bytes);
   ASSERT_TRUE(asset) << asset.error().message();
-  Camera camera;
-  camera.eye = {0.0, 0.0, 10.0};
-  camera.target = {0.0, 0.0, 0.0};
-  camera.is_orthographic = true;
-  camera.ortho_height = 8.0;
-  camera.near_distance = 8.0;
-  camera.width = camera.height = 64;
+  const Camera camera = cutting_camera(64, 64);
 
   const auto scene = upload_scene(*device_, *asset);
   ASSERT_TRUE(scene) << scene.error().message();
@@ -67,14 +75,7 @@ TEST_F(Clip, ManyClippedTrianglesOfAClusterThatCoverThePictureAreDrawnToTheEnd) 
   const auto asset = Asset::from_vector(build_file(path.string()));
   std::filesystem::remove(path);
   ASSERT_TRUE(asset) << asset.error().message();
-  Camera camera;
-  camera.eye = {0.0, 0.0, 10.0};
-  camera.target = {0.0, 0.0, 0.0};
-  camera.is_orthographic = true;
-  camera.ortho_height = 8.0;
-  camera.near_distance = 8.0;
-  camera.width = 640;
-  camera.height = 360;
+  const Camera camera = cutting_camera(640, 360);
   const auto scene = upload_scene(*device_, *asset);
   ASSERT_TRUE(scene) << scene.error().message();
   auto renderer = Renderer::make(*device_, *scene, {.width = 640, .height = 360, .frustum = false});

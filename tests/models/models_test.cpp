@@ -172,6 +172,15 @@ Scene as_facets(Scene scene, float tilt) {
   return scene;
 }
 
+void judge_faceted_bunny(float tilt, format::NormalMode mode) {
+  std::optional<Scene> scene = import_model("bunny.glb");
+  ASSERT_TRUE(scene.has_value());
+  const std::optional<Built> built = build(as_facets(std::move(*scene), tilt));
+  ASSERT_TRUE(built.has_value());
+  EXPECT_EQ(built->asset.meshes()[0].normal_mode, mode);
+  judge(built, {});
+}
+
 void expect_nothing_found_in(const std::vector<const char*>& names) {
   for (const char* name : names) {
     MESHLODE_NEEDS_MODEL(name)
@@ -204,12 +213,7 @@ TEST(Models, BunnyOfThreeMaterialsHasOneRootNoStuckGroupAndNoFindings) {
 
 TEST(Models, FacetedBunnyHasOneRootNoStuckGroupAndNoFindings) {
   MESHLODE_NEEDS_MODEL("bunny.glb")
-  std::optional<Scene> scene = import_model("bunny.glb");
-  ASSERT_TRUE(scene.has_value());
-  const std::optional<Built> built = build(as_facets(std::move(*scene), 0.0F));
-  ASSERT_TRUE(built.has_value());
-  EXPECT_EQ(built->asset.meshes()[0].normal_mode, format::NormalMode::kFlat);
-  judge(built, {});
+  judge_faceted_bunny(0.0F, format::NormalMode::kFlat);
 }
 
 TEST(Models, ValidateAndVerifyFindNothingInSmallOnes) {
@@ -227,12 +231,7 @@ TEST(Models, ValidateAndVerifyFindNothingInSmallOnes) {
 
 TEST(LargeModels, FacetedBunnyWhoseNormalsHaveToBeStoredHasOneRootNoStuckGroupAndNoFindings) {
   MESHLODE_NEEDS_MODEL("bunny.glb")
-  std::optional<Scene> scene = import_model("bunny.glb");
-  ASSERT_TRUE(scene.has_value());
-  const std::optional<Built> built = build(as_facets(std::move(*scene), 0.05F));
-  ASSERT_TRUE(built.has_value());
-  EXPECT_EQ(built->asset.meshes()[0].normal_mode, format::NormalMode::kStored);
-  judge(built, {});
+  judge_faceted_bunny(0.05F, format::NormalMode::kStored);
 }
 
 TEST(LargeModels, ValidateAndVerifyFindNothing) {
