@@ -59,13 +59,13 @@ release_filter=(-LE slow)
 test_release() { run_ctest 25 build/release "release tests" "${release_filter[@]}"; }
 test_group() { run_ctest 60 build/release "long tests" -L slow -R "$group"; }
 if [ $all = yes ]; then
-  sanitized_targets=(all slow_tests) sanitized_skip= sanitized_filter=(-LE "models|install" -E TwoThousandScenes)
+  sanitized_targets=(all slow_tests) sanitized_vulkan=ON sanitized_filter=(-LE "models|install" -E TwoThousandScenes)
 else
-  # Of the program what compare_compilers.sh asks of it; the Vulkan room is not run here.
-  sanitized_targets=(sanitized_core meshlode_cli) sanitized_skip="src/gpu;tests/gpu" sanitized_filter=(-L sanitized)
+  # Of the program what compare_compilers.sh asks of it; Vulkan is not run here.
+  sanitized_targets=(sanitized_core meshlode_cli) sanitized_vulkan=OFF sanitized_filter=(-L sanitized)
 fi
 build_sanitized() {
-  cmake --preset sanitize -DMESHLODE_SKIP="$sanitized_skip" &&
+  cmake --preset sanitize -DMESHLODE_VULKAN=$sanitized_vulkan &&
     within 12 ninja -C build/sanitize -j "$jobs" "${sanitized_targets[@]}"
 }
 test_sanitized() { run_ctest 12 build/sanitize "sanitized tests" "${sanitized_filter[@]}"; }

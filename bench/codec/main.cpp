@@ -16,11 +16,11 @@
 #include <utility>
 #include <vector>
 
-#include "coding/stored_page.h"
-#include "pack/pack.h"
-#include "read/asset.h"
-#include "unpack/stored_page.h"
-#include "unpack/unpack.h"
+#include "format/page_streams.h"
+#include "build/pack/pack.h"
+#include "run/read/asset.h"
+#include "run/unpack/unpack_page.h"
+#include "run/unpack/unpack.h"
 #include "thread_clock.h"
 
 namespace {

@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "decode/decode.h"
-#include "read/asset.h"
-#include "unpack/unpack.h"
+#include "run/decode/decode.h"
+#include "run/read/asset.h"
+#include "run/unpack/unpack.h"
 #include "thread_clock.h"
 
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "read/asset.h"
-#include "select/select.h"
+#include "run/read/asset.h"
+#include "run/select/select.h"
 
 namespace meshlode::bench {
 

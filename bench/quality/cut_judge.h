@@ -9,11 +9,11 @@
 #include <span>
 #include <vector>
 
-#include "decode/decode.h"
-#include "metrics/area_samples.h"
-#include "metrics/metrics.h"
-#include "metrics/triangle_tree.h"
-#include "select/select.h"
+#include "run/decode/decode.h"
+#include "judge/metrics/area_samples.h"
+#include "judge/metrics/metrics.h"
+#include "judge/metrics/triangle_tree.h"
+#include "run/select/select.h"
 
 namespace meshlode::bench {
 

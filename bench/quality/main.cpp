@@ -17,13 +17,13 @@
 
 #include "cut_judge.h"
 #include "cut_search.h"
-#include "decode/decode.h"
-#include "import/import.h"
-#include "metrics/attribute_drift.h"
+#include "run/decode/decode.h"
+#include "scene/import/import.h"
+#include "judge/metrics/attribute_drift.h"
 #include "quality_report.h"
 #include "reference.h"
-#include "report/info.h"
-#include "select/select.h"
+#include "out/report/info.h"
+#include "run/select/select.h"
 
 namespace {
 

@@ -14,13 +14,13 @@
 
 #include <tbb/global_control.h>
 
-#include "dag/build_dag.h"
-#include "decode/decode.h"
-#include "import/import.h"
-#include "pipeline/build.h"
+#include "build/dag/build_dag.h"
+#include "run/decode/decode.h"
+#include "scene/import/import.h"
+#include "build/build.h"
 #include "random/scene.h"
-#include "read/asset.h"
-#include "verify/deviations.h"
+#include "run/read/asset.h"
+#include "judge/verify/deviations.h"
 
 namespace {
 

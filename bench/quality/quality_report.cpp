@@ -6,7 +6,7 @@
 #include <cstdarg>
 #include <cstdio>
 
-#include "report/json_writer.h"
+#include "base/json_writer.h"
 
 namespace meshlode::bench {
 namespace {

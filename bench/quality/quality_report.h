@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cut_judge.h"
-#include "metrics/attribute_drift.h"
+#include "judge/metrics/attribute_drift.h"
 
 namespace meshlode::bench {
 

@@ -8,9 +8,9 @@
 
 #include "cut_judge.h"
 #include "cut_search.h"
-#include "pipeline/build.h"
+#include "build/build.h"
 #include "reference.h"
-#include "samples/samples.h"
+#include "scene/samples/samples.h"
 
 namespace meshlode::bench {
 namespace {

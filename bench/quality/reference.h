@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <memory>
 
-#include "metrics/metrics.h"
+#include "judge/metrics/metrics.h"
 
 namespace meshlode::bench {
 

@@ -7,7 +7,7 @@
 
 #include <meshlode/build.h>
 
-#include "samples/samples.h"
+#include "scene/samples/samples.h"
 
 namespace meshlode::test {
 

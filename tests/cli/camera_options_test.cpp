@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "decode/decode.h"
+#include "run/decode/decode.h"
 #include "support/sample_asset.h"
 
 namespace meshlode::cli {

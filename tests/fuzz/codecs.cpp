@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <vector>
 
-#include "coding/section_columns.h"
+#include "format/section_columns.h"
 #include "harness.h"
-#include "unpack/codecs.h"
-#include "unpack/stored_page.h"
+#include "run/unpack/decompressors.h"
+#include "run/unpack/unpack_page.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace meshlode;

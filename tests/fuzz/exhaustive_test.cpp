@@ -9,7 +9,7 @@
 #include "fuzz/read_all.h"
 #include "support/reseal.h"
 #include "support/sample_asset.h"
-#include "unpack/unpack.h"
+#include "run/unpack/unpack.h"
 
 namespace meshlode {
 namespace {

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "harness.h"
-#include "import/import.h"
+#include "scene/import/import.h"
 
 namespace {
 

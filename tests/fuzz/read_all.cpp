@@ -4,10 +4,10 @@
 #include <cmath>
 #include <string_view>
 
-#include "decode/decode.h"
+#include "run/decode/decode.h"
 #include "harness.h"
-#include "select/select.h"
-#include "unpack/content_hash.h"
+#include "run/select/select.h"
+#include "run/unpack/content_hash.h"
 
 namespace meshlode::fuzz {
 

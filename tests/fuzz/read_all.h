@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "read/asset.h"
+#include "run/read/asset.h"
 
 namespace meshlode::fuzz {
 

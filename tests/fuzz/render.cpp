@@ -5,7 +5,7 @@
 
 #include "asset_mutator.h"
 #include "harness.h"
-#include "raster/raster.h"
+#include "draw/raster/raster.h"
 
 namespace {
 

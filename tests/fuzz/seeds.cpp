@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "image/image_samples.h"
-#include "import/mutant_seeds.h"
-#include "read/asset.h"
+#include "draw/textures/image_samples.h"
+#include "scene/import/mutant_seeds.h"
+#include "run/read/asset.h"
 #include "support/sample_asset.h"
 
 namespace {

@@ -6,8 +6,8 @@
 
 #include "asset_mutator.h"
 #include "harness.h"
-#include "textures/alpha_mask.h"
-#include "textures/texture_set.h"
+#include "draw/textures/alpha_mask.h"
+#include "draw/textures/texture_set.h"
 
 namespace {
 

@@ -6,7 +6,7 @@
 #include "asset_mutator.h"
 #include "harness.h"
 #include "support/sample_asset.h"
-#include "verify/verify.h"
+#include "judge/verify/verify.h"
 
 namespace {
 

@@ -22,18 +22,20 @@ std::string read_text(const fs::path& path) {
   return text.str();
 }
 
+}  // namespace
+
 std::string room_of(const fs::path& relative) {
-  auto part = relative.begin();
-  if (part == relative.end()) return {};
-  const std::string top = part->string();
-  if (++part == relative.end()) return {};
-  const std::string folder = part->string();
-  if (top == "src") return folder;
-  if (top == "tools") return folder == "meshlode" ? "cli" : folder;
-  return {};
+  std::vector<std::string> parts;
+  for (const fs::path& part : relative) parts.push_back(part.string());
+  if (parts.size() < 3) return {};
+  if (parts[0] == "tools") return parts[1] == "meshlode" ? "cli" : parts[1];
+  if (parts[0] != "src") return {};
+  return parts.size() == 3 ? parts[1] : parts[1] + "/" + parts[2];
 }
 
-}  // namespace
+std::string floor_of(const std::string& room) {
+  return room.substr(0, room.find('/'));
+}
 
 std::vector<Include> parse_includes(const std::string& text) {
   std::vector<Include> includes;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A third-party library is seen through one .cpp per room that uses it, never in a header: `grep -r "include <metis"`
 // hits one file. Excepted are GLM, whose types are our vectors, base/parallel.h, whose templates are oneTBB's, and
-// gpu/vulkan_types.h: the Vulkan wrapper is four files, which share that header with nobody.
+// draw/gpu/vulkan/types.h: the Vulkan wrapper is four files, which share that header with nobody.
 #include <array>
 #include <map>
 #include <set>
@@ -61,11 +61,11 @@ std::string library_of(const Include& include) {
   return "?";
 }
 
-constexpr std::string_view kVulkanTypes = "src/gpu/vulkan_types.h";
+constexpr std::string_view kVulkanTypes = "src/draw/gpu/vulkan/types.h";
 
 TEST(ThirdParty, ALibraryIsSeenByOneFilePerRoomAndNeverInAHeader) {
   std::map<std::pair<std::string, std::string>, std::set<std::string>> users;  // (room, library) -> files
-  for (const SourceFile& file : read_tree({"src", "tools"}, {".h", ".cpp", ".c"})) {
+  for (const SourceFile& file : read_tree({"src", "tools"}, kSources)) {
     for (const Include& include : file.includes()) {
       const std::string library = library_of(include);
       const std::string path = file.path.generic_string();
@@ -85,14 +85,14 @@ TEST(ThirdParty, ALibraryIsSeenByOneFilePerRoomAndNeverInAHeader) {
 
 TEST(ThirdParty, VulkanIsSeenByItsWrapperAlone) {
   std::size_t users = 0;
-  for (const SourceFile& file : read_tree({"src", "tools", "bench", "tests"}, {".h", ".cpp", ".c"})) {
+  for (const SourceFile& file : read_tree({"src", "tools", "bench", "tests"}, kSources)) {
     for (const Include& include : file.includes()) {
       const std::string path = file.path.generic_string();
       if (library_of(include) == "vulkan") {
         EXPECT_EQ(path, kVulkanTypes);
       }
-      if (include.path != "gpu/vulkan_types.h") continue;
-      EXPECT_TRUE(path.starts_with("src/gpu/vulkan_") && path.ends_with(".cpp")) << path << ":" << include.line;
+      if (include.path != "draw/gpu/vulkan/types.h") continue;
+      EXPECT_TRUE(path.starts_with("src/draw/gpu/vulkan/") && path.ends_with(".cpp")) << path << ":" << include.line;
       ++users;
     }
   }

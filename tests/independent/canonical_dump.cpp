@@ -7,8 +7,8 @@
 #include <string>
 #include <type_traits>
 
-#include "decode/decode.h"
-#include "read/asset.h"
+#include "run/decode/decode.h"
+#include "run/read/asset.h"
 
 namespace {
 

@@ -11,14 +11,14 @@
 #include <utility>
 #include <vector>
 
-#include "import/import.h"
-#include "metrics/metrics.h"
-#include "pipeline/build.h"
-#include "samples/samples.h"
-#include "select/random_scene.h"
-#include "select/select.h"
-#include "validate/validate.h"
-#include "verify/verify.h"
+#include "scene/import/import.h"
+#include "judge/metrics/metrics.h"
+#include "build/build.h"
+#include "scene/samples/samples.h"
+#include "run/select/random_scene.h"
+#include "run/select/select.h"
+#include "judge/validate/validate.h"
+#include "judge/verify/verify.h"
 
 namespace meshlode {
 namespace {

@@ -11,13 +11,13 @@
 #include <gtest/gtest.h>
 
 #include "mutation/mutators.h"
-#include "pipeline/build.h"
-#include "read/asset.h"
-#include "samples/samples.h"
+#include "build/build.h"
+#include "run/read/asset.h"
+#include "scene/samples/samples.h"
 #include "support/sample_asset.h"
-#include "validate/judged_sample.h"
-#include "validate/validate.h"
-#include "verify/verify.h"
+#include "judge/validate/judged_sample.h"
+#include "judge/validate/validate.h"
+#include "judge/verify/verify.h"
 
 namespace meshlode {
 namespace {

@@ -8,8 +8,8 @@
 #include <set>
 #include <utility>
 
-#include "decode/decode.h"
-#include "read/asset.h"
+#include "run/decode/decode.h"
+#include "run/read/asset.h"
 
 namespace meshlode::test {
 

@@ -6,8 +6,8 @@
 #include <functional>
 #include <vector>
 
-#include "validate/edit.h"
-#include "verify/random.h"
+#include "judge/validate/edit.h"
+#include "judge/verify/random.h"
 
 namespace meshlode::test {
 

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "base/file.h"
-#include "import/import.h"
+#include "scene/import/import.h"
 #include "scene.h"
 #include "shapes.h"
 #include "shrink.h"

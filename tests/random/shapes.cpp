@@ -5,7 +5,7 @@
 #include <iterator>
 #include <map>
 
-#include "samples/noise.h"
+#include "scene/samples/noise.h"
 
 namespace meshlode::test {
 

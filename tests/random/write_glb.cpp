@@ -5,7 +5,7 @@
 #include <cstring>
 #include <optional>
 
-#include "samples/png.h"
+#include "scene/samples/write_png.h"
 #include "scene.h"
 
 namespace meshlode::test {

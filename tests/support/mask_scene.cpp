@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "pipeline/build.h"
-#include "samples/png.h"
+#include "build/build.h"
+#include "scene/samples/write_png.h"
 
 namespace meshlode::test {
 

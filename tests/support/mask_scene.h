@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "mesh/scene.h"
+#include "scene/scene.h"
 
 namespace meshlode::test {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/vec.h"
-#include "mesh/scene.h"
+#include "scene/scene.h"
 #include "support/random.h"
 
 namespace meshlode::test {

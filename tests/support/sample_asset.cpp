@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "write/write.h"
+#include "build/write/write.h"
 
 namespace meshlode::test {
 

@@ -8,8 +8,8 @@
 
 #include <meshlode/format.h>
 
-#include "encode/encode.h"
-#include "mesh/scene.h"
+#include "build/encode/encode.h"
+#include "scene/scene.h"
 #include "support/reseal.h"
 #include "support/sample_mesh.h"
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "hierarchy/culling_bounds.h"
+#include "build/hierarchy/culling_bounds.h"
 
 namespace meshlode::test {
 

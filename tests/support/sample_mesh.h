@@ -3,10 +3,10 @@
 // I1 to I6, so that a test may break one thing and know that it is the only one.
 #pragma once
 
-#include "hierarchy/hierarchy.h"
-#include "mesh/dag.h"
-#include "mesh/prepared.h"
-#include "mesh/scene.h"
+#include "build/hierarchy/hierarchy.h"
+#include "build/lod_dag.h"
+#include "build/prepared.h"
+#include "scene/scene.h"
 
 namespace meshlode::test {
 

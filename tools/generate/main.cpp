@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "base/file.h"
-#include "samples/samples.h"
+#include "scene/samples/samples.h"
 
 namespace {
 

@@ -9,8 +9,8 @@
 #include <meshlode/result.h>
 
 #include "options.h"
-#include "read/asset.h"
-#include "select/select.h"
+#include "run/read/asset.h"
+#include "run/select/select.h"
 
 namespace meshlode::cli {
 

@@ -6,7 +6,7 @@
 #include <functional>
 #include <utility>
 
-#include "export/choose_cuts.h"
+#include "out/export/choose_cuts.h"
 
 namespace meshlode::cli {
 

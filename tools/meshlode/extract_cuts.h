@@ -12,8 +12,8 @@
 #include "base/ids.h"
 #include "bounds_options.h"
 #include "camera_options.h"
-#include "read/asset.h"
-#include "select/select.h"
+#include "run/read/asset.h"
+#include "run/select/select.h"
 
 namespace meshlode::cli {
 

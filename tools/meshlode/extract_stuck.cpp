@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "outputs.h"
-#include "export/colored_sets.h"
-#include "report/info.h"
-#include "report/json_writer.h"
+#include "out/export/colored_sets.h"
+#include "out/report/info.h"
+#include "base/json_writer.h"
 
 namespace meshlode::cli {
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "options.h"
-#include "read/asset.h"
+#include "run/read/asset.h"
 
 namespace meshlode::cli {
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <string>
 
-#include "pipeline/build.h"
+#include "build/build.h"
 
 namespace meshlode::cli {
 

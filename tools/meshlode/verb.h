@@ -7,7 +7,7 @@
 //      with print_error, return 0 or the ErrorCode's value;
 //   2. declare kFooVerb at the end of this header and name it in verb_table.cpp;
 //   3. add `meshlode_add_verb(foo ROOMS …)` to CMakeLists.txt.
-// Third-party headers stay out of verb files: CLI11 is in options.cpp, JSON output is report/json_writer.h.
+// Third-party headers stay out of verb files: CLI11 is in options.cpp, JSON output is base/json_writer.h.
 #pragma once
 
 #include <span>

@@ -12,12 +12,12 @@
 #include <string_view>
 
 #include "base/byte_size.h"
-#include "import/import.h"
+#include "scene/import/import.h"
 #include "options.h"
 #include "outputs.h"
-#include "pipeline/build.h"
+#include "build/build.h"
 #include "progress.h"
-#include "report/json_writer.h"
+#include "base/json_writer.h"
 #include "verb.h"
 
 namespace meshlode::cli {

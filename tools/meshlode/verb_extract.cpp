@@ -8,13 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "export/export.h"
+#include "out/export/export.h"
 #include "extract_cuts.h"
 #include "extract_stuck.h"
 #include "options.h"
 #include "outputs.h"
-#include "read/asset.h"
-#include "report/json_writer.h"
+#include "run/read/asset.h"
+#include "base/json_writer.h"
 #include "verb.h"
 
 namespace meshlode::cli {

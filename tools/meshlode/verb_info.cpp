@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "options.h"
-#include "read/asset.h"
-#include "report/info.h"
+#include "run/read/asset.h"
+#include "out/report/info.h"
 #include "verb.h"
 
 namespace meshlode::cli {

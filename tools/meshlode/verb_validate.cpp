@@ -5,8 +5,8 @@
 
 #include "base/file.h"
 #include "options.h"
-#include "report/json_writer.h"
-#include "validate/validate.h"
+#include "base/json_writer.h"
+#include "judge/validate/validate.h"
 #include "verb.h"
 
 namespace meshlode::cli {

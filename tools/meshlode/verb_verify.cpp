@@ -5,16 +5,16 @@
 #include <vector>
 
 #include "base/file.h"
-#include "decode/decode.h"
-#include "import/import.h"
+#include "run/decode/decode.h"
+#include "scene/import/import.h"
 #include "options.h"
 #include "outputs.h"
-#include "read/asset.h"
-#include "report/json_writer.h"
-#include "select/select.h"
+#include "run/read/asset.h"
+#include "base/json_writer.h"
+#include "run/select/select.h"
 #include "verb.h"
-#include "verify/verify.h"
-#include "verify_gpu.h"
+#include "judge/verify/verify.h"
+#include "gpu_checks.h"
 
 namespace meshlode::cli {
 

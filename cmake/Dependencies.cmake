@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Every library that meshlode stands on, found once; each an imported target. What tests and benchmarks need beside them is
+# found where MESHLODE_TESTS or MESHLODE_BENCH asks for it.
+
+# meshlode_find_library(TARGET NAME HEADER): libraries of Debian's that ship neither a CMake config nor a find module.
+function(meshlode_find_library target name header)
+  string(MAKE_C_IDENTIFIER "MESHLODE_${name}" variable)
+  string(TOUPPER "${variable}" variable)
+  find_library(${variable}_LIBRARY ${name} REQUIRED)
+  find_path(${variable}_INCLUDE_DIR ${header} REQUIRED)
+  mark_as_advanced(${variable}_LIBRARY ${variable}_INCLUDE_DIR)
+  add_library(${target} UNKNOWN IMPORTED GLOBAL)
+  set_target_properties(${target} PROPERTIES IMPORTED_LOCATION "${${variable}_LIBRARY}"
+                                             INTERFACE_INCLUDE_DIRECTORIES "${${variable}_INCLUDE_DIR}")
+endfunction()
+
+find_package(Threads REQUIRED)
+find_package(TBB REQUIRED)
+find_package(nlohmann_json 3 REQUIRED)
+find_package(Boost REQUIRED)  # headers: CGAL's smallest spheres need them, and whole numbers of any length
+find_package(METIS REQUIRED)
+find_package(PNG REQUIRED)
+find_package(JPEG REQUIRED)
+meshlode_find_library(Draco::draco draco draco/core/decoder_buffer.h)
+meshlode_find_library(OpenMesh::Core OpenMeshCore OpenMesh/Core/IO/MeshIO.hh)
+meshlode_find_library(ZSTD::zstd zstd zstd.h)
+meshlode_find_library(LZ4::lz4 lz4 lz4.h)
+find_path(MESHLODE_STB_INCLUDE_DIR stb_image.h PATH_SUFFIXES stb REQUIRED)
+mark_as_advanced(MESHLODE_STB_INCLUDE_DIR)
+add_library(stb::stb INTERFACE IMPORTED GLOBAL)
+target_include_directories(stb::stb INTERFACE "${MESHLODE_STB_INCLUDE_DIR}")
+if(MESHLODE_VULKAN OR MESHLODE_TESTS)
+  find_program(MESHLODE_GLSLC glslc REQUIRED)
+endif()
+if(MESHLODE_TESTS)
+  find_package(GTest REQUIRED)
+  find_package(Python3 COMPONENTS Interpreter)
+  # For its exact predicates, which the tests ask. Its flags (-frounding-math) stay with the targets that link it.
+  find_package(CGAL REQUIRED)
+endif()
+if(MESHLODE_BENCH)
+  meshlode_find_library(OpenMesh::Tools OpenMeshTools OpenMesh/Tools/Decimater/DecimaterT.hh)
+endif()

@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# One floor = one folder under src/ = the library meshlode_<floor>; its rooms are the folders inside. cmake/layers.txt says
+# which floor may include which, and a test holds it.
+
+# Under sanitizers the floors share a precompiled header: reading the standard library is a third of what compiling
+# them costs there. Release builds do without, so that every file is also seen to include what it needs. GLM comes by the
+# house's own header, which sets its options first: with others its types would be passed in another way.
+function(meshlode_share_floor_headers name)
+  if(NOT MESHLODE_SANITIZE OR CMAKE_CXX_COMPILER_LAUNCHER OR NOT CMAKE_CXX_COMPILER_ID MATCHES Clang)
+    return()
+  endif()
+  if(NOT TARGET meshlode_floor_headers)
+    file(WRITE "${PROJECT_BINARY_DIR}/floor_headers.cpp" "")
+    add_library(meshlode_floor_headers STATIC EXCLUDE_FROM_ALL "${PROJECT_BINARY_DIR}/floor_headers.cpp")
+    target_link_libraries(meshlode_floor_headers PRIVATE meshlode_flags)
+    target_include_directories(meshlode_floor_headers PRIVATE ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR}/include)
+    target_precompile_headers(meshlode_floor_headers PRIVATE <algorithm> <array> <cmath> <cstdint> <cstring> <filesystem>
+                              <functional> <map> <optional> <set> <span> <string> <string_view> <utility> <variant>
+                              <vector> ${PROJECT_SOURCE_DIR}/src/base/vec.h)
+  endif()
+  target_precompile_headers(${name} REUSE_FROM meshlode_floor_headers)
+endfunction()
+
+# What every target of a floor has: flags, src/ and include/ to include from, its libraries. LIBS are third-party and
+# private, because a library is seen through one wrapper file of a room only.
+function(meshlode_set_up_floor_target target)
+  target_link_libraries(${target} PRIVATE meshlode_flags ${ARGN})
+  target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src>
+                                              $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>)
+  meshlode_share_floor_headers(${target})
+endfunction()
+
+# meshlode_add_floor(NAME SOURCES room/a.cpp ... [FLOORS base format ...] [LIBS Some::target ...])
+# FLOORS are public: their headers are included by this floor's headers.
+function(meshlode_add_floor name)
+  cmake_parse_arguments(arg "" "" "SOURCES;FLOORS;LIBS" ${ARGN})
+  list(TRANSFORM arg_FLOORS PREPEND meshlode_)
+  add_library(meshlode_${name} STATIC ${arg_SOURCES})
+  meshlode_set_up_floor_target(meshlode_${name} ${arg_LIBS})
+  target_link_libraries(meshlode_${name} PUBLIC ${arg_FLOORS})
+endfunction()
+
+# The same for the floors that an engine ships: their objects also go into the libraries that are installed, which consist
+# of them alone (MeshlodeInstall.cmake).
+function(meshlode_add_runtime_floor name)
+  cmake_parse_arguments(arg "" "" "SOURCES;FLOORS;LIBS" ${ARGN})
+  list(TRANSFORM arg_FLOORS PREPEND meshlode_)
+  add_library(meshlode_${name}_objects OBJECT ${arg_SOURCES})
+  meshlode_set_up_floor_target(meshlode_${name}_objects ${arg_LIBS})
+  add_library(meshlode_${name} STATIC)
+  set_target_properties(meshlode_${name} PROPERTIES LINKER_LANGUAGE CXX)
+  target_link_libraries(meshlode_${name} PRIVATE meshlode_${name}_objects ${arg_LIBS} PUBLIC ${arg_FLOORS})
+  target_include_directories(meshlode_${name} PUBLIC ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR}/include)
+endfunction()
+
+# GoogleTest's header is half of what compiling a test costs; it is compiled once. Compiler caches do not see through that,
+# so with one (CMAKE_CXX_COMPILER_LAUNCHER) every test reads it for itself.
+function(meshlode_share_test_headers name)
+  if(CMAKE_CXX_COMPILER_LAUNCHER)
+    return()
+  endif()
+  if(NOT TARGET meshlode_test_headers)
+    # A program, not a library: it has to be position-independent in the way that the tests are.
+    file(WRITE "${PROJECT_BINARY_DIR}/test_headers.cpp" "")
+    add_executable(meshlode_test_headers EXCLUDE_FROM_ALL "${PROJECT_BINARY_DIR}/test_headers.cpp")
+    target_link_libraries(meshlode_test_headers PRIVATE meshlode_flags GTest::gtest_main)
+    meshlode_compile_quickly(meshlode_test_headers)
+    target_precompile_headers(meshlode_test_headers PRIVATE <gtest/gtest.h>)
+  endif()
+  target_precompile_headers(${name} REUSE_FROM meshlode_test_headers)
+endfunction()
+
+# A sanitized test's own code is instrumented and run, but not worth optimising: that is half of what compiling it costs.
+# What it tests, the floors, is optimised.
+function(meshlode_compile_quickly name)
+  if(MESHLODE_SANITIZE)
+    target_compile_options(${name} PRIVATE -O0)
+  endif()
+endfunction()
+
+# The same for files of a floor that are large third-party headers above all (20 s of compiling each, at -O1).
+function(meshlode_compile_files_quickly)
+  if(MESHLODE_SANITIZE AND NOT MESHLODE_FUZZ)
+    foreach(file IN LISTS ARGN)
+      set_property(SOURCE ${file} APPEND PROPERTY COMPILE_OPTIONS -O0)
+      set_source_files_properties(${file} PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
+    endforeach()
+  endif()
+endfunction()
+
+# meshlode_add_test(NAME SOURCES a_test.cpp ... FLOORS ... [LIBS ...] [LABELS unit property ...] [TIMEOUT seconds]
+#                   [SANITIZED])
+# One GoogleTest program per room or property; ctest runs each GoogleTest case on its own line. SANITIZED: tools/test.sh
+# runs it under sanitizers too, as it does everything labelled malformed: for rooms whose own arithmetic makes indices.
+# Programs labelled slow are built by the target slow_tests alone.
+function(meshlode_add_test name)
+  cmake_parse_arguments(arg "SANITIZED" "TIMEOUT" "SOURCES;FLOORS;LIBS;LABELS" ${ARGN})
+  add_executable(${name} ${arg_SOURCES})
+  meshlode_compile_quickly(${name})
+  meshlode_share_test_headers(${name})
+  target_link_libraries(${name} PRIVATE meshlode_flags GTest::gtest_main ${arg_LIBS})
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+  foreach(floor IN LISTS arg_FLOORS)
+    target_link_libraries(${name} PRIVATE meshlode_${floor})
+  endforeach()
+  if(NOT arg_LABELS)
+    set(arg_LABELS unit)
+  endif()
+  if(NOT arg_TIMEOUT)
+    set(arg_TIMEOUT 300)
+  endif()
+  if("slow" IN_LIST arg_LABELS)
+    set_target_properties(${name} PROPERTIES EXCLUDE_FROM_ALL TRUE)
+    set_property(GLOBAL APPEND PROPERTY MESHLODE_SLOW_TESTS ${name})
+  elseif(arg_SANITIZED OR "malformed" IN_LIST arg_LABELS)
+    list(APPEND arg_LABELS sanitized)
+    set_property(GLOBAL APPEND PROPERTY MESHLODE_CORE_TESTS ${name})
+  endif()
+  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST TEST_LIST ${name}_cases
+                       PROPERTIES TIMEOUT ${arg_TIMEOUT} SKIP_REGULAR_EXPRESSION "\\[  SKIPPED \\]")
+  # gtest_discover_tests takes lists apart, so that a second label would be lost: labels are set after the discovery.
+  set(labels_file "${CMAKE_CURRENT_BINARY_DIR}/${name}_labels.cmake")
+  file(WRITE "${labels_file}"
+       "if(${name}_cases)\n  set_tests_properties(\${${name}_cases} PROPERTIES LABELS \"${arg_LABELS}\")\n"
+       "elseif(NOT EXISTS \"${CMAKE_CURRENT_BINARY_DIR}/${name}\")\n"
+       "  set_tests_properties(${name}_NOT_BUILT PROPERTIES LABELS \"${arg_LABELS}\")\nendif()\n")
+  set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES "${labels_file}")
+endfunction()

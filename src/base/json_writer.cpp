@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: MIT
+#include "base/json_writer.h"
+
+#include <charconv>
+#include <cmath>
+
+#include <meshlode/format.h>
+
+namespace meshlode {
+
+namespace {
+
+/// Bytes of the UTF-8 sequence at the start of `s`, 0 where it is not one (RFC 3629: no surrogates, no overlong forms).
+std::size_t utf8_length(std::string_view s) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(s[i]); };
+  const unsigned char b = byte(0);
+  const std::size_t n = b < 0x80                ? 1
+                        : b >= 0xC2 && b < 0xE0 ? 2
+                        : b >= 0xE0 && b < 0xF0 ? 3
+                        : b >= 0xF0 && b < 0xF5 ? 4
+                                                : 0;
+  if (n == 0 || n > s.size()) return 0;
+  for (std::size_t i = 1; i < n; ++i) {
+    if ((byte(i) & 0xC0) != 0x80) return 0;
+  }
+  if ((b == 0xE0 && byte(1) < 0xA0) || (b == 0xED && byte(1) >= 0xA0) || (b == 0xF0 && byte(1) < 0x90) ||
+      (b == 0xF4 && byte(1) >= 0x90)) {
+    return 0;
+  }
+  return n;
+}
+
+std::string quote(std::string_view text) {
+  constexpr char kHex[] = "0123456789abcdef";
+  std::string out = "\"";
+  while (!text.empty()) {
+    const char c = text.front();
+    const std::size_t n = utf8_length(text);
+    if (n == 0) {
+      out += "\xEF\xBF\xBD";
+    } else if (c == '"' || c == '\\') {
+      out += '\\';
+      out += c;
+    } else if (c == '\n') {
+      out += "\\n";
+    } else if (c == '\t') {
+      out += "\\t";
+    } else if (static_cast<unsigned char>(c) < 0x20) {
+      out += "\\u00";
+      out += kHex[static_cast<unsigned char>(c) >> 4];
+      out += kHex[static_cast<unsigned char>(c) & 15];
+    } else {
+      out += text.substr(0, n);
+    }
+    text.remove_prefix(n == 0 ? 1 : n);
+  }
+  return out + '"';
+}
+
+template <class T>
+std::string shortest(T number) {
+  char buffer[64];
+  const auto [end, error] = std::to_chars(buffer, buffer + sizeof buffer, number);
+  return error == std::errc{} ? std::string(buffer, end) : "null";
+}
+
+}  // namespace
+
+void JsonWriter::separate() {
+  if (after_key_) {
+    after_key_ = false;
+    return;
+  }
+  if (!is_first_) out_ += ',';
+  if (depth_ > 0) {
+    out_ += '\n';
+    out_.append(static_cast<std::size_t>(2 * depth_), ' ');
+  }
+  is_first_ = false;
+}
+
+void JsonWriter::open(char bracket) {
+  separate();
+  out_ += bracket;
+  ++depth_;
+  is_first_ = true;
+}
+
+void JsonWriter::close(char bracket) {
+  --depth_;
+  if (!is_first_) {
+    out_ += '\n';
+    out_.append(static_cast<std::size_t>(2 * depth_), ' ');
+  }
+  out_ += bracket;
+  is_first_ = false;
+}
+
+void JsonWriter::literal(std::string_view json) {
+  separate();
+  out_ += json;
+}
+
+void JsonWriter::key(std::string_view name) {
+  separate();
+  out_ += quote(name);
+  out_ += ": ";
+  after_key_ = true;
+}
+
+void JsonWriter::value(std::string_view text) {
+  literal(quote(text));
+}
+void JsonWriter::value(double number) {
+  literal(std::isfinite(number) && number < static_cast<double>(format::kInfiniteError) ? shortest(number) : "null");
+}
+void JsonWriter::value(float number) {
+  literal(std::isfinite(number) && number < format::kInfiniteError ? shortest(number) : "null");
+}
+
+}  // namespace meshlode

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// <meshlode/build.h>: checks what a caller passes, runs the pipeline in as many threads as asked for, and turns what a
+// third party throws into an Error.
+#include <meshlode/build.h>
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+#include <utility>
+
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#include "build/api/scene_input.h"
+#include "base/output_files.h"
+#include "scene/import/import.h"
+#include "build/build.h"
+
+namespace meshlode {
+namespace {
+
+Result<PipelineOptions> make_pipeline_options(const BuildOptions& options) {
+  const auto usage = [](const char* field, const char* detail) { return Error{ErrorCode::kUsage, field, detail}; };
+  if (options.strip_attributes && options.keep_all_attributes) {
+    return usage("BuildOptions::strip_attributes", "not together with keep_all_attributes");
+  }
+  if (!(options.grid_step >= 0.0) || !std::isfinite(options.grid_step)) {
+    return usage("BuildOptions::grid_step", "is not a number >= 0");
+  }
+  if (options.thread_count > 4096) return usage("BuildOptions::thread_count", "is above 4096");
+  PipelineOptions pipeline;
+  pipeline.error_tier = options.error_tier;
+  pipeline.codec = options.codec;
+  pipeline.grid_step = options.grid_step;
+  pipeline.repair = options.repair;
+  if (options.strip_attributes) pipeline.attributes = AttributeChoice::kNone;
+  if (options.keep_all_attributes) pipeline.attributes = AttributeChoice::kAll;
+  return pipeline;
+}
+
+Result<std::vector<std::uint8_t>> run_pipeline(const Scene& scene, const BuildOptions& options) {
+  const auto pipeline = make_pipeline_options(options);
+  if (!pipeline) return pipeline.error();
+  double reached = 0.0;
+  const ProgressCallback progress = [&](const ProgressEvent& event) {
+    if (options.on_progress) {
+      reached = std::max(reached, event.fraction);
+      options.on_progress({reached, event.mesh, event.mesh_count, event.level, event.triangles, event.mesh_name});
+    }
+    return !options.should_cancel || !options.should_cancel();
+  };
+  if (options.should_cancel && options.should_cancel()) return Error{ErrorCode::kBuildFailed, "", "cancelled"};
+  PipelineReport report;
+  if (options.thread_count == 0) return build_lode(scene, *pipeline, progress, report);
+  // More than oneTBB has would only make it warn on stderr.
+  const std::size_t available = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  tbb::task_arena arena(static_cast<int>(std::min<std::size_t>(options.thread_count, available)));
+  return arena.execute([&] { return build_lode(scene, *pipeline, progress, report); });
+}
+
+/// Runs `body`; exceptions of the C++ library, of oneTBB and of the caller's callbacks end here.
+template <class Body>
+auto guarded(const Body& body) -> decltype(body()) {
+  try {
+    return body();
+  } catch (const std::bad_alloc&) {
+    return Error{ErrorCode::kBuildFailed, "", "out of memory"};
+  } catch (const std::exception& failure) {
+    return Error{ErrorCode::kBuildFailed, "", failure.what()};
+  } catch (...) {  // a caller's callback may throw anything
+    return Error{ErrorCode::kBuildFailed, "", "an exception of an unknown type"};
+  }
+}
+
+Status write_result(Result<std::vector<std::uint8_t>> bytes, OutputFiles& files, const std::filesystem::path& output) {
+  if (!bytes) return bytes.error();
+  return files.write(output, *bytes);
+}
+
+}  // namespace
+
+Result<std::vector<std::uint8_t>> build_asset(const SceneInput& scene, const BuildOptions& options) {
+  return guarded([&]() -> Result<std::vector<std::uint8_t>> {
+    auto made = make_scene(scene, options.repair);
+    if (!made) return made.error();
+    return run_pipeline(*made, options);
+  });
+}
+
+Status build_asset_file(const SceneInput& scene, const std::filesystem::path& output, const BuildOptions& options) {
+  return guarded([&]() -> Status {
+    OutputFiles files;
+    if (Status status = files.claim(output); !status) return status;
+    return write_result(build_asset(scene, options), files, output);
+  });
+}
+
+Status build_file(const std::filesystem::path& input, const std::filesystem::path& output,
+                  const BuildOptions& options) {
+  return guarded([&]() -> Status {
+    ImportOptions import_options;
+    import_options.repair = options.repair;
+    std::vector<FileId> files_read;
+    import_options.files_read = &files_read;
+    auto scene = import_scene(input, import_options);
+    if (!scene) return scene.error();
+    OutputFiles files;
+    files.keep(files_read);
+    if (Status status = files.claim(output); !status) return status;
+    return write_result(run_pipeline(*scene, options), files, output);
+  });
+}
+
+}  // namespace meshlode

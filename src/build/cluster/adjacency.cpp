@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "build/cluster/adjacency.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace meshlode {
+
+namespace {
+
+using Corner3 = std::array<std::uint32_t, 3>;
+
+/// One end of an undirected edge, bucketed by its smaller position.
+struct EdgeUse {
+  std::uint32_t other;     ///< the larger position
+  std::uint32_t triangle;
+  auto operator<=>(const EdgeUse&) const = default;
+};
+
+/// Positions renumbered 0 … n-1 in order of value. Returns n.
+std::uint32_t compact(std::span<const Corner3> source, std::vector<Corner3>& out) {
+  std::vector<std::uint32_t> ids;
+  ids.reserve(3 * source.size());
+  for (const Corner3& corners : source) ids.insert(ids.end(), corners.begin(), corners.end());
+  std::sort(ids.begin(), ids.end());
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  out.resize(source.size());
+  for (std::size_t t = 0; t < source.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      out[t][k] = static_cast<std::uint32_t>(std::lower_bound(ids.begin(), ids.end(), source[t][k]) - ids.begin());
+    }
+  }
+  return static_cast<std::uint32_t>(ids.size());
+}
+
+std::uint32_t find_root(std::vector<std::uint32_t>& parent, std::uint32_t i) {
+  while (parent[i] != i) {
+    parent[i] = parent[parent[i]];
+    i = parent[i];
+  }
+  return i;
+}
+
+}  // namespace
+
+Graph triangle_graph(std::span<const Corner3> corner_positions, std::span<const TriangleLink> links) {
+  std::vector<Corner3> corners;
+  const std::uint32_t position_count = compact(corner_positions, corners);
+  const auto triangle_count = static_cast<std::uint32_t>(corners.size());
+
+  // Counting sort of edge uses by smaller end, then a sort inside each (usually tiny) bucket.
+  std::vector<std::uint32_t> bucket_start(position_count + 1, 0);
+  const auto for_each_edge = [&](auto&& visit) {
+    for (std::uint32_t t = 0; t < triangle_count; ++t) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t a = corners[t][k];
+        const std::uint32_t b = corners[t][(k + 1) % 3];
+        if (a != b) visit(std::min(a, b), std::max(a, b), t);
+      }
+    }
+  };
+  for_each_edge([&](std::uint32_t low, std::uint32_t, std::uint32_t) { ++bucket_start[low + 1]; });
+  std::partial_sum(bucket_start.begin(), bucket_start.end(), bucket_start.begin());
+  std::vector<EdgeUse> uses(bucket_start.back());
+  std::vector<std::uint32_t> cursor(bucket_start.begin(), bucket_start.end() - 1);
+  for_each_edge([&](std::uint32_t low, std::uint32_t high, std::uint32_t t) { uses[cursor[low]++] = {high, t}; });
+
+  std::vector<TriangleLink> strong;
+  strong.reserve(uses.size() / 2 + 1);
+  std::vector<std::uint32_t> parent(triangle_count);
+  std::iota(parent.begin(), parent.end(), 0U);
+  for (std::uint32_t bucket = 0; bucket < position_count; ++bucket) {
+    const auto begin = uses.begin() + bucket_start[bucket];
+    const auto end = uses.begin() + bucket_start[bucket + 1];
+    std::sort(begin, end);
+    for (auto use = begin; use != end && use + 1 != end; ++use) {
+      if (use->other != (use + 1)->other || use->triangle == (use + 1)->triangle) continue;
+      strong.emplace_back(use->triangle, (use + 1)->triangle);
+      parent[find_root(parent, use->triangle)] = find_root(parent, (use + 1)->triangle);
+    }
+  }
+  for (const auto& [a, b] : links) {
+    strong.emplace_back(a, b);
+    parent[find_root(parent, a)] = find_root(parent, b);
+  }
+  std::vector<TriangleLink> weak;
+  for (std::uint32_t t = 0; t + 1 < triangle_count; ++t) {
+    if (find_root(parent, t) != find_root(parent, t + 1)) weak.emplace_back(t, t + 1);
+  }
+
+  Graph graph;
+  graph.row_start.assign(triangle_count + 1, 0);
+  for (const auto* list : {&strong, &weak}) {
+    for (const auto& [a, b] : *list) {
+      ++graph.row_start[a + 1];
+      ++graph.row_start[b + 1];
+    }
+  }
+  std::partial_sum(graph.row_start.begin(), graph.row_start.end(), graph.row_start.begin());
+  graph.neighbor.resize(static_cast<std::size_t>(graph.row_start.back()));
+  graph.edge_weight.resize(graph.neighbor.size());
+  std::vector<std::int32_t> fill(graph.row_start.begin(), graph.row_start.end() - 1);
+  const auto add = [&](std::uint32_t a, std::uint32_t b, std::int32_t weight) {
+    graph.neighbor[static_cast<std::size_t>(fill[a])] = static_cast<std::int32_t>(b);
+    graph.edge_weight[static_cast<std::size_t>(fill[a]++)] = weight;
+  };
+  for (const auto& [a, b] : strong) {
+    add(a, b, kSharedEdgeWeight);
+    add(b, a, kSharedEdgeWeight);
+  }
+  for (const auto& [a, b] : weak) {
+    add(a, b, kNearbyWeight);
+    add(b, a, kNearbyWeight);
+  }
+  // Two triangles that share two edges are one neighbour of twice the weight: METIS wants no repeated edges.
+  std::vector<std::pair<std::int32_t, std::int32_t>> row;
+  std::int32_t write = 0;
+  std::int32_t row_begin = 0;
+  for (std::uint32_t t = 0; t < triangle_count; ++t) {
+    const std::int32_t row_end = graph.row_start[t + 1];
+    row.clear();
+    for (std::int32_t i = row_begin; i < row_end; ++i) {
+      row.emplace_back(graph.neighbor[static_cast<std::size_t>(i)], graph.edge_weight[static_cast<std::size_t>(i)]);
+    }
+    row_begin = row_end;
+    std::sort(row.begin(), row.end());
+    graph.row_start[t] = write;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      if (i > 0 && row[i].first == row[i - 1].first) {
+        graph.edge_weight[static_cast<std::size_t>(write - 1)] += row[i].second;
+        continue;
+      }
+      graph.neighbor[static_cast<std::size_t>(write)] = row[i].first;
+      graph.edge_weight[static_cast<std::size_t>(write++)] = row[i].second;
+    }
+  }
+  graph.row_start[triangle_count] = write;
+  graph.neighbor.resize(static_cast<std::size_t>(write));
+  graph.edge_weight.resize(static_cast<std::size_t>(write));
+  return graph;
+}
+
+}  // namespace meshlode

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "build/cluster/satellites.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <span>
+#include <utility>
+
+namespace meshlode {
+
+namespace {
+
+/// Pieces of so many triangles are debris where larger ones lie beside them.
+constexpr std::uint32_t kDebris = 8;
+
+std::array<std::uint32_t, 3> positions_of(const WedgeTriangle& t, std::span<const std::uint32_t> wedge_position) {
+  return {wedge_position[t[0]], wedge_position[t[1]], wedge_position[t[2]]};
+}
+
+bool has_three(const std::array<std::uint32_t, 3>& p) { return p[0] != p[1] && p[1] != p[2] && p[2] != p[0]; }
+
+/// A cluster's triangles: those without a host, each followed by its satellites.
+using Systems = std::vector<std::vector<std::uint32_t>>;
+
+bool is_too_large(const Systems& systems, std::span<const WedgeTriangle> triangles, const ClusterCaps& caps,
+                  std::vector<std::uint32_t>& wedges) {
+  std::size_t count = 0;
+  wedges.clear();
+  for (const auto& system : systems) {
+    count += system.size();
+    for (const std::uint32_t t : system) wedges.insert(wedges.end(), triangles[t].begin(), triangles[t].end());
+  }
+  std::sort(wedges.begin(), wedges.end());
+  const auto distinct = static_cast<std::size_t>(std::unique(wedges.begin(), wedges.end()) - wedges.begin());
+  return count > caps.max_triangles || distinct > caps.max_vertices;
+}
+
+/// Two clusters of whole systems; a lone system with too many satellites is cut anywhere.
+std::pair<Systems, Systems> divide(const Systems& systems, std::span<const WedgeTriangle> triangles,
+                                   std::span<const std::uint32_t> wedge_position) {
+  std::pair<Systems, Systems> halves;
+  if (systems.size() == 1) {
+    const std::vector<std::uint32_t>& all = systems[0];
+    const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
+    halves.first.push_back({all.begin(), middle});
+    halves.second.push_back({middle, all.end()});
+    return halves;
+  }
+  std::vector<std::array<std::uint32_t, 3>> corners;
+  corners.reserve(systems.size());
+  for (const auto& system : systems) corners.push_back(positions_of(triangles[system[0]], wedge_position));
+  Graph graph = triangle_graph(corners);
+  for (const auto& system : systems) graph.node_weight.push_back(static_cast<std::int32_t>(system.size()));
+  const std::vector<std::uint32_t> half = partition_graph(graph, 2);
+  for (std::size_t i = 0; i < systems.size(); ++i) (half[i] == 0 ? halves.first : halves.second).push_back(systems[i]);
+  return halves;
+}
+
+}  // namespace
+
+Hosts host_collapsed(std::span<const WedgeTriangle> triangles, std::span<const std::uint32_t> wedge_position,
+                     std::size_t position_count) {
+  std::vector<std::uint32_t> collapsed;
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+    if (!has_three(positions_of(triangles[t], wedge_position))) collapsed.push_back(t);
+  }
+  if (collapsed.empty()) return {};
+  std::vector<std::uint8_t> is_wanted(position_count, 0);
+  for (const std::uint32_t t : collapsed) {
+    for (const std::uint32_t position : positions_of(triangles[t], wedge_position)) is_wanted[position] = 1;
+  }
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> users;  // of wanted positions
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+    const auto p = positions_of(triangles[t], wedge_position);
+    if (!has_three(p)) continue;
+    for (const std::uint32_t position : p) {
+      if (is_wanted[position] != 0) users.emplace_back(position, t);
+    }
+  }
+  std::sort(users.begin(), users.end());
+  Hosts hosts(triangles.size(), kNoHost);
+  for (const std::uint32_t t : collapsed) {
+    const auto own = positions_of(triangles[t], wedge_position);
+    using User = std::pair<std::uint32_t, std::uint32_t>;
+    const auto users_of = [&](std::uint32_t position) {
+      const auto first = std::lower_bound(users.begin(), users.end(), User{position, 0U});
+      return std::span<const User>(first, std::lower_bound(first, users.end(), User{position + 1, 0U}));
+    };
+    // One that covers all of it has all its positions, so that the one with the fewest users will do: a fan of needles
+    // around one vertex stays linear.
+    std::span<const User> fewest = users_of(own[0]);
+    for (const std::uint32_t position : own) {
+      const std::span<const User> these = users_of(position);
+      if (these.size() < fewest.size()) fewest = these;
+      if (hosts[t] == kNoHost && !these.empty()) hosts[t] = these[0].second;
+    }
+    const auto covering = std::find_if(fewest.begin(), fewest.end(), [&](const User& user) {
+      const auto theirs = positions_of(triangles[user.second], wedge_position);
+      return std::all_of(own.begin(), own.end(), [&](std::uint32_t position) {
+        return std::find(theirs.begin(), theirs.end(), position) != theirs.end();
+      });
+    });
+    if (covering != fewest.end()) hosts[t] = covering->second;
+  }
+  return hosts;
+}
+
+Hosts host_debris(const std::vector<std::uint32_t>& piece, std::uint32_t piece_count,
+                  std::span<const TriangleLink> links) {
+  std::vector<std::uint32_t> size(piece_count, 0);
+  for (const std::uint32_t p : piece) ++size[p];
+  std::vector<std::uint32_t> host_of_piece(piece_count, kNoHost);
+  bool any = false;
+  for (const auto& [from, to] : links) {
+    if (size[piece[from]] > kDebris || size[piece[to]] <= kDebris) continue;
+    host_of_piece[piece[from]] = to;
+    any = true;
+  }
+  if (!any) return {};
+  Hosts hosts(piece.size());
+  for (std::size_t t = 0; t < hosts.size(); ++t) hosts[t] = host_of_piece[piece[t]];
+  return hosts;
+}
+
+Clustering cluster_with_satellites(std::span<const WedgeTriangle> triangles,
+                                   std::span<const std::uint32_t> wedge_position, const Hosts& hosts,
+                                   const ClusterCaps& caps, const ClusterWeighted& cluster) {
+  if (std::all_of(hosts.begin(), hosts.end(), [](std::uint32_t host) { return host == kNoHost; })) {
+    return cluster(triangles, std::vector<std::int32_t>(triangles.size(), 1));
+  }
+  std::vector<std::uint32_t> core;  // ids of triangles without a host
+  std::vector<std::uint32_t> place(triangles.size(), kNoHost);
+  std::vector<WedgeTriangle> core_triangles;
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+    if (hosts[t] != kNoHost) continue;
+    place[t] = static_cast<std::uint32_t>(core.size());
+    core.push_back(t);
+    core_triangles.push_back(triangles[t]);
+  }
+  Systems systems(core.size());
+  for (std::size_t i = 0; i < core.size(); ++i) systems[i].push_back(core[i]);
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+    if (hosts[t] != kNoHost) systems[place[hosts[t]]].push_back(t);
+  }
+  std::vector<std::int32_t> weights;
+  weights.reserve(systems.size());
+  for (const auto& system : systems) weights.push_back(static_cast<std::int32_t>(system.size()));
+  const Clustering of_core = cluster(core_triangles, weights);
+  std::vector<Systems> parts(of_core.count);
+  for (std::size_t i = 0; i < core.size(); ++i) parts[of_core.label[i]].push_back(std::move(systems[i]));
+
+  std::vector<std::uint32_t> wedges;
+  for (std::size_t part = 0; part < parts.size(); ++part) {
+    while (is_too_large(parts[part], triangles, caps, wedges)) {
+      auto [keep, split] = divide(parts[part], triangles, wedge_position);
+      parts[part] = std::move(keep);
+      parts.push_back(std::move(split));
+    }
+  }
+  Clustering clustering;
+  clustering.count = static_cast<std::uint32_t>(parts.size());
+  clustering.label.resize(triangles.size());
+  for (std::uint32_t part = 0; part < parts.size(); ++part) {
+    for (const auto& system : parts[part]) {
+      for (const std::uint32_t t : system) clustering.label[t] = part;
+    }
+  }
+  return clustering;
+}
+
+}  // namespace meshlode

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What is known of a group's deviation while a DAG is built, for each tier (design, section 5), and what is handed on
+// from level to level to know it.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "build/dag/build_dag.h"
+#include "build/dag/level_pool.h"
+#include "build/deviation/deviation.h"
+#include "build/prepared.h"
+#include "build/simplify/simplify.h"
+
+namespace meshlode {
+
+/// Of one simplified group.
+struct GroupErrors {
+  double deviation = 0.0;         ///< object units: of this group alone
+  double error = 0.0;             ///< object units: with the tier's margin, and not below those of the finer groups
+  double normal_deviation = 0.0;  ///< degrees
+  double uv_deviation = 0.0;      ///< UV units
+  CarriedTruth carried;           ///< for the triangles of the result
+};
+
+class GroupMeter {
+ public:
+  /// The mesh must outlive the meter. kQuadric measures nothing.
+  GroupMeter(const PreparedMesh& mesh, ErrorSource tier);
+
+  [[nodiscard]] bool is_measuring() const { return source_.has_value(); }
+  /// For the triangles of level 0.
+  [[nodiscard]] CarriedTruth level0() const;
+  /// `clusters` of the pool, with their triangles in `finer`, became `coarser`.
+  [[nodiscard]] GroupErrors measure(const BuildPool& pool, const std::vector<std::uint32_t>& clusters,
+                                    const SimplifyInput& finer, const SimplifyResult& coarser,
+                                     std::size_t groups_of_round) const;
+
+ private:
+  const PreparedMesh& mesh_;
+  bool is_certified_;
+  std::optional<SourceTree> source_;
+};
+
+}  // namespace meshlode

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The growing store of a build: positions, wedges and clusters of all levels so far. Used by the dag room alone.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "build/cluster/cluster.h"
+#include "build/deviation/deviation.h"
+#include "build/lod_dag.h"
+#include "build/prepared.h"
+#include "build/simplify/simplify.h"
+
+namespace meshlode {
+
+/// A cluster under construction: a range of BuildPool::triangles.
+struct BuildCluster {
+  std::uint32_t level = 0;
+  std::uint32_t own_group = 0xFFFFFFFFU;
+  std::uint32_t first_triangle = 0, triangle_count = 0;
+  std::vector<CarriedSample> samples;  ///< of the source, where deviations are measured
+};
+
+/// What a tier knows of triangles and hands on with them; empty where it needs none.
+struct CarriedTruth {
+  std::vector<CarriedSample> samples;  ///< each names its triangle
+  std::vector<TriangleBound> bounds;   ///< per triangle
+};
+
+/// A group that has been replaced by coarser clusters.
+struct BuildGroup {
+  std::uint32_t level = 0;
+  std::vector<std::uint32_t> clusters;
+  double error = 0.0, quadric_error = 0.0;
+  double deviation = std::numeric_limits<double>::infinity();
+  double normal_deviation = std::numeric_limits<double>::infinity();  ///< running maxima, +inf where not measured
+  double uv_deviation = std::numeric_limits<double>::infinity();
+  bool is_terminal = false;
+  StuckReason stuck_reason = StuckReason::kNotStuck;
+};
+
+class BuildPool {
+ public:
+  explicit BuildPool(const PreparedMesh& mesh);
+
+  /// Adds the clusters of `triangles` (wedges of this pool), in the clustering's order. What is carried names those
+  /// triangles and goes with their clusters.
+  void add_clusters(const std::vector<WedgeTriangle>& triangles, const std::vector<std::uint32_t>& materials,
+                    const CarriedTruth& carried, const Clustering& clustering, std::uint32_t level,
+                    std::uint32_t own_group);
+
+  /// Adds what a group became. Positions and wedges that are already known (locked ones, or a coincidence on the grid)
+  /// keep their id, so that equal integers are equal ids at every level, and equal attributes with them.
+  void add_simplified(const SimplifyResult& result, const CarriedTruth& carried, const Clustering& clustering,
+                      std::uint32_t level, std::uint32_t own_group);
+
+  /// The distinct position ids of a cluster, ascending.
+  void positions_of(std::uint32_t cluster, std::vector<std::uint32_t>& out) const;
+  [[nodiscard]] std::uint32_t count_wedges(std::uint32_t cluster) const;     ///< an upper bound of its vertices
+  [[nodiscard]] std::uint32_t count_materials(std::uint32_t cluster) const;
+
+  std::vector<Vec3i> positions;
+  std::vector<Witnesses> witnesses;  ///< per position
+  std::vector<std::uint32_t> wedge_position;
+  std::vector<float> wedge_attributes;
+  std::vector<WedgeTriangle> triangles;
+  std::vector<std::uint32_t> triangle_material;
+  std::vector<TriangleBound> triangle_bounds;  ///< certified tier only
+  std::vector<BuildCluster> clusters;
+  std::vector<BuildGroup> groups;
+
+ private:
+  /// Open addressing over ids that are looked up by what they stand for; ids depend on the order of insertion alone.
+  struct IdTable {
+    std::vector<std::uint32_t> slots;
+    std::size_t used = 0;
+  };
+  std::uint32_t position_id(const Vec3i& position);
+  std::uint32_t wedge_id(std::uint32_t position, const float* attributes);
+  [[nodiscard]] std::uint64_t hash_position(std::uint32_t id) const;
+  [[nodiscard]] std::uint64_t hash_wedge(std::uint32_t position, const float* attributes) const;
+
+  std::size_t stride_;
+  IdTable position_table_, wedge_table_;
+};
+
+/// The pool as a LodDag: groups from coarse to fine, clusters by group, vertices by first use.
+[[nodiscard]] LodDag assemble_dag(const BuildPool& pool, const PreparedMesh& mesh);
+
+}  // namespace meshlode

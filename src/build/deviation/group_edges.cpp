@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "build/deviation/group_edges.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace meshlode {
+
+GroupEdges::GroupEdges(const GroupSurface& group)
+    : of_triangle(group.triangles.size()), is_border_position(group.positions.size(), 0) {
+  constexpr std::uint32_t kEmpty = 0xFFFFFFFFU;
+  // Open addressing; numbers are given in the order of the triangles.
+  std::vector<std::uint32_t> slots(std::bit_ceil(6 * group.triangles.size() + 1), kEmpty);
+  std::vector<std::uint64_t> keys;
+  keys.reserve(2 * group.triangles.size());
+  for (std::size_t t = 0; t < group.triangles.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = group.triangles[t][k], b = group.triangles[t][(k + 1) % 3];
+      const std::uint64_t key = static_cast<std::uint64_t>(std::min(a, b)) << 32U | std::max(a, b);
+      std::uint64_t h = key * 0x9E3779B97F4A7C15ULL;
+      h ^= h >> 32U;
+      std::size_t at = h & (slots.size() - 1);
+      while (slots[at] != kEmpty && keys[slots[at]] != key) at = (at + 1) & (slots.size() - 1);
+      if (slots[at] == kEmpty) {
+        slots[at] = static_cast<std::uint32_t>(keys.size());
+        keys.push_back(key);
+        use_count.push_back(0);
+      }
+      of_triangle[t][k] = slots[at];
+      ++use_count[slots[at]];
+    }
+  }
+  for (std::size_t t = 0; t < group.triangles.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (!is_border(static_cast<std::uint32_t>(t), k)) continue;
+      is_border_position[group.triangles[t][k]] = 1;
+      is_border_position[group.triangles[t][(k + 1) % 3]] = 1;
+    }
+  }
+}
+
+std::vector<std::uint8_t> find_folded(const GroupSurface& surface) {
+  const GroupEdges edges(surface);
+  std::vector<Vec3d> normals;
+  normals.reserve(surface.triangles.size());
+  for (const auto& t : surface.triangles) {
+    const Vec3d& p = surface.positions[t[0]];
+    normals.push_back(glm::cross(surface.positions[t[1]] - p, surface.positions[t[2]] - p));
+  }
+  constexpr std::uint32_t kNobody = 0xFFFFFFFFU;
+  std::vector<std::uint32_t> first(edges.use_count.size(), kNobody);
+  std::vector<std::uint8_t> is_folded(surface.triangles.size(), 0);
+  for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
+    for (const std::uint32_t edge : edges.of_triangle[t]) {
+      if (edges.use_count[edge] != 2) {
+        is_folded[t] = 1;
+      } else if (first[edge] == kNobody) {
+        first[edge] = t;
+      } else {
+        const Vec3d &m = normals[first[edge]], &n = normals[t];
+        const double dot = glm::dot(m, n);
+        if (!(dot > 0.0 && dot * dot > 0.25 * glm::dot(m, m) * glm::dot(n, n))) is_folded[t] = is_folded[first[edge]] = 1;
+      }
+    }
+  }
+  return is_folded;
+}
+
+}  // namespace meshlode

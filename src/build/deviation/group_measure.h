@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The two directions of a group's deviation, each with the maximum so far: whoever cannot raise it is dismissed early.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "build/deviation/deviation.h"
+#include "build/deviation/group_edges.h"
+#include "build/deviation/source_tree.h"
+#include "build/deviation/surface_tree.h"
+
+namespace meshlode {
+
+/// The largest distance of a group, as far as it is known.
+struct Farthest {
+  double found = 0.0;  ///< of all points that were measured exactly
+  double least = 0.0;  ///< less is of no use
+  [[nodiscard]] double to_beat() const { return found > least ? found : least; }
+  void take(double value) { found = value > found ? value : found; }
+};
+
+/// Source to group. Sets each sample's triangle and distance; returns the largest distance.
+[[nodiscard]] double project_samples(const SurfaceTree& group_tree, std::vector<CarriedSample>& samples);
+
+/// What goes on to the next level: for each triangle of the group the farthest samples, some spread, and whatever is
+/// near the group's maximum. Ordered by triangle.
+[[nodiscard]] std::vector<CarriedSample> thin_samples(std::span<const CarriedSample> samples,
+                                                      std::size_t triangle_count, std::uint32_t samples_per_triangle,
+                                                      double maximum);
+
+/// Triangles and their parts that may be divided.
+struct Effort {
+  std::size_t promising = 0;
+  std::size_t spare = 0;  ///< where nothing is promised, but a bound leaves room
+};
+
+/// Group to source, by adaptive subdivision near the maximum. `places` has
+/// for each triangle of the group where its search may begin. `high` gets points of the group near the maximum; their
+/// places are those of their nearest triangles of the source.
+[[nodiscard]] Farthest measure_to_source(const SurfaceTree& source, const GroupSurface& group, const GroupEdges& edges,
+                                         const std::vector<std::uint32_t>& places, Farthest farthest,
+                                         Effort budget, std::vector<CarriedSample>& high);
+
+/// Which points of the source a group stands for: those that were near enough to what it replaces, on the same side and
+/// not beyond the border that it shares with other groups. Beyond the source's own border there is nobody else.
+class OwnerTest {
+ public:
+  OwnerTest(const GroupSurface& finer, std::span<const std::uint8_t> is_shared, double reach, bool is_whole)
+      : finer_(finer), is_shared_(is_shared), reach_(reach), is_whole_(is_whole) {}
+  [[nodiscard]] const GroupSurface& finer() const { return finer_; }
+  [[nodiscard]] bool is_whole() const { return is_whole_; }
+  [[nodiscard]] bool is_known() const { return !finer_.triangles.empty(); }
+  /// `facing` is the direction of the source's surface there, of any length.
+  [[nodiscard]] bool is_ours(const Vec3d& point, const Vec3d& facing);
+
+ private:
+  [[nodiscard]] bool is_shared(std::uint32_t position) const { return is_shared_.empty() || is_shared_[position] != 0; }
+
+  GroupSurface finer_;
+  std::span<const std::uint8_t> is_shared_;
+  double reach_;
+  bool is_whole_;  ///< there is nobody else
+  SurfaceTree tree_;  ///< over it and its edges, built when first asked
+  std::optional<GroupEdges> edges_;
+  std::uint32_t place_ = 0;
+};
+
+/// Source to group around the farthest samples, around `high` and behind what the group replaces where that is folded
+/// (find_folded()). Points that raised the maximum are appended to the samples.
+[[nodiscard]] Farthest search_source(const SourceTree::Impl& source, const GroupSurface& group,
+                                     const SurfaceTree& group_tree, OwnerTest& owner,
+                                     std::span<const std::uint8_t> is_folded, Farthest farthest,
+                                     std::span<const CarriedSample> high, std::size_t budget,
+                                     std::vector<CarriedSample>& samples);
+
+}  // namespace meshlode

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Group to source, estimated from below: points on the group's triangles, and adaptive subdivision where they say that
+// the maximum may lie (in the manner of Metro, Cignoni, Rocchini and Scopigno 1998, but with the effort where it
+// counts).
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "build/deviation/group_measure.h"
+#include "build/deviation/patch.h"
+
+namespace meshlode {
+
+namespace {
+
+// Points nearer than this share of the maximum are not measured exactly: nothing beside them will exceed it.
+constexpr double kDismissShare = 0.5;
+// Points above this share of the maximum are told: the other direction may have its maximum beside them.
+constexpr double kNearMaximum = 0.9;
+// Of the effort on top, this part goes where nothing promises anything.
+constexpr std::uint32_t kSpareShare = 3;
+// With less effort on top nothing is spared: the groups are many, and small against the mesh.
+constexpr std::uint32_t kLeastExtra = 300;
+// What was within the errors of the finer levels, which are estimates from below.
+constexpr double kReach = 1.3;
+/// Distances to the source, with the maximum so far.
+class SourceProbe {
+ public:
+  SourceProbe(const SurfaceTree& tree, const Farthest& farthest) : tree_(tree), farthest_(farthest) { set_enough(); }
+
+  [[nodiscard]] Probe measure(const Vec3d& point, std::uint32_t place, std::uint32_t /*owner*/ = 0) {
+    const Vec3f at = tree_.to_frame(point);
+    SurfaceTree::Hit hit = tree_.look_around(at, place, {});
+    if (!(hit.distance2 <= enough_)) hit = tree_.find_nearest(at, hit, enough_);
+    if (hit.slot == SurfaceTree::kNone) return {maximum(), place};  // farther than floats reach: not on any real mesh
+    if (hit.distance2 <= enough_) return {std::sqrt(static_cast<double>(hit.distance2)) / tree_.scale(), hit.slot};
+    const double value = std::sqrt(tree_.distance2_at(point, hit.slot));
+    const bool is_higher = value > maximum();
+    farthest_.take(value);
+    if (is_higher) set_enough();
+    if (value > kNearMaximum * maximum()) high_.push_back({point, 0, static_cast<float>(value), hit.slot});
+    return {value, hit.slot};
+  }
+  [[nodiscard]] double convex_bound(const Patch& patch) const { return bound_by_one_triangle(tree_, patch); }
+  [[nodiscard]] double maximum() const { return farthest_.to_beat(); }
+  [[nodiscard]] const Farthest& farthest() const { return farthest_; }
+  [[nodiscard]] std::vector<CarriedSample> take_high() { return std::move(high_); }
+
+ private:
+  void set_enough() {
+    const double enough = kDismissShare * maximum() * tree_.scale();
+    enough_ = static_cast<float>(enough * enough);
+  }
+
+  const SurfaceTree& tree_;
+  Farthest farthest_;
+  float enough_ = 0.0F;              ///< squared, in the tree's frame
+  std::vector<CarriedSample> high_;  ///< near what was the maximum then
+};
+
+}  // namespace
+
+Farthest measure_to_source(const SurfaceTree& source, const GroupSurface& group, const GroupEdges& edges,
+                           const std::vector<std::uint32_t>& places, Farthest farthest, Effort budget,
+                           std::vector<CarriedSample>& high) {
+  SourceProbe probe(source, farthest);
+  const std::size_t count = group.triangles.size();
+  constexpr std::uint32_t kUnknown = 0xFFFFFFFFU;
+  std::vector<Probe> at_vertex(group.positions.size(), {0.0, kUnknown});
+  std::vector<Patch> patches(count);
+  std::vector<Probe> at_edge(edges.use_count.size(), {0.0, kUnknown});
+  std::uint32_t place = 0;
+  for (std::size_t t = 0; t < count; ++t) {
+    const auto& ids = group.triangles[t];
+    Patch& patch = patches[t];
+    if (places[t] != SurfaceTree::kNone) place = places[t];
+    for (std::size_t k = 0; k < 3; ++k) patch.corner[k] = group.positions[ids[k]];
+    const Probe center = probe.measure((patch.corner[0] + patch.corner[1] + patch.corner[2]) / 3.0, place);
+    place = center.place;
+    for (std::size_t k = 0; k < 3; ++k) {
+      Probe& vertex = at_vertex[ids[k]];
+      if (vertex.place == kUnknown) vertex = probe.measure(patch.corner[k], place);
+      patch.at_corner[k] = vertex;
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      Probe& middle = at_edge[edges.of_triangle[t][k]];
+      if (middle.place == kUnknown) middle = probe.measure(patch.middle(k), place);
+      patch.at_middle[k] = middle;
+    }
+    patch.set_estimate(center.value);
+  }
+  // Every patch is made before any is divided: what promises most comes first.
+  PatchQueue<SourceProbe> queue(probe, budget.spare);
+  for (const Patch& patch : patches) queue.add(patch);
+  queue.refine(budget.promising);
+  high = probe.take_high();
+  return probe.farthest();
+}
+
+GroupDeviation measure_group(const SourceTree& source, const GroupSurface& group,
+                             std::span<const CarriedSample> samples, const DeviationTierOptions& options) {
+  GroupDeviation result;
+  const SurfaceTree& source_tree = source.impl().tree;
+  if (group.triangles.empty() || source_tree.size() == 0) {
+    if (!samples.empty() || !group.triangles.empty()) result.deviation = std::numeric_limits<double>::infinity();
+    return result;
+  }
+  SurfaceTree group_tree;
+  group_tree.build({group.positions, group.triangles});
+  std::vector<CarriedSample> projected(samples.begin(), samples.end());
+  const GroupEdges edges(group);
+  Farthest farthest{project_samples(group_tree, projected), options.least};
+  std::vector<std::uint32_t> places(group.triangles.size(), SurfaceTree::kNone);
+  for (const CarriedSample& sample : projected) places[sample.triangle] = sample.place;
+  std::vector<CarriedSample> high;
+  const Effort effort{64 + group.triangles.size() / 4 + options.extra_effort,
+                      options.extra_effort < kLeastExtra ? 0 : options.extra_effort / kSpareShare};
+  farthest = measure_to_source(source_tree, group, edges, places, farthest, effort, high);
+  OwnerTest owner(options.finer, options.finer_is_shared, kReach * options.floor, options.is_whole);
+  const std::vector<std::uint8_t> is_folded = find_folded(options.finer);
+  farthest = search_source(source.impl(), group, group_tree, owner, is_folded, farthest, high, options.extra_effort,
+                           projected);
+  result.carried = thin_samples(projected, group.triangles.size(), options.samples_per_triangle, farthest.to_beat());
+  result.deviation = farthest.found;
+  return result;
+}
+
+}  // namespace meshlode

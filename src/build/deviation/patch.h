@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Adaptive subdivision of triangles where a distance may be largest: whoever promises most is divided first, and what
+// cannot raise the maximum is dropped. The promise is an estimate from the values of six points, not a bound: a bound
+// (distances are 1-Lipschitz) asks for pieces as small as the distance itself. What is left of the effort goes where the
+// bound is largest all the same: on soups, needles and cards peaks are narrow, and no point near one tells of it.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "base/vec.h"
+#include "build/deviation/point_distance.h"
+#include "build/deviation/surface_tree.h"
+
+namespace meshlode {
+
+struct Probe {
+  double value = 0.0;       ///< distance of a point to the other side
+  std::uint32_t place = 0;  ///< of the tree over the other side, near the point's nearest
+};
+
+/// A triangle with six points: its corners, and the middles of its edges (of the edge that starts at corner k).
+struct Patch {
+  std::array<Vec3d, 3> corner;
+  std::array<Probe, 3> at_corner, at_middle;
+  double estimate = 0.0;
+  bool is_bounded = false;  ///< the estimate is not above what is possible
+  std::uint32_t owner = 0;  ///< the triangle that it is part of
+  std::uint32_t order = 0;  ///< of creation: ties are decided by it
+
+  // How far a patch may rise above its points, as a share of how much they differ. A parabola's top lies at most 1/3
+  // above and the ridge of a crease 1/2, but a peak that is narrower than the points' spacing may be missed by all of
+  // them: on a faceted rock one between an edge's end and its middle stood 0.6 above, and 1.15 times the maximum found.
+  static constexpr double kRise = 1.0;
+
+  /// `inside` is one more value of the patch.
+  void set_estimate(double inside) {
+    double low = inside, high = inside;
+    for (std::size_t k = 0; k < 3; ++k) {
+      low = std::min(low, std::min(at_corner[k].value, at_middle[k].value));
+      high = std::max(high, std::max(at_corner[k].value, at_middle[k].value));
+    }
+    estimate = high + kRise * (high - low);
+  }
+  void set_estimate() { set_estimate(at_corner[0].value); }
+  /// No point of the patch is farther than this. The six points are the corners of four triangles, and no point of a
+  /// triangle is farther from the nearest corner than 1 / sqrt(3) of the longest edge.
+  [[nodiscard]] double bound() const {
+    double high = 0.0, longest2 = 0.0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      high = std::max(high, std::max(at_corner[k].value, at_middle[k].value));
+      const Vec3d edge = corner[(k + 1) % 3] - corner[k];
+      longest2 = std::max(longest2, glm::dot(edge, edge));
+    }
+    return high + 0.5 * 0.57735026918962584 * std::sqrt(longest2);
+  }
+  [[nodiscard]] Vec3d middle(std::size_t k) const { return (corner[k] + corner[(k + 1) % 3]) * 0.5; }
+  [[nodiscard]] bool operator<(const Patch& other) const {
+    return estimate != other.estimate ? estimate < other.estimate : order > other.order;
+  }
+};
+
+/// The distance to a triangle is convex, so that no point of a patch is farther from it than a corner is: of the triangles
+/// of the other side that are near the six points, the one that is best for all three corners bounds the patch.
+[[nodiscard]] inline double bound_by_one_triangle(const SurfaceTree& other, const Patch& patch) {
+  double best2 = std::numeric_limits<double>::infinity();
+  std::array<std::uint32_t, 6> tried;
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < 6; ++k) {
+    const std::uint32_t place = k < 3 ? patch.at_corner[k].place : patch.at_middle[k - 3].place;
+    if (std::find(tried.begin(), tried.begin() + static_cast<std::ptrdiff_t>(count), place) !=
+        tried.begin() + static_cast<std::ptrdiff_t>(count)) {
+      continue;
+    }
+    tried[count++] = place;
+    const TriangleCorners corners = other.corners_at(place);
+    double farthest2 = 0.0;
+    for (std::size_t j = 0; j < 3 && farthest2 < best2; ++j) {
+      farthest2 = std::max(farthest2, point_triangle_distance2(patch.corner[j], corners));
+    }
+    best2 = std::min(best2, farthest2);
+  }
+  return std::sqrt(best2);
+}
+
+/// Probes has measure(point, place, owner) -> Probe, maximum(), the largest value measured so far, and
+/// convex_bound(patch), another bound of a patch (below).
+template <class Probes>
+class PatchQueue {
+ public:
+  PatchQueue(Probes& probes, std::size_t spare) : probes_(probes), spare_(spare) {}
+
+  void add(const Patch& patch) {
+    if (is_worthwhile(patch.estimate)) {
+      push(heap_, patch);
+    } else if (spare_ > 0) {
+      set_aside(patch);
+    }
+  }
+
+  /// Divides up to `budget` patches by their estimates, and those set aside by their bounds as far as the spare effort
+  /// goes.
+  void refine(std::size_t budget) {
+    while (true) {
+      if (budget > 0 && !heap_.empty()) {
+        Patch patch = pop(heap_);
+        if (!is_worthwhile(patch.estimate)) {
+          if (spare_ > 0) set_aside(patch);
+        } else if (patch.is_bounded) {
+          --budget;
+          divide(patch);
+        } else if (bound(patch)) {
+          push(heap_, patch);  // behind those that promise more than its bound
+        }
+      } else if (spare_ > 0 && !aside_.empty()) {
+        const Patch patch = pop(aside_);
+        if (!is_worthwhile(patch.estimate)) return;
+        --spare_;
+        divide(patch);
+      } else {
+        return;
+      }
+    }
+  }
+
+ private:
+  [[nodiscard]] bool is_worthwhile(double value) const { return value > kWorthwhile * probes_.maximum(); }
+  void push(std::vector<Patch>& heap, const Patch& patch) {
+    heap.push_back(patch);
+    heap.back().order = order_++;
+    std::push_heap(heap.begin(), heap.end());
+  }
+  static Patch pop(std::vector<Patch>& heap) {
+    std::pop_heap(heap.begin(), heap.end());
+    const Patch patch = heap.back();
+    heap.pop_back();
+    return patch;
+  }
+  /// Lowers the estimate to what is possible at all. False where that is not worthwhile.
+  bool bound(Patch& patch) {
+    patch.estimate = std::min(patch.estimate, patch.bound());
+    if (is_worthwhile(patch.estimate)) patch.estimate = std::min(patch.estimate, probes_.convex_bound(patch));
+    patch.is_bounded = true;
+    return is_worthwhile(patch.estimate);
+  }
+  void set_aside(Patch patch) {
+    patch.estimate = std::numeric_limits<double>::infinity();
+    if (bound(patch)) push(aside_, patch);
+  }
+
+  // A patch that cannot raise the maximum by more than this is left alone.
+  static constexpr double kWorthwhile = 1.002;
+
+  /// Into four, with nine new points.
+  void divide(const Patch& patch) {
+    std::array<Vec3d, 3> middle;
+    for (std::size_t k = 0; k < 3; ++k) middle[k] = patch.middle(k);
+    std::array<Patch, 4> parts;
+    for (std::size_t k = 0; k < 3; ++k) {  // at corner k: the corner, the middle after it, the middle before it
+      const std::size_t before = (k + 2) % 3;
+      parts[k].corner = {patch.corner[k], middle[k], middle[before]};
+      parts[k].at_corner = {patch.at_corner[k], patch.at_middle[k], patch.at_middle[before]};
+      for (std::size_t j = 0; j < 3; ++j) {
+        parts[k].at_middle[j] = probes_.measure(parts[k].middle(j), parts[k].at_corner[j].place, patch.owner);
+      }
+    }
+    parts[3].corner = middle;
+    parts[3].at_corner = patch.at_middle;
+    // The middle part's edge from middle k to middle k+1 is the inner edge of the part at corner k+1.
+    for (std::size_t k = 0; k < 3; ++k) parts[3].at_middle[k] = parts[(k + 1) % 3].at_middle[1];
+    for (Patch& part : parts) {
+      part.owner = patch.owner;
+      part.set_estimate();
+      add(part);
+    }
+  }
+
+  Probes& probes_;
+  std::size_t spare_;  ///< patches that may be divided although they promise nothing
+  std::uint32_t order_ = 0;
+  std::vector<Patch> heap_;
+  std::vector<Patch> aside_;  ///< by their bounds
+};
+
+}  // namespace meshlode

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The source as the tiers see it: a tree to find its nearest triangle, and the samples that start at level 0.
+#include "build/deviation/source_tree.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "base/parallel.h"
+
+namespace meshlode {
+
+namespace {
+
+/// Where samples are set so that none of the source is far from one. Dense scans need their vertices only.
+struct Spacing {
+  double length = 0.0;
+  static constexpr std::uint32_t kMaxPerEdge = 16;
+
+  /// Into how many parts an edge is cut.
+  [[nodiscard]] std::uint32_t parts(double edge) const {
+    if (!(edge > length)) return 1;
+    return static_cast<std::uint32_t>(std::min(std::floor(edge / length) + 1.0, static_cast<double>(kMaxPerEdge)));
+  }
+};
+
+Spacing choose_spacing(const SourceTree::Impl& source) {
+  double edges = 0.0, area = 0.0;
+  for (const auto& t : source.triangles) {
+    const Vec3d& a = source.positions[t[0]];
+    const Vec3d& b = source.positions[t[1]];
+    const Vec3d& c = source.positions[t[2]];
+    edges += glm::length(b - a) + glm::length(c - b) + glm::length(a - c);
+    area += 0.5 * glm::length(glm::cross(b - a, c - a));
+  }
+  const double mean_edge = edges / (3.0 * static_cast<double>(source.triangles.size()));
+  constexpr double kLeastSamples = 10000.0;  // of a coarse mesh
+  return {std::min(2.0 * mean_edge, std::sqrt(area / kLeastSamples))};
+}
+
+/// Copies the source with one id for each position, numbered by first use: seams of attributes do not stop a search.
+void weld(std::span<const Vec3d> positions, std::span<const std::array<std::uint32_t, 3>> triangles,
+          SourceTree::Impl& out) {
+  constexpr std::uint32_t kEmpty = 0xFFFFFFFFU;
+  std::vector<std::uint32_t> slots(std::bit_ceil(2 * positions.size() + 1), kEmpty);
+  std::vector<std::uint32_t> id(positions.size());
+  out.positions.reserve(positions.size());
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const Vec3d p = positions[i] + 0.0;  // one zero, not two
+    std::uint64_t h = 0;
+    for (int k = 0; k < 3; ++k) {
+      h = (h ^ std::bit_cast<std::uint64_t>(p[k])) * 0x9E3779B97F4A7C15ULL;
+      h ^= h >> 32U;
+    }
+    std::size_t at = h & (slots.size() - 1);
+    while (slots[at] != kEmpty && out.positions[slots[at]] != p) at = (at + 1) & (slots.size() - 1);
+    if (slots[at] == kEmpty) {
+      slots[at] = static_cast<std::uint32_t>(out.positions.size());
+      out.positions.push_back(p);
+    }
+    id[i] = slots[at];
+  }
+  out.triangles.reserve(triangles.size());
+  for (const auto& t : triangles) out.triangles.push_back({id[t[0]], id[t[1]], id[t[2]]});
+}
+
+}  // namespace
+
+SourceTree::SourceTree(std::span<const Vec3d> positions, std::span<const std::array<std::uint32_t, 3>> triangles)
+    : impl_(std::make_unique<Impl>()) {
+  weld(positions, triangles, *impl_);
+  impl_->tree.build({impl_->positions, impl_->triangles});
+  std::vector<std::uint32_t>& first = impl_->first_corner;
+  first.assign(impl_->positions.size() + 2, 0);
+  for (const auto& t : impl_->triangles) {
+    for (const std::uint32_t v : t) ++first[v + 2];
+  }
+  for (std::size_t v = 2; v < first.size(); ++v) first[v] += first[v - 1];
+  impl_->triangle_of_corner.resize(3 * triangles.size());
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+    for (const std::uint32_t v : impl_->triangles[t]) impl_->triangle_of_corner[first[v + 1]++] = t;
+  }
+  first.pop_back();
+  impl_->place.resize(triangles.size());
+  for (std::uint32_t slot = 0; slot < impl_->tree.size(); ++slot) impl_->place[impl_->tree.triangle_at(slot)] = slot;
+}
+
+SourceTree::~SourceTree() = default;
+SourceTree::SourceTree(SourceTree&&) noexcept = default;
+SourceTree& SourceTree::operator=(SourceTree&&) noexcept = default;
+
+std::vector<CarriedSample> initial_samples(const SourceTree& source) {
+  const SourceTree::Impl& impl = source.impl();
+  std::vector<CarriedSample> samples;
+  if (impl.triangles.empty()) return samples;
+  const Spacing spacing = choose_spacing(impl);
+  std::vector<std::uint8_t> is_taken(impl.positions.size(), 0);
+  samples.reserve(impl.positions.size());
+  for (std::uint32_t t = 0; t < impl.triangles.size(); ++t) {
+    const auto& corners = impl.triangles[t];
+    const std::array<Vec3d, 3> p{impl.positions[corners[0]], impl.positions[corners[1]], impl.positions[corners[2]]};
+    const auto add = [&](const Vec3d& point) { samples.push_back({point, t, 0.0F, impl.place_of(t)}); };
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (is_taken[corners[k]] == 0) add(p[k]);
+      is_taken[corners[k]] = 1;
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      // From its lower end, so that the edges of a closed surface are cut once.
+      if (corners[k] > corners[(k + 1) % 3]) continue;
+      const std::uint32_t parts = spacing.parts(glm::length(p[(k + 1) % 3] - p[k]));
+      for (std::uint32_t i = 1; i < parts; ++i) add(p[k] + (p[(k + 1) % 3] - p[k]) * (static_cast<double>(i) / parts));
+    }
+    // The inside: a lattice along the two shorter edges, where the height asks for one.
+    const double longest =
+        std::max(glm::length(p[1] - p[0]), std::max(glm::length(p[2] - p[1]), glm::length(p[0] - p[2])));
+    const double height = longest > 0.0 ? glm::length(glm::cross(p[1] - p[0], p[2] - p[0])) / longest : 0.0;
+    const std::uint32_t parts = height > spacing.length ? spacing.parts(longest) : 1;
+    for (std::uint32_t i = 1; i < parts; ++i) {
+      for (std::uint32_t j = 1; i + j < parts; ++j) {
+        add(p[0] + (p[1] - p[0]) * (static_cast<double>(i) / parts) + (p[2] - p[0]) * (static_cast<double>(j) / parts));
+      }
+    }
+  }
+  return samples;
+}
+
+}  // namespace meshlode

@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "build/deviation/surface_tree.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "base/parallel.h"
+#include "build/deviation/lanes.h"
+
+namespace meshlode {
+
+namespace {
+
+constexpr std::uint32_t kLeafSize = 4;
+constexpr std::size_t kMaxDepth = 16;  // 4^16 leaves
+
+// Below this sine a triangle's normal is not trusted in floats: its edges answer for it.
+constexpr float kNeedleSine = 1e-4F;
+
+struct Vec3Lanes {
+  Lanes x, y, z;
+};
+
+inline Vec3Lanes load3(const std::array<std::array<float, 4>, 3>& from) {
+  return {load_lanes(from[0].data()), load_lanes(from[1].data()), load_lanes(from[2].data())};
+}
+inline Vec3Lanes operator-(const Vec3Lanes& a, const Vec3Lanes& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+inline Lanes dot(const Vec3Lanes& a, const Vec3Lanes& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+inline Vec3Lanes cross(const Vec3Lanes& a, const Vec3Lanes& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+inline Lanes segment_distance2(const Vec3Lanes& pa, const Vec3Lanes& edge, Lanes along, Lanes length2) {
+  const Lanes t = min_lanes(max_lanes(along, lanes(0.0F)) / max_lanes(length2, lanes(1e-35F)), lanes(1.0F));
+  const Vec3Lanes away{pa.x - edge.x * t, pa.y - edge.y * t, pa.z - edge.z * t};
+  return dot(away, away);
+}
+
+// The order of a pair of numbers that both decide: no two items are equal.
+struct AlongAxis {
+  std::size_t axis;
+  template <class Item>
+  bool operator()(const Item& a, const Item& b) const {
+    return a.center[axis] != b.center[axis] ? a.center[axis] < b.center[axis] : a.triangle < b.triangle;
+  }
+};
+
+}  // namespace
+
+void SurfaceTree::build(const Surface& surface) {
+  surface_ = surface;
+  slot_triangle_.clear();
+  leaves_.clear();
+  nodes_.clear();
+  level_start_.clear();
+  if (surface.triangles.empty()) return;
+  set_frame();
+  std::vector<Item> items(surface.triangles.size());
+  parallel_for_each_index(items.size(), 4096, [&](std::size_t i) {
+    const auto& t = surface.triangles[i];
+    const Vec3f center =
+        to_frame(surface.positions[t[0]]) + to_frame(surface.positions[t[1]]) + to_frame(surface.positions[t[2]]);
+    items[i] = {{center.x, center.y, center.z}, static_cast<std::uint32_t>(i)};
+  });
+  // Whole levels, so that places follow from numbers: 4^depth leaves have room for all.
+  const auto leaf_count = (items.size() + kLeafSize - 1) / kLeafSize;
+  std::size_t depth = 1;
+  while ((std::size_t{1} << (2 * depth)) < leaf_count) ++depth;
+  std::size_t at = 0;
+  for (std::size_t level = 0; level < depth; ++level) {
+    level_start_.push_back(static_cast<std::uint32_t>(at));
+    const std::size_t span = std::size_t{1} << (2 * (depth - level));  // leaves below a node of this level
+    at += (leaf_count + span - 1) / span;
+  }
+  level_start_.push_back(static_cast<std::uint32_t>(at));
+  nodes_.resize(at);
+  leaves_.resize(leaf_count);
+  sort_items(items);
+  slot_triangle_.resize(items.size());
+  for (std::size_t i = 0; i < items.size(); ++i) slot_triangle_[i] = items[i].triangle;
+  fill_leaves();
+  fill_nodes();
+}
+
+void SurfaceTree::set_frame() {
+  Vec3d low(std::numeric_limits<double>::infinity()), high(-std::numeric_limits<double>::infinity());
+  for (const auto& t : surface_.triangles) {
+    for (const std::uint32_t v : t) {
+      low = glm::min(low, surface_.positions[v]);
+      high = glm::max(high, surface_.positions[v]);
+    }
+  }
+  center_ = low + (high - low) * 0.5;
+  const Vec3d half = (high - low) * 0.5;
+  const double extent = std::max(half.x, std::max(half.y, half.z));
+  int exponent = 0;
+  (void)std::frexp(extent, &exponent);
+  scale_ = extent > 0.0 ? std::ldexp(1.0, std::clamp(-exponent, -1000, 1000)) : 1.0;
+}
+
+// Halves by the median along the longest side, twice a level. Counts are those of whole subtrees, so that only the last
+// one is not full.
+void SurfaceTree::sort_items(std::vector<Item>& items) const {
+  const std::size_t depth = level_start_.size() - 1;
+  for (std::size_t halving = 2 * depth; halving-- > 0;) {
+    const std::size_t half = kLeafSize << halving;
+    const std::size_t pieces = (items.size() + 2 * half - 1) / (2 * half);
+    parallel_for_each_index(pieces, std::max<std::size_t>(1, 8192 / half), [&](std::size_t piece) {
+      const auto first = items.begin() + static_cast<std::ptrdiff_t>(2 * half * piece);
+      const std::size_t count = std::min(2 * half, items.size() - 2 * half * piece);
+      if (count <= half) return;
+      std::array<float, 3> low = first->center, high = low;
+      for (std::size_t i = 1; i < count; ++i) {
+        for (std::size_t k = 0; k < 3; ++k) {
+          low[k] = std::min(low[k], first[static_cast<std::ptrdiff_t>(i)].center[k]);
+          high[k] = std::max(high[k], first[static_cast<std::ptrdiff_t>(i)].center[k]);
+        }
+      }
+      const std::array<float, 3> size{high[0] - low[0], high[1] - low[1], high[2] - low[2]};
+      const std::size_t axis = size[0] >= size[1] && size[0] >= size[2] ? 0 : size[1] >= size[2] ? 1 : 2;
+      std::nth_element(first, first + static_cast<std::ptrdiff_t>(half), first + static_cast<std::ptrdiff_t>(count),
+                       AlongAxis{axis});
+    });
+  }
+  // nth_element leaves each side in an order of the library's choosing: inside a leaf it is made ours.
+  parallel_for_each_index(leaves_.size(), 1024, [&](std::size_t leaf) {
+    const auto first = items.begin() + static_cast<std::ptrdiff_t>(kLeafSize * leaf);
+    const auto last = items.begin() + static_cast<std::ptrdiff_t>(std::min(kLeafSize * (leaf + 1), items.size()));
+    std::sort(first, last, [](const Item& a, const Item& b) { return a.triangle < b.triangle; });
+  });
+}
+
+void SurfaceTree::fill_leaves() {
+  parallel_for_each_index(leaves_.size(), 1024, [&](std::size_t i) {
+    for (std::size_t k = 0; k < kLeafSize; ++k) {
+      // A leaf that is not full repeats its last triangle, which then never wins against itself.
+      const std::size_t slot = std::min(kLeafSize * i + k, slot_triangle_.size() - 1);
+      const TriangleCorners corners = corners_at(static_cast<std::uint32_t>(slot));
+      const Vec3f a = to_frame(corners[0]);
+      const Vec3f ab((corners[1] - corners[0]) * scale_), ac((corners[2] - corners[0]) * scale_);
+      for (int axis = 0; axis < 3; ++axis) {
+        leaves_[i].a[static_cast<std::size_t>(axis)][k] = a[axis];
+        leaves_[i].ab[static_cast<std::size_t>(axis)][k] = ab[axis];
+        leaves_[i].ac[static_cast<std::size_t>(axis)][k] = ac[axis];
+      }
+    }
+  });
+}
+
+void SurfaceTree::fill_nodes() {
+  const float infinity = std::numeric_limits<float>::infinity();
+  const std::size_t depth = level_start_.size() - 1;
+  for (std::size_t level = depth; level-- > 0;) {
+    const std::size_t count = level_start_[level + 1] - level_start_[level];
+    const std::size_t child_count =
+        level + 1 == depth ? leaves_.size() : level_start_[level + 2] - level_start_[level + 1];
+    parallel_for_each_index(count, 1024, [&](std::size_t i) {
+      Node& node = nodes_[level_start_[level] + i];
+      for (std::size_t k = 0; k < 4; ++k) {
+        const std::size_t child = 4 * i + k;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          float low = infinity, high = -infinity;  // no child: infinitely far from every point
+          if (child < child_count && level + 1 == depth) {
+            const Leaf& leaf = leaves_[child];
+            for (std::size_t j = 0; j < kLeafSize; ++j) {
+              const float a = leaf.a[axis][j], b = a + leaf.ab[axis][j], c = a + leaf.ac[axis][j];
+              low = std::min(low, std::min(a, std::min(b, c)));
+              high = std::max(high, std::max(a, std::max(b, c)));
+            }
+          } else if (child < child_count) {
+            const Node& below = nodes_[level_start_[level + 1] + child];
+            for (std::size_t j = 0; j < 4; ++j) {
+              low = std::min(low, below.low[axis][j]);
+              high = std::max(high, below.high[axis][j]);
+            }
+          }
+          node.low[axis][k] = low;
+          node.high[axis][k] = high;
+        }
+      }
+    });
+  }
+}
+
+// Four triangles at once: over the inside the plane answers, elsewhere the nearest edge.
+SurfaceTree::Hit SurfaceTree::test_leaf(const Vec3f& point, std::uint32_t index, Hit best) const {
+  const Leaf& leaf = leaves_[index];
+  const Vec3Lanes p{lanes(point.x), lanes(point.y), lanes(point.z)};
+  const Vec3Lanes ab = load3(leaf.ab), ac = load3(leaf.ac);
+  const Vec3Lanes pa = p - load3(leaf.a);
+  const Vec3Lanes bc = ac - ab, pb = pa - ab;
+  const Vec3Lanes n = cross(ab, ac);
+  const Lanes nn = dot(n, n);
+  const Lanes ab2 = dot(ab, ab), ac2 = dot(ac, ac), bc2 = dot(bc, bc);
+  const Lanes longest2 = max_lanes(ab2, max_lanes(ac2, bc2));
+  const Lanes u = dot(cross(ab, pa), n), v = dot(cross(pa, ac), n), w = nn - u - v;
+  const Lanes height = dot(pa, n);
+  const LaneMask is_over =
+      (u >= 0.0F) & (v >= 0.0F) & (w >= 0.0F) & (nn > kNeedleSine * kNeedleSine * longest2 * longest2);
+  const Lanes by_plane = height * height / max_lanes(nn, lanes(1e-37F));
+  const Lanes by_edge =
+      min_lanes(segment_distance2(pa, ab, dot(pa, ab), ab2),
+                min_lanes(segment_distance2(pa, ac, dot(pa, ac), ac2), segment_distance2(pb, bc, dot(pb, bc), bc2)));
+  const Lanes distance2 = choose(is_over, by_plane, by_edge);
+  for (std::uint32_t k = 0; k < kLeafSize; ++k) {
+    if (distance2[k] < best.distance2) best = {std::min(4 * index + k, size() - 1), distance2[k]};
+  }
+  return best;
+}
+
+SurfaceTree::Hit SurfaceTree::find_nearest(const Vec3f& point, Hit best, float enough) const {
+  if (nodes_.empty()) return best;
+  struct Entry {
+    std::uint32_t index;  ///< within its level
+    std::uint32_t level;
+    float distance2;
+  };
+  std::array<Entry, 3 * kMaxDepth + 4> stack;
+  std::size_t size = 0;
+  const auto depth = static_cast<std::uint32_t>(level_start_.size() - 1);
+  const Lanes px = lanes(point.x), py = lanes(point.y), pz = lanes(point.z);
+  Entry entry{0, 0, 0.0F};
+  while (true) {
+    if (entry.level == depth) {
+      best = test_leaf(point, entry.index, best);
+      if (best.distance2 <= enough) return best;
+    } else {
+      const Node& node = nodes_[level_start_[entry.level] + entry.index];
+      const Lanes zero = lanes(0.0F);
+      const Lanes dx =
+          max_lanes(max_lanes(load_lanes(node.low[0].data()) - px, px - load_lanes(node.high[0].data())), zero);
+      const Lanes dy =
+          max_lanes(max_lanes(load_lanes(node.low[1].data()) - py, py - load_lanes(node.high[1].data())), zero);
+      const Lanes dz =
+          max_lanes(max_lanes(load_lanes(node.low[2].data()) - pz, pz - load_lanes(node.high[2].data())), zero);
+      const Lanes d = dx * dx + dy * dy + dz * dz;
+      // Non-negative floats order like their bits: the child's number goes into the lowest two, and four integers are
+      // sorted with the far ones first.
+      std::array<std::uint32_t, 4> keys;
+      for (std::uint32_t k = 0; k < 4; ++k)
+        keys[k] = (std::bit_cast<std::uint32_t>(static_cast<float>(d[k])) & ~3U) | k;
+      const auto order = [&](std::size_t i, std::size_t j) {
+        const std::uint32_t a = std::max(keys[i], keys[j]);
+        keys[j] = std::min(keys[i], keys[j]);
+        keys[i] = a;
+      };
+      order(0, 1);
+      order(2, 3);
+      order(0, 2);
+      order(1, 3);
+      order(1, 2);
+      for (const std::uint32_t key : keys) {
+        const float distance2 = std::bit_cast<float>(key & ~3U);
+        if (distance2 < best.distance2) stack[size++] = {4 * entry.index + (key & 3U), entry.level + 1, distance2};
+      }
+    }
+    do {
+      if (size == 0) return best;
+      entry = stack[--size];
+    } while (!(entry.distance2 < best.distance2));
+  }
+}
+
+}  // namespace meshlode

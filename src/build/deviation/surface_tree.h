@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A tree over the triangles of a surface that finds what lies near a point: four boxes a node, four triangles a leaf,
+// in floats; the children's places follow from the node's own, so that no links are stored.
+//
+// Floats only choose: whatever triangle comes out, its exact distance (in doubles) is an upper bound of the distance to
+// the surface, and it misses the least by about 1e-7 of the surface's extent.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/vec.h"
+#include "build/deviation/point_distance.h"
+
+namespace meshlode {
+
+class SurfaceTree {
+ public:
+  static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
+
+  /// A place of the tree's own order. Places near each other are near in space.
+  struct Hit {
+    std::uint32_t slot = kNone;
+    float distance2 = 3.0e38F;  ///< in the tree's frame, approximate
+  };
+
+  struct Surface {
+    std::span<const Vec3d> positions;
+    std::span<const std::array<std::uint32_t, 3>> triangles;
+  };
+
+  /// The spans must outlive the tree. Every index in range, every position finite.
+  void build(const Surface& surface);
+
+  [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(slot_triangle_.size()); }
+  [[nodiscard]] std::uint32_t triangle_at(std::uint32_t slot) const { return slot_triangle_[slot]; }
+  [[nodiscard]] const std::array<std::uint32_t, 3>& indices_at(std::uint32_t slot) const {
+    return surface_.triangles[slot_triangle_[slot]];
+  }
+  [[nodiscard]] TriangleCorners corners_at(std::uint32_t slot) const {
+    const auto& t = indices_at(slot);
+    return {surface_.positions[t[0]], surface_.positions[t[1]], surface_.positions[t[2]]};
+  }
+  [[nodiscard]] double distance2_at(const Vec3d& point, std::uint32_t slot) const {
+    return point_triangle_distance2(point, corners_at(slot));
+  }
+
+  /// The tree's frame: floats of about unit size. Distances there are `scale` times those outside; a power of two.
+  [[nodiscard]] Vec3f to_frame(const Vec3d& point) const { return Vec3f((point - center_) * scale_); }
+  [[nodiscard]] double scale() const { return scale_; }
+
+  /// The nearest triangle that beats `best`, else `best`. Stops as soon as something is within `enough`.
+  [[nodiscard]] Hit find_nearest(const Vec3f& point, Hit best, float enough) const;
+  /// The nearest of the four triangles around a slot, if it beats `best`.
+  [[nodiscard]] Hit look_around(const Vec3f& point, std::uint32_t slot, Hit best) const {
+    return test_leaf(point, slot / 4, best);
+  }
+
+  /// The tree from above: levels of nodes, four children each, and leaves of four slots below the last. Children are
+  /// numbered within their level: those of node i are 4·i to 4·i + 3.
+  [[nodiscard]] std::uint32_t depth() const {
+    return level_start_.empty() ? 0 : static_cast<std::uint32_t>(level_start_.size() - 1);
+  }
+  struct Ball {
+    Vec3d center;
+    double radius = 0.0;  ///< negative: there is no such child
+  };
+  /// Around everything below child `child` of node `index` of a level, outside the tree's frame. \pre level < depth()
+  [[nodiscard]] Ball ball_of_child(std::uint32_t level, std::uint32_t index, std::uint32_t child) const {
+    const Node& node = nodes_[level_start_[level] + index];
+    Vec3d low, high;
+    for (int axis = 0; axis < 3; ++axis) {
+      low[axis] = static_cast<double>(node.low[static_cast<std::size_t>(axis)][child]);
+      high[axis] = static_cast<double>(node.high[static_cast<std::size_t>(axis)][child]);
+    }
+    if (!(low.x <= high.x)) return {Vec3d(0.0), -1.0};
+    return {center_ + (low + high) * (0.5 / scale_), 0.5 * glm::length(high - low) / scale_};
+  }
+
+ private:
+  struct Node {
+    std::array<std::array<float, 4>, 3> low, high;  ///< [axis][child]
+  };
+  struct Leaf {
+    std::array<std::array<float, 4>, 3> a, ab, ac;  ///< [axis][triangle]
+  };
+  struct Item {
+    std::array<float, 3> center;
+    std::uint32_t triangle;
+  };
+
+  void set_frame();
+  void sort_items(std::vector<Item>& items) const;
+  void fill_leaves();
+  void fill_nodes();
+  [[nodiscard]] Hit test_leaf(const Vec3f& point, std::uint32_t leaf, Hit best) const;
+
+  Surface surface_;
+  Vec3d center_{0.0};
+  double scale_ = 1.0;
+  std::vector<std::uint32_t> slot_triangle_;
+  std::vector<Leaf> leaves_;
+  std::vector<Node> nodes_;
+  std::vector<std::uint32_t> level_start_;  ///< of nodes_, from the root; node i of a level has children 4i … 4i+3
+};
+
+}  // namespace meshlode

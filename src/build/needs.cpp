@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "build/needs.h"
+
+#include <algorithm>
+#include <bit>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "base/byte_size.h"
+#include "base/memory.h"
+
+namespace meshlode {
+
+namespace {
+
+// Bytes, measured over the models of docs/performance.md: of the program, of a thread, of each byte of the scene's document
+// while it is read, of what is kept of a mesh when it is done; and while it is in work of a triangle, of a position (a closed
+// surface has half as many as triangles, loose cards twice as many) and of a vertex's attributes.
+constexpr std::uint64_t kProcess = 21u << 20u;
+constexpr std::uint64_t kThread = 3u << 20u;
+constexpr std::uint64_t kDocumentByte = 40;
+constexpr std::uint64_t kKeptTriangle = 60;
+constexpr std::uint64_t kTriangle = 140;
+constexpr std::uint64_t kPosition = 760;
+constexpr std::uint64_t kPositionOfQuadric = 450;
+constexpr std::uint64_t kVertexFloat = 30;
+
+template <class T>
+std::uint64_t bytes_of(const std::vector<T>& values) {
+  return values.size() * sizeof(T);
+}
+
+std::uint64_t bytes_of(const Primitive& primitive) {
+  std::uint64_t sum = bytes_of(primitive.positions) + bytes_of(primitive.normals) + bytes_of(primitive.colors) +
+                      bytes_of(primitive.indices);
+  for (const auto& uvs : primitive.uvs) sum += bytes_of(uvs);
+  return sum;
+}
+
+std::uint64_t mixed(std::uint64_t z) {  // splitmix64 (Steele, Lea and Flood 2014)
+  z = (z ^ z >> 30U) * 0xBF58476D1CE4E5B9ULL;
+  z = (z ^ z >> 27U) * 0x94D049BB133111EBULL;
+  return z ^ z >> 31U;
+}
+
+/// Distinct positions of a mesh: of those whose hash falls into a share that leaves half a million, exactly; the others are
+/// taken to be like them (Flajolet 1990).
+std::uint64_t count_positions(const SourceMesh& mesh) {
+  constexpr std::uint64_t kSample = std::uint64_t{1} << 19U;
+  std::uint64_t vertices = 0;
+  for (const Primitive& primitive : mesh.primitives) vertices += primitive.positions.size();
+  std::uint32_t bits = 0;
+  while (vertices >> bits > kSample) ++bits;
+  const std::uint64_t mask = (std::uint64_t{1} << bits) - 1;
+  std::vector<std::uint64_t> seen;
+  for (const Primitive& primitive : mesh.primitives) {
+    for (const Vec3d& p : primitive.positions) {
+      std::uint64_t hash = 0;
+      for (int k = 0; k < 3; ++k) hash = mixed(hash + std::bit_cast<std::uint64_t>(p[k] + 0.0) + 0x9E3779B97F4A7C15ULL);
+      if ((hash & mask) == 0) seen.push_back(hash);
+    }
+  }
+  std::sort(seen.begin(), seen.end());
+  return static_cast<std::uint64_t>(std::unique(seen.begin(), seen.end()) - seen.begin()) << bits;
+}
+
+/// Floats of a vertex beside its position, as many as may be kept.
+std::uint64_t attribute_floats(const SourceMesh& mesh, const PipelineOptions& options) {
+  if (options.attributes == AttributeChoice::kNone) return 0;
+  std::uint64_t floats = 0;
+  for (const Primitive& primitive : mesh.primitives) {
+    std::uint64_t own = primitive.normals.empty() ? 0 : 3;
+    for (const auto& uvs : primitive.uvs) own += uvs.empty() ? 0 : 2;
+    own += primitive.colors.empty() ? 0 : 4;
+    floats = std::max(floats, own);
+  }
+  return floats;
+}
+
+}  // namespace
+
+MeshCounts count_mesh(const SourceMesh& mesh) {
+  const bool has_normals = std::any_of(mesh.primitives.begin(), mesh.primitives.end(),
+                                       [](const Primitive& primitive) { return !primitive.normals.empty(); });
+  MeshCounts counts;
+  for (const Primitive& primitive : mesh.primitives) {
+    counts.triangles += primitive.indices.size() / 3;
+    // Beside primitives with normals, one without gets flat ones: a vertex for each corner.
+    counts.vertices += has_normals && primitive.normals.empty() ? primitive.indices.size() : primitive.positions.size();
+  }
+  return counts;
+}
+
+Status check_mesh_counts(const MeshCounts& counts, const std::string& mesh) {
+  const auto refuse = [&](std::uint64_t count, const char* what, std::uint64_t limit) {
+    return Error{ErrorCode::kUnsupported, mesh,
+                 std::to_string(count) + " " + what + ", at most " + std::to_string(limit) +
+                     " are built into one mesh: split it"};
+  };
+  if (counts.triangles > kMaxMeshTriangles) return refuse(counts.triangles, "triangles", kMaxMeshTriangles);
+  if (counts.vertices > kMaxMeshVertices) return refuse(counts.vertices, "vertices", kMaxMeshVertices);
+  return Ok{};
+}
+
+std::uint64_t estimate_memory(const Scene& scene, const PipelineOptions& options, std::uint32_t threads) {
+  threads = std::max(threads, 1U);
+  const bool is_measured = options.error_tier != format::ErrorTier::kQem;
+  std::uint64_t sum = kProcess + kThread * threads + kDocumentByte * scene.document.size();
+  for (const SceneBlob& blob : scene.blobs) sum += 2 * bytes_of(blob.bytes);  // the scene's and the file's
+  std::vector<std::uint64_t> working;
+  for (const SourceMesh& mesh : scene.meshes) {
+    const MeshCounts counts = count_mesh(mesh);
+    for (const Primitive& primitive : mesh.primitives) sum += bytes_of(primitive);
+    sum += kKeptTriangle * counts.triangles;
+    working.push_back(kTriangle * counts.triangles +
+                      (is_measured ? kPosition : kPositionOfQuadric) * count_positions(mesh) +
+                      kVertexFloat * attribute_floats(mesh, options) * counts.vertices);
+  }
+  // As many meshes as there are threads are in work at once: the largest, at worst.
+  const std::size_t at_once = std::min<std::size_t>(threads, working.size());
+  std::partial_sort(working.begin(), working.begin() + static_cast<std::ptrdiff_t>(at_once), working.end(),
+                    std::greater<>());
+  for (std::size_t i = 0; i < at_once; ++i) sum += working[i];
+  return sum;
+}
+
+Status check_memory(std::uint64_t estimate, const PipelineOptions& options) {
+  std::uint64_t limit = options.max_memory;
+  if (limit == 0) {
+    const auto available = available_memory();
+    if (!available) return Ok{};
+    limit = resident_memory() + *available;
+  }
+  if (estimate <= limit) return Ok{};
+  return Error{ErrorCode::kBuildFailed, "",
+               "the build needs about " + byte_size_text(estimate) + " of memory, " + byte_size_text(limit) +
+                   (options.max_memory == 0 ? " are available (--max-memory SIZE builds all the same)"
+                                            : " are allowed by --max-memory")};
+}
+
+}  // namespace meshlode

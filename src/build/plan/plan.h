@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Plan: keep only what the scene calls for. Every decision has a reason, and says what it leaves out.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "build/prepared.h"
+#include "scene/scene.h"
+
+namespace meshlode {
+
+/// Which attributes of the source the asset may carry.
+enum class AttributeChoice : std::uint8_t {
+  kAuto,  ///< what the scene's materials can show
+  kNone,  ///< positions alone
+  kAll,   ///< everything that the source has and the format can hold
+};
+
+struct PlanDecision {
+  std::string what;    ///< "mesh 0: TEXCOORD_0"
+  bool kept = false;
+  std::string reason;  ///< "no material samples a texture through it"
+  bool is_loss = false;  ///< left out although the scene's materials can show it
+};
+
+struct MeshPlan {
+  AttributeLayout layout;
+  std::vector<PlanDecision> decisions;
+};
+
+/// Decides the attributes of one mesh. `mesh_label` starts each decision's `what`.
+[[nodiscard]] MeshPlan plan_mesh(const SourceMesh& mesh, const std::vector<SceneMaterial>& materials,
+                                 AttributeChoice choice, const std::string& mesh_label);
+
+}  // namespace meshlode

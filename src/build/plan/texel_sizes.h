@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How many texels a unit of texture coordinates spans, so that a budget can be given in texels.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace meshlode {
+
+/// For each TEXCOORD_n: the most texels that a unit of it spans, over every texture that the mesh's materials sample with
+/// it, KHR_texture_transform's scale included. 0 where no texture of known size is sampled.
+[[nodiscard]] std::array<double, kMaxUvSets> texels_per_unit(const Scene& scene, const SourceMesh& mesh);
+
+/// The same for each of Scene::materials: the document is read once, however many meshes there are …
+[[nodiscard]] std::vector<std::array<double, kMaxUvSets>> texels_of_materials(const Scene& scene);
+/// … and for the materials of a mesh together.
+[[nodiscard]] std::array<double, kMaxUvSets> texels_per_unit(std::span<const std::array<double, kMaxUvSets>> of_materials,
+                                                             const SourceMesh& mesh);
+
+}  // namespace meshlode

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The simplifier's state and steps, for at most Capacity attributes. Used by simplify.cpp alone.
+//
+// Order of collapses: E / √W, E the area-weighted quadric error at the new place and W the summed area. It beats E
+// because E grows with the area behind a vertex, not only with how far the surface moves.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <queue>
+#include <span>
+#include <vector>
+
+#include "build/simplify/collapse_mesh.h"
+#include "build/simplify/point_triangle.h"
+#include "build/simplify/quadric.h"
+#include "build/simplify/simplify.h"
+
+namespace meshlode {
+
+template <std::size_t Capacity>
+class GroupSimplifier {
+ public:
+  GroupSimplifier(const SimplifyInput& input, const SimplifyOptions& options);
+  void run();
+  [[nodiscard]] SimplifyResult result() const;
+  /// Whether an edge of the border has an end that may move. Without one the border's image is the border.
+  [[nodiscard]] bool has_free_border() const { return has_free_border_; }
+
+ private:
+  using Wedge = WedgeQuadric<Capacity>;
+  using Values = std::array<double, Capacity>;
+
+  static constexpr std::uint32_t kSeveralWedges = 0xFFFFFFFFU;
+  /// Weight of the pull towards the collapsed edge: places vertices sensibly where the surface is flat, and lets short
+  /// edges go first there. A share of the squared edge length, far below any deviation that matters.
+  static constexpr double kRegularization = 1e-6;
+  /// How far from the edge's middle a new vertex may lie, in edge lengths.
+  static constexpr double kMaxOffset = 1.5;
+  static constexpr double kFlipCosine = 0.2;  ///< a triangle may turn by less than 78 degrees in one collapse
+  static constexpr int kMaxPasses = 8;
+  static constexpr double kMaxGrowth = 2.0;   ///< of a piece's size in one level
+  /// A collapse costs at least this share of what its largest displacement, of the old surface from the new or of the new
+  /// from the old, would cost as a mean distance.
+  static constexpr double kGuardShare = 0.7;
+  /// What breaking the link condition costs, as a factor: small holes and handles close when everything else has become
+  /// about ten times as far off.
+  static constexpr double kTopologyPrice = 10.0;
+
+  struct Candidate {
+    double cost;
+    std::uint32_t a, b;                  ///< a < b
+    std::uint32_t version_a, version_b;  ///< stale if a vertex has changed since
+    bool may_break_topology = false;     ///< the cost already counts that the link condition is broken
+    bool operator>(const Candidate& other) const {
+      if (cost != other.cost) return cost > other.cost;
+      return a != other.a ? a > other.a : b > other.b;
+    }
+  };
+  /// Wedges that become one. `fixed` is the locked wedge whose values rule, if any.
+  struct WedgeClass {
+    std::vector<std::uint32_t> members;
+    std::uint32_t fixed = kSeveralWedges;
+    bool is_ambiguous = false;  ///< two locked wedges would become one
+  };
+  struct Placement {
+    Vec3d position{0.0};
+    double cost = 0.0;
+  };
+  enum class Obstacle : std::uint8_t { kNone, kLocked, kFlips, kSeams, kTopology, kPutBack };
+
+  void set_frame();
+  void scale_attributes();
+  void add_face_quadrics();
+  void add_edge_quadrics();
+  void seed_candidates();
+  void push_candidate(std::uint32_t a, std::uint32_t b);
+  void collect_wedge_classes(std::uint32_t a, std::uint32_t b);
+  [[nodiscard]] Placement place(std::uint32_t a, std::uint32_t b);
+  [[nodiscard]] Obstacle try_collapse(const Candidate& candidate);
+  void collect_new_star(std::uint32_t a, std::uint32_t b, bool drops_sheets);
+  void move_sheets_out_of_star();
+  [[nodiscard]] double collect_vanishing(std::uint32_t a, std::uint32_t b, const Vec3d& target);
+  [[nodiscard]] double distance2_to_rest(std::uint32_t a, std::uint32_t b) const;
+  [[nodiscard]] double weigh_witnesses(std::uint32_t a, std::uint32_t b, const Vec3d& target);
+  [[nodiscard]] double new_surface_distance2(const Vec3d& target, double least) const;
+  [[nodiscard]] bool keeps_shared_edges(std::uint32_t locked, const std::vector<std::uint32_t>& at_locked,
+                                        const std::vector<std::uint32_t>& around) const;
+  [[nodiscard]] bool keeps_shared_corners(std::uint32_t locked, const std::vector<std::uint32_t>& around) const;
+  [[nodiscard]] bool keeps_topology(std::uint32_t a, std::uint32_t b);
+  [[nodiscard]] bool turns_over(std::uint32_t moved, std::uint32_t other, const std::vector<std::uint32_t>& corners,
+                                const Vec3d& target) const;
+  void collapse(std::uint32_t a, std::uint32_t b, const Vec3d& target);
+  void update_wedges(std::uint32_t vertex);
+  [[nodiscard]] Vec3d to_frame(const Vec3i& q) const { return (Vec3d(q) - center_) * inverse_scale_; }
+  [[nodiscard]] Vec3i to_grid(const Vec3d& p) const;
+  [[nodiscard]] bool has_corners_in_one_place(std::uint32_t triangle) const;
+  void run_passes();
+  [[nodiscard]] std::vector<std::uint32_t> find_pieces() const;
+  void grow_pieces();
+  [[nodiscard]] double drop_collapsed_sheets(std::uint32_t vertex);
+  [[nodiscard]] StuckReason reason_for_stopping() const;
+
+  const SimplifyInput& input_;
+  const SimplifyOptions& options_;
+  CollapseMesh mesh_;
+  std::size_t attribute_count_;
+  Vec3d center_{0.0};
+  double scale_ = 1.0, inverse_scale_ = 1.0;  ///< grid units per frame unit
+  std::vector<double> attribute_scale_;       ///< stored value -> weighted value
+
+  std::vector<Vec3i> grid_position_;
+  std::vector<Vec3d> position_;
+  std::vector<Quadric> plane_, border_, seam_;  ///< per vertex; seam_ is empty where there is none
+  struct Box {
+    Vec3d low, high;
+    [[nodiscard]] double diagonal() const { return std::sqrt(glm::dot(high - low, high - low)); }
+  };
+  std::vector<Witnesses> witnesses_;            ///< per vertex
+  double total_weight_ = 0.0;                   ///< of all plane quadrics
+  std::vector<Box> merged_;                     ///< box around all input vertices that a vertex stands for
+  std::vector<std::uint32_t> version_;
+  std::vector<std::uint8_t> is_locked_, is_border_;
+  std::vector<std::uint32_t> only_wedge_;       ///< per vertex, or kSeveralWedges
+
+  std::vector<Wedge> wedge_;
+  std::vector<Values> value_;
+  std::vector<std::uint8_t> is_wedge_locked_;
+
+  std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> queue_;
+  double error_ = 0.0;  ///< frame units
+  bool has_free_border_ = false, has_broken_topology_ = false, are_flips_relaxed_ = false;
+  std::array<std::uint64_t, 6> obstacles_{};
+
+  // Scratch of one collapse.
+  struct OuterEdge {
+    std::uint32_t x, y;
+    std::uint32_t corner;  ///< of the triangle that has it, at one of the two vertices
+  };
+  std::vector<OuterEdge> star_;   ///< of the triangles that will be around it
+  std::vector<OuterEdge> sheet_;  ///< of the sheets that will be dropped
+  std::vector<std::uint32_t> vanishing_;  ///< vertices that lose their last triangle with a dropped sheet
+  std::vector<std::pair<double, Vec3i>> left_behind_;  ///< squared distance to the new star, and the witness
+  std::vector<std::uint32_t> corners_a_, corners_b_, neighbors_a_, neighbors_b_, dropped_;
+  std::vector<WedgeClass> classes_;
+  std::size_t class_count_ = 0;
+  std::uint64_t stamp_ = 0;  ///< what is marked with it was marked in this search, not in one before
+  std::vector<std::uint64_t> wedge_stamp_, vertex_stamp_;
+  std::vector<std::uint32_t> class_of_;  ///< per wedge, where its stamp is the search's
+};
+
+}  // namespace meshlode

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "build/simplify/simplify.h"
+
+#include <utility>
+
+#include "build/simplify/border_rule.h"
+#include "build/simplify/group_simplifier.h"
+// The members, by idea; templates, and hot, so that one translation unit sees them all.
+#include "build/simplify/quadrics.inl"
+#include "build/simplify/placement.inl"
+#include "build/simplify/guards.inl"
+#include "build/simplify/left_behind.inl"
+#include "build/simplify/collapse.inl"
+#include "build/simplify/result.inl"
+
+namespace meshlode {
+
+namespace {
+
+struct Attempt {
+  SimplifyResult result;
+  bool keeps_border = false;
+};
+
+template <std::size_t Capacity>
+Attempt simplify_with(const SimplifyInput& input, const SimplifyOptions& options) {
+  GroupSimplifier<Capacity> simplifier(input, options);
+  simplifier.run();
+  Attempt attempt{simplifier.result()};
+  attempt.keeps_border = !simplifier.has_free_border() || keeps_border(input, attempt.result);
+  return attempt;
+}
+
+Attempt simplify_once(const SimplifyInput& input, const SimplifyOptions& options) {
+  // Quadrics of few attributes are small, and copying them is most of the work.
+  const std::uint32_t attributes = input.layout.stride();
+  if (attributes <= 3) return simplify_with<3>(input, options);
+  if (attributes <= 5) return simplify_with<5>(input, options);
+  return simplify_with<3 + 2 * kMaxUvSets + 4>(input, options);
+}
+
+}  // namespace
+
+SimplifyResult simplify_group(const SimplifyInput& input, const SimplifyOptions& options) {
+  Attempt attempt = simplify_once(input, options);
+  if (attempt.keeps_border) return std::move(attempt.result);
+  // Where the link condition was broken, or vertices came to lie on each other, the border can be another one. Under the
+  // condition it seldom is; where its vertices do not move, never.
+  SimplifyOptions careful = options;
+  careful.may_relax_topology = false;
+  attempt = simplify_once(input, careful);
+  if (attempt.keeps_border) return std::move(attempt.result);
+  return simplify_once(with_locked_border(input), careful).result;
+}
+
+}  // namespace meshlode

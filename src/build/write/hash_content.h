@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The hash of what an asset says, whatever codec its pages are stored in (docs/format.md, Content hash).
+#pragma once
+
+#include <string_view>
+
+#include "base/hash.h"
+#include "build/write/asset_tables.h"
+
+namespace meshlode {
+
+[[nodiscard]] Hash128 hash_content(const AssetTables& tables, const Scene& scene);
+
+}  // namespace meshlode

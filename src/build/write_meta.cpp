@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "build/write_meta.h"
+
+#include <nlohmann/json.hpp>
+
+#include "build/dag/build_dag.h"
+
+namespace meshlode {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const char* name_of(AttributeChoice choice) {
+  switch (choice) {
+    case AttributeChoice::kNone: return "none";
+    case AttributeChoice::kAll: return "all";
+    case AttributeChoice::kAuto: break;
+  }
+  return "auto";
+}
+
+const char* name_of(format::ErrorTier tier) {
+  switch (tier) {
+    case format::ErrorTier::kMeasured: return "measured";
+    case format::ErrorTier::kCertified: return "certified";
+    case format::ErrorTier::kQem: break;
+  }
+  return "qem";
+}
+
+/// What a group's deviation is multiplied by on the way to its error. The tier qem has no deviations.
+double error_margin_of(format::ErrorTier tier) { return tier == format::ErrorTier::kMeasured ? kMeasuredMargin : 1.0; }
+
+const char* name_of(format::Codec codec) {
+  switch (codec) {
+    case format::Codec::kLz4: return "lz4";
+    case format::Codec::kZstd: return "zstd";
+    case format::Codec::kDraco: return "draco";
+    case format::Codec::kStrips: return "strips";
+    case format::Codec::kNone: break;
+  }
+  return "none";
+}
+
+}  // namespace
+
+std::string meta_json(const Scene& scene, const PipelineOptions& options, const std::vector<PlanDecision>& decisions) {
+  Json meta;
+  meta["generator"] = "meshlode 0.1.0";
+  meta["source"] = {{"file", scene.source_name}, {"hash", scene.source_hash}};
+  Json settings;
+  settings["error_tier"] = name_of(options.error_tier);
+  settings["error_margin"] = error_margin_of(options.error_tier);
+  settings["attributes"] = name_of(options.attributes);
+  settings["grid"] = options.grid_step > 0.0 ? Json(options.grid_step) : Json("auto");
+  settings["codec"] = name_of(options.codec);
+  settings["repair"] = options.repair;
+  settings["cluster_triangles"] = options.max_cluster_triangles;
+  settings["cluster_vertices"] = options.max_cluster_vertices;
+  settings["position_error"] = options.position_error > 0.0 ? Json(options.position_error) : Json("auto");
+  settings["normal_error"] = options.normal_error;
+  settings["uv_error"] = options.uv_error;
+  settings["uv_error_unit"] = options.uv_error_is_texels ? "texels" : "uv";
+  meta["settings"] = settings;
+  meta["plan"] = Json::array();
+  for (const PlanDecision& decision : decisions) {
+    meta["plan"].push_back({{"what", decision.what}, {"kept", decision.kept}, {"reason", decision.reason}});
+  }
+  meta["left_out"] = Json::array();
+  for (const LeftOut& item : scene.left_out) meta["left_out"].push_back({{"what", item.what}, {"why", item.why}});
+  for (const PlanDecision& decision : decisions) {
+    if (!decision.kept) meta["left_out"].push_back({{"what", decision.what}, {"why", decision.reason}});
+  }
+  // Names come from files: bytes that are not UTF-8 are replaced, never thrown on.
+  return meta.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace meshlode

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "draw/gpu/gpu_camera.h"
+
+#include "draw/raster/projection.h"
+
+namespace meshlode::gpu {
+
+namespace {
+
+void put(double (&out)[3], const Vec3d& v) {
+  for (int i = 0; i < 3; ++i) out[i] = v[i];
+}
+
+}  // namespace
+
+Result<GpuCamera> make_gpu_camera(const Camera& camera, double pixel_error, double scene_depth) {
+  const Result<raster::Projection> projection = raster::make_projection(camera);
+  if (!projection) return projection.error();
+  GpuCamera out{};
+  put(out.eye, projection->eye);
+  put(out.right, projection->right);
+  put(out.up, projection->up);
+  put(out.forward, projection->forward);
+  out.pixels_per_unit = projection->pixels_per_unit;
+  out.near_distance = projection->near_distance;
+  out.any_error_fails = pixel_error > 0.0 ? 0 : 1;
+  out.pixels_per_error = pixel_error > 0.0 ? projection->pixels_per_unit / pixel_error : 0.0;
+  out.is_orthographic = camera.is_orthographic ? 1 : 0;
+  if (camera.is_orthographic) {
+    const double range = scene_depth - projection->near_distance;
+    out.minus_inverse_range = -1.0 / range;
+    out.far_over_range = scene_depth / range;
+  }
+  return out;
+}
+
+Result<double> depth_of_scene(const Asset& asset, const Camera& camera) {
+  if (!camera.is_orthographic) return 0.0;
+  const Result<raster::Projection> projection = raster::make_projection(camera);
+  if (!projection) return projection.error();
+  return raster::scene_depth(asset, *projection);
+}
+
+}  // namespace meshlode::gpu

@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "draw/gpu/gpu_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "run/decode/decode.h"
+#include "draw/gpu/shaders/frame.h"
+#include "run/select/far_instance.h"
+#include "run/select/select.h"
+#include "run/unpack/unpack.h"
+
+namespace meshlode::gpu {
+
+namespace {
+
+template <class T>
+Result<Buffer> make_table(Device& device, const std::vector<T>& table) {
+  auto buffer = device.make_buffer(table.size() * sizeof(T), Memory::kDevice);
+  if (!buffer) return buffer.error();
+  const std::span<const std::uint8_t> bytes(reinterpret_cast<const std::uint8_t*>(table.data()),
+                                            table.size() * sizeof(T));
+  if (const Status done = device.upload(*buffer, bytes); !done) return done.error();
+  return buffer;
+}
+
+/// Selection errors of groups and nodes: infinite, so that they never pass, where an attribute deviates by too much.
+struct Errors {
+  std::vector<float> group, node;
+};
+
+Errors find_errors(const Asset& asset, const AttributeBounds& bounds) {
+  Errors out;
+  for (const format::GroupRecord& group : asset.groups()) out.group.push_back(group.error);
+  for (const format::NodeRecord& node : asset.nodes()) out.node.push_back(node.error);
+  const SelectTables tables = tables_of(asset);
+  for (const format::MeshRecord& mesh : asset.meshes()) {
+    const AttributeBounds own = bounds_for(bounds, mesh);
+    if (!own.has_any()) continue;
+    for (std::uint32_t g = mesh.first_group; g < mesh.first_group + mesh.group_count; ++g) {
+      if (!is_within(own, asset.groups()[g])) out.group[g] = format::kInfiniteError;
+    }
+    const std::vector<std::uint8_t> within = find_nodes_within(tables, mesh, own);
+    for (std::uint32_t n = 0; n < mesh.node_count; ++n) {
+      if (within[n] == 0) out.node[mesh.first_node + n] = format::kInfiniteError;
+    }
+  }
+  return out;
+}
+
+std::vector<GpuMesh> mesh_table(const Asset& asset, const Errors& errors) {
+  std::vector<GpuMesh> out;
+  const SelectTables tables = tables_of(asset);
+  for (const format::MeshRecord& mesh : asset.meshes()) {
+    GpuMesh m{};
+    std::copy(mesh.origin, mesh.origin + 3, m.origin);
+    m.step = std::ldexp(static_cast<double>(mesh.grid.mantissa), mesh.grid.log2);
+    m.reach = mesh_reach(tables, mesh);
+    const FarBound far = find_far_bound(tables, mesh, errors.group);
+    std::copy(far.bound.center, far.bound.center + 3, m.root_center);
+    m.root_radius = far.bound.radius;
+    m.coarse_error = far.bound.error;
+    m.only_root = far.only_root;
+    m.first_node = mesh.first_node;
+    m.node_count = mesh.group_count > 0 ? mesh.node_count : 0;
+    m.first_group = mesh.first_group;
+    m.first_cluster = mesh.first_cluster;
+    m.channel_count = format::channel_count(mesh);
+    m.normal_mode = static_cast<std::uint32_t>(mesh.normal_mode);
+    m.normal_scale = mesh.normal_scale;
+    m.uv_set_count = mesh.uv_set_count;
+    m.has_color = mesh.has_color;
+    m.group_count = mesh.group_count;
+    m.material = mesh.material;
+    out.push_back(m);
+  }
+  return out;
+}
+
+std::vector<GpuInstance> instance_table(std::span<const format::InstanceRecord> instances) {
+  std::vector<GpuInstance> out(instances.size());
+  for (std::size_t i = 0; i < instances.size(); ++i) {
+    std::copy(instances[i].transform, instances[i].transform + 12, out[i].transform);
+    out[i].scale = instances[i].scale;
+    out[i].mesh = instances[i].mesh;
+    out[i].flags = instances[i].flags;
+  }
+  return out;
+}
+
+std::vector<GpuNode> node_table(const Asset& asset, const Errors& errors) {
+  std::vector<GpuNode> out;
+  for (const format::NodeRecord& node : asset.nodes()) {
+    GpuNode n{};
+    std::copy(node.center, node.center + 3, n.center);
+    n.radius = node.radius;
+    n.error = errors.node[out.size()];
+    n.first = node.first;
+    n.child_count = node.child_count;
+    out.push_back(n);
+  }
+  return out;
+}
+
+/// Nodes on the longest way down. Children lie behind their node, so one pass from the back sees them first.
+std::uint32_t bvh_depth(const Asset& asset) {
+  const auto nodes = asset.nodes();
+  std::vector<std::uint32_t> height(nodes.size(), 1);
+  std::uint32_t deepest = 0;
+  for (std::size_t i = nodes.size(); i-- > 0;) {
+    for (std::uint32_t c = 0; c < nodes[i].child_count && nodes[i].first > i; ++c) {
+      height[i] = std::max(height[i], height[nodes[i].first + c] + 1);
+    }
+    deepest = std::max(deepest, height[i]);
+  }
+  return deepest;
+}
+
+struct Pages {
+  Buffer buffer;
+  std::vector<std::uint32_t> word;  ///< where each page begins
+  std::uint64_t bytes = 0;
+};
+
+Result<Pages> upload_pages(Device& device, const Asset& asset) {
+  Pages out;
+  std::uint64_t words = 0;
+  for (const format::PageRecord& page : asset.pages()) {
+    out.word.push_back(static_cast<std::uint32_t>(words));
+    words += (std::uint64_t{page.bytes} + 15) / 16 * 4;
+  }
+  if (words + 4 > 0xFFFFFFFFu) return Error{ErrorCode::kUnsupported, "pages", "more than 16 GiB of pages"};
+  out.bytes = words * 4;
+  if (const Status status = check_decoded_bytes(asset, out.bytes); !status) return status.error();
+  auto buffer = device.make_buffer(out.bytes + 16, Memory::kDevice);  // a reader may look at one word behind a page
+  if (!buffer) return buffer.error();
+  out.buffer = *buffer;
+  std::vector<std::uint8_t> chunk;
+  std::uint64_t chunk_at = 0;
+  constexpr std::size_t kChunk = 8u << 20;
+  for (std::size_t p = 0; p < asset.pages().size(); ++p) {
+    const auto page = load_page(asset, PageId(p));
+    if (!page) return page.error();
+    const std::span<const std::uint8_t> bytes = page->bytes();
+    chunk.insert(chunk.end(), bytes.begin(), bytes.end());
+    chunk.resize((chunk.size() + 15) / 16 * 16, 0);
+    if (chunk.size() < kChunk && p + 1 < asset.pages().size()) continue;
+    if (const Status done = device.upload(out.buffer, chunk, chunk_at); !done) return done.error();
+    chunk_at += chunk.size();
+    chunk.clear();
+  }
+  return out;
+}
+
+std::vector<GpuMeshUvs> mesh_uv_table(const Asset& asset) {
+  std::vector<GpuMeshUvs> out;
+  for (const format::MeshRecord& mesh : asset.meshes()) {
+    GpuMeshUvs m{};
+    for (std::uint32_t set = 0; set < mesh.uv_set_count; ++set) {
+      m.log2[set] = mesh.uv_log2[set];
+      m.source |= std::uint32_t{mesh.uv_set_source[set]} << 8 * set;
+    }
+    out.push_back(m);
+  }
+  return out;
+}
+
+struct MaskTables {
+  std::vector<GpuMask> masks;
+  std::vector<std::uint8_t> texels;  ///< images one after the other, each from a word on
+};
+
+MaskTables mask_tables(const AlphaMasks& alpha) {
+  MaskTables out;
+  std::vector<std::uint32_t> first_word;
+  for (const AlphaImage& image : alpha.images) {
+    first_word.push_back(static_cast<std::uint32_t>(out.texels.size() / 4));
+    out.texels.insert(out.texels.end(), image.texels.begin(), image.texels.end());
+    out.texels.resize((out.texels.size() + 3) / 4 * 4, 0);
+  }
+  for (const AlphaMask& mask : alpha.masks) {
+    GpuMask m{};
+    std::copy(mask.row_u.begin(), mask.row_u.end(), m.rows);
+    std::copy(mask.row_v.begin(), mask.row_v.end(), m.rows + 3);
+    m.threshold = mask.threshold;
+    m.uv_set = mask.uv_set;
+    m.wrap[0] = static_cast<std::uint32_t>(mask.wrap[0]);
+    m.wrap[1] = static_cast<std::uint32_t>(mask.wrap[1]);
+    if (mask.image != format::kNone) {
+      m.width = alpha.images[mask.image].width;
+      m.height = alpha.images[mask.image].height;
+      m.first_word = first_word[mask.image];
+    }
+    out.masks.push_back(m);
+  }
+  return out;
+}
+
+}  // namespace
+
+Result<GpuScene> upload_scene(Device& device, const Asset& asset, std::span<const format::InstanceRecord> instances,
+                              const AttributeBounds& bounds, ImageBudget* images) {
+  if (instances.empty()) instances = asset.instances();
+  GpuScene out;
+  out.instance_count = static_cast<std::uint32_t>(instances.size());
+  out.cluster_count = static_cast<std::uint32_t>(asset.clusters().size());
+  out.bvh_depth = bvh_depth(asset);
+  if (out.bvh_depth > MAX_DEPTH) {
+    return Error{
+        ErrorCode::kUnsupported, "hierarchy",
+        std::to_string(out.bvh_depth) + " nodes deep, the GPU traversal has room for " + std::to_string(MAX_DEPTH)};
+  }
+  for (const format::InstanceRecord& instance : instances) {
+    if ((instance.flags & format::kInstanceSingular) != 0) continue;
+    out.group_instances += asset.meshes()[instance.mesh].group_count;
+    out.cluster_instances += asset.meshes()[instance.mesh].cluster_count;
+  }
+  auto pages = upload_pages(device, asset);
+  if (!pages) return pages.error();
+  out.pages = pages->buffer;
+  out.page_bytes = pages->bytes;
+
+  const Errors errors = find_errors(asset, bounds);
+  std::vector<GpuGroup> groups;
+  for (const format::GroupRecord& group : asset.groups()) {
+    GpuGroup g{};
+    std::copy(group.center, group.center + 3, g.center);
+    g.radius = group.radius;
+    g.error = errors.group[groups.size()];
+    g.first_cluster = group.first_cluster;
+    g.cluster_count = group.cluster_count;
+    g.page_word = pages->word[group.page];
+    groups.push_back(g);
+  }
+  const std::vector<GpuMesh> meshes = mesh_table(asset, errors);
+  std::uint64_t root_words = 1;
+  std::vector<GpuCluster> clusters;
+  for (const format::ClusterRecord& cluster : asset.clusters()) {
+    GpuCluster c{};
+    const format::MeshRecord& mesh = asset.meshes()[asset.groups()[cluster.coarser_group].mesh];
+    const format::CullSphere sphere = format::cull_sphere(mesh, cluster);
+    std::copy(sphere.center, sphere.center + 3, c.center);
+    c.radius = sphere.radius;
+    c.own_group = cluster.own_group;
+    c.page_word = groups[cluster.coarser_group].page_word;
+    c.index = static_cast<std::uint32_t>(clusters.size()) -
+              asset.pages()[asset.groups()[cluster.coarser_group].page].first_cluster;
+    c.index |= static_cast<std::uint32_t>(cluster.level) << 16u;
+    out.max_cluster_triangles = std::max(out.max_cluster_triangles, cluster.triangle_count());
+    out.max_cluster_vertices = std::max(out.max_cluster_vertices, cluster.vertex_count());
+    const std::uint32_t only = meshes[asset.groups()[cluster.coarser_group].mesh].only_root;
+    if (only == cluster.coarser_group && groups[only].cluster_count == 1) {
+      out.max_root_triangles = std::max(out.max_root_triangles, cluster.triangle_count());
+      out.max_root_vertices = std::max(out.max_root_vertices, cluster.vertex_count());
+      c.root_word = static_cast<std::uint32_t>(root_words);
+      root_words += 1 + 3 * cluster.vertex_count() + cluster.triangle_count();
+    }
+    clusters.push_back(c);
+  }
+  ImageBudget own_budget;
+  out.alpha_masks = std::make_shared<const AlphaMasks>(load_alpha_masks(asset, images != nullptr ? *images : own_budget));
+  out.has_alpha_mask = !out.alpha_masks->is_empty();
+  out.has_textures = has_textures(asset);
+  const MaskTables mask = mask_tables(*out.alpha_masks);
+  std::vector<GpuMaterial> materials;
+  for (const format::MaterialRecord& material : asset.materials()) {
+    GpuMaterial m{};
+    m.base_color = {material.base_color[0], material.base_color[1], material.base_color[2], material.base_color[3]};
+    m.double_sided = material.double_sided;
+    m.mask = out.has_alpha_mask ? out.alpha_masks->of_material[materials.size()] : format::kNone;
+    materials.push_back(m);
+    out.has_double_sided = out.has_double_sided || material.double_sided != 0;
+  }
+  for (const format::MeshRecord& mesh : asset.meshes()) {
+    out.has_stored_normals = out.has_stored_normals || mesh.normal_mode == format::NormalMode::kStored;
+  }
+
+  const auto put = [&](Buffer& slot, auto&& table) -> Status {
+    auto buffer = make_table(device, table);
+    if (!buffer) return buffer.error();
+    slot = *buffer;
+    return Ok{};
+  };
+  auto roots = device.make_buffer(root_words * 4, Memory::kDevice);  // filled by the renderer
+  if (!roots) return roots.error();
+  out.roots = *roots;
+  out.mesh_count = static_cast<std::uint32_t>(meshes.size());
+  if (const Status s = put(out.meshes, meshes); !s) return s.error();
+  if (const Status s = put(out.instances, instance_table(instances)); !s) return s.error();
+  if (const Status s = put(out.nodes, node_table(asset, errors)); !s) return s.error();
+  if (const Status s = put(out.groups, groups); !s) return s.error();
+  if (const Status s = put(out.clusters, clusters); !s) return s.error();
+  if (const Status s = put(out.materials, materials); !s) return s.error();
+  if (const Status s = put(out.mesh_uvs, mesh_uv_table(asset)); !s) return s.error();
+  if (const Status s = put(out.masks, mask.masks); !s) return s.error();
+  if (const Status s = put(out.mask_texels, mask.texels); !s) return s.error();
+  return out;
+}
+
+}  // namespace meshlode::gpu

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The pages that a cut needs, loaded once.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "run/decode/decode.h"
+#include "run/select/select.h"
+
+namespace meshlode::raster {
+
+class CutPages {
+ public:
+  /// Errors: kUsage for an id that the asset does not have, or a cluster of another mesh than the instance's; kInvalid
+  /// for a broken page.
+  [[nodiscard]] static Result<CutPages> load(const Asset& asset, std::span<const ClusterInstance> cut);
+
+  /// \pre `cluster` is of the cut
+  void decode(const Asset& asset, ClusterId cluster, DecodedCluster& out) const;
+
+ private:
+  std::vector<std::optional<PageBytes>> pages_;
+};
+
+}  // namespace meshlode::raster

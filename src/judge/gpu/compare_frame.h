@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The GPU against the CPU (I8, I9): decoded integers, the cut, and each pixel's id and depth.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <meshlode/result.h>
+
+#include "draw/gpu/renderer.h"
+#include "draw/gpu/gpu_scene.h"
+#include "draw/gpu/vulkan/vulkan.h"
+#include "run/select/select.h"
+
+namespace meshlode::gpu {
+
+/// What was compared, and where it differed.
+struct Comparison {
+  std::uint64_t items = 0;
+  std::uint64_t differences = 0;
+  std::string first;  ///< the first difference, in words
+};
+
+/// Every integer of every cluster (I9).
+[[nodiscard]] Result<Comparison> compare_decode(Device& device, const GpuScene& scene, const Asset& asset);
+
+struct CutComparison {
+  Comparison cut;     ///< without culling: equal to the flat rule's (I8). With culling: a part of it
+  Comparison pixels;  ///< ids and depths against the CPU's picture of the whole cut (I9)
+  FrameReport frame;
+};
+/// Draws with `renderer` and compares with select_flat() and draw_cut() of the same camera. With culling the picture
+/// must still be the same: what is culled would not have been seen. `bounds` are those that the scene was uploaded with.
+[[nodiscard]] Result<CutComparison> compare_frame(Renderer& renderer, const Asset& asset, const Camera& camera,
+                                                  double pixel_error, const AttributeBounds& bounds = {});
+
+}  // namespace meshlode::gpu

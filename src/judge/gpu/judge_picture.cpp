@@ -1,0 +1,314 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "judge/gpu/judge_picture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "base/parallel.h"
+#include "run/decode/decode.h"
+#include "draw/raster/coverage.h"
+#include "draw/raster/cut_pages.h"
+#include "draw/raster/legend.h"
+#include "draw/raster/projection.h"
+
+namespace meshlode::gpu {
+
+namespace {
+
+using raster::ClipVertex;
+
+/// Weights of a triangle's corners at a picture point, perspective-correct: sum(b · (x, y, w)) ∝ (px, py, 1).
+Vec3d corner_weights(const ClipVertex& a, const ClipVertex& b, const ClipVertex& c, double px, double py) {
+  const Vec3d p(px, py, 1.0), va(a.x, a.y, a.w), vb(b.x, b.y, b.w), vc(c.x, c.y, c.w);
+  Vec3d weights(glm::dot(p, glm::cross(vb, vc)), glm::dot(p, glm::cross(vc, va)), glm::dot(p, glm::cross(va, vb)));
+  if (weights.x + weights.y + weights.z < 0.0) weights = -weights;
+  for (int k = 0; k < 3; ++k) weights[k] = std::max(weights[k], 0.0);  // snapping moves edges by parts of a pixel
+  const double sum = weights.x + weights.y + weights.z;
+  return sum > 0.0 && sum < 1e300 ? weights / sum : Vec3d(1.0 / 3.0);
+}
+
+/// A pixel's point on the surface it shows, mesh space with the origin.
+struct PixelPoint {
+  std::uint32_t instance = 0xFFFFFFFFu;
+  Vec3d point{0.0};
+  Vec3d normal{0.0};  ///< for shading, mesh space, any length
+};
+
+Result<std::vector<PixelPoint>> unproject(const Asset& asset, std::span<const ClusterInstance> cut,
+                                          const VisibilityBuffer& drawn, const raster::Projection& projection) {
+  const auto pages = raster::CutPages::load(asset, cut);
+  if (!pages) return pages.error();
+  std::vector<std::vector<std::uint32_t>> pixels_of(cut.size());
+  for (std::size_t i = 0; i < drawn.pixel_count(); ++i) {
+    if (drawn.item[i] < cut.size()) pixels_of[drawn.item[i]].push_back(static_cast<std::uint32_t>(i));
+  }
+  std::vector<PixelPoint> out(drawn.pixel_count());
+  parallel_for_each_index(cut.size(), 4, [&](std::size_t item) {
+    if (pixels_of[item].empty()) return;
+    const format::InstanceRecord& instance = asset.instances()[cut[item].instance.value];
+    const format::MeshRecord& mesh = asset.meshes()[instance.mesh];
+    const raster::GridToClip to_clip = raster::make_grid_to_clip(projection, mesh, instance);
+    const double step = std::ldexp(static_cast<double>(mesh.grid.mantissa), mesh.grid.log2);
+    DecodedCluster cluster;
+    pages->decode(asset, cut[item].cluster, cluster);
+    ClusterAttributes attributes;
+    decode_attributes(mesh, cluster, attributes);
+    for (const std::uint32_t pixel : pixels_of[item]) {
+      const auto& t = cluster.triangles[drawn.triangle[pixel]];
+      const double px = pixel % drawn.width + 0.5 - 0.5 * drawn.width;
+      const double py = pixel / drawn.width + 0.5 - 0.5 * drawn.height;
+      const Vec3d weights =
+          corner_weights(to_clip.project(cluster.position(t[0])), to_clip.project(cluster.position(t[1])),
+                         to_clip.project(cluster.position(t[2])), px, py);
+      Vec3d q(0.0);
+      for (int k = 0; k < 3; ++k) q += Vec3d(cluster.position(t[static_cast<std::size_t>(k)])) * weights[k];
+      const Vec3d a(cluster.position(t[0])), b(cluster.position(t[1])), c(cluster.position(t[2]));
+      Vec3d normal = glm::cross(b - a, c - a);
+      if (!attributes.normals.empty()) {
+        normal = Vec3d(0.0);
+        for (int k = 0; k < 3; ++k) normal += Vec3d(attributes.normals[t[static_cast<std::size_t>(k)]]) * weights[k];
+      }
+      out[pixel] = {cut[item].instance.value, Vec3d(mesh.origin[0], mesh.origin[1], mesh.origin[2]) + step * q, normal};
+    }
+  });
+  return out;
+}
+
+/// The points of the source's picture.
+std::vector<PixelPoint> unproject_source(const Asset& asset, std::span<const SourceSurface> source,
+                                         const VisibilityBuffer& drawn, const raster::Projection& projection) {
+  std::vector<PixelPoint> out(drawn.pixel_count());
+  parallel_for_each_index(drawn.pixel_count(), 1024, [&](std::size_t i) {
+    if (drawn.item[i] == VisibilityBuffer::kNothing) return;
+    const format::InstanceRecord& instance = asset.instances()[drawn.item[i]];
+    const Surface& surface = source[instance.mesh].surface;
+    const auto& t = surface.triangles[drawn.triangle[i]];
+    const Vec3d corners[3] = {surface.positions[t[0]], surface.positions[t[1]], surface.positions[t[2]]};
+    const auto x = static_cast<double>(i % drawn.width), y = static_cast<double>(i / drawn.width);
+    const Vec3d weights = corner_weights(project_source(projection, instance, corners[0]),
+                                         project_source(projection, instance, corners[1]),
+                                         project_source(projection, instance, corners[2]),
+                                         x + 0.5 - 0.5 * drawn.width, y + 0.5 - 0.5 * drawn.height);
+    out[i].instance = drawn.item[i];
+    out[i].point = corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2];
+  });
+  return out;
+}
+
+/// Pixels that a length in mesh units covers at a point of an instance: k · σ / max(distance, near).
+double pixels_per_unit_at(const raster::Projection& projection, const format::InstanceRecord& instance,
+                          const Vec3d& p) {
+  if (projection.is_orthographic) return projection.pixels_per_unit * instance.scale;
+  Vec3d world(0.0);
+  for (int row = 0; row < 3; ++row) {
+    const double* m = instance.transform + 4 * row;
+    world[row] = m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3] - projection.eye[row];
+  }
+  return projection.pixels_per_unit * instance.scale / std::max(glm::length(world), projection.near_distance);
+}
+
+double degrees_between(const Vec3d& a, const Vec3d& b) {
+  const double sine = glm::length(glm::cross(a, b)), cosine = glm::dot(a, b);
+  return std::atan2(sine, cosine) * (180.0 / 3.14159265358979323846);
+}
+
+struct Displacement {
+  double px = 0.0, allowed = 0.0;
+};
+
+/// From each point to the nearest of its instance's surface: infinite where there is none.
+std::vector<Displacement> displace(const Asset& asset, const raster::Projection& projection,
+                                   const std::vector<PixelPoint>& points, double pixel_error,
+                                   const std::vector<const TriangleTree*>& tree_of) {
+  std::vector<Displacement> out(points.size());
+  parallel_for_each_index(points.size(), 256, [&](std::size_t i) {
+    if (points[i].instance >= tree_of.size()) return;
+    const format::InstanceRecord& instance = asset.instances()[points[i].instance];
+    const TriangleTree* tree = tree_of[points[i].instance];
+    const double scale = pixels_per_unit_at(projection, instance, points[i].point);
+    out[i].px = tree == nullptr ? HUGE_VAL : std::sqrt(tree->nearest(points[i].point).distance2) * scale;
+    const double level0 = static_cast<double>(asset.meshes()[instance.mesh].level0_deviation) * scale;
+    out[i].allowed = std::max(pixel_error, level0);
+  });
+  return out;
+}
+
+/// Whether a surface point may have moved through the near plane, as far as the promise lets it.
+bool may_cross_near(const Asset& asset, const raster::Projection& projection, const PixelPoint& point,
+                          double allowed_px) {
+  const format::InstanceRecord& instance = asset.instances()[point.instance];
+  const double world = allowed_px * instance.scale / pixels_per_unit_at(projection, instance, point.point);
+  const double* m = instance.transform;
+  double distance = 0.0;
+  for (int row = 0; row < 3; ++row) {
+    const double* r = m + 4 * row;
+    distance += projection.forward[row] *
+                (r[0] * point.point.x + r[1] * point.point.y + r[2] * point.point.z + r[3] - projection.eye[row]);
+  }
+  return distance - world <= projection.near_distance;
+}
+
+bool is_covered_around(const VisibilityBuffer& buffer, std::uint32_t x, std::uint32_t y) {
+  for (int dy = -kHoleRadius; dy <= kHoleRadius; ++dy) {
+    for (int dx = -kHoleRadius; dx <= kHoleRadius; ++dx) {
+      const std::int64_t px = std::int64_t{x} + dx, py = std::int64_t{y} + dy;
+      if (px < 0 || py < 0 || px >= buffer.width || py >= buffer.height) return false;
+      const std::size_t at = static_cast<std::size_t>(py) * buffer.width + static_cast<std::size_t>(px);
+      if (buffer.item[at] == VisibilityBuffer::kNothing) return false;
+    }
+  }
+  return true;
+}
+
+/// \pre every pixel within kHoleRadius shows the source
+bool may_cross_near_around(const Asset& asset, const raster::Projection& projection,
+                           const std::vector<PixelPoint>& points, const std::vector<Displacement>& moves,
+                           double tolerance, std::uint32_t x, std::uint32_t y) {
+  for (std::uint32_t v = y - kHoleRadius; v <= y + kHoleRadius; ++v) {
+    for (std::uint32_t u = x - kHoleRadius; u <= x + kHoleRadius; ++u) {
+      const std::size_t at = std::size_t{v} * projection.size.width + u;
+      if (may_cross_near(asset, projection, points[at], moves[at].allowed * tolerance)) return true;
+    }
+  }
+  return false;
+}
+
+/// The cut with its back faces too: what a ray meets at all.
+Result<VisibilityBuffer> draw_both_sides(const Asset& asset, std::span<const ClusterInstance> cut,
+                                         const raster::Projection& projection) {
+  const auto pages = raster::CutPages::load(asset, cut);
+  if (!pages) return pages.error();
+  VisibilityBuffer out = make_visibility_buffer(projection.size.width, projection.size.height);
+  for (std::size_t item = 0; item < cut.size(); ++item) {
+    const format::InstanceRecord& instance = asset.instances()[cut[item].instance.value];
+    const raster::GridToClip to_clip = raster::make_grid_to_clip(projection, asset.meshes()[instance.mesh], instance);
+    DecodedCluster cluster;
+    pages->decode(asset, cut[item].cluster, cluster);
+    raster::ScreenSoup soup;
+    for (std::uint32_t t = 0; t < cluster.triangle_count; ++t) {
+      const auto& [i, j, k] = cluster.triangles[t];
+      raster::add_triangle({to_clip.project(cluster.position(i)), to_clip.project(cluster.position(j)),
+                            to_clip.project(cluster.position(k))},
+                           raster::Culling::kNone, {static_cast<std::uint32_t>(item), t}, projection.size, soup);
+    }
+    raster::draw_soup(soup, out);
+  }
+  return out;
+}
+
+}  // namespace
+
+Result<PictureReport> judge_picture(const Asset& asset, const PictureSource& source,
+                                    std::span<const ClusterInstance> cut, const VisibilityBuffer& drawn,
+                                    const Camera& camera, double pixel_error, const AlphaMasks& masks) {
+  auto projection = raster::make_projection(camera);
+  if (!projection) return projection.error();
+  projection->far_distance = raster::scene_depth(asset, *projection);
+  std::vector<ClusterInstance> finest;
+  for (std::size_t i = 0; i < asset.instances().size(); ++i) {
+    const format::InstanceRecord& instance = asset.instances()[i];
+    if ((instance.flags & format::kInstanceSingular) != 0) continue;
+    const format::MeshRecord& mesh = asset.meshes()[instance.mesh];
+    for (std::uint32_t c = mesh.first_cluster; c < mesh.first_cluster + mesh.cluster_count; ++c) {
+      if (asset.clusters()[c].level == 0) finest.push_back({InstanceId(i), ClusterId(c)});
+    }
+  }
+  const auto full = draw_cut(asset, finest, camera, masks);
+  if (!full) return full.error();
+  const auto cut_points = unproject(asset, cut, drawn, *projection);
+  if (!cut_points) return cut_points.error();
+  const auto full_points = unproject(asset, finest, *full, *projection);
+  if (!full_points) return full_points.error();
+  const VisibilityBuffer truth = draw_source(asset, source.meshes, *projection);
+  const std::vector<PixelPoint> truth_points = unproject_source(asset, source.meshes, truth, *projection);
+
+  // The cut of an instance as a surface, for the way back.
+  std::map<std::uint32_t, std::vector<ClusterId>> clusters_of;
+  for (const ClusterInstance& entry : cut) clusters_of[entry.instance.value].push_back(entry.cluster);
+  std::map<std::uint32_t, TriangleTree> trees;
+  std::vector<const TriangleTree*> source_of(asset.instances().size(), nullptr),
+      cut_of(asset.instances().size(), nullptr);
+  for (const auto& [instance, clusters] : clusters_of) {
+    const std::uint32_t mesh = asset.instances()[instance].mesh;
+    cut_of[instance] =
+        &trees.try_emplace(instance, surface_of_clusters(asset, source.decoded, MeshId(mesh), clusters)).first->second;
+    if (mesh < source.meshes.size()) source_of[instance] = &source.meshes[mesh].tree;
+  }
+  const auto there = displace(asset, *projection, *cut_points, pixel_error, source_of);
+  const auto back = displace(asset, *projection, truth_points, pixel_error, cut_of);
+
+  PictureReport out;
+  out.displacement_px.resize(there.size(), -1.0F);
+  out.depth_difference.resize(there.size(), -1.0F);
+  out.normal_degrees.resize(there.size(), -1.0F);
+  double sum = 0.0, normal_sum = 0.0;
+  std::optional<VisibilityBuffer> both_sides;  // drawn where it is asked for
+  for (std::size_t i = 0; i < there.size(); ++i) {
+    const bool is_cut = drawn.item[i] != VisibilityBuffer::kNothing,
+               is_full = full->item[i] != VisibilityBuffer::kNothing;
+    out.covered += is_cut ? 1 : 0;
+    out.covered_source += truth.item[i] != VisibilityBuffer::kNothing ? 1 : 0;
+    out.only_cut += is_cut && !is_full ? 1 : 0;
+    out.only_source += is_full && !is_cut ? 1 : 0;
+    const auto x = static_cast<std::uint32_t>(i % drawn.width), y = static_cast<std::uint32_t>(i / drawn.width);
+    if (!is_cut && is_covered_around(truth, x, y) &&
+        !may_cross_near_around(asset, *projection, truth_points, back, source.tolerance, x, y)) {
+      if (!both_sides) {
+        auto buffer = draw_both_sides(asset, cut, *projection);
+        if (!buffer) return buffer.error();
+        both_sides = std::move(*buffer);
+      }
+      if (both_sides->item[i] != VisibilityBuffer::kNothing) ++out.holes;
+    }
+    if (is_cut && is_full && drawn.depth[i] > 0) {
+      const double difference = std::abs(double{drawn.depth[i] * 1.0} - full->depth[i] * 1.0);
+      const double relative = difference / std::max(1.0, full->depth[i] * 1.0);
+      out.largest_depth = std::max(out.largest_depth, relative);
+      out.depth_difference[i] = static_cast<float>(relative);
+    }
+    const PixelPoint& p = (*cut_points)[i];
+    const PixelPoint& q = (*full_points)[i];
+    if (is_cut && is_full && p.instance == q.instance && glm::dot(p.normal, p.normal) > 0.0 &&
+        glm::dot(q.normal, q.normal) > 0.0) {
+      const double degrees = degrees_between(p.normal, q.normal);
+      out.normal_degrees[i] = static_cast<float>(degrees);
+      out.largest_normal_degrees = std::max(out.largest_normal_degrees, degrees);
+      normal_sum += degrees;
+      ++out.normals;
+    }
+    if (is_cut) out.displacement_px[i] = static_cast<float>(there[i].px);
+    for (const Displacement& d : {there[i], back[i]}) {
+      if (d.allowed == 0.0) continue;
+      ++out.points;
+      out.largest_px = std::max(out.largest_px, d.px);
+      out.largest_share = std::max(out.largest_share, d.px / d.allowed);
+      out.allowed_px = std::max(out.allowed_px, d.allowed);
+      if (d.px > d.allowed * source.tolerance * (1.0 + 1e-9)) ++out.exceeded;
+    }
+    sum += there[i].px;
+  }
+  out.mean_normal_degrees = out.normals > 0 ? normal_sum / static_cast<double>(out.normals) : 0.0;
+  out.mean_px = out.covered > 0 ? sum / static_cast<double>(out.covered) : 0.0;
+  return out;
+}
+
+Image heat_map(std::span<const float> values, std::uint32_t width, std::uint32_t height, float full) {
+  Image image;
+  image.width = width;
+  image.height = height;
+  image.rgba.assign(values.size() * 4, 255);
+  constexpr std::uint32_t kSteps = 256;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    raster::Rgb color{0.85, 0.85, 0.85};
+    if (values[i] >= 0.0F) {
+      const double share = std::min(1.0, static_cast<double>(values[i]) / static_cast<double>(full));
+      color = raster::level_color(static_cast<std::uint32_t>(share * (kSteps - 1)), kSteps);
+    }
+    for (std::size_t k = 0; k < 3; ++k) image.rgba[4 * i + k] = raster::to_display(color[k]);
+  }
+  return image;
+}
+
+}  // namespace meshlode::gpu

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "judge/gpu/source_picture.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/parallel.h"
+#include "draw/raster/coverage.h"
+#include "draw/raster/screen.h"
+
+namespace meshlode::gpu {
+
+namespace {
+
+constexpr std::size_t kChunkTriangles = 4096;
+constexpr std::size_t kBatchChunks = 64;  ///< about 13 MB of screen triangles
+
+struct Chunk {
+  std::uint32_t instance = 0;
+  std::size_t first = 0, count = 0;
+};
+
+void project_chunk(const Asset& asset, const SourceSurface& source, const raster::Projection& projection,
+                   const Chunk& chunk, raster::ScreenSoup& out) {
+  const format::InstanceRecord& instance = asset.instances()[chunk.instance];
+  const bool is_mirrored = (instance.flags & format::kInstanceMirrored) != 0;
+  for (std::size_t t = chunk.first; t < chunk.first + chunk.count; ++t) {
+    const bool is_double_sided = !source.double_sided.empty() && source.double_sided[t] != 0;
+    const raster::Culling culling = is_double_sided ? raster::Culling::kNone
+                                    : is_mirrored   ? raster::Culling::kCounterClockwise
+                                                    : raster::Culling::kClockwise;
+    const auto& [a, b, c] = source.surface.triangles[t];
+    raster::add_triangle({project_source(projection, instance, source.surface.positions[a]),
+                          project_source(projection, instance, source.surface.positions[b]),
+                          project_source(projection, instance, source.surface.positions[c])},
+                         culling, {chunk.instance, static_cast<std::uint32_t>(t)}, projection.size, out);
+  }
+}
+
+}  // namespace
+
+std::vector<SourceSurface> source_surfaces(const Scene& scene) {
+  std::vector<SourceSurface> out;
+  out.reserve(scene.meshes.size());
+  for (const SourceMesh& mesh : scene.meshes) {
+    std::vector<std::uint8_t> sides;
+    for (const Primitive& primitive : mesh.primitives) {
+      const bool is_double_sided = primitive.material.value < scene.materials.size() &&
+                                   scene.materials[primitive.material.value].double_sided;
+      sides.insert(sides.end(), primitive.indices.size() / 3, is_double_sided ? 1 : 0);
+    }
+    Surface surface = surface_of_source(mesh);
+    if (sides.size() != surface.triangles.size()) sides.clear();
+    out.emplace_back(std::move(surface), std::move(sides));
+  }
+  return out;
+}
+
+raster::ClipVertex project_source(const raster::Projection& projection, const format::InstanceRecord& instance,
+                                  const Vec3d& position) {
+  const double* m = instance.transform;
+  Vec3d p(0.0);
+  for (int row = 0; row < 3; ++row) {
+    const double* r = m + 4 * row;
+    p[row] = ((r[0] * position.x + r[1] * position.y) + r[2] * position.z) + (r[3] - projection.eye[row]);
+  }
+  raster::ClipVertex out;
+  out.x = glm::dot(projection.right, p) * projection.pixels_per_unit;
+  out.y = -glm::dot(projection.up, p) * projection.pixels_per_unit;
+  const double distance = glm::dot(projection.forward, p);
+  if (projection.is_orthographic) {
+    const double range = projection.far_distance - projection.near_distance;
+    out.w = 1.0;
+    out.z = (projection.far_distance - distance) / range;
+  } else {
+    out.w = distance;
+    out.z = projection.near_distance;
+  }
+  return out;
+}
+
+VisibilityBuffer draw_source(const Asset& asset, std::span<const SourceSurface> source,
+                             const raster::Projection& projection) {
+  std::vector<Chunk> chunks;
+  for (std::size_t i = 0; i < asset.instances().size(); ++i) {
+    const format::InstanceRecord& instance = asset.instances()[i];
+    if ((instance.flags & format::kInstanceSingular) != 0 || instance.mesh >= source.size()) continue;
+    const std::size_t count = source[instance.mesh].surface.triangles.size();
+    for (std::size_t first = 0; first < count; first += kChunkTriangles) {
+      chunks.push_back({static_cast<std::uint32_t>(i), first, std::min(kChunkTriangles, count - first)});
+    }
+  }
+  VisibilityBuffer out = make_visibility_buffer(projection.size.width, projection.size.height);
+  for (std::size_t first = 0; first < chunks.size(); first += kBatchChunks) {
+    std::vector<raster::ScreenSoup> parts(std::min(kBatchChunks, chunks.size() - first));
+    parallel_for_each_index(parts.size(), 1, [&](std::size_t i) {
+      const Chunk& chunk = chunks[first + i];
+      project_chunk(asset, source[asset.instances()[chunk.instance].mesh], projection, chunk, parts[i]);
+    });
+    for (const raster::ScreenSoup& part : parts) raster::draw_soup(part, out);
+  }
+  return out;
+}
+
+}  // namespace meshlode::gpu

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The source's own triangles as a picture, from the camera that a cut is drawn from: neither encoded nor quantized.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "scene/scene.h"
+#include "judge/metrics/triangle_tree.h"
+#include "draw/raster/projection.h"
+#include "draw/raster/raster.h"
+#include "run/read/asset.h"
+
+namespace meshlode::gpu {
+
+/// One mesh of the source, mesh space.
+struct SourceSurface {
+  Surface surface;
+  std::vector<std::uint8_t> double_sided;  ///< of each triangle; empty: none is
+  TriangleTree tree;
+
+  explicit SourceSurface(Surface s, std::vector<std::uint8_t> sides = {})
+      : surface(std::move(s)), double_sided(std::move(sides)), tree(surface) {}
+};
+
+/// Every mesh of the scene, in order.
+[[nodiscard]] std::vector<SourceSurface> source_surfaces(const Scene& scene);
+
+/// The source drawn for each instance of the asset, as draw_cut() draws the asset: culled by side, opaque. Items are
+/// instances, triangles those of their mesh's surface. Meshes that `source` does not have are not drawn.
+[[nodiscard]] VisibilityBuffer draw_source(const Asset& asset, std::span<const SourceSurface> source,
+                                           const raster::Projection& projection);
+
+/// Corner `k` of a triangle of the source as it was drawn.
+[[nodiscard]] raster::ClipVertex project_source(const raster::Projection& projection,
+                                                const format::InstanceRecord& instance, const Vec3d& position);
+
+}  // namespace meshlode::gpu

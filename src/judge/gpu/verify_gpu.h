@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// All that `verify --gpu` checks on one asset.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <meshlode/result.h>
+
+#include "base/output_files.h"
+#include "judge/gpu/cameras.h"
+#include "draw/gpu/vulkan/vulkan.h"
+#include "judge/gpu/judge_picture.h"
+#include "judge/metrics/metrics.h"
+#include "run/read/limits.h"
+
+namespace meshlode::gpu {
+
+struct PictureSize {
+  std::uint32_t width = 0, height = 0;
+};
+
+struct GpuVerifyOptions {
+  DeviceOptions device;
+  std::uint32_t orbits = 6;       ///< cameras around the scene, beside the adversarial ones
+  std::vector<NamedCamera> path;  ///< a fly-through, judged as the others are
+  double pixel_error = 1.0;
+  /// Pictures of each camera; hardware raster draws the first. One has odd sides. \pre not empty
+  std::vector<PictureSize> sizes = {{640, 360}, {321, 243}, {128, 512}};
+  std::uint64_t max_decoded = kDefaultMaxDecoded;  ///< bytes of decoded images
+  /// Heat maps (PNG) of the camera with the largest share of its allowance at each size, and of each that failed; empty: none.
+  std::string out_folder;
+  OutputFiles* files = nullptr;  ///< what they are written by; null: by an object of their own
+};
+
+/// One picture against the source.
+struct JudgedCamera {
+  NamedCamera camera;
+  PictureReport picture;  ///< without its maps
+  std::vector<std::string> maps;  ///< files in out_folder
+};
+
+struct GpuCheck {
+  std::string id, invariant, what;
+  std::uint64_t items = 0, failures = 0;
+  bool is_skipped = false;
+  std::string first{};  ///< the first failure, in words
+};
+
+struct GpuVerifyReport {
+  DeviceInfo device;
+  std::vector<GpuCheck> checks;
+  double largest_px = 0.0, largest_share = 0.0;  ///< of all cameras: PictureReport's
+  std::vector<JudgedCamera> cameras;
+  std::vector<std::string> warnings;  ///< images that could not be had
+};
+
+/// `source`: what the asset was built from; without meshes no picture is judged by it. Errors: kUnsupported without a
+/// device, kInvalid for a broken page.
+[[nodiscard]] Result<GpuVerifyReport> verify_on_gpu(const Asset& asset, const Scene& source,
+                                                    const GpuVerifyOptions& options);
+
+}  // namespace meshlode::gpu

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "judge/metrics/area_samples.h"
+
+#include <algorithm>
+
+namespace meshlode {
+namespace {
+
+// Uniform in [0, 1): a hash of seed, sample and draw (splitmix64's mixer).
+double uniform(std::uint64_t seed, std::uint64_t sample, std::uint64_t draw) {
+  std::uint64_t z = seed * 0x9E3779B97F4A7C15ULL + sample * 0xD1B54A32D192ED03ULL + (draw + 1) * 0x8CB92BA72F3D8DD7ULL;
+  for (int round = 0; round < 2; ++round) {
+    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ULL;
+    z = (z ^ (z >> 27)) * 0x94D049BB133111EBULL;
+    z ^= z >> 31;
+  }
+  return static_cast<double>(z >> 11) * 0x1p-53;
+}
+
+}  // namespace
+
+AreaSamples::AreaSamples(const Surface& surface, std::uint64_t count, std::uint64_t seed)
+    : surface_(surface), count_(count), seed_(seed), cumulative_(surface.triangles.size()) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < cumulative_.size(); ++i) {
+    const auto& t = surface.triangles[i];
+    const Vec3d& a = surface.positions[t[0]];
+    sum += 0.5 * glm::length(glm::cross(surface.positions[t[1]] - a, surface.positions[t[2]] - a));
+    cumulative_[i] = sum;
+  }
+}
+
+SurfacePoint AreaSamples::sample(std::uint64_t i) const {
+  const double at = (static_cast<double>(i) + uniform(seed_, i, 0)) / static_cast<double>(count_);
+  const auto found = std::upper_bound(cumulative_.begin(), cumulative_.end(), at * area());
+  const auto index =
+      std::min<std::size_t>(static_cast<std::size_t>(found - cumulative_.begin()), cumulative_.size() - 1);
+  double u = uniform(seed_, i, 1), v = uniform(seed_, i, 2);
+  if (u + v > 1.0) {  // fold the parallelogram onto the triangle
+    u = 1.0 - u;
+    v = 1.0 - v;
+  }
+  return {static_cast<std::uint32_t>(index), u, v};
+}
+
+Vec3d AreaSamples::position(const SurfacePoint& point) const {
+  const auto& t = surface_.triangles[point.triangle];
+  const Vec3d& a = surface_.positions[t[0]];
+  return a + (surface_.positions[t[1]] - a) * point.u + (surface_.positions[t[2]] - a) * point.v;
+}
+
+std::vector<std::uint32_t> used_vertices(const Surface& surface) {
+  std::vector<std::uint8_t> is_used(surface.positions.size(), 0);
+  for (const auto& t : surface.triangles) {
+    for (const std::uint32_t v : t) is_used[v] = 1;
+  }
+  std::vector<std::uint32_t> used;
+  for (std::size_t v = 0; v < is_used.size(); ++v) {
+    if (is_used[v] != 0) used.push_back(static_cast<std::uint32_t>(v));
+  }
+  return used;
+}
+
+}  // namespace meshlode

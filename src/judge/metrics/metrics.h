@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Metrics: how far two surfaces are apart, both ways. Exact nearest points at area-uniform samples and at all vertices;
+// so the maximum is one from below, and the tighter the more samples.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/ids.h"
+#include "base/vec.h"
+#include "run/decode/decode.h"
+#include "scene/scene.h"
+#include "run/read/asset.h"
+
+namespace meshlode {
+
+/// A triangle soup: any triangles, those without area too; every index is below positions.size(), positions finite.
+struct Surface {
+  std::vector<Vec3d> positions;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+struct DeviationOptions {
+  std::uint64_t samples = 200000;  ///< area-uniform samples each way, stratified; all used vertices come on top
+  std::uint64_t seed = 1;          ///< the same seed gives the same samples, for any thread count
+};
+
+/// From the points of one surface to the nearest points of the other.
+struct OneWayDeviation {
+  double max = 0.0;         ///< over samples and vertices, in units of the positions
+  double rms = 0.0;         ///< over the samples alone: they are uniform in area
+  Vec3d worst{0.0};         ///< the point where `max` was found
+  std::uint64_t points = 0; ///< samples and vertices
+};
+
+struct DeviationReport {
+  OneWayDeviation a_to_b, b_to_a;
+  [[nodiscard]] double max() const { return a_to_b.max > b_to_a.max ? a_to_b.max : b_to_a.max; }
+  [[nodiscard]] double rms() const { return a_to_b.rms > b_to_a.rms ? a_to_b.rms : b_to_a.rms; }
+};
+
+/// Infinite where one surface has no triangle and the other has; 0 where both have none.
+[[nodiscard]] DeviationReport measure_deviation(const Surface& a, const Surface& b, const DeviationOptions& options);
+
+/// Clusters of one mesh as a surface in mesh space (origin included), exactly as decoded. `decoded` has every cluster
+/// of the asset, as decode_all gives them.
+[[nodiscard]] Surface surface_of_clusters(const Asset& asset, std::span<const DecodedCluster> decoded, MeshId mesh,
+                                          std::span<const ClusterId> clusters);
+
+/// The source: the triangles that have area, exactly (docs/format.md, "The source"), all primitives of the mesh
+/// together, as read.
+[[nodiscard]] Surface surface_of_source(const SourceMesh& mesh);
+
+}  // namespace meshlode

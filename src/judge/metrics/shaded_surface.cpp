@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "judge/metrics/shaded_surface.h"
+
+#include <limits>
+
+#include "judge/metrics/triangle_area.h"
+
+namespace meshlode {
+namespace {
+
+// Triangles from `first` on get vertices of their own with the geometric normal; without area it is unknown.
+void shade_flat(ShadedSurface& out, std::size_t first_triangle) {
+  Surface& s = out.surface;
+  for (std::size_t i = first_triangle; i < s.triangles.size(); ++i) {
+    const auto corners = s.triangles[i];
+    const Vec3d a = s.positions[corners[0]], b = s.positions[corners[1]], c = s.positions[corners[2]];
+    const Vec3d n = glm::cross(b - a, c - a);
+    const double length = glm::length(n);
+    const Vec3f normal = length > 0.0 ? Vec3f(n / length) : Vec3f(std::numeric_limits<float>::quiet_NaN());
+    for (std::size_t k = 0; k < 3; ++k) {
+      s.triangles[i][k] = static_cast<std::uint32_t>(s.positions.size());
+      const Vec3d position = s.positions[corners[k]];
+      s.positions.push_back(position);
+      out.normals.push_back(normal);
+      for (auto& set : out.uvs) {
+        if (set.empty()) continue;
+        const Vec2f uv = set[corners[k]];
+        set.push_back(uv);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+ShadedSurface shaded_surface_of_source(const SourceMesh& mesh) {
+  const float unknown = std::numeric_limits<float>::quiet_NaN();
+  ShadedSurface out;
+  std::array<bool, kMaxUvSets> has_uvs{};
+  for (const Primitive& p : mesh.primitives) {
+    for (std::size_t n = 0; n < kMaxUvSets; ++n) has_uvs[n] = has_uvs[n] || !p.uvs[n].empty();
+  }
+  for (const Primitive& p : mesh.primitives) {
+    Surface& s = out.surface;
+    const auto base = static_cast<std::uint32_t>(s.positions.size());
+    const std::size_t first_triangle = s.triangles.size();
+    s.positions.insert(s.positions.end(), p.positions.begin(), p.positions.end());
+    for (std::size_t i = 0; i + 2 < p.indices.size(); i += 3) {
+      const std::uint32_t* corner = &p.indices[i];
+      if (!has_area(p.positions[corner[0]], p.positions[corner[1]], p.positions[corner[2]])) continue;
+      s.triangles.push_back({base + corner[0], base + corner[1], base + corner[2]});
+    }
+    for (std::size_t n = 0; n < kMaxUvSets; ++n) {
+      if (!has_uvs[n]) continue;
+      out.uvs[n].insert(out.uvs[n].end(), p.uvs[n].begin(), p.uvs[n].end());
+      out.uvs[n].resize(s.positions.size(), Vec2f(unknown));
+    }
+    out.normals.insert(out.normals.end(), p.normals.begin(), p.normals.end());
+    out.normals.resize(s.positions.size(), Vec3f(unknown));
+    if (p.normals.empty()) shade_flat(out, first_triangle);
+  }
+  return out;
+}
+
+ShadedSurface shaded_surface_of_clusters(const Asset& asset, std::span<const DecodedCluster> decoded, MeshId mesh,
+                                         std::span<const ClusterId> clusters) {
+  const format::MeshRecord& record = asset.meshes()[mesh.value];
+  ShadedSurface out;
+  out.surface = surface_of_clusters(asset, decoded, mesh, clusters);
+  ClusterAttributes attributes;
+  for (const ClusterId id : clusters) {
+    decode_attributes(record, decoded[id.value], attributes);
+    out.normals.insert(out.normals.end(), attributes.normals.begin(), attributes.normals.end());
+    for (std::uint32_t k = 0; k < record.uv_set_count; ++k) {
+      auto& set = out.uvs[record.uv_set_source[k] % kMaxUvSets];
+      set.insert(set.end(), attributes.uvs[k].begin(), attributes.uvs[k].end());
+    }
+  }
+  if (record.normal_mode == format::NormalMode::kFlat) {
+    out.normals.resize(out.surface.positions.size());
+    shade_flat(out, 0);
+  }
+  return out;
+}
+
+}  // namespace meshlode

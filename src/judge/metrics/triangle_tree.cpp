@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "judge/metrics/triangle_tree.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace meshlode {
+namespace {
+
+constexpr std::uint32_t kLeafSize = 4;
+// Below this sine at its sharpest corners a triangle is taken as its edges: its normal would be mostly rounding, and
+// its inside is this close to an edge, relative to its length.
+constexpr double kNeedleSine = 1e-8;
+
+// Squared distance from the origin to the segment a-b.
+double distance2_to_segment(const Vec3d& a, const Vec3d& b) {
+  const Vec3d d = b - a;
+  const double dd = glm::dot(d, d);
+  const double t = dd > 0.0 ? std::clamp(-glm::dot(a, d) / dd, 0.0, 1.0) : 0.0;
+  const Vec3d n = a + d * t;
+  return glm::dot(n, n);
+}
+
+}  // namespace
+
+double distance2_to_triangle(const Vec3d& p, const Vec3d& corner_a, const Vec3d& corner_b, const Vec3d& corner_c) {
+  // Relative to the point: a far-away pair keeps the digits of its difference.
+  const Vec3d a = corner_a - p, b = corner_b - p, c = corner_c - p;
+  const Vec3d ab = b - a, bc = c - b, ca = a - c;
+  const Vec3d n = glm::cross(ab, -ca);
+  const double nn = glm::dot(n, n);
+  const double longest2 = std::max(glm::dot(ab, ab), std::max(glm::dot(bc, bc), glm::dot(ca, ca)));
+  if (nn > kNeedleSine * kNeedleSine * longest2 * longest2) {
+    const bool is_over = glm::dot(glm::cross(ab, -a), n) >= 0.0 && glm::dot(glm::cross(bc, -b), n) >= 0.0 &&
+                         glm::dot(glm::cross(ca, -c), n) >= 0.0;
+    if (is_over) {
+      const double h = glm::dot(a, n);
+      return h * h / nn;
+    }
+  }
+  return std::min(distance2_to_segment(a, b), std::min(distance2_to_segment(b, c), distance2_to_segment(c, a)));
+}
+
+namespace {
+
+// A box may have this many times the area of its triangle before it is cut; an equilateral triangle has up to 3.5.
+constexpr double kMaxWaste = 16.0;
+constexpr double kMostPieces = 8.0;  // of one triangle
+// In all: twice the triangles, or this many where the triangles are few.
+constexpr double kPieceBudget = 262144.0;
+
+struct Box {
+  Vec3d low, high;
+};
+
+Box box_of(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+  return {glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))};
+}
+
+/// Into how many pieces a triangle would best be cut.
+double wanted_pieces(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+  const Box box = box_of(a, b, c);
+  const Vec3d size = box.high - box.low;
+  const Vec3d cross = glm::cross(b - a, c - a);
+  const double area = 0.5 * std::sqrt(glm::dot(cross, cross));
+  const double of_box = size.x * size.y + size.y * size.z + size.z * size.x;
+  // No more than long in widths either way; nothing that is not a number asks for anything.
+  return of_box > kMaxWaste * area ? std::min(kMostPieces, std::ceil(of_box / std::max(kMaxWaste * area, of_box / 1e9))) : 1.0;
+}
+
+/// The box of what lies between two planes across an axis, a little too large rather than too small.
+Box box_between(const std::array<Vec3d, 3>& corners, int axis, double from, double to) {
+  Box box{Vec3d(std::numeric_limits<double>::infinity()), Vec3d(-std::numeric_limits<double>::infinity())};
+  const auto add = [&](const Vec3d& p) {
+    box.low = glm::min(box.low, p);
+    box.high = glm::max(box.high, p);
+  };
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3d& p = corners[k];
+    const Vec3d& q = corners[(k + 1) % 3];
+    if (p[axis] >= from && p[axis] <= to) add(p);
+    for (const double plane : {from, to}) {
+      if ((p[axis] < plane) == (q[axis] < plane)) continue;
+      add(p + (q - p) * std::clamp((plane - p[axis]) / (q[axis] - p[axis]), 0.0, 1.0));
+    }
+  }
+  const Box whole = box_of(corners[0], corners[1], corners[2]);
+  const Vec3d size = whole.high - whole.low, far = glm::max(glm::abs(whole.low), glm::abs(whole.high));
+  const double rounding = 1e-12 * std::max({size.x, size.y, size.z}) + 1e-15 * std::max({far.x, far.y, far.z});
+  return {box.low - rounding, box.high + rounding};
+}
+
+}  // namespace
+
+std::vector<TriangleTree::Piece> TriangleTree::cut_to_pieces(const Surface& surface) {
+  const std::size_t count = surface.triangles.size();
+  const auto corners_of = [&](std::size_t i) {
+    const auto& t = surface.triangles[i];
+    return std::array<Vec3d, 3>{surface.positions[t[0]], surface.positions[t[1]], surface.positions[t[2]]};
+  };
+  double most = kMostPieces;
+  const double budget = std::max(2.0 * static_cast<double>(count), kPieceBudget);
+  std::vector<double> wanted(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto [a, b, c] = corners_of(i);
+    wanted[i] = wanted_pieces(a, b, c);
+  }
+  for (; most > 1.0; most *= 0.5) {
+    double sum = 0.0;
+    for (const double pieces : wanted) sum += std::min(pieces, most);
+    if (sum <= budget) break;
+  }
+  std::vector<Piece> pieces;
+  pieces.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::array<Vec3d, 3> corners = corners_of(i);
+    const Box box = box_of(corners[0], corners[1], corners[2]);
+    const auto parts = static_cast<std::uint32_t>(std::min(wanted[i], most));
+    if (parts <= 1) {
+      pieces.push_back({box.low, box.high, (corners[0] + corners[1] + corners[2]) / 3.0, static_cast<std::uint32_t>(i)});
+      continue;
+    }
+    const Vec3d size = box.high - box.low;
+    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    double from = box.low[axis];
+    for (std::uint32_t part = 1; part <= parts; ++part) {
+      const double to = part == parts ? box.high[axis] : box.low[axis] + size[axis] * part / parts;
+      const Box piece = box_between(corners, axis, from, to);
+      pieces.push_back({piece.low, piece.high, 0.5 * (piece.low + piece.high), static_cast<std::uint32_t>(i)});
+      from = to;
+    }
+  }
+  return pieces;
+}
+
+TriangleTree::TriangleTree(const Surface& surface) {
+  if (surface.triangles.empty()) return;
+  std::vector<Piece> pieces = cut_to_pieces(surface);
+  const auto count = static_cast<std::uint32_t>(pieces.size());
+  nodes_.reserve(2 * std::size_t{count});
+  nodes_.emplace_back();
+  split(0, pieces, 0, count);
+  corners_.resize(count);
+  triangle_.resize(count);
+  place_.resize(surface.triangles.size());
+  for (std::uint32_t i = 0; i < count; ++i) {
+    triangle_[i] = pieces[i].triangle;
+    const auto& t = surface.triangles[triangle_[i]];
+    corners_[i] = {surface.positions[t[0]], surface.positions[t[1]], surface.positions[t[2]]};
+    place_[triangle_[i]] = i;
+  }
+  for (std::size_t n = nodes_.size(); n-- > 0;) {  // children lie behind their node
+    Node& node = nodes_[n];
+    if (node.count == 0) {
+      node.low = glm::min(nodes_[node.first].low, nodes_[node.first + 1].low);
+      node.high = glm::max(nodes_[node.first].high, nodes_[node.first + 1].high);
+      continue;
+    }
+    node.low = pieces[node.first].low;
+    node.high = pieces[node.first].high;
+    for (std::uint32_t i = node.first + 1; i < node.first + node.count; ++i) {
+      node.low = glm::min(node.low, pieces[i].low);
+      node.high = glm::max(node.high, pieces[i].high);
+    }
+  }
+}
+
+void TriangleTree::split(std::uint32_t node, std::vector<Piece>& pieces, std::uint32_t first, std::uint32_t count) {
+  if (count <= kLeafSize) {
+    nodes_[node].first = first;
+    nodes_[node].count = count;
+    return;
+  }
+  Vec3d low = pieces[first].center, high = low;
+  for (std::uint32_t i = first; i < first + count; ++i) {
+    low = glm::min(low, pieces[i].center);
+    high = glm::max(high, pieces[i].center);
+  }
+  const Vec3d extent = high - low;
+  const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
+  const std::uint32_t half = count / 2;
+  const auto begin = pieces.begin() + first;
+  // Pieces of one triangle whose centres agree are alike in all that matters.
+  std::nth_element(begin, begin + half, begin + count, [&](const Piece& a, const Piece& b) {
+    return a.center[axis] != b.center[axis] ? a.center[axis] < b.center[axis] : a.triangle < b.triangle;
+  });
+  const std::uint32_t left = static_cast<std::uint32_t>(nodes_.size());
+  nodes_[node].first = left;
+  nodes_.resize(nodes_.size() + 2);
+  split(left, pieces, first, half);  // depth: log2 of the number of pieces
+  split(left + 1, pieces, first + half, count - half);
+}
+
+double TriangleTree::distance2_to_box(const Node& node, const Vec3d& p) const {
+  const Vec3d outside = glm::max(glm::max(node.low - p, p - node.high), Vec3d(0.0));
+  return glm::dot(outside, outside);
+}
+
+NearestPoint TriangleTree::nearest(const Vec3d& point, std::uint32_t hint) const {
+  NearestPoint best;
+  if (nodes_.empty()) return best;
+  const auto try_triangle = [&](std::uint32_t i) {
+    const double d = distance2_to_triangle(point, corners_[i].a, corners_[i].b, corners_[i].c);
+    if (d < best.distance2) best = {d, triangle_[i]};
+  };
+  if (hint < place_.size()) try_triangle(place_[hint]);
+  struct Entry {
+    std::uint32_t node;
+    double distance2;
+  };
+  std::array<Entry, 64> stack;  // median splits: the depth is below 32
+  std::size_t size = 0;
+  stack[size++] = {0, distance2_to_box(nodes_[0], point)};
+  while (size > 0) {
+    const Entry entry = stack[--size];
+    if (entry.distance2 >= best.distance2) continue;
+    const Node& node = nodes_[entry.node];
+    if (node.count > 0) {
+      for (std::uint32_t i = node.first; i < node.first + node.count; ++i) try_triangle(i);
+      continue;
+    }
+    Entry near{node.first, distance2_to_box(nodes_[node.first], point)};
+    Entry far{node.first + 1, distance2_to_box(nodes_[node.first + 1], point)};
+    if (far.distance2 < near.distance2) std::swap(near, far);
+    if (far.distance2 < best.distance2) stack[size++] = far;
+    if (near.distance2 < best.distance2) stack[size++] = near;
+  }
+  return best;
+}
+
+void TriangleTree::find_within(const Vec3d& point, double distance2, std::vector<NearestPoint>& found) const {
+  if (nodes_.empty()) return;
+  const auto first_found = static_cast<std::ptrdiff_t>(found.size());
+  std::array<std::uint32_t, 64> stack;
+  std::size_t size = 0;
+  stack[size++] = 0;
+  while (size > 0) {
+    const Node& node = nodes_[stack[--size]];
+    if (distance2_to_box(node, point) > distance2) continue;
+    if (node.count == 0) {
+      stack[size++] = node.first;
+      stack[size++] = node.first + 1;
+      continue;
+    }
+    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+      const double d = distance2_to_triangle(point, corners_[i].a, corners_[i].b, corners_[i].c);
+      if (d <= distance2) found.push_back({d, triangle_[i]});
+    }
+  }
+  if (triangle_.size() == place_.size()) return;  // else a triangle was met in several pieces
+  const auto begin = found.begin() + first_found;
+  std::sort(begin, found.end(), [](const NearestPoint& a, const NearestPoint& b) { return a.triangle < b.triangle; });
+  const auto end = std::unique(begin, found.end(), [](const NearestPoint& a, const NearestPoint& b) { return a.triangle == b.triangle; });
+  found.erase(end, found.end());
+}
+
+}  // namespace meshlode

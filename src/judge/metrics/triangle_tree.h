@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Nearest points on a triangle soup, in doubles.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "judge/metrics/metrics.h"
+
+namespace meshlode {
+
+struct NearestPoint {
+  double distance2 = std::numeric_limits<double>::infinity();
+  std::uint32_t triangle = 0xFFFFFFFFu;  ///< of the surface; ties go to any
+};
+
+/// Squared distance from a point to a triangle, which may be a needle, a segment or a point.
+[[nodiscard]] double distance2_to_triangle(const Vec3d& p, const Vec3d& a, const Vec3d& b, const Vec3d& c);
+
+/// A bounding volume hierarchy with a fixed shape (median splits along the longest axis of the centres). A triangle that
+/// fills little of its box, a spoke of a wheel say, stands in several leaves, in each for a piece of its length: else every
+/// point near the hub would lie in the boxes of a quarter of the spokes.
+class TriangleTree {
+ public:
+  explicit TriangleTree(const Surface& surface);
+
+  /// The nearest triangle. `hint` names a triangle that is probably near, and changes the time taken alone; it may be
+  /// none. Infinite for an empty tree. Safe from several threads.
+  [[nodiscard]] NearestPoint nearest(const Vec3d& point, std::uint32_t hint = 0xFFFFFFFFu) const;
+  /// Every triangle within a squared distance (inclusive), appended in no particular order that is always the same.
+  void find_within(const Vec3d& point, double distance2, std::vector<NearestPoint>& found) const;
+
+ private:
+  struct Node {
+    Vec3d low, high;
+    std::uint32_t first = 0;  ///< left child (the right one follows it), or first triangle of a leaf
+    std::uint32_t count = 0;  ///< triangles of a leaf; 0 for an inner node
+  };
+  struct Corners {
+    Vec3d a, b, c;
+  };
+  struct Piece {
+    Vec3d low, high, center;
+    std::uint32_t triangle;
+  };
+
+  [[nodiscard]] static std::vector<Piece> cut_to_pieces(const Surface& surface);
+  void split(std::uint32_t node, std::vector<Piece>& pieces, std::uint32_t first, std::uint32_t count);
+  [[nodiscard]] double distance2_to_box(const Node& node, const Vec3d& p) const;
+
+  std::vector<Node> nodes_;
+  std::vector<Corners> corners_;         ///< in leaf order
+  std::vector<std::uint32_t> triangle_;  ///< leaf order -> surface
+  std::vector<std::uint32_t> place_;     ///< surface -> leaf order, a place of several
+};
+
+}  // namespace meshlode

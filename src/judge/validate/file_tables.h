@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A file's tables as copied records, read by the judge's own few lines: `read` refuses at the first fault, validate
+// names every one. Internal to the judge.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <meshlode/format.h>
+
+#include "base/hash.h"
+#include "judge/validate/rules.h"
+
+namespace meshlode {
+
+struct FileTables {
+  std::span<const std::uint8_t> bytes;
+  std::vector<std::vector<std::uint8_t>> decoded;  ///< sections that are stored by columns
+  format::FileHeader header{};
+  std::vector<format::SectionEntry> sections;
+  std::vector<format::MeshRecord> meshes;
+  std::vector<format::MaterialRecord> materials;
+  std::vector<format::InstanceRecord> instances;
+  std::vector<format::GroupRecord> groups;
+  std::vector<format::ClusterRecord> clusters;
+  std::vector<format::NodeRecord> nodes;
+  std::vector<format::PageRecord> pages;
+  std::vector<std::uint32_t> page_dependencies;
+  std::vector<format::BlobRecord> blobs;
+  std::string_view meta, scene, strings;
+  format::SectionEntry page_data{};  ///< zero where the section is missing
+  format::SectionEntry blob_data{};
+};
+
+/// Container rules L001 … L014 (L012 is in content_hash.cpp). Nothing where the tables cannot be read at all.
+[[nodiscard]] std::optional<FileTables> read_tables(std::span<const std::uint8_t> bytes, RuleLog& log);
+
+/// L013.
+void check_texts(const FileTables& file, RuleLog& log);
+[[nodiscard]] bool is_utf8(std::string_view text);
+/// META's /section/key where it is a string; empty elsewhere.
+[[nodiscard]] std::string meta_text(std::string_view meta, const char* section, const char* key);
+/// META's /section/key where it is a whole number; nothing elsewhere.
+[[nodiscard]] std::optional<std::uint64_t> meta_number(std::string_view meta, const char* section, const char* key);
+[[nodiscard]] std::optional<double> meta_real(std::string_view meta, const char* section, const char* key);
+
+/// L101 … L115. True where every id and range is sound, so that the later rules may index.
+[[nodiscard]] bool check_tables(const FileTables& file, RuleLog& log);
+
+/// The content hash as docs/format.md defines it. `page_bytes` has the decoded bytes of every page. \pre L114 holds
+[[nodiscard]] Hash128 content_hash_of(const FileTables& file,
+                                      std::span<const std::span<const std::uint8_t>> page_bytes);
+/// L012. `page_bytes` has the decoded bytes of every page.
+void check_content_hash(const FileTables& file, std::span<const std::span<const std::uint8_t>> page_bytes,
+                        RuleLog& log);
+
+/// L301 … L311. \pre check_tables()
+void check_dag(const FileTables& file, RuleLog& log);
+
+/// L401 … L404. \pre check_tables()
+void check_trees(const FileTables& file, RuleLog& log);
+
+}  // namespace meshlode

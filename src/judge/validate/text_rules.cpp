@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The asset's JSON texts; the one file of this room that sees nlohmann-json.
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "judge/validate/file_tables.h"
+
+namespace meshlode {
+
+bool is_utf8(std::string_view text) {
+  std::size_t i = 0;
+  const auto byte = [&](std::size_t k) { return static_cast<unsigned>(static_cast<unsigned char>(text[k])); };
+  while (i < text.size()) {
+    const unsigned lead = byte(i);
+    if (lead < 0x80U) {
+      ++i;
+      continue;
+    }
+    const std::size_t count = lead >> 5 == 6U ? 1 : lead >> 4 == 14U ? 2 : lead >> 3 == 30U ? 3 : 0;
+    if (count == 0 || count >= text.size() - i) return false;
+    unsigned code = lead & (0x3FU >> count);
+    for (std::size_t k = 1; k <= count; ++k) {
+      if (byte(i + k) >> 6 != 2U) return false;
+      code = code << 6 | (byte(i + k) & 0x3FU);
+    }
+    constexpr unsigned kLeast[] = {0, 0x80, 0x800, 0x10000};
+    if (code < kLeast[count] || code > 0x10FFFFU || (code >= 0xD800U && code < 0xE000U)) return false;
+    i += count + 1;
+  }
+  return true;
+}
+
+namespace {
+
+/// Nesting beyond this is refused before the parser recurses.
+constexpr int kMaxDepth = 512;
+
+bool is_shallow(std::string_view text) {
+  int depth = 0;
+  bool in_string = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (in_string) {
+      if (c == '\\')
+        ++i;
+      else if (c == '"')
+        in_string = false;
+    } else if (c == '"') {
+      in_string = true;
+    } else if (c == '{' || c == '[') {
+      if (++depth > kMaxDepth) return false;
+    } else if (c == '}' || c == ']') {
+      --depth;
+    }
+  }
+  return true;
+}
+
+nlohmann::json parse(std::string_view text) {
+  if (!is_utf8(text) || !is_shallow(text)) return nlohmann::json(nlohmann::json::value_t::discarded);
+  return nlohmann::json::parse(text.begin(), text.end(), nullptr, false);
+}
+
+nlohmann::json value_at(std::string_view meta, const char* section, const char* key) {
+  const nlohmann::json root = parse(meta);
+  if (!root.is_object() || !root.contains(section) || !root[section].is_object() || !root[section].contains(key))
+    return {};
+  return root[section][key];
+}
+
+}  // namespace
+
+std::string meta_text(std::string_view meta, const char* section, const char* key) {
+  const nlohmann::json value = value_at(meta, section, key);
+  return value.is_string() ? value.get<std::string>() : std::string();
+}
+
+std::optional<std::uint64_t> meta_number(std::string_view meta, const char* section, const char* key) {
+  const nlohmann::json value = value_at(meta, section, key);
+  return value.is_number_unsigned() ? std::optional(value.get<std::uint64_t>()) : std::nullopt;
+}
+
+std::optional<double> meta_real(std::string_view meta, const char* section, const char* key) {
+  const nlohmann::json value = value_at(meta, section, key);
+  return value.is_number() ? std::optional(value.get<double>()) : std::nullopt;
+}
+
+void check_texts(const FileTables& file, RuleLog& log) {
+  const nlohmann::json meta = file.meta.empty() ? nlohmann::json::object() : parse(file.meta);
+  if (log.expect(
+          meta.is_object(), "L013", [] { return std::string("section META"); },
+          [] { return std::string("is not a JSON object"); })) {
+    const auto has = [&](const char* key, nlohmann::json::value_t type) {
+      const auto found = meta.find(key);
+      if (found == meta.end()) return false;
+      return log.expect(
+          found->type() == type, "L013", [&] { return std::string("section META: /") + key; },
+          [] { return std::string("is of another type"); });
+    };
+    has("generator", nlohmann::json::value_t::string);
+    has("settings", nlohmann::json::value_t::object);
+    has("plan", nlohmann::json::value_t::array);
+    has("left_out", nlohmann::json::value_t::array);
+    if (has("source", nlohmann::json::value_t::object)) {
+      for (const char* key : {"file", "hash"}) {
+        log.expect(
+            !meta["source"].contains(key) || meta["source"][key].is_string(), "L013",
+            [&] { return std::string("section META: /source/") + key; }, [] { return std::string("is no string"); });
+      }
+    }
+  }
+  log.expect(
+      parse(file.scene).is_object(), "L013", [] { return std::string("section SCNE"); },
+      [] { return std::string("is not a JSON object"); });
+}
+
+}  // namespace meshlode

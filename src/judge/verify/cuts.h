@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Cross-checks by cuts (V2…): what the group proofs promise is looked at once more on whole cuts. Internal to the
+// judge.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/ids.h"
+#include "scene/scene.h"
+#include "run/read/asset.h"
+#include "run/select/select.h"
+#include "judge/validate/borders.h"
+#include "judge/validate/rules.h"
+#include "judge/validate/surface.h"
+
+namespace meshlode {
+
+/// What is judged, so that a test may put something wrong in its place.
+struct Selectors {
+  std::function<std::vector<ClusterInstance>(const Asset&, const Camera&, double)> flat =
+      [](const Asset& asset, const Camera& camera, double pixel_error) {
+        return select_flat(asset, camera, pixel_error);
+      };
+  std::function<std::vector<ClusterInstance>(const Asset&, const Camera&, double)> bvh =
+      [](const Asset& asset, const Camera& camera, double pixel_error) {
+        return select_bvh(asset, camera, pixel_error);
+      };
+  std::function<UniformCut(const Asset&, MeshId, double)> uniform = [](const Asset& asset, MeshId mesh, double error) {
+    return select_uniform(asset, mesh, error);
+  };
+};
+
+/// Everything about one mesh that cuts are judged by.
+struct MeshJudge {
+  MeshSurface surface;
+  BorderSet border;
+  std::vector<std::uint32_t> group_order;  ///< groups of the mesh from fine to coarse (indices within the mesh)
+};
+
+[[nodiscard]] MeshJudge make_mesh_judge(const Asset& asset, MeshId mesh, std::span<const DecodedCluster> clusters);
+
+/// The first fault of one cut of one mesh; all empty if there is none.
+struct CutFaults {
+  std::string coverage;  ///< V201
+  std::string border;    ///< V202
+  std::string rule;      ///< V204
+  std::string error;     ///< V205
+};
+
+/// `drawn` has one entry per cluster of the mesh.
+/// Coverage: on every path from a level-0 cluster to a root exactly one cluster is drawn. With `least` and `most` the
+/// fewest and most drawn on any path up to a cluster, both must be 1 at every root.
+[[nodiscard]] std::string find_coverage_fault(const Asset& asset, const MeshJudge& judge,
+                                              std::span<const std::uint8_t> drawn);
+/// Border: the chain of the cut has only edges that the source's border allows.
+[[nodiscard]] std::string find_border_fault(const MeshJudge& judge, std::span<const std::uint8_t> drawn);
+
+struct CutTotals {
+  std::uint64_t cuts = 0;       ///< judged
+  std::uint64_t open_cuts = 0;  ///< of meshes whose source is open
+};
+
+/// `count` uniform cuts of one mesh: at 0, at exact group errors, just below them, and spread logarithmically.
+CutTotals check_uniform_cuts(const Asset& asset, const MeshJudge& judge, std::uint32_t count, RuleLog& log,
+                             const Selectors& selectors = {});
+
+struct CameraTotals {
+  std::uint64_t cameras = 0;
+  std::uint64_t cuts = 0;       ///< of instances
+  std::uint64_t decisions = 0;  ///< of groups, repeated in double precision
+  std::uint64_t too_close = 0;  ///< within rounding of the threshold: either answer is right
+};
+
+/// `count` random cameras: inside, near, far and orthographic. `judges` has one entry per mesh.
+CameraTotals check_cameras(const Asset& asset, std::span<const MeshJudge> judges, std::uint32_t count,
+                           std::uint64_t seed, RuleLog& log, const Selectors& selectors = {});
+
+}  // namespace meshlode

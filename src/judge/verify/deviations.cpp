@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "judge/verify/deviations.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "run/select/select.h"
+
+namespace meshlode {
+
+namespace {
+
+/// Errors to cut at: from the smallest positive to the largest finite one, evenly in the logarithm.
+std::vector<double> thresholds_of(const Asset& asset, const format::MeshRecord& mesh, std::uint32_t count) {
+  float low = format::kInfiniteError;
+  float high = 0.0F;
+  for (std::uint32_t g = mesh.first_group; g < mesh.first_group + mesh.group_count; ++g) {
+    const float error = asset.groups()[g].error;
+    if (error >= format::kInfiniteError || !(error > 0.0F)) continue;
+    low = std::min(low, error);
+    high = std::max(high, error);
+  }
+  std::vector<double> thresholds;
+  if (!(high > 0.0F)) return thresholds;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const double t = count < 2 ? 1.0 : static_cast<double>(i) / (count - 1);
+    thresholds.push_back(double{low} * std::pow(double{high} / low, t) * (1.0 + 1e-12));
+  }
+  return thresholds;
+}
+
+}  // namespace
+
+std::vector<CutDeviation> measure_cuts(const Asset& asset, MeshId mesh, const SourceMesh& source,
+                                       std::span<const DecodedCluster> clusters, std::uint32_t cuts,
+                                       std::uint64_t samples) {
+  const format::MeshRecord& record = asset.meshes()[mesh.value];
+  const Surface truth = surface_of_source(source);
+  std::vector<CutDeviation> measured;
+  std::vector<ClusterId> previous;
+  for (const double threshold : thresholds_of(asset, record, cuts)) {
+    const UniformCut cut = select_uniform(asset, mesh, threshold);
+    if (cut.clusters == previous) continue;
+    previous = cut.clusters;
+    const Surface surface = surface_of_clusters(asset, clusters, mesh, cut.clusters);
+    measured.push_back({threshold, cut.stored_error, measure_deviation(truth, surface, {.samples = samples}),
+                        1e-12 * record.diagonal});
+  }
+  return measured;
+}
+
+DeviationTotals check_deviations(const Asset& asset, const Scene& source, std::span<const DecodedCluster> clusters,
+                                 std::uint32_t cuts, std::uint64_t samples, RuleLog& log) {
+  DeviationTotals totals;
+  std::vector<double> ratios;
+  for (std::uint32_t m = 0; m < std::min(asset.meshes().size(), source.meshes.size()); ++m) {
+    const format::ErrorTier tier = asset.meshes()[m].error_tier;
+    if (tier == format::ErrorTier::kQem) continue;
+    const double limit = tier == format::ErrorTier::kCertified ? 1.0 : 1.0 + kMeasuredShortfall;
+    for (const CutDeviation& cut : measure_cuts(asset, MeshId(m), source.meshes[m], clusters, cuts, samples)) {
+      ratios.push_back(cut.ratio());
+      ++totals.cuts;
+      if (cut.is_above(1.0)) ++totals.exceeded;
+      log.expect(
+          !cut.is_above(limit), "V206", [&] { return place("mesh", m); },
+          [&] {
+            char text[160];
+            std::snprintf(text, sizeof text, "the cut at error %.6g stores %.6g and deviates by %.6g, %.3f times that",
+                          cut.threshold, cut.stored, cut.truth.max(), cut.ratio());
+            return std::string(text);
+          });
+    }
+  }
+  std::sort(ratios.begin(), ratios.end());
+  if (!ratios.empty()) {
+    totals.worst = ratios.back();
+    totals.median = ratios[ratios.size() / 2];
+  }
+  return totals;
+}
+
+}  // namespace meshlode

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// I7: stored errors against the truth, by measuring whole cuts (V206). Internal to the judge.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "run/decode/decode.h"
+#include "scene/scene.h"
+#include "judge/metrics/metrics.h"
+#include "judge/validate/rules.h"
+
+namespace meshlode {
+
+/// How far a `measured` error may fall short of the true deviation.
+constexpr double kMeasuredShortfall = 0.05;
+
+/// A uniform cut with what it stores and what it was found to deviate by. Object units.
+struct CutDeviation {
+  double threshold = 0.0, stored = 0.0;
+  DeviationReport truth;  ///< a: the source, b: the cut
+  double rounding = 0.0;  ///< decoded positions carry the last bit of a double; a flat cut deviates by that and stores 0
+  [[nodiscard]] bool is_above(double limit) const { return truth.max() > limit * stored + rounding; }
+  /// True over stored.
+  [[nodiscard]] double ratio() const {
+    return stored > 0.0 ? truth.max() / stored : (truth.max() <= rounding ? 0.0 : HUGE_VAL);
+  }
+};
+
+/// Up to `cuts` uniform cuts of a mesh, evenly in the logarithm of the error, each another one. `samples` are
+/// area-uniform samples each way.
+[[nodiscard]] std::vector<CutDeviation> measure_cuts(const Asset& asset, MeshId mesh, const SourceMesh& source,
+                                                     std::span<const DecodedCluster> clusters, std::uint32_t cuts,
+                                                     std::uint64_t samples);
+
+struct DeviationTotals {
+  std::uint64_t cuts = 0;      ///< measured
+  std::uint64_t exceeded = 0;  ///< true deviation above the stored error, by however little
+  double worst = 0.0;          ///< largest true / stored
+  double median = 0.0;         ///< of true / stored
+};
+
+/// measure_cuts() of every mesh whose tier promises something. A `measured` cut fails above 1 + kMeasuredShortfall, a
+/// `certified` one above 1.
+DeviationTotals check_deviations(const Asset& asset, const Scene& source, std::span<const DecodedCluster> clusters,
+                                 std::uint32_t cuts, std::uint64_t samples, RuleLog& log);
+
+}  // namespace meshlode

@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What surrounds the geometry: materials, instances, images and the source's name for itself (V106 … V113).
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <iterator>
+#include <optional>
+#include <string>
+
+#include "format/grid.h"
+#include "judge/validate/file_tables.h"
+#include "judge/verify/source_rules.h"
+#include "judge/verify/texel_budget.h"
+
+namespace meshlode {
+
+namespace {
+
+bool is_same_material(const Asset& asset, const format::MaterialRecord& stored, const SceneMaterial& source) {
+  bool same = asset.string(stored.name) == source.name && stored.source_index == source.source_index &&
+              static_cast<std::uint32_t>(stored.alpha_mode) == static_cast<std::uint32_t>(source.alpha_mode) &&
+              stored.alpha_cutoff == source.alpha_cutoff && (stored.double_sided != 0) == source.double_sided &&
+              stored.base_color_texture == source.base_color_texture &&
+              stored.base_color_uv_set == source.base_color_uv_set;
+  for (int i = 0; i < 4; ++i) same = same && stored.base_color[i] == source.base_color[i];
+  return same;
+}
+
+bool is_same_transform(const format::InstanceRecord& stored, const Mat4d& source) {
+  bool is_finite = true;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 4; ++column) is_finite = is_finite && std::isfinite(source[column][row]);
+  }
+  bool same = true;
+  bool zero = true;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 4; ++column) {
+      const double value = stored.transform[4 * row + column];
+      same = same && value == source[column][row];
+      zero = zero && value == 0.0;
+    }
+  }
+  // What cannot be drawn is stored as zeros and marked.
+  const bool marked = (stored.flags & format::kInstanceSingular) != 0;
+  return same || (zero && marked) || (!is_finite && marked);
+}
+
+void check_materials(const Asset& asset, const Scene& source, RuleLog& log) {
+  log.expect(
+      asset.materials().size() == source.materials.size(), "V106", [] { return std::string("materials"); },
+      [&] {
+        return differs("stored", std::uint64_t{asset.materials().size()}, "source",
+                       std::uint64_t{source.materials.size()});
+      });
+  const std::size_t count = std::min(asset.materials().size(), source.materials.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    log.expect(
+        is_same_material(asset, asset.materials()[i], source.materials[i]), "V106",
+        [&] { return place("material", i); }, [] { return std::string("is not the source's"); });
+  }
+}
+
+void check_instances(const Asset& asset, const Scene& source, RuleLog& log) {
+  log.expect(
+      asset.instances().size() == source.instances.size(), "V107", [] { return std::string("instances"); },
+      [&] {
+        return differs("stored", std::uint64_t{asset.instances().size()}, "source",
+                       std::uint64_t{source.instances.size()});
+      });
+  const std::size_t count = std::min(asset.instances().size(), source.instances.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    const format::InstanceRecord& stored = asset.instances()[i];
+    const SceneInstance& instance = source.instances[i];
+    const auto at = [&] { return place("instance", i); };
+    log.expect(stored.mesh == instance.mesh.value && stored.node == instance.node &&
+                   asset.string(stored.name) == instance.name,
+               "V107", at, [] { return std::string("names another mesh, node or name"); });
+    log.expect(is_same_transform(stored, instance.transform), "V107", at,
+               [] { return std::string("has another transform"); });
+  }
+}
+
+void check_blobs(const Asset& asset, const Scene& source, RuleLog& log) {
+  log.expect(
+      asset.blobs().size() == source.blobs.size(), "V109", [] { return std::string("blobs"); },
+      [&] {
+        return differs("stored", std::uint64_t{asset.blobs().size()}, "source", std::uint64_t{source.blobs.size()});
+      });
+  const std::size_t count = std::min(asset.blobs().size(), source.blobs.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    const format::BlobRecord& stored = asset.blobs()[i];
+    const SceneBlob& blob = source.blobs[i];
+    const auto kind = blob.kind == SceneBlob::Kind::kImage ? format::BlobKind::kImage : format::BlobKind::kBuffer;
+    const auto bytes = asset.blob_bytes(stored);
+    const bool same = stored.kind == kind && stored.source_index == blob.source_index &&
+                      asset.string(stored.name) == blob.name && asset.string(stored.mime_type) == blob.mime_type &&
+                      std::equal(bytes.begin(), bytes.end(), blob.bytes.begin(), blob.bytes.end());
+    log.expect(
+        same, "V109", [&] { return place("blob", i); }, [] { return std::string("is not the source's"); });
+  }
+  log.expect(
+      asset.scene_json() == source.document, "V109", [] { return std::string("section SCNE"); },
+      [] { return std::string("is not the source's scene document"); });
+}
+
+/// Whether a corner's normal is not its triangle's: beyond one degree shading would tell. Triangles without area say
+/// nothing.
+bool has_own_shading(const SourceMesh& mesh) {
+  constexpr double kCosine = 0.99984;
+  for (const Primitive& primitive : mesh.primitives) {
+    if (primitive.normals.empty()) continue;
+    for (std::size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
+      const Vec3d a = primitive.positions[primitive.indices[i]];
+      const Vec3d n = glm::cross(primitive.positions[primitive.indices[i + 1]] - a,
+                                 primitive.positions[primitive.indices[i + 2]] - a);
+      const double n_length = std::sqrt(glm::dot(n, n));
+      if (!(n_length > 0.0) || !std::isfinite(n_length)) continue;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3d normal(primitive.normals[primitive.indices[i + k]]);
+        const double length = std::sqrt(glm::dot(normal, normal));
+        if (length > 0.0 && std::isfinite(length) && glm::dot(normal, n) < kCosine * length * n_length) return true;
+      }
+    }
+  }
+  return false;
+}
+
+bool has_color(const Primitive& primitive) {
+  return std::any_of(primitive.colors.begin(), primitive.colors.end(), [](const Vec4f& c) { return c != Vec4f(1.0F); });
+}
+
+void check_attributes(const Asset& asset, const Scene& source, RuleLog& log) {
+  if (meta_text(asset.meta_json(), "settings", "attributes") == "none") return;
+  for (std::size_t m = 0; m < std::min(asset.meshes().size(), source.meshes.size()); ++m) {
+    const format::MeshRecord& mesh = asset.meshes()[m];
+    if (mesh.cluster_count == 0) continue;
+    const auto at = [&] { return place("mesh", m); };
+    log.expect(mesh.normal_mode != format::NormalMode::kNone, "V110", at,
+               [] { return std::string("normals are left out"); });
+    log.expect(mesh.normal_mode == format::NormalMode::kStored || !has_own_shading(source.meshes[m]), "V110", at,
+               [] { return std::string("normals differ from the triangles' own and are not stored"); });
+    for (const Primitive& primitive : source.meshes[m].primitives) {
+      log.expect(mesh.has_color != 0 || !has_color(primitive), "V110", at,
+                 [] { return std::string("colours are not stored"); });
+      if (primitive.material.value >= source.materials.size()) continue;
+      for (std::uint32_t set = 0; set < kMaxUvSets; ++set) {
+        const bool is_used =
+            (source.materials[primitive.material.value].uv_sets_used >> set & 1U) != 0 && !primitive.uvs[set].empty();
+        const auto* end = mesh.uv_set_source + mesh.uv_set_count;
+        log.expect(!is_used || std::find(mesh.uv_set_source, end, set) != end, "V110", at,
+                   [&] { return "TEXCOORD_" + std::to_string(set) + " is sampled and not stored"; });
+      }
+    }
+  }
+}
+
+void check_caps(const Asset& asset, RuleLog& log) {
+  const std::uint64_t triangles =
+      meta_number(asset.meta_json(), "settings", "cluster_triangles").value_or(format::kMaxClusterTriangles);
+  const std::uint64_t vertices =
+      meta_number(asset.meta_json(), "settings", "cluster_vertices").value_or(format::kMaxClusterVertices);
+  for (std::size_t c = 0; c < asset.clusters().size(); ++c) {
+    const format::ClusterRecord& cluster = asset.clusters()[c];
+    log.expect(
+        cluster.triangle_count() <= triangles && cluster.vertex_count() <= vertices, "V111",
+        [&] { return place("cluster", c); },
+        [&] {
+          return differs("triangles", std::uint64_t{cluster.triangle_count()}, "vertices",
+                         std::uint64_t{cluster.vertex_count()}) +
+                 "; the caps are " + std::to_string(triangles) + " and " + std::to_string(vertices);
+        });
+  }
+}
+
+void check_tiers(const Asset& asset, RuleLog& log) {
+  log.check("V112");
+  const std::string setting = meta_text(asset.meta_json(), "settings", "error_tier");
+  if (setting.empty()) return;
+  constexpr const char* kNames[] = {"qem", "measured", "certified"};
+  for (std::size_t m = 0; m < asset.meshes().size(); ++m) {
+    if (asset.meshes()[m].cluster_count == 0) continue;
+    const auto tier = static_cast<std::uint32_t>(asset.meshes()[m].error_tier);
+    log.expect(
+        tier < std::size(kNames) && setting == kNames[tier], "V112", [&] { return place("mesh", m); },
+        [&] { return "tier " + std::to_string(tier) + " is not \"" + setting + "\""; });
+  }
+}
+
+/// V104 and V105 measure every vertex of level 0 against the bounds of the mesh's record; here those bounds are held
+/// against what was asked for, budgets in texels with the source's images at hand.
+void check_budgets(const Asset& asset, const Scene& source, std::span<const DecodedCluster> clusters, RuleLog& log) {
+  log.check("V113");
+  const auto setting = [&](const char* key) { return meta_real(asset.meta_json(), "settings", key); };
+  const std::optional<double> position = setting("position_error");
+  const std::optional<double> normal = setting("normal_error");
+  std::optional<double> uv = setting("uv_error");
+  const std::string uv_unit = meta_text(asset.meta_json(), "settings", "uv_error_unit");
+  if (uv && uv_unit == "texels") check_texel_budget(asset, source, *uv, clusters, log);
+  if (uv_unit != "uv") uv.reset();
+  constexpr double kRounding = 1.0 + 1e-6;
+  for (std::size_t m = 0; m < asset.meshes().size(); ++m) {
+    const format::MeshRecord& mesh = asset.meshes()[m];
+    if (mesh.cluster_count == 0) continue;
+    const auto at = [&] { return place("mesh", m); };
+    if (position) {
+      log.expect(double{mesh.level0_deviation} <= *position * kRounding, "V113", at, [&] {
+        return differs("level-0 deviation", double{mesh.level0_deviation}, "position_error", *position);
+      });
+    }
+    if (normal && mesh.normal_mode == format::NormalMode::kStored && mesh.normal_scale > 0) {
+      const double degrees = std::sqrt(2.0) / mesh.normal_scale * 180.0 / 3.14159265358979323846;
+      log.expect(degrees <= *normal * kRounding, "V113", at,
+                 [&] { return differs("largest angle", degrees, "normal_error", *normal); });
+    }
+    std::array<bool, kMaxUvSets> is_finest{};
+    if (uv) is_finest = has_finest_step(asset, MeshId(m), clusters);
+    for (std::uint32_t set = 0; uv && set < mesh.uv_set_count; ++set) {
+      const double half_step = 0.5 * exp2_exact(mesh.uv_log2[set]);
+      log.expect(half_step <= *uv * kRounding || is_finest[set], "V113", at,
+                 [&] { return differs("half a UV step", half_step, "uv_error", *uv); });
+    }
+  }
+}
+
+}  // namespace
+
+void check_scene(const Asset& asset, const Scene& source, std::span<const DecodedCluster> clusters, RuleLog& log) {
+  check_materials(asset, source, log);
+  check_instances(asset, source, log);
+  check_blobs(asset, source, log);
+  log.check("V110");
+  check_attributes(asset, source, log);
+  check_caps(asset, log);
+  check_tiers(asset, log);
+  check_budgets(asset, source, clusters, log);
+  const std::string hash = meta_text(asset.meta_json(), "source", "hash");
+  log.expect(
+      hash == source.source_hash, "V108", [] { return std::string("section META: /source/hash"); },
+      [&] { return "is \"" + hash + "\", the source given has \"" + source.source_hash + "\""; });
+}
+
+}  // namespace meshlode

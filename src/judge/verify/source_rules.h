@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The asset against its source (V1…). Internal to the judge.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "run/decode/decode.h"
+#include "scene/scene.h"
+#include "judge/validate/rules.h"
+
+namespace meshlode {
+
+struct SourceCounts {
+  std::uint64_t source_triangles = 0;  ///< looked for
+  std::uint64_t level0_triangles = 0;
+  std::uint64_t corners = 0;  ///< whose attributes were compared
+};
+
+/// V101 … V105 for one mesh. \pre `clusters` is decode_all of the asset
+[[nodiscard]] SourceCounts check_source_triangles(const Asset& asset, MeshId mesh, const SourceMesh& source,
+                                                  std::span<const DecodedCluster> clusters, RuleLog& log);
+
+/// V106 … V113. \pre `clusters` is decode_all of the asset
+void check_scene(const Asset& asset, const Scene& source, std::span<const DecodedCluster> clusters, RuleLog& log);
+
+}  // namespace meshlode

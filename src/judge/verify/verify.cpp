@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The whole proof in the order of the invariants: the structural rules, the source, then cuts as a cross-check.
+#include "judge/verify/verify.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <initializer_list>
+#include <iterator>
+
+#include "judge/verify/cuts.h"
+#include "judge/verify/deviations.h"
+#include "judge/verify/source_rules.h"
+
+namespace meshlode {
+
+namespace {
+
+class Report {
+ public:
+  void add_check(std::string invariant, std::string what, std::uint64_t items, std::uint64_t failures) {
+    out.checks.push_back({std::move(invariant), std::move(what), items, failures, false});
+  }
+  void skip(std::string invariant, std::string what) {
+    out.checks.push_back({std::move(invariant), std::move(what), 0, 0, true});
+  }
+  void take(RuleLog& log) {
+    out.finding_count += log.finding_count();
+    std::vector<Finding> findings = log.take_findings();
+    std::move(findings.begin(), findings.end(), std::back_inserter(out.findings));
+  }
+  VerifyReport out;
+};
+
+std::uint64_t failures_of(const RuleLog& log, std::initializer_list<std::string_view> rules) {
+  std::uint64_t sum = 0;
+  for (const std::string_view rule : rules) sum += log.count_of(rule);
+  return sum;
+}
+
+/// The rules of validate, summed by invariant.
+void add_structure(const Asset& asset, Report& report) {
+  ValidationReport structure = validate_asset(asset.bytes());
+  const auto failures = [&](auto&& counts) {
+    return static_cast<std::uint64_t>(std::count_if(structure.findings.begin(), structure.findings.end(), counts));
+  };
+  const auto has_invariant = [&](const char* invariant) {
+    return failures([&](const Finding& f) { return f.invariant == invariant && f.id[1] >= '3'; });
+  };
+  const auto groups = static_cast<std::uint64_t>(asset.groups().size());
+  const auto clusters = static_cast<std::uint64_t>(asset.clusters().size());
+  const auto ran = [&](const char* id) {
+    return std::find(structure.checked.begin(), structure.checked.end(), id) != structure.checked.end();
+  };
+  report.add_check("", "container, tables and pages follow the format (L0, L1, L2)", asset.bytes().size(),
+                   failures([](const Finding& f) { return f.id[1] < '3'; }));
+  report.add_check("I2", "clusters within the caps, groups within pages", clusters, has_invariant("I2"));
+  report.add_check("I4", "errors grow and LOD spheres nest along the DAG, in exact arithmetic", groups,
+                   has_invariant("I4"));
+  report.add_check("I5", "levels, roots and replacements form a DAG without gaps", clusters, has_invariant("I5"));
+  report.add_check("I8", "the hierarchy bounds every group and cluster", asset.nodes().size(), has_invariant("I8"));
+  if (ran("L507")) {
+    report.add_check("I3", "shared borders keep positions and attributes", groups, has_invariant("I3"));
+    report.add_check("I6", "border proof: a group's coarser set has the border of its finer set", groups,
+                     has_invariant("I6"));
+  } else {
+    report.add_check("I3", "not reached: the file is broken before its surface can be read", 0, 1);
+    report.add_check("I6", "not reached: the file is broken before its surface can be read", 0, 1);
+  }
+  report.out.finding_count += structure.finding_count;
+  std::move(structure.findings.begin(), structure.findings.end(), std::back_inserter(report.out.findings));
+}
+
+void add_source(const Asset& asset, const Scene& source, std::span<const DecodedCluster> clusters, Report& report) {
+  RuleLog log;
+  SourceCounts totals;
+  const std::size_t count = std::min(asset.meshes().size(), source.meshes.size());
+  log.expect(
+      asset.meshes().size() == source.meshes.size(), "V103", [] { return std::string("meshes"); },
+      [&] {
+        return differs("stored", std::uint64_t{asset.meshes().size()}, "source", std::uint64_t{source.meshes.size()});
+      });
+  for (std::size_t m = 0; m < count; ++m) {
+    const SourceCounts counts = check_source_triangles(asset, MeshId(m), source.meshes[m], clusters, log);
+    totals.source_triangles += counts.source_triangles;
+    totals.level0_triangles += counts.level0_triangles;
+    totals.corners += counts.corners;
+  }
+  check_scene(asset, source, clusters, log);
+  report.add_check("I1", "every source triangle is in exactly one level-0 cluster", totals.source_triangles,
+                   failures_of(log, {"V101"}));
+  report.add_check("I1", "dropped and source triangles are counted truly", count, failures_of(log, {"V102", "V103"}));
+  report.add_check("I3", "level-0 attributes are the source's within their quantization", totals.corners,
+                   failures_of(log, {"V104"}));
+  report.add_check("", "attributes that the source's shading needs are stored", count, failures_of(log, {"V110"}));
+  report.add_check("I2", "clusters keep the caps of the settings", asset.clusters().size(), failures_of(log, {"V111"}));
+  report.add_check("", "level 0 is within the accuracy budgets of the settings", count, failures_of(log, {"V113"}));
+  report.add_check("I7", "the error tier is that of the settings", count, failures_of(log, {"V112"}));
+  report.add_check("", "level-0 deviation is the largest move of a vertex onto the grid", count,
+                   failures_of(log, {"V105"}));
+  report.add_check("", "materials, instances, images and scene are the source's",
+                   source.materials.size() + source.instances.size() + source.blobs.size(),
+                   failures_of(log, {"V106", "V107", "V109"}));
+  report.add_check("", "the source is the one the asset was built from", 1, failures_of(log, {"V108"}));
+  report.take(log);
+}
+
+void add_cuts(const Asset& asset, std::span<const DecodedCluster> clusters, const VerifyOptions& options,
+              Report& report) {
+  RuleLog log;
+  std::vector<MeshJudge> judges;
+  CutTotals uniform;
+  for (std::size_t m = 0; m < asset.meshes().size(); ++m) {
+    judges.push_back(make_mesh_judge(asset, MeshId(m), clusters));
+    const CutTotals totals = check_uniform_cuts(asset, judges.back(), options.uniform_cuts, log);
+    uniform.cuts += totals.cuts;
+    uniform.open_cuts += totals.open_cuts;
+  }
+  report.add_check("I5", "uniform cuts draw each piece of surface exactly once, by the rule", uniform.cuts,
+                   failures_of(log, {"V201", "V204", "V205"}));
+  report.add_check(
+      "I6",
+      "uniform cuts have no border that the source has not (" + std::to_string(uniform.open_cuts) + " of open meshes)",
+      uniform.cuts, failures_of(log, {"V202"}));
+  report.take(log);
+
+  RuleLog camera_log;
+  const CameraTotals cameras = check_cameras(asset, judges, options.cameras, options.seed, camera_log);
+  report.add_check("I5", "camera cuts draw each piece of surface exactly once", cameras.cuts,
+                   failures_of(camera_log, {"V201"}));
+  report.add_check("I5",
+                   "the rule in double precision agrees (" + std::to_string(cameras.too_close) + " within rounding)",
+                   cameras.decisions, failures_of(camera_log, {"V204"}));
+  report.add_check("I6", "camera cuts have no border that the source has not", cameras.cuts,
+                   failures_of(camera_log, {"V202"}));
+  report.add_check("I8", "hierarchy traversal selects what the flat rule selects", cameras.cameras,
+                   failures_of(camera_log, {"V203"}));
+  report.take(camera_log);
+}
+
+void add_deviations(const Asset& asset, const Scene& source, std::span<const DecodedCluster> clusters,
+                    const VerifyOptions& options, Report& report) {
+  const auto meshes = asset.meshes();
+  const bool is_qem = std::all_of(meshes.begin(), meshes.end(),
+                                  [](const format::MeshRecord& m) { return m.error_tier == format::ErrorTier::kQem; });
+  if (is_qem) return report.skip("I7", "not checked: tier qem states the quadric's estimate");
+  if (options.deviation_cuts == 0) return report.skip("I7", "not checked: no cut was to be measured");
+  RuleLog log;
+  const DeviationTotals totals =
+      check_deviations(asset, source, clusters, options.deviation_cuts, options.deviation_samples, log);
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "cuts deviate by what they store: true/stored median %.2f, largest %.3f, above 1 in %llu cuts",
+                totals.median, totals.worst, static_cast<unsigned long long>(totals.exceeded));
+  report.add_check("I7", text, totals.cuts, failures_of(log, {"V206"}));
+  report.take(log);
+}
+
+}  // namespace
+
+VerifyReport verify_asset(const Asset& asset, const Scene& source, const VerifyOptions& options) {
+  Report report;
+  add_structure(asset, report);
+  const Result<std::vector<DecodedCluster>> clusters = decode_all(asset);
+  if (clusters) {
+    add_source(asset, source, *clusters, report);
+    add_cuts(asset, *clusters, options, report);
+    add_deviations(asset, source, *clusters, options, report);
+  } else {
+    report.add_check("I1", "not reached: " + clusters.error().message(), 0, 1);
+    if (report.out.finding_count == 0) {
+      report.out.findings.push_back({"L204", "I2", clusters.error().where, clusters.error().detail});
+      report.out.finding_count = 1;
+    }
+  }
+  std::stable_sort(
+      report.out.checks.begin(), report.out.checks.end(),
+      [](const VerifyReport::Check& a, const VerifyReport::Check& b) { return a.invariant < b.invariant; });
+  return std::move(report.out);
+}
+
+}  // namespace meshlode

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Verify: the asset against its source. Shares no code with what built the asset.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <meshlode/result.h>
+
+#include "scene/scene.h"
+#include "run/read/asset.h"
+#include "judge/validate/validate.h"
+
+namespace meshlode {
+
+struct VerifyOptions {
+  std::uint32_t uniform_cuts = 300;   ///< cuts per mesh that cross-check I6
+  std::uint32_t cameras = 100;        ///< cameras that cross-check I5, I6 and I8
+  std::uint32_t deviation_cuts = 12;  ///< uniform cuts per mesh that are measured for I7, where the tier promises it
+  std::uint64_t deviation_samples = 200000;  ///< area-uniform samples each way of each such cut, beside all vertices
+  std::uint64_t seed = 1;
+};
+
+struct VerifyReport {
+  std::vector<Finding> findings;
+  std::uint64_t finding_count = 0;
+  struct Check {
+    std::string invariant;    ///< "I1"
+    std::string what;         ///< one line: what was checked
+    std::uint64_t items = 0;  ///< how many groups, cuts, triangles …
+    std::uint64_t failures = 0;
+    bool skipped = false;  ///< with the reason in `what`: I7 in the qem tier
+  };
+  std::vector<Check> checks;
+};
+
+[[nodiscard]] VerifyReport verify_asset(const Asset& asset, const Scene& source, const VerifyOptions& options);
+
+}  // namespace meshlode

@@ -1,0 +1,567 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The glTF document of a cut: the asset's own scene document with its geometry put back. Everything that is not
+// geometry (nodes, materials, textures, cameras, lights, animations, extras) is carried through as it was imported.
+//
+// Far-away meshes: a float32 POSITION cannot hold both a large origin and small features. Where adding the origin would
+// cost more than the grid can bear, positions stay relative to the origin and the mesh moves into a child node that is
+// translated by it (`choose_origin`); the node's own transform, animation and children are not touched.
+#include "out/export/export.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "out/export/cut_geometry.h"
+#include "out/export/float_positions.h"
+#include "out/export/glb_file.h"
+#include "out/export/sniff.h"
+
+namespace meshlode {
+namespace {
+
+using Json = nlohmann::json;  // keys sorted: deterministic bytes
+
+constexpr int kFloat = 5126, kUnsignedInt = 5125, kUnsignedShort = 5123, kUnsignedByte = 5121;
+constexpr int kArrayBuffer = 34962, kElementArrayBuffer = 34963;
+constexpr std::size_t kMaxDepth = 200;  // of JSON nesting: copying and writing a document are recursive
+
+/// Extensions that describe how geometry was stored; the exported geometry is plain.
+constexpr std::array<std::string_view, 4> kGeometryExtensions = {"EXT_mesh_gpu_instancing", "EXT_meshopt_compression",
+                                                                 "KHR_draco_mesh_compression", "KHR_mesh_quantization"};
+
+struct ExportedMesh {
+  std::vector<std::uint32_t> levels;  ///< indices in the glTF, the finest first; empty without primitives
+  Vec3d translation{0.0};             ///< of a node to put around it
+  std::string name;
+  std::span<const double> screen_coverage;
+  [[nodiscard]] bool is_translated() const { return translation != Vec3d(0.0); }
+};
+
+/// Element `index` of the array `key` of an object, or null where there is none of that shape.
+const Json* find_element(const Json& object, const char* key, std::size_t index) {
+  const auto it = object.find(key);
+  return it != object.end() && it->is_array() && index < it->size() ? &(*it)[index] : nullptr;
+}
+
+/// The array under `key`, made empty where it is missing. Throws for another kind of value.
+Json& array_of(Json& object, const char* key) {
+  Json& value = object[key];
+  if (value.is_null()) value = Json::array();
+  if (!value.is_array()) throw std::invalid_argument(std::string("/") + key + " is not an array");
+  return value;
+}
+
+/// Largest TEXCOORD_n that a material's texture infos name, over extensions too (KHR_texture_transform may name another
+/// set than its texture info); -1 where nothing is sampled.
+int largest_texcoord(const Json& value, bool is_texture_info = false) {
+  int largest = is_texture_info ? 0 : -1;
+  if (!value.is_structured()) return largest;
+  for (const auto& [key, child] : value.items()) {
+    if (is_texture_info && key == "texCoord" && child.is_number_unsigned()) {
+      largest = std::max(largest, static_cast<int>(std::min<std::uint64_t>(child.get<std::uint64_t>(), 63)));
+    }
+    const bool is_info = child.is_object() && value.is_object() && key.ends_with("Texture") && child.contains("index");
+    largest = std::max(largest, largest_texcoord(child, is_texture_info || is_info));
+  }
+  return largest;
+}
+
+std::string level_name(const std::string& name, std::size_t level) {
+  return name + " (level " + std::to_string(level) + ")";
+}
+
+/// Nothing but a name: no transform, no children, nothing that something else could replace.
+bool is_plain_node(const Json& node) {
+  return node.size() == node.count("name");
+}
+
+class Exporter {
+ public:
+  Exporter(const Asset& asset, std::span<const LodChain> chains) : asset_(asset), chains_(chains) {}
+  Result<std::vector<std::uint8_t>> run();
+
+ private:
+  Status add_mesh(MeshId mesh);
+  Result<Json> make_mesh(const format::MeshRecord& record, std::span<const CutPrimitive> primitives,
+                         const Vec3d& baked);
+  Result<Json> make_primitive(const format::MeshRecord& record, const CutPrimitive& primitive, const Vec3d& baked);
+  void carry_buffers();
+  void carry_images();
+  void move_texture_sources();
+  void use_extension(const char* name, bool is_required);
+  void complete_materials();
+  void make_instance_nodes();
+  void attach_meshes();
+  void attach_levels(std::size_t node, const ExportedMesh& mesh);
+  void finish_document();
+  [[nodiscard]] int texcoords_needed(MaterialId material);
+  GlbBinary::Range carry_blob(const format::BlobRecord& blob);
+  [[nodiscard]] const format::BlobRecord& blob_of(const Json& owner) const;
+  std::size_t add_view(GlbBinary::Range range, int target);
+  std::size_t add_accessor(Json accessor);
+
+  const Asset& asset_;
+  std::span<const LodChain> chains_;
+  Json document_;
+  Json meshes_ = Json::array();
+  std::vector<ExportedMesh> exported_;
+  GlbBinary binary_;
+  std::map<std::pair<std::uint64_t, std::uint64_t>, GlbBinary::Range> carried_;  ///< blobs in it, by offset and bytes
+  std::map<std::uint32_t, int> texcoords_;             ///< that materials ask for: each is walked once
+  bool has_lods_ = false;
+};
+
+std::size_t Exporter::add_view(GlbBinary::Range range, int target) {
+  Json view = {{"buffer", 0}, {"byteOffset", range.offset}, {"byteLength", range.bytes}};
+  if (target != 0) view["target"] = target;
+  Json& views = array_of(document_, "bufferViews");
+  views.push_back(std::move(view));
+  return views.size() - 1;
+}
+
+std::size_t Exporter::add_accessor(Json accessor) {
+  Json& accessors = array_of(document_, "accessors");
+  accessors.push_back(std::move(accessor));
+  return accessors.size() - 1;
+}
+
+/// The blob that a document entry names with its member "blob".
+const format::BlobRecord& Exporter::blob_of(const Json& owner) const {
+  const auto index = owner.at("blob").get<std::uint64_t>();
+  if (index >= asset_.blobs().size()) throw std::invalid_argument("blob " + std::to_string(index) + " does not exist");
+  return asset_.blobs()[index];
+}
+
+/// The bytes of a blob in the BIN chunk: once, however many entries of the document name it.
+GlbBinary::Range Exporter::carry_blob(const format::BlobRecord& blob) {
+  const auto [found, is_new] = carried_.try_emplace({blob.offset, blob.bytes});
+  if (is_new) found->second = binary_.append(asset_.blob_bytes(blob));
+  return found->second;
+}
+
+/// The buffers of animations become stretches of the one BIN chunk; their views keep their indices.
+void Exporter::carry_buffers() {
+  std::vector<GlbBinary::Range> ranges;
+  if (const auto buffers = document_.find("buffers"); buffers != document_.end()) {
+    for (const Json& buffer : *buffers) ranges.push_back(carry_blob(blob_of(buffer)));
+    document_.erase("buffers");
+  }
+  if (!document_.contains("bufferViews")) return;
+  for (Json& view : array_of(document_, "bufferViews")) {
+    const GlbBinary::Range range = ranges.at(view.at("buffer").get<std::size_t>());
+    const auto offset = view.value("byteOffset", std::uint64_t{0});
+    const auto bytes = view.at("byteLength").get<std::uint64_t>();
+    if (offset > range.bytes || bytes > range.bytes - offset) throw std::invalid_argument("a view leaves its buffer");
+    view["buffer"] = 0;
+    view["byteOffset"] = range.offset + offset;
+  }
+}
+
+void Exporter::carry_images() {
+  if (!document_.contains("images")) return;
+  constexpr std::size_t kLongestName = 4096;  // a name that many images share must not be multiplied by them
+  for (Json& image : array_of(document_, "images")) {
+    if (!image.contains("blob")) continue;
+    const format::BlobRecord& record = blob_of(image);
+    const std::span<const std::uint8_t> bytes = asset_.blob_bytes(record);
+    image["bufferView"] = add_view(carry_blob(record), 0);
+    const std::string_view mime_type = asset_.string(record.mime_type);
+    if (!image.contains("mimeType"))
+      image["mimeType"] = mime_type.empty() || mime_type.size() > kLongestName ? sniff_mime_type(bytes) : std::string(mime_type);
+    const std::string_view name = asset_.string(record.name);
+    if (!image.contains("name") && !name.empty() && name.size() <= kLongestName) image["name"] = std::string(name);
+    image.erase("blob");
+    image.erase("uri");
+  }
+}
+
+void Exporter::use_extension(const char* name, bool is_required) {
+  for (const char* list : {"extensionsUsed", "extensionsRequired"}) {
+    if (!is_required && list == std::string_view("extensionsRequired")) continue;
+    Json& names = array_of(document_, list);
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  }
+}
+
+/// A texture's own source may be PNG or JPEG only. A source file that refers to others by a URI without a type gets
+/// away with more; inside a GLB each image has a type, and the other types have extensions to name them by.
+void Exporter::move_texture_sources() {
+  if (!document_.contains("textures")) return;
+  std::set<std::string_view> used;
+  for (Json& texture : array_of(document_, "textures")) {
+    const auto source = texture.find("source");
+    if (source == texture.end() || !source->is_number_unsigned()) continue;
+    const Json* image = find_element(document_, "images", source->get<std::size_t>());
+    if (image == nullptr || !image->is_object()) continue;
+    const Json type = image->value("mimeType", Json());
+    const char* extension = type == "image/ktx2"   ? "KHR_texture_basisu"
+                            : type == "image/webp" ? "EXT_texture_webp"
+                                                   : "";
+    if (*extension == 0) continue;
+    Json& named = texture["extensions"][extension];
+    if (named.is_null()) named = {{"source", *source}};
+    texture.erase("source");
+    used.insert(extension);
+  }
+  for (const std::string_view extension : used) use_extension(extension.data(), true);  // of literals
+}
+
+/// Assets that do not come from a glTF have no materials in their document: the records say what is known.
+void Exporter::complete_materials() {
+  if (document_.contains("materials")) return;
+  std::map<std::uint32_t, Json> by_index;
+  for (const format::MaterialRecord& record : asset_.materials()) {
+    if (record.source_index == format::kNone) continue;
+    Json material = Json::object();
+    if (const auto name = asset_.string(record.name); !name.empty()) material["name"] = std::string(name);
+    Json factor = Json::array();
+    for (const float c : record.base_color) factor.push_back(c);
+    material["pbrMetallicRoughness"] = {{"baseColorFactor", factor}, {"metallicFactor", 0}};
+    if (record.alpha_mode == format::AlphaMode::kMask) {
+      material["alphaMode"] = "MASK";
+      material["alphaCutoff"] = record.alpha_cutoff;
+    } else if (record.alpha_mode == format::AlphaMode::kBlend) {
+      material["alphaMode"] = "BLEND";
+    }
+    if (record.double_sided != 0) material["doubleSided"] = true;
+    by_index.emplace(record.source_index, std::move(material));
+  }
+  // Indices without gaps are what the builder writes; a gap cannot be filled with anything true.
+  Json materials = Json::array();
+  for (auto& [index, material] : by_index) {
+    if (index != materials.size()) throw std::invalid_argument("material indices have a gap and there is no document");
+    materials.push_back(std::move(material));
+  }
+  if (!materials.empty()) document_["materials"] = std::move(materials);
+}
+
+/// How many TEXCOORD sets, from 0 on, the material's textures ask for.
+int Exporter::texcoords_needed(MaterialId material) {
+  const std::uint32_t index = asset_.materials()[material.value].source_index;
+  const auto [found, is_new] = texcoords_.try_emplace(index, 0);
+  const Json* json = is_new ? find_element(document_, "materials", index) : nullptr;
+  if (json != nullptr) found->second = largest_texcoord(*json) + 1;
+  return found->second;
+}
+
+Result<Json> Exporter::make_primitive(const format::MeshRecord& record, const CutPrimitive& primitive,
+                                      const Vec3d& baked) {
+  const DecodedCluster& vertices = primitive.vertices;
+  const std::size_t count = vertices.vertex_count;
+  Json attributes = Json::object();
+  const auto add = [&](const std::string& name, int component, const char* type, GlbBinary::Range range, Json extra) {
+    extra["bufferView"] = add_view(range, kArrayBuffer);
+    extra["componentType"] = component;
+    extra["count"] = count;
+    extra["type"] = type;
+    attributes[name] = add_accessor(std::move(extra));
+  };
+
+  auto positions = bake_positions(record, vertices, baked);
+  if (!positions) {
+    return Error{ErrorCode::kUnsupported, std::string(asset_.string(record.name)),
+                 "a position does not fit glTF's 32-bit floats"};
+  }
+  Vec3f low = positions->front();
+  Vec3f high = low;
+  for (const Vec3f& p : *positions) {
+    low = glm::min(low, p);
+    high = glm::max(high, p);
+  }
+  add("POSITION", kFloat, "VEC3", binary_.append_values(std::span<const Vec3f>(*positions)),
+      {{"min", {low.x, low.y, low.z}}, {"max", {high.x, high.y, high.z}}});
+
+  ClusterAttributes floats;
+  decode_attributes(record, vertices, floats);
+  // No NORMAL means flat normals in glTF, which is what the other two modes ask for.
+  if (record.normal_mode == format::NormalMode::kStored) {
+    add("NORMAL", kFloat, "VEC3", binary_.append_values(std::span<const Vec3f>(floats.normals)), Json::object());
+  }
+  int texcoord_end = texcoords_needed(primitive.material);
+  for (std::uint32_t k = 0; k < record.uv_set_count; ++k) {
+    add("TEXCOORD_" + std::to_string(record.uv_set_source[k]), kFloat, "VEC2",
+        binary_.append_values(std::span<const Vec2f>(floats.uvs[k])), Json::object());
+    texcoord_end = std::max(texcoord_end, record.uv_set_source[k] + 1);
+  }
+  // glTF wants sets without gaps, and those that a material names. One that the asset did not keep is an accessor
+  // without a buffer view: zeros, at no cost.
+  for (int set = 0; set < texcoord_end; ++set) {
+    const std::string name = "TEXCOORD_" + std::to_string(set);
+    if (attributes.contains(name)) continue;
+    attributes[name] = add_accessor({{"componentType", kFloat}, {"count", count}, {"type", "VEC2"}});
+  }
+  if (record.has_color != 0) {
+    std::vector<std::array<std::uint8_t, 4>> colors(count);
+    const std::size_t first = vertices.channel_count - 4;  // colour is the last channel group
+    for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t c = 0; c < 4; ++c) {
+        const std::int32_t value = vertices.channels[i * vertices.channel_count + first + c];
+        colors[i][c] = static_cast<std::uint8_t>(std::clamp(value, 0, 255));
+      }
+    }
+    add("COLOR_0", kUnsignedByte, "VEC4", binary_.append_values(std::span<const std::array<std::uint8_t, 4>>(colors)),
+        {{"normalized", true}});
+  }
+
+  // The largest value of an index type means "restart" and may not be used.
+  const bool is_short = count <= 65535;
+  GlbBinary::Range range;
+  if (is_short) {
+    const std::vector<std::uint16_t> narrow(primitive.indices.begin(), primitive.indices.end());
+    range = binary_.append_values(std::span<const std::uint16_t>(narrow));
+  } else {
+    range = binary_.append_values(std::span<const std::uint32_t>(primitive.indices));
+  }
+  Json result = {{"attributes", std::move(attributes)}};
+  result["indices"] = add_accessor({{"bufferView", add_view(range, kElementArrayBuffer)},
+                                    {"componentType", is_short ? kUnsignedShort : kUnsignedInt},
+                                    {"count", primitive.indices.size()},
+                                    {"type", "SCALAR"}});
+  const std::uint32_t material = asset_.materials()[primitive.material.value].source_index;
+  if (material != format::kNone) {
+    if (find_element(document_, "materials", material) == nullptr) {
+      throw std::invalid_argument("material " + std::to_string(material) + " does not exist");
+    }
+    result["material"] = material;
+  }
+  return result;
+}
+
+Result<Json> Exporter::make_mesh(const format::MeshRecord& record, std::span<const CutPrimitive> primitives,
+                                 const Vec3d& baked) {
+  Json json = Json::object();
+  json["primitives"] = Json::array();
+  for (const CutPrimitive& primitive : primitives) {
+    auto made = make_primitive(record, primitive, baked);
+    if (!made) return made.error();
+    json["primitives"].push_back(std::move(*made));
+  }
+  return json;
+}
+
+Status Exporter::add_mesh(MeshId mesh) {
+  const format::MeshRecord& record = asset_.meshes()[mesh.value];
+  const LodChain& chain = chains_[mesh.value];
+  ExportedMesh& exported = exported_.emplace_back();
+  std::vector<std::vector<CutPrimitive>> levels;
+  for (const std::vector<ClusterId>& cut : chain.cuts) {
+    auto primitives = gather_cut(asset_, mesh, cut);
+    if (!primitives) return primitives.error();
+    if (!primitives->empty()) levels.push_back(std::move(*primitives));
+  }
+  if (levels.empty()) return Ok{};
+  const Vec3d baked = choose_origin(record, levels);
+  exported.translation = Vec3d(record.origin[0], record.origin[1], record.origin[2]) - baked;
+  exported.screen_coverage = chain.screen_coverage;
+  const Json* source = find_element(document_, "meshes", mesh.value);
+  if (source != nullptr && source->is_object() && source->contains("name")) exported.name = source->at("name");
+  if (exported.name.empty()) exported.name = asset_.string(record.name);
+  for (std::size_t k = 0; k < levels.size(); ++k) {
+    auto json = make_mesh(record, levels[k], baked);
+    if (!json) return json.error();
+    const std::string name = k == 0 || exported.name.empty() ? exported.name : level_name(exported.name, k);
+    if (!name.empty()) (*json)["name"] = name;
+    if (source != nullptr && source->is_object() && source->contains("extras"))
+      (*json)["extras"] = source->at("extras");
+    exported.levels.push_back(static_cast<std::uint32_t>(meshes_.size()));
+    meshes_.push_back(std::move(*json));
+  }
+  return Ok{};
+}
+
+/// No scene graph in the source (PLY, arrays in memory): one root node for each instance.
+void Exporter::make_instance_nodes() {
+  Json nodes = Json::array();
+  Json roots = Json::array();
+  for (const format::InstanceRecord& instance : asset_.instances()) {
+    Json node = {{"mesh", instance.mesh}};
+    if (const auto name = asset_.string(instance.name); !name.empty()) node["name"] = std::string(name);
+    Json matrix = Json::array();
+    bool is_identity = true;
+    for (std::size_t column = 0; column < 4; ++column) {
+      for (std::size_t row = 0; row < 4; ++row) {
+        const double value = row < 3 ? instance.transform[row * 4 + column] : (column == 3 ? 1.0 : 0.0);
+        if (!std::isfinite(value)) throw std::invalid_argument("an instance's transform is not finite");
+        is_identity = is_identity && value == (row == column ? 1.0 : 0.0);
+        matrix.push_back(value);
+      }
+    }
+    if (!is_identity) node["matrix"] = std::move(matrix);
+    roots.push_back(nodes.size());
+    nodes.push_back(std::move(node));
+  }
+  if (nodes.empty()) return;
+  document_["nodes"] = std::move(nodes);
+  document_["scenes"] = Json::array({{{"nodes", std::move(roots)}}});
+  document_["scene"] = 0;
+}
+
+/// The coarser levels become nodes that no scene has: MSFT_lod names them. Whether such a node stands in the frame of
+/// the node that names it, or in that of its parent, and whether it replaces the children too, readers see differently;
+/// so the node that names them is one without transform or children, where the two are the same.
+void Exporter::attach_levels(std::size_t node, const ExportedMesh& mesh) {
+  Json& nodes = array_of(document_, "nodes");
+  nodes[node]["mesh"] = mesh.levels.front();
+  if (mesh.levels.size() == 1) return;
+  Json ids = Json::array();
+  for (std::size_t k = 1; k < mesh.levels.size(); ++k) {
+    Json level = {{"mesh", mesh.levels[k]}};
+    const Json name = nodes[node].value("name", Json());
+    if (name.is_string()) level["name"] = level_name(name.get<std::string>(), k);
+    ids.push_back(nodes.size());
+    nodes.push_back(std::move(level));
+  }
+  nodes[node]["extensions"]["MSFT_lod"] = {{"ids", std::move(ids)}};
+  if (!mesh.screen_coverage.empty()) nodes[node]["extras"]["MSFT_screencoverage"] = mesh.screen_coverage;
+  has_lods_ = true;
+}
+
+/// Gives every node that draws a mesh its exported mesh, or none where the cut is empty.
+void Exporter::attach_meshes() {
+  if (!document_.contains("nodes")) {
+    make_instance_nodes();
+    if (!document_.contains("nodes")) return;
+  }
+  Json& nodes = array_of(document_, "nodes");
+  for (const format::InstanceRecord& instance : asset_.instances()) {
+    if (instance.node < nodes.size() && !nodes[instance.node].contains("mesh")) {
+      nodes[instance.node]["mesh"] = instance.mesh;
+    }
+  }
+  const std::size_t node_count = nodes.size();
+  for (std::size_t i = 0; i < node_count; ++i) {
+    Json& node = nodes[i];
+    node.erase("skin");  // the static triangles were built: skins and morph targets are not in the asset
+    node.erase("weights");
+    if (!node.contains("mesh")) continue;
+    const ExportedMesh& mesh = exported_.at(node.at("mesh").get<std::size_t>());
+    node.erase("mesh");
+    if (mesh.levels.empty()) continue;
+    const bool is_fixed = is_plain_node(node) && !document_.contains("animations");
+    const bool needs_frame = mesh.levels.size() > 1 && !is_fixed;
+    if (!mesh.is_translated() && !needs_frame) {
+      attach_levels(i, mesh);
+      continue;
+    }
+    std::size_t holder = i;
+    const auto add_child = [&](const char* suffix) {
+      Json child = Json::object();
+      if (nodes[i].contains("name")) child["name"] = nodes[i].at("name").get<std::string>() + suffix;
+      array_of(nodes[holder], "children").push_back(nodes.size());
+      holder = nodes.size();
+      nodes.push_back(std::move(child));  // `node` dangles from here on
+    };
+    if (mesh.is_translated()) {
+      add_child(" (origin)");
+      nodes[holder]["translation"] = {mesh.translation.x, mesh.translation.y, mesh.translation.z};
+    }
+    if (mesh.levels.size() > 1) add_child(" (levels)");
+    attach_levels(holder, mesh);
+  }
+}
+
+void Exporter::finish_document() {
+  document_.erase("meshes");
+  document_.erase("skins");
+  if (!meshes_.empty()) document_["meshes"] = std::move(meshes_);
+  if (!binary_.bytes().empty()) document_["buffers"] = Json::array({{{"byteLength", binary_.bytes().size()}}});
+  for (const char* key : {"extensionsUsed", "extensionsRequired"}) {
+    const auto it = document_.find(key);
+    if (it == document_.end()) continue;
+    Json kept = Json::array();
+    for (const Json& name : *it) {
+      const bool is_geometry = name.is_string() && std::find(kGeometryExtensions.begin(), kGeometryExtensions.end(),
+                                                             name.get<std::string>()) != kGeometryExtensions.end();
+      if (!is_geometry) kept.push_back(name);
+    }
+    if (kept.empty())
+      document_.erase(key);
+    else
+      document_[key] = std::move(kept);
+  }
+  if (has_lods_) use_extension("MSFT_lod", false);
+  // glTF wants every top-level list to have an element.
+  for (auto it = document_.begin(); it != document_.end();) {
+    it = it->is_array() && it->empty() ? document_.erase(it) : std::next(it);
+  }
+  Json& asset = document_["asset"];
+  if (!asset.is_object()) asset = Json::object();
+  asset["version"] = "2.0";
+  asset["generator"] = "meshlode";
+}
+
+Result<std::vector<std::uint8_t>> Exporter::run() {
+  const std::string_view text = asset_.scene_json();
+  if (nests_deeper_than(text, kMaxDepth)) return Error{ErrorCode::kInvalid, "section SCNE", "JSON nests too deep"};
+  document_ = text.empty() ? Json::object() : Json::parse(text, nullptr, false);
+  if (!document_.is_object()) return Error{ErrorCode::kInvalid, "section SCNE", "not a JSON object"};
+  carry_buffers();
+  carry_images();
+  move_texture_sources();
+  complete_materials();
+  exported_.reserve(asset_.meshes().size());
+  for (std::size_t m = 0; m < asset_.meshes().size(); ++m) {
+    if (auto status = add_mesh(MeshId(m)); !status) return status.error();
+  }
+  attach_meshes();
+  finish_document();
+  // Names of records need not be UTF-8; what is not is replaced, never refused.
+  const std::string json = document_.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return assemble_glb(json, binary_.bytes());
+}
+
+bool is_sound(const LodChain& chain) {
+  const std::vector<double>& coverage = chain.screen_coverage;
+  const auto falls = [](double a, double b) { return a < b; };
+  return coverage.empty() ||
+         (coverage.size() == chain.cuts.size() && std::is_sorted(coverage.rbegin(), coverage.rend(), falls) &&
+          std::all_of(coverage.begin(), coverage.end(), [](double c) { return c >= 0.0 && c <= 1.0; }));
+}
+
+}  // namespace
+
+Result<std::vector<std::uint8_t>> export_glb(const Asset& asset, std::span<const std::vector<ClusterId>> cut_per_mesh) {
+  std::vector<LodChain> chains(cut_per_mesh.size());
+  for (std::size_t m = 0; m < chains.size(); ++m) chains[m].cuts = {cut_per_mesh[m]};
+  return export_glb_lods(asset, chains);
+}
+
+Result<std::vector<std::uint8_t>> export_glb_lods(const Asset& asset, std::span<const LodChain> chain_per_mesh) {
+  if (chain_per_mesh.size() != asset.meshes().size()) {
+    return Error{ErrorCode::kUsage, "", "one cut per mesh is needed"};
+  }
+  for (std::size_t m = 0; m < chain_per_mesh.size(); ++m) {
+    const LodChain& chain = chain_per_mesh[m];
+    const bool has_gap = chain.cuts.size() > 1 &&
+                         std::any_of(chain.cuts.begin(), chain.cuts.end(), [](const auto& cut) { return cut.empty(); });
+    if (has_gap || !is_sound(chain)) {
+      return Error{ErrorCode::kUsage, "mesh " + std::to_string(m), "its levels and coverage values are not a chain"};
+    }
+  }
+  std::uint64_t bytes = 0;
+  for (const LodChain& chain : chain_per_mesh) {
+    for (const auto& cut : chain.cuts) {
+      const bool is_known = std::all_of(cut.begin(), cut.end(), [&](ClusterId id) { return id.value < asset.clusters().size(); });
+      if (is_known) bytes += count_decoded_bytes(asset, cut);  // others are refused where they are gathered
+    }
+  }
+  if (Status status = check_decoded_bytes(asset, bytes); !status) return status.error();
+  // The document is a file's: whatever shape it has that glTF does not allow ends as an exception of the JSON library.
+  try {
+    return Exporter(asset, chain_per_mesh).run();
+  } catch (const std::bad_alloc&) {
+    return Error{ErrorCode::kBuildFailed, "", "out of memory"};
+  } catch (const std::exception& failure) {
+    return Error{ErrorCode::kInvalid, "section SCNE", failure.what()};
+  }
+}
+
+}  // namespace meshlode

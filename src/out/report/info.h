@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What `meshlode info` says about an asset: statistics over its tables, as data, as JSON and as text.
+// The JSON's keys are a promise (docs/schemas/info.schema.json).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <meshlode/format.h>
+
+#include "run/read/asset.h"
+#include "out/report/byte_map.h"
+
+namespace meshlode {
+
+struct LevelInfo {
+  std::uint32_t level = 0;
+  std::uint64_t clusters = 0, triangles = 0, vertices = 0;  ///< stored; a vertex counts once per cluster it is in
+  std::uint64_t full_clusters = 0;                          ///< at the cap
+  double fill = 0.0;                                        ///< triangles / (clusters · cap)
+  std::uint64_t groups = 0, stuck_groups = 0;               ///< groups that consume this level
+  float error_min = 0.0F, error_max = 0.0F;                 ///< own errors of the level's clusters, object units
+  float normal_deviation_max = 0.0F;                        ///< of their own groups, degrees; kInfiniteError: not measured
+  float uv_deviation_max = 0.0F;                            ///< UV units
+};
+
+struct StuckGroupInfo {
+  std::uint32_t mesh = 0, group = 0, level = 0;
+  format::StuckReason reason = format::StuckReason::kNotStuck;
+  std::uint64_t clusters = 0, triangles = 0;
+};
+
+struct MeshInfo {
+  std::uint64_t roots = 0, root_triangles = 0;  ///< a root is a cluster that nothing coarser replaces
+  std::uint64_t clusters = 0, triangles = 0, vertices = 0;
+  std::vector<StuckGroupInfo> stuck;
+  std::vector<LevelInfo> levels;
+};
+
+struct AssetInfo {
+  std::uint64_t geometry_bytes = 0;  ///< pages and the tables they need: meshes, groups, clusters, nodes, pages, deps
+  std::uint64_t image_bytes = 0;
+  std::uint64_t source_triangles = 0, source_vertices = 0;
+  std::uint64_t stored_triangles = 0, stored_vertices = 0;
+  std::uint64_t levels = 0, roots = 0, max_roots_per_mesh = 0, stuck_groups = 0;
+  std::uint64_t dropped_degenerate = 0, dropped_duplicate = 0, dropped_repaired = 0;
+  std::uint32_t cluster_cap = 0;  ///< triangles: from the settings, else the smallest of 128 and 256 that holds
+  std::vector<MeshInfo> meshes;
+  std::optional<ByteMap> byte_map;  ///< left to the caller: it takes loading every page
+};
+
+[[nodiscard]] AssetInfo describe_asset(const Asset& asset);
+
+/// With `list_stuck`, every stuck group is listed with its reason.
+[[nodiscard]] std::string info_json(const Asset& asset, const AssetInfo& info, bool list_stuck);
+[[nodiscard]] std::string info_text(const Asset& asset, const AssetInfo& info, bool list_stuck);
+
+[[nodiscard]] const char* stuck_reason_name(format::StuckReason reason);
+[[nodiscard]] const char* error_tier_name(format::ErrorTier tier);
+[[nodiscard]] std::string section_name(std::uint32_t id);  ///< four letters, '?' for bytes that are not printable
+[[nodiscard]] std::uint64_t section_decoded_bytes(const Asset& asset, const format::SectionEntry& section);
+
+}  // namespace meshlode

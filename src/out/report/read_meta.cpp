@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// nlohmann-json, seen by this file alone in this room.
+#include "out/report/read_meta.h"
+
+#include <nlohmann/json.hpp>
+
+namespace meshlode {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// nlohmann parses without recursion but dumps with it, so that deep nesting must not get in.
+bool is_shallow(std::string_view text) {
+  constexpr int kMaxDepth = 200;
+  int depth = 0;
+  bool in_string = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (in_string) {
+      if (c == '\\') ++i;
+      if (c == '"') in_string = false;
+    } else if (c == '"') {
+      in_string = true;
+    } else if (c == '{' || c == '[') {
+      if (++depth > kMaxDepth) return false;
+    } else if (c == '}' || c == ']') {
+      --depth;
+    }
+  }
+  return true;
+}
+
+Json parse_object(std::string_view text) {
+  if (!is_shallow(text)) return {};
+  Json json = Json::parse(text.begin(), text.end(), nullptr, false);
+  return json.is_object() ? json : Json{};
+}
+
+std::string string_at(const Json& object, const char* key) {
+  if (!object.is_object()) return {};
+  const auto it = object.find(key);
+  if (it == object.end()) return {};
+  return it->is_string() ? it->get<std::string>() : it->dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+const Json* child(const Json& object, const char* key, Json::value_t type) {
+  if (!object.is_object()) return nullptr;
+  const auto it = object.find(key);
+  return it != object.end() && it->type() == type ? &*it : nullptr;
+}
+
+std::int64_t index_at(const Json& object, const char* key) {
+  if (!object.is_object()) return -1;
+  const auto it = object.find(key);
+  return it != object.end() && it->is_number_unsigned() ? it->get<std::int64_t>() : -1;
+}
+
+}  // namespace
+
+MetaInfo read_meta(std::string_view meta_json) {
+  MetaInfo meta;
+  const Json json = parse_object(meta_json);
+  if (json.is_null()) return meta;
+  meta.is_valid = true;
+  meta.generator = string_at(json, "generator");
+  if (const Json* source = child(json, "source", Json::value_t::object)) {
+    meta.source_file = string_at(*source, "file");
+    meta.source_hash = string_at(*source, "hash");
+  }
+  const auto dump = [](const Json& j) { return j.dump(-1, ' ', false, Json::error_handler_t::replace); };
+  if (const Json* settings = child(json, "settings", Json::value_t::object)) {
+    meta.settings = dump(*settings);
+    for (const char* key : {"cluster_triangles", "max_cluster_triangles", "triangles_per_cluster"}) {
+      const std::int64_t cap = index_at(*settings, key);
+      if (cap >= 1 && cap <= 256) meta.cluster_triangles = static_cast<std::uint32_t>(cap);
+    }
+  }
+  if (const Json* plan = child(json, "plan", Json::value_t::array)) {
+    meta.plan = dump(*plan);
+    for (const Json& entry : *plan) {
+      const bool is_left_out = entry.is_object() && entry.contains("kept") && entry["kept"] == false;
+      meta.decisions.push_back(
+          {string_at(entry, "what"), string_at(entry, "reason"), string_at(entry, "saves"), !is_left_out});
+    }
+  }
+  if (const Json* left_out = child(json, "left_out", Json::value_t::array)) {
+    meta.left_out = dump(*left_out);
+    for (const Json& entry : *left_out) meta.left_outs.push_back({string_at(entry, "what"), string_at(entry, "why")});
+  }
+  return meta;
+}
+
+std::vector<TextureInfo> read_textures(std::string_view scene_json) {
+  std::vector<TextureInfo> textures;
+  const Json json = parse_object(scene_json);
+  if (const Json* array = child(json, "textures", Json::value_t::array)) {
+    for (const Json& texture : *array) {
+      textures.push_back({string_at(texture, "name"), index_at(texture, "source"), index_at(texture, "sampler")});
+    }
+  }
+  return textures;
+}
+
+}  // namespace meshlode

@@ -1,0 +1,378 @@
+// SPDX-License-Identifier: MIT
+// <meshlode/meshlode.h> over the rooms read, unpack, select and decode: the checks of what a caller may pass, and
+// nothing that throws gets out.
+#include <meshlode/meshlode.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <new>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "run/decode/decode.h"
+#include "run/read/asset.h"
+#include "run/select/select.h"
+#include "run/unpack/unpack.h"
+
+struct meshlode_asset {
+  meshlode::Asset asset;
+};
+
+namespace meshlode {
+namespace {
+
+meshlode_status fail(meshlode_error* error, meshlode_status status, const char* text) {
+  if (error == nullptr) return status;
+  error->status = status;
+  std::size_t size = std::min(std::strlen(text), sizeof error->text - 1);
+  // Not in the middle of a character of UTF-8.
+  const auto is_continuation = [&](std::size_t i) { return (static_cast<unsigned char>(text[i]) & 0xC0U) == 0x80U; };
+  while (size > 0 && text[size] != '\0' && is_continuation(size)) --size;
+  std::memcpy(error->text, text, size);
+  error->text[size] = '\0';
+  return status;
+}
+
+meshlode_status fail(meshlode_error* out, const Error& error) {
+  meshlode_status status = MESHLODE_INVALID;
+  switch (error.code) {
+    case ErrorCode::kUsage: status = MESHLODE_USAGE; break;
+    case ErrorCode::kIo: status = MESHLODE_IO; break;
+    case ErrorCode::kUnsupported: status = MESHLODE_UNSUPPORTED; break;
+    case ErrorCode::kInvalid:
+    case ErrorCode::kBuildFailed:
+    case ErrorCode::kCheckFailed: break;
+  }
+  return fail(out, status, error.message().c_str());
+}
+
+meshlode_status succeed(meshlode_error* error) {
+  if (error != nullptr) {
+    error->status = MESHLODE_OK;
+    error->text[0] = '\0';
+  }
+  return MESHLODE_OK;
+}
+
+/// Calls `body`, which returns a status; memory that cannot be had is a status too.
+template <class Body>
+meshlode_status guard(meshlode_error* error, const Body& body) {
+  try {
+    return body();
+  } catch (const std::bad_alloc&) {
+    return fail(error, MESHLODE_OUT_OF_MEMORY, "out of memory");
+  } catch (...) {
+    return fail(error, MESHLODE_INVALID, "unexpected failure");
+  }
+}
+
+meshlode_status take(Result<Asset> asset, meshlode_asset** out, meshlode_error* error) {
+  if (!asset) return fail(error, asset.error());
+  *out = new meshlode_asset{std::move(*asset)};
+  return succeed(error);
+}
+
+/// The C struct has the record's layout (c_records.cpp).
+template <class Out, class In>
+const Out* view(std::span<const In> records, std::uint32_t* count) {
+  static_assert(sizeof(Out) == sizeof(In));
+  *count = static_cast<std::uint32_t>(records.size());
+  return reinterpret_cast<const Out*>(records.data());
+}
+
+bool is_positive(double value) {
+  return value > 0.0 && std::isfinite(value);
+}
+
+/// The camera of a view, or nothing and the field at fault.
+std::optional<Camera> make_camera(const meshlode_view& view, const char*& fault) {
+  for (const double c : view.eye) {
+    if (!std::isfinite(c)) fault = "view->eye is not finite";
+  }
+  if (view.height_px == 0) fault = "view->height_px is 0";
+  if (!is_positive(view.near_distance)) fault = "view->near_distance is not above 0";
+  constexpr double kPi = 3.14159265358979323846;
+  if (view.is_orthographic != 0) {
+    if (!is_positive(view.ortho_height)) fault = "view->ortho_height is not above 0";
+  } else if (!(view.fovy_radians > 0.0 && view.fovy_radians < kPi)) {
+    fault = "view->fovy_radians is not between 0 and pi";
+  }
+  if (fault != nullptr) return std::nullopt;
+  Camera camera;
+  camera.eye = {view.eye[0], view.eye[1], view.eye[2]};
+  camera.target = camera.eye - Vec3d(0.0, 0.0, 1.0);  // any direction: the rule does not look at it
+  camera.is_orthographic = view.is_orthographic != 0;
+  camera.fovy = view.fovy_radians;
+  camera.ortho_height = view.ortho_height;
+  camera.near_distance = view.near_distance;
+  camera.height = view.height_px;
+  camera.width = view.height_px;
+  return camera;
+}
+
+std::uint32_t page_of(const Asset& asset, std::uint32_t cluster) {
+  return asset.groups()[asset.clusters()[cluster].coarser_group].page;
+}
+
+bool is_aligned(const void* memory) {
+  return reinterpret_cast<std::uintptr_t>(memory) % 4 == 0;
+}
+
+/// What both ways to decode check, and the integers.
+meshlode_status decode(const Asset& asset, const meshlode_page_bytes& page, std::uint32_t cluster, DecodedCluster& out,
+                       meshlode_error* error) {
+  if (cluster >= asset.clusters().size()) return fail(error, MESHLODE_USAGE, "cluster: does not exist");
+  if (page.page != page_of(asset, cluster)) return fail(error, MESHLODE_USAGE, "page: is not the page of this cluster");
+  if (page.bytes == nullptr || !is_aligned(page.bytes)) {
+    return fail(error, MESHLODE_USAGE, "page: its bytes are not at a multiple of 4");
+  }
+  const std::span bytes(static_cast<const std::uint8_t*>(page.bytes), asset.pages()[page.page].bytes);
+  decode_cluster(asset, PageBytes(bytes), ClusterId(cluster), out);
+  return MESHLODE_OK;
+}
+
+void copy_triangles(const DecodedCluster& cluster, std::uint8_t* triangles, std::uint32_t* materials) {
+  if (triangles != nullptr) std::memcpy(triangles, cluster.triangles.data(), 3 * cluster.triangles.size());
+  if (materials != nullptr) {
+    std::copy(cluster.triangle_material.begin(), cluster.triangle_material.end(), materials);
+  }
+}
+
+template <class Vector>
+void copy_vectors(const std::vector<Vector>& from, float* to) {
+  if (to == nullptr) return;
+  for (const Vector& v : from) {
+    for (int c = 0; c < Vector::length(); ++c) *to++ = v[c];
+  }
+}
+
+/// Largest error of a page's groups: what is drawn without the page is off by at least the smallest, at most this.
+float largest_error(const Asset& asset, const format::PageRecord& page) {
+  float error = 0.0F;
+  for (const format::GroupRecord& group : asset.groups().subspan(page.first_group, page.group_count)) {
+    error = std::max(error, group.error);
+  }
+  return error;
+}
+
+std::vector<std::uint32_t> order_pages(const Asset& asset) {
+  const std::size_t count = asset.pages().size();
+  // A page counts with the largest error of all that depends on it, or it would hold up a page that matters more.
+  std::vector<float> errors(count);
+  for (std::size_t p = count; p-- > 0;) {  // what depends on a page comes after it
+    const format::PageRecord& page = asset.pages()[p];
+    errors[p] = std::max(errors[p], largest_error(asset, page));
+    for (const std::uint32_t needed : asset.page_dependencies().subspan(page.first_dependency, page.dependency_count)) {
+      errors[needed] = std::max(errors[needed], errors[p]);
+    }
+  }
+  // So errors never grow from a page to what depends on it, and with the ids for equal ones the order is right.
+  std::vector<std::uint32_t> order(count);
+  for (std::size_t p = 0; p < count; ++p) order[p] = static_cast<std::uint32_t>(p);
+  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return errors[a] > errors[b]; });
+  return order;
+}
+
+}  // namespace
+}  // namespace meshlode
+
+using namespace meshlode;
+
+uint32_t meshlode_format_version(void) {
+  return format::kVersion;
+}
+
+meshlode_status meshlode_open_file(const char* path, meshlode_asset** asset, meshlode_error* error) {
+  if (path == nullptr || asset == nullptr) return fail(error, MESHLODE_USAGE, "path or asset is NULL");
+  return guard(error, [&] { return take(Asset::open(path), asset, error); });
+}
+
+meshlode_status meshlode_open_buffer(const void* bytes, size_t size, meshlode_asset** asset, meshlode_error* error) {
+  if (asset == nullptr || (bytes == nullptr && size > 0)) return fail(error, MESHLODE_USAGE, "bytes or asset is NULL");
+  if (reinterpret_cast<std::uintptr_t>(bytes) % 8 != 0) {
+    return fail(error, MESHLODE_USAGE, "bytes: not at a multiple of 8");
+  }
+  return guard(error, [&] {
+    return take(Asset::from_bytes({static_cast<const std::uint8_t*>(bytes), size}), asset, error);
+  });
+}
+
+void meshlode_close(meshlode_asset* asset) {
+  delete asset;
+}
+
+const meshlode_mesh* meshlode_meshes(const meshlode_asset* asset, uint32_t* count) {
+  return view<meshlode_mesh>(asset->asset.meshes(), count);
+}
+const meshlode_material* meshlode_materials(const meshlode_asset* asset, uint32_t* count) {
+  return view<meshlode_material>(asset->asset.materials(), count);
+}
+const meshlode_instance* meshlode_instances(const meshlode_asset* asset, uint32_t* count) {
+  return view<meshlode_instance>(asset->asset.instances(), count);
+}
+const meshlode_group* meshlode_groups(const meshlode_asset* asset, uint32_t* count) {
+  return view<meshlode_group>(asset->asset.groups(), count);
+}
+const meshlode_cluster* meshlode_clusters(const meshlode_asset* asset, uint32_t* count) {
+  return view<meshlode_cluster>(asset->asset.clusters(), count);
+}
+const meshlode_node* meshlode_nodes(const meshlode_asset* asset, uint32_t* count) {
+  return view<meshlode_node>(asset->asset.nodes(), count);
+}
+const meshlode_page* meshlode_pages(const meshlode_asset* asset, uint32_t* count) {
+  return view<meshlode_page>(asset->asset.pages(), count);
+}
+const meshlode_blob* meshlode_blobs(const meshlode_asset* asset, uint32_t* count) {
+  return view<meshlode_blob>(asset->asset.blobs(), count);
+}
+
+const char* meshlode_text(const meshlode_asset* asset, meshlode_string string, size_t* bytes) {
+  const std::string_view strings = asset->asset.strings();
+  *bytes = 0;
+  if (string.offset > strings.size() || string.bytes > strings.size() - string.offset) return nullptr;
+  *bytes = string.bytes;
+  return strings.data() + string.offset;
+}
+
+const void* meshlode_blob_bytes(const meshlode_asset* asset, uint32_t blob, size_t* bytes) {
+  *bytes = 0;
+  if (blob >= asset->asset.blobs().size()) return nullptr;
+  const auto view = asset->asset.blob_bytes(asset->asset.blobs()[blob]);
+  *bytes = view.size();
+  return view.data();
+}
+
+const char* meshlode_meta_json(const meshlode_asset* asset, size_t* bytes) {
+  *bytes = asset->asset.meta_json().size();
+  return asset->asset.meta_json().data();
+}
+const char* meshlode_scene_json(const meshlode_asset* asset, size_t* bytes) {
+  *bytes = asset->asset.scene_json().size();
+  return asset->asset.scene_json().data();
+}
+
+meshlode_status meshlode_select_view(const meshlode_asset* asset, const meshlode_view* view, double pixel_error,
+                                     meshlode_draw_item* items, size_t capacity, size_t* count, meshlode_error* error) {
+  const char* fault = nullptr;
+  const auto camera = make_camera(*view, fault);
+  if (!camera) return fail(error, MESHLODE_USAGE, fault);
+  if (!(pixel_error >= 0.0) || !std::isfinite(pixel_error)) {
+    return fail(error, MESHLODE_USAGE, "pixel_error is not a number >= 0");
+  }
+  return guard(error, [&] {
+    const std::vector<ClusterInstance> drawn = select_bvh(asset->asset, *camera, pixel_error);
+    *count = drawn.size();
+    for (std::size_t i = 0; i < std::min(capacity, drawn.size()); ++i) {
+      items[i] = {drawn[i].instance.value, drawn[i].cluster.value};
+    }
+    return drawn.size() <= capacity ? succeed(error) : fail(error, MESHLODE_TOO_SMALL, "more items than capacity");
+  });
+}
+
+meshlode_status meshlode_select_uniform(const meshlode_asset* asset, uint32_t mesh, double max_error,
+                                        uint32_t* clusters, size_t capacity, size_t* count, double* stored_error,
+                                        meshlode_error* error) {
+  if (mesh >= asset->asset.meshes().size()) return fail(error, MESHLODE_USAGE, "mesh: does not exist");
+  if (!(max_error >= 0.0)) return fail(error, MESHLODE_USAGE, "max_error is not a number >= 0");
+  return guard(error, [&] {
+    const UniformCut cut = select_uniform(asset->asset, MeshId(mesh), max_error);
+    *count = cut.clusters.size();
+    if (stored_error != nullptr) *stored_error = cut.stored_error;
+    for (std::size_t i = 0; i < std::min(capacity, cut.clusters.size()); ++i) clusters[i] = cut.clusters[i].value;
+    return cut.clusters.size() <= capacity ? succeed(error)
+                                           : fail(error, MESHLODE_TOO_SMALL, "more clusters than capacity");
+  });
+}
+
+uint32_t meshlode_page_of(const meshlode_asset* asset, uint32_t cluster) {
+  return cluster < asset->asset.clusters().size() ? page_of(asset->asset, cluster) : MESHLODE_NONE;
+}
+
+const uint32_t* meshlode_page_dependencies(const meshlode_asset* asset, uint32_t page, uint32_t* count) {
+  *count = 0;
+  if (page >= asset->asset.pages().size()) return nullptr;
+  const format::PageRecord& record = asset->asset.pages()[page];
+  *count = record.dependency_count;
+  return asset->asset.page_dependencies().subspan(record.first_dependency, record.dependency_count).data();
+}
+
+meshlode_status meshlode_streaming_order(const meshlode_asset* asset, uint32_t* pages, meshlode_error* error) {
+  return guard(error, [&] {
+    const std::vector<std::uint32_t> order = order_pages(asset->asset);
+    std::copy(order.begin(), order.end(), pages);
+    return succeed(error);
+  });
+}
+
+meshlode_status meshlode_load_page(const meshlode_asset* asset, uint32_t page, void* out, size_t capacity,
+                                   meshlode_error* error) {
+  if (page >= asset->asset.pages().size()) return fail(error, MESHLODE_USAGE, "page: does not exist");
+  if (out == nullptr || !is_aligned(out)) return fail(error, MESHLODE_USAGE, "out: not at a multiple of 4");
+  if (capacity < asset->asset.pages()[page].bytes)
+    return fail(error, MESHLODE_TOO_SMALL, "out: below the page's bytes");
+  return guard(error, [&] {
+    const auto bytes = load_page(asset->asset, PageId(page));
+    if (!bytes) return fail(error, bytes.error());
+    std::memcpy(out, bytes->bytes().data(), bytes->bytes().size());
+    return succeed(error);
+  });
+}
+
+meshlode_status meshlode_view_page(const meshlode_asset* asset, uint32_t page, const void** out,
+                                   meshlode_error* error) {
+  if (page >= asset->asset.pages().size()) return fail(error, MESHLODE_USAGE, "page: does not exist");
+  if (asset->asset.pages()[page].codec != format::Codec::kNone) {
+    return fail(error, MESHLODE_UNSUPPORTED, "page: is stored compressed");
+  }
+  return guard(error, [&] {
+    const auto bytes = load_page(asset->asset, PageId(page));
+    if (!bytes) return fail(error, bytes.error());
+    *out = asset->asset.stored_page(PageId(page)).data();
+    return succeed(error);
+  });
+}
+
+meshlode_status meshlode_decode_floats(const meshlode_asset* asset, meshlode_page_bytes page, uint32_t cluster,
+                                       meshlode_cluster_floats* out, meshlode_error* error) {
+  return guard(error, [&] {
+    DecodedCluster decoded;
+    const meshlode_status status = decode(asset->asset, page, cluster, decoded, error);
+    if (status != MESHLODE_OK) return status;
+    out->vertex_count = decoded.vertex_count;
+    out->triangle_count = decoded.triangle_count;
+    if (out->vertex_capacity < decoded.vertex_count || out->triangle_capacity < decoded.triangle_count) {
+      return fail(error, MESHLODE_TOO_SMALL, "more vertices or triangles than capacity");
+    }
+    const std::uint32_t group = asset->asset.clusters()[cluster].coarser_group;
+    ClusterAttributes floats;
+    decode_attributes(asset->asset.meshes()[asset->asset.groups()[group].mesh], decoded, floats);
+    copy_vectors(floats.positions, out->positions);
+    copy_vectors(floats.normals, out->normals);
+    for (std::size_t k = 0; k < floats.uvs.size(); ++k) copy_vectors(floats.uvs[k], out->uvs[k]);
+    copy_vectors(floats.colors, out->colors);
+    copy_triangles(decoded, out->triangles, out->triangle_materials);
+    return succeed(error);
+  });
+}
+
+meshlode_status meshlode_decode_integers(const meshlode_asset* asset, meshlode_page_bytes page, uint32_t cluster,
+                                         meshlode_cluster_integers* out, meshlode_error* error) {
+  return guard(error, [&] {
+    DecodedCluster decoded;
+    const meshlode_status status = decode(asset->asset, page, cluster, decoded, error);
+    if (status != MESHLODE_OK) return status;
+    out->vertex_count = decoded.vertex_count;
+    out->triangle_count = decoded.triangle_count;
+    out->channel_count = decoded.channel_count;
+    if (out->value_capacity < decoded.channels.size() || out->triangle_capacity < decoded.triangle_count) {
+      return fail(error, MESHLODE_TOO_SMALL, "more values or triangles than capacity");
+    }
+    if (out->values != nullptr) std::copy(decoded.channels.begin(), decoded.channels.end(), out->values);
+    copy_triangles(decoded, out->triangles, out->triangle_materials);
+    return succeed(error);
+  });
+}

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: MIT
+// <meshlode/runtime.h> over the rooms read, unpack, select and decode: no logic of its own, only the checks of what a
+// caller may pass and the translation to plain types.
+#include <meshlode/runtime.h>
+
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "run/decode/decode.h"
+#include "run/read/asset.h"
+#include "run/select/select.h"
+#include "run/unpack/unpack.h"
+
+namespace meshlode {
+namespace {
+
+Error usage(const char* where, const char* detail) {
+  return Error{ErrorCode::kUsage, where, detail};
+}
+
+bool is_positive(double value) {
+  return value > 0.0 && std::isfinite(value);
+}
+
+Result<Camera> make_camera(const ViewPoint& view) {
+  for (const double c : view.eye) {
+    if (!std::isfinite(c)) return usage("ViewPoint::eye", "is not finite");
+  }
+  if (view.height_px == 0) return usage("ViewPoint::height_px", "is 0");
+  if (!is_positive(view.near_distance)) return usage("ViewPoint::near_distance", "is not above 0");
+  constexpr double kPi = 3.14159265358979323846;
+  if (view.is_orthographic) {
+    if (!is_positive(view.ortho_height)) return usage("ViewPoint::ortho_height", "is not above 0");
+  } else if (!(view.fovy_radians > 0.0 && view.fovy_radians < kPi)) {
+    return usage("ViewPoint::fovy_radians", "is not between 0 and pi");
+  }
+  Camera camera;
+  camera.eye = {view.eye[0], view.eye[1], view.eye[2]};
+  camera.target = camera.eye - Vec3d(0.0, 0.0, 1.0);  // any direction: the rule does not look at it
+  camera.is_orthographic = view.is_orthographic;
+  camera.fovy = view.fovy_radians;
+  camera.ortho_height = view.ortho_height;
+  camera.near_distance = view.near_distance;
+  camera.height = view.height_px;
+  camera.width = view.height_px;
+  return camera;
+}
+
+template <class Out, class In>
+void copy_vectors(const std::vector<In>& from, std::vector<Out>& to) {
+  to.resize(from.size());
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    for (std::size_t c = 0; c < to[i].size(); ++c) to[i][c] = from[i][static_cast<typename In::length_type>(c)];
+  }
+}
+
+}  // namespace
+
+struct PageData::State {
+  PageBytes bytes;
+  std::uint32_t page;
+  const void* owner;  ///< the AssetFile's state: a page of another asset was checked against other tables
+};
+
+PageData::PageData(std::unique_ptr<State> state) : state_(std::move(state)) {}
+PageData::PageData(PageData&&) noexcept = default;
+PageData& PageData::operator=(PageData&&) noexcept = default;
+PageData::~PageData() = default;
+std::span<const std::uint8_t> PageData::bytes() const {
+  return state_->bytes.bytes();
+}
+std::uint32_t PageData::page() const {
+  return state_->page;
+}
+
+struct AssetFile::State {
+  Asset asset;
+
+  static Result<AssetFile> wrap(Result<Asset> asset) {
+    if (!asset) return asset.error();
+    return AssetFile(std::make_unique<State>(State{std::move(*asset)}));
+  }
+  /// Decodes to the integer form of the room `decode`.
+  [[nodiscard]] Status decode(const PageData::State& page, std::uint32_t cluster, DecodedCluster& out) const {
+    if (cluster >= asset.clusters().size()) return usage("cluster", "does not exist");
+    if (page.owner != this || page_of(cluster) != page.page) return usage("page", "is not the page of this cluster");
+    decode_cluster(asset, page.bytes, ClusterId(cluster), out);
+    return Ok{};
+  }
+  [[nodiscard]] std::uint32_t page_of(std::uint32_t cluster) const {
+    return asset.groups()[asset.clusters()[cluster].coarser_group].page;
+  }
+};
+
+AssetFile::AssetFile(std::unique_ptr<State> state) : state_(std::move(state)) {}
+AssetFile::AssetFile(AssetFile&&) noexcept = default;
+AssetFile& AssetFile::operator=(AssetFile&&) noexcept = default;
+AssetFile::~AssetFile() = default;
+
+Result<AssetFile> AssetFile::open(const std::filesystem::path& path) {
+  return State::wrap(Asset::open(path));
+}
+Result<AssetFile> AssetFile::view(std::span<const std::uint8_t> bytes) {
+  return State::wrap(Asset::from_bytes(bytes));
+}
+Result<AssetFile> AssetFile::take(std::vector<std::uint8_t> bytes) {
+  return State::wrap(Asset::from_vector(std::move(bytes)));
+}
+
+const format::FileHeader& AssetFile::header() const {
+  return state_->asset.header();
+}
+std::span<const format::MeshRecord> AssetFile::meshes() const {
+  return state_->asset.meshes();
+}
+std::span<const format::MaterialRecord> AssetFile::materials() const {
+  return state_->asset.materials();
+}
+std::span<const format::InstanceRecord> AssetFile::instances() const {
+  return state_->asset.instances();
+}
+std::span<const format::GroupRecord> AssetFile::groups() const {
+  return state_->asset.groups();
+}
+std::span<const format::ClusterRecord> AssetFile::clusters() const {
+  return state_->asset.clusters();
+}
+std::span<const format::NodeRecord> AssetFile::nodes() const {
+  return state_->asset.nodes();
+}
+std::span<const format::PageRecord> AssetFile::pages() const {
+  return state_->asset.pages();
+}
+std::span<const std::uint32_t> AssetFile::page_dependencies() const {
+  return state_->asset.page_dependencies();
+}
+std::span<const format::BlobRecord> AssetFile::blobs() const {
+  return state_->asset.blobs();
+}
+std::string_view AssetFile::text(format::StringRef ref) const {
+  return state_->asset.string(ref);
+}
+std::span<const std::uint8_t> AssetFile::blob_bytes(const format::BlobRecord& blob) const {
+  return state_->asset.blob_bytes(blob);
+}
+std::string_view AssetFile::meta_json() const {
+  return state_->asset.meta_json();
+}
+std::string_view AssetFile::scene_json() const {
+  return state_->asset.scene_json();
+}
+
+Result<std::vector<DrawItem>> AssetFile::select(const ViewPoint& view, double pixel_error) const {
+  const auto camera = make_camera(view);
+  if (!camera) return camera.error();
+  if (!(pixel_error >= 0.0) || !std::isfinite(pixel_error)) return usage("pixel_error", "is not a number >= 0");
+  const std::vector<ClusterInstance> drawn = select_bvh(state_->asset, *camera, pixel_error);
+  std::vector<DrawItem> items;
+  items.reserve(drawn.size());
+  for (const ClusterInstance& d : drawn) items.push_back({d.instance.value, d.cluster.value});
+  return items;
+}
+
+Result<MeshCutResult> AssetFile::select_uniform_cut(std::uint32_t mesh, double error) const {
+  if (mesh >= state_->asset.meshes().size()) return usage("mesh", "does not exist");
+  if (!(error >= 0.0)) return usage("error", "is not a number >= 0");
+  const UniformCut cut = select_uniform(state_->asset, MeshId(mesh), error);
+  MeshCutResult result;
+  result.stored_error = cut.stored_error;
+  result.clusters.reserve(cut.clusters.size());
+  for (const ClusterId c : cut.clusters) result.clusters.push_back(c.value);
+  return result;
+}
+
+std::uint32_t AssetFile::page_of(std::uint32_t cluster) const {
+  return state_->page_of(cluster);
+}
+
+Result<PageData> AssetFile::load_page_data(std::uint32_t page) const {
+  if (page >= state_->asset.pages().size()) return usage("page", "does not exist");
+  auto bytes = load_page(state_->asset, PageId(page));
+  if (!bytes) return bytes.error();
+  return PageData(std::make_unique<PageData::State>(PageData::State{std::move(*bytes), page, state_.get()}));
+}
+
+Status AssetFile::decode(const PageData& page, std::uint32_t cluster, ClusterIntegers& out) const {
+  DecodedCluster decoded;
+  std::swap(decoded.channels, out.values);  // reuse what the caller brought
+  std::swap(decoded.triangles, out.triangles);
+  std::swap(decoded.triangle_material, out.triangle_material);
+  if (auto status = state_->decode(*page.state_, cluster, decoded); !status) return status.error();
+  out.vertex_count = decoded.vertex_count;
+  out.triangle_count = decoded.triangle_count;
+  out.channel_count = decoded.channel_count;
+  out.values = std::move(decoded.channels);
+  out.triangles = std::move(decoded.triangles);
+  out.triangle_material = std::move(decoded.triangle_material);
+  return Ok{};
+}
+
+Status AssetFile::decode(const PageData& page, std::uint32_t cluster, ClusterFloats& out) const {
+  DecodedCluster decoded;
+  std::swap(decoded.triangles, out.triangles);
+  std::swap(decoded.triangle_material, out.triangle_material);
+  if (auto status = state_->decode(*page.state_, cluster, decoded); !status) return status.error();
+  const format::GroupRecord& group = state_->asset.groups()[state_->asset.clusters()[cluster].coarser_group];
+  ClusterAttributes floats;
+  decode_attributes(state_->asset.meshes()[group.mesh], decoded, floats);
+  copy_vectors(floats.positions, out.positions);
+  copy_vectors(floats.normals, out.normals);
+  for (std::size_t k = 0; k < out.uvs.size(); ++k) copy_vectors(floats.uvs[k], out.uvs[k]);
+  copy_vectors(floats.colors, out.colors);
+  out.triangles = std::move(decoded.triangles);
+  out.triangle_material = std::move(decoded.triangle_material);
+  return Ok{};
+}
+
+}  // namespace meshlode

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+// Read: an asset's tables as validated, zero-copy views. Opening checks every offset, count, range and id once, so that
+// code behind this line may index without checks (I11). Pages are checked when they are loaded (unpack, decode).
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include <meshlode/format.h>
+#include <meshlode/result.h>
+
+#include "base/file.h"
+#include "base/ids.h"
+#include "run/read/limits.h"
+
+namespace meshlode {
+
+class Asset {
+ public:
+  /// Maps the file. Errors: kIo; kInvalid with the place in the file; kUnsupported for a newer version or an unknown
+  /// required section, and where sections decode to more than decoded_limit() of the file's size and `max_decoded`.
+  [[nodiscard]] static Result<Asset> open(const std::filesystem::path& path,
+                                          std::uint64_t max_decoded = kDefaultMaxDecoded);
+  /// Views `bytes`, which must outlive the asset and be aligned to 8 bytes.
+  [[nodiscard]] static Result<Asset> from_bytes(std::span<const std::uint8_t> bytes);
+  /// Takes the bytes.
+  [[nodiscard]] static Result<Asset> from_vector(std::vector<std::uint8_t> bytes);
+
+  /// The file that open() mapped; nothing for bytes.
+  [[nodiscard]] std::optional<FileId> file_id() const;
+
+  [[nodiscard]] const format::FileHeader& header() const { return *header_; }
+  [[nodiscard]] std::span<const format::SectionEntry> sections() const { return sections_; }
+  [[nodiscard]] std::span<const format::MeshRecord> meshes() const { return meshes_; }
+  [[nodiscard]] std::span<const format::MaterialRecord> materials() const { return materials_; }
+  [[nodiscard]] std::span<const format::InstanceRecord> instances() const { return instances_; }
+  [[nodiscard]] std::span<const format::GroupRecord> groups() const { return groups_; }
+  [[nodiscard]] std::span<const format::ClusterRecord> clusters() const { return clusters_; }
+  [[nodiscard]] std::span<const format::NodeRecord> nodes() const { return nodes_; }
+  [[nodiscard]] std::span<const format::PageRecord> pages() const { return pages_; }
+  [[nodiscard]] std::span<const std::uint32_t> page_dependencies() const { return page_dependencies_; }
+  [[nodiscard]] std::span<const format::BlobRecord> blobs() const { return blobs_; }
+  [[nodiscard]] std::string_view meta_json() const { return meta_; }
+  [[nodiscard]] std::string_view scene_json() const { return scene_; }
+  [[nodiscard]] std::string_view strings() const { return strings_; }  ///< what StringRef points into
+  [[nodiscard]] std::string_view string(format::StringRef ref) const { return strings_.substr(ref.offset, ref.bytes); }
+  [[nodiscard]] std::span<const std::uint8_t> blob_bytes(const format::BlobRecord& blob) const;
+  [[nodiscard]] std::span<const std::uint8_t> stored_page(PageId page) const;  ///< as on disk
+  [[nodiscard]] std::span<const std::uint8_t> bytes() const { return bytes_; } ///< the whole file
+  /// What whoever decodes the asset as a whole may take for it.
+  [[nodiscard]] std::uint64_t max_decoded_bytes() const { return decoded_limit(bytes_.size(), max_decoded_); }
+  /// The decoded bytes of one of sections() that is known; PAGE and BLOB as they are stored.
+  [[nodiscard]] std::span<const std::uint8_t> section_bytes(const format::SectionEntry& entry) const;
+
+ private:
+  Asset() = default;
+  [[nodiscard]] Status index();
+
+  std::variant<std::monostate, MappedFile, std::vector<std::uint8_t>> storage_;
+  std::span<const std::uint8_t> bytes_;
+  std::uint64_t max_decoded_ = kDefaultMaxDecoded;
+  /// Of sections that are stored by columns, by their offset in the file; the others are viewed where they lie.
+  std::map<std::uint64_t, std::vector<std::uint8_t>> decoded_;
+  const format::FileHeader* header_ = nullptr;
+  std::span<const format::SectionEntry> sections_;
+  std::span<const format::MeshRecord> meshes_;
+  std::span<const format::MaterialRecord> materials_;
+  std::span<const format::InstanceRecord> instances_;
+  std::span<const format::GroupRecord> groups_;
+  std::span<const format::ClusterRecord> clusters_;
+  std::span<const format::NodeRecord> nodes_;
+  std::span<const format::PageRecord> pages_;
+  std::span<const std::uint32_t> page_dependencies_;
+  std::span<const format::BlobRecord> blobs_;
+  std::string_view meta_, scene_, strings_;
+};
+
+}  // namespace meshlode

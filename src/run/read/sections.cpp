@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: MIT
+#include "run/read/sections.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "base/hash.h"
+#include "format/section_columns.h"
+#include "run/read/file_place.h"
+
+namespace meshlode {
+
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "records are viewed as they lie in the file");
+
+using format::SectionId;
+
+struct KnownSection {
+  SectionId id;
+  std::uint32_t record_bytes;  ///< 0: text or raw bytes
+};
+
+constexpr std::array kKnownSections{
+    KnownSection{SectionId::kMeta, 0},
+    KnownSection{SectionId::kScene, 0},
+    KnownSection{SectionId::kStrings, 0},
+    KnownSection{SectionId::kMeshes, sizeof(format::MeshRecord)},
+    KnownSection{SectionId::kMaterials, sizeof(format::MaterialRecord)},
+    KnownSection{SectionId::kInstances, sizeof(format::InstanceRecord)},
+    KnownSection{SectionId::kGroups, sizeof(format::GroupRecord)},
+    KnownSection{SectionId::kClusters, sizeof(format::ClusterRecord)},
+    KnownSection{SectionId::kNodes, sizeof(format::NodeRecord)},
+    KnownSection{SectionId::kPages, sizeof(format::PageRecord)},
+    KnownSection{SectionId::kPageDeps, sizeof(std::uint32_t)},
+    KnownSection{SectionId::kBlobs, sizeof(format::BlobRecord)},
+    KnownSection{SectionId::kPageData, 0},
+    KnownSection{SectionId::kBlobData, 0},
+};
+
+Status check_header(std::span<const std::uint8_t> bytes, const format::FileHeader& header) {
+  if (header.version != format::kVersion) {
+    return Error{ErrorCode::kUnsupported, "header, field version",
+                 "version " + std::to_string(header.version) + ", this reader knows version " +
+                     std::to_string(format::kVersion)};
+  }
+  if (header.header_bytes != sizeof(format::FileHeader)) return invalid_header("header_bytes", "must be 64");
+  if (header.section_entry_bytes != sizeof(format::SectionEntry)) {
+    return invalid_header("section_entry_bytes", "must be 64");
+  }
+  if (header.flags != 0) return invalid_header("flags", "must be 0");
+  if (header.file_bytes != bytes.size()) {
+    return invalid_header("file_bytes", "says " + std::to_string(header.file_bytes) + ", the file has " +
+                                            std::to_string(bytes.size()));
+  }
+  if (header.section_table_offset != sizeof(format::FileHeader)) {
+    return invalid_header("section_table_offset", "must be 64");
+  }
+  if (header.section_count > (bytes.size() - sizeof(format::FileHeader)) / sizeof(format::SectionEntry)) {
+    return invalid_header("section_count", "the table reaches beyond the end of the file");
+  }
+  const std::size_t covered = sizeof(format::FileHeader) + header.section_count * sizeof(format::SectionEntry);
+  std::vector<std::uint8_t> sealed(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(covered));
+  std::fill_n(sealed.begin() + offsetof(format::FileHeader, header_checksum), sizeof(header.header_checksum),
+              std::uint8_t{0});
+  if (hash64(sealed) != header.header_checksum) return invalid_header("header_checksum", "does not match");
+  return Ok{};
+}
+
+/// Sections follow each other in table order, with fewer than 16 zero bytes between them: nothing hides in a gap.
+Status check_extent(std::span<const std::uint8_t> bytes, const format::SectionEntry& entry,
+                    std::uint64_t previous_end) {
+  const std::uint64_t size = bytes.size();
+  if (entry.offset % format::kSectionAlignment != 0) {
+    return invalid_section(entry.id, "offset", "is not a multiple of 16");
+  }
+  if (entry.offset < previous_end || entry.offset - previous_end >= format::kSectionAlignment) {
+    return invalid_section(entry.id, "offset", "does not follow the section before it");
+  }
+  if (entry.offset > size || entry.bytes > size - entry.offset) {
+    return invalid_section(entry.id, "bytes", "reaches beyond the end of the file");
+  }
+  for (std::uint64_t at = previous_end; at < entry.offset; ++at) {
+    if (bytes[at] != 0) return invalid_section(entry.id, "offset", "the padding before it is not zero");
+  }
+  return Ok{};
+}
+
+Status check_known(std::span<const std::uint8_t> bytes, const format::SectionEntry& entry, std::uint32_t record_bytes) {
+  if (entry.version != 0) {
+    return Error{ErrorCode::kUnsupported, "section " + section_tag(entry.id) + ", field version",
+                 "version " + std::to_string(entry.version) + ", this reader knows version 0"};
+  }
+  if ((entry.flags & ~format::kSectionRequired) != 0U) return invalid_section(entry.id, "flags", "has an unknown bit");
+  const auto id = static_cast<SectionId>(entry.id);
+  const bool is_raw = id == SectionId::kPageData || id == SectionId::kBlobData;
+  if (entry.codec == static_cast<std::uint32_t>(SectionCodec::kColumns) && !is_raw) {
+    if (entry.decoded_bytes / kMaxSectionRatio > entry.bytes || entry.decoded_bytes == 0) {
+      return invalid_section(entry.id, "decoded_bytes", "cannot come from so few bytes");
+    }
+  } else if (entry.codec != static_cast<std::uint32_t>(SectionCodec::kNone)) {
+    return Error{ErrorCode::kUnsupported, "section " + section_tag(entry.id) + ", field codec",
+                 "codec " + std::to_string(entry.codec) + " is not known to this reader"};
+  } else if (entry.decoded_bytes != entry.bytes) {
+    return invalid_section(entry.id, "decoded_bytes", "must be bytes where the section is stored as it is");
+  }
+  if (entry.record_bytes != record_bytes) {
+    return invalid_section(entry.id, "record_bytes",
+                           "is " + std::to_string(entry.record_bytes) + ", must be " + std::to_string(record_bytes));
+  }
+  if (record_bytes == 0 ? entry.record_count != 0
+                        : std::uint64_t{entry.record_count} * record_bytes != entry.decoded_bytes) {
+    return invalid_section(entry.id, "record_count", "does not match the section's bytes");
+  }
+  if (entry.record_count == format::kNone) return invalid_section(entry.id, "record_count", "is too large");
+  if (id == SectionId::kPageData) {
+    if (entry.checksum != 0) return invalid_section(entry.id, "checksum", "must be 0: pages carry their own");
+  } else if (id != SectionId::kBlobData && hash64(bytes.subspan(entry.offset, entry.bytes)) != entry.checksum) {
+    return invalid_section(entry.id, "checksum", "does not match");
+  }
+  return Ok{};
+}
+
+}  // namespace
+
+Result<SectionIndex> index_sections(std::span<const std::uint8_t> bytes) {
+  if (bytes.size() < sizeof(format::FileHeader)) {
+    return invalid_header("magic", "the file has " + std::to_string(bytes.size()) + " bytes, a header has 64");
+  }
+  if (reinterpret_cast<std::uintptr_t>(bytes.data()) % alignof(std::uint64_t) != 0) {
+    return Error{ErrorCode::kUsage, "", "the bytes of an asset must be aligned to 8"};
+  }
+  SectionIndex index;
+  index.header = reinterpret_cast<const format::FileHeader*>(bytes.data());
+  if (index.header->magic != format::kMagic) return invalid_header("magic", "this is not a .lode file");
+  if (Status status = check_header(bytes, *index.header); !status) return status.error();
+  index.entries = {reinterpret_cast<const format::SectionEntry*>(bytes.data() + sizeof(format::FileHeader)),
+                   index.header->section_count};
+
+  std::uint64_t end = sizeof(format::FileHeader) + index.entries.size_bytes();
+  for (const format::SectionEntry& entry : index.entries) {
+    if (Status status = check_extent(bytes, entry, end); !status) return status.error();
+    end = entry.offset + entry.bytes;
+    const auto known = std::find_if(kKnownSections.begin(), kKnownSections.end(), [&](const KnownSection& section) {
+      return static_cast<std::uint32_t>(section.id) == entry.id;
+    });
+    if (known == kKnownSections.end()) {
+      if ((entry.flags & format::kSectionRequired) != 0U) {
+        return Error{ErrorCode::kUnsupported, "section " + section_tag(entry.id),
+                     "is required and not known to this reader"};
+      }
+      continue;
+    }
+    if (Status status = check_known(bytes, entry, known->record_bytes); !status) return status.error();
+    if (!index.known.emplace(known->id, &entry).second) return invalid_section(entry.id, "id", "is there twice");
+  }
+  if (end != bytes.size()) return invalid_header("file_bytes", "the last section does not end the file");
+  for (const KnownSection& section : kKnownSections) {
+    if (index.known.find(section.id) == index.known.end()) {
+      return Error{ErrorCode::kInvalid, "section " + section_tag(static_cast<std::uint32_t>(section.id)),
+                   "is missing"};
+    }
+  }
+  return index;
+}
+
+}  // namespace meshlode

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+#include "run/unpack/content_hash.h"
+
+#include <array>
+
+#include "run/unpack/unpack.h"
+
+namespace meshlode {
+
+namespace {
+
+template <class T>
+void add(Hasher& hasher, const T& value) {
+  hasher.update({reinterpret_cast<const std::uint8_t*>(&value), sizeof(T)});
+}
+
+}  // namespace
+
+Result<Hash128> hash_asset_content(const Asset& asset) {
+  using enum format::SectionId;
+  Hasher hasher;
+  add(hasher, asset.header().version);
+  const auto add_section = [&](format::SectionId id) {
+    for (const format::SectionEntry& entry : asset.sections()) {
+      if (entry.id != static_cast<std::uint32_t>(id)) continue;
+      add(hasher, entry.id);
+      add(hasher, entry.decoded_bytes);
+      if (id == kPages) {
+        for (format::PageRecord page : asset.pages()) {
+          page.offset = 0;
+          page.stored_bytes = 0;
+          page.codec = format::Codec::kNone;
+          page.checksum = 0;
+          add(hasher, page);
+        }
+      } else if (id == kBlobs) {
+        for (format::BlobRecord blob : asset.blobs()) {
+          blob.offset = 0;
+          add(hasher, blob);
+        }
+      } else {
+        hasher.update(asset.section_bytes(entry));
+      }
+    }
+  };
+  for (const format::SectionId id : {kScene, kStrings, kMeshes, kMaterials, kInstances, kGroups, kClusters, kNodes,
+                                     kPages, kPageDeps}) {
+    add_section(id);
+  }
+  for (std::size_t p = 0; p < asset.pages().size(); ++p) {
+    const auto page = load_page(asset, PageId{p});
+    if (!page) return page.error();
+    hasher.update(page->bytes());
+  }
+  add_section(kBlobs);
+  for (const format::BlobRecord& blob : asset.blobs()) hasher.update(asset.blob_bytes(blob));
+  return hasher.digest();
+}
+
+}  // namespace meshlode

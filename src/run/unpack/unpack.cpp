@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+#include "run/unpack/unpack.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "base/hash.h"
+#include "run/unpack/check_page.h"
+#include "run/unpack/decompressors.h"
+#include "run/unpack/unpack_page.h"
+
+namespace meshlode {
+
+namespace {
+
+Error page_error(PageId page, const char* field, std::string detail, ErrorCode code = ErrorCode::kInvalid) {
+  return {code, "page " + std::to_string(page.value) + ", field " + field, std::move(detail)};
+}
+
+/// The bytes between the page before it and this one carry nothing: no checksum covers them, so they are looked at.
+bool is_padding_zero(const Asset& asset, PageId page) {
+  if (page.value == 0) return true;
+  const format::PageRecord& before = asset.pages()[page.value - 1];
+  const std::uint64_t end = before.offset + before.stored_bytes;
+  const auto padding = asset.bytes().subspan(end, asset.pages()[page.value].offset - end);
+  return std::all_of(padding.begin(), padding.end(), [](std::uint8_t byte) { return byte == 0; });
+}
+
+}  // namespace
+
+Result<PageBytes> load_page(const Asset& asset, PageId page) {
+  if (page.value >= asset.pages().size()) return page_error(page, "id", "is out of range", ErrorCode::kUsage);
+  const format::PageRecord& record = asset.pages()[page.value];
+  const std::span<const std::uint8_t> stored = asset.stored_page(page);
+  if (hash64(stored) != record.checksum) return page_error(page, "checksum", "does not match the stored bytes");
+  if (!is_padding_zero(asset, page)) return page_error(page, "offset", "the padding before it is not zero");
+
+  if (record.codec == format::Codec::kNone) {
+    if (record.decoded_checksum != record.checksum) {
+      return page_error(page, "decoded_checksum", "does not match the decoded bytes");
+    }
+    const PageBytes view(stored);  // offsets are multiples of 16 in bytes that lie at multiples of 8
+    if (Status status = check_page(asset, page, view.words()); !status) return status.error();
+    return PageBytes(stored);
+  }
+
+  std::vector<std::uint8_t> decoded(record.bytes);  // at most 128 KiB, which Asset has checked
+  const format::MeshRecord& mesh = asset.meshes()[asset.groups()[record.first_group].mesh];
+  const std::span<std::uint32_t> words{reinterpret_cast<std::uint32_t*>(decoded.data()), decoded.size() / 4};
+  const UnpackOutcome outcome = unpack_page(mesh, record, stored, words);
+  if (outcome == UnpackOutcome::kNotBuiltIn) {
+    return page_error(page, "codec", "this reader was built without the page's codec", ErrorCode::kUnsupported);
+  }
+  if (outcome == UnpackOutcome::kBroken) return page_error(page, "codec", "the stored bytes do not unpack");
+  if (hash64(decoded) != record.decoded_checksum) {
+    return page_error(page, "decoded_checksum", "does not match the decoded bytes");
+  }
+  PageBytes owned(std::move(decoded));
+  if (Status status = check_page(asset, page, owned.words()); !status) return status.error();
+  return owned;
+}
+
+}  // namespace meshlode

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Nodes form trees (glTF 2.0, section 3.5.2): no node has two parents, none is its own ancestor, scenes name roots.
+#include "scene/import/gltf/gltf.h"
+#include "scene/import/gltf/check_base.h"
+
+namespace meshlode {
+
+namespace {
+
+class NodeChecker : public JsonChecker {
+ public:
+  NodeChecker(const Json& root, const std::string& file) : JsonChecker(file), root_(root) {}
+
+  void run() {
+    if (!objects(root_, "", "nodes") || !objects(root_, "", "scenes") || !objects(root_, "", "skins") ||
+        !objects(root_, "", "cameras") || !optional_index(root_, "", "scene", root_.items("scenes").size())) {
+      return;
+    }
+    const auto& nodes = root_.items("nodes");
+    for (std::size_t i = 0; i < nodes.size() && ok(); ++i) check_node(nodes[i], "/nodes/" + std::to_string(i));
+    if (ok()) check_trees();
+    if (ok()) check_scenes();
+    const auto& skins = root_.items("skins");
+    for (std::size_t i = 0; i < skins.size() && ok(); ++i) {
+      optional_indices(skins[i], "/skins/" + std::to_string(i), "joints", nodes.size());
+    }
+  }
+
+ private:
+  bool check_node(const Json& node, const std::string& path) {
+    if (!optional_string(node, path, "name") || !optional_index(node, path, "mesh", root_.items("meshes").size()) ||
+        !optional_index(node, path, "skin", root_.items("skins").size()) ||
+        !optional_index(node, path, "camera", root_.items("cameras").size()) ||
+        !optional_indices(node, path, "children", root_.items("nodes").size()) ||
+        !optional_numbers(node, path, "matrix", 16) || !optional_numbers(node, path, "translation", 3) ||
+        !optional_numbers(node, path, "rotation", 4) || !optional_numbers(node, path, "scale", 3) ||
+        !optional_object(node, path, "extensions")) {
+      return false;
+    }
+    if (const Json* rotation = node.find("rotation")) {
+      bool is_zero = true;
+      for (const Json& c : *rotation->array()) is_zero = is_zero && c.number().value_or(0.0) == 0.0;
+      if (is_zero) return fail(path + "/rotation", "a quaternion of length zero");
+    }
+    const Json* extensions = node.find("extensions");
+    const Json* light = extensions != nullptr ? extensions->find("KHR_lights_punctual") : nullptr;
+    if (light == nullptr) return true;
+    const std::string here = path + "/extensions/KHR_lights_punctual";
+    if (!light->is_object()) return fail(here, "not an object");
+    const Json* root_extensions = root_.find("extensions");
+    const Json* lights = root_extensions != nullptr ? root_extensions->find("KHR_lights_punctual") : nullptr;
+    return required_index(*light, here, "light", lights != nullptr ? lights->items("lights").size() : 0);
+  }
+
+  bool check_trees() {
+    const auto& nodes = root_.items("nodes");
+    parent_.assign(nodes.size(), kNoIndex);
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      const auto& children = nodes[i].items("children");
+      for (std::size_t c = 0; c < children.size(); ++c) {
+        const std::uint64_t child = children[c].index().value_or(0);
+        if (parent_[child] != kNoIndex) {
+          return fail(
+              "/nodes/" + std::to_string(i) + "/children/" + std::to_string(c),
+              "node " + std::to_string(child) + " already has a parent, node " + std::to_string(parent_[child]));
+        }
+        parent_[child] = static_cast<std::uint32_t>(i);
+      }
+    }
+    // Each node has at most one parent: walking upward, each node once in all, finds every cycle.
+    std::vector<std::uint32_t> mark(nodes.size(), kNoIndex);
+    for (std::uint32_t i = 0; i < nodes.size(); ++i) {
+      std::uint32_t n = i;
+      for (; n != kNoIndex && mark[n] == kNoIndex; n = parent_[n]) mark[n] = i;
+      if (n != kNoIndex && mark[n] == i) return fail("/nodes/" + std::to_string(n), "the node is its own ancestor");
+    }
+    return true;
+  }
+
+  bool check_scenes() {
+    const auto& scenes = root_.items("scenes");
+    std::vector<std::size_t> seen_in(root_.items("nodes").size(), scenes.size());
+    for (std::size_t s = 0; s < scenes.size(); ++s) {
+      const std::string path = "/scenes/" + std::to_string(s);
+      if (!optional_string(scenes[s], path, "name") ||
+          !optional_indices(scenes[s], path, "nodes", root_.items("nodes").size())) {
+        return false;
+      }
+      const auto& roots = scenes[s].items("nodes");
+      for (std::size_t i = 0; i < roots.size(); ++i) {
+        const std::uint64_t node = roots[i].index().value_or(0);
+        const std::string here = path + "/nodes/" + std::to_string(i);
+        if (parent_[node] != kNoIndex) return fail(here, "node " + std::to_string(node) + " is not a root");
+        if (seen_in[node] == s) return fail(here, "node " + std::to_string(node) + " is named twice");
+        seen_in[node] = s;
+      }
+    }
+    return true;
+  }
+
+  const Json& root_;
+  std::vector<std::uint32_t> parent_;
+};
+
+}  // namespace
+
+Status check_gltf_nodes(const Json& root, const std::string& file) {
+  NodeChecker checker(root, file);
+  checker.run();
+  return checker.status();
+}
+
+}  // namespace meshlode

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the asset carries without understanding it: the glTF tree without its geometry, and the bytes of its images.
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "scene/import/gltf/check_base.h"
+#include "scene/import/gltf/gltf_import.h"
+
+namespace meshlode {
+
+namespace {
+
+/// An extension that names binary data cannot travel: the accessors and views it points to are gone.
+bool names_binary(const Json& json) {
+  if (const auto* array = json.array()) {
+    return std::any_of(array->begin(), array->end(), names_binary);
+  }
+  const auto* object = json.object();
+  if (object == nullptr) return false;
+  return std::any_of(object->begin(), object->end(), [](const JsonMember& member) {
+    return member.key == "bufferView" || member.key == "accessor" || names_binary(member.value);
+  });
+}
+
+/// The object's extensions without those that name binary data; false where some were dropped.
+void drop_binary_extensions(Json& object, const std::string& what, std::vector<LeftOut>& left_out) {
+  Json* extensions = object.find("extensions");
+  if (extensions == nullptr || !extensions->is_object()) return;
+  std::vector<std::string> dropped;
+  for (const JsonMember& member : *extensions->object()) {
+    if (member.key == "EXT_mesh_gpu_instancing" || names_binary(member.value)) dropped.push_back(member.key);
+  }
+  for (const std::string& key : dropped) {
+    left_out.push_back({what + " " + pointer_part(key), "an extension with binary data that is not kept"});
+  }
+  std::sort(dropped.begin(), dropped.end());
+  extensions->erase_all(dropped);
+  if (extensions->object()->empty()) object.erase("extensions");
+}
+
+std::string_view sniff_mime(std::span<const std::uint8_t> bytes) {
+  const auto starts = [&](std::initializer_list<int> magic) {
+    return bytes.size() >= magic.size() &&
+           std::equal(magic.begin(), magic.end(), bytes.begin(), [](int a, std::uint8_t b) { return a == b; });
+  };
+  if (starts({0x89, 'P', 'N', 'G'})) return "image/png";
+  if (starts({0xFF, 0xD8, 0xFF})) return "image/jpeg";
+  if (starts({0xAB, 'K', 'T', 'X'})) return "image/ktx2";
+  if (starts({'R', 'I', 'F', 'F'})) return "image/webp";
+  if (starts({'D', 'D', 'S', ' '})) return "image/vnd-ms.dds";
+  return "";
+}
+
+std::string image_name(const Json& image) {
+  if (const Json* name = image.find("name")) return *name->string();
+  const Json* uri = image.find("uri");
+  if (uri == nullptr || uri->string()->starts_with("data:")) return "";
+  const std::string& path = *uri->string();
+  return path.substr(path.find_last_of('/') + 1);  // npos + 1 == 0
+}
+
+/// The bytes of an image where it names any.
+Result<std::optional<std::span<const std::uint8_t>>> find_image_bytes(const GltfAsset& asset, GltfFiles& files,
+                                                                      const Json& image, const std::string& path) {
+  using Found = std::optional<std::span<const std::uint8_t>>;
+  if (const Json* uri = image.find("uri")) {
+    auto opened = files.open(*uri->string());
+    if (!opened) return asset.error(opened.error().code, path + "/uri", opened.error().detail);
+    return Found(*opened);
+  }
+  const Json* view = image.find("bufferView");
+  if (view == nullptr) return Found{};
+  const auto index = static_cast<std::uint32_t>(view->index().value_or(0));
+  const GltfBufferView& v = asset.model.views[index];
+  if (v.length > 0 && asset.buffers[v.buffer].empty()) {
+    return asset.invalid(path + "/bufferView", "its buffer has no data");
+  }
+  return Found(asset.view_bytes(index));
+}
+
+Status carry_images(const GltfAsset& asset, GltfFiles& files, Json& document, Scene& scene) {
+  Json::Array out;
+  // Images that share their bytes share a blob, however their URIs are spelled; views that merely overlap do not, so
+  // what they add up to is bounded by the buffers they lie in (I11).
+  std::map<std::pair<const std::uint8_t*, std::size_t>, std::size_t> blob_of;
+  std::uint64_t view_bytes = 0;
+  std::uint64_t view_limit = std::uint64_t{1} << 20U;
+  for (const auto& buffer : asset.buffers) view_limit += buffer.size();
+  for (const Json& source : asset.root.items("images")) {
+    const std::string path = "/images/" + std::to_string(out.size());
+    auto found = find_image_bytes(asset, files, source, path);
+    if (!found) return found.error();
+    Json image = source;
+    image.erase("uri");
+    image.erase("bufferView");
+    if (!*found) {
+      scene.left_out.push_back({"image " + std::to_string(out.size()), "it names no bytes"});
+      out.push_back(std::move(image));
+      continue;
+    }
+    const std::span<const std::uint8_t> bytes = **found;
+    const auto [known, is_new] = blob_of.try_emplace({bytes.data(), bytes.size()}, scene.blobs.size());
+    if (is_new) {
+      if (source.find("uri") == nullptr) view_bytes += bytes.size();
+      if (view_bytes > view_limit) {
+        return asset.invalid(path, "images that overlap are larger than the buffers they lie in");
+      }
+      SceneBlob blob;
+      blob.kind = SceneBlob::Kind::kImage;
+      blob.name = image_name(source);
+      const Json* mime = source.find("mimeType");
+      blob.mime_type = mime != nullptr ? *mime->string() : std::string(sniff_mime(bytes));
+      blob.source_index = static_cast<std::uint32_t>(out.size());
+      blob.bytes.assign(bytes.begin(), bytes.end());
+      scene.blobs.push_back(std::move(blob));
+    }
+    const SceneBlob& blob = scene.blobs[known->second];
+    if (image.find("mimeType") == nullptr && !blob.mime_type.empty()) {
+      image.set("mimeType", Json::make_string(blob.mime_type));
+    }
+    if (image.find("name") == nullptr && !image_name(source).empty()) {
+      image.set("name", Json::make_string(image_name(source)));
+    }
+    image.set("blob", Json::make_index(known->second));
+    out.push_back(std::move(image));
+  }
+  if (!out.empty()) document.set("images", Json{std::move(out)});
+  return Ok{};
+}
+
+void carry_extension_names(const Json& root, Json& document) {
+  constexpr std::string_view kGone[] = {"KHR_draco_mesh_compression", "KHR_mesh_quantization",
+                                        "EXT_meshopt_compression", "EXT_mesh_gpu_instancing"};
+  for (const std::string_view key : {"extensionsUsed", "extensionsRequired"}) {
+    Json::Array kept;
+    for (const Json& name : root.items(key)) {
+      if (std::find(std::begin(kGone), std::end(kGone), *name.string()) == std::end(kGone)) kept.push_back(name);
+    }
+    if (!kept.empty()) document.set(key, Json{std::move(kept)});
+  }
+}
+
+void carry_nodes(const GltfAsset& asset, Json& document, Scene& scene) {
+  Json::Array nodes;
+  for (const Json& source : asset.root.items("nodes")) {
+    Json node = source;
+    node.erase("skin");
+    node.erase("weights");
+    drop_binary_extensions(node, "node " + std::to_string(nodes.size()), scene.left_out);
+    nodes.push_back(std::move(node));
+  }
+  if (!nodes.empty()) document.set("nodes", Json{std::move(nodes)});
+  Json::Array meshes;
+  for (const Json& source : asset.root.items("meshes")) {
+    Json mesh = Json::make_object();
+    for (const std::string_view key : {"name", "extras"}) {
+      if (const Json* member = source.find(key)) mesh.set(key, *member);
+    }
+    meshes.push_back(std::move(mesh));
+  }
+  if (!meshes.empty()) document.set("meshes", Json{std::move(meshes)});
+}
+
+}  // namespace
+
+Status carry_document(const GltfAsset& asset, GltfFiles& files, DecodeBudget& budget, Scene& scene) {
+  Json document = Json::make_object();
+  const auto copy = [&](std::string_view key) {
+    if (const Json* member = asset.root.find(key)) document.set(key, *member);
+  };
+  copy("asset");
+  carry_extension_names(asset.root, document);
+  copy("scene");
+  copy("scenes");
+  carry_nodes(asset, document, scene);
+  for (const std::string_view key : {"materials", "textures", "samplers", "cameras"}) copy(key);
+  if (auto status = carry_images(asset, files, document, scene); !status) return status;
+  if (auto status = carry_animations(asset, budget, document, scene); !status) return status;
+  copy("extensions");
+  copy("extras");
+  drop_binary_extensions(document, "root", scene.left_out);
+  scene.document = dump_json(document);
+  return Ok{};
+}
+
+}  // namespace meshlode

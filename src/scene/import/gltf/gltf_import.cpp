@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A glTF or GLB file, from bytes to a Scene: container, text, checks, buffers, geometry, and what travels unchanged.
+#include "scene/import/gltf/gltf_import.h"
+
+#include <cstring>
+#include <optional>
+#include <set>
+#include <string_view>
+
+#include "scene/import/gltf/check_base.h"
+#include "scene/import/gltf/primitive.h"
+
+namespace meshlode {
+
+namespace {
+
+struct Container {
+  std::string_view text;
+  std::optional<std::span<const std::uint8_t>> binary;
+};
+
+std::uint32_t load_u32(std::span<const std::uint8_t> bytes, std::size_t at) {
+  std::uint32_t value;
+  std::memcpy(&value, bytes.data() + at, 4);
+  return value;
+}
+
+std::string_view as_text(std::span<const std::uint8_t> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+/// GLB (glTF 2.0, section 4.4) or plain text. The binary chunk stays where it is mapped.
+Result<Container> open_container(const std::string& file, std::span<const std::uint8_t> bytes) {
+  const auto bad = [&](const std::string& place, std::string why) {
+    return Error{ErrorCode::kInvalid, file + ": " + place, std::move(why)};
+  };
+  if (bytes.size() < 4 || std::memcmp(bytes.data(), "glTF", 4) != 0) return Container{as_text(bytes), std::nullopt};
+  if (bytes.size() < 20) return bad("GLB header", "cut short");
+  const std::uint32_t version = load_u32(bytes, 4);
+  if (version != 2) {
+    return Error{ErrorCode::kUnsupported, file + ": GLB header",
+                 "version " + std::to_string(version) + " is not supported, only 2"};
+  }
+  const std::uint32_t length = load_u32(bytes, 8);
+  if (length > bytes.size() || length < 20) {
+    return bad("GLB header",
+               "its length of " + std::to_string(length) + " is not the file's " + std::to_string(bytes.size()));
+  }
+  bytes = bytes.first(length);
+  Container out;
+  std::size_t at = 12;
+  for (std::size_t chunk = 0; at < bytes.size(); ++chunk) {
+    const std::string place = "GLB chunk " + std::to_string(chunk);
+    if (bytes.size() - at < 8) return bad(place, "its header is cut short");
+    const std::uint32_t size = load_u32(bytes, at);
+    const std::uint32_t type = load_u32(bytes, at + 4);
+    at += 8;
+    if (size > bytes.size() - at) {
+      return bad(place, "its length of " + std::to_string(size) + " leaves the file");
+    }
+    const auto body = bytes.subspan(at, size);
+    constexpr std::uint32_t kJson = 0x4E4F534Au, kBin = 0x004E4942u;
+    if (chunk == 0 && type != kJson) return bad(place, "the first chunk is not JSON");
+    if (chunk == 0) out.text = as_text(body);
+    if (chunk == 1 && type == kBin) out.binary = body;  // other chunks are to be ignored
+    at += size;
+    // Chunks start at multiples of 4; a last chunk without its padding is common and harmless.
+    at = std::min(bytes.size(), (at + 3) / 4 * 4);
+  }
+  return out;
+}
+
+Status load_buffers(GltfAsset& asset, GltfFiles& files, const Container& container) {
+  const auto& buffers = asset.root.items("buffers");
+  for (std::size_t i = 0; i < buffers.size(); ++i) {
+    const std::string path = "/buffers/" + std::to_string(i);
+    std::span<const std::uint8_t> bytes;
+    const std::uint64_t length = index_or(buffers[i], "byteLength", 0);
+    if (const Json* uri = buffers[i].find("uri")) {
+      auto opened = files.open(*uri->string());
+      if (!opened) return asset.error(opened.error().code, path + "/uri", opened.error().detail);
+      bytes = *opened;
+    } else if (i == 0 && container.binary) {
+      bytes = *container.binary;
+    } else {
+      asset.buffers.emplace_back();  // a buffer that only an extension fills; to read from it is an error
+      continue;
+    }
+    if (bytes.size() < length) {
+      return asset.invalid(
+          path, "it has " + std::to_string(bytes.size()) + " bytes where byteLength says " + std::to_string(length));
+    }
+    asset.buffers.push_back(bytes.first(length));
+  }
+  return Ok{};
+}
+
+std::uint64_t count_draco_bytes(const GltfAsset& asset) {
+  std::set<std::uint64_t> views;
+  for (const Json& mesh : asset.root.items("meshes")) {
+    for (const Json& primitive : mesh.items("primitives")) {
+      const Json* extensions = primitive.find("extensions");
+      const Json* draco = extensions != nullptr ? extensions->find("KHR_draco_mesh_compression") : nullptr;
+      if (draco != nullptr) views.insert(index_or(*draco, "bufferView", 0));
+    }
+  }
+  std::uint64_t sum = 0;
+  for (const std::uint64_t view : views) sum += asset.model.views[view].length;
+  return sum;
+}
+
+Status read_meshes(const GltfAsset& asset, const ImportOptions& options, DecodeBudget& budget, Scene& scene) {
+  const PrimitiveContext context{&asset, &options, &budget, &scene.left_out};
+  bool needs_default_material = false;
+  const Json::Array& meshes = asset.root.items("meshes");  // looked up once: an object's members are a list
+  for (std::size_t m = 0; m < asset.model.meshes.size(); ++m) {
+    SourceMesh mesh;
+    mesh.name = asset.model.meshes[m].name;
+    bool has_targets = false;
+    std::set<std::string> extensions;
+    const Json::Array& primitives = meshes[m].items("primitives");
+    for (std::size_t p = 0; p < asset.model.meshes[m].primitives.size(); ++p) {
+      has_targets = has_targets || asset.model.meshes[m].primitives[p].target_count > 0;
+      const Json& json = primitives[p];
+      if (const Json* object = json.find("extensions")) {
+        for (const JsonMember& member : *object->object()) extensions.insert(pointer_part(member.key));
+      }
+      auto primitive = read_primitive(context, m, p, json, mesh.drops);
+      if (!primitive) return primitive.error();
+      if (!*primitive) continue;
+      needs_default_material = needs_default_material || !(*primitive)->material.is_valid();
+      mesh.primitives.push_back(std::move(**primitive));
+    }
+    const std::string what = "mesh " + std::to_string(m);
+    if (has_targets) scene.left_out.push_back({what + " morph targets", "only the base shape is built"});
+    extensions.erase("KHR_draco_mesh_compression");
+    for (const std::string& name : extensions) {
+      scene.left_out.push_back({what + " " + name, "an extension of primitives that is not kept"});
+    }
+    scene.meshes.push_back(std::move(mesh));
+  }
+  if (!needs_default_material) return Ok{};
+  const MaterialId default_material(scene.materials.size());
+  scene.materials.emplace_back();
+  for (SourceMesh& mesh : scene.meshes) {
+    for (Primitive& primitive : mesh.primitives) {
+      if (!primitive.material.is_valid()) primitive.material = default_material;
+    }
+  }
+  return Ok{};
+}
+
+}  // namespace
+
+Error GltfAsset::no_data(std::uint32_t view, const std::string& json_path) const {
+  const Json* extensions = root.items("bufferViews")[view].find("extensions");
+  if (extensions != nullptr && extensions->object() != nullptr && !extensions->object()->empty()) {
+    return error(ErrorCode::kUnsupported, json_path,
+                 "its buffer has no data: the bytes lie in " + pointer_part(extensions->object()->front().key) +
+                     ", an extension that is not read, though optional here");
+  }
+  return invalid(json_path, "its buffer has no data");
+}
+
+Result<Scene> import_gltf(const std::filesystem::path& path, std::span<const std::uint8_t> bytes,
+                          const ImportOptions& options) {
+  GltfAsset asset;
+  asset.file = path.string();
+  auto container = open_container(asset.file, bytes);
+  if (!container) return container.error();
+  std::string_view text = container->text;
+  while (!text.empty() && (text.back() == '\0' || text.back() == ' ')) text.remove_suffix(1);
+  auto root = parse_json(text);
+  if (!root) return Error{ErrorCode::kInvalid, asset.file, root.error().detail};
+  asset.root = std::move(*root);
+  if (auto status = check_gltf(asset.root, asset.file); !status) return status.error();
+
+  GltfFiles files(path.parent_path(), options.files_read);
+  files.hash(bytes);
+  if (auto status = load_buffers(asset, files, *container); !status) return status.error();
+  auto model = parse_gltf_model(asset.root);
+  if (!model) return Error{model.error().code, asset.file, model.error().detail};
+  asset.model = std::move(*model);
+
+  Scene scene;
+  DecodeBudget budget(bytes.size() + files.total_bytes(), count_draco_bytes(asset), options.max_decoded);
+  scene.materials = read_materials(asset, scene.left_out);
+  if (auto status = read_meshes(asset, options, budget, scene); !status) return status.error();
+  scene.instances = read_instances(asset, scene.left_out);
+  const std::size_t skin_count = asset.root.items("skins").size();
+  for (std::size_t s = 0; s < skin_count; ++s) {
+    scene.left_out.push_back({"skin " + std::to_string(s), "meshes are built static, in their bind pose"});
+  }
+  if (auto status = carry_document(asset, files, budget, scene); !status) return status.error();
+  scene.source_hash = files.hash_hex();
+  return scene;
+}
+
+}  // namespace meshlode

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The parts of the glTF import, in the order in which gltf_import.cpp calls them.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <vector>
+
+#include "scene/import/gltf/gltf.h"
+#include "scene/import/import.h"
+#include "scene/scene.h"
+
+namespace meshlode {
+
+/// `bytes` are the scene file's own. `path` names it in messages and gives the folder that URIs are relative to.
+[[nodiscard]] Result<Scene> import_gltf(const std::filesystem::path& path, std::span<const std::uint8_t> bytes,
+                                        const ImportOptions& options);
+
+/// One SceneMaterial per glTF material, in order. \pre the asset is checked
+[[nodiscard]] std::vector<SceneMaterial> read_materials(const GltfAsset& asset, std::vector<LeftOut>& left_out);
+
+/// The nodes that draw a mesh, depth first over the default scene. \pre the asset is checked: nodes form trees
+[[nodiscard]] std::vector<SceneInstance> read_instances(const GltfAsset& asset, std::vector<LeftOut>& left_out);
+
+/// Fills scene.document and scene.blobs with all that travels unchanged. Opens the images.
+[[nodiscard]] Status carry_document(const GltfAsset& asset, GltfFiles& files, DecodeBudget& budget, Scene& scene);
+
+/// The rigid animations of the document: fills `document`'s animations, accessors, bufferViews and buffers, and one
+/// blob with the bytes they need. What is not rigid node animation is left out and said so.
+[[nodiscard]] Status carry_animations(const GltfAsset& asset, DecodeBudget& budget, Json& document, Scene& scene);
+
+}  // namespace meshlode

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Nodes to instances: local transforms composed in doubles from the roots down (glTF 2.0, section 3.5.3).
+#include <cmath>
+
+#include "scene/import/gltf/gltf_import.h"
+
+namespace meshlode {
+
+namespace {
+
+Mat4d local_transform(const GltfNode& node) {
+  if (node.matrix.size() == 16) {
+    Mat4d m;
+    for (int c = 0; c < 4; ++c) {
+      for (int r = 0; r < 4; ++r) m[c][r] = node.matrix[static_cast<std::size_t>(4 * c + r)];
+    }
+    return m;
+  }
+  Mat4d m(1.0);
+  if (node.rotation.size() == 4) {
+    double x = node.rotation[0];
+    double y = node.rotation[1];
+    double z = node.rotation[2];
+    double w = node.rotation[3];
+    const double length = std::sqrt(x * x + y * y + z * z + w * w);
+    x /= length;
+    y /= length;
+    z /= length;
+    w /= length;
+    m[0] = {1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + z * w), 2.0 * (x * z - y * w), 0.0};
+    m[1] = {2.0 * (x * y - z * w), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + x * w), 0.0};
+    m[2] = {2.0 * (x * z + y * w), 2.0 * (y * z - x * w), 1.0 - 2.0 * (x * x + y * y), 0.0};
+  }
+  if (node.scale.size() == 3) {
+    for (int c = 0; c < 3; ++c) m[c] *= node.scale[static_cast<std::size_t>(c)];
+  }
+  if (node.translation.size() == 3) m[3] = {node.translation[0], node.translation[1], node.translation[2], 1.0};
+  return m;
+}
+
+}  // namespace
+
+std::vector<SceneInstance> read_instances(const GltfAsset& asset, std::vector<LeftOut>& left_out) {
+  const auto& nodes = asset.model.nodes;
+  const auto& scenes = asset.root.items("scenes");
+  std::vector<std::uint32_t> roots;
+  if (scenes.empty()) {
+    std::vector<bool> has_parent(nodes.size(), false);
+    for (const GltfNode& node : nodes) {
+      for (const std::uint32_t child : node.children) has_parent[child] = true;
+    }
+    for (std::uint32_t n = 0; n < nodes.size(); ++n) {
+      if (!has_parent[n]) roots.push_back(n);
+    }
+  } else {
+    const Json* chosen = asset.root.find("scene");
+    const std::uint64_t scene = chosen != nullptr ? chosen->index().value_or(0) : 0;
+    for (const Json& node : scenes[scene].items("nodes")) {
+      roots.push_back(static_cast<std::uint32_t>(node.index().value_or(0)));
+    }
+    if (scenes.size() > 1) {
+      left_out.push_back({"instances of " + std::to_string(scenes.size() - 1) + " other scenes",
+                          "only the default scene is instanced"});
+    }
+  }
+  std::vector<SceneInstance> out;
+  struct Visit {
+    std::uint32_t node;
+    Mat4d parent;
+  };
+  std::vector<Visit> stack;
+  for (auto root = roots.rbegin(); root != roots.rend(); ++root) stack.push_back({*root, Mat4d(1.0)});
+  while (!stack.empty()) {
+    const Visit visit = stack.back();
+    stack.pop_back();
+    const GltfNode& node = nodes[visit.node];
+    const Mat4d world = visit.parent * local_transform(node);
+    if (node.mesh != kNoIndex) out.push_back({node.name, visit.node, MeshId(node.mesh), world});
+    for (auto child = node.children.rbegin(); child != node.children.rend(); ++child) stack.push_back({*child, world});
+  }
+  return out;
+}
+
+}  // namespace meshlode

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The door: tells formats apart and hands the bytes to the one that knows them.
+#include "scene/import/import.h"
+
+#include <algorithm>
+#include <cctype>
+#include <new>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "base/file.h"
+#include "base/hash.h"
+#include "scene/import/gltf/gltf_import.h"
+#include "scene/import/polygons/polygon_soup.h"
+
+namespace meshlode {
+
+namespace {
+
+enum class Format { kGltf, kPly, kObj, kStl };
+
+std::string lower_extension(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); });
+  return extension;
+}
+
+/// By content where it is clear, else by extension.
+std::optional<Format> find_format(const std::filesystem::path& path, std::span<const std::uint8_t> bytes) {
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  if (text.starts_with("glTF")) return Format::kGltf;
+  if (text.starts_with("ply\n") || text.starts_with("ply\r\n")) return Format::kPly;
+  const std::string extension = lower_extension(path);
+  if (extension == ".gltf" || extension == ".glb") return Format::kGltf;
+  if (extension == ".ply") return Format::kPly;
+  if (extension == ".obj") return Format::kObj;
+  if (extension == ".stl") return Format::kStl;
+  const std::size_t first = text.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
+  if (first != std::string_view::npos && text[first] == '{') return Format::kGltf;
+  return std::nullopt;
+}
+
+/// One mesh, one default material, one instance.
+Result<Scene> import_polygons(Format format, const std::filesystem::path& path, std::span<const std::uint8_t> bytes,
+                              const ImportOptions& options) {
+  const auto named = [&](const Error& error) {
+    return Error{error.code, error.where.empty() ? path.string() : path.string() + ": " + error.where, error.detail};
+  };
+  auto checked = format == Format::kPly   ? check_ply(bytes, options)
+                 : format == Format::kObj ? check_obj(bytes, options)
+                                          : check_stl(bytes, options);
+  if (!checked) return named(checked.error());
+  auto soup = read_with_openmesh(*checked);
+  if (!soup) return named(soup.error());
+  Scene scene;
+  scene.left_out = std::move(checked->left_out);
+  SourceMesh mesh;
+  mesh.name = path.stem().string();
+  mesh.drops = checked->drops;
+  auto primitive = triangulate(std::move(*soup), options, mesh.drops, scene.left_out);
+  if (!primitive) return named(primitive.error());
+  primitive->material = MaterialId(0U);
+  if (primitive->indices.empty() && !primitive->positions.empty()) {
+    scene.left_out.push_back({"points", "the file has no faces"});
+  }
+  mesh.primitives.push_back(std::move(*primitive));
+  scene.materials.emplace_back();
+  scene.instances.push_back({mesh.name, 0, MeshId(0U), Mat4d(1.0)});
+  scene.meshes.push_back(std::move(mesh));
+  scene.source_hash = to_hex(hash128(bytes));
+  return scene;
+}
+
+}  // namespace
+
+Result<Scene> import_scene(const std::filesystem::path& path, const ImportOptions& options) {
+  try {
+    auto file = MappedFile::open(path);
+    if (!file) return file.error();
+    if (options.files_read != nullptr) options.files_read->push_back(file->id());
+    const auto bytes = file->bytes();
+    const auto format = find_format(path, bytes);
+    if (!format) {
+      return Error{ErrorCode::kUnsupported, path.string(), "not glTF, GLB, PLY, OBJ or STL, by content or extension"};
+    }
+    auto scene =
+        *format == Format::kGltf ? import_gltf(path, bytes, options) : import_polygons(*format, path, bytes, options);
+    if (scene) scene->source_name = path.filename().string();
+    return scene;
+  } catch (const std::bad_alloc&) {
+    return Error{ErrorCode::kBuildFailed, path.string(), "out of memory"};
+  } catch (const std::exception& error) {
+    return Error{ErrorCode::kInvalid, path.string(), error.what()};
+  }
+}
+
+}  // namespace meshlode

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Import: a file on disk becomes a validated Scene, or one error that names file, JSON path and reason.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include <meshlode/result.h>
+
+#include "base/file.h"
+#include "scene/scene.h"
+
+namespace meshlode {
+
+struct ImportOptions {
+  bool repair = false;  ///< drop (and count) triangles that touch non-finite positions or indices out of range
+  std::vector<FileId>* files_read = nullptr;  ///< gets every file that was opened, also where the import fails
+  /// Bytes of indices and vertices that compressed geometry may take beyond what its own size justifies.
+  std::uint64_t max_decoded = std::uint64_t{512} << 20U;
+};
+
+/// Reads .gltf, .glb, .ply, .obj or .stl (told apart by content where possible, else by extension).
+/// Errors: kIo the file (or one it refers to) cannot be read; kInvalid it breaks its format; kUnsupported it requires a
+/// geometry extension that is not known.
+[[nodiscard]] Result<Scene> import_scene(const std::filesystem::path& path, const ImportOptions& options);
+
+}  // namespace meshlode

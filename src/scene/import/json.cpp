@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The one file of this room that sees nlohmann-json. Its SAX parser keeps no stack of its own frames, so depth is
+// bounded here and a deep document cannot overflow ours when the tree is destroyed.
+#include "scene/import/json.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+namespace meshlode {
+
+namespace {
+
+const Json::Array kNoItems;
+
+bool has_duplicate_keys(const Json::Object& object) {
+  if (object.size() < 2) return false;
+  std::vector<std::string_view> keys;
+  keys.reserve(object.size());
+  for (const JsonMember& member : object) keys.push_back(member.key);
+  std::sort(keys.begin(), keys.end());
+  return std::adjacent_find(keys.begin(), keys.end()) != keys.end();
+}
+
+/// Receives the parser's events and builds the tree.
+class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
+ public:
+  bool null() override { return put(Json{}) != nullptr; }
+  bool boolean(bool flag) override { return put(Json{flag}) != nullptr; }
+  bool number_integer(number_integer_t n) override { return put(Json{std::int64_t{n}}) != nullptr; }
+  bool number_unsigned(number_unsigned_t n) override { return put(Json{std::uint64_t{n}}) != nullptr; }
+  bool number_float(number_float_t n, const string_t&) override { return put(Json{n}) != nullptr; }
+  bool string(string_t& text) override { return put(Json{std::move(text)}) != nullptr; }
+  bool binary(binary_t&) override { return false; }
+  bool start_object(std::size_t) override { return open(Json::make_object()); }
+  bool start_array(std::size_t) override { return open(Json::make_array()); }
+  bool key(string_t& name) override {
+    key_ = std::move(name);
+    return true;
+  }
+  bool end_object() override {
+    const bool duplicate = has_duplicate_keys(*open_.back()->object());
+    open_.pop_back();
+    if (duplicate) problem = "an object has the same key twice";
+    return !duplicate;
+  }
+  bool end_array() override {
+    open_.pop_back();
+    return true;
+  }
+  bool parse_error(std::size_t position, const std::string&, const nlohmann::json::exception& error) override {
+    std::string text = error.what();
+    // "[json.exception.parse_error.101] parse error at line 1, column 2: …": the bracket says nothing to a user.
+    if (const std::size_t end = text.find("] "); end != std::string::npos) text.erase(0, end + 2);
+    for (char& c : text) {
+      if (static_cast<unsigned char>(c) < 0x20) c = ' ';
+    }
+    problem = "not JSON at byte " + std::to_string(position) + ": " + text;
+    return false;
+  }
+
+  Json root;
+  std::string problem;
+
+ private:
+  Json* put(Json value) {
+    if (open_.empty()) {
+      root = std::move(value);
+      return &root;
+    }
+    if (auto* array = std::get_if<Json::Array>(&open_.back()->value)) {
+      array->push_back(std::move(value));
+      return &array->back();
+    }
+    auto& object = std::get<Json::Object>(open_.back()->value);
+    object.push_back({std::exchange(key_, {}), std::move(value)});
+    return &object.back().value;
+  }
+  bool open(Json value) {
+    if (open_.size() >= kMaxJsonDepth) {
+      problem = "values nested deeper than " + std::to_string(kMaxJsonDepth);
+      return false;
+    }
+    // A container's address is stable while it is open: only the innermost one grows.
+    open_.push_back(put(std::move(value)));
+    return true;
+  }
+
+  std::vector<Json*> open_;
+  std::string key_;
+};
+
+nlohmann::ordered_json to_nlohmann(const Json& json) {
+  if (const auto* array = json.array()) {
+    nlohmann::ordered_json out = nlohmann::ordered_json::array();
+    for (const Json& item : *array) out.push_back(to_nlohmann(item));
+    return out;
+  }
+  if (const auto* object = json.object()) {
+    nlohmann::ordered_json out = nlohmann::ordered_json::object();
+    // The vector behind ordered_json is searched on operator[]; keys are unique here, so append.
+    auto& members = out.get_ref<nlohmann::ordered_json::object_t&>();
+    for (const JsonMember& member : *object) {
+      members.std::vector<nlohmann::ordered_json::object_t::value_type>::emplace_back(member.key,
+                                                                                      to_nlohmann(member.value));
+    }
+    return out;
+  }
+  if (const auto* text = json.string()) return *text;
+  if (const auto* flag = std::get_if<bool>(&json.value)) return *flag;
+  if (const auto* n = std::get_if<std::int64_t>(&json.value)) return *n;
+  if (const auto* u = std::get_if<std::uint64_t>(&json.value)) return *u;
+  if (const auto* d = std::get_if<double>(&json.value)) return *d;
+  return nullptr;
+}
+
+}  // namespace
+
+bool Json::is_number() const {
+  return std::holds_alternative<std::int64_t>(value) || std::holds_alternative<std::uint64_t>(value) ||
+         std::holds_alternative<double>(value);
+}
+
+const Json* Json::find(std::string_view key) const {
+  const Object* members = object();
+  if (members == nullptr) return nullptr;
+  for (const JsonMember& member : *members) {
+    if (member.key == key) return &member.value;
+  }
+  return nullptr;
+}
+
+Json* Json::find(std::string_view key) {
+  return const_cast<Json*>(std::as_const(*this).find(key));
+}
+
+const Json::Array& Json::items(std::string_view key) const {
+  const Json* member = find(key);
+  const Array* array = member != nullptr ? member->array() : nullptr;
+  return array != nullptr ? *array : kNoItems;
+}
+
+std::optional<double> Json::number() const {
+  if (const auto* d = std::get_if<double>(&value)) return *d;
+  if (const auto* n = std::get_if<std::int64_t>(&value)) return static_cast<double>(*n);
+  if (const auto* u = std::get_if<std::uint64_t>(&value)) return static_cast<double>(*u);
+  return std::nullopt;
+}
+
+std::optional<std::uint64_t> Json::index() const {
+  constexpr std::uint64_t kLimit = std::uint64_t{1} << 53;
+  if (const auto* u = std::get_if<std::uint64_t>(&value)) {
+    if (*u <= kLimit) return *u;
+  } else if (const auto* n = std::get_if<std::int64_t>(&value)) {
+    if (*n >= 0 && static_cast<std::uint64_t>(*n) <= kLimit) return static_cast<std::uint64_t>(*n);
+  } else if (const auto* d = std::get_if<double>(&value)) {
+    if (*d >= 0.0 && *d <= 9007199254740992.0 && std::floor(*d) == *d) return static_cast<std::uint64_t>(*d);
+  }
+  return std::nullopt;
+}
+
+void Json::set(std::string_view key, Json member) {
+  if (Json* old = find(key)) {
+    *old = std::move(member);
+  } else {
+    std::get<Object>(value).push_back({std::string(key), std::move(member)});
+  }
+}
+
+void Json::erase(std::string_view key) {
+  if (auto* members = std::get_if<Object>(&value)) {
+    members->erase(std::remove_if(members->begin(), members->end(), [&](const JsonMember& m) { return m.key == key; }),
+                   members->end());
+  }
+}
+
+void Json::erase_all(const std::vector<std::string>& keys) {
+  if (auto* members = std::get_if<Object>(&value)) {
+    std::erase_if(*members, [&](const JsonMember& m) { return std::binary_search(keys.begin(), keys.end(), m.key); });
+  }
+}
+
+Json Json::make_object() {
+  return Json{Object{}};
+}
+Json Json::make_array() {
+  return Json{Array{}};
+}
+Json Json::make_index(std::uint64_t index) {
+  return Json{index};
+}
+Json Json::make_string(std::string text) {
+  return Json{std::move(text)};
+}
+Json Json::make_number(double number) {
+  return Json{number};
+}
+Json Json::make_bool(bool flag) {
+  return Json{flag};
+}
+
+Result<Json> parse_json(std::string_view text) {
+  TreeBuilder builder;
+  try {
+    if (nlohmann::json::sax_parse(text.begin(), text.end(), &builder)) return std::move(builder.root);
+  } catch (const std::exception& error) {
+    builder.problem = error.what();
+  }
+  if (builder.problem.empty()) builder.problem = "not JSON";
+  return Error{ErrorCode::kInvalid, "", builder.problem};
+}
+
+std::string dump_json(const Json& json) {
+  return to_nlohmann(json).dump();
+}
+
+}  // namespace meshlode

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The small city of data/: meshes of two materials each, drawn many times under all kinds of transforms.
+#pragma once
+
+#include "scene/samples/write_glb.h"
+
+namespace meshlode::samples {
+
+[[nodiscard]] GlbScene make_city(std::uint64_t seed = 17);
+
+}  // namespace meshlode::samples

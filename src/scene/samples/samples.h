@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Samples: the project's own scenes and hard cases, made from nothing. Bytes are the same with every compiler: only
+// + - * / sqrt and floor are used (scene/samples/noise.h has the turns and the random numbers).
+//
+// Shapes are counter-clockwise seen from outside. Where nothing else is said they have positions and indices only, and
+// vertices are shared (a closed shape is closed by index as well as by position).
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace meshlode::samples {
+
+// -------------------------------------------------------------------------------------------- shapes of any resolution
+
+/// A closed sphere: a cube of `n` x `n` cells a face, projected. 12·n² triangles, 6·n² + 2 vertices. \pre n >= 1
+[[nodiscard]] Primitive make_sphere(std::uint32_t n, double radius = 1.0);
+/// A closed cube of `n` x `n` cells a face, from -half to +half. 12·n² triangles. \pre n >= 1
+[[nodiscard]] Primitive make_cube(std::uint32_t n, double half = 1.0);
+/// A closed torus around the y axis. 2·major·minor triangles. \pre major, minor >= 3
+[[nodiscard]] Primitive make_torus(std::uint32_t major, std::uint32_t minor, double radius = 1.0, double tube = 0.35);
+/// A flat square in the xz plane, facing +y, from -half to +half. 2·n² triangles. \pre n >= 1
+[[nodiscard]] Primitive make_plane(std::uint32_t n, double half = 1.0);
+
+// ---------------------------------------------------------------------------------------------------------- hard cases
+
+/// `count` closed boxes of random size and place that share nothing. 12 triangles each.
+[[nodiscard]] Primitive make_box_soup(std::uint32_t count, std::uint64_t seed = 1);
+/// `count` pieces of one to three triangles that share nothing.
+[[nodiscard]] Primitive make_loose_pieces(std::uint32_t count, std::uint64_t seed = 1);
+/// A closed blade, 2 x 1 and `thickness` thin, of `n` cells along each side of its two faces. \pre n >= 1
+[[nodiscard]] Primitive make_blade(std::uint32_t n, double thickness = 1e-4);
+/// Three sheets of `n` x `n` cells that share one border edge line. \pre n >= 1
+[[nodiscard]] Primitive make_three_sheets(std::uint32_t n);
+/// Two cones that touch in one vertex, their tip. \pre segments >= 3
+[[nodiscard]] Primitive make_double_cone(std::uint32_t segments);
+/// A strip of `count` triangles that are `aspect` times as long as wide. \pre count >= 1
+[[nodiscard]] Primitive make_slivers(std::uint32_t count, double aspect = 1e5);
+/// A sphere in which every third triangle is there twice, the second time with its corners rotated.
+[[nodiscard]] Primitive make_duplicates(std::uint32_t n);
+/// A sphere with one zero-area triangle for every tenth triangle: repeated corners, equal positions and collinear ones.
+[[nodiscard]] Primitive make_zero_areas(std::uint32_t n);
+/// A Moebius strip: not orientable, one border. \pre n >= 3, m >= 1
+[[nodiscard]] Primitive make_moebius(std::uint32_t n, std::uint32_t m);
+/// A plane of `n` x `n` cells 1 wide, with bumps of 1e-3, a million units away from the origin on every axis.
+[[nodiscard]] Primitive make_far_plane(std::uint32_t n);
+/// The same shape with every position multiplied.
+[[nodiscard]] Primitive scaled(Primitive shape, double factor);
+/// The same shape with a vertex of its own for every corner and the triangle's normal in it: every edge is a crease.
+[[nodiscard]] Primitive with_split_normals(const Primitive& shape);
+/// The same shape with area-weighted vertex normals. \pre vertices are shared where the surface is smooth
+[[nodiscard]] Primitive with_smooth_normals(Primitive shape);
+/// One mesh of one primitive.
+[[nodiscard]] SourceMesh as_mesh(Primitive shape, std::string name = "sample");
+/// A scene of one mesh, one instance and the default material: what import would hand on.
+[[nodiscard]] Scene as_scene(SourceMesh mesh);
+
+// --------------------------------------------------------------------------------------------- the surfaces of data/
+
+/// A closed displaced sphere with smooth normals and six UV charts, so that every cube edge is a seam. 12·n² triangles.
+[[nodiscard]] Primitive make_rock(std::uint32_t n, std::uint64_t seed = 7);
+/// An open height field of `columns` x `rows` cells in the xz plane with normals and UVs. 2·columns·rows triangles.
+[[nodiscard]] Primitive make_terrain(std::uint32_t columns, std::uint32_t rows, std::uint64_t seed = 11);
+/// Closed six-sided crystals through one centre; every facet has its own normals. `n` cells along each short edge.
+[[nodiscard]] Primitive make_crystal(std::uint32_t crystals, std::uint32_t n, std::uint64_t seed = 3);
+/// `count` loose quads, leaf cards, with normals and UVs.
+[[nodiscard]] Primitive make_foliage(std::uint32_t count, std::uint64_t seed = 5);
+
+// --------------------------------------------------------------------------------------------------- the files of
+// data/
+
+struct SampleFile {
+  std::string name;                 ///< for example "rock.glb"
+  std::vector<std::uint8_t> bytes;  ///< a GLB
+};
+
+/// The names of data/, in order.
+[[nodiscard]] std::vector<std::string> sample_names();
+/// The bytes of one of them. \pre name is one of sample_names()
+[[nodiscard]] SampleFile make_sample_file(const std::string& name);
+/// A terrain of about `triangles` triangles, for benchmarks. \pre 2 <= triangles <= 100,000,000
+[[nodiscard]] SampleFile make_terrain_file(std::uint64_t triangles);
+
+}  // namespace meshlode::samples

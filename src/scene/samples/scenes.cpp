@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The files of data/.
+#include <array>
+#include <cassert>
+#include <cmath>
+
+#include "scene/samples/city.h"
+#include "scene/samples/write_glb.h"
+#include "scene/samples/write_png.h"
+#include "scene/samples/samples.h"
+
+namespace meshlode::samples {
+
+namespace {
+
+/// One mesh, one material, one node.
+GlbScene scene_of(const char* name, Primitive shape, GlbMaterial material) {
+  GlbScene scene;
+  scene.name = name;
+  material.name = name;
+  shape.material = MaterialId(0u);
+  scene.materials.push_back(std::move(material));
+  GlbMesh mesh;
+  mesh.name = name;
+  mesh.primitives.push_back(std::move(shape));
+  scene.meshes.push_back(std::move(mesh));
+  GlbNode node;
+  node.name = name;
+  node.mesh = 0u;
+  scene.nodes.push_back(std::move(node));
+  scene.roots.push_back(0);
+  return scene;
+}
+
+GlbScene textured_scene_of(const char* name, Primitive shape, GlbMaterial material, const Texture& texture) {
+  material.base_color_image = 0u;
+  GlbScene scene = scene_of(name, std::move(shape), std::move(material));
+  scene.images.push_back({name, encode_png(texture)});
+  return scene;
+}
+
+GlbScene make_rock_scene() {
+  return textured_scene_of("rock", make_rock(41), {}, make_stone_texture(128));
+}
+
+GlbScene make_terrain_scene(std::uint32_t columns, std::uint32_t rows) {
+  return textured_scene_of("terrain", make_terrain(columns, rows), {}, make_ground_texture(128));
+}
+
+GlbScene make_crystal_scene() {
+  GlbMaterial material;
+  material.base_color = {0.45F, 0.62F, 0.85F, 1.0F};
+  material.roughness = 0.2;
+  return scene_of("crystal", make_crystal(9, 8), material);
+}
+
+GlbScene make_foliage_scene() {
+  GlbMaterial material;
+  material.is_masked = true;
+  material.double_sided = true;
+  GlbScene scene = textured_scene_of("foliage", make_foliage(4000), material, make_leaf_texture(64));
+  scene.meshes[0].quantize = true;
+  return scene;
+}
+
+struct NamedScene {
+  const char* name;
+  GlbScene (*make)();
+};
+
+constexpr std::array<NamedScene, 5> kScenes{{
+    {"rock.glb", make_rock_scene},
+    {"terrain.glb", [] { return make_terrain_scene(142, 142); }},
+    {"crystal.glb", make_crystal_scene},
+    {"foliage.glb", make_foliage_scene},
+    {"city.glb", [] { return make_city(); }},
+}};
+
+}  // namespace
+
+std::vector<std::string> sample_names() {
+  std::vector<std::string> names;
+  for (const NamedScene& scene : kScenes) names.emplace_back(scene.name);
+  return names;
+}
+
+SampleFile make_sample_file(const std::string& name) {
+  for (const NamedScene& scene : kScenes) {
+    if (name == scene.name) return {name, write_glb(scene.make())};
+  }
+  assert(false && "the name of a sample");
+  return {};
+}
+
+SampleFile make_terrain_file(std::uint64_t triangles) {
+  assert(triangles >= 2 && triangles <= 100'000'000);
+  const auto side = static_cast<std::uint32_t>(std::floor(std::sqrt(static_cast<double>(triangles) / 2.0) + 0.5));
+  const std::uint32_t cells = side < 1 ? 1 : side;
+  return {"terrain-" + std::to_string(triangles) + ".glb", write_glb(make_terrain_scene(cells, cells))};
+}
+
+}  // namespace meshlode::samples

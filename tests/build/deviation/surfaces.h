@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Surfaces to measure, and the judge's metrics as the oracle.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "build/deviation/deviation.h"
+#include "judge/metrics/metrics.h"
+#include "scene/samples/samples.h"
+#include "support/random.h"
+
+namespace meshlode::test {
+
+inline Surface as_surface(const Primitive& shape) {
+  Surface surface;
+  surface.positions = shape.positions;
+  for (std::size_t i = 0; i + 2 < shape.indices.size(); i += 3) {
+    surface.triangles.push_back({shape.indices[i], shape.indices[i + 1], shape.indices[i + 2]});
+  }
+  return surface;
+}
+
+inline Surface transformed(Surface surface, double factor, const Vec3d& offset) {
+  for (Vec3d& p : surface.positions) p = p * factor + offset;
+  return surface;
+}
+
+inline GroupSurface as_group(const Surface& surface) {
+  return {surface.positions, surface.triangles};
+}
+
+/// `coarse` as the one group of level 1 over all of `fine`.
+inline GroupDeviation measure_one_step(const Surface& fine, const Surface& coarse, DeviationTierOptions options = {}) {
+  const SourceTree source(fine.positions, fine.triangles);
+  options.finer = as_group(fine);
+  return measure_group(source, as_group(coarse), initial_samples(source), options);
+}
+
+/// The larger of the two maxima over dense samples and all vertices.
+inline double dense_truth(const Surface& a, const Surface& b, std::uint64_t samples = 20000) {
+  return measure_deviation(a, b, {.samples = samples}).max();
+}
+
+inline Surface random_soup(Random& random, std::uint32_t count, double size, double edge) {
+  Surface surface;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const Vec3d at(random.signed_unit() * size, random.signed_unit() * size, random.signed_unit() * size);
+    for (int k = 0; k < 3; ++k) {
+      surface.positions.push_back(at + edge * Vec3d(random.signed_unit(), random.signed_unit(), random.signed_unit()));
+    }
+    surface.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  return surface;
+}
+
+}  // namespace meshlode::test

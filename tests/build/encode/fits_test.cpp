@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Fits are exact to undo, whatever the values, and take out what is affine.
+#include "build/encode/fits.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <meshlode/format.h>
+
+#include "support/random.h"
+
+namespace meshlode {
+namespace {
+
+using Position = std::array<std::int32_t, 3>;
+
+/// docs/format.md, 13, in 64 bits: nothing may have wrapped.
+void expect_undone(const std::vector<Position>& positions, const PositionFit& fit) {
+  const std::size_t u = fit.axis == 0 ? 1 : 0;
+  const std::size_t v = fit.axis == 2 ? 1 : 2;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      ASSERT_LT(std::uint64_t{fit.raw[i][axis]}, std::uint64_t{1} << fit.range[axis].bits);
+      std::int64_t value = std::int64_t{fit.range[axis].minimum} + fit.raw[i][axis];
+      if (axis == fit.axis) {
+        value += (std::int64_t{fit.slope[0]} * fit.raw[i][u] + std::int64_t{fit.slope[1]} * fit.raw[i][v]) >>
+                 format::kShearShift;
+      }
+      ASSERT_EQ(value, positions[i][axis]);
+    }
+  }
+  for (const ValueRange& range : fit.range) {
+    EXPECT_LE(range.bits, 24U);
+    EXPECT_LT(std::abs(std::int64_t{range.minimum}), 1 << 23);
+  }
+}
+
+void expect_undone(const std::vector<std::int32_t>& values, const std::vector<RawPosition>& positions,
+                   const UvFit& fit) {
+  ASSERT_LE(fit.range.bits, 25U);
+  ASSERT_LT(fit.shift, 32U);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    std::uint32_t sum = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      ASSERT_LE(std::abs(fit.slope[k]), 511);
+      sum += static_cast<std::uint32_t>(fit.slope[k]) * positions[i][k];
+    }
+    const std::int32_t fitted = fit.has_slope ? static_cast<std::int32_t>(sum) >> fit.shift : 0;
+    ASSERT_EQ(static_cast<std::int32_t>(static_cast<std::uint32_t>(fit.range.minimum) + fit.residual[i] +
+                                        static_cast<std::uint32_t>(fitted)),
+              values[i]);
+  }
+}
+
+TEST(Fits, APlaneLosesAnAxis) {
+  std::vector<Position> plane;
+  for (int x = 0; x < 10; ++x) {
+    for (int y = 0; y < 10; ++y) plane.push_back({100 * x - 17, 100 * y + 5, (100 * x * 3 + 100 * y * 5) / 8 + 1000});
+  }
+  const PositionFit fit = fit_positions(plane);
+  expect_undone(plane, fit);
+  EXPECT_LE(fit.range[fit.axis].bits, 3U);
+}
+
+TEST(Fits, AnyPositionsComeBack) {
+  test::Random random(31);
+  for (int round = 0; round < 400; ++round) {
+    std::vector<Position> positions;
+    const auto count = 1 + random.below(256);
+    const auto size = 1 + random.below(std::uint64_t{1} << random.below(24));
+    const auto offset = static_cast<std::int32_t>(random.below(1 << 23)) - (1 << 22);
+    for (std::uint64_t i = 0; i < count; ++i) {
+      Position p{};
+      for (std::int32_t& c : p) {
+        c = std::clamp(offset + static_cast<std::int32_t>(random.below(size)), -8388607, 8388607);
+      }
+      if (round % 3 == 0) p[2] = p[0] / 3 - p[1] / 5;
+      if (round % 7 == 0) p[1] = 8388607;
+      positions.push_back(p);
+    }
+    expect_undone(positions, fit_positions(positions));
+  }
+}
+
+TEST(Fits, ExtremePositionsComeBack) {
+  constexpr std::int32_t kMost = (1 << 23) - 1;
+  const std::vector<Position> corners{{-kMost, -kMost, -kMost}, {kMost, kMost, kMost}, {kMost, -kMost, kMost},
+                                      {-kMost, kMost, -kMost}};
+  expect_undone(corners, fit_positions(corners));
+  const std::vector<Position> one{{kMost, -kMost, 0}};
+  expect_undone(one, fit_positions(one));
+  EXPECT_EQ(fit_positions(one).range[0].bits, 0U);
+}
+
+TEST(Fits, AnAffineMapLeavesNextToNothing) {
+  test::Random random(37);
+  std::vector<RawPosition> positions;
+  std::vector<std::int32_t> values;
+  for (int i = 0; i < 100; ++i) {
+    const RawPosition p{static_cast<std::uint32_t>(random.below(100)), static_cast<std::uint32_t>(random.below(100)),
+                        static_cast<std::uint32_t>(random.below(4))};
+    positions.push_back(p);
+    values.push_back(static_cast<std::int32_t>(5 * p[0]) - static_cast<std::int32_t>(7 * p[1]) + 12345);
+  }
+  const UvFit fit = fit_uv(values, positions, true);
+  expect_undone(values, positions, fit);
+  EXPECT_TRUE(fit.has_slope);
+  EXPECT_LE(fit.range.bits, 2U);
+  EXPECT_FALSE(fit_uv(values, positions, false).has_slope);
+}
+
+TEST(Fits, AnyCoordinatesComeBack) {
+  test::Random random(41);
+  for (int round = 0; round < 400; ++round) {
+    const auto count = 1 + random.below(256);
+    const auto value_size = 1 + random.below(std::uint64_t{1} << random.below(25));
+    std::array<std::uint64_t, 3> size{};
+    for (std::uint64_t& s : size) s = 1 + random.below(std::uint64_t{1} << random.below(25));
+    std::vector<RawPosition> positions;
+    std::vector<std::int32_t> values;
+    for (std::uint64_t i = 0; i < count; ++i) {
+      RawPosition p{};
+      for (std::size_t k = 0; k < 3; ++k) p[k] = static_cast<std::uint32_t>(random.below(size[k]));
+      positions.push_back(p);
+      auto value = static_cast<std::int32_t>(random.below(value_size)) - static_cast<std::int32_t>(value_size / 2);
+      // A slope far above what a coefficient holds, and one that products wrap with.
+      if (round % 4 == 0) value = std::clamp(static_cast<std::int32_t>(p[0] % 10000) * 900, -16777215, 16777215);
+      values.push_back(value);
+    }
+    expect_undone(values, positions, fit_uv(values, positions, true));
+  }
+}
+
+}  // namespace
+}  // namespace meshlode

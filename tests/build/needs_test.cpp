@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a build needs, known before it: counts within 32 bits, and memory, held against what builds in children took.
+#include "build/needs.h"
+
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#if defined(__SANITIZE_ADDRESS__)
+#define MESHLODE_SANITIZED 1
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define MESHLODE_SANITIZED 1
+#endif
+#endif
+
+namespace meshlode {
+namespace {
+
+TEST(Needs, CountsBeyondWhatIdsHoldAreRefusedInOneLine) {
+  EXPECT_TRUE(check_mesh_counts({kMaxMeshTriangles, kMaxMeshVertices}, "mesh 0"));
+  const Status triangles = check_mesh_counts({kMaxMeshTriangles + 1, 3}, "mesh 7 'scan'");
+  ASSERT_FALSE(triangles);
+  EXPECT_EQ(triangles.error().code, ErrorCode::kUnsupported);
+  EXPECT_EQ(triangles.error().message(), "mesh 7 'scan': 214000001 triangles, at most 214000000 are built into one mesh: split it");
+  EXPECT_FALSE(check_mesh_counts({1, kMaxMeshVertices + 1}, "mesh 0"));
+  EXPECT_FALSE(check_mesh_counts({UINT64_MAX, UINT64_MAX}, "mesh 0")) << "no product wraps";
+  // All levels together, in corners, and the corners of the source.
+  EXPECT_LT(static_cast<double>(kMaxMeshTriangles) * 3.0 / (1.0 - 0.85), std::exp2(32));
+}
+
+TEST(Needs, FlatNormalsBesideOthersMakeAVertexOfEachCorner) {
+  SourceMesh mesh;
+  mesh.primitives.resize(2);
+  mesh.primitives[0].positions.resize(4);
+  mesh.primitives[0].indices = {0, 1, 2, 0, 2, 3};
+  mesh.primitives[1] = mesh.primitives[0];
+  EXPECT_EQ(count_mesh(mesh).triangles, 4u);
+  EXPECT_EQ(count_mesh(mesh).vertices, 8u);
+  mesh.primitives[0].normals.resize(4);
+  EXPECT_EQ(count_mesh(mesh).vertices, 10u);
+}
+
+TEST(Needs, MoreThanIsAllowedIsRefusedAndNamesBoth) {
+  PipelineOptions options;
+  options.max_memory = std::uint64_t{100} << 20u;
+  EXPECT_TRUE(check_memory(options.max_memory, options));
+  const Status refused = check_memory(options.max_memory + 1, options);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::kBuildFailed);
+  EXPECT_EQ(refused.error().detail, "the build needs about 100.1MiB of memory, 100MiB are allowed by --max-memory");
+  options.max_memory = 0;
+  EXPECT_TRUE(check_memory(1, options));
+  const Status machine = check_memory(std::uint64_t{1} << 60u, options);
+  ASSERT_FALSE(machine);
+  EXPECT_NE(machine.error().detail.find("are available"), std::string::npos) << machine.error().detail;
+}
+
+/// A wavy sheet of 2 · n² triangles, `count` times.
+Scene sheets(std::uint32_t n, std::size_t count, bool has_attributes) {
+  Scene scene;
+  scene.materials.resize(1);
+  scene.materials[0].uv_sets_used = has_attributes ? 1 : 0;
+  Primitive sheet;
+  for (std::uint32_t j = 0; j <= n; ++j) {
+    for (std::uint32_t i = 0; i <= n; ++i) {
+      const double x = static_cast<double>(i) / n, y = static_cast<double>(j) / n;
+      sheet.positions.emplace_back(x, y, 0.03 * std::sin(40.0 * x) * std::cos(31.0 * y) + 0.002 * ((i * 7 + j * 13) % 5));
+      if (!has_attributes) continue;
+      sheet.uvs[0].emplace_back(static_cast<float>(x), static_cast<float>(y));
+      sheet.normals.emplace_back(0.0F, static_cast<float>(std::sin(x)), static_cast<float>(std::cos(x)));
+      sheet.colors.emplace_back(static_cast<float>(x), 0.5F, static_cast<float>(y), 1.0F);
+    }
+  }
+  for (std::uint32_t j = 0; j < n; ++j) {
+    for (std::uint32_t i = 0; i < n; ++i) {
+      const std::uint32_t q = j * (n + 1) + i;
+      for (const std::uint32_t corner : {q, q + 1, q + n + 2, q, q + n + 2, q + n + 1}) sheet.indices.push_back(corner);
+    }
+  }
+  sheet.material = MaterialId(0U);
+  SourceMesh mesh;
+  mesh.primitives.push_back(std::move(sheet));
+  scene.meshes.assign(count, mesh);
+  return scene;
+}
+
+/// Triangles that share nothing.
+Scene loose(std::uint32_t count) {
+  Scene scene = sheets(1, 1, false);
+  Primitive& primitive = scene.meshes[0].primitives[0];
+  primitive.positions.clear();
+  primitive.indices.clear();
+  for (std::uint32_t i = 0; i < 3 * count; ++i) {
+    const double t = i / 3;
+    primitive.positions.emplace_back(std::sin(t) + 0.05 * std::sin(7.0 * i), std::cos(1.7 * t) + 0.05 * std::cos(5.0 * i),
+                                     std::sin(0.3 * t) + 0.05 * std::sin(3.0 * i));
+    primitive.indices.push_back(i);
+  }
+  return scene;
+}
+
+/// The same surface with a vertex for each corner.
+Scene unshared(Scene scene) {
+  for (SourceMesh& mesh : scene.meshes) {
+    for (Primitive& primitive : mesh.primitives) {
+      std::vector<Vec3d> positions;
+      for (std::uint32_t& index : primitive.indices) {
+        positions.push_back(primitive.positions[index]);
+        index = static_cast<std::uint32_t>(positions.size() - 1);
+      }
+      primitive.positions = std::move(positions);
+    }
+  }
+  return scene;
+}
+
+struct Measured {
+  std::uint64_t estimate = 0, peak = 0;  ///< bytes
+};
+
+/// The scene made and built in a child of its own, so that its peak is nobody else's.
+template <class MakeScene>
+Measured measure(const MakeScene& make_scene, format::ErrorTier tier, int threads) {
+  Measured out;
+  int ends[2];
+  if (pipe(ends) != 0) return out;
+  const pid_t child = fork();
+  if (child == 0) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+    tbb::task_arena arena(threads);
+    arena.execute([&] {
+      PipelineOptions options;
+      options.error_tier = tier;
+      PipelineReport report;
+      const Scene scene = make_scene();
+      const auto bytes = build_lode(scene, options, {}, report);
+      if (!bytes) _exit(2);
+      if (write(ends[1], &report.memory_estimate, sizeof(report.memory_estimate)) < 0) _exit(3);
+    });
+    _exit(0);
+  }
+  close(ends[1]);
+  const bool has_estimate = read(ends[0], &out.estimate, sizeof(out.estimate)) == sizeof(out.estimate);
+  close(ends[0]);
+  int status = 0;
+  rusage usage{};
+  EXPECT_EQ(wait4(child, &status, 0, &usage), child);
+  EXPECT_TRUE(has_estimate && WIFEXITED(status) && WEXITSTATUS(status) == 0);
+  out.peak = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+  return out;
+}
+
+/// Never less than what is taken, and at most 1.8 times as much and what the program itself is taken for.
+void expect_close(const Measured& measured, const std::string& what) {
+#ifdef MESHLODE_SANITIZED
+  GTEST_SKIP() << "a sanitizer's own memory is not estimated";
+#endif
+  const double ratio = static_cast<double>(measured.estimate) / static_cast<double>(measured.peak);
+  std::printf("%s: %.1f MiB estimated, %.1f MiB taken, %.2f\n", what.c_str(), static_cast<double>(measured.estimate) / 0x1p20,
+              static_cast<double>(measured.peak) / 0x1p20, ratio);
+  EXPECT_GE(ratio, 1.0) << what;
+  EXPECT_LE(static_cast<double>(measured.estimate), 1.8 * static_cast<double>(measured.peak) + 24.0 * 0x1p20) << what;
+}
+
+TEST(Needs, MemoryIsEstimatedFromAboveAndCloseEnough) {
+  using enum format::ErrorTier;
+  expect_close(measure([] { return sheets(160, 1, false); }, kMeasured, 1), "51,200 triangles, one thread");
+  expect_close(measure([] { return sheets(160, 1, true); }, kMeasured, 2), "with normals, UVs and colours, two threads");
+  expect_close(measure([] { return sheets(160, 1, false); }, kQem, 2), "the quadric's tier");
+  expect_close(measure([] { return sheets(50, 12, false); }, kMeasured, 2), "twelve meshes of 5,000");
+  expect_close(measure([] { return sheets(20, 1, false); }, kMeasured, 1), "800 triangles");
+  expect_close(measure([] { return loose(20000); }, kMeasured, 1), "20,000 loose triangles");
+  expect_close(measure([] { return unshared(sheets(120, 1, false)); }, kMeasured, 1), "28,800 triangles, no vertex shared");
+}
+
+TEST(Needs, AScenesImagesAreCounted) {
+  Scene scene = sheets(4, 1, false);
+  const std::uint64_t without = estimate_memory(scene, {}, 1);
+  scene.blobs.resize(1);
+  scene.blobs[0].bytes.resize(1000000);
+  EXPECT_EQ(estimate_memory(scene, {}, 1), without + 2000000);
+}
+
+}  // namespace
+}  // namespace meshlode

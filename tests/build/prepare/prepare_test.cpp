@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "build/prepare/prepare.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include <gtest/gtest.h>
+
+#include "scene/samples/samples.h"
+
+namespace meshlode {
+namespace {
+
+PreparedMesh prepare(const Primitive& shape, const PrepareOptions& options = {}, const AttributeLayout& layout = {}) {
+  Result<PreparedMesh> mesh = prepare_mesh(samples::as_mesh(shape), layout, options);
+  EXPECT_TRUE(mesh.ok()) << (mesh.ok() ? "" : mesh.error().message());
+  return mesh.ok() ? std::move(*mesh) : PreparedMesh{};
+}
+
+/// The same shape with vertices and triangles in another order, and corners rotated.
+Primitive shuffled(const Primitive& shape) {
+  Primitive out;
+  const std::size_t n = shape.positions.size();
+  std::vector<std::uint32_t> to(n);
+  std::size_t stride = 7919;
+  while (std::gcd(stride, n) != 1) ++stride;
+  for (std::size_t i = 0; i < n; ++i) to[i] = static_cast<std::uint32_t>(i * stride % n);
+  out.positions.resize(n);
+  for (std::size_t i = 0; i < n; ++i) out.positions[to[i]] = shape.positions[i];
+  for (std::size_t t = shape.indices.size() / 3; t-- > 0;) {
+    for (std::size_t k = 0; k < 3; ++k) out.indices.push_back(to[shape.indices[3 * t + (k + t) % 3]]);
+  }
+  return out;
+}
+
+TEST(Prepare, RenumberingTheInputChangesNothing) {
+  const Primitive shape = samples::make_torus(40, 20);
+  const PreparedMesh a = prepare(shape);
+  const PreparedMesh b = prepare(shuffled(shape));
+  EXPECT_EQ(a.positions, b.positions);
+  EXPECT_EQ(a.triangles, b.triangles);
+  EXPECT_EQ(a.wedge_position, b.wedge_position);
+}
+
+TEST(Prepare, WeldsVerticesThatAreOneInSpace) {
+  const Primitive shared = samples::make_sphere(6);
+  const PreparedMesh mesh = prepare(samples::with_split_normals(shared));
+  EXPECT_EQ(mesh.positions.size(), shared.positions.size());
+}
+
+TEST(Prepare, KeepsWedgesApartWhereAttributesDiffer) {
+  AttributeLayout layout;
+  layout.has_normal = true;
+  const Primitive shared = samples::make_sphere(6);
+  const PreparedMesh mesh = prepare(samples::with_split_normals(shared), {}, layout);
+  EXPECT_EQ(mesh.positions.size(), shared.positions.size());
+  EXPECT_GT(mesh.wedge_position.size(), 2 * mesh.positions.size());
+}
+
+TEST(Prepare, CountsDuplicatesByWindingAndKeepsTheRest) {
+  Primitive shape;
+  shape.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  shape.indices = {0, 1, 2, 1, 2, 0, 0, 2, 1};  // the same turned, and the other side
+  const PreparedMesh mesh = prepare(shape);
+  EXPECT_EQ(mesh.source_triangles, 3U);
+  EXPECT_EQ(mesh.dropped_duplicate, 1U);
+  EXPECT_EQ(mesh.triangles.size(), 2U);
+}
+
+TEST(Prepare, CountsTrianglesWithoutAreaAndKeepsThoseAlongAnEdge) {
+  Primitive shape;
+  shape.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.5, 0, 0}, {0, 0, 0}, {2, 0, 0}};
+  shape.indices = {0, 1, 2, 0, 4, 1, 1, 1, 2, 0, 3, 1, 0, 1, 5};
+  const PreparedMesh mesh = prepare(shape);
+  EXPECT_EQ(mesh.dropped_degenerate, 3U) << "two corners in one place, and one that sticks out";
+  EXPECT_EQ(mesh.triangles.size(), 2U);
+  EXPECT_EQ(mesh.grid_collapsed, 1U) << "the one along the edge has no area but its border is not zero";
+  EXPECT_DOUBLE_EQ(mesh.diagonal, std::sqrt(2.0)) << "what is no part of the source is not in its box";
+}
+
+TEST(Prepare, ATriangleWithoutAreaFarAwayDoesNotCoarsenTheGrid) {
+  Primitive shape = samples::make_sphere(5);
+  const PreparedMesh before = prepare(shape);
+  shape.positions.push_back({1e300, 1e300, 0});
+  shape.positions.push_back({1e300, 1e300, 0});
+  for (const std::uint32_t v : {0U, 1U, 2U}) shape.indices.push_back(shape.indices[0] + 0 * v);
+  const auto first = static_cast<std::uint32_t>(shape.positions.size() - 2);
+  for (const std::uint32_t v : {0U, first, first + 1}) shape.indices.push_back(v);
+  const PreparedMesh after = prepare(shape);
+  EXPECT_EQ(after.dropped_degenerate, 2U);
+  EXPECT_EQ(before.positions, after.positions);
+  EXPECT_EQ(before.diagonal, after.diagonal);
+}
+
+/// A sheet from which a needle stands out: 1 long, and narrower than a cell of the grid, beside other needles' corners.
+Primitive sheet_with_needles(int count) {
+  Primitive shape = samples::make_plane(8);
+  const auto at = [&](double x, double y, double z) {
+    shape.positions.emplace_back(x, y, z);
+    return static_cast<std::uint32_t>(shape.positions.size() - 1);
+  };
+  for (int i = 0; i < count; ++i) {
+    const double x = 0.1 + 0.01 * i;
+    const std::uint32_t a = at(x, 0.5, 0.0);
+    const std::uint32_t b = at(x + 3e-6, 0.5 + 1e-6 * (i % 3), 0.0);
+    const std::uint32_t tip = at(x, 0.5, 1.0);
+    for (const std::uint32_t v : {a, b, tip}) shape.indices.push_back(v);
+  }
+  return shape;
+}
+
+TEST(Prepare, NeedlesNarrowerThanACellKeepTheirTips) {
+  const Primitive shape = sheet_with_needles(20);
+  const PreparedMesh mesh = prepare(shape);
+  ASSERT_GT(mesh.grid.step(), 3e-6) << "or the test says nothing";
+  EXPECT_LE(mesh.grid_collapsed, 6U) << "where no corner has a free cell within the grid's bound";
+  EXPECT_LE(mesh.level0_deviation, mesh.grid.step() * std::sqrt(0.75) * (1 + 1e-12)) << "the grid's own bound";
+  const PreparedMesh other = prepare(shuffled(shape));
+  EXPECT_EQ(mesh.positions, other.positions);
+  EXPECT_EQ(mesh.triangles, other.triangles);
+}
+
+TEST(Prepare, NeedlesOfMeshesThatAbutStayOnTheirGridPoints) {
+  PrepareOptions options;
+  options.grid_step = 1.0 / 1024;
+  const PreparedMesh mesh = prepare(sheet_with_needles(4), options);
+  EXPECT_EQ(mesh.grid_collapsed, 4U);
+}
+
+TEST(Prepare, NegativeZeroIsZero) {
+  Primitive shape;
+  shape.positions = {{0.0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-0.0, 0, 0}, {0, -1, 0}};
+  shape.indices = {0, 1, 2, 3, 4, 1};
+  EXPECT_EQ(prepare(shape).positions.size(), 4U);
+}
+
+TEST(Prepare, MovesNoVertexFartherThanItSays) {
+  for (const double scale : {1e-6, 1.0, 1e9}) {
+    const Primitive shape = samples::scaled(samples::make_sphere(9), scale);
+    const PreparedMesh mesh = prepare(shape);
+    EXPECT_LE(mesh.level0_deviation, 2.5e-5 * mesh.diagonal * (1 + 1e-12));
+    EXPECT_GT(mesh.level0_deviation, 0.0);
+    for (const Vec3d& p : shape.positions) {
+      double best = std::numeric_limits<double>::infinity();
+      for (const Vec3i& q : mesh.positions) {
+        best = std::min(best, glm::distance(mesh.origin + mesh.grid.decode(q), p));
+      }
+      EXPECT_LE(best, mesh.level0_deviation * (1 + 1e-9));
+    }
+  }
+}
+
+TEST(Prepare, KeepsTheFeaturesOfAMeshFarAway) {
+  const Primitive shape = samples::make_far_plane(32);  // bumps of 1e-3, a million units out
+  const PreparedMesh mesh = prepare(shape);
+  EXPECT_EQ(mesh.positions.size(), 33U * 33U);
+  EXPECT_LT(mesh.level0_deviation, 1e-4);
+  EXPECT_EQ(mesh.grid_collapsed, 0U);
+}
+
+TEST(Prepare, MeshesOfOneStepAbut) {
+  // Two boxes of a kit that share a face at x = 1: its vertices have the same places in object space, to the bit.
+  PrepareOptions options;
+  options.grid_step = 0.01;
+  const Primitive left = samples::make_cube(4, 1.0);
+  Primitive right = left;
+  for (Vec3d& p : right.positions) p.x += 2.0;
+  const auto face = [](const PreparedMesh& mesh) {
+    std::vector<std::array<double, 3>> points;
+    for (const Vec3i& q : mesh.positions) {
+      const Vec3d p = mesh.origin + mesh.grid.decode(q);
+      if (std::abs(p.x - 1.0) < 0.02) points.push_back({p.x, p.y, p.z});
+    }
+    std::sort(points.begin(), points.end());
+    return points;
+  };
+  const auto a = face(prepare(left, options));
+  EXPECT_EQ(a.size(), 25U);
+  EXPECT_EQ(a, face(prepare(right, options)));
+}
+
+TEST(Prepare, RefusesAGridThatNeedsMoreThan24Bits) {
+  PrepareOptions options;
+  options.grid_step = 1e-9;
+  const auto mesh = prepare_mesh(samples::as_mesh(samples::make_cube(2)), {}, options);
+  ASSERT_FALSE(mesh.ok());
+  EXPECT_EQ(mesh.error().code, ErrorCode::kUnsupported);
+}
+
+TEST(Prepare, RefusesPositionsThatAreNotFinite) {
+  Primitive shape = samples::make_cube(2);
+  shape.positions[3].y = std::numeric_limits<double>::quiet_NaN();
+  const auto mesh = prepare_mesh(samples::as_mesh(shape), {}, {});
+  ASSERT_FALSE(mesh.ok());
+  EXPECT_EQ(mesh.error().code, ErrorCode::kInvalid);
+}
+
+TEST(Prepare, StrayVerticesDoNotCoarsenTheGrid) {
+  Primitive shape = samples::make_sphere(5);
+  const PreparedMesh before = prepare(shape);
+  shape.positions.push_back({1e12, 0, 0});
+  const PreparedMesh after = prepare(shape);
+  EXPECT_EQ(before.grid.log2, after.grid.log2);
+  EXPECT_EQ(before.positions, after.positions);
+}
+
+TEST(Prepare, AnEmptyMeshAndASinglePointAreFine) {
+  EXPECT_TRUE(prepare(Primitive{}).triangles.empty());
+  Primitive point;
+  point.positions = {{1, 2, 3}};
+  point.indices = {0, 0, 0};
+  const PreparedMesh mesh = prepare(point);
+  EXPECT_TRUE(mesh.triangles.empty());
+  EXPECT_EQ(mesh.dropped_degenerate, 1U);
+}
+
+TEST(Prepare, CountsPiecesByWhatTouches) {
+  EXPECT_EQ(prepare(samples::make_sphere(4)).piece_count, 1U);
+  EXPECT_EQ(prepare(samples::make_box_soup(37)).piece_count, 37U);
+  EXPECT_EQ(prepare(samples::make_double_cone(12)).piece_count, 1U) << "two cones that share their tip";
+}
+
+TEST(ChooseGrid, AGivenStepIsASmallOddMantissa) {
+  PrepareOptions options;
+  options.grid_step = 0.75;
+  const auto grid = choose_grid(1.0, 2.0, 0.1, options);
+  ASSERT_TRUE(grid.ok());
+  EXPECT_EQ(grid->mantissa, 3U);
+  EXPECT_EQ(grid->log2, -2);
+  options.grid_step = 0.01;
+  EXPECT_NEAR(choose_grid(1.0, 2.0, 0.1, options)->step(), 0.01, 0.01 * 0.004);
+}
+
+TEST(ChooseGrid, APositionErrorIsKeptAndNearlyUsed) {
+  for (const double error : {1e-4, 0.001, 1.0 / 1600.0, 0.37, 5.0}) {
+    PrepareOptions options;
+    options.position_error = error;
+    const auto grid = choose_grid(1.0, 2.0, 0.1, options);
+    ASSERT_TRUE(grid.ok()) << error;
+    const double farthest = grid->step() * std::sqrt(3.0) / 2.0;
+    EXPECT_LE(farthest, error);
+    EXPECT_GE(farthest, 0.99 * error) << "a mantissa of eight bits";
+  }
+  PrepareOptions options;
+  options.position_error = 1e-9;
+  EXPECT_EQ(choose_grid(1.0, 2.0, 0.1, options).error().code, ErrorCode::kUnsupported);
+}
+
+TEST(Prepare, NoVertexMovesFartherThanThePositionError) {
+  for (const double error : {0.05, 0.001}) {
+    PrepareOptions options;
+    options.position_error = error;
+    const PreparedMesh mesh = prepare(samples::make_sphere(16), options);
+    EXPECT_LE(mesh.level0_deviation, error);
+    EXPECT_GT(mesh.level0_deviation, 0.2 * error) << "the budget is used";
+  }
+}
+
+TEST(ChooseGrid, HoldsMeshesOfAnySize) {
+  for (const double scale : {1e-30, 1e-6, 1.0, 1e9, 1e30}) {
+    const auto grid = choose_grid(scale, 2 * scale, 0.0, {});
+    ASSERT_TRUE(grid.ok());
+    EXPECT_LT(scale / grid->step(), kMaxGridCoordinate);
+    EXPECT_LE(grid->step() * std::sqrt(3.0) / 2.0, 2.5e-5 * 2 * scale);
+  }
+}
+
+}  // namespace
+}  // namespace meshlode

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Any bytes: an error or an image, in bounded time and memory (I11).
+#include <gtest/gtest.h>
+
+#include "draw/textures/image.h"
+#include "image_samples.h"
+
+namespace meshlode {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+Bytes noise(std::size_t count) {
+  Bytes out;
+  std::uint64_t state = 1;
+  for (std::size_t i = 0; i < count; ++i) {
+    state = state * 6364136223846793005ull + 1442695040888963407ull;
+    out.push_back(static_cast<std::uint8_t>(state >> 56));
+  }
+  return out;
+}
+
+std::vector<Bytes> samples() {
+  return {test::make_png(19, 17, {6, 8, false, false}, noise(19 * 17 * 4)),
+          test::make_png(19, 17, {3, 4, true, true}, noise(10 * 17)),
+          test::make_png(19, 17, {2, 16, true, false}, noise(19 * 17 * 6)),
+          test::make_jpeg(19, 17, 3, false, noise(19 * 17 * 3)),
+          test::make_jpeg(19, 17, 3, true, noise(19 * 17 * 3)),
+          test::make_jpeg(19, 17, 1, false, noise(19 * 17))};
+}
+
+/// Reads, and looks at what came out.
+void expect_harmless(const Bytes& bytes) {
+  const auto image = decode_image(bytes);
+  if (!image) {
+    EXPECT_FALSE(image.error().detail.empty());
+    return;
+  }
+  EXPECT_EQ(image->rgba().size(), std::size_t{4} * image->width * image->height);
+  EXPECT_LE(image->width, kMaxTextureSide);
+  EXPECT_LE(image->height, kMaxTextureSide);
+}
+
+TEST(Image, TruncationsAreErrorsOrHarmless) {
+  for (const Bytes& whole : samples()) {
+    for (std::size_t count = 0; count < whole.size(); ++count) {
+      const Bytes part(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(count));
+      expect_harmless(part);
+      if (count < whole.size() / 2) {
+        EXPECT_FALSE(decode_image(part)) << count << " of " << whole.size();
+      }
+    }
+  }
+}
+
+TEST(Image, ChangedBytesAreHarmless) {
+  for (const Bytes& whole : samples()) {
+    std::uint64_t state = 7;
+    for (int i = 0; i < 3000; ++i) {
+      Bytes bytes = whole;
+      for (int changes = 0; changes < 1 + i % 3; ++changes) {
+        state = state * 6364136223846793005ull + 1442695040888963407ull;
+        bytes[(state >> 33) % bytes.size()] = static_cast<std::uint8_t>(state >> 20);
+      }
+      expect_harmless(bytes);
+    }
+  }
+}
+
+/// The sides that a header states are believed only as far as the file's length can bear them out.
+TEST(Image, AShortFileGetsNoLargeImage) {
+  Bytes png = test::make_png(19, 17, {6, 8, false, false}, noise(19 * 17 * 4));
+  const auto put = [&](std::size_t at, std::uint32_t value) {
+    for (std::size_t k = 0; k < 4; ++k) png[at + k] = static_cast<std::uint8_t>(value >> (24 - 8 * k));
+  };
+  const auto seal = [&] {  // CRC of IHDR
+    std::uint32_t crc = 0xFFFFFFFFu;
+    for (std::size_t i = 12; i < 29; ++i) {
+      crc ^= png[i];
+      for (int b = 0; b < 8; ++b) crc = crc >> 1 ^ (0xEDB88320u & (0u - (crc & 1u)));
+    }
+    put(29, ~crc);
+  };
+  put(16, 16384);
+  put(20, 16384);
+  seal();
+  const auto bomb = decode_image(png);
+  ASSERT_FALSE(bomb);
+  EXPECT_EQ(bomb.error().code, ErrorCode::kInvalid);
+  put(16, 16385);
+  seal();
+  const auto wide = decode_image(png);
+  ASSERT_FALSE(wide);
+  EXPECT_EQ(wide.error().code, ErrorCode::kUnsupported);
+
+  Bytes jpeg = test::make_jpeg(19, 17, 3, true, noise(19 * 17 * 3));
+  for (std::size_t i = 0; i + 9 < jpeg.size(); ++i) {
+    if (jpeg[i] != 0xFF || jpeg[i + 1] != 0xC2) continue;  // SOF2: height and width from the fifth byte on
+    for (std::size_t k = 5; k < 9; k += 2) jpeg[i + k] = 0x3F;
+    break;
+  }
+  const auto large = decode_image(jpeg);
+  ASSERT_FALSE(large);
+  EXPECT_EQ(large.error().code, ErrorCode::kInvalid);
+}
+
+TEST(Image, OtherFormatsAreRefused) {
+  for (const Bytes& bytes : {Bytes{}, Bytes{0x89}, Bytes{'R', 'I', 'F', 'F', 0, 0, 0, 0, 'W', 'E', 'B', 'P'}, Bytes(64, 0)}) {
+    const auto image = decode_image(bytes);
+    ASSERT_FALSE(image);
+    EXPECT_EQ(image.error().code, ErrorCode::kUnsupported);
+  }
+}
+
+}  // namespace
+}  // namespace meshlode

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The whole of verify --gpu, against a source that is not the asset's: what the GPU draws is the CPU's, and the picture
+// is not the source's.
+#include <algorithm>
+#include <filesystem>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "judge/gpu/verify_gpu.h"
+#include "draw/gpu/gpu_support.h"
+#include "scene/import/import.h"
+
+namespace meshlode::gpu::test {
+namespace {
+
+using VerifyGpu = GpuTest;
+
+struct Failures {
+  std::uint64_t items = 0, failures = 0;
+  bool is_skipped = false;
+  std::string first;
+};
+
+Failures failures_of(const GpuVerifyReport& report, const std::string& id) {
+  const auto check =
+      std::find_if(report.checks.begin(), report.checks.end(), [&](const GpuCheck& c) { return c.id == id; });
+  EXPECT_NE(check, report.checks.end()) << id;
+  if (check == report.checks.end()) return {};
+  EXPECT_TRUE(check->items > 0 || check->is_skipped) << id;
+  return {check->items, check->failures, check->is_skipped, check->first};
+}
+
+/// A built asset against what it was built from, from the adversarial cameras too: nothing is displaced by more than a
+/// pixel, and nothing shows through.
+TEST_F(VerifyGpu, ABuiltAssetHoldsItsPromise) {
+  const auto asset = Asset::from_vector(build_file(MESHLODE_DATA "/rock.glb"));
+  const auto scene = import_scene(MESHLODE_DATA "/rock.glb", {});
+  ASSERT_TRUE(asset && scene);
+  GpuVerifyOptions options;
+  options.orbits = 1;
+  options.sizes = {{160, 90}, {81, 61}};
+  const auto report = verify_on_gpu(*asset, *scene, options);
+  ASSERT_TRUE(report) << report.error().message();
+  EXPECT_EQ(report->cameras.size(), 2U * (10U + 1U)) << "the adversarial ones are judged by the source";
+  for (const char* id : {"V401", "V402", "V403", "V404", "V405", "V406", "V407", "V408"}) {
+    const Failures found = failures_of(*report, id);
+    EXPECT_EQ(found.failures, 0U) << id << ": " << found.first;
+    EXPECT_TRUE(!found.is_skipped || std::string(id) == "V408") << id;
+  }
+  EXPECT_GT(failures_of(*report, "V405").items, 50000U);
+  EXPECT_GT(report->largest_share, 0.1) << "a cut at one pixel does move something";
+  EXPECT_LE(report->largest_share, 1.05);
+}
+
+TEST_F(VerifyGpu, AnotherSourceIsToldFromAnotherDrawing) {
+  const std::vector<std::uint8_t> bytes = build_file(MESHLODE_DATA "/crystal.glb");
+  const auto asset = Asset::from_vector(bytes);
+  const auto scene = import_scene(MESHLODE_DATA "/crystal.glb", {});
+  ASSERT_TRUE(asset && scene);
+  Scene larger = *scene;
+  for (SourceMesh& mesh : larger.meshes) {
+    for (Primitive& primitive : mesh.primitives) {
+      for (Vec3d& p : primitive.positions) p *= 1.1;
+    }
+  }
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "verify_gpu_maps";
+  std::filesystem::create_directories(folder);
+  GpuVerifyOptions options;
+  options.orbits = 1;
+  options.sizes = {{160, 90}, {81, 61}};
+  options.out_folder = folder.string();
+  const auto report = verify_on_gpu(*asset, larger, options);
+  ASSERT_TRUE(report) << report.error().message();
+  for (const char* id : {"V401", "V402", "V403", "V404", "V407", "V408"}) {
+    EXPECT_EQ(failures_of(*report, id).failures, 0U) << id;
+  }
+  EXPECT_GT(failures_of(*report, "V405").failures, 0U) << "a tenth of the size is many pixels";
+  EXPECT_FALSE(report->cameras.empty());
+  std::size_t maps = 0;
+  for (const JudgedCamera& judged : report->cameras) {
+    for (const std::string& map : judged.maps) {
+      ++maps;
+      EXPECT_TRUE(std::filesystem::exists(folder / map)) << map;
+    }
+  }
+  EXPECT_GT(maps, 0U);
+  std::filesystem::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace meshlode::gpu::test

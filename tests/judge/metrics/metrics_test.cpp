@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Distances against closed forms, brute force and CGAL.
+#include <gtest/gtest.h>
+#include <tbb/task_arena.h>
+
+#include <cmath>
+#include <ctime>
+#include <limits>
+#include <set>
+
+#include "judge/metrics/cgal_distance.h"
+#include "judge/metrics/metrics.h"
+#include "judge/metrics/shaded_surface.h"
+#include "judge/metrics/triangle_tree.h"
+#include "run/select/random.h"
+
+namespace meshlode {
+namespace {
+
+using test::RandomSource;
+
+// A square of side `size` in the plane z = height, as 2·n·n triangles.
+Surface make_square(double size, double height, std::uint32_t n) {
+  Surface s;
+  for (std::uint32_t y = 0; y <= n; ++y) {
+    for (std::uint32_t x = 0; x <= n; ++x) s.positions.push_back({size * x / n, size * y / n, height});
+  }
+  for (std::uint32_t y = 0; y < n; ++y) {
+    for (std::uint32_t x = 0; x < n; ++x) {
+      const std::uint32_t a = y * (n + 1) + x, b = a + 1, c = a + n + 1, d = c + 1;
+      s.triangles.push_back({a, b, d});
+      s.triangles.push_back({a, d, c});
+    }
+  }
+  return s;
+}
+
+Surface make_soup(RandomSource& random, std::uint32_t count, double size, const Vec3d& offset) {
+  Surface s;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const Vec3d at = offset + random.in_cube(size);
+    const double edge = size * random.log_between(1e-4, 1.0);
+    for (int k = 0; k < 3; ++k) s.positions.push_back(at + random.in_cube(edge));
+    s.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  return s;
+}
+
+TEST(Metrics, DistanceToATriangleHasItsClosedFormOverFaceEdgeAndCorner) {
+  const Vec3d a(0, 0, 0), b(4, 0, 0), c(0, 4, 0);
+  EXPECT_DOUBLE_EQ(distance2_to_triangle({1, 1, 3}, a, b, c), 9.0);
+  EXPECT_DOUBLE_EQ(distance2_to_triangle({1, 1, -3}, a, c, b), 9.0);
+  EXPECT_DOUBLE_EQ(distance2_to_triangle({2, -3, 4}, a, b, c), 25.0);
+  EXPECT_DOUBLE_EQ(distance2_to_triangle({7, 0, 4}, a, b, c), 25.0);
+  EXPECT_DOUBLE_EQ(distance2_to_triangle({4, 4, 0}, a, b, c), 8.0);
+  EXPECT_EQ(distance2_to_triangle({1, 1, 0}, a, b, c), 0.0);
+}
+
+TEST(Metrics, DistanceToNeedlesSegmentsAndPointsIsThatToWhatTheyAre) {
+  EXPECT_DOUBLE_EQ(distance2_to_triangle({1, 2, 0}, {0, 0, 0}, {2, 0, 0}, {4, 0, 0}), 4.0);
+  EXPECT_DOUBLE_EQ(distance2_to_triangle({1, 2, 2}, {1, 0, 2}, {1, 0, 2}, {1, 0, 2}), 4.0);
+  EXPECT_NEAR(distance2_to_triangle({0.5, 0, 3}, {0, 0, 0}, {1, 0, 0}, {0.5, 1e-12, 0}), 9.0, 1e-9);
+  RandomSource random(51);
+  for (int i = 0; i < 20000; ++i) {  // a needle is never nearer than its bounding segment says
+    const Vec3d a = random.in_cube(1.0), b = a + random.direction();
+    const double width = random.log_between(1e-17, 1e-2);
+    const Vec3d c = a + (b - a) * random.unit() + random.direction() * width;
+    const Vec3d p = random.in_cube(3.0);
+    const double to_segment = std::sqrt(distance2_to_triangle(p, a, b, a));
+    EXPECT_NEAR(std::sqrt(distance2_to_triangle(p, a, b, c)), to_segment, width + 1e-7);
+  }
+}
+
+TEST(Metrics, NearestPointsAgreeWithCgalAtAnySizeAndOffset) {
+  RandomSource random(52);
+  for (const double size : {1e-6, 1.0, 1e9}) {
+    for (const double offset : {0.0, 1e6}) {
+      const Surface s = make_soup(random, 2000, size, random.direction() * (offset * size));
+      const TriangleTree tree(s);
+      const test::CgalDistance oracle(s);
+      std::uint32_t hint = 0xFFFFFFFFu;
+      for (int i = 0; i < 3000; ++i) {
+        const Vec3d p = s.positions[random.below(6000)] + random.in_cube(size * random.log_between(1e-6, 10.0));
+        const NearestPoint nearest = tree.nearest(p, hint);
+        EXPECT_EQ(nearest.distance2, tree.nearest(p).distance2) << "a hint changes no result";
+        hint = nearest.triangle;
+        const double expected = std::sqrt(oracle.distance2(p));
+        EXPECT_NEAR(std::sqrt(nearest.distance2), expected, 1e-6 * expected + 1e-9 * size * (1.0 + 1e-6 * offset))
+            << "seed 52";
+      }
+    }
+  }
+}
+
+TEST(Metrics, NearestIsTheSmallestOverAllTrianglesIncludingDegenerateOnes) {
+  RandomSource random(53);
+  Surface s = make_soup(random, 200, 1.0, Vec3d(0.0));
+  for (std::size_t t = 0; t < s.triangles.size(); t += 5) s.triangles[t][2] = s.triangles[t][random.below(2)];
+  const TriangleTree tree(s);
+  for (int i = 0; i < 3000; ++i) {
+    const Vec3d p = random.in_cube(2.0);
+    double expected = std::numeric_limits<double>::infinity();
+    for (const auto& t : s.triangles) {
+      expected = std::min(expected,
+                          distance2_to_triangle(p, s.positions[t[0]], s.positions[t[1]], s.positions[t[2]]));
+    }
+    EXPECT_EQ(tree.nearest(p).distance2, expected);
+  }
+}
+
+/// Spokes of a wheel that lies askew, and loose needles: triangles that fill next to nothing of their boxes.
+Surface make_spokes(RandomSource& random, std::uint32_t count, double offset) {
+  Surface s;
+  const Vec3d hub = random.direction() * offset;
+  const Vec3d u = random.direction(), v = random.direction();
+  s.positions.push_back(hub);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const double angle = 6.283185307179586 * i / count;
+    s.positions.push_back(hub + u * std::cos(angle) + v * std::sin(angle));
+    s.triangles.push_back({0, 1 + i, 1 + (i + 1) % count});
+  }
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const auto first = static_cast<std::uint32_t>(s.positions.size());
+    const Vec3d a = hub + random.in_cube(1.0), b = a + random.in_cube(1.0);
+    const double width = random.log_between(1e-9, 1e-2);
+    for (const Vec3d& p : {a, b, a + random.in_cube(width)}) s.positions.push_back(p);
+    s.triangles.push_back({first, first + 1, first + (i % 7 == 0 ? 1 : 2)});
+  }
+  return s;
+}
+
+TEST(Metrics, TrianglesInSeveralLeavesAreFoundOnceAndAtTheirDistance) {
+  RandomSource random(54);
+  for (const double offset : {0.0, 1e6}) {
+    const Surface s = make_spokes(random, 300, offset);
+    const TriangleTree tree(s);
+    for (int i = 0; i < 1000; ++i) {
+      const Vec3d p = s.positions[random.below(static_cast<std::uint32_t>(s.positions.size()))] +
+                      random.in_cube(random.log_between(1e-9, 2.0));
+      const double reach2 = random.log_between(1e-6, 1.0);
+      std::set<std::uint32_t> within;
+      double expected = std::numeric_limits<double>::infinity();
+      for (std::uint32_t t = 0; t < s.triangles.size(); ++t) {
+        const auto& ids = s.triangles[t];
+        const double d = distance2_to_triangle(p, s.positions[ids[0]], s.positions[ids[1]], s.positions[ids[2]]);
+        expected = std::min(expected, d);
+        if (d <= reach2) within.insert(t);
+      }
+      EXPECT_EQ(tree.nearest(p).distance2, expected);
+      std::vector<NearestPoint> found{{-1.0, 7}};
+      tree.find_within(p, reach2, found);
+      EXPECT_EQ(found[0].distance2, -1.0) << "appended";
+      std::set<std::uint32_t> names;
+      for (std::size_t k = 1; k < found.size(); ++k) EXPECT_TRUE(names.insert(found[k].triangle).second) << "twice";
+      EXPECT_EQ(names, within);
+    }
+  }
+}
+
+// The hub's surroundings lie in the box of every fourth spoke. Without pieces a wheel takes a hundred times as long to
+// search as a square of as many triangles, with them thirty times.
+TEST(Metrics, TheHubOfAWheelIsNoTrap) {
+  const auto seconds = [](const Surface& s) {
+    const TriangleTree tree(s);
+    const std::clock_t start = std::clock();
+    double sum = 0.0;
+    for (const auto& t : s.triangles) {
+      for (const double at : {0.2, 0.4, 0.6, 0.8}) {
+        sum += tree.nearest(s.positions[t[0]] + at * (s.positions[t[1]] - s.positions[t[0]])).distance2;
+      }
+    }
+    EXPECT_LT(sum, 1e-12);
+    return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  };
+  RandomSource random(55);
+  Surface wheel = make_spokes(random, 8000, 0.0);
+  wheel.triangles.resize(8000);
+  const double square = seconds(make_square(2.0, 0.0, 63));
+  const double spokes = seconds(wheel);
+  EXPECT_LT(spokes, 60.0 * std::max(square, 0.005));
+}
+
+TEST(Metrics, ParallelSquaresAreTheirDistanceApartBothWays) {
+  const DeviationReport r = measure_deviation(make_square(10.0, 0.0, 7), make_square(10.0, 0.25, 3), {20000, 1});
+  for (const OneWayDeviation& d : {r.a_to_b, r.b_to_a}) {
+    EXPECT_NEAR(d.max, 0.25, 1e-12);
+    EXPECT_NEAR(d.rms, 0.25, 1e-12);
+  }
+  EXPECT_EQ(r.a_to_b.points, 20000U + 64U);
+  EXPECT_EQ(r.b_to_a.points, 20000U + 16U);
+}
+
+TEST(Metrics, ASurfaceIsAtDistanceZeroFromItselfAndItsRefinement) {
+  const DeviationReport r = measure_deviation(make_square(10.0, 1.0, 2), make_square(10.0, 1.0, 9), {20000, 1});
+  EXPECT_EQ(r.max(), 0.0);
+  EXPECT_EQ(r.rms(), 0.0);
+}
+
+TEST(Metrics, AMissingPartIsSeenFromOneSideOnlyAndItsRmsIsTheIntegral) {
+  // B is the left half: points of A at x > 5 are x - 5 away. rms² = ∫₅¹⁰ (x-5)² dx / 10 = 125/3/10.
+  Surface half = make_square(10.0, 0.0, 10);
+  for (Vec3d& p : half.positions) p.x *= 0.5;
+  const DeviationReport r = measure_deviation(make_square(10.0, 0.0, 10), half, {200000, 1});
+  EXPECT_DOUBLE_EQ(r.a_to_b.max, 5.0);
+  EXPECT_DOUBLE_EQ(r.a_to_b.worst.x, 10.0);
+  EXPECT_NEAR(r.a_to_b.rms, std::sqrt(125.0 / 30.0), 1e-4);
+  EXPECT_EQ(r.b_to_a.max, 0.0);
+}
+
+TEST(Metrics, SamplesAreUniformInAreaWhateverTheTriangles) {
+  // One big triangle, and its mirror image cut into many: half the area each, so rms is that of a uniform cover.
+  Surface s{{{0, 0, 0}, {8, 0, 0}, {8, 8, 0}}, {{0, 1, 2}}};
+  const Surface fine = make_square(8.0, 0.0, 40);
+  const std::uint32_t base = 3;
+  s.positions.insert(s.positions.end(), fine.positions.begin(), fine.positions.end());
+  for (const auto& t : fine.triangles) {
+    const Vec3d m = (fine.positions[t[0]] + fine.positions[t[1]] + fine.positions[t[2]]) / 3.0;
+    if (m.y > m.x) s.triangles.push_back({base + t[0], base + t[1], base + t[2]});
+  }
+  Surface edge{{{0, 0, 0}, {0, 8, 0}, {0, 4, 0}}, {{0, 1, 2}}};  // the line x = 0: distance is x, rms = 8/√3
+  EXPECT_NEAR(measure_deviation(s, edge, {200000, 3}).a_to_b.rms, 8.0 / std::sqrt(3.0), 5e-3);
+}
+
+TEST(Metrics, EmptyAndDegenerateSurfacesAreAnswered) {
+  const Surface none, square = make_square(1.0, 0.0, 1);
+  EXPECT_EQ(measure_deviation(none, none, {}).max(), 0.0);
+  EXPECT_TRUE(std::isinf(measure_deviation(square, none, {}).a_to_b.max));
+  EXPECT_EQ(measure_deviation(square, none, {}).b_to_a.max, 0.0);
+  const Surface point{{{0, 0, 2}, {9, 9, 9}}, {{0, 0, 0}}};  // the second position is not used
+  const DeviationReport r = measure_deviation(point, square, {1000, 1});
+  EXPECT_DOUBLE_EQ(r.a_to_b.max, 2.0);
+  EXPECT_DOUBLE_EQ(r.b_to_a.max, std::sqrt(6.0));
+}
+
+TEST(Metrics, TheSourceIsItsTrianglesWithArea) {
+  SourceMesh mesh;
+  Primitive& shape = mesh.primitives.emplace_back();
+  shape.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}, {9, 0, 0}, {9, 1e-300, 0}, {5, 0, 0}};
+  shape.indices = {0, 1, 2, 0, 3, 4, 0, 4, 4, 0, 6, 4, 0, 4, 5};
+  const Surface source = surface_of_source(mesh);
+  ASSERT_EQ(source.triangles.size(), 2U) << "a repeated corner, one place twice, a line; a sliver has area";
+  EXPECT_EQ(source.triangles[0], (std::array<std::uint32_t, 3>{0, 1, 2}));
+  EXPECT_EQ(source.triangles[1], (std::array<std::uint32_t, 3>{0, 4, 5}));
+  EXPECT_EQ(shaded_surface_of_source(mesh).surface.triangles.size(), 2U);
+}
+
+TEST(Metrics, DoesNotDependOnTheNumberOfThreads) {
+  RandomSource random(54);
+  const Surface a = make_soup(random, 3000, 1.0, Vec3d(0.0)), b = make_soup(random, 3000, 1.0, Vec3d(0.1));
+  DeviationReport one, two;
+  tbb::task_arena(1).execute([&] { one = measure_deviation(a, b, {20000, 9}); });
+  tbb::task_arena(2).execute([&] { two = measure_deviation(a, b, {20000, 9}); });
+  EXPECT_EQ(one.a_to_b.max, two.a_to_b.max);
+  EXPECT_EQ(one.a_to_b.rms, two.a_to_b.rms);
+  EXPECT_EQ(one.b_to_a.rms, two.b_to_a.rms);
+  EXPECT_NE(one.a_to_b.rms, measure_deviation(a, b, {20000, 10}).a_to_b.rms) << "the seed is used";
+}
+
+}  // namespace
+}  // namespace meshlode

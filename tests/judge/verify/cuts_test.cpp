@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Cuts as a cross-check: a selection that is wrong in one way is found by the rule for that way.
+#include <algorithm>
+#include <limits>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "run/decode/decode.h"
+#include "run/read/asset.h"
+#include "judge/validate/edit.h"
+#include "judge/validate/judged_sample.h"
+#include "judge/verify/cuts.h"
+
+namespace meshlode {
+namespace {
+
+class CutChecks : public testing::Test {
+ protected:
+  CutChecks()
+      : asset_(std::move(*Asset::from_vector(test::judged_sample_bytes()))), clusters_(std::move(*decode_all(asset_))) {
+    for (std::uint32_t m = 0; m < asset_.meshes().size(); ++m)
+      judges_.push_back(make_mesh_judge(asset_, MeshId(m), clusters_));
+  }
+
+  RuleLog check_cameras_with(const Selectors& selectors) {
+    RuleLog log;
+    totals_ = check_cameras(asset_, judges_, 50, 7, log, selectors);
+    return log;
+  }
+  RuleLog check_uniform_with(const Selectors& selectors) {
+    RuleLog log;
+    for (const MeshJudge& judge : judges_) check_uniform_cuts(asset_, judge, 40, log, selectors);
+    return log;
+  }
+
+  Asset asset_;
+  std::vector<DecodedCluster> clusters_;
+  std::vector<MeshJudge> judges_;
+  CameraTotals totals_;
+};
+
+TEST_F(CutChecks, TheRealSelectionPasses) {
+  EXPECT_EQ(check_cameras_with({}).finding_count(), 0U);
+  EXPECT_EQ(totals_.cameras, 50U);
+  EXPECT_EQ(totals_.cuts, 50U * 4U);  // five instances, one of them singular
+  EXPECT_EQ(check_uniform_with({}).finding_count(), 0U);
+}
+
+TEST_F(CutChecks, AClusterLeftOutIsAHole) {
+  Selectors wrong;
+  wrong.flat = [](const Asset& asset, const Camera& camera, double t) {
+    auto cut = select_flat(asset, camera, t);
+    cut.pop_back();
+    return cut;
+  };
+  wrong.bvh = wrong.flat;
+  const RuleLog log = check_cameras_with(wrong);
+  EXPECT_GT(log.count_of("V201"), 0U);
+  EXPECT_EQ(log.count_of("V203"), 0U);
+}
+
+TEST_F(CutChecks, AHoleInAClosedMeshIsABorder) {
+  Selectors wrong;
+  wrong.flat = [](const Asset& asset, const Camera& camera, double t) {
+    auto cut = select_flat(asset, camera, t);
+    const auto ball =
+        std::find_if(cut.begin(), cut.end(), [](const ClusterInstance& c) { return c.instance.value == 1; });
+    cut.erase(ball);
+    return cut;
+  };
+  const RuleLog log = check_cameras_with(wrong);
+  EXPECT_GT(log.count_of("V203"), 0U);
+  // Where the ball is its one root, what is left is empty, and closed: coverage sees it.
+  EXPECT_GT(log.count_of("V202"), 0U);
+  EXPECT_EQ(log.count_of("V201"), 50U);
+}
+
+TEST_F(CutChecks, AClusterDrawnOverItsOwnFinerOnesIsAnOverlap) {
+  Selectors wrong;
+  wrong.uniform = [](const Asset& asset, MeshId mesh, double error) {
+    UniformCut cut = select_uniform(asset, mesh, error);
+    const auto& record = asset.meshes()[mesh.value];
+    const ClusterId root(record.first_cluster);
+    if (cut.clusters.empty() || cut.clusters[0] != root) cut.clusters.insert(cut.clusters.begin(), root);
+    return cut;
+  };
+  const RuleLog log = check_uniform_with(wrong);
+  EXPECT_GT(log.count_of("V201"), 0U);
+  EXPECT_GT(log.count_of("V204"), 0U);
+}
+
+TEST_F(CutChecks, AnEmptyCutIsFound) {
+  Selectors wrong;
+  wrong.uniform = [](const Asset&, MeshId, double) { return UniformCut{}; };
+  EXPECT_GT(check_uniform_with(wrong).count_of("V201"), 0U);
+}
+
+TEST_F(CutChecks, AnotherThresholdIsNotTheRule) {
+  Selectors wrong;
+  wrong.flat = [](const Asset& asset, const Camera& camera, double t) { return select_flat(asset, camera, t * 1.5); };
+  wrong.bvh = wrong.flat;
+  const RuleLog log = check_cameras_with(wrong);
+  EXPECT_GT(log.count_of("V204"), 0U);
+  EXPECT_EQ(log.count_of("V201"), 0U);  // the cut is whole, only not the one that was asked for
+  EXPECT_EQ(log.count_of("V202"), 0U);
+}
+
+TEST_F(CutChecks, AWrongStoredErrorIsFound) {
+  Selectors wrong;
+  wrong.uniform = [](const Asset& asset, MeshId mesh, double error) {
+    UniformCut cut = select_uniform(asset, mesh, error);
+    cut.stored_error *= 0.5;
+    cut.stored_error -= 1e-30;
+    return cut;
+  };
+  EXPECT_GT(check_uniform_with(wrong).count_of("V205"), 0U);
+}
+
+TEST_F(CutChecks, AHierarchyThatPrunesTooMuchIsFound) {
+  test::AssetEdit edit(test::judged_sample_bytes());
+  const auto mesh = edit.meshes()[1];
+  edit.node(mesh.first_node, [](auto& node) { node.error = 0.0F; });
+  edit.seal();
+  const Asset broken = std::move(*Asset::from_vector(edit.bytes()));
+  RuleLog log;
+  check_cameras(broken, judges_, 20, 1, log);
+  EXPECT_GT(log.count_of("V203"), 0U);
+  EXPECT_EQ(log.count_of("V201"), 0U);  // the flat rule needs no hierarchy
+}
+
+TEST_F(CutChecks, ErrorsThatFallMakeACutThatDrawsTwice) {
+  // A finer group with a larger error than its coarser one: between the two both sides are drawn, or none.
+  test::AssetEdit edit(test::judged_sample_bytes());
+  const auto groups = edit.groups();
+  for (std::uint32_t g = 0; g < groups.size(); ++g) {
+    if (groups[g].mesh == 1 && groups[g].level == 0) edit.group(g, [](auto& group) { group.error = 1e6F; });
+  }
+  edit.seal();
+  const Asset broken = std::move(*Asset::from_vector(edit.bytes()));
+  RuleLog log;
+  check_uniform_cuts(broken, judges_[1], 40, log);
+  EXPECT_GT(log.count_of("V201"), 0U);
+}
+
+TEST_F(CutChecks, AMovedBorderVertexOpensCuts) {
+  // The last cluster of the ball's middle level moves by one grid step: its group no longer fits its neighbours.
+  test::AssetEdit edit(test::judged_sample_bytes());
+  const auto clusters = edit.clusters();
+  const auto mesh = edit.meshes()[1];
+  for (std::uint32_t c = mesh.first_cluster; c < mesh.first_cluster + mesh.cluster_count; ++c) {
+    if (clusters[c].level != 1) continue;
+    edit.move_minimum(c, 0, 1);
+    break;
+  }
+  edit.seal();
+  const Asset broken = std::move(*Asset::from_vector(edit.bytes()));
+  const std::vector<DecodedCluster> decoded = std::move(*decode_all(broken));
+  const MeshJudge judge = make_mesh_judge(broken, MeshId(1U), decoded);
+  RuleLog log;
+  check_uniform_cuts(broken, judge, 40, log);
+  EXPECT_GT(log.count_of("V202"), 0U);
+}
+
+}  // namespace
+}  // namespace meshlode

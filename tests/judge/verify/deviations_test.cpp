@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// I7 on assets that were built: what is stored is true, and where it says less it is found (V206, L311).
+#include <cmath>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "build/dag/build_dag.h"
+#include "build/build.h"
+#include "run/read/asset.h"
+#include "scene/samples/samples.h"
+#include "judge/validate/edit.h"
+#include "judge/validate/validate.h"
+#include "judge/verify/verify.h"
+
+namespace meshlode {
+namespace {
+
+using test::AssetEdit;
+
+struct Built {
+  Scene scene;
+  std::vector<std::uint8_t> bytes;
+};
+
+Built build_rock(format::ErrorTier tier) {
+  Built built;
+  built.scene = samples::as_scene(samples::as_mesh(samples::with_smooth_normals(samples::make_rock(16))));
+  PipelineOptions options;
+  options.error_tier = tier;
+  PipelineReport report;
+  auto bytes = build_lode(built.scene, options, {}, report);
+  EXPECT_TRUE(bytes.ok());
+  built.bytes = std::move(*bytes);
+  return built;
+}
+
+/// The ids of what was found, each once, in the order of the findings.
+template <class Report>
+std::string ids_of(const Report& report) {
+  std::string ids;
+  for (const Finding& finding : report.findings) {
+    if (ids.find(finding.id) == std::string::npos) ids += (ids.empty() ? "" : " ") + finding.id;
+  }
+  return ids;
+}
+
+VerifyReport verify_bytes(const std::vector<std::uint8_t>& bytes, const Scene& scene) {
+  const Result<Asset> asset = Asset::from_vector(bytes);
+  EXPECT_TRUE(asset.ok()) << asset.error().message();
+  return verify_asset(*asset, scene, {.uniform_cuts = 20, .cameras = 10, .deviation_cuts = 6, .deviation_samples = 20000});
+}
+
+/// All errors and deviations times `factor`, where they are finite. With a power of two every other rule still holds.
+void scale_errors(AssetEdit& edit, float factor) {
+  const auto scale = [&](float& value) {
+    if (value < format::kInfiniteError) value *= factor;
+  };
+  for (std::uint64_t g = 0; g < edit.count(format::SectionId::kGroups, sizeof(format::GroupRecord)); ++g) {
+    edit.group(g, [&](auto& group) {
+      scale(group.error);
+      scale(group.deviation);
+    });
+  }
+  for (std::uint64_t n = 0; n < edit.count(format::SectionId::kNodes, sizeof(format::NodeRecord)); ++n) {
+    edit.node(n, [&](auto& node) { scale(node.error); });
+  }
+  edit.seal();
+}
+
+class StoredErrors : public testing::TestWithParam<format::ErrorTier> {};
+INSTANTIATE_TEST_SUITE_P(Tiers, StoredErrors,
+                         testing::Values(format::ErrorTier::kMeasured, format::ErrorTier::kCertified));
+
+TEST_P(StoredErrors, AreTrueAndAreFoundWhereTheySayHalf) {
+  const Built built = build_rock(GetParam());
+  EXPECT_EQ(ids_of(verify_bytes(built.bytes, built.scene)), "");
+  AssetEdit half(built.bytes);
+  scale_errors(half, 0.5F);
+  EXPECT_EQ(ids_of(verify_bytes(half.bytes(), built.scene)), "V206") << "no other rule can know";
+}
+
+TEST_P(StoredErrors, AreAtLeastTheDeviationTimesTheMarginOfTheSettings) {
+  const Built built = build_rock(GetParam());
+  const double margin = GetParam() == format::ErrorTier::kMeasured ? kMeasuredMargin : 1.0;
+  AssetEdit edit(built.bytes);
+  const auto count = static_cast<std::uint32_t>(edit.count(format::SectionId::kGroups, sizeof(format::GroupRecord)));
+  std::uint32_t finite = 0, inner = 0;
+  for (std::uint32_t g = 0; g < count; ++g) {
+    const auto group = edit.get<format::GroupRecord>(edit.offset_of<format::GroupRecord>(format::SectionId::kGroups, g));
+    if ((group.flags & format::kGroupTerminal) != 0) continue;
+    ++finite;
+    inner = g;
+    EXPECT_GT(group.deviation, 0.0F);
+    EXPECT_GE(double{group.error} * (1.0 + 1e-6), margin * double{group.deviation});
+  }
+  ASSERT_GT(finite, 3U);
+  edit.group(inner, [&](auto& g) { g.deviation = static_cast<float>(double{g.error} / margin * (1.0 + 1e-5)); });
+  edit.seal();
+  EXPECT_EQ(ids_of(validate_asset(edit.bytes())), "L311");
+}
+
+}  // namespace
+}  // namespace meshlode

@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Every bad file gets one error with the file, the place and the reason; nothing is read outside the bytes (I11).
+#include <gtest/gtest.h>
+
+#include <chrono>
+
+#include "gltf_builder.h"
+#include "scene/import/gltf/gltf.h"
+#include "scene/import/gltf/uri.h"
+
+namespace meshlode::testing {
+namespace {
+
+struct BadFile {
+  std::string text;
+  std::string place;
+  ErrorCode code = ErrorCode::kInvalid;
+};
+
+void expect_refused(const Result<Scene>& scene, const BadFile& bad) {
+  ASSERT_FALSE(scene) << bad.text;
+  EXPECT_EQ(scene.error().code, bad.code) << bad.text << "\n" << describe(scene);
+  EXPECT_NE(scene.error().where.find(bad.place), std::string::npos) << bad.text << "\n" << describe(scene);
+  EXPECT_NE(scene.error().where.find("scene.gl"), std::string::npos);
+  EXPECT_FALSE(scene.error().detail.empty());
+}
+
+std::string gltf(const std::string& rest) {
+  return "{\"asset\":{\"version\":\"2.0\"}," + rest + "}";
+}
+
+TEST(ImportRefuses, StructuralFaultsByTheirJsonPath) {
+  const std::vector<BadFile> files = {
+      {"", ""},
+      {"[]", "/"},
+      {"{\"a\":1,\"a\":2}", ""},
+      {"{", ""},
+      {"{}", "/asset/version"},
+      {"{\"asset\":{\"version\":\"1.0\"}}", "/asset/version", ErrorCode::kUnsupported},
+      {"{\"asset\":{\"version\":\"2.0\",\"minVersion\":\"2.1\"}}", "/asset/minVersion", ErrorCode::kUnsupported},
+      {gltf("\"extensionsRequired\":[\"EXT_meshopt_compression\"]"), "/extensionsRequired/0", ErrorCode::kUnsupported},
+      {gltf("\"extensionsRequired\":[\"EXT_mesh_gpu_instancing\"]"), "/extensionsRequired/0", ErrorCode::kUnsupported},
+      {gltf("\"extensionsRequired\":[\"ACME_folded_space\"]"), "/extensionsRequired/0", ErrorCode::kUnsupported},
+      {gltf("\"extensionsRequired\":[3]"), "/extensionsRequired/0"},
+      {gltf("\"buffers\":3"), "/buffers"},
+      {gltf("\"buffers\":[{}]"), "/buffers/0/byteLength"},
+      {gltf("\"buffers\":[{\"byteLength\":-4}]"), "/buffers/0/byteLength"},
+      {gltf("\"buffers\":[{\"byteLength\":4}],\"bufferViews\":[{\"buffer\":1,\"byteLength\":4}]"),
+       "/bufferViews/0/buffer"},
+      {gltf("\"buffers\":[{\"byteLength\":4}],\"bufferViews\":[{\"buffer\":0,\"byteOffset\":2,\"byteLength\":4}]"),
+       "/bufferViews/0"},
+      {gltf("\"buffers\":[{\"byteLength\":4}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":4,\"byteStride\":6}]"),
+       "/bufferViews/0/byteStride"},
+      {gltf("\"buffers\":[{\"byteLength\":4}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":1e300}]"),
+       "/bufferViews/0/byteLength"},
+      {gltf("\"accessors\":[{\"componentType\":5124,\"count\":1,\"type\":\"SCALAR\"}]"), "/accessors/0/componentType"},
+      {gltf("\"accessors\":[{\"componentType\":5126,\"count\":1,\"type\":\"VEC5\"}]"), "/accessors/0/type"},
+      {gltf("\"accessors\":[{\"componentType\":5126,\"count\":4294967295,\"type\":\"VEC3\"}]"), "/accessors/0/count"},
+      {gltf("\"accessors\":[{\"componentType\":5126,\"count\":1.5,\"type\":\"VEC3\"}]"), "/accessors/0/count"},
+      {gltf("\"meshes\":[{}]"), "/meshes/0/primitives"},
+      {gltf("\"meshes\":[{\"primitives\":[{}]}]"), "/meshes/0/primitives/0/attributes"},
+      {gltf("\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}]"),
+       "/meshes/0/primitives/0/attributes/POSITION"},
+      {gltf("\"meshes\":[{\"primitives\":[{\"attributes\":{},\"material\":0}]}]"), "/meshes/0/primitives/0/material"},
+      {gltf("\"meshes\":[{\"primitives\":[{\"attributes\":{},\"mode\":7}]}]"), "/meshes/0/primitives/0/mode"},
+      {gltf("\"nodes\":[{\"mesh\":0}]"), "/nodes/0/mesh"},
+      {gltf("\"nodes\":[{\"children\":[0]}]"), "/nodes/0"},
+      {gltf("\"nodes\":[{\"children\":[1]},{\"children\":[2]},{\"children\":[1]}]"), "/nodes/2/children/0"},
+      {gltf("\"nodes\":[{\"children\":[1]},{\"children\":[0]}]"), "/nodes/"},
+      {gltf("\"nodes\":[{\"children\":[2]},{\"children\":[2]},{}]"), "/nodes/1/children/0"},
+      {gltf("\"nodes\":[{\"matrix\":[1,2,3]}]"), "/nodes/0/matrix"},
+      {gltf("\"nodes\":[{\"rotation\":[0,0,0,0]}]"), "/nodes/0/rotation"},
+      {gltf("\"nodes\":[{\"extensions\":{\"KHR_lights_punctual\":{\"light\":0}}}]"), "/nodes/0/extensions"},
+      {gltf("\"nodes\":[{\"children\":[1]},{}],\"scenes\":[{\"nodes\":[1]}]"), "/scenes/0/nodes/0"},
+      {gltf("\"nodes\":[{}],\"scenes\":[{\"nodes\":[0,0]}]"), "/scenes/0/nodes/1"},
+      {gltf("\"scene\":0"), "/scene"},
+      {gltf("\"materials\":[{\"normalTexture\":{\"index\":0}}]"), "/materials/0/normalTexture/index"},
+      {gltf("\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorFactor\":[1,1,1]}}]"), "/materials/0"},
+      {gltf("\"textures\":[{\"source\":0}]"), "/textures/0/source"},
+      {gltf("\"images\":[{\"uri\":7}]"), "/images/0/uri"},
+      {gltf("\"animations\":[{\"samplers\":[],\"channels\":[{\"sampler\":0,\"target\":{\"path\":\"scale\"}}]}]"),
+       "/animations/0/channels/0/sampler"},
+      {gltf("\"buffers\":[{\"byteLength\":4,\"uri\":\"data:;base64,AAA=\"}]"), "/buffers/0"},
+      {gltf("\"buffers\":[{\"byteLength\":4,\"uri\":\"data:;base64,A*A=\"}]"), "/buffers/0/uri"},
+      {gltf("\"buffers\":[{\"byteLength\":4,\"uri\":\"missing.bin\"}]"), "/buffers/0/uri", ErrorCode::kIo},
+      {gltf("\"images\":[{\"uri\":\"missing.png\"}]"), "/images/0/uri", ErrorCode::kIo},
+      {gltf("\"images\":[{\"uri\":\"https://example.org/a.png\"}]"), "/images/0/uri", ErrorCode::kUnsupported},
+      {gltf("\"images\":[{\"uri\":\"file:///etc/hostname\"}]"), "/images/0/uri", ErrorCode::kUnsupported},
+      {gltf("\"images\":[{\"uri\":\"/etc/hostname\"}]"), "/images/0/uri"},
+      {gltf("\"images\":[{\"uri\":\"../outside.png\"}]"), "/images/0/uri"},
+      {gltf("\"images\":[{\"uri\":\"a/%2e%2e/..%2Foutside.png\"}]"), "/images/0/uri"},
+      {gltf("\"images\":[{\"uri\":\"a%00.png\"}]"), "/images/0/uri"},
+      {gltf("\"images\":[{\"uri\":\"link.png\"}]"), "/images/0/uri"},
+  };
+  const TempFolder outside;
+  outside.write("secret.png", "x");
+  const TempFolder folder;
+  std::filesystem::create_symlink(outside.path() / "secret.png", folder.path() / "link.png");
+  for (const BadFile& bad : files) {
+    expect_refused(import_scene(folder.write("scene.gltf", bad.text), {}), bad);
+  }
+}
+
+TEST(ImportRefuses, AccessorsThatReachOutsideTheirViewByOneByte) {
+  for (const std::size_t count : {3, 4}) {
+    GltfBuilder b;
+    b.accessor(b.view(std::vector<float>(3 * 3)), 5126, count, "VEC3");
+    const auto scene = b.import(mesh_text("\"POSITION\":0"));
+    EXPECT_EQ(scene.ok(), count == 3) << describe(scene);
+  }
+  GltfBuilder b;
+  b.accessor(b.view(std::vector<float>(3 * 3)), 5126, 3, "VEC3", ",\"byteOffset\":4");
+  expect_refused(b.import(mesh_text("\"POSITION\":0")), {"offset", "/accessors/0"});
+  GltfBuilder strided;  // the last element needs its bytes, not its whole stride
+  std::vector<std::uint8_t> bytes(2 * 16 + 12);
+  strided.accessor(strided.view(bytes, 16), 5126, 3, "VEC3");
+  EXPECT_TRUE(strided.import(mesh_text("\"POSITION\":0")));
+}
+
+TEST(ImportRefuses, SparseIndicesThatDoNotIncreaseOrLeaveTheAccessor) {
+  for (const std::vector<std::uint8_t>& wrong : {std::vector<std::uint8_t>{2, 2}, {2, 1}, {1, 4}}) {
+    GltfBuilder b;
+    const int base = b.view(kSquare);
+    const int indices = b.view(wrong);
+    const int values = b.view(std::vector<float>(6));
+    b.accessor(base, 5126, 4, "VEC3",
+               ",\"sparse\":{\"count\":2,\"indices\":{\"bufferView\":" + std::to_string(indices) +
+                   ",\"componentType\":5121},\"values\":{\"bufferView\":" + std::to_string(values) + "}}");
+    expect_refused(b.import(mesh_text("\"POSITION\":0")), {"sparse", "/accessors/0/sparse/indices"});
+  }
+}
+
+TEST(ImportRefuses, AttributesOfDifferentLengthsOrTypes) {
+  GltfBuilder b;
+  b.floats(kSquare, "VEC3", 3);
+  b.floats({0, 0, 1}, "VEC3", 3);
+  b.floats(std::vector<float>(8), "VEC2", 2);
+  const std::string path = "/meshes/0/primitives/0/attributes/";
+  expect_refused(b.import(mesh_text("\"POSITION\":0,\"NORMAL\":1")), {"count", path + "NORMAL"});
+  expect_refused(b.import(mesh_text("\"POSITION\":0,\"NORMAL\":2")), {"type", path + "NORMAL"});
+  expect_refused(b.import(mesh_text("\"POSITION\":2")), {"type", path + "POSITION"});
+  expect_refused(b.import(mesh_text("\"POSITION\":0", ",\"indices\":0")), {"indices", "/indices"});
+}
+
+std::string members(int count, const std::string& value) {
+  std::string text;
+  for (int i = 0; i < count; ++i) text += (i == 0 ? "\"m" : ",\"m") + std::to_string(i) + "\":" + value;
+  return text;
+}
+
+// Members are a list that is searched by name for every index that leads to the object: a view of a hundred thousand
+// members that a hundred thousand accessors name would take hours.
+TEST(ImportRefuses, ObjectsOfMoreMembersThanAnybodyWrites) {
+  const std::string many = members(260, "0"), few = members(250, "0");
+  expect_refused(GltfBuilder().import("\"meshes\":[{\"primitives\":[]," + many + "}]"), {"mesh", "/meshes/0"});
+  expect_refused(GltfBuilder().import("\"nodes\":[{" + many + "}]"), {"node", "/nodes/0"});
+  expect_refused(GltfBuilder().import("\"animations\":[{" + many + "}]"), {"animation", "/animations/0"});
+  expect_refused(GltfBuilder().import("\"extensions\":{\"KHR_lights_punctual\":{" + many + "}}"), {"lights", "/"});
+  EXPECT_TRUE(GltfBuilder().import("\"nodes\":[{" + few + "}]"));
+  EXPECT_TRUE(GltfBuilder().import("\"nodes\":[{\"extras\":{" + many + "}}]")) << "what is carried may be of any size";
+}
+
+TEST(ImportRefuses, ManyExtensionsAreLeftOutInOnePass) {
+  const auto start = std::chrono::steady_clock::now();
+  const auto scene = GltfBuilder().import("\"nodes\":[{\"extensions\":{" + members(60000, "{\"accessor\":0}") + "}}]");
+  ASSERT_TRUE(scene) << describe(scene);
+  EXPECT_EQ(scene->left_out.size(), 60000u);
+  EXPECT_EQ(scene->document.find("extensions"), std::string::npos);
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  EXPECT_LT(seconds.count(), 10.0);
+}
+
+TEST(ImportRefuses, DracoBeyondTheBudgetMustBeJustifiedAsOtherBytesAre) {
+  constexpr std::uint64_t kBase = std::uint64_t{1} << 20U, kMega = 1000000;
+  const auto left = [](std::uint64_t file, std::uint64_t draco, std::uint64_t max_decoded) {
+    return DecodeBudget(file, draco, max_decoded).left_bytes() / DecodeBudget::kElementBytes;
+  };
+  EXPECT_EQ(left(0, 0, 512 * kMega), kBase);
+  EXPECT_EQ(left(kMega, 0, 512 * kMega), kBase + 4 * kMega);
+  EXPECT_EQ(left(0, 100, 512 * kMega), kBase + 6000) << "sixty elements a byte";
+  EXPECT_EQ(left(0, 10 * kMega, 240 * kMega), kBase + 40 * kMega) << "four, where they take more than what is allowed";
+  EXPECT_EQ(left(0, kMega, 240 * kMega), kBase + 10 * kMega) << "what is allowed, between";
+  DecodeBudget budget(0, 0, 0);
+  EXPECT_TRUE(budget.take(kBase));
+  EXPECT_FALSE(budget.take(1));
+}
+
+TEST(ImportRefuses, ASmallFileThatAsksForGigabytes) {
+  const auto start = std::chrono::steady_clock::now();
+  GltfBuilder zeros;
+  zeros.accessor(-1, 5126, 2000000000, "VEC3");
+  expect_refused(zeros.import(mesh_text("\"POSITION\":0")), {"zeros", "/meshes/0/primitives/0"});
+  // The same bytes named by a thousand primitives.
+  GltfBuilder shared;
+  shared.floats(kSquare, "VEC3", 3);
+  shared.array(std::vector<std::uint8_t>(300000, 1), 5121, "SCALAR", 1);
+  std::string primitives;
+  for (int i = 0; i < 1000; ++i) {
+    primitives += std::string(i == 0 ? "" : ",") + "{\"attributes\":{\"POSITION\":0},\"indices\":1}";
+  }
+  expect_refused(shared.import("\"meshes\":[{\"primitives\":[" + primitives + "]}]"), {"shared", "/meshes/0"});
+  // Images that overlap.
+  GltfBuilder images;
+  images.view(std::vector<std::uint8_t>(1 << 20));
+  std::string list;
+  for (int i = 0; i < 100; ++i) {
+    images.views.push_back("{\"buffer\":0,\"byteOffset\":" + std::to_string(i) + ",\"byteLength\":1000000}");
+    list +=
+        std::string(i == 0 ? "" : ",") + "{\"mimeType\":\"image/png\",\"bufferView\":" + std::to_string(i + 1) + "}";
+  }
+  expect_refused(images.import("\"images\":[" + list + "]"), {"images", "/images/"});
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
+}
+
+TEST(ImportRefuses, DeepJsonWithoutUsingTheStack) {
+  std::string deep(1000000, '[');
+  const TempFolder folder;
+  expect_refused(import_scene(folder.write("scene.gltf", deep), {}), {"deep", ""});
+  std::string objects;
+  for (int i = 0; i < 200000; ++i) objects += "{\"a\":";
+  expect_refused(import_scene(folder.write("scene.gltf", objects), {}), {"deep", ""});
+}
+
+TEST(ImportRefuses, BrokenGlbHeadersAndChunks) {
+  GltfBuilder b;
+  b.floats(kSquare, "VEC3", 3);
+  const std::string good = b.glb(mesh_text("\"POSITION\":0"));
+  const TempFolder folder;
+  ASSERT_TRUE(import_scene(folder.write("scene.glb", good), {}));
+  for (std::size_t size = 0; size < good.size(); ++size) {
+    const auto scene = import_scene(folder.write("scene.glb", good.substr(0, size)), {});
+    ASSERT_FALSE(scene) << "truncated to " << size;
+    EXPECT_EQ(scene.error().code, ErrorCode::kInvalid);
+  }
+  const auto patched = [&](std::size_t at, std::uint32_t value) {
+    std::string bytes = good;
+    std::memcpy(bytes.data() + at, &value, 4);
+    return import_scene(folder.write("scene.glb", bytes), {});
+  };
+  expect_refused(patched(4, 1), {"version", "GLB header", ErrorCode::kUnsupported});
+  expect_refused(patched(8, 0xFFFFFFFFu), {"length", "GLB header"});
+  expect_refused(patched(12, 0xFFFFFFF0u), {"chunk length", "GLB chunk 0"});
+  expect_refused(patched(16, 0), {"chunk type", "GLB chunk 0"});
+}
+
+TEST(ImportRefuses, WhatIsNoFileOrNoKnownFormat) {
+  const TempFolder folder;
+  const auto missing = import_scene(folder.path() / "scene.glb", {});
+  ASSERT_FALSE(missing);
+  EXPECT_EQ(missing.error().code, ErrorCode::kIo);
+  const auto is_folder = import_scene(folder.path(), {});
+  ASSERT_FALSE(is_folder);
+  EXPECT_EQ(is_folder.error().code, ErrorCode::kIo);
+  const auto unknown = import_scene(folder.write("scene.gl.txt", "hello"), {});
+  ASSERT_FALSE(unknown);
+  EXPECT_EQ(unknown.error().code, ErrorCode::kUnsupported);
+}
+
+TEST(ImportUri, DecodesWhatItMustAndNothingElse) {
+  EXPECT_EQ(percent_decode("a%20b%C3%A4").value(), "a b\xC3\xA4");
+  EXPECT_FALSE(percent_decode("a%2"));
+  EXPECT_FALSE(percent_decode("a%zz"));
+  const auto bytes = base64_decode("AP8Q");
+  ASSERT_TRUE(bytes);
+  EXPECT_EQ(*bytes, (std::vector<std::uint8_t>{0x00, 0xFF, 0x10}));
+  EXPECT_EQ(base64_decode("AA==").value().size(), 1U);
+  EXPECT_EQ(base64_decode("AA").value().size(), 1U);
+  EXPECT_FALSE(base64_decode("A"));
+  const auto plain = decode_data_uri("data:text/plain,a%00b");
+  ASSERT_TRUE(plain);
+  EXPECT_EQ(plain->bytes.size(), 3U);
+  EXPECT_EQ(plain->mime_type, "text/plain");
+}
+
+TEST(ImportUri, FindsFilesInFoldersWithSpacesButNeverOutside) {
+  const TempFolder folder;
+  folder.write("sub folder/a b.bin", "x");
+  EXPECT_TRUE(resolve_uri(folder.path(), "sub%20folder/a%20b.bin"));
+  EXPECT_TRUE(resolve_uri(folder.path(), "sub%20folder/../sub%20folder/a%20b.bin"));
+  EXPECT_FALSE(resolve_uri(folder.path() / "sub folder", "../sub%20folder/a%20b.bin"));
+}
+
+}  // namespace
+}  // namespace meshlode::testing

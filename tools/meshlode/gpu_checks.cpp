@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gpu_checks.h"
+
+#include <cstdio>
+#include <span>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "base/file.h"
+#include "judge/gpu/verify_gpu.h"
+#include "outputs.h"
+#include "base/json_writer.h"
+
+namespace meshlode::cli {
+
+namespace {
+
+/// Each judged camera with its numbers; pixels unless the name says otherwise.
+std::string gpu_json(const GpuOptions& options, const gpu::GpuVerifyReport& verified) {
+  JsonWriter json;
+  json.begin_object();
+  json.field("device", verified.device.name);
+  json.field("driver", verified.device.driver);
+  json.field("pixel_error", options.pixel_error);
+  json.field("largest_displacement_px", verified.largest_px);
+  json.field("largest_share_of_allowed", verified.largest_share);
+  json.key("checks");
+  json.begin_array();
+  for (const gpu::GpuCheck& check : verified.checks) {
+    json.begin_object();
+    json.field("id", check.id);
+    json.field("invariant", check.invariant);
+    json.field("what", check.what);
+    json.field("items", check.items);
+    json.field("failures", check.failures);
+    json.field("skipped", check.is_skipped);
+    json.field("first", check.first);
+    json.end_object();
+  }
+  json.end_array();
+  json.key("cameras");
+  json.begin_array();
+  for (const gpu::JudgedCamera& judged : verified.cameras) {
+    const gpu::PictureReport& p = judged.picture;
+    json.begin_object();
+    json.field("name", judged.camera.name);
+    json.field("width", judged.camera.camera.width);
+    json.field("height", judged.camera.camera.height);
+    json.field("covered", p.covered);
+    json.field("covered_source", p.covered_source);
+    json.field("only_cut", p.only_cut);
+    json.field("only_source", p.only_source);
+    json.field("holes", p.holes);
+    json.field("points", p.points);
+    json.field("exceeded", p.exceeded);
+    json.field("largest_displacement_px", p.largest_px);
+    json.field("mean_displacement_px", p.mean_px);
+    json.field("allowed_px", p.allowed_px);
+    json.field("largest_share_of_allowed", p.largest_share);
+    json.field("largest_relative_depth_difference", p.largest_depth);
+    json.field("mean_normal_degrees", p.mean_normal_degrees);
+    json.field("largest_normal_degrees", p.largest_normal_degrees);
+    json.key("maps");
+    json.begin_array();
+    for (const std::string& map : judged.maps) json.value(map);
+    json.end_array();
+    json.end_object();
+  }
+  json.end_array();
+  json.end_object();
+  return json.text();
+}
+
+}  // namespace
+
+Status verify_with_gpu(const Asset& asset, const Scene& source, const GpuOptions& options, VerifyReport& report) {
+  gpu::GpuVerifyOptions judge;
+  judge.device.device = options.device;
+  judge.orbits = options.orbits;
+  judge.pixel_error = options.pixel_error;
+  judge.out_folder = options.out_folder;
+  judge.files = &output_files();
+  judge.max_decoded = options.max_decoded;
+  if (!options.path.empty()) {
+    const auto file = MappedFile::open(options.path);
+    if (!file) return file.error();
+    output_files().keep(file->id());
+    const std::span<const std::uint8_t> bytes = file->bytes();
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    Camera base;
+    auto path = gpu::parse_camera_path(text, base);
+    if (!path) return Error{path.error().code, options.path + ": " + path.error().where, path.error().detail};
+    judge.path = std::move(*path);
+  }
+  const std::string report_path = options.out_folder + "/gpu.json";
+  if (!options.out_folder.empty()) {
+    if (const Status free = output_files().claim(report_path); !free) return free;
+  }
+  const auto verified = gpu::verify_on_gpu(asset, source, judge);
+  if (!verified) return verified.error();
+  for (const std::string& warning : verified->warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  if (!options.out_folder.empty()) {
+    if (const Status written = write_text(report_path, gpu_json(options, *verified)); !written) return written;
+  }
+  for (const gpu::GpuCheck& check : verified->checks) {
+    report.checks.push_back({check.invariant, verified->device.name + ": " + check.what, check.items, check.failures,
+                             check.is_skipped});
+    if (check.failures == 0) continue;
+    report.findings.push_back({check.id, check.invariant, verified->device.name, check.first});
+    ++report.finding_count;
+  }
+  return Ok{};
+}
+
+}  // namespace meshlode::cli

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What verify --gpu adds to verify.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include <meshlode/result.h>
+
+#include "scene/scene.h"
+#include "run/read/asset.h"
+#include "judge/verify/verify.h"
+
+namespace meshlode::cli {
+
+struct GpuOptions {
+  bool is_on = false;
+  std::string device, path, out_folder;
+  std::uint32_t orbits = 6;
+  double pixel_error = 1.0;
+  std::uint64_t max_decoded = 0;  ///< bytes of decoded images
+};
+
+/// What the GPU finds, as checks and findings of the same report; heat maps and gpu.json where a folder is given.
+[[nodiscard]] Status verify_with_gpu(const Asset& asset, const Scene& source, const GpuOptions& options,
+                                     VerifyReport& report);
+
+}  // namespace meshlode::cli
