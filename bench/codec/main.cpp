@@ -48,7 +48,7 @@ struct Totals {
   double source_triangles = 0.0, stored_triangles = 0.0;
 };
 
-Totals count_triangles(const Asset& asset) {
+Totals count_triangles(const run::Asset& asset) {
   Totals totals;
   for (const format::MeshRecord& mesh : asset.meshes()) totals.source_triangles += static_cast<double>(mesh.source_triangles);
   for (const format::ClusterRecord& cluster : asset.clusters()) totals.stored_triangles += cluster.triangle_count();
@@ -56,18 +56,18 @@ Totals count_triangles(const Asset& asset) {
 }
 
 /// What the streams of the codec strips weigh, over all pages.
-void print_streams(const Asset& asset, const std::vector<PackedPage>& packed) {
+void print_streams(const run::Asset& asset, const std::vector<build::PackedPage>& packed) {
   static constexpr const char* kNames[] = {"triples", "starts", "lengths", "references", "twins"};
   const double triangles = count_triangles(asset).source_triangles;
-  std::array<double, kMaxStreams> bytes{};
+  std::array<double, format::kMaxStreams> bytes{};
   double side = 0.0;
   double twins = 0.0;
   double vertices = 0.0;
   for (const format::ClusterRecord& cluster : asset.clusters()) vertices += cluster.vertex_count();
-  const std::uint32_t streams = kFieldStreams + field_count(asset.meshes()[0]);
-  for (const PackedPage& page : packed) {
+  const std::uint32_t streams = format::kFieldStreams + format::field_count(asset.meshes()[0]);
+  for (const build::PackedPage& page : packed) {
     if (page.codec != format::Codec::kStrips) continue;
-    StoredHeader header;
+    format::StoredHeader header;
     std::memcpy(&header, page.bytes.data(), sizeof(header));
     side += static_cast<double>(sizeof(header) + header.side_stored + streams * sizeof(std::uint32_t));
     twins += header.twin_count;
@@ -79,22 +79,22 @@ void print_streams(const Asset& asset, const std::vector<PackedPage>& packed) {
   }
   std::printf("    heads, ranges, code lengths %.3f", side / triangles);
   for (std::uint32_t s = 0; s < streams; ++s) {
-    if (s < kFieldStreams) std::printf(" · %s %.3f", kNames[s], bytes[s] / triangles);
-    else std::printf(" · field %u %.3f", s - kFieldStreams, bytes[s] / triangles);
+    if (s < format::kFieldStreams) std::printf(" · %s %.3f", kNames[s], bytes[s] / triangles);
+    else std::printf(" · field %u %.3f", s - format::kFieldStreams, bytes[s] / triangles);
   }
   std::printf(" B/source triangle; %.0f of %.0f vertices are twins\n", twins, vertices);
 }
 
-void measure_codec(const Asset& asset, const std::vector<std::vector<std::uint32_t>>& pages, format::Codec codec,
+void measure_codec(const run::Asset& asset, const std::vector<std::vector<std::uint32_t>>& pages, format::Codec codec,
                    const char* name, int repetitions) {
   const Totals totals = count_triangles(asset);
-  std::vector<PackedPage> packed;
+  std::vector<build::PackedPage> packed;
   double decoded_bytes = 0.0;
   double stored_bytes = 0.0;
   for (std::size_t p = 0; p < pages.size(); ++p) {
     const auto& mesh = asset.meshes()[asset.groups()[asset.pages()[p].first_group].mesh];
     const std::span<const std::uint8_t> bytes{reinterpret_cast<const std::uint8_t*>(pages[p].data()), pages[p].size() * 4};
-    auto page = pack_page(mesh, bytes, codec);
+    auto page = build::pack_page(mesh, bytes, codec);
     if (!page) fail(name, page.error().detail);
     decoded_bytes += static_cast<double>(bytes.size());
     stored_bytes += static_cast<double>(page->codec == format::Codec::kNone ? bytes.size() : page->bytes.size());
@@ -110,11 +110,11 @@ void measure_codec(const Asset& asset, const std::vector<std::vector<std::uint32
       record.codec = codec;
       const auto& mesh = asset.meshes()[asset.groups()[record.first_group].mesh];
       const std::span<std::uint32_t> page = std::span(out).first(pages[p].size());
-      const double start = thread_seconds();
+      const double start = bench::thread_seconds();
       std::fill(page.begin(), page.end(), 0U);
-      const UnpackOutcome outcome = unpack_page(mesh, record, packed[p].bytes, page);
-      sum += thread_seconds() - start;
-      if (outcome != UnpackOutcome::kOk || !std::equal(page.begin(), page.end(), pages[p].begin())) {
+      const run::UnpackOutcome outcome = run::unpack_page(mesh, record, packed[p].bytes, page);
+      sum += bench::thread_seconds() - start;
+      if (outcome != run::UnpackOutcome::kOk || !std::equal(page.begin(), page.end(), pages[p].begin())) {
         fail(name, "page " + std::to_string(p) + " did not come back");
       }
     }
@@ -134,14 +134,14 @@ void measure_codec(const Asset& asset, const std::vector<std::vector<std::uint32
 void measure_opening(const std::string& path, int repetitions) {
   std::vector<double> seconds;
   for (int r = 0; r < repetitions; ++r) {
-    const double start = thread_seconds();
-    const auto asset = Asset::open(path);
+    const double start = bench::thread_seconds();
+    const auto asset = run::Asset::open(path);
     if (!asset) fail(path, asset.error().detail);
     if (!asset->pages().empty()) {
-      const auto page = load_page(*asset, PageId{0U});
+      const auto page = run::load_page(*asset, PageId{0U});
       if (!page) fail(path, page.error().detail);
     }
-    seconds.push_back(thread_seconds() - start);
+    seconds.push_back(bench::thread_seconds() - start);
   }
   std::printf("  opening the file as it is and loading its root page: best %.3f ms, median %.3f ms\n",
               *std::min_element(seconds.begin(), seconds.end()) * 1e3, median(seconds) * 1e3);
@@ -160,12 +160,12 @@ int main(int argc, char** argv) {
   }
   for (int i = first; i < argc; ++i) {
     const std::string path = argv[i];
-    const auto asset = Asset::open(path);
+    const auto asset = run::Asset::open(path);
     if (!asset) fail(path, asset.error().detail);
     const Totals totals = count_triangles(*asset);
     std::vector<std::vector<std::uint32_t>> pages;
     for (std::size_t p = 0; p < asset->pages().size(); ++p) {
-      const auto page = load_page(*asset, PageId{p});
+      const auto page = run::load_page(*asset, PageId{p});
       if (!page) fail(path, page.error().detail);
       pages.emplace_back(page->words().begin(), page->words().end());
     }

@@ -33,24 +33,24 @@ double best_seconds(Work work) {
   constexpr int kRepetitions = 41;
   double best = 1e30;
   for (int r = 0; r < kRepetitions; ++r) {
-    const double start = thread_seconds();
+    const double start = bench::thread_seconds();
     work();
-    best = std::min(best, thread_seconds() - start);
+    best = std::min(best, bench::thread_seconds() - start);
   }
   return best;
 }
 
 void measure(const std::string& path) {
-  const auto asset = Asset::open(path);
+  const auto asset = run::Asset::open(path);
   if (!asset) fail(path, asset.error().detail);
-  std::vector<PageBytes> pages;
+  std::vector<run::PageBytes> pages;
   for (std::size_t p = 0; p < asset->pages().size(); ++p) {
-    auto page = load_page(*asset, PageId{p});
+    auto page = run::load_page(*asset, PageId{p});
     if (!page) fail(path, page.error().detail);
     pages.push_back(std::move(*page));
   }
-  DecodedCluster cluster;
-  ClusterAttributes attributes;
+  run::DecodedCluster cluster;
+  run::ClusterAttributes attributes;
   double vertices = 0.0;
   double triangles = 0.0;
   float seen = 0.0F;  // so that nothing is left out
@@ -66,15 +66,15 @@ void measure(const std::string& path) {
     }
   };
   const double integers = best_seconds([&] {
-    each_cluster([&](const format::MeshRecord&, const PageBytes& page, ClusterId id) {
-      decode_cluster(*asset, page, id, cluster);
+    each_cluster([&](const format::MeshRecord&, const run::PageBytes& page, ClusterId id) {
+      run::decode_cluster(*asset, page, id, cluster);
       seen += static_cast<float>(cluster.channels[0]);
     });
   });
   const double floats = best_seconds([&] {
-    each_cluster([&](const format::MeshRecord& mesh, const PageBytes& page, ClusterId id) {
-      decode_vertices(*asset, page, id, cluster);
-      decode_attributes(mesh, cluster, attributes);
+    each_cluster([&](const format::MeshRecord& mesh, const run::PageBytes& page, ClusterId id) {
+      run::decode_vertices(*asset, page, id, cluster);
+      run::decode_attributes(mesh, cluster, attributes);
       seen += attributes.positions[0].x;
     });
   });

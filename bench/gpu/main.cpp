@@ -27,12 +27,12 @@ struct Options {
 
 struct Variant {
   std::string name;
-  gpu::RendererOptions renderer;
+  draw::RendererOptions renderer;
   bool has_lod = true;
 };
 
 std::vector<Variant> all_variants() {
-  gpu::RendererOptions plain;
+  draw::RendererOptions plain;
   plain.occlusion = true;
   plain.max_items = 1u << 23;
   std::vector<Variant> out;
@@ -60,19 +60,19 @@ std::vector<Variant> all_variants() {
   add("far-16", [](auto& r) { r.far_lanes = 16; });
   add("group-32", [](auto& r) { r.raster_group = 32; });
   add("group-64", [](auto& r) { r.raster_group = 64; });
-  add("mixed-vertex", [](auto& r) { r.hardware = gpu::HardwarePath::kVertex; });
+  add("mixed-vertex", [](auto& r) { r.hardware = draw::HardwarePath::kVertex; });
   add("hardware-vertex", [](auto& r) {
-    r.hardware = gpu::HardwarePath::kVertex;
+    r.hardware = draw::HardwarePath::kVertex;
     r.hardware_pixels = 0.0F;
   });
-  add("mixed-mesh", [](auto& r) { r.hardware = gpu::HardwarePath::kMesh; });
+  add("mixed-mesh", [](auto& r) { r.hardware = draw::HardwarePath::kMesh; });
   add("hardware-mesh", [](auto& r) {
-    r.hardware = gpu::HardwarePath::kMesh;
+    r.hardware = draw::HardwarePath::kMesh;
     r.hardware_pixels = 0.0F;
   });
   add("force-all", [](auto& r) {
     r.double_sided = r.alpha_mask = true;
-    r.hardware = gpu::HardwarePath::kVertex;
+    r.hardware = draw::HardwarePath::kVertex;
   });
   add(
       "no-lod", [](auto&) {}, false);
@@ -90,10 +90,10 @@ double median(std::vector<double> values) {
 struct Measured {
   double total = 0.0;
   std::vector<std::pair<std::string, double>> passes;
-  gpu::FrameReport last;
+  draw::FrameReport last;
 };
 
-Result<Measured> measure(gpu::Renderer& renderer, const BenchScene& scene, const Options& options, bool is_moving,
+Result<Measured> measure(draw::Renderer& renderer, const BenchScene& scene, const Options& options, bool is_moving,
                          double pixel_error) {
   Measured out;
   std::map<std::string, std::vector<double>> times;
@@ -135,26 +135,26 @@ void write_measured(JsonWriter& json, const char* key, const Measured& m) {
   json.field("hardware_clusters", m.last.hardware_items);
   json.field("far_clusters", m.last.far_items);
   json.field("clipped_clusters", m.last.clipped_items);
-  json.field("overflow", gpu::describe_overflow(m.last.overflow));
+  json.field("overflow", draw::describe_overflow(m.last.overflow));
   json.end_object();
 }
 
 /// A colour per cluster of the list, to see that the picture is there.
-Status write_picture(gpu::Renderer& renderer, const std::string& path) {
+Status write_picture(draw::Renderer& renderer, const std::string& path) {
   const auto pixels = renderer.read_pixels();
   if (!pixels) return pixels.error();
-  Image image;
+  draw::Image image;
   image.width = pixels->width;
   image.height = pixels->height;
   image.rgba.assign(pixels->pixel_count() * 4, 255);
   for (std::size_t i = 0; i < pixels->pixel_count(); ++i) {
     const std::uint32_t item = pixels->item[i];
-    const std::uint32_t hash = item == VisibilityBuffer::kNothing ? 0xFFFFFFFFu : (item + 1) * 2654435761u;
+    const std::uint32_t hash = item == draw::VisibilityBuffer::kNothing ? 0xFFFFFFFFu : (item + 1) * 2654435761u;
     for (std::size_t k = 0; k < 3; ++k) {
       image.rgba[4 * i + k] = static_cast<std::uint8_t>(64 + (hash >> (8 * k + 8) & 0xFFu) * 3 / 4);
     }
   }
-  return write_file_atomically(path, encode_png(image));
+  return write_file_atomically(path, draw::encode_png(image));
 }
 
 bool parse(int count, char** args, Options& out) {
@@ -201,7 +201,7 @@ int run(int count, char** args) {
                  "[--variants a,b] [--device D] [--pixel-error T] [--png FILE] [-o FILE]\n");
     return 1;
   }
-  const auto asset = Asset::open(options.asset);
+  const auto asset = run::Asset::open(options.asset);
   if (!asset) return fail(asset.error());
   std::uint32_t x = 1, y = 1, z = 1;
   BenchScene scene;
@@ -212,9 +212,9 @@ int run(int count, char** args) {
   else
     return fail({ErrorCode::kUsage, "--scene", "cube:XxYxZ or ground:SIDE"});
 
-  auto device = gpu::Device::open({.device = options.device, .validate = false});
+  auto device = draw::Device::open({.device = options.device, .validate = false});
   if (!device) return fail(device.error());
-  const auto uploaded = gpu::upload_scene(*device, *asset, scene.instances);
+  const auto uploaded = draw::upload_scene(*device, *asset, scene.instances);
   if (!uploaded) return fail(uploaded.error());
 
   JsonWriter json;
@@ -243,7 +243,7 @@ int run(int count, char** args) {
     const double pixel_error = variant.has_lod ? options.pixel_error : 0.0;
     json.begin_object();
     json.field("name", variant.name);
-    auto renderer = gpu::Renderer::make(*device, *uploaded, variant.renderer);
+    auto renderer = draw::Renderer::make(*device, *uploaded, variant.renderer);
     const auto still =
         renderer ? measure(*renderer, scene, options, false, pixel_error) : Result<Measured>(renderer.error());
     if (!still) {
@@ -270,7 +270,7 @@ int run(int count, char** args) {
     json.end_object();
     std::fprintf(stderr, "%-22s still %8.3f ms  moving %8.3f ms  %u clusters, %u in the second pass %s\n",
                  variant.name.c_str(), still->total, moving->total, still->last.items, still->last.second_pass_items,
-                 gpu::describe_overflow(still->last.overflow).c_str());
+                 draw::describe_overflow(still->last.overflow).c_str());
     for (const auto& [name, milliseconds] : still->passes)
       std::fprintf(stderr, "  %-14s %8.4f\n", name.c_str(), milliseconds);
     if (!options.png.empty() && variant.name == "plan") {

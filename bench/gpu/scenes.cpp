@@ -43,7 +43,7 @@ format::InstanceRecord place_mesh(const MeshBox& box, const Vec3d& place, std::u
 
 }  // namespace
 
-BenchScene make_grid(const Asset& asset, std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+BenchScene make_grid(const run::Asset& asset, std::uint32_t x, std::uint32_t y, std::uint32_t z) {
   const MeshBox box = box_of(asset.meshes()[0]);
   BenchScene scene;
   scene.diagonal = box.diagonal;
@@ -61,7 +61,7 @@ BenchScene make_grid(const Asset& asset, std::uint32_t x, std::uint32_t y, std::
   return scene;
 }
 
-BenchScene make_ground(const Asset& asset, std::uint32_t side) {
+BenchScene make_ground(const run::Asset& asset, std::uint32_t side) {
   const MeshBox box = box_of(asset.meshes()[0]);
   BenchScene scene;
   scene.is_ground = true;
@@ -78,8 +78,8 @@ BenchScene make_ground(const Asset& asset, std::uint32_t side) {
   return scene;
 }
 
-Camera bench_camera(const BenchScene& scene, double t, std::uint32_t width, std::uint32_t height) {
-  Camera camera;
+run::Camera bench_camera(const BenchScene& scene, double t, std::uint32_t width, std::uint32_t height) {
+  run::Camera camera;
   camera.width = width;
   camera.height = height;
   camera.near_distance = 0.02 * scene.diagonal;

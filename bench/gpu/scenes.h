@@ -20,10 +20,10 @@ struct BenchScene {
 };
 
 /// `count` instances of mesh 0: a cube of them two diameters apart, or a square on the ground with pseudorandom turns.
-[[nodiscard]] BenchScene make_grid(const Asset& asset, std::uint32_t x, std::uint32_t y, std::uint32_t z);
-[[nodiscard]] BenchScene make_ground(const Asset& asset, std::uint32_t side);
+[[nodiscard]] BenchScene make_grid(const run::Asset& asset, std::uint32_t x, std::uint32_t y, std::uint32_t z);
+[[nodiscard]] BenchScene make_ground(const run::Asset& asset, std::uint32_t side);
 
 /// Frame `t` in [0, 1) of a way around (or across) the scene.
-[[nodiscard]] Camera bench_camera(const BenchScene& scene, double t, std::uint32_t width, std::uint32_t height);
+[[nodiscard]] run::Camera bench_camera(const BenchScene& scene, double t, std::uint32_t width, std::uint32_t height);
 
 }  // namespace meshlode::bench

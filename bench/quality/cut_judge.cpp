@@ -16,39 +16,39 @@ constexpr double kAreaKept = 0.75;
 
 }  // namespace
 
-CutJudge::CutJudge(const Surface& source, const Asset& asset, std::span<const DecodedCluster> decoded, MeshId mesh,
+CutJudge::CutJudge(const judge::Surface& source, const run::Asset& asset, std::span<const run::DecodedCluster> decoded, MeshId mesh,
                    std::uint64_t samples)
     : source_(source), asset_(asset), decoded_(decoded), mesh_(mesh), samples_(samples), source_tree_(source) {
-  const AreaSamples area_samples(source, samples, 1);
+  const judge::AreaSamples area_samples(source, samples, 1);
   sample_count_ = static_cast<std::size_t>(area_samples.count());
   for (std::size_t i = 0; i < sample_count_; ++i) points_.push_back(area_samples.position(area_samples.sample(i)));
-  for (const std::uint32_t v : used_vertices(source)) points_.push_back(source.positions[v]);
+  for (const std::uint32_t v : judge::used_vertices(source)) points_.push_back(source.positions[v]);
   if (area_samples.area() > 0.0) density_ = static_cast<double>(samples) / (kAreaKept * area_samples.area());
   clusters_.resize(asset.clusters().size());
 }
 
 CutJudge::ClusterFigures CutJudge::measure_cluster(ClusterId cluster) const {
-  const Surface surface = surface_of_clusters(asset_, decoded_, mesh_, std::span(&cluster, 1));
+  const judge::Surface surface = judge::surface_of_clusters(asset_, decoded_, mesh_, std::span(&cluster, 1));
   ClusterFigures out;
   out.is_known = true;
-  const double area = AreaSamples(surface, 0, 0).area();
-  const AreaSamples samples(surface, static_cast<std::uint64_t>(std::ceil(area * density_)), cluster.value + 2);
+  const double area = judge::AreaSamples(surface, 0, 0).area();
+  const judge::AreaSamples samples(surface, static_cast<std::uint64_t>(std::ceil(area * density_)), cluster.value + 2);
   std::uint32_t hint = 0xFFFFFFFFu;
   const auto distance2 = [&](const Vec3d& p) {
-    const NearestPoint nearest = source_tree_.nearest(p, hint);
+    const judge::NearestPoint nearest = source_tree_.nearest(p, hint);
     hint = nearest.triangle;
     out.max2 = std::max(out.max2, nearest.distance2);
     return nearest.distance2;
   };
   double sum2 = 0.0;
   for (std::uint64_t i = 0; i < samples.count(); ++i) sum2 += distance2(samples.position(samples.sample(i)));
-  for (const std::uint32_t v : used_vertices(surface)) (void)distance2(surface.positions[v]);
+  for (const std::uint32_t v : judge::used_vertices(surface)) (void)distance2(surface.positions[v]);
   out.area = area;
   out.mean2 = samples.count() > 0 ? sum2 / static_cast<double>(samples.count()) : 0.0;
   return out;
 }
 
-CutJudge::Forward CutJudge::measure_to_cut(const TriangleTree& cut, const Limit& limit,
+CutJudge::Forward CutJudge::measure_to_cut(const judge::TriangleTree& cut, const Limit& limit,
                                            std::vector<std::uint32_t>* worst) const {
   const double max2 = limit.max * limit.max;
   const double sum2 = limit.rms * limit.rms * static_cast<double>(sample_count_);
@@ -64,7 +64,7 @@ CutJudge::Forward CutJudge::measure_to_cut(const TriangleTree& cut, const Limit&
     std::uint32_t hint = 0xFFFFFFFFu;
     for (std::size_t i = chunk * kChunk; i < std::min(points_.size(), (chunk + 1) * kChunk); ++i) {
       if (!is_within.load(std::memory_order_relaxed)) return;
-      const NearestPoint nearest = cut.nearest(points_[i], hint);
+      const judge::NearestPoint nearest = cut.nearest(points_[i], hint);
       hint = nearest.triangle;
       if (i < sample_count_) partial.sum2 += nearest.distance2;
       if (nearest.distance2 > partial.max2) {
@@ -120,7 +120,7 @@ std::optional<CutFigures> CutJudge::measure_within(std::span<const ClusterId> cl
   out.rms_to_source = area > 0.0 ? std::sqrt(sum2 / area) : 0.0;
   if (max2 > limit2 || out.rms_to_source > limit.rms) return std::nullopt;
 
-  const TriangleTree tree(surface_of_clusters(asset_, decoded_, mesh_, clusters));
+  const judge::TriangleTree tree(judge::surface_of_clusters(asset_, decoded_, mesh_, clusters));
   for (std::size_t i = suspects_.size(); i-- > 0;) {
     if (tree.nearest(points_[suspects_[i]]).distance2 > limit2) return std::nullopt;
   }
@@ -134,23 +134,23 @@ std::optional<CutFigures> CutJudge::measure_within(std::span<const ClusterId> cl
   return out;
 }
 
-CutFigures CutJudge::measure(const Surface& surface) const {
+CutFigures CutJudge::measure(const judge::Surface& surface) const {
   CutFigures out;
   out.triangles = surface.triangles.size();
-  const TriangleTree tree(surface);
+  const judge::TriangleTree tree(surface);
   const Forward forward = measure_to_cut(tree, {}, nullptr);
   out.max_to_cut = std::sqrt(forward.max2);
   out.rms_to_cut = sample_count_ > 0 ? std::sqrt(forward.sum2 / static_cast<double>(sample_count_)) : 0.0;
 
-  const AreaSamples samples(surface, samples_, 2);
-  const std::vector<std::uint32_t> vertices = used_vertices(surface);
+  const judge::AreaSamples samples(surface, samples_, 2);
+  const std::vector<std::uint32_t> vertices = judge::used_vertices(surface);
   const auto count = static_cast<std::size_t>(samples.count());
   std::vector<double> sums((count + vertices.size() + kChunk - 1) / kChunk, 0.0), maxima(sums.size(), 0.0);
   parallel_for_each_index(sums.size(), 1, [&](std::size_t chunk) {
     std::uint32_t hint = 0xFFFFFFFFu;
     for (std::size_t i = chunk * kChunk; i < std::min(count + vertices.size(), (chunk + 1) * kChunk); ++i) {
       const Vec3d p = i < count ? samples.position(samples.sample(i)) : surface.positions[vertices[i - count]];
-      const NearestPoint nearest = source_tree_.nearest(p, hint);
+      const judge::NearestPoint nearest = source_tree_.nearest(p, hint);
       hint = nearest.triangle;
       if (i < count) sums[chunk] += nearest.distance2;
       maxima[chunk] = std::max(maxima[chunk], nearest.distance2);

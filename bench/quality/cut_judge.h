@@ -30,7 +30,7 @@ class CutJudge {
  public:
   /// At least `samples` area-uniform samples each way for cuts that have three quarters of the source's area or more.
   /// \pre the arguments outlive this
-  CutJudge(const Surface& source, const Asset& asset, std::span<const DecodedCluster> decoded, MeshId mesh,
+  CutJudge(const judge::Surface& source, const run::Asset& asset, std::span<const run::DecodedCluster> decoded, MeshId mesh,
            std::uint64_t samples);
 
   [[nodiscard]] CutFigures measure(std::span<const ClusterId> clusters) { return *measure_within(clusters, {}); }
@@ -40,7 +40,7 @@ class CutJudge {
   /// Nothing where the maximum or the RMS is above its limit.
   [[nodiscard]] std::optional<CutFigures> measure_within(std::span<const ClusterId> clusters, const Limit& limit);
   /// The same for a surface that is no cut (nothing is kept).
-  [[nodiscard]] CutFigures measure(const Surface& surface) const;
+  [[nodiscard]] CutFigures measure(const judge::Surface& surface) const;
 
  private:
   struct ClusterFigures {
@@ -52,16 +52,16 @@ class CutJudge {
     bool is_within = true;
   };
   [[nodiscard]] ClusterFigures measure_cluster(ClusterId cluster) const;
-  [[nodiscard]] Forward measure_to_cut(const TriangleTree& cut, const Limit& limit,
+  [[nodiscard]] Forward measure_to_cut(const judge::TriangleTree& cut, const Limit& limit,
                                        std::vector<std::uint32_t>* worst) const;
 
-  const Surface& source_;
-  const Asset& asset_;
-  std::span<const DecodedCluster> decoded_;
+  const judge::Surface& source_;
+  const run::Asset& asset_;
+  std::span<const run::DecodedCluster> decoded_;
   MeshId mesh_;
   std::uint64_t samples_;
   double density_ = 0.0;  ///< samples per unit of area, on cuts
-  TriangleTree source_tree_;
+  judge::TriangleTree source_tree_;
   std::vector<Vec3d> points_;  ///< of the source: samples, then vertices
   std::size_t sample_count_ = 0;
   std::vector<ClusterFigures> clusters_;

@@ -11,19 +11,19 @@ constexpr std::size_t kNeighbours = 6;  // coarser cuts that are tried for the R
 
 }  // namespace
 
-std::vector<double> cut_thresholds(const Asset& asset, MeshId mesh, CutError by) {
+std::vector<double> cut_thresholds(const run::Asset& asset, MeshId mesh, run::CutError by) {
   const format::MeshRecord& record = asset.meshes()[mesh.value];
   std::vector<double> thresholds{0.0};
   for (const format::GroupRecord& group : asset.groups().subspan(record.first_group, record.group_count)) {
     if ((group.flags & format::kGroupTerminal) != 0) continue;
-    thresholds.push_back(double{by == CutError::kQuadric ? group.quadric_error : group.error});
+    thresholds.push_back(double{by == run::CutError::kQuadric ? group.quadric_error : group.error});
   }
   std::sort(thresholds.begin(), thresholds.end());
   thresholds.erase(std::unique(thresholds.begin(), thresholds.end()), thresholds.end());
   return thresholds;
 }
 
-std::optional<FoundCut> find_fewest_triangles(CutJudge& judge, const Asset& asset, MeshId mesh,
+std::optional<FoundCut> find_fewest_triangles(CutJudge& judge, const run::Asset& asset, MeshId mesh,
                                               const CutSearch& search) {
   const auto& [by, figure, x, few_cuts, accepts] = search;
   const std::vector<double> thresholds = cut_thresholds(asset, mesh, by);
@@ -32,7 +32,7 @@ std::optional<FoundCut> find_fewest_triangles(CutJudge& judge, const Asset& asse
   // A cut that is within x and coarser than what was found becomes what was found.
   const auto is_within = [&, by = by, figure = figure, x = x, &accepts = accepts](std::size_t i) {
     ++measured;
-    UniformCut cut = select_uniform(asset, mesh, thresholds[i], by);
+    run::UniformCut cut = run::select_uniform(asset, mesh, thresholds[i], by);
     CutJudge::Limit limit;
     (figure == Figure::kMax ? limit.max : limit.rms) = x;
     const std::optional<CutFigures> figures = judge.measure_within(cut.clusters, limit);
@@ -51,7 +51,7 @@ std::optional<FoundCut> find_fewest_triangles(CutJudge& judge, const Asset& asse
   // Stored errors are near true ones, so the search starts there and steps away from it, wider and wider. In the end
   // low is within x and high is not, or does not exist. A quadric error is a few times the RMS that comes with it, a
   // measured one several times.
-  const double start = figure == Figure::kMax ? x : by == CutError::kQuadric ? 3.0 * x : 7.0 * x;
+  const double start = figure == Figure::kMax ? x : by == run::CutError::kQuadric ? 3.0 * x : 7.0 * x;
   const auto above = std::upper_bound(thresholds.begin(), thresholds.end(), start);
   std::size_t low = static_cast<std::size_t>(above - thresholds.begin()) - 1;  // x > 0 is above the first, 0
   std::size_t high = thresholds.size();

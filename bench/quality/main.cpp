@@ -110,37 +110,37 @@ bool parse(int argc, char** argv, Options& o) {
 /// One mesh with everything that its cuts are measured against.
 class MeshBench {
  public:
-  MeshBench(const SourceMesh& source, const Asset& asset, std::span<const DecodedCluster> decoded, MeshId mesh,
+  MeshBench(const scene::SourceMesh& source, const run::Asset& asset, std::span<const run::DecodedCluster> decoded, MeshId mesh,
             const Options& options)
       : asset_(asset),
         decoded_(decoded),
         mesh_(mesh),
         options_(options),
-        source_(surface_of_source(source)),
-        shaded_(shaded_surface_of_source(source)),
+        source_(judge::surface_of_source(source)),
+        shaded_(judge::shaded_surface_of_source(source)),
         judge_(source_, asset, decoded, mesh, options.samples) {}
 
-  MeshQuality run() {
+  bench::MeshQuality run() {
     const format::MeshRecord& record = asset_.meshes()[mesh_.value];
-    MeshQuality out;
+    bench::MeshQuality out;
     out.name = std::string(asset_.string(record.name));
     out.diagonal = record.diagonal;
     out.source_triangles = record.source_triangles;
-    out.tier = error_tier_name(record.error_tier);
+    out.tier = out::error_tier_name(record.error_tier);
     if (!(record.diagonal > 0.0) || source_.triangles.empty()) return out;
-    const CutError by = options_.by == "quadric" ? CutError::kQuadric : CutError::kSelection;
+    const run::CutError by = options_.by == "quadric" ? run::CutError::kQuadric : run::CutError::kSelection;
     for (int i = 0; i < options_.cuts; ++i) {
       const double share = options_.cuts > 1 ? static_cast<double>(i) / (options_.cuts - 1) : 0.0;
       const double threshold = options_.from * std::pow(options_.to / options_.from, share);
-      const UniformCut cut = select_uniform(asset_, mesh_, threshold * record.diagonal, by);
-      const CutFigures figures = judge_.measure(cut.clusters);
+      const run::UniformCut cut = run::select_uniform(asset_, mesh_, threshold * record.diagonal, by);
+      const bench::CutFigures figures = judge_.measure(cut.clusters);
       if (!out.cuts.empty() && out.cuts.back().figures.triangles == figures.triangles) continue;
       out.cuts.push_back(measured(threshold, cut, figures, options_.drift == "all"));
     }
-    for (const double x : options_.at_max) out.equal.push_back(equal(CutError::kSelection, Figure::kMax, x));
+    for (const double x : options_.at_max) out.equal.push_back(equal(run::CutError::kSelection, bench::Figure::kMax, x));
     for (const double x : options_.at_rms) {
-      out.equal.push_back(equal(CutError::kSelection, Figure::kRms, x));
-      out.equal.push_back(equal(CutError::kQuadric, Figure::kRms, x));
+      out.equal.push_back(equal(run::CutError::kSelection, bench::Figure::kRms, x));
+      out.equal.push_back(equal(run::CutError::kQuadric, bench::Figure::kRms, x));
     }
     if (options_.with_reference) add_reference(out);
     return out;
@@ -149,14 +149,14 @@ class MeshBench {
  private:
   /// One decimation from fine to coarse, measured at every step: a step is a tenth of the faces, so a count is that
   /// coarse.
-  void add_reference(MeshQuality& out) {
+  void add_reference(bench::MeshQuality& out) {
     constexpr double kStep = 0.9;
     const auto start = std::chrono::steady_clock::now();
-    ReferenceSimplifier reference(source_);
+    bench::ReferenceSimplifier reference(source_);
     out.notes.push_back("reference: OpenMesh decimater, quadric and normal flipping modules; left out before it: " +
                         std::to_string(reference.degenerate_count()) + " faces without area, refused by it: " +
                         std::to_string(reference.refused_count()) + " (complex edges or vertices)");
-    std::vector<EqualDeviation> wanted;
+    std::vector<bench::EqualDeviation> wanted;
     for (const double x : options_.at_max) wanted.push_back({"openmesh", "max", x, {}, 0, 0, 0.0});
     for (const double x : options_.at_rms) wanted.push_back({"openmesh", "rms", x, {}, 0, 0, 0.0});
     bool goes_on = !wanted.empty();
@@ -164,49 +164,49 @@ class MeshBench {
       const auto faces =
           static_cast<std::size_t>(static_cast<double>(reference.face_count()) * (steps == 1 ? 0.5 : kStep));
       goes_on = reference.decimate_to(faces);
-      const CutFigures figures = judge_.measure(reference.surface());
+      const bench::CutFigures figures = judge_.measure(reference.surface());
       bool is_any_within = false;
-      for (EqualDeviation& one : wanted) {
+      for (bench::EqualDeviation& one : wanted) {
         const double figure = (one.figure == "max" ? figures.max() : figures.rms()) / out.diagonal;
         one.cuts_measured = steps;
         // A figure may fall again, but not from far above.
         is_any_within = is_any_within || figure <= 2.0 * one.x;
-        if (figure <= one.x) one.cut = MeasuredCut{0.0, 0.0, figures, {}};
+        if (figure <= one.x) one.cut = bench::MeasuredCut{0.0, 0.0, figures, {}};
       }
       goes_on = goes_on && is_any_within && reference.face_count() > 16;
     }
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    for (EqualDeviation& one : wanted) {
+    for (bench::EqualDeviation& one : wanted) {
       one.seconds = seconds;
       out.equal.push_back(std::move(one));
     }
   }
 
-  MeasuredCut measured(double threshold, const UniformCut& cut, const CutFigures& figures, bool with_drift) {
+  bench::MeasuredCut measured(double threshold, const run::UniformCut& cut, const bench::CutFigures& figures, bool with_drift) {
     const double diagonal = asset_.meshes()[mesh_.value].diagonal;
-    MeasuredCut out{threshold, cut.stored_error / diagonal, figures, {}};
+    bench::MeasuredCut out{threshold, cut.stored_error / diagonal, figures, {}};
     if (with_drift) {
-      const DriftSurface surface(shaded_surface_of_clusters(asset_, decoded_, mesh_, cut.clusters));
+      const judge::DriftSurface surface(judge::shaded_surface_of_clusters(asset_, decoded_, mesh_, cut.clusters));
       // A seam may have moved sideways by as much as the surface has moved at all.
-      out.drift = measure_drift(shaded_, surface,
+      out.drift = judge::measure_drift(shaded_, surface,
                                 {.samples = options_.samples, .tie = 1e-7 * diagonal, .seam_reach = figures.max()});
     }
     return out;
   }
 
-  EqualDeviation equal(CutError by, Figure figure, double x) {
+  bench::EqualDeviation equal(run::CutError by, bench::Figure figure, double x) {
     const auto start = std::chrono::steady_clock::now();
     const double diagonal = asset_.meshes()[mesh_.value].diagonal;
-    EqualDeviation out{by == CutError::kQuadric ? "quadric cuts" : "cuts", figure == Figure::kMax ? "max" : "rms",
+    bench::EqualDeviation out{by == run::CutError::kQuadric ? "quadric cuts" : "cuts", figure == bench::Figure::kMax ? "max" : "rms",
                        x, {}, 0, 0, 0.0};
-    CutSearch search{by, figure, x * diagonal};
-    if (options_.normals > 0.0 && figure == Figure::kMax) {
-      search.accepts = [&](const UniformCut& cut, const CutFigures& figures) {
-        const MeasuredCut one = measured(0.0, cut, figures, true);
+    bench::CutSearch search{by, figure, x * diagonal};
+    if (options_.normals > 0.0 && figure == bench::Figure::kMax) {
+      search.accepts = [&](const run::UniformCut& cut, const bench::CutFigures& figures) {
+        const bench::MeasuredCut one = measured(0.0, cut, figures, true);
         return one.drift && std::max(one.drift->normal_a_to_b.rms, one.drift->normal_b_to_a.rms) <= options_.normals;
       };
     }
-    const auto found = find_fewest_triangles(judge_, asset_, mesh_, search);
+    const auto found = bench::find_fewest_triangles(judge_, asset_, mesh_, search);
     if (found) {
       out.cut = measured(found->threshold / diagonal, found->cut, found->figures, options_.drift != "none");
       out.cuts_measured = found->cuts_measured;
@@ -216,13 +216,13 @@ class MeshBench {
     return out;
   }
 
-  const Asset& asset_;
-  std::span<const DecodedCluster> decoded_;
+  const run::Asset& asset_;
+  std::span<const run::DecodedCluster> decoded_;
   MeshId mesh_;
   const Options& options_;
-  Surface source_;
-  DriftSurface shaded_;
-  CutJudge judge_;
+  judge::Surface source_;
+  judge::DriftSurface shaded_;
+  bench::CutJudge judge_;
 };
 
 }  // namespace
@@ -237,8 +237,8 @@ int main(int argc, char** argv) {
   const std::size_t allowed =
       threads > 0 ? threads : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, allowed);
-  const Result<Scene> scene = import_scene(options.scene, {});
-  const Result<Asset> asset = Asset::open(options.asset);
+  const Result<scene::Scene> scene = scene::import_scene(options.scene, {});
+  const Result<run::Asset> asset = run::Asset::open(options.asset);
   if (!scene || !asset) {
     std::fprintf(stderr, "%s\n", (!scene ? scene.error() : asset.error()).message().c_str());
     return 2;
@@ -247,21 +247,21 @@ int main(int argc, char** argv) {
     std::fputs("the scene and the asset have different numbers of meshes\n", stderr);
     return 2;
   }
-  const Result<std::vector<DecodedCluster>> decoded = decode_all(*asset);
+  const Result<std::vector<run::DecodedCluster>> decoded = run::decode_all(*asset);
   if (!decoded) {
     std::fprintf(stderr, "%s\n", decoded.error().message().c_str());
     return 3;
   }
-  std::vector<MeshQuality> meshes;
+  std::vector<bench::MeshQuality> meshes;
   for (std::uint32_t m = 0; m < asset->meshes().size(); ++m) {
     MeshBench bench(scene->meshes[m], *asset, *decoded, MeshId(m), options);
     meshes.push_back(bench.run());
-    std::fputs(quality_text(meshes.back()).c_str(), stdout);
+    std::fputs(bench::quality_text(meshes.back()).c_str(), stdout);
     std::fflush(stdout);
   }
   if (!options.json.empty()) {
     std::ofstream file(options.json, std::ios::binary);
-    file << quality_json(std::filesystem::path(options.scene).filename().string(),
+    file << bench::quality_json(std::filesystem::path(options.scene).filename().string(),
                          std::filesystem::path(options.asset).filename().string(), meshes);
     if (!file.flush()) {
       std::fprintf(stderr, "%s: cannot be written\n", options.json.c_str());

@@ -86,24 +86,24 @@ struct Series {
   std::uint64_t triangles = 0;
 };
 
-void measure_scene(const std::string& name, const Scene& scene, const Options& options, Series& series) {
-  PipelineReport report;
+void measure_scene(const std::string& name, const scene::Scene& scene, const Options& options, Series& series) {
+  build::PipelineReport report;
   const auto start = std::chrono::steady_clock::now();
-  auto bytes = build_lode(scene, {}, {}, report);
+  auto bytes = build::build_lode(scene, {}, {}, report);
   series.build_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   ++series.scenes;
   if (!bytes) {
     ++series.refused;
     return;
   }
-  const Result<Asset> asset = Asset::from_vector(std::move(*bytes));
+  const Result<run::Asset> asset = run::Asset::from_vector(std::move(*bytes));
   if (!asset) return;
-  const Result<std::vector<DecodedCluster>> decoded = decode_all(*asset);
+  const Result<std::vector<run::DecodedCluster>> decoded = run::decode_all(*asset);
   if (!decoded) return;
   for (std::uint32_t m = 0; m < scene.meshes.size(); ++m) {
     series.triangles += asset->meshes()[m].source_triangles;
-    for (const CutDeviation& cut :
-         measure_cuts(*asset, MeshId(m), scene.meshes[m], *decoded, options.cuts, options.samples)) {
+    for (const judge::CutDeviation& cut :
+         judge::measure_cuts(*asset, MeshId(m), scene.meshes[m], *decoded, options.cuts, options.samples)) {
       const double ratio = cut.is_above(1.0) ? cut.ratio() : std::min(cut.ratio(), 1.0);
       series.ratios.push_back(ratio);
       if (!(ratio > options.above)) continue;
@@ -130,7 +130,7 @@ bool measure_random_scenes(const Options& options, Series& series) {
     out.write(reinterpret_cast<const char*>(glb.data()), static_cast<std::streamsize>(glb.size()));
     out.close();
     is_written = out.good();
-    const Result<Scene> scene = import_scene(file, {});
+    const Result<scene::Scene> scene = scene::import_scene(file, {});
     if (scene) measure_scene("seed " + std::to_string(seed), *scene, options, series);
   }
   std::error_code ignored;
@@ -157,7 +157,7 @@ int main(int argc, char** argv) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, allowed);
   Series series;
   for (const std::string& path : options.scenes) {
-    const Result<Scene> scene = import_scene(path, {});
+    const Result<scene::Scene> scene = scene::import_scene(path, {});
     if (!scene) {
       std::fprintf(stderr, "%s\n", scene.error().message().c_str());
       return 2;
@@ -169,7 +169,7 @@ int main(int argc, char** argv) {
   if (series.ratios.empty()) return 0;
   std::printf("%zu scenes (%zu refused), %llu triangles, built in %.2f s\n", series.scenes, series.refused,
               static_cast<unsigned long long>(series.triangles), series.build_seconds);
-  std::printf("%zu cuts, margin %.3f: true/stored median %.3f, largest %.4f\n", series.ratios.size(), kMeasuredMargin,
+  std::printf("%zu cuts, margin %.3f: true/stored median %.3f, largest %.4f\n", series.ratios.size(), build::kMeasuredMargin,
               series.ratios[series.ratios.size() / 2], series.ratios.back());
   for (const double x : {0.97, 0.98, 0.99, 1.0, 1.01, 1.02, 1.05}) {
     std::printf("above %.2f: %zu (%.2f%%)\n", x, count_above(series, x),

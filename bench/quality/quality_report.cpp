@@ -21,7 +21,7 @@ __attribute__((format(printf, 2, 3))) void add(std::string& out, const char* for
 }
 
 /// The worse of both directions.
-OneWayDrift worse(const OneWayDrift& a, const OneWayDrift& b) {
+judge::OneWayDrift worse(const judge::OneWayDrift& a, const judge::OneWayDrift& b) {
   return {std::max(a.rms, b.rms), std::max(a.p99, b.p99), std::max(a.max, b.max), a.points + b.points};
 }
 
@@ -31,20 +31,20 @@ void add_cut(std::string& out, const MeasuredCut& cut, double diagonal) {
       f.rms() / diagonal, f.max_to_cut / diagonal, f.max_to_source / diagonal);
   if (cut.stored > 0.0) add(out, "  %9.3e %6.3f", cut.stored, f.max() / diagonal / cut.stored);
   if (cut.drift && cut.drift->has_normals()) {
-    const OneWayDrift n = worse(cut.drift->normal_a_to_b, cut.drift->normal_b_to_a);
+    const judge::OneWayDrift n = worse(cut.drift->normal_a_to_b, cut.drift->normal_b_to_a);
     add(out, "  normals %.2f deg rms, %.2f p99, %.1f max", n.rms, n.p99, n.max);
   }
   if (cut.drift && cut.drift->has_uvs()) {
-    const OneWayDrift u = worse(cut.drift->uv_a_to_b, cut.drift->uv_b_to_a);
+    const judge::OneWayDrift u = worse(cut.drift->uv_a_to_b, cut.drift->uv_b_to_a);
     add(out, "  UVs %.2e rms, %.2e p99, %.2e max", u.rms, u.p99, u.max);
   }
   out += "\n";
 }
 
-void write_drift(JsonWriter& w, const char* name, const OneWayDrift& there, const OneWayDrift& back) {
+void write_drift(JsonWriter& w, const char* name, const judge::OneWayDrift& there, const judge::OneWayDrift& back) {
   w.key(name);
   w.begin_object();
-  const OneWayDrift both = worse(there, back);
+  const judge::OneWayDrift both = worse(there, back);
   w.field("rms", both.rms);
   w.field("p99", both.p99);
   w.field("max", both.max);

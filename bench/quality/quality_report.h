@@ -17,7 +17,7 @@ struct MeasuredCut {
   double threshold = 0.0;  ///< share of the diagonal
   double stored = 0.0;     ///< the cut's stored error, share of the diagonal
   CutFigures figures;      ///< object units
-  std::optional<DriftReport> drift;
+  std::optional<judge::DriftReport> drift;
 };
 
 /// The fewest triangles at one deviation.

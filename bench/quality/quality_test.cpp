@@ -16,25 +16,25 @@ namespace meshlode::bench {
 namespace {
 
 struct Sample {
-  Surface source;
-  Asset asset;
-  std::vector<DecodedCluster> decoded;
+  judge::Surface source;
+  run::Asset asset;
+  std::vector<run::DecodedCluster> decoded;
 };
 
 Sample make_sample() {
-  Scene scene = samples::as_scene(samples::as_mesh(samples::make_torus(130, 66)));
+  scene::Scene scene = scene::as_scene(scene::as_mesh(scene::make_torus(130, 66)));
   for (Vec3d& p : scene.meshes[0].primitives[0].positions) p += 0.01 * glm::sin(p * 17.0);  // not too smooth
-  const Primitive& primitive = scene.meshes[0].primitives[0];
-  Surface source{primitive.positions, {}};
+  const scene::Primitive& primitive = scene.meshes[0].primitives[0];
+  judge::Surface source{primitive.positions, {}};
   for (std::size_t i = 0; i < primitive.indices.size(); i += 3) {
     source.triangles.push_back({primitive.indices[i], primitive.indices[i + 1], primitive.indices[i + 2]});
   }
-  PipelineReport report;
-  auto bytes = build_lode(scene, {}, {}, report);
+  build::PipelineReport report;
+  auto bytes = build::build_lode(scene, {}, {}, report);
   EXPECT_TRUE(bytes.ok());
-  auto asset = Asset::from_vector(std::move(*bytes));
+  auto asset = run::Asset::from_vector(std::move(*bytes));
   EXPECT_TRUE(asset.ok());
-  auto decoded = decode_all(*asset);
+  auto decoded = run::decode_all(*asset);
   EXPECT_TRUE(decoded.ok());
   return {std::move(source), std::move(*asset), std::move(*decoded)};
 }
@@ -42,13 +42,13 @@ Sample make_sample() {
 TEST(QualityBench, JudgesCutsAsMetricsDoes) {
   const Sample s = make_sample();
   CutJudge judge(s.source, s.asset, s.decoded, MeshId(0U), 50000);
-  const auto thresholds = cut_thresholds(s.asset, MeshId(0U), CutError::kSelection);
+  const auto thresholds = cut_thresholds(s.asset, MeshId(0U), run::CutError::kSelection);
   ASSERT_GT(thresholds.size(), 4U);
   for (std::size_t i = 0; i < thresholds.size(); i += 3) {
-    const UniformCut cut = select_uniform(s.asset, MeshId(0U), thresholds[i]);
-    const Surface surface = surface_of_clusters(s.asset, s.decoded, MeshId(0U), cut.clusters);
+    const run::UniformCut cut = run::select_uniform(s.asset, MeshId(0U), thresholds[i]);
+    const judge::Surface surface = judge::surface_of_clusters(s.asset, s.decoded, MeshId(0U), cut.clusters);
     const CutFigures figures = judge.measure(cut.clusters);
-    const DeviationReport expected = measure_deviation(s.source, surface, {.samples = 50000});
+    const judge::DeviationReport expected = judge::measure_deviation(s.source, surface, {.samples = 50000});
     EXPECT_EQ(figures.triangles, surface.triangles.size());
     EXPECT_DOUBLE_EQ(figures.max_to_cut, expected.a_to_b.max) << "the same samples";
     EXPECT_NEAR(figures.rms_to_cut, expected.a_to_b.rms, 1e-12 + 1e-9 * expected.a_to_b.rms);
@@ -68,7 +68,7 @@ TEST(QualityBench, JudgesCutsAsMetricsDoes) {
 TEST(QualityBench, FindsTheFewestTrianglesOverAllCuts) {
   const Sample s = make_sample();
   for (const Figure figure : {Figure::kMax, Figure::kRms}) {
-    const CutError by = figure == Figure::kMax ? CutError::kSelection : CutError::kQuadric;
+    const run::CutError by = figure == Figure::kMax ? run::CutError::kSelection : run::CutError::kQuadric;
     CutJudge judge(s.source, s.asset, s.decoded, MeshId(0U), 5000);
     struct One {
       double true_figure;
@@ -76,7 +76,7 @@ TEST(QualityBench, FindsTheFewestTrianglesOverAllCuts) {
     };
     std::vector<One> all;
     for (const double t : cut_thresholds(s.asset, MeshId(0U), by)) {
-      const CutFigures f = judge.measure(select_uniform(s.asset, MeshId(0U), t, by).clusters);
+      const CutFigures f = judge.measure(run::select_uniform(s.asset, MeshId(0U), t, by).clusters);
       all.push_back({figure == Figure::kMax ? f.max() : f.rms(), f.triangles});
     }
     for (const double x :
@@ -98,8 +98,8 @@ TEST(QualityBench, FindsTheFewestTrianglesOverAllCuts) {
 }
 
 TEST(QualityBench, TheReferenceSimplifiesAndSaysWhatItLeftOut) {
-  const Primitive shape = samples::make_torus(60, 30);
-  Surface source{shape.positions, {}};
+  const scene::Primitive shape = scene::make_torus(60, 30);
+  judge::Surface source{shape.positions, {}};
   for (std::size_t i = 0; i < shape.indices.size(); i += 3) {
     source.triangles.push_back({shape.indices[i], shape.indices[i + 1], shape.indices[i + 2]});
   }
@@ -111,13 +111,13 @@ TEST(QualityBench, TheReferenceSimplifiesAndSaysWhatItLeftOut) {
   EXPECT_EQ(reference.refused_count(), 1U);
   EXPECT_EQ(reference.face_count(), sound);
   source.triangles.resize(sound);
-  EXPECT_LT(measure_deviation(source, reference.surface(), {.samples = 5000}).max(), 1e-12);
+  EXPECT_LT(judge::measure_deviation(source, reference.surface(), {.samples = 5000}).max(), 1e-12);
   double before = 0.0;
   for (const std::size_t faces : {sound / 2, sound / 4, sound / 16}) {
     EXPECT_TRUE(reference.decimate_to(faces));
     EXPECT_LE(reference.face_count(), faces);
     EXPECT_GE(reference.face_count(), faces - 2);
-    const double deviation = measure_deviation(source, reference.surface(), {.samples = 5000}).rms();
+    const double deviation = judge::measure_deviation(source, reference.surface(), {.samples = 5000}).rms();
     EXPECT_GT(deviation, before);
     before = deviation;
   }

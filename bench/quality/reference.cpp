@@ -49,7 +49,7 @@ struct ReferenceSimplifier::State {
   std::size_t degenerate = 0, refused = 0;
 };
 
-ReferenceSimplifier::ReferenceSimplifier(const Surface& source) : state_(std::make_unique<State>()) {
+ReferenceSimplifier::ReferenceSimplifier(const judge::Surface& source) : state_(std::make_unique<State>()) {
   // Its complaints about refused faces are counted here instead.
   omerr().disable();
   Mesh& mesh = state_->mesh;
@@ -108,8 +108,8 @@ bool ReferenceSimplifier::decimate_to(std::size_t faces) {
   return face_count() < before;
 }
 
-Surface ReferenceSimplifier::surface() const {
-  Surface out;
+judge::Surface ReferenceSimplifier::surface() const {
+  judge::Surface out;
   const Mesh& mesh = state_->mesh;
   for (const auto v : mesh.vertices()) {
     const auto& p = mesh.point(v);

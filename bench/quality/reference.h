@@ -15,7 +15,7 @@ class ReferenceSimplifier {
  public:
   /// Vertices are welded by position first. Faces without area or with a repeated corner are left out before OpenMesh
   /// sees them, because it aborts on some; faces that it refuses (complex edges and vertices) are missing after.
-  explicit ReferenceSimplifier(const Surface& source);
+  explicit ReferenceSimplifier(const judge::Surface& source);
   ~ReferenceSimplifier();
   ReferenceSimplifier(const ReferenceSimplifier&) = delete;
   ReferenceSimplifier& operator=(const ReferenceSimplifier&) = delete;
@@ -25,7 +25,7 @@ class ReferenceSimplifier {
   [[nodiscard]] std::size_t face_count() const;
   /// Goes on from where it is, quadrics accumulated. False where nothing more can be collapsed.
   bool decimate_to(std::size_t faces);
-  [[nodiscard]] Surface surface() const;
+  [[nodiscard]] judge::Surface surface() const;
 
  private:
   struct State;

@@ -21,7 +21,7 @@
 #include "build/prepare/prepare.h"
 #include "build/write/write.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 namespace {
 
@@ -52,17 +52,17 @@ class StageClock {
 /// Progress of all meshes together, weighted by triangles: one level of a DAG halves what is left to do.
 class ProgressMeter {
  public:
-  ProgressMeter(const Scene& scene, const ProgressCallback& callback) : callback_(callback) {
-    for (const SourceMesh& mesh : scene.meshes) {
+  ProgressMeter(const scene::Scene& scene, const ProgressCallback& callback) : callback_(callback) {
+    for (const scene::SourceMesh& mesh : scene.meshes) {
       std::uint64_t triangles = 0;
-      for (const Primitive& primitive : mesh.primitives) triangles += primitive.indices.size() / 3;
+      for (const scene::Primitive& primitive : mesh.primitives) triangles += primitive.indices.size() / 3;
       source_triangles_.push_back(triangles);
       total_ += triangles;
       remaining_.push_back(triangles);
     }
   }
 
-  bool report(const Scene& scene, std::size_t mesh, std::uint32_t level, std::uint64_t triangles) {
+  bool report(const scene::Scene& scene, std::size_t mesh, std::uint32_t level, std::uint64_t triangles) {
     const std::lock_guard lock(mutex_);
     if (is_cancelled_) return false;
     remaining_[mesh] = std::min(remaining_[mesh], triangles);
@@ -94,7 +94,7 @@ struct BuiltMesh {
   StageClock clock;
 };
 
-std::string label_of(const SourceMesh& mesh, std::size_t index) {
+std::string label_of(const scene::SourceMesh& mesh, std::size_t index) {
   return "mesh " + std::to_string(index) + (mesh.name.empty() ? "" : " '" + mesh.name + "'");
 }
 
@@ -115,16 +115,16 @@ ErrorSource error_source_of(format::ErrorTier tier) {
 }
 
 /// The budget of each stored UV set in UV units; 0 leaves it to encode, where no texture's size is known.
-std::array<double, kMaxUvSets> uv_errors(std::span<const std::array<double, kMaxUvSets>> texels_of_materials,
-                                         const SourceMesh& source, const AttributeLayout& layout,
+std::array<double, scene::kMaxUvSets> uv_errors(std::span<const std::array<double, scene::kMaxUvSets>> texels_of_materials,
+                                         const scene::SourceMesh& source, const AttributeLayout& layout,
                                          const PipelineOptions& options) {
-  std::array<double, kMaxUvSets> errors{};
+  std::array<double, scene::kMaxUvSets> errors{};
   if (!options.uv_error_is_texels) {
     errors.fill(options.uv_error);
     return errors;
   }
   constexpr double kUsualTexels = 2048.0;  // of a texture whose size is not known
-  const std::array<double, kMaxUvSets> texels = texels_per_unit(texels_of_materials, source);
+  const std::array<double, scene::kMaxUvSets> texels = texels_per_unit(texels_of_materials, source);
   for (std::uint32_t set = 0; set < layout.uv_set_count; ++set) {
     const double known = texels[layout.uv_set_source[set]];
     if (options.uv_error_is_default) {
@@ -136,10 +136,10 @@ std::array<double, kMaxUvSets> uv_errors(std::span<const std::array<double, kMax
   return errors;
 }
 
-Result<BuiltMesh> build_mesh(const Scene& scene, std::size_t index,
-                             std::span<const std::array<double, kMaxUvSets>> texels, const PipelineOptions& options,
+Result<BuiltMesh> build_mesh(const scene::Scene& scene, std::size_t index,
+                             std::span<const std::array<double, scene::kMaxUvSets>> texels, const PipelineOptions& options,
                              ProgressMeter& progress) {
-  const SourceMesh& source = scene.meshes[index];
+  const scene::SourceMesh& source = scene.meshes[index];
   BuiltMesh built;
 
   MeshPlan plan = plan_mesh(source, scene.materials, options.attributes, label_of(source, index));
@@ -185,7 +185,7 @@ Result<BuiltMesh> build_mesh(const Scene& scene, std::size_t index,
   if (!encoded) return encoded.error();
   built.encoded = std::move(*encoded);
   for (std::uint32_t set = 0; set < mesh->layout.uv_set_count; ++set) {
-    const double asked = encode_options.uv_error[set], kept = 0.5 * exp2_exact(built.encoded.record.uv_log2[set]);
+    const double asked = encode_options.uv_error[set], kept = 0.5 * format::exp2_exact(built.encoded.record.uv_log2[set]);
     if (!(asked > 0.0) || kept <= asked) continue;
     built.decisions.push_back({label_of(source, index) + ": TEXCOORD_" + std::to_string(mesh->layout.uv_set_source[set]) + ", accuracy", true,
                                "its coordinates are so large that they are kept as finely as floats hold the largest"});
@@ -197,7 +197,7 @@ Result<BuiltMesh> build_mesh(const Scene& scene, std::size_t index,
 
 }  // namespace
 
-Result<std::vector<std::uint8_t>> build_lode(const Scene& scene, const PipelineOptions& options,
+Result<std::vector<std::uint8_t>> build_lode(const scene::Scene& scene, const PipelineOptions& options,
                                              const ProgressCallback& progress, PipelineReport& report) {
   if (options.max_cluster_triangles == 0 || options.max_cluster_triangles > format::kMaxClusterTriangles ||
       options.max_cluster_vertices < 3 || options.max_cluster_vertices > format::kMaxClusterVertices) {
@@ -236,4 +236,4 @@ Result<std::vector<std::uint8_t>> build_lode(const Scene& scene, const PipelineO
   return bytes;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -13,7 +13,7 @@
 #include "scene/scene.h"
 #include "build/plan/plan.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 
 struct PipelineOptions {
@@ -54,7 +54,7 @@ struct PipelineReport {
 };
 
 /// Thread count is the caller's: run inside a tbb::task_arena or under tbb::global_control.
-[[nodiscard]] Result<std::vector<std::uint8_t>> build_lode(const Scene& scene, const PipelineOptions& options,
+[[nodiscard]] Result<std::vector<std::uint8_t>> build_lode(const scene::Scene& scene, const PipelineOptions& options,
                                                            const ProgressCallback& progress, PipelineReport& report);
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -10,7 +10,7 @@
 #include "base/ids.h"
 #include "base/vec.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 /// See format::StuckReason: the same values.
 enum class StuckReason : std::uint32_t {
@@ -52,4 +52,4 @@ struct LodDag {
   std::uint32_t level_count = 0;
 };
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -10,7 +10,7 @@
 #include "base/byte_size.h"
 #include "base/memory.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 namespace {
 
@@ -31,7 +31,7 @@ std::uint64_t bytes_of(const std::vector<T>& values) {
   return values.size() * sizeof(T);
 }
 
-std::uint64_t bytes_of(const Primitive& primitive) {
+std::uint64_t bytes_of(const scene::Primitive& primitive) {
   std::uint64_t sum = bytes_of(primitive.positions) + bytes_of(primitive.normals) + bytes_of(primitive.colors) +
                       bytes_of(primitive.indices);
   for (const auto& uvs : primitive.uvs) sum += bytes_of(uvs);
@@ -46,15 +46,15 @@ std::uint64_t mixed(std::uint64_t z) {  // splitmix64 (Steele, Lea and Flood 201
 
 /// Distinct positions of a mesh: of those whose hash falls into a share that leaves half a million, exactly; the others are
 /// taken to be like them (Flajolet 1990).
-std::uint64_t count_positions(const SourceMesh& mesh) {
+std::uint64_t count_positions(const scene::SourceMesh& mesh) {
   constexpr std::uint64_t kSample = std::uint64_t{1} << 19U;
   std::uint64_t vertices = 0;
-  for (const Primitive& primitive : mesh.primitives) vertices += primitive.positions.size();
+  for (const scene::Primitive& primitive : mesh.primitives) vertices += primitive.positions.size();
   std::uint32_t bits = 0;
   while (vertices >> bits > kSample) ++bits;
   const std::uint64_t mask = (std::uint64_t{1} << bits) - 1;
   std::vector<std::uint64_t> seen;
-  for (const Primitive& primitive : mesh.primitives) {
+  for (const scene::Primitive& primitive : mesh.primitives) {
     for (const Vec3d& p : primitive.positions) {
       std::uint64_t hash = 0;
       for (int k = 0; k < 3; ++k) hash = mixed(hash + std::bit_cast<std::uint64_t>(p[k] + 0.0) + 0x9E3779B97F4A7C15ULL);
@@ -66,10 +66,10 @@ std::uint64_t count_positions(const SourceMesh& mesh) {
 }
 
 /// Floats of a vertex beside its position, as many as may be kept.
-std::uint64_t attribute_floats(const SourceMesh& mesh, const PipelineOptions& options) {
+std::uint64_t attribute_floats(const scene::SourceMesh& mesh, const PipelineOptions& options) {
   if (options.attributes == AttributeChoice::kNone) return 0;
   std::uint64_t floats = 0;
-  for (const Primitive& primitive : mesh.primitives) {
+  for (const scene::Primitive& primitive : mesh.primitives) {
     std::uint64_t own = primitive.normals.empty() ? 0 : 3;
     for (const auto& uvs : primitive.uvs) own += uvs.empty() ? 0 : 2;
     own += primitive.colors.empty() ? 0 : 4;
@@ -80,11 +80,11 @@ std::uint64_t attribute_floats(const SourceMesh& mesh, const PipelineOptions& op
 
 }  // namespace
 
-MeshCounts count_mesh(const SourceMesh& mesh) {
+MeshCounts count_mesh(const scene::SourceMesh& mesh) {
   const bool has_normals = std::any_of(mesh.primitives.begin(), mesh.primitives.end(),
-                                       [](const Primitive& primitive) { return !primitive.normals.empty(); });
+                                       [](const scene::Primitive& primitive) { return !primitive.normals.empty(); });
   MeshCounts counts;
-  for (const Primitive& primitive : mesh.primitives) {
+  for (const scene::Primitive& primitive : mesh.primitives) {
     counts.triangles += primitive.indices.size() / 3;
     // Beside primitives with normals, one without gets flat ones: a vertex for each corner.
     counts.vertices += has_normals && primitive.normals.empty() ? primitive.indices.size() : primitive.positions.size();
@@ -103,15 +103,15 @@ Status check_mesh_counts(const MeshCounts& counts, const std::string& mesh) {
   return Ok{};
 }
 
-std::uint64_t estimate_memory(const Scene& scene, const PipelineOptions& options, std::uint32_t threads) {
+std::uint64_t estimate_memory(const scene::Scene& scene, const PipelineOptions& options, std::uint32_t threads) {
   threads = std::max(threads, 1U);
   const bool is_measured = options.error_tier != format::ErrorTier::kQem;
   std::uint64_t sum = kProcess + kThread * threads + kDocumentByte * scene.document.size();
-  for (const SceneBlob& blob : scene.blobs) sum += 2 * bytes_of(blob.bytes);  // the scene's and the file's
+  for (const scene::SceneBlob& blob : scene.blobs) sum += 2 * bytes_of(blob.bytes);  // the scene's and the file's
   std::vector<std::uint64_t> working;
-  for (const SourceMesh& mesh : scene.meshes) {
+  for (const scene::SourceMesh& mesh : scene.meshes) {
     const MeshCounts counts = count_mesh(mesh);
-    for (const Primitive& primitive : mesh.primitives) sum += bytes_of(primitive);
+    for (const scene::Primitive& primitive : mesh.primitives) sum += bytes_of(primitive);
     sum += kKeptTriangle * counts.triangles;
     working.push_back(kTriangle * counts.triangles +
                       (is_measured ? kPosition : kPositionOfQuadric) * count_positions(mesh) +
@@ -139,4 +139,4 @@ Status check_memory(std::uint64_t estimate, const PipelineOptions& options) {
                                             : " are allowed by --max-memory")};
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -15,14 +15,14 @@
 #include "format/grid.h"
 #include "scene/scene.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 /// Which attributes a wedge carries and where they lie in its floats: normal xyz, then uv sets, then colour rgba.
 struct AttributeLayout {
   bool has_normal = false;
   bool flat_normal = false;       ///< normals are the triangles' own: has_normal is false
   std::uint32_t uv_set_count = 0;
-  std::array<std::uint8_t, kMaxUvSets> uv_set_source{};  ///< TEXCOORD_n of stored set k
+  std::array<std::uint8_t, scene::kMaxUvSets> uv_set_source{};  ///< TEXCOORD_n of stored set k
   bool has_color = false;
 
   [[nodiscard]] std::uint32_t uv_offset() const { return has_normal ? 3U : 0U; }
@@ -35,7 +35,7 @@ using WedgeTriangle = std::array<std::uint32_t, 3>;
 struct PreparedMesh {
   std::string name;
   Vec3d origin{0.0};
-  PositionGrid grid;
+  format::PositionGrid grid;
   double diagonal = 0.0;           ///< of the source's bounding box, object units
   double level0_deviation = 0.0;   ///< largest distance a vertex moved onto the grid, object units
   AttributeLayout layout;
@@ -58,4 +58,4 @@ struct PreparedMesh {
   std::uint64_t grid_collapsed = 0;      ///< kept triangles that lost their area on the grid
 };
 
-}  // namespace meshlode
+}  // namespace meshlode::build

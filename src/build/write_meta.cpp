@@ -5,7 +5,7 @@
 
 #include "build/dag/build_dag.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 namespace {
 
@@ -45,7 +45,7 @@ const char* name_of(format::Codec codec) {
 
 }  // namespace
 
-std::string meta_json(const Scene& scene, const PipelineOptions& options, const std::vector<PlanDecision>& decisions) {
+std::string meta_json(const scene::Scene& scene, const PipelineOptions& options, const std::vector<PlanDecision>& decisions) {
   Json meta;
   meta["generator"] = "meshlode 0.1.0";
   meta["source"] = {{"file", scene.source_name}, {"hash", scene.source_hash}};
@@ -68,7 +68,7 @@ std::string meta_json(const Scene& scene, const PipelineOptions& options, const 
     meta["plan"].push_back({{"what", decision.what}, {"kept", decision.kept}, {"reason", decision.reason}});
   }
   meta["left_out"] = Json::array();
-  for (const LeftOut& item : scene.left_out) meta["left_out"].push_back({{"what", item.what}, {"why", item.why}});
+  for (const scene::LeftOut& item : scene.left_out) meta["left_out"].push_back({{"what", item.what}, {"why", item.why}});
   for (const PlanDecision& decision : decisions) {
     if (!decision.kept) meta["left_out"].push_back({{"what", decision.what}, {"why", decision.reason}});
   }
@@ -76,4 +76,4 @@ std::string meta_json(const Scene& scene, const PipelineOptions& options, const 
   return meta.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

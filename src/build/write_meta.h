@@ -8,9 +8,9 @@
 #include "build/build.h"
 #include "build/plan/plan.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
-[[nodiscard]] std::string meta_json(const Scene& scene, const PipelineOptions& options,
+[[nodiscard]] std::string meta_json(const scene::Scene& scene, const PipelineOptions& options,
                                     const std::vector<PlanDecision>& decisions);
 
-}  // namespace meshlode
+}  // namespace meshlode::build

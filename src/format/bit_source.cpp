@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace meshlode {
+namespace meshlode::format {
 
 namespace {
 
@@ -92,4 +92,4 @@ bool fill_code_tables(std::span<const std::uint8_t> lengths, Meaning meaning, Co
   return true;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::format

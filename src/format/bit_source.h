@@ -11,7 +11,7 @@
 
 #include "format/prefix_code.h"
 
-namespace meshlode {
+namespace meshlode::format {
 
 static_assert(std::endian::native == std::endian::little, "bits are loaded as they lie in memory");
 
@@ -74,4 +74,4 @@ using QuickTable = std::array<std::int16_t, std::size_t{1} << kQuickBits>;
 /// False as above, and then neither table can be used.
 [[nodiscard]] bool fill_code_tables(std::span<const std::uint8_t> lengths, Meaning meaning, CodeTable& table, QuickTable& quick);
 
-}  // namespace meshlode
+}  // namespace meshlode::format

@@ -8,7 +8,7 @@
 
 #include "base/vec.h"
 
-namespace meshlode {
+namespace meshlode::format {
 
 /// 2^exponent, exact. \pre -1022 <= exponent <= 1023
 [[nodiscard]] inline double exp2_exact(int exponent) { return std::ldexp(1.0, exponent); }
@@ -30,4 +30,4 @@ struct PositionGrid {
 /// Largest |q| on a grid: float decode stays exact below 2^24.
 constexpr int kMaxGridCoordinate = (1 << 23) - 1;
 
-}  // namespace meshlode
+}  // namespace meshlode::format

@@ -11,7 +11,7 @@
 #include "format/prefix_code.h"
 #include "format/vertex_fields.h"
 
-namespace meshlode {
+namespace meshlode::format {
 
 /// Start of the stored bytes of a page whose codec is not none. Side information follows, then for kStrips the size of
 /// each stream (u32), then the streams; for kColumns the words of the clusters' bit streams.
@@ -29,8 +29,8 @@ enum class PageMethod : std::uint32_t {
 };
 
 /// \pre codec is not kNone
-[[nodiscard]] constexpr PageMethod method_of(format::Codec codec) {
-  return codec == format::Codec::kLz4 || codec == format::Codec::kZstd ? PageMethod::kColumns : PageMethod::kStrips;
+[[nodiscard]] constexpr PageMethod method_of(Codec codec) {
+  return codec == Codec::kLz4 || codec == Codec::kZstd ? PageMethod::kColumns : PageMethod::kStrips;
 }
 
 /// A slot of a strip names its vertex in one of three ways.
@@ -70,7 +70,7 @@ enum Table : std::uint32_t {
   kColorTable,
   kUvTables,       ///< one a set
 };
-constexpr std::uint32_t kMaxTables = kUvTables + format::kMaxUvSets;
+constexpr std::uint32_t kMaxTables = kUvTables + kMaxUvSets;
 
 [[nodiscard]] constexpr std::uint32_t symbol_count(std::uint32_t table) {
   return table == kTripleTable ? kTripleSymbols : table == kStartTable ? kStartSymbols : kValueSymbols;
@@ -82,16 +82,16 @@ constexpr std::uint32_t kMaxTables = kUvTables + format::kMaxUvSets;
 }
 
 /// Of the field stream at kFieldStreams + field.
-[[nodiscard]] constexpr std::uint32_t table_of_field(const format::MeshRecord& mesh, std::uint32_t field) {
+[[nodiscard]] constexpr std::uint32_t table_of_field(const MeshRecord& mesh, std::uint32_t field) {
   if (field < 3) return field < 2 ? kPositionTable : kShearTable;
-  const std::uint32_t first_uv = mesh.normal_mode == format::NormalMode::kStored ? 5U : 3U;
+  const std::uint32_t first_uv = mesh.normal_mode == NormalMode::kStored ? 5U : 3U;
   if (field < first_uv) return kNormalTable;
   const std::uint32_t set = (field - first_uv) / 2;
   return set < mesh.uv_set_count ? kUvTables + set : kColorTable;
 }
 
 /// The first streams' tables have the streams' numbers.
-[[nodiscard]] constexpr std::uint32_t table_of_stream(const format::MeshRecord& mesh, std::uint32_t stream) {
+[[nodiscard]] constexpr std::uint32_t table_of_stream(const MeshRecord& mesh, std::uint32_t stream) {
   return stream < kFieldStreams ? stream : table_of_field(mesh, stream - kFieldStreams);
 }
 
@@ -124,4 +124,4 @@ struct Gate {
   return static_cast<std::uint32_t>(static_cast<std::int32_t>(3U * (a + b) - 2U * c) >> 2);
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::format

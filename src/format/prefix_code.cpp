@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "format/prefix_code.h"
 
-namespace meshlode {
+namespace meshlode::format {
 
 namespace {
 
@@ -49,4 +49,4 @@ bool assign_codes(std::span<const std::uint8_t> lengths, std::span<std::uint16_t
   return true;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::format

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <span>
 
-namespace meshlode {
+namespace meshlode::format {
 
 constexpr std::uint32_t kMaxCodeBits = 10;     ///< so that a decoding table is 2 KiB and all of a page's fit the cache
 constexpr std::uint32_t kValueSymbols = 120;   ///< of numbers below 2^31
@@ -34,4 +34,4 @@ struct ValueToken {
 /// length 1, or none at all.
 [[nodiscard]] bool assign_codes(std::span<const std::uint8_t> lengths, std::span<std::uint16_t> codes);
 
-}  // namespace meshlode
+}  // namespace meshlode::format

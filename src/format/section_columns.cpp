@@ -8,7 +8,7 @@
 
 #include "format/bit_source.h"
 
-namespace meshlode {
+namespace meshlode::format {
 
 namespace {
 
@@ -130,4 +130,4 @@ bool decode_section(std::span<const std::uint8_t> stored, std::uint32_t record_b
   return source.is_at_end();
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::format

@@ -10,11 +10,11 @@
 
 #include "format/bit_source.h"
 
-namespace meshlode {
+namespace meshlode::format {
 
 /// SectionEntry::codec. Values are stable.
 enum class SectionCodec : std::uint32_t {
-  kNone = 0,     ///< as it is
+  kPlain = 0,    ///< as it is
   kColumns = 1,  ///< see above
 };
 
@@ -62,4 +62,4 @@ class ColumnSource {
 [[nodiscard]] bool decode_section(std::span<const std::uint8_t> stored, std::uint32_t record_bytes,
                                   std::span<std::uint8_t> out);
 
-}  // namespace meshlode
+}  // namespace meshlode::format

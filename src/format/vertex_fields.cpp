@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "format/vertex_fields.h"
 
-namespace meshlode {
+namespace meshlode::format {
 
 namespace {
-
-using format::get_bits;
 
 /// All arithmetic of the format is modulo 2^32, >> is arithmetic.
 std::uint32_t shift_right(std::uint32_t value, std::uint32_t bits) {
@@ -17,10 +15,10 @@ std::uint32_t with_sign(std::uint32_t magnitude, std::uint32_t sign) {
   return sign >> 31U != 0 ? 0U - magnitude : magnitude;
 }
 
-std::uint32_t shear(const format::ClusterLayout& layout, const std::uint32_t* raw) {
+std::uint32_t shear(const ClusterLayout& layout, const std::uint32_t* raw) {
   const std::uint32_t u = raw[layout.shear_axis == 0 ? 1 : 0];
   const std::uint32_t v = raw[layout.shear_axis == 2 ? 1 : 2];
-  return shift_right(product(layout.shear_u, u) + product(layout.shear_v, v), format::kShearShift);
+  return shift_right(product(layout.shear_u, u) + product(layout.shear_v, v), kShearShift);
 }
 
 std::uint32_t uv_fit(const UvRangeFields& range, std::size_t side, const std::uint32_t* raw) {
@@ -44,12 +42,12 @@ void unfold_far_half(std::uint32_t a, std::uint32_t b, std::uint32_t scale, std:
 
 }  // namespace
 
-void read_cluster_fields(const format::MeshRecord& mesh, const std::uint32_t* page, ClusterFields& fields,
+void read_cluster_fields(const MeshRecord& mesh, const std::uint32_t* page, ClusterFields& fields,
                          std::vector<UvRangeFields>& ranges) {
   namespace f = format::uv_range;
-  const format::ClusterLayout& layout = fields.layout;
-  const auto get = [](const std::uint32_t* words, format::BitField field) {
-    return static_cast<std::uint32_t>(format::get_field(words, field));
+  const ClusterLayout& layout = fields.layout;
+  const auto get = [](const std::uint32_t* words, BitField field) {
+    return static_cast<std::uint32_t>(get_field(words, field));
   };
   for (std::uint32_t set = 0; set < mesh.uv_set_count; ++set) {
     fields.first_range[set] = static_cast<std::uint32_t>(ranges.size());
@@ -67,8 +65,8 @@ void read_cluster_fields(const format::MeshRecord& mesh, const std::uint32_t* pa
       range.shift[1] = get(word, f::kShiftV);
       const bool has_fit = get(word, f::kHasFit) != 0;
       for (std::size_t k = 0; has_fit && k < 3; ++k) {
-        range.slope[0][k] = format::get_field(word, f::kFitU[k]);
-        range.slope[1][k] = format::get_field(word, f::kFitV[k]);
+        range.slope[0][k] = get_field(word, f::kFitU[k]);
+        range.slope[1][k] = get_field(word, f::kFitV[k]);
       }
       range.first_vertex = vertex;
       range.end_vertex = vertex += count;
@@ -80,18 +78,18 @@ void read_cluster_fields(const format::MeshRecord& mesh, const std::uint32_t* pa
   }
   if (mesh.has_color != 0) {
     for (std::size_t k = 0; k < 4; ++k) {
-      fields.color_bits[k] = get(page + layout.color_word, format::color_range::kBits[k]);
-      fields.color_minimum[k] = get(page + layout.color_word, format::color_range::kMinimum[k]);
+      fields.color_bits[k] = get(page + layout.color_word, color_range::kBits[k]);
+      fields.color_minimum[k] = get(page + layout.color_word, color_range::kMinimum[k]);
     }
   }
 }
 
 RawVertex first_field_bits(const FieldContext& context, const ClusterFields& cluster) {
-  const format::MeshRecord& mesh = context.mesh;
+  const MeshRecord& mesh = context.mesh;
   RawVertex bits{};
   std::size_t at = 0;
   for (const std::uint32_t b : cluster.layout.bits) bits[at++] = b;
-  if (mesh.normal_mode == format::NormalMode::kStored) {
+  if (mesh.normal_mode == NormalMode::kStored) {
     for (const std::uint32_t b : cluster.layout.normal_bits) bits[at++] = b;
   }
   for (std::uint32_t set = 0; set < mesh.uv_set_count; ++set) {
@@ -104,8 +102,8 @@ RawVertex first_field_bits(const FieldContext& context, const ClusterFields& clu
 }
 
 void read_raw_vertex(const FieldContext& context, const ClusterFields& cluster, std::uint32_t vertex, RawVertex& raw) {
-  const format::MeshRecord& mesh = context.mesh;
-  const format::ClusterLayout& layout = cluster.layout;
+  const MeshRecord& mesh = context.mesh;
+  const ClusterLayout& layout = cluster.layout;
   std::size_t field = 0;
   const auto take = [&](std::uint32_t bit, std::uint32_t count) {
     raw[field++] = get_bits(context.page, bit, count);
@@ -113,7 +111,7 @@ void read_raw_vertex(const FieldContext& context, const ClusterFields& cluster, 
   };
   std::uint32_t bit = layout.position_bit + vertex * (layout.bits[0] + layout.bits[1] + layout.bits[2]);
   for (const std::uint32_t bits : layout.bits) bit = take(bit, bits);
-  if (mesh.normal_mode == format::NormalMode::kStored) {
+  if (mesh.normal_mode == NormalMode::kStored) {
     bit = layout.normal_bit + vertex * (layout.normal_bits[0] + layout.normal_bits[1]);
     for (const std::uint32_t bits : layout.normal_bits) bit = take(bit, bits);
   }
@@ -131,15 +129,15 @@ void read_raw_vertex(const FieldContext& context, const ClusterFields& cluster, 
 
 void full_from_raw(const FieldContext& context, const ClusterFields& cluster, std::uint32_t vertex, const RawVertex& raw,
                    FullVertex& full) {
-  const format::MeshRecord& mesh = context.mesh;
-  const format::ClusterLayout& layout = cluster.layout;
+  const MeshRecord& mesh = context.mesh;
+  const ClusterLayout& layout = cluster.layout;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     full[axis] = static_cast<std::uint32_t>(layout.minimum[axis]) + raw[axis];
   }
   full[layout.shear_axis] += shear(layout, raw.data());
   std::size_t from = 3;
   std::size_t to = 3;
-  if (mesh.normal_mode == format::NormalMode::kStored) {
+  if (mesh.normal_mode == NormalMode::kStored) {
     const auto scale = static_cast<std::uint32_t>(mesh.normal_scale);
     const std::uint32_t pole = layout.chart / 2;
     std::uint32_t a = static_cast<std::uint32_t>(layout.normal_minimum[0]) + raw[from++] - scale;
@@ -164,15 +162,15 @@ void full_from_raw(const FieldContext& context, const ClusterFields& cluster, st
 
 void raw_from_full(const FieldContext& context, const ClusterFields& cluster, std::uint32_t vertex,
                    const FullVertex& full, RawVertex& raw) {
-  const format::MeshRecord& mesh = context.mesh;
-  const format::ClusterLayout& layout = cluster.layout;
+  const MeshRecord& mesh = context.mesh;
+  const ClusterLayout& layout = cluster.layout;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     raw[axis] = full[axis] - static_cast<std::uint32_t>(layout.minimum[axis]);
   }
   raw[layout.shear_axis] -= shear(layout, raw.data());
   std::size_t from = 3;
   std::size_t to = 3;
-  if (mesh.normal_mode == format::NormalMode::kStored) {
+  if (mesh.normal_mode == NormalMode::kStored) {
     const auto scale = static_cast<std::uint32_t>(mesh.normal_scale);
     const std::uint32_t pole = layout.chart / 2;
     std::uint32_t a = full[from + (pole + 1) % 3];
@@ -194,4 +192,4 @@ void raw_from_full(const FieldContext& context, const ClusterFields& cluster, st
   }
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::format

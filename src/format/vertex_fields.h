@@ -10,17 +10,17 @@
 #include <meshlode/format.h>
 #include <meshlode/page.h>
 
-namespace meshlode {
+namespace meshlode::format {
 
 /// Raw fields in the order of the stream: x y z · a b · u v of each set · r g b a.
-constexpr std::uint32_t kMaxFields = 3 + 2 + 2 * format::kMaxUvSets + 4;
+constexpr std::uint32_t kMaxFields = 3 + 2 + 2 * kMaxUvSets + 4;
 using RawVertex = std::array<std::uint32_t, kMaxFields>;
 /// Full integers: x y z · X Y Z · u v of each set · r g b a. Equal exactly where the vertices are.
 constexpr std::uint32_t kMaxIntegers = kMaxFields + 1;
 using FullVertex = std::array<std::uint32_t, kMaxIntegers>;
 
-[[nodiscard]] constexpr std::uint32_t field_count(const format::MeshRecord& mesh) {
-  return 3U + (mesh.normal_mode == format::NormalMode::kStored ? 2U : 0U) + 2U * mesh.uv_set_count + 4U * mesh.has_color;
+[[nodiscard]] constexpr std::uint32_t field_count(const MeshRecord& mesh) {
+  return 3U + (mesh.normal_mode == NormalMode::kStored ? 2U : 0U) + 2U * mesh.uv_set_count + 4U * mesh.has_color;
 }
 
 /// A UV range, unpacked.
@@ -32,18 +32,18 @@ struct UvRangeFields {
 
 /// Everything that turns a cluster's bits into integers.
 struct ClusterFields {
-  format::ClusterLayout layout;
-  std::uint32_t first_range[format::kMaxUvSets] = {};  ///< of each UV set, into the page's ranges
+  ClusterLayout layout;
+  std::uint32_t first_range[kMaxUvSets] = {};  ///< of each UV set, into the page's ranges
   std::uint32_t color_bits[4] = {}, color_minimum[4] = {};
 };
 
 /// Appends the cluster's UV ranges to `ranges`. \pre fields.layout was read without complaint from this page
-void read_cluster_fields(const format::MeshRecord& mesh, const std::uint32_t* page, ClusterFields& fields,
+void read_cluster_fields(const MeshRecord& mesh, const std::uint32_t* page, ClusterFields& fields,
                          std::vector<UvRangeFields>& ranges);
 
 /// One mesh's page at work: what all conversions need.
 struct FieldContext {
-  const format::MeshRecord& mesh;
+  const MeshRecord& mesh;
   const std::uint32_t* page;
   const std::vector<UvRangeFields>& ranges;
 };
@@ -62,4 +62,4 @@ void full_from_raw(const FieldContext& context, const ClusterFields& cluster, st
 void raw_from_full(const FieldContext& context, const ClusterFields& cluster, std::uint32_t vertex,
                    const FullVertex& full, RawVertex& out);
 
-}  // namespace meshlode
+}  // namespace meshlode::format

@@ -10,7 +10,7 @@
 #include "base/ids.h"
 #include "base/vec.h"
 
-namespace meshlode {
+namespace meshlode::scene {
 
 constexpr std::size_t kMaxUvSets = 4;
 
@@ -91,4 +91,4 @@ struct Scene {
   std::vector<LeftOut> left_out;
 };
 
-}  // namespace meshlode
+}  // namespace meshlode::scene

@@ -18,7 +18,7 @@ struct Arrays {
   std::vector<float> uvs;
   std::vector<std::uint32_t> indices;
 
-  explicit Arrays(const Primitive& shape) : indices(shape.indices) {
+  explicit Arrays(const scene::Primitive& shape) : indices(shape.indices) {
     for (const Vec3d& p : shape.positions) {
       for (int c = 0; c < 3; ++c) {
         exact.push_back(p[c]);

@@ -23,7 +23,7 @@ using test::build_one;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 Arrays sphere(std::uint32_t n = 24) {
-  return Arrays(samples::with_smooth_normals(samples::make_sphere(n)));
+  return Arrays(scene::with_smooth_normals(scene::make_sphere(n)));
 }
 
 void expect_refused(const Result<std::vector<std::uint8_t>>& result, ErrorCode code, const std::string& place) {
@@ -34,7 +34,7 @@ void expect_refused(const Result<std::vector<std::uint8_t>>& result, ErrorCode c
 
 TEST(ApiBuild, ASphereBecomesAnAssetWithOneMeshAndItsTriangles) {
   const Arrays arrays = sphere();
-  auto bytes = build_one(arrays.primitive());
+  auto bytes = test::build_one(arrays.primitive());
   ASSERT_TRUE(bytes.ok()) << bytes.error().message();
   auto asset = AssetFile::take(std::move(*bytes));
   ASSERT_TRUE(asset.ok()) << asset.error().message();
@@ -51,10 +51,10 @@ TEST(ApiBuild, FloatAndDoublePositionsOfTheSameValuesDecodeAlike) {
   const Arrays arrays = sphere(8);
   const std::vector<double> widened(arrays.positions.begin(), arrays.positions.end());
   PrimitiveInput primitive = arrays.primitive();
-  const auto from_float = build_one(primitive);
+  const auto from_float = test::build_one(primitive);
   primitive.positions = {};
   primitive.positions_double = widened;
-  const auto from_double = build_one(primitive);
+  const auto from_double = test::build_one(primitive);
   ASSERT_TRUE(from_float.ok() && from_double.ok());
   const auto a = AssetFile::view(*from_float);
   const auto b = AssetFile::view(*from_double);
@@ -66,40 +66,40 @@ TEST(ApiBuild, ArraysThatDoNotFitAreRefusedWithTheirPlace) {
   const Arrays good = sphere(4);
   PrimitiveInput p = good.primitive();
   p.positions = p.positions.first(p.positions.size() - 1);
-  expect_refused(build_one(p), ErrorCode::kInvalid, "meshes[0].primitives[0].positions");
+  expect_refused(test::build_one(p), ErrorCode::kInvalid, "meshes[0].primitives[0].positions");
   p = good.primitive();
   p.normals = p.normals.first(p.normals.size() - 3);
-  expect_refused(build_one(p), ErrorCode::kInvalid, "meshes[0].primitives[0].normals");
+  expect_refused(test::build_one(p), ErrorCode::kInvalid, "meshes[0].primitives[0].normals");
   p = good.primitive();
   p.uvs[2] = p.positions.first(2);
-  expect_refused(build_one(p), ErrorCode::kInvalid, "primitives[0].uvs[2]");
+  expect_refused(test::build_one(p), ErrorCode::kInvalid, "primitives[0].uvs[2]");
   p = good.primitive();
   p.colors = p.positions.first(4);
-  expect_refused(build_one(p), ErrorCode::kInvalid, "primitives[0].colors");
+  expect_refused(test::build_one(p), ErrorCode::kInvalid, "primitives[0].colors");
   p = good.primitive();
   p.indices = p.indices.first(p.indices.size() - 1);
-  expect_refused(build_one(p), ErrorCode::kInvalid, "primitives[0].indices");
+  expect_refused(test::build_one(p), ErrorCode::kInvalid, "primitives[0].indices");
   p = good.primitive();
   p.positions_double = good.exact;
-  expect_refused(build_one(p), ErrorCode::kInvalid, "meshes[0].primitives[0]");
+  expect_refused(test::build_one(p), ErrorCode::kInvalid, "meshes[0].primitives[0]");
   p = good.primitive();
   p.material = 0;
-  expect_refused(build_one(p), ErrorCode::kInvalid, "primitives[0].material");
+  expect_refused(test::build_one(p), ErrorCode::kInvalid, "primitives[0].material");
 }
 
 TEST(ApiBuild, BadNumbersAreRefusedWithTheirPlace) {
   Arrays bad = sphere(4);
   bad.positions[7] = kNan;
-  expect_refused(build_one(bad.primitive()), ErrorCode::kInvalid, "positions[7]");
+  expect_refused(test::build_one(bad.primitive()), ErrorCode::kInvalid, "positions[7]");
   bad = sphere(4);
   bad.positions[8] = std::numeric_limits<float>::infinity();
-  expect_refused(build_one(bad.primitive()), ErrorCode::kInvalid, "positions[8]");
+  expect_refused(test::build_one(bad.primitive()), ErrorCode::kInvalid, "positions[8]");
   bad = sphere(4);
   bad.normals[3] = kNan;
-  expect_refused(build_one(bad.primitive()), ErrorCode::kInvalid, "normals[3]");
+  expect_refused(test::build_one(bad.primitive()), ErrorCode::kInvalid, "normals[3]");
   bad = sphere(4);
   bad.indices[5] = static_cast<std::uint32_t>(bad.positions.size() / 3);
-  expect_refused(build_one(bad.primitive()), ErrorCode::kInvalid, "indices[5]");
+  expect_refused(test::build_one(bad.primitive()), ErrorCode::kInvalid, "indices[5]");
 }
 
 TEST(ApiBuild, RepairDropsAndCountsWhatTouchesABadNumberOrIndex) {
@@ -116,7 +116,7 @@ TEST(ApiBuild, RepairDropsAndCountsWhatTouchesABadNumberOrIndex) {
   bad.indices[bad.indices.size() - 1] = 0xFFFFFFFFU;  // one more triangle, far from the first
   BuildOptions options;
   options.repair = true;
-  auto bytes = build_one(bad.primitive(), options);
+  auto bytes = test::build_one(bad.primitive(), options);
   ASSERT_TRUE(bytes.ok()) << bytes.error().message();
   const auto asset = AssetFile::take(std::move(*bytes));
   ASSERT_TRUE(asset.ok());
@@ -151,10 +151,10 @@ TEST(ApiBuild, OptionsThatMakeNoSenseAreUsageErrors) {
   const Arrays arrays = sphere(4);
   BuildOptions options;
   options.grid_step = -1.0;
-  expect_refused(build_one(arrays.primitive(), options), ErrorCode::kUsage, "grid_step");
+  expect_refused(test::build_one(arrays.primitive(), options), ErrorCode::kUsage, "grid_step");
   options = {};
   options.strip_attributes = options.keep_all_attributes = true;
-  expect_refused(build_one(arrays.primitive(), options), ErrorCode::kUsage, "strip_attributes");
+  expect_refused(test::build_one(arrays.primitive(), options), ErrorCode::kUsage, "strip_attributes");
 }
 
 TEST(ApiBuild, EveryErrorTierIsStored) {
@@ -162,7 +162,7 @@ TEST(ApiBuild, EveryErrorTierIsStored) {
   for (const auto tier : {format::ErrorTier::kQem, format::ErrorTier::kMeasured, format::ErrorTier::kCertified}) {
     BuildOptions options;
     options.error_tier = tier;
-    const auto built = build_one(arrays.primitive(), options);
+    const auto built = test::build_one(arrays.primitive(), options);
     ASSERT_TRUE(built.ok()) << built.error().message();
     const auto file = AssetFile::view(*built);
     ASSERT_TRUE(file.ok()) << file.error().message();
@@ -228,12 +228,12 @@ TEST(ApiBuild, CancelEndsTheBuildAtItsNextQuestion) {
   const Arrays arrays = sphere(40);
   BuildOptions options;
   options.should_cancel = [] { return true; };
-  auto result = build_one(arrays.primitive(), options);
+  auto result = test::build_one(arrays.primitive(), options);
   ASSERT_FALSE(result.ok());
   EXPECT_EQ(result.error().code, ErrorCode::kBuildFailed);
   int questions = 0;
   options.should_cancel = [&] { return ++questions > 2; };
-  result = build_one(arrays.primitive(), options);
+  result = test::build_one(arrays.primitive(), options);
   ASSERT_FALSE(result.ok()) << "a mesh of several levels asks more than twice";
   EXPECT_EQ(result.error().code, ErrorCode::kBuildFailed);
 }
@@ -251,7 +251,7 @@ TEST(ApiBuild, ProgressNeverFallsAndNamesTheMesh) {
     EXPECT_EQ(progress.mesh_name, "one");
     last = progress.fraction;
   };
-  ASSERT_TRUE(build_one(arrays.primitive(), options).ok());
+  ASSERT_TRUE(test::build_one(arrays.primitive(), options).ok());
   EXPECT_GT(events, 0);
 }
 
@@ -259,11 +259,11 @@ TEST(ApiBuild, AThrowingCallbackIsAnError) {
   const Arrays arrays = sphere(8);
   BuildOptions options;
   options.on_progress = [](const BuildProgress&) { throw std::runtime_error("from the callback"); };
-  const auto result = build_one(arrays.primitive(), options);
+  const auto result = test::build_one(arrays.primitive(), options);
   ASSERT_FALSE(result.ok());
   EXPECT_EQ(result.error().code, ErrorCode::kBuildFailed);
   options.on_progress = [](const BuildProgress&) { throw 7; };  // NOLINT: what no library throws
-  const auto odd = build_one(arrays.primitive(), options);
+  const auto odd = test::build_one(arrays.primitive(), options);
   ASSERT_FALSE(odd.ok());
   EXPECT_EQ(odd.error().code, ErrorCode::kBuildFailed);
 }
@@ -271,16 +271,16 @@ TEST(ApiBuild, AThrowingCallbackIsAnError) {
 // METIS draws from the C library's rand(): builds at the same time must not disturb each other (I10).
 TEST(ApiBuild, BuildsAtTheSameTimeGiveTheBytesOfBuildsOneAfterTheOther) {
   const Arrays a = sphere(48);
-  const Arrays b(samples::make_torus(96, 40));
-  const auto a_alone = build_one(a.primitive());
-  const auto b_alone = build_one(b.primitive());
+  const Arrays b(scene::make_torus(96, 40));
+  const auto a_alone = test::build_one(a.primitive());
+  const auto b_alone = test::build_one(b.primitive());
   ASSERT_TRUE(a_alone.ok() && b_alone.ok());
   for (int round = 0; round < 3; ++round) {
     std::array<std::vector<std::uint8_t>, 4> together;
     std::vector<std::thread> threads;
     for (std::size_t i = 0; i < together.size(); ++i) {
       threads.emplace_back([&, i] {
-        auto built = build_one(i % 2 == 0 ? a.primitive() : b.primitive());
+        auto built = test::build_one(i % 2 == 0 ? a.primitive() : b.primitive());
         if (built) together[i] = std::move(*built);
       });
     }
@@ -297,7 +297,7 @@ TEST(ApiBuild, ThreadCountDoesNotReachTheBytes) {
   for (const std::uint32_t threads : {1U, 2U, 4U}) {
     BuildOptions options;
     options.thread_count = threads;
-    auto built = build_one(a.primitive(), options);
+    auto built = test::build_one(a.primitive(), options);
     ASSERT_TRUE(built.ok());
     if (first.empty())
       first = std::move(*built);

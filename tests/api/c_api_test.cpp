@@ -28,7 +28,7 @@ const std::vector<std::uint8_t>& sphere_bytes(format::Codec codec) {
   static std::map<format::Codec, std::vector<std::uint8_t>> made;
   std::vector<std::uint8_t>& bytes = made[codec];
   if (bytes.empty()) {
-    const Arrays arrays(samples::with_smooth_normals(samples::make_sphere(48)));
+    const Arrays arrays(scene::with_smooth_normals(scene::make_sphere(48)));
     std::vector<float> colors;
     for (const float c : arrays.positions) {
       colors.push_back(0.5F + 0.25F * c);
@@ -38,7 +38,7 @@ const std::vector<std::uint8_t>& sphere_bytes(format::Codec codec) {
     primitive.colors = colors;
     BuildOptions options;
     options.codec = codec;
-    auto built = build_one(primitive, options);
+    auto built = test::build_one(primitive, options);
     if (built) bytes = std::move(*built);
   }
   return bytes;

@@ -26,10 +26,10 @@ const std::vector<std::uint8_t>& sphere_bytes(format::Codec codec = format::Code
   static std::map<format::Codec, std::vector<std::uint8_t>> made;
   std::vector<std::uint8_t>& bytes = made[codec];
   if (bytes.empty()) {
-    const Arrays arrays(samples::with_smooth_normals(samples::make_sphere(40)));
+    const Arrays arrays(scene::with_smooth_normals(scene::make_sphere(40)));
     BuildOptions options;
     options.codec = codec;
-    auto built = build_one(arrays.primitive(), options);
+    auto built = test::build_one(arrays.primitive(), options);
     if (built) bytes = std::move(*built);
   }
   return bytes;

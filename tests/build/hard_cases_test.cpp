@@ -21,7 +21,7 @@
 #include "judge/validate/validate.h"
 #include "judge/verify/verify.h"
 
-namespace meshlode {
+namespace meshlode::build {
 namespace {
 
 constexpr double kMaxBuildSeconds = 20.0;  // an hour-glass, not a benchmark: these scenes have a few thousand triangles
@@ -29,27 +29,27 @@ constexpr double kMaxBuildSeconds = 20.0;  // an hour-glass, not a benchmark: th
 struct HardCase {
   friend void PrintTo(const HardCase& hard_case, std::ostream* out) { *out << hard_case.name; }
   const char* name;
-  std::function<Scene()> make;
+  std::function<scene::Scene()> make;
   /// Where few random triangles cross each other everywhere, the samples of the measured tier have missed a maximum by a
   /// fifth, and certifying takes minutes: there the deviation is not checked.
   format::ErrorTier tier = format::ErrorTier::kMeasured;
 };
 
-Scene alone(Primitive shape) {
-  return samples::as_scene(samples::as_mesh(std::move(shape)));
+scene::Scene alone(scene::Primitive shape) {
+  return scene::as_scene(scene::as_mesh(std::move(shape)));
 }
 
 /// Fails for findings, at most five in words.
-void expect_nothing(const std::vector<Finding>& findings, std::uint64_t count) {
+void expect_nothing(const std::vector<judge::Finding>& findings, std::uint64_t count) {
   EXPECT_EQ(count, 0U);
   for (std::size_t i = 0; i < std::min<std::size_t>(findings.size(), 5); ++i) {
-    const Finding& f = findings[i];
+    const judge::Finding& f = findings[i];
     ADD_FAILURE() << f.id << ' ' << f.invariant << ' ' << f.where << ": " << f.detail;
   }
 }
 
 /// Builds, validates and verifies; returns the bytes.
-std::vector<std::uint8_t> prove(const Scene& scene, const PipelineOptions& options = {}) {
+std::vector<std::uint8_t> prove(const scene::Scene& scene, const PipelineOptions& options = {}) {
   const auto start = std::chrono::steady_clock::now();
   PipelineReport report;
   auto bytes = build_lode(scene, options, {}, report);
@@ -59,24 +59,24 @@ std::vector<std::uint8_t> prove(const Scene& scene, const PipelineOptions& optio
     ADD_FAILURE() << bytes.error().message();
     return {};
   }
-  const ValidationReport validation = validate_asset(*bytes);
+  const judge::ValidationReport validation = judge::validate_asset(*bytes);
   expect_nothing(validation.findings, validation.finding_count);
-  const auto asset = Asset::from_bytes(*bytes);
+  const auto asset = run::Asset::from_bytes(*bytes);
   if (!asset) {
     ADD_FAILURE() << asset.error().message();
     return {};
   }
-  VerifyOptions verify_options;
+  judge::VerifyOptions verify_options;
   verify_options.uniform_cuts = 40;
   verify_options.cameras = 20;
   // In a scene whose triangles all cross each other a distance costs a look at every one.
   verify_options.deviation_cuts = 6;
   verify_options.deviation_samples = 20000;
-  const VerifyReport verification = verify_asset(*asset, scene, verify_options);
+  const judge::VerifyReport verification = judge::verify_asset(*asset, scene, verify_options);
   expect_nothing(verification.findings, verification.finding_count);
   for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
     std::uint64_t triangles = 0;
-    for (const Primitive& primitive : scene.meshes[m].primitives) triangles += primitive.indices.size() / 3;
+    for (const scene::Primitive& primitive : scene.meshes[m].primitives) triangles += primitive.indices.size() / 3;
     const format::MeshRecord& mesh = asset->meshes()[m];
     std::uint64_t finest = 0;
     for (const auto& cluster : asset->clusters().subspan(mesh.first_cluster, mesh.cluster_count)) {
@@ -96,23 +96,23 @@ TEST_P(HardCases, BuildsValidatesAndVerifies) {
   EXPECT_FALSE(bytes.empty());
 }
 
-Scene mirrored_instances() {
-  Scene scene = alone(samples::with_smooth_normals(samples::make_torus(48, 24)));
+scene::Scene mirrored_instances() {
+  scene::Scene scene = alone(scene::with_smooth_normals(scene::make_torus(48, 24)));
   for (int axes = 0; axes < 8; ++axes) {
-    SceneInstance instance = scene.instances.at(0);
+    scene::SceneInstance instance = scene.instances.at(0);
     for (int a = 0; a < 3; ++a) instance.transform[a][a] = (axes >> a & 1) != 0 ? -1.0 - a : 1.0;
     instance.transform[3] = {3.0 * axes, 0.0, 0.0, 1.0};
     scene.instances.push_back(instance);
   }
-  SceneInstance singular = scene.instances.at(0);
+  scene::SceneInstance singular = scene.instances.at(0);
   singular.transform[1] = {0.0, 0.0, 0.0, 0.0};
   scene.instances.push_back(singular);
   return scene;
 }
 
 /// A rock with needles along its edges: an edge long and far narrower than a cell of the grid.
-Scene rock_with_needles() {
-  Primitive shape = samples::make_rock(16);
+scene::Scene rock_with_needles() {
+  scene::Primitive shape = scene::make_rock(16);
   const std::size_t triangles = shape.indices.size() / 3;
   for (std::size_t t = 0; t < triangles; t += 3) {
     const std::uint32_t a = shape.indices[3 * t];
@@ -126,60 +126,60 @@ Scene rock_with_needles() {
   return alone(std::move(shape));
 }
 
-Scene two_scales() {
-  Scene scene = alone(samples::scaled(samples::make_sphere(12), 1e-6));
-  scene.meshes.push_back(samples::as_mesh(samples::scaled(samples::make_sphere(12), 1e9), "huge"));
-  SceneInstance instance = scene.instances.at(0);
+scene::Scene two_scales() {
+  scene::Scene scene = alone(scene::scaled(scene::make_sphere(12), 1e-6));
+  scene.meshes.push_back(scene::as_mesh(scene::scaled(scene::make_sphere(12), 1e9), "huge"));
+  scene::SceneInstance instance = scene.instances.at(0);
   instance.mesh = MeshId(1U);
   scene.instances.push_back(instance);
   return scene;
 }
 
-Scene empty_mesh_among_others() {
-  Scene scene = alone(samples::make_sphere(8));
+scene::Scene empty_mesh_among_others() {
+  scene::Scene scene = alone(scene::make_sphere(8));
   scene.meshes.emplace_back().name = "empty";
-  scene.meshes.push_back(samples::as_mesh(samples::make_cube(3), "cube"));
+  scene.meshes.push_back(scene::as_mesh(scene::make_cube(3), "cube"));
   for (std::uint32_t m = 1; m < 3; ++m) {
-    SceneInstance instance = scene.instances.at(0);
+    scene::SceneInstance instance = scene.instances.at(0);
     instance.mesh = MeshId(m);
     scene.instances.push_back(instance);
   }
   return scene;
 }
 
-Scene empty_primitive() {
-  Scene scene = alone(samples::make_sphere(8));
-  Primitive empty;
+scene::Scene empty_primitive() {
+  scene::Scene scene = alone(scene::make_sphere(8));
+  scene::Primitive empty;
   empty.material = MaterialId(0U);
   scene.meshes[0].primitives.insert(scene.meshes[0].primitives.begin(), empty);
   return scene;
 }
 
 const HardCase kCases[] = {
-    {"Sphere", [] { return alone(samples::make_sphere(24)); }},
-    {"FarPlane", [] { return alone(samples::make_far_plane(40)); }},
-    {"Tiny", [] { return alone(samples::scaled(samples::make_rock(16), 1e-6)); }},
-    {"Huge", [] { return alone(samples::scaled(samples::make_rock(16), 1e9)); }},
-    {"LargerThanFloatsSquare", [] { return alone(samples::scaled(samples::make_sphere(16), 1e25)); }},
+    {"Sphere", [] { return alone(scene::make_sphere(24)); }},
+    {"FarPlane", [] { return alone(scene::make_far_plane(40)); }},
+    {"Tiny", [] { return alone(scene::scaled(scene::make_rock(16), 1e-6)); }},
+    {"Huge", [] { return alone(scene::scaled(scene::make_rock(16), 1e9)); }},
+    {"LargerThanFloatsSquare", [] { return alone(scene::scaled(scene::make_sphere(16), 1e25)); }},
     {"TinyAndHugeTogether", two_scales},
-    {"ZeroAreas", [] { return alone(samples::make_zero_areas(16)); }},
-    {"Duplicates", [] { return alone(samples::make_duplicates(16)); }},
-    {"Slivers", [] { return alone(samples::make_slivers(3000)); }},
+    {"ZeroAreas", [] { return alone(scene::make_zero_areas(16)); }},
+    {"Duplicates", [] { return alone(scene::make_duplicates(16)); }},
+    {"Slivers", [] { return alone(scene::make_slivers(3000)); }},
     {"Needles", rock_with_needles},
     {"FineRingsBesideAPatch", [] { return alone(test::make_fine_rings_beside_a_patch(3)); }},
     {"FineRingsCertified", [] { return alone(test::make_fine_rings_beside_a_patch(4)); }, format::ErrorTier::kCertified},
     {"BallWithHairs", [] { return alone(test::make_ball_with_hairs()); }},
     {"BallWithHairsCertified", [] { return alone(test::make_ball_with_hairs()); }, format::ErrorTier::kCertified},
     {"CubeWithTJunctions", [] { return alone(test::make_cube_with_t_junctions()); }},
-    {"SplitNormals", [] { return alone(samples::with_split_normals(samples::make_rock(16))); }},
-    {"Crystal", [] { return alone(samples::make_crystal(5, 12)); }},
-    {"ThreeSheets", [] { return alone(samples::make_three_sheets(24)); }},
-    {"DoubleCone", [] { return alone(samples::make_double_cone(400)); }},
-    {"Moebius", [] { return alone(samples::make_moebius(200, 8)); }},
-    {"Blade", [] { return alone(samples::make_blade(24)); }},
-    {"BoxSoup", [] { return alone(samples::make_box_soup(300)); }},
-    {"ThousandLoosePieces", [] { return alone(samples::make_loose_pieces(1000)); }},
-    {"Foliage", [] { return alone(samples::make_foliage(1500)); }},
+    {"SplitNormals", [] { return alone(scene::with_split_normals(scene::make_rock(16))); }},
+    {"Crystal", [] { return alone(scene::make_crystal(5, 12)); }},
+    {"ThreeSheets", [] { return alone(scene::make_three_sheets(24)); }},
+    {"DoubleCone", [] { return alone(scene::make_double_cone(400)); }},
+    {"Moebius", [] { return alone(scene::make_moebius(200, 8)); }},
+    {"Blade", [] { return alone(scene::make_blade(24)); }},
+    {"BoxSoup", [] { return alone(scene::make_box_soup(300)); }},
+    {"ThousandLoosePieces", [] { return alone(scene::make_loose_pieces(1000)); }},
+    {"Foliage", [] { return alone(scene::make_foliage(1500)); }},
     {"Fan10000", [] { return alone(test::make_fan(10000)); }},
     {"Triangle", [] { return alone(test::make_triangle()); }},
     {"Identical", [] { return alone(test::make_identical(3000)); }},
@@ -188,44 +188,44 @@ const HardCase kCases[] = {
     {"CoincidentSpheres", [] { return alone(test::make_coincident_spheres(12, 4)); }},
     {"LineOfTriangles", [] { return alone(test::make_line_of_triangles(500)); }},
     {"Cards", [] { return alone(test::make_cards(12000, 2)); }},
-    {"OpenTerrain", [] { return alone(samples::make_terrain(96, 96)); }},
+    {"OpenTerrain", [] { return alone(scene::make_terrain(96, 96)); }},
     {"LatticeChaos", [] { return alone(test::make_lattice_chaos(1500, 6, 5)); }},
     {"LatticeChaosSparse", [] { return alone(test::make_lattice_chaos(1000, 12, 6)); }},
     {"MirroredInstances", mirrored_instances},
     {"EmptyMeshAmongOthers", empty_mesh_among_others},
     {"EmptyPrimitive", empty_primitive},
-    {"NoMesh", [] { return Scene{}; }},
+    {"NoMesh", [] { return scene::Scene{}; }},
 };
 
 INSTANTIATE_TEST_SUITE_P(Pipeline, HardCases, testing::ValuesIn(kCases),
                          [](const auto& param_info) { return std::string(param_info.param.name); });
 
 /// The rules that the asset breaks against another source.
-std::set<std::string> rules_broken(const Asset& asset, const Scene& source) {
-  const VerifyReport report = verify_asset(asset, source, {.uniform_cuts = 1, .cameras = 1, .deviation_cuts = 0});
+std::set<std::string> rules_broken(const run::Asset& asset, const scene::Scene& source) {
+  const judge::VerifyReport report = judge::verify_asset(asset, source, {.uniform_cuts = 1, .cameras = 1, .deviation_cuts = 0});
   std::set<std::string> rules;
-  for (const Finding& finding : report.findings) rules.insert(finding.id);
+  for (const judge::Finding& finding : report.findings) rules.insert(finding.id);
   return rules;
 }
 
 TEST(HardNumbers, AChangedNeedleIsFoundHoweverManyShareItsCell) {
   // Thousands of triangles in few cells, many of them moved apart: each of these is another source all the same.
-  const Primitive shape = test::make_fine_rings_beside_a_patch(5);
+  const scene::Primitive shape = test::make_fine_rings_beside_a_patch(5);
   const auto bytes = prove(alone(shape));
-  const auto asset = Asset::from_bytes(bytes);
+  const auto asset = run::Asset::from_bytes(bytes);
   ASSERT_TRUE(asset.ok());
   ASSERT_TRUE(rules_broken(*asset, alone(shape)).empty());
   const format::MeshRecord& mesh = asset->meshes()[0];
   const double step = std::ldexp(mesh.grid.mantissa, mesh.grid.log2);
-  const std::size_t first_ring = samples::make_plane(12).positions.size();
-  samples::Random random(6);
+  const std::size_t first_ring = scene::make_plane(12).positions.size();
+  scene::Random random(6);
   for (int round = 0; round < 40; ++round) {
-    Primitive moved = shape;
+    scene::Primitive moved = shape;
     const auto vertex = first_ring + random.below(static_cast<std::uint32_t>(shape.positions.size() - first_ring));
     moved.positions[vertex][static_cast<int>(random.below(3))] += round % 2 == 0 ? 3.0 * step : -3.0 * step;
     EXPECT_TRUE(rules_broken(*asset, alone(moved)).contains("V101")) << "vertex " << vertex;
 
-    Primitive lost = shape;
+    scene::Primitive lost = shape;
     const auto triangle = random.below(static_cast<std::uint32_t>(shape.indices.size() / 3));
     const auto at = lost.indices.begin() + static_cast<std::ptrdiff_t>(3 * triangle);
     const bool is_degenerate = at[1] == at[2];
@@ -235,11 +235,11 @@ TEST(HardNumbers, AChangedNeedleIsFoundHoweverManyShareItsCell) {
 }
 
 TEST(HardNumbers, HairsWithoutAreaAreCountedAndNothingElseChanges) {
-  const Primitive shape = test::make_ball_with_hairs();
-  Primitive ball = shape;
-  ball.indices.resize(samples::make_sphere(16).indices.size());
+  const scene::Primitive shape = test::make_ball_with_hairs();
+  scene::Primitive ball = shape;
+  ball.indices.resize(scene::make_sphere(16).indices.size());
   const auto bytes = prove(alone(shape)), ball_bytes = prove(alone(ball));
-  const auto asset = Asset::from_bytes(bytes), ball_asset = Asset::from_bytes(ball_bytes);
+  const auto asset = run::Asset::from_bytes(bytes), ball_asset = run::Asset::from_bytes(ball_bytes);
   ASSERT_TRUE(asset.ok() && ball_asset.ok());
   const format::MeshRecord &mesh = asset->meshes()[0], &other = ball_asset->meshes()[0];
   EXPECT_EQ(mesh.dropped_degenerate, 4U);
@@ -250,7 +250,7 @@ TEST(HardNumbers, HairsWithoutAreaAreCountedAndNothingElseChanges) {
 
 TEST(HardNumbers, TrianglesWithoutAreaThatCloseASurfaceStay) {
   const auto bytes = prove(alone(test::make_cube_with_t_junctions()));
-  const auto asset = Asset::from_bytes(bytes);
+  const auto asset = run::Asset::from_bytes(bytes);
   ASSERT_TRUE(asset.ok());
   EXPECT_EQ(asset->meshes()[0].dropped_degenerate, 0U);
   EXPECT_EQ(asset->meshes()[0].grid_collapsed, 6U);
@@ -258,7 +258,7 @@ TEST(HardNumbers, TrianglesWithoutAreaThatCloseASurfaceStay) {
 
 TEST(HardNumbers, AllIdenticalTrianglesAreOneTriangleAndTheRestIsCounted) {
   const auto bytes = prove(alone(test::make_identical(3000)));
-  const auto asset = Asset::from_bytes(bytes);
+  const auto asset = run::Asset::from_bytes(bytes);
   ASSERT_TRUE(asset.ok());
   EXPECT_EQ(asset->meshes()[0].source_triangles, 3000U);
   EXPECT_EQ(asset->meshes()[0].dropped_duplicate, 2999U);
@@ -267,7 +267,7 @@ TEST(HardNumbers, AllIdenticalTrianglesAreOneTriangleAndTheRestIsCounted) {
 // Spheres and errors are stored as floats: what they cannot hold is refused, not rounded to zero.
 TEST(HardNumbers, AMeshSmallerThanFloatsIsRefusedWithALine) {
   PipelineReport report;
-  const auto bytes = build_lode(alone(samples::scaled(samples::make_sphere(16), 1e-40)), {}, {}, report);
+  const auto bytes = build_lode(alone(scene::scaled(scene::make_sphere(16), 1e-40)), {}, {}, report);
   ASSERT_FALSE(bytes.ok());
   EXPECT_EQ(bytes.error().code, ErrorCode::kUnsupported) << bytes.error().message();
 }
@@ -275,17 +275,17 @@ TEST(HardNumbers, AMeshSmallerThanFloatsIsRefusedWithALine) {
 TEST(HardNumbers, AGivenGridKeepsAbuttingPiecesTogetherAtTheHardCasesToo) {
   PipelineOptions options;
   options.grid_step = 0.01;
-  prove(alone(samples::make_rock(12)), options);
+  prove(alone(scene::make_rock(12)), options);
   options.grid_step = 0.5;  // so coarse that most of a sphere's triangles collapse; they stay, counted (I1)
-  const auto bytes = prove(alone(samples::make_sphere(16)), options);
-  const auto asset = Asset::from_bytes(bytes);
+  const auto bytes = prove(alone(scene::make_sphere(16)), options);
+  const auto asset = run::Asset::from_bytes(bytes);
   ASSERT_TRUE(asset.ok());
   EXPECT_GT(asset->meshes()[0].grid_collapsed, 0U);
 }
 
 TEST(HardNumbers, AScannedSphereOfMirroredInstancesMarksThem) {
   const auto bytes = prove(mirrored_instances());
-  const auto asset = Asset::from_bytes(bytes);
+  const auto asset = run::Asset::from_bytes(bytes);
   ASSERT_TRUE(asset.ok());
   ASSERT_EQ(asset->instances().size(), 10U);
   for (int axes = 0; axes < 8; ++axes) {
@@ -297,4 +297,4 @@ TEST(HardNumbers, AScannedSphereOfMirroredInstancesMarksThem) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::build

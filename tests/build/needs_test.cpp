@@ -22,7 +22,7 @@
 #endif
 #endif
 
-namespace meshlode {
+namespace meshlode::build {
 namespace {
 
 TEST(Needs, CountsBeyondWhatIdsHoldAreRefusedInOneLine) {
@@ -38,7 +38,7 @@ TEST(Needs, CountsBeyondWhatIdsHoldAreRefusedInOneLine) {
 }
 
 TEST(Needs, FlatNormalsBesideOthersMakeAVertexOfEachCorner) {
-  SourceMesh mesh;
+  scene::SourceMesh mesh;
   mesh.primitives.resize(2);
   mesh.primitives[0].positions.resize(4);
   mesh.primitives[0].indices = {0, 1, 2, 0, 2, 3};
@@ -65,11 +65,11 @@ TEST(Needs, MoreThanIsAllowedIsRefusedAndNamesBoth) {
 }
 
 /// A wavy sheet of 2 · n² triangles, `count` times.
-Scene sheets(std::uint32_t n, std::size_t count, bool has_attributes) {
-  Scene scene;
+scene::Scene sheets(std::uint32_t n, std::size_t count, bool has_attributes) {
+  scene::Scene scene;
   scene.materials.resize(1);
   scene.materials[0].uv_sets_used = has_attributes ? 1 : 0;
-  Primitive sheet;
+  scene::Primitive sheet;
   for (std::uint32_t j = 0; j <= n; ++j) {
     for (std::uint32_t i = 0; i <= n; ++i) {
       const double x = static_cast<double>(i) / n, y = static_cast<double>(j) / n;
@@ -87,16 +87,16 @@ Scene sheets(std::uint32_t n, std::size_t count, bool has_attributes) {
     }
   }
   sheet.material = MaterialId(0U);
-  SourceMesh mesh;
+  scene::SourceMesh mesh;
   mesh.primitives.push_back(std::move(sheet));
   scene.meshes.assign(count, mesh);
   return scene;
 }
 
 /// Triangles that share nothing.
-Scene loose(std::uint32_t count) {
-  Scene scene = sheets(1, 1, false);
-  Primitive& primitive = scene.meshes[0].primitives[0];
+scene::Scene loose(std::uint32_t count) {
+  scene::Scene scene = sheets(1, 1, false);
+  scene::Primitive& primitive = scene.meshes[0].primitives[0];
   primitive.positions.clear();
   primitive.indices.clear();
   for (std::uint32_t i = 0; i < 3 * count; ++i) {
@@ -109,9 +109,9 @@ Scene loose(std::uint32_t count) {
 }
 
 /// The same surface with a vertex for each corner.
-Scene unshared(Scene scene) {
-  for (SourceMesh& mesh : scene.meshes) {
-    for (Primitive& primitive : mesh.primitives) {
+scene::Scene unshared(scene::Scene scene) {
+  for (scene::SourceMesh& mesh : scene.meshes) {
+    for (scene::Primitive& primitive : mesh.primitives) {
       std::vector<Vec3d> positions;
       for (std::uint32_t& index : primitive.indices) {
         positions.push_back(primitive.positions[index]);
@@ -141,7 +141,7 @@ Measured measure(const MakeScene& make_scene, format::ErrorTier tier, int thread
       PipelineOptions options;
       options.error_tier = tier;
       PipelineReport report;
-      const Scene scene = make_scene();
+      const scene::Scene scene = make_scene();
       const auto bytes = build_lode(scene, options, {}, report);
       if (!bytes) _exit(2);
       if (write(ends[1], &report.memory_estimate, sizeof(report.memory_estimate)) < 0) _exit(3);
@@ -183,7 +183,7 @@ TEST(Needs, MemoryIsEstimatedFromAboveAndCloseEnough) {
 }
 
 TEST(Needs, AScenesImagesAreCounted) {
-  Scene scene = sheets(4, 1, false);
+  scene::Scene scene = sheets(4, 1, false);
   const std::uint64_t without = estimate_memory(scene, {}, 1);
   scene.blobs.resize(1);
   scene.blobs[0].bytes.resize(1000000);
@@ -191,4 +191,4 @@ TEST(Needs, AScenesImagesAreCounted) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -8,41 +8,41 @@
 
 namespace meshlode::test {
 
-Primitive make_fan(std::uint32_t valence) {
-  Primitive fan;
+scene::Primitive make_fan(std::uint32_t valence) {
+  scene::Primitive fan;
   fan.positions.emplace_back(0.0, 0.25, 0.0);
   for (std::uint32_t i = 0; i < valence; ++i) {
     const double turns = static_cast<double>(i) / valence;
-    fan.positions.emplace_back(samples::cos_turns(turns), 0.0, -samples::sin_turns(turns));
+    fan.positions.emplace_back(scene::cos_turns(turns), 0.0, -scene::sin_turns(turns));
     fan.indices.insert(fan.indices.end(), {0U, i + 1, (i + 1) % valence + 1});
   }
   fan.material = MaterialId(0U);
   return fan;
 }
 
-Primitive make_triangle() {
-  Primitive triangle;
+scene::Primitive make_triangle() {
+  scene::Primitive triangle;
   triangle.positions = {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}};
   triangle.indices = {0, 1, 2};
   triangle.material = MaterialId(0U);
   return triangle;
 }
 
-Primitive make_identical(std::uint32_t count) {
-  Primitive shape = make_triangle();
+scene::Primitive make_identical(std::uint32_t count) {
+  scene::Primitive shape = make_triangle();
   for (std::uint32_t i = 1; i < count; ++i)
     shape.indices.insert(shape.indices.end(), {i % 3, (i + 1) % 3, (i + 2) % 3});
   return shape;
 }
 
-Scene make_striped_plane(std::uint32_t n, std::uint32_t materials) {
-  const Primitive plane = samples::make_plane(n);
-  Scene scene;
-  SourceMesh& mesh = scene.meshes.emplace_back();
+scene::Scene make_striped_plane(std::uint32_t n, std::uint32_t materials) {
+  const scene::Primitive plane = scene::make_plane(n);
+  scene::Scene scene;
+  scene::SourceMesh& mesh = scene.meshes.emplace_back();
   mesh.name = "stripes";
   const std::size_t triangles = plane.indices.size() / 3;
   for (std::uint32_t m = 0; m < materials; ++m) {
-    Primitive& stripe = mesh.primitives.emplace_back(plane);
+    scene::Primitive& stripe = mesh.primitives.emplace_back(plane);
     stripe.indices.clear();
     for (std::size_t t = m * triangles / materials; t < (m + 1) * triangles / materials; ++t) {
       for (std::size_t k = 0; k < 3; ++k) stripe.indices.push_back(plane.indices[3 * t + k]);
@@ -50,14 +50,14 @@ Scene make_striped_plane(std::uint32_t n, std::uint32_t materials) {
     stripe.material = MaterialId(m);
     scene.materials.emplace_back().source_index = m;
   }
-  SceneInstance& instance = scene.instances.emplace_back();
+  scene::SceneInstance& instance = scene.instances.emplace_back();
   instance.mesh = MeshId(0U);
   return scene;
 }
 
-Primitive make_coincident_spheres(std::uint32_t n, std::uint32_t sheets) {
-  const Primitive sphere = samples::make_sphere(n);
-  Primitive shape = sphere;
+scene::Primitive make_coincident_spheres(std::uint32_t n, std::uint32_t sheets) {
+  const scene::Primitive sphere = scene::make_sphere(n);
+  scene::Primitive shape = sphere;
   for (std::uint32_t s = 1; s < sheets; ++s) {
     const auto base = static_cast<std::uint32_t>(shape.positions.size());
     shape.positions.insert(shape.positions.end(), sphere.positions.begin(), sphere.positions.end());
@@ -74,9 +74,9 @@ Primitive make_coincident_spheres(std::uint32_t n, std::uint32_t sheets) {
   return shape;
 }
 
-Primitive make_line_of_triangles(std::uint32_t count) {
-  samples::Random random(17);
-  Primitive shape;
+scene::Primitive make_line_of_triangles(std::uint32_t count) {
+  scene::Random random(17);
+  scene::Primitive shape;
   for (std::uint32_t i = 0; i < 3 * count; ++i) {
     const double t = random.unit();
     shape.positions.emplace_back(t, 2.0 * t, -t);  // exactly collinear: powers of two times t
@@ -86,9 +86,9 @@ Primitive make_line_of_triangles(std::uint32_t count) {
   return shape;
 }
 
-Primitive make_fine_rings_beside_a_patch(std::uint64_t seed) {
-  samples::Random random(seed);
-  Primitive shape = samples::make_plane(12);
+scene::Primitive make_fine_rings_beside_a_patch(std::uint64_t seed) {
+  scene::Random random(seed);
+  scene::Primitive shape = scene::make_plane(12);
   shape.material = MaterialId(0U);
   for (Vec3d& p : shape.positions) p = p * 15.0 + Vec3d(0.0, 0.2 * random.unit(), 0.0);
   constexpr std::uint32_t kAround = 24, kAcross = 9;
@@ -96,12 +96,12 @@ Primitive make_fine_rings_beside_a_patch(std::uint64_t seed) {
     const double radius = 0.03 + 0.01 * ring, thickness = 0.0002 + 0.0001 * ring;
     const auto first = static_cast<std::uint32_t>(shape.positions.size());
     for (std::uint32_t i = 0; i < kAround; ++i) {
-      const Vec3d out(samples::cos_turns(static_cast<double>(i) / kAround), 0.0,
-                      samples::sin_turns(static_cast<double>(i) / kAround));
+      const Vec3d out(scene::cos_turns(static_cast<double>(i) / kAround), 0.0,
+                      scene::sin_turns(static_cast<double>(i) / kAround));
       for (std::uint32_t j = 0; j < kAcross; ++j) {
-        const double beside = radius + thickness * samples::cos_turns(static_cast<double>(j) / kAcross);
+        const double beside = radius + thickness * scene::cos_turns(static_cast<double>(j) / kAcross);
         shape.positions.push_back(Vec3d(2.0 * ring, 3.0, 5.0) + out * beside +
-                                  Vec3d(0.0, thickness * samples::sin_turns(static_cast<double>(j) / kAcross), 0.0));
+                                  Vec3d(0.0, thickness * scene::sin_turns(static_cast<double>(j) / kAcross), 0.0));
       }
     }
     for (std::uint32_t i = 0; i < kAround; ++i) {
@@ -124,8 +124,8 @@ Primitive make_fine_rings_beside_a_patch(std::uint64_t seed) {
   return shape;
 }
 
-Primitive make_ball_with_hairs() {
-  Primitive shape = samples::make_sphere(16);
+scene::Primitive make_ball_with_hairs() {
+  scene::Primitive shape = scene::make_sphere(16);
   shape.normals.clear();
   shape.material = MaterialId(0U);
   const auto at = [&](double x, double y, double z) {
@@ -143,8 +143,8 @@ Primitive make_ball_with_hairs() {
   return shape;
 }
 
-Primitive make_cube_with_t_junctions() {
-  Primitive shape = samples::make_cube(1);
+scene::Primitive make_cube_with_t_junctions() {
+  scene::Primitive shape = scene::make_cube(1);
   shape.normals.clear();
   shape.material = MaterialId(0U);
   // Every edge of the first triangle gets two more vertices, which its neighbours do not have.
@@ -170,14 +170,14 @@ Primitive make_cube_with_t_junctions() {
   return shape;
 }
 
-Primitive make_cards(std::uint32_t count, std::uint64_t seed) {
-  samples::Random random(seed);
+scene::Primitive make_cards(std::uint32_t count, std::uint64_t seed) {
+  scene::Random random(seed);
   const auto vector = [&](double size) {
     Vec3d v;
     for (int k = 0; k < 3; ++k) v[k] = size * (2.0 * random.below(1U << 20U) / (1U << 20U) - 1.0);
     return v;
   };
-  Primitive shape;
+  scene::Primitive shape;
   for (std::uint32_t i = 0; i < count; ++i) {
     const Vec3d center = vector(10.0), u = vector(0.2), v = vector(0.2);
     const std::uint32_t first = 4 * i;
@@ -188,9 +188,9 @@ Primitive make_cards(std::uint32_t count, std::uint64_t seed) {
   return shape;
 }
 
-Primitive make_lattice_chaos(std::uint32_t count, std::uint32_t side, std::uint64_t seed) {
-  samples::Random random(seed);
-  Primitive shape;
+scene::Primitive make_lattice_chaos(std::uint32_t count, std::uint32_t side, std::uint64_t seed) {
+  scene::Random random(seed);
+  scene::Primitive shape;
   for (std::uint32_t z = 0; z < side; ++z) {
     for (std::uint32_t y = 0; y < side; ++y) {
       for (std::uint32_t x = 0; x < side; ++x) shape.positions.emplace_back(x, y, z);

@@ -13,7 +13,7 @@
 #include "judge/validate/validate.h"
 #include "judge/verify/verify.h"
 
-namespace meshlode {
+namespace meshlode::build {
 namespace {
 
 using test::Random;
@@ -28,24 +28,24 @@ void expect_nothing(const Report& report, const std::string& scene) {
 }
 
 /// Builds by the quadric's own estimate, which needs no sampling: what is drawn is the same.
-void expect_sound(Primitive shape, const std::string& name) {
-  const Scene scene = samples::as_scene(samples::as_mesh(std::move(shape)));
+void expect_sound(scene::Primitive shape, const std::string& name) {
+  const scene::Scene scene = scene::as_scene(scene::as_mesh(std::move(shape)));
   PipelineOptions options;
   options.error_tier = format::ErrorTier::kQem;
   PipelineReport report;
   const auto bytes = build_lode(scene, options, {}, report);
   ASSERT_TRUE(bytes.ok()) << name << ": " << bytes.error().message();
-  expect_nothing(validate_asset(*bytes), name);
-  const auto asset = Asset::from_bytes(*bytes);
+  expect_nothing(judge::validate_asset(*bytes), name);
+  const auto asset = run::Asset::from_bytes(*bytes);
   ASSERT_TRUE(asset.ok()) << name;
-  VerifyOptions verify_options;
+  judge::VerifyOptions verify_options;
   verify_options.uniform_cuts = 40;
   verify_options.cameras = 5;
-  expect_nothing(verify_asset(*asset, scene, verify_options), name);
+  expect_nothing(judge::verify_asset(*asset, scene, verify_options), name);
 }
 
 /// Large loose quads: they make the mesh large and its grid coarse, beside whatever is small in it.
-void add_quads(std::uint32_t count, double extent, Random& random, Primitive& shape) {
+void add_quads(std::uint32_t count, double extent, Random& random, scene::Primitive& shape) {
   const auto any = [&](double size) { return size * random.signed_unit(); };
   for (std::uint32_t i = 0; i < count; ++i) {
     const auto first = static_cast<std::uint32_t>(shape.positions.size());
@@ -65,7 +65,7 @@ TEST(OpenBorders, ADensePatchBesideLargeQuadsKeepsItsBorder) {
     options.side = 36;
     options.spacing = 1000;
     options.noise = 600;
-    Primitive shape = as_primitive(make_open_surface(options, random), 5e-7);
+    scene::Primitive shape = test::as_primitive(test::make_open_surface(options, random), 5e-7);
     add_quads(40, 10.0, random, shape);
     expect_sound(std::move(shape), "seed " + std::to_string(seed));
   }
@@ -74,11 +74,11 @@ TEST(OpenBorders, ADensePatchBesideLargeQuadsKeepsItsBorder) {
 TEST(OpenBorders, SheetsOfHolesThatTouchKeepTheirBorders) {
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     Random random(seed);
-    test::OpenSurfaceOptions options = random_surface_options(random, 40);
+    test::OpenSurfaceOptions options = test::random_surface_options(random, 40);
     options.side = std::max(options.side, 20U);
-    expect_sound(as_primitive(make_open_surface(options, random), 1e-3), "seed " + std::to_string(seed));
+    expect_sound(test::as_primitive(test::make_open_surface(options, random), 1e-3), "seed " + std::to_string(seed));
   }
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::build

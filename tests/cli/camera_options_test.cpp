@@ -13,12 +13,12 @@
 namespace meshlode::cli {
 namespace {
 
-const Asset& sample() {
-  static const Asset asset = *Asset::from_vector(test::sample_asset_bytes());
+const run::Asset& sample() {
+  static const run::Asset asset = *run::Asset::from_vector(test::sample_asset_bytes());
   return asset;
 }
 
-Result<Camera> camera_of(const std::string& text) {
+Result<run::Camera> camera_of(const std::string& text) {
   CameraOptions options;
   options.camera = text;
   return make_camera(options, sample());
@@ -76,10 +76,10 @@ TEST(CameraOptions, ReadsSizeOrthoAndPixelError) {
 // Every vertex of every instance that can be drawn lies inside the picture, in front of the near plane; and the picture
 // is not mostly empty: some vertex comes near its edge.
 TEST(CameraOptions, TheDefaultFramesTheScene) {
-  const auto clusters = decode_all(sample());
+  const auto clusters = run::decode_all(sample());
   ASSERT_TRUE(clusters);
   for (const auto& [width, height] : {std::pair{1280U, 720U}, std::pair{100U, 1000U}, std::pair{64U, 64U}}) {
-    const Camera camera = frame_scene(sample(), width, height);
+    const run::Camera camera = frame_scene(sample(), width, height);
     const Vec3d forward = glm::normalize(camera.target - camera.eye);
     const Vec3d right = glm::normalize(glm::cross(forward, Vec3d(0.0, 1.0, 0.0)));
     const Vec3d up = glm::cross(right, forward);
@@ -92,7 +92,7 @@ TEST(CameraOptions, TheDefaultFramesTheScene) {
       const double step = std::ldexp(static_cast<double>(mesh.grid.mantissa), mesh.grid.log2);
       for (std::uint32_t c = mesh.first_cluster; c < mesh.first_cluster + mesh.cluster_count; ++c) {
         if (sample().clusters()[c].level != 0) continue;
-        const DecodedCluster& cluster = (*clusters)[c];
+        const run::DecodedCluster& cluster = (*clusters)[c];
         for (std::uint32_t v = 0; v < cluster.vertex_count; ++v) {
           const Vec3d p = Vec3d(cluster.position(v)) * step + Vec3d(mesh.origin[0], mesh.origin[1], mesh.origin[2]);
           Vec3d world{0.0};

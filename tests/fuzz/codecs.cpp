@@ -26,12 +26,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::vector<std::uint32_t> words(wanted / 4);
   const auto unpack_as = [&](format::Codec codec) {
     record.codec = codec;
-    (void)unpack_page(mesh, record, stored, words);
+    (void)run::unpack_page(mesh, record, stored, words);
   };
   switch (data[0] % 7) {
-    case 0: (void)unpack_lz4(stored, out); break;
-    case 1: (void)unpack_zstd(stored, out); break;
-    case 2: (void)decode_section(stored, 2U * (data[1] % 32U), out); break;
+    case 0: (void)run::unpack_lz4(stored, out); break;
+    case 1: (void)run::unpack_zstd(stored, out); break;
+    case 2: (void)format::decode_section(stored, 2U * (data[1] % 32U), out); break;
     default: unpack_as(static_cast<format::Codec>(data[0] % 7 - 2)); break;
   }
   return 0;

@@ -18,12 +18,12 @@ using Bytes = std::vector<std::uint8_t>;
 
 /// Whether the file is found wrong anywhere: at opening or in a page. Everything readable is read.
 bool is_refused(const Bytes& bytes) {
-  const auto asset = Asset::from_vector({bytes.begin(), bytes.end()});
+  const auto asset = run::Asset::from_vector({bytes.begin(), bytes.end()});
   fuzz::read_all_c(bytes);
   if (!asset) return true;
   fuzz::read_all(*asset);
   for (std::size_t p = 0; p < asset->pages().size(); ++p) {
-    if (!load_page(*asset, PageId(p))) return true;
+    if (!run::load_page(*asset, PageId(p))) return true;
   }
   return false;
 }

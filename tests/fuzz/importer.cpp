@@ -61,9 +61,9 @@ class Scratch {
   std::filesystem::path folder_;
 };
 
-void require_sound(const Scene& scene) {
-  for (const SourceMesh& mesh : scene.meshes) {
-    for (const Primitive& p : mesh.primitives) {
+void require_sound(const scene::Scene& scene) {
+  for (const scene::SourceMesh& mesh : scene.meshes) {
+    for (const scene::Primitive& p : mesh.primitives) {
       const std::size_t n = p.positions.size();
       fuzz::require(p.indices.size() % 3 == 0, "indices are no triangles");
       for (const std::uint32_t i : p.indices) fuzz::require(i < n, "an index is no vertex");
@@ -75,7 +75,7 @@ void require_sound(const Scene& scene) {
       fuzz::require(p.material.value < scene.materials.size(), "no such material");
     }
   }
-  for (const SceneInstance& i : scene.instances) fuzz::require(i.mesh.value < scene.meshes.size(), "no such mesh");
+  for (const scene::SceneInstance& i : scene.instances) fuzz::require(i.mesh.value < scene.meshes.size(), "no such mesh");
 }
 
 }  // namespace
@@ -87,7 +87,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   constexpr const char* kNames[] = {"a.glb", "a.gltf", "a.ply", "a.obj", "a.stl"};
   const std::size_t kind = (data[0] & 0x7FU) % std::size(kNames);
   const auto path = scratch.write(kNames[kind], kind == 0 ? assemble_glb(rest) : std::string(rest));
-  const auto scene = meshlode::import_scene(path, {.repair = (data[0] & 0x80U) != 0});
+  const auto scene = meshlode::scene::import_scene(path, {.repair = (data[0] & 0x80U) != 0});
   if (scene) {
     require_sound(*scene);
   } else {

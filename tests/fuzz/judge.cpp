@@ -12,17 +12,17 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace meshlode;
   const std::vector<std::uint8_t> bytes(data, data + size);
-  const ValidationReport report = validate_asset(bytes);
-  const auto asset = Asset::from_bytes(bytes);
+  const judge::ValidationReport report = judge::validate_asset(bytes);
+  const auto asset = run::Asset::from_bytes(bytes);
   fuzz::require(asset.ok() || report.finding_count > 0, "the judge finds nothing in a file that does not open");
   if (!asset || asset->instances().size() > 1000) return 0;
-  std::vector<LodChain> chains(asset->meshes().size());
+  std::vector<out::LodChain> chains(asset->meshes().size());
   for (std::size_t m = 0; m < chains.size(); ++m) {
-    chains[m].cuts = {choose_level_cut(*asset, MeshId(m), 0).clusters};
-    const auto coarse = choose_level_cut(*asset, MeshId(m), 0xFFFF).clusters;
+    chains[m].cuts = {out::choose_level_cut(*asset, MeshId(m), 0).clusters};
+    const auto coarse = out::choose_level_cut(*asset, MeshId(m), 0xFFFF).clusters;
     if (!coarse.empty() && coarse != chains[m].cuts[0] && !chains[m].cuts[0].empty()) chains[m].cuts.push_back(coarse);
   }
-  const auto glb = export_glb_lods(*asset, chains);
+  const auto glb = out::export_glb_lods(*asset, chains);
   fuzz::require(glb.ok() || !glb.error().message().empty(), "a refusal without a reason");
   return 0;
 }

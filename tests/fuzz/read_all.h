@@ -9,7 +9,7 @@
 
 namespace meshlode::fuzz {
 
-void read_all(const Asset& asset);
+void read_all(const run::Asset& asset);
 void read_all_c(std::span<const std::uint8_t> bytes);
 
 }  // namespace meshlode::fuzz

@@ -7,7 +7,7 @@
 #include "read_all.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const auto asset = meshlode::Asset::from_vector({data, data + size});
+  const auto asset = meshlode::run::Asset::from_vector({data, data + size});
   if (asset) {
     meshlode::fuzz::read_all(*asset);
   } else {

@@ -16,8 +16,8 @@ constexpr std::size_t kMostClusters = 2000;  ///< drawn: more would only take lo
 
 double centred(std::uint8_t byte) { return (byte - 128) / 16.0; }
 
-Camera camera_of(const std::uint8_t* bytes) {
-  Camera camera;
+run::Camera camera_of(const std::uint8_t* bytes) {
+  run::Camera camera;
   camera.width = 1 + bytes[0] % 64;
   camera.height = 1 + bytes[1] % 48;
   camera.eye = {centred(bytes[2]), centred(bytes[3]), centred(bytes[4])};
@@ -33,28 +33,28 @@ Camera camera_of(const std::uint8_t* bytes) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size <= kPrefix) return 0;
   const std::vector<std::uint8_t> bytes(data + kPrefix, data + size);
-  const auto asset = Asset::from_bytes(bytes);
+  const auto asset = run::Asset::from_bytes(bytes);
   if (!asset || asset->instances().size() > 1000) return 0;
-  const Camera camera = camera_of(data);
+  const run::Camera camera = camera_of(data);
   const double pixel_error = std::exp2(data[7] % 12) - 1.0;
-  const auto cut = select_bvh_within(tables_of(*asset), camera, pixel_error, kMostClusters);
+  const auto cut = run::select_bvh_within(run::tables_of(*asset), camera, pixel_error, kMostClusters);
   if (!cut) return 0;
-  ImageBudget budget(std::uint64_t{8} << 20U);
-  const AlphaMasks masks = load_alpha_masks(*asset, budget);
-  const auto visibility = draw_cut(*asset, *cut, camera, masks);
+  draw::ImageBudget budget(std::uint64_t{8} << 20U);
+  const draw::AlphaMasks masks = draw::load_alpha_masks(*asset, budget);
+  const auto visibility = draw::draw_cut(*asset, *cut, camera, masks);
   if (!visibility) {
     fuzz::require(!visibility.error().message().empty(), "a refusal without a reason");
     return 0;
   }
   for (std::size_t i = 0; i < visibility->pixel_count(); ++i) {
     const std::uint32_t item = visibility->item[i];
-    fuzz::require(item == VisibilityBuffer::kNothing || item < cut->size(), "a pixel shows what is not in the cut");
+    fuzz::require(item == draw::VisibilityBuffer::kNothing || item < cut->size(), "a pixel shows what is not in the cut");
   }
-  const TextureSet textures = load_textures(*asset, budget);
-  for (const View view : {View::kShaded, View::kClusters, View::kTriangles, View::kLevels}) {
-    const auto image = shade_view(*asset, *cut, camera, *visibility, view, textures);
+  const draw::TextureSet textures = draw::load_textures(*asset, budget);
+  for (const draw::View view : {draw::View::kShaded, draw::View::kClusters, draw::View::kTriangles, draw::View::kLevels}) {
+    const auto image = draw::shade_view(*asset, *cut, camera, *visibility, view, textures);
     fuzz::require(image.ok(), "what was drawn cannot be coloured");
-    fuzz::require(!encode_png(*image).empty(), "no picture");
+    fuzz::require(!draw::encode_png(*image).empty(), "no picture");
   }
   return 0;
 }

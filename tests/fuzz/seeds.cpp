@@ -25,7 +25,7 @@ void write(const std::filesystem::path& path, std::span<const std::uint8_t> byte
 }
 
 /// The stored bytes of a page as the codec harness wants them.
-Bytes codec_input(const Asset& asset, PageId page) {
+Bytes codec_input(const run::Asset& asset, PageId page) {
   const format::PageRecord& record = asset.pages()[page.value];
   const format::MeshRecord& mesh = asset.meshes()[asset.groups()[record.first_group].mesh];
   const std::uint32_t shape = (mesh.normal_mode == format::NormalMode::kStored ? 1U : 0U) | mesh.uv_set_count << 1U |
@@ -84,14 +84,14 @@ std::vector<std::pair<std::string, Bytes>> make_images() {
 }
 
 /// The sample scene with textures, normals and masks on its materials.
-Scene textured_scene(const std::vector<std::pair<std::string, Bytes>>& images) {
-  Scene scene = test::sample_scene();
-  SceneBlob buffer = scene.blobs[1];
+scene::Scene textured_scene(const std::vector<std::pair<std::string, Bytes>>& images) {
+  scene::Scene scene = test::sample_scene();
+  scene::SceneBlob buffer = scene.blobs[1];
   scene.blobs.clear();
   std::string listed, textures;
   for (const auto& [name, bytes] : images) {
     const std::string index = std::to_string(scene.blobs.size());
-    SceneBlob blob;
+    scene::SceneBlob blob;
     blob.name = name;
     blob.bytes = bytes;
     scene.blobs.push_back(blob);
@@ -104,7 +104,7 @@ Scene textured_scene(const std::vector<std::pair<std::string, Bytes>>& images) {
     scene.materials[i].source_index = static_cast<std::uint32_t>(i);
     scene.materials[i].base_color_texture = static_cast<std::uint32_t>(i);
     scene.materials[i].base_color_uv_set = 0;
-    scene.materials[i].alpha_mode = i % 2 == 0 ? AlphaMode::kMask : AlphaMode::kOpaque;
+    scene.materials[i].alpha_mode = i % 2 == 0 ? scene::AlphaMode::kMask : scene::AlphaMode::kOpaque;
     const std::string texture = std::to_string(i % images.size()), normal = std::to_string((i + 2) % images.size());
     materials += (materials.empty() ? "" : ",") + std::string(R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":)") +
                  texture + R"(,"extensions":{"KHR_texture_transform":{"scale":[2,0.5],"rotation":1}}}},"normalTexture":{"index":)" +
@@ -157,7 +157,7 @@ int main(int argc, char** argv) {
         write(folder / "verify" / (shape + suffix), behind({0, 0, 0, 0, 0, 0, 0, 0}, bytes));
         write(folder / "verify" / ("other-" + (shape + suffix)), behind({127, 1, 5, 2, 3, 9, 4, 3}, bytes));
       }
-      const auto asset = Asset::from_bytes(bytes);
+      const auto asset = run::Asset::from_bytes(bytes);
       if (!asset) return 2;
       for (std::size_t p = 0; p < asset->pages().size() && codec != format::Codec::kNone; ++p) {
         write(folder / "codecs" / (std::string(shape) + "-" + name + "-" + std::to_string(p)),

@@ -16,42 +16,42 @@ using namespace meshlode;
 constexpr std::uint64_t kBudget = std::uint64_t{8} << 20U;
 
 void look_at_image(std::span<const std::uint8_t> bytes) {
-  const auto header = read_image_header(bytes);
+  const auto header = draw::read_image_header(bytes);
   if (!header) return fuzz::require(!header.error().detail.empty(), "a refusal without a reason");
   fuzz::require(header->width >= 1 && header->height >= 1, "an image without texels");
-  fuzz::require(header->width <= kMaxTextureSide && header->height <= kMaxTextureSide, "an image larger than the limit");
-  const std::uint64_t texels = count_mip_texels(header->width, header->height);
+  fuzz::require(header->width <= draw::kMaxTextureSide && header->height <= draw::kMaxTextureSide, "an image larger than the limit");
+  const std::uint64_t texels = draw::count_mip_texels(header->width, header->height);
   if (4 * texels + header->decoder_bytes > kBudget) return;
-  auto image = decode_image(bytes, texels);
+  auto image = draw::decode_image(bytes, texels);
   if (!image) return fuzz::require(!image.error().detail.empty(), "a refusal without a reason");
   fuzz::require(image->width == header->width && image->height == header->height, "the head said another size");
   fuzz::require(image->texels.size() == std::size_t{image->width} * image->height, "texels are missing");
-  const TextureImage texture = make_texture_image(std::move(*image), bytes.size() % 2 == 0);
+  const draw::TextureImage texture = draw::make_texture_image(std::move(*image), bytes.size() % 2 == 0);
   fuzz::require(texture.texels.size() == texels, "levels are missing");
-  TextureFootprint footprint;
+  draw::TextureFootprint footprint;
   footprint.right = {0.37, 0.0};
-  for (const Wrap wrap : {Wrap::kRepeat, Wrap::kMirror, Wrap::kClamp}) {
+  for (const draw::Wrap wrap : {draw::Wrap::kRepeat, draw::Wrap::kMirror, draw::Wrap::kClamp}) {
     footprint.at = {footprint.at[0] - 1.3, footprint.at[1] + 2.7};
-    for (const double c : sample_texture(texture, wrap, Wrap::kClamp, footprint)) {
+    for (const double c : draw::sample_texture(texture, wrap, draw::Wrap::kClamp, footprint)) {
       fuzz::require(c >= 0.0 && c <= 1.0 + 1e-6, "a sample outside 0 to 1");
     }
   }
 }
 
 void look_at_asset(const std::vector<std::uint8_t>& bytes) {
-  const auto asset = Asset::from_bytes(bytes);
+  const auto asset = run::Asset::from_bytes(bytes);
   if (!asset || asset->materials().size() > 1000) return;
-  ImageBudget budget(kBudget);
-  const AlphaMasks masks = load_alpha_masks(*asset, budget);
+  draw::ImageBudget budget(kBudget);
+  const draw::AlphaMasks masks = draw::load_alpha_masks(*asset, budget);
   const std::uint64_t before = budget.left();
-  const TextureSet set = load_textures(*asset, budget);
+  const draw::TextureSet set = draw::load_textures(*asset, budget);
   std::uint64_t taken = 0;
-  for (const TextureImage& image : set.images) taken += 4 * image.texels.size();
+  for (const draw::TextureImage& image : set.images) taken += 4 * image.texels.size();
   fuzz::require(taken == before - budget.left(), "the budget is not what textures take");
-  for (const AlphaMask& mask : masks.masks) {
+  for (const draw::AlphaMask& mask : masks.masks) {
     fuzz::require(mask.image == format::kNone || mask.image < masks.images.size(), "a mask of no image");
   }
-  for (const SampledMaterial& material : set.materials) {
+  for (const draw::SampledMaterial& material : set.materials) {
     for (const auto* texture : {&material.base_color, &material.normal}) {
       fuzz::require(!*texture || (*texture)->image < set.images.size(), "a texture of no image");
     }

@@ -15,12 +15,12 @@ using namespace meshlode;
 constexpr std::size_t kPrefix = 8;
 
 /// The sample scene, or one that differs from it in what the bytes say.
-Scene source_of(const std::uint8_t* bytes) {
-  static const Scene sample = test::sample_scene();
-  Scene scene = sample;
-  SourceMesh& mesh = scene.meshes[bytes[1] % scene.meshes.size()];
+scene::Scene source_of(const std::uint8_t* bytes) {
+  static const scene::Scene sample = test::sample_scene();
+  scene::Scene scene = sample;
+  scene::SourceMesh& mesh = scene.meshes[bytes[1] % scene.meshes.size()];
   if (bytes[0] == 0 || mesh.primitives.empty()) return scene;
-  Primitive& primitive = mesh.primitives[0];
+  scene::Primitive& primitive = mesh.primitives[0];
   if ((bytes[0] & 1U) != 0 && !primitive.positions.empty()) {
     Vec3d& moved = primitive.positions[bytes[2] % primitive.positions.size()];
     constexpr double kValues[] = {0.0, 1e-30, -7.5, 3e9, 1e38, -1e300};
@@ -33,15 +33,15 @@ Scene source_of(const std::uint8_t* bytes) {
   }
   if ((bytes[0] & 8U) != 0) scene.instances.resize(bytes[6] % 8, scene.instances[0]);
   if ((bytes[0] & 16U) != 0) scene.materials.resize(1 + bytes[6] % 4, scene.materials[0]);
-  if ((bytes[0] & 64U) != 0) mesh.primitives.push_back(Primitive(mesh.primitives[0]));
+  if ((bytes[0] & 64U) != 0) mesh.primitives.push_back(scene::Primitive(mesh.primitives[0]));
   if ((bytes[0] & 32U) != 0) scene.meshes.resize(bytes[7] % 6);  // `mesh` and `primitive` are gone from here on
   if (scene.meshes.empty()) scene.instances.clear();
-  for (SourceMesh& m : scene.meshes) {
-    for (Primitive& p : m.primitives) {
+  for (scene::SourceMesh& m : scene.meshes) {
+    for (scene::Primitive& p : m.primitives) {
       if (p.material.value >= scene.materials.size()) p.material = MaterialId(0U);
     }
   }
-  for (SceneInstance& instance : scene.instances) {
+  for (scene::SceneInstance& instance : scene.instances) {
     if (instance.mesh.value >= scene.meshes.size()) instance.mesh = MeshId(0U);
   }
   return scene;
@@ -52,16 +52,16 @@ Scene source_of(const std::uint8_t* bytes) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size <= kPrefix) return 0;
   const std::vector<std::uint8_t> bytes(data + kPrefix, data + size);
-  const auto asset = Asset::from_bytes(bytes);
+  const auto asset = run::Asset::from_bytes(bytes);
   if (!asset || asset->instances().size() > 100) return 0;
-  VerifyOptions options;
+  judge::VerifyOptions options;
   options.uniform_cuts = 8;
   options.cameras = 4;
   options.deviation_cuts = 2;
   options.deviation_samples = 200;
-  const VerifyReport report = verify_asset(*asset, source_of(data), options);
+  const judge::VerifyReport report = judge::verify_asset(*asset, source_of(data), options);
   std::uint64_t failures = 0;
-  for (const VerifyReport::Check& check : report.checks) failures += check.failures;
+  for (const judge::VerifyReport::Check& check : report.checks) failures += check.failures;
   fuzz::require(!report.checks.empty(), "nothing was checked");
   fuzz::require((failures == 0) == (report.finding_count == 0), "failed checks and findings disagree");
   return 0;

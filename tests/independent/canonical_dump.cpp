@@ -105,14 +105,14 @@ void print_text(const char* name, std::string_view text) {
   print_hex(std::string(name) + ' ', {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
 }
 
-bool print_clusters(const Asset& asset) {
-  const auto decoded = decode_all(asset);
+bool print_clusters(const run::Asset& asset) {
+  const auto decoded = run::decode_all(asset);
   if (!decoded) {
     std::fprintf(stderr, "%s\n", decoded.error().message().c_str());
     return false;
   }
   for (std::size_t c = 0; c < decoded->size(); ++c) {
-    const DecodedCluster& cluster = (*decoded)[c];
+    const run::DecodedCluster& cluster = (*decoded)[c];
     Line("cluster") << c << cluster.vertex_count << cluster.triangle_count;
     for (std::size_t v = 0; v < cluster.vertex_count; ++v) {
       Line line("v");
@@ -131,7 +131,7 @@ bool print_clusters(const Asset& asset) {
 
 int main(int argc, char** argv) {
   if (argc != 2) return 1;
-  const auto asset = Asset::open(argv[1]);
+  const auto asset = run::Asset::open(argv[1]);
   if (!asset) {
     std::fprintf(stderr, "%s\n", asset.error().message().c_str());
     return static_cast<int>(asset.error().code);

@@ -39,8 +39,8 @@ struct Limits {
 };
 
 struct Built {
-  Scene scene;
-  Asset asset;
+  scene::Scene scene;
+  run::Asset asset;
 };
 
 std::string models_folder() {
@@ -59,27 +59,27 @@ bool are_models_required() {
     GTEST_SKIP() << "set MESHLODE_MODELS to the folder of models to run this test: it has no " << (name); \
   }
 
-std::optional<Scene> import_model(const std::string& name) {
-  Result<Scene> scene = import_scene(fs::path(models_folder()) / name, {});
+std::optional<scene::Scene> import_model(const std::string& name) {
+  Result<scene::Scene> scene = scene::import_scene(fs::path(models_folder()) / name, {});
   EXPECT_TRUE(scene.ok()) << name << ": " << scene.error().message();
   if (!scene) return std::nullopt;
   return std::move(*scene);
 }
 
-std::optional<Built> build(std::optional<Scene> scene) {
+std::optional<Built> build(std::optional<scene::Scene> scene) {
   if (!scene) return std::nullopt;
-  PipelineReport report;
-  Result<std::vector<std::uint8_t>> bytes = build_lode(*scene, {}, {}, report);
+  build::PipelineReport report;
+  Result<std::vector<std::uint8_t>> bytes = build::build_lode(*scene, {}, {}, report);
   EXPECT_TRUE(bytes.ok()) << bytes.error().message();
   if (!bytes) return std::nullopt;
-  Result<Asset> asset = Asset::from_vector(std::move(*bytes));
+  Result<run::Asset> asset = run::Asset::from_vector(std::move(*bytes));
   EXPECT_TRUE(asset.ok()) << asset.error().message();
   if (!asset) return std::nullopt;
   return Built{std::move(*scene), std::move(*asset)};
 }
 
 /// From the tables alone, which `expect_nothing_found` has to vouch for.
-void expect_dag_within(const Asset& asset, const Limits& limits) {
+void expect_dag_within(const run::Asset& asset, const Limits& limits) {
   ASSERT_EQ(asset.meshes().size(), 1U);
   const format::MeshRecord& mesh = asset.meshes()[0];
   std::vector<std::uint64_t> clusters(mesh.level_count), triangles(mesh.level_count);
@@ -115,40 +115,40 @@ void expect_dag_within(const Asset& asset, const Limits& limits) {
 
 /// `verify` runs `validate` first; both with the defaults of the command line.
 void expect_nothing_found(const Built& built) {
-  const ValidationReport structure = validate_asset(built.asset.bytes());
+  const judge::ValidationReport structure = judge::validate_asset(built.asset.bytes());
   EXPECT_EQ(structure.finding_count, 0U);
-  const VerifyReport report = verify_asset(built.asset, built.scene, {});
-  for (const Finding& f : report.findings) ADD_FAILURE() << f.id << ": " << f.where << ": " << f.detail;
+  const judge::VerifyReport report = judge::verify_asset(built.asset, built.scene, {});
+  for (const judge::Finding& f : report.findings) ADD_FAILURE() << f.id << ": " << f.where << ": " << f.detail;
   EXPECT_EQ(report.finding_count, 0U);
-  for (const VerifyReport::Check& check : report.checks) {
+  for (const judge::VerifyReport::Check& check : report.checks) {
     if (check.invariant == "I7") std::printf("%s\n", check.what.c_str());
   }
 }
 
 void expect_root_within(const Built& built, double limit) {
-  const Asset& asset = built.asset;
-  const Result<std::vector<DecodedCluster>> decoded = decode_all(asset);
+  const run::Asset& asset = built.asset;
+  const Result<std::vector<run::DecodedCluster>> decoded = run::decode_all(asset);
   ASSERT_TRUE(decoded.ok()) << decoded.error().message();
   const double diagonal = asset.meshes()[0].diagonal;
-  const Surface source = surface_of_source(built.scene.meshes[0]);
-  const UniformCut roots = select_uniform(asset, MeshId(0U), HUGE_VAL);
+  const judge::Surface source = judge::surface_of_source(built.scene.meshes[0]);
+  const run::UniformCut roots = run::select_uniform(asset, MeshId(0U), HUGE_VAL);
   const double root =
-      measure_deviation(source, surface_of_clusters(asset, *decoded, MeshId(0U), roots.clusters), {}).max() / diagonal;
+      judge::measure_deviation(source, judge::surface_of_clusters(asset, *decoded, MeshId(0U), roots.clusters), {}).max() / diagonal;
   EXPECT_LE(root, limit);
-  const UniformCut finest = select_uniform(asset, MeshId(0U), 0.0);
+  const run::UniformCut finest = run::select_uniform(asset, MeshId(0U), 0.0);
   const double level0 =
-      measure_deviation(source, surface_of_clusters(asset, *decoded, MeshId(0U), finest.clusters), {}).max();
+      judge::measure_deviation(source, judge::surface_of_clusters(asset, *decoded, MeshId(0U), finest.clusters), {}).max();
   EXPECT_LE(level0, finest.stored_error * (1.0 + 1e-6)) << "quantization alone";
   std::printf("root deviates by %.3f%% of the diagonal, level 0 by %.5f%%\n", 100.0 * root, 100.0 * level0 / diagonal);
 }
 
-void expect_bvh_selects_as_the_flat_rule(const Asset& asset) {
+void expect_bvh_selects_as_the_flat_rule(const run::Asset& asset) {
   test::RandomSource random(61);
-  const SelectTables tables = tables_of(asset);
+  const run::SelectTables tables = run::tables_of(asset);
   for (int n = 0; n < 200; ++n) {
-    const Camera camera = test::make_random_camera(random, tables, asset.instances()[0]);
+    const run::Camera camera = test::make_random_camera(random, tables, asset.instances()[0]);
     const double t = random.log_between(1e-2, 1e2);
-    ASSERT_EQ(select_flat(asset, camera, t), select_bvh(asset, camera, t)) << "seed 61, camera " << n;
+    ASSERT_EQ(run::select_flat(asset, camera, t), run::select_bvh(asset, camera, t)) << "seed 61, camera " << n;
   }
 }
 
@@ -162,10 +162,10 @@ void judge(const std::optional<Built>& built, const Limits& limits) {
 }
 
 /// Every corner a vertex of its own with the triangle's normal, tilted by `tilt` so that it has to be stored.
-Scene as_facets(Scene scene, float tilt) {
-  for (SourceMesh& mesh : scene.meshes) {
-    for (Primitive& primitive : mesh.primitives) {
-      primitive = samples::with_split_normals(primitive);
+scene::Scene as_facets(scene::Scene scene, float tilt) {
+  for (scene::SourceMesh& mesh : scene.meshes) {
+    for (scene::Primitive& primitive : mesh.primitives) {
+      primitive = scene::with_split_normals(primitive);
       for (Vec3f& normal : primitive.normals) normal = glm::normalize(normal + Vec3f(tilt, 0.0F, 0.0F));
     }
   }
@@ -173,7 +173,7 @@ Scene as_facets(Scene scene, float tilt) {
 }
 
 void judge_faceted_bunny(float tilt, format::NormalMode mode) {
-  std::optional<Scene> scene = import_model("bunny.glb");
+  std::optional<scene::Scene> scene = import_model("bunny.glb");
   ASSERT_TRUE(scene.has_value());
   const std::optional<Built> built = build(as_facets(std::move(*scene), tilt));
   ASSERT_TRUE(built.has_value());

@@ -33,17 +33,17 @@ constexpr std::uint64_t kDeviationSamples = 20000;
 struct Original {
   const char* name;
   std::vector<std::uint8_t> bytes;
-  Scene scene;
+  scene::Scene scene;
 };
 
 /// The rule that finds it, the structural ones first; empty where nothing is found.
-std::string find_killer(const std::vector<std::uint8_t>& bytes, const Scene& scene) {
-  const ValidationReport structure = validate_asset(bytes);
+std::string find_killer(const std::vector<std::uint8_t>& bytes, const scene::Scene& scene) {
+  const judge::ValidationReport structure = judge::validate_asset(bytes);
   if (structure.finding_count > 0) return structure.findings.front().id;
-  const Result<Asset> asset = Asset::from_bytes(bytes);
+  const Result<run::Asset> asset = run::Asset::from_bytes(bytes);
   if (!asset) return "L099";
-  const VerifyReport report =
-      verify_asset(*asset, scene, {.uniform_cuts = 4, .cameras = 2, .deviation_samples = kDeviationSamples});
+  const judge::VerifyReport report =
+      judge::verify_asset(*asset, scene, {.uniform_cuts = 4, .cameras = 2, .deviation_samples = kDeviationSamples});
   return report.finding_count > 0 ? report.findings.front().id : std::string();
 }
 
@@ -81,7 +81,7 @@ std::string describe_change(const test::AssetEdit& before, const test::AssetEdit
 
 void run_kind(const test::MutantKind& kind, const Original& original, std::uint64_t seed, std::uint64_t count,
               Tally& tally) {
-  SplitMix64 random(seed);
+  judge::SplitMix64 random(seed);
   std::uint64_t made = 0;
   for (std::uint64_t draw = 0; made < count && draw < 20 * count; ++draw) {
     test::AssetEdit edit(original.bytes);
@@ -128,22 +128,22 @@ void run_mutants(const std::vector<Original>& originals, std::uint64_t per_kind)
   EXPECT_EQ(must_killed, must);
 }
 
-Original make_built(const char* name, Scene scene, const PipelineOptions& options = {}) {
+Original make_built(const char* name, scene::Scene scene, const build::PipelineOptions& options = {}) {
   Original out{name, {}, std::move(scene)};
-  PipelineReport report;
-  Result<std::vector<std::uint8_t>> bytes = build_lode(out.scene, options, {}, report);
+  build::PipelineReport report;
+  Result<std::vector<std::uint8_t>> bytes = build::build_lode(out.scene, options, {}, report);
   EXPECT_TRUE(bytes.ok()) << bytes.error().message();
   if (bytes) out.bytes = std::move(*bytes);
   EXPECT_EQ(find_killer(out.bytes, out.scene), "") << name;
   return out;
 }
 
-Scene alone(Primitive shape) {
-  return samples::as_scene(samples::as_mesh(std::move(shape)));
+scene::Scene alone(scene::Primitive shape) {
+  return scene::as_scene(scene::as_mesh(std::move(shape)));
 }
 
 const Original& several_pages() {
-  static const Original rock = make_built("a rock of several pages", alone(samples::make_rock(48)));
+  static const Original rock = make_built("a rock of several pages", alone(scene::make_rock(48)));
   return rock;
 }
 
@@ -162,9 +162,9 @@ TEST(Mutation, ADependencyLeftOutIsFoundByItsRule) {
   edit.put<std::uint32_t>(edit.section(format::SectionId::kPageDeps).offset + 4 * needy->first_dependency,
                           static_cast<std::uint32_t>(needy - pages.begin()));
   edit.seal();
-  const ValidationReport report = validate_asset(edit.bytes());
+  const judge::ValidationReport report = judge::validate_asset(edit.bytes());
   EXPECT_TRUE(
-      std::any_of(report.findings.begin(), report.findings.end(), [](const Finding& f) { return f.id == "L213"; }));
+      std::any_of(report.findings.begin(), report.findings.end(), [](const judge::Finding& f) { return f.id == "L213"; }));
 }
 #else
 /// Small clusters, so that few triangles make a DAG of many groups. The sample's scene has what one mesh has not:
@@ -172,8 +172,8 @@ TEST(Mutation, ADependencyLeftOutIsFoundByItsRule) {
 TEST(Mutation, ThousandsOfMutantsOfTheMeasuredTierAreFound) {
   const PipelineOptions options{.max_cluster_triangles = 48};
   run_mutants({make_built("the sample's scene", test::sample_scene(), {.max_cluster_triangles = 16}),
-               make_built("a rock", alone(samples::make_rock(16)), options),
-               make_built("a terrain", alone(samples::make_terrain(48, 48)), options)},
+               make_built("a rock", alone(scene::make_rock(16)), options),
+               make_built("a terrain", alone(scene::make_terrain(48, 48)), options)},
               MESHLODE_MUTANTS_PER_KIND);
 }
 #endif

@@ -17,7 +17,7 @@ namespace {
 
 using format::SectionId;
 using Edit = AssetEdit;
-using Random = SplitMix64;
+using Random = judge::SplitMix64;
 
 std::uint32_t pick(Random& r, std::size_t count) {
   return static_cast<std::uint32_t>(r.below(count));
@@ -140,9 +140,9 @@ std::vector<std::uint32_t> vertices_where(const Edit& e, std::uint32_t c, bool s
 /// Positions on the border of the cut in which the own group of a cluster is replaced, and nothing that is coarser or
 /// beside it: where the source is open, its border as simplified there. \pre the asset is sound
 std::set<Position> rim_around(const Edit& e, std::uint32_t c) {
-  const Result<Asset> asset = Asset::from_bytes(e.bytes());
-  const Result<std::vector<DecodedCluster>> decoded =
-      asset ? decode_all(*asset) : Result<std::vector<DecodedCluster>>(asset.error());
+  const Result<run::Asset> asset = run::Asset::from_bytes(e.bytes());
+  const Result<std::vector<run::DecodedCluster>> decoded =
+      asset ? run::decode_all(*asset) : Result<std::vector<run::DecodedCluster>>(asset.error());
   std::set<Position> rim;
   if (!decoded) return rim;
   const auto clusters = e.clusters();
@@ -161,7 +161,7 @@ std::set<Position> rim_around(const Edit& e, std::uint32_t c) {
     const bool is_drawn =
         (clusters[k].own_group == format::kNone || passes[clusters[k].own_group]) && !passes[clusters[k].coarser_group];
     if (!is_drawn) continue;
-    const DecodedCluster& cluster = (*decoded)[k];
+    const run::DecodedCluster& cluster = (*decoded)[k];
     for (const auto& triangle : cluster.triangles) {
       for (std::size_t i = 0; i < 3; ++i) {
         const Vec3i p = cluster.position(triangle[i]);

@@ -80,7 +80,7 @@ TEST(RandomScene, TheImporterReadsWhatWasWritten) {
     const auto path = std::filesystem::path(testing::TempDir()) / ("random-" + std::to_string(seed) + ".glb");
     const auto glb = write_glb(scene);
     ASSERT_TRUE(write_file_atomically(path, glb).ok());
-    const auto imported = import_scene(path, {});
+    const auto imported = scene::import_scene(path, {});
     std::filesystem::remove(path);
     ASSERT_TRUE(imported.ok()) << seed << ": " << imported.error().message();
     ASSERT_EQ(imported->meshes.size(), scene.meshes.size());
@@ -88,7 +88,7 @@ TEST(RandomScene, TheImporterReadsWhatWasWritten) {
     for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
       ASSERT_EQ(imported->meshes[m].primitives.size(), scene.meshes[m].primitives.size());
       for (std::size_t p = 0; p < scene.meshes[m].primitives.size(); ++p) {
-        const Primitive& read = imported->meshes[m].primitives[p];
+        const scene::Primitive& read = imported->meshes[m].primitives[p];
         const RandomPrimitive& written = scene.meshes[m].primitives[p];
         ASSERT_EQ(read.indices.size(), 3 * written.triangles.size());
         for (std::size_t c = 0; c < read.indices.size(); ++c) {

@@ -177,7 +177,7 @@ std::vector<std::uint8_t> write_glb(const RandomScene& scene) {
   json += array_text("nodes", nodes) + array_text("meshes", meshes) + array_text("materials", materials);
   if (is_textured) {
     const std::size_t start = buffer.bytes.size();
-    const auto png = samples::encode_png(samples::make_leaf_texture(16));
+    const auto png = scene::encode_png(scene::make_leaf_texture(16));
     buffer.bytes.insert(buffer.bytes.end(), png.begin(), png.end());
     const std::uint32_t view = buffer.end_view(start);
     json +=

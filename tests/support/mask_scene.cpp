@@ -10,8 +10,8 @@ namespace meshlode::test {
 
 namespace {
 
-Primitive make_card(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d, std::uint32_t cells) {
-  Primitive out;
+scene::Primitive make_card(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d, std::uint32_t cells) {
+  scene::Primitive out;
   for (std::uint32_t j = 0; j <= cells; ++j) {
     for (std::uint32_t i = 0; i <= cells; ++i) {
       const double u = static_cast<double>(i) / cells, v = static_cast<double>(j) / cells;
@@ -36,15 +36,15 @@ std::uint8_t mask_texture_alpha(std::uint32_t x, std::uint32_t y) {
   return static_cast<std::uint8_t>((x * 97 + y * 61 + x * y * 7) % 256);
 }
 
-Scene mask_scene(const MaskSceneOptions& options) {
-  Scene scene;
+scene::Scene mask_scene(const MaskSceneOptions& options) {
+  scene::Scene scene;
   scene.source_name = "masks.glb";
   scene.source_hash = "00000000000000000000000000000000";
   scene.materials.resize(10);
   std::string materials = R"({"name":"wall"})", textures, samplers;
   const std::string transform =
       options.transform.empty() ? "" : R"(,"extensions":{"KHR_texture_transform":)" + options.transform + "}";
-  SourceMesh wall, cards;
+  scene::SourceMesh wall, cards;
   wall.name = "wall";
   cards.name = "cards";
   wall.primitives.push_back(make_card({-4.0, -4.0, -2.0}, {4.0, -4.0, -2.0}, {4.0, 4.0, -2.0}, {-4.0, 4.0, -2.0}, 8));
@@ -52,16 +52,16 @@ Scene mask_scene(const MaskSceneOptions& options) {
   scene.materials[0].source_index = 0;
   for (std::uint32_t k = 0; k < 9; ++k) {
     const double x = 2.2 * (k % 3) - 2.2, y = 2.2 * (k / 3) - 2.2, lean = 0.25 * (k % 4);
-    Primitive card = make_card({x - 1.0, y - 1.0, lean}, {x + 1.0, y - 1.0, -lean}, {x + 1.0, y + 1.0, lean},
+    scene::Primitive card = make_card({x - 1.0, y - 1.0, lean}, {x + 1.0, y - 1.0, -lean}, {x + 1.0, y + 1.0, lean},
                                {x - 1.0, y + 1.0, 0.1}, options.cells);
     card.material = MaterialId(1 + k);
     if (options.has_vertex_alpha) {
       for (const Vec2f& uv : card.uvs[0]) card.colors.emplace_back(1.0F, 1.0F, 1.0F, (2.6F - uv.x) / 4.3F);
     }
     cards.primitives.push_back(std::move(card));
-    SceneMaterial& m = scene.materials[1 + k];
+    scene::SceneMaterial& m = scene.materials[1 + k];
     m.source_index = 1 + k;
-    m.alpha_mode = AlphaMode::kMask;
+    m.alpha_mode = scene::AlphaMode::kMask;
     m.alpha_cutoff = options.cutoff;
     m.base_color.w = options.factor;
     m.double_sided = true;
@@ -81,33 +81,33 @@ Scene mask_scene(const MaskSceneOptions& options) {
                    R"(],"samplers":[)" + samplers + R"(],"images":[{"blob":0}]})";
   scene.meshes = {wall, cards};
   for (std::uint32_t i = 0; i < 2; ++i) {
-    SceneInstance instance;
+    scene::SceneInstance instance;
     instance.name = scene.meshes[i].name;
     instance.node = i;
     instance.mesh = MeshId(i);
     scene.instances.push_back(instance);
   }
-  SceneBlob blob;
+  scene::SceneBlob blob;
   blob.name = "mask.png";
   blob.mime_type = "image/png";
   blob.bytes = options.image;
   if (blob.bytes.empty()) {
-    samples::Texture texture{kMaskTextureWidth, kMaskTextureHeight, {}};
+    scene::Texture texture{kMaskTextureWidth, kMaskTextureHeight, {}};
     for (std::uint32_t y = 0; y < texture.height; ++y) {
       for (std::uint32_t x = 0; x < texture.width; ++x) {
         const std::uint8_t c = static_cast<std::uint8_t>(10 * x), d = static_cast<std::uint8_t>(15 * y);
         texture.rgba.insert(texture.rgba.end(), {c, d, 90, mask_texture_alpha(x, y)});
       }
     }
-    blob.bytes = samples::encode_png(texture);
+    blob.bytes = scene::encode_png(texture);
   }
   scene.blobs.push_back(std::move(blob));
   return scene;
 }
 
-std::vector<std::uint8_t> built(const Scene& scene) {
-  PipelineReport report;
-  auto bytes = build_lode(scene, {}, {}, report);
+std::vector<std::uint8_t> built(const scene::Scene& scene) {
+  build::PipelineReport report;
+  auto bytes = build::build_lode(scene, {}, {}, report);
   if (bytes) return std::move(*bytes);
   ADD_FAILURE() << bytes.error().message();
   return {};

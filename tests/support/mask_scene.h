@@ -28,8 +28,8 @@ constexpr std::uint32_t kMaskTextureWidth = 23, kMaskTextureHeight = 17;
 constexpr std::array<std::uint32_t, 3> kWrapNames{10497, 33648, 33071};  // repeat, mirrored repeat, clamp to edge
 
 /// Material 0 is the wall's, 1 + k card k's. UVs run from -1.7 to 2.6.
-[[nodiscard]] Scene mask_scene(const MaskSceneOptions& options);
+[[nodiscard]] scene::Scene mask_scene(const MaskSceneOptions& options);
 /// The asset of a scene; fails the test and returns nothing where it cannot be built.
-[[nodiscard]] std::vector<std::uint8_t> built(const Scene& scene);
+[[nodiscard]] std::vector<std::uint8_t> built(const scene::Scene& scene);
 
 }  // namespace meshlode::test

@@ -97,8 +97,8 @@ struct OpenSurfaceOptions {
   return options;
 }
 
-[[nodiscard]] inline Primitive as_primitive(const IntegerMesh& mesh, double unit = 1.0) {
-  Primitive shape;
+[[nodiscard]] inline scene::Primitive as_primitive(const IntegerMesh& mesh, double unit = 1.0) {
+  scene::Primitive shape;
   for (const Vec3i& p : mesh.positions) shape.positions.push_back(Vec3d(p) * unit);
   for (const auto& t : mesh.triangles) shape.indices.insert(shape.indices.end(), t.begin(), t.end());
   return shape;

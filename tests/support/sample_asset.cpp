@@ -20,8 +20,8 @@ T value_or_abort(Result<T> result) {
   return std::move(*result);
 }
 
-PreparedMesh empty_mesh() {
-  PreparedMesh mesh;
+build::PreparedMesh empty_mesh() {
+  build::PreparedMesh mesh;
   mesh.name = "empty";
   mesh.source_triangles = 1;
   mesh.source_vertices = 3;
@@ -29,10 +29,10 @@ PreparedMesh empty_mesh() {
   return mesh;
 }
 
-SourceMesh empty_source() {
-  SourceMesh mesh;
+scene::SourceMesh empty_source() {
+  scene::SourceMesh mesh;
   mesh.name = "empty";
-  Primitive primitive;
+  scene::Primitive primitive;
   primitive.positions.assign(3, Vec3d(0.0));
   primitive.indices = {0, 1, 2};
   primitive.material = MaterialId{0U};
@@ -40,26 +40,26 @@ SourceMesh empty_source() {
   return mesh;
 }
 
-std::vector<SceneMaterial> sample_materials() {
-  SceneMaterial first;
+std::vector<scene::SceneMaterial> sample_materials() {
+  scene::SceneMaterial first;
   first.name = "stone";
   first.source_index = 0;
   first.base_color = {0.8F, 0.7F, 0.6F, 1.0F};
   first.base_color_texture = 0;
   first.base_color_uv_set = 0;
   first.uv_sets_used = 1;
-  SceneMaterial second;
+  scene::SceneMaterial second;
   second.name = "leaf";
   second.source_index = 1;
-  second.alpha_mode = AlphaMode::kMask;
+  second.alpha_mode = scene::AlphaMode::kMask;
   second.alpha_cutoff = 0.25F;
   second.double_sided = true;
   return {first, second};
 }
 
-SceneInstance make_instance(const char* name, std::uint32_t node, std::uint32_t mesh, const Vec3d& scale,
+scene::SceneInstance make_instance(const char* name, std::uint32_t node, std::uint32_t mesh, const Vec3d& scale,
                             const Vec3d& move) {
-  SceneInstance instance;
+  scene::SceneInstance instance;
   instance.name = name;
   instance.node = node;
   instance.mesh = MeshId{mesh};
@@ -72,8 +72,8 @@ SceneInstance make_instance(const char* name, std::uint32_t node, std::uint32_t 
 
 }  // namespace
 
-Scene sample_scene() {
-  Scene scene;
+scene::Scene sample_scene() {
+  scene::Scene scene;
   scene.source_name = "sample.glb";
   scene.source_hash = "00000000000000000000000000000000";
   scene.meshes = {sample_patch().source, sample_sphere().source, sample_tetrahedron().source, empty_source()};
@@ -83,12 +83,12 @@ Scene sample_scene() {
                      make_instance("mirrored ball", 2, 1, {-2.0, 2.0, 2.0}, {4.0, 0.0, 8.0}),
                      make_instance("flattened ball", 3, 1, {1.0, 1.0, 0.0}, {0.0, 4.0, 8.0}),
                      make_instance("far away", 4, 2, {1.0, 1.0, 1.0}, {-1e6, -1e6, -1e6})};
-  SceneBlob image;
+  scene::SceneBlob image;
   image.name = "stone.png";
   image.mime_type = "image/png";
   image.bytes = {0x89, 'P', 'N', 'G', 1, 2, 3};
-  SceneBlob buffer;
-  buffer.kind = SceneBlob::Kind::kBuffer;
+  scene::SceneBlob buffer;
+  buffer.kind = scene::SceneBlob::Kind::kBuffer;
   buffer.name = "stone.png";  // the same string on purpose: stored once
   buffer.mime_type = "application/octet-stream";
   buffer.bytes = {9, 8, 7, 6};
@@ -99,32 +99,32 @@ Scene sample_scene() {
 
 std::vector<std::uint8_t> sample_asset_bytes(format::Codec codec) { return sample_asset_bytes(sample_scene(), codec); }
 
-std::vector<std::uint8_t> sample_asset_bytes(const Scene& scene, format::Codec codec) {
-  WriteInput input;
+std::vector<std::uint8_t> sample_asset_bytes(const scene::Scene& scene, format::Codec codec) {
+  build::WriteInput input;
   for (const SampleMesh& sample : {sample_patch(), sample_sphere(), sample_tetrahedron()}) {
-    input.meshes.push_back(value_or_abort(encode_mesh(sample.mesh, sample.dag, sample.hierarchy, {})));
+    input.meshes.push_back(value_or_abort(build::encode_mesh(sample.mesh, sample.dag, sample.hierarchy, {})));
     input.mesh_names.push_back(sample.mesh.name);
   }
-  input.meshes.push_back(value_or_abort(encode_mesh(empty_mesh(), {}, {}, {})));
+  input.meshes.push_back(value_or_abort(build::encode_mesh(empty_mesh(), {}, {}, {})));
   input.mesh_names.emplace_back("empty");
   input.scene = &scene;
   input.meta_json = R"({"source":{"file":"sample.glb"},"settings":{}})";
   input.codec = codec;
-  return value_or_abort(write_asset(std::move(input)));
+  return value_or_abort(build::write_asset(std::move(input)));
 }
 
-std::vector<std::uint8_t> asset_bytes_of(const SampleMesh& sample, format::Codec codec, const EncodeOptions& options) {
-  Scene scene;
+std::vector<std::uint8_t> asset_bytes_of(const SampleMesh& sample, format::Codec codec, const build::EncodeOptions& options) {
+  scene::Scene scene;
   scene.meshes = {sample.source};
   scene.materials = sample_materials();
   scene.instances = {make_instance("one", 0, 0, {1.0, 1.0, 1.0}, {0.0, 0.0, 0.0})};
-  WriteInput input;
-  input.meshes.push_back(value_or_abort(encode_mesh(sample.mesh, sample.dag, sample.hierarchy, options)));
+  build::WriteInput input;
+  input.meshes.push_back(value_or_abort(build::encode_mesh(sample.mesh, sample.dag, sample.hierarchy, options)));
   input.mesh_names.push_back(sample.mesh.name);
   input.scene = &scene;
   input.meta_json = "{}";
   input.codec = codec;
-  return value_or_abort(write_asset(std::move(input)));
+  return value_or_abort(build::write_asset(std::move(input)));
 }
 
 }  // namespace meshlode::test

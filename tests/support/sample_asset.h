@@ -17,16 +17,16 @@ namespace meshlode::test {
 
 /// Meshes 0 patch, 1 sphere, 2 tetrahedron, 3 empty (no triangles). Instances: each once, the sphere once more mirrored
 /// and scaled, once more flattened to nothing (singular). Sources of the meshes are filled, so that verify can run.
-[[nodiscard]] Scene sample_scene();
+[[nodiscard]] scene::Scene sample_scene();
 
 /// The asset of sample_scene(). Aborts the test program where it cannot be made.
 [[nodiscard]] std::vector<std::uint8_t> sample_asset_bytes(format::Codec codec = format::Codec::kNone);
 /// The same for another scene of the same meshes.
-[[nodiscard]] std::vector<std::uint8_t> sample_asset_bytes(const Scene& scene, format::Codec codec);
+[[nodiscard]] std::vector<std::uint8_t> sample_asset_bytes(const scene::Scene& scene, format::Codec codec);
 
 /// An asset with one instance of one mesh; materials are those of sample_scene().
 [[nodiscard]] std::vector<std::uint8_t> asset_bytes_of(const SampleMesh& sample,
                                                        format::Codec codec = format::Codec::kNone,
-                                                       const EncodeOptions& options = {});
+                                                       const build::EncodeOptions& options = {});
 
 }  // namespace meshlode::test

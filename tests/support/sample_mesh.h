@@ -11,10 +11,10 @@
 namespace meshlode::test {
 
 struct SampleMesh {
-  PreparedMesh mesh;
-  LodDag dag;
-  Hierarchy hierarchy;
-  SourceMesh source;  ///< what the mesh was prepared from: positions lie exactly on the grid
+  build::PreparedMesh mesh;
+  build::LodDag dag;
+  build::Hierarchy hierarchy;
+  scene::SourceMesh source;  ///< what the mesh was prepared from: positions lie exactly on the grid
 };
 
 /// An open, bumpy patch of 16 × 16 quads: normals, one UV set, two materials with a UV seam along their border (x = 8).

@@ -14,7 +14,7 @@ namespace {
 
 using namespace meshlode;
 
-int write(const std::filesystem::path& folder, const samples::SampleFile& file) {
+int write(const std::filesystem::path& folder, const scene::SampleFile& file) {
   const std::filesystem::path path = folder / file.name;
   if (const Status written = write_file_atomically(path, file.bytes); !written) {
     std::fprintf(stderr, "meshlode_generate: %s\n", written.error().message().c_str());
@@ -39,10 +39,10 @@ int run(const char* out_dir, const char* terrain) {
       std::fputs("meshlode_generate: --terrain wants a number of triangles, 2 to 100000000\n", stderr);
       return static_cast<int>(ErrorCode::kUsage);
     }
-    return write(out_dir, samples::make_terrain_file(triangles));
+    return write(out_dir, scene::make_terrain_file(triangles));
   }
-  for (const std::string& name : samples::sample_names()) {
-    if (const int code = write(out_dir, samples::make_sample_file(name)); code != 0) return code;
+  for (const std::string& name : scene::sample_names()) {
+    if (const int code = write(out_dir, scene::make_sample_file(name)); code != 0) return code;
   }
   return 0;
 }

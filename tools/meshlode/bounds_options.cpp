@@ -16,7 +16,7 @@ Status check_number(const char* option, const std::optional<double>& value) {
 }
 
 /// A mesh without any group to pass says nothing either way.
-Status check_measured(const char* option, const Asset& asset, std::size_t mesh, float format::GroupRecord::*deviation) {
+Status check_measured(const char* option, const run::Asset& asset, std::size_t mesh, float format::GroupRecord::*deviation) {
   const format::MeshRecord& record = asset.meshes()[mesh];
   for (const format::GroupRecord& group : asset.groups().subspan(record.first_group, record.group_count)) {
     if ((group.flags & format::kGroupTerminal) != 0 || group.*deviation < format::kInfiniteError) continue;
@@ -35,14 +35,14 @@ void add_bounds_options(OptionParser& parser, BoundsOptions& options) {
   parser.add_value("--uv-error", options.uv_error, "also: UVs deviate by at most this, in UV units");
 }
 
-Result<AttributeBounds> make_bounds(const BoundsOptions& options, const Asset& asset) {
+Result<run::AttributeBounds> make_bounds(const BoundsOptions& options, const run::Asset& asset) {
   if (Status status = check_number("--normal-error", options.normal_error); !status) return status.error();
   if (Status status = check_number("--uv-error", options.uv_error); !status) return status.error();
-  AttributeBounds bounds;
+  run::AttributeBounds bounds;
   if (options.normal_error) bounds.normal_degrees = *options.normal_error;
   if (options.uv_error) bounds.uv = *options.uv_error;
   for (std::size_t m = 0; m < asset.meshes().size(); ++m) {
-    const AttributeBounds own = bounds_for(bounds, asset.meshes()[m]);
+    const run::AttributeBounds own = run::bounds_for(bounds, asset.meshes()[m]);
     if (options.normal_error && own.normal_degrees == *options.normal_error) {
       const Status status = check_measured("--normal-error", asset, m, &format::GroupRecord::normal_deviation);
       if (!status) return status.error();

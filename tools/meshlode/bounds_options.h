@@ -21,6 +21,6 @@ void add_bounds_options(OptionParser& parser, BoundsOptions& options);
 
 /// Errors: kUsage for numbers that make no sense; kUnsupported where a mesh has the attribute and the asset does not
 /// say how far it deviates.
-[[nodiscard]] Result<AttributeBounds> make_bounds(const BoundsOptions& options, const Asset& asset);
+[[nodiscard]] Result<run::AttributeBounds> make_bounds(const BoundsOptions& options, const run::Asset& asset);
 
 }  // namespace meshlode::cli

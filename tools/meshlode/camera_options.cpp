@@ -44,7 +44,7 @@ bool is_finite(const Vec3d& p) {
 }
 
 /// Corners of the boxes of everything that can be drawn.
-std::vector<WorldSphere> world_corners(const Asset& asset) {
+std::vector<WorldSphere> world_corners(const run::Asset& asset) {
   std::vector<WorldSphere> corners;
   for (const format::InstanceRecord& instance : asset.instances()) {
     const format::MeshRecord& mesh = asset.meshes()[instance.mesh];
@@ -63,7 +63,7 @@ std::vector<WorldSphere> world_corners(const Asset& asset) {
 }
 
 /// Spheres of the level-0 clusters of everything that can be drawn; empty where there are very many.
-std::vector<WorldSphere> world_spheres(const Asset& asset) {
+std::vector<WorldSphere> world_spheres(const run::Asset& asset) {
   constexpr std::uint64_t kMaxSpheres = 4'000'000;
   std::uint64_t count = 0;
   for (const format::InstanceRecord& instance : asset.instances()) count += asset.meshes()[instance.mesh].cluster_count;
@@ -123,8 +123,8 @@ void add_camera_options(OptionParser& parser, CameraOptions& options) {
   parser.add_value("--pixel-error", options.pixel_error, "allowed displacement in pixels (1)");
 }
 
-Camera frame_scene(const Asset& asset, std::uint32_t width, std::uint32_t height) {
-  Camera camera;
+run::Camera frame_scene(const run::Asset& asset, std::uint32_t width, std::uint32_t height) {
+  run::Camera camera;
   camera.width = width;
   camera.height = height;
   const std::vector<WorldSphere> corners = world_corners(asset);
@@ -160,14 +160,14 @@ Camera frame_scene(const Asset& asset, std::uint32_t width, std::uint32_t height
   return camera;
 }
 
-Result<Camera> make_camera(const CameraOptions& options, const Asset& asset) {
+Result<run::Camera> make_camera(const CameraOptions& options, const run::Asset& asset) {
   const auto usage = [](const char* option, const char* detail) { return Error{ErrorCode::kUsage, option, detail}; };
   std::uint32_t width = 0, height = 0;
   if (!parse_size(options.size, width, height)) return usage("--size", "give WIDTHxHEIGHT, each 1 to 16384");
   if (!(options.pixel_error >= 0.0) || !std::isfinite(options.pixel_error)) {
     return usage("--pixel-error", "give a number of pixels, 0 or more");
   }
-  Camera camera = frame_scene(asset, width, height);
+  run::Camera camera = frame_scene(asset, width, height);
   if (options.camera) {
     const auto numbers = parse_numbers(*options.camera);
     if (!numbers || numbers->size() < 6 || numbers->size() > 8) {

@@ -23,9 +23,9 @@ struct CameraOptions {
 void add_camera_options(OptionParser& parser, CameraOptions& options);
 
 /// The camera that the options mean for this asset. Errors: kUsage.
-[[nodiscard]] Result<Camera> make_camera(const CameraOptions& options, const Asset& asset);
+[[nodiscard]] Result<run::Camera> make_camera(const CameraOptions& options, const run::Asset& asset);
 
 /// A camera from the front, above and right that frames every instance that can be drawn.
-[[nodiscard]] Camera frame_scene(const Asset& asset, std::uint32_t width, std::uint32_t height);
+[[nodiscard]] run::Camera frame_scene(const run::Asset& asset, std::uint32_t width, std::uint32_t height);
 
 }  // namespace meshlode::cli

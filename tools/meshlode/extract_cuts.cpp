@@ -19,7 +19,7 @@ Error usage(const char* option, const char* detail) {
 }
 
 /// How many units of a mesh the error 1 is: a diagonal with --relative, less for large instances with --world.
-double error_unit(const CutRequest& request, const Asset& asset, std::size_t mesh) {
+double error_unit(const CutRequest& request, const run::Asset& asset, std::size_t mesh) {
   if (request.is_relative) return asset.meshes()[mesh].diagonal;
   if (!request.is_world) return 1.0;
   double scale = 0.0;
@@ -31,7 +31,7 @@ double error_unit(const CutRequest& request, const Asset& asset, std::size_t mes
   return scale > 0.0 ? 1.0 / scale : 1.0;
 }
 
-CutLevel make_level(const Asset& asset, UniformCut cut, std::optional<double> asked = {}) {
+CutLevel make_level(const run::Asset& asset, run::UniformCut cut, std::optional<double> asked = {}) {
   CutLevel level;
   for (const ClusterId c : cut.clusters) level.triangles += asset.clusters()[c.value].triangle_count();
   level.cut = std::move(cut);
@@ -39,25 +39,25 @@ CutLevel make_level(const Asset& asset, UniformCut cut, std::optional<double> as
   return level;
 }
 
-CutLevel cut_at_error(const CutRequest& request, const AttributeBounds& bounds, const Asset& asset, MeshId mesh,
+CutLevel cut_at_error(const CutRequest& request, const run::AttributeBounds& bounds, const run::Asset& asset, MeshId mesh,
                       double error) {
-  const CutError by = request.by == "quadric" ? CutError::kQuadric : CutError::kSelection;
+  const run::CutError by = request.by == "quadric" ? run::CutError::kQuadric : run::CutError::kSelection;
   const double asked = error * error_unit(request, asset, mesh.value);
-  return make_level(asset, select_uniform(asset, mesh, asked, by, bounds), asked);
+  return make_level(asset, run::select_uniform(asset, mesh, asked, by, bounds), asked);
 }
 
-Status choose_by_camera(const CutRequest& request, const AttributeBounds& bounds, const Asset& asset,
+Status choose_by_camera(const CutRequest& request, const run::AttributeBounds& bounds, const run::Asset& asset,
                         const std::vector<bool>& chosen, std::vector<MeshCuts>& out) {
   const auto camera = make_camera(request.camera, asset);
   if (!camera) return camera.error();
-  std::vector<UniformCut> cuts = choose_camera_cuts(asset, *camera, request.camera.pixel_error, bounds);
+  std::vector<run::UniformCut> cuts = out::choose_camera_cuts(asset, *camera, request.camera.pixel_error, bounds);
   for (std::size_t m = 0; m < out.size(); ++m) {
     if (chosen[m]) out[m].levels.push_back(make_level(asset, std::move(cuts[m])));
   }
   return Ok{};
 }
 
-Status choose_by_budget(const CutRequest& request, const Asset& asset, const std::vector<bool>& chosen,
+Status choose_by_budget(const CutRequest& request, const run::Asset& asset, const std::vector<bool>& chosen,
                         std::vector<MeshCuts>& out) {
   std::vector<double> units(out.size(), 0.0);
   for (std::size_t m = 0; m < units.size(); ++m) {
@@ -65,7 +65,7 @@ Status choose_by_budget(const CutRequest& request, const Asset& asset, const std
     const double unit = error_unit(request, asset, m);
     units[m] = unit > 0.0 ? unit : 1.0;  // a mesh that is one point has no diagonal
   }
-  BudgetCuts budget = choose_budget_cuts(asset, units, *request.triangles);
+  out::BudgetCuts budget = out::choose_budget_cuts(asset, units, *request.triangles);
   if (!budget.is_met) {
     return Error{ErrorCode::kCheckFailed, "--triangles",
                  "the coarsest cut has " + std::to_string(budget.triangles) + " triangles"};
@@ -77,12 +77,12 @@ Status choose_by_budget(const CutRequest& request, const Asset& asset, const std
 }
 
 /// The finest cut of one mesh with at most this share of its finest triangles, or the coarsest that there is.
-CutLevel cut_at_ratio(const Asset& asset, MeshId mesh, double ratio, std::uint64_t finest_triangles) {
+CutLevel cut_at_ratio(const run::Asset& asset, MeshId mesh, double ratio, std::uint64_t finest_triangles) {
   std::vector<double> units(asset.meshes().size(), 0.0);
   units[mesh.value] = 1.0;
   const double budget = std::floor(ratio * static_cast<double>(finest_triangles));
   return make_level(asset,
-                    std::move(choose_budget_cuts(asset, units, static_cast<std::uint64_t>(budget)).cuts[mesh.value]));
+                    std::move(out::choose_budget_cuts(asset, units, static_cast<std::uint64_t>(budget)).cuts[mesh.value]));
 }
 
 /// A level may be shown where it is off by at most t pixels: at a distance where t pixels are its error, the mesh's
@@ -102,7 +102,7 @@ Result<std::vector<double>> parse_list(const char* option, const std::string& te
   return std::move(*numbers);
 }
 
-Status choose_chains(const CutRequest& request, const AttributeBounds& bounds, const Asset& asset,
+Status choose_chains(const CutRequest& request, const run::AttributeBounds& bounds, const run::Asset& asset,
                      const std::vector<bool>& chosen, std::vector<MeshCuts>& out) {
   std::vector<double> errors;
   std::vector<double> ratios;
@@ -134,7 +134,7 @@ Status choose_chains(const CutRequest& request, const AttributeBounds& bounds, c
       if (levels.empty() || level.cut.clusters != levels.back().cut.clusters) levels.push_back(std::move(level));
     };
     for (const double error : errors) add(cut_at_error(request, bounds, asset, mesh, error));
-    const std::uint64_t finest = ratios.empty() ? 0 : make_level(asset, choose_level_cut(asset, mesh, 0)).triangles;
+    const std::uint64_t finest = ratios.empty() ? 0 : make_level(asset, out::choose_level_cut(asset, mesh, 0)).triangles;
     for (const double ratio : ratios) add(cut_at_ratio(asset, mesh, ratio, finest));
     set_coverage(request, asset.meshes()[m].diagonal, camera->height, levels);
   }
@@ -165,11 +165,11 @@ Status check_request(const CutRequest& r) {
   return Ok{};
 }
 
-Result<std::vector<MeshCuts>> choose_cuts(const CutRequest& request, const Asset& asset,
+Result<std::vector<MeshCuts>> choose_cuts(const CutRequest& request, const run::Asset& asset,
                                           const std::vector<bool>& chosen) {
   std::vector<MeshCuts> cuts(asset.meshes().size());
   for (std::size_t m = 0; m < cuts.size(); ++m) cuts[m].mesh = MeshId(m);
-  const Result<AttributeBounds> bounds = make_bounds(request.bounds, asset);
+  const Result<run::AttributeBounds> bounds = make_bounds(request.bounds, asset);
   if (!bounds) return bounds.error();
   Status status = Ok{};
   if (request.has_camera()) {
@@ -182,7 +182,7 @@ Result<std::vector<MeshCuts>> choose_cuts(const CutRequest& request, const Asset
     for (std::size_t m = 0; m < cuts.size(); ++m) {
       if (!chosen[m]) continue;
       cuts[m].levels.push_back(request.error ? cut_at_error(request, *bounds, asset, MeshId(m), *request.error)
-                                             : make_level(asset, choose_level_cut(asset, MeshId(m), *request.level)));
+                                             : make_level(asset, out::choose_level_cut(asset, MeshId(m), *request.level)));
     }
   }
   if (!status) return status.error();

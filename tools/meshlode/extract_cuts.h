@@ -36,7 +36,7 @@ struct CutRequest {
 };
 
 struct CutLevel {
-  UniformCut cut;
+  run::UniformCut cut;
   std::optional<double> asked;  ///< error in mesh units; nothing where none was asked for
   std::uint64_t triangles = 0;
   double screen_coverage = 0.0;  ///< of a chain: the level is meant down to this share of the picture's height
@@ -52,7 +52,7 @@ struct MeshCuts {
 
 /// One entry per mesh of the asset. Errors: kUsage for a camera or list that makes no sense; kCheckFailed where even
 /// the coarsest cuts have more triangles than the budget.
-[[nodiscard]] Result<std::vector<MeshCuts>> choose_cuts(const CutRequest& request, const Asset& asset,
+[[nodiscard]] Result<std::vector<MeshCuts>> choose_cuts(const CutRequest& request, const run::Asset& asset,
                                                         const std::vector<bool>& chosen);
 
 }  // namespace meshlode::cli

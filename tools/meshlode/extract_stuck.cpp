@@ -36,14 +36,14 @@ struct ReasonCount {
 
 }  // namespace
 
-int extract_stuck(const Asset& asset, const std::string& output, const OutputOptions& out) {
-  const AssetInfo info = describe_asset(asset);
+int extract_stuck(const run::Asset& asset, const std::string& output, const OutputOptions& out) {
+  const out::AssetInfo info = out::describe_asset(asset);
   std::array<ReasonCount, kLooks.size()> counts{};
-  std::vector<ColoredSet> sets;
-  for (const MeshInfo& mesh : info.meshes) {
+  std::vector<out::ColoredSet> sets;
+  for (const out::MeshInfo& mesh : info.meshes) {
     for (std::size_t k = 0; k < kLooks.size(); ++k) {
-      ColoredSet set{MeshId(), stuck_reason_name(kLooks[k].reason), kLooks[k].color, {}};
-      for (const StuckGroupInfo& stuck : mesh.stuck) {
+      out::ColoredSet set{MeshId(), out::stuck_reason_name(kLooks[k].reason), kLooks[k].color, {}};
+      for (const out::StuckGroupInfo& stuck : mesh.stuck) {
         if (stuck.reason != kLooks[k].reason) continue;
         set.mesh = MeshId(stuck.mesh);
         const format::GroupRecord& group = asset.groups()[stuck.group];
@@ -54,7 +54,7 @@ int extract_stuck(const Asset& asset, const std::string& output, const OutputOpt
       if (!set.clusters.empty()) sets.push_back(std::move(set));
     }
   }
-  const auto glb = export_colored_sets(asset, sets);
+  const auto glb = out::export_colored_sets(asset, sets);
   if (!glb) return print_error(glb.error());
   if (const Status status = output_files().write(output, *glb); !status) return print_error(status.error());
 
@@ -70,7 +70,7 @@ int extract_stuck(const Asset& asset, const std::string& output, const OutputOpt
     w.begin_object();
     for (std::size_t k = 0; k < kLooks.size(); ++k) {
       if (counts[k].groups == 0) continue;
-      w.key(stuck_reason_name(kLooks[k].reason));
+      w.key(out::stuck_reason_name(kLooks[k].reason));
       w.begin_object();
       w.field("groups", counts[k].groups);
       w.field("triangles", counts[k].triangles);
@@ -89,7 +89,7 @@ int extract_stuck(const Asset& asset, const std::string& output, const OutputOpt
   for (std::size_t k = 0; k < kLooks.size(); ++k) {
     if (counts[k].groups == 0) continue;
     std::snprintf(line, sizeof line, "%s: %" PRIu64 " group(s), %" PRIu64 " triangles, %s\n",
-                  stuck_reason_name(kLooks[k].reason), counts[k].groups, counts[k].triangles, kLooks[k].color_name);
+                  out::stuck_reason_name(kLooks[k].reason), counts[k].groups, counts[k].triangles, kLooks[k].color_name);
     text += line;
   }
   if (info.stuck_groups == 0) text += "no stuck group: a glTF without meshes\n";

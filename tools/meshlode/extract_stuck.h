@@ -8,6 +8,6 @@
 namespace meshlode::cli {
 
 /// Writes the GLB and tells what is in it. The exit code.
-[[nodiscard]] int extract_stuck(const Asset& asset, const std::string& output, const OutputOptions& out);
+[[nodiscard]] int extract_stuck(const run::Asset& asset, const std::string& output, const OutputOptions& out);
 
 }  // namespace meshlode::cli

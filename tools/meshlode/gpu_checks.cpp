@@ -17,7 +17,7 @@ namespace meshlode::cli {
 namespace {
 
 /// Each judged camera with its numbers; pixels unless the name says otherwise.
-std::string gpu_json(const GpuOptions& options, const gpu::GpuVerifyReport& verified) {
+std::string gpu_json(const GpuOptions& options, const judge::GpuVerifyReport& verified) {
   JsonWriter json;
   json.begin_object();
   json.field("device", verified.device.name);
@@ -27,7 +27,7 @@ std::string gpu_json(const GpuOptions& options, const gpu::GpuVerifyReport& veri
   json.field("largest_share_of_allowed", verified.largest_share);
   json.key("checks");
   json.begin_array();
-  for (const gpu::GpuCheck& check : verified.checks) {
+  for (const judge::GpuCheck& check : verified.checks) {
     json.begin_object();
     json.field("id", check.id);
     json.field("invariant", check.invariant);
@@ -41,8 +41,8 @@ std::string gpu_json(const GpuOptions& options, const gpu::GpuVerifyReport& veri
   json.end_array();
   json.key("cameras");
   json.begin_array();
-  for (const gpu::JudgedCamera& judged : verified.cameras) {
-    const gpu::PictureReport& p = judged.picture;
+  for (const judge::JudgedCamera& judged : verified.cameras) {
+    const judge::PictureReport& p = judged.picture;
     json.begin_object();
     json.field("name", judged.camera.name);
     json.field("width", judged.camera.camera.width);
@@ -74,8 +74,8 @@ std::string gpu_json(const GpuOptions& options, const gpu::GpuVerifyReport& veri
 
 }  // namespace
 
-Status verify_with_gpu(const Asset& asset, const Scene& source, const GpuOptions& options, VerifyReport& report) {
-  gpu::GpuVerifyOptions judge;
+Status verify_with_gpu(const run::Asset& asset, const scene::Scene& source, const GpuOptions& options, judge::VerifyReport& report) {
+  judge::GpuVerifyOptions judge;
   judge.device.device = options.device;
   judge.orbits = options.orbits;
   judge.pixel_error = options.pixel_error;
@@ -88,8 +88,8 @@ Status verify_with_gpu(const Asset& asset, const Scene& source, const GpuOptions
     output_files().keep(file->id());
     const std::span<const std::uint8_t> bytes = file->bytes();
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    Camera base;
-    auto path = gpu::parse_camera_path(text, base);
+    run::Camera base;
+    auto path = judge::parse_camera_path(text, base);
     if (!path) return Error{path.error().code, options.path + ": " + path.error().where, path.error().detail};
     judge.path = std::move(*path);
   }
@@ -97,13 +97,13 @@ Status verify_with_gpu(const Asset& asset, const Scene& source, const GpuOptions
   if (!options.out_folder.empty()) {
     if (const Status free = output_files().claim(report_path); !free) return free;
   }
-  const auto verified = gpu::verify_on_gpu(asset, source, judge);
+  const auto verified = judge::verify_on_gpu(asset, source, judge);
   if (!verified) return verified.error();
   for (const std::string& warning : verified->warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
   if (!options.out_folder.empty()) {
     if (const Status written = write_text(report_path, gpu_json(options, *verified)); !written) return written;
   }
-  for (const gpu::GpuCheck& check : verified->checks) {
+  for (const judge::GpuCheck& check : verified->checks) {
     report.checks.push_back({check.invariant, verified->device.name + ": " + check.what, check.items, check.failures,
                              check.is_skipped});
     if (check.failures == 0) continue;

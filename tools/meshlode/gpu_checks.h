@@ -22,7 +22,7 @@ struct GpuOptions {
 };
 
 /// What the GPU finds, as checks and findings of the same report; heat maps and gpu.json where a folder is given.
-[[nodiscard]] Status verify_with_gpu(const Asset& asset, const Scene& source, const GpuOptions& options,
-                                     VerifyReport& report);
+[[nodiscard]] Status verify_with_gpu(const run::Asset& asset, const scene::Scene& source, const GpuOptions& options,
+                                     judge::VerifyReport& report);
 
 }  // namespace meshlode::cli

@@ -25,7 +25,7 @@ void Progress::finish() {
   has_bar_ = false;
 }
 
-void Progress::show(const ProgressEvent& event) {
+void Progress::show(const build::ProgressEvent& event) {
   std::string mesh = event.mesh_name.substr(0, 24);
   for (char& c : mesh) {
     if (static_cast<unsigned char>(c) < 0x20) c = '?';
@@ -49,9 +49,9 @@ void Progress::show(const ProgressEvent& event) {
   has_bar_ = true;
 }
 
-ProgressCallback Progress::callback() {
-  if (quiet_) return [](const ProgressEvent&) { return true; };
-  return [this](const ProgressEvent& event) {
+build::ProgressCallback Progress::callback() {
+  if (quiet_) return [](const build::ProgressEvent&) { return true; };
+  return [this](const build::ProgressEvent& event) {
     show(event);
     return true;
   };

@@ -15,10 +15,10 @@ class Progress {
   Progress(bool quiet, std::size_t index, std::size_t count);
   void start(const std::string& name);
   void finish();  ///< wipes the bar; may be called twice
-  [[nodiscard]] ProgressCallback callback();
+  [[nodiscard]] build::ProgressCallback callback();
 
  private:
-  void show(const ProgressEvent& event);
+  void show(const build::ProgressEvent& event);
 
   bool quiet_;
   bool is_terminal_;

@@ -41,10 +41,10 @@ struct JobResult {
   std::uint64_t meshes = 0, instances = 0;
   std::uint64_t bytes = 0;
   std::uint64_t memory_estimate = 0;  ///< 0: not reached
-  std::vector<StageTime> stages;
-  std::vector<LeftOut> left_out;     ///< by the importer
-  std::vector<LeftOut> planned_out;  ///< by the plan
-  std::vector<LeftOut> losses;       ///< those of them that the scene's materials can show
+  std::vector<build::StageTime> stages;
+  std::vector<scene::LeftOut> left_out;     ///< by the importer
+  std::vector<scene::LeftOut> planned_out;  ///< by the plan
+  std::vector<scene::LeftOut> losses;       ///< those of them that the scene's materials can show
 };
 
 class Timer {
@@ -158,8 +158,8 @@ Status check_against_read(const fs::path& output, const std::string& report_path
 }
 
 struct JobOptions {
-  PipelineOptions pipeline;
-  ImportOptions import;
+  build::PipelineOptions pipeline;
+  scene::ImportOptions import;
   std::string report_path;
   bool make_folders = false;  ///< for the output, below -O
 };
@@ -168,24 +168,24 @@ Result<std::vector<std::uint8_t>> import_and_build(const Job& job, const JobOpti
                                                    JobResult& result) {
   const Timer import_timer;
   std::vector<FileId> files_read;
-  ImportOptions import_options = options.import;
+  scene::ImportOptions import_options = options.import;
   import_options.files_read = &files_read;
-  Result<Scene> scene = import_scene(job.input, import_options);
+  Result<scene::Scene> scene = scene::import_scene(job.input, import_options);
   output_files().keep(files_read);
   if (const Status free = check_against_read(job.output, options.report_path, result); !free) return free.error();
   if (!scene) return scene.error();
   result.stages.push_back({"import", import_timer.seconds()});
   result.meshes = scene->meshes.size();
   result.instances = scene->instances.size();
-  for (const SourceMesh& mesh : scene->meshes) {
-    for (const Primitive& primitive : mesh.primitives) result.triangles += primitive.indices.size() / 3;
+  for (const scene::SourceMesh& mesh : scene->meshes) {
+    for (const scene::Primitive& primitive : mesh.primitives) result.triangles += primitive.indices.size() / 3;
   }
   result.left_out = scene->left_out;
-  PipelineReport report;
-  auto bytes = build_lode(*scene, options.pipeline, progress.callback(), report);
+  build::PipelineReport report;
+  auto bytes = build::build_lode(*scene, options.pipeline, progress.callback(), report);
   result.memory_estimate = report.memory_estimate;
   result.stages.insert(result.stages.end(), report.stages.begin(), report.stages.end());
-  for (const PlanDecision& decision : report.decisions) {
+  for (const build::PlanDecision& decision : report.decisions) {
     if (decision.kept) continue;
     result.planned_out.push_back({decision.what, decision.reason});
     if (decision.is_loss) result.losses.push_back(result.planned_out.back());
@@ -230,7 +230,7 @@ void print_summary(const JobResult& r) {
                static_cast<unsigned long long>(r.meshes), r.job.output.string().c_str(),
                static_cast<unsigned long long>(r.bytes), r.seconds,
                r.seconds > 0.0 ? static_cast<double>(r.triangles) / r.seconds : 0.0);
-  for (const LeftOut& left : r.left_out) {
+  for (const scene::LeftOut& left : r.left_out) {
     std::fprintf(stderr, "  left out: %s: %s\n", left.what.c_str(), left.why.c_str());
   }
   if (r.losses.empty()) return;  // one line for all meshes of a scene
@@ -238,8 +238,8 @@ void print_summary(const JobResult& r) {
   std::fprintf(stderr, "  left out: %s%s: %s\n", r.losses[0].what.c_str(), more.c_str(), r.losses[0].why.c_str());
 }
 
-void write_left_out(JsonWriter& w, const std::vector<LeftOut>& items) {
-  for (const LeftOut& left : items) {
+void write_left_out(JsonWriter& w, const std::vector<scene::LeftOut>& items) {
+  for (const scene::LeftOut& left : items) {
     w.begin_object();
     w.field("what", left.what);
     w.field("why", left.why);
@@ -286,7 +286,7 @@ std::string report_json(const std::vector<JobResult>& results, std::uint32_t job
     }
     w.key("stages");
     w.begin_array();
-    for (const StageTime& stage : r.stages) {
+    for (const build::StageTime& stage : r.stages) {
       w.begin_object();
       w.field("stage", stage.stage);
       w.field("seconds", stage.seconds);
@@ -328,7 +328,7 @@ std::optional<double> parse_positive(std::string_view text) {
 }
 
 /// The accuracy budgets.
-Status set_budgets(const BuildWords& words, PipelineOptions& options) {
+Status set_budgets(const BuildWords& words, build::PipelineOptions& options) {
   if (words.position_error != "auto") {
     if (words.grid != "auto") return Error{ErrorCode::kUsage, "--position-error", "give this or --grid, not both"};
     const auto error = parse_positive(words.position_error);
@@ -350,11 +350,11 @@ Status set_budgets(const BuildWords& words, PipelineOptions& options) {
   return Ok{};
 }
 
-Result<PipelineOptions> make_options(const BuildWords& words) {
+Result<build::PipelineOptions> make_options(const BuildWords& words) {
   const auto later = [](const char* option, const std::string& value) {
     return Error{ErrorCode::kUnsupported, std::string(option) + " " + value, "unsupported yet"};
   };
-  PipelineOptions options;
+  build::PipelineOptions options;
   options.error_tier = words.error_tier == "qem"        ? format::ErrorTier::kQem
                        : words.error_tier == "measured" ? format::ErrorTier::kMeasured
                                                         : format::ErrorTier::kCertified;
@@ -364,9 +364,9 @@ Result<PipelineOptions> make_options(const BuildWords& words) {
                   : words.codec == "draco"  ? format::Codec::kDraco
                   : words.codec == "strips" ? format::Codec::kStrips
                                             : format::Codec::kNone;
-  options.attributes = words.attributes == "none"  ? AttributeChoice::kNone
-                       : words.attributes == "all" ? AttributeChoice::kAll
-                                                   : AttributeChoice::kAuto;
+  options.attributes = words.attributes == "none"  ? build::AttributeChoice::kNone
+                       : words.attributes == "all" ? build::AttributeChoice::kAll
+                                                   : build::AttributeChoice::kAuto;
   if (Status status = set_budgets(words, options); !status) return status.error();
   if (words.grid != "auto") {
     const char* end = words.grid.data() + words.grid.size();
@@ -411,7 +411,7 @@ int run_build(const Verb& verb, std::span<char* const> args) {
   if (!output.empty() && !output_folder.empty()) {
     return print_error({ErrorCode::kUsage, "", "give -o or -O, not both"});
   }
-  Result<PipelineOptions> options = make_options(words);
+  Result<build::PipelineOptions> options = make_options(words);
   if (!options) return print_error(options.error());
   options->repair = repair;
   if (max_memory != "auto") {

@@ -46,7 +46,7 @@ Status check_options(const ExtractOptions& o) {
 }
 
 /// The meshes to export: all, or those of that name, or the one with that index.
-Result<std::vector<bool>> choose_meshes(const Asset& asset, const std::optional<std::string>& wanted) {
+Result<std::vector<bool>> choose_meshes(const run::Asset& asset, const std::optional<std::string>& wanted) {
   std::vector<bool> chosen(asset.meshes().size(), !wanted);
   if (!wanted) return chosen;
   bool is_found = false;
@@ -65,11 +65,11 @@ Result<std::vector<bool>> choose_meshes(const Asset& asset, const std::optional<
   return chosen;
 }
 
-bool is_below_level0(const Asset& asset, MeshId mesh, const CutLevel& level) {
+bool is_below_level0(const run::Asset& asset, MeshId mesh, const CutLevel& level) {
   return level.asked && !level.cut.clusters.empty() && *level.asked < asset.meshes()[mesh.value].level0_deviation;
 }
 
-double relative_error(const Asset& asset, MeshId mesh, const CutLevel& level) {
+double relative_error(const run::Asset& asset, MeshId mesh, const CutLevel& level) {
   const double diagonal = asset.meshes()[mesh.value].diagonal;
   return diagonal > 0.0 ? level.cut.stored_error / diagonal : 0.0;
 }
@@ -83,7 +83,7 @@ void write_deviation(JsonWriter& w, const char* name, double deviation) {
     w.value(deviation);
 }
 
-void write_level(JsonWriter& w, const Asset& asset, MeshId mesh, const CutLevel& level) {
+void write_level(JsonWriter& w, const run::Asset& asset, MeshId mesh, const CutLevel& level) {
   w.field("clusters", level.cut.clusters.size());
   w.field("triangles", level.triangles);
   w.key("asked_error");
@@ -93,13 +93,13 @@ void write_level(JsonWriter& w, const Asset& asset, MeshId mesh, const CutLevel&
     w.null();
   w.field("stored_error", level.cut.stored_error);
   w.field("stored_error_relative", relative_error(asset, mesh, level));
-  const CutAttributeDeviation attributes = attribute_deviation_of(tables_of(asset), level.cut.clusters);
+  const run::CutAttributeDeviation attributes = run::attribute_deviation_of(run::tables_of(asset), level.cut.clusters);
   write_deviation(w, "stored_normal_deviation", attributes.normal_degrees);
   write_deviation(w, "stored_uv_deviation", attributes.uv);
   w.field("asked_below_level0_deviation", is_below_level0(asset, mesh, level));
 }
 
-std::string describe_json(const Asset& asset, const std::vector<MeshCuts>& cuts, bool is_chain, std::size_t bytes) {
+std::string describe_json(const run::Asset& asset, const std::vector<MeshCuts>& cuts, bool is_chain, std::size_t bytes) {
   JsonWriter w;
   std::uint64_t triangles = 0;
   w.begin_object();
@@ -134,7 +134,7 @@ std::string describe_json(const Asset& asset, const std::vector<MeshCuts>& cuts,
   return w.text();
 }
 
-std::string describe_level(const Asset& asset, MeshId mesh, const CutLevel& level) {
+std::string describe_level(const run::Asset& asset, MeshId mesh, const CutLevel& level) {
   char numbers[160];
   std::snprintf(numbers, sizeof numbers, "%" PRIu64 " of %" PRIu64 " triangles, error %.6g units, %.6g of the diagonal",
                 level.triangles, asset.meshes()[mesh.value].source_triangles, level.cut.stored_error,
@@ -142,7 +142,7 @@ std::string describe_level(const Asset& asset, MeshId mesh, const CutLevel& leve
   return numbers;
 }
 
-std::string describe_text(const Asset& asset, const std::vector<MeshCuts>& cuts, bool is_chain, std::size_t bytes,
+std::string describe_text(const run::Asset& asset, const std::vector<MeshCuts>& cuts, bool is_chain, std::size_t bytes,
                           const std::string& output) {
   std::string text;
   std::uint64_t triangles = 0;
@@ -174,15 +174,15 @@ std::string describe_text(const Asset& asset, const std::vector<MeshCuts>& cuts,
   return text;
 }
 
-Result<std::vector<std::uint8_t>> export_cuts(const Asset& asset, const std::vector<MeshCuts>& cuts) {
-  std::vector<LodChain> chains(cuts.size());
+Result<std::vector<std::uint8_t>> export_cuts(const run::Asset& asset, const std::vector<MeshCuts>& cuts) {
+  std::vector<out::LodChain> chains(cuts.size());
   for (std::size_t m = 0; m < cuts.size(); ++m) {
     for (const CutLevel& level : cuts[m].levels) {
       chains[m].cuts.push_back(level.cut.clusters);
       chains[m].screen_coverage.push_back(level.screen_coverage);
     }
   }
-  return export_glb_lods(asset, chains);
+  return out::export_glb_lods(asset, chains);
 }
 
 int run_extract(const Verb& verb, std::span<char* const> args) {
@@ -215,7 +215,7 @@ int run_extract(const Verb& verb, std::span<char* const> args) {
 
   const Result<std::uint64_t> max_decoded = parse_max_decoded(o.max_decoded);
   if (!max_decoded) return print_error(max_decoded.error());
-  auto asset = Asset::open(o.input, *max_decoded);
+  auto asset = run::Asset::open(o.input, *max_decoded);
   if (!asset) return print_error(asset.error());
   if (const auto id = asset->file_id()) output_files().keep(*id);
   if (const Status free = output_files().claim(*o.output); !free) return print_error(free.error());

@@ -18,16 +18,16 @@ int run_info(const Verb& verb, std::span<char* const> args) {
   parser.add_flag("--stuck", list_stuck, "list every stuck group with its reason (extract --stuck shows them)");
   if (const auto exit_code = parser.parse(args)) return *exit_code;
 
-  const Result<Asset> asset = Asset::open(path);
+  const Result<run::Asset> asset = run::Asset::open(path);
   if (!asset) return print_error(asset.error());
-  AssetInfo info = describe_asset(*asset);
-  Result<ByteMap> byte_map = map_bytes(*asset);
+  out::AssetInfo info = out::describe_asset(*asset);
+  Result<out::ByteMap> byte_map = out::map_bytes(*asset);
   if (byte_map) {
     info.byte_map = std::move(*byte_map);
   } else {
     (void)print_error(byte_map.error());  // what the tables say is still true
   }
-  const std::string text = output.json() ? info_json(*asset, info, list_stuck) : info_text(*asset, info, list_stuck);
+  const std::string text = output.json() ? out::info_json(*asset, info, list_stuck) : out::info_text(*asset, info, list_stuck);
   return print_out(text) ? 0 : static_cast<int>(ErrorCode::kIo);
 }
 

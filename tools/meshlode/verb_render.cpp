@@ -46,33 +46,33 @@ struct RenderStats {
 const std::string kGpuViews[] = {"shaded",  "clusters", "triangles", "levels",  "normals",
                                  "pages",   "overdraw", "paths",     "occluded"};
 
-View view_of(const std::string& name) {
-  if (name == "clusters") return View::kClusters;
-  if (name == "triangles") return View::kTriangles;
-  return name == "levels" ? View::kLevels : View::kShaded;
+draw::View view_of(const std::string& name) {
+  if (name == "clusters") return draw::View::kClusters;
+  if (name == "triangles") return draw::View::kTriangles;
+  return name == "levels" ? draw::View::kLevels : draw::View::kShaded;
 }
 
-Error too_many_clusters(const Asset& asset) {
+Error too_many_clusters(const run::Asset& asset) {
   return {ErrorCode::kUnsupported, "cut",
           "the clusters of all instances take more than " + byte_size_text(asset.max_decoded_bytes()) +
               ", the larger of --max-decoded and 64 times the file"};
 }
 
-std::size_t max_clusters(const Asset& asset) { return asset.max_decoded_bytes() / sizeof(ClusterInstance); }
+std::size_t max_clusters(const run::Asset& asset) { return asset.max_decoded_bytes() / sizeof(run::ClusterInstance); }
 
 /// The same cut of a mesh in each of its instances.
-Result<std::vector<ClusterInstance>> uniform_cut(const Asset& asset, double error, bool is_relative,
-                                                 const AttributeBounds& bounds) {
-  std::vector<ClusterInstance> cut;
-  std::map<std::uint32_t, UniformCut> cut_of_mesh;
+Result<std::vector<run::ClusterInstance>> uniform_cut(const run::Asset& asset, double error, bool is_relative,
+                                                 const run::AttributeBounds& bounds) {
+  std::vector<run::ClusterInstance> cut;
+  std::map<std::uint32_t, run::UniformCut> cut_of_mesh;
   for (std::size_t i = 0; i < asset.instances().size(); ++i) {
     const format::InstanceRecord& instance = asset.instances()[i];
     if ((instance.flags & format::kInstanceSingular) != 0) continue;
     const double diagonal = asset.meshes()[instance.mesh].diagonal;
     const auto [found, is_new] = cut_of_mesh.try_emplace(instance.mesh);
     if (is_new) {
-      found->second = select_uniform(asset, MeshId(instance.mesh), is_relative ? error * diagonal : error,
-                                     CutError::kSelection, bounds);
+      found->second = run::select_uniform(asset, MeshId(instance.mesh), is_relative ? error * diagonal : error,
+                                     run::CutError::kSelection, bounds);
     }
     if (found->second.clusters.size() > max_clusters(asset) - cut.size()) return too_many_clusters(asset);
     for (const ClusterId cluster : found->second.clusters) cut.push_back({InstanceId(i), cluster});
@@ -80,10 +80,10 @@ Result<std::vector<ClusterInstance>> uniform_cut(const Asset& asset, double erro
   return cut;
 }
 
-RenderStats measure(const Asset& asset, const std::vector<ClusterInstance>& cut, const VisibilityBuffer& visibility) {
+RenderStats measure(const run::Asset& asset, const std::vector<run::ClusterInstance>& cut, const draw::VisibilityBuffer& visibility) {
   RenderStats stats;
   stats.clusters = cut.size();
-  for (const ClusterInstance& entry : cut) {
+  for (const run::ClusterInstance& entry : cut) {
     const format::ClusterRecord& cluster = asset.clusters()[entry.cluster.value];
     stats.triangles += cluster.triangle_count();
     if (stats.triangles_of_level.size() <= cluster.level) stats.triangles_of_level.resize(cluster.level + 1u, 0);
@@ -97,7 +97,7 @@ RenderStats measure(const Asset& asset, const std::vector<ClusterInstance>& cut,
   }
   std::vector<std::uint8_t> is_visible(cut.size(), 0);
   for (const std::uint32_t item : visibility.item) {
-    if (item == VisibilityBuffer::kNothing) continue;
+    if (item == draw::VisibilityBuffer::kNothing) continue;
     ++stats.covered_pixels;
     is_visible[item] = 1;
   }
@@ -105,7 +105,7 @@ RenderStats measure(const Asset& asset, const std::vector<ClusterInstance>& cut,
   return stats;
 }
 
-std::string stats_json(const RenderOptions& options, const Camera& camera, const RenderStats& stats) {
+std::string stats_json(const RenderOptions& options, const run::Camera& camera, const RenderStats& stats) {
   JsonWriter json;
   json.begin_object();
   json.field("output", std::filesystem::path(options.output).filename().string());
@@ -151,7 +151,7 @@ std::string stats_json(const RenderOptions& options, const Camera& camera, const
   return json.text();
 }
 
-std::string stats_text(const RenderOptions& options, const Camera& camera, const RenderStats& stats) {
+std::string stats_text(const RenderOptions& options, const run::Camera& camera, const RenderStats& stats) {
   char line[256];
   const double pixels = static_cast<double>(camera.width) * camera.height;
   std::snprintf(
@@ -165,9 +165,9 @@ std::string stats_text(const RenderOptions& options, const Camera& camera, const
 }
 
 struct Drawn {
-  std::vector<ClusterInstance> cut;
-  VisibilityBuffer visibility;
-  Image image;
+  std::vector<run::ClusterInstance> cut;
+  draw::VisibilityBuffer visibility;
+  draw::Image image;
 };
 
 /// Views that tell of a frame's passes; the others are drawn again in order, so that equal depths resolve as on the CPU.
@@ -180,35 +180,35 @@ void print_warnings(const std::vector<std::string>& warnings) {
 }
 
 /// Selected, drawn and coloured by the device.
-Result<Drawn> draw_on_gpu(const Asset& asset, const Camera& camera, const RenderOptions& options,
-                          const AttributeBounds& bounds, ImageBudget& images) {
+Result<Drawn> draw_on_gpu(const run::Asset& asset, const run::Camera& camera, const RenderOptions& options,
+                          const run::AttributeBounds& bounds, draw::ImageBudget& images) {
   const auto view = static_cast<std::uint32_t>(
       std::find(std::begin(kGpuViews), std::end(kGpuViews), options.view) - std::begin(kGpuViews));
-  auto device = gpu::Device::open({.device = options.device, .validate = false});
+  auto device = draw::Device::open({.device = options.device, .validate = false});
   if (!device) return device.error();
-  auto scene = gpu::upload_scene(*device, asset, {}, bounds, &images);
+  auto scene = draw::upload_scene(*device, asset, {}, bounds, &images);
   if (!scene) return scene.error();
   print_warnings(scene->alpha_masks->warnings);
   const std::vector<std::string> force = options.force.empty() ? std::vector<std::string>{}
                                                                : std::vector<std::string>{options.force};
-  auto plan = gpu::plan_passes(*scene, device->info(), camera.width, camera.height, force,
+  auto plan = draw::plan_passes(*scene, device->info(), camera.width, camera.height, force,
                                view == VIEW_SHADED || view == VIEW_NORMALS);
   if (!plan) return plan.error();
   plan->options.overdraw = view == VIEW_OVERDRAW;
   if (view == VIEW_OCCLUDED) plan->options.occlusion = true;
-  if (options.explain) std::fprintf(stderr, "%s", gpu::describe_plan(*plan).c_str());
+  if (options.explain) std::fprintf(stderr, "%s", draw::describe_plan(*plan).c_str());
   if (plan->textures) {
-    const TextureSet textures = load_textures(asset, images);
+    const draw::TextureSet textures = draw::load_textures(asset, images);
     print_warnings(textures.warnings);
-    if (const Status s = gpu::upload_textures(*device, textures, *scene); !s) return s.error();
+    if (const Status s = draw::upload_textures(*device, textures, *scene); !s) return s.error();
   }
-  auto renderer = gpu::Renderer::make(*device, *scene, plan->options);
+  auto renderer = draw::Renderer::make(*device, *scene, plan->options);
   if (!renderer) return renderer.error();
-  const auto depth = gpu::depth_of_scene(asset, camera);
+  const auto depth = draw::depth_of_scene(asset, camera);
   if (!depth) return depth.error();
   if (view == VIEW_OCCLUDED) {
     // A frame from a little to the side first: what it could not see, the second pass of this one brings back.
-    Camera before = camera;
+    run::Camera before = camera;
     const Vec3d ahead = camera.target - camera.eye;
     const Vec3d side(ahead.z, 0.0, -ahead.x);
     before.eye = camera.eye + 0.1 * side;
@@ -219,13 +219,13 @@ Result<Drawn> draw_on_gpu(const Asset& asset, const Camera& camera, const Render
   if (!frame) return frame.error();
   if (frame->overflow != 0) {
     return Error{ErrorCode::kUnsupported, device->info().name,
-                 "the picture is not complete: overflow of " + gpu::describe_overflow(frame->overflow)};
+                 "the picture is not complete: overflow of " + draw::describe_overflow(frame->overflow)};
   }
   auto cut = renderer->read_cut();
   if (!cut) return cut.error();
   std::uint32_t level_count = 1;
   for (const format::MeshRecord& mesh : asset.meshes()) level_count = std::max(level_count, mesh.level_count);
-  std::optional<Image> image;
+  std::optional<draw::Image> image;
   for (const bool in_order : {false, true}) {
     if (in_order) {
       if (const Status s = renderer->redraw_in_order(); !s) return s.error();
@@ -235,32 +235,32 @@ Result<Drawn> draw_on_gpu(const Asset& asset, const Camera& camera, const Render
     if (!resolved) return resolved.error();
     image = std::move(resolved->image);
   }
-  if (view == VIEW_LEVELS) raster::draw_level_legend(*image, level_count);
+  if (view == VIEW_LEVELS) draw::draw_level_legend(*image, level_count);
   auto visibility = renderer->read_pixels();
   if (!visibility) return visibility.error();
   return Drawn{std::move(*cut), std::move(*visibility), std::move(*image)};
 }
 
-Result<Drawn> draw_on_cpu(const Asset& asset, const Camera& camera, const RenderOptions& options,
-                          const AttributeBounds& bounds, ImageBudget& images) {
-  std::vector<ClusterInstance> cut;
+Result<Drawn> draw_on_cpu(const run::Asset& asset, const run::Camera& camera, const RenderOptions& options,
+                          const run::AttributeBounds& bounds, draw::ImageBudget& images) {
+  std::vector<run::ClusterInstance> cut;
   if (options.error) {
     auto uniform = uniform_cut(asset, *options.error, options.is_relative, bounds);
     if (!uniform) return uniform.error();
     cut = std::move(*uniform);
   } else {
-    auto seen = select_bvh_within(tables_of(asset), camera, options.camera.pixel_error, max_clusters(asset), bounds);
+    auto seen = run::select_bvh_within(run::tables_of(asset), camera, options.camera.pixel_error, max_clusters(asset), bounds);
     if (!seen) return too_many_clusters(asset);
     cut = std::move(*seen);
   }
-  const AlphaMasks masks = load_alpha_masks(asset, images);
+  const draw::AlphaMasks masks = draw::load_alpha_masks(asset, images);
   print_warnings(masks.warnings);
-  auto visibility = draw_cut(asset, cut, camera, masks);
+  auto visibility = draw::draw_cut(asset, cut, camera, masks);
   if (!visibility) return visibility.error();
-  TextureSet textures;
-  if (view_of(options.view) == View::kShaded) textures = load_textures(asset, images);
+  draw::TextureSet textures;
+  if (view_of(options.view) == draw::View::kShaded) textures = draw::load_textures(asset, images);
   print_warnings(textures.warnings);
-  auto image = shade_view(asset, cut, camera, *visibility, view_of(options.view), textures);
+  auto image = draw::shade_view(asset, cut, camera, *visibility, view_of(options.view), textures);
   if (!image) return image.error();
   return Drawn{std::move(cut), std::move(*visibility), std::move(*image)};
 }
@@ -305,14 +305,14 @@ int run_render(const Verb& verb, std::span<char* const> args) {
   if (!max_decoded) return print_error(max_decoded.error());
 
   const JobLimit limit(options.jobs);
-  const Result<Asset> asset = Asset::open(options.input, *max_decoded);
+  const Result<run::Asset> asset = run::Asset::open(options.input, *max_decoded);
   if (!asset) return print_error(asset.error());
   if (const auto id = asset->file_id()) output_files().keep(*id);
   if (const Status free = output_files().claim(options.output); !free) return print_error(free.error());
-  const Result<Camera> camera = make_camera(options.camera, *asset);
+  const Result<run::Camera> camera = make_camera(options.camera, *asset);
   if (!camera) return print_error(camera.error());
 
-  const Result<AttributeBounds> bounds = make_bounds(options.bounds, *asset);
+  const Result<run::AttributeBounds> bounds = make_bounds(options.bounds, *asset);
   if (!bounds) return print_error(bounds.error());
 
   const auto fail = [&](Error error) {
@@ -320,13 +320,13 @@ int run_render(const Verb& verb, std::span<char* const> args) {
       error.where = options.input + (error.where.empty() ? "" : ": ") + error.where;
     return print_error(error);
   };
-  ImageBudget images(*max_decoded);
+  draw::ImageBudget images(*max_decoded);
   const Result<Drawn> drawn = options.gpu ? draw_on_gpu(*asset, *camera, options, *bounds, images)
                                           : draw_on_cpu(*asset, *camera, options, *bounds, images);
   if (!drawn) return fail(drawn.error());
-  const std::vector<ClusterInstance>& cut = drawn->cut;
-  const VisibilityBuffer& visibility = drawn->visibility;
-  const std::vector<std::uint8_t> png = encode_png(drawn->image);
+  const std::vector<run::ClusterInstance>& cut = drawn->cut;
+  const draw::VisibilityBuffer& visibility = drawn->visibility;
+  const std::vector<std::uint8_t> png = draw::encode_png(drawn->image);
   if (png.empty()) return print_error({ErrorCode::kIo, options.output, "the picture is too large to compress"});
   if (const Status written = output_files().write(options.output, png); !written) return print_error(written.error());
   if (options.report.quiet && !options.report.json()) return 0;

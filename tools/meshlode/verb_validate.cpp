@@ -16,14 +16,14 @@ namespace {
 constexpr int kInvalid = static_cast<int>(ErrorCode::kInvalid);
 constexpr int kCheckFailed = static_cast<int>(ErrorCode::kCheckFailed);
 
-bool is_no_asset(const ValidationReport& report) {
-  return std::any_of(report.findings.begin(), report.findings.end(), [](const Finding& f) { return f.id == "L001"; });
+bool is_no_asset(const judge::ValidationReport& report) {
+  return std::any_of(report.findings.begin(), report.findings.end(), [](const judge::Finding& f) { return f.id == "L001"; });
 }
 
-void write_findings(JsonWriter& json, const std::vector<Finding>& findings) {
+void write_findings(JsonWriter& json, const std::vector<judge::Finding>& findings) {
   json.key("findings");
   json.begin_array();
-  for (const Finding& finding : findings) {
+  for (const judge::Finding& finding : findings) {
     json.begin_object();
     json.field("id", finding.id);
     json.field("invariant", finding.invariant);
@@ -34,9 +34,9 @@ void write_findings(JsonWriter& json, const std::vector<Finding>& findings) {
   json.end_array();
 }
 
-std::string describe(const std::string& path, const ValidationReport& report, bool quiet) {
+std::string describe(const std::string& path, const judge::ValidationReport& report, bool quiet) {
   std::string text;
-  for (const Finding& finding : report.findings) {
+  for (const judge::Finding& finding : report.findings) {
     text += path + ": " + finding.id + (finding.invariant.empty() ? "" : " (" + finding.invariant + ")") + ": " +
             finding.where + ": " + finding.detail + "\n";
   }
@@ -69,7 +69,7 @@ int run_validate(const Verb& verb, std::span<char* const> args) {
       worst = std::max(worst, print_error(file.error()));
       continue;
     }
-    const ValidationReport report = validate_asset(file->bytes());
+    const judge::ValidationReport report = judge::validate_asset(file->bytes());
     if (report.finding_count > 0) worst = std::max(worst, is_no_asset(report) ? kInvalid : kCheckFailed);
     text += describe(path, report, output.quiet);
     json.begin_object();

@@ -20,9 +20,9 @@ namespace meshlode::cli {
 
 namespace {
 
-std::string describe(const VerifyReport& report, bool quiet) {
+std::string describe(const judge::VerifyReport& report, bool quiet) {
   std::string text;
-  for (const VerifyReport::Check& check : report.checks) {
+  for (const judge::VerifyReport::Check& check : report.checks) {
     if (quiet && check.failures == 0) continue;
     char head[64];
     std::snprintf(head, sizeof head, "%-4s %-8s %12llu  ", check.invariant.empty() ? "-" : check.invariant.c_str(),
@@ -34,7 +34,7 @@ std::string describe(const VerifyReport& report, bool quiet) {
     if (check.failures > 0) text += ": " + std::to_string(check.failures) + " failures";
     text += "\n";
   }
-  for (const Finding& finding : report.findings) {
+  for (const judge::Finding& finding : report.findings) {
     text += finding.id + (finding.invariant.empty() ? "" : " (" + finding.invariant + ")") + ": " + finding.where +
             ": " + finding.detail + "\n";
   }
@@ -47,8 +47,8 @@ std::string describe(const VerifyReport& report, bool quiet) {
   return text;
 }
 
-std::string to_json(const std::string& path, const std::string& source, const VerifyOptions& options,
-                    const VerifyReport& report) {
+std::string to_json(const std::string& path, const std::string& source, const judge::VerifyOptions& options,
+                    const judge::VerifyReport& report) {
   JsonWriter json;
   json.begin_object();
   json.field("file", path);
@@ -60,7 +60,7 @@ std::string to_json(const std::string& path, const std::string& source, const Ve
   json.field("finding_count", report.finding_count);
   json.key("checks");
   json.begin_array();
-  for (const VerifyReport::Check& check : report.checks) {
+  for (const judge::VerifyReport::Check& check : report.checks) {
     json.begin_object();
     json.field("invariant", check.invariant);
     json.field("what", check.what);
@@ -72,7 +72,7 @@ std::string to_json(const std::string& path, const std::string& source, const Ve
   json.end_array();
   json.key("findings");
   json.begin_array();
-  for (const Finding& finding : report.findings) {
+  for (const judge::Finding& finding : report.findings) {
     json.begin_object();
     json.field("id", finding.id);
     json.field("invariant", finding.invariant);
@@ -86,17 +86,17 @@ std::string to_json(const std::string& path, const std::string& source, const Ve
 }
 
 /// Triangles that --repair dropped are found again by repairing the source in the same way.
-bool was_repaired(const Asset& asset) {
+bool was_repaired(const run::Asset& asset) {
   const auto meshes = asset.meshes();
   return std::any_of(meshes.begin(), meshes.end(), [](const format::MeshRecord& m) { return m.dropped_repaired > 0; });
 }
 
 /// Clusters decoded, and a cut that draws each in every instance: what verify keeps at once.
-Status check_size(const Asset& asset) {
-  if (Status geometry = check_decoded_bytes(asset, count_decoded_bytes(asset)); !geometry) return geometry;
+Status check_size(const run::Asset& asset) {
+  if (Status geometry = run::check_decoded_bytes(asset, run::count_decoded_bytes(asset)); !geometry) return geometry;
   std::uint64_t clusters = 0;
   for (const format::InstanceRecord& instance : asset.instances()) clusters += asset.meshes()[instance.mesh].cluster_count;
-  const Status cuts = check_decoded_bytes(asset, clusters * sizeof(ClusterInstance));
+  const Status cuts = run::check_decoded_bytes(asset, clusters * sizeof(run::ClusterInstance));
   return cuts ? cuts : Status(Error{cuts.error().code, "cuts of all instances", cuts.error().detail});
 }
 
@@ -106,7 +106,7 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
   GpuOptions gpu_options;
   std::uint32_t jobs = 0;
   std::string max_decoded_text = kDefaultMaxDecodedText;
-  VerifyOptions options;
+  judge::VerifyOptions options;
   OutputOptions output;
   OptionParser parser(verb);
   parser.add_positional("file", path, "a .lode asset");
@@ -135,18 +135,18 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
   gpu_options.max_decoded = *max_decoded;
 
   const JobLimit limit(jobs);
-  const Result<Asset> asset = Asset::open(path, *max_decoded);
+  const Result<run::Asset> asset = run::Asset::open(path, *max_decoded);
   if (!asset) return print_error(asset.error());
   if (const auto id = asset->file_id()) output_files().keep(*id);
   if (const Status size = check_size(*asset); !size) {
     return print_error({size.error().code, path + ": " + size.error().where, size.error().detail});
   }
   std::vector<FileId> files_read;
-  Result<Scene> source = import_scene(
+  Result<scene::Scene> source = scene::import_scene(
       source_path, {.repair = was_repaired(*asset), .files_read = &files_read, .max_decoded = *max_decoded});
   output_files().keep(files_read);
   if (!source) return print_error(source.error());
-  VerifyReport report = verify_asset(*asset, *source, options);
+  judge::VerifyReport report = judge::verify_asset(*asset, *source, options);
   if (gpu_options.is_on) {
     if (const Status judged = verify_with_gpu(*asset, *source, gpu_options, report); !judged) {
       return print_error(judged.error());

@@ -19,7 +19,7 @@
 namespace meshlode {
 namespace {
 
-Result<PipelineOptions> make_pipeline_options(const BuildOptions& options) {
+Result<build::PipelineOptions> make_pipeline_options(const BuildOptions& options) {
   const auto usage = [](const char* field, const char* detail) { return Error{ErrorCode::kUsage, field, detail}; };
   if (options.strip_attributes && options.keep_all_attributes) {
     return usage("BuildOptions::strip_attributes", "not together with keep_all_attributes");
@@ -28,21 +28,21 @@ Result<PipelineOptions> make_pipeline_options(const BuildOptions& options) {
     return usage("BuildOptions::grid_step", "is not a number >= 0");
   }
   if (options.thread_count > 4096) return usage("BuildOptions::thread_count", "is above 4096");
-  PipelineOptions pipeline;
+  build::PipelineOptions pipeline;
   pipeline.error_tier = options.error_tier;
   pipeline.codec = options.codec;
   pipeline.grid_step = options.grid_step;
   pipeline.repair = options.repair;
-  if (options.strip_attributes) pipeline.attributes = AttributeChoice::kNone;
-  if (options.keep_all_attributes) pipeline.attributes = AttributeChoice::kAll;
+  if (options.strip_attributes) pipeline.attributes = build::AttributeChoice::kNone;
+  if (options.keep_all_attributes) pipeline.attributes = build::AttributeChoice::kAll;
   return pipeline;
 }
 
-Result<std::vector<std::uint8_t>> run_pipeline(const Scene& scene, const BuildOptions& options) {
+Result<std::vector<std::uint8_t>> run_pipeline(const scene::Scene& scene, const BuildOptions& options) {
   const auto pipeline = make_pipeline_options(options);
   if (!pipeline) return pipeline.error();
   double reached = 0.0;
-  const ProgressCallback progress = [&](const ProgressEvent& event) {
+  const build::ProgressCallback progress = [&](const build::ProgressEvent& event) {
     if (options.on_progress) {
       reached = std::max(reached, event.fraction);
       options.on_progress({reached, event.mesh, event.mesh_count, event.level, event.triangles, event.mesh_name});
@@ -50,12 +50,12 @@ Result<std::vector<std::uint8_t>> run_pipeline(const Scene& scene, const BuildOp
     return !options.should_cancel || !options.should_cancel();
   };
   if (options.should_cancel && options.should_cancel()) return Error{ErrorCode::kBuildFailed, "", "cancelled"};
-  PipelineReport report;
-  if (options.thread_count == 0) return build_lode(scene, *pipeline, progress, report);
+  build::PipelineReport report;
+  if (options.thread_count == 0) return build::build_lode(scene, *pipeline, progress, report);
   // More than oneTBB has would only make it warn on stderr.
   const std::size_t available = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
   tbb::task_arena arena(static_cast<int>(std::min<std::size_t>(options.thread_count, available)));
-  return arena.execute([&] { return build_lode(scene, *pipeline, progress, report); });
+  return arena.execute([&] { return build::build_lode(scene, *pipeline, progress, report); });
 }
 
 /// Runs `body`; exceptions of the C++ library, of oneTBB and of the caller's callbacks end here.
@@ -81,7 +81,7 @@ Status write_result(Result<std::vector<std::uint8_t>> bytes, OutputFiles& files,
 
 Result<std::vector<std::uint8_t>> build_asset(const SceneInput& scene, const BuildOptions& options) {
   return guarded([&]() -> Result<std::vector<std::uint8_t>> {
-    auto made = make_scene(scene, options.repair);
+    auto made = build::make_scene(scene, options.repair);
     if (!made) return made.error();
     return run_pipeline(*made, options);
   });
@@ -98,11 +98,11 @@ Status build_asset_file(const SceneInput& scene, const std::filesystem::path& ou
 Status build_file(const std::filesystem::path& input, const std::filesystem::path& output,
                   const BuildOptions& options) {
   return guarded([&]() -> Status {
-    ImportOptions import_options;
+    scene::ImportOptions import_options;
     import_options.repair = options.repair;
     std::vector<FileId> files_read;
     import_options.files_read = &files_read;
-    auto scene = import_scene(input, import_options);
+    auto scene = scene::import_scene(input, import_options);
     if (!scene) return scene.error();
     OutputFiles files;
     files.keep(files_read);

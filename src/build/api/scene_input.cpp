@@ -7,7 +7,7 @@
 
 #include "base/hash.h"
 
-namespace meshlode {
+namespace meshlode::build {
 namespace {
 
 std::string at(const std::string& array, std::size_t index) {
@@ -54,9 +54,9 @@ Status copy_positions(std::span<const T> values, const std::string& where, bool 
   return Ok{};
 }
 
-Result<Primitive> make_primitive(const PrimitiveInput& input, const std::string& where, std::size_t material_count,
+Result<scene::Primitive> make_primitive(const PrimitiveInput& input, const std::string& where, std::size_t material_count,
                                  bool repair, std::uint64_t& repaired) {
-  Primitive primitive;
+  scene::Primitive primitive;
   std::vector<bool> is_usable;
   if (!input.positions.empty() && !input.positions_double.empty()) {
     return invalid(where, "has both positions and positions_double");
@@ -119,9 +119,9 @@ Result<Primitive> make_primitive(const PrimitiveInput& input, const std::string&
   return primitive;
 }
 
-Result<SceneMaterial> make_material(const MaterialInput& input, std::size_t index) {
+Result<scene::SceneMaterial> make_material(const MaterialInput& input, std::size_t index) {
   const std::string where = at("materials", index);
-  SceneMaterial material;
+  scene::SceneMaterial material;
   material.name = input.name;
   material.source_index = static_cast<std::uint32_t>(index);
   for (std::size_t c = 0; c < 4; ++c) {
@@ -129,9 +129,9 @@ Result<SceneMaterial> make_material(const MaterialInput& input, std::size_t inde
     material.base_color[static_cast<int>(c)] = std::clamp(input.base_color[c], 0.0F, 1.0F);
   }
   switch (input.alpha_mode) {
-    case format::AlphaMode::kOpaque: material.alpha_mode = AlphaMode::kOpaque; break;
-    case format::AlphaMode::kMask: material.alpha_mode = AlphaMode::kMask; break;
-    case format::AlphaMode::kBlend: material.alpha_mode = AlphaMode::kBlend; break;
+    case format::AlphaMode::kOpaque: material.alpha_mode = scene::AlphaMode::kOpaque; break;
+    case format::AlphaMode::kMask: material.alpha_mode = scene::AlphaMode::kMask; break;
+    case format::AlphaMode::kBlend: material.alpha_mode = scene::AlphaMode::kBlend; break;
     default: return invalid(where + ".alpha_mode", "is not a mode");
   }
   if (!(input.alpha_cutoff >= 0.0F) || !std::isfinite(input.alpha_cutoff)) {
@@ -143,10 +143,10 @@ Result<SceneMaterial> make_material(const MaterialInput& input, std::size_t inde
   return material;
 }
 
-Result<SceneInstance> make_instance(const InstanceInput& input, std::size_t index, std::size_t mesh_count) {
+Result<scene::SceneInstance> make_instance(const InstanceInput& input, std::size_t index, std::size_t mesh_count) {
   const std::string where = at("instances", index);
   if (input.mesh >= mesh_count) return invalid(where + ".mesh", std::to_string(input.mesh) + " does not exist");
-  SceneInstance instance;
+  scene::SceneInstance instance;
   instance.name = input.name;
   instance.node = static_cast<std::uint32_t>(index);
   instance.mesh = MeshId(input.mesh);
@@ -188,13 +188,13 @@ std::string hash_geometry(const SceneInput& input) {
 
 }  // namespace
 
-Result<Scene> make_scene(const SceneInput& input, bool repair) {
-  Scene scene;
+Result<scene::Scene> make_scene(const SceneInput& input, bool repair) {
+  scene::Scene scene;
   scene.source_name = input.name;
   scene.source_hash = hash_geometry(input);
   bool needs_default_material = false;
   for (std::size_t m = 0; m < input.meshes.size(); ++m) {
-    SourceMesh& mesh = scene.meshes.emplace_back();
+    scene::SourceMesh& mesh = scene.meshes.emplace_back();
     mesh.name = input.meshes[m].name;
     const auto primitives = input.meshes[m].primitives;
     for (std::size_t p = 0; p < primitives.size(); ++p) {
@@ -211,7 +211,7 @@ Result<Scene> make_scene(const SceneInput& input, bool repair) {
     scene.materials.push_back(std::move(*material));
   }
   if (needs_default_material) {
-    SceneMaterial& material = scene.materials.emplace_back();
+    scene::SceneMaterial& material = scene.materials.emplace_back();
     material.uv_sets_used = 0xF;  // nobody said what it samples: what was given is kept
   }
   for (std::size_t i = 0; i < input.instances.size(); ++i) {
@@ -221,7 +221,7 @@ Result<Scene> make_scene(const SceneInput& input, bool repair) {
   }
   if (input.instances.empty()) {
     for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
-      SceneInstance& instance = scene.instances.emplace_back();
+      scene::SceneInstance& instance = scene.instances.emplace_back();
       instance.name = scene.meshes[m].name;
       instance.node = static_cast<std::uint32_t>(m);
       instance.mesh = MeshId(m);
@@ -230,4 +230,4 @@ Result<Scene> make_scene(const SceneInput& input, bool repair) {
   return scene;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

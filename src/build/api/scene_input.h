@@ -6,10 +6,10 @@
 
 #include "scene/scene.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 /// Errors: kInvalid with the place. With `repair`, triangles that touch a non-finite position or an index out of range
 /// are dropped and counted instead.
-[[nodiscard]] Result<Scene> make_scene(const SceneInput& input, bool repair);
+[[nodiscard]] Result<scene::Scene> make_scene(const SceneInput& input, bool repair);
 
-}  // namespace meshlode
+}  // namespace meshlode::build

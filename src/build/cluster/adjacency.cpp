@@ -5,7 +5,7 @@
 #include <numeric>
 #include <utility>
 
-namespace meshlode {
+namespace meshlode::build {
 
 namespace {
 
@@ -141,4 +141,4 @@ Graph triangle_graph(std::span<const Corner3> corner_positions, std::span<const 
   return graph;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -9,7 +9,7 @@
 #include "build/prepared.h"
 #include "build/cluster/partition.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 /// Weight of a shared edge, and of a link that only keeps near pieces together.
 constexpr std::int32_t kSharedEdgeWeight = 8;
@@ -24,4 +24,4 @@ using TriangleLink = std::pair<std::uint32_t, std::uint32_t>;
 [[nodiscard]] Graph triangle_graph(std::span<const std::array<std::uint32_t, 3>> corner_positions,
                                    std::span<const TriangleLink> links = {});
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace meshlode {
+namespace meshlode::build {
 
 namespace {
 
@@ -103,4 +103,4 @@ void enforce_caps(std::span<const WedgeTriangle> triangles, const Graph& graph, 
   }
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -8,7 +8,7 @@
 #include "build/cluster/cluster.h"
 #include "build/cluster/partition.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 /// Parts with too many triangles first hand border triangles to neighbours that have room, at the least cost in cut
 /// edges; what is still over a cap (triangles, or distinct wedges) is bisected until it is under. `graph` is the
@@ -16,4 +16,4 @@ namespace meshlode {
 void enforce_caps(std::span<const WedgeTriangle> triangles, const Graph& graph, const ClusterCaps& caps,
                   Clustering& clustering);
 
-}  // namespace meshlode
+}  // namespace meshlode::build

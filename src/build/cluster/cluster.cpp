@@ -14,7 +14,7 @@
 #include "build/cluster/satellites.h"
 #include "build/cluster/partition.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 namespace {
 
@@ -168,4 +168,4 @@ Clustering cluster_triangles(std::span<const WedgeTriangle> triangles, std::span
   return cluster_with_satellites(triangles, wedge_position, hosts, caps, cluster_core);
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -10,7 +10,7 @@
 #include "base/vec.h"
 #include "build/prepared.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 struct ClusterCaps {
   std::uint32_t max_triangles = 128;
@@ -32,4 +32,4 @@ struct Clustering {
                                            std::span<const std::uint32_t> wedge_position,
                                            std::span<const Vec3i> positions, const ClusterCaps& caps);
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -10,7 +10,7 @@
 
 #include "build/cluster/partition.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 namespace {
 
@@ -148,4 +148,4 @@ std::vector<std::vector<std::uint32_t>> group_clusters(const GroupInput& input, 
   return groups;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

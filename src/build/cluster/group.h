@@ -8,7 +8,7 @@
 
 #include "base/vec.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 struct GroupOptions {
   std::uint32_t target_clusters = 20;  ///< what groups aim at; a retry takes another number to get other neighbours
@@ -30,4 +30,4 @@ struct GroupInput {
 /// Groups as lists of ascending cluster ids, ordered by their first cluster. Every cluster is in exactly one.
 [[nodiscard]] std::vector<std::vector<std::uint32_t>> group_clusters(const GroupInput& input, const GroupOptions& options);
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numeric>
 
-namespace meshlode {
+namespace meshlode::build {
 
 std::uint32_t find_pieces(const Graph& graph, std::vector<std::uint32_t>& piece) {
   constexpr std::uint32_t kUnset = 0xFFFFFFFFU;
@@ -119,4 +119,4 @@ Clustering cluster_pieces(std::span<const WedgeTriangle> triangles, std::span<co
   return clustering;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

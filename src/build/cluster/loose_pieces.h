@@ -11,7 +11,7 @@
 #include "build/cluster/cluster.h"
 #include "build/cluster/partition.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 /// The piece of each triangle: pieces are joined by shared edges, and numbered by their first triangle. Returns how many.
 [[nodiscard]] std::uint32_t find_pieces(const Graph& graph, std::vector<std::uint32_t>& piece);
@@ -30,4 +30,4 @@ namespace meshlode {
                                         const std::vector<std::uint32_t>& piece, std::uint32_t piece_count,
                                         std::size_t parts);
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -13,7 +13,7 @@
 // Present only where thread_rand.cpp is linked in.
 extern "C" __attribute__((weak)) std::uint64_t meshlode_thread_rand_calls();
 
-namespace meshlode {
+namespace meshlode::build {
 
 namespace {
 
@@ -118,4 +118,4 @@ std::vector<std::uint32_t> partition_graph(Graph& graph, std::uint32_t parts) {
   return labels;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

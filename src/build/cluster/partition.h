@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace meshlode {
+namespace meshlode::build {
 
 /// An undirected graph in compressed rows. Each edge is listed at both of its ends with the same weight; no loops.
 struct Graph {
@@ -26,4 +26,4 @@ struct Graph {
 /// wait for each other; the labels are the same.
 [[nodiscard]] bool is_partition_concurrent();
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -7,7 +7,7 @@
 #include <span>
 #include <utility>
 
-namespace meshlode {
+namespace meshlode::build {
 
 namespace {
 
@@ -169,4 +169,4 @@ Clustering cluster_with_satellites(std::span<const WedgeTriangle> triangles,
   return clustering;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -13,7 +13,7 @@
 #include "build/cluster/adjacency.h"
 #include "build/cluster/cluster.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 /// Per triangle the triangle whose cluster it joins, or kNoHost. Hosts have no hosts themselves.
 constexpr std::uint32_t kNoHost = 0xFFFFFFFFU;
@@ -38,4 +38,4 @@ using ClusterWeighted = std::function<Clustering(std::span<const WedgeTriangle>,
                                                  std::span<const std::uint32_t> wedge_position, const Hosts& hosts,
                                                  const ClusterCaps& caps, const ClusterWeighted& cluster);
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -5,7 +5,7 @@
 
 #include "build/dag/level_pool.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 namespace {
 
@@ -90,4 +90,4 @@ LodDag assemble_dag(const BuildPool& pool, const PreparedMesh& mesh) {
   return dag;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -8,7 +8,7 @@
 #include "build/dag/group_errors.h"
 #include "build/dag/level_pool.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 namespace {
 
@@ -274,4 +274,4 @@ Result<LodDag> build_dag(const PreparedMesh& mesh, const DagOptions& options) {
   return assemble_dag(pool, mesh);
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

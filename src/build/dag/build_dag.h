@@ -16,7 +16,7 @@
 #include "build/prepared.h"
 #include "build/simplify/simplify.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 /// Where a group's selection error comes from (design, section 5).
 enum class ErrorSource : std::uint8_t {
@@ -45,4 +45,4 @@ struct DagOptions {
 /// Errors: kBuildFailed when cancelled.
 [[nodiscard]] Result<LodDag> build_dag(const PreparedMesh& mesh, const DagOptions& options);
 
-}  // namespace meshlode
+}  // namespace meshlode::build

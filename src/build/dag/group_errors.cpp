@@ -7,7 +7,7 @@
 
 #include "build/deviation/attribute_deviation.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 namespace {
 
@@ -19,7 +19,7 @@ constexpr std::size_t kExtraEffort = 3000;
 /// A surface as the deviation room wants it, off the grid.
 struct Decoded {
   template <class Group>
-  Decoded(const Group& group, const PositionGrid& grid) {
+  Decoded(const Group& group, const format::PositionGrid& grid) {
     positions.reserve(group.positions.size());
     for (const Vec3i& q : group.positions) positions.push_back(grid.decode(q));
     triangles.reserve(group.triangles.size());
@@ -110,4 +110,4 @@ GroupErrors GroupMeter::measure(const BuildPool& pool, const std::vector<std::ui
   return errors;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

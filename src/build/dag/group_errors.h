@@ -12,7 +12,7 @@
 #include "build/prepared.h"
 #include "build/simplify/simplify.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 /// Of one simplified group.
 struct GroupErrors {
@@ -42,4 +42,4 @@ class GroupMeter {
   std::optional<SourceTree> source_;
 };
 
-}  // namespace meshlode
+}  // namespace meshlode::build

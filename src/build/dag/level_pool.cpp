@@ -6,7 +6,7 @@
 #include <cstring>
 #include <utility>
 
-namespace meshlode {
+namespace meshlode::build {
 
 namespace {
 
@@ -170,4 +170,4 @@ std::uint32_t BuildPool::count_materials(std::uint32_t cluster) const {
   return static_cast<std::uint32_t>(std::unique(materials.begin(), materials.end()) - materials.begin());
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -12,7 +12,7 @@
 #include "build/prepared.h"
 #include "build/simplify/simplify.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 /// A cluster under construction: a range of BuildPool::triangles.
 struct BuildCluster {
@@ -88,4 +88,4 @@ class BuildPool {
 /// The pool as a LodDag: groups from coarse to fine, clusters by group, vertices by first use.
 [[nodiscard]] LodDag assemble_dag(const BuildPool& pool, const PreparedMesh& mesh);
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -7,7 +7,7 @@
 
 #include "build/deviation/source_tree.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 namespace {
 
@@ -93,7 +93,7 @@ AttributeDeviation measure_attributes(const SourceTree& source, const SurfaceAtt
   if ((!layout.has_normal && layout.uv_set_count == 0) || tree.size() == 0) return {};
   constexpr std::array<Weights, 3> kPoints{{{2.0 / 3, 1.0 / 6, 1.0 / 6}, {1.0 / 6, 2.0 / 3, 1.0 / 6}, {1.0 / 6, 1.0 / 6, 2.0 / 3}}};
   double total = 0.0, normal2 = 0.0;
-  std::array<std::vector<UvError>, kMaxUvSets> uv_errors;
+  std::array<std::vector<UvError>, scene::kMaxUvSets> uv_errors;
   std::uint32_t place = 0;
   for (std::uint32_t t = 0; t < group.triangles.size(); ++t) {
     const auto& ids = group.triangles[t];
@@ -130,4 +130,4 @@ AttributeDeviation measure_attributes(const SourceTree& source, const SurfaceAtt
   return result;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -9,7 +9,7 @@
 #include "build/deviation/deviation.h"
 #include "build/prepared.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 /// Attributes of a surface, per wedge as the layout says; triangles by wedges, parallel to the surface's triangles.
 struct SurfaceAttributes {
@@ -29,4 +29,4 @@ struct AttributeDeviation {
                                                     const GroupSurface& group, const SurfaceAttributes& group_attributes,
                                                     const AttributeLayout& layout);
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -6,7 +6,7 @@
 
 #include "build/deviation/group_measure.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 double project_samples(const SurfaceTree& group_tree, std::vector<CarriedSample>& samples) {
   double largest2 = 0.0;
@@ -69,4 +69,4 @@ std::vector<CarriedSample> thin_samples(std::span<const CarriedSample> samples, 
   return kept;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

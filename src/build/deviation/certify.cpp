@@ -19,7 +19,7 @@
 #include "build/deviation/deviation.h"
 #include "build/deviation/surface_tree.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 namespace {
 
@@ -326,4 +326,4 @@ TriangleBound initial_bound(const TriangleCorners3& exact, const TriangleCorners
   return {bound, bound};
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -15,7 +15,7 @@
 
 #include "base/vec.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 /// The source's surface before the grid, relative to the mesh's origin, in object units. Built once per mesh; queries
 /// are const and may run side by side. Deterministic: same bits for any thread count, compiler and processor (I10).
@@ -101,4 +101,4 @@ struct CertifiedGroup {
 [[nodiscard]] CertifiedGroup certify_group(const GroupSurface& finer, std::span<const TriangleBound> finer_bounds,
                                            const GroupSurface& coarser);
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <bit>
 
-namespace meshlode {
+namespace meshlode::build {
 
 GroupEdges::GroupEdges(const GroupSurface& group)
     : of_triangle(group.triangles.size()), is_border_position(group.positions.size(), 0) {
@@ -66,4 +66,4 @@ std::vector<std::uint8_t> find_folded(const GroupSurface& surface) {
   return is_folded;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

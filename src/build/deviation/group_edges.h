@@ -8,7 +8,7 @@
 
 #include "build/deviation/deviation.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 struct GroupEdges {
   explicit GroupEdges(const GroupSurface& group);
@@ -25,4 +25,4 @@ struct GroupEdges {
 /// Per triangle: whether it has an edge that is folded by more than 60 degrees, or that has not two triangles.
 [[nodiscard]] std::vector<std::uint8_t> find_folded(const GroupSurface& surface);
 
-}  // namespace meshlode
+}  // namespace meshlode::build

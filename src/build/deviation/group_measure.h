@@ -12,7 +12,7 @@
 #include "build/deviation/source_tree.h"
 #include "build/deviation/surface_tree.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 /// The largest distance of a group, as far as it is known.
 struct Farthest {
@@ -76,4 +76,4 @@ class OwnerTest {
                                      std::span<const CarriedSample> high, std::size_t budget,
                                      std::vector<CarriedSample>& samples);
 
-}  // namespace meshlode
+}  // namespace meshlode::build

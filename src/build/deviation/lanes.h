@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <cstring>
 
-namespace meshlode {
+namespace meshlode::build {
 
 using Lanes = float __attribute__((vector_size(16)));
 using LaneMask = std::int32_t __attribute__((vector_size(16)));
@@ -39,4 +39,4 @@ using LaneMask = std::int32_t __attribute__((vector_size(16)));
   return choose(a > b, a, b);
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

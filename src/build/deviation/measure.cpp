@@ -10,7 +10,7 @@
 #include "build/deviation/group_measure.h"
 #include "build/deviation/patch.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 namespace {
 
@@ -126,4 +126,4 @@ GroupDeviation measure_group(const SourceTree& source, const GroupSurface& group
   return result;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -16,7 +16,7 @@
 #include "build/deviation/point_distance.h"
 #include "build/deviation/surface_tree.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 struct Probe {
   double value = 0.0;       ///< distance of a point to the other side
@@ -186,4 +186,4 @@ class PatchQueue {
   std::vector<Patch> aside_;  ///< by their bounds
 };
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -9,7 +9,7 @@
 
 #include "base/vec.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 using TriangleCorners = std::array<Vec3d, 3>;
 
@@ -73,4 +73,4 @@ struct NearestFeature {
   return feature;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -14,7 +14,7 @@
 #include "build/deviation/group_measure.h"
 #include "build/deviation/patch.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 namespace {
 
@@ -379,4 +379,4 @@ Farthest search_source(const SourceTree::Impl& source, const GroupSurface& group
   return search.farthest();
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

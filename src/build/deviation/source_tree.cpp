@@ -8,7 +8,7 @@
 
 #include "base/parallel.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 namespace {
 
@@ -124,4 +124,4 @@ std::vector<CarriedSample> initial_samples(const SourceTree& source) {
   return samples;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

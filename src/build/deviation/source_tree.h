@@ -10,7 +10,7 @@
 #include "build/deviation/deviation.h"
 #include "build/deviation/surface_tree.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 struct SourceTree::Impl {
   std::vector<Vec3d> positions;
@@ -31,4 +31,4 @@ struct SourceTree::Impl {
   }
 };
 
-}  // namespace meshlode
+}  // namespace meshlode::build

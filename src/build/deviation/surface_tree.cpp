@@ -9,7 +9,7 @@
 #include "base/parallel.h"
 #include "build/deviation/lanes.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 namespace {
 
@@ -267,4 +267,4 @@ SurfaceTree::Hit SurfaceTree::find_nearest(const Vec3f& point, Hit best, float e
   }
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -14,7 +14,7 @@
 #include "base/vec.h"
 #include "build/deviation/point_distance.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 class SurfaceTree {
  public:
@@ -106,4 +106,4 @@ class SurfaceTree {
   std::vector<std::uint32_t> level_start_;  ///< of nodes_, from the root; node i of a level has children 4i … 4i+3
 };
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace meshlode {
+namespace meshlode::build {
 
 class BitWriter {
  public:
@@ -33,4 +33,4 @@ class BitWriter {
   std::uint32_t count_ = 0;
 };
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -16,7 +16,7 @@
 #include "build/encode/strips.h"
 #include "build/encode/uv_grid.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 namespace {
 
@@ -178,7 +178,7 @@ class ClusterEncoder {
     for (std::size_t i = 0; i < cluster_.vertex_count; ++i) {
       const Vec3i& p = dag_.vertex_position[source_vertex(i)];
       for (int axis = 0; axis < 3; ++axis) {
-        if (std::abs(std::int64_t{p[axis]}) > kMaxGridCoordinate) {
+        if (std::abs(std::int64_t{p[axis]}) > format::kMaxGridCoordinate) {
           return limit_error("a position needs more than 24 bits");
         }
       }
@@ -362,4 +362,4 @@ std::uint32_t max_cluster_bytes(const AttributeLayout& layout, const EncodeOptio
   return 4U * words;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

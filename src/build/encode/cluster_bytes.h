@@ -13,13 +13,13 @@
 #include "build/lod_dag.h"
 #include "build/prepared.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 /// What every cluster of a mesh is encoded with.
 struct ChannelPlan {
   AttributeLayout layout;
   std::int32_t normal_scale = 0;
-  std::array<std::int32_t, kMaxUvSets> uv_log2{};
+  std::array<std::int32_t, scene::kMaxUvSets> uv_log2{};
   std::uint32_t material = format::kNone;  ///< of every triangle of the mesh, or kNone
   std::uint32_t strip_trials = 1;
 
@@ -36,4 +36,4 @@ struct ClusterWords {
 /// Errors: kBuildFailed where the cluster breaks a limit of the format; `where` is left to the caller.
 [[nodiscard]] Result<ClusterWords> encode_cluster(const LodDag& dag, const DagCluster& cluster, const ChannelPlan& plan);
 
-}  // namespace meshlode
+}  // namespace meshlode::build

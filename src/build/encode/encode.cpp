@@ -18,7 +18,7 @@
 #include "build/encode/quantize_normal.h"
 #include "build/encode/uv_grid.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 namespace {
 
@@ -126,7 +126,7 @@ format::GroupRecord group_record(const DagGroup& group, const Hierarchy::Sphere&
 format::ClusterRecord cluster_record(const DagCluster& cluster, const Hierarchy::Sphere& sphere,
                                      const Hierarchy::Cone& cone, std::int32_t sphere_log2) {
   format::ClusterRecord record{};
-  const double unit = exp2_exact(sphere_log2);  // the hierarchy's spheres are whole units: nothing is rounded here
+  const double unit = format::exp2_exact(sphere_log2);  // the hierarchy's spheres are whole units: nothing is rounded here
   for (int axis = 0; axis < 3; ++axis) {
     record.center[axis] = static_cast<std::int16_t>(double{sphere.center[axis]} / unit);
   }
@@ -173,7 +173,7 @@ Status check_input(const PreparedMesh& mesh, const LodDag& dag, const Hierarchy&
     return fail(ErrorCode::kBuildFailed, "the hierarchy's spheres leave the range of floats");
   }
   for (const Hierarchy::Sphere& sphere : hierarchy.cluster_spheres) {
-    const double unit = exp2_exact(hierarchy.sphere_log2);
+    const double unit = format::exp2_exact(hierarchy.sphere_log2);
     const auto is_whole = [&](float value, double most) {
       const double units = double{value} / unit;
       return std::abs(units) <= most && std::floor(units) == units;
@@ -300,7 +300,7 @@ void fill_dependencies(const LodDag& dag, EncodedMesh& out) {
 /// Budgets that may not fall short, held against the steps that the coordinates leave.
 Status check_uv_steps(const PreparedMesh& mesh, const ChannelPlan& plan, const EncodeOptions& options) {
   for (std::uint32_t set = 0; set < mesh.layout.uv_set_count && !options.uv_error_may_fall_short; ++set) {
-    if (!(options.uv_error[set] > 0.0) || 0.5 * exp2_exact(plan.uv_log2[set]) <= options.uv_error[set]) continue;
+    if (!(options.uv_error[set] > 0.0) || 0.5 * format::exp2_exact(plan.uv_log2[set]) <= options.uv_error[set]) continue;
     char text[160];
     std::snprintf(text, sizeof text, "a UV error of %g needs more than 24 bits for the coordinates of TEXCOORD_%u",
                   options.uv_error[set], static_cast<unsigned>(mesh.layout.uv_set_source[set]));
@@ -364,4 +364,4 @@ Result<EncodedMesh> encode_mesh(const PreparedMesh& mesh, const LodDag& dag, con
   return out;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

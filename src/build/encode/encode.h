@@ -14,13 +14,13 @@
 #include "build/lod_dag.h"
 #include "build/prepared.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 /// Accuracy budgets; the bits follow from them.
 struct EncodeOptions {
   double normal_error = 0.1;  ///< degrees, largest; above 0, at least 0.01 (kMaxNormalScale)
   /// UV units, largest, for each stored set; 0: invisible, see default_uv_error
-  std::array<double, kMaxUvSets> uv_error{};
+  std::array<double, scene::kMaxUvSets> uv_error{};
   /// Coordinates so large that 24 bits cannot keep the error are kept as finely as floats hold the largest of them; false:
   /// refused.
   bool uv_error_may_fall_short = true;
@@ -61,4 +61,4 @@ constexpr std::uint32_t kPageFrameBytes = static_cast<std::uint32_t>(sizeof(form
 [[nodiscard]] Result<EncodedMesh> encode_mesh(const PreparedMesh& mesh, const LodDag& dag, const Hierarchy& hierarchy,
                                               const EncodeOptions& options);
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -7,7 +7,7 @@
 
 #include <meshlode/format.h>
 
-namespace meshlode {
+namespace meshlode::build {
 
 namespace {
 
@@ -170,4 +170,4 @@ UvFit fit_uv(std::span<const std::int32_t> values, std::span<const RawPosition> 
   return fit;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

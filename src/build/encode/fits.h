@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-namespace meshlode {
+namespace meshlode::build {
 
 /// Smallest value of a set and the bits that the rest needs above it.
 struct ValueRange {
@@ -40,4 +40,4 @@ struct UvFit {
 [[nodiscard]] UvFit fit_uv(std::span<const std::int32_t> values, std::span<const RawPosition> positions,
                            bool may_have_slope);
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 
-namespace meshlode {
+namespace meshlode::build {
 
 namespace {
 
@@ -70,4 +70,4 @@ std::uint64_t octahedral_scale_for(double degrees) {
   return scale < 1.0 ? 1U : scale > 1e18 ? std::uint64_t{1} << 60U : static_cast<std::uint64_t>(scale);
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -7,7 +7,7 @@
 
 #include "base/vec.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 /// The nearest direction to `normal` among the integer points of |X| + |Y| + |Z| = scale. The set is closed under the
 /// octahedron's symmetries, so that it is the same seen from each of six charts, and a normal that two clusters share
@@ -24,4 +24,4 @@ namespace meshlode {
 /// \pre degrees > 0
 [[nodiscard]] std::uint64_t octahedral_scale_for(double degrees);
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -11,7 +11,7 @@
 #include <cassert>
 #include <tuple>
 
-namespace meshlode {
+namespace meshlode::build {
 
 namespace {
 
@@ -322,4 +322,4 @@ Strips make_strips(std::span<const LocalTriangle> triangles, std::span<const std
   return out;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-namespace meshlode {
+namespace meshlode::build {
 
 using LocalTriangle = std::array<std::uint8_t, 3>;
 
@@ -33,4 +33,4 @@ struct StripOptions {
 [[nodiscard]] Strips make_strips(std::span<const LocalTriangle> triangles, std::span<const std::uint32_t> block,
                                  std::uint32_t vertex_count, const StripOptions& options);
 
-}  // namespace meshlode
+}  // namespace meshlode::build

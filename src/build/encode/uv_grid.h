@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-namespace meshlode {
+namespace meshlode::build {
 
 /// Exponents for which every integer below 2^24 in magnitude decodes to a finite, normal float.
 constexpr std::int32_t kMinUvLog2 = -126;
@@ -29,4 +29,4 @@ struct UvRange {
 /// Nearest integer, halves upward; clamped to the format's range; 0 where the value is not finite.
 [[nodiscard]] std::int32_t quantize_uv(float value, std::int32_t log2);
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -12,7 +12,7 @@
 #include "build/hierarchy/lod_bounds.h"
 #include "build/hierarchy/margins.h"
 
-namespace meshlode {
+namespace meshlode::build {
 namespace {
 
 constexpr std::uint32_t kWidth = format::kBvhWidth;
@@ -151,4 +151,4 @@ std::vector<format::NodeRecord> build_bvh(std::span<const Hierarchy::Sphere> sph
   return nodes;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

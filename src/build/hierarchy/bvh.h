@@ -10,7 +10,7 @@
 
 #include "build/hierarchy/hierarchy.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 /// One leaf per group, with the group's own sphere and error; an inner node's bound nests its children's with the
 /// margins of margins.h. Breadth first: the root is node 0, the children of a node are contiguous and behind it.
@@ -19,4 +19,4 @@ namespace meshlode {
                                                         std::span<const float> errors,
                                                         std::span<const std::uint32_t> levels);
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -8,7 +8,7 @@
 #include "build/hierarchy/enclosing_ball.h"
 #include "build/hierarchy/margins.h"
 
-namespace meshlode {
+namespace meshlode::build {
 namespace {
 
 // Twice the area vector of a triangle, in grid units. Coordinates have at most 24 bits, so differences have 25,
@@ -27,7 +27,7 @@ constexpr Hierarchy::Cone kNoCone{{0, 0, 0}, 127};
 
 }  // namespace
 
-Hierarchy::Sphere culling_sphere(const LodDag& dag, const DagCluster& cluster, const PositionGrid& grid) {
+Hierarchy::Sphere culling_sphere(const LodDag& dag, const DagCluster& cluster, const format::PositionGrid& grid) {
   if (cluster.vertex_count == 0) return {};
   std::vector<Ball> points(cluster.vertex_count);
   for (std::uint32_t i = 0; i < cluster.vertex_count; ++i) {
@@ -56,14 +56,14 @@ std::int32_t choose_sphere_log2(std::span<const Hierarchy::Sphere> spheres) {
   }
   std::int32_t log2 = format::kMinSphereLog2;
   while (log2 < format::kMaxSphereLog2 &&
-         (center > kLargestCenter * exp2_exact(log2) || radius > kLargestRadius * exp2_exact(log2))) {
+         (center > kLargestCenter * format::exp2_exact(log2) || radius > kLargestRadius * format::exp2_exact(log2))) {
     ++log2;
   }
   return log2;
 }
 
 Hierarchy::Sphere snap_sphere(const Hierarchy::Sphere& sphere, std::int32_t log2) {
-  const double unit = exp2_exact(log2);
+  const double unit = format::exp2_exact(log2);
   const Vec3d center = center_of(sphere);
   Vec3d snapped(0.0);
   for (int axis = 0; axis < 3; ++axis) snapped[axis] = std::floor(center[axis] / unit + 0.5) * unit;
@@ -104,4 +104,4 @@ Hierarchy::Cone normal_cone(const LodDag& dag, const DagCluster& cluster) {
   return {{cone.axis[0], cone.axis[1], cone.axis[2]}, static_cast<std::int8_t>(cutoff)};
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

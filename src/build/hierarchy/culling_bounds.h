@@ -9,10 +9,10 @@
 #include "build/lod_dag.h"
 #include "format/grid.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 /// Contains every vertex of the cluster as decoded, in doubles and in floats. Near-smallest.
-[[nodiscard]] Hierarchy::Sphere culling_sphere(const LodDag& dag, const DagCluster& cluster, const PositionGrid& grid);
+[[nodiscard]] Hierarchy::Sphere culling_sphere(const LodDag& dag, const DagCluster& cluster, const format::PositionGrid& grid);
 
 /// The unit 2^log2 in which spheres are stored: the smallest in which every centre fits 16 bits, and every radius.
 [[nodiscard]] std::int32_t choose_sphere_log2(std::span<const Hierarchy::Sphere> spheres);
@@ -24,4 +24,4 @@ namespace meshlode {
 /// is back-facing or has no area. cutoff 127: there is no such view.
 [[nodiscard]] Hierarchy::Cone normal_cone(const LodDag& dag, const DagCluster& cluster);
 
-}  // namespace meshlode
+}  // namespace meshlode::build

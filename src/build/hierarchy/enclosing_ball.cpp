@@ -15,7 +15,7 @@
 
 #include "build/hierarchy/enclosing_ball.h"
 
-namespace meshlode {
+namespace meshlode::build {
 namespace {
 
 using Packed = std::array<double, 4>;  // x y z radius
@@ -79,4 +79,4 @@ Ball enclosing_ball(std::span<const Ball> balls) {
   return {middle + center * scale, radius * scale};
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -5,7 +5,7 @@
 
 #include "base/vec.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 struct Ball {
   Vec3d center{0.0};
@@ -17,4 +17,4 @@ struct Ball {
 /// \pre `balls` is not empty and finite, radii are not negative.
 [[nodiscard]] Ball enclosing_ball(std::span<const Ball> balls);
 
-}  // namespace meshlode
+}  // namespace meshlode::build

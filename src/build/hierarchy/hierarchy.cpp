@@ -6,7 +6,7 @@
 #include "build/hierarchy/culling_bounds.h"
 #include "build/hierarchy/lod_bounds.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 Hierarchy build_hierarchy(const LodDag& dag, const PreparedMesh& mesh) {
   Hierarchy hierarchy;
@@ -30,4 +30,4 @@ Hierarchy build_hierarchy(const LodDag& dag, const PreparedMesh& mesh) {
   return hierarchy;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -10,7 +10,7 @@
 #include "build/lod_dag.h"
 #include "build/prepared.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 /// Per-mesh bounds. All lengths in object units relative to the mesh's origin, all ids per mesh.
 struct Hierarchy {
@@ -26,4 +26,4 @@ struct Hierarchy {
 
 [[nodiscard]] Hierarchy build_hierarchy(const LodDag& dag, const PreparedMesh& mesh);
 
-}  // namespace meshlode
+}  // namespace meshlode::build

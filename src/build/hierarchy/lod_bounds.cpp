@@ -8,7 +8,7 @@
 #include "build/hierarchy/enclosing_ball.h"
 #include "build/hierarchy/margins.h"
 
-namespace meshlode {
+namespace meshlode::build {
 namespace {
 
 // Lists of ids per key: count, prefix sum, fill (in id order).
@@ -106,4 +106,4 @@ LodBounds nest_lod_bounds(const LodDag& dag, std::span<const Hierarchy::Sphere> 
   return bounds;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -8,7 +8,7 @@
 #include "build/hierarchy/hierarchy.h"
 #include "build/lod_dag.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 struct LodBounds {
   std::vector<Hierarchy::Sphere> spheres;  ///< per group
@@ -26,4 +26,4 @@ struct LodBounds {
 /// The error of something coarser than `finer`: at least `error`, and grown where `finer` is not 0.
 [[nodiscard]] float grow_error(double error, float finer);
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -12,7 +12,7 @@
 #include "base/vec.h"
 #include "build/hierarchy/hierarchy.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 constexpr double kSphereGrowth = 0x1p-21;  ///< 8u, of both radii
 constexpr double kCenterGrowth = 0x1p-21;  ///< 8u, of both centres' distances from the origin
@@ -41,4 +41,4 @@ constexpr float kMaxStoredError = 0x1p120F;   ///< larger finite errors are lowe
   return needed / (1.0 - kSphereGrowth) * (1.0 + kDoubleSlack);
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace meshlode {
+namespace meshlode::build {
 
 class BitSink {
  public:
@@ -28,4 +28,4 @@ class BitSink {
   std::uint32_t count_ = 0;
 };
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -8,11 +8,11 @@
 
 #include <meshlode/result.h>
 
-namespace meshlode {
+namespace meshlode::build {
 
 [[nodiscard]] Result<std::vector<std::uint8_t>> pack_lz4(std::span<const std::uint8_t> bytes);
 [[nodiscard]] Result<std::vector<std::uint8_t>> pack_zstd(std::span<const std::uint8_t> bytes);
 /// Numbers through Draco's symbol coder. Empty for none.
 [[nodiscard]] Result<std::vector<std::uint8_t>> pack_draco(const std::vector<std::uint32_t>& values);
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -10,7 +10,7 @@
 #include "build/pack/prefix_streams.h"
 #include "build/pack/side_bytes.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 namespace {
 
@@ -18,7 +18,7 @@ using Bytes = std::vector<std::uint8_t>;
 
 void append(Bytes& out, const Bytes& bytes) { out.insert(out.end(), bytes.begin(), bytes.end()); }
 
-Bytes start_stored(PageMethod method, const Bytes& side, std::size_t side_bytes, std::size_t twin_count) {
+Bytes start_stored(format::PageMethod method, const Bytes& side, std::size_t side_bytes, std::size_t twin_count) {
   Bytes out;
   put_u32(out, static_cast<std::uint32_t>(method));
   put_u32(out, static_cast<std::uint32_t>(side.size()));
@@ -29,7 +29,7 @@ Bytes start_stored(PageMethod method, const Bytes& side, std::size_t side_bytes,
 }
 
 Bytes store_strips(const Bytes& side, std::size_t side_bytes, const PageModel& model, const std::vector<Bytes>& streams) {
-  Bytes out = start_stored(PageMethod::kStrips, side, side_bytes, model.streams[kTwinStream].size());
+  Bytes out = start_stored(format::PageMethod::kStrips, side, side_bytes, model.streams[format::kTwinStream].size());
   for (const Bytes& stream : streams) put_u32(out, static_cast<std::uint32_t>(stream.size()));
   for (const Bytes& stream : streams) append(out, stream);
   return out;
@@ -46,7 +46,7 @@ Result<Bytes> store_columns(const format::MeshRecord& mesh, const PageModel& mod
   const Bytes columns = join(make_columns(mesh, model));
   const auto side = codec == format::Codec::kLz4 ? pack_lz4(columns) : pack_zstd(columns);
   if (!side) return side.error();
-  Bytes out = start_stored(PageMethod::kColumns, *side, columns.size(), 0);
+  Bytes out = start_stored(format::PageMethod::kColumns, *side, columns.size(), 0);
   for (const std::uint32_t word : model.stream_words) put_u32(out, word);
   return out;
 }
@@ -69,7 +69,7 @@ Result<Bytes> store_draco(const format::MeshRecord& mesh, const PageModel& model
   const auto side = pack_draco({columns.begin(), columns.end()});
   if (!side) return side.error();
   std::vector<Bytes> streams;
-  for (std::uint32_t s = 0; s < kFieldStreams + field_count(mesh); ++s) {
+  for (std::uint32_t s = 0; s < format::kFieldStreams + format::field_count(mesh); ++s) {
     auto stream = pack_draco(model.streams[s]);
     if (!stream) return stream.error();
     streams.push_back(std::move(*stream));
@@ -104,4 +104,4 @@ Result<PackedPage> pack_page(const format::MeshRecord& mesh, std::span<const std
   return out;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

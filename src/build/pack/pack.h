@@ -9,7 +9,7 @@
 #include <meshlode/format.h>
 #include <meshlode/result.h>
 
-namespace meshlode {
+namespace meshlode::build {
 
 struct PackedPage {
   format::Codec codec = format::Codec::kNone;  ///< kNone where packing would not shrink the page
@@ -25,4 +25,4 @@ struct PackedPage {
 [[nodiscard]] Result<PackedPage> pack_page(const format::MeshRecord& mesh, std::span<const std::uint8_t> page,
                                            format::Codec codec);
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -7,7 +7,7 @@
 
 #include "build/pack/compressors.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 Result<std::vector<std::uint8_t>> pack_draco(const std::vector<std::uint32_t>& values) {
   std::vector<std::uint8_t> out;
@@ -22,4 +22,4 @@ Result<std::vector<std::uint8_t>> pack_draco(const std::vector<std::uint32_t>& v
   return out;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

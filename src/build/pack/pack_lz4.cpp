@@ -4,7 +4,7 @@
 
 #include "build/pack/compressors.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 constexpr int kLz4Level = 9;
 
@@ -18,4 +18,4 @@ Result<std::vector<std::uint8_t>> pack_lz4(std::span<const std::uint8_t> bytes) 
   return out;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -10,7 +10,7 @@
 #include "build/pack/bit_sink.h"
 #include "build/pack/prefix_lengths.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 namespace {
 
@@ -24,7 +24,7 @@ Bytes take_differences(std::span<const std::uint8_t> bytes, std::size_t record_b
     std::uint16_t before = 0;
     std::memcpy(&value, &bytes[at], 2);
     if (at >= record_bytes) std::memcpy(&before, &bytes[at - record_bytes], 2);
-    const std::uint16_t folded = fold16(static_cast<std::uint16_t>(value - before));
+    const std::uint16_t folded = format::fold16(static_cast<std::uint16_t>(value - before));
     std::memcpy(&out[at], &folded, 2);
   }
   return out;
@@ -35,12 +35,12 @@ Bytes prefix_column(const Bytes& column) {
   for (const std::uint8_t byte : column) ++counts[byte];
   const Bytes lengths = choose_code_lengths(counts);
   std::array<std::uint16_t, 256> codes{};
-  (void)assign_codes(lengths, codes);
+  (void)format::assign_codes(lengths, codes);
   std::size_t first = 0;
   std::size_t last = 255;
   while (lengths[first] == 0) ++first;
   while (lengths[last] == 0) --last;
-  Bytes out{static_cast<std::uint8_t>(ColumnMode::kPrefix), static_cast<std::uint8_t>(first),
+  Bytes out{static_cast<std::uint8_t>(format::ColumnMode::kPrefix), static_cast<std::uint8_t>(first),
             static_cast<std::uint8_t>(last - first)};
   for (std::size_t s = first; s <= last; s += 2) {
     out.push_back(static_cast<std::uint8_t>(lengths[s] | (s < last ? lengths[s + 1] << 4U : 0)));
@@ -59,7 +59,7 @@ Bytes prefix_column(const Bytes& column) {
 
 void put_column(const Bytes& column, Bytes& out) {
   if (std::all_of(column.begin(), column.end(), [&](std::uint8_t byte) { return byte == column.front(); })) {
-    out.push_back(static_cast<std::uint8_t>(ColumnMode::kSame));
+    out.push_back(static_cast<std::uint8_t>(format::ColumnMode::kSame));
     out.push_back(column.empty() ? std::uint8_t{0} : column.front());
     return;
   }
@@ -67,7 +67,7 @@ void put_column(const Bytes& column, Bytes& out) {
   if (coded.size() < column.size() + 1) {
     out.insert(out.end(), coded.begin(), coded.end());
   } else {
-    out.push_back(static_cast<std::uint8_t>(ColumnMode::kRaw));
+    out.push_back(static_cast<std::uint8_t>(format::ColumnMode::kRaw));
     out.insert(out.end(), column.begin(), column.end());
   }
 }
@@ -82,8 +82,8 @@ std::vector<std::uint8_t> pack_section(std::span<const std::uint8_t> bytes, std:
     for (std::size_t at = c; at < source.size(); at += columns) column.push_back(source[at]);
     put_column(column, out);
   }
-  const bool is_worth_it = out.size() < bytes.size() && bytes.size() / kMaxSectionRatio < out.size();
+  const bool is_worth_it = out.size() < bytes.size() && bytes.size() / format::kMaxSectionRatio < out.size();
   return is_worth_it ? out : Bytes{};
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

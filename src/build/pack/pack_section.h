@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace meshlode {
+namespace meshlode::build {
 
 /// `record_bytes` is even, 0 for texts. Empty where the section would not shrink or would shrink beyond belief
 /// (kMaxSectionRatio): it is then stored as it is.
@@ -15,4 +15,4 @@ namespace meshlode {
 /// Appends one column in the shortest of its modes.
 void put_column(const std::vector<std::uint8_t>& column, std::vector<std::uint8_t>& out);
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -4,7 +4,7 @@
 
 #include "build/pack/compressors.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 constexpr int kZstdLevel = 12;  ///< beyond, pages of 128 KiB hardly shrink while the time doubles
 
@@ -16,4 +16,4 @@ Result<std::vector<std::uint8_t>> pack_zstd(std::span<const std::uint8_t> bytes)
   return out;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

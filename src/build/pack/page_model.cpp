@@ -10,7 +10,7 @@
 
 #include "format/vertex_fields.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 namespace {
 
@@ -26,13 +26,13 @@ struct StripWalk {
   std::vector<std::uint32_t> first_triangle;  ///< of each strip
   std::vector<std::uint32_t> turns;
   std::vector<Slot> slots;
-  std::vector<Gate> gates;  ///< of each vertex
+  std::vector<format::Gate> gates;  ///< of each vertex
 };
 
 class PageModeler {
  public:
   PageModeler(const format::MeshRecord& mesh, std::span<const std::uint32_t> page)
-      : mesh_(mesh), page_(page), fields_(field_count(mesh)) {}
+      : mesh_(mesh), page_(page), fields_(format::field_count(mesh)) {}
 
   std::optional<PageModel> run() {
     if (page_.size() < 3) return std::nullopt;
@@ -45,10 +45,10 @@ class PageModeler {
       if (layout.data_word != expected || !is_padding_zero(layout)) return std::nullopt;
       expected = layout.end_word;
       clusters_.emplace_back().layout = layout;
-      read_cluster_fields(mesh_, page_.data(), clusters_.back(), ranges_);
+      format::read_cluster_fields(mesh_, page_.data(), clusters_.back(), ranges_);
     }
     if (expected + 1 != page_.size() || page_.back() != 0) return std::nullopt;
-    for (const ClusterFields& cluster : clusters_) {
+    for (const format::ClusterFields& cluster : clusters_) {
       if (!add_cluster(cluster)) return std::nullopt;
     }
     return std::move(model_);
@@ -60,12 +60,12 @@ class PageModeler {
     return used == 0 || page_[layout.end_bit / 32] >> used == 0;
   }
 
-  bool add_cluster(const ClusterFields& cluster) {
+  bool add_cluster(const format::ClusterFields& cluster) {
     const ClusterLayout& layout = cluster.layout;
     add_head(layout);
     const std::optional<StripWalk> walk = walk_strips(layout);
     if (!walk) return false;
-    const std::vector<SlotKind> kinds = add_vertices(cluster, *walk);
+    const std::vector<format::SlotKind> kinds = add_vertices(cluster, *walk);
     add_topology(layout, *walk, kinds);
     first_vertex_ += layout.vertex_count;
     return true;
@@ -74,23 +74,23 @@ class PageModeler {
   void add_head(const ClusterLayout& layout) {
     auto& head = model_.heads.emplace_back();
     std::copy_n(page_.begin() + layout.head_word, format::head_words(mesh_), head.begin());
-    const auto add = [this](RangeWord kind, std::uint32_t word) { model_.range_words[kind].push_back(page_[word]); };
-    for (std::uint32_t i = 0; i < layout.material_count; ++i) add(kMaterialWord, layout.material_word + i);
+    const auto add = [this](format::RangeWord kind, std::uint32_t word) { model_.range_words[kind].push_back(page_[word]); };
+    for (std::uint32_t i = 0; i < layout.material_count; ++i) add(format::kMaterialWord, layout.material_word + i);
     for (std::uint32_t set = 0; set < mesh_.uv_set_count; ++set) {
       std::uint32_t word = layout.uv_word[set];
       for (std::uint32_t i = 0; i < layout.uv_range_count[set]; ++i) {
         const bool has_fit = format::get_field(&page_[word], format::uv_range::kHasFit) != 0;
-        add(kUvWord0, word++);
-        add(kUvWord1, word++);
-        add(kUvWord2, word++);
+        add(format::kUvWord0, word++);
+        add(format::kUvWord1, word++);
+        add(format::kUvWord2, word++);
         if (!has_fit) continue;
-        add(kFitWord0, word++);
-        add(kFitWord1, word++);
+        add(format::kFitWord0, word++);
+        add(format::kFitWord1, word++);
       }
     }
     if (mesh_.has_color != 0) {
-      add(kColorWord0, layout.color_word);
-      add(kColorWord1, layout.color_word + 1);
+      add(format::kColorWord0, layout.color_word);
+      add(format::kColorWord1, layout.color_word + 1);
     }
     model_.stream_words.insert(model_.stream_words.end(), page_.begin() + layout.stream_word,
                                page_.begin() + layout.end_word);
@@ -102,17 +102,17 @@ class PageModeler {
     StripWalk walk;
     walk.first_triangle.push_back(0);
     for (std::uint32_t k = 1; k < layout.strip_count; ++k) {
-      const std::uint32_t first = get_bits(words, layout.restart_bit + (k - 1) * layout.restart_bits, layout.restart_bits);
+      const std::uint32_t first = format::get_bits(words, layout.restart_bit + (k - 1) * layout.restart_bits, layout.restart_bits);
       if (first <= walk.first_triangle.back() || first >= layout.triangle_count) return std::nullopt;
       walk.first_triangle.push_back(first);
     }
     std::uint32_t reference = 0;
-    std::uint32_t p = kNobody;
-    std::uint32_t q = kNobody;
-    std::uint32_t n = kNobody;
+    std::uint32_t p = format::kNobody;
+    std::uint32_t q = format::kNobody;
+    std::uint32_t n = format::kNobody;
     /// Names the vertex of the next slot; a fresh one gets the gate.
     const auto name = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) -> std::optional<std::uint32_t> {
-      const bool is_fresh = get_bits(words, layout.fresh_bit + static_cast<std::uint32_t>(walk.slots.size()), 1) != 0;
+      const bool is_fresh = format::get_bits(words, layout.fresh_bit + static_cast<std::uint32_t>(walk.slots.size()), 1) != 0;
       auto vertex = static_cast<std::uint32_t>(walk.gates.size());
       if (is_fresh) {
         if (vertex >= layout.vertex_count) return std::nullopt;
@@ -121,7 +121,7 @@ class PageModeler {
       } else {
         if (reference >= layout.reference_count) return std::nullopt;
         const std::uint32_t distance =
-            get_bits(words, layout.reference_bit + reference * layout.reference_bits, layout.reference_bits);
+            format::get_bits(words, layout.reference_bit + reference * layout.reference_bits, layout.reference_bits);
         if (distance >= vertex) return std::nullopt;
         vertex -= 1 + distance;
         ++reference;
@@ -130,7 +130,7 @@ class PageModeler {
       return vertex;
     };
     for (std::uint32_t t = 0, strip = 0; t < layout.triangle_count; ++t) {
-      const std::uint32_t turn = get_bits(words, layout.turn_bit + t, 1);
+      const std::uint32_t turn = format::get_bits(words, layout.turn_bit + t, 1);
       walk.turns.push_back(turn);
       if (strip < layout.strip_count && walk.first_triangle[strip] == t) {
         if (turn != 0) return std::nullopt;
@@ -158,50 +158,50 @@ class PageModeler {
   }
 
   /// Fills the field and twin streams. Returns how each vertex was named.
-  std::vector<SlotKind> add_vertices(const ClusterFields& cluster, const StripWalk& walk) {
+  std::vector<format::SlotKind> add_vertices(const format::ClusterFields& cluster, const StripWalk& walk) {
     const ClusterLayout& layout = cluster.layout;
-    const FieldContext context{mesh_, page_.data(), ranges_};
-    std::vector<RawVertex> raw(kNobody + 1);
-    raw[kNobody] = first_field_bits(context, cluster);
-    for (std::uint32_t f = 0; f < fields_; ++f) raw[kNobody][f] = (1U << raw[kNobody][f]) >> 1U;
-    const std::array<std::uint32_t, 3> axes = axes_by_role(layout.shear_axis);
-    std::vector<SlotKind> kinds;
-    std::vector<std::pair<FullVertex, std::uint32_t>> own;
+    const format::FieldContext context{mesh_, page_.data(), ranges_};
+    std::vector<format::RawVertex> raw(format::kNobody + 1);
+    raw[format::kNobody] = format::first_field_bits(context, cluster);
+    for (std::uint32_t f = 0; f < fields_; ++f) raw[format::kNobody][f] = (1U << raw[format::kNobody][f]) >> 1U;
+    const std::array<std::uint32_t, 3> axes = format::axes_by_role(layout.shear_axis);
+    std::vector<format::SlotKind> kinds;
+    std::vector<std::pair<format::FullVertex, std::uint32_t>> own;
     for (std::uint32_t v = 0; v < layout.vertex_count; ++v) {
-      read_raw_vertex(context, cluster, v, raw[v]);
-      FullVertex full{};
-      full_from_raw(context, cluster, v, raw[v], full);
+      format::read_raw_vertex(context, cluster, v, raw[v]);
+      format::FullVertex full{};
+      format::full_from_raw(context, cluster, v, raw[v], full);
       const auto twin = seen_.find(full);
       if (twin == seen_.end()) {
         own.emplace_back(full, first_vertex_ + v);
-      } else if (RawVertex back{}; raw_from_full(context, cluster, v, full, back), back == raw[v]) {
-        kinds.push_back(SlotKind::kTwin);
-        put(kTwinStream, fold(twin->second - last_twin_));
+      } else if (format::RawVertex back{}; format::raw_from_full(context, cluster, v, full, back), back == raw[v]) {
+        kinds.push_back(format::SlotKind::kTwin);
+        put(format::kTwinStream, format::fold(twin->second - last_twin_));
         last_twin_ = twin->second;
         continue;
       }
-      kinds.push_back(SlotKind::kNew);
-      const Gate gate = walk.gates[v];
+      kinds.push_back(format::SlotKind::kNew);
+      const format::Gate gate = walk.gates[v];
       for (std::uint32_t f = 0; f < fields_; ++f) {
         const std::uint32_t at = f < 3 ? axes[f] : f;
         const std::uint32_t a = raw[gate.a][at];
         const std::uint32_t b = raw[gate.b][at];
         const std::uint32_t c = raw[gate.c][at];
-        const bool is_normal = table_of_field(mesh_, f) == kNormalTable;
-        put(kFieldStreams + f, fold(raw[v][at] - (is_normal ? predict_half(a, b, c) : predict_parallelogram(a, b, c))));
+        const bool is_normal = format::table_of_field(mesh_, f) == format::kNormalTable;
+        put(format::kFieldStreams + f, format::fold(raw[v][at] - (is_normal ? format::predict_half(a, b, c) : format::predict_parallelogram(a, b, c))));
       }
     }
     for (const auto& [full, vertex] : own) seen_.emplace(full, vertex);  // twins are in earlier clusters only
     return kinds;
   }
 
-  void add_topology(const ClusterLayout& layout, const StripWalk& walk, const std::vector<SlotKind>& kinds) {
+  void add_topology(const ClusterLayout& layout, const StripWalk& walk, const std::vector<format::SlotKind>& kinds) {
     std::vector<std::uint32_t> slot_kinds;
     std::uint32_t last = 0;
     for (const StripWalk::Slot& slot : walk.slots) {
-      slot_kinds.push_back(static_cast<std::uint32_t>(slot.is_fresh ? kinds[slot.vertex] : SlotKind::kReference));
+      slot_kinds.push_back(static_cast<std::uint32_t>(slot.is_fresh ? kinds[slot.vertex] : format::SlotKind::kReference));
       if (slot.is_fresh) continue;
-      put(kReferenceStream, fold(slot.vertex - last));
+      put(format::kReferenceStream, format::fold(slot.vertex - last));
       last = slot.vertex;
     }
     std::uint32_t triple = 0;
@@ -209,20 +209,20 @@ class PageModeler {
     std::size_t s = 0;
     for (std::uint32_t t = 0, strip = 0; t < layout.triangle_count; ++t) {
       if (strip < layout.strip_count && walk.first_triangle[strip] == t) {
-        if (strip > 0) put(kLengthStream, t - walk.first_triangle[strip - 1] - 1);
+        if (strip > 0) put(format::kLengthStream, t - walk.first_triangle[strip - 1] - 1);
         ++strip;
-        put(kStartStream, (slot_kinds[s] * kSlotKinds + slot_kinds[s + 1]) * kSlotKinds + slot_kinds[s + 2]);
+        put(format::kStartStream, (slot_kinds[s] * format::kSlotKinds + slot_kinds[s + 1]) * format::kSlotKinds + slot_kinds[s + 2]);
         s += 3;
         continue;
       }
-      triple += weight * (kSlotKinds * walk.turns[t] + slot_kinds[s++]);
-      weight *= kTriangleSymbols;
-      if (weight < kTripleSymbols) continue;
-      put(kTripleStream, triple);
+      triple += weight * (format::kSlotKinds * walk.turns[t] + slot_kinds[s++]);
+      weight *= format::kTriangleSymbols;
+      if (weight < format::kTripleSymbols) continue;
+      put(format::kTripleStream, triple);
       triple = 0;
       weight = 1;
     }
-    if (weight > 1) put(kTripleStream, triple);
+    if (weight > 1) put(format::kTripleStream, triple);
   }
 
   void put(std::uint32_t stream, std::uint32_t value) { model_.streams[stream].push_back(value); }
@@ -230,10 +230,10 @@ class PageModeler {
   const format::MeshRecord& mesh_;
   std::span<const std::uint32_t> page_;
   std::uint32_t fields_;
-  std::vector<ClusterFields> clusters_;
-  std::vector<UvRangeFields> ranges_;
+  std::vector<format::ClusterFields> clusters_;
+  std::vector<format::UvRangeFields> ranges_;
   PageModel model_;
-  std::map<FullVertex, std::uint32_t> seen_;  ///< the first vertex of the page with these integers
+  std::map<format::FullVertex, std::uint32_t> seen_;  ///< the first vertex of the page with these integers
   std::uint32_t first_vertex_ = 0;
   std::uint32_t last_twin_ = 0;
 };
@@ -244,4 +244,4 @@ std::optional<PageModel> model_page(const format::MeshRecord& mesh, std::span<co
   return PageModeler(mesh, page).run();
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

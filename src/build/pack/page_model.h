@@ -12,20 +12,20 @@
 
 #include "format/page_streams.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 struct PageModel {
   /// Heads and range words of all clusters, by kind.
   std::vector<std::array<std::uint32_t, format::kHeadWords + format::kNormalHeadWords>> heads;
-  std::array<std::vector<std::uint32_t>, kRangeWordKinds> range_words;
+  std::array<std::vector<std::uint32_t>, format::kRangeWordKinds> range_words;
   /// The bit streams of all clusters as they are, one behind the other.
   std::vector<std::uint32_t> stream_words;
   /// What the bit streams hold: symbols of the first two streams, else folded numbers.
-  std::array<std::vector<std::uint32_t>, kMaxStreams> streams;
+  std::array<std::vector<std::uint32_t>, format::kMaxStreams> streams;
 };
 
 /// Null where the page is not what a writer of this format makes (padding, gaps, unsorted restarts): such bytes have no
 /// model from which they would come back.
 [[nodiscard]] std::optional<PageModel> model_page(const format::MeshRecord& mesh, std::span<const std::uint32_t> page);
 
-}  // namespace meshlode
+}  // namespace meshlode::build

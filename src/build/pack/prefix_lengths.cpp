@@ -6,7 +6,7 @@
 
 #include "format/prefix_code.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 namespace {
 
@@ -30,11 +30,11 @@ std::vector<std::uint8_t> choose_code_lengths(std::span<const std::uint64_t> cou
   std::stable_sort(symbols.begin(), symbols.end(), is_lighter);
 
   std::vector<Package> packages;
-  for (std::uint32_t bit = 0; bit < kMaxCodeBits; ++bit) {
+  for (std::uint32_t bit = 0; bit < format::kMaxCodeBits; ++bit) {
     std::vector<Package> merged;
     merged.reserve(symbols.size() + packages.size());
     std::merge(symbols.begin(), symbols.end(), packages.begin(), packages.end(), std::back_inserter(merged), is_lighter);
-    if (bit + 1 == kMaxCodeBits) {
+    if (bit + 1 == format::kMaxCodeBits) {
       packages = std::move(merged);
       break;
     }
@@ -52,4 +52,4 @@ std::vector<std::uint8_t> choose_code_lengths(std::span<const std::uint64_t> cou
   return lengths;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

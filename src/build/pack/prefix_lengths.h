@@ -6,10 +6,10 @@
 #include <span>
 #include <vector>
 
-namespace meshlode {
+namespace meshlode::build {
 
 /// Code lengths of at most kMaxCodeBits, 0 for symbols that do not occur; one symbol alone gets length 1.
 /// \pre at most 2^kMaxCodeBits counts
 [[nodiscard]] std::vector<std::uint8_t> choose_code_lengths(std::span<const std::uint64_t> counts);
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -8,40 +8,40 @@
 #include "build/pack/bit_sink.h"
 #include "build/pack/prefix_lengths.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 namespace {
 
-ValueToken token_in(std::uint32_t table, std::uint32_t value) {
-  return symbol_count(table) == kValueSymbols ? token_of(value) : ValueToken{value, 0, 0};
+format::ValueToken token_in(std::uint32_t table, std::uint32_t value) {
+  return format::symbol_count(table) == format::kValueSymbols ? format::token_of(value) : format::ValueToken{value, 0, 0};
 }
 
 }  // namespace
 
 PrefixStreams write_prefix_streams(const format::MeshRecord& mesh, const PageModel& model) {
-  const std::uint32_t stream_count = kFieldStreams + field_count(mesh);
-  const std::uint32_t table_count = kUvTables + mesh.uv_set_count;
-  std::array<std::vector<std::uint64_t>, kMaxTables> counts;
-  for (std::uint32_t t = 0; t < table_count; ++t) counts[t].resize(symbol_count(t));
+  const std::uint32_t stream_count = format::kFieldStreams + format::field_count(mesh);
+  const std::uint32_t table_count = format::kUvTables + mesh.uv_set_count;
+  std::array<std::vector<std::uint64_t>, format::kMaxTables> counts;
+  for (std::uint32_t t = 0; t < table_count; ++t) counts[t].resize(format::symbol_count(t));
   for (std::uint32_t s = 0; s < stream_count; ++s) {
-    const std::uint32_t table = table_of_stream(mesh, s);
+    const std::uint32_t table = format::table_of_stream(mesh, s);
     for (const std::uint32_t value : model.streams[s]) ++counts[table][token_in(table, value).symbol];
   }
 
   PrefixStreams out;
-  std::array<std::vector<std::uint8_t>, kMaxTables> lengths;
-  std::array<std::vector<std::uint16_t>, kMaxTables> codes;
+  std::array<std::vector<std::uint8_t>, format::kMaxTables> lengths;
+  std::array<std::vector<std::uint16_t>, format::kMaxTables> codes;
   for (std::uint32_t t = 0; t < table_count; ++t) {
     lengths[t] = choose_code_lengths(counts[t]);
     codes[t].resize(lengths[t].size());
-    (void)assign_codes(lengths[t], codes[t]);
+    (void)format::assign_codes(lengths[t], codes[t]);
     out.code_lengths.insert(out.code_lengths.end(), lengths[t].begin(), lengths[t].end());
   }
   for (std::uint32_t s = 0; s < stream_count; ++s) {
-    const std::uint32_t table = table_of_stream(mesh, s);
+    const std::uint32_t table = format::table_of_stream(mesh, s);
     BitSink sink;
     for (const std::uint32_t value : model.streams[s]) {
-      const ValueToken token = token_in(table, value);
+      const format::ValueToken token = token_in(table, value);
       sink.put(codes[table][token.symbol], lengths[table][token.symbol]);
       sink.put(token.raw, token.raw_bits);
     }
@@ -50,4 +50,4 @@ PrefixStreams write_prefix_streams(const format::MeshRecord& mesh, const PageMod
   return out;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -7,7 +7,7 @@
 
 #include "build/pack/page_model.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 struct PrefixStreams {
   std::vector<std::uint8_t> code_lengths;          ///< of all tables, one byte a symbol
@@ -16,4 +16,4 @@ struct PrefixStreams {
 
 [[nodiscard]] PrefixStreams write_prefix_streams(const format::MeshRecord& mesh, const PageModel& model);
 
-}  // namespace meshlode
+}  // namespace meshlode::build

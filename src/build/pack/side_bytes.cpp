@@ -3,7 +3,7 @@
 
 #include "format/page_streams.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 namespace {
 
@@ -21,8 +21,8 @@ std::vector<std::uint32_t> head_column(const PageModel& model, std::uint32_t ind
   for (const auto& head : model.heads) {
     std::uint32_t word = head[index];
     if (index >= 1 && index <= 3) {
-      const std::uint32_t coordinate = word & kCoordinateMask;
-      word = (word & ~kCoordinateMask) | fold_coordinate(coordinate - before);
+      const std::uint32_t coordinate = word & format::kCoordinateMask;
+      word = (word & ~format::kCoordinateMask) | format::fold_coordinate(coordinate - before);
       before = coordinate;
     }
     column.push_back(word);
@@ -43,13 +43,13 @@ std::vector<std::vector<std::uint8_t>> make_columns(const format::MeshRecord& me
     const std::vector<std::uint32_t> column = head_column(model, index);
     for (std::uint32_t plane = 0; plane < (index == 0 ? 2U : 4U); ++plane) out.push_back(plane_of(column, plane));
   }
-  for (std::uint32_t kind = 0; kind < kRangeWordKinds; ++kind) {
+  for (std::uint32_t kind = 0; kind < format::kRangeWordKinds; ++kind) {
     std::vector<std::uint32_t> words = model.range_words[kind];
-    if (is_delta(static_cast<RangeWord>(kind))) {
+    if (format::is_delta(static_cast<format::RangeWord>(kind))) {
       std::uint32_t before = 0;
       for (std::uint32_t& word : words) {
         const std::uint32_t value = word;
-        word = fold(value - before);
+        word = format::fold(value - before);
         before = value;
       }
     }
@@ -58,4 +58,4 @@ std::vector<std::vector<std::uint8_t>> make_columns(const format::MeshRecord& me
   return out;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -7,11 +7,11 @@
 
 #include "build/pack/page_model.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 void put_u32(std::vector<std::uint8_t>& out, std::uint32_t value);
 
 /// Counts of the range words, heads, range words: one column after the other. All of them make up the side information.
 [[nodiscard]] std::vector<std::vector<std::uint8_t>> make_columns(const format::MeshRecord& mesh, const PageModel& model);
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-namespace meshlode {
+namespace meshlode::build {
 
 namespace {
 
@@ -65,4 +65,4 @@ std::optional<ImageSize> read_image_size(std::span<const std::uint8_t> bytes) {
   return read_jpeg(bytes);
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

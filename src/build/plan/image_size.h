@@ -6,7 +6,7 @@
 #include <optional>
 #include <span>
 
-namespace meshlode {
+namespace meshlode::build {
 
 struct ImageSize {
   std::uint32_t width = 0, height = 0;  ///< texels, at least 1
@@ -15,4 +15,4 @@ struct ImageSize {
 /// Nothing where the bytes are neither, or end too early. Safe on any bytes.
 [[nodiscard]] std::optional<ImageSize> read_image_size(std::span<const std::uint8_t> bytes);
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace meshlode {
+namespace meshlode::build {
 
 namespace {
 
@@ -12,9 +12,9 @@ namespace {
 constexpr double kFlatCosine = 0.99996;
 
 /// True if every corner's normal is its triangle's own: then nothing needs storing. Triangles without area do not vote.
-bool has_flat_normals(const SourceMesh& mesh) {
+bool has_flat_normals(const scene::SourceMesh& mesh) {
   bool any = false;
-  for (const Primitive& primitive : mesh.primitives) {
+  for (const scene::Primitive& primitive : mesh.primitives) {
     if (primitive.normals.empty()) continue;
     for (std::size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
       const std::uint32_t* corner = &primitive.indices[i];
@@ -34,8 +34,8 @@ bool has_flat_normals(const SourceMesh& mesh) {
   return any;
 }
 
-bool is_all_white(const SourceMesh& mesh) {
-  for (const Primitive& primitive : mesh.primitives) {
+bool is_all_white(const scene::SourceMesh& mesh) {
+  for (const scene::Primitive& primitive : mesh.primitives) {
     for (const Vec4f& color : primitive.colors) {
       if (color != Vec4f(1.0F)) return false;
     }
@@ -45,7 +45,7 @@ bool is_all_white(const SourceMesh& mesh) {
 
 }  // namespace
 
-MeshPlan plan_mesh(const SourceMesh& mesh, const std::vector<SceneMaterial>& materials, AttributeChoice choice,
+MeshPlan plan_mesh(const scene::SourceMesh& mesh, const std::vector<scene::SceneMaterial>& materials, AttributeChoice choice,
                    const std::string& mesh_label) {
   MeshPlan plan;
   const auto decide = [&](const std::string& what, bool kept, const char* reason) {
@@ -59,15 +59,15 @@ MeshPlan plan_mesh(const SourceMesh& mesh, const std::vector<SceneMaterial>& mat
   bool shown_tangents = false;
   std::uint32_t uv_sets_present = 0;
   std::uint32_t uv_sets_sampled = 0;
-  for (const Primitive& primitive : mesh.primitives) {
+  for (const scene::Primitive& primitive : mesh.primitives) {
     any_normals |= !primitive.normals.empty();
     any_colors |= !primitive.colors.empty();
     any_tangents |= primitive.has_tangents;
-    for (std::size_t set = 0; set < kMaxUvSets; ++set) {
+    for (std::size_t set = 0; set < scene::kMaxUvSets; ++set) {
       if (!primitive.uvs[set].empty()) uv_sets_present |= 1U << set;
     }
     if (primitive.material.is_valid() && primitive.material.value < materials.size()) {
-      const SceneMaterial& material = materials[primitive.material.value];
+      const scene::SceneMaterial& material = materials[primitive.material.value];
       uv_sets_sampled |= material.uv_sets_used;
       shown_tangents |= primitive.has_tangents && material.needs_tangents;
     }
@@ -85,7 +85,7 @@ MeshPlan plan_mesh(const SourceMesh& mesh, const std::vector<SceneMaterial>& mat
     layout.has_normal = decide("NORMAL", true, "shading differs from the triangles' own normals");
   }
 
-  for (std::uint32_t set = 0; set < kMaxUvSets; ++set) {
+  for (std::uint32_t set = 0; set < scene::kMaxUvSets; ++set) {
     if ((uv_sets_present >> set & 1U) == 0) continue;
     const std::string name = "TEXCOORD_" + std::to_string(set);
     bool kept = false;
@@ -121,4 +121,4 @@ MeshPlan plan_mesh(const SourceMesh& mesh, const std::vector<SceneMaterial>& mat
   return plan;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

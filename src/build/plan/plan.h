@@ -8,7 +8,7 @@
 #include "build/prepared.h"
 #include "scene/scene.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 /// Which attributes of the source the asset may carry.
 enum class AttributeChoice : std::uint8_t {
@@ -30,7 +30,7 @@ struct MeshPlan {
 };
 
 /// Decides the attributes of one mesh. `mesh_label` starts each decision's `what`.
-[[nodiscard]] MeshPlan plan_mesh(const SourceMesh& mesh, const std::vector<SceneMaterial>& materials,
+[[nodiscard]] MeshPlan plan_mesh(const scene::SourceMesh& mesh, const std::vector<scene::SceneMaterial>& materials,
                                  AttributeChoice choice, const std::string& mesh_label);
 
-}  // namespace meshlode
+}  // namespace meshlode::build

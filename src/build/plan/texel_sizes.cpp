@@ -14,7 +14,7 @@
 
 #include "build/plan/image_size.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 namespace {
 
@@ -37,7 +37,7 @@ const Json* element(const Json& document, const char* array, std::size_t index) 
 
 class TexelSizes {
  public:
-  TexelSizes(const Scene& scene, const Json& document) : scene_(scene), document_(document) {}
+  TexelSizes(const scene::Scene& scene, const Json& document) : scene_(scene), document_(document) {}
 
   void add_material(const Json& value) {
     if (value.is_array()) {
@@ -49,7 +49,7 @@ class TexelSizes {
     for (const auto& item : value.items()) add_material(item.value());
   }
 
-  std::array<double, kMaxUvSets> texels{};
+  std::array<double, scene::kMaxUvSets> texels{};
 
  private:
   using Size = std::optional<ImageSize>;
@@ -70,7 +70,7 @@ class TexelSizes {
         }
       }
     }
-    if (set >= kMaxUvSets) return;
+    if (set >= scene::kMaxUvSets) return;
     const Json* const texture = element(document_, "textures", texture_index);
     const Json* const image = texture == nullptr ? nullptr
                                                  : element(document_, "images", index_in(*texture, "source", kNowhere));
@@ -84,15 +84,15 @@ class TexelSizes {
     if (std::isfinite(most)) texels[set] = std::max(texels[set], most);
   }
 
-  const Scene& scene_;
+  const scene::Scene& scene_;
   const Json& document_;
   std::map<std::size_t, Size> sizes_;  ///< of images that were looked at already
 };
 
 }  // namespace
 
-std::vector<std::array<double, kMaxUvSets>> texels_of_materials(const Scene& scene) {
-  std::vector<std::array<double, kMaxUvSets>> out(scene.materials.size());
+std::vector<std::array<double, scene::kMaxUvSets>> texels_of_materials(const scene::Scene& scene) {
+  std::vector<std::array<double, scene::kMaxUvSets>> out(scene.materials.size());
   const Json document = Json::parse(scene.document, nullptr, false);
   if (!document.is_object()) return out;
   TexelSizes sizes(scene, document);
@@ -106,10 +106,10 @@ std::vector<std::array<double, kMaxUvSets>> texels_of_materials(const Scene& sce
   return out;
 }
 
-std::array<double, kMaxUvSets> texels_per_unit(std::span<const std::array<double, kMaxUvSets>> of_materials,
-                                               const SourceMesh& mesh) {
-  std::array<double, kMaxUvSets> out{};
-  for (const Primitive& primitive : mesh.primitives) {
+std::array<double, scene::kMaxUvSets> texels_per_unit(std::span<const std::array<double, scene::kMaxUvSets>> of_materials,
+                                               const scene::SourceMesh& mesh) {
+  std::array<double, scene::kMaxUvSets> out{};
+  for (const scene::Primitive& primitive : mesh.primitives) {
     if (primitive.material.value >= of_materials.size()) continue;
     for (std::size_t set = 0; set < out.size(); ++set) {
       out[set] = std::max(out[set], of_materials[primitive.material.value][set]);
@@ -118,8 +118,8 @@ std::array<double, kMaxUvSets> texels_per_unit(std::span<const std::array<double
   return out;
 }
 
-std::array<double, kMaxUvSets> texels_per_unit(const Scene& scene, const SourceMesh& mesh) {
+std::array<double, scene::kMaxUvSets> texels_per_unit(const scene::Scene& scene, const scene::SourceMesh& mesh) {
   return texels_per_unit(texels_of_materials(scene), mesh);
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

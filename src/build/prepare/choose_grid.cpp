@@ -6,7 +6,7 @@
 
 #include "build/prepare/prepare.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 namespace {
 
@@ -26,8 +26,8 @@ int floor_log2(double x) {
 
 /// mantissa · 2^log2 with a mantissa of at most kMantissaBits, made odd so that it is the only spelling: nearest to the
 /// step, or the largest not above it.
-PositionGrid spell_step(double step, bool may_round_up) {
-  PositionGrid grid;
+format::PositionGrid spell_step(double step, bool may_round_up) {
+  format::PositionGrid grid;
   grid.log2 = floor_log2(step) - (kMantissaBits - 1);
   auto mantissa = static_cast<std::uint32_t>(std::floor(std::ldexp(step, -grid.log2) + (may_round_up ? 0.5 : 0.0)));
   while (mantissa % 2 == 0) {
@@ -39,8 +39,8 @@ PositionGrid spell_step(double step, bool may_round_up) {
 }
 
 /// Errors where coordinates would need more than 24 bits.
-Result<PositionGrid> checked_grid(const PositionGrid& grid, double largest_half_extent, const char* what, double value) {
-  if (largest_half_extent / grid.step() > kMaxGridCoordinate / grid.mantissa || grid.log2 < kSmallestLog2 ||
+Result<format::PositionGrid> checked_grid(const format::PositionGrid& grid, double largest_half_extent, const char* what, double value) {
+  if (largest_half_extent / grid.step() > format::kMaxGridCoordinate / grid.mantissa || grid.log2 < kSmallestLog2 ||
       grid.log2 > kLargestLog2) {
     char text[160];
     std::snprintf(text, sizeof text, "a %s of %g needs more than 24 bits for an extent of %g", what, value,
@@ -52,7 +52,7 @@ Result<PositionGrid> checked_grid(const PositionGrid& grid, double largest_half_
 
 }  // namespace
 
-Result<PositionGrid> choose_grid(double largest_half_extent, double diagonal, double median_edge,
+Result<format::PositionGrid> choose_grid(double largest_half_extent, double diagonal, double median_edge,
                                  const PrepareOptions& options) {
   if (options.grid_step > 0.0) {
     return checked_grid(spell_step(options.grid_step, true), largest_half_extent, "grid step", options.grid_step);
@@ -62,14 +62,14 @@ Result<PositionGrid> choose_grid(double largest_half_extent, double diagonal, do
     const double step = options.position_error * 2.0 / std::sqrt(3.0) * (1.0 - 1e-12);
     return checked_grid(spell_step(step, false), largest_half_extent, "position error", options.position_error);
   }
-  PositionGrid grid;
+  format::PositionGrid grid;
   if (!(diagonal > 0.0)) return grid;  // a single point: any grid will do
   double step = options.position_budget * diagonal * 2.0 / std::sqrt(3.0);
   if (median_edge > 0.0) step = std::min(step, median_edge / kStepsPerEdge);
   grid.log2 = std::clamp(floor_log2(step), kSmallestLog2, kLargestLog2);
   // 22 bits a coordinate at most: what is left of the 24 is for simplified vertices outside of the box.
-  while (largest_half_extent / grid.step() > kMaxGridCoordinate / 4.0 && grid.log2 < kLargestLog2) ++grid.log2;
+  while (largest_half_extent / grid.step() > format::kMaxGridCoordinate / 4.0 && grid.log2 < kLargestLog2) ++grid.log2;
   return grid;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

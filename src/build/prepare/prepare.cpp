@@ -15,7 +15,7 @@
 #include "build/prepare/separate_needles.h"
 #include "build/prepare/zero_area.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 namespace {
 
@@ -35,7 +35,7 @@ Vec3f flat_normal(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   return length > 0.0 && std::isfinite(length) ? Vec3f(cross / length) : Vec3f(0.0F, 0.0F, 1.0F);
 }
 
-void append_vertex(const Primitive& primitive, std::uint32_t vertex, const Vec3f& normal, const AttributeLayout& layout,
+void append_vertex(const scene::Primitive& primitive, std::uint32_t vertex, const Vec3f& normal, const AttributeLayout& layout,
                    Corners& out) {
   out.positions.push_back(primitive.positions[vertex] + 0.0);  // + 0.0 turns -0 into 0
   if (layout.has_normal) {
@@ -53,9 +53,9 @@ void append_vertex(const Primitive& primitive, std::uint32_t vertex, const Vec3f
   }
 }
 
-Corners gather_corners(const SourceMesh& mesh, const AttributeLayout& layout) {
+Corners gather_corners(const scene::SourceMesh& mesh, const AttributeLayout& layout) {
   Corners out;
-  for (const Primitive& primitive : mesh.primitives) {
+  for (const scene::Primitive& primitive : mesh.primitives) {
     const auto first = static_cast<std::uint32_t>(out.positions.size());
     const std::size_t triangle_count = primitive.indices.size() / 3;
     if (layout.has_normal && primitive.normals.empty()) {
@@ -94,7 +94,7 @@ std::uint64_t spread3(std::uint64_t x) {
 
 /// Z-order of a grid point (24 bits an axis, the lowest three dropped: ties are ordered by coordinates).
 std::uint64_t morton(const Vec3i& q) {
-  const auto axis = [](int value) { return static_cast<std::uint64_t>(value + (kMaxGridCoordinate + 1)) >> 3U; };
+  const auto axis = [](int value) { return static_cast<std::uint64_t>(value + (format::kMaxGridCoordinate + 1)) >> 3U; };
   return spread3(axis(q.x)) | spread3(axis(q.y)) << 1U | spread3(axis(q.z)) << 2U;
 }
 
@@ -193,12 +193,12 @@ struct CanonicalTriangle {
 
 }  // namespace
 
-Result<PreparedMesh> prepare_mesh(const SourceMesh& source, const AttributeLayout& layout, const PrepareOptions& options) {
+Result<PreparedMesh> prepare_mesh(const scene::SourceMesh& source, const AttributeLayout& layout, const PrepareOptions& options) {
   PreparedMesh mesh;
   mesh.name = source.name;
   mesh.layout = layout;
   mesh.dropped_repaired = source.drops.repaired;
-  for (const Primitive& primitive : source.primitives) {
+  for (const scene::Primitive& primitive : source.primitives) {
     mesh.source_triangles += primitive.indices.size() / 3;
     mesh.source_vertices += primitive.positions.size();
   }
@@ -229,7 +229,7 @@ Result<PreparedMesh> prepare_mesh(const SourceMesh& source, const AttributeLayou
     return Error{ErrorCode::kUnsupported, "mesh '" + source.name + "'", "its extent overflows a double when squared"};
   }
   const double largest_half = std::max({half.x, half.y, half.z});
-  Result<PositionGrid> grid = choose_grid(largest_half, mesh.diagonal, median_edge_length(corners), options);
+  Result<format::PositionGrid> grid = choose_grid(largest_half, mesh.diagonal, median_edge_length(corners), options);
   if (!grid) return Error{grid.error().code, "mesh '" + source.name + "'", grid.error().detail};
   mesh.grid = *grid;
   // The origin lies on the grid through zero, so that meshes built with the same step abut.
@@ -322,4 +322,4 @@ Result<PreparedMesh> prepare_mesh(const SourceMesh& source, const AttributeLayou
   return mesh;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -11,7 +11,7 @@
 #include "build/prepared.h"
 #include "scene/scene.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 struct PrepareOptions {
   double grid_step = 0.0;       ///< object units; 0: chosen from the budgets below
@@ -22,11 +22,11 @@ struct PrepareOptions {
 
 /// Position of the grid for a mesh whose bounding box has the given half extent, diagonal and median edge length.
 /// Errors: kUnsupported where the step or the position error asked for needs more than 24 bits.
-[[nodiscard]] Result<PositionGrid> choose_grid(double largest_half_extent, double diagonal, double median_edge,
+[[nodiscard]] Result<format::PositionGrid> choose_grid(double largest_half_extent, double diagonal, double median_edge,
                                                const PrepareOptions& options);
 
 /// Errors: kUnsupported (the grid needs more than 24 bits), kInvalid (a position is not finite).
-[[nodiscard]] Result<PreparedMesh> prepare_mesh(const SourceMesh& mesh, const AttributeLayout& layout,
+[[nodiscard]] Result<PreparedMesh> prepare_mesh(const scene::SourceMesh& mesh, const AttributeLayout& layout,
                                                 const PrepareOptions& options);
 
-}  // namespace meshlode
+}  // namespace meshlode::build

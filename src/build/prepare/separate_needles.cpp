@@ -9,7 +9,7 @@
 #include <set>
 #include <tuple>
 
-namespace meshlode {
+namespace meshlode::build {
 
 namespace {
 
@@ -49,7 +49,7 @@ std::vector<Needle> find_needles(std::span<const Vec3d> positions, std::span<con
 }  // namespace
 
 std::uint64_t separate_needles(std::span<const Vec3d> positions, std::span<const std::uint32_t> triangles,
-                               const PositionGrid& grid, std::vector<Vec3i>& cells) {
+                               const format::PositionGrid& grid, std::vector<Vec3i>& cells) {
   const std::vector<Needle> needles = find_needles(positions, triangles, cells);
   if (needles.empty()) return 0;
 
@@ -85,7 +85,7 @@ std::uint64_t separate_needles(std::span<const Vec3d> positions, std::span<const
         if (!((positions[v][axis] - positions[other][axis]) * side > 0.0)) continue;
         Vec3i cell = cells[v];
         cell[axis] += side;
-        if (std::abs(cell[axis]) > kMaxGridCoordinate) continue;
+        if (std::abs(cell[axis]) > format::kMaxGridCoordinate) continue;
         const Vec3d left = positions[v] / step - Vec3d(cell);
         const double distance2 = glm::dot(left, left);
         if (distance2 > best_distance2 || (is_found && distance2 == best_distance2)) continue;
@@ -105,4 +105,4 @@ std::uint64_t separate_needles(std::span<const Vec3d> positions, std::span<const
   return kept;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -11,7 +11,7 @@
 #include "base/vec.h"
 #include "format/grid.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 /// Moves, where it can, one of the two corners to the free neighbouring cell that it is nearest to. No vertex gets farther
 /// from where it was than half a cell's diagonal, which is the grid's own bound, and vertices that were equal stay equal.
@@ -20,6 +20,6 @@ namespace meshlode {
 /// `positions` are relative to the grid's origin, in object units; `triangles` holds three vertex ids each; `cells` is the
 /// grid point of each vertex that a triangle uses.
 std::uint64_t separate_needles(std::span<const Vec3d> positions, std::span<const std::uint32_t> triangles,
-                               const PositionGrid& grid, std::vector<Vec3i>& cells);
+                               const format::PositionGrid& grid, std::vector<Vec3i>& cells);
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -15,7 +15,7 @@
 
 #include "base/parallel.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 namespace {
 
@@ -194,4 +194,4 @@ std::vector<std::uint8_t> find_undrawn(std::span<const Vec3d> positions, std::sp
   return is_undrawn;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -10,7 +10,7 @@
 
 #include "base/vec.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 /// Whether three points lie on one line, decided exactly. \pre all finite
 [[nodiscard]] bool are_collinear(const Vec3d& a, const Vec3d& b, const Vec3d& c);
@@ -23,4 +23,4 @@ namespace meshlode {
 [[nodiscard]] std::vector<std::uint8_t> find_undrawn(std::span<const Vec3d> positions,
                                                      std::span<const std::uint32_t> triangles);
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -7,7 +7,7 @@
 
 #include "base/disjoint_sets.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 namespace {
 
@@ -181,4 +181,4 @@ SimplifyInput with_locked_border(SimplifyInput input) {
   return input;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

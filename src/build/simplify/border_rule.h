@@ -6,7 +6,7 @@
 
 #include "build/simplify/simplify.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 /// By coordinates, as they are stored. An edge between two locked positions may be another group's too, so that it counts
 /// as border of the source nowhere.
@@ -15,4 +15,4 @@ namespace meshlode {
 /// The input with every position of its border locked: whatever is collapsed then, the border stays edge by edge.
 [[nodiscard]] SimplifyInput with_locked_border(SimplifyInput input);
 
-}  // namespace meshlode
+}  // namespace meshlode::build

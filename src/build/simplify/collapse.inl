@@ -2,7 +2,7 @@
 // The collapses themselves, cheapest first, and what they drop.
 // Definitions of GroupSimplifier, included by simplify.cpp.
 
-namespace meshlode {
+namespace meshlode::build {
 
 template <std::size_t C>
 void GroupSimplifier<C>::seed_candidates() {
@@ -200,4 +200,4 @@ void GroupSimplifier<C>::run() {
   if (options_.keep_area) grow_pieces();
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

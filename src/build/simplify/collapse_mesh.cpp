@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <tuple>
 
-namespace meshlode {
+namespace meshlode::build {
 
 CollapseMesh::CollapseMesh(const std::vector<WedgeTriangle>& triangles, const std::vector<std::uint32_t>& wedge_position,
                            std::size_t vertex_count)
@@ -107,4 +107,4 @@ void CollapseMesh::drop_opposite_pairs(std::uint32_t vertex, std::vector<std::ui
   }
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

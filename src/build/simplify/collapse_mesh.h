@@ -8,7 +8,7 @@
 
 #include "build/prepared.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 /// Triangles by vertices and wedges, with the triangles around each vertex as a linked list of corners: joining two
 /// vertices is then joining two lists. A corner is 3 · triangle + k.
@@ -52,4 +52,4 @@ class CollapseMesh {
   std::uint32_t alive_count_ = 0;
 };
 
-}  // namespace meshlode
+}  // namespace meshlode::build

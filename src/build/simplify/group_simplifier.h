@@ -19,7 +19,7 @@
 #include "build/simplify/quadric.h"
 #include "build/simplify/simplify.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 template <std::size_t Capacity>
 class GroupSimplifier {
@@ -152,4 +152,4 @@ class GroupSimplifier {
   std::vector<std::uint32_t> class_of_;  ///< per wedge, where its stamp is the search's
 };
 
-}  // namespace meshlode
+}  // namespace meshlode::build

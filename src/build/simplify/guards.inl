@@ -2,7 +2,7 @@
 // Which collapses are refused: those that would break a shared border, the topology, or turn a triangle over.
 // Definitions of GroupSimplifier, included by simplify.cpp.
 
-namespace meshlode {
+namespace meshlode::build {
 
 /// I6. An edge between two locked vertices may be one that another group's triangle leans on, so that its uses here stay
 /// what they are. A triangle (locked, moved, tip) goes with the collapse of its edge to `locked`: where its tip is locked
@@ -173,4 +173,4 @@ bool GroupSimplifier<C>::turns_over(std::uint32_t moved, std::uint32_t other, co
   return false;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

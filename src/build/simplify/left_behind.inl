@@ -2,7 +2,7 @@
 // How far a collapse leaves the old surface from the new and the new from the old, beyond what quadrics say.
 // Definitions of GroupSimplifier, included by simplify.cpp.
 
-namespace meshlode {
+namespace meshlode::build {
 
 /// The triangles that would surround the joined vertex, by their outer edges. Where sheets are dropped, pairs that would
 /// lie on each other do not count: they will be gone.
@@ -158,4 +158,4 @@ double GroupSimplifier<C>::new_surface_distance2(const Vec3d& target, double lea
   return farthest;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

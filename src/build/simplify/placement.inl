@@ -2,7 +2,7 @@
 // Where the vertex of a collapsed edge goes, what its attributes become there, and what both cost.
 // Definitions of GroupSimplifier, included by simplify.cpp.
 
-namespace meshlode {
+namespace meshlode::build {
 
 template <std::size_t C>
 void GroupSimplifier<C>::update_wedges(std::uint32_t vertex) {
@@ -149,4 +149,4 @@ typename GroupSimplifier<C>::Placement GroupSimplifier<C>::place(std::uint32_t a
   return placement;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

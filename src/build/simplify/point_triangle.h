@@ -5,7 +5,7 @@
 
 #include "base/vec.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 [[nodiscard]] inline double distance2_to_facet(const Vec3d& p, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   const auto distance2 = [&](const Vec3d& q) { return glm::dot(p - q, p - q); };
@@ -35,4 +35,4 @@ namespace meshlode {
   return distance2(a + ab * (vb / sum) + ac * (vc / sum));
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

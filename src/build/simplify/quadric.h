@@ -11,7 +11,7 @@
 
 #include "base/vec.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 /// E(p) = pᵀ A p + 2 bᵀ p + c, with the total weight beside it so that E / weight is a mean squared distance.
 struct Quadric {
@@ -138,4 +138,4 @@ struct WedgeQuadric {
   }
 };
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -3,7 +3,7 @@
 // faces, borders and seams.
 // Definitions of GroupSimplifier, included by simplify.cpp.
 
-namespace meshlode {
+namespace meshlode::build {
 
 template <std::size_t C>
 GroupSimplifier<C>::GroupSimplifier(const SimplifyInput& input, const SimplifyOptions& options)
@@ -61,7 +61,7 @@ Vec3i GroupSimplifier<C>::to_grid(const Vec3d& p) const {
   Vec3i out;
   for (int k = 0; k < 3; ++k) {
     const double rounded = std::floor(q[k] + 0.5);
-    out[k] = static_cast<int>(std::clamp<double>(rounded, -kMaxGridCoordinate, kMaxGridCoordinate));
+    out[k] = static_cast<int>(std::clamp<double>(rounded, -format::kMaxGridCoordinate, format::kMaxGridCoordinate));
   }
   return out;
 }
@@ -73,7 +73,7 @@ void GroupSimplifier<C>::scale_attributes() {
   if (attribute_count_ == 0) return;
   const AttributeLayout& layout = input_.layout;
   double area = 0.0;
-  std::array<double, kMaxUvSets> uv_area{};
+  std::array<double, scene::kMaxUvSets> uv_area{};
   for (std::uint32_t t = 0; t < mesh_.triangle_count(); ++t) {
     if (!mesh_.is_alive(t)) continue;
     const Vec3d& p = position_[mesh_.vertex(3 * t)];
@@ -226,4 +226,4 @@ void GroupSimplifier<C>::add_edge_quadrics() {
   }
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -2,7 +2,7 @@
 // What is left: pieces grown to the area that the group covered, and the group as the DAG wants it.
 // Definitions of GroupSimplifier, included by simplify.cpp.
 
-namespace meshlode {
+namespace meshlode::build {
 
 /// Per vertex, one vertex of the loose piece that it belongs to: pieces share no vertex.
 template <std::size_t C>
@@ -158,4 +158,4 @@ SimplifyResult GroupSimplifier<C>::result() const {
   return out;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

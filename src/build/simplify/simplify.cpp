@@ -13,7 +13,7 @@
 #include "build/simplify/collapse.inl"
 #include "build/simplify/result.inl"
 
-namespace meshlode {
+namespace meshlode::build {
 
 namespace {
 
@@ -36,7 +36,7 @@ Attempt simplify_once(const SimplifyInput& input, const SimplifyOptions& options
   const std::uint32_t attributes = input.layout.stride();
   if (attributes <= 3) return simplify_with<3>(input, options);
   if (attributes <= 5) return simplify_with<5>(input, options);
-  return simplify_with<3 + 2 * kMaxUvSets + 4>(input, options);
+  return simplify_with<3 + 2 * scene::kMaxUvSets + 4>(input, options);
 }
 
 }  // namespace
@@ -53,4 +53,4 @@ SimplifyResult simplify_group(const SimplifyInput& input, const SimplifyOptions&
   return simplify_once(with_locked_border(input), careful).result;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

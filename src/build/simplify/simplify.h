@@ -16,7 +16,7 @@
 #include "format/grid.h"
 #include "build/prepared.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 struct SimplifyOptions {
   std::uint32_t target_triangles = 0;  ///< stop at or below this
@@ -44,7 +44,7 @@ struct Witnesses {
 
 /// A group with local ids. Wedges are per position; see PreparedMesh.
 struct SimplifyInput {
-  PositionGrid grid;
+  format::PositionGrid grid;
   AttributeLayout layout;
   std::vector<Vec3i> positions;
   std::vector<std::uint8_t> is_locked;          ///< per position: shared with another group
@@ -71,4 +71,4 @@ struct SimplifyResult {
 /// the surface is open. No triangle of it has two corners in one place.
 [[nodiscard]] SimplifyResult simplify_group(const SimplifyInput& input, const SimplifyOptions& options);
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -8,7 +8,7 @@
 #include "base/parallel.h"
 #include "build/write/instance_scale.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 namespace {
 
@@ -63,7 +63,7 @@ void append_mesh(EncodedMesh& mesh, const std::string& name, AssetTables& out) {
   }
 }
 
-format::MaterialRecord material_record(const SceneMaterial& material, StringTable& strings) {
+format::MaterialRecord material_record(const scene::SceneMaterial& material, StringTable& strings) {
   format::MaterialRecord record{};
   record.name = strings.add(material.name);
   record.source_index = material.source_index;
@@ -76,7 +76,7 @@ format::MaterialRecord material_record(const SceneMaterial& material, StringTabl
   return record;
 }
 
-format::InstanceRecord instance_record(const SceneInstance& instance, StringTable& strings) {
+format::InstanceRecord instance_record(const scene::SceneInstance& instance, StringTable& strings) {
   format::InstanceRecord record{};
   const InstanceScale scale = measure_instance(instance.transform);
   // A transform that is not finite is never drawn; zeros keep the file free of values that no reader accepts.
@@ -94,12 +94,12 @@ format::InstanceRecord instance_record(const SceneInstance& instance, StringTabl
   return record;
 }
 
-format::BlobRecord blob_record(const SceneBlob& blob, StringTable& strings) {
+format::BlobRecord blob_record(const scene::SceneBlob& blob, StringTable& strings) {
   format::BlobRecord record{};
   record.name = strings.add(blob.name);
   record.mime_type = strings.add(blob.mime_type);
   record.bytes = blob.bytes.size();
-  record.kind = blob.kind == SceneBlob::Kind::kImage ? format::BlobKind::kImage : format::BlobKind::kBuffer;
+  record.kind = blob.kind == scene::SceneBlob::Kind::kImage ? format::BlobKind::kImage : format::BlobKind::kBuffer;
   record.source_index = blob.source_index;
   record.checksum = hash64(blob.bytes);
   return record;
@@ -140,13 +140,13 @@ Result<AssetTables> make_tables(WriteInput& input) {
   if (Status status = check_counts(input); !status) return status.error();
   AssetTables out;
   for (std::size_t m = 0; m < input.meshes.size(); ++m) append_mesh(input.meshes[m], input.mesh_names[m], out);
-  for (const SceneMaterial& material : input.scene->materials) {
+  for (const scene::SceneMaterial& material : input.scene->materials) {
     out.materials.push_back(material_record(material, out.strings));
   }
-  for (const SceneInstance& instance : input.scene->instances) {
+  for (const scene::SceneInstance& instance : input.scene->instances) {
     out.instances.push_back(instance_record(instance, out.strings));
   }
-  for (const SceneBlob& blob : input.scene->blobs) out.blobs.push_back(blob_record(blob, out.strings));
+  for (const scene::SceneBlob& blob : input.scene->blobs) out.blobs.push_back(blob_record(blob, out.strings));
   parallel_for_each_index(out.pages.size(), 4,
                           [&](std::size_t p) { out.pages[p].decoded_checksum = hash64(out.page_bytes[p]); });
   if (out.strings.bytes().size() >= std::numeric_limits<std::uint32_t>::max()) {
@@ -155,4 +155,4 @@ Result<AssetTables> make_tables(WriteInput& input) {
   return out;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

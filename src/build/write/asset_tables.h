@@ -13,7 +13,7 @@
 
 #include "build/write/write.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 /// Strings in order of first use, each stored once.
 class StringTable {
@@ -43,4 +43,4 @@ struct AssetTables {
 /// Moves the pages out of `input`. Errors: kBuildFailed where a count leaves 32 bits or an id is out of range.
 [[nodiscard]] Result<AssetTables> make_tables(WriteInput& input);
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -3,7 +3,7 @@
 
 #include <span>
 
-namespace meshlode {
+namespace meshlode::build {
 
 namespace {
 
@@ -40,7 +40,7 @@ class SectionHasher {
 
 }  // namespace
 
-Hash128 hash_content(const AssetTables& tables, const Scene& scene) {
+Hash128 hash_content(const AssetTables& tables, const scene::Scene& scene) {
   SectionHasher hasher;
   hasher.add(format::kVersion);
   hasher.text(format::SectionId::kScene, scene.document);
@@ -66,8 +66,8 @@ Hash128 hash_content(const AssetTables& tables, const Scene& scene) {
     blob.offset = 0;
     hasher.add(blob);
   }
-  for (const SceneBlob& blob : scene.blobs) hasher.raw(blob.bytes);
+  for (const scene::SceneBlob& blob : scene.blobs) hasher.raw(blob.bytes);
   return hasher.digest();
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -7,8 +7,8 @@
 #include "base/hash.h"
 #include "build/write/asset_tables.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
-[[nodiscard]] Hash128 hash_content(const AssetTables& tables, const Scene& scene);
+[[nodiscard]] Hash128 hash_content(const AssetTables& tables, const scene::Scene& scene);
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -8,7 +8,7 @@
 
 #include <meshlode/format.h>
 
-namespace meshlode {
+namespace meshlode::build {
 
 namespace {
 
@@ -102,4 +102,4 @@ InstanceScale measure_instance(const Mat4d& transform) {
   return out;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -6,7 +6,7 @@
 
 #include "base/vec.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 struct InstanceScale {
   double largest = 0.0;     ///< at least the largest singular value of the 3×3 part; 0 where the matrix is not finite
@@ -16,4 +16,4 @@ struct InstanceScale {
 /// The exact value for axis-aligned scalings and permutations of axes, else within 1e-12 of it, rounded up.
 [[nodiscard]] InstanceScale measure_instance(const Mat4d& transform);
 
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -15,7 +15,7 @@
 #include "build/write/hash_content.h"
 #include "build/write/asset_tables.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 namespace {
 
@@ -103,7 +103,7 @@ Result<std::vector<std::uint8_t>> write_asset(WriteInput input) {
   auto made = make_tables(input);
   if (!made) return made.error();
   AssetTables tables = std::move(*made);
-  const Scene& scene = *input.scene;
+  const scene::Scene& scene = *input.scene;
   const Hash128 content_hash = hash_content(tables, scene);
   auto packed = pack_pages(tables, input.codec);
   if (!packed) return packed.error();
@@ -144,7 +144,7 @@ Result<std::vector<std::uint8_t>> write_asset(WriteInput input) {
     format::SectionEntry& entry = entries[s];
     entry.id = static_cast<std::uint32_t>(plan.id);
     entry.offset = align_section(end);
-    entry.codec = static_cast<std::uint32_t>(plan.packed.empty() ? SectionCodec::kNone : SectionCodec::kColumns);
+    entry.codec = static_cast<std::uint32_t>(plan.packed.empty() ? format::SectionCodec::kPlain : format::SectionCodec::kColumns);
     entry.bytes = plan.stored_bytes();
     entry.decoded_bytes = plan.bytes;
     entry.flags = format::kSectionRequired;
@@ -194,4 +194,4 @@ Result<std::vector<std::uint8_t>> write_asset(WriteInput input) {
   return file;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::build

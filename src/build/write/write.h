@@ -13,12 +13,12 @@
 #include "build/encode/encode.h"
 #include "scene/scene.h"
 
-namespace meshlode {
+namespace meshlode::build {
 
 struct WriteInput {
   std::vector<EncodedMesh> meshes;
   std::vector<std::string> mesh_names;
-  const Scene* scene = nullptr;      ///< materials, instances, blobs and document
+  const scene::Scene* scene = nullptr;      ///< materials, instances, blobs and document
   std::string meta_json;             ///< kMeta, already serialised
   format::Codec codec = format::Codec::kNone;
 };
@@ -26,4 +26,4 @@ struct WriteInput {
 /// The whole file. Deterministic: no time, no path, no thread count. Errors: kUnsupported codec, kBuildFailed limits.
 [[nodiscard]] Result<std::vector<std::uint8_t>> write_asset(WriteInput input);
 
-}  // namespace meshlode
+}  // namespace meshlode::build

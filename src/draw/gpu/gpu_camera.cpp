@@ -3,7 +3,7 @@
 
 #include "draw/raster/projection.h"
 
-namespace meshlode::gpu {
+namespace meshlode::draw {
 
 namespace {
 
@@ -13,8 +13,8 @@ void put(double (&out)[3], const Vec3d& v) {
 
 }  // namespace
 
-Result<GpuCamera> make_gpu_camera(const Camera& camera, double pixel_error, double scene_depth) {
-  const Result<raster::Projection> projection = raster::make_projection(camera);
+Result<GpuCamera> make_gpu_camera(const run::Camera& camera, double pixel_error, double scene_depth) {
+  const Result<Projection> projection = make_projection(camera);
   if (!projection) return projection.error();
   GpuCamera out{};
   put(out.eye, projection->eye);
@@ -34,11 +34,11 @@ Result<GpuCamera> make_gpu_camera(const Camera& camera, double pixel_error, doub
   return out;
 }
 
-Result<double> depth_of_scene(const Asset& asset, const Camera& camera) {
+Result<double> depth_of_scene(const run::Asset& asset, const run::Camera& camera) {
   if (!camera.is_orthographic) return 0.0;
-  const Result<raster::Projection> projection = raster::make_projection(camera);
+  const Result<Projection> projection = make_projection(camera);
   if (!projection) return projection.error();
-  return raster::scene_depth(asset, *projection);
+  return scene_depth(asset, *projection);
 }
 
-}  // namespace meshlode::gpu
+}  // namespace meshlode::draw

@@ -11,7 +11,7 @@
 #include "run/select/select.h"
 #include "run/unpack/unpack.h"
 
-namespace meshlode::gpu {
+namespace meshlode::draw {
 
 namespace {
 
@@ -30,18 +30,18 @@ struct Errors {
   std::vector<float> group, node;
 };
 
-Errors find_errors(const Asset& asset, const AttributeBounds& bounds) {
+Errors find_errors(const run::Asset& asset, const run::AttributeBounds& bounds) {
   Errors out;
   for (const format::GroupRecord& group : asset.groups()) out.group.push_back(group.error);
   for (const format::NodeRecord& node : asset.nodes()) out.node.push_back(node.error);
-  const SelectTables tables = tables_of(asset);
+  const run::SelectTables tables = run::tables_of(asset);
   for (const format::MeshRecord& mesh : asset.meshes()) {
-    const AttributeBounds own = bounds_for(bounds, mesh);
+    const run::AttributeBounds own = run::bounds_for(bounds, mesh);
     if (!own.has_any()) continue;
     for (std::uint32_t g = mesh.first_group; g < mesh.first_group + mesh.group_count; ++g) {
-      if (!is_within(own, asset.groups()[g])) out.group[g] = format::kInfiniteError;
+      if (!run::is_within(own, asset.groups()[g])) out.group[g] = format::kInfiniteError;
     }
-    const std::vector<std::uint8_t> within = find_nodes_within(tables, mesh, own);
+    const std::vector<std::uint8_t> within = run::find_nodes_within(tables, mesh, own);
     for (std::uint32_t n = 0; n < mesh.node_count; ++n) {
       if (within[n] == 0) out.node[mesh.first_node + n] = format::kInfiniteError;
     }
@@ -49,15 +49,15 @@ Errors find_errors(const Asset& asset, const AttributeBounds& bounds) {
   return out;
 }
 
-std::vector<GpuMesh> mesh_table(const Asset& asset, const Errors& errors) {
+std::vector<GpuMesh> mesh_table(const run::Asset& asset, const Errors& errors) {
   std::vector<GpuMesh> out;
-  const SelectTables tables = tables_of(asset);
+  const run::SelectTables tables = run::tables_of(asset);
   for (const format::MeshRecord& mesh : asset.meshes()) {
     GpuMesh m{};
     std::copy(mesh.origin, mesh.origin + 3, m.origin);
     m.step = std::ldexp(static_cast<double>(mesh.grid.mantissa), mesh.grid.log2);
-    m.reach = mesh_reach(tables, mesh);
-    const FarBound far = find_far_bound(tables, mesh, errors.group);
+    m.reach = run::mesh_reach(tables, mesh);
+    const run::FarBound far = run::find_far_bound(tables, mesh, errors.group);
     std::copy(far.bound.center, far.bound.center + 3, m.root_center);
     m.root_radius = far.bound.radius;
     m.coarse_error = far.bound.error;
@@ -89,7 +89,7 @@ std::vector<GpuInstance> instance_table(std::span<const format::InstanceRecord> 
   return out;
 }
 
-std::vector<GpuNode> node_table(const Asset& asset, const Errors& errors) {
+std::vector<GpuNode> node_table(const run::Asset& asset, const Errors& errors) {
   std::vector<GpuNode> out;
   for (const format::NodeRecord& node : asset.nodes()) {
     GpuNode n{};
@@ -104,7 +104,7 @@ std::vector<GpuNode> node_table(const Asset& asset, const Errors& errors) {
 }
 
 /// Nodes on the longest way down. Children lie behind their node, so one pass from the back sees them first.
-std::uint32_t bvh_depth(const Asset& asset) {
+std::uint32_t bvh_depth(const run::Asset& asset) {
   const auto nodes = asset.nodes();
   std::vector<std::uint32_t> height(nodes.size(), 1);
   std::uint32_t deepest = 0;
@@ -123,7 +123,7 @@ struct Pages {
   std::uint64_t bytes = 0;
 };
 
-Result<Pages> upload_pages(Device& device, const Asset& asset) {
+Result<Pages> upload_pages(Device& device, const run::Asset& asset) {
   Pages out;
   std::uint64_t words = 0;
   for (const format::PageRecord& page : asset.pages()) {
@@ -132,7 +132,7 @@ Result<Pages> upload_pages(Device& device, const Asset& asset) {
   }
   if (words + 4 > 0xFFFFFFFFu) return Error{ErrorCode::kUnsupported, "pages", "more than 16 GiB of pages"};
   out.bytes = words * 4;
-  if (const Status status = check_decoded_bytes(asset, out.bytes); !status) return status.error();
+  if (const Status status = run::check_decoded_bytes(asset, out.bytes); !status) return status.error();
   auto buffer = device.make_buffer(out.bytes + 16, Memory::kDevice);  // a reader may look at one word behind a page
   if (!buffer) return buffer.error();
   out.buffer = *buffer;
@@ -140,7 +140,7 @@ Result<Pages> upload_pages(Device& device, const Asset& asset) {
   std::uint64_t chunk_at = 0;
   constexpr std::size_t kChunk = 8u << 20;
   for (std::size_t p = 0; p < asset.pages().size(); ++p) {
-    const auto page = load_page(asset, PageId(p));
+    const auto page = run::load_page(asset, PageId(p));
     if (!page) return page.error();
     const std::span<const std::uint8_t> bytes = page->bytes();
     chunk.insert(chunk.end(), bytes.begin(), bytes.end());
@@ -153,7 +153,7 @@ Result<Pages> upload_pages(Device& device, const Asset& asset) {
   return out;
 }
 
-std::vector<GpuMeshUvs> mesh_uv_table(const Asset& asset) {
+std::vector<GpuMeshUvs> mesh_uv_table(const run::Asset& asset) {
   std::vector<GpuMeshUvs> out;
   for (const format::MeshRecord& mesh : asset.meshes()) {
     GpuMeshUvs m{};
@@ -199,8 +199,8 @@ MaskTables mask_tables(const AlphaMasks& alpha) {
 
 }  // namespace
 
-Result<GpuScene> upload_scene(Device& device, const Asset& asset, std::span<const format::InstanceRecord> instances,
-                              const AttributeBounds& bounds, ImageBudget* images) {
+Result<GpuScene> upload_scene(Device& device, const run::Asset& asset, std::span<const format::InstanceRecord> instances,
+                              const run::AttributeBounds& bounds, ImageBudget* images) {
   if (instances.empty()) instances = asset.instances();
   GpuScene out;
   out.instance_count = static_cast<std::uint32_t>(instances.size());
@@ -298,4 +298,4 @@ Result<GpuScene> upload_scene(Device& device, const Asset& asset, std::span<cons
   return out;
 }
 
-}  // namespace meshlode::gpu
+}  // namespace meshlode::draw

@@ -16,7 +16,7 @@
 #include "draw/textures/alpha_mask.h"
 #include "draw/textures/texture_set.h"
 
-namespace meshlode::gpu {
+namespace meshlode::draw {
 
 struct GpuScene {
   Buffer meshes, instances, nodes, groups, clusters, materials, pages, roots;
@@ -42,12 +42,12 @@ struct GpuScene {
 /// `bounds`: a group that deviates by more never passes, as in select_flat(). `images`: what decoded masks may take; one of
 /// kDefaultMaxDecoded where it is null.
 /// Errors: kInvalid for a broken page; kUnsupported where the device has no room or a limit is passed.
-[[nodiscard]] Result<GpuScene> upload_scene(Device& device, const Asset& asset,
+[[nodiscard]] Result<GpuScene> upload_scene(Device& device, const run::Asset& asset,
                                             std::span<const format::InstanceRecord> instances = {},
-                                            const AttributeBounds& bounds = {}, ImageBudget* images = nullptr);
+                                            const run::AttributeBounds& bounds = {}, ImageBudget* images = nullptr);
 
 /// Textures for colours, which a visibility buffer does not need: before Renderer::make(), where colours are wanted.
 /// Errors: kUnsupported where the device has no room.
 [[nodiscard]] Status upload_textures(Device& device, const TextureSet& textures, GpuScene& scene);
 
-}  // namespace meshlode::gpu
+}  // namespace meshlode::draw

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-namespace meshlode::gpu {
+namespace meshlode::draw {
 
 namespace {
 
@@ -75,4 +75,4 @@ std::string describe_plan(const PassPlan& plan) {
   return out;
 }
 
-}  // namespace meshlode::gpu
+}  // namespace meshlode::draw

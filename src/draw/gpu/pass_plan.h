@@ -8,7 +8,7 @@
 #include "draw/gpu/renderer.h"
 #include "draw/gpu/gpu_scene.h"
 
-namespace meshlode::gpu {
+namespace meshlode::draw {
 
 struct PassDecision {
   std::string pass, reason;
@@ -29,4 +29,4 @@ struct PassPlan {
 
 [[nodiscard]] std::string describe_plan(const PassPlan& plan);
 
-}  // namespace meshlode::gpu
+}  // namespace meshlode::draw

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-namespace meshlode::gpu {
+namespace meshlode::draw {
 
 struct Push {
   std::uint64_t frame = 0;
@@ -14,4 +14,4 @@ struct Push {
 constexpr std::uint32_t kGroupSize = 64;
 constexpr std::uint32_t kGroupRow = 32768;
 
-}  // namespace meshlode::gpu
+}  // namespace meshlode::draw

@@ -8,7 +8,7 @@
 #include "draw/gpu/renderer.h"
 #include "draw/gpu/shaders.h"
 
-namespace meshlode::gpu {
+namespace meshlode::draw {
 
 Result<GpuCounters> Renderer::read_counters() {
   GpuCounters out{};
@@ -53,10 +53,10 @@ Result<std::vector<Renderer::Item>> Renderer::read_items() {
   return out;
 }
 
-Result<std::vector<ClusterInstance>> Renderer::read_cut() {
+Result<std::vector<run::ClusterInstance>> Renderer::read_cut() {
   const auto items = read_items();
   if (!items) return items.error();
-  std::vector<ClusterInstance> out;
+  std::vector<run::ClusterInstance> out;
   for (const Item& item : *items) out.push_back(item.key);
   return out;
 }
@@ -152,4 +152,4 @@ Result<Renderer::Resolved> Renderer::resolve(std::uint32_t view, std::uint32_t l
   return out;
 }
 
-}  // namespace meshlode::gpu
+}  // namespace meshlode::draw

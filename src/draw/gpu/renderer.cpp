@@ -10,7 +10,7 @@
 #include "draw/gpu/push.h"
 #include "draw/gpu/shaders.h"
 
-namespace meshlode::gpu {
+namespace meshlode::draw {
 
 namespace {
 
@@ -344,7 +344,7 @@ Status Renderer::clear_lists() {
   return Ok{};
 }
 
-Result<FrameReport> Renderer::draw(const Camera& camera, double pixel_error, double scene_depth) {
+Result<FrameReport> Renderer::draw(const run::Camera& camera, double pixel_error, double scene_depth) {
   const auto gpu_camera = make_gpu_camera(camera, pixel_error, scene_depth);
   if (!gpu_camera) return gpu_camera.error();
   frame_.last = has_last_ ? frame_.camera : *gpu_camera;
@@ -386,4 +386,4 @@ std::uint64_t Renderer::list_bytes() const {
   return bytes;
 }
 
-}  // namespace meshlode::gpu
+}  // namespace meshlode::draw

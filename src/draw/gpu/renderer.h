@@ -16,7 +16,7 @@
 #include "draw/raster/raster.h"
 #include "run/select/select.h"
 
-namespace meshlode::gpu {
+namespace meshlode::draw {
 
 /// How clusters that are wide on the screen, or cross the near plane, are drawn.
 enum class HardwarePath : std::uint8_t {
@@ -69,10 +69,10 @@ class Renderer {
   [[nodiscard]] Status resize(std::uint32_t width, std::uint32_t height);
 
   /// One frame. `scene_depth` as in make_gpu_camera(). An overflow is reported, not an error.
-  [[nodiscard]] Result<FrameReport> draw(const Camera& camera, double pixel_error, double scene_depth);
+  [[nodiscard]] Result<FrameReport> draw(const run::Camera& camera, double pixel_error, double scene_depth);
 
   /// What the last frame drew, ascending.
-  [[nodiscard]] Result<std::vector<ClusterInstance>> read_cut();
+  [[nodiscard]] Result<std::vector<run::ClusterInstance>> read_cut();
   /// Draws what the last frame drew again, with items in ascending order, so that equal depths resolve as on the CPU;
   /// then the picture's items are indices into read_cut().
   [[nodiscard]] Status redraw_in_order();
@@ -109,7 +109,7 @@ class Renderer {
   [[nodiscard]] bool has_far_raster() const;
   [[nodiscard]] Result<GpuCounters> read_counters();
   struct Item {
-    ClusterInstance key;
+    run::ClusterInstance key;
     std::uint32_t slot = 0;  ///< and its marks
     std::uint32_t place = 0;  ///< in the list, which is what pixels name
   };
@@ -128,4 +128,4 @@ class Renderer {
   bool has_last_ = false;
 };
 
-}  // namespace meshlode::gpu
+}  // namespace meshlode::draw

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "draw/gpu/shaders.h"
 
-namespace meshlode::gpu::shaders {
+namespace meshlode::draw::shaders {
 
 namespace {
 
@@ -147,4 +147,4 @@ std::span<const std::uint32_t> hardware_mesh_mask_frag() {
   return kHardwareMeshMaskFrag;
 }
 
-}  // namespace meshlode::gpu::shaders
+}  // namespace meshlode::draw::shaders

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-namespace meshlode::gpu::shaders {
+namespace meshlode::draw::shaders {
 
 [[nodiscard]] std::span<const std::uint32_t> instances();
 [[nodiscard]] std::span<const std::uint32_t> traverse();
@@ -32,4 +32,4 @@ namespace meshlode::gpu::shaders {
 [[nodiscard]] std::span<const std::uint32_t> hardware_mask_frag();
 [[nodiscard]] std::span<const std::uint32_t> hardware_mesh_mask_frag();
 
-}  // namespace meshlode::gpu::shaders
+}  // namespace meshlode::draw::shaders

@@ -5,7 +5,7 @@
 #include "draw/gpu/gpu_scene.h"
 #include "draw/gpu/shaders/frame.h"
 
-namespace meshlode::gpu {
+namespace meshlode::draw {
 
 namespace {
 
@@ -77,4 +77,4 @@ Status upload_textures(Device& device, const TextureSet& textures, GpuScene& sce
   return Ok{};
 }
 
-}  // namespace meshlode::gpu
+}  // namespace meshlode::draw

@@ -6,7 +6,7 @@
 
 #include "draw/textures/texture_image.h"
 
-namespace meshlode::raster {
+namespace meshlode::draw {
 
 namespace {
 
@@ -48,7 +48,7 @@ std::int64_t floor_quotient(double value, double divisor) {
 }
 
 std::optional<MaskedTriangle> find_mask(const AlphaMasks& masks, const format::MeshRecord& mesh,
-                                        const DecodedCluster& cluster, std::uint32_t triangle,
+                                        const run::DecodedCluster& cluster, std::uint32_t triangle,
                                         const GridToClip& to_clip) {
   if (masks.is_empty()) return std::nullopt;
   const std::uint32_t index = masks.of_material[cluster.triangle_material[triangle]];
@@ -99,4 +99,4 @@ bool passes_alpha(const MaskedTriangle& t, double px, double py) {
   return t.image->texels[y * t.image->width + x] * vertex_alpha >= t.mask->threshold;
 }
 
-}  // namespace meshlode::raster
+}  // namespace meshlode::draw

@@ -16,11 +16,11 @@
 #include "draw/raster/projection.h"
 #include "draw/textures/alpha_mask.h"
 
-namespace meshlode::raster {
+namespace meshlode::draw {
 
 /// Nothing where the triangle's material is not masked. `masks` has to outlive what is returned.
 [[nodiscard]] std::optional<MaskedTriangle> find_mask(const AlphaMasks& masks, const format::MeshRecord& mesh,
-                                                      const DecodedCluster& cluster, std::uint32_t triangle,
+                                                      const run::DecodedCluster& cluster, std::uint32_t triangle,
                                                       const GridToClip& to_clip);
 
 /// `px`, `py`: from the picture's middle, a pixel's centre.
@@ -30,4 +30,4 @@ namespace meshlode::raster {
 /// \pre divisor > 0 and finite
 [[nodiscard]] std::int64_t floor_quotient(double value, double divisor);
 
-}  // namespace meshlode::raster
+}  // namespace meshlode::draw

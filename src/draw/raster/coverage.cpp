@@ -8,7 +8,7 @@
 #include "base/parallel.h"
 #include "draw/raster/alpha_cutoff.h"
 
-namespace meshlode::raster {
+namespace meshlode::draw {
 
 namespace {
 
@@ -206,4 +206,4 @@ void draw_soup(const ScreenSoup& soup, VisibilityBuffer& buffer) {
   });
 }
 
-}  // namespace meshlode::raster
+}  // namespace meshlode::draw

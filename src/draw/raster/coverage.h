@@ -12,7 +12,7 @@
 #include "draw/raster/raster.h"
 #include "draw/raster/screen.h"
 
-namespace meshlode::raster {
+namespace meshlode::draw {
 
 /// Draws a soup into the buffer. The result depends neither on the order of the triangles nor on the threads: the pixel
 /// keeps the largest depth, and of equal depths the lowest key.
@@ -23,4 +23,4 @@ void draw_soup(const ScreenSoup& soup, VisibilityBuffer& buffer);
 [[nodiscard]] std::uint32_t interpolate_depth(const ScreenTriangle& triangle, const std::int64_t (&weights)[3],
                                               std::int64_t area);
 
-}  // namespace meshlode::raster
+}  // namespace meshlode::draw

@@ -3,17 +3,17 @@
 
 #include "base/parallel.h"
 
-namespace meshlode::raster {
+namespace meshlode::draw {
 
 namespace {
 
-std::uint32_t page_of(const Asset& asset, ClusterId cluster) {
+std::uint32_t page_of(const run::Asset& asset, ClusterId cluster) {
   return asset.groups()[asset.clusters()[cluster.value].coarser_group].page;
 }
 
 }  // namespace
 
-Result<CutPages> CutPages::load(const Asset& asset, std::span<const ClusterInstance> cut) {
+Result<CutPages> CutPages::load(const run::Asset& asset, std::span<const run::ClusterInstance> cut) {
   std::vector<std::uint8_t> is_needed(asset.pages().size(), 0);
   for (std::size_t i = 0; i < cut.size(); ++i) {
     const bool is_known =
@@ -29,13 +29,13 @@ Result<CutPages> CutPages::load(const Asset& asset, std::span<const ClusterInsta
   }
   std::uint64_t bytes = 0;
   for (std::size_t page = 0; page < is_needed.size(); ++page) bytes += is_needed[page] != 0 ? asset.pages()[page].bytes : 0;
-  if (const Status status = check_decoded_bytes(asset, bytes); !status) return status.error();
+  if (const Status status = run::check_decoded_bytes(asset, bytes); !status) return status.error();
   CutPages out;
   out.pages_.resize(asset.pages().size());
   std::vector<std::optional<Error>> errors(asset.pages().size());
   parallel_for_each_index(asset.pages().size(), 1, [&](std::size_t page) {
     if (is_needed[page] == 0) return;
-    Result<PageBytes> loaded = load_page(asset, PageId(page));
+    Result<run::PageBytes> loaded = run::load_page(asset, PageId(page));
     if (loaded) {
       out.pages_[page].emplace(std::move(*loaded));
     } else {
@@ -48,8 +48,8 @@ Result<CutPages> CutPages::load(const Asset& asset, std::span<const ClusterInsta
   return out;
 }
 
-void CutPages::decode(const Asset& asset, ClusterId cluster, DecodedCluster& out) const {
-  decode_cluster(asset, *pages_[page_of(asset, cluster)], cluster, out);
+void CutPages::decode(const run::Asset& asset, ClusterId cluster, run::DecodedCluster& out) const {
+  run::decode_cluster(asset, *pages_[page_of(asset, cluster)], cluster, out);
 }
 
-}  // namespace meshlode::raster
+}  // namespace meshlode::draw

@@ -9,19 +9,19 @@
 #include "run/decode/decode.h"
 #include "run/select/select.h"
 
-namespace meshlode::raster {
+namespace meshlode::draw {
 
 class CutPages {
  public:
   /// Errors: kUsage for an id that the asset does not have, or a cluster of another mesh than the instance's; kInvalid
   /// for a broken page.
-  [[nodiscard]] static Result<CutPages> load(const Asset& asset, std::span<const ClusterInstance> cut);
+  [[nodiscard]] static Result<CutPages> load(const run::Asset& asset, std::span<const run::ClusterInstance> cut);
 
   /// \pre `cluster` is of the cut
-  void decode(const Asset& asset, ClusterId cluster, DecodedCluster& out) const;
+  void decode(const run::Asset& asset, ClusterId cluster, run::DecodedCluster& out) const;
 
  private:
-  std::vector<std::optional<PageBytes>> pages_;
+  std::vector<std::optional<run::PageBytes>> pages_;
 };
 
-}  // namespace meshlode::raster
+}  // namespace meshlode::draw

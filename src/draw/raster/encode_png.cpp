@@ -11,7 +11,7 @@
 
 #include "draw/raster/raster.h"
 
-namespace meshlode {
+namespace meshlode::draw {
 
 std::vector<std::uint8_t> encode_png(const Image& image) {
   const std::size_t pixels = std::size_t{image.width} * image.height;
@@ -33,4 +33,4 @@ std::vector<std::uint8_t> encode_png(const Image& image) {
   return out;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::draw

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace meshlode::raster {
+namespace meshlode::draw {
 
 namespace {
 
@@ -82,4 +82,4 @@ std::uint8_t to_display(double linear) {
   return static_cast<std::uint8_t>(std::floor(std::sqrt(std::clamp(linear, 0.0, 1.0)) * 255.0 + 0.5));
 }
 
-}  // namespace meshlode::raster
+}  // namespace meshlode::draw

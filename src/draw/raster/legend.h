@@ -7,7 +7,7 @@
 
 #include "draw/raster/raster.h"
 
-namespace meshlode::raster {
+namespace meshlode::draw {
 
 using Rgb = std::array<double, 3>;  ///< linear, 0 … 1
 
@@ -21,4 +21,4 @@ void draw_level_legend(Image& image, std::uint32_t level_count);
 /// One linear channel as a byte, with a square root for the display's curve (gamma 2, no math library).
 [[nodiscard]] std::uint8_t to_display(double linear);
 
-}  // namespace meshlode::raster
+}  // namespace meshlode::draw

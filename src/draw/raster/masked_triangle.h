@@ -5,12 +5,12 @@
 #include <array>
 #include <cstdint>
 
-namespace meshlode {
+namespace meshlode::draw {
 struct AlphaImage;
 struct AlphaMask;
-}  // namespace meshlode
+}  // namespace meshlode::draw
 
-namespace meshlode::raster {
+namespace meshlode::draw {
 
 struct MaskedTriangle {
   std::array<double, 3> x{}, y{}, w{};  ///< clip coordinates of the corners, in the order of the cluster
@@ -21,4 +21,4 @@ struct MaskedTriangle {
   const AlphaImage* image = nullptr;  ///< null: every texel is opaque
 };
 
-}  // namespace meshlode::raster
+}  // namespace meshlode::draw

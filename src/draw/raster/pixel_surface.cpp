@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace meshlode::raster {
+namespace meshlode::draw {
 
 namespace {
 
@@ -96,4 +96,4 @@ Vec3d PixelTextures::bend(std::uint32_t material, const std::array<std::uint8_t,
   return unit(bent).value_or(normal);
 }
 
-}  // namespace meshlode::raster
+}  // namespace meshlode::draw

@@ -9,7 +9,7 @@
 #include "draw/raster/screen.h"
 #include "draw/textures/texture_set.h"
 
-namespace meshlode::raster {
+namespace meshlode::draw {
 
 struct PixelWeights {
   Vec3d at{1.0 / 3.0};           ///< of the corners, perspective-correct, not negative, of sum 1
@@ -25,7 +25,7 @@ struct PixelWeights {
 class PixelTextures {
  public:
   /// Nothing is sampled where the set or the mesh has no such texture or UVs. All have to outlive this.
-  PixelTextures(const TextureSet& textures, const format::MeshRecord& mesh, const ClusterAttributes& attributes)
+  PixelTextures(const TextureSet& textures, const format::MeshRecord& mesh, const run::ClusterAttributes& attributes)
       : textures_(textures), mesh_(mesh), attributes_(attributes) {}
 
   /// Times the base colour's texel.
@@ -44,7 +44,7 @@ class PixelTextures {
 
   const TextureSet& textures_;
   const format::MeshRecord& mesh_;
-  const ClusterAttributes& attributes_;
+  const run::ClusterAttributes& attributes_;
 };
 
-}  // namespace meshlode::raster
+}  // namespace meshlode::draw

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace meshlode::raster {
+namespace meshlode::draw {
 
 namespace {
 
@@ -49,7 +49,7 @@ Affine grid_to_world(const format::MeshRecord& mesh, const format::InstanceRecor
 
 }  // namespace
 
-Result<Projection> make_projection(const Camera& camera) {
+Result<Projection> make_projection(const run::Camera& camera) {
   if (!is_bounded(camera.eye)) return camera_error("eye", "not a finite point");
   if (!is_bounded(camera.target)) return camera_error("target", "not a finite point");
   if (camera.eye == camera.target) return camera_error("target", "the same point as the eye");
@@ -82,7 +82,7 @@ Result<Projection> make_projection(const Camera& camera) {
   return out;
 }
 
-double scene_depth(const Asset& asset, const Projection& projection) {
+double scene_depth(const run::Asset& asset, const Projection& projection) {
   double depth = 2.0 * projection.near_distance;
   for (const format::InstanceRecord& instance : asset.instances()) {
     if ((instance.flags & format::kInstanceSingular) != 0) continue;
@@ -131,4 +131,4 @@ Vec3d direction_to_viewer(const Projection& projection, double x, double y) {
   return projection.up * y - projection.right * x - projection.forward * projection.pixels_per_unit;
 }
 
-}  // namespace meshlode::raster
+}  // namespace meshlode::draw

@@ -12,7 +12,7 @@
 #include "draw/raster/screen.h"
 #include "run/select/select.h"
 
-namespace meshlode::raster {
+namespace meshlode::draw {
 
 struct Projection {
   Vec3d eye{0.0}, right{1.0, 0.0, 0.0}, up{0.0, 1.0, 0.0}, forward{0.0, 0.0, -1.0};  ///< orthonormal
@@ -24,10 +24,10 @@ struct Projection {
 };
 
 /// Errors: kUsage, naming the field of the camera. `far_distance` has to be chosen by the caller (see scene_depth()).
-[[nodiscard]] Result<Projection> make_projection(const Camera& camera);
+[[nodiscard]] Result<Projection> make_projection(const run::Camera& camera);
 
 /// Largest distance along the view of any instance's bounds; at least the near distance and something more.
-[[nodiscard]] double scene_depth(const Asset& asset, const Projection& projection);
+[[nodiscard]] double scene_depth(const run::Asset& asset, const Projection& projection);
 
 struct ClipRow {
   double x = 0.0, y = 0.0, z = 0.0, constant = 0.0;
@@ -48,4 +48,4 @@ struct GridToClip {
 /// Direction from a pixel's surface point to the viewer, not normalized. `x`, `y`: pixels from the picture's middle.
 [[nodiscard]] Vec3d direction_to_viewer(const Projection& projection, double x, double y);
 
-}  // namespace meshlode::raster
+}  // namespace meshlode::draw

@@ -23,7 +23,7 @@
 #include "draw/textures/alpha_mask.h"
 #include "draw/textures/texture_set.h"
 
-namespace meshlode {
+namespace meshlode::draw {
 
 enum class View : std::uint8_t {
   kShaded,     ///< base colour, normals, one directional light from the camera's upper left, ambient
@@ -58,19 +58,19 @@ struct VisibilityBuffer {
 /// `masks`: load_alpha_masks() of the asset; without them masked materials are drawn as opaque.
 /// Errors: kUsage for a camera that is not finite, has no direction, or is out of range (size 1 … 16384, near distance
 /// 1e-100 … 1e100) and for ids that the asset does not have; kInvalid for a broken page.
-[[nodiscard]] Result<VisibilityBuffer> draw_cut(const Asset& asset, std::span<const ClusterInstance> cut,
-                                                const Camera& camera, const AlphaMasks& masks = {});
+[[nodiscard]] Result<VisibilityBuffer> draw_cut(const run::Asset& asset, std::span<const run::ClusterInstance> cut,
+                                                const run::Camera& camera, const AlphaMasks& masks = {});
 
 /// Colours what draw_cut() found. `textures`: load_textures() of the asset, for kShaded; without, base colours are factors
 /// and vertex colours alone. \pre `visibility` was drawn from the same asset, cut and camera
-[[nodiscard]] Result<Image> shade_view(const Asset& asset, std::span<const ClusterInstance> cut, const Camera& camera,
+[[nodiscard]] Result<Image> shade_view(const run::Asset& asset, std::span<const run::ClusterInstance> cut, const run::Camera& camera,
                                        const VisibilityBuffer& visibility, View view, const TextureSet& textures = {});
 
 /// draw_cut() and shade_view().
-[[nodiscard]] Result<Image> render_cut(const Asset& asset, std::span<const ClusterInstance> cut, const Camera& camera,
+[[nodiscard]] Result<Image> render_cut(const run::Asset& asset, std::span<const run::ClusterInstance> cut, const run::Camera& camera,
                                        View view, const AlphaMasks& masks = {});
 
 /// The same bytes for the same image everywhere; without alpha where all of it is opaque.
 [[nodiscard]] std::vector<std::uint8_t> encode_png(const Image& image);
 
-}  // namespace meshlode
+}  // namespace meshlode::draw

@@ -6,7 +6,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace meshlode::raster {
+namespace meshlode::draw {
 
 namespace {
 
@@ -163,4 +163,4 @@ void add_triangle(const std::array<ClipVertex, 3>& v, Culling culling, TriangleK
   add_clipped(polygon, culling, key, size, out);
 }
 
-}  // namespace meshlode::raster
+}  // namespace meshlode::draw

@@ -14,7 +14,7 @@
 
 #include "draw/raster/masked_triangle.h"
 
-namespace meshlode::raster {
+namespace meshlode::draw {
 
 constexpr int kSubpixelBits = 8;
 constexpr std::int32_t kSubpixels = 1 << kSubpixelBits;
@@ -94,4 +94,4 @@ struct PixelRange {
 /// Twice the signed area; positive = clockwise on the screen.
 [[nodiscard]] std::int64_t doubled_area(const ScreenVertex& a, const ScreenVertex& b, const ScreenVertex& c);
 
-}  // namespace meshlode::raster
+}  // namespace meshlode::draw

@@ -10,11 +10,11 @@
 #include "draw/raster/pixel_surface.h"
 #include "draw/raster/projection.h"
 
-namespace meshlode {
+namespace meshlode::draw {
 
 namespace {
 
-using namespace raster;
+
 
 constexpr Rgb kBackground{0.80, 0.83, 0.87};
 
@@ -63,7 +63,7 @@ struct NormalTransform {
 };
 
 /// How a triangle's point changes along `change` of its weights, world, in units of the grid's step.
-Vec3d surface_change(const format::InstanceRecord& instance, const DecodedCluster& cluster,
+Vec3d surface_change(const format::InstanceRecord& instance, const run::DecodedCluster& cluster,
                      const std::array<std::uint8_t, 3>& triangle, const Vec3d& change) {
   const Vec3d a(cluster.position(triangle[0]));
   const Vec3d moved = (Vec3d(cluster.position(triangle[1])) - a) * change[1] +
@@ -73,7 +73,7 @@ Vec3d surface_change(const format::InstanceRecord& instance, const DecodedCluste
           m[8] * moved.x + m[9] * moved.y + m[10] * moved.z};
 }
 
-Vec3d geometric_normal(const DecodedCluster& cluster, const std::array<std::uint8_t, 3>& triangle) {
+Vec3d geometric_normal(const run::DecodedCluster& cluster, const std::array<std::uint8_t, 3>& triangle) {
   const Vec3d a(cluster.position(triangle[0]));
   return glm::cross(Vec3d(cluster.position(triangle[1])) - a, Vec3d(cluster.position(triangle[2])) - a);
 }
@@ -86,7 +86,7 @@ double lighting(const Projection& projection, const Vec3d& normal) {
 }
 
 struct ShadeContext {
-  const Asset& asset;
+  const run::Asset& asset;
   const Projection& projection;
   const VisibilityBuffer& visibility;
   View view;
@@ -94,15 +94,15 @@ struct ShadeContext {
   const TextureSet& textures;
 };
 
-void shade_item(const ShadeContext& context, const CutPages& pages, const ClusterInstance& entry,
+void shade_item(const ShadeContext& context, const CutPages& pages, const run::ClusterInstance& entry,
                 std::span<const std::uint32_t> pixels, Image& image) {
-  const Asset& asset = context.asset;
+  const run::Asset& asset = context.asset;
   const format::InstanceRecord& instance = asset.instances()[entry.instance.value];
   const format::MeshRecord& mesh = asset.meshes()[instance.mesh];
-  DecodedCluster cluster;
+  run::DecodedCluster cluster;
   pages.decode(asset, entry.cluster, cluster);
-  ClusterAttributes attributes;
-  if (context.view == View::kShaded) decode_attributes(mesh, cluster, attributes);
+  run::ClusterAttributes attributes;
+  if (context.view == View::kShaded) run::decode_attributes(mesh, cluster, attributes);
   const GridToClip to_clip = make_grid_to_clip(context.projection, mesh, instance);
   const NormalTransform to_world(instance);
   const PixelTextures textures(context.textures, mesh, attributes);
@@ -152,7 +152,7 @@ void shade_item(const ShadeContext& context, const CutPages& pages, const Cluste
 
 }  // namespace
 
-Result<Image> shade_view(const Asset& asset, std::span<const ClusterInstance> cut, const Camera& camera,
+Result<Image> shade_view(const run::Asset& asset, std::span<const run::ClusterInstance> cut, const run::Camera& camera,
                          const VisibilityBuffer& visibility, View view, const TextureSet& textures) {
   const Result<Projection> projection = make_projection(camera);
   if (!projection) return projection.error();
@@ -180,4 +180,4 @@ Result<Image> shade_view(const Asset& asset, std::span<const ClusterInstance> cu
   return image;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::draw

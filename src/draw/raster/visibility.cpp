@@ -9,19 +9,19 @@
 #include "draw/raster/cut_pages.h"
 #include "draw/raster/projection.h"
 
-namespace meshlode {
+namespace meshlode::draw {
 
 namespace {
 
-using namespace raster;
+
 
 constexpr std::size_t kBatchClusters = 2048;  ///< about 12 MB of screen triangles
 
-void project_cluster(const Asset& asset, const AlphaMasks& masks, const Projection& projection, const CutPages& pages,
-                     const ClusterInstance& entry, std::uint32_t item, ScreenSoup& out) {
+void project_cluster(const run::Asset& asset, const AlphaMasks& masks, const Projection& projection, const CutPages& pages,
+                     const run::ClusterInstance& entry, std::uint32_t item, ScreenSoup& out) {
   const format::InstanceRecord& instance = asset.instances()[entry.instance.value];
   if ((instance.flags & format::kInstanceSingular) != 0) return;
-  DecodedCluster cluster;
+  run::DecodedCluster cluster;
   pages.decode(asset, entry.cluster, cluster);
   const format::MeshRecord& mesh = asset.meshes()[instance.mesh];
   const GridToClip to_clip = make_grid_to_clip(projection, mesh, instance);
@@ -79,7 +79,7 @@ VisibilityBuffer make_visibility_buffer(std::uint32_t width, std::uint32_t heigh
   return buffer;
 }
 
-Result<VisibilityBuffer> draw_cut(const Asset& asset, std::span<const ClusterInstance> cut, const Camera& camera,
+Result<VisibilityBuffer> draw_cut(const run::Asset& asset, std::span<const run::ClusterInstance> cut, const run::Camera& camera,
                                   const AlphaMasks& masks) {
   Result<Projection> projection = make_projection(camera);
   if (!projection) return projection.error();
@@ -102,11 +102,11 @@ Result<VisibilityBuffer> draw_cut(const Asset& asset, std::span<const ClusterIns
   return buffer;
 }
 
-Result<Image> render_cut(const Asset& asset, std::span<const ClusterInstance> cut, const Camera& camera, View view,
+Result<Image> render_cut(const run::Asset& asset, std::span<const run::ClusterInstance> cut, const run::Camera& camera, View view,
                          const AlphaMasks& masks) {
   const Result<VisibilityBuffer> visibility = draw_cut(asset, cut, camera, masks);
   if (!visibility) return visibility.error();
   return shade_view(asset, cut, camera, *visibility, view);
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::draw

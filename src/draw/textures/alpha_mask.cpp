@@ -6,12 +6,12 @@
 
 #include "draw/textures/image.h"
 
-namespace meshlode {
+namespace meshlode::draw {
 
 namespace {
 
 /// Alpha of a blob's image; empty texels where all are opaque, a warning where there is none.
-AlphaImage load_image(const Asset& asset, std::uint32_t blob, const std::string& material, ImageBudget& budget,
+AlphaImage load_image(const run::Asset& asset, std::uint32_t blob, const std::string& material, ImageBudget& budget,
                       std::vector<std::string>& warnings) {
   AlphaImage out;
   if (blob >= asset.blobs().size()) {
@@ -43,7 +43,7 @@ AlphaImage load_image(const Asset& asset, std::uint32_t blob, const std::string&
   return out;
 }
 
-std::string name_of(const Asset& asset, std::size_t material) {
+std::string name_of(const run::Asset& asset, std::size_t material) {
   const std::string_view name = asset.string(asset.materials()[material].name);
   return name.empty() ? std::to_string(material) : "'" + std::string(name) + "'";
 }
@@ -66,12 +66,12 @@ std::uint32_t mask_threshold(float factor, float cutoff) {
   return std::min(low, kMaskThresholdNever);
 }
 
-AlphaMasks load_alpha_masks(const Asset& asset) {
+AlphaMasks load_alpha_masks(const run::Asset& asset) {
   ImageBudget budget;
   return load_alpha_masks(asset, budget);
 }
 
-AlphaMasks load_alpha_masks(const Asset& asset, ImageBudget& budget) {
+AlphaMasks load_alpha_masks(const run::Asset& asset, ImageBudget& budget) {
   AlphaMasks out;
   const auto is_masked = [](const format::MaterialRecord& m) { return m.alpha_mode == format::AlphaMode::kMask; };
   if (std::none_of(asset.materials().begin(), asset.materials().end(), is_masked)) return out;
@@ -104,4 +104,4 @@ AlphaMasks load_alpha_masks(const Asset& asset, ImageBudget& budget) {
   return out;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::draw

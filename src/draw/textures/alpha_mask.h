@@ -16,7 +16,7 @@
 #include "draw/textures/image_budget.h"
 #include "draw/textures/texture_use.h"
 
-namespace meshlode {
+namespace meshlode::draw {
 
 /// More than a · c can be: nothing is drawn.
 constexpr std::uint32_t kMaskThresholdNever = 255u * 255u + 1u;
@@ -48,11 +48,11 @@ struct AlphaMasks {
 
 /// Only images that a masked material samples are decoded, one after the other; of each its alpha is kept. One that the
 /// budget has no room for counts as opaque. A mask that every sample passes (cutoff 0) is none.
-[[nodiscard]] AlphaMasks load_alpha_masks(const Asset& asset, ImageBudget& budget);
-[[nodiscard]] AlphaMasks load_alpha_masks(const Asset& asset);  ///< with a budget of kDefaultMaxDecoded
+[[nodiscard]] AlphaMasks load_alpha_masks(const run::Asset& asset, ImageBudget& budget);
+[[nodiscard]] AlphaMasks load_alpha_masks(const run::Asset& asset);  ///< with a budget of kDefaultMaxDecoded
 
 /// The least product a · c, 0 … 65025, with product / 65025 · factor >= cutoff in floats; kMaskThresholdNever where there is
 /// none.
 [[nodiscard]] std::uint32_t mask_threshold(float factor, float cutoff);
 
-}  // namespace meshlode
+}  // namespace meshlode::draw

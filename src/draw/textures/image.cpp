@@ -7,7 +7,7 @@
 
 #include "draw/textures/image_readers.h"
 
-namespace meshlode {
+namespace meshlode::draw {
 
 namespace image {
 
@@ -33,8 +33,8 @@ Result<ImageHeader> read_any(std::span<const std::uint8_t> bytes, std::vector<st
   const auto begins_with = [&](std::span<const std::uint8_t> first) {
     return bytes.size() >= first.size() && std::equal(first.begin(), first.end(), bytes.begin());
   };
-  if (begins_with(kPng)) return image::read_png(bytes, texels);
-  if (begins_with(kJpeg)) return image::read_jpeg(bytes, texels);
+  if (begins_with(kPng)) return read_png(bytes, texels);
+  if (begins_with(kJpeg)) return read_jpeg(bytes, texels);
   return Error{ErrorCode::kUnsupported, "image", "neither PNG nor JPEG"};
 }
 
@@ -56,4 +56,4 @@ Result<DecodedImage> decode_image(std::span<const std::uint8_t> bytes, std::uint
   return out;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::draw

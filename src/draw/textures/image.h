@@ -8,7 +8,7 @@
 
 #include <meshlode/result.h>
 
-namespace meshlode {
+namespace meshlode::draw {
 
 constexpr std::uint32_t kMaxTextureSide = 16384;
 
@@ -42,4 +42,4 @@ struct ImageHeader {
 /// `capacity`: texels that there is room for, where that is more, so that what is appended need not move them.
 [[nodiscard]] Result<DecodedImage> decode_image(std::span<const std::uint8_t> bytes, std::uint64_t capacity = 0);
 
-}  // namespace meshlode
+}  // namespace meshlode::draw

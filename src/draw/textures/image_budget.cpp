@@ -3,7 +3,7 @@
 
 #include "base/byte_size.h"
 
-namespace meshlode {
+namespace meshlode::draw {
 
 std::string ImageBudget::refusal(std::string_view image, const ImageHeader& header, std::uint64_t bytes) const {
   return std::string(image) + ": " + std::to_string(header.width) + " x " + std::to_string(header.height) +
@@ -11,9 +11,9 @@ std::string ImageBudget::refusal(std::string_view image, const ImageHeader& head
          byte_size_text(limit_) + " are left";
 }
 
-std::string image_name(const Asset& asset, std::uint32_t blob) {
+std::string image_name(const run::Asset& asset, std::uint32_t blob) {
   const std::string_view name = asset.string(asset.blobs()[blob].name);
   return name.empty() ? "image " + std::to_string(blob) : "image '" + std::string(name) + "'";
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::draw

@@ -10,11 +10,11 @@
 #include "run/read/asset.h"
 #include "run/read/limits.h"
 
-namespace meshlode {
+namespace meshlode::draw {
 
 class ImageBudget {
  public:
-  explicit ImageBudget(std::uint64_t limit_bytes = kDefaultMaxDecoded) : limit_(limit_bytes) {}
+  explicit ImageBudget(std::uint64_t limit_bytes = run::kDefaultMaxDecoded) : limit_(limit_bytes) {}
 
   [[nodiscard]] std::uint64_t limit() const { return limit_; }
   [[nodiscard]] std::uint64_t left() const { return limit_ - taken_; }
@@ -36,6 +36,6 @@ class ImageBudget {
 };
 
 /// "image 'texture.png'", or "image 3" by its number among the blobs where it has no name.
-[[nodiscard]] std::string image_name(const Asset& asset, std::uint32_t blob);
+[[nodiscard]] std::string image_name(const run::Asset& asset, std::uint32_t blob);
 
-}  // namespace meshlode
+}  // namespace meshlode::draw

@@ -4,7 +4,7 @@
 
 #include "draw/textures/image.h"
 
-namespace meshlode::image {
+namespace meshlode::draw {
 
 /// The head alone where `texels` is null, else all texels too: those of `texels` are replaced, its capacity is kept.
 [[nodiscard]] Result<ImageHeader> read_png(std::span<const std::uint8_t> bytes, std::vector<std::uint32_t>* texels);
@@ -13,4 +13,4 @@ namespace meshlode::image {
 /// Errors: kUnsupported for a side of more than kMaxTextureSide, kInvalid for one of 0.
 [[nodiscard]] Status check_image_size(std::uint64_t width, std::uint64_t height);
 
-}  // namespace meshlode::image
+}  // namespace meshlode::draw

@@ -12,7 +12,7 @@
 
 #include "draw/textures/image_readers.h"
 
-namespace meshlode::image {
+namespace meshlode::draw {
 
 namespace {
 
@@ -114,4 +114,4 @@ Result<ImageHeader> read_jpeg(std::span<const std::uint8_t> bytes, std::vector<s
   return header;
 }
 
-}  // namespace meshlode::image
+}  // namespace meshlode::draw

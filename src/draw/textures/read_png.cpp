@@ -10,7 +10,7 @@
 
 #include "draw/textures/image_readers.h"
 
-namespace meshlode::image {
+namespace meshlode::draw {
 
 namespace {
 
@@ -100,4 +100,4 @@ Result<ImageHeader> read_png(std::span<const std::uint8_t> bytes, std::vector<st
   return header;
 }
 
-}  // namespace meshlode::image
+}  // namespace meshlode::draw

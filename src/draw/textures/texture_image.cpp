@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-namespace meshlode {
+namespace meshlode::draw {
 
 namespace {
 
@@ -176,4 +176,4 @@ std::uint32_t wrap_texel(std::int64_t i, std::uint32_t count, Wrap wrap) {
   return static_cast<std::uint32_t>(rest < n ? rest : period - 1 - rest);
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::draw

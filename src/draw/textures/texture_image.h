@@ -11,7 +11,7 @@
 #include "draw/textures/image.h"
 #include "draw/textures/texture_use.h"
 
-namespace meshlode {
+namespace meshlode::draw {
 
 struct TextureImage {
   std::uint32_t width = 0, height = 0;
@@ -47,4 +47,4 @@ struct TextureFootprint {
 /// Texel `i` of an endless row in one of `count`. \pre count > 0
 [[nodiscard]] std::uint32_t wrap_texel(std::int64_t i, std::uint32_t count, Wrap wrap);
 
-}  // namespace meshlode
+}  // namespace meshlode::draw

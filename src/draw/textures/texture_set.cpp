@@ -8,7 +8,7 @@
 #include "base/parallel.h"
 #include "draw/textures/image.h"
 
-namespace meshlode {
+namespace meshlode::draw {
 
 namespace {
 
@@ -22,7 +22,7 @@ struct Wanted {
 };
 
 /// Takes what the image will need, or says why it is not decoded.
-void reserve(const Asset& asset, ImageBudget& budget, std::uint64_t& texture_bytes, Wanted& wanted) {
+void reserve(const run::Asset& asset, ImageBudget& budget, std::uint64_t& texture_bytes, Wanted& wanted) {
   const auto refuse = [&](const std::string& why) { wanted.warning = why + ", not drawn"; };
   const std::string name = image_name(asset, wanted.blob);
   const auto header = read_image_header(asset.blob_bytes(asset.blobs()[wanted.blob]));
@@ -36,7 +36,7 @@ void reserve(const Asset& asset, ImageBudget& budget, std::uint64_t& texture_byt
   wanted.decoder_bytes = header->decoder_bytes;
 }
 
-void load(const Asset& asset, Wanted& wanted) {
+void load(const run::Asset& asset, Wanted& wanted) {
   if (wanted.texels == 0) return;
   auto decoded = decode_image(asset.blob_bytes(asset.blobs()[wanted.blob]), wanted.texels);
   if (decoded) {
@@ -48,19 +48,19 @@ void load(const Asset& asset, Wanted& wanted) {
 
 }  // namespace
 
-bool has_textures(const Asset& asset) {
+bool has_textures(const run::Asset& asset) {
   const std::vector<MaterialTextures> materials = read_material_textures(asset);
   return std::any_of(materials.begin(), materials.end(), [](const MaterialTextures& m) {
     return (m.base_color && m.base_color->blob != format::kNone) || (m.normal && m.normal->blob != format::kNone);
   });
 }
 
-TextureSet load_textures(const Asset& asset) {
+TextureSet load_textures(const run::Asset& asset) {
   ImageBudget budget;
   return load_textures(asset, budget);
 }
 
-TextureSet load_textures(const Asset& asset, ImageBudget& budget) {
+TextureSet load_textures(const run::Asset& asset, ImageBudget& budget) {
   TextureSet out;
   const std::vector<MaterialTextures> materials = read_material_textures(asset);
   std::map<std::pair<std::uint32_t, bool>, std::uint32_t> index;  // of (blob, is sRGB)
@@ -106,4 +106,4 @@ TextureSet load_textures(const Asset& asset, ImageBudget& budget) {
   return out;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::draw

@@ -10,7 +10,7 @@
 #include "draw/textures/texture_image.h"
 #include "draw/textures/texture_use.h"
 
-namespace meshlode {
+namespace meshlode::draw {
 
 struct SampledTexture {
   TextureUse use;
@@ -33,10 +33,10 @@ struct TextureSet {
 /// Decodes each image once, in the order in which materials name them: one that the budget has no room for, its mip levels
 /// included, counts as not there. So do images beyond kMaxTextureBytes of texels, whatever the budget.
 constexpr std::uint64_t kMaxTextureBytes = std::uint64_t{8} << 30;
-[[nodiscard]] TextureSet load_textures(const Asset& asset, ImageBudget& budget);
-[[nodiscard]] TextureSet load_textures(const Asset& asset);  ///< with a budget of kDefaultMaxDecoded
+[[nodiscard]] TextureSet load_textures(const run::Asset& asset, ImageBudget& budget);
+[[nodiscard]] TextureSet load_textures(const run::Asset& asset);  ///< with a budget of kDefaultMaxDecoded
 
 /// Whether load_textures() would find anything to decode.
-[[nodiscard]] bool has_textures(const Asset& asset);
+[[nodiscard]] bool has_textures(const run::Asset& asset);
 
-}  // namespace meshlode
+}  // namespace meshlode::draw

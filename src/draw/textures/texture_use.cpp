@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace meshlode {
+namespace meshlode::draw {
 
 namespace {
 
@@ -68,7 +68,7 @@ void apply_transform(const Json& transform, TextureUse& use) {
   use.row_v = rows[1];
 }
 
-std::optional<TextureUse> read_use(const Asset& asset, const Json& document, const Json* info) {
+std::optional<TextureUse> read_use(const run::Asset& asset, const Json& document, const Json* info) {
   const std::uint64_t texture_index = index_in(info, "index", format::kNone);
   const Json* texture = element(document, "textures", texture_index);
   if (texture == nullptr) return std::nullopt;
@@ -91,7 +91,7 @@ std::optional<TextureUse> read_use(const Asset& asset, const Json& document, con
 
 }  // namespace
 
-std::vector<MaterialTextures> read_material_textures(const Asset& asset) {
+std::vector<MaterialTextures> read_material_textures(const run::Asset& asset) {
   std::vector<MaterialTextures> out(asset.materials().size());
   const std::string_view text = asset.scene_json();
   const Json document = Json::parse(text.begin(), text.end(), nullptr, false);
@@ -111,4 +111,4 @@ std::vector<MaterialTextures> read_material_textures(const Asset& asset) {
   return out;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::draw

@@ -10,7 +10,7 @@
 
 #include "run/read/asset.h"
 
-namespace meshlode {
+namespace meshlode::draw {
 
 /// Beyond 0 … 1. The values are the shaders' too.
 enum class Wrap : std::uint32_t { kRepeat = 0, kMirror = 1, kClamp = 2 };
@@ -33,6 +33,6 @@ struct MaterialTextures {
 
 /// One entry for each of Asset::materials(). Safe on any document: what is not as glTF has it counts as not there, and a
 /// transform out of range as none.
-[[nodiscard]] std::vector<MaterialTextures> read_material_textures(const Asset& asset);
+[[nodiscard]] std::vector<MaterialTextures> read_material_textures(const run::Asset& asset);
 
-}  // namespace meshlode
+}  // namespace meshlode::draw

@@ -5,9 +5,9 @@
 #include <charconv>
 #include <cmath>
 
-namespace meshlode::gpu {
+namespace meshlode::judge {
 
-WorldBox world_box(const Asset& asset) {
+WorldBox world_box(const run::Asset& asset) {
   WorldBox box;
   bool is_first = true;
   for (const format::InstanceRecord& instance : asset.instances()) {
@@ -34,7 +34,7 @@ WorldBox world_box(const Asset& asset) {
   return box;
 }
 
-std::vector<NamedCamera> adversarial_cameras(const Asset& asset, std::uint32_t width, std::uint32_t height) {
+std::vector<NamedCamera> adversarial_cameras(const run::Asset& asset, std::uint32_t width, std::uint32_t height) {
   const WorldBox box = world_box(asset);
   const Vec3d center = 0.5 * (box.low + box.high);
   const double size = glm::length(box.high - box.low);
@@ -67,7 +67,7 @@ std::vector<NamedCamera> adversarial_cameras(const Asset& asset, std::uint32_t w
   return out;
 }
 
-std::vector<NamedCamera> orbit_cameras(const Asset& asset, std::uint32_t count, std::uint32_t width,
+std::vector<NamedCamera> orbit_cameras(const run::Asset& asset, std::uint32_t count, std::uint32_t width,
                                        std::uint32_t height) {
   const WorldBox box = world_box(asset);
   const Vec3d center = 0.5 * (box.low + box.high);
@@ -90,7 +90,7 @@ std::vector<NamedCamera> orbit_cameras(const Asset& asset, std::uint32_t count, 
   return out;
 }
 
-Result<std::vector<NamedCamera>> parse_camera_path(std::string_view text, const Camera& base) {
+Result<std::vector<NamedCamera>> parse_camera_path(std::string_view text, const run::Camera& base) {
   std::vector<NamedCamera> out;
   std::size_t line_number = 0;
   while (!text.empty()) {
@@ -133,4 +133,4 @@ Result<std::vector<NamedCamera>> parse_camera_path(std::string_view text, const 
   return out;
 }
 
-}  // namespace meshlode::gpu
+}  // namespace meshlode::judge

@@ -13,29 +13,29 @@
 #include "run/read/asset.h"
 #include "run/select/select.h"
 
-namespace meshlode::gpu {
+namespace meshlode::judge {
 
 /// The box of everything that can be drawn, world units.
 struct WorldBox {
   Vec3d low{0.0}, high{0.0};
 };
-[[nodiscard]] WorldBox world_box(const Asset& asset);
+[[nodiscard]] WorldBox world_box(const run::Asset& asset);
 
 struct NamedCamera {
   std::string name;
-  Camera camera;
+  run::Camera camera;
 };
 
 /// Around, inside, on the near plane, far away, through a keyhole, wide, straight down, orthographic.
-[[nodiscard]] std::vector<NamedCamera> adversarial_cameras(const Asset& asset, std::uint32_t width,
+[[nodiscard]] std::vector<NamedCamera> adversarial_cameras(const run::Asset& asset, std::uint32_t width,
                                                            std::uint32_t height);
 
 /// `count` cameras on a spiral around the scene, from close to far.
-[[nodiscard]] std::vector<NamedCamera> orbit_cameras(const Asset& asset, std::uint32_t count, std::uint32_t width,
+[[nodiscard]] std::vector<NamedCamera> orbit_cameras(const run::Asset& asset, std::uint32_t count, std::uint32_t width,
                                                      std::uint32_t height);
 
 /// A fly-through: a line a frame, "ex ey ez tx ty tz [fovy_degrees [near]]"; empty lines and lines after # are skipped.
 /// Errors: kInvalid with the line.
-[[nodiscard]] Result<std::vector<NamedCamera>> parse_camera_path(std::string_view text, const Camera& base);
+[[nodiscard]] Result<std::vector<NamedCamera>> parse_camera_path(std::string_view text, const run::Camera& base);
 
-}  // namespace meshlode::gpu
+}  // namespace meshlode::judge

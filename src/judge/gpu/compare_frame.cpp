@@ -11,7 +11,7 @@
 #include "draw/gpu/shaders/frame.h"
 #include "draw/raster/raster.h"
 
-namespace meshlode::gpu {
+namespace meshlode::judge {
 
 namespace {
 
@@ -24,12 +24,12 @@ void note(Comparison& comparison, const std::string& what) {
   if (comparison.differences++ == 0) comparison.first = what;
 }
 
-std::string name_of(const ClusterInstance& c) {
+std::string name_of(const run::ClusterInstance& c) {
   return "instance " + std::to_string(c.instance.value) + " cluster " + std::to_string(c.cluster.value);
 }
 
 /// What decode.comp writes of a cluster.
-std::vector<std::uint32_t> expected_words(const DecodedCluster& cluster) {
+std::vector<std::uint32_t> expected_words(const run::DecodedCluster& cluster) {
   std::vector<std::uint32_t> out = {cluster.vertex_count, cluster.triangle_count};
   for (const std::int32_t value : cluster.channels) out.push_back(static_cast<std::uint32_t>(value));
   for (std::uint32_t t = 0; t < cluster.triangle_count; ++t) {
@@ -41,17 +41,17 @@ std::vector<std::uint32_t> expected_words(const DecodedCluster& cluster) {
 
 }  // namespace
 
-Result<Comparison> compare_decode(Device& device, const GpuScene& scene, const Asset& asset) {
-  const auto decoded = decode_all(asset);
+Result<Comparison> compare_decode(draw::Device& device, const draw::GpuScene& scene, const run::Asset& asset) {
+  const auto decoded = run::decode_all(asset);
   if (!decoded) return decoded.error();
-  const auto pipeline = device.make_compute(shaders::decode(), {});
+  const auto pipeline = device.make_compute(draw::shaders::decode(), {});
   if (!pipeline) return pipeline.error();
   constexpr std::uint64_t kChunkWords = 4u << 20;
-  auto output = device.make_buffer(kChunkWords * 4, Memory::kDevice);
+  auto output = device.make_buffer(kChunkWords * 4, draw::Memory::kDevice);
   if (!output) return output.error();
-  auto entries_buffer = device.make_buffer(std::uint64_t{scene.cluster_count} * 8, Memory::kDevice);
+  auto entries_buffer = device.make_buffer(std::uint64_t{scene.cluster_count} * 8, draw::Memory::kDevice);
   if (!entries_buffer) return entries_buffer.error();
-  auto frame_buffer = device.make_buffer(sizeof(GpuFrame), Memory::kDevice);
+  auto frame_buffer = device.make_buffer(sizeof(draw::GpuFrame), draw::Memory::kDevice);
   if (!frame_buffer) return frame_buffer.error();
 
   std::vector<std::uint32_t> mesh_of(asset.clusters().size(), 0);
@@ -59,13 +59,13 @@ Result<Comparison> compare_decode(Device& device, const GpuScene& scene, const A
     const format::MeshRecord& mesh = asset.meshes()[m];
     std::fill_n(mesh_of.begin() + mesh.first_cluster, mesh.cluster_count, static_cast<std::uint32_t>(m));
   }
-  GpuFrame frame{};
+  draw::GpuFrame frame{};
   frame.meshes = scene.meshes.address();
   frame.clusters = scene.clusters.address();
   frame.pages = scene.pages.address();
   frame.retry_clusters = entries_buffer->address();
   frame.clipped = output->address();
-  if (const Status s = device.upload(*frame_buffer, bytes_of(frame)); !s) return s.error();
+  if (const Status s = device.upload(*frame_buffer, draw::bytes_of(frame)); !s) return s.error();
 
   Comparison out;
   std::vector<std::array<std::uint32_t, 2>> entries(asset.clusters().size());
@@ -84,13 +84,13 @@ Result<Comparison> compare_decode(Device& device, const GpuScene& scene, const A
     const std::span<const std::uint8_t> bytes(reinterpret_cast<const std::uint8_t*>(entries.data()),
                                               entries.size() * 8);
     if (const Status s = device.upload(*entries_buffer, bytes); !s) return s.error();
-    auto list = Commands::begin(device);
+    auto list = draw::Commands::begin(device);
     if (!list) return list.error();
     const auto count = static_cast<std::uint32_t>(end - first);
     const DecodePush push{frame_buffer->address(), 0, 0, static_cast<std::uint32_t>(first), count};
     list->fill(*output, 0, output->bytes(), 0xCDCDCDCDu);
     list->barrier();
-    list->dispatch(*pipeline, bytes_of(push), count);
+    list->dispatch(*pipeline, draw::bytes_of(push), count);
     list->barrier();
     if (const auto ran = list->run(); !ran) return ran.error();
     words.resize(used);
@@ -110,10 +110,10 @@ Result<Comparison> compare_decode(Device& device, const GpuScene& scene, const A
   return out;
 }
 
-Result<CutComparison> compare_frame(Renderer& renderer, const Asset& asset, const Camera& camera, double pixel_error,
-                                    const AttributeBounds& bounds) {
+Result<CutComparison> compare_frame(draw::Renderer& renderer, const run::Asset& asset, const run::Camera& camera, double pixel_error,
+                                    const run::AttributeBounds& bounds) {
   CutComparison out;
-  const auto depth = depth_of_scene(asset, camera);
+  const auto depth = draw::depth_of_scene(asset, camera);
   if (!depth) return depth.error();
   auto frame = renderer.draw(camera, pixel_error, *depth);
   if (!frame) return frame.error();
@@ -121,29 +121,29 @@ Result<CutComparison> compare_frame(Renderer& renderer, const Asset& asset, cons
   const auto cut = renderer.read_cut();
   if (!cut) return cut.error();
 
-  const std::vector<ClusterInstance> expected = select_flat(asset, camera, pixel_error, bounds);
+  const std::vector<run::ClusterInstance> expected = run::select_flat(asset, camera, pixel_error, bounds);
   out.cut.items = expected.size();
-  std::vector<ClusterInstance> extra, missing;
+  std::vector<run::ClusterInstance> extra, missing;
   std::set_difference(cut->begin(), cut->end(), expected.begin(), expected.end(), std::back_inserter(extra));
   std::set_difference(expected.begin(), expected.end(), cut->begin(), cut->end(), std::back_inserter(missing));
-  for (const ClusterInstance& c : extra) note(out.cut, name_of(c) + " is drawn, the flat rule does not");
+  for (const run::ClusterInstance& c : extra) note(out.cut, name_of(c) + " is drawn, the flat rule does not");
   if (!renderer.options().frustum) {
-    for (const ClusterInstance& c : missing) note(out.cut, name_of(c) + " is not drawn, the flat rule does");
+    for (const run::ClusterInstance& c : missing) note(out.cut, name_of(c) + " is not drawn, the flat rule does");
   }
   if (std::adjacent_find(cut->begin(), cut->end()) != cut->end()) note(out.cut, "a cluster is drawn twice");
-  if (out.frame.overflow != 0) note(out.cut, "overflow of " + describe_overflow(out.frame.overflow));
+  if (out.frame.overflow != 0) note(out.cut, "overflow of " + draw::describe_overflow(out.frame.overflow));
 
   if (const Status s = renderer.redraw_in_order(); !s) return s.error();
   const auto pixels = renderer.read_pixels();
   if (!pixels) return pixels.error();
-  const auto reference = draw_cut(asset, expected, camera, *renderer.scene().alpha_masks);
+  const auto reference = draw::draw_cut(asset, expected, camera, *renderer.scene().alpha_masks);
   if (!reference) return reference.error();
   out.pixels.items = reference->pixel_count();
-  const auto key_at = [](const VisibilityBuffer& buffer, std::span<const ClusterInstance> items, std::size_t i) {
-    return buffer.item[i] < items.size() ? items[buffer.item[i]] : ClusterInstance{};
+  const auto key_at = [](const draw::VisibilityBuffer& buffer, std::span<const run::ClusterInstance> items, std::size_t i) {
+    return buffer.item[i] < items.size() ? items[buffer.item[i]] : run::ClusterInstance{};
   };
   for (std::size_t i = 0; i < reference->pixel_count(); ++i) {
-    const ClusterInstance want = key_at(*reference, expected, i), got = key_at(*pixels, *cut, i);
+    const run::ClusterInstance want = key_at(*reference, expected, i), got = key_at(*pixels, *cut, i);
     if (want == got && reference->depth[i] == pixels->depth[i] && reference->triangle[i] == pixels->triangle[i])
       continue;
     note(out.pixels, "pixel " + std::to_string(i % camera.width) + "," + std::to_string(i / camera.width) + ": GPU " +
@@ -154,4 +154,4 @@ Result<CutComparison> compare_frame(Renderer& renderer, const Asset& asset, cons
   return out;
 }
 
-}  // namespace meshlode::gpu
+}  // namespace meshlode::judge

@@ -14,7 +14,7 @@
 #include "draw/gpu/vulkan/vulkan.h"
 #include "run/select/select.h"
 
-namespace meshlode::gpu {
+namespace meshlode::judge {
 
 /// What was compared, and where it differed.
 struct Comparison {
@@ -24,16 +24,16 @@ struct Comparison {
 };
 
 /// Every integer of every cluster (I9).
-[[nodiscard]] Result<Comparison> compare_decode(Device& device, const GpuScene& scene, const Asset& asset);
+[[nodiscard]] Result<Comparison> compare_decode(draw::Device& device, const draw::GpuScene& scene, const run::Asset& asset);
 
 struct CutComparison {
   Comparison cut;     ///< without culling: equal to the flat rule's (I8). With culling: a part of it
   Comparison pixels;  ///< ids and depths against the CPU's picture of the whole cut (I9)
-  FrameReport frame;
+  draw::FrameReport frame;
 };
 /// Draws with `renderer` and compares with select_flat() and draw_cut() of the same camera. With culling the picture
 /// must still be the same: what is culled would not have been seen. `bounds` are those that the scene was uploaded with.
-[[nodiscard]] Result<CutComparison> compare_frame(Renderer& renderer, const Asset& asset, const Camera& camera,
-                                                  double pixel_error, const AttributeBounds& bounds = {});
+[[nodiscard]] Result<CutComparison> compare_frame(draw::Renderer& renderer, const run::Asset& asset, const run::Camera& camera,
+                                                  double pixel_error, const run::AttributeBounds& bounds = {});
 
-}  // namespace meshlode::gpu
+}  // namespace meshlode::judge

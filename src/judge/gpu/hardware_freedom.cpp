@@ -9,11 +9,11 @@
 #include <algorithm>
 #include <cmath>
 
-namespace meshlode::gpu {
+namespace meshlode::judge {
 
 namespace {
 
-using raster::ClipVertex;
+using draw::ClipVertex;
 
 constexpr double kE = kFixedFunctionError;
 /// Of conversion to binary32, perspective divide, viewport scale and offset.
@@ -57,7 +57,7 @@ ClipPolygon cut(const ClipPolygon& in, const Distance& distance) {
 }
 
 /// Planes of the view volume that some corner is beyond, or so near that rounding may say so.
-double count_planes(const std::array<ClipVertex, 3>& v, raster::ImageSize size) {
+double count_planes(const std::array<ClipVertex, 3>& v, draw::ImageSize size) {
   const double half_x = 0.5 * size.width, half_y = 0.5 * size.height;
   double count = 0.0;
   const auto add = [&](const auto& distance, const auto& scale) {
@@ -100,7 +100,7 @@ double TriangleFreedom::Plane::change(double reach) const {
   return (std::abs(a) + std::abs(b)) * reach;
 }
 
-TriangleFreedom::TriangleFreedom(const std::array<ClipVertex, 3>& v, raster::ImageSize size,
+TriangleFreedom::TriangleFreedom(const std::array<ClipVertex, 3>& v, draw::ImageSize size,
                                  std::uint32_t subpixel_bits) {
   double x = 0.0;
   for (const ClipVertex& c : v) {
@@ -126,7 +126,7 @@ TriangleFreedom::TriangleFreedom(const std::array<ClipVertex, 3>& v, raster::Ima
   }
   extent_ = std::min(std::max(high_x - low_x, high_y - low_y), kFarthestCorner);
   // A step of the device's grid, whichever way it rounds; the CPU's picture has to be one of those that are allowed.
-  const int bits = static_cast<int>(std::min<std::uint32_t>(subpixel_bits, raster::kSubpixelBits));
+  const int bits = static_cast<int>(std::min<std::uint32_t>(subpixel_bits, draw::kSubpixelBits));
   interpolation_ = kE * kInterpolationOperations * (extent_ + side);
   snap_ = std::ldexp(1.0, -bits) + interpolation_;
   find_planes();
@@ -134,7 +134,7 @@ TriangleFreedom::TriangleFreedom(const std::array<ClipVertex, 3>& v, raster::Ima
   find_bounds(size);
 }
 
-void TriangleFreedom::clip(const std::array<ClipVertex, 3>& v, raster::ImageSize size) {
+void TriangleFreedom::clip(const std::array<ClipVertex, 3>& v, draw::ImageSize size) {
   ClipPolygon polygon;
   for (int k = 0; k < 3; ++k) polygon.corners[static_cast<std::size_t>(k)] = {v[static_cast<std::size_t>(k)], k};
   polygon.count = 3;
@@ -195,7 +195,7 @@ void TriangleFreedom::find_facing() {
   }
 }
 
-void TriangleFreedom::find_bounds(raster::ImageSize size) {
+void TriangleFreedom::find_bounds(draw::ImageSize size) {
   double low_x = corners_[0].x, high_x = low_x, low_y = corners_[0].y, high_y = low_y, reach = 0.0;
   for (std::size_t i = 0; i < count_; ++i) {
     const Corner& c = corners_[i];
@@ -210,7 +210,7 @@ void TriangleFreedom::find_bounds(raster::ImageSize size) {
     const double side = count;
     const double first = std::clamp(std::ceil(low - reach - 0.5), 0.0, side);
     const double last = std::clamp(std::floor(high + reach - 0.5), -1.0, side - 1.0);
-    return raster::PixelRange{static_cast<std::int32_t>(first), static_cast<std::int32_t>(last)};
+    return draw::PixelRange{static_cast<std::int32_t>(first), static_cast<std::int32_t>(last)};
   };
   columns_ = range(low_x, high_x, size.width);
   rows_ = range(low_y, high_y, size.height);
@@ -306,4 +306,4 @@ std::uint32_t TriangleFreedom::edges_near(std::int32_t pixel_x, std::int32_t pix
   return out;
 }
 
-}  // namespace meshlode::gpu
+}  // namespace meshlode::judge

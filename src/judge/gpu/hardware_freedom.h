@@ -9,7 +9,7 @@
 
 #include "draw/raster/screen.h"
 
-namespace meshlode::gpu {
+namespace meshlode::judge {
 
 /// One result of the fixed functions' arithmetic, relative: they take binary32, and are off by two units in the last
 /// place at most. (The specification asks for no more than 1 part in 10^5 there.)
@@ -29,7 +29,7 @@ class TriangleFreedom {
   static constexpr std::size_t kMaxCorners = 5;
 
   /// `subpixel_bits`: subPixelPrecisionBits of the device.
-  TriangleFreedom(const std::array<raster::ClipVertex, 3>& v, raster::ImageSize size, std::uint32_t subpixel_bits);
+  TriangleFreedom(const std::array<draw::ClipVertex, 3>& v, draw::ImageSize size, std::uint32_t subpixel_bits);
 
   /// Nothing of it is in front of the near plane and before the far one.
   [[nodiscard]] bool is_empty() const { return count_ == 0; }
@@ -38,8 +38,8 @@ class TriangleFreedom {
   /// Hardware may see it from the other side, or as nothing.
   [[nodiscard]] bool is_facing_open() const { return is_facing_open_; }
   /// Pixels that it may cover lie within: first and last, clamped to the picture; empty where first > last.
-  [[nodiscard]] raster::PixelRange columns() const { return columns_; }
-  [[nodiscard]] raster::PixelRange rows() const { return rows_; }
+  [[nodiscard]] draw::PixelRange columns() const { return columns_; }
+  [[nodiscard]] draw::PixelRange rows() const { return rows_; }
 
   struct Sample {
     double low = 0.0, high = 0.0;  ///< depths that it may have there, units of 2^-32
@@ -53,10 +53,10 @@ class TriangleFreedom {
   [[nodiscard]] std::uint32_t edges_near(std::int32_t pixel_x, std::int32_t pixel_y, double reach) const;
 
  private:
-  void clip(const std::array<raster::ClipVertex, 3>& v, raster::ImageSize size);
+  void clip(const std::array<draw::ClipVertex, 3>& v, draw::ImageSize size);
   void find_planes();
   void find_facing();
-  void find_bounds(raster::ImageSize size);
+  void find_bounds(draw::ImageSize size);
   [[nodiscard]] double reach_at(double x, double y) const;
 
   /// a · x + b · y + c over the picture.
@@ -79,7 +79,7 @@ class TriangleFreedom {
   double max_inverse_w_ = 0.0, min_z_ = 1.0, max_z_ = 0.0;
   double extent_ = 0.0;        ///< pixels, the longer side of its bounds
   double weight_error_ = 1.0;  ///< of barycentric coordinates, by the arithmetic of areas
-  raster::PixelRange columns_, rows_;
+  draw::PixelRange columns_, rows_;
 };
 
-}  // namespace meshlode::gpu
+}  // namespace meshlode::judge

@@ -14,7 +14,7 @@
 #include "draw/raster/cut_pages.h"
 #include "draw/raster/projection.h"
 
-namespace meshlode::gpu {
+namespace meshlode::judge {
 
 namespace {
 
@@ -25,7 +25,7 @@ struct Shown {
   TriangleFreedom freedom;
   std::array<Vec3i, 3> corner;  ///< grid integers: an edge is known by its instance and their ends
   std::uint32_t instance = 0, item = 0, triangle = 0;
-  std::optional<raster::MaskedTriangle> mask;
+  std::optional<draw::MaskedTriangle> mask;
 };
 
 /// What a triangle may do at a pixel.
@@ -34,16 +34,16 @@ struct Candidate {
   TriangleFreedom::Sample sample;
 };
 
-std::vector<Shown> find_shown(const Asset& asset, const ClusterInstance& entry, std::uint32_t item,
-                              const raster::CutPages& pages, const raster::Projection& projection,
-                              const AlphaMasks& masks, std::uint32_t subpixel_bits) {
+std::vector<Shown> find_shown(const run::Asset& asset, const run::ClusterInstance& entry, std::uint32_t item,
+                              const draw::CutPages& pages, const draw::Projection& projection,
+                              const draw::AlphaMasks& masks, std::uint32_t subpixel_bits) {
   std::vector<Shown> out;
   const format::InstanceRecord& instance = asset.instances()[entry.instance.value];
   if ((instance.flags & format::kInstanceSingular) != 0) return out;
   const format::MeshRecord& mesh = asset.meshes()[instance.mesh];
-  DecodedCluster cluster;
+  run::DecodedCluster cluster;
   pages.decode(asset, entry.cluster, cluster);
-  const raster::GridToClip to_clip = raster::make_grid_to_clip(projection, mesh, instance);
+  const draw::GridToClip to_clip = draw::make_grid_to_clip(projection, mesh, instance);
   const bool is_mirrored = (instance.flags & format::kInstanceMirrored) != 0;
   for (std::uint32_t t = 0; t < cluster.triangle_count; ++t) {
     const auto [a, b, c] = cluster.triangles[t];
@@ -55,14 +55,14 @@ std::vector<Shown> find_shown(const Asset& asset, const ClusterInstance& entry, 
     const bool is_front = (freedom.area() < 0.0) != is_mirrored;
     if (!is_double_sided && !is_front && !freedom.is_facing_open()) continue;
     out.push_back({freedom, corner, entry.instance.value, item, t,
-                   raster::find_mask(masks, mesh, cluster, t, to_clip)});
+                   draw::find_mask(masks, mesh, cluster, t, to_clip)});
   }
   return out;
 }
 
 class PictureJudge {
  public:
-  PictureJudge(std::span<const Shown> shown, const VisibilityBuffer& drawn, const VisibilityBuffer& reference)
+  PictureJudge(std::span<const Shown> shown, const draw::VisibilityBuffer& drawn, const draw::VisibilityBuffer& reference)
       : shown_(shown), drawn_(drawn), reference_(reference) {}
 
   /// Rows of one band, with the triangles that touch it.
@@ -92,14 +92,14 @@ class PictureJudge {
  private:
   [[nodiscard]] bool passes_alpha_at(const Shown& shown, std::int32_t x, std::int32_t y) const {
     return !shown.mask ||
-           raster::passes_alpha(*shown.mask, x + 0.5 - 0.5 * drawn_.width, y + 0.5 - 0.5 * drawn_.height);
+           draw::passes_alpha(*shown.mask, x + 0.5 - 0.5 * drawn_.width, y + 0.5 - 0.5 * drawn_.height);
   }
 
   void judge_pixel(std::int32_t x, std::int32_t y, std::span<const Candidate> candidates, Comparison& out) const {
     const std::size_t at = static_cast<std::size_t>(y) * drawn_.width + static_cast<std::size_t>(x);
-    const bool has = drawn_.item[at] != VisibilityBuffer::kNothing;
+    const bool has = drawn_.item[at] != draw::VisibilityBuffer::kNothing;
     const double depth = has ? static_cast<double>(drawn_.depth[at]) : -1e300;
-    out.items += reference_.item[at] != VisibilityBuffer::kNothing ? 1 : 0;
+    out.items += reference_.item[at] != draw::VisibilityBuffer::kNothing ? 1 : 0;
     std::string why;
     if (has) {
       const auto own = std::find_if(candidates.begin(), candidates.end(), [&](const Candidate& c) {
@@ -173,21 +173,21 @@ class PictureJudge {
   }
 
   std::span<const Shown> shown_;
-  const VisibilityBuffer& drawn_;
-  const VisibilityBuffer& reference_;
+  const draw::VisibilityBuffer& drawn_;
+  const draw::VisibilityBuffer& reference_;
 };
 
 }  // namespace
 
-Result<Comparison> judge_hardware_pixels(const Asset& asset, std::span<const ClusterInstance> cut,
-                                         const VisibilityBuffer& drawn, const Camera& camera, const AlphaMasks& masks,
+Result<Comparison> judge_hardware_pixels(const run::Asset& asset, std::span<const run::ClusterInstance> cut,
+                                         const draw::VisibilityBuffer& drawn, const run::Camera& camera, const draw::AlphaMasks& masks,
                                          std::uint32_t subpixel_bits) {
-  auto projection = raster::make_projection(camera);
+  auto projection = draw::make_projection(camera);
   if (!projection) return projection.error();
-  projection->far_distance = raster::scene_depth(asset, *projection);
-  const auto pages = raster::CutPages::load(asset, cut);
+  projection->far_distance = draw::scene_depth(asset, *projection);
+  const auto pages = draw::CutPages::load(asset, cut);
   if (!pages) return pages.error();
-  const auto reference = draw_cut(asset, cut, camera, masks);
+  const auto reference = draw::draw_cut(asset, cut, camera, masks);
   if (!reference) return reference.error();
 
   std::vector<std::vector<Shown>> parts(cut.size());
@@ -202,7 +202,7 @@ Result<Comparison> judge_hardware_pixels(const Asset& asset, std::span<const Clu
   const std::size_t band_count = (std::size_t{camera.height} + kBandRows - 1) / kBandRows;
   std::vector<std::vector<std::uint32_t>> bands(band_count);
   for (std::size_t i = 0; i < shown.size(); ++i) {
-    const raster::PixelRange rows = shown[i].freedom.rows();
+    const draw::PixelRange rows = shown[i].freedom.rows();
     for (std::int32_t band = rows.first / kBandRows; band <= rows.last / kBandRows; ++band) {
       bands[static_cast<std::size_t>(band)].push_back(static_cast<std::uint32_t>(i));
     }
@@ -221,9 +221,9 @@ Result<Comparison> judge_hardware_pixels(const Asset& asset, std::span<const Clu
   return out;
 }
 
-Result<Comparison> compare_hardware(Renderer& renderer, const Asset& asset, const Camera& camera, double pixel_error,
+Result<Comparison> compare_hardware(draw::Renderer& renderer, const run::Asset& asset, const run::Camera& camera, double pixel_error,
                                     std::uint32_t subpixel_bits) {
-  const auto depth = depth_of_scene(asset, camera);
+  const auto depth = draw::depth_of_scene(asset, camera);
   if (!depth) return depth.error();
   const auto frame = renderer.draw(camera, pixel_error, *depth);
   if (!frame) return frame.error();
@@ -233,11 +233,11 @@ Result<Comparison> compare_hardware(Renderer& renderer, const Asset& asset, cons
   if (!pixels) return pixels.error();
   auto out = judge_hardware_pixels(asset, *cut, *pixels, camera, *renderer.scene().alpha_masks, subpixel_bits);
   if (!out) return out.error();
-  const std::vector<ClusterInstance> expected = select_flat(asset, camera, pixel_error);
+  const std::vector<run::ClusterInstance> expected = run::select_flat(asset, camera, pixel_error);
   if (frame->hardware_items != expected.size() || *cut != expected) {
     if (out->differences++ == 0) out->first = "another cut";
   }
   return out;
 }
 
-}  // namespace meshlode::gpu
+}  // namespace meshlode::judge

@@ -13,11 +13,11 @@
 #include "draw/raster/legend.h"
 #include "draw/raster/projection.h"
 
-namespace meshlode::gpu {
+namespace meshlode::judge {
 
 namespace {
 
-using raster::ClipVertex;
+using draw::ClipVertex;
 
 /// Weights of a triangle's corners at a picture point, perspective-correct: sum(b · (x, y, w)) ∝ (px, py, 1).
 Vec3d corner_weights(const ClipVertex& a, const ClipVertex& b, const ClipVertex& c, double px, double py) {
@@ -36,9 +36,9 @@ struct PixelPoint {
   Vec3d normal{0.0};  ///< for shading, mesh space, any length
 };
 
-Result<std::vector<PixelPoint>> unproject(const Asset& asset, std::span<const ClusterInstance> cut,
-                                          const VisibilityBuffer& drawn, const raster::Projection& projection) {
-  const auto pages = raster::CutPages::load(asset, cut);
+Result<std::vector<PixelPoint>> unproject(const run::Asset& asset, std::span<const run::ClusterInstance> cut,
+                                          const draw::VisibilityBuffer& drawn, const draw::Projection& projection) {
+  const auto pages = draw::CutPages::load(asset, cut);
   if (!pages) return pages.error();
   std::vector<std::vector<std::uint32_t>> pixels_of(cut.size());
   for (std::size_t i = 0; i < drawn.pixel_count(); ++i) {
@@ -49,12 +49,12 @@ Result<std::vector<PixelPoint>> unproject(const Asset& asset, std::span<const Cl
     if (pixels_of[item].empty()) return;
     const format::InstanceRecord& instance = asset.instances()[cut[item].instance.value];
     const format::MeshRecord& mesh = asset.meshes()[instance.mesh];
-    const raster::GridToClip to_clip = raster::make_grid_to_clip(projection, mesh, instance);
+    const draw::GridToClip to_clip = draw::make_grid_to_clip(projection, mesh, instance);
     const double step = std::ldexp(static_cast<double>(mesh.grid.mantissa), mesh.grid.log2);
-    DecodedCluster cluster;
+    run::DecodedCluster cluster;
     pages->decode(asset, cut[item].cluster, cluster);
-    ClusterAttributes attributes;
-    decode_attributes(mesh, cluster, attributes);
+    run::ClusterAttributes attributes;
+    run::decode_attributes(mesh, cluster, attributes);
     for (const std::uint32_t pixel : pixels_of[item]) {
       const auto& t = cluster.triangles[drawn.triangle[pixel]];
       const double px = pixel % drawn.width + 0.5 - 0.5 * drawn.width;
@@ -77,11 +77,11 @@ Result<std::vector<PixelPoint>> unproject(const Asset& asset, std::span<const Cl
 }
 
 /// The points of the source's picture.
-std::vector<PixelPoint> unproject_source(const Asset& asset, std::span<const SourceSurface> source,
-                                         const VisibilityBuffer& drawn, const raster::Projection& projection) {
+std::vector<PixelPoint> unproject_source(const run::Asset& asset, std::span<const SourceSurface> source,
+                                         const draw::VisibilityBuffer& drawn, const draw::Projection& projection) {
   std::vector<PixelPoint> out(drawn.pixel_count());
   parallel_for_each_index(drawn.pixel_count(), 1024, [&](std::size_t i) {
-    if (drawn.item[i] == VisibilityBuffer::kNothing) return;
+    if (drawn.item[i] == draw::VisibilityBuffer::kNothing) return;
     const format::InstanceRecord& instance = asset.instances()[drawn.item[i]];
     const Surface& surface = source[instance.mesh].surface;
     const auto& t = surface.triangles[drawn.triangle[i]];
@@ -98,7 +98,7 @@ std::vector<PixelPoint> unproject_source(const Asset& asset, std::span<const Sou
 }
 
 /// Pixels that a length in mesh units covers at a point of an instance: k · σ / max(distance, near).
-double pixels_per_unit_at(const raster::Projection& projection, const format::InstanceRecord& instance,
+double pixels_per_unit_at(const draw::Projection& projection, const format::InstanceRecord& instance,
                           const Vec3d& p) {
   if (projection.is_orthographic) return projection.pixels_per_unit * instance.scale;
   Vec3d world(0.0);
@@ -119,7 +119,7 @@ struct Displacement {
 };
 
 /// From each point to the nearest of its instance's surface: infinite where there is none.
-std::vector<Displacement> displace(const Asset& asset, const raster::Projection& projection,
+std::vector<Displacement> displace(const run::Asset& asset, const draw::Projection& projection,
                                    const std::vector<PixelPoint>& points, double pixel_error,
                                    const std::vector<const TriangleTree*>& tree_of) {
   std::vector<Displacement> out(points.size());
@@ -136,7 +136,7 @@ std::vector<Displacement> displace(const Asset& asset, const raster::Projection&
 }
 
 /// Whether a surface point may have moved through the near plane, as far as the promise lets it.
-bool may_cross_near(const Asset& asset, const raster::Projection& projection, const PixelPoint& point,
+bool may_cross_near(const run::Asset& asset, const draw::Projection& projection, const PixelPoint& point,
                           double allowed_px) {
   const format::InstanceRecord& instance = asset.instances()[point.instance];
   const double world = allowed_px * instance.scale / pixels_per_unit_at(projection, instance, point.point);
@@ -150,20 +150,20 @@ bool may_cross_near(const Asset& asset, const raster::Projection& projection, co
   return distance - world <= projection.near_distance;
 }
 
-bool is_covered_around(const VisibilityBuffer& buffer, std::uint32_t x, std::uint32_t y) {
+bool is_covered_around(const draw::VisibilityBuffer& buffer, std::uint32_t x, std::uint32_t y) {
   for (int dy = -kHoleRadius; dy <= kHoleRadius; ++dy) {
     for (int dx = -kHoleRadius; dx <= kHoleRadius; ++dx) {
       const std::int64_t px = std::int64_t{x} + dx, py = std::int64_t{y} + dy;
       if (px < 0 || py < 0 || px >= buffer.width || py >= buffer.height) return false;
       const std::size_t at = static_cast<std::size_t>(py) * buffer.width + static_cast<std::size_t>(px);
-      if (buffer.item[at] == VisibilityBuffer::kNothing) return false;
+      if (buffer.item[at] == draw::VisibilityBuffer::kNothing) return false;
     }
   }
   return true;
 }
 
 /// \pre every pixel within kHoleRadius shows the source
-bool may_cross_near_around(const Asset& asset, const raster::Projection& projection,
+bool may_cross_near_around(const run::Asset& asset, const draw::Projection& projection,
                            const std::vector<PixelPoint>& points, const std::vector<Displacement>& moves,
                            double tolerance, std::uint32_t x, std::uint32_t y) {
   for (std::uint32_t v = y - kHoleRadius; v <= y + kHoleRadius; ++v) {
@@ -176,37 +176,37 @@ bool may_cross_near_around(const Asset& asset, const raster::Projection& project
 }
 
 /// The cut with its back faces too: what a ray meets at all.
-Result<VisibilityBuffer> draw_both_sides(const Asset& asset, std::span<const ClusterInstance> cut,
-                                         const raster::Projection& projection) {
-  const auto pages = raster::CutPages::load(asset, cut);
+Result<draw::VisibilityBuffer> draw_both_sides(const run::Asset& asset, std::span<const run::ClusterInstance> cut,
+                                         const draw::Projection& projection) {
+  const auto pages = draw::CutPages::load(asset, cut);
   if (!pages) return pages.error();
-  VisibilityBuffer out = make_visibility_buffer(projection.size.width, projection.size.height);
+  draw::VisibilityBuffer out = draw::make_visibility_buffer(projection.size.width, projection.size.height);
   for (std::size_t item = 0; item < cut.size(); ++item) {
     const format::InstanceRecord& instance = asset.instances()[cut[item].instance.value];
-    const raster::GridToClip to_clip = raster::make_grid_to_clip(projection, asset.meshes()[instance.mesh], instance);
-    DecodedCluster cluster;
+    const draw::GridToClip to_clip = draw::make_grid_to_clip(projection, asset.meshes()[instance.mesh], instance);
+    run::DecodedCluster cluster;
     pages->decode(asset, cut[item].cluster, cluster);
-    raster::ScreenSoup soup;
+    draw::ScreenSoup soup;
     for (std::uint32_t t = 0; t < cluster.triangle_count; ++t) {
       const auto& [i, j, k] = cluster.triangles[t];
-      raster::add_triangle({to_clip.project(cluster.position(i)), to_clip.project(cluster.position(j)),
+      draw::add_triangle({to_clip.project(cluster.position(i)), to_clip.project(cluster.position(j)),
                             to_clip.project(cluster.position(k))},
-                           raster::Culling::kNone, {static_cast<std::uint32_t>(item), t}, projection.size, soup);
+                           draw::Culling::kNone, {static_cast<std::uint32_t>(item), t}, projection.size, soup);
     }
-    raster::draw_soup(soup, out);
+    draw::draw_soup(soup, out);
   }
   return out;
 }
 
 }  // namespace
 
-Result<PictureReport> judge_picture(const Asset& asset, const PictureSource& source,
-                                    std::span<const ClusterInstance> cut, const VisibilityBuffer& drawn,
-                                    const Camera& camera, double pixel_error, const AlphaMasks& masks) {
-  auto projection = raster::make_projection(camera);
+Result<PictureReport> judge_picture(const run::Asset& asset, const PictureSource& source,
+                                    std::span<const run::ClusterInstance> cut, const draw::VisibilityBuffer& drawn,
+                                    const run::Camera& camera, double pixel_error, const draw::AlphaMasks& masks) {
+  auto projection = draw::make_projection(camera);
   if (!projection) return projection.error();
-  projection->far_distance = raster::scene_depth(asset, *projection);
-  std::vector<ClusterInstance> finest;
+  projection->far_distance = draw::scene_depth(asset, *projection);
+  std::vector<run::ClusterInstance> finest;
   for (std::size_t i = 0; i < asset.instances().size(); ++i) {
     const format::InstanceRecord& instance = asset.instances()[i];
     if ((instance.flags & format::kInstanceSingular) != 0) continue;
@@ -215,18 +215,18 @@ Result<PictureReport> judge_picture(const Asset& asset, const PictureSource& sou
       if (asset.clusters()[c].level == 0) finest.push_back({InstanceId(i), ClusterId(c)});
     }
   }
-  const auto full = draw_cut(asset, finest, camera, masks);
+  const auto full = draw::draw_cut(asset, finest, camera, masks);
   if (!full) return full.error();
   const auto cut_points = unproject(asset, cut, drawn, *projection);
   if (!cut_points) return cut_points.error();
   const auto full_points = unproject(asset, finest, *full, *projection);
   if (!full_points) return full_points.error();
-  const VisibilityBuffer truth = draw_source(asset, source.meshes, *projection);
+  const draw::VisibilityBuffer truth = draw_source(asset, source.meshes, *projection);
   const std::vector<PixelPoint> truth_points = unproject_source(asset, source.meshes, truth, *projection);
 
   // The cut of an instance as a surface, for the way back.
   std::map<std::uint32_t, std::vector<ClusterId>> clusters_of;
-  for (const ClusterInstance& entry : cut) clusters_of[entry.instance.value].push_back(entry.cluster);
+  for (const run::ClusterInstance& entry : cut) clusters_of[entry.instance.value].push_back(entry.cluster);
   std::map<std::uint32_t, TriangleTree> trees;
   std::vector<const TriangleTree*> source_of(asset.instances().size(), nullptr),
       cut_of(asset.instances().size(), nullptr);
@@ -244,12 +244,12 @@ Result<PictureReport> judge_picture(const Asset& asset, const PictureSource& sou
   out.depth_difference.resize(there.size(), -1.0F);
   out.normal_degrees.resize(there.size(), -1.0F);
   double sum = 0.0, normal_sum = 0.0;
-  std::optional<VisibilityBuffer> both_sides;  // drawn where it is asked for
+  std::optional<draw::VisibilityBuffer> both_sides;  // drawn where it is asked for
   for (std::size_t i = 0; i < there.size(); ++i) {
-    const bool is_cut = drawn.item[i] != VisibilityBuffer::kNothing,
-               is_full = full->item[i] != VisibilityBuffer::kNothing;
+    const bool is_cut = drawn.item[i] != draw::VisibilityBuffer::kNothing,
+               is_full = full->item[i] != draw::VisibilityBuffer::kNothing;
     out.covered += is_cut ? 1 : 0;
-    out.covered_source += truth.item[i] != VisibilityBuffer::kNothing ? 1 : 0;
+    out.covered_source += truth.item[i] != draw::VisibilityBuffer::kNothing ? 1 : 0;
     out.only_cut += is_cut && !is_full ? 1 : 0;
     out.only_source += is_full && !is_cut ? 1 : 0;
     const auto x = static_cast<std::uint32_t>(i % drawn.width), y = static_cast<std::uint32_t>(i / drawn.width);
@@ -260,7 +260,7 @@ Result<PictureReport> judge_picture(const Asset& asset, const PictureSource& sou
         if (!buffer) return buffer.error();
         both_sides = std::move(*buffer);
       }
-      if (both_sides->item[i] != VisibilityBuffer::kNothing) ++out.holes;
+      if (both_sides->item[i] != draw::VisibilityBuffer::kNothing) ++out.holes;
     }
     if (is_cut && is_full && drawn.depth[i] > 0) {
       const double difference = std::abs(double{drawn.depth[i] * 1.0} - full->depth[i] * 1.0);
@@ -294,21 +294,21 @@ Result<PictureReport> judge_picture(const Asset& asset, const PictureSource& sou
   return out;
 }
 
-Image heat_map(std::span<const float> values, std::uint32_t width, std::uint32_t height, float full) {
-  Image image;
+draw::Image heat_map(std::span<const float> values, std::uint32_t width, std::uint32_t height, float full) {
+  draw::Image image;
   image.width = width;
   image.height = height;
   image.rgba.assign(values.size() * 4, 255);
   constexpr std::uint32_t kSteps = 256;
   for (std::size_t i = 0; i < values.size(); ++i) {
-    raster::Rgb color{0.85, 0.85, 0.85};
+    draw::Rgb color{0.85, 0.85, 0.85};
     if (values[i] >= 0.0F) {
       const double share = std::min(1.0, static_cast<double>(values[i]) / static_cast<double>(full));
-      color = raster::level_color(static_cast<std::uint32_t>(share * (kSteps - 1)), kSteps);
+      color = draw::level_color(static_cast<std::uint32_t>(share * (kSteps - 1)), kSteps);
     }
-    for (std::size_t k = 0; k < 3; ++k) image.rgba[4 * i + k] = raster::to_display(color[k]);
+    for (std::size_t k = 0; k < 3; ++k) image.rgba[4 * i + k] = draw::to_display(color[k]);
   }
   return image;
 }
 
-}  // namespace meshlode::gpu
+}  // namespace meshlode::judge

@@ -14,7 +14,7 @@
 #include "run/read/asset.h"
 #include "run/select/select.h"
 
-namespace meshlode::gpu {
+namespace meshlode::judge {
 
 struct PictureReport {
   std::uint64_t covered = 0;                    ///< pixels of the cut
@@ -46,18 +46,18 @@ constexpr int kHoleRadius = 2;
 /// What pictures of an asset are judged by.
 struct PictureSource {
   std::span<const SourceSurface> meshes;     ///< the source, one a mesh of the asset
-  std::span<const DecodedCluster> decoded;   ///< decode_all() of the asset
+  std::span<const run::DecodedCluster> decoded;   ///< decode_all() of the asset
   double tolerance = 1.0;                    ///< of the promise, 1.05 in the measured tier
 };
 
 /// `cut` was drawn into `drawn`. Displacement and holes are judged by the source's own triangles, normals and silhouettes
 /// by level 0, which has the same materials and masks. `masks`: those that `cut` was drawn with.
-[[nodiscard]] Result<PictureReport> judge_picture(const Asset& asset, const PictureSource& source,
-                                                  std::span<const ClusterInstance> cut, const VisibilityBuffer& drawn,
-                                                  const Camera& camera, double pixel_error,
-                                                  const AlphaMasks& masks = {});
+[[nodiscard]] Result<PictureReport> judge_picture(const run::Asset& asset, const PictureSource& source,
+                                                  std::span<const run::ClusterInstance> cut, const draw::VisibilityBuffer& drawn,
+                                                  const run::Camera& camera, double pixel_error,
+                                                  const draw::AlphaMasks& masks = {});
 
 /// Blue at 0, red at `full` and above, grey where there is nothing.
-[[nodiscard]] Image heat_map(std::span<const float> values, std::uint32_t width, std::uint32_t height, float full);
+[[nodiscard]] draw::Image heat_map(std::span<const float> values, std::uint32_t width, std::uint32_t height, float full);
 
-}  // namespace meshlode::gpu
+}  // namespace meshlode::judge

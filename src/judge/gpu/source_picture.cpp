@@ -8,7 +8,7 @@
 #include "draw/raster/coverage.h"
 #include "draw/raster/screen.h"
 
-namespace meshlode::gpu {
+namespace meshlode::judge {
 
 namespace {
 
@@ -20,17 +20,17 @@ struct Chunk {
   std::size_t first = 0, count = 0;
 };
 
-void project_chunk(const Asset& asset, const SourceSurface& source, const raster::Projection& projection,
-                   const Chunk& chunk, raster::ScreenSoup& out) {
+void project_chunk(const run::Asset& asset, const SourceSurface& source, const draw::Projection& projection,
+                   const Chunk& chunk, draw::ScreenSoup& out) {
   const format::InstanceRecord& instance = asset.instances()[chunk.instance];
   const bool is_mirrored = (instance.flags & format::kInstanceMirrored) != 0;
   for (std::size_t t = chunk.first; t < chunk.first + chunk.count; ++t) {
     const bool is_double_sided = !source.double_sided.empty() && source.double_sided[t] != 0;
-    const raster::Culling culling = is_double_sided ? raster::Culling::kNone
-                                    : is_mirrored   ? raster::Culling::kCounterClockwise
-                                                    : raster::Culling::kClockwise;
+    const draw::Culling culling = is_double_sided ? draw::Culling::kNone
+                                    : is_mirrored   ? draw::Culling::kCounterClockwise
+                                                    : draw::Culling::kClockwise;
     const auto& [a, b, c] = source.surface.triangles[t];
-    raster::add_triangle({project_source(projection, instance, source.surface.positions[a]),
+    draw::add_triangle({project_source(projection, instance, source.surface.positions[a]),
                           project_source(projection, instance, source.surface.positions[b]),
                           project_source(projection, instance, source.surface.positions[c])},
                          culling, {chunk.instance, static_cast<std::uint32_t>(t)}, projection.size, out);
@@ -39,12 +39,12 @@ void project_chunk(const Asset& asset, const SourceSurface& source, const raster
 
 }  // namespace
 
-std::vector<SourceSurface> source_surfaces(const Scene& scene) {
+std::vector<SourceSurface> source_surfaces(const scene::Scene& scene) {
   std::vector<SourceSurface> out;
   out.reserve(scene.meshes.size());
-  for (const SourceMesh& mesh : scene.meshes) {
+  for (const scene::SourceMesh& mesh : scene.meshes) {
     std::vector<std::uint8_t> sides;
-    for (const Primitive& primitive : mesh.primitives) {
+    for (const scene::Primitive& primitive : mesh.primitives) {
       const bool is_double_sided = primitive.material.value < scene.materials.size() &&
                                    scene.materials[primitive.material.value].double_sided;
       sides.insert(sides.end(), primitive.indices.size() / 3, is_double_sided ? 1 : 0);
@@ -56,7 +56,7 @@ std::vector<SourceSurface> source_surfaces(const Scene& scene) {
   return out;
 }
 
-raster::ClipVertex project_source(const raster::Projection& projection, const format::InstanceRecord& instance,
+draw::ClipVertex project_source(const draw::Projection& projection, const format::InstanceRecord& instance,
                                   const Vec3d& position) {
   const double* m = instance.transform;
   Vec3d p(0.0);
@@ -64,7 +64,7 @@ raster::ClipVertex project_source(const raster::Projection& projection, const fo
     const double* r = m + 4 * row;
     p[row] = ((r[0] * position.x + r[1] * position.y) + r[2] * position.z) + (r[3] - projection.eye[row]);
   }
-  raster::ClipVertex out;
+  draw::ClipVertex out;
   out.x = glm::dot(projection.right, p) * projection.pixels_per_unit;
   out.y = -glm::dot(projection.up, p) * projection.pixels_per_unit;
   const double distance = glm::dot(projection.forward, p);
@@ -79,8 +79,8 @@ raster::ClipVertex project_source(const raster::Projection& projection, const fo
   return out;
 }
 
-VisibilityBuffer draw_source(const Asset& asset, std::span<const SourceSurface> source,
-                             const raster::Projection& projection) {
+draw::VisibilityBuffer draw_source(const run::Asset& asset, std::span<const SourceSurface> source,
+                             const draw::Projection& projection) {
   std::vector<Chunk> chunks;
   for (std::size_t i = 0; i < asset.instances().size(); ++i) {
     const format::InstanceRecord& instance = asset.instances()[i];
@@ -90,16 +90,16 @@ VisibilityBuffer draw_source(const Asset& asset, std::span<const SourceSurface> 
       chunks.push_back({static_cast<std::uint32_t>(i), first, std::min(kChunkTriangles, count - first)});
     }
   }
-  VisibilityBuffer out = make_visibility_buffer(projection.size.width, projection.size.height);
+  draw::VisibilityBuffer out = draw::make_visibility_buffer(projection.size.width, projection.size.height);
   for (std::size_t first = 0; first < chunks.size(); first += kBatchChunks) {
-    std::vector<raster::ScreenSoup> parts(std::min(kBatchChunks, chunks.size() - first));
+    std::vector<draw::ScreenSoup> parts(std::min(kBatchChunks, chunks.size() - first));
     parallel_for_each_index(parts.size(), 1, [&](std::size_t i) {
       const Chunk& chunk = chunks[first + i];
       project_chunk(asset, source[asset.instances()[chunk.instance].mesh], projection, chunk, parts[i]);
     });
-    for (const raster::ScreenSoup& part : parts) raster::draw_soup(part, out);
+    for (const draw::ScreenSoup& part : parts) draw::draw_soup(part, out);
   }
   return out;
 }
 
-}  // namespace meshlode::gpu
+}  // namespace meshlode::judge

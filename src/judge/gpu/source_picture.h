@@ -12,7 +12,7 @@
 #include "draw/raster/raster.h"
 #include "run/read/asset.h"
 
-namespace meshlode::gpu {
+namespace meshlode::judge {
 
 /// One mesh of the source, mesh space.
 struct SourceSurface {
@@ -25,15 +25,15 @@ struct SourceSurface {
 };
 
 /// Every mesh of the scene, in order.
-[[nodiscard]] std::vector<SourceSurface> source_surfaces(const Scene& scene);
+[[nodiscard]] std::vector<SourceSurface> source_surfaces(const scene::Scene& scene);
 
 /// The source drawn for each instance of the asset, as draw_cut() draws the asset: culled by side, opaque. Items are
 /// instances, triangles those of their mesh's surface. Meshes that `source` does not have are not drawn.
-[[nodiscard]] VisibilityBuffer draw_source(const Asset& asset, std::span<const SourceSurface> source,
-                                           const raster::Projection& projection);
+[[nodiscard]] draw::VisibilityBuffer draw_source(const run::Asset& asset, std::span<const SourceSurface> source,
+                                           const draw::Projection& projection);
 
 /// Corner `k` of a triangle of the source as it was drawn.
-[[nodiscard]] raster::ClipVertex project_source(const raster::Projection& projection,
+[[nodiscard]] draw::ClipVertex project_source(const draw::Projection& projection,
                                                 const format::InstanceRecord& instance, const Vec3d& position);
 
-}  // namespace meshlode::gpu
+}  // namespace meshlode::judge

@@ -10,7 +10,7 @@
 #include "judge/gpu/compare_frame.h"
 #include "judge/gpu/judge_picture.h"
 
-namespace meshlode::gpu {
+namespace meshlode::judge {
 
 namespace {
 
@@ -38,7 +38,7 @@ Status write_maps(const GpuVerifyOptions& options, const PictureReport& picture,
   if (options.out_folder.empty()) return Ok{};
   OutputFiles own;
   OutputFiles& files = options.files != nullptr ? *options.files : own;
-  const Camera& camera = judged.camera.camera;
+  const run::Camera& camera = judged.camera.camera;
   std::string name = judged.camera.name;
   std::replace(name.begin(), name.end(), ' ', '-');
   name += "-" + std::to_string(camera.width) + "x" + std::to_string(camera.height) + ".png";
@@ -50,30 +50,30 @@ Status write_maps(const GpuVerifyOptions& options, const PictureReport& picture,
               {"depth-", picture.depth_difference, 0.01},
               {"normal-", picture.normal_degrees, 30.0}};
   for (const auto& map : maps) {
-    const Image image = heat_map(map.values, camera.width, camera.height, static_cast<float>(map.full));
-    if (const Status s = files.write(options.out_folder + "/" + map.kind + name, encode_png(image)); !s) return s;
+    const draw::Image image = heat_map(map.values, camera.width, camera.height, static_cast<float>(map.full));
+    if (const Status s = files.write(options.out_folder + "/" + map.kind + name, draw::encode_png(image)); !s) return s;
     judged.maps.push_back(map.kind + name);
   }
   return Ok{};
 }
 
 /// Every cluster by the hardware, from the adversarial cameras and those of the path.
-Status judge_hardware(Device& device, const GpuScene& scene, const Asset& asset, const GpuVerifyOptions& options,
+Status judge_hardware(draw::Device& device, const draw::GpuScene& scene, const run::Asset& asset, const GpuVerifyOptions& options,
                       bool by_mesh_shaders, GpuCheck& check) {
   check.is_skipped = by_mesh_shaders && !device.info().has_mesh_shaders;
   if (check.is_skipped) {
     check.what += " (the device has none)";
     return Ok{};
   }
-  RendererOptions raster;
+  draw::RendererOptions raster;
   raster.width = options.sizes[0].width;
   raster.height = options.sizes[0].height;
   raster.frustum = false;
   raster.double_sided = scene.has_double_sided;
   raster.alpha_mask = scene.has_alpha_mask;
-  raster.hardware = by_mesh_shaders ? HardwarePath::kMesh : HardwarePath::kVertex;
+  raster.hardware = by_mesh_shaders ? draw::HardwarePath::kMesh : draw::HardwarePath::kVertex;
   raster.hardware_pixels = 0.0F;
-  auto renderer = Renderer::make(device, scene, raster);
+  auto renderer = draw::Renderer::make(device, scene, raster);
   if (!renderer) return renderer.error();
   std::vector<NamedCamera> cameras = adversarial_cameras(asset, raster.width, raster.height);
   for (NamedCamera named : options.path) {
@@ -126,12 +126,12 @@ bool is_closed(const Surface& surface) {
 
 }  // namespace
 
-Result<GpuVerifyReport> verify_on_gpu(const Asset& asset, const Scene& source,
+Result<GpuVerifyReport> verify_on_gpu(const run::Asset& asset, const scene::Scene& source,
                                       const GpuVerifyOptions& options) {
-  auto device = Device::open(options.device);
+  auto device = draw::Device::open(options.device);
   if (!device) return device.error();
-  ImageBudget images(options.max_decoded);
-  auto scene = upload_scene(*device, asset, {}, {}, &images);
+  draw::ImageBudget images(options.max_decoded);
+  auto scene = draw::upload_scene(*device, asset, {}, {}, &images);
   if (!scene) return scene.error();
   GpuVerifyReport out;
   out.device = device->info();
@@ -163,21 +163,21 @@ Result<GpuVerifyReport> verify_on_gpu(const Asset& asset, const Scene& source,
   GpuCheck by_vertex{"V407", "I9", "hardware raster, vertices pulled: pixels as the specification allows"};
   GpuCheck by_mesh{"V408", "I9", "hardware raster, mesh shaders: pixels as the specification allows"};
   const bool has_holes_rule = has_promise && all_closed && !scene->has_alpha_mask;
-  const auto every_cluster = decode_all(asset);
+  const auto every_cluster = run::decode_all(asset);
   if (!every_cluster) return every_cluster.error();
   const PictureSource truth{meshes, *every_cluster, tolerance};
 
-  RendererOptions plain;
+  draw::RendererOptions plain;
   plain.width = options.sizes[0].width;
   plain.height = options.sizes[0].height;
   plain.frustum = false;
   plain.double_sided = scene->has_double_sided;
   plain.alpha_mask = scene->has_alpha_mask;
-  RendererOptions culling = plain;
+  draw::RendererOptions culling = plain;
   culling.frustum = culling.occlusion = true;
-  auto renderer = Renderer::make(*device, *scene, plain);
+  auto renderer = draw::Renderer::make(*device, *scene, plain);
   if (!renderer) return renderer.error();
-  auto culler = Renderer::make(*device, *scene, culling);
+  auto culler = draw::Renderer::make(*device, *scene, culling);
   if (!culler) return culler.error();
   for (GpuCheck* check : {&by_vertex, &by_mesh}) {
     if (const Status s = judge_hardware(*device, *scene, asset, options, check == &by_mesh, *check); !s) return s.error();
@@ -249,4 +249,4 @@ Result<GpuVerifyReport> verify_on_gpu(const Asset& asset, const Scene& source,
   return out;
 }
 
-}  // namespace meshlode::gpu
+}  // namespace meshlode::judge

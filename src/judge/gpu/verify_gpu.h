@@ -16,20 +16,20 @@
 #include "judge/metrics/metrics.h"
 #include "run/read/limits.h"
 
-namespace meshlode::gpu {
+namespace meshlode::judge {
 
 struct PictureSize {
   std::uint32_t width = 0, height = 0;
 };
 
 struct GpuVerifyOptions {
-  DeviceOptions device;
+  draw::DeviceOptions device;
   std::uint32_t orbits = 6;       ///< cameras around the scene, beside the adversarial ones
   std::vector<NamedCamera> path;  ///< a fly-through, judged as the others are
   double pixel_error = 1.0;
   /// Pictures of each camera; hardware raster draws the first. One has odd sides. \pre not empty
   std::vector<PictureSize> sizes = {{640, 360}, {321, 243}, {128, 512}};
-  std::uint64_t max_decoded = kDefaultMaxDecoded;  ///< bytes of decoded images
+  std::uint64_t max_decoded = run::kDefaultMaxDecoded;  ///< bytes of decoded images
   /// Heat maps (PNG) of the camera with the largest share of its allowance at each size, and of each that failed; empty: none.
   std::string out_folder;
   OutputFiles* files = nullptr;  ///< what they are written by; null: by an object of their own
@@ -50,7 +50,7 @@ struct GpuCheck {
 };
 
 struct GpuVerifyReport {
-  DeviceInfo device;
+  draw::DeviceInfo device;
   std::vector<GpuCheck> checks;
   double largest_px = 0.0, largest_share = 0.0;  ///< of all cameras: PictureReport's
   std::vector<JudgedCamera> cameras;
@@ -59,7 +59,7 @@ struct GpuVerifyReport {
 
 /// `source`: what the asset was built from; without meshes no picture is judged by it. Errors: kUnsupported without a
 /// device, kInvalid for a broken page.
-[[nodiscard]] Result<GpuVerifyReport> verify_on_gpu(const Asset& asset, const Scene& source,
+[[nodiscard]] Result<GpuVerifyReport> verify_on_gpu(const run::Asset& asset, const scene::Scene& source,
                                                     const GpuVerifyOptions& options);
 
-}  // namespace meshlode::gpu
+}  // namespace meshlode::judge

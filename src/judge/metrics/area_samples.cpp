@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace meshlode {
+namespace meshlode::judge {
 namespace {
 
 // Uniform in [0, 1): a hash of seed, sample and draw (splitmix64's mixer).
@@ -61,4 +61,4 @@ std::vector<std::uint32_t> used_vertices(const Surface& surface) {
   return used;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

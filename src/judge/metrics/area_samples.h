@@ -8,7 +8,7 @@
 
 #include "judge/metrics/metrics.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 
 struct SurfacePoint {
   std::uint32_t triangle = 0;
@@ -36,4 +36,4 @@ class AreaSamples {
 /// The vertices that triangles use, ascending.
 [[nodiscard]] std::vector<std::uint32_t> used_vertices(const Surface& surface);
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

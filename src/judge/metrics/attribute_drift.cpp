@@ -12,7 +12,7 @@
 #include "judge/metrics/seams.h"
 #include "judge/metrics/triangle_tree.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 namespace {
 
 constexpr std::size_t kChunk = 1024;
@@ -211,10 +211,10 @@ OneWayDrift summarize(std::vector<double> samples, const std::vector<double>& at
   return out;
 }
 
-std::array<std::optional<Field>, 1 + kMaxUvSets> make_fields(const ShadedSurface& s) {
-  std::array<std::optional<Field>, 1 + kMaxUvSets> fields;
+std::array<std::optional<Field>, 1 + scene::kMaxUvSets> make_fields(const ShadedSurface& s) {
+  std::array<std::optional<Field>, 1 + scene::kMaxUvSets> fields;
   if (!s.normals.empty()) fields[0].emplace(make_field(s.surface, unit_normals(s.normals), true));
-  for (std::size_t n = 0; n < kMaxUvSets; ++n) {
+  for (std::size_t n = 0; n < scene::kMaxUvSets; ++n) {
     if (!s.uvs[n].empty()) fields[1 + n].emplace(make_field(s.surface, lifted(s.uvs[n]), false));
   }
   return fields;
@@ -226,7 +226,7 @@ struct DriftSurface::Parts {
   explicit Parts(ShadedSurface s) : shaded(std::move(s)), tree(shaded.surface), fields(make_fields(shaded)) {}
   ShadedSurface shaded;
   TriangleTree tree;
-  std::array<std::optional<Field>, 1 + kMaxUvSets> fields;  ///< normals, then UV sets
+  std::array<std::optional<Field>, 1 + scene::kMaxUvSets> fields;  ///< normals, then UV sets
 };
 
 DriftSurface::DriftSurface(ShadedSurface surface) : parts_(std::make_unique<Parts>(std::move(surface))) {}
@@ -289,4 +289,4 @@ DriftReport measure_drift(const DriftSurface& a, const DriftSurface& b, const Dr
   return {ab.normal, ba.normal, ab.uv, ba.uv};
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

@@ -13,7 +13,7 @@
 
 #include "judge/metrics/shaded_surface.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 
 struct DriftOptions {
   std::uint64_t samples = 200000;  ///< area-uniform samples each way; used vertices count for the maximum on top
@@ -51,4 +51,4 @@ class DriftSurface {
 /// Attributes that only one of the two has are left out.
 [[nodiscard]] DriftReport measure_drift(const DriftSurface& a, const DriftSurface& b, const DriftOptions& options);
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

@@ -5,16 +5,16 @@
 
 #include "judge/metrics/triangle_area.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 
-Surface surface_of_clusters(const Asset& asset, std::span<const DecodedCluster> decoded, MeshId mesh,
+Surface surface_of_clusters(const run::Asset& asset, std::span<const run::DecodedCluster> decoded, MeshId mesh,
                             std::span<const ClusterId> clusters) {
   const format::MeshRecord& record = asset.meshes()[mesh.value];
   const Vec3d origin(record.origin[0], record.origin[1], record.origin[2]);
   const double step = std::ldexp(static_cast<double>(record.grid.mantissa), record.grid.log2);
   Surface surface;
   for (const ClusterId id : clusters) {
-    const DecodedCluster& cluster = decoded[id.value];
+    const run::DecodedCluster& cluster = decoded[id.value];
     const std::uint32_t base = static_cast<std::uint32_t>(surface.positions.size());
     for (std::uint32_t v = 0; v < cluster.vertex_count; ++v) {
       surface.positions.push_back(origin + Vec3d(cluster.position(v)) * step);
@@ -24,9 +24,9 @@ Surface surface_of_clusters(const Asset& asset, std::span<const DecodedCluster> 
   return surface;
 }
 
-Surface surface_of_source(const SourceMesh& mesh) {
+Surface surface_of_source(const scene::SourceMesh& mesh) {
   Surface surface;
-  for (const Primitive& primitive : mesh.primitives) {
+  for (const scene::Primitive& primitive : mesh.primitives) {
     const auto base = static_cast<std::uint32_t>(surface.positions.size());
     surface.positions.insert(surface.positions.end(), primitive.positions.begin(), primitive.positions.end());
     for (std::size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
@@ -39,4 +39,4 @@ Surface surface_of_source(const SourceMesh& mesh) {
   return surface;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

@@ -10,7 +10,7 @@
 #include "judge/metrics/area_samples.h"
 #include "judge/metrics/triangle_tree.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 namespace {
 
 constexpr std::size_t kChunk = 1024;  // queries that share a hint and a partial sum, whatever the thread count
@@ -70,4 +70,4 @@ DeviationReport measure_deviation(const Surface& a, const Surface& b, const Devi
   return {measure_one_way(a, b, tree_b, options), measure_one_way(b, a, tree_a, options)};
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

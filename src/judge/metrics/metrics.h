@@ -14,7 +14,7 @@
 #include "scene/scene.h"
 #include "run/read/asset.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 
 /// A triangle soup: any triangles, those without area too; every index is below positions.size(), positions finite.
 struct Surface {
@@ -46,11 +46,11 @@ struct DeviationReport {
 
 /// Clusters of one mesh as a surface in mesh space (origin included), exactly as decoded. `decoded` has every cluster
 /// of the asset, as decode_all gives them.
-[[nodiscard]] Surface surface_of_clusters(const Asset& asset, std::span<const DecodedCluster> decoded, MeshId mesh,
+[[nodiscard]] Surface surface_of_clusters(const run::Asset& asset, std::span<const run::DecodedCluster> decoded, MeshId mesh,
                                           std::span<const ClusterId> clusters);
 
 /// The source: the triangles that have area, exactly (docs/format.md, "The source"), all primitives of the mesh
 /// together, as read.
-[[nodiscard]] Surface surface_of_source(const SourceMesh& mesh);
+[[nodiscard]] Surface surface_of_source(const scene::SourceMesh& mesh);
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

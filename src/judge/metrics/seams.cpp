@@ -5,7 +5,7 @@
 #include <numeric>
 #include <tuple>
 
-namespace meshlode {
+namespace meshlode::judge {
 namespace {
 
 /// Equal numbers for equal positions.
@@ -70,4 +70,4 @@ std::vector<std::uint8_t> find_seams(const Surface& surface, const std::vector<V
   return seams;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

@@ -8,7 +8,7 @@
 
 #include "judge/metrics/shaded_surface.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 
 /// Per triangle: bit k is set where the edge from corner k to corner k + 1 is a seam of the attribute. Edges are the
 /// same where their end positions are; an edge that one triangle has alone is no seam. `value` gives an attribute by
@@ -16,4 +16,4 @@ namespace meshlode {
 [[nodiscard]] std::vector<std::uint8_t> find_seams(const Surface& surface, const std::vector<Vec3f>& values,
                                                    float tolerance);
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

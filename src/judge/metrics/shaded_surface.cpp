@@ -5,7 +5,7 @@
 
 #include "judge/metrics/triangle_area.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 namespace {
 
 // Triangles from `first` on get vertices of their own with the geometric normal; without area it is unknown.
@@ -33,14 +33,14 @@ void shade_flat(ShadedSurface& out, std::size_t first_triangle) {
 
 }  // namespace
 
-ShadedSurface shaded_surface_of_source(const SourceMesh& mesh) {
+ShadedSurface shaded_surface_of_source(const scene::SourceMesh& mesh) {
   const float unknown = std::numeric_limits<float>::quiet_NaN();
   ShadedSurface out;
-  std::array<bool, kMaxUvSets> has_uvs{};
-  for (const Primitive& p : mesh.primitives) {
-    for (std::size_t n = 0; n < kMaxUvSets; ++n) has_uvs[n] = has_uvs[n] || !p.uvs[n].empty();
+  std::array<bool, scene::kMaxUvSets> has_uvs{};
+  for (const scene::Primitive& p : mesh.primitives) {
+    for (std::size_t n = 0; n < scene::kMaxUvSets; ++n) has_uvs[n] = has_uvs[n] || !p.uvs[n].empty();
   }
-  for (const Primitive& p : mesh.primitives) {
+  for (const scene::Primitive& p : mesh.primitives) {
     Surface& s = out.surface;
     const auto base = static_cast<std::uint32_t>(s.positions.size());
     const std::size_t first_triangle = s.triangles.size();
@@ -50,7 +50,7 @@ ShadedSurface shaded_surface_of_source(const SourceMesh& mesh) {
       if (!has_area(p.positions[corner[0]], p.positions[corner[1]], p.positions[corner[2]])) continue;
       s.triangles.push_back({base + corner[0], base + corner[1], base + corner[2]});
     }
-    for (std::size_t n = 0; n < kMaxUvSets; ++n) {
+    for (std::size_t n = 0; n < scene::kMaxUvSets; ++n) {
       if (!has_uvs[n]) continue;
       out.uvs[n].insert(out.uvs[n].end(), p.uvs[n].begin(), p.uvs[n].end());
       out.uvs[n].resize(s.positions.size(), Vec2f(unknown));
@@ -62,17 +62,17 @@ ShadedSurface shaded_surface_of_source(const SourceMesh& mesh) {
   return out;
 }
 
-ShadedSurface shaded_surface_of_clusters(const Asset& asset, std::span<const DecodedCluster> decoded, MeshId mesh,
+ShadedSurface shaded_surface_of_clusters(const run::Asset& asset, std::span<const run::DecodedCluster> decoded, MeshId mesh,
                                          std::span<const ClusterId> clusters) {
   const format::MeshRecord& record = asset.meshes()[mesh.value];
   ShadedSurface out;
   out.surface = surface_of_clusters(asset, decoded, mesh, clusters);
-  ClusterAttributes attributes;
+  run::ClusterAttributes attributes;
   for (const ClusterId id : clusters) {
-    decode_attributes(record, decoded[id.value], attributes);
+    run::decode_attributes(record, decoded[id.value], attributes);
     out.normals.insert(out.normals.end(), attributes.normals.begin(), attributes.normals.end());
     for (std::uint32_t k = 0; k < record.uv_set_count; ++k) {
-      auto& set = out.uvs[record.uv_set_source[k] % kMaxUvSets];
+      auto& set = out.uvs[record.uv_set_source[k] % scene::kMaxUvSets];
       set.insert(set.end(), attributes.uvs[k].begin(), attributes.uvs[k].end());
     }
   }
@@ -83,4 +83,4 @@ ShadedSurface shaded_surface_of_clusters(const Asset& asset, std::span<const Dec
   return out;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

@@ -11,23 +11,23 @@
 #include "scene/scene.h"
 #include "judge/metrics/metrics.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 
 /// Vertices with other attributes are other vertices. Arrays are empty or as long as surface.positions; an entry that
 /// is not finite is unknown there.
 struct ShadedSurface {
   Surface surface;
   std::vector<Vec3f> normals;                      ///< of any length above 0
-  std::array<std::vector<Vec2f>, kMaxUvSets> uvs;  ///< by TEXCOORD_n
+  std::array<std::vector<Vec2f>, scene::kMaxUvSets> uvs;  ///< by TEXCOORD_n
 };
 
 /// Triangles with area alone, as surface_of_source. A primitive without normals is shaded flat (glTF 2.0, 3.7.2.1): its
 /// triangles get vertices of their own.
-[[nodiscard]] ShadedSurface shaded_surface_of_source(const SourceMesh& mesh);
+[[nodiscard]] ShadedSurface shaded_surface_of_source(const scene::SourceMesh& mesh);
 
 /// Clusters of one mesh as decoded, in mesh space (origin included). No normals where the asset has none by option, a
 /// flat normal per triangle where it says flat. UV sets lie where the source had them.
-[[nodiscard]] ShadedSurface shaded_surface_of_clusters(const Asset& asset, std::span<const DecodedCluster> decoded,
+[[nodiscard]] ShadedSurface shaded_surface_of_clusters(const run::Asset& asset, std::span<const run::DecodedCluster> decoded,
                                                        MeshId mesh, std::span<const ClusterId> clusters);
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

@@ -11,7 +11,7 @@
 #include <cstdint>
 #include <utility>
 
-namespace meshlode {
+namespace meshlode::judge {
 namespace {
 
 __extension__ using UInt128 = unsigned __int128;
@@ -89,4 +89,4 @@ bool has_area(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   return !std::all_of(kPlanes.begin(), kPlanes.end(), [&](const Axes& axes) { return is_exactly_flat(a, b, c, axes); });
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

@@ -5,9 +5,9 @@
 
 #include "base/vec.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 
 /// False if the corners lie on one line or at one point, exactly. \pre all finite
 [[nodiscard]] bool has_area(const Vec3d& a, const Vec3d& b, const Vec3d& c);
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

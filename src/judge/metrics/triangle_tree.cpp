@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace meshlode {
+namespace meshlode::judge {
 namespace {
 
 constexpr std::uint32_t kLeafSize = 4;
@@ -256,4 +256,4 @@ void TriangleTree::find_within(const Vec3d& point, double distance2, std::vector
   found.erase(end, found.end());
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

@@ -8,7 +8,7 @@
 
 #include "judge/metrics/metrics.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 
 struct NearestPoint {
   double distance2 = std::numeric_limits<double>::infinity();
@@ -55,4 +55,4 @@ class TriangleTree {
   std::vector<std::uint32_t> place_;     ///< surface -> leaf order, a place of several
 };
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

@@ -8,7 +8,7 @@
 
 #include "base/disjoint_sets.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 
 namespace {
 
@@ -158,4 +158,4 @@ std::string refuse_exchange(const MeshSurface& surface, const BorderSet& border,
          " holes more than the finer set, of which one may be at " + edge_text(surface, exchanges.back().edge);
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

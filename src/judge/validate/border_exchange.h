@@ -10,7 +10,7 @@
 #include "judge/validate/borders.h"
 #include "judge/validate/surface.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 
 /// What changes on an edge: the part of the finer use that goes and the part of the coarser one that comes. Uses of one
 /// sign cancel as far as they agree.
@@ -39,4 +39,4 @@ struct ClusterSet {
                                           std::span<const Exchange> exchanges, const ClusterSet& finer,
                                           const ClusterSet& coarser);
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

@@ -8,7 +8,7 @@
 
 #include "judge/validate/border_exchange.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 
 namespace {
 
@@ -20,7 +20,7 @@ std::vector<std::uint32_t> members_of(const MeshSurface& surface, const GroupRec
   return members;
 }
 
-ClusterSet set_of(const MeshSurface& surface, std::span<const DecodedCluster> clusters,
+ClusterSet set_of(const MeshSurface& surface, std::span<const run::DecodedCluster> clusters,
                   std::span<const std::uint32_t> members) {
   ClusterSet set;
   set.chain = sum_chains(surface, members);
@@ -33,7 +33,7 @@ ClusterSet set_of(const MeshSurface& surface, std::span<const DecodedCluster> cl
   return set;
 }
 
-std::vector<std::uint32_t> groups_from_fine_to_coarse(const Asset& asset, const MeshSurface& surface) {
+std::vector<std::uint32_t> groups_from_fine_to_coarse(const run::Asset& asset, const MeshSurface& surface) {
   std::vector<std::uint32_t> order(surface.group_count);
   std::iota(order.begin(), order.end(), surface.first_group);
   std::stable_sort(order.begin(), order.end(),
@@ -43,7 +43,7 @@ std::vector<std::uint32_t> groups_from_fine_to_coarse(const Asset& asset, const 
 
 }  // namespace
 
-BorderProof prove_borders(const Asset& asset, const MeshSurface& surface, std::span<const DecodedCluster> clusters) {
+BorderProof prove_borders(const run::Asset& asset, const MeshSurface& surface, std::span<const run::DecodedCluster> clusters) {
   BorderProof proof;
   BorderSet& border = proof.border;
   border.plus.assign(surface.edges.size(), 0);
@@ -109,7 +109,7 @@ std::vector<Wedge> wedges_at(const MeshSurface& surface, std::span<const std::ui
 /// Calls visit(edge, lower vertex, higher vertex) for each use of one of `edges` (ascending) by a triangle of the
 /// clusters.
 template <class Visit>
-void for_each_use(const MeshSurface& surface, std::span<const DecodedCluster> clusters,
+void for_each_use(const MeshSurface& surface, std::span<const run::DecodedCluster> clusters,
                   std::span<const std::uint32_t> members, std::span<const std::uint32_t> edges, const Visit& visit) {
   for (const std::uint32_t c : members) {
     const std::uint32_t base = surface.first_vertex[c];
@@ -130,8 +130,8 @@ void for_each_use(const MeshSurface& surface, std::span<const DecodedCluster> cl
 
 }  // namespace
 
-std::vector<BorderViolation> check_shared_attributes(const Asset& asset, const MeshSurface& surface,
-                                                     std::span<const DecodedCluster> clusters,
+std::vector<BorderViolation> check_shared_attributes(const run::Asset& asset, const MeshSurface& surface,
+                                                     std::span<const run::DecodedCluster> clusters,
                                                      const BorderSet& border) {
   std::vector<BorderViolation> out;
   std::vector<std::uint32_t> kept;
@@ -185,4 +185,4 @@ std::vector<BorderViolation> check_shared_attributes(const Asset& asset, const M
   return out;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

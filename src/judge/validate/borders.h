@@ -15,7 +15,7 @@
 
 #include "judge/validate/surface.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 
 /// Signed multiplicities of the source's border and of what replaced it, per edge of the surface.
 struct BorderSet {
@@ -40,14 +40,14 @@ struct BorderProof {
 };
 
 /// \pre `clusters` is decode_all of the asset
-[[nodiscard]] BorderProof prove_borders(const Asset& asset, const MeshSurface& surface,
-                                        std::span<const DecodedCluster> clusters);
+[[nodiscard]] BorderProof prove_borders(const run::Asset& asset, const MeshSurface& surface,
+                                        std::span<const run::DecodedCluster> clusters);
 
 /// Attributes on shared borders (I3, L506). A border edge that a group shares is drawn by its neighbours too, so what
 /// the coarser set has at its ends must be what the finer set has there. At a seam a position has several wedges, and
 /// the edge may come to use another of them. At most one violation per group, ascending.
-[[nodiscard]] std::vector<BorderViolation> check_shared_attributes(const Asset& asset, const MeshSurface& surface,
-                                                                   std::span<const DecodedCluster> clusters,
+[[nodiscard]] std::vector<BorderViolation> check_shared_attributes(const run::Asset& asset, const MeshSurface& surface,
+                                                                   std::span<const run::DecodedCluster> clusters,
                                                                    const BorderSet& border);
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

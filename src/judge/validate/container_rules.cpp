@@ -10,7 +10,7 @@
 #include "run/read/limits.h"
 #include "judge/validate/file_tables.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 
 namespace {
 
@@ -162,11 +162,11 @@ bool check_section(const FileTables& file, const SectionEntry& entry, RuleLog& l
 
   log.expect(entry.version == 0, "L009", where, [&] { return "version " + std::to_string(entry.version); });
   const bool is_raw = known->id == SectionId::kPageData || known->id == SectionId::kBlobData;
-  const bool is_packed = !is_raw && entry.codec == static_cast<std::uint32_t>(SectionCodec::kColumns);
-  bool sound = log.expect(is_packed || entry.codec == static_cast<std::uint32_t>(SectionCodec::kNone), "L009", where,
+  const bool is_packed = !is_raw && entry.codec == static_cast<std::uint32_t>(format::SectionCodec::kColumns);
+  bool sound = log.expect(is_packed || entry.codec == static_cast<std::uint32_t>(format::SectionCodec::kPlain), "L009", where,
                           [&] { return "codec " + std::to_string(entry.codec); });
   if (known->id != SectionId::kPageData) {
-    sound &= log.expect(is_packed ? entry.decoded_bytes > 0 && entry.decoded_bytes / kMaxSectionRatio <= entry.bytes
+    sound &= log.expect(is_packed ? entry.decoded_bytes > 0 && entry.decoded_bytes / format::kMaxSectionRatio <= entry.bytes
                                   : entry.decoded_bytes == entry.bytes,
                         "L011", where,
                         [&] { return differs("bytes", entry.bytes, "decoded_bytes", entry.decoded_bytes); });
@@ -193,16 +193,16 @@ bool check_section(const FileTables& file, const SectionEntry& entry, RuleLog& l
 /// The section's bytes, decoded where it is stored by columns; `file` keeps them.
 std::span<const std::uint8_t> section_bytes(FileTables& file, const SectionEntry& entry, bool& is_broken) {
   const auto stored = file.bytes.subspan(entry.offset, entry.bytes);
-  if (entry.codec == static_cast<std::uint32_t>(SectionCodec::kNone)) return stored;
+  if (entry.codec == static_cast<std::uint32_t>(format::SectionCodec::kPlain)) return stored;
   std::uint64_t before = 0;
   for (const std::vector<std::uint8_t>& other : file.decoded) before += other.size();
-  if (!is_section_sound(stored, entry.record_bytes, entry.decoded_bytes) ||
-      entry.decoded_bytes > decoded_limit(file.bytes.size(), kDefaultMaxDecoded) - before) {
+  if (!format::is_section_sound(stored, entry.record_bytes, entry.decoded_bytes) ||
+      entry.decoded_bytes > run::decoded_limit(file.bytes.size(), run::kDefaultMaxDecoded) - before) {
     is_broken = true;
     return {};
   }
   std::vector<std::uint8_t>& decoded = file.decoded.emplace_back(entry.decoded_bytes);
-  is_broken |= !decode_section(stored, entry.record_bytes, decoded);
+  is_broken |= !format::decode_section(stored, entry.record_bytes, decoded);
   return decoded;
 }
 
@@ -273,4 +273,4 @@ std::optional<FileTables> read_tables(std::span<const std::uint8_t> bytes, RuleL
   return file;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

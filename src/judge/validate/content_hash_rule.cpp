@@ -5,7 +5,7 @@
 #include "base/hash.h"
 #include "judge/validate/file_tables.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 
 namespace {
 
@@ -83,4 +83,4 @@ void check_content_hash(const FileTables& file, std::span<const std::span<const 
       [] { return std::string("header"); }, [] { return std::string("content_hash is not that of the content"); });
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

@@ -10,7 +10,7 @@
 #include "judge/validate/file_tables.h"
 #include "judge/validate/margin.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 
 namespace {
 
@@ -34,7 +34,7 @@ bool is_ball(const ExactBall& b) {
 }
 
 bool is_terminal(const GroupRecord& group) {
-  return (group.flags & kGroupTerminal) != 0;
+  return (group.flags & format::kGroupTerminal) != 0;
 }
 
 // A renderer compares these with a bound. Measured for some groups of a mesh alone they would be no bound for the others.
@@ -47,10 +47,10 @@ void check_attribute_deviation(const char* name, float value, bool is_terminal_g
     return;
   }
   if (is_terminal_group) {
-    log.expect(value == kInfiniteError, "L312", at, [&] { return detail(" in a terminal group"); });
+    log.expect(value == format::kInfiniteError, "L312", at, [&] { return detail(" in a terminal group"); });
     return;
   }
-  const bool is_here = value != kInfiniteError;
+  const bool is_here = value != format::kInfiniteError;
   if (!is_measured) is_measured = is_here;
   log.expect(*is_measured == is_here, "L312", at, [&] { return detail(": measured in some groups of the mesh alone"); });
 }
@@ -60,13 +60,13 @@ void check_attribute_deviation(const char* name, float value, bool is_terminal_g
 template <class Place>
 void check_deviation(const GroupRecord& group, bool is_terminal_group, double margin, const Place& at, RuleLog& log) {
   if (is_terminal_group) {
-    log.expect(group.deviation == kInfiniteError, "L311", at,
+    log.expect(group.deviation == format::kInfiniteError, "L311", at,
                [&] { return "deviation is " + std::to_string(group.deviation) + " in a terminal group"; });
     return;
   }
   constexpr double kRounding = 1.0 + 0x1p-22;
   const double needed = std::min(margin * double{group.deviation}, kLargestError);
-  log.expect(group.deviation >= 0.0F && !std::signbit(group.deviation) && group.deviation < kInfiniteError &&
+  log.expect(group.deviation >= 0.0F && !std::signbit(group.deviation) && group.deviation < format::kInfiniteError &&
                  needed <= kRounding * double{group.error},
              "L311", at, [&] {
                return differs("deviation", double{group.deviation}, "error", double{group.error}) + "; the margin is " +
@@ -91,7 +91,7 @@ void check_groups(const FileTables& file, RuleLog& log) {
     std::vector<std::uint32_t> made(mesh.group_count, 0);
     for (std::uint32_t k = 0; k < mesh.cluster_count; ++k) {
       const std::uint32_t own = file.clusters[mesh.first_cluster + k].own_group;
-      if (own != kNone) ++made[own - mesh.first_group];
+      if (own != format::kNone) ++made[own - mesh.first_group];
     }
     std::optional<bool> is_normal_measured, is_uv_measured;  // by the first group that is not terminal
     std::uint32_t level_before = 0xFFFFU;
@@ -112,8 +112,8 @@ void check_groups(const FileTables& file, RuleLog& log) {
       level_before = group.level;
 
       const bool terminal = is_terminal(group);
-      const bool stuck = (group.flags & kGroupStuck) != 0;
-      log.expect(terminal == (group.error == kInfiniteError), "L305", at, [&] {
+      const bool stuck = (group.flags & format::kGroupStuck) != 0;
+      log.expect(terminal == (group.error == format::kInfiniteError), "L305", at, [&] {
         return std::string(terminal ? "terminal with a finite error" : "infinite error and not terminal");
       });
       log.expect(!stuck || terminal, "L305", at, [] { return std::string("stuck and not terminal"); });
@@ -131,10 +131,10 @@ void check_groups(const FileTables& file, RuleLog& log) {
                  [&] { return std::string("error is neither 0 nor at least 2^-100"); });
       log.expect(is_ball(ball_of(group)), "L308", at, [] { return std::string("sphere is not finite or negative"); });
       log.expect(std::isfinite(group.quadric_error) && group.quadric_error >= 0.0F &&
-                     terminal == (group.quadric_error == kInfiniteError),
+                     terminal == (group.quadric_error == format::kInfiniteError),
                  "L311", at, [&] { return "quadric_error is " + std::to_string(group.quadric_error); });
       if (mesh.error_tier == format::ErrorTier::kQem) {
-        log.expect(group.deviation == kInfiniteError, "L311", at,
+        log.expect(group.deviation == format::kInfiniteError, "L311", at,
                    [] { return std::string("the qem tier measures nothing, yet a deviation is stored"); });
       } else {
         check_deviation(group, terminal, margin, at, log);
@@ -149,13 +149,13 @@ void check_cluster(const FileTables& file, std::size_t m, std::size_t c, RuleLog
   const ClusterRecord& cluster = file.clusters[c];
   const GroupRecord& coarser = file.groups[cluster.coarser_group];
   const auto at = [&] { return place("mesh", m, "cluster", c); };
-  log.expect((cluster.level == 0) == (cluster.own_group == kNone), "L301", at, [&] {
-    return "level " + std::to_string(cluster.level) + (cluster.own_group == kNone ? " without" : " with") +
+  log.expect((cluster.level == 0) == (cluster.own_group == format::kNone), "L301", at, [&] {
+    return "level " + std::to_string(cluster.level) + (cluster.own_group == format::kNone ? " without" : " with") +
            " an own group";
   });
   log.expect(c >= coarser.first_cluster && c - coarser.first_cluster < coarser.cluster_count, "L302", at,
              [&] { return "is not a member of its " + place("coarser group", cluster.coarser_group); });
-  const bool is_level0 = cluster.own_group == kNone;
+  const bool is_level0 = cluster.own_group == format::kNone;
   // Both ends of what a replacement moves lie in the LOD sphere: the finest surface, and what was made of it.
   const std::uint32_t around = is_level0 ? cluster.coarser_group : cluster.own_group;
   const ExactBall lod = ball_of(file.groups[around]);
@@ -208,4 +208,4 @@ void check_dag(const FileTables& file, RuleLog& log) {
   }
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace meshlode {
+namespace meshlode::judge {
 
 namespace {
 
@@ -102,4 +102,4 @@ int sign_of_dot(const Vec3d& a, const Vec3d& b) {
   return value.sign();
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

@@ -5,7 +5,7 @@
 
 #include "base/vec.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 
 struct ExactBall {
   float center[3];
@@ -19,4 +19,4 @@ struct ExactBall {
 /// Sign of sum(terms[i].x * terms[i].y): -1, 0 or 1. For tests.
 [[nodiscard]] int sign_of_dot(const Vec3d& a, const Vec3d& b);
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

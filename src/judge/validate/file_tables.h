@@ -15,7 +15,7 @@
 #include "base/hash.h"
 #include "judge/validate/rules.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 
 struct FileTables {
   std::span<const std::uint8_t> bytes;
@@ -64,4 +64,4 @@ void check_dag(const FileTables& file, RuleLog& log);
 /// L401 … L404. \pre check_tables()
 void check_trees(const FileTables& file, RuleLog& log);
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

@@ -12,7 +12,7 @@
 #include "judge/validate/exact.h"
 #include "judge/validate/surface.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 
 namespace {
 
@@ -50,13 +50,13 @@ bool cone_holds(const format::ClusterRecord& cluster, const Int64Vec3& n) {
 
 class MeshGeometry {
  public:
-  MeshGeometry(const Asset& asset, std::size_t mesh, std::span<const DecodedCluster> clusters, RuleLog& log)
+  MeshGeometry(const run::Asset& asset, std::size_t mesh, std::span<const run::DecodedCluster> clusters, RuleLog& log)
       : asset_(asset),
         m_(mesh),
         mesh_(asset.meshes()[mesh]),
         clusters_(clusters),
         log_(log),
-        step_(exp2_exact(mesh_.grid.log2) * mesh_.grid.mantissa) {}
+        step_(format::exp2_exact(mesh_.grid.log2) * mesh_.grid.mantissa) {}
 
   void run() {
     for (std::uint32_t k = 0; k < mesh_.cluster_count; ++k) check_cluster(mesh_.first_cluster + k);
@@ -96,7 +96,7 @@ class MeshGeometry {
 
   void check_cluster(std::uint32_t c) {
     const format::ClusterRecord& record = asset_.clusters()[c];
-    const DecodedCluster& cluster = clusters_[c];
+    const run::DecodedCluster& cluster = clusters_[c];
     const auto at = [&] { return place("mesh", m_, "cluster", c); };
     const format::CullSphere sphere = format::cull_sphere(mesh_, record);
     const ExactBall ball{{sphere.center[0], sphere.center[1], sphere.center[2]}, sphere.radius};
@@ -152,10 +152,10 @@ class MeshGeometry {
     });
   }
 
-  const Asset& asset_;
+  const run::Asset& asset_;
   std::size_t m_;
   const format::MeshRecord& mesh_;
-  std::span<const DecodedCluster> clusters_;
+  std::span<const run::DecodedCluster> clusters_;
   RuleLog& log_;
   double step_;
   std::uint64_t collapsed_ = 0, level0_triangles_ = 0;
@@ -165,10 +165,10 @@ class MeshGeometry {
 
 }  // namespace
 
-void check_geometry(const Asset& asset, std::span<const DecodedCluster> clusters, RuleLog& log) {
+void check_geometry(const run::Asset& asset, std::span<const run::DecodedCluster> clusters, RuleLog& log) {
   for (const char* rule : {"L116", "L501", "L502", "L503", "L504", "L505", "L506", "L507", "L508", "L509"})
     log.check(rule);
   for (std::size_t m = 0; m < asset.meshes().size(); ++m) MeshGeometry(asset, m, clusters, log).run();
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

@@ -7,9 +7,9 @@
 #include "run/decode/decode.h"
 #include "judge/validate/rules.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 
 /// \pre the asset's tables and pages are sound; `clusters` is decode_all of the asset
-void check_geometry(const Asset& asset, std::span<const DecodedCluster> clusters, RuleLog& log);
+void check_geometry(const run::Asset& asset, std::span<const run::DecodedCluster> clusters, RuleLog& log);
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

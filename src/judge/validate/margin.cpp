@@ -6,7 +6,7 @@
 
 #include <meshlode/format.h>
 
-namespace meshlode {
+namespace meshlode::judge {
 
 namespace {
 
@@ -42,4 +42,4 @@ bool are_same_bits(const ExactBall& a, const ExactBall& b) {
   return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

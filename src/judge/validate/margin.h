@@ -5,7 +5,7 @@
 
 #include "judge/validate/exact.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 
 /// Whether a coarser group's error keeps the relative growth over a finer one, or both are 0.
 [[nodiscard]] bool has_error_margin(float finer, float coarser);
@@ -14,4 +14,4 @@ namespace meshlode {
 /// A bound that is the same bits as another needs no margin over it: the rule gives both the same answer.
 [[nodiscard]] bool are_same_bits(const ExactBall& a, const ExactBall& b);
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

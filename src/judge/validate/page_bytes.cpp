@@ -14,7 +14,7 @@
 #include "format/grid.h"
 #include "judge/validate/page_rules.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 
 namespace {
 
@@ -286,7 +286,7 @@ class ClusterBytesChecker {
       const std::int64_t shear = shear_[0] * raw[kOthers[shear_axis_][0]] + shear_[1] * raw[kOthers[shear_axis_][1]];
       for (std::uint32_t axis = 0; axis < 3; ++axis) {
         const std::int64_t value = minimum_[axis] + raw[axis] + (axis == shear_axis_ ? wrap(shear) >> 7 : 0);
-        expect_value(wrap(value), -kMaxGridCoordinate, kMaxGridCoordinate, "a coordinate", v);
+        expect_value(wrap(value), -format::kMaxGridCoordinate, format::kMaxGridCoordinate, "a coordinate", v);
       }
     }
     for (std::uint32_t axis = 0; axis < 3; ++axis) expect_spread(spread[axis], bits_[axis], 0, "coordinates");
@@ -436,7 +436,7 @@ bool check_decoded_page(const FileTables& file, std::size_t p, std::span<const s
 
 }  // namespace
 
-LoadedPages load_pages(const FileTables& file, const Asset* asset, RuleLog& log) {
+LoadedPages load_pages(const FileTables& file, const run::Asset* asset, RuleLog& log) {
   LoadedPages loaded;
   loaded.pages.reserve(file.pages.size());
   log.check("L203");
@@ -456,9 +456,9 @@ LoadedPages load_pages(const FileTables& file, const Asset* asset, RuleLog& log)
       return differs("bytes", std::uint64_t{page.bytes}, "stored_bytes", std::uint64_t{page.stored_bytes});
     });
     if (sized && is_plain) {
-      loaded.pages.back() = PageBytes(stored);
+      loaded.pages.back() = run::PageBytes(stored);
     } else if (sized && asset != nullptr) {
-      Result<PageBytes> unpacked = load_page(*asset, PageId(static_cast<std::uint32_t>(p)));
+      Result<run::PageBytes> unpacked = run::load_page(*asset, PageId(static_cast<std::uint32_t>(p)));
       if (log.expect(unpacked.ok(), "L204", at, [&] { return unpacked.error().message(); })) {
         loaded.pages.back() = std::move(*unpacked);
       }
@@ -484,4 +484,4 @@ bool check_page_bytes(const FileTables& file, const LoadedPages& loaded, RuleLog
   return sound;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

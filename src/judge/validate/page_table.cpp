@@ -7,7 +7,7 @@
 
 #include "judge/validate/page_rules.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 
 namespace {
 
@@ -121,4 +121,4 @@ bool check_page_table(const FileTables& file, RuleLog& log) {
   return ranges && places;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

@@ -6,7 +6,7 @@
 #include <cassert>
 #include <cstdio>
 
-namespace meshlode {
+namespace meshlode::judge {
 
 namespace {
 
@@ -187,4 +187,4 @@ std::string differs(std::string_view a, std::uint64_t x, std::string_view b, std
   return std::string(a) + " = " + std::to_string(x) + ", " + std::string(b) + " = " + std::to_string(y);
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

@@ -11,7 +11,7 @@
 
 #include "judge/validate/validate.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 
 constexpr std::uint32_t kMaxFindingsPerRule = 16;  ///< kept in a report; all are counted
 
@@ -62,4 +62,4 @@ class RuleLog {
 [[nodiscard]] std::string differs(std::string_view a, double x, std::string_view b, double y);
 [[nodiscard]] std::string differs(std::string_view a, std::uint64_t x, std::string_view b, std::uint64_t y);
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

@@ -8,7 +8,7 @@
 #include "base/hash.h"
 #include "base/parallel.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 
 namespace {
 
@@ -23,15 +23,15 @@ struct KeyUse {
   std::int32_t net;
 };
 
-void name_positions(std::span<const DecodedCluster> clusters, MeshSurface& out) {
+void name_positions(std::span<const run::DecodedCluster> clusters, MeshSurface& out) {
   out.first_vertex.assign(1, 0);
-  for (const DecodedCluster& cluster : clusters)
+  for (const run::DecodedCluster& cluster : clusters)
     out.first_vertex.push_back(out.first_vertex.back() + cluster.vertex_count);
   std::vector<PositionKey> keys(out.first_vertex.back());
   out.vertex_position.resize(keys.size());
   out.vertex_attributes.resize(keys.size());
   parallel_for_each_index(clusters.size(), 16, [&](std::size_t c) {
-    const DecodedCluster& cluster = clusters[c];
+    const run::DecodedCluster& cluster = clusters[c];
     for (std::uint32_t v = 0; v < cluster.vertex_count; ++v) {
       const std::uint32_t vertex = out.first_vertex[c] + v;
       const Vec3i p = cluster.position(v);
@@ -50,7 +50,7 @@ void name_positions(std::span<const DecodedCluster> clusters, MeshSurface& out) 
   }
 }
 
-std::vector<KeyUse> cluster_chain(const DecodedCluster& cluster, std::span<const std::uint32_t> positions) {
+std::vector<KeyUse> cluster_chain(const run::DecodedCluster& cluster, std::span<const std::uint32_t> positions) {
   std::vector<KeyUse> uses;
   uses.reserve(cluster.triangles.size() * 3);
   for (const auto& triangle : cluster.triangles) {
@@ -74,7 +74,7 @@ std::vector<KeyUse> cluster_chain(const DecodedCluster& cluster, std::span<const
 
 }  // namespace
 
-MeshSurface build_surface(const Asset& asset, MeshId mesh, std::span<const DecodedCluster> all_clusters) {
+MeshSurface build_surface(const run::Asset& asset, MeshId mesh, std::span<const run::DecodedCluster> all_clusters) {
   const format::MeshRecord& record = asset.meshes()[mesh.value];
   MeshSurface out;
   out.mesh = mesh;
@@ -145,4 +145,4 @@ std::string edge_text(const MeshSurface& surface, std::uint32_t edge) {
   return position_text(surface, surface.edges[edge][0]) + "-" + position_text(surface, surface.edges[edge][1]);
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

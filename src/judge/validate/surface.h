@@ -19,7 +19,7 @@
 #include "run/decode/decode.h"
 #include "run/read/asset.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 
 struct EdgeUse {
   std::uint32_t edge = 0;  ///< into MeshSurface::edges
@@ -45,7 +45,7 @@ struct MeshSurface {
 };
 
 /// \pre every id of the mesh's tables is in range; `clusters` is decode_all of the asset
-[[nodiscard]] MeshSurface build_surface(const Asset& asset, MeshId mesh, std::span<const DecodedCluster> clusters);
+[[nodiscard]] MeshSurface build_surface(const run::Asset& asset, MeshId mesh, std::span<const run::DecodedCluster> clusters);
 
 /// The sum of the chains of clusters (indices within the mesh), ascending, without zeros.
 [[nodiscard]] std::vector<EdgeUse> sum_chains(const MeshSurface& surface, std::span<const std::uint32_t> clusters);
@@ -70,4 +70,4 @@ void for_each_edge(std::span<const EdgeUse> finer, std::span<const EdgeUse> coar
 /// "(1 2 3)-(4 5 6)"
 [[nodiscard]] std::string edge_text(const MeshSurface& surface, std::uint32_t edge);
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

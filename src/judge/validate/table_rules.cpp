@@ -10,7 +10,7 @@
 #include "run/read/limits.h"
 #include "judge/validate/file_tables.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 
 namespace {
 
@@ -84,7 +84,7 @@ class TableChecker {
       log_.expect(lo <= hi || mesh.cluster_count == 0, "L104", at,
                   [&] { return "bounds are upside down on axis " + std::to_string(axis); });
       const std::int64_t limit = (std::int64_t{1} << 24) / std::max<std::uint32_t>(mesh.grid.mantissa, 1);
-      log_.expect(lo >= -limit && hi <= limit && lo >= -kMaxGridCoordinate && hi <= kMaxGridCoordinate, "L104", at,
+      log_.expect(lo >= -limit && hi <= limit && lo >= -format::kMaxGridCoordinate && hi <= format::kMaxGridCoordinate, "L104", at,
                   [&] { return "bounds leave the 24 bits that float decode keeps, axis " + std::to_string(axis); });
     }
     log_.expect(std::isfinite(mesh.diagonal) && mesh.diagonal >= 0.0, "L105", at,
@@ -92,7 +92,7 @@ class TableChecker {
     log_.expect(std::isfinite(mesh.level0_deviation) && mesh.level0_deviation >= 0.0F, "L105", at,
                 [&] { return "level0_deviation is " + std::to_string(mesh.level0_deviation); });
     if (has_grid) {
-      const double step = exp2_exact(mesh.grid.log2) * mesh.grid.mantissa;
+      const double step = format::exp2_exact(mesh.grid.log2) * mesh.grid.mantissa;
       // A vertex moves by half a step an axis at most: sqrt(3)/2 of a step, and a rounding.
       log_.expect(mesh.level0_deviation <= 0.8661 * step, "L105", at,
                   [&] { return differs("level0_deviation", double{mesh.level0_deviation}, "step", step); });
@@ -117,7 +117,7 @@ class TableChecker {
     const bool stored = mesh.normal_mode == format::NormalMode::kStored;
     log_.expect(stored ? mesh.normal_scale >= 1 && mesh.normal_scale <= 8191 : mesh.normal_scale == 0, "L106", at,
                 [&] { return "normal_scale " + std::to_string(mesh.normal_scale); });
-    log_.expect(mesh.material == kNone || mesh.material < file_.materials.size(), "L106", at,
+    log_.expect(mesh.material == format::kNone || mesh.material < file_.materials.size(), "L106", at,
                 [&] { return "material " + std::to_string(mesh.material) + " does not exist"; });
     log_.expect(mesh.sphere_log2 >= -126 && mesh.sphere_log2 <= 104, "L106", at,
                 [&] { return "sphere_log2 " + std::to_string(mesh.sphere_log2); });
@@ -188,8 +188,8 @@ class TableChecker {
     for (const float c : material.base_color) is_finite &= std::isfinite(c);
     log_.expect(is_finite, "L112", at, [] { return Text("base_color or alpha_cutoff is not finite"); });
     log_.expect(material.double_sided <= 1, "L112", at, [] { return Text("double_sided is not 0 or 1"); });
-    const bool has_texture = material.base_color_texture != kNone;
-    log_.expect(has_texture || material.base_color_uv_set == kNone, "L112", at,
+    const bool has_texture = material.base_color_texture != format::kNone;
+    log_.expect(has_texture || material.base_color_uv_set == format::kNone, "L112", at,
                 [] { return Text("a UV set without a texture"); });
   }
 
@@ -356,7 +356,7 @@ class TableChecker {
         sound &= log_.expect(is_group_of_mesh(cluster.coarser_group), "L111", at, [&] {
           return "coarser_group " + std::to_string(cluster.coarser_group) + " is not of its mesh";
         });
-        sound &= log_.expect(cluster.own_group == kNone || is_group_of_mesh(cluster.own_group), "L111", at,
+        sound &= log_.expect(cluster.own_group == format::kNone || is_group_of_mesh(cluster.own_group), "L111", at,
                              [&] { return "own_group " + std::to_string(cluster.own_group) + " is not of its mesh"; });
         sound &= log_.expect(cluster.vertex_count() <= 3U * cluster.triangle_count(), "L501", at, [&] {
           return differs("triangles", std::uint64_t{cluster.triangle_count()}, "vertices",
@@ -384,7 +384,7 @@ class TableChecker {
   const FileTables& file_;
   RuleLog& log_;
   /// Names may share their bytes: their sum is a product that a small file chooses.
-  std::uint64_t name_bytes_left_ = decoded_limit(file_.bytes.size(), kDefaultMaxDecoded);
+  std::uint64_t name_bytes_left_ = run::decoded_limit(file_.bytes.size(), run::kDefaultMaxDecoded);
 };
 
 }  // namespace
@@ -393,4 +393,4 @@ bool check_tables(const FileTables& file, RuleLog& log) {
   return TableChecker(file, log).run();
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

@@ -6,7 +6,7 @@
 
 #include "judge/validate/file_tables.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 
 bool is_utf8(std::string_view text) {
   std::size_t i = 0;
@@ -115,4 +115,4 @@ void check_texts(const FileTables& file, RuleLog& log) {
       [] { return std::string("is not a JSON object"); });
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

@@ -9,7 +9,7 @@
 #include "judge/validate/file_tables.h"
 #include "judge/validate/margin.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 
 namespace {
 
@@ -90,13 +90,13 @@ class TreeChecker {
       depths_[child] = depths_[k] + 1;  // nodes come parents first
       log_.expect(depths_[child] <= kMaxDepth, "L401", where,
                   [] { return std::string("lies more than 64 nodes deep"); });
-      infinite_below |= file_.nodes[mesh_.first_node + child].error == kInfiniteError;
+      infinite_below |= file_.nodes[mesh_.first_node + child].error == format::kInfiniteError;
       const NodeRecord& below = file_.nodes[mesh_.first_node + child];
       if (sound && is_sound(below)) bound(k, ball_of(below), below.error, [&] { return at(child); });
     }
     // An infinite error above finite ones only would cost traversal, never a wrong cut: yet it is not what was
     // specified.
-    log_.expect(infinite_below || node.error != kInfiniteError, "L404", where,
+    log_.expect(infinite_below || node.error != format::kInfiniteError, "L404", where,
                 [] { return std::string("infinite without a terminal group below"); });
   }
 
@@ -129,4 +129,4 @@ void check_trees(const FileTables& file, RuleLog& log) {
   for (std::size_t m = 0; m < file.meshes.size(); ++m) TreeChecker(file, m, log).run();
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

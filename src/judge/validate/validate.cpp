@@ -12,7 +12,7 @@
 #include "judge/validate/geometry.h"
 #include "judge/validate/page_rules.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 
 namespace {
 
@@ -23,15 +23,15 @@ void run_rules(std::span<const std::uint8_t> bytes, RuleLog& log) {
   check_trees(*file, log);
   if (!check_page_table(*file, log)) return;
 
-  const Result<Asset> asset = Asset::from_bytes(bytes);
+  const Result<run::Asset> asset = run::Asset::from_bytes(bytes);
   if (asset) {
-    const Status size = check_decoded_bytes(*asset, count_decoded_bytes(*asset));
+    const Status size = run::check_decoded_bytes(*asset, run::count_decoded_bytes(*asset));
     if (!log.expect(size.ok(), "L099", [&] { return size.error().where; }, [&] { return size.error().detail; })) return;
   }
   const LoadedPages loaded = load_pages(*file, asset ? &asset.value() : nullptr, log);
   if (loaded.is_complete && log.count_of("L114") == 0) {
     std::vector<std::span<const std::uint8_t>> page_bytes;
-    for (const PageBytes& page : loaded.pages) page_bytes.push_back(page.bytes());
+    for (const run::PageBytes& page : loaded.pages) page_bytes.push_back(page.bytes());
     check_content_hash(*file, page_bytes, log);
   }
   const bool pages_sound = check_page_bytes(*file, loaded, log);
@@ -42,7 +42,7 @@ void run_rules(std::span<const std::uint8_t> bytes, RuleLog& log) {
     return;
   }
   if (!pages_sound) return;
-  const Result<std::vector<DecodedCluster>> clusters = decode_all(*asset);
+  const Result<std::vector<run::DecodedCluster>> clusters = run::decode_all(*asset);
   if (!clusters) {
     if (log.finding_count() == 0) log.add("L099", clusters.error().where, clusters.error().detail);
     return;
@@ -68,4 +68,4 @@ ValidationReport validate_asset(std::span<const std::uint8_t> bytes) {
   return report;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace meshlode {
+namespace meshlode::judge {
 
 /// One broken rule. Ids are stable and listed in docs/validation.md: "L0xx" container, "L1xx" tables, "L2xx" pages,
 /// "L3xx" DAG (I4, I5), "L4xx" hierarchy (I8), "L5xx" geometry (I2, I3, I6), "V…" verify against the source.
@@ -27,4 +27,4 @@ struct ValidationReport {
 /// Never fails: a file that cannot even be opened yields a finding.
 [[nodiscard]] ValidationReport validate_asset(std::span<const std::uint8_t> bytes);
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

@@ -10,12 +10,12 @@
 #include "judge/verify/cuts.h"
 #include "judge/verify/random.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 
 namespace {
 
 struct View {
-  Camera camera;
+  run::Camera camera;
   double pixel_error = 1.0;
   const char* kind = "";
 };
@@ -34,12 +34,12 @@ Vec3d random_direction(SplitMix64& random) {
   }
 }
 
-bool is_drawable(const Asset& asset, const format::InstanceRecord& instance) {
+bool is_drawable(const run::Asset& asset, const format::InstanceRecord& instance) {
   return (instance.flags & format::kInstanceSingular) == 0 && asset.meshes()[instance.mesh].cluster_count > 0;
 }
 
 /// A camera around a random cluster of a random instance, so that cuts are mixed more often than not.
-View random_view(const Asset& asset, std::span<const std::uint32_t> instances, std::uint32_t index,
+View random_view(const run::Asset& asset, std::span<const std::uint32_t> instances, std::uint32_t index,
                  SplitMix64& random) {
   const format::InstanceRecord& instance = asset.instances()[instances[random.below(instances.size())]];
   const format::MeshRecord& mesh = asset.meshes()[instance.mesh];
@@ -91,7 +91,7 @@ enum class Answer : std::uint8_t { kFails, kPasses, kTooClose };
 Answer decide(const View& view, const format::InstanceRecord& instance, const format::MeshRecord& mesh,
               const format::GroupRecord& group) {
   if (group.error >= format::kInfiniteError) return Answer::kFails;
-  const Camera& camera = view.camera;
+  const run::Camera& camera = view.camera;
   const double sigma = instance.scale;
   const double k = camera.is_orthographic ? camera.height / camera.ortho_height
                                           : camera.height / (2.0 * std::tan(0.5 * camera.fovy));
@@ -122,7 +122,7 @@ struct CameraFaults {
   CameraTotals totals;
 };
 
-void check_rule(const Asset& asset, const View& view, const format::InstanceRecord& instance,
+void check_rule(const run::Asset& asset, const View& view, const format::InstanceRecord& instance,
                 const MeshSurface& surface, std::span<const std::uint8_t> drawn, CutFaults& faults,
                 CameraTotals& totals) {
   const format::MeshRecord& mesh = asset.meshes()[instance.mesh];
@@ -146,14 +146,14 @@ void check_rule(const Asset& asset, const View& view, const format::InstanceReco
   }
 }
 
-CameraFaults judge_camera(const Asset& asset, std::span<const MeshJudge> judges, const View& view,
+CameraFaults judge_camera(const run::Asset& asset, std::span<const MeshJudge> judges, const View& view,
                           const Selectors& selectors) {
   CameraFaults out;
-  const std::vector<ClusterInstance> flat = selectors.flat(asset, view.camera, view.pixel_error);
-  const std::vector<ClusterInstance> bvh = selectors.bvh(asset, view.camera, view.pixel_error);
+  const std::vector<run::ClusterInstance> flat = selectors.flat(asset, view.camera, view.pixel_error);
+  const std::vector<run::ClusterInstance> bvh = selectors.bvh(asset, view.camera, view.pixel_error);
   if (flat != bvh) {
     const auto [a, b] = std::mismatch(flat.begin(), flat.end(), bvh.begin(), bvh.end());
-    const ClusterInstance& first = b == bvh.end() || (a != flat.end() && *a < *b) ? *a : *b;
+    const run::ClusterInstance& first = b == bvh.end() || (a != flat.end() && *a < *b) ? *a : *b;
     out.hierarchy = std::to_string(flat.size()) + " flat, " + std::to_string(bvh.size()) +
                     " by hierarchy; first difference at " +
                     place("instance", first.instance.value, "cluster", first.cluster.value);
@@ -201,7 +201,7 @@ CameraFaults judge_camera(const Asset& asset, std::span<const MeshJudge> judges,
 
 }  // namespace
 
-CameraTotals check_cameras(const Asset& asset, std::span<const MeshJudge> judges, std::uint32_t count,
+CameraTotals check_cameras(const run::Asset& asset, std::span<const MeshJudge> judges, std::uint32_t count,
                            std::uint64_t seed, RuleLog& log, const Selectors& selectors) {
   CameraTotals totals;
   std::vector<std::uint32_t> drawable;
@@ -233,4 +233,4 @@ CameraTotals check_cameras(const Asset& asset, std::span<const MeshJudge> judges
   return totals;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <numeric>
 
-namespace meshlode {
+namespace meshlode::judge {
 
-MeshJudge make_mesh_judge(const Asset& asset, MeshId mesh, std::span<const DecodedCluster> clusters) {
+MeshJudge make_mesh_judge(const run::Asset& asset, MeshId mesh, std::span<const run::DecodedCluster> clusters) {
   MeshJudge judge;
   judge.surface = build_surface(asset, mesh, clusters);
   judge.border = prove_borders(asset, judge.surface, clusters).border;
@@ -18,7 +18,7 @@ MeshJudge make_mesh_judge(const Asset& asset, MeshId mesh, std::span<const Decod
   return judge;
 }
 
-std::string find_coverage_fault(const Asset& asset, const MeshJudge& judge, std::span<const std::uint8_t> drawn) {
+std::string find_coverage_fault(const run::Asset& asset, const MeshJudge& judge, std::span<const std::uint8_t> drawn) {
   const MeshSurface& surface = judge.surface;
   struct Range {
     std::uint32_t least = 0, most = 0;
@@ -60,4 +60,4 @@ std::string find_border_fault(const MeshJudge& judge, std::span<const std::uint8
   return {};
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

@@ -17,20 +17,20 @@
 #include "judge/validate/rules.h"
 #include "judge/validate/surface.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 
 /// What is judged, so that a test may put something wrong in its place.
 struct Selectors {
-  std::function<std::vector<ClusterInstance>(const Asset&, const Camera&, double)> flat =
-      [](const Asset& asset, const Camera& camera, double pixel_error) {
-        return select_flat(asset, camera, pixel_error);
+  std::function<std::vector<run::ClusterInstance>(const run::Asset&, const run::Camera&, double)> flat =
+      [](const run::Asset& asset, const run::Camera& camera, double pixel_error) {
+        return run::select_flat(asset, camera, pixel_error);
       };
-  std::function<std::vector<ClusterInstance>(const Asset&, const Camera&, double)> bvh =
-      [](const Asset& asset, const Camera& camera, double pixel_error) {
-        return select_bvh(asset, camera, pixel_error);
+  std::function<std::vector<run::ClusterInstance>(const run::Asset&, const run::Camera&, double)> bvh =
+      [](const run::Asset& asset, const run::Camera& camera, double pixel_error) {
+        return run::select_bvh(asset, camera, pixel_error);
       };
-  std::function<UniformCut(const Asset&, MeshId, double)> uniform = [](const Asset& asset, MeshId mesh, double error) {
-    return select_uniform(asset, mesh, error);
+  std::function<run::UniformCut(const run::Asset&, MeshId, double)> uniform = [](const run::Asset& asset, MeshId mesh, double error) {
+    return run::select_uniform(asset, mesh, error);
   };
 };
 
@@ -41,7 +41,7 @@ struct MeshJudge {
   std::vector<std::uint32_t> group_order;  ///< groups of the mesh from fine to coarse (indices within the mesh)
 };
 
-[[nodiscard]] MeshJudge make_mesh_judge(const Asset& asset, MeshId mesh, std::span<const DecodedCluster> clusters);
+[[nodiscard]] MeshJudge make_mesh_judge(const run::Asset& asset, MeshId mesh, std::span<const run::DecodedCluster> clusters);
 
 /// The first fault of one cut of one mesh; all empty if there is none.
 struct CutFaults {
@@ -54,7 +54,7 @@ struct CutFaults {
 /// `drawn` has one entry per cluster of the mesh.
 /// Coverage: on every path from a level-0 cluster to a root exactly one cluster is drawn. With `least` and `most` the
 /// fewest and most drawn on any path up to a cluster, both must be 1 at every root.
-[[nodiscard]] std::string find_coverage_fault(const Asset& asset, const MeshJudge& judge,
+[[nodiscard]] std::string find_coverage_fault(const run::Asset& asset, const MeshJudge& judge,
                                               std::span<const std::uint8_t> drawn);
 /// Border: the chain of the cut has only edges that the source's border allows.
 [[nodiscard]] std::string find_border_fault(const MeshJudge& judge, std::span<const std::uint8_t> drawn);
@@ -65,7 +65,7 @@ struct CutTotals {
 };
 
 /// `count` uniform cuts of one mesh: at 0, at exact group errors, just below them, and spread logarithmically.
-CutTotals check_uniform_cuts(const Asset& asset, const MeshJudge& judge, std::uint32_t count, RuleLog& log,
+CutTotals check_uniform_cuts(const run::Asset& asset, const MeshJudge& judge, std::uint32_t count, RuleLog& log,
                              const Selectors& selectors = {});
 
 struct CameraTotals {
@@ -76,7 +76,7 @@ struct CameraTotals {
 };
 
 /// `count` random cameras: inside, near, far and orthographic. `judges` has one entry per mesh.
-CameraTotals check_cameras(const Asset& asset, std::span<const MeshJudge> judges, std::uint32_t count,
+CameraTotals check_cameras(const run::Asset& asset, std::span<const MeshJudge> judges, std::uint32_t count,
                            std::uint64_t seed, RuleLog& log, const Selectors& selectors = {});
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

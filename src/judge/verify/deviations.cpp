@@ -9,12 +9,12 @@
 
 #include "run/select/select.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 
 namespace {
 
 /// Errors to cut at: from the smallest positive to the largest finite one, evenly in the logarithm.
-std::vector<double> thresholds_of(const Asset& asset, const format::MeshRecord& mesh, std::uint32_t count) {
+std::vector<double> thresholds_of(const run::Asset& asset, const format::MeshRecord& mesh, std::uint32_t count) {
   float low = format::kInfiniteError;
   float high = 0.0F;
   for (std::uint32_t g = mesh.first_group; g < mesh.first_group + mesh.group_count; ++g) {
@@ -34,15 +34,15 @@ std::vector<double> thresholds_of(const Asset& asset, const format::MeshRecord& 
 
 }  // namespace
 
-std::vector<CutDeviation> measure_cuts(const Asset& asset, MeshId mesh, const SourceMesh& source,
-                                       std::span<const DecodedCluster> clusters, std::uint32_t cuts,
+std::vector<CutDeviation> measure_cuts(const run::Asset& asset, MeshId mesh, const scene::SourceMesh& source,
+                                       std::span<const run::DecodedCluster> clusters, std::uint32_t cuts,
                                        std::uint64_t samples) {
   const format::MeshRecord& record = asset.meshes()[mesh.value];
   const Surface truth = surface_of_source(source);
   std::vector<CutDeviation> measured;
   std::vector<ClusterId> previous;
   for (const double threshold : thresholds_of(asset, record, cuts)) {
-    const UniformCut cut = select_uniform(asset, mesh, threshold);
+    const run::UniformCut cut = run::select_uniform(asset, mesh, threshold);
     if (cut.clusters == previous) continue;
     previous = cut.clusters;
     const Surface surface = surface_of_clusters(asset, clusters, mesh, cut.clusters);
@@ -52,7 +52,7 @@ std::vector<CutDeviation> measure_cuts(const Asset& asset, MeshId mesh, const So
   return measured;
 }
 
-DeviationTotals check_deviations(const Asset& asset, const Scene& source, std::span<const DecodedCluster> clusters,
+DeviationTotals check_deviations(const run::Asset& asset, const scene::Scene& source, std::span<const run::DecodedCluster> clusters,
                                  std::uint32_t cuts, std::uint64_t samples, RuleLog& log) {
   DeviationTotals totals;
   std::vector<double> ratios;
@@ -82,4 +82,4 @@ DeviationTotals check_deviations(const Asset& asset, const Scene& source, std::s
   return totals;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

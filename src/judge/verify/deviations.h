@@ -12,7 +12,7 @@
 #include "judge/metrics/metrics.h"
 #include "judge/validate/rules.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 
 /// How far a `measured` error may fall short of the true deviation.
 constexpr double kMeasuredShortfall = 0.05;
@@ -31,8 +31,8 @@ struct CutDeviation {
 
 /// Up to `cuts` uniform cuts of a mesh, evenly in the logarithm of the error, each another one. `samples` are
 /// area-uniform samples each way.
-[[nodiscard]] std::vector<CutDeviation> measure_cuts(const Asset& asset, MeshId mesh, const SourceMesh& source,
-                                                     std::span<const DecodedCluster> clusters, std::uint32_t cuts,
+[[nodiscard]] std::vector<CutDeviation> measure_cuts(const run::Asset& asset, MeshId mesh, const scene::SourceMesh& source,
+                                                     std::span<const run::DecodedCluster> clusters, std::uint32_t cuts,
                                                      std::uint64_t samples);
 
 struct DeviationTotals {
@@ -44,7 +44,7 @@ struct DeviationTotals {
 
 /// measure_cuts() of every mesh whose tier promises something. A `measured` cut fails above 1 + kMeasuredShortfall, a
 /// `certified` one above 1.
-DeviationTotals check_deviations(const Asset& asset, const Scene& source, std::span<const DecodedCluster> clusters,
+DeviationTotals check_deviations(const run::Asset& asset, const scene::Scene& source, std::span<const run::DecodedCluster> clusters,
                                  std::uint32_t cuts, std::uint64_t samples, RuleLog& log);
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

@@ -10,7 +10,7 @@
 #include "base/parallel.h"
 #include "judge/metrics/triangle_area.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 
 namespace {
 
@@ -98,4 +98,4 @@ std::vector<std::uint8_t> find_drawn(std::span<const std::array<Vec3d, 3>> trian
   return is_drawn;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

@@ -10,9 +10,9 @@
 
 #include "base/vec.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 
 /// Per triangle 1 if it belongs into level 0. `triangles` are corners as the file has them. O(n log n).
 [[nodiscard]] std::vector<std::uint8_t> find_drawn(std::span<const std::array<Vec3d, 3>> triangles);
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace meshlode {
+namespace meshlode::judge {
 
 namespace {
 
@@ -112,4 +112,4 @@ void MovedVertices::find(std::span<const std::array<Vec3d, 3>> triangles) {
   }
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

@@ -16,7 +16,7 @@
 #include "base/vec.h"
 #include "judge/verify/triangle_key.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 
 class MovedVertices {
  public:
@@ -43,4 +43,4 @@ class MovedVertices {
   std::map<Place, GridPoint> moved_;
 };
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

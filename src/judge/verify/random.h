@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace meshlode {
+namespace meshlode::judge {
 
 class SplitMix64 {
  public:
@@ -29,4 +29,4 @@ class SplitMix64 {
   std::uint64_t state_;
 };
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

@@ -12,11 +12,11 @@
 #include "judge/verify/source_rules.h"
 #include "judge/verify/texel_budget.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 
 namespace {
 
-bool is_same_material(const Asset& asset, const format::MaterialRecord& stored, const SceneMaterial& source) {
+bool is_same_material(const run::Asset& asset, const format::MaterialRecord& stored, const scene::SceneMaterial& source) {
   bool same = asset.string(stored.name) == source.name && stored.source_index == source.source_index &&
               static_cast<std::uint32_t>(stored.alpha_mode) == static_cast<std::uint32_t>(source.alpha_mode) &&
               stored.alpha_cutoff == source.alpha_cutoff && (stored.double_sided != 0) == source.double_sided &&
@@ -45,7 +45,7 @@ bool is_same_transform(const format::InstanceRecord& stored, const Mat4d& source
   return same || (zero && marked) || (!is_finite && marked);
 }
 
-void check_materials(const Asset& asset, const Scene& source, RuleLog& log) {
+void check_materials(const run::Asset& asset, const scene::Scene& source, RuleLog& log) {
   log.expect(
       asset.materials().size() == source.materials.size(), "V106", [] { return std::string("materials"); },
       [&] {
@@ -60,7 +60,7 @@ void check_materials(const Asset& asset, const Scene& source, RuleLog& log) {
   }
 }
 
-void check_instances(const Asset& asset, const Scene& source, RuleLog& log) {
+void check_instances(const run::Asset& asset, const scene::Scene& source, RuleLog& log) {
   log.expect(
       asset.instances().size() == source.instances.size(), "V107", [] { return std::string("instances"); },
       [&] {
@@ -70,7 +70,7 @@ void check_instances(const Asset& asset, const Scene& source, RuleLog& log) {
   const std::size_t count = std::min(asset.instances().size(), source.instances.size());
   for (std::size_t i = 0; i < count; ++i) {
     const format::InstanceRecord& stored = asset.instances()[i];
-    const SceneInstance& instance = source.instances[i];
+    const scene::SceneInstance& instance = source.instances[i];
     const auto at = [&] { return place("instance", i); };
     log.expect(stored.mesh == instance.mesh.value && stored.node == instance.node &&
                    asset.string(stored.name) == instance.name,
@@ -80,7 +80,7 @@ void check_instances(const Asset& asset, const Scene& source, RuleLog& log) {
   }
 }
 
-void check_blobs(const Asset& asset, const Scene& source, RuleLog& log) {
+void check_blobs(const run::Asset& asset, const scene::Scene& source, RuleLog& log) {
   log.expect(
       asset.blobs().size() == source.blobs.size(), "V109", [] { return std::string("blobs"); },
       [&] {
@@ -89,8 +89,8 @@ void check_blobs(const Asset& asset, const Scene& source, RuleLog& log) {
   const std::size_t count = std::min(asset.blobs().size(), source.blobs.size());
   for (std::size_t i = 0; i < count; ++i) {
     const format::BlobRecord& stored = asset.blobs()[i];
-    const SceneBlob& blob = source.blobs[i];
-    const auto kind = blob.kind == SceneBlob::Kind::kImage ? format::BlobKind::kImage : format::BlobKind::kBuffer;
+    const scene::SceneBlob& blob = source.blobs[i];
+    const auto kind = blob.kind == scene::SceneBlob::Kind::kImage ? format::BlobKind::kImage : format::BlobKind::kBuffer;
     const auto bytes = asset.blob_bytes(stored);
     const bool same = stored.kind == kind && stored.source_index == blob.source_index &&
                       asset.string(stored.name) == blob.name && asset.string(stored.mime_type) == blob.mime_type &&
@@ -105,9 +105,9 @@ void check_blobs(const Asset& asset, const Scene& source, RuleLog& log) {
 
 /// Whether a corner's normal is not its triangle's: beyond one degree shading would tell. Triangles without area say
 /// nothing.
-bool has_own_shading(const SourceMesh& mesh) {
+bool has_own_shading(const scene::SourceMesh& mesh) {
   constexpr double kCosine = 0.99984;
-  for (const Primitive& primitive : mesh.primitives) {
+  for (const scene::Primitive& primitive : mesh.primitives) {
     if (primitive.normals.empty()) continue;
     for (std::size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
       const Vec3d a = primitive.positions[primitive.indices[i]];
@@ -125,11 +125,11 @@ bool has_own_shading(const SourceMesh& mesh) {
   return false;
 }
 
-bool has_color(const Primitive& primitive) {
+bool has_color(const scene::Primitive& primitive) {
   return std::any_of(primitive.colors.begin(), primitive.colors.end(), [](const Vec4f& c) { return c != Vec4f(1.0F); });
 }
 
-void check_attributes(const Asset& asset, const Scene& source, RuleLog& log) {
+void check_attributes(const run::Asset& asset, const scene::Scene& source, RuleLog& log) {
   if (meta_text(asset.meta_json(), "settings", "attributes") == "none") return;
   for (std::size_t m = 0; m < std::min(asset.meshes().size(), source.meshes.size()); ++m) {
     const format::MeshRecord& mesh = asset.meshes()[m];
@@ -139,11 +139,11 @@ void check_attributes(const Asset& asset, const Scene& source, RuleLog& log) {
                [] { return std::string("normals are left out"); });
     log.expect(mesh.normal_mode == format::NormalMode::kStored || !has_own_shading(source.meshes[m]), "V110", at,
                [] { return std::string("normals differ from the triangles' own and are not stored"); });
-    for (const Primitive& primitive : source.meshes[m].primitives) {
+    for (const scene::Primitive& primitive : source.meshes[m].primitives) {
       log.expect(mesh.has_color != 0 || !has_color(primitive), "V110", at,
                  [] { return std::string("colours are not stored"); });
       if (primitive.material.value >= source.materials.size()) continue;
-      for (std::uint32_t set = 0; set < kMaxUvSets; ++set) {
+      for (std::uint32_t set = 0; set < scene::kMaxUvSets; ++set) {
         const bool is_used =
             (source.materials[primitive.material.value].uv_sets_used >> set & 1U) != 0 && !primitive.uvs[set].empty();
         const auto* end = mesh.uv_set_source + mesh.uv_set_count;
@@ -154,7 +154,7 @@ void check_attributes(const Asset& asset, const Scene& source, RuleLog& log) {
   }
 }
 
-void check_caps(const Asset& asset, RuleLog& log) {
+void check_caps(const run::Asset& asset, RuleLog& log) {
   const std::uint64_t triangles =
       meta_number(asset.meta_json(), "settings", "cluster_triangles").value_or(format::kMaxClusterTriangles);
   const std::uint64_t vertices =
@@ -172,7 +172,7 @@ void check_caps(const Asset& asset, RuleLog& log) {
   }
 }
 
-void check_tiers(const Asset& asset, RuleLog& log) {
+void check_tiers(const run::Asset& asset, RuleLog& log) {
   log.check("V112");
   const std::string setting = meta_text(asset.meta_json(), "settings", "error_tier");
   if (setting.empty()) return;
@@ -188,7 +188,7 @@ void check_tiers(const Asset& asset, RuleLog& log) {
 
 /// V104 and V105 measure every vertex of level 0 against the bounds of the mesh's record; here those bounds are held
 /// against what was asked for, budgets in texels with the source's images at hand.
-void check_budgets(const Asset& asset, const Scene& source, std::span<const DecodedCluster> clusters, RuleLog& log) {
+void check_budgets(const run::Asset& asset, const scene::Scene& source, std::span<const run::DecodedCluster> clusters, RuleLog& log) {
   log.check("V113");
   const auto setting = [&](const char* key) { return meta_real(asset.meta_json(), "settings", key); };
   const std::optional<double> position = setting("position_error");
@@ -212,10 +212,10 @@ void check_budgets(const Asset& asset, const Scene& source, std::span<const Deco
       log.expect(degrees <= *normal * kRounding, "V113", at,
                  [&] { return differs("largest angle", degrees, "normal_error", *normal); });
     }
-    std::array<bool, kMaxUvSets> is_finest{};
+    std::array<bool, scene::kMaxUvSets> is_finest{};
     if (uv) is_finest = has_finest_step(asset, MeshId(m), clusters);
     for (std::uint32_t set = 0; uv && set < mesh.uv_set_count; ++set) {
-      const double half_step = 0.5 * exp2_exact(mesh.uv_log2[set]);
+      const double half_step = 0.5 * format::exp2_exact(mesh.uv_log2[set]);
       log.expect(half_step <= *uv * kRounding || is_finest[set], "V113", at,
                  [&] { return differs("half a UV step", half_step, "uv_error", *uv); });
     }
@@ -224,7 +224,7 @@ void check_budgets(const Asset& asset, const Scene& source, std::span<const Deco
 
 }  // namespace
 
-void check_scene(const Asset& asset, const Scene& source, std::span<const DecodedCluster> clusters, RuleLog& log) {
+void check_scene(const run::Asset& asset, const scene::Scene& source, std::span<const run::DecodedCluster> clusters, RuleLog& log) {
   check_materials(asset, source, log);
   check_instances(asset, source, log);
   check_blobs(asset, source, log);
@@ -239,4 +239,4 @@ void check_scene(const Asset& asset, const Scene& source, std::span<const Decode
       [&] { return "is \"" + hash + "\", the source given has \"" + source.source_hash + "\""; });
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

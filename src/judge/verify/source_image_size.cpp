@@ -9,7 +9,7 @@
 
 #include "judge/verify/texel_budget.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 
 std::optional<std::pair<std::uint32_t, std::uint32_t>> stated_image_size(std::span<const std::uint8_t> bytes) {
   int width = 0;
@@ -23,4 +23,4 @@ std::optional<std::pair<std::uint32_t, std::uint32_t>> stated_image_size(std::sp
   return std::pair{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

@@ -9,7 +9,7 @@
 #include "scene/scene.h"
 #include "judge/validate/rules.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 
 struct SourceCounts {
   std::uint64_t source_triangles = 0;  ///< looked for
@@ -18,10 +18,10 @@ struct SourceCounts {
 };
 
 /// V101 … V105 for one mesh. \pre `clusters` is decode_all of the asset
-[[nodiscard]] SourceCounts check_source_triangles(const Asset& asset, MeshId mesh, const SourceMesh& source,
-                                                  std::span<const DecodedCluster> clusters, RuleLog& log);
+[[nodiscard]] SourceCounts check_source_triangles(const run::Asset& asset, MeshId mesh, const scene::SourceMesh& source,
+                                                  std::span<const run::DecodedCluster> clusters, RuleLog& log);
 
 /// V106 … V113. \pre `clusters` is decode_all of the asset
-void check_scene(const Asset& asset, const Scene& source, std::span<const DecodedCluster> clusters, RuleLog& log);
+void check_scene(const run::Asset& asset, const scene::Scene& source, std::span<const run::DecodedCluster> clusters, RuleLog& log);
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

@@ -19,7 +19,7 @@
 #include "judge/verify/source_rules.h"
 #include "judge/verify/triangle_key.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 
 namespace {
 
@@ -28,7 +28,7 @@ constexpr std::size_t kMaxClassesCompared = 1024;
 
 struct Corner {
   Vec3d position{0.0};
-  std::array<float, 3 + 2 * kMaxUvSets + 4> attributes{};  ///< normal, uv sets, colour: those that the asset stores
+  std::array<float, 3 + 2 * scene::kMaxUvSets + 4> attributes{};  ///< normal, uv sets, colour: those that the asset stores
   auto operator<=>(const Corner& other) const {
     for (int i = 0; i < 3; ++i) {
       if (const auto order = position[i] <=> other.position[i]; order != 0) return order;
@@ -55,7 +55,7 @@ struct StoredTriangle {
 
 class SourceMatcher {
  public:
-  SourceMatcher(const Asset& asset, MeshId mesh, const SourceMesh& source, std::span<const DecodedCluster> clusters,
+  SourceMatcher(const run::Asset& asset, MeshId mesh, const scene::SourceMesh& source, std::span<const run::DecodedCluster> clusters,
                 RuleLog& log)
       : asset_(asset),
         mesh_id_(mesh),
@@ -63,7 +63,7 @@ class SourceMatcher {
         source_(source),
         clusters_(clusters),
         log_(log),
-        step_(exp2_exact(mesh_.grid.log2) * mesh_.grid.mantissa),
+        step_(format::exp2_exact(mesh_.grid.log2) * mesh_.grid.mantissa),
         origin_(mesh_.origin[0], mesh_.origin[1], mesh_.origin[2]),
         vertices_(origin_, step_) {}
 
@@ -85,7 +85,7 @@ class SourceMatcher {
   void check_counts() {
     std::uint64_t triangles = source_.drops.repaired;
     std::uint64_t vertices = 0;
-    for (const Primitive& primitive : source_.primitives) {
+    for (const scene::Primitive& primitive : source_.primitives) {
       triangles += primitive.indices.size() / 3;
       vertices += primitive.positions.size();
     }
@@ -104,7 +104,7 @@ class SourceMatcher {
   void gather_source() {
     std::vector<std::array<Vec3d, 3>> corners;
     for (std::uint32_t p = 0; p < source_.primitives.size(); ++p) {
-      const Primitive& primitive = source_.primitives[p];
+      const scene::Primitive& primitive = source_.primitives[p];
       for (std::uint32_t t = 0; t < primitive.indices.size() / 3; ++t) {
         sources_.push_back({{primitive.material.value, {}}, p, t});
         corners.push_back(corners_of(sources_.back()));
@@ -141,7 +141,7 @@ class SourceMatcher {
   }
 
   [[nodiscard]] std::array<Vec3d, 3> corners_of(const SourceTriangle& s) const {
-    const Primitive& primitive = source_.primitives[s.primitive];
+    const scene::Primitive& primitive = source_.primitives[s.primitive];
     const std::uint32_t* index = &primitive.indices[3 * std::size_t{s.triangle}];
     return {primitive.positions[index[0]], primitive.positions[index[1]], primitive.positions[index[2]]};
   }
@@ -216,7 +216,7 @@ class SourceMatcher {
   void gather_stored() {
     for (std::uint32_t c = mesh_.first_cluster; c < mesh_.first_cluster + mesh_.cluster_count; ++c) {
       if (asset_.clusters()[c].own_group != format::kNone) continue;
-      const DecodedCluster& cluster = clusters_[c];
+      const run::DecodedCluster& cluster = clusters_[c];
       for (std::uint32_t t = 0; t < cluster.triangles.size(); ++t) {
         GridCorners grid{};
         for (std::size_t k = 0; k < 3; ++k) {
@@ -233,7 +233,7 @@ class SourceMatcher {
   }
 
   /// The source's corner with the attributes that the asset stores, as prepared: -0 is 0, missing ones have defaults.
-  [[nodiscard]] Corner exact_corner(const Primitive& primitive, std::uint32_t vertex, const Vec3f& flat_normal) const {
+  [[nodiscard]] Corner exact_corner(const scene::Primitive& primitive, std::uint32_t vertex, const Vec3f& flat_normal) const {
     Corner corner;
     corner.position = primitive.positions[vertex] + 0.0;
     std::size_t slot = 0;
@@ -256,7 +256,7 @@ class SourceMatcher {
   }
 
   [[nodiscard]] ExactTriangle exact_triangle(const SourceTriangle& triangle) const {
-    const Primitive& primitive = source_.primitives[triangle.primitive];
+    const scene::Primitive& primitive = source_.primitives[triangle.primitive];
     const std::uint32_t* index = &primitive.indices[3 * std::size_t{triangle.triangle}];
     const Vec3d a = primitive.positions[index[0]];
     const Vec3d b = primitive.positions[index[1]];
@@ -354,7 +354,7 @@ class SourceMatcher {
 
   [[nodiscard]] bool has_attributes_of(const StoredTriangle& stored, const SourceClass& one) {
     if (decoded_cluster_ != stored.cluster) {
-      decode_attributes(mesh_, clusters_[stored.cluster], decoded_);
+      run::decode_attributes(mesh_, clusters_[stored.cluster], decoded_);
       decoded_cluster_ = stored.cluster;
     }
     const auto& triangle = clusters_[stored.cluster].triangles[stored.triangle];
@@ -388,7 +388,7 @@ class SourceMatcher {
       }
     }
     for (std::uint32_t set = 0; set < mesh_.uv_set_count; ++set) {
-      const double half_step = 0.5 * exp2_exact(mesh_.uv_log2[set]);
+      const double half_step = 0.5 * format::exp2_exact(mesh_.uv_log2[set]);
       for (int axis = 0; axis < 2; ++axis) {
         const double value = source.attributes[slot++];
         if (!std::isfinite(value)) continue;
@@ -418,11 +418,11 @@ class SourceMatcher {
         });
   }
 
-  const Asset& asset_;
+  const run::Asset& asset_;
   MeshId mesh_id_;
   const format::MeshRecord& mesh_;
-  const SourceMesh& source_;
-  std::span<const DecodedCluster> clusters_;
+  const scene::SourceMesh& source_;
+  std::span<const run::DecodedCluster> clusters_;
   RuleLog& log_;
   double step_;
   Vec3d origin_;
@@ -430,17 +430,17 @@ class SourceMatcher {
   std::vector<SourceTriangle> sources_;
   std::vector<StoredTriangle> stored_;
   std::uint64_t degenerate_ = 0, duplicates_most_ = 0;
-  ClusterAttributes decoded_;
+  run::ClusterAttributes decoded_;
   std::uint32_t decoded_cluster_ = format::kNone;
   SourceCounts counts_;
 };
 
 }  // namespace
 
-SourceCounts check_source_triangles(const Asset& asset, MeshId mesh, const SourceMesh& source,
-                                    std::span<const DecodedCluster> clusters, RuleLog& log) {
+SourceCounts check_source_triangles(const run::Asset& asset, MeshId mesh, const scene::SourceMesh& source,
+                                    std::span<const run::DecodedCluster> clusters, RuleLog& log) {
   for (const char* rule : {"V101", "V102", "V103", "V104", "V105"}) log.check(rule);
   return SourceMatcher(asset, mesh, source, clusters, log).run();
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

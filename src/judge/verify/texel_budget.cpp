@@ -11,7 +11,7 @@
 
 #include "format/grid.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 
 namespace {
 
@@ -38,7 +38,7 @@ using ImageSizes = std::map<std::size_t, std::optional<std::pair<std::uint32_t, 
 
 /// What a unit of texture coordinates crosses in the texture that `info` (a glTF textureInfo) names. `sizes`: of images
 /// that were looked at already, by blob.
-std::optional<TextureUse> texture_use(const Scene& scene, const Json& document, const Json& info, ImageSizes& sizes) {
+std::optional<TextureUse> texture_use(const scene::Scene& scene, const Json& document, const Json& info, ImageSizes& sizes) {
   const Json& image = at(at(document, "images"), at(at(at(document, "textures"), at(info, "index")), "source"));
   const Json& blob = at(image, "blob");
   if (!blob.is_number_unsigned() || blob.get<std::size_t>() >= scene.blobs.size()) return std::nullopt;
@@ -64,12 +64,12 @@ std::optional<TextureUse> texture_use(const Scene& scene, const Json& document, 
 
 }  // namespace
 
-std::vector<std::array<double, kMaxUvSets>> most_texels_of_materials(const Scene& scene) {
+std::vector<std::array<double, scene::kMaxUvSets>> most_texels_of_materials(const scene::Scene& scene) {
   const Json document = Json::parse(scene.document, nullptr, false);
   ImageSizes sizes;
-  std::vector<std::array<double, kMaxUvSets>> out(scene.materials.size());
+  std::vector<std::array<double, scene::kMaxUvSets>> out(scene.materials.size());
   for (std::size_t i = 0; i < out.size(); ++i) {
-    std::array<double, kMaxUvSets>& most = out[i];
+    std::array<double, scene::kMaxUvSets>& most = out[i];
     // Whatever an extension calls its textures, a textureInfo has an index.
     std::vector<const Json*> open{&at(at(document, "materials"), Json(scene.materials[i].source_index))};
     while (!open.empty()) {
@@ -78,16 +78,16 @@ std::vector<std::array<double, kMaxUvSets>> most_texels_of_materials(const Scene
       if (!value.is_structured()) continue;
       for (const Json& inner : value) open.push_back(&inner);
       const auto use = texture_use(scene, document, value, sizes);
-      if (use && use->set < kMaxUvSets && std::isfinite(use->texels)) most[use->set] = std::max(most[use->set], use->texels);
+      if (use && use->set < scene::kMaxUvSets && std::isfinite(use->texels)) most[use->set] = std::max(most[use->set], use->texels);
     }
   }
   return out;
 }
 
-std::array<double, kMaxUvSets> most_texels(std::span<const std::array<double, kMaxUvSets>> of_materials,
-                                           const SourceMesh& mesh) {
-  std::array<double, kMaxUvSets> most{};
-  for (const Primitive& primitive : mesh.primitives) {
+std::array<double, scene::kMaxUvSets> most_texels(std::span<const std::array<double, scene::kMaxUvSets>> of_materials,
+                                           const scene::SourceMesh& mesh) {
+  std::array<double, scene::kMaxUvSets> most{};
+  for (const scene::Primitive& primitive : mesh.primitives) {
     if (primitive.material.value >= of_materials.size()) continue;
     const auto& own = of_materials[primitive.material.value];
     for (std::size_t set = 0; set < most.size(); ++set) most[set] = std::max(most[set], own[set]);
@@ -95,12 +95,12 @@ std::array<double, kMaxUvSets> most_texels(std::span<const std::array<double, kM
   return most;
 }
 
-std::array<bool, kMaxUvSets> has_finest_step(const Asset& asset, MeshId mesh, std::span<const DecodedCluster> clusters) {
+std::array<bool, scene::kMaxUvSets> has_finest_step(const run::Asset& asset, MeshId mesh, std::span<const run::DecodedCluster> clusters) {
   constexpr std::int64_t kLargest = (std::int64_t{1} << 24U) - 1;
   const format::MeshRecord& record = asset.meshes()[mesh.value];
   const std::size_t first_uv = record.normal_mode == format::NormalMode::kStored ? 6 : 3;
-  std::array<bool, kMaxUvSets> is_finest{};
-  for (const DecodedCluster& cluster : clusters.subspan(record.first_cluster, record.cluster_count)) {
+  std::array<bool, scene::kMaxUvSets> is_finest{};
+  for (const run::DecodedCluster& cluster : clusters.subspan(record.first_cluster, record.cluster_count)) {
     for (std::uint32_t v = 0; v < cluster.vertex_count; ++v) {
       const std::int32_t* uv = &cluster.channels[std::size_t{v} * cluster.channel_count + first_uv];
       for (std::uint32_t k = 0; k < 2 * record.uv_set_count; ++k) {
@@ -111,7 +111,7 @@ std::array<bool, kMaxUvSets> has_finest_step(const Asset& asset, MeshId mesh, st
   return is_finest;
 }
 
-void check_texel_budget(const Asset& asset, const Scene& source, double texels, std::span<const DecodedCluster> clusters,
+void check_texel_budget(const run::Asset& asset, const scene::Scene& source, double texels, std::span<const run::DecodedCluster> clusters,
                         RuleLog& log) {
   constexpr double kRounding = 1.0 + 1e-6;
   const auto of_materials = most_texels_of_materials(source);
@@ -121,12 +121,12 @@ void check_texel_budget(const Asset& asset, const Scene& source, double texels, 
     const auto most = most_texels(of_materials, source.meshes[m]);
     const auto is_finest = has_finest_step(asset, MeshId(m), clusters);
     for (std::uint32_t set = 0; set < mesh.uv_set_count; ++set) {
-      if (mesh.uv_set_source[set] >= kMaxUvSets) continue;
-      const double moved = 0.5 * exp2_exact(mesh.uv_log2[set]) * most[mesh.uv_set_source[set]];
+      if (mesh.uv_set_source[set] >= scene::kMaxUvSets) continue;
+      const double moved = 0.5 * format::exp2_exact(mesh.uv_log2[set]) * most[mesh.uv_set_source[set]];
       log.expect(moved <= texels * kRounding || is_finest[set], "V113", [&] { return place("mesh", m); },
                  [&] { return differs("texels that a UV moves", moved, "uv_error in texels", texels); });
     }
   }
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

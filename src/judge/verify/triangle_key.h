@@ -7,7 +7,7 @@
 #include <compare>
 #include <cstdint>
 
-namespace meshlode {
+namespace meshlode::judge {
 
 using GridPoint = std::array<std::int32_t, 3>;
 using GridCorners = std::array<GridPoint, 3>;
@@ -24,4 +24,4 @@ struct TriangleKey {
   return std::min({c, b, a});
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

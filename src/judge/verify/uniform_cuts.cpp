@@ -7,12 +7,12 @@
 #include "base/parallel.h"
 #include "judge/verify/cuts.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 
 namespace {
 
 /// Half at exact errors (evenly by rank), a quarter just below them, a quarter evenly in the logarithm; 0 first.
-std::vector<double> choose_thresholds(const Asset& asset, const MeshSurface& surface, std::uint32_t count) {
+std::vector<double> choose_thresholds(const run::Asset& asset, const MeshSurface& surface, std::uint32_t count) {
   std::vector<float> errors;
   for (std::uint32_t k = 0; k < surface.group_count; ++k) {
     const float error = asset.groups()[surface.first_group + k].error;
@@ -39,11 +39,11 @@ std::vector<double> choose_thresholds(const Asset& asset, const MeshSurface& sur
   return thresholds;
 }
 
-CutFaults judge_uniform_cut(const Asset& asset, const MeshJudge& judge, double threshold, const Selectors& selectors) {
+CutFaults judge_uniform_cut(const run::Asset& asset, const MeshJudge& judge, double threshold, const Selectors& selectors) {
   const MeshSurface& surface = judge.surface;
   const format::MeshRecord& mesh = asset.meshes()[surface.mesh.value];
   CutFaults faults;
-  const UniformCut cut = selectors.uniform(asset, surface.mesh, threshold);
+  const run::UniformCut cut = selectors.uniform(asset, surface.mesh, threshold);
   std::vector<std::uint8_t> drawn(surface.cluster_count, 0);
   double error = mesh.level0_deviation;
   for (const ClusterId id : cut.clusters) {
@@ -74,7 +74,7 @@ CutFaults judge_uniform_cut(const Asset& asset, const MeshJudge& judge, double t
 
 }  // namespace
 
-CutTotals check_uniform_cuts(const Asset& asset, const MeshJudge& judge, std::uint32_t count, RuleLog& log,
+CutTotals check_uniform_cuts(const run::Asset& asset, const MeshJudge& judge, std::uint32_t count, RuleLog& log,
                              const Selectors& selectors) {
   for (const char* rule : {"V201", "V202", "V204", "V205"}) log.check(rule);
   CutTotals totals;
@@ -101,4 +101,4 @@ CutTotals check_uniform_cuts(const Asset& asset, const MeshJudge& judge, std::ui
   return totals;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

@@ -11,7 +11,7 @@
 #include "judge/verify/deviations.h"
 #include "judge/verify/source_rules.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 
 namespace {
 
@@ -38,7 +38,7 @@ std::uint64_t failures_of(const RuleLog& log, std::initializer_list<std::string_
 }
 
 /// The rules of validate, summed by invariant.
-void add_structure(const Asset& asset, Report& report) {
+void add_structure(const run::Asset& asset, Report& report) {
   ValidationReport structure = validate_asset(asset.bytes());
   const auto failures = [&](auto&& counts) {
     return static_cast<std::uint64_t>(std::count_if(structure.findings.begin(), structure.findings.end(), counts));
@@ -70,7 +70,7 @@ void add_structure(const Asset& asset, Report& report) {
   std::move(structure.findings.begin(), structure.findings.end(), std::back_inserter(report.out.findings));
 }
 
-void add_source(const Asset& asset, const Scene& source, std::span<const DecodedCluster> clusters, Report& report) {
+void add_source(const run::Asset& asset, const scene::Scene& source, std::span<const run::DecodedCluster> clusters, Report& report) {
   RuleLog log;
   SourceCounts totals;
   const std::size_t count = std::min(asset.meshes().size(), source.meshes.size());
@@ -104,7 +104,7 @@ void add_source(const Asset& asset, const Scene& source, std::span<const Decoded
   report.take(log);
 }
 
-void add_cuts(const Asset& asset, std::span<const DecodedCluster> clusters, const VerifyOptions& options,
+void add_cuts(const run::Asset& asset, std::span<const run::DecodedCluster> clusters, const VerifyOptions& options,
               Report& report) {
   RuleLog log;
   std::vector<MeshJudge> judges;
@@ -137,7 +137,7 @@ void add_cuts(const Asset& asset, std::span<const DecodedCluster> clusters, cons
   report.take(camera_log);
 }
 
-void add_deviations(const Asset& asset, const Scene& source, std::span<const DecodedCluster> clusters,
+void add_deviations(const run::Asset& asset, const scene::Scene& source, std::span<const run::DecodedCluster> clusters,
                     const VerifyOptions& options, Report& report) {
   const auto meshes = asset.meshes();
   const bool is_qem = std::all_of(meshes.begin(), meshes.end(),
@@ -157,10 +157,10 @@ void add_deviations(const Asset& asset, const Scene& source, std::span<const Dec
 
 }  // namespace
 
-VerifyReport verify_asset(const Asset& asset, const Scene& source, const VerifyOptions& options) {
+VerifyReport verify_asset(const run::Asset& asset, const scene::Scene& source, const VerifyOptions& options) {
   Report report;
   add_structure(asset, report);
-  const Result<std::vector<DecodedCluster>> clusters = decode_all(asset);
+  const Result<std::vector<run::DecodedCluster>> clusters = run::decode_all(asset);
   if (clusters) {
     add_source(asset, source, *clusters, report);
     add_cuts(asset, *clusters, options, report);
@@ -178,4 +178,4 @@ VerifyReport verify_asset(const Asset& asset, const Scene& source, const VerifyO
   return std::move(report.out);
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

@@ -12,7 +12,7 @@
 #include "run/read/asset.h"
 #include "judge/validate/validate.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 
 struct VerifyOptions {
   std::uint32_t uniform_cuts = 300;   ///< cuts per mesh that cross-check I6
@@ -35,6 +35,6 @@ struct VerifyReport {
   std::vector<Check> checks;
 };
 
-[[nodiscard]] VerifyReport verify_asset(const Asset& asset, const Scene& source, const VerifyOptions& options);
+[[nodiscard]] VerifyReport verify_asset(const run::Asset& asset, const scene::Scene& source, const VerifyOptions& options);
 
-}  // namespace meshlode
+}  // namespace meshlode::judge

@@ -6,12 +6,12 @@
 #include <limits>
 #include <span>
 
-namespace meshlode {
+namespace meshlode::out {
 namespace {
 
 /// The cut of the groups that pass (`passes[g - first_group]`).
-UniformCut collect_cut(const Asset& asset, const format::MeshRecord& mesh, const std::vector<bool>& passes) {
-  UniformCut cut;
+run::UniformCut collect_cut(const run::Asset& asset, const format::MeshRecord& mesh, const std::vector<bool>& passes) {
+  run::UniformCut cut;
   double error = 0.0;
   for (std::uint32_t c = mesh.first_cluster; c < mesh.first_cluster + mesh.cluster_count; ++c) {
     const format::ClusterRecord& cluster = asset.clusters()[c];
@@ -28,8 +28,8 @@ UniformCut collect_cut(const Asset& asset, const format::MeshRecord& mesh, const
 
 /// Which groups pass, told from what is drawn: a group passes iff a cluster made from it is drawn, or was replaced in
 /// turn. Groups lie coarse to fine and so do clusters, so one walk in file order meets the coarser side first.
-std::vector<bool> passing_groups(const Asset& asset, const format::MeshRecord& mesh,
-                                 std::span<const ClusterInstance> drawn) {
+std::vector<bool> passing_groups(const run::Asset& asset, const format::MeshRecord& mesh,
+                                 std::span<const run::ClusterInstance> drawn) {
   std::vector<bool> passes(mesh.group_count, false);
   std::size_t next = 0;
   for (std::uint32_t c = mesh.first_cluster; c < mesh.first_cluster + mesh.cluster_count; ++c) {
@@ -56,7 +56,7 @@ struct BudgetEvent {
 };
 
 /// A cluster is drawn from the error of its own group on (level 0: from the beginning), up to that of its coarser one.
-void add_budget_events(const Asset& asset, const format::MeshRecord& mesh, double unit,
+void add_budget_events(const run::Asset& asset, const format::MeshRecord& mesh, double unit,
                        std::vector<BudgetEvent>& events) {
   for (std::uint32_t c = mesh.first_cluster; c < mesh.first_cluster + mesh.cluster_count; ++c) {
     const format::ClusterRecord& cluster = asset.clusters()[c];
@@ -71,7 +71,7 @@ void add_budget_events(const Asset& asset, const format::MeshRecord& mesh, doubl
 
 }  // namespace
 
-BudgetCuts choose_budget_cuts(const Asset& asset, std::span<const double> units, std::uint64_t max_triangles) {
+BudgetCuts choose_budget_cuts(const run::Asset& asset, std::span<const double> units, std::uint64_t max_triangles) {
   assert(units.size() == asset.meshes().size());
   std::vector<BudgetEvent> events;
   for (std::size_t m = 0; m < units.size(); ++m) {
@@ -103,7 +103,7 @@ BudgetCuts choose_budget_cuts(const Asset& asset, std::span<const double> units,
   return result;
 }
 
-UniformCut choose_level_cut(const Asset& asset, MeshId mesh, std::uint32_t level) {
+run::UniformCut choose_level_cut(const run::Asset& asset, MeshId mesh, std::uint32_t level) {
   const format::MeshRecord& record = asset.meshes()[mesh.value];
   std::vector<bool> passes(record.group_count);
   for (std::uint32_t g = 0; g < record.group_count; ++g) {
@@ -113,9 +113,9 @@ UniformCut choose_level_cut(const Asset& asset, MeshId mesh, std::uint32_t level
   return collect_cut(asset, record, passes);
 }
 
-std::vector<UniformCut> choose_camera_cuts(const Asset& asset, const Camera& camera, double pixel_error,
-                                           const AttributeBounds& bounds) {
-  const std::vector<ClusterInstance> drawn = select_flat(asset, camera, pixel_error, bounds);
+std::vector<run::UniformCut> choose_camera_cuts(const run::Asset& asset, const run::Camera& camera, double pixel_error,
+                                           const run::AttributeBounds& bounds) {
+  const std::vector<run::ClusterInstance> drawn = run::select_flat(asset, camera, pixel_error, bounds);
   std::vector<std::vector<bool>> passes(asset.meshes().size());  // empty: no instance yet
   for (std::size_t first = 0; first < drawn.size();) {
     std::size_t last = first;
@@ -129,11 +129,11 @@ std::vector<UniformCut> choose_camera_cuts(const Asset& asset, const Camera& cam
     }
     first = last;
   }
-  std::vector<UniformCut> cuts(asset.meshes().size());
+  std::vector<run::UniformCut> cuts(asset.meshes().size());
   for (std::size_t m = 0; m < cuts.size(); ++m) {
     if (!passes[m].empty()) cuts[m] = collect_cut(asset, asset.meshes()[m], passes[m]);
   }
   return cuts;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::out

@@ -9,7 +9,7 @@
 #include "out/export/glb_file.h"
 #include "base/json_writer.h"
 
-namespace meshlode {
+namespace meshlode::out {
 namespace {
 
 constexpr int kFloat = 5126, kUnsignedInt = 5125;
@@ -44,7 +44,7 @@ std::size_t material_of(const ColoredSet& set, Document& document) {
   return document.materials.size() - 1;
 }
 
-Result<WrittenPrimitive> write_primitive(const Asset& asset, const format::MeshRecord& record,
+Result<WrittenPrimitive> write_primitive(const run::Asset& asset, const format::MeshRecord& record,
                                          const CutPrimitive& primitive, const Vec3d& baked, GlbBinary& binary) {
   const auto positions = bake_positions(record, primitive.vertices, baked);
   if (!positions) {
@@ -64,7 +64,7 @@ Result<WrittenPrimitive> write_primitive(const Asset& asset, const format::MeshR
   return out;
 }
 
-Status add_mesh(const Asset& asset, MeshId mesh, std::span<const ColoredSet> sets, Document& document) {
+Status add_mesh(const run::Asset& asset, MeshId mesh, std::span<const ColoredSet> sets, Document& document) {
   const format::MeshRecord& record = asset.meshes()[mesh.value];
   std::vector<std::vector<CutPrimitive>> parts;
   std::vector<std::size_t> materials;
@@ -157,7 +157,7 @@ void write_views_and_accessors(JsonWriter& w, const Document& document) {
   });
 }
 
-void write_meshes(JsonWriter& w, const Asset& asset, const Document& document) {
+void write_meshes(JsonWriter& w, const run::Asset& asset, const Document& document) {
   std::size_t accessor = 0;
   w.key("meshes");
   w.begin_array();
@@ -183,7 +183,7 @@ void write_meshes(JsonWriter& w, const Asset& asset, const Document& document) {
 }
 
 /// A node per drawn instance, and a child that moves the mesh to its far-away origin where it has one.
-void write_nodes(JsonWriter& w, const Asset& asset, const Document& document) {
+void write_nodes(JsonWriter& w, const run::Asset& asset, const Document& document) {
   std::vector<std::size_t> roots;
   std::size_t next = 0;
   w.key("nodes");
@@ -224,7 +224,7 @@ void write_nodes(JsonWriter& w, const Asset& asset, const Document& document) {
 
 }  // namespace
 
-Result<std::vector<std::uint8_t>> export_colored_sets(const Asset& asset, std::span<const ColoredSet> sets) {
+Result<std::vector<std::uint8_t>> export_colored_sets(const run::Asset& asset, std::span<const ColoredSet> sets) {
   Document document;
   for (std::size_t m = 0; m < asset.meshes().size(); ++m) {
     if (Status status = add_mesh(asset, MeshId(m), sets, document); !status) return status.error();
@@ -260,4 +260,4 @@ Result<std::vector<std::uint8_t>> export_colored_sets(const Asset& asset, std::s
   return assemble_glb(w.text(), document.binary.bytes());
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::out

@@ -14,7 +14,7 @@
 #include "base/ids.h"
 #include "run/read/asset.h"
 
-namespace meshlode {
+namespace meshlode::out {
 
 struct ColoredSet {
   MeshId mesh;
@@ -27,7 +27,7 @@ struct ColoredSet {
 /// its instances that can be drawn. Positions alone, so it is shaded flat; nothing else of the scene. Without any
 /// cluster a glTF without meshes. Errors: kUsage for clusters that are not of the set's mesh or named twice in it; what
 /// load_page reports.
-[[nodiscard]] Result<std::vector<std::uint8_t>> export_colored_sets(const Asset& asset,
+[[nodiscard]] Result<std::vector<std::uint8_t>> export_colored_sets(const run::Asset& asset,
                                                                     std::span<const ColoredSet> sets);
 
-}  // namespace meshlode
+}  // namespace meshlode::out

@@ -10,7 +10,7 @@
 
 #include "run/unpack/unpack.h"
 
-namespace meshlode {
+namespace meshlode::out {
 namespace {
 
 /// All vertices of the cut one after another, cluster by cluster, and its triangles as indices into them.
@@ -26,22 +26,22 @@ struct Soup {
   }
 };
 
-Result<Soup> decode_cut(const Asset& asset, std::uint32_t channel_count, std::span<const ClusterId> cut) {
+Result<Soup> decode_cut(const run::Asset& asset, std::uint32_t channel_count, std::span<const ClusterId> cut) {
   Soup soup;
   soup.channel_count = channel_count;
   std::uint32_t loaded = format::kNone;  // pages hold contiguous clusters: in ascending order each is loaded once
-  std::optional<PageBytes> page;
-  DecodedCluster cluster;
+  std::optional<run::PageBytes> page;
+  run::DecodedCluster cluster;
   for (const ClusterId id : cut) {
     const format::ClusterRecord& record = asset.clusters()[id.value];
     const std::uint32_t page_id = asset.groups()[record.coarser_group].page;
     if (page_id != loaded) {
-      auto bytes = load_page(asset, PageId(page_id));
+      auto bytes = run::load_page(asset, PageId(page_id));
       if (!bytes) return bytes.error();
       page.emplace(std::move(*bytes));
       loaded = page_id;
     }
-    decode_cluster(asset, *page, id, cluster);
+    run::decode_cluster(asset, *page, id, cluster);
     const auto base = static_cast<std::uint32_t>(soup.vertex_count());
     soup.channels.insert(soup.channels.end(), cluster.channels.begin(), cluster.channels.end());
     for (const auto& t : cluster.triangles) soup.triangles.push_back({base + t[0], base + t[1], base + t[2]});
@@ -74,7 +74,7 @@ std::vector<std::uint32_t> find_representatives(const Soup& soup) {
 
 }  // namespace
 
-Result<std::vector<CutPrimitive>> gather_cut(const Asset& asset, MeshId mesh, std::span<const ClusterId> cut) {
+Result<std::vector<CutPrimitive>> gather_cut(const run::Asset& asset, MeshId mesh, std::span<const ClusterId> cut) {
   const format::MeshRecord& record = asset.meshes()[mesh.value];
   std::vector<ClusterId> clusters(cut.begin(), cut.end());
   std::sort(clusters.begin(), clusters.end());
@@ -123,4 +123,4 @@ Result<std::vector<CutPrimitive>> gather_cut(const Asset& asset, MeshId mesh, st
   return primitives;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::out

@@ -24,7 +24,7 @@
 #include "out/export/glb_file.h"
 #include "out/export/sniff.h"
 
-namespace meshlode {
+namespace meshlode::out {
 namespace {
 
 using Json = nlohmann::json;  // keys sorted: deterministic bytes
@@ -85,7 +85,7 @@ bool is_plain_node(const Json& node) {
 
 class Exporter {
  public:
-  Exporter(const Asset& asset, std::span<const LodChain> chains) : asset_(asset), chains_(chains) {}
+  Exporter(const run::Asset& asset, std::span<const LodChain> chains) : asset_(asset), chains_(chains) {}
   Result<std::vector<std::uint8_t>> run();
 
  private:
@@ -108,7 +108,7 @@ class Exporter {
   std::size_t add_view(GlbBinary::Range range, int target);
   std::size_t add_accessor(Json accessor);
 
-  const Asset& asset_;
+  const run::Asset& asset_;
   std::span<const LodChain> chains_;
   Json document_;
   Json meshes_ = Json::array();
@@ -254,7 +254,7 @@ int Exporter::texcoords_needed(MaterialId material) {
 
 Result<Json> Exporter::make_primitive(const format::MeshRecord& record, const CutPrimitive& primitive,
                                       const Vec3d& baked) {
-  const DecodedCluster& vertices = primitive.vertices;
+  const run::DecodedCluster& vertices = primitive.vertices;
   const std::size_t count = vertices.vertex_count;
   Json attributes = Json::object();
   const auto add = [&](const std::string& name, int component, const char* type, GlbBinary::Range range, Json extra) {
@@ -279,8 +279,8 @@ Result<Json> Exporter::make_primitive(const format::MeshRecord& record, const Cu
   add("POSITION", kFloat, "VEC3", binary_.append_values(std::span<const Vec3f>(*positions)),
       {{"min", {low.x, low.y, low.z}}, {"max", {high.x, high.y, high.z}}});
 
-  ClusterAttributes floats;
-  decode_attributes(record, vertices, floats);
+  run::ClusterAttributes floats;
+  run::decode_attributes(record, vertices, floats);
   // No NORMAL means flat normals in glTF, which is what the other two modes ask for.
   if (record.normal_mode == format::NormalMode::kStored) {
     add("NORMAL", kFloat, "VEC3", binary_.append_values(std::span<const Vec3f>(floats.normals)), Json::object());
@@ -528,13 +528,13 @@ bool is_sound(const LodChain& chain) {
 
 }  // namespace
 
-Result<std::vector<std::uint8_t>> export_glb(const Asset& asset, std::span<const std::vector<ClusterId>> cut_per_mesh) {
+Result<std::vector<std::uint8_t>> export_glb(const run::Asset& asset, std::span<const std::vector<ClusterId>> cut_per_mesh) {
   std::vector<LodChain> chains(cut_per_mesh.size());
   for (std::size_t m = 0; m < chains.size(); ++m) chains[m].cuts = {cut_per_mesh[m]};
   return export_glb_lods(asset, chains);
 }
 
-Result<std::vector<std::uint8_t>> export_glb_lods(const Asset& asset, std::span<const LodChain> chain_per_mesh) {
+Result<std::vector<std::uint8_t>> export_glb_lods(const run::Asset& asset, std::span<const LodChain> chain_per_mesh) {
   if (chain_per_mesh.size() != asset.meshes().size()) {
     return Error{ErrorCode::kUsage, "", "one cut per mesh is needed"};
   }
@@ -550,10 +550,10 @@ Result<std::vector<std::uint8_t>> export_glb_lods(const Asset& asset, std::span<
   for (const LodChain& chain : chain_per_mesh) {
     for (const auto& cut : chain.cuts) {
       const bool is_known = std::all_of(cut.begin(), cut.end(), [&](ClusterId id) { return id.value < asset.clusters().size(); });
-      if (is_known) bytes += count_decoded_bytes(asset, cut);  // others are refused where they are gathered
+      if (is_known) bytes += run::count_decoded_bytes(asset, cut);  // others are refused where they are gathered
     }
   }
-  if (Status status = check_decoded_bytes(asset, bytes); !status) return status.error();
+  if (Status status = run::check_decoded_bytes(asset, bytes); !status) return status.error();
   // The document is a file's: whatever shape it has that glTF does not allow ends as an exception of the JSON library.
   try {
     return Exporter(asset, chain_per_mesh).run();
@@ -564,4 +564,4 @@ Result<std::vector<std::uint8_t>> export_glb_lods(const Asset& asset, std::span<
   }
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::out

@@ -11,11 +11,11 @@
 #include "base/ids.h"
 #include "run/read/asset.h"
 
-namespace meshlode {
+namespace meshlode::out {
 
 /// One cut per mesh of the asset (an empty cut leaves the mesh without primitives and its nodes without mesh).
 /// Positions that are one grid point become one vertex wherever their attributes agree.
-[[nodiscard]] Result<std::vector<std::uint8_t>> export_glb(const Asset& asset,
+[[nodiscard]] Result<std::vector<std::uint8_t>> export_glb(const run::Asset& asset,
                                                            std::span<const std::vector<ClusterId>> cut_per_mesh);
 
 /// The discrete levels of one mesh, the finest first, for MSFT_lod.
@@ -29,7 +29,7 @@ struct LodChain {
 /// Discrete levels of detail: each node with a mesh gets its coarser levels as further nodes, named by MSFT_lod, and
 /// the coverage hints as MSFT_screencoverage. A reader without that extension sees the finest level. A mesh with one
 /// level is exported as export_glb does. Errors: kUsage for chains and coverage that are not as described.
-[[nodiscard]] Result<std::vector<std::uint8_t>> export_glb_lods(const Asset& asset,
+[[nodiscard]] Result<std::vector<std::uint8_t>> export_glb_lods(const run::Asset& asset,
                                                                 std::span<const LodChain> chain_per_mesh);
 
-}  // namespace meshlode
+}  // namespace meshlode::out

@@ -6,12 +6,12 @@
 
 #include "format/grid.h"
 
-namespace meshlode {
+namespace meshlode::out {
 
 Vec3d choose_origin(const format::MeshRecord& record, std::span<const std::vector<CutPrimitive>> levels) {
   const Vec3d origin(record.origin[0], record.origin[1], record.origin[2]);
-  const PositionGrid grid{record.grid.log2, record.grid.mantissa};
-  const double bearable = std::max(grid.step() / 64.0, record.diagonal * exp2_exact(-24));
+  const format::PositionGrid grid{record.grid.log2, record.grid.mantissa};
+  const double bearable = std::max(grid.step() / 64.0, record.diagonal * format::exp2_exact(-24));
   const auto bears = [&](const CutPrimitive& primitive) {
     for (std::uint32_t i = 0; i < primitive.vertices.vertex_count; ++i) {
       const Vec3d exact = origin + grid.decode(primitive.vertices.position(i));
@@ -28,9 +28,9 @@ Vec3d choose_origin(const format::MeshRecord& record, std::span<const std::vecto
   return origin;
 }
 
-std::optional<std::vector<Vec3f>> bake_positions(const format::MeshRecord& record, const DecodedCluster& vertices,
+std::optional<std::vector<Vec3f>> bake_positions(const format::MeshRecord& record, const run::DecodedCluster& vertices,
                                                  const Vec3d& baked) {
-  const PositionGrid grid{record.grid.log2, record.grid.mantissa};
+  const format::PositionGrid grid{record.grid.log2, record.grid.mantissa};
   std::vector<Vec3f> positions(vertices.vertex_count);
   for (std::uint32_t i = 0; i < vertices.vertex_count; ++i) {
     positions[i] = Vec3f(baked + grid.decode(vertices.position(i)));
@@ -39,4 +39,4 @@ std::optional<std::vector<Vec3f>> bake_positions(const format::MeshRecord& recor
   return positions;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::out

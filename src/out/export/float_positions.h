@@ -11,7 +11,7 @@
 #include "base/vec.h"
 #include "out/export/cut_geometry.h"
 
-namespace meshlode {
+namespace meshlode::out {
 
 /// The origin that is added to the positions themselves. The origin goes into a node instead where a float32 sum would
 /// be off by more than a 64th of a grid step and by more than a float32 mesh of this size centred on zero would be
@@ -21,6 +21,6 @@ namespace meshlode {
 
 /// baked + the grid's positions, rounded once; nothing where one is not finite as a float.
 [[nodiscard]] std::optional<std::vector<Vec3f>> bake_positions(const format::MeshRecord& record,
-                                                               const DecodedCluster& vertices, const Vec3d& baked);
+                                                               const run::DecodedCluster& vertices, const Vec3d& baked);
 
-}  // namespace meshlode
+}  // namespace meshlode::out

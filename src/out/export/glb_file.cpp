@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "out/export/glb_file.h"
 
-namespace meshlode {
+namespace meshlode::out {
 namespace {
 
 constexpr std::uint32_t kGlbMagic = 0x46546C67U;   // "glTF"
@@ -50,4 +50,4 @@ Result<std::vector<std::uint8_t>> assemble_glb(std::string_view json, std::span<
   return out;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::out

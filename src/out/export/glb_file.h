@@ -10,7 +10,7 @@
 
 #include <meshlode/result.h>
 
-namespace meshlode {
+namespace meshlode::out {
 
 /// The BIN chunk. Every piece starts at a multiple of 4, which is what any accessor's component asks for.
 class GlbBinary {
@@ -36,4 +36,4 @@ class GlbBinary {
 [[nodiscard]] Result<std::vector<std::uint8_t>> assemble_glb(std::string_view json,
                                                              std::span<const std::uint8_t> binary);
 
-}  // namespace meshlode
+}  // namespace meshlode::out

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <initializer_list>
 
-namespace meshlode {
+namespace meshlode::out {
 
 bool nests_deeper_than(std::string_view text, std::size_t limit) {
   std::size_t depth = 0;
@@ -37,4 +37,4 @@ std::string sniff_mime_type(std::span<const std::uint8_t> bytes) {
   return "image/png";
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::out

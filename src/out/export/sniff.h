@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-namespace meshlode {
+namespace meshlode::out {
 
 /// Whether JSON text nests deeper than `limit` brackets; strings are skipped. Safe on any text.
 [[nodiscard]] bool nests_deeper_than(std::string_view text, std::size_t limit);
@@ -16,4 +16,4 @@ namespace meshlode {
 /// glTF wants a type for an image in a buffer; a source file with an unknown extension leaves it to the bytes.
 [[nodiscard]] std::string sniff_mime_type(std::span<const std::uint8_t> bytes);
 
-}  // namespace meshlode
+}  // namespace meshlode::out

@@ -7,7 +7,7 @@
 
 #include "run/unpack/unpack.h"
 
-namespace meshlode {
+namespace meshlode::out {
 
 namespace {
 
@@ -42,11 +42,11 @@ PageBits& PageBits::operator+=(const PageBits& other) {
   return *this;
 }
 
-Result<ByteMap> map_bytes(const Asset& asset) {
+Result<ByteMap> map_bytes(const run::Asset& asset) {
   ByteMap map;
   for (std::size_t p = 0; p < asset.pages().size(); ++p) {
     const format::PageRecord& record = asset.pages()[p];
-    const auto page = load_page(asset, PageId(p));
+    const auto page = run::load_page(asset, PageId(p));
     if (!page) return page.error();
     map.stored_page_bytes += record.stored_bytes;
     const format::MeshRecord& mesh = asset.meshes()[asset.groups()[record.first_group].mesh];
@@ -76,4 +76,4 @@ Result<ByteMap> map_bytes(const Asset& asset) {
   return map;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::out

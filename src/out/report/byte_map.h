@@ -9,7 +9,7 @@
 
 #include "run/read/asset.h"
 
-namespace meshlode {
+namespace meshlode::out {
 
 /// Bits of decoded pages, by what they say.
 struct PageBits {
@@ -35,6 +35,6 @@ struct ByteMap {
 };
 
 /// Loads every page. Errors: those of load_page.
-[[nodiscard]] Result<ByteMap> map_bytes(const Asset& asset);
+[[nodiscard]] Result<ByteMap> map_bytes(const run::Asset& asset);
 
-}  // namespace meshlode
+}  // namespace meshlode::out

@@ -5,7 +5,7 @@
 
 #include "out/report/read_meta.h"
 
-namespace meshlode {
+namespace meshlode::out {
 
 namespace {
 
@@ -24,7 +24,7 @@ bool is_geometry(std::uint32_t id) {
   }
 }
 
-MeshInfo describe_mesh(const Asset& asset, std::uint32_t mesh_id, std::uint32_t cap) {
+MeshInfo describe_mesh(const run::Asset& asset, std::uint32_t mesh_id, std::uint32_t cap) {
   const format::MeshRecord& mesh = asset.meshes()[mesh_id];
   MeshInfo info;
   info.levels.resize(mesh.level_count);
@@ -78,7 +78,7 @@ MeshInfo describe_mesh(const Asset& asset, std::uint32_t mesh_id, std::uint32_t 
 
 }  // namespace
 
-AssetInfo describe_asset(const Asset& asset) {
+AssetInfo describe_asset(const run::Asset& asset) {
   AssetInfo info;
   info.cluster_cap = read_meta(asset.meta_json()).cluster_triangles;
   if (info.cluster_cap == 0) {
@@ -143,11 +143,11 @@ std::string section_name(std::uint32_t id) {
   return name;
 }
 
-std::uint64_t section_decoded_bytes(const Asset& asset, const format::SectionEntry& section) {
+std::uint64_t section_decoded_bytes(const run::Asset& asset, const format::SectionEntry& section) {
   if (section.id != static_cast<std::uint32_t>(format::SectionId::kPageData)) return section.decoded_bytes;
   std::uint64_t bytes = section.bytes;  // pages have codecs of their own
   for (const format::PageRecord& page : asset.pages()) bytes += std::uint64_t{page.bytes} - page.stored_bytes;
   return bytes;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::out

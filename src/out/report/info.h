@@ -13,7 +13,7 @@
 #include "run/read/asset.h"
 #include "out/report/byte_map.h"
 
-namespace meshlode {
+namespace meshlode::out {
 
 struct LevelInfo {
   std::uint32_t level = 0;
@@ -51,15 +51,15 @@ struct AssetInfo {
   std::optional<ByteMap> byte_map;  ///< left to the caller: it takes loading every page
 };
 
-[[nodiscard]] AssetInfo describe_asset(const Asset& asset);
+[[nodiscard]] AssetInfo describe_asset(const run::Asset& asset);
 
 /// With `list_stuck`, every stuck group is listed with its reason.
-[[nodiscard]] std::string info_json(const Asset& asset, const AssetInfo& info, bool list_stuck);
-[[nodiscard]] std::string info_text(const Asset& asset, const AssetInfo& info, bool list_stuck);
+[[nodiscard]] std::string info_json(const run::Asset& asset, const AssetInfo& info, bool list_stuck);
+[[nodiscard]] std::string info_text(const run::Asset& asset, const AssetInfo& info, bool list_stuck);
 
 [[nodiscard]] const char* stuck_reason_name(format::StuckReason reason);
 [[nodiscard]] const char* error_tier_name(format::ErrorTier tier);
 [[nodiscard]] std::string section_name(std::uint32_t id);  ///< four letters, '?' for bytes that are not printable
-[[nodiscard]] std::uint64_t section_decoded_bytes(const Asset& asset, const format::SectionEntry& section);
+[[nodiscard]] std::uint64_t section_decoded_bytes(const run::Asset& asset, const format::SectionEntry& section);
 
-}  // namespace meshlode
+}  // namespace meshlode::out

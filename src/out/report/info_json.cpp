@@ -7,7 +7,7 @@
 #include "base/json_writer.h"
 #include "out/report/read_meta.h"
 
-namespace meshlode {
+namespace meshlode::out {
 
 namespace {
 
@@ -47,7 +47,7 @@ void array_field(JsonWriter& w, const char* name, const Range& values) {
   w.end_array();
 }
 
-void write_totals(JsonWriter& w, const Asset& asset, const AssetInfo& info) {
+void write_totals(JsonWriter& w, const run::Asset& asset, const AssetInfo& info) {
   w.key("totals");
   w.begin_object();
   w.field("meshes", asset.meshes().size());
@@ -72,7 +72,7 @@ void write_totals(JsonWriter& w, const Asset& asset, const AssetInfo& info) {
   w.end_object();
 }
 
-void write_materials(JsonWriter& w, const Asset& asset) {
+void write_materials(JsonWriter& w, const run::Asset& asset) {
   w.key("materials");
   w.begin_array();
   for (const format::MaterialRecord& material : asset.materials()) {
@@ -90,7 +90,7 @@ void write_materials(JsonWriter& w, const Asset& asset) {
   w.end_array();
 }
 
-void write_textures_and_images(JsonWriter& w, const Asset& asset) {
+void write_textures_and_images(JsonWriter& w, const run::Asset& asset) {
   w.key("textures");
   w.begin_array();
   for (const TextureInfo& texture : read_textures(asset.scene_json())) {
@@ -115,7 +115,7 @@ void write_textures_and_images(JsonWriter& w, const Asset& asset) {
   w.end_array();
 }
 
-void write_instances(JsonWriter& w, const Asset& asset) {
+void write_instances(JsonWriter& w, const run::Asset& asset) {
   w.key("instances");
   w.begin_array();
   for (const format::InstanceRecord& instance : asset.instances()) {
@@ -149,7 +149,7 @@ void write_level(JsonWriter& w, const LevelInfo& level) {
   w.end_object();
 }
 
-void write_mesh(JsonWriter& w, const Asset& asset, std::uint32_t id, const MeshInfo& info) {
+void write_mesh(JsonWriter& w, const run::Asset& asset, std::uint32_t id, const MeshInfo& info) {
   const format::MeshRecord& mesh = asset.meshes()[id];
   w.begin_object();
   w.field("name", asset.string(mesh.name));
@@ -231,7 +231,7 @@ void write_byte_map(JsonWriter& w, const ByteMap& map) {
 
 }  // namespace
 
-std::string info_json(const Asset& asset, const AssetInfo& info, bool list_stuck) {
+std::string info_json(const run::Asset& asset, const AssetInfo& info, bool list_stuck) {
   const MetaInfo meta = read_meta(asset.meta_json());
   const format::FileHeader& header = asset.header();
   Hash128 hash{};
@@ -307,4 +307,4 @@ std::string info_json(const Asset& asset, const AssetInfo& info, bool list_stuck
   return w.text();
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::out

@@ -9,7 +9,7 @@
 #include "out/report/info.h"
 #include "out/report/read_meta.h"
 
-namespace meshlode {
+namespace meshlode::out {
 
 namespace {
 
@@ -38,7 +38,7 @@ std::string printable(std::string_view name, std::size_t limit = 60) {
   return out.empty() ? "(no name)" : out;
 }
 
-void add_mesh(std::string& out, const Asset& asset, std::uint32_t id, const MeshInfo& info) {
+void add_mesh(std::string& out, const run::Asset& asset, std::uint32_t id, const MeshInfo& info) {
   const format::MeshRecord& mesh = asset.meshes()[id];
   add(out, "\nmesh %u  %s\n", id, printable(asset.string(mesh.name)).c_str());
   add(out, "  %s source triangles, %s stored (%.3fx), diagonal %.6g, grid step %u * 2^%d, tier %s\n",
@@ -108,7 +108,7 @@ void add_more(std::string& out, std::size_t total, const char* what) {
 
 }  // namespace
 
-std::string info_text(const Asset& asset, const AssetInfo& info, bool list_stuck) {
+std::string info_text(const run::Asset& asset, const AssetInfo& info, bool list_stuck) {
   const MetaInfo meta = read_meta(asset.meta_json());
   const format::FileHeader& header = asset.header();
   Hash128 hash{};
@@ -179,4 +179,4 @@ std::string info_text(const Asset& asset, const AssetInfo& info, bool list_stuck
   return out;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::out

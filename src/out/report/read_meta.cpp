@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace meshlode {
+namespace meshlode::out {
 
 namespace {
 
@@ -102,4 +102,4 @@ std::vector<TextureInfo> read_textures(std::string_view scene_json) {
   return textures;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::out

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace meshlode {
+namespace meshlode::out {
 
 struct MetaInfo {
   struct Decision {
@@ -34,4 +34,4 @@ struct TextureInfo {
 };
 [[nodiscard]] std::vector<TextureInfo> read_textures(std::string_view scene_json);
 
-}  // namespace meshlode
+}  // namespace meshlode::out

@@ -19,7 +19,7 @@
 #include "run/unpack/unpack.h"
 
 struct meshlode_asset {
-  meshlode::Asset asset;
+  meshlode::run::Asset asset;
 };
 
 namespace meshlode {
@@ -70,7 +70,7 @@ meshlode_status guard(meshlode_error* error, const Body& body) {
   }
 }
 
-meshlode_status take(Result<Asset> asset, meshlode_asset** out, meshlode_error* error) {
+meshlode_status take(Result<run::Asset> asset, meshlode_asset** out, meshlode_error* error) {
   if (!asset) return fail(error, asset.error());
   *out = new meshlode_asset{std::move(*asset)};
   return succeed(error);
@@ -89,7 +89,7 @@ bool is_positive(double value) {
 }
 
 /// The camera of a view, or nothing and the field at fault.
-std::optional<Camera> make_camera(const meshlode_view& view, const char*& fault) {
+std::optional<run::Camera> make_camera(const meshlode_view& view, const char*& fault) {
   for (const double c : view.eye) {
     if (!std::isfinite(c)) fault = "view->eye is not finite";
   }
@@ -102,7 +102,7 @@ std::optional<Camera> make_camera(const meshlode_view& view, const char*& fault)
     fault = "view->fovy_radians is not between 0 and pi";
   }
   if (fault != nullptr) return std::nullopt;
-  Camera camera;
+  run::Camera camera;
   camera.eye = {view.eye[0], view.eye[1], view.eye[2]};
   camera.target = camera.eye - Vec3d(0.0, 0.0, 1.0);  // any direction: the rule does not look at it
   camera.is_orthographic = view.is_orthographic != 0;
@@ -114,7 +114,7 @@ std::optional<Camera> make_camera(const meshlode_view& view, const char*& fault)
   return camera;
 }
 
-std::uint32_t page_of(const Asset& asset, std::uint32_t cluster) {
+std::uint32_t page_of(const run::Asset& asset, std::uint32_t cluster) {
   return asset.groups()[asset.clusters()[cluster].coarser_group].page;
 }
 
@@ -123,7 +123,7 @@ bool is_aligned(const void* memory) {
 }
 
 /// What both ways to decode check, and the integers.
-meshlode_status decode(const Asset& asset, const meshlode_page_bytes& page, std::uint32_t cluster, DecodedCluster& out,
+meshlode_status decode(const run::Asset& asset, const meshlode_page_bytes& page, std::uint32_t cluster, run::DecodedCluster& out,
                        meshlode_error* error) {
   if (cluster >= asset.clusters().size()) return fail(error, MESHLODE_USAGE, "cluster: does not exist");
   if (page.page != page_of(asset, cluster)) return fail(error, MESHLODE_USAGE, "page: is not the page of this cluster");
@@ -131,11 +131,11 @@ meshlode_status decode(const Asset& asset, const meshlode_page_bytes& page, std:
     return fail(error, MESHLODE_USAGE, "page: its bytes are not at a multiple of 4");
   }
   const std::span bytes(static_cast<const std::uint8_t*>(page.bytes), asset.pages()[page.page].bytes);
-  decode_cluster(asset, PageBytes(bytes), ClusterId(cluster), out);
+  run::decode_cluster(asset, run::PageBytes(bytes), ClusterId(cluster), out);
   return MESHLODE_OK;
 }
 
-void copy_triangles(const DecodedCluster& cluster, std::uint8_t* triangles, std::uint32_t* materials) {
+void copy_triangles(const run::DecodedCluster& cluster, std::uint8_t* triangles, std::uint32_t* materials) {
   if (triangles != nullptr) std::memcpy(triangles, cluster.triangles.data(), 3 * cluster.triangles.size());
   if (materials != nullptr) {
     std::copy(cluster.triangle_material.begin(), cluster.triangle_material.end(), materials);
@@ -151,7 +151,7 @@ void copy_vectors(const std::vector<Vector>& from, float* to) {
 }
 
 /// Largest error of a page's groups: what is drawn without the page is off by at least the smallest, at most this.
-float largest_error(const Asset& asset, const format::PageRecord& page) {
+float largest_error(const run::Asset& asset, const format::PageRecord& page) {
   float error = 0.0F;
   for (const format::GroupRecord& group : asset.groups().subspan(page.first_group, page.group_count)) {
     error = std::max(error, group.error);
@@ -159,7 +159,7 @@ float largest_error(const Asset& asset, const format::PageRecord& page) {
   return error;
 }
 
-std::vector<std::uint32_t> order_pages(const Asset& asset) {
+std::vector<std::uint32_t> order_pages(const run::Asset& asset) {
   const std::size_t count = asset.pages().size();
   // A page counts with the largest error of all that depends on it, or it would hold up a page that matters more.
   std::vector<float> errors(count);
@@ -188,7 +188,7 @@ uint32_t meshlode_format_version(void) {
 
 meshlode_status meshlode_open_file(const char* path, meshlode_asset** asset, meshlode_error* error) {
   if (path == nullptr || asset == nullptr) return fail(error, MESHLODE_USAGE, "path or asset is NULL");
-  return guard(error, [&] { return take(Asset::open(path), asset, error); });
+  return guard(error, [&] { return take(run::Asset::open(path), asset, error); });
 }
 
 meshlode_status meshlode_open_buffer(const void* bytes, size_t size, meshlode_asset** asset, meshlode_error* error) {
@@ -197,7 +197,7 @@ meshlode_status meshlode_open_buffer(const void* bytes, size_t size, meshlode_as
     return fail(error, MESHLODE_USAGE, "bytes: not at a multiple of 8");
   }
   return guard(error, [&] {
-    return take(Asset::from_bytes({static_cast<const std::uint8_t*>(bytes), size}), asset, error);
+    return take(run::Asset::from_bytes({static_cast<const std::uint8_t*>(bytes), size}), asset, error);
   });
 }
 
@@ -264,7 +264,7 @@ meshlode_status meshlode_select_view(const meshlode_asset* asset, const meshlode
     return fail(error, MESHLODE_USAGE, "pixel_error is not a number >= 0");
   }
   return guard(error, [&] {
-    const std::vector<ClusterInstance> drawn = select_bvh(asset->asset, *camera, pixel_error);
+    const std::vector<run::ClusterInstance> drawn = run::select_bvh(asset->asset, *camera, pixel_error);
     *count = drawn.size();
     for (std::size_t i = 0; i < std::min(capacity, drawn.size()); ++i) {
       items[i] = {drawn[i].instance.value, drawn[i].cluster.value};
@@ -279,7 +279,7 @@ meshlode_status meshlode_select_uniform(const meshlode_asset* asset, uint32_t me
   if (mesh >= asset->asset.meshes().size()) return fail(error, MESHLODE_USAGE, "mesh: does not exist");
   if (!(max_error >= 0.0)) return fail(error, MESHLODE_USAGE, "max_error is not a number >= 0");
   return guard(error, [&] {
-    const UniformCut cut = select_uniform(asset->asset, MeshId(mesh), max_error);
+    const run::UniformCut cut = run::select_uniform(asset->asset, MeshId(mesh), max_error);
     *count = cut.clusters.size();
     if (stored_error != nullptr) *stored_error = cut.stored_error;
     for (std::size_t i = 0; i < std::min(capacity, cut.clusters.size()); ++i) clusters[i] = cut.clusters[i].value;
@@ -315,7 +315,7 @@ meshlode_status meshlode_load_page(const meshlode_asset* asset, uint32_t page, v
   if (capacity < asset->asset.pages()[page].bytes)
     return fail(error, MESHLODE_TOO_SMALL, "out: below the page's bytes");
   return guard(error, [&] {
-    const auto bytes = load_page(asset->asset, PageId(page));
+    const auto bytes = run::load_page(asset->asset, PageId(page));
     if (!bytes) return fail(error, bytes.error());
     std::memcpy(out, bytes->bytes().data(), bytes->bytes().size());
     return succeed(error);
@@ -329,7 +329,7 @@ meshlode_status meshlode_view_page(const meshlode_asset* asset, uint32_t page, c
     return fail(error, MESHLODE_UNSUPPORTED, "page: is stored compressed");
   }
   return guard(error, [&] {
-    const auto bytes = load_page(asset->asset, PageId(page));
+    const auto bytes = run::load_page(asset->asset, PageId(page));
     if (!bytes) return fail(error, bytes.error());
     *out = asset->asset.stored_page(PageId(page)).data();
     return succeed(error);
@@ -339,7 +339,7 @@ meshlode_status meshlode_view_page(const meshlode_asset* asset, uint32_t page, c
 meshlode_status meshlode_decode_floats(const meshlode_asset* asset, meshlode_page_bytes page, uint32_t cluster,
                                        meshlode_cluster_floats* out, meshlode_error* error) {
   return guard(error, [&] {
-    DecodedCluster decoded;
+    run::DecodedCluster decoded;
     const meshlode_status status = decode(asset->asset, page, cluster, decoded, error);
     if (status != MESHLODE_OK) return status;
     out->vertex_count = decoded.vertex_count;
@@ -348,8 +348,8 @@ meshlode_status meshlode_decode_floats(const meshlode_asset* asset, meshlode_pag
       return fail(error, MESHLODE_TOO_SMALL, "more vertices or triangles than capacity");
     }
     const std::uint32_t group = asset->asset.clusters()[cluster].coarser_group;
-    ClusterAttributes floats;
-    decode_attributes(asset->asset.meshes()[asset->asset.groups()[group].mesh], decoded, floats);
+    run::ClusterAttributes floats;
+    run::decode_attributes(asset->asset.meshes()[asset->asset.groups()[group].mesh], decoded, floats);
     copy_vectors(floats.positions, out->positions);
     copy_vectors(floats.normals, out->normals);
     for (std::size_t k = 0; k < floats.uvs.size(); ++k) copy_vectors(floats.uvs[k], out->uvs[k]);
@@ -362,7 +362,7 @@ meshlode_status meshlode_decode_floats(const meshlode_asset* asset, meshlode_pag
 meshlode_status meshlode_decode_integers(const meshlode_asset* asset, meshlode_page_bytes page, uint32_t cluster,
                                          meshlode_cluster_integers* out, meshlode_error* error) {
   return guard(error, [&] {
-    DecodedCluster decoded;
+    run::DecodedCluster decoded;
     const meshlode_status status = decode(asset->asset, page, cluster, decoded, error);
     if (status != MESHLODE_OK) return status;
     out->vertex_count = decoded.vertex_count;

@@ -23,7 +23,7 @@ bool is_positive(double value) {
   return value > 0.0 && std::isfinite(value);
 }
 
-Result<Camera> make_camera(const ViewPoint& view) {
+Result<run::Camera> make_camera(const ViewPoint& view) {
   for (const double c : view.eye) {
     if (!std::isfinite(c)) return usage("ViewPoint::eye", "is not finite");
   }
@@ -35,7 +35,7 @@ Result<Camera> make_camera(const ViewPoint& view) {
   } else if (!(view.fovy_radians > 0.0 && view.fovy_radians < kPi)) {
     return usage("ViewPoint::fovy_radians", "is not between 0 and pi");
   }
-  Camera camera;
+  run::Camera camera;
   camera.eye = {view.eye[0], view.eye[1], view.eye[2]};
   camera.target = camera.eye - Vec3d(0.0, 0.0, 1.0);  // any direction: the rule does not look at it
   camera.is_orthographic = view.is_orthographic;
@@ -58,7 +58,7 @@ void copy_vectors(const std::vector<In>& from, std::vector<Out>& to) {
 }  // namespace
 
 struct PageData::State {
-  PageBytes bytes;
+  run::PageBytes bytes;
   std::uint32_t page;
   const void* owner;  ///< the AssetFile's state: a page of another asset was checked against other tables
 };
@@ -75,17 +75,17 @@ std::uint32_t PageData::page() const {
 }
 
 struct AssetFile::State {
-  Asset asset;
+  run::Asset asset;
 
-  static Result<AssetFile> wrap(Result<Asset> asset) {
+  static Result<AssetFile> wrap(Result<run::Asset> asset) {
     if (!asset) return asset.error();
     return AssetFile(std::make_unique<State>(State{std::move(*asset)}));
   }
   /// Decodes to the integer form of the room `decode`.
-  [[nodiscard]] Status decode(const PageData::State& page, std::uint32_t cluster, DecodedCluster& out) const {
+  [[nodiscard]] Status decode(const PageData::State& page, std::uint32_t cluster, run::DecodedCluster& out) const {
     if (cluster >= asset.clusters().size()) return usage("cluster", "does not exist");
     if (page.owner != this || page_of(cluster) != page.page) return usage("page", "is not the page of this cluster");
-    decode_cluster(asset, page.bytes, ClusterId(cluster), out);
+    run::decode_cluster(asset, page.bytes, ClusterId(cluster), out);
     return Ok{};
   }
   [[nodiscard]] std::uint32_t page_of(std::uint32_t cluster) const {
@@ -99,13 +99,13 @@ AssetFile& AssetFile::operator=(AssetFile&&) noexcept = default;
 AssetFile::~AssetFile() = default;
 
 Result<AssetFile> AssetFile::open(const std::filesystem::path& path) {
-  return State::wrap(Asset::open(path));
+  return State::wrap(run::Asset::open(path));
 }
 Result<AssetFile> AssetFile::view(std::span<const std::uint8_t> bytes) {
-  return State::wrap(Asset::from_bytes(bytes));
+  return State::wrap(run::Asset::from_bytes(bytes));
 }
 Result<AssetFile> AssetFile::take(std::vector<std::uint8_t> bytes) {
-  return State::wrap(Asset::from_vector(std::move(bytes)));
+  return State::wrap(run::Asset::from_vector(std::move(bytes)));
 }
 
 const format::FileHeader& AssetFile::header() const {
@@ -155,17 +155,17 @@ Result<std::vector<DrawItem>> AssetFile::select(const ViewPoint& view, double pi
   const auto camera = make_camera(view);
   if (!camera) return camera.error();
   if (!(pixel_error >= 0.0) || !std::isfinite(pixel_error)) return usage("pixel_error", "is not a number >= 0");
-  const std::vector<ClusterInstance> drawn = select_bvh(state_->asset, *camera, pixel_error);
+  const std::vector<run::ClusterInstance> drawn = run::select_bvh(state_->asset, *camera, pixel_error);
   std::vector<DrawItem> items;
   items.reserve(drawn.size());
-  for (const ClusterInstance& d : drawn) items.push_back({d.instance.value, d.cluster.value});
+  for (const run::ClusterInstance& d : drawn) items.push_back({d.instance.value, d.cluster.value});
   return items;
 }
 
 Result<MeshCutResult> AssetFile::select_uniform_cut(std::uint32_t mesh, double error) const {
   if (mesh >= state_->asset.meshes().size()) return usage("mesh", "does not exist");
   if (!(error >= 0.0)) return usage("error", "is not a number >= 0");
-  const UniformCut cut = select_uniform(state_->asset, MeshId(mesh), error);
+  const run::UniformCut cut = run::select_uniform(state_->asset, MeshId(mesh), error);
   MeshCutResult result;
   result.stored_error = cut.stored_error;
   result.clusters.reserve(cut.clusters.size());
@@ -179,13 +179,13 @@ std::uint32_t AssetFile::page_of(std::uint32_t cluster) const {
 
 Result<PageData> AssetFile::load_page_data(std::uint32_t page) const {
   if (page >= state_->asset.pages().size()) return usage("page", "does not exist");
-  auto bytes = load_page(state_->asset, PageId(page));
+  auto bytes = run::load_page(state_->asset, PageId(page));
   if (!bytes) return bytes.error();
   return PageData(std::make_unique<PageData::State>(PageData::State{std::move(*bytes), page, state_.get()}));
 }
 
 Status AssetFile::decode(const PageData& page, std::uint32_t cluster, ClusterIntegers& out) const {
-  DecodedCluster decoded;
+  run::DecodedCluster decoded;
   std::swap(decoded.channels, out.values);  // reuse what the caller brought
   std::swap(decoded.triangles, out.triangles);
   std::swap(decoded.triangle_material, out.triangle_material);
@@ -200,13 +200,13 @@ Status AssetFile::decode(const PageData& page, std::uint32_t cluster, ClusterInt
 }
 
 Status AssetFile::decode(const PageData& page, std::uint32_t cluster, ClusterFloats& out) const {
-  DecodedCluster decoded;
+  run::DecodedCluster decoded;
   std::swap(decoded.triangles, out.triangles);
   std::swap(decoded.triangle_material, out.triangle_material);
   if (auto status = state_->decode(*page.state_, cluster, decoded); !status) return status.error();
   const format::GroupRecord& group = state_->asset.groups()[state_->asset.clusters()[cluster].coarser_group];
-  ClusterAttributes floats;
-  decode_attributes(state_->asset.meshes()[group.mesh], decoded, floats);
+  run::ClusterAttributes floats;
+  run::decode_attributes(state_->asset.meshes()[group.mesh], decoded, floats);
   copy_vectors(floats.positions, out.positions);
   copy_vectors(floats.normals, out.normals);
   for (std::size_t k = 0; k < out.uvs.size(); ++k) copy_vectors(floats.uvs[k], out.uvs[k]);

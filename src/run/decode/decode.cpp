@@ -13,7 +13,7 @@
 #include "run/decode/octahedral.h"
 #include "run/unpack/processor.h"
 
-namespace meshlode {
+namespace meshlode::run {
 
 namespace {
 
@@ -423,4 +423,4 @@ Result<std::vector<DecodedCluster>> decode_all(const Asset& asset) {
   return clusters;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::run

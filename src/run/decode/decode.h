@@ -11,7 +11,7 @@
 #include "base/vec.h"
 #include "run/unpack/unpack.h"
 
-namespace meshlode {
+namespace meshlode::run {
 
 /// Vertex i has channels[i * channel_count + c], the integers of format::MeshRecord in their order.
 struct DecodedCluster {
@@ -52,4 +52,4 @@ void decode_attributes(const format::MeshRecord& mesh, const DecodedCluster& clu
 /// and check_decoded_bytes() before any work.
 [[nodiscard]] Result<std::vector<DecodedCluster>> decode_all(const Asset& asset);
 
-}  // namespace meshlode
+}  // namespace meshlode::run

@@ -9,7 +9,7 @@
 
 #include "base/vec.h"
 
-namespace meshlode {
+namespace meshlode::run {
 
 /// The integer point of stored values a and b (docs/format.md, Normals). Integer arithmetic only, so it is the same
 /// everywhere (I9). \pre a and b below 2^15, chart below 6
@@ -34,4 +34,4 @@ namespace meshlode {
 /// The unit normal: each coordinate divided by the square root of the sum of squares, in double, rounded to float once.
 [[nodiscard]] Vec3f octahedral_normal(const std::array<std::int32_t, 3>& point);
 
-}  // namespace meshlode
+}  // namespace meshlode::run

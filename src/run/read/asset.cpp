@@ -9,7 +9,7 @@
 #include "run/read/file_place.h"
 #include "run/read/sections.h"
 
-namespace meshlode {
+namespace meshlode::run {
 
 namespace {
 
@@ -83,9 +83,9 @@ Status Asset::index() {
   using enum format::SectionId;
   std::uint64_t left = max_decoded_bytes();
   for (const auto& [id, entry] : sections->known) {
-    if (entry->codec == static_cast<std::uint32_t>(SectionCodec::kNone)) continue;
+    if (entry->codec == static_cast<std::uint32_t>(format::SectionCodec::kPlain)) continue;
     const auto stored = bytes_.subspan(entry->offset, entry->bytes);
-    if (!is_section_sound(stored, entry->record_bytes, entry->decoded_bytes)) {
+    if (!format::is_section_sound(stored, entry->record_bytes, entry->decoded_bytes)) {
       return Error{ErrorCode::kInvalid, "section " + section_tag(entry->id) + ", field codec",
                    "the stored bytes do not decode"};
     }
@@ -97,7 +97,7 @@ Status Asset::index() {
     }
     left -= entry->decoded_bytes;
     std::vector<std::uint8_t> decoded(entry->decoded_bytes);
-    if (!decode_section(bytes_.subspan(entry->offset, entry->bytes), entry->record_bytes, decoded)) {
+    if (!format::decode_section(bytes_.subspan(entry->offset, entry->bytes), entry->record_bytes, decoded)) {
       return Error{ErrorCode::kInvalid, "section " + section_tag(entry->id) + ", field codec",
                    "the stored bytes do not decode"};
     }
@@ -147,4 +147,4 @@ Status Asset::index() {
   return Ok{};
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::run

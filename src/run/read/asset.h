@@ -19,7 +19,7 @@
 #include "base/ids.h"
 #include "run/read/limits.h"
 
-namespace meshlode {
+namespace meshlode::run {
 
 class Asset {
  public:
@@ -81,4 +81,4 @@ class Asset {
   std::string_view meta_, scene_, strings_;
 };
 
-}  // namespace meshlode
+}  // namespace meshlode::run

@@ -7,7 +7,7 @@
 #include "run/read/check_tables.h"
 #include "run/read/file_place.h"
 
-namespace meshlode {
+namespace meshlode::run {
 
 namespace {
 
@@ -149,4 +149,4 @@ Status check_nodes(const RawTables& tables) {
   return Ok{};
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::run

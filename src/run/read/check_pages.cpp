@@ -5,7 +5,7 @@
 #include "run/read/check_tables.h"
 #include "run/read/file_place.h"
 
-namespace meshlode {
+namespace meshlode::run {
 
 namespace {
 
@@ -110,4 +110,4 @@ Status check_pages(const RawTables& tables) {
   return Ok{};
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::run

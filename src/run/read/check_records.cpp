@@ -6,7 +6,7 @@
 #include "run/read/check_tables.h"
 #include "run/read/file_place.h"
 
-namespace meshlode {
+namespace meshlode::run {
 
 namespace {
 
@@ -193,4 +193,4 @@ Status check_blobs(const RawTables& tables) {
   return Ok{};
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::run

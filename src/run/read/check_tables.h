@@ -9,7 +9,7 @@
 #include <meshlode/format.h>
 #include <meshlode/result.h>
 
-namespace meshlode {
+namespace meshlode::run {
 
 /// The tables as they lie in the file, not trusted yet.
 struct RawTables {
@@ -42,4 +42,4 @@ constexpr std::uint32_t kMaxBvhDepth = 64;
 [[nodiscard]] Status check_nodes(const RawTables& tables);      ///< \pre check_meshes; each BVH is a tree
 [[nodiscard]] Status check_pages(const RawTables& tables);      ///< \pre check_groups; pages partition groups
 
-}  // namespace meshlode
+}  // namespace meshlode::run

@@ -9,7 +9,7 @@
 #include <meshlode/format.h>
 #include <meshlode/result.h>
 
-namespace meshlode {
+namespace meshlode::run {
 
 /// "GRUP"; bytes that are not printable become '?'.
 [[nodiscard]] inline std::string section_tag(std::uint32_t id) {
@@ -37,4 +37,4 @@ namespace meshlode {
           std::move(detail)};
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::run

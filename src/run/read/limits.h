@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 
-namespace meshlode {
+namespace meshlode::run {
 
 /// Where nobody says otherwise.
 constexpr std::uint64_t kDefaultMaxDecoded = std::uint64_t{512} << 20U;
@@ -19,4 +19,4 @@ constexpr std::uint64_t kJustifiedRatio = 64;
   return std::max(max_decoded, file_bytes > UINT64_MAX / kJustifiedRatio ? UINT64_MAX : kJustifiedRatio * file_bytes);
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::run

@@ -12,7 +12,7 @@
 #include "format/section_columns.h"
 #include "run/read/file_place.h"
 
-namespace meshlode {
+namespace meshlode::run {
 
 namespace {
 
@@ -98,11 +98,11 @@ Status check_known(std::span<const std::uint8_t> bytes, const format::SectionEnt
   if ((entry.flags & ~format::kSectionRequired) != 0U) return invalid_section(entry.id, "flags", "has an unknown bit");
   const auto id = static_cast<SectionId>(entry.id);
   const bool is_raw = id == SectionId::kPageData || id == SectionId::kBlobData;
-  if (entry.codec == static_cast<std::uint32_t>(SectionCodec::kColumns) && !is_raw) {
-    if (entry.decoded_bytes / kMaxSectionRatio > entry.bytes || entry.decoded_bytes == 0) {
+  if (entry.codec == static_cast<std::uint32_t>(format::SectionCodec::kColumns) && !is_raw) {
+    if (entry.decoded_bytes / format::kMaxSectionRatio > entry.bytes || entry.decoded_bytes == 0) {
       return invalid_section(entry.id, "decoded_bytes", "cannot come from so few bytes");
     }
-  } else if (entry.codec != static_cast<std::uint32_t>(SectionCodec::kNone)) {
+  } else if (entry.codec != static_cast<std::uint32_t>(format::SectionCodec::kPlain)) {
     return Error{ErrorCode::kUnsupported, "section " + section_tag(entry.id) + ", field codec",
                  "codec " + std::to_string(entry.codec) + " is not known to this reader"};
   } else if (entry.decoded_bytes != entry.bytes) {
@@ -168,4 +168,4 @@ Result<SectionIndex> index_sections(std::span<const std::uint8_t> bytes) {
   return index;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::run

@@ -11,7 +11,7 @@
 #include <meshlode/format.h>
 #include <meshlode/result.h>
 
-namespace meshlode {
+namespace meshlode::run {
 
 /// The sections of a file by id; ids that this reader does not know are left out.
 struct SectionIndex {
@@ -27,4 +27,4 @@ struct SectionIndex {
 /// `bytes` must be aligned to 8 bytes.
 [[nodiscard]] Result<SectionIndex> index_sections(std::span<const std::uint8_t> bytes);
 
-}  // namespace meshlode
+}  // namespace meshlode::run

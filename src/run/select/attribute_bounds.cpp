@@ -5,7 +5,7 @@
 
 #include "run/select/select.h"
 
-namespace meshlode {
+namespace meshlode::run {
 
 AttributeBounds bounds_for(const AttributeBounds& bounds, const format::MeshRecord& mesh) {
   AttributeBounds own;
@@ -42,4 +42,4 @@ CutAttributeDeviation attribute_deviation_of(const SelectTables& tables, std::sp
   return out;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::run

@@ -11,7 +11,7 @@
 
 #include "base/ids.h"
 
-namespace meshlode {
+namespace meshlode::run {
 
 struct SelectTables;
 
@@ -46,4 +46,4 @@ struct CutAttributeDeviation {
 [[nodiscard]] CutAttributeDeviation attribute_deviation_of(const SelectTables& tables,
                                                         std::span<const ClusterId> clusters);
 
-}  // namespace meshlode
+}  // namespace meshlode::run

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace meshlode {
+namespace meshlode::run {
 
 FarBound find_far_bound(const SelectTables& tables, const format::MeshRecord& mesh, std::span<const float> errors) {
   FarBound out;
@@ -22,4 +22,4 @@ FarBound find_far_bound(const SelectTables& tables, const format::MeshRecord& me
   return out;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::run

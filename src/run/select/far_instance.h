@@ -11,7 +11,7 @@
 #include "run/select/nesting.h"
 #include "run/select/select.h"
 
-namespace meshlode {
+namespace meshlode::run {
 
 struct FarBound {
   /// The BVH root's sphere, and the largest finite error of a group grown as an inner node's is: nested (nesting.h) over
@@ -27,4 +27,4 @@ struct FarBound {
 [[nodiscard]] FarBound find_far_bound(const SelectTables& tables, const format::MeshRecord& mesh,
                                       std::span<const float> errors);
 
-}  // namespace meshlode
+}  // namespace meshlode::run

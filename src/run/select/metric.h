@@ -17,7 +17,7 @@
 #define MESHLODE_SELECT_METRIC_H
 
 #ifdef __cplusplus
-namespace meshlode {
+namespace meshlode::run {
 struct MetricVec4 {
   float x, y, z, w;
 };
@@ -63,7 +63,7 @@ METRIC_FUNCTION bool metric_passes(MetricView view, float center_x, float center
 #undef METRIC_VALUE
 #ifdef __cplusplus
 static_assert(sizeof(MetricView) == 64);
-}  // namespace meshlode
+}  // namespace meshlode::run
 #endif
 
 #endif  // MESHLODE_SELECT_METRIC_H

@@ -7,7 +7,7 @@
 
 #include <meshlode/format.h>
 
-namespace meshlode {
+namespace meshlode::run {
 
 /// Relative part: both radii may be off by this much.
 constexpr double kNestingRadiusMargin = 6.0 / 16777216.0;  // 6u; the proof needs 5.1u
@@ -69,4 +69,4 @@ struct StoredBound {
   return is_error_nested(outer.error, inner.error) && is_sphere_nested(outer, inner);
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::run

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <map>
 
-namespace meshlode {
+namespace meshlode::run {
 namespace {
 
 bool passes(const MetricView& view, const format::GroupRecord& group) {
@@ -193,4 +193,4 @@ UniformCut select_uniform(const Asset& asset, MeshId mesh, double error, CutErro
   return select_uniform(tables_of(asset), mesh, error, by, bounds);
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::run

@@ -15,7 +15,7 @@
 #include "run/select/attribute_bounds.h"
 #include "run/select/metric.h"
 
-namespace meshlode {
+namespace meshlode::run {
 
 /// A camera as the command line gives it (design, section 4). Right-handed, y up unless looking along y.
 struct Camera {
@@ -91,4 +91,4 @@ struct UniformCut {
 [[nodiscard]] UniformCut select_uniform(const SelectTables& tables, MeshId mesh, double error,
                                         CutError by = CutError::kSelection, const AttributeBounds& bounds = {});
 
-}  // namespace meshlode
+}  // namespace meshlode::run

@@ -6,7 +6,7 @@
 
 #include "run/select/select.h"
 
-namespace meshlode {
+namespace meshlode::run {
 namespace {
 
 constexpr double kGrowth = 1.0 + 0x1p-20;  // over the rounding of the rows (sqrt(3)·2^-24) and of the formula
@@ -93,4 +93,4 @@ MetricView make_metric_view(const Camera& camera, double pixel_error, const form
   return view;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::run

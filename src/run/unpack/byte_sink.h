@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <cstring>
 
-namespace meshlode {
+namespace meshlode::run {
 
 [[nodiscard]] constexpr std::uint64_t low_mask(std::uint32_t bits) { return (std::uint64_t{1} << bits) - 1U; }
 
@@ -50,4 +50,4 @@ class ByteSink {
   std::uint32_t count_ = 0;
 };
 
-}  // namespace meshlode
+}  // namespace meshlode::run

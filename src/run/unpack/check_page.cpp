@@ -7,7 +7,7 @@
 
 #include <meshlode/page.h>
 
-namespace meshlode {
+namespace meshlode::run {
 
 namespace {
 
@@ -47,7 +47,7 @@ class PageChecker {
   /// Checks the cluster whose data must start at word `at`, and moves `at` behind it.
   Status check_cluster(std::uint32_t& at) {
     const std::uint32_t head = 2 + cluster_ * format::head_words(mesh_);  // check_pages made sure of the heads
-    if (static_cast<std::uint32_t>(get_field(&words_[head], format::head::kDataWord)) != at) {
+    if (static_cast<std::uint32_t>(format::get_field(&words_[head], format::head::kDataWord)) != at) {
       return fail("data_word", "does not follow the data before it");
     }
     format::ClusterLayout layout;
@@ -71,7 +71,7 @@ class PageChecker {
       std::uint32_t at = layout.uv_word[set];
       for (std::uint32_t r = 0; r < layout.uv_range_count[set]; ++r) {
         const std::uint32_t* const range = &words_[at];
-        const bool has_fit = get_field(range, format::uv_range::kHasFit) != 0;
+        const bool has_fit = format::get_field(range, format::uv_range::kHasFit) != 0;
         if (range[0] >> 29 != 0 || (has_fit && (range[3] >> 30 != 0 || range[4] >> 30 != 0))) {
           return fail("uv_range", "an unnamed bit is not zero");
         }
@@ -91,7 +91,7 @@ class PageChecker {
     std::int64_t previous = -1;
     for (std::uint32_t r = 0; r < layout.material_count; ++r) {
       const std::int32_t material =
-          get_field(&words_[layout.material_word + r * format::material_range::kWords], format::material_range::kMaterial);
+          format::get_field(&words_[layout.material_word + r * format::material_range::kWords], format::material_range::kMaterial);
       if (static_cast<std::uint32_t>(material) >= asset_.materials().size()) return fail("material", "is out of range");
       if (material <= previous) return fail("material", "must be larger than the one before it");
       previous = material;
@@ -141,4 +141,4 @@ Status check_page(const Asset& asset, PageId page, std::span<const std::uint32_t
   return PageChecker(asset, page, words).run();
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::run

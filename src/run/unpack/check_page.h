@@ -7,10 +7,10 @@
 
 #include "run/read/asset.h"
 
-namespace meshlode {
+namespace meshlode::run {
 
 /// The layout of a page leaves no freedom: every offset is the only one possible and every unnamed bit is zero, so no
 /// bit of a page is without meaning. Errors: kInvalid with the place.
 [[nodiscard]] Status check_page(const Asset& asset, PageId page, std::span<const std::uint32_t> words);
 
-}  // namespace meshlode
+}  // namespace meshlode::run

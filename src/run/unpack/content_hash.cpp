@@ -5,7 +5,7 @@
 
 #include "run/unpack/unpack.h"
 
-namespace meshlode {
+namespace meshlode::run {
 
 namespace {
 
@@ -57,4 +57,4 @@ Result<Hash128> hash_asset_content(const Asset& asset) {
   return hasher.digest();
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::run

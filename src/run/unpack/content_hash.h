@@ -5,9 +5,9 @@
 #include "base/hash.h"
 #include "run/read/asset.h"
 
-namespace meshlode {
+namespace meshlode::run {
 
 /// What FileHeader::content_hash must be. Reads every page and blob. Errors: those of load_page.
 [[nodiscard]] Result<Hash128> hash_asset_content(const Asset& asset);
 
-}  // namespace meshlode
+}  // namespace meshlode::run

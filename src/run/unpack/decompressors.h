@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-namespace meshlode {
+namespace meshlode::run {
 
 enum class UnpackOutcome : std::uint8_t { kOk, kBroken, kNotBuiltIn };
 
@@ -15,4 +15,4 @@ enum class UnpackOutcome : std::uint8_t { kOk, kBroken, kNotBuiltIn };
 /// Numbers through Draco's symbol coder.
 [[nodiscard]] UnpackOutcome unpack_draco(std::span<const std::uint8_t> stored, std::span<std::uint32_t> out);
 
-}  // namespace meshlode
+}  // namespace meshlode::run

@@ -3,7 +3,7 @@
 
 #include <cstring>
 
-namespace meshlode {
+namespace meshlode::run {
 
 std::span<const std::uint8_t> ColumnReader::take(std::uint64_t count) {
   if (count > bytes_.size()) {
@@ -26,7 +26,7 @@ bool PageColumns::read(ColumnReader& columns) {
   if (2 + std::uint64_t{cluster_count_} * format::head_words(mesh_) >= page_.size()) return false;
   for (std::uint32_t& count : counts_) count = columns.take_u32();
   if (!read_heads(columns)) return false;
-  for (std::uint32_t kind = 0; kind < kRangeWordKinds; ++kind) {
+  for (std::uint32_t kind = 0; kind < format::kRangeWordKinds; ++kind) {
     for (auto& plane : planes_[kind]) plane = columns.take(counts_[kind]);
   }
   return !columns.is_short() && columns.is_at_end();
@@ -44,8 +44,8 @@ bool PageColumns::read_heads(ColumnReader& columns) {
       std::uint32_t value = planes[0][c] | std::uint32_t{planes[1][c]} << 8U;
       if (index > 0) value |= std::uint32_t{planes[2][c]} << 16U | std::uint32_t{planes[3][c]} << 24U;
       if (index >= 1 && index <= 3) {
-        coordinate = (coordinate + unfold_coordinate(value & kCoordinateMask)) & kCoordinateMask;
-        value = (value & ~kCoordinateMask) | coordinate;
+        coordinate = (coordinate + format::unfold_coordinate(value & format::kCoordinateMask)) & format::kCoordinateMask;
+        value = (value & ~format::kCoordinateMask) | coordinate;
       }
       *word = value;
     }
@@ -53,13 +53,13 @@ bool PageColumns::read_heads(ColumnReader& columns) {
   return true;
 }
 
-bool PageColumns::place_word(RangeWord kind, std::uint32_t& word) {
+bool PageColumns::place_word(format::RangeWord kind, std::uint32_t& word) {
   const std::uint32_t i = next_[kind];
   if (i >= counts_[kind] || word + 1 >= page_.size()) return false;
   const auto& planes = planes_[kind];
   std::uint32_t value = planes[0][i] | std::uint32_t{planes[1][i]} << 8U | std::uint32_t{planes[2][i]} << 16U |
                         std::uint32_t{planes[3][i]} << 24U;
-  if (is_delta(kind)) value = before_[kind] += unfold(value);
+  if (format::is_delta(kind)) value = before_[kind] += format::unfold(value);
   ++next_[kind];
   page_[word++] = value;
   return true;
@@ -73,20 +73,20 @@ bool PageColumns::place_cluster(std::uint32_t cluster, std::uint32_t& word) {
   };
   if (mesh_.material == format::kNone) {
     for (std::uint32_t covered = 0; covered < triangle_count(cluster);) {
-      if (!place_word(kMaterialWord, word)) return false;
+      if (!place_word(format::kMaterialWord, word)) return false;
       covered += get(format::material_range::kTrianglesLess1) + 1U;
     }
   }
   for (std::uint32_t set = 0; set < mesh_.uv_set_count; ++set) {
     for (std::uint32_t covered = 0; covered < vertex_count(cluster);) {
-      if (!place_word(kUvWord0, word)) return false;
+      if (!place_word(format::kUvWord0, word)) return false;
       covered += get(format::uv_range::kVerticesLess1) + 1U;
       const bool has_fit = get(format::uv_range::kHasFit) != 0;
-      if (!place_word(kUvWord1, word) || !place_word(kUvWord2, word)) return false;
-      if (has_fit && (!place_word(kFitWord0, word) || !place_word(kFitWord1, word))) return false;
+      if (!place_word(format::kUvWord1, word) || !place_word(format::kUvWord2, word)) return false;
+      if (has_fit && (!place_word(format::kFitWord0, word) || !place_word(format::kFitWord1, word))) return false;
     }
   }
-  return mesh_.has_color == 0 || (place_word(kColorWord0, word) && place_word(kColorWord1, word));
+  return mesh_.has_color == 0 || (place_word(format::kColorWord0, word) && place_word(format::kColorWord1, word));
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::run

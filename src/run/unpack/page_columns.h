@@ -10,7 +10,7 @@
 
 #include "format/page_streams.h"
 
-namespace meshlode {
+namespace meshlode::run {
 
 /// Columns of bytes, taken one after the other.
 class ColumnReader {
@@ -52,13 +52,13 @@ class PageColumns {
     return page_.data() + 2 + cluster * format::head_words(mesh_);
   }
   bool read_heads(ColumnReader& columns);
-  bool place_word(RangeWord kind, std::uint32_t& word);
+  bool place_word(format::RangeWord kind, std::uint32_t& word);
 
   const format::MeshRecord& mesh_;
   std::uint32_t cluster_count_;
   std::span<std::uint32_t> page_;
-  std::array<std::uint32_t, kRangeWordKinds> counts_{}, next_{}, before_{};
-  std::array<std::array<std::span<const std::uint8_t>, 4>, kRangeWordKinds> planes_;
+  std::array<std::uint32_t, format::kRangeWordKinds> counts_{}, next_{}, before_{};
+  std::array<std::array<std::span<const std::uint8_t>, 4>, format::kRangeWordKinds> planes_;
 };
 
-}  // namespace meshlode
+}  // namespace meshlode::run

@@ -5,7 +5,7 @@
 
 #include <meshlode/page.h>
 
-namespace meshlode {
+namespace meshlode::run {
 
 bool plan_page(const format::MeshRecord& mesh, std::uint32_t cluster_count, PageColumns& columns,
                std::span<std::uint32_t> page, PagePlan& out) {
@@ -15,19 +15,19 @@ bool plan_page(const format::MeshRecord& mesh, std::uint32_t cluster_count, Page
   std::uint32_t word = columns.first_data_word();
   for (std::uint32_t c = 0; c < cluster_count; ++c) {
     if (!columns.place_cluster(c, word)) return false;
-    ClusterFields& cluster = out.clusters[c];
+    format::ClusterFields& cluster = out.clusters[c];
     const format::ClusterLayout& layout = cluster.layout;
     if (format::read_cluster_layout(mesh, page, c, cluster.layout) != nullptr || layout.stream_word != word) return false;
-    read_cluster_fields(mesh, page.data(), cluster, out.ranges);
+    format::read_cluster_fields(mesh, page.data(), cluster, out.ranges);
     word = layout.end_word;
     out.first_vertex[c + 1] = out.first_vertex[c] + layout.vertex_count;
     for (const std::uint32_t bits : layout.bits) out.max_bits = std::max(out.max_bits, bits);
     for (const std::uint32_t bits : layout.normal_bits) out.max_normal_bits = std::max(out.max_normal_bits, bits);
   }
-  for (const UvRangeFields& range : out.ranges) {
+  for (const format::UvRangeFields& range : out.ranges) {
     for (const std::uint32_t bits : range.bits) out.max_bits = std::max(out.max_bits, bits);
   }
   return word + 1 == page.size();
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::run

@@ -11,11 +11,11 @@
 #include "format/vertex_fields.h"
 #include "run/unpack/page_columns.h"
 
-namespace meshlode {
+namespace meshlode::run {
 
 struct PagePlan {
-  std::vector<ClusterFields> clusters;
-  std::vector<UvRangeFields> ranges;
+  std::vector<format::ClusterFields> clusters;
+  std::vector<format::UvRangeFields> ranges;
   std::vector<std::uint32_t> first_vertex;  ///< in the page, of each cluster; one more for the end
   std::uint32_t max_bits = 0;               ///< of any field
   std::uint32_t max_normal_bits = 0;
@@ -26,4 +26,4 @@ struct PagePlan {
 [[nodiscard]] bool plan_page(const format::MeshRecord& mesh, std::uint32_t cluster_count, PageColumns& columns,
                              std::span<std::uint32_t> page, PagePlan& out);
 
-}  // namespace meshlode
+}  // namespace meshlode::run

@@ -11,7 +11,7 @@
 #define MESHLODE_HAS_BMI2_PATH 0
 #endif
 
-namespace meshlode {
+namespace meshlode::run {
 
 [[nodiscard]] inline bool has_bmi2() {
 #if MESHLODE_HAS_BMI2_PATH
@@ -22,4 +22,4 @@ namespace meshlode {
 #endif
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::run

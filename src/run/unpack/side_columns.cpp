@@ -8,11 +8,11 @@
 #include "format/page_streams.h"
 #include "run/unpack/strip_values.h"
 
-namespace meshlode {
+namespace meshlode::run {
 
 bool unpack_side_columns(const format::MeshRecord& mesh, std::uint32_t cluster_count, std::span<const std::uint8_t> stored,
                          std::span<std::uint8_t> out) {
-  ColumnSource source(stored);
+  format::ColumnSource source(stored);
   std::size_t at = 0;
   const auto take = [&](std::size_t count) {
     if (count == 0) return true;
@@ -20,7 +20,7 @@ bool unpack_side_columns(const format::MeshRecord& mesh, std::uint32_t cluster_c
     at += count;
     return true;
   };
-  std::array<std::uint32_t, kRangeWordKinds> counts;
+  std::array<std::uint32_t, format::kRangeWordKinds> counts;
   if (!take(code_length_bytes(mesh)) || !take(sizeof(counts))) return false;
   std::memcpy(counts.data(), out.data() + at - sizeof(counts), sizeof(counts));
   const std::uint32_t head_planes = 4 * format::head_words(mesh) - 2;  // half of word 0 is not stored
@@ -35,4 +35,4 @@ bool unpack_side_columns(const format::MeshRecord& mesh, std::uint32_t cluster_c
   return at == out.size() && source.is_at_end();
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::run

@@ -13,7 +13,7 @@
 
 #include "format/page_streams.h"
 
-namespace meshlode {
+namespace meshlode::run {
 
 constexpr std::uint32_t kMaxSlots = format::kMaxClusterTriangles * 3;  ///< every triangle a strip of its own
 
@@ -26,28 +26,28 @@ constexpr std::uint32_t kNewBitIndex = 2;
 constexpr std::uint32_t kSlotBytes = 8;   ///< how many bytes there can be
 
 [[nodiscard]] constexpr std::uint32_t slot_byte(std::uint32_t kind) {
-  return kind == static_cast<std::uint32_t>(SlotKind::kReference) ? 0U
-         : kind == static_cast<std::uint32_t>(SlotKind::kNew)     ? kFreshBit | kNewBit
+  return kind == static_cast<std::uint32_t>(format::SlotKind::kReference) ? 0U
+         : kind == static_cast<std::uint32_t>(format::SlotKind::kNew)     ? kFreshBit | kNewBit
                                                                   : kFreshBit;
 }
 
 /// The three triangles of a triple, one a byte.
-constexpr std::array<std::uint32_t, kTripleSymbols> make_triple_bytes() {
-  std::array<std::uint32_t, kTripleSymbols> table{};
-  for (std::uint32_t t = 0; t < kTripleSymbols; ++t) {
-    for (std::uint32_t rest = t, k = 0; k < 3; ++k, rest /= kTriangleSymbols) {
-      const std::uint32_t symbol = rest % kTriangleSymbols;
-      table[t] |= (symbol / kSlotKinds * kTurnBit + slot_byte(symbol % kSlotKinds)) << 8U * k;
+constexpr std::array<std::uint32_t, format::kTripleSymbols> make_triple_bytes() {
+  std::array<std::uint32_t, format::kTripleSymbols> table{};
+  for (std::uint32_t t = 0; t < format::kTripleSymbols; ++t) {
+    for (std::uint32_t rest = t, k = 0; k < 3; ++k, rest /= format::kTriangleSymbols) {
+      const std::uint32_t symbol = rest % format::kTriangleSymbols;
+      table[t] |= (symbol / format::kSlotKinds * kTurnBit + slot_byte(symbol % format::kSlotKinds)) << 8U * k;
     }
   }
   return table;
 }
 /// The three slots of a strip's first triangle, one a byte.
-constexpr std::array<std::uint32_t, kStartSymbols> make_start_bytes() {
-  std::array<std::uint32_t, kStartSymbols> table{};
-  for (std::uint32_t s = 0; s < kStartSymbols; ++s) {
-    table[s] = slot_byte(s / (kSlotKinds * kSlotKinds)) | slot_byte(s / kSlotKinds % kSlotKinds) << 8U |
-               slot_byte(s % kSlotKinds) << 16U;
+constexpr std::array<std::uint32_t, format::kStartSymbols> make_start_bytes() {
+  std::array<std::uint32_t, format::kStartSymbols> table{};
+  for (std::uint32_t s = 0; s < format::kStartSymbols; ++s) {
+    table[s] = slot_byte(s / (format::kSlotKinds * format::kSlotKinds)) | slot_byte(s / format::kSlotKinds % format::kSlotKinds) << 8U |
+               slot_byte(s % format::kSlotKinds) << 16U;
   }
   return table;
 }
@@ -74,7 +74,7 @@ class StripSlots {
     std::array<std::uint8_t, format::kMaxClusterTriangles + kChunk> changes;
     for (std::uint32_t i = 0; i < continued; i += 3) {
       const std::uint32_t triple = triples[i / 3];
-      if (triple >= kTripleSymbols) return false;
+      if (triple >= format::kTripleSymbols) return false;
       std::memcpy(turns.data() + i, &kTripleBytes[triple], 4);
     }
     find_changes(turns.data(), continued, changes.data());
@@ -89,7 +89,7 @@ class StripSlots {
         if (more >= left) return false;
         restarts_[strip] = static_cast<std::uint8_t>(t + more + 1);
       }
-      if (starts[strip] >= kStartSymbols) return false;
+      if (starts[strip] >= format::kStartSymbols) return false;
       counts_[strip] = static_cast<std::uint8_t>(more);
       turns_[t] = 0;
       std::uint8_t* const slots = &slots_[t + 2 * strip];
@@ -168,4 +168,4 @@ class StripSlots {
   std::uint32_t twin_count_ = 0;
 };
 
-}  // namespace meshlode
+}  // namespace meshlode::run

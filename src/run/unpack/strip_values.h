@@ -9,12 +9,12 @@
 
 #include "format/page_streams.h"
 
-namespace meshlode {
+namespace meshlode::run {
 
 /// The fields of a vertex as lanes of 16-byte vectors. Position fields are slots 0 to 2, in the order of their streams;
 /// slot 3 is not used; the others follow from slot 4 on, so that the pairs of normals and UVs never part.
 [[nodiscard]] constexpr std::uint32_t slot_of(std::uint32_t field) { return field < 3 ? field : field + 1; }
-constexpr std::uint32_t kMaxSlotsOfVertex = kMaxFields + 1;
+constexpr std::uint32_t kMaxSlotsOfVertex = format::kMaxFields + 1;
 constexpr std::uint32_t kNormalSlot = 4;
 
 /// Any page.
@@ -45,7 +45,7 @@ template <class L>
 constexpr std::uint32_t kMaxQuads = (kMaxSlotsOfVertex + L::kLanes - 1) / L::kLanes;
 template <class L>
 [[nodiscard]] constexpr std::uint32_t quad_count(const format::MeshRecord& mesh) {
-  return slot_of(field_count(mesh) - 1) / L::kLanes + 1;
+  return slot_of(format::field_count(mesh) - 1) / L::kLanes + 1;
 }
 
 /// An array that need not be filled before it is written.
@@ -69,7 +69,7 @@ class Room {
 
 template <class L>
 struct StripValues {
-  std::array<Room<std::uint32_t>, kFieldStreams> streams;   ///< symbols, and numbers unfolded
+  std::array<Room<std::uint32_t>, format::kFieldStreams> streams;   ///< symbols, and numbers unfolded
   std::array<Room<Quad<L>>, kMaxQuads<L>> errors;           ///< unfolded, of each new vertex; unused lanes have any value
 };
 
@@ -77,17 +77,17 @@ struct StripValues {
 constexpr std::size_t kErrorsBehind = 1;
 
 /// Whether the numbers of a stream are folded.
-[[nodiscard]] constexpr bool is_folded(std::uint32_t stream) { return stream >= kReferenceStream; }
+[[nodiscard]] constexpr bool is_folded(std::uint32_t stream) { return stream >= format::kReferenceStream; }
 
 /// How many numbers each stream holds: the heads say it, and of twins the stored header.
 struct StreamCounts {
-  std::array<std::uint32_t, kMaxStreams> count{};
+  std::array<std::uint32_t, format::kMaxStreams> count{};
 };
 
 /// The streams' bytes, one behind the other.
 struct StreamBytes {
   std::span<const std::uint8_t> bytes;
-  std::array<std::uint32_t, kMaxStreams> size{};  ///< together at most bytes.size()
+  std::array<std::uint32_t, format::kMaxStreams> size{};  ///< together at most bytes.size()
 };
 
 /// `code_lengths` as in the side information. False where the streams are broken or end early.
@@ -101,4 +101,4 @@ struct StreamBytes {
 /// Bytes of code lengths.
 [[nodiscard]] std::uint32_t code_length_bytes(const format::MeshRecord& mesh);
 
-}  // namespace meshlode
+}  // namespace meshlode::run

@@ -12,7 +12,7 @@
 #include "format/vertex_fields.h"
 #include "run/unpack/strip_values.h"
 
-namespace meshlode {
+namespace meshlode::run {
 
 /// One cluster's way between the raw fields and the integers of a position and a normal.
 struct TwinFrame {
@@ -23,7 +23,7 @@ struct TwinFrame {
 
   TwinFrame() = default;
   TwinFrame(const format::MeshRecord& mesh, const format::ClusterLayout& layout) {
-    const std::array<std::uint32_t, 3> axes = axes_by_role(layout.shear_axis);
+    const std::array<std::uint32_t, 3> axes = format::axes_by_role(layout.shear_axis);
     const std::int32_t factors[3] = {layout.shear_u, layout.shear_v, 0};
     for (std::uint32_t role = 0; role < 3; ++role) {
       const std::uint32_t axis = axes[role];
@@ -46,7 +46,7 @@ struct alignas(64) TwinRange {
   std::uint32_t mask[2], minimum[2], shift[2], slope[2][3];
 
   TwinRange() = default;
-  explicit TwinRange(const UvRangeFields& range) {
+  explicit TwinRange(const format::UvRangeFields& range) {
     for (std::size_t side = 0; side < 2; ++side) {
       mask[side] = (1U << range.bits[side]) - 1U;
       minimum[side] = range.minimum[side];
@@ -59,16 +59,16 @@ struct alignas(64) TwinRange {
 class TwinFields {
  public:
   /// `range_of`: which of `ranges` holds a vertex of the page, vertices of set 0, then those of set 1 …
-  TwinFields(const format::MeshRecord& mesh, const std::vector<ClusterFields>& clusters,
-             const std::vector<UvRangeFields>& ranges, const std::vector<std::uint16_t>& range_of,
+  TwinFields(const format::MeshRecord& mesh, const std::vector<format::ClusterFields>& clusters,
+             const std::vector<format::UvRangeFields>& ranges, const std::vector<std::uint16_t>& range_of,
              std::uint32_t vertex_count)
       : scale_(static_cast<std::uint32_t>(mesh.normal_scale)), set_count_(mesh.uv_set_count), vertex_count_(vertex_count),
         has_normals_(mesh.normal_mode == format::NormalMode::kStored), has_color_(mesh.has_color != 0),
         clusters_(clusters.data()), range_of_(range_of.data()) {
     frames_.reserve(clusters.size());
-    for (const ClusterFields& cluster : clusters) frames_.emplace_back(mesh, cluster.layout);
+    for (const format::ClusterFields& cluster : clusters) frames_.emplace_back(mesh, cluster.layout);
     ranges_.reserve(ranges.size());
-    for (const UvRangeFields& range : ranges) ranges_.emplace_back(range);
+    for (const format::UvRangeFields& range : ranges) ranges_.emplace_back(range);
   }
 
   /// `there` and `here` are vertices of the page, in the clusters `from` and `to`, and these their fields by slot (slot_of).
@@ -105,8 +105,8 @@ class TwinFields {
       }
     }
     if (has_color_) {
-      const ClusterFields& s = clusters_[from];
-      const ClusterFields& t = clusters_[to];
+      const format::ClusterFields& s = clusters_[from];
+      const format::ClusterFields& t = clusters_[to];
       for (std::size_t k = 0; k < 4; ++k) {
         put[k] = static_cast<Word>(cut(get[k], s.color_bits[k]) + s.color_minimum[k] - t.color_minimum[k]);
       }
@@ -162,10 +162,10 @@ class TwinFields {
 
   std::uint32_t scale_, set_count_, vertex_count_;
   bool has_normals_, has_color_;
-  const ClusterFields* clusters_;
+  const format::ClusterFields* clusters_;
   const std::uint16_t* range_of_;
   std::vector<TwinFrame> frames_;
   std::vector<TwinRange> ranges_;
 };
 
-}  // namespace meshlode
+}  // namespace meshlode::run

@@ -10,7 +10,7 @@
 #include "run/unpack/decompressors.h"
 #include "run/unpack/unpack_page.h"
 
-namespace meshlode {
+namespace meshlode::run {
 
 namespace {
 
@@ -61,4 +61,4 @@ Result<PageBytes> load_page(const Asset& asset, PageId page) {
   return owned;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::run

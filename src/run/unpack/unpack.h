@@ -10,7 +10,7 @@
 
 #include "run/read/asset.h"
 
-namespace meshlode {
+namespace meshlode::run {
 
 /// A page in its decoded form: a view of the file where it is stored uncompressed, else bytes of its own. They are whole
 /// u32 words, aligned as such.
@@ -34,4 +34,4 @@ class PageBytes {
 /// trust it. Errors: kInvalid with the place; kUnsupported for a codec that was not built in.
 [[nodiscard]] Result<PageBytes> load_page(const Asset& asset, PageId page);
 
-}  // namespace meshlode
+}  // namespace meshlode::run

@@ -8,7 +8,7 @@
 #include <draco/core/decoder_buffer.h>
 #endif
 
-namespace meshlode {
+namespace meshlode::run {
 
 #ifdef MESHLODE_HAS_DRACO
 
@@ -28,4 +28,4 @@ UnpackOutcome unpack_draco(std::span<const std::uint8_t>, std::span<std::uint32_
 
 #endif
 
-}  // namespace meshlode
+}  // namespace meshlode::run

@@ -6,7 +6,7 @@
 #include <lz4.h>
 #endif
 
-namespace meshlode {
+namespace meshlode::run {
 
 #ifdef MESHLODE_HAS_LZ4
 UnpackOutcome unpack_lz4(std::span<const std::uint8_t> stored, std::span<std::uint8_t> out) {
@@ -19,4 +19,4 @@ UnpackOutcome unpack_lz4(std::span<const std::uint8_t> stored, std::span<std::ui
 UnpackOutcome unpack_lz4(std::span<const std::uint8_t>, std::span<std::uint8_t>) { return UnpackOutcome::kNotBuiltIn; }
 #endif
 
-}  // namespace meshlode
+}  // namespace meshlode::run

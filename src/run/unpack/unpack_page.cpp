@@ -15,14 +15,14 @@
 #include "run/unpack/strip_values.h"
 #include "run/unpack/unpack_strips.h"
 
-namespace meshlode {
+namespace meshlode::run {
 
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "stored pages are read as they lie in memory");
 
 /// Side information is at most what its columns can hold: code lengths, and every word of the page by its four bytes.
-constexpr std::uint32_t kMaxSideBytes = format::kMaxPageBytes + kMaxTables * 256 + 4 * kRangeWordKinds;
+constexpr std::uint32_t kMaxSideBytes = format::kMaxPageBytes + format::kMaxTables * 256 + 4 * format::kRangeWordKinds;
 
 class StoredPage {
  public:
@@ -34,7 +34,7 @@ class StoredPage {
     if (stored_.size() < sizeof(header_) || page_.size() < 3) return UnpackOutcome::kBroken;
     std::memcpy(&header_, stored_.data(), sizeof(header_));
     stored_ = stored_.subspan(sizeof(header_));
-    if (record_.codec == format::Codec::kNone || header_.method != static_cast<std::uint32_t>(method_of(record_.codec)) ||
+    if (record_.codec == format::Codec::kNone || header_.method != static_cast<std::uint32_t>(format::method_of(record_.codec)) ||
         header_.side_stored > stored_.size() || header_.side_bytes > kMaxSideBytes) {
       return UnpackOutcome::kBroken;
     }
@@ -45,7 +45,7 @@ class StoredPage {
 
     page_[0] = record_.first_cluster;
     page_[1] = record_.cluster_count;
-    const bool is_ok = method_of(record_.codec) == PageMethod::kColumns ? unpack_columns() : unpack_strip_page();
+    const bool is_ok = format::method_of(record_.codec) == format::PageMethod::kColumns ? unpack_columns() : unpack_strip_page();
     return is_ok ? UnpackOutcome::kOk : UnpackOutcome::kBroken;
   }
 
@@ -117,21 +117,21 @@ class StoredPage {
 
   template <class L>
   bool read_draco_streams(const StreamBytes& streams, const StreamCounts& counts, StripValues<L>& out) const {
-    const std::uint32_t fields = field_count(mesh_);
-    for (std::uint32_t q = 0; q < quad_count<L>(mesh_); ++q) out.errors[q].resize(counts.count[kFieldStreams], kErrorsBehind);
+    const std::uint32_t fields = format::field_count(mesh_);
+    for (std::uint32_t q = 0; q < quad_count<L>(mesh_); ++q) out.errors[q].resize(counts.count[format::kFieldStreams], kErrorsBehind);
     std::span<const std::uint8_t> rest = streams.bytes;
     Room<std::uint32_t> numbers;
-    for (std::uint32_t s = 0; s < kFieldStreams + fields; ++s) {
+    for (std::uint32_t s = 0; s < format::kFieldStreams + fields; ++s) {
       const auto stored = rest.first(streams.size[s]);
       rest = rest.subspan(streams.size[s]);
-      Room<std::uint32_t>& target = s < kFieldStreams ? out.streams[s] : numbers;
+      Room<std::uint32_t>& target = s < format::kFieldStreams ? out.streams[s] : numbers;
       target.resize(counts.count[s]);
       if (unpack_draco(stored, target.all()) != UnpackOutcome::kOk) return false;
       if (is_folded(s)) {
-        for (std::uint32_t& number : target.all()) number = unfold(number);
+        for (std::uint32_t& number : target.all()) number = format::unfold(number);
       }
-      if (s < kFieldStreams) continue;
-      const std::uint32_t slot = slot_of(s - kFieldStreams);
+      if (s < format::kFieldStreams) continue;
+      const std::uint32_t slot = slot_of(s - format::kFieldStreams);
       Quad<L>* const errors = out.errors[slot / L::kLanes].data();
       for (std::size_t i = 0; i < numbers.size(); ++i) {
         errors[i].lane[slot % L::kLanes] = static_cast<typename L::Word>(numbers.data()[i]);
@@ -141,7 +141,7 @@ class StoredPage {
   }
 
   bool read_stream_sizes(StreamBytes& streams) {
-    const std::size_t stream_count = kFieldStreams + field_count(mesh_);
+    const std::size_t stream_count = format::kFieldStreams + format::field_count(mesh_);
     const std::size_t table_bytes = stream_count * sizeof(std::uint32_t);
     if (stored_.size() < table_bytes) return false;
     std::memcpy(streams.size.data(), stored_.data(), table_bytes);
@@ -153,18 +153,18 @@ class StoredPage {
 
   /// The heads know how many numbers each stream holds.
   bool count_numbers(const PagePlan& plan, StreamCounts& counts) const {
-    for (const ClusterFields& cluster : plan.clusters) {
+    for (const format::ClusterFields& cluster : plan.clusters) {
       const format::ClusterLayout& layout = cluster.layout;
-      counts.count[kTripleStream] += (layout.triangle_count - layout.strip_count + 2) / 3;
-      counts.count[kStartStream] += layout.strip_count;
-      counts.count[kLengthStream] += layout.strip_count - 1;
-      counts.count[kReferenceStream] += layout.reference_count;
+      counts.count[format::kTripleStream] += (layout.triangle_count - layout.strip_count + 2) / 3;
+      counts.count[format::kStartStream] += layout.strip_count;
+      counts.count[format::kLengthStream] += layout.strip_count - 1;
+      counts.count[format::kReferenceStream] += layout.reference_count;
     }
     const std::uint32_t vertices = plan.first_vertex.back();
     if (header_.twin_count > vertices) return false;
-    counts.count[kTwinStream] = header_.twin_count;
-    for (std::uint32_t f = 0; f < field_count(mesh_); ++f) {
-      counts.count[kFieldStreams + f] = vertices - header_.twin_count;
+    counts.count[format::kTwinStream] = header_.twin_count;
+    for (std::uint32_t f = 0; f < format::field_count(mesh_); ++f) {
+      counts.count[format::kFieldStreams + f] = vertices - header_.twin_count;
     }
     return true;
   }
@@ -174,7 +174,7 @@ class StoredPage {
   std::span<const std::uint8_t> stored_;
   std::span<std::uint32_t> page_;
   PageColumns columns_;
-  StoredHeader header_{};
+  format::StoredHeader header_{};
   std::vector<std::uint8_t> side_;
 };
 
@@ -185,4 +185,4 @@ UnpackOutcome unpack_page(const format::MeshRecord& mesh, const format::PageReco
   return StoredPage(mesh, record, stored, page).run();
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::run

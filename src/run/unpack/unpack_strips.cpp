@@ -14,7 +14,7 @@
 #include "run/unpack/strip_slots.h"
 #include "run/unpack/twin_fields.h"
 
-namespace meshlode {
+namespace meshlode::run {
 
 namespace {
 
@@ -50,7 +50,7 @@ class StripUnpacker {
  public:
   StripUnpacker(const format::MeshRecord& mesh, const PagePlan& plan, const StripValues<L>& values,
                 std::span<std::uint32_t> page)
-      : mesh_(mesh), plan_(plan), values_(values), page_(page), fields_(field_count(mesh)),
+      : mesh_(mesh), plan_(plan), values_(values), page_(page), fields_(format::field_count(mesh)),
         vertex_count_(plan.first_vertex.back()), cluster_of_(vertex_count_),
         range_of_(std::size_t{vertex_count_} * mesh.uv_set_count),
         twin_fields_(mesh, plan.clusters, plan.ranges, range_of_, vertex_count_) {
@@ -63,7 +63,7 @@ class StripUnpacker {
 
   bool run() {
     for (std::uint32_t c = 0; c < plan_.clusters.size(); ++c) {
-      const ClusterFields& cluster = plan_.clusters[c];
+      const format::ClusterFields& cluster = plan_.clusters[c];
       if (!read_topology(cluster.layout) || !place_twins(c) || !walk(c)) return false;
       write_stream(c);
       std::fill_n(cluster_of_.begin() + plan_.first_vertex[c], cluster.layout.vertex_count, static_cast<std::uint16_t>(c));
@@ -108,26 +108,26 @@ class StripUnpacker {
   }
 
   bool read_topology(const ClusterLayout& layout) {
-    const std::uint32_t* const steps = take(kReferenceStream, layout.reference_count);
+    const std::uint32_t* const steps = take(format::kReferenceStream, layout.reference_count);
     std::uint32_t last = 0;
     for (std::uint32_t i = 0; i < layout.reference_count; ++i) {
       references_[i] = static_cast<std::uint8_t>(last += steps[i]);
     }
     references_[layout.reference_count] = 0;  // looked at, and of no effect, behind the last one
-    return slots_.read(layout, take(kTripleStream, (layout.triangle_count - layout.strip_count + 2) / 3),
-                       take(kStartStream, layout.strip_count), take(kLengthStream, layout.strip_count - 1));
+    return slots_.read(layout, take(format::kTripleStream, (layout.triangle_count - layout.strip_count + 2) / 3),
+                       take(format::kStartStream, layout.strip_count), take(format::kLengthStream, layout.strip_count - 1));
   }
 
   /// The fields of vertices that earlier clusters hold.
   bool place_twins(std::uint32_t c) {
-    const ClusterFields& cluster = plan_.clusters[c];
+    const format::ClusterFields& cluster = plan_.clusters[c];
     const std::uint32_t first = plan_.first_vertex[c];
     const std::uint32_t count = slots_.twin_count();
-    if (count > values_.streams[kTwinStream].size() - next_[kTwinStream] ||
+    if (count > values_.streams[format::kTwinStream].size() - next_[format::kTwinStream] ||
         cluster.layout.vertex_count - count > values_.errors[0].size() - next_error_) {
       return false;
     }
-    const std::uint32_t* step = take(kTwinStream, count);
+    const std::uint32_t* step = take(format::kTwinStream, count);
     bool is_ok = true;
     slots_.each_twin(cluster.layout.slot_count, [&](std::uint32_t v) {
       last_twin_ += *step++;
@@ -142,10 +142,10 @@ class StripUnpacker {
   }
 
   /// Half the range of every field.
-  Vectors nobody(const ClusterFields& cluster) const {
+  Vectors nobody(const format::ClusterFields& cluster) const {
     Vertex out{};
-    const RawVertex bits = first_field_bits({mesh_, page_.data(), plan_.ranges}, cluster);
-    const std::array<std::uint32_t, 3> axes = axes_by_role(cluster.layout.shear_axis);
+    const format::RawVertex bits = format::first_field_bits({mesh_, page_.data(), plan_.ranges}, cluster);
+    const std::array<std::uint32_t, 3> axes = format::axes_by_role(cluster.layout.shear_axis);
     for (std::uint32_t f = 0; f < fields_; ++f) {
       const std::uint32_t slot = slot_of(f);
       out.lane[slot] = static_cast<Word>((1U << bits[f < 3 ? axes[f] : f]) >> 1U);
@@ -157,7 +157,7 @@ class StripUnpacker {
   /// registers, and every choice is made by masks: which way a slot is named cannot be foreseen, and a wrong guess costs
   /// more than all of this.
   bool walk(std::uint32_t c) {
-    const ClusterFields& cluster = plan_.clusters[c];
+    const format::ClusterFields& cluster = plan_.clusters[c];
     const ClusterLayout& layout = cluster.layout;
     Vertex* const raw = raw_.data() + plan_.first_vertex[c];
     const Vector normals = normals_.vector;
@@ -226,7 +226,7 @@ class StripUnpacker {
   }
 
   void write_stream(std::uint32_t c) {
-    const ClusterFields& cluster = plan_.clusters[c];
+    const format::ClusterFields& cluster = plan_.clusters[c];
     const ClusterLayout& layout = cluster.layout;
     const Vertex* const raw = raw_.data() + plan_.first_vertex[c];
     ByteSink sink(stream_.data());
@@ -238,7 +238,7 @@ class StripUnpacker {
                 std::size_t{layout.end_word - layout.stream_word} * sizeof(std::uint32_t));
   }
 
-  void put_attributes(ByteSink& sink, const ClusterFields& cluster, const Vertex* raw) const {
+  void put_attributes(ByteSink& sink, const format::ClusterFields& cluster, const Vertex* raw) const {
     const ClusterLayout& layout = cluster.layout;
     std::uint32_t slot = kNormalSlot;
     if (mesh_.normal_mode == format::NormalMode::kStored) {
@@ -282,7 +282,7 @@ class StripUnpacker {
 
   static void put_positions(ByteSink& sink, const ClusterLayout& layout, const Vertex* raw) {
     std::array<std::uint32_t, 3> lane{};
-    const std::array<std::uint32_t, 3> axes = axes_by_role(layout.shear_axis);
+    const std::array<std::uint32_t, 3> axes = format::axes_by_role(layout.shear_axis);
     for (std::uint32_t f = 0; f < 3; ++f) lane[axes[f]] = f;
     const std::uint32_t x_bits = layout.bits[0];
     const std::uint32_t xy_bits = x_bits + layout.bits[1];
@@ -322,7 +322,7 @@ class StripUnpacker {
   std::uint32_t fields_, vertex_count_;
   std::vector<std::uint16_t> cluster_of_, range_of_;
   TwinFields twin_fields_;
-  std::array<std::uint32_t, kFieldStreams> next_{};  ///< number of each stream
+  std::array<std::uint32_t, format::kFieldStreams> next_{};  ///< number of each stream
   std::uint32_t next_error_ = 0;
   std::uint32_t last_twin_ = 0;
   Quad<L> normals_{};  ///< mask of the fields that are normals
@@ -366,4 +366,4 @@ bool unpack_strips(const format::MeshRecord& mesh, const PagePlan& plan, const S
   return unpack_page_strips(mesh, plan, values, page);
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::run

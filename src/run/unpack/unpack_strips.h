@@ -9,7 +9,7 @@
 #include "run/unpack/page_plan.h"
 #include "run/unpack/strip_values.h"
 
-namespace meshlode {
+namespace meshlode::run {
 
 /// Fills the rest of `page`, which is zero but for the heads and ranges that `plan` tells of. `values` are as many as those
 /// heads call for. False where they are not those of a page of this size; whether it is the right page is for the checksum
@@ -19,4 +19,4 @@ namespace meshlode {
 [[nodiscard]] bool unpack_strips(const format::MeshRecord& mesh, const PagePlan& plan,
                                  const StripValues<NarrowLanes>& values, std::span<std::uint32_t> page);
 
-}  // namespace meshlode
+}  // namespace meshlode::run

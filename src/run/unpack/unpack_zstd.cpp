@@ -6,7 +6,7 @@
 #include <zstd.h>
 #endif
 
-namespace meshlode {
+namespace meshlode::run {
 
 #ifdef MESHLODE_HAS_ZSTD
 UnpackOutcome unpack_zstd(std::span<const std::uint8_t> stored, std::span<std::uint8_t> out) {
@@ -17,4 +17,4 @@ UnpackOutcome unpack_zstd(std::span<const std::uint8_t> stored, std::span<std::u
 UnpackOutcome unpack_zstd(std::span<const std::uint8_t>, std::span<std::uint8_t>) { return UnpackOutcome::kNotBuiltIn; }
 #endif
 
-}  // namespace meshlode
+}  // namespace meshlode::run

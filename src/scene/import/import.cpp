@@ -14,7 +14,7 @@
 #include "scene/import/gltf/gltf_import.h"
 #include "scene/import/polygons/polygon_soup.h"
 
-namespace meshlode {
+namespace meshlode::scene {
 
 namespace {
 
@@ -96,4 +96,4 @@ Result<Scene> import_scene(const std::filesystem::path& path, const ImportOption
   }
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::scene

@@ -11,7 +11,7 @@
 #include "base/file.h"
 #include "scene/scene.h"
 
-namespace meshlode {
+namespace meshlode::scene {
 
 struct ImportOptions {
   bool repair = false;  ///< drop (and count) triangles that touch non-finite positions or indices out of range
@@ -25,4 +25,4 @@ struct ImportOptions {
 /// geometry extension that is not known.
 [[nodiscard]] Result<Scene> import_scene(const std::filesystem::path& path, const ImportOptions& options);
 
-}  // namespace meshlode
+}  // namespace meshlode::scene

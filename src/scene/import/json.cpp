@@ -9,7 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace meshlode {
+namespace meshlode::scene {
 
 namespace {
 
@@ -216,4 +216,4 @@ std::string dump_json(const Json& json) {
   return to_nlohmann(json).dump();
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::scene

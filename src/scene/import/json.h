@@ -11,7 +11,7 @@
 
 #include <meshlode/result.h>
 
-namespace meshlode {
+namespace meshlode::scene {
 
 struct JsonMember;
 
@@ -68,4 +68,4 @@ constexpr std::size_t kMaxJsonDepth = 128;
 /// The shortest text that reads back as the same tree.
 [[nodiscard]] std::string dump_json(const Json& json);
 
-}  // namespace meshlode
+}  // namespace meshlode::scene

@@ -4,7 +4,7 @@
 #include "scene/samples/facets.h"
 #include "scene/samples/noise.h"
 
-namespace meshlode::samples {
+namespace meshlode::scene {
 
 namespace {
 
@@ -265,4 +265,4 @@ GlbScene make_city(std::uint64_t seed) {
   return std::move(city.scene);
 }
 
-}  // namespace meshlode::samples
+}  // namespace meshlode::scene

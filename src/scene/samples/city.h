@@ -4,8 +4,8 @@
 
 #include "scene/samples/write_glb.h"
 
-namespace meshlode::samples {
+namespace meshlode::scene {
 
 [[nodiscard]] GlbScene make_city(std::uint64_t seed = 17);
 
-}  // namespace meshlode::samples
+}  // namespace meshlode::scene

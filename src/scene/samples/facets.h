@@ -8,7 +8,7 @@
 #include "scene/scene.h"
 #include "scene/samples/cube_grid.h"
 
-namespace meshlode::samples {
+namespace meshlode::scene {
 
 [[nodiscard]] inline Vec3d unit(const Vec3d& v) {
   return v / std::sqrt(glm::dot(v, v));
@@ -65,4 +65,4 @@ struct FacetBuilder {
   }
 };
 
-}  // namespace meshlode::samples
+}  // namespace meshlode::scene

@@ -7,7 +7,7 @@
 #include "scene/samples/noise.h"
 #include "scene/samples/samples.h"
 
-namespace meshlode::samples {
+namespace meshlode::scene {
 
 namespace {
 
@@ -207,4 +207,4 @@ Primitive make_far_plane(std::uint32_t n) {
   return out;
 }
 
-}  // namespace meshlode::samples
+}  // namespace meshlode::scene

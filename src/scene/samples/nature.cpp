@@ -10,7 +10,7 @@
 #include "scene/samples/noise.h"
 #include "scene/samples/samples.h"
 
-namespace meshlode::samples {
+namespace meshlode::scene {
 
 namespace {
 
@@ -161,4 +161,4 @@ Primitive make_foliage(std::uint32_t count, std::uint64_t seed) {
   return out;
 }
 
-}  // namespace meshlode::samples
+}  // namespace meshlode::scene

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace meshlode::samples {
+namespace meshlode::scene {
 
 namespace {
 
@@ -90,4 +90,4 @@ double fractal_noise(const Vec3d& p, std::uint32_t octaves, std::uint64_t seed) 
   return sum;
 }
 
-}  // namespace meshlode::samples
+}  // namespace meshlode::scene

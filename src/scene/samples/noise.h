@@ -6,7 +6,7 @@
 
 #include "base/vec.h"
 
-namespace meshlode::samples {
+namespace meshlode::scene {
 
 /// splitmix64 (Steele, Lea, Flood 2014).
 class Random {
@@ -30,4 +30,4 @@ class Random {
 [[nodiscard]] double value_noise(const Vec3d& p, std::uint64_t seed);
 [[nodiscard]] double fractal_noise(const Vec3d& p, std::uint32_t octaves, std::uint64_t seed);
 
-}  // namespace meshlode::samples
+}  // namespace meshlode::scene

@@ -12,7 +12,7 @@
 
 #include "scene/scene.h"
 
-namespace meshlode::samples {
+namespace meshlode::scene {
 
 // -------------------------------------------------------------------------------------------- shapes of any resolution
 
@@ -84,4 +84,4 @@ struct SampleFile {
 /// A terrain of about `triangles` triangles, for benchmarks. \pre 2 <= triangles <= 100,000,000
 [[nodiscard]] SampleFile make_terrain_file(std::uint64_t triangles);
 
-}  // namespace meshlode::samples
+}  // namespace meshlode::scene

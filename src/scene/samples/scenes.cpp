@@ -9,7 +9,7 @@
 #include "scene/samples/write_png.h"
 #include "scene/samples/samples.h"
 
-namespace meshlode::samples {
+namespace meshlode::scene {
 
 namespace {
 
@@ -99,4 +99,4 @@ SampleFile make_terrain_file(std::uint64_t triangles) {
   return {"terrain-" + std::to_string(triangles) + ".glb", write_glb(make_terrain_scene(cells, cells))};
 }
 
-}  // namespace meshlode::samples
+}  // namespace meshlode::scene

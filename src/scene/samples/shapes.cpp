@@ -9,7 +9,7 @@
 #include "scene/samples/noise.h"
 #include "scene/samples/samples.h"
 
-namespace meshlode::samples {
+namespace meshlode::scene {
 
 namespace {
 
@@ -139,4 +139,4 @@ Scene as_scene(SourceMesh mesh) {
   return scene;
 }
 
-}  // namespace meshlode::samples
+}  // namespace meshlode::scene

@@ -8,7 +8,7 @@
 
 #include "base/json_writer.h"
 
-namespace meshlode::samples {
+namespace meshlode::scene {
 
 namespace {
 
@@ -498,4 +498,4 @@ std::vector<std::uint8_t> write_glb(const GlbScene& scene) {
   return join_chunks(json.text(), chunk);
 }
 
-}  // namespace meshlode::samples
+}  // namespace meshlode::scene

@@ -10,7 +10,7 @@
 
 #include "scene/scene.h"
 
-namespace meshlode::samples {
+namespace meshlode::scene {
 
 struct GlbMaterial {
   std::string name;
@@ -73,4 +73,4 @@ struct GlbScene {
 
 [[nodiscard]] std::vector<std::uint8_t> write_glb(const GlbScene& scene);
 
-}  // namespace meshlode::samples
+}  // namespace meshlode::scene

@@ -14,7 +14,7 @@
 
 #include "scene/samples/noise.h"
 
-namespace meshlode::samples {
+namespace meshlode::scene {
 
 namespace {
 
@@ -72,4 +72,4 @@ std::vector<std::uint8_t> encode_png(const Texture& texture) {
   return out;
 }
 
-}  // namespace meshlode::samples
+}  // namespace meshlode::scene

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace meshlode::samples {
+namespace meshlode::scene {
 
 struct Texture {
   std::uint32_t width = 0, height = 0;
@@ -21,4 +21,4 @@ struct Texture {
 
 [[nodiscard]] std::vector<std::uint8_t> encode_png(const Texture& texture);
 
-}  // namespace meshlode::samples
+}  // namespace meshlode::scene

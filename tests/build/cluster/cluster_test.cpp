@@ -11,13 +11,13 @@
 #include "build/prepare/prepare.h"
 #include "scene/samples/samples.h"
 
-namespace meshlode {
+namespace meshlode::build {
 namespace {
 
-PreparedMesh prepare(const Primitive& shape, bool normals = false) {
+PreparedMesh prepare(const scene::Primitive& shape, bool normals = false) {
   AttributeLayout layout;
   layout.has_normal = normals;
-  return *prepare_mesh(samples::as_mesh(shape), layout, {});
+  return *prepare_mesh(scene::as_mesh(shape), layout, {});
 }
 
 Clustering cluster(const PreparedMesh& mesh, const ClusterCaps& caps = {}) {
@@ -41,22 +41,22 @@ void expect_caps(const PreparedMesh& mesh, const Clustering& clustering, const C
 }
 
 TEST(Cluster, CapsHoldOnEveryShape) {
-  Primitive fan;  // one vertex of valence 10,000
+  scene::Primitive fan;  // one vertex of valence 10,000
   fan.positions.push_back({0, 0, 1});
   for (int i = 0; i < 10000; ++i) fan.positions.push_back({i * 1e-3, (i % 97) * 0.01, 0});
   for (std::uint32_t i = 1; i < 10000; ++i) fan.indices.insert(fan.indices.end(), {0, i, i + 1});
-  const Primitive shapes[] = {samples::make_sphere(30),        samples::make_box_soup(300),
-                              samples::make_loose_pieces(500), samples::make_slivers(400),
-                              samples::make_three_sheets(20),  samples::make_double_cone(200),
-                              samples::make_moebius(60, 6),    fan};
-  for (const Primitive& shape : shapes) {
+  const scene::Primitive shapes[] = {scene::make_sphere(30),        scene::make_box_soup(300),
+                              scene::make_loose_pieces(500), scene::make_slivers(400),
+                              scene::make_three_sheets(20),  scene::make_double_cone(200),
+                              scene::make_moebius(60, 6),    fan};
+  for (const scene::Primitive& shape : shapes) {
     const PreparedMesh mesh = prepare(shape);
     expect_caps(mesh, cluster(mesh), {});
   }
 }
 
 TEST(Cluster, TheVertexCapHoldsWhereEveryCornerIsAVertex) {
-  const PreparedMesh mesh = prepare(samples::with_split_normals(samples::make_sphere(20)), true);
+  const PreparedMesh mesh = prepare(scene::with_split_normals(scene::make_sphere(20)), true);
   const Clustering clustering = cluster(mesh);
   expect_caps(mesh, clustering, {});
   const double per_cluster = static_cast<double>(mesh.triangles.size()) / clustering.count;
@@ -64,7 +64,7 @@ TEST(Cluster, TheVertexCapHoldsWhereEveryCornerIsAVertex) {
 }
 
 TEST(Cluster, SmallCapsHoldToo) {
-  const PreparedMesh mesh = prepare(samples::make_torus(30, 20));
+  const PreparedMesh mesh = prepare(scene::make_torus(30, 20));
   ClusterCaps caps;
   caps.max_triangles = 7;
   caps.max_vertices = 8;
@@ -73,22 +73,22 @@ TEST(Cluster, SmallCapsHoldToo) {
 }
 
 TEST(Cluster, ClustersAreFull) {
-  const PreparedMesh mesh = prepare(samples::make_sphere(60));  // 43,200 triangles: several chunks
+  const PreparedMesh mesh = prepare(scene::make_sphere(60));  // 43,200 triangles: several chunks
   const Clustering clustering = cluster(mesh);
   expect_caps(mesh, clustering, {});
   EXPECT_GE(static_cast<double>(mesh.triangles.size()) / (128.0 * clustering.count), 0.97);
 }
 
 TEST(Cluster, WhatFitsOneClusterIsOne) {
-  const PreparedMesh mesh = prepare(samples::make_plane(8));
+  const PreparedMesh mesh = prepare(scene::make_plane(8));
   ASSERT_EQ(mesh.triangles.size(), 128U);
   EXPECT_EQ(cluster(mesh).count, 1U);
 }
 
 TEST(Cluster, LoosePiecesNearEachOtherStayTogether) {
   // Two boxes of space with 600 loose pieces each, far apart: no cluster may hold pieces of both but at most one.
-  Primitive shape = samples::make_loose_pieces(600, 3);
-  const Primitive other = samples::make_loose_pieces(600, 4);
+  scene::Primitive shape = scene::make_loose_pieces(600, 3);
+  const scene::Primitive other = scene::make_loose_pieces(600, 4);
   const auto base = static_cast<std::uint32_t>(shape.positions.size());
   for (const Vec3d& p : other.positions) shape.positions.push_back(p + Vec3d(1000.0, 0, 0));
   for (const std::uint32_t i : other.indices) shape.indices.push_back(base + i);
@@ -103,7 +103,7 @@ TEST(Cluster, LoosePiecesNearEachOtherStayTogether) {
 
 /// A sphere with debris beside it: triangles that the grid collapsed, and pieces of one to three triangles.
 TEST(Cluster, WhatCoversLittleIsWhereItsSurfaceIs) {
-  Primitive shape = samples::make_sphere(40);
+  scene::Primitive shape = scene::make_sphere(40);
   const std::size_t surface = shape.indices.size() / 3;
   const std::size_t vertices = shape.positions.size();
   for (std::size_t i = 0; i < vertices; i += 21) {
@@ -187,4 +187,4 @@ TEST(TriangleGraph, IsSymmetricWithoutLoopsOrRepeats) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace meshlode {
+namespace meshlode::build {
 namespace {
 
 /// side · side clusters in the plane, each sharing 8 border vertices with its right and lower neighbour.
@@ -99,4 +99,4 @@ TEST(Group, FewClustersAreOneGroup) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::build

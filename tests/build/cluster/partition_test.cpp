@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace meshlode {
+namespace meshlode::build {
 namespace {
 
 /// A grid graph of side · side nodes.
@@ -100,4 +100,4 @@ TEST(Partition, TheProgramsRandGivesGlibcsNumbers) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -15,7 +15,7 @@
 #include "scene/samples/samples.h"
 #include "support/border_chain.h"
 
-namespace meshlode {
+namespace meshlode::build {
 namespace {
 
 using testing_support::add_triangle;
@@ -27,8 +27,8 @@ struct Built {
   LodDag dag;
 };
 
-Built build(const Primitive& shape, const DagOptions& options = {}) {
-  const SourceMesh source = samples::as_mesh(shape);
+Built build(const scene::Primitive& shape, const DagOptions& options = {}) {
+  const scene::SourceMesh source = scene::as_mesh(shape);
   const MeshPlan plan = plan_mesh(source, {}, AttributeChoice::kAll, "m");
   Built built{*prepare_mesh(source, plan.layout, {}), {}};
   Result<LodDag> dag = build_dag(built.mesh, options);
@@ -40,7 +40,7 @@ Built build(const Primitive& shape, const DagOptions& options = {}) {
 std::array<testing_support::Point, 3> corners(const LodDag& dag, const DagCluster& cluster, std::uint32_t triangle) {
   std::array<testing_support::Point, 3> out;
   for (std::size_t k = 0; k < 3; ++k) {
-    out[k] = point(dag.vertex_position[cluster.first_vertex + dag.triangles[triangle][k]]);
+    out[k] = testing_support::point(dag.vertex_position[cluster.first_vertex + dag.triangles[triangle][k]]);
   }
   return out;
 }
@@ -48,7 +48,7 @@ std::array<testing_support::Point, 3> corners(const LodDag& dag, const DagCluste
 void add_cluster(Chain& chain, const LodDag& dag, std::size_t c) {
   const DagCluster& cluster = dag.clusters[c];
   for (std::uint32_t t = cluster.first_triangle; t < cluster.first_triangle + cluster.triangle_count; ++t) {
-    add_triangle(chain, corners(dag, cluster, t));
+    testing_support::add_triangle(chain, corners(dag, cluster, t));
   }
 }
 
@@ -65,7 +65,7 @@ void expect_sound(const Built& built) {
   for (std::size_t t = 0; t < built.mesh.triangles.size(); ++t) {
     std::array<testing_support::Point, 3> c;
     for (std::size_t k = 0; k < 3; ++k) {
-      c[k] = point(built.mesh.positions[built.mesh.wedge_position[built.mesh.triangles[t][k]]]);
+      c[k] = testing_support::point(built.mesh.positions[built.mesh.wedge_position[built.mesh.triangles[t][k]]]);
     }
     expected.insert({rotated(c), built.mesh.triangle_material[t]});
   }
@@ -146,10 +146,10 @@ std::size_t count_roots(const LodDag& dag) {
 }
 
 TEST(Dag, SmoothShapesEndInOneRoot) {
-  const Primitive shapes[] = {samples::make_sphere(24), samples::make_torus(60, 30), samples::make_plane(40),
-                              samples::with_smooth_normals(samples::make_sphere(20)), samples::make_rock(16),
-                              samples::make_terrain(48, 48)};
-  for (const Primitive& shape : shapes) {
+  const scene::Primitive shapes[] = {scene::make_sphere(24), scene::make_torus(60, 30), scene::make_plane(40),
+                              scene::with_smooth_normals(scene::make_sphere(20)), scene::make_rock(16),
+                              scene::make_terrain(48, 48)};
+  for (const scene::Primitive& shape : shapes) {
     const Built built = build(shape);
     expect_sound(built);
     EXPECT_EQ(count_roots(built.dag), 1U);
@@ -159,16 +159,16 @@ TEST(Dag, SmoothShapesEndInOneRoot) {
 }
 
 TEST(Dag, HardShapesAreSound) {
-  const Primitive shapes[] = {samples::make_box_soup(60),     samples::make_loose_pieces(400), samples::make_blade(40),
-                              samples::make_three_sheets(24), samples::make_double_cone(300),  samples::make_slivers(600),
-                              samples::make_duplicates(12),   samples::make_zero_areas(12),    samples::make_moebius(90, 8),
-                              samples::make_far_plane(24),    samples::scaled(samples::make_torus(30, 20), 1e-6),
-                              samples::scaled(samples::make_torus(30, 20), 1e9)};
-  for (const Primitive& shape : shapes) expect_sound(build(shape));
+  const scene::Primitive shapes[] = {scene::make_box_soup(60),     scene::make_loose_pieces(400), scene::make_blade(40),
+                              scene::make_three_sheets(24), scene::make_double_cone(300),  scene::make_slivers(600),
+                              scene::make_duplicates(12),   scene::make_zero_areas(12),    scene::make_moebius(90, 8),
+                              scene::make_far_plane(24),    scene::scaled(scene::make_torus(30, 20), 1e-6),
+                              scene::scaled(scene::make_torus(30, 20), 1e9)};
+  for (const scene::Primitive& shape : shapes) expect_sound(build(shape));
 }
 
 TEST(Dag, FacetedShapesEndInOneRoot) {
-  Primitive shape = samples::with_split_normals(samples::make_sphere(20));
+  scene::Primitive shape = scene::with_split_normals(scene::make_sphere(20));
   for (const bool keep : {false, true}) {
     if (keep) shape.normals[0] = glm::normalize(shape.normals[0] + Vec3f(0.4F, 0.2F, 0.1F));  // now they must be stored
     const Built built = build(shape);
@@ -179,7 +179,7 @@ TEST(Dag, FacetedShapesEndInOneRoot) {
 }
 
 TEST(Dag, OneTriangleIsItsOwnRoot) {
-  Primitive shape;
+  scene::Primitive shape;
   shape.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   shape.indices = {0, 1, 2};
   const Built built = build(shape);
@@ -190,18 +190,18 @@ TEST(Dag, OneTriangleIsItsOwnRoot) {
 }
 
 TEST(Dag, AnEmptyMeshHasNoGroups) {
-  const Built built = build(Primitive{});
+  const Built built = build(scene::Primitive{});
   EXPECT_TRUE(built.dag.groups.empty());
   EXPECT_EQ(built.dag.level_count, 0U);
 }
 
 TEST(Dag, MaterialsOfOneMeshShareOneDagWithoutCracks) {
-  SourceMesh source = samples::as_mesh(samples::make_sphere(20));
-  Primitive upper = source.primitives[0];
-  Primitive lower = upper;
+  scene::SourceMesh source = scene::as_mesh(scene::make_sphere(20));
+  scene::Primitive upper = source.primitives[0];
+  scene::Primitive lower = upper;
   upper.indices.clear();
   lower.indices.clear();
-  const Primitive& whole = source.primitives[0];
+  const scene::Primitive& whole = source.primitives[0];
   for (std::size_t i = 0; i < whole.indices.size(); i += 3) {
     auto& side = whole.positions[whole.indices[i]].y > 0.1 ? upper : lower;
     side.indices.insert(side.indices.end(), whole.indices.begin() + static_cast<std::ptrdiff_t>(i),
@@ -221,7 +221,7 @@ TEST(Dag, MaterialsOfOneMeshShareOneDagWithoutCracks) {
 }
 
 TEST(Dag, ThreadsChangeNothing) {
-  const Primitive shape = samples::make_rock(24);
+  const scene::Primitive shape = scene::make_rock(24);
   std::vector<LodDag> dags;
   for (const std::size_t threads : {1U, 2U, 4U}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
@@ -238,7 +238,7 @@ TEST(Dag, ItCanBeCancelled) {
   DagOptions options;
   int calls = 0;
   options.on_level = [&](std::uint32_t, std::uint64_t) { return ++calls < 3; };
-  const PreparedMesh mesh = *prepare_mesh(samples::as_mesh(samples::make_sphere(20)), {}, {});
+  const PreparedMesh mesh = *prepare_mesh(scene::as_mesh(scene::make_sphere(20)), {}, {});
   const Result<LodDag> dag = build_dag(mesh, options);
   ASSERT_FALSE(dag.ok());
   EXPECT_EQ(dag.error().code, ErrorCode::kBuildFailed);
@@ -248,7 +248,7 @@ TEST(Dag, ItCanBeCancelled) {
 TEST(Dag, FoliageAndSoupsKeepTheirAreaAtEveryLevel) {
   DagOptions options;
   options.simplify.keep_area = true;
-  for (const Primitive& shape : {samples::make_box_soup(1500), samples::make_foliage(1200)}) {
+  for (const scene::Primitive& shape : {scene::make_box_soup(1500), scene::make_foliage(1200)}) {
     const Built built = build(shape, options);
     expect_sound(built);
     EXPECT_LE(count_roots(built.dag), 4U);
@@ -271,7 +271,7 @@ TEST(Dag, FoliageAndSoupsKeepTheirAreaAtEveryLevel) {
 TEST(Dag, AnErrorIsTheDeviationWithTheMarginAndTheLargestBelow) {
   for (const ErrorSource tier : {ErrorSource::kMeasured, ErrorSource::kCertified}) {
     const double margin = tier == ErrorSource::kMeasured ? kMeasuredMargin : 1.0;
-    for (const Primitive& shape : {samples::make_rock(9), samples::make_loose_pieces(600)}) {
+    for (const scene::Primitive& shape : {scene::make_rock(9), scene::make_loose_pieces(600)}) {
       DagOptions options;
       options.error = tier;
       const Built built = build(shape, options);
@@ -295,7 +295,7 @@ TEST(Dag, GroupsStayWithinTheirBytes) {
   DagOptions options;
   options.max_group_bytes = 128 * 6;
   options.cluster_bytes = [](std::uint32_t, std::uint32_t triangles, std::uint32_t) { return triangles; };
-  const Built built = build(samples::make_sphere(24), options);
+  const Built built = build(scene::make_sphere(24), options);
   expect_sound(built);
   for (const DagGroup& group : built.dag.groups) {
     std::uint32_t bytes = 0;
@@ -307,4 +307,4 @@ TEST(Dag, GroupsStayWithinTheirBytes) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -9,7 +9,7 @@
 #include "build/deviation/point_distance.h"
 #include "build/deviation/surfaces.h"
 
-namespace meshlode {
+namespace meshlode::build {
 namespace {
 
 using test::as_group;
@@ -17,18 +17,18 @@ using test::as_surface;
 using test::dense_truth;
 using test::Random;
 
-std::vector<TriangleBound> no_bounds(const Surface& surface) {
+std::vector<TriangleBound> no_bounds(const judge::Surface& surface) {
   return std::vector<TriangleBound>(surface.triangles.size());
 }
 
-CertifiedGroup certify_one_step(const Surface& fine, const Surface& coarse) {
-  return certify_group(as_group(fine), no_bounds(fine), as_group(coarse));
+CertifiedGroup certify_one_step(const judge::Surface& fine, const judge::Surface& coarse) {
+  return certify_group(test::as_group(fine), no_bounds(fine), test::as_group(coarse));
 }
 
 TEST(Certified, AShiftedPlaneIsOffByItsShift) {
   for (const double scale : {1e-6, 1.0, 1e9}) {
-    const Surface plane = test::transformed(as_surface(samples::make_plane(6)), scale, Vec3d(0.0));
-    const Surface shifted = test::transformed(as_surface(samples::make_plane(4)), scale, Vec3d(0.0, 0.25 * scale, 0.0));
+    const judge::Surface plane = test::transformed(test::as_surface(scene::make_plane(6)), scale, Vec3d(0.0));
+    const judge::Surface shifted = test::transformed(test::as_surface(scene::make_plane(4)), scale, Vec3d(0.0, 0.25 * scale, 0.0));
     const double bound = certify_one_step(plane, shifted).deviation;
     EXPECT_GE(bound, 0.25 * scale);
     EXPECT_LE(bound, 0.27 * scale);
@@ -36,7 +36,7 @@ TEST(Certified, AShiftedPlaneIsOffByItsShift) {
 }
 
 TEST(Certified, TheSameSurfaceIsAsGoodAsItself) {
-  const Surface rock = as_surface(samples::make_rock(8));
+  const judge::Surface rock = test::as_surface(scene::make_rock(8));
   EXPECT_LE(certify_one_step(rock, rock).deviation, 1e-8);
 }
 
@@ -46,8 +46,8 @@ TEST(Certified, HoldsForRandomSurfaces) {
     const double scale = round % 3 == 0 ? 1e-6 : round % 3 == 1 ? 1.0 : 1e9;
     const auto count_a = static_cast<std::uint32_t>(1 + random.below(30));
     const auto count_b = static_cast<std::uint32_t>(1 + random.below(30));
-    Surface a = test::random_soup(random, count_a, scale, scale * (0.05 + 0.5 * static_cast<double>(random.below(3))));
-    Surface b = test::random_soup(random, count_b, scale, scale * (0.05 + 0.5 * static_cast<double>(random.below(3))));
+    judge::Surface a = test::random_soup(random, count_a, scale, scale * (0.05 + 0.5 * static_cast<double>(random.below(3))));
+    judge::Surface b = test::random_soup(random, count_b, scale, scale * (0.05 + 0.5 * static_cast<double>(random.below(3))));
     if (round % 4 == 0) {  // needles, segments and points
       for (std::size_t t = 0; t < a.triangles.size(); t += 2)
         a.positions[3 * t + 2] = a.positions[3 * t + random.below(2)];
@@ -55,7 +55,7 @@ TEST(Certified, HoldsForRandomSurfaces) {
         b.positions[3 * t + 2] = (b.positions[3 * t] + b.positions[3 * t + 1]) * 0.5 + 1e-8 * scale;
       }
     }
-    const double truth = dense_truth(a, b, 3000);
+    const double truth = test::dense_truth(a, b, 3000);
     const double bound = certify_one_step(a, b).deviation;
     ASSERT_GE(bound, truth) << "round " << round;
     ASSERT_LE(bound, 1.5 * truth) << "round " << round;
@@ -65,12 +65,12 @@ TEST(Certified, HoldsForRandomSurfaces) {
 TEST(Certified, HoldsAlongAChainOfLevelsForEveryPart) {
   Random random(22);
   for (int round = 0; round < 6; ++round) {
-    Surface fine;
-    std::vector<Surface> levels;
+    judge::Surface fine;
+    std::vector<judge::Surface> levels;
     for (const std::uint32_t n : {16U, 11U, 8U, 5U, 3U}) {
-      Surface level = as_surface(round % 3 == 0   ? samples::make_sphere(n)
-                                 : round % 3 == 1 ? samples::make_torus(3 * n, 2 * n)
-                                                  : samples::make_terrain(2 * n, 2 * n));
+      judge::Surface level = test::as_surface(round % 3 == 0   ? scene::make_sphere(n)
+                                 : round % 3 == 1 ? scene::make_torus(3 * n, 2 * n)
+                                                  : scene::make_terrain(2 * n, 2 * n));
       for (Vec3d& p : level.positions) {
         p += 0.05 / n * Vec3d(random.signed_unit(), random.signed_unit(), random.signed_unit());
       }
@@ -80,17 +80,17 @@ TEST(Certified, HoldsAlongAChainOfLevelsForEveryPart) {
         levels.push_back(std::move(level));
       }
     }
-    const Surface* finer = &fine;
+    const judge::Surface* finer = &fine;
     std::vector<TriangleBound> bounds = no_bounds(fine);
-    for (const Surface& level : levels) {
-      CertifiedGroup certified = certify_group(as_group(*finer), bounds, as_group(level));
-      const double truth = dense_truth(fine, level, 5000);
+    for (const judge::Surface& level : levels) {
+      CertifiedGroup certified = certify_group(test::as_group(*finer), bounds, test::as_group(level));
+      const double truth = test::dense_truth(fine, level, 5000);
       EXPECT_GE(certified.deviation, truth);
       EXPECT_LE(certified.deviation, 2.5 * truth);
       // What is proven of one triangle holds for it alone.
       for (std::size_t t = 0; t < level.triangles.size(); t += level.triangles.size() / 3 + 1) {
-        const Surface one{level.positions, {level.triangles[t]}};
-        EXPECT_GE(certified.bounds[t].to_source, measure_deviation(one, fine, {.samples = 100}).a_to_b.max);
+        const judge::Surface one{level.positions, {level.triangles[t]}};
+        EXPECT_GE(certified.bounds[t].to_source, judge::measure_deviation(one, fine, {.samples = 100}).a_to_b.max);
       }
       bounds = std::move(certified.bounds);
       finer = &level;
@@ -100,7 +100,7 @@ TEST(Certified, HoldsAlongAChainOfLevelsForEveryPart) {
 
 TEST(Certified, SourcePointsAreNearTheTrianglesThatTheyWereHandedTo) {
   // Every source point must be within its bound of some triangle: with the smallest bounds that are claimed.
-  const Surface fine = as_surface(samples::make_rock(12)), coarse = as_surface(samples::make_rock(4));
+  const judge::Surface fine = test::as_surface(scene::make_rock(12)), coarse = test::as_surface(scene::make_rock(4));
   const CertifiedGroup certified = certify_one_step(fine, coarse);
   Random random(23);
   for (int i = 0; i < 3000; ++i) {
@@ -128,32 +128,32 @@ TEST(Certified, TheGridsOwnShiftIsInTheFirstBound) {
 
 TEST(Certified, AnUnderstatedBoundIsFound) {
   // The tests above can fail: with the bounds halved, sampling finds points beyond them.
-  const Surface fine = as_surface(samples::make_sphere(12)), coarse = as_surface(samples::make_sphere(3));
-  EXPECT_LT(0.5 * certify_one_step(fine, coarse).deviation, dense_truth(fine, coarse, 5000));
+  const judge::Surface fine = test::as_surface(scene::make_sphere(12)), coarse = test::as_surface(scene::make_sphere(3));
+  EXPECT_LT(0.5 * certify_one_step(fine, coarse).deviation, test::dense_truth(fine, coarse, 5000));
 }
 
 TEST(Certified, WhatIsNotANumberIsNoBound) {
   const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
-  const Surface fine = as_surface(samples::make_sphere(2)), coarse = as_surface(samples::make_sphere(1));
+  const judge::Surface fine = test::as_surface(scene::make_sphere(2)), coarse = test::as_surface(scene::make_sphere(1));
   // From below: one finer triangle whose bounds are not known.
   for (const double unknown : {nan, infinity}) {
     std::vector<TriangleBound> bounds = no_bounds(fine);
     bounds[3] = {unknown, unknown};
-    EXPECT_EQ(certify_group(as_group(fine), bounds, as_group(coarse)).deviation, infinity);
+    EXPECT_EQ(certify_group(test::as_group(fine), bounds, test::as_group(coarse)).deviation, infinity);
     const TriangleBound first = initial_bound({{{0, 0, 0}, {1, 0, 0}, {0, 1, unknown}}}, {});
     EXPECT_EQ(first.from_source, infinity);
     EXPECT_EQ(first.to_source, infinity);
   }
   // From the geometry: squares that overflow.
-  const Surface huge = test::transformed(fine, 1e200, Vec3d(0.0));
+  const judge::Surface huge = test::transformed(fine, 1e200, Vec3d(0.0));
   EXPECT_EQ(certify_one_step(huge, coarse).deviation, infinity);
   EXPECT_EQ(certify_one_step(coarse, huge).deviation, infinity);
 }
 
 TEST(Certified, NothingLeftIsInfinitelyFar) {
-  const Surface fine = as_surface(samples::make_sphere(2));
+  const judge::Surface fine = test::as_surface(scene::make_sphere(2));
   EXPECT_EQ(certify_one_step(fine, {}).deviation, std::numeric_limits<double>::infinity());
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::build

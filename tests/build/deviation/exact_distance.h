@@ -7,6 +7,6 @@
 namespace meshlode::test {
 
 /// Whether a point is within a distance of a triangle, without any rounding. \pre the triangle has area
-[[nodiscard]] bool is_within_exactly(const Vec3d& point, const TriangleCorners& triangle, double distance);
+[[nodiscard]] bool is_within_exactly(const Vec3d& point, const build::TriangleCorners& triangle, double distance);
 
 }  // namespace meshlode::test

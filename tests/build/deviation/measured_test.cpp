@@ -10,7 +10,7 @@
 #include "build/deviation/surfaces.h"
 #include "judge/metrics/triangle_tree.h"
 
-namespace meshlode {
+namespace meshlode::build {
 namespace {
 
 using test::as_group;
@@ -20,18 +20,18 @@ using test::measure_one_step;
 using test::Random;
 
 TEST(Measured, AShiftedPlaneIsOffByItsShift) {
-  const Surface plane = as_surface(samples::make_plane(12));
+  const judge::Surface plane = test::as_surface(scene::make_plane(12));
   for (const double scale : {1e-6, 1.0, 1e9}) {
-    const Surface fine = test::transformed(plane, scale, Vec3d(0.0));
-    const Surface shifted = test::transformed(plane, scale, Vec3d(0.0, 0.125 * scale, 0.0));
-    EXPECT_NEAR(measure_one_step(fine, shifted).deviation, 0.125 * scale, 1e-12 * scale);
-    EXPECT_LE(measure_one_step(fine, fine).deviation, 1e-15 * scale);
+    const judge::Surface fine = test::transformed(plane, scale, Vec3d(0.0));
+    const judge::Surface shifted = test::transformed(plane, scale, Vec3d(0.0, 0.125 * scale, 0.0));
+    EXPECT_NEAR(test::measure_one_step(fine, shifted).deviation, 0.125 * scale, 1e-12 * scale);
+    EXPECT_LE(test::measure_one_step(fine, fine).deviation, 1e-15 * scale);
   }
 }
 
 TEST(Measured, ACoarseSphereIsOffByItsSagitta) {
-  const Surface fine = as_surface(samples::make_sphere(40));
-  const Surface coarse = as_surface(samples::make_sphere(3));
+  const judge::Surface fine = test::as_surface(scene::make_sphere(40));
+  const judge::Surface coarse = test::as_surface(scene::make_sphere(3));
   // A chord plane at distance h from the centre is 1 - h from the sphere: the largest triangle has the smallest h.
   double lowest = 1.0;
   for (const auto& t : coarse.triangles) {
@@ -39,67 +39,67 @@ TEST(Measured, ACoarseSphereIsOffByItsSagitta) {
     const Vec3d n = glm::cross(coarse.positions[t[1]] - a, coarse.positions[t[2]] - a);
     lowest = std::min(lowest, std::abs(glm::dot(n, a)) / glm::length(n));
   }
-  const double measured = measure_one_step(fine, coarse).deviation;
+  const double measured = test::measure_one_step(fine, coarse).deviation;
   EXPECT_LE(measured, (1.0 - lowest) * (1.0 + 1e-9));
   EXPECT_GE(measured, (1.0 - lowest) * 0.97);  // the fine sphere is itself inside the round one
 }
 
 TEST(Measured, ARemovedSpikeCostsItsHeight) {
-  Surface fine = as_surface(samples::make_plane(10));
-  const Surface coarse = as_surface(samples::make_plane(5));
+  judge::Surface fine = test::as_surface(scene::make_plane(10));
+  const judge::Surface coarse = test::as_surface(scene::make_plane(5));
   fine.positions[60].y += 0.375;  // an inner vertex
-  EXPECT_NEAR(measure_one_step(fine, coarse).deviation, 0.375, 1e-12);
+  EXPECT_NEAR(test::measure_one_step(fine, coarse).deviation, 0.375, 1e-12);
 }
 
 TEST(Measured, AClosedHoleCostsItsRadius) {
   // A square with a square hole, covered by a square without: the middle of the hole is half its width from the rim.
-  Surface fine = as_surface(samples::make_plane(12));
+  judge::Surface fine = test::as_surface(scene::make_plane(12));
   std::erase_if(fine.triangles, [&](const auto& t) {
     const Vec3d c = (fine.positions[t[0]] + fine.positions[t[1]] + fine.positions[t[2]]) / 3.0;
     return std::abs(c.x) < 0.5 && std::abs(c.z) < 0.5;
   });
-  const Surface coarse = as_surface(samples::make_plane(1));
-  const double measured = measure_one_step(fine, coarse).deviation;
+  const judge::Surface coarse = test::as_surface(scene::make_plane(1));
+  const double measured = test::measure_one_step(fine, coarse).deviation;
   EXPECT_LE(measured, 0.5 + 1e-12);
   EXPECT_GE(measured, 0.5 * 0.95);
 }
 
 TEST(Measured, ARemovedPieceIsAsFarAsItWas) {
-  Surface fine = as_surface(samples::make_sphere(4));
-  const Surface coarse = fine;
-  const Surface speck = test::transformed(as_surface(samples::make_cube(1)), 1e-3, Vec3d(3.0, 0.0, 0.0));
+  judge::Surface fine = test::as_surface(scene::make_sphere(4));
+  const judge::Surface coarse = fine;
+  const judge::Surface speck = test::transformed(test::as_surface(scene::make_cube(1)), 1e-3, Vec3d(3.0, 0.0, 0.0));
   const auto base = static_cast<std::uint32_t>(fine.positions.size());
   fine.positions.insert(fine.positions.end(), speck.positions.begin(), speck.positions.end());
   for (const auto& t : speck.triangles) fine.triangles.push_back({base + t[0], base + t[1], base + t[2]});
-  EXPECT_NEAR(measure_one_step(fine, coarse).deviation, dense_truth(fine, coarse), 1e-9);
+  EXPECT_NEAR(test::measure_one_step(fine, coarse).deviation, test::dense_truth(fine, coarse), 1e-9);
 }
 
 TEST(Measured, LargeSourceTrianglesAreSeenInside) {
   // Two triangles folded along a diagonal against two along the other: the largest gap is inside, not at a corner.
   const std::vector<Vec3d> corners = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0.5}, {0, 1, 0}};
-  const Surface fine{corners, {{0, 1, 2}, {0, 2, 3}}};
-  const Surface coarse{corners, {{0, 1, 3}, {1, 2, 3}}};
-  const double truth = dense_truth(fine, coarse, 200000);
-  const double measured = measure_one_step(fine, coarse).deviation;
+  const judge::Surface fine{corners, {{0, 1, 2}, {0, 2, 3}}};
+  const judge::Surface coarse{corners, {{0, 1, 3}, {1, 2, 3}}};
+  const double truth = test::dense_truth(fine, coarse, 200000);
+  const double measured = test::measure_one_step(fine, coarse).deviation;
   EXPECT_GE(measured, 0.98 * truth);
   EXPECT_LE(measured, 1.005 * truth);  // the samples miss some of it
 }
 
 TEST(Measured, WhatIsOfNoUseIsToldAsFarAsItIsKnown) {
   // Nothing reaches what is asked for: the deviation is what was found, not what was asked, and not a running maximum.
-  const Surface fine = as_surface(samples::make_sphere(12)), coarse = as_surface(samples::make_sphere(6));
-  const double truth = dense_truth(fine, coarse);
+  const judge::Surface fine = test::as_surface(scene::make_sphere(12)), coarse = test::as_surface(scene::make_sphere(6));
+  const double truth = test::dense_truth(fine, coarse);
   DeviationTierOptions options;
   options.floor = 0.7;
   options.least = 0.7;
-  const double measured = measure_one_step(fine, coarse, options).deviation;
+  const double measured = test::measure_one_step(fine, coarse, options).deviation;
   EXPECT_LE(measured, truth * (1.0 + 1e-3));  // the oracle's samples may miss the top
   EXPECT_GE(measured, 0.8 * truth);
 }
 
 /// Every `nth` triangle of a soup.
-Surface part_of(const Surface& soup, std::size_t nth) {
-  Surface part{soup.positions, {}};
+judge::Surface part_of(const judge::Surface& soup, std::size_t nth) {
+  judge::Surface part{soup.positions, {}};
   for (std::size_t t = 0; t < soup.triangles.size(); t += nth) part.triangles.push_back(soup.triangles[t]);
   return part;
 }
@@ -108,16 +108,16 @@ TEST(Measured, ASoupIsSearchedToItsEndWhereTheGroupIsAllOfIt) {
   // Loose triangles of which most are gone, and samples of none but a few: nothing leads from them to the others.
   Random random(5);
   for (int round = 0; round < 8; ++round) {
-    const Surface fine = test::random_soup(random, 400, 1.0, 0.02 + 0.05 * round), coarse = part_of(fine, 8);
+    const judge::Surface fine = test::random_soup(random, 400, 1.0, 0.02 + 0.05 * round), coarse = part_of(fine, 8);
     const SourceTree source(fine.positions, fine.triangles);
     std::vector<CarriedSample> samples = initial_samples(source);
     std::erase_if(samples, [](const CarriedSample& sample) { return sample.triangle % 40 != 0; });
     DeviationTierOptions options;
     options.extra_effort = 3000;
-    options.finer = as_group(coarse);
+    options.finer = test::as_group(coarse);
     options.is_whole = true;
-    const double measured = measure_group(source, as_group(coarse), samples, options).deviation;
-    EXPECT_GE(measured, dense_truth(fine, coarse) / 1.002) << "round " << round;
+    const double measured = measure_group(source, test::as_group(coarse), samples, options).deviation;
+    EXPECT_GE(measured, test::dense_truth(fine, coarse) / 1.002) << "round " << round;
   }
 }
 
@@ -125,56 +125,56 @@ TEST(Measured, APeakBetweenNeedlesIsFoundThoughNoPointNearItTells) {
   // Large triangles over a thicket of needles: the farthest point from all of them is the middle of the widest gap.
   Random random(6);
   for (int round = 0; round < 8; ++round) {
-    Surface fine;
+    judge::Surface fine;
     for (std::uint32_t i = 0; i < 60; ++i) {
       const Vec3d at(random.signed_unit(), 0.0, random.signed_unit());
       const Vec3d along = 0.3 * Vec3d(random.signed_unit(), 0.0, random.signed_unit());
       for (const Vec3d& p : {at, at + along, at + 0.5 * along + Vec3d(0.0, 1e-5, 0.0)}) fine.positions.push_back(p);
       fine.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
     }
-    const Surface coarse = as_surface(samples::make_plane(2));
+    const judge::Surface coarse = test::as_surface(scene::make_plane(2));
     DeviationTierOptions options;
     options.extra_effort = 3000;
     options.is_whole = true;
-    EXPECT_GE(measure_one_step(fine, coarse, options).deviation, dense_truth(fine, coarse, 100000) / 1.005)
+    EXPECT_GE(test::measure_one_step(fine, coarse, options).deviation, test::dense_truth(fine, coarse, 100000) / 1.005)
         << "round " << round;
   }
 }
 
 TEST(Measured, NothingLeftIsInfinitelyFar) {
-  const Surface fine = as_surface(samples::make_sphere(2));
-  EXPECT_EQ(measure_one_step(fine, {}).deviation, std::numeric_limits<double>::infinity());
+  const judge::Surface fine = test::as_surface(scene::make_sphere(2));
+  EXPECT_EQ(test::measure_one_step(fine, {}).deviation, std::numeric_limits<double>::infinity());
 }
 
 TEST(Measured, DegenerateTrianglesAreSegmentsAndPoints) {
-  const Surface fine{{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 1, 2}}};
-  const Surface point{{{0, 3, 0}}, {{0, 0, 0}}};
-  EXPECT_NEAR(measure_one_step(fine, point).deviation, std::sqrt(13.0), 1e-12);
-  EXPECT_NEAR(measure_one_step(point, fine).deviation, std::sqrt(13.0), 1e-12);
-  EXPECT_TRUE(std::isfinite(measure_one_step(as_surface(samples::make_zero_areas(6)), point).deviation));
+  const judge::Surface fine{{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 1, 2}}};
+  const judge::Surface point{{{0, 3, 0}}, {{0, 0, 0}}};
+  EXPECT_NEAR(test::measure_one_step(fine, point).deviation, std::sqrt(13.0), 1e-12);
+  EXPECT_NEAR(test::measure_one_step(point, fine).deviation, std::sqrt(13.0), 1e-12);
+  EXPECT_TRUE(std::isfinite(test::measure_one_step(test::as_surface(scene::make_zero_areas(6)), point).deviation));
 }
 
 TEST(Measured, RandomSimplificationsAreWithinFivePercentOfTheDenseTruth) {
   Random random(11);
   int short_count = 0, count = 0;
   for (int round = 0; round < 24; ++round) {
-    Primitive shape;
-    Primitive simple;
+    scene::Primitive shape;
+    scene::Primitive simple;
     const auto n = static_cast<std::uint32_t>(3 + random.below(4));
     switch (round % 4) {
-      case 0: shape = samples::make_sphere(4 * n), simple = samples::make_sphere(n); break;
-      case 1: shape = samples::make_torus(12 * n, 8 * n), simple = samples::make_torus(3 * n, 2 * n); break;
-      case 2: shape = samples::make_rock(6 * n, 7), simple = samples::make_rock(2 * n, 7); break;
+      case 0: shape = scene::make_sphere(4 * n), simple = scene::make_sphere(n); break;
+      case 1: shape = scene::make_torus(12 * n, 8 * n), simple = scene::make_torus(3 * n, 2 * n); break;
+      case 2: shape = scene::make_rock(6 * n, 7), simple = scene::make_rock(2 * n, 7); break;
       default:
-        shape = samples::make_terrain(12 * n, 9 * n, 11), simple = samples::make_terrain(4 * n, 3 * n, 11);
+        shape = scene::make_terrain(12 * n, 9 * n, 11), simple = scene::make_terrain(4 * n, 3 * n, 11);
         break;
     }
-    Surface fine = as_surface(shape), coarse = as_surface(simple);
+    judge::Surface fine = test::as_surface(shape), coarse = test::as_surface(simple);
     for (Vec3d& p : coarse.positions) {
       p += 0.02 * Vec3d(random.signed_unit(), random.signed_unit(), random.signed_unit());
     }
-    const double truth = dense_truth(fine, coarse);
-    const double measured = measure_one_step(fine, coarse).deviation;
+    const double truth = test::dense_truth(fine, coarse);
+    const double measured = test::measure_one_step(fine, coarse).deviation;
     EXPECT_GE(measured, 0.95 * truth) << "round " << round;
     EXPECT_LE(measured, truth * 1.1) << "round " << round;  // the oracle's own samples miss some of it
     short_count += measured < truth ? 1 : 0;
@@ -184,17 +184,17 @@ TEST(Measured, RandomSimplificationsAreWithinFivePercentOfTheDenseTruth) {
 }
 
 TEST(Measured, SamplesAreThinnedButTheFarthestStay) {
-  const Surface fine = as_surface(samples::make_rock(24)), coarse = as_surface(samples::make_rock(6));
+  const judge::Surface fine = test::as_surface(scene::make_rock(24)), coarse = test::as_surface(scene::make_rock(6));
   const SourceTree source(fine.positions, fine.triangles);
   const std::vector<CarriedSample> samples = initial_samples(source);
-  const GroupDeviation result = measure_group(source, as_group(coarse), samples, {});
+  const GroupDeviation result = measure_group(source, test::as_group(coarse), samples, {});
   EXPECT_LT(result.carried.size(), samples.size());
   float farthest = 0.0F;
   for (const CarriedSample& sample : result.carried) {
     ASSERT_LT(sample.triangle, coarse.triangles.size());
     const auto& t = coarse.triangles[sample.triangle];
     const double truth = std::sqrt(
-        distance2_to_triangle(sample.point, coarse.positions[t[0]], coarse.positions[t[1]], coarse.positions[t[2]]));
+        judge::distance2_to_triangle(sample.point, coarse.positions[t[0]], coarse.positions[t[1]], coarse.positions[t[2]]));
     EXPECT_NEAR(sample.distance, truth, 1e-6);
     farthest = std::max(farthest, sample.distance);
   }
@@ -203,14 +203,14 @@ TEST(Measured, SamplesAreThinnedButTheFarthestStay) {
 
 TEST(Measured, AChainOfLevelsKeepsWhatTheFirstHad) {
   // A thin spike on a fine sphere must still be measured when the third coarser sphere has long lost it.
-  Surface fine = as_surface(samples::make_sphere(32));
+  judge::Surface fine = test::as_surface(scene::make_sphere(32));
   fine.positions[1234] *= 1.5;
   const SourceTree source(fine.positions, fine.triangles);
   std::vector<CarriedSample> samples = initial_samples(source);
   for (const std::uint32_t n : {16U, 8U, 4U, 2U}) {
-    const Surface coarse = as_surface(samples::make_sphere(n));
-    GroupDeviation result = measure_group(source, as_group(coarse), samples, {});
-    EXPECT_GE(result.deviation, 0.999 * dense_truth(fine, coarse)) << n;
+    const judge::Surface coarse = test::as_surface(scene::make_sphere(n));
+    GroupDeviation result = measure_group(source, test::as_group(coarse), samples, {});
+    EXPECT_GE(result.deviation, 0.999 * test::dense_truth(fine, coarse)) << n;
     samples = std::move(result.carried);
   }
 }
@@ -219,7 +219,7 @@ TEST(Measured, TheSourcesOwnBorderBelongsToTheGroup) {
   // A strip with a spike on its open border, which the levels before have flattened to half of it. No sample sits on the
   // tip. Where the border is shared with another group its points stay as near as they are, and nobody looks.
   const auto strip = [](double spike) {
-    Surface surface;
+    judge::Surface surface;
     for (int i = 0; i <= 4; ++i) {
       surface.positions.emplace_back(i, 0.0, 0.0);
       surface.positions.emplace_back(i, i == 2 ? 1.0 + spike : 1.0, 0.0);
@@ -230,14 +230,14 @@ TEST(Measured, TheSourcesOwnBorderBelongsToTheGroup) {
     }
     return surface;
   };
-  const Surface exact = strip(0.2), finer = strip(0.1), group = strip(0.0);
+  const judge::Surface exact = strip(0.2), finer = strip(0.1), group = strip(0.0);
   const SourceTree source(exact.positions, exact.triangles);
   std::vector<CarriedSample> samples = initial_samples(source);
   std::erase_if(samples, [](const CarriedSample& sample) { return sample.point.y > 1.15; });
   const std::vector<std::uint8_t> nothing(finer.positions.size(), 0), everything(finer.positions.size(), 1);
   const auto measure = [&](std::span<const std::uint8_t> is_shared) {
-    return measure_group(source, as_group(group), samples,
-                         {.floor = 0.1, .finer = as_group(finer), .finer_is_shared = is_shared})
+    return measure_group(source, test::as_group(group), samples,
+                         {.floor = 0.1, .finer = test::as_group(finer), .finer_is_shared = is_shared})
         .deviation;
   };
   EXPECT_NEAR(measure(nothing), 0.2, 1e-12);
@@ -247,11 +247,11 @@ TEST(Measured, TheSourcesOwnBorderBelongsToTheGroup) {
 
 TEST(Measured, SeamsDoNotStopTheSearch) {
   // The same sphere with a vertex of its own for every corner: what is found must not depend on it.
-  Primitive shape = samples::make_sphere(24);
+  scene::Primitive shape = scene::make_sphere(24);
   shape.positions[500] *= 1.25;
-  const Surface coarse = as_surface(samples::make_sphere(4));
-  const Surface whole = as_surface(shape), split = as_surface(samples::with_split_normals(shape));
-  const GroupDeviation a = measure_one_step(whole, coarse), b = measure_one_step(split, coarse);
+  const judge::Surface coarse = test::as_surface(scene::make_sphere(4));
+  const judge::Surface whole = test::as_surface(shape), split = test::as_surface(scene::with_split_normals(shape));
+  const GroupDeviation a = test::measure_one_step(whole, coarse), b = test::measure_one_step(split, coarse);
   EXPECT_NEAR(a.deviation, b.deviation, 1e-3 * a.deviation);
   EXPECT_NEAR(a.deviation, 0.25, 0.03);
   const SourceTree tree(split.positions, split.triangles);
@@ -259,10 +259,10 @@ TEST(Measured, SeamsDoNotStopTheSearch) {
 }
 
 TEST(Measured, TheSameBitsForAnyThreadCount) {
-  const Surface fine = as_surface(samples::make_rock(60)), coarse = as_surface(samples::make_rock(20));
+  const judge::Surface fine = test::as_surface(scene::make_rock(60)), coarse = test::as_surface(scene::make_rock(20));
   const auto measure = [&](std::size_t threads) {
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
-    return measure_one_step(fine, coarse);
+    return test::measure_one_step(fine, coarse);
   };
   const GroupDeviation one = measure(1);
   for (const std::size_t threads : {2U, 4U}) {
@@ -277,4 +277,4 @@ TEST(Measured, TheSameBitsForAnyThreadCount) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -14,7 +14,7 @@
 #include "build/deviation/point_distance.h"
 #include "build/deviation/surfaces.h"
 
-namespace meshlode {
+namespace meshlode::build {
 namespace {
 
 using test::is_within_exactly;
@@ -57,9 +57,9 @@ TEST(Rounding, ADistanceToATriangleIsTooSmallByNoMoreThanItSays) {
     const double length = glm::length(normal);
     if (round % 2 == 0 && length > 0.0) p += normal / length * std::ldexp(1.0, -static_cast<int>(random.below(60)));
     const double found = std::sqrt(point_triangle_distance2(p, t));
-    ASSERT_TRUE(is_within_exactly(p, t, found * (1.0 + 8.0 * kUnit) + 9.0 * kUnit * longest_edge(t)))
+    ASSERT_TRUE(test::is_within_exactly(p, t, found * (1.0 + 8.0 * kUnit) + 9.0 * kUnit * longest_edge(t)))
         << "round " << round << ", sine " << sine;
-    beyond_double += is_within_exactly(p, t, found) ? 0 : 1;
+    beyond_double += test::is_within_exactly(p, t, found) ? 0 : 1;
   }
   EXPECT_GT(beyond_double, 200) << "without the allowance the test must fail, or it says nothing";
 }
@@ -77,14 +77,14 @@ TEST(Rounding, NorBesideTheSharpCornersOfNeedles) {
     const double aside = std::ldexp(random.signed_unit(), -33 - static_cast<int>(random.below(4)));
     const Vec3d p = b + (b - a) * beyond + across * aside;
     const double found = std::sqrt(point_triangle_distance2(p, t));
-    ASSERT_TRUE(is_within_exactly(p, t, found * (1.0 + 8.0 * kUnit) + 9.0 * kUnit * longest_edge(t)))
+    ASSERT_TRUE(test::is_within_exactly(p, t, found * (1.0 + 8.0 * kUnit) + 9.0 * kUnit * longest_edge(t)))
         << "round " << round << ", found " << found << " of " << glm::distance(p, b);
   }
 }
 
 /// A strip of needles, each triangle with area, and the same with some corners moved by a little.
-Surface needle_strip(Random& random, std::uint32_t count, double width) {
-  Surface surface;
+judge::Surface needle_strip(Random& random, std::uint32_t count, double width) {
+  judge::Surface surface;
   for (std::uint32_t i = 0; i <= count; ++i) {
     surface.positions.push_back(Vec3d(width * i, 0.001 * random.signed_unit(), 0.0));
     surface.positions.push_back(Vec3d(width * (i + 0.5), 0.001 * random.signed_unit(), 1.0));
@@ -100,11 +100,11 @@ TEST(Rounding, ACertifiedBoundHoldsExactlyOnNeedles) {
   Random random(63);
   for (int round = 0; round < 12; ++round) {
     const double width = std::ldexp(1.0, -4 * (round % 6) - 2);
-    const Surface fine = needle_strip(random, 12, width), coarse = needle_strip(random, 5, width * 12 / 5);
+    const judge::Surface fine = needle_strip(random, 12, width), coarse = needle_strip(random, 5, width * 12 / 5);
     const std::vector<TriangleBound> none(fine.triangles.size());
     const CertifiedGroup certified = certify_group(test::as_group(fine), none, test::as_group(coarse));
     // Points of each side, on dyadic weights so that none is off its triangle by more than doubles tell apart.
-    const auto expect_near = [&](const Surface& from, const Surface& to) {
+    const auto expect_near = [&](const judge::Surface& from, const judge::Surface& to) {
       for (const auto& t : from.triangles) {
         for (const Vec3d& w : {Vec3d(1, 0, 0), Vec3d(0, 1, 0), Vec3d(0, 0, 1), Vec3d(0.5, 0.25, 0.25)}) {
           const Vec3d p = from.positions[t[0]] * w.x + from.positions[t[1]] * w.y + from.positions[t[2]] * w.z;
@@ -122,4 +122,4 @@ TEST(Rounding, ACertifiedBoundHoldsExactlyOnNeedles) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::build

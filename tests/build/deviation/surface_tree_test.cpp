@@ -8,12 +8,12 @@
 
 #include "build/deviation/surfaces.h"
 
-namespace meshlode {
+namespace meshlode::build {
 namespace {
 
 using test::Random;
 
-double brute_force(const Surface& surface, const Vec3d& p) {
+double brute_force(const judge::Surface& surface, const Vec3d& p) {
   double best = std::numeric_limits<double>::infinity();
   for (const auto& t : surface.triangles) {
     best = std::min(
@@ -26,7 +26,7 @@ TEST(SurfaceTree, FindsTheNearestTriangleAtEveryScale) {
   Random random(1);
   for (const double scale : {1e-6, 1.0, 1e9}) {
     for (const std::uint32_t count : {1U, 2U, 4U, 5U, 16U, 17U, 63U, 64U, 65U, 300U, 1500U}) {
-      const Surface surface = test::random_soup(random, count, scale, 0.1 * scale);
+      const judge::Surface surface = test::random_soup(random, count, scale, 0.1 * scale);
       SurfaceTree tree;
       tree.build({surface.positions, surface.triangles});
       ASSERT_EQ(tree.size(), count);
@@ -45,7 +45,7 @@ TEST(SurfaceTree, FindsTheNearestTriangleAtEveryScale) {
 
 TEST(SurfaceTree, EveryTriangleHasOnePlace) {
   Random random(2);
-  const Surface surface = test::random_soup(random, 1000, 1.0, 0.01);
+  const judge::Surface surface = test::random_soup(random, 1000, 1.0, 0.01);
   SurfaceTree tree;
   tree.build({surface.positions, surface.triangles});
   std::vector<int> count(surface.triangles.size(), 0);
@@ -54,7 +54,7 @@ TEST(SurfaceTree, EveryTriangleHasOnePlace) {
 }
 
 TEST(SurfaceTree, NeedlesSegmentsAndPointsAreWhatTheyAre) {
-  Surface surface;
+  judge::Surface surface;
   surface.positions = {{0, 0, 0}, {1, 0, 0}, {0.5, 1e-9, 0}, {0, 5, 0}, {1, 5, 0}, {2, 5, 0}, {0, 9, 0}};
   surface.triangles = {{0, 1, 2}, {3, 4, 5}, {6, 6, 6}};
   SurfaceTree tree;
@@ -68,7 +68,7 @@ TEST(SurfaceTree, NeedlesSegmentsAndPointsAreWhatTheyAre) {
 }
 
 TEST(SurfaceTree, EverythingInOnePlaceIsStillASurface) {
-  const Surface surface{{{3, 3, 3}}, {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}}};
+  const judge::Surface surface{{{3, 3, 3}}, {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}}};
   SurfaceTree tree;
   tree.build({surface.positions, surface.triangles});
   const SurfaceTree::Hit hit = tree.find_nearest(tree.to_frame({3, 3, 7}), {}, 0.0F);
@@ -77,7 +77,7 @@ TEST(SurfaceTree, EverythingInOnePlaceIsStillASurface) {
 }
 
 TEST(SurfaceTree, AnEarlyStopIsWithinWhatWasAskedFor) {
-  const Surface sphere = test::as_surface(samples::make_sphere(16));
+  const judge::Surface sphere = test::as_surface(scene::make_sphere(16));
   SurfaceTree tree;
   tree.build({sphere.positions, sphere.triangles});
   Random random(3);
@@ -96,4 +96,4 @@ TEST(SurfaceTree, AnEarlyStopIsWithinWhatWasAskedFor) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::build

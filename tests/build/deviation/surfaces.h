@@ -14,8 +14,8 @@
 
 namespace meshlode::test {
 
-inline Surface as_surface(const Primitive& shape) {
-  Surface surface;
+inline judge::Surface as_surface(const scene::Primitive& shape) {
+  judge::Surface surface;
   surface.positions = shape.positions;
   for (std::size_t i = 0; i + 2 < shape.indices.size(); i += 3) {
     surface.triangles.push_back({shape.indices[i], shape.indices[i + 1], shape.indices[i + 2]});
@@ -23,29 +23,29 @@ inline Surface as_surface(const Primitive& shape) {
   return surface;
 }
 
-inline Surface transformed(Surface surface, double factor, const Vec3d& offset) {
+inline judge::Surface transformed(judge::Surface surface, double factor, const Vec3d& offset) {
   for (Vec3d& p : surface.positions) p = p * factor + offset;
   return surface;
 }
 
-inline GroupSurface as_group(const Surface& surface) {
+inline build::GroupSurface as_group(const judge::Surface& surface) {
   return {surface.positions, surface.triangles};
 }
 
 /// `coarse` as the one group of level 1 over all of `fine`.
-inline GroupDeviation measure_one_step(const Surface& fine, const Surface& coarse, DeviationTierOptions options = {}) {
-  const SourceTree source(fine.positions, fine.triangles);
+inline build::GroupDeviation measure_one_step(const judge::Surface& fine, const judge::Surface& coarse, build::DeviationTierOptions options = {}) {
+  const build::SourceTree source(fine.positions, fine.triangles);
   options.finer = as_group(fine);
-  return measure_group(source, as_group(coarse), initial_samples(source), options);
+  return build::measure_group(source, as_group(coarse), build::initial_samples(source), options);
 }
 
 /// The larger of the two maxima over dense samples and all vertices.
-inline double dense_truth(const Surface& a, const Surface& b, std::uint64_t samples = 20000) {
-  return measure_deviation(a, b, {.samples = samples}).max();
+inline double dense_truth(const judge::Surface& a, const judge::Surface& b, std::uint64_t samples = 20000) {
+  return judge::measure_deviation(a, b, {.samples = samples}).max();
 }
 
-inline Surface random_soup(Random& random, std::uint32_t count, double size, double edge) {
-  Surface surface;
+inline judge::Surface random_soup(Random& random, std::uint32_t count, double size, double edge) {
+  judge::Surface surface;
   for (std::uint32_t i = 0; i < count; ++i) {
     const Vec3d at(random.signed_unit() * size, random.signed_unit() * size, random.signed_unit() * size);
     for (int k = 0; k < 3; ++k) {

@@ -13,7 +13,7 @@
 #include "support/random.h"
 #include "support/sample_asset.h"
 
-namespace meshlode {
+namespace meshlode::build {
 namespace {
 
 /// `group_count` groups of level 0, none of them replaced, each with `cluster_count` clusters of 254 triangles and 256
@@ -39,7 +39,7 @@ test::SampleMesh heavy_mesh(std::uint32_t group_count, std::uint32_t cluster_cou
       cluster.triangle_count = 254;
       for (std::uint32_t v = 0; v < 256; ++v) {
         const auto coordinate = [&] {
-          return static_cast<int>(random.below(2 * kMaxGridCoordinate)) - kMaxGridCoordinate;
+          return static_cast<int>(random.below(2 * format::kMaxGridCoordinate)) - format::kMaxGridCoordinate;
         };
         const int x = coordinate();
         const int y = coordinate();
@@ -73,7 +73,7 @@ AttributeLayout full_layout() {
 }
 
 /// The decoded vertex at a position: vertices stand in their order of first use.
-std::uint32_t find_vertex(const DecodedCluster& cluster, const Vec3i& position) {
+std::uint32_t find_vertex(const run::DecodedCluster& cluster, const Vec3i& position) {
   std::uint32_t v = 0;
   while (v < cluster.vertex_count && cluster.position(v) != position) ++v;
   EXPECT_LT(v, cluster.vertex_count);
@@ -170,10 +170,10 @@ TEST(Encode, IsTheSameForAnyNumberOfThreads) {  // I10
 
 TEST(Encode, TheLargestCoordinatesComeBackExactly) {
   test::SampleMesh sample = test::sample_tetrahedron();
-  for (Vec3i& p : sample.dag.vertex_position) p = {p.x > 0 ? kMaxGridCoordinate : -kMaxGridCoordinate, p.y, p.z};
-  const auto asset = Asset::from_vector(test::asset_bytes_of(sample));
+  for (Vec3i& p : sample.dag.vertex_position) p = {p.x > 0 ? format::kMaxGridCoordinate : -format::kMaxGridCoordinate, p.y, p.z};
+  const auto asset = run::Asset::from_vector(test::asset_bytes_of(sample));
   ASSERT_TRUE(asset.ok()) << asset.error().message();
-  const auto clusters = decode_all(*asset);
+  const auto clusters = run::decode_all(*asset);
   ASSERT_TRUE(clusters.ok()) << clusters.error().message();
   std::multiset<std::array<int, 3>> expected;
   std::multiset<std::array<int, 3>> stored;
@@ -216,12 +216,12 @@ TEST(Encode, ValuesThatAreNotFiniteBecomeNeutral) {
   for (std::size_t k = 0; k < stride; ++k) sample.dag.vertex_attributes[stride + k] = k < 3 ? 0.0F : -inf;
   sample.hierarchy.nodes.push_back({{0, 0, 0}, 1.0F, format::kInfiniteError, 0, 0});
   for (std::uint32_t& material : sample.dag.triangle_material) material /= 2;
-  const auto asset = Asset::from_vector(test::asset_bytes_of(sample));
+  const auto asset = run::Asset::from_vector(test::asset_bytes_of(sample));
   ASSERT_TRUE(asset.ok()) << asset.error().message();
-  const auto clusters = decode_all(*asset);
+  const auto clusters = run::decode_all(*asset);
   ASSERT_TRUE(clusters.ok()) << clusters.error().message();
-  ClusterAttributes attributes;
-  decode_attributes(asset->meshes()[0], (*clusters)[0], attributes);
+  run::ClusterAttributes attributes;
+  run::decode_attributes(asset->meshes()[0], (*clusters)[0], attributes);
   for (std::size_t source = 0; source < 2; ++source) {
     const auto v = find_vertex((*clusters)[0], sample.dag.vertex_position[source]);
     EXPECT_EQ(attributes.normals[v], Vec3f(0.0F, 0.0F, 1.0F));
@@ -285,4 +285,4 @@ TEST(Encode, ADagThatTheFormatCannotHoldIsRefused) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -12,7 +12,7 @@
 
 #include "support/random.h"
 
-namespace meshlode {
+namespace meshlode::build {
 namespace {
 
 using Position = std::array<std::int32_t, 3>;
@@ -135,4 +135,4 @@ TEST(Fits, AnyCoordinatesComeBack) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -10,7 +10,7 @@
 #include "run/decode/octahedral.h"
 #include "support/random.h"
 
-namespace meshlode {
+namespace meshlode::build {
 namespace {
 
 using Point = std::array<std::int32_t, 3>;
@@ -70,7 +70,7 @@ TEST(Octahedral, NoOtherPointWouldBeNearer) {
       double best = 4.0;
       for (std::int32_t a = 0; a <= 2 * scale; ++a) {
         for (std::int32_t b = 0; b <= 2 * scale; ++b) {
-          best = std::min(best, angle(Vec3d(n), octahedral_point(a, b, 4, scale)));
+          best = std::min(best, angle(Vec3d(n), run::octahedral_point(a, b, 4, scale)));
         }
       }
       ASSERT_LE(angle(Vec3d(n), nearest_octahedral_point(n, scale)), best + 1e-12) << "seed 7, direction " << i;
@@ -85,10 +85,10 @@ TEST(Octahedral, EveryChartHoldsEveryPointOnce) {
       std::map<Point, Pair> canonical;
       for (std::int32_t a = 0; a <= 2 * scale; ++a) {
         for (std::int32_t b = 0; b <= 2 * scale; ++b) {
-          const Point p = octahedral_point(a, b, chart, scale);
+          const Point p = run::octahedral_point(a, b, chart, scale);
           ASSERT_EQ(std::abs(p[0]) + std::abs(p[1]) + std::abs(p[2]), scale);
           const Pair pair = chart_coordinates(p, chart, scale);
-          ASSERT_EQ(octahedral_point(pair[0], pair[1], chart, scale), p) << a << " " << b;
+          ASSERT_EQ(run::octahedral_point(pair[0], pair[1], chart, scale), p) << a << " " << b;
           ASSERT_EQ(canonical.emplace(p, pair).first->second, pair) << a << " " << b;
         }
       }
@@ -114,7 +114,7 @@ TEST(Octahedral, TheDecodedNormalEncodesToItself) {
           {static_cast<float>(random.signed_unit()), static_cast<float>(random.signed_unit()),
            static_cast<float>(random.signed_unit())},
           scale);
-      EXPECT_EQ(nearest_octahedral_point(octahedral_normal(p), scale), p) << "seed 11";
+      EXPECT_EQ(nearest_octahedral_point(run::octahedral_normal(p), scale), p) << "seed 11";
     }
   }
 }
@@ -127,7 +127,7 @@ TEST(Octahedral, AxesAreExactAndNegativeZeroIsZero) {
           Vec3f n(zero);
           n[axis] = sign;
           const Point p = nearest_octahedral_point(n, scale);
-          EXPECT_EQ(octahedral_normal(p)[axis], sign);
+          EXPECT_EQ(run::octahedral_normal(p)[axis], sign);
           Point exact{};
           exact[static_cast<std::size_t>(axis)] = sign > 0.0F ? scale : -scale;
           EXPECT_EQ(p, exact);
@@ -152,4 +152,4 @@ TEST(Octahedral, NormalsThatAreNoneBecomeUp) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -11,7 +11,7 @@
 
 #include "support/random.h"
 
-namespace meshlode {
+namespace meshlode::build {
 namespace {
 
 std::vector<std::uint32_t> one_block(std::size_t count) { return std::vector<std::uint32_t>(count, 0); }
@@ -208,4 +208,4 @@ TEST(Strips, TheCountOfBitsIsWhatTheStreamHas) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -8,7 +8,7 @@
 
 #include "support/random.h"
 
-namespace meshlode {
+namespace meshlode::build {
 namespace {
 
 UvRange range_of(float a, float b) {
@@ -89,4 +89,4 @@ TEST(UvGrid, TheLargestFloatsFit) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -9,7 +9,7 @@
 #include "build/hierarchy/enclosing_ball.h"
 #include "run/select/random.h"
 
-namespace meshlode {
+namespace meshlode::build {
 namespace {
 
 using test::RandomSource;
@@ -89,4 +89,4 @@ TEST(EnclosingBall, DoesNotDependOnTheScaleWhichIsAPowerOfTwo) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::build

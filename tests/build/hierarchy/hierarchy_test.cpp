@@ -15,22 +15,22 @@
 #include "run/select/nesting.h"
 #include "run/select/random_scene.h"
 
-namespace meshlode {
+namespace meshlode::build {
 namespace {
 
 using Rational = boost::multiprecision::cpp_rational;
 using test::RandomSource;
 using test::RandomDag;
 
-static_assert(kSphereGrowth > kNestingRadiusMargin && kCenterGrowth > kNestingCenterMargin &&
-              kErrorGrowth > kNestingErrorMargin);
+static_assert(kSphereGrowth > run::kNestingRadiusMargin && kCenterGrowth > run::kNestingCenterMargin &&
+              kErrorGrowth > run::kNestingErrorMargin);
 
-StoredBound bound(const Hierarchy::Sphere& s, float error) {
+run::StoredBound bound(const Hierarchy::Sphere& s, float error) {
   return {{s.center[0], s.center[1], s.center[2]}, s.radius, error};
 }
 
 // |co - ci| + ri <= ro without any rounding.
-bool contains_exactly(const StoredBound& outer, const StoredBound& inner) {
+bool contains_exactly(const run::StoredBound& outer, const run::StoredBound& inner) {
   const Rational room = Rational(outer.radius) - Rational(inner.radius);
   if (room < 0) return false;
   Rational distance2 = 0;
@@ -62,17 +62,17 @@ TEST(Hierarchy, SpheresAndErrorsNestAlongTheDagExactlyAndWithTheMargin) {
     for (std::size_t c = 0; c < d.dag.clusters.size(); ++c) {
       const DagCluster& cluster = d.dag.clusters[c];
       const std::uint32_t g = cluster.coarser_group.value;
-      const StoredBound coarser = bound(h.group_spheres[g], h.group_errors[g]);
-      const StoredBound culling = bound(h.cluster_spheres[c], 0.0F);
+      const run::StoredBound coarser = bound(h.group_spheres[g], h.group_errors[g]);
+      const run::StoredBound culling = bound(h.cluster_spheres[c], 0.0F);
       if (!cluster.own_group.is_valid()) {
         EXPECT_TRUE(contains_exactly(coarser, culling));
-        EXPECT_TRUE(is_sphere_nested(coarser, culling));
+        EXPECT_TRUE(run::is_sphere_nested(coarser, culling));
         continue;
       }
       const std::uint32_t own = cluster.own_group.value;
-      const StoredBound finer = bound(h.group_spheres[own], h.group_errors[own]);
+      const run::StoredBound finer = bound(h.group_spheres[own], h.group_errors[own]);
       EXPECT_TRUE(contains_exactly(coarser, finer));
-      EXPECT_TRUE(is_nested(coarser, finer));
+      EXPECT_TRUE(run::is_nested(coarser, finer));
       EXPECT_TRUE(contains_exactly(finer, culling)) << "the sphere of a group holds what is made from it";
     }
     for (std::size_t g = 0; g < d.dag.groups.size(); ++g) {
@@ -90,14 +90,14 @@ TEST(Hierarchy, SpheresAndErrorsNestAlongTheDagExactlyAndWithTheMargin) {
 TEST(Hierarchy, NestingCheckFailsWhenARadiusOrErrorIsNudged) {
   const Hierarchy::Sphere inner{{0.3F, -7.0F, 2.0F}, 1.5F};
   const std::vector<Hierarchy::Sphere> all{inner, {{4.0F, 1.0F, 0.0F}, 0.25F}};
-  const StoredBound outer = bound(enclose_spheres(all), grow_error(0.0, 1.0F));
-  for (const Hierarchy::Sphere& s : all) EXPECT_TRUE(is_nested(outer, bound(s, 1.0F)));
-  StoredBound smaller = outer;
+  const run::StoredBound outer = bound(enclose_spheres(all), grow_error(0.0, 1.0F));
+  for (const Hierarchy::Sphere& s : all) EXPECT_TRUE(run::is_nested(outer, bound(s, 1.0F)));
+  run::StoredBound smaller = outer;
   smaller.radius *= 1.0F - 0x1p-20F;
-  EXPECT_FALSE(is_nested(smaller, bound(all[0], 1.0F)) && is_nested(smaller, bound(all[1], 1.0F)));
-  StoredBound less = outer;
+  EXPECT_FALSE(run::is_nested(smaller, bound(all[0], 1.0F)) && run::is_nested(smaller, bound(all[1], 1.0F)));
+  run::StoredBound less = outer;
   less.error = std::nextafter(1.0F, 2.0F);
-  EXPECT_FALSE(is_nested(less, bound(inner, 1.0F)));
+  EXPECT_FALSE(run::is_nested(less, bound(inner, 1.0F)));
 }
 
 TEST(Hierarchy, ErrorsGrowWhereTheyAreNotZero) {
@@ -145,7 +145,7 @@ TEST(Hierarchy, GroupSphereContainsAllGeometryBelowIt) {
 TEST(Hierarchy, CullingSphereIsTightAroundTheDecodedVertices) {
   RandomSource random(43);
   for (int i = 0; i < 400; ++i) {
-    PositionGrid grid;
+    format::PositionGrid grid;
     grid.log2 = std::vector<int>{-40, -20, 0, 10}[random.below(4)];
     grid.mantissa = 1 + 2 * random.below(4);
     LodDag dag;
@@ -249,15 +249,15 @@ TEST(Hierarchy, NormalConeIsNarrowForAFlatPatchAndNoneForAClosedOne) {
 TEST(Hierarchy, BvhHasEachGroupInOneLeafAndNestsItsChildren) {
   for (const RandomDag& d : make_dags(45)) {
     const Hierarchy h = build_hierarchy(d.dag, d.mesh);
-    const auto bound_of_node = [&](std::size_t n) { return bound_of(h.nodes[n]); };
+    const auto bound_of_node = [&](std::size_t n) { return run::bound_of(h.nodes[n]); };
     std::vector<int> parents(h.nodes.size(), 0), leaves(d.dag.groups.size(), 0);
     for (std::size_t n = 0; n < h.nodes.size(); ++n) {
       const format::NodeRecord& node = h.nodes[n];
       if (node.child_count == 0) {
         ASSERT_LT(node.first, leaves.size());
         ++leaves[node.first];
-        const StoredBound leaf = bound_of_node(n);
-        const StoredBound group = bound(h.group_spheres[node.first], h.group_errors[node.first]);
+        const run::StoredBound leaf = bound_of_node(n);
+        const run::StoredBound group = bound(h.group_spheres[node.first], h.group_errors[node.first]);
         EXPECT_EQ(std::memcmp(&leaf, &group, sizeof(leaf)), 0);
         continue;
       }
@@ -270,7 +270,7 @@ TEST(Hierarchy, BvhHasEachGroupInOneLeafAndNestsItsChildren) {
         ++parents[c];
         is_infinite |= h.nodes[c].error >= format::kInfiniteError;
         EXPECT_TRUE(contains_exactly(bound_of_node(n), bound_of_node(c)));
-        EXPECT_TRUE(is_nested(bound_of_node(n), bound_of_node(c)));
+        EXPECT_TRUE(run::is_nested(bound_of_node(n), bound_of_node(c)));
       }
       EXPECT_EQ(is_infinite, node.error >= format::kInfiniteError);
     }
@@ -306,4 +306,4 @@ TEST(Hierarchy, DoesNotDependOnTheNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::build

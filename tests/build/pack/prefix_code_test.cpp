@@ -10,7 +10,7 @@
 #include "build/pack/prefix_lengths.h"
 #include "support/random.h"
 
-namespace meshlode {
+namespace meshlode::build {
 namespace {
 
 double kraft(const std::vector<std::uint8_t>& lengths) {
@@ -21,11 +21,11 @@ double kraft(const std::vector<std::uint8_t>& lengths) {
 
 TEST(PrefixCode, FoldingIsUndoneForEveryBoundary) {
   for (const std::uint32_t value : {0U, 1U, 2U, 0xFFFFFFFFU, 0xFFFFFFFEU, 0x7FFFFFFFU, 0x80000000U}) {
-    EXPECT_EQ(unfold(fold(value)), value);
+    EXPECT_EQ(format::unfold(format::fold(value)), value);
   }
-  EXPECT_EQ(fold(0U), 0U);
-  EXPECT_EQ(fold(0xFFFFFFFFU), 1U);
-  EXPECT_EQ(fold(1U), 2U);
+  EXPECT_EQ(format::fold(0U), 0U);
+  EXPECT_EQ(format::fold(0xFFFFFFFFU), 1U);
+  EXPECT_EQ(format::fold(1U), 2U);
 }
 
 TEST(PrefixCode, LengthsAreCompleteWithinTheLimitAndBeatAFixedWidth) {
@@ -43,7 +43,7 @@ TEST(PrefixCode, LengthsAreCompleteWithinTheLimitAndBeatAFixedWidth) {
     EXPECT_EQ(kraft(lengths), 1.0);
     std::uint64_t bits = 0;
     for (std::size_t s = 0; s < counts.size(); ++s) {
-      EXPECT_LE(lengths[s], kMaxCodeBits);
+      EXPECT_LE(lengths[s], format::kMaxCodeBits);
       EXPECT_EQ(lengths[s] == 0, counts[s] == 0);
       bits += counts[s] * lengths[s];
     }
@@ -66,25 +66,25 @@ TEST(PrefixCode, NumbersOfEverySizeComeBack) {
       values.push_back((1U << k) + (1U << (k - 1)) - offset);
     }
   }
-  std::vector<std::uint64_t> counts(kValueSymbols);
-  for (const std::uint32_t v : values) ++counts[token_of(v).symbol];
+  std::vector<std::uint64_t> counts(format::kValueSymbols);
+  for (const std::uint32_t v : values) ++counts[format::token_of(v).symbol];
   const auto lengths = choose_code_lengths(counts);
   std::vector<std::uint16_t> codes(lengths.size());
-  ASSERT_TRUE(assign_codes(lengths, codes));
+  ASSERT_TRUE(format::assign_codes(lengths, codes));
   BitSink sink;
   for (const std::uint32_t v : values) {
-    const ValueToken token = token_of(v);
+    const format::ValueToken token = format::token_of(v);
     sink.put(codes[token.symbol], lengths[token.symbol]);
     sink.put(token.raw, token.raw_bits);
   }
   auto bytes = sink.finish();
   bytes.resize(bytes.size() + 16);
-  CodeTable table;
-  ASSERT_TRUE(fill_code_table(lengths, Meaning::kNumber, table));
+  format::CodeTable table;
+  ASSERT_TRUE(format::fill_code_table(lengths, format::Meaning::kNumber, table));
   std::uint64_t at = 0;
   for (const std::uint32_t v : values) {
-    std::uint64_t bits = load_bits(bytes.data(), at);
-    ASSERT_EQ(next_value(bits, at, table), v);
+    std::uint64_t bits = format::load_bits(bytes.data(), at);
+    ASSERT_EQ(format::next_value(bits, at, table), v);
   }
 }
 
@@ -92,43 +92,43 @@ TEST(PrefixCode, NumbersOfEverySizeComeBack) {
 TEST(PrefixCode, QuickTablesAgree) {
   test::Random random(11);
   for (int round = 0; round < 300; ++round) {
-    const Meaning meaning = round % 3 == 0 ? Meaning::kSymbol : round % 3 == 1 ? Meaning::kNumber : Meaning::kFolded;
-    std::vector<std::uint64_t> counts(meaning == Meaning::kSymbol ? 216U : kValueSymbols);
+    const format::Meaning meaning = round % 3 == 0 ? format::Meaning::kSymbol : round % 3 == 1 ? format::Meaning::kNumber : format::Meaning::kFolded;
+    std::vector<std::uint64_t> counts(meaning == format::Meaning::kSymbol ? 216U : format::kValueSymbols);
     const std::uint64_t used = round < 6 ? 1 : 1 + random.below(counts.size());
     for (std::uint64_t k = 0; k < used; ++k) counts[random.below(counts.size())] += 1 + random.below(1000);
     const auto lengths = choose_code_lengths(counts);
-    CodeTable slow;
-    QuickTable quick;
-    ASSERT_TRUE(fill_code_tables(lengths, meaning, slow, quick));
+    format::CodeTable slow;
+    format::QuickTable quick;
+    ASSERT_TRUE(format::fill_code_tables(lengths, meaning, slow, quick));
     std::size_t said = 0;
     for (std::uint64_t bits = 0; bits < quick.size(); ++bits) {
       if (quick[bits] == 0) continue;
       ++said;
       std::uint64_t rest = bits;
       std::uint64_t at = 0;
-      const std::uint32_t value = next_meant(rest, at, slow, meaning);
-      ASSERT_EQ(static_cast<std::uint32_t>(quick[bits] >> kQuickSizeBits), value) << "round " << round << ", bits " << bits;
-      ASSERT_EQ(static_cast<std::uint32_t>(quick[bits]) & ((1U << kQuickSizeBits) - 1U), at);
+      const std::uint32_t value = format::next_meant(rest, at, slow, meaning);
+      ASSERT_EQ(static_cast<std::uint32_t>(quick[bits] >> format::kQuickSizeBits), value) << "round " << round << ", bits " << bits;
+      ASSERT_EQ(static_cast<std::uint32_t>(quick[bits]) & ((1U << format::kQuickSizeBits) - 1U), at);
     }
-    if (meaning == Meaning::kSymbol) {
+    if (meaning == format::Meaning::kSymbol) {
       EXPECT_EQ(said, quick.size()) << "symbols are never longer";
     }
   }
 }
 
 TEST(PrefixCode, LengthsThatAreNoCodeAreRefused) {
-  CodeTable table;
-  std::vector<std::uint8_t> lengths(kValueSymbols, 0);
-  EXPECT_TRUE(fill_code_table(lengths, Meaning::kNumber, table)) << "nothing is coded";
+  format::CodeTable table;
+  std::vector<std::uint8_t> lengths(format::kValueSymbols, 0);
+  EXPECT_TRUE(format::fill_code_table(lengths, format::Meaning::kNumber, table)) << "nothing is coded";
   lengths[5] = 1;
-  EXPECT_TRUE(fill_code_table(lengths, Meaning::kNumber, table)) << "one symbol";
+  EXPECT_TRUE(format::fill_code_table(lengths, format::Meaning::kNumber, table)) << "one symbol";
   lengths[5] = 2;
-  EXPECT_FALSE(fill_code_table(lengths, Meaning::kNumber, table)) << "half of the codes mean nothing";
+  EXPECT_FALSE(format::fill_code_table(lengths, format::Meaning::kNumber, table)) << "half of the codes mean nothing";
   lengths[5] = lengths[6] = lengths[7] = 1;
-  EXPECT_FALSE(fill_code_table(lengths, Meaning::kNumber, table)) << "more codes than there are";
-  lengths[5] = kMaxCodeBits + 1;
-  EXPECT_FALSE(fill_code_table(lengths, Meaning::kNumber, table)) << "too long";
+  EXPECT_FALSE(format::fill_code_table(lengths, format::Meaning::kNumber, table)) << "more codes than there are";
+  lengths[5] = format::kMaxCodeBits + 1;
+  EXPECT_FALSE(format::fill_code_table(lengths, format::Meaning::kNumber, table)) << "too long";
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -9,7 +9,7 @@
 #include "support/random_page.h"
 #include "run/unpack/unpack_page.h"
 
-namespace meshlode {
+namespace meshlode::build {
 namespace {
 
 using format::Codec;
@@ -41,7 +41,7 @@ void expect_round_trip(const RandomPage& page, Codec codec) {
   format::PageRecord record = page.record;
   record.codec = codec;
   std::vector<std::uint32_t> out(page.words.size());
-  ASSERT_EQ(unpack_page(page.mesh, record, *stored, out), UnpackOutcome::kOk);
+  ASSERT_EQ(run::unpack_page(page.mesh, record, *stored, out), run::UnpackOutcome::kOk);
   EXPECT_EQ(out, page.words);
 }
 
@@ -50,7 +50,7 @@ TEST(Pack, EveryCodecGivesEveryShapeOfPageBack) {
     for (std::uint64_t round = 0; round < 4; ++round) {
       options.seed += 1000;
       options.max_field_bits = round < 3 ? 5 : 25;  // few bits shrink, many test the widths
-      const RandomPage page = make_random_page(options);
+      const RandomPage page = test::make_random_page(options);
       for (const Codec codec : {Codec::kLz4, Codec::kZstd, Codec::kStrips, Codec::kDraco}) {
         if (codec == Codec::kDraco && round == 3 && options.seed % 5 != 0) continue;  // its tables for wide noise are slow
         SCOPED_TRACE("seed " + std::to_string(options.seed) + ", codec " + std::to_string(static_cast<int>(codec)));
@@ -62,13 +62,13 @@ TEST(Pack, EveryCodecGivesEveryShapeOfPageBack) {
 
 TEST(Pack, ClustersOfOneTriangleAndOf256VerticesComeBack) {
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
-    expect_round_trip(make_random_page({.seed = seed, .cluster_count = 40, .max_triangles = 1, .max_field_bits = 4}), Codec::kStrips);
-    expect_round_trip(make_random_page({.seed = seed, .cluster_count = 3, .max_triangles = 256, .max_field_bits = 6}), Codec::kStrips);
+    expect_round_trip(test::make_random_page({.seed = seed, .cluster_count = 40, .max_triangles = 1, .max_field_bits = 4}), Codec::kStrips);
+    expect_round_trip(test::make_random_page({.seed = seed, .cluster_count = 3, .max_triangles = 256, .max_field_bits = 6}), Codec::kStrips);
   }
 }
 
 TEST(Pack, TheSamePageGivesTheSameBytes) {
-  const RandomPage page = make_random_page({.seed = 5, .max_field_bits = 5});
+  const RandomPage page = test::make_random_page({.seed = 5, .max_field_bits = 5});
   for (const Codec codec : {Codec::kLz4, Codec::kZstd, Codec::kStrips, Codec::kDraco}) {
     const auto first = store_page(page.mesh, bytes_of(page), codec);
     const auto second = store_page(page.mesh, bytes_of(page), codec);
@@ -78,7 +78,7 @@ TEST(Pack, TheSamePageGivesTheSameBytes) {
 }
 
 TEST(Pack, APageThatDoesNotShrinkIsStoredAsItIs) {
-  const RandomPage page = make_random_page({.seed = 9, .cluster_count = 1, .max_triangles = 1});
+  const RandomPage page = test::make_random_page({.seed = 9, .cluster_count = 1, .max_triangles = 1});
   const auto packed = pack_page(page.mesh, bytes_of(page), Codec::kZstd);
   ASSERT_TRUE(packed);
   EXPECT_EQ(packed->codec, Codec::kNone);
@@ -87,10 +87,10 @@ TEST(Pack, APageThatDoesNotShrinkIsStoredAsItIs) {
 
 /// Vertices that an earlier cluster has are named, not stored again.
 TEST(Pack, TwinsAreFound) {
-  RandomPage page = make_random_page({.seed = 3, .cluster_count = 12, .max_field_bits = 12});
+  RandomPage page = test::make_random_page({.seed = 3, .cluster_count = 12, .max_field_bits = 12});
   const auto model = model_page(page.mesh, page.words);
   ASSERT_TRUE(model);
-  EXPECT_GT(model->streams[kTwinStream].size(), 0U);
+  EXPECT_GT(model->streams[format::kTwinStream].size(), 0U);
 }
 
 /// On a strip over a plane the parallelogram is exact: all errors but those of the first vertices are zero.
@@ -124,7 +124,7 @@ TEST(Pack, ParallelogramsAreExactOnAPlane) {
   const auto model = model_page(page.mesh, page.words);
   ASSERT_TRUE(model);
   for (std::uint32_t field = 0; field < 3; ++field) {
-    const auto& errors = model->streams[kFieldStreams + field];
+    const auto& errors = model->streams[format::kFieldStreams + field];
     ASSERT_EQ(errors.size(), kVertices);
     for (std::size_t v = 3; v < errors.size(); ++v) EXPECT_EQ(errors[v], 0U) << field << " " << v;
   }
@@ -132,7 +132,7 @@ TEST(Pack, ParallelogramsAreExactOnAPlane) {
 
 /// Bytes that no writer makes have no model, rather than one that loses them.
 TEST(Pack, PagesWithGapsOrDirtyPaddingAreRefused) {
-  const RandomPage page = make_random_page({.seed = 21, .max_field_bits = 5});
+  const RandomPage page = test::make_random_page({.seed = 21, .max_field_bits = 5});
   ASSERT_TRUE(model_page(page.mesh, page.words));
   RandomPage longer = page;
   longer.words.push_back(0);
@@ -147,4 +147,4 @@ TEST(Pack, PagesWithGapsOrDirtyPaddingAreRefused) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::build

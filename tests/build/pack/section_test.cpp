@@ -5,7 +5,7 @@
 #include "build/pack/pack_section.h"
 #include "support/random.h"
 
-namespace meshlode {
+namespace meshlode::build {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
@@ -29,7 +29,7 @@ TEST(PackSection, TablesAndTextsComeBackAndShrink) {
       ASSERT_FALSE(packed.empty()) << record_bytes;
       EXPECT_LT(packed.size(), bytes.size());
       Bytes out(bytes.size());
-      ASSERT_TRUE(decode_section(packed, record_bytes, out));
+      ASSERT_TRUE(format::decode_section(packed, record_bytes, out));
       EXPECT_EQ(out, bytes);
     }
   }
@@ -53,18 +53,18 @@ TEST(PackSection, SoundnessIsKnownWithoutDecoding) {
     const Bytes bytes = record_bytes == 0 ? table(400, 8, 1) : table(400, record_bytes, 3);
     const Bytes packed = pack_section(bytes, record_bytes);
     ASSERT_FALSE(packed.empty());
-    EXPECT_TRUE(is_section_sound(packed, record_bytes, bytes.size()));
+    EXPECT_TRUE(format::is_section_sound(packed, record_bytes, bytes.size()));
     for (std::size_t size = 0; size < packed.size(); ++size) {
-      ASSERT_FALSE(is_section_sound(std::span(packed).first(size), record_bytes, bytes.size())) << size;
+      ASSERT_FALSE(format::is_section_sound(std::span(packed).first(size), record_bytes, bytes.size())) << size;
     }
     Bytes longer = packed;
     longer.push_back(0);
-    EXPECT_FALSE(is_section_sound(longer, record_bytes, bytes.size()));
-    EXPECT_FALSE(is_section_sound(packed, record_bytes, 0));
+    EXPECT_FALSE(format::is_section_sound(longer, record_bytes, bytes.size()));
+    EXPECT_FALSE(format::is_section_sound(packed, record_bytes, 0));
     // Eight records for each byte of a prefix code are the most that it can say.
-    EXPECT_FALSE(is_section_sound(packed, record_bytes, std::uint64_t{1} << 40U));
+    EXPECT_FALSE(format::is_section_sound(packed, record_bytes, std::uint64_t{1} << 40U));
     if (record_bytes != 0) {
-      EXPECT_FALSE(is_section_sound(packed, record_bytes, bytes.size() + 1));
+      EXPECT_FALSE(format::is_section_sound(packed, record_bytes, bytes.size() + 1));
     }
   }
 }
@@ -78,9 +78,9 @@ TEST(PackSection, WhatIsUnsoundDoesNotDecode) {
   for (int i = 0; i < 3000; ++i) {
     Bytes changed = packed;
     changed[random.below(changed.size())] = static_cast<std::uint8_t>(random.next());
-    if (is_section_sound(changed, 24, out.size())) continue;
+    if (format::is_section_sound(changed, 24, out.size())) continue;
     ++unsound;
-    EXPECT_FALSE(decode_section(changed, 24, out));
+    EXPECT_FALSE(format::decode_section(changed, 24, out));
   }
   EXPECT_GT(unsound, 20u);
 }
@@ -90,20 +90,20 @@ TEST(PackSection, BrokenSectionsAreRefused) {
   const Bytes packed = pack_section(bytes, 24);
   Bytes out(bytes.size());
   for (std::size_t size = 0; size < packed.size(); ++size) {
-    EXPECT_FALSE(decode_section(std::span(packed).first(size), 24, out)) << size;
+    EXPECT_FALSE(format::decode_section(std::span(packed).first(size), 24, out)) << size;
   }
   Bytes longer = packed;
   longer.push_back(0);
-  EXPECT_FALSE(decode_section(longer, 24, out));
-  EXPECT_FALSE(decode_section(packed, 24, std::span(out).first(out.size() - 1)));
+  EXPECT_FALSE(format::decode_section(longer, 24, out));
+  EXPECT_FALSE(format::decode_section(packed, 24, std::span(out).first(out.size() - 1)));
   for (std::size_t at = 0; at < packed.size(); ++at) {  // any answer but a crash
     for (std::uint32_t bit = 0; bit < 8; ++bit) {
       Bytes flipped = packed;
       flipped[at] = static_cast<std::uint8_t>(flipped[at] ^ 1U << bit);
-      (void)decode_section(flipped, 24, out);
+      (void)format::decode_section(flipped, 24, out);
     }
   }
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::build

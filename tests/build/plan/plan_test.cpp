@@ -5,17 +5,17 @@
 
 #include "scene/samples/samples.h"
 
-namespace meshlode {
+namespace meshlode::build {
 namespace {
 
-std::vector<SceneMaterial> one_material(std::uint32_t uv_sets_used) {
-  SceneMaterial material;
+std::vector<scene::SceneMaterial> one_material(std::uint32_t uv_sets_used) {
+  scene::SceneMaterial material;
   material.uv_sets_used = uv_sets_used;
   return {material};
 }
 
-SourceMesh textured_sphere() {
-  SourceMesh mesh = samples::as_mesh(samples::with_smooth_normals(samples::make_sphere(4)));
+scene::SourceMesh textured_sphere() {
+  scene::SourceMesh mesh = scene::as_mesh(scene::with_smooth_normals(scene::make_sphere(4)));
   mesh.primitives[0].material = MaterialId(0U);
   mesh.primitives[0].uvs[0].assign(mesh.primitives[0].positions.size(), Vec2f(0.5F));
   mesh.primitives[0].uvs[1].assign(mesh.primitives[0].positions.size(), Vec2f(0.25F));
@@ -43,8 +43,8 @@ TEST(Plan, KeepsEverythingWhenAskedTo) {
 
 /// What can be seen and is not kept is told from what nobody misses.
 TEST(Plan, TangentsAreALossOnlyWhereAMaterialShowsThem) {
-  SourceMesh mesh = textured_sphere();
-  std::vector<SceneMaterial> materials = one_material(1);
+  scene::SourceMesh mesh = textured_sphere();
+  std::vector<scene::SceneMaterial> materials = one_material(1);
   const auto loss_of = [&](AttributeChoice choice) {
     const MeshPlan plan = plan_mesh(mesh, materials, choice, "m");
     int losses = 0;
@@ -65,26 +65,26 @@ TEST(Plan, TangentsAreALossOnlyWhereAMaterialShowsThem) {
 }
 
 TEST(Plan, DerivesNormalsThatAreTheTrianglesOwn) {
-  const SourceMesh facets = samples::as_mesh(samples::with_split_normals(samples::make_sphere(4)));
+  const scene::SourceMesh facets = scene::as_mesh(scene::with_split_normals(scene::make_sphere(4)));
   const MeshPlan plan = plan_mesh(facets, {}, AttributeChoice::kAuto, "m");
   EXPECT_TRUE(plan.layout.flat_normal);
   EXPECT_FALSE(plan.layout.has_normal);
 }
 
 TEST(Plan, StoresNormalsIfASingleOneIsNotItsTrianglesOwn) {
-  SourceMesh facets = samples::as_mesh(samples::with_split_normals(samples::make_sphere(4)));
+  scene::SourceMesh facets = scene::as_mesh(scene::with_split_normals(scene::make_sphere(4)));
   Vec3f& normal = facets.primitives[0].normals[7];
   normal = glm::normalize(normal + Vec3f(0.3F, 0.1F, 0.0F));
   EXPECT_TRUE(plan_mesh(facets, {}, AttributeChoice::kAuto, "m").layout.has_normal);
 }
 
 TEST(Plan, MissingNormalsAreFlat) {
-  const MeshPlan plan = plan_mesh(samples::as_mesh(samples::make_sphere(2)), {}, AttributeChoice::kAuto, "m");
+  const MeshPlan plan = plan_mesh(scene::as_mesh(scene::make_sphere(2)), {}, AttributeChoice::kAuto, "m");
   EXPECT_TRUE(plan.layout.flat_normal);
 }
 
 TEST(Plan, LeavesOutWhiteColorsAndKeepsOthers) {
-  SourceMesh mesh = samples::as_mesh(samples::make_sphere(2));
+  scene::SourceMesh mesh = scene::as_mesh(scene::make_sphere(2));
   mesh.primitives[0].colors.assign(mesh.primitives[0].positions.size(), Vec4f(1.0F));
   EXPECT_FALSE(plan_mesh(mesh, {}, AttributeChoice::kAuto, "m").layout.has_color);
   mesh.primitives[0].colors[3].y = 0.5F;
@@ -92,4 +92,4 @@ TEST(Plan, LeavesOutWhiteColorsAndKeepsOthers) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -9,7 +9,7 @@
 
 #include "build/plan/image_size.h"
 
-namespace meshlode {
+namespace meshlode::build {
 namespace {
 
 std::vector<std::uint8_t> png_of(std::uint8_t width_high, std::uint8_t width_low, std::uint8_t height_low) {
@@ -56,28 +56,28 @@ TEST(ImageSize, RefusesWhatIsNeitherOrEndsEarly) {
   EXPECT_FALSE(read_image_size(std::vector<std::uint8_t>{0xFF, 0xD8, 0xFF, 0xE0, 0xFF, 0xFF, 0xFF, 0xC0}));
 }
 
-Scene scene_of(const std::string& materials) {
-  Scene scene;
-  SceneBlob small;
+scene::Scene scene_of(const std::string& materials) {
+  scene::Scene scene;
+  scene::SceneBlob small;
   small.bytes = png_of(0, 16, 8);
-  SceneBlob large;
+  scene::SceneBlob large;
   large.bytes = jpeg(0xC0);
-  SceneBlob unknown;
+  scene::SceneBlob unknown;
   unknown.bytes = {1, 2, 3};
   scene.blobs = {small, large, unknown};
   scene.document = R"({"images":[{"blob":0},{"blob":1},{"blob":2},{}],
     "textures":[{"source":0},{"source":1},{"source":2},{"source":3},{}], "materials":[)" + materials + "]}";
-  SceneMaterial material;
+  scene::SceneMaterial material;
   material.source_index = 0;
   scene.materials = {material};
-  SourceMesh mesh;
+  scene::SourceMesh mesh;
   mesh.primitives.emplace_back().material = MaterialId{0U};
   scene.meshes = {mesh};
   return scene;
 }
 
-std::array<double, kMaxUvSets> texels_of(const std::string& materials) {
-  const Scene scene = scene_of(materials);
+std::array<double, scene::kMaxUvSets> texels_of(const std::string& materials) {
+  const scene::Scene scene = scene_of(materials);
   return texels_per_unit(scene, scene.meshes[0]);
 }
 
@@ -104,10 +104,10 @@ TEST(TexelSizes, WhatCannotBeKnownIsZero) {
         R"({"normalTexture":{"index":0,"texCoord":9}})", R"({"normalTexture":{"index":0,"texCoord":"x"}})"}) {
     for (const double texels : texels_of(materials)) EXPECT_EQ(texels, 0.0) << materials;
   }
-  Scene scene = scene_of("{}");
+  scene::Scene scene = scene_of("{}");
   scene.document = "no JSON";
   EXPECT_EQ(texels_per_unit(scene, scene.meshes[0])[0], 0.0);
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -10,18 +10,18 @@
 
 #include "scene/samples/samples.h"
 
-namespace meshlode {
+namespace meshlode::build {
 namespace {
 
-PreparedMesh prepare(const Primitive& shape, const PrepareOptions& options = {}, const AttributeLayout& layout = {}) {
-  Result<PreparedMesh> mesh = prepare_mesh(samples::as_mesh(shape), layout, options);
+PreparedMesh prepare(const scene::Primitive& shape, const PrepareOptions& options = {}, const AttributeLayout& layout = {}) {
+  Result<PreparedMesh> mesh = prepare_mesh(scene::as_mesh(shape), layout, options);
   EXPECT_TRUE(mesh.ok()) << (mesh.ok() ? "" : mesh.error().message());
   return mesh.ok() ? std::move(*mesh) : PreparedMesh{};
 }
 
 /// The same shape with vertices and triangles in another order, and corners rotated.
-Primitive shuffled(const Primitive& shape) {
-  Primitive out;
+scene::Primitive shuffled(const scene::Primitive& shape) {
+  scene::Primitive out;
   const std::size_t n = shape.positions.size();
   std::vector<std::uint32_t> to(n);
   std::size_t stride = 7919;
@@ -36,7 +36,7 @@ Primitive shuffled(const Primitive& shape) {
 }
 
 TEST(Prepare, RenumberingTheInputChangesNothing) {
-  const Primitive shape = samples::make_torus(40, 20);
+  const scene::Primitive shape = scene::make_torus(40, 20);
   const PreparedMesh a = prepare(shape);
   const PreparedMesh b = prepare(shuffled(shape));
   EXPECT_EQ(a.positions, b.positions);
@@ -45,22 +45,22 @@ TEST(Prepare, RenumberingTheInputChangesNothing) {
 }
 
 TEST(Prepare, WeldsVerticesThatAreOneInSpace) {
-  const Primitive shared = samples::make_sphere(6);
-  const PreparedMesh mesh = prepare(samples::with_split_normals(shared));
+  const scene::Primitive shared = scene::make_sphere(6);
+  const PreparedMesh mesh = prepare(scene::with_split_normals(shared));
   EXPECT_EQ(mesh.positions.size(), shared.positions.size());
 }
 
 TEST(Prepare, KeepsWedgesApartWhereAttributesDiffer) {
   AttributeLayout layout;
   layout.has_normal = true;
-  const Primitive shared = samples::make_sphere(6);
-  const PreparedMesh mesh = prepare(samples::with_split_normals(shared), {}, layout);
+  const scene::Primitive shared = scene::make_sphere(6);
+  const PreparedMesh mesh = prepare(scene::with_split_normals(shared), {}, layout);
   EXPECT_EQ(mesh.positions.size(), shared.positions.size());
   EXPECT_GT(mesh.wedge_position.size(), 2 * mesh.positions.size());
 }
 
 TEST(Prepare, CountsDuplicatesByWindingAndKeepsTheRest) {
-  Primitive shape;
+  scene::Primitive shape;
   shape.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   shape.indices = {0, 1, 2, 1, 2, 0, 0, 2, 1};  // the same turned, and the other side
   const PreparedMesh mesh = prepare(shape);
@@ -70,7 +70,7 @@ TEST(Prepare, CountsDuplicatesByWindingAndKeepsTheRest) {
 }
 
 TEST(Prepare, CountsTrianglesWithoutAreaAndKeepsThoseAlongAnEdge) {
-  Primitive shape;
+  scene::Primitive shape;
   shape.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.5, 0, 0}, {0, 0, 0}, {2, 0, 0}};
   shape.indices = {0, 1, 2, 0, 4, 1, 1, 1, 2, 0, 3, 1, 0, 1, 5};
   const PreparedMesh mesh = prepare(shape);
@@ -81,7 +81,7 @@ TEST(Prepare, CountsTrianglesWithoutAreaAndKeepsThoseAlongAnEdge) {
 }
 
 TEST(Prepare, ATriangleWithoutAreaFarAwayDoesNotCoarsenTheGrid) {
-  Primitive shape = samples::make_sphere(5);
+  scene::Primitive shape = scene::make_sphere(5);
   const PreparedMesh before = prepare(shape);
   shape.positions.push_back({1e300, 1e300, 0});
   shape.positions.push_back({1e300, 1e300, 0});
@@ -95,8 +95,8 @@ TEST(Prepare, ATriangleWithoutAreaFarAwayDoesNotCoarsenTheGrid) {
 }
 
 /// A sheet from which a needle stands out: 1 long, and narrower than a cell of the grid, beside other needles' corners.
-Primitive sheet_with_needles(int count) {
-  Primitive shape = samples::make_plane(8);
+scene::Primitive sheet_with_needles(int count) {
+  scene::Primitive shape = scene::make_plane(8);
   const auto at = [&](double x, double y, double z) {
     shape.positions.emplace_back(x, y, z);
     return static_cast<std::uint32_t>(shape.positions.size() - 1);
@@ -112,7 +112,7 @@ Primitive sheet_with_needles(int count) {
 }
 
 TEST(Prepare, NeedlesNarrowerThanACellKeepTheirTips) {
-  const Primitive shape = sheet_with_needles(20);
+  const scene::Primitive shape = sheet_with_needles(20);
   const PreparedMesh mesh = prepare(shape);
   ASSERT_GT(mesh.grid.step(), 3e-6) << "or the test says nothing";
   EXPECT_LE(mesh.grid_collapsed, 6U) << "where no corner has a free cell within the grid's bound";
@@ -130,7 +130,7 @@ TEST(Prepare, NeedlesOfMeshesThatAbutStayOnTheirGridPoints) {
 }
 
 TEST(Prepare, NegativeZeroIsZero) {
-  Primitive shape;
+  scene::Primitive shape;
   shape.positions = {{0.0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-0.0, 0, 0}, {0, -1, 0}};
   shape.indices = {0, 1, 2, 3, 4, 1};
   EXPECT_EQ(prepare(shape).positions.size(), 4U);
@@ -138,7 +138,7 @@ TEST(Prepare, NegativeZeroIsZero) {
 
 TEST(Prepare, MovesNoVertexFartherThanItSays) {
   for (const double scale : {1e-6, 1.0, 1e9}) {
-    const Primitive shape = samples::scaled(samples::make_sphere(9), scale);
+    const scene::Primitive shape = scene::scaled(scene::make_sphere(9), scale);
     const PreparedMesh mesh = prepare(shape);
     EXPECT_LE(mesh.level0_deviation, 2.5e-5 * mesh.diagonal * (1 + 1e-12));
     EXPECT_GT(mesh.level0_deviation, 0.0);
@@ -153,7 +153,7 @@ TEST(Prepare, MovesNoVertexFartherThanItSays) {
 }
 
 TEST(Prepare, KeepsTheFeaturesOfAMeshFarAway) {
-  const Primitive shape = samples::make_far_plane(32);  // bumps of 1e-3, a million units out
+  const scene::Primitive shape = scene::make_far_plane(32);  // bumps of 1e-3, a million units out
   const PreparedMesh mesh = prepare(shape);
   EXPECT_EQ(mesh.positions.size(), 33U * 33U);
   EXPECT_LT(mesh.level0_deviation, 1e-4);
@@ -164,8 +164,8 @@ TEST(Prepare, MeshesOfOneStepAbut) {
   // Two boxes of a kit that share a face at x = 1: its vertices have the same places in object space, to the bit.
   PrepareOptions options;
   options.grid_step = 0.01;
-  const Primitive left = samples::make_cube(4, 1.0);
-  Primitive right = left;
+  const scene::Primitive left = scene::make_cube(4, 1.0);
+  scene::Primitive right = left;
   for (Vec3d& p : right.positions) p.x += 2.0;
   const auto face = [](const PreparedMesh& mesh) {
     std::vector<std::array<double, 3>> points;
@@ -184,21 +184,21 @@ TEST(Prepare, MeshesOfOneStepAbut) {
 TEST(Prepare, RefusesAGridThatNeedsMoreThan24Bits) {
   PrepareOptions options;
   options.grid_step = 1e-9;
-  const auto mesh = prepare_mesh(samples::as_mesh(samples::make_cube(2)), {}, options);
+  const auto mesh = prepare_mesh(scene::as_mesh(scene::make_cube(2)), {}, options);
   ASSERT_FALSE(mesh.ok());
   EXPECT_EQ(mesh.error().code, ErrorCode::kUnsupported);
 }
 
 TEST(Prepare, RefusesPositionsThatAreNotFinite) {
-  Primitive shape = samples::make_cube(2);
+  scene::Primitive shape = scene::make_cube(2);
   shape.positions[3].y = std::numeric_limits<double>::quiet_NaN();
-  const auto mesh = prepare_mesh(samples::as_mesh(shape), {}, {});
+  const auto mesh = prepare_mesh(scene::as_mesh(shape), {}, {});
   ASSERT_FALSE(mesh.ok());
   EXPECT_EQ(mesh.error().code, ErrorCode::kInvalid);
 }
 
 TEST(Prepare, StrayVerticesDoNotCoarsenTheGrid) {
-  Primitive shape = samples::make_sphere(5);
+  scene::Primitive shape = scene::make_sphere(5);
   const PreparedMesh before = prepare(shape);
   shape.positions.push_back({1e12, 0, 0});
   const PreparedMesh after = prepare(shape);
@@ -207,8 +207,8 @@ TEST(Prepare, StrayVerticesDoNotCoarsenTheGrid) {
 }
 
 TEST(Prepare, AnEmptyMeshAndASinglePointAreFine) {
-  EXPECT_TRUE(prepare(Primitive{}).triangles.empty());
-  Primitive point;
+  EXPECT_TRUE(prepare(scene::Primitive{}).triangles.empty());
+  scene::Primitive point;
   point.positions = {{1, 2, 3}};
   point.indices = {0, 0, 0};
   const PreparedMesh mesh = prepare(point);
@@ -217,9 +217,9 @@ TEST(Prepare, AnEmptyMeshAndASinglePointAreFine) {
 }
 
 TEST(Prepare, CountsPiecesByWhatTouches) {
-  EXPECT_EQ(prepare(samples::make_sphere(4)).piece_count, 1U);
-  EXPECT_EQ(prepare(samples::make_box_soup(37)).piece_count, 37U);
-  EXPECT_EQ(prepare(samples::make_double_cone(12)).piece_count, 1U) << "two cones that share their tip";
+  EXPECT_EQ(prepare(scene::make_sphere(4)).piece_count, 1U);
+  EXPECT_EQ(prepare(scene::make_box_soup(37)).piece_count, 37U);
+  EXPECT_EQ(prepare(scene::make_double_cone(12)).piece_count, 1U) << "two cones that share their tip";
 }
 
 TEST(ChooseGrid, AGivenStepIsASmallOddMantissa) {
@@ -252,7 +252,7 @@ TEST(Prepare, NoVertexMovesFartherThanThePositionError) {
   for (const double error : {0.05, 0.001}) {
     PrepareOptions options;
     options.position_error = error;
-    const PreparedMesh mesh = prepare(samples::make_sphere(16), options);
+    const PreparedMesh mesh = prepare(scene::make_sphere(16), options);
     EXPECT_LE(mesh.level0_deviation, error);
     EXPECT_GT(mesh.level0_deviation, 0.2 * error) << "the budget is used";
   }
@@ -262,10 +262,10 @@ TEST(ChooseGrid, HoldsMeshesOfAnySize) {
   for (const double scale : {1e-30, 1e-6, 1.0, 1e9, 1e30}) {
     const auto grid = choose_grid(scale, 2 * scale, 0.0, {});
     ASSERT_TRUE(grid.ok());
-    EXPECT_LT(scale / grid->step(), kMaxGridCoordinate);
+    EXPECT_LT(scale / grid->step(), format::kMaxGridCoordinate);
     EXPECT_LE(grid->step() * std::sqrt(3.0) / 2.0, 2.5e-5 * 2 * scale);
   }
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -14,7 +14,7 @@
 #include "support/random.h"
 #include "judge/verify/drawn_triangles.h"
 
-namespace meshlode {
+namespace meshlode::build {
 namespace {
 
 using test::Random;
@@ -22,7 +22,7 @@ using test::Random;
 void expect_collinear(const Vec3d& a, const Vec3d& b, const Vec3d& c, bool expected) {
   for (const auto& [p, q, r] : {std::array{a, b, c}, std::array{c, a, b}, std::array{b, a, c}}) {
     EXPECT_EQ(are_collinear(p, q, r), expected) << "builder";
-    EXPECT_EQ(!has_area(p, q, r), expected) << "judge";
+    EXPECT_EQ(!judge::has_area(p, q, r), expected) << "judge";
   }
 }
 
@@ -70,7 +70,7 @@ TEST(ZeroArea, AgreesWithIntegers) {
       return Vec3d(static_cast<double>(p[i][0]), static_cast<double>(p[i][1]), static_cast<double>(p[i][2])) * unit;
     };
     ASSERT_EQ(are_collinear(at(0), at(1), at(2)), is_line) << "round " << round;
-    ASSERT_EQ(has_area(at(0), at(1), at(2)), !is_line) << "round " << round;
+    ASSERT_EQ(judge::has_area(at(0), at(1), at(2)), !is_line) << "round " << round;
   }
   EXPECT_GT(lines, 2000);
   EXPECT_LT(lines, 18000);
@@ -86,7 +86,7 @@ struct Shape {
     for (std::size_t i = 0; i < triangles.size(); i += 3) {
       corners.push_back({positions[triangles[i]], positions[triangles[i + 1]], positions[triangles[i + 2]]});
     }
-    return find_drawn(corners);
+    return judge::find_drawn(corners);
   }
   void expect_drawn(const std::vector<std::uint8_t>& expected) const {
     EXPECT_EQ(drawn(), expected) << "judge";
@@ -135,4 +135,4 @@ TEST(ZeroArea, BuilderAndJudgeAgreeOnLongChainsAndSoups) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -15,7 +15,7 @@
 #include "support/border_chain.h"
 #include "support/open_surface.h"
 
-namespace meshlode {
+namespace meshlode::build {
 namespace {
 
 using test::IntegerMesh;
@@ -40,7 +40,7 @@ Triangles triangles_of(const Surface& surface) {
 
 Chain border_of(const Triangles& triangles) {
   Chain chain;
-  for (const auto& t : triangles) add_triangle(chain, t);
+  for (const auto& t : triangles) testing_support::add_triangle(chain, t);
   return chain;
 }
 
@@ -115,7 +115,7 @@ SimplifyInput group_of(const IntegerMesh& mesh, Random& random) {
   std::map<Point, std::uint32_t> first;
   std::vector<std::uint32_t> name;
   for (std::uint32_t p = 0; p < mesh.positions.size(); ++p)
-    name.push_back(first.emplace(point(mesh.positions[p]), p).first->second);
+    name.push_back(first.emplace(testing_support::point(mesh.positions[p]), p).first->second);
   input.is_locked.assign(mesh.positions.size(), 0);
   for (std::uint32_t p = 0; p < mesh.positions.size(); ++p) {
     input.wedge_position.push_back(p);
@@ -149,7 +149,7 @@ std::string fault_of(const SimplifyInput& input, const SimplifyResult& result) {
   if (before == after) return {};
   std::set<Point> locked;
   for (std::size_t p = 0; p < input.positions.size(); ++p) {
-    if (input.is_locked[p] != 0) locked.insert(point(input.positions[p]));
+    if (input.is_locked[p] != 0) locked.insert(testing_support::point(input.positions[p]));
   }
   for (const auto& [edge, net] : before) {
     if (locked.count(edge.first) == 0 || locked.count(edge.second) == 0) continue;
@@ -175,7 +175,7 @@ TEST(OpenBorder, NoCollapseOpensAHoleOrTakesASharedEdge) {
   int reduced = 0;
   for (std::uint64_t seed = 1; seed <= 1500; ++seed) {
     Random random(seed);
-    const SimplifyInput input = group_of(make_open_surface(random_surface_options(random, 10), random), random);
+    const SimplifyInput input = group_of(test::make_open_surface(test::random_surface_options(random, 10), random), random);
     SimplifyOptions options;
     options.target_triangles = static_cast<std::uint32_t>(input.triangles.size() / (1 + random.below(12)));
     options.may_relax_topology = random.below(4) != 0;
@@ -190,4 +190,4 @@ TEST(OpenBorder, NoCollapseOpensAHoleOrTakesASharedEdge) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -12,7 +12,7 @@
 #include "build/simplify/quadric.h"
 #include "support/border_chain.h"
 
-namespace meshlode {
+namespace meshlode::build {
 namespace {
 
 using testing_support::add_triangle;
@@ -34,8 +34,8 @@ SimplifyInput as_input(const PreparedMesh& mesh) {
   return input;
 }
 
-PreparedMesh prepare(const Primitive& shape, const AttributeLayout& layout = {}) {
-  return *prepare_mesh(samples::as_mesh(shape), layout, {});
+PreparedMesh prepare(const scene::Primitive& shape, const AttributeLayout& layout = {}) {
+  return *prepare_mesh(scene::as_mesh(shape), layout, {});
 }
 
 template <class Surface>
@@ -99,7 +99,7 @@ TEST(WedgeQuadric, ALinearAttributeIsReproducedWithoutError) {
 }
 
 TEST(Simplify, AFlatPatchGoesDownToTwoTrianglesWithoutError) {
-  SimplifyInput input = as_input(prepare(samples::make_plane(16)));
+  SimplifyInput input = as_input(prepare(scene::make_plane(16)));
   SimplifyOptions options;
   options.target_triangles = 2;
   const SimplifyResult result = simplify_group(input, options);
@@ -114,7 +114,7 @@ TEST(Simplify, AFlatPatchGoesDownToTwoTrianglesWithoutError) {
 }
 
 TEST(Simplify, ASphereStaysNearTheSphere) {
-  SimplifyInput input = as_input(prepare(samples::make_sphere(20)));  // 4,800 triangles
+  SimplifyInput input = as_input(prepare(scene::make_sphere(20)));  // 4,800 triangles
   SimplifyOptions options;
   options.target_triangles = 300;
   const SimplifyResult result = simplify_group(input, options);
@@ -130,12 +130,12 @@ TEST(Simplify, ASphereStaysNearTheSphere) {
 /// I6 by construction: whatever is locked, however hard the shape, the border between locked vertices is kept exactly
 /// and a closed surface stays closed.
 TEST(Simplify, TheBorderOfALockedPatchIsKeptExactly) {
-  const Primitive shapes[] = {samples::make_sphere(12),       samples::make_plane(20),        samples::make_three_sheets(12),
-                              samples::make_double_cone(80),  samples::make_slivers(300),     samples::make_moebius(60, 6),
-                              samples::make_box_soup(40),     samples::make_duplicates(10),   samples::make_zero_areas(10),
-                              samples::make_blade(16),        samples::make_loose_pieces(90), samples::make_torus(24, 12)};
+  const scene::Primitive shapes[] = {scene::make_sphere(12),       scene::make_plane(20),        scene::make_three_sheets(12),
+                              scene::make_double_cone(80),  scene::make_slivers(300),     scene::make_moebius(60, 6),
+                              scene::make_box_soup(40),     scene::make_duplicates(10),   scene::make_zero_areas(10),
+                              scene::make_blade(16),        scene::make_loose_pieces(90), scene::make_torus(24, 12)};
   std::uint64_t random = 42;
-  for (const Primitive& shape : shapes) {
+  for (const scene::Primitive& shape : shapes) {
     for (int trial = 0; trial < 4; ++trial) {
       SimplifyInput input = as_input(prepare(shape));
       // Take a random half space of the triangles and lock its whole border.
@@ -162,7 +162,7 @@ TEST(Simplify, TheBorderOfALockedPatchIsKeptExactly) {
         locked.insert(edge.second);
       }
       for (std::size_t p = 0; p < input.positions.size(); ++p) {
-        input.is_locked[p] = locked.count(point(input.positions[p])) != 0 ? 1 : 0;
+        input.is_locked[p] = locked.count(testing_support::point(input.positions[p])) != 0 ? 1 : 0;
       }
       for (const bool relaxed : {false, true}) {
         SimplifyOptions options;
@@ -179,7 +179,7 @@ TEST(Simplify, TheBorderOfALockedPatchIsKeptExactly) {
 TEST(Simplify, LockedVerticesKeepTheirAttributesBitForBit) {
   AttributeLayout layout;
   layout.has_normal = true;
-  SimplifyInput input = as_input(prepare(samples::with_smooth_normals(samples::make_plane(12)), layout));
+  SimplifyInput input = as_input(prepare(scene::with_smooth_normals(scene::make_plane(12)), layout));
   std::set<std::array<float, 6>> locked;
   for (std::size_t p = 0; p < input.positions.size(); ++p) input.is_locked[p] = p % 5 == 0 ? 1 : 0;
   // Give each wedge a normal of its own so that a mix-up would show.
@@ -202,7 +202,7 @@ TEST(Simplify, LockedVerticesKeepTheirAttributesBitForBit) {
 }
 
 TEST(Simplify, LinearTextureCoordinatesStayExact) {
-  Primitive plane = samples::make_plane(16);
+  scene::Primitive plane = scene::make_plane(16);
   for (const Vec3d& p : plane.positions) plane.uvs[0].emplace_back(float(0.5 + 0.25 * p.x), float(0.5 - 0.4 * p.z));
   AttributeLayout layout;
   layout.uv_set_count = 1;
@@ -217,8 +217,8 @@ TEST(Simplify, LinearTextureCoordinatesStayExact) {
 }
 
 /// A shape whose every corner has texture coordinates of its own.
-Primitive torn_apart(const Primitive& shape) {
-  Primitive out;
+scene::Primitive torn_apart(const scene::Primitive& shape) {
+  scene::Primitive out;
   std::uint64_t state = 1;
   for (const std::uint32_t v : shape.indices) {
     out.indices.push_back(static_cast<std::uint32_t>(out.positions.size()));
@@ -230,7 +230,7 @@ Primitive torn_apart(const Primitive& shape) {
   return out;
 }
 
-double seconds_to_halve(const Primitive& shape) {
+double seconds_to_halve(const scene::Primitive& shape) {
   AttributeLayout layout;
   layout.uv_set_count = 1;
   const SimplifyInput input = as_input(prepare(torn_apart(shape), layout));
@@ -243,7 +243,7 @@ double seconds_to_halve(const Primitive& shape) {
 // A hub with a wedge for each of its triangles: what an edge at it costs grows with them, not with their square. With the
 // square a wheel of 2,000 took a thousand times as long as a plane of 2,000.
 TEST(Simplify, AHubOfManyWedgesIsNoTrap) {
-  Primitive wheel;
+  scene::Primitive wheel;
   const std::uint32_t n = 2048;
   wheel.positions.emplace_back(0.0, 0.3, 0.0);
   for (std::uint32_t i = 0; i < n; ++i) {
@@ -251,14 +251,14 @@ TEST(Simplify, AHubOfManyWedgesIsNoTrap) {
     wheel.positions.emplace_back(std::cos(angle), 0.0, std::sin(angle));
     for (const std::uint32_t v : {0U, 1 + (i + 1) % n, 1 + i}) wheel.indices.push_back(v);
   }
-  const double plane = seconds_to_halve(samples::make_plane(32));  // as many triangles
+  const double plane = seconds_to_halve(scene::make_plane(32));  // as many triangles
   EXPECT_LT(seconds_to_halve(wheel), 300.0 * std::max(plane, 0.01));
 }
 
 TEST(Simplify, SeamsStayWhereTheyAre) {
   // Two charts side by side, cut at x = 0: no vertex of either may cross, and the seam's vertices stay on it.
-  Primitive plane = samples::make_plane(16);
-  Primitive cut;
+  scene::Primitive plane = scene::make_plane(16);
+  scene::Primitive cut;
   for (std::size_t i = 0; i < plane.indices.size(); i += 3) {
     double x = 0.0;
     for (std::size_t k = 0; k < 3; ++k) x += plane.positions[plane.indices[i + k]].x;
@@ -292,14 +292,14 @@ TEST(Simplify, SeamsStayWhereTheyAre) {
 TEST(Simplify, CreasesOfSplitNormalsDoNotStopIt) {
   AttributeLayout layout;
   layout.has_normal = true;
-  SimplifyInput input = as_input(prepare(samples::with_split_normals(samples::make_sphere(16)), layout));
+  SimplifyInput input = as_input(prepare(scene::with_split_normals(scene::make_sphere(16)), layout));
   const SimplifyResult result = simplify_group(input, half_of(input));
   EXPECT_LE(result.triangles.size(), input.triangles.size() / 2);
   EXPECT_TRUE(border_of(result).empty());
 }
 
 TEST(Simplify, EverythingLockedIsLeftAloneAndSaysSo) {
-  SimplifyInput input = as_input(prepare(samples::make_sphere(6)));
+  SimplifyInput input = as_input(prepare(scene::make_sphere(6)));
   input.is_locked.assign(input.is_locked.size(), 1);
   const SimplifyResult result = simplify_group(input, half_of(input));
   EXPECT_EQ(result.triangles.size(), input.triangles.size());
@@ -361,11 +361,11 @@ TEST(Simplify, LoosePiecesThatLeaveNoRoomAreTheReason) {
 }
 
 TEST(Simplify, ScaleChangesNothing) {
-  const Primitive shape = samples::make_torus(24, 12);
+  const scene::Primitive shape = scene::make_torus(24, 12);
   SimplifyInput reference = as_input(prepare(shape));
   const SimplifyResult expected = simplify_group(reference, half_of(reference));
   for (const int exponent : {-40, 30}) {
-    SimplifyInput input = as_input(prepare(samples::scaled(shape, std::ldexp(1.0, exponent))));
+    SimplifyInput input = as_input(prepare(scene::scaled(shape, std::ldexp(1.0, exponent))));
     const SimplifyResult result = simplify_group(input, half_of(input));
     EXPECT_EQ(result.positions, expected.positions);
     EXPECT_DOUBLE_EQ(result.quadric_error, std::ldexp(expected.quadric_error, exponent));
@@ -386,4 +386,4 @@ TEST(Simplify, NothingButDegenerateTrianglesIsFine) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::build

@@ -10,7 +10,7 @@
 
 #include "support/random.h"
 
-namespace meshlode {
+namespace meshlode::build {
 namespace {
 
 Mat4d with_linear_part(const Mat3d& linear) {
@@ -102,4 +102,4 @@ TEST(InstanceScale, ThinIsNotFlat) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::build

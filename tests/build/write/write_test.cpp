@@ -15,13 +15,13 @@
 #include "support/sample_asset.h"
 #include "run/unpack/content_hash.h"
 
-namespace meshlode {
+namespace meshlode::build {
 namespace {
 
 constexpr format::Codec kCodecs[] = {format::Codec::kNone, format::Codec::kLz4, format::Codec::kZstd,
                                      format::Codec::kStrips, format::Codec::kDraco};
 
-WriteInput patch_input(const Scene& scene) {
+WriteInput patch_input(const scene::Scene& scene) {
   const test::SampleMesh sample = test::sample_patch();
   WriteInput input;
   input.meshes.push_back(*encode_mesh(sample.mesh, sample.dag, sample.hierarchy, {}));
@@ -31,8 +31,8 @@ WriteInput patch_input(const Scene& scene) {
   return input;
 }
 
-Scene one_instance_scene() {
-  Scene scene = test::sample_scene();
+scene::Scene one_instance_scene() {
+  scene::Scene scene = test::sample_scene();
   scene.instances.resize(1);
   return scene;
 }
@@ -44,9 +44,9 @@ Hash128 content_hash(const std::vector<std::uint8_t>& bytes) {
 }
 
 TEST(Write, CarriesTheSceneThrough) {
-  const Scene scene = test::sample_scene();
+  const scene::Scene scene = test::sample_scene();
   for (const format::Codec codec : kCodecs) {
-    const auto asset = Asset::from_vector(test::sample_asset_bytes(codec));
+    const auto asset = run::Asset::from_vector(test::sample_asset_bytes(codec));
     ASSERT_TRUE(asset.ok()) << asset.error().message();
     EXPECT_EQ(asset->scene_json(), scene.document);
     EXPECT_EQ(asset->meta_json(), R"({"source":{"file":"sample.glb"},"settings":{}})");
@@ -81,7 +81,7 @@ TEST(Write, CarriesTheSceneThrough) {
 }
 
 TEST(Write, StoresEqualStringsOnce) {
-  const auto asset = Asset::from_vector(test::sample_asset_bytes());
+  const auto asset = run::Asset::from_vector(test::sample_asset_bytes());
   ASSERT_TRUE(asset.ok());
   EXPECT_EQ(asset->blobs()[0].name.offset, asset->blobs()[1].name.offset);
 }
@@ -103,32 +103,32 @@ TEST(Write, ContentHashKnowsTheContentAndNotTheCodec) {
   for (const format::Codec codec : kCodecs) {
     const auto bytes = test::sample_asset_bytes(codec);
     EXPECT_EQ(content_hash(bytes), content_hash(plain));
-    const auto asset = Asset::from_vector(bytes);
+    const auto asset = run::Asset::from_vector(bytes);
     ASSERT_TRUE(asset.ok()) << asset.error().message();
-    const auto again = hash_asset_content(*asset);
+    const auto again = run::hash_asset_content(*asset);
     ASSERT_TRUE(again.ok()) << again.error().message();
     EXPECT_EQ(*again, content_hash(bytes)) << "reader and writer agree on the definition";
   }
 }
 
 TEST(Write, ContentHashSeesEveryPartOfTheContent) {
-  const Scene base = one_instance_scene();
+  const scene::Scene base = one_instance_scene();
   const Hash128 hash = content_hash(*write_asset(patch_input(base)));
   {
     WriteInput input = patch_input(base);
     input.meta_json = R"({"settings":{"grid":"auto"}})";
     EXPECT_EQ(content_hash(*write_asset(std::move(input))), hash) << "META is about the making, not the content";
   }
-  const auto changed = [&](void (*change)(Scene&)) {
-    Scene scene = base;
+  const auto changed = [&](void (*change)(scene::Scene&)) {
+    scene::Scene scene = base;
     change(scene);
     return content_hash(*write_asset(patch_input(scene)));
   };
-  EXPECT_NE(changed([](Scene& s) { s.document = "{}"; }), hash);
-  EXPECT_NE(changed([](Scene& s) { s.materials[1].alpha_cutoff = 0.75F; }), hash);
-  EXPECT_NE(changed([](Scene& s) { s.instances[0].name = "another"; }), hash);
-  EXPECT_NE(changed([](Scene& s) { s.instances[0].transform[3][0] += 1.0; }), hash);
-  EXPECT_NE(changed([](Scene& s) { s.blobs[0].bytes[3] ^= 1U; }), hash);
+  EXPECT_NE(changed([](scene::Scene& s) { s.document = "{}"; }), hash);
+  EXPECT_NE(changed([](scene::Scene& s) { s.materials[1].alpha_cutoff = 0.75F; }), hash);
+  EXPECT_NE(changed([](scene::Scene& s) { s.instances[0].name = "another"; }), hash);
+  EXPECT_NE(changed([](scene::Scene& s) { s.instances[0].transform[3][0] += 1.0; }), hash);
+  EXPECT_NE(changed([](scene::Scene& s) { s.blobs[0].bytes[3] ^= 1U; }), hash);
   WriteInput input = patch_input(base);
   input.meshes[0].groups.back().error *= 2.0F;
   EXPECT_NE(content_hash(*write_asset(std::move(input))), hash);
@@ -139,19 +139,19 @@ TEST(Write, ContentHashSeesEveryPartOfTheContent) {
 
 /// Tables of a packed file are stored by columns where that is shorter, and say the same.
 TEST(Write, TablesShrinkWhereACodecIsChosen) {
-  const auto plain = Asset::from_vector(test::sample_asset_bytes());
+  const auto plain = run::Asset::from_vector(test::sample_asset_bytes());
   ASSERT_TRUE(plain.ok());
   for (const format::SectionEntry& entry : plain->sections()) {
-    EXPECT_EQ(entry.codec, static_cast<std::uint32_t>(SectionCodec::kNone));
+    EXPECT_EQ(entry.codec, static_cast<std::uint32_t>(format::SectionCodec::kPlain));
   }
-  const auto packed = Asset::from_vector(test::sample_asset_bytes(format::Codec::kZstd));
+  const auto packed = run::Asset::from_vector(test::sample_asset_bytes(format::Codec::kZstd));
   ASSERT_TRUE(packed.ok()) << packed.error().message();
   std::size_t packed_count = 0;
   ASSERT_EQ(packed->sections().size(), plain->sections().size());
   for (std::size_t s = 0; s < packed->sections().size(); ++s) {
     const format::SectionEntry& entry = packed->sections()[s];
     const format::SectionEntry& twin = plain->sections()[s];
-    if (entry.codec == static_cast<std::uint32_t>(SectionCodec::kNone)) continue;
+    if (entry.codec == static_cast<std::uint32_t>(format::SectionCodec::kPlain)) continue;
     ++packed_count;
     EXPECT_LT(entry.bytes, entry.decoded_bytes);
     const auto a = packed->section_bytes(entry);
@@ -162,7 +162,7 @@ TEST(Write, TablesShrinkWhereACodecIsChosen) {
 }
 
 TEST(Write, AnInstanceOfNoMeshIsRefused) {
-  Scene scene = one_instance_scene();
+  scene::Scene scene = one_instance_scene();
   scene.instances[0].mesh = MeshId{1U};
   const auto bytes = write_asset(patch_input(scene));
   ASSERT_FALSE(bytes.ok());
@@ -170,19 +170,19 @@ TEST(Write, AnInstanceOfNoMeshIsRefused) {
 }
 
 TEST(Write, ASceneWithoutMeshesIsAnAsset) {
-  Scene scene;
+  scene::Scene scene;
   WriteInput input;
   input.scene = &scene;
   const auto bytes = write_asset(std::move(input));
   ASSERT_TRUE(bytes.ok());
-  const auto asset = Asset::from_vector(*bytes);
+  const auto asset = run::Asset::from_vector(*bytes);
   ASSERT_TRUE(asset.ok()) << asset.error().message();
   EXPECT_TRUE(asset->meshes().empty() && asset->pages().empty());
 }
 
 TEST(Write, SectionsLieAtMultiplesOfSixteenWithZerosBetween) {
   const auto bytes = test::sample_asset_bytes(format::Codec::kZstd);
-  const auto asset = Asset::from_vector(bytes);
+  const auto asset = run::Asset::from_vector(bytes);
   ASSERT_TRUE(asset.ok());
   EXPECT_EQ(asset->sections().size(), 14U);
   for (const format::SectionEntry& entry : asset->sections()) EXPECT_EQ(entry.offset % 16, 0U);
@@ -191,4 +191,4 @@ TEST(Write, SectionsLieAtMultiplesOfSixteenWithZerosBetween) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::build

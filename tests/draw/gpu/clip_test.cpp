@@ -10,14 +10,14 @@
 #include "judge/gpu/compare_frame.h"
 #include "gpu_support.h"
 
-namespace meshlode::gpu::test {
+namespace meshlode::draw::test {
 namespace {
 
 using Clip = GpuTest;
 
 /// Looks along -z, eight units high; its near plane is z = 2.
-Camera cutting_camera(std::uint32_t width, std::uint32_t height) {
-  Camera camera;
+run::Camera cutting_camera(std::uint32_t width, std::uint32_t height) {
+  run::Camera camera;
   camera.eye = {0.0, 0.0, 10.0};
   camera.target = {0.0, 0.0, 0.0};
   camera.is_orthographic = true;
@@ -38,15 +38,15 @@ TEST_F(Clip, AnEdgeThroughPixelCentresFollowsTheTopLeftRule) {
   const std::vector<std::uint8_t> bytes = build_file(path.string());
   std::filesystem::remove(path);
   ASSERT_FALSE(bytes.empty());
-  const auto asset = Asset::from_vector(bytes);
+  const auto asset = run::Asset::from_vector(bytes);
   ASSERT_TRUE(asset) << asset.error().message();
-  const Camera camera = cutting_camera(64, 64);
+  const run::Camera camera = cutting_camera(64, 64);
 
   const auto scene = upload_scene(*device_, *asset);
   ASSERT_TRUE(scene) << scene.error().message();
   auto renderer = Renderer::make(*device_, *scene, {.width = 64, .height = 64});
   ASSERT_TRUE(renderer) << renderer.error().message();
-  const auto result = compare_frame(*renderer, *asset, camera, 1.0);
+  const auto result = judge::compare_frame(*renderer, *asset, camera, 1.0);
   ASSERT_TRUE(result) << result.error().message();
   EXPECT_EQ(result->pixels.differences, 0U) << result->pixels.first;
   EXPECT_EQ(result->frame.clipped_items, 1U);
@@ -72,15 +72,15 @@ TEST_F(Clip, ManyClippedTrianglesOfAClusterThatCoverThePictureAreDrawnToTheEnd) 
       out << "f " << 4 * i + 1 << " " << 4 * i + 2 << " " << 4 * i + 3 << " " << 4 * i + 4 << "\n";
     }
   }
-  const auto asset = Asset::from_vector(build_file(path.string()));
+  const auto asset = run::Asset::from_vector(build_file(path.string()));
   std::filesystem::remove(path);
   ASSERT_TRUE(asset) << asset.error().message();
-  const Camera camera = cutting_camera(640, 360);
+  const run::Camera camera = cutting_camera(640, 360);
   const auto scene = upload_scene(*device_, *asset);
   ASSERT_TRUE(scene) << scene.error().message();
   auto renderer = Renderer::make(*device_, *scene, {.width = 640, .height = 360, .frustum = false});
   ASSERT_TRUE(renderer) << renderer.error().message();
-  const auto result = compare_frame(*renderer, *asset, camera, 1e-9);
+  const auto result = judge::compare_frame(*renderer, *asset, camera, 1e-9);
   ASSERT_TRUE(result) << result.error().message();
   EXPECT_EQ(result->frame.clipped_items, 1U);
   EXPECT_EQ(result->pixels.differences, 0U) << result->pixels.first;
@@ -90,4 +90,4 @@ TEST_F(Clip, ManyClippedTrianglesOfAClusterThatCoverThePictureAreDrawnToTheEnd) 
 }
 
 }  // namespace
-}  // namespace meshlode::gpu::test
+}  // namespace meshlode::draw::test

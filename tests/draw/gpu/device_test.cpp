@@ -6,7 +6,7 @@
 
 #include "gpu_support.h"
 
-namespace meshlode::gpu::test {
+namespace meshlode::draw::test {
 namespace {
 
 using Gpu = GpuTest;
@@ -39,4 +39,4 @@ TEST_F(Gpu, TheFirstDeviceIsTheFirstOfTheList) {
 }
 
 }  // namespace
-}  // namespace meshlode::gpu::test
+}  // namespace meshlode::draw::test

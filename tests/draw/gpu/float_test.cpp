@@ -14,7 +14,7 @@
 #include "run/select/far_instance.h"
 #include "run/select/random_scene.h"
 
-namespace meshlode::gpu::test {
+namespace meshlode::draw::test {
 namespace {
 
 using Floats = GpuTest;
@@ -36,10 +36,10 @@ std::vector<Words> find_instructions(const Words& module, std::uint32_t opcode) 
 TEST(FloatControls, EveryShaderDeclaresRoundingToNearestOnceForBothWidths) {
   using namespace shaders;
   for (const auto shader :
-       {instances(), traverse(), clusters(), raster(), raster_clip(), pyramid(), decode(), roots(), raster_far(),
-        resolve(), sort(), flat(), persistent(), hardware_vert(), hardware_mesh(), hardware_frag(),
-        hardware_mesh_frag(), resolve_textures(), raster_mask(), raster_far_mask(), raster_clip_mask(),
-        hardware_mask_frag(), hardware_mesh_mask_frag()}) {
+       {shaders::instances(), shaders::traverse(), shaders::clusters(), shaders::raster(), shaders::raster_clip(), shaders::pyramid(), shaders::decode(), shaders::roots(), shaders::raster_far(),
+        shaders::resolve(), shaders::sort(), shaders::flat(), shaders::persistent(), shaders::hardware_vert(), shaders::hardware_mesh(), shaders::hardware_frag(),
+        shaders::hardware_mesh_frag(), shaders::resolve_textures(), shaders::raster_mask(), shaders::raster_far_mask(), shaders::raster_clip_mask(),
+        shaders::hardware_mask_frag(), shaders::hardware_mesh_mask_frag()}) {
     const Words before(shader.begin(), shader.end()), module = declare_round_to_nearest_even(shader);
     ASSERT_EQ(module.size(), before.size() + 2 + 8);
     const auto entries = find_instructions(module, 15);
@@ -71,7 +71,7 @@ TEST(FloatControls, LeavesAloneWhatIsNoModule) {
 
 /// Instances of one mesh, each at the distance where the far bound is within a few ulp of passing, turned so that a group
 /// with the largest error lies towards the eye.
-std::vector<format::InstanceRecord> threshold_instances(const SelectTables& tables, const Camera& camera,
+std::vector<format::InstanceRecord> threshold_instances(const run::SelectTables& tables, const run::Camera& camera,
                                                         double pixel_error, std::uint32_t count, bool is_grown) {
   const format::MeshRecord& mesh = tables.meshes[0];
   std::vector<float> errors;
@@ -82,7 +82,7 @@ std::vector<format::InstanceRecord> threshold_instances(const SelectTables& tabl
       coarse = &group;
     }
   }
-  const FarBound far = find_far_bound(tables, mesh, errors);
+  const run::FarBound far = run::find_far_bound(tables, mesh, errors);
   if (far.only_root == format::kNone || coarse == nullptr) return {};
   const double k = camera.height / (2.0 * std::tan(0.5 * camera.fovy));
   RandomSource random(31);
@@ -116,8 +116,8 @@ std::vector<format::InstanceRecord> threshold_instances(const SelectTables& tabl
 
 /// The instances in the place of those that the renderer's scene has: how many are drawn by another cut than the flat
 /// rule's.
-std::uint64_t count_other_cuts(Device& device, Renderer& renderer, const Asset& asset,
-                               std::span<const format::InstanceRecord> instances, const Camera& camera,
+std::uint64_t count_other_cuts(Device& device, Renderer& renderer, const run::Asset& asset,
+                               std::span<const format::InstanceRecord> instances, const run::Camera& camera,
                                double pixel_error) {
   std::vector<GpuInstance> table(instances.size());
   for (std::size_t i = 0; i < instances.size(); ++i) {
@@ -134,13 +134,13 @@ std::uint64_t count_other_cuts(Device& device, Renderer& renderer, const Asset& 
   const auto drawn = renderer.read_cut();
   EXPECT_TRUE(drawn);
   if (!drawn) return 0;
-  SelectTables tables = tables_of(asset);
+  run::SelectTables tables = run::tables_of(asset);
   tables.instances = instances;
-  const std::vector<ClusterInstance> wanted = select_flat(tables, camera, pixel_error);
-  std::vector<ClusterInstance> other;
+  const std::vector<run::ClusterInstance> wanted = run::select_flat(tables, camera, pixel_error);
+  std::vector<run::ClusterInstance> other;
   std::set_symmetric_difference(drawn->begin(), drawn->end(), wanted.begin(), wanted.end(), std::back_inserter(other));
   std::vector<bool> differs(instances.size(), false);
-  for (const ClusterInstance& c : other) differs[c.instance.value] = true;
+  for (const run::ClusterInstance& c : other) differs[c.instance.value] = true;
   return static_cast<std::uint64_t>(std::count(differs.begin(), differs.end(), true));
 }
 
@@ -148,10 +148,10 @@ std::uint64_t count_other_cuts(Device& device, Renderer& renderer, const Asset& 
 /// error as it is stored for a bound the same instances tell.
 TEST_F(Floats, InstancesAtTheThresholdAreDrawnByTheFlatRule) {
   constexpr std::uint32_t kCount = 1500;
-  const auto asset = Asset::from_vector(build_file(MESHLODE_DATA "/crystal.glb"));
+  const auto asset = run::Asset::from_vector(build_file(MESHLODE_DATA "/crystal.glb"));
   ASSERT_TRUE(asset);
-  const SelectTables tables = tables_of(*asset);
-  Camera camera;
+  const run::SelectTables tables = run::tables_of(*asset);
+  run::Camera camera;
   camera.eye = {0.0, 0.0, 0.0};
   camera.target = {0.0, 0.0, -1.0};
   camera.width = camera.height = 4;  // few pixels to draw: the cut is what is asked
@@ -188,4 +188,4 @@ TEST_F(Floats, InstancesAtTheThresholdAreDrawnByTheFlatRule) {
 }
 
 }  // namespace
-}  // namespace meshlode::gpu::test
+}  // namespace meshlode::draw::test

@@ -7,7 +7,7 @@
 #include "scene/import/import.h"
 #include "build/build.h"
 
-namespace meshlode::gpu::test {
+namespace meshlode::draw::test {
 
 std::optional<Device> shared_device(std::string& why) {
   static const Result<Device> device = [] {
@@ -35,16 +35,16 @@ void GpuTest::TearDown() {
 }
 
 std::vector<std::uint8_t> build_file(const std::string& path) {
-  auto scene = import_scene(path, {});
+  auto scene = scene::import_scene(path, {});
   if (!scene) {
     ADD_FAILURE() << scene.error().message();
     return {};
   }
-  PipelineReport report;
-  auto bytes = build_lode(*scene, {}, {}, report);
+  build::PipelineReport report;
+  auto bytes = build::build_lode(*scene, {}, {}, report);
   if (bytes) return std::move(*bytes);
   ADD_FAILURE() << bytes.error().message();
   return {};
 }
 
-}  // namespace meshlode::gpu::test
+}  // namespace meshlode::draw::test

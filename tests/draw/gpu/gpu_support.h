@@ -14,7 +14,7 @@
 #include "run/read/asset.h"
 #include "run/select/select.h"
 
-namespace meshlode::gpu::test {
+namespace meshlode::draw::test {
 
 /// One device for the whole program; nothing where there is no Vulkan (then `why` says why).
 [[nodiscard]] std::optional<Device> shared_device(std::string& why);
@@ -31,4 +31,4 @@ class GpuTest : public testing::Test {
 /// Bytes of the asset built from a scene file; empty where that failed (the test is failed too).
 [[nodiscard]] std::vector<std::uint8_t> build_file(const std::string& path);
 
-}  // namespace meshlode::gpu::test
+}  // namespace meshlode::draw::test

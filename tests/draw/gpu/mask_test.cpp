@@ -11,7 +11,7 @@
 #include "gpu_support.h"
 #include "support/mask_scene.h"
 
-namespace meshlode::gpu::test {
+namespace meshlode::draw::test {
 namespace {
 
 using meshlode::test::built;
@@ -25,16 +25,16 @@ struct Size {
 constexpr Size kSizes[] = {{160, 90}, {97, 61}, {64, 192}};  // one of them odd
 const std::span<const Size> kOddSize = std::span(kSizes).subspan(1, 1);
 
-Asset open(const MaskSceneOptions& options) {
-  auto asset = Asset::from_vector(built(mask_scene(options)));
+run::Asset open(const MaskSceneOptions& options) {
+  auto asset = run::Asset::from_vector(meshlode::test::built(meshlode::test::mask_scene(options)));
   EXPECT_TRUE(asset) << (asset ? "" : asset.error().message());
   return std::move(asset).value();
 }
 
 /// Cameras that the adversarial ones are not: a card from so near that it is clipped, and along a card.
-std::vector<NamedCamera> cameras_of(const Asset& asset, Size size) {
-  std::vector<NamedCamera> out = adversarial_cameras(asset, size.width, size.height);
-  Camera near;
+std::vector<judge::NamedCamera> cameras_of(const run::Asset& asset, Size size) {
+  std::vector<judge::NamedCamera> out = judge::adversarial_cameras(asset, size.width, size.height);
+  run::Camera near;
   near.width = size.width;
   near.height = size.height;
   near.eye = {-0.3, 0.2, 0.6};
@@ -51,7 +51,7 @@ struct Drawn {
   std::uint64_t pixels = 0, covered = 0, clipped_items = 0, differences = 0;
 };
 
-Drawn compare(Device& device, const Asset& asset, RendererOptions options, std::span<const Size> sizes = kSizes,
+Drawn compare(Device& device, const run::Asset& asset, RendererOptions options, std::span<const Size> sizes = kSizes,
               bool expect_equal = true) {
   Drawn out;
   const auto scene = upload_scene(device, asset);
@@ -65,8 +65,8 @@ Drawn compare(Device& device, const Asset& asset, RendererOptions options, std::
   if (!renderer) return out;
   for (const Size size : sizes) {
     EXPECT_TRUE(renderer->resize(size.width, size.height));
-    for (const NamedCamera& named : cameras_of(asset, size)) {
-      const auto result = compare_frame(*renderer, asset, named.camera, 0.7);
+    for (const judge::NamedCamera& named : cameras_of(asset, size)) {
+      const auto result = judge::compare_frame(*renderer, asset, named.camera, 0.7);
       EXPECT_TRUE(result) << (result ? "" : result.error().message());
       if (!result) continue;
       out.pixels += result->pixels.items;
@@ -107,7 +107,7 @@ TEST_F(Masks, WithoutTheTestThePictureIsAnother) {
 TEST_F(Masks, CutoffsAtTheEnds) {
   MaskSceneOptions options;
   options.cutoff = 0.0F;
-  const Asset all = open(options);
+  const run::Asset all = open(options);
   const auto scene = upload_scene(*device_, all);
   ASSERT_TRUE(scene);
   EXPECT_FALSE(scene->has_alpha_mask) << "what always passes needs no test";
@@ -129,7 +129,7 @@ TEST_F(Masks, CutoffsAtTheEnds) {
 TEST_F(Masks, AMissingImageIsOpaqueOnBothSides) {
   MaskSceneOptions options;
   options.image = {1, 2, 3};
-  const Asset asset = open(options);
+  const run::Asset asset = open(options);
   const auto scene = upload_scene(*device_, asset);
   ASSERT_TRUE(scene);
   EXPECT_FALSE(scene->alpha_masks->warnings.empty());
@@ -141,7 +141,7 @@ TEST_F(Masks, AMissingImageIsOpaqueOnBothSides) {
 TEST_F(Masks, FarRootsAreTheCpusBitForBit) {
   MaskSceneOptions options;
   options.cells = 1;  // a mesh of 18 triangles: one cluster, its own root
-  const Asset asset = open(options);
+  const run::Asset asset = open(options);
   const auto scene = upload_scene(*device_, asset);
   ASSERT_TRUE(scene);
   RendererOptions renderer_options{.width = 61, .height = 40, .frustum = false, .alpha_mask = true};
@@ -153,7 +153,7 @@ TEST_F(Masks, FarRootsAreTheCpusBitForBit) {
   ASSERT_TRUE(opaque);
   std::uint64_t far_items = 0, differences_without = 0;
   for (int i = 0; i < 60; ++i) {
-    Camera camera;
+    run::Camera camera;
     camera.width = 61;
     camera.height = 40;
     const double turn = 2.399963229728653 * i, distance = 25.0 + 4.0 * (i % 20);
@@ -162,12 +162,12 @@ TEST_F(Masks, FarRootsAreTheCpusBitForBit) {
     camera.near_distance = 0.1;
     camera.is_orthographic = i % 5 == 0;
     camera.ortho_height = 0.9 * distance;
-    const auto result = compare_frame(*renderer, asset, camera, 1.0);
+    const auto result = judge::compare_frame(*renderer, asset, camera, 1.0);
     ASSERT_TRUE(result) << result.error().message();
     EXPECT_EQ(result->pixels.differences, 0U) << i << ": " << result->pixels.first;
     far_items += result->frame.far_items;
     if (result->frame.far_items == 0) continue;
-    const auto without = compare_frame(*opaque, asset, camera, 1.0);
+    const auto without = judge::compare_frame(*opaque, asset, camera, 1.0);
     ASSERT_TRUE(without);
     differences_without += without->pixels.differences;
   }
@@ -179,23 +179,23 @@ TEST_F(Masks, FarRootsAreTheCpusBitForBit) {
 /// loops of an invocation after 65,535 iterations. Walking along strips again and again for each triangle used them up.
 TEST_F(Masks, ClippedLeavesAreDrawnToTheEnd) {
   const std::vector<std::uint8_t> bytes = build_file(MESHLODE_DATA "/foliage.glb");
-  const auto asset = Asset::from_vector(bytes);
+  const auto asset = run::Asset::from_vector(bytes);
   ASSERT_TRUE(asset);
   const auto scene = upload_scene(*device_, *asset);
   ASSERT_TRUE(scene);
   RendererOptions options{.width = 640, .height = 360, .frustum = false, .double_sided = true, .alpha_mask = true};
   auto renderer = Renderer::make(*device_, *scene, options);
   ASSERT_TRUE(renderer);
-  const NamedCamera inside = adversarial_cameras(*asset, 640, 360)[2];
+  const judge::NamedCamera inside = judge::adversarial_cameras(*asset, 640, 360)[2];
   ASSERT_EQ(inside.name, "inside");
-  const auto result = compare_frame(*renderer, *asset, inside.camera, 1.0);
+  const auto result = judge::compare_frame(*renderer, *asset, inside.camera, 1.0);
   ASSERT_TRUE(result) << result.error().message();
   EXPECT_EQ(result->pixels.differences, 0U) << result->pixels.first;
   EXPECT_GT(result->frame.clipped_items, 10U);
 }
 
 TEST_F(Masks, TheHardwareCutsTheSameHoles) {
-  const Asset asset = open({});
+  const run::Asset asset = open({});
   const auto scene = upload_scene(*device_, asset);
   ASSERT_TRUE(scene);
   for (const HardwarePath path : {HardwarePath::kVertex, HardwarePath::kMesh}) {
@@ -209,8 +209,8 @@ TEST_F(Masks, TheHardwareCutsTheSameHoles) {
       auto renderer = Renderer::make(*device_, *scene, options);
       ASSERT_TRUE(renderer) << renderer.error().message();
       for (const std::size_t which : {0U, 9U}) {
-        const Camera camera = adversarial_cameras(asset, 320, 240)[which].camera;
-        const auto result = compare_hardware(*renderer, asset, camera, 1.0, device_->info().subpixel_bits);
+        const run::Camera camera = judge::adversarial_cameras(asset, 320, 240)[which].camera;
+        const auto result = judge::compare_hardware(*renderer, asset, camera, 1.0, device_->info().subpixel_bits);
         ASSERT_TRUE(result) << result.error().message();
         differences[is_masked ? 1 : 0] += result->differences;
         EXPECT_GT(result->items, 0U);
@@ -222,4 +222,4 @@ TEST_F(Masks, TheHardwareCutsTheSameHoles) {
 }
 
 }  // namespace
-}  // namespace meshlode::gpu::test
+}  // namespace meshlode::draw::test

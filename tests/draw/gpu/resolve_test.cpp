@@ -13,33 +13,33 @@
 #include "support/mask_scene.h"
 #include "support/sample_asset.h"
 
-namespace meshlode::gpu::test {
+namespace meshlode::draw::test {
 namespace {
 
 using Resolve = GpuTest;
 
 struct Opened {
   std::vector<std::uint8_t> bytes;
-  std::optional<Asset> asset;
+  std::optional<run::Asset> asset;
 };
 
 Opened open_file(const char* name) {
   Opened out;
   out.bytes = build_file(std::string(MESHLODE_DATA) + "/" + name);
-  auto asset = Asset::from_vector(out.bytes);
+  auto asset = run::Asset::from_vector(out.bytes);
   EXPECT_TRUE(asset);
   if (asset) out.asset = std::move(*asset);
   return out;
 }
 
-std::uint32_t level_count_of(const Asset& asset) {
+std::uint32_t level_count_of(const run::Asset& asset) {
   std::uint32_t count = 1;
   for (const format::MeshRecord& mesh : asset.meshes()) count = std::max(count, mesh.level_count);
   return count;
 }
 
 /// The CPU shades in doubles, the GPU in floats behind exact barycentrics: at most a step of 255, hardly anywhere more.
-void expect_equal_colors(Device& device, const Asset& asset, const std::vector<std::uint32_t>& views = {
+void expect_equal_colors(Device& device, const run::Asset& asset, const std::vector<std::uint32_t>& views = {
                                                                  VIEW_SHADED, VIEW_CLUSTERS, VIEW_TRIANGLES, VIEW_LEVELS}) {
   auto scene = upload_scene(device, asset);
   ASSERT_TRUE(scene);
@@ -50,10 +50,10 @@ void expect_equal_colors(Device& device, const Asset& asset, const std::vector<s
   options.alpha_mask = scene->has_alpha_mask;
   auto renderer = Renderer::make(device, *scene, options);
   ASSERT_TRUE(renderer);
-  const std::vector<NamedCamera> cameras = adversarial_cameras(asset, 121, 83);
+  const std::vector<judge::NamedCamera> cameras = judge::adversarial_cameras(asset, 121, 83);
   for (const std::size_t which : {0U, 1U, 9U}) {  // around, behind, orthographic
-    const Camera& camera = cameras[which].camera;
-    const auto frame = compare_frame(*renderer, asset, camera, 1.0);  // drawn in order, as the CPU's list is
+    const run::Camera& camera = cameras[which].camera;
+    const auto frame = judge::compare_frame(*renderer, asset, camera, 1.0);  // drawn in order, as the CPU's list is
     ASSERT_TRUE(frame) << frame.error().message();
     const auto cut = renderer->read_cut();
     ASSERT_TRUE(cut);
@@ -62,7 +62,7 @@ void expect_equal_colors(Device& device, const Asset& asset, const std::vector<s
     for (const std::uint32_t view : views) {
       auto got = renderer->resolve(view, level_count_of(asset));
       ASSERT_TRUE(got) << got.error().message();
-      if (view == VIEW_LEVELS) raster::draw_level_legend(got->image, level_count_of(asset));
+      if (view == VIEW_LEVELS) draw_level_legend(got->image, level_count_of(asset));
       const auto want = shade_view(asset, *cut, camera, *visibility, static_cast<View>(view), textures);
       ASSERT_TRUE(want);
       ASSERT_EQ(got->image.rgba.size(), want->rgba.size());
@@ -76,7 +76,7 @@ void expect_equal_colors(Device& device, const Asset& asset, const std::vector<s
 }
 
 TEST_F(Resolve, ColoursAreTheCpusUpToAStep) {
-  const auto asset = Asset::from_vector(meshlode::test::sample_asset_bytes());
+  const auto asset = run::Asset::from_vector(meshlode::test::sample_asset_bytes());
   ASSERT_TRUE(asset);
   expect_equal_colors(*device_, *asset);
   const Opened city = open_file("city.glb");
@@ -88,7 +88,7 @@ TEST_F(Resolve, ColoursAreTheCpusUpToAStep) {
 TEST_F(Resolve, TexturesAreTheCpusUpToAStep) {
   meshlode::test::MaskSceneOptions options;
   options.transform = R"({"offset":[0.25,-0.5],"rotation":0.3,"scale":[2.7,-1.3]})";
-  const auto asset = Asset::from_vector(meshlode::test::built(mask_scene(options)));
+  const auto asset = run::Asset::from_vector(meshlode::test::built(meshlode::test::mask_scene(options)));
   ASSERT_TRUE(asset);
   expect_equal_colors(*device_, *asset, {VIEW_SHADED});
   const Opened rock = open_file("rock.glb");
@@ -98,7 +98,7 @@ TEST_F(Resolve, TexturesAreTheCpusUpToAStep) {
   auto scene = upload_scene(*device_, *rock.asset);
   ASSERT_TRUE(scene);
   EXPECT_TRUE(scene->has_textures);
-  const Camera camera = adversarial_cameras(*rock.asset, 121, 83)[0].camera;
+  const run::Camera camera = judge::adversarial_cameras(*rock.asset, 121, 83)[0].camera;
   std::vector<std::uint8_t> pictures[2];
   for (const bool is_textured : {false, true}) {
     const auto plan = plan_passes(*scene, device_->info(), 121, 83, {}, is_textured);
@@ -125,7 +125,7 @@ TEST_F(Resolve, FlightHelmetsTexturesAreTheCpusUpToAStep) {
   const char* required = std::getenv("MESHLODE_REQUIRE_MODELS");
   ASSERT_TRUE(models != nullptr || required == nullptr || std::string(required) != "1") << "MESHLODE_MODELS is not set";
   if (models == nullptr) GTEST_SKIP() << "MESHLODE_MODELS is not set";
-  const auto asset = Asset::from_vector(build_file(std::string(models) + "/FlightHelmet/FlightHelmet.gltf"));
+  const auto asset = run::Asset::from_vector(build_file(std::string(models) + "/FlightHelmet/FlightHelmet.gltf"));
   ASSERT_TRUE(asset);
   const TextureSet textures = load_textures(*asset);
   EXPECT_TRUE(textures.warnings.empty());
@@ -145,7 +145,7 @@ TEST_F(Resolve, OverdrawIsThereExactlyWhereSomethingIsSeen) {
   options.alpha_mask = scene->has_alpha_mask;
   auto renderer = Renderer::make(*device_, *scene, options);
   ASSERT_TRUE(renderer);
-  ASSERT_TRUE(renderer->draw(adversarial_cameras(*city.asset, 121, 83)[0].camera, 1.0, 0.0));
+  ASSERT_TRUE(renderer->draw(judge::adversarial_cameras(*city.asset, 121, 83)[0].camera, 1.0, 0.0));
   const auto pixels = renderer->read_pixels();
   const auto picture = renderer->resolve(VIEW_OVERDRAW, 1);
   ASSERT_TRUE(pixels);
@@ -172,7 +172,7 @@ TEST_F(Resolve, OverdrawIsThereExactlyWhereSomethingIsSeen) {
 TEST_F(Resolve, AttributeBoundsSelectWhatTheFlatRuleSelects) {
   const Opened rock = open_file("rock.glb");
   ASSERT_TRUE(rock.asset);
-  AttributeBounds bounds;
+  run::AttributeBounds bounds;
   std::vector<double> deviations;
   for (const format::GroupRecord& group : rock.asset->groups()) {
     if (group.normal_deviation < format::kInfiniteError) deviations.push_back(double{group.normal_deviation});
@@ -180,15 +180,15 @@ TEST_F(Resolve, AttributeBoundsSelectWhatTheFlatRuleSelects) {
   ASSERT_FALSE(deviations.empty());
   std::sort(deviations.begin(), deviations.end());
   bounds.normal_degrees = deviations[deviations.size() / 2];
-  const Camera camera = adversarial_cameras(*rock.asset, 97, 64)[4].camera;
+  const run::Camera camera = judge::adversarial_cameras(*rock.asset, 97, 64)[4].camera;
   std::size_t clusters[2] = {0, 0};
   for (const bool is_bound : {false, true}) {
-    const AttributeBounds used = is_bound ? bounds : AttributeBounds{};
+    const run::AttributeBounds used = is_bound ? bounds : run::AttributeBounds{};
     const auto scene = upload_scene(*device_, *rock.asset, {}, used);
     ASSERT_TRUE(scene);
     auto renderer = Renderer::make(*device_, *scene, {.width = 97, .height = 64, .occlusion = true});
     ASSERT_TRUE(renderer);
-    const auto result = compare_frame(*renderer, *rock.asset, camera, 4.0, used);
+    const auto result = judge::compare_frame(*renderer, *rock.asset, camera, 4.0, used);
     ASSERT_TRUE(result);
     EXPECT_EQ(result->cut.differences + result->pixels.differences, 0U) << result->cut.first << result->pixels.first;
     clusters[is_bound ? 1 : 0] = result->frame.items;
@@ -197,4 +197,4 @@ TEST_F(Resolve, AttributeBoundsSelectWhatTheFlatRuleSelects) {
 }
 
 }  // namespace
-}  // namespace meshlode::gpu::test
+}  // namespace meshlode::draw::test

@@ -14,15 +14,15 @@
 #include "gpu_support.h"
 #include "support/sample_asset.h"
 
-namespace meshlode::gpu::test {
+namespace meshlode::draw::test {
 namespace {
 
 using Scenes = GpuTest;
 
-void expect_equal(Device& device, const Asset& asset, std::uint32_t orbits) {
+void expect_equal(Device& device, const run::Asset& asset, std::uint32_t orbits) {
   auto scene = upload_scene(device, asset);
   ASSERT_TRUE(scene) << scene.error().message();
-  const auto decode = compare_decode(device, *scene, asset);
+  const auto decode = judge::compare_decode(device, *scene, asset);
   ASSERT_TRUE(decode) << decode.error().message();
   EXPECT_EQ(decode->differences, 0U) << decode->first;
   RendererOptions options;
@@ -36,11 +36,11 @@ void expect_equal(Device& device, const Asset& asset, std::uint32_t orbits) {
   constexpr std::uint32_t kSizes[][2] = {{192, 108}, {131, 77}, {64, 200}};
   for (const auto& [width, height] : kSizes) {
     ASSERT_TRUE(renderer->resize(width, height));
-    std::vector<NamedCamera> cameras = adversarial_cameras(asset, width, height);
-    for (const NamedCamera& named : orbit_cameras(asset, orbits, width, height)) cameras.push_back(named);
-    for (const NamedCamera& named : cameras) {
+    std::vector<judge::NamedCamera> cameras = judge::adversarial_cameras(asset, width, height);
+    for (const judge::NamedCamera& named : judge::orbit_cameras(asset, orbits, width, height)) cameras.push_back(named);
+    for (const judge::NamedCamera& named : cameras) {
       SCOPED_TRACE(named.name + " at " + std::to_string(width) + "x" + std::to_string(height));
-      const auto result = compare_frame(*renderer, asset, named.camera, 1.0);
+      const auto result = judge::compare_frame(*renderer, asset, named.camera, 1.0);
       ASSERT_TRUE(result) << result.error().message();
       EXPECT_EQ(result->cut.differences, 0U) << result->cut.first;
       EXPECT_EQ(result->pixels.differences, 0U) << result->pixels.first;
@@ -51,7 +51,7 @@ void expect_equal(Device& device, const Asset& asset, std::uint32_t orbits) {
 void expect_equal_file(Device& device, const std::string& path, std::uint32_t orbits) {
   const std::vector<std::uint8_t> bytes = build_file(path);
   ASSERT_FALSE(bytes.empty());
-  const auto asset = Asset::from_vector(bytes);
+  const auto asset = run::Asset::from_vector(bytes);
   ASSERT_TRUE(asset) << asset.error().message();
   expect_equal(device, *asset, orbits);
 }
@@ -75,7 +75,7 @@ INSTANTIATE_TEST_SUITE_P(All, Models, testing::Values("bunny.glb", "FlightHelmet
 
 /// The judge must see one changed bit of a page.
 TEST_F(Scenes, AChangedPageBitIsFound) {
-  const auto asset = Asset::from_vector(meshlode::test::sample_asset_bytes());
+  const auto asset = run::Asset::from_vector(meshlode::test::sample_asset_bytes());
   ASSERT_TRUE(asset);
   const auto scene = upload_scene(*device_, *asset);
   ASSERT_TRUE(scene);
@@ -83,14 +83,14 @@ TEST_F(Scenes, AChangedPageBitIsFound) {
   ASSERT_TRUE(device_->download(scene->pages, pages));
   pages[pages.size() / 2] ^= 1U;
   ASSERT_TRUE(device_->upload(scene->pages, pages));
-  const auto result = compare_decode(*device_, *scene, *asset);
+  const auto result = judge::compare_decode(*device_, *scene, *asset);
   ASSERT_TRUE(result);
   EXPECT_GT(result->differences, 0U);
 }
 
 /// A group error that is a little larger on the GPU alone changes some cut, and the judge sees it.
 TEST_F(Scenes, AChangedGroupErrorIsFound) {
-  const auto asset = Asset::from_vector(meshlode::test::sample_asset_bytes());
+  const auto asset = run::Asset::from_vector(meshlode::test::sample_asset_bytes());
   ASSERT_TRUE(asset);
   const auto scene = upload_scene(*device_, *asset);
   ASSERT_TRUE(scene);
@@ -102,8 +102,8 @@ TEST_F(Scenes, AChangedGroupErrorIsFound) {
   auto renderer = Renderer::make(*device_, *scene, {.width = 96, .height = 64, .frustum = false, .double_sided = true, .alpha_mask = true});
   ASSERT_TRUE(renderer);
   std::uint64_t differences = 0;
-  for (const NamedCamera& named : orbit_cameras(*asset, 6, 96, 64)) {
-    const auto result = compare_frame(*renderer, *asset, named.camera, 2.0);
+  for (const judge::NamedCamera& named : judge::orbit_cameras(*asset, 6, 96, 64)) {
+    const auto result = judge::compare_frame(*renderer, *asset, named.camera, 2.0);
     ASSERT_TRUE(result) << result.error().message();
     differences += result->cut.differences + result->pixels.differences;
   }
@@ -112,7 +112,7 @@ TEST_F(Scenes, AChangedGroupErrorIsFound) {
 
 /// Culling spheres that are too small drop what should be seen, and the judge sees the holes.
 TEST_F(Scenes, TooSmallCullingSpheresAreFound) {
-  const auto asset = Asset::from_vector(meshlode::test::sample_asset_bytes());
+  const auto asset = run::Asset::from_vector(meshlode::test::sample_asset_bytes());
   ASSERT_TRUE(asset);
   const auto scene = upload_scene(*device_, *asset);
   ASSERT_TRUE(scene);
@@ -127,13 +127,13 @@ TEST_F(Scenes, TooSmallCullingSpheresAreFound) {
   ASSERT_TRUE(device_->upload(scene->clusters, bytes));
   auto renderer = Renderer::make(*device_, *scene, {.width = 96, .height = 64, .double_sided = true, .alpha_mask = true});
   ASSERT_TRUE(renderer);
-  const auto result = compare_frame(*renderer, *asset, orbit_cameras(*asset, 1, 96, 64)[0].camera, 1.0);
+  const auto result = judge::compare_frame(*renderer, *asset, judge::orbit_cameras(*asset, 1, 96, 64)[0].camera, 1.0);
   ASSERT_TRUE(result);
   EXPECT_GT(result->pixels.differences, 0U);
 }
 
 TEST_F(Scenes, AListThatOverflowsSaysSo) {
-  const auto asset = Asset::from_vector(meshlode::test::sample_asset_bytes());
+  const auto asset = run::Asset::from_vector(meshlode::test::sample_asset_bytes());
   ASSERT_TRUE(asset);
   const auto scene = upload_scene(*device_, *asset);
   ASSERT_TRUE(scene);
@@ -144,7 +144,7 @@ TEST_F(Scenes, AListThatOverflowsSaysSo) {
   options.max_items = 64;
   auto renderer = Renderer::make(*device_, *crowd, options);
   ASSERT_TRUE(renderer);
-  const auto frame = renderer->draw(orbit_cameras(*asset, 1, 96, 64)[0].camera, 0.5, 0.0);
+  const auto frame = renderer->draw(judge::orbit_cameras(*asset, 1, 96, 64)[0].camera, 0.5, 0.0);
   ASSERT_TRUE(frame);
   EXPECT_NE(frame->overflow, 0U);
   EXPECT_NE(describe_overflow(frame->overflow), "");
@@ -152,7 +152,7 @@ TEST_F(Scenes, AListThatOverflowsSaysSo) {
 
 /// The flat selection and the BVH open the same groups.
 TEST_F(Scenes, FlatSelectionDrawsTheSame) {
-  const auto asset = Asset::from_vector(meshlode::test::sample_asset_bytes());
+  const auto asset = run::Asset::from_vector(meshlode::test::sample_asset_bytes());
   ASSERT_TRUE(asset);
   const auto scene = upload_scene(*device_, *asset);
   ASSERT_TRUE(scene);
@@ -160,8 +160,8 @@ TEST_F(Scenes, FlatSelectionDrawsTheSame) {
   options.flat_selection = true;
   auto renderer = Renderer::make(*device_, *scene, options);
   ASSERT_TRUE(renderer);
-  for (const NamedCamera& named : orbit_cameras(*asset, 4, 96, 64)) {
-    const auto result = compare_frame(*renderer, *asset, named.camera, 2.0);
+  for (const judge::NamedCamera& named : judge::orbit_cameras(*asset, 4, 96, 64)) {
+    const auto result = judge::compare_frame(*renderer, *asset, named.camera, 2.0);
     ASSERT_TRUE(result);
     EXPECT_EQ(result->cut.differences + result->pixels.differences, 0U) << result->cut.first << result->pixels.first;
   }
@@ -169,7 +169,7 @@ TEST_F(Scenes, FlatSelectionDrawsTheSame) {
 
 /// One dispatch with a queue opens the same groups as one dispatch a depth, pass 2 of occlusion culling included.
 TEST_F(Scenes, PersistentTraversalDrawsTheSame) {
-  const auto asset = Asset::from_vector(meshlode::test::sample_asset_bytes());
+  const auto asset = run::Asset::from_vector(meshlode::test::sample_asset_bytes());
   ASSERT_TRUE(asset);
   const auto scene = upload_scene(*device_, *asset);
   ASSERT_TRUE(scene);
@@ -185,8 +185,8 @@ TEST_F(Scenes, PersistentTraversalDrawsTheSame) {
     options.far_instances = false;
     auto renderer = Renderer::make(*device_, *scene, options);
     ASSERT_TRUE(renderer);
-    for (const NamedCamera& named : orbit_cameras(*asset, 6, 97, 64)) {
-      const auto result = compare_frame(*renderer, *asset, named.camera, 1.0);
+    for (const judge::NamedCamera& named : judge::orbit_cameras(*asset, 6, 97, 64)) {
+      const auto result = judge::compare_frame(*renderer, *asset, named.camera, 1.0);
       ASSERT_TRUE(result);
       EXPECT_EQ(result->cut.differences + result->pixels.differences, 0U) << result->cut.first << result->pixels.first;
       EXPECT_GT(result->frame.traversed_nodes, 0U);
@@ -196,7 +196,7 @@ TEST_F(Scenes, PersistentTraversalDrawsTheSame) {
 
 /// Hardware raster draws what its specification allows, every pixel; and the judge finds another picture.
 TEST_F(Scenes, HardwareRasterHoldsAndItsJudgeCanFail) {
-  const auto asset = Asset::from_vector(meshlode::test::sample_asset_bytes());
+  const auto asset = run::Asset::from_vector(meshlode::test::sample_asset_bytes());
   ASSERT_TRUE(asset);
   const auto scene = upload_scene(*device_, *asset);
   ASSERT_TRUE(scene);
@@ -210,15 +210,15 @@ TEST_F(Scenes, HardwareRasterHoldsAndItsJudgeCanFail) {
   ASSERT_TRUE(one_sided);
   const std::uint32_t bits = device_->info().subpixel_bits;
   std::uint64_t missed = 0, items = 0;
-  std::vector<NamedCamera> cameras = orbit_cameras(*asset, 4, 640, 360);
-  for (const NamedCamera& named : adversarial_cameras(*asset, 640, 360)) cameras.push_back(named);
-  for (const NamedCamera& named : cameras) {
+  std::vector<judge::NamedCamera> cameras = judge::orbit_cameras(*asset, 4, 640, 360);
+  for (const judge::NamedCamera& named : judge::adversarial_cameras(*asset, 640, 360)) cameras.push_back(named);
+  for (const judge::NamedCamera& named : cameras) {
     SCOPED_TRACE(named.name);
-    const auto result = compare_hardware(*renderer, *asset, named.camera, 1.0, bits);
+    const auto result = judge::compare_hardware(*renderer, *asset, named.camera, 1.0, bits);
     ASSERT_TRUE(result);
     EXPECT_EQ(result->differences, 0U) << result->first;
     items += result->items;
-    const auto other = compare_hardware(*one_sided, *asset, named.camera, 1.0, bits);
+    const auto other = judge::compare_hardware(*one_sided, *asset, named.camera, 1.0, bits);
     ASSERT_TRUE(other);
     missed += other->differences;
   }
@@ -230,7 +230,7 @@ TEST_F(Scenes, HardwareRasterHoldsAndItsJudgeCanFail) {
 TEST_F(Scenes, AFarInstanceIsNotTraversed) {
   const std::vector<std::uint8_t> bytes = build_file(MESHLODE_DATA "/rock.glb");
   ASSERT_FALSE(bytes.empty());
-  const auto asset = Asset::from_vector(bytes);
+  const auto asset = run::Asset::from_vector(bytes);
   ASSERT_TRUE(asset);
   const auto scene = upload_scene(*device_, *asset);
   ASSERT_TRUE(scene);
@@ -242,8 +242,8 @@ TEST_F(Scenes, AFarInstanceIsNotTraversed) {
     options.far_instances = goes_past;
     auto renderer = Renderer::make(*device_, *scene, options);
     ASSERT_TRUE(renderer);
-    Camera camera = adversarial_cameras(*asset, 97, 64)[4].camera;
-    const auto result = compare_frame(*renderer, *asset, camera, 8.0);
+    run::Camera camera = judge::adversarial_cameras(*asset, 97, 64)[4].camera;
+    const auto result = judge::compare_frame(*renderer, *asset, camera, 8.0);
     ASSERT_TRUE(result);
     EXPECT_EQ(result->cut.differences + result->pixels.differences, 0U) << result->cut.first << result->pixels.first;
     nodes[goes_past ? 1 : 0] = result->frame.traversed_nodes;
@@ -256,7 +256,7 @@ TEST_F(Scenes, AFarInstanceIsNotTraversed) {
 /// Roots of a few pixels have a rasterizer of their own, which must give the same bits: at many places of the picture and
 /// its border, at every size up to its largest, mirrored and stretched, orthographic too.
 TEST_F(Scenes, RootsOfAFewPixelsAreDrawnBitForBit) {
-  const auto asset = Asset::from_vector(meshlode::test::sample_asset_bytes());
+  const auto asset = run::Asset::from_vector(meshlode::test::sample_asset_bytes());
   ASSERT_TRUE(asset);
   const auto scene = upload_scene(*device_, *asset);
   ASSERT_TRUE(scene);
@@ -265,12 +265,12 @@ TEST_F(Scenes, RootsOfAFewPixelsAreDrawnBitForBit) {
   options.alpha_mask = scene->has_alpha_mask;
   auto renderer = Renderer::make(*device_, *scene, options);
   ASSERT_TRUE(renderer);
-  const WorldBox box = world_box(*asset);
+  const judge::WorldBox box = judge::world_box(*asset);
   const Vec3d center = 0.5 * (box.low + box.high);
   const double size = glm::length(box.high - box.low);
   std::uint64_t far_items = 0, covered = 0;
   for (int i = 0; i < 120; ++i) {
-    Camera camera;
+    run::Camera camera;
     camera.width = 61;
     camera.height = 40;
     const double turn = 2.399963229728653 * i, distance = size * (2.0 + 0.7 * (i % 40));
@@ -279,7 +279,7 @@ TEST_F(Scenes, RootsOfAFewPixelsAreDrawnBitForBit) {
     camera.near_distance = 1e-3 * size;
     camera.is_orthographic = i % 5 == 0;
     camera.ortho_height = 0.7 * distance;
-    const auto result = compare_frame(*renderer, *asset, camera, i % 3 == 0 ? 0.25 : 30.0);
+    const auto result = judge::compare_frame(*renderer, *asset, camera, i % 3 == 0 ? 0.25 : 30.0);
     ASSERT_TRUE(result) << result.error().message();
     EXPECT_EQ(result->cut.differences, 0U) << i << ": " << result->cut.first;
     EXPECT_EQ(result->pixels.differences, 0U) << i << ": " << result->pixels.first;
@@ -294,7 +294,7 @@ TEST_F(Scenes, RootsOfAFewPixelsAreDrawnBitForBit) {
 
 /// Hardware coverage follows its own rules: pixels may differ along edges alone, which are few.
 TEST_F(Scenes, TheHardwareDrawsNearlyTheSamePicture) {
-  const auto asset = Asset::from_vector(meshlode::test::sample_asset_bytes());
+  const auto asset = run::Asset::from_vector(meshlode::test::sample_asset_bytes());
   ASSERT_TRUE(asset);
   const auto scene = upload_scene(*device_, *asset);
   ASSERT_TRUE(scene);
@@ -303,13 +303,13 @@ TEST_F(Scenes, TheHardwareDrawsNearlyTheSamePicture) {
   options.hardware_pixels = 0.0F;
   auto renderer = Renderer::make(*device_, *scene, options);
   ASSERT_TRUE(renderer) << renderer.error().message();
-  const Camera camera = adversarial_cameras(*asset, 320, 240)[0].camera;
+  const run::Camera camera = judge::adversarial_cameras(*asset, 320, 240)[0].camera;
   const auto frame = renderer->draw(camera, 1.0, 0.0);
   ASSERT_TRUE(frame);
   EXPECT_EQ(frame->hardware_items, frame->items);
   const auto hardware = renderer->read_pixels();
   ASSERT_TRUE(hardware);
-  const auto software = draw_cut(*asset, select_flat(*asset, camera, 1.0), camera, *scene->alpha_masks);
+  const auto software = draw_cut(*asset, run::select_flat(*asset, camera, 1.0), camera, *scene->alpha_masks);
   ASSERT_TRUE(software);
   std::size_t covered = 0, differ = 0, far = 0;
   for (std::size_t i = 0; i < software->pixel_count(); ++i) {
@@ -326,14 +326,14 @@ TEST_F(Scenes, TheHardwareDrawsNearlyTheSamePicture) {
 }
 
 TEST(CameraPath, ReadsALineAFrame) {
-  const auto path = parse_camera_path("# a path\n0 0 5 0 0 0\n\n1,2,3, 0 0 0 40 0.5\r\n", {});
+  const auto path = judge::parse_camera_path("# a path\n0 0 5 0 0 0\n\n1,2,3, 0 0 0 40 0.5\r\n", {});
   ASSERT_TRUE(path) << path.error().message();
   ASSERT_EQ(path->size(), 2U);
   EXPECT_EQ((*path)[1].camera.eye, Vec3d(1.0, 2.0, 3.0));
   EXPECT_EQ((*path)[1].camera.near_distance, 0.5);
   for (const char* bad :
        {"", "1 2 3", "1 2 3 4 5 x", "0 0 0 0 0 0", "1 2 3 4 5 6 200", "1 2 3 4 5 6 40 -1", "nan 0 0 1 1 1"}) {
-    EXPECT_FALSE(parse_camera_path(bad, {})) << bad;
+    EXPECT_FALSE(judge::parse_camera_path(bad, {})) << bad;
   }
 }
 
@@ -361,4 +361,4 @@ TEST(Plan, AsksForWhatTheSceneCallsFor) {
 }
 
 }  // namespace
-}  // namespace meshlode::gpu::test
+}  // namespace meshlode::draw::test

@@ -10,7 +10,7 @@
 #include "support/mask_scene.h"
 #include "draw/textures/texture_image.h"
 
-namespace meshlode {
+namespace meshlode::draw {
 namespace {
 
 TEST(AlphaTest, WrappedTexelsAreThoseOfAnEndlessRow) {
@@ -41,26 +41,26 @@ TEST(AlphaTest, QuotientsAreDefinedByProducts) {
     const double divisor = std::ldexp(1.0 + random(), static_cast<int>(400.0 * random()) - 200);
     double value = (random() - 0.5) * divisor * std::ldexp(1.0, static_cast<int>(44.0 * random()));
     if (i % 3 == 0) value = std::floor(value / divisor) * divisor;  // on or beside a border
-    const std::int64_t q = raster::floor_quotient(value, divisor);
+    const std::int64_t q = floor_quotient(value, divisor);
     EXPECT_LE(static_cast<double>(q) * divisor, value);
     EXPECT_GT(static_cast<double>(q + 1) * divisor, value);
   }
-  EXPECT_EQ(raster::floor_quotient(1e30, 1.0), 0);
-  EXPECT_EQ(raster::floor_quotient(std::nan(""), 1.0), 0);
-  EXPECT_EQ(raster::floor_quotient(7.0, 2.0), 3);
-  EXPECT_EQ(raster::floor_quotient(-7.0, 2.0), -4);
+  EXPECT_EQ(floor_quotient(1e30, 1.0), 0);
+  EXPECT_EQ(floor_quotient(std::nan(""), 1.0), 0);
+  EXPECT_EQ(floor_quotient(7.0, 2.0), 3);
+  EXPECT_EQ(floor_quotient(-7.0, 2.0), -4);
 }
 
 struct Card {
-  Asset asset;
-  std::vector<ClusterInstance> cut;
+  run::Asset asset;
+  std::vector<run::ClusterInstance> cut;
 };
 
 /// All of level 0 of the cards; without the wall.
 Card open_cards(const test::MaskSceneOptions& options) {
-  Scene scene = test::mask_scene(options);
+  scene::Scene scene = test::mask_scene(options);
   scene.instances.erase(scene.instances.begin());
-  auto asset = Asset::from_vector(test::built(scene));
+  auto asset = run::Asset::from_vector(test::built(scene));
   EXPECT_TRUE(asset);
   Card out{std::move(asset).value(), {}};
   const format::MeshRecord& mesh = out.asset.meshes()[out.asset.instances()[0].mesh];
@@ -70,8 +70,8 @@ Card open_cards(const test::MaskSceneOptions& options) {
   return out;
 }
 
-Camera card_camera() {
-  Camera camera;
+run::Camera card_camera() {
+  run::Camera camera;
   camera.eye = {2.0, -1.5, 6.0};
   camera.target = {0.1, 0.2, 0.0};
   camera.near_distance = 0.1;
@@ -85,7 +85,7 @@ struct Found {
   bool is_drawn = false, is_sure = false;
 };
 
-Found look(const Card& card, std::size_t item, std::uint32_t triangle, const Camera& camera, std::uint32_t x,
+Found look(const Card& card, std::size_t item, std::uint32_t triangle, const run::Camera& camera, std::uint32_t x,
            std::uint32_t y, const test::MaskSceneOptions& options) {
   using Long = long double;
   struct V {
@@ -99,11 +99,11 @@ Found look(const Card& card, std::size_t item, std::uint32_t triangle, const Cam
     return V{a.x / l, a.y / l, a.z / l};
   };
   const format::MeshRecord& mesh = card.asset.meshes()[card.asset.instances()[0].mesh];
-  DecodedCluster cluster;
-  const auto page = load_page(card.asset, PageId(card.asset.groups()[card.asset.clusters()[card.cut[item].cluster.value].coarser_group].page));
-  decode_cluster(card.asset, *page, card.cut[item].cluster, cluster);
-  ClusterAttributes attributes;
-  decode_attributes(mesh, cluster, attributes);
+  run::DecodedCluster cluster;
+  const auto page = run::load_page(card.asset, PageId(card.asset.groups()[card.asset.clusters()[card.cut[item].cluster.value].coarser_group].page));
+  run::decode_cluster(card.asset, *page, card.cut[item].cluster, cluster);
+  run::ClusterAttributes attributes;
+  run::decode_attributes(mesh, cluster, attributes);
   const auto point = [&](std::size_t k) {
     const Vec3f& p = attributes.positions[cluster.triangles[triangle][k]];
     return V{static_cast<Long>(p.x) + mesh.origin[0], static_cast<Long>(p.y) + mesh.origin[1],
@@ -160,7 +160,7 @@ Found look(const Card& card, std::size_t item, std::uint32_t triangle, const Cam
 
 void expect_rays_agree(const test::MaskSceneOptions& options) {
   const Card card = open_cards(options);
-  const Camera camera = card_camera();
+  const run::Camera camera = card_camera();
   const AlphaMasks masks = load_alpha_masks(card.asset);
   ASSERT_FALSE(masks.is_empty());
   const auto opaque = draw_cut(card.asset, card.cut, camera);
@@ -211,7 +211,7 @@ TEST(AlphaTest, ARayFindsTheSameVertexAlpha) {
 TEST(AlphaTest, CutoffsAtTheEndsDrawAllOrNothing) {
   test::MaskSceneOptions options;
   options.has_texture = false;
-  const Camera camera = card_camera();
+  const run::Camera camera = card_camera();
   for (const float cutoff : {1.0F, 1.01F}) {
     options.cutoff = cutoff;
     const Card card = open_cards(options);
@@ -229,7 +229,7 @@ TEST(AlphaTest, CutoffsAtTheEndsDrawAllOrNothing) {
 TEST(AlphaTest, ATransformMovesTheTexels) {
   test::MaskSceneOptions plain, moved;
   moved.transform = R"({"offset":[0.25,-0.5],"rotation":0.3,"scale":[2,-1.5]})";
-  const Camera camera = card_camera();
+  const run::Camera camera = card_camera();
   const Card a = open_cards(plain), b = open_cards(moved);
   const auto first = draw_cut(a.asset, a.cut, camera, load_alpha_masks(a.asset));
   const auto second = draw_cut(b.asset, b.cut, camera, load_alpha_masks(b.asset));
@@ -238,4 +238,4 @@ TEST(AlphaTest, ATransformMovesTheTexels) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::draw

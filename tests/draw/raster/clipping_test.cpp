@@ -9,7 +9,7 @@
 
 #include "raster_support.h"
 
-namespace meshlode::raster {
+namespace meshlode::draw {
 namespace {
 
 using namespace test;
@@ -25,7 +25,7 @@ ScreenSoup clip(const std::vector<std::array<ClipVertex, 3>>& triangles, Culling
 }
 
 TEST(RasterClip, DividesToTheNearestSubpixel) {
-  Random random(1);
+  test::Random random(1);
   for (int i = 0; i < 20000; ++i) {
     const double w = std::ldexp(random.range(1.0, 2.0), random.between(-60, 60));
     const double x = random.range(-100.0, 100.0), y = random.range(-100.0, 100.0);
@@ -38,7 +38,7 @@ TEST(RasterClip, DividesToTheNearestSubpixel) {
 }
 
 TEST(RasterClip, ScalingByAPowerOfTwoChangesNothing) {
-  Random random(2);
+  test::Random random(2);
   for (int i = 0; i < 2000; ++i) {
     const ClipVertex v{random.range(-50, 50), random.range(-50, 50), kNear, random.range(0.6, 40.0)};
     const auto a = snap_vertex(v, kSize);
@@ -78,14 +78,14 @@ TEST(RasterClip, AFloorThroughTheNearPlaneFillsThePictureBelowTheHorizon) {
   const ScreenSoup soup = clip({{{point(-far, -far), point(far, -far), point(far, far)}},
                                 {{point(-far, -far), point(far, far), point(-far, far)}}});
   EXPECT_EQ(soup.polygons.size(), 2u);
-  const std::vector<int> counts = count_coverage(soup, kSize);
+  const std::vector<int> counts = test::count_coverage(soup, kSize);
   for (std::uint32_t y = 0; y < kSize.height; ++y) {
     for (std::uint32_t x = 0; x < kSize.width; ++x) {
       EXPECT_EQ(counts[y * kSize.width + x], y >= kSize.height / 2 ? 1 : 0) << x << "," << y;
     }
   }
   // Depth is that of the plane: at row r the floor is at distance k / (r - middle).
-  const VisibilityBuffer buffer = draw(soup, kSize);
+  const VisibilityBuffer buffer = test::draw(soup, kSize);
   for (std::uint32_t y = 26; y < kSize.height; ++y) {
     const double distance = k / (y + 0.5 - 24.0);
     // Snapping moves the horizon by up to half a subpixel.
@@ -97,7 +97,7 @@ TEST(RasterClip, AFloorThroughTheNearPlaneFillsThePictureBelowTheHorizon) {
 /// A random planar grid in space, seen from inside it: many triangles cross the near plane and the guard band. Each
 /// pixel is covered exactly once where the unclipped plane covers it.
 TEST(RasterClip, ClippedGridsCoverEveryPixelExactlyOnce) {
-  Random random(77);
+  test::Random random(77);
   std::size_t clipped = 0, full = 0, folded = 0;
   for (int round = 0; round < 600; ++round) {
     // Plane through a point in front of the viewer, spanned by two random directions; huge extent in a third of rounds.
@@ -131,7 +131,7 @@ TEST(RasterClip, ClippedGridsCoverEveryPixelExactlyOnce) {
     if (entries(left) != 0 && entries(right) != 0) {
       ++folded;
       const auto pixels = [](const ScreenSoup& s) {
-        const std::vector<int> counts = count_coverage(s, kSize);
+        const std::vector<int> counts = test::count_coverage(s, kSize);
         return std::accumulate(counts.begin(), counts.end(), 0);
       };
       EXPECT_LE(std::min(pixels(left), pixels(right)), 4) << "round " << round;
@@ -139,7 +139,7 @@ TEST(RasterClip, ClippedGridsCoverEveryPixelExactlyOnce) {
     }
     const ScreenSoup soup = clip(triangles);
     clipped += soup.polygons.size();
-    const std::vector<int> counts = count_coverage(soup, kSize);
+    const std::vector<int> counts = test::count_coverage(soup, kSize);
     // The plane's own coverage: the ray through a pixel meets it in front of the near plane, well inside the extent.
     const double n[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
     for (std::uint32_t y = 0; y < kSize.height; ++y) {
@@ -200,7 +200,7 @@ TEST(RasterClip, HugeAndInfiniteCoordinatesAreCountedOrClipped) {
   for (const double far : {1e7, 1e30, 1e140}) {
     const ScreenSoup soup = clip({{{a, b, {0, far, kNear, 1}}}});
     ASSERT_EQ(soup.polygons.size(), 1u) << far;
-    EXPECT_GT(count_drawn(draw(soup, kSize)), 40u * 40u) << far;
+    EXPECT_GT(test::count_drawn(test::draw(soup, kSize)), 40u * 40u) << far;
     for (std::uint32_t i = 0; i < soup.polygons[0].count; ++i) {
       EXPECT_LE(std::abs(soup.polygons[0].v[i].y), (1 << 28) + (1 << 22));
     }
@@ -208,7 +208,7 @@ TEST(RasterClip, HugeAndInfiniteCoordinatesAreCountedOrClipped) {
 }
 
 TEST(RasterClip, RandomGarbageNeverBreaksTheInvariants) {
-  Random random(404);
+  test::Random random(404);
   for (int i = 0; i < 20000; ++i) {
     std::array<ClipVertex, 3> v;
     for (ClipVertex& c : v) {
@@ -218,9 +218,9 @@ TEST(RasterClip, RandomGarbageNeverBreaksTheInvariants) {
     const ScreenSoup soup = clip({v});
     ASSERT_LE(soup.triangles.size() + soup.polygons.size() + soup.not_finite, 1u);
     for (const ScreenPolygon& p : soup.polygons) ASSERT_LE(p.count, ScreenPolygon::kMaxVertices);
-    if (i % 50 == 0) (void)draw(soup, kSize);
+    if (i % 50 == 0) (void)test::draw(soup, kSize);
   }
 }
 
 }  // namespace
-}  // namespace meshlode::raster
+}  // namespace meshlode::draw

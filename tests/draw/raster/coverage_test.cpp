@@ -7,7 +7,7 @@
 
 #include "raster_support.h"
 
-namespace meshlode::raster {
+namespace meshlode::draw {
 namespace {
 
 using namespace test;
@@ -44,17 +44,17 @@ TEST(Raster, TopAndLeftEdgesOwnTheirPixels) {
   add_snapped(a, b, c, Culling::kNone, {0, 0}, kSize, soup);
   add_snapped(a, c, d, Culling::kNone, {0, 1}, kSize, soup);
   const std::vector<std::pair<int, int>> expected = {{10, 10}, {11, 10}, {10, 11}, {11, 11}};
-  EXPECT_EQ(drawn_pixels(draw(soup, kSize)), expected);
+  EXPECT_EQ(drawn_pixels(test::draw(soup, kSize)), expected);
 }
 
 // The diagonal runs from the upper right to the lower left: it is a left edge of the lower triangle only.
 TEST(Raster, DiagonalPixelsBelongToTheTriangleOnTheirRight) {
   const VisibilityBuffer upper =
-      draw(one_triangle(pixel_vertex(0.5, 0.5), pixel_vertex(4.5, 0.5), pixel_vertex(0.5, 4.5)), kSize);
+      test::draw(one_triangle(pixel_vertex(0.5, 0.5), pixel_vertex(4.5, 0.5), pixel_vertex(0.5, 4.5)), kSize);
   const VisibilityBuffer lower =
-      draw(one_triangle(pixel_vertex(4.5, 0.5), pixel_vertex(4.5, 4.5), pixel_vertex(0.5, 4.5)), kSize);
-  EXPECT_EQ(count_drawn(upper), 4u + 3u + 2u + 1u);  // nothing of the diagonal
-  EXPECT_EQ(count_drawn(lower), 1u + 2u + 3u);       // the diagonal, without its ends on the right and bottom sides
+      test::draw(one_triangle(pixel_vertex(4.5, 0.5), pixel_vertex(4.5, 4.5), pixel_vertex(0.5, 4.5)), kSize);
+  EXPECT_EQ(test::count_drawn(upper), 4u + 3u + 2u + 1u);  // nothing of the diagonal
+  EXPECT_EQ(test::count_drawn(lower), 1u + 2u + 3u);       // the diagonal, without its ends on the right and bottom sides
   EXPECT_EQ(lower.item[1 * 64 + 3], 0u);
   EXPECT_EQ(upper.item[1 * 64 + 3], VisibilityBuffer::kNothing);
 }
@@ -69,8 +69,8 @@ TEST(Raster, AVertexOnACentreIsDrawnOnlyByTheTriangleBelowAndRight) {
   add_snapped(m, s, w, Culling::kNone, {2, 0}, kSize, soup);
   add_snapped(m, w, n, Culling::kNone, {3, 0}, kSize, soup);
   ASSERT_EQ(soup.triangles.size(), 4u);
-  EXPECT_EQ(draw(soup, kSize).item[8 * 64 + 8], 1u);
-  const std::vector<int> counts = count_coverage(soup, kSize);
+  EXPECT_EQ(test::draw(soup, kSize).item[8 * 64 + 8], 1u);
+  const std::vector<int> counts = test::count_coverage(soup, kSize);
   EXPECT_LE(*std::max_element(counts.begin(), counts.end()), 1);
 }
 
@@ -78,13 +78,13 @@ TEST(Raster, AreaInPixelsIsTheClosedForm) {
   // Sides on pixel borders: a right triangle of 32 x 32 pixels has 32 * 31 / 2 whole pixels and 32 halves on its
   // diagonal, whose centres go to one side.
   const std::size_t drawn =
-      count_drawn(draw(one_triangle(pixel_vertex(4, 4), pixel_vertex(36, 4), pixel_vertex(4, 36)), kSize));
+      test::count_drawn(test::draw(one_triangle(pixel_vertex(4, 4), pixel_vertex(36, 4), pixel_vertex(4, 36)), kSize));
   const std::size_t other =
-      count_drawn(draw(one_triangle(pixel_vertex(36, 4), pixel_vertex(36, 36), pixel_vertex(4, 36)), kSize));
+      test::count_drawn(test::draw(one_triangle(pixel_vertex(36, 4), pixel_vertex(36, 36), pixel_vertex(4, 36)), kSize));
   EXPECT_EQ(drawn + other, 32u * 32u);
   EXPECT_EQ(std::min(drawn, other), 32u * 31u / 2u);
   // A big triangle at an odd angle: pixels = area up to half the border.
-  Random random(5);
+  test::Random random(5);
   for (int i = 0; i < 200; ++i) {
     constexpr ImageSize size{600, 600};
     const ScreenVertex a{random.between(0, 153600), random.between(0, 153600), 1},
@@ -95,13 +95,13 @@ TEST(Raster, AreaInPixelsIsTheClosedForm) {
       return std::hypot(p.x - q.x, p.y - q.y) / kSubpixels;
     };
     const double border = length(a, b) + length(b, c) + length(c, a);
-    const auto pixels = static_cast<double>(count_drawn(draw(one_triangle(a, b, c, Culling::kNone, size), size)));
+    const auto pixels = static_cast<double>(test::count_drawn(test::draw(one_triangle(a, b, c, Culling::kNone, size), size)));
     EXPECT_NEAR(pixels, area, 0.75 * border + 2.0);
   }
 }
 
 TEST(Raster, FansCoverEveryPixelExactlyOnce) {
-  Random random(20240611);
+  test::Random random(20240611);
   for (int round = 0; round < 400; ++round) {
     // Corners around a middle, by growing angle of less than half a turn: a star-shaped polygon.
     const int corners = random.between(3, 9);
@@ -126,9 +126,9 @@ TEST(Raster, FansCoverEveryPixelExactlyOnce) {
       add_snapped(b, a, middle, Culling::kNone, {0, static_cast<std::uint32_t>(k)}, kSize, reversed);
     }
     if (!is_star) continue;
-    const std::vector<int> counts = count_coverage(soup, kSize);
+    const std::vector<int> counts = test::count_coverage(soup, kSize);
     EXPECT_LE(*std::max_element(counts.begin(), counts.end()), 1) << "round " << round;
-    EXPECT_EQ(counts, count_coverage(reversed, kSize)) << "round " << round;
+    EXPECT_EQ(counts, test::count_coverage(reversed, kSize)) << "round " << round;
     // No hole: a pixel centre strictly inside the polygon is drawn. Independent oracle: winding by crossings in
     // doubles.
     for (std::uint32_t y = 0; y < kSize.height; ++y) {
@@ -149,7 +149,7 @@ TEST(Raster, FansCoverEveryPixelExactlyOnce) {
 }
 
 TEST(Raster, GridsOfTrianglesCoverThePictureExactlyOnce) {
-  Random random(99);
+  test::Random random(99);
   for (int round = 0; round < 20; ++round) {
     // A jittered grid larger than the picture; each cell is split along a random diagonal.
     constexpr int kCells = 12;
@@ -176,7 +176,7 @@ TEST(Raster, GridsOfTrianglesCoverThePictureExactlyOnce) {
         }
       }
     }
-    for (const int count : count_coverage(soup, kSize)) ASSERT_EQ(count, 1) << "round " << round;
+    for (const int count : test::count_coverage(soup, kSize)) ASSERT_EQ(count, 1) << "round " << round;
   }
 }
 
@@ -186,7 +186,7 @@ TEST(Raster, DegenerateTrianglesDrawNothing) {
   EXPECT_TRUE(one_triangle(a, b, b).triangles.empty());
   EXPECT_TRUE(one_triangle(a, b, c).triangles.empty());  // collinear
   EXPECT_EQ(
-      count_drawn(draw(one_triangle(pixel_vertex(3.6, 3.6), pixel_vertex(3.9, 3.6), pixel_vertex(3.6, 3.9)), kSize)),
+      test::count_drawn(test::draw(one_triangle(pixel_vertex(3.6, 3.6), pixel_vertex(3.9, 3.6), pixel_vertex(3.6, 3.9)), kSize)),
       0u);
 }
 
@@ -215,7 +215,7 @@ TEST(Raster, NearerTrianglesWinAndEqualDepthsGoToTheLowestKey) {
   do {
     ScreenSoup shuffled;
     for (const std::size_t i : order) shuffled.triangles.push_back(soup.triangles[i]);
-    const VisibilityBuffer buffer = draw(shuffled, kSize);
+    const VisibilityBuffer buffer = test::draw(shuffled, kSize);
     EXPECT_EQ(buffer.item[10 * 64 + 10], 7u);
     EXPECT_EQ(buffer.triangle[10 * 64 + 10], 0u);
     EXPECT_EQ(buffer.depth[10 * 64 + 10], 900u);
@@ -224,7 +224,7 @@ TEST(Raster, NearerTrianglesWinAndEqualDepthsGoToTheLowestKey) {
 
 TEST(Raster, AVertexAtTheFarEndIsStillDrawn) {
   const ScreenSoup soup = one_triangle(pixel_vertex(2, 2, 0), pixel_vertex(60, 2, 0), pixel_vertex(2, 60, 0));
-  EXPECT_EQ(draw(soup, kSize).item[10 * 64 + 10], 0u);
+  EXPECT_EQ(test::draw(soup, kSize).item[10 * 64 + 10], 0u);
 }
 
 TEST(Raster, DepthIsInterpolatedExactly) {
@@ -233,14 +233,14 @@ TEST(Raster, DepthIsInterpolatedExactly) {
   ScreenSoup soup;
   add_snapped(vertex(0, 0), vertex(64, 0), vertex(64, 64), Culling::kNone, {0, 0}, kSize, soup);
   add_snapped(vertex(0, 0), vertex(64, 64), vertex(0, 64), Culling::kNone, {0, 1}, kSize, soup);
-  const VisibilityBuffer buffer = draw(soup, kSize);
+  const VisibilityBuffer buffer = test::draw(soup, kSize);
   for (std::uint32_t y = 0; y < 64; ++y) {
     for (std::uint32_t x = 0; x < 64; ++x) ASSERT_EQ(buffer.depth[y * 64 + x], 1000 * x + 500 + 38 * y + 19);
   }
 }
 
 TEST(Raster, WideAndNarrowDepthArithmeticAgree) {
-  Random random(3);
+  test::Random random(3);
   for (int i = 0; i < 2000; ++i) {
     ScreenTriangle t;
     for (ScreenVertex& v : t.v) v.depth = static_cast<std::uint32_t>(random.next());
@@ -260,7 +260,7 @@ TEST(Raster, OnePixelAndOddPicturesAreDrawn) {
     ScreenSoup soup;
     const ScreenVertex a{-100000, -100000, 5}, b{500000, -100000, 5}, c{-100000, 500000, 5};
     add_snapped(a, b, c, Culling::kNone, {0, 0}, size, soup);
-    EXPECT_EQ(count_drawn(draw(soup, size)), std::size_t{size.width} * size.height);
+    EXPECT_EQ(test::count_drawn(test::draw(soup, size)), std::size_t{size.width} * size.height);
   }
 }
 
@@ -274,8 +274,8 @@ TEST(Raster, LargestCoordinatesDoNotOverflow) {
   constexpr std::int32_t far = 1 << 28;
   const ScreenSoup soup = one_triangle({-far, -far, 7}, {far, -far, 7}, {-far, far, 7});
   const ScreenSoup rest = one_triangle({far, -far, 7}, {far, far, 7}, {-far, far, 7});
-  const std::size_t drawn = count_drawn(draw(soup, kSize));
-  EXPECT_EQ(drawn + count_drawn(draw(rest, kSize)), 64u * 64u);
+  const std::size_t drawn = test::count_drawn(test::draw(soup, kSize));
+  EXPECT_EQ(drawn + test::count_drawn(test::draw(rest, kSize)), 64u * 64u);
 }
 
 TEST(Raster, PixelsBetweenAreThoseWhoseCentresLieThere) {
@@ -291,4 +291,4 @@ TEST(Raster, PixelsBetweenAreThoseWhoseCentresLieThere) {
 }
 
 }  // namespace
-}  // namespace meshlode::raster
+}  // namespace meshlode::draw

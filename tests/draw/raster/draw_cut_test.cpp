@@ -12,17 +12,17 @@
 #include "draw/raster/raster.h"
 #include "support/sample_asset.h"
 
-namespace meshlode {
+namespace meshlode::draw {
 namespace {
 
-Asset open_asset(std::vector<std::uint8_t> bytes) {
-  Result<Asset> asset = Asset::from_vector(std::move(bytes));
+run::Asset open_asset(std::vector<std::uint8_t> bytes) {
+  Result<run::Asset> asset = run::Asset::from_vector(std::move(bytes));
   EXPECT_TRUE(asset.ok()) << asset.error().message();
   return std::move(asset.value());
 }
 
-Camera ball_camera() {
-  Camera camera;
+run::Camera ball_camera() {
+  run::Camera camera;
   camera.eye = {1.0, 2.0, 20.0};
   camera.target = {2.0, 0.0, 7.0};
   camera.near_distance = 0.1;
@@ -33,12 +33,12 @@ Camera ball_camera() {
 
 struct Hit {
   double distance = std::numeric_limits<double>::infinity();  ///< along the view
-  ClusterInstance entry;
+  run::ClusterInstance entry;
   double margin = 0.0;  ///< smallest barycentric weight: how far from an edge
 };
 
 /// Moeller and Trumbore's ray against every triangle of the cut, culling as the rasterizer says it does.
-std::vector<Hit> cast_rays(const Asset& asset, std::span<const ClusterInstance> cut, const Camera& camera, double px,
+std::vector<Hit> cast_rays(const run::Asset& asset, std::span<const run::ClusterInstance> cut, const run::Camera& camera, double px,
                            double py) {
   const Vec3d forward = glm::normalize(camera.target - camera.eye);
   const Vec3d right = glm::normalize(glm::cross(forward, Vec3d(0, 1, 0)));
@@ -51,12 +51,12 @@ std::vector<Hit> cast_rays(const Asset& asset, std::span<const ClusterInstance> 
     const double unit = 2.0 * std::tan(0.5 * camera.fovy) / camera.height;
     ray += right * ((px - 0.5 * camera.width) * unit) - up * ((py - 0.5 * camera.height) * unit);
   }
-  const auto clusters = decode_all(asset);
+  const auto clusters = run::decode_all(asset);
   std::vector<Hit> hits;
-  for (const ClusterInstance& entry : cut) {
+  for (const run::ClusterInstance& entry : cut) {
     const format::InstanceRecord& instance = asset.instances()[entry.instance.value];
     const format::MeshRecord& mesh = asset.meshes()[instance.mesh];
-    const DecodedCluster& cluster = (*clusters)[entry.cluster.value];
+    const run::DecodedCluster& cluster = (*clusters)[entry.cluster.value];
     const double step = std::ldexp(static_cast<double>(mesh.grid.mantissa), mesh.grid.log2);
     const auto world = [&](std::uint32_t v) {
       const Vec3d p = Vec3d(mesh.origin[0], mesh.origin[1], mesh.origin[2]) + step * Vec3d(cluster.position(v));
@@ -86,8 +86,8 @@ std::vector<Hit> cast_rays(const Asset& asset, std::span<const ClusterInstance> 
   return hits;
 }
 
-void expect_rays_agree(const Asset& asset, const Camera& camera, double pixel_error) {
-  const std::vector<ClusterInstance> cut = select_flat(asset, camera, pixel_error);
+void expect_rays_agree(const run::Asset& asset, const run::Camera& camera, double pixel_error) {
+  const std::vector<run::ClusterInstance> cut = run::select_flat(asset, camera, pixel_error);
   const Result<VisibilityBuffer> buffer = draw_cut(asset, cut, camera);
   ASSERT_TRUE(buffer.ok()) << buffer.error().message();
   std::size_t compared = 0, drawn = 0, agreed = 0;
@@ -118,13 +118,13 @@ void expect_rays_agree(const Asset& asset, const Camera& camera, double pixel_er
 }
 
 TEST(RasterCut, AgreesWithARayCaster) {
-  const Asset asset = open_asset(test::sample_asset_bytes());
+  const run::Asset asset = open_asset(test::sample_asset_bytes());
   for (const double pixel_error : {0.0, 1.0, 1e6}) expect_rays_agree(asset, ball_camera(), pixel_error);
 }
 
 TEST(RasterCut, AgreesWithARayCasterThroughTheNearPlane) {
-  const Asset asset = open_asset(test::sample_asset_bytes());
-  Camera camera = ball_camera();
+  const run::Asset asset = open_asset(test::sample_asset_bytes());
+  run::Camera camera = ball_camera();
   camera.eye = {0.1, 0.2, 7.1};  // close to the ball, or in it
   camera.target = {4.0, 0.0, 8.0};
   camera.fovy = 1.8;
@@ -132,17 +132,17 @@ TEST(RasterCut, AgreesWithARayCasterThroughTheNearPlane) {
 }
 
 TEST(RasterCut, AgreesWithARayCasterInParallelProjection) {
-  const Asset asset = open_asset(test::sample_asset_bytes());
-  Camera camera = ball_camera();
+  const run::Asset asset = open_asset(test::sample_asset_bytes());
+  run::Camera camera = ball_camera();
   camera.is_orthographic = true;
   camera.ortho_height = 8.0;
   expect_rays_agree(asset, camera, 1.0);
 }
 
 TEST(RasterCut, IsTheSameForEveryNumberOfThreads) {
-  const Asset asset = open_asset(test::sample_asset_bytes());
-  const Camera camera = ball_camera();
-  const std::vector<ClusterInstance> cut = select_flat(asset, camera, 0.0);
+  const run::Asset asset = open_asset(test::sample_asset_bytes());
+  const run::Camera camera = ball_camera();
+  const std::vector<run::ClusterInstance> cut = run::select_flat(asset, camera, 0.0);
   std::optional<VisibilityBuffer> first;
   std::vector<std::uint8_t> first_png;
   for (const std::size_t threads : {1, 2, 4}) {
@@ -158,13 +158,13 @@ TEST(RasterCut, IsTheSameForEveryNumberOfThreads) {
 
 TEST(RasterCut, AMirroredBallShowsItsOutside) {
   // The ball's front and its mirror image's: if culling did not flip, the far inside would be seen, at larger distance.
-  const Asset asset = open_asset(test::sample_asset_bytes());
-  Camera camera = ball_camera();
+  const run::Asset asset = open_asset(test::sample_asset_bytes());
+  run::Camera camera = ball_camera();
   camera.eye = {4.0, 0.0, 30.0};
   camera.target = {4.0, 0.0, 8.0};
-  const std::vector<ClusterInstance> cut = select_flat(asset, camera, 0.0);
-  std::vector<ClusterInstance> mirrored;
-  for (const ClusterInstance& entry : cut) {
+  const std::vector<run::ClusterInstance> cut = run::select_flat(asset, camera, 0.0);
+  std::vector<run::ClusterInstance> mirrored;
+  for (const run::ClusterInstance& entry : cut) {
     if ((asset.instances()[entry.instance.value].flags & format::kInstanceMirrored) != 0) mirrored.push_back(entry);
   }
   ASSERT_FALSE(mirrored.empty());
@@ -176,8 +176,8 @@ TEST(RasterCut, AMirroredBallShowsItsOutside) {
 }
 
 TEST(RasterCut, ASingularInstanceIsNotDrawn) {
-  const Asset asset = open_asset(test::sample_asset_bytes());
-  std::vector<ClusterInstance> cut;
+  const run::Asset asset = open_asset(test::sample_asset_bytes());
+  std::vector<run::ClusterInstance> cut;
   for (std::size_t i = 0; i < asset.instances().size(); ++i) {
     const format::InstanceRecord& instance = asset.instances()[i];
     if ((instance.flags & format::kInstanceSingular) == 0) continue;
@@ -190,51 +190,51 @@ TEST(RasterCut, ASingularInstanceIsNotDrawn) {
 }
 
 TEST(RasterCut, BadCamerasAreRefusedByName) {
-  const Asset asset = open_asset(test::sample_asset_bytes());
+  const run::Asset asset = open_asset(test::sample_asset_bytes());
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
   const auto refused = [&](auto change, const char* field) {
-    Camera camera = ball_camera();
+    run::Camera camera = ball_camera();
     change(camera);
     const Result<VisibilityBuffer> buffer = draw_cut(asset, {}, camera);
     ASSERT_FALSE(buffer.ok()) << field;
     EXPECT_EQ(buffer.error().code, ErrorCode::kUsage);
     EXPECT_NE(buffer.error().where.find(field), std::string::npos) << buffer.error().where;
   };
-  refused([&](Camera& c) { c.eye.y = nan; }, "eye");
-  refused([&](Camera& c) { c.target.x = inf; }, "target");
-  refused([&](Camera& c) { c.target = c.eye; }, "target");
-  refused([&](Camera& c) { c.fovy = nan; }, "fovy");
-  refused([&](Camera& c) { c.fovy = 0.0; }, "fovy");
-  refused([&](Camera& c) { c.fovy = 3.2; }, "fovy");
-  refused([&](Camera& c) { c.near_distance = 0.0; }, "near");
-  refused([&](Camera& c) { c.near_distance = nan; }, "near");
-  refused([&](Camera& c) { c.is_orthographic = true, c.ortho_height = -1.0; }, "height");
-  refused([&](Camera& c) { c.width = 0; }, "size");
-  refused([&](Camera& c) { c.height = 20000; }, "size");
+  refused([&](run::Camera& c) { c.eye.y = nan; }, "eye");
+  refused([&](run::Camera& c) { c.target.x = inf; }, "target");
+  refused([&](run::Camera& c) { c.target = c.eye; }, "target");
+  refused([&](run::Camera& c) { c.fovy = nan; }, "fovy");
+  refused([&](run::Camera& c) { c.fovy = 0.0; }, "fovy");
+  refused([&](run::Camera& c) { c.fovy = 3.2; }, "fovy");
+  refused([&](run::Camera& c) { c.near_distance = 0.0; }, "near");
+  refused([&](run::Camera& c) { c.near_distance = nan; }, "near");
+  refused([&](run::Camera& c) { c.is_orthographic = true, c.ortho_height = -1.0; }, "height");
+  refused([&](run::Camera& c) { c.width = 0; }, "size");
+  refused([&](run::Camera& c) { c.height = 20000; }, "size");
 }
 
 TEST(RasterCut, IdsThatTheAssetDoesNotHaveAreRefused) {
-  const Asset asset = open_asset(test::sample_asset_bytes());
-  const ClusterInstance first{InstanceId(0u), ClusterId(asset.meshes()[asset.instances()[0].mesh].first_cluster)};
+  const run::Asset asset = open_asset(test::sample_asset_bytes());
+  const run::ClusterInstance first{InstanceId(0u), ClusterId(asset.meshes()[asset.instances()[0].mesh].first_cluster)};
   EXPECT_TRUE(draw_cut(asset, std::vector{first}, ball_camera()).ok());
-  for (const ClusterInstance bad :
-       {ClusterInstance{InstanceId(99u), first.cluster}, ClusterInstance{first.instance, ClusterId(99999u)},
-        ClusterInstance{InstanceId(1u), first.cluster}, ClusterInstance{}}) {
+  for (const run::ClusterInstance bad :
+       {run::ClusterInstance{InstanceId(99u), first.cluster}, run::ClusterInstance{first.instance, ClusterId(99999u)},
+        run::ClusterInstance{InstanceId(1u), first.cluster}, run::ClusterInstance{}}) {
     EXPECT_FALSE(draw_cut(asset, std::vector{bad}, ball_camera()).ok());
   }
 }
 
 TEST(RasterCut, LooksStraightDownAndUp) {
-  const Asset asset = open_asset(test::sample_asset_bytes());
+  const run::Asset asset = open_asset(test::sample_asset_bytes());
   for (const double side : {1.0, -1.0}) {
-    Camera camera = ball_camera();
+    run::Camera camera = ball_camera();
     camera.eye = {0.0, 12.0 * side, 6.0};
     camera.target = {0.0, 0.0, 6.0};
-    const Result<VisibilityBuffer> buffer = draw_cut(asset, select_flat(asset, camera, 0.0), camera);
+    const Result<VisibilityBuffer> buffer = draw_cut(asset, run::select_flat(asset, camera, 0.0), camera);
     ASSERT_TRUE(buffer.ok());
     EXPECT_NE(buffer->item[30 * 97 + 48], VisibilityBuffer::kNothing);
   }
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::draw

@@ -8,7 +8,7 @@
 #include "draw/raster/coverage.h"
 #include "draw/raster/screen.h"
 
-namespace meshlode::raster::test {
+namespace meshlode::draw::test {
 
 /// splitmix64.
 class Random {
@@ -66,4 +66,4 @@ inline ClipVertex at_pixel(double x, double y, ImageSize size, double w = 1.0, d
   return {(x - 0.5 * size.width) * w, (y - 0.5 * size.height) * w, near_distance, w};
 }
 
-}  // namespace meshlode::raster::test
+}  // namespace meshlode::draw::test

@@ -10,10 +10,8 @@
 #include "scene/samples/write_png.h"
 #include "support/mask_scene.h"
 
-namespace meshlode {
+namespace meshlode::draw {
 namespace {
-
-using raster::ClipVertex;
 
 TEST(PixelWeights, DerivativesAreTheLimitOfDifferences) {
   const ClipVertex triangles[][3] = {
@@ -22,8 +20,8 @@ TEST(PixelWeights, DerivativesAreTheLimitOfDifferences) {
       {{20.0, -20.0, 0.1, -0.5}, {50.0, 60.0, 0.1, 3.0}, {-80.0, 30.0, 0.1, 2.0}}};  // behind the viewer
   for (const auto& t : triangles) {
     const double px = 6.0, py = 11.0, h = 1e-5;
-    const auto at = [&](double x, double y) { return raster::find_pixel_weights(t[0], t[1], t[2], x, y); };
-    const raster::PixelWeights here = at(px, py);
+    const auto at = [&](double x, double y) { return find_pixel_weights(t[0], t[1], t[2], x, y); };
+    const PixelWeights here = at(px, py);
     for (int k = 0; k < 3; ++k) {
       ASSERT_GT(here.at[k], 0.0) << "the point lies inside";
       EXPECT_NEAR(here.right[k], (at(px + h, py).at[k] - at(px - h, py).at[k]) / (2.0 * h), 1e-7);
@@ -35,37 +33,37 @@ TEST(PixelWeights, DerivativesAreTheLimitOfDifferences) {
 }
 
 struct CardOptions {
-  samples::Texture base, normal;  ///< empty: none
+  scene::Texture base, normal;  ///< empty: none
   bool is_mirrored = false;       ///< u runs the other way
 };
 
 /// A square from -1 to 1 in the xy plane, seen along -z; v points down.
-Scene card_scene(const CardOptions& options) {
-  Scene scene;
+scene::Scene card_scene(const CardOptions& options) {
+  scene::Scene scene;
   scene.source_name = "card.glb";
   scene.source_hash = "00000000000000000000000000000000";
-  Primitive card;
+  scene::Primitive card;
   card.positions = {{-1.0, -1.0, 0.0}, {1.0, -1.0, 0.0}, {1.0, 1.0, 0.0}, {-1.0, 1.0, 0.0}};
   const float left = options.is_mirrored ? 1.0F : 0.0F;
   card.uvs[0] = {{left, 1.0F}, {1.0F - left, 1.0F}, {1.0F - left, 0.0F}, {left, 0.0F}};
   card.indices = {0, 1, 2, 0, 2, 3};
   card.material = MaterialId(0u);
-  SourceMesh mesh;
+  scene::SourceMesh mesh;
   mesh.name = "card";
   mesh.primitives = {card};
   scene.meshes = {mesh};
-  SceneMaterial material;
+  scene::SceneMaterial material;
   material.source_index = 0;
   material.uv_sets_used = 1;
   scene.materials = {material};
   std::string info, images, textures;
-  const auto add = [&](const samples::Texture& texture, const std::string& key) {
+  const auto add = [&](const scene::Texture& texture, const std::string& key) {
     if (texture.rgba.empty()) return std::string();
     const std::string index = std::to_string(scene.blobs.size());
-    SceneBlob blob;
+    scene::SceneBlob blob;
     blob.name = key + ".png";
     blob.mime_type = "image/png";
-    blob.bytes = samples::encode_png(texture);
+    blob.bytes = scene::encode_png(texture);
     scene.blobs.push_back(blob);
     textures += (textures.empty() ? "" : ",") + std::string(R"({"sampler":0,"source":)") + index + "}";
     images += (images.empty() ? "" : ",") + std::string(R"({"blob":)") + index + "}";
@@ -80,7 +78,7 @@ Scene card_scene(const CardOptions& options) {
   }
   scene.document = R"({"asset":{"version":"2.0"},"materials":[{)" + info + R"(}],"textures":[)" + textures +
                    R"(],"samplers":[{"wrapS":33071,"wrapT":33071}],"images":[)" + images + "]}";
-  SceneInstance instance;
+  scene::SceneInstance instance;
   instance.name = "card";
   instance.mesh = MeshId(0u);
   scene.instances = {instance};
@@ -94,15 +92,15 @@ struct Picture {
 
 /// 64 × 64 pixels, orthographic: the card is the picture's middle 32 × 32.
 Picture picture_of(const CardOptions& options) {
-  const auto asset = Asset::from_vector(test::built(card_scene(options)));
+  const auto asset = run::Asset::from_vector(test::built(card_scene(options)));
   EXPECT_TRUE(asset);
-  Camera camera;
+  run::Camera camera;
   camera.eye = {0.0, 0.0, 5.0};
   camera.target = {0.0, 0.0, 0.0};
   camera.is_orthographic = true;
   camera.ortho_height = 4.0;
   camera.width = camera.height = 64;
-  const auto cut = select_flat(*asset, camera, 0.0);
+  const auto cut = run::select_flat(*asset, camera, 0.0);
   auto visibility = draw_cut(*asset, cut, camera);
   EXPECT_TRUE(visibility);
   const TextureSet textures = load_textures(*asset);
@@ -116,8 +114,8 @@ std::uint8_t channel(const Picture& picture, std::uint32_t x, std::uint32_t y, s
   return picture.image.rgba[4 * (std::size_t{y} * picture.image.width + x) + k];
 }
 
-samples::Texture plain(std::uint32_t size, std::array<std::uint8_t, 4> color) {
-  samples::Texture out{size, size, {}};
+scene::Texture plain(std::uint32_t size, std::array<std::uint8_t, 4> color) {
+  scene::Texture out{size, size, {}};
   for (std::uint32_t i = 0; i < size * size; ++i) {
     for (const std::uint8_t c : color) out.rgba.push_back(c);
   }
@@ -126,7 +124,7 @@ samples::Texture plain(std::uint32_t size, std::array<std::uint8_t, 4> color) {
 
 /// 8 × 8 texels on 32 × 32 pixels: in the middle of a texel's four pixels its colour is the light's share of it.
 TEST(Textured, ATexelIsSeenWhereItLies) {
-  samples::Texture base{8, 8, {}};
+  scene::Texture base{8, 8, {}};
   for (std::uint32_t y = 0; y < 8; ++y) {
     for (std::uint32_t x = 0; x < 8; ++x) {
       const bool is_white = ((x * 5 + y * 3 + x * y) % 3) == 0;  // neighbours differ here and there
@@ -196,4 +194,4 @@ TEST(Textured, NormalMapsLeanAsTheirPictureSays) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::draw

@@ -9,26 +9,26 @@
 #include "draw/raster/raster.h"
 #include "support/sample_asset.h"
 
-namespace meshlode {
+namespace meshlode::draw {
 namespace {
 
 struct Drawn {
-  Asset asset;
-  Camera camera;
-  std::vector<ClusterInstance> cut;
+  run::Asset asset;
+  run::Camera camera;
+  std::vector<run::ClusterInstance> cut;
   VisibilityBuffer visibility;
 };
 
 Drawn draw_sample() {
-  Result<Asset> asset = Asset::from_vector(test::sample_asset_bytes());
+  Result<run::Asset> asset = run::Asset::from_vector(test::sample_asset_bytes());
   EXPECT_TRUE(asset.ok());
-  Camera camera;
+  run::Camera camera;
   camera.eye = {1.0, 2.0, 40.0};
   camera.target = {2.0, 0.0, 7.0};
   camera.near_distance = 0.1;
   camera.width = 101;
   camera.height = 75;
-  std::vector<ClusterInstance> cut = select_flat(*asset, camera, 0.0);
+  std::vector<run::ClusterInstance> cut = run::select_flat(*asset, camera, 0.0);
   Result<VisibilityBuffer> visibility = draw_cut(*asset, cut, camera);
   EXPECT_TRUE(visibility.ok());
   return {std::move(*asset), camera, std::move(cut), std::move(*visibility)};
@@ -57,17 +57,17 @@ TEST(RasterView, EveryViewPaintsExactlyWhatIsVisible) {
 
 TEST(RasterView, LevelsHaveDifferentColours) {
   std::set<std::array<double, 3>> colors;
-  for (std::uint32_t level = 0; level < 12; ++level) colors.insert(raster::level_color(level, 12));
+  for (std::uint32_t level = 0; level < 12; ++level) colors.insert(level_color(level, 12));
   EXPECT_EQ(colors.size(), 12u);
-  EXPECT_GT(raster::level_color(0, 5)[2], raster::level_color(0, 5)[0]);  // fine is blue
-  EXPECT_GT(raster::level_color(4, 5)[0], raster::level_color(4, 5)[2]);  // coarse is red
-  EXPECT_EQ(raster::level_color(0, 1), raster::level_color(0, 9));
+  EXPECT_GT(level_color(0, 5)[2], level_color(0, 5)[0]);  // fine is blue
+  EXPECT_GT(level_color(4, 5)[0], level_color(4, 5)[2]);  // coarse is red
+  EXPECT_EQ(level_color(0, 1), level_color(0, 9));
 }
 
 TEST(RasterView, HashColoursAreBrightAndDiffer) {
   std::set<std::array<double, 3>> colors;
   for (std::uint32_t i = 0; i < 1000; ++i) {
-    const raster::Rgb color = raster::hash_color(i, 7);
+    const Rgb color = hash_color(i, 7);
     EXPECT_GE(*std::ranges::max_element(color), 0.55);
     for (const double c : color) EXPECT_TRUE(c >= 0.0 && c <= 1.0);
     colors.insert(color);
@@ -78,7 +78,7 @@ TEST(RasterView, HashColoursAreBrightAndDiffer) {
 TEST(RasterView, LegendIsLeftOutWhereThereIsNoRoom) {
   for (const std::uint32_t side : {1u, 5u, 12u, 40u, 200u}) {
     Image image{side, side, std::vector<std::uint8_t>(4 * std::size_t{side} * side, 9)};
-    raster::draw_level_legend(image, 12);
+    draw_level_legend(image, 12);
     const bool is_drawn = std::ranges::any_of(image.rgba, [](std::uint8_t c) { return c != 9; });
     EXPECT_EQ(is_drawn, side >= 200);
   }
@@ -99,4 +99,4 @@ TEST(RasterView, PngHasItsSignatureSizeAndChannels) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::draw

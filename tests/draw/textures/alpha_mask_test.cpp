@@ -5,11 +5,11 @@
 #include "support/mask_scene.h"
 #include "draw/textures/alpha_mask.h"
 
-namespace meshlode {
+namespace meshlode::draw {
 namespace {
 
-Asset open(const Scene& scene) {
-  auto asset = Asset::from_vector(test::built(scene));
+run::Asset open(const scene::Scene& scene) {
+  auto asset = run::Asset::from_vector(test::built(scene));
   EXPECT_TRUE(asset) << (asset ? "" : asset.error().message());
   return std::move(asset).value();
 }
@@ -32,7 +32,7 @@ TEST(AlphaMask, TheThresholdIsTheLeastProductThatReachesTheCutoff) {
 }
 
 TEST(AlphaMask, MaterialsShareAnImageAndOpaqueOnesHaveNoMask) {
-  const Asset asset = open(test::mask_scene({}));
+  const run::Asset asset = open(test::mask_scene({}));
   const AlphaMasks masks = load_alpha_masks(asset);
   EXPECT_TRUE(masks.warnings.empty());
   ASSERT_EQ(masks.masks.size(), 9u);
@@ -64,8 +64,8 @@ TEST(AlphaMask, WhatAlwaysPassesIsNoMask) {
   test::MaskSceneOptions options;
   options.cutoff = 0.0F;
   EXPECT_TRUE(load_alpha_masks(open(test::mask_scene(options))).is_empty());
-  Scene scene = test::mask_scene({});
-  for (SceneMaterial& m : scene.materials) m.alpha_mode = AlphaMode::kBlend;
+  scene::Scene scene = test::mask_scene({});
+  for (scene::SceneMaterial& m : scene.materials) m.alpha_mode = scene::AlphaMode::kBlend;
   const AlphaMasks masks = load_alpha_masks(open(scene));
   EXPECT_TRUE(masks.is_empty());
   EXPECT_TRUE(masks.images.empty()) << "no image is decoded that nobody asks for";
@@ -79,7 +79,7 @@ TEST(AlphaMask, AnImageThatCannotBeHadIsOpaqueAndSaysSo) {
   ASSERT_EQ(broken.masks.size(), 9u);
   for (const AlphaMask& mask : broken.masks) EXPECT_EQ(mask.image, format::kNone);
 
-  Scene scene = test::mask_scene({});
+  scene::Scene scene = test::mask_scene({});
   const std::size_t at = scene.document.find(R"("blob":0)");
   ASSERT_NE(at, std::string::npos);
   scene.document.replace(at, 8, R"("blob":9)");
@@ -89,4 +89,4 @@ TEST(AlphaMask, AnImageThatCannotBeHadIsOpaqueAndSaysSo) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::draw

@@ -15,16 +15,16 @@
 #include "draw/textures/alpha_mask.h"
 #include "draw/textures/texture_set.h"
 
-namespace meshlode {
+namespace meshlode::draw {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
 /// The mask scene; all its cards share one image as base colour and as mask.
-Asset scene_with(Bytes image) {
+run::Asset scene_with(Bytes image) {
   test::MaskSceneOptions options;
   options.image = std::move(image);
-  auto asset = Asset::from_vector(test::built(test::mask_scene(options)));
+  auto asset = run::Asset::from_vector(test::built(test::mask_scene(options)));
   EXPECT_TRUE(asset);
   return std::move(asset).value();
 }
@@ -46,7 +46,7 @@ TEST(ImageBudget, TakesWhatThereIsAndGivesItBack) {
 }
 
 TEST(ImageBudget, ATextureIsLoadedWithItsLevelsOrNotAtAll) {
-  const Asset asset = scene_with(grey_png(64));
+  const run::Asset asset = scene_with(grey_png(64));
   const std::uint64_t texels = 64 * 64 + 32 * 32 + 16 * 16 + 8 * 8 + 4 * 4 + 2 * 2 + 1;
   EXPECT_EQ(count_mip_texels(64, 64), texels);
   ImageBudget enough(4 * texels);
@@ -71,7 +71,7 @@ TEST(ImageBudget, ATextureIsLoadedWithItsLevelsOrNotAtAll) {
 TEST(ImageBudget, MasksAndTexturesShareIt) {
   Bytes rows(std::size_t{4} * 64 * 64);
   std::iota(rows.begin(), rows.end(), std::uint8_t{0});
-  const Asset asset = scene_with(test::make_png(64, 64, {.color_type = 6}, rows));
+  const run::Asset asset = scene_with(test::make_png(64, 64, {.color_type = 6}, rows));
   const std::uint64_t mask = 64 * 64, texture = 4 * count_mip_texels(64, 64);
   ImageBudget both(mask + texture);
   const AlphaMasks masks = load_alpha_masks(asset, both);
@@ -99,7 +99,7 @@ TEST(ImageBudget, CoefficientsOfAProgressiveJpegCount) {
   EXPECT_EQ(plain->decoder_bytes, 0u);
   EXPECT_GE(progressive->decoder_bytes, 2u * 3 * 104 * 40);
   EXPECT_LE(progressive->decoder_bytes, 2u * 3 * 128 * 64);
-  const Asset asset = scene_with(test::make_jpeg(100, 40, 3, true, pixels));
+  const run::Asset asset = scene_with(test::make_jpeg(100, 40, 3, true, pixels));
   const std::uint64_t bytes = 4 * count_mip_texels(100, 40) + progressive->decoder_bytes;
   ImageBudget enough(bytes), short_by_one(bytes - 1);
   EXPECT_EQ(load_textures(asset, enough).images.size(), 1u);
@@ -127,7 +127,7 @@ TEST(ImageBudget, AFewKilobytesDoNotTakeGigabytes) {
   const std::uint32_t side = 16384;
   const Bytes png = test::make_png(side, side, {.color_type = 0, .bit_depth = 1}, Bytes(std::size_t{side} * side / 8, 0));
   ASSERT_LT(png.size(), 50000u);
-  const Asset asset = scene_with(png);
+  const run::Asset asset = scene_with(png);
   const long before = peak_of([] {});
   const long peak = peak_of([&] {
     ImageBudget budget;
@@ -139,7 +139,7 @@ TEST(ImageBudget, AFewKilobytesDoNotTakeGigabytes) {
 TEST(ImageBudget, DecodingTakesWhatItIsCountedAs) {
   const std::uint32_t side = 4096;
   const Bytes png = test::make_png(side, side, {.color_type = 0, .bit_depth = 1}, Bytes(std::size_t{side} * side / 8, 0));
-  const Asset asset = scene_with(png);
+  const run::Asset asset = scene_with(png);
   const std::uint64_t counted = 4 * count_mip_texels(side, side);
   const long before = peak_of([] {});
   const long peak = peak_of([&] {
@@ -150,4 +150,4 @@ TEST(ImageBudget, DecodingTakesWhatItIsCountedAs) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::draw

@@ -9,7 +9,7 @@
 
 #include "image_samples.h"
 
-namespace meshlode {
+namespace meshlode::draw {
 namespace {
 
 using test::make_jpeg;
@@ -71,7 +71,7 @@ TEST(Png, EveryKindIsRead) {
   for (const auto& [kind, channels] : cases) {
     const auto bits = static_cast<std::uint32_t>(kind.bit_depth);
     SCOPED_TRACE("type " + std::to_string(kind.color_type) + ", " + std::to_string(bits) + " bits");
-    const auto image = decode_image(make_png(kWidth, kHeight, kind, pack_rows(channels, bits)));
+    const auto image = decode_image(test::make_png(kWidth, kHeight, kind, pack_rows(channels, bits)));
     ASSERT_TRUE(image) << image.error().message();
     ASSERT_EQ(image->width, kWidth);
     ASSERT_EQ(image->height, kHeight);
@@ -107,7 +107,7 @@ TEST(Jpeg, GreyAndColourAreReadNearlyAsTheyWere) {
           }
         }
       }
-      const auto image = decode_image(make_jpeg(kWidth, kHeight, components, is_progressive, pixels));
+      const auto image = decode_image(test::make_jpeg(kWidth, kHeight, components, is_progressive, pixels));
       ASSERT_TRUE(image) << image.error().message();
       ASSERT_EQ(image->width, kWidth);
       ASSERT_EQ(image->height, kHeight);
@@ -124,10 +124,10 @@ TEST(Jpeg, GreyAndColourAreReadNearlyAsTheyWere) {
 
 TEST(Jpeg, FourColoursAreRefused) {
   const std::vector<std::uint8_t> pixels(4 * kWidth * kHeight, 100);
-  const auto image = decode_image(make_jpeg(kWidth, kHeight, 4, false, pixels));
+  const auto image = decode_image(test::make_jpeg(kWidth, kHeight, 4, false, pixels));
   ASSERT_FALSE(image);
   EXPECT_EQ(image.error().code, ErrorCode::kUnsupported);
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::draw

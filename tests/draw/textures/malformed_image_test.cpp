@@ -5,7 +5,7 @@
 #include "draw/textures/image.h"
 #include "image_samples.h"
 
-namespace meshlode {
+namespace meshlode::draw {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
@@ -113,4 +113,4 @@ TEST(Image, OtherFormatsAreRefused) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::draw

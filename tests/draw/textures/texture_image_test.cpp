@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace meshlode {
+namespace meshlode::draw {
 namespace {
 
 DecodedImage image_of(std::uint32_t width, std::uint32_t height, std::uint8_t (*value)(std::uint32_t, std::uint32_t)) {
@@ -113,4 +113,4 @@ TEST(TextureImage, AnyFootprintIsHarmless) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::draw

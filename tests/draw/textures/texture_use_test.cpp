@@ -7,14 +7,14 @@
 #include "support/mask_scene.h"
 #include "draw/textures/texture_use.h"
 
-namespace meshlode {
+namespace meshlode::draw {
 namespace {
 
 /// Of card 0, material 1 of the source.
 MaterialTextures textures_with(const std::string& document_materials, const std::string& rest) {
-  Scene scene = test::mask_scene({});
+  scene::Scene scene = test::mask_scene({});
   scene.document = R"({"asset":{"version":"2.0"},"materials":[{},)" + document_materials + "]" + rest + "}";
-  const auto asset = Asset::from_vector(test::built(scene));
+  const auto asset = run::Asset::from_vector(test::built(scene));
   EXPECT_TRUE(asset);
   const auto all = read_material_textures(*asset);
   EXPECT_EQ(all.size(), asset->materials().size());
@@ -97,4 +97,4 @@ TEST(TextureUse, NonsenseCountsAsNotThere) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::draw

@@ -18,29 +18,29 @@
 #include "run/select/random.h"
 #include "support/sample_asset.h"
 
-namespace meshlode::gpu::test {
+namespace meshlode::judge::test {
 namespace {
 
 using meshlode::test::RandomSource;
-using raster::ClipVertex;
+using draw::ClipVertex;
 
 constexpr std::uint32_t kBits = 8;
 
 /// A picture of an asset, and what the judge says of it.
 struct Picture {
-  const Asset& asset;
-  Camera camera;
-  std::vector<ClusterInstance> cut;
-  VisibilityBuffer pixels;
-  AlphaMasks masks;
+  const run::Asset& asset;
+  run::Camera camera;
+  std::vector<run::ClusterInstance> cut;
+  draw::VisibilityBuffer pixels;
+  draw::AlphaMasks masks;
 
-  Picture(const Asset& a, const Camera& c, double pixel_error) : asset(a), camera(c), masks(load_alpha_masks(a)) {
-    cut = select_flat(asset, camera, pixel_error);
-    auto drawn = draw_cut(asset, cut, camera, masks);
+  Picture(const run::Asset& a, const run::Camera& c, double pixel_error) : asset(a), camera(c), masks(draw::load_alpha_masks(a)) {
+    cut = run::select_flat(asset, camera, pixel_error);
+    auto drawn = draw::draw_cut(asset, cut, camera, masks);
     EXPECT_TRUE(drawn);
     if (drawn) pixels = std::move(*drawn);
   }
-  [[nodiscard]] Comparison judge(const VisibilityBuffer& drawn) const {
+  [[nodiscard]] Comparison judge(const draw::VisibilityBuffer& drawn) const {
     const auto out = judge_hardware_pixels(asset, cut, drawn, camera, masks, kBits);
     EXPECT_TRUE(out) << (out ? "" : out.error().message());
     return out ? *out : Comparison{};
@@ -51,7 +51,7 @@ struct Picture {
       for (int u = x - radius; u <= x + radius; ++u) {
         if (u < 0 || v < 0 || u >= static_cast<int>(pixels.width) || v >= static_cast<int>(pixels.height)) return false;
         if (pixels.item[static_cast<std::size_t>(v) * pixels.width + static_cast<std::size_t>(u)] ==
-            VisibilityBuffer::kNothing) {
+            draw::VisibilityBuffer::kNothing) {
           return false;
         }
       }
@@ -60,14 +60,14 @@ struct Picture {
   }
   /// What the judge allows the pixel's own triangle there.
   [[nodiscard]] std::optional<TriangleFreedom::Sample> freedom_at(std::size_t i) const {
-    const ClusterInstance& entry = cut[pixels.item[i]];
+    const run::ClusterInstance& entry = cut[pixels.item[i]];
     const format::InstanceRecord& instance = asset.instances()[entry.instance.value];
-    const auto pages = raster::CutPages::load(asset, cut);
-    auto projection = raster::make_projection(camera);
+    const auto pages = draw::CutPages::load(asset, cut);
+    auto projection = draw::make_projection(camera);
     if (!pages || !projection) return std::nullopt;
-    projection->far_distance = raster::scene_depth(asset, *projection);
-    const raster::GridToClip to_clip = raster::make_grid_to_clip(*projection, asset.meshes()[instance.mesh], instance);
-    DecodedCluster cluster;
+    projection->far_distance = draw::scene_depth(asset, *projection);
+    const draw::GridToClip to_clip = draw::make_grid_to_clip(*projection, asset.meshes()[instance.mesh], instance);
+    run::DecodedCluster cluster;
     pages->decode(asset, entry.cluster, cluster);
     const auto [a, b, c] = cluster.triangles[pixels.triangle[i]];
     const TriangleFreedom freedom({to_clip.project(cluster.position(a)), to_clip.project(cluster.position(b)),
@@ -77,22 +77,22 @@ struct Picture {
   }
 };
 
-const Asset& rock() {
-  static const Asset asset = [] {
-    auto opened = Asset::from_vector(build_file(MESHLODE_DATA "/rock.glb"));
+const run::Asset& rock() {
+  static const run::Asset asset = [] {
+    auto opened = run::Asset::from_vector(draw::test::build_file(MESHLODE_DATA "/rock.glb"));
     EXPECT_TRUE(opened);
     return std::move(opened).value();
   }();
   return asset;
 }
 
-std::vector<Camera> cameras_inside(const Asset& asset, std::uint64_t seed, int count) {
+std::vector<run::Camera> cameras_inside(const run::Asset& asset, std::uint64_t seed, int count) {
   const WorldBox box = world_box(asset);
   const double size = glm::length(box.high - box.low);
   RandomSource random(seed);
-  std::vector<Camera> out;
+  std::vector<run::Camera> out;
   for (int i = 0; i < count; ++i) {
-    Camera camera;
+    run::Camera camera;
     camera.width = 160;
     camera.height = 120;
     camera.near_distance = size * random.log_between(1e-5, 1e-1);
@@ -105,11 +105,11 @@ std::vector<Camera> cameras_inside(const Asset& asset, std::uint64_t seed, int c
 }
 
 TEST(HardwareJudge, TheCpusOwnPictureIsOneThatIsAllowed) {
-  const auto sample = Asset::from_vector(meshlode::test::sample_asset_bytes());
+  const auto sample = run::Asset::from_vector(meshlode::test::sample_asset_bytes());
   ASSERT_TRUE(sample);
   std::uint64_t covered = 0;
-  for (const Asset* asset : {&*sample, &rock()}) {
-    std::vector<Camera> cameras = cameras_inside(*asset, 41, 40);
+  for (const run::Asset* asset : {&*sample, &rock()}) {
+    std::vector<run::Camera> cameras = cameras_inside(*asset, 41, 40);
     for (const NamedCamera& named : adversarial_cameras(*asset, 160, 120)) cameras.push_back(named.camera);
     for (std::size_t i = 0; i < cameras.size(); ++i) {
       const Picture picture(*asset, cameras[i], 1.0);
@@ -125,7 +125,7 @@ TEST(HardwareJudge, ADepthThatItsTriangleHasNotThereIsFound) {
   const Picture picture(rock(), adversarial_cameras(rock(), 160, 120)[0].camera, 1.0);
   std::uint64_t tried = 0, narrow = 0;
   for (std::size_t i = 0; i < picture.pixels.pixel_count(); i += 97) {
-    if (picture.pixels.item[i] == VisibilityBuffer::kNothing) continue;
+    if (picture.pixels.item[i] == draw::VisibilityBuffer::kNothing) continue;
     const auto allowed = picture.freedom_at(i);
     ASSERT_TRUE(allowed);
     EXPECT_LE(allowed->low, static_cast<double>(picture.pixels.depth[i]));
@@ -133,7 +133,7 @@ TEST(HardwareJudge, ADepthThatItsTriangleHasNotThereIsFound) {
     ++tried;
     narrow += allowed->high - allowed->low < 1e-3 * allowed->high ? 1 : 0;
     for (const double depth : {allowed->low - 1.0, allowed->high + 1.0}) {
-      VisibilityBuffer spoiled = picture.pixels;
+      draw::VisibilityBuffer spoiled = picture.pixels;
       spoiled.depth[i] = static_cast<std::uint32_t>(depth);
       EXPECT_EQ(picture.judge(spoiled).differences, 1U) << "pixel " << i << " at depth " << depth;
     }
@@ -147,8 +147,8 @@ TEST(HardwareJudge, ATriangleThatIsNotThereIsFound) {
   RandomSource random(43);
   std::uint64_t tried = 0, found = 0;
   for (std::size_t i = 0; i < picture.pixels.pixel_count(); i += 61) {
-    if (picture.pixels.item[i] == VisibilityBuffer::kNothing) continue;
-    VisibilityBuffer spoiled = picture.pixels;
+    if (picture.pixels.item[i] == draw::VisibilityBuffer::kNothing) continue;
+    draw::VisibilityBuffer spoiled = picture.pixels;
     const std::uint32_t other = random.below(24);
     if (other == spoiled.triangle[i]) continue;
     spoiled.triangle[i] = other;
@@ -164,8 +164,8 @@ TEST(HardwareJudge, APixelLeftOutIsFound) {
   std::uint64_t tried = 0, found = 0;
   for (std::size_t i = 0; i < picture.pixels.pixel_count(); i += 61) {
     if (!picture.is_inner(i, 1)) continue;
-    VisibilityBuffer spoiled = picture.pixels;
-    spoiled.item[i] = spoiled.triangle[i] = VisibilityBuffer::kNothing;
+    draw::VisibilityBuffer spoiled = picture.pixels;
+    spoiled.item[i] = spoiled.triangle[i] = draw::VisibilityBuffer::kNothing;
     spoiled.depth[i] = 0;
     ++tried;
     found += picture.judge(spoiled).differences == 1 ? 1 : 0;
@@ -178,10 +178,10 @@ TEST(HardwareJudge, APixelLeftOutIsFound) {
 TEST(HardwareJudge, APixelLeftOutOnASharedEdgeIsFound) {
   const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "meshlode_shared_edge.obj";
   std::ofstream(path) << "v -2 -2 0\nv 2 -2 0\nv 2 2 0\nv -2 2 0\nf 1 2 3\nf 1 3 4\n";
-  const auto asset = Asset::from_vector(build_file(path.string()));
+  const auto asset = run::Asset::from_vector(draw::test::build_file(path.string()));
   std::filesystem::remove(path);
   ASSERT_TRUE(asset);
-  Camera camera;
+  run::Camera camera;
   camera.eye = {0.0, 0.0, 10.0};
   camera.target = {0.0, 0.0, 0.0};
   camera.is_orthographic = true;
@@ -192,16 +192,16 @@ TEST(HardwareJudge, APixelLeftOutOnASharedEdgeIsFound) {
   std::uint64_t on_edge = 0;
   for (std::uint32_t y = 20; y < 44; ++y) {
     const std::size_t i = std::size_t{y} * 64 + (63 - y);  // the diagonal runs through these centres
-    ASSERT_NE(picture.pixels.item[i], VisibilityBuffer::kNothing);
+    ASSERT_NE(picture.pixels.item[i], draw::VisibilityBuffer::kNothing);
     const auto allowed = picture.freedom_at(i);
     ASSERT_TRUE(allowed);
     on_edge += allowed->is_certain ? 0 : 1;
-    VisibilityBuffer spoiled = picture.pixels;
-    spoiled.item[i] = spoiled.triangle[i] = VisibilityBuffer::kNothing;
+    draw::VisibilityBuffer spoiled = picture.pixels;
+    spoiled.item[i] = spoiled.triangle[i] = draw::VisibilityBuffer::kNothing;
     spoiled.depth[i] = 0;
     EXPECT_EQ(picture.judge(spoiled).differences, 1U) << i;
     // Either of the two may have it.
-    VisibilityBuffer other = picture.pixels;
+    draw::VisibilityBuffer other = picture.pixels;
     other.triangle[i] = 1 - other.triangle[i];
     EXPECT_EQ(picture.judge(other).differences, 0U) << i;
   }
@@ -212,15 +212,15 @@ TEST(HardwareJudge, WhatLiesBehindIsFoundWhereSomethingCoversIt) {
   const Picture picture(rock(), adversarial_cameras(rock(), 160, 120)[0].camera, 1.0);
   std::vector<std::uint64_t> pixels_of(picture.cut.size(), 0);
   for (const std::uint32_t item : picture.pixels.item) {
-    if (item != VisibilityBuffer::kNothing) ++pixels_of[item];
+    if (item != draw::VisibilityBuffer::kNothing) ++pixels_of[item];
   }
   const auto widest = static_cast<std::size_t>(std::max_element(pixels_of.begin(), pixels_of.end()) - pixels_of.begin());
-  std::vector<ClusterInstance> without = picture.cut;
+  std::vector<run::ClusterInstance> without = picture.cut;
   without.erase(without.begin() + static_cast<std::ptrdiff_t>(widest));
-  auto drawn = draw_cut(picture.asset, without, picture.camera, picture.masks);
+  auto drawn = draw::draw_cut(picture.asset, without, picture.camera, picture.masks);
   ASSERT_TRUE(drawn);
   for (std::uint32_t& item : drawn->item) {
-    if (item != VisibilityBuffer::kNothing && item >= widest) ++item;  // indices into the whole cut
+    if (item != draw::VisibilityBuffer::kNothing && item >= widest) ++item;  // indices into the whole cut
   }
   const Comparison found = picture.judge(*drawn);
   EXPECT_GE(found.differences * 10, pixels_of[widest] * 9) << found.first;
@@ -229,7 +229,7 @@ TEST(HardwareJudge, WhatLiesBehindIsFoundWhereSomethingCoversIt) {
 
 TEST(HardwareJudge, APictureMovedByAPixelIsFound) {
   const Picture picture(rock(), adversarial_cameras(rock(), 160, 120)[0].camera, 1.0);
-  VisibilityBuffer moved = picture.pixels;
+  draw::VisibilityBuffer moved = picture.pixels;
   for (auto* channel : {&moved.depth, &moved.item, &moved.triangle}) {
     std::rotate(channel->begin(), channel->begin() + 1, channel->end());
   }
@@ -240,7 +240,7 @@ TEST(HardwareJudge, APictureMovedByAPixelIsFound) {
 /// Points of randomly moved corners: where the moved triangle covers the sample, at its depth there.
 TEST(HardwareFreedom, HoldsEveryTriangleWhoseCornersMovedByLessThanTheGrid) {
   RandomSource random(47);
-  const raster::ImageSize size{64, 64};
+  const draw::ImageSize size{64, 64};
   std::uint64_t covering = 0, certain = 0;
   for (int i = 0; i < 20000; ++i) {
     std::array<ClipVertex, 3> v;
@@ -287,7 +287,7 @@ TEST(HardwareFreedom, HoldsEveryTriangleWhoseCornersMovedByLessThanTheGrid) {
 
 /// A needle whose area rounding makes up has no barycentric coordinates of its own; one that is wide enough has.
 TEST(HardwareFreedom, ANeedleHasAnyDepthOfItsCornersWhereItsAreaIsOpen) {
-  const raster::ImageSize size{64, 64};
+  const draw::ImageSize size{64, 64};
   for (const double width : {0.0, 1e-4, 1e-1, 10.0}) {
     const TriangleFreedom freedom({ClipVertex{-25.0, -25.0, 0.2, 1.0}, ClipVertex{25.0, 25.0, 0.4, 1.0},
                                    ClipVertex{25.0 - width, 25.0 + width, 0.4, 1.0}},
@@ -306,4 +306,4 @@ TEST(HardwareFreedom, ANeedleHasAnyDepthOfItsCornersWhereItsAreaIsOpen) {
 }
 
 }  // namespace
-}  // namespace meshlode::gpu::test
+}  // namespace meshlode::judge::test

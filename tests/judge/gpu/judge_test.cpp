@@ -9,13 +9,13 @@
 #include "draw/raster/projection.h"
 #include "support/sample_asset.h"
 
-namespace meshlode::gpu::test {
+namespace meshlode::judge::test {
 namespace {
 
-using Judge = GpuTest;
+using Judge = draw::test::GpuTest;
 
-Asset open(const std::vector<std::uint8_t>& bytes) {
-  auto asset = Asset::from_vector(bytes);
+run::Asset open(const std::vector<std::uint8_t>& bytes) {
+  auto asset = run::Asset::from_vector(bytes);
   EXPECT_TRUE(asset) << (asset ? "" : asset.error().message());
   return std::move(asset).value();
 }
@@ -25,14 +25,14 @@ struct Size {
 };
 constexpr Size kSizes[] = {{160, 90}, {97, 61}, {256, 256}};
 
-void expect_equal_frames(Device& device, const Asset& asset, RendererOptions options) {
-  auto scene = upload_scene(device, asset);
+void expect_equal_frames(draw::Device& device, const run::Asset& asset, draw::RendererOptions options) {
+  auto scene = draw::upload_scene(device, asset);
   ASSERT_TRUE(scene) << scene.error().message();
   options.width = kSizes[0].width;
   options.height = kSizes[0].height;
   options.double_sided = scene->has_double_sided;
   options.alpha_mask = scene->has_alpha_mask;
-  auto renderer = Renderer::make(device, *scene, options);
+  auto renderer = draw::Renderer::make(device, *scene, options);
   ASSERT_TRUE(renderer) << renderer.error().message();
   for (const Size size : kSizes) {
     ASSERT_TRUE(renderer->resize(size.width, size.height));
@@ -51,8 +51,8 @@ void expect_equal_frames(Device& device, const Asset& asset, RendererOptions opt
 }
 
 TEST_F(Judge, DecodesEveryIntegerAsTheCpuDoes) {
-  const Asset asset = open(meshlode::test::sample_asset_bytes());
-  const auto scene = upload_scene(*device_, asset);
+  const run::Asset asset = open(meshlode::test::sample_asset_bytes());
+  const auto scene = draw::upload_scene(*device_, asset);
   ASSERT_TRUE(scene) << scene.error().message();
   const auto result = compare_decode(*device_, *scene, asset);
   ASSERT_TRUE(result) << result.error().message();
@@ -62,40 +62,40 @@ TEST_F(Judge, DecodesEveryIntegerAsTheCpuDoes) {
 
 // Every float and double that an instance is given on the GPU has the bits that the CPU gives it.
 TEST_F(Judge, InstancesGetTheBitsOfTheCpu) {
-  const Asset asset = open(meshlode::test::sample_asset_bytes());
-  auto scene = upload_scene(*device_, asset);
+  const run::Asset asset = open(meshlode::test::sample_asset_bytes());
+  auto scene = draw::upload_scene(*device_, asset);
   ASSERT_TRUE(scene) << scene.error().message();
-  auto renderer = Renderer::make(*device_, *scene, {.width = 97, .height = 61, .frustum = false});
+  auto renderer = draw::Renderer::make(*device_, *scene, {.width = 97, .height = 61, .frustum = false});
   ASSERT_TRUE(renderer) << renderer.error().message();
   for (const NamedCamera& named : adversarial_cameras(asset, 97, 61)) {
     SCOPED_TRACE(named.name);
-    auto projection = raster::make_projection(named.camera);
+    auto projection = draw::make_projection(named.camera);
     ASSERT_TRUE(projection);
-    projection->far_distance = raster::scene_depth(asset, *projection);
+    projection->far_distance = draw::scene_depth(asset, *projection);
     ASSERT_TRUE(renderer->draw(named.camera, 0.7, projection->far_distance));
     const auto visible = renderer->read_visible();
     ASSERT_TRUE(visible);
     EXPECT_EQ(visible->size(), 4U) << "all but the empty mesh and the singular instance";
-    for (const GpuVisible& v : *visible) {
+    for (const draw::GpuVisible& v : *visible) {
       const format::InstanceRecord& instance = asset.instances()[v.instance];
       const format::MeshRecord& mesh = asset.meshes()[instance.mesh];
-      const MetricView view = make_metric_view(named.camera, 0.7, instance, mesh, mesh_reach(tables_of(asset), mesh));
+      const run::MetricView view = run::make_metric_view(named.camera, 0.7, instance, mesh, run::mesh_reach(run::tables_of(asset), mesh));
       EXPECT_EQ(std::memcmp(&view, &v.view, sizeof view), 0) << "view of instance " << v.instance;
-      const raster::GridToClip clip = raster::make_grid_to_clip(*projection, mesh, instance);
+      const draw::GridToClip clip = draw::make_grid_to_clip(*projection, mesh, instance);
       EXPECT_EQ(std::memcmp(&clip, v.clip, sizeof v.clip), 0) << "rows of instance " << v.instance;
     }
   }
 }
 
 TEST_F(Judge, DrawsTheSampleSceneAsTheCpuDoes) {
-  const Asset asset = open(meshlode::test::sample_asset_bytes());
+  const run::Asset asset = open(meshlode::test::sample_asset_bytes());
   expect_equal_frames(*device_, asset, {.width = 0, .height = 0, .frustum = false});
 }
 
 TEST_F(Judge, CullingChangesNoPixelOfTheSampleScene) {
-  const Asset asset = open(meshlode::test::sample_asset_bytes());
+  const run::Asset asset = open(meshlode::test::sample_asset_bytes());
   expect_equal_frames(*device_, asset, {.width = 0, .height = 0, .frustum = true, .occlusion = true});
 }
 
 }  // namespace
-}  // namespace meshlode::gpu::test
+}  // namespace meshlode::judge::test

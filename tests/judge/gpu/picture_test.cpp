@@ -6,36 +6,36 @@
 #include "draw/gpu/gpu_support.h"
 #include "judge/metrics/metrics.h"
 
-namespace meshlode::gpu::test {
+namespace meshlode::judge::test {
 namespace {
 
 struct Drawn {
   std::vector<std::uint8_t> bytes;
-  std::optional<Asset> asset;
-  std::vector<DecodedCluster> decoded;
+  std::optional<run::Asset> asset;
+  std::vector<run::DecodedCluster> decoded;
   std::vector<SourceSurface> source;
-  std::vector<ClusterInstance> cut;
-  VisibilityBuffer picture;
-  Camera camera;
+  std::vector<run::ClusterInstance> cut;
+  draw::VisibilityBuffer picture;
+  run::Camera camera;
 };
 
 /// The rock's level 0, judged against itself.
 Drawn draw_rock() {
   Drawn out;
-  static const std::vector<std::uint8_t> built = build_file(MESHLODE_DATA "/rock.glb");
+  static const std::vector<std::uint8_t> built = draw::test::build_file(MESHLODE_DATA "/rock.glb");
   out.bytes = built;
-  auto asset = Asset::from_vector(out.bytes);
+  auto asset = run::Asset::from_vector(out.bytes);
   EXPECT_TRUE(asset);
   out.asset = std::move(*asset);
   out.camera = adversarial_cameras(*out.asset, 160, 120)[0].camera;
-  out.cut = select_flat(*out.asset, out.camera, 0.0);
-  auto decoded = decode_all(*out.asset);
+  out.cut = run::select_flat(*out.asset, out.camera, 0.0);
+  auto decoded = run::decode_all(*out.asset);
   EXPECT_TRUE(decoded);
   out.decoded = std::move(*decoded);
   std::vector<ClusterId> clusters;
-  for (const ClusterInstance& entry : out.cut) clusters.push_back(entry.cluster);
+  for (const run::ClusterInstance& entry : out.cut) clusters.push_back(entry.cluster);
   out.source.emplace_back(surface_of_clusters(*out.asset, out.decoded, MeshId(std::uint32_t{0}), clusters));
-  auto picture = draw_cut(*out.asset, out.cut, out.camera);
+  auto picture = draw::draw_cut(*out.asset, out.cut, out.camera);
   EXPECT_TRUE(picture);
   out.picture = std::move(*picture);
   return out;
@@ -58,8 +58,8 @@ TEST(Picture, ErasedPixelsAreHoles) {
   std::size_t erased = 0;
   for (std::uint32_t y = 58; y < 61; ++y) {
     const std::size_t at = std::size_t{y} * 160 + 80;  // in the middle of the rock
-    erased += rock.picture.item[at] != VisibilityBuffer::kNothing ? 1 : 0;
-    rock.picture.item[at] = VisibilityBuffer::kNothing;
+    erased += rock.picture.item[at] != draw::VisibilityBuffer::kNothing ? 1 : 0;
+    rock.picture.item[at] = draw::VisibilityBuffer::kNothing;
     rock.picture.depth[at] = 0;
   }
   ASSERT_EQ(erased, 3U);
@@ -71,13 +71,13 @@ TEST(Picture, ErasedPixelsAreHoles) {
 /// A cluster that is missing lets the eye in: the far side is seen from behind.
 TEST(Picture, AMissingClusterIsAHole) {
   Drawn rock = draw_rock();
-  std::vector<ClusterInstance> cut;
+  std::vector<run::ClusterInstance> cut;
   const std::uint32_t missing = rock.picture.item[60 * 160 + 80];
   ASSERT_LT(missing, rock.cut.size());
   for (std::size_t i = 0; i < rock.cut.size(); ++i) {
     if (i != missing) cut.push_back(rock.cut[i]);
   }
-  const auto picture = draw_cut(*rock.asset, cut, rock.camera);
+  const auto picture = draw::draw_cut(*rock.asset, cut, rock.camera);
   ASSERT_TRUE(picture);
   const auto report = judge_picture(*rock.asset, {rock.source, rock.decoded, 1.0}, cut, *picture, rock.camera, 1.0);
   ASSERT_TRUE(report);
@@ -107,7 +107,7 @@ TEST(Picture, ATriangleThatLevel0LostIsSeenInTheSourcesPicture) {
 /// An instance of which nothing is drawn is no nearer to its source than infinity.
 TEST(Picture, AnInstanceThatIsMissingExceedsThePromise) {
   const Drawn rock = draw_rock();
-  const VisibilityBuffer nothing = make_visibility_buffer(160, 120);
+  const draw::VisibilityBuffer nothing = draw::make_visibility_buffer(160, 120);
   const auto report = judge_picture(*rock.asset, {rock.source, rock.decoded, 1.0}, {}, nothing, rock.camera, 1.0);
   ASSERT_TRUE(report);
   EXPECT_EQ(report->exceeded, report->covered_source);
@@ -120,16 +120,16 @@ TEST(Picture, WhatMayHaveMovedThroughTheNearPlaneIsNoHole) {
   std::uint64_t holes[2] = {0, 0};
   for (const bool is_near : {false, true}) {
     const std::size_t at = std::size_t{60} * 160 + 80;
-    VisibilityBuffer picture = rock.picture;
+    draw::VisibilityBuffer picture = rock.picture;
     if (is_near) {  // a near plane just before the surface in the middle of the picture
       const double share = picture.depth[at] / 4294967296.0;
       rock.camera.near_distance = rock.camera.near_distance / share * (1.0 - 1e-5);
-      auto drawn = draw_cut(*rock.asset, rock.cut, rock.camera);
+      auto drawn = draw::draw_cut(*rock.asset, rock.cut, rock.camera);
       ASSERT_TRUE(drawn);
       picture = std::move(*drawn);
-      ASSERT_NE(picture.item[at], VisibilityBuffer::kNothing);
+      ASSERT_NE(picture.item[at], draw::VisibilityBuffer::kNothing);
     }
-    picture.item[at] = VisibilityBuffer::kNothing;
+    picture.item[at] = draw::VisibilityBuffer::kNothing;
     picture.depth[at] = 0;
     const auto report = judge_picture(*rock.asset, {rock.source, rock.decoded, 1.0}, rock.cut, picture, rock.camera, 1.0);
     ASSERT_TRUE(report);
@@ -141,8 +141,8 @@ TEST(Picture, WhatMayHaveMovedThroughTheNearPlaneIsNoHole) {
 
 TEST(Picture, ACutThatIsTooCoarseExceedsThePromise) {
   Drawn rock = draw_rock();
-  rock.cut = select_flat(*rock.asset, rock.camera, 20.0);
-  auto picture = draw_cut(*rock.asset, rock.cut, rock.camera);
+  rock.cut = run::select_flat(*rock.asset, rock.camera, 20.0);
+  auto picture = draw::draw_cut(*rock.asset, rock.cut, rock.camera);
   ASSERT_TRUE(picture);
   const auto report = judge_picture(*rock.asset, {rock.source, rock.decoded, 1.05}, rock.cut, *picture, rock.camera, 1.0);
   ASSERT_TRUE(report);
@@ -153,7 +153,7 @@ TEST(Picture, ACutThatIsTooCoarseExceedsThePromise) {
 
 TEST(Picture, AHeatMapGoesFromBlueToRed) {
   const std::vector<float> values = {-1.0F, 0.0F, 1.0F, 7.0F};
-  const Image image = heat_map(values, 4, 1, 1.0F);
+  const draw::Image image = heat_map(values, 4, 1, 1.0F);
   ASSERT_EQ(image.rgba.size(), 16U);
   EXPECT_EQ(image.rgba[0], image.rgba[1]) << "grey: nothing there";
   EXPECT_GT(image.rgba[4 + 2], image.rgba[4 + 0]) << "blue at 0";
@@ -162,4 +162,4 @@ TEST(Picture, AHeatMapGoesFromBlueToRed) {
 }
 
 }  // namespace
-}  // namespace meshlode::gpu::test
+}  // namespace meshlode::judge::test

@@ -11,10 +11,10 @@
 #include "draw/gpu/gpu_support.h"
 #include "scene/import/import.h"
 
-namespace meshlode::gpu::test {
+namespace meshlode::judge::test {
 namespace {
 
-using VerifyGpu = GpuTest;
+using VerifyGpu = draw::test::GpuTest;
 
 struct Failures {
   std::uint64_t items = 0, failures = 0;
@@ -34,8 +34,8 @@ Failures failures_of(const GpuVerifyReport& report, const std::string& id) {
 /// A built asset against what it was built from, from the adversarial cameras too: nothing is displaced by more than a
 /// pixel, and nothing shows through.
 TEST_F(VerifyGpu, ABuiltAssetHoldsItsPromise) {
-  const auto asset = Asset::from_vector(build_file(MESHLODE_DATA "/rock.glb"));
-  const auto scene = import_scene(MESHLODE_DATA "/rock.glb", {});
+  const auto asset = run::Asset::from_vector(draw::test::build_file(MESHLODE_DATA "/rock.glb"));
+  const auto scene = scene::import_scene(MESHLODE_DATA "/rock.glb", {});
   ASSERT_TRUE(asset && scene);
   GpuVerifyOptions options;
   options.orbits = 1;
@@ -54,13 +54,13 @@ TEST_F(VerifyGpu, ABuiltAssetHoldsItsPromise) {
 }
 
 TEST_F(VerifyGpu, AnotherSourceIsToldFromAnotherDrawing) {
-  const std::vector<std::uint8_t> bytes = build_file(MESHLODE_DATA "/crystal.glb");
-  const auto asset = Asset::from_vector(bytes);
-  const auto scene = import_scene(MESHLODE_DATA "/crystal.glb", {});
+  const std::vector<std::uint8_t> bytes = draw::test::build_file(MESHLODE_DATA "/crystal.glb");
+  const auto asset = run::Asset::from_vector(bytes);
+  const auto scene = scene::import_scene(MESHLODE_DATA "/crystal.glb", {});
   ASSERT_TRUE(asset && scene);
-  Scene larger = *scene;
-  for (SourceMesh& mesh : larger.meshes) {
-    for (Primitive& primitive : mesh.primitives) {
+  scene::Scene larger = *scene;
+  for (scene::SourceMesh& mesh : larger.meshes) {
+    for (scene::Primitive& primitive : mesh.primitives) {
       for (Vec3d& p : primitive.positions) p *= 1.1;
     }
   }
@@ -89,4 +89,4 @@ TEST_F(VerifyGpu, AnotherSourceIsToldFromAnotherDrawing) {
 }
 
 }  // namespace
-}  // namespace meshlode::gpu::test
+}  // namespace meshlode::judge::test

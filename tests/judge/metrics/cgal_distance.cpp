@@ -19,7 +19,7 @@ struct CgalDistance::Tree {
   CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>> tree;
 };
 
-CgalDistance::CgalDistance(const Surface& surface) : tree_(std::make_unique<Tree>()) {
+CgalDistance::CgalDistance(const judge::Surface& surface) : tree_(std::make_unique<Tree>()) {
   const auto point = [&](std::uint32_t i) {
     const Vec3d& p = surface.positions[i];
     return Kernel::Point_3(p.x, p.y, p.z);

@@ -10,7 +10,7 @@ namespace meshlode::test {
 
 class CgalDistance {
  public:
-  explicit CgalDistance(const Surface& surface);  ///< \pre no triangle without area
+  explicit CgalDistance(const judge::Surface& surface);  ///< \pre no triangle without area
   ~CgalDistance();
   [[nodiscard]] double distance2(const Vec3d& point) const;
 

@@ -11,7 +11,7 @@
 #include "scene/samples/samples.h"
 #include "run/select/select.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 namespace {
 
 /// The unit square in z = 0, n x n cells, with a seam in the u of set 0: `left` below x = seam, `right` above. Vertices
@@ -98,7 +98,7 @@ TEST(Drift, IsNotHiddenBySlidingAlongASeam) {
 }
 
 TEST(Drift, OfAFlatShadedCubeIsZeroAtItsCreases) {
-  const SourceMesh coarse = samples::as_mesh(samples::make_cube(1)), fine = samples::as_mesh(samples::make_cube(9));
+  const scene::SourceMesh coarse = scene::as_mesh(scene::make_cube(1)), fine = scene::as_mesh(scene::make_cube(9));
   const DriftReport r = drift(shaded_surface_of_source(coarse), shaded_surface_of_source(fine));
   EXPECT_GT(r.normal_a_to_b.points, 20000U);
   EXPECT_LE(std::max(r.normal_a_to_b.max, r.normal_b_to_a.max), 1e-4);
@@ -129,19 +129,19 @@ TEST(Drift, SeamsAreEdgesWhoseTrianglesDisagree) {
 }
 
 TEST(Drift, OfLevelZeroIsItsQuantization) {
-  SourceMesh mesh = samples::as_mesh(samples::with_smooth_normals(samples::make_torus(80, 40)));
-  Primitive& p = mesh.primitives[0];
+  scene::SourceMesh mesh = scene::as_mesh(scene::with_smooth_normals(scene::make_torus(80, 40)));
+  scene::Primitive& p = mesh.primitives[0];
   for (const Vec3d& at : p.positions) p.uvs[0].push_back(Vec2f(Vec2d(at.x, at.y)));
-  PipelineReport report;
-  auto bytes = build_lode(samples::as_scene(mesh), {.attributes = AttributeChoice::kAll}, {}, report);
+  build::PipelineReport report;
+  auto bytes = build::build_lode(scene::as_scene(mesh), {.attributes = build::AttributeChoice::kAll}, {}, report);
   ASSERT_TRUE(bytes.ok()) << bytes.error().message();
-  const auto asset = Asset::from_vector(std::move(*bytes));
+  const auto asset = run::Asset::from_vector(std::move(*bytes));
   ASSERT_TRUE(asset.ok());
-  const auto decoded = decode_all(*asset);
+  const auto decoded = run::decode_all(*asset);
   ASSERT_TRUE(decoded.ok());
   const DriftSurface source(shaded_surface_of_source(mesh));
   const auto drift_at = [&](double error) {
-    const UniformCut cut = select_uniform(*asset, MeshId(0U), error);
+    const run::UniformCut cut = run::select_uniform(*asset, MeshId(0U), error);
     return measure_drift(source, DriftSurface(shaded_surface_of_clusters(*asset, *decoded, MeshId(0U), cut.clusters)),
                          {.samples = 20000, .tie = 1e-7});
   };
@@ -154,4 +154,4 @@ TEST(Drift, OfLevelZeroIsItsQuantization) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::judge

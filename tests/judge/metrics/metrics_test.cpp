@@ -14,7 +14,7 @@
 #include "judge/metrics/triangle_tree.h"
 #include "run/select/random.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 namespace {
 
 using test::RandomSource;
@@ -233,8 +233,8 @@ TEST(Metrics, EmptyAndDegenerateSurfacesAreAnswered) {
 }
 
 TEST(Metrics, TheSourceIsItsTrianglesWithArea) {
-  SourceMesh mesh;
-  Primitive& shape = mesh.primitives.emplace_back();
+  scene::SourceMesh mesh;
+  scene::Primitive& shape = mesh.primitives.emplace_back();
   shape.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}, {9, 0, 0}, {9, 1e-300, 0}, {5, 0, 0}};
   shape.indices = {0, 1, 2, 0, 3, 4, 0, 4, 4, 0, 6, 4, 0, 4, 5};
   const Surface source = surface_of_source(mesh);
@@ -257,4 +257,4 @@ TEST(Metrics, DoesNotDependOnTheNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::judge

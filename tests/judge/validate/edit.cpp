@@ -168,14 +168,14 @@ void AssetEdit::move_minimum(std::uint64_t cluster, std::uint32_t k, std::int32_
 
 void AssetEdit::seal() {
   reseal(bytes_);
-  RuleLog log;
-  const std::optional<FileTables> file = read_tables(bytes_, log);
-  if (!file || !check_tables(*file, log) || !check_page_table(*file, log)) return;
-  const LoadedPages loaded = load_pages(*file, nullptr, log);
+  judge::RuleLog log;
+  const std::optional<judge::FileTables> file = judge::read_tables(bytes_, log);
+  if (!file || !judge::check_tables(*file, log) || !judge::check_page_table(*file, log)) return;
+  const judge::LoadedPages loaded = judge::load_pages(*file, nullptr, log);
   if (!loaded.is_complete || log.count_of("L114") > 0) return;
   std::vector<std::span<const std::uint8_t>> pages;
-  for (const PageBytes& page : loaded.pages) pages.push_back(page.bytes());
-  const Hash128 hash = content_hash_of(*file, pages);
+  for (const run::PageBytes& page : loaded.pages) pages.push_back(page.bytes());
+  const Hash128 hash = judge::content_hash_of(*file, pages);
   std::memcpy(bytes_.data() + offsetof(format::FileHeader, content_hash), hash.data(), hash.size());
   reseal(bytes_);
 }

@@ -9,7 +9,7 @@
 #include "judge/validate/exact.h"
 #include "judge/verify/random.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 namespace {
 
 __extension__ using Int128 = __int128;
@@ -77,4 +77,4 @@ TEST(Exact, CancellationKeepsTheSign) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::judge

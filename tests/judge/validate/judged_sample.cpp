@@ -24,25 +24,25 @@ T value_or_abort(Result<T> result) {
 }  // namespace
 
 std::vector<std::uint8_t> judged_sample_bytes(format::Codec codec) {
-  const Scene scene = sample_scene();
-  WriteInput input;
+  const scene::Scene scene = sample_scene();
+  build::WriteInput input;
   for (const SampleMesh& sample : {sample_patch(), sample_sphere(), sample_tetrahedron()}) {
-    const Hierarchy hierarchy = build_hierarchy(sample.dag, sample.mesh);
-    input.meshes.push_back(value_or_abort(encode_mesh(sample.mesh, sample.dag, hierarchy, {})));
+    const build::Hierarchy hierarchy = build::build_hierarchy(sample.dag, sample.mesh);
+    input.meshes.push_back(value_or_abort(build::encode_mesh(sample.mesh, sample.dag, hierarchy, {})));
     input.mesh_names.push_back(sample.mesh.name);
   }
-  PreparedMesh empty;  // one triangle that is a point: nothing is left of it
+  build::PreparedMesh empty;  // one triangle that is a point: nothing is left of it
   empty.name = "empty";
   empty.source_triangles = 1;
   empty.source_vertices = 3;
   empty.dropped_degenerate = 1;
-  input.meshes.push_back(value_or_abort(encode_mesh(empty, {}, {}, {})));
+  input.meshes.push_back(value_or_abort(build::encode_mesh(empty, {}, {}, {})));
   input.mesh_names.emplace_back("empty");
   input.scene = &scene;
   input.meta_json = R"({"generator":"a test","source":{"file":"sample.glb","hash":")" + scene.source_hash +
                     R"("},"settings":{"error_tier":"qem","cluster_triangles":256,"normal_error":0.1,"uv_error":0.0001,"uv_error_unit":"uv"},"plan":[],"left_out":[]})";
   input.codec = codec;
-  return value_or_abort(write_asset(std::move(input)));
+  return value_or_abort(build::write_asset(std::move(input)));
 }
 
 }  // namespace meshlode::test

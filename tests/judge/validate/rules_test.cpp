@@ -15,7 +15,7 @@
 #include "judge/validate/rules.h"
 #include "judge/validate/validate.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 namespace {
 
 using format::SectionId;
@@ -256,10 +256,10 @@ const std::vector<Break>& breaks() {
        [](AssetEdit& e) { e.page(0, [](auto& p) { p.codec = format::Codec::kZstd; }); }},
       {"L205", "page names other clusters", [](AssetEdit& e) { e.bytes()[e.pages()[0].offset] ^= 1U; }},
       {"L205", "data word",
-       [](AssetEdit& e) { e.put_head(0, head::kDataWord, e.head(0, head::kDataWord) + 1); }},
+       [](AssetEdit& e) { e.put_head(0, format::head::kDataWord, e.head(0, format::head::kDataWord) + 1); }},
       {"L206", "triangle count", [](AssetEdit& e) { e.cluster(0, [](auto& c) { c.triangles_less_1 -= 1; }); }},
       {"L206", "vertex count",
-       [](AssetEdit& e) { e.put_head(0, head::kVerticesLess1, e.head(0, head::kVerticesLess1) - 1); }},
+       [](AssetEdit& e) { e.put_head(0, format::head::kVerticesLess1, e.head(0, format::head::kVerticesLess1) - 1); }},
       {"L207", "a bit that no vertex needs",
        [](AssetEdit& e) {
          // The largest value of an axis loses its top bit.
@@ -268,15 +268,15 @@ const std::vector<Break>& breaks() {
            e.put_stored(0, v, 0, e.stored(0, v, 0) & ~top);
          }
        }},
-      {"L208", "25 bits", [](AssetEdit& e) { e.put_head(0, head::kBits[1], 25); }},
-      {"L208", "a chart that is none", [](AssetEdit& e) { e.put_head(0, head::kChart, 6); }},
-      {"L208", "an axis that is none", [](AssetEdit& e) { e.put_head(0, head::kShearAxis, 3); }},
+      {"L208", "25 bits", [](AssetEdit& e) { e.put_head(0, format::head::kBits[1], 25); }},
+      {"L208", "a chart that is none", [](AssetEdit& e) { e.put_head(0, format::head::kChart, 6); }},
+      {"L208", "an axis that is none", [](AssetEdit& e) { e.put_head(0, format::head::kShearAxis, 3); }},
       {"L208", "beyond the page",
        [](AssetEdit& e) {
          // The last cluster of the sphere's page: all its axes claim as many bits as there are.
          const auto page = e.pages()[1];
          const auto c = page.first_cluster + page.cluster_count - 1;
-         for (const auto& field : head::kBits) e.put_head(c, field, 24);
+         for (const auto& field : format::head::kBits) e.put_head(c, field, 24);
        }},
       {"L208", "UV ranges cover too much",
        [](AssetEdit& e) { e.put_field(0, e.layout(0).uv_word[0], format::uv_range::kVerticesLess1, 255); }},
@@ -296,8 +296,8 @@ const std::vector<Break>& breaks() {
        [](AssetEdit& e) { e.put_field(0, e.layout(0).material_word, format::material_range::kMaterial, 99); }},
       {"L211", "ranges cover too much",
        [](AssetEdit& e) { e.put_field(0, e.layout(0).material_word, format::material_range::kTrianglesLess1, 255); }},
-      {"L212", "beyond 24 bits", [](AssetEdit& e) { e.put_head(0, head::kMinimum[0], (1 << 23) - 1); }},
-      {"L212", "normal out of range", [](AssetEdit& e) { e.put_head(0, head::kNormalMinimumA, (1 << 14) - 1); }},
+      {"L212", "beyond 24 bits", [](AssetEdit& e) { e.put_head(0, format::head::kMinimum[0], (1 << 23) - 1); }},
+      {"L212", "normal out of range", [](AssetEdit& e) { e.put_head(0, format::head::kNormalMinimumA, (1 << 14) - 1); }},
       {"L212", "UV out of range", [](AssetEdit& e) { e.move_minimum(0, 5, 1 << 25); }},
       {"L215", "a normal by another name",
        [](AssetEdit& e) {
@@ -310,12 +310,12 @@ const std::vector<Break>& breaks() {
            if (value > b) a = static_cast<std::int32_t>(e.stored(0, v, 3));
            b = std::max(b, value);
          }
-         e.put_head(0, head::kNormalMinimumA, m - 1 - a);
-         e.put_head(0, head::kNormalMinimumB, 2 * m - b);
+         e.put_head(0, format::head::kNormalMinimumA, m - 1 - a);
+         e.put_head(0, format::head::kNormalMinimumB, 2 * m - b);
        }},
       {"L216", "a strip starts with a right turn",
        [](AssetEdit& e) { e.put_page_bits(0, e.layout(0).turn_bit, 1, 1); }},
-      {"L216", "more strips than triangles", [](AssetEdit& e) { e.put_head(0, head::kStripsLess1, 255); }},
+      {"L216", "more strips than triangles", [](AssetEdit& e) { e.put_head(0, format::head::kStripsLess1, 255); }},
       {"L301", "level 0 with an own group",
        [](AssetEdit& e) {
          const auto c = level0_cluster(e);
@@ -540,4 +540,4 @@ TEST(Validate, DocumentListsEveryRule) {
 #endif
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::judge

@@ -14,15 +14,15 @@
 #include "support/open_surface.h"
 #include "judge/validate/borders.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 namespace {
 
 using test::Corner;
 using test::Patch;
 using test::Random;
 
-SimplifyInput as_input(const test::IntegerMesh& mesh) {
-  SimplifyInput input;
+build::SimplifyInput as_input(const test::IntegerMesh& mesh) {
+  build::SimplifyInput input;
   std::map<Corner, std::uint32_t> first;  // what lies on one point of the grid is one position
   std::vector<std::uint32_t> name;
   for (const Vec3i& p : mesh.positions) {
@@ -44,7 +44,7 @@ SimplifyInput as_input(const test::IntegerMesh& mesh) {
 template <class Surface>
 Patch as_patch(const Surface& surface) {
   Patch patch;
-  for (const WedgeTriangle& t : surface.triangles) {
+  for (const build::WedgeTriangle& t : surface.triangles) {
     test::Triangle corners;
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3i& p = surface.positions[surface.wedge_position[t[k]]];
@@ -55,15 +55,15 @@ Patch as_patch(const Surface& surface) {
   return patch;
 }
 
-bool judge_accepts(const SimplifyInput& finer, const SimplifyResult& coarser) {
-  const Asset asset = test::asset_of({as_patch(finer)}, as_patch(coarser));
-  const auto clusters = decode_all(asset);
+bool judge_accepts(const build::SimplifyInput& finer, const build::SimplifyResult& coarser) {
+  const run::Asset asset = test::asset_of({as_patch(finer)}, as_patch(coarser));
+  const auto clusters = run::decode_all(asset);
   EXPECT_TRUE(clusters.ok());
   return prove_borders(asset, build_surface(asset, MeshId(0U), *clusters), *clusters).violations.empty();
 }
 
 /// What a faulty builder might have made of it.
-void spoil(SimplifyResult& result, Random& random) {
+void spoil(build::SimplifyResult& result, Random& random) {
   const std::size_t t = random.below(result.triangles.size());
   switch (random.below(4)) {
     case 0: result.triangles.erase(result.triangles.begin() + static_cast<std::ptrdiff_t>(t)); break;
@@ -82,15 +82,15 @@ TEST(BorderAgreement, BuilderAndJudgeAcceptTheSame) {
   int accepted = 0, refused = 0;
   for (std::uint64_t seed = 1; seed <= 600; ++seed) {
     Random random(seed);
-    const SimplifyInput input = as_input(make_open_surface(random_surface_options(random, 7), random));
-    SimplifyOptions options;
+    const build::SimplifyInput input = as_input(test::make_open_surface(test::random_surface_options(random, 7), random));
+    build::SimplifyOptions options;
     options.target_triangles = static_cast<std::uint32_t>(input.triangles.size() / (1 + random.below(6)));
-    SimplifyResult result = simplify_group(input, options);
+    build::SimplifyResult result = build::simplify_group(input, options);
     if (result.triangles.size() < 2) continue;
-    ASSERT_TRUE(keeps_border(input, result)) << "seed " << seed;
+    ASSERT_TRUE(build::keeps_border(input, result)) << "seed " << seed;
     ASSERT_TRUE(judge_accepts(input, result)) << "seed " << seed;
     spoil(result, random);
-    const bool is_accepted = keeps_border(input, result);
+    const bool is_accepted = build::keeps_border(input, result);
     ASSERT_EQ(judge_accepts(input, result), is_accepted) << "seed " << seed << ", spoiled";
     ++(is_accepted ? accepted : refused);
   }
@@ -99,4 +99,4 @@ TEST(BorderAgreement, BuilderAndJudgeAcceptTheSame) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::judge

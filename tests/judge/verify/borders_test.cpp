@@ -10,7 +10,7 @@
 #include "run/read/asset.h"
 #include "judge/validate/borders.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 namespace {
 
 using test::asset_of;
@@ -19,8 +19,8 @@ using test::Patch;
 using test::Triangle;
 
 BorderProof prove(const std::vector<Patch>& finer, const Patch& coarser, const std::vector<Patch>& rest = {}) {
-  const Asset asset = asset_of(finer, coarser, rest);
-  const auto clusters = decode_all(asset);
+  const run::Asset asset = test::asset_of(finer, coarser, rest);
+  const auto clusters = run::decode_all(asset);
   EXPECT_TRUE(clusters.ok());
   return prove_borders(asset, build_surface(asset, MeshId(0U), *clusters), *clusters);
 }
@@ -51,7 +51,7 @@ Patch lid(int steps, int size = 8) {
 /// The surface of asset_of(one patch, one patch), but the finer cluster's border is a path of 3 * `links` edges that, in
 /// their order, tie the links from the last to the first: each lower position meets the path as it is so far. The last
 /// edge of all hangs on the last link, which sets linked by name have by then put `links` deep. The triangles are nowhere.
-MeshSurface path_surface(const Asset& asset, std::uint32_t links) {
+MeshSurface path_surface(const run::Asset& asset, std::uint32_t links) {
   MeshSurface surface;
   surface.mesh = MeshId(0U);
   surface.cluster_count = asset.meshes()[0].cluster_count;
@@ -84,10 +84,10 @@ MeshSurface path_surface(const Asset& asset, std::uint32_t links) {
 // Components were linked without their sizes and found by recursion, as deep as the path: a file of 5.6 MB overflowed
 // the stack.
 TEST(BorderProof, APathAsLongAsAFileLikesIsNoDeeperForTheProof) {
-  const Asset asset = asset_of({square(1)}, square(1));
+  const run::Asset asset = test::asset_of({square(1)}, square(1));
   const MeshSurface surface = path_surface(asset, 400000);
   ASSERT_TRUE(std::is_sorted(surface.edges.begin(), surface.edges.end()));
-  const BorderProof proof = prove_borders(asset, surface, *decode_all(asset));
+  const BorderProof proof = prove_borders(asset, surface, *run::decode_all(asset));
   EXPECT_EQ(proof.groups, 1U);
   EXPECT_FALSE(proof.border.is_closed);
   EXPECT_TRUE(proof.violations.empty());
@@ -275,4 +275,4 @@ TEST(BorderProof, EdgesWithoutLengthAreLeftOut) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::judge

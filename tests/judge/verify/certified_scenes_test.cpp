@@ -21,7 +21,7 @@
 #include "support/random.h"
 #include "judge/verify/verify.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 namespace {
 
 constexpr std::uint64_t kSamples = 40000;  // and all vertices, which is where most maxima are
@@ -31,20 +31,20 @@ constexpr std::uint32_t kClusterCap = 32;  // small clusters: small scenes have 
 struct CertifiedCase {
   friend void PrintTo(const CertifiedCase& c, std::ostream* out) { *out << c.name; }
   const char* name;
-  std::function<Primitive()> make;
+  std::function<scene::Primitive()> make;
 };
 
 /// Two sheets 1e-4 apart, closed, with noise ten times that: they run through each other.
-Primitive make_noisy_sheets(std::uint32_t n) {
-  Primitive shape = samples::make_blade(n, 1e-4);
+scene::Primitive make_noisy_sheets(std::uint32_t n) {
+  scene::Primitive shape = scene::make_blade(n, 1e-4);
   test::Random random(17);
   for (Vec3d& p : shape.positions) p += 1e-3 * Vec3d(random.signed_unit(), random.signed_unit(), random.signed_unit());
   return shape;
 }
 
 /// An open height field with holes of all sizes in it.
-Primitive make_torn_terrain(std::uint32_t n) {
-  Primitive shape = samples::make_terrain(n, n);
+scene::Primitive make_torn_terrain(std::uint32_t n) {
+  scene::Primitive shape = scene::make_terrain(n, n);
   test::Random random(18);
   std::vector<std::uint32_t> kept;
   for (std::size_t t = 0; t < shape.indices.size(); t += 3) {
@@ -58,26 +58,26 @@ Primitive make_torn_terrain(std::uint32_t n) {
   return shape;
 }
 
-Primitive moved(Primitive shape, const Vec3d& by) {
+scene::Primitive moved(scene::Primitive shape, const Vec3d& by) {
   for (Vec3d& p : shape.positions) p += by;
   return shape;
 }
 
 const std::vector<CertifiedCase>& certified_cases() {
   static const std::vector<CertifiedCase> all{
-      {"ClosedAndSmooth", [] { return samples::make_rock(20); }},
+      {"ClosedAndSmooth", [] { return scene::make_rock(20); }},
       {"OpenBordersAndHoles", [] { return make_torn_terrain(44); }},
       {"ThinSheetsThroughEachOther", [] { return make_noisy_sheets(26); }},
-      {"BumpsOfAThousandthAMillionAway", [] { return samples::make_far_plane(28); }},
+      {"BumpsOfAThousandthAMillionAway", [] { return scene::make_far_plane(28); }},
       {"SphereAHundredThousandAway",
-       [] { return moved(samples::scaled(samples::make_sphere(10), 1e-3), Vec3d(1e5, -2e5, 3e5)); }},
+       [] { return moved(scene::scaled(scene::make_sphere(10), 1e-3), Vec3d(1e5, -2e5, 3e5)); }},
       {"DegenerateTrianglesThatStickOut", [] { return test::make_ball_with_hairs(); }},
-      {"TrianglesWithoutAreaInAClosedSurface", [] { return samples::make_zero_areas(12); }},
-      {"Slivers", [] { return samples::make_slivers(800, 1e5); }},
-      {"SheetsThatShareAnEdge", [] { return samples::make_three_sheets(16); }},
-      {"LooseBoxes", [] { return samples::make_box_soup(120); }},
-      {"SizeOfAMillionth", [] { return samples::scaled(samples::make_torus(36, 24), 1e-6); }},
-      {"SizeOfABillion", [] { return samples::scaled(samples::make_torus(36, 24), 1e9); }},
+      {"TrianglesWithoutAreaInAClosedSurface", [] { return scene::make_zero_areas(12); }},
+      {"Slivers", [] { return scene::make_slivers(800, 1e5); }},
+      {"SheetsThatShareAnEdge", [] { return scene::make_three_sheets(16); }},
+      {"LooseBoxes", [] { return scene::make_box_soup(120); }},
+      {"SizeOfAMillionth", [] { return scene::scaled(scene::make_torus(36, 24), 1e-6); }},
+      {"SizeOfABillion", [] { return scene::scaled(scene::make_torus(36, 24), 1e9); }},
   };
   return all;
 }
@@ -85,14 +85,14 @@ const std::vector<CertifiedCase>& certified_cases() {
 class CertifiedScene : public testing::TestWithParam<CertifiedCase> {
  protected:
   void SetUp() override {
-    scene_ = samples::as_scene(samples::as_mesh(GetParam().make()));
-    PipelineReport report;
-    auto bytes = build_lode(scene_, {.error_tier = format::ErrorTier::kCertified, .max_cluster_triangles = kClusterCap}, {}, report);
+    scene_ = scene::as_scene(scene::as_mesh(GetParam().make()));
+    build::PipelineReport report;
+    auto bytes = build::build_lode(scene_, {.error_tier = format::ErrorTier::kCertified, .max_cluster_triangles = kClusterCap}, {}, report);
     ASSERT_TRUE(bytes.ok()) << bytes.error().message();
-    auto asset = Asset::from_vector(std::move(*bytes));
+    auto asset = run::Asset::from_vector(std::move(*bytes));
     ASSERT_TRUE(asset.ok()) << asset.error().message();
     asset_.emplace_back(std::move(*asset));
-    auto decoded = decode_all(asset_[0]);
+    auto decoded = run::decode_all(asset_[0]);
     ASSERT_TRUE(decoded.ok()) << decoded.error().message();
     decoded_ = std::move(*decoded);
     source_ = surface_of_source(scene_.meshes[0]);
@@ -138,18 +138,18 @@ class CertifiedScene : public testing::TestWithParam<CertifiedCase> {
     return cut;
   }
 
-  Scene scene_;
-  std::vector<Asset> asset_;  ///< one, made in SetUp
-  std::vector<DecodedCluster> decoded_;
+  scene::Scene scene_;
+  std::vector<run::Asset> asset_;  ///< one, made in SetUp
+  std::vector<run::DecodedCluster> decoded_;
   Surface source_;
   std::set<std::vector<ClusterId>> judged_;
   double tightest_ = 0.0;
 };
 
 TEST_P(CertifiedScene, NoCutIsFartherFromTheSourceThanItStores) {
-  const Asset& asset = asset_[0];
+  const run::Asset& asset = asset_[0];
   for (const double threshold : thresholds()) {
-    const UniformCut cut = select_uniform(asset, MeshId(0U), threshold);
+    const run::UniformCut cut = run::select_uniform(asset, MeshId(0U), threshold);
     expect_within(cut.clusters, cut.stored_error, "uniform cut");
   }
   const std::size_t uniform = judged_.size();
@@ -172,4 +172,4 @@ INSTANTIATE_TEST_SUITE_P(Scenes, CertifiedScene, testing::ValuesIn(certified_cas
                          [](const auto& tested) { return tested.param.name; });
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::judge

@@ -12,13 +12,13 @@
 #include "judge/validate/judged_sample.h"
 #include "judge/verify/cuts.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 namespace {
 
 class CutChecks : public testing::Test {
  protected:
   CutChecks()
-      : asset_(std::move(*Asset::from_vector(test::judged_sample_bytes()))), clusters_(std::move(*decode_all(asset_))) {
+      : asset_(std::move(*run::Asset::from_vector(test::judged_sample_bytes()))), clusters_(std::move(*run::decode_all(asset_))) {
     for (std::uint32_t m = 0; m < asset_.meshes().size(); ++m)
       judges_.push_back(make_mesh_judge(asset_, MeshId(m), clusters_));
   }
@@ -34,8 +34,8 @@ class CutChecks : public testing::Test {
     return log;
   }
 
-  Asset asset_;
-  std::vector<DecodedCluster> clusters_;
+  run::Asset asset_;
+  std::vector<run::DecodedCluster> clusters_;
   std::vector<MeshJudge> judges_;
   CameraTotals totals_;
 };
@@ -49,8 +49,8 @@ TEST_F(CutChecks, TheRealSelectionPasses) {
 
 TEST_F(CutChecks, AClusterLeftOutIsAHole) {
   Selectors wrong;
-  wrong.flat = [](const Asset& asset, const Camera& camera, double t) {
-    auto cut = select_flat(asset, camera, t);
+  wrong.flat = [](const run::Asset& asset, const run::Camera& camera, double t) {
+    auto cut = run::select_flat(asset, camera, t);
     cut.pop_back();
     return cut;
   };
@@ -62,10 +62,10 @@ TEST_F(CutChecks, AClusterLeftOutIsAHole) {
 
 TEST_F(CutChecks, AHoleInAClosedMeshIsABorder) {
   Selectors wrong;
-  wrong.flat = [](const Asset& asset, const Camera& camera, double t) {
-    auto cut = select_flat(asset, camera, t);
+  wrong.flat = [](const run::Asset& asset, const run::Camera& camera, double t) {
+    auto cut = run::select_flat(asset, camera, t);
     const auto ball =
-        std::find_if(cut.begin(), cut.end(), [](const ClusterInstance& c) { return c.instance.value == 1; });
+        std::find_if(cut.begin(), cut.end(), [](const run::ClusterInstance& c) { return c.instance.value == 1; });
     cut.erase(ball);
     return cut;
   };
@@ -78,8 +78,8 @@ TEST_F(CutChecks, AHoleInAClosedMeshIsABorder) {
 
 TEST_F(CutChecks, AClusterDrawnOverItsOwnFinerOnesIsAnOverlap) {
   Selectors wrong;
-  wrong.uniform = [](const Asset& asset, MeshId mesh, double error) {
-    UniformCut cut = select_uniform(asset, mesh, error);
+  wrong.uniform = [](const run::Asset& asset, MeshId mesh, double error) {
+    run::UniformCut cut = run::select_uniform(asset, mesh, error);
     const auto& record = asset.meshes()[mesh.value];
     const ClusterId root(record.first_cluster);
     if (cut.clusters.empty() || cut.clusters[0] != root) cut.clusters.insert(cut.clusters.begin(), root);
@@ -92,13 +92,13 @@ TEST_F(CutChecks, AClusterDrawnOverItsOwnFinerOnesIsAnOverlap) {
 
 TEST_F(CutChecks, AnEmptyCutIsFound) {
   Selectors wrong;
-  wrong.uniform = [](const Asset&, MeshId, double) { return UniformCut{}; };
+  wrong.uniform = [](const run::Asset&, MeshId, double) { return run::UniformCut{}; };
   EXPECT_GT(check_uniform_with(wrong).count_of("V201"), 0U);
 }
 
 TEST_F(CutChecks, AnotherThresholdIsNotTheRule) {
   Selectors wrong;
-  wrong.flat = [](const Asset& asset, const Camera& camera, double t) { return select_flat(asset, camera, t * 1.5); };
+  wrong.flat = [](const run::Asset& asset, const run::Camera& camera, double t) { return run::select_flat(asset, camera, t * 1.5); };
   wrong.bvh = wrong.flat;
   const RuleLog log = check_cameras_with(wrong);
   EXPECT_GT(log.count_of("V204"), 0U);
@@ -108,8 +108,8 @@ TEST_F(CutChecks, AnotherThresholdIsNotTheRule) {
 
 TEST_F(CutChecks, AWrongStoredErrorIsFound) {
   Selectors wrong;
-  wrong.uniform = [](const Asset& asset, MeshId mesh, double error) {
-    UniformCut cut = select_uniform(asset, mesh, error);
+  wrong.uniform = [](const run::Asset& asset, MeshId mesh, double error) {
+    run::UniformCut cut = run::select_uniform(asset, mesh, error);
     cut.stored_error *= 0.5;
     cut.stored_error -= 1e-30;
     return cut;
@@ -122,7 +122,7 @@ TEST_F(CutChecks, AHierarchyThatPrunesTooMuchIsFound) {
   const auto mesh = edit.meshes()[1];
   edit.node(mesh.first_node, [](auto& node) { node.error = 0.0F; });
   edit.seal();
-  const Asset broken = std::move(*Asset::from_vector(edit.bytes()));
+  const run::Asset broken = std::move(*run::Asset::from_vector(edit.bytes()));
   RuleLog log;
   check_cameras(broken, judges_, 20, 1, log);
   EXPECT_GT(log.count_of("V203"), 0U);
@@ -137,7 +137,7 @@ TEST_F(CutChecks, ErrorsThatFallMakeACutThatDrawsTwice) {
     if (groups[g].mesh == 1 && groups[g].level == 0) edit.group(g, [](auto& group) { group.error = 1e6F; });
   }
   edit.seal();
-  const Asset broken = std::move(*Asset::from_vector(edit.bytes()));
+  const run::Asset broken = std::move(*run::Asset::from_vector(edit.bytes()));
   RuleLog log;
   check_uniform_cuts(broken, judges_[1], 40, log);
   EXPECT_GT(log.count_of("V201"), 0U);
@@ -154,8 +154,8 @@ TEST_F(CutChecks, AMovedBorderVertexOpensCuts) {
     break;
   }
   edit.seal();
-  const Asset broken = std::move(*Asset::from_vector(edit.bytes()));
-  const std::vector<DecodedCluster> decoded = std::move(*decode_all(broken));
+  const run::Asset broken = std::move(*run::Asset::from_vector(edit.bytes()));
+  const std::vector<run::DecodedCluster> decoded = std::move(*run::decode_all(broken));
   const MeshJudge judge = make_mesh_judge(broken, MeshId(1U), decoded);
   RuleLog log;
   check_uniform_cuts(broken, judge, 40, log);
@@ -163,4 +163,4 @@ TEST_F(CutChecks, AMovedBorderVertexOpensCuts) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::judge

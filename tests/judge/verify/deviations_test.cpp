@@ -13,23 +13,23 @@
 #include "judge/validate/validate.h"
 #include "judge/verify/verify.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 namespace {
 
 using test::AssetEdit;
 
 struct Built {
-  Scene scene;
+  scene::Scene scene;
   std::vector<std::uint8_t> bytes;
 };
 
 Built build_rock(format::ErrorTier tier) {
   Built built;
-  built.scene = samples::as_scene(samples::as_mesh(samples::with_smooth_normals(samples::make_rock(16))));
-  PipelineOptions options;
+  built.scene = scene::as_scene(scene::as_mesh(scene::with_smooth_normals(scene::make_rock(16))));
+  build::PipelineOptions options;
   options.error_tier = tier;
-  PipelineReport report;
-  auto bytes = build_lode(built.scene, options, {}, report);
+  build::PipelineReport report;
+  auto bytes = build::build_lode(built.scene, options, {}, report);
   EXPECT_TRUE(bytes.ok());
   built.bytes = std::move(*bytes);
   return built;
@@ -45,8 +45,8 @@ std::string ids_of(const Report& report) {
   return ids;
 }
 
-VerifyReport verify_bytes(const std::vector<std::uint8_t>& bytes, const Scene& scene) {
-  const Result<Asset> asset = Asset::from_vector(bytes);
+VerifyReport verify_bytes(const std::vector<std::uint8_t>& bytes, const scene::Scene& scene) {
+  const Result<run::Asset> asset = run::Asset::from_vector(bytes);
   EXPECT_TRUE(asset.ok()) << asset.error().message();
   return verify_asset(*asset, scene, {.uniform_cuts = 20, .cameras = 10, .deviation_cuts = 6, .deviation_samples = 20000});
 }
@@ -82,7 +82,7 @@ TEST_P(StoredErrors, AreTrueAndAreFoundWhereTheySayHalf) {
 
 TEST_P(StoredErrors, AreAtLeastTheDeviationTimesTheMarginOfTheSettings) {
   const Built built = build_rock(GetParam());
-  const double margin = GetParam() == format::ErrorTier::kMeasured ? kMeasuredMargin : 1.0;
+  const double margin = GetParam() == format::ErrorTier::kMeasured ? build::kMeasuredMargin : 1.0;
   AssetEdit edit(built.bytes);
   const auto count = static_cast<std::uint32_t>(edit.count(format::SectionId::kGroups, sizeof(format::GroupRecord)));
   std::uint32_t finite = 0, inner = 0;
@@ -101,4 +101,4 @@ TEST_P(StoredErrors, AreAtLeastTheDeviationTimesTheMarginOfTheSettings) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::judge

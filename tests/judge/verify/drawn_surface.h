@@ -20,8 +20,8 @@ using Corner = std::array<int, 3>;
 using Triangle = std::array<Corner, 3>;
 using Patch = std::vector<Triangle>;
 
-inline void append_cluster(const Patch& patch, std::uint32_t level, GroupId own, GroupId coarser, LodDag& dag) {
-  DagCluster cluster;
+inline void append_cluster(const Patch& patch, std::uint32_t level, GroupId own, GroupId coarser, build::LodDag& dag) {
+  build::DagCluster cluster;
   cluster.level = level;
   cluster.own_group = own;
   cluster.coarser_group = coarser;
@@ -45,19 +45,19 @@ inline void append_cluster(const Patch& patch, std::uint32_t level, GroupId own,
 }
 
 /// One group that replaces `finer` by `coarser`, beside `rest`, which stays as it is.
-[[nodiscard]] inline Asset asset_of(const std::vector<Patch>& finer, const Patch& coarser,
+[[nodiscard]] inline run::Asset asset_of(const std::vector<Patch>& finer, const Patch& coarser,
                                     const std::vector<Patch>& rest = {}) {
-  LodDag dag;
+  build::LodDag dag;
   append_cluster(coarser, 1, GroupId(1U), GroupId(0U), dag);
   for (const Patch& patch : rest) append_cluster(patch, 0, GroupId(), GroupId(0U), dag);
   const auto terminal_count = static_cast<std::uint32_t>(dag.clusters.size());
   for (const Patch& patch : finer) append_cluster(patch, 0, GroupId(), GroupId(1U), dag);
-  DagGroup top;
+  build::DagGroup top;
   top.level = 1;
   top.cluster_count = terminal_count;
   top.is_terminal = true;
   top.error = top.quadric_error = top.deviation = std::numeric_limits<double>::infinity();
-  DagGroup group;
+  build::DagGroup group;
   group.first_cluster = terminal_count;
   group.cluster_count = static_cast<std::uint32_t>(finer.size());
   group.error = group.quadric_error = 1.0;
@@ -65,19 +65,19 @@ inline void append_cluster(const Patch& patch, std::uint32_t level, GroupId own,
   dag.groups = {top, group};
   dag.level_count = 2;
 
-  PreparedMesh mesh;
-  Scene scene;
+  build::PreparedMesh mesh;
+  scene::Scene scene;
   scene.materials.resize(1);
-  WriteInput input;
-  auto encoded = encode_mesh(mesh, dag, build_hierarchy(dag, mesh), {});
+  build::WriteInput input;
+  auto encoded = build::encode_mesh(mesh, dag, build::build_hierarchy(dag, mesh), {});
   EXPECT_TRUE(encoded.ok()) << encoded.error().message();
   input.meshes.push_back(std::move(*encoded));
   input.mesh_names = {"drawn"};
   input.scene = &scene;
   input.meta_json = "{}";
-  auto bytes = write_asset(std::move(input));
+  auto bytes = build::write_asset(std::move(input));
   EXPECT_TRUE(bytes.ok());
-  auto asset = Asset::from_vector(std::move(*bytes));
+  auto asset = run::Asset::from_vector(std::move(*bytes));
   EXPECT_TRUE(asset.ok()) << asset.error().message();
   return std::move(*asset);
 }

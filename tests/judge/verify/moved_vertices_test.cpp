@@ -14,7 +14,7 @@
 #include "build/prepare/separate_needles.h"
 #include "support/random.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 namespace {
 
 using Corners = std::array<Vec3d, 3>;
@@ -100,7 +100,7 @@ TEST(MovedVertices, TheBuilderPutsEveryVertexThere) {
       triangles.push_back(static_cast<std::uint32_t>(random.below(positions.size())));
     }
 
-    const PositionGrid grid{std::ilogb(step), 1};
+    const format::PositionGrid grid{std::ilogb(step), 1};
     const double grid_step = grid.step();
     std::vector<Vec3d> relative;
     std::vector<Vec3i> points;
@@ -108,7 +108,7 @@ TEST(MovedVertices, TheBuilderPutsEveryVertexThere) {
       relative.push_back(p - origin);
       points.push_back(grid.quantize(relative.back()));
     }
-    needles += separate_needles(relative, triangles, grid, points);
+    needles += build::separate_needles(relative, triangles, grid, points);
 
     std::vector<Corners> corners;
     for (std::size_t i = 0; i < triangles.size(); i += 3) {
@@ -144,4 +144,4 @@ TEST(MovedVertices, ManyNeedlesInOneCellTakeNoLongerThanTheirNumber) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::judge

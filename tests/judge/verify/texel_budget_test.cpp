@@ -12,7 +12,7 @@
 #include "judge/validate/judged_sample.h"
 #include "judge/verify/texel_budget.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 namespace {
 
 /// A PNG's signature and header.
@@ -26,12 +26,12 @@ std::vector<std::uint8_t> png_of(std::uint32_t width, std::uint32_t height) {
 }
 
 /// The sample, whose materials all sample one texture of this width by each of their coordinates.
-Scene scene_with(std::uint32_t width) {
-  Scene scene = test::sample_scene();
+scene::Scene scene_with(std::uint32_t width) {
+  scene::Scene scene = test::sample_scene();
   scene.blobs[0].bytes = png_of(width, 4);
   std::string materials;
   std::uint32_t count = 0;
-  for (SceneMaterial& material : scene.materials) {
+  for (scene::SceneMaterial& material : scene.materials) {
     material.source_index = count++;
     materials += materials.empty() ? "" : ",";
     materials += R"({"normalTexture":{"index":0},"emissiveTexture":{"index":0,"texCoord":1},)"
@@ -42,12 +42,12 @@ Scene scene_with(std::uint32_t width) {
 }
 
 TEST(TexelBudget, TexturesAreFoundAsTheBuildFindsThem) {
-  const Scene scene = scene_with(300);
+  const scene::Scene scene = scene_with(300);
   const auto of_materials = most_texels_of_materials(scene);
-  for (const SourceMesh& mesh : scene.meshes) {
+  for (const scene::SourceMesh& mesh : scene.meshes) {
     const auto most = most_texels(of_materials, mesh);
-    EXPECT_EQ(most, texels_per_unit(scene, mesh));
-    const bool has_material = std::any_of(mesh.primitives.begin(), mesh.primitives.end(), [&](const Primitive& p) {
+    EXPECT_EQ(most, build::texels_per_unit(scene, mesh));
+    const bool has_material = std::any_of(mesh.primitives.begin(), mesh.primitives.end(), [&](const scene::Primitive& p) {
       return p.material.value < scene.materials.size();
     });
     if (!has_material) continue;
@@ -70,9 +70,9 @@ TEST(TexelBudget, ImagesOfUnknownKindsHaveNoSize) {
 
 /// The largest image that a budget of a quarter of a texel allows, and one of twice the width.
 TEST(TexelBudget, AStepThatIsTooCoarseForATextureIsFound) {
-  const auto asset = Asset::from_vector(test::judged_sample_bytes());
+  const auto asset = run::Asset::from_vector(test::judged_sample_bytes());
   ASSERT_TRUE(asset.ok());
-  const auto clusters = decode_all(*asset);
+  const auto clusters = run::decode_all(*asset);
   ASSERT_TRUE(clusters.ok());
   std::int32_t coarsest = -1000;
   for (const format::MeshRecord& mesh : asset->meshes()) {
@@ -89,9 +89,9 @@ TEST(TexelBudget, AStepThatIsTooCoarseForATextureIsFound) {
 
 // A coordinate of more than half of what 24 bits hold leaves no finer step; one of less does.
 TEST(TexelBudget, AStepAsFineAsTheCoordinatesLeaveIsWithinAnyBudget) {
-  const auto asset = Asset::from_vector(test::judged_sample_bytes());
+  const auto asset = run::Asset::from_vector(test::judged_sample_bytes());
   ASSERT_TRUE(asset.ok());
-  auto clusters = decode_all(*asset);
+  auto clusters = run::decode_all(*asset);
   ASSERT_TRUE(clusters.ok());
   for (const std::int32_t largest : {(1 << 23) - 1, 1 << 23, -(1 << 23)}) {
     bool is_any_set = false;
@@ -111,4 +111,4 @@ TEST(TexelBudget, AStepAsFineAsTheCoordinatesLeaveIsWithinAnyBudget) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::judge

@@ -15,7 +15,7 @@
 #include "judge/validate/rules.h"
 #include "judge/verify/verify.h"
 
-namespace meshlode {
+namespace meshlode::judge {
 namespace {
 
 using test::AssetEdit;
@@ -30,9 +30,9 @@ bool has(const VerifyReport& report, const std::string& id) {
   return std::any_of(report.findings.begin(), report.findings.end(), [&](const Finding& f) { return f.id == id; });
 }
 
-VerifyReport verify_bytes(const std::vector<std::uint8_t>& bytes, const Scene& scene,
+VerifyReport verify_bytes(const std::vector<std::uint8_t>& bytes, const scene::Scene& scene,
                           const VerifyOptions& options = {}) {
-  Result<Asset> asset = Asset::from_vector(bytes);
+  Result<run::Asset> asset = run::Asset::from_vector(bytes);
   EXPECT_TRUE(asset.ok()) << asset.error().message();
   return verify_asset(*asset, scene, options);
 }
@@ -65,7 +65,7 @@ TEST(Verify, CutsAndCamerasAreCounted) {
 struct Break {
   const char* rule;
   const char* what;
-  std::function<void(Scene&)> source;
+  std::function<void(scene::Scene&)> source;
   std::function<void(AssetEdit&)> asset;
 };
 
@@ -73,24 +73,24 @@ const std::vector<Break>& breaks() {
   static const auto keep = [](auto&) {};
   static const std::vector<Break> all{
       {"V101", "a triangle turned over",
-       [](Scene& s) {
+       [](scene::Scene& s) {
          auto& i = s.meshes[1].primitives[0].indices;
          std::swap(i[0], i[1]);
        },
        keep},
       {"V101", "a triangle lost from the source",
-       [](Scene& s) {
+       [](scene::Scene& s) {
          auto& i = s.meshes[1].primitives[0].indices;
          i.resize(i.size() - 3);
        },
        keep},
       {"V101", "a triangle of another material",
-       [](Scene& s) {
+       [](scene::Scene& s) {
          auto& p = s.meshes[1].primitives[0];
          p.material = MaterialId(1 - p.material.value);
        },
        keep},
-      {"V101", "a vertex moved by a step", [](Scene& s) { s.meshes[1].primitives[0].positions[0].x += 1.0; }, keep},
+      {"V101", "a vertex moved by a step", [](scene::Scene& s) { s.meshes[1].primitives[0].positions[0].x += 1.0; }, keep},
       {"V101", "another origin", keep, [](AssetEdit& e) { e.mesh(1, [](auto& m) { m.origin[0] += 1.0; }); }},
       {"V101", "a strip that goes the other way", keep,
        [](AssetEdit& e) {
@@ -103,7 +103,7 @@ const std::vector<Break>& breaks() {
          }
        }},
       {"V102", "a degenerate triangle more",
-       [](Scene& s) {
+       [](scene::Scene& s) {
          auto& i = s.meshes[1].primitives[0].indices;
          i.insert(i.end(), {0, 0, 1});
        },
@@ -115,46 +115,46 @@ const std::vector<Break>& breaks() {
            m.dropped_duplicate = 1;
          });
        }},
-      {"V102", "a repair that was not", [](Scene& s) { s.meshes[1].drops.repaired = 1; }, keep},
-      {"V103", "another name", [](Scene& s) { s.meshes[0].name += "x"; }, keep},
-      {"V103", "a mesh more", [](Scene& s) { s.meshes.emplace_back(); }, keep},
+      {"V102", "a repair that was not", [](scene::Scene& s) { s.meshes[1].drops.repaired = 1; }, keep},
+      {"V103", "another name", [](scene::Scene& s) { s.meshes[0].name += "x"; }, keep},
+      {"V103", "a mesh more", [](scene::Scene& s) { s.meshes.emplace_back(); }, keep},
       {"V103", "another diagonal", keep, [](AssetEdit& e) { e.mesh(0, [](auto& m) { m.diagonal *= 1.0 + 1e-6; }); }},
       {"V103", "source vertices", keep, [](AssetEdit& e) { e.mesh(0, [](auto& m) { m.source_vertices += 1; }); }},
       {"V104", "a normal by ten degrees",
-       [](Scene& s) {
+       [](scene::Scene& s) {
          auto& n = s.meshes[1].primitives[0].normals[0];
          n = glm::normalize(n + Vec3f(0.1F, -0.1F, 0.1F));
        },
        keep},
       {"V104", "a colour by one step",
-       [](Scene& s) {
+       [](scene::Scene& s) {
          auto& c = s.meshes[1].primitives[0].colors[0];
          c.x = c.x > 0.5F ? c.x - 1.0F / 255.0F : c.x + 1.0F / 255.0F;
        },
        keep},
       {"V104", "a UV by two steps",
-       [](Scene& s) {
+       [](scene::Scene& s) {
          for (auto& p : s.meshes[0].primitives) {
            if (!p.uvs[0].empty()) p.uvs[0][0].x += 1e-3F;
          }
        },
        keep},
-      {"V105", "a vertex off the grid", [](Scene& s) { s.meshes[1].primitives[0].positions[0].x += 1e-4; }, keep},
-      {"V106", "a material's colour", [](Scene& s) { s.materials[0].base_color.x *= 0.5F; }, keep},
-      {"V106", "a material more", [](Scene& s) { s.materials.emplace_back(); }, keep},
-      {"V107", "an instance moved", [](Scene& s) { s.instances[0].transform[3][0] += 1.0; }, keep},
-      {"V107", "an instance of another mesh", [](Scene& s) { s.instances[0].mesh = MeshId(2U); }, keep},
-      {"V107", "an instance more", [](Scene& s) { s.instances.push_back(s.instances[0]); }, keep},
-      {"V108", "another source", [](Scene& s) { s.source_hash[0] = 'f'; }, keep},
+      {"V105", "a vertex off the grid", [](scene::Scene& s) { s.meshes[1].primitives[0].positions[0].x += 1e-4; }, keep},
+      {"V106", "a material's colour", [](scene::Scene& s) { s.materials[0].base_color.x *= 0.5F; }, keep},
+      {"V106", "a material more", [](scene::Scene& s) { s.materials.emplace_back(); }, keep},
+      {"V107", "an instance moved", [](scene::Scene& s) { s.instances[0].transform[3][0] += 1.0; }, keep},
+      {"V107", "an instance of another mesh", [](scene::Scene& s) { s.instances[0].mesh = MeshId(2U); }, keep},
+      {"V107", "an instance more", [](scene::Scene& s) { s.instances.push_back(s.instances[0]); }, keep},
+      {"V108", "another source", [](scene::Scene& s) { s.source_hash[0] = 'f'; }, keep},
       {"V110", "a vertex colour that matters",
-       [](Scene& s) {
+       [](scene::Scene& s) {
          s.meshes[0].primitives[0].colors.assign(s.meshes[0].primitives[0].positions.size(), Vec4f(0.5F));
        },
        keep},
       {"V110", "flat normals left out", keep,
        [](AssetEdit& e) { e.mesh(2, [](auto& m) { m.normal_mode = format::NormalMode::kNone; }); }},
       {"V110", "a UV set that a material came to sample",
-       [](Scene& s) {
+       [](scene::Scene& s) {
          s.meshes[0].primitives[0].uvs[1] = s.meshes[0].primitives[0].uvs[0];
          for (auto& m : s.materials) m.uv_sets_used = 3;
        },
@@ -186,15 +186,15 @@ const std::vector<Break>& breaks() {
        }},
       {"V112", "another tier", keep,
        [](AssetEdit& e) { e.mesh(2, [](auto& m) { m.error_tier = format::ErrorTier::kCertified; }); }},
-      {"V109", "an image's byte", [](Scene& s) { s.blobs[0].bytes[0] ^= 1U; }, keep},
-      {"V109", "the scene document", [](Scene& s) { s.document += " "; }, keep},
+      {"V109", "an image's byte", [](scene::Scene& s) { s.blobs[0].bytes[0] ^= 1U; }, keep},
+      {"V109", "the scene document", [](scene::Scene& s) { s.document += " "; }, keep},
   };
   return all;
 }
 
 TEST(Verify, EachBreakIsFoundByItsRule) {
   for (const Break& broken : breaks()) {
-    Scene scene = test::sample_scene();
+    scene::Scene scene = test::sample_scene();
     broken.source(scene);
     AssetEdit edit(sample());
     broken.asset(edit);
@@ -215,9 +215,9 @@ TEST(Verify, EachSourceRuleHasABreak) {
 /// What may be dropped and what may not, on a grid of two triangles.
 class VerifyDrops : public testing::Test {
  protected:
-  static VerifyReport verify_with(const std::function<void(Primitive&)>& change,
+  static VerifyReport verify_with(const std::function<void(scene::Primitive&)>& change,
                                   const std::function<void(format::MeshRecord&)>& counts) {
-    Scene scene = test::sample_scene();
+    scene::Scene scene = test::sample_scene();
     change(scene.meshes[1].primitives[0]);
     AssetEdit edit(sample());
     edit.mesh(1, counts);
@@ -227,7 +227,7 @@ class VerifyDrops : public testing::Test {
 };
 
 TEST_F(VerifyDrops, ARotatedDuplicateIsDroppedOnce) {
-  const auto duplicate = [](Primitive& p) {
+  const auto duplicate = [](scene::Primitive& p) {
     p.indices.insert(p.indices.end(), {p.indices[1], p.indices[2], p.indices[0]});
   };
   const VerifyReport told = verify_with(duplicate, [](auto& m) {
@@ -245,7 +245,7 @@ TEST_F(VerifyDrops, ARotatedDuplicateIsDroppedOnce) {
 }
 
 TEST_F(VerifyDrops, AReversedTwinIsNoDuplicate) {
-  const auto twin = [](Primitive& p) { p.indices.insert(p.indices.end(), {p.indices[1], p.indices[0], p.indices[2]}); };
+  const auto twin = [](scene::Primitive& p) { p.indices.insert(p.indices.end(), {p.indices[1], p.indices[0], p.indices[2]}); };
   EXPECT_TRUE(has(verify_with(twin,
                               [](auto& m) {
                                 m.source_triangles += 1;
@@ -257,7 +257,7 @@ TEST_F(VerifyDrops, AReversedTwinIsNoDuplicate) {
 TEST_F(VerifyDrops, ATriangleOnALineStaysWhereItLiesAlongAnEdge) {
   // Three positions on one line, all distinct, by how far the third is along the edge from the first to the second.
   const auto verify_line = [](double at) {
-    const auto line = [at](Primitive& p) {
+    const auto line = [at](scene::Primitive& p) {
       const auto first = static_cast<std::uint32_t>(p.positions.size());
       const Vec3d a = p.positions[p.indices[0]];
       const Vec3d b = p.positions[p.indices[1]];
@@ -284,4 +284,4 @@ TEST_F(VerifyDrops, ATriangleOnALineStaysWhereItLiesAlongAnEdge) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::judge

@@ -12,30 +12,30 @@
 
 namespace meshlode::test {
 
-std::vector<std::uint8_t> build_bytes(const Scene& scene, double grid_step) {
-  PipelineOptions options;
+std::vector<std::uint8_t> build_bytes(const scene::Scene& scene, double grid_step) {
+  build::PipelineOptions options;
   options.grid_step = grid_step;
-  PipelineReport report;
-  auto bytes = build_lode(scene, options, {}, report);
+  build::PipelineReport report;
+  auto bytes = build::build_lode(scene, options, {}, report);
   if (bytes) return std::move(*bytes);
   ADD_FAILURE() << bytes.error().message();
   return {};
 }
 
-Scene make_rock_scene(std::uint32_t n) {
-  const Primitive rock = samples::make_rock(n);
-  Scene scene;
-  SourceMesh& mesh = scene.meshes.emplace_back();
+scene::Scene make_rock_scene(std::uint32_t n) {
+  const scene::Primitive rock = scene::make_rock(n);
+  scene::Scene scene;
+  scene::SourceMesh& mesh = scene.meshes.emplace_back();
   mesh.name = "rock";
   const std::size_t third = rock.indices.size() / 9 * 3;
   for (std::size_t m = 0; m < 3; ++m) {
-    Primitive& primitive = mesh.primitives.emplace_back(rock);
+    scene::Primitive& primitive = mesh.primitives.emplace_back(rock);
     const auto first = rock.indices.begin() + static_cast<std::ptrdiff_t>(m * third);
     primitive.indices.assign(first, m == 2 ? rock.indices.end() : first + static_cast<std::ptrdiff_t>(third));
     primitive.material = MaterialId(m);
   }
   for (std::uint32_t m = 0; m < 3; ++m) {
-    SceneMaterial& material = scene.materials.emplace_back();
+    scene::SceneMaterial& material = scene.materials.emplace_back();
     material.source_index = m < 2 ? m : 0xFFFFFFFFU;
     material.uv_sets_used = 1;
   }
@@ -44,7 +44,7 @@ Scene make_rock_scene(std::uint32_t n) {
     "nodes": [{"name": "parent", "children": [1], "translation": [1, 2, 3]}, {"name": "child", "mesh": 0}],
     "meshes": [{"name": "rock", "extras": {"weight": 7}}],
     "materials": [{"name": "red"}, {"name": "green", "extensions": {"VENDOR_unknown": {"a": [1, 2]}}}]})";
-  SceneInstance& instance = scene.instances.emplace_back();
+  scene::SceneInstance& instance = scene.instances.emplace_back();
   instance.name = "child";
   instance.node = 1;
   instance.mesh = MeshId(0U);
@@ -52,14 +52,14 @@ Scene make_rock_scene(std::uint32_t n) {
   return scene;
 }
 
-std::vector<PlacedTriangle> expected_triangles(const Asset& asset, MeshId mesh, const std::vector<ClusterId>& cut) {
-  const auto decoded = decode_all(asset);
+std::vector<PlacedTriangle> expected_triangles(const run::Asset& asset, MeshId mesh, const std::vector<ClusterId>& cut) {
+  const auto decoded = run::decode_all(asset);
   EXPECT_TRUE(decoded.ok());
   const format::MeshRecord& record = asset.meshes()[mesh.value];
-  const PositionGrid grid{record.grid.log2, record.grid.mantissa};
+  const format::PositionGrid grid{record.grid.log2, record.grid.mantissa};
   std::vector<PlacedTriangle> triangles;
   for (const ClusterId id : cut) {
-    const DecodedCluster& cluster = (*decoded)[id.value];
+    const run::DecodedCluster& cluster = (*decoded)[id.value];
     for (std::size_t t = 0; t < cluster.triangles.size(); ++t) {
       const std::uint32_t source = asset.materials()[cluster.triangle_material[t]].source_index;
       PlacedTriangle placed{source == format::kNone ? -1 : static_cast<int>(source), {}};
@@ -76,10 +76,10 @@ std::vector<PlacedTriangle> expected_triangles(const Asset& asset, MeshId mesh, 
   return triangles;
 }
 
-std::vector<std::vector<ClusterId>> finest_cuts(const Asset& asset) {
+std::vector<std::vector<ClusterId>> finest_cuts(const run::Asset& asset) {
   std::vector<std::vector<ClusterId>> cuts;
   for (std::size_t m = 0; m < asset.meshes().size(); ++m) {
-    cuts.push_back(select_uniform(asset, MeshId(m), -1.0).clusters);
+    cuts.push_back(run::select_uniform(asset, MeshId(m), -1.0).clusters);
   }
   return cuts;
 }

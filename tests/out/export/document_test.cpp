@@ -10,15 +10,15 @@
 #include "out/export/export.h"
 #include "scene/samples/samples.h"
 
-namespace meshlode {
+namespace meshlode::out {
 namespace {
 
 using nlohmann::json;
 using test::Glb;
 
-Glb export_scene(const Scene& scene) {
+Glb export_scene(const scene::Scene& scene) {
   const auto bytes = test::build_bytes(scene);
-  const auto asset = Asset::from_bytes(bytes);
+  const auto asset = run::Asset::from_bytes(bytes);
   if (!asset) {
     ADD_FAILURE() << asset.error().message();
     return {};
@@ -40,7 +40,7 @@ std::vector<std::uint8_t> bytes_of(const std::vector<float>& values) {
 }
 
 TEST(ExportDocument, NodesNamesExtrasAndUnknownExtensionsStay) {
-  const Scene scene = test::make_rock_scene(6);
+  const scene::Scene scene = test::make_rock_scene(6);
   const Glb glb = export_scene(scene);
   const json source = json::parse(scene.document);
   EXPECT_EQ(glb.json["scenes"], source["scenes"]);
@@ -52,7 +52,7 @@ TEST(ExportDocument, NodesNamesExtrasAndUnknownExtensionsStay) {
 }
 
 TEST(ExportDocument, ImagesAnimationsLightsAndCamerasStay) {
-  Scene scene = test::make_rock_scene(6);
+  scene::Scene scene = test::make_rock_scene(6);
   json document = json::parse(scene.document);
   document["images"] = json::parse(R"([{"blob": 0, "mimeType": "image/png"}, {"blob": 1, "name": "two"}])");
   document["samplers"] = json::parse(R"([{"wrapS": 33071}])");
@@ -73,9 +73,9 @@ TEST(ExportDocument, ImagesAnimationsLightsAndCamerasStay) {
       R"([{"channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}],
            "samplers": [{"input": 0, "output": 1}]}])");
   scene.document = document.dump();
-  scene.blobs = {{SceneBlob::Kind::kImage, "one.png", "image/png", 0, {0x89, 'P', 'N', 'G', 1}},
-                 {SceneBlob::Kind::kImage, "two.jpg", "image/jpeg", 1, {0xFF, 0xD8, 0xFF}},
-                 {SceneBlob::Kind::kBuffer, "", "", 0, bytes_of({0, 1, 2, 3, 4, 5, 6})}};
+  scene.blobs = {{scene::SceneBlob::Kind::kImage, "one.png", "image/png", 0, {0x89, 'P', 'N', 'G', 1}},
+                 {scene::SceneBlob::Kind::kImage, "two.jpg", "image/jpeg", 1, {0xFF, 0xD8, 0xFF}},
+                 {scene::SceneBlob::Kind::kBuffer, "", "", 0, bytes_of({0, 1, 2, 3, 4, 5, 6})}};
   const Glb glb = export_scene(scene);
   for (const char* key : {"samplers", "textures", "cameras", "animations", "extensions"}) {
     EXPECT_EQ(glb.json[key], document[key]) << key;
@@ -96,16 +96,16 @@ TEST(ExportDocument, ImagesAnimationsLightsAndCamerasStay) {
 }
 
 TEST(ExportDocument, ABlobIsWrittenOnceHoweverManyImagesNameIt) {
-  Scene scene = test::make_rock_scene(6);
+  scene::Scene scene = test::make_rock_scene(6);
   scene.blobs.resize(1);
-  scene.blobs[0].kind = SceneBlob::Kind::kImage;
+  scene.blobs[0].kind = scene::SceneBlob::Kind::kImage;
   scene.blobs[0].name = std::string(5000, 'n');  // nor is a long name multiplied
   scene.blobs[0].bytes.assign(100000, 7);
   std::string images;
   for (int i = 0; i < 200; ++i) images += std::string(images.empty() ? "" : ",") + R"({"blob":0})";
   scene.document = R"({"images":[)" + images + "]}";
   const auto bytes = test::build_bytes(scene);
-  const auto asset = Asset::from_bytes(bytes);
+  const auto asset = run::Asset::from_bytes(bytes);
   ASSERT_TRUE(asset.ok());
   const auto glb = export_glb(*asset, std::vector<std::vector<ClusterId>>(asset->meshes().size()));
   ASSERT_TRUE(glb.ok()) << glb.error().message();
@@ -119,10 +119,10 @@ TEST(ExportDocument, ABlobIsWrittenOnceHoweverManyImagesNameIt) {
 }
 
 TEST(ExportDocument, WithoutADocumentInstancesBecomeNodesAndRecordsMaterials) {
-  Scene scene = test::make_rock_scene(6);
+  scene::Scene scene = test::make_rock_scene(6);
   scene.document = "{}";
   scene.materials[1].name = "leaf";
-  scene.materials[1].alpha_mode = AlphaMode::kMask;
+  scene.materials[1].alpha_mode = scene::AlphaMode::kMask;
   scene.materials[1].double_sided = true;
   const Glb glb = export_scene(scene);
   ASSERT_EQ(glb.json["nodes"].size(), 1U);
@@ -171,11 +171,11 @@ TEST(ExportDocument, ADocumentOfAnotherShapeIsAnError) {
                                    deep.c_str()};
   int refused = 0;
   for (const char* document : documents) {
-    Scene scene = test::make_rock_scene(4);
+    scene::Scene scene = test::make_rock_scene(4);
     scene.document = document;
     const auto bytes = test::build_bytes(scene);
     if (bytes.empty()) continue;
-    const auto asset = Asset::from_bytes(bytes);
+    const auto asset = run::Asset::from_bytes(bytes);
     if (!asset) continue;  // the reader's business
     const auto glb = export_glb(*asset, test::finest_cuts(*asset));
     if (!glb) {
@@ -187,4 +187,4 @@ TEST(ExportDocument, ADocumentOfAnotherShapeIsAnError) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::out

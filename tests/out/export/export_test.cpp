@@ -11,12 +11,12 @@
 #include "out/export/export.h"
 #include "scene/samples/samples.h"
 
-namespace meshlode {
+namespace meshlode::out {
 namespace {
 
 using test::Glb;
 
-Glb export_cuts(const Asset& asset, const std::vector<std::vector<ClusterId>>& cuts) {
+Glb export_cuts(const run::Asset& asset, const std::vector<std::vector<ClusterId>>& cuts) {
   auto bytes = export_glb(asset, cuts);
   if (!bytes) {
     ADD_FAILURE() << bytes.error().message();
@@ -45,10 +45,10 @@ void expect_same_triangles(const std::vector<test::PlacedTriangle>& a, const std
 
 TEST(Export, EveryUniformCutHasItsTrianglesAndMaterials) {
   const auto bytes = test::build_bytes(test::make_rock_scene());
-  const auto asset = Asset::from_bytes(bytes);
+  const auto asset = run::Asset::from_bytes(bytes);
   ASSERT_TRUE(asset.ok());
   for (const double error : {-1.0, 0.001, 0.01, 0.1, 1e30}) {
-    const auto cut = select_uniform(*asset, MeshId(0U), error).clusters;
+    const auto cut = run::select_uniform(*asset, MeshId(0U), error).clusters;
     const Glb glb = export_cuts(*asset, {cut});
     expect_same_triangles(test::triangles_of(glb, 0), test::expected_triangles(*asset, MeshId(0U), cut));
   }
@@ -56,14 +56,14 @@ TEST(Export, EveryUniformCutHasItsTrianglesAndMaterials) {
 
 TEST(Export, VerticesAreMergedWhereAllTheirIntegersAgree) {
   const auto bytes = test::build_bytes(test::make_rock_scene());
-  const auto asset = Asset::from_bytes(bytes);
+  const auto asset = run::Asset::from_bytes(bytes);
   ASSERT_TRUE(asset.ok());
   const auto cuts = test::finest_cuts(*asset);
-  const auto decoded = decode_all(*asset);
+  const auto decoded = run::decode_all(*asset);
   ASSERT_TRUE(decoded.ok());
   std::set<std::pair<std::uint32_t, std::vector<std::int32_t>>> distinct;  // per material
   for (const ClusterId id : cuts[0]) {
-    const DecodedCluster& c = (*decoded)[id.value];
+    const run::DecodedCluster& c = (*decoded)[id.value];
     for (std::size_t t = 0; t < c.triangles.size(); ++t) {
       for (const std::uint8_t v : c.triangles[t]) {
         const auto first = c.channels.begin() + static_cast<std::ptrdiff_t>(std::size_t{v} * c.channel_count);
@@ -81,12 +81,12 @@ TEST(Export, VerticesAreMergedWhereAllTheirIntegersAgree) {
 }
 
 TEST(Export, NormalsAreUnitAndUvsAreTheSources) {
-  const Scene scene = test::make_rock_scene();
+  const scene::Scene scene = test::make_rock_scene();
   const auto bytes = test::build_bytes(scene);
-  const auto asset = Asset::from_bytes(bytes);
+  const auto asset = run::Asset::from_bytes(bytes);
   ASSERT_TRUE(asset.ok());
   const Glb glb = export_cuts(*asset, test::finest_cuts(*asset));
-  const Primitive& source = scene.meshes[0].primitives[0];
+  const scene::Primitive& source = scene.meshes[0].primitives[0];
   for (const auto& primitive : glb.json["meshes"][0]["primitives"]) {
     const auto positions = glb.rows(primitive["attributes"]["POSITION"]);
     const auto normals = glb.rows(primitive["attributes"]["NORMAL"]);
@@ -109,9 +109,9 @@ TEST(Export, NormalsAreUnitAndUvsAreTheSources) {
 }
 
 TEST(Export, FlatMeshesHaveNoNormals) {
-  Scene scene = samples::as_scene(samples::as_mesh(samples::make_cube(4), "cube"));
+  scene::Scene scene = scene::as_scene(scene::as_mesh(scene::make_cube(4), "cube"));
   const auto bytes = test::build_bytes(scene);
-  const auto asset = Asset::from_bytes(bytes);
+  const auto asset = run::Asset::from_bytes(bytes);
   ASSERT_TRUE(asset.ok());
   ASSERT_EQ(asset->meshes()[0].normal_mode, format::NormalMode::kFlat);
   const Glb glb = export_cuts(*asset, test::finest_cuts(*asset));
@@ -123,13 +123,13 @@ TEST(Export, FlatMeshesHaveNoNormals) {
 }
 
 TEST(Export, ColorsComeBackAsTheirBytes) {
-  Primitive shape = samples::make_sphere(6);
+  scene::Primitive shape = scene::make_sphere(6);
   for (std::size_t i = 0; i < shape.positions.size(); ++i) {
     const float c = static_cast<float>(i % 256) / 255.0F;
     shape.colors.emplace_back(c, 1.0F - c, 0.25F, 1.0F);
   }
-  const auto bytes = test::build_bytes(samples::as_scene(samples::as_mesh(std::move(shape))));
-  const auto asset = Asset::from_bytes(bytes);
+  const auto bytes = test::build_bytes(scene::as_scene(scene::as_mesh(std::move(shape))));
+  const auto asset = run::Asset::from_bytes(bytes);
   ASSERT_TRUE(asset.ok());
   ASSERT_EQ(asset->meshes()[0].has_color, 1U);
   const Glb glb = export_cuts(*asset, test::finest_cuts(*asset));
@@ -144,12 +144,12 @@ TEST(Export, ColorsComeBackAsTheirBytes) {
 }
 
 TEST(Export, KeptUvSetsStayUnderTheirNumberAndGapsAreZeros) {
-  Scene scene = test::make_rock_scene(8);
-  for (Primitive& primitive : scene.meshes[0].primitives) primitive.uvs[1] = std::move(primitive.uvs[0]);
-  for (Primitive& primitive : scene.meshes[0].primitives) primitive.uvs[0].clear();
-  for (SceneMaterial& material : scene.materials) material.uv_sets_used = 2;
+  scene::Scene scene = test::make_rock_scene(8);
+  for (scene::Primitive& primitive : scene.meshes[0].primitives) primitive.uvs[1] = std::move(primitive.uvs[0]);
+  for (scene::Primitive& primitive : scene.meshes[0].primitives) primitive.uvs[0].clear();
+  for (scene::SceneMaterial& material : scene.materials) material.uv_sets_used = 2;
   const auto bytes = test::build_bytes(scene);
-  const auto asset = Asset::from_bytes(bytes);
+  const auto asset = run::Asset::from_bytes(bytes);
   ASSERT_TRUE(asset.ok());
   ASSERT_EQ(asset->meshes()[0].uv_set_count, 1U);
   const Glb glb = export_cuts(*asset, test::finest_cuts(*asset));
@@ -163,7 +163,7 @@ TEST(Export, KeptUvSetsStayUnderTheirNumberAndGapsAreZeros) {
 
 TEST(Export, BytesAreTheSameEveryTimeAndForAnyOrderOfTheCut) {
   const auto bytes = test::build_bytes(test::make_rock_scene());
-  const auto asset = Asset::from_bytes(bytes);
+  const auto asset = run::Asset::from_bytes(bytes);
   ASSERT_TRUE(asset.ok());
   auto cuts = test::finest_cuts(*asset);
   const auto first = export_glb(*asset, cuts);
@@ -175,7 +175,7 @@ TEST(Export, BytesAreTheSameEveryTimeAndForAnyOrderOfTheCut) {
 
 TEST(Export, CutsThatAreNotCutsAreRefused) {
   const auto bytes = test::build_bytes(test::make_rock_scene());
-  const auto asset = Asset::from_bytes(bytes);
+  const auto asset = run::Asset::from_bytes(bytes);
   ASSERT_TRUE(asset.ok());
   const auto refused = [&](const std::vector<std::vector<ClusterId>>& cuts) {
     const auto result = export_glb(*asset, cuts);
@@ -189,7 +189,7 @@ TEST(Export, CutsThatAreNotCutsAreRefused) {
 
 TEST(Export, AnEmptyCutLeavesItsNodesWithoutAMesh) {
   const auto bytes = test::build_bytes(test::make_rock_scene());
-  const auto asset = Asset::from_bytes(bytes);
+  const auto asset = run::Asset::from_bytes(bytes);
   ASSERT_TRUE(asset.ok());
   const Glb glb = export_cuts(*asset, {{}});
   EXPECT_FALSE(glb.json.contains("meshes"));
@@ -199,4 +199,4 @@ TEST(Export, AnEmptyCutLeavesItsNodesWithoutAMesh) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::out

@@ -8,12 +8,12 @@
 #include "out/export/export.h"
 #include "scene/samples/samples.h"
 
-namespace meshlode {
+namespace meshlode::out {
 namespace {
 
 using test::Glb;
 
-Glb export_finest(const Asset& asset) {
+Glb export_finest(const run::Asset& asset) {
   auto bytes = export_glb(asset, test::finest_cuts(asset));
   if (!bytes) {
     ADD_FAILURE() << bytes.error().message();
@@ -25,12 +25,12 @@ Glb export_finest(const Asset& asset) {
 }
 
 TEST(ExportFar, AMeshAMillionUnitsAwayKeepsItsFeaturesThroughAChildNode) {
-  Scene scene = samples::as_scene(samples::as_mesh(samples::make_far_plane(16), "far"));
+  scene::Scene scene = scene::as_scene(scene::as_mesh(scene::make_far_plane(16), "far"));
   scene.document = R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
     "nodes": [{"name": "holder", "mesh": 0, "rotation": [0, 1, 0, 0], "children": [1]}, {"name": "other"}],
     "meshes": [{"name": "far"}]})";
   const auto bytes = test::build_bytes(scene);
-  const auto asset = Asset::from_bytes(bytes);
+  const auto asset = run::Asset::from_bytes(bytes);
   ASSERT_TRUE(asset.ok());
   const Glb glb = export_finest(*asset);
   ASSERT_EQ(glb.json["nodes"].size(), 3U);
@@ -54,9 +54,9 @@ TEST(ExportFar, AMeshAMillionUnitsAwayKeepsItsFeaturesThroughAChildNode) {
 
 TEST(ExportFar, AMeshNearItsOriginIsNotMoved) {
   for (const double factor : {1e-6, 1.0, 1e9}) {
-    Scene scene = samples::as_scene(samples::as_mesh(samples::scaled(samples::make_rock(6), factor), "near"));
+    scene::Scene scene = scene::as_scene(scene::as_mesh(scene::scaled(scene::make_rock(6), factor), "near"));
     const auto bytes = test::build_bytes(scene);
-    const auto asset = Asset::from_bytes(bytes);
+    const auto asset = run::Asset::from_bytes(bytes);
     ASSERT_TRUE(asset.ok());
     const Glb glb = export_finest(*asset);
     ASSERT_EQ(glb.json["nodes"].size(), 1U) << factor;
@@ -75,4 +75,4 @@ TEST(ExportFar, AMeshNearItsOriginIsNotMoved) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::out

@@ -10,19 +10,19 @@
 #include "out/export/export.h"
 #include "scene/samples/samples.h"
 
-namespace meshlode {
+namespace meshlode::out {
 namespace {
 
 using nlohmann::json;
 using test::Glb;
 
 /// Of mesh 0, decoded.
-std::uint64_t triangles_of(const Asset& asset, const std::vector<ClusterId>& cut) {
+std::uint64_t triangles_of(const run::Asset& asset, const std::vector<ClusterId>& cut) {
   return test::expected_triangles(asset, MeshId(0U), cut).size();
 }
 
 /// A chain of three levels for the one mesh of the asset.
-LodChain make_chain(const Asset& asset, std::vector<double> coverage = {0.5, 0.1, 0.0}) {
+LodChain make_chain(const run::Asset& asset, std::vector<double> coverage = {0.5, 0.1, 0.0}) {
   const std::uint32_t levels = asset.meshes()[0].level_count;
   EXPECT_GT(levels, 2U);
   LodChain chain;
@@ -33,7 +33,7 @@ LodChain make_chain(const Asset& asset, std::vector<double> coverage = {0.5, 0.1
   return chain;
 }
 
-Glb export_chain(const Asset& asset, const LodChain& chain) {
+Glb export_chain(const run::Asset& asset, const LodChain& chain) {
   const auto bytes = export_glb_lods(asset, {&chain, 1});
   if (!bytes) {
     ADD_FAILURE() << bytes.error().message();
@@ -45,15 +45,15 @@ Glb export_chain(const Asset& asset, const LodChain& chain) {
 }
 
 TEST(Budget, IsTheFinestUniformCutThatFits) {
-  const auto bytes = test::build_bytes(samples::as_scene(samples::as_mesh(samples::make_sphere(24))));
-  const auto asset = Asset::from_bytes(bytes);
+  const auto bytes = test::build_bytes(scene::as_scene(scene::as_mesh(scene::make_sphere(24))));
+  const auto asset = run::Asset::from_bytes(bytes);
   ASSERT_TRUE(asset.ok());
   // All uniform cuts there are, by the other way to make them.
   std::vector<double> errors = {-1.0};
   for (const format::GroupRecord& group : asset->groups()) errors.push_back(static_cast<double>(group.error));
   std::vector<std::uint64_t> counts;
   for (const double error : errors) {
-    counts.push_back(triangles_of(*asset, select_uniform(*asset, MeshId(0U), error).clusters));
+    counts.push_back(triangles_of(*asset, run::select_uniform(*asset, MeshId(0U), error).clusters));
   }
   const double unit = 1.0;
   for (std::uint64_t budget = 0; budget < counts[0] + 100; budget += 37) {
@@ -64,21 +64,21 @@ TEST(Budget, IsTheFinestUniformCutThatFits) {
     EXPECT_EQ(cuts.triangles, cuts.is_met ? best : *std::min_element(counts.begin(), counts.end())) << budget;
     EXPECT_EQ(triangles_of(*asset, cuts.cuts[0].clusters), cuts.triangles);
     if (cuts.is_met) {
-      EXPECT_EQ(cuts.cuts[0].clusters, select_uniform(*asset, MeshId(0U), cuts.threshold).clusters);
+      EXPECT_EQ(cuts.cuts[0].clusters, run::select_uniform(*asset, MeshId(0U), cuts.threshold).clusters);
     }
   }
 }
 
 TEST(Budget, OneThresholdInEachMeshsOwnUnit) {
-  Scene scene = samples::as_scene(samples::as_mesh(samples::make_sphere(24)));
-  SourceMesh large = scene.meshes[0];
+  scene::Scene scene = scene::as_scene(scene::as_mesh(scene::make_sphere(24)));
+  scene::SourceMesh large = scene.meshes[0];
   for (Vec3d& p : large.primitives[0].positions) p *= 1024.0;
   scene.meshes.push_back(large);
-  SceneInstance instance = scene.instances[0];
+  scene::SceneInstance instance = scene.instances[0];
   instance.mesh = MeshId(1U);
   scene.instances.push_back(instance);
   const auto bytes = test::build_bytes(scene);
-  const auto asset = Asset::from_bytes(bytes);
+  const auto asset = run::Asset::from_bytes(bytes);
   ASSERT_TRUE(asset.ok());
   const std::vector<double> relative = {asset->meshes()[0].diagonal, asset->meshes()[1].diagonal};
   const BudgetCuts even = choose_budget_cuts(*asset, relative, 1500);
@@ -95,7 +95,7 @@ TEST(Budget, OneThresholdInEachMeshsOwnUnit) {
 
 TEST(Lods, EachLevelIsItsCut) {
   const auto bytes = test::build_bytes(test::make_rock_scene(16));
-  const auto asset = Asset::from_bytes(bytes);
+  const auto asset = run::Asset::from_bytes(bytes);
   ASSERT_TRUE(asset.ok());
   const LodChain chain = make_chain(*asset);
   const Glb glb = export_chain(*asset, chain);
@@ -127,13 +127,13 @@ TEST(Lods, EachLevelIsItsCut) {
 }
 
 TEST(Lods, ANodeThatIsMovedOrHasChildrenGetsAFrameForItsLevels) {
-  Scene scene = test::make_rock_scene(16);
+  scene::Scene scene = test::make_rock_scene(16);
   json document = json::parse(scene.document);
   document["nodes"][1]["scale"] = {2, 2, 2};
   document["nodes"][1]["extras"] = "kept";
   scene.document = document.dump();
   const auto bytes = test::build_bytes(scene);
-  const auto asset = Asset::from_bytes(bytes);
+  const auto asset = run::Asset::from_bytes(bytes);
   ASSERT_TRUE(asset.ok());
   const Glb glb = export_chain(*asset, make_chain(*asset));
   const auto& nodes = glb.json["nodes"];
@@ -148,10 +148,10 @@ TEST(Lods, ANodeThatIsMovedOrHasChildrenGetsAFrameForItsLevels) {
 }
 
 TEST(Lods, AllLevelsOfAFarAwayMeshShareItsOrigin) {
-  Scene scene = samples::as_scene(samples::as_mesh(samples::make_sphere(24)));
+  scene::Scene scene = scene::as_scene(scene::as_mesh(scene::make_sphere(24)));
   for (Vec3d& p : scene.meshes[0].primitives[0].positions) p += Vec3d(1e6, 0.0, 0.0);
   const auto bytes = test::build_bytes(scene);
-  const auto asset = Asset::from_bytes(bytes);
+  const auto asset = run::Asset::from_bytes(bytes);
   ASSERT_TRUE(asset.ok());
   const Glb glb = export_chain(*asset, make_chain(*asset));
   std::size_t with_translation = 0;
@@ -166,7 +166,7 @@ TEST(Lods, AllLevelsOfAFarAwayMeshShareItsOrigin) {
 
 TEST(Lods, ChainsThatAreNoneAreRefused) {
   const auto bytes = test::build_bytes(test::make_rock_scene(16));
-  const auto asset = Asset::from_bytes(bytes);
+  const auto asset = run::Asset::from_bytes(bytes);
   ASSERT_TRUE(asset.ok());
   const auto refused = [&](const LodChain& chain) {
     const auto result = export_glb_lods(*asset, {&chain, 1});
@@ -183,15 +183,15 @@ TEST(Lods, ChainsThatAreNoneAreRefused) {
 }
 
 TEST(Lods, ImagesOfOtherTypesAreNamedByTheirExtension) {
-  Scene scene = test::make_rock_scene(6);
+  scene::Scene scene = test::make_rock_scene(6);
   json document = json::parse(scene.document);
   document["images"] = json::parse(R"([{"blob": 0}, {"blob": 1}])");
   document["textures"] = json::parse(R"([{"source": 0}, {"source": 1}])");
   scene.document = document.dump();
-  scene.blobs = {{SceneBlob::Kind::kImage, "a.ktx2", "image/ktx2", 0, {0xAB, 'K', 'T', 'X', ' ', '2', '0', 0xBB}},
-                 {SceneBlob::Kind::kImage, "b.png", "image/png", 1, {0x89, 'P', 'N', 'G'}}};
+  scene.blobs = {{scene::SceneBlob::Kind::kImage, "a.ktx2", "image/ktx2", 0, {0xAB, 'K', 'T', 'X', ' ', '2', '0', 0xBB}},
+                 {scene::SceneBlob::Kind::kImage, "b.png", "image/png", 1, {0x89, 'P', 'N', 'G'}}};
   const auto bytes = test::build_bytes(scene);
-  const auto asset = Asset::from_bytes(bytes);
+  const auto asset = run::Asset::from_bytes(bytes);
   ASSERT_TRUE(asset.ok());
   LodChain chain;
   chain.cuts = {test::finest_cuts(*asset)[0]};
@@ -202,4 +202,4 @@ TEST(Lods, ImagesOfOtherTypesAreNamedByTheirExtension) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::out

@@ -12,14 +12,14 @@
 #include "out/export/export.h"
 #include "scene/import/import.h"
 
-namespace meshlode {
+namespace meshlode::out {
 namespace {
 
 class ExportModels : public testing::TestWithParam<const char*> {};
 
-std::uint64_t triangles_of_mesh(const SourceMesh& mesh) {
+std::uint64_t triangles_of_mesh(const scene::SourceMesh& mesh) {
   std::uint64_t triangles = 0;
-  for (const Primitive& primitive : mesh.primitives) triangles += primitive.indices.size() / 3;
+  for (const scene::Primitive& primitive : mesh.primitives) triangles += primitive.indices.size() / 3;
   return triangles;
 }
 
@@ -30,10 +30,10 @@ TEST_P(ExportModels, AnExportedFinestCutImportsAsTheSceneItCameFrom) {
     if (required != nullptr && std::string(required) == "1") FAIL() << "MESHLODE_MODELS is not set";
     GTEST_SKIP() << "MESHLODE_MODELS is not set";
   }
-  const auto source = import_scene(std::filesystem::path(folder) / GetParam(), {});
+  const auto source = scene::import_scene(std::filesystem::path(folder) / GetParam(), {});
   ASSERT_TRUE(source.ok()) << source.error().message();
   const auto bytes = test::build_bytes(*source);
-  const auto asset = Asset::from_bytes(bytes);
+  const auto asset = run::Asset::from_bytes(bytes);
   ASSERT_TRUE(asset.ok()) << asset.error().message();
   const auto glb = export_glb(*asset, test::finest_cuts(*asset));
   ASSERT_TRUE(glb.ok()) << glb.error().message();
@@ -44,7 +44,7 @@ TEST_P(ExportModels, AnExportedFinestCutImportsAsTheSceneItCameFrom) {
   const auto path = std::filesystem::path(testing::TempDir()) / ("meshlode_export_" + file_name + ".glb");
   std::ofstream(path, std::ios::binary)
       .write(reinterpret_cast<const char*>(glb->data()), static_cast<std::streamsize>(glb->size()));
-  const auto again = import_scene(path, {});
+  const auto again = scene::import_scene(path, {});
   std::filesystem::remove(path);
   ASSERT_TRUE(again.ok()) << again.error().message();
 
@@ -57,8 +57,8 @@ TEST_P(ExportModels, AnExportedFinestCutImportsAsTheSceneItCameFrom) {
   }
   ASSERT_EQ(again->instances.size(), source->instances.size());
   for (std::size_t i = 0; i < source->instances.size(); ++i) {
-    const SceneInstance& a = again->instances[i];
-    const SceneInstance& s = source->instances[i];
+    const scene::SceneInstance& a = again->instances[i];
+    const scene::SceneInstance& s = source->instances[i];
     EXPECT_EQ(a.name, s.name);
     EXPECT_EQ(a.mesh, s.mesh);
     EXPECT_TRUE(a.transform == s.transform) << "instance " << i;
@@ -85,4 +85,4 @@ INSTANTIATE_TEST_SUITE_P(Models, ExportModels,
                                          "khronos/TextureTransformTest/glTF/TextureTransformTest.gltf"));
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::out

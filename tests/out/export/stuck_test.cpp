@@ -16,18 +16,18 @@
 #include "scene/samples/samples.h"
 #include "judge/validate/edit.h"
 
-namespace meshlode {
+namespace meshlode::out {
 namespace {
 
 /// Triangles between random points of a lattice: non-manifold everywhere, so that nothing can be simplified.
 const std::vector<std::uint8_t>& stuck_bytes() {
   static const auto bytes =
-      test::build_bytes(samples::as_scene(samples::as_mesh(test::make_lattice_chaos(20000, 8, 7), "chaos")));
+      test::build_bytes(scene::as_scene(scene::as_mesh(test::make_lattice_chaos(20000, 8, 7), "chaos")));
   return bytes;
 }
 
-Asset open(std::vector<std::uint8_t> bytes) {
-  auto asset = Asset::from_vector(std::move(bytes));
+run::Asset open(std::vector<std::uint8_t> bytes) {
+  auto asset = run::Asset::from_vector(std::move(bytes));
   EXPECT_TRUE(asset.ok()) << asset.error().message();
   return std::move(*asset);
 }
@@ -56,7 +56,7 @@ struct TempFile {
 };
 
 TEST(Stuck, ASceneThatCannotBeSimplifiedHasAReasonForEachGroup) {
-  const Asset asset = open(stuck_bytes());
+  const run::Asset asset = open(stuck_bytes());
   const AssetInfo info = describe_asset(asset);
   ASSERT_GT(info.stuck_groups, 1U);
   std::uint64_t listed = 0;
@@ -77,7 +77,7 @@ TEST(Stuck, ASceneThatCannotBeSimplifiedHasAReasonForEachGroup) {
 }
 
 TEST(Stuck, TheGlbHasTheStuckTrianglesAndAColourForEachReason) {
-  const Asset asset = open(with_all_reasons());
+  const run::Asset asset = open(with_all_reasons());
   const AssetInfo info = describe_asset(asset);
   std::map<std::string, std::uint64_t> expected;
   std::uint64_t total = 0;
@@ -122,7 +122,7 @@ TEST(Stuck, TheGlbHasTheStuckTrianglesAndAColourForEachReason) {
 }
 
 TEST(Stuck, AnAssetWithoutStuckGroupsGivesAGltfWithoutMeshes) {
-  const Asset asset = open(test::build_bytes(test::make_rock_scene()));
+  const run::Asset asset = open(test::build_bytes(test::make_rock_scene()));
   ASSERT_EQ(describe_asset(asset).stuck_groups, 0U);
   const TempFile file;
   testing::internal::CaptureStdout();
@@ -134,7 +134,7 @@ TEST(Stuck, AnAssetWithoutStuckGroupsGivesAGltfWithoutMeshes) {
 }
 
 TEST(Stuck, SetsOfOtherMeshesClustersAreRefused) {
-  const Asset asset = open(stuck_bytes());
+  const run::Asset asset = open(stuck_bytes());
   const auto count = asset.meshes()[0].cluster_count;
   const ColoredSet wrong{MeshId(0U), "x", {1.0F, 0.0F, 0.0F}, {ClusterId(count)}};
   const auto refused = export_colored_sets(asset, std::span(&wrong, 1));
@@ -143,4 +143,4 @@ TEST(Stuck, SetsOfOtherMeshesClustersAreRefused) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::out

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace meshlode {
+namespace meshlode::out {
 namespace {
 
 TEST(Meta, ReadsWhatThePipelineWrites) {
@@ -57,4 +57,4 @@ TEST(Meta, ListsTextures) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::out

@@ -13,7 +13,7 @@
 #include "run/decode/octahedral.h"
 #include "support/sample_asset.h"
 
-namespace meshlode {
+namespace meshlode::run {
 namespace {
 
 Asset open_asset(std::vector<std::uint8_t> bytes) {
@@ -62,7 +62,7 @@ TEST(Decode, GivesBackTrianglesWithOrientationAndMaterialExactly) {  // I1
       const auto clusters = decode_or_abort(asset);
       ASSERT_EQ(clusters.size(), sample.dag.clusters.size()) << c.name;
       for (std::size_t i = 0; i < clusters.size(); ++i) {
-        const DagCluster& dag_cluster = sample.dag.clusters[i];
+        const build::DagCluster& dag_cluster = sample.dag.clusters[i];
         ASSERT_EQ(clusters[i].vertex_count, dag_cluster.vertex_count);
         ASSERT_EQ(clusters[i].triangle_count, dag_cluster.triangle_count);
         std::multiset<Corners> expected;
@@ -139,8 +139,8 @@ TEST(Decode, PositionsAreExactInFloat) {
 /// there are several, and they are far apart).
 std::vector<std::size_t> match_vertices(const test::SampleMesh& sample, std::size_t cluster_id,
                                         const DecodedCluster& cluster) {
-  const DagCluster& dag_cluster = sample.dag.clusters[cluster_id];
-  const AttributeLayout& layout = sample.mesh.layout;
+  const build::DagCluster& dag_cluster = sample.dag.clusters[cluster_id];
+  const build::AttributeLayout& layout = sample.mesh.layout;
   const Asset asset = open_asset(test::asset_bytes_of(sample));
   ClusterAttributes attributes;
   decode_attributes(asset.meshes()[0], cluster, attributes);
@@ -168,7 +168,7 @@ std::vector<std::size_t> match_vertices(const test::SampleMesh& sample, std::siz
 TEST(Decode, AttributesStayWithinTheirSteps) {
   for (const Case& c : kCases) {
     const test::SampleMesh sample = c.make();
-    const AttributeLayout& layout = sample.mesh.layout;
+    const build::AttributeLayout& layout = sample.mesh.layout;
     const Asset asset = open_asset(test::asset_bytes_of(sample));
     const format::MeshRecord& mesh = asset.meshes()[0];
     const auto clusters = decode_or_abort(asset);
@@ -272,4 +272,4 @@ TEST(Decode, EveryPairOfStoredIntegersIsAUnitNormal) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::run

@@ -10,7 +10,7 @@
 #include "run/decode/decode.h"
 #include "support/sample_asset.h"
 
-namespace meshlode {
+namespace meshlode::run {
 namespace {
 
 using Point = std::array<std::int32_t, 3>;
@@ -113,7 +113,7 @@ TEST_F(Sample, ErrorsGrowAndSpheresNestTowardsTheCoarse) {  // I4
 }
 
 TEST_F(Sample, LevelZeroIsTheSourceTriangleForTriangle) {  // I1
-  const Scene scene = test::sample_scene();
+  const scene::Scene scene = test::sample_scene();
   for (std::uint32_t m = 0; m < 3; ++m) {
     const format::MeshRecord& mesh = asset_.meshes()[m];
     const Vec3d origin(mesh.origin[0], mesh.origin[1], mesh.origin[2]);
@@ -124,7 +124,7 @@ TEST_F(Sample, LevelZeroIsTheSourceTriangleForTriangle) {  // I1
       while (t[0] > t[1] || t[0] > t[2]) t = {t[1], t[2], t[0]};
       return t;
     };
-    for (const Primitive& primitive : scene.meshes[m].primitives) {
+    for (const scene::Primitive& primitive : scene.meshes[m].primitives) {
       for (std::size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
         std::array<Point, 3> triangle;
         for (std::size_t k = 0; k < 3; ++k) {
@@ -165,4 +165,4 @@ TEST_F(Sample, TheMeshesHaveTheirKindsOfAttributes) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::run

@@ -13,7 +13,7 @@
 #include "support/random.h"
 #include "support/sample_asset.h"
 
-namespace meshlode {
+namespace meshlode::run {
 namespace {
 
 enum class Outcome { kRefused, kPageRefused, kRead };
@@ -177,4 +177,4 @@ TEST(Malformed, NoiseIsRefused) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::run

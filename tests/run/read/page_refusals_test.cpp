@@ -10,7 +10,7 @@
 #include "break_asset.h"
 #include "run/decode/decode.h"
 
-namespace meshlode {
+namespace meshlode::run {
 namespace {
 
 using format::SectionId;
@@ -73,15 +73,15 @@ TEST_F(PageRefusals, ThePageHeaderMatchesTheTable) {
 TEST_F(PageRefusals, DataLieWhereTheyMust) {
   const std::uint32_t right = layout_.data_word;
   for (const std::uint32_t wrong : {0U, right - 1, right + 1}) {
-    expect_field_refused(layout_.head_word, head::kDataWord, wrong, "data_word");
+    expect_field_refused(layout_.head_word, format::head::kDataWord, wrong, "data_word");
   }
-  expect_field_refused(layout_.head_word, head::kDataWord, 0xFFFFU, "data_word");
+  expect_field_refused(layout_.head_word, format::head::kDataWord, 0xFFFFU, "data_word");
 }
 
 TEST_F(PageRefusals, CountsMatchTheRecord) {
   const std::uint32_t at = layout_.head_word;
-  expect_field_refused(at, head::kTrianglesLess1, layout_.triangle_count - 2, "material_range");
-  expect_field_refused(at, head::kVerticesLess1, layout_.vertex_count - 2, "uv_range");
+  expect_field_refused(at, format::head::kTrianglesLess1, layout_.triangle_count - 2, "material_range");
+  expect_field_refused(at, format::head::kVerticesLess1, layout_.vertex_count - 2, "uv_range");
   // Where neither ranges nor UVs notice: the tetrahedron.
   const std::uint32_t last = static_cast<std::uint32_t>(asset_.pages().size()) - 1;
   const std::string where = "page " + std::to_string(last) + ", cluster " +
@@ -91,18 +91,18 @@ TEST_F(PageRefusals, CountsMatchTheRecord) {
 
 TEST_F(PageRefusals, BitCountsChartsAndAxesAreKnownOnes) {
   const std::uint32_t at = layout_.head_word;
-  for (const auto& field : head::kBits) {
+  for (const auto& field : format::head::kBits) {
     expect_field_refused(at, field, 25, "bits");
     expect_field_refused(at, field, 31, "bits");
   }
-  expect_field_refused(at, head::kChart, 6, "chart");
-  expect_field_refused(at, head::kChart, 7, "chart");
-  expect_field_refused(at, head::kShearAxis, 3, "shear_axis");
-  expect_field_refused(at, head::kReferenceBits, 0, "reference_bits");
-  expect_field_refused(at, head::kReferenceBits, 9, "reference_bits");
-  expect_field_refused(at, head::kNormalBitsA, 15, "normal_bits");
-  expect_field_refused(at, head::kNormalBitsB, 15, "normal_bits");
-  expect_field_refused(at, head::kStripsLess1, 255, "strip_count");
+  expect_field_refused(at, format::head::kChart, 6, "chart");
+  expect_field_refused(at, format::head::kChart, 7, "chart");
+  expect_field_refused(at, format::head::kShearAxis, 3, "shear_axis");
+  expect_field_refused(at, format::head::kReferenceBits, 0, "reference_bits");
+  expect_field_refused(at, format::head::kReferenceBits, 9, "reference_bits");
+  expect_field_refused(at, format::head::kNormalBitsA, 15, "normal_bits");
+  expect_field_refused(at, format::head::kNormalBitsB, 15, "normal_bits");
+  expect_field_refused(at, format::head::kStripsLess1, 255, "strip_count");
   expect_field_refused(layout_.uv_word[0], format::uv_range::kBitsU, 26, "uv_range.bits");
   expect_field_refused(layout_.uv_word[0], format::uv_range::kBitsV, 31, "uv_range.bits");
 }
@@ -120,7 +120,7 @@ TEST_F(PageRefusals, NothingReachesBeyondThePage) {
   expect_refused(
       [&](std::vector<std::uint32_t>& words) {
         std::uint32_t* const last = &words[2 + (page.cluster_count - 1) * format::head_words(asset_.meshes()[0])];
-        for (const auto& field : head::kBits) {
+        for (const auto& field : format::head::kBits) {
           last[field.word] &= ~(field.mask() << field.shift);
           format::put_field(last, field, 24);
         }
@@ -210,4 +210,4 @@ TEST_F(PageRefusals, APageThatIsNotThereIsAnError) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::run

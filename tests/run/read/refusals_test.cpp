@@ -10,7 +10,7 @@
 #include "break_asset.h"
 #include "run/read/asset.h"
 
-namespace meshlode {
+namespace meshlode::run {
 namespace {
 
 using format::SectionId;
@@ -56,7 +56,7 @@ void expect_all_refused(SectionId id, const char* name, const std::vector<Rule<R
 // Names may share their bytes: seven hundred of them made 600 MB of one of 900 KB.
 TEST(Read, NamesThatShareBytesAreRefusedBeyondWhatTheFileJustifies) {
   for (const std::size_t count : {2u, 700u}) {
-    Scene scene = test::sample_scene();
+    scene::Scene scene = test::sample_scene();
     scene.instances.resize(count, scene.instances[0]);
     scene.instances[0].name = std::string(900000, 'x');
     auto bytes = test::sample_asset_bytes(scene, format::Codec::kNone);
@@ -413,4 +413,4 @@ TEST(Read, OpensAFileAndRefusesATruncatedOne) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::run

@@ -9,7 +9,7 @@
 
 #include "run/select/random_scene.h"
 
-namespace meshlode {
+namespace meshlode::run {
 namespace {
 
 using test::RandomSource;
@@ -28,7 +28,7 @@ std::vector<float> errors_of(const SelectTables& tables) {
 test::TestTables make_tables(RandomSource& random, const test::RandomDagOptions& options) {
   const test::RandomDag dag = test::make_random_dag(random, options);
   test::TestTables tables;
-  tables.add_mesh(dag.dag, build_hierarchy(dag.dag, dag.mesh), random.chance(0.5) ? Vec3d(0.0) : random.in_cube(1e3));
+  tables.add_mesh(dag.dag, build::build_hierarchy(dag.dag, dag.mesh), random.chance(0.5) ? Vec3d(0.0) : random.in_cube(1e3));
   return tables;
 }
 
@@ -147,4 +147,4 @@ TEST(FarInstance, ErrorsGrowLikeThoseOfInnerNodes) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::run

@@ -10,7 +10,7 @@
 #include "run/select/random_scene.h"
 #include "run/select/select.h"
 
-namespace meshlode {
+namespace meshlode::run {
 namespace {
 
 using test::RandomSource;
@@ -234,4 +234,4 @@ TEST(Metric, PassesOnlyWhatTheRealRulePasses) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::run

@@ -23,8 +23,8 @@ struct RandomDagOptions {
 };
 
 struct RandomDag {
-  LodDag dag;
-  PreparedMesh mesh;
+  build::LodDag dag;
+  build::PreparedMesh mesh;
 };
 
 /// A DAG whose errors do not nest and whose coarser clusters leave the finer ones' bounds: the hierarchy has to mend
@@ -102,7 +102,7 @@ inline RandomDag make_random_dag(RandomSource& random, const RandomDagOptions& o
   RandomDag out;
   out.mesh.grid.log2 = options.grid_log2;
   for (const std::uint32_t g : order) {
-    DagGroup group;
+    build::DagGroup group;
     group.level = groups[g].level;
     group.first_cluster = static_cast<std::uint32_t>(out.dag.clusters.size());
     group.cluster_count = static_cast<std::uint32_t>(groups[g].members.size());
@@ -110,7 +110,7 @@ inline RandomDag make_random_dag(RandomSource& random, const RandomDagOptions& o
     group.error = group.quadric_error = groups[g].error;
     group.deviation = HUGE_VAL;
     for (const std::uint32_t m : groups[g].members) {
-      DagCluster c;
+      build::DagCluster c;
       c.level = clusters[m].level;
       if (clusters[m].own_group != GroupId::kNone) c.own_group = GroupId(new_id[clusters[m].own_group]);
       c.coarser_group = GroupId(new_id[g]);
@@ -196,9 +196,9 @@ struct TestTables {
   std::vector<format::GroupRecord> groups;
   std::vector<format::ClusterRecord> clusters;
   std::vector<format::NodeRecord> nodes;
-  [[nodiscard]] SelectTables view() const { return {meshes, instances, groups, clusters, nodes}; }
+  [[nodiscard]] run::SelectTables view() const { return {meshes, instances, groups, clusters, nodes}; }
 
-  void add_mesh(const LodDag& dag, const Hierarchy& hierarchy, const Vec3d& origin) {
+  void add_mesh(const build::LodDag& dag, const build::Hierarchy& hierarchy, const Vec3d& origin) {
     format::MeshRecord mesh{};
     for (int i = 0; i < 3; ++i) mesh.origin[i] = origin[i];
     mesh.first_group = static_cast<std::uint32_t>(groups.size());
@@ -210,7 +210,7 @@ struct TestTables {
     mesh.level_count = dag.level_count;
     for (std::size_t g = 0; g < dag.groups.size(); ++g) {
       format::GroupRecord r{};
-      const Hierarchy::Sphere& s = hierarchy.group_spheres[g];
+      const build::Hierarchy::Sphere& s = hierarchy.group_spheres[g];
       std::copy(s.center, s.center + 3, r.center);
       r.radius = s.radius;
       r.error = hierarchy.group_errors[g];
@@ -223,7 +223,7 @@ struct TestTables {
       r.flags = dag.groups[g].is_terminal ? format::kGroupTerminal : std::uint16_t{0};
       groups.push_back(r);
     }
-    for (const DagCluster& c : dag.clusters) {
+    for (const build::DagCluster& c : dag.clusters) {
       format::ClusterRecord r{};
       r.own_group = c.own_group.is_valid() ? mesh.first_group + c.own_group.value : format::kNone;
       r.coarser_group = mesh.first_group + c.coarser_group.value;
@@ -239,7 +239,7 @@ struct TestTables {
 };
 
 /// A camera somewhere telling: inside, beside, far from, or just at the border of a stored sphere of the instance.
-inline Camera make_random_camera(RandomSource& random, const SelectTables& tables,
+inline run::Camera make_random_camera(RandomSource& random, const run::SelectTables& tables,
                                  const format::InstanceRecord& instance) {
   const format::MeshRecord& mesh = tables.meshes[instance.mesh];
   const format::GroupRecord& g = tables.groups[mesh.first_group + random.below(mesh.group_count)];
@@ -252,8 +252,8 @@ inline Camera make_random_camera(RandomSource& random, const SelectTables& table
   const Vec3d center = to_world(Vec3d(g.center[0], g.center[1], g.center[2]) +
                                 Vec3d(mesh.origin[0], mesh.origin[1], mesh.origin[2]));
   const double radius = g.radius * instance.scale;
-  const double reach = mesh_reach(tables, mesh) * instance.scale;
-  Camera camera;
+  const double reach = run::mesh_reach(tables, mesh) * instance.scale;
+  run::Camera camera;
   camera.near_distance = reach * random.log_between(1e-9, 1e-1);
   double distance = 0.0;
   switch (random.below(6)) {

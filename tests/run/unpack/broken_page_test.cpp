@@ -11,7 +11,7 @@
 #include "support/random_page.h"
 #include "run/unpack/unpack_page.h"
 
-namespace meshlode {
+namespace meshlode::run {
 namespace {
 
 using format::Codec;
@@ -25,8 +25,8 @@ struct Stored {
 };
 
 Stored store(const test::RandomPageOptions& options, Codec codec) {
-  Stored stored{make_random_page(options), {}, {}};
-  const auto bytes = store_page(stored.page.mesh,
+  Stored stored{test::make_random_page(options), {}, {}};
+  const auto bytes = build::store_page(stored.page.mesh,
                                 {reinterpret_cast<const std::uint8_t*>(stored.page.words.data()),
                                  stored.page.words.size() * 4}, codec);
   EXPECT_TRUE(bytes);
@@ -86,7 +86,7 @@ TEST(BrokenPage, RandomBytesBehindASoundHeaderAreSurvived) {
     const Stored stored = store(kSmall, codec);
     for (int round = 0; round < 2000; ++round) {
       std::vector<std::uint8_t> bytes = stored.bytes;
-      StoredHeader header;
+      format::StoredHeader header;
       std::memcpy(&header, bytes.data(), sizeof(header));
       // Side information stays sound in half of the rounds, so that the streams behind it are reached.
       const std::size_t from = sizeof(header) + (round % 2 == 0 ? header.side_stored : 0U);
@@ -102,7 +102,7 @@ TEST(BrokenPage, RandomBytesBehindASoundHeaderAreSurvived) {
 TEST(BrokenPage, CountsThatNothingJustifiesAreRefused) {
   for (const Codec codec : kCodecs) {
     const Stored stored = store(kSmall, codec);
-    for (std::size_t field = 0; field < sizeof(StoredHeader) / 4; ++field) {
+    for (std::size_t field = 0; field < sizeof(format::StoredHeader) / 4; ++field) {
       for (const std::uint32_t lie : {0xFFFFFFFFU, 0x7FFFFFFFU, 0x00FFFFFFU}) {
         std::vector<std::uint8_t> bytes = stored.bytes;
         std::memcpy(bytes.data() + 4 * field, &lie, sizeof(lie));
@@ -144,4 +144,4 @@ TEST(BrokenPage, AnotherMeshIsSurvived) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::run

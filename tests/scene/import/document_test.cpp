@@ -23,7 +23,7 @@ TEST(ImportDocument, ImagesBecomeBlobsFromViewsDataUrisAndFiles) {
       "{\"uri\":\"./tex/../tex/a%20b.png\"}],\"textures\":[{\"source\":2}]",
       ",\"uri\":\"b.bin\"");
   folder.write("b.bin", std::string(b.bin.begin(), b.bin.end()));
-  const auto scene = import_scene(folder.write("scene.gltf", text), {});
+  const auto scene = scene::import_scene(folder.write("scene.gltf", text), {});
   ASSERT_TRUE(scene) << describe(scene);
   ASSERT_EQ(scene->blobs.size(), 3U);  // the last image shares its bytes
   EXPECT_EQ(scene->blobs[0].bytes.size(), 7U);
@@ -95,7 +95,7 @@ TEST(ImportDocument, RigidAnimationIsCompactedAndDeformingAnimationIsNot) {
   EXPECT_EQ(animation["name"], "run");
   ASSERT_EQ(document["accessors"].size(), 3U);
   ASSERT_EQ(scene->blobs.size(), 1U);
-  EXPECT_EQ(scene->blobs[0].kind, SceneBlob::Kind::kBuffer);
+  EXPECT_EQ(scene->blobs[0].kind, scene::SceneBlob::Kind::kBuffer);
   EXPECT_EQ(document["buffers"][0]["blob"], 0);
   EXPECT_EQ(document["buffers"][0]["byteLength"], scene->blobs[0].bytes.size());
   // The bytes of the translation's output are where the new accessor says.
@@ -108,7 +108,7 @@ TEST(ImportDocument, RigidAnimationIsCompactedAndDeformingAnimationIsNot) {
   EXPECT_EQ(rotation["componentType"], 5122);
   EXPECT_EQ(rotation["normalized"], true);
   bool is_reported = false;
-  for (const LeftOut& l : scene->left_out) is_reported = is_reported || l.what == "animation 0: 2 channels";
+  for (const scene::LeftOut& l : scene->left_out) is_reported = is_reported || l.what == "animation 0: 2 channels";
   EXPECT_TRUE(is_reported);
 }
 

@@ -18,14 +18,14 @@
 namespace meshlode::testing {
 namespace {
 
-DracoExpectation expectation(const DracoSample& s) {
+scene::DracoExpectation expectation(const DracoSample& s) {
   return {s.point_count, s.face_count, true, {s.position_id, s.normal_id, s.uv_id}};
 }
 
 /// Corners by their places, rotated so that the smallest comes first.
 using Places = std::array<std::array<long, 2>, 3>;
 
-std::map<Places, std::array<std::uint32_t, 3>> triangles_by_place(const Primitive& p) {
+std::map<Places, std::array<std::uint32_t, 3>> triangles_by_place(const scene::Primitive& p) {
   std::map<Places, std::array<std::uint32_t, 3>> out;
   for (std::size_t t = 0; t < p.indices.size(); t += 3) {
     std::array<std::uint32_t, 3> corners{p.indices[t], p.indices[t + 1], p.indices[t + 2]};
@@ -41,7 +41,7 @@ std::map<Places, std::array<std::uint32_t, 3>> triangles_by_place(const Primitiv
   return out;
 }
 
-void expect_same_triangles(const Primitive& packed, const Primitive& plain, int bits, std::size_t face_count) {
+void expect_same_triangles(const scene::Primitive& packed, const scene::Primitive& plain, int bits, std::size_t face_count) {
   // A value moves by half a step of (largest - smallest) / (2^bits - 1); a little is added for floats.
   const double step = bits == 0 ? 0.0 : 1.0 / ((1 << bits) - 1);
   const double positions = 0.51 * 20.0 * step;
@@ -73,9 +73,9 @@ TEST(ImportDraco, BothMethodsDecodeToWhatDracosOwnDecoderGives) {
     for (const int speed : {0, 5, 10}) {
       for (const int bits : {0, 11}) {
         const DracoSample sample = make_draco_sample(6, edgebreaker, speed, bits);
-        const auto scene = import_scene(folder.write("scene.glb", make_draco_glb(sample)), {});
+        const auto scene = scene::import_scene(folder.write("scene.glb", make_draco_glb(sample)), {});
         ASSERT_TRUE(scene) << describe(scene);
-        const Primitive& p = scene->meshes[0].primitives[0];
+        const scene::Primitive& p = scene->meshes[0].primitives[0];
         ASSERT_EQ(p.positions.size(), sample.point_count);
         EXPECT_EQ(p.indices.size(), 3U * sample.face_count);
         for (std::size_t i = 0; i < p.positions.size(); ++i) {
@@ -99,8 +99,8 @@ TEST(ImportDraco, TheTrianglesAndAllTheirAttributesAreThoseOfTheSameMeshStoredPl
         SCOPED_TRACE(std::string(edgebreaker ? "edgebreaker" : "sequential") + ", speed " + std::to_string(speed) + ", " +
                      std::to_string(bits) + " bits");
         const DracoPair pair = make_draco_pair(9, edgebreaker, speed, bits);
-        const auto plain = import_scene(folder.write("plain.glb", pair.plain_glb), {});
-        const auto packed = import_scene(folder.write("packed.glb", pair.draco_glb), {});
+        const auto plain = scene::import_scene(folder.write("plain.glb", pair.plain_glb), {});
+        const auto packed = scene::import_scene(folder.write("packed.glb", pair.draco_glb), {});
         ASSERT_TRUE(plain) << describe(plain);
         ASSERT_TRUE(packed) << describe(packed);
         EXPECT_LT(packed->meshes[0].primitives[0].positions.size(), plain->meshes[0].primitives[0].positions.size());
@@ -112,23 +112,23 @@ TEST(ImportDraco, TheTrianglesAndAllTheirAttributesAreThoseOfTheSameMeshStoredPl
 
 TEST(ImportDraco, CountsThatDisagreeWithTheAccessorsAreRefusedBeforeDecoding) {
   const DracoSample sample = make_draco_sample(4, true, 5, 11);
-  ASSERT_TRUE(decode_draco(sample.bytes, expectation(sample)));
-  DracoExpectation wrong = expectation(sample);
+  ASSERT_TRUE(scene::decode_draco(sample.bytes, expectation(sample)));
+  scene::DracoExpectation wrong = expectation(sample);
   wrong.point_count -= 1;
-  EXPECT_FALSE(decode_draco(sample.bytes, wrong));
+  EXPECT_FALSE(scene::decode_draco(sample.bytes, wrong));
   wrong = expectation(sample);
   wrong.max_face_count -= 1;
-  EXPECT_FALSE(decode_draco(sample.bytes, wrong));
+  EXPECT_FALSE(scene::decode_draco(sample.bytes, wrong));
   wrong = expectation(sample);
   wrong.attribute_ids = {77};
-  EXPECT_FALSE(decode_draco(sample.bytes, wrong));
+  EXPECT_FALSE(scene::decode_draco(sample.bytes, wrong));
 }
 
 TEST(ImportDraco, EveryTruncationIsAnError) {
   for (const bool edgebreaker : {true, false}) {
     const DracoSample sample = make_draco_sample(3, edgebreaker, 5, 11);
     for (std::size_t size = 0; size + 1 < sample.bytes.size(); ++size) {
-      const auto mesh = decode_draco(std::span(sample.bytes).first(size), expectation(sample));
+      const auto mesh = scene::decode_draco(std::span(sample.bytes).first(size), expectation(sample));
       if (mesh) {
         // Draco may not read its last bytes; what it gives must still be whole.
         EXPECT_EQ(mesh->indices.size(), 3U * sample.face_count);
@@ -145,7 +145,7 @@ TEST(ImportDraco, AHugeCountAtAnyPlaceIsRefusedAtOnce) {
     auto bytes = sample.bytes;
     const std::uint32_t huge = 0x7FFFFFFFu;
     std::memcpy(bytes.data() + at, &huge, 4);
-    const auto mesh = decode_draco(bytes, expectation(sample));
+    const auto mesh = scene::decode_draco(bytes, expectation(sample));
     if (mesh) {
       EXPECT_EQ(mesh->point_count, sample.point_count);
     }
@@ -161,7 +161,7 @@ TEST(ImportDraco, AForeignVersionMethodOrTypeIsRefused) {
       if (bytes[at] == value) continue;
       if (at == 8 && value == 0) continue;  // the sequential decoder reads other counts there
       bytes[at] = static_cast<std::uint8_t>(value);
-      EXPECT_FALSE(decode_draco(bytes, expectation(sample))) << at << " " << value;
+      EXPECT_FALSE(scene::decode_draco(bytes, expectation(sample))) << at << " " << value;
     }
   }
 }

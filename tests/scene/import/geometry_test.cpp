@@ -12,7 +12,7 @@ namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-const Primitive& only_primitive(const Result<Scene>& scene) {
+const scene::Primitive& only_primitive(const Result<scene::Scene>& scene) {
   return scene.value().meshes.at(0).primitives.at(0);
 }
 
@@ -28,7 +28,7 @@ TEST(ImportGeometry, IndexedTrianglesOfEveryIndexTypeAreTheSame) {
     if (type == 5125) i = b.array<std::uint32_t>({0, 1, 2, 0, 2, 3}, type, "SCALAR", 1);
     const auto scene = b.import(mesh_text("\"POSITION\":" + std::to_string(p), ",\"indices\":" + std::to_string(i)));
     ASSERT_TRUE(scene) << describe(scene);
-    const Primitive& primitive = only_primitive(scene);
+    const scene::Primitive& primitive = only_primitive(scene);
     EXPECT_EQ(primitive.indices, (Corners{0, 1, 2, 0, 2, 3}));
     ASSERT_EQ(primitive.positions.size(), 4U);
     EXPECT_EQ(primitive.positions[2], Vec3d(1, 1, 0));
@@ -114,7 +114,7 @@ TEST(ImportGeometry, InterleavedAttributesAreReadByTheirStride) {
   b.accessor(view, 5121, 3, "VEC2", ",\"byteOffset\":24,\"normalized\":true");
   const auto scene = b.import(mesh_text("\"POSITION\":0,\"NORMAL\":1,\"TEXCOORD_2\":2"));
   ASSERT_TRUE(scene) << describe(scene);
-  const Primitive& p = only_primitive(scene);
+  const scene::Primitive& p = only_primitive(scene);
   EXPECT_EQ(p.positions[2], Vec3d(2, 4, 0.5));
   EXPECT_EQ(p.normals[1], Vec3f(0, 0, 1));
   ASSERT_EQ(p.uvs[2].size(), 3U);
@@ -166,7 +166,7 @@ TEST(ImportGeometry, BrokenNormalsAndUvsAreReplacedAndReported) {
   b.floats({kNan, 0, 0.25F, 0.5F, 1, 1}, "VEC2", 2);
   const auto scene = b.import(mesh_text("\"POSITION\":0,\"NORMAL\":1,\"TEXCOORD_0\":2"));
   ASSERT_TRUE(scene) << describe(scene);
-  const Primitive& p = only_primitive(scene);
+  const scene::Primitive& p = only_primitive(scene);
   EXPECT_EQ(p.normals[0], Vec3f(0, 0, 1));  // the triangle's own
   EXPECT_EQ(p.normals[1], Vec3f(0, 0, 1));
   EXPECT_EQ(p.normals[2], Vec3f(0, 1, 0));
@@ -224,7 +224,7 @@ TEST(ImportGeometry, ASharedVertexBufferIsReadOnlyWhereItIsUsed) {
   b.array<std::uint16_t>({999, 0, 500}, 5123, "SCALAR", 1);
   const auto scene = b.import(mesh_text("\"POSITION\":0", ",\"indices\":1"));
   ASSERT_TRUE(scene) << describe(scene);
-  const Primitive& p = only_primitive(scene);
+  const scene::Primitive& p = only_primitive(scene);
   ASSERT_EQ(p.positions.size(), 3U);
   EXPECT_EQ(p.indices, (Corners{2, 0, 1}));
   EXPECT_EQ(p.positions[2], Vec3d(999, 1, 2));

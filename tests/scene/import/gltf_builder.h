@@ -90,9 +90,9 @@ class GltfBuilder {
     return "glTF" + u32(2) + u32(12 + 8 + text.size() + 8 + binary.size()) + u32(text.size()) + "JSON" + text +
            u32(binary.size()) + std::string("BIN\0", 4) + binary;
   }
-  [[nodiscard]] Result<Scene> import(const std::string& rest, const ImportOptions& options = {}) const {
+  [[nodiscard]] Result<scene::Scene> import(const std::string& rest, const scene::ImportOptions& options = {}) const {
     const TempFolder folder;
-    return import_scene(folder.write("scene.glb", glb(rest)), options);
+    return scene::import_scene(folder.write("scene.glb", glb(rest)), options);
   }
 
   std::vector<std::uint8_t> bin;
@@ -117,7 +117,7 @@ inline std::string mesh_text(const std::string& attributes, const std::string& r
          "}]}],\"nodes\":[{\"mesh\":0}],\"scenes\":[{\"nodes\":[0]}],\"scene\":0";
 }
 
-inline std::string describe(const Result<Scene>& scene) {
+inline std::string describe(const Result<scene::Scene>& scene) {
   return scene ? "ok" : scene.error().message();
 }
 

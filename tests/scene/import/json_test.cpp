@@ -3,7 +3,7 @@
 
 #include "scene/import/json.h"
 
-namespace meshlode {
+namespace meshlode::scene {
 namespace {
 
 TEST(ImportJson, WhatIsCarriedThroughComesOutAsItWentIn) {
@@ -50,4 +50,4 @@ TEST(ImportJson, DepthIsBoundedExactly) {
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::scene

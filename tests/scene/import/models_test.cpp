@@ -16,7 +16,7 @@
 
 #include "scene/import/import.h"
 
-namespace meshlode {
+namespace meshlode::scene {
 namespace {
 
 namespace fs = std::filesystem;
@@ -361,4 +361,4 @@ TEST(ImportModels, AnEngineOfTwentyNineMeshesStoredPlainAndByDracoHasTheSameTria
 }
 
 }  // namespace
-}  // namespace meshlode
+}  // namespace meshlode::scene

@@ -148,9 +148,9 @@ std::string mutate(const SeedFile& seed, Random& random) {
   return bytes;
 }
 
-void expect_sound(const Scene& scene) {
-  for (const SourceMesh& mesh : scene.meshes) {
-    for (const Primitive& p : mesh.primitives) {
+void expect_sound(const scene::Scene& scene) {
+  for (const scene::SourceMesh& mesh : scene.meshes) {
+    for (const scene::Primitive& p : mesh.primitives) {
       ASSERT_EQ(p.indices.size() % 3, 0U);
       for (const std::uint32_t i : p.indices) ASSERT_LT(i, p.positions.size());
       for (const Vec3d& v : p.positions) ASSERT_TRUE(std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z));
@@ -164,7 +164,7 @@ void expect_sound(const Scene& scene) {
       ASSERT_LT(p.material.value, scene.materials.size());
     }
   }
-  for (const SceneInstance& i : scene.instances) ASSERT_LT(i.mesh.value, scene.meshes.size());
+  for (const scene::SceneInstance& i : scene.instances) ASSERT_LT(i.mesh.value, scene.meshes.size());
 }
 
 TEST(ImportMutants, AreRefusedWithAPlaceOrGiveASoundScene) {
@@ -181,7 +181,7 @@ TEST(ImportMutants, AreRefusedWithAPlaceOrGiveASoundScene) {
     const auto path = folder.write(seed.name, bytes);
     SCOPED_TRACE("mutant seed " + std::to_string(first + m) + " of " + seed.name);
     const auto start = std::chrono::steady_clock::now();
-    const auto scene = import_scene(path, {.repair = random.below(4) == 0});
+    const auto scene = scene::import_scene(path, {.repair = random.below(4) == 0});
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     slowest = std::max(slowest, seconds);
     ASSERT_LT(seconds, 20.0);

@@ -14,11 +14,11 @@ using Corners = std::vector<std::uint32_t>;
 
 class ImportPolygons : public ::testing::Test {
  protected:
-  Result<Scene> read(const std::string& name, const std::string& bytes, const ImportOptions& options = {}) {
-    return import_scene(folder_.write(name, bytes), options);
+  Result<scene::Scene> read(const std::string& name, const std::string& bytes, const scene::ImportOptions& options = {}) {
+    return scene::import_scene(folder_.write(name, bytes), options);
   }
-  static const Primitive& primitive(const Result<Scene>& scene) { return scene.value().meshes[0].primitives[0]; }
-  static void expect_invalid(const Result<Scene>& scene, const std::string& place) {
+  static const scene::Primitive& primitive(const Result<scene::Scene>& scene) { return scene.value().meshes[0].primitives[0]; }
+  static void expect_invalid(const Result<scene::Scene>& scene, const std::string& place) {
     ASSERT_FALSE(scene);
     EXPECT_EQ(scene.error().code, ErrorCode::kInvalid) << describe(scene);
     EXPECT_NE(scene.error().where.find(place), std::string::npos) << describe(scene);
@@ -68,7 +68,7 @@ TEST_F(ImportPolygons, PlyBinaryOfBothOrdersIsTheSameMesh) {
     for (const std::uint32_t i : {0U, 1U, 2U}) put(bytes, i, big);
     const auto scene = read("b.ply", bytes);
     ASSERT_TRUE(scene) << describe(scene);
-    const Primitive& p = primitive(scene);
+    const scene::Primitive& p = primitive(scene);
     EXPECT_EQ(p.indices, (Corners{0, 1, 2}));
     EXPECT_EQ(p.positions[1], Vec3d(2.5, 0, -0.25));
     ASSERT_EQ(p.colors.size(), 3U);
@@ -110,7 +110,7 @@ TEST_F(ImportPolygons, ADentedQuadIsSplitAtItsDent) {
   // The dart (0,0) (2,0) is reflex at vertex 2 = (0.5,0.5): only the diagonal 2–0 lies inside.
   const auto scene = read("a.ply", kPlyHead + "0 2 0\n0 0 0\n2 0 0\n0.5 0.5 0\n4 0 1 2 3\n");
   ASSERT_TRUE(scene) << describe(scene);
-  const Primitive& p = primitive(scene);
+  const scene::Primitive& p = primitive(scene);
   ASSERT_EQ(p.indices.size(), 6U);
   double area = 0.0;
   for (std::size_t t = 0; t < 6; t += 3) {
@@ -137,7 +137,7 @@ TEST_F(ImportPolygons, ObjCornersBecomeWedges) {
                           "vt 0 0\nvt 1 0\nvt 1 1\nvt 0.5 0.5 0\nvn 0 0 1\n"
                           "f 1/1/1 2/2/1 3/3/1\nf -4/4/-1 \\\n 3/3/1 4/1/1\n");
   ASSERT_TRUE(scene) << describe(scene);
-  const Primitive& p = primitive(scene);
+  const scene::Primitive& p = primitive(scene);
   ASSERT_EQ(p.indices.size(), 6U);
   EXPECT_EQ(p.positions.size(), 5U);  // vertex 1 has two UVs, vertex 3 one
   EXPECT_EQ(p.positions[1].x, 1.00000000001);

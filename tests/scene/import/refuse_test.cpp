@@ -17,7 +17,7 @@ struct BadFile {
   ErrorCode code = ErrorCode::kInvalid;
 };
 
-void expect_refused(const Result<Scene>& scene, const BadFile& bad) {
+void expect_refused(const Result<scene::Scene>& scene, const BadFile& bad) {
   ASSERT_FALSE(scene) << bad.text;
   EXPECT_EQ(scene.error().code, bad.code) << bad.text << "\n" << describe(scene);
   EXPECT_NE(scene.error().where.find(bad.place), std::string::npos) << bad.text << "\n" << describe(scene);
@@ -97,7 +97,7 @@ TEST(ImportRefuses, StructuralFaultsByTheirJsonPath) {
   const TempFolder folder;
   std::filesystem::create_symlink(outside.path() / "secret.png", folder.path() / "link.png");
   for (const BadFile& bad : files) {
-    expect_refused(import_scene(folder.write("scene.gltf", bad.text), {}), bad);
+    expect_refused(scene::import_scene(folder.write("scene.gltf", bad.text), {}), bad);
   }
 }
 
@@ -173,14 +173,14 @@ TEST(ImportRefuses, ManyExtensionsAreLeftOutInOnePass) {
 TEST(ImportRefuses, DracoBeyondTheBudgetMustBeJustifiedAsOtherBytesAre) {
   constexpr std::uint64_t kBase = std::uint64_t{1} << 20U, kMega = 1000000;
   const auto left = [](std::uint64_t file, std::uint64_t draco, std::uint64_t max_decoded) {
-    return DecodeBudget(file, draco, max_decoded).left_bytes() / DecodeBudget::kElementBytes;
+    return scene::DecodeBudget(file, draco, max_decoded).left_bytes() / scene::DecodeBudget::kElementBytes;
   };
   EXPECT_EQ(left(0, 0, 512 * kMega), kBase);
   EXPECT_EQ(left(kMega, 0, 512 * kMega), kBase + 4 * kMega);
   EXPECT_EQ(left(0, 100, 512 * kMega), kBase + 6000) << "sixty elements a byte";
   EXPECT_EQ(left(0, 10 * kMega, 240 * kMega), kBase + 40 * kMega) << "four, where they take more than what is allowed";
   EXPECT_EQ(left(0, kMega, 240 * kMega), kBase + 10 * kMega) << "what is allowed, between";
-  DecodeBudget budget(0, 0, 0);
+  scene::DecodeBudget budget(0, 0, 0);
   EXPECT_TRUE(budget.take(kBase));
   EXPECT_FALSE(budget.take(1));
 }
@@ -215,10 +215,10 @@ TEST(ImportRefuses, ASmallFileThatAsksForGigabytes) {
 TEST(ImportRefuses, DeepJsonWithoutUsingTheStack) {
   std::string deep(1000000, '[');
   const TempFolder folder;
-  expect_refused(import_scene(folder.write("scene.gltf", deep), {}), {"deep", ""});
+  expect_refused(scene::import_scene(folder.write("scene.gltf", deep), {}), {"deep", ""});
   std::string objects;
   for (int i = 0; i < 200000; ++i) objects += "{\"a\":";
-  expect_refused(import_scene(folder.write("scene.gltf", objects), {}), {"deep", ""});
+  expect_refused(scene::import_scene(folder.write("scene.gltf", objects), {}), {"deep", ""});
 }
 
 TEST(ImportRefuses, BrokenGlbHeadersAndChunks) {
@@ -226,16 +226,16 @@ TEST(ImportRefuses, BrokenGlbHeadersAndChunks) {
   b.floats(kSquare, "VEC3", 3);
   const std::string good = b.glb(mesh_text("\"POSITION\":0"));
   const TempFolder folder;
-  ASSERT_TRUE(import_scene(folder.write("scene.glb", good), {}));
+  ASSERT_TRUE(scene::import_scene(folder.write("scene.glb", good), {}));
   for (std::size_t size = 0; size < good.size(); ++size) {
-    const auto scene = import_scene(folder.write("scene.glb", good.substr(0, size)), {});
+    const auto scene = scene::import_scene(folder.write("scene.glb", good.substr(0, size)), {});
     ASSERT_FALSE(scene) << "truncated to " << size;
     EXPECT_EQ(scene.error().code, ErrorCode::kInvalid);
   }
   const auto patched = [&](std::size_t at, std::uint32_t value) {
     std::string bytes = good;
     std::memcpy(bytes.data() + at, &value, 4);
-    return import_scene(folder.write("scene.glb", bytes), {});
+    return scene::import_scene(folder.write("scene.glb", bytes), {});
   };
   expect_refused(patched(4, 1), {"version", "GLB header", ErrorCode::kUnsupported});
   expect_refused(patched(8, 0xFFFFFFFFu), {"length", "GLB header"});
@@ -245,28 +245,28 @@ TEST(ImportRefuses, BrokenGlbHeadersAndChunks) {
 
 TEST(ImportRefuses, WhatIsNoFileOrNoKnownFormat) {
   const TempFolder folder;
-  const auto missing = import_scene(folder.path() / "scene.glb", {});
+  const auto missing = scene::import_scene(folder.path() / "scene.glb", {});
   ASSERT_FALSE(missing);
   EXPECT_EQ(missing.error().code, ErrorCode::kIo);
-  const auto is_folder = import_scene(folder.path(), {});
+  const auto is_folder = scene::import_scene(folder.path(), {});
   ASSERT_FALSE(is_folder);
   EXPECT_EQ(is_folder.error().code, ErrorCode::kIo);
-  const auto unknown = import_scene(folder.write("scene.gl.txt", "hello"), {});
+  const auto unknown = scene::import_scene(folder.write("scene.gl.txt", "hello"), {});
   ASSERT_FALSE(unknown);
   EXPECT_EQ(unknown.error().code, ErrorCode::kUnsupported);
 }
 
 TEST(ImportUri, DecodesWhatItMustAndNothingElse) {
-  EXPECT_EQ(percent_decode("a%20b%C3%A4").value(), "a b\xC3\xA4");
-  EXPECT_FALSE(percent_decode("a%2"));
-  EXPECT_FALSE(percent_decode("a%zz"));
-  const auto bytes = base64_decode("AP8Q");
+  EXPECT_EQ(scene::percent_decode("a%20b%C3%A4").value(), "a b\xC3\xA4");
+  EXPECT_FALSE(scene::percent_decode("a%2"));
+  EXPECT_FALSE(scene::percent_decode("a%zz"));
+  const auto bytes = scene::base64_decode("AP8Q");
   ASSERT_TRUE(bytes);
   EXPECT_EQ(*bytes, (std::vector<std::uint8_t>{0x00, 0xFF, 0x10}));
-  EXPECT_EQ(base64_decode("AA==").value().size(), 1U);
-  EXPECT_EQ(base64_decode("AA").value().size(), 1U);
-  EXPECT_FALSE(base64_decode("A"));
-  const auto plain = decode_data_uri("data:text/plain,a%00b");
+  EXPECT_EQ(scene::base64_decode("AA==").value().size(), 1U);
+  EXPECT_EQ(scene::base64_decode("AA").value().size(), 1U);
+  EXPECT_FALSE(scene::base64_decode("A"));
+  const auto plain = scene::decode_data_uri("data:text/plain,a%00b");
   ASSERT_TRUE(plain);
   EXPECT_EQ(plain->bytes.size(), 3U);
   EXPECT_EQ(plain->mime_type, "text/plain");
@@ -275,9 +275,9 @@ TEST(ImportUri, DecodesWhatItMustAndNothingElse) {
 TEST(ImportUri, FindsFilesInFoldersWithSpacesButNeverOutside) {
   const TempFolder folder;
   folder.write("sub folder/a b.bin", "x");
-  EXPECT_TRUE(resolve_uri(folder.path(), "sub%20folder/a%20b.bin"));
-  EXPECT_TRUE(resolve_uri(folder.path(), "sub%20folder/../sub%20folder/a%20b.bin"));
-  EXPECT_FALSE(resolve_uri(folder.path() / "sub folder", "../sub%20folder/a%20b.bin"));
+  EXPECT_TRUE(scene::resolve_uri(folder.path(), "sub%20folder/a%20b.bin"));
+  EXPECT_TRUE(scene::resolve_uri(folder.path(), "sub%20folder/../sub%20folder/a%20b.bin"));
+  EXPECT_FALSE(scene::resolve_uri(folder.path() / "sub folder", "../sub%20folder/a%20b.bin"));
 }
 
 }  // namespace

@@ -92,12 +92,12 @@ TEST(ImportScene, UvSetsAreFoundInExtensionsNobodyKnowsHere) {
       "{\"extras\":{\"oldTexture\":{\"index\":0,\"texCoord\":1}}}]");
   ASSERT_TRUE(scene) << describe(scene);
   ASSERT_EQ(scene->materials.size(), 3U);  // two and the default one
-  const SceneMaterial& m = scene->materials[0];
+  const scene::SceneMaterial& m = scene->materials[0];
   EXPECT_EQ(m.uv_sets_used, (1U << 2U) | (1U << 3U));
   EXPECT_EQ(m.base_color_uv_set, 2U);
   EXPECT_EQ(m.base_color_texture, 0U);
   EXPECT_EQ(m.base_color, Vec4f(0.5F, 0.25F, 1.0F, 0.75F));
-  EXPECT_EQ(m.alpha_mode, AlphaMode::kMask);
+  EXPECT_EQ(m.alpha_mode, scene::AlphaMode::kMask);
   EXPECT_EQ(m.alpha_cutoff, 0.25F);
   EXPECT_TRUE(m.double_sided);
   EXPECT_EQ(scene->materials[1].uv_sets_used, 0U);
@@ -114,7 +114,7 @@ TEST(ImportScene, SpecularGlossinessStandsInThePlaceOfMetallicRoughnessWithDefau
       "{\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.5,0.25,1,0.75],\"baseColorTexture\":{\"index\":0,\"texCoord\":2}},"
       "\"extensions\":{\"KHR_materials_pbrSpecularGlossiness\":{}}}]");
   ASSERT_TRUE(scene) << describe(scene);
-  const SceneMaterial& m = scene->materials[0];
+  const scene::SceneMaterial& m = scene->materials[0];
   EXPECT_EQ(m.base_color, Vec4f(1.0F)) << "not metallic-roughness's";
   EXPECT_EQ(m.base_color_texture, 0xFFFFFFFFu);
   EXPECT_EQ(m.base_color_uv_set, 0xFFFFFFFFu);
@@ -132,7 +132,7 @@ TEST(ImportScene, SkinsAndMorphTargetsLeaveTheStaticTriangles) {
   EXPECT_EQ(scene->meshes[0].primitives[0].indices.size(), 6U);
   const auto says = [&](const std::string& what) {
     return std::any_of(scene->left_out.begin(), scene->left_out.end(),
-                       [&](const LeftOut& l) { return l.what.find(what) != std::string::npos && !l.why.empty(); });
+                       [&](const scene::LeftOut& l) { return l.what.find(what) != std::string::npos && !l.why.empty(); });
   };
   EXPECT_TRUE(says("skin 0"));
   EXPECT_TRUE(says("mesh 0 morph targets"));
@@ -154,7 +154,7 @@ TEST(ImportScene, OptionalExtensionsFallBackAndRequiredLooksAreCarried) {
 }
 
 TEST(ImportScene, OptionalExtensionsThatHoldTheGeometryAreRefused) {
-  const auto expect_refused = [](const Result<Scene>& scene, const std::string& where) {
+  const auto expect_refused = [](const Result<scene::Scene>& scene, const std::string& where) {
     ASSERT_FALSE(scene) << where;
     EXPECT_EQ(scene.error().code, ErrorCode::kUnsupported) << describe(scene);
     EXPECT_NE(scene.error().message().find(where), std::string::npos) << describe(scene);
@@ -190,7 +190,7 @@ TEST(ImportScene, OptionalExtensionsThatHoldTheGeometryAreRefused) {
       "\"type\":\"VEC3\"}]," +
       mesh_text("\"POSITION\":0") + "}";
   const TempFolder folder;
-  expect_refused(import_scene(folder.write("scene.gltf", views), {}), "EXT_meshopt_compression");
+  expect_refused(scene::import_scene(folder.write("scene.gltf", views), {}), "EXT_meshopt_compression");
 }
 
 TEST(ImportScene, OptionalExtensionsWithAFallbackAreLeftOut) {
@@ -209,13 +209,13 @@ TEST(ImportScene, TheSourceHashCoversEveryFileReferredTo) {
   const std::string text = b.json(kMesh + ",\"images\":[{\"uri\":\"a.png\"}]", ",\"uri\":\"b.bin\"");
   folder.write("b.bin", std::string(b.bin.begin(), b.bin.end()));
   folder.write("a.png", "one");
-  const auto first = import_scene(folder.write("scene.gltf", text), {});
+  const auto first = scene::import_scene(folder.write("scene.gltf", text), {});
   ASSERT_TRUE(first) << describe(first);
   EXPECT_EQ(first->source_name, "scene.gltf");
   EXPECT_EQ(first->source_hash.size(), 32U);
-  EXPECT_EQ(import_scene(folder.path() / "scene.gltf", {}).value().source_hash, first->source_hash);
+  EXPECT_EQ(scene::import_scene(folder.path() / "scene.gltf", {}).value().source_hash, first->source_hash);
   folder.write("a.png", "two");
-  EXPECT_NE(import_scene(folder.path() / "scene.gltf", {}).value().source_hash, first->source_hash);
+  EXPECT_NE(scene::import_scene(folder.path() / "scene.gltf", {}).value().source_hash, first->source_hash);
 }
 
 }  // namespace

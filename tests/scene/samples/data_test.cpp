@@ -9,7 +9,7 @@
 
 #include "scene/samples/samples.h"
 
-namespace meshlode::samples {
+namespace meshlode::scene {
 namespace {
 
 std::vector<std::uint8_t> read_all(const std::filesystem::path& path) {
@@ -49,4 +49,4 @@ TEST(Samples, TerrainFileHasAboutTheTrianglesAsked) {
 }
 
 }  // namespace
-}  // namespace meshlode::samples
+}  // namespace meshlode::scene

@@ -10,7 +10,7 @@
 #include "scene/samples/noise.h"
 #include "scene/samples/samples.h"
 
-namespace meshlode::samples {
+namespace meshlode::scene {
 namespace {
 
 using Key = std::tuple<double, double, double>;
@@ -195,4 +195,4 @@ TEST(Samples, ScaledShapesKeepTheirForm) {
 }
 
 }  // namespace
-}  // namespace meshlode::samples
+}  // namespace meshlode::scene

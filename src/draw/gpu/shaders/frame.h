@@ -8,7 +8,8 @@
 #include <cstdint>
 
 #include "run/select/metric.h"
-namespace meshlode::gpu {
+namespace meshlode::draw {
+using run::MetricView;
 using uint = std::uint32_t;
 struct vec4 {
   float x = 0.0F, y = 0.0F, z = 0.0F, w = 0.0F;
@@ -280,7 +281,7 @@ static_assert(sizeof(GpuCluster) == 32 && sizeof(GpuMaterial) == 32 && sizeof(Gp
 static_assert(sizeof(GpuMeshUvs) == 20 && sizeof(GpuMask) == 80);
 static_assert(sizeof(GpuTextureUse) == 64 && sizeof(GpuSurface) == 136 && sizeof(GpuTexture) == 80);
 static_assert(sizeof(GpuVisible) == 384 && sizeof(GpuStage) == 16);
-}  // namespace meshlode::gpu
+}  // namespace meshlode::draw
 #else
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer FrameBlock { GpuFrame all; };
 #endif

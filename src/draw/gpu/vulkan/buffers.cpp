@@ -5,7 +5,7 @@
 
 #include "draw/gpu/vulkan/types.h"
 
-namespace meshlode::gpu {
+namespace meshlode::draw {
 
 std::uint64_t Buffer::address() const {
   return impl_->address;
@@ -106,4 +106,4 @@ Status Device::download(const Buffer& buffer, std::span<std::uint8_t> bytes, std
   return Ok{};
 }
 
-}  // namespace meshlode::gpu
+}  // namespace meshlode::draw

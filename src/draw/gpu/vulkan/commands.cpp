@@ -4,7 +4,7 @@
 
 #include "draw/gpu/vulkan/types.h"
 
-namespace meshlode::gpu {
+namespace meshlode::draw {
 
 Result<Commands> Commands::begin(const Device& device) {
   Commands out;
@@ -146,4 +146,4 @@ Result<std::vector<Commands::Time>> Commands::run() {
   return times;
 }
 
-}  // namespace meshlode::gpu
+}  // namespace meshlode::draw

@@ -9,7 +9,7 @@
 
 #include "draw/gpu/vulkan/types.h"
 
-namespace meshlode::gpu {
+namespace meshlode::draw {
 
 namespace {
 
@@ -302,4 +302,4 @@ std::vector<std::string> Device::messages() const {
   return impl_->instance->messages;
 }
 
-}  // namespace meshlode::gpu
+}  // namespace meshlode::draw

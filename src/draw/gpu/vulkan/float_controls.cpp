@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "draw/gpu/vulkan/float_controls.h"
 
-namespace meshlode::gpu {
+namespace meshlode::draw {
 
 namespace {
 
@@ -37,4 +37,4 @@ std::vector<std::uint32_t> declare_round_to_nearest_even(std::span<const std::ui
   return out;
 }
 
-}  // namespace meshlode::gpu
+}  // namespace meshlode::draw

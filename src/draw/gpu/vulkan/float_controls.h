@@ -8,10 +8,10 @@
 #include <span>
 #include <vector>
 
-namespace meshlode::gpu {
+namespace meshlode::draw {
 
 /// The module with the capability, and the mode for floats of 32 and 64 bits at every entry point. \pre SPIR-V 1.4 or
 /// newer that does not declare the mode; what is no such module comes back as it is
 [[nodiscard]] std::vector<std::uint32_t> declare_round_to_nearest_even(std::span<const std::uint32_t> spirv);
 
-}  // namespace meshlode::gpu
+}  // namespace meshlode::draw

@@ -6,7 +6,7 @@
 #include "draw/gpu/vulkan/float_controls.h"
 #include "draw/gpu/vulkan/types.h"
 
-namespace meshlode::gpu {
+namespace meshlode::draw {
 
 namespace {
 
@@ -128,4 +128,4 @@ Result<Pipeline> Device::make_draw(std::span<const std::uint32_t> first, std::sp
   return out;
 }
 
-}  // namespace meshlode::gpu
+}  // namespace meshlode::draw

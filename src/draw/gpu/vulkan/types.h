@@ -15,7 +15,7 @@
 
 #include "draw/gpu/vulkan/vulkan.h"
 
-namespace meshlode::gpu {
+namespace meshlode::draw {
 
 #define MESHLODE_GLOBAL_FUNCTIONS(X) \
   X(vkCreateInstance) X(vkEnumerateInstanceLayerProperties) X(vkEnumerateInstanceVersion)
@@ -161,4 +161,4 @@ struct CommandsImpl {
   }
 };
 
-}  // namespace meshlode::gpu
+}  // namespace meshlode::draw

@@ -14,7 +14,7 @@
 
 #include <meshlode/result.h>
 
-namespace meshlode::gpu {
+namespace meshlode::draw {
 
 struct DeviceInfo {
   std::string name;
@@ -125,4 +125,4 @@ template <class T>
   return {reinterpret_cast<const std::uint8_t*>(&value), sizeof(T)};
 }
 
-}  // namespace meshlode::gpu
+}  // namespace meshlode::draw

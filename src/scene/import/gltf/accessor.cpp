@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
-namespace meshlode {
+namespace meshlode::scene {
 
 namespace {
 
@@ -141,4 +141,4 @@ std::uint32_t AccessorReader::index(std::uint64_t i) const {
   return bytes == nullptr ? 0 : load_index(bytes, component_type_);
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::scene

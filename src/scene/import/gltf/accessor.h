@@ -9,7 +9,7 @@
 
 #include "scene/import/gltf/gltf.h"
 
-namespace meshlode {
+namespace meshlode::scene {
 
 /// One integer or float component as it is stored, as a double. Normalized: c / (2^bits - 1), clamped to -1 where
 /// signed (glTF 2.0, section 3.6.2.2).
@@ -54,4 +54,4 @@ class AccessorReader {
   std::uint32_t sparse_index_type_ = 0;
 };
 
-}  // namespace meshlode
+}  // namespace meshlode::scene

@@ -8,7 +8,7 @@
 #include "scene/import/gltf/check_base.h"
 #include "scene/import/gltf/gltf_import.h"
 
-namespace meshlode {
+namespace meshlode::scene {
 
 namespace {
 
@@ -157,4 +157,4 @@ Status carry_animations(const GltfAsset& asset, DecodeBudget& budget, Json& docu
   return Ok{};
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::scene

@@ -5,7 +5,7 @@
 #include "scene/import/gltf/gltf.h"
 #include "scene/import/gltf/check_base.h"
 
-namespace meshlode {
+namespace meshlode::scene {
 
 namespace {
 
@@ -260,4 +260,4 @@ Status check_gltf(const Json& root, const std::string& file) {
   return check_gltf_lost_geometry(root, file);
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::scene

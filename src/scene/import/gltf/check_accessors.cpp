@@ -4,7 +4,7 @@
 #include "scene/import/gltf/gltf.h"
 #include "scene/import/gltf/check_base.h"
 
-namespace meshlode {
+namespace meshlode::scene {
 
 namespace {
 
@@ -156,4 +156,4 @@ Status check_gltf_accessors(const Json& root, const std::string& file) {
   return checker.status();
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::scene

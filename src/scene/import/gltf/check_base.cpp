@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/import/gltf/check_base.h"
 
-namespace meshlode {
+namespace meshlode::scene {
 
 std::string pointer_part(std::string_view key) {
   std::string out;
@@ -128,4 +128,4 @@ std::uint64_t index_or(const Json& object, std::string_view key, std::uint64_t f
   return member->index().value_or(fallback);
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::scene

@@ -12,7 +12,7 @@
 
 #include "scene/import/json.h"
 
-namespace meshlode {
+namespace meshlode::scene {
 
 class JsonChecker {
  public:
@@ -58,4 +58,4 @@ class JsonChecker {
 /// A key as a JSON pointer's part: control characters are not for a terminal, and long ones are cut.
 [[nodiscard]] std::string pointer_part(std::string_view key);
 
-}  // namespace meshlode
+}  // namespace meshlode::scene

@@ -8,7 +8,7 @@
 #include "scene/import/gltf/gltf.h"
 #include "scene/import/gltf/check_base.h"
 
-namespace meshlode {
+namespace meshlode::scene {
 
 namespace {
 
@@ -123,4 +123,4 @@ Status check_gltf_lost_geometry(const Json& root, const std::string& file) {
   return checker.status();
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::scene

@@ -3,7 +3,7 @@
 #include "scene/import/gltf/gltf.h"
 #include "scene/import/gltf/check_base.h"
 
-namespace meshlode {
+namespace meshlode::scene {
 
 namespace {
 
@@ -110,4 +110,4 @@ Status check_gltf_nodes(const Json& root, const std::string& file) {
   return checker.status();
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::scene

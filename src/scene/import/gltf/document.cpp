@@ -8,7 +8,7 @@
 #include "scene/import/gltf/check_base.h"
 #include "scene/import/gltf/gltf_import.h"
 
-namespace meshlode {
+namespace meshlode::scene {
 
 namespace {
 
@@ -185,4 +185,4 @@ Status carry_document(const GltfAsset& asset, GltfFiles& files, DecodeBudget& bu
   return Ok{};
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::scene

@@ -23,7 +23,7 @@
 
 #include "scene/import/gltf/gltf.h"
 
-namespace meshlode {
+namespace meshlode::scene {
 
 namespace {
 
@@ -373,4 +373,4 @@ Result<DracoMesh> decode_draco(std::span<const std::uint8_t> bytes, const DracoE
   }
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::scene

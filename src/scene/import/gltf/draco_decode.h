@@ -9,7 +9,7 @@
 
 #include <meshlode/result.h>
 
-namespace meshlode {
+namespace meshlode::scene {
 
 struct DracoAttribute {
   std::uint32_t component_type = 0;   ///< glTF's componentType
@@ -35,4 +35,4 @@ struct DracoExpectation {
 /// Errors: kInvalid, with `where` left to the caller.
 [[nodiscard]] Result<DracoMesh> decode_draco(std::span<const std::uint8_t> bytes, const DracoExpectation& expected);
 
-}  // namespace meshlode
+}  // namespace meshlode::scene

@@ -2,7 +2,7 @@
 #include "scene/import/gltf/gltf.h"
 #include "scene/import/gltf/uri.h"
 
-namespace meshlode {
+namespace meshlode::scene {
 
 Result<std::span<const std::uint8_t>> GltfFiles::open(const std::string& uri) {
   if (is_data_uri(uri)) {
@@ -26,4 +26,4 @@ Result<std::span<const std::uint8_t>> GltfFiles::open(const std::string& uri) {
   return bytes;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::scene

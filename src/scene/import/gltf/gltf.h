@@ -19,7 +19,7 @@
 #include "base/hash.h"
 #include "scene/import/json.h"
 
-namespace meshlode {
+namespace meshlode::scene {
 
 constexpr std::uint32_t kNoIndex = 0xFFFFFFFFu;
 
@@ -166,4 +166,4 @@ struct GltfAsset {
 /// Geometry and nodes of a checked tree, through tinygltf. Nothing that tinygltf would open is handed to it.
 [[nodiscard]] Result<GltfModel> parse_gltf_model(const Json& root);
 
-}  // namespace meshlode
+}  // namespace meshlode::scene

@@ -10,7 +10,7 @@
 #include "scene/import/gltf/check_base.h"
 #include "scene/import/gltf/primitive.h"
 
-namespace meshlode {
+namespace meshlode::scene {
 
 namespace {
 
@@ -196,4 +196,4 @@ Result<Scene> import_gltf(const std::filesystem::path& path, std::span<const std
   return scene;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::scene

@@ -11,7 +11,7 @@
 #include "scene/import/import.h"
 #include "scene/scene.h"
 
-namespace meshlode {
+namespace meshlode::scene {
 
 /// `bytes` are the scene file's own. `path` names it in messages and gives the folder that URIs are relative to.
 [[nodiscard]] Result<Scene> import_gltf(const std::filesystem::path& path, std::span<const std::uint8_t> bytes,
@@ -30,4 +30,4 @@ namespace meshlode {
 /// blob with the bytes they need. What is not rigid node animation is left out and said so.
 [[nodiscard]] Status carry_animations(const GltfAsset& asset, DecodeBudget& budget, Json& document, Scene& scene);
 
-}  // namespace meshlode
+}  // namespace meshlode::scene

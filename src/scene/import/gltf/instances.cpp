@@ -4,7 +4,7 @@
 
 #include "scene/import/gltf/gltf_import.h"
 
-namespace meshlode {
+namespace meshlode::scene {
 
 namespace {
 
@@ -81,4 +81,4 @@ std::vector<SceneInstance> read_instances(const GltfAsset& asset, std::vector<Le
   return out;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::scene

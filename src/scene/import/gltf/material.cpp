@@ -4,7 +4,7 @@
 #include "scene/import/gltf/check_base.h"
 #include "scene/import/gltf/gltf_import.h"
 
-namespace meshlode {
+namespace meshlode::scene {
 
 namespace {
 
@@ -109,4 +109,4 @@ std::vector<SceneMaterial> read_materials(const GltfAsset& asset, std::vector<Le
   return out;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::scene

@@ -20,7 +20,7 @@
 #define TINYGLTF_NO_INCLUDE_STB_IMAGE_WRITE
 #include <tiny_gltf.h>
 
-namespace meshlode {
+namespace meshlode::scene {
 
 namespace {
 
@@ -187,4 +187,4 @@ Result<GltfModel> parse_gltf_model(const Json& root) {
   }
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::scene

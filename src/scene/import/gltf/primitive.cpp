@@ -13,7 +13,7 @@
 #include "scene/import/gltf/accessor.h"
 #include "scene/import/gltf/draco_decode.h"
 
-namespace meshlode {
+namespace meshlode::scene {
 
 namespace {
 
@@ -405,4 +405,4 @@ Result<std::optional<Primitive>> read_primitive(const PrimitiveContext& context,
   return PrimitiveReader(context, mesh, primitive, json, drops).run();
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::scene

@@ -9,7 +9,7 @@
 #include "scene/import/import.h"
 #include "scene/scene.h"
 
-namespace meshlode {
+namespace meshlode::scene {
 
 struct PrimitiveContext {
   const GltfAsset* asset = nullptr;
@@ -25,4 +25,4 @@ struct PrimitiveContext {
                                                               std::size_t primitive, const Json& json,
                                                               ImportDrops& drops);
 
-}  // namespace meshlode
+}  // namespace meshlode::scene

@@ -6,7 +6,7 @@
 #include <cctype>
 #include <system_error>
 
-namespace meshlode {
+namespace meshlode::scene {
 
 namespace {
 
@@ -156,4 +156,4 @@ Result<std::filesystem::path> resolve_uri(const std::filesystem::path& folder, s
   return file;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::scene

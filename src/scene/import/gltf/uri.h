@@ -10,7 +10,7 @@
 
 #include <meshlode/result.h>
 
-namespace meshlode {
+namespace meshlode::scene {
 
 [[nodiscard]] bool is_data_uri(std::string_view uri);
 
@@ -33,4 +33,4 @@ struct DataUri {
 /// kIo it does not exist.
 [[nodiscard]] Result<std::filesystem::path> resolve_uri(const std::filesystem::path& folder, std::string_view uri);
 
-}  // namespace meshlode
+}  // namespace meshlode::scene

@@ -10,7 +10,7 @@
 #include "scene/import/polygons/polygon_soup.h"
 #include "scene/import/polygons/text_scan.h"
 
-namespace meshlode {
+namespace meshlode::scene {
 
 namespace {
 
@@ -236,4 +236,4 @@ Result<CheckedMeshFile> check_obj(std::span<const std::uint8_t> bytes, const Imp
   return ObjChecker({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, options).run();
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::scene

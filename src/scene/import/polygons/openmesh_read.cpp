@@ -20,7 +20,7 @@
 
 #include "scene/import/polygons/polygon_soup.h"
 
-namespace meshlode {
+namespace meshlode::scene {
 
 namespace {
 
@@ -239,4 +239,4 @@ Result<PolygonSoup> read_with_openmesh(CheckedMeshFile& file) {
   }
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::scene

@@ -8,7 +8,7 @@
 #include "scene/import/polygons/polygon_soup.h"
 #include "scene/import/polygons/text_scan.h"
 
-namespace meshlode {
+namespace meshlode::scene {
 
 namespace {
 
@@ -382,4 +382,4 @@ Result<CheckedMeshFile> check_ply(std::span<const std::uint8_t> bytes, const Imp
   return PlyChecker(bytes, options).run();
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::scene

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace meshlode {
+namespace meshlode::scene {
 
 namespace {
 
@@ -134,4 +134,4 @@ Result<Primitive> triangulate(PolygonSoup soup, const ImportOptions& options, Im
   return out;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::scene

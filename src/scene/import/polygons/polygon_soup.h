@@ -18,7 +18,7 @@
 #include "scene/import/import.h"
 #include "scene/scene.h"
 
-namespace meshlode {
+namespace meshlode::scene {
 
 /// A file that OpenMesh may see.
 struct CheckedMeshFile {
@@ -54,4 +54,4 @@ struct PolygonSoup {
 [[nodiscard]] Result<Primitive> triangulate(PolygonSoup soup, const ImportOptions& options, ImportDrops& drops,
                                             std::vector<LeftOut>& left_out);
 
-}  // namespace meshlode
+}  // namespace meshlode::scene

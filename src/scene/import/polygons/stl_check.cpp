@@ -11,7 +11,7 @@
 #include "scene/import/polygons/polygon_soup.h"
 #include "scene/import/polygons/text_scan.h"
 
-namespace meshlode {
+namespace meshlode::scene {
 
 namespace {
 
@@ -142,4 +142,4 @@ Result<CheckedMeshFile> check_stl(std::span<const std::uint8_t> bytes, const Imp
   return checker.finish();
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::scene

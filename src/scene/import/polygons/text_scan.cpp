@@ -5,7 +5,7 @@
 #include <limits>
 #include <system_error>
 
-namespace meshlode {
+namespace meshlode::scene {
 
 std::string_view take_word(std::string_view& text) {
   std::size_t start = 0;
@@ -47,4 +47,4 @@ std::optional<std::int64_t> parse_integer(std::string_view word) {
   return value;
 }
 
-}  // namespace meshlode
+}  // namespace meshlode::scene

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string_view>
 
-namespace meshlode {
+namespace meshlode::scene {
 
 [[nodiscard]] inline bool is_blank(char c) {
   return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\v' || c == '\f';
@@ -20,4 +20,4 @@ std::string_view take_line(std::string_view& text);
 [[nodiscard]] std::optional<double> parse_number(std::string_view word);
 [[nodiscard]] std::optional<std::int64_t> parse_integer(std::string_view word);
 
-}  // namespace meshlode
+}  // namespace meshlode::scene
