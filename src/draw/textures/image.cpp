@@ -9,8 +9,6 @@
 
 namespace meshlode::draw {
 
-namespace image {
-
 Status check_image_size(std::uint64_t width, std::uint64_t height) {
   if (width == 0 || height == 0) return Error{ErrorCode::kInvalid, "image", "no texels"};
   if (width > kMaxTextureSide || height > kMaxTextureSide) {
@@ -20,8 +18,6 @@ Status check_image_size(std::uint64_t width, std::uint64_t height) {
   }
   return Ok{};
 }
-
-}  // namespace image
 
 namespace {
 
