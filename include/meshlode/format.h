@@ -79,7 +79,7 @@ struct SectionEntry {
   std::uint32_t id;            ///< SectionId
   std::uint32_t version;       ///< of this section's layout; 0
   std::uint32_t flags;         ///< kSectionRequired
-  std::uint32_t codec;         ///< Codec of the section as a whole; kNone here (pages carry their own)
+  std::uint32_t codec;         ///< of the section as a whole: 0 as it is, 1 by columns (docs/codecs.md); pages have their own
   std::uint64_t offset;        ///< from the start of the file, a multiple of kSectionAlignment
   std::uint64_t bytes;         ///< stored
   std::uint64_t decoded_bytes; ///< after the codec
@@ -103,7 +103,7 @@ static_assert(sizeof(StringRef) == 8);
 
 enum class ErrorTier : std::uint32_t { kQem = 0, kMeasured = 1, kCertified = 2 };
 
-/// How shading normals are had.
+/// Where a triangle's shading normals come from.
 enum class NormalMode : std::uint32_t {
   kNone = 0,    ///< left out by option: a renderer may use the geometric normal
   kStored = 1,  ///< octahedral, per vertex
@@ -130,7 +130,7 @@ struct MeshRecord {
   Grid grid;
   std::int32_t bounds_min[3];       ///< of level 0, grid units
   std::int32_t bounds_max[3];
-  double diagonal;                  ///< of the source's bounding box, object units; errors relative to it
+  double diagonal;                  ///< of the source's bounding box, object units; relative errors are over it
   float level0_deviation;           ///< how far quantization alone moves the surface at most, object units
   ErrorTier error_tier;
   NormalMode normal_mode;
@@ -144,8 +144,8 @@ struct MeshRecord {
   std::uint32_t level_count;
   std::uint64_t source_triangles;   ///< after triangulation, before anything was dropped
   std::uint64_t source_vertices;
-  std::uint64_t dropped_degenerate;
-  std::uint64_t dropped_duplicate;
+  std::uint64_t dropped_degenerate; ///< triangles without area that are no part of the source
+  std::uint64_t dropped_duplicate;  ///< same positions, winding, stored attributes and material
   std::uint64_t dropped_repaired;   ///< by --repair: non-finite positions, indices out of range
   std::uint64_t grid_collapsed;     ///< triangles of level 0 that have zero area after quantization; they stay
   std::uint32_t first_group;        ///< groups of this mesh are contiguous, coarse to fine
@@ -159,7 +159,7 @@ static_assert(sizeof(MeshRecord) == 200);
 
 enum class AlphaMode : std::uint32_t { kOpaque = 0, kMask = 1, kBlend = 2 };
 
-/// What a renderer needs at once; everything else of the material is in kScene under the same index.
+/// What a renderer needs at once; the whole material is in kScene under source_index.
 struct MaterialRecord {
   StringRef name;
   std::uint32_t source_index;  ///< index in the glTF's materials; kNone for the default material
@@ -207,8 +207,8 @@ enum class StuckReason : std::uint16_t {
 struct GroupRecord {
   float center[3];             ///< LOD sphere, mesh space relative to MeshRecord::origin
   float radius;
-  float error;                 ///< selection error, object units, strictly growing along the DAG; kInfiniteError if terminal
-  float quadric_error;         ///< the quadric's own estimate, object units
+  float error;                 ///< selection error, object units, growing along the DAG except from 0 to 0; kInfiniteError if terminal
+  float quadric_error;         ///< the quadric's own estimate, object units, never falling along the DAG; kInfiniteError if terminal
   float deviation;             ///< two-sided distance of this group alone to the source, quantization included and without
                                ///< the margin that `error` has; kInfiniteError if terminal or not measured
   float normal_deviation;      ///< shading normals against the source's, RMS over a group in degrees, never falling along
@@ -275,7 +275,7 @@ static_assert(sizeof(PageRecord) == 64);
 
 /// A decoded page is an array of u32 words, read as it lies by CPU and GPU:
 ///   PageHeader · cluster heads, kHeadWords (+ 1 where normals are stored) words each · each cluster's data · one zero word.
-/// The zero word is there so that any field can be had from two words without a look at the page's end.
+/// With the zero word, any field can be read from two words without checking for the page's end.
 struct PageHeader {
   std::uint32_t first_cluster;
   std::uint32_t cluster_count;
@@ -328,7 +328,7 @@ inline constexpr BitField kNormalBitsB{5, 28, 4, false};    ///< 0 … 14
 
 /// A cluster's data, without gaps: material ranges (words), UV ranges of set 0, 1, … (words), colour range (words), then
 /// one bit stream, then zero bits up to a whole word. Bit k of the stream is bit k mod 32 of word k / 32; fields lie
-/// lowest bit first. In the stream, one after the other:
+/// lowest bit first. In the stream, in this order:
 ///   positions    vertex by vertex: x y z
 ///   normals      vertex by vertex: a b
 ///   UVs          set by set, range by range, vertex by vertex: u v

@@ -109,20 +109,20 @@ typedef struct meshlode_mesh {
   float level0_deviation;    /* how far quantization alone moves the surface at most, object units */
   uint32_t error_tier;       /* 0 qem, 1 measured, 2 certified */
   uint32_t normal_mode;      /* meshlode_normal_mode */
-  uint32_t normal_scale;
+  uint32_t normal_scale;     /* a stored normal is off by at most sqrt(2) / normal_scale radians; 0 where none is stored */
   uint32_t uv_set_count;
   uint32_t has_color;        /* 0 or 1 */
-  int32_t uv_log2[MESHLODE_MAX_UV_SETS];
+  int32_t uv_log2[MESHLODE_MAX_UV_SETS]; /* of each stored set: a UV is 2^uv_log2 * integer */
   uint8_t uv_set_source[MESHLODE_MAX_UV_SETS]; /* the TEXCOORD_n that stored set k was */
   uint32_t material;         /* of every triangle; MESHLODE_NONE: decoding says which */
   int32_t sphere_log2;       /* unit of the clusters' culling spheres: 2^sphere_log2 object units */
   uint32_t level_count;
   uint64_t source_triangles; /* before anything was dropped */
   uint64_t source_vertices;
-  uint64_t dropped_degenerate;
-  uint64_t dropped_duplicate;
-  uint64_t dropped_repaired;
-  uint64_t grid_collapsed;
+  uint64_t dropped_degenerate; /* triangles without area that are no part of the source */
+  uint64_t dropped_duplicate;  /* same positions, winding, stored attributes and material */
+  uint64_t dropped_repaired;   /* non-finite positions, indices out of range */
+  uint64_t grid_collapsed;     /* triangles of level 0 without area on the grid; they stay */
   uint32_t first_group;      /* groups of a mesh are contiguous, coarse to fine */
   uint32_t group_count;
   uint32_t first_cluster;    /* contiguous */
@@ -143,14 +143,14 @@ typedef struct meshlode_material {
 } meshlode_material;
 
 #define MESHLODE_INSTANCE_MIRRORED 1u /* determinant < 0: flip culling */
-#define MESHLODE_INSTANCE_SINGULAR 2u /* not drawn */
+#define MESHLODE_INSTANCE_SINGULAR 2u /* singular or not finite: not drawn */
 
 typedef struct meshlode_instance {
   double transform[12]; /* mesh space to world, row-major 3x4 */
   double scale;         /* largest singular value of the 3x3 part, rounded up */
   uint32_t mesh;
   uint32_t node; /* index of the glTF node */
-  uint32_t flags;
+  uint32_t flags; /* MESHLODE_INSTANCE_... */
   uint32_t reserved;
   meshlode_string name;
 } meshlode_instance;
@@ -163,18 +163,19 @@ typedef struct meshlode_instance {
 typedef struct meshlode_group {
   float center[3]; /* LOD sphere, relative to meshlode_mesh.origin */
   float radius;
-  float error;            /* selection error, object units; MESHLODE_INFINITE_ERROR if terminal */
-  float quadric_error;    /* object units */
-  float deviation;        /* object units, of this group alone and without margin; MESHLODE_INFINITE_ERROR if not measured */
-  float normal_deviation; /* degrees; 0 if not measured */
-  float uv_deviation;     /* UV units; 0 if not measured */
+  /* The next five are MESHLODE_INFINITE_ERROR if terminal; the last three also where not measured. */
+  float error;            /* selection error, object units */
+  float quadric_error;    /* the simplifier's own estimate, object units */
+  float deviation;        /* from the source, of this group alone and without the margin that error has, object units */
+  float normal_deviation; /* shading normals against the source's, RMS, degrees */
+  float uv_deviation;     /* UVs against the source's, 95% of the group is within it, UV units */
   uint32_t first_cluster; /* members, contiguous */
   uint32_t mesh;
   uint32_t page;
   uint16_t cluster_count;
-  uint16_t level; /* largest level of a member */
-  uint16_t flags;
-  uint16_t stuck_reason;
+  uint16_t level;        /* largest level of a member */
+  uint16_t flags;        /* MESHLODE_GROUP_... */
+  uint16_t stuck_reason; /* 0 not stuck, 1 locked, 2 flips, 3 seams, 4 loose components, 5 too small, 6 topology */
 } meshlode_group;
 
 /* Drawn iff its own group's error passes (or it has none) and its coarser group's does not. */
@@ -249,7 +250,7 @@ MESHLODE_API const char *meshlode_scene_json(const meshlode_asset *asset, size_t
 
 /* ----------------------------------------------------------------------------------------------------- selecting */
 
-/* Where the scene is looked at from, as far as choosing a cut needs it: a view direction has no part in it, and nothing
+/* Where the scene is looked at from, as far as choosing a cut needs it: a view direction plays no part in it, and nothing
  * is culled. */
 typedef struct meshlode_view {
   double eye[3];        /* world space; unused where orthographic */
@@ -309,7 +310,7 @@ MESHLODE_API meshlode_status meshlode_load_page(const meshlode_asset *asset, uin
 MESHLODE_API meshlode_status meshlode_view_page(const meshlode_asset *asset, uint32_t page, const void **out,
                                                 meshlode_error *error);
 
-/* What meshlode_decode_* is told: the bytes of a page exactly as meshlode_load_page or meshlode_view_page of this very
+/* What meshlode_decode_* reads: the bytes of a page exactly as meshlode_load_page or meshlode_view_page of this very
  * asset gave them. They are not checked again: other bytes are the caller's mistake, with undefined behaviour. */
 typedef struct meshlode_page_bytes {
   uint32_t page;

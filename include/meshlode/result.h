@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Errors as values. A bad world (a file, an option) yields an Error with code, place and detail; a programmer's mistake
-// is an assert. No exception leaves the library.
+// is an assert. No exception leaves the library, except std::bad_alloc where a header says so.
 #pragma once
 
 #include <cassert>
@@ -30,7 +30,7 @@ struct Error {
   [[nodiscard]] std::string message() const { return where.empty() ? detail : where + ": " + detail; }
 };
 
-/// A value or an Error. `if (!r) return r.error();` hands an error on.
+/// A value or an Error. `if (!r) return r.error();` passes an error on.
 template <class T>
 class [[nodiscard]] Result {
  public:

@@ -37,7 +37,7 @@
 namespace meshlode {
 
 /// Where the scene is looked at from, as far as choosing a cut needs it: the rule looks at distances only, so a view
-/// direction has no part in it, and nothing is culled.
+/// direction plays no part in it, and nothing is culled.
 struct ViewPoint {
   std::array<double, 3> eye{0.0, 0.0, 0.0};  ///< world space; unused where orthographic
   bool is_orthographic = false;
@@ -77,7 +77,7 @@ class PageData {
 };
 
 /// The integers of a cluster, exactly as stored. Vertex i has values[i * channel_count + c] with the channels in the
-/// order of MeshRecord: x y z, normal a b, u v of each set, r g b a, as far as the mesh has them.
+/// order of MeshRecord: position x y z, normal X Y Z, u v of each set, colour r g b a, as far as the mesh has them.
 struct ClusterIntegers {
   std::uint32_t vertex_count = 0;
   std::uint32_t triangle_count = 0;

@@ -80,8 +80,7 @@ MetaInfo read_meta(std::string_view meta_json) {
     meta.plan = dump(*plan);
     for (const Json& entry : *plan) {
       const bool is_left_out = entry.is_object() && entry.contains("kept") && entry["kept"] == false;
-      meta.decisions.push_back(
-          {string_at(entry, "what"), string_at(entry, "reason"), string_at(entry, "saves"), !is_left_out});
+      meta.decisions.push_back({string_at(entry, "what"), string_at(entry, "reason"), !is_left_out});
     }
   }
   if (const Json* left_out = child(json, "left_out", Json::value_t::array)) {

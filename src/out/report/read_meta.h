@@ -11,7 +11,7 @@ namespace meshlode::out {
 
 struct MetaInfo {
   struct Decision {
-    std::string what, reason, saves;
+    std::string what, reason;
     bool is_kept = true;
   };
   struct LeftOut {
