@@ -107,10 +107,9 @@ void measure_scene(const std::string& name, const scene::Scene& scene, const Opt
       const double ratio = cut.is_above(1.0) ? cut.ratio() : std::min(cut.ratio(), 1.0);
       series.ratios.push_back(ratio);
       if (!(ratio > options.above)) continue;
-      const bool is_from_source = cut.truth.a_to_b.max >= cut.truth.b_to_a.max;
-      const Vec3d& at = is_from_source ? cut.truth.a_to_b.worst : cut.truth.b_to_a.worst;
+      const Vec3d& at = cut.truth.worst;
       std::printf("%s mesh %u: stored %.6g true %.6g ratio %.4f %s at %.9g %.9g %.9g\n", name.c_str(), m, cut.stored,
-                  cut.truth.max(), ratio, is_from_source ? "source" : "cut", at.x, at.y, at.z);
+                  cut.truth.max, ratio, cut.truth.is_of_a ? "source" : "cut", at.x, at.y, at.z);
     }
   }
   std::fflush(stdout);

@@ -3,6 +3,7 @@
 #include "judge/metrics/metrics.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 
@@ -63,7 +64,81 @@ OneWayDeviation measure_one_way(const Surface& from, const Surface& to, const Tr
   return result;
 }
 
+/// The search prunes by boxes, so that a squared distance may differ in its last bits by where it began.
+constexpr double kSearchRounding = 1e-12;
+
+struct Farthest {
+  double distance2 = -1.0;
+  std::size_t point = 0;
+};
+
+/// The points of measure_one_way(), in its order.
+class MeasuredPoints {
+ public:
+  MeasuredPoints(const Surface& surface, const DeviationOptions& options)
+      : surface_(surface), samples_(surface, options.samples, options.seed), vertices_(used_vertices(surface)) {}
+  [[nodiscard]] std::size_t size() const { return static_cast<std::size_t>(samples_.count()) + vertices_.size(); }
+  [[nodiscard]] Vec3d operator[](std::size_t i) const {
+    return i < samples_.count() ? samples_.position(samples_.sample(i))
+                                : surface_.positions[vertices_[i - samples_.count()]];
+  }
+
+ private:
+  const Surface& surface_;
+  AreaSamples samples_;
+  std::vector<std::uint32_t> vertices_;
+};
+
+/// The first of the points that is farthest from the surface of `to`; a distance of -1 where none is as far as
+/// `largest2`, which is the largest known, of other points too, and grows.
+Farthest find_farthest(const MeasuredPoints& points, const TriangleTree& to, std::atomic<double>& largest2) {
+  std::vector<Farthest> partials((points.size() + kChunk - 1) / kChunk);
+  parallel_for_each_index(partials.size(), 1, [&](std::size_t chunk) {
+    std::uint32_t hint = 0xFFFFFFFFu;
+    for (std::size_t i = chunk * kChunk; i < std::min(points.size(), (chunk + 1) * kChunk); ++i) {
+      // What other threads have found so far decides how long the search takes, not what comes of it: the point that is
+      // farthest of all is never nearer than what is known but by the rounding of boxes and hints. What counts is its
+      // distance without a hint.
+      double known = largest2.load(std::memory_order_relaxed);
+      const double enough = known * (1.0 - kSearchRounding);
+      const Vec3d point = points[i];
+      const NearestPoint nearest = to.nearest_unless_below(enough, point, hint);
+      hint = nearest.triangle;
+      if (nearest.distance2 < enough) continue;
+      const double distance2 = to.nearest(point).distance2;
+      if (distance2 > partials[chunk].distance2) partials[chunk] = {distance2, i};
+      while (distance2 > known && !largest2.compare_exchange_weak(known, distance2)) {
+      }
+    }
+  });
+  Farthest farthest;
+  for (const Farthest& partial : partials) {
+    if (partial.distance2 > farthest.distance2) farthest = partial;
+  }
+  return farthest;
+}
+
 }  // namespace
+
+LargestDeviation find_largest_deviation(const Surface& a, const Surface& b, const DeviationOptions& options) {
+  LargestDeviation out;
+  if (a.triangles.empty() || b.triangles.empty()) {
+    if (a.triangles.empty() == b.triangles.empty()) return out;
+    out.max = std::numeric_limits<double>::infinity();
+    out.is_of_a = b.triangles.empty();
+    return out;
+  }
+  std::atomic<double> largest2 = 0.0;
+  const MeasuredPoints points_a(a, options), points_b(b, options);
+  const Farthest of_a = find_farthest(points_a, TriangleTree(b), largest2);
+  const Farthest of_b = find_farthest(points_b, TriangleTree(a), largest2);
+  out.is_of_a = of_a.distance2 >= of_b.distance2;
+  const Farthest& farthest = out.is_of_a ? of_a : of_b;
+  out.max = std::sqrt(std::max(0.0, farthest.distance2));
+  out.worst = out.is_of_a ? points_a[farthest.point] : points_b[farthest.point];
+  out.points = points_a.size() + points_b.size();
+  return out;
+}
 
 DeviationReport measure_deviation(const Surface& a, const Surface& b, const DeviationOptions& options) {
   const TriangleTree tree_a(a), tree_b(b);

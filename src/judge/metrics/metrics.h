@@ -44,6 +44,18 @@ struct DeviationReport {
 /// Infinite where one surface has no triangle and the other has; 0 where both have none.
 [[nodiscard]] DeviationReport measure_deviation(const Surface& a, const Surface& b, const DeviationOptions& options);
 
+/// The larger of both ways' maxima, and where it is.
+struct LargestDeviation {
+  double max = 0.0;          ///< measure_deviation().max() of the same surfaces and options
+  Vec3d worst{0.0};          ///< the first point that is as far away
+  bool is_of_a = true;       ///< `worst` is a point of surface a
+  std::uint64_t points = 0;  ///< samples and vertices, both ways
+};
+
+/// The maximum alone. A search ends at the first triangle that is nearer than the largest distance found so far: of
+/// surfaces that lie close to each other almost every one is over with a triangle or two, however many cross there.
+[[nodiscard]] LargestDeviation find_largest_deviation(const Surface& a, const Surface& b, const DeviationOptions& options);
+
 /// Clusters of one mesh as a surface in mesh space (origin included), exactly as decoded. `decoded` has every cluster
 /// of the asset, as decode_all gives them.
 [[nodiscard]] Surface surface_of_clusters(const run::Asset& asset, std::span<const run::DecodedCluster> decoded, MeshId mesh,

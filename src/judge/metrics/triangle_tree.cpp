@@ -198,7 +198,7 @@ double TriangleTree::distance2_to_box(const Node& node, const Vec3d& p) const {
   return glm::dot(outside, outside);
 }
 
-NearestPoint TriangleTree::nearest(const Vec3d& point, std::uint32_t hint) const {
+NearestPoint TriangleTree::nearest_unless_below(double enough, const Vec3d& point, std::uint32_t hint) const {
   NearestPoint best;
   if (nodes_.empty()) return best;
   const auto try_triangle = [&](std::uint32_t i) {
@@ -214,6 +214,7 @@ NearestPoint TriangleTree::nearest(const Vec3d& point, std::uint32_t hint) const
   std::size_t size = 0;
   stack[size++] = {0, distance2_to_box(nodes_[0], point)};
   while (size > 0) {
+    if (best.distance2 < enough) return best;
     const Entry entry = stack[--size];
     if (entry.distance2 >= best.distance2) continue;
     const Node& node = nodes_[entry.node];

@@ -27,7 +27,12 @@ class TriangleTree {
 
   /// The nearest triangle. `hint` names a triangle that is probably near, and changes the time taken alone; it may be
   /// none. Infinite for an empty tree. Safe from several threads.
-  [[nodiscard]] NearestPoint nearest(const Vec3d& point, std::uint32_t hint = 0xFFFFFFFFu) const;
+  [[nodiscard]] NearestPoint nearest(const Vec3d& point, std::uint32_t hint = 0xFFFFFFFFu) const {
+    return nearest_unless_below(0.0, point, hint);
+  }
+  /// The same for a point that is as far away as the squared distance `enough` or farther; of a nearer one some triangle
+  /// that is nearer than that.
+  [[nodiscard]] NearestPoint nearest_unless_below(double enough, const Vec3d& point, std::uint32_t hint) const;
   /// Every triangle within a squared distance (inclusive), appended in no particular order that is always the same.
   void find_within(const Vec3d& point, double distance2, std::vector<NearestPoint>& found) const;
 

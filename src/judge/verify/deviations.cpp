@@ -46,7 +46,7 @@ std::vector<CutDeviation> measure_cuts(const run::Asset& asset, MeshId mesh, con
     if (cut.clusters == previous) continue;
     previous = cut.clusters;
     const Surface surface = surface_of_clusters(asset, clusters, mesh, cut.clusters);
-    measured.push_back({threshold, cut.stored_error, measure_deviation(truth, surface, {.samples = samples}),
+    measured.push_back({threshold, cut.stored_error, find_largest_deviation(truth, surface, {.samples = samples}),
                         1e-12 * record.diagonal});
   }
   return measured;
@@ -69,7 +69,7 @@ DeviationTotals check_deviations(const run::Asset& asset, const scene::Scene& so
           [&] {
             char text[160];
             std::snprintf(text, sizeof text, "the cut at error %.6g stores %.6g and deviates by %.6g, %.3f times that",
-                          cut.threshold, cut.stored, cut.truth.max(), cut.ratio());
+                          cut.threshold, cut.stored, cut.truth.max, cut.ratio());
             return std::string(text);
           });
     }

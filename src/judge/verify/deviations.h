@@ -20,12 +20,12 @@ constexpr double kMeasuredShortfall = 0.05;
 /// A uniform cut with what it stores and what it was found to deviate by. Object units.
 struct CutDeviation {
   double threshold = 0.0, stored = 0.0;
-  DeviationReport truth;  ///< a: the source, b: the cut
+  LargestDeviation truth;  ///< a: the source, b: the cut
   double rounding = 0.0;  ///< decoded positions carry the last bit of a double; a flat cut deviates by that and stores 0
-  [[nodiscard]] bool is_above(double limit) const { return truth.max() > limit * stored + rounding; }
+  [[nodiscard]] bool is_above(double limit) const { return truth.max > limit * stored + rounding; }
   /// True over stored.
   [[nodiscard]] double ratio() const {
-    return stored > 0.0 ? truth.max() / stored : (truth.max() <= rounding ? 0.0 : HUGE_VAL);
+    return stored > 0.0 ? truth.max / stored : (truth.max <= rounding ? 0.0 : HUGE_VAL);
   }
 };
 
