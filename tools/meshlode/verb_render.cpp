@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// render: a cut as a picture, by the reference rasterizer.
+// render: a cut as a picture, by the reference rasterizer or a Vulkan device.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -9,8 +9,7 @@
 #include "base/byte_size.h"
 #include "bounds_options.h"
 #include "camera_options.h"
-#include "draw/gpu/gpu_camera.h"
-#include "draw/gpu/pass_plan.h"
+#include "draw/gpu/render.h"
 #include "draw/gpu/shaders/frame.h"
 #include "options.h"
 #include "outputs.h"
@@ -170,75 +169,26 @@ struct Drawn {
   draw::Image image;
 };
 
-/// Views that tell of a frame's passes; the others are drawn again in order, so that equal depths resolve as on the CPU.
-bool is_view_of_passes(std::uint32_t view) {
-  return view == VIEW_OVERDRAW || view == VIEW_PATHS || view == VIEW_OCCLUDED;
-}
-
 void print_warnings(const std::vector<std::string>& warnings) {
   for (const std::string& warning : warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
 }
 
-/// Selected, drawn and coloured by the device.
+/// By the device; what it says of its passes and of images is printed also where no picture came of it.
 Result<Drawn> draw_on_gpu(const run::Asset& asset, const run::Camera& camera, const RenderOptions& options,
                           const run::AttributeBounds& bounds, draw::ImageBudget& images) {
-  const auto view = static_cast<std::uint32_t>(
-      std::find(std::begin(kGpuViews), std::end(kGpuViews), options.view) - std::begin(kGpuViews));
-  auto device = draw::Device::open({.device = options.device, .validate = false});
-  if (!device) return device.error();
-  auto scene = draw::upload_scene(*device, asset, {}, bounds, &images);
-  if (!scene) return scene.error();
-  print_warnings(scene->alpha_masks->warnings);
-  const std::vector<std::string> force = options.force.empty() ? std::vector<std::string>{}
-                                                               : std::vector<std::string>{options.force};
-  auto plan = draw::plan_passes(*scene, device->info(), camera.width, camera.height, force,
-                               view == VIEW_SHADED || view == VIEW_NORMALS);
-  if (!plan) return plan.error();
-  plan->options.overdraw = view == VIEW_OVERDRAW;
-  if (view == VIEW_OCCLUDED) plan->options.occlusion = true;
-  if (options.explain) std::fprintf(stderr, "%s", draw::describe_plan(*plan).c_str());
-  if (plan->textures) {
-    const draw::TextureSet textures = draw::load_textures(asset, images);
-    print_warnings(textures.warnings);
-    if (const Status s = draw::upload_textures(*device, textures, *scene); !s) return s.error();
-  }
-  auto renderer = draw::Renderer::make(*device, *scene, plan->options);
-  if (!renderer) return renderer.error();
-  const auto depth = draw::depth_of_scene(asset, camera);
-  if (!depth) return depth.error();
-  if (view == VIEW_OCCLUDED) {
-    // A frame from a little to the side first: what it could not see, the second pass of this one brings back.
-    run::Camera before = camera;
-    const Vec3d ahead = camera.target - camera.eye;
-    const Vec3d side(ahead.z, 0.0, -ahead.x);
-    before.eye = camera.eye + 0.1 * side;
-    const auto first = renderer->draw(before, options.camera.pixel_error, *depth);
-    if (!first) return first.error();
-  }
-  const auto frame = renderer->draw(camera, options.camera.pixel_error, *depth);
-  if (!frame) return frame.error();
-  if (frame->overflow != 0) {
-    return Error{ErrorCode::kUnsupported, device->info().name,
-                 "the picture is not complete: overflow of " + draw::describe_overflow(frame->overflow)};
-  }
-  auto cut = renderer->read_cut();
-  if (!cut) return cut.error();
-  std::uint32_t level_count = 1;
-  for (const format::MeshRecord& mesh : asset.meshes()) level_count = std::max(level_count, mesh.level_count);
-  std::optional<draw::Image> image;
-  for (const bool in_order : {false, true}) {
-    if (in_order) {
-      if (const Status s = renderer->redraw_in_order(); !s) return s.error();
-    }
-    if (is_view_of_passes(view) == in_order) continue;
-    auto resolved = renderer->resolve(view, level_count);
-    if (!resolved) return resolved.error();
-    image = std::move(resolved->image);
-  }
-  if (view == VIEW_LEVELS) draw::draw_level_legend(*image, level_count);
-  auto visibility = renderer->read_pixels();
-  if (!visibility) return visibility.error();
-  return Drawn{std::move(*cut), std::move(*visibility), std::move(*image)};
+  draw::GpuRenderOptions render;
+  render.device = options.device;
+  render.view = static_cast<std::uint32_t>(std::find(std::begin(kGpuViews), std::end(kGpuViews), options.view) -
+                                           std::begin(kGpuViews));
+  render.pixel_error = options.camera.pixel_error;
+  render.bounds = bounds;
+  if (!options.force.empty()) render.force.push_back(options.force);
+  draw::GpuPicture picture;
+  const Status drawn = draw::render_on_gpu(asset, camera, render, images, picture);
+  print_warnings(picture.warnings);
+  if (options.explain) std::fprintf(stderr, "%s", picture.plan.c_str());
+  if (!drawn) return drawn.error();
+  return Drawn{std::move(picture.cut), std::move(picture.visibility), std::move(picture.image)};
 }
 
 Result<Drawn> draw_on_cpu(const run::Asset& asset, const run::Camera& camera, const RenderOptions& options,
