@@ -9,6 +9,7 @@
 
 #include "base/byte_size.h"
 #include "base/memory.h"
+#include "base/random.h"
 
 namespace meshlode::build {
 
@@ -38,12 +39,6 @@ std::uint64_t bytes_of(const scene::Primitive& primitive) {
   return sum;
 }
 
-std::uint64_t mixed(std::uint64_t z) {  // splitmix64 (Steele, Lea and Flood 2014)
-  z = (z ^ z >> 30U) * 0xBF58476D1CE4E5B9ULL;
-  z = (z ^ z >> 27U) * 0x94D049BB133111EBULL;
-  return z ^ z >> 31U;
-}
-
 /// Distinct positions of a mesh: of those whose hash falls into a share that leaves half a million, exactly; the others are
 /// taken to be like them (Flajolet 1990).
 std::uint64_t count_positions(const scene::SourceMesh& mesh) {
@@ -57,7 +52,7 @@ std::uint64_t count_positions(const scene::SourceMesh& mesh) {
   for (const scene::Primitive& primitive : mesh.primitives) {
     for (const Vec3d& p : primitive.positions) {
       std::uint64_t hash = 0;
-      for (int k = 0; k < 3; ++k) hash = mixed(hash + std::bit_cast<std::uint64_t>(p[k] + 0.0) + 0x9E3779B97F4A7C15ULL);
+      for (int k = 0; k < 3; ++k) hash = mix64(hash + std::bit_cast<std::uint64_t>(p[k] + 0.0) + kGoldenGamma);
       if ((hash & mask) == 0) seen.push_back(hash);
     }
   }

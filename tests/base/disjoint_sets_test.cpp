@@ -43,5 +43,19 @@ TEST(DisjointSets, AChainInAnyDirectionIsOneSet) {
   EXPECT_EQ(down.find(0), down.find(kCount - 1));
 }
 
+TEST(DisjointSets, JoinedToAnotherASetTakesItsName) {
+  DisjointSets sets(6);
+  EXPECT_TRUE(sets.join_to(4, 5));
+  EXPECT_TRUE(sets.join_to(2, 4));
+  EXPECT_TRUE(sets.join_to(2, 3));
+  for (const std::uint32_t member : {2U, 3U, 4U, 5U}) EXPECT_EQ(sets.find(member), 2U);
+  EXPECT_FALSE(sets.join_to(5, 3));
+  EXPECT_TRUE(sets.join_to(1, 5));  // one member against four
+  for (const std::uint32_t member : {1U, 2U, 3U, 4U, 5U}) EXPECT_EQ(sets.find(member), 1U);
+  EXPECT_EQ(sets.find(0), 0U);
+  EXPECT_TRUE(sets.join(0, 5));  // the larger keeps its name
+  EXPECT_EQ(sets.find(0), 1U);
+}
+
 }  // namespace
 }  // namespace meshlode

@@ -16,7 +16,7 @@
 #include "odd_shapes.h"
 #include "build/build.h"
 #include "run/read/asset.h"
-#include "scene/samples/noise.h"
+#include "base/random.h"
 #include "scene/samples/samples.h"
 #include "judge/validate/validate.h"
 #include "judge/verify/verify.h"
@@ -218,15 +218,15 @@ TEST(HardNumbers, AChangedNeedleIsFoundHoweverManyShareItsCell) {
   const format::MeshRecord& mesh = asset->meshes()[0];
   const double step = std::ldexp(mesh.grid.mantissa, mesh.grid.log2);
   const std::size_t first_ring = scene::make_plane(12).positions.size();
-  scene::Random random(6);
+  SplitMix64 random(6);
   for (int round = 0; round < 40; ++round) {
     scene::Primitive moved = shape;
-    const auto vertex = first_ring + random.below(static_cast<std::uint32_t>(shape.positions.size() - first_ring));
-    moved.positions[vertex][static_cast<int>(random.below(3))] += round % 2 == 0 ? 3.0 * step : -3.0 * step;
+    const auto vertex = first_ring + random.scaled_below(static_cast<std::uint32_t>(shape.positions.size() - first_ring));
+    moved.positions[vertex][static_cast<int>(random.scaled_below(3))] += round % 2 == 0 ? 3.0 * step : -3.0 * step;
     EXPECT_TRUE(rules_broken(*asset, alone(moved)).contains("V101")) << "vertex " << vertex;
 
     scene::Primitive lost = shape;
-    const auto triangle = random.below(static_cast<std::uint32_t>(shape.indices.size() / 3));
+    const auto triangle = random.scaled_below(static_cast<std::uint32_t>(shape.indices.size() / 3));
     const auto at = lost.indices.begin() + static_cast<std::ptrdiff_t>(3 * triangle);
     const bool is_degenerate = at[1] == at[2];
     lost.indices.erase(at, at + 3);

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "base/random.h"
 #include "scene/samples/noise.h"
 #include "scene/samples/samples.h"
 
@@ -75,7 +76,7 @@ scene::Primitive make_coincident_spheres(std::uint32_t n, std::uint32_t sheets) 
 }
 
 scene::Primitive make_line_of_triangles(std::uint32_t count) {
-  scene::Random random(17);
+  SplitMix64 random(17);
   scene::Primitive shape;
   for (std::uint32_t i = 0; i < 3 * count; ++i) {
     const double t = random.unit();
@@ -87,7 +88,7 @@ scene::Primitive make_line_of_triangles(std::uint32_t count) {
 }
 
 scene::Primitive make_fine_rings_beside_a_patch(std::uint64_t seed) {
-  scene::Random random(seed);
+  SplitMix64 random(seed);
   scene::Primitive shape = scene::make_plane(12);
   shape.material = MaterialId(0U);
   for (Vec3d& p : shape.positions) p = p * 15.0 + Vec3d(0.0, 0.2 * random.unit(), 0.0);
@@ -171,10 +172,10 @@ scene::Primitive make_cube_with_t_junctions() {
 }
 
 scene::Primitive make_cards(std::uint32_t count, std::uint64_t seed) {
-  scene::Random random(seed);
+  SplitMix64 random(seed);
   const auto vector = [&](double size) {
     Vec3d v;
-    for (int k = 0; k < 3; ++k) v[k] = size * (2.0 * random.below(1U << 20U) / (1U << 20U) - 1.0);
+    for (int k = 0; k < 3; ++k) v[k] = size * (2.0 * random.scaled_below(1U << 20U) / (1U << 20U) - 1.0);
     return v;
   };
   scene::Primitive shape;
@@ -189,7 +190,7 @@ scene::Primitive make_cards(std::uint32_t count, std::uint64_t seed) {
 }
 
 scene::Primitive make_lattice_chaos(std::uint32_t count, std::uint32_t side, std::uint64_t seed) {
-  scene::Random random(seed);
+  SplitMix64 random(seed);
   scene::Primitive shape;
   for (std::uint32_t z = 0; z < side; ++z) {
     for (std::uint32_t y = 0; y < side; ++y) {
@@ -197,7 +198,7 @@ scene::Primitive make_lattice_chaos(std::uint32_t count, std::uint32_t side, std
     }
   }
   const std::uint32_t points = side * side * side;
-  for (std::uint32_t i = 0; i < 3 * count; ++i) shape.indices.push_back(random.below(points));
+  for (std::uint32_t i = 0; i < 3 * count; ++i) shape.indices.push_back(random.scaled_below(points));
   shape.material = MaterialId(0U);
   return shape;
 }

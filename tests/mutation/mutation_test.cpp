@@ -81,7 +81,7 @@ std::string describe_change(const test::AssetEdit& before, const test::AssetEdit
 
 void run_kind(const test::MutantKind& kind, const Original& original, std::uint64_t seed, std::uint64_t count,
               Tally& tally) {
-  judge::SplitMix64 random(seed);
+  SplitMix64 random(seed);
   std::uint64_t made = 0;
   for (std::uint64_t draw = 0; made < count && draw < 20 * count; ++draw) {
     test::AssetEdit edit(original.bytes);

@@ -17,7 +17,7 @@ namespace {
 
 using format::SectionId;
 using Edit = AssetEdit;
-using Random = judge::SplitMix64;
+using Random = SplitMix64;
 
 std::uint32_t pick(Random& r, std::size_t count) {
   return static_cast<std::uint32_t>(r.below(count));

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "judge/validate/edit.h"
-#include "judge/verify/random.h"
+#include "base/random.h"
 
 namespace meshlode::test {
 
@@ -16,7 +16,7 @@ struct MutantKind {
   /// Null: every mutant must be found. Else why a mutant of this kind may be as valid as the original.
   const char* equivalent;
   /// Changes one thing; false where this draw finds nothing to change.
-  std::function<bool(AssetEdit&, judge::SplitMix64&)> mutate;
+  std::function<bool(AssetEdit&, SplitMix64&)> mutate;
 };
 
 [[nodiscard]] const std::vector<MutantKind>& mutant_kinds();

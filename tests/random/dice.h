@@ -13,14 +13,11 @@ namespace meshlode::test {
 class Dice : public Random {
  public:
   using Random::Random;
-  /// [0, 1)
-  double unit() { return static_cast<double>(next() >> 11U) * 0x1p-53; }
-  double range(double low, double high) { return low + (high - low) * unit(); }
+  double range(double low, double high) { return Random::between(low, high); }
   /// low … high, both included. \pre low <= high
   std::uint32_t between(std::uint32_t low, std::uint32_t high) {
     return low + static_cast<std::uint32_t>(below(std::uint64_t{high} - low + 1));
   }
-  bool chance(double probability) { return unit() < probability; }
   /// A factor of any size from 2^low to 2^high, each power as likely as the next. \pre low < high
   double octaves(int low, int high) {
     const int power = low + static_cast<int>(below(static_cast<std::uint64_t>(high - low)));

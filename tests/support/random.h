@@ -1,28 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Seeded numbers that are the same everywhere: splitmix64 (Steele, Lea and Flood 2014), no std:: distributions.
+// Seeded numbers for tests: base/random.h, and directions.
 #pragma once
 
 #include <cstdint>
 
+#include "base/random.h"
+#include "base/vec.h"
+
 namespace meshlode::test {
 
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : state_(seed) {}
-  std::uint64_t next() {
-    state_ += 0x9E3779B97F4A7C15ULL;
-    std::uint64_t z = state_;
-    z = (z ^ z >> 30U) * 0xBF58476D1CE4E5B9ULL;
-    z = (z ^ z >> 27U) * 0x94D049BB133111EBULL;
-    return z ^ z >> 31U;
-  }
-  /// 0 … count - 1. \pre count > 0
-  std::uint64_t below(std::uint64_t count) { return next() % count; }
-  /// [-1, 1)
-  double signed_unit() { return static_cast<double>(next() >> 11U) * 0x1p-52 - 1.0; }
+using Random = SplitMix64;
 
- private:
-  std::uint64_t state_;
+class RandomSource : public SplitMix64 {
+ public:
+  using SplitMix64::SplitMix64;
+  std::uint32_t below(std::uint32_t n) { return static_cast<std::uint32_t>(SplitMix64::below(n)); }
+  Vec3d in_cube(double half) { return {between(-half, half), between(-half, half), between(-half, half)}; }
+  Vec3d direction() {
+    for (;;) {
+      const Vec3d v = in_cube(1.0);
+      const double length = glm::length(v);
+      if (length > 0.01 && length <= 1.0) return v / length;
+    }
+  }
 };
 
 }  // namespace meshlode::test

@@ -5,6 +5,8 @@
 #include <numeric>
 #include <utility>
 
+#include "base/disjoint_sets.h"
+
 namespace meshlode::build {
 
 namespace {
@@ -34,14 +36,6 @@ std::uint32_t compact(std::span<const Corner3> source, std::vector<Corner3>& out
   return static_cast<std::uint32_t>(ids.size());
 }
 
-std::uint32_t find_root(std::vector<std::uint32_t>& parent, std::uint32_t i) {
-  while (parent[i] != i) {
-    parent[i] = parent[parent[i]];
-    i = parent[i];
-  }
-  return i;
-}
-
 }  // namespace
 
 Graph triangle_graph(std::span<const Corner3> corner_positions, std::span<const TriangleLink> links) {
@@ -68,8 +62,7 @@ Graph triangle_graph(std::span<const Corner3> corner_positions, std::span<const 
 
   std::vector<TriangleLink> strong;
   strong.reserve(uses.size() / 2 + 1);
-  std::vector<std::uint32_t> parent(triangle_count);
-  std::iota(parent.begin(), parent.end(), 0U);
+  DisjointSets connected(triangle_count);
   for (std::uint32_t bucket = 0; bucket < position_count; ++bucket) {
     const auto begin = uses.begin() + bucket_start[bucket];
     const auto end = uses.begin() + bucket_start[bucket + 1];
@@ -77,16 +70,16 @@ Graph triangle_graph(std::span<const Corner3> corner_positions, std::span<const 
     for (auto use = begin; use != end && use + 1 != end; ++use) {
       if (use->other != (use + 1)->other || use->triangle == (use + 1)->triangle) continue;
       strong.emplace_back(use->triangle, (use + 1)->triangle);
-      parent[find_root(parent, use->triangle)] = find_root(parent, (use + 1)->triangle);
+      connected.join(use->triangle, (use + 1)->triangle);
     }
   }
   for (const auto& [a, b] : links) {
     strong.emplace_back(a, b);
-    parent[find_root(parent, a)] = find_root(parent, b);
+    connected.join(a, b);
   }
   std::vector<TriangleLink> weak;
   for (std::uint32_t t = 0; t + 1 < triangle_count; ++t) {
-    if (find_root(parent, t) != find_root(parent, t + 1)) weak.emplace_back(t, t + 1);
+    if (connected.find(t) != connected.find(t + 1)) weak.emplace_back(t, t + 1);
   }
 
   Graph graph;

@@ -4,44 +4,8 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
-#include <utility>
 
 namespace meshlode::build {
-
-namespace {
-
-constexpr std::uint32_t kEmpty = 0xFFFFFFFFU;
-
-std::uint64_t mix(std::uint64_t h, std::uint32_t value) {
-  h = (h ^ value) * 0x9E3779B97F4A7C15ULL;
-  return h ^ h >> 29U;
-}
-
-/// Finds the id that `is_same` accepts, or inserts `next`. `hash_of` gives the hash of an id that is already in.
-template <class Table, class IsSame, class HashOf>
-std::uint32_t find_or_insert(Table& table, std::uint64_t hash, std::uint32_t next, const IsSame& is_same,
-                             const HashOf& hash_of) {
-  if (2 * (table.used + 1) > table.slots.size()) {
-    const std::vector<std::uint32_t> old = std::move(table.slots);
-    table.slots.assign(std::max<std::size_t>(64, 4 * old.size()), kEmpty);
-    for (const std::uint32_t id : old) {
-      if (id == kEmpty) continue;
-      std::size_t slot = hash_of(id) & (table.slots.size() - 1);
-      while (table.slots[slot] != kEmpty) slot = (slot + 1) & (table.slots.size() - 1);
-      table.slots[slot] = id;
-    }
-  }
-  std::size_t slot = hash & (table.slots.size() - 1);
-  while (table.slots[slot] != kEmpty) {
-    if (is_same(table.slots[slot])) return table.slots[slot];
-    slot = (slot + 1) & (table.slots.size() - 1);
-  }
-  table.slots[slot] = next;
-  ++table.used;
-  return next;
-}
-
-}  // namespace
 
 BuildPool::BuildPool(const PreparedMesh& mesh) : stride_(mesh.layout.stride()) {
   for (const Vec3i& position : mesh.positions) {
@@ -55,23 +19,25 @@ BuildPool::BuildPool(const PreparedMesh& mesh) : stride_(mesh.layout.stride()) {
 
 std::uint64_t BuildPool::hash_position(std::uint32_t id) const {
   const Vec3i& p = positions[id];
-  return mix(mix(mix(1, static_cast<std::uint32_t>(p.x)), static_cast<std::uint32_t>(p.y)), static_cast<std::uint32_t>(p.z));
+  std::uint64_t h = 0;
+  for (int k = 0; k < 3; ++k) h = hash_word(h, static_cast<std::uint32_t>(p[k]));
+  return h;
 }
 
 std::uint64_t BuildPool::hash_wedge(std::uint32_t position, const float* attributes) const {
-  std::uint64_t h = mix(2, position);
-  for (std::size_t j = 0; j < stride_; ++j) h = mix(h, std::bit_cast<std::uint32_t>(attributes[j]));
+  std::uint64_t h = hash_word(0, position);
+  for (std::size_t j = 0; j < stride_; ++j) h = hash_word(h, std::bit_cast<std::uint32_t>(attributes[j]));
   return h;
 }
 
 std::uint32_t BuildPool::position_id(const Vec3i& position) {
   const auto next = static_cast<std::uint32_t>(positions.size());
   positions.push_back(position);
-  const std::uint32_t id = find_or_insert(
-      position_table_, hash_position(next), next, [&](std::uint32_t other) { return positions[other] == position; },
+  const IdTable::Entry entry = position_table_.find_or_insert(
+      hash_position(next), next, [&](std::uint32_t other) { return positions[other] == position; },
       [&](std::uint32_t other) { return hash_position(other); });
-  if (id != next) positions.pop_back();
-  return id;
+  if (!entry.is_new) positions.pop_back();
+  return entry.id;
 }
 
 std::uint32_t BuildPool::wedge_id(std::uint32_t position, const float* attributes) {
@@ -81,14 +47,14 @@ std::uint32_t BuildPool::wedge_id(std::uint32_t position, const float* attribute
     return wedge_position[other] == position &&
            (stride_ == 0 || std::memcmp(wedge_attributes.data() + other * stride_, attributes, stride_ * sizeof(float)) == 0);
   };
-  const std::uint32_t id = find_or_insert(wedge_table_, hash_wedge(position, attributes), next, is_same, [&](std::uint32_t other) {
+  const IdTable::Entry entry = wedge_table_.find_or_insert(hash_wedge(position, attributes), next, is_same, [&](std::uint32_t other) {
     return hash_wedge(wedge_position[other], wedge_attributes.data() + other * stride_);
   });
-  if (id == next) {
+  if (entry.is_new) {
     wedge_position.push_back(position);
     wedge_attributes.insert(wedge_attributes.end(), attributes, attributes + stride_);
   }
-  return id;
+  return entry.id;
 }
 
 void BuildPool::add_clusters(const std::vector<WedgeTriangle>& source, const std::vector<std::uint32_t>& materials,

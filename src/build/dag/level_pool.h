@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "base/id_table.h"
 #include "build/cluster/cluster.h"
 #include "build/deviation/deviation.h"
 #include "build/lod_dag.h"
@@ -71,11 +72,6 @@ class BuildPool {
   std::vector<BuildGroup> groups;
 
  private:
-  /// Open addressing over ids that are looked up by what they stand for; ids depend on the order of insertion alone.
-  struct IdTable {
-    std::vector<std::uint32_t> slots;
-    std::size_t used = 0;
-  };
   std::uint32_t position_id(const Vec3i& position);
   std::uint32_t wedge_id(std::uint32_t position, const float* attributes);
   [[nodiscard]] std::uint64_t hash_position(std::uint32_t id) const;

@@ -7,10 +7,10 @@
 // and how far the source was from them: a point that was farther from them belongs to somebody else. So may one whose
 // nearest place on them is a border that they share, and one that faces the other way lies on another sheet.
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 
+#include "base/id_table.h"
 #include "build/deviation/group_measure.h"
 #include "build/deviation/patch.h"
 
@@ -34,40 +34,6 @@ constexpr double kLargeShare = 0.25;
 constexpr std::size_t kPointsPerPart = 4;
 // What cannot raise the maximum by more than this is left alone.
 constexpr double kWorthwhile = 1.002;
-
-/// A set of numbers below 2^32 - 1.
-class IdSet {
- public:
-  bool insert(std::uint32_t id) {
-    if (2 * (count_ + 1) > slots_.size()) grow();
-    std::size_t at = place(id);
-    while (slots_[at] != kEmpty) {
-      if (slots_[at] == id) return false;
-      at = (at + 1) & (slots_.size() - 1);
-    }
-    slots_[at] = id;
-    ++count_;
-    return true;
-  }
-
- private:
-  static constexpr std::uint32_t kEmpty = 0xFFFFFFFFU;
-  [[nodiscard]] std::size_t place(std::uint32_t id) const {
-    return (id * 0x9E3779B97F4A7C15ULL >> 20U) & (slots_.size() - 1);
-  }
-  void grow() {
-    std::vector<std::uint32_t> old(std::max<std::size_t>(256, 4 * slots_.size()), kEmpty);
-    old.swap(slots_);
-    for (const std::uint32_t id : old) {
-      if (id == kEmpty) continue;
-      std::size_t at = place(id);
-      while (slots_[at] != kEmpty) at = (at + 1) & (slots_.size() - 1);
-      slots_[at] = id;
-    }
-  }
-  std::vector<std::uint32_t> slots_;
-  std::size_t count_ = 0;
-};
 
 class SourceSearch {
  public:

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 
+#include "base/id_table.h"
 #include "base/parallel.h"
 
 namespace meshlode::build {
@@ -41,24 +42,22 @@ Spacing choose_spacing(const SourceTree::Impl& source) {
 /// Copies the source with one id for each position, numbered by first use: seams of attributes do not stop a search.
 void weld(std::span<const Vec3d> positions, std::span<const std::array<std::uint32_t, 3>> triangles,
           SourceTree::Impl& out) {
-  constexpr std::uint32_t kEmpty = 0xFFFFFFFFU;
-  std::vector<std::uint32_t> slots(std::bit_ceil(2 * positions.size() + 1), kEmpty);
+  IdTable table(positions.size());
+  const auto hash_of = [](const Vec3d& p) {
+    std::uint64_t h = 0;
+    for (int k = 0; k < 3; ++k) h = hash_word(h, std::bit_cast<std::uint64_t>(p[k]));
+    return h;
+  };
   std::vector<std::uint32_t> id(positions.size());
   out.positions.reserve(positions.size());
   for (std::size_t i = 0; i < positions.size(); ++i) {
     const Vec3d p = positions[i] + 0.0;  // one zero, not two
-    std::uint64_t h = 0;
-    for (int k = 0; k < 3; ++k) {
-      h = (h ^ std::bit_cast<std::uint64_t>(p[k])) * 0x9E3779B97F4A7C15ULL;
-      h ^= h >> 32U;
-    }
-    std::size_t at = h & (slots.size() - 1);
-    while (slots[at] != kEmpty && out.positions[slots[at]] != p) at = (at + 1) & (slots.size() - 1);
-    if (slots[at] == kEmpty) {
-      slots[at] = static_cast<std::uint32_t>(out.positions.size());
-      out.positions.push_back(p);
-    }
-    id[i] = slots[at];
+    const IdTable::Entry entry = table.find_or_insert(
+        hash_of(p), static_cast<std::uint32_t>(out.positions.size()),
+        [&](std::uint32_t other) { return out.positions[other] == p; },
+        [&](std::uint32_t other) { return hash_of(out.positions[other]); });
+    if (entry.is_new) out.positions.push_back(p);
+    id[i] = entry.id;
   }
   out.triangles.reserve(triangles.size());
   for (const auto& t : triangles) out.triangles.push_back({id[t[0]], id[t[1]], id[t[2]]});

@@ -11,6 +11,7 @@
 
 #include <tbb/parallel_sort.h>
 
+#include "base/disjoint_sets.h"
 #include "base/parallel.h"
 #include "build/prepare/separate_needles.h"
 #include "build/prepare/zero_area.h"
@@ -161,26 +162,21 @@ std::vector<std::uint32_t> canonical_vertex_order(const Corners& corners, const 
 }
 
 std::uint64_t count_pieces(const PreparedMesh& mesh) {
-  std::vector<std::uint32_t> parent(mesh.positions.size());
-  std::iota(parent.begin(), parent.end(), 0U);
-  const auto root_of = [&](std::uint32_t p) {
-    while (parent[p] != p) {
-      parent[p] = parent[parent[p]];
-      p = parent[p];
-    }
-    return p;
-  };
+  DisjointSets pieces(mesh.positions.size());
   std::vector<std::uint8_t> is_used(mesh.positions.size(), 0);
+  std::uint64_t count = 0;
+  const auto use = [&](std::uint32_t position) {
+    count += is_used[position] == 0 ? 1 : 0;
+    is_used[position] = 1;
+  };
   for (const WedgeTriangle& triangle : mesh.triangles) {
     const std::uint32_t first = mesh.wedge_position[triangle[0]];
-    is_used[first] = 1;
+    use(first);
     for (const std::uint32_t wedge : {triangle[1], triangle[2]}) {
-      is_used[mesh.wedge_position[wedge]] = 1;
-      parent[root_of(mesh.wedge_position[wedge])] = root_of(first);
+      use(mesh.wedge_position[wedge]);
+      count -= pieces.join(first, mesh.wedge_position[wedge]) ? 1 : 0;
     }
   }
-  std::uint64_t count = 0;
-  for (std::uint32_t p = 0; p < parent.size(); ++p) count += is_used[p] != 0 && parent[p] == p ? 1 : 0;
   return count;
 }
 

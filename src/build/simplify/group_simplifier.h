@@ -14,6 +14,7 @@
 #include <span>
 #include <vector>
 
+#include "base/disjoint_sets.h"
 #include "build/simplify/collapse_mesh.h"
 #include "build/simplify/point_triangle.h"
 #include "build/simplify/quadric.h"

@@ -7,21 +7,14 @@ namespace meshlode::build {
 /// Per vertex, one vertex of the loose piece that it belongs to: pieces share no vertex.
 template <std::size_t C>
 std::vector<std::uint32_t> GroupSimplifier<C>::find_pieces() const {
-  std::vector<std::uint32_t> parent(position_.size());
-  for (std::uint32_t v = 0; v < parent.size(); ++v) parent[v] = v;
-  const auto root_of = [&](std::uint32_t v) {
-    while (parent[v] != v) {
-      parent[v] = parent[parent[v]];
-      v = parent[v];
-    }
-    return v;
-  };
+  DisjointSets pieces(position_.size());
   for (std::uint32_t t = 0; t < mesh_.triangle_count(); ++t) {
     if (!mesh_.is_alive(t)) continue;
-    for (const std::uint32_t corner : {3 * t + 1, 3 * t + 2}) parent[root_of(mesh_.vertex(corner))] = root_of(mesh_.vertex(3 * t));
+    for (const std::uint32_t corner : {3 * t + 1, 3 * t + 2}) pieces.join_to(mesh_.vertex(3 * t), mesh_.vertex(corner));
   }
-  for (std::uint32_t v = 0; v < parent.size(); ++v) parent[v] = root_of(v);
-  return parent;
+  std::vector<std::uint32_t> piece_of(position_.size());
+  for (std::uint32_t v = 0; v < piece_of.size(); ++v) piece_of[v] = pieces.find(v);
+  return piece_of;
 }
 
 /// Scales the pieces that can grow about their centres until the group covers as much as it did.

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/random.h"
+
 namespace meshlode::draw {
 
 namespace {
@@ -30,10 +32,7 @@ void draw_digit(Image& image, std::uint32_t left, std::uint32_t top, std::uint32
 }  // namespace
 
 Rgb hash_color(std::uint32_t a, std::uint32_t b) {
-  std::uint64_t z = (std::uint64_t{a} << 32 | b) + 0x9E3779B97F4A7C15ull;
-  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ull;
-  z = (z ^ (z >> 27)) * 0x94D049BB133111EBull;
-  z ^= z >> 31;
+  const std::uint64_t z = mix64((std::uint64_t{a} << 32 | b) + kGoldenGamma);
   // A hue around the wheel, saturation and value in the upper half.
   const double hue = static_cast<double>(z & 0xFFFF) / 65536.0 * 6.0;
   const double saturation = 0.45 + 0.4 * static_cast<double>(z >> 16 & 0xFF) / 255.0;

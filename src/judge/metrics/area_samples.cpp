@@ -3,17 +3,15 @@
 
 #include <algorithm>
 
+#include "base/random.h"
+
 namespace meshlode::judge {
 namespace {
 
-// Uniform in [0, 1): a hash of seed, sample and draw (splitmix64's mixer).
+// Uniform in [0, 1): a hash of seed, sample and draw (splitmix64's mixer, twice).
 double uniform(std::uint64_t seed, std::uint64_t sample, std::uint64_t draw) {
-  std::uint64_t z = seed * 0x9E3779B97F4A7C15ULL + sample * 0xD1B54A32D192ED03ULL + (draw + 1) * 0x8CB92BA72F3D8DD7ULL;
-  for (int round = 0; round < 2; ++round) {
-    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ULL;
-    z = (z ^ (z >> 27)) * 0x94D049BB133111EBULL;
-    z ^= z >> 31;
-  }
+  const std::uint64_t z =
+      mix64(mix64(seed * kGoldenGamma + sample * 0xD1B54A32D192ED03ULL + (draw + 1) * 0x8CB92BA72F3D8DD7ULL));
   return static_cast<double>(z >> 11) * 0x1p-53;
 }
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "base/random.h"
 #include "judge/verify/cuts.h"
-#include "judge/verify/random.h"
 
 namespace meshlode::judge {
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/samples/city.h"
 
+#include "base/random.h"
 #include "scene/samples/facets.h"
 #include "scene/samples/noise.h"
 
@@ -174,7 +175,7 @@ GlbNode place(std::string name, std::uint32_t mesh, double x, double z) {
 }
 
 /// One block of three towers and nine houses; every third house is mirrored, towers have scales that are not uniform.
-std::uint32_t add_block(CityBuilder& city, Random& random, std::uint32_t index) {
+std::uint32_t add_block(CityBuilder& city, SplitMix64& random, std::uint32_t index) {
   GlbNode block;
   block.name = "block " + std::to_string(index);
   block.translation = {index % 2 == 0 ? -45.0 : 45.0, 0.0, index < 2 ? -45.0 : 45.0};
@@ -183,7 +184,7 @@ std::uint32_t add_block(CityBuilder& city, Random& random, std::uint32_t index) 
   const std::uint32_t parent = city.add(block);
   for (std::uint32_t i = 0; i < 3; ++i) {
     GlbNode tower = place("tower " + std::to_string(index) + "." + std::to_string(i), kTower, -22.0 + 22.0 * i, -20.0);
-    const double wide = random.range(0.7, 1.3), tall = random.range(0.5, 1.6), deep = random.range(0.7, 1.3);
+    const double wide = random.between(0.7, 1.3), tall = random.between(0.5, 1.6), deep = random.between(0.7, 1.3);
     if (i == 1) {
       // The same kind of transform as a matrix: a quarter turn around y, scaled, and moved.
       tower.matrix = {0.0, 0.0, -wide, 0.0, 0.0, tall, 0.0, 0.0, deep, 0.0, 0.0, 0.0, 0.0, 0.0, -20.0, 1.0};
@@ -194,11 +195,11 @@ std::uint32_t add_block(CityBuilder& city, Random& random, std::uint32_t index) 
     city.attach(parent, city.add(tower));
   }
   for (std::uint32_t i = 0; i < 9; ++i) {
-    const double x = -24.0 + 6.0 * i, z = (i % 2 == 0 ? 6.0 : 22.0) + random.range(-1.0, 1.0);
+    const double x = -24.0 + 6.0 * i, z = (i % 2 == 0 ? 6.0 : 22.0) + random.between(-1.0, 1.0);
     GlbNode house = place("house " + std::to_string(index) + "." + std::to_string(i), kHouse, x, z);
-    house.rotation = yaw(random.range(-0.05, 0.05));
-    const double size = random.range(0.7, 0.95);
-    house.scale = {i % 3 == 2 ? -size : size, size * random.range(0.9, 1.2), size};
+    house.rotation = yaw(random.between(-0.05, 0.05));
+    const double size = random.between(0.7, 0.95);
+    house.scale = {i % 3 == 2 ? -size : size, size * random.between(0.9, 1.2), size};
     city.attach(parent, city.add(house));
   }
   return parent;
@@ -218,7 +219,7 @@ GlbScene make_city(std::uint64_t seed) {
   city.material("grass", {0.22F, 0.36F, 0.12F, 1.0F}, 0.0, 1.0).double_sided = true;
   city.scene.meshes = {make_tower(), make_house(), make_mast(), make_rotor(), make_ground()};
 
-  Random random(seed);
+  SplitMix64 random(seed);
   GlbNode top;
   top.name = "city";
   const std::uint32_t root = city.add(top);

@@ -3,6 +3,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "base/random.h"
 #include "scene/samples/cube_grid.h"
 #include "scene/samples/noise.h"
 #include "scene/samples/samples.h"
@@ -26,10 +27,10 @@ void append(Primitive& out, const Primitive& piece, const Vec3d& scale, const Ve
   for (const std::uint32_t i : piece.indices) out.indices.push_back(base + i);
 }
 
-Vec3d random_vector(Random& random, double low, double high) {
-  const double x = random.range(low, high);
-  const double y = random.range(low, high);
-  const double z = random.range(low, high);
+Vec3d random_vector(SplitMix64& random, double low, double high) {
+  const double x = random.between(low, high);
+  const double y = random.between(low, high);
+  const double z = random.between(low, high);
   return {x, y, z};
 }
 
@@ -37,7 +38,7 @@ Vec3d random_vector(Random& random, double low, double high) {
 
 Primitive make_box_soup(std::uint32_t count, std::uint64_t seed) {
   Primitive out;
-  Random random(seed);
+  SplitMix64 random(seed);
   const Primitive box = make_cube(1, 0.5);
   for (std::uint32_t i = 0; i < count; ++i) {
     const Vec3d size = random_vector(random, 0.05, 0.6);
@@ -48,11 +49,11 @@ Primitive make_box_soup(std::uint32_t count, std::uint64_t seed) {
 
 Primitive make_loose_pieces(std::uint32_t count, std::uint64_t seed) {
   Primitive out;
-  Random random(seed);
+  SplitMix64 random(seed);
   for (std::uint32_t i = 0; i < count; ++i) {
     const Vec3d at = random_vector(random, -5.0, 5.0);
     std::uint32_t last[2] = {add_vertex(out, at), add_vertex(out, at + random_vector(random, -0.2, 0.2))};
-    const std::uint32_t triangles = 1 + random.below(3);
+    const std::uint32_t triangles = 1 + random.scaled_below(3);
     for (std::uint32_t t = 0; t < triangles; ++t) {
       const std::uint32_t next = add_vertex(out, at + random_vector(random, -0.2, 0.2));
       if (t % 2 == 0) {

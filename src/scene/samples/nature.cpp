@@ -5,6 +5,7 @@
 #include <map>
 #include <tuple>
 
+#include "base/random.h"
 #include "scene/samples/cube_grid.h"
 #include "scene/samples/facets.h"
 #include "scene/samples/noise.h"
@@ -40,9 +41,9 @@ double rock_radius(const Vec3d& direction, std::uint64_t seed) {
   double radius = 1.0 + 0.35 * fractal_noise(direction * 1.5, 3, seed);
   const double fold = fractal_noise(direction * 3.0, 5, seed + 100);
   radius += 0.18 * (0.5 - (fold < 0.0 ? -fold : fold));
-  Random random(seed + 200);
+  SplitMix64 random(seed + 200);
   for (int i = 0; i < 7; ++i) {
-    const double x = random.range(-1.0, 1.0), y = random.range(-1.0, 1.0), z = random.range(-1.0, 1.0);
+    const double x = random.between(-1.0, 1.0), y = random.between(-1.0, 1.0), z = random.between(-1.0, 1.0);
     const Vec3d normal = unit(Vec3d(x, y, z) + Vec3d(1e-3));
     const double along = glm::dot(normal, direction);
     if (along > 0.0 && radius * along > 0.95) radius = 0.95 / along;
@@ -109,18 +110,18 @@ Primitive make_crystal(std::uint32_t crystals, std::uint32_t n, std::uint64_t se
   assert(n >= 1);
   Primitive out;
   FacetBuilder facets{out};
-  Random random(seed);
+  SplitMix64 random(seed);
   for (std::uint32_t k = 0; k < crystals; ++k) {
-    const double x = random.range(-1.0, 1.0), y = random.range(0.15, 1.0), z = random.range(-1.0, 1.0);
+    const double x = random.between(-1.0, 1.0), y = random.between(0.15, 1.0), z = random.between(-1.0, 1.0);
     const Vec3d axis = unit({x, y, z});
     const double helper_y = axis.y > 0.9 ? 0.0 : 1.0;
     const Vec3d side = unit(glm::cross(Vec3d(1.0 - helper_y, helper_y, 0.0), axis));
     const Vec3d front = glm::cross(axis, side);
-    const double radius = random.range(0.10, 0.22), length = random.range(0.7, 1.6), tip = random.range(0.2, 0.4);
+    const double radius = random.between(0.10, 0.22), length = random.between(0.7, 1.6), tip = random.between(0.2, 0.4);
     // A double-ended prism: start tip, ring, ring, end tip. Each ring corner has its own radius.
     Vec3d low[6], high[6];
     for (int c = 0; c < 6; ++c) {
-      const double r = radius * random.range(0.8, 1.2);
+      const double r = radius * random.between(0.8, 1.2);
       const Vec3d out_there = side * (r * cos_turns(c / 6.0)) + front * (r * sin_turns(c / 6.0));
       low[c] = out_there;
       high[c] = out_there + axis * length;
@@ -139,11 +140,11 @@ Primitive make_crystal(std::uint32_t crystals, std::uint32_t n, std::uint64_t se
 
 Primitive make_foliage(std::uint32_t count, std::uint64_t seed) {
   Primitive out;
-  Random random(seed);
+  SplitMix64 random(seed);
   for (std::uint32_t k = 0; k < count; ++k) {
-    const double x = random.range(-10.0, 10.0), z = random.range(-10.0, 10.0);
-    const double turn = random.unit(), lean = random.range(-0.35, 0.35);
-    const double width = random.range(0.15, 0.4), height = random.range(0.4, 1.2);
+    const double x = random.between(-10.0, 10.0), z = random.between(-10.0, 10.0);
+    const double turn = random.unit(), lean = random.between(-0.35, 0.35);
+    const double width = random.between(0.15, 0.4), height = random.between(0.4, 1.2);
     const Vec3d side(cos_turns(turn), 0.0, sin_turns(turn));
     const Vec3d up = unit(Vec3d(-side.z * lean, 1.0, side.x * lean));
     const Vec3d base(x, 0.0, z);

@@ -3,15 +3,11 @@
 
 #include <cmath>
 
+#include "base/random.h"
+
 namespace meshlode::scene {
 
 namespace {
-
-std::uint64_t mix(std::uint64_t z) {
-  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ull;
-  z = (z ^ (z >> 27)) * 0x94D049BB133111EBull;
-  return z ^ (z >> 31);
-}
 
 constexpr double kTau = 6.283185307179586;
 
@@ -31,19 +27,14 @@ double cos_series(double x) {
 }
 
 double lattice(std::int64_t x, std::int64_t y, std::int64_t z, std::uint64_t seed) {
-  std::uint64_t h = mix(seed + 0x9E3779B97F4A7C15ull);
-  h = mix(h ^ static_cast<std::uint64_t>(x) * 0x9E3779B97F4A7C15ull);
-  h = mix(h ^ static_cast<std::uint64_t>(y) * 0xC2B2AE3D27D4EB4Full);
-  h = mix(h ^ static_cast<std::uint64_t>(z) * 0x165667B19E3779F9ull);
+  std::uint64_t h = mix64(seed + kGoldenGamma);
+  h = mix64(h ^ static_cast<std::uint64_t>(x) * kGoldenGamma);
+  h = mix64(h ^ static_cast<std::uint64_t>(y) * 0xC2B2AE3D27D4EB4Full);
+  h = mix64(h ^ static_cast<std::uint64_t>(z) * 0x165667B19E3779F9ull);
   return static_cast<double>(h >> 11) * 0x1p-52 - 1.0;
 }
 
 }  // namespace
-
-std::uint64_t Random::next() {
-  state_ += 0x9E3779B97F4A7C15ull;
-  return mix(state_);
-}
 
 double sin_turns(double turns) {
   const double t = turns - std::floor(turns);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Samples: the project's own scenes and hard cases, made from nothing. Bytes are the same with every compiler: only
-// + - * / sqrt and floor are used (scene/samples/noise.h has the turns and the random numbers).
+// + - * / sqrt and floor are used (scene/samples/noise.h has the turns, base/random.h the random numbers).
 //
 // Shapes are counter-clockwise seen from outside. Where nothing else is said they have positions and indices only, and
 // vertices are shared (a closed shape is closed by index as well as by position).

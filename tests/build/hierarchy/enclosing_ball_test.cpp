@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "build/hierarchy/enclosing_ball.h"
-#include "run/select/random.h"
+#include "support/random.h"
 
 namespace meshlode::build {
 namespace {

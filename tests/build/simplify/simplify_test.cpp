@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/random.h"
 #include "build/prepare/prepare.h"
 #include "scene/samples/samples.h"
 #include "build/simplify/quadric.h"
@@ -53,14 +54,6 @@ SimplifyOptions half_of(const SimplifyInput& input) {
   SimplifyOptions options;
   options.target_triangles = static_cast<std::uint32_t>(input.triangles.size() / 2);
   return options;
-}
-
-std::uint64_t next_random(std::uint64_t& state) {
-  state += 0x9E3779B97F4A7C15ULL;
-  std::uint64_t z = state;
-  z = (z ^ z >> 30U) * 0xBF58476D1CE4E5B9ULL;
-  z = (z ^ z >> 27U) * 0x94D049BB133111EBULL;
-  return z ^ z >> 31U;
 }
 
 TEST(Quadric, TheMinimumOfThreePlanesIsTheirPoint) {
@@ -134,13 +127,13 @@ TEST(Simplify, TheBorderOfALockedPatchIsKeptExactly) {
                               scene::make_double_cone(80),  scene::make_slivers(300),     scene::make_moebius(60, 6),
                               scene::make_box_soup(40),     scene::make_duplicates(10),   scene::make_zero_areas(10),
                               scene::make_blade(16),        scene::make_loose_pieces(90), scene::make_torus(24, 12)};
-  std::uint64_t random = 42;
+  SplitMix64 random(42);
   for (const scene::Primitive& shape : shapes) {
     for (int trial = 0; trial < 4; ++trial) {
       SimplifyInput input = as_input(prepare(shape));
       // Take a random half space of the triangles and lock its whole border.
-      const int cut = static_cast<int>(next_random(random) % 2001) - 1000;
-      const int axis = static_cast<int>(next_random(random) % 3);
+      const int cut = static_cast<int>(random.below(2001)) - 1000;
+      const int axis = static_cast<int>(random.below(3));
       std::vector<WedgeTriangle> kept;
       int low = 0;
       int high = 0;
@@ -219,11 +212,11 @@ TEST(Simplify, LinearTextureCoordinatesStayExact) {
 /// A shape whose every corner has texture coordinates of its own.
 scene::Primitive torn_apart(const scene::Primitive& shape) {
   scene::Primitive out;
-  std::uint64_t state = 1;
+  SplitMix64 random(1);
   for (const std::uint32_t v : shape.indices) {
     out.indices.push_back(static_cast<std::uint32_t>(out.positions.size()));
     out.positions.push_back(shape.positions[v]);
-    const auto coordinate = [&] { return static_cast<float>(next_random(state) >> 40U) * 0x1p-24F; };
+    const auto coordinate = [&] { return static_cast<float>(random.next() >> 40U) * 0x1p-24F; };
     const float u = coordinate();
     out.uvs[0].emplace_back(u, coordinate());
   }

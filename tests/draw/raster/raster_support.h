@@ -5,28 +5,20 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/random.h"
 #include "draw/raster/coverage.h"
 #include "draw/raster/screen.h"
 
 namespace meshlode::draw::test {
 
-/// splitmix64.
-class Random {
+class Random : public SplitMix64 {
  public:
-  explicit Random(std::uint64_t seed) : state_(seed) {}
-  std::uint64_t next() {
-    std::uint64_t z = state_ += 0x9E3779B97F4A7C15ull;
-    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ull;
-    z = (z ^ (z >> 27)) * 0x94D049BB133111EBull;
-    return z ^ (z >> 31);
-  }
-  double range(double low, double high) { return low + (high - low) * (static_cast<double>(next() >> 11) * 0x1p-53); }
+  using SplitMix64::SplitMix64;
+  double range(double low, double high) { return SplitMix64::between(low, high); }
+  /// low … high, both included.
   std::int32_t between(std::int32_t low, std::int32_t high) {
-    return low + static_cast<std::int32_t>(next() % static_cast<std::uint64_t>(high - low + 1));
+    return low + static_cast<std::int32_t>(below(static_cast<std::uint64_t>(high - low + 1)));
   }
-
- private:
-  std::uint64_t state_;
 };
 
 inline VisibilityBuffer draw(const ScreenSoup& soup, ImageSize size) {

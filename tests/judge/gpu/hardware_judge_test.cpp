@@ -15,7 +15,7 @@
 #include "draw/gpu/gpu_support.h"
 #include "draw/raster/cut_pages.h"
 #include "draw/raster/projection.h"
-#include "run/select/random.h"
+#include "support/random.h"
 #include "support/sample_asset.h"
 
 namespace meshlode::judge::test {

@@ -13,7 +13,7 @@
 #include "judge/metrics/metrics.h"
 #include "judge/metrics/shaded_surface.h"
 #include "judge/metrics/triangle_tree.h"
-#include "run/select/random.h"
+#include "support/random.h"
 
 namespace meshlode::judge {
 namespace {

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "judge/validate/exact.h"
-#include "judge/verify/random.h"
+#include "base/random.h"
 
 namespace meshlode::judge {
 namespace {

@@ -9,7 +9,7 @@
 #include "build/hierarchy/hierarchy.h"
 #include "build/lod_dag.h"
 #include "build/prepared.h"
-#include "run/select/random.h"
+#include "support/random.h"
 #include "run/select/select.h"
 
 namespace meshlode::test {

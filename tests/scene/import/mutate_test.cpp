@@ -10,26 +10,18 @@
 #include <cmath>
 #include <map>
 
+#include "base/random.h"
 #include "gltf_builder.h"
 #include "mutant_seeds.h"
 
 namespace meshlode::testing {
 namespace {
 
-/// splitmix64 (Steele, Lea and Flood 2014): the same mutants everywhere.
-class Random {
+/// The same mutants everywhere.
+class Random : public SplitMix64 {
  public:
-  explicit Random(std::uint64_t seed) : state_(seed) {}
-  std::uint64_t next() {
-    std::uint64_t z = (state_ += 0x9E3779B97F4A7C15u);
-    z = (z ^ (z >> 30U)) * 0xBF58476D1CE4E5B9u;
-    z = (z ^ (z >> 27U)) * 0x94D049BB133111EBu;
-    return z ^ (z >> 31U);
-  }
-  std::size_t below(std::size_t limit) { return limit == 0 ? 0 : static_cast<std::size_t>(next() % limit); }
-
- private:
-  std::uint64_t state_;
+  using SplitMix64::SplitMix64;
+  std::size_t below(std::size_t limit) { return limit == 0 ? 0 : SplitMix64::below(limit); }
 };
 
 void mutate_bytes(std::string& bytes, std::size_t from, std::size_t to, Random& random) {

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+// A hash table of ids that are looked up by what they stand for: open addressing, linear probing, at most half full
+// (Knuth, The Art of Computer Programming, vol. 3, 6.4). It holds ids alone: their keys stay in the caller's arrays. Nobody
+// can walk over its slots, so that what a caller gets depends on the order of its insertions, never on the hash (I10).
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "base/random.h"
+
+namespace meshlode {
+
+/// Hashes a key word by word: h = hash_word(hash_word(0, first), second). The low bits are spread as well as the high.
+constexpr std::uint64_t hash_word(std::uint64_t hash, std::uint64_t word) {
+  hash = (hash ^ word) * kGoldenGamma;
+  return hash ^ hash >> 32U;
+}
+
+class IdTable {
+ public:
+  IdTable() = default;
+  /// With room for `count` ids before it first grows.
+  explicit IdTable(std::size_t count) : slots_(std::bit_ceil(2 * count + 2), kFree) {}
+
+  struct Entry {
+    std::uint32_t id;
+    bool is_new;
+  };
+
+  /// The id that `is_same` accepts, or `next`, which is then in. `hash` is that of the key searched; `hash_of` gives the
+  /// hash of an id that is already in, and is asked where the table grows. \pre next < 2^32 - 1
+  template <class IsSame, class HashOf>
+  Entry find_or_insert(std::uint64_t hash, std::uint32_t next, const IsSame& is_same, const HashOf& hash_of) {
+    if (2 * (count_ + 1) > slots_.size()) grow(hash_of);
+    std::size_t at = hash & (slots_.size() - 1);
+    for (; slots_[at] != kFree; at = (at + 1) & (slots_.size() - 1)) {
+      if (is_same(slots_[at])) return {slots_[at], false};
+    }
+    slots_[at] = next;
+    ++count_;
+    return {next, true};
+  }
+
+  [[nodiscard]] std::size_t size() const { return count_; }
+
+ private:
+  static constexpr std::uint32_t kFree = 0xFFFFFFFFU;
+
+  template <class HashOf>
+  void grow(const HashOf& hash_of) {
+    std::vector<std::uint32_t> old(std::max<std::size_t>(64, 4 * slots_.size()), kFree);
+    old.swap(slots_);
+    for (const std::uint32_t id : old) {
+      if (id == kFree) continue;
+      std::size_t at = hash_of(id) & (slots_.size() - 1);
+      while (slots_[at] != kFree) at = (at + 1) & (slots_.size() - 1);
+      slots_[at] = id;
+    }
+  }
+
+  std::vector<std::uint32_t> slots_;  ///< ids, or kFree; a power of two of them
+  std::size_t count_ = 0;
+};
+
+/// A set of numbers below 2^32 - 1.
+class IdSet {
+ public:
+  /// Whether `id` was not in.
+  bool insert(std::uint32_t id) {
+    return table_
+        .find_or_insert(
+            hash_word(0, id), id, [id](std::uint32_t other) { return other == id; },
+            [](std::uint32_t other) { return hash_word(0, other); })
+        .is_new;
+  }
+
+ private:
+  IdTable table_;
+};
+
+}  // namespace meshlode
