@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The grid of a mesh: position = origin + step · q with step = mantissa · 2^log2 (design, Encode). Rounding is
+// The grid of a mesh: position = origin + step · q with step = mantissa · 2^log2 (docs/format.md, section 4). Rounding is
 // floor(x · s + 0.5), never a truncation: truncation rounds negative coordinates the wrong way.
 #pragma once
 

@@ -101,7 +101,7 @@ TEST(Layers, TheCheckFailsOnAForbiddenEdge) {
 }
 
 // The judge shares no code with what it judges, the runtime stands alone, and neither half of a codec sees the other.
-TEST(Layers, TheTableKeepsTheDesignsBorders) {
+TEST(Layers, TheTableKeepsTheBordersOfTheHouse) {
   const Layers layers = read_layers();
   for (const char* floor : {"base", "format", "run"}) {
     for (const std::string& target : layers.allowed.at(floor)) {

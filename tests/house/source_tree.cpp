@@ -60,6 +60,10 @@ std::vector<Include> SourceFile::includes() const {
   return parse_includes(text);
 }
 
+SourceFile read_file(const fs::path& relative) {
+  return {relative, room_of(relative), read_text(repository() / relative)};
+}
+
 std::vector<SourceFile> read_tree(const std::vector<std::string>& folders, const std::vector<std::string>& extensions) {
   std::vector<SourceFile> files;
   for (const std::string& folder : folders) {

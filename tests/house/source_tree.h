@@ -34,6 +34,9 @@ inline const std::vector<std::string> kSources = {".h", ".cpp", ".c", ".inl"};
 [[nodiscard]] std::vector<SourceFile> read_tree(const std::vector<std::string>& folders,
                                                 const std::vector<std::string>& extensions);
 
+/// One file. \pre it exists
+[[nodiscard]] SourceFile read_file(const std::filesystem::path& relative);
+
 [[nodiscard]] std::filesystem::path repository();
 
 /// #include lines of a text.

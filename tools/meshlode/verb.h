@@ -6,7 +6,7 @@
 //      `int run_foo(const Verb& verb, std::span<char* const> args)`; parse with OptionParser (options.h), print errors
 //      with print_error, return 0 or the ErrorCode's value;
 //   2. declare kFooVerb at the end of this header and name it in verb_table.cpp;
-//   3. add `meshlode_add_verb(foo ROOMS …)` to CMakeLists.txt.
+//   3. name the file in CMakeLists.txt.
 // Third-party headers stay out of verb files: CLI11 is in options.cpp, JSON output is base/json_writer.h.
 #pragma once
 

@@ -18,7 +18,7 @@
 
 namespace meshlode::build {
 
-/// Where a group's selection error comes from (design, section 5).
+/// Where a group's selection error comes from (I7, docs/architecture.md).
 enum class ErrorSource : std::uint8_t {
   kQuadric,    ///< the quadric's own estimate
   kMeasured,   ///< the deviation from the source, as samples find it

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is known of a group's deviation while a DAG is built, for each tier (design, section 5), and what is handed on
+// What is known of a group's deviation while a DAG is built, for each tier (I7, docs/architecture.md), and what is handed on
 // from level to level to know it.
 #pragma once
 

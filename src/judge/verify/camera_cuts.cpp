@@ -87,7 +87,7 @@ View random_view(const run::Asset& asset, std::span<const std::uint32_t> instanc
 
 enum class Answer : std::uint8_t { kFails, kPasses, kTooClose };
 
-/// The rule of the design in doubles: e·s·k <= t·max(|M·c - eye| - r·s, near); orthographic e·s·k <= t.
+/// The rule of docs/selection.md in doubles: e·s·k <= t·max(|M·c - eye| - r·s, near); orthographic e·s·k <= t.
 Answer decide(const View& view, const format::InstanceRecord& instance, const format::MeshRecord& mesh,
               const format::GroupRecord& group) {
   if (group.error >= format::kInfiniteError) return Answer::kFails;

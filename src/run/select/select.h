@@ -17,7 +17,7 @@
 
 namespace meshlode::run {
 
-/// A camera as the command line gives it (design, section 4). Right-handed, y up unless looking along y.
+/// A camera as the command line gives it (`--camera`, `--ortho`). Right-handed, y up unless looking along y.
 struct Camera {
   Vec3d eye{0.0, 0.0, 1.0};
   Vec3d target{0.0};
