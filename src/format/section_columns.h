@@ -36,7 +36,7 @@ enum class ColumnMode : std::uint8_t {
 /// A section never shrinks by more than this: what is decoded must be justified by what is stored.
 constexpr std::uint64_t kMaxSectionRatio = 256;
 
-/// Columns one behind the other.
+/// Columns, one after another.
 class ColumnSource {
  public:
   explicit ColumnSource(std::span<const std::uint8_t> stored);

@@ -19,7 +19,7 @@ static void free_pages(const meshlode_asset *asset, void **loaded) {
   free(loaded);
 }
 
-/* Loads every page in streaming order into memory of its own. NULL where one cannot be had. */
+/* Loads every page in streaming order into memory of its own. NULL where one cannot be loaded. */
 static void **load_pages(const meshlode_asset *asset, meshlode_error *error) {
   uint32_t count, i;
   const meshlode_page *pages = meshlode_pages(asset, &count);

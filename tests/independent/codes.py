@@ -66,7 +66,7 @@ class Stream:
 
 
 class Columns:
-    """Columns one behind the other."""
+    """Columns, one after another."""
 
     def __init__(self, data, place):
         self.data, self.place, self.at = data, place, 0

@@ -18,7 +18,7 @@ struct PageModel {
   /// Heads and range words of all clusters, by kind.
   std::vector<std::array<std::uint32_t, format::kHeadWords + format::kNormalHeadWords>> heads;
   std::array<std::vector<std::uint32_t>, format::kRangeWordKinds> range_words;
-  /// The bit streams of all clusters as they are, one behind the other.
+  /// The bit streams of all clusters as they are, one after another.
   std::vector<std::uint32_t> stream_words;
   /// What the bit streams hold: symbols of the first two streams, else folded numbers.
   std::array<std::vector<std::uint32_t>, format::kMaxStreams> streams;

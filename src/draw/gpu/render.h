@@ -28,7 +28,7 @@ struct GpuPicture {
   std::vector<run::ClusterInstance> cut;  ///< what was drawn, ascending
   VisibilityBuffer visibility;            ///< items are indices into `cut`
   Image image;
-  std::vector<std::string> warnings;  ///< images that could not be had
+  std::vector<std::string> warnings;  ///< images that could not be read
   std::string plan;                   ///< which passes ran and why, a line each: describe_plan()
 };
 

@@ -40,7 +40,7 @@ struct AlphaMasks {
   std::vector<AlphaMask> masks;
   std::vector<std::uint32_t> of_material;  ///< by index in Asset::materials(): index of masks, or format::kNone
   std::vector<AlphaImage> images;
-  std::vector<std::string> warnings;  ///< textures that could not be had; they count as opaque
+  std::vector<std::string> warnings;  ///< textures that could not be read; they count as opaque
 
   /// Nothing has to be tested.
   [[nodiscard]] bool is_empty() const { return masks.empty(); }

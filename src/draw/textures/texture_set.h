@@ -25,7 +25,7 @@ struct SampledMaterial {
 struct TextureSet {
   std::vector<SampledMaterial> materials;  ///< by index in Asset::materials(); empty: nothing is sampled
   std::vector<TextureImage> images;
-  std::vector<std::string> warnings;  ///< images that could not be had: their materials have no such texture
+  std::vector<std::string> warnings;  ///< images that could not be read: their materials have no such texture
 
   [[nodiscard]] bool is_empty() const { return images.empty(); }
 };

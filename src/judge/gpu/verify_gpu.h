@@ -54,7 +54,7 @@ struct GpuVerifyReport {
   std::vector<GpuCheck> checks;
   double largest_px = 0.0, largest_share = 0.0;  ///< of all cameras: PictureReport's
   std::vector<JudgedCamera> cameras;
-  std::vector<std::string> warnings;  ///< images that could not be had
+  std::vector<std::string> warnings;  ///< images that could not be read
 };
 
 /// `source`: what the asset was built from; without meshes no picture is judged by it. Errors: kUnsupported without a

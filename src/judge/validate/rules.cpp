@@ -41,7 +41,7 @@ constexpr std::array kRules{
     Rule{"L110", "I11", "groups name their mesh and partition its clusters"},
     Rule{"L111", "I11", "ids in clusters, instances and pages name something of the same mesh"},
     Rule{"L112", "", "material values are finite, flags are 0 or 1"},
-    Rule{"L113", "", "an instance's scale is its largest singular value and its flags say mirrored and singular truly"},
+    Rule{"L113", "", "an instance's scale is its largest singular value and its flags mirrored and singular are right"},
     Rule{"L114", "I11", "blobs fill the blob section in order and match their checksums"},
     Rule{"L115", "", "level_count is the number of levels"},
     Rule{"L116", "I1", "source triangles are those of level 0 plus those dropped, by kind"},
@@ -102,7 +102,7 @@ constexpr std::array kRules{
     Rule{"L509", "", "the coarser set of a group has the materials of its finer set alone"},
     // verify
     Rule{"V101", "I1", "every source triangle is in exactly one level-0 cluster, with its material and orientation"},
-    Rule{"V102", "I1", "triangles dropped as degenerate or duplicate are counted truly"},
+    Rule{"V102", "I1", "triangles dropped as degenerate or duplicate are counted correctly"},
     Rule{"V103", "I1", "source counts, mesh names and diagonals are the source's"},
     Rule{"V104", "I3", "level-0 attributes are those of the source within their quantization"},
     Rule{"V105", "", "the level-0 deviation is the largest move of a vertex onto the grid, rounded up"},

@@ -88,7 +88,7 @@ void add_source(const run::Asset& asset, const scene::Scene& source, std::span<c
   check_scene(asset, source, clusters, log);
   report.add_check("I1", "every source triangle is in exactly one level-0 cluster", totals.source_triangles,
                    failures_of(log, {"V101"}));
-  report.add_check("I1", "dropped and source triangles are counted truly", count, failures_of(log, {"V102", "V103"}));
+  report.add_check("I1", "dropped and source triangles are counted correctly", count, failures_of(log, {"V102", "V103"}));
   report.add_check("I3", "level-0 attributes are the source's within their quantization", totals.corners,
                    failures_of(log, {"V104"}));
   report.add_check("", "attributes that the source's shading needs are stored", count, failures_of(log, {"V110"}));

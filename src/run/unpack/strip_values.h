@@ -84,7 +84,7 @@ struct StreamCounts {
   std::array<std::uint32_t, format::kMaxStreams> count{};
 };
 
-/// The streams' bytes, one behind the other.
+/// The streams' bytes, one after another.
 struct StreamBytes {
   std::span<const std::uint8_t> bytes;
   std::array<std::uint32_t, format::kMaxStreams> size{};  ///< together at most bytes.size()
