@@ -29,6 +29,11 @@ class CollapseMesh {
   [[nodiscard]] static std::uint32_t next_in_triangle(std::uint32_t corner) {
     return corner % 3 == 2 ? corner - 2 : corner + 1;
   }
+  /// The two other vertices of the corner's triangle, in its order.
+  [[nodiscard]] std::array<std::uint32_t, 2> others(std::uint32_t corner) const {
+    const std::uint32_t next = next_in_triangle(corner);
+    return {vertex_[next], vertex_[next_in_triangle(next)]};
+  }
 
   /// The living corners at a vertex, in an order that depends on the history of collapses alone.
   void corners_of(std::uint32_t vertex, std::vector<std::uint32_t>& out);

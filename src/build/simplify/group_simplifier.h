@@ -16,7 +16,10 @@
 
 #include "base/disjoint_sets.h"
 #include "build/simplify/collapse_mesh.h"
-#include "build/simplify/point_triangle.h"
+#include "build/simplify/collapse_star.h"
+#include "build/simplify/group_places.h"
+#include "build/simplify/guards.h"
+#include "build/simplify/left_behind.h"
 #include "build/simplify/quadric.h"
 #include "build/simplify/simplify.h"
 
@@ -41,7 +44,6 @@ class GroupSimplifier {
   static constexpr double kRegularization = 1e-6;
   /// How far from the edge's middle a new vertex may lie, in edge lengths.
   static constexpr double kMaxOffset = 1.5;
-  static constexpr double kFlipCosine = 0.2;  ///< a triangle may turn by less than 78 degrees in one collapse
   static constexpr int kMaxPasses = 8;
   static constexpr double kMaxGrowth = 2.0;   ///< of a piece's size in one level
   /// A collapse costs at least this share of what its largest displacement, of the old surface from the new or of the new
@@ -73,7 +75,6 @@ class GroupSimplifier {
   };
   enum class Obstacle : std::uint8_t { kNone, kLocked, kFlips, kSeams, kTopology, kPutBack };
 
-  void set_frame();
   void scale_attributes();
   void add_face_quadrics();
   void add_edge_quadrics();
@@ -82,22 +83,10 @@ class GroupSimplifier {
   void collect_wedge_classes(std::uint32_t a, std::uint32_t b);
   [[nodiscard]] Placement place(std::uint32_t a, std::uint32_t b);
   [[nodiscard]] Obstacle try_collapse(const Candidate& candidate);
-  void collect_new_star(std::uint32_t a, std::uint32_t b, bool drops_sheets);
-  void move_sheets_out_of_star();
-  [[nodiscard]] double collect_vanishing(std::uint32_t a, std::uint32_t b, const Vec3d& target);
-  [[nodiscard]] double distance2_to_rest(std::uint32_t a, std::uint32_t b) const;
-  [[nodiscard]] double weigh_witnesses(std::uint32_t a, std::uint32_t b, const Vec3d& target);
-  [[nodiscard]] double new_surface_distance2(const Vec3d& target, double least) const;
-  [[nodiscard]] bool keeps_shared_edges(std::uint32_t locked, const std::vector<std::uint32_t>& at_locked,
-                                        const std::vector<std::uint32_t>& around) const;
-  [[nodiscard]] bool keeps_shared_corners(std::uint32_t locked, const std::vector<std::uint32_t>& around) const;
-  [[nodiscard]] bool keeps_topology(std::uint32_t a, std::uint32_t b);
-  [[nodiscard]] bool turns_over(std::uint32_t moved, std::uint32_t other, const std::vector<std::uint32_t>& corners,
-                                const Vec3d& target) const;
-  void collapse(std::uint32_t a, std::uint32_t b, const Vec3d& target);
-  void update_wedges(std::uint32_t vertex);
-  [[nodiscard]] Vec3d to_frame(const Vec3i& q) const { return (Vec3d(q) - center_) * inverse_scale_; }
-  [[nodiscard]] Vec3i to_grid(const Vec3d& p) const;
+  [[nodiscard]] bool keeps_shared_corners(const StarEnd& locked, const StarEnd& moved) const;
+  [[nodiscard]] double price_of(const Candidate& candidate);
+  void collapse(std::uint32_t a, std::uint32_t b);
+  void update_wedges(const StarEnd& end);
   [[nodiscard]] bool has_corners_in_one_place(std::uint32_t triangle) const;
   void run_passes();
   [[nodiscard]] std::vector<std::uint32_t> find_pieces() const;
@@ -108,21 +97,13 @@ class GroupSimplifier {
   const SimplifyInput& input_;
   const SimplifyOptions& options_;
   CollapseMesh mesh_;
+  GroupPlaces places_;
   std::size_t attribute_count_;
-  Vec3d center_{0.0};
-  double scale_ = 1.0, inverse_scale_ = 1.0;  ///< grid units per frame unit
   std::vector<double> attribute_scale_;       ///< stored value -> weighted value
 
-  std::vector<Vec3i> grid_position_;
-  std::vector<Vec3d> position_;
   std::vector<Quadric> plane_, border_, seam_;  ///< per vertex; seam_ is empty where there is none
-  struct Box {
-    Vec3d low, high;
-    [[nodiscard]] double diagonal() const { return std::sqrt(glm::dot(high - low, high - low)); }
-  };
-  std::vector<Witnesses> witnesses_;            ///< per vertex
+  LeftBehind left_behind_;
   double total_weight_ = 0.0;                   ///< of all plane quadrics
-  std::vector<Box> merged_;                     ///< box around all input vertices that a vertex stands for
   std::vector<std::uint32_t> version_;
   std::vector<std::uint8_t> is_locked_, is_border_;
   std::vector<std::uint32_t> only_wedge_;       ///< per vertex, or kSeveralWedges
@@ -137,19 +118,12 @@ class GroupSimplifier {
   std::array<std::uint64_t, 6> obstacles_{};
 
   // Scratch of one collapse.
-  struct OuterEdge {
-    std::uint32_t x, y;
-    std::uint32_t corner;  ///< of the triangle that has it, at one of the two vertices
-  };
-  std::vector<OuterEdge> star_;   ///< of the triangles that will be around it
-  std::vector<OuterEdge> sheet_;  ///< of the sheets that will be dropped
-  std::vector<std::uint32_t> vanishing_;  ///< vertices that lose their last triangle with a dropped sheet
-  std::vector<std::pair<double, Vec3i>> left_behind_;  ///< squared distance to the new star, and the witness
-  std::vector<std::uint32_t> corners_a_, corners_b_, neighbors_a_, neighbors_b_, dropped_;
+  CollapseStar star_;
+  StarEnd joined_;
   std::vector<WedgeClass> classes_;
   std::size_t class_count_ = 0;
   std::uint64_t stamp_ = 0;  ///< what is marked with it was marked in this search, not in one before
-  std::vector<std::uint64_t> wedge_stamp_, vertex_stamp_;
+  std::vector<std::uint64_t> wedge_stamp_;
   std::vector<std::uint32_t> class_of_;  ///< per wedge, where its stamp is the search's
 };
 

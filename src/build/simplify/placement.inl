@@ -5,16 +5,16 @@
 namespace meshlode::build {
 
 template <std::size_t C>
-void GroupSimplifier<C>::update_wedges(std::uint32_t vertex) {
+void GroupSimplifier<C>::update_wedges(const StarEnd& end) {
   if (attribute_count_ == 0) return;
-  mesh_.corners_of(vertex, corners_a_);
-  only_wedge_[vertex] = kSeveralWedges;
+  std::uint32_t& only = only_wedge_[end.vertex];
+  only = kSeveralWedges;
   bool is_first = true;
-  for (const std::uint32_t corner : corners_a_) {
+  for (const std::uint32_t corner : end.corners) {
     const std::uint32_t w = mesh_.wedge(corner);
-    if (is_first) only_wedge_[vertex] = w;
-    if (w != only_wedge_[vertex]) {
-      only_wedge_[vertex] = kSeveralWedges;
+    if (is_first) only = w;
+    if (w != only) {
+      only = kSeveralWedges;
       return;
     }
     is_first = false;
@@ -39,8 +39,7 @@ void GroupSimplifier<C>::collect_wedge_classes(std::uint32_t a, std::uint32_t b)
   } else {
     // One class per wedge first, joined along the triangles on the edge. At the hub of a wheel there are thousands: each
     // wedge knows its class.
-    mesh_.corners_of(a, corners_a_);
-    mesh_.corners_of(b, corners_b_);
+    gather_corners(mesh_, a, b, star_);
     const std::uint64_t stamp = ++stamp_;
     const auto find_class = [&](std::uint32_t w) -> std::size_t {
       if (wedge_stamp_[w] != stamp) {
@@ -50,9 +49,9 @@ void GroupSimplifier<C>::collect_wedge_classes(std::uint32_t a, std::uint32_t b)
       }
       return class_of_[w];
     };
-    for (const std::uint32_t corner : corners_a_) find_class(mesh_.wedge(corner));
-    for (const std::uint32_t corner : corners_b_) find_class(mesh_.wedge(corner));
-    for (const std::uint32_t corner : corners_a_) {
+    for (const std::uint32_t corner : star_.a.corners) find_class(mesh_.wedge(corner));
+    for (const std::uint32_t corner : star_.b.corners) find_class(mesh_.wedge(corner));
+    for (const std::uint32_t corner : star_.a.corners) {
       const std::uint32_t next = CollapseMesh::next_in_triangle(corner);
       const std::uint32_t previous = CollapseMesh::next_in_triangle(next);
       const std::uint32_t other = mesh_.vertex(next) == b ? next : previous;
@@ -90,8 +89,8 @@ typename GroupSimplifier<C>::Placement GroupSimplifier<C>::place(std::uint32_t a
     total.add_scaled(seam_[a], 1.0);
     total.add_scaled(seam_[b], 1.0);
   }
-  const Vec3d& pa = position_[a];
-  const Vec3d& pb = position_[b];
+  const Vec3d& pa = places_[a];
+  const Vec3d& pb = places_[b];
   const Vec3d edge = pb - pa;
   const double length2 = glm::dot(edge, edge);
 

@@ -10,13 +10,11 @@ GroupSimplifier<C>::GroupSimplifier(const SimplifyInput& input, const SimplifyOp
     : input_(input),
       options_(options),
       mesh_(input.triangles, input.wedge_position, input.positions.size()),
+      places_(input.positions),
       attribute_count_(input.layout.stride()),
-      grid_position_(input.positions),
-      position_(input.positions.size()),
       plane_(input.positions.size()),
       border_(input.positions.size()),
-      witnesses_(input.witnesses),
-      merged_(input.positions.size()),
+      left_behind_(input.witnesses, places_),
       version_(input.positions.size(), 0),
       is_locked_(input.is_locked),
       is_border_(input.positions.size(), 0),
@@ -25,45 +23,17 @@ GroupSimplifier<C>::GroupSimplifier(const SimplifyInput& input, const SimplifyOp
       value_(wedge_.size()),
       is_wedge_locked_(input.wedge_position.size(), 0),
       wedge_stamp_(input.wedge_position.size(), 0),
-      vertex_stamp_(input.positions.size(), 0),
       class_of_(input.wedge_position.size(), 0) {
-  set_frame();
   scale_attributes();
   add_face_quadrics();
   add_edge_quadrics();
   for (std::size_t w = 0; w < input.wedge_position.size(); ++w) {
     is_wedge_locked_[w] = is_locked_[input.wedge_position[w]];
   }
-  for (std::uint32_t v = 0; v < position_.size(); ++v) update_wedges(v);
-}
-
-template <std::size_t C>
-void GroupSimplifier<C>::set_frame() {
-  Vec3i low(0);
-  Vec3i high(0);
-  for (std::size_t v = 0; v < input_.positions.size(); ++v) {
-    low = v == 0 ? input_.positions[v] : glm::min(low, input_.positions[v]);
-    high = v == 0 ? input_.positions[v] : glm::max(high, input_.positions[v]);
+  for (joined_.vertex = 0; joined_.vertex < places_.size(); ++joined_.vertex) {
+    mesh_.corners_of(joined_.vertex, joined_.corners);
+    update_wedges(joined_);
   }
-  center_ = (Vec3d(low) + Vec3d(high)) * 0.5;
-  const Vec3i extent = high - low;
-  scale_ = std::max(1.0, 0.5 * std::max({extent.x, extent.y, extent.z}));
-  inverse_scale_ = 1.0 / scale_;
-  for (std::size_t v = 0; v < position_.size(); ++v) {
-    position_[v] = to_frame(grid_position_[v]);
-    merged_[v] = {position_[v], position_[v]};
-  }
-}
-
-template <std::size_t C>
-Vec3i GroupSimplifier<C>::to_grid(const Vec3d& p) const {
-  const Vec3d q = p * scale_ + center_;
-  Vec3i out;
-  for (int k = 0; k < 3; ++k) {
-    const double rounded = std::floor(q[k] + 0.5);
-    out[k] = static_cast<int>(std::clamp<double>(rounded, -format::kMaxGridCoordinate, format::kMaxGridCoordinate));
-  }
-  return out;
 }
 
 /// Attribute units become distances: see SimplifyOptions.
@@ -76,8 +46,8 @@ void GroupSimplifier<C>::scale_attributes() {
   std::array<double, scene::kMaxUvSets> uv_area{};
   for (std::uint32_t t = 0; t < mesh_.triangle_count(); ++t) {
     if (!mesh_.is_alive(t)) continue;
-    const Vec3d& p = position_[mesh_.vertex(3 * t)];
-    const Vec3d n = glm::cross(position_[mesh_.vertex(3 * t + 1)] - p, position_[mesh_.vertex(3 * t + 2)] - p);
+    const Vec3d& p = places_[mesh_.vertex(3 * t)];
+    const Vec3d n = glm::cross(places_[mesh_.vertex(3 * t + 1)] - p, places_[mesh_.vertex(3 * t + 2)] - p);
     area += 0.5 * std::sqrt(glm::dot(n, n));
     for (std::uint32_t set = 0; set < layout.uv_set_count; ++set) {
       std::array<Vec2d, 3> uv;
@@ -116,9 +86,9 @@ void GroupSimplifier<C>::add_face_quadrics() {
   for (std::uint32_t t = 0; t < mesh_.triangle_count(); ++t) {
     if (!mesh_.is_alive(t)) continue;
     const std::uint32_t v[3] = {mesh_.vertex(3 * t), mesh_.vertex(3 * t + 1), mesh_.vertex(3 * t + 2)};
-    const Vec3d& p = position_[v[0]];
-    const Vec3d e1 = position_[v[1]] - p;
-    const Vec3d e2 = position_[v[2]] - p;
+    const Vec3d& p = places_[v[0]];
+    const Vec3d e1 = places_[v[1]] - p;
+    const Vec3d e2 = places_[v[2]] - p;
     const Vec3d cross = glm::cross(e1, e2);
     const double twice_area = std::sqrt(glm::dot(cross, cross));
     if (!(twice_area > 0.0)) continue;
@@ -172,20 +142,20 @@ void GroupSimplifier<C>::add_edge_quadrics() {
   });
   const auto add_wall = [&](const Use& use, std::vector<Quadric>& quadrics, double weight) {
     const std::uint32_t t = use.corner / 3;
-    const Vec3d& p = position_[mesh_.vertex(3 * t)];
-    const Vec3d n = glm::cross(position_[mesh_.vertex(3 * t + 1)] - p, position_[mesh_.vertex(3 * t + 2)] - p);
-    const Vec3d edge = position_[use.b] - position_[use.a];
+    const Vec3d& p = places_[mesh_.vertex(3 * t)];
+    const Vec3d n = glm::cross(places_[mesh_.vertex(3 * t + 1)] - p, places_[mesh_.vertex(3 * t + 2)] - p);
+    const Vec3d edge = places_[use.b] - places_[use.a];
     Vec3d wall = glm::cross(n, edge);
     const double length = std::sqrt(glm::dot(wall, wall));
     if (!(length > 0.0)) return;
     wall /= length;
-    const double d = -glm::dot(wall, position_[use.a]);
+    const double d = -glm::dot(wall, places_[use.a]);
     const double w = weight * glm::dot(edge, edge);
     quadrics[use.a].add_plane(wall, d, w);
     quadrics[use.b].add_plane(wall, d, w);
   };
   const auto add_seam = [&](const Use& use, double weight) {
-    if (seam_.empty()) seam_.resize(position_.size());
+    if (seam_.empty()) seam_.resize(places_.size());
     add_wall(use, seam_, weight);
   };
   const AttributeLayout& layout = input_.layout;

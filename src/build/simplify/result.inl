@@ -7,12 +7,12 @@ namespace meshlode::build {
 /// Per vertex, one vertex of the loose piece that it belongs to: pieces share no vertex.
 template <std::size_t C>
 std::vector<std::uint32_t> GroupSimplifier<C>::find_pieces() const {
-  DisjointSets pieces(position_.size());
+  DisjointSets pieces(places_.size());
   for (std::uint32_t t = 0; t < mesh_.triangle_count(); ++t) {
     if (!mesh_.is_alive(t)) continue;
     for (const std::uint32_t corner : {3 * t + 1, 3 * t + 2}) pieces.join_to(mesh_.vertex(3 * t), mesh_.vertex(corner));
   }
-  std::vector<std::uint32_t> piece_of(position_.size());
+  std::vector<std::uint32_t> piece_of(places_.size());
   for (std::uint32_t v = 0; v < piece_of.size(); ++v) piece_of[v] = pieces.find(v);
   return piece_of;
 }
@@ -26,22 +26,22 @@ void GroupSimplifier<C>::grow_pieces() {
   };
   double covered = 0.0;
   for (const WedgeTriangle& t : input_.triangles) {
-    covered += area_of(to_frame(input_.positions[input_.wedge_position[t[0]]]),
-                       to_frame(input_.positions[input_.wedge_position[t[1]]]),
-                       to_frame(input_.positions[input_.wedge_position[t[2]]]));
+    covered += area_of(places_.to_frame(input_.positions[input_.wedge_position[t[0]]]),
+                       places_.to_frame(input_.positions[input_.wedge_position[t[1]]]),
+                       places_.to_frame(input_.positions[input_.wedge_position[t[2]]]));
   }
   struct Piece {
     double area = 0.0;
     Vec3d moment{0.0};  ///< area times centre
     bool is_locked = false;
   };
-  std::vector<Piece> pieces(position_.size());
+  std::vector<Piece> pieces(places_.size());
   const std::vector<std::uint32_t> piece_of = find_pieces();
   double fixed = 0.0;
   double free = 0.0;
   for (std::uint32_t t = 0; t < mesh_.triangle_count(); ++t) {
     if (!mesh_.is_alive(t)) continue;
-    const Vec3d p[3] = {position_[mesh_.vertex(3 * t)], position_[mesh_.vertex(3 * t + 1)], position_[mesh_.vertex(3 * t + 2)]};
+    const Vec3d p[3] = {places_[mesh_.vertex(3 * t)], places_[mesh_.vertex(3 * t + 1)], places_[mesh_.vertex(3 * t + 2)]};
     Piece& piece = pieces[piece_of[mesh_.vertex(3 * t)]];
     const double area = area_of(p[0], p[1], p[2]);
     piece.area += area;
@@ -51,14 +51,13 @@ void GroupSimplifier<C>::grow_pieces() {
   for (const Piece& piece : pieces) (piece.is_locked ? fixed : free) += piece.area;
   if (!(free > 0.0) || !(covered - fixed > free)) return;
   const double growth = std::min(kMaxGrowth, std::sqrt((covered - fixed) / free));
-  for (std::uint32_t v = 0; v < position_.size(); ++v) {
+  for (std::uint32_t v = 0; v < places_.size(); ++v) {
     const Piece& piece = pieces[piece_of[v]];
     if (piece.is_locked || !(piece.area > 0.0)) continue;
     const Vec3d center = piece.moment / piece.area;
-    const Vec3d moved = (position_[v] - center) * (growth - 1.0);
+    const Vec3d moved = (places_[v] - center) * (growth - 1.0);
     error_ = std::max(error_, std::sqrt(glm::dot(moved, moved)));
-    grid_position_[v] = to_grid(center + (position_[v] - center) * growth);
-    position_[v] = to_frame(grid_position_[v]);
+    places_.move(v, center + (places_[v] - center) * growth);
   }
 }
 
@@ -92,19 +91,19 @@ StuckReason GroupSimplifier<C>::reason_for_stopping() const {
 /// Two vertices may have come to lie on one point of the grid. A triangle with both has no area and no border by then.
 template <std::size_t C>
 bool GroupSimplifier<C>::has_corners_in_one_place(std::uint32_t triangle) const {
-  const Vec3i& p = grid_position_[mesh_.vertex(3 * triangle)];
-  const Vec3i& q = grid_position_[mesh_.vertex(3 * triangle + 1)];
-  const Vec3i& r = grid_position_[mesh_.vertex(3 * triangle + 2)];
+  const Vec3i& p = places_.on_grid(mesh_.vertex(3 * triangle));
+  const Vec3i& q = places_.on_grid(mesh_.vertex(3 * triangle + 1));
+  const Vec3i& r = places_.on_grid(mesh_.vertex(3 * triangle + 2));
   return p == q || q == r || r == p;
 }
 
 template <std::size_t C>
 SimplifyResult GroupSimplifier<C>::result() const {
   SimplifyResult out;
-  out.quadric_error = error_ * scale_ * input_.grid.step();
+  out.quadric_error = error_ * places_.scale() * input_.grid.step();
   out.reason = reason_for_stopping();
   constexpr std::uint32_t kUnset = 0xFFFFFFFFU;
-  std::vector<std::uint32_t> new_position(position_.size(), kUnset);
+  std::vector<std::uint32_t> new_position(places_.size(), kUnset);
   // A wedge may have come to serve one vertex only, so a map per wedge is enough.
   std::vector<std::uint32_t> new_wedge(input_.wedge_position.size(), kUnset);
   const std::size_t stride = attribute_count_;
@@ -116,8 +115,8 @@ SimplifyResult GroupSimplifier<C>::result() const {
       const std::uint32_t w = stride == 0 ? v : mesh_.wedge(3 * t + k);
       if (new_position[v] == kUnset) {
         new_position[v] = static_cast<std::uint32_t>(out.positions.size());
-        out.positions.push_back(grid_position_[v]);
-        out.witnesses.push_back(witnesses_[v]);
+        out.positions.push_back(places_.on_grid(v));
+        out.witnesses.push_back(left_behind_.witnesses(v));
       }
       std::uint32_t& slot = stride == 0 ? new_position[v] : new_wedge[w];
       if (stride == 0 ? out.wedge_position.size() <= slot : slot == kUnset) {

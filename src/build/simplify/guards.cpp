@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "build/simplify/guards.h"
+
+#include <algorithm>
+#include <array>
+
+namespace meshlode::build {
+
+namespace {
+
+constexpr double kFlipCosine = 0.2;  ///< of 78 degrees
+
+/// How often a triangle runs from its vertex `tip` to its vertex `to`: 1, or -1 for the other way, 0 where it does not.
+int count_uses(const CollapseMesh& mesh, std::uint32_t triangle, std::uint32_t tip, std::uint32_t to) {
+  int sum = 0;
+  for (std::uint32_t corner = 3 * triangle; corner < 3 * triangle + 3; ++corner) {
+    const std::uint32_t from = mesh.vertex(corner), next = mesh.vertex(CollapseMesh::next_in_triangle(corner));
+    sum += from == tip && next == to ? 1 : from == to && next == tip ? -1 : 0;
+  }
+  return sum;
+}
+
+bool keeps_edge_to(const CollapseMesh& mesh, std::uint32_t tip, const StarEnd& locked, const StarEnd& moved) {
+  int lost = 0, inherited = 0;
+  bool is_covered = false;  // by a triangle that goes
+  for (const std::uint32_t corner : moved.corners) {
+    const int going = count_uses(mesh, corner / 3, tip, locked.vertex);
+    lost += going;
+    is_covered |= going != 0;
+    if (going == 0) inherited += count_uses(mesh, corner / 3, tip, moved.vertex);
+  }
+  if (is_covered) return lost == inherited;
+  if (inherited == 0) return true;
+  int kept = 0;
+  for (const std::uint32_t corner : locked.corners) kept += count_uses(mesh, corner / 3, tip, locked.vertex);
+  return kept == 0 || (kept > 0) == (inherited > 0);
+}
+
+/// What two vertices have beside them both; more than three are not told.
+struct CommonNeighbors {
+  std::array<std::uint32_t, 3> vertex{};
+  std::uint32_t count = 0;
+  bool are_too_many = false;
+
+  [[nodiscard]] bool has(std::uint32_t v) const {
+    const auto end = vertex.begin() + count;
+    return std::find(vertex.begin(), end, v) != end;
+  }
+};
+
+CommonNeighbors common_neighbors(const StarEnd& a, const StarEnd& b, std::uint32_t most) {
+  CommonNeighbors common;
+  const std::vector<std::uint32_t>& na = a.neighbors;
+  const std::vector<std::uint32_t>& nb = b.neighbors;
+  for (std::size_t i = 0, j = 0; i < na.size() && j < nb.size();) {
+    if (na[i] == nb[j]) {
+      if (common.count == most || common.count == common.vertex.size()) {
+        common.are_too_many = true;
+        return common;
+      }
+      common.vertex[common.count++] = na[i];
+      ++i;
+      ++j;
+    } else if (na[i] < nb[j]) {
+      ++i;
+    } else {
+      ++j;
+    }
+  }
+  return common;
+}
+
+bool turns_over_at(const CollapseMesh& mesh, const GroupPlaces& places, const StarEnd& moved, std::uint32_t other,
+                   const Vec3d& target) {
+  for (const std::uint32_t corner : moved.corners) {
+    const auto [x, y] = mesh.others(corner);
+    if (x == other || y == other) continue;
+    const Vec3d edge = places[y] - places[x];
+    const Vec3d before = glm::cross(edge, places[moved.vertex] - places[x]);
+    const Vec3d after = glm::cross(edge, target - places[x]);
+    const double before2 = glm::dot(before, before);
+    const double after2 = glm::dot(after, after);
+    if (!(before2 > 0.0)) continue;
+    const double dot = glm::dot(before, after);
+    if (!(dot > 0.0) || dot * dot < kFlipCosine * kFlipCosine * before2 * after2) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+bool keeps_shared_edges(const CollapseMesh& mesh, const std::vector<std::uint8_t>& is_locked, const StarEnd& locked,
+                        const StarEnd& moved) {
+  for (const std::uint32_t corner : moved.corners) {
+    for (const std::uint32_t tip : mesh.others(corner)) {
+      if (tip != locked.vertex && is_locked[tip] != 0 && !keeps_edge_to(mesh, tip, locked, moved)) return false;
+    }
+  }
+  return true;
+}
+
+bool keeps_topology(const CollapseMesh& mesh, const std::vector<std::uint8_t>& is_border, CollapseStar& star) {
+  const std::uint32_t b = star.b.vertex;
+  std::uint32_t shared = 0;
+  for (const std::uint32_t corner : star.a.corners) {
+    const auto [x, y] = mesh.others(corner);
+    shared += x == b || y == b ? 1 : 0;
+  }
+  if (shared >= 2 && is_border[star.a.vertex] != 0 && is_border[b] != 0) return false;
+  if (shared == 0) return false;
+  gather_neighbors(mesh, star.a);
+  gather_neighbors(mesh, star.b);
+  const CommonNeighbors common = common_neighbors(star.a, star.b, shared);
+  if (common.are_too_many || common.count != shared) return false;
+  if (common.count < 2) return true;
+  // (a, c, d) and (b, c, d) would lie on each other.
+  const auto has_tip_edge = [&](const StarEnd& end) {
+    return std::any_of(end.corners.begin(), end.corners.end(), [&](std::uint32_t corner) {
+      const auto [x, y] = mesh.others(corner);
+      return common.has(x) && common.has(y);
+    });
+  };
+  return !(has_tip_edge(star.a) && has_tip_edge(star.b));
+}
+
+bool turns_over(const CollapseMesh& mesh, const GroupPlaces& places, const CollapseStar& star) {
+  return turns_over_at(mesh, places, star.a, star.b.vertex, star.target) ||
+         turns_over_at(mesh, places, star.b, star.a.vertex, star.target);
+}
+
+}  // namespace meshlode::build

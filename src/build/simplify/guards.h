@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which collapses are refused: those that would break a shared border, the topology, or turn a triangle over.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "build/simplify/collapse_mesh.h"
+#include "build/simplify/collapse_star.h"
+#include "build/simplify/group_places.h"
+
+namespace meshlode::build {
+
+/// I6. An edge between two locked vertices may be one that another group's triangle leans on, so that its uses here stay
+/// what they are. A triangle (locked, moved, tip) goes with the collapse of its edge to `locked`: where its tip is locked
+/// too, the triangles across (moved, tip) must inherit the edge (locked, tip). On an open border there may be none: such an
+/// ear stays. And an open edge (moved, tip) that comes to lie on (locked, tip) may not close that one's border.
+/// `is_locked` is per vertex; `locked` and `moved` are the two ends of a star.
+[[nodiscard]] bool keeps_shared_edges(const CollapseMesh& mesh, const std::vector<std::uint8_t>& is_locked,
+                                      const StarEnd& locked, const StarEnd& moved);
+
+/// The link condition (Dey et al. 1999): common neighbours are exactly the tips of the triangles on the edge, no two
+/// triangles become one, and two border vertices join along the border only. `is_border` is per vertex. Gathers the
+/// neighbours of both ends where it needs them.
+[[nodiscard]] bool keeps_topology(const CollapseMesh& mesh, const std::vector<std::uint8_t>& is_border,
+                                  CollapseStar& star);
+
+/// Whether a triangle that stays would turn by more than 78 degrees with its corner at star.target. One without area
+/// may: any change of it is for the better.
+[[nodiscard]] bool turns_over(const CollapseMesh& mesh, const GroupPlaces& places, const CollapseStar& star);
+
+}  // namespace meshlode::build

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "build/simplify/left_behind.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "build/simplify/point_triangle.h"
+
+namespace meshlode::build {
+
+LeftBehind::LeftBehind(std::vector<Witnesses> witnesses, const GroupPlaces& places)
+    : witnesses_(std::move(witnesses)), merged_(places.size()), vertex_stamp_(places.size(), 0) {
+  for (std::uint32_t v = 0; v < places.size(); ++v) merged_[v] = {places[v], places[v]};
+}
+
+/// What goes without a vertex noticing: an edge to a neighbour that no triangle covers any more, a dropped sheet, and
+/// neighbours whose triangles all go (their witnesses are weighed too). Returns the largest squared distance at which
+/// such points are left, taken to the middle of what goes.
+double LeftBehind::collect_vanishing(CollapseMesh& mesh, const GroupPlaces& places, const CollapseStar& star) {
+  const std::uint32_t a = star.a.vertex, b = star.b.vertex;
+  vanishing_.clear();
+  double lost2 = 0.0;
+  const std::uint64_t stamp = ++stamp_;  // of vertices that stay in the star, or have been looked at
+  for (const CollapseStar::OuterEdge& edge : star.outer) vertex_stamp_[edge.x] = vertex_stamp_[edge.y] = stamp;
+  for (const StarEnd* end : {&star.a, &star.b}) {
+    for (const std::uint32_t corner : end->corners) {
+      for (const std::uint32_t v : mesh.others(corner)) {
+        if (v == a || v == b || vertex_stamp_[v] == stamp) continue;
+        vertex_stamp_[v] = stamp;
+        mesh.corners_of(v, corners_);
+        const bool has_others = std::any_of(corners_.begin(), corners_.end(), [&](std::uint32_t c) {
+          const auto [x, y] = mesh.others(c);
+          return x != a && x != b && y != a && y != b;
+        });
+        const Vec3d uncovered = places[v] - star.target;
+        lost2 = std::max(lost2, (has_others ? 0.25 : 1.0) * glm::dot(uncovered, uncovered));
+        if (!has_others) vanishing_.push_back(v);
+      }
+    }
+  }
+  for (const CollapseStar::OuterEdge& edge : star.sheets) {
+    const Vec3d base = places[edge.y] - places[edge.x];
+    const Vec3d cross = glm::cross(base, star.target - places[edge.x]);
+    const double base2 = glm::dot(base, base);
+    if (base2 > 0.0) lost2 = std::max(lost2, 0.25 * glm::dot(cross, cross) / base2);
+  }
+  return lost2;
+}
+
+/// The largest squared distance from the vertex's witnesses to the new star.
+double LeftBehind::weigh_witnesses(std::uint32_t vertex, const GroupPlaces& places, const CollapseStar& star) {
+  const Witnesses& w = witnesses_[vertex];
+  double largest = 0.0;
+  for (std::uint32_t i = 0; i < w.count; ++i) {
+    const Vec3d point = places.to_frame(w.points[i]);
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const CollapseStar::OuterEdge& edge : star.outer) {
+      nearest = std::min(nearest, distance2_to_facet(point, star.target, places[edge.x], places[edge.y]));
+    }
+    weighed_.emplace_back(nearest, w.points[i]);
+    largest = std::max(largest, nearest);
+  }
+  return largest;
+}
+
+/// The largest squared distance from what is left behind to the group's triangles away from both vertices.
+double LeftBehind::distance2_to_rest(const CollapseMesh& mesh, const GroupPlaces& places,
+                                     const CollapseStar& star) const {
+  double largest = 0.0;
+  for (const auto& [unused, point] : weighed_) {
+    const Vec3d p = places.to_frame(point);
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t) {
+      if (!mesh.is_alive(t)) continue;
+      const std::array<std::uint32_t, 3> v{mesh.vertex(3 * t), mesh.vertex(3 * t + 1), mesh.vertex(3 * t + 2)};
+      const auto is_end = [&](std::uint32_t x) { return x == star.a.vertex || x == star.b.vertex; };
+      if (std::any_of(v.begin(), v.end(), is_end)) continue;
+      nearest = std::min(nearest, distance2_to_facet(p, places[v[0]], places[v[1]], places[v[2]]));
+    }
+    largest = std::max(largest, nearest);
+  }
+  return largest;
+}
+
+double LeftBehind::weigh(CollapseMesh& mesh, const GroupPlaces& places, const CollapseStar& star, bool keep_area) {
+  const double lost2 = collect_vanishing(mesh, places, star);
+  weighed_.clear();
+  double largest = weigh_witnesses(star.a.vertex, places, star);
+  largest = std::max(largest, weigh_witnesses(star.b.vertex, places, star));
+  for (const std::uint32_t v : vanishing_) largest = std::max(largest, weigh_witnesses(v, places, star));
+  if (!star.outer.empty()) return std::max(lost2, largest);
+  // The piece vanishes. Of foliage its size is what is lost: its neighbours grow instead. Else what it leaves is as far
+  // off as the nearest of what stays.
+  if (keep_area) {
+    const Box& at_a = merged_[star.a.vertex];
+    const Box& at_b = merged_[star.b.vertex];
+    const Box both{glm::min(at_a.low, at_b.low), glm::max(at_a.high, at_b.high)};
+    return std::max(lost2, both.diagonal() * both.diagonal());
+  }
+  return std::max(lost2, std::min(distance2_to_rest(mesh, places, star), 1e30));
+}
+
+void LeftBehind::join(std::uint32_t into, std::uint32_t from) {
+  std::stable_sort(weighed_.begin(), weighed_.end(), [](const auto& x, const auto& y) { return x.first > y.first; });
+  Witnesses& kept = witnesses_[into];
+  kept.count = static_cast<std::uint32_t>(std::min(weighed_.size(), Witnesses::kCapacity));
+  for (std::uint32_t i = 0; i < kept.count; ++i) kept.points[i] = weighed_[i].second;
+  merged_[into].low = glm::min(merged_[into].low, merged_[from].low);
+  merged_[into].high = glm::max(merged_[into].high, merged_[from].high);
+}
+
+double new_surface_distance2(const CollapseMesh& mesh, const GroupPlaces& places, const CollapseStar& star,
+                             double least) {
+  double farthest = least;
+  const auto reach = [&](const Vec3d& point, std::uint32_t likely) {
+    double nearest = std::numeric_limits<double>::infinity();
+    // True where the triangle is so near that the point does not count.
+    const auto is_near = [&](std::uint32_t corner) {
+      const std::uint32_t t = corner / 3;
+      nearest = std::min(nearest, distance2_to_facet(point, places[mesh.vertex(3 * t)], places[mesh.vertex(3 * t + 1)],
+                                                     places[mesh.vertex(3 * t + 2)]));
+      return nearest <= farthest;
+    };
+    if (is_near(likely)) return;
+    for (const StarEnd* end : {&star.a, &star.b}) {
+      if (std::any_of(end->corners.begin(), end->corners.end(), is_near)) return;
+    }
+    if (nearest < std::numeric_limits<double>::infinity()) farthest = nearest;
+  };
+  for (const CollapseStar::OuterEdge& edge : star.outer) {  // what a triangle is replaced by is mostly near it
+    const Vec3d& x = places[edge.x];
+    const Vec3d& y = places[edge.y];
+    reach((star.target + x + y) / 3.0, edge.corner);
+    reach((star.target + x) * 0.5, edge.corner);
+    reach((star.target + y) * 0.5, edge.corner);
+  }
+  return farthest;
+}
+
+}  // namespace meshlode::build

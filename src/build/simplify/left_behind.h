@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How far a collapse leaves the old surface from the new and the new from the old, beyond what quadrics say.
+//
+// Thin closed features vanish almost free of plane error, and crevices and tunnels close so. What the source points behind
+// both vertices would be left at, and how far the new triangles are from the old, is the truth of it.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "build/simplify/collapse_mesh.h"
+#include "build/simplify/collapse_star.h"
+#include "build/simplify/group_places.h"
+#include "build/simplify/simplify.h"
+
+namespace meshlode::build {
+
+/// What each vertex stands for: its witnesses, and the box around all input vertices that came to it.
+class LeftBehind {
+ public:
+  /// `witnesses` per vertex.
+  LeftBehind(std::vector<Witnesses> witnesses, const GroupPlaces& places);
+
+  /// The largest squared distance, in the frame, at which the collapse leaves what its vertices stand for: their
+  /// witnesses, and what goes without a vertex noticing. \pre star.outer and star.sheets are gathered
+  [[nodiscard]] double weigh(CollapseMesh& mesh, const GroupPlaces& places, const CollapseStar& star, bool keep_area);
+
+  /// `into` stands for what `from` stood for too. Of the witnesses weighed last the farthest stay.
+  void join(std::uint32_t into, std::uint32_t from);
+
+  [[nodiscard]] const Witnesses& witnesses(std::uint32_t vertex) const { return witnesses_[vertex]; }
+  /// The diagonal of what the vertex stands for, in the frame.
+  [[nodiscard]] double size(std::uint32_t vertex) const { return merged_[vertex].diagonal(); }
+
+ private:
+  struct Box {
+    Vec3d low, high;
+    [[nodiscard]] double diagonal() const { return std::sqrt(glm::dot(high - low, high - low)); }
+  };
+
+  [[nodiscard]] double collect_vanishing(CollapseMesh& mesh, const GroupPlaces& places, const CollapseStar& star);
+  [[nodiscard]] double weigh_witnesses(std::uint32_t vertex, const GroupPlaces& places, const CollapseStar& star);
+  [[nodiscard]] double distance2_to_rest(const CollapseMesh& mesh, const GroupPlaces& places,
+                                         const CollapseStar& star) const;
+
+  std::vector<Witnesses> witnesses_;
+  std::vector<Box> merged_;
+  // Of the collapse weighed last.
+  std::vector<std::uint32_t> vanishing_;           ///< vertices that lose their last triangle with it
+  std::vector<std::pair<double, Vec3i>> weighed_;  ///< squared distance to the new star, and the witness
+  std::vector<std::uint32_t> corners_;
+  std::uint64_t stamp_ = 0;                        ///< what is marked with it was marked in this search
+  std::vector<std::uint64_t> vertex_stamp_;
+};
+
+/// How far the new star is from the triangles that it replaces, squared, where that exceeds `least`; else `least`. By the
+/// middles of its triangles and of their edges at the target. \pre star.outer is gathered
+[[nodiscard]] double new_surface_distance2(const CollapseMesh& mesh, const GroupPlaces& places, const CollapseStar& star,
+                                           double least);
+
+}  // namespace meshlode::build

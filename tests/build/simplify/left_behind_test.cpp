@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "build/simplify/left_behind.h"
+
+#include <gtest/gtest.h>
+
+#include "support/drawn_mesh.h"
+
+namespace meshlode::build {
+namespace {
+
+using test::closed_fan;
+using test::DrawnMesh;
+using test::open_fan;
+
+/// Each vertex its own witness.
+std::vector<Witnesses> own_witnesses(const DrawnMesh& drawn) {
+  std::vector<Witnesses> out;
+  for (const Vec3i& p : drawn.points) out.push_back({{p}, 1});
+  return out;
+}
+
+/// A squared distance in the frame, from one in grid units.
+double in_frame(const DrawnMesh& drawn, double distance2) {
+  return distance2 / (drawn.places.scale() * drawn.places.scale());
+}
+
+TEST(LeftBehind, AFlatFanLeavesNothing) {
+  DrawnMesh drawn = closed_fan();
+  LeftBehind left(own_witnesses(drawn), drawn.places);
+  EXPECT_NEAR(left.weigh(drawn.mesh, drawn.places, drawn.star(0, 1), false), 0.0, 1e-15);
+}
+
+TEST(LeftBehind, AWitnessIsLeftAtItsHeightAndGoesWithTheVertex) {
+  DrawnMesh drawn = closed_fan();
+  std::vector<Witnesses> witnesses = own_witnesses(drawn);
+  const Vec3i low{4, 1, 1}, high{0, 1, 3}, higher{1, 0, -5};
+  witnesses[0] = {{Vec3i{0, 0, 0}, high}, 2};
+  witnesses[1] = {{low, higher}, 2};
+  LeftBehind left(witnesses, drawn.places);
+  EXPECT_NEAR(left.weigh(drawn.mesh, drawn.places, drawn.star(0, 1), false), in_frame(drawn, 25), 1e-12);
+  left.join(0, 1);
+  ASSERT_EQ(left.witnesses(0).count, 3U) << "the farthest of four";
+  EXPECT_EQ(left.witnesses(0).points, (std::array<Vec3i, 3>{higher, high, low}));
+  EXPECT_NEAR(left.size(0) * left.size(0), in_frame(drawn, 16), 1e-12) << "it stands for both vertices";
+}
+
+TEST(LeftBehind, OfAnEdgeThatNothingCoversTheMiddleIsWeighed) {
+  // 2 hangs on the edge (0, 1) by the triangle that goes, and on (3, 4) by another: the bridge between is lost.
+  DrawnMesh drawn({{0, 0, 0}, {4, 0, 0}, {2, 8, 0}, {0, 12, 0}, {4, 12, 0}, {2, -4, 0}},
+                  {{0, 1, 2}, {2, 4, 3}, {1, 0, 5}, {1, 5, 4}});
+  LeftBehind left(own_witnesses(drawn), drawn.places);
+  EXPECT_NEAR(left.weigh(drawn.mesh, drawn.places, drawn.star(0, 1), false), in_frame(drawn, 0.25 * 64), 1e-12);
+}
+
+TEST(LeftBehind, ASheetThatIsDroppedIsLeftAtHalfItsHeight) {
+  // Another leaf at 0 and 1, so that the star is not empty and its two other vertices keep a triangle.
+  DrawnMesh leaf({{0, 0, 0}, {8, 0, 0}, {0, 8, 0}, {0, 0, 8}, {4, -2, -2}},
+                 {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {0, 4, 2}, {0, 3, 4}});
+  LeftBehind left(std::vector<Witnesses>(5), leaf.places);
+  const CollapseStar star = leaf.star(0, 1, true);
+  ASSERT_EQ(star.sheets.size(), 1U);
+  // From the middle (4, 0, 0) of the edge to the line through (0, 8, 0) and (0, 0, 8): 16 + 32.
+  EXPECT_NEAR(left.weigh(leaf.mesh, leaf.places, star, false), in_frame(leaf, 0.25 * 48), 1e-12);
+}
+
+TEST(LeftBehind, APieceThatVanishesIsAsFarOffAsWhatStays) {
+  DrawnMesh drawn({{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {-90, -90, 40}, {90, -90, 40}, {0, 90, 40}}, {{0, 1, 2}, {3, 4, 5}});
+  LeftBehind left(own_witnesses(drawn), drawn.places);
+  const CollapseStar star = drawn.star(0, 1);
+  ASSERT_TRUE(star.outer.empty());
+  EXPECT_NEAR(left.weigh(drawn.mesh, drawn.places, star, false), in_frame(drawn, 1600), 1e-12);
+  // Of foliage: its own size counts, here that of what goes with the tip: 1 + 4 from the middle of the edge.
+  EXPECT_NEAR(left.weigh(drawn.mesh, drawn.places, star, true), in_frame(drawn, 5), 1e-12);
+}
+
+TEST(LeftBehind, TheLastPieceIsBeyondAnyPrice) {
+  DrawnMesh drawn({{0, 0, 0}, {2, 0, 0}, {0, 2, 0}}, {{0, 1, 2}});
+  LeftBehind left(own_witnesses(drawn), drawn.places);
+  EXPECT_EQ(left.weigh(drawn.mesh, drawn.places, drawn.star(0, 1), false), 1e30);
+}
+
+TEST(LeftBehind, ANeighborThatVanishesIsWeighedByItsOwnWitnesses) {
+  // The ear 6 of the open fan has no other triangle than (0, 5, 6); a star without it leaves it behind.
+  DrawnMesh drawn = open_fan();
+  std::vector<Witnesses> witnesses = own_witnesses(drawn);
+  witnesses[6] = {{Vec3i{-4, 0, 9}}, 1};
+  LeftBehind left(witnesses, drawn.places);
+  // Collapse (0, 5): the triangle (0, 5, 6) goes, and 6 with it. Its witness is 9 above the plane and beside the star.
+  const CollapseStar star = drawn.star(0, 5);
+  EXPECT_GE(left.weigh(drawn.mesh, drawn.places, star, false), in_frame(drawn, 81));
+  left.join(0, 5);
+  EXPECT_EQ(left.witnesses(0).points[0], Vec3i(-4, 0, 9)) << "carried on by the vertex that stays";
+}
+
+TEST(NewSurface, IsAsFarAsItsMiddlesAreFromWhatItReplaces) {
+  DrawnMesh drawn = closed_fan();
+  CollapseStar star = drawn.star(0, 1);
+  EXPECT_NEAR(new_surface_distance2(drawn.mesh, drawn.places, star, 0.0), 0.0, 1e-15);
+  star.target = drawn.places.to_frame({2, 0, 6});
+  EXPECT_NEAR(new_surface_distance2(drawn.mesh, drawn.places, star, 0.0), in_frame(drawn, 9), 1e-12)
+      << "the middles of the edges at the target";
+  EXPECT_EQ(new_surface_distance2(drawn.mesh, drawn.places, star, 0.5), 0.5) << "what nobody asks about";
+}
+
+}  // namespace
+}  // namespace meshlode::build

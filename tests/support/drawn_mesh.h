@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Meshes small enough to be drawn by hand, for the parts of the simplifier.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "base/vec.h"
+#include "build/simplify/collapse_mesh.h"
+#include "build/simplify/collapse_star.h"
+#include "build/simplify/group_places.h"
+
+namespace meshlode::test {
+
+using build::CollapseMesh;
+using build::CollapseStar;
+using build::GroupPlaces;
+using build::WedgeTriangle;
+
+/// Triangles of points of the grid; each point has one wedge, of its own number.
+struct DrawnMesh {
+  std::vector<Vec3i> points;
+  std::vector<WedgeTriangle> triangles;
+  CollapseMesh mesh;
+  GroupPlaces places;
+
+  DrawnMesh(std::vector<Vec3i> at, std::vector<WedgeTriangle> of)
+      : points(std::move(at)), triangles(std::move(of)), mesh(triangles, own_wedges(points.size()), points.size()),
+        places(points) {}
+
+  [[nodiscard]] CollapseStar star(std::uint32_t a, std::uint32_t b, bool drops_sheets = false) {
+    CollapseStar star;
+    build::gather_corners(mesh, a, b, star);
+    build::gather_outer_edges(mesh, drops_sheets, star);
+    star.target = (places[a] + places[b]) * 0.5;
+    return star;
+  }
+
+  static std::vector<std::uint32_t> own_wedges(std::size_t count) {
+    std::vector<std::uint32_t> own(count);
+    std::iota(own.begin(), own.end(), 0U);
+    return own;
+  }
+};
+
+/// The flat star of the edge (0, 1), all of its triangles counterclockwise; its border are 2 … 9:
+///
+///        5 ---- 4 ---- 3
+///       / \    / \    / \        y = 4
+///      6 -- 0 ----- 1 -- 2       y = 0
+///       \ /    \ /    \ /
+///        7 ---- 8 ---- 9         y = -4
+inline const std::vector<Vec3i> kFanPoints{{0, 0, 0},  {4, 0, 0},   {8, 0, 0},   {6, 4, 0},  {2, 4, 0},
+                                           {-2, 4, 0}, {-4, 0, 0}, {-2, -4, 0}, {2, -4, 0}, {6, -4, 0}};
+inline const std::vector<WedgeTriangle> kUpperFan{{1, 2, 3}, {1, 3, 4}, {1, 4, 0}, {0, 4, 5}, {0, 5, 6}};
+inline const std::vector<WedgeTriangle> kLowerFan{{0, 6, 7}, {0, 7, 8}, {0, 8, 1}, {1, 8, 9}, {1, 9, 2}};
+
+inline DrawnMesh closed_fan() {
+  std::vector<WedgeTriangle> all = kUpperFan;
+  all.insert(all.end(), kLowerFan.begin(), kLowerFan.end());
+  return {kFanPoints, all};
+}
+/// The upper half alone: 6, 0, 1 and 2 lie on its border.
+inline DrawnMesh open_fan() { return {kFanPoints, kUpperFan}; }
+
+/// Closed: the smallest thing that the link condition keeps.
+inline DrawnMesh tetrahedron() {
+  return {{{0, 0, 0}, {8, 0, 0}, {0, 8, 0}, {0, 0, 8}}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
+}
+
+}  // namespace meshlode::test
