@@ -36,17 +36,16 @@ std::uint32_t compact(std::span<const Corner3> source, std::vector<Corner3>& out
   return static_cast<std::uint32_t>(ids.size());
 }
 
-}  // namespace
+/// Both ends' edge uses, sorted, in a bucket for each smaller position.
+struct EdgeBuckets {
+  std::vector<EdgeUse> uses;
+  std::vector<std::uint32_t> start;  ///< of bucket b: uses start[b] … start[b + 1]
+};
 
-Graph triangle_graph(std::span<const Corner3> corner_positions, std::span<const TriangleLink> links) {
-  std::vector<Corner3> corners;
-  const std::uint32_t position_count = compact(corner_positions, corners);
-  const auto triangle_count = static_cast<std::uint32_t>(corners.size());
-
-  // Counting sort of edge uses by smaller end, then a sort inside each (usually tiny) bucket.
-  std::vector<std::uint32_t> bucket_start(position_count + 1, 0);
+/// A counting sort of edge uses by smaller end, then a sort inside each (usually tiny) bucket.
+EdgeBuckets bucket_edges(const std::vector<Corner3>& corners, std::uint32_t position_count) {
   const auto for_each_edge = [&](auto&& visit) {
-    for (std::uint32_t t = 0; t < triangle_count; ++t) {
+    for (std::uint32_t t = 0; t < corners.size(); ++t) {
       for (std::size_t k = 0; k < 3; ++k) {
         const std::uint32_t a = corners[t][k];
         const std::uint32_t b = corners[t][(k + 1) % 3];
@@ -54,34 +53,50 @@ Graph triangle_graph(std::span<const Corner3> corner_positions, std::span<const 
       }
     }
   };
-  for_each_edge([&](std::uint32_t low, std::uint32_t, std::uint32_t) { ++bucket_start[low + 1]; });
-  std::partial_sum(bucket_start.begin(), bucket_start.end(), bucket_start.begin());
-  std::vector<EdgeUse> uses(bucket_start.back());
-  std::vector<std::uint32_t> cursor(bucket_start.begin(), bucket_start.end() - 1);
-  for_each_edge([&](std::uint32_t low, std::uint32_t high, std::uint32_t t) { uses[cursor[low]++] = {high, t}; });
-
-  std::vector<TriangleLink> strong;
-  strong.reserve(uses.size() / 2 + 1);
-  DisjointSets connected(triangle_count);
+  EdgeBuckets buckets;
+  buckets.start.assign(position_count + 1, 0);
+  for_each_edge([&](std::uint32_t low, std::uint32_t, std::uint32_t) { ++buckets.start[low + 1]; });
+  std::partial_sum(buckets.start.begin(), buckets.start.end(), buckets.start.begin());
+  buckets.uses.resize(buckets.start.back());
+  std::vector<std::uint32_t> cursor(buckets.start.begin(), buckets.start.end() - 1);
+  for_each_edge([&](std::uint32_t low, std::uint32_t high, std::uint32_t t) {
+    buckets.uses[cursor[low]++] = {high, t};
+  });
   for (std::uint32_t bucket = 0; bucket < position_count; ++bucket) {
-    const auto begin = uses.begin() + bucket_start[bucket];
-    const auto end = uses.begin() + bucket_start[bucket + 1];
-    std::sort(begin, end);
+    std::sort(buckets.uses.begin() + buckets.start[bucket], buckets.uses.begin() + buckets.start[bucket + 1]);
+  }
+  return buckets;
+}
+
+/// Triangles that share an edge: those of one edge in a chain.
+std::vector<TriangleLink> edge_links(const EdgeBuckets& buckets) {
+  std::vector<TriangleLink> links;
+  links.reserve(buckets.uses.size() / 2 + 1);
+  for (std::size_t bucket = 0; bucket + 1 < buckets.start.size(); ++bucket) {
+    const auto begin = buckets.uses.begin() + buckets.start[bucket];
+    const auto end = buckets.uses.begin() + buckets.start[bucket + 1];
     for (auto use = begin; use != end && use + 1 != end; ++use) {
       if (use->other != (use + 1)->other || use->triangle == (use + 1)->triangle) continue;
-      strong.emplace_back(use->triangle, (use + 1)->triangle);
-      connected.join(use->triangle, (use + 1)->triangle);
+      links.emplace_back(use->triangle, (use + 1)->triangle);
     }
   }
-  for (const auto& [a, b] : links) {
-    strong.emplace_back(a, b);
-    connected.join(a, b);
-  }
+  return links;
+}
+
+/// Triangles that follow each other in the caller's order and are not joined by `strong` links.
+std::vector<TriangleLink> weak_links(const std::vector<TriangleLink>& strong, std::uint32_t triangle_count) {
+  DisjointSets connected(triangle_count);
+  for (const auto& [a, b] : strong) connected.join(a, b);
   std::vector<TriangleLink> weak;
   for (std::uint32_t t = 0; t + 1 < triangle_count; ++t) {
     if (connected.find(t) != connected.find(t + 1)) weak.emplace_back(t, t + 1);
   }
+  return weak;
+}
 
+/// Rows in the order of the links; a neighbour may be there more than once.
+Graph graph_of_links(const std::vector<TriangleLink>& strong, const std::vector<TriangleLink>& weak,
+                     std::uint32_t triangle_count) {
   Graph graph;
   graph.row_start.assign(triangle_count + 1, 0);
   for (const auto* list : {&strong, &weak}) {
@@ -106,11 +121,17 @@ Graph triangle_graph(std::span<const Corner3> corner_positions, std::span<const 
     add(a, b, kNearbyWeight);
     add(b, a, kNearbyWeight);
   }
-  // Two triangles that share two edges are one neighbour of twice the weight: METIS wants no repeated edges.
+  return graph;
+}
+
+/// Sorts each row. Two triangles that share two edges become one neighbour of twice the weight: METIS wants no repeated
+/// edges.
+void merge_repeated(Graph& graph) {
   std::vector<std::pair<std::int32_t, std::int32_t>> row;
   std::int32_t write = 0;
   std::int32_t row_begin = 0;
-  for (std::uint32_t t = 0; t < triangle_count; ++t) {
+  const std::size_t row_count = graph.row_start.size() - 1;
+  for (std::size_t t = 0; t < row_count; ++t) {
     const std::int32_t row_end = graph.row_start[t + 1];
     row.clear();
     for (std::int32_t i = row_begin; i < row_end; ++i) {
@@ -128,9 +149,21 @@ Graph triangle_graph(std::span<const Corner3> corner_positions, std::span<const 
       graph.edge_weight[static_cast<std::size_t>(write++)] = row[i].second;
     }
   }
-  graph.row_start[triangle_count] = write;
+  graph.row_start[row_count] = write;
   graph.neighbor.resize(static_cast<std::size_t>(write));
   graph.edge_weight.resize(static_cast<std::size_t>(write));
+}
+
+}  // namespace
+
+Graph triangle_graph(std::span<const Corner3> corner_positions, std::span<const TriangleLink> links) {
+  std::vector<Corner3> corners;
+  const std::uint32_t position_count = compact(corner_positions, corners);
+  const auto triangle_count = static_cast<std::uint32_t>(corners.size());
+  std::vector<TriangleLink> strong = edge_links(bucket_edges(corners, position_count));
+  strong.insert(strong.end(), links.begin(), links.end());
+  Graph graph = graph_of_links(strong, weak_links(strong, triangle_count), triangle_count);
+  merge_repeated(graph);
   return graph;
 }
 

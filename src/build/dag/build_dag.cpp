@@ -177,6 +177,109 @@ void add_terminal_groups(BuildPool& pool, const std::vector<std::uint32_t>& live
   }
 }
 
+/// The clusters that nothing coarser has replaced so far, and of each why the group that it was last in did not get anywhere.
+struct Front {
+  std::vector<std::uint32_t> live;
+  std::vector<StuckReason> reasons;
+
+  void add(std::uint32_t cluster, StuckReason reason) {
+    live.push_back(cluster);
+    reasons.push_back(reason);
+  }
+};
+
+Front level0_of(const BuildPool& pool) {
+  Front front;
+  for (std::uint32_t c = 0; c < pool.clusters.size(); ++c) front.add(c, StuckReason::kNotStuck);
+  return front;
+}
+
+/// False: the caller asks to stop.
+bool report_level(const BuildPool& pool, const Front& front, std::uint32_t round, const DagOptions& options) {
+  if (!options.on_level) return true;
+  std::uint64_t triangles = 0;
+  for (const std::uint32_t c : front.live) triangles += pool.clusters[c].triangle_count;
+  return options.on_level(round, triangles);
+}
+
+/// Each group simplified, clustered and measured; nothing of the pool is changed.
+std::vector<Attempt> attempt_groups(const BuildPool& pool, const PreparedMesh& mesh, const GroupMeter& meter,
+                                    const std::vector<std::uint32_t>& live,
+                                    const std::vector<std::vector<std::uint32_t>>& groups, bool is_first_round,
+                                    const DagOptions& options, const Effort& effort) {
+  const Shared shared = find_shared(pool, live, groups);
+  std::vector<Attempt> attempts(groups.size());
+  parallel_for_each_index(groups.size(), 1, [&](std::size_t g) {
+    std::vector<std::uint32_t> clusters;
+    for (const std::uint32_t i : groups[g]) clusters.push_back(live[i]);
+    const SimplifyInput finer = group_input(pool, mesh, clusters, shared);
+    const double share = is_first_round ? first_share(g, groups.size()) : 0.5;
+    attempts[g] = simplify_and_cluster(finer, share, groups.size() == 1, options, effort);
+    if (attempts[g].is_accepted) {
+      attempts[g].errors = meter.measure(pool, clusters, finer, attempts[g].result, groups.size());
+    }
+  });
+  return attempts;
+}
+
+/// The group of `clusters` as what an accepted attempt replaces it by says.
+BuildGroup replaced_group(const BuildPool& pool, const GroupMeter& meter, std::vector<std::uint32_t> clusters,
+                          const Attempt& attempt) {
+  BuildGroup group;
+  group.clusters = std::move(clusters);
+  group.quadric_error = attempt.result.quadric_error;
+  for (const std::uint32_t c : group.clusters) {
+    const BuildCluster& cluster = pool.clusters[c];
+    group.level = std::max(group.level, cluster.level);
+    if (cluster.own_group != 0xFFFFFFFFU) {
+      group.quadric_error = std::max(group.quadric_error, pool.groups[cluster.own_group].quadric_error);
+    }
+  }
+  group.error = group.quadric_error;
+  if (meter.is_measuring()) {
+    group.deviation = attempt.errors.deviation;
+    group.error = attempt.errors.error;
+    group.normal_deviation = attempt.errors.normal_deviation;
+    group.uv_deviation = attempt.errors.uv_deviation;
+  }
+  return group;
+}
+
+/// Adds the group and the coarser clusters that replace it.
+void accept(BuildPool& pool, const GroupMeter& meter, std::vector<std::uint32_t> clusters, const Attempt& attempt,
+            Front& next) {
+  BuildGroup group = replaced_group(pool, meter, std::move(clusters), attempt);
+  if (meter.is_measuring()) {
+    for (const std::uint32_t c : group.clusters) pool.clusters[c].samples = {};  // carried on by the coarser clusters
+  }
+  const auto group_id = static_cast<std::uint32_t>(pool.groups.size());
+  const std::uint32_t level = group.level + 1;
+  pool.groups.push_back(std::move(group));
+  const auto first = static_cast<std::uint32_t>(pool.clusters.size());
+  pool.add_simplified(attempt.result, attempt.errors.carried, attempt.clustering, level, group_id);
+  for (std::uint32_t c = first; c < pool.clusters.size(); ++c) next.add(c, StuckReason::kNotStuck);
+}
+
+/// The next front: coarser clusters where a group was accepted, the same ones where it got stuck. In the order of groups.
+Front advance(BuildPool& pool, const GroupMeter& meter, const Front& front,
+              const std::vector<std::vector<std::uint32_t>>& groups, std::vector<Attempt> attempts) {
+  Front next;
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    std::vector<std::uint32_t> clusters;
+    for (const std::uint32_t i : groups[g]) clusters.push_back(front.live[i]);
+    if (attempts[g].is_accepted) {
+      accept(pool, meter, std::move(clusters), attempts[g], next);
+      attempts[g] = {};
+      continue;
+    }
+    const StuckReason reason = attempts[g].result.reason;
+    for (const std::uint32_t c : clusters) {
+      next.add(c, reason == StuckReason::kNotStuck ? StuckReason::kTooSmall : reason);
+    }
+  }
+  return next;
+}
+
 }  // namespace
 
 Result<LodDag> build_dag(const PreparedMesh& mesh, const DagOptions& options) {
@@ -185,92 +288,25 @@ Result<LodDag> build_dag(const PreparedMesh& mesh, const DagOptions& options) {
   const GroupMeter meter(mesh, options.error);
   pool.add_clusters(mesh.triangles, mesh.triangle_material, meter.level0(),
                     cluster_triangles(mesh.triangles, mesh.wedge_position, mesh.positions, options.caps), 0, 0xFFFFFFFFU);
-  std::vector<std::uint32_t> live(pool.clusters.size());
-  for (std::uint32_t c = 0; c < live.size(); ++c) live[c] = c;
-
+  Front front = level0_of(pool);
   GroupOptions grouping = options.grouping;
   if (options.max_group_bytes > 0) grouping.max_weight = options.max_group_bytes;
-  std::vector<StuckReason> reasons(live.size(), StuckReason::kNotStuck);
   std::size_t effort_index = 0;
   for (std::uint32_t round = 0;; ++round) {
-    if (options.on_level) {
-      std::uint64_t triangles = 0;
-      for (const std::uint32_t c : live) triangles += pool.clusters[c].triangle_count;
-      if (!options.on_level(round, triangles)) return Error{ErrorCode::kBuildFailed, "", "cancelled"};
-    }
-    if (live.size() == 1 || effort_index == std::size(kEfforts)) {
-      if (live.size() == 1) reasons.assign(1, StuckReason::kNotStuck);
-      add_terminal_groups(pool, live, grouping, options, reasons);
-      break;
-    }
+    if (!report_level(pool, front, round, options)) return Error{ErrorCode::kBuildFailed, "", "cancelled"};
+    if (front.live.size() == 1) front.reasons.assign(1, StuckReason::kNotStuck);
+    if (front.live.size() == 1 || effort_index == std::size(kEfforts)) break;
     const Effort& effort = kEfforts[effort_index];
     grouping.target_clusters = effort.target_clusters;
-    const GroupInput input = grouping_input(pool, live, options);
-    const std::vector<std::vector<std::uint32_t>> groups = group_clusters(input, grouping);
-    const Shared shared = find_shared(pool, live, groups);
-
-    std::vector<Attempt> attempts(groups.size());
-    parallel_for_each_index(groups.size(), 1, [&](std::size_t g) {
-      std::vector<std::uint32_t> clusters;
-      for (const std::uint32_t i : groups[g]) clusters.push_back(live[i]);
-      const SimplifyInput finer = group_input(pool, mesh, clusters, shared);
-      attempts[g] = simplify_and_cluster(finer, round == 0 ? first_share(g, groups.size()) : 0.5, groups.size() == 1,
-                                         options, effort);
-      if (attempts[g].is_accepted) {
-        attempts[g].errors = meter.measure(pool, clusters, finer, attempts[g].result, groups.size());
-      }
-    });
-
-    std::vector<std::uint32_t> next;
-    std::vector<StuckReason> next_reasons;
-    bool any_accepted = false;
-    for (std::size_t g = 0; g < groups.size(); ++g) {
-      Attempt& attempt = attempts[g];
-      if (!attempt.is_accepted) {
-        for (const std::uint32_t i : groups[g]) {
-          next.push_back(live[i]);
-          next_reasons.push_back(attempt.result.reason == StuckReason::kNotStuck ? StuckReason::kTooSmall
-                                                                                : attempt.result.reason);
-        }
-        continue;
-      }
-      any_accepted = true;
-      BuildGroup group;
-      group.quadric_error = attempt.result.quadric_error;
-      for (const std::uint32_t i : groups[g]) {
-        const BuildCluster& cluster = pool.clusters[live[i]];
-        group.clusters.push_back(live[i]);
-        group.level = std::max(group.level, cluster.level);
-        if (cluster.own_group != 0xFFFFFFFFU) {
-          group.quadric_error = std::max(group.quadric_error, pool.groups[cluster.own_group].quadric_error);
-        }
-      }
-      group.error = group.quadric_error;
-      if (meter.is_measuring()) {
-        group.deviation = attempt.errors.deviation;
-        group.error = attempt.errors.error;
-        group.normal_deviation = attempt.errors.normal_deviation;
-        group.uv_deviation = attempt.errors.uv_deviation;
-        for (const std::uint32_t c : group.clusters) {
-          pool.clusters[c].samples = {};  // carried on by the coarser clusters
-        }
-      }
-      const auto group_id = static_cast<std::uint32_t>(pool.groups.size());
-      const std::uint32_t level = group.level + 1;
-      pool.groups.push_back(std::move(group));
-      const auto first = static_cast<std::uint32_t>(pool.clusters.size());
-      pool.add_simplified(attempt.result, attempt.errors.carried, attempt.clustering, level, group_id);
-      for (std::uint32_t c = first; c < pool.clusters.size(); ++c) {
-        next.push_back(c);
-        next_reasons.push_back(StuckReason::kNotStuck);
-      }
-      attempt = {};
-    }
-    live = std::move(next);
-    reasons = std::move(next_reasons);
+    const auto groups = group_clusters(grouping_input(pool, front.live, options), grouping);
+    std::vector<Attempt> attempts = attempt_groups(pool, mesh, meter, front.live, groups, round == 0, options, effort);
     // Progress keeps the effort where it is; a round without any tries harder, and success at that starts over.
+    const bool any_accepted =
+        std::any_of(attempts.begin(), attempts.end(), [](const Attempt& attempt) { return attempt.is_accepted; });
     effort_index = any_accepted ? 0 : effort_index + 1;
+    front = advance(pool, meter, front, groups, std::move(attempts));
   }
+  add_terminal_groups(pool, front.live, grouping, options, front.reasons);
   return assemble_dag(pool, mesh);
 }
 

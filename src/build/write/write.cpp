@@ -97,23 +97,16 @@ void copy_bytes(std::vector<std::uint8_t>& file, std::uint64_t offset, const voi
   if (bytes > 0) std::memcpy(file.data() + offset, data, bytes);
 }
 
-}  // namespace
+using SectionPlans = std::array<SectionPlan, 14>;
+using SectionEntries = std::array<format::SectionEntry, std::tuple_size_v<SectionPlans>>;
 
-Result<std::vector<std::uint8_t>> write_asset(WriteInput input) {
-  auto made = make_tables(input);
-  if (!made) return made.error();
-  AssetTables tables = std::move(*made);
-  const scene::Scene& scene = *input.scene;
-  const Hash128 content_hash = hash_content(tables, scene);
-  auto packed = pack_pages(tables, input.codec);
-  if (!packed) return packed.error();
-  const std::uint64_t page_data_bytes = place_pages(tables, *packed);
-  const std::uint64_t blob_data_bytes = place_blobs(tables);
-
+/// What the sections hold, as it lies in memory: all of it must outlive the plans.
+SectionPlans plan_sections(const WriteInput& input, const AssetTables& tables, std::uint64_t page_data_bytes,
+                           std::uint64_t blob_data_bytes) {
   using enum format::SectionId;
-  std::array plans{
+  return {
       text_section(kMeta, input.meta_json),
-      text_section(kScene, scene.document),
+      text_section(kScene, input.scene->document),
       text_section(kStrings, tables.strings.bytes()),
       table_section(kMeshes, tables.meshes),
       table_section(kMaterials, tables.materials),
@@ -127,24 +120,27 @@ Result<std::vector<std::uint8_t>> write_asset(WriteInput input) {
       SectionPlan{kPageData, page_data_bytes, nullptr, 0, 0},
       SectionPlan{kBlobData, blob_data_bytes, nullptr, 0, 0},
   };
+}
 
-  // The page table stays as it is: places and checksums of pages hardly shrink.
-  if (input.codec != format::Codec::kNone) {
-    parallel_for_each_index(plans.size(), 1, [&](std::size_t s) {
-      SectionPlan& plan = plans[s];
-      if (plan.data == nullptr || plan.id == kPages || plan.id == kBlobs) return;
-      plan.packed = pack_section({static_cast<const std::uint8_t*>(plan.data), plan.bytes}, plan.record_bytes);
-    });
-  }
+/// The tables of places and checksums (pages, blobs) stay as they are: they hardly shrink, and are filled in later.
+void pack_tables(SectionPlans& plans) {
+  parallel_for_each_index(plans.size(), 1, [&](std::size_t s) {
+    SectionPlan& plan = plans[s];
+    if (plan.data == nullptr || plan.id == format::SectionId::kPages || plan.id == format::SectionId::kBlobs) return;
+    plan.packed = pack_section({static_cast<const std::uint8_t*>(plan.data), plan.bytes}, plan.record_bytes);
+  });
+}
 
-  std::array<format::SectionEntry, plans.size()> entries{};
+/// The sections one after the other behind the table of their entries; checksums are not set yet. Returns the file's size.
+std::uint64_t place_sections(const SectionPlans& plans, SectionEntries& entries) {
   std::uint64_t end = sizeof(format::FileHeader) + sizeof(entries);
   for (std::size_t s = 0; s < plans.size(); ++s) {
     const SectionPlan& plan = plans[s];
     format::SectionEntry& entry = entries[s];
     entry.id = static_cast<std::uint32_t>(plan.id);
     entry.offset = align_section(end);
-    entry.codec = static_cast<std::uint32_t>(plan.packed.empty() ? format::SectionCodec::kPlain : format::SectionCodec::kColumns);
+    entry.codec =
+        static_cast<std::uint32_t>(plan.packed.empty() ? format::SectionCodec::kPlain : format::SectionCodec::kColumns);
     entry.bytes = plan.stored_bytes();
     entry.decoded_bytes = plan.bytes;
     entry.flags = format::kSectionRequired;
@@ -152,32 +148,46 @@ Result<std::vector<std::uint8_t>> write_asset(WriteInput input) {
     entry.record_count = static_cast<std::uint32_t>(plan.record_count);
     end = entry.offset + entry.bytes;
   }
-  const auto entry_of = [&](format::SectionId id) -> format::SectionEntry& {
-    std::size_t s = 0;
-    while (plans[s].id != id) ++s;
-    return entries[s];
-  };
-  for (format::PageRecord& page : tables.pages) page.offset += entry_of(kPageData).offset;
-  for (format::BlobRecord& blob : tables.blobs) blob.offset += entry_of(kBlobData).offset;
+  return end;
+}
 
-  std::vector<std::uint8_t> file(end);
+/// Offsets of pages and blobs, from within their section to within the file.
+void move_to_sections(const SectionEntries& entries, AssetTables& tables) {
+  for (const format::SectionEntry& entry : entries) {
+    if (entry.id == static_cast<std::uint32_t>(format::SectionId::kPageData)) {
+      for (format::PageRecord& page : tables.pages) page.offset += entry.offset;
+    }
+    if (entry.id == static_cast<std::uint32_t>(format::SectionId::kBlobData)) {
+      for (format::BlobRecord& blob : tables.blobs) blob.offset += entry.offset;
+    }
+  }
+}
+
+void copy_sections(const SectionPlans& plans, const SectionEntries& entries, std::vector<std::uint8_t>& file) {
   for (std::size_t s = 0; s < plans.size(); ++s) {
     const SectionPlan& plan = plans[s];
     const void* data = plan.packed.empty() ? plan.data : plan.packed.data();
     copy_bytes(file, entries[s].offset, data, data == nullptr ? 0 : plan.stored_bytes());
   }
+}
+
+void copy_pages_and_blobs(const AssetTables& tables, const std::vector<PackedPage>& packed,
+                          const std::vector<scene::SceneBlob>& blobs, std::vector<std::uint8_t>& file) {
   for (std::size_t p = 0; p < tables.pages.size(); ++p) {
-    const auto bytes = stored_bytes(tables, *packed, p);
+    const auto bytes = stored_bytes(tables, packed, p);
     copy_bytes(file, tables.pages[p].offset, bytes.data(), bytes.size());
   }
   for (std::size_t b = 0; b < tables.blobs.size(); ++b) {
-    copy_bytes(file, tables.blobs[b].offset, scene.blobs[b].bytes.data(), scene.blobs[b].bytes.size());
+    copy_bytes(file, tables.blobs[b].offset, blobs[b].bytes.data(), blobs[b].bytes.size());
   }
-  for (std::size_t s = 0; s < plans.size(); ++s) {
-    if (plans[s].id == kPageData) continue;  // its pages carry their own
-    entries[s].checksum = hash64({file.data() + entries[s].offset, entries[s].bytes});
-  }
+}
 
+/// Header and table of sections, with their checksums. \pre all sections are in their place
+void seal(const Hash128& content_hash, SectionEntries& entries, std::vector<std::uint8_t>& file) {
+  for (format::SectionEntry& entry : entries) {
+    if (entry.id == static_cast<std::uint32_t>(format::SectionId::kPageData)) continue;  // its pages carry their own
+    entry.checksum = hash64({file.data() + entry.offset, entry.bytes});
+  }
   format::FileHeader header{};
   header.magic = format::kMagic;
   header.version = format::kVersion;
@@ -191,6 +201,29 @@ Result<std::vector<std::uint8_t>> write_asset(WriteInput input) {
   copy_bytes(file, sizeof(header), entries.data(), sizeof(entries));
   header.header_checksum = hash64({file.data(), sizeof(header) + sizeof(entries)});
   copy_bytes(file, 0, &header, sizeof(header));
+}
+
+}  // namespace
+
+Result<std::vector<std::uint8_t>> write_asset(WriteInput input) {
+  auto made = make_tables(input);
+  if (!made) return made.error();
+  AssetTables tables = std::move(*made);
+  const scene::Scene& scene = *input.scene;
+  const Hash128 content_hash = hash_content(tables, scene);
+  auto packed = pack_pages(tables, input.codec);
+  if (!packed) return packed.error();
+  const std::uint64_t page_data_bytes = place_pages(tables, *packed);
+  const std::uint64_t blob_data_bytes = place_blobs(tables);
+
+  SectionPlans plans = plan_sections(input, tables, page_data_bytes, blob_data_bytes);
+  if (input.codec != format::Codec::kNone) pack_tables(plans);
+  SectionEntries entries{};
+  std::vector<std::uint8_t> file(place_sections(plans, entries));
+  move_to_sections(entries, tables);
+  copy_sections(plans, entries, file);
+  copy_pages_and_blobs(tables, *packed, scene.blobs, file);
+  seal(content_hash, entries, file);
   return file;
 }
 

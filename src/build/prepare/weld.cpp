@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "build/prepare/weld.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <numeric>
+#include <tuple>
+
+#include <tbb/parallel_sort.h>
+
+#include "base/parallel.h"
+
+namespace meshlode::build {
+
+namespace {
+
+/// Spreads the low 21 bits of x to every third bit.
+std::uint64_t spread3(std::uint64_t x) {
+  x &= 0x1FFFFF;
+  x = (x | x << 32U) & 0x001F00000000FFFF;
+  x = (x | x << 16U) & 0x001F0000FF0000FF;
+  x = (x | x << 8U) & 0x100F00F00F00F00F;
+  x = (x | x << 4U) & 0x10C30C30C30C30C3;
+  x = (x | x << 2U) & 0x1249249249249249;
+  return x;
+}
+
+/// Z-order of a grid point (24 bits an axis, the lowest three dropped: ties are ordered by coordinates).
+std::uint64_t morton(const Vec3i& q) {
+  const auto axis = [](int value) { return static_cast<std::uint64_t>(value + (format::kMaxGridCoordinate + 1)) >> 3U; };
+  return spread3(axis(q.x)) | spread3(axis(q.y)) << 1U | spread3(axis(q.z)) << 2U;
+}
+
+auto as_tuple(const Vec3i& q) { return std::tuple(q.x, q.y, q.z); }
+
+/// Orders attribute sets by their bits: any total order will do, it has to be the same everywhere.
+int compare_attributes(const float* a, const float* b, std::uint32_t stride) {
+  return stride == 0 ? 0 : std::memcmp(a, b, stride * sizeof(float));
+}
+
+/// Vertex ids sorted by Z-order of the grid point, then the point, then attributes, then exact position: equal wedges,
+/// positions and source points become runs, whatever their numbers were.
+std::vector<std::uint32_t> canonical_vertex_order(const Corners& corners, const std::vector<Vec3i>& quantized,
+                                                  std::uint32_t stride) {
+  std::vector<std::uint64_t> keys(quantized.size());
+  parallel_for_each_index(keys.size(), 4096, [&](std::size_t i) { keys[i] = morton(quantized[i]); });
+  std::vector<std::uint32_t> order(quantized.size());
+  std::iota(order.begin(), order.end(), 0U);
+  tbb::parallel_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    if (keys[a] != keys[b]) return keys[a] < keys[b];
+    if (quantized[a] != quantized[b]) return as_tuple(quantized[a]) < as_tuple(quantized[b]);
+    const int attributes = compare_attributes(corners.attributes_of(a, stride), corners.attributes_of(b, stride), stride);
+    if (attributes != 0) return attributes < 0;
+    const Vec3d& p = corners.positions[a];
+    const Vec3d& q = corners.positions[b];
+    if (p != q) return std::tuple(p.x, p.y, p.z) < std::tuple(q.x, q.y, q.z);
+    return a < b;
+  });
+  return order;
+}
+
+/// Two ids of a vertex: of its exact position with its attributes, as in the source, and of that one's wedge.
+struct VertexIds {
+  std::vector<std::uint32_t> exact_of;        ///< per vertex; of those that no triangle uses, nothing
+  std::vector<std::uint32_t> wedge_of_exact;
+};
+
+/// Runs of the canonical order become positions (grid point), wedges (grid point and attributes) and exact positions.
+VertexIds weld_vertices(const Corners& corners, const std::vector<Vec3i>& points,
+                        const std::vector<std::uint8_t>& is_used, PreparedMesh& mesh) {
+  const std::uint32_t stride = mesh.layout.stride();
+  const std::vector<std::uint32_t> order = canonical_vertex_order(corners, points, stride);
+  VertexIds ids;
+  ids.exact_of.resize(order.size());
+  std::uint32_t previous = 0;
+  bool has_previous = false;
+  for (const std::uint32_t v : order) {
+    if (is_used[v] == 0) continue;
+    const float* const attributes = corners.attributes_of(v, stride);
+    const bool same_point = has_previous && points[v] == points[previous];
+    const bool same_wedge =
+        same_point && compare_attributes(attributes, corners.attributes_of(previous, stride), stride) == 0;
+    const bool same_exact = same_wedge && corners.positions[v] == corners.positions[previous];
+    if (!same_point) mesh.positions.push_back(points[v]);
+    if (!same_wedge) {
+      mesh.wedge_position.push_back(static_cast<std::uint32_t>(mesh.positions.size() - 1));
+      mesh.wedge_attributes.insert(mesh.wedge_attributes.end(), attributes, attributes + stride);
+    }
+    if (!same_exact) {
+      ids.wedge_of_exact.push_back(static_cast<std::uint32_t>(mesh.wedge_position.size() - 1));
+      mesh.exact_positions.push_back(corners.positions[v] - mesh.origin);
+    }
+    ids.exact_of[v] = static_cast<std::uint32_t>(ids.wedge_of_exact.size() - 1);
+    previous = v;
+    has_previous = true;
+  }
+  return ids;
+}
+
+/// A triangle in canonical form: rotated so that its smallest exact vertex comes first; sorted by these fields.
+struct CanonicalTriangle {
+  std::array<std::uint32_t, 3> exact;  ///< ids of (exact position, attributes): what tells duplicates apart
+  std::uint32_t material;
+  auto operator<=>(const CanonicalTriangle&) const = default;
+};
+
+/// In order, and each once; counts what was there more often.
+std::vector<CanonicalTriangle> weld_triangles(const Corners& corners, const std::vector<std::uint32_t>& exact_of,
+                                              std::uint64_t& duplicates) {
+  std::vector<CanonicalTriangle> triangles;
+  triangles.reserve(corners.materials.size());
+  for (std::size_t t = 0; t < corners.materials.size(); ++t) {
+    const std::uint32_t* c = &corners.triangles[3 * t];
+    std::array<std::uint32_t, 3> exact{exact_of[c[0]], exact_of[c[1]], exact_of[c[2]]};
+    std::rotate(exact.begin(), std::min_element(exact.begin(), exact.end()), exact.end());
+    triangles.push_back({exact, corners.materials[t]});
+  }
+  tbb::parallel_sort(triangles.begin(), triangles.end());
+  const auto unique_end = std::unique(triangles.begin(), triangles.end());
+  duplicates = static_cast<std::uint64_t>(triangles.end() - unique_end);
+  triangles.erase(unique_end, triangles.end());
+  return triangles;
+}
+
+/// On the grid, decided exactly.
+bool has_area(const PreparedMesh& mesh, const WedgeTriangle& triangle) {
+  const Vec3i& a = mesh.positions[mesh.wedge_position[triangle[0]]];
+  const Vec3i& b = mesh.positions[mesh.wedge_position[triangle[1]]];
+  const Vec3i& c = mesh.positions[mesh.wedge_position[triangle[2]]];
+  // |coordinates| < 2^24, so each product is below 2^50 and the cross product is exact in int64.
+  const glm::i64vec3 ab(b - a);
+  const glm::i64vec3 ac(c - a);
+  return ab.y * ac.z != ab.z * ac.y || ab.z * ac.x != ab.x * ac.z || ab.x * ac.y != ab.y * ac.x;
+}
+
+}  // namespace
+
+void weld(const Corners& corners, const std::vector<Vec3i>& points, const std::vector<std::uint8_t>& is_used,
+          PreparedMesh& mesh) {
+  const VertexIds ids = weld_vertices(corners, points, is_used, mesh);
+  const std::vector<CanonicalTriangle> triangles = weld_triangles(corners, ids.exact_of, mesh.dropped_duplicate);
+  mesh.triangles.reserve(triangles.size());
+  mesh.exact_triangles.reserve(triangles.size());
+  mesh.triangle_material.reserve(triangles.size());
+  for (const CanonicalTriangle& triangle : triangles) {
+    WedgeTriangle wedges{};
+    for (std::size_t k = 0; k < 3; ++k) wedges[k] = ids.wedge_of_exact[triangle.exact[k]];
+    if (!has_area(mesh, wedges)) ++mesh.grid_collapsed;
+    mesh.triangles.push_back(wedges);
+    mesh.exact_triangles.push_back(triangle.exact);
+    mesh.triangle_material.push_back(triangle.material);
+  }
+}
+
+}  // namespace meshlode::build
