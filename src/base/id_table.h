@@ -36,11 +36,13 @@ class IdTable {
   template <class IsSame, class HashOf>
   Entry find_or_insert(std::uint64_t hash, std::uint32_t next, const IsSame& is_same, const HashOf& hash_of) {
     if (2 * (count_ + 1) > slots_.size()) grow(hash_of);
-    std::size_t at = hash & (slots_.size() - 1);
-    for (; slots_[at] != kFree; at = (at + 1) & (slots_.size() - 1)) {
-      if (is_same(slots_[at])) return {slots_[at], false};
+    std::uint32_t* const slots = slots_.data();  // what is_same reads could be anything, to the compiler
+    const std::size_t mask = slots_.size() - 1;
+    std::size_t at = hash & mask;
+    for (; slots[at] != kFree; at = (at + 1) & mask) {
+      if (const std::uint32_t id = slots[at]; is_same(id)) return {id, false};
     }
-    slots_[at] = next;
+    slots[at] = next;
     ++count_;
     return {next, true};
   }

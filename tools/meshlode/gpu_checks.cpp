@@ -9,6 +9,7 @@
 
 #include "base/file.h"
 #include "judge/gpu/verify_gpu.h"
+#include "judge/validate/rules.h"
 #include "outputs.h"
 #include "base/json_writer.h"
 
@@ -29,8 +30,8 @@ std::string gpu_json(const GpuOptions& options, const judge::GpuVerifyReport& ve
   json.begin_array();
   for (const judge::GpuCheck& check : verified.checks) {
     json.begin_object();
-    json.field("id", check.id);
-    json.field("invariant", check.invariant);
+    json.field("id", judge::info_of(check.rule).id);
+    json.field("invariant", judge::info_of(check.rule).invariant);
     json.field("what", check.what);
     json.field("items", check.items);
     json.field("failures", check.failures);
@@ -104,10 +105,11 @@ Status verify_with_gpu(const run::Asset& asset, const scene::Scene& source, cons
     if (const Status written = write_text(report_path, gpu_json(options, *verified)); !written) return written;
   }
   for (const judge::GpuCheck& check : verified->checks) {
-    report.checks.push_back({check.invariant, verified->device.name + ": " + check.what, check.items, check.failures,
+    const std::string invariant(judge::info_of(check.rule).invariant);
+    report.checks.push_back({invariant, verified->device.name + ": " + check.what, check.items, check.failures,
                              check.is_skipped});
     if (check.failures == 0) continue;
-    report.findings.push_back({check.id, check.invariant, verified->device.name, check.first});
+    report.findings.push_back(judge::make_finding(check.rule, verified->device.name, check.first));
     ++report.finding_count;
   }
   return Ok{};

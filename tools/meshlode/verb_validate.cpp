@@ -6,6 +6,7 @@
 #include "base/file.h"
 #include "options.h"
 #include "base/json_writer.h"
+#include "judge/validate/rules.h"
 #include "judge/validate/validate.h"
 #include "verb.h"
 
@@ -17,7 +18,7 @@ constexpr int kInvalid = static_cast<int>(ErrorCode::kInvalid);
 constexpr int kCheckFailed = static_cast<int>(ErrorCode::kCheckFailed);
 
 bool is_no_asset(const judge::ValidationReport& report) {
-  return std::any_of(report.findings.begin(), report.findings.end(), [](const judge::Finding& f) { return f.id == "L001"; });
+  return std::any_of(report.findings.begin(), report.findings.end(), [](const judge::Finding& f) { return f.id == judge::info_of(judge::Rule::kL001).id; });
 }
 
 void write_findings(JsonWriter& json, const std::vector<judge::Finding>& findings) {

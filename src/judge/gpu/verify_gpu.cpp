@@ -139,15 +139,15 @@ Result<GpuVerifyReport> verify_on_gpu(const run::Asset& asset, const scene::Scen
 
   const auto decode = compare_decode(*device, *scene, asset);
   if (!decode) return decode.error();
-  GpuCheck decoded{"V401", "I9", "the GPU decodes every cluster to the CPU's integers"};
+  GpuCheck decoded{Rule::kV401, "the GPU decodes every cluster to the CPU's integers"};
   add(decoded, *decode, "decode");
   out.checks.push_back(decoded);
 
-  GpuCheck cuts{"V402", "I8", "the GPU's traversal selects what the flat rule selects"};
-  GpuCheck pixels{"V403", "I9", "the GPU's software rasterizer draws the CPU's ids and depths (pixels)"};
-  GpuCheck culled{"V404", "I9", "frustum and two-pass occlusion culling change no pixel"};
-  GpuCheck displaced{"V405", "I7", ""};
-  GpuCheck holes{"V406", "I6", "no background is seen through the cut where the source covers it (pixels)"};
+  GpuCheck cuts{Rule::kV402, "the GPU's traversal selects what the flat rule selects"};
+  GpuCheck pixels{Rule::kV403, "the GPU's software rasterizer draws the CPU's ids and depths (pixels)"};
+  GpuCheck culled{Rule::kV404, "frustum and two-pass occlusion culling change no pixel"};
+  GpuCheck displaced{Rule::kV405, ""};
+  GpuCheck holes{Rule::kV406, "no background is seen through the cut where the source covers it (pixels)"};
 
   bool has_promise = !source.meshes.empty();
   double tolerance = 1.0;
@@ -160,8 +160,8 @@ Result<GpuVerifyReport> verify_on_gpu(const run::Asset& asset, const scene::Scen
   const bool all_closed = std::all_of(meshes.begin(), meshes.end(), [](const SourceSurface& mesh) {
     return mesh.surface.triangles.empty() || is_closed(mesh.surface);
   });
-  GpuCheck by_vertex{"V407", "I9", "hardware raster, vertices pulled: pixels as the specification allows"};
-  GpuCheck by_mesh{"V408", "I9", "hardware raster, mesh shaders: pixels as the specification allows"};
+  GpuCheck by_vertex{Rule::kV407, "hardware raster, vertices pulled: pixels as the specification allows"};
+  GpuCheck by_mesh{Rule::kV408, "hardware raster, mesh shaders: pixels as the specification allows"};
   const bool has_holes_rule = has_promise && all_closed && !scene->has_alpha_mask;
   const auto every_cluster = run::decode_all(asset);
   if (!every_cluster) return every_cluster.error();

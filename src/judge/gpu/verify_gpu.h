@@ -14,6 +14,7 @@
 #include "draw/gpu/vulkan/vulkan.h"
 #include "judge/gpu/judge_picture.h"
 #include "judge/metrics/metrics.h"
+#include "judge/validate/rules.h"
 #include "run/read/limits.h"
 
 namespace meshlode::judge {
@@ -43,7 +44,8 @@ struct JudgedCamera {
 };
 
 struct GpuCheck {
-  std::string id, invariant, what;
+  Rule rule{};
+  std::string what;
   std::uint64_t items = 0, failures = 0;
   bool is_skipped = false;
   std::string first{};  ///< the first failure, in words

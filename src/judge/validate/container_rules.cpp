@@ -57,22 +57,22 @@ std::string section_name(std::uint32_t id) {
 
 bool read_header(std::span<const std::uint8_t> bytes, format::FileHeader& header, RuleLog& log) {
   const auto where = [] { return std::string("header"); };
-  log.check("L001");
+  log.check(Rule::kL001);
   if (bytes.size() < sizeof header) {
-    log.add("L001", where(), "the file has " + std::to_string(bytes.size()) + " bytes, a header has 64");
+    log.add(Rule::kL001, where(), "the file has " + std::to_string(bytes.size()) + " bytes, a header has 64");
     return false;
   }
   std::memcpy(&header, bytes.data(), sizeof header);
   bool sound =
-      log.expect(header.magic == format::kMagic, "L001", where, [] { return std::string("the magic is not LODE"); });
+      log.expect(header.magic == format::kMagic, Rule::kL001, where, [] { return std::string("the magic is not LODE"); });
   if (!sound) return false;
-  sound = log.expect(header.version == format::kVersion, "L001", where,
+  sound = log.expect(header.version == format::kVersion, Rule::kL001, where,
                      [&] { return "version " + std::to_string(header.version) + " is not 1"; });
-  sound &= log.expect(header.header_bytes == sizeof header, "L001", where,
+  sound &= log.expect(header.header_bytes == sizeof header, Rule::kL001, where,
                       [&] { return "header_bytes is " + std::to_string(header.header_bytes) + ", not 64"; });
-  log.expect(header.file_bytes == bytes.size(), "L002", where,
+  log.expect(header.file_bytes == bytes.size(), Rule::kL002, where,
              [&] { return differs("file_bytes", header.file_bytes, "size of the file", std::uint64_t{bytes.size()}); });
-  log.expect(header.flags == 0, "L003", where, [&] { return "flags are " + std::to_string(header.flags); });
+  log.expect(header.flags == 0, Rule::kL003, where, [&] { return "flags are " + std::to_string(header.flags); });
   return sound;
 }
 
@@ -81,11 +81,11 @@ bool read_section_table(FileTables& file, RuleLog& log) {
   const format::FileHeader& header = file.header;
   const std::uint64_t size = file.bytes.size();
   const std::uint64_t table_bytes = std::uint64_t{header.section_count} * sizeof(SectionEntry);
-  bool sound = log.expect(header.section_entry_bytes == sizeof(SectionEntry), "L004", where,
+  bool sound = log.expect(header.section_entry_bytes == sizeof(SectionEntry), Rule::kL004, where,
                           [&] { return "stride is " + std::to_string(header.section_entry_bytes) + ", not 64"; });
   sound &= log.expect(header.section_table_offset == sizeof header && sizeof header <= size &&
                           table_bytes <= size - header.section_table_offset,
-                      "L004", where, [&] {
+                      Rule::kL004, where, [&] {
                         return "offset " + std::to_string(header.section_table_offset) + " with " +
                                std::to_string(header.section_count) + " entries does not fit " + std::to_string(size);
                       });
@@ -101,7 +101,7 @@ bool read_section_table(FileTables& file, RuleLog& log) {
   std::memcpy(covered.data(), &plain, sizeof plain);
   if (table_bytes > 0) std::memcpy(covered.data() + sizeof plain, file.sections.data(), table_bytes);
   log.expect(
-      hash64(covered) == header.header_checksum, "L005", [] { return std::string("header"); },
+      hash64(covered) == header.header_checksum, Rule::kL005, [] { return std::string("header"); },
       [] { return std::string("header_checksum does not match"); });
   return true;
 }
@@ -116,23 +116,23 @@ void check_extents(const FileTables& file, RuleLog& log) {
   extents.push_back({0, sizeof(format::FileHeader) + file.sections.size() * sizeof(SectionEntry), "section table"});
   for (const SectionEntry& entry : file.sections)
     extents.push_back({entry.offset, entry.offset + entry.bytes, section_name(entry.id)});
-  log.check("L007");
-  log.check("L014");
+  log.check(Rule::kL007);
+  log.check(Rule::kL014);
   std::uint64_t end = 0;
   const auto check_gap = [&](std::uint64_t from, std::uint64_t to, const std::string& name) {
     if (to - from >= format::kSectionAlignment) {
-      log.add("L014", "before " + name, std::to_string(to - from) + " bytes where alignment needs fewer");
+      log.add(Rule::kL014, "before " + name, std::to_string(to - from) + " bytes where alignment needs fewer");
     }
     for (std::uint64_t i = from; i < to; ++i) {
       if (file.bytes[i] != 0) {
-        log.add("L014", "before " + name, "byte " + std::to_string(i) + " is not zero");
+        log.add(Rule::kL014, "before " + name, "byte " + std::to_string(i) + " is not zero");
         return;
       }
     }
   };
   for (const Extent& extent : extents) {
     if (extent.begin < end) {
-      log.add("L007", extent.name,
+      log.add(Rule::kL007, extent.name,
               "starts at " + std::to_string(extent.begin) + ", before " + std::to_string(end) +
                   " where the one before it ends");
     } else {
@@ -141,48 +141,48 @@ void check_extents(const FileTables& file, RuleLog& log) {
     end = std::max(end, extent.end);
   }
   log.expect(
-      end == file.bytes.size(), "L014", [] { return std::string("end of the file"); },
+      end == file.bytes.size(), Rule::kL014, [] { return std::string("end of the file"); },
       [&] { return differs("end of the last section", end, "size of the file", std::uint64_t{file.bytes.size()}); });
 }
 
 bool check_section(const FileTables& file, const SectionEntry& entry, RuleLog& log) {
   const auto where = [&] { return section_name(entry.id); };
   const std::uint64_t size = file.bytes.size();
-  const bool inside = log.expect(entry.offset <= size && entry.bytes <= size - entry.offset, "L006", where, [&] {
+  const bool inside = log.expect(entry.offset <= size && entry.bytes <= size - entry.offset, Rule::kL006, where, [&] {
     return std::to_string(entry.bytes) + " bytes at " + std::to_string(entry.offset) + " leave the file";
   });
-  log.expect(entry.offset % format::kSectionAlignment == 0, "L006", where,
+  log.expect(entry.offset % format::kSectionAlignment == 0, Rule::kL006, where,
              [&] { return "offset " + std::to_string(entry.offset) + " is no multiple of 16"; });
   const KnownSection* known = find_known(entry.id);
-  log.expect(known != nullptr || (entry.flags & format::kSectionRequired) == 0, "L009", where,
+  log.expect(known != nullptr || (entry.flags & format::kSectionRequired) == 0, Rule::kL009, where,
              [] { return std::string("unknown and required"); });
-  log.expect((entry.flags & ~format::kSectionRequired) == 0 && entry.reserved == 0, "L009", where,
+  log.expect((entry.flags & ~format::kSectionRequired) == 0 && entry.reserved == 0, Rule::kL009, where,
              [] { return std::string("reserved bits are not zero"); });
   if (known == nullptr || !inside) return inside;
 
-  log.expect(entry.version == 0, "L009", where, [&] { return "version " + std::to_string(entry.version); });
+  log.expect(entry.version == 0, Rule::kL009, where, [&] { return "version " + std::to_string(entry.version); });
   const bool is_raw = known->id == SectionId::kPageData || known->id == SectionId::kBlobData;
   const bool is_packed = !is_raw && entry.codec == static_cast<std::uint32_t>(format::SectionCodec::kColumns);
-  bool sound = log.expect(is_packed || entry.codec == static_cast<std::uint32_t>(format::SectionCodec::kPlain), "L009", where,
+  bool sound = log.expect(is_packed || entry.codec == static_cast<std::uint32_t>(format::SectionCodec::kPlain), Rule::kL009, where,
                           [&] { return "codec " + std::to_string(entry.codec); });
   if (known->id != SectionId::kPageData) {
     sound &= log.expect(is_packed ? entry.decoded_bytes > 0 && entry.decoded_bytes / format::kMaxSectionRatio <= entry.bytes
                                   : entry.decoded_bytes == entry.bytes,
-                        "L011", where,
+                        Rule::kL011, where,
                         [&] { return differs("bytes", entry.bytes, "decoded_bytes", entry.decoded_bytes); });
-    log.expect(hash64(file.bytes.subspan(entry.offset, entry.bytes)) == entry.checksum, "L010", where,
+    log.expect(hash64(file.bytes.subspan(entry.offset, entry.bytes)) == entry.checksum, Rule::kL010, where,
                [] { return std::string("checksum does not match"); });
   } else {
-    log.expect(entry.checksum == 0, "L010", where, [] { return std::string("page data has a checksum of its own"); });
+    log.expect(entry.checksum == 0, Rule::kL010, where, [] { return std::string("page data has a checksum of its own"); });
   }
-  sound &= log.expect(entry.record_bytes == known->record_bytes, "L011", where, [&] {
+  sound &= log.expect(entry.record_bytes == known->record_bytes, Rule::kL011, where, [&] {
     return differs("record_bytes", std::uint64_t{entry.record_bytes}, "record of version 1",
                    std::uint64_t{known->record_bytes});
   });
   if (known->record_bytes == 0) {
-    log.expect(entry.record_count == 0, "L011", where, [] { return std::string("raw bytes with a record count"); });
+    log.expect(entry.record_count == 0, Rule::kL011, where, [] { return std::string("raw bytes with a record count"); });
   } else {
-    sound &= log.expect(std::uint64_t{entry.record_count} * entry.record_bytes == entry.decoded_bytes, "L011", where, [&] {
+    sound &= log.expect(std::uint64_t{entry.record_count} * entry.record_bytes == entry.decoded_bytes, Rule::kL011, where, [&] {
       return differs("records' bytes", std::uint64_t{entry.record_count} * entry.record_bytes, "decoded_bytes",
                      entry.decoded_bytes);
     });
@@ -252,20 +252,20 @@ std::optional<FileTables> read_tables(std::span<const std::uint8_t> bytes, RuleL
   for (const SectionEntry& entry : file.sections) {
     sound &= check_section(file, entry, log);
     sound &= log.expect(
-        seen.insert(entry.id).second, "L008", [&] { return section_name(entry.id); },
+        seen.insert(entry.id).second, Rule::kL008, [&] { return section_name(entry.id); },
         [] { return std::string("occurs twice"); });
   }
   for (const KnownSection& known : kKnownSections) {
     const auto id = static_cast<std::uint32_t>(known.id);
     sound &= log.expect(
-        seen.contains(id), "L008", [&] { return section_name(id); }, [] { return std::string("is missing"); });
+        seen.contains(id), Rule::kL008, [&] { return section_name(id); }, [] { return std::string("is missing"); });
   }
   if (!sound) return std::nullopt;
   check_extents(file, log);
   for (const SectionEntry& entry : file.sections) {
     if (find_known(entry.id) == nullptr) continue;
     sound &= log.expect(
-        take_section(file, entry), "L011", [&] { return section_name(entry.id); },
+        take_section(file, entry), Rule::kL011, [&] { return section_name(entry.id); },
         [] { return std::string("the stored bytes do not decode"); });
   }
   if (!sound) return std::nullopt;

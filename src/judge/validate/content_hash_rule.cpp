@@ -79,7 +79,7 @@ void check_content_hash(const FileTables& file, std::span<const std::span<const 
                         RuleLog& log) {
   const Hash128 hash = content_hash_of(file, page_bytes);
   log.expect(
-      std::memcmp(hash.data(), file.header.content_hash, hash.size()) == 0, "L012",
+      std::memcmp(hash.data(), file.header.content_hash, hash.size()) == 0, Rule::kL012,
       [] { return std::string("header"); }, [] { return std::string("content_hash is not that of the content"); });
 }
 

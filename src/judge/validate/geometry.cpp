@@ -63,13 +63,13 @@ class MeshGeometry {
     check_mesh_counts();
     const MeshSurface surface = build_surface(asset_, MeshId(static_cast<std::uint32_t>(m_)), clusters_);
     const BorderProof proof = prove_borders(asset_, surface, clusters_);
-    report("L507", proof.violations);
+    report(Rule::kL507, proof.violations);
     check_materials(surface);
-    report("L506", check_shared_attributes(asset_, surface, clusters_, proof.border));
+    report(Rule::kL506, check_shared_attributes(asset_, surface, clusters_, proof.border));
   }
 
  private:
-  void report(std::string_view rule, const std::vector<BorderViolation>& violations) {
+  void report(Rule rule, const std::vector<BorderViolation>& violations) {
     for (const BorderViolation& v : violations) log_.add(rule, place("mesh", m_, "group", v.group), v.detail);
   }
 
@@ -87,7 +87,7 @@ class MeshGeometry {
       for (const std::uint32_t c : surface.made[k]) {
         const std::set<std::uint32_t> coarser = materials_of(surface.first_cluster + c);
         log_.expect(
-            std::includes(finer.begin(), finer.end(), coarser.begin(), coarser.end()), "L509",
+            std::includes(finer.begin(), finer.end(), coarser.begin(), coarser.end()), Rule::kL509,
             [&] { return place("mesh", m_, "cluster", surface.first_cluster + c); },
             [] { return std::string("has a material that its finer set has not"); });
       }
@@ -102,7 +102,7 @@ class MeshGeometry {
     const ExactBall ball{{sphere.center[0], sphere.center[1], sphere.center[2]}, sphere.radius};
     for (std::uint32_t v = 0; v < cluster.vertex_count; ++v) {
       const Vec3d p = Vec3d(cluster.position(v)) * step_;  // exact: below 2^47 times a power of two
-      if (!log_.expect(contains_point(ball, p), "L502", at,
+      if (!log_.expect(contains_point(ball, p), Rule::kL502, at,
                        [&] { return "vertex " + std::to_string(v) + " is outside"; }))
         break;
     }
@@ -116,11 +116,11 @@ class MeshGeometry {
       if (record.own_group == format::kNone) {
         collapsed_ += is_zero(n) ? 1 : 0;
       } else {
-        log_.expect(a != b && b != d && d != a, "L508", at,
+        log_.expect(a != b && b != d && d != a, Rule::kL508, at,
                     [&] { return "triangle " + std::to_string(t) + " has two corners in one place"; });
       }
       if (!is_zero(n) && !cone_broken) {
-        cone_broken = !log_.expect(cone_holds(record, n), "L503", at,
+        cone_broken = !log_.expect(cone_holds(record, n), Rule::kL503, at,
                                    [&] { return "triangle " + std::to_string(t) + " is outside the cone"; });
       }
     }
@@ -141,13 +141,13 @@ class MeshGeometry {
       for (int axis = 0; axis < 3; ++axis) {
         same &= mesh_.bounds_min[axis] == lowest_[axis] && mesh_.bounds_max[axis] == highest_[axis];
       }
-      log_.expect(same, "L504", at, [] { return std::string("bounds are not those of level 0's vertices"); });
+      log_.expect(same, Rule::kL504, at, [] { return std::string("bounds are not those of level 0's vertices"); });
     }
-    log_.expect(mesh_.grid_collapsed == collapsed_, "L505", at, [&] {
+    log_.expect(mesh_.grid_collapsed == collapsed_, Rule::kL505, at, [&] {
       return differs("grid_collapsed", mesh_.grid_collapsed, "triangles of level 0 without area", collapsed_);
     });
     const std::uint64_t dropped = mesh_.dropped_degenerate + mesh_.dropped_duplicate + mesh_.dropped_repaired;
-    log_.expect(mesh_.source_triangles == level0_triangles_ + dropped, "L116", at, [&] {
+    log_.expect(mesh_.source_triangles == level0_triangles_ + dropped, Rule::kL116, at, [&] {
       return differs("source_triangles", mesh_.source_triangles, "level 0 and dropped", level0_triangles_ + dropped);
     });
   }
@@ -166,7 +166,7 @@ class MeshGeometry {
 }  // namespace
 
 void check_geometry(const run::Asset& asset, std::span<const run::DecodedCluster> clusters, RuleLog& log) {
-  for (const char* rule : {"L116", "L501", "L502", "L503", "L504", "L505", "L506", "L507", "L508", "L509"})
+  for (const Rule rule : {Rule::kL116, Rule::kL501, Rule::kL502, Rule::kL503, Rule::kL504, Rule::kL505, Rule::kL506, Rule::kL507, Rule::kL508, Rule::kL509})
     log.check(rule);
   for (std::size_t m = 0; m < asset.meshes().size(); ++m) MeshGeometry(asset, m, clusters, log).run();
 }

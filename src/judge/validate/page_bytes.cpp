@@ -98,14 +98,14 @@ class ClusterBytesChecker {
   [[nodiscard]] std::string at() const { return place("page", page_, "cluster", cluster_); }
 
   template <class Detail>
-  bool expect(bool holds, std::string_view rule, const Detail& detail) {
+  bool expect(bool holds, Rule rule, const Detail& detail) {
     log_.expect(
         holds, rule, [&] { return at(); }, [&] { return std::string(detail()); });
     return holds;
   }
   /// For rules without which nothing more of the cluster can be trusted.
   template <class Detail>
-  bool require(bool holds, std::string_view rule, const Detail& detail) {
+  bool require(bool holds, Rule rule, const Detail& detail) {
     if (!expect(holds, rule, detail)) sound_ = false;
     return holds;
   }
@@ -114,14 +114,14 @@ class ClusterBytesChecker {
     const format::ClusterRecord& record = file_.clusters[cluster_];
     vertices_ = words_.field(head_, 0, 8) + 1;
     triangles_ = words_.field(head_, 8, 8) + 1;
-    if (!require(vertices_ == record.vertex_count() && triangles_ == record.triangle_count(), "L206", [&] {
+    if (!require(vertices_ == record.vertex_count() && triangles_ == record.triangle_count(), Rule::kL206, [&] {
           return differs("vertices", std::uint64_t{vertices_}, "record", std::uint64_t{record.vertex_count()}) + "; " +
                  differs("triangles", std::uint64_t{triangles_}, "record", std::uint64_t{record.triangle_count()});
         })) {
       return false;
     }
     const std::uint64_t start = words_.field(head_, 16, 16);
-    if (!require(start == data, "L205", [&] { return differs("data word", start, "should be", data); })) return false;
+    if (!require(start == data, Rule::kL205, [&] { return differs("data word", start, "should be", data); })) return false;
     cursor_ = start;
     bool known = true;
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
@@ -131,7 +131,7 @@ class ClusterBytesChecker {
     }
     chart_ = words_.field(head_ + 1, 29, 3);
     shear_axis_ = words_.field(head_ + 2, 29, 2);
-    expect(words_.field(head_ + 2, 31, 1) == 0 && words_.field(head_ + 3, 29, 3) == 0, "L214",
+    expect(words_.field(head_ + 2, 31, 1) == 0 && words_.field(head_ + 3, 29, 3) == 0, Rule::kL214,
            [] { return "an unnamed bit of the head is not zero"; });
     shear_[0] = words_.signed_field(head_ + 4, 0, 8);
     shear_[1] = words_.signed_field(head_ + 4, 8, 8);
@@ -146,13 +146,13 @@ class ClusterBytesChecker {
     }
     known &= chart_ < (has_normal_ ? 6U : 1U) && shear_axis_ < 3 && reference_bits_ >= 1 && reference_bits_ <= 8 &&
              normal_bits_[0] <= (has_normal_ ? 14U : 0U) && normal_bits_[1] <= 14;
-    return require(known, "L208", [] { return "a bit count, the chart or the shear axis is unknown"; });
+    return require(known, Rule::kL208, [] { return "a bit count, the chart or the shear axis is unknown"; });
   }
 
   /// Takes `count` words at the cursor, where the page has them before its last one.
   bool take(std::uint64_t count) {
     const bool fits = cursor_ <= words_.size() - 1 && count <= words_.size() - 1 - cursor_;
-    if (!require(fits, "L208", [] { return "reaches beyond the page"; })) return false;
+    if (!require(fits, Rule::kL208, [] { return "reaches beyond the page"; })) return false;
     cursor_ += count;
     return true;
   }
@@ -171,9 +171,9 @@ class ClusterBytesChecker {
       color_bits_[k] = words_.field(word + 1, 4 * k, 4);
       known &= color_bits_[k] <= 8;
     }
-    expect(words_.field(word + 1, 16, 16) == 0, "L214",
+    expect(words_.field(word + 1, 16, 16) == 0, Rule::kL214,
            [] { return "an unnamed bit of the colour range is not zero"; });
-    return require(known, "L208", [] { return "a colour has more than 8 bits"; });
+    return require(known, Rule::kL208, [] { return "a colour has more than 8 bits"; });
   }
 
   bool parse_materials() {
@@ -184,12 +184,12 @@ class ClusterBytesChecker {
       if (!take(1)) return false;
       const std::int64_t material = words_.field(word, 8, 24);
       covered += words_.field(word, 0, 8) + 1;
-      require(std::cmp_less(material, file_.materials.size()), "L211",
+      require(std::cmp_less(material, file_.materials.size()), Rule::kL211,
               [&] { return "material " + std::to_string(material) + " does not exist"; });
-      expect(material > before, "L211", [] { return "materials are not ascending"; });
+      expect(material > before, Rule::kL211, [] { return "materials are not ascending"; });
       before = material;
     }
-    return require(covered == triangles_, "L211", [&] {
+    return require(covered == triangles_, Rule::kL211, [&] {
       return differs("triangles in ranges", covered, "triangles", std::uint64_t{triangles_});
     });
   }
@@ -214,22 +214,22 @@ class ClusterBytesChecker {
       }
       expect(words_.field(word, 29, 3) == 0 &&
                  (!has_fit || (words_.field(word + 3, 30, 2) == 0 && words_.field(word + 4, 30, 2) == 0)),
-             "L214", [] { return "an unnamed bit of a UV range is not zero"; });
+             Rule::kL214, [] { return "an unnamed bit of a UV range is not zero"; });
       covered += range.vertices;
       ranges_[set].push_back(range);
-      if (!require(range.bits[0] <= 25 && range.bits[1] <= 25, "L208",
+      if (!require(range.bits[0] <= 25 && range.bits[1] <= 25, Rule::kL208,
                    [] { return "a UV range has more than 25 bits"; })) {
         return false;
       }
     }
-    return require(covered == vertices_, "L208", [&] {
+    return require(covered == vertices_, Rule::kL208, [&] {
       return differs("vertices in UV ranges", covered, "vertices", std::uint64_t{vertices_});
     });
   }
 
   bool parse_stream() {
     slots_ = triangles_ + 2 * strips_;
-    if (!require(strips_ <= triangles_ && slots_ >= vertices_, "L216",
+    if (!require(strips_ <= triangles_ && slots_ >= vertices_, Rule::kL216,
                  [] { return "has more strips than triangles, or fewer slots than vertices"; })) {
       return false;
     }
@@ -251,14 +251,14 @@ class ClusterBytesChecker {
     reference_bit_ = part(std::uint64_t{slots_ - vertices_} * reference_bits_);
     if (!take((bit + 31) / 32 - first)) return false;
     end_ = cursor_;
-    expect(bit % 32 == 0 || words_[bit / 32] >> (bit % 32) == 0, "L214",
+    expect(bit % 32 == 0 || words_[bit / 32] >> (bit % 32) == 0, Rule::kL214,
            [] { return "bits behind the stream are not zero"; });
     return true;
   }
 
   void expect_spread(const Spread& spread, std::uint32_t bits, std::uint32_t fewest, const char* what) {
     expect(spread.lowest == 0 && std::max(fewest, static_cast<std::uint32_t>(std::bit_width(spread.highest))) == bits,
-           "L207", [&] {
+           Rule::kL207, [&] {
              return std::string(what) + " are " + std::to_string(spread.lowest) + " … " +
                     std::to_string(spread.highest) + " in " + std::to_string(bits) + " bits";
            });
@@ -266,7 +266,7 @@ class ClusterBytesChecker {
 
   void expect_value(std::int64_t value, std::int64_t lowest, std::int64_t highest, const char* what, std::uint32_t v) {
     if (value >= lowest && value <= highest) return;
-    require(false, "L212",
+    require(false, Rule::kL212,
             [&] { return std::string(what) + " of vertex " + std::to_string(v) + " is " + std::to_string(value); });
   }
 
@@ -307,7 +307,7 @@ class ClusterBytesChecker {
       }
       if (std::abs(ab[0]) + std::abs(ab[1]) <= scale) continue;
       // Where the far half of the octahedron unfolds, a direction could be written in several ways.
-      expect((std::abs(ab[1]) != scale || ab[0] >= 0) && (std::abs(ab[0]) != scale || ab[1] >= 0), "L215",
+      expect((std::abs(ab[1]) != scale || ab[0] >= 0) && (std::abs(ab[0]) != scale || ab[1] >= 0), Rule::kL215,
              [&] { return "vertex " + std::to_string(v) + " has another pair for its normal"; });
     }
     for (std::uint32_t c = 0; c < 2; ++c) expect_spread(spread[c], normal_bits_[c], 0, "normals");
@@ -353,17 +353,17 @@ class ClusterBytesChecker {
     for (std::uint32_t k = 0; k < strips_; ++k) {
       const std::uint32_t next =
           k == 0 ? 0 : words_.stream(restart_bit_ + std::uint64_t{k - 1} * restart_bits_, restart_bits_);
-      if (!require((k == 0 || next > start) && next < triangles_, "L216",
+      if (!require((k == 0 || next > start) && next < triangles_, Rule::kL216,
                    [&] { return "strip " + std::to_string(k) + " starts at triangle " + std::to_string(next); })) {
         return;
       }
       start = next;
-      require(words_.stream(turn_bit_ + start, 1) == 0, "L216",
+      require(words_.stream(turn_bit_ + start, 1) == 0, Rule::kL216,
               [&] { return "strip " + std::to_string(k) + " starts with a right turn"; });
     }
     std::uint32_t fresh = 0;
     for (std::uint32_t s = 0; s < slots_; ++s) fresh += words_.stream(fresh_bit_ + s, 1);
-    if (!require(fresh == vertices_, "L210", [&] {
+    if (!require(fresh == vertices_, Rule::kL210, [&] {
           return differs("fresh slots", std::uint64_t{fresh}, "vertices", std::uint64_t{vertices_});
         })) {
       return;
@@ -380,7 +380,7 @@ class ClusterBytesChecker {
       const std::uint32_t distance = words_.stream(bit, reference_bits_);
       bit += reference_bits_;
       spread.add(distance);
-      require(distance < named, "L209",
+      require(distance < named, Rule::kL209,
               [&] { return "slot " + std::to_string(s) + " names a vertex before the first"; });
     }
     expect_spread(spread, reference_bits_, 1, "references");
@@ -414,11 +414,11 @@ bool check_decoded_page(const FileTables& file, std::size_t p, std::span<const s
   ClusterBytesChecker checker(file, p, bytes, log);
   const Words words(bytes);
   const std::uint64_t heads = 2 + page.cluster_count * checker.head_words();
-  if (!log.expect(heads < words.size(), "L205", at,
+  if (!log.expect(heads < words.size(), Rule::kL205, at,
                   [] { return std::string("is shorter than its header and cluster heads"); })) {
     return false;
   }
-  const bool sound = log.expect(words[0] == page.first_cluster && words[1] == page.cluster_count, "L205", at,
+  const bool sound = log.expect(words[0] == page.first_cluster && words[1] == page.cluster_count, Rule::kL205, at,
                                 [] { return std::string("its header names other clusters"); });
   std::uint64_t next = heads;
   for (std::uint32_t k = 0; k < page.cluster_count; ++k) {
@@ -426,11 +426,11 @@ bool check_decoded_page(const FileTables& file, std::size_t p, std::span<const s
     if (!end) return false;
     next = *end;
   }
-  if (!log.expect(next + 1 == words.size(), "L205", at,
+  if (!log.expect(next + 1 == words.size(), Rule::kL205, at,
                   [&] { return differs("words", words.size(), "used", next + 1); })) {
     return false;
   }
-  log.expect(words[next] == 0, "L214", at, [] { return std::string("the last word is not zero"); });
+  log.expect(words[next] == 0, Rule::kL214, at, [] { return std::string("the last word is not zero"); });
   return sound;
 }
 
@@ -439,27 +439,27 @@ bool check_decoded_page(const FileTables& file, std::size_t p, std::span<const s
 LoadedPages load_pages(const FileTables& file, const run::Asset* asset, RuleLog& log) {
   LoadedPages loaded;
   loaded.pages.reserve(file.pages.size());
-  log.check("L203");
-  log.check("L204");
+  log.check(Rule::kL203);
+  log.check(Rule::kL204);
   for (std::size_t p = 0; p < file.pages.size(); ++p) {
     const format::PageRecord& page = file.pages[p];
     const auto at = [&] { return place("page", p); };
     const auto stored = file.bytes.subspan(page.offset, page.stored_bytes);
     loaded.pages.emplace_back(std::span<const std::uint8_t>{});
-    log.expect(hash64(stored) == page.checksum, "L203", at,
+    log.expect(hash64(stored) == page.checksum, Rule::kL203, at,
                [] { return std::string("checksum of the stored bytes does not match"); });
     const bool is_plain = page.codec == format::Codec::kNone;
     // A page that does not shrink is stored plain.
     const bool sized = page.bytes <= format::kMaxPageBytes && page.bytes % 4 == 0 &&
                        (is_plain ? page.stored_bytes == page.bytes : page.stored_bytes < page.bytes);
-    log.expect(sized, "L204", at, [&] {
+    log.expect(sized, Rule::kL204, at, [&] {
       return differs("bytes", std::uint64_t{page.bytes}, "stored_bytes", std::uint64_t{page.stored_bytes});
     });
     if (sized && is_plain) {
       loaded.pages.back() = run::PageBytes(stored);
     } else if (sized && asset != nullptr) {
       Result<run::PageBytes> unpacked = run::load_page(*asset, PageId(static_cast<std::uint32_t>(p)));
-      if (log.expect(unpacked.ok(), "L204", at, [&] { return unpacked.error().message(); })) {
+      if (log.expect(unpacked.ok(), Rule::kL204, at, [&] { return unpacked.error().message(); })) {
         loaded.pages.back() = std::move(*unpacked);
       }
     }
@@ -468,14 +468,14 @@ LoadedPages load_pages(const FileTables& file, const run::Asset* asset, RuleLog&
       loaded.is_complete = false;
       continue;
     }
-    log.expect(hash64(bytes) == page.decoded_checksum, "L203", at,
+    log.expect(hash64(bytes) == page.decoded_checksum, Rule::kL203, at,
                [] { return std::string("checksum of the decoded bytes does not match"); });
   }
   return loaded;
 }
 
 bool check_page_bytes(const FileTables& file, const LoadedPages& loaded, RuleLog& log) {
-  for (const char* rule : {"L205", "L206", "L207", "L208", "L209", "L210", "L211", "L212", "L214", "L215", "L216"}) log.check(rule);
+  for (const Rule rule : {Rule::kL205, Rule::kL206, Rule::kL207, Rule::kL208, Rule::kL209, Rule::kL210, Rule::kL211, Rule::kL212, Rule::kL214, Rule::kL215, Rule::kL216}) log.check(rule);
   bool sound = loaded.is_complete;
   for (std::size_t p = 0; p < file.pages.size(); ++p) {
     const auto bytes = loaded.pages[p].bytes();

@@ -25,26 +25,26 @@ bool check_ranges(const FileTables& file, RuleLog& log) {
         page.first_group == group && page.group_count > 0 && page.group_count <= file.groups.size() - group;
     const bool clusters_fit =
         page.first_cluster == cluster && page.cluster_count > 0 && page.cluster_count <= file.clusters.size() - cluster;
-    sound &= log.expect(groups_fit, "L201", at, [&] { return "groups do not follow on " + std::to_string(group); });
+    sound &= log.expect(groups_fit, Rule::kL201, at, [&] { return "groups do not follow on " + std::to_string(group); });
     sound &=
-        log.expect(clusters_fit, "L201", at, [&] { return "clusters do not follow on " + std::to_string(cluster); });
+        log.expect(clusters_fit, Rule::kL201, at, [&] { return "clusters do not follow on " + std::to_string(cluster); });
     const bool deps_fit =
         page.first_dependency == dependency && page.dependency_count <= file.page_dependencies.size() - dependency;
     sound &=
-        log.expect(deps_fit, "L213", at, [&] { return "dependencies do not follow on " + std::to_string(dependency); });
-    log.expect(page.reserved == 0, "L103", at, [] { return std::string("reserved is not zero"); });
+        log.expect(deps_fit, Rule::kL213, at, [&] { return "dependencies do not follow on " + std::to_string(dependency); });
+    log.expect(page.reserved == 0, Rule::kL103, at, [] { return std::string("reserved is not zero"); });
     if (!groups_fit || !clusters_fit || !deps_fit) return false;
     std::uint64_t members = 0;
     for (std::uint32_t k = 0; k < page.group_count; ++k) {
       const format::GroupRecord& record = file.groups[page.first_group + k];
       members += record.cluster_count;
-      sound &= log.expect(record.page == p, "L201", at, [&] {
+      sound &= log.expect(record.page == p, Rule::kL201, at, [&] {
         return place("group", page.first_group + k) + " names page " + std::to_string(record.page);
       });
-      sound &= log.expect(record.mesh == file.groups[page.first_group].mesh, "L201", at,
+      sound &= log.expect(record.mesh == file.groups[page.first_group].mesh, Rule::kL201, at,
                           [] { return std::string("holds groups of two meshes"); });
     }
-    sound &= log.expect(members == page.cluster_count, "L201", at, [&] {
+    sound &= log.expect(members == page.cluster_count, Rule::kL201, at, [&] {
       return differs("clusters", std::uint64_t{page.cluster_count}, "members of its groups", members);
     });
     group += page.group_count;
@@ -52,10 +52,10 @@ bool check_ranges(const FileTables& file, RuleLog& log) {
     dependency += page.dependency_count;
   }
   sound &= log.expect(
-      group == file.groups.size() && cluster == file.clusters.size(), "L201", [] { return std::string("pages"); },
+      group == file.groups.size() && cluster == file.clusters.size(), Rule::kL201, [] { return std::string("pages"); },
       [] { return std::string("do not hold every group and cluster"); });
   sound &= log.expect(
-      dependency == file.page_dependencies.size(), "L213", [] { return std::string("PDEP"); },
+      dependency == file.page_dependencies.size(), Rule::kL213, [] { return std::string("PDEP"); },
       [] { return std::string("holds entries that no page names"); });
   return sound;
 }
@@ -71,20 +71,20 @@ bool check_places(const FileTables& file, RuleLog& log) {
     const std::uint64_t start =
         (next + format::kSectionAlignment - 1) / format::kSectionAlignment * format::kSectionAlignment;
     const bool inside = page.offset == start && start <= limit && page.stored_bytes <= limit - start;
-    if (!log.expect(inside, "L202", at,
+    if (!log.expect(inside, Rule::kL202, at,
                     [] { return std::string("does not follow the page before it inside the section"); }))
       return false;
     for (std::uint64_t i = next; i < page.offset; ++i) {
-      if (!log.expect(file.bytes[i] == 0, "L214", at,
+      if (!log.expect(file.bytes[i] == 0, Rule::kL214, at,
                       [] { return std::string("padding before the page is not zero"); }))
         break;
     }
     next = page.offset + page.stored_bytes;
-    sound &= log.expect(static_cast<std::uint32_t>(page.codec) <= 4, "L102", at,
+    sound &= log.expect(static_cast<std::uint32_t>(page.codec) <= 4, Rule::kL102, at,
                         [&] { return "codec " + std::to_string(static_cast<std::uint32_t>(page.codec)); });
   }
   sound &= log.expect(
-      next == limit, "L202", [] { return std::string("section PAGE"); },
+      next == limit, Rule::kL202, [] { return std::string("section PAGE"); },
       [] { return std::string("does not end with the last page"); });
   return sound;
 }
@@ -101,7 +101,7 @@ void check_dependencies(const FileTables& file, RuleLog& log) {
     const PageRecord& page = file.pages[p];
     const auto first = file.page_dependencies.begin() + page.first_dependency;
     log.expect(
-        std::equal(needed[p].begin(), needed[p].end(), first, first + page.dependency_count), "L213",
+        std::equal(needed[p].begin(), needed[p].end(), first, first + page.dependency_count), Rule::kL213,
         [&] { return place("page", p); },
         [&] {
           return differs("dependencies", std::uint64_t{page.dependency_count}, "needed",
@@ -114,7 +114,7 @@ void check_dependencies(const FileTables& file, RuleLog& log) {
 }  // namespace
 
 bool check_page_table(const FileTables& file, RuleLog& log) {
-  for (const char* rule : {"L201", "L202", "L213"}) log.check(rule);
+  for (const Rule rule : {Rule::kL201, Rule::kL202, Rule::kL213}) log.check(rule);
   const bool ranges = check_ranges(file, log);
   const bool places = check_places(file, log);
   if (ranges) check_dependencies(file, log);

@@ -89,13 +89,13 @@ std::optional<double> meta_real(std::string_view meta, const char* section, cons
 void check_texts(const FileTables& file, RuleLog& log) {
   const nlohmann::json meta = file.meta.empty() ? nlohmann::json::object() : parse(file.meta);
   if (log.expect(
-          meta.is_object(), "L013", [] { return std::string("section META"); },
+          meta.is_object(), Rule::kL013, [] { return std::string("section META"); },
           [] { return std::string("is not a JSON object"); })) {
     const auto has = [&](const char* key, nlohmann::json::value_t type) {
       const auto found = meta.find(key);
       if (found == meta.end()) return false;
       return log.expect(
-          found->type() == type, "L013", [&] { return std::string("section META: /") + key; },
+          found->type() == type, Rule::kL013, [&] { return std::string("section META: /") + key; },
           [] { return std::string("is of another type"); });
     };
     has("generator", nlohmann::json::value_t::string);
@@ -105,13 +105,13 @@ void check_texts(const FileTables& file, RuleLog& log) {
     if (has("source", nlohmann::json::value_t::object)) {
       for (const char* key : {"file", "hash"}) {
         log.expect(
-            !meta["source"].contains(key) || meta["source"][key].is_string(), "L013",
+            !meta["source"].contains(key) || meta["source"][key].is_string(), Rule::kL013,
             [&] { return std::string("section META: /source/") + key; }, [] { return std::string("is no string"); });
       }
     }
   }
   log.expect(
-      parse(file.scene).is_object(), "L013", [] { return std::string("section SCNE"); },
+      parse(file.scene).is_object(), Rule::kL013, [] { return std::string("section SCNE"); },
       [] { return std::string("is not a JSON object"); });
 }
 

@@ -40,12 +40,12 @@ class TreeChecker {
     for (std::uint32_t k = 0; k < mesh_.node_count; ++k) check_node(k, parents, leaves);
     for (std::uint32_t k = 0; k < mesh_.node_count; ++k) {
       log_.expect(
-          parents[k] == (k == 0 ? 0U : 1U), "L401", [&] { return at(k); },
+          parents[k] == (k == 0 ? 0U : 1U), Rule::kL401, [&] { return at(k); },
           [&] { return "has " + std::to_string(parents[k]) + " parents"; });
     }
     for (std::uint32_t k = 0; k < mesh_.group_count; ++k) {
       log_.expect(
-          leaves[k] == 1, "L402", [&] { return place("mesh", m_, "group", std::size_t{mesh_.first_group} + k); },
+          leaves[k] == 1, Rule::kL402, [&] { return place("mesh", m_, "group", std::size_t{mesh_.first_group} + k); },
           [&] { return "is in " + std::to_string(leaves[k]) + " leaves"; });
     }
   }
@@ -59,26 +59,26 @@ class TreeChecker {
     const NodeRecord& node = file_.nodes[mesh_.first_node + k];
     const auto where = [&] { return at(k); };
     const bool sound =
-        log_.expect(is_sound(node), "L403", where, [] { return std::string("sphere or error is no number"); });
+        log_.expect(is_sound(node), Rule::kL403, where, [] { return std::string("sphere or error is no number"); });
     if (node.child_count == 0) {
       const std::uint32_t local = node.first - mesh_.first_group;  // wraps to a large number when below
-      if (!log_.expect(local < mesh_.group_count, "L402", where,
+      if (!log_.expect(local < mesh_.group_count, Rule::kL402, where,
                        [&] { return "group " + std::to_string(node.first) + " is not of its mesh"; })) {
         return;
       }
       ++leaves[local];
       const format::GroupRecord& group = file_.groups[node.first];
       // Traversal takes a leaf that fails for a group that fails, so the two are the same bits.
-      log_.expect(are_same_bits(ball_of(node), ball_of(group)), "L403", where,
+      log_.expect(are_same_bits(ball_of(node), ball_of(group)), Rule::kL403, where,
                   [&] { return "its sphere is not that of its " + place("group", node.first); });
-      log_.expect(node.error == group.error, "L404", where,
+      log_.expect(node.error == group.error, Rule::kL404, where,
                   [&] { return differs("error", double{node.error}, "its group's", double{group.error}); });
       return;
     }
     const std::uint32_t first = node.first - mesh_.first_node;
     if (!log_.expect(node.child_count <= format::kBvhWidth && first > k && first < mesh_.node_count &&
                          node.child_count <= mesh_.node_count - first,
-                     "L401", where, [&] {
+                     Rule::kL401, where, [&] {
                        return "children " + std::to_string(node.first) + " + " + std::to_string(node.child_count) +
                               " are not nodes of its mesh after it, or more than 8";
                      })) {
@@ -88,7 +88,7 @@ class TreeChecker {
     for (std::uint32_t child = first; child < first + node.child_count; ++child) {
       ++parents[child];
       depths_[child] = depths_[k] + 1;  // nodes come parents first
-      log_.expect(depths_[child] <= kMaxDepth, "L401", where,
+      log_.expect(depths_[child] <= kMaxDepth, Rule::kL401, where,
                   [] { return std::string("lies more than 64 nodes deep"); });
       infinite_below |= file_.nodes[mesh_.first_node + child].error == format::kInfiniteError;
       const NodeRecord& below = file_.nodes[mesh_.first_node + child];
@@ -96,7 +96,7 @@ class TreeChecker {
     }
     // An infinite error above finite ones only would cost traversal, never a wrong cut: yet it is not what was
     // specified.
-    log_.expect(infinite_below || node.error != format::kInfiniteError, "L404", where,
+    log_.expect(infinite_below || node.error != format::kInfiniteError, Rule::kL404, where,
                 [] { return std::string("infinite without a terminal group below"); });
   }
 
@@ -106,12 +106,12 @@ class TreeChecker {
     const ExactBall ball = ball_of(node);
     const auto where = [&] { return at(k); };
     if (std::isfinite(below.radius) && below.radius >= 0.0F) {
-      if (log_.expect(contains_ball(ball, below), "L403", where, [&] { return "does not contain " + name(); })) {
-        log_.expect(are_same_bits(ball, below) || has_sphere_margin(ball, below), "L403", where,
+      if (log_.expect(contains_ball(ball, below), Rule::kL403, where, [&] { return "does not contain " + name(); })) {
+        log_.expect(are_same_bits(ball, below) || has_sphere_margin(ball, below), Rule::kL403, where,
                     [&] { return "contains " + name() + " without the margin of the rule's rounding"; });
       }
     }
-    log_.expect(node.error >= error && (node.error == error || has_error_margin(error, node.error)), "L404", where,
+    log_.expect(node.error >= error && (node.error == error || has_error_margin(error, node.error)), Rule::kL404, where,
                 [&] { return differs("error", double{node.error}, "below", double{error}); });
   }
 
@@ -125,7 +125,7 @@ class TreeChecker {
 }  // namespace
 
 void check_trees(const FileTables& file, RuleLog& log) {
-  for (const char* rule : {"L401", "L402", "L403", "L404"}) log.check(rule);
+  for (const Rule rule : {Rule::kL401, Rule::kL402, Rule::kL403, Rule::kL404}) log.check(rule);
   for (std::size_t m = 0; m < file.meshes.size(); ++m) TreeChecker(file, m, log).run();
 }
 

@@ -26,25 +26,25 @@ void run_rules(std::span<const std::uint8_t> bytes, RuleLog& log) {
   const Result<run::Asset> asset = run::Asset::from_bytes(bytes);
   if (asset) {
     const Status size = run::check_decoded_bytes(*asset, run::count_decoded_bytes(*asset));
-    if (!log.expect(size.ok(), "L099", [&] { return size.error().where; }, [&] { return size.error().detail; })) return;
+    if (!log.expect(size.ok(), Rule::kL099, [&] { return size.error().where; }, [&] { return size.error().detail; })) return;
   }
   const LoadedPages loaded = load_pages(*file, asset ? &asset.value() : nullptr, log);
-  if (loaded.is_complete && log.count_of("L114") == 0) {
+  if (loaded.is_complete && log.count_of(Rule::kL114) == 0) {
     std::vector<std::span<const std::uint8_t>> page_bytes;
     for (const run::PageBytes& page : loaded.pages) page_bytes.push_back(page.bytes());
     check_content_hash(*file, page_bytes, log);
   }
   const bool pages_sound = check_page_bytes(*file, loaded, log);
   // The reader refuses at the first fault of its own rules; where others were named already, that is no news.
-  log.check("L099");
+  log.check(Rule::kL099);
   if (!asset) {
-    if (log.finding_count() == 0) log.add("L099", asset.error().where, asset.error().detail);
+    if (log.finding_count() == 0) log.add(Rule::kL099, asset.error().where, asset.error().detail);
     return;
   }
   if (!pages_sound) return;
   const Result<std::vector<run::DecodedCluster>> clusters = run::decode_all(*asset);
   if (!clusters) {
-    if (log.finding_count() == 0) log.add("L099", clusters.error().where, clusters.error().detail);
+    if (log.finding_count() == 0) log.add(Rule::kL099, clusters.error().where, clusters.error().detail);
     return;
   }
   check_geometry(*asset, *clusters, log);

@@ -208,7 +208,7 @@ CameraTotals check_cameras(const run::Asset& asset, std::span<const MeshJudge> j
   for (std::uint32_t i = 0; i < asset.instances().size(); ++i) {
     if (is_drawable(asset, asset.instances()[i])) drawable.push_back(i);
   }
-  for (const char* rule : {"V201", "V202", "V203", "V204"}) log.check(rule);
+  for (const Rule rule : {Rule::kV201, Rule::kV202, Rule::kV203, Rule::kV204}) log.check(rule);
   if (drawable.empty()) return totals;
   SplitMix64 random(seed);
   std::vector<View> views;
@@ -218,12 +218,12 @@ CameraTotals check_cameras(const run::Asset& asset, std::span<const MeshJudge> j
                           [&](std::size_t i) { faults[i] = judge_camera(asset, judges, views[i], selectors); });
   for (std::size_t i = 0; i < faults.size(); ++i) {
     const std::string camera = place("camera", i) + " (" + views[i].kind + ", seed " + std::to_string(seed) + ")";
-    if (!faults[i].hierarchy.empty()) log.add("V203", camera, faults[i].hierarchy);
+    if (!faults[i].hierarchy.empty()) log.add(Rule::kV203, camera, faults[i].hierarchy);
     for (const auto& [instance, fault] : faults[i].of_instance) {
       const std::string where = camera + ", " + place("instance", instance);
-      if (!fault.coverage.empty()) log.add("V201", where, fault.coverage);
-      if (!fault.border.empty()) log.add("V202", where, fault.border);
-      if (!fault.rule.empty()) log.add("V204", where, fault.rule);
+      if (!fault.coverage.empty()) log.add(Rule::kV201, where, fault.coverage);
+      if (!fault.border.empty()) log.add(Rule::kV202, where, fault.border);
+      if (!fault.rule.empty()) log.add(Rule::kV204, where, fault.rule);
     }
     totals.cuts += faults[i].totals.cuts;
     totals.decisions += faults[i].totals.decisions;

@@ -65,7 +65,7 @@ DeviationTotals check_deviations(const run::Asset& asset, const scene::Scene& so
       ++totals.cuts;
       if (cut.is_above(1.0)) ++totals.exceeded;
       log.expect(
-          !cut.is_above(limit), "V206", [&] { return place("mesh", m); },
+          !cut.is_above(limit), Rule::kV206, [&] { return place("mesh", m); },
           [&] {
             char text[160];
             std::snprintf(text, sizeof text, "the cut at error %.6g stores %.6g and deviates by %.6g, %.3f times that",

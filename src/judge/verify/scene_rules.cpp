@@ -47,7 +47,7 @@ bool is_same_transform(const format::InstanceRecord& stored, const Mat4d& source
 
 void check_materials(const run::Asset& asset, const scene::Scene& source, RuleLog& log) {
   log.expect(
-      asset.materials().size() == source.materials.size(), "V106", [] { return std::string("materials"); },
+      asset.materials().size() == source.materials.size(), Rule::kV106, [] { return std::string("materials"); },
       [&] {
         return differs("stored", std::uint64_t{asset.materials().size()}, "source",
                        std::uint64_t{source.materials.size()});
@@ -55,14 +55,14 @@ void check_materials(const run::Asset& asset, const scene::Scene& source, RuleLo
   const std::size_t count = std::min(asset.materials().size(), source.materials.size());
   for (std::size_t i = 0; i < count; ++i) {
     log.expect(
-        is_same_material(asset, asset.materials()[i], source.materials[i]), "V106",
+        is_same_material(asset, asset.materials()[i], source.materials[i]), Rule::kV106,
         [&] { return place("material", i); }, [] { return std::string("is not the source's"); });
   }
 }
 
 void check_instances(const run::Asset& asset, const scene::Scene& source, RuleLog& log) {
   log.expect(
-      asset.instances().size() == source.instances.size(), "V107", [] { return std::string("instances"); },
+      asset.instances().size() == source.instances.size(), Rule::kV107, [] { return std::string("instances"); },
       [&] {
         return differs("stored", std::uint64_t{asset.instances().size()}, "source",
                        std::uint64_t{source.instances.size()});
@@ -74,15 +74,15 @@ void check_instances(const run::Asset& asset, const scene::Scene& source, RuleLo
     const auto at = [&] { return place("instance", i); };
     log.expect(stored.mesh == instance.mesh.value && stored.node == instance.node &&
                    asset.string(stored.name) == instance.name,
-               "V107", at, [] { return std::string("names another mesh, node or name"); });
-    log.expect(is_same_transform(stored, instance.transform), "V107", at,
+               Rule::kV107, at, [] { return std::string("names another mesh, node or name"); });
+    log.expect(is_same_transform(stored, instance.transform), Rule::kV107, at,
                [] { return std::string("has another transform"); });
   }
 }
 
 void check_blobs(const run::Asset& asset, const scene::Scene& source, RuleLog& log) {
   log.expect(
-      asset.blobs().size() == source.blobs.size(), "V109", [] { return std::string("blobs"); },
+      asset.blobs().size() == source.blobs.size(), Rule::kV109, [] { return std::string("blobs"); },
       [&] {
         return differs("stored", std::uint64_t{asset.blobs().size()}, "source", std::uint64_t{source.blobs.size()});
       });
@@ -96,10 +96,10 @@ void check_blobs(const run::Asset& asset, const scene::Scene& source, RuleLog& l
                       asset.string(stored.name) == blob.name && asset.string(stored.mime_type) == blob.mime_type &&
                       std::equal(bytes.begin(), bytes.end(), blob.bytes.begin(), blob.bytes.end());
     log.expect(
-        same, "V109", [&] { return place("blob", i); }, [] { return std::string("is not the source's"); });
+        same, Rule::kV109, [&] { return place("blob", i); }, [] { return std::string("is not the source's"); });
   }
   log.expect(
-      asset.scene_json() == source.document, "V109", [] { return std::string("section SCNE"); },
+      asset.scene_json() == source.document, Rule::kV109, [] { return std::string("section SCNE"); },
       [] { return std::string("is not the source's scene document"); });
 }
 
@@ -135,19 +135,19 @@ void check_attributes(const run::Asset& asset, const scene::Scene& source, RuleL
     const format::MeshRecord& mesh = asset.meshes()[m];
     if (mesh.cluster_count == 0) continue;
     const auto at = [&] { return place("mesh", m); };
-    log.expect(mesh.normal_mode != format::NormalMode::kNone, "V110", at,
+    log.expect(mesh.normal_mode != format::NormalMode::kNone, Rule::kV110, at,
                [] { return std::string("normals are left out"); });
-    log.expect(mesh.normal_mode == format::NormalMode::kStored || !has_own_shading(source.meshes[m]), "V110", at,
+    log.expect(mesh.normal_mode == format::NormalMode::kStored || !has_own_shading(source.meshes[m]), Rule::kV110, at,
                [] { return std::string("normals differ from the triangles' own and are not stored"); });
     for (const scene::Primitive& primitive : source.meshes[m].primitives) {
-      log.expect(mesh.has_color != 0 || !has_color(primitive), "V110", at,
+      log.expect(mesh.has_color != 0 || !has_color(primitive), Rule::kV110, at,
                  [] { return std::string("colours are not stored"); });
       if (primitive.material.value >= source.materials.size()) continue;
       for (std::uint32_t set = 0; set < scene::kMaxUvSets; ++set) {
         const bool is_used =
             (source.materials[primitive.material.value].uv_sets_used >> set & 1U) != 0 && !primitive.uvs[set].empty();
         const auto* end = mesh.uv_set_source + mesh.uv_set_count;
-        log.expect(!is_used || std::find(mesh.uv_set_source, end, set) != end, "V110", at,
+        log.expect(!is_used || std::find(mesh.uv_set_source, end, set) != end, Rule::kV110, at,
                    [&] { return "TEXCOORD_" + std::to_string(set) + " is sampled and not stored"; });
       }
     }
@@ -162,7 +162,7 @@ void check_caps(const run::Asset& asset, RuleLog& log) {
   for (std::size_t c = 0; c < asset.clusters().size(); ++c) {
     const format::ClusterRecord& cluster = asset.clusters()[c];
     log.expect(
-        cluster.triangle_count() <= triangles && cluster.vertex_count() <= vertices, "V111",
+        cluster.triangle_count() <= triangles && cluster.vertex_count() <= vertices, Rule::kV111,
         [&] { return place("cluster", c); },
         [&] {
           return differs("triangles", std::uint64_t{cluster.triangle_count()}, "vertices",
@@ -173,7 +173,7 @@ void check_caps(const run::Asset& asset, RuleLog& log) {
 }
 
 void check_tiers(const run::Asset& asset, RuleLog& log) {
-  log.check("V112");
+  log.check(Rule::kV112);
   const std::string setting = meta_text(asset.meta_json(), "settings", "error_tier");
   if (setting.empty()) return;
   constexpr const char* kNames[] = {"qem", "measured", "certified"};
@@ -181,7 +181,7 @@ void check_tiers(const run::Asset& asset, RuleLog& log) {
     if (asset.meshes()[m].cluster_count == 0) continue;
     const auto tier = static_cast<std::uint32_t>(asset.meshes()[m].error_tier);
     log.expect(
-        tier < std::size(kNames) && setting == kNames[tier], "V112", [&] { return place("mesh", m); },
+        tier < std::size(kNames) && setting == kNames[tier], Rule::kV112, [&] { return place("mesh", m); },
         [&] { return "tier " + std::to_string(tier) + " is not \"" + setting + "\""; });
   }
 }
@@ -189,7 +189,7 @@ void check_tiers(const run::Asset& asset, RuleLog& log) {
 /// V104 and V105 measure every vertex of level 0 against the bounds of the mesh's record; here those bounds are held
 /// against what was asked for, budgets in texels with the source's images at hand.
 void check_budgets(const run::Asset& asset, const scene::Scene& source, std::span<const run::DecodedCluster> clusters, RuleLog& log) {
-  log.check("V113");
+  log.check(Rule::kV113);
   const auto setting = [&](const char* key) { return meta_real(asset.meta_json(), "settings", key); };
   const std::optional<double> position = setting("position_error");
   const std::optional<double> normal = setting("normal_error");
@@ -203,20 +203,20 @@ void check_budgets(const run::Asset& asset, const scene::Scene& source, std::spa
     if (mesh.cluster_count == 0) continue;
     const auto at = [&] { return place("mesh", m); };
     if (position) {
-      log.expect(double{mesh.level0_deviation} <= *position * kRounding, "V113", at, [&] {
+      log.expect(double{mesh.level0_deviation} <= *position * kRounding, Rule::kV113, at, [&] {
         return differs("level-0 deviation", double{mesh.level0_deviation}, "position_error", *position);
       });
     }
     if (normal && mesh.normal_mode == format::NormalMode::kStored && mesh.normal_scale > 0) {
       const double degrees = std::sqrt(2.0) / mesh.normal_scale * 180.0 / 3.14159265358979323846;
-      log.expect(degrees <= *normal * kRounding, "V113", at,
+      log.expect(degrees <= *normal * kRounding, Rule::kV113, at,
                  [&] { return differs("largest angle", degrees, "normal_error", *normal); });
     }
     std::array<bool, scene::kMaxUvSets> is_finest{};
     if (uv) is_finest = has_finest_step(asset, MeshId(m), clusters);
     for (std::uint32_t set = 0; uv && set < mesh.uv_set_count; ++set) {
       const double half_step = 0.5 * format::exp2_exact(mesh.uv_log2[set]);
-      log.expect(half_step <= *uv * kRounding || is_finest[set], "V113", at,
+      log.expect(half_step <= *uv * kRounding || is_finest[set], Rule::kV113, at,
                  [&] { return differs("half a UV step", half_step, "uv_error", *uv); });
     }
   }
@@ -228,14 +228,14 @@ void check_scene(const run::Asset& asset, const scene::Scene& source, std::span<
   check_materials(asset, source, log);
   check_instances(asset, source, log);
   check_blobs(asset, source, log);
-  log.check("V110");
+  log.check(Rule::kV110);
   check_attributes(asset, source, log);
   check_caps(asset, log);
   check_tiers(asset, log);
   check_budgets(asset, source, clusters, log);
   const std::string hash = meta_text(asset.meta_json(), "source", "hash");
   log.expect(
-      hash == source.source_hash, "V108", [] { return std::string("section META: /source/hash"); },
+      hash == source.source_hash, Rule::kV108, [] { return std::string("section META: /source/hash"); },
       [&] { return "is \"" + hash + "\", the source given has \"" + source.source_hash + "\""; });
 }
 

@@ -90,13 +90,13 @@ class SourceMatcher {
       vertices += primitive.positions.size();
     }
     const auto at = [&] { return where(); };
-    log_.expect(mesh_.source_triangles == triangles, "V103", at,
+    log_.expect(mesh_.source_triangles == triangles, Rule::kV103, at,
                 [&] { return differs("source_triangles", mesh_.source_triangles, "source", triangles); });
-    log_.expect(mesh_.source_vertices == vertices, "V103", at,
+    log_.expect(mesh_.source_vertices == vertices, Rule::kV103, at,
                 [&] { return differs("source_vertices", mesh_.source_vertices, "source", vertices); });
-    log_.expect(asset_.string(mesh_.name) == source_.name, "V103", at,
+    log_.expect(asset_.string(mesh_.name) == source_.name, Rule::kV103, at,
                 [&] { return "name is not \"" + source_.name + "\""; });
-    log_.expect(mesh_.dropped_repaired == source_.drops.repaired, "V102", at, [&] {
+    log_.expect(mesh_.dropped_repaired == source_.drops.repaired, Rule::kV102, at, [&] {
       return differs("dropped_repaired", mesh_.dropped_repaired, "repaired by import", source_.drops.repaired);
     });
   }
@@ -129,7 +129,7 @@ class SourceMatcher {
     counts_.source_triangles = sources_.size();
     const auto at = [&] { return where(); };
     const double diagonal = has_bounds ? std::sqrt(glm::dot(high - low, high - low)) : 0.0;
-    log_.expect(std::fabs(mesh_.diagonal - diagonal) <= 1e-9 * diagonal, "V103", at,
+    log_.expect(std::fabs(mesh_.diagonal - diagonal) <= 1e-9 * diagonal, Rule::kV103, at,
                 [&] { return differs("diagonal", mesh_.diagonal, "source", diagonal); });
     put_on_grid();
   }
@@ -207,7 +207,7 @@ class SourceMatcher {
     }
     const double moved = std::sqrt(moved2);
     const double stored = mesh_.level0_deviation;  // a float, rounded up
-    log_.expect(stored >= moved * (1.0 - 1e-12) && stored <= moved * (1.0 + 0x1p-22) + 0x1p-148, "V105",
+    log_.expect(stored >= moved * (1.0 - 1e-12) && stored <= moved * (1.0 + 0x1p-22) + 0x1p-148, Rule::kV105,
                 [&] { return where(); }, [&] {
       return differs("level0_deviation", double{mesh_.level0_deviation}, "largest move of a vertex", moved);
     });
@@ -309,8 +309,8 @@ class SourceMatcher {
   }
 
   void match() {
-    log_.check("V101");
-    log_.check("V104");
+    log_.check(Rule::kV101);
+    log_.check(Rule::kV104);
     for_each_key([&](const TriangleKey& key, std::span<const SourceTriangle> sources,
                      std::span<const StoredTriangle> stored) { match_key(key, sources, stored); });
   }
@@ -334,7 +334,7 @@ class SourceMatcher {
       duplicates_most_ += one.count - 1;
     }
     if (stored.size() < least || stored.size() > most) {
-      log_.add("V101", key_text(key),
+      log_.add(Rule::kV101, key_text(key),
                std::to_string(stored.size()) + " times among level-0 clusters, expected " + std::to_string(least) +
                    (most == least ? "" : " to " + std::to_string(most)));
       return;
@@ -345,7 +345,7 @@ class SourceMatcher {
       const bool found = std::any_of(classes.begin(), classes.end(),
                                      [&](const SourceClass& one) { return has_attributes_of(triangle, one); });
       if (!found) {
-        log_.add("V104", key_text(key),
+        log_.add(Rule::kV104, key_text(key),
                  place("cluster", triangle.cluster, "triangle", triangle.triangle) +
                      " has attributes of no source triangle in its place");
       }
@@ -406,14 +406,14 @@ class SourceMatcher {
 
   void check_dropped() {
     const auto at = [&] { return where(); };
-    log_.expect(mesh_.dropped_degenerate == degenerate_, "V102", at, [&] {
+    log_.expect(mesh_.dropped_degenerate == degenerate_, Rule::kV102, at, [&] {
       return differs("dropped_degenerate", mesh_.dropped_degenerate, "degenerate in the source", degenerate_);
     });
     const std::uint64_t gone =
         sources_.size() + degenerate_ - std::min<std::uint64_t>(stored_.size(), sources_.size() + degenerate_);
     log_.expect(
         mesh_.dropped_degenerate + mesh_.dropped_duplicate == gone && mesh_.dropped_duplicate <= duplicates_most_,
-        "V102", at, [&] {
+        Rule::kV102, at, [&] {
           return differs("dropped", mesh_.dropped_degenerate + mesh_.dropped_duplicate, "missing from level 0", gone);
         });
   }
@@ -439,7 +439,7 @@ class SourceMatcher {
 
 SourceCounts check_source_triangles(const run::Asset& asset, MeshId mesh, const scene::SourceMesh& source,
                                     std::span<const run::DecodedCluster> clusters, RuleLog& log) {
-  for (const char* rule : {"V101", "V102", "V103", "V104", "V105"}) log.check(rule);
+  for (const Rule rule : {Rule::kV101, Rule::kV102, Rule::kV103, Rule::kV104, Rule::kV105}) log.check(rule);
   return SourceMatcher(asset, mesh, source, clusters, log).run();
 }
 

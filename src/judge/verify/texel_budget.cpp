@@ -123,7 +123,7 @@ void check_texel_budget(const run::Asset& asset, const scene::Scene& source, dou
     for (std::uint32_t set = 0; set < mesh.uv_set_count; ++set) {
       if (mesh.uv_set_source[set] >= scene::kMaxUvSets) continue;
       const double moved = 0.5 * format::exp2_exact(mesh.uv_log2[set]) * most[mesh.uv_set_source[set]];
-      log.expect(moved <= texels * kRounding || is_finest[set], "V113", [&] { return place("mesh", m); },
+      log.expect(moved <= texels * kRounding || is_finest[set], Rule::kV113, [&] { return place("mesh", m); },
                  [&] { return differs("texels that a UV moves", moved, "uv_error in texels", texels); });
     }
   }

@@ -76,7 +76,7 @@ CutFaults judge_uniform_cut(const run::Asset& asset, const MeshJudge& judge, dou
 
 CutTotals check_uniform_cuts(const run::Asset& asset, const MeshJudge& judge, std::uint32_t count, RuleLog& log,
                              const Selectors& selectors) {
-  for (const char* rule : {"V201", "V202", "V204", "V205"}) log.check(rule);
+  for (const Rule rule : {Rule::kV201, Rule::kV202, Rule::kV204, Rule::kV205}) log.check(rule);
   CutTotals totals;
   if (count == 0 || judge.surface.cluster_count == 0) return totals;
   const std::vector<double> thresholds = choose_thresholds(asset, judge.surface, count);
@@ -85,16 +85,16 @@ CutTotals check_uniform_cuts(const run::Asset& asset, const MeshJudge& judge, st
     faults[i] = judge_uniform_cut(asset, judge, thresholds[i], selectors);
   });
   for (std::size_t i = 0; i < faults.size(); ++i) {
-    const auto report = [&](const char* rule, const std::string& fault) {
+    const auto report = [&](Rule rule, const std::string& fault) {
       if (fault.empty()) return;
       char text[48];
       std::snprintf(text, sizeof text, ", uniform cut at %.9g", thresholds[i]);
       log.add(rule, place("mesh", judge.surface.mesh.value) + text, fault);
     };
-    report("V201", faults[i].coverage);
-    report("V202", faults[i].border);
-    report("V204", faults[i].rule);
-    report("V205", faults[i].error);
+    report(Rule::kV201, faults[i].coverage);
+    report(Rule::kV202, faults[i].border);
+    report(Rule::kV204, faults[i].rule);
+    report(Rule::kV205, faults[i].error);
   }
   totals.cuts = thresholds.size();
   totals.open_cuts = judge.border.is_closed ? 0 : thresholds.size();

@@ -31,9 +31,9 @@ class Report {
   VerifyReport out;
 };
 
-std::uint64_t failures_of(const RuleLog& log, std::initializer_list<std::string_view> rules) {
+std::uint64_t failures_of(const RuleLog& log, std::initializer_list<Rule> rules) {
   std::uint64_t sum = 0;
-  for (const std::string_view rule : rules) sum += log.count_of(rule);
+  for (const Rule rule : rules) sum += log.count_of(rule);
   return sum;
 }
 
@@ -48,8 +48,8 @@ void add_structure(const run::Asset& asset, Report& report) {
   };
   const auto groups = static_cast<std::uint64_t>(asset.groups().size());
   const auto clusters = static_cast<std::uint64_t>(asset.clusters().size());
-  const auto ran = [&](const char* id) {
-    return std::find(structure.checked.begin(), structure.checked.end(), id) != structure.checked.end();
+  const auto ran = [&](Rule rule) {
+    return std::find(structure.checked.begin(), structure.checked.end(), info_of(rule).id) != structure.checked.end();
   };
   report.add_check("", "container, tables and pages follow the format (L0, L1, L2)", asset.bytes().size(),
                    failures([](const Finding& f) { return f.id[1] < '3'; }));
@@ -58,7 +58,7 @@ void add_structure(const run::Asset& asset, Report& report) {
                    has_invariant("I4"));
   report.add_check("I5", "levels, roots and replacements form a DAG without gaps", clusters, has_invariant("I5"));
   report.add_check("I8", "the hierarchy bounds every group and cluster", asset.nodes().size(), has_invariant("I8"));
-  if (ran("L507")) {
+  if (ran(Rule::kL507)) {
     report.add_check("I3", "shared borders keep positions and attributes", groups, has_invariant("I3"));
     report.add_check("I6", "border proof: a group's coarser set has the border of its finer set", groups,
                      has_invariant("I6"));
@@ -75,7 +75,7 @@ void add_source(const run::Asset& asset, const scene::Scene& source, std::span<c
   SourceCounts totals;
   const std::size_t count = std::min(asset.meshes().size(), source.meshes.size());
   log.expect(
-      asset.meshes().size() == source.meshes.size(), "V103", [] { return std::string("meshes"); },
+      asset.meshes().size() == source.meshes.size(), Rule::kV103, [] { return std::string("meshes"); },
       [&] {
         return differs("stored", std::uint64_t{asset.meshes().size()}, "source", std::uint64_t{source.meshes.size()});
       });
@@ -87,20 +87,20 @@ void add_source(const run::Asset& asset, const scene::Scene& source, std::span<c
   }
   check_scene(asset, source, clusters, log);
   report.add_check("I1", "every source triangle is in exactly one level-0 cluster", totals.source_triangles,
-                   failures_of(log, {"V101"}));
-  report.add_check("I1", "dropped and source triangles are counted correctly", count, failures_of(log, {"V102", "V103"}));
+                   failures_of(log, {Rule::kV101}));
+  report.add_check("I1", "dropped and source triangles are counted correctly", count, failures_of(log, {Rule::kV102, Rule::kV103}));
   report.add_check("I3", "level-0 attributes are the source's within their quantization", totals.corners,
-                   failures_of(log, {"V104"}));
-  report.add_check("", "attributes that the source's shading needs are stored", count, failures_of(log, {"V110"}));
-  report.add_check("I2", "clusters keep the caps of the settings", asset.clusters().size(), failures_of(log, {"V111"}));
-  report.add_check("", "level 0 is within the accuracy budgets of the settings", count, failures_of(log, {"V113"}));
-  report.add_check("I7", "the error tier is that of the settings", count, failures_of(log, {"V112"}));
+                   failures_of(log, {Rule::kV104}));
+  report.add_check("", "attributes that the source's shading needs are stored", count, failures_of(log, {Rule::kV110}));
+  report.add_check("I2", "clusters keep the caps of the settings", asset.clusters().size(), failures_of(log, {Rule::kV111}));
+  report.add_check("", "level 0 is within the accuracy budgets of the settings", count, failures_of(log, {Rule::kV113}));
+  report.add_check("I7", "the error tier is that of the settings", count, failures_of(log, {Rule::kV112}));
   report.add_check("", "level-0 deviation is the largest move of a vertex onto the grid", count,
-                   failures_of(log, {"V105"}));
+                   failures_of(log, {Rule::kV105}));
   report.add_check("", "materials, instances, images and scene are the source's",
                    source.materials.size() + source.instances.size() + source.blobs.size(),
-                   failures_of(log, {"V106", "V107", "V109"}));
-  report.add_check("", "the source is the one the asset was built from", 1, failures_of(log, {"V108"}));
+                   failures_of(log, {Rule::kV106, Rule::kV107, Rule::kV109}));
+  report.add_check("", "the source is the one the asset was built from", 1, failures_of(log, {Rule::kV108}));
   report.take(log);
 }
 
@@ -116,24 +116,24 @@ void add_cuts(const run::Asset& asset, std::span<const run::DecodedCluster> clus
     uniform.open_cuts += totals.open_cuts;
   }
   report.add_check("I5", "uniform cuts draw each piece of surface exactly once, by the rule", uniform.cuts,
-                   failures_of(log, {"V201", "V204", "V205"}));
+                   failures_of(log, {Rule::kV201, Rule::kV204, Rule::kV205}));
   report.add_check(
       "I6",
       "uniform cuts have no border that the source has not (" + std::to_string(uniform.open_cuts) + " of open meshes)",
-      uniform.cuts, failures_of(log, {"V202"}));
+      uniform.cuts, failures_of(log, {Rule::kV202}));
   report.take(log);
 
   RuleLog camera_log;
   const CameraTotals cameras = check_cameras(asset, judges, options.cameras, options.seed, camera_log);
   report.add_check("I5", "camera cuts draw each piece of surface exactly once", cameras.cuts,
-                   failures_of(camera_log, {"V201"}));
+                   failures_of(camera_log, {Rule::kV201}));
   report.add_check("I5",
                    "the rule in double precision agrees (" + std::to_string(cameras.too_close) + " within rounding)",
-                   cameras.decisions, failures_of(camera_log, {"V204"}));
+                   cameras.decisions, failures_of(camera_log, {Rule::kV204}));
   report.add_check("I6", "camera cuts have no border that the source has not", cameras.cuts,
-                   failures_of(camera_log, {"V202"}));
+                   failures_of(camera_log, {Rule::kV202}));
   report.add_check("I8", "hierarchy traversal selects what the flat rule selects", cameras.cameras,
-                   failures_of(camera_log, {"V203"}));
+                   failures_of(camera_log, {Rule::kV203}));
   report.take(camera_log);
 }
 
@@ -151,7 +151,7 @@ void add_deviations(const run::Asset& asset, const scene::Scene& source, std::sp
   std::snprintf(text, sizeof text,
                 "cuts deviate by what they store: true/stored median %.2f, largest %.3f, above 1 in %llu cuts",
                 totals.median, totals.worst, static_cast<unsigned long long>(totals.exceeded));
-  report.add_check("I7", text, totals.cuts, failures_of(log, {"V206"}));
+  report.add_check("I7", text, totals.cuts, failures_of(log, {Rule::kV206}));
   report.take(log);
 }
 
@@ -168,7 +168,7 @@ VerifyReport verify_asset(const run::Asset& asset, const scene::Scene& source, c
   } else {
     report.add_check("I1", "not reached: " + clusters.error().message(), 0, 1);
     if (report.out.finding_count == 0) {
-      report.out.findings.push_back({"L204", "I2", clusters.error().where, clusters.error().detail});
+      report.out.findings.push_back(make_finding(Rule::kL204, clusters.error().where, clusters.error().detail));
       report.out.finding_count = 1;
     }
   }

@@ -24,7 +24,7 @@ struct Failures {
 
 Failures failures_of(const GpuVerifyReport& report, const std::string& id) {
   const auto check =
-      std::find_if(report.checks.begin(), report.checks.end(), [&](const GpuCheck& c) { return c.id == id; });
+      std::find_if(report.checks.begin(), report.checks.end(), [&](const GpuCheck& c) { return info_of(c.rule).id == id; });
   EXPECT_NE(check, report.checks.end()) << id;
   if (check == report.checks.end()) return {};
   EXPECT_TRUE(check->items > 0 || check->is_skipped) << id;

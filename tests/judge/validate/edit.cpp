@@ -7,6 +7,7 @@
 #include "support/reseal.h"
 #include "judge/validate/file_tables.h"
 #include "judge/validate/page_rules.h"
+#include "judge/validate/rules.h"
 
 namespace meshlode::test {
 
@@ -172,7 +173,7 @@ void AssetEdit::seal() {
   const std::optional<judge::FileTables> file = judge::read_tables(bytes_, log);
   if (!file || !judge::check_tables(*file, log) || !judge::check_page_table(*file, log)) return;
   const judge::LoadedPages loaded = judge::load_pages(*file, nullptr, log);
-  if (!loaded.is_complete || log.count_of("L114") > 0) return;
+  if (!loaded.is_complete || log.count_of(judge::Rule::kL114) > 0) return;
   std::vector<std::span<const std::uint8_t>> pages;
   for (const run::PageBytes& page : loaded.pages) pages.push_back(page.bytes());
   const Hash128 hash = judge::content_hash_of(*file, pages);

@@ -56,8 +56,8 @@ TEST_F(CutChecks, AClusterLeftOutIsAHole) {
   };
   wrong.bvh = wrong.flat;
   const RuleLog log = check_cameras_with(wrong);
-  EXPECT_GT(log.count_of("V201"), 0U);
-  EXPECT_EQ(log.count_of("V203"), 0U);
+  EXPECT_GT(log.count_of(Rule::kV201), 0U);
+  EXPECT_EQ(log.count_of(Rule::kV203), 0U);
 }
 
 TEST_F(CutChecks, AHoleInAClosedMeshIsABorder) {
@@ -70,10 +70,10 @@ TEST_F(CutChecks, AHoleInAClosedMeshIsABorder) {
     return cut;
   };
   const RuleLog log = check_cameras_with(wrong);
-  EXPECT_GT(log.count_of("V203"), 0U);
+  EXPECT_GT(log.count_of(Rule::kV203), 0U);
   // Where the ball is its one root, what is left is empty, and closed: coverage sees it.
-  EXPECT_GT(log.count_of("V202"), 0U);
-  EXPECT_EQ(log.count_of("V201"), 50U);
+  EXPECT_GT(log.count_of(Rule::kV202), 0U);
+  EXPECT_EQ(log.count_of(Rule::kV201), 50U);
 }
 
 TEST_F(CutChecks, AClusterDrawnOverItsOwnFinerOnesIsAnOverlap) {
@@ -86,14 +86,14 @@ TEST_F(CutChecks, AClusterDrawnOverItsOwnFinerOnesIsAnOverlap) {
     return cut;
   };
   const RuleLog log = check_uniform_with(wrong);
-  EXPECT_GT(log.count_of("V201"), 0U);
-  EXPECT_GT(log.count_of("V204"), 0U);
+  EXPECT_GT(log.count_of(Rule::kV201), 0U);
+  EXPECT_GT(log.count_of(Rule::kV204), 0U);
 }
 
 TEST_F(CutChecks, AnEmptyCutIsFound) {
   Selectors wrong;
   wrong.uniform = [](const run::Asset&, MeshId, double) { return run::UniformCut{}; };
-  EXPECT_GT(check_uniform_with(wrong).count_of("V201"), 0U);
+  EXPECT_GT(check_uniform_with(wrong).count_of(Rule::kV201), 0U);
 }
 
 TEST_F(CutChecks, AnotherThresholdIsNotTheRule) {
@@ -101,9 +101,9 @@ TEST_F(CutChecks, AnotherThresholdIsNotTheRule) {
   wrong.flat = [](const run::Asset& asset, const run::Camera& camera, double t) { return run::select_flat(asset, camera, t * 1.5); };
   wrong.bvh = wrong.flat;
   const RuleLog log = check_cameras_with(wrong);
-  EXPECT_GT(log.count_of("V204"), 0U);
-  EXPECT_EQ(log.count_of("V201"), 0U);  // the cut is whole, only not the one that was asked for
-  EXPECT_EQ(log.count_of("V202"), 0U);
+  EXPECT_GT(log.count_of(Rule::kV204), 0U);
+  EXPECT_EQ(log.count_of(Rule::kV201), 0U);  // the cut is whole, only not the one that was asked for
+  EXPECT_EQ(log.count_of(Rule::kV202), 0U);
 }
 
 TEST_F(CutChecks, AWrongStoredErrorIsFound) {
@@ -114,7 +114,7 @@ TEST_F(CutChecks, AWrongStoredErrorIsFound) {
     cut.stored_error -= 1e-30;
     return cut;
   };
-  EXPECT_GT(check_uniform_with(wrong).count_of("V205"), 0U);
+  EXPECT_GT(check_uniform_with(wrong).count_of(Rule::kV205), 0U);
 }
 
 TEST_F(CutChecks, AHierarchyThatPrunesTooMuchIsFound) {
@@ -125,8 +125,8 @@ TEST_F(CutChecks, AHierarchyThatPrunesTooMuchIsFound) {
   const run::Asset broken = std::move(*run::Asset::from_vector(edit.bytes()));
   RuleLog log;
   check_cameras(broken, judges_, 20, 1, log);
-  EXPECT_GT(log.count_of("V203"), 0U);
-  EXPECT_EQ(log.count_of("V201"), 0U);  // the flat rule needs no hierarchy
+  EXPECT_GT(log.count_of(Rule::kV203), 0U);
+  EXPECT_EQ(log.count_of(Rule::kV201), 0U);  // the flat rule needs no hierarchy
 }
 
 TEST_F(CutChecks, ErrorsThatFallMakeACutThatDrawsTwice) {
@@ -140,7 +140,7 @@ TEST_F(CutChecks, ErrorsThatFallMakeACutThatDrawsTwice) {
   const run::Asset broken = std::move(*run::Asset::from_vector(edit.bytes()));
   RuleLog log;
   check_uniform_cuts(broken, judges_[1], 40, log);
-  EXPECT_GT(log.count_of("V201"), 0U);
+  EXPECT_GT(log.count_of(Rule::kV201), 0U);
 }
 
 TEST_F(CutChecks, AMovedBorderVertexOpensCuts) {
@@ -159,7 +159,7 @@ TEST_F(CutChecks, AMovedBorderVertexOpensCuts) {
   const MeshJudge judge = make_mesh_judge(broken, MeshId(1U), decoded);
   RuleLog log;
   check_uniform_cuts(broken, judge, 40, log);
-  EXPECT_GT(log.count_of("V202"), 0U);
+  EXPECT_GT(log.count_of(Rule::kV202), 0U);
 }
 
 }  // namespace

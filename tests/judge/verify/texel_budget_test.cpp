@@ -83,7 +83,7 @@ TEST(TexelBudget, AStepThatIsTooCoarseForATextureIsFound) {
   for (const bool is_too_wide : {false, true}) {
     RuleLog log;
     check_texel_budget(*asset, scene_with(is_too_wide ? 2 * width : width), 0.25, *clusters, log);
-    EXPECT_EQ(log.count_of("V113") > 0, is_too_wide) << width;
+    EXPECT_EQ(log.count_of(Rule::kV113) > 0, is_too_wide) << width;
   }
 }
 
@@ -106,7 +106,7 @@ TEST(TexelBudget, AStepAsFineAsTheCoordinatesLeaveIsWithinAnyBudget) {
     ASSERT_TRUE(is_any_set);
     RuleLog log;
     check_texel_budget(*asset, scene_with(1U << 20U), 1e-6, *clusters, log);
-    EXPECT_EQ(log.count_of("V113") == 0, largest != (1 << 23) - 1) << largest;
+    EXPECT_EQ(log.count_of(Rule::kV113) == 0, largest != (1 << 23) - 1) << largest;
   }
 }
 

@@ -207,7 +207,7 @@ TEST(Verify, EachBreakIsFoundByItsRule) {
 TEST(Verify, EachSourceRuleHasABreak) {
   std::set<std::string> broken;
   for (const Break& b : breaks()) broken.insert(b.rule);
-  for (const Rule& rule : all_rules()) {
+  for (const RuleInfo& rule : all_rules()) {
     EXPECT_TRUE(rule.id.substr(0, 2) != "V1" || broken.contains(std::string(rule.id))) << rule.id;
   }
 }
