@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Wall seconds of the build's stages.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <vector>
+
+#include "build/build.h"
+
+namespace meshlode::build {
+
+enum class Stage : std::uint8_t { kPlan, kPrepare, kDag, kHierarchy, kEncode, kWrite };
+constexpr std::size_t kStageCount = 6;
+
+/// Runs from when it is made.
+class StageClock {
+ public:
+  StageClock() : last_(std::chrono::steady_clock::now()) {}
+
+  /// The time since the stage before ended is this one's.
+  void end(Stage stage);
+
+  /// Adds to the sums over meshes, which may run side by side; makes them where there are none yet.
+  void add_to(std::vector<StageTime>& stages) const;
+
+ private:
+  std::chrono::steady_clock::time_point last_;
+  std::array<double, kStageCount> seconds_{};
+};
+
+}  // namespace meshlode::build

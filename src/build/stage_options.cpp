@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "build/stage_options.h"
+
+#include <algorithm>
+
+#include "build/plan/texel_sizes.h"
+#include "format/grid.h"
+
+namespace meshlode::build {
+
+namespace {
+
+/// Foliage and soups: so many pieces so small that they are seen together, not one by one.
+bool is_aggregate(const PreparedMesh& mesh) {
+  constexpr std::uint64_t kFewestPieces = 64;
+  constexpr std::uint64_t kLargestPiece = 64;  // triangles, on average
+  return mesh.piece_count >= kFewestPieces && mesh.triangles.size() <= kLargestPiece * mesh.piece_count;
+}
+
+ErrorSource error_source_of(format::ErrorTier tier) {
+  switch (tier) {
+    case format::ErrorTier::kMeasured: return ErrorSource::kMeasured;
+    case format::ErrorTier::kCertified: return ErrorSource::kCertified;
+    case format::ErrorTier::kQem: break;
+  }
+  return ErrorSource::kQuadric;
+}
+
+/// The budget of each stored UV set in UV units; 0 leaves it to encode, where no texture's size is known.
+std::array<double, scene::kMaxUvSets> uv_errors(const PipelineOptions& options, const scene::SourceMesh& source,
+                                                const AttributeLayout& layout,
+                                                std::span<const std::array<double, scene::kMaxUvSets>> texels) {
+  std::array<double, scene::kMaxUvSets> errors{};
+  if (!options.uv_error_is_texels) {
+    errors.fill(options.uv_error);
+    return errors;
+  }
+  constexpr double kUsualTexels = 2048.0;  // of a texture whose size is not known
+  const std::array<double, scene::kMaxUvSets> per_unit = texels_per_unit(texels, source);
+  for (std::uint32_t set = 0; set < layout.uv_set_count; ++set) {
+    const double known = per_unit[layout.uv_set_source[set]];
+    if (options.uv_error_is_default) {
+      errors[set] = known > 0.0 ? options.uv_error / std::max(known, kUsualTexels) : 0.0;
+    } else {
+      errors[set] = options.uv_error / (known > 0.0 ? known : kUsualTexels);
+    }
+  }
+  return errors;
+}
+
+}  // namespace
+
+Status check_options(const PipelineOptions& options) {
+  if (options.max_cluster_triangles == 0 || options.max_cluster_triangles > format::kMaxClusterTriangles ||
+      options.max_cluster_vertices < 3 || options.max_cluster_vertices > format::kMaxClusterVertices) {
+    return Error{ErrorCode::kUsage, "", "a cluster holds 1 to 256 triangles and 3 to 256 vertices"};
+  }
+  return Ok{};
+}
+
+PrepareOptions prepare_options(const PipelineOptions& options) {
+  PrepareOptions prepare;
+  prepare.grid_step = options.grid_step;
+  prepare.position_error = options.position_error;
+  return prepare;
+}
+
+EncodeOptions encode_options(const PipelineOptions& options, const scene::SourceMesh& source,
+                             const AttributeLayout& layout,
+                             std::span<const std::array<double, scene::kMaxUvSets>> texels) {
+  EncodeOptions encode;
+  encode.normal_error = options.normal_error;
+  encode.uv_error = uv_errors(options, source, layout, texels);
+  encode.uv_error_may_fall_short = options.uv_error_is_default;
+  return encode;
+}
+
+DagOptions dag_options(const PipelineOptions& options, const PreparedMesh& mesh, const EncodeOptions& encode) {
+  DagOptions dag;
+  dag.error = error_source_of(options.error_tier);
+  dag.caps.max_triangles = options.max_cluster_triangles;
+  dag.caps.max_vertices = options.max_cluster_vertices;
+  dag.caps.target_triangles = options.max_cluster_triangles - std::min(2U, options.max_cluster_triangles / 16);
+  dag.simplify.keep_area = is_aggregate(mesh);
+  dag.max_group_bytes = format::kMaxPageBytes - kPageFrameBytes;
+  dag.cluster_bytes = [&mesh, encode](std::uint32_t vertices, std::uint32_t triangles, std::uint32_t materials) {
+    return max_cluster_bytes(mesh.layout, encode, vertices, triangles, materials);
+  };
+  return dag;
+}
+
+std::vector<PlanDecision> late_decisions(const PreparedMesh& mesh, const DagOptions& dag, const EncodeOptions& encode,
+                                         const EncodedMesh& encoded, const std::string& label) {
+  std::vector<PlanDecision> decisions;
+  if (dag.simplify.keep_area) {
+    decisions.push_back({label + ": covered area", true,
+                         std::to_string(mesh.piece_count) + " loose pieces: those that stay grow when others go"});
+  }
+  for (std::uint32_t set = 0; set < mesh.layout.uv_set_count; ++set) {
+    const double asked = encode.uv_error[set], kept = 0.5 * format::exp2_exact(encoded.record.uv_log2[set]);
+    if (!(asked > 0.0) || kept <= asked) continue;
+    decisions.push_back(
+        {label + ": TEXCOORD_" + std::to_string(mesh.layout.uv_set_source[set]) + ", accuracy", true,
+         "its coordinates are so large that they are kept as finely as floats hold the largest"});
+  }
+  return decisions;
+}
+
+}  // namespace meshlode::build

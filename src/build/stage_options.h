@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the options of a whole build mean to each of its stages.
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <meshlode/result.h>
+
+#include "build/build.h"
+#include "build/dag/build_dag.h"
+#include "build/encode/encode.h"
+#include "build/prepare/prepare.h"
+#include "build/prepared.h"
+
+namespace meshlode::build {
+
+/// Errors: kUsage for a cluster size that the format has not.
+[[nodiscard]] Status check_options(const PipelineOptions& options);
+
+[[nodiscard]] PrepareOptions prepare_options(const PipelineOptions& options);
+
+/// `texels`: texels_of_materials() of the scene, for a budget that is given in texels.
+[[nodiscard]] EncodeOptions encode_options(const PipelineOptions& options, const scene::SourceMesh& source,
+                                           const AttributeLayout& layout,
+                                           std::span<const std::array<double, scene::kMaxUvSets>> texels);
+
+/// `encode` says what a cluster will take in a page. \pre the mesh outlives what is returned
+[[nodiscard]] DagOptions dag_options(const PipelineOptions& options, const PreparedMesh& mesh,
+                                     const EncodeOptions& encode);
+
+/// What was decided after the plan: that pieces which stay grow, and where texture coordinates are too large for their
+/// budget. `label` names the mesh.
+[[nodiscard]] std::vector<PlanDecision> late_decisions(const PreparedMesh& mesh, const DagOptions& dag,
+                                                       const EncodeOptions& encode, const EncodedMesh& encoded,
+                                                       const std::string& label);
+
+}  // namespace meshlode::build
