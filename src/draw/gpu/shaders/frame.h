@@ -10,8 +10,8 @@
 #include "run/select/metric.h"
 namespace meshlode::draw {
 using run::MetricView;
-using uint = std::uint32_t;
-struct vec4 {
+using uint = std::uint32_t;  // NOLINT(readability-identifier-naming): names of GLSL
+struct vec4 {  // NOLINT(readability-identifier-naming)
   float x = 0.0F, y = 0.0F, z = 0.0F, w = 0.0F;
 };
 #define GPU_POINTER(type) std::uint64_t
