@@ -16,6 +16,7 @@ packages=(
 )
 if [ "${1:-}" = --tests ]; then
   packages+=(libgtest-dev clang-14 libclang-rt-14-dev lld-14 assimp-testmodels
+             git clang-format-14 clang-tidy-14             # the form of the sources
              python3                                       # the independent readers of the format and of glTF
              make                                          # a stranger's project, built by what CMake takes by itself
              mesa-vulkan-drivers vulkan-validationlayers)  # a Vulkan device on any machine, and its judge

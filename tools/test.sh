@@ -5,9 +5,10 @@
 #   2. a sanitized core, built by clang with address and undefined behaviour sanitizers: the programs that read hostile
 #      bytes and those of the rooms that do arithmetic on indices (label `sanitized`; --all: every program),
 #   3. GCC against clang: the optimised program of part 1 and the sanitized one of part 2 must build assets with equal
-#      content hashes (I10).
+#      content hashes (I10),
+#   4. the form of the sources (tools/format.sh), and clang-tidy over those that changed (tools/tidy.sh; --all: over all).
 # All parts run even where one fails; the exit code is 0 only where all passed. What was skipped is named with its reason.
-# The last lines are ctest's summaries. Without --all no part can hang: each has a limit, 79 minutes in all.
+# The last lines are ctest's summaries. Without --all no part can hang: each has a limit, 85 minutes in all.
 set -uo pipefail
 cd "$(dirname "$0")/.."
 jobs=${JOBS:-$(nproc)}
@@ -26,12 +27,13 @@ export ASAN_OPTIONS=${ASAN_OPTIONS:-detect_leaks=1:allocator_may_return_null=1}
 export UBSAN_OPTIONS=${UBSAN_OPTIONS:-print_stacktrace=1:halt_on_error=1}
 
 step() { echo; echo "== $* (after ${SECONDS} s)"; }
-# part NAME COMMAND...: runs it, keeps its output, remembers a failure.
+# part NAME COMMAND...: runs it, keeps its output, remembers a failure. 77 is a part that cannot run here, and says why.
 part() {
-  local name=$1; shift
+  local name=$1 status; shift
   step "$name"
   "$@" 2>&1 | tee "$logs/${name// /-}.log"
-  [ "${PIPESTATUS[0]}" -eq 0 ] || { failed+=("$name"); return 1; }
+  status=${PIPESTATUS[0]}
+  [ "$status" -eq 0 ] || [ "$status" -eq 77 ] || { failed+=("$name"); return 1; }
 }
 # within MINUTES COMMAND...: a command that is not done by then is ended; --all takes as long as it takes.
 within() {
@@ -69,6 +71,12 @@ build_sanitized() {
     within 12 ninja -C build/sanitize -j "$jobs" "${sanitized_targets[@]}"
 }
 test_sanitized() { run_ctest 12 build/sanitize "sanitized tests" "${sanitized_filter[@]}"; }
+check_format() { tools/format.sh --check; }
+check_tidy() {
+  local which=()
+  [ $all = no ] || which=(--all)
+  within 6 tools/tidy.sh "${which[@]}"
+}
 compare_compilers() { within 5 tests/cli/compare_compilers.sh build/release build/sanitize; }
 
 # skipped NAME: the tests of a part that did not run, with the reason that each gave.
@@ -86,6 +94,7 @@ skipped() {
 }
 
 tools/install-deps.sh --tests || exit 1
+part "format" check_format
 part "release build" build_release && part "release tests" test_release
 [ -z "$group" ] || part "long tests" test_group
 if part "sanitized build" build_sanitized; then
@@ -93,7 +102,12 @@ if part "sanitized build" build_sanitized; then
   part "sanitized tests" test_sanitized
 fi
 
+part "names" check_tidy
+
 step "done"
+for name in format names; do
+  grep -h '^SKIPPED: ' "$logs/$name.log"
+done
 for name in release-tests long-tests sanitized-tests; do
   [ -f "$logs/$name.said" ] && [ -f "$logs/$name.log" ] || continue
   echo "-- skipped of the ${name//-/ }:"
