@@ -3,7 +3,7 @@
 //
 //   auto asset = meshlode::AssetFile::open("scene.lode");
 //   if (!asset) { puts(asset.error().message().c_str()); return 1; }
-//   for (const meshlode::DrawItem& item : asset->select({.eye = {0, 1, 5}}, 1.0)) …
+//   for (const meshlode::DrawItem& item : asset->select_view({.eye = {0, 1, 5}}, 1.0)) …
 //
 // Units. *Mesh space* is the space of the source mesh, in its own ("object") units; stored spheres and decoded
 // positions are mesh space relative to MeshRecord::origin. *World space* is after InstanceRecord::transform. Errors are
@@ -15,7 +15,7 @@
 // tables and loading a page checks the page, so that nothing behind them can crash, hang or read outside. No exception
 // leaves but std::bad_alloc.
 //
-// Thread safety. An AssetFile and a PageData are immutable: any number of threads may call const members at once.
+// Thread safety. An AssetFile and a PageBytes are immutable: any number of threads may call const members at once.
 // Moving or destroying one while another thread uses it is a race.
 //
 // Not promised: the order of DrawItems beyond "ascending"; any caching (a page loaded twice is unpacked twice); that a
@@ -38,7 +38,7 @@ namespace meshlode {
 
 /// Where the scene is looked at from, as far as choosing a cut needs it: the rule looks at distances only, so a view
 /// direction plays no part in it, and nothing is culled.
-struct ViewPoint {
+struct View {
   std::array<double, 3> eye{0.0, 0.0, 0.0};  ///< world space; unused where orthographic
   bool is_orthographic = false;
   double fovy_radians = 0.78539816339744831;  ///< full vertical angle, in (0, pi); perspective only
@@ -54,25 +54,25 @@ struct DrawItem {
 };
 
 /// One mesh at one error everywhere, without a camera.
-struct MeshCutResult {
+struct UniformCut {
   std::vector<std::uint32_t> clusters;  ///< ascending
   double stored_error = 0.0;            ///< object units: the largest error in it, at least the mesh's level0_deviation
 };
 
 /// A page in its decoded, GPU-ready form (docs/format.md, Pages): a view into the asset's bytes where the file stores
 /// it uncompressed (the AssetFile's storage must then outlive it), else memory of its own.
-class PageData {
+class PageBytes {
  public:
-  PageData(PageData&&) noexcept;
-  PageData& operator=(PageData&&) noexcept;
-  ~PageData();
+  PageBytes(PageBytes&&) noexcept;
+  PageBytes& operator=(PageBytes&&) noexcept;
+  ~PageBytes();
   [[nodiscard]] std::span<const std::uint8_t> bytes() const;
   [[nodiscard]] std::uint32_t page() const;
 
  private:
   friend class AssetFile;
   struct State;
-  explicit PageData(std::unique_ptr<State> state);
+  explicit PageBytes(std::unique_ptr<State> state);
   std::unique_ptr<State> state_;
 };
 
@@ -84,7 +84,7 @@ struct ClusterIntegers {
   std::uint32_t channel_count = 0;
   std::vector<std::int32_t> values;
   std::vector<std::array<std::uint8_t, 3>> triangles;  ///< vertex indices within the cluster, counter-clockwise
-  std::vector<std::uint32_t> triangle_material;        ///< per triangle, into AssetFile::materials()
+  std::vector<std::uint32_t> triangle_materials;       ///< per triangle, into AssetFile::materials()
 };
 
 /// A cluster as floats. Attribute arrays are empty where the mesh does not store the attribute.
@@ -95,7 +95,7 @@ struct ClusterFloats {
                                                                           ///< with n = MeshRecord::uv_set_source[k]
   std::vector<std::array<float, 4>> colors;  ///< linear, 0 … 1
   std::vector<std::array<std::uint8_t, 3>> triangles;
-  std::vector<std::uint32_t> triangle_material;
+  std::vector<std::uint32_t> triangle_materials;
 };
 
 /// An open asset. Movable, not copyable; moving keeps every view it has handed out.
@@ -137,25 +137,25 @@ class AssetFile {
   /// as far as the asset's error tier promises it. Each piece of each instance's surface is drawn exactly once, without
   /// cracks within a mesh, whatever the camera. Ascending by (instance, cluster). Singular instances are not drawn.
   /// Errors: kUsage for a view or pixel error that is not finite or not in its range.
-  [[nodiscard]] Result<std::vector<DrawItem>> select(const ViewPoint& view, double pixel_error) const;
+  [[nodiscard]] Result<std::vector<DrawItem>> select_view(const View& view, double pixel_error) const;
 
-  /// The cut of one mesh where each group whose error is at most `error` (object units) is replaced by what is coarser.
+  /// The cut of one mesh where each group whose error is at most `max_error` (object units) is replaced by what is coarser.
   /// Errors: kUsage for a mesh that does not exist or an error that is not a number >= 0 (infinity is the coarsest
   /// cut).
-  [[nodiscard]] Result<MeshCutResult> select_uniform_cut(std::uint32_t mesh, double error) const;
+  [[nodiscard]] Result<UniformCut> select_uniform(std::uint32_t mesh, double max_error) const;
 
   /// The page that holds a cluster. \pre cluster < clusters().size()
   [[nodiscard]] std::uint32_t page_of(std::uint32_t cluster) const;
 
   /// Unpacks and checks a page. Errors: kUsage no such page; kInvalid with the place; kUnsupported for a codec that was
   /// not built in.
-  [[nodiscard]] Result<PageData> load_page_data(std::uint32_t page) const;
+  [[nodiscard]] Result<PageBytes> load_page(std::uint32_t page) const;
 
   /// Decodes a cluster of a loaded page; reuses the memory of `out`. Errors: kUsage where the page is not the
   /// cluster's.
-  [[nodiscard]] Status decode(const PageData& page, std::uint32_t cluster, ClusterIntegers& out) const;
+  [[nodiscard]] Status decode(const PageBytes& page, std::uint32_t cluster, ClusterIntegers& out) const;
   /// The same as floats.
-  [[nodiscard]] Status decode(const PageData& page, std::uint32_t cluster, ClusterFloats& out) const;
+  [[nodiscard]] Status decode(const PageBytes& page, std::uint32_t cluster, ClusterFloats& out) const;
 
  private:
   struct State;

@@ -152,9 +152,95 @@ TEST(ApiBuild, OptionsThatMakeNoSenseAreUsageErrors) {
   BuildOptions options;
   options.grid_step = -1.0;
   expect_refused(test::build_one(arrays.primitive(), options), ErrorCode::kUsage, "grid_step");
+  const auto expect_usage = [&](const char* field, const auto& spoil) {
+    BuildOptions spoilt;
+    spoil(spoilt);
+    expect_refused(test::build_one(arrays.primitive(), spoilt), ErrorCode::kUsage, std::string("BuildOptions::") + field);
+  };
+  expect_usage("grid_step", [](BuildOptions& o) { o.grid_step = std::nan(""); });
+  expect_usage("position_error", [](BuildOptions& o) { o.position_error = -1e-9; });
+  expect_usage("position_error", [](BuildOptions& o) { o.position_error = o.grid_step = 0.01; });
+  expect_usage("normal_error", [](BuildOptions& o) { o.normal_error = 0.0; });
+  expect_usage("normal_error", [](BuildOptions& o) { o.normal_error = HUGE_VAL; });
+  expect_usage("uv_error", [](BuildOptions& o) { o.uv_error = std::nan(""); });
+  expect_usage("thread_count", [](BuildOptions& o) { o.thread_count = 4097; });
+  expect_usage("error_tier", [](BuildOptions& o) { o.error_tier = static_cast<format::ErrorTier>(3); });
+  expect_usage("preset", [](BuildOptions& o) { o.preset = static_cast<Preset>(3); });
+  expect_usage("attributes", [](BuildOptions& o) { o.attributes = static_cast<AttributeChoice>(3); });
+  expect_usage("uv_error_unit", [](BuildOptions& o) { o.uv_error_unit = static_cast<UvErrorUnit>(2); });
+  expect_usage("codec", [](BuildOptions& o) { o.codec = static_cast<format::Codec>(5); });
+}
+
+TEST(ApiBuild, WhatCannotBeDoneIsSaidBeforeItIsTried) {
+  const Arrays arrays = sphere(4);
+  BuildOptions options;
+  options.preset = Preset::kBest;
+  expect_refused(test::build_one(arrays.primitive(), options), ErrorCode::kUnsupported, "BuildOptions::preset");
   options = {};
-  options.strip_attributes = options.keep_all_attributes = true;
-  expect_refused(test::build_one(arrays.primitive(), options), ErrorCode::kUsage, "strip_attributes");
+  options.normal_error = 0.001;
+  EXPECT_EQ(test::build_one(arrays.primitive(), options).error().code, ErrorCode::kUnsupported);
+  options = {};
+  options.position_error = 1e-12;
+  EXPECT_EQ(test::build_one(arrays.primitive(), options).error().code, ErrorCode::kUnsupported);
+  options = {};
+  options.max_memory_bytes = 1;
+  EXPECT_EQ(test::build_one(arrays.primitive(), options).error().code, ErrorCode::kBuildFailed);
+}
+
+TEST(ApiBuild, BudgetsBoundWhatIsStored) {
+  const Arrays arrays(scene::make_rock(12));
+  BuildOptions options;
+  options.error_tier = format::ErrorTier::kQem;
+  options.attributes = AttributeChoice::kAll;
+  options.position_error = 1e-3;
+  options.normal_error = 1.0;
+  options.uv_error = 1.0 / 1024;
+  const auto built = test::build_one(arrays.primitive(), options);
+  ASSERT_TRUE(built.ok()) << built.error().message();
+  const auto asset = AssetFile::view(*built);
+  ASSERT_TRUE(asset.ok());
+  const format::MeshRecord& mesh = asset->meshes()[0];
+  EXPECT_LE(mesh.level0_deviation, 1e-3F);
+  EXPECT_GT(mesh.level0_deviation, 1e-4F) << "no finer than asked for";
+  EXPECT_EQ(mesh.normal_scale, 82U) << "sqrt(2) / M radians are one degree";
+  EXPECT_EQ(mesh.uv_log2[0], -9) << "half a step is a 1024th";
+
+  options.uv_error = 4.0;
+  options.uv_error_unit = UvErrorUnit::kTexels;  // of 2,048 a side: no texture is known
+  const auto in_texels = test::build_one(arrays.primitive(), options);
+  ASSERT_TRUE(in_texels.ok()) << in_texels.error().message();
+  EXPECT_EQ(AssetFile::view(*in_texels)->meshes()[0].uv_log2[0], -8) << "half a step is four 2048ths";
+}
+
+TEST(ApiBuild, AttributesAreThoseOfTheChoice) {
+  const Arrays arrays(scene::make_rock(12));
+  PrimitiveInput primitive = arrays.primitive();
+  primitive.material = 0;
+  MeshInput mesh;
+  mesh.primitives = {&primitive, 1};
+  MaterialInput material;
+  material.uv_sets_used = 0;
+  SceneInput scene;
+  scene.meshes = {&mesh, 1};
+  scene.materials = {&material, 1};
+  struct Expected {
+    AttributeChoice choice;
+    format::NormalMode normals;
+    std::uint32_t uv_sets;
+  };
+  for (const Expected& expected : {Expected{AttributeChoice::kAuto, format::NormalMode::kStored, 0},
+                                   Expected{AttributeChoice::kNone, format::NormalMode::kNone, 0},
+                                   Expected{AttributeChoice::kAll, format::NormalMode::kStored, 1}}) {
+    BuildOptions options;
+    options.error_tier = format::ErrorTier::kQem;
+    options.attributes = expected.choice;
+    const auto built = build_asset(scene, options);
+    ASSERT_TRUE(built.ok()) << built.error().message();
+    const auto asset = AssetFile::view(*built);
+    ASSERT_TRUE(asset.ok());
+    EXPECT_EQ(asset->meshes()[0].normal_mode, expected.normals);
+    EXPECT_EQ(asset->meshes()[0].uv_set_count, expected.uv_sets);
+  }
 }
 
 TEST(ApiBuild, EveryErrorTierIsStored) {

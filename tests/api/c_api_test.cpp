@@ -124,9 +124,9 @@ TEST_P(CApi, CutsAreThoseOfTheRule) {
   const auto expected = AssetFile::view(bytes_);
   ASSERT_TRUE(expected.ok());
   for (const double distance : {1.2, 3.0, 30.0}) {
-    ViewPoint point;
+    View point;
     point.eye = {0.0, 0.0, distance};
-    const auto drawn = expected->select(point, 1.0);
+    const auto drawn = expected->select_view(point, 1.0);
     ASSERT_TRUE(drawn.ok());
     const meshlode_view view = {{0.0, 0.0, distance}, 0, point.fovy_radians, 1.0, point.near_distance, point.height_px};
     std::size_t count = 0;
@@ -143,7 +143,7 @@ TEST_P(CApi, CutsAreThoseOfTheRule) {
     EXPECT_EQ(items[count].cluster, 7U) << "nothing behind the capacity";
   }
   for (const double error : {0.0, 0.01, 1e9}) {
-    const auto cut = expected->select_uniform_cut(0, error);
+    const auto cut = expected->select_uniform(0, error);
     ASSERT_TRUE(cut.ok());
     std::vector<std::uint32_t> clusters(cut->clusters.size());
     std::size_t count = 0;
@@ -164,7 +164,7 @@ TEST_P(CApi, ClustersDecodeAsInCpp) {
   ASSERT_TRUE(expected.ok());
   for (std::uint32_t p = 0; p < page_count(); ++p) {
     const std::vector<std::uint32_t> words = load(p);
-    const auto page = expected->load_page_data(p);
+    const auto page = expected->load_page(p);
     ASSERT_TRUE(page.ok());
     EXPECT_EQ(std::memcmp(words.data(), page->bytes().data(), page->bytes().size()), 0);
     const format::PageRecord& record = expected->pages()[p];
@@ -186,7 +186,7 @@ TEST_P(CApi, ClustersDecodeAsInCpp) {
       EXPECT_EQ(out.channel_count, integers.channel_count);
       EXPECT_EQ(values, integers.values);
       EXPECT_EQ(std::memcmp(corners.data(), integers.triangles.data(), corners.size()), 0);
-      EXPECT_EQ(materials, integers.triangle_material);
+      EXPECT_EQ(materials, integers.triangle_materials);
 
       std::vector<float> positions(3U * n), normals(3U * n), colors(4U * n);
       meshlode_cluster_floats f{};

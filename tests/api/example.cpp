@@ -47,14 +47,14 @@ int main(int argc, char** argv) {
     return static_cast<int>(asset.error().code);
   }
   for (const double distance : {2.0, 200.0}) {
-    meshlode::ViewPoint view;
+    meshlode::View view;
     view.eye = {0.0, distance, 0.0};
-    const auto items = asset->select(view, 1.0);
+    const auto items = asset->select_view(view, 1.0);
     if (!items) return 1;
     std::size_t triangles = 0;
     meshlode::ClusterFloats cluster;
     for (const meshlode::DrawItem& item : *items) {
-      const auto page = asset->load_page_data(asset->page_of(item.cluster));  // a renderer keeps its pages
+      const auto page = asset->load_page(asset->page_of(item.cluster));  // a renderer keeps its pages
       if (!page || !asset->decode(*page, item.cluster, cluster)) return 1;
       triangles += cluster.triangles.size();
     }

@@ -66,7 +66,7 @@ EdgeSum sum_of(const AssetFile& asset, const std::vector<std::uint32_t>& cluster
   EdgeSum sum;
   ClusterIntegers integers;
   for (const std::uint32_t c : clusters) {
-    const auto page = asset.load_page_data(asset.page_of(c));
+    const auto page = asset.load_page(asset.page_of(c));
     EXPECT_TRUE(page.ok());
     EXPECT_TRUE(asset.decode(*page, c, integers).ok());
     sum.add(integers);
@@ -100,9 +100,9 @@ TEST(ApiRuntime, CutsFromTwentyOneViewpointsAreClosedSpheres) {
   std::set<std::size_t> sizes;
   for (const double distance : {0.0, 1.01, 1.5, 3.0, 10.0, 100.0, 1e6}) {
     for (const double pixels : {0.25, 1.0, 8.0}) {
-      ViewPoint view;
+      View view;
       view.eye = {distance, 0.1 * distance, 0.0};
-      const auto items = asset->select(view, pixels);
+      const auto items = asset->select_view(view, pixels);
       ASSERT_TRUE(items.ok()) << items.error().message();
       ASSERT_FALSE(items->empty());
       std::vector<std::uint32_t> clusters;
@@ -124,7 +124,7 @@ TEST(ApiRuntime, UniformCutsAreClosedAndStateTheirError) {
   const double level0 = asset->meshes()[0].level0_deviation;
   std::size_t last = asset->clusters().size() + 1;
   for (const double error : {0.0, 1e-4, 1e-3, 1e-2, 1e-1, std::numeric_limits<double>::infinity()}) {
-    const auto cut = asset->select_uniform_cut(0, error);
+    const auto cut = asset->select_uniform(0, error);
     ASSERT_TRUE(cut.ok());
     EXPECT_LE(cut->stored_error, std::max(error, level0));
     EXPECT_GE(cut->stored_error, level0);
@@ -142,7 +142,7 @@ TEST(ApiRuntime, FloatsAreTheIntegersOnTheGrid) {
   ClusterIntegers integers;
   ClusterFloats floats;
   for (std::uint32_t c = 0; c < asset->clusters().size(); ++c) {
-    const auto page = asset->load_page_data(asset->page_of(c));
+    const auto page = asset->load_page(asset->page_of(c));
     ASSERT_TRUE(page.ok());
     ASSERT_TRUE(asset->decode(*page, c, integers).ok());
     ASSERT_TRUE(asset->decode(*page, c, floats).ok());
@@ -178,8 +178,8 @@ TEST(ApiRuntime, EveryCodecDecodesToTheSameIntegers) {
     ASSERT_TRUE(packed.ok());
     ASSERT_EQ(packed->pages().size(), plain->pages().size());
     for (std::uint32_t p = 0; p < plain->pages().size(); ++p) {
-      const auto a = plain->load_page_data(p);
-      const auto b = packed->load_page_data(p);
+      const auto a = plain->load_page(p);
+      const auto b = packed->load_page(p);
       ASSERT_TRUE(a.ok() && b.ok());
       EXPECT_TRUE(std::ranges::equal(a->bytes(), b->bytes()));
     }
@@ -192,8 +192,8 @@ TEST(ApiRuntime, WrongIdsViewsAndPagesAreUsageErrors) {
   ASSERT_TRUE(asset.ok() && other.ok());
   const auto cluster_count = static_cast<std::uint32_t>(asset->clusters().size());
   ClusterIntegers integers;
-  EXPECT_EQ(asset->load_page_data(static_cast<std::uint32_t>(asset->pages().size())).error().code, ErrorCode::kUsage);
-  const auto page = asset->load_page_data(asset->page_of(0));
+  EXPECT_EQ(asset->load_page(static_cast<std::uint32_t>(asset->pages().size())).error().code, ErrorCode::kUsage);
+  const auto page = asset->load_page(asset->page_of(0));
   ASSERT_TRUE(page.ok());
   EXPECT_EQ(asset->decode(*page, cluster_count, integers).error().code, ErrorCode::kUsage);
   EXPECT_EQ(other->decode(*page, 0, integers).error().code, ErrorCode::kUsage) << "a page of another asset";
@@ -203,21 +203,21 @@ TEST(ApiRuntime, WrongIdsViewsAndPagesAreUsageErrors) {
       break;
     }
   }
-  EXPECT_EQ(asset->select_uniform_cut(1, 0.0).error().code, ErrorCode::kUsage);
-  EXPECT_EQ(asset->select_uniform_cut(0, -1.0).error().code, ErrorCode::kUsage);
-  EXPECT_EQ(asset->select_uniform_cut(0, std::nan("")).error().code, ErrorCode::kUsage);
+  EXPECT_EQ(asset->select_uniform(1, 0.0).error().code, ErrorCode::kUsage);
+  EXPECT_EQ(asset->select_uniform(0, -1.0).error().code, ErrorCode::kUsage);
+  EXPECT_EQ(asset->select_uniform(0, std::nan("")).error().code, ErrorCode::kUsage);
   const auto refuses = [&](auto change) {
-    ViewPoint view;
+    View view;
     change(view);
-    const auto items = asset->select(view, 1.0);
+    const auto items = asset->select_view(view, 1.0);
     return !items.ok() && items.error().code == ErrorCode::kUsage;
   };
-  EXPECT_TRUE(refuses([](ViewPoint& v) { v.eye[1] = std::nan(""); }));
-  EXPECT_TRUE(refuses([](ViewPoint& v) { v.fovy_radians = 4.0; }));
-  EXPECT_TRUE(refuses([](ViewPoint& v) { v.near_distance = 0.0; }));
-  EXPECT_TRUE(refuses([](ViewPoint& v) { v.height_px = 0; }));
-  EXPECT_TRUE(refuses([](ViewPoint& v) { v.is_orthographic = true, v.ortho_height = -1.0; }));
-  EXPECT_FALSE(asset->select({}, std::nan("")).ok());
+  EXPECT_TRUE(refuses([](View& v) { v.eye[1] = std::nan(""); }));
+  EXPECT_TRUE(refuses([](View& v) { v.fovy_radians = 4.0; }));
+  EXPECT_TRUE(refuses([](View& v) { v.near_distance = 0.0; }));
+  EXPECT_TRUE(refuses([](View& v) { v.height_px = 0; }));
+  EXPECT_TRUE(refuses([](View& v) { v.is_orthographic = true, v.ortho_height = -1.0; }));
+  EXPECT_FALSE(asset->select_view({}, std::nan("")).ok());
 }
 
 TEST(ApiRuntime, ThreadsMayShareAnAsset) {
@@ -229,12 +229,12 @@ TEST(ApiRuntime, ThreadsMayShareAnAsset) {
     threads.emplace_back([&, i] {
       ClusterFloats floats;
       for (int round = 0; round < 10; ++round) {
-        ViewPoint view;
+        View view;
         view.eye = {1.5 + i, 0.0, 0.1 * round};
-        const auto items = asset->select(view, 1.0);
+        const auto items = asset->select_view(view, 1.0);
         if (!items.ok()) ++failures;
         for (const DrawItem& item : items.ok() ? *items : std::vector<DrawItem>{}) {
-          const auto page = asset->load_page_data(asset->page_of(item.cluster));
+          const auto page = asset->load_page(asset->page_of(item.cluster));
           if (!page.ok() || !asset->decode(*page, item.cluster, floats).ok()) ++failures;
         }
       }
@@ -248,7 +248,7 @@ TEST(ApiRuntime, MovingAnAssetKeepsItsViews) {
   auto first = AssetFile::take(sphere_bytes());
   ASSERT_TRUE(first.ok());
   const auto clusters = first->clusters();
-  auto page = first->load_page_data(0);
+  auto page = first->load_page(0);
   ASSERT_TRUE(page.ok());
   const AssetFile second = std::move(*first);
   EXPECT_EQ(second.clusters().data(), clusters.data());

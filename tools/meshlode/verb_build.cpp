@@ -364,9 +364,9 @@ Result<build::PipelineOptions> make_options(const BuildWords& words) {
                   : words.codec == "draco"  ? format::Codec::kDraco
                   : words.codec == "strips" ? format::Codec::kStrips
                                             : format::Codec::kNone;
-  options.attributes = words.attributes == "none"  ? build::AttributeChoice::kNone
-                       : words.attributes == "all" ? build::AttributeChoice::kAll
-                                                   : build::AttributeChoice::kAuto;
+  options.attributes = words.attributes == "none"  ? AttributeChoice::kNone
+                       : words.attributes == "all" ? AttributeChoice::kAll
+                                                   : AttributeChoice::kAuto;
   if (Status status = set_budgets(words, options); !status) return status.error();
   if (words.grid != "auto") {
     const char* end = words.grid.data() + words.grid.size();

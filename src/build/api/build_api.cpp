@@ -19,22 +19,54 @@
 namespace meshlode {
 namespace {
 
-Result<build::PipelineOptions> make_pipeline_options(const BuildOptions& options) {
+bool is_zero_or_more(double value) {
+  return value >= 0.0 && std::isfinite(value);
+}
+
+/// Enumerators come from a caller, who may have cast them from anything.
+Status check_choices(const BuildOptions& options) {
+  const auto usage = [](const char* field) { return Error{ErrorCode::kUsage, field, "is not one of its enumerators"}; };
+  if (options.error_tier > format::ErrorTier::kCertified) return usage("BuildOptions::error_tier");
+  if (options.preset > Preset::kBest) return usage("BuildOptions::preset");
+  if (options.attributes > AttributeChoice::kAll) return usage("BuildOptions::attributes");
+  if (options.uv_error_unit > UvErrorUnit::kTexels) return usage("BuildOptions::uv_error_unit");
+  if (options.codec > format::Codec::kStrips) return usage("BuildOptions::codec");
+  if (options.preset == Preset::kDefault) return Ok{};
+  return Error{ErrorCode::kUnsupported, "BuildOptions::preset", "only kDefault is there yet"};
+}
+
+Status check_numbers(const BuildOptions& options) {
   const auto usage = [](const char* field, const char* detail) { return Error{ErrorCode::kUsage, field, detail}; };
-  if (options.strip_attributes && options.keep_all_attributes) {
-    return usage("BuildOptions::strip_attributes", "not together with keep_all_attributes");
+  if (!is_zero_or_more(options.grid_step)) return usage("BuildOptions::grid_step", "is not a number >= 0");
+  if (!is_zero_or_more(options.position_error)) return usage("BuildOptions::position_error", "is not a number >= 0");
+  if (options.grid_step > 0.0 && options.position_error > 0.0) {
+    return usage("BuildOptions::position_error", "not together with grid_step");
   }
-  if (!(options.grid_step >= 0.0) || !std::isfinite(options.grid_step)) {
-    return usage("BuildOptions::grid_step", "is not a number >= 0");
+  if (!is_zero_or_more(options.normal_error) || options.normal_error == 0.0) {
+    return usage("BuildOptions::normal_error", "is not a number above 0");
   }
+  if (!is_zero_or_more(options.uv_error)) return usage("BuildOptions::uv_error", "is not a number >= 0");
   if (options.thread_count > 4096) return usage("BuildOptions::thread_count", "is above 4096");
+  return Ok{};
+}
+
+Result<build::PipelineOptions> make_pipeline_options(const BuildOptions& options) {
+  if (Status status = check_choices(options); !status) return status.error();
+  if (Status status = check_numbers(options); !status) return status.error();
   build::PipelineOptions pipeline;
   pipeline.error_tier = options.error_tier;
-  pipeline.codec = options.codec;
+  pipeline.attributes = options.attributes;
   pipeline.grid_step = options.grid_step;
+  pipeline.position_error = options.position_error;
+  pipeline.normal_error = options.normal_error;
+  if (options.uv_error > 0.0) {
+    pipeline.uv_error = options.uv_error;
+    pipeline.uv_error_is_texels = options.uv_error_unit == UvErrorUnit::kTexels;
+    pipeline.uv_error_is_default = false;
+  }
+  pipeline.codec = options.codec;
   pipeline.repair = options.repair;
-  if (options.strip_attributes) pipeline.attributes = build::AttributeChoice::kNone;
-  if (options.keep_all_attributes) pipeline.attributes = build::AttributeChoice::kAll;
+  pipeline.max_memory = options.max_memory_bytes;
   return pipeline;
 }
 
@@ -100,6 +132,7 @@ Status build_file(const std::filesystem::path& input, const std::filesystem::pat
   return guarded([&]() -> Status {
     scene::ImportOptions import_options;
     import_options.repair = options.repair;
+    import_options.max_decoded = options.max_decoded_bytes;
     std::vector<FileId> files_read;
     import_options.files_read = &files_read;
     auto scene = scene::import_scene(input, import_options);

@@ -5,17 +5,12 @@
 #include <string>
 #include <vector>
 
+#include <meshlode/build.h>
+
 #include "build/prepared.h"
 #include "scene/scene.h"
 
 namespace meshlode::build {
-
-/// Which attributes of the source the asset may carry.
-enum class AttributeChoice : std::uint8_t {
-  kAuto,  ///< what the scene's materials can show
-  kNone,  ///< positions alone
-  kAll,   ///< everything that the source has and the format can hold
-};
 
 struct PlanDecision {
   std::string what;    ///< "mesh 0: TEXCOORD_0"

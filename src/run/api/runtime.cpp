@@ -23,17 +23,17 @@ bool is_positive(double value) {
   return value > 0.0 && std::isfinite(value);
 }
 
-Result<run::Camera> make_camera(const ViewPoint& view) {
+Result<run::Camera> make_camera(const View& view) {
   for (const double c : view.eye) {
-    if (!std::isfinite(c)) return usage("ViewPoint::eye", "is not finite");
+    if (!std::isfinite(c)) return usage("View::eye", "is not finite");
   }
-  if (view.height_px == 0) return usage("ViewPoint::height_px", "is 0");
-  if (!is_positive(view.near_distance)) return usage("ViewPoint::near_distance", "is not above 0");
+  if (view.height_px == 0) return usage("View::height_px", "is 0");
+  if (!is_positive(view.near_distance)) return usage("View::near_distance", "is not above 0");
   constexpr double kPi = 3.14159265358979323846;
   if (view.is_orthographic) {
-    if (!is_positive(view.ortho_height)) return usage("ViewPoint::ortho_height", "is not above 0");
+    if (!is_positive(view.ortho_height)) return usage("View::ortho_height", "is not above 0");
   } else if (!(view.fovy_radians > 0.0 && view.fovy_radians < kPi)) {
-    return usage("ViewPoint::fovy_radians", "is not between 0 and pi");
+    return usage("View::fovy_radians", "is not between 0 and pi");
   }
   run::Camera camera;
   camera.eye = {view.eye[0], view.eye[1], view.eye[2]};
@@ -57,20 +57,20 @@ void copy_vectors(const std::vector<In>& from, std::vector<Out>& to) {
 
 }  // namespace
 
-struct PageData::State {
+struct PageBytes::State {
   run::PageBytes bytes;
   std::uint32_t page;
   const void* owner;  ///< the AssetFile's state: a page of another asset was checked against other tables
 };
 
-PageData::PageData(std::unique_ptr<State> state) : state_(std::move(state)) {}
-PageData::PageData(PageData&&) noexcept = default;
-PageData& PageData::operator=(PageData&&) noexcept = default;
-PageData::~PageData() = default;
-std::span<const std::uint8_t> PageData::bytes() const {
+PageBytes::PageBytes(std::unique_ptr<State> state) : state_(std::move(state)) {}
+PageBytes::PageBytes(PageBytes&&) noexcept = default;
+PageBytes& PageBytes::operator=(PageBytes&&) noexcept = default;
+PageBytes::~PageBytes() = default;
+std::span<const std::uint8_t> PageBytes::bytes() const {
   return state_->bytes.bytes();
 }
-std::uint32_t PageData::page() const {
+std::uint32_t PageBytes::page() const {
   return state_->page;
 }
 
@@ -82,7 +82,7 @@ struct AssetFile::State {
     return AssetFile(std::make_unique<State>(State{std::move(*asset)}));
   }
   /// Decodes to the integer form of the room `decode`.
-  [[nodiscard]] Status decode(const PageData::State& page, std::uint32_t cluster, run::DecodedCluster& out) const {
+  [[nodiscard]] Status decode(const PageBytes::State& page, std::uint32_t cluster, run::DecodedCluster& out) const {
     if (cluster >= asset.clusters().size()) return usage("cluster", "does not exist");
     if (page.owner != this || page_of(cluster) != page.page) return usage("page", "is not the page of this cluster");
     run::decode_cluster(asset, page.bytes, ClusterId(cluster), out);
@@ -151,7 +151,7 @@ std::string_view AssetFile::scene_json() const {
   return state_->asset.scene_json();
 }
 
-Result<std::vector<DrawItem>> AssetFile::select(const ViewPoint& view, double pixel_error) const {
+Result<std::vector<DrawItem>> AssetFile::select_view(const View& view, double pixel_error) const {
   const auto camera = make_camera(view);
   if (!camera) return camera.error();
   if (!(pixel_error >= 0.0) || !std::isfinite(pixel_error)) return usage("pixel_error", "is not a number >= 0");
@@ -162,11 +162,11 @@ Result<std::vector<DrawItem>> AssetFile::select(const ViewPoint& view, double pi
   return items;
 }
 
-Result<MeshCutResult> AssetFile::select_uniform_cut(std::uint32_t mesh, double error) const {
+Result<UniformCut> AssetFile::select_uniform(std::uint32_t mesh, double max_error) const {
   if (mesh >= state_->asset.meshes().size()) return usage("mesh", "does not exist");
-  if (!(error >= 0.0)) return usage("error", "is not a number >= 0");
-  const run::UniformCut cut = run::select_uniform(state_->asset, MeshId(mesh), error);
-  MeshCutResult result;
+  if (!(max_error >= 0.0)) return usage("max_error", "is not a number >= 0");
+  const run::UniformCut cut = run::select_uniform(state_->asset, MeshId(mesh), max_error);
+  UniformCut result;
   result.stored_error = cut.stored_error;
   result.clusters.reserve(cut.clusters.size());
   for (const ClusterId c : cut.clusters) result.clusters.push_back(c.value);
@@ -177,32 +177,32 @@ std::uint32_t AssetFile::page_of(std::uint32_t cluster) const {
   return state_->page_of(cluster);
 }
 
-Result<PageData> AssetFile::load_page_data(std::uint32_t page) const {
+Result<PageBytes> AssetFile::load_page(std::uint32_t page) const {
   if (page >= state_->asset.pages().size()) return usage("page", "does not exist");
   auto bytes = run::load_page(state_->asset, PageId(page));
   if (!bytes) return bytes.error();
-  return PageData(std::make_unique<PageData::State>(PageData::State{std::move(*bytes), page, state_.get()}));
+  return PageBytes(std::make_unique<PageBytes::State>(PageBytes::State{std::move(*bytes), page, state_.get()}));
 }
 
-Status AssetFile::decode(const PageData& page, std::uint32_t cluster, ClusterIntegers& out) const {
+Status AssetFile::decode(const PageBytes& page, std::uint32_t cluster, ClusterIntegers& out) const {
   run::DecodedCluster decoded;
   std::swap(decoded.channels, out.values);  // reuse what the caller brought
   std::swap(decoded.triangles, out.triangles);
-  std::swap(decoded.triangle_material, out.triangle_material);
+  std::swap(decoded.triangle_material, out.triangle_materials);
   if (auto status = state_->decode(*page.state_, cluster, decoded); !status) return status.error();
   out.vertex_count = decoded.vertex_count;
   out.triangle_count = decoded.triangle_count;
   out.channel_count = decoded.channel_count;
   out.values = std::move(decoded.channels);
   out.triangles = std::move(decoded.triangles);
-  out.triangle_material = std::move(decoded.triangle_material);
+  out.triangle_materials = std::move(decoded.triangle_material);
   return Ok{};
 }
 
-Status AssetFile::decode(const PageData& page, std::uint32_t cluster, ClusterFloats& out) const {
+Status AssetFile::decode(const PageBytes& page, std::uint32_t cluster, ClusterFloats& out) const {
   run::DecodedCluster decoded;
   std::swap(decoded.triangles, out.triangles);
-  std::swap(decoded.triangle_material, out.triangle_material);
+  std::swap(decoded.triangle_material, out.triangle_materials);
   if (auto status = state_->decode(*page.state_, cluster, decoded); !status) return status.error();
   const format::GroupRecord& group = state_->asset.groups()[state_->asset.clusters()[cluster].coarser_group];
   run::ClusterAttributes floats;
@@ -212,7 +212,7 @@ Status AssetFile::decode(const PageData& page, std::uint32_t cluster, ClusterFlo
   for (std::size_t k = 0; k < out.uvs.size(); ++k) copy_vectors(floats.uvs[k], out.uvs[k]);
   copy_vectors(floats.colors, out.colors);
   out.triangles = std::move(decoded.triangles);
-  out.triangle_material = std::move(decoded.triangle_material);
+  out.triangle_materials = std::move(decoded.triangle_material);
   return Ok{};
 }
 

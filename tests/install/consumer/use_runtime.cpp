@@ -11,13 +11,13 @@ int main(int argc, char** argv) {
     std::puts(asset.error().message().c_str());
     return 1;
   }
-  meshlode::ViewPoint view;
+  meshlode::View view;
   view.eye = {0.0, 0.0, 5.0};
-  const auto items = asset->select(view, 1.0);
+  const auto items = asset->select_view(view, 1.0);
   if (!items || items->empty()) return 1;
   std::size_t triangles = 0;
   for (const meshlode::DrawItem& item : *items) {
-    const auto page = asset->load_page_data(asset->page_of(item.cluster));
+    const auto page = asset->load_page(asset->page_of(item.cluster));
     meshlode::ClusterFloats cluster;
     if (!page || !asset->decode(*page, item.cluster, cluster)) return 1;
     triangles += cluster.triangles.size();

@@ -133,7 +133,7 @@ TEST(Drift, OfLevelZeroIsItsQuantization) {
   scene::Primitive& p = mesh.primitives[0];
   for (const Vec3d& at : p.positions) p.uvs[0].push_back(Vec2f(Vec2d(at.x, at.y)));
   build::PipelineReport report;
-  auto bytes = build::build_lode(scene::as_scene(mesh), {.attributes = build::AttributeChoice::kAll}, {}, report);
+  auto bytes = build::build_lode(scene::as_scene(mesh), {.attributes = AttributeChoice::kAll}, {}, report);
   ASSERT_TRUE(bytes.ok()) << bytes.error().message();
   const auto asset = run::Asset::from_vector(std::move(*bytes));
   ASSERT_TRUE(asset.ok());
