@@ -20,16 +20,18 @@ using build::CollapseStar;
 using build::GroupPlaces;
 using build::WedgeTriangle;
 
-/// Triangles of points of the grid; each point has one wedge, of its own number.
+/// Triangles of points of the grid. The first wedges are the points' own, of the same numbers; `more` says the points of
+/// further ones.
 struct DrawnMesh {
   std::vector<Vec3i> points;
   std::vector<WedgeTriangle> triangles;
+  std::vector<std::uint32_t> wedge_position;
   CollapseMesh mesh;
   GroupPlaces places;
 
-  DrawnMesh(std::vector<Vec3i> at, std::vector<WedgeTriangle> of)
-      : points(std::move(at)), triangles(std::move(of)), mesh(triangles, own_wedges(points.size()), points.size()),
-        places(points) {}
+  DrawnMesh(std::vector<Vec3i> at, std::vector<WedgeTriangle> of, const std::vector<std::uint32_t>& more = {})
+      : points(std::move(at)), triangles(std::move(of)), wedge_position(own_wedges(points.size(), more)),
+        mesh(triangles, wedge_position, points.size()), places(points) {}
 
   [[nodiscard]] CollapseStar star(std::uint32_t a, std::uint32_t b, bool drops_sheets = false) {
     CollapseStar star;
@@ -39,9 +41,10 @@ struct DrawnMesh {
     return star;
   }
 
-  static std::vector<std::uint32_t> own_wedges(std::size_t count) {
+  static std::vector<std::uint32_t> own_wedges(std::size_t count, const std::vector<std::uint32_t>& more) {
     std::vector<std::uint32_t> own(count);
     std::iota(own.begin(), own.end(), 0U);
+    own.insert(own.end(), more.begin(), more.end());
     return own;
   }
 };
@@ -65,6 +68,16 @@ inline DrawnMesh closed_fan() {
 }
 /// The upper half alone: 6, 0, 1 and 2 lie on its border.
 inline DrawnMesh open_fan() { return {kFanPoints, kUpperFan}; }
+
+/// The closed fan with a seam along 6, 0, 1, 2: below it the wedges are 13, 10, 11 and 12.
+inline DrawnMesh seamed_fan() {
+  std::vector<WedgeTriangle> all = kUpperFan;
+  for (WedgeTriangle t : kLowerFan) {
+    for (std::uint32_t& w : t) w = w == 0 ? 10 : w == 1 ? 11 : w == 2 ? 12 : w == 6 ? 13 : w;
+    all.push_back(t);
+  }
+  return {kFanPoints, all, {0, 1, 2, 6}};
+}
 
 /// Closed: the smallest thing that the link condition keeps.
 inline DrawnMesh tetrahedron() {

@@ -21,11 +21,14 @@ void GroupSimplifier<C>::seed_candidates() {
 
 template <std::size_t C>
 void GroupSimplifier<C>::push_candidate(std::uint32_t a, std::uint32_t b) {
-  if (is_locked_[a] != 0 && is_locked_[b] != 0) {
+  if (locks_.is_vertex_locked[a] != 0 && locks_.is_vertex_locked[b] != 0) {
     ++obstacles_[static_cast<std::size_t>(Obstacle::kLocked)];
     return;
   }
   if (a > b) std::swap(a, b);
+  star_.a.vertex = a;
+  star_.b.vertex = b;
+  if (classes_.needs_corners(a, b)) gather_corners(mesh_, a, b, star_);
   const Placement placement = place(a, b);
   queue_.push({placement.cost, a, b, version_[a], version_[b]});
 }
@@ -34,17 +37,16 @@ template <std::size_t C>
 typename GroupSimplifier<C>::Obstacle GroupSimplifier<C>::try_collapse(const Candidate& candidate) {
   std::uint32_t a = candidate.a;
   std::uint32_t b = candidate.b;
-  const Placement placement = place(a, b);  // leaves the wedge classes behind
-  for (std::size_t i = 0; i < class_count_; ++i) {
-    if (classes_[i].is_ambiguous) return Obstacle::kSeams;
-  }
   gather_corners(mesh_, a, b, star_);
+  const Placement placement = place(a, b);  // leaves the wedge classes behind
+  for (const WedgeClass& joined : classes_.classes()) {
+    if (!agree(joined)) return Obstacle::kSeams;
+  }
   star_.target = placement.position;
-  if (is_locked_[a] == 0 && is_locked_[b] == 0) star_.target = places_.to_frame(places_.to_grid(star_.target));
-  if (is_locked_[a] != 0 && !keeps_shared_edges(mesh_, is_locked_, star_.a, star_.b)) return Obstacle::kLocked;
-  if (is_locked_[b] != 0 && !keeps_shared_edges(mesh_, is_locked_, star_.b, star_.a)) return Obstacle::kLocked;
-  if (is_locked_[a] != 0 && !keeps_shared_corners(star_.a, star_.b)) return Obstacle::kSeams;
-  if (is_locked_[b] != 0 && !keeps_shared_corners(star_.b, star_.a)) return Obstacle::kSeams;
+  const bool is_free = locks_.is_vertex_locked[a] == 0 && locks_.is_vertex_locked[b] == 0;
+  if (is_free) star_.target = places_.to_frame(places_.to_grid(star_.target));
+  if (!keeps_shared_edges(mesh_, locks_, star_)) return Obstacle::kLocked;
+  if (attribute_count_ > 0 && !keeps_shared_corners(mesh_, locks_, classes_, star_)) return Obstacle::kSeams;
   bool breaks_topology = false;
   if (!keeps_topology(mesh_, is_border_, star_)) {
     if (!options_.may_relax_topology) return Obstacle::kTopology;
@@ -62,7 +64,7 @@ typename GroupSimplifier<C>::Obstacle GroupSimplifier<C>::try_collapse(const Can
     return Obstacle::kPutBack;
   }
   has_broken_topology_ |= breaks_topology;
-  if (is_locked_[b] != 0) std::swap(a, b);
+  if (locks_.is_vertex_locked[b] != 0) std::swap(a, b);
   collapse(a, b);
   return Obstacle::kNone;
 }
@@ -96,20 +98,14 @@ void GroupSimplifier<C>::collapse(std::uint32_t a, std::uint32_t b) {
   }
   left_behind_.join(a, b);
   is_border_[a] |= is_border_[b];
-  if (is_locked_[a] == 0) places_.move(a, star_.target);
-  for (std::size_t i = 0; i < class_count_; ++i) {
-    const WedgeClass& c = classes_[i];
-    const std::uint32_t keeper = c.fixed != kSeveralWedges ? c.fixed : c.members[0];
+  if (locks_.is_vertex_locked[a] == 0) places_.move(a, star_.target);
+  for (const WedgeClass& c : classes_.classes()) {
+    const std::uint32_t keeper = c.keeper();
     for (const std::uint32_t w : c.members) {
-      if (w == keeper) continue;
-      wedge_[keeper].add(wedge_[w], attribute_count_);
-      for (const StarEnd* end : {&star_.a, &star_.b}) {
-        for (const std::uint32_t corner : end->corners) {
-          if (mesh_.wedge(corner) == w) mesh_.set_wedge(corner, keeper);
-        }
-      }
+      if (w != keeper) wedge_[keeper].add(wedge_[w], attribute_count_);
     }
-    if (c.fixed == kSeveralWedges && wedge_[keeper].base.weight > 0.0) {
+    relabel_wedges(mesh_, star_, c);
+    if (c.fixed == WedgeClass::kNone && wedge_[keeper].base.weight > 0.0) {
       for (std::size_t j = 0; j < attribute_count_; ++j) value_[keeper][j] = wedge_[keeper].best(j, places_[a]);
     }
   }
@@ -120,7 +116,7 @@ void GroupSimplifier<C>::collapse(std::uint32_t a, std::uint32_t b) {
   if (has_broken_topology_) error_ = std::max(error_, drop_collapsed_sheets(a));
   joined_.vertex = a;
   mesh_.corners_of(a, joined_.corners);
-  update_wedges(joined_);
+  classes_.update(mesh_, joined_);
   if (joined_.corners.empty()) error_ = std::max(error_, left_behind_.size(a));
   gather_neighbors(mesh_, joined_);
   for (const std::uint32_t n : joined_.neighbors) push_candidate(a, n);

@@ -17,11 +17,13 @@
 #include "base/disjoint_sets.h"
 #include "build/simplify/collapse_mesh.h"
 #include "build/simplify/collapse_star.h"
+#include "build/simplify/group_locks.h"
 #include "build/simplify/group_places.h"
 #include "build/simplify/guards.h"
 #include "build/simplify/left_behind.h"
 #include "build/simplify/quadric.h"
 #include "build/simplify/simplify.h"
+#include "build/simplify/wedge_classes.h"
 
 namespace meshlode::build {
 
@@ -38,7 +40,6 @@ class GroupSimplifier {
   using Wedge = WedgeQuadric<Capacity>;
   using Values = std::array<double, Capacity>;
 
-  static constexpr std::uint32_t kSeveralWedges = 0xFFFFFFFFU;
   /// Weight of the pull towards the collapsed edge: places vertices sensibly where the surface is flat, and lets short
   /// edges go first there. A share of the squared edge length, far below any deviation that matters.
   static constexpr double kRegularization = 1e-6;
@@ -63,12 +64,6 @@ class GroupSimplifier {
       return a != other.a ? a > other.a : b > other.b;
     }
   };
-  /// Wedges that become one. `fixed` is the locked wedge whose values rule, if any.
-  struct WedgeClass {
-    std::vector<std::uint32_t> members;
-    std::uint32_t fixed = kSeveralWedges;
-    bool is_ambiguous = false;  ///< two locked wedges would become one
-  };
   struct Placement {
     Vec3d position{0.0};
     double cost = 0.0;
@@ -80,13 +75,11 @@ class GroupSimplifier {
   void add_edge_quadrics();
   void seed_candidates();
   void push_candidate(std::uint32_t a, std::uint32_t b);
-  void collect_wedge_classes(std::uint32_t a, std::uint32_t b);
   [[nodiscard]] Placement place(std::uint32_t a, std::uint32_t b);
+  [[nodiscard]] bool agree(const WedgeClass& joined) const;
   [[nodiscard]] Obstacle try_collapse(const Candidate& candidate);
-  [[nodiscard]] bool keeps_shared_corners(const StarEnd& locked, const StarEnd& moved) const;
   [[nodiscard]] double price_of(const Candidate& candidate);
   void collapse(std::uint32_t a, std::uint32_t b);
-  void update_wedges(const StarEnd& end);
   [[nodiscard]] bool has_corners_in_one_place(std::uint32_t triangle) const;
   void run_passes();
   [[nodiscard]] std::vector<std::uint32_t> find_pieces() const;
@@ -96,6 +89,7 @@ class GroupSimplifier {
 
   const SimplifyInput& input_;
   const SimplifyOptions& options_;
+  GroupLocks locks_;
   CollapseMesh mesh_;
   GroupPlaces places_;
   std::size_t attribute_count_;
@@ -105,12 +99,10 @@ class GroupSimplifier {
   LeftBehind left_behind_;
   double total_weight_ = 0.0;                   ///< of all plane quadrics
   std::vector<std::uint32_t> version_;
-  std::vector<std::uint8_t> is_locked_, is_border_;
-  std::vector<std::uint32_t> only_wedge_;       ///< per vertex, or kSeveralWedges
+  std::vector<std::uint8_t> is_border_;
 
   std::vector<Wedge> wedge_;
   std::vector<Values> value_;
-  std::vector<std::uint8_t> is_wedge_locked_;
 
   std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> queue_;
   double error_ = 0.0;  ///< frame units
@@ -120,11 +112,7 @@ class GroupSimplifier {
   // Scratch of one collapse.
   CollapseStar star_;
   StarEnd joined_;
-  std::vector<WedgeClass> classes_;
-  std::size_t class_count_ = 0;
-  std::uint64_t stamp_ = 0;  ///< what is marked with it was marked in this search, not in one before
-  std::vector<std::uint64_t> wedge_stamp_;
-  std::vector<std::uint32_t> class_of_;  ///< per wedge, where its stamp is the search's
+  WedgeClasses classes_;
 };
 
 }  // namespace meshlode::build

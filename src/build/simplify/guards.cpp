@@ -36,6 +36,58 @@ bool keeps_edge_to(const CollapseMesh& mesh, std::uint32_t tip, const StarEnd& l
   return kept == 0 || (kept > 0) == (inherited > 0);
 }
 
+/// For both ends of the edge, with the locked one first.
+bool keeps_shared_edges_of(const CollapseMesh& mesh, const GroupLocks& locks, const StarEnd& locked,
+                           const StarEnd& moved) {
+  for (const std::uint32_t corner : moved.corners) {
+    for (const std::uint32_t tip : mesh.others(corner)) {
+      if (tip == locked.vertex || locks.is_vertex_locked[tip] == 0) continue;
+      if (!keeps_edge_to(mesh, tip, locked, moved)) return false;
+    }
+  }
+  return true;
+}
+
+std::uint32_t corner_in(const CollapseMesh& mesh, std::uint32_t triangle, std::uint32_t vertex) {
+  for (std::uint32_t corner = 3 * triangle; corner < 3 * triangle + 3; ++corner) {
+    if (mesh.vertex(corner) == vertex) return corner;
+  }
+  return CollapseMesh::kEnd;
+}
+
+/// A triangle that will stand on the locked vertex, with its corner at the moved one.
+bool stands_well(const CollapseMesh& mesh, const GroupLocks& locks, const WedgeClasses& classes, std::uint32_t corner) {
+  const auto is_locked = [&](std::uint32_t c) { return locks.is_vertex_locked[mesh.vertex(c)] != 0; };
+  const auto is_newcomer = [&](std::uint32_t c) { return is_locked(c) && locks.is_wedge_locked[mesh.wedge(c)] == 0; };
+  const std::uint32_t next = CollapseMesh::next_in_triangle(corner);
+  const std::uint32_t previous = CollapseMesh::next_in_triangle(next);
+  // If it has another locked one, their edge may be the border.
+  const bool may_be_border = is_locked(next) || is_locked(previous);
+  if (may_be_border && !classes.joins_locked(mesh.wedge(corner))) return false;
+  // Nor may the other end bring attributes that came to it with a vertex that was joined into it.
+  return !is_newcomer(next) && !is_newcomer(previous);
+}
+
+/// A triangle that goes, by its corners at the moved vertex and at the locked one.
+bool have_heirs_its_wedges(const CollapseMesh& mesh, const GroupLocks& locks, const StarEnd& moved,
+                           std::uint32_t corner, std::uint32_t at_locked) {
+  const std::uint32_t t = corner / 3;
+  const std::uint32_t at_tip = 3 * t + (3 - corner % 3 - at_locked % 3);
+  if (locks.is_vertex_locked[mesh.vertex(at_tip)] == 0) return true;
+  const bool is_locked_shared = locks.is_wedge_shared[mesh.wedge(at_locked)] != 0;
+  const bool is_tip_shared = locks.is_wedge_shared[mesh.wedge(at_tip)] != 0;
+  if (!is_locked_shared && !is_tip_shared) return true;
+  for (const std::uint32_t other : moved.corners) {
+    const std::uint32_t heir = other / 3;
+    if (heir == t || corner_in(mesh, heir, mesh.vertex(at_locked)) != CollapseMesh::kEnd) continue;
+    const std::uint32_t heir_tip = corner_in(mesh, heir, mesh.vertex(at_tip));
+    if (heir_tip == CollapseMesh::kEnd) continue;
+    if (is_locked_shared && mesh.wedge(other) != mesh.wedge(corner)) return false;
+    if (is_tip_shared && mesh.wedge(heir_tip) != mesh.wedge(at_tip)) return false;
+  }
+  return true;
+}
+
 /// What two vertices have beside them both; more than three are not told.
 struct CommonNeighbors {
   std::array<std::uint32_t, 3> vertex{};
@@ -89,14 +141,24 @@ bool turns_over_at(const CollapseMesh& mesh, const GroupPlaces& places, const St
 
 }  // namespace
 
-bool keeps_shared_edges(const CollapseMesh& mesh, const std::vector<std::uint8_t>& is_locked, const StarEnd& locked,
-                        const StarEnd& moved) {
-  for (const std::uint32_t corner : moved.corners) {
-    for (const std::uint32_t tip : mesh.others(corner)) {
-      if (tip != locked.vertex && is_locked[tip] != 0 && !keeps_edge_to(mesh, tip, locked, moved)) return false;
-    }
-  }
-  return true;
+bool keeps_shared_edges(const CollapseMesh& mesh, const GroupLocks& locks, const CollapseStar& star) {
+  const auto is_kept = [&](const StarEnd& locked, const StarEnd& moved) {
+    return locks.is_vertex_locked[locked.vertex] == 0 || keeps_shared_edges_of(mesh, locks, locked, moved);
+  };
+  return is_kept(star.a, star.b) && is_kept(star.b, star.a);
+}
+
+bool keeps_shared_corners(const CollapseMesh& mesh, const GroupLocks& locks, const WedgeClasses& classes,
+                          const CollapseStar& star) {
+  const auto is_kept = [&](const StarEnd& locked, const StarEnd& moved) {
+    if (locks.is_vertex_locked[locked.vertex] == 0) return true;
+    return std::all_of(moved.corners.begin(), moved.corners.end(), [&](std::uint32_t corner) {
+      const std::uint32_t at_locked = corner_in(mesh, corner / 3, locked.vertex);
+      return at_locked == CollapseMesh::kEnd ? stands_well(mesh, locks, classes, corner)
+                                             : have_heirs_its_wedges(mesh, locks, moved, corner, at_locked);
+    });
+  };
+  return is_kept(star.a, star.b) && is_kept(star.b, star.a);
 }
 
 bool keeps_topology(const CollapseMesh& mesh, const std::vector<std::uint8_t>& is_border, CollapseStar& star) {

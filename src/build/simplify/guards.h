@@ -7,7 +7,9 @@
 
 #include "build/simplify/collapse_mesh.h"
 #include "build/simplify/collapse_star.h"
+#include "build/simplify/group_locks.h"
 #include "build/simplify/group_places.h"
+#include "build/simplify/wedge_classes.h"
 
 namespace meshlode::build {
 
@@ -15,9 +17,15 @@ namespace meshlode::build {
 /// what they are. A triangle (locked, moved, tip) goes with the collapse of its edge to `locked`: where its tip is locked
 /// too, the triangles across (moved, tip) must inherit the edge (locked, tip). On an open border there may be none: such an
 /// ear stays. And an open edge (moved, tip) that comes to lie on (locked, tip) may not close that one's border.
-/// `is_locked` is per vertex; `locked` and `moved` are the two ends of a star.
-[[nodiscard]] bool keeps_shared_edges(const CollapseMesh& mesh, const std::vector<std::uint8_t>& is_locked,
-                                      const StarEnd& locked, const StarEnd& moved);
+/// Where neither end of the star is locked, all is kept.
+[[nodiscard]] bool keeps_shared_edges(const CollapseMesh& mesh, const GroupLocks& locks, const CollapseStar& star);
+
+/// I3 for attributes. A triangle (locked, moved, c) with c locked goes; the triangle across (moved, c) inherits the edge
+/// (locked, c), which may lie on the group's border. If another group shades that edge with the same wedges, the heir
+/// must bring them: (moved, c) may not be a crease. And no border edge gets a corner with attributes that nothing had
+/// there. `classes` are those of the star.
+[[nodiscard]] bool keeps_shared_corners(const CollapseMesh& mesh, const GroupLocks& locks, const WedgeClasses& classes,
+                                        const CollapseStar& star);
 
 /// The link condition (Dey et al. 1999): common neighbours are exactly the tips of the triangles on the edge, no two
 /// triangles become one, and two border vertices join along the border only. `is_border` is per vertex. Gathers the

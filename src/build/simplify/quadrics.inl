@@ -9,6 +9,7 @@ template <std::size_t C>
 GroupSimplifier<C>::GroupSimplifier(const SimplifyInput& input, const SimplifyOptions& options)
     : input_(input),
       options_(options),
+      locks_(input.is_locked, input.is_wedge_shared, input.wedge_position),
       mesh_(input.triangles, input.wedge_position, input.positions.size()),
       places_(input.positions),
       attribute_count_(input.layout.stride()),
@@ -16,23 +17,17 @@ GroupSimplifier<C>::GroupSimplifier(const SimplifyInput& input, const SimplifyOp
       border_(input.positions.size()),
       left_behind_(input.witnesses, places_),
       version_(input.positions.size(), 0),
-      is_locked_(input.is_locked),
       is_border_(input.positions.size(), 0),
-      only_wedge_(input.positions.size(), kSeveralWedges),
       wedge_(attribute_count_ == 0 ? 0 : input.wedge_position.size()),
       value_(wedge_.size()),
-      is_wedge_locked_(input.wedge_position.size(), 0),
-      wedge_stamp_(input.wedge_position.size(), 0),
-      class_of_(input.wedge_position.size(), 0) {
+      classes_(wedge_.size(), input.positions.size()) {
   scale_attributes();
   add_face_quadrics();
   add_edge_quadrics();
-  for (std::size_t w = 0; w < input.wedge_position.size(); ++w) {
-    is_wedge_locked_[w] = is_locked_[input.wedge_position[w]];
-  }
+  if (attribute_count_ == 0) return;
   for (joined_.vertex = 0; joined_.vertex < places_.size(); ++joined_.vertex) {
     mesh_.corners_of(joined_.vertex, joined_.corners);
-    update_wedges(joined_);
+    classes_.update(mesh_, joined_);
   }
 }
 
@@ -169,7 +164,7 @@ void GroupSimplifier<C>::add_edge_quadrics() {
     while (end < uses.size() && uses[end].a == uses[i].a && uses[end].b == uses[i].b) ++end;
     int net = 0;
     for (std::size_t k = i; k < end; ++k) net += mesh_.vertex(uses[k].corner) == uses[k].a ? 1 : -1;
-    has_free_border_ |= net != 0 && (is_locked_[uses[i].a] == 0 || is_locked_[uses[i].b] == 0);
+    has_free_border_ |= net != 0 && (locks_.is_vertex_locked[uses[i].a] == 0 || locks_.is_vertex_locked[uses[i].b] == 0);
     if (end - i != 2) {
       for (std::size_t k = i; k < end; ++k) add_wall(uses[k], border_, 1.0);
       is_border_[uses[i].a] = is_border_[uses[i].b] = 1;

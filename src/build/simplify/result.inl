@@ -46,7 +46,7 @@ void GroupSimplifier<C>::grow_pieces() {
     const double area = area_of(p[0], p[1], p[2]);
     piece.area += area;
     piece.moment += (p[0] + p[1] + p[2]) * (area / 3.0);
-    for (std::uint32_t k = 0; k < 3; ++k) piece.is_locked |= is_locked_[mesh_.vertex(3 * t + k)] != 0;
+    for (std::uint32_t k = 0; k < 3; ++k) piece.is_locked |= locks_.is_vertex_locked[mesh_.vertex(3 * t + k)] != 0;
   }
   for (const Piece& piece : pieces) (piece.is_locked ? fixed : free) += piece.area;
   if (!(free > 0.0) || !(covered - fixed > free)) return;
@@ -123,11 +123,11 @@ SimplifyResult GroupSimplifier<C>::result() const {
         slot = static_cast<std::uint32_t>(out.wedge_position.size());
         out.wedge_position.push_back(new_position[v]);
         for (std::size_t j = 0; j < stride; ++j) {
-          const bool is_kept = is_wedge_locked_[w] != 0 || !(attribute_scale_[j] > 0.0);
+          const bool is_kept = locks_.is_wedge_locked[w] != 0 || !(attribute_scale_[j] > 0.0);
           out.wedge_attributes.push_back(is_kept ? input_.wedge_attributes[w * stride + j]
                                                  : static_cast<float>(value_[w][j] / attribute_scale_[j]));
         }
-        if (input_.layout.has_normal && is_wedge_locked_[w] == 0) {
+        if (input_.layout.has_normal && locks_.is_wedge_locked[w] == 0) {
           float* n = &out.wedge_attributes[out.wedge_attributes.size() - stride];
           const double x = n[0];
           const double y = n[1];

@@ -8,7 +8,6 @@
 // The members, by idea; templates, and hot, so that one translation unit sees them all.
 #include "build/simplify/quadrics.inl"
 #include "build/simplify/placement.inl"
-#include "build/simplify/shared_corners.inl"
 #include "build/simplify/collapse.inl"
 #include "build/simplify/result.inl"
 

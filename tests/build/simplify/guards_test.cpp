@@ -95,12 +95,15 @@ TEST(Flip, BothEndsCount) {
   EXPECT_TRUE(turns_over(drawn.mesh, drawn.places, star));
 }
 
-// 0 is locked, 1 comes to it, 2 is the tip.
+const std::vector<Vec3i> kEarPoints{{0, 0, 0}, {8, 0, 0}, {0, 8, 0}, {8, 8, 0}, {-8, 8, 0}};
+
+/// 0 is locked, 1 comes to it, 2 is the tip.
 bool keeps_shared_edges(const std::vector<WedgeTriangle>& triangles, bool is_tip_locked = true) {
-  DrawnMesh drawn({{0, 0, 0}, {8, 0, 0}, {0, 8, 0}, {8, 8, 0}, {-8, 8, 0}}, triangles);
-  const CollapseStar star = drawn.star(0, 1);
-  return build::keeps_shared_edges(drawn.mesh, Flags{1, 0, is_tip_locked ? std::uint8_t{1} : std::uint8_t{0}, 0, 0},
-                                   star.a, star.b);
+  DrawnMesh drawn(kEarPoints, triangles);
+  const GroupLocks locks({1, 0, is_tip_locked ? std::uint8_t{1} : std::uint8_t{0}, 0, 0}, Flags(5, 0), drawn.wedge_position);
+  const bool is_kept = build::keeps_shared_edges(drawn.mesh, locks, drawn.star(0, 1));
+  EXPECT_EQ(build::keeps_shared_edges(drawn.mesh, locks, drawn.star(1, 0)), is_kept) << "either end may be the locked one";
+  return is_kept;
 }
 
 TEST(SharedEdges, ATriangleThatGoesNeedsAnHeirOfItsSharedEdge) {
@@ -115,6 +118,48 @@ TEST(SharedEdges, AnOpenEdgeDoesNotCloseASharedBorder) {
   EXPECT_FALSE(keeps_shared_edges({{0, 2, 4}, {1, 3, 2}}));
   EXPECT_TRUE(keeps_shared_edges({{0, 2, 4}, {3, 1, 2}})) << "along it: the border stays one";
   EXPECT_TRUE(keeps_shared_edges({{0, 2, 4}, {1, 3, 2}}, false)) << "where 2 is this group's own";
+}
+
+TEST(SharedEdges, WithoutALockedEndAllIsKept) {
+  DrawnMesh drawn(kEarPoints, {{0, 1, 2}});
+  const GroupLocks locks({0, 0, 1, 0, 0}, Flags(5, 0), drawn.wedge_position);
+  EXPECT_TRUE(build::keeps_shared_edges(drawn.mesh, locks, drawn.star(0, 1)));
+}
+
+/// The triangle (0, 1, 2) goes and (1, 3, 2), by its wedges, is the heir of (0, 2). 0 and 2 are locked, 1 comes to 0. The
+/// wedges 5 and 6 are second ones of 1 and 2; `shared` are another group's too.
+struct Heir {
+  DrawnMesh drawn;
+  GroupLocks locks;
+
+  Heir(const WedgeTriangle& heir, const std::vector<std::uint32_t>& shared)
+      : drawn(kEarPoints, {{0, 1, 2}, heir}, {1, 2}), locks({1, 0, 1, 0, 0}, Flags(7, 0), drawn.wedge_position) {
+    for (const std::uint32_t w : shared) locks.is_wedge_shared[w] = 1;
+  }
+  [[nodiscard]] bool keeps_corners() {
+    WedgeClasses classes(drawn.wedge_position.size(), drawn.points.size());  // no wedge known to be a vertex's only one
+    const CollapseStar star = drawn.star(0, 1);
+    classes.collect(drawn.mesh, locks, star);
+    return keeps_shared_corners(drawn.mesh, locks, classes, star);
+  }
+};
+
+TEST(SharedCorners, AnHeirBringsTheWedgesThatAnotherGroupShades) {
+  EXPECT_TRUE(Heir({1, 3, 2}, {0, 2}).keeps_corners());
+  EXPECT_FALSE(Heir({1, 3, 6}, {2}).keeps_corners()) << "a crease at the tip";
+  EXPECT_TRUE(Heir({1, 3, 6}, {0}).keeps_corners()) << "that nobody else shades";
+  EXPECT_FALSE(Heir({5, 3, 2}, {0}).keeps_corners()) << "a crease at the moved vertex";
+}
+
+TEST(SharedCorners, NoBorderEdgeGetsAttributesThatNothingHadThere) {
+  Heir crease({5, 3, 2}, {});
+  EXPECT_FALSE(crease.keeps_corners()) << "wedge 5 would stand on 0 beside the locked 2";
+  crease.locks.is_vertex_locked[2] = 0;
+  EXPECT_TRUE(crease.keeps_corners()) << "where the edge is inside of the group";
+  Heir newcomer({1, 3, 2}, {});
+  EXPECT_TRUE(newcomer.keeps_corners());
+  newcomer.locks.is_wedge_locked[2] = 0;
+  EXPECT_FALSE(newcomer.keeps_corners()) << "as if wedge 2 had come with a vertex that was joined into it";
 }
 
 }  // namespace
