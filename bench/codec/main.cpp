@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "format/names.h"
 #include "format/page_streams.h"
 #include "build/pack/pack.h"
 #include "run/read/asset.h"
@@ -37,12 +38,6 @@ double median(std::vector<double> values) {
   std::fprintf(stderr, "bench_codec: %s: %s\n", where.c_str(), detail.c_str());
   std::exit(1);
 }
-
-constexpr std::pair<const char*, format::Codec> kCodecs[] = {{"none", format::Codec::kNone},
-                                                             {"lz4", format::Codec::kLz4},
-                                                             {"zstd", format::Codec::kZstd},
-                                                             {"strips", format::Codec::kStrips},
-                                                             {"draco", format::Codec::kDraco}};
 
 struct Totals {
   double source_triangles = 0.0, stored_triangles = 0.0;
@@ -172,7 +167,7 @@ int main(int argc, char** argv) {
     std::printf("%s: %.0f source triangles, %.0f stored, %zu pages, file %.3f B/source triangle\n",
                 std::filesystem::path(path).filename().c_str(), totals.source_triangles, totals.stored_triangles,
                 pages.size(), static_cast<double>(asset->bytes().size()) / totals.source_triangles);
-    for (const auto& [name, codec] : kCodecs) {
+    for (const auto& [codec, name] : format::kCodecNames) {
       if (only.empty() || only == name) measure_codec(*asset, pages, codec, name, repetitions);
     }
     measure_opening(path, 2 * repetitions);

@@ -17,6 +17,7 @@
 
 #include "cut_judge.h"
 #include "cut_search.h"
+#include "format/names.h"
 #include "run/decode/decode.h"
 #include "scene/import/import.h"
 #include "judge/metrics/attribute_drift.h"
@@ -45,7 +46,7 @@ constexpr const char* kUsage =
     "  --json FILE       write the figures there too\n";
 
 struct Options {
-  std::string scene, asset, json, by = "selection", drift = "equal";
+  std::string scene, asset, json, by = name_in(run::kCutErrorNames, run::CutError::kSelection), drift = "equal";
   bool with_reference = false;
   int cuts = 24, jobs = 0;
   std::uint64_t samples = 200000;
@@ -96,7 +97,7 @@ bool parse(int argc, char** argv, Options& o) {
                          : word == "--max"     ? read_list(value, o.at_max)
                          : word == "--rms"     ? read_list(value, o.at_rms)
                          : word == "--json"    ? (o.json = value, true)
-                         : word == "--by"      ? (o.by = value, value == "selection" || value == "quadric")
+                         : word == "--by"      ? (o.by = value, value_in(run::kCutErrorNames, value).has_value())
                          : word == "--drift" ? (o.drift = value, value == "all" || value == "equal" || value == "none")
                                              : false;
     if (!is_read) return false;
@@ -126,9 +127,9 @@ class MeshBench {
     out.name = std::string(asset_.string(record.name));
     out.diagonal = record.diagonal;
     out.source_triangles = record.source_triangles;
-    out.tier = out::error_tier_name(record.error_tier);
+    out.tier = format::name_of(record.error_tier);
     if (!(record.diagonal > 0.0) || source_.triangles.empty()) return out;
-    const run::CutError by = options_.by == "quadric" ? run::CutError::kQuadric : run::CutError::kSelection;
+    const run::CutError by = *value_in(run::kCutErrorNames, options_.by);
     for (int i = 0; i < options_.cuts; ++i) {
       const double share = options_.cuts > 1 ? static_cast<double>(i) / (options_.cuts - 1) : 0.0;
       const double threshold = options_.from * std::pow(options_.to / options_.from, share);

@@ -3,7 +3,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/version.h"
 #include "build/dag/build_dag.h"
+#include "format/names.h"
 
 namespace meshlode::build {
 
@@ -11,50 +13,21 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-const char* name_of(AttributeChoice choice) {
-  switch (choice) {
-    case AttributeChoice::kNone: return "none";
-    case AttributeChoice::kAll: return "all";
-    case AttributeChoice::kAuto: break;
-  }
-  return "auto";
-}
-
-const char* name_of(format::ErrorTier tier) {
-  switch (tier) {
-    case format::ErrorTier::kMeasured: return "measured";
-    case format::ErrorTier::kCertified: return "certified";
-    case format::ErrorTier::kQem: break;
-  }
-  return "qem";
-}
-
 /// What a group's deviation is multiplied by on the way to its error. The tier qem has no deviations.
 double error_margin_of(format::ErrorTier tier) { return tier == format::ErrorTier::kMeasured ? kMeasuredMargin : 1.0; }
-
-const char* name_of(format::Codec codec) {
-  switch (codec) {
-    case format::Codec::kLz4: return "lz4";
-    case format::Codec::kZstd: return "zstd";
-    case format::Codec::kDraco: return "draco";
-    case format::Codec::kStrips: return "strips";
-    case format::Codec::kNone: break;
-  }
-  return "none";
-}
 
 }  // namespace
 
 std::string meta_json(const scene::Scene& scene, const PipelineOptions& options, const std::vector<PlanDecision>& decisions) {
   Json meta;
-  meta["generator"] = "meshlode 0.1.0";
+  meta["generator"] = program_version();
   meta["source"] = {{"file", scene.source_name}, {"hash", scene.source_hash}};
   Json settings;
-  settings["error_tier"] = name_of(options.error_tier);
+  settings["error_tier"] = format::name_of(options.error_tier);
   settings["error_margin"] = error_margin_of(options.error_tier);
   settings["attributes"] = name_of(options.attributes);
   settings["grid"] = options.grid_step > 0.0 ? Json(options.grid_step) : Json("auto");
-  settings["codec"] = name_of(options.codec);
+  settings["codec"] = format::name_of(options.codec);
   settings["repair"] = options.repair;
   settings["cluster_triangles"] = options.max_cluster_triangles;
   settings["cluster_vertices"] = options.max_cluster_vertices;

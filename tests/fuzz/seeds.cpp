@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "draw/textures/image_samples.h"
+#include "format/names.h"
 #include "scene/import/mutant_seeds.h"
 #include "run/read/asset.h"
 #include "support/sample_asset.h"
@@ -138,12 +139,7 @@ int main(int argc, char** argv) {
     write(folder / "render" / name, behind(near_camera, textured));
     write(folder / "verify" / name, behind({0, 0, 0, 0, 0, 0, 0, 0}, textured));
   }
-  const struct {
-    const char* name;
-    format::Codec codec;
-  } codecs[] = {{"none", format::Codec::kNone}, {"lz4", format::Codec::kLz4}, {"zstd", format::Codec::kZstd},
-                 {"strips", format::Codec::kStrips}, {"draco", format::Codec::kDraco}};
-  for (const auto& [name, codec] : codecs) {
+  for (const auto& [codec, name] : format::kCodecNames) {
     const std::string suffix = std::string("-") + name + ".lode";
     const std::pair<const char*, Bytes> assets[] = {
         {"tetrahedron", test::asset_bytes_of(test::sample_tetrahedron(), codec)},

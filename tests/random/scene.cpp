@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "format/names.h"
 #include "shapes.h"
 
 namespace meshlode::test {
@@ -240,8 +241,7 @@ std::vector<std::string> random_options(Dice& dice, const RandomScene& scene) {
     options.push_back(value);
   };
   if (dice.chance(0.4)) {
-    constexpr const char* kCodecs[] = {"none", "lz4", "zstd", "strips", "draco"};
-    add("--codec", kCodecs[dice.below(5)]);
+    add("--codec", format::kCodecNames[dice.below(format::kCodecNames.size())].name);
   }
   if (dice.chance(0.4)) add("--attributes", dice.chance(0.5) ? "none" : "all");
   const double tier = dice.unit();

@@ -41,7 +41,7 @@ CutLevel make_level(const run::Asset& asset, run::UniformCut cut, std::optional<
 
 CutLevel cut_at_error(const CutRequest& request, const run::AttributeBounds& bounds, const run::Asset& asset, MeshId mesh,
                       double error) {
-  const run::CutError by = request.by == "quadric" ? run::CutError::kQuadric : run::CutError::kSelection;
+  const run::CutError by = value_in(run::kCutErrorNames, request.by).value_or(run::CutError::kSelection);
   const double asked = error * error_unit(request, asset, mesh.value);
   return make_level(asset, run::select_uniform(asset, mesh, asked, by, bounds), asked);
 }
@@ -156,7 +156,7 @@ Status check_request(const CutRequest& r) {
   if (!r.error && !r.triangles && !r.lod_errors && (r.is_relative || r.is_world)) {
     return usage("--relative", "--relative and --world belong to --error, --triangles and --lod-errors");
   }
-  if (!r.error && !r.lod_errors && r.by != "selection") {
+  if (!r.error && !r.lod_errors && r.by != CutRequest().by) {
     return usage("--by", "belongs to --error and --lod-errors");
   }
   if (!r.error && !r.lod_errors && !r.has_camera() && r.bounds.has_any()) {

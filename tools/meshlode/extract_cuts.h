@@ -27,7 +27,7 @@ struct CutRequest {
   std::optional<std::string> lod_ratios;   ///< a chain by shares of each mesh's finest cut, falling
   bool is_relative = false;
   bool is_world = false;
-  std::string by = "selection";
+  std::string by = name_in(run::kCutErrorNames, run::CutError::kSelection);
   BoundsOptions bounds;  ///< beside --error, --lod-errors or a camera
   CameraOptions camera;  ///< its size and pixel error serve the coverage values of a chain too
   [[nodiscard]] bool has_camera() const { return camera.camera || camera.ortho_height; }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "outputs.h"
+#include "format/names.h"
 #include "out/export/colored_sets.h"
 #include "out/report/info.h"
 #include "base/json_writer.h"
@@ -42,7 +43,7 @@ int extract_stuck(const run::Asset& asset, const std::string& output, const Outp
   std::vector<out::ColoredSet> sets;
   for (const out::MeshInfo& mesh : info.meshes) {
     for (std::size_t k = 0; k < kLooks.size(); ++k) {
-      out::ColoredSet set{MeshId(), out::stuck_reason_name(kLooks[k].reason), kLooks[k].color, {}};
+      out::ColoredSet set{MeshId(), format::name_of(kLooks[k].reason), kLooks[k].color, {}};
       for (const out::StuckGroupInfo& stuck : mesh.stuck) {
         if (stuck.reason != kLooks[k].reason) continue;
         set.mesh = MeshId(stuck.mesh);
@@ -70,7 +71,7 @@ int extract_stuck(const run::Asset& asset, const std::string& output, const Outp
     w.begin_object();
     for (std::size_t k = 0; k < kLooks.size(); ++k) {
       if (counts[k].groups == 0) continue;
-      w.key(out::stuck_reason_name(kLooks[k].reason));
+      w.key(format::name_of(kLooks[k].reason));
       w.begin_object();
       w.field("groups", counts[k].groups);
       w.field("triangles", counts[k].triangles);
@@ -89,7 +90,7 @@ int extract_stuck(const run::Asset& asset, const std::string& output, const Outp
   for (std::size_t k = 0; k < kLooks.size(); ++k) {
     if (counts[k].groups == 0) continue;
     std::snprintf(line, sizeof line, "%s: %" PRIu64 " group(s), %" PRIu64 " triangles, %s\n",
-                  out::stuck_reason_name(kLooks[k].reason), counts[k].groups, counts[k].triangles, kLooks[k].color_name);
+                  format::name_of(kLooks[k].reason), counts[k].groups, counts[k].triangles, kLooks[k].color_name);
     text += line;
   }
   if (info.stuck_groups == 0) text += "no stuck group: a glTF without meshes\n";

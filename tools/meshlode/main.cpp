@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "base/version.h"
 #include "options.h"
 #include "outputs.h"
 #include "verb.h"
@@ -40,7 +41,7 @@ int run(std::span<char* const> args) {
   }
   const std::string_view name = args[0];
   if (name == "--help" || name == "-h" || name == "help") return print_or_fail(help());
-  if (name == "--version") return print_or_fail("meshlode " MESHLODE_VERSION "\n");
+  if (name == "--version") return print_or_fail(std::string(program_version()) + "\n");
   for (const Verb* verb : all_verbs()) {
     if (name == verb->name) return verb->run(*verb, args.subspan(1));
   }

@@ -12,6 +12,8 @@
 #include <string_view>
 
 #include "base/byte_size.h"
+#include "base/version.h"
+#include "format/names.h"
 #include "scene/import/import.h"
 #include "options.h"
 #include "outputs.h"
@@ -251,7 +253,7 @@ void write_left_out(JsonWriter& w, const std::vector<scene::LeftOut>& items) {
 std::string report_json(const std::vector<JobResult>& results, std::uint32_t jobs, int exit_code) {
   JsonWriter w;
   w.begin_object();
-  w.field("generator", "meshlode " MESHLODE_VERSION);
+  w.field("generator", program_version());
   w.field("jobs", jobs);
   w.field("exit_code", exit_code);
   w.key("builds");
@@ -307,14 +309,14 @@ std::string report_json(const std::vector<JobResult>& results, std::uint32_t job
 
 /// The words of the command line, before they mean anything.
 struct BuildWords {
-  std::string error_tier = "measured";
+  std::string error_tier = format::name_of(format::ErrorTier::kMeasured);
   std::string preset = "default";
-  std::string attributes = "auto";
+  std::string attributes = build::name_of(AttributeChoice::kAuto);
   std::string grid = "auto";
   std::string position_error = "auto";
   std::string normal_error = "0.1";
   std::string uv_error = "auto";
-  std::string codec = "none";
+  std::string codec = format::name_of(format::Codec::kNone);
 };
 
 /// A finite number above 0, all of the text.
@@ -355,18 +357,10 @@ Result<build::PipelineOptions> make_options(const BuildWords& words) {
     return Error{ErrorCode::kUnsupported, std::string(option) + " " + value, "unsupported yet"};
   };
   build::PipelineOptions options;
-  options.error_tier = words.error_tier == "qem"        ? format::ErrorTier::kQem
-                       : words.error_tier == "measured" ? format::ErrorTier::kMeasured
-                                                        : format::ErrorTier::kCertified;
+  options.error_tier = value_in(format::kErrorTierNames, words.error_tier).value_or(options.error_tier);
   if (words.preset != "default") return later("--preset", words.preset);
-  options.codec = words.codec == "zstd"     ? format::Codec::kZstd
-                  : words.codec == "lz4"    ? format::Codec::kLz4
-                  : words.codec == "draco"  ? format::Codec::kDraco
-                  : words.codec == "strips" ? format::Codec::kStrips
-                                            : format::Codec::kNone;
-  options.attributes = words.attributes == "none"  ? AttributeChoice::kNone
-                       : words.attributes == "all" ? AttributeChoice::kAll
-                                                   : AttributeChoice::kAuto;
+  options.codec = value_in(format::kCodecNames, words.codec).value_or(options.codec);
+  options.attributes = value_in(build::kAttributeChoiceNames, words.attributes).value_or(options.attributes);
   if (Status status = set_budgets(words, options); !status) return status.error();
   if (words.grid != "auto") {
     const char* end = words.grid.data() + words.grid.size();
@@ -391,15 +385,15 @@ int run_build(const Verb& verb, std::span<char* const> args) {
   parser.add_value("-o,--output", output, "the asset to write; the input's name with .lode where not given");
   parser.add_value("-O,--output-folder", output_folder, "folder for the assets of many inputs; made where missing");
   parser.add_value("--error-tier", words.error_tier, "what the errors are worth: qem estimates, measured measures, certified proves",
-                   {"qem", "measured", "certified"});
+                   all_names(format::kErrorTierNames));
   parser.add_value("--preset", words.preset, "default (fast, best: later)", {"fast", "default", "best"});
   parser.add_value("--attributes", words.attributes, "auto keeps what the materials call for, none positions only",
-                   {"auto", "none", "all"});
+                   all_names(build::kAttributeChoiceNames));
   parser.add_value("--grid", words.grid, "auto, or a step in mesh units for meshes that must abut");
   parser.add_value("--position-error", words.position_error, "auto, or the largest distance a vertex may move, mesh units");
   parser.add_value("--normal-error", words.normal_error, "the largest angle a stored normal may be off, degrees");
   parser.add_value("--uv-error", words.uv_error, "auto, or the largest move of a UV: UV units, or 0.25px for texels");
-  parser.add_value("--codec", words.codec, "disk codec of the pages", {"none", "lz4", "zstd", "strips", "draco"});
+  parser.add_value("--codec", words.codec, "disk codec of the pages", all_names(format::kCodecNames));
   parser.add_value("--max-memory", max_memory,
                    "auto refuses a build that needs more memory than the machine has; or a size, such as 8GiB");
   add_max_decoded_option(parser, max_decoded);

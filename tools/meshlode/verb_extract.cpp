@@ -202,7 +202,7 @@ int run_extract(const Verb& verb, std::span<char* const> args) {
   parser.add_flag("--relative", r.is_relative, "errors are fractions of each mesh's own diagonal");
   parser.add_flag("--world", r.is_world, "errors are in world units: the largest instance of a mesh decides");
   parser.add_value("--by", r.by, "the stored number that --error is compared with (selection)",
-                   {"selection", "quadric"});
+                   all_names(run::kCutErrorNames));
   parser.add_value("--mesh", o.mesh, "this mesh only, by name or index; the nodes of others stay, without a mesh");
   parser.add_flag("--stuck", o.is_stuck,
                   "instead of a cut the groups where simplification is stuck, coloured by reason");

@@ -45,10 +45,10 @@ struct RenderStats {
 const std::string kGpuViews[] = {"shaded",  "clusters", "triangles", "levels",  "normals",
                                  "pages",   "overdraw", "paths",     "occluded"};
 
-draw::View view_of(const std::string& name) {
-  if (name == "clusters") return draw::View::kClusters;
-  if (name == "triangles") return draw::View::kTriangles;
-  return name == "levels" ? draw::View::kLevels : draw::View::kShaded;
+static_assert(static_cast<int>(draw::View::kLevels) == VIEW_LEVELS && VIEW_LEVELS + 1 == VIEW_NORMALS);
+
+std::uint32_t view_number(const std::string& name) {
+  return static_cast<std::uint32_t>(std::find(std::begin(kGpuViews), std::end(kGpuViews), name) - std::begin(kGpuViews));
 }
 
 Error too_many_clusters(const run::Asset& asset) {
@@ -178,8 +178,7 @@ Result<Drawn> draw_on_gpu(const run::Asset& asset, const run::Camera& camera, co
                           const run::AttributeBounds& bounds, draw::ImageBudget& images) {
   draw::GpuRenderOptions render;
   render.device = options.device;
-  render.view = static_cast<std::uint32_t>(std::find(std::begin(kGpuViews), std::end(kGpuViews), options.view) -
-                                           std::begin(kGpuViews));
+  render.view = view_number(options.view);
   render.pixel_error = options.camera.pixel_error;
   render.bounds = bounds;
   if (!options.force.empty()) render.force.push_back(options.force);
@@ -208,9 +207,10 @@ Result<Drawn> draw_on_cpu(const run::Asset& asset, const run::Camera& camera, co
   auto visibility = draw::draw_cut(asset, cut, camera, masks);
   if (!visibility) return visibility.error();
   draw::TextureSet textures;
-  if (view_of(options.view) == draw::View::kShaded) textures = draw::load_textures(asset, images);
+  const auto view = static_cast<draw::View>(view_number(options.view));
+  if (view == draw::View::kShaded) textures = draw::load_textures(asset, images);
   print_warnings(textures.warnings);
-  auto image = draw::shade_view(asset, cut, camera, *visibility, view_of(options.view), textures);
+  auto image = draw::shade_view(asset, cut, camera, *visibility, view, textures);
   if (!image) return image.error();
   return Drawn{std::move(cut), std::move(*visibility), std::move(*image)};
 }
@@ -246,8 +246,7 @@ int run_render(const Verb& verb, std::span<char* const> args) {
   if (options.gpu && options.error) {
     return print_error({ErrorCode::kUnsupported, "--gpu", "selects by a camera, not by --error"});
   }
-  if (!options.gpu && std::find(std::begin(kGpuViews), std::begin(kGpuViews) + VIEW_NORMALS, options.view) ==
-                          std::begin(kGpuViews) + VIEW_NORMALS) {
+  if (!options.gpu && view_number(options.view) >= VIEW_NORMALS) {
     return print_error({ErrorCode::kUsage, "--view", options.view + " needs --gpu"});
   }
 

@@ -2,15 +2,21 @@
 // Plan: keep only what the scene calls for. Every decision has a reason, and says what it leaves out.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
 #include <meshlode/build.h>
 
+#include "base/enum_names.h"
 #include "build/prepared.h"
 #include "scene/scene.h"
 
 namespace meshlode::build {
+
+inline constexpr std::array<EnumName<AttributeChoice>, 3> kAttributeChoiceNames{
+    {{AttributeChoice::kAuto, "auto"}, {AttributeChoice::kNone, "none"}, {AttributeChoice::kAll, "all"}}};
+constexpr const char* name_of(AttributeChoice choice) { return name_in(kAttributeChoiceNames, choice); }
 
 struct PlanDecision {
   std::string what;    ///< "mesh 0: TEXCOORD_0"

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "format/grid.h"
+#include "format/names.h"
 #include "judge/validate/file_tables.h"
 #include "judge/verify/source_rules.h"
 #include "judge/verify/texel_budget.h"
@@ -176,13 +177,12 @@ void check_tiers(const run::Asset& asset, RuleLog& log) {
   log.check(Rule::kV112);
   const std::string setting = meta_text(asset.meta_json(), "settings", "error_tier");
   if (setting.empty()) return;
-  constexpr const char* kNames[] = {"qem", "measured", "certified"};
   for (std::size_t m = 0; m < asset.meshes().size(); ++m) {
     if (asset.meshes()[m].cluster_count == 0) continue;
-    const auto tier = static_cast<std::uint32_t>(asset.meshes()[m].error_tier);
+    const format::ErrorTier tier = asset.meshes()[m].error_tier;
     log.expect(
-        tier < std::size(kNames) && setting == kNames[tier], Rule::kV112, [&] { return place("mesh", m); },
-        [&] { return "tier " + std::to_string(tier) + " is not \"" + setting + "\""; });
+        value_in(format::kErrorTierNames, setting) == tier, Rule::kV112, [&] { return place("mesh", m); },
+        [&] { return "tier " + std::to_string(static_cast<std::uint32_t>(tier)) + " is not \"" + setting + "\""; });
   }
 }
 

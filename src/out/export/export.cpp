@@ -19,6 +19,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "format/names.h"
 #include "out/export/cut_geometry.h"
 #include "out/export/float_positions.h"
 #include "out/export/glb_file.h"
@@ -225,12 +226,8 @@ void Exporter::complete_materials() {
     Json factor = Json::array();
     for (const float c : record.base_color) factor.push_back(c);
     material["pbrMetallicRoughness"] = {{"baseColorFactor", factor}, {"metallicFactor", 0}};
-    if (record.alpha_mode == format::AlphaMode::kMask) {
-      material["alphaMode"] = "MASK";
-      material["alphaCutoff"] = record.alpha_cutoff;
-    } else if (record.alpha_mode == format::AlphaMode::kBlend) {
-      material["alphaMode"] = "BLEND";
-    }
+    if (record.alpha_mode != format::AlphaMode::kOpaque) material["alphaMode"] = format::name_of(record.alpha_mode);
+    if (record.alpha_mode == format::AlphaMode::kMask) material["alphaCutoff"] = record.alpha_cutoff;
     if (record.double_sided != 0) material["doubleSided"] = true;
     by_index.emplace(record.source_index, std::move(material));
   }

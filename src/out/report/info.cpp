@@ -112,28 +112,6 @@ AssetInfo describe_asset(const run::Asset& asset) {
   return info;
 }
 
-const char* stuck_reason_name(format::StuckReason reason) {
-  switch (reason) {
-    case format::StuckReason::kNotStuck: return "not_stuck";
-    case format::StuckReason::kLocked: return "locked";
-    case format::StuckReason::kFlips: return "flips";
-    case format::StuckReason::kSeams: return "seams";
-    case format::StuckReason::kComponents: return "components";
-    case format::StuckReason::kTooSmall: return "too_small";
-    case format::StuckReason::kTopology: return "topology";
-  }
-  return "unknown";
-}
-
-const char* error_tier_name(format::ErrorTier tier) {
-  switch (tier) {
-    case format::ErrorTier::kQem: return "qem";
-    case format::ErrorTier::kMeasured: return "measured";
-    case format::ErrorTier::kCertified: return "certified";
-  }
-  return "unknown";
-}
-
 std::string section_name(std::uint32_t id) {
   std::string name;
   for (int i = 0; i < 4; ++i) {

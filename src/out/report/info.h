@@ -57,8 +57,6 @@ struct AssetInfo {
 [[nodiscard]] std::string info_json(const run::Asset& asset, const AssetInfo& info, bool list_stuck);
 [[nodiscard]] std::string info_text(const run::Asset& asset, const AssetInfo& info, bool list_stuck);
 
-[[nodiscard]] const char* stuck_reason_name(format::StuckReason reason);
-[[nodiscard]] const char* error_tier_name(format::ErrorTier tier);
 [[nodiscard]] std::string section_name(std::uint32_t id);  ///< four letters, '?' for bytes that are not printable
 [[nodiscard]] std::uint64_t section_decoded_bytes(const run::Asset& asset, const format::SectionEntry& section);
 

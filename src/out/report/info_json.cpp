@@ -3,6 +3,7 @@
 #include <map>
 
 #include "base/hash.h"
+#include "format/names.h"
 #include "out/report/info.h"
 #include "base/json_writer.h"
 #include "out/report/read_meta.h"
@@ -10,24 +11,6 @@
 namespace meshlode::out {
 
 namespace {
-
-const char* alpha_mode_name(format::AlphaMode mode) {
-  switch (mode) {
-    case format::AlphaMode::kOpaque: return "OPAQUE";
-    case format::AlphaMode::kMask: return "MASK";
-    case format::AlphaMode::kBlend: return "BLEND";
-  }
-  return "unknown";
-}
-
-const char* normal_mode_name(format::NormalMode mode) {
-  switch (mode) {
-    case format::NormalMode::kNone: return "none";
-    case format::NormalMode::kStored: return "stored";
-    case format::NormalMode::kFlat: return "flat";
-  }
-  return "unknown";
-}
 
 /// An id, or null for "none".
 void id_field(JsonWriter& w, const char* name, std::uint32_t id) {
@@ -79,7 +62,7 @@ void write_materials(JsonWriter& w, const run::Asset& asset) {
     w.begin_object();
     w.field("name", asset.string(material.name));
     id_field(w, "source_index", material.source_index);
-    w.field("alpha_mode", alpha_mode_name(material.alpha_mode));
+    w.field("alpha_mode", format::name_of(material.alpha_mode));
     w.field("alpha_cutoff", material.alpha_cutoff);
     w.field("double_sided", material.double_sided != 0);
     array_field(w, "base_color", material.base_color);
@@ -163,9 +146,9 @@ void write_mesh(JsonWriter& w, const run::Asset& asset, std::uint32_t id, const 
   array_field(w, "origin", mesh.origin);
   w.field("grid_log2", mesh.grid.log2);
   w.field("grid_mantissa", mesh.grid.mantissa);
-  w.field("error_tier", error_tier_name(mesh.error_tier));
+  w.field("error_tier", format::name_of(mesh.error_tier));
   w.field("level0_deviation", mesh.level0_deviation);
-  w.field("normals", normal_mode_name(mesh.normal_mode));
+  w.field("normals", format::name_of(mesh.normal_mode));
   w.field("normal_scale", mesh.normal_scale);
   w.key("uv_sets");
   w.begin_array();
@@ -183,7 +166,7 @@ void write_mesh(JsonWriter& w, const run::Asset& asset, std::uint32_t id, const 
   w.field("root_triangles", info.root_triangles);
   w.field("stuck_groups", info.stuck.size());
   std::map<std::string, std::uint64_t> reasons;
-  for (const StuckGroupInfo& stuck : info.stuck) ++reasons[stuck_reason_name(stuck.reason)];
+  for (const StuckGroupInfo& stuck : info.stuck) ++reasons[format::name_of(stuck.reason)];
   w.key("stuck_reasons");
   w.begin_object();
   for (const auto& [reason, count] : reasons) w.field(reason, count);
@@ -279,7 +262,7 @@ std::string info_json(const run::Asset& asset, const AssetInfo& info, bool list_
         w.field("mesh", stuck.mesh);
         w.field("group", stuck.group);
         w.field("level", stuck.level);
-        w.field("reason", stuck_reason_name(stuck.reason));
+        w.field("reason", format::name_of(stuck.reason));
         w.field("clusters", stuck.clusters);
         w.field("triangles", stuck.triangles);
         w.end_object();

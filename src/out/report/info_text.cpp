@@ -6,6 +6,7 @@
 #include <map>
 
 #include "base/hash.h"
+#include "format/names.h"
 #include "out/report/info.h"
 #include "out/report/read_meta.h"
 
@@ -45,13 +46,13 @@ void add_mesh(std::string& out, const run::Asset& asset, std::uint32_t id, const
       grouped(mesh.source_triangles).c_str(), grouped(info.triangles).c_str(),
       mesh.source_triangles == 0 ? 0.0
                                  : static_cast<double>(info.triangles) / static_cast<double>(mesh.source_triangles),
-      mesh.diagonal, mesh.grid.mantissa, mesh.grid.log2, error_tier_name(mesh.error_tier));
+      mesh.diagonal, mesh.grid.mantissa, mesh.grid.log2, format::name_of(mesh.error_tier));
   add(out, "  %llu root(s) with %llu triangles, %zu stuck group(s), level 0 deviates by %.3g\n",
       static_cast<unsigned long long>(info.roots), static_cast<unsigned long long>(info.root_triangles),
       info.stuck.size(), static_cast<double>(mesh.level0_deviation));
   if (!info.stuck.empty()) {
     std::map<std::string, std::uint64_t> reasons;
-    for (const StuckGroupInfo& stuck : info.stuck) ++reasons[stuck_reason_name(stuck.reason)];
+    for (const StuckGroupInfo& stuck : info.stuck) ++reasons[format::name_of(stuck.reason)];
     add(out, "  stuck:");
     for (const auto& [reason, count] : reasons) {
       add(out, " %s %llu", reason.c_str(), static_cast<unsigned long long>(count));
@@ -157,7 +158,7 @@ std::string info_text(const run::Asset& asset, const AssetInfo& info, bool list_
     for (const MeshInfo& mesh : info.meshes) {
       for (const StuckGroupInfo& stuck : mesh.stuck) {
         add(out, "  mesh %u  group %u  level %u  %s: %llu cluster(s), %llu triangles\n", stuck.mesh, stuck.group,
-            stuck.level, stuck_reason_name(stuck.reason), static_cast<unsigned long long>(stuck.clusters),
+            stuck.level, format::name_of(stuck.reason), static_cast<unsigned long long>(stuck.clusters),
             static_cast<unsigned long long>(stuck.triangles));
       }
     }

@@ -2,6 +2,7 @@
 // Select: which clusters are drawn. The rule itself is run/select/metric.h (C++ and GLSL); this is its use on the CPU.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -9,6 +10,7 @@
 
 #include <meshlode/format.h>
 
+#include "base/enum_names.h"
 #include "base/ids.h"
 #include "base/vec.h"
 #include "run/read/asset.h"
@@ -79,6 +81,8 @@ struct TraversalCount {
                                                                             const AttributeBounds& bounds = {});
 
 enum class CutError : std::uint8_t { kSelection, kQuadric };  ///< which stored number decides a uniform cut
+inline constexpr std::array<EnumName<CutError>, 2> kCutErrorNames{
+    {{CutError::kSelection, "selection"}, {CutError::kQuadric, "quadric"}}};
 
 struct UniformCut {
   std::vector<ClusterId> clusters;  ///< ascending

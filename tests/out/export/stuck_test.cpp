@@ -9,6 +9,7 @@
 #include <map>
 
 #include "build_scene.h"
+#include "format/names.h"
 #include "out/export/colored_sets.h"
 #include "meshlode/extract_stuck.h"
 #include "build/odd_shapes.h"
@@ -82,7 +83,7 @@ TEST(Stuck, TheGlbHasTheStuckTrianglesAndAColourForEachReason) {
   std::map<std::string, std::uint64_t> expected;
   std::uint64_t total = 0;
   for (const StuckGroupInfo& stuck : info.meshes[0].stuck) {
-    expected[stuck_reason_name(stuck.reason)] += stuck.triangles;
+    expected[format::name_of(stuck.reason)] += stuck.triangles;
     total += stuck.triangles;
   }
   ASSERT_EQ(expected.size(), 6U) << "enough groups for every reason";

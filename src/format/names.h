@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+// The names of the format's enums: of options, META and reports.
+#pragma once
+
+#include <array>
+
+#include <meshlode/format.h>
+
+#include "base/enum_names.h"
+
+namespace meshlode::format {
+
+inline constexpr std::array<EnumName<Codec>, 5> kCodecNames{{{Codec::kNone, "none"},
+                                                             {Codec::kLz4, "lz4"},
+                                                             {Codec::kZstd, "zstd"},
+                                                             {Codec::kStrips, "strips"},
+                                                             {Codec::kDraco, "draco"}}};
+
+inline constexpr std::array<EnumName<ErrorTier>, 3> kErrorTierNames{
+    {{ErrorTier::kQem, "qem"}, {ErrorTier::kMeasured, "measured"}, {ErrorTier::kCertified, "certified"}}};
+
+inline constexpr std::array<EnumName<NormalMode>, 3> kNormalModeNames{
+    {{NormalMode::kNone, "none"}, {NormalMode::kStored, "stored"}, {NormalMode::kFlat, "flat"}}};
+
+/// glTF's.
+inline constexpr std::array<EnumName<AlphaMode>, 3> kAlphaModeNames{
+    {{AlphaMode::kOpaque, "OPAQUE"}, {AlphaMode::kMask, "MASK"}, {AlphaMode::kBlend, "BLEND"}}};
+
+inline constexpr std::array<EnumName<StuckReason>, 7> kStuckReasonNames{{{StuckReason::kNotStuck, "not_stuck"},
+                                                                         {StuckReason::kLocked, "locked"},
+                                                                         {StuckReason::kFlips, "flips"},
+                                                                         {StuckReason::kSeams, "seams"},
+                                                                         {StuckReason::kComponents, "components"},
+                                                                         {StuckReason::kTooSmall, "too_small"},
+                                                                         {StuckReason::kTopology, "topology"}}};
+
+constexpr const char* name_of(Codec codec) { return name_in(kCodecNames, codec); }
+constexpr const char* name_of(ErrorTier tier) { return name_in(kErrorTierNames, tier); }
+constexpr const char* name_of(NormalMode mode) { return name_in(kNormalModeNames, mode); }
+constexpr const char* name_of(AlphaMode mode) { return name_in(kAlphaModeNames, mode); }
+constexpr const char* name_of(StuckReason reason) { return name_in(kStuckReasonNames, reason); }
+
+}  // namespace meshlode::format
