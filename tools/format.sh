@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# format.sh [--check] [FILE…]: brings the C++ and C files that git tracks (or those named) into the form of .clang-format.
-# --check changes nothing, names the files that differ and exits 1. Exit 77, aloud, where there is no clang-format 14: another
-# version would format otherwise.
+# format.sh [--check] [FILE…]: brings the C++ and C files that git tracks (all where there is no git, or those named) into the
+# form of .clang-format. --check changes nothing, names the files that differ and exits 1. Exit 77, aloud, where there is no
+# clang-format 14: another version would format otherwise.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 check=no
@@ -18,9 +18,8 @@ done
 
 files=("$@")
 if [ ${#files[@]} -eq 0 ]; then
-  git rev-parse --is-inside-work-tree >/dev/null 2>&1 || skip "no git, which knows the files"
-  # Shaders are GLSL but for the header that C++ includes too.
-  mapfile -t files < <(git ls-files -- '*.h' '*.cpp' '*.c' '*.inl')
+  mapfile -t files < <(git ls-files -- '*.h' '*.cpp' '*.c' '*.inl' 2>/dev/null ||
+                       find include src tools tests bench -name '*.h' -o -name '*.cpp' -o -name '*.c' -o -name '*.inl')
 fi
 
 if [ $check = no ]; then

@@ -155,7 +155,7 @@ class PrefixReader {
   const StreamBytes& streams_;
   const StreamCounts& counts_;
   StripValues<L>& out_;
-  Room<std::uint8_t> buffer_;
+  UnfilledArray<std::uint8_t> buffer_;
   std::array<std::uint64_t, format::kMaxStreams> starts_{};
   std::unique_ptr<format::CodeTable[]> tables_;
   std::unique_ptr<format::QuickTable[]> quick_;

@@ -50,7 +50,7 @@ template <class L>
 
 /// An array that need not be filled before it is written.
 template <class T>
-class Room {
+class UnfilledArray {
  public:
   /// `behind`: items that can be read but do not count.
   void resize(std::size_t size, std::size_t behind = 0) {
@@ -69,8 +69,8 @@ class Room {
 
 template <class L>
 struct StripValues {
-  std::array<Room<std::uint32_t>, format::kFieldStreams> streams;   ///< symbols, and numbers unfolded
-  std::array<Room<Quad<L>>, kMaxQuads<L>> errors;           ///< unfolded, of each new vertex; unused lanes have any value
+  std::array<UnfilledArray<std::uint32_t>, format::kFieldStreams> streams;   ///< symbols, and numbers unfolded
+  std::array<UnfilledArray<Quad<L>>, kMaxQuads<L>> errors;           ///< unfolded, of each new vertex; unused lanes have any value
 };
 
 /// Errors can be read one beyond the last: a walk looks at the next one before it knows whether it is called for.

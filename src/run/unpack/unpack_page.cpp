@@ -120,11 +120,11 @@ class StoredPage {
     const std::uint32_t fields = format::field_count(mesh_);
     for (std::uint32_t q = 0; q < quad_count<L>(mesh_); ++q) out.errors[q].resize(counts.count[format::kFieldStreams], kErrorsBehind);
     std::span<const std::uint8_t> rest = streams.bytes;
-    Room<std::uint32_t> numbers;
+    UnfilledArray<std::uint32_t> numbers;
     for (std::uint32_t s = 0; s < format::kFieldStreams + fields; ++s) {
       const auto stored = rest.first(streams.size[s]);
       rest = rest.subspan(streams.size[s]);
-      Room<std::uint32_t>& target = s < format::kFieldStreams ? out.streams[s] : numbers;
+      UnfilledArray<std::uint32_t>& target = s < format::kFieldStreams ? out.streams[s] : numbers;
       target.resize(counts.count[s]);
       if (unpack_draco(stored, target.all()) != UnpackOutcome::kOk) return false;
       if (is_folded(s)) {

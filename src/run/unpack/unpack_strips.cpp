@@ -326,7 +326,7 @@ class StripUnpacker {
   std::uint32_t next_error_ = 0;
   std::uint32_t last_twin_ = 0;
   Quad<L> normals_{};  ///< mask of the fields that are normals
-  Room<Vertex> raw_;  ///< the page's vertices, field by field as their own cluster says them
+  UnfilledArray<Vertex> raw_;  ///< the page's vertices, field by field as their own cluster says them
 
   // Of the cluster at hand.
   StripSlots slots_;
