@@ -229,9 +229,9 @@ int run_render(const Verb& verb, std::span<char* const> args) {
   parser.add_flag("--relative", options.is_relative, "--error is a fraction of each mesh's own diagonal");
   add_bounds_options(parser, options.bounds);
   parser.add_flag("--gpu", options.gpu, "select and draw on a Vulkan device");
-  parser.add_value("--device", options.device, "of --gpu: an index or a part of the name (the first that can)");
-  parser.add_flag("--explain", options.explain, "of --gpu: say which passes run, and why");
-  parser.add_value("--force", options.force, "of --gpu: a pass that the scene does not call for",
+  parser.add_value("--device", options.device, "with --gpu: an index or a part of the name (the first that can)");
+  parser.add_flag("--explain", options.explain, "with --gpu: say which passes run, and why");
+  parser.add_value("--force", options.force, "with --gpu: a pass that the scene does not call for",
                    {"double-sided", "alpha-mask", "occlusion", "hardware", "textures", "all"});
   add_max_decoded_option(parser, options.max_decoded);
   add_jobs_option(parser, options.jobs);

@@ -117,12 +117,12 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
                    "uniform cuts per mesh that are measured against the source");
   parser.add_value("--seed", options.seed, "of the random cameras");
   parser.add_flag("--gpu", gpu_options.is_on, "let a Vulkan device decode, select and draw the same, and compare");
-  parser.add_value("--device", gpu_options.device, "of --gpu: an index or a part of the name (the first that can)");
-  parser.add_value("--orbits", gpu_options.orbits, "of --gpu: cameras around the scene, judged against the source");
-  parser.add_value("--path", gpu_options.path, "of --gpu: a file of cameras, ex ey ez tx ty tz [fovy [near]] a line");
+  parser.add_value("--device", gpu_options.device, "with --gpu: an index or a part of the name (the first that can)");
+  parser.add_value("--orbits", gpu_options.orbits, "with --gpu: cameras around the scene, judged against the source");
+  parser.add_value("--path", gpu_options.path, "with --gpu: a file of cameras, ex ey ez tx ty tz [fovy [near]] a line");
   parser.add_value("--out-dir", gpu_options.out_folder,
-                   "of --gpu: an existing folder for heat maps of the worst cameras and a report, gpu.json");
-  parser.add_value("--pixel-error", gpu_options.pixel_error, "of --gpu: allowed displacement in pixels (1)");
+                   "with --gpu: an existing folder for heat maps of the worst cameras and a report, gpu.json");
+  parser.add_value("--pixel-error", gpu_options.pixel_error, "with --gpu: allowed displacement in pixels (1)");
   add_max_decoded_option(parser, max_decoded_text);
   add_jobs_option(parser, jobs);
   add_output_options(parser, output);
