@@ -11,9 +11,10 @@
 //
 // Errors. Every input is checked before it is used: sizes that do not fit, indices out of range, numbers that are not
 // finite → ErrorCode::kInvalid with a place such as "meshes[0].primitives[2].indices[17]". kUsage: an option that makes
-// no sense, with its name ("BuildOptions::grid_step"). kUnsupported: a budget or grid that needs more bits than the format
-// has, a mesh with more triangles than ids (docs/performance.md), a preset that is not there yet. kBuildFailed: cancelled,
-// out of memory, or more memory needed than allowed. kIo: only from the functions that touch files. No exception leaves.
+// no sense, with its name ("BuildOptions::grid_step"). kUnsupported: a budget or grid that needs more bits than the
+// format has, a mesh with more triangles than ids (docs/performance.md), a preset that is not there yet. kBuildFailed:
+// cancelled, out of memory, or more memory needed than allowed. kIo: only from the functions that touch files. No
+// exception leaves.
 //
 // Determinism (I10). The same input and options give the same bytes for any number of threads, and for builds that run
 // at the same time.
@@ -109,8 +110,8 @@ enum class Preset : std::uint8_t {
 
 enum class UvErrorUnit : std::uint8_t {
   kUv,      ///< UV units
-  kTexels,  ///< texels of the largest texture that a material of the mesh samples with the set; of 2,048 a side where no
-            ///< texture's size is known, as in scenes from arrays
+  kTexels,  ///< texels of the largest texture that a material of the mesh samples with the set; of 2,048 a side where
+            ///< no texture's size is known, as in scenes from arrays
 };
 
 /// What `meshlode build` can be told, under the names of its options: `--error-tier`, `--grid` and so on.
@@ -118,17 +119,17 @@ struct BuildOptions {
   format::ErrorTier error_tier = format::ErrorTier::kMeasured;  ///< what the stored errors are worth
   Preset preset = Preset::kDefault;
   AttributeChoice attributes = AttributeChoice::kAuto;
-  double grid_step = 0.0;       ///< mesh units: distance of grid points, for meshes that must abut; 0: from position_error
-  double position_error = 0.0;  ///< mesh units: how far a vertex may move at most; 0: chosen, invisible. Not with grid_step
-  double normal_error = 0.1;    ///< degrees, above 0: how far a stored normal may be off at most
-  double uv_error = 0.0;        ///< how far a texture coordinate may move at most; 0: chosen, invisible
+  double grid_step = 0.0;       ///< mesh units between grid points, for meshes that must abut; 0: from position_error
+  double position_error = 0.0;  ///< mesh units that a vertex may move at most; 0: chosen, invisible. Not with grid_step
+  double normal_error = 0.1;    ///< degrees, above 0, that a stored normal may be off at most
+  double uv_error = 0.0;        ///< what a texture coordinate may move at most; 0: chosen, invisible
   UvErrorUnit uv_error_unit = UvErrorUnit::kUv;  ///< of uv_error
   format::Codec codec = format::Codec::kNone;    ///< of the pages on disk
-  bool repair = false;  ///< drop and count triangles that touch a bad index or a non-finite position, instead of refusing
+  bool repair = false;  ///< drop and count triangles that touch a bad index or non-finite position, instead of refusing
   std::uint64_t max_memory_bytes = 0;  ///< a build that needs more is refused; 0: what the machine has left
   /// Of build_file: what compressed geometry may take decoded beyond what the size of its file justifies.
   std::uint64_t max_decoded_bytes = std::uint64_t{512} << 20U;
-  std::uint32_t thread_count = 0;  ///< `--jobs`: at most this many threads, 4,096 at most; 0: what oneTBB gives the caller
+  std::uint32_t thread_count = 0;  ///< `--jobs`: threads at most, up to 4,096; 0: what oneTBB gives the calling thread
   std::function<void(const BuildProgress&)> on_progress;  ///< may be empty
   std::function<bool()> should_cancel;  ///< asked between steps; true ends the build with kBuildFailed. May be empty
 };
