@@ -12,12 +12,14 @@
 #include "build/simplify/collapse_mesh.h"
 #include "build/simplify/collapse_star.h"
 #include "build/simplify/group_places.h"
+#include "build/simplify/simplify.h"
 
 namespace meshlode::test {
 
 using build::CollapseMesh;
 using build::CollapseStar;
 using build::GroupPlaces;
+using build::SimplifyInput;
 using build::WedgeTriangle;
 
 /// Triangles of points of the grid. The first wedges are the points' own, of the same numbers; `more` says the points of
@@ -48,6 +50,19 @@ struct DrawnMesh {
     return own;
   }
 };
+
+/// Nothing locked, each vertex its own witness, one material, and no attributes.
+inline SimplifyInput as_input(const DrawnMesh& drawn) {
+  SimplifyInput input;
+  input.positions = drawn.points;
+  input.is_locked.assign(drawn.points.size(), 0);
+  for (const Vec3i& p : drawn.points) input.witnesses.push_back({{p}, 1});
+  input.wedge_position = drawn.wedge_position;
+  input.is_wedge_shared.assign(drawn.wedge_position.size(), 0);
+  input.triangles = drawn.triangles;
+  input.triangle_material.assign(drawn.triangles.size(), 0);
+  return input;
+}
 
 /// The flat star of the edge (0, 1), all of its triangles counterclockwise; its border are 2 … 9:
 ///

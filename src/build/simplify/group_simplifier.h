@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The simplifier's state and steps, for at most Capacity attributes. Used by simplify.cpp alone.
+// The simplifier's queue and passes, for at most Capacity attributes. Used by simplify.cpp alone. What a collapse costs,
+// what may not be collapsed and what is left behind are types and functions of their own, each in its file.
 //
 // Order of collapses: E / √W, E the area-weighted quadric error at the new place and W the summed area. It beats E
 // because E grows with the area behind a vertex, not only with how far the surface moves.
@@ -9,20 +10,24 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
+#include <functional>
 #include <queue>
-#include <span>
+#include <utility>
 #include <vector>
 
-#include "base/disjoint_sets.h"
+#include "build/simplify/attribute_quadrics.h"
+#include "build/simplify/attribute_scales.h"
 #include "build/simplify/collapse_mesh.h"
 #include "build/simplify/collapse_star.h"
 #include "build/simplify/group_locks.h"
 #include "build/simplify/group_places.h"
 #include "build/simplify/guards.h"
+#include "build/simplify/held_edges.h"
 #include "build/simplify/left_behind.h"
-#include "build/simplify/quadric.h"
+#include "build/simplify/pieces.h"
+#include "build/simplify/placement.h"
 #include "build/simplify/simplify.h"
+#include "build/simplify/surface_quadrics.h"
 #include "build/simplify/wedge_classes.h"
 
 namespace meshlode::build {
@@ -30,6 +35,7 @@ namespace meshlode::build {
 template <std::size_t Capacity>
 class GroupSimplifier {
  public:
+  /// Both must outlive this.
   GroupSimplifier(const SimplifyInput& input, const SimplifyOptions& options);
   void run();
   [[nodiscard]] SimplifyResult result() const;
@@ -37,16 +43,7 @@ class GroupSimplifier {
   [[nodiscard]] bool has_free_border() const { return has_free_border_; }
 
  private:
-  using Wedge = WedgeQuadric<Capacity>;
-  using Values = std::array<double, Capacity>;
-
-  /// Weight of the pull towards the collapsed edge: places vertices sensibly where the surface is flat, and lets short
-  /// edges go first there. A share of the squared edge length, far below any deviation that matters.
-  static constexpr double kRegularization = 1e-6;
-  /// How far from the edge's middle a new vertex may lie, in edge lengths.
-  static constexpr double kMaxOffset = 1.5;
   static constexpr int kMaxPasses = 8;
-  static constexpr double kMaxGrowth = 2.0;   ///< of a piece's size in one level
   /// A collapse costs at least this share of what its largest displacement, of the old surface from the new or of the new
   /// from the old, would cost as a mean distance.
   static constexpr double kGuardShare = 0.7;
@@ -70,21 +67,15 @@ class GroupSimplifier {
   };
   enum class Obstacle : std::uint8_t { kNone, kLocked, kFlips, kSeams, kTopology, kPutBack };
 
-  void scale_attributes();
-  void add_face_quadrics();
-  void add_edge_quadrics();
+  void add_faces();
+  void run_passes();
   void seed_candidates();
   void push_candidate(std::uint32_t a, std::uint32_t b);
   [[nodiscard]] Placement place(std::uint32_t a, std::uint32_t b);
-  [[nodiscard]] bool agree(const WedgeClass& joined) const;
   [[nodiscard]] Obstacle try_collapse(const Candidate& candidate);
   [[nodiscard]] double price_of(const Candidate& candidate);
   void collapse(std::uint32_t a, std::uint32_t b);
   [[nodiscard]] bool has_corners_in_one_place(std::uint32_t triangle) const;
-  void run_passes();
-  [[nodiscard]] std::vector<std::uint32_t> find_pieces() const;
-  void grow_pieces();
-  [[nodiscard]] double drop_collapsed_sheets(std::uint32_t vertex);
   [[nodiscard]] StuckReason reason_for_stopping() const;
 
   const SimplifyInput& input_;
@@ -92,27 +83,275 @@ class GroupSimplifier {
   GroupLocks locks_;
   CollapseMesh mesh_;
   GroupPlaces places_;
-  std::size_t attribute_count_;
-  std::vector<double> attribute_scale_;       ///< stored value -> weighted value
-
-  std::vector<Quadric> plane_, border_, seam_;  ///< per vertex; seam_ is empty where there is none
+  SurfaceQuadrics surface_;
+  AttributeQuadrics<Capacity> attributes_;
+  WedgeClasses classes_;
   LeftBehind left_behind_;
-  double total_weight_ = 0.0;                   ///< of all plane quadrics
-  std::vector<std::uint32_t> version_;
-  std::vector<std::uint8_t> is_border_;
-
-  std::vector<Wedge> wedge_;
-  std::vector<Values> value_;
+  std::vector<std::uint8_t> is_border_;  ///< per vertex
+  std::vector<std::uint32_t> version_;   ///< per vertex
 
   std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> queue_;
+  std::array<std::uint64_t, 6> obstacles_{};
   double error_ = 0.0;  ///< frame units
   bool has_free_border_ = false, has_broken_topology_ = false, are_flips_relaxed_ = false;
-  std::array<std::uint64_t, 6> obstacles_{};
 
-  // Scratch of one collapse.
-  CollapseStar star_;
-  StarEnd joined_;
-  WedgeClasses classes_;
+  CollapseStar star_;  ///< of the collapse that is weighed or done
+  StarEnd joined_;     ///< the vertex that came of it
 };
+
+template <std::size_t C>
+GroupSimplifier<C>::GroupSimplifier(const SimplifyInput& input, const SimplifyOptions& options)
+    : input_(input),
+      options_(options),
+      locks_(input.is_locked, input.is_wedge_shared, input.wedge_position),
+      mesh_(input.triangles, input.wedge_position, input.positions.size()),
+      places_(input.positions),
+      surface_(input.positions.size(), options.border_weight),
+      attributes_(input, attribute_scales(input, options, mesh_, places_)),
+      classes_(attributes_.count() == 0 ? 0 : input.wedge_position.size(), input.positions.size()),
+      left_behind_(input.witnesses, places_),
+      version_(input.positions.size(), 0) {
+  add_faces();
+  HeldEdges held = find_held_edges(input, options, mesh_);
+  surface_.add_walls(held.edges, mesh_, places_);
+  is_border_ = std::move(held.is_border);
+  has_free_border_ = held.has_free_border;
+  if (attributes_.count() == 0) return;
+  for (joined_.vertex = 0; joined_.vertex < places_.size(); ++joined_.vertex) {
+    mesh_.corners_of(joined_.vertex, joined_.corners);
+    classes_.update(mesh_, joined_);
+  }
+}
+
+template <std::size_t C>
+void GroupSimplifier<C>::add_faces() {
+  for (std::uint32_t t = 0; t < mesh_.triangle_count(); ++t) {
+    if (!mesh_.is_alive(t)) continue;
+    const Face face = face_of(mesh_, places_, t);
+    if (!(face.twice_area > 0.0)) continue;
+    surface_.add_face({mesh_.vertex(3 * t), mesh_.vertex(3 * t + 1), mesh_.vertex(3 * t + 2)}, face);
+    if (attributes_.count() == 0) continue;
+    attributes_.add_face({mesh_.wedge(3 * t), mesh_.wedge(3 * t + 1), mesh_.wedge(3 * t + 2)}, face);
+  }
+}
+
+template <std::size_t C>
+void GroupSimplifier<C>::run() {
+  run_passes();
+  if (options_.may_relax_flips && mesh_.alive_count() > options_.target_triangles) {
+    are_flips_relaxed_ = true;
+    run_passes();
+  }
+  if (options_.keep_area) error_ = std::max(error_, grow_pieces(input_, mesh_, places_));
+}
+
+template <std::size_t C>
+void GroupSimplifier<C>::run_passes() {
+  for (int pass = 0; pass < kMaxPasses && mesh_.alive_count() > options_.target_triangles; ++pass) {
+    obstacles_.fill(0);
+    queue_ = {};
+    seed_candidates();
+    bool any = false;
+    while (!queue_.empty() && mesh_.alive_count() > options_.target_triangles) {
+      const Candidate candidate = queue_.top();
+      queue_.pop();
+      if (version_[candidate.a] != candidate.version_a || version_[candidate.b] != candidate.version_b) continue;
+      const Obstacle obstacle = try_collapse(candidate);
+      if (obstacle == Obstacle::kNone) {
+        any = true;
+      } else {
+        ++obstacles_[static_cast<std::size_t>(obstacle)];
+      }
+    }
+    if (!any) break;  // obstacles depend on neighbours too, so what was refused is tried again as long as something moved
+  }
+}
+
+template <std::size_t C>
+void GroupSimplifier<C>::seed_candidates() {
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
+  edges.reserve(3 * mesh_.alive_count());
+  for (std::uint32_t corner = 0; corner < 3 * mesh_.triangle_count(); ++corner) {
+    if (!mesh_.is_alive(corner / 3)) continue;
+    const std::uint32_t a = mesh_.vertex(corner);
+    const std::uint32_t b = mesh_.vertex(CollapseMesh::next_in_triangle(corner));
+    edges.emplace_back(std::min(a, b), std::max(a, b));
+  }
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  for (const auto& [a, b] : edges) push_candidate(a, b);
+}
+
+template <std::size_t C>
+void GroupSimplifier<C>::push_candidate(std::uint32_t a, std::uint32_t b) {
+  if (locks_.is_vertex_locked[a] != 0 && locks_.is_vertex_locked[b] != 0) {
+    ++obstacles_[static_cast<std::size_t>(Obstacle::kLocked)];
+    return;
+  }
+  if (a > b) std::swap(a, b);
+  star_.a.vertex = a;
+  star_.b.vertex = b;
+  if (classes_.needs_corners(a, b)) gather_corners(mesh_, a, b, star_);
+  const Placement placement = place(a, b);
+  queue_.push({placement.cost, a, b, version_[a], version_[b]});
+}
+
+/// Where the joined vertex goes, what its attributes become there, and what both cost. \pre the star has its ends, and its
+/// corners where the wedge classes need them
+template <std::size_t C>
+typename GroupSimplifier<C>::Placement GroupSimplifier<C>::place(std::uint32_t a, std::uint32_t b) {
+  const Vec3d& pa = places_[a];
+  const Vec3d& pb = places_[b];
+  const bool is_a_locked = locks_.is_vertex_locked[a] != 0;
+  const bool is_place_given = is_a_locked || locks_.is_vertex_locked[b] != 0;
+  const Vec3d given = is_a_locked ? pa : pb;
+  Quadric total = surface_.around(a, b);
+  classes_.collect(mesh_, locks_, star_);
+  // The error of wedges whose values may not change: only where the place is given.
+  const double fixed_error = attributes_.add_classes(total, classes_.classes(), given);
+  Placement placement;
+  placement.position = is_place_given ? given : place_vertex(total, pa, pb);
+  const Vec3d edge = pb - pa;
+  placement.cost = cost_of_collapse(total, placement.position, fixed_error, glm::dot(edge, edge));
+  return placement;
+}
+
+template <std::size_t C>
+typename GroupSimplifier<C>::Obstacle GroupSimplifier<C>::try_collapse(const Candidate& candidate) {
+  std::uint32_t a = candidate.a;
+  std::uint32_t b = candidate.b;
+  gather_corners(mesh_, a, b, star_);
+  const Placement placement = place(a, b);  // leaves the wedge classes behind
+  for (const WedgeClass& joined : classes_.classes()) {
+    if (!attributes_.agree(joined, locks_)) return Obstacle::kSeams;
+  }
+  star_.target = placement.position;
+  const bool is_free = locks_.is_vertex_locked[a] == 0 && locks_.is_vertex_locked[b] == 0;
+  if (is_free) star_.target = places_.to_frame(places_.to_grid(star_.target));
+  if (!keeps_shared_edges(mesh_, locks_, star_)) return Obstacle::kLocked;
+  if (attributes_.count() > 0 && !keeps_shared_corners(mesh_, locks_, classes_, star_)) return Obstacle::kSeams;
+  bool breaks_topology = false;
+  if (!keeps_topology(mesh_, is_border_, star_)) {
+    if (!options_.may_relax_topology) return Obstacle::kTopology;
+    if (!candidate.may_break_topology) {
+      queue_.push({kTopologyPrice * candidate.cost, a, b, version_[a], version_[b], true});
+      return Obstacle::kPutBack;
+    }
+    breaks_topology = true;
+  }
+  if (!are_flips_relaxed_ && turns_over(mesh_, places_, star_)) return Obstacle::kFlips;
+  gather_outer_edges(mesh_, breaks_topology || has_broken_topology_, star_);
+  const double price = price_of(candidate);
+  if (price > candidate.cost) {
+    queue_.push({price, a, b, version_[a], version_[b], candidate.may_break_topology});
+    return Obstacle::kPutBack;
+  }
+  has_broken_topology_ |= breaks_topology;
+  if (locks_.is_vertex_locked[b] != 0) std::swap(a, b);
+  collapse(a, b);
+  return Obstacle::kNone;
+}
+
+/// What leaving the old surface behind, or reaching beyond it, costs: where that is far more than the quadrics say, the
+/// collapse waits for its turn at that price.
+template <std::size_t C>
+double GroupSimplifier<C>::price_of(const Candidate& candidate) {
+  const double left_behind2 = left_behind_.weigh(mesh_, places_, star_, options_.keep_area);
+  const double mean_weight = 2.0 * surface_.total_weight() / mesh_.alive_count();
+  const double weight = surface_.weight(candidate.a) + surface_.weight(candidate.b);
+  const double price_of_distance2 = kGuardShare * std::sqrt(std::max(mean_weight, weight));
+  const double price = price_of_distance2 * left_behind2;
+  if (price > candidate.cost) return price;
+  const double affordable2 = price_of_distance2 > 0.0 ? candidate.cost / price_of_distance2 : 0.0;
+  const double reached2 = new_surface_distance2(mesh_, places_, star_, affordable2);
+  return reached2 > affordable2 ? price_of_distance2 * reached2 : price;
+}
+
+/// Joins b into a at the star's target. The star and the wedge classes are those of the pair.
+template <std::size_t C>
+void GroupSimplifier<C>::collapse(std::uint32_t a, std::uint32_t b) {
+  error_ = std::max(error_, surface_.join(a, b, star_.target));
+  left_behind_.join(a, b);
+  is_border_[a] |= is_border_[b];
+  if (locks_.is_vertex_locked[a] == 0) places_.move(a, star_.target);
+  for (const WedgeClass& c : classes_.classes()) {
+    attributes_.join(c, places_[a]);
+    relabel_wedges(mesh_, star_, c);
+  }
+  mesh_.merge_vertices(a, b);
+  ++version_[a];
+  ++version_[b];
+
+  if (has_broken_topology_) error_ = std::max(error_, left_behind_.drop_sheets(mesh_, places_, a));
+  joined_.vertex = a;
+  mesh_.corners_of(a, joined_.corners);
+  classes_.update(mesh_, joined_);
+  if (joined_.corners.empty()) error_ = std::max(error_, left_behind_.size(a));
+  gather_neighbors(mesh_, joined_);
+  for (const std::uint32_t n : joined_.neighbors) push_candidate(a, n);
+}
+
+template <std::size_t C>
+StuckReason GroupSimplifier<C>::reason_for_stopping() const {
+  if (mesh_.alive_count() <= options_.target_triangles) return StuckReason::kNotStuck;
+  const auto largest = std::max_element(obstacles_.begin() + 1, obstacles_.begin() + 5);
+  if (static_cast<Obstacle>(largest - obstacles_.begin()) != Obstacle::kLocked) {
+    // A piece keeps two triangles where it is closed: so many leave no room for the target, whatever refuses the last.
+    if (2 * count_pieces(mesh_, places_.size()) > options_.target_triangles) return StuckReason::kComponents;
+  }
+  if (*largest == 0) return StuckReason::kTooSmall;
+  switch (static_cast<Obstacle>(largest - obstacles_.begin())) {
+    case Obstacle::kLocked: return StuckReason::kLocked;
+    case Obstacle::kFlips: return StuckReason::kFlips;
+    case Obstacle::kSeams: return StuckReason::kSeams;
+    case Obstacle::kTopology: return StuckReason::kTopology;
+    case Obstacle::kNone:
+    case Obstacle::kPutBack: break;
+  }
+  return StuckReason::kTooSmall;
+}
+
+/// Two vertices may have come to lie on one point of the grid. A triangle with both has no area and no border by then.
+template <std::size_t C>
+bool GroupSimplifier<C>::has_corners_in_one_place(std::uint32_t triangle) const {
+  const Vec3i& p = places_.on_grid(mesh_.vertex(3 * triangle));
+  const Vec3i& q = places_.on_grid(mesh_.vertex(3 * triangle + 1));
+  const Vec3i& r = places_.on_grid(mesh_.vertex(3 * triangle + 2));
+  return p == q || q == r || r == p;
+}
+
+template <std::size_t C>
+SimplifyResult GroupSimplifier<C>::result() const {
+  SimplifyResult out;
+  out.quadric_error = error_ * places_.scale() * input_.grid.step();
+  out.reason = reason_for_stopping();
+  constexpr std::uint32_t kUnset = 0xFFFFFFFFU;
+  const bool has_attributes = attributes_.count() > 0;  // without them a position is its own wedge
+  std::vector<std::uint32_t> new_position(places_.size(), kUnset);
+  // A wedge may have come to serve one vertex only, so a map per wedge is enough.
+  std::vector<std::uint32_t> new_wedge(has_attributes ? input_.wedge_position.size() : places_.size(), kUnset);
+  for (std::uint32_t t = 0; t < mesh_.triangle_count(); ++t) {
+    if (!mesh_.is_alive(t) || has_corners_in_one_place(t)) continue;
+    WedgeTriangle triangle{};
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const std::uint32_t v = mesh_.vertex(3 * t + k);
+      const std::uint32_t w = has_attributes ? mesh_.wedge(3 * t + k) : v;
+      if (new_position[v] == kUnset) {
+        new_position[v] = static_cast<std::uint32_t>(out.positions.size());
+        out.positions.push_back(places_.on_grid(v));
+        out.witnesses.push_back(left_behind_.witnesses(v));
+      }
+      if (new_wedge[w] == kUnset) {
+        new_wedge[w] = static_cast<std::uint32_t>(out.wedge_position.size());
+        out.wedge_position.push_back(new_position[v]);
+        if (has_attributes) attributes_.write(w, locks_.is_wedge_locked[w] != 0, out.wedge_attributes);
+      }
+      triangle[k] = new_wedge[w];
+    }
+    out.triangles.push_back(triangle);
+    out.triangle_material.push_back(input_.triangle_material[t]);
+  }
+  return out;
+}
 
 }  // namespace meshlode::build

@@ -110,6 +110,26 @@ void LeftBehind::join(std::uint32_t into, std::uint32_t from) {
   merged_[into].high = glm::max(merged_[into].high, merged_[from].high);
 }
 
+double LeftBehind::drop_sheets(CollapseMesh& mesh, const GroupPlaces& places, std::uint32_t vertex) const {
+  std::vector<std::uint32_t> dropped, corners;
+  mesh.drop_opposite_pairs(vertex, dropped);
+  double lost = 0.0;
+  for (const std::uint32_t t : dropped) {
+    const std::array<std::uint32_t, 3> v{mesh.vertex(3 * t), mesh.vertex(3 * t + 1), mesh.vertex(3 * t + 2)};
+    const Vec3d e0 = places[v[1]] - places[v[0]];
+    const Vec3d e1 = places[v[2]] - places[v[1]];
+    const Vec3d e2 = places[v[0]] - places[v[2]];
+    const Vec3d cross = glm::cross(e0, e1);
+    const double longest2 = std::max({glm::dot(e0, e0), glm::dot(e1, e1), glm::dot(e2, e2)});
+    if (longest2 > 0.0) lost = std::max(lost, std::sqrt(glm::dot(cross, cross) / longest2));
+    for (const std::uint32_t corner_vertex : v) {
+      mesh.corners_of(corner_vertex, corners);
+      if (corners.empty()) lost = std::max(lost, size(corner_vertex));
+    }
+  }
+  return lost;
+}
+
 double new_surface_distance2(const CollapseMesh& mesh, const GroupPlaces& places, const CollapseStar& star,
                              double least) {
   double farthest = least;

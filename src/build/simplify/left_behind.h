@@ -30,6 +30,10 @@ class LeftBehind {
   /// `into` stands for what `from` stood for too. Of the witnesses weighed last the farthest stay.
   void join(std::uint32_t into, std::uint32_t from);
 
+  /// Drops the pairs of triangles around the vertex that lie on each other. Such a sheet has no plane error, but it was
+  /// there: returns its smallest height, or the size of what stood behind vertices that go with it, in the frame.
+  [[nodiscard]] double drop_sheets(CollapseMesh& mesh, const GroupPlaces& places, std::uint32_t vertex) const;
+
   [[nodiscard]] const Witnesses& witnesses(std::uint32_t vertex) const { return witnesses_[vertex]; }
   /// The diagonal of what the vertex stands for, in the frame.
   [[nodiscard]] double size(std::uint32_t vertex) const { return merged_[vertex].diagonal(); }

@@ -5,11 +5,6 @@
 
 #include "build/simplify/border_rule.h"
 #include "build/simplify/group_simplifier.h"
-// The members, by idea; templates, and hot, so that one translation unit sees them all.
-#include "build/simplify/quadrics.inl"
-#include "build/simplify/placement.inl"
-#include "build/simplify/collapse.inl"
-#include "build/simplify/result.inl"
 
 namespace meshlode::build {
 

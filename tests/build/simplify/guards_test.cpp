@@ -102,7 +102,7 @@ bool keeps_shared_edges(const std::vector<WedgeTriangle>& triangles, bool is_tip
   DrawnMesh drawn(kEarPoints, triangles);
   const GroupLocks locks({1, 0, is_tip_locked ? std::uint8_t{1} : std::uint8_t{0}, 0, 0}, Flags(5, 0), drawn.wedge_position);
   const bool is_kept = build::keeps_shared_edges(drawn.mesh, locks, drawn.star(0, 1));
-  EXPECT_EQ(build::keeps_shared_edges(drawn.mesh, locks, drawn.star(1, 0)), is_kept) << "either end may be the locked one";
+  EXPECT_EQ(build::keeps_shared_edges(drawn.mesh, locks, drawn.star(1, 0)), is_kept) << "either end may be locked";
   return is_kept;
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "build/simplify/left_behind.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "support/drawn_mesh.h"
@@ -90,6 +92,23 @@ TEST(LeftBehind, ANeighborThatVanishesIsWeighedByItsOwnWitnesses) {
   EXPECT_GE(left.weigh(drawn.mesh, drawn.places, star, false), in_frame(drawn, 81));
   left.join(0, 5);
   EXPECT_EQ(left.witnesses(0).points[0], Vec3i(-4, 0, 9)) << "carried on by the vertex that stays";
+}
+
+TEST(LeftBehind, SheetsThatAreDroppedTellTheirHeightOrWhatTheyStoodFor) {
+  // Two leaves on each other, one the other way round, and a third that keeps 0, 1 and 2.
+  const std::vector<Vec3i> points{{0, 0, 0}, {8, 0, 0}, {0, 6, 0}, {0, 0, 9}};
+  DrawnMesh sheet(points, {{0, 1, 2}, {0, 2, 1}, {0, 1, 3}, {1, 2, 3}});
+  const LeftBehind left(own_witnesses(sheet), sheet.places);
+  // 48 of twice its area over its longest side, 10.
+  EXPECT_NEAR(left.drop_sheets(sheet.mesh, sheet.places, 0), 4.8 / sheet.places.scale(), 1e-12);
+  EXPECT_EQ(sheet.mesh.alive_count(), 2U);
+  EXPECT_EQ(left.drop_sheets(sheet.mesh, sheet.places, 0), 0.0) << "there is no other";
+
+  DrawnMesh alone(points, {{0, 1, 2}, {0, 2, 1}, {0, 1, 3}});
+  LeftBehind behind(own_witnesses(alone), alone.places);
+  behind.join(2, 3);
+  // 2 has no triangle left then, and it stands for 3 too: the box from (0, 6, 0) to (0, 0, 9).
+  EXPECT_NEAR(behind.drop_sheets(alone.mesh, alone.places, 0), std::sqrt(117.0) / alone.places.scale(), 1e-12);
 }
 
 TEST(NewSurface, IsAsFarAsItsMiddlesAreFromWhatItReplaces) {

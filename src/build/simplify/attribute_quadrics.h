@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What it costs to move attributes: per wedge, the error of its values as a function of where its vertex is.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "build/simplify/group_locks.h"
+#include "build/simplify/quadric.h"
+#include "build/simplify/simplify.h"
+#include "build/simplify/surface_quadrics.h"
+#include "build/simplify/wedge_classes.h"
+
+namespace meshlode::build {
+
+/// For at most Capacity floats a wedge: quadrics of few attributes are small, and copying them is most of the work.
+template <std::size_t Capacity>
+class AttributeQuadrics {
+ public:
+  /// `scales` as from attribute_scales, one per float. The input must outlive this.
+  AttributeQuadrics(const SimplifyInput& input, std::vector<double> scales);
+
+  /// Floats a wedge; 0 without attributes.
+  [[nodiscard]] std::size_t count() const { return scale_.size(); }
+
+  /// Across the face each attribute is linear between its wedges' values. \pre face.twice_area > 0, count() > 0
+  void add_face(const std::array<std::uint32_t, 3>& wedges, const Face& face);
+
+  /// Whether the locked wedges that would become one have one value.
+  [[nodiscard]] bool agree(const WedgeClass& joined, const GroupLocks& locks) const;
+
+  /// Adds to `total` what the classes cost with their best values. Returns the error of those whose values are fixed,
+  /// for a vertex at `given`.
+  [[nodiscard]] double add_classes(Quadric& total, std::span<const WedgeClass> classes, const Vec3d& given) const;
+
+  /// The class becomes its keeper, with the best values at `place` where they are not fixed.
+  void join(const WedgeClass& joined, const Vec3d& place);
+
+  /// Appends the wedge as it is stored: of a locked one what came in, and normals of unit length.
+  void write(std::uint32_t wedge, bool is_locked, std::vector<float>& out) const;
+
+ private:
+  const SimplifyInput& input_;
+  std::vector<double> scale_;  ///< stored value -> weighted value
+  std::vector<WedgeQuadric<Capacity>> wedge_;
+  std::vector<std::array<double, Capacity>> value_;  ///< weighted
+};
+
+template <std::size_t C>
+AttributeQuadrics<C>::AttributeQuadrics(const SimplifyInput& input, std::vector<double> scales)
+    : input_(input),
+      scale_(std::move(scales)),
+      wedge_(scale_.empty() ? 0 : input.wedge_position.size()),
+      value_(wedge_.size()) {
+  for (std::size_t w = 0; w < wedge_.size(); ++w) {
+    for (std::size_t j = 0; j < count(); ++j) {
+      value_[w][j] = scale_[j] * static_cast<double>(input.wedge_attributes[w * count() + j]);
+    }
+  }
+}
+
+template <std::size_t C>
+void AttributeQuadrics<C>::add_face(const std::array<std::uint32_t, 3>& wedges, const Face& face) {
+  const double area = 0.5 * face.twice_area;
+  // Across a sliver a gradient means nothing: there the attribute is taken as constant.
+  const Vec3d e3 = face.e2 - face.e1;
+  const double longest2 = std::max({glm::dot(face.e1, face.e1), glm::dot(face.e2, face.e2), glm::dot(e3, e3)});
+  const bool is_sliver = face.twice_area < 1e-3 * longest2;
+  const Vec3d to_1 = glm::cross(face.e2, face.normal) / face.twice_area;
+  const Vec3d to_2 = glm::cross(face.normal, face.e1) / face.twice_area;
+  for (const std::uint32_t wedge : wedges) wedge_[wedge].base.weight += area;
+  for (std::size_t j = 0; j < count(); ++j) {
+    const double s0 = value_[wedges[0]][j];
+    const double s1 = value_[wedges[1]][j];
+    const double s2 = value_[wedges[2]][j];
+    Vec3d gradient(0.0);
+    double offset = (s0 + s1 + s2) / 3.0;
+    if (!is_sliver) {
+      gradient = to_1 * (s1 - s0) + to_2 * (s2 - s0);
+      offset = s0 - glm::dot(gradient, face.p);
+    }
+    for (const std::uint32_t wedge : wedges) wedge_[wedge].add_face(j, gradient, offset, area);
+  }
+}
+
+template <std::size_t C>
+bool AttributeQuadrics<C>::agree(const WedgeClass& joined, const GroupLocks& locks) const {
+  return std::all_of(joined.members.begin(), joined.members.end(), [&](std::uint32_t w) {
+    return w == joined.fixed || locks.is_wedge_locked[w] == 0 || value_[w] == value_[joined.fixed];
+  });
+}
+
+template <std::size_t C>
+double AttributeQuadrics<C>::add_classes(Quadric& total, std::span<const WedgeClass> classes, const Vec3d& given) const {
+  double fixed_error = 0.0;
+  for (const WedgeClass& c : classes) {
+    WedgeQuadric<C> joined = wedge_[c.members[0]];
+    for (std::size_t k = 1; k < c.members.size(); ++k) joined.add(wedge_[c.members[k]], count());
+    if (c.fixed != WedgeClass::kNone) {
+      fixed_error += joined.evaluate(given, value_[c.fixed].data(), count());
+    } else {
+      joined.add_reduced_to(total, count());
+    }
+  }
+  return fixed_error;
+}
+
+template <std::size_t C>
+void AttributeQuadrics<C>::join(const WedgeClass& joined, const Vec3d& place) {
+  const std::uint32_t keeper = joined.keeper();
+  for (const std::uint32_t w : joined.members) {
+    if (w != keeper) wedge_[keeper].add(wedge_[w], count());
+  }
+  if (joined.fixed != WedgeClass::kNone || !(wedge_[keeper].base.weight > 0.0)) return;
+  for (std::size_t j = 0; j < count(); ++j) value_[keeper][j] = wedge_[keeper].best(j, place);
+}
+
+template <std::size_t C>
+void AttributeQuadrics<C>::write(std::uint32_t wedge, bool is_locked, std::vector<float>& out) const {
+  const float* given = &input_.wedge_attributes[wedge * count()];
+  for (std::size_t j = 0; j < count(); ++j) {
+    const bool is_kept = is_locked || !(scale_[j] > 0.0);
+    out.push_back(is_kept ? given[j] : static_cast<float>(value_[wedge][j] / scale_[j]));
+  }
+  if (!input_.layout.has_normal || is_locked) return;
+  float* n = &out[out.size() - count()];
+  const double x = n[0];
+  const double y = n[1];
+  const double z = n[2];
+  const double length = std::sqrt(x * x + y * y + z * z);
+  if (length > 0.0) {
+    n[0] = static_cast<float>(x / length);
+    n[1] = static_cast<float>(y / length);
+    n[2] = static_cast<float>(z / length);
+  } else {
+    std::copy_n(given, 3, n);
+  }
+}
+
+}  // namespace meshlode::build

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "build/simplify/surface_quadrics.h"
+
+namespace meshlode::build {
+
+Face face_of(const CollapseMesh& mesh, const GroupPlaces& places, std::uint32_t triangle) {
+  Face face;
+  face.p = places[mesh.vertex(3 * triangle)];
+  face.e1 = places[mesh.vertex(3 * triangle + 1)] - face.p;
+  face.e2 = places[mesh.vertex(3 * triangle + 2)] - face.p;
+  const Vec3d cross = glm::cross(face.e1, face.e2);
+  face.twice_area = std::sqrt(glm::dot(cross, cross));
+  if (face.twice_area > 0.0) face.normal = cross / face.twice_area;
+  return face;
+}
+
+SurfaceQuadrics::SurfaceQuadrics(std::size_t vertex_count, double border_weight)
+    : plane_(vertex_count), border_(vertex_count), border_weight_(border_weight) {}
+
+void SurfaceQuadrics::add_face(const std::array<std::uint32_t, 3>& vertices, const Face& face) {
+  const double area = 0.5 * face.twice_area;
+  for (const std::uint32_t v : vertices) plane_[v].add_plane(face.normal, -glm::dot(face.normal, face.p), area);
+  total_weight_ += 3.0 * area;
+}
+
+void SurfaceQuadrics::add_walls(std::span<const HeldEdge> edges, const CollapseMesh& mesh, const GroupPlaces& places) {
+  for (const HeldEdge& held : edges) {
+    if (!held.is_border && seam_.empty()) seam_.resize(plane_.size());
+    const std::uint32_t first = 3 * held.triangle;
+    const Vec3d& p = places[mesh.vertex(first)];
+    const Vec3d n = glm::cross(places[mesh.vertex(first + 1)] - p, places[mesh.vertex(first + 2)] - p);
+    const Vec3d edge = places[held.b] - places[held.a];
+    Vec3d wall = glm::cross(n, edge);
+    const double length = std::sqrt(glm::dot(wall, wall));
+    if (!(length > 0.0)) continue;
+    wall /= length;
+    const double d = -glm::dot(wall, places[held.a]);
+    const double weight = held.weight * glm::dot(edge, edge);
+    std::vector<Quadric>& quadrics = held.is_border ? border_ : seam_;
+    quadrics[held.a].add_plane(wall, d, weight);
+    quadrics[held.b].add_plane(wall, d, weight);
+  }
+}
+
+double SurfaceQuadrics::join(std::uint32_t into, std::uint32_t from, const Vec3d& place) {
+  plane_[into] += plane_[from];
+  border_[into] += border_[from];
+  if (!seam_.empty()) seam_[into] += seam_[from];
+  double error = 0.0;
+  for (const Quadric* q : {&plane_[into], &border_[into]}) {
+    if (q->weight > 0.0) error = std::max(error, std::sqrt(q->evaluate(place) / q->weight));
+  }
+  return error;
+}
+
+}  // namespace meshlode::build

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What it costs to move a group's surface: planes of its faces, and walls on the edges that are held in place.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/vec.h"
+#include "build/simplify/collapse_mesh.h"
+#include "build/simplify/group_places.h"
+#include "build/simplify/held_edges.h"
+#include "build/simplify/quadric.h"
+
+namespace meshlode::build {
+
+/// A triangle in the group's frame.
+struct Face {
+  Vec3d p, e1, e2;  ///< the first corner, and the edges from it to the others
+  Vec3d normal;     ///< of unit length; unset without area
+  double twice_area = 0.0;
+};
+
+[[nodiscard]] Face face_of(const CollapseMesh& mesh, const GroupPlaces& places, std::uint32_t triangle);
+
+/// Per vertex, the quadrics of the faces and of the held edges that it stands for.
+class SurfaceQuadrics {
+ public:
+  /// `border_weight` is the weight of walls on borders against the planes of faces.
+  SurfaceQuadrics(std::size_t vertex_count, double border_weight);
+
+  /// \pre face.twice_area > 0
+  void add_face(const std::array<std::uint32_t, 3>& vertices, const Face& face);
+  /// Walls stand upright on their triangles, and weigh with the square of the edge's length.
+  void add_walls(std::span<const HeldEdge> edges, const CollapseMesh& mesh, const GroupPlaces& places);
+
+  /// What the joined vertex of a and b costs; its weight is that of the faces alone.
+  [[nodiscard]] Quadric around(std::uint32_t a, std::uint32_t b) const {
+    Quadric total = plane_[a];
+    total += plane_[b];
+    total.add_scaled(border_[a], border_weight_);
+    total.add_scaled(border_[b], border_weight_);
+    if (!seam_.empty()) {
+      total.add_scaled(seam_[a], 1.0);
+      total.add_scaled(seam_[b], 1.0);
+    }
+    return total;
+  }
+  /// `into` stands for what `from` stood for too. Returns the root of the mean squared distance at its place, to planes or
+  /// to borders, whichever is larger, in the frame.
+  double join(std::uint32_t into, std::uint32_t from, const Vec3d& place);
+
+  /// Area of the faces that a vertex stands for.
+  [[nodiscard]] double weight(std::uint32_t vertex) const { return plane_[vertex].weight; }
+  /// Over all vertices: three times the area.
+  [[nodiscard]] double total_weight() const { return total_weight_; }
+
+ private:
+  std::vector<Quadric> plane_, border_, seam_;  ///< seam_ is empty where there is none
+  double border_weight_;
+  double total_weight_ = 0.0;
+};
+
+}  // namespace meshlode::build
