@@ -197,104 +197,139 @@ MaskTables mask_tables(const AlphaMasks& alpha) {
   return out;
 }
 
+std::vector<GpuGroup> group_table(const run::Asset& asset, const Errors& errors, const Pages& pages) {
+  std::vector<GpuGroup> out;
+  for (const format::GroupRecord& group : asset.groups()) {
+    GpuGroup g{};
+    std::copy(group.center, group.center + 3, g.center);
+    g.radius = group.radius;
+    g.error = errors.group[out.size()];
+    g.first_cluster = group.first_cluster;
+    g.cluster_count = group.cluster_count;
+    g.page_word = pages.word[group.page];
+    out.push_back(g);
+  }
+  return out;
+}
+
+struct ClusterTable {
+  std::vector<GpuCluster> clusters;
+  std::uint64_t root_words = 1;  ///< of the buffer of decoded roots; word 0 is nobody's
+};
+
+/// Where a mesh has one root, that cluster has a place among the decoded ones. The largest counts go to `scene`.
+ClusterTable cluster_table(const run::Asset& asset, const std::vector<GpuMesh>& meshes,
+                           const std::vector<GpuGroup>& groups, GpuScene& scene) {
+  ClusterTable out;
+  for (const format::ClusterRecord& cluster : asset.clusters()) {
+    const format::GroupRecord& group = asset.groups()[cluster.coarser_group];
+    GpuCluster c{};
+    const format::CullSphere sphere = format::cull_sphere(asset.meshes()[group.mesh], cluster);
+    std::copy(sphere.center, sphere.center + 3, c.center);
+    c.radius = sphere.radius;
+    c.own_group = cluster.own_group;
+    c.page_word = groups[cluster.coarser_group].page_word;
+    c.index = static_cast<std::uint32_t>(out.clusters.size()) - asset.pages()[group.page].first_cluster;
+    c.index |= static_cast<std::uint32_t>(cluster.level) << 16u;
+    scene.max_cluster_triangles = std::max(scene.max_cluster_triangles, cluster.triangle_count());
+    scene.max_cluster_vertices = std::max(scene.max_cluster_vertices, cluster.vertex_count());
+    const std::uint32_t only = meshes[group.mesh].only_root;
+    if (only == cluster.coarser_group && groups[only].cluster_count == 1) {
+      scene.max_root_triangles = std::max(scene.max_root_triangles, cluster.triangle_count());
+      scene.max_root_vertices = std::max(scene.max_root_vertices, cluster.vertex_count());
+      c.root_word = static_cast<std::uint32_t>(out.root_words);
+      out.root_words += 1 + 3 * cluster.vertex_count() + cluster.triangle_count();
+    }
+    out.clusters.push_back(c);
+  }
+  return out;
+}
+
+std::vector<GpuMaterial> material_table(const run::Asset& asset, const AlphaMasks& alpha) {
+  std::vector<GpuMaterial> out;
+  for (const format::MaterialRecord& material : asset.materials()) {
+    GpuMaterial m{};
+    m.base_color = {material.base_color[0], material.base_color[1], material.base_color[2], material.base_color[3]};
+    m.double_sided = material.double_sided;
+    m.mask = alpha.is_empty() ? format::kNone : alpha.of_material[out.size()];
+    out.push_back(m);
+  }
+  return out;
+}
+
+/// Counts of what is drawn, by which the renderer's lists are sized.
+void count_instances(const run::Asset& asset, std::span<const format::InstanceRecord> instances, GpuScene& scene) {
+  scene.instance_count = static_cast<std::uint32_t>(instances.size());
+  scene.cluster_count = static_cast<std::uint32_t>(asset.clusters().size());
+  scene.mesh_count = static_cast<std::uint32_t>(asset.meshes().size());
+  for (const format::InstanceRecord& instance : instances) {
+    if ((instance.flags & format::kInstanceSingular) != 0) continue;
+    scene.group_instances += asset.meshes()[instance.mesh].group_count;
+    scene.cluster_instances += asset.meshes()[instance.mesh].cluster_count;
+  }
+}
+
+/// What its materials and meshes call for, by which passes are planned.
+void find_needs(const run::Asset& asset, GpuScene& scene) {
+  scene.has_alpha_mask = !scene.alpha_masks->is_empty();
+  scene.has_textures = has_textures(asset);
+  scene.has_double_sided = std::any_of(asset.materials().begin(), asset.materials().end(),
+                                       [](const format::MaterialRecord& m) { return m.double_sided != 0; });
+  scene.has_stored_normals =
+      std::any_of(asset.meshes().begin(), asset.meshes().end(),
+                  [](const format::MeshRecord& m) { return m.normal_mode == format::NormalMode::kStored; });
+}
+
+Status upload_tables(Device& device, const run::Asset& asset, std::span<const format::InstanceRecord> instances,
+                     const Errors& errors, const Pages& pages, GpuScene& scene) {
+  const std::vector<GpuMesh> meshes = mesh_table(asset, errors);
+  const std::vector<GpuGroup> groups = group_table(asset, errors, pages);
+  const ClusterTable clusters = cluster_table(asset, meshes, groups, scene);
+  const MaskTables mask = mask_tables(*scene.alpha_masks);
+  auto roots = device.make_buffer(clusters.root_words * 4, Memory::kDevice);  // filled by the renderer
+  if (!roots) return roots.error();
+  scene.roots = *roots;
+  const auto put = [&](Buffer& slot, const auto& table) -> Status {
+    auto buffer = make_table(device, table);
+    if (!buffer) return buffer.error();
+    slot = *buffer;
+    return Ok{};
+  };
+  if (const Status s = put(scene.meshes, meshes); !s) return s;
+  if (const Status s = put(scene.instances, instance_table(instances)); !s) return s;
+  if (const Status s = put(scene.nodes, node_table(asset, errors)); !s) return s;
+  if (const Status s = put(scene.groups, groups); !s) return s;
+  if (const Status s = put(scene.clusters, clusters.clusters); !s) return s;
+  if (const Status s = put(scene.materials, material_table(asset, *scene.alpha_masks)); !s) return s;
+  if (const Status s = put(scene.mesh_uvs, mesh_uv_table(asset)); !s) return s;
+  if (const Status s = put(scene.masks, mask.masks); !s) return s;
+  return put(scene.mask_texels, mask.texels);
+}
+
 }  // namespace
 
 Result<GpuScene> upload_scene(Device& device, const run::Asset& asset, std::span<const format::InstanceRecord> instances,
                               const run::AttributeBounds& bounds, ImageBudget* images) {
   if (instances.empty()) instances = asset.instances();
   GpuScene out;
-  out.instance_count = static_cast<std::uint32_t>(instances.size());
-  out.cluster_count = static_cast<std::uint32_t>(asset.clusters().size());
   out.bvh_depth = bvh_depth(asset);
   if (out.bvh_depth > MAX_DEPTH) {
     return Error{
         ErrorCode::kUnsupported, "hierarchy",
         std::to_string(out.bvh_depth) + " nodes deep, the GPU traversal has room for " + std::to_string(MAX_DEPTH)};
   }
-  for (const format::InstanceRecord& instance : instances) {
-    if ((instance.flags & format::kInstanceSingular) != 0) continue;
-    out.group_instances += asset.meshes()[instance.mesh].group_count;
-    out.cluster_instances += asset.meshes()[instance.mesh].cluster_count;
-  }
+  count_instances(asset, instances, out);
   auto pages = upload_pages(device, asset);
   if (!pages) return pages.error();
   out.pages = pages->buffer;
   out.page_bytes = pages->bytes;
 
-  const Errors errors = find_errors(asset, bounds);
-  std::vector<GpuGroup> groups;
-  for (const format::GroupRecord& group : asset.groups()) {
-    GpuGroup g{};
-    std::copy(group.center, group.center + 3, g.center);
-    g.radius = group.radius;
-    g.error = errors.group[groups.size()];
-    g.first_cluster = group.first_cluster;
-    g.cluster_count = group.cluster_count;
-    g.page_word = pages->word[group.page];
-    groups.push_back(g);
-  }
-  const std::vector<GpuMesh> meshes = mesh_table(asset, errors);
-  std::uint64_t root_words = 1;
-  std::vector<GpuCluster> clusters;
-  for (const format::ClusterRecord& cluster : asset.clusters()) {
-    GpuCluster c{};
-    const format::MeshRecord& mesh = asset.meshes()[asset.groups()[cluster.coarser_group].mesh];
-    const format::CullSphere sphere = format::cull_sphere(mesh, cluster);
-    std::copy(sphere.center, sphere.center + 3, c.center);
-    c.radius = sphere.radius;
-    c.own_group = cluster.own_group;
-    c.page_word = groups[cluster.coarser_group].page_word;
-    c.index = static_cast<std::uint32_t>(clusters.size()) -
-              asset.pages()[asset.groups()[cluster.coarser_group].page].first_cluster;
-    c.index |= static_cast<std::uint32_t>(cluster.level) << 16u;
-    out.max_cluster_triangles = std::max(out.max_cluster_triangles, cluster.triangle_count());
-    out.max_cluster_vertices = std::max(out.max_cluster_vertices, cluster.vertex_count());
-    const std::uint32_t only = meshes[asset.groups()[cluster.coarser_group].mesh].only_root;
-    if (only == cluster.coarser_group && groups[only].cluster_count == 1) {
-      out.max_root_triangles = std::max(out.max_root_triangles, cluster.triangle_count());
-      out.max_root_vertices = std::max(out.max_root_vertices, cluster.vertex_count());
-      c.root_word = static_cast<std::uint32_t>(root_words);
-      root_words += 1 + 3 * cluster.vertex_count() + cluster.triangle_count();
-    }
-    clusters.push_back(c);
-  }
   ImageBudget own_budget;
-  out.alpha_masks = std::make_shared<const AlphaMasks>(load_alpha_masks(asset, images != nullptr ? *images : own_budget));
-  out.has_alpha_mask = !out.alpha_masks->is_empty();
-  out.has_textures = has_textures(asset);
-  const MaskTables mask = mask_tables(*out.alpha_masks);
-  std::vector<GpuMaterial> materials;
-  for (const format::MaterialRecord& material : asset.materials()) {
-    GpuMaterial m{};
-    m.base_color = {material.base_color[0], material.base_color[1], material.base_color[2], material.base_color[3]};
-    m.double_sided = material.double_sided;
-    m.mask = out.has_alpha_mask ? out.alpha_masks->of_material[materials.size()] : format::kNone;
-    materials.push_back(m);
-    out.has_double_sided = out.has_double_sided || material.double_sided != 0;
-  }
-  for (const format::MeshRecord& mesh : asset.meshes()) {
-    out.has_stored_normals = out.has_stored_normals || mesh.normal_mode == format::NormalMode::kStored;
-  }
-
-  const auto put = [&](Buffer& slot, auto&& table) -> Status {
-    auto buffer = make_table(device, table);
-    if (!buffer) return buffer.error();
-    slot = *buffer;
-    return Ok{};
-  };
-  auto roots = device.make_buffer(root_words * 4, Memory::kDevice);  // filled by the renderer
-  if (!roots) return roots.error();
-  out.roots = *roots;
-  out.mesh_count = static_cast<std::uint32_t>(meshes.size());
-  if (const Status s = put(out.meshes, meshes); !s) return s.error();
-  if (const Status s = put(out.instances, instance_table(instances)); !s) return s.error();
-  if (const Status s = put(out.nodes, node_table(asset, errors)); !s) return s.error();
-  if (const Status s = put(out.groups, groups); !s) return s.error();
-  if (const Status s = put(out.clusters, clusters); !s) return s.error();
-  if (const Status s = put(out.materials, materials); !s) return s.error();
-  if (const Status s = put(out.mesh_uvs, mesh_uv_table(asset)); !s) return s.error();
-  if (const Status s = put(out.masks, mask.masks); !s) return s.error();
-  if (const Status s = put(out.mask_texels, mask.texels); !s) return s.error();
+  out.alpha_masks =
+      std::make_shared<const AlphaMasks>(load_alpha_masks(asset, images != nullptr ? *images : own_budget));
+  find_needs(asset, out);
+  const Errors errors = find_errors(asset, bounds);
+  if (const Status s = upload_tables(device, asset, instances, errors, *pages, out); !s) return s.error();
   return out;
 }
 

@@ -62,7 +62,8 @@ Status Renderer::resize(std::uint32_t width, std::uint32_t height) {
   return record();
 }
 
-Status Renderer::make_buffers() {
+/// As long as the scene can fill them, but not above the limit; all of the device's lists hang on these.
+void Renderer::set_capacities() {
   const std::uint64_t limit = std::min<std::uint64_t>(options_.max_items, MAX_ITEMS);
   GpuFrame& f = frame_;
   f.width = options_.width;
@@ -74,6 +75,11 @@ Status Renderer::make_buffers() {
   f.queue_capacity = round_up(2 * (scene_.group_instances + scene_.instance_count), limit);  // nodes of one depth
   f.item_capacity = round_up(scene_.cluster_instances, limit);
   f.retry_capacity = options_.occlusion ? round_up(2 * scene_.group_instances + scene_.cluster_instances, limit) : 64;
+}
+
+/// Levels of half the size each, one behind the other. Returns their words together.
+std::uint32_t Renderer::place_pyramid() {
+  GpuFrame& f = frame_;
   std::uint32_t words = 0;
   for (std::uint32_t level = 1; level < MAX_PYRAMID; ++level) {
     const std::uint32_t width = (f.width + (1u << level) - 1) >> level,
@@ -83,15 +89,17 @@ Status Renderer::make_buffers() {
     f.pyramid_levels = level;
     if (width == 1 && height == 1) break;
   }
-  const auto make = [&](Buffer& slot, std::uint64_t bytes, Memory memory = Memory::kDevice) -> Status {
-    auto buffer = device_.make_buffer(bytes, memory);
-    if (!buffer) return buffer.error();
-    slot = *buffer;
-    return Ok{};
-  };
+  return words;
+}
+
+Status Renderer::make_buffers() {
+  set_capacities();
+  const std::uint32_t pyramid_words = place_pyramid();
+  const GpuFrame& f = frame_;
   struct Wanted {
     Buffer* slot;
     std::uint64_t bytes;
+    Memory memory = Memory::kDevice;
   };
   const Wanted wanted[] = {
       {&frame_block_, sizeof(GpuFrame)},
@@ -105,14 +113,27 @@ Status Renderer::make_buffers() {
       {&retry_instances_, std::uint64_t{options_.occlusion ? f.instance_count : 1} * 4},
       {&clipped_, std::uint64_t{f.item_capacity} * 4},
       {&pixels_, std::uint64_t{f.width} * f.height * 8},
-      {&pyramid_, std::uint64_t{words} * 4},
+      {&pyramid_, std::uint64_t{pyramid_words} * 4},
       {&overdraw_, options_.overdraw ? std::uint64_t{f.width} * f.height * 4 : 4},
       {&colors_, std::uint64_t{f.width} * f.height * 4},
+      {&upload_, sizeof(GpuFrame) + sizeof(GpuCounters), Memory::kHost},
   };
   for (const Wanted& w : wanted) {
-    if (const Status s = make(*w.slot, w.bytes); !s) return s.error();
+    auto buffer = device_.make_buffer(w.bytes, w.memory);
+    if (!buffer) return buffer.error();
+    *w.slot = *buffer;
   }
-  if (const Status s = make(upload_, sizeof(GpuFrame) + sizeof(GpuCounters), Memory::kHost); !s) return s.error();
+  set_addresses();
+  for (GpuStage& stage : counters_.stages) stage.z = 1;
+  for (std::uint32_t pass = 0; pass < 2; ++pass) {
+    counters_.stages[STAGE_DRAW + pass] = {3 * scene_.max_cluster_triangles, 0, 0, 0};
+  }
+  return Ok{};
+}
+
+/// Of the scene's buffers and of the frame's own, as the shaders are given them.
+void Renderer::set_addresses() {
+  GpuFrame& f = frame_;
   f.meshes = scene_.meshes.address();
   f.instances = scene_.instances.address();
   f.nodes = scene_.nodes.address();
@@ -142,11 +163,6 @@ Status Renderer::make_buffers() {
   f.overdraw = overdraw_.address();
   f.colors = colors_.address();
   f.counters = counters_block_.address();
-  for (GpuStage& stage : counters_.stages) stage.z = 1;
-  for (std::uint32_t pass = 0; pass < 2; ++pass) {
-    counters_.stages[STAGE_DRAW + pass] = {3 * scene_.max_cluster_triangles, 0, 0, 0};
-  }
-  return Ok{};
 }
 
 // With hardware raster every cluster is asked for its size on the screen; flat selection asks every instance.

@@ -95,7 +95,10 @@ class Renderer {
   [[nodiscard]] std::uint64_t list_bytes() const;  ///< of every buffer that depends on camera or size
 
  private:
+  void set_capacities();
+  [[nodiscard]] std::uint32_t place_pyramid();
   [[nodiscard]] Status make_buffers();
+  void set_addresses();
   [[nodiscard]] Status make_pipelines();
   void record_begin(Commands& list);
   void record_selection(Commands& list, std::uint32_t pass);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include "base/parallel.h"
 #include "run/decode/decode.h"
@@ -198,14 +199,8 @@ Result<draw::VisibilityBuffer> draw_both_sides(const run::Asset& asset, std::spa
   return out;
 }
 
-}  // namespace
-
-Result<PictureReport> judge_picture(const run::Asset& asset, const PictureSource& source,
-                                    std::span<const run::ClusterInstance> cut, const draw::VisibilityBuffer& drawn,
-                                    const run::Camera& camera, double pixel_error, const draw::AlphaMasks& masks) {
-  auto projection = draw::make_projection(camera);
-  if (!projection) return projection.error();
-  projection->far_distance = draw::scene_depth(asset, *projection);
+/// Every cluster of level 0, in every instance that can be drawn.
+std::vector<run::ClusterInstance> finest_cut(const run::Asset& asset) {
   std::vector<run::ClusterInstance> finest;
   for (std::size_t i = 0; i < asset.instances().size(); ++i) {
     const format::InstanceRecord& instance = asset.instances()[i];
@@ -215,15 +210,43 @@ Result<PictureReport> judge_picture(const run::Asset& asset, const PictureSource
       if (asset.clusters()[c].level == 0) finest.push_back({InstanceId(i), ClusterId(c)});
     }
   }
-  const auto full = draw::draw_cut(asset, finest, camera, masks);
-  if (!full) return full.error();
-  const auto cut_points = unproject(asset, cut, drawn, *projection);
-  if (!cut_points) return cut_points.error();
-  const auto full_points = unproject(asset, finest, *full, *projection);
-  if (!full_points) return full_points.error();
-  const draw::VisibilityBuffer truth = draw_source(asset, source.meshes, *projection);
-  const std::vector<PixelPoint> truth_points = unproject_source(asset, source.meshes, truth, *projection);
+  return finest;
+}
 
+/// What each pixel shows from one camera: of the cut, of level 0, of the source.
+struct Pictures {
+  draw::VisibilityBuffer full, truth;  ///< the cut's is the caller's
+  std::vector<PixelPoint> cut_points, full_points, truth_points;
+};
+
+Result<Pictures> draw_pictures(const run::Asset& asset, const PictureSource& source,
+                               std::span<const run::ClusterInstance> cut, const draw::VisibilityBuffer& drawn,
+                               const run::Camera& camera, const draw::Projection& projection,
+                               const draw::AlphaMasks& masks) {
+  Pictures out;
+  const std::vector<run::ClusterInstance> finest = finest_cut(asset);
+  auto full = draw::draw_cut(asset, finest, camera, masks);
+  if (!full) return full.error();
+  auto cut_points = unproject(asset, cut, drawn, projection);
+  if (!cut_points) return cut_points.error();
+  auto full_points = unproject(asset, finest, *full, projection);
+  if (!full_points) return full_points.error();
+  out.full = std::move(*full);
+  out.cut_points = std::move(*cut_points);
+  out.full_points = std::move(*full_points);
+  out.truth = draw_source(asset, source.meshes, projection);
+  out.truth_points = unproject_source(asset, source.meshes, out.truth, projection);
+  return out;
+}
+
+/// Per pixel: of the cut's picture to the source, and of the source's picture to the cut.
+struct Displacements {
+  std::vector<Displacement> there, back;
+};
+
+Displacements find_displacements(const run::Asset& asset, const PictureSource& source,
+                                 std::span<const run::ClusterInstance> cut, const Pictures& pictures,
+                                 const draw::Projection& projection, double pixel_error) {
   // The cut of an instance as a surface, for the way back.
   std::map<std::uint32_t, std::vector<ClusterId>> clusters_of;
   for (const run::ClusterInstance& entry : cut) clusters_of[entry.instance.value].push_back(entry.cluster);
@@ -236,61 +259,104 @@ Result<PictureReport> judge_picture(const run::Asset& asset, const PictureSource
         &trees.try_emplace(instance, surface_of_clusters(asset, source.decoded, MeshId(mesh), clusters)).first->second;
     if (mesh < source.meshes.size()) source_of[instance] = &source.meshes[mesh].tree;
   }
-  const auto there = displace(asset, *projection, *cut_points, pixel_error, source_of);
-  const auto back = displace(asset, *projection, truth_points, pixel_error, cut_of);
+  return {displace(asset, projection, pictures.cut_points, pixel_error, source_of),
+          displace(asset, projection, pictures.truth_points, pixel_error, cut_of)};
+}
 
-  PictureReport out;
-  out.displacement_px.resize(there.size(), -1.0F);
-  out.depth_difference.resize(there.size(), -1.0F);
-  out.normal_degrees.resize(there.size(), -1.0F);
-  double sum = 0.0, normal_sum = 0.0;
+/// Pixels of the background that are holes: PictureReport::holes says which.
+Result<std::uint64_t> count_holes(const run::Asset& asset, std::span<const run::ClusterInstance> cut,
+                                  const draw::VisibilityBuffer& drawn, const Pictures& pictures,
+                                  const std::vector<Displacement>& back, const draw::Projection& projection,
+                                  double tolerance) {
+  std::uint64_t holes = 0;
   std::optional<draw::VisibilityBuffer> both_sides;  // drawn where it is asked for
-  for (std::size_t i = 0; i < there.size(); ++i) {
+  for (std::size_t i = 0; i < drawn.item.size(); ++i) {
+    if (drawn.item[i] != draw::VisibilityBuffer::kNothing) continue;
+    const auto x = static_cast<std::uint32_t>(i % drawn.width), y = static_cast<std::uint32_t>(i / drawn.width);
+    if (!is_covered_around(pictures.truth, x, y)) continue;
+    if (may_cross_near_around(asset, projection, pictures.truth_points, back, tolerance, x, y)) continue;
+    if (!both_sides) {
+      auto buffer = draw_both_sides(asset, cut, projection);
+      if (!buffer) return buffer.error();
+      both_sides = std::move(*buffer);
+    }
+    if (both_sides->item[i] != draw::VisibilityBuffer::kNothing) ++holes;
+  }
+  return holes;
+}
+
+/// Silhouettes, depths and normals of the cut against level 0.
+void compare_with_full(const draw::VisibilityBuffer& drawn, const Pictures& pictures, PictureReport& out) {
+  const draw::VisibilityBuffer& full = pictures.full;
+  out.depth_difference.resize(drawn.item.size(), -1.0F);
+  out.normal_degrees.resize(drawn.item.size(), -1.0F);
+  double normal_sum = 0.0;
+  for (std::size_t i = 0; i < drawn.item.size(); ++i) {
     const bool is_cut = drawn.item[i] != draw::VisibilityBuffer::kNothing,
-               is_full = full->item[i] != draw::VisibilityBuffer::kNothing;
-    out.covered += is_cut ? 1 : 0;
-    out.covered_source += truth.item[i] != draw::VisibilityBuffer::kNothing ? 1 : 0;
+               is_full = full.item[i] != draw::VisibilityBuffer::kNothing;
     out.only_cut += is_cut && !is_full ? 1 : 0;
     out.only_source += is_full && !is_cut ? 1 : 0;
-    const auto x = static_cast<std::uint32_t>(i % drawn.width), y = static_cast<std::uint32_t>(i / drawn.width);
-    if (!is_cut && is_covered_around(truth, x, y) &&
-        !may_cross_near_around(asset, *projection, truth_points, back, source.tolerance, x, y)) {
-      if (!both_sides) {
-        auto buffer = draw_both_sides(asset, cut, *projection);
-        if (!buffer) return buffer.error();
-        both_sides = std::move(*buffer);
-      }
-      if (both_sides->item[i] != draw::VisibilityBuffer::kNothing) ++out.holes;
-    }
-    if (is_cut && is_full && drawn.depth[i] > 0) {
-      const double difference = std::abs(double{drawn.depth[i] * 1.0} - full->depth[i] * 1.0);
-      const double relative = difference / std::max(1.0, full->depth[i] * 1.0);
+    if (!is_cut || !is_full) continue;
+    if (drawn.depth[i] > 0) {
+      const double difference = std::abs(double{drawn.depth[i] * 1.0} - full.depth[i] * 1.0);
+      const double relative = difference / std::max(1.0, full.depth[i] * 1.0);
       out.largest_depth = std::max(out.largest_depth, relative);
       out.depth_difference[i] = static_cast<float>(relative);
     }
-    const PixelPoint& p = (*cut_points)[i];
-    const PixelPoint& q = (*full_points)[i];
-    if (is_cut && is_full && p.instance == q.instance && glm::dot(p.normal, p.normal) > 0.0 &&
-        glm::dot(q.normal, q.normal) > 0.0) {
+    const PixelPoint& p = pictures.cut_points[i];
+    const PixelPoint& q = pictures.full_points[i];
+    if (p.instance == q.instance && glm::dot(p.normal, p.normal) > 0.0 && glm::dot(q.normal, q.normal) > 0.0) {
       const double degrees = degrees_between(p.normal, q.normal);
       out.normal_degrees[i] = static_cast<float>(degrees);
       out.largest_normal_degrees = std::max(out.largest_normal_degrees, degrees);
       normal_sum += degrees;
       ++out.normals;
     }
-    if (is_cut) out.displacement_px[i] = static_cast<float>(there[i].px);
-    for (const Displacement& d : {there[i], back[i]}) {
+  }
+  out.mean_normal_degrees = out.normals > 0 ? normal_sum / static_cast<double>(out.normals) : 0.0;
+}
+
+/// How far anything moved, both ways, against what is allowed there.
+void judge_displacements(const draw::VisibilityBuffer& drawn, const Pictures& pictures, const Displacements& moves,
+                         double tolerance, PictureReport& out) {
+  out.displacement_px.resize(drawn.item.size(), -1.0F);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < drawn.item.size(); ++i) {
+    const bool is_cut = drawn.item[i] != draw::VisibilityBuffer::kNothing;
+    out.covered += is_cut ? 1 : 0;
+    out.covered_source += pictures.truth.item[i] != draw::VisibilityBuffer::kNothing ? 1 : 0;
+    if (is_cut) out.displacement_px[i] = static_cast<float>(moves.there[i].px);
+    for (const Displacement& d : {moves.there[i], moves.back[i]}) {
       if (d.allowed == 0.0) continue;
       ++out.points;
       out.largest_px = std::max(out.largest_px, d.px);
       out.largest_share = std::max(out.largest_share, d.px / d.allowed);
       out.allowed_px = std::max(out.allowed_px, d.allowed);
-      if (d.px > d.allowed * source.tolerance * (1.0 + 1e-9)) ++out.exceeded;
+      if (d.px > d.allowed * tolerance * (1.0 + 1e-9)) ++out.exceeded;
     }
-    sum += there[i].px;
+    sum += moves.there[i].px;
   }
-  out.mean_normal_degrees = out.normals > 0 ? normal_sum / static_cast<double>(out.normals) : 0.0;
   out.mean_px = out.covered > 0 ? sum / static_cast<double>(out.covered) : 0.0;
+}
+
+}  // namespace
+
+Result<PictureReport> judge_picture(const run::Asset& asset, const PictureSource& source,
+                                    std::span<const run::ClusterInstance> cut, const draw::VisibilityBuffer& drawn,
+                                    const run::Camera& camera, double pixel_error, const draw::AlphaMasks& masks) {
+  auto projection = draw::make_projection(camera);
+  if (!projection) return projection.error();
+  projection->far_distance = draw::scene_depth(asset, *projection);
+  const auto pictures = draw_pictures(asset, source, cut, drawn, camera, *projection, masks);
+  if (!pictures) return pictures.error();
+  const Displacements moves = find_displacements(asset, source, cut, *pictures, *projection, pixel_error);
+
+  PictureReport out;
+  compare_with_full(drawn, *pictures, out);
+  judge_displacements(drawn, *pictures, moves, source.tolerance, out);
+  const auto holes = count_holes(asset, cut, drawn, *pictures, moves.back, *projection, source.tolerance);
+  if (!holes) return holes.error();
+  out.holes = *holes;
   return out;
 }
 

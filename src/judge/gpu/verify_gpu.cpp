@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <optional>
 #include <tuple>
+#include <utility>
 
 #include "base/file.h"
 #include "judge/gpu/hardware_judge.h"
@@ -124,6 +126,174 @@ bool is_closed(const Surface& surface) {
   return !edges.empty();
 }
 
+/// Which promises the asset makes, so that pictures can be held to them.
+struct Promise {
+  bool has_displacement = false;  ///< how far a pixel may be displaced: there is a source, and a tier that speaks of it
+  bool is_closed = false;         ///< every mesh of the source is
+  bool has_holes = false;         ///< that nothing shows through: of what is closed and opaque
+  double tolerance = 1.0;
+};
+
+Promise promise_of(const run::Asset& asset, const std::vector<SourceSurface>& source, const draw::GpuScene& scene) {
+  Promise out;
+  out.has_displacement = !source.empty();
+  for (const format::MeshRecord& mesh : asset.meshes()) {
+    if (mesh.cluster_count == 0) continue;
+    if (mesh.error_tier == format::ErrorTier::kQem) out.has_displacement = false;
+    if (mesh.error_tier == format::ErrorTier::kMeasured) out.tolerance = 1.05;
+  }
+  out.is_closed = std::all_of(source.begin(), source.end(), [](const SourceSurface& mesh) {
+    return mesh.surface.triangles.empty() || is_closed(mesh.surface);
+  });
+  out.has_holes = out.has_displacement && out.is_closed && !scene.has_alpha_mask;
+  return out;
+}
+
+struct Checks {
+  GpuCheck decoded{Rule::kV401, "the GPU decodes every cluster to the CPU's integers"};
+  GpuCheck cuts{Rule::kV402, "the GPU's traversal selects what the flat rule selects"};
+  GpuCheck pixels{Rule::kV403, "the GPU's software rasterizer draws the CPU's ids and depths (pixels)"};
+  GpuCheck culled{Rule::kV404, "frustum and two-pass occlusion culling change no pixel"};
+  GpuCheck by_vertex{Rule::kV407, "hardware raster, vertices pulled: pixels as the specification allows"};
+  GpuCheck by_mesh{Rule::kV408, "hardware raster, mesh shaders: pixels as the specification allows"};
+  GpuCheck holes{Rule::kV406, "no background is seen through the cut where the source covers it (pixels)"};
+  GpuCheck displaced{Rule::kV405, ""};
+
+  [[nodiscard]] std::vector<GpuCheck> in_order() const {
+    return {decoded, cuts, pixels, culled, by_vertex, by_mesh, holes, displaced};
+  }
+};
+
+/// One draws all that is selected, one culls what would not be seen.
+struct Renderers {
+  draw::Renderer plain, culling;
+};
+
+Result<Renderers> make_renderers(const draw::Device& device, const draw::GpuScene& scene, PictureSize size) {
+  draw::RendererOptions plain;
+  plain.width = size.width;
+  plain.height = size.height;
+  plain.frustum = false;
+  plain.double_sided = scene.has_double_sided;
+  plain.alpha_mask = scene.has_alpha_mask;
+  draw::RendererOptions culling = plain;
+  culling.frustum = culling.occlusion = true;
+  auto renderer = draw::Renderer::make(device, scene, plain);
+  if (!renderer) return renderer.error();
+  auto culler = draw::Renderer::make(device, scene, culling);
+  if (!culler) return culler.error();
+  return Renderers{std::move(*renderer), std::move(*culler)};
+}
+
+/// Goes through the cameras of one picture size after the other; what it finds is added to the checks and the report.
+class CameraJudge {
+ public:
+  CameraJudge(const run::Asset& asset, const GpuVerifyOptions& options, const PictureSource& source,
+              const Promise& promise, const draw::AlphaMasks& masks, Checks& checks, GpuVerifyReport& report)
+      : asset_(asset), options_(options), source_(source), promise_(promise), masks_(masks), checks_(checks),
+        report_(report) {}
+
+  Status judge_size(Renderers& renderers, PictureSize size) {
+    if (const Status s = renderers.plain.resize(size.width, size.height); !s) return s;
+    if (const Status s = renderers.culling.resize(size.width, size.height); !s) return s;
+    worst_ = {};
+    for (const NamedCamera& named : cameras_of(size)) {
+      const std::string where = named.name + " at " + std::to_string(size.width) + "x" + std::to_string(size.height);
+      if (const Status s = compare_with_cpu(renderers, named, where); !s) return s;
+      if (source_.meshes.empty()) continue;
+      if (const Status s = judge_by_source(renderers.plain, named, where); !s) return s;
+    }
+    return worst_.camera ? write_maps(options_, worst_.picture, report_.cameras[*worst_.camera]) : Status(Ok{});
+  }
+
+ private:
+  /// Of this size, the camera with the largest share of its allowance so far, with its maps.
+  struct Worst {
+    std::optional<std::size_t> camera;
+    PictureReport picture;
+  };
+
+  std::vector<NamedCamera> cameras_of(PictureSize size) const {
+    std::vector<NamedCamera> cameras = adversarial_cameras(asset_, size.width, size.height);
+    for (NamedCamera& named : orbit_cameras(asset_, options_.orbits, size.width, size.height)) cameras.push_back(named);
+    for (NamedCamera named : options_.path) {
+      named.camera.width = size.width;
+      named.camera.height = size.height;
+      cameras.push_back(named);
+    }
+    return cameras;
+  }
+
+  Status compare_with_cpu(Renderers& renderers, const NamedCamera& named, const std::string& where) {
+    const auto frame = compare_frame(renderers.plain, asset_, named.camera, options_.pixel_error);
+    if (!frame) return frame.error();
+    add(checks_.cuts, frame->cut, where);
+    add(checks_.pixels, frame->pixels, where);
+    const auto culled = compare_frame(renderers.culling, asset_, named.camera, options_.pixel_error);
+    if (!culled) return culled.error();
+    add(checks_.culled, culled->cut, where);
+    add(checks_.culled, culled->pixels, where);
+    return Ok{};
+  }
+
+  /// The picture that `renderer` drew last against the source.
+  Status judge_by_source(draw::Renderer& renderer, const NamedCamera& named, const std::string& where) {
+    const auto cut = renderer.read_cut();
+    const auto drawn = renderer.read_pixels();
+    if (!cut) return cut.error();
+    if (!drawn) return drawn.error();
+    const auto picture = judge_picture(asset_, source_, *cut, *drawn, named.camera, options_.pixel_error, masks_);
+    if (!picture) return picture.error();
+    count(*picture, where);
+    report_.cameras.push_back({named, without_maps(*picture), {}});
+    if (!worst_.camera || picture->largest_share > worst_.picture.largest_share) {
+      worst_ = {report_.cameras.size() - 1, *picture};
+      return Ok{};
+    }
+    const bool has_failed = (promise_.has_displacement && picture->exceeded > 0) ||
+                            (promise_.has_holes && picture->holes > 0);
+    return has_failed ? write_maps(options_, *picture, report_.cameras.back()) : Status(Ok{});
+  }
+
+  void count(const PictureReport& picture, const std::string& where) {
+    report_.largest_px = std::max(report_.largest_px, picture.largest_px);
+    report_.largest_share = std::max(report_.largest_share, picture.largest_share);
+    GpuCheck& displaced = checks_.displaced;
+    displaced.items += picture.points;
+    displaced.failures += promise_.has_displacement ? picture.exceeded : 0;
+    if (promise_.has_displacement && picture.exceeded > 0 && displaced.first.empty()) {
+      displaced.first = where + ": " + format_px("%.3f px", picture.largest_px) +
+                        format_px(" in all, %.3f of what is allowed at its point", picture.largest_share);
+    }
+    GpuCheck& holes = checks_.holes;
+    holes.items += picture.covered_source;
+    holes.failures += promise_.has_holes ? picture.holes : 0;
+    if (promise_.has_holes && picture.holes > 0 && holes.first.empty()) holes.first = where;
+  }
+
+  const run::Asset& asset_;
+  const GpuVerifyOptions& options_;
+  const PictureSource& source_;
+  const Promise& promise_;
+  const draw::AlphaMasks& masks_;
+  Checks& checks_;
+  GpuVerifyReport& report_;
+  Worst worst_;
+};
+
+/// What was found of displacement and holes, or why they were not judged.
+void describe_promises(const Promise& promise, const GpuVerifyReport& report, double pixel_error, Checks& checks) {
+  checks.displaced.is_skipped = !promise.has_displacement;
+  checks.displaced.what = format_px("pixels are displaced by %.3f px at most", report.largest_px) +
+                          format_px(", %.3f of what is allowed:", report.largest_share) +
+                          format_px(" %.3g or level 0's own", pixel_error) +
+                          (promise.has_displacement ? "" : " (not judged: tier qem states the quadric's estimate)");
+  checks.holes.is_skipped = !promise.has_holes;
+  if (!promise.has_holes) {
+    checks.holes.what += promise.is_closed ? " (not judged: tier qem)" : " (not judged: the source is open)";
+  }
+}
+
 }  // namespace
 
 Result<GpuVerifyReport> verify_on_gpu(const run::Asset& asset, const scene::Scene& source,
@@ -137,115 +307,29 @@ Result<GpuVerifyReport> verify_on_gpu(const run::Asset& asset, const scene::Scen
   out.device = device->info();
   out.warnings = scene->alpha_masks->warnings;
 
+  Checks checks;
   const auto decode = compare_decode(*device, *scene, asset);
   if (!decode) return decode.error();
-  GpuCheck decoded{Rule::kV401, "the GPU decodes every cluster to the CPU's integers"};
-  add(decoded, *decode, "decode");
-  out.checks.push_back(decoded);
+  add(checks.decoded, *decode, "decode");
 
-  GpuCheck cuts{Rule::kV402, "the GPU's traversal selects what the flat rule selects"};
-  GpuCheck pixels{Rule::kV403, "the GPU's software rasterizer draws the CPU's ids and depths (pixels)"};
-  GpuCheck culled{Rule::kV404, "frustum and two-pass occlusion culling change no pixel"};
-  GpuCheck displaced{Rule::kV405, ""};
-  GpuCheck holes{Rule::kV406, "no background is seen through the cut where the source covers it (pixels)"};
-
-  bool has_promise = !source.meshes.empty();
-  double tolerance = 1.0;
-  for (const format::MeshRecord& mesh : asset.meshes()) {
-    if (mesh.cluster_count == 0) continue;
-    if (mesh.error_tier == format::ErrorTier::kQem) has_promise = false;
-    if (mesh.error_tier == format::ErrorTier::kMeasured) tolerance = 1.05;
-  }
   const std::vector<SourceSurface> meshes = source_surfaces(source);
-  const bool all_closed = std::all_of(meshes.begin(), meshes.end(), [](const SourceSurface& mesh) {
-    return mesh.surface.triangles.empty() || is_closed(mesh.surface);
-  });
-  GpuCheck by_vertex{Rule::kV407, "hardware raster, vertices pulled: pixels as the specification allows"};
-  GpuCheck by_mesh{Rule::kV408, "hardware raster, mesh shaders: pixels as the specification allows"};
-  const bool has_holes_rule = has_promise && all_closed && !scene->has_alpha_mask;
+  const Promise promise = promise_of(asset, meshes, *scene);
   const auto every_cluster = run::decode_all(asset);
   if (!every_cluster) return every_cluster.error();
-  const PictureSource truth{meshes, *every_cluster, tolerance};
-
-  draw::RendererOptions plain;
-  plain.width = options.sizes[0].width;
-  plain.height = options.sizes[0].height;
-  plain.frustum = false;
-  plain.double_sided = scene->has_double_sided;
-  plain.alpha_mask = scene->has_alpha_mask;
-  draw::RendererOptions culling = plain;
-  culling.frustum = culling.occlusion = true;
-  auto renderer = draw::Renderer::make(*device, *scene, plain);
-  if (!renderer) return renderer.error();
-  auto culler = draw::Renderer::make(*device, *scene, culling);
-  if (!culler) return culler.error();
-  for (GpuCheck* check : {&by_vertex, &by_mesh}) {
-    if (const Status s = judge_hardware(*device, *scene, asset, options, check == &by_mesh, *check); !s) return s.error();
+  auto renderers = make_renderers(*device, *scene, options.sizes[0]);
+  if (!renderers) return renderers.error();
+  for (GpuCheck* check : {&checks.by_vertex, &checks.by_mesh}) {
+    const bool by_mesh_shaders = check == &checks.by_mesh;
+    const Status s = judge_hardware(*device, *scene, asset, options, by_mesh_shaders, *check);
+    if (!s) return s.error();
   }
+  const PictureSource truth{meshes, *every_cluster, promise.tolerance};
+  CameraJudge judge(asset, options, truth, promise, *scene->alpha_masks, checks, out);
   for (const PictureSize size : options.sizes) {
-    std::size_t worst = out.cameras.size();
-    PictureReport worst_picture;
-    if (const Status s = renderer->resize(size.width, size.height); !s) return s.error();
-    if (const Status s = culler->resize(size.width, size.height); !s) return s.error();
-    std::vector<NamedCamera> cameras = adversarial_cameras(asset, size.width, size.height);
-    for (NamedCamera& named : orbit_cameras(asset, options.orbits, size.width, size.height)) cameras.push_back(named);
-    for (NamedCamera named : options.path) {
-      named.camera.width = size.width;
-      named.camera.height = size.height;
-      cameras.push_back(named);
-    }
-    for (std::size_t i = 0; i < cameras.size(); ++i) {
-      const NamedCamera& named = cameras[i];
-      const std::string where = named.name + " at " + std::to_string(size.width) + "x" + std::to_string(size.height);
-      const auto frame = compare_frame(*renderer, asset, named.camera, options.pixel_error);
-      if (!frame) return frame.error();
-      add(cuts, frame->cut, where);
-      add(pixels, frame->pixels, where);
-      const auto culled_frame = compare_frame(*culler, asset, named.camera, options.pixel_error);
-      if (!culled_frame) return culled_frame.error();
-      add(culled, culled_frame->cut, where);
-      add(culled, culled_frame->pixels, where);
-      if (source.meshes.empty()) continue;
-      const auto cut = renderer->read_cut();
-      const auto drawn = renderer->read_pixels();
-      if (!cut) return cut.error();
-      if (!drawn) return drawn.error();
-      const auto picture = judge_picture(asset, truth, *cut, *drawn, named.camera, options.pixel_error, *scene->alpha_masks);
-      if (!picture) return picture.error();
-      out.largest_px = std::max(out.largest_px, picture->largest_px);
-      out.largest_share = std::max(out.largest_share, picture->largest_share);
-      const bool is_worse = out.cameras.size() == worst || picture->largest_share > worst_picture.largest_share;
-      out.cameras.push_back({named, without_maps(*picture), {}});
-      if (is_worse) {
-        worst = out.cameras.size() - 1;
-        worst_picture = *picture;
-      }
-      const bool has_failed = (has_promise && picture->exceeded > 0) || (has_holes_rule && picture->holes > 0);
-      if (has_failed && !is_worse) {
-        if (const Status s = write_maps(options, *picture, out.cameras.back()); !s) return s.error();
-      }
-      displaced.items += picture->points;
-      displaced.failures += has_promise ? picture->exceeded : 0;
-      if (has_promise && picture->exceeded > 0 && displaced.first.empty()) {
-        displaced.first = where + ": " + format_px("%.3f px", picture->largest_px) +
-                          format_px(" in all, %.3f of what is allowed at its point", picture->largest_share);
-      }
-      holes.items += picture->covered_source;
-      holes.failures += has_holes_rule ? picture->holes : 0;
-      if (has_holes_rule && picture->holes > 0 && holes.first.empty()) holes.first = where;
-    }
-    if (worst < out.cameras.size()) {
-      if (const Status s = write_maps(options, worst_picture, out.cameras[worst]); !s) return s.error();
-    }
+    if (const Status s = judge.judge_size(*renderers, size); !s) return s.error();
   }
-  displaced.is_skipped = !has_promise;
-  holes.is_skipped = !has_holes_rule;
-  if (!has_holes_rule) holes.what += all_closed ? " (not judged: tier qem)" : " (not judged: the source is open)";
-  displaced.what = format_px("pixels are displaced by %.3f px at most", out.largest_px) +
-                   format_px(", %.3f of what is allowed:", out.largest_share) +
-                   format_px(" %.3g or level 0's own", options.pixel_error) +
-                   (has_promise ? "" : " (not judged: tier qem states the quadric's estimate)");
-  for (const GpuCheck& check : {cuts, pixels, culled, by_vertex, by_mesh, holes, displaced}) out.checks.push_back(check);
+  describe_promises(promise, out, options.pixel_error, checks);
+  out.checks = checks.in_order();
   return out;
 }
 

@@ -207,39 +207,32 @@ Result<std::vector<DeviceInfo>> list_devices() {
   return out;
 }
 
-Result<Device> Device::open(const DeviceOptions& options) {
-  auto instance = make_instance(options.validate);
-  if (!instance) return instance.error();
-  const auto candidates = find_devices(**instance);
-  if (!candidates) return candidates.error();
+namespace {
 
+/// The one that is named, by index or a part of the name; without a name the first that can run.
+Result<const Candidate*> choose(const std::vector<Candidate>& candidates, const std::string& name) {
   const Candidate* chosen = nullptr;
-  std::size_t index = candidates->size();
-  std::from_chars(options.device.data(), options.device.data() + options.device.size(), index);
-  for (std::size_t i = 0; i < candidates->size() && chosen == nullptr; ++i) {
-    const DeviceInfo& info = (*candidates)[i].info;
-    const bool is_named =
-        !options.device.empty() && (i == index || info.name.find(options.device) != std::string::npos);
-    if (options.device.empty() ? info.missing.empty() : is_named) chosen = &(*candidates)[i];
+  std::size_t index = candidates.size();
+  std::from_chars(name.data(), name.data() + name.size(), index);
+  for (std::size_t i = 0; i < candidates.size() && chosen == nullptr; ++i) {
+    const DeviceInfo& info = candidates[i].info;
+    const bool is_named = !name.empty() && (i == index || info.name.find(name) != std::string::npos);
+    if (name.empty() ? info.missing.empty() : is_named) chosen = &candidates[i];
   }
   if (chosen == nullptr) {
-    if (options.device.empty()) {
-      return unsupported((*candidates)[0].info.name + " lacks " + (*candidates)[0].info.missing);
-    }
+    if (name.empty()) return unsupported(candidates[0].info.name + " lacks " + candidates[0].info.missing);
     std::string names;
-    for (std::size_t i = 0; i < candidates->size(); ++i) {
-      names += (i > 0 ? ", " : "") + std::to_string(i) + " " + (*candidates)[i].info.name;
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      names += (i > 0 ? ", " : "") + std::to_string(i) + " " + candidates[i].info.name;
     }
-    return Error{ErrorCode::kUsage, "--device", "no device " + options.device + "; there are: " + names};
+    return Error{ErrorCode::kUsage, "--device", "no device " + name + "; there are: " + names};
   }
   if (!chosen->info.missing.empty()) return unsupported(chosen->info.name + " lacks " + chosen->info.missing);
+  return chosen;
+}
 
-  Device out;
-  out.impl_ = std::make_shared<DeviceImpl>();
-  DeviceImpl& d = *out.impl_;
-  d.instance = *instance;
-  d.f = d.instance->f;
-  d.info = chosen->info;
+/// The device with the features that shaders here use.
+Status create_device(const Candidate& chosen, DeviceImpl& d) {
   Features features(d.info.has_mesh_shaders);
   features.core.features.shaderInt64 = VK_TRUE;
   features.core.features.shaderFloat64 = VK_TRUE;
@@ -253,7 +246,7 @@ Result<Device> Device::open(const DeviceOptions& options) {
   features.mesh.meshShader = d.info.has_mesh_shaders ? VK_TRUE : VK_FALSE;
   const float priority = 1.0F;
   VkDeviceQueueCreateInfo queue = tagged<VkDeviceQueueCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO);
-  queue.queueFamilyIndex = chosen->queue_family;
+  queue.queueFamilyIndex = chosen.queue_family;
   queue.queueCount = 1;
   queue.pQueuePriorities = &priority;
   const char* mesh_extension = VK_EXT_MESH_SHADER_EXTENSION_NAME;
@@ -263,18 +256,24 @@ Result<Device> Device::open(const DeviceOptions& options) {
   create.pQueueCreateInfos = &queue;
   create.enabledExtensionCount = d.info.has_mesh_shaders ? 1 : 0;
   create.ppEnabledExtensionNames = &mesh_extension;
-  if (d.f.vkCreateDevice(chosen->device, &create, nullptr, &d.device) != VK_SUCCESS) {
+  if (d.f.vkCreateDevice(chosen.device, &create, nullptr, &d.device) != VK_SUCCESS) {
     d.device = VK_NULL_HANDLE;
     return unsupported(d.info.name + " could not be opened");
   }
+  return Ok{};
+}
+
+void load_functions(DeviceImpl& d) {
 #define MESHLODE_LOAD(name) d.f.name = reinterpret_cast<PFN_##name>(d.f.vkGetDeviceProcAddr(d.device, #name));
   MESHLODE_DEVICE_FUNCTIONS(MESHLODE_LOAD)
   if (d.info.has_mesh_shaders) MESHLODE_LOAD(vkCmdDrawMeshTasksIndirectEXT)
 #undef MESHLODE_LOAD
-  d.f.vkGetDeviceQueue(d.device, chosen->queue_family, 0, &d.queue);
-  d.f.vkGetPhysicalDeviceMemoryProperties(chosen->device, &d.memory);
+}
+
+/// What command lists come from, and the one layout of all pipelines: push constants alone.
+Status make_pool_and_layout(const Candidate& chosen, DeviceImpl& d) {
   VkCommandPoolCreateInfo pool = tagged<VkCommandPoolCreateInfo>(VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO);
-  pool.queueFamilyIndex = chosen->queue_family;
+  pool.queueFamilyIndex = chosen.queue_family;
   if (d.f.vkCreateCommandPool(d.device, &pool, nullptr, &d.pool) != VK_SUCCESS) return unsupported("no command pool");
   d.push_stages = VK_SHADER_STAGE_COMPUTE_BIT | VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
   if (d.info.has_mesh_shaders) d.push_stages |= VK_SHADER_STAGE_MESH_BIT_EXT;
@@ -285,6 +284,31 @@ Result<Device> Device::open(const DeviceOptions& options) {
   if (d.f.vkCreatePipelineLayout(d.device, &layout, nullptr, &d.layout) != VK_SUCCESS) {
     return unsupported("no pipeline layout");
   }
+  return Ok{};
+}
+
+}  // namespace
+
+Result<Device> Device::open(const DeviceOptions& options) {
+  auto instance = make_instance(options.validate);
+  if (!instance) return instance.error();
+  const auto candidates = find_devices(**instance);
+  if (!candidates) return candidates.error();
+  const auto found = choose(*candidates, options.device);
+  if (!found) return found.error();
+  const Candidate& chosen = **found;
+
+  Device out;
+  out.impl_ = std::make_shared<DeviceImpl>();
+  DeviceImpl& d = *out.impl_;
+  d.instance = *instance;
+  d.f = d.instance->f;
+  d.info = chosen.info;
+  if (const Status s = create_device(chosen, d); !s) return s.error();
+  load_functions(d);
+  d.f.vkGetDeviceQueue(d.device, chosen.queue_family, 0, &d.queue);
+  d.f.vkGetPhysicalDeviceMemoryProperties(chosen.device, &d.memory);
+  if (const Status s = make_pool_and_layout(chosen, d); !s) return s.error();
   auto staging = out.make_buffer(kStagingBytes, Memory::kHost);
   if (!staging) return staging.error();
   d.staging = *staging;
