@@ -7,15 +7,16 @@
 
 namespace meshlode {
 
+constexpr std::uint32_t kNoId = 0xFFFFFFFFu;  ///< "no such id", of any space; format::kNone has the same bits
+
 template <class Tag>
 struct Id {
-  static constexpr std::uint32_t kNone = 0xFFFFFFFFu;
-  std::uint32_t value = kNone;
+  std::uint32_t value = kNoId;
 
   constexpr Id() = default;
   constexpr explicit Id(std::uint32_t v) : value(v) {}
   constexpr explicit Id(std::size_t v) : value(static_cast<std::uint32_t>(v)) {}
-  [[nodiscard]] constexpr bool is_valid() const { return value != kNone; }
+  [[nodiscard]] constexpr bool is_valid() const { return value != kNoId; }
   constexpr auto operator<=>(const Id&) const = default;
 };
 

@@ -42,13 +42,13 @@ enum class AlphaMode : std::uint8_t { kOpaque, kMask, kBlend };
 /// The part of a material that the build and the renderer act on. The rest travels in Scene::document.
 struct SceneMaterial {
   std::string name;
-  std::uint32_t source_index = 0xFFFFFFFFu;  ///< glTF material index; none for the default material
+  std::uint32_t source_index = kNoId;        ///< glTF material index; kNoId for the default material
   AlphaMode alpha_mode = AlphaMode::kOpaque;
   Vec4f base_color{1.0F, 1.0F, 1.0F, 1.0F};
   float alpha_cutoff = 0.5F;
   bool double_sided = false;
-  std::uint32_t base_color_texture = 0xFFFFFFFFu;  ///< glTF texture index
-  std::uint32_t base_color_uv_set = 0xFFFFFFFFu;   ///< TEXCOORD_n of the base colour texture
+  std::uint32_t base_color_texture = kNoId;  ///< glTF texture index
+  std::uint32_t base_color_uv_set = kNoId;   ///< TEXCOORD_n of the base colour texture
   std::uint32_t uv_sets_used = 0;  ///< bit n: some texture of the material (unknown extensions too) samples TEXCOORD_n
   bool needs_tangents = false;     ///< a normal map or anisotropy: shading has a direction along the surface
 };

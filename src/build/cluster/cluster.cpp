@@ -110,12 +110,12 @@ Clustering cluster_chunk(std::span<const WedgeTriangle> triangles, std::span<con
   if (hosts.empty()) return partition_chunk(triangles, triangle_graph(corners, links), parts, caps);
   const auto cluster_core = [&](std::span<const WedgeTriangle> core, std::span<const std::int32_t> weights) {
     std::vector<TriangleLink> core_links;
-    std::vector<std::uint32_t> place(triangles.size(), kNoHost);
+    std::vector<std::uint32_t> place(triangles.size(), kNoId);
     for (std::uint32_t t = 0, next = 0; t < hosts.size(); ++t) {
-      if (hosts[t] == kNoHost) place[t] = next++;
+      if (hosts[t] == kNoId) place[t] = next++;
     }
     for (const auto& [a, b] : links) {
-      if (place[a] != kNoHost && place[b] != kNoHost) core_links.emplace_back(place[a], place[b]);
+      if (place[a] != kNoId && place[b] != kNoId) core_links.emplace_back(place[a], place[b]);
     }
     Graph weighted = triangle_graph(corners_of(core), core_links);
     weighted.node_weight.assign(weights.begin(), weights.end());

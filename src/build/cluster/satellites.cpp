@@ -79,7 +79,7 @@ Hosts host_collapsed(std::span<const WedgeTriangle> triangles, std::span<const s
     }
   }
   std::sort(users.begin(), users.end());
-  Hosts hosts(triangles.size(), kNoHost);
+  Hosts hosts(triangles.size(), kNoId);
   for (const std::uint32_t t : collapsed) {
     const auto own = positions_of(triangles[t], wedge_position);
     using User = std::pair<std::uint32_t, std::uint32_t>;
@@ -93,7 +93,7 @@ Hosts host_collapsed(std::span<const WedgeTriangle> triangles, std::span<const s
     for (const std::uint32_t position : own) {
       const std::span<const User> these = users_of(position);
       if (these.size() < fewest.size()) fewest = these;
-      if (hosts[t] == kNoHost && !these.empty()) hosts[t] = these[0].second;
+      if (hosts[t] == kNoId && !these.empty()) hosts[t] = these[0].second;
     }
     const auto covering = std::find_if(fewest.begin(), fewest.end(), [&](const User& user) {
       const auto theirs = positions_of(triangles[user.second], wedge_position);
@@ -110,7 +110,7 @@ Hosts host_debris(const std::vector<std::uint32_t>& piece, std::uint32_t piece_c
                   std::span<const TriangleLink> links) {
   std::vector<std::uint32_t> size(piece_count, 0);
   for (const std::uint32_t p : piece) ++size[p];
-  std::vector<std::uint32_t> host_of_piece(piece_count, kNoHost);
+  std::vector<std::uint32_t> host_of_piece(piece_count, kNoId);
   bool any = false;
   for (const auto& [from, to] : links) {
     if (size[piece[from]] > kDebris || size[piece[to]] <= kDebris) continue;
@@ -126,14 +126,14 @@ Hosts host_debris(const std::vector<std::uint32_t>& piece, std::uint32_t piece_c
 Clustering cluster_with_satellites(std::span<const WedgeTriangle> triangles,
                                    std::span<const std::uint32_t> wedge_position, const Hosts& hosts,
                                    const ClusterCaps& caps, const ClusterWeighted& cluster) {
-  if (std::all_of(hosts.begin(), hosts.end(), [](std::uint32_t host) { return host == kNoHost; })) {
+  if (std::all_of(hosts.begin(), hosts.end(), [](std::uint32_t host) { return host == kNoId; })) {
     return cluster(triangles, std::vector<std::int32_t>(triangles.size(), 1));
   }
   std::vector<std::uint32_t> core;  // ids of triangles without a host
-  std::vector<std::uint32_t> place(triangles.size(), kNoHost);
+  std::vector<std::uint32_t> place(triangles.size(), kNoId);
   std::vector<WedgeTriangle> core_triangles;
   for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-    if (hosts[t] != kNoHost) continue;
+    if (hosts[t] != kNoId) continue;
     place[t] = static_cast<std::uint32_t>(core.size());
     core.push_back(t);
     core_triangles.push_back(triangles[t]);
@@ -141,7 +141,7 @@ Clustering cluster_with_satellites(std::span<const WedgeTriangle> triangles,
   Systems systems(core.size());
   for (std::size_t i = 0; i < core.size(); ++i) systems[i].push_back(core[i]);
   for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-    if (hosts[t] != kNoHost) systems[place[hosts[t]]].push_back(t);
+    if (hosts[t] != kNoId) systems[place[hosts[t]]].push_back(t);
   }
   std::vector<std::int32_t> weights;
   weights.reserve(systems.size());

@@ -10,13 +10,13 @@
 #include <span>
 #include <vector>
 
+#include "base/ids.h"
 #include "build/cluster/adjacency.h"
 #include "build/cluster/cluster.h"
 
 namespace meshlode::build {
 
-/// Per triangle the triangle whose cluster it joins, or kNoHost. Hosts have no hosts themselves.
-constexpr std::uint32_t kNoHost = 0xFFFFFFFFU;
+/// Per triangle the triangle whose cluster it joins, or kNoId. Hosts have no hosts themselves.
 using Hosts = std::vector<std::uint32_t>;
 
 /// Triangles with fewer than three positions, each with the first triangle that has all of them and covers an area, or
@@ -33,7 +33,7 @@ using Hosts = std::vector<std::uint32_t>;
 using ClusterWeighted = std::function<Clustering(std::span<const WedgeTriangle>, std::span<const std::int32_t> weights)>;
 
 /// Clusters of the triangles that have no host, by `cluster`; the others follow their hosts. Clusters that are too large
-/// nevertheless are divided. No host at all: `hosts` is empty or all kNoHost.
+/// nevertheless are divided. No host at all: `hosts` is empty or all kNoId.
 [[nodiscard]] Clustering cluster_with_satellites(std::span<const WedgeTriangle> triangles,
                                                  std::span<const std::uint32_t> wedge_position, const Hosts& hosts,
                                                  const ClusterCaps& caps, const ClusterWeighted& cluster);

@@ -13,7 +13,7 @@ namespace {
 void append_cluster(const BuildPool& pool, const BuildCluster& source, std::size_t stride, GroupId group, LodDag& dag) {
   DagCluster cluster;
   cluster.level = source.level;
-  cluster.own_group = GroupId(source.own_group);  // renumbered by the caller
+  cluster.own_group = source.own_group;  // renumbered by the caller
   cluster.coarser_group = group;
   cluster.first_vertex = static_cast<std::uint32_t>(dag.vertex_position.size());
   cluster.first_triangle = static_cast<std::uint32_t>(dag.triangles.size());
@@ -79,8 +79,8 @@ LodDag assemble_dag(const BuildPool& pool, const PreparedMesh& mesh) {
     group.deviation = source.deviation;
     group.normal_deviation = source.normal_deviation;
     group.uv_deviation = source.uv_deviation;
-    for (const std::uint32_t c : source.clusters) {
-      append_cluster(pool, pool.clusters[c], stride, GroupId(new_group[g]), dag);
+    for (const ClusterId c : source.clusters) {
+      append_cluster(pool, pool.cluster(c), stride, GroupId(new_group[g]), dag);
       DagCluster& cluster = dag.clusters.back();
       if (cluster.own_group.is_valid()) cluster.own_group = GroupId(new_group[cluster.own_group.value]);
       dag.level_count = std::max(dag.level_count, cluster.level + 1);

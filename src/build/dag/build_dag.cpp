@@ -56,14 +56,14 @@ struct Shared {
 };
 
 /// Collects a group's triangles under local ids. Ids of the pool are ascending, and so are the local ones.
-SimplifyInput group_input(const BuildPool& pool, const PreparedMesh& mesh, const std::vector<std::uint32_t>& clusters,
+SimplifyInput group_input(const BuildPool& pool, const PreparedMesh& mesh, const std::vector<ClusterId>& clusters,
                           const Shared& shared) {
   SimplifyInput input;
   input.grid = mesh.grid;
   input.layout = mesh.layout;
   const std::size_t stride = mesh.layout.stride();
-  for (const std::uint32_t c : clusters) {
-    const BuildCluster& cluster = pool.clusters[c];
+  for (const ClusterId c : clusters) {
+    const BuildCluster& cluster = pool.cluster(c);
     const auto first = static_cast<std::ptrdiff_t>(cluster.first_triangle);
     const auto last = first + static_cast<std::ptrdiff_t>(cluster.triangle_count);
     input.triangles.insert(input.triangles.end(), pool.triangles.begin() + first, pool.triangles.begin() + last);
@@ -99,7 +99,7 @@ SimplifyInput group_input(const BuildPool& pool, const PreparedMesh& mesh, const
   return input;
 }
 
-GroupInput grouping_input(const BuildPool& pool, const std::vector<std::uint32_t>& live, const DagOptions& options) {
+GroupInput grouping_input(const BuildPool& pool, const std::vector<ClusterId>& live, const DagOptions& options) {
   GroupInput input;
   input.position_count = static_cast<std::uint32_t>(pool.positions.size());
   std::vector<std::vector<std::uint32_t>> lists(live.size());
@@ -107,7 +107,7 @@ GroupInput grouping_input(const BuildPool& pool, const std::vector<std::uint32_t
   parallel_for_each_index(live.size(), 16, [&](std::size_t i) {
     pool.positions_of(live[i], lists[i]);
     if (options.max_group_bytes == 0) return;
-    input.weights[i] = options.cluster_bytes(pool.count_wedges(live[i]), pool.clusters[live[i]].triangle_count,
+    input.weights[i] = options.cluster_bytes(pool.count_wedges(live[i]), pool.cluster(live[i]).triangle_count,
                                              pool.count_materials(live[i]));
   });
   input.first_position.push_back(0);
@@ -121,19 +121,18 @@ GroupInput grouping_input(const BuildPool& pool, const std::vector<std::uint32_t
   return input;
 }
 
-Shared find_shared(const BuildPool& pool, const std::vector<std::uint32_t>& live,
+Shared find_shared(const BuildPool& pool, const std::vector<ClusterId>& live,
                    const std::vector<std::vector<std::uint32_t>>& groups) {
-  constexpr std::uint32_t kNobody = 0xFFFFFFFFU;
   Shared shared{std::vector<std::uint8_t>(pool.positions.size(), 0), std::vector<std::uint8_t>(pool.wedge_position.size(), 0)};
-  std::vector<std::uint32_t> position_owner(pool.positions.size(), kNobody);
-  std::vector<std::uint32_t> wedge_owner(pool.wedge_position.size(), kNobody);
+  std::vector<std::uint32_t> position_owner(pool.positions.size(), kNoId);
+  std::vector<std::uint32_t> wedge_owner(pool.wedge_position.size(), kNoId);
   const auto visit = [](std::uint32_t id, std::uint32_t group, std::vector<std::uint32_t>& owner, std::vector<std::uint8_t>& flag) {
-    if (owner[id] == kNobody) owner[id] = group;
+    if (owner[id] == kNoId) owner[id] = group;
     if (owner[id] != group) flag[id] = 1;
   };
   for (std::uint32_t g = 0; g < groups.size(); ++g) {
     for (const std::uint32_t i : groups[g]) {
-      const BuildCluster& cluster = pool.clusters[live[i]];
+      const BuildCluster& cluster = pool.cluster(live[i]);
       for (std::uint32_t t = cluster.first_triangle; t < cluster.first_triangle + cluster.triangle_count; ++t) {
         for (const std::uint32_t wedge : pool.triangles[t]) {
           visit(wedge, g, wedge_owner, shared.wedge);
@@ -162,7 +161,7 @@ Attempt simplify_and_cluster(const SimplifyInput& input, double share, bool is_w
 }
 
 /// Ends the DAG: what is left is never replaced.
-void add_terminal_groups(BuildPool& pool, const std::vector<std::uint32_t>& live, const GroupOptions& grouping,
+void add_terminal_groups(BuildPool& pool, const std::vector<ClusterId>& live, const GroupOptions& grouping,
                          const DagOptions& options, const std::vector<StuckReason>& reasons) {
   const std::vector<std::vector<std::uint32_t>> groups = group_clusters(grouping_input(pool, live, options), grouping);
   for (const std::vector<std::uint32_t>& members : groups) {
@@ -170,7 +169,7 @@ void add_terminal_groups(BuildPool& pool, const std::vector<std::uint32_t>& live
     group.is_terminal = true;
     for (const std::uint32_t i : members) {
       group.clusters.push_back(live[i]);
-      group.level = std::max(group.level, pool.clusters[live[i]].level);
+      group.level = std::max(group.level, pool.cluster(live[i]).level);
       if (group.stuck_reason == StuckReason::kNotStuck) group.stuck_reason = reasons[i];
     }
     pool.groups.push_back(std::move(group));
@@ -179,10 +178,10 @@ void add_terminal_groups(BuildPool& pool, const std::vector<std::uint32_t>& live
 
 /// The clusters that nothing coarser has replaced so far, and of each why the group that it was last in did not get anywhere.
 struct Front {
-  std::vector<std::uint32_t> live;
+  std::vector<ClusterId> live;
   std::vector<StuckReason> reasons;
 
-  void add(std::uint32_t cluster, StuckReason reason) {
+  void add(ClusterId cluster, StuckReason reason) {
     live.push_back(cluster);
     reasons.push_back(reason);
   }
@@ -190,7 +189,7 @@ struct Front {
 
 Front level0_of(const BuildPool& pool) {
   Front front;
-  for (std::uint32_t c = 0; c < pool.clusters.size(); ++c) front.add(c, StuckReason::kNotStuck);
+  for (std::uint32_t c = 0; c < pool.clusters.size(); ++c) front.add(ClusterId(c), StuckReason::kNotStuck);
   return front;
 }
 
@@ -198,19 +197,19 @@ Front level0_of(const BuildPool& pool) {
 bool report_level(const BuildPool& pool, const Front& front, std::uint32_t round, const DagOptions& options) {
   if (!options.on_level) return true;
   std::uint64_t triangles = 0;
-  for (const std::uint32_t c : front.live) triangles += pool.clusters[c].triangle_count;
+  for (const ClusterId c : front.live) triangles += pool.cluster(c).triangle_count;
   return options.on_level(round, triangles);
 }
 
 /// Each group simplified, clustered and measured; nothing of the pool is changed.
 std::vector<Attempt> attempt_groups(const BuildPool& pool, const PreparedMesh& mesh, const GroupMeter& meter,
-                                    const std::vector<std::uint32_t>& live,
+                                    const std::vector<ClusterId>& live,
                                     const std::vector<std::vector<std::uint32_t>>& groups, bool is_first_round,
                                     const DagOptions& options, const Effort& effort) {
   const Shared shared = find_shared(pool, live, groups);
   std::vector<Attempt> attempts(groups.size());
   parallel_for_each_index(groups.size(), 1, [&](std::size_t g) {
-    std::vector<std::uint32_t> clusters;
+    std::vector<ClusterId> clusters;
     for (const std::uint32_t i : groups[g]) clusters.push_back(live[i]);
     const SimplifyInput finer = group_input(pool, mesh, clusters, shared);
     const double share = is_first_round ? first_share(g, groups.size()) : 0.5;
@@ -223,16 +222,16 @@ std::vector<Attempt> attempt_groups(const BuildPool& pool, const PreparedMesh& m
 }
 
 /// The group of `clusters` as what an accepted attempt replaces it by says.
-BuildGroup replaced_group(const BuildPool& pool, const GroupMeter& meter, std::vector<std::uint32_t> clusters,
+BuildGroup replaced_group(const BuildPool& pool, const GroupMeter& meter, std::vector<ClusterId> clusters,
                           const Attempt& attempt) {
   BuildGroup group;
   group.clusters = std::move(clusters);
   group.quadric_error = attempt.result.quadric_error;
-  for (const std::uint32_t c : group.clusters) {
-    const BuildCluster& cluster = pool.clusters[c];
+  for (const ClusterId c : group.clusters) {
+    const BuildCluster& cluster = pool.cluster(c);
     group.level = std::max(group.level, cluster.level);
-    if (cluster.own_group != 0xFFFFFFFFU) {
-      group.quadric_error = std::max(group.quadric_error, pool.groups[cluster.own_group].quadric_error);
+    if (cluster.own_group.is_valid()) {
+      group.quadric_error = std::max(group.quadric_error, pool.group(cluster.own_group).quadric_error);
     }
   }
   group.error = group.quadric_error;
@@ -246,18 +245,18 @@ BuildGroup replaced_group(const BuildPool& pool, const GroupMeter& meter, std::v
 }
 
 /// Adds the group and the coarser clusters that replace it.
-void accept(BuildPool& pool, const GroupMeter& meter, std::vector<std::uint32_t> clusters, const Attempt& attempt,
+void accept(BuildPool& pool, const GroupMeter& meter, std::vector<ClusterId> clusters, const Attempt& attempt,
             Front& next) {
   BuildGroup group = replaced_group(pool, meter, std::move(clusters), attempt);
   if (meter.is_measuring()) {
-    for (const std::uint32_t c : group.clusters) pool.clusters[c].samples = {};  // carried on by the coarser clusters
+    for (const ClusterId c : group.clusters) pool.cluster(c).samples = {};  // carried on by the coarser clusters
   }
-  const auto group_id = static_cast<std::uint32_t>(pool.groups.size());
+  const GroupId group_id(pool.groups.size());
   const std::uint32_t level = group.level + 1;
   pool.groups.push_back(std::move(group));
   const auto first = static_cast<std::uint32_t>(pool.clusters.size());
   pool.add_simplified(attempt.result, attempt.errors.carried, attempt.clustering, level, group_id);
-  for (std::uint32_t c = first; c < pool.clusters.size(); ++c) next.add(c, StuckReason::kNotStuck);
+  for (std::uint32_t c = first; c < pool.clusters.size(); ++c) next.add(ClusterId(c), StuckReason::kNotStuck);
 }
 
 /// The next front: coarser clusters where a group was accepted, the same ones where it got stuck. In the order of groups.
@@ -265,7 +264,7 @@ Front advance(BuildPool& pool, const GroupMeter& meter, const Front& front,
               const std::vector<std::vector<std::uint32_t>>& groups, std::vector<Attempt> attempts) {
   Front next;
   for (std::size_t g = 0; g < groups.size(); ++g) {
-    std::vector<std::uint32_t> clusters;
+    std::vector<ClusterId> clusters;
     for (const std::uint32_t i : groups[g]) clusters.push_back(front.live[i]);
     if (attempts[g].is_accepted) {
       accept(pool, meter, std::move(clusters), attempts[g], next);
@@ -273,7 +272,7 @@ Front advance(BuildPool& pool, const GroupMeter& meter, const Front& front,
       continue;
     }
     const StuckReason reason = attempts[g].result.reason;
-    for (const std::uint32_t c : clusters) {
+    for (const ClusterId c : clusters) {
       next.add(c, reason == StuckReason::kNotStuck ? StuckReason::kTooSmall : reason);
     }
   }
@@ -287,7 +286,7 @@ Result<LodDag> build_dag(const PreparedMesh& mesh, const DagOptions& options) {
   if (mesh.triangles.empty()) return LodDag{};
   const GroupMeter meter(mesh, options.error);
   pool.add_clusters(mesh.triangles, mesh.triangle_material, meter.level0(),
-                    cluster_triangles(mesh.triangles, mesh.wedge_position, mesh.positions, options.caps), 0, 0xFFFFFFFFU);
+                    cluster_triangles(mesh.triangles, mesh.wedge_position, mesh.positions, options.caps), 0, GroupId());
   Front front = level0_of(pool);
   GroupOptions grouping = options.grouping;
   if (options.max_group_bytes > 0) grouping.max_weight = options.max_group_bytes;

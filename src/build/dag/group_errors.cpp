@@ -59,26 +59,26 @@ CarriedTruth GroupMeter::level0() const {
   return carried;
 }
 
-GroupErrors GroupMeter::measure(const BuildPool& pool, const std::vector<std::uint32_t>& clusters,
+GroupErrors GroupMeter::measure(const BuildPool& pool, const std::vector<ClusterId>& clusters,
                                 const SimplifyInput& finer, const SimplifyResult& coarser,
                                 std::size_t groups_of_round) const {
   GroupErrors errors;
   if (!is_measuring()) return errors;
   const Decoded before(finer, mesh_.grid), after(coarser, mesh_.grid);
   double floor = mesh_.level0_deviation;
-  for (const std::uint32_t c : clusters) {
-    const std::uint32_t own = pool.clusters[c].own_group;
-    if (own == 0xFFFFFFFFU) continue;
-    floor = std::max(floor, pool.groups[own].error);
-    errors.normal_deviation = std::max(errors.normal_deviation, pool.groups[own].normal_deviation);
-    errors.uv_deviation = std::max(errors.uv_deviation, pool.groups[own].uv_deviation);
+  for (const ClusterId c : clusters) {
+    const GroupId own = pool.cluster(c).own_group;
+    if (!own.is_valid()) continue;
+    floor = std::max(floor, pool.group(own).error);
+    errors.normal_deviation = std::max(errors.normal_deviation, pool.group(own).normal_deviation);
+    errors.uv_deviation = std::max(errors.uv_deviation, pool.group(own).uv_deviation);
   }
   if (is_certified_) {
     std::vector<TriangleBound> bounds;
     bounds.reserve(finer.triangles.size());
-    for (const std::uint32_t c : clusters) {
-      const auto first = pool.triangle_bounds.begin() + pool.clusters[c].first_triangle;
-      bounds.insert(bounds.end(), first, first + pool.clusters[c].triangle_count);
+    for (const ClusterId c : clusters) {
+      const auto first = pool.triangle_bounds.begin() + pool.cluster(c).first_triangle;
+      bounds.insert(bounds.end(), first, first + pool.cluster(c).triangle_count);
     }
     CertifiedGroup group = certify_group(before.surface(), bounds, after.surface());
     errors.deviation = group.deviation;
@@ -86,8 +86,8 @@ GroupErrors GroupMeter::measure(const BuildPool& pool, const std::vector<std::ui
     errors.carried.bounds = std::move(group.bounds);
   } else {
     std::vector<CarriedSample> samples;
-    for (const std::uint32_t c : clusters) {
-      samples.insert(samples.end(), pool.clusters[c].samples.begin(), pool.clusters[c].samples.end());
+    for (const ClusterId c : clusters) {
+      samples.insert(samples.end(), pool.cluster(c).samples.begin(), pool.cluster(c).samples.end());
     }
     // Cards and the like: no neighbour leads to a piece that went, so more of their points have to be carried.
     const std::size_t wanted = before.positions.size() > before.triangles.size() ? 16 * kSamplesPerGroup : kSamplesPerGroup;

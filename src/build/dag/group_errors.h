@@ -32,7 +32,7 @@ class GroupMeter {
   /// For the triangles of level 0.
   [[nodiscard]] CarriedTruth level0() const;
   /// `clusters` of the pool, with their triangles in `finer`, became `coarser`.
-  [[nodiscard]] GroupErrors measure(const BuildPool& pool, const std::vector<std::uint32_t>& clusters,
+  [[nodiscard]] GroupErrors measure(const BuildPool& pool, const std::vector<ClusterId>& clusters,
                                     const SimplifyInput& finer, const SimplifyResult& coarser,
                                      std::size_t groups_of_round) const;
 

@@ -58,7 +58,7 @@ std::uint32_t BuildPool::wedge_id(std::uint32_t position, const float* attribute
 }
 
 void BuildPool::add_clusters(const std::vector<WedgeTriangle>& source, const std::vector<std::uint32_t>& materials,
-                             const CarriedTruth& carried, const Clustering& clustering, std::uint32_t level, std::uint32_t own_group) {
+                             const CarriedTruth& carried, const Clustering& clustering, std::uint32_t level, GroupId own_group) {
   const auto first_cluster = clusters.size();
   std::vector<std::uint32_t> start(clustering.count + 1, 0);
   for (const std::uint32_t label : clustering.label) ++start[label + 1];
@@ -82,7 +82,7 @@ void BuildPool::add_clusters(const std::vector<WedgeTriangle>& source, const std
 }
 
 void BuildPool::add_simplified(const SimplifyResult& result, const CarriedTruth& carried, const Clustering& clustering,
-                               std::uint32_t level, std::uint32_t own_group) {
+                               std::uint32_t level, GroupId own_group) {
   std::vector<std::uint32_t> ids(result.positions.size());
   for (std::size_t p = 0; p < ids.size(); ++p) {
     ids[p] = position_id(result.positions[p]);
@@ -108,9 +108,9 @@ void BuildPool::add_simplified(const SimplifyResult& result, const CarriedTruth&
   add_clusters(renumbered, result.triangle_material, carried, clustering, level, own_group);
 }
 
-void BuildPool::positions_of(std::uint32_t cluster, std::vector<std::uint32_t>& out) const {
+void BuildPool::positions_of(ClusterId cluster, std::vector<std::uint32_t>& out) const {
   out.clear();
-  const BuildCluster& c = clusters[cluster];
+  const BuildCluster& c = this->cluster(cluster);
   for (std::uint32_t t = c.first_triangle; t < c.first_triangle + c.triangle_count; ++t) {
     for (const std::uint32_t wedge : triangles[t]) out.push_back(wedge_position[wedge]);
   }
@@ -118,8 +118,8 @@ void BuildPool::positions_of(std::uint32_t cluster, std::vector<std::uint32_t>& 
   out.erase(std::unique(out.begin(), out.end()), out.end());
 }
 
-std::uint32_t BuildPool::count_wedges(std::uint32_t cluster) const {
-  const BuildCluster& c = clusters[cluster];
+std::uint32_t BuildPool::count_wedges(ClusterId cluster) const {
+  const BuildCluster& c = this->cluster(cluster);
   std::vector<std::uint32_t> wedges;
   for (std::uint32_t t = c.first_triangle; t < c.first_triangle + c.triangle_count; ++t) {
     wedges.insert(wedges.end(), triangles[t].begin(), triangles[t].end());
@@ -128,8 +128,8 @@ std::uint32_t BuildPool::count_wedges(std::uint32_t cluster) const {
   return static_cast<std::uint32_t>(std::unique(wedges.begin(), wedges.end()) - wedges.begin());
 }
 
-std::uint32_t BuildPool::count_materials(std::uint32_t cluster) const {
-  const BuildCluster& c = clusters[cluster];
+std::uint32_t BuildPool::count_materials(ClusterId cluster) const {
+  const BuildCluster& c = this->cluster(cluster);
   const auto first = triangle_material.begin() + c.first_triangle;
   std::vector<std::uint32_t> materials(first, first + c.triangle_count);
   std::sort(materials.begin(), materials.end());

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/id_table.h"
+#include "base/ids.h"
 #include "build/cluster/cluster.h"
 #include "build/deviation/deviation.h"
 #include "build/lod_dag.h"
@@ -18,7 +19,7 @@ namespace meshlode::build {
 /// A cluster under construction: a range of BuildPool::triangles.
 struct BuildCluster {
   std::uint32_t level = 0;
-  std::uint32_t own_group = 0xFFFFFFFFU;
+  GroupId own_group;  ///< of BuildPool::groups; invalid at level 0
   std::uint32_t first_triangle = 0, triangle_count = 0;
   std::vector<CarriedSample> samples;  ///< of the source, where deviations are measured
 };
@@ -32,7 +33,7 @@ struct CarriedTruth {
 /// A group that has been replaced by coarser clusters.
 struct BuildGroup {
   std::uint32_t level = 0;
-  std::vector<std::uint32_t> clusters;
+  std::vector<ClusterId> clusters;  ///< of BuildPool::clusters
   double error = 0.0, quadric_error = 0.0;
   double deviation = std::numeric_limits<double>::infinity();
   double normal_deviation = std::numeric_limits<double>::infinity();  ///< running maxima, +inf where not measured
@@ -49,17 +50,21 @@ class BuildPool {
   /// triangles and goes with their clusters.
   void add_clusters(const std::vector<WedgeTriangle>& triangles, const std::vector<std::uint32_t>& materials,
                     const CarriedTruth& carried, const Clustering& clustering, std::uint32_t level,
-                    std::uint32_t own_group);
+                    GroupId own_group);
 
   /// Adds what a group became. Positions and wedges that are already known (locked ones, or a coincidence on the grid)
   /// keep their id, so that equal integers are equal ids at every level, and equal attributes with them.
   void add_simplified(const SimplifyResult& result, const CarriedTruth& carried, const Clustering& clustering,
-                      std::uint32_t level, std::uint32_t own_group);
+                      std::uint32_t level, GroupId own_group);
 
   /// The distinct position ids of a cluster, ascending.
-  void positions_of(std::uint32_t cluster, std::vector<std::uint32_t>& out) const;
-  [[nodiscard]] std::uint32_t count_wedges(std::uint32_t cluster) const;     ///< an upper bound of its vertices
-  [[nodiscard]] std::uint32_t count_materials(std::uint32_t cluster) const;
+  void positions_of(ClusterId cluster, std::vector<std::uint32_t>& out) const;
+  [[nodiscard]] std::uint32_t count_wedges(ClusterId cluster) const;     ///< an upper bound of its vertices
+  [[nodiscard]] std::uint32_t count_materials(ClusterId cluster) const;
+
+  [[nodiscard]] BuildCluster& cluster(ClusterId id) { return clusters[id.value]; }
+  [[nodiscard]] const BuildCluster& cluster(ClusterId id) const { return clusters[id.value]; }
+  [[nodiscard]] const BuildGroup& group(GroupId id) const { return groups[id.value]; }
 
   std::vector<Vec3i> positions;
   std::vector<Witnesses> witnesses;  ///< per position

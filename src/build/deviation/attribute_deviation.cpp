@@ -107,7 +107,7 @@ AttributeDeviation measure_attributes(const SourceTree& source, const SurfaceAtt
       const Vec3d point = corners[0] * w.a + corners[1] * w.b + corners[2] * w.c;
       const Vec3f at = tree.to_frame(point);
       const SurfaceTree::Hit hit = tree.find_nearest(at, tree.look_around(at, place, {}), 0.0F);
-      if (hit.slot == SurfaceTree::kNone) continue;
+      if (hit.slot == kNoId) continue;
       place = hit.slot;
       const Interpolator theirs(source_attributes, stride, tree.triangle_at(place));
       const Weights there = weights_of(point, tree.corners_at(place));

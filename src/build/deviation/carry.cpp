@@ -14,7 +14,7 @@ double project_samples(const SurfaceTree& group_tree, std::vector<CarriedSample>
   for (CarriedSample& sample : samples) {
     const Vec3f point = group_tree.to_frame(sample.point);
     const SurfaceTree::Hit hit = group_tree.find_nearest(point, group_tree.look_around(point, place, {}), 0.0F);
-    place = hit.slot == SurfaceTree::kNone ? 0 : hit.slot;
+    place = hit.slot == kNoId ? 0 : hit.slot;
     const double distance2 = group_tree.distance2_at(sample.point, place);
     sample.triangle = group_tree.triangle_at(place);
     sample.distance = static_cast<float>(std::sqrt(distance2));

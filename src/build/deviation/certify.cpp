@@ -74,7 +74,7 @@ class OneWay {
   [[nodiscard]] std::uint32_t nearest(const Vec3d& p, std::uint32_t hint) const {
     const Vec3f at = tree_.to_frame(p);
     const std::uint32_t place = tree_.find_nearest(at, tree_.look_around(at, hint, {}), 0.0F).slot;
-    return place == SurfaceTree::kNone ? hint : place;
+    return place == kNoId ? hint : place;
   }
 
   double largest = 0.0;  ///< of all vertices, to their nearest triangle
@@ -256,12 +256,12 @@ class OneWay {
 template <class Give>
 void cover_surface(const GroupSurface& surface, const SurfaceTree& other, const Give& give) {
   OneWay way(other);
-  std::vector<std::uint32_t> place(surface.positions.size(), SurfaceTree::kNone);
+  std::vector<std::uint32_t> place(surface.positions.size(), kNoId);
   std::vector<double> distance(surface.positions.size(), 0.0);
   std::uint32_t hint = 0;
   for (const auto& t : surface.triangles) {
     for (const std::uint32_t v : t) {
-      if (place[v] != SurfaceTree::kNone) continue;
+      if (place[v] != kNoId) continue;
       hint = place[v] = way.nearest(surface.positions[v], hint);
       distance[v] = way.distance(surface.positions[v], hint);
       way.largest = std::max(way.largest, distance[v]);

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/id_table.h"
+#include "base/ids.h"
 
 namespace meshlode::build {
 
@@ -45,14 +46,13 @@ std::vector<std::uint8_t> find_folded(const GroupSurface& surface) {
     const Vec3d& p = surface.positions[t[0]];
     normals.push_back(glm::cross(surface.positions[t[1]] - p, surface.positions[t[2]] - p));
   }
-  constexpr std::uint32_t kNobody = 0xFFFFFFFFU;
-  std::vector<std::uint32_t> first(edges.use_count.size(), kNobody);
+  std::vector<std::uint32_t> first(edges.use_count.size(), kNoId);
   std::vector<std::uint8_t> is_folded(surface.triangles.size(), 0);
   for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
     for (const std::uint32_t edge : edges.of_triangle[t]) {
       if (edges.use_count[edge] != 2) {
         is_folded[t] = 1;
-      } else if (first[edge] == kNobody) {
+      } else if (first[edge] == kNoId) {
         first[edge] = t;
       } else {
         const Vec3d &m = normals[first[edge]], &n = normals[t];

@@ -33,7 +33,7 @@ class SourceProbe {
     const Vec3f at = tree_.to_frame(point);
     SurfaceTree::Hit hit = tree_.look_around(at, place, {});
     if (!(hit.distance2 <= enough_)) hit = tree_.find_nearest(at, hit, enough_);
-    if (hit.slot == SurfaceTree::kNone) return {maximum(), place};  // farther than floats reach: not on any real mesh
+    if (hit.slot == kNoId) return {maximum(), place};  // farther than floats reach: not on any real mesh
     if (hit.distance2 <= enough_) return {std::sqrt(static_cast<double>(hit.distance2)) / tree_.scale(), hit.slot};
     const double value = std::sqrt(tree_.distance2_at(point, hit.slot));
     const bool is_higher = value > maximum();
@@ -66,26 +66,25 @@ Farthest measure_to_source(const SurfaceTree& source, const GroupSurface& group,
                            std::vector<CarriedSample>& high) {
   SourceProbe probe(source, farthest);
   const std::size_t count = group.triangles.size();
-  constexpr std::uint32_t kUnknown = 0xFFFFFFFFU;
-  std::vector<Probe> at_vertex(group.positions.size(), {0.0, kUnknown});
+  std::vector<Probe> at_vertex(group.positions.size(), {0.0, kNoId});
   std::vector<Patch> patches(count);
-  std::vector<Probe> at_edge(edges.use_count.size(), {0.0, kUnknown});
+  std::vector<Probe> at_edge(edges.use_count.size(), {0.0, kNoId});
   std::uint32_t place = 0;
   for (std::size_t t = 0; t < count; ++t) {
     const auto& ids = group.triangles[t];
     Patch& patch = patches[t];
-    if (places[t] != SurfaceTree::kNone) place = places[t];
+    if (places[t] != kNoId) place = places[t];
     for (std::size_t k = 0; k < 3; ++k) patch.corner[k] = group.positions[ids[k]];
     const Probe center = probe.measure((patch.corner[0] + patch.corner[1] + patch.corner[2]) / 3.0, place);
     place = center.place;
     for (std::size_t k = 0; k < 3; ++k) {
       Probe& vertex = at_vertex[ids[k]];
-      if (vertex.place == kUnknown) vertex = probe.measure(patch.corner[k], place);
+      if (vertex.place == kNoId) vertex = probe.measure(patch.corner[k], place);
       patch.at_corner[k] = vertex;
     }
     for (std::size_t k = 0; k < 3; ++k) {
       Probe& middle = at_edge[edges.of_triangle[t][k]];
-      if (middle.place == kUnknown) middle = probe.measure(patch.middle(k), place);
+      if (middle.place == kNoId) middle = probe.measure(patch.middle(k), place);
       patch.at_middle[k] = middle;
     }
     patch.set_estimate(center.value);
@@ -111,7 +110,7 @@ GroupDeviation measure_group(const SourceTree& source, const GroupSurface& group
   std::vector<CarriedSample> projected(samples.begin(), samples.end());
   const GroupEdges edges(group);
   Farthest farthest{project_samples(group_tree, projected), options.least};
-  std::vector<std::uint32_t> places(group.triangles.size(), SurfaceTree::kNone);
+  std::vector<std::uint32_t> places(group.triangles.size(), kNoId);
   for (const CarriedSample& sample : projected) places[sample.triangle] = sample.place;
   std::vector<CarriedSample> high;
   const Effort effort{64 + group.triangles.size() / 4 + options.extra_effort,

@@ -78,7 +78,7 @@ class SourceSearch {
   /// The triangle of the source that is nearest to a point of what the group replaces, and those around it.
   void search_behind(const Vec3d& point) {
     const SurfaceTree::Hit hit = source_.tree.find_nearest(source_.tree.to_frame(point), {}, 0.0F);
-    if (hit.slot == SurfaceTree::kNone) return;
+    if (hit.slot == kNoId) return;
     const std::uint32_t triangle = source_.tree.triangle_at(hit.slot);
     const std::uint32_t place = tree_.find_nearest(tree_.to_frame(point), {}, 0.0F).slot;
     look_inside(triangle, 0.0, place);
@@ -123,7 +123,7 @@ class SourceSearch {
         const auto enough = static_cast<float>(near * near);
         SurfaceTree::Hit hit = tree_.look_around(at, part.place, {});
         if (!(hit.distance2 <= enough)) hit = tree_.find_nearest(at, hit, enough);
-        if (hit.distance2 <= enough || hit.slot == SurfaceTree::kNone) continue;
+        if (hit.distance2 <= enough || hit.slot == kNoId) continue;
         const double bound = std::sqrt(static_cast<double>(hit.distance2)) / tree_.scale() + ball.radius;
         heap.push_back({bound, part.level + 1, 4 * part.index + child, hit.slot, ++order});
         std::push_heap(heap.begin(), heap.end());
@@ -147,7 +147,7 @@ class SourceSearch {
     const Vec3f at = tree_.to_frame(point);
     SurfaceTree::Hit hit = tree_.look_around(at, place, {});
     if (!(hit.distance2 <= enough_)) hit = tree_.find_nearest(at, hit, enough_);
-    const Probe dismissed{kDismissShare * maximum(), hit.slot == SurfaceTree::kNone ? place : hit.slot};
+    const Probe dismissed{kDismissShare * maximum(), hit.slot == kNoId ? place : hit.slot};
     is_ours_ = true;
     if (hit.distance2 <= enough_) return dismissed;
     const TriangleCorners facing = source_.corners(owner);
@@ -259,7 +259,7 @@ std::vector<Vec3d> choose_far_points(const GroupSurface& finer, std::span<const 
     const Vec3f at = group_tree.to_frame(point);
     SurfaceTree::Hit hit = group_tree.look_around(at, place, {});
     if (!(hit.distance2 <= enough2)) hit = group_tree.find_nearest(at, hit, enough2);
-    if (hit.slot == SurfaceTree::kNone) return;
+    if (hit.slot == kNoId) return;
     place = hit.slot;
     if (!(hit.distance2 <= enough2)) far.push_back({-group_tree.distance2_at(point, place), order++, point});
   };
@@ -300,7 +300,7 @@ bool OwnerTest::is_ours(const Vec3d& point, const Vec3d& facing) {
   }
   const Vec3f at = tree_.to_frame(point);
   const SurfaceTree::Hit hit = tree_.find_nearest(at, tree_.look_around(at, place_, {}), 0.0F);
-  if (hit.slot == SurfaceTree::kNone) return false;
+  if (hit.slot == kNoId) return false;
   place_ = hit.slot;
   const TriangleCorners corners = tree_.corners_at(place_);
   if (!(std::sqrt(point_triangle_distance2(point, corners)) <= reach_)) return false;

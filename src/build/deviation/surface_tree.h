@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "base/ids.h"
 #include "base/vec.h"
 #include "build/deviation/point_distance.h"
 
@@ -18,11 +19,10 @@ namespace meshlode::build {
 
 class SurfaceTree {
  public:
-  static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
 
   /// A place of the tree's own order. Places near each other are near in space.
   struct Hit {
-    std::uint32_t slot = kNone;
+    std::uint32_t slot = kNoId;
     float distance2 = 3.0e38F;  ///< in the tree's frame, approximate
   };
 

@@ -22,6 +22,8 @@ namespace meshlode::build {
 
 namespace {
 
+static_assert(kNoId == format::kNone, "ids of the build become the format's as they are");
+
 constexpr std::int32_t kMinGridLog2 = -126;  ///< below, decoded positions would be denormal floats
 constexpr std::int32_t kMaxGridLog2 = 104;   ///< above, they would overflow
 

@@ -20,20 +20,19 @@ struct Lists {
   }
 };
 
-constexpr std::uint32_t kNoKey = 0xFFFFFFFFu;
 
 template <class KeyOf>
 Lists list_by_key(std::size_t item_count, std::size_t key_count, const KeyOf& key_of) {
   Lists lists;
   lists.first.assign(key_count + 1, 0);
   for (std::size_t i = 0; i < item_count; ++i) {
-    if (const std::uint32_t key = key_of(i); key != kNoKey) ++lists.first[key + 1];
+    if (const std::uint32_t key = key_of(i); key != kNoId) ++lists.first[key + 1];
   }
   for (std::size_t k = 0; k < key_count; ++k) lists.first[k + 1] += lists.first[k];
   lists.ids.resize(lists.first[key_count]);
   std::vector<std::uint32_t> next(lists.first.begin(), lists.first.end() - 1);
   for (std::size_t i = 0; i < item_count; ++i) {
-    if (const std::uint32_t key = key_of(i); key != kNoKey) lists.ids[next[key]++] = static_cast<std::uint32_t>(i);
+    if (const std::uint32_t key = key_of(i); key != kNoId) lists.ids[next[key]++] = static_cast<std::uint32_t>(i);
   }
   return lists;
 }
@@ -68,7 +67,7 @@ LodBounds nest_lod_bounds(const LodDag& dag, std::span<const Hierarchy::Sphere> 
   bounds.errors.resize(group_count);
   const Lists made = list_by_key(dag.clusters.size(), group_count, [&](std::size_t c) {
     const GroupId own = dag.clusters[c].own_group;
-    return own.is_valid() ? own.value : kNoKey;
+    return own.is_valid() ? own.value : kNoId;
   });
   std::size_t level_count = 0;
   for (const DagGroup& g : dag.groups) level_count = std::max(level_count, std::size_t{g.level} + 1);

@@ -13,6 +13,7 @@
 
 #include <boost/multiprecision/cpp_int.hpp>
 
+#include "base/ids.h"
 #include "base/parallel.h"
 
 namespace meshlode::build {
@@ -21,7 +22,6 @@ namespace {
 
 using boost::multiprecision::cpp_int;
 
-constexpr std::uint32_t kNone = 0xFFFFFFFFU;
 
 /// Each component of the cross product is a difference of two products of differences: four roundings of 2^-53 of what
 /// is added, at most, as long as nothing underflows. Twice that and more.
@@ -100,9 +100,9 @@ class Lines {
     for (std::size_t k = 0; k < 3; ++k) corner[k] = number_of(triangles_[3 * std::size_t{triangle} + k]);
     for (std::size_t k = 0; k < 3; ++k) {
       const Edge edge = std::minmax({corner[k], corner[(k + 1) % 3]});
-      if (edge.second == kNone) continue;
+      if (edge.second == kNoId) continue;
       const std::uint32_t id = id_of(edge);
-      if (id != kNone) cover(id);
+      if (id != kNoId) cover(id);
     }
   }
 
@@ -137,11 +137,11 @@ class Lines {
     const Vec3d& p = positions_[vertex];
     const auto found = std::lower_bound(points_.begin(), points_.end(), p,
                                         [](const Vec3d& a, const Vec3d& b) { return tuple_of(a) < tuple_of(b); });
-    return found != points_.end() && *found == p ? static_cast<std::uint32_t>(found - points_.begin()) : kNone;
+    return found != points_.end() && *found == p ? static_cast<std::uint32_t>(found - points_.begin()) : kNoId;
   }
   [[nodiscard]] std::uint32_t id_of(const Edge& edge) const {
     const auto found = std::lower_bound(edges_.begin(), edges_.end(), edge);
-    return found != edges_.end() && *found == edge ? static_cast<std::uint32_t>(found - edges_.begin()) : kNone;
+    return found != edges_.end() && *found == edge ? static_cast<std::uint32_t>(found - edges_.begin()) : kNoId;
   }
 
   std::span<const Vec3d> positions_;

@@ -102,7 +102,7 @@ double AttributeQuadrics<C>::add_classes(Quadric& total, std::span<const WedgeCl
   for (const WedgeClass& c : classes) {
     WedgeQuadric<C> joined = wedge_[c.members[0]];
     for (std::size_t k = 1; k < c.members.size(); ++k) joined.add(wedge_[c.members[k]], count());
-    if (c.fixed != WedgeClass::kNone) {
+    if (c.fixed != kNoId) {
       fixed_error += joined.evaluate(given, value_[c.fixed].data(), count());
     } else {
       joined.add_reduced_to(total, count());
@@ -117,7 +117,7 @@ void AttributeQuadrics<C>::join(const WedgeClass& joined, const Vec3d& place) {
   for (const std::uint32_t w : joined.members) {
     if (w != keeper) wedge_[keeper].add(wedge_[w], count());
   }
-  if (joined.fixed != WedgeClass::kNone || !(wedge_[keeper].base.weight > 0.0)) return;
+  if (joined.fixed != kNoId || !(wedge_[keeper].base.weight > 0.0)) return;
   for (std::size_t j = 0; j < count(); ++j) value_[keeper][j] = wedge_[keeper].best(j, place);
 }
 

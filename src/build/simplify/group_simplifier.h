@@ -325,23 +325,22 @@ SimplifyResult GroupSimplifier<C>::result() const {
   SimplifyResult out;
   out.quadric_error = error_ * places_.scale() * input_.grid.step();
   out.reason = reason_for_stopping();
-  constexpr std::uint32_t kUnset = 0xFFFFFFFFU;
   const bool has_attributes = attributes_.count() > 0;  // without them a position is its own wedge
-  std::vector<std::uint32_t> new_position(places_.size(), kUnset);
+  std::vector<std::uint32_t> new_position(places_.size(), kNoId);
   // A wedge may have come to serve one vertex only, so a map per wedge is enough.
-  std::vector<std::uint32_t> new_wedge(has_attributes ? input_.wedge_position.size() : places_.size(), kUnset);
+  std::vector<std::uint32_t> new_wedge(has_attributes ? input_.wedge_position.size() : places_.size(), kNoId);
   for (std::uint32_t t = 0; t < mesh_.triangle_count(); ++t) {
     if (!mesh_.is_alive(t) || has_corners_in_one_place(t)) continue;
     WedgeTriangle triangle{};
     for (std::uint32_t k = 0; k < 3; ++k) {
       const std::uint32_t v = mesh_.vertex(3 * t + k);
       const std::uint32_t w = has_attributes ? mesh_.wedge(3 * t + k) : v;
-      if (new_position[v] == kUnset) {
+      if (new_position[v] == kNoId) {
         new_position[v] = static_cast<std::uint32_t>(out.positions.size());
         out.positions.push_back(places_.on_grid(v));
         out.witnesses.push_back(left_behind_.witnesses(v));
       }
-      if (new_wedge[w] == kUnset) {
+      if (new_wedge[w] == kNoId) {
         new_wedge[w] = static_cast<std::uint32_t>(out.wedge_position.size());
         out.wedge_position.push_back(new_position[v]);
         if (has_attributes) attributes_.write(w, locks_.is_wedge_locked[w] != 0, out.wedge_attributes);

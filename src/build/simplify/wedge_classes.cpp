@@ -25,7 +25,7 @@ WedgeClass& WedgeClasses::add_class() {
   if (count_ == classes_.size()) classes_.emplace_back();
   WedgeClass& c = classes_[count_++];
   c.members.clear();
-  c.fixed = WedgeClass::kNone;
+  c.fixed = kNoId;
   return c;
 }
 
@@ -86,7 +86,7 @@ void WedgeClasses::collect(const CollapseMesh& mesh, const GroupLocks& locks, co
 
 bool WedgeClasses::joins_locked(std::uint32_t wedge) const {
   return std::any_of(classes_.begin(), classes_.begin() + static_cast<std::ptrdiff_t>(count_), [&](const WedgeClass& c) {
-    return c.fixed != WedgeClass::kNone && std::find(c.members.begin(), c.members.end(), wedge) != c.members.end();
+    return c.fixed != kNoId && std::find(c.members.begin(), c.members.end(), wedge) != c.members.end();
   });
 }
 

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "base/ids.h"
 #include "build/simplify/collapse_mesh.h"
 #include "build/simplify/collapse_star.h"
 #include "build/simplify/group_locks.h"
@@ -15,12 +16,11 @@ namespace meshlode::build {
 
 /// Wedges that become one attribute value.
 struct WedgeClass {
-  static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
   std::vector<std::uint32_t> members;  ///< ascending
-  std::uint32_t fixed = kNone;         ///< the first locked one, whose values rule, if any
+  std::uint32_t fixed = kNoId;         ///< the first locked one, whose values rule, if any
 
   /// The one that stays.
-  [[nodiscard]] std::uint32_t keeper() const { return fixed != kNone ? fixed : members[0]; }
+  [[nodiscard]] std::uint32_t keeper() const { return fixed != kNoId ? fixed : members[0]; }
 };
 
 /// Knows of each vertex whether it has a single wedge: most have, and then no triangle need be asked.

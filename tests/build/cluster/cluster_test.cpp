@@ -160,7 +160,7 @@ TEST(Cluster, AFanOfNeedlesStaysLinear) {
   const Hosts hosts = host_collapsed(triangles, wedge_position, positions.size());
   for (std::uint32_t i = 1; i <= kSpokes; ++i) {
     const std::uint32_t host = hosts[kSpokes - 1 + i - 1];
-    ASSERT_NE(host, kNoHost);
+    ASSERT_NE(host, kNoId);
     EXPECT_TRUE(triangles[host][1] == i || triangles[host][2] == i) << "the host has the whole segment";
   }
 }

@@ -33,7 +33,7 @@ TEST(SurfaceTree, FindsTheNearestTriangleAtEveryScale) {
       for (int i = 0; i < 100; ++i) {
         const Vec3d p = 1.5 * scale * Vec3d(random.signed_unit(), random.signed_unit(), random.signed_unit());
         const SurfaceTree::Hit hit = tree.find_nearest(tree.to_frame(p), {}, 0.0F);
-        ASSERT_NE(hit.slot, SurfaceTree::kNone);
+        ASSERT_NE(hit.slot, kNoId);
         const double found = std::sqrt(tree.distance2_at(p, hit.slot));
         const double truth = brute_force(surface, p);
         EXPECT_GE(found, truth);
@@ -72,7 +72,7 @@ TEST(SurfaceTree, EverythingInOnePlaceIsStillASurface) {
   SurfaceTree tree;
   tree.build({surface.positions, surface.triangles});
   const SurfaceTree::Hit hit = tree.find_nearest(tree.to_frame({3, 3, 7}), {}, 0.0F);
-  ASSERT_NE(hit.slot, SurfaceTree::kNone);
+  ASSERT_NE(hit.slot, kNoId);
   EXPECT_DOUBLE_EQ(tree.distance2_at({3, 3, 7}, hit.slot), 16.0);
 }
 

@@ -104,7 +104,7 @@ TEST(WedgeClasses, TheFirstLockedWedgeRules) {
   ASSERT_EQ(classes.classes().size(), 2U);
   for (const WedgeClass& c : classes.classes()) {
     const bool is_upper = c.members[0] == 0;
-    EXPECT_EQ(c.fixed, is_upper ? WedgeClass::kNone : 11U);
+    EXPECT_EQ(c.fixed, is_upper ? kNoId : 11U);
     EXPECT_EQ(c.keeper(), is_upper ? 0U : 11U);
   }
   EXPECT_TRUE(classes.joins_locked(10));
@@ -112,7 +112,7 @@ TEST(WedgeClasses, TheFirstLockedWedgeRules) {
   locks.is_wedge_locked[10] = 1;
   classes.collect(drawn.mesh, locks, drawn.star(0, 1));
   EXPECT_TRUE(classes.joins_locked(11));
-  for (const WedgeClass& c : classes.classes()) EXPECT_TRUE(c.fixed == WedgeClass::kNone || c.fixed == 10U);
+  for (const WedgeClass& c : classes.classes()) EXPECT_TRUE(c.fixed == kNoId || c.fixed == 10U);
 }
 
 TEST(WedgeClasses, AfterTheCollapseTheCornersHaveTheKeepers) {

@@ -31,7 +31,7 @@ struct RandomDag {
 /// both.
 inline RandomDag make_random_dag(RandomSource& random, const RandomDagOptions& options) {
   struct Cluster {
-    std::uint32_t level = 0, own_group = GroupId::kNone;
+    std::uint32_t level = 0, own_group = kNoId;
     std::vector<Vec3i> points;
     Vec3d middle{0.0};
   };
@@ -57,7 +57,7 @@ inline RandomDag make_random_dag(RandomSource& random, const RandomDagOptions& o
   std::vector<std::uint32_t> open;
   for (std::uint32_t i = 0; i < options.leaf_clusters; ++i) {
     const Vec3d middle = random.in_cube(span);  // drawn before the size: the order of arguments is the compiler's
-    open.push_back(add_cluster(0, GroupId::kNone, middle, random.log_between(10.0, 20000.0)));
+    open.push_back(add_cluster(0, kNoId, middle, random.log_between(10.0, 20000.0)));
   }
   const double step = std::ldexp(1.0, options.grid_log2);
   while (!open.empty()) {
@@ -112,7 +112,7 @@ inline RandomDag make_random_dag(RandomSource& random, const RandomDagOptions& o
     for (const std::uint32_t m : groups[g].members) {
       build::DagCluster c;
       c.level = clusters[m].level;
-      if (clusters[m].own_group != GroupId::kNone) c.own_group = GroupId(new_id[clusters[m].own_group]);
+      if (clusters[m].own_group != kNoId) c.own_group = GroupId(new_id[clusters[m].own_group]);
       c.coarser_group = GroupId(new_id[g]);
       c.first_vertex = static_cast<std::uint32_t>(out.dag.vertex_position.size());
       c.vertex_count = static_cast<std::uint32_t>(clusters[m].points.size());
