@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "build/simplify/guards.h"
 
+#include <utility>
+
 #include <gtest/gtest.h>
 
 #include "support/drawn_mesh.h"
@@ -49,6 +51,11 @@ TEST(LinkCondition, FailsWhereACommonNeighborHasNoTriangle) {
 
 TEST(LinkCondition, ATetrahedronWouldFoldFlat) {
   DrawnMesh drawn = tetrahedron();
+  EXPECT_FALSE(keeps_topology(drawn, 0, 1));
+}
+
+TEST(LinkCondition, TwoLeavesWithOneTipWouldBecomeAnEdge) {
+  DrawnMesh drawn({{0, 0, 0}, {8, 0, 0}, {0, 8, 0}}, {{0, 1, 2}, {1, 0, 2}});
   EXPECT_FALSE(keeps_topology(drawn, 0, 1));
 }
 
@@ -127,14 +134,19 @@ TEST(SharedEdges, WithoutALockedEndAllIsKept) {
 }
 
 /// The triangle (0, 1, 2) goes and (1, 3, 2), by its wedges, is the heir of (0, 2). 0 and 2 are locked, 1 comes to 0. The
-/// wedges 5 and 6 are second ones of 1 and 2; `shared` are another group's too.
+/// wedges 5 and 6 are second ones of 1 and 2; `shared` are another group's too, `more` are triangles beside the two.
 struct Heir {
   DrawnMesh drawn;
   GroupLocks locks;
 
-  Heir(const WedgeTriangle& heir, const std::vector<std::uint32_t>& shared)
-      : drawn(kEarPoints, {{0, 1, 2}, heir}, {1, 2}), locks({1, 0, 1, 0, 0}, Flags(7, 0), drawn.wedge_position) {
+  Heir(const WedgeTriangle& heir, const std::vector<std::uint32_t>& shared, std::vector<WedgeTriangle> more = {})
+      : drawn(kEarPoints, with(std::move(more), heir), {1, 2}),
+        locks({1, 0, 1, 0, 0}, Flags(7, 0), drawn.wedge_position) {
     for (const std::uint32_t w : shared) locks.is_wedge_shared[w] = 1;
+  }
+  static std::vector<WedgeTriangle> with(std::vector<WedgeTriangle> more, const WedgeTriangle& heir) {
+    more.insert(more.end(), {{0, 1, 2}, heir});
+    return more;
   }
   [[nodiscard]] bool keeps_corners() {
     WedgeClasses classes(drawn.wedge_position.size(), drawn.points.size());  // no wedge known to be a vertex's only one
@@ -149,6 +161,12 @@ TEST(SharedCorners, AnHeirBringsTheWedgesThatAnotherGroupShades) {
   EXPECT_FALSE(Heir({1, 3, 6}, {2}).keeps_corners()) << "a crease at the tip";
   EXPECT_TRUE(Heir({1, 3, 6}, {0}).keeps_corners()) << "that nobody else shades";
   EXPECT_FALSE(Heir({5, 3, 2}, {0}).keeps_corners()) << "a crease at the moved vertex";
+}
+
+TEST(SharedCorners, ACreaseThatEndsAtTheLockedVertexIsOneToo) {
+  // Below the edge, (0, 4, 1) has the wedge 5 at 1: both wedges of 1 come to be that of 0.
+  EXPECT_FALSE(Heir({5, 3, 2}, {0}, {{0, 4, 5}}).keeps_corners());
+  EXPECT_TRUE(Heir({5, 3, 2}, {}, {{0, 4, 5}}).keeps_corners()) << "that nobody else shades";
 }
 
 TEST(SharedCorners, NoBorderEdgeGetsAttributesThatNothingHadThere) {

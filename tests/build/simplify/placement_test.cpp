@@ -28,6 +28,13 @@ TEST(Placement, OnAFlatSurfaceThePullSettlesIt) {
   EXPECT_NEAR(glm::distance(place_vertex(q, kA, kB), (kA + kB) * 0.5), 0.0, 1e-9) << "the middle of the edge";
 }
 
+TEST(Placement, AlongACreaseThePullSettlesIt) {
+  Quadric q;
+  add_plane(q, {0, 0, 1}, 0.0, 1.0);
+  add_plane(q, {0, 1, 0}, 5.0, 1.0);
+  EXPECT_NEAR(glm::distance(place_vertex(q, kA, kB), Vec3d(4, 5, 0)), 0.0, 1e-4) << "on the crease, beside the middle";
+}
+
 TEST(Placement, TooFarOffTheBestPointOfTheEdgeIsTaken) {
   // Three planes meet at (6, 20, 0): more than 1.5 lengths of the edge from its middle.
   Quadric q;

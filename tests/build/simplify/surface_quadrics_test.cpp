@@ -92,12 +92,15 @@ TEST(HeldEdges, ASeamIsHeldWhereItsTextureBreaks) {
   };
   EXPECT_EQ(count_inner(with_texture(drawn, 0.5F)), 6) << "three edges, two uses each";
   EXPECT_EQ(count_inner(with_texture(drawn, 0.0F)), 0) << "two wedges of one value are no seam";
-  SimplifyInput creased = as_input(drawn);
+  SimplifyInput creased = with_texture(drawn, 0.0F);
   creased.layout.has_normal = true;
+  std::vector<float> with_normals;
   for (std::size_t w = 0; w < drawn.wedge_position.size(); ++w) {
     const float z = w < drawn.points.size() ? 1.0F : 0.5F;
-    for (const float n : {0.0F, 0.0F, z}) creased.wedge_attributes.push_back(n);
+    with_normals.insert(with_normals.end(), {0.0F, 0.0F, z});
+    with_normals.insert(with_normals.end(), &creased.wedge_attributes[2 * w], &creased.wedge_attributes[2 * w] + 2);
   }
+  creased.wedge_attributes = with_normals;
   EXPECT_EQ(count_inner(creased), 0) << "nor is a crease, which the normals' own error keeps";
 }
 
