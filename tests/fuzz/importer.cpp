@@ -92,6 +92,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     require_sound(*scene);
   } else {
     meshlode::fuzz::require(!scene.error().detail.empty(), "a refusal without a reason");
+    meshlode::fuzz::require(!scene.error().detail.starts_with("internal error"), scene.error().detail.c_str());
   }
   return 0;
 }

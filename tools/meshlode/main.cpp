@@ -2,11 +2,11 @@
 // meshlode VERB ARGUMENTS: finds the verb and runs it. Exit codes are ErrorCode's values (include/meshlode/result.h).
 #include <algorithm>
 #include <cstdio>
-#include <exception>
-#include <new>
+#include <span>
 #include <string>
 #include <string_view>
 
+#include "base/guarded.h"
 #include "base/version.h"
 #include "options.h"
 #include "outputs.h"
@@ -52,15 +52,9 @@ int run(std::span<char* const> args) {
 }  // namespace meshlode::cli
 
 int main(int argc, char** argv) {
-  using meshlode::ErrorCode;
   using meshlode::cli::print_error;
   meshlode::cli::watch_signals();
-  // Rooms return errors as values; what may still arrive here is memory running out, and standard library surprises.
-  try {
-    return meshlode::cli::run(std::span<char* const>(argv, static_cast<std::size_t>(argc)).subspan(argc > 0 ? 1 : 0));
-  } catch (const std::bad_alloc&) {
-    return print_error({ErrorCode::kBuildFailed, "", "out of memory"});
-  } catch (const std::exception& e) {
-    return print_error({ErrorCode::kBuildFailed, "", e.what()});
-  }
+  const auto arguments = std::span<char* const>(argv, static_cast<std::size_t>(argc)).subspan(argc > 0 ? 1 : 0);
+  const auto code = meshlode::guarded({}, [&]() -> meshlode::Result<int> { return meshlode::cli::run(arguments); });
+  return code ? *code : print_error(code.error());
 }

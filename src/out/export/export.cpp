@@ -19,6 +19,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/guarded.h"
 #include "format/names.h"
 #include "out/export/cut_geometry.h"
 #include "out/export/float_positions.h"
@@ -52,12 +53,22 @@ const Json* find_element(const Json& object, const char* key, std::size_t index)
   return it != object.end() && it->is_array() && index < it->size() ? &(*it)[index] : nullptr;
 }
 
-/// The array under `key`, made empty where it is missing. Throws for another kind of value.
+/// The array under `key`, made empty where it is missing. \pre not another kind of value
 Json& array_of(Json& object, const char* key) {
   Json& value = object[key];
   if (value.is_null()) value = Json::array();
-  if (!value.is_array()) throw std::invalid_argument(std::string("/") + key + " is not an array");
   return value;
+}
+
+Error malformed(std::string detail) { return {ErrorCode::kInvalid, "section SCNE", std::move(detail)}; }
+
+/// Whether each of these members is an array, where it is there.
+Status check_arrays(const Json& object, std::initializer_list<const char*> keys) {
+  for (const char* key : keys) {
+    const auto it = object.find(key);
+    if (it != object.end() && !it->is_null() && !it->is_array()) return malformed(std::string("/") + key + " is not an array");
+  }
+  return Ok{};
 }
 
 /// Largest TEXCOORD_n that a material's texture infos name, over extensions too (KHR_texture_transform may name another
@@ -94,18 +105,26 @@ class Exporter {
   Result<Json> make_mesh(const format::MeshRecord& record, std::span<const CutPrimitive> primitives,
                          const Vec3d& baked);
   Result<Json> make_primitive(const format::MeshRecord& record, const CutPrimitive& primitive, const Vec3d& baked);
-  void carry_buffers();
-  void carry_images();
+  Status add_positions(const format::MeshRecord& record, const run::DecodedCluster& vertices, const Vec3d& baked,
+                       Json& attributes);
+  void add_texcoords(const format::MeshRecord& record, const run::ClusterAttributes& floats, MaterialId material,
+                     std::size_t count, Json& attributes);
+  void add_colors(const run::DecodedCluster& vertices, Json& attributes);
+  std::size_t add_vertices(int component, const char* type, std::size_t count, GlbBinary::Range range, Json extra);
+  std::size_t add_indices(const std::vector<std::uint32_t>& indices, std::size_t vertex_count);
+  Status carry_buffers();
+  Status carry_images();
   void move_texture_sources();
   void use_extension(const char* name, bool is_required);
-  void complete_materials();
-  void make_instance_nodes();
-  void attach_meshes();
+  Status complete_materials();
+  Status make_instance_nodes();
+  Status attach_meshes();
+  Status attach_mesh(std::size_t node);
   void attach_levels(std::size_t node, const ExportedMesh& mesh);
   void finish_document();
   [[nodiscard]] int texcoords_needed(MaterialId material);
   GlbBinary::Range carry_blob(const format::BlobRecord& blob);
-  [[nodiscard]] const format::BlobRecord& blob_of(const Json& owner) const;
+  [[nodiscard]] Result<const format::BlobRecord*> blob_of(const Json& owner) const;
   std::size_t add_view(GlbBinary::Range range, int target);
   std::size_t add_accessor(Json accessor);
 
@@ -135,10 +154,10 @@ std::size_t Exporter::add_accessor(Json accessor) {
 }
 
 /// The blob that a document entry names with its member "blob".
-const format::BlobRecord& Exporter::blob_of(const Json& owner) const {
+Result<const format::BlobRecord*> Exporter::blob_of(const Json& owner) const {
   const auto index = owner.at("blob").get<std::uint64_t>();
-  if (index >= asset_.blobs().size()) throw std::invalid_argument("blob " + std::to_string(index) + " does not exist");
-  return asset_.blobs()[index];
+  if (index >= asset_.blobs().size()) return malformed("blob " + std::to_string(index) + " does not exist");
+  return &asset_.blobs()[index];
 }
 
 /// The bytes of a blob in the BIN chunk: once, however many entries of the document name it.
@@ -149,29 +168,38 @@ GlbBinary::Range Exporter::carry_blob(const format::BlobRecord& blob) {
 }
 
 /// The buffers of animations become stretches of the one BIN chunk; their views keep their indices.
-void Exporter::carry_buffers() {
+Status Exporter::carry_buffers() {
   std::vector<GlbBinary::Range> ranges;
   if (const auto buffers = document_.find("buffers"); buffers != document_.end()) {
-    for (const Json& buffer : *buffers) ranges.push_back(carry_blob(blob_of(buffer)));
+    for (const Json& buffer : *buffers) {
+      const auto blob = blob_of(buffer);
+      if (!blob) return blob.error();
+      ranges.push_back(carry_blob(**blob));
+    }
     document_.erase("buffers");
   }
-  if (!document_.contains("bufferViews")) return;
+  if (!document_.contains("bufferViews")) return Ok{};
   for (Json& view : array_of(document_, "bufferViews")) {
-    const GlbBinary::Range range = ranges.at(view.at("buffer").get<std::size_t>());
+    const auto buffer = view.at("buffer").get<std::size_t>();
+    if (buffer >= ranges.size()) return malformed("buffer " + std::to_string(buffer) + " does not exist");
+    const GlbBinary::Range range = ranges[buffer];
     const auto offset = view.value("byteOffset", std::uint64_t{0});
     const auto bytes = view.at("byteLength").get<std::uint64_t>();
-    if (offset > range.bytes || bytes > range.bytes - offset) throw std::invalid_argument("a view leaves its buffer");
+    if (offset > range.bytes || bytes > range.bytes - offset) return malformed("a view leaves its buffer");
     view["buffer"] = 0;
     view["byteOffset"] = range.offset + offset;
   }
+  return Ok{};
 }
 
-void Exporter::carry_images() {
-  if (!document_.contains("images")) return;
+Status Exporter::carry_images() {
+  if (!document_.contains("images")) return Ok{};
   constexpr std::size_t kLongestName = 4096;  // a name that many images share must not be multiplied by them
   for (Json& image : array_of(document_, "images")) {
     if (!image.contains("blob")) continue;
-    const format::BlobRecord& record = blob_of(image);
+    const auto blob = blob_of(image);
+    if (!blob) return blob.error();
+    const format::BlobRecord& record = **blob;
     const std::span<const std::uint8_t> bytes = asset_.blob_bytes(record);
     image["bufferView"] = add_view(carry_blob(record), 0);
     const std::string_view mime_type = asset_.string(record.mime_type);
@@ -182,6 +210,7 @@ void Exporter::carry_images() {
     image.erase("blob");
     image.erase("uri");
   }
+  return Ok{};
 }
 
 void Exporter::use_extension(const char* name, bool is_required) {
@@ -216,8 +245,8 @@ void Exporter::move_texture_sources() {
 }
 
 /// Assets that do not come from a glTF have no materials in their document: the records say what is known.
-void Exporter::complete_materials() {
-  if (document_.contains("materials")) return;
+Status Exporter::complete_materials() {
+  if (document_.contains("materials")) return Ok{};
   std::map<std::uint32_t, Json> by_index;
   for (const format::MaterialRecord& record : asset_.materials()) {
     if (record.source_index == format::kNone) continue;
@@ -234,10 +263,11 @@ void Exporter::complete_materials() {
   // Indices without gaps are what the builder writes; a gap cannot be filled with anything true.
   Json materials = Json::array();
   for (auto& [index, material] : by_index) {
-    if (index != materials.size()) throw std::invalid_argument("material indices have a gap and there is no document");
+    if (index != materials.size()) return malformed("material indices have a gap and there is no document");
     materials.push_back(std::move(material));
   }
   if (!materials.empty()) document_["materials"] = std::move(materials);
+  return Ok{};
 }
 
 /// How many TEXCOORD sets, from 0 on, the material's textures ask for.
@@ -249,20 +279,19 @@ int Exporter::texcoords_needed(MaterialId material) {
   return found->second;
 }
 
-Result<Json> Exporter::make_primitive(const format::MeshRecord& record, const CutPrimitive& primitive,
-                                      const Vec3d& baked) {
-  const run::DecodedCluster& vertices = primitive.vertices;
-  const std::size_t count = vertices.vertex_count;
-  Json attributes = Json::object();
-  const auto add = [&](const std::string& name, int component, const char* type, GlbBinary::Range range, Json extra) {
-    extra["bufferView"] = add_view(range, kArrayBuffer);
-    extra["componentType"] = component;
-    extra["count"] = count;
-    extra["type"] = type;
-    attributes[name] = add_accessor(std::move(extra));
-  };
+/// An accessor of vertex data that lies in the BIN chunk.
+std::size_t Exporter::add_vertices(int component, const char* type, std::size_t count, GlbBinary::Range range,
+                                   Json extra) {
+  extra["bufferView"] = add_view(range, kArrayBuffer);
+  extra["componentType"] = component;
+  extra["count"] = count;
+  extra["type"] = type;
+  return add_accessor(std::move(extra));
+}
 
-  auto positions = bake_positions(record, vertices, baked);
+Status Exporter::add_positions(const format::MeshRecord& record, const run::DecodedCluster& vertices,
+                               const Vec3d& baked, Json& attributes) {
+  const auto positions = bake_positions(record, vertices, baked);
   if (!positions) {
     return Error{ErrorCode::kUnsupported, std::string(asset_.string(record.name)),
                  "a position does not fit glTF's 32-bit floats"};
@@ -273,19 +302,18 @@ Result<Json> Exporter::make_primitive(const format::MeshRecord& record, const Cu
     low = glm::min(low, p);
     high = glm::max(high, p);
   }
-  add("POSITION", kFloat, "VEC3", binary_.append_values(std::span<const Vec3f>(*positions)),
-      {{"min", {low.x, low.y, low.z}}, {"max", {high.x, high.y, high.z}}});
+  attributes["POSITION"] = add_vertices(kFloat, "VEC3", positions->size(),
+                                        binary_.append_values(std::span<const Vec3f>(*positions)),
+                                        {{"min", {low.x, low.y, low.z}}, {"max", {high.x, high.y, high.z}}});
+  return Ok{};
+}
 
-  run::ClusterAttributes floats;
-  run::decode_attributes(record, vertices, floats);
-  // No NORMAL means flat normals in glTF, which is what the other two modes ask for.
-  if (record.normal_mode == format::NormalMode::kStored) {
-    add("NORMAL", kFloat, "VEC3", binary_.append_values(std::span<const Vec3f>(floats.normals)), Json::object());
-  }
-  int texcoord_end = texcoords_needed(primitive.material);
+void Exporter::add_texcoords(const format::MeshRecord& record, const run::ClusterAttributes& floats,
+                             MaterialId material, std::size_t count, Json& attributes) {
+  int texcoord_end = texcoords_needed(material);
   for (std::uint32_t k = 0; k < record.uv_set_count; ++k) {
-    add("TEXCOORD_" + std::to_string(record.uv_set_source[k]), kFloat, "VEC2",
-        binary_.append_values(std::span<const Vec2f>(floats.uvs[k])), Json::object());
+    attributes["TEXCOORD_" + std::to_string(record.uv_set_source[k])] = add_vertices(
+        kFloat, "VEC2", count, binary_.append_values(std::span<const Vec2f>(floats.uvs[k])), Json::object());
     texcoord_end = std::max(texcoord_end, record.uv_set_source[k] + 1);
   }
   // glTF wants sets without gaps, and those that a material names. One that the asset did not keep is an accessor
@@ -295,37 +323,59 @@ Result<Json> Exporter::make_primitive(const format::MeshRecord& record, const Cu
     if (attributes.contains(name)) continue;
     attributes[name] = add_accessor({{"componentType", kFloat}, {"count", count}, {"type", "VEC2"}});
   }
-  if (record.has_color != 0) {
-    std::vector<std::array<std::uint8_t, 4>> colors(count);
-    const std::size_t first = vertices.channel_count - 4;  // colour is the last channel group
-    for (std::size_t i = 0; i < count; ++i) {
-      for (std::size_t c = 0; c < 4; ++c) {
-        const std::int32_t value = vertices.channels[i * vertices.channel_count + first + c];
-        colors[i][c] = static_cast<std::uint8_t>(std::clamp(value, 0, 255));
-      }
-    }
-    add("COLOR_0", kUnsignedByte, "VEC4", binary_.append_values(std::span<const std::array<std::uint8_t, 4>>(colors)),
-        {{"normalized", true}});
-  }
+}
 
+void Exporter::add_colors(const run::DecodedCluster& vertices, Json& attributes) {
+  std::vector<std::array<std::uint8_t, 4>> colors(vertices.vertex_count);
+  const std::size_t first = vertices.channel_count - 4;  // colour is the last channel group
+  for (std::size_t i = 0; i < colors.size(); ++i) {
+    for (std::size_t c = 0; c < 4; ++c) {
+      const std::int32_t value = vertices.channels[i * vertices.channel_count + first + c];
+      colors[i][c] = static_cast<std::uint8_t>(std::clamp(value, 0, 255));
+    }
+  }
+  attributes["COLOR_0"] =
+      add_vertices(kUnsignedByte, "VEC4", colors.size(),
+                   binary_.append_values(std::span<const std::array<std::uint8_t, 4>>(colors)), {{"normalized", true}});
+}
+
+std::size_t Exporter::add_indices(const std::vector<std::uint32_t>& indices, std::size_t vertex_count) {
   // The largest value of an index type means "restart" and may not be used.
-  const bool is_short = count <= 65535;
+  const bool is_short = vertex_count <= 65535;
   GlbBinary::Range range;
   if (is_short) {
-    const std::vector<std::uint16_t> narrow(primitive.indices.begin(), primitive.indices.end());
+    const std::vector<std::uint16_t> narrow(indices.begin(), indices.end());
     range = binary_.append_values(std::span<const std::uint16_t>(narrow));
   } else {
-    range = binary_.append_values(std::span<const std::uint32_t>(primitive.indices));
+    range = binary_.append_values(std::span<const std::uint32_t>(indices));
   }
+  return add_accessor({{"bufferView", add_view(range, kElementArrayBuffer)},
+                       {"componentType", is_short ? kUnsignedShort : kUnsignedInt},
+                       {"count", indices.size()},
+                       {"type", "SCALAR"}});
+}
+
+Result<Json> Exporter::make_primitive(const format::MeshRecord& record, const CutPrimitive& primitive,
+                                      const Vec3d& baked) {
+  const run::DecodedCluster& vertices = primitive.vertices;
+  const std::size_t count = vertices.vertex_count;
+  Json attributes = Json::object();
+  if (const Status s = add_positions(record, vertices, baked, attributes); !s) return s.error();
+  run::ClusterAttributes floats;
+  run::decode_attributes(record, vertices, floats);
+  // No NORMAL means flat normals in glTF, which is what the other two modes ask for.
+  if (record.normal_mode == format::NormalMode::kStored) {
+    attributes["NORMAL"] = add_vertices(kFloat, "VEC3", count,
+                                        binary_.append_values(std::span<const Vec3f>(floats.normals)), Json::object());
+  }
+  add_texcoords(record, floats, primitive.material, count, attributes);
+  if (record.has_color != 0) add_colors(vertices, attributes);
   Json result = {{"attributes", std::move(attributes)}};
-  result["indices"] = add_accessor({{"bufferView", add_view(range, kElementArrayBuffer)},
-                                    {"componentType", is_short ? kUnsignedShort : kUnsignedInt},
-                                    {"count", primitive.indices.size()},
-                                    {"type", "SCALAR"}});
+  result["indices"] = add_indices(primitive.indices, count);
   const std::uint32_t material = asset_.materials()[primitive.material.value].source_index;
   if (material != format::kNone) {
     if (find_element(document_, "materials", material) == nullptr) {
-      throw std::invalid_argument("material " + std::to_string(material) + " does not exist");
+      return malformed("material " + std::to_string(material) + " does not exist");
     }
     result["material"] = material;
   }
@@ -375,7 +425,7 @@ Status Exporter::add_mesh(MeshId mesh) {
 }
 
 /// No scene graph in the source (PLY, arrays in memory): one root node for each instance.
-void Exporter::make_instance_nodes() {
+Status Exporter::make_instance_nodes() {
   Json nodes = Json::array();
   Json roots = Json::array();
   for (const format::InstanceRecord& instance : asset_.instances()) {
@@ -386,7 +436,7 @@ void Exporter::make_instance_nodes() {
     for (std::size_t column = 0; column < 4; ++column) {
       for (std::size_t row = 0; row < 4; ++row) {
         const double value = row < 3 ? instance.transform[row * 4 + column] : (column == 3 ? 1.0 : 0.0);
-        if (!std::isfinite(value)) throw std::invalid_argument("an instance's transform is not finite");
+        if (!std::isfinite(value)) return malformed("an instance's transform is not finite");
         is_identity = is_identity && value == (row == column ? 1.0 : 0.0);
         matrix.push_back(value);
       }
@@ -395,10 +445,11 @@ void Exporter::make_instance_nodes() {
     roots.push_back(nodes.size());
     nodes.push_back(std::move(node));
   }
-  if (nodes.empty()) return;
+  if (nodes.empty()) return Ok{};
   document_["nodes"] = std::move(nodes);
   document_["scenes"] = Json::array({{{"nodes", std::move(roots)}}});
   document_["scene"] = 0;
+  return Ok{};
 }
 
 /// The coarser levels become nodes that no scene has: MSFT_lod names them. Whether such a node stands in the frame of
@@ -421,11 +472,46 @@ void Exporter::attach_levels(std::size_t node, const ExportedMesh& mesh) {
   has_lods_ = true;
 }
 
-/// Gives every node that draws a mesh its exported mesh, or none where the cut is empty.
-void Exporter::attach_meshes() {
+/// Gives a node that draws a mesh its exported mesh, or none where the cut is empty.
+Status Exporter::attach_mesh(std::size_t i) {
+  Json& nodes = array_of(document_, "nodes");
+  Json& node = nodes[i];
+  node.erase("skin");  // the static triangles were built: skins and morph targets are not in the asset
+  node.erase("weights");
+  if (!node.contains("mesh")) return Ok{};
+  const auto index = node.at("mesh").get<std::size_t>();
+  if (index >= exported_.size()) return malformed("mesh " + std::to_string(index) + " does not exist");
+  const ExportedMesh& mesh = exported_[index];
+  node.erase("mesh");
+  if (mesh.levels.empty()) return Ok{};
+  const bool is_fixed = is_plain_node(node) && !document_.contains("animations");
+  const bool needs_frame = mesh.levels.size() > 1 && !is_fixed;
+  if (!mesh.is_translated() && !needs_frame) {
+    attach_levels(i, mesh);
+    return Ok{};
+  }
+  if (const Status s = check_arrays(node, {"children"}); !s) return s;
+  std::size_t holder = i;
+  const auto add_child = [&](const char* suffix) {
+    Json child = Json::object();
+    if (nodes[i].contains("name")) child["name"] = nodes[i].at("name").get<std::string>() + suffix;
+    array_of(nodes[holder], "children").push_back(nodes.size());
+    holder = nodes.size();
+    nodes.push_back(std::move(child));  // `node` dangles from here on
+  };
+  if (mesh.is_translated()) {
+    add_child(" (origin)");
+    nodes[holder]["translation"] = {mesh.translation.x, mesh.translation.y, mesh.translation.z};
+  }
+  if (mesh.levels.size() > 1) add_child(" (levels)");
+  attach_levels(holder, mesh);
+  return Ok{};
+}
+
+Status Exporter::attach_meshes() {
   if (!document_.contains("nodes")) {
-    make_instance_nodes();
-    if (!document_.contains("nodes")) return;
+    if (const Status s = make_instance_nodes(); !s) return s;
+    if (!document_.contains("nodes")) return Ok{};
   }
   Json& nodes = array_of(document_, "nodes");
   for (const format::InstanceRecord& instance : asset_.instances()) {
@@ -435,34 +521,9 @@ void Exporter::attach_meshes() {
   }
   const std::size_t node_count = nodes.size();
   for (std::size_t i = 0; i < node_count; ++i) {
-    Json& node = nodes[i];
-    node.erase("skin");  // the static triangles were built: skins and morph targets are not in the asset
-    node.erase("weights");
-    if (!node.contains("mesh")) continue;
-    const ExportedMesh& mesh = exported_.at(node.at("mesh").get<std::size_t>());
-    node.erase("mesh");
-    if (mesh.levels.empty()) continue;
-    const bool is_fixed = is_plain_node(node) && !document_.contains("animations");
-    const bool needs_frame = mesh.levels.size() > 1 && !is_fixed;
-    if (!mesh.is_translated() && !needs_frame) {
-      attach_levels(i, mesh);
-      continue;
-    }
-    std::size_t holder = i;
-    const auto add_child = [&](const char* suffix) {
-      Json child = Json::object();
-      if (nodes[i].contains("name")) child["name"] = nodes[i].at("name").get<std::string>() + suffix;
-      array_of(nodes[holder], "children").push_back(nodes.size());
-      holder = nodes.size();
-      nodes.push_back(std::move(child));  // `node` dangles from here on
-    };
-    if (mesh.is_translated()) {
-      add_child(" (origin)");
-      nodes[holder]["translation"] = {mesh.translation.x, mesh.translation.y, mesh.translation.z};
-    }
-    if (mesh.levels.size() > 1) add_child(" (levels)");
-    attach_levels(holder, mesh);
+    if (const Status s = attach_mesh(i); !s) return s;
   }
+  return Ok{};
 }
 
 void Exporter::finish_document() {
@@ -497,18 +558,21 @@ void Exporter::finish_document() {
 
 Result<std::vector<std::uint8_t>> Exporter::run() {
   const std::string_view text = asset_.scene_json();
-  if (nests_deeper_than(text, kMaxDepth)) return Error{ErrorCode::kInvalid, "section SCNE", "JSON nests too deep"};
+  if (nests_deeper_than(text, kMaxDepth)) return malformed("JSON nests too deep");
   document_ = text.empty() ? Json::object() : Json::parse(text, nullptr, false);
-  if (!document_.is_object()) return Error{ErrorCode::kInvalid, "section SCNE", "not a JSON object"};
-  carry_buffers();
-  carry_images();
+  if (!document_.is_object()) return malformed("not a JSON object");
+  const Status arrays = check_arrays(document_, {"accessors", "bufferViews", "buffers", "extensionsRequired",
+                                                 "extensionsUsed", "images", "nodes", "textures"});
+  if (!arrays) return arrays.error();
+  if (const Status s = carry_buffers(); !s) return s.error();
+  if (const Status s = carry_images(); !s) return s.error();
   move_texture_sources();
-  complete_materials();
+  if (const Status s = complete_materials(); !s) return s.error();
   exported_.reserve(asset_.meshes().size());
   for (std::size_t m = 0; m < asset_.meshes().size(); ++m) {
     if (auto status = add_mesh(MeshId(m)); !status) return status.error();
   }
-  attach_meshes();
+  if (const Status s = attach_meshes(); !s) return s.error();
   finish_document();
   // Names of records need not be UTF-8; what is not is replaced, never refused.
   const std::string json = document_.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -551,14 +615,13 @@ Result<std::vector<std::uint8_t>> export_glb_lods(const run::Asset& asset, std::
     }
   }
   if (Status status = run::check_decoded_bytes(asset, bytes); !status) return status.error();
-  // The document is a file's: whatever shape it has that glTF does not allow ends as an exception of the JSON library.
-  try {
-    return Exporter(asset, chain_per_mesh).run();
-  } catch (const std::bad_alloc&) {
-    return Error{ErrorCode::kBuildFailed, "", "out of memory"};
-  } catch (const std::exception& failure) {
-    return Error{ErrorCode::kInvalid, "section SCNE", failure.what()};
-  }
+  return guarded({}, [&]() -> Result<std::vector<std::uint8_t>> {
+    try {
+      return Exporter(asset, chain_per_mesh).run();
+    } catch (const Json::exception& failure) {
+      return malformed(failure.what());  // the document is a file's, and of a shape that glTF does not allow
+    }
+  });
 }
 
 }  // namespace meshlode::out

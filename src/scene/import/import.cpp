@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <cctype>
-#include <new>
 #include <optional>
 #include <string>
 #include <string_view>
 
 #include "base/file.h"
+#include "base/guarded.h"
 #include "base/hash.h"
 #include "scene/import/gltf/gltf_import.h"
 #include "scene/import/polygons/polygon_soup.h"
@@ -76,7 +76,7 @@ Result<Scene> import_polygons(Format format, const std::filesystem::path& path, 
 }  // namespace
 
 Result<Scene> import_scene(const std::filesystem::path& path, const ImportOptions& options) {
-  try {
+  return guarded(path, [&]() -> Result<Scene> {
     auto file = MappedFile::open(path);
     if (!file) return file.error();
     if (options.files_read != nullptr) options.files_read->push_back(file->id());
@@ -89,11 +89,7 @@ Result<Scene> import_scene(const std::filesystem::path& path, const ImportOption
         *format == Format::kGltf ? import_gltf(path, bytes, options) : import_polygons(*format, path, bytes, options);
     if (scene) scene->source_name = path.filename().string();
     return scene;
-  } catch (const std::bad_alloc&) {
-    return Error{ErrorCode::kBuildFailed, path.string(), "out of memory"};
-  } catch (const std::exception& error) {
-    return Error{ErrorCode::kInvalid, path.string(), error.what()};
-  }
+  });
 }
 
 }  // namespace meshlode::scene

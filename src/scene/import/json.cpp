@@ -205,7 +205,7 @@ Result<Json> parse_json(std::string_view text) {
   TreeBuilder builder;
   try {
     if (nlohmann::json::sax_parse(text.begin(), text.end(), &builder)) return std::move(builder.root);
-  } catch (const std::exception& error) {
+  } catch (const nlohmann::json::exception& error) {
     builder.problem = error.what();
   }
   if (builder.problem.empty()) builder.problem = "not JSON";

@@ -15,11 +15,19 @@ namespace meshlode::scene {
 
 struct JsonMember;
 
+/// Null. Not trivially copyable: of a variant whose alternatives all move without throwing libstdc++ 12 believes that it
+/// always has a value, and destroys one that is not there where making a copy runs out of memory. This one it believes less of.
+struct JsonNull {
+  JsonNull() = default;
+  JsonNull(const JsonNull&) noexcept {}
+  JsonNull& operator=(const JsonNull&) noexcept { return *this; }
+};
+
 /// One JSON value. Objects keep the order of their members, so that what is carried through comes out as it went in.
 struct Json {
   using Array = std::vector<Json>;
   using Object = std::vector<JsonMember>;
-  std::variant<std::monostate, bool, std::int64_t, std::uint64_t, double, std::string, Array, Object> value;
+  std::variant<JsonNull, bool, std::int64_t, std::uint64_t, double, std::string, Array, Object> value;
 
   [[nodiscard]] bool is_object() const { return std::holds_alternative<Object>(value); }
   [[nodiscard]] bool is_array() const { return std::holds_alternative<Array>(value); }

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <exception>
 #include <memory>
+#include <new>
 #include <optional>
 #include <string>
 
@@ -21,6 +22,7 @@
 #include <draco/core/decoder_buffer.h>
 #include <draco/mesh/mesh.h>
 
+#include "base/guarded.h"
 #include "scene/import/gltf/gltf.h"
 
 namespace meshlode::scene {
@@ -335,42 +337,51 @@ Result<DracoAttribute> copy_attribute(const draco::PointAttribute& attribute, st
   return out;
 }
 
+/// Draco on the bytes; what it throws is their fault, but for memory.
+Status run_draco(Method method, std::span<const std::uint8_t> bytes, const DracoExpectation& expected,
+                 draco::Mesh& mesh) {
+  std::string problem;
+  try {
+    const bool ok = method == Method::kEdgebreaker
+                        ? run_decoder<draco::MeshEdgebreakerDecoder>(bytes, expected, mesh, problem)
+                        : run_decoder<draco::MeshSequentialDecoder>(bytes, expected, mesh, problem);
+    if (!ok) return invalid(problem + " (or its counts are not the accessors')");
+  } catch (const std::bad_alloc&) {
+    return out_of_memory({});
+  } catch (const std::exception& error) {
+    return invalid(error.what());
+  }
+  return Ok{};
+}
+
 }  // namespace
 
 Result<DracoMesh> decode_draco(std::span<const std::uint8_t> bytes, const DracoExpectation& expected) {
   const auto method = check_head(bytes, expected);
   if (!method) return method.error();
-  try {
-    draco::Mesh mesh;
-    std::string problem;
-    const bool ok = *method == Method::kEdgebreaker
-                        ? run_decoder<draco::MeshEdgebreakerDecoder>(bytes, expected, mesh, problem)
-                        : run_decoder<draco::MeshSequentialDecoder>(bytes, expected, mesh, problem);
-    if (!ok) return invalid(problem + " (or its counts are not the accessors')");
-    if (mesh.num_points() != expected.point_count ||
-        (expected.is_face_count_exact && mesh.num_faces() != expected.max_face_count)) {
-      return invalid("it decodes to other counts than the accessors say");
-    }
-    DracoMesh out;
-    out.point_count = mesh.num_points();
-    out.indices.reserve(std::size_t{3} * mesh.num_faces());
-    for (draco::FaceIndex f(0); f < mesh.num_faces(); ++f) {
-      for (const draco::PointIndex& point : mesh.face(f)) {
-        if (point.value() >= out.point_count) return invalid("an index out of range");
-        out.indices.push_back(point.value());
-      }
-    }
-    for (const std::uint32_t id : expected.attribute_ids) {
-      const draco::PointAttribute* attribute = mesh.GetAttributeByUniqueId(id);
-      if (attribute == nullptr) return invalid("there is no attribute " + std::to_string(id));
-      auto copied = copy_attribute(*attribute, out.point_count);
-      if (!copied) return copied.error();
-      out.attributes.emplace(id, std::move(*copied));
-    }
-    return out;
-  } catch (const std::exception& error) {
-    return invalid(error.what());
+  draco::Mesh mesh;
+  if (const Status decoded = run_draco(*method, bytes, expected, mesh); !decoded) return decoded.error();
+  if (mesh.num_points() != expected.point_count ||
+      (expected.is_face_count_exact && mesh.num_faces() != expected.max_face_count)) {
+    return invalid("it decodes to other counts than the accessors say");
   }
+  DracoMesh out;
+  out.point_count = mesh.num_points();
+  out.indices.reserve(std::size_t{3} * mesh.num_faces());
+  for (draco::FaceIndex f(0); f < mesh.num_faces(); ++f) {
+    for (const draco::PointIndex& point : mesh.face(f)) {
+      if (point.value() >= out.point_count) return invalid("an index out of range");
+      out.indices.push_back(point.value());
+    }
+  }
+  for (const std::uint32_t id : expected.attribute_ids) {
+    const draco::PointAttribute* attribute = mesh.GetAttributeByUniqueId(id);
+    if (attribute == nullptr) return invalid("there is no attribute " + std::to_string(id));
+    auto copied = copy_attribute(*attribute, out.point_count);
+    if (!copied) return copied.error();
+    out.attributes.emplace(id, std::move(*copied));
+  }
+  return out;
 }
 
 }  // namespace meshlode::scene

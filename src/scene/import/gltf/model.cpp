@@ -9,6 +9,7 @@
 
 #include <exception>
 #include <fstream>
+#include <new>
 
 #define tinygltf meshlode_tinygltf
 #define TINYGLTF_IMPLEMENTATION
@@ -19,6 +20,8 @@
 #define TINYGLTF_NO_INCLUDE_STB_IMAGE
 #define TINYGLTF_NO_INCLUDE_STB_IMAGE_WRITE
 #include <tiny_gltf.h>
+
+#include "base/guarded.h"
 
 namespace meshlode::scene {
 
@@ -149,42 +152,58 @@ GltfModel convert(const tinygltf::Model& model) {
   return out;
 }
 
+/// tinygltf's own model of a text that names no file. `problems`: what it says beside refusing. What it throws is the text's
+/// fault: that was checked, but by our rules.
+Result<tinygltf::Model> load_model(const std::string& text, std::string& problems) {
+  tinygltf::TinyGLTF loader;
+  tinygltf::FsCallbacks no_files{};
+  no_files.FileExists = [](const std::string&, void*) { return false; };
+  no_files.ExpandFilePath = [](const std::string& path, void*) { return path; };
+  no_files.ReadWholeFile = [](std::vector<unsigned char>*, std::string*, const std::string&, void*) { return false; };
+  no_files.WriteWholeFile = [](std::string*, const std::string&, const std::vector<unsigned char>&, void*) {
+    return false;
+  };
+  loader.SetFsCallbacks(no_files);
+  tinygltf::Model model;
+  std::string warnings;
+  try {
+    if (!loader.LoadASCIIFromString(&model, &problems, &warnings, text.c_str(), static_cast<unsigned int>(text.size()),
+                                    "", tinygltf::NO_REQUIRE)) {
+      return Error{ErrorCode::kInvalid, "", "tinygltf: " + problems};
+    }
+  } catch (const std::bad_alloc&) {
+    return out_of_memory({});
+  } catch (const std::exception& error) {
+    return Error{ErrorCode::kInvalid, "", std::string("tinygltf: ") + error.what()};
+  }
+  return model;
+}
+
+/// tinygltf leaves out a primitive that it does not understand; nothing may be missing quietly.
+bool is_whole(const tinygltf::Model& model, const Json& root) {
+  const auto& meshes = root.items("meshes");
+  bool out = model.meshes.size() == meshes.size() && model.nodes.size() == root.items("nodes").size() &&
+             model.accessors.size() == root.items("accessors").size() &&
+             model.bufferViews.size() == root.items("bufferViews").size() + 1;
+  for (std::size_t i = 0; out && i < meshes.size(); ++i) {
+    out = model.meshes[i].primitives.size() == meshes[i].items("primitives").size();
+  }
+  return out;
+}
+
 }  // namespace
 
 Result<GltfModel> parse_gltf_model(const Json& root) {
   const Json skeleton = make_skeleton(root);
   const std::string text = dump_json(skeleton);
   if (text.size() > 0x7FFFFFFFu) return Error{ErrorCode::kUnsupported, "", "more than 2 GiB of glTF text"};
-  try {
-    tinygltf::TinyGLTF loader;
-    tinygltf::FsCallbacks no_files{};
-    no_files.FileExists = [](const std::string&, void*) { return false; };
-    no_files.ExpandFilePath = [](const std::string& path, void*) { return path; };
-    no_files.ReadWholeFile = [](std::vector<unsigned char>*, std::string*, const std::string&, void*) { return false; };
-    no_files.WriteWholeFile = [](std::string*, const std::string&, const std::vector<unsigned char>&, void*) {
-      return false;
-    };
-    loader.SetFsCallbacks(no_files);
-    tinygltf::Model model;
-    std::string errors;
-    std::string warnings;
-    if (!loader.LoadASCIIFromString(&model, &errors, &warnings, text.c_str(), static_cast<unsigned int>(text.size()),
-                                    "", tinygltf::NO_REQUIRE)) {
-      return Error{ErrorCode::kInvalid, "", "tinygltf: " + errors};
-    }
-    // tinygltf leaves out a primitive that it does not understand; nothing may be missing quietly.
-    const auto& meshes = root.items("meshes");
-    bool is_whole = model.meshes.size() == meshes.size() && model.nodes.size() == root.items("nodes").size() &&
-                    model.accessors.size() == root.items("accessors").size() &&
-                    model.bufferViews.size() == root.items("bufferViews").size() + 1;
-    for (std::size_t i = 0; is_whole && i < meshes.size(); ++i) {
-      is_whole = model.meshes[i].primitives.size() == meshes[i].items("primitives").size();
-    }
-    if (!is_whole) return Error{ErrorCode::kInvalid, "", "tinygltf did not understand every part of it: " + errors};
-    return convert(model);
-  } catch (const std::exception& error) {
-    return Error{ErrorCode::kInvalid, "", std::string("tinygltf: ") + error.what()};
+  std::string problems;
+  const auto model = load_model(text, problems);
+  if (!model) return model.error();
+  if (!is_whole(*model, root)) {
+    return Error{ErrorCode::kInvalid, "", "tinygltf did not understand every part of it: " + problems};
   }
+  return convert(*model);
 }
 
 }  // namespace meshlode::scene

@@ -9,6 +9,7 @@
 #include <limits>
 #include <map>
 #include <mutex>
+#include <new>
 #include <sstream>
 
 #include <OpenMesh/Core/IO/Options.hh>
@@ -18,6 +19,7 @@
 #include <OpenMesh/Core/IO/reader/STLReader.hh>
 #include <OpenMesh/Core/System/omstream.hh>
 
+#include "base/guarded.h"
 #include "scene/import/polygons/polygon_soup.h"
 
 namespace meshlode::scene {
@@ -200,43 +202,61 @@ bool run_reader(CheckedMeshFile::Format format, std::istream& stream, om::IO::Ba
   }
 }
 
-/// The readers are singletons with state, and talk to std::cerr.
-std::mutex& reader_mutex() {
-  static std::mutex mutex;
-  return mutex;
+/// The readers are singletons with state, and talk to std::cerr: one at a time, in silence.
+class ReaderLock {
+ public:
+  ReaderLock() : lock_(mutex()), was_enabled_(omerr().is_enabled()) { omerr().disable(); }
+  ~ReaderLock() {
+    if (was_enabled_) omerr().enable();
+  }
+  ReaderLock(const ReaderLock&) = delete;
+  ReaderLock& operator=(const ReaderLock&) = delete;
+
+ private:
+  static std::mutex& mutex() {
+    static std::mutex mutex;
+    return mutex;
+  }
+  std::lock_guard<std::mutex> lock_;
+  bool was_enabled_;
+};
+
+/// OpenMesh on the text; what it throws is the text's fault, but for memory.
+Status run_openmesh(CheckedMeshFile::Format format, std::istringstream& stream, SoupImporter& importer,
+                    om::IO::Options options) {
+  const ReaderLock lock;
+  try {
+    if (run_reader(format, stream, importer, options) && !importer.broken) return Ok{};
+  } catch (const std::bad_alloc&) {
+    return out_of_memory({});
+  } catch (const std::exception& error) {
+    return Error{ErrorCode::kInvalid, "", std::string("OpenMesh: ") + error.what()};
+  }
+  return Error{ErrorCode::kInvalid, "", "OpenMesh's reader refuses it"};
 }
 
 }  // namespace
 
 Result<PolygonSoup> read_with_openmesh(CheckedMeshFile& file) {
-  try {
-    PolygonSoup soup;
-    SoupImporter importer(file, soup);
-    om::IO::Options options;
-    if (file.has_normals) options += om::IO::Options::VertexNormal;
-    if (file.has_uvs) options += om::IO::Options::VertexTexCoord;
-    if (file.has_colors) options += om::IO::Options::VertexColor;
-    if (file.format != CheckedMeshFile::Format::kObj) options += om::IO::Options::Binary;
-    std::istringstream stream(std::move(file.text));
-    const std::lock_guard lock(reader_mutex());
-    const bool was_enabled = omerr().is_enabled();
-    omerr().disable();
-    const bool ok = run_reader(file.format, stream, importer, options);
-    if (was_enabled) omerr().enable();
-    if (!ok || importer.broken) return Error{ErrorCode::kInvalid, "", "OpenMesh's reader refuses it"};
-    if (!file.exact_positions.empty()) {
-      if (file.exact_positions.size() + importer.source_vertex.size() != soup.positions.size()) {
-        return Error{ErrorCode::kInvalid, "", "OpenMesh's reader found another number of vertices"};
-      }
-      std::copy(file.exact_positions.begin(), file.exact_positions.end(), soup.positions.begin());
-      for (std::size_t i = 0; i < importer.source_vertex.size(); ++i) {
-        soup.positions[file.exact_positions.size() + i] = file.exact_positions[importer.source_vertex[i]];
-      }
+  PolygonSoup soup;
+  SoupImporter importer(file, soup);
+  om::IO::Options options;
+  if (file.has_normals) options += om::IO::Options::VertexNormal;
+  if (file.has_uvs) options += om::IO::Options::VertexTexCoord;
+  if (file.has_colors) options += om::IO::Options::VertexColor;
+  if (file.format != CheckedMeshFile::Format::kObj) options += om::IO::Options::Binary;
+  std::istringstream stream(std::move(file.text));
+  if (const Status read = run_openmesh(file.format, stream, importer, options); !read) return read.error();
+  if (!file.exact_positions.empty()) {
+    if (file.exact_positions.size() + importer.source_vertex.size() != soup.positions.size()) {
+      return Error{ErrorCode::kInvalid, "", "OpenMesh's reader found another number of vertices"};
     }
-    return soup;
-  } catch (const std::exception& error) {
-    return Error{ErrorCode::kInvalid, "", std::string("OpenMesh: ") + error.what()};
+    std::copy(file.exact_positions.begin(), file.exact_positions.end(), soup.positions.begin());
+    for (std::size_t i = 0; i < importer.source_vertex.size(); ++i) {
+      soup.positions[file.exact_positions.size() + i] = file.exact_positions[importer.source_vertex[i]];
+    }
   }
+  return soup;
 }
 
 }  // namespace meshlode::scene

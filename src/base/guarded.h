@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+// The last net under code whose errors are values: what is thrown all the same is memory that cannot be had, or a mistake of
+// this program's, which is not blamed on the file that it was found with. What third-party libraries throw at a file's bytes
+// is translated in their one wrapper file and does not come here.
+#pragma once
+
+#include <exception>
+#include <filesystem>
+#include <new>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include <meshlode/result.h>
+
+namespace meshlode {
+
+[[nodiscard]] inline Error out_of_memory(std::string where) {
+  return {ErrorCode::kBuildFailed, std::move(where), "out of memory"};
+}
+
+[[nodiscard]] inline Error internal_error(std::string where, std::string_view what) {
+  return {ErrorCode::kBuildFailed, std::move(where),
+          "internal error (" + std::string(what) + "): a mistake of this program's, please report it with what it was given"};
+}
+
+/// What `body` returns, a Result. `where`: the file that was worked on, or empty, for where something is thrown.
+template <class Body>
+auto guarded(const std::filesystem::path& where, const Body& body) -> decltype(body()) {
+  try {
+    return body();
+  } catch (const std::bad_alloc&) {
+    return out_of_memory(where.string());
+  } catch (const std::exception& thrown) {
+    return internal_error(where.string(), thrown.what());
+  } catch (...) {
+    return internal_error(where.string(), "an exception of an unknown type");
+  }
+}
+
+}  // namespace meshlode

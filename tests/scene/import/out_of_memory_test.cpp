@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Memory that cannot be had while a file is read is no fault of the file: each large allocation of an import fails once.
+// Small ones are let through, as a machine that runs out of memory does: nlohmann-json's destructors allocate, and end the
+// program where they cannot. This program's operator new stands in for the library's, in shared libraries too.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <new>
+#include <string>
+#include <vector>
+
+#include "draco_samples.h"
+#include "gltf_builder.h"
+#include "mutant_seeds.h"
+#include "scene/import/import.h"
+#include "scene/import/json.h"
+
+namespace {
+
+constexpr long kNever = -1;
+thread_local long allocations_left = kNever;  ///< of this thread and the size below or more, until one fails
+thread_local std::size_t smallest = 0;
+
+void* allocate(std::size_t bytes) {
+  if (bytes >= smallest && allocations_left >= 0 && allocations_left-- == 0) return nullptr;
+  return std::malloc(bytes == 0 ? 1 : bytes);
+}
+
+void* allocate_or_throw(std::size_t bytes) {
+  void* const out = allocate(bytes);
+  if (out == nullptr) throw std::bad_alloc();
+  return out;
+}
+
+}  // namespace
+
+void* operator new(std::size_t bytes) { return allocate_or_throw(bytes); }
+void* operator new[](std::size_t bytes) { return allocate_or_throw(bytes); }
+void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept { return allocate(bytes); }
+void* operator new[](std::size_t bytes, const std::nothrow_t&) noexcept { return allocate(bytes); }
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete[](void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete(void* memory, const std::nothrow_t&) noexcept { std::free(memory); }
+void operator delete[](void* memory, const std::nothrow_t&) noexcept { std::free(memory); }
+
+namespace meshlode::testing {
+namespace {
+
+/// Calls `body` with the first allocation of at least `bytes` failing, then the second, until none fails any more; `body`
+/// is told which. Returns how many did.
+template <class Body>
+long fail_each_allocation(std::size_t bytes, const Body& body) {
+  smallest = bytes;
+  for (long which = 0;; ++which) {
+    allocations_left = which;
+    body(which);
+    if (allocations_left != kNever) {
+      allocations_left = kNever;
+      return which;
+    }
+  }
+}
+
+constexpr int kSide = 48;  // vertices: enough for each array of a mesh to be large
+
+std::vector<float> grid_positions() {
+  std::vector<float> out;
+  for (int y = 0; y < kSide; ++y) {
+    for (int x = 0; x < kSide; ++x) out.insert(out.end(), {static_cast<float>(x), static_cast<float>(y), 0.0F});
+  }
+  return out;
+}
+
+std::vector<std::uint16_t> grid_triangles() {
+  std::vector<std::uint16_t> out;
+  for (int y = 0; y + 1 < kSide; ++y) {
+    for (int x = 0; x + 1 < kSide; ++x) {
+      const auto at = static_cast<std::uint16_t>(y * kSide + x);
+      for (const int step : {0, 1, kSide + 1, 0, kSide + 1, kSide}) out.push_back(static_cast<std::uint16_t>(at + step));
+    }
+  }
+  return out;
+}
+
+std::vector<SeedFile> large_files() {
+  const std::vector<float> p = grid_positions();
+  const std::vector<std::uint16_t> t = grid_triangles();
+  const std::string counts[] = {std::to_string(p.size() / 3), std::to_string(t.size() / 3)};
+  std::string ply = "ply\nformat ascii 1.0\nelement vertex " + counts[0] +
+                    "\nproperty float x\nproperty float y\nproperty float z\nelement face " + counts[1] +
+                    "\nproperty list uchar int vertex_indices\nend_header\n";
+  std::string obj, stl = "solid a\n";
+  for (std::size_t i = 0; i < p.size(); i += 3) {
+    const std::string text = std::to_string(p[i]) + " " + std::to_string(p[i + 1]) + " 0\n";
+    ply += text;
+    obj += "v " + text;
+  }
+  for (std::size_t i = 0; i < t.size(); i += 3) {
+    ply += "3";
+    obj += "f";
+    stl += "facet normal 0 0 1\nouter loop\n";
+    for (std::size_t k = i; k < i + 3; ++k) {
+      ply += " " + std::to_string(t[k]);
+      obj += " " + std::to_string(t[k] + 1);
+      stl += "vertex " + std::to_string(p[3U * t[k]]) + " " + std::to_string(p[3U * t[k] + 1]) + " 0\n";
+    }
+    ply += "\n";
+    obj += "\n";
+    stl += "endloop\nendfacet\n";
+  }
+  GltfBuilder gltf;
+  gltf.floats(p, "VEC3", 3);
+  gltf.array(t, 5123, "SCALAR", 1);
+  return {{"a.glb", gltf.glb("\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1}]}],"
+                             "\"nodes\":[{\"mesh\":0}],\"scenes\":[{\"nodes\":[0]}],\"scene\":0")},
+          {"draco.glb", make_draco_glb(make_draco_sample(kSide, true, 5, 11))},
+          {"a.ply", ply},
+          {"a.obj", obj},
+          {"a.stl", stl + "endsolid a\n"}};
+}
+
+TEST(OutOfMemory, IsNotTheFilesFault) {
+  const auto folder = std::filesystem::temp_directory_path() / ("meshlode-memory-" + std::to_string(::getpid()));
+  std::filesystem::create_directories(folder);
+  for (const SeedFile& file : large_files()) {
+    const auto path = folder / file.name;
+    std::ofstream(path, std::ios::binary).write(file.bytes.data(), static_cast<std::streamsize>(file.bytes.size()));
+    ASSERT_TRUE(scene::import_scene(path, {})) << file.name;
+    const long failures = fail_each_allocation(4096, [&](long which) {
+      const auto scene = scene::import_scene(path, {});
+      if (scene) return;  // the last time, where none failed
+      EXPECT_EQ(scene.error().code, ErrorCode::kBuildFailed) << file.name << ", " << which << ": " << scene.error().message();
+      EXPECT_TRUE(scene.error().message().ends_with("out of memory")) << scene.error().message();
+    });
+    EXPECT_GE(failures, 2) << file.name;
+  }
+  std::filesystem::remove_all(folder);
+}
+
+TEST(OutOfMemory, ACopyOfADocumentIsUndone) {
+  const auto json = scene::parse_json(R"({"a long name of a member": [null, 1, -2.5, true, "a text that is not short",
+                                          {"another long name of one": ["and another text, inside"]}]})");
+  ASSERT_TRUE(json);
+  long thrown = 0;
+  const long failures = fail_each_allocation(0, [&](long) {
+    try {
+      const scene::Json copy = *json;
+    } catch (const std::bad_alloc&) {
+      ++thrown;
+    }
+  });
+  EXPECT_GT(failures, 5);
+  EXPECT_EQ(thrown, failures);
+}
+
+}  // namespace
+}  // namespace meshlode::testing
