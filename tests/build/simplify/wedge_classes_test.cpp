@@ -63,6 +63,7 @@ TEST(WedgeClasses, AlongASeamEachSideIsItsOwn) {
 TEST(WedgeClasses, OffASeamItsOtherSideStaysAsItIs) {
   DrawnMesh drawn = seamed_fan();
   EXPECT_TRUE(classes_of(drawn).needs_corners(4, 0)) << "one end on the seam is enough";
+  EXPECT_TRUE(classes_of(drawn).needs_corners(0, 4)) << "either of them";
   EXPECT_EQ(collect(drawn, 4, 0), (Members{{0, 4}, {10}}));
   EXPECT_EQ(collect(drawn, 0, 8), (Members{{8, 10}, {0}}));
 }
