@@ -7,6 +7,7 @@
 #include "base/parallel.h"
 #include "build/dag/group_errors.h"
 #include "build/dag/level_pool.h"
+#include "build/dag/whole_cuts.h"
 
 namespace meshlode::build {
 
@@ -279,9 +280,7 @@ Front advance(BuildPool& pool, const GroupMeter& meter, const Front& front,
   return next;
 }
 
-}  // namespace
-
-Result<LodDag> build_dag(const PreparedMesh& mesh, const DagOptions& options) {
+Result<LodDag> coarsen(const PreparedMesh& mesh, const DagOptions& options) {
   BuildPool pool(mesh);
   if (mesh.triangles.empty()) return LodDag{};
   const GroupMeter meter(mesh, options.error);
@@ -307,6 +306,14 @@ Result<LodDag> build_dag(const PreparedMesh& mesh, const DagOptions& options) {
   }
   add_terminal_groups(pool, front.live, grouping, options, front.reasons);
   return assemble_dag(pool, mesh);
+}
+
+}  // namespace
+
+Result<LodDag> build_dag(const PreparedMesh& mesh, const DagOptions& options) {
+  Result<LodDag> dag = coarsen(mesh, options);
+  if (dag && options.error == ErrorSource::kMeasured) hold_to_whole_cuts(mesh, kMeasuredMargin, *dag);
+  return dag;
 }
 
 }  // namespace meshlode::build

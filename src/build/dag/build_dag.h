@@ -21,7 +21,7 @@ namespace meshlode::build {
 /// Where a group's selection error comes from (I7, docs/architecture.md).
 enum class ErrorSource : std::uint8_t {
   kQuadric,    ///< the quadric's own estimate
-  kMeasured,   ///< the deviation from the source, as samples find it
+  kMeasured,   ///< the deviation from the source, as samples find it, of groups and then of whole cuts
   kCertified,  ///< an upper bound of the deviation
 };
 

@@ -32,6 +32,13 @@ std::vector<double> thresholds_of(const run::Asset& asset, const format::MeshRec
   return thresholds;
 }
 
+/// What decoded positions may be off by: the last bits of doubles as large as they are, and of what is worked out from
+/// them. A flat cut deviates by that and stores 0.
+double rounding_of(const format::MeshRecord& mesh) {
+  const double farthest = std::max({std::abs(mesh.origin[0]), std::abs(mesh.origin[1]), std::abs(mesh.origin[2])});
+  return 1e-12 * mesh.diagonal + 0x1p-51 * (farthest + mesh.diagonal);
+}
+
 }  // namespace
 
 std::vector<CutDeviation> measure_cuts(const run::Asset& asset, MeshId mesh, const scene::SourceMesh& source,
@@ -47,7 +54,7 @@ std::vector<CutDeviation> measure_cuts(const run::Asset& asset, MeshId mesh, con
     previous = cut.clusters;
     const Surface surface = surface_of_clusters(asset, clusters, mesh, cut.clusters);
     measured.push_back({threshold, cut.stored_error, find_largest_deviation(truth, surface, {.samples = samples}),
-                        1e-12 * record.diagonal});
+                        rounding_of(record)});
   }
   return measured;
 }

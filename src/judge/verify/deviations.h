@@ -21,11 +21,12 @@ constexpr double kMeasuredShortfall = 0.05;
 struct CutDeviation {
   double threshold = 0.0, stored = 0.0;
   LargestDeviation truth;  ///< a: the source, b: the cut
-  double rounding = 0.0;  ///< decoded positions carry the last bit of a double; a flat cut deviates by that and stores 0
+  double rounding = 0.0;  ///< of the positions that were measured
   [[nodiscard]] bool is_above(double limit) const { return truth.max > limit * stored + rounding; }
-  /// True over stored.
+  /// True over stored; 0 where the true deviation is nothing but rounding.
   [[nodiscard]] double ratio() const {
-    return stored > 0.0 ? truth.max / stored : (truth.max <= rounding ? 0.0 : HUGE_VAL);
+    if (truth.max <= rounding) return 0.0;
+    return stored > 0.0 ? truth.max / stored : HUGE_VAL;
   }
 };
 

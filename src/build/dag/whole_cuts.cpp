@@ -1,0 +1,312 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "build/dag/whole_cuts.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "base/ids.h"
+#include "base/parallel.h"
+#include "base/random.h"
+#include "build/deviation/surface_tree.h"
+
+namespace meshlode::build {
+
+namespace {
+
+constexpr std::size_t kChunk = 1024;  // points that share a hint, whatever the thread count
+/// Points on triangles beside the corners: so many in all, but within so many a triangle.
+constexpr std::size_t kPoints = 100000;
+constexpr std::size_t kFewestPerTriangle = 1, kMostPerTriangle = 24;
+/// Of larger meshes a part of the triangles is looked at.
+constexpr std::size_t kMostTriangles = 100000;
+/// Points nearer to a cut than this share of its error are left alone: they belong to groups of smaller errors, which other
+/// cuts show.
+constexpr double kLookFrom = 0.7;
+/// Points of a cut from which a farther one is looked for on the same triangle: the farthest of all, and the farthest of
+/// those that are nearest to one group.
+constexpr std::size_t kClimbed = 32, kClimbedOfGroup = 4;
+/// Steps of such a search, each half as long as the one before, and points tried at each.
+constexpr int kSteps = 7, kTries = 12;
+/// From cut to cut so many more groups are finer, as a share of those that are; and what all cuts together may have, in
+/// triangles of the mesh or as such.
+constexpr std::size_t kCutShare = 8;
+constexpr std::size_t kShareOfMesh = 2, kFewTriangles = 250000;
+/// A raised group leaves the cut that it was found in, and what takes its place is looked at again.
+constexpr int kRounds = 6;
+
+using Triangle = std::array<std::uint32_t, 3>;
+
+/// Clusters as one surface, off the grid.
+struct Surface {
+  std::vector<Vec3d> positions;
+  std::vector<Triangle> triangles;
+  std::vector<std::uint32_t> cluster;  ///< per triangle, of LodDag::clusters
+
+  void add(const PreparedMesh& mesh, const LodDag& dag, std::uint32_t id) {
+    const DagCluster& source = dag.clusters[id];
+    const auto base = static_cast<std::uint32_t>(positions.size());
+    for (std::uint32_t v = 0; v < source.vertex_count; ++v) {
+      positions.push_back(mesh.grid.decode(dag.vertex_position[source.first_vertex + v]));
+    }
+    for (std::uint32_t t = 0; t < source.triangle_count; ++t) {
+      const auto& local = dag.triangles[source.first_triangle + t];
+      triangles.push_back({base + local[0], base + local[1], base + local[2]});
+      cluster.push_back(id);
+    }
+  }
+};
+
+/// A point of a source triangle.
+struct SourcePoint {
+  Vec3d at;
+  std::uint32_t triangle = 0;
+};
+
+/// A random point: of the triangle where `inside`, else of an edge. A needle is nothing but edges.
+Vec3d random_point(const std::array<Vec3d, 3>& p, bool inside, SplitMix64& random) {
+  double u = random.unit(), v = random.unit();
+  if (!inside) {
+    const std::size_t k = random.below(3);
+    return p[k] + u * (p[(k + 1) % 3] - p[k]);
+  }
+  if (u + v > 1.0) {
+    u = 1.0 - u;
+    v = 1.0 - v;
+  }
+  return p[0] + u * (p[1] - p[0]) + v * (p[2] - p[0]);
+}
+
+std::array<Vec3d, 3> corners_of(const PreparedMesh& mesh, std::uint32_t triangle) {
+  const auto& ids = mesh.exact_triangles[triangle];
+  return {mesh.exact_positions[ids[0]], mesh.exact_positions[ids[1]], mesh.exact_positions[ids[2]]};
+}
+
+/// Corners, points of edges and points inside, of triangles spread over the whole source.
+std::vector<SourcePoint> choose_points(const PreparedMesh& mesh) {
+  const std::size_t count = mesh.exact_triangles.size();
+  const std::size_t step = (count + kMostTriangles - 1) / kMostTriangles;
+  const std::size_t each = std::clamp(kPoints / std::max<std::size_t>(1, count), kFewestPerTriangle, kMostPerTriangle);
+  std::vector<SourcePoint> points;
+  std::vector<std::uint8_t> is_taken(mesh.exact_positions.size(), 0);
+  SplitMix64 random(0x77686F6C65ULL);
+  for (std::size_t i = 0; i < count; i += step) {
+    const auto t = static_cast<std::uint32_t>(i);
+    for (const std::uint32_t id : mesh.exact_triangles[t]) {
+      if (is_taken[id] == 0) points.push_back({mesh.exact_positions[id], t});
+      is_taken[id] = 1;
+    }
+    const std::array<Vec3d, 3> corners = corners_of(mesh, t);
+    for (std::size_t k = 0; k < each; ++k) points.push_back({random_point(corners, (t + k) % 2 == 0, random), t});
+  }
+  return points;
+}
+
+/// A point of the source, far from a cut.
+struct FarPoint {
+  double distance = 0.0;
+  Vec3d at{0.0};
+  std::uint32_t point = 0;  ///< where it was found from
+  GroupId nearest;          ///< of what is nearest; invalid where that is of level 0
+};
+
+class WholeCuts {
+ public:
+  WholeCuts(const PreparedMesh& mesh, double margin, LodDag& dag)
+      : mesh_(mesh), margin_(margin), dag_(dag), points_(choose_points(mesh)), outputs_(dag.groups.size()) {
+    for (std::uint32_t c = 0; c < dag_.clusters.size(); ++c) {
+      if (dag_.clusters[c].own_group.is_valid()) outputs_[dag_.clusters[c].own_group.value].push_back(c);
+    }
+  }
+
+  /// One look at all cuts. \returns how many groups it raised.
+  std::size_t look() {
+    std::vector<double> errors;
+    for (const DagGroup& group : dag_.groups) {
+      if (!group.is_terminal && group.error > 0.0) errors.push_back(group.error);
+    }
+    std::sort(errors.begin(), errors.end(), std::greater<>());
+    errors.erase(std::unique(errors.begin(), errors.end()), errors.end());
+    std::vector<double> raised(dag_.groups.size(), 0.0);
+    std::size_t triangles = 0;
+    for (std::size_t k = 0; k < errors.size(); k = next(k)) {
+      const Surface cut = cut_at(errors[k]);
+      triangles += cut.triangles.size();
+      if (k > 0 && triangles > std::max(kShareOfMesh * mesh_.triangles.size(), kFewTriangles)) break;
+      for (const FarPoint& far : find_far_points(cut, errors[k])) {
+        if (far.distance <= error_of(far.nearest)) continue;
+        const GroupId group = group_of(far.at, errors[k]);
+        if (!group.is_valid() || far.distance <= dag_.groups[group.value].error) continue;
+        raised[group.value] = std::max(raised[group.value], far.distance);
+      }
+    }
+    return raise(raised);
+  }
+
+ private:
+  static std::size_t next(std::size_t k) { return k + std::max<std::size_t>(1, k / kCutShare); }
+
+  [[nodiscard]] double error_of(GroupId group) const { return group.is_valid() ? dag_.groups[group.value].error : 0.0; }
+
+  [[nodiscard]] Surface cut_at(double threshold) const {
+    Surface cut;
+    for (std::uint32_t c = 0; c < dag_.clusters.size(); ++c) {
+      const DagCluster& cluster = dag_.clusters[c];
+      if (error_of(cluster.own_group) <= threshold && error_of(cluster.coarser_group) > threshold) cut.add(mesh_, dag_, c);
+    }
+    return cut;
+  }
+
+  /// The distance of a point from a cut where it is above `enough`, squared and in the tree's frame.
+  static bool is_far(const SurfaceTree& tree, const Vec3d& point, float enough, std::uint32_t& place) {
+    const Vec3f at = tree.to_frame(point);
+    SurfaceTree::Hit hit = tree.look_around(at, place, {});
+    if (!(hit.distance2 <= enough)) hit = tree.find_nearest(at, hit, enough);
+    if (hit.slot == kNoId) return false;
+    place = hit.slot;
+    return hit.distance2 > enough;
+  }
+
+  /// The farthest points, each with the farthest that was found around it.
+  [[nodiscard]] std::vector<FarPoint> find_far_points(const Surface& cut, double threshold) const {
+    SurfaceTree tree;
+    tree.build({cut.positions, cut.triangles});
+    const double scaled = std::max(kLookFrom * threshold, mesh_.level0_deviation) * tree.scale();
+    const auto enough = static_cast<float>(scaled * scaled);
+    std::vector<std::vector<FarPoint>> partials((points_.size() + kChunk - 1) / kChunk);
+    parallel_for_each_index(partials.size(), 1, [&](std::size_t chunk) {
+      std::uint32_t place = 0;
+      for (std::size_t i = chunk * kChunk; i < std::min(points_.size(), (chunk + 1) * kChunk); ++i) {
+        if (!is_far(tree, points_[i].at, enough, place)) continue;
+        partials[chunk].push_back({std::sqrt(tree.distance2_at(points_[i].at, place)), points_[i].at,
+                                   static_cast<std::uint32_t>(i), group_at(cut, tree, place)});
+      }
+    });
+    std::vector<FarPoint> found;
+    for (const auto& partial : partials) found.insert(found.end(), partial.begin(), partial.end());
+    std::sort(found.begin(), found.end(), [](const FarPoint& a, const FarPoint& b) {
+      return a.distance != b.distance ? a.distance > b.distance : a.point < b.point;
+    });
+    std::vector<FarPoint> chosen;
+    std::vector<std::uint8_t> taken(dag_.groups.size() + 1, 0);
+    for (const FarPoint& far : found) {
+      std::uint8_t& of_group = taken[far.nearest.is_valid() ? far.nearest.value : dag_.groups.size()];
+      const bool is_suspect = far.distance > error_of(far.nearest) && of_group < kClimbedOfGroup;
+      if (is_suspect) ++of_group;
+      if (is_suspect || chosen.size() < kClimbed) chosen.push_back(far);
+    }
+    parallel_for_each_index(chosen.size(), 1, [&](std::size_t i) { climb(cut, tree, chosen[i]); });
+    return chosen;
+  }
+
+  [[nodiscard]] GroupId group_at(const Surface& cut, const SurfaceTree& tree, std::uint32_t place) const {
+    return dag_.clusters[cut.cluster[tree.triangle_at(place)]].own_group;
+  }
+
+  /// Looks for a farther point on the same triangle of the source.
+  void climb(const Surface& cut, const SurfaceTree& tree, FarPoint& far) const {
+    const std::array<Vec3d, 3> corners = corners_of(mesh_, points_[far.point].triangle);
+    SplitMix64 random(far.point);
+    double length = 1.0;
+    for (int step = 0; step < kSteps; ++step, length *= 0.5) {
+      for (int i = 0; i < kTries; ++i) {
+        const Vec3d tried = far.at + length * (random_point(corners, i % 2 == 0, random) - far.at);
+        const SurfaceTree::Hit hit = tree.find_nearest(tree.to_frame(tried), {}, 0.0F);
+        if (hit.slot == kNoId) continue;
+        const double distance = std::sqrt(tree.distance2_at(tried, hit.slot));
+        if (distance <= far.distance) continue;
+        far.distance = distance;
+        far.at = tried;
+        far.nearest = group_at(cut, tree, hit.slot);
+      }
+    }
+  }
+
+  /// The group that stands for a point of the source in a cut: from the cluster of level 0 that the point lies on, through
+  /// what replaced it, always on the nearest side. Invalid for level 0 itself.
+  [[nodiscard]] GroupId group_of(const Vec3d& point, double threshold) {
+    if (!level0_) {
+      level0_.emplace();
+      for (std::uint32_t c = 0; c < dag_.clusters.size(); ++c) {
+        if (!dag_.clusters[c].own_group.is_valid()) level0_->add(mesh_, dag_, c);
+      }
+      level0_tree_.build({level0_->positions, level0_->triangles});
+    }
+    const SurfaceTree::Hit hit = level0_tree_.find_nearest(level0_tree_.to_frame(point), {}, 0.0F);
+    if (hit.slot == kNoId) return {};
+    std::uint32_t cluster = level0_->cluster[level0_tree_.triangle_at(hit.slot)];
+    for (;;) {
+      const GroupId group = dag_.clusters[cluster].coarser_group;
+      const std::vector<std::uint32_t>& outputs = outputs_[group.value];
+      if (dag_.groups[group.value].is_terminal || error_of(group) > threshold || outputs.empty()) {
+        return dag_.clusters[cluster].own_group;
+      }
+      cluster = nearest_of(outputs, point);
+    }
+  }
+
+  [[nodiscard]] std::uint32_t nearest_of(std::span<const std::uint32_t> clusters, const Vec3d& point) const {
+    std::uint32_t best = clusters.front();
+    double best2 = std::numeric_limits<double>::infinity();
+    for (const std::uint32_t c : clusters) {
+      Surface one;
+      one.add(mesh_, dag_, c);
+      for (const Triangle& t : one.triangles) {
+        const double distance2 =
+            point_triangle_distance2(point, {one.positions[t[0]], one.positions[t[1]], one.positions[t[2]]});
+        if (distance2 < best2) {
+          best2 = distance2;
+          best = c;
+        }
+      }
+    }
+    return best;
+  }
+
+  /// Groups come coarse to fine, so that errors are handed on from the last to the first.
+  std::size_t raise(const std::vector<double>& raised) {
+    std::size_t count = 0;
+    for (std::size_t g = raised.size(); g-- > 0;) {
+      DagGroup& group = dag_.groups[g];
+      if (group.is_terminal) continue;
+      if (raised[g] > 0.0) {
+        ++count;
+        group.deviation = std::max(group.deviation, raised[g]);
+        group.error = std::max(group.error, margin_ * raised[g]);
+      }
+      for (std::uint32_t c = group.first_cluster; c < group.first_cluster + group.cluster_count; ++c) {
+        group.error = std::max(group.error, error_of(dag_.clusters[c].own_group));
+      }
+    }
+    return count;
+  }
+
+  const PreparedMesh& mesh_;
+  double margin_;
+  LodDag& dag_;
+  std::vector<SourcePoint> points_;
+  std::vector<std::vector<std::uint32_t>> outputs_;  ///< per group: the clusters made from it
+  std::optional<Surface> level0_;                    ///< made when first asked for
+  SurfaceTree level0_tree_;
+};
+
+}  // namespace
+
+std::size_t hold_to_whole_cuts(const PreparedMesh& mesh, double margin, LodDag& dag) {
+  WholeCuts cuts(mesh, margin, dag);
+  std::size_t total = 0;
+  for (int round = 0; round < kRounds; ++round) {
+    const std::size_t raised = cuts.look();
+    total += raised;
+    if (raised == 0) break;
+  }
+  return total;
+}
+
+}  // namespace meshlode::build
