@@ -164,11 +164,11 @@ class WholeCuts {
   }
 
   /// The distance of a point from a cut where it is above `enough`, squared and in the tree's frame.
-  static bool is_far(const SurfaceTree& tree, const Vec3d& point, float enough, std::uint32_t& place) {
+  static bool is_far(const SurfaceTree& tree, const Vec3d& point, float enough, TreeSlot& place) {
     const Vec3f at = tree.to_frame(point);
     SurfaceTree::Hit hit = tree.look_around(at, place, {});
     if (!(hit.distance2 <= enough)) hit = tree.find_nearest(at, hit, enough);
-    if (hit.slot == kNoId) return false;
+    if (!hit.slot.is_valid()) return false;
     place = hit.slot;
     return hit.distance2 > enough;
   }
@@ -181,7 +181,7 @@ class WholeCuts {
     const auto enough = static_cast<float>(scaled * scaled);
     std::vector<std::vector<FarPoint>> partials((points_.size() + kChunk - 1) / kChunk);
     parallel_for_each_index(partials.size(), 1, [&](std::size_t chunk) {
-      std::uint32_t place = 0;
+      TreeSlot place{0U};
       for (std::size_t i = chunk * kChunk; i < std::min(points_.size(), (chunk + 1) * kChunk); ++i) {
         if (!is_far(tree, points_[i].at, enough, place)) continue;
         partials[chunk].push_back({std::sqrt(tree.distance2_at(points_[i].at, place)), points_[i].at,
@@ -205,7 +205,7 @@ class WholeCuts {
     return chosen;
   }
 
-  [[nodiscard]] GroupId group_at(const Surface& cut, const SurfaceTree& tree, std::uint32_t place) const {
+  [[nodiscard]] GroupId group_at(const Surface& cut, const SurfaceTree& tree, TreeSlot place) const {
     return dag_.clusters[cut.cluster[tree.triangle_at(place)]].own_group;
   }
 
@@ -218,7 +218,7 @@ class WholeCuts {
       for (int i = 0; i < kTries; ++i) {
         const Vec3d tried = far.at + length * (random_point(corners, i % 2 == 0, random) - far.at);
         const SurfaceTree::Hit hit = tree.find_nearest(tree.to_frame(tried), {}, 0.0F);
-        if (hit.slot == kNoId) continue;
+        if (!hit.slot.is_valid()) continue;
         const double distance = std::sqrt(tree.distance2_at(tried, hit.slot));
         if (distance <= far.distance) continue;
         far.distance = distance;
@@ -239,7 +239,7 @@ class WholeCuts {
       level0_tree_.build({level0_->positions, level0_->triangles});
     }
     const SurfaceTree::Hit hit = level0_tree_.find_nearest(level0_tree_.to_frame(point), {}, 0.0F);
-    if (hit.slot == kNoId) return {};
+    if (!hit.slot.is_valid()) return {};
     std::uint32_t cluster = level0_->cluster[level0_tree_.triangle_at(hit.slot)];
     for (;;) {
       const GroupId group = dag_.clusters[cluster].coarser_group;

@@ -94,7 +94,7 @@ AttributeDeviation measure_attributes(const SourceTree& source, const SurfaceAtt
   constexpr std::array<Weights, 3> kPoints{{{2.0 / 3, 1.0 / 6, 1.0 / 6}, {1.0 / 6, 2.0 / 3, 1.0 / 6}, {1.0 / 6, 1.0 / 6, 2.0 / 3}}};
   double total = 0.0, normal2 = 0.0;
   std::array<std::vector<UvError>, scene::kMaxUvSets> uv_errors;
-  std::uint32_t place = 0;
+  TreeSlot place{0U};
   for (std::uint32_t t = 0; t < group.triangles.size(); ++t) {
     const auto& ids = group.triangles[t];
     const TriangleCorners corners{group.positions[ids[0]], group.positions[ids[1]], group.positions[ids[2]]};
@@ -107,7 +107,7 @@ AttributeDeviation measure_attributes(const SourceTree& source, const SurfaceAtt
       const Vec3d point = corners[0] * w.a + corners[1] * w.b + corners[2] * w.c;
       const Vec3f at = tree.to_frame(point);
       const SurfaceTree::Hit hit = tree.find_nearest(at, tree.look_around(at, place, {}), 0.0F);
-      if (hit.slot == kNoId) continue;
+      if (!hit.slot.is_valid()) continue;
       place = hit.slot;
       const Interpolator theirs(source_attributes, stride, tree.triangle_at(place));
       const Weights there = weights_of(point, tree.corners_at(place));

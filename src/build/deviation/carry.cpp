@@ -10,11 +10,11 @@ namespace meshlode::build {
 
 double project_samples(const SurfaceTree& group_tree, std::vector<CarriedSample>& samples) {
   double largest2 = 0.0;
-  std::uint32_t place = 0;  // of the sample before: samples come in the order of the surface that carried them
+  TreeSlot place{0U};  // of the sample before: samples come in the order of the surface that carried them
   for (CarriedSample& sample : samples) {
     const Vec3f point = group_tree.to_frame(sample.point);
     const SurfaceTree::Hit hit = group_tree.find_nearest(point, group_tree.look_around(point, place, {}), 0.0F);
-    place = hit.slot == kNoId ? 0 : hit.slot;
+    place = hit.slot.is_valid() ? hit.slot : TreeSlot{0U};
     const double distance2 = group_tree.distance2_at(sample.point, place);
     sample.triangle = group_tree.triangle_at(place);
     sample.distance = static_cast<float>(std::sqrt(distance2));

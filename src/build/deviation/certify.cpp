@@ -52,12 +52,12 @@ double larger(double a, double b) { return b <= a ? a : b; }
 
 struct Piece {
   std::array<Vec3d, kMaxCorners> corner;
-  std::array<std::uint32_t, kMaxCorners> place;  ///< of the nearest triangle of the other side
+  std::array<TreeSlot, kMaxCorners> place;   ///< of the nearest triangle of the other side
   std::array<double, kMaxCorners> distance;      ///< to it
   std::size_t count = 0;
   int depth = 0;
 
-  void add(const Vec3d& p, std::uint32_t at, double d) {
+  void add(const Vec3d& p, TreeSlot at, double d) {
     corner[count] = p;
     place[count] = at;
     distance[count++] = d;
@@ -68,13 +68,13 @@ class OneWay {
  public:
   explicit OneWay(const SurfaceTree& tree) : tree_(tree) {}
 
-  [[nodiscard]] double distance(const Vec3d& p, std::uint32_t place) const {
+  [[nodiscard]] double distance(const Vec3d& p, TreeSlot place) const {
     return std::sqrt(tree_.distance2_at(p, place));
   }
-  [[nodiscard]] std::uint32_t nearest(const Vec3d& p, std::uint32_t hint) const {
+  [[nodiscard]] TreeSlot nearest(const Vec3d& p, TreeSlot hint) const {
     const Vec3f at = tree_.to_frame(p);
-    const std::uint32_t place = tree_.find_nearest(at, tree_.look_around(at, hint, {}), 0.0F).slot;
-    return place == kNoId ? hint : place;
+    const TreeSlot place = tree_.find_nearest(at, tree_.look_around(at, hint, {}), 0.0F).slot;
+    return place.is_valid() ? place : hint;
   }
 
   double largest = 0.0;  ///< of all vertices, to their nearest triangle
@@ -108,7 +108,7 @@ class OneWay {
 
  private:
   struct Best {
-    std::uint32_t place = 0;
+    TreeSlot place{0U};
     std::size_t worst_corner = 0;
     double bound = std::numeric_limits<double>::infinity();
   };
@@ -117,7 +117,7 @@ class OneWay {
     return bound <= low * (1.0 + kTolerance) + kShareOfLargest * largest;
   }
 
-  void try_triangle(const Piece& piece, std::uint32_t place, Best& best) const {
+  void try_triangle(const Piece& piece, TreeSlot place, Best& best) const {
     if (place == best.place && best.bound < std::numeric_limits<double>::infinity()) return;
     const TriangleCorners corners = tree_.corners_at(place);
     const double beaten2 = best.bound * best.bound;
@@ -136,7 +136,7 @@ class OneWay {
   }
 
   /// Along the line where two triangles are equally far, or through the middle of the longest edge.
-  void split(const Piece& piece, std::uint32_t one, std::uint32_t other) {
+  void split(const Piece& piece, TreeSlot one, TreeSlot other) {
     std::array<double, kMaxCorners> balance;  // negative: nearer to one
     bool has_one = false, has_other = false;
     if (piece.depth >= kMaxCuts) return split_longest(piece);
@@ -161,7 +161,7 @@ class OneWay {
       const Vec3d p =
           plane ? piece.corner[i] + (piece.corner[j] - piece.corner[i]) * (balance[i] / (balance[i] - balance[j]))
                 : find_balance(piece.corner[i], piece.corner[j], balance[i], balance[j], one, other);
-      const std::uint32_t place = nearest(p, one);
+      const TreeSlot place = nearest(p, one);
       const double d = distance(p, place);
       a.add(p, place, d);
       b.add(p, place, d);
@@ -176,7 +176,7 @@ class OneWay {
   };
 
   /// Of two triangles with a common edge: the plane through it halfway between them, its normal towards `other`.
-  [[nodiscard]] std::optional<Plane> find_bisector(std::uint32_t one, std::uint32_t other) const {
+  [[nodiscard]] std::optional<Plane> find_bisector(TreeSlot one, TreeSlot other) const {
     const auto& t = tree_.indices_at(one);
     const auto& u = tree_.indices_at(other);
     for (std::size_t i = 0; i < 3; ++i) {
@@ -218,7 +218,7 @@ class OneWay {
       }
       const std::size_t i = longest, j = (i + 1) % 3, k = (i + 2) % 3;
       const Vec3d p = (piece.corner[i] + piece.corner[j]) * 0.5;
-      const std::uint32_t place = nearest(p, piece.place[i]);
+      const TreeSlot place = nearest(p, piece.place[i]);
       const double d = distance(p, place);
       a.add(piece.corner[i], piece.place[i], piece.distance[i]);
       a.add(p, place, d);
@@ -231,8 +231,8 @@ class OneWay {
     stack_.push_back(b);
   }
 
-  [[nodiscard]] Vec3d find_balance(Vec3d a, Vec3d b, double at_a, double at_b, std::uint32_t one,
-                                   std::uint32_t other) const {
+  [[nodiscard]] Vec3d find_balance(Vec3d a, Vec3d b, double at_a, double at_b, TreeSlot one,
+                                   TreeSlot other) const {
     for (int step = 0; step < 4; ++step) {
       const Vec3d p = a + (b - a) * (at_a / (at_a - at_b));
       const double at_p = distance(p, one) - distance(p, other);
@@ -256,12 +256,12 @@ class OneWay {
 template <class Give>
 void cover_surface(const GroupSurface& surface, const SurfaceTree& other, const Give& give) {
   OneWay way(other);
-  std::vector<std::uint32_t> place(surface.positions.size(), kNoId);
+  std::vector<TreeSlot> place(surface.positions.size());
   std::vector<double> distance(surface.positions.size(), 0.0);
-  std::uint32_t hint = 0;
+  TreeSlot hint{0U};
   for (const auto& t : surface.triangles) {
     for (const std::uint32_t v : t) {
-      if (place[v] != kNoId) continue;
+      if (place[v].is_valid()) continue;
       hint = place[v] = way.nearest(surface.positions[v], hint);
       distance[v] = way.distance(surface.positions[v], hint);
       way.largest = std::max(way.largest, distance[v]);

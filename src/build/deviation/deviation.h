@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "base/vec.h"
+#include "build/deviation/tree_slot.h"
 
 namespace meshlode::build {
 
@@ -38,7 +39,7 @@ struct CarriedSample {
   Vec3d point;                 ///< on the source, relative to the origin, object units
   std::uint32_t triangle = 0;  ///< of the surface that carries it: the one its nearest point lies on
   float distance = 0.0F;       ///< to that surface, for thinning
-  std::uint32_t place = 0;     ///< of the SourceTree: where a search for the source near this point may begin
+  TreeSlot place{0U};          ///< of the SourceTree: where a search for the source near this point may begin
 };
 
 /// A simplified group. Triangle ids are indices into `triangles`.

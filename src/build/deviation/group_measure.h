@@ -41,7 +41,7 @@ struct Effort {
 /// for each triangle of the group where its search may begin. `high` gets points of the group near the maximum; their
 /// places are those of their nearest triangles of the source.
 [[nodiscard]] Farthest measure_to_source(const SurfaceTree& source, const GroupSurface& group, const GroupEdges& edges,
-                                         const std::vector<std::uint32_t>& places, Farthest farthest,
+                                         const std::vector<TreeSlot>& places, Farthest farthest,
                                          Effort budget, std::vector<CarriedSample>& high);
 
 /// Which points of the source a group stands for: those that were near enough to what it replaces, on the same side and
@@ -65,7 +65,7 @@ class OwnerTest {
   bool is_whole_;  ///< there is nobody else
   SurfaceTree tree_;  ///< over it and its edges, built when first asked
   std::optional<GroupEdges> edges_;
-  std::uint32_t place_ = 0;
+  TreeSlot place_{0U};
 };
 
 /// Source to group around the farthest samples, around `high` and behind what the group replaces where that is folded

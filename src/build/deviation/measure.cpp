@@ -29,11 +29,11 @@ class SourceProbe {
  public:
   SourceProbe(const SurfaceTree& tree, const Farthest& farthest) : tree_(tree), farthest_(farthest) { set_enough(); }
 
-  [[nodiscard]] Probe measure(const Vec3d& point, std::uint32_t place, std::uint32_t /*owner*/ = 0) {
+  [[nodiscard]] Probe measure(const Vec3d& point, TreeSlot place, std::uint32_t /*owner*/ = 0) {
     const Vec3f at = tree_.to_frame(point);
     SurfaceTree::Hit hit = tree_.look_around(at, place, {});
     if (!(hit.distance2 <= enough_)) hit = tree_.find_nearest(at, hit, enough_);
-    if (hit.slot == kNoId) return {maximum(), place};  // farther than floats reach: not on any real mesh
+    if (!hit.slot.is_valid()) return {maximum(), place};  // farther than floats reach: not on any real mesh
     if (hit.distance2 <= enough_) return {std::sqrt(static_cast<double>(hit.distance2)) / tree_.scale(), hit.slot};
     const double value = std::sqrt(tree_.distance2_at(point, hit.slot));
     const bool is_higher = value > maximum();
@@ -62,29 +62,29 @@ class SourceProbe {
 }  // namespace
 
 Farthest measure_to_source(const SurfaceTree& source, const GroupSurface& group, const GroupEdges& edges,
-                           const std::vector<std::uint32_t>& places, Farthest farthest, Effort budget,
+                           const std::vector<TreeSlot>& places, Farthest farthest, Effort budget,
                            std::vector<CarriedSample>& high) {
   SourceProbe probe(source, farthest);
   const std::size_t count = group.triangles.size();
-  std::vector<Probe> at_vertex(group.positions.size(), {0.0, kNoId});
+  std::vector<Probe> at_vertex(group.positions.size(), {0.0, TreeSlot()});
   std::vector<Patch> patches(count);
-  std::vector<Probe> at_edge(edges.use_count.size(), {0.0, kNoId});
-  std::uint32_t place = 0;
+  std::vector<Probe> at_edge(edges.use_count.size(), {0.0, TreeSlot()});
+  TreeSlot place{0U};
   for (std::size_t t = 0; t < count; ++t) {
     const auto& ids = group.triangles[t];
     Patch& patch = patches[t];
-    if (places[t] != kNoId) place = places[t];
+    if (places[t].is_valid()) place = places[t];
     for (std::size_t k = 0; k < 3; ++k) patch.corner[k] = group.positions[ids[k]];
     const Probe center = probe.measure((patch.corner[0] + patch.corner[1] + patch.corner[2]) / 3.0, place);
     place = center.place;
     for (std::size_t k = 0; k < 3; ++k) {
       Probe& vertex = at_vertex[ids[k]];
-      if (vertex.place == kNoId) vertex = probe.measure(patch.corner[k], place);
+      if (!vertex.place.is_valid()) vertex = probe.measure(patch.corner[k], place);
       patch.at_corner[k] = vertex;
     }
     for (std::size_t k = 0; k < 3; ++k) {
       Probe& middle = at_edge[edges.of_triangle[t][k]];
-      if (middle.place == kNoId) middle = probe.measure(patch.middle(k), place);
+      if (!middle.place.is_valid()) middle = probe.measure(patch.middle(k), place);
       patch.at_middle[k] = middle;
     }
     patch.set_estimate(center.value);
@@ -110,7 +110,7 @@ GroupDeviation measure_group(const SourceTree& source, const GroupSurface& group
   std::vector<CarriedSample> projected(samples.begin(), samples.end());
   const GroupEdges edges(group);
   Farthest farthest{project_samples(group_tree, projected), options.least};
-  std::vector<std::uint32_t> places(group.triangles.size(), kNoId);
+  std::vector<TreeSlot> places(group.triangles.size());
   for (const CarriedSample& sample : projected) places[sample.triangle] = sample.place;
   std::vector<CarriedSample> high;
   const Effort effort{64 + group.triangles.size() / 4 + options.extra_effort,

@@ -20,7 +20,7 @@ namespace meshlode::build {
 
 struct Probe {
   double value = 0.0;       ///< distance of a point to the other side
-  std::uint32_t place = 0;  ///< of the tree over the other side, near the point's nearest
+  TreeSlot place{0U};       ///< of the tree over the other side, near the point's nearest
 };
 
 /// A triangle with six points: its corners, and the middles of its edges (of the edge that starts at corner k).
@@ -68,10 +68,10 @@ struct Patch {
 /// of the other side that are near the six points, the one that is best for all three corners bounds the patch.
 [[nodiscard]] inline double bound_by_one_triangle(const SurfaceTree& other, const Patch& patch) {
   double best2 = std::numeric_limits<double>::infinity();
-  std::array<std::uint32_t, 6> tried;
+  std::array<TreeSlot, 6> tried;
   std::size_t count = 0;
   for (std::size_t k = 0; k < 6; ++k) {
-    const std::uint32_t place = k < 3 ? patch.at_corner[k].place : patch.at_middle[k - 3].place;
+    const TreeSlot place = k < 3 ? patch.at_corner[k].place : patch.at_middle[k - 3].place;
     if (std::find(tried.begin(), tried.begin() + static_cast<std::ptrdiff_t>(count), place) !=
         tried.begin() + static_cast<std::ptrdiff_t>(count)) {
       continue;

@@ -54,7 +54,7 @@ class SourceSearch {
     const std::uint32_t first = source_.tree.triangle_at(seed.place);
     const double radius2 = radius * radius;
     std::size_t points = 0;
-    const auto visit = [&](std::uint32_t vertex, std::uint32_t through, std::uint32_t place) {
+    const auto visit = [&](std::uint32_t vertex, std::uint32_t through, TreeSlot place) {
       const Vec3d& at = source_.positions[vertex];
       const Vec3d away = at - seed.point;
       if (glm::dot(away, away) > radius2 || !seen_.insert(vertex)) return;
@@ -62,7 +62,7 @@ class SourceSearch {
       const Probe probe = measure(at, place, through);
       if (is_ours_) frontier_.push_back({vertex, probe.place});
     };
-    const std::uint32_t start = place_of_triangle(seed);
+    const TreeSlot start = place_near(seed.point);
     for (const std::uint32_t vertex : source_.triangles[first]) visit(vertex, first, start);
     look_inside(first, radius, start);
     for (std::size_t next = 0; next < frontier_.size() && points < kMaxPointsPerSeed; ++next) {
@@ -78,9 +78,9 @@ class SourceSearch {
   /// The triangle of the source that is nearest to a point of what the group replaces, and those around it.
   void search_behind(const Vec3d& point) {
     const SurfaceTree::Hit hit = source_.tree.find_nearest(source_.tree.to_frame(point), {}, 0.0F);
-    if (hit.slot == kNoId) return;
+    if (!hit.slot.is_valid()) return;
     const std::uint32_t triangle = source_.tree.triangle_at(hit.slot);
-    const std::uint32_t place = tree_.find_nearest(tree_.to_frame(point), {}, 0.0F).slot;
+    const TreeSlot place = place_near(point);
     look_inside(triangle, 0.0, place);
     for (const std::uint32_t corner : source_.triangles[triangle]) {
       for (const std::uint32_t around : source_.triangles_around(corner)) look_inside(around, 0.0, place);
@@ -93,14 +93,16 @@ class SourceSearch {
   void search_everywhere(std::size_t budget, std::vector<CarriedSample>& found) {
     struct Part {
       double bound;
-      std::uint32_t level, index, place, order;
+      std::uint32_t level, index;
+      TreeSlot place;  ///< of the group's tree
+      std::uint32_t order;
       [[nodiscard]] bool operator<(const Part& other) const {
         return bound != other.bound ? bound < other.bound : order > other.order;
       }
     };
     const double before = maximum();
     const SurfaceTree& tree = source_.tree;
-    std::vector<Part> heap{{std::numeric_limits<double>::infinity(), 0, 0, 0, 0}};
+    std::vector<Part> heap{{std::numeric_limits<double>::infinity(), 0, 0, TreeSlot{0U}, 0}};
     std::uint32_t order = 0;
     std::size_t measured = 0;
     while (measured < budget && !heap.empty()) {
@@ -110,7 +112,7 @@ class SourceSearch {
       if (!(part.bound > kWorthwhile * maximum())) break;
       if (part.level == tree.depth()) {
         for (std::uint32_t slot = 4 * part.index; slot < std::min(4 * part.index + 4, tree.size()); ++slot) {
-          measured += look_at(tree.triangle_at(slot), part.place);
+          measured += look_at(tree.triangle_at(TreeSlot(slot)), part.place);
         }
         continue;
       }
@@ -123,7 +125,7 @@ class SourceSearch {
         const auto enough = static_cast<float>(near * near);
         SurfaceTree::Hit hit = tree_.look_around(at, part.place, {});
         if (!(hit.distance2 <= enough)) hit = tree_.find_nearest(at, hit, enough);
-        if (hit.distance2 <= enough || hit.slot == kNoId) continue;
+        if (hit.distance2 <= enough || !hit.slot.is_valid()) continue;
         const double bound = std::sqrt(static_cast<double>(hit.distance2)) / tree_.scale() + ball.radius;
         heap.push_back({bound, part.level + 1, 4 * part.index + child, hit.slot, ++order});
         std::push_heap(heap.begin(), heap.end());
@@ -143,11 +145,11 @@ class SourceSearch {
   }
 
   /// A point of a triangle of the source. Raises the maximum.
-  Probe measure(const Vec3d& point, std::uint32_t place, std::uint32_t owner) {
+  Probe measure(const Vec3d& point, TreeSlot place, std::uint32_t owner) {
     const Vec3f at = tree_.to_frame(point);
     SurfaceTree::Hit hit = tree_.look_around(at, place, {});
     if (!(hit.distance2 <= enough_)) hit = tree_.find_nearest(at, hit, enough_);
-    const Probe dismissed{kDismissShare * maximum(), hit.slot == kNoId ? place : hit.slot};
+    const Probe dismissed{kDismissShare * maximum(), hit.slot.is_valid() ? hit.slot : place};
     is_ours_ = true;
     if (hit.distance2 <= enough_) return dismissed;
     const TriangleCorners facing = source_.corners(owner);
@@ -165,13 +167,14 @@ class SourceSearch {
 
  private:
   struct Reached {
-    std::uint32_t vertex, place;
+    std::uint32_t vertex;
+    TreeSlot place;
   };
 
-  // A seed knows its triangle of the group; the tree's places are near each other where triangles are, so that any
-  // place will do to begin with.
-  [[nodiscard]] std::uint32_t place_of_triangle(const CarriedSample& seed) const {
-    return tree_.find_nearest(tree_.to_frame(seed.point), {}, 0.0F).slot;
+  /// Of the group's tree: where a search around the point may begin.
+  [[nodiscard]] TreeSlot place_near(const Vec3d& point) const {
+    const TreeSlot nearest = tree_.find_nearest(tree_.to_frame(point), {}, 0.0F).slot;
+    return nearest.is_valid() ? nearest : TreeSlot{0U};
   }
 
   void set_enough() {
@@ -181,7 +184,7 @@ class SourceSearch {
 
   /// A triangle of the source: its corners, and its inside where that may be farther than the maximum. Returns how many
   /// points were measured.
-  std::size_t look_at(std::uint32_t triangle, std::uint32_t place) {
+  std::size_t look_at(std::uint32_t triangle, TreeSlot place) {
     Patch patch;
     patch.corner = source_.corners(triangle);
     for (std::size_t k = 0; k < 3; ++k) {
@@ -193,7 +196,7 @@ class SourceSearch {
     return 10;
   }
 
-  void look_inside(std::uint32_t triangle, double radius, std::uint32_t place) {
+  void look_inside(std::uint32_t triangle, double radius, TreeSlot place) {
     Patch patch;
     patch.corner = source_.corners(triangle);
     double longest2 = 0.0;
@@ -254,12 +257,13 @@ std::vector<Vec3d> choose_far_points(const GroupSurface& finer, std::span<const 
   };
   std::vector<Far> far;
   const auto enough2 = static_cast<float>(least * least * group_tree.scale() * group_tree.scale());
-  std::uint32_t place = 0, order = 0;
+  TreeSlot place{0U};
+  std::uint32_t order = 0;
   const auto consider = [&](const Vec3d& point) {
     const Vec3f at = group_tree.to_frame(point);
     SurfaceTree::Hit hit = group_tree.look_around(at, place, {});
     if (!(hit.distance2 <= enough2)) hit = group_tree.find_nearest(at, hit, enough2);
-    if (hit.slot == kNoId) return;
+    if (!hit.slot.is_valid()) return;
     place = hit.slot;
     if (!(hit.distance2 <= enough2)) far.push_back({-group_tree.distance2_at(point, place), order++, point});
   };
@@ -300,7 +304,7 @@ bool OwnerTest::is_ours(const Vec3d& point, const Vec3d& facing) {
   }
   const Vec3f at = tree_.to_frame(point);
   const SurfaceTree::Hit hit = tree_.find_nearest(at, tree_.look_around(at, place_, {}), 0.0F);
-  if (hit.slot == kNoId) return false;
+  if (!hit.slot.is_valid()) return false;
   place_ = hit.slot;
   const TriangleCorners corners = tree_.corners_at(place_);
   if (!(std::sqrt(point_triangle_distance2(point, corners)) <= reach_)) return false;

@@ -18,9 +18,9 @@ struct SourceTree::Impl {
   SurfaceTree tree;                         ///< over the two above
   std::vector<std::uint32_t> first_corner;  ///< per position and one more: into triangle_of_corner
   std::vector<std::uint32_t> triangle_of_corner;
-  std::vector<std::uint32_t> place;  ///< per triangle: its place in the tree
+  std::vector<TreeSlot> place;  ///< per triangle: its place in the tree
 
-  [[nodiscard]] std::uint32_t place_of(std::uint32_t triangle) const { return place[triangle]; }
+  [[nodiscard]] TreeSlot place_of(std::uint32_t triangle) const { return place[triangle]; }
   [[nodiscard]] TriangleCorners corners(std::uint32_t triangle) const {
     const auto& t = triangles[triangle];
     return {positions[t[0]], positions[t[1]], positions[t[2]]};

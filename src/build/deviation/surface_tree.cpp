@@ -141,7 +141,7 @@ void SurfaceTree::fill_leaves() {
     for (std::size_t k = 0; k < kLeafSize; ++k) {
       // A leaf that is not full repeats its last triangle, which then never wins against itself.
       const std::size_t slot = std::min(kLeafSize * i + k, slot_triangle_.size() - 1);
-      const TriangleCorners corners = corners_at(static_cast<std::uint32_t>(slot));
+      const TriangleCorners corners = corners_at(TreeSlot(slot));
       const Vec3f a = to_frame(corners[0]);
       const Vec3f ab((corners[1] - corners[0]) * scale_), ac((corners[2] - corners[0]) * scale_);
       for (int axis = 0; axis < 3; ++axis) {
@@ -209,7 +209,7 @@ SurfaceTree::Hit SurfaceTree::test_leaf(const Vec3f& point, std::uint32_t index,
                 min_lanes(segment_distance2(pa, ac, dot(pa, ac), ac2), segment_distance2(pb, bc, dot(pb, bc), bc2)));
   const Lanes distance2 = choose(is_over, by_plane, by_edge);
   for (std::uint32_t k = 0; k < kLeafSize; ++k) {
-    if (distance2[k] < best.distance2) best = {std::min(4 * index + k, size() - 1), distance2[k]};
+    if (distance2[k] < best.distance2) best = {TreeSlot(std::min(4 * index + k, size() - 1)), distance2[k]};
   }
   return best;
 }

@@ -11,18 +11,16 @@
 #include <span>
 #include <vector>
 
-#include "base/ids.h"
 #include "base/vec.h"
 #include "build/deviation/point_distance.h"
+#include "build/deviation/tree_slot.h"
 
 namespace meshlode::build {
 
 class SurfaceTree {
  public:
-
-  /// A place of the tree's own order. Places near each other are near in space.
   struct Hit {
-    std::uint32_t slot = kNoId;
+    TreeSlot slot;              ///< invalid: nothing was near enough
     float distance2 = 3.0e38F;  ///< in the tree's frame, approximate
   };
 
@@ -35,15 +33,15 @@ class SurfaceTree {
   void build(const Surface& surface);
 
   [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(slot_triangle_.size()); }
-  [[nodiscard]] std::uint32_t triangle_at(std::uint32_t slot) const { return slot_triangle_[slot]; }
-  [[nodiscard]] const std::array<std::uint32_t, 3>& indices_at(std::uint32_t slot) const {
-    return surface_.triangles[slot_triangle_[slot]];
+  [[nodiscard]] std::uint32_t triangle_at(TreeSlot slot) const { return slot_triangle_[slot.value]; }
+  [[nodiscard]] const std::array<std::uint32_t, 3>& indices_at(TreeSlot slot) const {
+    return surface_.triangles[triangle_at(slot)];
   }
-  [[nodiscard]] TriangleCorners corners_at(std::uint32_t slot) const {
+  [[nodiscard]] TriangleCorners corners_at(TreeSlot slot) const {
     const auto& t = indices_at(slot);
     return {surface_.positions[t[0]], surface_.positions[t[1]], surface_.positions[t[2]]};
   }
-  [[nodiscard]] double distance2_at(const Vec3d& point, std::uint32_t slot) const {
+  [[nodiscard]] double distance2_at(const Vec3d& point, TreeSlot slot) const {
     return point_triangle_distance2(point, corners_at(slot));
   }
 
@@ -54,8 +52,8 @@ class SurfaceTree {
   /// The nearest triangle that beats `best`, else `best`. Stops as soon as something is within `enough`.
   [[nodiscard]] Hit find_nearest(const Vec3f& point, Hit best, float enough) const;
   /// The nearest of the four triangles around a slot, if it beats `best`.
-  [[nodiscard]] Hit look_around(const Vec3f& point, std::uint32_t slot, Hit best) const {
-    return test_leaf(point, slot / 4, best);
+  [[nodiscard]] Hit look_around(const Vec3f& point, TreeSlot slot, Hit best) const {
+    return test_leaf(point, slot.value / 4, best);
   }
 
   /// The tree from above: levels of nodes, four children each, and leaves of four slots below the last. Children are

@@ -33,7 +33,7 @@ TEST(SurfaceTree, FindsTheNearestTriangleAtEveryScale) {
       for (int i = 0; i < 100; ++i) {
         const Vec3d p = 1.5 * scale * Vec3d(random.signed_unit(), random.signed_unit(), random.signed_unit());
         const SurfaceTree::Hit hit = tree.find_nearest(tree.to_frame(p), {}, 0.0F);
-        ASSERT_NE(hit.slot, kNoId);
+        ASSERT_TRUE(hit.slot.is_valid());
         const double found = std::sqrt(tree.distance2_at(p, hit.slot));
         const double truth = brute_force(surface, p);
         EXPECT_GE(found, truth);
@@ -49,7 +49,7 @@ TEST(SurfaceTree, EveryTriangleHasOnePlace) {
   SurfaceTree tree;
   tree.build({surface.positions, surface.triangles});
   std::vector<int> count(surface.triangles.size(), 0);
-  for (std::uint32_t slot = 0; slot < tree.size(); ++slot) ++count[tree.triangle_at(slot)];
+  for (std::uint32_t slot = 0; slot < tree.size(); ++slot) ++count[tree.triangle_at(TreeSlot(slot))];
   for (const int c : count) EXPECT_EQ(c, 1);
 }
 
@@ -72,7 +72,7 @@ TEST(SurfaceTree, EverythingInOnePlaceIsStillASurface) {
   SurfaceTree tree;
   tree.build({surface.positions, surface.triangles});
   const SurfaceTree::Hit hit = tree.find_nearest(tree.to_frame({3, 3, 7}), {}, 0.0F);
-  ASSERT_NE(hit.slot, kNoId);
+  ASSERT_TRUE(hit.slot.is_valid());
   EXPECT_DOUBLE_EQ(tree.distance2_at({3, 3, 7}, hit.slot), 16.0);
 }
 
@@ -90,7 +90,7 @@ TEST(SurfaceTree, AnEarlyStopIsWithinWhatWasAskedFor) {
     EXPECT_TRUE(hit.distance2 <= enough || hit.distance2 == nearest.distance2);
     // A hint changes nothing but the time.
     const SurfaceTree::Hit hinted =
-        tree.find_nearest(tree.to_frame(p), tree.look_around(tree.to_frame(p), 7, {}), 0.0F);
+        tree.find_nearest(tree.to_frame(p), tree.look_around(tree.to_frame(p), TreeSlot(7U), {}), 0.0F);
     EXPECT_EQ(hinted.distance2, nearest.distance2);
   }
 }
