@@ -164,6 +164,29 @@ vec4 cull_row(Clip clip, uint row, double inverse_step) {
 }
 float gradient(vec4 row) { return length(row.xyz) * 1.00001; }
 
+// Clip coordinates of spheres: rows and the lengths of their gradients.
+struct CullRows {
+  vec4 x, y, z, w, norm;
+};
+CullRows cull_rows(Clip clip, double inverse_step) {
+  CullRows rows;
+  rows.x = cull_row(clip, 0u, inverse_step);
+  rows.y = cull_row(clip, 1u, inverse_step);
+  rows.z = cull_row(clip, 2u, inverse_step);
+  rows.w = cull_row(clip, 3u, inverse_step);
+  rows.norm = vec4(gradient(rows.x), gradient(rows.y), gradient(rows.z), gradient(rows.w));
+  return rows;
+}
+ClipBounds bounds_by(CullRows rows, vec3 center, float radius) {
+  return bounds_of(rows.x, rows.y, rows.z, rows.w, rows.norm, center, radius);
+}
+// Lengths of the side planes' gradients.
+vec4 plane_norms(CullRows rows) {
+  const float half_width = 0.5 * float(frame.width), half_height = 0.5 * float(frame.height);
+  return vec4(gradient(rows.x + half_width * rows.w), gradient(half_width * rows.w - rows.x),
+              gradient(rows.y + half_height * rows.w), gradient(half_height * rows.w - rows.y));
+}
+
 // The terminal group of a far instance, if it alone is open: every other group passes where a bound that nests over all of
 // them does (I4; run/select/far_instance.h). Most instances of a large scene are of this kind.
 uint only_open_group(uint id, MetricView view) {
@@ -185,7 +208,7 @@ bool is_few_pixels(ClipBounds b) {
 }
 
 // Its one cluster is drawn as it is, several go the way of an open group's.
-void append_far(uint id, uint slot, uint group, bool is_far, vec4 x, vec4 y, vec4 z, vec4 w, vec4 norm) {
+void append_far(uint id, uint slot, uint group, bool is_far, CullRows rows) {
   uint cluster_count = 0u, cluster = 0u;
   bool is_small = false;
   if (is_far) {
@@ -193,7 +216,7 @@ void append_far(uint id, uint slot, uint group, bool is_far, vec4 x, vec4 y, vec
     cluster = frame.groups.at[group].first_cluster;
     const GpuCluster c = frame.clusters.at[cluster];
     is_small = kFarRaster != 0u && cluster_count == 1u &&
-               is_few_pixels(bounds_of(x, y, z, w, norm, vec3(c.center[0], c.center[1], c.center[2]), c.radius));
+               is_few_pixels(bounds_by(rows, vec3(c.center[0], c.center[1], c.center[2]), c.radius));
   }
   const bool is_large = cluster_count == 1u && !is_small;
   const uint item = append_item(STAGE_SOFTWARE, is_large, counters.software_before[pass], 1u);
@@ -216,6 +239,53 @@ void append_far(uint id, uint slot, uint group, bool is_far, vec4 x, vec4 y, vec
   }
 }
 
+// Whether an instance is outside the picture or, in pass 1, hidden by now. Pass 0 is told what last frame's depth says of it:
+// `is_hidden_before`, by `last`.
+bool is_culled(uint id, CullRows rows, vec4 plane_norm, double inverse_step, inout CullRows last,
+               inout bool is_hidden_before) {
+  const vec3 center = vec3(MESH.root_center[0], MESH.root_center[1], MESH.root_center[2]);
+  const float radius = MESH.root_radius;
+  const ClipBounds b = bounds_by(rows, center, radius);
+  const float guard = slack(rows.w, center) + max(slack(rows.x, center) * 2.0 / float(frame.width),
+                                                  slack(rows.y, center) * 2.0 / float(frame.height));
+  if (is_outside(b, plane_norm, radius, guard)) return true;
+  if (kOcclusion == 0u) return false;
+  if (pass == 1u) return is_hidden(b, float(frame.camera.near_distance), frame.camera.is_orthographic != 0u);
+  last = cull_rows(make_clip(id, frame.last), inverse_step);
+  is_hidden_before = is_hidden(bounds_by(last, center, radius), float(frame.last.near_distance),
+                               frame.last.is_orthographic != 0u);
+  return false;
+}
+
+// The root of its BVH into the first queue of the pass.
+void append_root(uint id, uint slot, bool wants) {
+  const uint at = append(STAGE_QUEUE + MAX_DEPTH * pass, wants, 1u, 64u);
+  if (!wants) return;
+  if (pass == 1u) {
+    if (at < frame.retry_capacity) frame.retry_nodes.at[at] = uvec2(slot, MESH.first_node);
+    else report_overflow(OVERFLOW_RETRY);
+  } else {
+    if (at < frame.queue_capacity) frame.queue.at[at] = uvec2(slot, MESH.first_node);
+    else report_overflow(OVERFLOW_QUEUE);
+  }
+}
+
+void store_rows(uint slot, CullRows rows, vec4 plane_norm, CullRows last) {
+  frame.visible.at[slot].cull_x = rows.x;
+  frame.visible.at[slot].cull_y = rows.y;
+  frame.visible.at[slot].cull_z = rows.z;
+  frame.visible.at[slot].cull_w = rows.w;
+  frame.visible.at[slot].plane_norm = plane_norm;
+  frame.visible.at[slot].row_norm = rows.norm;
+  if (kOcclusion != 0u) {
+    frame.visible.at[slot].last_x = last.x;
+    frame.visible.at[slot].last_y = last.y;
+    frame.visible.at[slot].last_z = last.z;
+    frame.visible.at[slot].last_w = last.w;
+    frame.visible.at[slot].last_norm = last.norm;
+  }
+}
+
 void main() {
   uint id = thread_index();
   bool is_there = id < (pass == 0u ? frame.instance_count : counters.stages[STAGE_RETRY_INSTANCES].count);
@@ -223,42 +293,16 @@ void main() {
   if (is_there) is_there = (INSTANCE.flags & kInstanceSingular) == 0u && MESH.node_count > 0u;
 
   Clip clip;
-  vec4 cull_x, cull_y, cull_z, cull_w, last_x, last_y, last_z, last_w, row_norm, last_norm, plane_norm;
+  CullRows rows, last;
+  vec4 plane_norm;
   bool is_hidden_before = false;
-  last_x = last_y = last_z = last_w = last_norm = vec4(0.0);
+  last.x = last.y = last.z = last.w = last.norm = vec4(0.0);
   if (is_there) {
     const double inverse_step = 1.0lf / MESH.step;
     clip = make_clip(id, frame.camera);
-    cull_x = cull_row(clip, 0u, inverse_step);
-    cull_y = cull_row(clip, 1u, inverse_step);
-    cull_z = cull_row(clip, 2u, inverse_step);
-    cull_w = cull_row(clip, 3u, inverse_step);
-    row_norm = vec4(gradient(cull_x), gradient(cull_y), gradient(cull_z), gradient(cull_w));
-    const float half_width = 0.5 * float(frame.width), half_height = 0.5 * float(frame.height);
-    plane_norm = vec4(gradient(cull_x + half_width * cull_w), gradient(half_width * cull_w - cull_x),
-                      gradient(cull_y + half_height * cull_w), gradient(half_height * cull_w - cull_y));
-    if (kFrustum != 0u) {
-      const vec3 center = vec3(MESH.root_center[0], MESH.root_center[1], MESH.root_center[2]);
-      const float radius = MESH.root_radius;
-      const ClipBounds b = bounds_of(cull_x, cull_y, cull_z, cull_w, row_norm, center, radius);
-      const float guard = slack(cull_w, center) + max(slack(cull_x, center) * 2.0 / float(frame.width),
-                                                      slack(cull_y, center) * 2.0 / float(frame.height));
-      is_there = !is_outside(b, plane_norm, radius, guard);
-      if (is_there && kOcclusion != 0u) {
-        if (pass == 1u) {
-          is_there = !is_hidden(b, float(frame.camera.near_distance), frame.camera.is_orthographic != 0u);
-        } else {
-          const Clip last = make_clip(id, frame.last);
-          last_x = cull_row(last, 0u, inverse_step);
-          last_y = cull_row(last, 1u, inverse_step);
-          last_z = cull_row(last, 2u, inverse_step);
-          last_w = cull_row(last, 3u, inverse_step);
-          last_norm = vec4(gradient(last_x), gradient(last_y), gradient(last_z), gradient(last_w));
-          is_hidden_before = is_hidden(bounds_of(last_x, last_y, last_z, last_w, last_norm, center, radius),
-                                       float(frame.last.near_distance), frame.last.is_orthographic != 0u);
-        }
-      }
-    }
+    rows = cull_rows(clip, inverse_step);
+    plane_norm = plane_norms(rows);
+    if (kFrustum != 0u) is_there = !is_culled(id, rows, plane_norm, inverse_step, last, is_hidden_before);
   }
   if (kOcclusion != 0u && pass == 0u) {
     const bool is_retried = is_there && is_hidden_before;
@@ -276,36 +320,14 @@ void main() {
     if (kFarInstances != 0u) group = only_open_group(id, view);
   }
   const bool is_far = group != kNone;
-  if (kFarInstances != 0u) append_far(id, slot, group, is_far, cull_x, cull_y, cull_z, cull_w, row_norm);
-  const uint stage = STAGE_QUEUE + MAX_DEPTH * pass;
-  const uint at = append(stage, fits && !is_far, 1u, 64u);
+  if (kFarInstances != 0u) append_far(id, slot, group, is_far, rows);
+  append_root(id, slot, fits && !is_far);
   if (!fits) return;
-  if (!is_far) {
-    if (pass == 1u) {
-      if (at < frame.retry_capacity) frame.retry_nodes.at[at] = uvec2(slot, MESH.first_node);
-      else report_overflow(OVERFLOW_RETRY);
-    } else {
-      if (at < frame.queue_capacity) frame.queue.at[at] = uvec2(slot, MESH.first_node);
-      else report_overflow(OVERFLOW_QUEUE);
-    }
-  }
   frame.visible.at[slot].clip = clip.at;
   frame.visible.at[slot].view = view;
   frame.visible.at[slot].instance = id;
   frame.visible.at[slot].mesh = INSTANCE.mesh;
   frame.visible.at[slot].flags = INSTANCE.flags;
   if (is_far && frame.groups.at[group].cluster_count == 1u) return;  // nobody will cull anything of it
-  frame.visible.at[slot].cull_x = cull_x;
-  frame.visible.at[slot].cull_y = cull_y;
-  frame.visible.at[slot].cull_z = cull_z;
-  frame.visible.at[slot].cull_w = cull_w;
-  frame.visible.at[slot].plane_norm = plane_norm;
-  frame.visible.at[slot].row_norm = row_norm;
-  if (kOcclusion != 0u) {
-    frame.visible.at[slot].last_x = last_x;
-    frame.visible.at[slot].last_y = last_y;
-    frame.visible.at[slot].last_z = last_z;
-    frame.visible.at[slot].last_w = last_w;
-    frame.visible.at[slot].last_norm = last_norm;
-  }
+  store_rows(slot, rows, plane_norm, last);
 }

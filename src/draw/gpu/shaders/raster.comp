@@ -141,19 +141,7 @@ void orient(inout Triangle t, inout int64_t area) {
 
 bool is_snapped(uint v) { return (shared_snapped[v >> 5u] >> (v & 31u) & 1u) != 0u; }
 
-void draw_item(uint item) {
-  const uint lane = gl_LocalInvocationID.x, lanes = gl_WorkGroupSize.x;
-  const uvec2 entry = frame.items.at[item];
-  if ((entry.x & ITEM_IS_FAR) != 0u) return;  // in verify mode: all items are at the front
-  const uint slot = entry.x, cluster = entry.y;
-  const ClusterData data = open_cluster(frame.meshes.at[frame.visible.at[slot].mesh], cluster);
-  if (lane < 8u) shared_snapped[lane] = 0u;
-  if (lane == 0u) {
-    large_count = 0u;
-    has_clipped = 0u;
-  }
-  begin_strips(data, lane, lanes);
-  barrier();
+void snap_vertices(uint slot, ClusterData data, uint lane, uint lanes) {
   for (uint v = lane; v < data.vertex_count; v += lanes) {
     const ScreenVertex s = snap_vertex(clip_vertex(slot, cluster_position(data, v)));
     shared_x[v] = s.x;
@@ -161,43 +149,42 @@ void draw_item(uint item) {
     shared_depth[v] = s.depth;
     if (s.is_snapped) atomicOr(shared_snapped[v >> 5u], 1u << (v & 31u));
   }
-  count_strips(data, lane, lanes);
-  barrier();
-  resolve_slots(data, lane, lanes);
-  barrier();
-  const bool is_mirrored = (frame.visible.at[slot].flags & kInstanceMirrored) != 0u;
-  for (uint i = lane; i < data.triangle_count; i += lanes) {
-    const uvec3 v = strip_triangle(i);
-    if (!is_snapped(v.x) || !is_snapped(v.y) || !is_snapped(v.z)) {
-      has_clipped = 1u;
-      continue;
-    }
-    Triangle t = load_triangle(v);
-    const int low_x = min(t.x.x, min(t.x.y, t.x.z)), high_x = max(t.x.x, max(t.x.y, t.x.z));
-    const ivec2 columns = pixels_between(low_x, high_x, frame.width);
-    if (columns.x > columns.y) continue;  // most triangles of a far cluster lie between pixel centres
-    const int low_y = min(t.y.x, min(t.y.y, t.y.z)), high_y = max(t.y.x, max(t.y.y, t.y.z));
-    const ivec2 rows = pixels_between(low_y, high_y, frame.height);
-    if (rows.x > rows.y) continue;
-    int64_t area = doubled_area(t);
-    if (area == 0l) continue;
-    if ((area > 0l) != is_mirrored &&
-        (kDoubleSided == 0u || frame.materials.at[cluster_material(data, i)].double_sided == 0u)) {
-      continue;
-    }
-    const bool is_small = max(high_x - low_x, high_y - low_y) <= kSmallSide &&
-                          (columns.y - columns.x + 1) * (rows.y - rows.x + 1) <= kSmallPixels;
-    if (is_small) {
-      load_depth(t, v);
-      orient(t, area);
-      BEGIN_ALPHA(slot, data, i, v);
-      draw_small(t, columns, rows, int(area), item, i);
-    } else {
-      large[atomicAdd(large_count, 1u)] = i;
-    }
+}
+
+// A small triangle is drawn here and now; a larger one is listed, and one that has to be clipped is noted.
+void draw_or_list(uint item, uint slot, ClusterData data, uint i, bool is_mirrored) {
+  const uvec3 v = strip_triangle(i);
+  if (!is_snapped(v.x) || !is_snapped(v.y) || !is_snapped(v.z)) {
+    has_clipped = 1u;
+    return;
   }
-  barrier();
-  // Medium ones by slices of the workgroup side by side, then large ones by all of it.
+  Triangle t = load_triangle(v);
+  const int low_x = min(t.x.x, min(t.x.y, t.x.z)), high_x = max(t.x.x, max(t.x.y, t.x.z));
+  const ivec2 columns = pixels_between(low_x, high_x, frame.width);
+  if (columns.x > columns.y) return;  // most triangles of a far cluster lie between pixel centres
+  const int low_y = min(t.y.x, min(t.y.y, t.y.z)), high_y = max(t.y.x, max(t.y.y, t.y.z));
+  const ivec2 rows = pixels_between(low_y, high_y, frame.height);
+  if (rows.x > rows.y) return;
+  int64_t area = doubled_area(t);
+  if (area == 0l) return;
+  if ((area > 0l) != is_mirrored &&
+      (kDoubleSided == 0u || frame.materials.at[cluster_material(data, i)].double_sided == 0u)) {
+    return;
+  }
+  const bool is_small = max(high_x - low_x, high_y - low_y) <= kSmallSide &&
+                        (columns.y - columns.x + 1) * (rows.y - rows.x + 1) <= kSmallPixels;
+  if (is_small) {
+    load_depth(t, v);
+    orient(t, area);
+    BEGIN_ALPHA(slot, data, i, v);
+    draw_small(t, columns, rows, int(area), item, i);
+  } else {
+    large[atomicAdd(large_count, 1u)] = i;
+  }
+}
+
+// Medium ones by slices of the workgroup side by side, then large ones by all of it.
+void draw_listed(uint item, uint slot, ClusterData data, uint lane, uint lanes) {
   const uint slice = lane / uint(kSliceSize), slices = lanes / uint(kSliceSize);
   for (uint round = 0u; round < 2u; ++round) {
     for (uint i = round == 0u ? slice : 0u; i < large_count; i += round == 0u ? slices : 1u) {
@@ -217,6 +204,30 @@ void draw_item(uint item) {
       if (!is_medium && round == 1u) draw_large(t, columns, rows, area, item, triangle);
     }
   }
+}
+
+void draw_item(uint item) {
+  const uint lane = gl_LocalInvocationID.x, lanes = gl_WorkGroupSize.x;
+  const uvec2 entry = frame.items.at[item];
+  if ((entry.x & ITEM_IS_FAR) != 0u) return;  // in verify mode: all items are at the front
+  const uint slot = entry.x, cluster = entry.y;
+  const ClusterData data = open_cluster(frame.meshes.at[frame.visible.at[slot].mesh], cluster);
+  if (lane < 8u) shared_snapped[lane] = 0u;
+  if (lane == 0u) {
+    large_count = 0u;
+    has_clipped = 0u;
+  }
+  begin_strips(data, lane, lanes);
+  barrier();
+  snap_vertices(slot, data, lane, lanes);
+  count_strips(data, lane, lanes);
+  barrier();
+  resolve_slots(data, lane, lanes);
+  barrier();
+  const bool is_mirrored = (frame.visible.at[slot].flags & kInstanceMirrored) != 0u;
+  for (uint i = lane; i < data.triangle_count; i += lanes) draw_or_list(item, slot, data, i, is_mirrored);
+  barrier();
+  draw_listed(item, slot, data, lane, lanes);
   if (lane == 0u && has_clipped != 0u) {
     const uint at = atomicAdd(counters.stages[STAGE_CLIPPED + pass].count, 1u);
     cover(STAGE_CLIPPED + pass, at, 1u, 1u);
