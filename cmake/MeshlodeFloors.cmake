@@ -22,9 +22,11 @@ function(meshlode_share_floor_headers name)
 endfunction()
 
 # What every target of a floor has: flags, src/ and include/ to include from, its libraries. LIBS are third-party and
-# private, because a library is seen through one wrapper file of a room only.
+# private, because a library is seen through one wrapper file of a room only. A function is declared in a header or seen by
+# its own file alone, so that two files of one namespace cannot define the same one.
 function(meshlode_set_up_floor_target target)
   target_link_libraries(${target} PRIVATE meshlode_flags ${ARGN})
+  target_compile_options(${target} PRIVATE $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wmissing-declarations>)
   target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src>
                                               $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>)
   meshlode_share_floor_headers(${target})

@@ -15,7 +15,7 @@ enum class ErrorCode : int {
   kUsage = 1,        ///< an option that makes no sense
   kIo = 2,           ///< a file could not be read or written
   kInvalid = 3,      ///< input that breaks its own format's rules
-  kBuildFailed = 4,  ///< valid input that the build could not turn into an asset (cancelled, out of memory, a limit)
+  kBuildFailed = 4,  ///< valid input that no asset came of (cancelled, out of memory, a limit), or an internal error
   kUnsupported = 5,  ///< valid input that asks for something this program does not do
   kCheckFailed = 6,  ///< a check or budget was not met
 };
