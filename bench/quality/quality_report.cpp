@@ -2,23 +2,13 @@
 #include "quality_report.h"
 
 #include <algorithm>
-#include <array>
-#include <cstdarg>
 #include <cstdio>
 
+#include "base/append_format.h"
 #include "base/json_writer.h"
 
 namespace meshlode::bench {
 namespace {
-
-__attribute__((format(printf, 2, 3))) void add(std::string& out, const char* format, ...) {
-  std::array<char, 512> line{};
-  va_list args;
-  va_start(args, format);
-  std::vsnprintf(line.data(), line.size(), format, args);
-  va_end(args);
-  out += line.data();
-}
 
 /// The worse of both directions.
 judge::OneWayDrift worse(const judge::OneWayDrift& a, const judge::OneWayDrift& b) {
@@ -27,16 +17,16 @@ judge::OneWayDrift worse(const judge::OneWayDrift& a, const judge::OneWayDrift& 
 
 void add_cut(std::string& out, const MeasuredCut& cut, double diagonal) {
   const CutFigures& f = cut.figures;
-  add(out, "%9llu  %9.3e %9.3e  %9.3e %9.3e", static_cast<unsigned long long>(f.triangles), f.max() / diagonal,
+  append_format(out, "%9llu  %9.3e %9.3e  %9.3e %9.3e", static_cast<unsigned long long>(f.triangles), f.max() / diagonal,
       f.rms() / diagonal, f.max_to_cut / diagonal, f.max_to_source / diagonal);
-  if (cut.stored > 0.0) add(out, "  %9.3e %6.3f", cut.stored, f.max() / diagonal / cut.stored);
+  if (cut.stored > 0.0) append_format(out, "  %9.3e %6.3f", cut.stored, f.max() / diagonal / cut.stored);
   if (cut.drift && cut.drift->has_normals()) {
     const judge::OneWayDrift n = worse(cut.drift->normal_a_to_b, cut.drift->normal_b_to_a);
-    add(out, "  normals %.2f deg rms, %.2f p99, %.1f max", n.rms, n.p99, n.max);
+    append_format(out, "  normals %.2f deg rms, %.2f p99, %.1f max", n.rms, n.p99, n.max);
   }
   if (cut.drift && cut.drift->has_uvs()) {
     const judge::OneWayDrift u = worse(cut.drift->uv_a_to_b, cut.drift->uv_b_to_a);
-    add(out, "  UVs %.2e rms, %.2e p99, %.2e max", u.rms, u.p99, u.max);
+    append_format(out, "  UVs %.2e rms, %.2e p99, %.2e max", u.rms, u.p99, u.max);
   }
   out += "\n";
 }
@@ -73,36 +63,36 @@ void write_cut(JsonWriter& w, const MeasuredCut& cut, double diagonal) {
 
 std::string quality_text(const MeshQuality& mesh) {
   std::string out;
-  add(out, "%s: %llu source triangles, diagonal %.6g, tier %s. Deviations are shares of the diagonal.\n",
+  append_format(out, "%s: %llu source triangles, diagonal %.6g, tier %s. Deviations are shares of the diagonal.\n",
       mesh.name.c_str(), static_cast<unsigned long long>(mesh.source_triangles), mesh.diagonal, mesh.tier.c_str());
   for (const std::string& note : mesh.notes) out += "  " + note + "\n";
   if (!mesh.cuts.empty()) {
-    add(out, "  %9s  %9s  %9s %9s  %9s %9s  %9s %6s\n", "threshold", "triangles", "max", "rms", "to cut", "to source",
+    append_format(out, "  %9s  %9s  %9s %9s  %9s %9s  %9s %6s\n", "threshold", "triangles", "max", "rms", "to cut", "to source",
         "stored", "true/");
     std::vector<double> ratios;
     for (const MeasuredCut& cut : mesh.cuts) {
-      add(out, "  %9.3e  ", cut.threshold);
+      append_format(out, "  %9.3e  ", cut.threshold);
       add_cut(out, cut, mesh.diagonal);
       if (cut.stored > 0.0) ratios.push_back(cut.figures.max() / mesh.diagonal / cut.stored);
     }
     std::sort(ratios.begin(), ratios.end());
     if (!ratios.empty()) {
-      add(out, "  true/stored: median %.3f, largest %.3f over %zu cuts, %td above 1\n", ratios[ratios.size() / 2],
+      append_format(out, "  true/stored: median %.3f, largest %.3f over %zu cuts, %td above 1\n", ratios[ratios.size() / 2],
           ratios.back(), ratios.size(), ratios.end() - std::upper_bound(ratios.begin(), ratios.end(), 1.0));
     }
   }
   for (const EqualDeviation& equal : mesh.equal) {
-    add(out, "  %s, %s <= %.0e: ", equal.method.c_str(), equal.figure.c_str(), equal.x);
+    append_format(out, "  %s, %s <= %.0e: ", equal.method.c_str(), equal.figure.c_str(), equal.x);
     if (!equal.cut) {
-      add(out, "none (%.1f s)\n", equal.seconds);
+      append_format(out, "none (%.1f s)\n", equal.seconds);
       continue;
     }
     add_cut(out, *equal.cut, mesh.diagonal);
     if (equal.cuts_of_mesh > 0) {
-      add(out, "      cut at %.6e, %zu of %zu cuts tried, %.1f s\n", equal.cut->threshold, equal.cuts_measured,
+      append_format(out, "      cut at %.6e, %zu of %zu cuts tried, %.1f s\n", equal.cut->threshold, equal.cuts_measured,
           equal.cuts_of_mesh, equal.seconds);
     } else {
-      add(out, "      %zu surfaces measured, %.1f s\n", equal.cuts_measured, equal.seconds);
+      append_format(out, "      %zu surfaces measured, %.1f s\n", equal.cuts_measured, equal.seconds);
     }
   }
   return out;

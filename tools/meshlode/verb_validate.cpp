@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/file.h"
+#include "findings.h"
 #include "options.h"
 #include "base/json_writer.h"
 #include "judge/validate/rules.h"
@@ -19,20 +20,6 @@ constexpr int kCheckFailed = static_cast<int>(ErrorCode::kCheckFailed);
 
 bool is_no_asset(const judge::ValidationReport& report) {
   return std::any_of(report.findings.begin(), report.findings.end(), [](const judge::Finding& f) { return f.id == judge::info_of(judge::Rule::kL001).id; });
-}
-
-void write_findings(JsonWriter& json, const std::vector<judge::Finding>& findings) {
-  json.key("findings");
-  json.begin_array();
-  for (const judge::Finding& finding : findings) {
-    json.begin_object();
-    json.field("id", finding.id);
-    json.field("invariant", finding.invariant);
-    json.field("where", finding.where);
-    json.field("detail", finding.detail);
-    json.end_object();
-  }
-  json.end_array();
 }
 
 std::string describe(const std::string& path, const judge::ValidationReport& report, bool quiet) {

@@ -7,6 +7,7 @@
 #include "base/file.h"
 #include "run/decode/decode.h"
 #include "scene/import/import.h"
+#include "findings.h"
 #include "options.h"
 #include "outputs.h"
 #include "run/read/asset.h"
@@ -70,17 +71,7 @@ std::string to_json(const std::string& path, const std::string& source, const ju
     json.end_object();
   }
   json.end_array();
-  json.key("findings");
-  json.begin_array();
-  for (const judge::Finding& finding : report.findings) {
-    json.begin_object();
-    json.field("id", finding.id);
-    json.field("invariant", finding.invariant);
-    json.field("where", finding.where);
-    json.field("detail", finding.detail);
-    json.end_object();
-  }
-  json.end_array();
+  write_findings(json, report.findings);
   json.end_object();
   return json.text();
 }

@@ -7,6 +7,7 @@
 
 #include "run/decode/decode.h"
 #include "draw/gpu/shaders/frame.h"
+#include "draw/gpu/upload_table.h"
 #include "run/select/far_instance.h"
 #include "run/select/select.h"
 #include "run/unpack/unpack.h"
@@ -14,16 +15,6 @@
 namespace meshlode::draw {
 
 namespace {
-
-template <class T>
-Result<Buffer> make_table(Device& device, const std::vector<T>& table) {
-  auto buffer = device.make_buffer(table.size() * sizeof(T), Memory::kDevice);
-  if (!buffer) return buffer.error();
-  const std::span<const std::uint8_t> bytes(reinterpret_cast<const std::uint8_t*>(table.data()),
-                                            table.size() * sizeof(T));
-  if (const Status done = device.upload(*buffer, bytes); !done) return done.error();
-  return buffer;
-}
 
 /// Selection errors of groups and nodes: infinite, so that they never pass, where an attribute deviates by too much.
 struct Errors {

@@ -4,20 +4,11 @@
 
 #include "draw/gpu/gpu_scene.h"
 #include "draw/gpu/shaders/frame.h"
+#include "draw/gpu/upload_table.h"
 
 namespace meshlode::draw {
 
 namespace {
-
-template <class T>
-Result<Buffer> make_table(Device& device, const std::vector<T>& table) {
-  auto buffer = device.make_buffer(table.size() * sizeof(T), Memory::kDevice);
-  if (!buffer) return buffer.error();
-  const std::span<const std::uint8_t> bytes(reinterpret_cast<const std::uint8_t*>(table.data()),
-                                            table.size() * sizeof(T));
-  if (const Status done = device.upload(*buffer, bytes); !done) return done.error();
-  return buffer;
-}
 
 GpuTextureUse use_of(const std::optional<SampledTexture>& texture) {
   GpuTextureUse out{};
