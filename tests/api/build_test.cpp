@@ -348,10 +348,17 @@ TEST(ApiBuild, AThrowingCallbackIsAnError) {
   const auto result = test::build_one(arrays.primitive(), options);
   ASSERT_FALSE(result.ok());
   EXPECT_EQ(result.error().code, ErrorCode::kBuildFailed);
+  EXPECT_EQ(result.error().message(), "from the callback");  // no internal error: it is the caller's own
   options.on_progress = [](const BuildProgress&) { throw 7; };  // NOLINT: what no library throws
   const auto odd = test::build_one(arrays.primitive(), options);
   ASSERT_FALSE(odd.ok());
   EXPECT_EQ(odd.error().code, ErrorCode::kBuildFailed);
+  EXPECT_EQ(odd.error().message(), "an exception of an unknown type");
+  options.on_progress = {};
+  options.should_cancel = []() -> bool { throw std::bad_alloc(); };
+  const auto at_once = test::build_one(arrays.primitive(), options);
+  ASSERT_FALSE(at_once.ok());
+  EXPECT_EQ(at_once.error().message(), "out of memory");
 }
 
 // METIS draws from the C library's rand(): builds at the same time must not disturb each other (I10).

@@ -6,12 +6,15 @@
 #include <algorithm>
 #include <cmath>
 #include <new>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
 #include "build/api/scene_input.h"
+#include "base/guarded.h"
 #include "base/output_files.h"
 #include "scene/import/import.h"
 #include "build/build.h"
@@ -70,38 +73,65 @@ Result<build::PipelineOptions> make_pipeline_options(const BuildOptions& options
   return pipeline;
 }
 
+/// The caller's callbacks. They may throw anything: that ends the build, and is what it failed of.
+class Callbacks {
+ public:
+  explicit Callbacks(const BuildOptions& options) : options_(options) {}
+
+  /// False: the build is to stop.
+  [[nodiscard]] bool report(const build::ProgressEvent& event) {
+    return call([&] {
+      if (options_.on_progress) {
+        reached_ = std::max(reached_, event.fraction);
+        options_.on_progress({reached_, event.mesh, event.mesh_count, event.level, event.triangles, event.mesh_name});
+      }
+      return !options_.should_cancel || !options_.should_cancel();
+    });
+  }
+  [[nodiscard]] bool may_begin() {
+    return call([&] { return !options_.should_cancel || !options_.should_cancel(); });
+  }
+  /// Why the build was stopped.
+  [[nodiscard]] Error reason() const { return {ErrorCode::kBuildFailed, "", thrown_.value_or("cancelled")}; }
+  [[nodiscard]] bool has_thrown() const { return thrown_.has_value(); }
+
+ private:
+  template <class Body>
+  bool call(const Body& body) {
+    try {
+      return body();
+    } catch (const std::bad_alloc&) {
+      thrown_ = "out of memory";
+    } catch (const std::exception& failure) {
+      thrown_ = failure.what();
+    } catch (...) {
+      thrown_ = "an exception of an unknown type";
+    }
+    return false;
+  }
+
+  const BuildOptions& options_;
+  double reached_ = 0.0;
+  std::optional<std::string> thrown_;
+};
+
 Result<std::vector<std::uint8_t>> run_pipeline(const scene::Scene& scene, const BuildOptions& options) {
   const auto pipeline = make_pipeline_options(options);
   if (!pipeline) return pipeline.error();
-  double reached = 0.0;
-  const build::ProgressCallback progress = [&](const build::ProgressEvent& event) {
-    if (options.on_progress) {
-      reached = std::max(reached, event.fraction);
-      options.on_progress({reached, event.mesh, event.mesh_count, event.level, event.triangles, event.mesh_name});
-    }
-    return !options.should_cancel || !options.should_cancel();
-  };
-  if (options.should_cancel && options.should_cancel()) return Error{ErrorCode::kBuildFailed, "", "cancelled"};
+  Callbacks callbacks(options);
+  if (!callbacks.may_begin()) return callbacks.reason();
+  const build::ProgressCallback progress = [&](const build::ProgressEvent& event) { return callbacks.report(event); };
   build::PipelineReport report;
-  if (options.thread_count == 0) return build::build_lode(scene, *pipeline, progress, report);
-  // More than oneTBB has would only make it warn on stderr.
-  const std::size_t available = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
-  tbb::task_arena arena(static_cast<int>(std::min<std::size_t>(options.thread_count, available)));
-  return arena.execute([&] { return build::build_lode(scene, *pipeline, progress, report); });
-}
-
-/// Runs `body`; exceptions of the C++ library, of oneTBB and of the caller's callbacks end here.
-template <class Body>
-auto guarded(const Body& body) -> decltype(body()) {
-  try {
-    return body();
-  } catch (const std::bad_alloc&) {
-    return Error{ErrorCode::kBuildFailed, "", "out of memory"};
-  } catch (const std::exception& failure) {
-    return Error{ErrorCode::kBuildFailed, "", failure.what()};
-  } catch (...) {  // a caller's callback may throw anything
-    return Error{ErrorCode::kBuildFailed, "", "an exception of an unknown type"};
-  }
+  const auto build = [&] { return build::build_lode(scene, *pipeline, progress, report); };
+  const auto build_in_threads = [&] {
+    // More than oneTBB has would only make it warn on stderr.
+    const std::size_t available = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+    tbb::task_arena arena(static_cast<int>(std::min<std::size_t>(options.thread_count, available)));
+    return arena.execute(build);
+  };
+  auto bytes = options.thread_count == 0 ? build() : build_in_threads();
+  if (callbacks.has_thrown()) return callbacks.reason();
+  return bytes;
 }
 
 Status write_result(Result<std::vector<std::uint8_t>> bytes, OutputFiles& files, const std::filesystem::path& output) {
@@ -112,7 +142,7 @@ Status write_result(Result<std::vector<std::uint8_t>> bytes, OutputFiles& files,
 }  // namespace
 
 Result<std::vector<std::uint8_t>> build_asset(const SceneInput& scene, const BuildOptions& options) {
-  return guarded([&]() -> Result<std::vector<std::uint8_t>> {
+  return guarded({}, [&]() -> Result<std::vector<std::uint8_t>> {
     auto made = build::make_scene(scene, options.repair);
     if (!made) return made.error();
     return run_pipeline(*made, options);
@@ -120,7 +150,7 @@ Result<std::vector<std::uint8_t>> build_asset(const SceneInput& scene, const Bui
 }
 
 Status build_asset_file(const SceneInput& scene, const std::filesystem::path& output, const BuildOptions& options) {
-  return guarded([&]() -> Status {
+  return guarded({}, [&]() -> Status {
     OutputFiles files;
     if (Status status = files.claim(output); !status) return status;
     return write_result(build_asset(scene, options), files, output);
@@ -129,7 +159,7 @@ Status build_asset_file(const SceneInput& scene, const std::filesystem::path& ou
 
 Status build_file(const std::filesystem::path& input, const std::filesystem::path& output,
                   const BuildOptions& options) {
-  return guarded([&]() -> Status {
+  return guarded({}, [&]() -> Status {
     scene::ImportOptions import_options;
     import_options.repair = options.repair;
     import_options.max_decoded = options.max_decoded_bytes;
