@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the disk codecs cost and save on the pages of assets: bytes, and decoding on one thread. And how long it takes to
-// open each asset and have its root page. The best of many repetitions, in seconds of the thread's own time, because other
-// work on the machine is not the codec's.
+// What the disk codecs cost and save on the pages of assets: bytes, and decoding on one thread. And how long it takes
+// to open each asset and have its root page. The best of many repetitions, in seconds of the thread's own time, because
+// other work on the machine is not the codec's.
 //
 //   bench_codec [--codec NAME] [--repetitions 51] bunny.lode dragon.lode ...     assets of any codec
 #include <time.h>
@@ -16,12 +16,12 @@
 #include <utility>
 #include <vector>
 
+#include "build/pack/pack.h"
 #include "format/names.h"
 #include "format/page_streams.h"
-#include "build/pack/pack.h"
 #include "run/read/asset.h"
-#include "run/unpack/unpack_page.h"
 #include "run/unpack/unpack.h"
+#include "run/unpack/unpack_page.h"
 #include "thread_clock.h"
 
 namespace {
@@ -45,7 +45,8 @@ struct Totals {
 
 Totals count_triangles(const run::Asset& asset) {
   Totals totals;
-  for (const format::MeshRecord& mesh : asset.meshes()) totals.source_triangles += static_cast<double>(mesh.source_triangles);
+  for (const format::MeshRecord& mesh : asset.meshes())
+    totals.source_triangles += static_cast<double>(mesh.source_triangles);
   for (const format::ClusterRecord& cluster : asset.clusters()) totals.stored_triangles += cluster.triangle_count();
   return totals;
 }
@@ -74,8 +75,10 @@ void print_streams(const run::Asset& asset, const std::vector<build::PackedPage>
   }
   std::printf("    heads, ranges, code lengths %.3f", side / triangles);
   for (std::uint32_t s = 0; s < streams; ++s) {
-    if (s < format::kFieldStreams) std::printf(" · %s %.3f", kNames[s], bytes[s] / triangles);
-    else std::printf(" · field %u %.3f", s - format::kFieldStreams, bytes[s] / triangles);
+    if (s < format::kFieldStreams)
+      std::printf(" · %s %.3f", kNames[s], bytes[s] / triangles);
+    else
+      std::printf(" · field %u %.3f", s - format::kFieldStreams, bytes[s] / triangles);
   }
   std::printf(" B/source triangle; %.0f of %.0f vertices are twins\n", twins, vertices);
 }
@@ -88,7 +91,8 @@ void measure_codec(const run::Asset& asset, const std::vector<std::vector<std::u
   double stored_bytes = 0.0;
   for (std::size_t p = 0; p < pages.size(); ++p) {
     const auto& mesh = asset.meshes()[asset.groups()[asset.pages()[p].first_group].mesh];
-    const std::span<const std::uint8_t> bytes{reinterpret_cast<const std::uint8_t*>(pages[p].data()), pages[p].size() * 4};
+    const std::span<const std::uint8_t> bytes{reinterpret_cast<const std::uint8_t*>(pages[p].data()),
+                                              pages[p].size() * 4};
     auto page = build::pack_page(mesh, bytes, codec);
     if (!page) fail(name, page.error().detail);
     decoded_bytes += static_cast<double>(bytes.size());
@@ -149,9 +153,12 @@ int main(int argc, char** argv) {
   int repetitions = 51;
   int first = 1;
   for (; first + 2 < argc && std::string(argv[first]).starts_with("--"); first += 2) {
-    if (std::string(argv[first]) == "--codec") only = argv[first + 1];
-    else if (std::string(argv[first]) == "--repetitions") repetitions = std::max(1, std::atoi(argv[first + 1]));
-    else fail(argv[first], "is no option");
+    if (std::string(argv[first]) == "--codec")
+      only = argv[first + 1];
+    else if (std::string(argv[first]) == "--repetitions")
+      repetitions = std::max(1, std::atoi(argv[first + 1]));
+    else
+      fail(argv[first], "is no option");
   }
   for (int i = first; i < argc; ++i) {
     const std::string path = argv[i];

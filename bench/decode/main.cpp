@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How fast loaded pages become integers and float attributes on one thread: every cluster of an asset, again and again into
-// the same arrays. The best of many repetitions, in seconds of the thread's own time, because other work on the machine is
-// not ours.
+// How fast loaded pages become integers and float attributes on one thread: every cluster of an asset, again and again
+// into the same arrays. The best of many repetitions, in seconds of the thread's own time, because other work on the
+// machine is not ours.
 //
 //   bench_decode bunny.lode dragon.lode ...
 #include <time.h>
@@ -62,7 +62,8 @@ void measure(const std::string& path) {
     for (std::size_t p = 0; p < pages.size(); ++p) {
       const format::PageRecord& record = asset->pages()[p];
       const format::MeshRecord& mesh = asset->meshes()[asset->groups()[record.first_group].mesh];
-      for (std::uint32_t i = 0; i < record.cluster_count; ++i) work(mesh, pages[p], ClusterId{record.first_cluster + i});
+      for (std::uint32_t i = 0; i < record.cluster_count; ++i)
+        work(mesh, pages[p], ClusterId{record.first_cluster + i});
     }
   };
   const double integers = best_seconds([&] {
@@ -78,8 +79,8 @@ void measure(const std::string& path) {
       seen += attributes.positions[0].x;
     });
   });
-  std::printf("%s: %.0f vertices, %.0f triangles in clusters\n", std::filesystem::path(path).filename().c_str(), vertices,
-              triangles);
+  std::printf("%s: %.0f vertices, %.0f triangles in clusters\n", std::filesystem::path(path).filename().c_str(),
+              vertices, triangles);
   std::printf("  integers and triangles   %7.1f M vertices/s %7.1f M triangles/s\n", vertices / integers * 1e-6,
               triangles / integers * 1e-6);
   std::printf("  float attributes         %7.1f M vertices/s%s\n", vertices / floats * 1e-6, seen == 1e30F ? " " : "");

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "base/file.h"
-#include "draw/gpu/renderer.h"
 #include "base/json_writer.h"
+#include "draw/gpu/renderer.h"
 #include "scenes.h"
 
 namespace meshlode::bench {

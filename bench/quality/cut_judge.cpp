@@ -16,8 +16,8 @@ constexpr double kAreaKept = 0.75;
 
 }  // namespace
 
-CutJudge::CutJudge(const judge::Surface& source, const run::Asset& asset, std::span<const run::DecodedCluster> decoded, MeshId mesh,
-                   std::uint64_t samples)
+CutJudge::CutJudge(const judge::Surface& source, const run::Asset& asset, std::span<const run::DecodedCluster> decoded,
+                   MeshId mesh, std::uint64_t samples)
     : source_(source), asset_(asset), decoded_(decoded), mesh_(mesh), samples_(samples), source_tree_(source) {
   const judge::AreaSamples area_samples(source, samples, 1);
   sample_count_ = static_cast<std::size_t>(area_samples.count());

@@ -9,10 +9,10 @@
 #include <span>
 #include <vector>
 
-#include "run/decode/decode.h"
 #include "judge/metrics/area_samples.h"
 #include "judge/metrics/metrics.h"
 #include "judge/metrics/triangle_tree.h"
+#include "run/decode/decode.h"
 #include "run/select/select.h"
 
 namespace meshlode::bench {
@@ -30,8 +30,8 @@ class CutJudge {
  public:
   /// At least `samples` area-uniform samples each way for cuts that have three quarters of the source's area or more.
   /// \pre the arguments outlive this
-  CutJudge(const judge::Surface& source, const run::Asset& asset, std::span<const run::DecodedCluster> decoded, MeshId mesh,
-           std::uint64_t samples);
+  CutJudge(const judge::Surface& source, const run::Asset& asset, std::span<const run::DecodedCluster> decoded,
+           MeshId mesh, std::uint64_t samples);
 
   [[nodiscard]] CutFigures measure(std::span<const ClusterId> clusters) { return *measure_within(clusters, {}); }
   struct Limit {

@@ -18,13 +18,13 @@
 #include "cut_judge.h"
 #include "cut_search.h"
 #include "format/names.h"
-#include "run/decode/decode.h"
-#include "scene/import/import.h"
 #include "judge/metrics/attribute_drift.h"
+#include "out/report/info.h"
 #include "quality_report.h"
 #include "reference.h"
-#include "out/report/info.h"
+#include "run/decode/decode.h"
 #include "run/select/select.h"
+#include "scene/import/import.h"
 
 namespace {
 
@@ -111,8 +111,8 @@ bool parse(int argc, char** argv, Options& o) {
 /// One mesh with everything that its cuts are measured against.
 class MeshBench {
  public:
-  MeshBench(const scene::SourceMesh& source, const run::Asset& asset, std::span<const run::DecodedCluster> decoded, MeshId mesh,
-            const Options& options)
+  MeshBench(const scene::SourceMesh& source, const run::Asset& asset, std::span<const run::DecodedCluster> decoded,
+            MeshId mesh, const Options& options)
       : asset_(asset),
         decoded_(decoded),
         mesh_(mesh),
@@ -138,7 +138,8 @@ class MeshBench {
       if (!out.cuts.empty() && out.cuts.back().figures.triangles == figures.triangles) continue;
       out.cuts.push_back(measured(threshold, cut, figures, options_.drift == "all"));
     }
-    for (const double x : options_.at_max) out.equal.push_back(equal(run::CutError::kSelection, bench::Figure::kMax, x));
+    for (const double x : options_.at_max)
+      out.equal.push_back(equal(run::CutError::kSelection, bench::Figure::kMax, x));
     for (const double x : options_.at_rms) {
       out.equal.push_back(equal(run::CutError::kSelection, bench::Figure::kRms, x));
       out.equal.push_back(equal(run::CutError::kQuadric, bench::Figure::kRms, x));
@@ -183,14 +184,15 @@ class MeshBench {
     }
   }
 
-  bench::MeasuredCut measured(double threshold, const run::UniformCut& cut, const bench::CutFigures& figures, bool with_drift) {
+  bench::MeasuredCut measured(double threshold, const run::UniformCut& cut, const bench::CutFigures& figures,
+                              bool with_drift) {
     const double diagonal = asset_.meshes()[mesh_.value].diagonal;
     bench::MeasuredCut out{threshold, cut.stored_error / diagonal, figures, {}};
     if (with_drift) {
       const judge::DriftSurface surface(judge::shaded_surface_of_clusters(asset_, decoded_, mesh_, cut.clusters));
       // A seam may have moved sideways by as much as the surface has moved at all.
-      out.drift = judge::measure_drift(shaded_, surface,
-                                {.samples = options_.samples, .tie = 1e-7 * diagonal, .seam_reach = figures.max()});
+      out.drift = judge::measure_drift(
+          shaded_, surface, {.samples = options_.samples, .tie = 1e-7 * diagonal, .seam_reach = figures.max()});
     }
     return out;
   }
@@ -198,8 +200,13 @@ class MeshBench {
   bench::EqualDeviation equal(run::CutError by, bench::Figure figure, double x) {
     const auto start = std::chrono::steady_clock::now();
     const double diagonal = asset_.meshes()[mesh_.value].diagonal;
-    bench::EqualDeviation out{by == run::CutError::kQuadric ? "quadric cuts" : "cuts", figure == bench::Figure::kMax ? "max" : "rms",
-                       x, {}, 0, 0, 0.0};
+    bench::EqualDeviation out{by == run::CutError::kQuadric ? "quadric cuts" : "cuts",
+                              figure == bench::Figure::kMax ? "max" : "rms",
+                              x,
+                              {},
+                              0,
+                              0,
+                              0.0};
     bench::CutSearch search{by, figure, x * diagonal};
     if (options_.normals > 0.0 && figure == bench::Figure::kMax) {
       search.accepts = [&](const run::UniformCut& cut, const bench::CutFigures& figures) {
@@ -263,7 +270,7 @@ int main(int argc, char** argv) {
   if (!options.json.empty()) {
     std::ofstream file(options.json, std::ios::binary);
     file << bench::quality_json(std::filesystem::path(options.scene).filename().string(),
-                         std::filesystem::path(options.asset).filename().string(), meshes);
+                                std::filesystem::path(options.asset).filename().string(), meshes);
     if (!file.flush()) {
       std::fprintf(stderr, "%s: cannot be written\n", options.json.c_str());
       return 2;

@@ -14,13 +14,13 @@
 
 #include <tbb/global_control.h>
 
-#include "build/dag/build_dag.h"
-#include "run/decode/decode.h"
-#include "scene/import/import.h"
 #include "build/build.h"
-#include "random/scene.h"
-#include "run/read/asset.h"
+#include "build/dag/build_dag.h"
 #include "judge/verify/deviations.h"
+#include "random/scene.h"
+#include "run/decode/decode.h"
+#include "run/read/asset.h"
+#include "scene/import/import.h"
 
 namespace {
 
@@ -115,8 +115,8 @@ void measure_scene(const std::string& name, const scene::Scene& scene, const Opt
   std::fflush(stdout);
 }
 
-/// Each through a file, as a user's scene would come. The generator's build options are not used: the tier's defaults are
-/// what is measured.
+/// Each through a file, as a user's scene would come. The generator's build options are not used: the tier's defaults
+/// are what is measured.
 bool measure_random_scenes(const Options& options, Series& series) {
   std::string path = (std::filesystem::temp_directory_path() / "bench_margin.XXXXXX").string();
   if (mkdtemp(path.data()) == nullptr) return false;
@@ -151,8 +151,7 @@ int main(int argc, char** argv) {
     return 1;
   }
   const std::size_t allowed =
-      options.jobs > 0 ? options.jobs
-                       : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+      options.jobs > 0 ? options.jobs : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, allowed);
   Series series;
   for (const std::string& path : options.scenes) {
@@ -168,8 +167,8 @@ int main(int argc, char** argv) {
   if (series.ratios.empty()) return 0;
   std::printf("%zu scenes (%zu refused), %llu triangles, built in %.2f s\n", series.scenes, series.refused,
               static_cast<unsigned long long>(series.triangles), series.build_seconds);
-  std::printf("%zu cuts, margin %.3f: true/stored median %.3f, largest %.4f\n", series.ratios.size(), build::kMeasuredMargin,
-              series.ratios[series.ratios.size() / 2], series.ratios.back());
+  std::printf("%zu cuts, margin %.3f: true/stored median %.3f, largest %.4f\n", series.ratios.size(),
+              build::kMeasuredMargin, series.ratios[series.ratios.size() / 2], series.ratios.back());
   for (const double x : {0.97, 0.98, 0.99, 1.0, 1.01, 1.02, 1.05}) {
     std::printf("above %.2f: %zu (%.2f%%)\n", x, count_above(series, x),
                 100.0 * static_cast<double>(count_above(series, x)) / static_cast<double>(series.ratios.size()));

@@ -17,8 +17,8 @@ judge::OneWayDrift worse(const judge::OneWayDrift& a, const judge::OneWayDrift& 
 
 void add_cut(std::string& out, const MeasuredCut& cut, double diagonal) {
   const CutFigures& f = cut.figures;
-  append_format(out, "%9llu  %9.3e %9.3e  %9.3e %9.3e", static_cast<unsigned long long>(f.triangles), f.max() / diagonal,
-      f.rms() / diagonal, f.max_to_cut / diagonal, f.max_to_source / diagonal);
+  append_format(out, "%9llu  %9.3e %9.3e  %9.3e %9.3e", static_cast<unsigned long long>(f.triangles),
+                f.max() / diagonal, f.rms() / diagonal, f.max_to_cut / diagonal, f.max_to_source / diagonal);
   if (cut.stored > 0.0) append_format(out, "  %9.3e %6.3f", cut.stored, f.max() / diagonal / cut.stored);
   if (cut.drift && cut.drift->has_normals()) {
     const judge::OneWayDrift n = worse(cut.drift->normal_a_to_b, cut.drift->normal_b_to_a);
@@ -64,11 +64,12 @@ void write_cut(JsonWriter& w, const MeasuredCut& cut, double diagonal) {
 std::string quality_text(const MeshQuality& mesh) {
   std::string out;
   append_format(out, "%s: %llu source triangles, diagonal %.6g, tier %s. Deviations are shares of the diagonal.\n",
-      mesh.name.c_str(), static_cast<unsigned long long>(mesh.source_triangles), mesh.diagonal, mesh.tier.c_str());
+                mesh.name.c_str(), static_cast<unsigned long long>(mesh.source_triangles), mesh.diagonal,
+                mesh.tier.c_str());
   for (const std::string& note : mesh.notes) out += "  " + note + "\n";
   if (!mesh.cuts.empty()) {
-    append_format(out, "  %9s  %9s  %9s %9s  %9s %9s  %9s %6s\n", "threshold", "triangles", "max", "rms", "to cut", "to source",
-        "stored", "true/");
+    append_format(out, "  %9s  %9s  %9s %9s  %9s %9s  %9s %6s\n", "threshold", "triangles", "max", "rms", "to cut",
+                  "to source", "stored", "true/");
     std::vector<double> ratios;
     for (const MeasuredCut& cut : mesh.cuts) {
       append_format(out, "  %9.3e  ", cut.threshold);
@@ -77,8 +78,9 @@ std::string quality_text(const MeshQuality& mesh) {
     }
     std::sort(ratios.begin(), ratios.end());
     if (!ratios.empty()) {
-      append_format(out, "  true/stored: median %.3f, largest %.3f over %zu cuts, %td above 1\n", ratios[ratios.size() / 2],
-          ratios.back(), ratios.size(), ratios.end() - std::upper_bound(ratios.begin(), ratios.end(), 1.0));
+      append_format(out, "  true/stored: median %.3f, largest %.3f over %zu cuts, %td above 1\n",
+                    ratios[ratios.size() / 2], ratios.back(), ratios.size(),
+                    ratios.end() - std::upper_bound(ratios.begin(), ratios.end(), 1.0));
     }
   }
   for (const EqualDeviation& equal : mesh.equal) {
@@ -89,8 +91,8 @@ std::string quality_text(const MeshQuality& mesh) {
     }
     add_cut(out, *equal.cut, mesh.diagonal);
     if (equal.cuts_of_mesh > 0) {
-      append_format(out, "      cut at %.6e, %zu of %zu cuts tried, %.1f s\n", equal.cut->threshold, equal.cuts_measured,
-          equal.cuts_of_mesh, equal.seconds);
+      append_format(out, "      cut at %.6e, %zu of %zu cuts tried, %.1f s\n", equal.cut->threshold,
+                    equal.cuts_measured, equal.cuts_of_mesh, equal.seconds);
     } else {
       append_format(out, "      %zu surfaces measured, %.1f s\n", equal.cuts_measured, equal.seconds);
     }

@@ -6,9 +6,9 @@
 
 #include <glm/trigonometric.hpp>
 
+#include "build/build.h"
 #include "cut_judge.h"
 #include "cut_search.h"
-#include "build/build.h"
 #include "reference.h"
 #include "scene/samples/samples.h"
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The bytes of a .lode asset, version 1. docs/format.md is the normative text; this header is the same thing as structs.
+// The bytes of a .lode asset, version 1. docs/format.md is the normative text; this header is the same thing as
+// structs.
 //
 // Everything is little-endian. Every struct here is copied as it lies in the file: sizes are asserted, there is no
 // implicit padding, and reserved fields are written as zero and ignored on reading.
@@ -36,15 +37,15 @@ constexpr std::uint32_t kMaxClusterTriangles = 256;  ///< hard cap of the format
 constexpr std::uint32_t kMaxClusterVertices = 256;   ///< hard cap of the format (I2)
 constexpr std::uint32_t kMaxPageBytes = 128 * 1024;  ///< decoded bytes of a page at most
 constexpr std::uint32_t kMaxUvSets = 4;
-constexpr std::uint32_t kBvhWidth = 8;               ///< children of a BVH node at most
-constexpr std::uint32_t kSectionAlignment = 16;      ///< file offsets of sections and pages are multiples of this
+constexpr std::uint32_t kBvhWidth = 8;           ///< children of a BVH node at most
+constexpr std::uint32_t kSectionAlignment = 16;  ///< file offsets of sections and pages are multiples of this
 
 // ---------------------------------------------------------------------------------------------------------------- file
 
 struct FileHeader {
-  std::uint32_t magic;                 ///< kMagic
-  std::uint32_t version;               ///< kVersion
-  std::uint32_t header_bytes;          ///< sizeof(FileHeader); a later version may be longer
+  std::uint32_t magic;         ///< kMagic
+  std::uint32_t version;       ///< kVersion
+  std::uint32_t header_bytes;  ///< sizeof(FileHeader); a later version may be longer
   std::uint32_t section_count;
   std::uint64_t file_bytes;            ///< size of the whole file
   std::uint64_t section_table_offset;  ///< from the start of the file
@@ -76,15 +77,15 @@ enum class SectionId : std::uint32_t {
 constexpr std::uint32_t kSectionRequired = 1u;  ///< SectionEntry::flags: a reader that does not know the id must refuse
 
 struct SectionEntry {
-  std::uint32_t id;            ///< SectionId
-  std::uint32_t version;       ///< of this section's layout; 0
-  std::uint32_t flags;         ///< kSectionRequired
-  std::uint32_t codec;         ///< of the section as a whole: 0 as it is, 1 by columns (docs/codecs.md); pages have their own
-  std::uint64_t offset;        ///< from the start of the file, a multiple of kSectionAlignment
-  std::uint64_t bytes;         ///< stored
-  std::uint64_t decoded_bytes; ///< after the codec
-  std::uint64_t checksum;      ///< XXH3-64 of the stored bytes; 0 for kPageData, whose pages carry their own
-  std::uint32_t record_bytes;  ///< stride of a table; 0 for text and raw bytes
+  std::uint32_t id;       ///< SectionId
+  std::uint32_t version;  ///< of this section's layout; 0
+  std::uint32_t flags;    ///< kSectionRequired
+  std::uint32_t codec;   ///< of the section as a whole: 0 as it is, 1 by columns (docs/codecs.md); pages have their own
+  std::uint64_t offset;  ///< from the start of the file, a multiple of kSectionAlignment
+  std::uint64_t bytes;   ///< stored
+  std::uint64_t decoded_bytes;  ///< after the codec
+  std::uint64_t checksum;       ///< XXH3-64 of the stored bytes; 0 for kPageData, whose pages carry their own
+  std::uint32_t record_bytes;   ///< stride of a table; 0 for text and raw bytes
   std::uint32_t record_count;
   std::uint64_t reserved;
 };
@@ -126,33 +127,33 @@ static_assert(sizeof(Grid) == 8);
 /// A vertex that two clusters share has the same integers in both (I3).
 struct MeshRecord {
   StringRef name;
-  double origin[3];                 ///< mesh space, object units
+  double origin[3];  ///< mesh space, object units
   Grid grid;
-  std::int32_t bounds_min[3];       ///< of level 0, grid units
+  std::int32_t bounds_min[3];  ///< of level 0, grid units
   std::int32_t bounds_max[3];
-  double diagonal;                  ///< of the source's bounding box, object units; relative errors are over it
-  float level0_deviation;           ///< how far quantization alone moves the surface at most, object units
+  double diagonal;         ///< of the source's bounding box, object units; relative errors are over it
+  float level0_deviation;  ///< how far quantization alone moves the surface at most, object units
   ErrorTier error_tier;
   NormalMode normal_mode;
-  std::uint32_t normal_scale;       ///< M, 1 … kMaxNormalScale where normals are stored, else 0; angle <= √2 / M
+  std::uint32_t normal_scale;  ///< M, 1 … kMaxNormalScale where normals are stored, else 0; angle <= √2 / M
   std::uint32_t uv_set_count;
-  std::uint32_t has_color;          ///< 0 or 1
-  std::int32_t uv_log2[kMaxUvSets]; ///< step of each stored set; 0 from uv_set_count on
+  std::uint32_t has_color;                 ///< 0 or 1
+  std::int32_t uv_log2[kMaxUvSets];        ///< step of each stored set; 0 from uv_set_count on
   std::uint8_t uv_set_source[kMaxUvSets];  ///< the TEXCOORD_n that stored set k was
-  std::uint32_t material;           ///< of every triangle; kNone: clusters hold material ranges
-  std::int32_t sphere_log2;         ///< unit of the clusters' culling spheres: 2^sphere_log2 object units
+  std::uint32_t material;                  ///< of every triangle; kNone: clusters hold material ranges
+  std::int32_t sphere_log2;                ///< unit of the clusters' culling spheres: 2^sphere_log2 object units
   std::uint32_t level_count;
-  std::uint64_t source_triangles;   ///< after triangulation, before anything was dropped
+  std::uint64_t source_triangles;  ///< after triangulation, before anything was dropped
   std::uint64_t source_vertices;
-  std::uint64_t dropped_degenerate; ///< triangles without area that are no part of the source
-  std::uint64_t dropped_duplicate;  ///< same positions, winding, stored attributes and material
-  std::uint64_t dropped_repaired;   ///< by --repair: non-finite positions, indices out of range
-  std::uint64_t grid_collapsed;     ///< triangles of level 0 that have zero area after quantization; they stay
-  std::uint32_t first_group;        ///< groups of this mesh are contiguous, coarse to fine
+  std::uint64_t dropped_degenerate;  ///< triangles without area that are no part of the source
+  std::uint64_t dropped_duplicate;   ///< same positions, winding, stored attributes and material
+  std::uint64_t dropped_repaired;    ///< by --repair: non-finite positions, indices out of range
+  std::uint64_t grid_collapsed;      ///< triangles of level 0 that have zero area after quantization; they stay
+  std::uint32_t first_group;         ///< groups of this mesh are contiguous, coarse to fine
   std::uint32_t group_count;
-  std::uint32_t first_cluster;      ///< clusters of this mesh are contiguous
+  std::uint32_t first_cluster;  ///< clusters of this mesh are contiguous
   std::uint32_t cluster_count;
-  std::uint32_t first_node;         ///< BVH nodes of this mesh are contiguous, the root is the first
+  std::uint32_t first_node;  ///< BVH nodes of this mesh are contiguous, the root is the first
   std::uint32_t node_count;
 };
 static_assert(sizeof(MeshRecord) == 200);
@@ -166,7 +167,7 @@ struct MaterialRecord {
   AlphaMode alpha_mode;
   float base_color[4];
   float alpha_cutoff;
-  std::uint32_t double_sided;  ///< 0 or 1
+  std::uint32_t double_sided;        ///< 0 or 1
   std::uint32_t base_color_texture;  ///< glTF texture index; kNone without
   std::uint32_t base_color_uv_set;   ///< TEXCOORD_n; kNone without
 };
@@ -179,8 +180,8 @@ struct InstanceRecord {
   double transform[12];  ///< mesh space to world, row-major 3×4
   double scale;          ///< largest singular value of the 3×3 part, rounded up
   std::uint32_t mesh;
-  std::uint32_t node;    ///< index of the glTF node
-  std::uint32_t flags;   ///< kInstance…
+  std::uint32_t node;   ///< index of the glTF node
+  std::uint32_t flags;  ///< kInstance…
   std::uint32_t reserved;
   StringRef name;
 };
@@ -188,38 +189,40 @@ static_assert(sizeof(InstanceRecord) == 128);
 
 // ------------------------------------------------------------------------------------------------------- the LOD DAG
 
-constexpr std::uint16_t kGroupTerminal = 1u;  ///< nothing coarser replaces its members: they are roots, error is infinite
-constexpr std::uint16_t kGroupStuck = 2u;     ///< terminal, and not because the top was reached
+constexpr std::uint16_t kGroupTerminal =
+    1u;                                    ///< nothing coarser replaces its members: they are roots, error is infinite
+constexpr std::uint16_t kGroupStuck = 2u;  ///< terminal, and not because the top was reached
 
 /// Why a group could not be simplified further.
 enum class StuckReason : std::uint16_t {
   kNotStuck = 0,
-  kLocked = 1,       ///< too much of it is shared with other groups
-  kFlips = 2,        ///< every collapse left would turn a triangle over
-  kSeams = 3,        ///< attribute seams or material borders
-  kComponents = 4,   ///< loose pieces that share no vertex
-  kTooSmall = 5,     ///< nothing left to remove
-  kTopology = 6,     ///< every collapse left would break the link condition
+  kLocked = 1,      ///< too much of it is shared with other groups
+  kFlips = 2,       ///< every collapse left would turn a triangle over
+  kSeams = 3,       ///< attribute seams or material borders
+  kComponents = 4,  ///< loose pieces that share no vertex
+  kTooSmall = 5,    ///< nothing left to remove
+  kTopology = 6,    ///< every collapse left would break the link condition
 };
 
 /// A group: clusters that are replaced together. Its error and sphere are the `coarser` values of its members and the
 /// `own` values of the clusters made from it: the same stored bits.
 struct GroupRecord {
-  float center[3];             ///< LOD sphere, mesh space relative to MeshRecord::origin
+  float center[3];  ///< LOD sphere, mesh space relative to MeshRecord::origin
   float radius;
-  float error;                 ///< selection error, object units, growing along the DAG except from 0 to 0; kInfiniteError if terminal
-  float quadric_error;         ///< the quadric's own estimate, object units, never falling along the DAG; kInfiniteError if terminal
-  float deviation;             ///< two-sided distance of this group alone to the source, quantization included and without
-                               ///< the margin that `error` has; kInfiniteError if terminal or not measured
-  float normal_deviation;      ///< shading normals against the source's, RMS over a group in degrees, never falling along
-                               ///< the DAG; kInfiniteError if terminal or not measured
-  float uv_deviation;          ///< UVs against the source's, UV units, 95% of a group is within it; the same rules
-  std::uint32_t first_cluster; ///< members, contiguous
+  float error;  ///< selection error, object units, growing along the DAG except from 0 to 0; kInfiniteError if terminal
+  float quadric_error;     ///< the quadric's own estimate, object units, never falling along the DAG; kInfiniteError if
+                           ///< terminal
+  float deviation;         ///< two-sided distance of this group alone to the source, quantization included and without
+                           ///< the margin that `error` has; kInfiniteError if terminal or not measured
+  float normal_deviation;  ///< shading normals against the source's, RMS over a group in degrees, never falling along
+                           ///< the DAG; kInfiniteError if terminal or not measured
+  float uv_deviation;      ///< UVs against the source's, UV units, 95% of a group is within it; the same rules
+  std::uint32_t first_cluster;  ///< members, contiguous
   std::uint32_t mesh;
   std::uint32_t page;
-  std::uint16_t cluster_count; ///< at least 1
-  std::uint16_t level;         ///< largest level of a member
-  std::uint16_t flags;         ///< kGroup…
+  std::uint16_t cluster_count;  ///< at least 1
+  std::uint16_t level;          ///< largest level of a member
+  std::uint16_t flags;          ///< kGroup…
   StuckReason stuck_reason;
 };
 static_assert(sizeof(GroupRecord) == 56);
@@ -248,24 +251,25 @@ constexpr std::int32_t kMaxSphereLog2 = 104;
 struct NodeRecord {
   float center[3];
   float radius;
-  float error;               ///< largest group error below; kInfiniteError above a terminal group
-  std::uint32_t first;       ///< first child node (children are contiguous), or the group id where child_count == 0
-  std::uint32_t child_count; ///< 0 = leaf
+  float error;                ///< largest group error below; kInfiniteError above a terminal group
+  std::uint32_t first;        ///< first child node (children are contiguous), or the group id where child_count == 0
+  std::uint32_t child_count;  ///< 0 = leaf
 };
 static_assert(sizeof(NodeRecord) == 28);
 
 // --------------------------------------------------------------------------------------------------------------- pages
 
 struct PageRecord {
-  std::uint64_t offset;        ///< from the start of the file
+  std::uint64_t offset;  ///< from the start of the file
   std::uint32_t stored_bytes;
-  std::uint32_t bytes;         ///< decoded, at most kMaxPageBytes
+  std::uint32_t bytes;  ///< decoded, at most kMaxPageBytes
   Codec codec;
-  std::uint32_t first_group;   ///< pages hold whole groups, contiguous
+  std::uint32_t first_group;  ///< pages hold whole groups, contiguous
   std::uint32_t group_count;
   std::uint32_t first_cluster;
   std::uint32_t cluster_count;
-  std::uint32_t first_dependency;  ///< into kPageDeps: pages that hold the coarser clusters made from this page's groups
+  std::uint32_t
+      first_dependency;  ///< into kPageDeps: pages that hold the coarser clusters made from this page's groups
   std::uint32_t dependency_count;
   std::uint32_t reserved;
   std::uint64_t checksum;          ///< XXH3-64 of the stored bytes
@@ -274,7 +278,8 @@ struct PageRecord {
 static_assert(sizeof(PageRecord) == 64);
 
 /// A decoded page is an array of u32 words, read as it lies by CPU and GPU:
-///   PageHeader · cluster heads, kHeadWords (+ 1 where normals are stored) words each · each cluster's data · one zero word.
+///   PageHeader · cluster heads, kHeadWords (+ 1 where normals are stored) words each · each cluster's data · one zero
+///   word.
 /// With the zero word, any field can be read from two words without checking for the page's end.
 struct PageHeader {
   std::uint32_t first_cluster;
@@ -311,24 +316,25 @@ constexpr std::uint32_t kMaxNormalScale = 8191;
 namespace head {
 inline constexpr BitField kVerticesLess1{0, 0, 8, false};
 inline constexpr BitField kTrianglesLess1{0, 8, 8, false};
-inline constexpr BitField kDataWord{0, 16, 16, false};  ///< where the cluster's data starts, words from the page's start
+inline constexpr BitField kDataWord{0, 16, 16,
+                                    false};  ///< where the cluster's data starts, words from the page's start
 inline constexpr BitField kMinimum[3] = {{1, 0, 24, true}, {2, 0, 24, true}, {3, 0, 24, true}};
 inline constexpr BitField kBits[3] = {{1, 24, 5, false}, {2, 24, 5, false}, {3, 24, 5, false}};  ///< 0 … 24
-inline constexpr BitField kChart{1, 29, 3, false};      ///< of normals: 2 · axis + (pole on the negative side); 0 without
+inline constexpr BitField kChart{1, 29, 3, false};  ///< of normals: 2 · axis + (pole on the negative side); 0 without
 inline constexpr BitField kShearAxis{2, 29, 2, false};  ///< 0 … 2
 inline constexpr BitField kShearU{4, 0, 8, true};
 inline constexpr BitField kShearV{4, 8, 8, true};
 inline constexpr BitField kStripsLess1{4, 16, 8, false};
-inline constexpr BitField kReferenceBits{4, 24, 4, false};  ///< 1 … 8
-inline constexpr BitField kNormalBitsA{4, 28, 4, false};    ///< 0 … 14; 0 without normals
-inline constexpr BitField kNormalMinimumA{5, 0, 14, false}; ///< the word is there only where normals are stored
+inline constexpr BitField kReferenceBits{4, 24, 4, false};   ///< 1 … 8
+inline constexpr BitField kNormalBitsA{4, 28, 4, false};     ///< 0 … 14; 0 without normals
+inline constexpr BitField kNormalMinimumA{5, 0, 14, false};  ///< the word is there only where normals are stored
 inline constexpr BitField kNormalMinimumB{5, 14, 14, false};
-inline constexpr BitField kNormalBitsB{5, 28, 4, false};    ///< 0 … 14
+inline constexpr BitField kNormalBitsB{5, 28, 4, false};  ///< 0 … 14
 }  // namespace head
 
-/// A cluster's data, without gaps: material ranges (words), UV ranges of set 0, 1, … (words), colour range (words), then
-/// one bit stream, then zero bits up to a whole word. Bit k of the stream is bit k mod 32 of word k / 32; fields lie
-/// lowest bit first. In the stream, in this order:
+/// A cluster's data, without gaps: material ranges (words), UV ranges of set 0, 1, … (words), colour range (words),
+/// then one bit stream, then zero bits up to a whole word. Bit k of the stream is bit k mod 32 of word k / 32; fields
+/// lie lowest bit first. In the stream, in this order:
 ///   positions    vertex by vertex: x y z
 ///   normals      vertex by vertex: a b
 ///   UVs          set by set, range by range, vertex by vertex: u v
@@ -342,16 +348,16 @@ inline constexpr BitField kTrianglesLess1{0, 0, 8, false};
 inline constexpr BitField kMaterial{0, 8, 24, false};
 }  // namespace material_range
 
-/// Vertices are in islands that lie one after the other; each range has its own box and its own fit. Ranges follow until
-/// all vertices are covered. With the raw position values r:
+/// Vertices are in islands that lie one after the other; each range has its own box and its own fit. Ranges follow
+/// until all vertices are covered. With the raw position values r:
 ///   u = minimum_u + (bits_u bits of the stream) + ((u0 · r[x] + u1 · r[y] + u2 · r[z]) >> shift_u), v the same;
 /// the last term and its two words are there only where has_fit is 1.
 namespace uv_range {
 constexpr std::uint32_t kWords = 3;
 constexpr std::uint32_t kFitWords = 2;  ///< more where has_fit is 1
 inline constexpr BitField kVerticesLess1{0, 0, 8, false};
-inline constexpr BitField kBitsU{0, 8, 5, false};  ///< 0 … 25
-inline constexpr BitField kBitsV{0, 13, 5, false}; ///< 0 … 25
+inline constexpr BitField kBitsU{0, 8, 5, false};   ///< 0 … 25
+inline constexpr BitField kBitsV{0, 13, 5, false};  ///< 0 … 25
 inline constexpr BitField kShiftU{0, 18, 5, false};
 inline constexpr BitField kShiftV{0, 23, 5, false};
 inline constexpr BitField kHasFit{0, 28, 1, false};
@@ -365,7 +371,8 @@ inline constexpr BitField kFitV[3] = {{4, 0, 10, true}, {4, 10, 10, true}, {4, 2
 namespace color_range {
 constexpr std::uint32_t kWords = 2;
 inline constexpr BitField kMinimum[4] = {{0, 0, 8, false}, {0, 8, 8, false}, {0, 16, 8, false}, {0, 24, 8, false}};
-inline constexpr BitField kBits[4] = {{1, 0, 4, false}, {1, 4, 4, false}, {1, 8, 4, false}, {1, 12, 4, false}};  ///< 0 … 8
+inline constexpr BitField kBits[4] = {
+    {1, 0, 4, false}, {1, 4, 4, false}, {1, 8, 4, false}, {1, 12, 4, false}};  ///< 0 … 8
 }  // namespace color_range
 
 /// Normals: the pole of the chart is the axis kChart / 2, on its negative side where kChart is odd. With the other two
@@ -377,7 +384,8 @@ inline constexpr BitField kBits[4] = {{1, 0, 4, false}, {1, 4, 4, false}, {1, 8,
 ///   T bits        turn[t]: 0 left, 1 right; 0 for the first triangle of a strip
 ///   S bits        fresh[s]: 1 the next vertex that was not named before, 0 a reference
 ///   strips - 1    first triangle of strip 1, 2, …: bit_width(T - 1) bits each, ascending
-///   references    for each slot with fresh = 0, in order: kReferenceBits bits d; vertex = (fresh ones before it) - 1 - d
+///   references    for each slot with fresh = 0, in order: kReferenceBits bits d; vertex = (fresh ones before it) - 1 -
+///   d
 /// Triangle t of strip k (from 0) has its last corner in slot n(t) = t + 2 · k + 2. With t0 the first triangle of k:
 ///   turn[t] = 0:  q = n(t) - 1;  p = n(r) - 1 for the last r in (t0, t) with turn[r] = 1, else n(t0) - 2
 ///   turn[t] = 1:  p = n(t) - 1;  q = n(r) - 1 for the last r in [t0, t) with turn[r] = 0
@@ -386,9 +394,9 @@ inline constexpr BitField kBits[4] = {{1, 0, 4, false}, {1, 4, 4, false}, {1, 8,
 enum class BlobKind : std::uint32_t { kImage = 1, kBuffer = 2 };
 
 struct BlobRecord {
-  StringRef name;            ///< image name or URI base name
+  StringRef name;  ///< image name or URI base name
   StringRef mime_type;
-  std::uint64_t offset;      ///< from the start of the file
+  std::uint64_t offset;  ///< from the start of the file
   std::uint64_t bytes;
   BlobKind kind;
   std::uint32_t source_index;  ///< index in the glTF's images or in kScene's buffers

@@ -93,7 +93,7 @@ struct ClusterFloats {
   std::vector<std::array<float, 3>> normals;    ///< unit; empty too where normals are flat (NormalMode::kFlat)
   std::array<std::vector<std::array<float, 2>>, format::kMaxUvSets> uvs;  ///< stored set k, the source's TEXCOORD_n
                                                                           ///< with n = MeshRecord::uv_set_source[k]
-  std::vector<std::array<float, 4>> colors;  ///< linear, 0 … 1
+  std::vector<std::array<float, 4>> colors;                               ///< linear, 0 … 1
   std::vector<std::array<std::uint8_t, 3>> triangles;
   std::vector<std::uint32_t> triangle_materials;
 };
@@ -139,9 +139,9 @@ class AssetFile {
   /// Errors: kUsage for a view or pixel error that is not finite or not in its range.
   [[nodiscard]] Result<std::vector<DrawItem>> select_view(const View& view, double pixel_error) const;
 
-  /// The cut of one mesh where each group whose error is at most `max_error` (object units) is replaced by what is coarser.
-  /// Errors: kUsage for a mesh that does not exist or an error that is not a number >= 0 (infinity is the coarsest
-  /// cut).
+  /// The cut of one mesh where each group whose error is at most `max_error` (object units) is replaced by what is
+  /// coarser. Errors: kUsage for a mesh that does not exist or an error that is not a number >= 0 (infinity is the
+  /// coarsest cut).
   [[nodiscard]] Result<UniformCut> select_uniform(std::uint32_t mesh, double max_error) const;
 
   /// The page that holds a cluster. \pre cluster < clusters().size()

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The last net under code whose errors are values: what is thrown all the same is memory that cannot be had, or a mistake of
-// this program's, which is not blamed on the file that it was found with. What third-party libraries throw at a file's bytes
-// is translated in their one wrapper file and does not come here.
+// The last net under code whose errors are values: what is thrown all the same is memory that cannot be had, or a
+// mistake of this program's, which is not blamed on the file that it was found with. What third-party libraries throw
+// at a file's bytes is translated in their one wrapper file and does not come here.
 #pragma once
 
 #include <exception>
@@ -21,7 +21,8 @@ namespace meshlode {
 
 [[nodiscard]] inline Error internal_error(std::string where, std::string_view what) {
   return {ErrorCode::kBuildFailed, std::move(where),
-          "internal error (" + std::string(what) + "): a mistake of this program's, please report it with what it was given"};
+          "internal error (" + std::string(what) +
+              "): a mistake of this program's, please report it with what it was given"};
 }
 
 /// What `body` returns, a Result. `where`: the file that was worked on, or empty, for where something is thrown.

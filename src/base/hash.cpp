@@ -24,9 +24,13 @@ Hash128 canonical(const XXH128_hash_t& hash) {
 
 }  // namespace
 
-std::uint64_t hash64(std::span<const std::uint8_t> bytes) { return XXH3_64bits(bytes.data(), bytes.size()); }
+std::uint64_t hash64(std::span<const std::uint8_t> bytes) {
+  return XXH3_64bits(bytes.data(), bytes.size());
+}
 
-Hash128 hash128(std::span<const std::uint8_t> bytes) { return canonical(XXH3_128bits(bytes.data(), bytes.size())); }
+Hash128 hash128(std::span<const std::uint8_t> bytes) {
+  return canonical(XXH3_128bits(bytes.data(), bytes.size()));
+}
 
 std::string to_hex(const Hash128& hash) {
   static constexpr char kDigits[] = "0123456789abcdef";
@@ -39,11 +43,15 @@ std::string to_hex(const Hash128& hash) {
   return text;
 }
 
-Hasher::Hasher() : state_(std::make_unique<State>()) { XXH3_128bits_reset(&state_->xxh); }
+Hasher::Hasher() : state_(std::make_unique<State>()) {
+  XXH3_128bits_reset(&state_->xxh);
+}
 Hasher::~Hasher() = default;
 void Hasher::update(std::span<const std::uint8_t> bytes) {
   XXH3_128bits_update(&state_->xxh, bytes.data(), bytes.size());
 }
-Hash128 Hasher::digest() const { return canonical(XXH3_128bits_digest(&state_->xxh)); }
+Hash128 Hasher::digest() const {
+  return canonical(XXH3_128bits_digest(&state_->xxh));
+}
 
 }  // namespace meshlode

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // A hash table of ids that are looked up by what they stand for: open addressing, linear probing, at most half full
-// (Knuth, The Art of Computer Programming, vol. 3, 6.4). It holds ids alone: their keys stay in the caller's arrays. Nobody
-// can walk over its slots, so that what a caller gets depends on the order of its insertions, never on the hash (I10).
+// (Knuth, The Art of Computer Programming, vol. 3, 6.4). It holds ids alone: their keys stay in the caller's arrays.
+// Nobody can walk over its slots, so that what a caller gets depends on the order of its insertions, never on the hash
+// (I10).
 #pragma once
 
 #include <algorithm>
@@ -31,8 +32,8 @@ class IdTable {
     bool is_new;
   };
 
-  /// The id that `is_same` accepts, or `next`, which is then in. `hash` is that of the key searched; `hash_of` gives the
-  /// hash of an id that is already in, and is asked where the table grows. \pre next < 2^32 - 1
+  /// The id that `is_same` accepts, or `next`, which is then in. `hash` is that of the key searched; `hash_of` gives
+  /// the hash of an id that is already in, and is asked where the table grows. \pre next < 2^32 - 1
   template <class IsSame, class HashOf>
   Entry find_or_insert(std::uint64_t hash, std::uint32_t next, const IsSame& is_same, const HashOf& hash_of) {
     if (2 * (count_ + 1) > slots_.size()) grow(hash_of);

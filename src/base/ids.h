@@ -26,6 +26,6 @@ using MaterialId = Id<struct MaterialTag>;  ///< a glTF material; the default ma
 using GroupId = Id<struct GroupTag>;        ///< a group of clusters: global in an asset, per mesh during the build
 using ClusterId = Id<struct ClusterTag>;    ///< a cluster: global in an asset, per mesh during the build
 using PageId = Id<struct PageTag>;
-using NodeId = Id<struct NodeTag>;          ///< a BVH node
+using NodeId = Id<struct NodeTag>;  ///< a BVH node
 
 }  // namespace meshlode

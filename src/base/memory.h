@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How much memory this process may still take, as Linux tells: what the machine has, and what its control groups leave it.
+// How much memory this process may still take, as Linux tells: what the machine has, and what its control groups leave
+// it.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +10,8 @@
 namespace meshlode {
 
 /// Bytes that can be had before something is killed or swapped: the least of MemAvailable (/proc/meminfo), what each
-/// control group above the process leaves (memory.max of version 2, memory.limit_in_bytes of version 1; page cache that can
-/// be dropped counts as free), and RLIMIT_AS. Nothing where none of them says. `root` stands for / in tests.
+/// control group above the process leaves (memory.max of version 2, memory.limit_in_bytes of version 1; page cache that
+/// can be dropped counts as free), and RLIMIT_AS. Nothing where none of them says. `root` stands for / in tests.
 [[nodiscard]] std::optional<std::uint64_t> available_memory(const std::filesystem::path& root = "/");
 
 /// Bytes of this process that are in memory now; 0 where it cannot be told.

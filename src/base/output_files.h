@@ -34,8 +34,8 @@ class OutputFiles {
   void keep(std::span<const FileId> ids);
 
   /// Whether `path` can be written, as far as that can be known before the work is done; and removes from its folder
-  /// what killed writers left there. Errors: kUsage it is a file that was read, or one that this object wrote before; kIo its
-  /// folder is missing or cannot be written, or it is a folder itself.
+  /// what killed writers left there. Errors: kUsage it is a file that was read, or one that this object wrote before;
+  /// kIo its folder is missing or cannot be written, or it is a folder itself.
   [[nodiscard]] Status claim(const std::filesystem::path& path);
 
   /// Claims `path` and writes it. Links are followed: what they point to is replaced. Devices and pipes are written to

@@ -14,9 +14,10 @@ namespace meshlode {
 /// Calls body(i) for i in [0, count), in any order and thread; `body` may write only to what belongs to i.
 template <class Body>
 void parallel_for_each_index(std::size_t count, std::size_t grain, const Body& body) {
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain), [&](const tbb::blocked_range<std::size_t>& range) {
-    for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
-  });
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
+                    [&](const tbb::blocked_range<std::size_t>& range) {
+                      for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
+                    });
 }
 
 }  // namespace meshlode

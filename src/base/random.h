@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Seeded random numbers, the same on every machine and C++ library (std:: distributions differ between them): splitmix64
-// (Steele, Lea and Flood 2014, "Fast Splittable Pseudorandom Number Generators").
+// Seeded random numbers, the same on every machine and C++ library (std:: distributions differ between them):
+// splitmix64 (Steele, Lea and Flood 2014, "Fast Splittable Pseudorandom Number Generators").
 #pragma once
 
 #include <cmath>

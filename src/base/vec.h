@@ -4,12 +4,12 @@
 #pragma once
 
 #define GLM_FORCE_CTOR_INIT
+#include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
-#include <glm/geometric.hpp>
 
 namespace meshlode {
 

@@ -10,26 +10,25 @@
 #include <meshlode/format.h>
 #include <meshlode/result.h>
 
-#include "scene/scene.h"
 #include "build/plan/plan.h"
+#include "scene/scene.h"
 
 namespace meshlode::build {
-
 
 struct PipelineOptions {
   format::ErrorTier error_tier = format::ErrorTier::kMeasured;
   AttributeChoice attributes = AttributeChoice::kAuto;
   double grid_step = 0.0;  ///< 0: chosen from the budget; else this step in mesh units
   format::Codec codec = format::Codec::kNone;
-  bool repair = false;     ///< the scene was imported with repair: recorded, because it changes the bytes
+  bool repair = false;  ///< the scene was imported with repair: recorded, because it changes the bytes
   std::uint32_t max_cluster_triangles = 128;  ///< I2; at most format::kMaxClusterTriangles
   std::uint32_t max_cluster_vertices = 256;   ///< I2; at most format::kMaxClusterVertices
-  double position_error = 0.0;  ///< mesh units, the largest distance a vertex moves; 0: chosen, invisible
-  double normal_error = 0.1;    ///< degrees, the largest angle between a stored normal and the source's
-  double uv_error = 0.125;      ///< the largest move of a texture coordinate, in the unit below
-  bool uv_error_is_texels = true;  ///< of the material's largest texture; else UV units
-  bool uv_error_is_default = true; ///< no texture counts as smaller than 2,048 texels then
-  std::uint64_t max_memory = 0;    ///< bytes that the process may take (build/needs.h); 0: what the machine has
+  double position_error = 0.0;                ///< mesh units, the largest distance a vertex moves; 0: chosen, invisible
+  double normal_error = 0.1;                  ///< degrees, the largest angle between a stored normal and the source's
+  double uv_error = 0.125;                    ///< the largest move of a texture coordinate, in the unit below
+  bool uv_error_is_texels = true;             ///< of the material's largest texture; else UV units
+  bool uv_error_is_default = true;            ///< no texture counts as smaller than 2,048 texels then
+  std::uint64_t max_memory = 0;  ///< bytes that the process may take (build/needs.h); 0: what the machine has
 };
 
 /// Called from one thread at a time, in no promised order between meshes. Return false to cancel.
@@ -37,8 +36,8 @@ struct ProgressEvent {
   std::uint32_t mesh = 0, mesh_count = 0;
   std::string mesh_name;
   std::uint32_t level = 0;
-  std::uint64_t triangles = 0;         ///< of the level just finished
-  double fraction = 0.0;               ///< of the whole build, 0 … 1
+  std::uint64_t triangles = 0;  ///< of the level just finished
+  double fraction = 0.0;        ///< of the whole build, 0 … 1
 };
 using ProgressCallback = std::function<bool(const ProgressEvent&)>;
 
@@ -48,7 +47,7 @@ struct StageTime {
   double seconds = 0.0;
 };
 struct PipelineReport {
-  std::uint64_t memory_estimate = 0;    ///< bytes that the process takes at most, as estimated before the build
+  std::uint64_t memory_estimate = 0;  ///< bytes that the process takes at most, as estimated before the build
   std::vector<StageTime> stages;
   std::vector<PlanDecision> decisions;  ///< of all meshes, in order
 };

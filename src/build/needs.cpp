@@ -15,9 +15,9 @@ namespace meshlode::build {
 
 namespace {
 
-// Bytes, measured over the models of docs/performance.md: of the program, of a thread, of each byte of the scene's document
-// while it is read, of what is kept of a mesh when it is done; and while it is in work of a triangle, of a position (a closed
-// surface has half as many as triangles, loose cards twice as many) and of a vertex's attributes.
+// Bytes, measured over the models of docs/performance.md: of the program, of a thread, of each byte of the scene's
+// document while it is read, of what is kept of a mesh when it is done; and while it is in work of a triangle, of a
+// position (a closed surface has half as many as triangles, loose cards twice as many) and of a vertex's attributes.
 constexpr std::uint64_t kProcess = 21u << 20u;
 constexpr std::uint64_t kThread = 3u << 20u;
 constexpr std::uint64_t kDocumentByte = 40;
@@ -39,8 +39,8 @@ std::uint64_t bytes_of(const scene::Primitive& primitive) {
   return sum;
 }
 
-/// Distinct positions of a mesh: of those whose hash falls into a share that leaves half a million, exactly; the others are
-/// taken to be like them (Flajolet 1990).
+/// Distinct positions of a mesh: of those whose hash falls into a share that leaves half a million, exactly; the others
+/// are taken to be like them (Flajolet 1990).
 std::uint64_t count_positions(const scene::SourceMesh& mesh) {
   constexpr std::uint64_t kSample = std::uint64_t{1} << 19U;
   std::uint64_t vertices = 0;

@@ -6,8 +6,8 @@
 
 #include <meshlode/result.h>
 
-#include "scene/scene.h"
 #include "build/build.h"
+#include "scene/scene.h"
 
 namespace meshlode::build {
 
@@ -18,8 +18,8 @@ struct MeshCounts {
 };
 [[nodiscard]] MeshCounts count_mesh(const scene::SourceMesh& mesh);
 
-/// Every level keeps at most 85% of the finer one's triangles, or ends (a stuck group emits nothing): all levels together
-/// have less than 6.67 times the source's, of three corners each, and ids of corners have 32 bits.
+/// Every level keeps at most 85% of the finer one's triangles, or ends (a stuck group emits nothing): all levels
+/// together have less than 6.67 times the source's, of three corners each, and ids of corners have 32 bits.
 constexpr std::uint64_t kMaxMeshTriangles = 214000000;
 constexpr std::uint64_t kMaxMeshVertices = 4294967295;
 
@@ -28,7 +28,8 @@ constexpr std::uint64_t kMaxMeshVertices = 4294967295;
 
 /// Bytes that the whole process will take at most while it builds this scene on that many threads, the scene included.
 /// Measured (docs/performance.md, "Memory") and meant to be a little more than what will be found: never 0.
-[[nodiscard]] std::uint64_t estimate_memory(const scene::Scene& scene, const PipelineOptions& options, std::uint32_t threads);
+[[nodiscard]] std::uint64_t estimate_memory(const scene::Scene& scene, const PipelineOptions& options,
+                                            std::uint32_t threads);
 
 /// Error: kBuildFailed where the estimate is more than PipelineOptions::max_memory, or, where that is 0, than what the
 /// process has and the machine can still give it.

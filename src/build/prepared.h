@@ -20,7 +20,7 @@ namespace meshlode::build {
 /// Which attributes a wedge carries and where they lie in its floats: normal xyz, then uv sets, then colour rgba.
 struct AttributeLayout {
   bool has_normal = false;
-  bool flat_normal = false;       ///< normals are the triangles' own: has_normal is false
+  bool flat_normal = false;  ///< normals are the triangles' own: has_normal is false
   std::uint32_t uv_set_count = 0;
   std::array<std::uint8_t, scene::kMaxUvSets> uv_set_source{};  ///< TEXCOORD_n of stored set k
   bool has_color = false;
@@ -36,14 +36,14 @@ struct PreparedMesh {
   std::string name;
   Vec3d origin{0.0};
   format::PositionGrid grid;
-  double diagonal = 0.0;           ///< of the source's bounding box, object units
-  double level0_deviation = 0.0;   ///< largest distance a vertex moved onto the grid, object units
+  double diagonal = 0.0;          ///< of the source's bounding box, object units
+  double level0_deviation = 0.0;  ///< largest distance a vertex moved onto the grid, object units
   AttributeLayout layout;
-  std::vector<Vec3i> positions;    ///< distinct
-  std::vector<std::uint32_t> wedge_position;    ///< per wedge, into positions
-  std::vector<float> wedge_attributes;          ///< per wedge, layout.stride() floats
-  std::vector<WedgeTriangle> triangles;         ///< wedge ids
-  std::vector<std::uint32_t> triangle_material; ///< MaterialId value per triangle
+  std::vector<Vec3i> positions;                  ///< distinct
+  std::vector<std::uint32_t> wedge_position;     ///< per wedge, into positions
+  std::vector<float> wedge_attributes;           ///< per wedge, layout.stride() floats
+  std::vector<WedgeTriangle> triangles;          ///< wedge ids
+  std::vector<std::uint32_t> triangle_material;  ///< MaterialId value per triangle
   /// The same triangles before the grid: what deviations are measured against. Relative to the origin, object units.
   std::vector<Vec3d> exact_positions;
   std::vector<std::array<std::uint32_t, 3>> exact_triangles;  ///< as long as triangles, corner by corner
@@ -52,10 +52,10 @@ struct PreparedMesh {
   /// Without area and no part of the source (docs/format.md, "The source"). A triangle without area that lies along
   /// edges of others stays: its border is not zero, so that taking it away would open a crack (I6).
   std::uint64_t dropped_degenerate = 0;
-  std::uint64_t dropped_duplicate = 0;   ///< same positions, winding, wedges and material as an earlier triangle
+  std::uint64_t dropped_duplicate = 0;  ///< same positions, winding, wedges and material as an earlier triangle
   std::uint64_t dropped_repaired = 0;
-  std::uint64_t piece_count = 0;         ///< parts of the surface that share no position with each other
-  std::uint64_t grid_collapsed = 0;      ///< kept triangles that lost their area on the grid
+  std::uint64_t piece_count = 0;     ///< parts of the surface that share no position with each other
+  std::uint64_t grid_collapsed = 0;  ///< kept triangles that lost their area on the grid
 };
 
 }  // namespace meshlode::build

@@ -16,7 +16,8 @@ class ProgressMeter {
   /// Scene and callback must outlive it.
   ProgressMeter(const scene::Scene& scene, const ProgressCallback& callback);
 
-  /// A level of a mesh is done and has so many triangles. False: the caller asked to stop, here or before. From any thread.
+  /// A level of a mesh is done and has so many triangles. False: the caller asked to stop, here or before. From any
+  /// thread.
   [[nodiscard]] bool report(std::size_t mesh, std::uint32_t level, std::uint64_t triangles);
 
  private:

@@ -99,9 +99,8 @@ std::vector<PlanDecision> late_decisions(const PreparedMesh& mesh, const DagOpti
   for (std::uint32_t set = 0; set < mesh.layout.uv_set_count; ++set) {
     const double asked = encode.uv_error[set], kept = 0.5 * format::exp2_exact(encoded.record.uv_log2[set]);
     if (!(asked > 0.0) || kept <= asked) continue;
-    decisions.push_back(
-        {label + ": TEXCOORD_" + std::to_string(mesh.layout.uv_set_source[set]) + ", accuracy", true,
-         "its coordinates are so large that they are kept as finely as floats hold the largest"});
+    decisions.push_back({label + ": TEXCOORD_" + std::to_string(mesh.layout.uv_set_source[set]) + ", accuracy", true,
+                         "its coordinates are so large that they are kept as finely as floats hold the largest"});
   }
   return decisions;
 }

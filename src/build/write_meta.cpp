@@ -14,11 +14,14 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// What a group's deviation is multiplied by on the way to its error. The tier qem has no deviations.
-double error_margin_of(format::ErrorTier tier) { return tier == format::ErrorTier::kMeasured ? kMeasuredMargin : 1.0; }
+double error_margin_of(format::ErrorTier tier) {
+  return tier == format::ErrorTier::kMeasured ? kMeasuredMargin : 1.0;
+}
 
 }  // namespace
 
-std::string meta_json(const scene::Scene& scene, const PipelineOptions& options, const std::vector<PlanDecision>& decisions) {
+std::string meta_json(const scene::Scene& scene, const PipelineOptions& options,
+                      const std::vector<PlanDecision>& decisions) {
   Json meta;
   meta["generator"] = program_version();
   meta["source"] = {{"file", scene.source_name}, {"hash", scene.source_hash}};
@@ -41,7 +44,8 @@ std::string meta_json(const scene::Scene& scene, const PipelineOptions& options,
     meta["plan"].push_back({{"what", decision.what}, {"kept", decision.kept}, {"reason", decision.reason}});
   }
   meta["left_out"] = Json::array();
-  for (const scene::LeftOut& item : scene.left_out) meta["left_out"].push_back({{"what", item.what}, {"why", item.why}});
+  for (const scene::LeftOut& item : scene.left_out)
+    meta["left_out"].push_back({{"what", item.what}, {"why", item.why}});
   for (const PlanDecision& decision : decisions) {
     if (!decision.kept) meta["left_out"].push_back({{"what", decision.what}, {"why", decision.reason}});
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Prefix-coded streams read from one padded buffer. Reading never checks for the end: the buffer is padded by more than one
-// cluster can take, and whoever reads a cluster looks at the end once behind it.
+// Prefix-coded streams read from one padded buffer. Reading never checks for the end: the buffer is padded by more than
+// one cluster can take, and whoever reads a cluster looks at the end once behind it.
 #pragma once
 
 #include <array>
@@ -56,15 +56,16 @@ enum class Meaning : std::uint8_t {
   kNumber,  ///< those of token_of, with raw bits
   kFolded,  ///< the same, unfolded when it is read
 };
-[[nodiscard]] inline std::uint32_t next_meant(std::uint64_t& bits, std::uint64_t& at, const CodeTable& table, Meaning meaning) {
+[[nodiscard]] inline std::uint32_t next_meant(std::uint64_t& bits, std::uint64_t& at, const CodeTable& table,
+                                              Meaning meaning) {
   if (meaning == Meaning::kSymbol) return next_symbol(bits, at, table);
   const std::uint32_t number = next_value(bits, at, table);
   return meaning == Meaning::kFolded ? unfold(number) : number;
 }
 
-/// What most numbers are read by: the next kQuickBits bits say a whole number, raw bits and all. An entry is its size in
-/// bits | number << kQuickSizeBits, signed; 0 where it does not fit, and is read by the CodeTable. The size stands lowest,
-/// and sums of a few sizes stay below the number: shifts and positions take entries as they are.
+/// What most numbers are read by: the next kQuickBits bits say a whole number, raw bits and all. An entry is its size
+/// in bits | number << kQuickSizeBits, signed; 0 where it does not fit, and is read by the CodeTable. The size stands
+/// lowest, and sums of a few sizes stay below the number: shifts and positions take entries as they are.
 constexpr std::uint32_t kQuickBits = 11;
 constexpr std::uint32_t kQuickSizeBits = 6;
 using QuickTable = std::array<std::int16_t, std::size_t{1} << kQuickBits>;
@@ -72,6 +73,7 @@ using QuickTable = std::array<std::int16_t, std::size_t{1} << kQuickBits>;
 /// False where the lengths are no prefix code.
 [[nodiscard]] bool fill_code_table(std::span<const std::uint8_t> lengths, Meaning meaning, CodeTable& table);
 /// False as above, and then neither table can be used.
-[[nodiscard]] bool fill_code_tables(std::span<const std::uint8_t> lengths, Meaning meaning, CodeTable& table, QuickTable& quick);
+[[nodiscard]] bool fill_code_tables(std::span<const std::uint8_t> lengths, Meaning meaning, CodeTable& table,
+                                    QuickTable& quick);
 
 }  // namespace meshlode::format

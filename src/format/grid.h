@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The grid of a mesh: position = origin + step · q with step = mantissa · 2^log2 (docs/format.md, section 4). Rounding is
-// floor(x · s + 0.5), never a truncation: truncation rounds negative coordinates the wrong way.
+// The grid of a mesh: position = origin + step · q with step = mantissa · 2^log2 (docs/format.md, section 4). Rounding
+// is floor(x · s + 0.5), never a truncation: truncation rounds negative coordinates the wrong way.
 #pragma once
 
 #include <cmath>
@@ -11,7 +11,9 @@
 namespace meshlode::format {
 
 /// 2^exponent, exact. \pre -1022 <= exponent <= 1023
-[[nodiscard]] inline double exp2_exact(int exponent) { return std::ldexp(1.0, exponent); }
+[[nodiscard]] inline double exp2_exact(int exponent) {
+  return std::ldexp(1.0, exponent);
+}
 
 struct PositionGrid {
   int log2 = 0;

@@ -34,10 +34,20 @@ inline constexpr std::array<EnumName<StuckReason>, 7> kStuckReasonNames{{{StuckR
                                                                          {StuckReason::kTooSmall, "too_small"},
                                                                          {StuckReason::kTopology, "topology"}}};
 
-constexpr const char* name_of(Codec codec) { return name_in(kCodecNames, codec); }
-constexpr const char* name_of(ErrorTier tier) { return name_in(kErrorTierNames, tier); }
-constexpr const char* name_of(NormalMode mode) { return name_in(kNormalModeNames, mode); }
-constexpr const char* name_of(AlphaMode mode) { return name_in(kAlphaModeNames, mode); }
-constexpr const char* name_of(StuckReason reason) { return name_in(kStuckReasonNames, reason); }
+constexpr const char* name_of(Codec codec) {
+  return name_in(kCodecNames, codec);
+}
+constexpr const char* name_of(ErrorTier tier) {
+  return name_in(kErrorTierNames, tier);
+}
+constexpr const char* name_of(NormalMode mode) {
+  return name_in(kNormalModeNames, mode);
+}
+constexpr const char* name_of(AlphaMode mode) {
+  return name_in(kAlphaModeNames, mode);
+}
+constexpr const char* name_of(StuckReason reason) {
+  return name_in(kStuckReasonNames, reason);
+}
 
 }  // namespace meshlode::format

@@ -16,10 +16,10 @@ namespace meshlode::format {
 /// Start of the stored bytes of a page whose codec is not none. Side information follows, then for kStrips the size of
 /// each stream (u32), then the streams; for kColumns the words of the clusters' bit streams.
 struct StoredHeader {
-  std::uint32_t method;        ///< PageMethod
-  std::uint32_t side_stored;   ///< bytes of the side information as they follow, through the codec's library
-  std::uint32_t side_bytes;    ///< the same, decoded
-  std::uint32_t twin_count;    ///< of kStrips, else 0
+  std::uint32_t method;       ///< PageMethod
+  std::uint32_t side_stored;  ///< bytes of the side information as they follow, through the codec's library
+  std::uint32_t side_bytes;   ///< the same, decoded
+  std::uint32_t twin_count;   ///< of kStrips, else 0
 };
 static_assert(sizeof(StoredHeader) == 16);
 
@@ -41,8 +41,8 @@ enum class SlotKind : std::uint8_t {
 };
 constexpr std::uint32_t kSlotKinds = 3;
 
-/// A triangle that continues a strip is 3 · turn + kind of its new slot; three of them in a row are one symbol, the first
-/// one counting least. What is missing at a cluster's end is zero.
+/// A triangle that continues a strip is 3 · turn + kind of its new slot; three of them in a row are one symbol, the
+/// first one counting least. What is missing at a cluster's end is zero.
 constexpr std::uint32_t kTriangleSymbols = 2 * kSlotKinds;
 constexpr std::uint32_t kTripleSymbols = kTriangleSymbols * kTriangleSymbols * kTriangleSymbols;
 /// The three slots of a strip's first triangle, the first one counting most.
@@ -68,7 +68,7 @@ enum Table : std::uint32_t {
   kShearTable,     ///< of the sheared axis
   kNormalTable,
   kColorTable,
-  kUvTables,       ///< one a set
+  kUvTables,  ///< one a set
 };
 constexpr std::uint32_t kMaxTables = kUvTables + kMaxUvSets;
 
@@ -76,7 +76,8 @@ constexpr std::uint32_t kMaxTables = kUvTables + kMaxUvSets;
   return table == kTripleTable ? kTripleSymbols : table == kStartTable ? kStartSymbols : kValueSymbols;
 }
 
-/// Position fields stand in streams by their part in the shear: first the two others in the order x y z, then the sheared.
+/// Position fields stand in streams by their part in the shear: first the two others in the order x y z, then the
+/// sheared.
 [[nodiscard]] constexpr std::array<std::uint32_t, 3> axes_by_role(std::uint32_t shear_axis) {
   return {shear_axis == 0 ? 1U : 0U, shear_axis == 2 ? 1U : 2U, shear_axis};
 }
@@ -96,18 +97,31 @@ constexpr std::uint32_t kMaxTables = kUvTables + kMaxUvSets;
 }
 
 /// Words of a cluster's data that are not its stream, by what they are: each kind has its own columns.
-enum RangeWord : std::uint32_t { kMaterialWord, kUvWord0, kUvWord1, kUvWord2, kFitWord0, kFitWord1, kColorWord0,
-                                 kColorWord1, kRangeWordKinds };
+enum RangeWord : std::uint32_t {
+  kMaterialWord,
+  kUvWord0,
+  kUvWord1,
+  kUvWord2,
+  kFitWord0,
+  kFitWord1,
+  kColorWord0,
+  kColorWord1,
+  kRangeWordKinds
+};
 
 /// Whether words of the kind are stored as differences to the one before, folded.
-[[nodiscard]] constexpr bool is_delta(RangeWord kind) { return kind == kUvWord1 || kind == kUvWord2; }
+[[nodiscard]] constexpr bool is_delta(RangeWord kind) {
+  return kind == kUvWord1 || kind == kUvWord2;
+}
 
 /// Head words 1 to 3 hold 24 bits of a coordinate, which is stored as the folded difference to the cluster before.
 constexpr std::uint32_t kCoordinateMask = 0xFFFFFFU;
 [[nodiscard]] constexpr std::uint32_t fold_coordinate(std::uint32_t difference) {
   return fold(static_cast<std::uint32_t>(static_cast<std::int32_t>(difference << 8U) >> 8)) & kCoordinateMask;
 }
-[[nodiscard]] constexpr std::uint32_t unfold_coordinate(std::uint32_t folded) { return unfold(folded) & kCoordinateMask; }
+[[nodiscard]] constexpr std::uint32_t unfold_coordinate(std::uint32_t folded) {
+  return unfold(folded) & kCoordinateMask;
+}
 
 /// The three vertices that predict a new one, and kNobody: a vertex in the middle of every field's range.
 constexpr std::uint32_t kNobody = 256;

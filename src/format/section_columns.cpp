@@ -69,7 +69,8 @@ bool ColumnSource::read_codes(std::uint8_t* out, std::size_t count, std::size_t 
   std::uint32_t code_bytes;
   std::memcpy(&code_bytes, &buffer_[at_], sizeof(code_bytes));
   at_ += sizeof(code_bytes);
-  if (code_bytes > size_ - at_ || !fill_code_table(std::span(lengths).first(symbols), Meaning::kSymbol, table_)) return false;
+  if (code_bytes > size_ - at_ || !fill_code_table(std::span(lengths).first(symbols), Meaning::kSymbol, table_))
+    return false;
   std::uint64_t bit = at_ * 8;
   at_ += code_bytes;
   for (std::size_t done = 0; done < count;) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Sections whose codec is `columns`: tables and texts in prefix codes of their own, without any library (docs/format.md,
-// Stored sections).
+// Sections whose codec is `columns`: tables and texts in prefix codes of their own, without any library
+// (docs/format.md, Stored sections).
 #pragma once
 
 #include <array>
@@ -20,9 +20,10 @@ enum class SectionCodec : std::uint32_t {
 
 /// How the bytes of a column are stored.
 enum class ColumnMode : std::uint8_t {
-  kRaw = 0,     ///< as they are
-  kSame = 1,    ///< one byte, which all of them are
-  kPrefix = 2,  ///< first symbol, number of symbols - 1, their code lengths (4 bits each), bytes of the code (u32), code
+  kRaw = 0,   ///< as they are
+  kSame = 1,  ///< one byte, which all of them are
+  kPrefix =
+      2,  ///< first symbol, number of symbols - 1, their code lengths (4 bits each), bytes of the code (u32), code
 };
 
 /// Differences of 16-bit words from record to record are folded.
@@ -57,8 +58,8 @@ class ColumnSource {
 [[nodiscard]] bool is_section_sound(std::span<const std::uint8_t> stored, std::uint32_t record_bytes,
                                     std::uint64_t decoded_bytes);
 
-/// Fills `out`, a whole number of records; `record_bytes` 0: a text, one column without differences. False where the bytes
-/// do not say exactly that. \pre record_bytes is even
+/// Fills `out`, a whole number of records; `record_bytes` 0: a text, one column without differences. False where the
+/// bytes do not say exactly that. \pre record_bytes is even
 [[nodiscard]] bool decode_section(std::span<const std::uint8_t> stored, std::uint32_t record_bytes,
                                   std::span<std::uint8_t> out);
 

@@ -9,8 +9,12 @@ namespace {
 std::uint32_t shift_right(std::uint32_t value, std::uint32_t bits) {
   return static_cast<std::uint32_t>(static_cast<std::int32_t>(value) >> bits);
 }
-std::uint32_t product(std::int32_t a, std::uint32_t b) { return static_cast<std::uint32_t>(a) * b; }
-std::uint32_t absolute(std::uint32_t value) { return value >> 31U != 0 ? 0U - value : value; }
+std::uint32_t product(std::int32_t a, std::uint32_t b) {
+  return static_cast<std::uint32_t>(a) * b;
+}
+std::uint32_t absolute(std::uint32_t value) {
+  return value >> 31U != 0 ? 0U - value : value;
+}
 std::uint32_t with_sign(std::uint32_t magnitude, std::uint32_t sign) {
   return sign >> 31U != 0 ? 0U - magnitude : magnitude;
 }
@@ -35,7 +39,8 @@ const UvRangeFields& range_of_vertex(const FieldContext& context, const ClusterF
 }
 
 /// Another pole and the same point: the map is its own inverse but for the offset by M.
-void unfold_far_half(std::uint32_t a, std::uint32_t b, std::uint32_t scale, std::uint32_t& out_a, std::uint32_t& out_b) {
+void unfold_far_half(std::uint32_t a, std::uint32_t b, std::uint32_t scale, std::uint32_t& out_a,
+                     std::uint32_t& out_b) {
   out_a = with_sign(scale - absolute(b), a);
   out_b = with_sign(scale - absolute(a), b);
 }
@@ -127,8 +132,8 @@ void read_raw_vertex(const FieldContext& context, const ClusterFields& cluster, 
   }
 }
 
-void full_from_raw(const FieldContext& context, const ClusterFields& cluster, std::uint32_t vertex, const RawVertex& raw,
-                   FullVertex& full) {
+void full_from_raw(const FieldContext& context, const ClusterFields& cluster, std::uint32_t vertex,
+                   const RawVertex& raw, FullVertex& full) {
   const MeshRecord& mesh = context.mesh;
   const ClusterLayout& layout = cluster.layout;
   for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The raw fields of a vertex as they lie in a decoded page, its full integers, and the way between them: what one cluster
-// says of a shared vertex in the terms of another cluster.
+// The raw fields of a vertex as they lie in a decoded page, its full integers, and the way between them: what one
+// cluster says of a shared vertex in the terms of another cluster.
 #pragma once
 
 #include <array>
@@ -54,8 +54,8 @@ struct FieldContext {
 /// These three write field_count fields, one more where they are full, and leave the rest of `out` alone.
 void read_raw_vertex(const FieldContext& context, const ClusterFields& cluster, std::uint32_t vertex, RawVertex& out);
 
-void full_from_raw(const FieldContext& context, const ClusterFields& cluster, std::uint32_t vertex, const RawVertex& raw,
-                   FullVertex& out);
+void full_from_raw(const FieldContext& context, const ClusterFields& cluster, std::uint32_t vertex,
+                   const RawVertex& raw, FullVertex& out);
 
 /// The raw fields that say `full` at `vertex` of the cluster. Where a field is too narrow for it the value does not fit
 /// its bits; a reader cuts it off, a writer compares and stores the vertex in another way.

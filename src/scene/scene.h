@@ -19,10 +19,10 @@ struct Primitive {
   std::vector<Vec3d> positions;  ///< object units; double because PLY and far-away meshes have more than 24 bits
   std::vector<Vec3f> normals;    ///< empty: the source has none, flat normals are meant (glTF 2.0, 3.7.2.1)
   std::array<std::vector<Vec2f>, kMaxUvSets> uvs;  ///< TEXCOORD_0 … 3
-  std::vector<Vec4f> colors;     ///< COLOR_0, linear; alpha 1 where the source has none
-  bool has_tangents = false;     ///< the source has TANGENT; tangents are not kept (the plan derives them)
+  std::vector<Vec4f> colors;                       ///< COLOR_0, linear; alpha 1 where the source has none
+  bool has_tangents = false;           ///< the source has TANGENT; tangents are not kept (the plan derives them)
   std::vector<std::uint32_t> indices;  ///< 3 per triangle, each < positions.size()
-  MaterialId material;           ///< into Scene::materials
+  MaterialId material;                 ///< into Scene::materials
 };
 
 /// Triangles that import removed, by kind. Nothing is dropped without being counted.
@@ -42,7 +42,7 @@ enum class AlphaMode : std::uint8_t { kOpaque, kMask, kBlend };
 /// The part of a material that the build and the renderer act on. The rest travels in Scene::document.
 struct SceneMaterial {
   std::string name;
-  std::uint32_t source_index = kNoId;        ///< glTF material index; kNoId for the default material
+  std::uint32_t source_index = kNoId;  ///< glTF material index; kNoId for the default material
   AlphaMode alpha_mode = AlphaMode::kOpaque;
   Vec4f base_color{1.0F, 1.0F, 1.0F, 1.0F};
   float alpha_cutoff = 0.5F;
@@ -58,7 +58,7 @@ struct SceneInstance {
   std::string name;
   std::uint32_t node = 0;  ///< glTF node index
   MeshId mesh;
-  Mat4d transform{1.0};    ///< mesh space to world, column-major
+  Mat4d transform{1.0};  ///< mesh space to world, column-major
 };
 
 /// Bytes carried through as they were: an image, or a buffer that animations refer to.
@@ -78,8 +78,8 @@ struct LeftOut {
 };
 
 struct Scene {
-  std::string source_name;       ///< base name of the file
-  std::string source_hash;       ///< XXH3-128 in hex over the file and all it refers to, in order of reference
+  std::string source_name;  ///< base name of the file
+  std::string source_hash;  ///< XXH3-128 in hex over the file and all it refers to, in order of reference
   std::vector<SourceMesh> meshes;
   std::vector<SceneMaterial> materials;  ///< glTF's in order; the default material last, where a primitive has none
   std::vector<SceneInstance> instances;  ///< depth first over the default scene

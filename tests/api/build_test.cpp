@@ -155,7 +155,8 @@ TEST(ApiBuild, OptionsThatMakeNoSenseAreUsageErrors) {
   const auto expect_usage = [&](const char* field, const auto& spoil) {
     BuildOptions spoilt;
     spoil(spoilt);
-    expect_refused(test::build_one(arrays.primitive(), spoilt), ErrorCode::kUsage, std::string("BuildOptions::") + field);
+    expect_refused(test::build_one(arrays.primitive(), spoilt), ErrorCode::kUsage,
+                   std::string("BuildOptions::") + field);
   };
   expect_usage("grid_step", [](BuildOptions& o) { o.grid_step = std::nan(""); });
   expect_usage("position_error", [](BuildOptions& o) { o.position_error = -1e-9; });
@@ -348,7 +349,7 @@ TEST(ApiBuild, AThrowingCallbackIsAnError) {
   const auto result = test::build_one(arrays.primitive(), options);
   ASSERT_FALSE(result.ok());
   EXPECT_EQ(result.error().code, ErrorCode::kBuildFailed);
-  EXPECT_EQ(result.error().message(), "from the callback");  // no internal error: it is the caller's own
+  EXPECT_EQ(result.error().message(), "from the callback");     // no internal error: it is the caller's own
   options.on_progress = [](const BuildProgress&) { throw 7; };  // NOLINT: what no library throws
   const auto odd = test::build_one(arrays.primitive(), options);
   ASSERT_FALSE(odd.ok());
@@ -425,7 +426,8 @@ TEST(ApiBuild, FilesAppearWholeOrNotAtAll) {
   std::filesystem::copy_file(MESHLODE_SOURCE_DIR "/data/crystal.glb", folder / "scene.glb");
   std::filesystem::create_hard_link(folder / "scene.glb", folder / "alias");
   EXPECT_EQ(build_file(folder / "scene.glb", folder / "alias", {}).error().code, ErrorCode::kUsage);
-  EXPECT_EQ(std::filesystem::file_size(folder / "alias"), std::filesystem::file_size(MESHLODE_SOURCE_DIR "/data/crystal.glb"));
+  EXPECT_EQ(std::filesystem::file_size(folder / "alias"),
+            std::filesystem::file_size(MESHLODE_SOURCE_DIR "/data/crystal.glb"));
   std::filesystem::remove_all(folder);
 }
 

@@ -7,12 +7,12 @@
 
 #include <meshlode/meshlode.h>
 
-static int fail(const char *what, const meshlode_error *error) {
+static int fail(const char* what, const meshlode_error* error) {
   fprintf(stderr, "%s: %s\n", what, error->text);
   return (int)error->status;
 }
 
-static void free_pages(const meshlode_asset *asset, void **loaded) {
+static void free_pages(const meshlode_asset* asset, void** loaded) {
   uint32_t count, i;
   (void)meshlode_pages(asset, &count);
   for (i = 0; loaded && i < count; ++i) free(loaded[i]);
@@ -20,11 +20,11 @@ static void free_pages(const meshlode_asset *asset, void **loaded) {
 }
 
 /* Loads every page in streaming order into memory of its own. NULL where one cannot be loaded. */
-static void **load_pages(const meshlode_asset *asset, meshlode_error *error) {
+static void** load_pages(const meshlode_asset* asset, meshlode_error* error) {
   uint32_t count, i;
-  const meshlode_page *pages = meshlode_pages(asset, &count);
-  void **loaded = calloc(count ? count : 1, sizeof *loaded);
-  uint32_t *order = malloc((count ? count : 1) * sizeof *order);
+  const meshlode_page* pages = meshlode_pages(asset, &count);
+  void** loaded = calloc(count ? count : 1, sizeof *loaded);
+  uint32_t* order = malloc((count ? count : 1) * sizeof *order);
   int ok = loaded && order && meshlode_streaming_order(asset, order, error) == MESHLODE_OK;
   for (i = 0; ok && i < count; ++i) {
     const uint32_t page = order[i];
@@ -37,13 +37,13 @@ static void **load_pages(const meshlode_asset *asset, meshlode_error *error) {
   return NULL;
 }
 
-int main(int argc, char **argv) {
-  meshlode_asset *asset;
+int main(int argc, char** argv) {
+  meshlode_asset* asset;
   meshlode_error error;
   const meshlode_view view = {{0.0, 1.0, 3.0}, 0, 0.8, 0.0, 0.01, 720};
-  meshlode_draw_item *items;
+  meshlode_draw_item* items;
   size_t count, i;
-  void **pages;
+  void** pages;
   double area_x2 = 0.0;
   unsigned long triangles = 0;
   static float positions[3 * MESHLODE_MAX_CLUSTER_VERTICES];
@@ -54,7 +54,8 @@ int main(int argc, char **argv) {
   if (!(pages = load_pages(asset, &error))) return fail("pages", &error);
 
   /* What the camera needs: ask for the number, then for the items. */
-  if (meshlode_select_view(asset, &view, 1.0, NULL, 0, &count, &error) != MESHLODE_TOO_SMALL) return fail("view", &error);
+  if (meshlode_select_view(asset, &view, 1.0, NULL, 0, &count, &error) != MESHLODE_TOO_SMALL)
+    return fail("view", &error);
   items = malloc(count * sizeof *items);
   if (!items) return 4;
   if (meshlode_select_view(asset, &view, 1.0, items, count, &count, &error)) return fail("view", &error);
@@ -70,7 +71,7 @@ int main(int argc, char **argv) {
     if (meshlode_decode_floats(asset, page, items[i].cluster, &cluster, &error)) return fail("cluster", &error);
     for (t = 0; t < cluster.triangle_count; ++t) { /* the area seen from above */
       const float *a = positions + 3 * corners[3 * t], *b = positions + 3 * corners[3 * t + 1];
-      const float *c = positions + 3 * corners[3 * t + 2];
+      const float* c = positions + 3 * corners[3 * t + 2];
       area_x2 += (double)(b[2] - a[2]) * (double)(c[0] - a[0]) - (double)(b[0] - a[0]) * (double)(c[2] - a[2]);
     }
     triangles += cluster.triangle_count;

@@ -82,7 +82,8 @@ TEST(ApiCommandLine, WhatBothSayTheSameWayGivesTheSameBytes) {
     const fs::path scene = fs::path(MESHLODE_SOURCE_DIR) / "data" / saying.scene;
     std::string words = saying.words;
     BuildOptions options;
-    if (!words.empty() && words.find("--error-tier") == std::string::npos) {  // the quick one, where it is not the point
+    if (!words.empty() &&
+        words.find("--error-tier") == std::string::npos) {  // the quick one, where it is not the point
       words += " --error-tier qem";
       options.error_tier = format::ErrorTier::kQem;
     }

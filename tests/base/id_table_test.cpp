@@ -69,7 +69,8 @@ TEST(IdTable, DoesNotGrowWithinTheRoomThatWasAskedFor) {
         ADD_FAILURE() << "grows at " << id << " of " << room;
         return 0;
       };
-      (void)table.find_or_insert(id, id, [&](std::uint32_t other) { return other == id; }, no_growth);
+      (void)table.find_or_insert(
+          id, id, [&](std::uint32_t other) { return other == id; }, no_growth);
     }
     EXPECT_EQ(table.size(), room);
   }

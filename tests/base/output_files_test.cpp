@@ -175,8 +175,7 @@ TEST_F(OutputFilesTest, WhatAKilledWriterLeavesTheNextOneRemoves) {
                                                ".meshlode-notes.tmp"}));
   ::close(lock);
   EXPECT_TRUE(OutputFiles().write(path("asset"), bytes("whole")));
-  EXPECT_EQ(names(),
-            (std::vector<std::string>{".meshlode-0123456789ABCDEF.tmp", ".meshlode-notes.tmp", "asset"}));
+  EXPECT_EQ(names(), (std::vector<std::string>{".meshlode-0123456789ABCDEF.tmp", ".meshlode-notes.tmp", "asset"}));
 }
 
 TEST_F(OutputFilesTest, AWriteThatFailsLeavesNothingAndTheOldFile) {

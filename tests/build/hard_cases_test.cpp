@@ -13,13 +13,13 @@
 #include <string>
 #include <vector>
 
-#include "odd_shapes.h"
-#include "build/build.h"
-#include "run/read/asset.h"
 #include "base/random.h"
-#include "scene/samples/samples.h"
+#include "build/build.h"
 #include "judge/validate/validate.h"
 #include "judge/verify/verify.h"
+#include "odd_shapes.h"
+#include "run/read/asset.h"
+#include "scene/samples/samples.h"
 
 namespace meshlode::build {
 namespace {
@@ -30,8 +30,8 @@ struct HardCase {
   friend void PrintTo(const HardCase& hard_case, std::ostream* out) { *out << hard_case.name; }
   const char* name;
   std::function<scene::Scene()> make;
-  /// Where few random triangles cross each other everywhere, the samples of the measured tier have missed a maximum by a
-  /// fifth, and certifying takes minutes: there the deviation is not checked.
+  /// Where few random triangles cross each other everywhere, the samples of the measured tier have missed a maximum by
+  /// a fifth, and certifying takes minutes: there the deviation is not checked.
   format::ErrorTier tier = format::ErrorTier::kMeasured;
 };
 
@@ -167,7 +167,8 @@ const HardCase kCases[] = {
     {"Slivers", [] { return alone(scene::make_slivers(3000)); }},
     {"Needles", rock_with_needles},
     {"FineRingsBesideAPatch", [] { return alone(test::make_fine_rings_beside_a_patch(3)); }},
-    {"FineRingsCertified", [] { return alone(test::make_fine_rings_beside_a_patch(4)); }, format::ErrorTier::kCertified},
+    {"FineRingsCertified", [] { return alone(test::make_fine_rings_beside_a_patch(4)); },
+     format::ErrorTier::kCertified},
     {"BallWithHairs", [] { return alone(test::make_ball_with_hairs()); }},
     {"BallWithHairsCertified", [] { return alone(test::make_ball_with_hairs()); }, format::ErrorTier::kCertified},
     {"CubeWithTJunctions", [] { return alone(test::make_cube_with_t_junctions()); }},
@@ -202,7 +203,8 @@ INSTANTIATE_TEST_SUITE_P(Pipeline, HardCases, testing::ValuesIn(kCases),
 
 /// The rules that the asset breaks against another source.
 std::set<std::string> rules_broken(const run::Asset& asset, const scene::Scene& source) {
-  const judge::VerifyReport report = judge::verify_asset(asset, source, {.uniform_cuts = 1, .cameras = 1, .deviation_cuts = 0});
+  const judge::VerifyReport report =
+      judge::verify_asset(asset, source, {.uniform_cuts = 1, .cameras = 1, .deviation_cuts = 0});
   std::set<std::string> rules;
   for (const judge::Finding& finding : report.findings) rules.insert(finding.id);
   return rules;
@@ -221,7 +223,8 @@ TEST(HardNumbers, AChangedNeedleIsFoundHoweverManyShareItsCell) {
   SplitMix64 random(6);
   for (int round = 0; round < 40; ++round) {
     scene::Primitive moved = shape;
-    const auto vertex = first_ring + random.scaled_below(static_cast<std::uint32_t>(shape.positions.size() - first_ring));
+    const auto vertex =
+        first_ring + random.scaled_below(static_cast<std::uint32_t>(shape.positions.size() - first_ring));
     moved.positions[vertex][static_cast<int>(random.scaled_below(3))] += round % 2 == 0 ? 3.0 * step : -3.0 * step;
     EXPECT_TRUE(rules_broken(*asset, alone(moved)).contains("V101")) << "vertex " << vertex;
 

@@ -30,7 +30,8 @@ TEST(Needs, CountsBeyondWhatIdsHoldAreRefusedInOneLine) {
   const Status triangles = check_mesh_counts({kMaxMeshTriangles + 1, 3}, "mesh 7 'scan'");
   ASSERT_FALSE(triangles);
   EXPECT_EQ(triangles.error().code, ErrorCode::kUnsupported);
-  EXPECT_EQ(triangles.error().message(), "mesh 7 'scan': 214000001 triangles, at most 214000000 are built into one mesh: split it");
+  EXPECT_EQ(triangles.error().message(),
+            "mesh 7 'scan': 214000001 triangles, at most 214000000 are built into one mesh: split it");
   EXPECT_FALSE(check_mesh_counts({1, kMaxMeshVertices + 1}, "mesh 0"));
   EXPECT_FALSE(check_mesh_counts({UINT64_MAX, UINT64_MAX}, "mesh 0")) << "no product wraps";
   // All levels together, in corners, and the corners of the source.
@@ -73,7 +74,8 @@ scene::Scene sheets(std::uint32_t n, std::size_t count, bool has_attributes) {
   for (std::uint32_t j = 0; j <= n; ++j) {
     for (std::uint32_t i = 0; i <= n; ++i) {
       const double x = static_cast<double>(i) / n, y = static_cast<double>(j) / n;
-      sheet.positions.emplace_back(x, y, 0.03 * std::sin(40.0 * x) * std::cos(31.0 * y) + 0.002 * ((i * 7 + j * 13) % 5));
+      sheet.positions.emplace_back(x, y,
+                                   0.03 * std::sin(40.0 * x) * std::cos(31.0 * y) + 0.002 * ((i * 7 + j * 13) % 5));
       if (!has_attributes) continue;
       sheet.uvs[0].emplace_back(static_cast<float>(x), static_cast<float>(y));
       sheet.normals.emplace_back(0.0F, static_cast<float>(std::sin(x)), static_cast<float>(std::cos(x)));
@@ -101,7 +103,8 @@ scene::Scene loose(std::uint32_t count) {
   primitive.indices.clear();
   for (std::uint32_t i = 0; i < 3 * count; ++i) {
     const double t = i / 3;
-    primitive.positions.emplace_back(std::sin(t) + 0.05 * std::sin(7.0 * i), std::cos(1.7 * t) + 0.05 * std::cos(5.0 * i),
+    primitive.positions.emplace_back(std::sin(t) + 0.05 * std::sin(7.0 * i),
+                                     std::cos(1.7 * t) + 0.05 * std::cos(5.0 * i),
                                      std::sin(0.3 * t) + 0.05 * std::sin(3.0 * i));
     primitive.indices.push_back(i);
   }
@@ -165,8 +168,8 @@ void expect_close(const Measured& measured, const std::string& what) {
   GTEST_SKIP() << "a sanitizer's own memory is not estimated";
 #endif
   const double ratio = static_cast<double>(measured.estimate) / static_cast<double>(measured.peak);
-  std::printf("%s: %.1f MiB estimated, %.1f MiB taken, %.2f\n", what.c_str(), static_cast<double>(measured.estimate) / 0x1p20,
-              static_cast<double>(measured.peak) / 0x1p20, ratio);
+  std::printf("%s: %.1f MiB estimated, %.1f MiB taken, %.2f\n", what.c_str(),
+              static_cast<double>(measured.estimate) / 0x1p20, static_cast<double>(measured.peak) / 0x1p20, ratio);
   EXPECT_GE(ratio, 1.0) << what;
   EXPECT_LE(static_cast<double>(measured.estimate), 1.8 * static_cast<double>(measured.peak) + 24.0 * 0x1p20) << what;
 }
@@ -174,12 +177,14 @@ void expect_close(const Measured& measured, const std::string& what) {
 TEST(Needs, MemoryIsEstimatedFromAboveAndCloseEnough) {
   using enum format::ErrorTier;
   expect_close(measure([] { return sheets(160, 1, false); }, kMeasured, 1), "51,200 triangles, one thread");
-  expect_close(measure([] { return sheets(160, 1, true); }, kMeasured, 2), "with normals, UVs and colours, two threads");
+  expect_close(measure([] { return sheets(160, 1, true); }, kMeasured, 2),
+               "with normals, UVs and colours, two threads");
   expect_close(measure([] { return sheets(160, 1, false); }, kQem, 2), "the quadric's tier");
   expect_close(measure([] { return sheets(50, 12, false); }, kMeasured, 2), "twelve meshes of 5,000");
   expect_close(measure([] { return sheets(20, 1, false); }, kMeasured, 1), "800 triangles");
   expect_close(measure([] { return loose(20000); }, kMeasured, 1), "20,000 loose triangles");
-  expect_close(measure([] { return unshared(sheets(120, 1, false)); }, kMeasured, 1), "28,800 triangles, no vertex shared");
+  expect_close(measure([] { return unshared(sheets(120, 1, false)); }, kMeasured, 1),
+               "28,800 triangles, no vertex shared");
 }
 
 TEST(Needs, AScenesImagesAreCounted) {

@@ -7,11 +7,11 @@
 #include <string>
 
 #include "build/build.h"
+#include "judge/validate/validate.h"
+#include "judge/verify/verify.h"
 #include "run/read/asset.h"
 #include "scene/samples/samples.h"
 #include "support/open_surface.h"
-#include "judge/validate/validate.h"
-#include "judge/verify/verify.h"
 
 namespace meshlode::build {
 namespace {

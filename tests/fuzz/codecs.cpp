@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Each page codec's unpacker on any bytes: the first byte chooses the codec, the second the mesh's attributes, the third the
-// number of clusters, the next two the size asked for.
+// Each page codec's unpacker on any bytes: the first byte chooses the codec, the second the mesh's attributes, the
+// third the number of clusters, the next two the size asked for.
 #include <algorithm>
 #include <vector>
 

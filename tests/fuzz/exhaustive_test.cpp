@@ -7,9 +7,9 @@
 #include <gtest/gtest.h>
 
 #include "fuzz/read_all.h"
+#include "run/unpack/unpack.h"
 #include "support/reseal.h"
 #include "support/sample_asset.h"
-#include "run/unpack/unpack.h"
 
 namespace meshlode {
 namespace {

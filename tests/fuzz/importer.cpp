@@ -75,7 +75,8 @@ void require_sound(const scene::Scene& scene) {
       fuzz::require(p.material.value < scene.materials.size(), "no such material");
     }
   }
-  for (const scene::SceneInstance& i : scene.instances) fuzz::require(i.mesh.value < scene.meshes.size(), "no such mesh");
+  for (const scene::SceneInstance& i : scene.instances)
+    fuzz::require(i.mesh.value < scene.meshes.size(), "no such mesh");
 }
 
 }  // namespace

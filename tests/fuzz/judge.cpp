@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "asset_mutator.h"
-#include "out/export/choose_cuts.h"
-#include "out/export/export.h"
 #include "harness.h"
 #include "judge/validate/validate.h"
+#include "out/export/choose_cuts.h"
+#include "out/export/export.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace meshlode;

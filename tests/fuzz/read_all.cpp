@@ -4,8 +4,8 @@
 #include <cmath>
 #include <string_view>
 
-#include "run/decode/decode.h"
 #include "harness.h"
+#include "run/decode/decode.h"
 #include "run/select/select.h"
 #include "run/unpack/content_hash.h"
 

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What `render` does with a hostile asset: select, draw, colour, encode. Eight bytes before the asset choose the camera.
+// What `render` does with a hostile asset: select, draw, colour, encode. Eight bytes before the asset choose the
+// camera.
 #include <cmath>
 #include <vector>
 
 #include "asset_mutator.h"
-#include "harness.h"
 #include "draw/raster/raster.h"
+#include "harness.h"
 
 namespace {
 
@@ -14,7 +15,9 @@ using namespace meshlode;
 constexpr std::size_t kPrefix = 8;
 constexpr std::size_t kMostClusters = 2000;  ///< drawn: more would only take longer
 
-double centred(std::uint8_t byte) { return (byte - 128) / 16.0; }
+double centred(std::uint8_t byte) {
+  return (byte - 128) / 16.0;
+}
 
 run::Camera camera_of(const std::uint8_t* bytes) {
   run::Camera camera;
@@ -48,10 +51,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   for (std::size_t i = 0; i < visibility->pixel_count(); ++i) {
     const std::uint32_t item = visibility->item[i];
-    fuzz::require(item == draw::VisibilityBuffer::kNothing || item < cut->size(), "a pixel shows what is not in the cut");
+    fuzz::require(item == draw::VisibilityBuffer::kNothing || item < cut->size(),
+                  "a pixel shows what is not in the cut");
   }
   const draw::TextureSet textures = draw::load_textures(*asset, budget);
-  for (const draw::View view : {draw::View::kShaded, draw::View::kClusters, draw::View::kTriangles, draw::View::kLevels}) {
+  for (const draw::View view :
+       {draw::View::kShaded, draw::View::kClusters, draw::View::kTriangles, draw::View::kLevels}) {
     const auto image = draw::shade_view(*asset, *cut, camera, *visibility, view, textures);
     fuzz::require(image.ok(), "what was drawn cannot be coloured");
     fuzz::require(!draw::encode_png(*image).empty(), "no picture");

@@ -10,8 +10,8 @@
 
 #include "draw/textures/image_samples.h"
 #include "format/names.h"
-#include "scene/import/mutant_seeds.h"
 #include "run/read/asset.h"
+#include "scene/import/mutant_seeds.h"
 #include "support/sample_asset.h"
 
 namespace {
@@ -31,9 +31,9 @@ Bytes codec_input(const run::Asset& asset, PageId page) {
   const format::MeshRecord& mesh = asset.meshes()[asset.groups()[record.first_group].mesh];
   const std::uint32_t shape = (mesh.normal_mode == format::NormalMode::kStored ? 1U : 0U) | mesh.uv_set_count << 1U |
                               mesh.has_color << 4U | (mesh.material == format::kNone ? 32U : 0U);
-  Bytes bytes = {static_cast<std::uint8_t>(2U + static_cast<std::uint32_t>(record.codec)), static_cast<std::uint8_t>(shape),
-                 static_cast<std::uint8_t>(record.cluster_count - 1U), static_cast<std::uint8_t>(record.bytes),
-                 static_cast<std::uint8_t>(record.bytes >> 8U)};
+  Bytes bytes = {static_cast<std::uint8_t>(2U + static_cast<std::uint32_t>(record.codec)),
+                 static_cast<std::uint8_t>(shape), static_cast<std::uint8_t>(record.cluster_count - 1U),
+                 static_cast<std::uint8_t>(record.bytes), static_cast<std::uint8_t>(record.bytes >> 8U)};
   const auto stored = asset.stored_page(page);
   bytes.insert(bytes.end(), stored.begin(), stored.end());
   return bytes;
@@ -107,9 +107,11 @@ scene::Scene textured_scene(const std::vector<std::pair<std::string, Bytes>>& im
     scene.materials[i].base_color_uv_set = 0;
     scene.materials[i].alpha_mode = i % 2 == 0 ? scene::AlphaMode::kMask : scene::AlphaMode::kOpaque;
     const std::string texture = std::to_string(i % images.size()), normal = std::to_string((i + 2) % images.size());
-    materials += (materials.empty() ? "" : ",") + std::string(R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":)") +
-                 texture + R"(,"extensions":{"KHR_texture_transform":{"scale":[2,0.5],"rotation":1}}}},"normalTexture":{"index":)" +
-                 normal + R"(,"scale":0.5}})";
+    materials +=
+        (materials.empty() ? "" : ",") + std::string(R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":)") +
+        texture +
+        R"(,"extensions":{"KHR_texture_transform":{"scale":[2,0.5],"rotation":1}}}},"normalTexture":{"index":)" +
+        normal + R"(,"scale":0.5}})";
   }
   scene.document = R"({"asset":{"version":"2.0"},"samplers":[{"wrapS":33648,"wrapT":33071}],"images":[)" + listed +
                    R"(],"textures":[)" + textures + R"(],"materials":[)" + materials + "]}";

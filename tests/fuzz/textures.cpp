@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "asset_mutator.h"
-#include "harness.h"
 #include "draw/textures/alpha_mask.h"
 #include "draw/textures/texture_set.h"
+#include "harness.h"
 
 namespace {
 
@@ -19,7 +19,8 @@ void look_at_image(std::span<const std::uint8_t> bytes) {
   const auto header = draw::read_image_header(bytes);
   if (!header) return fuzz::require(!header.error().detail.empty(), "a refusal without a reason");
   fuzz::require(header->width >= 1 && header->height >= 1, "an image without texels");
-  fuzz::require(header->width <= draw::kMaxTextureSide && header->height <= draw::kMaxTextureSide, "an image larger than the limit");
+  fuzz::require(header->width <= draw::kMaxTextureSide && header->height <= draw::kMaxTextureSide,
+                "an image larger than the limit");
   const std::uint64_t texels = draw::count_mip_texels(header->width, header->height);
   if (4 * texels + header->decoder_bytes > kBudget) return;
   auto image = draw::decode_image(bytes, texels);
@@ -62,7 +63,8 @@ void look_at_asset(const std::vector<std::uint8_t>& bytes) {
 /// Checksums of a PNG's chunks made true, as far as they can be found.
 void seal_png(std::span<std::uint8_t> png) {
   const auto load = [&](std::size_t at) {
-    return std::uint32_t{png[at]} << 24U | std::uint32_t{png[at + 1]} << 16U | std::uint32_t{png[at + 2]} << 8U | png[at + 3];
+    return std::uint32_t{png[at]} << 24U | std::uint32_t{png[at + 1]} << 16U | std::uint32_t{png[at + 2]} << 8U |
+           png[at + 3];
   };
   for (std::size_t at = 8; png.size() >= 12 && at <= png.size() - 12;) {
     const std::uint32_t bytes = load(at);

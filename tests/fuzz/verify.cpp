@@ -5,8 +5,8 @@
 
 #include "asset_mutator.h"
 #include "harness.h"
-#include "support/sample_asset.h"
 #include "judge/verify/verify.h"
+#include "support/sample_asset.h"
 
 namespace {
 

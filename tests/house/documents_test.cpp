@@ -21,8 +21,8 @@ std::vector<SourceFile> documents() {
   return files;
 }
 
-/// `src/build/build.cpp` and the like in backticks: paths from the repository's root that name a file or a folder. What has
-/// a placeholder or a pattern in it is no path.
+/// `src/build/build.cpp` and the like in backticks: paths from the repository's root that name a file or a folder. What
+/// has a placeholder or a pattern in it is no path.
 std::vector<std::string> named_paths(const std::string& text) {
   static const std::regex path("`((?:src|include|tests|tools|cmake|bench|docs|data)/[A-Za-z0-9_./-]+)`");
   std::vector<std::string> paths;
@@ -55,7 +55,8 @@ TEST(Documents, EveryPathTheyNameExists) {
 TEST(Documents, EveryLinkLeadsToAFile) {
   for (const SourceFile& file : documents()) {
     for (const std::string& target : linked_files(file.text)) {
-      EXPECT_TRUE(fs::exists(repository() / file.path.parent_path() / target)) << file.path.string() << " links " << target;
+      EXPECT_TRUE(fs::exists(repository() / file.path.parent_path() / target))
+          << file.path.string() << " links " << target;
     }
   }
 }

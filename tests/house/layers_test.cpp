@@ -47,7 +47,8 @@ std::string judge(const Layers& layers, const std::string& room, const Include& 
   if (floor != target_floor) {
     const auto it = layers.allowed.find(floor);
     if (it == layers.allowed.end()) return "floor " + floor + " is not in cmake/layers.txt";
-    return it->second.contains(target_floor) || it->second.contains("*") ? "" : floor + " may not include " + target_floor;
+    return it->second.contains(target_floor) || it->second.contains("*") ? ""
+                                                                         : floor + " may not include " + target_floor;
   }
   const auto it = layers.forbidden.find(room);
   return it != layers.forbidden.end() && it->second.contains(target) ? room + " may not include " + target : "";
@@ -90,7 +91,8 @@ TEST(Layers, PublicHeadersIncludeNoRoom) {
 TEST(Layers, TheCheckFailsOnAForbiddenEdge) {
   const Layers layers = read_layers();
   const auto include = [](const char* line) { return parse_includes(line).at(0); };
-  EXPECT_EQ(judge(layers, "judge/verify", include("#include \"build/dag/build_dag.h\"")), "judge may not include build");
+  EXPECT_EQ(judge(layers, "judge/verify", include("#include \"build/dag/build_dag.h\"")),
+            "judge may not include build");
   EXPECT_EQ(judge(layers, "run/select", include("  #  include \"scene/scene.h\"\n")), "run may not include scene");
   EXPECT_EQ(judge(layers, "draw/raster", include("#include \"draw/gpu/renderer.h\"")),
             "draw/raster may not include draw/gpu");

@@ -15,10 +15,10 @@ namespace {
 bool is_mit(const SourceFile& file) {
   static const std::set<std::string> floors = {"format", "run"};
   static const std::set<std::string> headers = {
-      "include/meshlode/format.h",    "include/meshlode/result.h", "include/meshlode/runtime.h",
-      "include/meshlode/meshlode.h",  "include/meshlode/page.h",
-      "tests/api/c_example.c",        "tests/install/consumer/use_c.c",
-      "tests/install/consumer/use_runtime.cpp"};
+      "include/meshlode/format.h",      "include/meshlode/result.h",
+      "include/meshlode/runtime.h",     "include/meshlode/meshlode.h",
+      "include/meshlode/page.h",        "tests/api/c_example.c",
+      "tests/install/consumer/use_c.c", "tests/install/consumer/use_runtime.cpp"};
   static const std::set<std::string> shaders = {".glsl", ".comp", ".vert", ".frag", ".mesh"};
   const std::string path = file.path.generic_string();
   if (shaders.contains(file.path.extension().string()) || path.starts_with("src/draw/gpu/shaders/")) return true;
@@ -36,9 +36,9 @@ std::string first_comment(const SourceFile& file) {
 }
 
 TEST(Licences, EveryFileSaysItsLicenceInItsFirstLine) {
-  const auto files = read_tree({"src", "include", "tools", "tests", "cmake", "bench"},
-                               {".h", ".cpp", ".c", ".txt", ".cmake", ".sh", ".py", ".js", ".glsl", ".comp", ".vert",
-                                ".frag", ".mesh"});
+  const auto files = read_tree(
+      {"src", "include", "tools", "tests", "cmake", "bench"},
+      {".h", ".cpp", ".c", ".txt", ".cmake", ".sh", ".py", ".js", ".glsl", ".comp", ".vert", ".frag", ".mesh"});
   ASSERT_FALSE(files.empty());
   for (const SourceFile& file : files) {
     const std::string line = first_comment(file);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Real models, built with the default settings: what the DAG may cost, that `validate` and `verify` find nothing, how far
-// the root alone is from the source, and that the BVH agrees with the flat rule. MESHLODE_MODELS names their folder.
+// Real models, built with the default settings: what the DAG may cost, that `validate` and `verify` find nothing, how
+// far the root alone is from the source, and that the BVH agrees with the flat rule. MESHLODE_MODELS names their
+// folder.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,14 +12,14 @@
 #include <utility>
 #include <vector>
 
-#include "scene/import/import.h"
-#include "judge/metrics/metrics.h"
 #include "build/build.h"
-#include "scene/samples/samples.h"
-#include "run/select/random_scene.h"
-#include "run/select/select.h"
+#include "judge/metrics/metrics.h"
 #include "judge/validate/validate.h"
 #include "judge/verify/verify.h"
+#include "run/select/random_scene.h"
+#include "run/select/select.h"
+#include "scene/import/import.h"
+#include "scene/samples/samples.h"
 
 namespace meshlode {
 namespace {
@@ -53,9 +54,9 @@ bool are_models_required() {
   return value != nullptr && std::string(value) == "1";
 }
 
-#define MESHLODE_NEEDS_MODEL(name)                                                                       \
-  if (!fs::exists(fs::path(models_folder()) / (name))) {                                                 \
-    if (are_models_required()) FAIL() << (name) << " is not below MESHLODE_MODELS";                      \
+#define MESHLODE_NEEDS_MODEL(name)                                                                        \
+  if (!fs::exists(fs::path(models_folder()) / (name))) {                                                  \
+    if (are_models_required()) FAIL() << (name) << " is not below MESHLODE_MODELS";                       \
     GTEST_SKIP() << "set MESHLODE_MODELS to the folder of models to run this test: it has no " << (name); \
   }
 
@@ -133,11 +134,14 @@ void expect_root_within(const Built& built, double limit) {
   const judge::Surface source = judge::surface_of_source(built.scene.meshes[0]);
   const run::UniformCut roots = run::select_uniform(asset, MeshId(0U), HUGE_VAL);
   const double root =
-      judge::measure_deviation(source, judge::surface_of_clusters(asset, *decoded, MeshId(0U), roots.clusters), {}).max() / diagonal;
+      judge::measure_deviation(source, judge::surface_of_clusters(asset, *decoded, MeshId(0U), roots.clusters), {})
+          .max() /
+      diagonal;
   EXPECT_LE(root, limit);
   const run::UniformCut finest = run::select_uniform(asset, MeshId(0U), 0.0);
   const double level0 =
-      judge::measure_deviation(source, judge::surface_of_clusters(asset, *decoded, MeshId(0U), finest.clusters), {}).max();
+      judge::measure_deviation(source, judge::surface_of_clusters(asset, *decoded, MeshId(0U), finest.clusters), {})
+          .max();
   EXPECT_LE(level0, finest.stored_error * (1.0 + 1e-6)) << "quantization alone";
   std::printf("root deviates by %.3f%% of the diagonal, level 0 by %.5f%%\n", 100.0 * root, 100.0 * level0 / diagonal);
 }
@@ -217,14 +221,13 @@ TEST(Models, FacetedBunnyHasOneRootNoStuckGroupAndNoFindings) {
 }
 
 TEST(Models, ValidateAndVerifyFindNothingInSmallOnes) {
-  expect_nothing_found_in({"khronos/Duck/glTF/Duck.gltf", "khronos/CesiumMilkTruck/glTF/CesiumMilkTruck.gltf",
-                           "khronos/TextureTransformTest/glTF/TextureTransformTest.gltf",
-                           "khronos/AnimatedMorphCube/glTF/AnimatedMorphCube.gltf",
-                           "khronos/SimpleSparseAccessor/glTF/SimpleSparseAccessor.gltf",
-                           "GltfPrimitives/gltf_primitives.glb", "SimpleSkin/SimpleSkin.gltf",
-                           "draco/Box/glTF_Binary/Box_Draco.glb", "draco/BoxMetaDraco/glTF/BoxMetaDraco.gltf",
-                           "draco/VertexColorTest/glTF/VertexColorTest.gltf", "spot.glb", "fandisk.glb",
-                           "rocker-arm.glb"});
+  expect_nothing_found_in(
+      {"khronos/Duck/glTF/Duck.gltf", "khronos/CesiumMilkTruck/glTF/CesiumMilkTruck.gltf",
+       "khronos/TextureTransformTest/glTF/TextureTransformTest.gltf",
+       "khronos/AnimatedMorphCube/glTF/AnimatedMorphCube.gltf",
+       "khronos/SimpleSparseAccessor/glTF/SimpleSparseAccessor.gltf", "GltfPrimitives/gltf_primitives.glb",
+       "SimpleSkin/SimpleSkin.gltf", "draco/Box/glTF_Binary/Box_Draco.glb", "draco/BoxMetaDraco/glTF/BoxMetaDraco.gltf",
+       "draco/VertexColorTest/glTF/VertexColorTest.gltf", "spot.glb", "fandisk.glb", "rocker-arm.glb"});
 }
 
 #else

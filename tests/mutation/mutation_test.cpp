@@ -10,14 +10,14 @@
 
 #include <gtest/gtest.h>
 
-#include "mutation/mutators.h"
 #include "build/build.h"
-#include "run/read/asset.h"
-#include "scene/samples/samples.h"
-#include "support/sample_asset.h"
 #include "judge/validate/judged_sample.h"
 #include "judge/validate/validate.h"
 #include "judge/verify/verify.h"
+#include "mutation/mutators.h"
+#include "run/read/asset.h"
+#include "scene/samples/samples.h"
+#include "support/sample_asset.h"
 
 namespace meshlode {
 namespace {
@@ -163,8 +163,8 @@ TEST(Mutation, ADependencyLeftOutIsFoundByItsRule) {
                           static_cast<std::uint32_t>(needy - pages.begin()));
   edit.seal();
   const judge::ValidationReport report = judge::validate_asset(edit.bytes());
-  EXPECT_TRUE(
-      std::any_of(report.findings.begin(), report.findings.end(), [](const judge::Finding& f) { return f.id == "L213"; }));
+  EXPECT_TRUE(std::any_of(report.findings.begin(), report.findings.end(),
+                          [](const judge::Finding& f) { return f.id == "L213"; }));
 }
 #else
 /// Small clusters, so that few triangles make a DAG of many groups. The sample's scene has what one mesh has not:

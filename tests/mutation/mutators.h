@@ -6,8 +6,8 @@
 #include <functional>
 #include <vector>
 
-#include "judge/validate/edit.h"
 #include "base/random.h"
+#include "judge/validate/edit.h"
 
 namespace meshlode::test {
 

@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 
 #include "base/file.h"
-#include "scene/import/import.h"
 #include "scene.h"
+#include "scene/import/import.h"
 #include "shapes.h"
 #include "shrink.h"
 

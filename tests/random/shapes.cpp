@@ -82,7 +82,8 @@ Shape make_ball(Dice& dice, std::uint32_t triangles) {
   if (dice.chance(0.3)) squash[static_cast<int>(dice.below(3))] = dice.octaves(-10, 0);
   const auto place = [&](double column, double row) {
     const double around = column, down = 0.5 * row;
-    const Vec3d p(scene::sin_turns(down) * scene::cos_turns(around), scene::cos_turns(down), scene::sin_turns(down) * scene::sin_turns(around));
+    const Vec3d p(scene::sin_turns(down) * scene::cos_turns(around), scene::cos_turns(down),
+                  scene::sin_turns(down) * scene::sin_turns(around));
     return squash * p * (1.0 + 0.4 * relief.at(p.x, p.y, dice));
   };
   const std::uint32_t top = shape.add(place(0.0, 0.0)), bottom = shape.add(place(0.0, 1.0));
@@ -107,7 +108,8 @@ Shape make_torus(Dice& dice, std::uint32_t triangles) {
   add_grid(shape, {major, minor, true, true}, [&](std::uint32_t i, std::uint32_t j) {
     const double a = share(i, major), b = share(j, minor);
     const double radius = 1.0 + tube * scene::cos_turns(b);
-    return Vec3d(radius * scene::cos_turns(a), tube * scene::sin_turns(b), radius * scene::sin_turns(a)) + dice.vector(noise);
+    return Vec3d(radius * scene::cos_turns(a), tube * scene::sin_turns(b), radius * scene::sin_turns(a)) +
+           dice.vector(noise);
   });
   return shape;
 }
@@ -343,7 +345,8 @@ Shape make_moebius(Dice& dice, std::uint32_t triangles) {
   const auto place = [&](std::uint32_t i, std::uint32_t j) {
     const double a = share(i, n), across = width * (2.0 * share(j, m) - 1.0);
     const double radius = 1.0 + across * scene::cos_turns(0.5 * twists * a);
-    return Vec3d(radius * scene::cos_turns(a), across * scene::sin_turns(0.5 * twists * a), radius * scene::sin_turns(a));
+    return Vec3d(radius * scene::cos_turns(a), across * scene::sin_turns(0.5 * twists * a),
+                 radius * scene::sin_turns(a));
   };
   const std::uint32_t first = add_grid(shape, {n - 1, m}, place);
   const bool is_turned = twists % 2 == 1;
@@ -552,7 +555,8 @@ Shape make_book(Dice& dice, std::uint32_t triangles) {
     const std::size_t before = shape.triangles.size();
     const std::uint32_t first = add_grid(shape, {n, n}, [&](std::uint32_t i, std::uint32_t j) {
       if (i == 0) return shape.points[spine[j]];
-      return Vec3d(share(i, n) * scene::cos_turns(a), share(j, n), share(i, n) * scene::sin_turns(a)) + dice.vector(noise);
+      return Vec3d(share(i, n) * scene::cos_turns(a), share(j, n), share(i, n) * scene::sin_turns(a)) +
+             dice.vector(noise);
     });
     for (std::size_t t = before; t < shape.triangles.size(); ++t) {
       for (std::uint32_t& v : shape.triangles[t]) {

@@ -5,8 +5,8 @@
 #include <cstring>
 #include <optional>
 
-#include "scene/samples/write_png.h"
 #include "scene.h"
+#include "scene/samples/write_png.h"
 
 namespace meshlode::test {
 

@@ -16,7 +16,9 @@ namespace meshlode::testing_support {
 using Point = std::array<int, 3>;
 using Chain = std::map<std::pair<Point, Point>, int>;  ///< key ordered (low, high); the sign is the direction
 
-inline Point point(const Vec3i& q) { return {q.x, q.y, q.z}; }
+inline Point point(const Vec3i& q) {
+  return {q.x, q.y, q.z};
+}
 
 inline void add_triangle(Chain& chain, const std::array<Point, 3>& corners) {
   for (std::size_t k = 0; k < 3; ++k) {

@@ -22,8 +22,8 @@ using build::GroupPlaces;
 using build::SimplifyInput;
 using build::WedgeTriangle;
 
-/// Triangles of points of the grid. The first wedges are the points' own, of the same numbers; `more` says the points of
-/// further ones.
+/// Triangles of points of the grid. The first wedges are the points' own, of the same numbers; `more` says the points
+/// of further ones.
 struct DrawnMesh {
   std::vector<Vec3i> points;
   std::vector<WedgeTriangle> triangles;
@@ -32,8 +32,11 @@ struct DrawnMesh {
   GroupPlaces places;
 
   DrawnMesh(std::vector<Vec3i> at, std::vector<WedgeTriangle> of, const std::vector<std::uint32_t>& more = {})
-      : points(std::move(at)), triangles(std::move(of)), wedge_position(own_wedges(points.size(), more)),
-        mesh(triangles, wedge_position, points.size()), places(points) {}
+      : points(std::move(at)),
+        triangles(std::move(of)),
+        wedge_position(own_wedges(points.size(), more)),
+        mesh(triangles, wedge_position, points.size()),
+        places(points) {}
 
   [[nodiscard]] CollapseStar star(std::uint32_t a, std::uint32_t b, bool drops_sheets = false) {
     CollapseStar star;
@@ -71,7 +74,7 @@ inline SimplifyInput as_input(const DrawnMesh& drawn) {
 ///      6 -- 0 ----- 1 -- 2       y = 0
 ///       \ /    \ /    \ /
 ///        7 ---- 8 ---- 9         y = -4
-inline const std::vector<Vec3i> kFanPoints{{0, 0, 0},  {4, 0, 0},   {8, 0, 0},   {6, 4, 0},  {2, 4, 0},
+inline const std::vector<Vec3i> kFanPoints{{0, 0, 0},  {4, 0, 0},  {8, 0, 0},   {6, 4, 0},  {2, 4, 0},
                                            {-2, 4, 0}, {-4, 0, 0}, {-2, -4, 0}, {2, -4, 0}, {6, -4, 0}};
 inline const std::vector<WedgeTriangle> kUpperFan{{1, 2, 3}, {1, 3, 4}, {1, 4, 0}, {0, 4, 5}, {0, 5, 6}};
 inline const std::vector<WedgeTriangle> kLowerFan{{0, 6, 7}, {0, 7, 8}, {0, 8, 1}, {1, 8, 9}, {1, 9, 2}};
@@ -82,7 +85,9 @@ inline DrawnMesh closed_fan() {
   return {kFanPoints, all};
 }
 /// The upper half alone: 6, 0, 1 and 2 lie on its border.
-inline DrawnMesh open_fan() { return {kFanPoints, kUpperFan}; }
+inline DrawnMesh open_fan() {
+  return {kFanPoints, kUpperFan};
+}
 
 /// The closed fan with a seam along 6, 0, 1, 2: below it the wedges are 13, 10, 11 and 12.
 inline DrawnMesh seamed_fan() {

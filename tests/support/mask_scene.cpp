@@ -53,7 +53,7 @@ scene::Scene mask_scene(const MaskSceneOptions& options) {
   for (std::uint32_t k = 0; k < 9; ++k) {
     const double x = 2.2 * (k % 3) - 2.2, y = 2.2 * (k / 3) - 2.2, lean = 0.25 * (k % 4);
     scene::Primitive card = make_card({x - 1.0, y - 1.0, lean}, {x + 1.0, y - 1.0, -lean}, {x + 1.0, y + 1.0, lean},
-                               {x - 1.0, y + 1.0, 0.1}, options.cells);
+                                      {x - 1.0, y + 1.0, 0.1}, options.cells);
     card.material = MaterialId(1 + k);
     if (options.has_vertex_alpha) {
       for (const Vec2f& uv : card.uvs[0]) card.colors.emplace_back(1.0F, 1.0F, 1.0F, (2.6F - uv.x) / 4.3F);
@@ -71,8 +71,9 @@ scene::Scene mask_scene(const MaskSceneOptions& options) {
       m.uv_sets_used = 1;
     }
     const std::string number = std::to_string(k);
-    materials += options.has_texture ? R"(,{"pbrMetallicRoughness":{"baseColorTexture":{"index":)" + number + transform + "}}}"
-                                     : ",{}";
+    materials += options.has_texture
+                     ? R"(,{"pbrMetallicRoughness":{"baseColorTexture":{"index":)" + number + transform + "}}}"
+                     : ",{}";
     textures += std::string(k > 0 ? "," : "") + R"({"source":0,"sampler":)" + number + "}";
     samplers += std::string(k > 0 ? "," : "") + R"({"wrapS":)" + std::to_string(kWrapNames[k % 3]) + R"(,"wrapT":)" +
                 std::to_string(kWrapNames[k / 3]) + "}";

@@ -139,7 +139,8 @@ class PageMaker {
     if (options_.has_color) {
       for (std::size_t k = 0; k < 4; ++k) {
         cluster.color_bits[k] = draw_bits(8);
-        format::put_field(cluster.color_words, format::color_range::kBits[k], static_cast<std::int32_t>(cluster.color_bits[k]));
+        format::put_field(cluster.color_words, format::color_range::kBits[k],
+                          static_cast<std::int32_t>(cluster.color_bits[k]));
       }
       cluster.color_words[0] = static_cast<std::uint32_t>(random_.next());
     }
@@ -279,6 +280,8 @@ class PageMaker {
 
 }  // namespace
 
-RandomPage make_random_page(const RandomPageOptions& options) { return PageMaker(options).run(); }
+RandomPage make_random_page(const RandomPageOptions& options) {
+  return PageMaker(options).run();
+}
 
 }  // namespace meshlode::test

@@ -58,7 +58,7 @@ std::vector<scene::SceneMaterial> sample_materials() {
 }
 
 scene::SceneInstance make_instance(const char* name, std::uint32_t node, std::uint32_t mesh, const Vec3d& scale,
-                            const Vec3d& move) {
+                                   const Vec3d& move) {
   scene::SceneInstance instance;
   instance.name = name;
   instance.node = node;
@@ -97,7 +97,9 @@ scene::Scene sample_scene() {
   return scene;
 }
 
-std::vector<std::uint8_t> sample_asset_bytes(format::Codec codec) { return sample_asset_bytes(sample_scene(), codec); }
+std::vector<std::uint8_t> sample_asset_bytes(format::Codec codec) {
+  return sample_asset_bytes(sample_scene(), codec);
+}
 
 std::vector<std::uint8_t> sample_asset_bytes(const scene::Scene& scene, format::Codec codec) {
   build::WriteInput input;
@@ -113,7 +115,8 @@ std::vector<std::uint8_t> sample_asset_bytes(const scene::Scene& scene, format::
   return value_or_abort(build::write_asset(std::move(input)));
 }
 
-std::vector<std::uint8_t> asset_bytes_of(const SampleMesh& sample, format::Codec codec, const build::EncodeOptions& options) {
+std::vector<std::uint8_t> asset_bytes_of(const SampleMesh& sample, format::Codec codec,
+                                         const build::EncodeOptions& options) {
   scene::Scene scene;
   scene.meshes = {sample.source};
   scene.materials = sample_materials();

@@ -192,7 +192,8 @@ class DagMaker {
   }
 
  private:
-  void add_source_vertex(scene::Primitive& primitive, const Vec3i& position, const std::vector<float>& attributes) const {
+  void add_source_vertex(scene::Primitive& primitive, const Vec3i& position,
+                         const std::vector<float>& attributes) const {
     const build::AttributeLayout& layout = out_.mesh.layout;
     primitive.positions.push_back(out_.mesh.origin + out_.mesh.grid.decode(position));
     if (layout.has_normal) primitive.normals.emplace_back(attributes[0], attributes[1], attributes[2]);
@@ -329,14 +330,17 @@ TriangleList on_face(const std::vector<Triangle2>& triangles, int face, int di, 
 }
 
 std::function<bool(const Triangle2&)> west_of(int middle, bool is_west) {
-  return [middle, is_west](const Triangle2& t) {
-    return (t[0].first + t[1].first + t[2].first < 3 * middle) == is_west;
-  };
+  return
+      [middle, is_west](const Triangle2& t) { return (t[0].first + t[1].first + t[2].first < 3 * middle) == is_west; };
 }
 
-bool keep_all(const Triangle2&) { return true; }
+bool keep_all(const Triangle2&) {
+  return true;
+}
 
-void append(TriangleList& to, const TriangleList& more) { to.insert(to.end(), more.begin(), more.end()); }
+void append(TriangleList& to, const TriangleList& more) {
+  to.insert(to.end(), more.begin(), more.end());
+}
 
 }  // namespace
 
@@ -418,9 +422,13 @@ SampleMesh sample_sphere() {
   shape.attributes = [on_cube](const Corner& c) {
     const Vec3d p(on_cube(c));
     const Vec3d normal = p / std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z);
-    return std::vector<float>{static_cast<float>(normal.x),          static_cast<float>(normal.y),
-                              static_cast<float>(normal.z),          static_cast<float>((p.x + 4.0) / 8.0),
-                              static_cast<float>((p.y + 4.0) / 8.0), static_cast<float>((p.z + 4.0) / 8.0), 1.0F};
+    return std::vector<float>{static_cast<float>(normal.x),
+                              static_cast<float>(normal.y),
+                              static_cast<float>(normal.z),
+                              static_cast<float>((p.x + 4.0) / 8.0),
+                              static_cast<float>((p.y + 4.0) / 8.0),
+                              static_cast<float>((p.z + 4.0) / 8.0),
+                              1.0F};
   };
 
   DagMaker maker(out, shape);
@@ -428,7 +436,8 @@ SampleMesh sample_sphere() {
   const GroupId middle{terminal.value + 1};
   const int no_seam = 1000;
   TriangleList cube;
-  for (int face = 0; face < 6; ++face) append(cube, on_face(grid_triangles(0, 8, 0, 8, 8), face, 0, 0, no_seam, keep_all));
+  for (int face = 0; face < 6; ++face)
+    append(cube, on_face(grid_triangles(0, 8, 0, 8, 8), face, 0, 0, no_seam, keep_all));
   // The parametrisation names a point of an edge once for each face; a cluster wants it once.
   std::map<std::array<int, 3>, Corner> unique;
   for (MaterialTriangle& triangle : cube) {
@@ -452,8 +461,7 @@ SampleMesh sample_sphere() {
     for (int part = 0; part < 4; ++part) {
       const int i0 = (part % 2) * 4;
       const int j0 = (part / 2) * 4;
-      const TriangleList triangles =
-          on_face(grid_triangles(i0, i0 + 4, j0, j0 + 4, 1), face, 0, 0, no_seam, keep_all);
+      const TriangleList triangles = on_face(grid_triangles(i0, i0 + 4, j0, j0 + 4, 1), face, 0, 0, no_seam, keep_all);
       maker.add_cluster(0, GroupId{}, triangles);
       append(all, triangles);
     }

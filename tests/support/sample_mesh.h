@@ -22,8 +22,9 @@ struct SampleMesh {
 /// of 40 in the terminal group. Every group keeps its border and the border between the materials.
 [[nodiscard]] SampleMesh sample_patch();
 
-/// A closed sphere-like cube of 6 × 8 × 8 quads: normals and colours, one material. Level 0: 24 clusters of 32 triangles
-/// in six groups, one a face; level 1: 12 clusters of 24 in one group; level 2: a cube of 12 triangles, terminal.
+/// A closed sphere-like cube of 6 × 8 × 8 quads: normals and colours, one material. Level 0: 24 clusters of 32
+/// triangles in six groups, one a face; level 1: 12 clusters of 24 in one group; level 2: a cube of 12 triangles,
+/// terminal.
 [[nodiscard]] SampleMesh sample_sphere();
 
 /// Positions alone, flat normals: a tetrahedron that is one cluster in one terminal group.

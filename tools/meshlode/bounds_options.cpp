@@ -16,13 +16,14 @@ Status check_number(const char* option, const std::optional<double>& value) {
 }
 
 /// A mesh without any group to pass says nothing either way.
-Status check_measured(const char* option, const run::Asset& asset, std::size_t mesh, float format::GroupRecord::*deviation) {
+Status check_measured(const char* option, const run::Asset& asset, std::size_t mesh,
+                      float format::GroupRecord::*deviation) {
   const format::MeshRecord& record = asset.meshes()[mesh];
   for (const format::GroupRecord& group : asset.groups().subspan(record.first_group, record.group_count)) {
     if ((group.flags & format::kGroupTerminal) != 0 || group.*deviation < format::kInfiniteError) continue;
     return Error{ErrorCode::kUnsupported, option,
-                 "mesh " + std::to_string(mesh) + ": the asset does not say how far it deviates: " +
-                     "this was not measured when it was built"};
+                 "mesh " + std::to_string(mesh) +
+                     ": the asset does not say how far it deviates: " + "this was not measured when it was built"};
   }
   return Ok{};
 }

@@ -75,8 +75,8 @@ std::vector<WorldSphere> world_spheres(const run::Asset& asset) {
     for (const format::ClusterRecord& c : asset.clusters().subspan(mesh.first_cluster, mesh.cluster_count)) {
       if (c.level != 0) continue;
       const format::CullSphere sphere = format::cull_sphere(mesh, c);
-      const Vec3d p =
-          Vec3d(mesh.origin[0], mesh.origin[1], mesh.origin[2]) + Vec3d(sphere.center[0], sphere.center[1], sphere.center[2]);
+      const Vec3d p = Vec3d(mesh.origin[0], mesh.origin[1], mesh.origin[2]) +
+                      Vec3d(sphere.center[0], sphere.center[1], sphere.center[2]);
       const double radius = double{sphere.radius} * instance.scale;
       if (const Vec3d world = to_world(instance, p); is_finite(world) && std::isfinite(radius)) {
         spheres.push_back({world, radius});

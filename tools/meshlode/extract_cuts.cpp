@@ -39,8 +39,8 @@ CutLevel make_level(const run::Asset& asset, run::UniformCut cut, std::optional<
   return level;
 }
 
-CutLevel cut_at_error(const CutRequest& request, const run::AttributeBounds& bounds, const run::Asset& asset, MeshId mesh,
-                      double error) {
+CutLevel cut_at_error(const CutRequest& request, const run::AttributeBounds& bounds, const run::Asset& asset,
+                      MeshId mesh, double error) {
   const run::CutError by = value_in(run::kCutErrorNames, request.by).value_or(run::CutError::kSelection);
   const double asked = error * error_unit(request, asset, mesh.value);
   return make_level(asset, run::select_uniform(asset, mesh, asked, by, bounds), asked);
@@ -81,8 +81,8 @@ CutLevel cut_at_ratio(const run::Asset& asset, MeshId mesh, double ratio, std::u
   std::vector<double> units(asset.meshes().size(), 0.0);
   units[mesh.value] = 1.0;
   const double budget = std::floor(ratio * static_cast<double>(finest_triangles));
-  return make_level(asset,
-                    std::move(out::choose_budget_cuts(asset, units, static_cast<std::uint64_t>(budget)).cuts[mesh.value]));
+  return make_level(
+      asset, std::move(out::choose_budget_cuts(asset, units, static_cast<std::uint64_t>(budget)).cuts[mesh.value]));
 }
 
 /// A level may be shown where it is off by at most t pixels: at a distance where t pixels are its error, the mesh's
@@ -134,7 +134,8 @@ Status choose_chains(const CutRequest& request, const run::AttributeBounds& boun
       if (levels.empty() || level.cut.clusters != levels.back().cut.clusters) levels.push_back(std::move(level));
     };
     for (const double error : errors) add(cut_at_error(request, bounds, asset, mesh, error));
-    const std::uint64_t finest = ratios.empty() ? 0 : make_level(asset, out::choose_level_cut(asset, mesh, 0)).triangles;
+    const std::uint64_t finest =
+        ratios.empty() ? 0 : make_level(asset, out::choose_level_cut(asset, mesh, 0)).triangles;
     for (const double ratio : ratios) add(cut_at_ratio(asset, mesh, ratio, finest));
     set_coverage(request, asset.meshes()[m].diagonal, camera->height, levels);
   }
@@ -181,8 +182,9 @@ Result<std::vector<MeshCuts>> choose_cuts(const CutRequest& request, const run::
   } else {
     for (std::size_t m = 0; m < cuts.size(); ++m) {
       if (!chosen[m]) continue;
-      cuts[m].levels.push_back(request.error ? cut_at_error(request, *bounds, asset, MeshId(m), *request.error)
-                                             : make_level(asset, out::choose_level_cut(asset, MeshId(m), *request.level)));
+      cuts[m].levels.push_back(request.error
+                                   ? cut_at_error(request, *bounds, asset, MeshId(m), *request.error)
+                                   : make_level(asset, out::choose_level_cut(asset, MeshId(m), *request.level)));
     }
   }
   if (!status) return status.error();

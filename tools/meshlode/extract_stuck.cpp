@@ -6,11 +6,11 @@
 #include <cstdio>
 #include <vector>
 
-#include "outputs.h"
+#include "base/json_writer.h"
 #include "format/names.h"
 #include "out/export/colored_sets.h"
 #include "out/report/info.h"
-#include "base/json_writer.h"
+#include "outputs.h"
 
 namespace meshlode::cli {
 

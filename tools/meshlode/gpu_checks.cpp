@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "base/file.h"
+#include "base/json_writer.h"
 #include "judge/gpu/verify_gpu.h"
 #include "judge/validate/rules.h"
 #include "outputs.h"
-#include "base/json_writer.h"
 
 namespace meshlode::cli {
 
@@ -75,7 +75,8 @@ std::string gpu_json(const GpuOptions& options, const judge::GpuVerifyReport& ve
 
 }  // namespace
 
-Status verify_with_gpu(const run::Asset& asset, const scene::Scene& source, const GpuOptions& options, judge::VerifyReport& report) {
+Status verify_with_gpu(const run::Asset& asset, const scene::Scene& source, const GpuOptions& options,
+                       judge::VerifyReport& report) {
   judge::GpuVerifyOptions judge;
   judge.device.device = options.device;
   judge.orbits = options.orbits;
@@ -106,8 +107,8 @@ Status verify_with_gpu(const run::Asset& asset, const scene::Scene& source, cons
   }
   for (const judge::GpuCheck& check : verified->checks) {
     const std::string invariant(judge::info_of(check.rule).invariant);
-    report.checks.push_back({invariant, verified->device.name + ": " + check.what, check.items, check.failures,
-                             check.is_skipped});
+    report.checks.push_back(
+        {invariant, verified->device.name + ": " + check.what, check.items, check.failures, check.is_skipped});
     if (check.failures == 0) continue;
     report.findings.push_back(judge::make_finding(check.rule, verified->device.name, check.first));
     ++report.finding_count;

@@ -7,9 +7,9 @@
 
 #include <meshlode/result.h>
 
-#include "scene/scene.h"
-#include "run/read/asset.h"
 #include "judge/verify/verify.h"
+#include "run/read/asset.h"
+#include "scene/scene.h"
 
 namespace meshlode::cli {
 

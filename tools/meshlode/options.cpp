@@ -82,8 +82,9 @@ void OptionParser::add_positionals(const char* name, std::vector<std::string>& t
 }
 
 void add_max_decoded_option(OptionParser& parser, std::string& size) {
-  parser.add_value("--max-decoded", size,
-                   "what images, and geometry beyond 64 times the file, may take in memory: bytes, or with KiB, MiB, GiB (512MiB)");
+  parser.add_value(
+      "--max-decoded", size,
+      "what images, and geometry beyond 64 times the file, may take in memory: bytes, or with KiB, MiB, GiB (512MiB)");
 }
 
 Result<std::uint64_t> parse_max_decoded(const std::string& size) {

@@ -12,14 +12,14 @@
 #include <string_view>
 
 #include "base/byte_size.h"
+#include "base/json_writer.h"
 #include "base/version.h"
+#include "build/build.h"
 #include "format/names.h"
-#include "scene/import/import.h"
 #include "options.h"
 #include "outputs.h"
-#include "build/build.h"
 #include "progress.h"
-#include "base/json_writer.h"
+#include "scene/import/import.h"
 #include "verb.h"
 
 namespace meshlode::cli {
@@ -346,7 +346,8 @@ Status set_budgets(const BuildWords& words, build::PipelineOptions& options) {
     options.uv_error_is_default = false;
     if (options.uv_error_is_texels) text.remove_suffix(2);
     const auto error = parse_positive(text);
-    if (!error) return Error{ErrorCode::kUsage, "--uv-error", "give auto, a number above 0 in UV units, or texels as 0.25px"};
+    if (!error)
+      return Error{ErrorCode::kUsage, "--uv-error", "give auto, a number above 0 in UV units, or texels as 0.25px"};
     options.uv_error = *error;
   }
   return Ok{};
@@ -384,13 +385,15 @@ int run_build(const Verb& verb, std::span<char* const> args) {
   parser.add_positionals("input", inputs, ".gltf, .glb, .ply, .obj or .stl files, and folders of them with -O");
   parser.add_value("-o,--output", output, "the asset to write; the input's name with .lode where not given");
   parser.add_value("-O,--output-folder", output_folder, "folder for the assets of many inputs; made where missing");
-  parser.add_value("--error-tier", words.error_tier, "what the errors are worth: qem estimates, measured measures, certified proves",
+  parser.add_value("--error-tier", words.error_tier,
+                   "what the errors are worth: qem estimates, measured measures, certified proves",
                    all_names(format::kErrorTierNames));
   parser.add_value("--preset", words.preset, "default (fast, best: later)", {"fast", "default", "best"});
   parser.add_value("--attributes", words.attributes, "auto keeps what the materials call for, none positions only",
                    all_names(build::kAttributeChoiceNames));
   parser.add_value("--grid", words.grid, "auto, or a step in mesh units for meshes that must abut");
-  parser.add_value("--position-error", words.position_error, "auto, or the largest distance a vertex may move, mesh units");
+  parser.add_value("--position-error", words.position_error,
+                   "auto, or the largest distance a vertex may move, mesh units");
   parser.add_value("--normal-error", words.normal_error, "the largest angle a stored normal may be off, degrees");
   parser.add_value("--uv-error", words.uv_error, "auto, or the largest move of a UV: UV units, or 0.25px for texels");
   parser.add_value("--codec", words.codec, "disk codec of the pages", all_names(format::kCodecNames));
@@ -410,7 +413,8 @@ int run_build(const Verb& verb, std::span<char* const> args) {
   options->repair = repair;
   if (max_memory != "auto") {
     const auto bytes = parse_byte_size(max_memory);
-    if (!bytes || *bytes == 0) return print_error({ErrorCode::kUsage, "--max-memory", "give auto or a size above 0, such as 8GiB"});
+    if (!bytes || *bytes == 0)
+      return print_error({ErrorCode::kUsage, "--max-memory", "give auto or a size above 0, such as 8GiB"});
     options->max_memory = *bytes;
   }
   const Result<std::uint64_t> decoded = parse_max_decoded(max_decoded);
@@ -420,7 +424,8 @@ int run_build(const Verb& verb, std::span<char* const> args) {
 
   if (const Status made = make_folder(output_folder); !made) return print_error(made.error());
   if (const Status free = check_outputs(*plan, report_path); !free) return print_error(free.error());
-  const JobOptions job_options{*options, {.repair = repair, .max_decoded = *decoded}, report_path, !output_folder.empty()};
+  const JobOptions job_options{
+      *options, {.repair = repair, .max_decoded = *decoded}, report_path, !output_folder.empty()};
 
   JobLimit limit(jobs);
   std::vector<JobResult> results;

@@ -8,13 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "out/export/export.h"
+#include "base/json_writer.h"
 #include "extract_cuts.h"
 #include "extract_stuck.h"
 #include "options.h"
+#include "out/export/export.h"
 #include "outputs.h"
 #include "run/read/asset.h"
-#include "base/json_writer.h"
 #include "verb.h"
 
 namespace meshlode::cli {
@@ -99,7 +99,8 @@ void write_level(JsonWriter& w, const run::Asset& asset, MeshId mesh, const CutL
   w.field("asked_below_level0_deviation", is_below_level0(asset, mesh, level));
 }
 
-std::string describe_json(const run::Asset& asset, const std::vector<MeshCuts>& cuts, bool is_chain, std::size_t bytes) {
+std::string describe_json(const run::Asset& asset, const std::vector<MeshCuts>& cuts, bool is_chain,
+                          std::size_t bytes) {
   JsonWriter w;
   std::uint64_t triangles = 0;
   w.begin_object();

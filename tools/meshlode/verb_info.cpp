@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "options.h"
-#include "run/read/asset.h"
 #include "out/report/info.h"
+#include "run/read/asset.h"
 #include "verb.h"
 
 namespace meshlode::cli {
@@ -27,7 +27,8 @@ int run_info(const Verb& verb, std::span<char* const> args) {
   } else {
     (void)print_error(byte_map.error());  // what the tables say is still true
   }
-  const std::string text = output.json() ? out::info_json(*asset, info, list_stuck) : out::info_text(*asset, info, list_stuck);
+  const std::string text =
+      output.json() ? out::info_json(*asset, info, list_stuck) : out::info_text(*asset, info, list_stuck);
   return print_out(text) ? 0 : static_cast<int>(ErrorCode::kIo);
 }
 

@@ -7,15 +7,15 @@
 #include <map>
 
 #include "base/byte_size.h"
+#include "base/json_writer.h"
 #include "bounds_options.h"
 #include "camera_options.h"
 #include "draw/gpu/render.h"
 #include "draw/gpu/shaders/frame.h"
-#include "options.h"
-#include "outputs.h"
 #include "draw/raster/legend.h"
 #include "draw/raster/raster.h"
-#include "base/json_writer.h"
+#include "options.h"
+#include "outputs.h"
 #include "verb.h"
 
 namespace meshlode::cli {
@@ -42,13 +42,14 @@ struct RenderStats {
 };
 
 /// By their VIEW_… numbers; the CPU has the first four.
-const std::string kGpuViews[] = {"shaded",  "clusters", "triangles", "levels",  "normals",
-                                 "pages",   "overdraw", "paths",     "occluded"};
+const std::string kGpuViews[] = {"shaded", "clusters", "triangles", "levels",  "normals",
+                                 "pages",  "overdraw", "paths",     "occluded"};
 
 static_assert(static_cast<int>(draw::View::kLevels) == VIEW_LEVELS && VIEW_LEVELS + 1 == VIEW_NORMALS);
 
 std::uint32_t view_number(const std::string& name) {
-  return static_cast<std::uint32_t>(std::find(std::begin(kGpuViews), std::end(kGpuViews), name) - std::begin(kGpuViews));
+  return static_cast<std::uint32_t>(std::find(std::begin(kGpuViews), std::end(kGpuViews), name) -
+                                    std::begin(kGpuViews));
 }
 
 Error too_many_clusters(const run::Asset& asset) {
@@ -57,11 +58,13 @@ Error too_many_clusters(const run::Asset& asset) {
               ", the larger of --max-decoded and 64 times the file"};
 }
 
-std::size_t max_clusters(const run::Asset& asset) { return asset.max_decoded_bytes() / sizeof(run::ClusterInstance); }
+std::size_t max_clusters(const run::Asset& asset) {
+  return asset.max_decoded_bytes() / sizeof(run::ClusterInstance);
+}
 
 /// The same cut of a mesh in each of its instances.
 Result<std::vector<run::ClusterInstance>> uniform_cut(const run::Asset& asset, double error, bool is_relative,
-                                                 const run::AttributeBounds& bounds) {
+                                                      const run::AttributeBounds& bounds) {
   std::vector<run::ClusterInstance> cut;
   std::map<std::uint32_t, run::UniformCut> cut_of_mesh;
   for (std::size_t i = 0; i < asset.instances().size(); ++i) {
@@ -71,7 +74,7 @@ Result<std::vector<run::ClusterInstance>> uniform_cut(const run::Asset& asset, d
     const auto [found, is_new] = cut_of_mesh.try_emplace(instance.mesh);
     if (is_new) {
       found->second = run::select_uniform(asset, MeshId(instance.mesh), is_relative ? error * diagonal : error,
-                                     run::CutError::kSelection, bounds);
+                                          run::CutError::kSelection, bounds);
     }
     if (found->second.clusters.size() > max_clusters(asset) - cut.size()) return too_many_clusters(asset);
     for (const ClusterId cluster : found->second.clusters) cut.push_back({InstanceId(i), cluster});
@@ -79,7 +82,8 @@ Result<std::vector<run::ClusterInstance>> uniform_cut(const run::Asset& asset, d
   return cut;
 }
 
-RenderStats measure(const run::Asset& asset, const std::vector<run::ClusterInstance>& cut, const draw::VisibilityBuffer& visibility) {
+RenderStats measure(const run::Asset& asset, const std::vector<run::ClusterInstance>& cut,
+                    const draw::VisibilityBuffer& visibility) {
   RenderStats stats;
   stats.clusters = cut.size();
   for (const run::ClusterInstance& entry : cut) {
@@ -198,7 +202,8 @@ Result<Drawn> draw_on_cpu(const run::Asset& asset, const run::Camera& camera, co
     if (!uniform) return uniform.error();
     cut = std::move(*uniform);
   } else {
-    auto seen = run::select_bvh_within(run::tables_of(asset), camera, options.camera.pixel_error, max_clusters(asset), bounds);
+    auto seen =
+        run::select_bvh_within(run::tables_of(asset), camera, options.camera.pixel_error, max_clusters(asset), bounds);
     if (!seen) return too_many_clusters(asset);
     cut = std::move(*seen);
   }

@@ -4,11 +4,11 @@
 #include <vector>
 
 #include "base/file.h"
-#include "findings.h"
-#include "options.h"
 #include "base/json_writer.h"
+#include "findings.h"
 #include "judge/validate/rules.h"
 #include "judge/validate/validate.h"
+#include "options.h"
 #include "verb.h"
 
 namespace meshlode::cli {
@@ -19,7 +19,8 @@ constexpr int kInvalid = static_cast<int>(ErrorCode::kInvalid);
 constexpr int kCheckFailed = static_cast<int>(ErrorCode::kCheckFailed);
 
 bool is_no_asset(const judge::ValidationReport& report) {
-  return std::any_of(report.findings.begin(), report.findings.end(), [](const judge::Finding& f) { return f.id == judge::info_of(judge::Rule::kL001).id; });
+  return std::any_of(report.findings.begin(), report.findings.end(),
+                     [](const judge::Finding& f) { return f.id == judge::info_of(judge::Rule::kL001).id; });
 }
 
 std::string describe(const std::string& path, const judge::ValidationReport& report, bool quiet) {

@@ -5,17 +5,17 @@
 #include <vector>
 
 #include "base/file.h"
-#include "run/decode/decode.h"
-#include "scene/import/import.h"
+#include "base/json_writer.h"
 #include "findings.h"
+#include "gpu_checks.h"
+#include "judge/verify/verify.h"
 #include "options.h"
 #include "outputs.h"
+#include "run/decode/decode.h"
 #include "run/read/asset.h"
-#include "base/json_writer.h"
 #include "run/select/select.h"
+#include "scene/import/import.h"
 #include "verb.h"
-#include "judge/verify/verify.h"
-#include "gpu_checks.h"
 
 namespace meshlode::cli {
 
@@ -86,7 +86,8 @@ bool was_repaired(const run::Asset& asset) {
 Status check_size(const run::Asset& asset) {
   if (Status geometry = run::check_decoded_bytes(asset, run::count_decoded_bytes(asset)); !geometry) return geometry;
   std::uint64_t clusters = 0;
-  for (const format::InstanceRecord& instance : asset.instances()) clusters += asset.meshes()[instance.mesh].cluster_count;
+  for (const format::InstanceRecord& instance : asset.instances())
+    clusters += asset.meshes()[instance.mesh].cluster_count;
   const Status cuts = run::check_decoded_bytes(asset, clusters * sizeof(run::ClusterInstance));
   return cuts ? cuts : Status(Error{cuts.error().code, "cuts of all instances", cuts.error().detail});
 }

@@ -13,11 +13,11 @@
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
-#include "build/api/scene_input.h"
 #include "base/guarded.h"
 #include "base/output_files.h"
-#include "scene/import/import.h"
+#include "build/api/scene_input.h"
 #include "build/build.h"
+#include "scene/import/import.h"
 
 namespace meshlode {
 namespace {

@@ -54,8 +54,8 @@ Status copy_positions(std::span<const T> values, const std::string& where, bool 
   return Ok{};
 }
 
-Result<scene::Primitive> make_primitive(const PrimitiveInput& input, const std::string& where, std::size_t material_count,
-                                 bool repair, std::uint64_t& repaired) {
+Result<scene::Primitive> make_primitive(const PrimitiveInput& input, const std::string& where,
+                                        std::size_t material_count, bool repair, std::uint64_t& repaired) {
   scene::Primitive primitive;
   std::vector<bool> is_usable;
   if (!input.positions.empty() && !input.positions_double.empty()) {

@@ -15,7 +15,7 @@ using Corner3 = std::array<std::uint32_t, 3>;
 
 /// One end of an undirected edge, bucketed by its smaller position.
 struct EdgeUse {
-  std::uint32_t other;     ///< the larger position
+  std::uint32_t other;  ///< the larger position
   std::uint32_t triangle;
   auto operator<=>(const EdgeUse&) const = default;
 };

@@ -6,8 +6,8 @@
 #include <span>
 #include <utility>
 
-#include "build/prepared.h"
 #include "build/cluster/partition.h"
+#include "build/prepared.h"
 
 namespace meshlode::build {
 
@@ -17,10 +17,10 @@ constexpr std::int32_t kNearbyWeight = 1;
 
 using TriangleLink = std::pair<std::uint32_t, std::uint32_t>;
 
-/// Triangles as nodes, in the order given; position ids are compacted inside. An edge with more than two triangles links
-/// them in a chain, so that a fan of thousands stays linear. Triangles that follow each other but belong to different
-/// pieces are linked weakly: the caller's order is taken as spatial, and loose pieces near each other stay together.
-/// `links` are pairs of triangles to be joined as by a shared edge.
+/// Triangles as nodes, in the order given; position ids are compacted inside. An edge with more than two triangles
+/// links them in a chain, so that a fan of thousands stays linear. Triangles that follow each other but belong to
+/// different pieces are linked weakly: the caller's order is taken as spatial, and loose pieces near each other stay
+/// together. `links` are pairs of triangles to be joined as by a shared edge.
 [[nodiscard]] Graph triangle_graph(std::span<const std::array<std::uint32_t, 3>> corner_positions,
                                    std::span<const TriangleLink> links = {});
 

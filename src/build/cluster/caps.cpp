@@ -26,7 +26,8 @@ bool move_one(std::uint32_t part, const Graph& graph, const ClusterCaps& caps, C
       if (clustering.label[n] == part) inside += graph.edge_weight[static_cast<std::size_t>(i)];
     }
     for (auto i = graph.row_start[t]; i < graph.row_start[t + 1]; ++i) {
-      const std::uint32_t target = clustering.label[static_cast<std::size_t>(graph.neighbor[static_cast<std::size_t>(i)])];
+      const std::uint32_t target =
+          clustering.label[static_cast<std::size_t>(graph.neighbor[static_cast<std::size_t>(i)])];
       if (target == part || members[target].size() >= caps.max_triangles) continue;
       std::int32_t outside = 0;
       for (auto j = graph.row_start[t]; j < graph.row_start[t + 1]; ++j) {

@@ -11,8 +11,8 @@
 #include "build/cluster/adjacency.h"
 #include "build/cluster/caps.h"
 #include "build/cluster/loose_pieces.h"
-#include "build/cluster/satellites.h"
 #include "build/cluster/partition.h"
+#include "build/cluster/satellites.h"
 
 namespace meshlode::build {
 
@@ -100,8 +100,8 @@ Clustering cluster_chunk(std::span<const WedgeTriangle> triangles, std::span<con
   const std::uint32_t piece_count = find_pieces(graph, piece);
   if (parts == 1 || piece_count == 1) return partition_chunk(triangles, std::move(graph), parts, caps);
   if (piece_count > kPiecesPerPart * parts) {
-    Clustering clustering = cluster_pieces(triangles, wedge_position, positions, piece, piece_count,
-                                           std::min(parts, triangles.size()));
+    Clustering clustering =
+        cluster_pieces(triangles, wedge_position, positions, piece, piece_count, std::min(parts, triangles.size()));
     enforce_caps(triangles, graph, caps, clustering);
     return clustering;
   }

@@ -16,8 +16,8 @@ namespace {
 
 constexpr std::int32_t kSharedVertexWeight = 4;
 constexpr std::int32_t kNearbyWeight = 1;
-constexpr std::size_t kNearbyLinks = 4;     ///< links along each axis order
-constexpr std::size_t kMaxFan = 12;         ///< clusters around one vertex that are linked all with all
+constexpr std::size_t kNearbyLinks = 4;  ///< links along each axis order
+constexpr std::size_t kMaxFan = 12;      ///< clusters around one vertex that are linked all with all
 
 struct Link {
   std::uint32_t a, b;  ///< a < b

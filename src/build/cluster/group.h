@@ -13,7 +13,7 @@ namespace meshlode::build {
 struct GroupOptions {
   std::uint32_t target_clusters = 20;  ///< what groups aim at; a retry takes another number to get other neighbours
   std::uint32_t max_clusters = 32;
-  std::uint64_t max_weight = ~0ULL;    ///< largest sum of cluster_weight in a group (bytes: a group fits a page)
+  std::uint64_t max_weight = ~0ULL;  ///< largest sum of cluster_weight in a group (bytes: a group fits a page)
 };
 
 /// The clusters of one level in compressed rows.
@@ -28,6 +28,7 @@ struct GroupInput {
 };
 
 /// Groups as lists of ascending cluster ids, ordered by their first cluster. Every cluster is in exactly one.
-[[nodiscard]] std::vector<std::vector<std::uint32_t>> group_clusters(const GroupInput& input, const GroupOptions& options);
+[[nodiscard]] std::vector<std::vector<std::uint32_t>> group_clusters(const GroupInput& input,
+                                                                     const GroupOptions& options);
 
 }  // namespace meshlode::build

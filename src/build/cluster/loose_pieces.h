@@ -13,7 +13,8 @@
 
 namespace meshlode::build {
 
-/// The piece of each triangle: pieces are joined by shared edges, and numbered by their first triangle. Returns how many.
+/// The piece of each triangle: pieces are joined by shared edges, and numbered by their first triangle. Returns how
+/// many.
 [[nodiscard]] std::uint32_t find_pieces(const Graph& graph, std::vector<std::uint32_t>& piece);
 
 /// From every piece but the largest to the nearest triangle of another: debris beside a surface belongs to the cluster
@@ -23,8 +24,8 @@ namespace meshlode::build {
                                                         const std::vector<std::uint32_t>& piece,
                                                         std::uint32_t piece_count);
 
-/// Cuts along medians of the pieces' centres, at multiples of the target, so that parts are compact and full and at most
-/// one piece is divided per cut.
+/// Cuts along medians of the pieces' centres, at multiples of the target, so that parts are compact and full and at
+/// most one piece is divided per cut.
 [[nodiscard]] Clustering cluster_pieces(std::span<const WedgeTriangle> triangles,
                                         std::span<const std::uint32_t> wedge_position, std::span<const Vec3i> positions,
                                         const std::vector<std::uint32_t>& piece, std::uint32_t piece_count,

@@ -9,10 +9,10 @@ namespace meshlode::build {
 
 /// An undirected graph in compressed rows. Each edge is listed at both of its ends with the same weight; no loops.
 struct Graph {
-  std::vector<std::int32_t> row_start;      ///< node count + 1
+  std::vector<std::int32_t> row_start;  ///< node count + 1
   std::vector<std::int32_t> neighbor;
-  std::vector<std::int32_t> edge_weight;    ///< positive, as long as neighbor
-  std::vector<std::int32_t> node_weight;    ///< empty: all 1
+  std::vector<std::int32_t> edge_weight;  ///< positive, as long as neighbor
+  std::vector<std::int32_t> node_weight;  ///< empty: all 1
 
   [[nodiscard]] std::size_t node_count() const { return row_start.empty() ? 0 : row_start.size() - 1; }
 };

@@ -18,7 +18,9 @@ std::array<std::uint32_t, 3> positions_of(const WedgeTriangle& t, std::span<cons
   return {wedge_position[t[0]], wedge_position[t[1]], wedge_position[t[2]]};
 }
 
-bool has_three(const std::array<std::uint32_t, 3>& p) { return p[0] != p[1] && p[1] != p[2] && p[2] != p[0]; }
+bool has_three(const std::array<std::uint32_t, 3>& p) {
+  return p[0] != p[1] && p[1] != p[2] && p[2] != p[0];
+}
 
 /// A cluster's triangles: those without a host, each followed by its satellites.
 using Systems = std::vector<std::vector<std::uint32_t>>;

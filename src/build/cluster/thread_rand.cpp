@@ -36,5 +36,7 @@ int rand() noexcept {
   return value;
 }
 
-std::uint64_t meshlode_thread_rand_calls() { return thread_random().calls; }
+std::uint64_t meshlode_thread_rand_calls() {
+  return thread_random().calls;
+}
 }

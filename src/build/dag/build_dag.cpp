@@ -30,17 +30,19 @@ struct Attempt {
 };
 
 /// What the first round's groups keep: from 0.69 down to 0.35, a half on average, evenly in logarithms from the first
-/// group to the last. Groups are in spatial order. If all kept a half, all errors of a level would be about equal, and a
-/// cut would double its triangles at once as the threshold passes them; so the regions of a mesh are out of step, and
+/// group to the last. Groups are in spatial order. If all kept a half, all errors of a level would be about equal, and
+/// a cut would double its triangles at once as the threshold passes them; so the regions of a mesh are out of step, and
 /// the mean deviation of a cut is close to what its threshold allows, whatever that is.
 double first_share(std::size_t group, std::size_t groups) {
-  constexpr double kSteps[] = {0.693, 0.635, 0.583, 0.534, 0.490, 0.449, 0.412, 0.378, 0.347};  // 0.49 * 2^(0.5 ... -0.5)
+  constexpr double kSteps[] = {0.693, 0.635, 0.583, 0.534, 0.490,
+                               0.449, 0.412, 0.378, 0.347};  // 0.49 * 2^(0.5 ... -0.5)
   constexpr std::size_t kFewest = 8;
   return groups < kFewest ? 0.5 : kSteps[group * std::size(kSteps) / groups];
 }
 
-/// How many triangles a group should keep: the share, as a whole number of full clusters, so that levels stay full. Where
-/// the mesh has come to be one group, two thirds: then a level is one step of every cut, and small meshes have few.
+/// How many triangles a group should keep: the share, as a whole number of full clusters, so that levels stay full.
+/// Where the mesh has come to be one group, two thirds: then a level is one step of every cut, and small meshes have
+/// few.
 std::uint32_t target_triangles(std::uint32_t source, double share, bool is_whole, const ClusterCaps& caps) {
   constexpr std::uint32_t kFewest = 7, kMost = 12;  // clusters; below and above, a level more would gain little
   const std::uint32_t before = (source + caps.target_triangles / 2) / caps.target_triangles;
@@ -124,10 +126,12 @@ GroupInput grouping_input(const BuildPool& pool, const std::vector<ClusterId>& l
 
 Shared find_shared(const BuildPool& pool, const std::vector<ClusterId>& live,
                    const std::vector<std::vector<std::uint32_t>>& groups) {
-  Shared shared{std::vector<std::uint8_t>(pool.positions.size(), 0), std::vector<std::uint8_t>(pool.wedge_position.size(), 0)};
+  Shared shared{std::vector<std::uint8_t>(pool.positions.size(), 0),
+                std::vector<std::uint8_t>(pool.wedge_position.size(), 0)};
   std::vector<std::uint32_t> position_owner(pool.positions.size(), kNoId);
   std::vector<std::uint32_t> wedge_owner(pool.wedge_position.size(), kNoId);
-  const auto visit = [](std::uint32_t id, std::uint32_t group, std::vector<std::uint32_t>& owner, std::vector<std::uint8_t>& flag) {
+  const auto visit = [](std::uint32_t id, std::uint32_t group, std::vector<std::uint32_t>& owner,
+                        std::vector<std::uint8_t>& flag) {
     if (owner[id] == kNoId) owner[id] = group;
     if (owner[id] != group) flag[id] = 1;
   };
@@ -177,7 +181,8 @@ void add_terminal_groups(BuildPool& pool, const std::vector<ClusterId>& live, co
   }
 }
 
-/// The clusters that nothing coarser has replaced so far, and of each why the group that it was last in did not get anywhere.
+/// The clusters that nothing coarser has replaced so far, and of each why the group that it was last in did not get
+/// anywhere.
 struct Front {
   std::vector<ClusterId> live;
   std::vector<StuckReason> reasons;
@@ -260,7 +265,8 @@ void accept(BuildPool& pool, const GroupMeter& meter, std::vector<ClusterId> clu
   for (std::uint32_t c = first; c < pool.clusters.size(); ++c) next.add(ClusterId(c), StuckReason::kNotStuck);
 }
 
-/// The next front: coarser clusters where a group was accepted, the same ones where it got stuck. In the order of groups.
+/// The next front: coarser clusters where a group was accepted, the same ones where it got stuck. In the order of
+/// groups.
 Front advance(BuildPool& pool, const GroupMeter& meter, const Front& front,
               const std::vector<std::vector<std::uint32_t>>& groups, std::vector<Attempt> attempts) {
   Front next;

@@ -33,8 +33,8 @@ struct DagOptions {
   ErrorSource error = ErrorSource::kQuadric;
   ClusterCaps caps;
   GroupOptions grouping;
-  SimplifyOptions simplify;       ///< target_triangles and may_relax_flips are set by the DAG
-  double stuck_ratio = 0.85;      ///< a group that keeps more than this share of its triangles is retried
+  SimplifyOptions simplify;           ///< target_triangles and may_relax_flips are set by the DAG
+  double stuck_ratio = 0.85;          ///< a group that keeps more than this share of its triangles is retried
   std::uint32_t max_group_bytes = 0;  ///< decoded bytes that a group's clusters may take together; 0 = no limit
   /// Upper bound of the bytes of a cluster of so many vertices, triangles and materials. Needed with max_group_bytes.
   std::function<std::uint32_t(std::uint32_t vertices, std::uint32_t triangles, std::uint32_t materials)> cluster_bytes;

@@ -90,14 +90,18 @@ GroupErrors GroupMeter::measure(const BuildPool& pool, const std::vector<Cluster
       samples.insert(samples.end(), pool.cluster(c).samples.begin(), pool.cluster(c).samples.end());
     }
     // Cards and the like: no neighbour leads to a piece that went, so more of their points have to be carried.
-    const std::size_t wanted = before.positions.size() > before.triangles.size() ? 16 * kSamplesPerGroup : kSamplesPerGroup;
+    const std::size_t wanted =
+        before.positions.size() > before.triangles.size() ? 16 * kSamplesPerGroup : kSamplesPerGroup;
     const auto per_triangle = static_cast<std::uint32_t>(wanted / std::max<std::size_t>(1, after.triangles.size()));
-    GroupDeviation group =
-        measure_group(*source_, after.surface(), samples,
-                      {.floor = floor, .least = floor / kMeasuredMargin, .samples_per_triangle = std::clamp(per_triangle, 2U, 64U),
-                       .extra_effort = static_cast<std::uint32_t>(kExtraEffort / std::max<std::size_t>(1, groups_of_round)),
-                       .finer = before.surface(), .finer_is_shared = finer.is_locked,
-                       .is_whole = groups_of_round == 1});
+    GroupDeviation group = measure_group(
+        *source_, after.surface(), samples,
+        {.floor = floor,
+         .least = floor / kMeasuredMargin,
+         .samples_per_triangle = std::clamp(per_triangle, 2U, 64U),
+         .extra_effort = static_cast<std::uint32_t>(kExtraEffort / std::max<std::size_t>(1, groups_of_round)),
+         .finer = before.surface(),
+         .finer_is_shared = finer.is_locked,
+         .is_whole = groups_of_round == 1});
     errors.deviation = group.deviation;
     errors.error = std::max(floor, kMeasuredMargin * group.deviation);
     errors.carried.samples = std::move(group.carried);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is known of a group's deviation while a DAG is built, for each tier (I7, docs/architecture.md), and what is handed on
-// from level to level to know it.
+// What is known of a group's deviation while a DAG is built, for each tier (I7, docs/architecture.md), and what is
+// handed on from level to level to know it.
 #pragma once
 
 #include <optional>
@@ -34,7 +34,7 @@ class GroupMeter {
   /// `clusters` of the pool, with their triangles in `finer`, became `coarser`.
   [[nodiscard]] GroupErrors measure(const BuildPool& pool, const std::vector<ClusterId>& clusters,
                                     const SimplifyInput& finer, const SimplifyResult& coarser,
-                                     std::size_t groups_of_round) const;
+                                    std::size_t groups_of_round) const;
 
  private:
   const PreparedMesh& mesh_;

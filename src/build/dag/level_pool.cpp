@@ -44,12 +44,13 @@ std::uint32_t BuildPool::wedge_id(std::uint32_t position, const float* attribute
   const auto next = static_cast<std::uint32_t>(wedge_position.size());
   const auto is_same = [&](std::uint32_t other) {
     // Bits, not values: what differs in the sign of a zero is another wedge, as everywhere in the build.
-    return wedge_position[other] == position &&
-           (stride_ == 0 || std::memcmp(wedge_attributes.data() + other * stride_, attributes, stride_ * sizeof(float)) == 0);
+    return wedge_position[other] == position && (stride_ == 0 || std::memcmp(wedge_attributes.data() + other * stride_,
+                                                                             attributes, stride_ * sizeof(float)) == 0);
   };
-  const IdTable::Entry entry = wedge_table_.find_or_insert(hash_wedge(position, attributes), next, is_same, [&](std::uint32_t other) {
-    return hash_wedge(wedge_position[other], wedge_attributes.data() + other * stride_);
-  });
+  const IdTable::Entry entry =
+      wedge_table_.find_or_insert(hash_wedge(position, attributes), next, is_same, [&](std::uint32_t other) {
+        return hash_wedge(wedge_position[other], wedge_attributes.data() + other * stride_);
+      });
   if (entry.is_new) {
     wedge_position.push_back(position);
     wedge_attributes.insert(wedge_attributes.end(), attributes, attributes + stride_);
@@ -58,7 +59,8 @@ std::uint32_t BuildPool::wedge_id(std::uint32_t position, const float* attribute
 }
 
 void BuildPool::add_clusters(const std::vector<WedgeTriangle>& source, const std::vector<std::uint32_t>& materials,
-                             const CarriedTruth& carried, const Clustering& clustering, std::uint32_t level, GroupId own_group) {
+                             const CarriedTruth& carried, const Clustering& clustering, std::uint32_t level,
+                             GroupId own_group) {
   const auto first_cluster = clusters.size();
   std::vector<std::uint32_t> start(clustering.count + 1, 0);
   for (const std::uint32_t label : clustering.label) ++start[label + 1];

@@ -49,8 +49,7 @@ class BuildPool {
   /// Adds the clusters of `triangles` (wedges of this pool), in the clustering's order. What is carried names those
   /// triangles and goes with their clusters.
   void add_clusters(const std::vector<WedgeTriangle>& triangles, const std::vector<std::uint32_t>& materials,
-                    const CarriedTruth& carried, const Clustering& clustering, std::uint32_t level,
-                    GroupId own_group);
+                    const CarriedTruth& carried, const Clustering& clustering, std::uint32_t level, GroupId own_group);
 
   /// Adds what a group became. Positions and wedges that are already known (locked ones, or a coincidence on the grid)
   /// keep their id, so that equal integers are equal ids at every level, and equal attributes with them.
@@ -59,7 +58,7 @@ class BuildPool {
 
   /// The distinct position ids of a cluster, ascending.
   void positions_of(ClusterId cluster, std::vector<std::uint32_t>& out) const;
-  [[nodiscard]] std::uint32_t count_wedges(ClusterId cluster) const;     ///< an upper bound of its vertices
+  [[nodiscard]] std::uint32_t count_wedges(ClusterId cluster) const;  ///< an upper bound of its vertices
   [[nodiscard]] std::uint32_t count_materials(ClusterId cluster) const;
 
   [[nodiscard]] BuildCluster& cluster(ClusterId id) { return clusters[id.value]; }

@@ -26,11 +26,11 @@ constexpr std::size_t kPoints = 100000;
 constexpr std::size_t kFewestPerTriangle = 1, kMostPerTriangle = 24;
 /// Of larger meshes a part of the triangles is looked at.
 constexpr std::size_t kMostTriangles = 100000;
-/// Points nearer to a cut than this share of its error are left alone: they belong to groups of smaller errors, which other
-/// cuts show.
+/// Points nearer to a cut than this share of its error are left alone: they belong to groups of smaller errors, which
+/// other cuts show.
 constexpr double kLookFrom = 0.7;
-/// Points of a cut from which a farther one is looked for on the same triangle: the farthest of all, and the farthest of
-/// those that are nearest to one group.
+/// Points of a cut from which a farther one is looked for on the same triangle: the farthest of all, and the farthest
+/// of those that are nearest to one group.
 constexpr std::size_t kClimbed = 32, kClimbedOfGroup = 4;
 /// Steps of such a search, each half as long as the one before, and points tried at each.
 constexpr int kSteps = 7, kTries = 12;
@@ -158,7 +158,8 @@ class WholeCuts {
     Surface cut;
     for (std::uint32_t c = 0; c < dag_.clusters.size(); ++c) {
       const DagCluster& cluster = dag_.clusters[c];
-      if (error_of(cluster.own_group) <= threshold && error_of(cluster.coarser_group) > threshold) cut.add(mesh_, dag_, c);
+      if (error_of(cluster.own_group) <= threshold && error_of(cluster.coarser_group) > threshold)
+        cut.add(mesh_, dag_, c);
     }
     return cut;
   }
@@ -228,8 +229,8 @@ class WholeCuts {
     }
   }
 
-  /// The group that stands for a point of the source in a cut: from the cluster of level 0 that the point lies on, through
-  /// what replaced it, always on the nearest side. Invalid for level 0 itself.
+  /// The group that stands for a point of the source in a cut: from the cluster of level 0 that the point lies on,
+  /// through what replaced it, always on the nearest side. Invalid for level 0 itself.
   [[nodiscard]] GroupId group_of(const Vec3d& point, double threshold) {
     if (!level0_) {
       level0_.emplace();

@@ -68,12 +68,13 @@ struct UvError {
   double error, area;
 };
 
-/// What kCovered of the area does not exceed. Beside a seam the nearest point of the source may lie on the other side of
-/// it, in another island: such points are few, and their jumps say nothing of the texture's drift.
+/// What kCovered of the area does not exceed. Beside a seam the nearest point of the source may lie on the other side
+/// of it, in another island: such points are few, and their jumps say nothing of the texture's drift.
 double upper_value(std::vector<UvError>& errors) {
   constexpr double kCovered = 0.95;
-  std::sort(errors.begin(), errors.end(),
-            [](const UvError& a, const UvError& b) { return a.error != b.error ? a.error < b.error : a.area < b.area; });
+  std::sort(errors.begin(), errors.end(), [](const UvError& a, const UvError& b) {
+    return a.error != b.error ? a.error < b.error : a.area < b.area;
+  });
   double total = 0.0, below = 0.0;
   for (const UvError& e : errors) total += e.area;
   for (const UvError& e : errors) {
@@ -91,7 +92,8 @@ AttributeDeviation measure_attributes(const SourceTree& source, const SurfaceAtt
   const SurfaceTree& tree = source.impl().tree;
   const std::size_t stride = layout.stride();
   if ((!layout.has_normal && layout.uv_set_count == 0) || tree.size() == 0) return {};
-  constexpr std::array<Weights, 3> kPoints{{{2.0 / 3, 1.0 / 6, 1.0 / 6}, {1.0 / 6, 2.0 / 3, 1.0 / 6}, {1.0 / 6, 1.0 / 6, 2.0 / 3}}};
+  constexpr std::array<Weights, 3> kPoints{
+      {{2.0 / 3, 1.0 / 6, 1.0 / 6}, {1.0 / 6, 2.0 / 3, 1.0 / 6}, {1.0 / 6, 1.0 / 6, 2.0 / 3}}};
   double total = 0.0, normal2 = 0.0;
   std::array<std::vector<UvError>, scene::kMaxUvSets> uv_errors;
   TreeSlot place{0U};

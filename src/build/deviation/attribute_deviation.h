@@ -25,8 +25,10 @@ struct AttributeDeviation {
 
 /// Compares the group's attributes with the source's where the source is nearest: at three points of each triangle of
 /// the group (Hammer, Marlowe and Stroud 1956, exact for squares of linear functions).
-[[nodiscard]] AttributeDeviation measure_attributes(const SourceTree& source, const SurfaceAttributes& source_attributes,
-                                                    const GroupSurface& group, const SurfaceAttributes& group_attributes,
+[[nodiscard]] AttributeDeviation measure_attributes(const SourceTree& source,
+                                                    const SurfaceAttributes& source_attributes,
+                                                    const GroupSurface& group,
+                                                    const SurfaceAttributes& group_attributes,
                                                     const AttributeLayout& layout);
 
 }  // namespace meshlode::build

@@ -33,11 +33,11 @@ constexpr std::size_t kMaxPieces = 512;
 constexpr double kTolerance = 0.05;
 constexpr double kShareOfLargest = 0.03;
 // What doubles may lose in one simplification, with u = 2^-53 and C the largest coordinate (relative to the origin):
-// a distance 8u of itself and 9u of the triangle's longest edge, which is 2√3 C at most (point_distance.h): 31u C. A new
-// corner of a piece 1.8u C where an edge is halved, 8.7u C where a plane cuts it and five times that where the cut is
-// searched for (find_balance): over kMaxDepth cuts, kMaxCuts of them not halvings, 16 · 44 + 8 · 1.8 < 720u C. A point of
-// the triangle is that near to the hull of a piece, whose corners bound its distance. Roots, squares, sums and this
-// margin itself: 8u. And at level 0 the source's corners relative to the origin: 2u C.
+// a distance 8u of itself and 9u of the triangle's longest edge, which is 2√3 C at most (point_distance.h): 31u C. A
+// new corner of a piece 1.8u C where an edge is halved, 8.7u C where a plane cuts it and five times that where the cut
+// is searched for (find_balance): over kMaxDepth cuts, kMaxCuts of them not halvings, 16 · 44 + 8 · 1.8 < 720u C. A
+// point of the triangle is that near to the hull of a piece, whose corners bound its distance. Roots, squares, sums and
+// this margin itself: 8u. And at level 0 the source's corners relative to the origin: 2u C.
 constexpr double kRelativeMargin = 0x1p-49;    // 16u
 constexpr double kCoordinateMargin = 0x1p-43;  // 1024u, of C
 
@@ -48,12 +48,14 @@ double rounded_up(double bound, double largest_coordinate) {
 }
 
 /// The larger one, or what is not a number.
-double larger(double a, double b) { return b <= a ? a : b; }
+double larger(double a, double b) {
+  return b <= a ? a : b;
+}
 
 struct Piece {
   std::array<Vec3d, kMaxCorners> corner;
   std::array<TreeSlot, kMaxCorners> place;   ///< of the nearest triangle of the other side
-  std::array<double, kMaxCorners> distance;      ///< to it
+  std::array<double, kMaxCorners> distance;  ///< to it
   std::size_t count = 0;
   int depth = 0;
 
@@ -149,7 +151,8 @@ class OneWay {
     }
     // Distances are not linear: where they balance more than twice along the outline, no line separates the two sides.
     std::size_t crossings = 0;
-    for (std::size_t i = 0; i < piece.count; ++i) crossings += balance[i] * balance[(i + 1) % piece.count] < 0.0 ? 1 : 0;
+    for (std::size_t i = 0; i < piece.count; ++i)
+      crossings += balance[i] * balance[(i + 1) % piece.count] < 0.0 ? 1 : 0;
     if (!has_one || !has_other || crossings > 2 || piece.count + 2 > kMaxCorners) return split_longest(piece);
     Piece a, b;
     a.depth = b.depth = piece.depth + 1;
@@ -231,8 +234,7 @@ class OneWay {
     stack_.push_back(b);
   }
 
-  [[nodiscard]] Vec3d find_balance(Vec3d a, Vec3d b, double at_a, double at_b, TreeSlot one,
-                                   TreeSlot other) const {
+  [[nodiscard]] Vec3d find_balance(Vec3d a, Vec3d b, double at_a, double at_b, TreeSlot one, TreeSlot other) const {
     for (int step = 0; step < 4; ++step) {
       const Vec3d p = a + (b - a) * (at_a / (at_a - at_b));
       const double at_p = distance(p, one) - distance(p, other);

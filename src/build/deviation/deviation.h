@@ -50,7 +50,8 @@ struct GroupSurface {
 
 struct DeviationTierOptions {
   bool certified = false;  ///< not of measure_group, which only estimates: certify_group is that tier
-  /// Object units: the largest error of what the group replaces, the grid's included. The source was within it of `finer`.
+  /// Object units: the largest error of what the group replaces, the grid's included. The source was within it of
+  /// `finer`.
   double floor = 0.0;
   /// Object units: a maximum below this is of no use. What the samples say of it is still told, but no more are taken.
   double least = 0.0;
@@ -61,8 +62,9 @@ struct DeviationTierOptions {
   /// What the group replaces: its members' triangles. With `floor`, it says which points of the source the group stands
   /// for: those that were within `floor` of it. Without it only the carried samples are looked at.
   GroupSurface finer;
-  /// Per position of `finer`: another group has it too, so it stays where it is. A point whose nearest place is on such a
-  /// border is no nearer to this group than to the other, and gets no farther away. Empty: all of the border is taken so.
+  /// Per position of `finer`: another group has it too, so it stays where it is. A point whose nearest place is on such
+  /// a border is no nearer to this group than to the other, and gets no farther away. Empty: all of the border is taken
+  /// so.
   std::span<const std::uint8_t> finer_is_shared;
   bool is_whole = false;  ///< the group is all of its mesh: every point of the source is its own
 };

@@ -57,7 +57,8 @@ std::vector<std::uint8_t> find_folded(const GroupSurface& surface) {
       } else {
         const Vec3d &m = normals[first[edge]], &n = normals[t];
         const double dot = glm::dot(m, n);
-        if (!(dot > 0.0 && dot * dot > 0.25 * glm::dot(m, m) * glm::dot(n, n))) is_folded[t] = is_folded[first[edge]] = 1;
+        if (!(dot > 0.0 && dot * dot > 0.25 * glm::dot(m, m) * glm::dot(n, n)))
+          is_folded[t] = is_folded[first[edge]] = 1;
       }
     }
   }

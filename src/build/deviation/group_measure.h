@@ -41,8 +41,8 @@ struct Effort {
 /// for each triangle of the group where its search may begin. `high` gets points of the group near the maximum; their
 /// places are those of their nearest triangles of the source.
 [[nodiscard]] Farthest measure_to_source(const SurfaceTree& source, const GroupSurface& group, const GroupEdges& edges,
-                                         const std::vector<TreeSlot>& places, Farthest farthest,
-                                         Effort budget, std::vector<CarriedSample>& high);
+                                         const std::vector<TreeSlot>& places, Farthest farthest, Effort budget,
+                                         std::vector<CarriedSample>& high);
 
 /// Which points of the source a group stands for: those that were near enough to what it replaces, on the same side and
 /// not beyond the border that it shares with other groups. Beyond the source's own border there is nobody else.
@@ -62,7 +62,7 @@ class OwnerTest {
   GroupSurface finer_;
   std::span<const std::uint8_t> is_shared_;
   double reach_;
-  bool is_whole_;  ///< there is nobody else
+  bool is_whole_;     ///< there is nobody else
   SurfaceTree tree_;  ///< over it and its edges, built when first asked
   std::optional<GroupEdges> edges_;
   TreeSlot place_{0U};

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Adaptive subdivision of triangles where a distance may be largest: whoever promises most is divided first, and what
 // cannot raise the maximum is dropped. The promise is an estimate from the values of six points, not a bound: a bound
-// (distances are 1-Lipschitz) asks for pieces as small as the distance itself. What is left of the effort goes where the
-// bound is largest all the same: on soups, needles and cards peaks are narrow, and no point near one tells of it.
+// (distances are 1-Lipschitz) asks for pieces as small as the distance itself. What is left of the effort goes where
+// the bound is largest all the same: on soups, needles and cards peaks are narrow, and no point near one tells of it.
 #pragma once
 
 #include <algorithm>
@@ -19,8 +19,8 @@
 namespace meshlode::build {
 
 struct Probe {
-  double value = 0.0;       ///< distance of a point to the other side
-  TreeSlot place{0U};       ///< of the tree over the other side, near the point's nearest
+  double value = 0.0;  ///< distance of a point to the other side
+  TreeSlot place{0U};  ///< of the tree over the other side, near the point's nearest
 };
 
 /// A triangle with six points: its corners, and the middles of its edges (of the edge that starts at corner k).
@@ -64,8 +64,9 @@ struct Patch {
   }
 };
 
-/// The distance to a triangle is convex, so that no point of a patch is farther from it than a corner is: of the triangles
-/// of the other side that are near the six points, the one that is best for all three corners bounds the patch.
+/// The distance to a triangle is convex, so that no point of a patch is farther from it than a corner is: of the
+/// triangles of the other side that are near the six points, the one that is best for all three corners bounds the
+/// patch.
 [[nodiscard]] inline double bound_by_one_triangle(const SurfaceTree& other, const Patch& patch) {
   double best2 = std::numeric_limits<double>::infinity();
   std::array<TreeSlot, 6> tried;

@@ -21,12 +21,12 @@ using TriangleCorners = std::array<Vec3d, 3>;
   return glm::dot(away, away);
 }
 
-/// Squared distance. The triangle may be a needle, a segment or a point. Whatever is returned is the distance to a point of
-/// the triangle that was worked out, so that an ill-conditioned triangle makes it larger than need be, never smaller:
-/// with u = 2^-53, d what is returned and L the longest edge, the true distance is at most √d² · (1 + 8u) + 9u · L.
-/// (Weights are at least 0 and add up to 1 + u at most: the point misses the triangle by u · L. Differences are exact but
-/// for u each; pa, the two products and the two subtractions lose 2|pa| + 5L + √d² times u, where |pa| <= √d² + L; and the
-/// sum of squares 3u of d².) Tested against exact arithmetic.
+/// Squared distance. The triangle may be a needle, a segment or a point. Whatever is returned is the distance to a
+/// point of the triangle that was worked out, so that an ill-conditioned triangle makes it larger than need be, never
+/// smaller: with u = 2^-53, d what is returned and L the longest edge, the true distance is at most √d² · (1 + 8u) + 9u
+/// · L. (Weights are at least 0 and add up to 1 + u at most: the point misses the triangle by u · L. Differences are
+/// exact but for u each; pa, the two products and the two subtractions lose 2|pa| + 5L + √d² times u, where |pa| <= √d²
+/// + L; and the sum of squares 3u of d².) Tested against exact arithmetic.
 [[nodiscard]] inline double point_triangle_distance2(const Vec3d& p, const TriangleCorners& corners) {
   const Vec3d ab = corners[1] - corners[0];
   const Vec3d ac = corners[2] - corners[0];

@@ -160,7 +160,8 @@ class SourceSearch {
     farthest_.take(distance);
     if (is_higher) {
       set_enough();
-      farthest_point_ = {point, tree_.triangle_at(dismissed.place), static_cast<float>(distance), source_.place_of(owner)};
+      farthest_point_ = {point, tree_.triangle_at(dismissed.place), static_cast<float>(distance),
+                         source_.place_of(owner)};
     }
     return {distance, dismissed.place};
   }
@@ -324,8 +325,7 @@ bool OwnerTest::is_ours(const Vec3d& point, const Vec3d& facing) {
 
 Farthest search_source(const SourceTree::Impl& source, const GroupSurface& group, const SurfaceTree& group_tree,
                        OwnerTest& owner, std::span<const std::uint8_t> is_folded, Farthest farthest,
-                       std::span<const CarriedSample> high, std::size_t budget,
-                       std::vector<CarriedSample>& samples) {
+                       std::span<const CarriedSample> high, std::size_t budget, std::vector<CarriedSample>& samples) {
   if (!owner.is_known()) return farthest;
   const double radius = triangle_spacing(group);
   SourceSearch search(source, group_tree, owner, farthest);

@@ -81,7 +81,8 @@ SourceTree::SourceTree(std::span<const Vec3d> positions, std::span<const std::ar
   }
   first.pop_back();
   impl_->place.resize(triangles.size());
-  for (std::uint32_t i = 0; i < impl_->tree.size(); ++i) impl_->place[impl_->tree.triangle_at(TreeSlot(i))] = TreeSlot(i);
+  for (std::uint32_t i = 0; i < impl_->tree.size(); ++i)
+    impl_->place[impl_->tree.triangle_at(TreeSlot(i))] = TreeSlot(i);
 }
 
 SourceTree::~SourceTree() = default;

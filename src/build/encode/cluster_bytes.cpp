@@ -20,7 +20,9 @@ namespace meshlode::build {
 
 namespace {
 
-Error limit_error(std::string detail) { return {ErrorCode::kBuildFailed, "", std::move(detail)}; }
+Error limit_error(std::string detail) {
+  return {ErrorCode::kBuildFailed, "", std::move(detail)};
+}
 
 std::int32_t quantize_color(float value) {
   if (!(value > 0.0F)) return 0;  // NaN too
@@ -289,7 +291,8 @@ class ClusterEncoder {
         put_in(f::kFitU[k], range.u.slope[k]);
         put_in(f::kFitV[k], range.v.slope[k]);
       }
-      out_.data.insert(out_.data.end(), words.begin(), words.begin() + f::kWords + (range.has_fit() ? f::kFitWords : 0U));
+      out_.data.insert(out_.data.end(), words.begin(),
+                       words.begin() + f::kWords + (range.has_fit() ? f::kFitWords : 0U));
       uv_ranges_.push_back(std::move(range));
     }
   }
@@ -319,7 +322,8 @@ class ClusterEncoder {
       named.set(v);
     }
     const auto restart_bits = static_cast<std::uint32_t>(std::bit_width(cluster_.triangle_count - 1U));
-    for (std::size_t k = 1; k < strips_.first_triangle.size(); ++k) stream_.put(strips_.first_triangle[k], restart_bits);
+    for (std::size_t k = 1; k < strips_.first_triangle.size(); ++k)
+      stream_.put(strips_.first_triangle[k], restart_bits);
     for (const std::uint32_t distance : strips_.references) stream_.put(distance, strips_.reference_bits);
   }
 
@@ -350,15 +354,16 @@ Result<ClusterWords> encode_cluster(const LodDag& dag, const DagCluster& cluster
 std::uint32_t max_cluster_bytes(const AttributeLayout& layout, const EncodeOptions& options, std::uint32_t vertex_count,
                                 std::uint32_t triangle_count, std::uint32_t material_count) {
   const auto normal_scale = static_cast<std::uint32_t>(normal_scale_of(options));
-  const std::uint32_t normal_bits = layout.has_normal ? 2U * static_cast<std::uint32_t>(std::bit_width(2U * normal_scale)) : 0U;
-  const std::uint32_t vertex_bits = 3U * 24U + normal_bits + 2U * 25U * layout.uv_set_count + (layout.has_color ? 32U : 0U);
+  const std::uint32_t normal_bits =
+      layout.has_normal ? 2U * static_cast<std::uint32_t>(std::bit_width(2U * normal_scale)) : 0U;
+  const std::uint32_t vertex_bits =
+      3U * 24U + normal_bits + 2U * 25U * layout.uv_set_count + (layout.has_color ? 32U : 0U);
   // Every triangle a strip of its own is the worst: three slots, of which all but the vertices are references.
   const std::uint32_t topology_bits = triangle_count * (1U + 3U + 8U) + (3U * triangle_count) * 8U;
-  const std::uint32_t words = format::kHeadWords + (layout.has_normal ? format::kNormalHeadWords : 0U) +
-                              material_count * format::material_range::kWords +
-                              layout.uv_set_count * format::uv_range::kWords +
-                              (layout.has_color ? format::color_range::kWords : 0U) +
-                              (vertex_count * vertex_bits + topology_bits + 31U) / 32U;
+  const std::uint32_t words =
+      format::kHeadWords + (layout.has_normal ? format::kNormalHeadWords : 0U) +
+      material_count * format::material_range::kWords + layout.uv_set_count * format::uv_range::kWords +
+      (layout.has_color ? format::color_range::kWords : 0U) + (vertex_count * vertex_bits + topology_bits + 31U) / 32U;
   return 4U * words;
 }
 

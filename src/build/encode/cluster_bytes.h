@@ -34,6 +34,7 @@ struct ClusterWords {
 };
 
 /// Errors: kBuildFailed where the cluster breaks a limit of the format; `where` is left to the caller.
-[[nodiscard]] Result<ClusterWords> encode_cluster(const LodDag& dag, const DagCluster& cluster, const ChannelPlan& plan);
+[[nodiscard]] Result<ClusterWords> encode_cluster(const LodDag& dag, const DagCluster& cluster,
+                                                  const ChannelPlan& plan);
 
 }  // namespace meshlode::build

@@ -27,7 +27,9 @@ static_assert(kNoId == format::kNone, "ids of the build become the format's as t
 constexpr std::int32_t kMinGridLog2 = -126;  ///< below, decoded positions would be denormal floats
 constexpr std::int32_t kMaxGridLog2 = 104;   ///< above, they would overflow
 
-std::string name_mesh(const PreparedMesh& mesh) { return "mesh \"" + mesh.name + "\""; }
+std::string name_mesh(const PreparedMesh& mesh) {
+  return "mesh \"" + mesh.name + "\"";
+}
 
 /// The nearest float, infinity as the format writes it.
 float to_stored_error(double value) {
@@ -128,7 +130,8 @@ format::GroupRecord group_record(const DagGroup& group, const Hierarchy::Sphere&
 format::ClusterRecord cluster_record(const DagCluster& cluster, const Hierarchy::Sphere& sphere,
                                      const Hierarchy::Cone& cone, std::int32_t sphere_log2) {
   format::ClusterRecord record{};
-  const double unit = format::exp2_exact(sphere_log2);  // the hierarchy's spheres are whole units: nothing is rounded here
+  const double unit =
+      format::exp2_exact(sphere_log2);  // the hierarchy's spheres are whole units: nothing is rounded here
   for (int axis = 0; axis < 3; ++axis) {
     record.center[axis] = static_cast<std::int16_t>(double{sphere.center[axis]} / unit);
   }
@@ -245,8 +248,9 @@ Result<std::vector<EncodedMesh::Page>> deal_pages(const PreparedMesh& mesh, cons
     const std::size_t group_bytes = groups[g].bytes_in_page;
     if (kPageFrameBytes + group_bytes > format::kMaxPageBytes) {
       return Error{ErrorCode::kUnsupported, name_mesh(mesh) + ", group " + std::to_string(g),
-                   "its " + std::to_string(groups[g].clusters.size()) + " clusters take " + std::to_string(group_bytes) +
-                       " bytes and a page holds " + std::to_string(format::kMaxPageBytes)};
+                   "its " + std::to_string(groups[g].clusters.size()) + " clusters take " +
+                       std::to_string(group_bytes) + " bytes and a page holds " +
+                       std::to_string(format::kMaxPageBytes)};
     }
     if (pages.empty() || page_bytes + group_bytes > format::kMaxPageBytes) {
       EncodedMesh::Page page;
@@ -276,9 +280,8 @@ void assemble_page(const std::vector<GroupWords>& groups, const ChannelPlan& pla
     words.insert(words.end(), head.begin(), head.begin() + plan.head_words());
     data_word += cluster.data.size();
   });
-  for_each_cluster([&](const ClusterWords& cluster) {
-    words.insert(words.end(), cluster.data.begin(), cluster.data.end());
-  });
+  for_each_cluster(
+      [&](const ClusterWords& cluster) { words.insert(words.end(), cluster.data.begin(), cluster.data.end()); });
   words.push_back(0);
   static_assert(std::endian::native == std::endian::little, "words are written as they lie in memory");
   page.bytes.resize(4 * words.size());
@@ -302,7 +305,8 @@ void fill_dependencies(const LodDag& dag, EncodedMesh& out) {
 /// Budgets that may not fall short, held against the steps that the coordinates leave.
 Status check_uv_steps(const PreparedMesh& mesh, const ChannelPlan& plan, const EncodeOptions& options) {
   for (std::uint32_t set = 0; set < mesh.layout.uv_set_count && !options.uv_error_may_fall_short; ++set) {
-    if (!(options.uv_error[set] > 0.0) || 0.5 * format::exp2_exact(plan.uv_log2[set]) <= options.uv_error[set]) continue;
+    if (!(options.uv_error[set] > 0.0) || 0.5 * format::exp2_exact(plan.uv_log2[set]) <= options.uv_error[set])
+      continue;
     char text[160];
     std::snprintf(text, sizeof text, "a UV error of %g needs more than 24 bits for the coordinates of TEXCOORD_%u",
                   options.uv_error[set], static_cast<unsigned>(mesh.layout.uv_set_source[set]));

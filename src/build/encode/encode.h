@@ -21,8 +21,8 @@ struct EncodeOptions {
   double normal_error = 0.1;  ///< degrees, largest; above 0, at least 0.01 (kMaxNormalScale)
   /// UV units, largest, for each stored set; 0: invisible, see default_uv_error
   std::array<double, scene::kMaxUvSets> uv_error{};
-  /// Coordinates so large that 24 bits cannot keep the error are kept as finely as floats hold the largest of them; false:
-  /// refused.
+  /// Coordinates so large that 24 bits cannot keep the error are kept as finely as floats hold the largest of them;
+  /// false: refused.
   bool uv_error_may_fall_short = true;
   std::uint32_t strip_trials = 48;  ///< see StripOptions; four times as many in a cluster of several materials
 };
@@ -57,7 +57,8 @@ constexpr std::uint32_t kPageFrameBytes = static_cast<std::uint32_t>(sizeof(form
                                               std::uint32_t material_count = 4);
 
 /// Attributes that are not finite become 0 (a normal: +z). Errors: kUnsupported where a group does not fit a page,
-/// naming mesh and group, or where the grid leaves the range of floats; kBuildFailed where the DAG breaks the format's limits.
+/// naming mesh and group, or where the grid leaves the range of floats; kBuildFailed where the DAG breaks the format's
+/// limits.
 [[nodiscard]] Result<EncodedMesh> encode_mesh(const PreparedMesh& mesh, const LodDag& dag, const Hierarchy& hierarchy,
                                               const EncodeOptions& options);
 

@@ -58,7 +58,9 @@ constexpr std::int32_t kMaxShear = 127;
 /// With these, no product of the shear leaves 31 bits.
 constexpr std::uint32_t kMaxShearBits = 22;
 
-std::int32_t wrap(std::uint32_t value) { return static_cast<std::int32_t>(value); }
+std::int32_t wrap(std::uint32_t value) {
+  return static_cast<std::int32_t>(value);
+}
 
 }  // namespace
 
@@ -104,9 +106,9 @@ PositionFit fit_positions(std::span<const std::array<std::int32_t, 3>> positions
         const std::array<std::int32_t, 2> trial{std::clamp(su + du, -kMaxShear, kMaxShear),
                                                 std::clamp(sv + dv, -kMaxShear, kMaxShear)};
         for (std::size_t i = 0; i < positions.size(); ++i) {
-          const std::int32_t fit = (trial[0] * static_cast<std::int32_t>(plain[i][u]) +
-                                    trial[1] * static_cast<std::int32_t>(plain[i][v])) >>
-                                   format::kShearShift;
+          const std::int32_t fit =
+              (trial[0] * static_cast<std::int32_t>(plain[i][u]) + trial[1] * static_cast<std::int32_t>(plain[i][v])) >>
+              format::kShearShift;
           residual[i] = positions[i][axis] - fit;
         }
         const ValueRange range = range_of(residual);

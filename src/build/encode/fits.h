@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Integer fits that take the slope out of a cluster's values before they are packed: the shear of positions and the affine
-// map from position to texture coordinates. Both are exact to undo, because only integers are involved.
+// Integer fits that take the slope out of a cluster's values before they are packed: the shear of positions and the
+// affine map from position to texture coordinates. Both are exact to undo, because only integers are involved.
 #pragma once
 
 #include <array>
@@ -21,10 +21,10 @@ using RawPosition = std::array<std::uint32_t, 3>;
 
 /// One axis of the positions minus an integer fit of the other two.
 struct PositionFit {
-  std::uint32_t axis = 0;           ///< that is sheared
+  std::uint32_t axis = 0;               ///< that is sheared
   std::array<std::int32_t, 2> slope{};  ///< / 2^format::kShearShift; zero: none
   std::array<ValueRange, 3> range;
-  std::vector<RawPosition> raw;     ///< what is stored of each vertex
+  std::vector<RawPosition> raw;  ///< what is stored of each vertex
 };
 [[nodiscard]] PositionFit fit_positions(std::span<const std::array<std::int32_t, 3>> positions);
 

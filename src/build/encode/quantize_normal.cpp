@@ -36,7 +36,9 @@ Lattice nearest_in_octant(double x, double y, double z, std::int32_t m) {
   return best;
 }
 
-std::int32_t with_sign_of(std::int32_t magnitude, double sign) { return sign < 0.0 ? -magnitude : magnitude; }
+std::int32_t with_sign_of(std::int32_t magnitude, double sign) {
+  return sign < 0.0 ? -magnitude : magnitude;
+}
 
 }  // namespace
 
@@ -45,7 +47,7 @@ std::array<std::int32_t, 3> nearest_octahedral_point(const Vec3f& normal, std::i
   const double y = normal.y;
   const double z = normal.z;
   const double sum = std::abs(x) + std::abs(y) + std::abs(z);
-  if (!(sum > 0.0) || !std::isfinite(sum)) return {0, 0, scale};  // +z: NaN fails the first comparison
+  if (!(sum > 0.0) || !std::isfinite(sum)) return {0, 0, scale};             // +z: NaN fails the first comparison
   const double largest = std::max({std::abs(x), std::abs(y), std::abs(z)});  // scaled: no square leaves double's range
   const Lattice p = nearest_in_octant(std::abs(x) / largest, std::abs(y) / largest, std::abs(z) / largest, scale);
   return {with_sign_of(p[0], x), with_sign_of(p[1], y), with_sign_of(p[2], z)};

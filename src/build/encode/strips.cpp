@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Generalised strips are paths in the graph of triangles that share an edge: each step leaves through one of the two edges
-// that it did not come in by. A cluster is covered with few paths, greedily (the neighbour with the fewest ways out first,
-// as Akeley's tomesh did), and a path's far ends near what was used last, so that references stay short. Several covers
-// are tried with different tie breaks; the one with the fewest bits stays. (Strips with fan bits and reuse references:
-// Kuth et al. 2024, Towards Practical Meshlet Compression.)
+// Generalised strips are paths in the graph of triangles that share an edge: each step leaves through one of the two
+// edges that it did not come in by. A cluster is covered with few paths, greedily (the neighbour with the fewest ways
+// out first, as Akeley's tomesh did), and a path's far ends near what was used last, so that references stay short.
+// Several covers are tried with different tie breaks; the one with the fewest bits stays. (Strips with fan bits and
+// reuse references: Kuth et al. 2024, Towards Practical Meshlet Compression.)
 #include "build/encode/strips.h"
 
 #include <algorithm>
@@ -51,10 +51,12 @@ Adjacency find_neighbours(std::span<const LocalTriangle> triangles, std::span<co
   for (std::size_t i = 0; i < edges.size();) {
     std::size_t end = i;
     std::size_t split = i;  // first descending one
-    for (; end < edges.size() && edges[end].block == edges[i].block && edges[end].low_high == edges[i].low_high; ++end) {
+    for (; end < edges.size() && edges[end].block == edges[i].block && edges[end].low_high == edges[i].low_high;
+         ++end) {
       if (!edges[end].is_descending) split = end + 1;
     }
-    for (std::size_t k = 0; i + k < split && split + k < end; ++k) {  // where more than two meet: pairs, as far as they go
+    for (std::size_t k = 0; i + k < split && split + k < end;
+         ++k) {  // where more than two meet: pairs, as far as they go
       const Edge& a = edges[i + k];
       const Edge& b = edges[split + k];
       if (a.triangle == b.triangle) continue;
@@ -114,14 +116,18 @@ std::uint32_t count_bits(const Cover& cover) {
                     cover.reference_bits);
 }
 
-/// Everything that choices look at is kept up to date instead of computed: there are many more looks than changes, and the
-/// trials are most of what encoding takes.
+/// Everything that choices look at is kept up to date instead of computed: there are many more looks than changes, and
+/// the trials are most of what encoding takes.
 class Striper {
  public:
   Striper(std::span<const LocalTriangle> triangles, std::span<const std::uint32_t> block, const Adjacency& neighbours,
           std::uint32_t vertex_count)
-      : triangles_(triangles), block_(block), neighbours_(neighbours), vertex_count_(vertex_count),
-        first_use_(vertex_count + std::size_t{1}), state_(triangles.size()) {
+      : triangles_(triangles),
+        block_(block),
+        neighbours_(neighbours),
+        vertex_count_(vertex_count),
+        first_use_(vertex_count + std::size_t{1}),
+        state_(triangles.size()) {
     for (const LocalTriangle& t : triangles) {
       for (const std::uint8_t v : t) ++first_use_[v + std::size_t{1}];
     }
@@ -174,7 +180,8 @@ class Striper {
     number_.assign(vertex_count_, kNobody);
     for (std::size_t t = 0; t < state_.size(); ++t) {
       std::uint8_t degree = 0;
-      for (const Neighbour n : neighbours_[t]) degree = static_cast<std::uint8_t>(degree + (n.triangle != kNobody ? 1 : 0));
+      for (const Neighbour n : neighbours_[t])
+        degree = static_cast<std::uint8_t>(degree + (n.triangle != kNobody ? 1 : 0));
       state_[t] = {static_cast<std::uint16_t>(kNobody), degree, static_cast<std::uint8_t>(coin.next() >> 24U), false};
     }
   }
@@ -291,7 +298,7 @@ class Striper {
   std::vector<std::uint32_t> first_use_;  ///< of each vertex, in uses_
   std::vector<std::uint16_t> uses_;       ///< triangles
   std::vector<State> state_;
-  std::vector<std::uint32_t> number_;     ///< new number of each old vertex
+  std::vector<std::uint32_t> number_;  ///< new number of each old vertex
   std::vector<Step> path_;
   Cover out_;
 };

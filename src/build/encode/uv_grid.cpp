@@ -11,7 +11,9 @@ namespace meshlode::build {
 namespace {
 
 /// Largest n with 2^n <= value. \pre value > 0 and finite
-std::int32_t floor_log2(double value) { return std::ilogb(value); }
+std::int32_t floor_log2(double value) {
+  return std::ilogb(value);
+}
 
 }  // namespace
 

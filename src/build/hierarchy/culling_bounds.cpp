@@ -21,7 +21,9 @@ Vec3d area_vector(const LodDag& dag, const DagCluster& cluster, std::uint32_t tr
   return {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
 }
 
-double dot_of(const Vec3d& a, const Vec3d& b) { return (a.x * b.x + a.y * b.y) + a.z * b.z; }
+double dot_of(const Vec3d& a, const Vec3d& b) {
+  return (a.x * b.x + a.y * b.y) + a.z * b.z;
+}
 
 constexpr Hierarchy::Cone kNoCone{{0, 0, 0}, 127};
 
@@ -89,7 +91,8 @@ Hierarchy::Cone normal_cone(const LodDag& dag, const DagCluster& cluster) {
   const Vec3d axis = sum / sum_length;
   const Hierarchy::Cone cone{{static_cast<std::int8_t>(std::floor(axis.x * 127.0 + 0.5)),
                               static_cast<std::int8_t>(std::floor(axis.y * 127.0 + 0.5)),
-                              static_cast<std::int8_t>(std::floor(axis.z * 127.0 + 0.5))}, 127};
+                              static_cast<std::int8_t>(std::floor(axis.z * 127.0 + 0.5))},
+                             127};
   // From here on with the axis as stored, whose length is not exactly 127. With s the angle's cosine between the stored
   // axis and the normal farthest from it, a view within 90° - acos(s) of the axis sees only backs:
   // dot(view, unit axis) >= sqrt(1 - s²).

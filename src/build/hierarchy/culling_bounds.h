@@ -12,7 +12,8 @@
 namespace meshlode::build {
 
 /// Contains every vertex of the cluster as decoded, in doubles and in floats. Near-smallest.
-[[nodiscard]] Hierarchy::Sphere culling_sphere(const LodDag& dag, const DagCluster& cluster, const format::PositionGrid& grid);
+[[nodiscard]] Hierarchy::Sphere culling_sphere(const LodDag& dag, const DagCluster& cluster,
+                                               const format::PositionGrid& grid);
 
 /// The unit 2^log2 in which spheres are stored: the smallest in which every centre fits 16 bits, and every radius.
 [[nodiscard]] std::int32_t choose_sphere_log2(std::span<const Hierarchy::Sphere> spheres);

@@ -20,7 +20,6 @@ struct Lists {
   }
 };
 
-
 template <class KeyOf>
 Lists list_by_key(std::size_t item_count, std::size_t key_count, const KeyOf& key_of) {
   Lists lists;
@@ -44,8 +43,8 @@ Hierarchy::Sphere enclose_spheres(std::span<const Hierarchy::Sphere> inner) {
   std::vector<Ball> balls(inner.size());
   for (std::size_t i = 0; i < inner.size(); ++i) balls[i] = {center_of(inner[i]), inner[i].radius};
   const Vec3d middle = enclosing_ball(balls).center;
-  Hierarchy::Sphere outer{
-      {static_cast<float>(middle.x), static_cast<float>(middle.y), static_cast<float>(middle.z)}, 0.0F};
+  Hierarchy::Sphere outer{{static_cast<float>(middle.x), static_cast<float>(middle.y), static_cast<float>(middle.z)},
+                          0.0F};
   // The centre is rounded first and the radius measured from where it fell.
   const Vec3d center = center_of(outer);
   double radius = 0.0;

@@ -16,7 +16,9 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-void append(Bytes& out, const Bytes& bytes) { out.insert(out.end(), bytes.begin(), bytes.end()); }
+void append(Bytes& out, const Bytes& bytes) {
+  out.insert(out.end(), bytes.begin(), bytes.end());
+}
 
 Bytes start_stored(format::PageMethod method, const Bytes& side, std::size_t side_bytes, std::size_t twin_count) {
   Bytes out;
@@ -28,7 +30,8 @@ Bytes start_stored(format::PageMethod method, const Bytes& side, std::size_t sid
   return out;
 }
 
-Bytes store_strips(const Bytes& side, std::size_t side_bytes, const PageModel& model, const std::vector<Bytes>& streams) {
+Bytes store_strips(const Bytes& side, std::size_t side_bytes, const PageModel& model,
+                   const std::vector<Bytes>& streams) {
   Bytes out = start_stored(format::PageMethod::kStrips, side, side_bytes, model.streams[format::kTwinStream].size());
   for (const Bytes& stream : streams) put_u32(out, static_cast<std::uint32_t>(stream.size()));
   for (const Bytes& stream : streams) append(out, stream);

@@ -5,10 +5,10 @@
 #include <array>
 #include <cstring>
 
-#include "format/prefix_code.h"
-#include "format/section_columns.h"
 #include "build/pack/bit_sink.h"
 #include "build/pack/prefix_lengths.h"
+#include "format/prefix_code.h"
+#include "format/section_columns.h"
 
 namespace meshlode::build {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Prediction along strips after "Triangle mesh compression" (Touma and Gotsman, 1998), on the raw fields of the page: the
-// shear of positions and the affine fit of UVs have already turned most of what is predictable into small numbers.
+// Prediction along strips after "Triangle mesh compression" (Touma and Gotsman, 1998), on the raw fields of the page:
+// the shear of positions and the affine fit of UVs have already turned most of what is predictable into small numbers.
 #include "build/pack/page_model.h"
 
 #include <algorithm>
@@ -74,7 +74,9 @@ class PageModeler {
   void add_head(const ClusterLayout& layout) {
     auto& head = model_.heads.emplace_back();
     std::copy_n(page_.begin() + layout.head_word, format::head_words(mesh_), head.begin());
-    const auto add = [this](format::RangeWord kind, std::uint32_t word) { model_.range_words[kind].push_back(page_[word]); };
+    const auto add = [this](format::RangeWord kind, std::uint32_t word) {
+      model_.range_words[kind].push_back(page_[word]);
+    };
     for (std::uint32_t i = 0; i < layout.material_count; ++i) add(format::kMaterialWord, layout.material_word + i);
     for (std::uint32_t set = 0; set < mesh_.uv_set_count; ++set) {
       std::uint32_t word = layout.uv_word[set];
@@ -102,7 +104,8 @@ class PageModeler {
     StripWalk walk;
     walk.first_triangle.push_back(0);
     for (std::uint32_t k = 1; k < layout.strip_count; ++k) {
-      const std::uint32_t first = format::get_bits(words, layout.restart_bit + (k - 1) * layout.restart_bits, layout.restart_bits);
+      const std::uint32_t first =
+          format::get_bits(words, layout.restart_bit + (k - 1) * layout.restart_bits, layout.restart_bits);
       if (first <= walk.first_triangle.back() || first >= layout.triangle_count) return std::nullopt;
       walk.first_triangle.push_back(first);
     }
@@ -112,12 +115,13 @@ class PageModeler {
     std::uint32_t n = format::kNobody;
     /// Names the vertex of the next slot; a fresh one gets the gate.
     const auto name = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) -> std::optional<std::uint32_t> {
-      const bool is_fresh = format::get_bits(words, layout.fresh_bit + static_cast<std::uint32_t>(walk.slots.size()), 1) != 0;
+      const bool is_fresh =
+          format::get_bits(words, layout.fresh_bit + static_cast<std::uint32_t>(walk.slots.size()), 1) != 0;
       auto vertex = static_cast<std::uint32_t>(walk.gates.size());
       if (is_fresh) {
         if (vertex >= layout.vertex_count) return std::nullopt;
-        walk.gates.push_back({static_cast<std::uint16_t>(a), static_cast<std::uint16_t>(b),
-                              static_cast<std::uint16_t>(c), 0});
+        walk.gates.push_back(
+            {static_cast<std::uint16_t>(a), static_cast<std::uint16_t>(b), static_cast<std::uint16_t>(c), 0});
       } else {
         if (reference >= layout.reference_count) return std::nullopt;
         const std::uint32_t distance =
@@ -188,7 +192,8 @@ class PageModeler {
         const std::uint32_t b = raw[gate.b][at];
         const std::uint32_t c = raw[gate.c][at];
         const bool is_normal = format::table_of_field(mesh_, f) == format::kNormalTable;
-        put(format::kFieldStreams + f, format::fold(raw[v][at] - (is_normal ? format::predict_half(a, b, c) : format::predict_parallelogram(a, b, c))));
+        put(format::kFieldStreams + f, format::fold(raw[v][at] - (is_normal ? format::predict_half(a, b, c)
+                                                                            : format::predict_parallelogram(a, b, c))));
       }
     }
     for (const auto& [full, vertex] : own) seen_.emplace(full, vertex);  // twins are in earlier clusters only
@@ -199,7 +204,8 @@ class PageModeler {
     std::vector<std::uint32_t> slot_kinds;
     std::uint32_t last = 0;
     for (const StripWalk::Slot& slot : walk.slots) {
-      slot_kinds.push_back(static_cast<std::uint32_t>(slot.is_fresh ? kinds[slot.vertex] : format::SlotKind::kReference));
+      slot_kinds.push_back(
+          static_cast<std::uint32_t>(slot.is_fresh ? kinds[slot.vertex] : format::SlotKind::kReference));
       if (slot.is_fresh) continue;
       put(format::kReferenceStream, format::fold(slot.vertex - last));
       last = slot.vertex;
@@ -211,7 +217,8 @@ class PageModeler {
       if (strip < layout.strip_count && walk.first_triangle[strip] == t) {
         if (strip > 0) put(format::kLengthStream, t - walk.first_triangle[strip - 1] - 1);
         ++strip;
-        put(format::kStartStream, (slot_kinds[s] * format::kSlotKinds + slot_kinds[s + 1]) * format::kSlotKinds + slot_kinds[s + 2]);
+        put(format::kStartStream,
+            (slot_kinds[s] * format::kSlotKinds + slot_kinds[s + 1]) * format::kSlotKinds + slot_kinds[s + 2]);
         s += 3;
         continue;
       }

@@ -15,7 +15,9 @@ struct Package {
   std::vector<std::uint16_t> symbols;  ///< each one's length grows by one when the package is taken
 };
 
-bool is_lighter(const Package& a, const Package& b) { return a.weight < b.weight; }
+bool is_lighter(const Package& a, const Package& b) {
+  return a.weight < b.weight;
+}
 
 }  // namespace
 
@@ -33,7 +35,8 @@ std::vector<std::uint8_t> choose_code_lengths(std::span<const std::uint64_t> cou
   for (std::uint32_t bit = 0; bit < format::kMaxCodeBits; ++bit) {
     std::vector<Package> merged;
     merged.reserve(symbols.size() + packages.size());
-    std::merge(symbols.begin(), symbols.end(), packages.begin(), packages.end(), std::back_inserter(merged), is_lighter);
+    std::merge(symbols.begin(), symbols.end(), packages.begin(), packages.end(), std::back_inserter(merged),
+               is_lighter);
     if (bit + 1 == format::kMaxCodeBits) {
       packages = std::move(merged);
       break;

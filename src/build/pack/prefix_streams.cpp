@@ -3,17 +3,18 @@
 
 #include <array>
 
-#include "format/prefix_code.h"
-#include "format/page_streams.h"
 #include "build/pack/bit_sink.h"
 #include "build/pack/prefix_lengths.h"
+#include "format/page_streams.h"
+#include "format/prefix_code.h"
 
 namespace meshlode::build {
 
 namespace {
 
 format::ValueToken token_in(std::uint32_t table, std::uint32_t value) {
-  return format::symbol_count(table) == format::kValueSymbols ? format::token_of(value) : format::ValueToken{value, 0, 0};
+  return format::symbol_count(table) == format::kValueSymbols ? format::token_of(value)
+                                                              : format::ValueToken{value, 0, 0};
 }
 
 }  // namespace

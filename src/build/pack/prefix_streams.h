@@ -10,7 +10,7 @@
 namespace meshlode::build {
 
 struct PrefixStreams {
-  std::vector<std::uint8_t> code_lengths;          ///< of all tables, one byte a symbol
+  std::vector<std::uint8_t> code_lengths;  ///< of all tables, one byte a symbol
   std::vector<std::vector<std::uint8_t>> streams;
 };
 

@@ -33,7 +33,8 @@ std::vector<std::uint32_t> head_column(const PageModel& model, std::uint32_t ind
 }  // namespace
 
 void put_u32(std::vector<std::uint8_t>& out, std::uint32_t value) {
-  for (std::uint32_t shift = 0; shift < 32; shift += 8) out.push_back(static_cast<std::uint8_t>(value >> shift & 0xFFU));
+  for (std::uint32_t shift = 0; shift < 32; shift += 8)
+    out.push_back(static_cast<std::uint8_t>(value >> shift & 0xFFU));
 }
 
 std::vector<std::vector<std::uint8_t>> make_columns(const format::MeshRecord& mesh, const PageModel& model) {

@@ -12,6 +12,7 @@ namespace meshlode::build {
 void put_u32(std::vector<std::uint8_t>& out, std::uint32_t value);
 
 /// Counts of the range words, heads, range words: one column after the other. All of them make up the side information.
-[[nodiscard]] std::vector<std::vector<std::uint8_t>> make_columns(const format::MeshRecord& mesh, const PageModel& model);
+[[nodiscard]] std::vector<std::vector<std::uint8_t>> make_columns(const format::MeshRecord& mesh,
+                                                                  const PageModel& model);
 
 }  // namespace meshlode::build

@@ -8,7 +8,8 @@ namespace meshlode::build {
 
 namespace {
 
-/// Cosine of the largest angle (about half a degree) between a stored normal and its triangle's that still counts as flat.
+/// Cosine of the largest angle (about half a degree) between a stored normal and its triangle's that still counts as
+/// flat.
 constexpr double kFlatCosine = 0.99996;
 
 /// True if every corner's normal is its triangle's own: then nothing needs storing. Triangles without area do not vote.
@@ -45,8 +46,8 @@ bool is_all_white(const scene::SourceMesh& mesh) {
 
 }  // namespace
 
-MeshPlan plan_mesh(const scene::SourceMesh& mesh, const std::vector<scene::SceneMaterial>& materials, AttributeChoice choice,
-                   const std::string& mesh_label) {
+MeshPlan plan_mesh(const scene::SourceMesh& mesh, const std::vector<scene::SceneMaterial>& materials,
+                   AttributeChoice choice, const std::string& mesh_label) {
   MeshPlan plan;
   const auto decide = [&](const std::string& what, bool kept, const char* reason) {
     plan.decisions.push_back({mesh_label + ": " + what, kept, reason, false});

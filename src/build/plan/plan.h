@@ -16,12 +16,14 @@ namespace meshlode::build {
 
 inline constexpr std::array<EnumName<AttributeChoice>, 3> kAttributeChoiceNames{
     {{AttributeChoice::kAuto, "auto"}, {AttributeChoice::kNone, "none"}, {AttributeChoice::kAll, "all"}}};
-constexpr const char* name_of(AttributeChoice choice) { return name_in(kAttributeChoiceNames, choice); }
+constexpr const char* name_of(AttributeChoice choice) {
+  return name_in(kAttributeChoiceNames, choice);
+}
 
 struct PlanDecision {
-  std::string what;    ///< "mesh 0: TEXCOORD_0"
+  std::string what;  ///< "mesh 0: TEXCOORD_0"
   bool kept = false;
-  std::string reason;  ///< "no material samples a texture through it"
+  std::string reason;    ///< "no material samples a texture through it"
   bool is_loss = false;  ///< left out although the scene's materials can show it
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every object of a material that has an integer "index" is a texture reference: those of glTF itself and of extensions,
-// known or not.
+// Every object of a material that has an integer "index" is a texture reference: those of glTF itself and of
+// extensions, known or not.
 #include "build/plan/texel_sizes.h"
 
 #include <algorithm>
@@ -72,8 +72,8 @@ class TexelSizes {
     }
     if (set >= scene::kMaxUvSets) return;
     const Json* const texture = element(document_, "textures", texture_index);
-    const Json* const image = texture == nullptr ? nullptr
-                                                 : element(document_, "images", index_in(*texture, "source", kNowhere));
+    const Json* const image =
+        texture == nullptr ? nullptr : element(document_, "images", index_in(*texture, "source", kNowhere));
     const std::size_t blob = image == nullptr ? kNowhere : index_in(*image, "blob", kNowhere);
     if (blob >= scene_.blobs.size()) return;
     const auto [known, is_new] = sizes_.try_emplace(blob);
@@ -106,8 +106,8 @@ std::vector<std::array<double, scene::kMaxUvSets>> texels_of_materials(const sce
   return out;
 }
 
-std::array<double, scene::kMaxUvSets> texels_per_unit(std::span<const std::array<double, scene::kMaxUvSets>> of_materials,
-                                               const scene::SourceMesh& mesh) {
+std::array<double, scene::kMaxUvSets> texels_per_unit(
+    std::span<const std::array<double, scene::kMaxUvSets>> of_materials, const scene::SourceMesh& mesh) {
   std::array<double, scene::kMaxUvSets> out{};
   for (const scene::Primitive& primitive : mesh.primitives) {
     if (primitive.material.value >= of_materials.size()) continue;

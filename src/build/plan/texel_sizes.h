@@ -10,14 +10,15 @@
 
 namespace meshlode::build {
 
-/// For each TEXCOORD_n: the most texels that a unit of it spans, over every texture that the mesh's materials sample with
-/// it, KHR_texture_transform's scale included. 0 where no texture of known size is sampled.
-[[nodiscard]] std::array<double, scene::kMaxUvSets> texels_per_unit(const scene::Scene& scene, const scene::SourceMesh& mesh);
+/// For each TEXCOORD_n: the most texels that a unit of it spans, over every texture that the mesh's materials sample
+/// with it, KHR_texture_transform's scale included. 0 where no texture of known size is sampled.
+[[nodiscard]] std::array<double, scene::kMaxUvSets> texels_per_unit(const scene::Scene& scene,
+                                                                    const scene::SourceMesh& mesh);
 
 /// The same for each of Scene::materials: the document is read once, however many meshes there are …
 [[nodiscard]] std::vector<std::array<double, scene::kMaxUvSets>> texels_of_materials(const scene::Scene& scene);
 /// … and for the materials of a mesh together.
-[[nodiscard]] std::array<double, scene::kMaxUvSets> texels_per_unit(std::span<const std::array<double, scene::kMaxUvSets>> of_materials,
-                                                             const scene::SourceMesh& mesh);
+[[nodiscard]] std::array<double, scene::kMaxUvSets> texels_per_unit(
+    std::span<const std::array<double, scene::kMaxUvSets>> of_materials, const scene::SourceMesh& mesh);
 
 }  // namespace meshlode::build

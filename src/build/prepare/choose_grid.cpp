@@ -39,7 +39,8 @@ format::PositionGrid spell_step(double step, bool may_round_up) {
 }
 
 /// Errors where coordinates would need more than 24 bits.
-Result<format::PositionGrid> checked_grid(const format::PositionGrid& grid, double largest_half_extent, const char* what, double value) {
+Result<format::PositionGrid> checked_grid(const format::PositionGrid& grid, double largest_half_extent,
+                                          const char* what, double value) {
   if (largest_half_extent / grid.step() > format::kMaxGridCoordinate / grid.mantissa || grid.log2 < kSmallestLog2 ||
       grid.log2 > kLargestLog2) {
     char text[160];
@@ -53,7 +54,7 @@ Result<format::PositionGrid> checked_grid(const format::PositionGrid& grid, doub
 }  // namespace
 
 Result<format::PositionGrid> choose_grid(double largest_half_extent, double diagonal, double median_edge,
-                                 const PrepareOptions& options) {
+                                         const PrepareOptions& options) {
   if (options.grid_step > 0.0) {
     return checked_grid(spell_step(options.grid_step, true), largest_half_extent, "grid step", options.grid_step);
   }

@@ -7,7 +7,9 @@ namespace meshlode::build {
 
 namespace {
 
-float canonical_zero(float value) { return value == 0.0F ? 0.0F : value; }
+float canonical_zero(float value) {
+  return value == 0.0F ? 0.0F : value;
+}
 
 Vec3f flat_normal(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   const Vec3d cross = glm::cross(b - a, c - a);
@@ -44,8 +46,8 @@ Corners gather_corners(const scene::SourceMesh& mesh, const AttributeLayout& lay
       // Flat normals, as glTF asks for: every corner becomes a vertex of its own.
       for (std::size_t t = 0; t < triangle_count; ++t) {
         const std::uint32_t* corner = &primitive.indices[3 * t];
-        const Vec3f normal = flat_normal(primitive.positions[corner[0]], primitive.positions[corner[1]],
-                                         primitive.positions[corner[2]]);
+        const Vec3f normal =
+            flat_normal(primitive.positions[corner[0]], primitive.positions[corner[1]], primitive.positions[corner[2]]);
         for (std::size_t k = 0; k < 3; ++k) {
           append_vertex(primitive, corner[k], normal, layout, out);
           out.triangles.push_back(first + static_cast<std::uint32_t>(3 * t + k));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A source mesh as the rest of prepare sees it: its primitives as one list of corners, with the attributes that are kept.
+// A source mesh as the rest of prepare sees it: its primitives as one list of corners, with the attributes that are
+// kept.
 #pragma once
 
 #include <cstdint>
@@ -23,8 +24,8 @@ struct Corners {
   }
 };
 
-/// Where the layout has normals and a primitive has none, its corners get their triangles' own, each a vertex of its own.
-/// Zeros are positive. \pre indices are in range, and attributes as long as positions
+/// Where the layout has normals and a primitive has none, its corners get their triangles' own, each a vertex of its
+/// own. Zeros are positive. \pre indices are in range, and attributes as long as positions
 [[nodiscard]] Corners gather_corners(const scene::SourceMesh& mesh, const AttributeLayout& layout);
 
 }  // namespace meshlode::build

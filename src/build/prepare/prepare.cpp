@@ -53,8 +53,8 @@ double median_edge_length(const Corners& corners) {
   const std::size_t stride = std::max<std::size_t>(1, triangle_count / 20000);
   for (std::size_t t = 0; t < triangle_count; t += stride) {
     for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3d edge = corners.positions[corners.triangles[3 * t + k]] -
-                         corners.positions[corners.triangles[3 * t + (k + 1) % 3]];
+      const Vec3d edge =
+          corners.positions[corners.triangles[3 * t + k]] - corners.positions[corners.triangles[3 * t + (k + 1) % 3]];
       const double length2 = glm::dot(edge, edge);
       if (length2 > 0.0) lengths2.push_back(length2);
     }
@@ -65,7 +65,8 @@ double median_edge_length(const Corners& corners) {
   return std::sqrt(*middle);
 }
 
-/// Grid and origin from the bounds of the vertices that the source's triangles use, so that stray points do not coarsen it.
+/// Grid and origin from the bounds of the vertices that the source's triangles use, so that stray points do not coarsen
+/// it.
 Status choose_frame(const Corners& corners, const PrepareOptions& options, PreparedMesh& mesh) {
   Vec3d low(std::numeric_limits<double>::infinity());
   Vec3d high(-std::numeric_limits<double>::infinity());

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Prepare: a source mesh is put on its grid, welded, freed of exact duplicates and brought into a canonical order, so that
-// renumbering the input changes nothing.
+// Prepare: a source mesh is put on its grid, welded, freed of exact duplicates and brought into a canonical order, so
+// that renumbering the input changes nothing.
 //
 // The grid comes first, before clustering, and not last as in other builders: every later stage then works on the very
-// integers that the asset stores, and borders that two groups share are equal in the file because they were never apart.
+// integers that the asset stores, and borders that two groups share are equal in the file because they were never
+// apart.
 #pragma once
 
 #include <meshlode/result.h>
@@ -23,7 +24,7 @@ struct PrepareOptions {
 /// Position of the grid for a mesh whose bounding box has the given half extent, diagonal and median edge length.
 /// Errors: kUnsupported where the step or the position error asked for needs more than 24 bits.
 [[nodiscard]] Result<format::PositionGrid> choose_grid(double largest_half_extent, double diagonal, double median_edge,
-                                               const PrepareOptions& options);
+                                                       const PrepareOptions& options);
 
 /// Errors: kUnsupported (the grid needs more than 24 bits), kInvalid (a position is not finite).
 [[nodiscard]] Result<PreparedMesh> prepare_mesh(const scene::SourceMesh& mesh, const AttributeLayout& layout,

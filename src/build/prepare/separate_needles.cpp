@@ -18,8 +18,12 @@ constexpr int kShortest = 4;
 /// Squared half diagonal of a cell: how far the grid may move a vertex, in steps.
 constexpr double kFarthest2 = 0.75;
 
-auto tuple_of(const Vec3i& q) { return std::tuple(q.x, q.y, q.z); }
-auto tuple_of(const Vec3d& p) { return std::tuple(p.x, p.y, p.z); }
+auto tuple_of(const Vec3i& q) {
+  return std::tuple(q.x, q.y, q.z);
+}
+auto tuple_of(const Vec3d& p) {
+  return std::tuple(p.x, p.y, p.z);
+}
 
 /// Corners a and b share a cell; the tip is elsewhere.
 struct Needle {
@@ -89,7 +93,8 @@ std::uint64_t separate_needles(std::span<const Vec3d> positions, std::span<const
         const Vec3d left = positions[v] / step - Vec3d(cell);
         const double distance2 = glm::dot(left, left);
         if (distance2 > best_distance2 || (is_found && distance2 == best_distance2)) continue;
-        if (std::binary_search(occupied.begin(), occupied.end(), tuple_of(cell)) || taken.contains(tuple_of(cell))) continue;
+        if (std::binary_search(occupied.begin(), occupied.end(), tuple_of(cell)) || taken.contains(tuple_of(cell)))
+          continue;
         best = v;
         best_cell = cell;
         best_distance2 = distance2;

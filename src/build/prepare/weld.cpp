@@ -28,11 +28,15 @@ std::uint64_t spread3(std::uint64_t x) {
 
 /// Z-order of a grid point (24 bits an axis, the lowest three dropped: ties are ordered by coordinates).
 std::uint64_t morton(const Vec3i& q) {
-  const auto axis = [](int value) { return static_cast<std::uint64_t>(value + (format::kMaxGridCoordinate + 1)) >> 3U; };
+  const auto axis = [](int value) {
+    return static_cast<std::uint64_t>(value + (format::kMaxGridCoordinate + 1)) >> 3U;
+  };
   return spread3(axis(q.x)) | spread3(axis(q.y)) << 1U | spread3(axis(q.z)) << 2U;
 }
 
-auto as_tuple(const Vec3i& q) { return std::tuple(q.x, q.y, q.z); }
+auto as_tuple(const Vec3i& q) {
+  return std::tuple(q.x, q.y, q.z);
+}
 
 /// Orders attribute sets by their bits: any total order will do, it has to be the same everywhere.
 int compare_attributes(const float* a, const float* b, std::uint32_t stride) {
@@ -50,7 +54,8 @@ std::vector<std::uint32_t> canonical_vertex_order(const Corners& corners, const 
   tbb::parallel_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
     if (keys[a] != keys[b]) return keys[a] < keys[b];
     if (quantized[a] != quantized[b]) return as_tuple(quantized[a]) < as_tuple(quantized[b]);
-    const int attributes = compare_attributes(corners.attributes_of(a, stride), corners.attributes_of(b, stride), stride);
+    const int attributes =
+        compare_attributes(corners.attributes_of(a, stride), corners.attributes_of(b, stride), stride);
     if (attributes != 0) return attributes < 0;
     const Vec3d& p = corners.positions[a];
     const Vec3d& q = corners.positions[b];
@@ -62,7 +67,7 @@ std::vector<std::uint32_t> canonical_vertex_order(const Corners& corners, const 
 
 /// Two ids of a vertex: of its exact position with its attributes, as in the source, and of that one's wedge.
 struct VertexIds {
-  std::vector<std::uint32_t> exact_of;        ///< per vertex; of those that no triangle uses, nothing
+  std::vector<std::uint32_t> exact_of;  ///< per vertex; of those that no triangle uses, nothing
   std::vector<std::uint32_t> wedge_of_exact;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Welding: vertices that are equal become one, triangles that are equal too, and both get the numbers of a canonical order,
-// so that renumbering the input changes nothing.
+// Welding: vertices that are equal become one, triangles that are equal too, and both get the numbers of a canonical
+// order, so that renumbering the input changes nothing.
 #pragma once
 
 #include <cstdint>

@@ -22,7 +22,6 @@ namespace {
 
 using boost::multiprecision::cpp_int;
 
-
 /// Each component of the cross product is a difference of two products of differences: four roundings of 2^-53 of what
 /// is added, at most, as long as nothing underflows. Twice that and more.
 constexpr double kFilter = 1e-15;

@@ -97,7 +97,8 @@ bool AttributeQuadrics<C>::agree(const WedgeClass& joined, const GroupLocks& loc
 }
 
 template <std::size_t C>
-double AttributeQuadrics<C>::add_classes(Quadric& total, std::span<const WedgeClass> classes, const Vec3d& given) const {
+double AttributeQuadrics<C>::add_classes(Quadric& total, std::span<const WedgeClass> classes,
+                                         const Vec3d& given) const {
   double fixed_error = 0.0;
   for (const WedgeClass& c : classes) {
     WedgeQuadric<C> joined = wedge_[c.members[0]];

@@ -38,8 +38,8 @@ Areas measure_areas(const SimplifyInput& input, const CollapseMesh& mesh, const 
 
 }  // namespace
 
-std::vector<double> attribute_scales(const SimplifyInput& input, const SimplifyOptions& options, const CollapseMesh& mesh,
-                                     const GroupPlaces& places) {
+std::vector<double> attribute_scales(const SimplifyInput& input, const SimplifyOptions& options,
+                                     const CollapseMesh& mesh, const GroupPlaces& places) {
   const AttributeLayout& layout = input.layout;
   std::vector<double> scales(layout.stride(), 0.0);
   if (scales.empty()) return scales;

@@ -6,8 +6,8 @@
 
 namespace meshlode::build {
 
-CollapseMesh::CollapseMesh(const std::vector<WedgeTriangle>& triangles, const std::vector<std::uint32_t>& wedge_position,
-                           std::size_t vertex_count)
+CollapseMesh::CollapseMesh(const std::vector<WedgeTriangle>& triangles,
+                           const std::vector<std::uint32_t>& wedge_position, std::size_t vertex_count)
     : vertex_(3 * triangles.size()),
       wedge_(3 * triangles.size()),
       next_(3 * triangles.size(), kEnd),
@@ -97,7 +97,8 @@ void CollapseMesh::drop_opposite_pairs(std::uint32_t vertex, std::vector<std::ui
   dropped.clear();
   for (std::size_t i = 0; i < spokes.size(); ++i) {
     if (!is_alive(spokes[i].triangle)) continue;
-    for (std::size_t j = i + 1; j < spokes.size() && spokes[j].low == spokes[i].low && spokes[j].high == spokes[i].high; ++j) {
+    for (std::size_t j = i + 1; j < spokes.size() && spokes[j].low == spokes[i].low && spokes[j].high == spokes[i].high;
+         ++j) {
       if (!is_alive(spokes[j].triangle) || spokes[j].is_turned == spokes[i].is_turned) continue;
       kill(spokes[i].triangle);
       kill(spokes[j].triangle);

@@ -7,8 +7,8 @@ namespace meshlode::build {
 
 namespace {
 
-/// Of every two outer edges that run along each other in opposite directions the first stands for the sheet between them,
-/// and both leave the star. Sorted, because a hub may have thousands.
+/// Of every two outer edges that run along each other in opposite directions the first stands for the sheet between
+/// them, and both leave the star. Sorted, because a hub may have thousands.
 void move_sheets_out_of_star(CollapseStar& star) {
   using OuterEdge = CollapseStar::OuterEdge;
   std::vector<OuterEdge>& outer = star.outer;

@@ -17,8 +17,8 @@ struct StarEnd {
   std::vector<std::uint32_t> neighbors;  ///< each once, ascending: gather_neighbors
 };
 
-/// The star of the edge (a, b), whose ends would become one vertex at `target`. Filled in steps, because a collapse that is
-/// refused early needs no more.
+/// The star of the edge (a, b), whose ends would become one vertex at `target`. Filled in steps, because a collapse
+/// that is refused early needs no more.
 struct CollapseStar {
   /// What a triangle around the joined vertex has beside it.
   struct OuterEdge {
@@ -26,9 +26,9 @@ struct CollapseStar {
     std::uint32_t corner;  ///< of the triangle as it is, at a or b
   };
   StarEnd a, b;
-  Vec3d target{0.0};               ///< in the group's frame
-  std::vector<OuterEdge> outer;    ///< of the triangles that will be around the joined vertex: gather_outer_edges
-  std::vector<OuterEdge> sheets;   ///< one for each pair of triangles that will lie on each other and be dropped
+  Vec3d target{0.0};              ///< in the group's frame
+  std::vector<OuterEdge> outer;   ///< of the triangles that will be around the joined vertex: gather_outer_edges
+  std::vector<OuterEdge> sheets;  ///< one for each pair of triangles that will lie on each other and be dropped
 };
 
 /// The corners at both ends, which are named here.
@@ -37,8 +37,8 @@ void gather_corners(CollapseMesh& mesh, std::uint32_t a, std::uint32_t b, Collap
 /// \pre the corners are gathered
 void gather_neighbors(const CollapseMesh& mesh, StarEnd& end);
 
-/// The triangles on the edge itself go and have no outer edge. Where sheets are dropped, pairs of triangles that would lie
-/// on each other in opposite orientation do not count: they will be gone. \pre the corners are gathered
+/// The triangles on the edge itself go and have no outer edge. Where sheets are dropped, pairs of triangles that would
+/// lie on each other in opposite orientation do not count: they will be gone. \pre the corners are gathered
 void gather_outer_edges(const CollapseMesh& mesh, bool drops_sheets, CollapseStar& star);
 
 }  // namespace meshlode::build

@@ -17,7 +17,8 @@ struct GroupLocks {
   /// `wedge_position` as in SimplifyInput.
   GroupLocks(std::vector<std::uint8_t> vertex_locks, std::vector<std::uint8_t> shared_wedges,
              const std::vector<std::uint32_t>& wedge_position)
-      : is_vertex_locked(std::move(vertex_locks)), is_wedge_locked(wedge_position.size(), 0),
+      : is_vertex_locked(std::move(vertex_locks)),
+        is_wedge_locked(wedge_position.size(), 0),
         is_wedge_shared(std::move(shared_wedges)) {
     for (std::size_t w = 0; w < wedge_position.size(); ++w) is_wedge_locked[w] = is_vertex_locked[wedge_position[w]];
   }

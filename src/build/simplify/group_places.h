@@ -10,8 +10,8 @@
 
 namespace meshlode::build {
 
-/// The frame has its origin in the middle of the group's box, and half the box's longest side is 1 in it (or one unit of
-/// the grid, where the group is smaller): quadrics of it lose no digits far from the origin of the grid. A vertex is
+/// The frame has its origin in the middle of the group's box, and half the box's longest side is 1 in it (or one unit
+/// of the grid, where the group is smaller): quadrics of it lose no digits far from the origin of the grid. A vertex is
 /// always on the grid, and its place in the frame is exactly that point.
 class GroupPlaces {
  public:

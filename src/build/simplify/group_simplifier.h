@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The simplifier's queue and passes, for at most Capacity attributes. Used by simplify.cpp alone. What a collapse costs,
-// what may not be collapsed and what is left behind are types and functions of their own, each in its file.
+// The simplifier's queue and passes, for at most Capacity attributes. Used by simplify.cpp alone. What a collapse
+// costs, what may not be collapsed and what is left behind are types and functions of their own, each in its file.
 //
 // Order of collapses: E / √W, E the area-weighted quadric error at the new place and W the summed area. It beats E
 // because E grows with the area behind a vertex, not only with how far the surface moves.
@@ -44,8 +44,8 @@ class GroupSimplifier {
 
  private:
   static constexpr int kMaxPasses = 8;
-  /// A collapse costs at least this share of what its largest displacement, of the old surface from the new or of the new
-  /// from the old, would cost as a mean distance.
+  /// A collapse costs at least this share of what its largest displacement, of the old surface from the new or of the
+  /// new from the old, would cost as a mean distance.
   static constexpr double kGuardShare = 0.7;
   /// What breaking the link condition costs, as a factor: small holes and handles close when everything else has become
   /// about ten times as far off.
@@ -163,7 +163,8 @@ void GroupSimplifier<C>::run_passes() {
         ++obstacles_[static_cast<std::size_t>(obstacle)];
       }
     }
-    if (!any) break;  // obstacles depend on neighbours too, so what was refused is tried again as long as something moved
+    if (!any)
+      break;  // obstacles depend on neighbours too, so what was refused is tried again as long as something moved
   }
 }
 
@@ -196,8 +197,8 @@ void GroupSimplifier<C>::push_candidate(std::uint32_t a, std::uint32_t b) {
   queue_.push({placement.cost, a, b, version_[a], version_[b]});
 }
 
-/// Where the joined vertex goes, what its attributes become there, and what both cost. \pre the star has its ends, and its
-/// corners where the wedge classes need them
+/// Where the joined vertex goes, what its attributes become there, and what both cost. \pre the star has its ends, and
+/// its corners where the wedge classes need them
 template <std::size_t C>
 typename GroupSimplifier<C>::Placement GroupSimplifier<C>::place(std::uint32_t a, std::uint32_t b) {
   const Vec3d& pa = places_[a];

@@ -13,17 +13,17 @@
 
 namespace meshlode::build {
 
-/// I6. An edge between two locked vertices may be one that another group's triangle leans on, so that its uses here stay
-/// what they are. A triangle (locked, moved, tip) goes with the collapse of its edge to `locked`: where its tip is locked
-/// too, the triangles across (moved, tip) must inherit the edge (locked, tip). On an open border there may be none: such an
-/// ear stays. And an open edge (moved, tip) that comes to lie on (locked, tip) may not close that one's border.
-/// Where neither end of the star is locked, all is kept.
+/// I6. An edge between two locked vertices may be one that another group's triangle leans on, so that its uses here
+/// stay what they are. A triangle (locked, moved, tip) goes with the collapse of its edge to `locked`: where its tip is
+/// locked too, the triangles across (moved, tip) must inherit the edge (locked, tip). On an open border there may be
+/// none: such an ear stays. And an open edge (moved, tip) that comes to lie on (locked, tip) may not close that one's
+/// border. Where neither end of the star is locked, all is kept.
 [[nodiscard]] bool keeps_shared_edges(const CollapseMesh& mesh, const GroupLocks& locks, const CollapseStar& star);
 
-/// I3 for attributes. A triangle (locked, moved, c) with c locked goes; the triangle across (moved, c) inherits the edge
-/// (locked, c), which may lie on the group's border. If another group shades that edge with the same wedges, the heir
-/// must bring them: (moved, c) may not be a crease. And no border edge gets a corner with attributes that nothing had
-/// there. `classes` are those of the star.
+/// I3 for attributes. A triangle (locked, moved, c) with c locked goes; the triangle across (moved, c) inherits the
+/// edge (locked, c), which may lie on the group's border. If another group shades that edge with the same wedges, the
+/// heir must bring them: (moved, c) may not be a crease. And no border edge gets a corner with attributes that nothing
+/// had there. `classes` are those of the star.
 [[nodiscard]] bool keeps_shared_corners(const CollapseMesh& mesh, const GroupLocks& locks, const WedgeClasses& classes,
                                         const CollapseStar& star);
 

@@ -12,9 +12,9 @@ namespace meshlode::build {
 
 /// One use of an edge by a triangle, in whose plane the edge is held.
 struct HeldEdge {
-  std::uint32_t a, b;      ///< vertices, a < b
+  std::uint32_t a, b;  ///< vertices, a < b
   std::uint32_t triangle;
-  double weight;           ///< of a wall that stands on it; 1 on a border
+  double weight;  ///< of a wall that stands on it; 1 on a border
   bool is_border;
 };
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How far a collapse leaves the old surface from the new and the new from the old, beyond what quadrics say.
 //
-// Thin closed features vanish almost free of plane error, and crevices and tunnels close so. What the source points behind
-// both vertices would be left at, and how far the new triangles are from the old, is the truth of it.
+// Thin closed features vanish almost free of plane error, and crevices and tunnels close so. What the source points
+// behind both vertices would be left at, and how far the new triangles are from the old, is the truth of it.
 #pragma once
 
 #include <cmath>
@@ -55,13 +55,13 @@ class LeftBehind {
   std::vector<std::uint32_t> vanishing_;           ///< vertices that lose their last triangle with it
   std::vector<std::pair<double, Vec3i>> weighed_;  ///< squared distance to the new star, and the witness
   std::vector<std::uint32_t> corners_;
-  std::uint64_t stamp_ = 0;                        ///< what is marked with it was marked in this search
+  std::uint64_t stamp_ = 0;  ///< what is marked with it was marked in this search
   std::vector<std::uint64_t> vertex_stamp_;
 };
 
-/// How far the new star is from the triangles that it replaces, squared, where that exceeds `least`; else `least`. By the
-/// middles of its triangles and of their edges at the target. \pre star.outer is gathered
-[[nodiscard]] double new_surface_distance2(const CollapseMesh& mesh, const GroupPlaces& places, const CollapseStar& star,
-                                           double least);
+/// How far the new star is from the triangles that it replaces, squared, where that exceeds `least`; else `least`. By
+/// the middles of its triangles and of their edges at the target. \pre star.outer is gathered
+[[nodiscard]] double new_surface_distance2(const CollapseMesh& mesh, const GroupPlaces& places,
+                                           const CollapseStar& star, double least);
 
 }  // namespace meshlode::build

@@ -18,8 +18,8 @@ namespace meshlode::build {
 /// Of those that still have a triangle.
 [[nodiscard]] std::size_t count_pieces(const CollapseMesh& mesh, std::size_t vertex_count);
 
-/// Scales the pieces without a locked vertex about their centres, to at most twice their size, until the group covers as
-/// much as the input did. Returns how far a vertex moved at most, in the frame.
+/// Scales the pieces without a locked vertex about their centres, to at most twice their size, until the group covers
+/// as much as the input did. Returns how far a vertex moved at most, in the frame.
 double grow_pieces(const SimplifyInput& input, const CollapseMesh& mesh, GroupPlaces& places);
 
 }  // namespace meshlode::build

@@ -11,7 +11,8 @@ namespace {
 Vec3d place_on_edge(const Quadric& total, const Vec3d& pa, const Vec3d& pb) {
   const Vec3d edge = pb - pa;
   const auto times = [&](const Vec3d& v) {
-    return Vec3d(total.a00 * v.x + total.a01 * v.y + total.a02 * v.z, total.a01 * v.x + total.a11 * v.y + total.a12 * v.z,
+    return Vec3d(total.a00 * v.x + total.a01 * v.y + total.a02 * v.z,
+                 total.a01 * v.x + total.a11 * v.y + total.a12 * v.z,
                  total.a02 * v.x + total.a12 * v.y + total.a22 * v.z);
   };
   const double slope = glm::dot(edge, times(pa) + Vec3d(total.b0, total.b1, total.b2));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Squared distance from a point to a triangle, by regions of its plane (Ericson 2005, 5.1.5). Triangles without area are
-// handled as the segments or points that they are.
+// Squared distance from a point to a triangle, by regions of its plane (Ericson 2005, 5.1.5). Triangles without area
+// are handled as the segments or points that they are.
 #pragma once
 
 #include "base/vec.h"

@@ -21,8 +21,15 @@ struct Quadric {
   double weight = 0;
 
   Quadric& operator+=(const Quadric& q) {
-    a00 += q.a00; a01 += q.a01; a02 += q.a02; a11 += q.a11; a12 += q.a12; a22 += q.a22;
-    b0 += q.b0; b1 += q.b1; b2 += q.b2;
+    a00 += q.a00;
+    a01 += q.a01;
+    a02 += q.a02;
+    a11 += q.a11;
+    a12 += q.a12;
+    a22 += q.a22;
+    b0 += q.b0;
+    b1 += q.b1;
+    b2 += q.b2;
     c += q.c;
     weight += q.weight;
     return *this;
@@ -30,24 +37,41 @@ struct Quadric {
 
   /// Adds w · (n·p + d)².
   void add_plane(const Vec3d& n, double d, double w) {
-    a00 += w * n.x * n.x; a01 += w * n.x * n.y; a02 += w * n.x * n.z;
-    a11 += w * n.y * n.y; a12 += w * n.y * n.z; a22 += w * n.z * n.z;
-    b0 += w * n.x * d; b1 += w * n.y * d; b2 += w * n.z * d;
+    a00 += w * n.x * n.x;
+    a01 += w * n.x * n.y;
+    a02 += w * n.x * n.z;
+    a11 += w * n.y * n.y;
+    a12 += w * n.y * n.z;
+    a22 += w * n.z * n.z;
+    b0 += w * n.x * d;
+    b1 += w * n.y * d;
+    b2 += w * n.z * d;
     c += w * d * d;
     weight += w;
   }
 
   /// Adds s · q, weight untouched.
   void add_scaled(const Quadric& q, double s) {
-    a00 += s * q.a00; a01 += s * q.a01; a02 += s * q.a02; a11 += s * q.a11; a12 += s * q.a12; a22 += s * q.a22;
-    b0 += s * q.b0; b1 += s * q.b1; b2 += s * q.b2;
+    a00 += s * q.a00;
+    a01 += s * q.a01;
+    a02 += s * q.a02;
+    a11 += s * q.a11;
+    a12 += s * q.a12;
+    a22 += s * q.a22;
+    b0 += s * q.b0;
+    b1 += s * q.b1;
+    b2 += s * q.b2;
     c += s * q.c;
   }
 
   /// Adds w · |p - q|².
   void add_point(const Vec3d& q, double w) {
-    a00 += w; a11 += w; a22 += w;
-    b0 -= w * q.x; b1 -= w * q.y; b2 -= w * q.z;
+    a00 += w;
+    a11 += w;
+    a22 += w;
+    b0 -= w * q.x;
+    b1 -= w * q.y;
+    b2 -= w * q.z;
     c += w * glm::dot(q, q);
   }
 
@@ -121,9 +145,15 @@ struct WedgeQuadric {
     for (std::size_t j = 0; j < attribute_count; ++j) {
       const Vec3d& g = gradient[j];
       const double d = offset[j];
-      q.a00 += inverse * g.x * g.x; q.a01 += inverse * g.x * g.y; q.a02 += inverse * g.x * g.z;
-      q.a11 += inverse * g.y * g.y; q.a12 += inverse * g.y * g.z; q.a22 += inverse * g.z * g.z;
-      q.b0 += inverse * g.x * d; q.b1 += inverse * g.y * d; q.b2 += inverse * g.z * d;
+      q.a00 += inverse * g.x * g.x;
+      q.a01 += inverse * g.x * g.y;
+      q.a02 += inverse * g.x * g.z;
+      q.a11 += inverse * g.y * g.y;
+      q.a12 += inverse * g.y * g.z;
+      q.a22 += inverse * g.z * g.z;
+      q.b0 += inverse * g.x * d;
+      q.b1 += inverse * g.y * d;
+      q.b2 += inverse * g.z * d;
       q.c += inverse * d * d;
     }
   }

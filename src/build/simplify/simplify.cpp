@@ -37,8 +37,8 @@ Attempt simplify_once(const SimplifyInput& input, const SimplifyOptions& options
 SimplifyResult simplify_group(const SimplifyInput& input, const SimplifyOptions& options) {
   Attempt attempt = simplify_once(input, options);
   if (attempt.keeps_border) return std::move(attempt.result);
-  // Where the link condition was broken, or vertices came to lie on each other, the border can be another one. Under the
-  // condition it seldom is; where its vertices do not move, never.
+  // Where the link condition was broken, or vertices came to lie on each other, the border can be another one. Under
+  // the condition it seldom is; where its vertices do not move, never.
   SimplifyOptions careful = options;
   careful.may_relax_topology = false;
   attempt = simplify_once(input, careful);

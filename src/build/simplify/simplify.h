@@ -2,9 +2,10 @@
 // Simplify: a group's triangles are reduced by edge collapse in order of quadric error, to a new vertex at the best
 // place. What the group shares with others is locked: position and attributes stay bit for bit.
 //
-// A collapse maps vertices to vertices. The oriented border of a set of triangles commutes with such maps, so whatever is
-// collapsed inside, a border whose vertices are locked is kept exactly (I6); degenerate triangles have no border and may
-// go. Link condition and flip tests are about quality, not about cracks, and can be relaxed where nothing else helps.
+// A collapse maps vertices to vertices. The oriented border of a set of triangles commutes with such maps, so whatever
+// is collapsed inside, a border whose vertices are locked is kept exactly (I6); degenerate triangles have no border and
+// may go. Link condition and flip tests are about quality, not about cracks, and can be relaxed where nothing else
+// helps.
 #pragma once
 
 #include <array>
@@ -13,8 +14,8 @@
 #include <vector>
 
 #include "build/lod_dag.h"
-#include "format/grid.h"
 #include "build/prepared.h"
+#include "format/grid.h"
 
 namespace meshlode::build {
 
@@ -34,8 +35,8 @@ struct SimplifyOptions {
   bool may_relax_flips = false;    ///< where the target is out of reach, go on without the flip test: a last resort
 };
 
-/// Source points that a vertex has come to stand for: those farthest from the surface around it. They are carried up the
-/// DAG, so that a collapse is judged by what it leaves behind of the source and not only of the level before.
+/// Source points that a vertex has come to stand for: those farthest from the surface around it. They are carried up
+/// the DAG, so that a collapse is judged by what it leaves behind of the source and not only of the level before.
 struct Witnesses {
   static constexpr std::size_t kCapacity = 3;
   std::array<Vec3i, kCapacity> points;  ///< grid units
@@ -47,28 +48,28 @@ struct SimplifyInput {
   format::PositionGrid grid;
   AttributeLayout layout;
   std::vector<Vec3i> positions;
-  std::vector<std::uint8_t> is_locked;          ///< per position: shared with another group
-  std::vector<Witnesses> witnesses;             ///< per position
+  std::vector<std::uint8_t> is_locked;  ///< per position: shared with another group
+  std::vector<Witnesses> witnesses;     ///< per position
   std::vector<std::uint32_t> wedge_position;
-  std::vector<std::uint8_t> is_wedge_shared;    ///< per wedge: another group has it too, so shading is smooth across
+  std::vector<std::uint8_t> is_wedge_shared;  ///< per wedge: another group has it too, so shading is smooth across
   std::vector<float> wedge_attributes;
   std::vector<WedgeTriangle> triangles;
   std::vector<std::uint32_t> triangle_material;
 };
 
 struct SimplifyResult {
-  std::vector<Vec3i> positions;                 ///< distinct ids, but two may have the same coordinates
-  std::vector<Witnesses> witnesses;             ///< per position
+  std::vector<Vec3i> positions;      ///< distinct ids, but two may have the same coordinates
+  std::vector<Witnesses> witnesses;  ///< per position
   std::vector<std::uint32_t> wedge_position;
   std::vector<float> wedge_attributes;
   std::vector<WedgeTriangle> triangles;
   std::vector<std::uint32_t> triangle_material;
-  double quadric_error = 0.0;                   ///< object units: root of the largest mean squared distance of a collapse
+  double quadric_error = 0.0;  ///< object units: root of the largest mean squared distance of a collapse
   StuckReason reason = StuckReason::kNotStuck;  ///< what stopped it short of the target: the commonest obstacle
 };
 
-/// The result has the input's border (I6, docs/validation.md): edge by edge where both ends are locked, simplified where
-/// the surface is open. No triangle of it has two corners in one place.
+/// The result has the input's border (I6, docs/validation.md): edge by edge where both ends are locked, simplified
+/// where the surface is open. No triangle of it has two corners in one place.
 [[nodiscard]] SimplifyResult simplify_group(const SimplifyInput& input, const SimplifyOptions& options);
 
 }  // namespace meshlode::build

@@ -50,8 +50,8 @@ class SurfaceQuadrics {
     }
     return total;
   }
-  /// `into` stands for what `from` stood for too. Returns the root of the mean squared distance at its place, to planes or
-  /// to borders, whichever is larger, in the frame.
+  /// `into` stands for what `from` stood for too. Returns the root of the mean squared distance at its place, to planes
+  /// or to borders, whichever is larger, in the frame.
   double join(std::uint32_t into, std::uint32_t from, const Vec3d& place);
 
   /// Area of the faces that a vertex stands for.

@@ -85,9 +85,10 @@ void WedgeClasses::collect(const CollapseMesh& mesh, const GroupLocks& locks, co
 }
 
 bool WedgeClasses::joins_locked(std::uint32_t wedge) const {
-  return std::any_of(classes_.begin(), classes_.begin() + static_cast<std::ptrdiff_t>(count_), [&](const WedgeClass& c) {
-    return c.fixed != kNoId && std::find(c.members.begin(), c.members.end(), wedge) != c.members.end();
-  });
+  return std::any_of(
+      classes_.begin(), classes_.begin() + static_cast<std::ptrdiff_t>(count_), [&](const WedgeClass& c) {
+        return c.fixed != kNoId && std::find(c.members.begin(), c.members.end(), wedge) != c.members.end();
+      });
 }
 
 void relabel_wedges(CollapseMesh& mesh, const CollapseStar& star, const WedgeClass& joined) {

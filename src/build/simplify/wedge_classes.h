@@ -55,9 +55,9 @@ class WedgeClasses {
   std::vector<std::uint32_t> only_wedge_;  ///< per vertex, or kSeveral
   std::vector<WedgeClass> classes_;        ///< count_ of them; those behind keep their memory
   std::size_t count_ = 0;
-  std::uint64_t stamp_ = 0;                ///< what is marked with it was marked in this search
+  std::uint64_t stamp_ = 0;  ///< what is marked with it was marked in this search
   std::vector<std::uint64_t> wedge_stamp_;
-  std::vector<std::uint32_t> class_of_;    ///< per wedge, where its stamp is the search's
+  std::vector<std::uint32_t> class_of_;  ///< per wedge, where its stamp is the search's
 };
 
 /// In the star, all members of the class become its keeper.

@@ -12,7 +12,9 @@ namespace meshlode::build {
 
 namespace {
 
-std::uint32_t count32(std::size_t count) { return static_cast<std::uint32_t>(count); }
+std::uint32_t count32(std::size_t count) {
+  return static_cast<std::uint32_t>(count);
+}
 
 Error limit_error(std::string where, std::string detail) {
   return {ErrorCode::kBuildFailed, std::move(where), std::move(detail)};

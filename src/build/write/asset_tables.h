@@ -34,9 +34,9 @@ struct AssetTables {
   std::vector<format::GroupRecord> groups;
   std::vector<format::ClusterRecord> clusters;
   std::vector<format::NodeRecord> nodes;
-  std::vector<format::PageRecord> pages;         ///< offset, stored_bytes, codec and checksum not set yet
+  std::vector<format::PageRecord> pages;  ///< offset, stored_bytes, codec and checksum not set yet
   std::vector<std::uint32_t> page_dependencies;
-  std::vector<format::BlobRecord> blobs;         ///< offset not set yet
+  std::vector<format::BlobRecord> blobs;              ///< offset not set yet
   std::vector<std::vector<std::uint8_t>> page_bytes;  ///< decoded, PageHeader::first_cluster global
 };
 

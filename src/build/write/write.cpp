@@ -9,11 +9,11 @@
 
 #include "base/hash.h"
 #include "base/parallel.h"
-#include "format/section_columns.h"
 #include "build/pack/pack.h"
 #include "build/pack/pack_section.h"
-#include "build/write/hash_content.h"
 #include "build/write/asset_tables.h"
+#include "build/write/hash_content.h"
+#include "format/section_columns.h"
 
 namespace meshlode::build {
 
@@ -131,7 +131,8 @@ void pack_tables(SectionPlans& plans) {
   });
 }
 
-/// The sections one after the other behind the table of their entries; checksums are not set yet. Returns the file's size.
+/// The sections one after the other behind the table of their entries; checksums are not set yet. Returns the file's
+/// size.
 std::uint64_t place_sections(const SectionPlans& plans, SectionEntries& entries) {
   std::uint64_t end = sizeof(format::FileHeader) + sizeof(entries);
   for (std::size_t s = 0; s < plans.size(); ++s) {

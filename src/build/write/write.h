@@ -18,8 +18,8 @@ namespace meshlode::build {
 struct WriteInput {
   std::vector<EncodedMesh> meshes;
   std::vector<std::string> mesh_names;
-  const scene::Scene* scene = nullptr;      ///< materials, instances, blobs and document
-  std::string meta_json;             ///< kMeta, already serialised
+  const scene::Scene* scene = nullptr;  ///< materials, instances, blobs and document
+  std::string meta_json;                ///< kMeta, already serialised
   format::Codec codec = format::Codec::kNone;
 };
 

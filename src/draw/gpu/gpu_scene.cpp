@@ -5,9 +5,9 @@
 #include <cmath>
 #include <cstring>
 
-#include "run/decode/decode.h"
 #include "draw/gpu/shaders/frame.h"
 #include "draw/gpu/upload_table.h"
+#include "run/decode/decode.h"
 #include "run/select/far_instance.h"
 #include "run/select/select.h"
 #include "run/unpack/unpack.h"
@@ -266,9 +266,9 @@ void find_needs(const run::Asset& asset, GpuScene& scene) {
   scene.has_textures = has_textures(asset);
   scene.has_double_sided = std::any_of(asset.materials().begin(), asset.materials().end(),
                                        [](const format::MaterialRecord& m) { return m.double_sided != 0; });
-  scene.has_stored_normals =
-      std::any_of(asset.meshes().begin(), asset.meshes().end(),
-                  [](const format::MeshRecord& m) { return m.normal_mode == format::NormalMode::kStored; });
+  scene.has_stored_normals = std::any_of(asset.meshes().begin(), asset.meshes().end(), [](const format::MeshRecord& m) {
+    return m.normal_mode == format::NormalMode::kStored;
+  });
 }
 
 Status upload_tables(Device& device, const run::Asset& asset, std::span<const format::InstanceRecord> instances,
@@ -299,8 +299,9 @@ Status upload_tables(Device& device, const run::Asset& asset, std::span<const fo
 
 }  // namespace
 
-Result<GpuScene> upload_scene(Device& device, const run::Asset& asset, std::span<const format::InstanceRecord> instances,
-                              const run::AttributeBounds& bounds, ImageBudget* images) {
+Result<GpuScene> upload_scene(Device& device, const run::Asset& asset,
+                              std::span<const format::InstanceRecord> instances, const run::AttributeBounds& bounds,
+                              ImageBudget* images) {
   if (instances.empty()) instances = asset.instances();
   GpuScene out;
   out.bvh_depth = bvh_depth(asset);

@@ -11,17 +11,17 @@
 #include <meshlode/result.h>
 
 #include "draw/gpu/vulkan/vulkan.h"
-#include "run/read/asset.h"
-#include "run/select/attribute_bounds.h"
 #include "draw/textures/alpha_mask.h"
 #include "draw/textures/texture_set.h"
+#include "run/read/asset.h"
+#include "run/select/attribute_bounds.h"
 
 namespace meshlode::draw {
 
 struct GpuScene {
   Buffer meshes, instances, nodes, groups, clusters, materials, pages, roots;
-  Buffer surfaces, textures, texels;    ///< after upload_textures()
-  Buffer mesh_uvs, masks, mask_texels;  ///< read where materials are masked
+  Buffer surfaces, textures, texels;              ///< after upload_textures()
+  Buffer mesh_uvs, masks, mask_texels;            ///< read where materials are masked
   std::shared_ptr<const AlphaMasks> alpha_masks;  ///< of the asset, for who compares; never null
   std::uint32_t instance_count = 0;
   std::uint32_t cluster_count = 0;
@@ -29,7 +29,7 @@ struct GpuScene {
   std::uint32_t bvh_depth = 0;  ///< nodes on the longest way from a root
   std::uint32_t max_cluster_triangles = 0, max_cluster_vertices = 0;
   std::uint32_t max_root_triangles = 0, max_root_vertices = 0;  ///< of decoded roots
-  std::uint64_t group_instances = 0;  ///< groups of all instances together: no cut opens more
+  std::uint64_t group_instances = 0;                            ///< groups of all instances together: no cut opens more
   std::uint64_t cluster_instances = 0;
   std::uint64_t page_bytes = 0;
   bool has_double_sided = false;
@@ -39,9 +39,9 @@ struct GpuScene {
 };
 
 /// `instances` replaces the asset's own where it is not empty: a benchmark's scene. Their meshes are the asset's.
-/// `bounds`: a group that deviates by more never passes, as in select_flat(). `images`: what decoded masks may take; one of
-/// kDefaultMaxDecoded where it is null.
-/// Errors: kInvalid for a broken page; kUnsupported where the device has no room or a limit is passed.
+/// `bounds`: a group that deviates by more never passes, as in select_flat(). `images`: what decoded masks may take;
+/// one of kDefaultMaxDecoded where it is null. Errors: kInvalid for a broken page; kUnsupported where the device has no
+/// room or a limit is passed.
 [[nodiscard]] Result<GpuScene> upload_scene(Device& device, const run::Asset& asset,
                                             std::span<const format::InstanceRecord> instances = {},
                                             const run::AttributeBounds& bounds = {}, ImageBudget* images = nullptr);

@@ -18,7 +18,8 @@ Result<PassPlan> plan_passes(const GpuScene& scene, const DeviceInfo& device, st
   constexpr std::array kNames = {"double-sided", "alpha-mask", "occlusion", "hardware", "textures", "all"};
   for (const std::string& name : force) {
     if (std::find(kNames.begin(), kNames.end(), name) == kNames.end()) {
-      return Error{ErrorCode::kUsage, "--force", "no pass " + name + ": double-sided, alpha-mask, occlusion, hardware, textures or all"};
+      return Error{ErrorCode::kUsage, "--force",
+                   "no pass " + name + ": double-sided, alpha-mask, occlusion, hardware, textures or all"};
     }
   }
   const auto is_forced = [&](const char* name) {
@@ -33,7 +34,8 @@ Result<PassPlan> plan_passes(const GpuScene& scene, const DeviceInfo& device, st
     return wanted || forced;
   };
   decide("instances", true, false, std::to_string(scene.instance_count) + " instances to cull and set up");
-  decide("traverse", true, false, std::to_string(scene.bvh_depth) + " depths of the BVH, a dispatch for all but the last");
+  decide("traverse", true, false,
+         std::to_string(scene.bvh_depth) + " depths of the BVH, a dispatch for all but the last");
   decide("clusters", true, false, "members of open groups");
   decide("software", true, false, "every cluster that is not the hardware's");
   decide("far", scene.max_root_triangles > 0 && !is_forced("hardware"), false,

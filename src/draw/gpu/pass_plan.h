@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "draw/gpu/renderer.h"
 #include "draw/gpu/gpu_scene.h"
+#include "draw/gpu/renderer.h"
 
 namespace meshlode::draw {
 
@@ -25,7 +25,8 @@ struct PassPlan {
 /// "hardware", "textures", "all". `has_colors`: the picture is resolved to colours.
 /// Errors: kUsage for another name.
 [[nodiscard]] Result<PassPlan> plan_passes(const GpuScene& scene, const DeviceInfo& device, std::uint32_t width,
-                                           std::uint32_t height, const std::vector<std::string>& force = {}, bool has_colors = false);
+                                           std::uint32_t height, const std::vector<std::string>& force = {},
+                                           bool has_colors = false);
 
 [[nodiscard]] std::string describe_plan(const PassPlan& plan);
 

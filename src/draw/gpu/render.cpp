@@ -57,7 +57,8 @@ Status draw_frame(Renderer& renderer, const run::Asset& asset, const run::Camera
                "the picture is not complete: overflow of " + describe_overflow(frame->overflow)};
 }
 
-/// Views that tell of a frame's passes; the others are drawn again in order, so that equal depths resolve as on the CPU.
+/// Views that tell of a frame's passes; the others are drawn again in order, so that equal depths resolve as on the
+/// CPU.
 bool is_view_of_passes(std::uint32_t view) {
   return view == VIEW_OVERDRAW || view == VIEW_PATHS || view == VIEW_OCCLUDED;
 }

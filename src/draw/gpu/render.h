@@ -32,10 +32,10 @@ struct GpuPicture {
   std::string plan;                   ///< which passes ran and why, a line each: describe_plan()
 };
 
-/// Selects, draws and colours the cut of `camera`. `images`: what decoded masks and textures may take. Warnings and plan of
-/// `out` are those of as far as it came, also where it fails.
-/// Errors: kUnsupported without a device, where it has no room, or where the frame's lists overflow; kUsage for a pass or
-/// a device that there is not, and for a camera as draw_cut(); kInvalid for a broken page.
+/// Selects, draws and colours the cut of `camera`. `images`: what decoded masks and textures may take. Warnings and
+/// plan of `out` are those of as far as it came, also where it fails. Errors: kUnsupported without a device, where it
+/// has no room, or where the frame's lists overflow; kUsage for a pass or a device that there is not, and for a camera
+/// as draw_cut(); kInvalid for a broken page.
 [[nodiscard]] Status render_on_gpu(const run::Asset& asset, const run::Camera& camera, const GpuRenderOptions& options,
                                    ImageBudget& images, GpuPicture& out);
 

@@ -327,8 +327,8 @@ Status Renderer::record() {
   record_selection(list, 0);
   record_raster(list, 0);
   if (options_.occlusion) {
-    // The next frame's first pass is tested against this pyramid too: what the second pass drew is not in it, so it hides
-    // less than it could, never more. One more pyramid costs more than the few clusters that it would hide.
+    // The next frame's first pass is tested against this pyramid too: what the second pass drew is not in it, so it
+    // hides less than it could, never more. One more pyramid costs more than the few clusters that it would hide.
     record_pyramid(list);
     record_selection(list, 1);
     record_raster(list, 1);
@@ -352,7 +352,8 @@ Status Renderer::decode_roots() {
 Status Renderer::clear_lists() {
   auto clear = Commands::begin(device_);
   if (!clear) return clear.error();
-  if (options_.occlusion) clear->fill(pyramid_, 0, pyramid_.bytes(), 0);  // before the first frame nothing hides anything
+  if (options_.occlusion)
+    clear->fill(pyramid_, 0, pyramid_.bytes(), 0);  // before the first frame nothing hides anything
   // Places that nobody has filled.
   if (options_.persistent || options_.persistent_second) clear->fill(queue_, 0, queue_.bytes(), 0);
   clear->barrier();

@@ -29,16 +29,16 @@ struct RendererOptions {
   std::uint32_t width = 0, height = 0;
   bool frustum = true;
   bool occlusion = false;
-  bool double_sided = false;    ///< some material is; where none is, nobody looks
-  bool alpha_mask = false;      ///< some sample of a masked material may be missing: without, they are drawn opaque
-  bool flat_selection = false;  ///< every group of every instance instead of the BVH; not with occlusion
-  bool persistent = false;      ///< the BVH in one dispatch with a queue, instead of one dispatch a depth
+  bool double_sided = false;      ///< some material is; where none is, nobody looks
+  bool alpha_mask = false;        ///< some sample of a masked material may be missing: without, they are drawn opaque
+  bool flat_selection = false;    ///< every group of every instance instead of the BVH; not with occlusion
+  bool persistent = false;        ///< the BVH in one dispatch with a queue, instead of one dispatch a depth
   bool persistent_second = true;  ///< so in the second pass of occlusion culling, which has little to do at each depth
-  bool far_instances = true;    ///< where a mesh's root alone is open, its instance goes past the BVH
-  bool far_raster = true;           ///< and is drawn by a rasterizer of its own where it has a few pixels
+  bool far_instances = true;      ///< where a mesh's root alone is open, its instance goes past the BVH
+  bool far_raster = true;         ///< and is drawn by a rasterizer of its own where it has a few pixels
   std::uint32_t raster_group = 128;  ///< invocations of the software rasterizer's workgroup: 32, 64 or 128
   std::uint32_t far_lanes = 32;      ///< invocations a far root is drawn by: 16, 32, 64 or 128
-  bool overdraw = false;  ///< count how often each pixel is drawn, for that view
+  bool overdraw = false;             ///< count how often each pixel is drawn, for that view
   HardwarePath hardware = HardwarePath::kNone;
   float hardware_pixels = 256.0F;      ///< a cluster wider than this on the screen is the hardware's; 0: all are
   std::uint32_t max_items = 1u << 22;  ///< of each list, at most; lists are no longer than the scene can fill
@@ -79,9 +79,9 @@ class Renderer {
   [[nodiscard]] Result<VisibilityBuffer> read_pixels();
   /// The last picture as it is, not drawn again; items are indices into read_cut().
   [[nodiscard]] Result<VisibilityBuffer> read_pixels_of_cut();
-  /// The last picture in colours: materials, normals and colours at each pixel's own barycentrics, and the textures that
-  /// upload_textures() gave the scene. `view`
-  /// is a VIEW_… of shaders/frame.h; those of a frame's passes are lost by redraw_in_order().
+  /// The last picture in colours: materials, normals and colours at each pixel's own barycentrics, and the textures
+  /// that upload_textures() gave the scene. `view` is a VIEW_… of shaders/frame.h; those of a frame's passes are lost
+  /// by redraw_in_order().
   struct Resolved {
     Image image;
     double milliseconds = 0.0;
@@ -113,7 +113,7 @@ class Renderer {
   [[nodiscard]] Result<GpuCounters> read_counters();
   struct Item {
     run::ClusterInstance key;
-    std::uint32_t slot = 0;  ///< and its marks
+    std::uint32_t slot = 0;   ///< and its marks
     std::uint32_t place = 0;  ///< in the list, which is what pixels name
   };
   [[nodiscard]] Result<std::vector<Item>> read_items();
@@ -126,7 +126,8 @@ class Renderer {
   Buffer frame_block_, counters_block_, upload_;
   Buffer visible_, queue_, open_groups_, items_, retry_nodes_, retry_clusters_, retry_instances_, clipped_, pixels_,
       pyramid_, overdraw_, colors_;
-  Pipeline instances_, traverse_, persistent_, flat_, roots_, raster_far_, sort_, hardware_, clusters_, raster_, raster_clip_, pyramid_build_;
+  Pipeline instances_, traverse_, persistent_, flat_, roots_, raster_far_, sort_, hardware_, clusters_, raster_,
+      raster_clip_, pyramid_build_;
   std::vector<Commands> lists_;  ///< 0: the frame, 1: drawing in order
   bool has_last_ = false;
 };

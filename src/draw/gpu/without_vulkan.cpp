@@ -7,13 +7,19 @@ namespace meshlode::draw {
 
 namespace {
 
-Error no_vulkan() { return {ErrorCode::kUnsupported, "--gpu", "this program was built without Vulkan"}; }
+Error no_vulkan() {
+  return {ErrorCode::kUnsupported, "--gpu", "this program was built without Vulkan"};
+}
 
 }  // namespace
 
-Result<std::vector<DeviceInfo>> list_devices() { return no_vulkan(); }
+Result<std::vector<DeviceInfo>> list_devices() {
+  return no_vulkan();
+}
 
-Result<Device> Device::open(const DeviceOptions&) { return no_vulkan(); }
+Result<Device> Device::open(const DeviceOptions&) {
+  return no_vulkan();
+}
 
 Status render_on_gpu(const run::Asset&, const run::Camera&, const GpuRenderOptions&, ImageBudget&, GpuPicture&) {
   return no_vulkan();

@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether a masked triangle is there at a pixel: its texel, found so that another machine finds the same (I9). Doubles with
+// Whether a masked triangle is there at a pixel: its texel, found so that another machine finds the same (I9). Doubles
+// with
 // + - * in a fixed order; every quotient is an integer that is defined by multiplications.
 //
-// The weights of a triangle's corners at a picture point p are those of sum(b · (x, y, w)) ∝ (p, 1), perspective-correct
-// and right across the near plane too. Corners are moved so that p is the origin: then b0 ∝ x1 y2 - x2 y1, and so on.
-// UVs are weighed as grid integers, and texel i is the one with i · S <= U < (i + 1) · S in rounded products, S the sum of
-// the weights: rounding is monotone, so there is exactly one.
+// The weights of a triangle's corners at a picture point p are those of sum(b · (x, y, w)) ∝ (p, 1),
+// perspective-correct and right across the near plane too. Corners are moved so that p is the origin: then b0 ∝ x1 y2 -
+// x2 y1, and so on. UVs are weighed as grid integers, and texel i is the one with i · S <= U < (i + 1) · S in rounded
+// products, S the sum of the weights: rounding is monotone, so there is exactly one.
 #pragma once
 
 #include <cstdint>
 #include <optional>
 
-#include "run/decode/decode.h"
 #include "draw/raster/masked_triangle.h"
 #include "draw/raster/projection.h"
 #include "draw/textures/alpha_mask.h"
+#include "run/decode/decode.h"
 
 namespace meshlode::draw {
 

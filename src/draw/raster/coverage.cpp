@@ -82,8 +82,7 @@ void draw_triangle(const ScreenSoup& soup, const ScreenTriangle& t, std::int32_t
 
 /// A clipped polygon: triangles (0, i, i + 1) with the sign of their areas. A pixel is covered iff the signed sum is
 /// positive; its depth is that of the first positive triangle that covers it.
-void draw_polygon(const ScreenSoup& soup, const ScreenPolygon& polygon, std::int32_t band,
-                  VisibilityBuffer& buffer) {
+void draw_polygon(const ScreenSoup& soup, const ScreenPolygon& polygon, std::int32_t band, VisibilityBuffer& buffer) {
   struct Part {
     ScreenTriangle triangle;
     Edge edges[3];

@@ -28,7 +28,8 @@ Result<CutPages> CutPages::load(const run::Asset& asset, std::span<const run::Cl
     is_needed[page_of(asset, cut[i].cluster)] = 1;
   }
   std::uint64_t bytes = 0;
-  for (std::size_t page = 0; page < is_needed.size(); ++page) bytes += is_needed[page] != 0 ? asset.pages()[page].bytes : 0;
+  for (std::size_t page = 0; page < is_needed.size(); ++page)
+    bytes += is_needed[page] != 0 ? asset.pages()[page].bytes : 0;
   if (const Status status = run::check_decoded_bytes(asset, bytes); !status) return status.error();
   CutPages out;
   out.pages_.resize(asset.pages().size());

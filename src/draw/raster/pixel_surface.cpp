@@ -74,7 +74,8 @@ bool PixelTextures::bends(std::uint32_t material) const {
 }
 
 Vec3d PixelTextures::bend(std::uint32_t material, const std::array<std::uint8_t, 3>& triangle,
-                          const PixelWeights& weights, const Vec3d& normal, const Vec3d& right, const Vec3d& down) const {
+                          const PixelWeights& weights, const Vec3d& normal, const Vec3d& right,
+                          const Vec3d& down) const {
   const SampledTexture& texture = *textures_.materials[material].normal;
   const auto where = footprint(texture.use, triangle, weights);
   if (!where) return normal;

@@ -4,16 +4,16 @@
 // neighbour and are right at edges.
 #pragma once
 
-#include "run/decode/decode.h"
 #include "draw/raster/legend.h"
 #include "draw/raster/screen.h"
 #include "draw/textures/texture_set.h"
+#include "run/decode/decode.h"
 
 namespace meshlode::draw {
 
 struct PixelWeights {
-  Vec3d at{1.0 / 3.0};           ///< of the corners, perspective-correct, not negative, of sum 1
-  Vec3d right{0.0}, down{0.0};   ///< their change to the next pixel
+  Vec3d at{1.0 / 3.0};          ///< of the corners, perspective-correct, not negative, of sum 1
+  Vec3d right{0.0}, down{0.0};  ///< their change to the next pixel
 };
 
 /// At a picture point, pixels from the picture's middle: the solution of sum(b · (x, y, w)) ∝ (px, py, 1). Works for
@@ -34,7 +34,8 @@ class PixelTextures {
   /// `normal`: the interpolated one, unit, world; `right`, `down`: how the surface's point changes to the next pixels,
   /// world, any common scale. The tangents are those of the UVs' own derivatives, made perpendicular to the normal.
   [[nodiscard]] Vec3d bend(std::uint32_t material, const std::array<std::uint8_t, 3>& triangle,
-                           const PixelWeights& weights, const Vec3d& normal, const Vec3d& right, const Vec3d& down) const;
+                           const PixelWeights& weights, const Vec3d& normal, const Vec3d& right,
+                           const Vec3d& down) const;
   [[nodiscard]] bool bends(std::uint32_t material) const;
 
  private:

@@ -18,10 +18,10 @@
 
 #include <meshlode/result.h>
 
-#include "run/read/asset.h"
-#include "run/select/select.h"
 #include "draw/textures/alpha_mask.h"
 #include "draw/textures/texture_set.h"
+#include "run/read/asset.h"
+#include "run/select/select.h"
 
 namespace meshlode::draw {
 
@@ -61,14 +61,15 @@ struct VisibilityBuffer {
 [[nodiscard]] Result<VisibilityBuffer> draw_cut(const run::Asset& asset, std::span<const run::ClusterInstance> cut,
                                                 const run::Camera& camera, const AlphaMasks& masks = {});
 
-/// Colours what draw_cut() found. `textures`: load_textures() of the asset, for kShaded; without, base colours are factors
-/// and vertex colours alone. \pre `visibility` was drawn from the same asset, cut and camera
-[[nodiscard]] Result<Image> shade_view(const run::Asset& asset, std::span<const run::ClusterInstance> cut, const run::Camera& camera,
-                                       const VisibilityBuffer& visibility, View view, const TextureSet& textures = {});
+/// Colours what draw_cut() found. `textures`: load_textures() of the asset, for kShaded; without, base colours are
+/// factors and vertex colours alone. \pre `visibility` was drawn from the same asset, cut and camera
+[[nodiscard]] Result<Image> shade_view(const run::Asset& asset, std::span<const run::ClusterInstance> cut,
+                                       const run::Camera& camera, const VisibilityBuffer& visibility, View view,
+                                       const TextureSet& textures = {});
 
 /// draw_cut() and shade_view().
-[[nodiscard]] Result<Image> render_cut(const run::Asset& asset, std::span<const run::ClusterInstance> cut, const run::Camera& camera,
-                                       View view, const AlphaMasks& masks = {});
+[[nodiscard]] Result<Image> render_cut(const run::Asset& asset, std::span<const run::ClusterInstance> cut,
+                                       const run::Camera& camera, View view, const AlphaMasks& masks = {});
 
 /// The same bytes for the same image everywhere; without alpha where all of it is opaque.
 [[nodiscard]] std::vector<std::uint8_t> encode_png(const Image& image);

@@ -14,8 +14,6 @@ namespace meshlode::draw {
 
 namespace {
 
-
-
 constexpr Rgb kBackground{0.80, 0.83, 0.87};
 
 /// The pixels of item i are pixels[first[i] … first[i + 1]).
@@ -123,9 +121,9 @@ void shade_item(const ShadeContext& context, const CutPages& pages, const run::C
       case View::kShaded: {
         const std::uint32_t material = cluster.triangle_material[triangle_index];
         for (std::size_t k = 0; k < 3; ++k) color[k] = static_cast<double>(asset.materials()[material].base_color[k]);
-        const PixelWeights weights =
-            find_pixel_weights(to_clip.project(cluster.position(triangle[0])), to_clip.project(cluster.position(triangle[1])),
-                               to_clip.project(cluster.position(triangle[2])), px, py);
+        const PixelWeights weights = find_pixel_weights(to_clip.project(cluster.position(triangle[0])),
+                                                        to_clip.project(cluster.position(triangle[1])),
+                                                        to_clip.project(cluster.position(triangle[2])), px, py);
         Vec3d sum(0.0), tint(0.0);
         for (int k = 0; k < 3; ++k) {
           const std::uint8_t vertex = triangle[static_cast<std::size_t>(k)];

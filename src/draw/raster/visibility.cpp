@@ -13,12 +13,10 @@ namespace meshlode::draw {
 
 namespace {
 
-
-
 constexpr std::size_t kBatchClusters = 2048;  ///< about 12 MB of screen triangles
 
-void project_cluster(const run::Asset& asset, const AlphaMasks& masks, const Projection& projection, const CutPages& pages,
-                     const run::ClusterInstance& entry, std::uint32_t item, ScreenSoup& out) {
+void project_cluster(const run::Asset& asset, const AlphaMasks& masks, const Projection& projection,
+                     const CutPages& pages, const run::ClusterInstance& entry, std::uint32_t item, ScreenSoup& out) {
   const format::InstanceRecord& instance = asset.instances()[entry.instance.value];
   if ((instance.flags & format::kInstanceSingular) != 0) return;
   run::DecodedCluster cluster;
@@ -79,8 +77,8 @@ VisibilityBuffer make_visibility_buffer(std::uint32_t width, std::uint32_t heigh
   return buffer;
 }
 
-Result<VisibilityBuffer> draw_cut(const run::Asset& asset, std::span<const run::ClusterInstance> cut, const run::Camera& camera,
-                                  const AlphaMasks& masks) {
+Result<VisibilityBuffer> draw_cut(const run::Asset& asset, std::span<const run::ClusterInstance> cut,
+                                  const run::Camera& camera, const AlphaMasks& masks) {
   Result<Projection> projection = make_projection(camera);
   if (!projection) return projection.error();
   projection->far_distance = scene_depth(asset, *projection);
@@ -93,7 +91,8 @@ Result<VisibilityBuffer> draw_cut(const run::Asset& asset, std::span<const run::
     const std::size_t count = std::min(kBatchClusters, cut.size() - first);
     parts.assign(count, {});
     parallel_for_each_index(count, 8, [&](std::size_t i) {
-      project_cluster(asset, masks, *projection, *pages, cut[first + i], static_cast<std::uint32_t>(first + i), parts[i]);
+      project_cluster(asset, masks, *projection, *pages, cut[first + i], static_cast<std::uint32_t>(first + i),
+                      parts[i]);
     });
     ScreenSoup soup;
     for (const ScreenSoup& part : parts) append(soup, part);
@@ -102,8 +101,8 @@ Result<VisibilityBuffer> draw_cut(const run::Asset& asset, std::span<const run::
   return buffer;
 }
 
-Result<Image> render_cut(const run::Asset& asset, std::span<const run::ClusterInstance> cut, const run::Camera& camera, View view,
-                         const AlphaMasks& masks) {
+Result<Image> render_cut(const run::Asset& asset, std::span<const run::ClusterInstance> cut, const run::Camera& camera,
+                         View view, const AlphaMasks& masks) {
   const Result<VisibilityBuffer> visibility = draw_cut(asset, cut, camera, masks);
   if (!visibility) return visibility.error();
   return shade_view(asset, cut, camera, *visibility, view);

@@ -35,7 +35,8 @@ AlphaImage load_image(const run::Asset& asset, std::uint32_t blob, const std::st
     out.width = image->width;
     out.height = image->height;
     out.texels.resize(image->texels.size());
-    for (std::size_t i = 0; i < out.texels.size(); ++i) out.texels[i] = static_cast<std::uint8_t>(image->texels[i] >> 24U);
+    for (std::size_t i = 0; i < out.texels.size(); ++i)
+      out.texels[i] = static_cast<std::uint8_t>(image->texels[i] >> 24U);
     if (std::all_of(out.texels.begin(), out.texels.end(), [](std::uint8_t a) { return a == 255; })) out.texels = {};
   }
   budget.give_back(passing + (out.texels.empty() ? texel_count : 0));

@@ -30,9 +30,9 @@ struct AlphaImage {
 /// One masked material.
 struct AlphaMask {
   std::uint32_t threshold = 0;
-  std::uint32_t image = format::kNone;  ///< of AlphaMasks::images; kNone: every texel is opaque
-  std::uint32_t uv_set = 0;             ///< TEXCOORD_n
-  std::array<Wrap, 2> wrap{};           ///< of u, of v
+  std::uint32_t image = format::kNone;     ///< of AlphaMasks::images; kNone: every texel is opaque
+  std::uint32_t uv_set = 0;                ///< TEXCOORD_n
+  std::array<Wrap, 2> wrap{};              ///< of u, of v
   std::array<double, 3> row_u{}, row_v{};  ///< UVs to texels: TextureUse's rows times width or height
 };
 
@@ -51,8 +51,8 @@ struct AlphaMasks {
 [[nodiscard]] AlphaMasks load_alpha_masks(const run::Asset& asset, ImageBudget& budget);
 [[nodiscard]] AlphaMasks load_alpha_masks(const run::Asset& asset);  ///< with a budget of kDefaultMaxDecoded
 
-/// The least product a · c, 0 … 65025, with product / 65025 · factor >= cutoff in floats; kMaskThresholdNever where there is
-/// none.
+/// The least product a · c, 0 … 65025, with product / 65025 · factor >= cutoff in floats; kMaskThresholdNever where
+/// there is none.
 [[nodiscard]] std::uint32_t mask_threshold(float factor, float cutoff);
 
 }  // namespace meshlode::draw

@@ -36,7 +36,9 @@ Result<ImageHeader> read_any(std::span<const std::uint8_t> bytes, std::vector<st
 
 }  // namespace
 
-Result<ImageHeader> read_image_header(std::span<const std::uint8_t> bytes) { return read_any(bytes, nullptr); }
+Result<ImageHeader> read_image_header(std::span<const std::uint8_t> bytes) {
+  return read_any(bytes, nullptr);
+}
 
 Result<DecodedImage> decode_image(std::span<const std::uint8_t> bytes, std::uint64_t capacity) {
   DecodedImage out;

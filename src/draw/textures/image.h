@@ -27,7 +27,8 @@ struct DecodedImage {
 /// What the first bytes of a file say.
 struct ImageHeader {
   std::uint32_t width = 0, height = 0;
-  /// What the library keeps beside the texels while it decodes: coefficients of a JPEG of several scans. An upper bound.
+  /// What the library keeps beside the texels while it decodes: coefficients of a JPEG of several scans. An upper
+  /// bound.
   std::uint64_t decoder_bytes = 0;
 };
 
@@ -37,9 +38,9 @@ struct ImageHeader {
 
 /// PNG of every kind (16-bit channels are scaled to 8) and JPEG of grey or colour, by their first bytes. Safe on any
 /// bytes: memory and time are bounded by what a file of this size can hold.
-/// Errors: kInvalid for a damaged file; kUnsupported for another format, a JPEG of four colours or with arithmetic coding,
-/// and more than kMaxTextureSide texels a side.
-/// `capacity`: texels that there is room for, where that is more, so that what is appended need not move them.
+/// Errors: kInvalid for a damaged file; kUnsupported for another format, a JPEG of four colours or with arithmetic
+/// coding, and more than kMaxTextureSide texels a side. `capacity`: texels that there is room for, where that is more,
+/// so that what is appended need not move them.
 [[nodiscard]] Result<DecodedImage> decode_image(std::span<const std::uint8_t> bytes, std::uint64_t capacity = 0);
 
 }  // namespace meshlode::draw

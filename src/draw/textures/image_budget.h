@@ -27,8 +27,8 @@ class ImageBudget {
   /// \pre that much was taken
   void give_back(std::uint64_t bytes) { taken_ -= bytes; }
 
-  /// Why an image is not decoded: "texture.png: 16384 x 16384 texels take 1.4GiB decoded, 512MiB of --max-decoded 512MiB
-  /// are left".
+  /// Why an image is not decoded: "texture.png: 16384 x 16384 texels take 1.4GiB decoded, 512MiB of --max-decoded
+  /// 512MiB are left".
   [[nodiscard]] std::string refusal(std::string_view image, const ImageHeader& header, std::uint64_t bytes) const;
 
  private:

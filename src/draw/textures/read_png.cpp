@@ -61,8 +61,8 @@ bool read_header(Reader& reader) {
 /// \pre `rows` has a pointer to 4 · width bytes for each row
 bool read_rows(Reader& reader, png_bytepp rows) {
   if (setjmp(png_jmpbuf(reader.png)) != 0) return false;
-  png_set_expand(reader.png);        // palettes, less than 8 bits, transparent colours
-  png_set_scale_16(reader.png);      // the nearest of 8 bits
+  png_set_expand(reader.png);    // palettes, less than 8 bits, transparent colours
+  png_set_scale_16(reader.png);  // the nearest of 8 bits
   png_set_gray_to_rgb(reader.png);
   png_set_add_alpha(reader.png, 0xFF, PNG_FILLER_AFTER);
   (void)png_set_interlace_handling(reader.png);
@@ -95,7 +95,8 @@ Result<ImageHeader> read_png(std::span<const std::uint8_t> bytes, std::vector<st
   if (texels == nullptr) return header;
   texels->resize(std::size_t{header.width} * header.height);
   std::vector<png_bytep> rows(header.height);
-  for (std::size_t y = 0; y < rows.size(); ++y) rows[y] = reinterpret_cast<png_bytep>(texels->data() + y * header.width);
+  for (std::size_t y = 0; y < rows.size(); ++y)
+    rows[y] = reinterpret_cast<png_bytep>(texels->data() + y * header.width);
   if (!read_rows(reader, rows.data())) return damaged();
   return header;
 }

@@ -23,7 +23,8 @@ struct SrgbTables {
   static constexpr std::uint32_t kSteps = 65535;
 
   SrgbTables() : byte(kSteps + 1) {
-    for (std::size_t i = 0; i < linear.size(); ++i) linear[i] = static_cast<float>(linear_of_srgb(static_cast<double>(i) / 255.0));
+    for (std::size_t i = 0; i < linear.size(); ++i)
+      linear[i] = static_cast<float>(linear_of_srgb(static_cast<double>(i) / 255.0));
     for (std::size_t i = 0; i < byte.size(); ++i) {
       byte[i] = static_cast<std::uint8_t>(std::floor(srgb_of_linear(static_cast<double>(i) / kSteps) * 255.0 + 0.5));
     }
@@ -51,7 +52,8 @@ std::uint32_t packed_texel(const Texel& linear, bool is_srgb) {
   for (std::size_t k = 0; k < 4; ++k) {
     const double c = std::clamp(static_cast<double>(linear[k]), 0.0, 1.0);
     const auto step = static_cast<std::size_t>(c * SrgbTables::kSteps + 0.5);
-    const std::uint32_t byte = is_srgb && k < 3 ? srgb_tables().byte[step] : static_cast<std::uint32_t>(c * 255.0 + 0.5);
+    const std::uint32_t byte =
+        is_srgb && k < 3 ? srgb_tables().byte[step] : static_cast<std::uint32_t>(c * 255.0 + 0.5);
     out |= byte << 8 * k;
   }
   return out;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An image with its mip levels, sampled with a trilinear filter. Levels are averaged and texels are mixed in linear light
-// where the image is sRGB. A GPU that is given the same levels samples the same up to its rounding.
+// An image with its mip levels, sampled with a trilinear filter. Levels are averaged and texels are mixed in linear
+// light where the image is sRGB. A GPU that is given the same levels samples the same up to its rounding.
 #pragma once
 
 #include <algorithm>
@@ -16,8 +16,8 @@ namespace meshlode::draw {
 struct TextureImage {
   std::uint32_t width = 0, height = 0;
   bool is_srgb = false;  ///< red, green and blue; alpha never is
-  /// Level l is max(1, width >> l) × max(1, height >> l) texels from texels[first[l]] on, top row first; the last is one
-  /// texel. A texel is red | green << 8 | blue << 16 | alpha << 24.
+  /// Level l is max(1, width >> l) × max(1, height >> l) texels from texels[first[l]] on, top row first; the last is
+  /// one texel. A texel is red | green << 8 | blue << 16 | alpha << 24.
   std::vector<std::size_t> first;
   std::vector<std::uint32_t> texels;
 

@@ -85,7 +85,8 @@ TextureSet load_textures(const run::Asset& asset, ImageBudget& budget) {
     out.materials.push_back(m);
   }
   std::uint64_t texture_bytes = 0;
-  for (Wanted& w : wanted) reserve(asset, budget, texture_bytes, w);  // in order: the same images for any number of threads
+  for (Wanted& w : wanted)
+    reserve(asset, budget, texture_bytes, w);  // in order: the same images for any number of threads
   parallel_for_each_index(wanted.size(), 1, [&](std::size_t i) { load(asset, wanted[i]); });
 
   std::vector<std::uint32_t> image_of(wanted.size(), format::kNone);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The textures that colours call for: base colours and normals. Metallic, roughness, occlusion and emission are not drawn.
+// The textures that colours call for: base colours and normals. Metallic, roughness, occlusion and emission are not
+// drawn.
 #pragma once
 
 #include <optional>
@@ -30,8 +31,8 @@ struct TextureSet {
   [[nodiscard]] bool is_empty() const { return images.empty(); }
 };
 
-/// Decodes each image once, in the order in which materials name them: one that the budget has no room for, its mip levels
-/// included, counts as not there. So do images beyond kMaxTextureBytes of texels, whatever the budget.
+/// Decodes each image once, in the order in which materials name them: one that the budget has no room for, its mip
+/// levels included, counts as not there. So do images beyond kMaxTextureBytes of texels, whatever the budget.
 constexpr std::uint64_t kMaxTextureBytes = std::uint64_t{8} << 30;
 [[nodiscard]] TextureSet load_textures(const run::Asset& asset, ImageBudget& budget);
 [[nodiscard]] TextureSet load_textures(const run::Asset& asset);  ///< with a budget of kDefaultMaxDecoded

@@ -51,8 +51,8 @@ Wrap wrap_of(std::uint64_t gl_name) {
   }
 }
 
-/// Offset · rotation · scale, the rotation as in the extension's example: a quarter turn and the offset (0, 1) bring u to
-/// where -v was, so that a scale of a half shows the lower left quarter.
+/// Offset · rotation · scale, the rotation as in the extension's example: a quarter turn and the offset (0, 1) bring u
+/// to where -v was, so that a scale of a half shows the lower left quarter.
 void apply_transform(const Json& transform, TextureUse& use) {
   const auto offset = pair_in(&transform, "offset", {0.0, 0.0}), scale = pair_in(&transform, "scale", {1.0, 1.0});
   const double rotation = number_in(&transform, "rotation", 0.0);

@@ -5,11 +5,11 @@
 #include <array>
 #include <cstring>
 
-#include "run/decode/decode.h"
 #include "draw/gpu/gpu_camera.h"
 #include "draw/gpu/shaders.h"
 #include "draw/gpu/shaders/frame.h"
 #include "draw/raster/raster.h"
+#include "run/decode/decode.h"
 
 namespace meshlode::judge {
 
@@ -110,8 +110,8 @@ Result<Comparison> compare_decode(draw::Device& device, const draw::GpuScene& sc
   return out;
 }
 
-Result<CutComparison> compare_frame(draw::Renderer& renderer, const run::Asset& asset, const run::Camera& camera, double pixel_error,
-                                    const run::AttributeBounds& bounds) {
+Result<CutComparison> compare_frame(draw::Renderer& renderer, const run::Asset& asset, const run::Camera& camera,
+                                    double pixel_error, const run::AttributeBounds& bounds) {
   CutComparison out;
   const auto depth = draw::depth_of_scene(asset, camera);
   if (!depth) return depth.error();
@@ -139,7 +139,8 @@ Result<CutComparison> compare_frame(draw::Renderer& renderer, const run::Asset& 
   const auto reference = draw::draw_cut(asset, expected, camera, *renderer.scene().alpha_masks);
   if (!reference) return reference.error();
   out.pixels.items = reference->pixel_count();
-  const auto key_at = [](const draw::VisibilityBuffer& buffer, std::span<const run::ClusterInstance> items, std::size_t i) {
+  const auto key_at = [](const draw::VisibilityBuffer& buffer, std::span<const run::ClusterInstance> items,
+                         std::size_t i) {
     return buffer.item[i] < items.size() ? items[buffer.item[i]] : run::ClusterInstance{};
   };
   for (std::size_t i = 0; i < reference->pixel_count(); ++i) {

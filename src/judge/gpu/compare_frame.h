@@ -9,8 +9,8 @@
 
 #include <meshlode/result.h>
 
-#include "draw/gpu/renderer.h"
 #include "draw/gpu/gpu_scene.h"
+#include "draw/gpu/renderer.h"
 #include "draw/gpu/vulkan/vulkan.h"
 #include "run/select/select.h"
 
@@ -24,7 +24,8 @@ struct Comparison {
 };
 
 /// Every integer of every cluster (I9).
-[[nodiscard]] Result<Comparison> compare_decode(draw::Device& device, const draw::GpuScene& scene, const run::Asset& asset);
+[[nodiscard]] Result<Comparison> compare_decode(draw::Device& device, const draw::GpuScene& scene,
+                                                const run::Asset& asset);
 
 struct CutComparison {
   Comparison cut;     ///< without culling: equal to the flat rule's (I8). With culling: a part of it
@@ -32,8 +33,10 @@ struct CutComparison {
   draw::FrameReport frame;
 };
 /// Draws with `renderer` and compares with select_flat() and draw_cut() of the same camera. With culling the picture
-/// must still be the same: what is culled would not have been seen. `bounds` are those that the scene was uploaded with.
-[[nodiscard]] Result<CutComparison> compare_frame(draw::Renderer& renderer, const run::Asset& asset, const run::Camera& camera,
-                                                  double pixel_error, const run::AttributeBounds& bounds = {});
+/// must still be the same: what is culled would not have been seen. `bounds` are those that the scene was uploaded
+/// with.
+[[nodiscard]] Result<CutComparison> compare_frame(draw::Renderer& renderer, const run::Asset& asset,
+                                                  const run::Camera& camera, double pixel_error,
+                                                  const run::AttributeBounds& bounds = {});
 
 }  // namespace meshlode::judge

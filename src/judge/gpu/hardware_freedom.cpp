@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The argument of docs/gpu.md in short. Hardware rasterizes a polygon whose corners are those of the exact one, each moved
-// a little: E in clip coordinates, e on the screen. Where the moved polygon covers the sample p, p is a convex combination
-// of moved corners; the same combination of the exact ones is a point q of the exact triangle, and |p - q| is at most the
-// same combination of the moves. So hardware's depth at p is the exact depth at some q of the triangle within reach of p,
-// up to the arithmetic of depth itself; and no edge can cross p that exactly passes farther than reach from it.
+// The argument of docs/gpu.md in short. Hardware rasterizes a polygon whose corners are those of the exact one, each
+// moved a little: E in clip coordinates, e on the screen. Where the moved polygon covers the sample p, p is a convex
+// combination of moved corners; the same combination of the exact ones is a point q of the exact triangle, and |p - q|
+// is at most the same combination of the moves. So hardware's depth at p is the exact depth at some q of the triangle
+// within reach of p, up to the arithmetic of depth itself; and no edge can cross p that exactly passes farther than
+// reach from it.
 #include "judge/gpu/hardware_freedom.h"
 
 #include <algorithm>
@@ -235,7 +236,8 @@ std::optional<TriangleFreedom::Sample> TriangleFreedom::at(std::int32_t pixel_x,
   for (std::size_t i = 0; i < count_; ++i) {
     const Corner &a = corners_[i], &b = corners_[(i + 1) % count_];
     const double dx = b.x - a.x, dy = b.y - a.y;
-    const double distance = sign * (dx * (py - a.y) - dy * (px - a.x)), width = out.reach * (std::abs(dx) + std::abs(dy));
+    const double distance = sign * (dx * (py - a.y) - dy * (px - a.x)),
+                 width = out.reach * (std::abs(dx) + std::abs(dy));
     is_inside = is_inside && distance > width;
     if (has_planes_ && distance < -width) return std::nullopt;
   }
@@ -277,17 +279,17 @@ std::optional<TriangleFreedom::Sample> TriangleFreedom::at(std::int32_t pixel_x,
   const double vague = weight_error_ * (max_z_ - min_z_);
   low = std::max(low - vague, std::min(low, min_z_));
   high = std::min(high + vague, std::max(high, max_z_));
-  // Barycentric coordinates may be those of the corners before they were rounded: the plane's own depth at p, which lies
-  // beyond the triangle where rounding alone has made it cover p.
+  // Barycentric coordinates may be those of the corners before they were rounded: the plane's own depth at p, which
+  // lies beyond the triangle where rounding alone has made it cover p.
   if (!is_inside && has_planes_) {
     const double z = z_.at(px, py), change = z_.change(interpolation_) + vague;
     low = std::min(low, z - change);
     high = std::max(high, z + change);
   }
   // What clip coordinates are off moves z / w too; then interpolation, relative to the largest depth that it sees.
-  const double inverse_w = std::min(max_inverse_w_, has_planes_ ? std::max(inverse_w_.at(px, py), 0.0) +
-                                                                      inverse_w_.change(out.reach)
-                                                                : max_inverse_w_);
+  const double inverse_w =
+      std::min(max_inverse_w_,
+               has_planes_ ? std::max(inverse_w_.at(px, py), 0.0) + inverse_w_.change(out.reach) : max_inverse_w_);
   const double error = kE * operations_ * inverse_w * (largest_z_ + std::max(high, 0.0) * largest_w_) +
                        kE * kInterpolationOperations * max_z_;
   // Shaders write at most 1 - 2^-24, cut down to a unit.

@@ -49,7 +49,8 @@ class TriangleFreedom {
   /// At a pixel's centre; nothing where it cannot cover it.
   [[nodiscard]] std::optional<Sample> at(std::int32_t pixel_x, std::int32_t pixel_y) const;
 
-  /// Edges of the clipped triangle that pass within `reach` of a pixel's centre: bit k, and bit 3 for one where it was cut.
+  /// Edges of the clipped triangle that pass within `reach` of a pixel's centre: bit k, and bit 3 for one where it was
+  /// cut.
   [[nodiscard]] std::uint32_t edges_near(std::int32_t pixel_x, std::int32_t pixel_y, double reach) const;
 
  private:
@@ -74,7 +75,7 @@ class TriangleFreedom {
   Plane z_, inverse_w_;
   double interpolation_ = 0.0;  ///< pixels: arithmetic of depth's plane
   double snap_ = 0.0;           ///< pixels: the subpixel grid, and interpolation
-  double clip_error_ = 0.0;  ///< pixels · w: over w it is what clip coordinates may be off
+  double clip_error_ = 0.0;     ///< pixels · w: over w it is what clip coordinates may be off
   double largest_w_ = 0.0, largest_z_ = 0.0, operations_ = 0.0;
   double max_inverse_w_ = 0.0, min_z_ = 1.0, max_z_ = 0.0;
   double extent_ = 0.0;        ///< pixels, the longer side of its bounds

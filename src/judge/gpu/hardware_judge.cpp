@@ -9,10 +9,10 @@
 
 #include "base/parallel.h"
 #include "draw/gpu/gpu_camera.h"
-#include "judge/gpu/hardware_freedom.h"
 #include "draw/raster/alpha_cutoff.h"
 #include "draw/raster/cut_pages.h"
 #include "draw/raster/projection.h"
+#include "judge/gpu/hardware_freedom.h"
 
 namespace meshlode::judge {
 
@@ -54,15 +54,15 @@ std::vector<Shown> find_shown(const run::Asset& asset, const run::ClusterInstanc
     const bool is_double_sided = asset.materials()[cluster.triangle_material[t]].double_sided != 0;
     const bool is_front = (freedom.area() < 0.0) != is_mirrored;
     if (!is_double_sided && !is_front && !freedom.is_facing_open()) continue;
-    out.push_back({freedom, corner, entry.instance.value, item, t,
-                   draw::find_mask(masks, mesh, cluster, t, to_clip)});
+    out.push_back({freedom, corner, entry.instance.value, item, t, draw::find_mask(masks, mesh, cluster, t, to_clip)});
   }
   return out;
 }
 
 class PictureJudge {
  public:
-  PictureJudge(std::span<const Shown> shown, const draw::VisibilityBuffer& drawn, const draw::VisibilityBuffer& reference)
+  PictureJudge(std::span<const Shown> shown, const draw::VisibilityBuffer& drawn,
+               const draw::VisibilityBuffer& reference)
       : shown_(shown), drawn_(drawn), reference_(reference) {}
 
   /// Rows of one band, with the triangles that touch it.
@@ -91,8 +91,7 @@ class PictureJudge {
 
  private:
   [[nodiscard]] bool passes_alpha_at(const Shown& shown, std::int32_t x, std::int32_t y) const {
-    return !shown.mask ||
-           draw::passes_alpha(*shown.mask, x + 0.5 - 0.5 * drawn_.width, y + 0.5 - 0.5 * drawn_.height);
+    return !shown.mask || draw::passes_alpha(*shown.mask, x + 0.5 - 0.5 * drawn_.width, y + 0.5 - 0.5 * drawn_.height);
   }
 
   void judge_pixel(std::int32_t x, std::int32_t y, std::span<const Candidate> candidates, Comparison& out) const {
@@ -102,9 +101,8 @@ class PictureJudge {
     out.items += reference_.item[at] != draw::VisibilityBuffer::kNothing ? 1 : 0;
     std::string why;
     if (has) {
-      const auto own = std::find_if(candidates.begin(), candidates.end(), [&](const Candidate& c) {
-        return is(c, drawn_.item[at], drawn_.triangle[at]);
-      });
+      const auto own = std::find_if(candidates.begin(), candidates.end(),
+                                    [&](const Candidate& c) { return is(c, drawn_.item[at], drawn_.triangle[at]); });
       if (own == candidates.end()) {
         why = "its triangle cannot cover it";
       } else if (depth < own->sample.low || depth > own->sample.high) {
@@ -112,7 +110,8 @@ class PictureJudge {
       }
     }
     for (const Candidate& c : candidates) {
-      if (why.empty() && c.sample.is_certain && c.sample.low > depth) why = "a nearer one covers it, " + range(c.sample);
+      if (why.empty() && c.sample.is_certain && c.sample.low > depth)
+        why = "a nearer one covers it, " + range(c.sample);
     }
     if (why.empty() && is_closed_before(x, y, depth, candidates)) why = "nearer ones that share edges cover it";
     if (why.empty()) return;
@@ -128,7 +127,8 @@ class PictureJudge {
     return shown_[c.shown].item == item && shown_[c.shown].triangle == triangle;
   }
   [[nodiscard]] static std::string range(const TriangleFreedom::Sample& s) {
-    return std::to_string(static_cast<std::int64_t>(s.low)) + " to " + std::to_string(static_cast<std::int64_t>(s.high));
+    return std::to_string(static_cast<std::int64_t>(s.low)) + " to " +
+           std::to_string(static_cast<std::int64_t>(s.high));
   }
 
   /// Whether triangles nearer than `depth` cover the pixel together: the one that the CPU shows there, and across each
@@ -180,8 +180,8 @@ class PictureJudge {
 }  // namespace
 
 Result<Comparison> judge_hardware_pixels(const run::Asset& asset, std::span<const run::ClusterInstance> cut,
-                                         const draw::VisibilityBuffer& drawn, const run::Camera& camera, const draw::AlphaMasks& masks,
-                                         std::uint32_t subpixel_bits) {
+                                         const draw::VisibilityBuffer& drawn, const run::Camera& camera,
+                                         const draw::AlphaMasks& masks, std::uint32_t subpixel_bits) {
   auto projection = draw::make_projection(camera);
   if (!projection) return projection.error();
   projection->far_distance = draw::scene_depth(asset, *projection);
@@ -209,9 +209,8 @@ Result<Comparison> judge_hardware_pixels(const run::Asset& asset, std::span<cons
   }
   std::vector<Comparison> found(band_count);
   const PictureJudge judge(shown, drawn, *reference);
-  parallel_for_each_index(band_count, 1, [&](std::size_t band) {
-    judge.judge(static_cast<std::int32_t>(band), bands[band], found[band]);
-  });
+  parallel_for_each_index(
+      band_count, 1, [&](std::size_t band) { judge.judge(static_cast<std::int32_t>(band), bands[band], found[band]); });
   Comparison out;
   for (const Comparison& part : found) {
     out.items += part.items;
@@ -221,8 +220,8 @@ Result<Comparison> judge_hardware_pixels(const run::Asset& asset, std::span<cons
   return out;
 }
 
-Result<Comparison> compare_hardware(draw::Renderer& renderer, const run::Asset& asset, const run::Camera& camera, double pixel_error,
-                                    std::uint32_t subpixel_bits) {
+Result<Comparison> compare_hardware(draw::Renderer& renderer, const run::Asset& asset, const run::Camera& camera,
+                                    double pixel_error, std::uint32_t subpixel_bits) {
   const auto depth = draw::depth_of_scene(asset, camera);
   if (!depth) return depth.error();
   const auto frame = renderer.draw(camera, pixel_error, *depth);

@@ -8,11 +8,11 @@
 #include <utility>
 
 #include "base/parallel.h"
-#include "run/decode/decode.h"
 #include "draw/raster/coverage.h"
 #include "draw/raster/cut_pages.h"
 #include "draw/raster/legend.h"
 #include "draw/raster/projection.h"
+#include "run/decode/decode.h"
 
 namespace meshlode::judge {
 
@@ -88,10 +88,9 @@ std::vector<PixelPoint> unproject_source(const run::Asset& asset, std::span<cons
     const auto& t = surface.triangles[drawn.triangle[i]];
     const Vec3d corners[3] = {surface.positions[t[0]], surface.positions[t[1]], surface.positions[t[2]]};
     const auto x = static_cast<double>(i % drawn.width), y = static_cast<double>(i / drawn.width);
-    const Vec3d weights = corner_weights(project_source(projection, instance, corners[0]),
-                                         project_source(projection, instance, corners[1]),
-                                         project_source(projection, instance, corners[2]),
-                                         x + 0.5 - 0.5 * drawn.width, y + 0.5 - 0.5 * drawn.height);
+    const Vec3d weights = corner_weights(
+        project_source(projection, instance, corners[0]), project_source(projection, instance, corners[1]),
+        project_source(projection, instance, corners[2]), x + 0.5 - 0.5 * drawn.width, y + 0.5 - 0.5 * drawn.height);
     out[i].instance = drawn.item[i];
     out[i].point = corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2];
   });
@@ -99,8 +98,7 @@ std::vector<PixelPoint> unproject_source(const run::Asset& asset, std::span<cons
 }
 
 /// Pixels that a length in mesh units covers at a point of an instance: k · σ / max(distance, near).
-double pixels_per_unit_at(const draw::Projection& projection, const format::InstanceRecord& instance,
-                          const Vec3d& p) {
+double pixels_per_unit_at(const draw::Projection& projection, const format::InstanceRecord& instance, const Vec3d& p) {
   if (projection.is_orthographic) return projection.pixels_per_unit * instance.scale;
   Vec3d world(0.0);
   for (int row = 0; row < 3; ++row) {
@@ -138,7 +136,7 @@ std::vector<Displacement> displace(const run::Asset& asset, const draw::Projecti
 
 /// Whether a surface point may have moved through the near plane, as far as the promise lets it.
 bool may_cross_near(const run::Asset& asset, const draw::Projection& projection, const PixelPoint& point,
-                          double allowed_px) {
+                    double allowed_px) {
   const format::InstanceRecord& instance = asset.instances()[point.instance];
   const double world = allowed_px * instance.scale / pixels_per_unit_at(projection, instance, point.point);
   const double* m = instance.transform;
@@ -178,7 +176,7 @@ bool may_cross_near_around(const run::Asset& asset, const draw::Projection& proj
 
 /// The cut with its back faces too: what a ray meets at all.
 Result<draw::VisibilityBuffer> draw_both_sides(const run::Asset& asset, std::span<const run::ClusterInstance> cut,
-                                         const draw::Projection& projection) {
+                                               const draw::Projection& projection) {
   const auto pages = draw::CutPages::load(asset, cut);
   if (!pages) return pages.error();
   draw::VisibilityBuffer out = draw::make_visibility_buffer(projection.size.width, projection.size.height);
@@ -191,8 +189,8 @@ Result<draw::VisibilityBuffer> draw_both_sides(const run::Asset& asset, std::spa
     for (std::uint32_t t = 0; t < cluster.triangle_count; ++t) {
       const auto& [i, j, k] = cluster.triangles[t];
       draw::add_triangle({to_clip.project(cluster.position(i)), to_clip.project(cluster.position(j)),
-                            to_clip.project(cluster.position(k))},
-                           draw::Culling::kNone, {static_cast<std::uint32_t>(item), t}, projection.size, soup);
+                          to_clip.project(cluster.position(k))},
+                         draw::Culling::kNone, {static_cast<std::uint32_t>(item), t}, projection.size, soup);
     }
     draw::draw_soup(soup, out);
   }

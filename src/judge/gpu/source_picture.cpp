@@ -27,13 +27,13 @@ void project_chunk(const run::Asset& asset, const SourceSurface& source, const d
   for (std::size_t t = chunk.first; t < chunk.first + chunk.count; ++t) {
     const bool is_double_sided = !source.double_sided.empty() && source.double_sided[t] != 0;
     const draw::Culling culling = is_double_sided ? draw::Culling::kNone
-                                    : is_mirrored   ? draw::Culling::kCounterClockwise
-                                                    : draw::Culling::kClockwise;
+                                  : is_mirrored   ? draw::Culling::kCounterClockwise
+                                                  : draw::Culling::kClockwise;
     const auto& [a, b, c] = source.surface.triangles[t];
     draw::add_triangle({project_source(projection, instance, source.surface.positions[a]),
-                          project_source(projection, instance, source.surface.positions[b]),
-                          project_source(projection, instance, source.surface.positions[c])},
-                         culling, {chunk.instance, static_cast<std::uint32_t>(t)}, projection.size, out);
+                        project_source(projection, instance, source.surface.positions[b]),
+                        project_source(projection, instance, source.surface.positions[c])},
+                       culling, {chunk.instance, static_cast<std::uint32_t>(t)}, projection.size, out);
   }
 }
 
@@ -45,8 +45,8 @@ std::vector<SourceSurface> source_surfaces(const scene::Scene& scene) {
   for (const scene::SourceMesh& mesh : scene.meshes) {
     std::vector<std::uint8_t> sides;
     for (const scene::Primitive& primitive : mesh.primitives) {
-      const bool is_double_sided = primitive.material.value < scene.materials.size() &&
-                                   scene.materials[primitive.material.value].double_sided;
+      const bool is_double_sided =
+          primitive.material.value < scene.materials.size() && scene.materials[primitive.material.value].double_sided;
       sides.insert(sides.end(), primitive.indices.size() / 3, is_double_sided ? 1 : 0);
     }
     Surface surface = surface_of_source(mesh);
@@ -57,7 +57,7 @@ std::vector<SourceSurface> source_surfaces(const scene::Scene& scene) {
 }
 
 draw::ClipVertex project_source(const draw::Projection& projection, const format::InstanceRecord& instance,
-                                  const Vec3d& position) {
+                                const Vec3d& position) {
   const double* m = instance.transform;
   Vec3d p(0.0);
   for (int row = 0; row < 3; ++row) {
@@ -80,7 +80,7 @@ draw::ClipVertex project_source(const draw::Projection& projection, const format
 }
 
 draw::VisibilityBuffer draw_source(const run::Asset& asset, std::span<const SourceSurface> source,
-                             const draw::Projection& projection) {
+                                   const draw::Projection& projection) {
   std::vector<Chunk> chunks;
   for (std::size_t i = 0; i < asset.instances().size(); ++i) {
     const format::InstanceRecord& instance = asset.instances()[i];

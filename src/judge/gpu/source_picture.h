@@ -6,11 +6,11 @@
 #include <span>
 #include <vector>
 
-#include "scene/scene.h"
-#include "judge/metrics/triangle_tree.h"
 #include "draw/raster/projection.h"
 #include "draw/raster/raster.h"
+#include "judge/metrics/triangle_tree.h"
 #include "run/read/asset.h"
+#include "scene/scene.h"
 
 namespace meshlode::judge {
 
@@ -30,10 +30,10 @@ struct SourceSurface {
 /// The source drawn for each instance of the asset, as draw_cut() draws the asset: culled by side, opaque. Items are
 /// instances, triangles those of their mesh's surface. Meshes that `source` does not have are not drawn.
 [[nodiscard]] draw::VisibilityBuffer draw_source(const run::Asset& asset, std::span<const SourceSurface> source,
-                                           const draw::Projection& projection);
+                                                 const draw::Projection& projection);
 
 /// Corner `k` of a triangle of the source as it was drawn.
 [[nodiscard]] draw::ClipVertex project_source(const draw::Projection& projection,
-                                                const format::InstanceRecord& instance, const Vec3d& position);
+                                              const format::InstanceRecord& instance, const Vec3d& position);
 
 }  // namespace meshlode::judge

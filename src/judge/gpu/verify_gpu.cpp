@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "base/file.h"
-#include "judge/gpu/hardware_judge.h"
 #include "judge/gpu/compare_frame.h"
+#include "judge/gpu/hardware_judge.h"
 #include "judge/gpu/judge_picture.h"
 
 namespace meshlode::judge {
@@ -60,8 +60,8 @@ Status write_maps(const GpuVerifyOptions& options, const PictureReport& picture,
 }
 
 /// Every cluster by the hardware, from the adversarial cameras and those of the path.
-Status judge_hardware(draw::Device& device, const draw::GpuScene& scene, const run::Asset& asset, const GpuVerifyOptions& options,
-                      bool by_mesh_shaders, GpuCheck& check) {
+Status judge_hardware(draw::Device& device, const draw::GpuScene& scene, const run::Asset& asset,
+                      const GpuVerifyOptions& options, bool by_mesh_shaders, GpuCheck& check) {
   check.is_skipped = by_mesh_shaders && !device.info().has_mesh_shaders;
   if (check.is_skipped) {
     check.what += " (the device has none)";
@@ -190,7 +190,12 @@ class CameraJudge {
  public:
   CameraJudge(const run::Asset& asset, const GpuVerifyOptions& options, const PictureSource& source,
               const Promise& promise, const draw::AlphaMasks& masks, Checks& checks, GpuVerifyReport& report)
-      : asset_(asset), options_(options), source_(source), promise_(promise), masks_(masks), checks_(checks),
+      : asset_(asset),
+        options_(options),
+        source_(source),
+        promise_(promise),
+        masks_(masks),
+        checks_(checks),
         report_(report) {}
 
   Status judge_size(Renderers& renderers, PictureSize size) {
@@ -250,8 +255,8 @@ class CameraJudge {
       worst_ = {report_.cameras.size() - 1, *picture};
       return Ok{};
     }
-    const bool has_failed = (promise_.has_displacement && picture->exceeded > 0) ||
-                            (promise_.has_holes && picture->holes > 0);
+    const bool has_failed =
+        (promise_.has_displacement && picture->exceeded > 0) || (promise_.has_holes && picture->holes > 0);
     return has_failed ? write_maps(options_, *picture, report_.cameras.back()) : Status(Ok{});
   }
 

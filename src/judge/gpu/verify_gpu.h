@@ -10,8 +10,8 @@
 #include <meshlode/result.h>
 
 #include "base/output_files.h"
-#include "judge/gpu/cameras.h"
 #include "draw/gpu/vulkan/vulkan.h"
+#include "judge/gpu/cameras.h"
 #include "judge/gpu/judge_picture.h"
 #include "judge/metrics/metrics.h"
 #include "judge/validate/rules.h"
@@ -31,7 +31,8 @@ struct GpuVerifyOptions {
   /// Pictures of each camera; hardware raster draws the first. One has odd sides. \pre not empty
   std::vector<PictureSize> sizes = {{640, 360}, {321, 243}, {128, 512}};
   std::uint64_t max_decoded = run::kDefaultMaxDecoded;  ///< bytes of decoded images
-  /// Heat maps (PNG) of the camera with the largest share of its allowance at each size, and of each that failed; empty: none.
+  /// Heat maps (PNG) of the camera with the largest share of its allowance at each size, and of each that failed;
+  /// empty: none.
   std::string out_folder;
   OutputFiles* files = nullptr;  ///< what they are written by; null: by an object of their own
 };
@@ -39,7 +40,7 @@ struct GpuVerifyOptions {
 /// One picture against the source.
 struct JudgedCamera {
   NamedCamera camera;
-  PictureReport picture;  ///< without its maps
+  PictureReport picture;          ///< without its maps
   std::vector<std::string> maps;  ///< files in out_folder
 };
 

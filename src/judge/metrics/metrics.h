@@ -11,8 +11,8 @@
 #include "base/ids.h"
 #include "base/vec.h"
 #include "run/decode/decode.h"
-#include "scene/scene.h"
 #include "run/read/asset.h"
+#include "scene/scene.h"
 
 namespace meshlode::judge {
 
@@ -29,10 +29,10 @@ struct DeviationOptions {
 
 /// From the points of one surface to the nearest points of the other.
 struct OneWayDeviation {
-  double max = 0.0;         ///< over samples and vertices, in units of the positions
-  double rms = 0.0;         ///< over the samples alone: they are uniform in area
-  Vec3d worst{0.0};         ///< the point where `max` was found
-  std::uint64_t points = 0; ///< samples and vertices
+  double max = 0.0;          ///< over samples and vertices, in units of the positions
+  double rms = 0.0;          ///< over the samples alone: they are uniform in area
+  Vec3d worst{0.0};          ///< the point where `max` was found
+  std::uint64_t points = 0;  ///< samples and vertices
 };
 
 struct DeviationReport {
@@ -54,12 +54,13 @@ struct LargestDeviation {
 
 /// The maximum alone. A search ends at the first triangle that is nearer than the largest distance found so far: of
 /// surfaces that lie close to each other almost every one is over with a triangle or two, however many cross there.
-[[nodiscard]] LargestDeviation find_largest_deviation(const Surface& a, const Surface& b, const DeviationOptions& options);
+[[nodiscard]] LargestDeviation find_largest_deviation(const Surface& a, const Surface& b,
+                                                      const DeviationOptions& options);
 
 /// Clusters of one mesh as a surface in mesh space (origin included), exactly as decoded. `decoded` has every cluster
 /// of the asset, as decode_all gives them.
-[[nodiscard]] Surface surface_of_clusters(const run::Asset& asset, std::span<const run::DecodedCluster> decoded, MeshId mesh,
-                                          std::span<const ClusterId> clusters);
+[[nodiscard]] Surface surface_of_clusters(const run::Asset& asset, std::span<const run::DecodedCluster> decoded,
+                                          MeshId mesh, std::span<const ClusterId> clusters);
 
 /// The source: the triangles that have area, exactly (docs/format.md, "The source"), all primitives of the mesh
 /// together, as read.

@@ -62,8 +62,8 @@ ShadedSurface shaded_surface_of_source(const scene::SourceMesh& mesh) {
   return out;
 }
 
-ShadedSurface shaded_surface_of_clusters(const run::Asset& asset, std::span<const run::DecodedCluster> decoded, MeshId mesh,
-                                         std::span<const ClusterId> clusters) {
+ShadedSurface shaded_surface_of_clusters(const run::Asset& asset, std::span<const run::DecodedCluster> decoded,
+                                         MeshId mesh, std::span<const ClusterId> clusters) {
   const format::MeshRecord& record = asset.meshes()[mesh.value];
   ShadedSurface out;
   out.surface = surface_of_clusters(asset, decoded, mesh, clusters);

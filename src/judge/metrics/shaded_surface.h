@@ -8,8 +8,8 @@
 
 #include <meshlode/format.h>
 
-#include "scene/scene.h"
 #include "judge/metrics/metrics.h"
+#include "scene/scene.h"
 
 namespace meshlode::judge {
 
@@ -17,7 +17,7 @@ namespace meshlode::judge {
 /// is not finite is unknown there.
 struct ShadedSurface {
   Surface surface;
-  std::vector<Vec3f> normals;                      ///< of any length above 0
+  std::vector<Vec3f> normals;                             ///< of any length above 0
   std::array<std::vector<Vec2f>, scene::kMaxUvSets> uvs;  ///< by TEXCOORD_n
 };
 
@@ -27,7 +27,8 @@ struct ShadedSurface {
 
 /// Clusters of one mesh as decoded, in mesh space (origin included). No normals where the asset has none by option, a
 /// flat normal per triangle where it says flat. UV sets lie where the source had them.
-[[nodiscard]] ShadedSurface shaded_surface_of_clusters(const run::Asset& asset, std::span<const run::DecodedCluster> decoded,
-                                                       MeshId mesh, std::span<const ClusterId> clusters);
+[[nodiscard]] ShadedSurface shaded_surface_of_clusters(const run::Asset& asset,
+                                                       std::span<const run::DecodedCluster> decoded, MeshId mesh,
+                                                       std::span<const ClusterId> clusters);
 
 }  // namespace meshlode::judge

@@ -67,7 +67,8 @@ double wanted_pieces(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   const double area = 0.5 * std::sqrt(glm::dot(cross, cross));
   const double of_box = size.x * size.y + size.y * size.z + size.z * size.x;
   // No more than long in widths either way; nothing that is not a number asks for anything.
-  return of_box > kMaxWaste * area ? std::min(kMostPieces, std::ceil(of_box / std::max(kMaxWaste * area, of_box / 1e9))) : 1.0;
+  return of_box > kMaxWaste * area ? std::min(kMostPieces, std::ceil(of_box / std::max(kMaxWaste * area, of_box / 1e9)))
+                                   : 1.0;
 }
 
 /// The box of what lies between two planes across an axis, a little too large rather than too small.
@@ -119,7 +120,8 @@ std::vector<TriangleTree::Piece> TriangleTree::cut_to_pieces(const Surface& surf
     const Box box = box_of(corners[0], corners[1], corners[2]);
     const auto parts = static_cast<std::uint32_t>(std::min(wanted[i], most));
     if (parts <= 1) {
-      pieces.push_back({box.low, box.high, (corners[0] + corners[1] + corners[2]) / 3.0, static_cast<std::uint32_t>(i)});
+      pieces.push_back(
+          {box.low, box.high, (corners[0] + corners[1] + corners[2]) / 3.0, static_cast<std::uint32_t>(i)});
       continue;
     }
     const Vec3d size = box.high - box.low;
@@ -253,7 +255,8 @@ void TriangleTree::find_within(const Vec3d& point, double distance2, std::vector
   if (triangle_.size() == place_.size()) return;  // else a triangle was met in several pieces
   const auto begin = found.begin() + first_found;
   std::sort(begin, found.end(), [](const NearestPoint& a, const NearestPoint& b) { return a.triangle < b.triangle; });
-  const auto end = std::unique(begin, found.end(), [](const NearestPoint& a, const NearestPoint& b) { return a.triangle == b.triangle; });
+  const auto end = std::unique(begin, found.end(),
+                               [](const NearestPoint& a, const NearestPoint& b) { return a.triangle == b.triangle; });
   found.erase(end, found.end());
 }
 

@@ -18,9 +18,9 @@ struct NearestPoint {
 /// Squared distance from a point to a triangle, which may be a needle, a segment or a point.
 [[nodiscard]] double distance2_to_triangle(const Vec3d& p, const Vec3d& a, const Vec3d& b, const Vec3d& c);
 
-/// A bounding volume hierarchy with a fixed shape (median splits along the longest axis of the centres). A triangle that
-/// fills little of its box, a spoke of a wheel say, stands in several leaves, in each for a piece of its length: else every
-/// point near the hub would lie in the boxes of a quarter of the spokes.
+/// A bounding volume hierarchy with a fixed shape (median splits along the longest axis of the centres). A triangle
+/// that fills little of its box, a spoke of a wheel say, stands in several leaves, in each for a piece of its length:
+/// else every point near the hub would lie in the boxes of a quarter of the spokes.
 class TriangleTree {
  public:
   explicit TriangleTree(const Surface& surface);
@@ -30,8 +30,8 @@ class TriangleTree {
   [[nodiscard]] NearestPoint nearest(const Vec3d& point, std::uint32_t hint = 0xFFFFFFFFu) const {
     return nearest_unless_below(0.0, point, hint);
   }
-  /// The same for a point that is as far away as the squared distance `enough` or farther; of a nearer one some triangle
-  /// that is nearer than that.
+  /// The same for a point that is as far away as the squared distance `enough` or farther; of a nearer one some
+  /// triangle that is nearer than that.
   [[nodiscard]] NearestPoint nearest_unless_below(double enough, const Vec3d& point, std::uint32_t hint) const;
   /// Every triangle within a squared distance (inclusive), appended in no particular order that is always the same.
   void find_within(const Vec3d& point, double distance2, std::vector<NearestPoint>& found) const;

@@ -43,7 +43,8 @@ std::vector<std::uint32_t> groups_from_fine_to_coarse(const run::Asset& asset, c
 
 }  // namespace
 
-BorderProof prove_borders(const run::Asset& asset, const MeshSurface& surface, std::span<const run::DecodedCluster> clusters) {
+BorderProof prove_borders(const run::Asset& asset, const MeshSurface& surface,
+                          std::span<const run::DecodedCluster> clusters) {
   BorderProof proof;
   BorderSet& border = proof.border;
   border.plus.assign(surface.edges.size(), 0);

@@ -7,8 +7,8 @@
 
 #include "base/hash.h"
 #include "format/section_columns.h"
-#include "run/read/limits.h"
 #include "judge/validate/file_tables.h"
+#include "run/read/limits.h"
 
 namespace meshlode::judge {
 
@@ -63,8 +63,8 @@ bool read_header(std::span<const std::uint8_t> bytes, format::FileHeader& header
     return false;
   }
   std::memcpy(&header, bytes.data(), sizeof header);
-  bool sound =
-      log.expect(header.magic == format::kMagic, Rule::kL001, where, [] { return std::string("the magic is not LODE"); });
+  bool sound = log.expect(header.magic == format::kMagic, Rule::kL001, where,
+                          [] { return std::string("the magic is not LODE"); });
   if (!sound) return false;
   sound = log.expect(header.version == format::kVersion, Rule::kL001, where,
                      [&] { return "version " + std::to_string(header.version) + " is not 1"; });
@@ -163,29 +163,32 @@ bool check_section(const FileTables& file, const SectionEntry& entry, RuleLog& l
   log.expect(entry.version == 0, Rule::kL009, where, [&] { return "version " + std::to_string(entry.version); });
   const bool is_raw = known->id == SectionId::kPageData || known->id == SectionId::kBlobData;
   const bool is_packed = !is_raw && entry.codec == static_cast<std::uint32_t>(format::SectionCodec::kColumns);
-  bool sound = log.expect(is_packed || entry.codec == static_cast<std::uint32_t>(format::SectionCodec::kPlain), Rule::kL009, where,
-                          [&] { return "codec " + std::to_string(entry.codec); });
+  bool sound = log.expect(is_packed || entry.codec == static_cast<std::uint32_t>(format::SectionCodec::kPlain),
+                          Rule::kL009, where, [&] { return "codec " + std::to_string(entry.codec); });
   if (known->id != SectionId::kPageData) {
-    sound &= log.expect(is_packed ? entry.decoded_bytes > 0 && entry.decoded_bytes / format::kMaxSectionRatio <= entry.bytes
-                                  : entry.decoded_bytes == entry.bytes,
-                        Rule::kL011, where,
-                        [&] { return differs("bytes", entry.bytes, "decoded_bytes", entry.decoded_bytes); });
+    sound &= log.expect(
+        is_packed ? entry.decoded_bytes > 0 && entry.decoded_bytes / format::kMaxSectionRatio <= entry.bytes
+                  : entry.decoded_bytes == entry.bytes,
+        Rule::kL011, where, [&] { return differs("bytes", entry.bytes, "decoded_bytes", entry.decoded_bytes); });
     log.expect(hash64(file.bytes.subspan(entry.offset, entry.bytes)) == entry.checksum, Rule::kL010, where,
                [] { return std::string("checksum does not match"); });
   } else {
-    log.expect(entry.checksum == 0, Rule::kL010, where, [] { return std::string("page data has a checksum of its own"); });
+    log.expect(entry.checksum == 0, Rule::kL010, where,
+               [] { return std::string("page data has a checksum of its own"); });
   }
   sound &= log.expect(entry.record_bytes == known->record_bytes, Rule::kL011, where, [&] {
     return differs("record_bytes", std::uint64_t{entry.record_bytes}, "record of version 1",
                    std::uint64_t{known->record_bytes});
   });
   if (known->record_bytes == 0) {
-    log.expect(entry.record_count == 0, Rule::kL011, where, [] { return std::string("raw bytes with a record count"); });
+    log.expect(entry.record_count == 0, Rule::kL011, where,
+               [] { return std::string("raw bytes with a record count"); });
   } else {
-    sound &= log.expect(std::uint64_t{entry.record_count} * entry.record_bytes == entry.decoded_bytes, Rule::kL011, where, [&] {
-      return differs("records' bytes", std::uint64_t{entry.record_count} * entry.record_bytes, "decoded_bytes",
-                     entry.decoded_bytes);
-    });
+    sound &= log.expect(std::uint64_t{entry.record_count} * entry.record_bytes == entry.decoded_bytes, Rule::kL011,
+                        where, [&] {
+                          return differs("records' bytes", std::uint64_t{entry.record_count} * entry.record_bytes,
+                                         "decoded_bytes", entry.decoded_bytes);
+                        });
   }
   return sound;
 }

@@ -37,7 +37,8 @@ bool is_terminal(const GroupRecord& group) {
   return (group.flags & format::kGroupTerminal) != 0;
 }
 
-// A renderer compares these with a bound. Measured for some groups of a mesh alone they would be no bound for the others.
+// A renderer compares these with a bound. Measured for some groups of a mesh alone they would be no bound for the
+// others.
 template <class Place>
 void check_attribute_deviation(const char* name, float value, bool is_terminal_group, std::optional<bool>& is_measured,
                                const Place& at, RuleLog& log) {
@@ -52,7 +53,8 @@ void check_attribute_deviation(const char* name, float value, bool is_terminal_g
   }
   const bool is_here = value != format::kInfiniteError;
   if (!is_measured) is_measured = is_here;
-  log.expect(*is_measured == is_here, Rule::kL312, at, [&] { return detail(": measured in some groups of the mesh alone"); });
+  log.expect(*is_measured == is_here, Rule::kL312, at,
+             [&] { return detail(": measured in some groups of the mesh alone"); });
 }
 
 // A deviation is of its group alone, so it may fall going coarser; the error has the margin of the settings, and is the
@@ -78,9 +80,9 @@ void check_deviation(const GroupRecord& group, bool is_terminal_group, double ma
 double margin_of(const FileTables& file, RuleLog& log) {
   const std::optional<double> margin = meta_real(file.meta, "settings", "error_margin");
   if (!margin) return 1.0;
-  const bool is_sound = log.expect(*margin >= 1.0 && *margin <= 2.0, Rule::kL311,
-                                   [] { return std::string("section META: /settings/error_margin"); },
-                                   [&] { return "is " + std::to_string(*margin) + ", not in 1 to 2"; });
+  const bool is_sound = log.expect(
+      *margin >= 1.0 && *margin <= 2.0, Rule::kL311, [] { return std::string("section META: /settings/error_margin"); },
+      [&] { return "is " + std::to_string(*margin) + ", not in 1 to 2"; });
   return is_sound ? *margin : 1.0;
 }
 
@@ -129,7 +131,8 @@ void check_groups(const FileTables& file, RuleLog& log) {
       // No decision of the run-time rule may rest on a denormal.
       log.expect(group.error == 0.0F || group.error >= 0x1p-100F, Rule::kL309, at,
                  [&] { return std::string("error is neither 0 nor at least 2^-100"); });
-      log.expect(is_ball(ball_of(group)), Rule::kL308, at, [] { return std::string("sphere is not finite or negative"); });
+      log.expect(is_ball(ball_of(group)), Rule::kL308, at,
+                 [] { return std::string("sphere is not finite or negative"); });
       log.expect(std::isfinite(group.quadric_error) && group.quadric_error >= 0.0F &&
                      terminal == (group.quadric_error == format::kInfiniteError),
                  Rule::kL311, at, [&] { return "quadric_error is " + std::to_string(group.quadric_error); });
@@ -196,8 +199,8 @@ void check_cluster(const FileTables& file, std::size_t m, std::size_t c, RuleLog
 }  // namespace
 
 void check_dag(const FileTables& file, RuleLog& log) {
-  for (const Rule rule :
-       {Rule::kL301, Rule::kL302, Rule::kL303, Rule::kL304, Rule::kL305, Rule::kL306, Rule::kL307, Rule::kL308, Rule::kL309, Rule::kL310, Rule::kL311, Rule::kL312}) {
+  for (const Rule rule : {Rule::kL301, Rule::kL302, Rule::kL303, Rule::kL304, Rule::kL305, Rule::kL306, Rule::kL307,
+                          Rule::kL308, Rule::kL309, Rule::kL310, Rule::kL311, Rule::kL312}) {
     log.check(rule);
   }
   check_groups(file, log);

@@ -166,7 +166,8 @@ class MeshGeometry {
 }  // namespace
 
 void check_geometry(const run::Asset& asset, std::span<const run::DecodedCluster> clusters, RuleLog& log) {
-  for (const Rule rule : {Rule::kL116, Rule::kL501, Rule::kL502, Rule::kL503, Rule::kL504, Rule::kL505, Rule::kL506, Rule::kL507, Rule::kL508, Rule::kL509})
+  for (const Rule rule : {Rule::kL116, Rule::kL501, Rule::kL502, Rule::kL503, Rule::kL504, Rule::kL505, Rule::kL506,
+                          Rule::kL507, Rule::kL508, Rule::kL509})
     log.check(rule);
   for (std::size_t m = 0; m < asset.meshes().size(); ++m) MeshGeometry(asset, m, clusters, log).run();
 }

@@ -4,8 +4,8 @@
 
 #include <span>
 
-#include "run/decode/decode.h"
 #include "judge/validate/rules.h"
+#include "run/decode/decode.h"
 
 namespace meshlode::judge {
 

@@ -121,7 +121,8 @@ class ClusterBytesChecker {
       return false;
     }
     const std::uint64_t start = words_.field(head_, 16, 16);
-    if (!require(start == data, Rule::kL205, [&] { return differs("data word", start, "should be", data); })) return false;
+    if (!require(start == data, Rule::kL205, [&] { return differs("data word", start, "should be", data); }))
+      return false;
     cursor_ = start;
     bool known = true;
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
@@ -189,9 +190,8 @@ class ClusterBytesChecker {
       expect(material > before, Rule::kL211, [] { return "materials are not ascending"; });
       before = material;
     }
-    return require(covered == triangles_, Rule::kL211, [&] {
-      return differs("triangles in ranges", covered, "triangles", std::uint64_t{triangles_});
-    });
+    return require(covered == triangles_, Rule::kL211,
+                   [&] { return differs("triangles in ranges", covered, "triangles", std::uint64_t{triangles_}); });
   }
 
   bool parse_uv_ranges(std::uint32_t set) {
@@ -222,9 +222,8 @@ class ClusterBytesChecker {
         return false;
       }
     }
-    return require(covered == vertices_, Rule::kL208, [&] {
-      return differs("vertices in UV ranges", covered, "vertices", std::uint64_t{vertices_});
-    });
+    return require(covered == vertices_, Rule::kL208,
+                   [&] { return differs("vertices in UV ranges", covered, "vertices", std::uint64_t{vertices_}); });
   }
 
   bool parse_stream() {
@@ -240,7 +239,8 @@ class ClusterBytesChecker {
     normal_bit_ = part(std::uint64_t{vertices_} * (normal_bits_[0] + normal_bits_[1]));
     for (std::uint32_t set = 0; set < mesh_.uv_set_count; ++set) {
       uv_bit_[set] = bit;
-      for (const UvRangeWords& range : ranges_[set]) part(std::uint64_t{range.vertices} * (range.bits[0] + range.bits[1]));
+      for (const UvRangeWords& range : ranges_[set])
+        part(std::uint64_t{range.vertices} * (range.bits[0] + range.bits[1]));
     }
     const std::uint32_t color_bits = color_bits_[0] + color_bits_[1] + color_bits_[2] + color_bits_[3];
     color_bit_ = part(mesh_.has_color == 0 ? 0 : std::uint64_t{vertices_} * color_bits);
@@ -363,9 +363,8 @@ class ClusterBytesChecker {
     }
     std::uint32_t fresh = 0;
     for (std::uint32_t s = 0; s < slots_; ++s) fresh += words_.stream(fresh_bit_ + s, 1);
-    if (!require(fresh == vertices_, Rule::kL210, [&] {
-          return differs("fresh slots", std::uint64_t{fresh}, "vertices", std::uint64_t{vertices_});
-        })) {
+    if (!require(fresh == vertices_, Rule::kL210,
+                 [&] { return differs("fresh slots", std::uint64_t{fresh}, "vertices", std::uint64_t{vertices_}); })) {
       return;
     }
     Spread spread;
@@ -475,7 +474,9 @@ LoadedPages load_pages(const FileTables& file, const run::Asset* asset, RuleLog&
 }
 
 bool check_page_bytes(const FileTables& file, const LoadedPages& loaded, RuleLog& log) {
-  for (const Rule rule : {Rule::kL205, Rule::kL206, Rule::kL207, Rule::kL208, Rule::kL209, Rule::kL210, Rule::kL211, Rule::kL212, Rule::kL214, Rule::kL215, Rule::kL216}) log.check(rule);
+  for (const Rule rule : {Rule::kL205, Rule::kL206, Rule::kL207, Rule::kL208, Rule::kL209, Rule::kL210, Rule::kL211,
+                          Rule::kL212, Rule::kL214, Rule::kL215, Rule::kL216})
+    log.check(rule);
   bool sound = loaded.is_complete;
   for (std::size_t p = 0; p < file.pages.size(); ++p) {
     const auto bytes = loaded.pages[p].bytes();

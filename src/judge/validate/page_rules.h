@@ -4,9 +4,9 @@
 
 #include <vector>
 
+#include "judge/validate/file_tables.h"
 #include "run/read/asset.h"
 #include "run/unpack/unpack.h"
-#include "judge/validate/file_tables.h"
 
 namespace meshlode::judge {
 

@@ -25,13 +25,14 @@ bool check_ranges(const FileTables& file, RuleLog& log) {
         page.first_group == group && page.group_count > 0 && page.group_count <= file.groups.size() - group;
     const bool clusters_fit =
         page.first_cluster == cluster && page.cluster_count > 0 && page.cluster_count <= file.clusters.size() - cluster;
-    sound &= log.expect(groups_fit, Rule::kL201, at, [&] { return "groups do not follow on " + std::to_string(group); });
     sound &=
-        log.expect(clusters_fit, Rule::kL201, at, [&] { return "clusters do not follow on " + std::to_string(cluster); });
+        log.expect(groups_fit, Rule::kL201, at, [&] { return "groups do not follow on " + std::to_string(group); });
+    sound &= log.expect(clusters_fit, Rule::kL201, at,
+                        [&] { return "clusters do not follow on " + std::to_string(cluster); });
     const bool deps_fit =
         page.first_dependency == dependency && page.dependency_count <= file.page_dependencies.size() - dependency;
-    sound &=
-        log.expect(deps_fit, Rule::kL213, at, [&] { return "dependencies do not follow on " + std::to_string(dependency); });
+    sound &= log.expect(deps_fit, Rule::kL213, at,
+                        [&] { return "dependencies do not follow on " + std::to_string(dependency); });
     log.expect(page.reserved == 0, Rule::kL103, at, [] { return std::string("reserved is not zero"); });
     if (!groups_fit || !clusters_fit || !deps_fit) return false;
     std::uint64_t members = 0;

@@ -9,7 +9,10 @@ namespace meshlode::judge {
 
 namespace {
 
-#define RULE(id, invariant, text) RuleInfo{Rule::k##id, #id, invariant, text}
+#define RULE(id, invariant, text)     \
+  RuleInfo {                          \
+    Rule::k##id, #id, invariant, text \
+  }
 constexpr std::array kRules{
     // container
     RULE(L001, "I11", "the file starts with a whole header of the right magic, version and size"),
@@ -50,7 +53,8 @@ constexpr std::array kRules{
     RULE(L202, "I11", "pages fill the page section in order, each on the next multiple of 16"),
     RULE(L203, "I11", "page checksums match, stored and decoded"),
     RULE(L204, "I2", "a page decodes to its stated size, a multiple of 4 of at most 128 KiB"),
-    RULE(L205, "I11", "a page's header matches the page table, and the data of its clusters follow each other without gaps"),
+    RULE(L205, "I11",
+         "a page's header matches the page table, and the data of its clusters follow each other without gaps"),
     RULE(L206, "I11", "counts in a page's cluster equal those of its record"),
     RULE(L207, "", "every field of a cluster has as few bits as its values need, and its minimum is reached"),
     RULE(L208, "I11", "heads, ranges and streams lie inside the page, in order, with bit counts that the format has"),
@@ -69,15 +73,15 @@ constexpr std::array kRules{
     RULE(L304, "", "a group's level is the largest of its members, and groups are stored from coarse to fine"),
     RULE(L305, "I5",
          "a group is terminal if and only if its error is infinite; stuck only with a reason, and terminal"),
-    RULE(L306, "I5",
-         "every group that is not terminal has coarser clusters, and no terminal one has: no cut is empty"),
+    RULE(L306, "I5", "every group that is not terminal has coarser clusters, and no terminal one has: no cut is empty"),
     RULE(L307, "I4", "errors are finite numbers, never negative, and grow strictly along the DAG except from 0 to 0"),
     RULE(L308, "I4", "LOD spheres are finite and contain those of the finer groups, in exact arithmetic"),
     RULE(L309, "I4", "LOD spheres and errors keep the margin that covers the rounding of the run-time rule"),
     RULE(L310, "I4",
          "LOD spheres contain the culling spheres of level-0 members and of the clusters made from them, exactly"),
     RULE(L311, "I4",
-         "quadric errors never fall along the DAG; deviations are as the tier says, and no error is below its group's times "
+         "quadric errors never fall along the DAG; deviations are as the tier says, and no error is below its group's "
+         "times "
          "META's error_margin"),
     RULE(L312, "I4",
          "normal and UV deviations never fall along the DAG; infinite where terminal, and measured for all or none"),
@@ -115,7 +119,8 @@ constexpr std::array kRules{
     RULE(V111, "I2", "clusters keep the caps of the settings"),
     RULE(V112, "I7", "a mesh's error tier is that of the settings"),
     RULE(V113, "",
-         "what V104 and V105 hold level 0 to is within the accuracy budgets of the settings; UV budgets in texels are held "
+         "what V104 and V105 hold level 0 to is within the accuracy budgets of the settings; UV budgets in texels are "
+         "held "
          "against the images of the source, and a set so large that 24 bits leave no finer step is within any"),
     RULE(V201, "I5", "a cut draws each piece of surface exactly once and is never empty"),
     RULE(V202, "I6", "the border of a cut consists of edges of the source's border alone"),

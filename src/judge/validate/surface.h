@@ -45,7 +45,8 @@ struct MeshSurface {
 };
 
 /// \pre every id of the mesh's tables is in range; `clusters` is decode_all of the asset
-[[nodiscard]] MeshSurface build_surface(const run::Asset& asset, MeshId mesh, std::span<const run::DecodedCluster> clusters);
+[[nodiscard]] MeshSurface build_surface(const run::Asset& asset, MeshId mesh,
+                                        std::span<const run::DecodedCluster> clusters);
 
 /// The sum of the chains of clusters (indices within the mesh), ascending, without zeros.
 [[nodiscard]] std::vector<EdgeUse> sum_chains(const MeshSurface& surface, std::span<const std::uint32_t> clusters);

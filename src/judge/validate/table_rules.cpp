@@ -7,8 +7,8 @@
 
 #include "base/hash.h"
 #include "format/grid.h"
-#include "run/read/limits.h"
 #include "judge/validate/file_tables.h"
+#include "run/read/limits.h"
 
 namespace meshlode::judge {
 
@@ -28,7 +28,8 @@ class TableChecker {
     if (sound) sound = check_groups();
     if (sound) sound = check_clusters();
     if (sound) check_levels();
-    return sound && log_.count_of(Rule::kL101) == 0 && log_.count_of(Rule::kL106) == 0 && log_.count_of(Rule::kL104) == 0;
+    return sound && log_.count_of(Rule::kL101) == 0 && log_.count_of(Rule::kL106) == 0 &&
+           log_.count_of(Rule::kL104) == 0;
   }
 
  private:
@@ -54,8 +55,8 @@ class TableChecker {
     }
   }
 
-  bool is_range_next(std::uint32_t first, std::uint32_t count, std::uint64_t& next, std::uint64_t size,
-                     Rule rule, const Text& where) {
+  bool is_range_next(std::uint32_t first, std::uint32_t count, std::uint64_t& next, std::uint64_t size, Rule rule,
+                     const Text& where) {
     const bool fits = first == next && count <= size - next;
     log_.expect(
         fits, rule, [&] { return where; },
@@ -84,7 +85,8 @@ class TableChecker {
       log_.expect(lo <= hi || mesh.cluster_count == 0, Rule::kL104, at,
                   [&] { return "bounds are upside down on axis " + std::to_string(axis); });
       const std::int64_t limit = (std::int64_t{1} << 24) / std::max<std::uint32_t>(mesh.grid.mantissa, 1);
-      log_.expect(lo >= -limit && hi <= limit && lo >= -format::kMaxGridCoordinate && hi <= format::kMaxGridCoordinate, Rule::kL104, at,
+      log_.expect(lo >= -limit && hi <= limit && lo >= -format::kMaxGridCoordinate && hi <= format::kMaxGridCoordinate,
+                  Rule::kL104, at,
                   [&] { return "bounds leave the 24 bits that float decode keeps, axis " + std::to_string(axis); });
     }
     log_.expect(std::isfinite(mesh.diagonal) && mesh.diagonal >= 0.0, Rule::kL105, at,
@@ -127,8 +129,7 @@ class TableChecker {
     for (std::uint32_t set = 0; set < format::kMaxUvSets; ++set) {
       const std::int32_t log2 = mesh.uv_log2[set];
       if (set < mesh.uv_set_count) {
-        log_.expect(log2 >= -126 && log2 <= 104, Rule::kL106, at,
-                    [&] { return "uv grid 2^" + std::to_string(log2); });
+        log_.expect(log2 >= -126 && log2 <= 104, Rule::kL106, at, [&] { return "uv grid 2^" + std::to_string(log2); });
         bool is_new = mesh.uv_set_source[set] < format::kMaxUvSets;
         for (std::uint32_t before = 0; before < set; ++before)
           is_new &= mesh.uv_set_source[before] != mesh.uv_set_source[set];
@@ -154,7 +155,8 @@ class TableChecker {
       check_mesh_numbers(mesh, where);
       check_mesh_channels(mesh, where);
       sound &= is_range_next(mesh.first_group, mesh.group_count, group, file_.groups.size(), Rule::kL107, where);
-      sound &= is_range_next(mesh.first_cluster, mesh.cluster_count, cluster, file_.clusters.size(), Rule::kL108, where);
+      sound &=
+          is_range_next(mesh.first_cluster, mesh.cluster_count, cluster, file_.clusters.size(), Rule::kL108, where);
       sound &= is_range_next(mesh.first_node, mesh.node_count, node, file_.nodes.size(), Rule::kL109, where);
       log_.expect((mesh.cluster_count == 0) == (mesh.group_count == 0), Rule::kL110, [&] { return where; },
                   [&] {
@@ -183,7 +185,8 @@ class TableChecker {
     const format::MaterialRecord& material = file_.materials[i];
     const auto at = [&] { return place("material", i); };
     check_string(material.name, at() + ", name");
-    log_.expect(static_cast<std::uint32_t>(material.alpha_mode) <= 2, Rule::kL102, at, [] { return Text("alpha_mode"); });
+    log_.expect(static_cast<std::uint32_t>(material.alpha_mode) <= 2, Rule::kL102, at,
+                [] { return Text("alpha_mode"); });
     bool is_finite = std::isfinite(material.alpha_cutoff);
     for (const float c : material.base_color) is_finite &= std::isfinite(c);
     log_.expect(is_finite, Rule::kL112, at, [] { return Text("base_color or alpha_cutoff is not finite"); });
@@ -281,7 +284,8 @@ class TableChecker {
     }
     if (singular) return;
     const long double truth = sigma * largest;
-    log_.expect(instance.scale >= truth * (1.0L - 1e-16L) && instance.scale <= truth * (1.0L + 1.1e-11L), Rule::kL113, at,
+    log_.expect(instance.scale >= truth * (1.0L - 1e-16L) && instance.scale <= truth * (1.0L + 1.1e-11L), Rule::kL113,
+                at,
                 [&] { return differs("scale", instance.scale, "largest singular value", static_cast<double>(truth)); });
   }
 
@@ -298,8 +302,9 @@ class TableChecker {
       log_.expect(kind == 1 || kind == 2, Rule::kL102, at, [&] { return "kind " + std::to_string(kind); });
       const std::uint64_t start =
           (end + format::kSectionAlignment - 1) / format::kSectionAlignment * format::kSectionAlignment;
-      const bool inside = log_.expect(blob.offset == start && start <= limit && blob.bytes <= limit - start, Rule::kL114, at,
-                                      [] { return Text("does not follow the blob before it inside the section"); });
+      const bool inside =
+          log_.expect(blob.offset == start && start <= limit && blob.bytes <= limit - start, Rule::kL114, at,
+                      [] { return Text("does not follow the blob before it inside the section"); });
       if (!inside) return;
       for (std::uint64_t byte = end; byte < start; ++byte) {
         log_.expect(file_.bytes[byte] == 0, Rule::kL114, at, [] { return Text("padding before it is not zero"); });
@@ -324,7 +329,8 @@ class TableChecker {
         const std::size_t g = std::size_t{mesh.first_group} + k;
         const format::GroupRecord& group = file_.groups[g];
         const auto at = [&] { return place("mesh", m, "group", g); };
-        sound &= log_.expect(group.mesh == m, Rule::kL110, at, [&] { return "names mesh " + std::to_string(group.mesh); });
+        sound &=
+            log_.expect(group.mesh == m, Rule::kL110, at, [&] { return "names mesh " + std::to_string(group.mesh); });
         sound &= is_range_next(group.first_cluster, group.cluster_count, next, end, Rule::kL110, at());
         log_.expect(group.cluster_count > 0, Rule::kL501, at, [] { return Text("has no member"); });
         log_.expect((group.flags & ~(format::kGroupTerminal | format::kGroupStuck)) == 0, Rule::kL103, at,

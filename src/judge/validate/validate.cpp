@@ -6,11 +6,11 @@
 #include <memory>
 #include <optional>
 
-#include "run/decode/decode.h"
-#include "run/read/asset.h"
 #include "judge/validate/file_tables.h"
 #include "judge/validate/geometry.h"
 #include "judge/validate/page_rules.h"
+#include "run/decode/decode.h"
+#include "run/read/asset.h"
 
 namespace meshlode::judge {
 
@@ -26,7 +26,9 @@ void run_rules(std::span<const std::uint8_t> bytes, RuleLog& log) {
   const Result<run::Asset> asset = run::Asset::from_bytes(bytes);
   if (asset) {
     const Status size = run::check_decoded_bytes(*asset, run::count_decoded_bytes(*asset));
-    if (!log.expect(size.ok(), Rule::kL099, [&] { return size.error().where; }, [&] { return size.error().detail; })) return;
+    if (!log.expect(
+            size.ok(), Rule::kL099, [&] { return size.error().where; }, [&] { return size.error().detail; }))
+      return;
   }
   const LoadedPages loaded = load_pages(*file, asset ? &asset.value() : nullptr, log);
   if (loaded.is_complete && log.count_of(Rule::kL114) == 0) {

@@ -10,12 +10,12 @@
 #include <vector>
 
 #include "base/ids.h"
-#include "scene/scene.h"
-#include "run/read/asset.h"
-#include "run/select/select.h"
 #include "judge/validate/borders.h"
 #include "judge/validate/rules.h"
 #include "judge/validate/surface.h"
+#include "run/read/asset.h"
+#include "run/select/select.h"
+#include "scene/scene.h"
 
 namespace meshlode::judge {
 
@@ -29,9 +29,8 @@ struct Selectors {
       [](const run::Asset& asset, const run::Camera& camera, double pixel_error) {
         return run::select_bvh(asset, camera, pixel_error);
       };
-  std::function<run::UniformCut(const run::Asset&, MeshId, double)> uniform = [](const run::Asset& asset, MeshId mesh, double error) {
-    return run::select_uniform(asset, mesh, error);
-  };
+  std::function<run::UniformCut(const run::Asset&, MeshId, double)> uniform =
+      [](const run::Asset& asset, MeshId mesh, double error) { return run::select_uniform(asset, mesh, error); };
 };
 
 /// Everything about one mesh that cuts are judged by.
@@ -41,7 +40,8 @@ struct MeshJudge {
   std::vector<std::uint32_t> group_order;  ///< groups of the mesh from fine to coarse (indices within the mesh)
 };
 
-[[nodiscard]] MeshJudge make_mesh_judge(const run::Asset& asset, MeshId mesh, std::span<const run::DecodedCluster> clusters);
+[[nodiscard]] MeshJudge make_mesh_judge(const run::Asset& asset, MeshId mesh,
+                                        std::span<const run::DecodedCluster> clusters);
 
 /// The first fault of one cut of one mesh; all empty if there is none.
 struct CutFaults {

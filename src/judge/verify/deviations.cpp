@@ -59,8 +59,9 @@ std::vector<CutDeviation> measure_cuts(const run::Asset& asset, MeshId mesh, con
   return measured;
 }
 
-DeviationTotals check_deviations(const run::Asset& asset, const scene::Scene& source, std::span<const run::DecodedCluster> clusters,
-                                 std::uint32_t cuts, std::uint64_t samples, RuleLog& log) {
+DeviationTotals check_deviations(const run::Asset& asset, const scene::Scene& source,
+                                 std::span<const run::DecodedCluster> clusters, std::uint32_t cuts,
+                                 std::uint64_t samples, RuleLog& log) {
   DeviationTotals totals;
   std::vector<double> ratios;
   for (std::uint32_t m = 0; m < std::min(asset.meshes().size(), source.meshes.size()); ++m) {

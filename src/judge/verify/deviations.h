@@ -7,10 +7,10 @@
 #include <span>
 #include <vector>
 
-#include "run/decode/decode.h"
-#include "scene/scene.h"
 #include "judge/metrics/metrics.h"
 #include "judge/validate/rules.h"
+#include "run/decode/decode.h"
+#include "scene/scene.h"
 
 namespace meshlode::judge {
 
@@ -21,7 +21,7 @@ constexpr double kMeasuredShortfall = 0.05;
 struct CutDeviation {
   double threshold = 0.0, stored = 0.0;
   LargestDeviation truth;  ///< a: the source, b: the cut
-  double rounding = 0.0;  ///< of the positions that were measured
+  double rounding = 0.0;   ///< of the positions that were measured
   [[nodiscard]] bool is_above(double limit) const { return truth.max > limit * stored + rounding; }
   /// True over stored; 0 where the true deviation is nothing but rounding.
   [[nodiscard]] double ratio() const {
@@ -32,7 +32,8 @@ struct CutDeviation {
 
 /// Up to `cuts` uniform cuts of a mesh, evenly in the logarithm of the error, each another one. `samples` are
 /// area-uniform samples each way.
-[[nodiscard]] std::vector<CutDeviation> measure_cuts(const run::Asset& asset, MeshId mesh, const scene::SourceMesh& source,
+[[nodiscard]] std::vector<CutDeviation> measure_cuts(const run::Asset& asset, MeshId mesh,
+                                                     const scene::SourceMesh& source,
                                                      std::span<const run::DecodedCluster> clusters, std::uint32_t cuts,
                                                      std::uint64_t samples);
 
@@ -45,7 +46,8 @@ struct DeviationTotals {
 
 /// measure_cuts() of every mesh whose tier promises something. A `measured` cut fails above 1 + kMeasuredShortfall, a
 /// `certified` one above 1.
-DeviationTotals check_deviations(const run::Asset& asset, const scene::Scene& source, std::span<const run::DecodedCluster> clusters,
-                                 std::uint32_t cuts, std::uint64_t samples, RuleLog& log);
+DeviationTotals check_deviations(const run::Asset& asset, const scene::Scene& source,
+                                 std::span<const run::DecodedCluster> clusters, std::uint32_t cuts,
+                                 std::uint64_t samples, RuleLog& log);
 
 }  // namespace meshlode::judge

@@ -17,7 +17,8 @@ namespace meshlode::judge {
 
 namespace {
 
-bool is_same_material(const run::Asset& asset, const format::MaterialRecord& stored, const scene::SceneMaterial& source) {
+bool is_same_material(const run::Asset& asset, const format::MaterialRecord& stored,
+                      const scene::SceneMaterial& source) {
   bool same = asset.string(stored.name) == source.name && stored.source_index == source.source_index &&
               static_cast<std::uint32_t>(stored.alpha_mode) == static_cast<std::uint32_t>(source.alpha_mode) &&
               stored.alpha_cutoff == source.alpha_cutoff && (stored.double_sided != 0) == source.double_sided &&
@@ -91,7 +92,8 @@ void check_blobs(const run::Asset& asset, const scene::Scene& source, RuleLog& l
   for (std::size_t i = 0; i < count; ++i) {
     const format::BlobRecord& stored = asset.blobs()[i];
     const scene::SceneBlob& blob = source.blobs[i];
-    const auto kind = blob.kind == scene::SceneBlob::Kind::kImage ? format::BlobKind::kImage : format::BlobKind::kBuffer;
+    const auto kind =
+        blob.kind == scene::SceneBlob::Kind::kImage ? format::BlobKind::kImage : format::BlobKind::kBuffer;
     const auto bytes = asset.blob_bytes(stored);
     const bool same = stored.kind == kind && stored.source_index == blob.source_index &&
                       asset.string(stored.name) == blob.name && asset.string(stored.mime_type) == blob.mime_type &&
@@ -188,7 +190,8 @@ void check_tiers(const run::Asset& asset, RuleLog& log) {
 
 /// V104 and V105 measure every vertex of level 0 against the bounds of the mesh's record; here those bounds are held
 /// against what was asked for, budgets in texels with the source's images at hand.
-void check_budgets(const run::Asset& asset, const scene::Scene& source, std::span<const run::DecodedCluster> clusters, RuleLog& log) {
+void check_budgets(const run::Asset& asset, const scene::Scene& source, std::span<const run::DecodedCluster> clusters,
+                   RuleLog& log) {
   log.check(Rule::kV113);
   const auto setting = [&](const char* key) { return meta_real(asset.meta_json(), "settings", key); };
   const std::optional<double> position = setting("position_error");
@@ -224,7 +227,8 @@ void check_budgets(const run::Asset& asset, const scene::Scene& source, std::spa
 
 }  // namespace
 
-void check_scene(const run::Asset& asset, const scene::Scene& source, std::span<const run::DecodedCluster> clusters, RuleLog& log) {
+void check_scene(const run::Asset& asset, const scene::Scene& source, std::span<const run::DecodedCluster> clusters,
+                 RuleLog& log) {
   check_materials(asset, source, log);
   check_instances(asset, source, log);
   check_blobs(asset, source, log);

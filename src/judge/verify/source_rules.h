@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <span>
 
+#include "judge/validate/rules.h"
 #include "run/decode/decode.h"
 #include "scene/scene.h"
-#include "judge/validate/rules.h"
 
 namespace meshlode::judge {
 
@@ -22,6 +22,7 @@ struct SourceCounts {
                                                   std::span<const run::DecodedCluster> clusters, RuleLog& log);
 
 /// V106 … V113. \pre `clusters` is decode_all of the asset
-void check_scene(const run::Asset& asset, const scene::Scene& source, std::span<const run::DecodedCluster> clusters, RuleLog& log);
+void check_scene(const run::Asset& asset, const scene::Scene& source, std::span<const run::DecodedCluster> clusters,
+                 RuleLog& log);
 
 }  // namespace meshlode::judge

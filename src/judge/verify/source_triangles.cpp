@@ -28,7 +28,8 @@ constexpr std::size_t kMaxClassesCompared = 1024;
 
 struct Corner {
   Vec3d position{0.0};
-  std::array<float, 3 + 2 * scene::kMaxUvSets + 4> attributes{};  ///< normal, uv sets, colour: those that the asset stores
+  std::array<float, 3 + 2 * scene::kMaxUvSets + 4>
+      attributes{};  ///< normal, uv sets, colour: those that the asset stores
   auto operator<=>(const Corner& other) const {
     for (int i = 0; i < 3; ++i) {
       if (const auto order = position[i] <=> other.position[i]; order != 0) return order;
@@ -55,8 +56,8 @@ struct StoredTriangle {
 
 class SourceMatcher {
  public:
-  SourceMatcher(const run::Asset& asset, MeshId mesh, const scene::SourceMesh& source, std::span<const run::DecodedCluster> clusters,
-                RuleLog& log)
+  SourceMatcher(const run::Asset& asset, MeshId mesh, const scene::SourceMesh& source,
+                std::span<const run::DecodedCluster> clusters, RuleLog& log)
       : asset_(asset),
         mesh_id_(mesh),
         mesh_(asset.meshes()[mesh.value]),
@@ -177,13 +178,13 @@ class SourceMatcher {
     }
   }
 
-  /// Distinct triangles on the grid that only the source or only level 0 has. How often each is there need not be compared:
-  /// a moved vertex goes to a point that is nearest to no other, so its triangles are unknown as long as it is not found.
+  /// Distinct triangles on the grid that only the source or only level 0 has. How often each is there need not be
+  /// compared: a moved vertex goes to a point that is nearest to no other, so its triangles are unknown as long as it
+  /// is not found.
   [[nodiscard]] std::size_t count_unexplained() const {
     std::size_t count = 0;
-    for_each_key([&](const TriangleKey&, std::span<const SourceTriangle> sources, std::span<const StoredTriangle> stored) {
-      count += sources.empty() || stored.empty() ? 1 : 0;
-    });
+    for_each_key([&](const TriangleKey&, std::span<const SourceTriangle> sources,
+                     std::span<const StoredTriangle> stored) { count += sources.empty() || stored.empty() ? 1 : 0; });
     return count;
   }
 
@@ -207,10 +208,10 @@ class SourceMatcher {
     }
     const double moved = std::sqrt(moved2);
     const double stored = mesh_.level0_deviation;  // a float, rounded up
-    log_.expect(stored >= moved * (1.0 - 1e-12) && stored <= moved * (1.0 + 0x1p-22) + 0x1p-148, Rule::kV105,
-                [&] { return where(); }, [&] {
-      return differs("level0_deviation", double{mesh_.level0_deviation}, "largest move of a vertex", moved);
-    });
+    log_.expect(
+        stored >= moved * (1.0 - 1e-12) && stored <= moved * (1.0 + 0x1p-22) + 0x1p-148, Rule::kV105,
+        [&] { return where(); },
+        [&] { return differs("level0_deviation", double{mesh_.level0_deviation}, "largest move of a vertex", moved); });
   }
 
   void gather_stored() {
@@ -233,7 +234,8 @@ class SourceMatcher {
   }
 
   /// The source's corner with the attributes that the asset stores, as prepared: -0 is 0, missing ones have defaults.
-  [[nodiscard]] Corner exact_corner(const scene::Primitive& primitive, std::uint32_t vertex, const Vec3f& flat_normal) const {
+  [[nodiscard]] Corner exact_corner(const scene::Primitive& primitive, std::uint32_t vertex,
+                                    const Vec3f& flat_normal) const {
     Corner corner;
     corner.position = primitive.positions[vertex] + 0.0;
     std::size_t slot = 0;

@@ -38,7 +38,8 @@ using ImageSizes = std::map<std::size_t, std::optional<std::pair<std::uint32_t, 
 
 /// What a unit of texture coordinates crosses in the texture that `info` (a glTF textureInfo) names. `sizes`: of images
 /// that were looked at already, by blob.
-std::optional<TextureUse> texture_use(const scene::Scene& scene, const Json& document, const Json& info, ImageSizes& sizes) {
+std::optional<TextureUse> texture_use(const scene::Scene& scene, const Json& document, const Json& info,
+                                      ImageSizes& sizes) {
   const Json& image = at(at(document, "images"), at(at(at(document, "textures"), at(info, "index")), "source"));
   const Json& blob = at(image, "blob");
   if (!blob.is_number_unsigned() || blob.get<std::size_t>() >= scene.blobs.size()) return std::nullopt;
@@ -78,14 +79,15 @@ std::vector<std::array<double, scene::kMaxUvSets>> most_texels_of_materials(cons
       if (!value.is_structured()) continue;
       for (const Json& inner : value) open.push_back(&inner);
       const auto use = texture_use(scene, document, value, sizes);
-      if (use && use->set < scene::kMaxUvSets && std::isfinite(use->texels)) most[use->set] = std::max(most[use->set], use->texels);
+      if (use && use->set < scene::kMaxUvSets && std::isfinite(use->texels))
+        most[use->set] = std::max(most[use->set], use->texels);
     }
   }
   return out;
 }
 
 std::array<double, scene::kMaxUvSets> most_texels(std::span<const std::array<double, scene::kMaxUvSets>> of_materials,
-                                           const scene::SourceMesh& mesh) {
+                                                  const scene::SourceMesh& mesh) {
   std::array<double, scene::kMaxUvSets> most{};
   for (const scene::Primitive& primitive : mesh.primitives) {
     if (primitive.material.value >= of_materials.size()) continue;
@@ -95,7 +97,8 @@ std::array<double, scene::kMaxUvSets> most_texels(std::span<const std::array<dou
   return most;
 }
 
-std::array<bool, scene::kMaxUvSets> has_finest_step(const run::Asset& asset, MeshId mesh, std::span<const run::DecodedCluster> clusters) {
+std::array<bool, scene::kMaxUvSets> has_finest_step(const run::Asset& asset, MeshId mesh,
+                                                    std::span<const run::DecodedCluster> clusters) {
   constexpr std::int64_t kLargest = (std::int64_t{1} << 24U) - 1;
   const format::MeshRecord& record = asset.meshes()[mesh.value];
   const std::size_t first_uv = record.normal_mode == format::NormalMode::kStored ? 6 : 3;
@@ -111,8 +114,8 @@ std::array<bool, scene::kMaxUvSets> has_finest_step(const run::Asset& asset, Mes
   return is_finest;
 }
 
-void check_texel_budget(const run::Asset& asset, const scene::Scene& source, double texels, std::span<const run::DecodedCluster> clusters,
-                        RuleLog& log) {
+void check_texel_budget(const run::Asset& asset, const scene::Scene& source, double texels,
+                        std::span<const run::DecodedCluster> clusters, RuleLog& log) {
   constexpr double kRounding = 1.0 + 1e-6;
   const auto of_materials = most_texels_of_materials(source);
   for (std::size_t m = 0; m < asset.meshes().size() && m < source.meshes.size(); ++m) {
@@ -123,8 +126,9 @@ void check_texel_budget(const run::Asset& asset, const scene::Scene& source, dou
     for (std::uint32_t set = 0; set < mesh.uv_set_count; ++set) {
       if (mesh.uv_set_source[set] >= scene::kMaxUvSets) continue;
       const double moved = 0.5 * format::exp2_exact(mesh.uv_log2[set]) * most[mesh.uv_set_source[set]];
-      log.expect(moved <= texels * kRounding || is_finest[set], Rule::kV113, [&] { return place("mesh", m); },
-                 [&] { return differs("texels that a UV moves", moved, "uv_error in texels", texels); });
+      log.expect(
+          moved <= texels * kRounding || is_finest[set], Rule::kV113, [&] { return place("mesh", m); },
+          [&] { return differs("texels that a UV moves", moved, "uv_error in texels", texels); });
     }
   }
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// UV budgets in texels, held against the images of the source. Finds textures on its own: what the build took them for is
-// what is judged. Internal to the judge.
+// UV budgets in texels, held against the images of the source. Finds textures on its own: what the build took them for
+// is what is judged. Internal to the judge.
 #pragma once
 
 #include <array>
@@ -10,30 +10,31 @@
 #include <utility>
 #include <vector>
 
-#include "run/decode/decode.h"
-#include "scene/scene.h"
 #include "judge/validate/rules.h"
+#include "run/decode/decode.h"
 #include "run/read/asset.h"
+#include "scene/scene.h"
 
 namespace meshlode::judge {
 
 /// Width and height that an image states. Nothing where this reader (stb_image) does not know its kind.
-[[nodiscard]] std::optional<std::pair<std::uint32_t, std::uint32_t>> stated_image_size(std::span<const std::uint8_t> bytes);
+[[nodiscard]] std::optional<std::pair<std::uint32_t, std::uint32_t>> stated_image_size(
+    std::span<const std::uint8_t> bytes);
 
-/// For each TEXCOORD_n the most texels that one unit of it crosses in any texture that a material names; 0 where none has
-/// a known size. One entry for each of Scene::materials.
+/// For each TEXCOORD_n the most texels that one unit of it crosses in any texture that a material names; 0 where none
+/// has a known size. One entry for each of Scene::materials.
 [[nodiscard]] std::vector<std::array<double, scene::kMaxUvSets>> most_texels_of_materials(const scene::Scene& scene);
 /// The same for the materials of a mesh together.
-[[nodiscard]] std::array<double, scene::kMaxUvSets> most_texels(std::span<const std::array<double, scene::kMaxUvSets>> of_materials,
-                                                         const scene::SourceMesh& mesh);
+[[nodiscard]] std::array<double, scene::kMaxUvSets> most_texels(
+    std::span<const std::array<double, scene::kMaxUvSets>> of_materials, const scene::SourceMesh& mesh);
 
-/// For each stored UV set of the mesh: is one of its coordinates so large that a step half as wide could not hold it in 24
-/// bits? Then no step keeps a smaller budget. \pre `clusters` is decode_all of the asset
+/// For each stored UV set of the mesh: is one of its coordinates so large that a step half as wide could not hold it in
+/// 24 bits? Then no step keeps a smaller budget. \pre `clusters` is decode_all of the asset
 [[nodiscard]] std::array<bool, scene::kMaxUvSets> has_finest_step(const run::Asset& asset, MeshId mesh,
-                                                           std::span<const run::DecodedCluster> clusters);
+                                                                  std::span<const run::DecodedCluster> clusters);
 
 /// V113 for UVs: half a step of each stored set is at most `texels` texels, or as fine as 24 bits hold the coordinates.
-void check_texel_budget(const run::Asset& asset, const scene::Scene& source, double texels, std::span<const run::DecodedCluster> clusters,
-                        RuleLog& log);
+void check_texel_budget(const run::Asset& asset, const scene::Scene& source, double texels,
+                        std::span<const run::DecodedCluster> clusters, RuleLog& log);
 
 }  // namespace meshlode::judge

@@ -39,7 +39,8 @@ std::vector<double> choose_thresholds(const run::Asset& asset, const MeshSurface
   return thresholds;
 }
 
-CutFaults judge_uniform_cut(const run::Asset& asset, const MeshJudge& judge, double threshold, const Selectors& selectors) {
+CutFaults judge_uniform_cut(const run::Asset& asset, const MeshJudge& judge, double threshold,
+                            const Selectors& selectors) {
   const MeshSurface& surface = judge.surface;
   const format::MeshRecord& mesh = asset.meshes()[surface.mesh.value];
   CutFaults faults;

@@ -70,7 +70,8 @@ void add_structure(const run::Asset& asset, Report& report) {
   std::move(structure.findings.begin(), structure.findings.end(), std::back_inserter(report.out.findings));
 }
 
-void add_source(const run::Asset& asset, const scene::Scene& source, std::span<const run::DecodedCluster> clusters, Report& report) {
+void add_source(const run::Asset& asset, const scene::Scene& source, std::span<const run::DecodedCluster> clusters,
+                Report& report) {
   RuleLog log;
   SourceCounts totals;
   const std::size_t count = std::min(asset.meshes().size(), source.meshes.size());
@@ -88,12 +89,15 @@ void add_source(const run::Asset& asset, const scene::Scene& source, std::span<c
   check_scene(asset, source, clusters, log);
   report.add_check("I1", "every source triangle is in exactly one level-0 cluster", totals.source_triangles,
                    failures_of(log, {Rule::kV101}));
-  report.add_check("I1", "dropped and source triangles are counted correctly", count, failures_of(log, {Rule::kV102, Rule::kV103}));
+  report.add_check("I1", "dropped and source triangles are counted correctly", count,
+                   failures_of(log, {Rule::kV102, Rule::kV103}));
   report.add_check("I3", "level-0 attributes are the source's within their quantization", totals.corners,
                    failures_of(log, {Rule::kV104}));
   report.add_check("", "attributes that the source's shading needs are stored", count, failures_of(log, {Rule::kV110}));
-  report.add_check("I2", "clusters keep the caps of the settings", asset.clusters().size(), failures_of(log, {Rule::kV111}));
-  report.add_check("", "level 0 is within the accuracy budgets of the settings", count, failures_of(log, {Rule::kV113}));
+  report.add_check("I2", "clusters keep the caps of the settings", asset.clusters().size(),
+                   failures_of(log, {Rule::kV111}));
+  report.add_check("", "level 0 is within the accuracy budgets of the settings", count,
+                   failures_of(log, {Rule::kV113}));
   report.add_check("I7", "the error tier is that of the settings", count, failures_of(log, {Rule::kV112}));
   report.add_check("", "level-0 deviation is the largest move of a vertex onto the grid", count,
                    failures_of(log, {Rule::kV105}));

@@ -8,9 +8,9 @@
 
 #include <meshlode/result.h>
 
-#include "scene/scene.h"
-#include "run/read/asset.h"
 #include "judge/validate/validate.h"
+#include "run/read/asset.h"
+#include "scene/scene.h"
 
 namespace meshlode::judge {
 
@@ -35,6 +35,7 @@ struct VerifyReport {
   std::vector<Check> checks;
 };
 
-[[nodiscard]] VerifyReport verify_asset(const run::Asset& asset, const scene::Scene& source, const VerifyOptions& options);
+[[nodiscard]] VerifyReport verify_asset(const run::Asset& asset, const scene::Scene& source,
+                                        const VerifyOptions& options);
 
 }  // namespace meshlode::judge

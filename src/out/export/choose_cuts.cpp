@@ -65,7 +65,8 @@ void add_budget_events(const run::Asset& asset, const format::MeshRecord& mesh, 
     const double last = scaled_error(asset.groups()[cluster.coarser_group], unit);
     if (!(first < last)) continue;
     events.push_back({first, cluster.triangle_count()});
-    if (last < std::numeric_limits<double>::infinity()) events.push_back({last, -std::int64_t{cluster.triangle_count()}});
+    if (last < std::numeric_limits<double>::infinity())
+      events.push_back({last, -std::int64_t{cluster.triangle_count()}});
   }
 }
 
@@ -114,7 +115,7 @@ run::UniformCut choose_level_cut(const run::Asset& asset, MeshId mesh, std::uint
 }
 
 std::vector<run::UniformCut> choose_camera_cuts(const run::Asset& asset, const run::Camera& camera, double pixel_error,
-                                           const run::AttributeBounds& bounds) {
+                                                const run::AttributeBounds& bounds) {
   const std::vector<run::ClusterInstance> drawn = run::select_flat(asset, camera, pixel_error, bounds);
   std::vector<std::vector<bool>> passes(asset.meshes().size());  // empty: no instance yet
   for (std::size_t first = 0; first < drawn.size();) {

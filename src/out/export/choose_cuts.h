@@ -19,15 +19,16 @@ namespace meshlode::out {
 
 /// Per mesh the coarsest cut that is at least as fine, everywhere, as what each of its instances draws for the camera:
 /// a group passes iff it passes for all of them. Meshes without a drawn instance have an empty cut.
-[[nodiscard]] std::vector<run::UniformCut> choose_camera_cuts(const run::Asset& asset, const run::Camera& camera, double pixel_error,
-                                                         const run::AttributeBounds& bounds = {});
+[[nodiscard]] std::vector<run::UniformCut> choose_camera_cuts(const run::Asset& asset, const run::Camera& camera,
+                                                              double pixel_error,
+                                                              const run::AttributeBounds& bounds = {});
 
 /// Uniform cuts of several meshes under one budget.
 struct BudgetCuts {
   std::vector<run::UniformCut> cuts;  ///< one per mesh; empty for meshes that were left out
-  double threshold = 0.0;        ///< a group passes iff its error / its mesh's unit is at most this; negative: finest
-  std::uint64_t triangles = 0;   ///< of all the cuts together, each mesh once
-  bool is_met = false;           ///< false: even the coarsest cuts have more triangles than the budget; they are given
+  double threshold = 0.0;       ///< a group passes iff its error / its mesh's unit is at most this; negative: finest
+  std::uint64_t triangles = 0;  ///< of all the cuts together, each mesh once
+  bool is_met = false;          ///< false: even the coarsest cuts have more triangles than the budget; they are given
 };
 
 /// The finest cuts with at most `max_triangles` together. One threshold decides for all meshes, in each mesh's own

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <tuple>
 
+#include "base/json_writer.h"
 #include "out/export/cut_geometry.h"
 #include "out/export/float_positions.h"
 #include "out/export/glb_file.h"
-#include "base/json_writer.h"
 
 namespace meshlode::out {
 namespace {

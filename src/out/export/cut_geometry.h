@@ -19,7 +19,7 @@ namespace meshlode::out {
 /// serves here too; its triangle arrays are empty.
 struct CutPrimitive {
   MaterialId material;                 ///< into Asset::materials()
-  run::DecodedCluster vertices;             ///< merged, in order of first use
+  run::DecodedCluster vertices;        ///< merged, in order of first use
   std::vector<std::uint32_t> indices;  ///< 3 per triangle, into vertices
 };
 

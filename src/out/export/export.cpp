@@ -60,13 +60,16 @@ Json& array_of(Json& object, const char* key) {
   return value;
 }
 
-Error malformed(std::string detail) { return {ErrorCode::kInvalid, "section SCNE", std::move(detail)}; }
+Error malformed(std::string detail) {
+  return {ErrorCode::kInvalid, "section SCNE", std::move(detail)};
+}
 
 /// Whether each of these members is an array, where it is there.
 Status check_arrays(const Json& object, std::initializer_list<const char*> keys) {
   for (const char* key : keys) {
     const auto it = object.find(key);
-    if (it != object.end() && !it->is_null() && !it->is_array()) return malformed(std::string("/") + key + " is not an array");
+    if (it != object.end() && !it->is_null() && !it->is_array())
+      return malformed(std::string("/") + key + " is not an array");
   }
   return Ok{};
 }
@@ -135,7 +138,7 @@ class Exporter {
   std::vector<ExportedMesh> exported_;
   GlbBinary binary_;
   std::map<std::pair<std::uint64_t, std::uint64_t>, GlbBinary::Range> carried_;  ///< blobs in it, by offset and bytes
-  std::map<std::uint32_t, int> texcoords_;             ///< that materials ask for: each is walked once
+  std::map<std::uint32_t, int> texcoords_;  ///< that materials ask for: each is walked once
   bool has_lods_ = false;
 };
 
@@ -204,7 +207,8 @@ Status Exporter::carry_images() {
     image["bufferView"] = add_view(carry_blob(record), 0);
     const std::string_view mime_type = asset_.string(record.mime_type);
     if (!image.contains("mimeType"))
-      image["mimeType"] = mime_type.empty() || mime_type.size() > kLongestName ? sniff_mime_type(bytes) : std::string(mime_type);
+      image["mimeType"] =
+          mime_type.empty() || mime_type.size() > kLongestName ? sniff_mime_type(bytes) : std::string(mime_type);
     const std::string_view name = asset_.string(record.name);
     if (!image.contains("name") && !name.empty() && name.size() <= kLongestName) image["name"] = std::string(name);
     image.erase("blob");
@@ -302,9 +306,9 @@ Status Exporter::add_positions(const format::MeshRecord& record, const run::Deco
     low = glm::min(low, p);
     high = glm::max(high, p);
   }
-  attributes["POSITION"] = add_vertices(kFloat, "VEC3", positions->size(),
-                                        binary_.append_values(std::span<const Vec3f>(*positions)),
-                                        {{"min", {low.x, low.y, low.z}}, {"max", {high.x, high.y, high.z}}});
+  attributes["POSITION"] =
+      add_vertices(kFloat, "VEC3", positions->size(), binary_.append_values(std::span<const Vec3f>(*positions)),
+                   {{"min", {low.x, low.y, low.z}}, {"max", {high.x, high.y, high.z}}});
   return Ok{};
 }
 
@@ -589,7 +593,8 @@ bool is_sound(const LodChain& chain) {
 
 }  // namespace
 
-Result<std::vector<std::uint8_t>> export_glb(const run::Asset& asset, std::span<const std::vector<ClusterId>> cut_per_mesh) {
+Result<std::vector<std::uint8_t>> export_glb(const run::Asset& asset,
+                                             std::span<const std::vector<ClusterId>> cut_per_mesh) {
   std::vector<LodChain> chains(cut_per_mesh.size());
   for (std::size_t m = 0; m < chains.size(); ++m) chains[m].cuts = {cut_per_mesh[m]};
   return export_glb_lods(asset, chains);
@@ -610,7 +615,8 @@ Result<std::vector<std::uint8_t>> export_glb_lods(const run::Asset& asset, std::
   std::uint64_t bytes = 0;
   for (const LodChain& chain : chain_per_mesh) {
     for (const auto& cut : chain.cuts) {
-      const bool is_known = std::all_of(cut.begin(), cut.end(), [&](ClusterId id) { return id.value < asset.clusters().size(); });
+      const bool is_known =
+          std::all_of(cut.begin(), cut.end(), [&](ClusterId id) { return id.value < asset.clusters().size(); });
       if (is_known) bytes += run::count_decoded_bytes(asset, cut);  // others are refused where they are gathered
     }
   }

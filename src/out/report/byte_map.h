@@ -13,14 +13,14 @@ namespace meshlode::out {
 
 /// Bits of decoded pages, by what they say.
 struct PageBits {
-  std::uint64_t heads = 0;      ///< page headers and their last words count to the level of their first cluster
+  std::uint64_t heads = 0;  ///< page headers and their last words count to the level of their first cluster
   std::uint64_t materials = 0;
   std::uint64_t positions = 0;
   std::uint64_t normals = 0;
-  std::uint64_t uvs = 0;        ///< with their ranges
-  std::uint64_t colors = 0;     ///< with their ranges
+  std::uint64_t uvs = 0;     ///< with their ranges
+  std::uint64_t colors = 0;  ///< with their ranges
   std::uint64_t topology = 0;
-  std::uint64_t padding = 0;    ///< up to whole words
+  std::uint64_t padding = 0;  ///< up to whole words
   [[nodiscard]] std::uint64_t total() const {
     return heads + materials + positions + normals + uvs + colors + topology + padding;
   }
@@ -28,10 +28,10 @@ struct PageBits {
 };
 
 struct ByteMap {
-  std::vector<PageBits> levels;      ///< over all meshes
-  PageBits total;                    ///< 8 · decoded page bytes
+  std::vector<PageBits> levels;  ///< over all meshes
+  PageBits total;                ///< 8 · decoded page bytes
   std::uint64_t stored_page_bytes = 0;
-  std::uint64_t table_bytes = 0;     ///< meshes, groups, clusters, nodes, pages, dependencies
+  std::uint64_t table_bytes = 0;  ///< meshes, groups, clusters, nodes, pages, dependencies
 };
 
 /// Loads every page. Errors: those of load_page.

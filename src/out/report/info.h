@@ -10,8 +10,8 @@
 
 #include <meshlode/format.h>
 
-#include "run/read/asset.h"
 #include "out/report/byte_map.h"
+#include "run/read/asset.h"
 
 namespace meshlode::out {
 
@@ -22,8 +22,8 @@ struct LevelInfo {
   double fill = 0.0;                                        ///< triangles / (clusters · cap)
   std::uint64_t groups = 0, stuck_groups = 0;               ///< groups that consume this level
   float error_min = 0.0F, error_max = 0.0F;                 ///< own errors of the level's clusters, object units
-  float normal_deviation_max = 0.0F;                        ///< of their own groups, degrees; kInfiniteError: not measured
-  float uv_deviation_max = 0.0F;                            ///< UV units
+  float normal_deviation_max = 0.0F;  ///< of their own groups, degrees; kInfiniteError: not measured
+  float uv_deviation_max = 0.0F;      ///< UV units
 };
 
 struct StuckGroupInfo {

@@ -3,9 +3,9 @@
 #include <map>
 
 #include "base/hash.h"
+#include "base/json_writer.h"
 #include "format/names.h"
 #include "out/report/info.h"
-#include "base/json_writer.h"
 #include "out/report/read_meta.h"
 
 namespace meshlode::out {

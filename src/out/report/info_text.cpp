@@ -32,13 +32,14 @@ void add_mesh(std::string& out, const run::Asset& asset, std::uint32_t id, const
   const format::MeshRecord& mesh = asset.meshes()[id];
   append_format(out, "\nmesh %u  %s\n", id, printable(asset.string(mesh.name)).c_str());
   append_format(out, "  %s source triangles, %s stored (%.3fx), diagonal %.6g, grid step %u * 2^%d, tier %s\n",
-      grouped(mesh.source_triangles).c_str(), grouped(info.triangles).c_str(),
-      mesh.source_triangles == 0 ? 0.0
-                                 : static_cast<double>(info.triangles) / static_cast<double>(mesh.source_triangles),
-      mesh.diagonal, mesh.grid.mantissa, mesh.grid.log2, format::name_of(mesh.error_tier));
+                grouped(mesh.source_triangles).c_str(), grouped(info.triangles).c_str(),
+                mesh.source_triangles == 0
+                    ? 0.0
+                    : static_cast<double>(info.triangles) / static_cast<double>(mesh.source_triangles),
+                mesh.diagonal, mesh.grid.mantissa, mesh.grid.log2, format::name_of(mesh.error_tier));
   append_format(out, "  %llu root(s) with %llu triangles, %zu stuck group(s), level 0 deviates by %.3g\n",
-      static_cast<unsigned long long>(info.roots), static_cast<unsigned long long>(info.root_triangles),
-      info.stuck.size(), static_cast<double>(mesh.level0_deviation));
+                static_cast<unsigned long long>(info.roots), static_cast<unsigned long long>(info.root_triangles),
+                info.stuck.size(), static_cast<double>(mesh.level0_deviation));
   if (!info.stuck.empty()) {
     std::map<std::string, std::uint64_t> reasons;
     for (const StuckGroupInfo& stuck : info.stuck) ++reasons[format::name_of(stuck.reason)];
@@ -55,14 +56,15 @@ void add_mesh(std::string& out, const run::Asset& asset, std::uint32_t id, const
   const bool has_normals =
       mesh.normal_mode != format::NormalMode::kNone && is_measured(&LevelInfo::normal_deviation_max);
   const bool has_uvs = mesh.uv_set_count > 0 && is_measured(&LevelInfo::uv_deviation_max);
-  append_format(out, "  level  clusters   triangles    vertices   full   fill  groups  stuck   error min   error max%s%s\n",
-      has_normals ? "  normals/deg" : "", has_uvs ? "         UVs" : "");
+  append_format(out,
+                "  level  clusters   triangles    vertices   full   fill  groups  stuck   error min   error max%s%s\n",
+                has_normals ? "  normals/deg" : "", has_uvs ? "         UVs" : "");
   for (const LevelInfo& level : info.levels) {
     append_format(out, "  %5u  %8s  %10s  %10s  %5llu  %5.3f  %6llu  %5llu  %10.4g  %10.4g", level.level,
-        grouped(level.clusters).c_str(), grouped(level.triangles).c_str(), grouped(level.vertices).c_str(),
-        static_cast<unsigned long long>(level.full_clusters), level.fill, static_cast<unsigned long long>(level.groups),
-        static_cast<unsigned long long>(level.stuck_groups), static_cast<double>(level.error_min),
-        static_cast<double>(level.error_max));
+                  grouped(level.clusters).c_str(), grouped(level.triangles).c_str(), grouped(level.vertices).c_str(),
+                  static_cast<unsigned long long>(level.full_clusters), level.fill,
+                  static_cast<unsigned long long>(level.groups), static_cast<unsigned long long>(level.stuck_groups),
+                  static_cast<double>(level.error_min), static_cast<double>(level.error_max));
     if (has_normals) append_format(out, "  %11.4g", static_cast<double>(level.normal_deviation_max));
     if (has_uvs) append_format(out, "  %10.4g", static_cast<double>(level.uv_deviation_max));
     out += '\n';
@@ -70,8 +72,10 @@ void add_mesh(std::string& out, const run::Asset& asset, std::uint32_t id, const
 }
 
 void add_byte_map(std::string& out, const ByteMap& map, const AssetInfo& info) {
-  append_format(out, "\nbytes of decoded pages\n  level       total   positions     normals         UVs     colours    topology"
-           "       heads   materials     padding\n");
+  append_format(
+      out,
+      "\nbytes of decoded pages\n  level       total   positions     normals         UVs     colours    topology"
+      "       heads   materials     padding\n");
   const auto row = [&](const char* name, const PageBits& bits, double divisor, int digits) {
     append_format(out, "  %-5s", name);
     for (const std::uint64_t count : {bits.total(), bits.positions, bits.normals, bits.uvs, bits.colors, bits.topology,
@@ -88,7 +92,7 @@ void add_byte_map(std::string& out, const ByteMap& map, const AssetInfo& info) {
   if (info.stored_triangles > 0) {
     row("/tri", map.total, static_cast<double>(info.stored_triangles), 3);
     append_format(out, "  (/src, /tri: bytes per source and per stored triangle; tables beside the pages: %s bytes)\n",
-        grouped(map.table_bytes).c_str());
+                  grouped(map.table_bytes).c_str());
   }
 }
 
@@ -107,36 +111,40 @@ std::string info_text(const run::Asset& asset, const AssetInfo& info, bool list_
   std::string out;
   append_format(out, "format version    %u   (%s)\n", header.version, printable(meta.generator).c_str());
   append_format(out, "content hash      %s\n", to_hex(hash).c_str());
-  append_format(out, "source            %s   %s\n", printable(meta.source_file).c_str(), printable(meta.source_hash).c_str());
+  append_format(out, "source            %s   %s\n", printable(meta.source_file).c_str(),
+                printable(meta.source_hash).c_str());
   append_format(out, "bytes             %s: geometry %s, images %s\n", grouped(header.file_bytes).c_str(),
-      grouped(info.geometry_bytes).c_str(), grouped(info.image_bytes).c_str());
+                grouped(info.geometry_bytes).c_str(), grouped(info.image_bytes).c_str());
   if (info.source_triangles > 0) {
     append_format(out, "                  %.2f geometry bytes per source triangle\n",
-        static_cast<double>(info.geometry_bytes) / static_cast<double>(info.source_triangles));
+                  static_cast<double>(info.geometry_bytes) / static_cast<double>(info.source_triangles));
   }
-  append_format(out, "scene             %zu mesh(es), %zu instance(s), %zu material(s), %zu page(s)\n", asset.meshes().size(),
-      asset.instances().size(), asset.materials().size(), asset.pages().size());
+  append_format(out, "scene             %zu mesh(es), %zu instance(s), %zu material(s), %zu page(s)\n",
+                asset.meshes().size(), asset.instances().size(), asset.materials().size(), asset.pages().size());
   append_format(out, "source            %s triangles, %s vertices\n", grouped(info.source_triangles).c_str(),
-      grouped(info.source_vertices).c_str());
+                grouped(info.source_vertices).c_str());
   append_format(out, "stored            %s triangles, %s vertices in %s clusters, %s groups, %s level(s)\n",
-      grouped(info.stored_triangles).c_str(), grouped(info.stored_vertices).c_str(),
-      grouped(asset.clusters().size()).c_str(), grouped(asset.groups().size()).c_str(), grouped(info.levels).c_str());
+                grouped(info.stored_triangles).c_str(), grouped(info.stored_vertices).c_str(),
+                grouped(asset.clusters().size()).c_str(), grouped(asset.groups().size()).c_str(),
+                grouped(info.levels).c_str());
   append_format(out, "roots             %s (at most %s a mesh), %s stuck group(s)\n", grouped(info.roots).c_str(),
-      grouped(info.max_roots_per_mesh).c_str(), grouped(info.stuck_groups).c_str());
-  append_format(out, "dropped           %s degenerate, %s duplicate, %s repaired\n", grouped(info.dropped_degenerate).c_str(),
-      grouped(info.dropped_duplicate).c_str(), grouped(info.dropped_repaired).c_str());
+                grouped(info.max_roots_per_mesh).c_str(), grouped(info.stuck_groups).c_str());
+  append_format(out, "dropped           %s degenerate, %s duplicate, %s repaired\n",
+                grouped(info.dropped_degenerate).c_str(), grouped(info.dropped_duplicate).c_str(),
+                grouped(info.dropped_repaired).c_str());
   // What the plan leaves out is among what was left out, with its reason.
   std::size_t rows = 0;
   for (const MetaInfo::Decision& decision : meta.decisions) {
     if (!decision.is_kept || rows++ >= kMaxRows) continue;
     append_format(out, "kept              %s: %s\n", printable(decision.what, 120).c_str(),
-        printable(decision.reason, 160).c_str());
+                  printable(decision.reason, 160).c_str());
   }
   add_more(out, rows, "kept attributes");
   rows = 0;
   for (const MetaInfo::LeftOut& left : meta.left_outs) {
     if (rows++ >= kMaxRows) continue;
-    append_format(out, "left out          %s: %s\n", printable(left.what, 120).c_str(), printable(left.why, 160).c_str());
+    append_format(out, "left out          %s: %s\n", printable(left.what, 120).c_str(),
+                  printable(left.why, 160).c_str());
   }
   add_more(out, rows, "left out");
   for (std::uint32_t m = 0; m < info.meshes.size() && m < kMaxRows; ++m) add_mesh(out, asset, m, info.meshes[m]);
@@ -146,9 +154,10 @@ std::string info_text(const run::Asset& asset, const AssetInfo& info, bool list_
     append_format(out, "\nstuck groups\n");
     for (const MeshInfo& mesh : info.meshes) {
       for (const StuckGroupInfo& stuck : mesh.stuck) {
-        append_format(out, "  mesh %u  group %u  level %u  %s: %llu cluster(s), %llu triangles\n", stuck.mesh, stuck.group,
-            stuck.level, format::name_of(stuck.reason), static_cast<unsigned long long>(stuck.clusters),
-            static_cast<unsigned long long>(stuck.triangles));
+        append_format(out, "  mesh %u  group %u  level %u  %s: %llu cluster(s), %llu triangles\n", stuck.mesh,
+                      stuck.group, stuck.level, format::name_of(stuck.reason),
+                      static_cast<unsigned long long>(stuck.clusters),
+                      static_cast<unsigned long long>(stuck.triangles));
       }
     }
     if (info.stuck_groups == 0) append_format(out, "  none\n");
@@ -157,14 +166,15 @@ std::string info_text(const run::Asset& asset, const AssetInfo& info, bool list_
   for (std::size_t i = 0; i < asset.materials().size() && i < kMaxRows; ++i) {
     const format::MaterialRecord& material = asset.materials()[i];
     append_format(out, "  %3zu  %s%s%s\n", i, printable(asset.string(material.name)).c_str(),
-        material.source_index == format::kNone ? " (default)" : "", material.double_sided != 0 ? ", double sided" : "");
+                  material.source_index == format::kNone ? " (default)" : "",
+                  material.double_sided != 0 ? ", double sided" : "");
   }
   add_more(out, asset.materials().size(), "materials");
   if (info.byte_map) add_byte_map(out, *info.byte_map, info);
   append_format(out, "\nsections        bytes     decoded\n");
   for (const format::SectionEntry& section : asset.sections()) {
     append_format(out, "  %s  %12s %11s\n", section_name(section.id).c_str(), grouped(section.bytes).c_str(),
-        grouped(section_decoded_bytes(asset, section)).c_str());
+                  grouped(section_decoded_bytes(asset, section)).c_str());
   }
   return out;
 }

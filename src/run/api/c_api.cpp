@@ -123,8 +123,8 @@ bool is_aligned(const void* memory) {
 }
 
 /// What both ways to decode check, and the integers.
-meshlode_status decode(const run::Asset& asset, const meshlode_page_bytes& page, std::uint32_t cluster, run::DecodedCluster& out,
-                       meshlode_error* error) {
+meshlode_status decode(const run::Asset& asset, const meshlode_page_bytes& page, std::uint32_t cluster,
+                       run::DecodedCluster& out, meshlode_error* error) {
   if (cluster >= asset.clusters().size()) return fail(error, MESHLODE_USAGE, "cluster: does not exist");
   if (page.page != page_of(asset, cluster)) return fail(error, MESHLODE_USAGE, "page: is not the page of this cluster");
   if (page.bytes == nullptr || !is_aligned(page.bytes)) {

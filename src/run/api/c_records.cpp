@@ -13,7 +13,7 @@ namespace {
 
 #define SAME_RECORD(c_type, cpp_type) \
   static_assert(sizeof(c_type) == sizeof(cpp_type) && alignof(c_type) == alignof(cpp_type))
-#define SAME_FIELD(c_type, c_field, cpp_type, cpp_field)               \
+#define SAME_FIELD(c_type, c_field, cpp_type, cpp_field)                      \
   static_assert(offsetof(c_type, c_field) == offsetof(cpp_type, cpp_field) && \
                 sizeof(c_type::c_field) == sizeof(cpp_type::cpp_field))
 
@@ -49,7 +49,8 @@ SAME_FIELD(meshlode_mesh, cluster_count, format::MeshRecord, cluster_count);
 SAME_FIELD(meshlode_mesh, first_node, format::MeshRecord, first_node);
 SAME_FIELD(meshlode_mesh, node_count, format::MeshRecord, node_count);
 static_assert(offsetof(meshlode_mesh, grid_log2) == offsetof(format::MeshRecord, grid) &&
-              offsetof(meshlode_mesh, grid_mantissa) == offsetof(meshlode_mesh, grid_log2) + offsetof(format::Grid, mantissa));
+              offsetof(meshlode_mesh, grid_mantissa) ==
+                  offsetof(meshlode_mesh, grid_log2) + offsetof(format::Grid, mantissa));
 
 SAME_RECORD(meshlode_material, format::MaterialRecord);
 SAME_FIELD(meshlode_material, source_index, format::MaterialRecord, source_index);

@@ -39,10 +39,16 @@ class BitReader {
   std::uint32_t bit_;
 };
 
-std::int32_t wrap(std::uint32_t value) { return static_cast<std::int32_t>(value); }
-std::uint32_t bits_of(std::int32_t value) { return static_cast<std::uint32_t>(value); }
+std::int32_t wrap(std::uint32_t value) {
+  return static_cast<std::int32_t>(value);
+}
+std::uint32_t bits_of(std::int32_t value) {
+  return static_cast<std::uint32_t>(value);
+}
 
-std::uint64_t low_mask(std::uint32_t bits) { return (std::uint64_t{1} << bits) - 1U; }
+std::uint64_t low_mask(std::uint32_t bits) {
+  return (std::uint64_t{1} << bits) - 1U;
+}
 
 /// Calls use(i, first, second) with two fields of `bits` bits for each i below `count`. \pre each at most 32
 template <class Use>
@@ -207,7 +213,8 @@ void decode_colors(const ClusterLayout& layout, const std::uint32_t* words, std:
   }
 }
 
-/// Slot by slot, keeping the edge that the next triangle enters by; docs/format.md says the same for one triangle alone.
+/// Slot by slot, keeping the edge that the next triangle enters by; docs/format.md says the same for one triangle
+/// alone.
 void decode_topology(const ClusterLayout& layout, const std::uint32_t* words,
                      std::vector<std::array<std::uint8_t, 3>>& out) {
   BitReader turns(words, layout.turn_bit);
@@ -257,7 +264,8 @@ void decode_materials(const format::MeshRecord& mesh, const ClusterLayout& layou
 
 namespace {
 
-/// Each coordinate divided on its own: a product with the reciprocal would round once more. Two coordinates share a vector.
+/// Each coordinate divided on its own: a product with the reciprocal would round once more. Two coordinates share a
+/// vector.
 Vec3f normal_of(std::int32_t x, std::int32_t y, std::int32_t z) {
   using Two = double __attribute__((vector_size(16)));
   const auto dx = static_cast<double>(x);
@@ -270,7 +278,9 @@ Vec3f normal_of(std::int32_t x, std::int32_t y, std::int32_t z) {
 
 }  // namespace
 
-Vec3f octahedral_normal(const std::array<std::int32_t, 3>& point) { return normal_of(point[0], point[1], point[2]); }
+Vec3f octahedral_normal(const std::array<std::int32_t, 3>& point) {
+  return normal_of(point[0], point[1], point[2]);
+}
 
 namespace {
 
@@ -353,7 +363,8 @@ void decode_attributes(const format::MeshRecord& mesh, const DecodedCluster& clu
   const double step = std::ldexp(1.0, mesh.grid.log2) * mesh.grid.mantissa;
   for (std::size_t i = 0; i < count; ++i) {
     const std::int32_t* const q = value + i * stride;
-    out.positions[i] = {static_cast<float>(step * q[0]), static_cast<float>(step * q[1]), static_cast<float>(step * q[2])};
+    out.positions[i] = {static_cast<float>(step * q[0]), static_cast<float>(step * q[1]),
+                        static_cast<float>(step * q[2])};
   }
   value += 3;
   if (has_normal) {
@@ -372,7 +383,8 @@ void decode_attributes(const format::MeshRecord& mesh, const DecodedCluster& clu
   }
   if (mesh.has_color != 0U) {
     for (std::size_t i = 0; i < count; ++i) {
-      for (int k = 0; k < 4; ++k) out.colors[i][k] = static_cast<float>(value[i * stride + static_cast<std::size_t>(k)]) / 255.0F;
+      for (int k = 0; k < 4; ++k)
+        out.colors[i][k] = static_cast<float>(value[i * stride + static_cast<std::size_t>(k)]) / 255.0F;
     }
   }
 }

@@ -17,8 +17,8 @@ namespace meshlode::run {
 struct DecodedCluster {
   std::uint32_t vertex_count = 0, triangle_count = 0, channel_count = 0;
   std::vector<std::int32_t> channels;
-  std::vector<std::array<std::uint8_t, 3>> triangles;     ///< local vertex indices
-  std::vector<std::uint32_t> triangle_material;           ///< into Asset::materials()
+  std::vector<std::array<std::uint8_t, 3>> triangles;  ///< local vertex indices
+  std::vector<std::uint32_t> triangle_material;        ///< into Asset::materials()
 
   [[nodiscard]] Vec3i position(std::uint32_t i) const {
     const std::int32_t* c = &channels[std::size_t{i} * channel_count];
@@ -35,7 +35,7 @@ void decode_vertices(const Asset& asset, const PageBytes& page, ClusterId cluste
 /// Float attributes of one cluster, in mesh space (positions relative to MeshRecord::origin).
 struct ClusterAttributes {
   std::vector<Vec3f> positions;
-  std::vector<Vec3f> normals;               ///< unit; empty unless normal_mode == kStored
+  std::vector<Vec3f> normals;  ///< unit; empty unless normal_mode == kStored
   std::array<std::vector<Vec2f>, format::kMaxUvSets> uvs;
   std::vector<Vec4f> colors;
 };
@@ -48,8 +48,8 @@ void decode_attributes(const format::MeshRecord& mesh, const DecodedCluster& clu
 /// Error: kUnsupported, in one line, where `bytes` are more than Asset::max_decoded_bytes().
 [[nodiscard]] Status check_decoded_bytes(const Asset& asset, std::uint64_t bytes);
 
-/// Loads and decodes every cluster of an asset, for tools and judges: clusters[i] is ClusterId(i). Errors: as load_page(),
-/// and check_decoded_bytes() before any work.
+/// Loads and decodes every cluster of an asset, for tools and judges: clusters[i] is ClusterId(i). Errors: as
+/// load_page(), and check_decoded_bytes() before any work.
 [[nodiscard]] Result<std::vector<DecodedCluster>> decode_all(const Asset& asset);
 
 }  // namespace meshlode::run

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Octahedral normals: an integer point of |X| + |Y| + |Z| = M, whose direction is the normal, is stored as two integers in
-// one of six charts.
+// Octahedral normals: an integer point of |X| + |Y| + |Z| = M, whose direction is the normal, is stored as two integers
+// in one of six charts.
 #pragma once
 
 #include <array>

@@ -15,8 +15,8 @@ namespace {
 
 template <class T>
 std::span<const T> view_table(std::span<const std::uint8_t> bytes) {
-  // Aligned: sections start at multiples of 16 of bytes that are aligned to 8, which no record exceeds, and decoded ones
-  // at the start of a vector.
+  // Aligned: sections start at multiples of 16 of bytes that are aligned to 8, which no record exceeds, and decoded
+  // ones at the start of a vector.
   static_assert(alignof(T) <= 8);
   return {reinterpret_cast<const T*>(bytes.data()), bytes.size() / sizeof(T)};
 }

@@ -51,8 +51,8 @@ class Asset {
   [[nodiscard]] std::string_view strings() const { return strings_; }  ///< what StringRef points into
   [[nodiscard]] std::string_view string(format::StringRef ref) const { return strings_.substr(ref.offset, ref.bytes); }
   [[nodiscard]] std::span<const std::uint8_t> blob_bytes(const format::BlobRecord& blob) const;
-  [[nodiscard]] std::span<const std::uint8_t> stored_page(PageId page) const;  ///< as on disk
-  [[nodiscard]] std::span<const std::uint8_t> bytes() const { return bytes_; } ///< the whole file
+  [[nodiscard]] std::span<const std::uint8_t> stored_page(PageId page) const;   ///< as on disk
+  [[nodiscard]] std::span<const std::uint8_t> bytes() const { return bytes_; }  ///< the whole file
   /// What whoever decodes the asset as a whole may take for it.
   [[nodiscard]] std::uint64_t max_decoded_bytes() const { return decoded_limit(bytes_.size(), max_decoded_); }
   /// The decoded bytes of one of sections() that is known; PAGE and BLOB as they are stored.

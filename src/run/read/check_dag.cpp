@@ -18,7 +18,9 @@ bool is_sphere(const float center[3], float radius) {
          radius >= 0.0F;
 }
 
-bool is_error(float error) { return std::isfinite(error) && error >= 0.0F; }
+bool is_error(float error) {
+  return std::isfinite(error) && error >= 0.0F;
+}
 
 Status check_group(const RawTables& tables, std::size_t g, std::uint32_t mesh_id) {
   const format::GroupRecord& group = tables.groups[g];

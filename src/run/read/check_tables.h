@@ -33,13 +33,13 @@ constexpr std::uint32_t kMaxBvhDepth = 64;
 /// Bytes of all names together. Names may share their bytes, so that their sum is a product that a small file chooses.
 [[nodiscard]] std::uint64_t count_name_bytes(const RawTables& tables);
 
-[[nodiscard]] Status check_meshes(const RawTables& tables);     ///< meshes partition groups, clusters and nodes
+[[nodiscard]] Status check_meshes(const RawTables& tables);  ///< meshes partition groups, clusters and nodes
 [[nodiscard]] Status check_materials(const RawTables& tables);
 [[nodiscard]] Status check_instances(const RawTables& tables);
 [[nodiscard]] Status check_blobs(const RawTables& tables);
-[[nodiscard]] Status check_groups(const RawTables& tables);     ///< \pre check_meshes; groups partition clusters
-[[nodiscard]] Status check_clusters(const RawTables& tables);   ///< \pre check_groups; the DAG has no cycle
-[[nodiscard]] Status check_nodes(const RawTables& tables);      ///< \pre check_meshes; each BVH is a tree
-[[nodiscard]] Status check_pages(const RawTables& tables);      ///< \pre check_groups; pages partition groups
+[[nodiscard]] Status check_groups(const RawTables& tables);    ///< \pre check_meshes; groups partition clusters
+[[nodiscard]] Status check_clusters(const RawTables& tables);  ///< \pre check_groups; the DAG has no cycle
+[[nodiscard]] Status check_nodes(const RawTables& tables);     ///< \pre check_meshes; each BVH is a tree
+[[nodiscard]] Status check_pages(const RawTables& tables);     ///< \pre check_groups; pages partition groups
 
 }  // namespace meshlode::run

@@ -32,8 +32,8 @@ namespace meshlode::run {
 [[nodiscard]] inline Error invalid_record(format::SectionId id, std::size_t record, const char* field,
                                           std::string detail) {
   return {ErrorCode::kInvalid,
-          "section " + section_tag(static_cast<std::uint32_t>(id)) + ", record " + std::to_string(record) +
-              ", field " + field,
+          "section " + section_tag(static_cast<std::uint32_t>(id)) + ", record " + std::to_string(record) + ", field " +
+              field,
           std::move(detail)};
 }
 

@@ -10,8 +10,8 @@ namespace meshlode::run {
 /// Where nobody says otherwise.
 constexpr std::uint64_t kDefaultMaxDecoded = std::uint64_t{512} << 20U;
 
-/// Integers of a vertex and corners of a triangle take tens of times the bits that they are stored in; hundreds of times
-/// is what a file that was made for it reaches.
+/// Integers of a vertex and corners of a triangle take tens of times the bits that they are stored in; hundreds of
+/// times is what a file that was made for it reaches.
 constexpr std::uint64_t kJustifiedRatio = 64;
 
 /// The most that a file of this size may decode to.

@@ -54,8 +54,8 @@ Status check_header(std::span<const std::uint8_t> bytes, const format::FileHeade
   }
   if (header.flags != 0) return invalid_header("flags", "must be 0");
   if (header.file_bytes != bytes.size()) {
-    return invalid_header("file_bytes", "says " + std::to_string(header.file_bytes) + ", the file has " +
-                                            std::to_string(bytes.size()));
+    return invalid_header(
+        "file_bytes", "says " + std::to_string(header.file_bytes) + ", the file has " + std::to_string(bytes.size()));
   }
   if (header.section_table_offset != sizeof(format::FileHeader)) {
     return invalid_header("section_table_offset", "must be 64");
@@ -161,8 +161,7 @@ Result<SectionIndex> index_sections(std::span<const std::uint8_t> bytes) {
   if (end != bytes.size()) return invalid_header("file_bytes", "the last section does not end the file");
   for (const KnownSection& section : kKnownSections) {
     if (index.known.find(section.id) == index.known.end()) {
-      return Error{ErrorCode::kInvalid, "section " + section_tag(static_cast<std::uint32_t>(section.id)),
-                   "is missing"};
+      return Error{ErrorCode::kInvalid, "section " + section_tag(static_cast<std::uint32_t>(section.id)), "is missing"};
     }
   }
   return index;

@@ -44,6 +44,6 @@ struct CutAttributeDeviation {
   double normal_degrees = 0.0, uv = 0.0;
 };
 [[nodiscard]] CutAttributeDeviation attribute_deviation_of(const SelectTables& tables,
-                                                        std::span<const ClusterId> clusters);
+                                                           std::span<const ClusterId> clusters);
 
 }  // namespace meshlode::run

@@ -34,12 +34,12 @@ struct MetricVec4 {
 
 // One instance seen by one camera, in the instance's own power-of-two units. 64 bytes, std430.
 struct MetricView {
-  MetricVec4 row0;       // xyz: a row of the 3x3 part of mesh space -> world; w: the translation relative to the eye
+  MetricVec4 row0;  // xyz: a row of the 3x3 part of mesh space -> world; w: the translation relative to the eye
   MetricVec4 row1;
   MetricVec4 row2;
-  float scale;           // at least the largest singular value of the rows as they are stored here
-  float error_scale;     // F: from an error in object units to the distance at which it covers the allowed pixels
-  float near_distance;   // 2^-40 ... 2^61
+  float scale;          // at least the largest singular value of the rows as they are stored here
+  float error_scale;    // F: from an error in object units to the distance at which it covers the allowed pixels
+  float near_distance;  // 2^-40 ... 2^61
   float reserved;
 };
 

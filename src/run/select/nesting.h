@@ -55,8 +55,8 @@ struct StoredBound {
   return double{outer} >= double{inner} * (1.0 + kNestingErrorMargin);
 }
 
-/// The smallest float above `inner` by the growth: an error that is nested over it and over every smaller one. 0 stays 0,
-/// since errors of 0 pass for every camera; infinite where no finite float is above. \pre not negative, not NaN
+/// The smallest float above `inner` by the growth: an error that is nested over it and over every smaller one. 0 stays
+/// 0, since errors of 0 pass for every camera; infinite where no finite float is above. \pre not negative, not NaN
 [[nodiscard]] inline float coarser_error(float inner) {
   const double grown = double{inner} * (1.0 + kNestingErrorGrowth);
   if (!(grown < double{format::kInfiniteError})) return format::kInfiniteError;

@@ -73,8 +73,8 @@ struct TraversalCount {
 [[nodiscard]] std::vector<ClusterInstance> select_bvh(const SelectTables& tables, const Camera& camera,
                                                       double pixel_error, TraversalCount* count = nullptr,
                                                       const AttributeBounds& bounds = {});
-/// The same, or nothing where it has more than `max_clusters` entries: instances times clusters are a product that a small
-/// file may choose. It stops there.
+/// The same, or nothing where it has more than `max_clusters` entries: instances times clusters are a product that a
+/// small file may choose. It stops there.
 [[nodiscard]] std::optional<std::vector<ClusterInstance>> select_bvh_within(const SelectTables& tables,
                                                                             const Camera& camera, double pixel_error,
                                                                             std::size_t max_clusters,

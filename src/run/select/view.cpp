@@ -11,10 +11,10 @@ namespace {
 
 constexpr double kGrowth = 1.0 + 0x1p-20;  // over the rounding of the rows (sqrt(3)·2^-24) and of the formula
 constexpr double kMinNear = 0x1p-40;
-constexpr double kMaxNear = 0x1p61;        // below METRIC_ERROR_CAP: a capped error never passes by the near distance
+constexpr double kMaxNear = 0x1p61;  // below METRIC_ERROR_CAP: a capped error never passes by the near distance
 constexpr double kMaxFactor = 0x1p126;
-constexpr double kMinFactor = 0x1p-126;    // the smallest normal float
-constexpr int kScaledExponent = 30;        // the largest scaled length lies in [2^29, 2^30)
+constexpr double kMinFactor = 0x1p-126;  // the smallest normal float
+constexpr int kScaledExponent = 30;      // the largest scaled length lies in [2^29, 2^30)
 
 // The smallest float that is not below `value`. \pre 0 <= value <= FLT_MAX
 float float_above(double value) {
@@ -23,7 +23,9 @@ float float_above(double value) {
 }
 
 // NaN becomes `high`: an error scale that makes no sense lets nothing pass but errors of 0.
-double clamp_or_high(double value, double low, double high) { return value < high ? std::max(value, low) : high; }
+double clamp_or_high(double value, double low, double high) {
+  return value < high ? std::max(value, low) : high;
+}
 
 // A power of two that brings the instance's lengths to about 2^30.
 double choose_unit(double largest_length, double sigma) {
@@ -53,8 +55,8 @@ MetricView make_metric_view(const Camera& camera, double pixel_error, const form
   const double sigma = instance.scale;
   const double height = camera.height;
   // Pixels per world unit at distance 1 (perspective) or anywhere (orthographic), over the allowed pixels.
-  const double pixels = camera.is_orthographic ? height / camera.ortho_height
-                                               : height / (2.0 * std::tan(0.5 * camera.fovy));
+  const double pixels =
+      camera.is_orthographic ? height / camera.ortho_height : height / (2.0 * std::tan(0.5 * camera.fovy));
   MetricView view{};
   if (!(pixel_error > 0.0)) {
     view.error_scale = static_cast<float>(kMaxFactor);  // any normal error is scaled to 1 at least
@@ -77,18 +79,17 @@ MetricView make_metric_view(const Camera& camera, double pixel_error, const form
     const double* row = m + 4 * i;
     translation[i] = ((row[0] * o[0] + row[1] * o[1]) + row[2] * o[2]) + (row[3] - eye[i]);
   }
-  const double distance = std::sqrt(translation[0] * translation[0] + translation[1] * translation[1] +
-                                    translation[2] * translation[2]);
+  const double distance =
+      std::sqrt(translation[0] * translation[0] + translation[1] * translation[1] + translation[2] * translation[2]);
   const double unit = choose_unit(std::max(sigma * reach, distance), sigma);
   MetricVec4* rows[3] = {&view.row0, &view.row1, &view.row2};
   for (int i = 0; i < 3; ++i) {
     const double* row = m + 4 * i;
-    *rows[i] = {static_cast<float>(row[0] * unit), static_cast<float>(row[1] * unit),
-                static_cast<float>(row[2] * unit), static_cast<float>(translation[i] * unit)};
+    *rows[i] = {static_cast<float>(row[0] * unit), static_cast<float>(row[1] * unit), static_cast<float>(row[2] * unit),
+                static_cast<float>(translation[i] * unit)};
   }
   view.scale = float_above(clamp_or_high(sigma * unit * kGrowth, 0.0, kMaxFactor));
-  view.error_scale =
-      float_above(clamp_or_high(sigma * pixels_per_error * unit * kGrowth, kMinFactor, kMaxFactor));
+  view.error_scale = float_above(clamp_or_high(sigma * pixels_per_error * unit * kGrowth, kMinFactor, kMaxFactor));
   view.near_distance = static_cast<float>(clamp_or_high(camera.near_distance * unit, kMinNear, kMaxNear));
   return view;
 }

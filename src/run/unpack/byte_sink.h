@@ -7,7 +7,9 @@
 
 namespace meshlode::run {
 
-[[nodiscard]] constexpr std::uint64_t low_mask(std::uint32_t bits) { return (std::uint64_t{1} << bits) - 1U; }
+[[nodiscard]] constexpr std::uint64_t low_mask(std::uint32_t bits) {
+  return (std::uint64_t{1} << bits) - 1U;
+}
 
 class ByteSink {
  public:

@@ -90,8 +90,8 @@ class PageChecker {
   Status check_materials(const format::ClusterLayout& layout) {
     std::int64_t previous = -1;
     for (std::uint32_t r = 0; r < layout.material_count; ++r) {
-      const std::int32_t material =
-          format::get_field(&words_[layout.material_word + r * format::material_range::kWords], format::material_range::kMaterial);
+      const std::int32_t material = format::get_field(
+          &words_[layout.material_word + r * format::material_range::kWords], format::material_range::kMaterial);
       if (static_cast<std::uint32_t>(material) >= asset_.materials().size()) return fail("material", "is out of range");
       if (material <= previous) return fail("material", "must be larger than the one before it");
       previous = material;

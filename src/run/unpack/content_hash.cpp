@@ -43,8 +43,8 @@ Result<Hash128> hash_asset_content(const Asset& asset) {
       }
     }
   };
-  for (const format::SectionId id : {kScene, kStrings, kMeshes, kMaterials, kInstances, kGroups, kClusters, kNodes,
-                                     kPages, kPageDeps}) {
+  for (const format::SectionId id :
+       {kScene, kStrings, kMeshes, kMaterials, kInstances, kGroups, kClusters, kNodes, kPages, kPageDeps}) {
     add_section(id);
   }
   for (std::size_t p = 0; p < asset.pages().size(); ++p) {

@@ -44,7 +44,8 @@ bool PageColumns::read_heads(ColumnReader& columns) {
       std::uint32_t value = planes[0][c] | std::uint32_t{planes[1][c]} << 8U;
       if (index > 0) value |= std::uint32_t{planes[2][c]} << 16U | std::uint32_t{planes[3][c]} << 24U;
       if (index >= 1 && index <= 3) {
-        coordinate = (coordinate + format::unfold_coordinate(value & format::kCoordinateMask)) & format::kCoordinateMask;
+        coordinate =
+            (coordinate + format::unfold_coordinate(value & format::kCoordinateMask)) & format::kCoordinateMask;
         value = (value & ~format::kCoordinateMask) | coordinate;
       }
       *word = value;

@@ -37,8 +37,8 @@ class PageColumns {
   /// Takes all that is left of `columns` and writes the heads. False where it does not fit.
   bool read(ColumnReader& columns);
 
-  /// Says in the head that the cluster's data starts at `word`, and puts its range words there. Null where that cannot be,
-  /// else the word behind them.
+  /// Says in the head that the cluster's data starts at `word`, and puts its range words there. Null where that cannot
+  /// be, else the word behind them.
   bool place_cluster(std::uint32_t cluster, std::uint32_t& word);
 
   [[nodiscard]] std::uint32_t first_data_word() const { return 2 + cluster_count_ * format::head_words(mesh_); }

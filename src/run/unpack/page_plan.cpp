@@ -17,7 +17,8 @@ bool plan_page(const format::MeshRecord& mesh, std::uint32_t cluster_count, Page
     if (!columns.place_cluster(c, word)) return false;
     format::ClusterFields& cluster = out.clusters[c];
     const format::ClusterLayout& layout = cluster.layout;
-    if (format::read_cluster_layout(mesh, page, c, cluster.layout) != nullptr || layout.stream_word != word) return false;
+    if (format::read_cluster_layout(mesh, page, c, cluster.layout) != nullptr || layout.stream_word != word)
+      return false;
     format::read_cluster_fields(mesh, page.data(), cluster, out.ranges);
     word = layout.end_word;
     out.first_vertex[c + 1] = out.first_vertex[c] + layout.vertex_count;

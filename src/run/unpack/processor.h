@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Hot loops are compiled twice: for any x86-64, and for processors whose shifts need no flags (BMI2, 2013 and later). The
-// same integers come out of both.
+// Hot loops are compiled twice: for any x86-64, and for processors whose shifts need no flags (BMI2, 2013 and later).
+// The same integers come out of both.
 #pragma once
 
 #if defined(__x86_64__) && defined(__GNUC__)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// All streams of a kind are read side by side: each number waits for the one before it in its stream, so that only other
-// streams can fill the time.
+// All streams of a kind are read side by side: each number waits for the one before it in its stream, so that only
+// other streams can fill the time.
 #include <algorithm>
 #include <memory>
 
@@ -12,8 +12,8 @@ namespace meshlode::run {
 
 namespace {
 
-/// Numbers between two looks at the streams' ends, and by how much the buffer must be longer for that: a number has at most
-/// kMaxCodeBits and 29 raw bits.
+/// Numbers between two looks at the streams' ends, and by how much the buffer must be longer for that: a number has at
+/// most kMaxCodeBits and 29 raw bits.
 constexpr std::uint32_t kChunk = 256;
 constexpr std::size_t kPaddingBytes = kChunk * 5 + 16;
 
@@ -87,8 +87,13 @@ bool read_lanes(const std::uint8_t* buffer, std::span<Lane<Word>> lanes, std::ui
 template <class L>
 class PrefixReader {
  public:
-  PrefixReader(const format::MeshRecord& mesh, const StreamBytes& streams, const StreamCounts& counts, StripValues<L>& out)
-      : mesh_(mesh), streams_(streams), counts_(counts), out_(out), tables_(new format::CodeTable[format::kMaxTables]),
+  PrefixReader(const format::MeshRecord& mesh, const StreamBytes& streams, const StreamCounts& counts,
+               StripValues<L>& out)
+      : mesh_(mesh),
+        streams_(streams),
+        counts_(counts),
+        out_(out),
+        tables_(new format::CodeTable[format::kMaxTables]),
         quick_(new format::QuickTable[format::kMaxTables]) {
     buffer_.resize(streams.bytes.size() + kPaddingBytes);
     std::copy(streams.bytes.begin(), streams.bytes.end(), buffer_.data());
@@ -103,11 +108,13 @@ class PrefixReader {
   bool prepare(std::span<const std::uint8_t> code_lengths) {
     if (code_lengths.size() != code_length_bytes(mesh_)) return false;
     for (std::uint32_t t = 0; t < format::kUvTables + mesh_.uv_set_count; ++t) {
-      if (!format::fill_code_tables(code_lengths.first(format::symbol_count(t)), meaning_of(t), tables_[t], quick_[t])) return false;
+      if (!format::fill_code_tables(code_lengths.first(format::symbol_count(t)), meaning_of(t), tables_[t], quick_[t]))
+        return false;
       code_lengths = code_lengths.subspan(format::symbol_count(t));
     }
     for (std::uint32_t s = 0; s < format::kFieldStreams; ++s) out_.streams[s].resize(counts_.count[s]);
-    for (std::uint32_t q = 0; q < quad_count<L>(mesh_); ++q) out_.errors[q].resize(counts_.count[format::kFieldStreams], kErrorsBehind);
+    for (std::uint32_t q = 0; q < quad_count<L>(mesh_); ++q)
+      out_.errors[q].resize(counts_.count[format::kFieldStreams], kErrorsBehind);
     return true;
   }
 
@@ -116,15 +123,20 @@ class PrefixReader {
  private:
   static constexpr format::Meaning meaning_of(std::uint32_t table) {
     return format::symbol_count(table) != format::kValueSymbols ? format::Meaning::kSymbol
-           : is_folded(table)                   ? format::Meaning::kFolded  // the first tables have their streams' numbers
-                                                : format::Meaning::kNumber;
+           : is_folded(table) ? format::Meaning::kFolded  // the first tables have their streams' numbers
+                              : format::Meaning::kNumber;
   }
 
   template <class Word>
   Lane<Word> lane(std::uint32_t stream, Word* out) const {
     const std::uint32_t table = format::table_of_stream(mesh_, stream);
-    return {&tables_[table], &quick_[table], starts_[stream], starts_[stream] + std::uint64_t{streams_.size[stream]} * 8,
-            out, counts_.count[stream], meaning_of(table)};
+    return {&tables_[table],
+            &quick_[table],
+            starts_[stream],
+            starts_[stream] + std::uint64_t{streams_.size[stream]} * 8,
+            out,
+            counts_.count[stream],
+            meaning_of(table)};
   }
 
   /// Streams of different lengths: the longest first, and fewer and fewer of them.
@@ -169,8 +181,8 @@ MESHLODE_FOR_BMI2 bool run_with_bmi2(PrefixReader<L>& reader) {
 #endif
 
 template <class L>
-bool read_streams(const format::MeshRecord& mesh, std::span<const std::uint8_t> code_lengths, const StreamBytes& streams,
-                  const StreamCounts& counts, StripValues<L>& out) {
+bool read_streams(const format::MeshRecord& mesh, std::span<const std::uint8_t> code_lengths,
+                  const StreamBytes& streams, const StreamCounts& counts, StripValues<L>& out) {
   PrefixReader<L> reader(mesh, streams, counts, out);
   if (!reader.prepare(code_lengths)) return false;
 #if MESHLODE_HAS_BMI2_PATH

@@ -4,14 +4,14 @@
 #include <array>
 #include <cstring>
 
-#include "format/section_columns.h"
 #include "format/page_streams.h"
+#include "format/section_columns.h"
 #include "run/unpack/strip_values.h"
 
 namespace meshlode::run {
 
-bool unpack_side_columns(const format::MeshRecord& mesh, std::uint32_t cluster_count, std::span<const std::uint8_t> stored,
-                         std::span<std::uint8_t> out) {
+bool unpack_side_columns(const format::MeshRecord& mesh, std::uint32_t cluster_count,
+                         std::span<const std::uint8_t> stored, std::span<std::uint8_t> out) {
   format::ColumnSource source(stored);
   std::size_t at = 0;
   const auto take = [&](std::size_t count) {

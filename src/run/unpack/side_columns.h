@@ -9,8 +9,8 @@
 
 namespace meshlode::run {
 
-/// Fills `out` exactly: code lengths, counts of range words, planes of heads, planes of range words. False where the stored
-/// bytes do not say that.
+/// Fills `out` exactly: code lengths, counts of range words, planes of heads, planes of range words. False where the
+/// stored bytes do not say that.
 [[nodiscard]] bool unpack_side_columns(const format::MeshRecord& mesh, std::uint32_t cluster_count,
                                        std::span<const std::uint8_t> stored, std::span<std::uint8_t> out);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The slots of one cluster's strips as rows of bytes: how each names its vertex and where the strip turns, spliced from the
-// symbols of the stored page. Nothing here waits for a vertex, so that the walk along the strips has little left to do.
+// The slots of one cluster's strips as rows of bytes: how each names its vertex and where the strip turns, spliced from
+// the symbols of the stored page. Nothing here waits for a vertex, so that the walk along the strips has little left to
+// do.
 #pragma once
 
 #include <algorithm>
@@ -17,18 +18,18 @@ namespace meshlode::run {
 
 constexpr std::uint32_t kMaxSlots = format::kMaxClusterTriangles * 3;  ///< every triangle a strip of its own
 
-/// A slot as a byte. In the row of slots kTurnBit says whether the strip turns the other way than at the triangle before
-/// (the first triangle of a strip counts as a left turn), in the row of triangles whether it turns right.
-constexpr std::uint32_t kFreshBit = 1;    ///< names the next vertex, which is a twin or
+/// A slot as a byte. In the row of slots kTurnBit says whether the strip turns the other way than at the triangle
+/// before (the first triangle of a strip counts as a left turn), in the row of triangles whether it turns right.
+constexpr std::uint32_t kFreshBit = 1;  ///< names the next vertex, which is a twin or
 constexpr std::uint32_t kTurnBit = 2;
-constexpr std::uint32_t kNewBit = 4;      ///< new: the highest bit, so that a shift alone counts them
+constexpr std::uint32_t kNewBit = 4;  ///< new: the highest bit, so that a shift alone counts them
 constexpr std::uint32_t kNewBitIndex = 2;
-constexpr std::uint32_t kSlotBytes = 8;   ///< how many bytes there can be
+constexpr std::uint32_t kSlotBytes = 8;  ///< how many bytes there can be
 
 [[nodiscard]] constexpr std::uint32_t slot_byte(std::uint32_t kind) {
   return kind == static_cast<std::uint32_t>(format::SlotKind::kReference) ? 0U
          : kind == static_cast<std::uint32_t>(format::SlotKind::kNew)     ? kFreshBit | kNewBit
-                                                                  : kFreshBit;
+                                                                          : kFreshBit;
 }
 
 /// The three triangles of a triple, one a byte.
@@ -46,8 +47,8 @@ constexpr std::array<std::uint32_t, format::kTripleSymbols> make_triple_bytes() 
 constexpr std::array<std::uint32_t, format::kStartSymbols> make_start_bytes() {
   std::array<std::uint32_t, format::kStartSymbols> table{};
   for (std::uint32_t s = 0; s < format::kStartSymbols; ++s) {
-    table[s] = slot_byte(s / (format::kSlotKinds * format::kSlotKinds)) | slot_byte(s / format::kSlotKinds % format::kSlotKinds) << 8U |
-               slot_byte(s % format::kSlotKinds) << 16U;
+    table[s] = slot_byte(s / (format::kSlotKinds * format::kSlotKinds)) |
+               slot_byte(s / format::kSlotKinds % format::kSlotKinds) << 8U | slot_byte(s % format::kSlotKinds) << 16U;
   }
   return table;
 }
@@ -65,8 +66,8 @@ constexpr std::uint32_t kTurnBitIndex = 1;
 
 class StripSlots {
  public:
-  /// Reads a cluster's strips: triples, starts and lengths are as many as its head says. False where they make no strips of
-  /// that many triangles, or name another number of vertices.
+  /// Reads a cluster's strips: triples, starts and lengths are as many as its head says. False where they make no
+  /// strips of that many triangles, or name another number of vertices.
   bool read(const format::ClusterLayout& layout, const std::uint32_t* triples, const std::uint32_t* starts,
             const std::uint32_t* lengths) {
     const std::uint32_t continued = layout.triangle_count - layout.strip_count;
@@ -82,7 +83,8 @@ class StripSlots {
     std::uint32_t t = 0;     // triangles so far
     std::uint32_t from = 0;  // of them, those that continue a strip
     for (std::uint32_t strip = 0; strip < layout.strip_count; ++strip) {
-      const std::uint32_t left = layout.triangle_count - t - (layout.strip_count - strip - 1);  // one each for the others
+      const std::uint32_t left =
+          layout.triangle_count - t - (layout.strip_count - strip - 1);  // one each for the others
       std::uint32_t more = left - 1;
       if (strip + 1 < layout.strip_count) {
         more = lengths[strip];

@@ -13,7 +13,9 @@ namespace meshlode::run {
 
 /// The fields of a vertex as lanes of 16-byte vectors. Position fields are slots 0 to 2, in the order of their streams;
 /// slot 3 is not used; the others follow from slot 4 on, so that the pairs of normals and UVs never part.
-[[nodiscard]] constexpr std::uint32_t slot_of(std::uint32_t field) { return field < 3 ? field : field + 1; }
+[[nodiscard]] constexpr std::uint32_t slot_of(std::uint32_t field) {
+  return field < 3 ? field : field + 1;
+}
 constexpr std::uint32_t kMaxSlotsOfVertex = format::kMaxFields + 1;
 constexpr std::uint32_t kNormalSlot = 4;
 
@@ -26,7 +28,8 @@ struct WideLanes {
 };
 
 /// Pages whose fields have few bits (kMaxNarrowBits): twice as many to a vector. Everything but the half of a normal's
-/// prediction is right modulo 2^16, and that has six times a field at most; a folded error has two bits more than a field.
+/// prediction is right modulo 2^16, and that has six times a field at most; a folded error has two bits more than a
+/// field.
 struct NarrowLanes {
   using Word = std::uint16_t;
   using Vector = std::uint16_t __attribute__((vector_size(16)));
@@ -69,15 +72,18 @@ class UnfilledArray {
 
 template <class L>
 struct StripValues {
-  std::array<UnfilledArray<std::uint32_t>, format::kFieldStreams> streams;   ///< symbols, and numbers unfolded
-  std::array<UnfilledArray<Quad<L>>, kMaxQuads<L>> errors;           ///< unfolded, of each new vertex; unused lanes have any value
+  std::array<UnfilledArray<std::uint32_t>, format::kFieldStreams> streams;  ///< symbols, and numbers unfolded
+  std::array<UnfilledArray<Quad<L>>, kMaxQuads<L>>
+      errors;  ///< unfolded, of each new vertex; unused lanes have any value
 };
 
 /// Errors can be read one beyond the last: a walk looks at the next one before it knows whether it is called for.
 constexpr std::size_t kErrorsBehind = 1;
 
 /// Whether the numbers of a stream are folded.
-[[nodiscard]] constexpr bool is_folded(std::uint32_t stream) { return stream >= format::kReferenceStream; }
+[[nodiscard]] constexpr bool is_folded(std::uint32_t stream) {
+  return stream >= format::kReferenceStream;
+}
 
 /// How many numbers each stream holds: the heads say it, and of twins the stored header.
 struct StreamCounts {

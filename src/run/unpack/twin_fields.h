@@ -16,9 +16,9 @@ namespace meshlode::run {
 
 /// One cluster's way between the raw fields and the integers of a position and a normal.
 struct TwinFrame {
-  std::uint32_t lane[3];                  ///< of x y z among the fields as they are stored
-  std::uint32_t minimum[3], mask[3];      ///< of x y z; the mask is of the bits that the page has
-  std::uint32_t factor[3], is_sheared[3]; ///< of the shear; all ones for the axis that it is added to
+  std::uint32_t lane[3];                   ///< of x y z among the fields as they are stored
+  std::uint32_t minimum[3], mask[3];       ///< of x y z; the mask is of the bits that the page has
+  std::uint32_t factor[3], is_sheared[3];  ///< of the shear; all ones for the axis that it is added to
   std::uint32_t normal_minimum[2], normal_mask[2], chart;
 
   TwinFrame() = default;
@@ -34,7 +34,8 @@ struct TwinFrame {
       is_sheared[axis] = role == 2 ? ~0U : 0U;
     }
     for (std::size_t k = 0; k < 2; ++k) {
-      normal_minimum[k] = static_cast<std::uint32_t>(layout.normal_minimum[k]) - static_cast<std::uint32_t>(mesh.normal_scale);
+      normal_minimum[k] =
+          static_cast<std::uint32_t>(layout.normal_minimum[k]) - static_cast<std::uint32_t>(mesh.normal_scale);
       normal_mask[k] = (1U << layout.normal_bits[k]) - 1U;
     }
     chart = layout.chart;
@@ -62,19 +63,24 @@ class TwinFields {
   TwinFields(const format::MeshRecord& mesh, const std::vector<format::ClusterFields>& clusters,
              const std::vector<format::UvRangeFields>& ranges, const std::vector<std::uint16_t>& range_of,
              std::uint32_t vertex_count)
-      : scale_(static_cast<std::uint32_t>(mesh.normal_scale)), set_count_(mesh.uv_set_count), vertex_count_(vertex_count),
-        has_normals_(mesh.normal_mode == format::NormalMode::kStored), has_color_(mesh.has_color != 0),
-        clusters_(clusters.data()), range_of_(range_of.data()) {
+      : scale_(static_cast<std::uint32_t>(mesh.normal_scale)),
+        set_count_(mesh.uv_set_count),
+        vertex_count_(vertex_count),
+        has_normals_(mesh.normal_mode == format::NormalMode::kStored),
+        has_color_(mesh.has_color != 0),
+        clusters_(clusters.data()),
+        range_of_(range_of.data()) {
     frames_.reserve(clusters.size());
     for (const format::ClusterFields& cluster : clusters) frames_.emplace_back(mesh, cluster.layout);
     ranges_.reserve(ranges.size());
     for (const format::UvRangeFields& range : ranges) ranges_.emplace_back(range);
   }
 
-  /// `there` and `here` are vertices of the page, in the clusters `from` and `to`, and these their fields by slot (slot_of).
-  /// Of those that are there the lowest bits count, as the page has them.
+  /// `there` and `here` are vertices of the page, in the clusters `from` and `to`, and these their fields by slot
+  /// (slot_of). Of those that are there the lowest bits count, as the page has them.
   template <class Word>
-  void move(std::uint32_t from, std::uint32_t there, const Word* get, std::uint32_t to, std::uint32_t here, Word* put) const {
+  void move(std::uint32_t from, std::uint32_t there, const Word* get, std::uint32_t to, std::uint32_t here,
+            Word* put) const {
     const TwinFrame& a = frames_[from];
     const TwinFrame& b = frames_[to];
     std::uint32_t raw[3];
@@ -100,8 +106,8 @@ class TwinFields {
       const TwinRange& s = ranges_[range_of[there]];
       const TwinRange& t = ranges_[range_of[here]];
       for (std::size_t side = 0; side < 2; ++side) {
-        put[side] = static_cast<Word>((get[side] & s.mask[side]) + s.minimum[side] - t.minimum[side] + fit(s, side, raw) -
-                                      fit(t, side, own));
+        put[side] = static_cast<Word>((get[side] & s.mask[side]) + s.minimum[side] - t.minimum[side] +
+                                      fit(s, side, raw) - fit(t, side, own));
       }
     }
     if (has_color_) {

@@ -12,8 +12,8 @@
 
 namespace meshlode::run {
 
-/// A page in its decoded form: a view of the file where it is stored uncompressed, else bytes of its own. They are whole
-/// u32 words, aligned as such.
+/// A page in its decoded form: a view of the file where it is stored uncompressed, else bytes of its own. They are
+/// whole u32 words, aligned as such.
 class PageBytes {
  public:
   explicit PageBytes(std::span<const std::uint8_t> view) : view_(view) {}

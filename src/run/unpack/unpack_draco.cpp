@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Wrapper of Draco's decoder for numbers. How many there are is said from outside, so its memory is bounded by that and by
-// a probability table whose size Draco holds against the bytes at hand.
+// Wrapper of Draco's decoder for numbers. How many there are is said from outside, so its memory is bounded by that and
+// by a probability table whose size Draco holds against the bytes at hand.
 #include "run/unpack/decompressors.h"
 
 #ifdef MESHLODE_HAS_DRACO
@@ -24,7 +24,9 @@ UnpackOutcome unpack_draco(std::span<const std::uint8_t> stored, std::span<std::
 
 #else
 
-UnpackOutcome unpack_draco(std::span<const std::uint8_t>, std::span<std::uint32_t>) { return UnpackOutcome::kNotBuiltIn; }
+UnpackOutcome unpack_draco(std::span<const std::uint8_t>, std::span<std::uint32_t>) {
+  return UnpackOutcome::kNotBuiltIn;
+}
 
 #endif
 

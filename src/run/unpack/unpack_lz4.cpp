@@ -16,7 +16,9 @@ UnpackOutcome unpack_lz4(std::span<const std::uint8_t> stored, std::span<std::ui
   return size >= 0 && static_cast<std::size_t>(size) == out.size() ? UnpackOutcome::kOk : UnpackOutcome::kBroken;
 }
 #else
-UnpackOutcome unpack_lz4(std::span<const std::uint8_t>, std::span<std::uint8_t>) { return UnpackOutcome::kNotBuiltIn; }
+UnpackOutcome unpack_lz4(std::span<const std::uint8_t>, std::span<std::uint8_t>) {
+  return UnpackOutcome::kNotBuiltIn;
+}
 #endif
 
 }  // namespace meshlode::run

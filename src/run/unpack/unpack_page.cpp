@@ -34,7 +34,8 @@ class StoredPage {
     if (stored_.size() < sizeof(header_) || page_.size() < 3) return UnpackOutcome::kBroken;
     std::memcpy(&header_, stored_.data(), sizeof(header_));
     stored_ = stored_.subspan(sizeof(header_));
-    if (record_.codec == format::Codec::kNone || header_.method != static_cast<std::uint32_t>(format::method_of(record_.codec)) ||
+    if (record_.codec == format::Codec::kNone ||
+        header_.method != static_cast<std::uint32_t>(format::method_of(record_.codec)) ||
         header_.side_stored > stored_.size() || header_.side_bytes > kMaxSideBytes) {
       return UnpackOutcome::kBroken;
     }
@@ -45,7 +46,8 @@ class StoredPage {
 
     page_[0] = record_.first_cluster;
     page_[1] = record_.cluster_count;
-    const bool is_ok = format::method_of(record_.codec) == format::PageMethod::kColumns ? unpack_columns() : unpack_strip_page();
+    const bool is_ok =
+        format::method_of(record_.codec) == format::PageMethod::kColumns ? unpack_columns() : unpack_strip_page();
     return is_ok ? UnpackOutcome::kOk : UnpackOutcome::kBroken;
   }
 
@@ -55,7 +57,8 @@ class StoredPage {
       case format::Codec::kLz4: return unpack_lz4(side, side_);
       case format::Codec::kZstd: return unpack_zstd(side, side_);
       case format::Codec::kStrips:
-        return unpack_side_columns(mesh_, record_.cluster_count, side, side_) ? UnpackOutcome::kOk : UnpackOutcome::kBroken;
+        return unpack_side_columns(mesh_, record_.cluster_count, side, side_) ? UnpackOutcome::kOk
+                                                                              : UnpackOutcome::kBroken;
       case format::Codec::kDraco: return unpack_draco_side(side);
       case format::Codec::kNone: break;
     }
@@ -118,7 +121,8 @@ class StoredPage {
   template <class L>
   bool read_draco_streams(const StreamBytes& streams, const StreamCounts& counts, StripValues<L>& out) const {
     const std::uint32_t fields = format::field_count(mesh_);
-    for (std::uint32_t q = 0; q < quad_count<L>(mesh_); ++q) out.errors[q].resize(counts.count[format::kFieldStreams], kErrorsBehind);
+    for (std::uint32_t q = 0; q < quad_count<L>(mesh_); ++q)
+      out.errors[q].resize(counts.count[format::kFieldStreams], kErrorsBehind);
     std::span<const std::uint8_t> rest = streams.bytes;
     UnfilledArray<std::uint32_t> numbers;
     for (std::uint32_t s = 0; s < format::kFieldStreams + fields; ++s) {

@@ -50,8 +50,13 @@ class StripUnpacker {
  public:
   StripUnpacker(const format::MeshRecord& mesh, const PagePlan& plan, const StripValues<L>& values,
                 std::span<std::uint32_t> page)
-      : mesh_(mesh), plan_(plan), values_(values), page_(page), fields_(format::field_count(mesh)),
-        vertex_count_(plan.first_vertex.back()), cluster_of_(vertex_count_),
+      : mesh_(mesh),
+        plan_(plan),
+        values_(values),
+        page_(page),
+        fields_(format::field_count(mesh)),
+        vertex_count_(plan.first_vertex.back()),
+        cluster_of_(vertex_count_),
         range_of_(std::size_t{vertex_count_} * mesh.uv_set_count),
         twin_fields_(mesh, plan.clusters, plan.ranges, range_of_, vertex_count_) {
     name_ranges();
@@ -66,7 +71,8 @@ class StripUnpacker {
       const format::ClusterFields& cluster = plan_.clusters[c];
       if (!read_topology(cluster.layout) || !place_twins(c) || !walk(c)) return false;
       write_stream(c);
-      std::fill_n(cluster_of_.begin() + plan_.first_vertex[c], cluster.layout.vertex_count, static_cast<std::uint16_t>(c));
+      std::fill_n(cluster_of_.begin() + plan_.first_vertex[c], cluster.layout.vertex_count,
+                  static_cast<std::uint16_t>(c));
     }
     return true;
   }
@@ -115,7 +121,8 @@ class StripUnpacker {
     }
     references_[layout.reference_count] = 0;  // looked at, and of no effect, behind the last one
     return slots_.read(layout, take(format::kTripleStream, (layout.triangle_count - layout.strip_count + 2) / 3),
-                       take(format::kStartStream, layout.strip_count), take(format::kLengthStream, layout.strip_count - 1));
+                       take(format::kStartStream, layout.strip_count),
+                       take(format::kLengthStream, layout.strip_count - 1));
   }
 
   /// The fields of vertices that earlier clusters hold.
@@ -153,9 +160,9 @@ class StripUnpacker {
     return out.vectors;
   }
 
-  /// Goes along the strips: which vertex every slot names, and the fields of the new ones. The last three vertices stay in
-  /// registers, and every choice is made by masks: which way a slot is named cannot be foreseen, and a wrong guess costs
-  /// more than all of this.
+  /// Goes along the strips: which vertex every slot names, and the fields of the new ones. The last three vertices stay
+  /// in registers, and every choice is made by masks: which way a slot is named cannot be foreseen, and a wrong guess
+  /// costs more than all of this.
   bool walk(std::uint32_t c) {
     const format::ClusterFields& cluster = plan_.clusters[c];
     const ClusterLayout& layout = cluster.layout;
@@ -264,7 +271,8 @@ class StripUnpacker {
   void put_topology(ByteSink& sink, const ClusterLayout& layout) const {
     for (std::uint32_t t = 0; t < layout.triangle_count; t += 32) {
       std::uint64_t bits = 0;
-      for (std::uint32_t k = 0; k < 32; k += 8) bits |= std::uint64_t{gather_bits(slots_.turns() + t + k, kTurnBitIndex)} << k;
+      for (std::uint32_t k = 0; k < 32; k += 8)
+        bits |= std::uint64_t{gather_bits(slots_.turns() + t + k, kTurnBitIndex)} << k;
       const std::uint32_t count = std::min(layout.triangle_count - t, 32U);
       sink.put(bits & low_mask(count), count);
     }
@@ -325,7 +333,7 @@ class StripUnpacker {
   std::array<std::uint32_t, format::kFieldStreams> next_{};  ///< number of each stream
   std::uint32_t next_error_ = 0;
   std::uint32_t last_twin_ = 0;
-  Quad<L> normals_{};  ///< mask of the fields that are normals
+  Quad<L> normals_{};          ///< mask of the fields that are normals
   UnfilledArray<Vertex> raw_;  ///< the page's vertices, field by field as their own cluster says them
 
   // Of the cluster at hand.

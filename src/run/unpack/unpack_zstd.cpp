@@ -14,7 +14,9 @@ UnpackOutcome unpack_zstd(std::span<const std::uint8_t> stored, std::span<std::u
   return ZSTD_isError(size) == 0U && size == out.size() ? UnpackOutcome::kOk : UnpackOutcome::kBroken;
 }
 #else
-UnpackOutcome unpack_zstd(std::span<const std::uint8_t>, std::span<std::uint8_t>) { return UnpackOutcome::kNotBuiltIn; }
+UnpackOutcome unpack_zstd(std::span<const std::uint8_t>, std::span<std::uint8_t>) {
+  return UnpackOutcome::kNotBuiltIn;
+}
 #endif
 
 }  // namespace meshlode::run

@@ -15,8 +15,9 @@ namespace meshlode::scene {
 
 struct JsonMember;
 
-/// Null. Not trivially copyable: of a variant whose alternatives all move without throwing libstdc++ 12 believes that it
-/// always has a value, and destroys one that is not there where making a copy runs out of memory. This one it believes less of.
+/// Null. Not trivially copyable: of a variant whose alternatives all move without throwing libstdc++ 12 believes that
+/// it always has a value, and destroys one that is not there where making a copy runs out of memory. This one it
+/// believes less of.
 struct JsonNull {
   JsonNull() = default;
   JsonNull(const JsonNull&) noexcept {}

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstdint>
 
-#include "scene/scene.h"
 #include "scene/samples/cube_grid.h"
+#include "scene/scene.h"
 
 namespace meshlode::scene {
 

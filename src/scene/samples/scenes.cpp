@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "scene/samples/city.h"
+#include "scene/samples/samples.h"
 #include "scene/samples/write_glb.h"
 #include "scene/samples/write_png.h"
-#include "scene/samples/samples.h"
 
 namespace meshlode::scene {
 

@@ -46,9 +46,9 @@ TEST(Cluster, CapsHoldOnEveryShape) {
   for (int i = 0; i < 10000; ++i) fan.positions.push_back({i * 1e-3, (i % 97) * 0.01, 0});
   for (std::uint32_t i = 1; i < 10000; ++i) fan.indices.insert(fan.indices.end(), {0, i, i + 1});
   const scene::Primitive shapes[] = {scene::make_sphere(30),        scene::make_box_soup(300),
-                              scene::make_loose_pieces(500), scene::make_slivers(400),
-                              scene::make_three_sheets(20),  scene::make_double_cone(200),
-                              scene::make_moebius(60, 6),    fan};
+                                     scene::make_loose_pieces(500), scene::make_slivers(400),
+                                     scene::make_three_sheets(20),  scene::make_double_cone(200),
+                                     scene::make_moebius(60, 6),    fan};
   for (const scene::Primitive& shape : shapes) {
     const PreparedMesh mesh = prepare(shape);
     expect_caps(mesh, cluster(mesh), {});
@@ -177,7 +177,8 @@ TEST(TriangleGraph, IsSymmetricWithoutLoopsOrRepeats) {
   const Graph graph = triangle_graph(triangles);
   std::set<std::pair<std::int32_t, std::int32_t>> seen;
   for (std::int32_t i = 0; i < 5; ++i) {
-    for (auto e = graph.row_start[static_cast<std::size_t>(i)]; e < graph.row_start[static_cast<std::size_t>(i) + 1]; ++e) {
+    for (auto e = graph.row_start[static_cast<std::size_t>(i)]; e < graph.row_start[static_cast<std::size_t>(i) + 1];
+         ++e) {
       const std::int32_t n = graph.neighbor[static_cast<std::size_t>(e)];
       EXPECT_NE(n, i);
       EXPECT_TRUE(seen.insert({i, n}).second);

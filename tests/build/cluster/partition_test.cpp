@@ -89,7 +89,9 @@ TEST(Partition, ThreadsDoNotDisturbEachOther) {
   EXPECT_EQ(std::accumulate(differences.begin(), differences.end(), 0), 0);
 }
 
-TEST(Partition, ThisProgramBringsItsOwnRand) { EXPECT_TRUE(is_partition_concurrent()); }
+TEST(Partition, ThisProgramBringsItsOwnRand) {
+  EXPECT_TRUE(is_partition_concurrent());
+}
 
 TEST(Partition, TheProgramsRandGivesGlibcsNumbers) {
   // The first values of glibc's rand() after srand(1), as its generator is documented: r[i] = r[i-3] + r[i-31].

@@ -125,7 +125,8 @@ void expect_sound(const Built& built) {
     if (group.is_terminal) continue;
     Chain fine;
     Chain coarse;
-    for (std::uint32_t c = group.first_cluster; c < group.first_cluster + group.cluster_count; ++c) add_cluster(fine, dag, c);
+    for (std::uint32_t c = group.first_cluster; c < group.first_cluster + group.cluster_count; ++c)
+      add_cluster(fine, dag, c);
     for (const std::size_t c : made[g]) add_cluster(coarse, dag, c);
     for (const auto& [edge, count] : fine) {
       const auto other = coarse.find(edge);
@@ -146,9 +147,9 @@ std::size_t count_roots(const LodDag& dag) {
 }
 
 TEST(Dag, SmoothShapesEndInOneRoot) {
-  const scene::Primitive shapes[] = {scene::make_sphere(24), scene::make_torus(60, 30), scene::make_plane(40),
-                              scene::with_smooth_normals(scene::make_sphere(20)), scene::make_rock(16),
-                              scene::make_terrain(48, 48)};
+  const scene::Primitive shapes[] = {scene::make_sphere(24), scene::make_torus(60, 30),
+                                     scene::make_plane(40),  scene::with_smooth_normals(scene::make_sphere(20)),
+                                     scene::make_rock(16),   scene::make_terrain(48, 48)};
   for (const scene::Primitive& shape : shapes) {
     const Built built = build(shape);
     expect_sound(built);
@@ -159,11 +160,18 @@ TEST(Dag, SmoothShapesEndInOneRoot) {
 }
 
 TEST(Dag, HardShapesAreSound) {
-  const scene::Primitive shapes[] = {scene::make_box_soup(60),     scene::make_loose_pieces(400), scene::make_blade(40),
-                              scene::make_three_sheets(24), scene::make_double_cone(300),  scene::make_slivers(600),
-                              scene::make_duplicates(12),   scene::make_zero_areas(12),    scene::make_moebius(90, 8),
-                              scene::make_far_plane(24),    scene::scaled(scene::make_torus(30, 20), 1e-6),
-                              scene::scaled(scene::make_torus(30, 20), 1e9)};
+  const scene::Primitive shapes[] = {scene::make_box_soup(60),
+                                     scene::make_loose_pieces(400),
+                                     scene::make_blade(40),
+                                     scene::make_three_sheets(24),
+                                     scene::make_double_cone(300),
+                                     scene::make_slivers(600),
+                                     scene::make_duplicates(12),
+                                     scene::make_zero_areas(12),
+                                     scene::make_moebius(90, 8),
+                                     scene::make_far_plane(24),
+                                     scene::scaled(scene::make_torus(30, 20), 1e-6),
+                                     scene::scaled(scene::make_torus(30, 20), 1e9)};
   for (const scene::Primitive& shape : shapes) expect_sound(build(shape));
 }
 
@@ -216,7 +224,8 @@ TEST(Dag, MaterialsOfOneMeshShareOneDagWithoutCracks) {
   EXPECT_EQ(count_roots(built.dag), 1U);
   const DagCluster& root = built.dag.clusters[0];
   std::set<std::uint32_t> materials;
-  for (std::uint32_t t = 0; t < root.triangle_count; ++t) materials.insert(built.dag.triangle_material[root.first_triangle + t]);
+  for (std::uint32_t t = 0; t < root.triangle_count; ++t)
+    materials.insert(built.dag.triangle_material[root.first_triangle + t]);
   EXPECT_EQ(materials.size(), 2U) << "the root still has both materials";
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Errors of groups held to whole cuts: true ones stay, too small ones are raised to the truth, and so is what is coarser.
+// Errors of groups held to whole cuts: true ones stay, too small ones are raised to the truth, and so is what is
+// coarser.
 #include "build/dag/whole_cuts.h"
 
 #include <cmath>

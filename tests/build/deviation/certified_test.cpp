@@ -28,7 +28,8 @@ CertifiedGroup certify_one_step(const judge::Surface& fine, const judge::Surface
 TEST(Certified, AShiftedPlaneIsOffByItsShift) {
   for (const double scale : {1e-6, 1.0, 1e9}) {
     const judge::Surface plane = test::transformed(test::as_surface(scene::make_plane(6)), scale, Vec3d(0.0));
-    const judge::Surface shifted = test::transformed(test::as_surface(scene::make_plane(4)), scale, Vec3d(0.0, 0.25 * scale, 0.0));
+    const judge::Surface shifted =
+        test::transformed(test::as_surface(scene::make_plane(4)), scale, Vec3d(0.0, 0.25 * scale, 0.0));
     const double bound = certify_one_step(plane, shifted).deviation;
     EXPECT_GE(bound, 0.25 * scale);
     EXPECT_LE(bound, 0.27 * scale);
@@ -46,8 +47,10 @@ TEST(Certified, HoldsForRandomSurfaces) {
     const double scale = round % 3 == 0 ? 1e-6 : round % 3 == 1 ? 1.0 : 1e9;
     const auto count_a = static_cast<std::uint32_t>(1 + random.below(30));
     const auto count_b = static_cast<std::uint32_t>(1 + random.below(30));
-    judge::Surface a = test::random_soup(random, count_a, scale, scale * (0.05 + 0.5 * static_cast<double>(random.below(3))));
-    judge::Surface b = test::random_soup(random, count_b, scale, scale * (0.05 + 0.5 * static_cast<double>(random.below(3))));
+    judge::Surface a =
+        test::random_soup(random, count_a, scale, scale * (0.05 + 0.5 * static_cast<double>(random.below(3))));
+    judge::Surface b =
+        test::random_soup(random, count_b, scale, scale * (0.05 + 0.5 * static_cast<double>(random.below(3))));
     if (round % 4 == 0) {  // needles, segments and points
       for (std::size_t t = 0; t < a.triangles.size(); t += 2)
         a.positions[3 * t + 2] = a.positions[3 * t + random.below(2)];
@@ -69,8 +72,8 @@ TEST(Certified, HoldsAlongAChainOfLevelsForEveryPart) {
     std::vector<judge::Surface> levels;
     for (const std::uint32_t n : {16U, 11U, 8U, 5U, 3U}) {
       judge::Surface level = test::as_surface(round % 3 == 0   ? scene::make_sphere(n)
-                                 : round % 3 == 1 ? scene::make_torus(3 * n, 2 * n)
-                                                  : scene::make_terrain(2 * n, 2 * n));
+                                              : round % 3 == 1 ? scene::make_torus(3 * n, 2 * n)
+                                                               : scene::make_terrain(2 * n, 2 * n));
       for (Vec3d& p : level.positions) {
         p += 0.05 / n * Vec3d(random.signed_unit(), random.signed_unit(), random.signed_unit());
       }
@@ -128,7 +131,8 @@ TEST(Certified, TheGridsOwnShiftIsInTheFirstBound) {
 
 TEST(Certified, AnUnderstatedBoundIsFound) {
   // The tests above can fail: with the bounds halved, sampling finds points beyond them.
-  const judge::Surface fine = test::as_surface(scene::make_sphere(12)), coarse = test::as_surface(scene::make_sphere(3));
+  const judge::Surface fine = test::as_surface(scene::make_sphere(12)),
+                       coarse = test::as_surface(scene::make_sphere(3));
   EXPECT_LT(0.5 * certify_one_step(fine, coarse).deviation, test::dense_truth(fine, coarse, 5000));
 }
 

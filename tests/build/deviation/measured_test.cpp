@@ -87,7 +87,8 @@ TEST(Measured, LargeSourceTrianglesAreSeenInside) {
 
 TEST(Measured, WhatIsOfNoUseIsToldAsFarAsItIsKnown) {
   // Nothing reaches what is asked for: the deviation is what was found, not what was asked, and not a running maximum.
-  const judge::Surface fine = test::as_surface(scene::make_sphere(12)), coarse = test::as_surface(scene::make_sphere(6));
+  const judge::Surface fine = test::as_surface(scene::make_sphere(12)),
+                       coarse = test::as_surface(scene::make_sphere(6));
   const double truth = test::dense_truth(fine, coarse);
   DeviationTierOptions options;
   options.floor = 0.7;
@@ -165,9 +166,7 @@ TEST(Measured, RandomSimplificationsAreWithinFivePercentOfTheDenseTruth) {
       case 0: shape = scene::make_sphere(4 * n), simple = scene::make_sphere(n); break;
       case 1: shape = scene::make_torus(12 * n, 8 * n), simple = scene::make_torus(3 * n, 2 * n); break;
       case 2: shape = scene::make_rock(6 * n, 7), simple = scene::make_rock(2 * n, 7); break;
-      default:
-        shape = scene::make_terrain(12 * n, 9 * n, 11), simple = scene::make_terrain(4 * n, 3 * n, 11);
-        break;
+      default: shape = scene::make_terrain(12 * n, 9 * n, 11), simple = scene::make_terrain(4 * n, 3 * n, 11); break;
     }
     judge::Surface fine = test::as_surface(shape), coarse = test::as_surface(simple);
     for (Vec3d& p : coarse.positions) {
@@ -193,8 +192,8 @@ TEST(Measured, SamplesAreThinnedButTheFarthestStay) {
   for (const CarriedSample& sample : result.carried) {
     ASSERT_LT(sample.triangle, coarse.triangles.size());
     const auto& t = coarse.triangles[sample.triangle];
-    const double truth = std::sqrt(
-        judge::distance2_to_triangle(sample.point, coarse.positions[t[0]], coarse.positions[t[1]], coarse.positions[t[2]]));
+    const double truth = std::sqrt(judge::distance2_to_triangle(sample.point, coarse.positions[t[0]],
+                                                                coarse.positions[t[1]], coarse.positions[t[2]]));
     EXPECT_NEAR(sample.distance, truth, 1e-6);
     farthest = std::max(farthest, sample.distance);
   }
@@ -216,8 +215,8 @@ TEST(Measured, AChainOfLevelsKeepsWhatTheFirstHad) {
 }
 
 TEST(Measured, TheSourcesOwnBorderBelongsToTheGroup) {
-  // A strip with a spike on its open border, which the levels before have flattened to half of it. No sample sits on the
-  // tip. Where the border is shared with another group its points stay as near as they are, and nobody looks.
+  // A strip with a spike on its open border, which the levels before have flattened to half of it. No sample sits on
+  // the tip. Where the border is shared with another group its points stay as near as they are, and nobody looks.
   const auto strip = [](double spike) {
     judge::Surface surface;
     for (int i = 0; i <= 4; ++i) {

@@ -33,7 +33,8 @@ inline build::GroupSurface as_group(const judge::Surface& surface) {
 }
 
 /// `coarse` as the one group of level 1 over all of `fine`.
-inline build::GroupDeviation measure_one_step(const judge::Surface& fine, const judge::Surface& coarse, build::DeviationTierOptions options = {}) {
+inline build::GroupDeviation measure_one_step(const judge::Surface& fine, const judge::Surface& coarse,
+                                              build::DeviationTierOptions options = {}) {
   const build::SourceTree source(fine.positions, fine.triangles);
   options.finer = as_group(fine);
   return build::measure_group(source, as_group(coarse), build::initial_samples(source), options);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "build/encode/encode.h"
 
-#include <cmath>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <set>
 
@@ -49,8 +49,8 @@ test::SampleMesh heavy_mesh(std::uint32_t group_count, std::uint32_t cluster_cou
         }
       }
       for (std::uint32_t t = 0; t < 254; ++t) {
-        out.dag.triangles.push_back({static_cast<std::uint8_t>(t), static_cast<std::uint8_t>(t + 1),
-                                     static_cast<std::uint8_t>(t + 2)});
+        out.dag.triangles.push_back(
+            {static_cast<std::uint8_t>(t), static_cast<std::uint8_t>(t + 1), static_cast<std::uint8_t>(t + 2)});
         out.dag.triangle_material.push_back(t / 64);
       }
       out.dag.clusters.push_back(cluster);
@@ -170,7 +170,8 @@ TEST(Encode, IsTheSameForAnyNumberOfThreads) {  // I10
 
 TEST(Encode, TheLargestCoordinatesComeBackExactly) {
   test::SampleMesh sample = test::sample_tetrahedron();
-  for (Vec3i& p : sample.dag.vertex_position) p = {p.x > 0 ? format::kMaxGridCoordinate : -format::kMaxGridCoordinate, p.y, p.z};
+  for (Vec3i& p : sample.dag.vertex_position)
+    p = {p.x > 0 ? format::kMaxGridCoordinate : -format::kMaxGridCoordinate, p.y, p.z};
   const auto asset = run::Asset::from_vector(test::asset_bytes_of(sample));
   ASSERT_TRUE(asset.ok()) << asset.error().message();
   const auto clusters = run::decode_all(*asset);

@@ -87,8 +87,8 @@ TEST(Fits, AnyPositionsComeBack) {
 
 TEST(Fits, ExtremePositionsComeBack) {
   constexpr std::int32_t kMost = (1 << 23) - 1;
-  const std::vector<Position> corners{{-kMost, -kMost, -kMost}, {kMost, kMost, kMost}, {kMost, -kMost, kMost},
-                                      {-kMost, kMost, -kMost}};
+  const std::vector<Position> corners{
+      {-kMost, -kMost, -kMost}, {kMost, kMost, kMost}, {kMost, -kMost, kMost}, {-kMost, kMost, -kMost}};
   expect_undone(corners, fit_positions(corners));
   const std::vector<Position> one{{kMost, -kMost, 0}};
   expect_undone(one, fit_positions(one));

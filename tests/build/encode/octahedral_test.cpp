@@ -110,10 +110,10 @@ TEST(Octahedral, TheDecodedNormalEncodesToItself) {
   test::Random random(11);
   for (const std::int32_t scale : {127, 811, 8191}) {
     for (int i = 0; i < 20000; ++i) {
-      const Point p = nearest_octahedral_point(
-          {static_cast<float>(random.signed_unit()), static_cast<float>(random.signed_unit()),
-           static_cast<float>(random.signed_unit())},
-          scale);
+      const Point p =
+          nearest_octahedral_point({static_cast<float>(random.signed_unit()), static_cast<float>(random.signed_unit()),
+                                    static_cast<float>(random.signed_unit())},
+                                   scale);
       EXPECT_EQ(nearest_octahedral_point(run::octahedral_normal(p), scale), p) << "seed 11";
     }
   }
@@ -139,8 +139,8 @@ TEST(Octahedral, AxesAreExactAndNegativeZeroIsZero) {
 
 TEST(Octahedral, LengthDoesNotMatter) {
   for (const float scale : {1e-44F, 1e-30F, 1e-3F, 1e10F, 1e37F}) {
-    EXPECT_EQ(nearest_octahedral_point({scale, -scale, scale}, 811),
-              nearest_octahedral_point({1.0F, -1.0F, 1.0F}, 811)) << scale;
+    EXPECT_EQ(nearest_octahedral_point({scale, -scale, scale}, 811), nearest_octahedral_point({1.0F, -1.0F, 1.0F}, 811))
+        << scale;
   }
 }
 

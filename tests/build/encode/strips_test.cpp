@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Strips lose no triangle, turn none over, and cost what the format promises. They are read here as docs/format.md tells
-// a GPU to: each triangle alone.
+// Strips lose no triangle, turn none over, and cost what the format promises. They are read here as docs/format.md
+// tells a GPU to: each triangle alone.
 #include "build/encode/strips.h"
 
 #include <algorithm>
@@ -14,7 +14,9 @@
 namespace meshlode::build {
 namespace {
 
-std::vector<std::uint32_t> one_block(std::size_t count) { return std::vector<std::uint32_t>(count, 0); }
+std::vector<std::uint32_t> one_block(std::size_t count) {
+  return std::vector<std::uint32_t>(count, 0);
+}
 
 /// Triangle t of strip k, by the rule of one GPU thread.
 LocalTriangle read_alone(const Strips& strips, std::uint32_t t) {
@@ -125,7 +127,9 @@ std::uint32_t compact(std::vector<LocalTriangle>& triangles) {
   return count;
 }
 
-TEST(Strips, OneTriangleIsAStrip) { expect_sound({{0, 1, 2}}, 3, "one"); }
+TEST(Strips, OneTriangleIsAStrip) {
+  expect_sound({{0, 1, 2}}, 3, "one");
+}
 
 TEST(Strips, AGridComesBack) {
   expect_sound(grid(8, 8), 81, "8 x 8");
@@ -135,7 +139,8 @@ TEST(Strips, AGridComesBack) {
 
 TEST(Strips, AFanAndAClosedBallComeBack) {
   std::vector<LocalTriangle> fan;
-  for (std::uint32_t i = 1; i < 200; ++i) fan.push_back({0, static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(i + 1)});
+  for (std::uint32_t i = 1; i < 200; ++i)
+    fan.push_back({0, static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(i + 1)});
   expect_sound(fan, 201, "fan");
   const std::vector<LocalTriangle> octahedron{{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4},
                                               {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
@@ -204,7 +209,8 @@ TEST(Strips, TheCountOfBitsIsWhatTheStreamHas) {
   const std::vector<LocalTriangle> triangles = grid(8, 8);
   const Strips strips = make_strips(triangles, one_block(triangles.size()), 81, {1});
   const auto extra = static_cast<std::uint32_t>(strips.first_triangle.size()) - 1;
-  EXPECT_EQ(strips.bit_count(), 128 + strips.slots.size() + 7 * extra + strips.references.size() * strips.reference_bits);
+  EXPECT_EQ(strips.bit_count(),
+            128 + strips.slots.size() + 7 * extra + strips.references.size() * strips.reference_bits);
 }
 
 }  // namespace

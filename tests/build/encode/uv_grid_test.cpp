@@ -18,7 +18,9 @@ UvRange range_of(float a, float b) {
   return range;
 }
 
-float decode(std::int32_t q, std::int32_t log2) { return static_cast<float>(std::ldexp(double(q), log2)); }
+float decode(std::int32_t q, std::int32_t log2) {
+  return static_cast<float>(std::ldexp(double(q), log2));
+}
 
 TEST(UvGrid, TheStepIsTheCoarsestPowerOfTwoThatKeepsTheError) {
   EXPECT_EQ(choose_uv_log2(range_of(0.0F, 1.0F), 0x1p-17), -16);

@@ -19,8 +19,8 @@ namespace meshlode::build {
 namespace {
 
 using Rational = boost::multiprecision::cpp_rational;
-using test::RandomSource;
 using test::RandomDag;
+using test::RandomSource;
 
 static_assert(kSphereGrowth > run::kNestingRadiusMargin && kCenterGrowth > run::kNestingCenterMargin &&
               kErrorGrowth > run::kNestingErrorMargin);

@@ -4,10 +4,10 @@
 
 #include <gtest/gtest.h>
 
-#include "format/bit_source.h"
-#include "format/prefix_code.h"
 #include "build/pack/bit_sink.h"
 #include "build/pack/prefix_lengths.h"
+#include "format/bit_source.h"
+#include "format/prefix_code.h"
 #include "support/random.h"
 
 namespace meshlode::build {
@@ -92,7 +92,9 @@ TEST(PrefixCode, NumbersOfEverySizeComeBack) {
 TEST(PrefixCode, QuickTablesAgree) {
   test::Random random(11);
   for (int round = 0; round < 300; ++round) {
-    const format::Meaning meaning = round % 3 == 0 ? format::Meaning::kSymbol : round % 3 == 1 ? format::Meaning::kNumber : format::Meaning::kFolded;
+    const format::Meaning meaning = round % 3 == 0   ? format::Meaning::kSymbol
+                                    : round % 3 == 1 ? format::Meaning::kNumber
+                                                     : format::Meaning::kFolded;
     std::vector<std::uint64_t> counts(meaning == format::Meaning::kSymbol ? 216U : format::kValueSymbols);
     const std::uint64_t used = round < 6 ? 1 : 1 + random.below(counts.size());
     for (std::uint64_t k = 0; k < used; ++k) counts[random.below(counts.size())] += 1 + random.below(1000);
@@ -107,7 +109,8 @@ TEST(PrefixCode, QuickTablesAgree) {
       std::uint64_t rest = bits;
       std::uint64_t at = 0;
       const std::uint32_t value = format::next_meant(rest, at, slow, meaning);
-      ASSERT_EQ(static_cast<std::uint32_t>(quick[bits] >> format::kQuickSizeBits), value) << "round " << round << ", bits " << bits;
+      ASSERT_EQ(static_cast<std::uint32_t>(quick[bits] >> format::kQuickSizeBits), value)
+          << "round " << round << ", bits " << bits;
       ASSERT_EQ(static_cast<std::uint32_t>(quick[bits]) & ((1U << format::kQuickSizeBits) - 1U), at);
     }
     if (meaning == format::Meaning::kSymbol) {

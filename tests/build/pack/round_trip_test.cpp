@@ -6,8 +6,8 @@
 
 #include "build/pack/pack.h"
 #include "build/pack/page_model.h"
-#include "support/random_page.h"
 #include "run/unpack/unpack_page.h"
+#include "support/random_page.h"
 
 namespace meshlode::build {
 namespace {
@@ -52,7 +52,8 @@ TEST(Pack, EveryCodecGivesEveryShapeOfPageBack) {
       options.max_field_bits = round < 3 ? 5 : 25;  // few bits shrink, many test the widths
       const RandomPage page = test::make_random_page(options);
       for (const Codec codec : {Codec::kLz4, Codec::kZstd, Codec::kStrips, Codec::kDraco}) {
-        if (codec == Codec::kDraco && round == 3 && options.seed % 5 != 0) continue;  // its tables for wide noise are slow
+        if (codec == Codec::kDraco && round == 3 && options.seed % 5 != 0)
+          continue;  // its tables for wide noise are slow
         SCOPED_TRACE("seed " + std::to_string(options.seed) + ", codec " + std::to_string(static_cast<int>(codec)));
         expect_round_trip(page, codec);
       }
@@ -62,8 +63,12 @@ TEST(Pack, EveryCodecGivesEveryShapeOfPageBack) {
 
 TEST(Pack, ClustersOfOneTriangleAndOf256VerticesComeBack) {
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
-    expect_round_trip(test::make_random_page({.seed = seed, .cluster_count = 40, .max_triangles = 1, .max_field_bits = 4}), Codec::kStrips);
-    expect_round_trip(test::make_random_page({.seed = seed, .cluster_count = 3, .max_triangles = 256, .max_field_bits = 6}), Codec::kStrips);
+    expect_round_trip(
+        test::make_random_page({.seed = seed, .cluster_count = 40, .max_triangles = 1, .max_field_bits = 4}),
+        Codec::kStrips);
+    expect_round_trip(
+        test::make_random_page({.seed = seed, .cluster_count = 3, .max_triangles = 256, .max_field_bits = 6}),
+        Codec::kStrips);
   }
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
-#include "format/section_columns.h"
 #include "build/pack/pack_section.h"
+#include "format/section_columns.h"
 #include "support/random.h"
 
 namespace meshlode::build {

@@ -13,8 +13,8 @@ namespace meshlode::build {
 namespace {
 
 std::vector<std::uint8_t> png_of(std::uint8_t width_high, std::uint8_t width_low, std::uint8_t height_low) {
-  return {0x89, 'P', 'N', 'G', 0x0D, 0x0A, 0x1A, 0x0A, 0, 0, 0, 13, 'I', 'H', 'D', 'R',
-          0, 0, width_high, width_low, 0, 0, 0, height_low, 8, 6, 0, 0, 0};
+  return {0x89, 'P', 'N', 'G',        0x0D,      0x0A, 0x1A, 0x0A, 0,          0, 0, 13, 'I', 'H', 'D',
+          'R',  0,   0,   width_high, width_low, 0,    0,    0,    height_low, 8, 6, 0,  0,   0};
 }
 
 /// SOI, an APP0 segment of 16 bytes, a fill byte, then the frame header: 300 lines of 513 samples.
@@ -24,7 +24,8 @@ std::vector<std::uint8_t> jpeg(std::uint8_t frame_marker) {
   bytes[1] = 0xD8;
   bytes[3] = 0xE0;
   bytes[5] = 16;
-  for (const int b : {0xFF, 0xFF, int{frame_marker}, 0, 17, 8, 1, 44, 2, 1, 3}) bytes.push_back(static_cast<std::uint8_t>(b));
+  for (const int b : {0xFF, 0xFF, int{frame_marker}, 0, 17, 8, 1, 44, 2, 1, 3})
+    bytes.push_back(static_cast<std::uint8_t>(b));
   return bytes;
 }
 
@@ -47,7 +48,8 @@ TEST(ImageSize, RefusesWhatIsNeitherOrEndsEarly) {
   EXPECT_FALSE(read_image_size(jpeg(0xC4))) << "a table, and no frame";
   for (const auto& whole : {png_of(2, 0, 64), jpeg(0xC0)}) {
     for (std::size_t size = 0; size < whole.size(); ++size) {
-      const bool has_all = whole[0] == 0x89 ? size >= 24 : size >= whole.size() - 1;  // the JPEG's last byte is not needed
+      const bool has_all =
+          whole[0] == 0x89 ? size >= 24 : size >= whole.size() - 1;  // the JPEG's last byte is not needed
       EXPECT_EQ(read_image_size(std::span(whole).first(size)).has_value(), has_all) << size;
     }
   }
@@ -66,7 +68,8 @@ scene::Scene scene_of(const std::string& materials) {
   unknown.bytes = {1, 2, 3};
   scene.blobs = {small, large, unknown};
   scene.document = R"({"images":[{"blob":0},{"blob":1},{"blob":2},{}],
-    "textures":[{"source":0},{"source":1},{"source":2},{"source":3},{}], "materials":[)" + materials + "]}";
+    "textures":[{"source":0},{"source":1},{"source":2},{"source":3},{}], "materials":[)" +
+                   materials + "]}";
   scene::SceneMaterial material;
   material.source_index = 0;
   scene.materials = {material};
@@ -90,7 +93,8 @@ TEST(TexelSizes, TheLargestTextureOfASetCounts) {
 }
 
 TEST(TexelSizes, ExtensionsAndTransformsCount) {
-  EXPECT_EQ(texels_of(R"({"extensions":{"KHR_materials_sheen":{"sheenColorTexture":{"index":0,"texCoord":2}}}})")[2], 16.0);
+  EXPECT_EQ(texels_of(R"({"extensions":{"KHR_materials_sheen":{"sheenColorTexture":{"index":0,"texCoord":2}}}})")[2],
+            16.0);
   const auto texels = texels_of(
       R"({"normalTexture":{"index":0,"extensions":{"KHR_texture_transform":{"scale":[4,-20],"texCoord":3}}}})");
   EXPECT_EQ(texels[3], 160.0) << "8 texels high, twenty times";

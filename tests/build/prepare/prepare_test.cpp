@@ -13,7 +13,8 @@
 namespace meshlode::build {
 namespace {
 
-PreparedMesh prepare(const scene::Primitive& shape, const PrepareOptions& options = {}, const AttributeLayout& layout = {}) {
+PreparedMesh prepare(const scene::Primitive& shape, const PrepareOptions& options = {},
+                     const AttributeLayout& layout = {}) {
   Result<PreparedMesh> mesh = prepare_mesh(scene::as_mesh(shape), layout, options);
   EXPECT_TRUE(mesh.ok()) << (mesh.ok() ? "" : mesh.error().message());
   return mesh.ok() ? std::move(*mesh) : PreparedMesh{};

@@ -11,8 +11,8 @@
 #include <gtest/gtest.h>
 
 #include "judge/metrics/triangle_area.h"
-#include "support/random.h"
 #include "judge/verify/drawn_triangles.h"
+#include "support/random.h"
 
 namespace meshlode::build {
 namespace {

@@ -83,7 +83,9 @@ TEST(Flip, ATriangleMayTurnBySeventyEightDegrees) {
   EXPECT_TRUE(turns_to({5, 0, 0})) << "into its base";
 }
 
-TEST(Flip, ATriangleWithoutAreaMayBecomeAny) { EXPECT_FALSE(turns_to({0, -1, 0}, {5, 0, 0})); }
+TEST(Flip, ATriangleWithoutAreaMayBecomeAny) {
+  EXPECT_FALSE(turns_to({0, -1, 0}, {5, 0, 0}));
+}
 
 TEST(Flip, TheTrianglesOnTheEdgeGoAndDoNotCount) {
   DrawnMesh drawn = closed_fan();
@@ -107,7 +109,8 @@ const std::vector<Vec3i> kEarPoints{{0, 0, 0}, {8, 0, 0}, {0, 8, 0}, {8, 8, 0}, 
 /// 0 is locked, 1 comes to it, 2 is the tip.
 bool keeps_shared_edges(const std::vector<WedgeTriangle>& triangles, bool is_tip_locked = true) {
   DrawnMesh drawn(kEarPoints, triangles);
-  const GroupLocks locks({1, 0, is_tip_locked ? std::uint8_t{1} : std::uint8_t{0}, 0, 0}, Flags(5, 0), drawn.wedge_position);
+  const GroupLocks locks({1, 0, is_tip_locked ? std::uint8_t{1} : std::uint8_t{0}, 0, 0}, Flags(5, 0),
+                         drawn.wedge_position);
   const bool is_kept = build::keeps_shared_edges(drawn.mesh, locks, drawn.star(0, 1));
   EXPECT_EQ(build::keeps_shared_edges(drawn.mesh, locks, drawn.star(1, 0)), is_kept) << "either end may be locked";
   return is_kept;
@@ -133,8 +136,9 @@ TEST(SharedEdges, WithoutALockedEndAllIsKept) {
   EXPECT_TRUE(build::keeps_shared_edges(drawn.mesh, locks, drawn.star(0, 1)));
 }
 
-/// The triangle (0, 1, 2) goes and (1, 3, 2), by its wedges, is the heir of (0, 2). 0 and 2 are locked, 1 comes to 0. The
-/// wedges 5 and 6 are second ones of 1 and 2; `shared` are another group's too, `more` are triangles beside the two.
+/// The triangle (0, 1, 2) goes and (1, 3, 2), by its wedges, is the heir of (0, 2). 0 and 2 are locked, 1 comes to 0.
+/// The wedges 5 and 6 are second ones of 1 and 2; `shared` are another group's too, `more` are triangles beside the
+/// two.
 struct Heir {
   DrawnMesh drawn;
   GroupLocks locks;

@@ -66,7 +66,8 @@ TEST(LeftBehind, ASheetThatIsDroppedIsLeftAtHalfItsHeight) {
 }
 
 TEST(LeftBehind, APieceThatVanishesIsAsFarOffAsWhatStays) {
-  DrawnMesh drawn({{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {-90, -90, 40}, {90, -90, 40}, {0, 90, 40}}, {{0, 1, 2}, {3, 4, 5}});
+  DrawnMesh drawn({{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {-90, -90, 40}, {90, -90, 40}, {0, 90, 40}},
+                  {{0, 1, 2}, {3, 4, 5}});
   LeftBehind left(own_witnesses(drawn), drawn.places);
   const CollapseStar star = drawn.star(0, 1);
   ASSERT_TRUE(star.outer.empty());

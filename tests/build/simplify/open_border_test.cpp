@@ -175,7 +175,8 @@ TEST(OpenBorder, NoCollapseOpensAHoleOrTakesASharedEdge) {
   int reduced = 0;
   for (std::uint64_t seed = 1; seed <= 1500; ++seed) {
     Random random(seed);
-    const SimplifyInput input = group_of(test::make_open_surface(test::random_surface_options(random, 10), random), random);
+    const SimplifyInput input =
+        group_of(test::make_open_surface(test::random_surface_options(random, 10), random), random);
     SimplifyOptions options;
     options.target_triangles = static_cast<std::uint32_t>(input.triangles.size() / (1 + random.below(12)));
     options.may_relax_topology = random.below(4) != 0;

@@ -14,10 +14,12 @@ using test::as_input;
 using test::DrawnMesh;
 
 // Three leaves of one size; the first two share a vertex.
-const std::vector<Vec3i> kLeaves{{0, 0, 0},    {60, 0, 0},   {0, 60, 0},  {120, 0, 0},
+const std::vector<Vec3i> kLeaves{{0, 0, 0},   {60, 0, 0},  {0, 60, 0},  {120, 0, 0},
                                  {60, 60, 0}, {300, 0, 0}, {360, 0, 0}, {300, 60, 0}};
 
-DrawnMesh three_leaves() { return {kLeaves, {{0, 1, 2}, {1, 3, 4}, {5, 6, 7}}}; }
+DrawnMesh three_leaves() {
+  return {kLeaves, {{0, 1, 2}, {1, 3, 4}, {5, 6, 7}}};
+}
 
 TEST(Pieces, HangTogetherByVertices) {
   const DrawnMesh drawn = three_leaves();

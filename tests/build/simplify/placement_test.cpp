@@ -11,7 +11,9 @@ namespace {
 const Vec3d kA(0.0), kB(8.0, 0.0, 0.0);
 
 /// Squared distance to the plane n·p = d, with n of unit length.
-void add_plane(Quadric& q, const Vec3d& n, double d, double weight) { q.add_plane(n, -d, weight); }
+void add_plane(Quadric& q, const Vec3d& n, double d, double weight) {
+  q.add_plane(n, -d, weight);
+}
 
 TEST(Placement, ACornerGetsItsVertexBack) {
   Quadric q;

@@ -9,8 +9,8 @@
 
 #include "base/random.h"
 #include "build/prepare/prepare.h"
-#include "scene/samples/samples.h"
 #include "build/simplify/quadric.h"
+#include "scene/samples/samples.h"
 #include "support/border_chain.h"
 
 namespace meshlode::build {
@@ -100,7 +100,9 @@ TEST(Simplify, AFlatPatchGoesDownToTwoTrianglesWithoutError) {
   EXPECT_LT(result.quadric_error, input.grid.step());
   double area = 0.0;
   for (const WedgeTriangle& t : result.triangles) {
-    const auto p = [&](std::size_t k) { return Vec3d(result.positions[result.wedge_position[t[k]]]) * input.grid.step(); };
+    const auto p = [&](std::size_t k) {
+      return Vec3d(result.positions[result.wedge_position[t[k]]]) * input.grid.step();
+    };
     area += 0.5 * glm::length(glm::cross(p(1) - p(0), p(2) - p(0)));
   }
   EXPECT_NEAR(area, 4.0, 0.02) << "the four corners stay where they are";
@@ -123,10 +125,10 @@ TEST(Simplify, ASphereStaysNearTheSphere) {
 /// I6 by construction: whatever is locked, however hard the shape, the border between locked vertices is kept exactly
 /// and a closed surface stays closed.
 TEST(Simplify, TheBorderOfALockedPatchIsKeptExactly) {
-  const scene::Primitive shapes[] = {scene::make_sphere(12),       scene::make_plane(20),        scene::make_three_sheets(12),
-                              scene::make_double_cone(80),  scene::make_slivers(300),     scene::make_moebius(60, 6),
-                              scene::make_box_soup(40),     scene::make_duplicates(10),   scene::make_zero_areas(10),
-                              scene::make_blade(16),        scene::make_loose_pieces(90), scene::make_torus(24, 12)};
+  const scene::Primitive shapes[] = {
+      scene::make_sphere(12),     scene::make_plane(20),      scene::make_three_sheets(12), scene::make_double_cone(80),
+      scene::make_slivers(300),   scene::make_moebius(60, 6), scene::make_box_soup(40),     scene::make_duplicates(10),
+      scene::make_zero_areas(10), scene::make_blade(16),      scene::make_loose_pieces(90), scene::make_torus(24, 12)};
   SplitMix64 random(42);
   for (const scene::Primitive& shape : shapes) {
     for (int trial = 0; trial < 4; ++trial) {
@@ -233,8 +235,8 @@ double seconds_to_halve(const scene::Primitive& shape) {
   return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
 }
 
-// A hub with a wedge for each of its triangles: what an edge at it costs grows with them, not with their square. With the
-// square a wheel of 2,000 took a thousand times as long as a plane of 2,000.
+// A hub with a wedge for each of its triangles: what an edge at it costs grows with them, not with their square. With
+// the square a wheel of 2,000 took a thousand times as long as a plane of 2,000.
 TEST(Simplify, AHubOfManyWedgesIsNoTrap) {
   scene::Primitive wheel;
   const std::uint32_t n = 2048;
@@ -300,8 +302,8 @@ TEST(Simplify, EverythingLockedIsLeftAloneAndSaysSo) {
 }
 
 TEST(Simplify, AnEarOnASharedEdgeStays) {
-  // Two open triangles of a card that another group has the other half of: their diagonal is shared, their tips are free.
-  // One tip folded onto the diagonal's end would take the diagonal away from the other group's triangle.
+  // Two open triangles of a card that another group has the other half of: their diagonal is shared, their tips are
+  // free. One tip folded onto the diagonal's end would take the diagonal away from the other group's triangle.
   SimplifyInput input;
   input.positions = {{0, 0, 0}, {100, 100, 0}, {0, 100, 0}, {1000, 0, 0}, {1100, 100, 0}, {1000, 100, 0}};
   input.is_locked = {1, 1, 0, 1, 1, 0};
@@ -333,7 +335,8 @@ TEST(Simplify, LoosePiecesThatLeaveNoRoomAreTheReason) {
       input.wedge_position.push_back(static_cast<std::uint32_t>(input.wedge_position.size()));
       input.witnesses.push_back({{input.positions.back()}, 1});
     }
-    for (const WedgeTriangle& t : {WedgeTriangle{0, 2, 1}, WedgeTriangle{0, 1, 3}, WedgeTriangle{0, 3, 2}, WedgeTriangle{1, 2, 3}}) {
+    for (const WedgeTriangle& t :
+         {WedgeTriangle{0, 2, 1}, WedgeTriangle{0, 1, 3}, WedgeTriangle{0, 3, 2}, WedgeTriangle{1, 2, 3}}) {
       input.triangles.push_back({first + t[0], first + t[1], first + t[2]});
     }
   }

@@ -125,7 +125,8 @@ TEST(SurfaceQuadrics, ABorderMayBeSlidAlongAndNotMovedOff) {
   // Walls on (6, 0), (0, 1) twice, and (1, 2), each of length 4; 2 grid units off.
   const double scale = drawn.places.scale();
   const double walls = 4.0 * 16.0 / (scale * scale), off = 2.0 / scale;
-  EXPECT_NEAR(total.evaluate(drawn.places.to_frame({3, 2, 0})), SimplifyOptions{}.border_weight * walls * off * off, 1e-12);
+  EXPECT_NEAR(total.evaluate(drawn.places.to_frame({3, 2, 0})), SimplifyOptions{}.border_weight * walls * off * off,
+              1e-12);
   EXPECT_NEAR(total.weight, surface.weight(0) + surface.weight(1), 1e-15) << "walls have no area";
 }
 

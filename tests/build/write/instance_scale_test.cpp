@@ -33,7 +33,9 @@ Mat3d rotation(test::Random& random) {
           2 * (x * z + w * y),     2 * (y * z - w * x),     1 - 2 * (x * x + y * y)};
 }
 
-Mat3d diagonal(double x, double y, double z) { return {x, 0, 0, 0, y, 0, 0, 0, z}; }
+Mat3d diagonal(double x, double y, double z) {
+  return {x, 0, 0, 0, y, 0, 0, 0, z};
+}
 
 TEST(InstanceScale, AxisAlignedScalingsAreExact) {
   EXPECT_EQ(measure_instance(Mat4d(1.0)).largest, 1.0);

@@ -8,12 +8,12 @@
 #include <tbb/task_arena.h>
 
 #include "base/hash.h"
-#include "run/decode/decode.h"
-#include "format/section_columns.h"
 #include "build/pack/pack.h"
+#include "format/section_columns.h"
+#include "run/decode/decode.h"
+#include "run/unpack/content_hash.h"
 #include "support/random.h"
 #include "support/sample_asset.h"
-#include "run/unpack/content_hash.h"
 
 namespace meshlode::build {
 namespace {

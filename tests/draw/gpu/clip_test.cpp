@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include "judge/gpu/compare_frame.h"
 #include "gpu_support.h"
+#include "judge/gpu/compare_frame.h"
 
 namespace meshlode::draw::test {
 namespace {

@@ -7,10 +7,10 @@
 
 #include <gtest/gtest.h>
 
-#include "draw/gpu/vulkan/float_controls.h"
-#include "judge/gpu/compare_frame.h"
 #include "draw/gpu/shaders.h"
+#include "draw/gpu/vulkan/float_controls.h"
 #include "gpu_support.h"
+#include "judge/gpu/compare_frame.h"
 #include "run/select/far_instance.h"
 #include "run/select/random_scene.h"
 
@@ -35,11 +35,29 @@ std::vector<Words> find_instructions(const Words& module, std::uint32_t opcode) 
 
 TEST(FloatControls, EveryShaderDeclaresRoundingToNearestOnceForBothWidths) {
   using namespace shaders;
-  for (const auto shader :
-       {shaders::instances(), shaders::traverse(), shaders::clusters(), shaders::raster(), shaders::raster_clip(), shaders::pyramid(), shaders::decode(), shaders::roots(), shaders::raster_far(),
-        shaders::resolve(), shaders::sort(), shaders::flat(), shaders::persistent(), shaders::hardware_vert(), shaders::hardware_mesh(), shaders::hardware_frag(),
-        shaders::hardware_mesh_frag(), shaders::resolve_textures(), shaders::raster_mask(), shaders::raster_far_mask(), shaders::raster_clip_mask(),
-        shaders::hardware_mask_frag(), shaders::hardware_mesh_mask_frag()}) {
+  for (const auto shader : {shaders::instances(),
+                            shaders::traverse(),
+                            shaders::clusters(),
+                            shaders::raster(),
+                            shaders::raster_clip(),
+                            shaders::pyramid(),
+                            shaders::decode(),
+                            shaders::roots(),
+                            shaders::raster_far(),
+                            shaders::resolve(),
+                            shaders::sort(),
+                            shaders::flat(),
+                            shaders::persistent(),
+                            shaders::hardware_vert(),
+                            shaders::hardware_mesh(),
+                            shaders::hardware_frag(),
+                            shaders::hardware_mesh_frag(),
+                            shaders::resolve_textures(),
+                            shaders::raster_mask(),
+                            shaders::raster_far_mask(),
+                            shaders::raster_clip_mask(),
+                            shaders::hardware_mask_frag(),
+                            shaders::hardware_mesh_mask_frag()}) {
     const Words before(shader.begin(), shader.end()), module = declare_round_to_nearest_even(shader);
     ASSERT_EQ(module.size(), before.size() + 2 + 8);
     const auto entries = find_instructions(module, 15);
@@ -69,8 +87,8 @@ TEST(FloatControls, LeavesAloneWhatIsNoModule) {
   }
 }
 
-/// Instances of one mesh, each at the distance where the far bound is within a few ulp of passing, turned so that a group
-/// with the largest error lies towards the eye.
+/// Instances of one mesh, each at the distance where the far bound is within a few ulp of passing, turned so that a
+/// group with the largest error lies towards the eye.
 std::vector<format::InstanceRecord> threshold_instances(const run::SelectTables& tables, const run::Camera& camera,
                                                         double pixel_error, std::uint32_t count, bool is_grown) {
   const format::MeshRecord& mesh = tables.meshes[0];
@@ -88,7 +106,8 @@ std::vector<format::InstanceRecord> threshold_instances(const run::SelectTables&
   RandomSource random(31);
   std::vector<format::InstanceRecord> out;
   for (std::uint32_t i = 0; i < count; ++i) {
-    // The axis from the root's centre to the group's, and two across it, go to three of the world; the first to the eye.
+    // The axis from the root's centre to the group's, and two across it, go to three of the world; the first to the
+    // eye.
     const Vec3d root(far.bound.center[0], far.bound.center[1], far.bound.center[2]);
     const Vec3d group(coarse->center[0], coarse->center[1], coarse->center[2]);
     const auto frame_of = [&](const Vec3d& first) {

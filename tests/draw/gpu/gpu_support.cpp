@@ -4,8 +4,8 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "scene/import/import.h"
 #include "build/build.h"
+#include "scene/import/import.h"
 
 namespace meshlode::draw::test {
 

@@ -9,8 +9,8 @@
 
 #include <gtest/gtest.h>
 
-#include "judge/gpu/cameras.h"
 #include "draw/gpu/vulkan/vulkan.h"
+#include "judge/gpu/cameras.h"
 #include "run/read/asset.h"
 #include "run/select/select.h"
 

@@ -5,10 +5,10 @@
 
 #include <gtest/gtest.h>
 
-#include "judge/gpu/hardware_judge.h"
-#include "judge/gpu/compare_frame.h"
 #include "draw/gpu/pass_plan.h"
 #include "gpu_support.h"
+#include "judge/gpu/compare_frame.h"
+#include "judge/gpu/hardware_judge.h"
 #include "support/mask_scene.h"
 
 namespace meshlode::draw::test {
@@ -175,8 +175,9 @@ TEST_F(Masks, FarRootsAreTheCpusBitForBit) {
   EXPECT_GT(differences_without, 20U);
 }
 
-/// Reproducer: amid the leaves some thousand pixels belong to clipped triangles of one cluster, and Mesa's lavapipe ends the
-/// loops of an invocation after 65,535 iterations. Walking along strips again and again for each triangle used them up.
+/// Reproducer: amid the leaves some thousand pixels belong to clipped triangles of one cluster, and Mesa's lavapipe
+/// ends the loops of an invocation after 65,535 iterations. Walking along strips again and again for each triangle used
+/// them up.
 TEST_F(Masks, ClippedLeavesAreDrawnToTheEnd) {
   const std::vector<std::uint8_t> bytes = build_file(MESHLODE_DATA "/foliage.glb");
   const auto asset = run::Asset::from_vector(bytes);

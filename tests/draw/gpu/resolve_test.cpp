@@ -6,10 +6,10 @@
 
 #include <gtest/gtest.h>
 
-#include "judge/gpu/compare_frame.h"
 #include "draw/gpu/pass_plan.h"
-#include "gpu_support.h"
 #include "draw/raster/legend.h"
+#include "gpu_support.h"
+#include "judge/gpu/compare_frame.h"
 #include "support/mask_scene.h"
 #include "support/sample_asset.h"
 
@@ -39,8 +39,9 @@ std::uint32_t level_count_of(const run::Asset& asset) {
 }
 
 /// The CPU shades in doubles, the GPU in floats behind exact barycentrics: at most a step of 255, hardly anywhere more.
-void expect_equal_colors(Device& device, const run::Asset& asset, const std::vector<std::uint32_t>& views = {
-                                                                 VIEW_SHADED, VIEW_CLUSTERS, VIEW_TRIANGLES, VIEW_LEVELS}) {
+void expect_equal_colors(Device& device, const run::Asset& asset,
+                         const std::vector<std::uint32_t>& views = {VIEW_SHADED, VIEW_CLUSTERS, VIEW_TRIANGLES,
+                                                                    VIEW_LEVELS}) {
   auto scene = upload_scene(device, asset);
   ASSERT_TRUE(scene);
   const TextureSet textures = load_textures(asset);
@@ -84,7 +85,8 @@ TEST_F(Resolve, ColoursAreTheCpusUpToAStep) {
   expect_equal_colors(*device_, *city.asset);
 }
 
-/// Base colour textures of every wrap mode, transformed, on masked materials; what resolves without them is another picture.
+/// Base colour textures of every wrap mode, transformed, on masked materials; what resolves without them is another
+/// picture.
 TEST_F(Resolve, TexturesAreTheCpusUpToAStep) {
   meshlode::test::MaskSceneOptions options;
   options.transform = R"({"offset":[0.25,-0.5],"rotation":0.3,"scale":[2.7,-1.3]})";

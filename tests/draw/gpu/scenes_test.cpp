@@ -7,11 +7,11 @@
 
 #include <gtest/gtest.h>
 
-#include "judge/gpu/cameras.h"
-#include "judge/gpu/hardware_judge.h"
-#include "judge/gpu/compare_frame.h"
 #include "draw/gpu/pass_plan.h"
 #include "gpu_support.h"
+#include "judge/gpu/cameras.h"
+#include "judge/gpu/compare_frame.h"
+#include "judge/gpu/hardware_judge.h"
 #include "support/sample_asset.h"
 
 namespace meshlode::draw::test {
@@ -99,7 +99,8 @@ TEST_F(Scenes, AChangedGroupErrorIsFound) {
   ASSERT_TRUE(device_->download(scene->groups, bytes));
   for (GpuGroup& group : groups) group.error = 0.0F;  // passes always, also where its leaf says that it is open
   ASSERT_TRUE(device_->upload(scene->groups, bytes));
-  auto renderer = Renderer::make(*device_, *scene, {.width = 96, .height = 64, .frustum = false, .double_sided = true, .alpha_mask = true});
+  auto renderer = Renderer::make(
+      *device_, *scene, {.width = 96, .height = 64, .frustum = false, .double_sided = true, .alpha_mask = true});
   ASSERT_TRUE(renderer);
   std::uint64_t differences = 0;
   for (const judge::NamedCamera& named : judge::orbit_cameras(*asset, 6, 96, 64)) {
@@ -125,7 +126,8 @@ TEST_F(Scenes, TooSmallCullingSpheresAreFound) {
     for (float& c : cluster.center) c *= 50.0F;
   }
   ASSERT_TRUE(device_->upload(scene->clusters, bytes));
-  auto renderer = Renderer::make(*device_, *scene, {.width = 96, .height = 64, .double_sided = true, .alpha_mask = true});
+  auto renderer =
+      Renderer::make(*device_, *scene, {.width = 96, .height = 64, .double_sided = true, .alpha_mask = true});
   ASSERT_TRUE(renderer);
   const auto result = judge::compare_frame(*renderer, *asset, judge::orbit_cameras(*asset, 1, 96, 64)[0].camera, 1.0);
   ASSERT_TRUE(result);
@@ -176,7 +178,8 @@ TEST_F(Scenes, PersistentTraversalDrawsTheSame) {
   struct Case {
     bool occlusion, persistent, persistent_second;
   };
-  for (const Case c : {Case{false, true, false}, Case{true, true, true}, Case{true, false, true}, Case{true, false, false}}) {
+  for (const Case c :
+       {Case{false, true, false}, Case{true, true, true}, Case{true, false, true}, Case{true, false, false}}) {
     SCOPED_TRACE(testing::Message() << c.occlusion << c.persistent << c.persistent_second);
     RendererOptions options{.width = 97, .height = 64, .frustum = c.occlusion, .occlusion = c.occlusion};
     options.double_sided = options.alpha_mask = true;
@@ -253,8 +256,8 @@ TEST_F(Scenes, AFarInstanceIsNotTraversed) {
   EXPECT_EQ(nodes[1], 0U);
 }
 
-/// Roots of a few pixels have a rasterizer of their own, which must give the same bits: at many places of the picture and
-/// its border, at every size up to its largest, mirrored and stretched, orthographic too.
+/// Roots of a few pixels have a rasterizer of their own, which must give the same bits: at many places of the picture
+/// and its border, at every size up to its largest, mirrored and stretched, orthographic too.
 TEST_F(Scenes, RootsOfAFewPixelsAreDrawnBitForBit) {
   const auto asset = run::Asset::from_vector(meshlode::test::sample_asset_bytes());
   ASSERT_TRUE(asset);

@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "draw/raster/raster.h"
-#include "support/mask_scene.h"
 #include "draw/textures/texture_image.h"
+#include "support/mask_scene.h"
 
 namespace meshlode::draw {
 namespace {
@@ -100,7 +100,8 @@ Found look(const Card& card, std::size_t item, std::uint32_t triangle, const run
   };
   const format::MeshRecord& mesh = card.asset.meshes()[card.asset.instances()[0].mesh];
   run::DecodedCluster cluster;
-  const auto page = run::load_page(card.asset, PageId(card.asset.groups()[card.asset.clusters()[card.cut[item].cluster.value].coarser_group].page));
+  const auto page = run::load_page(
+      card.asset, PageId(card.asset.groups()[card.asset.clusters()[card.cut[item].cluster.value].coarser_group].page));
   run::decode_cluster(card.asset, *page, card.cut[item].cluster, cluster);
   run::ClusterAttributes attributes;
   run::decode_attributes(mesh, cluster, attributes);
@@ -152,7 +153,8 @@ Found look(const Card& card, std::size_t item, std::uint32_t triangle, const run
   const Long vertex_alpha = std::floor(alpha * 255.0L + 0.5L);
   out.is_sure = out.is_sure && std::fabs(alpha * 255.0L + 0.5L - std::round(alpha * 255.0L + 0.5L)) > 1e-6L;
   const Long texture = options.has_texture ? test::mask_texture_alpha(texel[0], texel[1]) : 255;
-  const Long found = texture * (attributes.colors.empty() ? 255.0L : vertex_alpha) / 65025.0L * static_cast<Long>(options.factor);
+  const Long found =
+      texture * (attributes.colors.empty() ? 255.0L : vertex_alpha) / 65025.0L * static_cast<Long>(options.factor);
   out.is_drawn = found >= static_cast<Long>(options.cutoff);
   out.is_sure = out.is_sure && std::fabs(found - static_cast<Long>(options.cutoff)) > 1e-6L;
   return out;

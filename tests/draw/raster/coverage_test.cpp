@@ -54,7 +54,7 @@ TEST(Raster, DiagonalPixelsBelongToTheTriangleOnTheirRight) {
   const VisibilityBuffer lower =
       test::draw(one_triangle(pixel_vertex(4.5, 0.5), pixel_vertex(4.5, 4.5), pixel_vertex(0.5, 4.5)), kSize);
   EXPECT_EQ(test::count_drawn(upper), 4u + 3u + 2u + 1u);  // nothing of the diagonal
-  EXPECT_EQ(test::count_drawn(lower), 1u + 2u + 3u);       // the diagonal, without its ends on the right and bottom sides
+  EXPECT_EQ(test::count_drawn(lower), 1u + 2u + 3u);  // the diagonal, without its ends on the right and bottom sides
   EXPECT_EQ(lower.item[1 * 64 + 3], 0u);
   EXPECT_EQ(upper.item[1 * 64 + 3], VisibilityBuffer::kNothing);
 }
@@ -79,8 +79,8 @@ TEST(Raster, AreaInPixelsIsTheClosedForm) {
   // diagonal, whose centres go to one side.
   const std::size_t drawn =
       test::count_drawn(test::draw(one_triangle(pixel_vertex(4, 4), pixel_vertex(36, 4), pixel_vertex(4, 36)), kSize));
-  const std::size_t other =
-      test::count_drawn(test::draw(one_triangle(pixel_vertex(36, 4), pixel_vertex(36, 36), pixel_vertex(4, 36)), kSize));
+  const std::size_t other = test::count_drawn(
+      test::draw(one_triangle(pixel_vertex(36, 4), pixel_vertex(36, 36), pixel_vertex(4, 36)), kSize));
   EXPECT_EQ(drawn + other, 32u * 32u);
   EXPECT_EQ(std::min(drawn, other), 32u * 31u / 2u);
   // A big triangle at an odd angle: pixels = area up to half the border.
@@ -95,7 +95,8 @@ TEST(Raster, AreaInPixelsIsTheClosedForm) {
       return std::hypot(p.x - q.x, p.y - q.y) / kSubpixels;
     };
     const double border = length(a, b) + length(b, c) + length(c, a);
-    const auto pixels = static_cast<double>(test::count_drawn(test::draw(one_triangle(a, b, c, Culling::kNone, size), size)));
+    const auto pixels =
+        static_cast<double>(test::count_drawn(test::draw(one_triangle(a, b, c, Culling::kNone, size), size)));
     EXPECT_NEAR(pixels, area, 0.75 * border + 2.0);
   }
 }
@@ -185,9 +186,9 @@ TEST(Raster, DegenerateTrianglesDrawNothing) {
   EXPECT_TRUE(one_triangle(a, a, a).triangles.empty());
   EXPECT_TRUE(one_triangle(a, b, b).triangles.empty());
   EXPECT_TRUE(one_triangle(a, b, c).triangles.empty());  // collinear
-  EXPECT_EQ(
-      test::count_drawn(test::draw(one_triangle(pixel_vertex(3.6, 3.6), pixel_vertex(3.9, 3.6), pixel_vertex(3.6, 3.9)), kSize)),
-      0u);
+  EXPECT_EQ(test::count_drawn(test::draw(
+                one_triangle(pixel_vertex(3.6, 3.6), pixel_vertex(3.9, 3.6), pixel_vertex(3.6, 3.9)), kSize)),
+            0u);
 }
 
 TEST(Raster, CullingFollowsTheOrientation) {

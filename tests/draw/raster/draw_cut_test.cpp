@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
-#include "run/decode/decode.h"
 #include "draw/raster/raster.h"
+#include "run/decode/decode.h"
 #include "support/sample_asset.h"
 
 namespace meshlode::draw {
@@ -38,8 +38,8 @@ struct Hit {
 };
 
 /// Moeller and Trumbore's ray against every triangle of the cut, culling as the rasterizer says it does.
-std::vector<Hit> cast_rays(const run::Asset& asset, std::span<const run::ClusterInstance> cut, const run::Camera& camera, double px,
-                           double py) {
+std::vector<Hit> cast_rays(const run::Asset& asset, std::span<const run::ClusterInstance> cut,
+                           const run::Camera& camera, double px, double py) {
   const Vec3d forward = glm::normalize(camera.target - camera.eye);
   const Vec3d right = glm::normalize(glm::cross(forward, Vec3d(0, 1, 0)));
   const Vec3d up = glm::cross(right, forward);

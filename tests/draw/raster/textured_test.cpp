@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Textured pixels: derivatives against differences, texels where a card shows one a block of pixels, and normal maps that
-// lean the way their picture says.
+// Textured pixels: derivatives against differences, texels where a card shows one a block of pixels, and normal maps
+// that lean the way their picture says.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -34,7 +34,7 @@ TEST(PixelWeights, DerivativesAreTheLimitOfDifferences) {
 
 struct CardOptions {
   scene::Texture base, normal;  ///< empty: none
-  bool is_mirrored = false;       ///< u runs the other way
+  bool is_mirrored = false;     ///< u runs the other way
 };
 
 /// A square from -1 to 1 in the xy plane, seen along -z; v points down.
@@ -172,8 +172,8 @@ TEST(Textured, BaseColoursAreSrgb) {
   EXPECT_NEAR(light / full, 0.2159, 0.01);
 }
 
-/// The light comes from the upper left. A normal map that leans left or up is brighter, right or down darker; and it does
-/// so where UVs are mirrored, too: green stays up, red follows u.
+/// The light comes from the upper left. A normal map that leans left or up is brighter, right or down darker; and it
+/// does so where UVs are mirrored, too: green stays up, red follows u.
 TEST(Textured, NormalMapsLeanAsTheirPictureSays) {
   const auto with = [&](std::uint8_t r, std::uint8_t g, bool is_mirrored) {
     return channel(picture_of({{}, plain(4, {r, g, 230, 255}), is_mirrored}), 30, 33, 0);

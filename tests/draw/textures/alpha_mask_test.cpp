@@ -2,8 +2,8 @@
 // Masks of materials: thresholds against a search of all products, images decoded once and only where they are asked.
 #include <gtest/gtest.h>
 
-#include "support/mask_scene.h"
 #include "draw/textures/alpha_mask.h"
+#include "support/mask_scene.h"
 
 namespace meshlode::draw {
 namespace {

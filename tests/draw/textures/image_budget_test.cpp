@@ -10,10 +10,10 @@
 
 #include <gtest/gtest.h>
 
-#include "draw/textures/image_samples.h"
-#include "support/mask_scene.h"
 #include "draw/textures/alpha_mask.h"
+#include "draw/textures/image_samples.h"
 #include "draw/textures/texture_set.h"
+#include "support/mask_scene.h"
 
 namespace meshlode::draw {
 namespace {
@@ -125,20 +125,23 @@ long peak_of(const Body& body) {
 // 16384 × 16384 texels of one bit in 33 KB: 1.4 GiB with their levels, and rendering took 2.5 GB for them.
 TEST(ImageBudget, AFewKilobytesDoNotTakeGigabytes) {
   const std::uint32_t side = 16384;
-  const Bytes png = test::make_png(side, side, {.color_type = 0, .bit_depth = 1}, Bytes(std::size_t{side} * side / 8, 0));
+  const Bytes png =
+      test::make_png(side, side, {.color_type = 0, .bit_depth = 1}, Bytes(std::size_t{side} * side / 8, 0));
   ASSERT_LT(png.size(), 50000u);
   const run::Asset asset = scene_with(png);
   const long before = peak_of([] {});
   const long peak = peak_of([&] {
     ImageBudget budget;
-    if (!load_alpha_masks(asset, budget).images.at(0).texels.empty() || !load_textures(asset, budget).is_empty()) abort();
+    if (!load_alpha_masks(asset, budget).images.at(0).texels.empty() || !load_textures(asset, budget).is_empty())
+      abort();
   });
   EXPECT_LT(peak - before, 64) << "MiB";
 }
 
 TEST(ImageBudget, DecodingTakesWhatItIsCountedAs) {
   const std::uint32_t side = 4096;
-  const Bytes png = test::make_png(side, side, {.color_type = 0, .bit_depth = 1}, Bytes(std::size_t{side} * side / 8, 0));
+  const Bytes png =
+      test::make_png(side, side, {.color_type = 0, .bit_depth = 1}, Bytes(std::size_t{side} * side / 8, 0));
   const run::Asset asset = scene_with(png);
   const std::uint64_t counted = 4 * count_mip_texels(side, side);
   const long before = peak_of([] {});

@@ -105,7 +105,8 @@ TEST(Image, AShortFileGetsNoLargeImage) {
 }
 
 TEST(Image, OtherFormatsAreRefused) {
-  for (const Bytes& bytes : {Bytes{}, Bytes{0x89}, Bytes{'R', 'I', 'F', 'F', 0, 0, 0, 0, 'W', 'E', 'B', 'P'}, Bytes(64, 0)}) {
+  for (const Bytes& bytes :
+       {Bytes{}, Bytes{0x89}, Bytes{'R', 'I', 'F', 'F', 0, 0, 0, 0, 'W', 'E', 'B', 'P'}, Bytes(64, 0)}) {
     const auto image = decode_image(bytes);
     ASSERT_FALSE(image);
     EXPECT_EQ(image.error().code, ErrorCode::kUnsupported);

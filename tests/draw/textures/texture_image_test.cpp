@@ -29,7 +29,8 @@ std::uint32_t red(const TextureImage& image, std::uint32_t level, std::uint32_t 
 }
 
 TEST(TextureImage, LevelsHalveDownToOneTexelAndKeepTheMean) {
-  for (const auto& [width, height] : {std::pair(16U, 16U), std::pair(37U, 11U), std::pair(1U, 9U), std::pair(64U, 1U)}) {
+  for (const auto& [width, height] :
+       {std::pair(16U, 16U), std::pair(37U, 11U), std::pair(1U, 9U), std::pair(64U, 1U)}) {
     const TextureImage image = make_texture_image(image_of(width, height, hashed), false);
     std::size_t texels = 0;
     for (std::uint32_t level = 0; level < image.level_count(); ++level) {
@@ -75,7 +76,9 @@ TEST(TextureImage, SamplesAreLinearBetweenTexels) {
     }
   }
   // Beyond the border: the first and the last texel, a mean across the seam, the row turned around.
-  const auto at = [&](double u, Wrap wrap) { return 255.0 * sample_texture(image, wrap, Wrap::kClamp, {{u, 0.125}, {}, {}})[0]; };
+  const auto at = [&](double u, Wrap wrap) {
+    return 255.0 * sample_texture(image, wrap, Wrap::kClamp, {{u, 0.125}, {}, {}})[0];
+  };
   EXPECT_NEAR(at(-3.0, Wrap::kClamp), 0.0, 1e-3);
   EXPECT_NEAR(at(7.0, Wrap::kClamp), 120.0, 1e-3);
   EXPECT_NEAR(at(2.0, Wrap::kRepeat), 60.0, 1e-3);

@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "support/mask_scene.h"
 #include "draw/textures/texture_use.h"
+#include "support/mask_scene.h"
 
 namespace meshlode::draw {
 namespace {
@@ -34,7 +34,8 @@ std::string base_color(const std::string& info) {
 TEST(TextureUse, ATransformMovesAsTheExtensionsExamplesSay) {
   // "only the lower left quadrant of the source image": u in 0 … 0.5, v in 0.5 … 1 (v points down).
   const auto quadrant = textures_with(
-      base_color(R"({"index":0,"extensions":{"KHR_texture_transform":{"offset":[0,1],"rotation":1.57079632679,"scale":[0.5,0.5]}}})"),
+      base_color(
+          R"({"index":0,"extensions":{"KHR_texture_transform":{"offset":[0,1],"rotation":1.57079632679,"scale":[0.5,0.5]}}})"),
       kTables);
   ASSERT_TRUE(quadrant.base_color);
   const auto at = [&](double u, double v) {
@@ -83,7 +84,8 @@ TEST(TextureUse, NonsenseCountsAsNotThere) {
   EXPECT_FALSE(textures_with(base_color("3"), kTables).base_color);
   EXPECT_FALSE(textures_with("[]", kTables).base_color);
   EXPECT_FALSE(textures_with(base_color(R"({"index":0})"), R"(,"textures":{})").base_color);
-  const auto no_image = textures_with(base_color(R"({"index":0})"), R"(,"textures":[{"source":1}],"images":[{"blob":0}])");
+  const auto no_image =
+      textures_with(base_color(R"({"index":0})"), R"(,"textures":[{"source":1}],"images":[{"blob":0}])");
   ASSERT_TRUE(no_image.base_color);
   EXPECT_EQ(no_image.base_color->blob, format::kNone);
   for (const char* transform :

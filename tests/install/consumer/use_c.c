@@ -5,9 +5,9 @@
 
 #include <meshlode/meshlode.h>
 
-int main(int argc, char **argv) {
+int main(int argc, char** argv) {
   static uint32_t page[MESHLODE_MAX_PAGE_BYTES / 4];
-  meshlode_asset *asset;
+  meshlode_asset* asset;
   meshlode_error error;
   uint32_t cluster;
   size_t count;

@@ -11,18 +11,18 @@
 
 #include <gtest/gtest.h>
 
-#include "judge/gpu/hardware_freedom.h"
 #include "draw/gpu/gpu_support.h"
 #include "draw/raster/cut_pages.h"
 #include "draw/raster/projection.h"
+#include "judge/gpu/hardware_freedom.h"
 #include "support/random.h"
 #include "support/sample_asset.h"
 
 namespace meshlode::judge::test {
 namespace {
 
-using meshlode::test::RandomSource;
 using draw::ClipVertex;
+using meshlode::test::RandomSource;
 
 constexpr std::uint32_t kBits = 8;
 
@@ -34,7 +34,8 @@ struct Picture {
   draw::VisibilityBuffer pixels;
   draw::AlphaMasks masks;
 
-  Picture(const run::Asset& a, const run::Camera& c, double pixel_error) : asset(a), camera(c), masks(draw::load_alpha_masks(a)) {
+  Picture(const run::Asset& a, const run::Camera& c, double pixel_error)
+      : asset(a), camera(c), masks(draw::load_alpha_masks(a)) {
     cut = run::select_flat(asset, camera, pixel_error);
     auto drawn = draw::draw_cut(asset, cut, camera, masks);
     EXPECT_TRUE(drawn);
@@ -214,7 +215,8 @@ TEST(HardwareJudge, WhatLiesBehindIsFoundWhereSomethingCoversIt) {
   for (const std::uint32_t item : picture.pixels.item) {
     if (item != draw::VisibilityBuffer::kNothing) ++pixels_of[item];
   }
-  const auto widest = static_cast<std::size_t>(std::max_element(pixels_of.begin(), pixels_of.end()) - pixels_of.begin());
+  const auto widest =
+      static_cast<std::size_t>(std::max_element(pixels_of.begin(), pixels_of.end()) - pixels_of.begin());
   std::vector<run::ClusterInstance> without = picture.cut;
   without.erase(without.begin() + static_cast<std::ptrdiff_t>(widest));
   auto drawn = draw::draw_cut(picture.asset, without, picture.camera, picture.masks);
@@ -248,7 +250,8 @@ TEST(HardwareFreedom, HoldsEveryTriangleWhoseCornersMovedByLessThanTheGrid) {
     const bool is_sliver = random.chance(0.3);
     for (std::size_t k = 0; k < 3; ++k) {
       const double w = random.log_between(0.1, 10.0);
-      const double x = random.between(-30.0, 30.0), y = is_sliver ? 0.3 * x + random.between(-0.01, 0.01) : random.between(-30.0, 30.0);
+      const double x = random.between(-30.0, 30.0),
+                   y = is_sliver ? 0.3 * x + random.between(-0.01, 0.01) : random.between(-30.0, 30.0);
       v[k] = {x * w, y * w, 0.1, w};
       sx[k] = 32.0 + x;
       sy[k] = 32.0 + y;

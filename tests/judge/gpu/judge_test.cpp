@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include "judge/gpu/compare_frame.h"
 #include "draw/gpu/gpu_support.h"
 #include "draw/raster/projection.h"
+#include "judge/gpu/compare_frame.h"
 #include "support/sample_asset.h"
 
 namespace meshlode::judge::test {
@@ -79,7 +79,8 @@ TEST_F(Judge, InstancesGetTheBitsOfTheCpu) {
     for (const draw::GpuVisible& v : *visible) {
       const format::InstanceRecord& instance = asset.instances()[v.instance];
       const format::MeshRecord& mesh = asset.meshes()[instance.mesh];
-      const run::MetricView view = run::make_metric_view(named.camera, 0.7, instance, mesh, run::mesh_reach(run::tables_of(asset), mesh));
+      const run::MetricView view =
+          run::make_metric_view(named.camera, 0.7, instance, mesh, run::mesh_reach(run::tables_of(asset), mesh));
       EXPECT_EQ(std::memcmp(&view, &v.view, sizeof view), 0) << "view of instance " << v.instance;
       const draw::GridToClip clip = draw::make_grid_to_clip(*projection, mesh, instance);
       EXPECT_EQ(std::memcmp(&clip, v.clip, sizeof v.clip), 0) << "rows of instance " << v.instance;

@@ -2,8 +2,8 @@
 // The judge of pictures, which needs no device: it must see what it is there for.
 #include <gtest/gtest.h>
 
-#include "judge/gpu/judge_picture.h"
 #include "draw/gpu/gpu_support.h"
+#include "judge/gpu/judge_picture.h"
 #include "judge/metrics/metrics.h"
 
 namespace meshlode::judge::test {
@@ -43,7 +43,8 @@ Drawn draw_rock() {
 
 TEST(Picture, TheSourceItselfHasNoFault) {
   const Drawn rock = draw_rock();
-  const auto report = judge_picture(*rock.asset, {rock.source, rock.decoded, 1.0}, rock.cut, rock.picture, rock.camera, 1.0);
+  const auto report =
+      judge_picture(*rock.asset, {rock.source, rock.decoded, 1.0}, rock.cut, rock.picture, rock.camera, 1.0);
   ASSERT_TRUE(report);
   EXPECT_GT(report->covered, 1000U);
   EXPECT_EQ(report->covered, report->covered_source);
@@ -63,7 +64,8 @@ TEST(Picture, ErasedPixelsAreHoles) {
     rock.picture.depth[at] = 0;
   }
   ASSERT_EQ(erased, 3U);
-  const auto report = judge_picture(*rock.asset, {rock.source, rock.decoded, 1.0}, rock.cut, rock.picture, rock.camera, 1.0);
+  const auto report =
+      judge_picture(*rock.asset, {rock.source, rock.decoded, 1.0}, rock.cut, rock.picture, rock.camera, 1.0);
   ASSERT_TRUE(report);
   EXPECT_EQ(report->holes, 3U);
 }
@@ -97,7 +99,8 @@ TEST(Picture, ATriangleThatLevel0LostIsSeenInTheSourcesPicture) {
   surface.triangles.push_back({first, first + 1, first + 2});
   rock.source.clear();
   rock.source.emplace_back(surface, std::vector<std::uint8_t>(surface.triangles.size(), 1));
-  const auto report = judge_picture(*rock.asset, {rock.source, rock.decoded, 1.0}, rock.cut, rock.picture, rock.camera, 1.0);
+  const auto report =
+      judge_picture(*rock.asset, {rock.source, rock.decoded, 1.0}, rock.cut, rock.picture, rock.camera, 1.0);
   ASSERT_TRUE(report);
   EXPECT_GT(report->exceeded, 10U);
   EXPECT_GT(report->covered_source, report->covered);
@@ -131,7 +134,8 @@ TEST(Picture, WhatMayHaveMovedThroughTheNearPlaneIsNoHole) {
     }
     picture.item[at] = draw::VisibilityBuffer::kNothing;
     picture.depth[at] = 0;
-    const auto report = judge_picture(*rock.asset, {rock.source, rock.decoded, 1.0}, rock.cut, picture, rock.camera, 1.0);
+    const auto report =
+        judge_picture(*rock.asset, {rock.source, rock.decoded, 1.0}, rock.cut, picture, rock.camera, 1.0);
     ASSERT_TRUE(report);
     holes[is_near ? 1 : 0] = report->holes;
   }
@@ -144,7 +148,8 @@ TEST(Picture, ACutThatIsTooCoarseExceedsThePromise) {
   rock.cut = run::select_flat(*rock.asset, rock.camera, 20.0);
   auto picture = draw::draw_cut(*rock.asset, rock.cut, rock.camera);
   ASSERT_TRUE(picture);
-  const auto report = judge_picture(*rock.asset, {rock.source, rock.decoded, 1.05}, rock.cut, *picture, rock.camera, 1.0);
+  const auto report =
+      judge_picture(*rock.asset, {rock.source, rock.decoded, 1.05}, rock.cut, *picture, rock.camera, 1.0);
   ASSERT_TRUE(report);
   EXPECT_GT(report->largest_px, 1.05);
   EXPECT_GT(report->exceeded, 0U);

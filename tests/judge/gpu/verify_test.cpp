@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include "judge/gpu/verify_gpu.h"
 #include "draw/gpu/gpu_support.h"
+#include "judge/gpu/verify_gpu.h"
 #include "scene/import/import.h"
 
 namespace meshlode::judge::test {
@@ -23,8 +23,8 @@ struct Failures {
 };
 
 Failures failures_of(const GpuVerifyReport& report, const std::string& id) {
-  const auto check =
-      std::find_if(report.checks.begin(), report.checks.end(), [&](const GpuCheck& c) { return info_of(c.rule).id == id; });
+  const auto check = std::find_if(report.checks.begin(), report.checks.end(),
+                                  [&](const GpuCheck& c) { return info_of(c.rule).id == id; });
   EXPECT_NE(check, report.checks.end()) << id;
   if (check == report.checks.end()) return {};
   EXPECT_TRUE(check->items > 0 || check->is_skipped) << id;

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <limits>
 
+#include "build/build.h"
 #include "judge/metrics/attribute_drift.h"
 #include "judge/metrics/seams.h"
-#include "build/build.h"
-#include "scene/samples/samples.h"
 #include "run/select/select.h"
+#include "scene/samples/samples.h"
 
 namespace meshlode::judge {
 namespace {

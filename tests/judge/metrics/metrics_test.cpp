@@ -102,8 +102,7 @@ TEST(Metrics, NearestIsTheSmallestOverAllTrianglesIncludingDegenerateOnes) {
     const Vec3d p = random.in_cube(2.0);
     double expected = std::numeric_limits<double>::infinity();
     for (const auto& t : s.triangles) {
-      expected = std::min(expected,
-                          distance2_to_triangle(p, s.positions[t[0]], s.positions[t[1]], s.positions[t[2]]));
+      expected = std::min(expected, distance2_to_triangle(p, s.positions[t[0]], s.positions[t[1]], s.positions[t[2]]));
     }
     EXPECT_EQ(tree.nearest(p).distance2, expected);
   }
@@ -250,9 +249,11 @@ TEST(Metrics, TheLargestDeviationAloneIsTheSameWhereverItLies) {
   Surface half = make_square(10.0, 0.0, 10);
   for (Vec3d& p : half.positions) p.x *= 0.5;
   const Surface square = make_square(10.0, 0.0, 10);
-  std::vector<std::pair<Surface, Surface>> pairs = {
-      {square, half}, {half, square}, {square, square}, {make_square(4.0, 0.0, 7), make_square(4.0, 0.25, 3)},
-      {Surface{{{0, 0, 2}, {9, 9, 9}}, {{0, 0, 0}}}, square}};
+  std::vector<std::pair<Surface, Surface>> pairs = {{square, half},
+                                                    {half, square},
+                                                    {square, square},
+                                                    {make_square(4.0, 0.0, 7), make_square(4.0, 0.25, 3)},
+                                                    {Surface{{{0, 0, 2}, {9, 9, 9}}, {{0, 0, 0}}}, square}};
   for (int i = 0; i < 12; ++i) {
     pairs.emplace_back(make_soup(random, 400, 1.0, Vec3d(0.0)), make_soup(random, 400, 1.0, Vec3d(0.1)));
   }

@@ -4,10 +4,10 @@
 #include <optional>
 #include <span>
 
-#include "support/reseal.h"
 #include "judge/validate/file_tables.h"
 #include "judge/validate/page_rules.h"
 #include "judge/validate/rules.h"
+#include "support/reseal.h"
 
 namespace meshlode::test {
 
@@ -90,7 +90,8 @@ void AssetEdit::put_page_bits(std::uint64_t cluster, std::uint32_t bit, std::uin
 
 std::uint32_t AssetEdit::stored_count(std::uint64_t cluster) const {
   const auto mesh = mesh_of(cluster);
-  return 3U + (mesh.normal_mode == format::NormalMode::kStored ? 2U : 0U) + 2U * mesh.uv_set_count + 4U * mesh.has_color;
+  return 3U + (mesh.normal_mode == format::NormalMode::kStored ? 2U : 0U) + 2U * mesh.uv_set_count +
+         4U * mesh.has_color;
 }
 
 AssetEdit::BitPlace AssetEdit::place_of(std::uint64_t cluster, std::uint32_t vertex, std::uint32_t k) const {

@@ -130,7 +130,7 @@ class AssetEdit {
   /// What a vertex has in the stream: 0 … 2 raw positions, then a and b of the normal, u and v of each UV set, and the
   /// colour, as far as the mesh has them.
   struct BitPlace {
-    std::uint32_t bit = 0;    ///< of the page
+    std::uint32_t bit = 0;  ///< of the page
     std::uint32_t count = 0;
   };
   [[nodiscard]] std::uint32_t stored_count(std::uint64_t cluster) const;

@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "judge/validate/exact.h"
 #include "base/random.h"
+#include "judge/validate/exact.h"
 
 namespace meshlode::judge {
 namespace {
@@ -61,8 +61,9 @@ TEST(Exact, RandomBallsAgreeWithIntegers) {
     const bool truth = room >= 0 && squared <= room * room;
     const float scale = std::ldexp(1.0F, static_cast<int>(random.below(120)) - 60);
     const ExactBall a{{0, 0, 0}, static_cast<float>(outer) * scale};
-    const ExactBall b{{static_cast<float>(d[0]) * scale, static_cast<float>(d[1]) * scale, static_cast<float>(d[2]) * scale},
-                 static_cast<float>(inner) * scale};
+    const ExactBall b{
+        {static_cast<float>(d[0]) * scale, static_cast<float>(d[1]) * scale, static_cast<float>(d[2]) * scale},
+        static_cast<float>(inner) * scale};
     ASSERT_EQ(contains_ball(a, b), truth) << "case " << i;
     contained += truth ? 1 : 0;
   }

@@ -5,8 +5,8 @@
 #include <cstdlib>
 
 #include "build/hierarchy/hierarchy.h"
-#include "support/sample_asset.h"
 #include "build/write/write.h"
+#include "support/sample_asset.h"
 
 namespace meshlode::test {
 
@@ -39,8 +39,9 @@ std::vector<std::uint8_t> judged_sample_bytes(format::Codec codec) {
   input.meshes.push_back(value_or_abort(build::encode_mesh(empty, {}, {}, {})));
   input.mesh_names.emplace_back("empty");
   input.scene = &scene;
-  input.meta_json = R"({"generator":"a test","source":{"file":"sample.glb","hash":")" + scene.source_hash +
-                    R"("},"settings":{"error_tier":"qem","cluster_triangles":256,"normal_error":0.1,"uv_error":0.0001,"uv_error_unit":"uv"},"plan":[],"left_out":[]})";
+  input.meta_json =
+      R"({"generator":"a test","source":{"file":"sample.glb","hash":")" + scene.source_hash +
+      R"("},"settings":{"error_tier":"qem","cluster_triangles":256,"normal_error":0.1,"uv_error":0.0001,"uv_error_unit":"uv"},"plan":[],"left_out":[]})";
   input.codec = codec;
   return value_or_abort(build::write_asset(std::move(input)));
 }

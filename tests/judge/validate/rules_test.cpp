@@ -9,11 +9,11 @@
 
 #include <gtest/gtest.h>
 
-#include "support/reseal.h"
 #include "judge/validate/edit.h"
 #include "judge/validate/judged_sample.h"
 #include "judge/validate/rules.h"
 #include "judge/validate/validate.h"
+#include "support/reseal.h"
 
 namespace meshlode::judge {
 namespace {
@@ -297,7 +297,8 @@ const std::vector<Break>& breaks() {
       {"L211", "ranges cover too much",
        [](AssetEdit& e) { e.put_field(0, e.layout(0).material_word, format::material_range::kTrianglesLess1, 255); }},
       {"L212", "beyond 24 bits", [](AssetEdit& e) { e.put_head(0, format::head::kMinimum[0], (1 << 23) - 1); }},
-      {"L212", "normal out of range", [](AssetEdit& e) { e.put_head(0, format::head::kNormalMinimumA, (1 << 14) - 1); }},
+      {"L212", "normal out of range",
+       [](AssetEdit& e) { e.put_head(0, format::head::kNormalMinimumA, (1 << 14) - 1); }},
       {"L212", "UV out of range", [](AssetEdit& e) { e.move_minimum(0, 5, 1 << 25); }},
       {"L215", "a normal by another name",
        [](AssetEdit& e) {
@@ -394,7 +395,8 @@ const std::vector<Break>& breaks() {
        [](AssetEdit& e) {
          e.node(leaf_node(e), [](auto& r) { r.error = r.error < 1e30F ? r.error * 2.0F + 1.0F : 1.0F; });
        }},
-      {"L501", "more vertices than corners", [](AssetEdit& e) { e.cluster(0, [](auto& c) { c.vertices_less_1 = 255; }); }},
+      {"L501", "more vertices than corners",
+       [](AssetEdit& e) { e.cluster(0, [](auto& c) { c.vertices_less_1 = 255; }); }},
       {"L502", "culling sphere shrunk by 0.1%",
        [](AssetEdit& e) { e.cluster(0, [](auto& c) { c.radius = static_cast<std::uint16_t>(c.radius * 0.998); }); }},
       {"L503", "cone too narrow", [](AssetEdit& e) { e.cluster(0, [](auto& c) { c.cone_cutoff = -1; }); }},

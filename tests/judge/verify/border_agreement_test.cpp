@@ -7,12 +7,12 @@
 
 #include <gtest/gtest.h>
 
-#include "run/decode/decode.h"
-#include "drawn_surface.h"
 #include "build/simplify/border_rule.h"
 #include "build/simplify/simplify.h"
-#include "support/open_surface.h"
+#include "drawn_surface.h"
 #include "judge/validate/borders.h"
+#include "run/decode/decode.h"
+#include "support/open_surface.h"
 
 namespace meshlode::judge {
 namespace {
@@ -82,7 +82,8 @@ TEST(BorderAgreement, BuilderAndJudgeAcceptTheSame) {
   int accepted = 0, refused = 0;
   for (std::uint64_t seed = 1; seed <= 600; ++seed) {
     Random random(seed);
-    const build::SimplifyInput input = as_input(test::make_open_surface(test::random_surface_options(random, 7), random));
+    const build::SimplifyInput input =
+        as_input(test::make_open_surface(test::random_surface_options(random, 7), random));
     build::SimplifyOptions options;
     options.target_triangles = static_cast<std::uint32_t>(input.triangles.size() / (1 + random.below(6)));
     build::SimplifyResult result = build::simplify_group(input, options);

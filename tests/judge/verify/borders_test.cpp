@@ -5,10 +5,10 @@
 
 #include <gtest/gtest.h>
 
-#include "run/decode/decode.h"
 #include "drawn_surface.h"
-#include "run/read/asset.h"
 #include "judge/validate/borders.h"
+#include "run/decode/decode.h"
+#include "run/read/asset.h"
 
 namespace meshlode::judge {
 namespace {
@@ -48,9 +48,10 @@ Patch lid(int steps, int size = 8) {
   return patch;
 }
 
-/// The surface of asset_of(one patch, one patch), but the finer cluster's border is a path of 3 * `links` edges that, in
-/// their order, tie the links from the last to the first: each lower position meets the path as it is so far. The last
-/// edge of all hangs on the last link, which sets linked by name have by then put `links` deep. The triangles are nowhere.
+/// The surface of asset_of(one patch, one patch), but the finer cluster's border is a path of 3 * `links` edges that,
+/// in their order, tie the links from the last to the first: each lower position meets the path as it is so far. The
+/// last edge of all hangs on the last link, which sets linked by name have by then put `links` deep. The triangles are
+/// nowhere.
 MeshSurface path_surface(const run::Asset& asset, std::uint32_t links) {
   MeshSurface surface;
   surface.mesh = MeshId(0U);

@@ -12,14 +12,14 @@
 #include <utility>
 #include <vector>
 
-#include "judge/metrics/metrics.h"
 #include "build/build.h"
 #include "build/odd_shapes.h"
-#include "run/read/asset.h"
-#include "scene/samples/samples.h"
-#include "run/select/select.h"
-#include "support/random.h"
+#include "judge/metrics/metrics.h"
 #include "judge/verify/verify.h"
+#include "run/read/asset.h"
+#include "run/select/select.h"
+#include "scene/samples/samples.h"
+#include "support/random.h"
 
 namespace meshlode::judge {
 namespace {
@@ -87,7 +87,8 @@ class CertifiedScene : public testing::TestWithParam<CertifiedCase> {
   void SetUp() override {
     scene_ = scene::as_scene(scene::as_mesh(GetParam().make()));
     build::PipelineReport report;
-    auto bytes = build::build_lode(scene_, {.error_tier = format::ErrorTier::kCertified, .max_cluster_triangles = kClusterCap}, {}, report);
+    auto bytes = build::build_lode(
+        scene_, {.error_tier = format::ErrorTier::kCertified, .max_cluster_triangles = kClusterCap}, {}, report);
     ASSERT_TRUE(bytes.ok()) << bytes.error().message();
     auto asset = run::Asset::from_vector(std::move(*bytes));
     ASSERT_TRUE(asset.ok()) << asset.error().message();
@@ -101,7 +102,8 @@ class CertifiedScene : public testing::TestWithParam<CertifiedCase> {
   void expect_within(const std::vector<ClusterId>& cut, double stored, const char* what) {
     if (!judged_.insert(cut).second) return;
     const double truth =
-        measure_deviation(source_, surface_of_clusters(asset_[0], decoded_, MeshId(0U), cut), {.samples = kSamples}).max();
+        measure_deviation(source_, surface_of_clusters(asset_[0], decoded_, MeshId(0U), cut), {.samples = kSamples})
+            .max();
     EXPECT_LE(truth, stored) << what << " of " << cut.size() << " clusters";
     if (stored > 0.0) tightest_ = std::max(tightest_, truth / stored);
   }

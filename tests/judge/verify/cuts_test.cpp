@@ -6,11 +6,11 @@
 
 #include <gtest/gtest.h>
 
-#include "run/decode/decode.h"
-#include "run/read/asset.h"
 #include "judge/validate/edit.h"
 #include "judge/validate/judged_sample.h"
 #include "judge/verify/cuts.h"
+#include "run/decode/decode.h"
+#include "run/read/asset.h"
 
 namespace meshlode::judge {
 namespace {
@@ -18,7 +18,8 @@ namespace {
 class CutChecks : public testing::Test {
  protected:
   CutChecks()
-      : asset_(std::move(*run::Asset::from_vector(test::judged_sample_bytes()))), clusters_(std::move(*run::decode_all(asset_))) {
+      : asset_(std::move(*run::Asset::from_vector(test::judged_sample_bytes()))),
+        clusters_(std::move(*run::decode_all(asset_))) {
     for (std::uint32_t m = 0; m < asset_.meshes().size(); ++m)
       judges_.push_back(make_mesh_judge(asset_, MeshId(m), clusters_));
   }
@@ -98,7 +99,9 @@ TEST_F(CutChecks, AnEmptyCutIsFound) {
 
 TEST_F(CutChecks, AnotherThresholdIsNotTheRule) {
   Selectors wrong;
-  wrong.flat = [](const run::Asset& asset, const run::Camera& camera, double t) { return run::select_flat(asset, camera, t * 1.5); };
+  wrong.flat = [](const run::Asset& asset, const run::Camera& camera, double t) {
+    return run::select_flat(asset, camera, t * 1.5);
+  };
   wrong.bvh = wrong.flat;
   const RuleLog log = check_cameras_with(wrong);
   EXPECT_GT(log.count_of(Rule::kV204), 0U);

@@ -5,13 +5,13 @@
 
 #include <gtest/gtest.h>
 
-#include "build/dag/build_dag.h"
 #include "build/build.h"
-#include "run/read/asset.h"
-#include "scene/samples/samples.h"
+#include "build/dag/build_dag.h"
 #include "judge/validate/edit.h"
 #include "judge/validate/validate.h"
 #include "judge/verify/verify.h"
+#include "run/read/asset.h"
+#include "scene/samples/samples.h"
 
 namespace meshlode::judge {
 namespace {
@@ -48,7 +48,8 @@ std::string ids_of(const Report& report) {
 VerifyReport verify_bytes(const std::vector<std::uint8_t>& bytes, const scene::Scene& scene) {
   const Result<run::Asset> asset = run::Asset::from_vector(bytes);
   EXPECT_TRUE(asset.ok()) << asset.error().message();
-  return verify_asset(*asset, scene, {.uniform_cuts = 20, .cameras = 10, .deviation_cuts = 6, .deviation_samples = 20000});
+  return verify_asset(*asset, scene,
+                      {.uniform_cuts = 20, .cameras = 10, .deviation_cuts = 6, .deviation_samples = 20000});
 }
 
 /// All errors and deviations times `factor`, where they are finite. With a power of two every other rule still holds.
@@ -87,7 +88,8 @@ TEST_P(StoredErrors, AreAtLeastTheDeviationTimesTheMarginOfTheSettings) {
   const auto count = static_cast<std::uint32_t>(edit.count(format::SectionId::kGroups, sizeof(format::GroupRecord)));
   std::uint32_t finite = 0, inner = 0;
   for (std::uint32_t g = 0; g < count; ++g) {
-    const auto group = edit.get<format::GroupRecord>(edit.offset_of<format::GroupRecord>(format::SectionId::kGroups, g));
+    const auto group =
+        edit.get<format::GroupRecord>(edit.offset_of<format::GroupRecord>(format::SectionId::kGroups, g));
     if ((group.flags & format::kGroupTerminal) != 0) continue;
     ++finite;
     inner = g;

@@ -11,8 +11,8 @@
 
 #include "build/encode/encode.h"
 #include "build/hierarchy/hierarchy.h"
-#include "run/read/asset.h"
 #include "build/write/write.h"
+#include "run/read/asset.h"
 
 namespace meshlode::test {
 
@@ -46,7 +46,7 @@ inline void append_cluster(const Patch& patch, std::uint32_t level, GroupId own,
 
 /// One group that replaces `finer` by `coarser`, beside `rest`, which stays as it is.
 [[nodiscard]] inline run::Asset asset_of(const std::vector<Patch>& finer, const Patch& coarser,
-                                    const std::vector<Patch>& rest = {}) {
+                                         const std::vector<Patch>& rest = {}) {
   build::LodDag dag;
   append_cluster(coarser, 1, GroupId(1U), GroupId(0U), dag);
   for (const Patch& patch : rest) append_cluster(patch, 0, GroupId(), GroupId(0U), dag);

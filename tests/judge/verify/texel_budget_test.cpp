@@ -7,10 +7,10 @@
 #include <gtest/gtest.h>
 
 #include "build/plan/texel_sizes.h"
-#include "run/read/asset.h"
-#include "support/sample_asset.h"
 #include "judge/validate/judged_sample.h"
 #include "judge/verify/texel_budget.h"
+#include "run/read/asset.h"
+#include "support/sample_asset.h"
 
 namespace meshlode::judge {
 namespace {
@@ -19,7 +19,8 @@ namespace {
 std::vector<std::uint8_t> png_of(std::uint32_t width, std::uint32_t height) {
   std::vector<std::uint8_t> bytes{0x89, 'P', 'N', 'G', 0x0D, 0x0A, 0x1A, 0x0A, 0, 0, 0, 13, 'I', 'H', 'D', 'R'};
   for (const std::uint32_t size : {width, height}) {
-    for (std::uint32_t shift = 32; shift > 0; shift -= 8) bytes.push_back(static_cast<std::uint8_t>(size >> (shift - 8)));
+    for (std::uint32_t shift = 32; shift > 0; shift -= 8)
+      bytes.push_back(static_cast<std::uint8_t>(size >> (shift - 8)));
   }
   for (const int b : {8, 6, 0, 0, 0, 0, 0, 0, 0}) bytes.push_back(static_cast<std::uint8_t>(b));
   return bytes;
@@ -34,8 +35,9 @@ scene::Scene scene_with(std::uint32_t width) {
   for (scene::SceneMaterial& material : scene.materials) {
     material.source_index = count++;
     materials += materials.empty() ? "" : ",";
-    materials += R"({"normalTexture":{"index":0},"emissiveTexture":{"index":0,"texCoord":1},)"
-                 R"("extensions":{"X":{"t":{"index":0,"extensions":{"KHR_texture_transform":{"texCoord":2,"scale":[-2,1]}}}}}})";
+    materials +=
+        R"({"normalTexture":{"index":0},"emissiveTexture":{"index":0,"texCoord":1},)"
+        R"("extensions":{"X":{"t":{"index":0,"extensions":{"KHR_texture_transform":{"texCoord":2,"scale":[-2,1]}}}}}})";
   }
   scene.document = R"({"images":[{"blob":0}],"textures":[{"source":0}],"materials":[)" + materials + "]}";
   return scene;
@@ -47,9 +49,9 @@ TEST(TexelBudget, TexturesAreFoundAsTheBuildFindsThem) {
   for (const scene::SourceMesh& mesh : scene.meshes) {
     const auto most = most_texels(of_materials, mesh);
     EXPECT_EQ(most, build::texels_per_unit(scene, mesh));
-    const bool has_material = std::any_of(mesh.primitives.begin(), mesh.primitives.end(), [&](const scene::Primitive& p) {
-      return p.material.value < scene.materials.size();
-    });
+    const bool has_material =
+        std::any_of(mesh.primitives.begin(), mesh.primitives.end(),
+                    [&](const scene::Primitive& p) { return p.material.value < scene.materials.size(); });
     if (!has_material) continue;
     EXPECT_EQ(most[0], 300.0);
     EXPECT_EQ(most[1], 300.0);

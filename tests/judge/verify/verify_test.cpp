@@ -8,12 +8,12 @@
 
 #include <gtest/gtest.h>
 
-#include "run/read/asset.h"
-#include "support/sample_asset.h"
 #include "judge/validate/edit.h"
 #include "judge/validate/judged_sample.h"
 #include "judge/validate/rules.h"
 #include "judge/verify/verify.h"
+#include "run/read/asset.h"
+#include "support/sample_asset.h"
 
 namespace meshlode::judge {
 namespace {
@@ -90,7 +90,8 @@ const std::vector<Break>& breaks() {
          p.material = MaterialId(1 - p.material.value);
        },
        keep},
-      {"V101", "a vertex moved by a step", [](scene::Scene& s) { s.meshes[1].primitives[0].positions[0].x += 1.0; }, keep},
+      {"V101", "a vertex moved by a step", [](scene::Scene& s) { s.meshes[1].primitives[0].positions[0].x += 1.0; },
+       keep},
       {"V101", "another origin", keep, [](AssetEdit& e) { e.mesh(1, [](auto& m) { m.origin[0] += 1.0; }); }},
       {"V101", "a strip that goes the other way", keep,
        [](AssetEdit& e) {
@@ -139,7 +140,8 @@ const std::vector<Break>& breaks() {
          }
        },
        keep},
-      {"V105", "a vertex off the grid", [](scene::Scene& s) { s.meshes[1].primitives[0].positions[0].x += 1e-4; }, keep},
+      {"V105", "a vertex off the grid", [](scene::Scene& s) { s.meshes[1].primitives[0].positions[0].x += 1e-4; },
+       keep},
       {"V106", "a material's colour", [](scene::Scene& s) { s.materials[0].base_color.x *= 0.5F; }, keep},
       {"V106", "a material more", [](scene::Scene& s) { s.materials.emplace_back(); }, keep},
       {"V107", "an instance moved", [](scene::Scene& s) { s.instances[0].transform[3][0] += 1.0; }, keep},
@@ -245,7 +247,9 @@ TEST_F(VerifyDrops, ARotatedDuplicateIsDroppedOnce) {
 }
 
 TEST_F(VerifyDrops, AReversedTwinIsNoDuplicate) {
-  const auto twin = [](scene::Primitive& p) { p.indices.insert(p.indices.end(), {p.indices[1], p.indices[0], p.indices[2]}); };
+  const auto twin = [](scene::Primitive& p) {
+    p.indices.insert(p.indices.end(), {p.indices[1], p.indices[0], p.indices[2]});
+  };
   EXPECT_TRUE(has(verify_with(twin,
                               [](auto& m) {
                                 m.source_triangles += 1;

@@ -5,9 +5,9 @@
 
 #include <gtest/gtest.h>
 
-#include "run/decode/decode.h"
-#include "format/grid.h"
 #include "build/build.h"
+#include "format/grid.h"
+#include "run/decode/decode.h"
 #include "scene/samples/samples.h"
 
 namespace meshlode::test {
@@ -52,7 +52,8 @@ scene::Scene make_rock_scene(std::uint32_t n) {
   return scene;
 }
 
-std::vector<PlacedTriangle> expected_triangles(const run::Asset& asset, MeshId mesh, const std::vector<ClusterId>& cut) {
+std::vector<PlacedTriangle> expected_triangles(const run::Asset& asset, MeshId mesh,
+                                               const std::vector<ClusterId>& cut) {
   const auto decoded = run::decode_all(asset);
   EXPECT_TRUE(decoded.ok());
   const format::MeshRecord& record = asset.meshes()[mesh.value];

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "glb_reader.h"
-#include "scene/scene.h"
 #include "run/read/asset.h"
 #include "run/select/select.h"
+#include "scene/scene.h"
 
 namespace meshlode::test {
 

@@ -34,7 +34,8 @@ TEST(ChooseCuts, LevelsGoFromTheFinestCutToTheRoots) {
   const std::uint32_t levels = asset->meshes()[0].level_count;
   ASSERT_GT(levels, 2U);
   EXPECT_EQ(choose_level_cut(*asset, MeshId(0U), 0).clusters, run::select_uniform(*asset, MeshId(0U), -1.0).clusters);
-  EXPECT_EQ(choose_level_cut(*asset, MeshId(0U), levels).clusters, run::select_uniform(*asset, MeshId(0U), 1e30).clusters);
+  EXPECT_EQ(choose_level_cut(*asset, MeshId(0U), levels).clusters,
+            run::select_uniform(*asset, MeshId(0U), 1e30).clusters);
   double last = -1.0;
   for (std::uint32_t level = 0; level <= levels; ++level) {
     const run::UniformCut cut = choose_level_cut(*asset, MeshId(0U), level);

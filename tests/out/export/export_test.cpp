@@ -7,8 +7,8 @@
 #include <set>
 
 #include "build_scene.h"
-#include "run/decode/decode.h"
 #include "out/export/export.h"
+#include "run/decode/decode.h"
 #include "scene/samples/samples.h"
 
 namespace meshlode::out {

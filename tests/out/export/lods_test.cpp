@@ -188,8 +188,9 @@ TEST(Lods, ImagesOfOtherTypesAreNamedByTheirExtension) {
   document["images"] = json::parse(R"([{"blob": 0}, {"blob": 1}])");
   document["textures"] = json::parse(R"([{"source": 0}, {"source": 1}])");
   scene.document = document.dump();
-  scene.blobs = {{scene::SceneBlob::Kind::kImage, "a.ktx2", "image/ktx2", 0, {0xAB, 'K', 'T', 'X', ' ', '2', '0', 0xBB}},
-                 {scene::SceneBlob::Kind::kImage, "b.png", "image/png", 1, {0x89, 'P', 'N', 'G'}}};
+  scene.blobs = {
+      {scene::SceneBlob::Kind::kImage, "a.ktx2", "image/ktx2", 0, {0xAB, 'K', 'T', 'X', ' ', '2', '0', 0xBB}},
+      {scene::SceneBlob::Kind::kImage, "b.png", "image/png", 1, {0x89, 'P', 'N', 'G'}}};
   const auto bytes = test::build_bytes(scene);
   const auto asset = run::Asset::from_bytes(bytes);
   ASSERT_TRUE(asset.ok());

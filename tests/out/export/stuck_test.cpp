@@ -8,14 +8,14 @@
 #include <fstream>
 #include <map>
 
+#include "build/odd_shapes.h"
 #include "build_scene.h"
 #include "format/names.h"
-#include "out/export/colored_sets.h"
+#include "judge/validate/edit.h"
 #include "meshlode/extract_stuck.h"
-#include "build/odd_shapes.h"
+#include "out/export/colored_sets.h"
 #include "out/report/info.h"
 #include "scene/samples/samples.h"
-#include "judge/validate/edit.h"
 
 namespace meshlode::out {
 namespace {

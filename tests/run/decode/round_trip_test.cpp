@@ -52,7 +52,9 @@ Corners corners_of(std::array<Vertex, 3> t, std::uint32_t material) {
   return {least, material};
 }
 
-Vertex vertex_of(const Vec3i& p) { return {p.x, p.y, p.z}; }
+Vertex vertex_of(const Vec3i& p) {
+  return {p.x, p.y, p.z};
+}
 
 TEST(Decode, GivesBackTrianglesWithOrientationAndMaterialExactly) {  // I1
   for (const Case& c : kCases) {
@@ -154,7 +156,8 @@ std::vector<std::size_t> match_vertices(const test::SampleMesh& sample, std::siz
       double distance = 0.0;
       if (layout.has_normal) distance += glm::length(attributes.normals[v] - Vec3f(stored[0], stored[1], stored[2]));
       if (layout.uv_set_count > 0) {
-        distance += glm::length(attributes.uvs[0][v] - Vec2f(stored[layout.uv_offset()], stored[layout.uv_offset() + 1]));
+        distance +=
+            glm::length(attributes.uvs[0][v] - Vec2f(stored[layout.uv_offset()], stored[layout.uv_offset() + 1]));
       }
       if (distance >= best) continue;
       best = distance;

@@ -155,7 +155,7 @@ TEST_F(Sample, LevelZeroIsTheSourceTriangleForTriangle) {  // I1
 TEST_F(Sample, TheMeshesHaveTheirKindsOfAttributes) {
   ASSERT_EQ(asset_.meshes().size(), 4U);
   EXPECT_EQ(format::channel_count(asset_.meshes()[0]), 8U);   // position, normal, one UV set
-  EXPECT_EQ(format::channel_count(asset_.meshes()[1]), 10U);   // position, normal, colour
+  EXPECT_EQ(format::channel_count(asset_.meshes()[1]), 10U);  // position, normal, colour
   EXPECT_EQ(format::channel_count(asset_.meshes()[2]), 3U);
   EXPECT_EQ(asset_.meshes()[2].normal_mode, format::NormalMode::kFlat);
   EXPECT_EQ(asset_.meshes()[3].group_count, 0U);

@@ -68,7 +68,9 @@ Outcome read_everything(std::span<const std::uint8_t> bytes) {
 }
 
 /// How thorough: the sanitized build is about fifteen times slower, and both stay within seconds.
-std::size_t stride_of(std::size_t size, std::size_t most) { return std::max<std::size_t>(1, size / most); }
+std::size_t stride_of(std::size_t size, std::size_t most) {
+  return std::max<std::size_t>(1, size / most);
+}
 
 TEST(Malformed, EveryTruncationIsRefused) {
   const auto bytes = test::sample_asset_bytes(format::Codec::kZstd);

@@ -84,8 +84,8 @@ TEST_F(PageRefusals, CountsMatchTheRecord) {
   expect_field_refused(at, format::head::kVerticesLess1, layout_.vertex_count - 2, "uv_range");
   // Where neither ranges nor UVs notice: the tetrahedron.
   const std::uint32_t last = static_cast<std::uint32_t>(asset_.pages().size()) - 1;
-  const std::string where = "page " + std::to_string(last) + ", cluster " +
-                            std::to_string(asset_.pages()[last].first_cluster) + ", field ";
+  const std::string where =
+      "page " + std::to_string(last) + ", cluster " + std::to_string(asset_.pages()[last].first_cluster) + ", field ";
   expect_refused([](auto& w) { w[2] -= 1; }, where + "vertices_less_1", last);
 }
 
@@ -169,9 +169,9 @@ TEST_F(PageRefusals, ChecksumsAreChecked) {
   auto asset = Asset::from_vector(broken);
   ASSERT_TRUE(asset.ok()) << "pages are checked when they are loaded";
   EXPECT_EQ(load_page(*asset, PageId{0U}).error().where, "page 0, field checksum");
-  const auto lying = test::with_changed_record<format::PageRecord>(
-      test::sample_asset_bytes(format::Codec::kZstd), SectionId::kPages, 0,
-      [](format::PageRecord& p) { p.decoded_checksum ^= 1U; });
+  const auto lying =
+      test::with_changed_record<format::PageRecord>(test::sample_asset_bytes(format::Codec::kZstd), SectionId::kPages,
+                                                    0, [](format::PageRecord& p) { p.decoded_checksum ^= 1U; });
   asset = Asset::from_vector(lying);
   ASSERT_TRUE(asset.ok());
   EXPECT_EQ(load_page(*asset, PageId{0U}).error().where, "page 0, field decoded_checksum");
@@ -193,8 +193,8 @@ TEST_F(PageRefusals, PackedPagesUnpackToTheirSizeOrNotAtAll) {
     }
     // The other codec's bytes.
     const format::Codec other = codec == format::Codec::kLz4 ? format::Codec::kZstd : format::Codec::kLz4;
-    const auto asset = Asset::from_vector(
-        test::with_changed_record<P>(packed, SectionId::kPages, 0, [=](P& p) { p.codec = other; }));
+    const auto asset =
+        Asset::from_vector(test::with_changed_record<P>(packed, SectionId::kPages, 0, [=](P& p) { p.codec = other; }));
     ASSERT_TRUE(asset.ok());
     EXPECT_FALSE(load_page(*asset, PageId{0U}).ok());
     const auto draco = Asset::from_vector(

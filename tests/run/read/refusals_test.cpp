@@ -28,8 +28,7 @@ const Asset& sound_asset() {
   return asset;
 }
 
-void expect_refused(std::vector<std::uint8_t> bytes, const std::string& where,
-                    ErrorCode code = ErrorCode::kInvalid) {
+void expect_refused(std::vector<std::uint8_t> bytes, const std::string& where, ErrorCode code = ErrorCode::kInvalid) {
   const auto asset = Asset::from_vector(std::move(bytes));
   ASSERT_FALSE(asset.ok()) << "accepted: " << where;
   EXPECT_EQ(asset.error().where, where) << asset.error().message();
@@ -47,9 +46,9 @@ struct Rule {
 template <class Record>
 void expect_all_refused(SectionId id, const char* name, const std::vector<Rule<Record>>& rules) {
   for (const Rule<Record>& rule : rules) {
-    expect_refused(test::with_changed_record<Record>(sound(), id, rule.record, rule.change),
-                   std::string("section ") + name + ", record " + std::to_string(rule.record) + ", field " +
-                       rule.field);
+    expect_refused(
+        test::with_changed_record<Record>(sound(), id, rule.record, rule.change),
+        std::string("section ") + name + ", record " + std::to_string(rule.record) + ", field " + rule.field);
   }
 }
 
@@ -61,7 +60,8 @@ TEST(Read, NamesThatShareBytesAreRefusedBeyondWhatTheFileJustifies) {
     scene.instances[0].name = std::string(900000, 'x');
     auto bytes = test::sample_asset_bytes(scene, format::Codec::kNone);
     EXPECT_LT(bytes.size(), 1500000u);
-    auto* records = reinterpret_cast<format::InstanceRecord*>(bytes.data() + test::section_offset(bytes, SectionId::kInstances));
+    auto* records =
+        reinterpret_cast<format::InstanceRecord*>(bytes.data() + test::section_offset(bytes, SectionId::kInstances));
     for (std::size_t i = 1; i < count; ++i) records[i].name = records[0].name;
     test::reseal(bytes);
     const auto asset = Asset::from_vector(std::move(bytes));
@@ -150,10 +150,11 @@ TEST(Read, RefusesABrokenSectionTable) {
   expect_refused(broken(kLast, [](auto& e) { e.codec = 1; }), "section BLOB, field codec", ErrorCode::kUnsupported);
   expect_refused(broken(kMesh, [](auto& e) { e.codec = 1; }), "section MESH, field codec");
   expect_refused(broken(kMesh, [](auto& e) { e.decoded_bytes += 1; }), "section MESH, field decoded_bytes");
-  expect_refused(broken(kMesh, [](auto& e) {
-                   e.codec = 1;
-                   e.decoded_bytes = 256 * (e.bytes + 1);
-                 }),
+  expect_refused(broken(kMesh,
+                        [](auto& e) {
+                          e.codec = 1;
+                          e.decoded_bytes = 256 * (e.bytes + 1);
+                        }),
                  "section MESH, field decoded_bytes");
   expect_refused(broken(kMesh, [](auto& e) { e.record_bytes = 208; }), "section MESH, field record_bytes");
   expect_refused(broken(kMesh, [](auto& e) { e.record_count = 5; }), "section MESH, field record_count");
@@ -216,44 +217,46 @@ TEST(Read, SkipsAnUnknownSectionThatIsNotRequired) {
 
 TEST(Read, RefusesBrokenMeshes) {
   using M = format::MeshRecord;
-  expect_all_refused<M>(
-      SectionId::kMeshes, "MESH",
-      {{"name", 0, [](M& m) { m.name.offset = 1U << 20U; }},
-       {"name", 0, [](M& m) { m.name = {0xFFFFFFFFU, 0xFFFFFFFFU}; }},
-       {"origin", 0, [](M& m) { m.origin[1] = std::numeric_limits<double>::quiet_NaN(); }},
-       {"grid.log2", 0, [](M& m) { m.grid.log2 = -127; }},
-       {"grid.log2", 0, [](M& m) { m.grid.log2 = 105; }},
-       {"grid.mantissa", 0, [](M& m) { m.grid.mantissa = 0; }},
-       {"grid.mantissa", 0, [](M& m) { m.grid.mantissa = 1U << 24U; }},
-       {"bounds_min", 0, [](M& m) { m.bounds_min[0] = -(1 << 23); }},
-       {"bounds_max", 0, [](M& m) { m.bounds_max[2] = 1 << 23; }},
-       {"bounds_min", 0, [](M& m) { m.bounds_min[0] = m.bounds_max[0] + 1; }},
-       {"diagonal", 1, [](M& m) { m.diagonal = std::numeric_limits<double>::infinity(); }},
-       {"diagonal", 1, [](M& m) { m.diagonal = -1.0; }},
-       {"level0_deviation", 1, [](M& m) { m.level0_deviation = kNan; }},
-       {"error_tier", 1, [](M& m) { m.error_tier = static_cast<format::ErrorTier>(3); }},
-       {"normal_mode", 1, [](M& m) { m.normal_mode = static_cast<format::NormalMode>(3); }},
-       {"normal_scale", 1, [](M& m) { m.normal_scale = 8192; }},
-       {"normal_scale", 1, [](M& m) { m.normal_scale = 0; }},
-       {"normal_scale", 2, [](M& m) { m.normal_scale = 811; }},
-       {"uv_set_count", 0, [](M& m) { m.uv_set_count = 5; }},
-       {"has_color", 0, [](M& m) { m.has_color = 2; }},
-       {"uv_log2", 0, [](M& m) { m.uv_log2[0] = 105; }},
-       {"uv_log2", 0, [](M& m) { m.uv_log2[3] = 1; }},
-       {"sphere_log2", 0, [](M& m) { m.sphere_log2 = -127; }},
-       {"sphere_log2", 2, [](M& m) { m.sphere_log2 = 105; }},
-       {"material", 1, [](M& m) { m.material = 2; }},
-       {"first_group", 1, [](M& m) { m.first_group += 1; }},
-       {"first_group", 3, [](M& m) { m.group_count = 1; }},
-       {"first_group", 1, [](M& m) { m.group_count = 0xFFFFFFFFU; }},
-       {"cluster_count", 2, [](M& m) { m.group_count = 0; }},
-       {"first_cluster", 1, [](M& m) { m.first_cluster = 0; }},
-       {"first_cluster", 1, [](M& m) { m.cluster_count = 0xFFFFFFFFU; }},
-       {"first_node", 1, [](M& m) { m.first_node = 0; }},
-       {"first_node", 1, [](M& m) { m.node_count = 0xFFFFFFF0U; }},
-       {"level_count", 0, [](M& m) { m.level_count = 0; }},
-       {"level_count", 0, [](M& m) { m.level_count = 0xFFFFFFFFU; }},
-       {"level_count", 3, [](M& m) { m.level_count = 1; }}});
+  expect_all_refused<M>(SectionId::kMeshes, "MESH",
+                        {{"name", 0, [](M& m) { m.name.offset = 1U << 20U; }},
+                         {"name", 0,
+                          [](M& m) {
+                            m.name = {0xFFFFFFFFU, 0xFFFFFFFFU};
+                          }},
+                         {"origin", 0, [](M& m) { m.origin[1] = std::numeric_limits<double>::quiet_NaN(); }},
+                         {"grid.log2", 0, [](M& m) { m.grid.log2 = -127; }},
+                         {"grid.log2", 0, [](M& m) { m.grid.log2 = 105; }},
+                         {"grid.mantissa", 0, [](M& m) { m.grid.mantissa = 0; }},
+                         {"grid.mantissa", 0, [](M& m) { m.grid.mantissa = 1U << 24U; }},
+                         {"bounds_min", 0, [](M& m) { m.bounds_min[0] = -(1 << 23); }},
+                         {"bounds_max", 0, [](M& m) { m.bounds_max[2] = 1 << 23; }},
+                         {"bounds_min", 0, [](M& m) { m.bounds_min[0] = m.bounds_max[0] + 1; }},
+                         {"diagonal", 1, [](M& m) { m.diagonal = std::numeric_limits<double>::infinity(); }},
+                         {"diagonal", 1, [](M& m) { m.diagonal = -1.0; }},
+                         {"level0_deviation", 1, [](M& m) { m.level0_deviation = kNan; }},
+                         {"error_tier", 1, [](M& m) { m.error_tier = static_cast<format::ErrorTier>(3); }},
+                         {"normal_mode", 1, [](M& m) { m.normal_mode = static_cast<format::NormalMode>(3); }},
+                         {"normal_scale", 1, [](M& m) { m.normal_scale = 8192; }},
+                         {"normal_scale", 1, [](M& m) { m.normal_scale = 0; }},
+                         {"normal_scale", 2, [](M& m) { m.normal_scale = 811; }},
+                         {"uv_set_count", 0, [](M& m) { m.uv_set_count = 5; }},
+                         {"has_color", 0, [](M& m) { m.has_color = 2; }},
+                         {"uv_log2", 0, [](M& m) { m.uv_log2[0] = 105; }},
+                         {"uv_log2", 0, [](M& m) { m.uv_log2[3] = 1; }},
+                         {"sphere_log2", 0, [](M& m) { m.sphere_log2 = -127; }},
+                         {"sphere_log2", 2, [](M& m) { m.sphere_log2 = 105; }},
+                         {"material", 1, [](M& m) { m.material = 2; }},
+                         {"first_group", 1, [](M& m) { m.first_group += 1; }},
+                         {"first_group", 3, [](M& m) { m.group_count = 1; }},
+                         {"first_group", 1, [](M& m) { m.group_count = 0xFFFFFFFFU; }},
+                         {"cluster_count", 2, [](M& m) { m.group_count = 0; }},
+                         {"first_cluster", 1, [](M& m) { m.first_cluster = 0; }},
+                         {"first_cluster", 1, [](M& m) { m.cluster_count = 0xFFFFFFFFU; }},
+                         {"first_node", 1, [](M& m) { m.first_node = 0; }},
+                         {"first_node", 1, [](M& m) { m.node_count = 0xFFFFFFF0U; }},
+                         {"level_count", 0, [](M& m) { m.level_count = 0; }},
+                         {"level_count", 0, [](M& m) { m.level_count = 0xFFFFFFFFU; }},
+                         {"level_count", 3, [](M& m) { m.level_count = 1; }}});
 }
 
 TEST(Read, RefusesBrokenMaterialsInstancesAndBlobs) {
@@ -288,34 +291,33 @@ TEST(Read, RefusesBrokenMaterialsInstancesAndBlobs) {
 
 TEST(Read, RefusesBrokenGroups) {
   using G = format::GroupRecord;
-  expect_all_refused<G>(
-      SectionId::kGroups, "GRUP",
-      {{"mesh", 0, [](G& g) { g.mesh = 1; }},
-       {"mesh", 3, [](G& g) { g.mesh = 0xFFFFFFFFU; }},
-       {"radius", 1, [](G& g) { g.center[0] = kNan; }},
-       {"radius", 1, [](G& g) { g.radius = kInf; }},
-       {"radius", 1, [](G& g) { g.radius = -1.0F; }},
-       {"error", 1, [](G& g) { g.error = kNan; }},
-       {"error", 1, [](G& g) { g.error = -0.5F; }},
-       {"error", 0, [](G& g) { g.error = 1.0F; }},
-       {"error", 1, [](G& g) { g.error = format::kInfiniteError; }},
-       {"quadric_error", 1, [](G& g) { g.quadric_error = kInf; }},
-       {"deviation", 1, [](G& g) { g.deviation = kNan; }},
-       {"normal_deviation", 1, [](G& g) { g.normal_deviation = kNan; }},
-       {"normal_deviation", 0, [](G& g) { g.normal_deviation = -1.0F; }},
-       {"uv_deviation", 1, [](G& g) { g.uv_deviation = kInf; }},
-       {"page", 1, [](G& g) { g.page = 0xFFFFFFFFU; }},
-       {"page", 1, [](G& g) { g.page = 1; }},
-       {"flags", 1, [](G& g) { g.flags = 4; }},
-       {"flags", 1, [](G& g) { g.flags = format::kGroupStuck; }},
-       {"stuck_reason", 1, [](G& g) { g.stuck_reason = static_cast<format::StuckReason>(7); }},
-       {"stuck_reason", 1, [](G& g) { g.stuck_reason = format::StuckReason::kFlips; }},
-       {"first_cluster", 1, [](G& g) { g.first_cluster += 1; }},
-       {"first_cluster", 1, [](G& g) { g.cluster_count = 0; }},
-       {"first_cluster", 1, [](G& g) { g.cluster_count = 0xFFFFU; }},
-       {"first_cluster", 2, [](G& g) { g.first_cluster -= 1; }},
-       {"level", 2, [](G& g) { g.level = 2; }},
-       {"level", 0, [](G& g) { g.level = 3; }}});
+  expect_all_refused<G>(SectionId::kGroups, "GRUP",
+                        {{"mesh", 0, [](G& g) { g.mesh = 1; }},
+                         {"mesh", 3, [](G& g) { g.mesh = 0xFFFFFFFFU; }},
+                         {"radius", 1, [](G& g) { g.center[0] = kNan; }},
+                         {"radius", 1, [](G& g) { g.radius = kInf; }},
+                         {"radius", 1, [](G& g) { g.radius = -1.0F; }},
+                         {"error", 1, [](G& g) { g.error = kNan; }},
+                         {"error", 1, [](G& g) { g.error = -0.5F; }},
+                         {"error", 0, [](G& g) { g.error = 1.0F; }},
+                         {"error", 1, [](G& g) { g.error = format::kInfiniteError; }},
+                         {"quadric_error", 1, [](G& g) { g.quadric_error = kInf; }},
+                         {"deviation", 1, [](G& g) { g.deviation = kNan; }},
+                         {"normal_deviation", 1, [](G& g) { g.normal_deviation = kNan; }},
+                         {"normal_deviation", 0, [](G& g) { g.normal_deviation = -1.0F; }},
+                         {"uv_deviation", 1, [](G& g) { g.uv_deviation = kInf; }},
+                         {"page", 1, [](G& g) { g.page = 0xFFFFFFFFU; }},
+                         {"page", 1, [](G& g) { g.page = 1; }},
+                         {"flags", 1, [](G& g) { g.flags = 4; }},
+                         {"flags", 1, [](G& g) { g.flags = format::kGroupStuck; }},
+                         {"stuck_reason", 1, [](G& g) { g.stuck_reason = static_cast<format::StuckReason>(7); }},
+                         {"stuck_reason", 1, [](G& g) { g.stuck_reason = format::StuckReason::kFlips; }},
+                         {"first_cluster", 1, [](G& g) { g.first_cluster += 1; }},
+                         {"first_cluster", 1, [](G& g) { g.cluster_count = 0; }},
+                         {"first_cluster", 1, [](G& g) { g.cluster_count = 0xFFFFU; }},
+                         {"first_cluster", 2, [](G& g) { g.first_cluster -= 1; }},
+                         {"level", 2, [](G& g) { g.level = 2; }},
+                         {"level", 0, [](G& g) { g.level = 3; }}});
   // A level that no member has: the mesh must have room for it first.
   auto bytes = test::with_changed_record<format::MeshRecord>(sound(), SectionId::kMeshes, 0,
                                                              [](format::MeshRecord& m) { m.level_count = 4; });
@@ -352,17 +354,17 @@ TEST(Read, RefusesNodesThatAreNoTree) {
                          {"first", 0, [](N& n) { n.first = 0; }},
                          {"first", 0, [](N& n) { n.first = 0xFFFFFFFFU; }},
                          {"first", 1, [](N& n) { n.first = 100; }},
-                         {"first", 3, [](N& n) { n.first = 1; }},   // itself and its siblings
+                         {"first", 3, [](N& n) { n.first = 1; }},  // itself and its siblings
                          {"first", 3, [](N& n) { n.child_count = 8; }},
-                         {"first", 4, [](N& n) { n.first = 6; }},   // a group of the next mesh
+                         {"first", 4, [](N& n) { n.first = 6; }},  // a group of the next mesh
                          {"first", sphere, [](N& n) { n.first = 1; }},
                          {"first", sphere + 1, [](N& n) { n.first = 0; }}});
   // A node that was a leaf's parent becomes a leaf: the nodes below it are left without a parent.
   expect_refused(test::with_changed_record<N>(sound(), SectionId::kNodes, 0, [](N& n) { n.first += 1; }),
                  "section NODE, record 1, field first");
-  expect_refused(test::with_changed_record<N>(sound(), SectionId::kNodes, 3,
-                                              [](N& n) { n.child_count = 0, n.first = 0; }),
-                 "section NODE, record 4, field first");
+  expect_refused(
+      test::with_changed_record<N>(sound(), SectionId::kNodes, 3, [](N& n) { n.child_count = 0, n.first = 0; }),
+      "section NODE, record 4, field first");
 }
 
 TEST(Read, RefusesBrokenPages) {

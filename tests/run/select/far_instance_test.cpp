@@ -28,12 +28,13 @@ std::vector<float> errors_of(const SelectTables& tables) {
 test::TestTables make_tables(RandomSource& random, const test::RandomDagOptions& options) {
   const test::RandomDag dag = test::make_random_dag(random, options);
   test::TestTables tables;
-  tables.add_mesh(dag.dag, build::build_hierarchy(dag.dag, dag.mesh), random.chance(0.5) ? Vec3d(0.0) : random.in_cube(1e3));
+  tables.add_mesh(dag.dag, build::build_hierarchy(dag.dag, dag.mesh),
+                  random.chance(0.5) ? Vec3d(0.0) : random.in_cube(1e3));
   return tables;
 }
 
-/// Cameras at which the far bound is within a few ulp of passing, behind one of the groups whose error it carries: there
-/// that group is nearer than anywhere else.
+/// Cameras at which the far bound is within a few ulp of passing, behind one of the groups whose error it carries:
+/// there that group is nearer than anywhere else.
 struct Found {
   std::uint64_t cameras = 0, passing = 0, violations = 0;
 };
@@ -65,7 +66,8 @@ Found search(std::uint64_t seed, std::uint32_t meshes, bool is_grown) {
     const double reach = mesh_reach(tables, tables.meshes[0]);
     for (int i = 0; i < 400; ++i) {
       const TransformKind kind = kinds[random.below(5)];
-      format::InstanceRecord instance = test::make_random_instance(random, kind, random.chance(0.3) ? 1e3 * reach : reach);
+      format::InstanceRecord instance =
+          test::make_random_instance(random, kind, random.chance(0.3) ? 1e3 * reach : reach);
       const double* row = instance.transform;
       const auto to_world = [&](const float* c) {
         Vec3d w;

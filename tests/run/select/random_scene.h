@@ -9,17 +9,17 @@
 #include "build/hierarchy/hierarchy.h"
 #include "build/lod_dag.h"
 #include "build/prepared.h"
-#include "support/random.h"
 #include "run/select/select.h"
+#include "support/random.h"
 
 namespace meshlode::test {
 
 struct RandomDagOptions {
   std::uint32_t leaf_clusters = 200;
-  int grid_log2 = -20;          ///< coordinates span about 2^20 grid steps: -20 gives a mesh of size 1
+  int grid_log2 = -20;  ///< coordinates span about 2^20 grid steps: -20 gives a mesh of size 1
   double stuck_chance = 0.03;
   double zero_error_chance = 0.1;
-  double defer_chance = 0.1;    ///< a cluster waits for the next round, so that groups mix levels
+  double defer_chance = 0.1;  ///< a cluster waits for the next round, so that groups mix levels
 };
 
 struct RandomDag {
@@ -240,7 +240,7 @@ struct TestTables {
 
 /// A camera somewhere telling: inside, beside, far from, or just at the border of a stored sphere of the instance.
 inline run::Camera make_random_camera(RandomSource& random, const run::SelectTables& tables,
-                                 const format::InstanceRecord& instance) {
+                                      const format::InstanceRecord& instance) {
   const format::MeshRecord& mesh = tables.meshes[instance.mesh];
   const format::GroupRecord& g = tables.groups[mesh.first_group + random.below(mesh.group_count)];
   const auto to_world = [&](const Vec3d& p) {
@@ -249,8 +249,8 @@ inline run::Camera make_random_camera(RandomSource& random, const run::SelectTab
     for (int i = 0; i < 3; ++i) w[i] = m[4 * i] * p.x + m[4 * i + 1] * p.y + m[4 * i + 2] * p.z + m[4 * i + 3];
     return w;
   };
-  const Vec3d center = to_world(Vec3d(g.center[0], g.center[1], g.center[2]) +
-                                Vec3d(mesh.origin[0], mesh.origin[1], mesh.origin[2]));
+  const Vec3d center =
+      to_world(Vec3d(g.center[0], g.center[1], g.center[2]) + Vec3d(mesh.origin[0], mesh.origin[1], mesh.origin[2]));
   const double radius = g.radius * instance.scale;
   const double reach = run::mesh_reach(tables, mesh) * instance.scale;
   run::Camera camera;

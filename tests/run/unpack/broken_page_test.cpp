@@ -5,11 +5,11 @@
 
 #include <gtest/gtest.h>
 
-#include "format/page_streams.h"
 #include "build/pack/pack.h"
+#include "format/page_streams.h"
+#include "run/unpack/unpack_page.h"
 #include "support/random.h"
 #include "support/random_page.h"
-#include "run/unpack/unpack_page.h"
 
 namespace meshlode::run {
 namespace {
@@ -26,9 +26,9 @@ struct Stored {
 
 Stored store(const test::RandomPageOptions& options, Codec codec) {
   Stored stored{test::make_random_page(options), {}, {}};
-  const auto bytes = build::store_page(stored.page.mesh,
-                                {reinterpret_cast<const std::uint8_t*>(stored.page.words.data()),
-                                 stored.page.words.size() * 4}, codec);
+  const auto bytes = build::store_page(
+      stored.page.mesh, {reinterpret_cast<const std::uint8_t*>(stored.page.words.data()), stored.page.words.size() * 4},
+      codec);
   EXPECT_TRUE(bytes);
   stored.record = stored.page.record;
   stored.record.codec = codec;
@@ -45,8 +45,13 @@ std::vector<std::uint32_t> unpacked(const Stored& stored, std::span<const std::u
 
 constexpr Codec kCodecs[] = {Codec::kLz4, Codec::kZstd, Codec::kStrips, Codec::kDraco};
 
-const test::RandomPageOptions kSmall{.seed = 31, .cluster_count = 12, .uv_set_count = 2, .has_color = true,
-                                     .has_material_ranges = true, .max_triangles = 30, .max_field_bits = 2};
+const test::RandomPageOptions kSmall{.seed = 31,
+                                     .cluster_count = 12,
+                                     .uv_set_count = 2,
+                                     .has_color = true,
+                                     .has_material_ranges = true,
+                                     .max_triangles = 30,
+                                     .max_field_bits = 2};
 
 TEST(BrokenPage, EveryTruncationIsRefused) {
   for (const Codec codec : kCodecs) {
@@ -121,8 +126,8 @@ TEST(BrokenPage, AnotherPageTableIsRefused) {
       EXPECT_TRUE(unpacked(stored, stored.bytes).empty()) << count;
     }
     stored.record.cluster_count = stored.page.record.cluster_count;
-    for (const std::size_t words : {std::size_t{0}, std::size_t{2}, std::size_t{3}, stored.page.words.size() - 1,
-                                    stored.page.words.size() + 1}) {
+    for (const std::size_t words :
+         {std::size_t{0}, std::size_t{2}, std::size_t{3}, stored.page.words.size() - 1, stored.page.words.size() + 1}) {
       std::vector<std::uint32_t> out(words);
       EXPECT_NE(unpack_page(stored.page.mesh, stored.record, stored.bytes, out), UnpackOutcome::kOk) << words;
     }

@@ -187,9 +187,10 @@ DracoPair make_draco_pair(int n, bool edgebreaker, int speed, int quantization_b
     attributes += comma + names[i] + "\":" + std::to_string(i);
     draco_ids += comma + names[i] + "\":" + std::to_string(mesh->attribute(ids[i])->unique_id());
   }
-  out.draco_glb = b.glb(mesh_text(attributes, ",\"indices\":5,\"extensions\":{\"KHR_draco_mesh_compression\":{"
-                                              "\"bufferView\":" + std::to_string(view) + ",\"attributes\":{" +
-                                                  draco_ids + "}}}") +
+  out.draco_glb = b.glb(mesh_text(attributes,
+                                  ",\"indices\":5,\"extensions\":{\"KHR_draco_mesh_compression\":{"
+                                  "\"bufferView\":" +
+                                      std::to_string(view) + ",\"attributes\":{" + draco_ids + "}}}") +
                         ",\"extensionsUsed\":[\"KHR_draco_mesh_compression\"],"
                         "\"extensionsRequired\":[\"KHR_draco_mesh_compression\"]");
   return out;

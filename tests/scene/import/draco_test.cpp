@@ -41,7 +41,8 @@ std::map<Places, std::array<std::uint32_t, 3>> triangles_by_place(const scene::P
   return out;
 }
 
-void expect_same_triangles(const scene::Primitive& packed, const scene::Primitive& plain, int bits, std::size_t face_count) {
+void expect_same_triangles(const scene::Primitive& packed, const scene::Primitive& plain, int bits,
+                           std::size_t face_count) {
   // A value moves by half a step of (largest - smallest) / (2^bits - 1); a little is added for floats.
   const double step = bits == 0 ? 0.0 : 1.0 / ((1 << bits) - 1);
   const double positions = 0.51 * 20.0 * step;
@@ -96,8 +97,8 @@ TEST(ImportDraco, TheTrianglesAndAllTheirAttributesAreThoseOfTheSameMeshStoredPl
   for (const bool edgebreaker : {true, false}) {
     for (const int speed : {0, 3, 5, 8, 10}) {
       for (const int bits : {0, 8, 14}) {
-        SCOPED_TRACE(std::string(edgebreaker ? "edgebreaker" : "sequential") + ", speed " + std::to_string(speed) + ", " +
-                     std::to_string(bits) + " bits");
+        SCOPED_TRACE(std::string(edgebreaker ? "edgebreaker" : "sequential") + ", speed " + std::to_string(speed) +
+                     ", " + std::to_string(bits) + " bits");
         const DracoPair pair = make_draco_pair(9, edgebreaker, speed, bits);
         const auto plain = scene::import_scene(folder.write("plain.glb", pair.plain_glb), {});
         const auto packed = scene::import_scene(folder.write("packed.glb", pair.draco_glb), {});

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Real models: each imports or is refused with the code it should; positions and indices of plain primitives equal those
-// of a few lines of another reader (tests/independent judges all attributes); models stored plain and by Draco are alike.
+// Real models: each imports or is refused with the code it should; positions and indices of plain primitives equal
+// those of a few lines of another reader (tests/independent judges all attributes); models stored plain and by Draco
+// are alike.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -305,7 +306,8 @@ std::size_t count_without_partner(const std::vector<LooseTriangle>& from, const 
                                   double far, double turn, bool may_collapse) {
   std::size_t alone = 0;
   for (const LooseTriangle& a : from) {
-    const auto first = std::lower_bound(to.begin(), to.end(), a.x - far, [](const auto& t, double x) { return t.x < x; });
+    const auto first =
+        std::lower_bound(to.begin(), to.end(), a.x - far, [](const auto& t, double x) { return t.x < x; });
     bool found = false;
     for (auto b = first; b != to.end() && b->x <= a.x + far && !found; ++b) found = is_near(a, *b, far, turn);
     for (std::size_t k = 0; k < 3 && may_collapse && !found; ++k) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Memory that cannot be had while a file is read is no fault of the file: each large allocation of an import fails once.
-// Small ones are let through, as a machine that runs out of memory does: nlohmann-json's destructors allocate, and end the
-// program where they cannot. This program's operator new stands in for the library's, in shared libraries too.
+// Memory that cannot be had while a file is read is no fault of the file: each large allocation of an import fails
+// once. Small ones are let through, as a machine that runs out of memory does: nlohmann-json's destructors allocate,
+// and end the program where they cannot. This program's operator new stands in for the library's, in shared libraries
+// too.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -37,22 +38,42 @@ void* allocate_or_throw(std::size_t bytes) {
 
 }  // namespace
 
-void* operator new(std::size_t bytes) { return allocate_or_throw(bytes); }
-void* operator new[](std::size_t bytes) { return allocate_or_throw(bytes); }
-void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept { return allocate(bytes); }
-void* operator new[](std::size_t bytes, const std::nothrow_t&) noexcept { return allocate(bytes); }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete[](void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete(void* memory, const std::nothrow_t&) noexcept { std::free(memory); }
-void operator delete[](void* memory, const std::nothrow_t&) noexcept { std::free(memory); }
+void* operator new(std::size_t bytes) {
+  return allocate_or_throw(bytes);
+}
+void* operator new[](std::size_t bytes) {
+  return allocate_or_throw(bytes);
+}
+void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept {
+  return allocate(bytes);
+}
+void* operator new[](std::size_t bytes, const std::nothrow_t&) noexcept {
+  return allocate(bytes);
+}
+void operator delete(void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, const std::nothrow_t&) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory, const std::nothrow_t&) noexcept {
+  std::free(memory);
+}
 
 namespace meshlode::testing {
 namespace {
 
-/// Calls `body` with the first allocation of at least `bytes` failing, then the second, until none fails any more; `body`
-/// is told which. Returns how many did.
+/// Calls `body` with the first allocation of at least `bytes` failing, then the second, until none fails any more;
+/// `body` is told which. Returns how many did.
 template <class Body>
 long fail_each_allocation(std::size_t bytes, const Body& body) {
   smallest = bytes;
@@ -81,7 +102,8 @@ std::vector<std::uint16_t> grid_triangles() {
   for (int y = 0; y + 1 < kSide; ++y) {
     for (int x = 0; x + 1 < kSide; ++x) {
       const auto at = static_cast<std::uint16_t>(y * kSide + x);
-      for (const int step : {0, 1, kSide + 1, 0, kSide + 1, kSide}) out.push_back(static_cast<std::uint16_t>(at + step));
+      for (const int step : {0, 1, kSide + 1, 0, kSide + 1, kSide})
+        out.push_back(static_cast<std::uint16_t>(at + step));
     }
   }
   return out;
@@ -134,7 +156,8 @@ TEST(OutOfMemory, IsNotTheFilesFault) {
     const long failures = fail_each_allocation(4096, [&](long which) {
       const auto scene = scene::import_scene(path, {});
       if (scene) return;  // the last time, where none failed
-      EXPECT_EQ(scene.error().code, ErrorCode::kBuildFailed) << file.name << ", " << which << ": " << scene.error().message();
+      EXPECT_EQ(scene.error().code, ErrorCode::kBuildFailed)
+          << file.name << ", " << which << ": " << scene.error().message();
       EXPECT_TRUE(scene.error().message().ends_with("out of memory")) << scene.error().message();
     });
     EXPECT_GE(failures, 2) << file.name;

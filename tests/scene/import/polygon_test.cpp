@@ -14,10 +14,13 @@ using Corners = std::vector<std::uint32_t>;
 
 class ImportPolygons : public ::testing::Test {
  protected:
-  Result<scene::Scene> read(const std::string& name, const std::string& bytes, const scene::ImportOptions& options = {}) {
+  Result<scene::Scene> read(const std::string& name, const std::string& bytes,
+                            const scene::ImportOptions& options = {}) {
     return scene::import_scene(folder_.write(name, bytes), options);
   }
-  static const scene::Primitive& primitive(const Result<scene::Scene>& scene) { return scene.value().meshes[0].primitives[0]; }
+  static const scene::Primitive& primitive(const Result<scene::Scene>& scene) {
+    return scene.value().meshes[0].primitives[0];
+  }
   static void expect_invalid(const Result<scene::Scene>& scene, const std::string& place) {
     ASSERT_FALSE(scene);
     EXPECT_EQ(scene.error().code, ErrorCode::kInvalid) << describe(scene);

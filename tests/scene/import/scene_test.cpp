@@ -111,7 +111,8 @@ TEST(ImportScene, SpecularGlossinessStandsInThePlaceOfMetallicRoughnessWithDefau
   const auto scene = b.import(
       mesh_text("\"POSITION\":0") +
       ",\"images\":[{\"uri\":\"data:image/png;base64,iVBORw==\"}],\"textures\":[{\"source\":0}],\"materials\":["
-      "{\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.5,0.25,1,0.75],\"baseColorTexture\":{\"index\":0,\"texCoord\":2}},"
+      "{\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.5,0.25,1,0.75],\"baseColorTexture\":{\"index\":0,\"texCoord\":"
+      "2}},"
       "\"extensions\":{\"KHR_materials_pbrSpecularGlossiness\":{}}}]");
   ASSERT_TRUE(scene) << describe(scene);
   const scene::SceneMaterial& m = scene->materials[0];
@@ -131,8 +132,9 @@ TEST(ImportScene, SkinsAndMorphTargetsLeaveTheStaticTriangles) {
   ASSERT_TRUE(scene) << describe(scene);
   EXPECT_EQ(scene->meshes[0].primitives[0].indices.size(), 6U);
   const auto says = [&](const std::string& what) {
-    return std::any_of(scene->left_out.begin(), scene->left_out.end(),
-                       [&](const scene::LeftOut& l) { return l.what.find(what) != std::string::npos && !l.why.empty(); });
+    return std::any_of(scene->left_out.begin(), scene->left_out.end(), [&](const scene::LeftOut& l) {
+      return l.what.find(what) != std::string::npos && !l.why.empty();
+    });
   };
   EXPECT_TRUE(says("skin 0"));
   EXPECT_TRUE(says("mesh 0 morph targets"));
@@ -178,7 +180,8 @@ TEST(ImportScene, OptionalExtensionsThatHoldTheGeometryAreRefused) {
   GltfBuilder elsewhere;
   elsewhere.accessor(-1, 5126, 4, "VEC3", ",\"extensions\":{\"ACME_stream\":{}}");
   elsewhere.array(kSquareIndices, 5123, "SCALAR", 1);
-  expect_refused(elsewhere.import(mesh_text("\"POSITION\":0", ",\"indices\":1")), "/accessors/0/extensions/ACME_stream");
+  expect_refused(elsewhere.import(mesh_text("\"POSITION\":0", ",\"indices\":1")),
+                 "/accessors/0/extensions/ACME_stream");
   GltfBuilder coded = square();
   coded.array(std::vector<std::uint16_t>(12), 5123, "VEC3", 3, ",\"extensions\":{\"WEB3D_quantized_attributes\":{}}");
   expect_refused(coded.import(kMesh), "/accessors/2/extensions/WEB3D_quantized_attributes");
@@ -186,7 +189,8 @@ TEST(ImportScene, OptionalExtensionsThatHoldTheGeometryAreRefused) {
   const std::string views =
       "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":36,\"extensions\":{\"EXT_meshopt_compression\":{"
       "\"fallback\":true}}}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":36,\"extensions\":{"
-      "\"EXT_meshopt_compression\":{\"buffer\":1}}}],\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,"
+      "\"EXT_meshopt_compression\":{\"buffer\":1}}}],\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":"
+      "3,"
       "\"type\":\"VEC3\"}]," +
       mesh_text("\"POSITION\":0") + "}";
   const TempFolder folder;

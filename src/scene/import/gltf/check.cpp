@@ -2,8 +2,8 @@
 // Meshes, materials, textures, images and animations of a glTF tree; the other checks are called from here.
 #include <algorithm>
 
-#include "scene/import/gltf/gltf.h"
 #include "scene/import/gltf/check_base.h"
+#include "scene/import/gltf/gltf.h"
 
 namespace meshlode::scene {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Bounds of buffers, buffer views, accessors and sparse parts (glTF 2.0, sections 3.6.1 and 3.6.2). Every length is
 // compared by subtraction, so that no sum can overflow: all numbers are below 2^53 and every product is checked first.
-#include "scene/import/gltf/gltf.h"
 #include "scene/import/gltf/check_base.h"
+#include "scene/import/gltf/gltf.h"
 
 namespace meshlode::scene {
 

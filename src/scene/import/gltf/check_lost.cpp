@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Optional extensions that geometry would be lost without. A reader that leaves out an optional extension still shows
 // the scene, only plainer; but some hold the scene itself: copies of a mesh, or the bytes of its vertices. Those are
-// refused wherever they are used, whether the file requires them or not, so that nothing is lost with an exit code of 0.
+// refused wherever they are used, whether the file requires them or not, so that nothing is lost with an exit code of
+// 0.
 #include <algorithm>
 #include <set>
 
-#include "scene/import/gltf/gltf.h"
 #include "scene/import/gltf/check_base.h"
+#include "scene/import/gltf/gltf.h"
 
 namespace meshlode::scene {
 

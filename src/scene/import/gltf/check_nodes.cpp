@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Nodes form trees (glTF 2.0, section 3.5.2): no node has two parents, none is its own ancestor, scenes name roots.
-#include "scene/import/gltf/gltf.h"
 #include "scene/import/gltf/check_base.h"
+#include "scene/import/gltf/gltf.h"
 
 namespace meshlode::scene {
 

@@ -152,8 +152,8 @@ GltfModel convert(const tinygltf::Model& model) {
   return out;
 }
 
-/// tinygltf's own model of a text that names no file. `problems`: what it says beside refusing. What it throws is the text's
-/// fault: that was checked, but by our rules.
+/// tinygltf's own model of a text that names no file. `problems`: what it says beside refusing. What it throws is the
+/// text's fault: that was checked, but by our rules.
 Result<tinygltf::Model> load_model(const std::string& text, std::string& problems) {
   tinygltf::TinyGLTF loader;
   tinygltf::FsCallbacks no_files{};
