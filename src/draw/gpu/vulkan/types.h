@@ -17,35 +17,36 @@
 
 namespace meshlode::draw {
 
+// clang-format off
 #define MESHLODE_GLOBAL_FUNCTIONS(X) \
   X(vkCreateInstance) X(vkEnumerateInstanceLayerProperties) X(vkEnumerateInstanceVersion)
 
-#define MESHLODE_INSTANCE_FUNCTIONS(X)        \
-  X(vkDestroyInstance)                        \
-  X(vkEnumeratePhysicalDevices)               \
-  X(vkGetPhysicalDeviceProperties2)           \
-  X(vkGetPhysicalDeviceFeatures2)             \
-  X(vkGetPhysicalDeviceQueueFamilyProperties) \
-  X(vkGetPhysicalDeviceMemoryProperties)      \
-  X(vkEnumerateDeviceExtensionProperties) X(vkCreateDevice) X(vkGetDeviceProcAddr)
+#define MESHLODE_INSTANCE_FUNCTIONS(X)                                                             \
+  X(vkDestroyInstance)                                                                             \
+  X(vkEnumeratePhysicalDevices)                                                                    \
+  X(vkGetPhysicalDeviceProperties2)                                                                \
+  X(vkGetPhysicalDeviceFeatures2)                                                                  \
+  X(vkGetPhysicalDeviceQueueFamilyProperties)                                                      \
+  X(vkGetPhysicalDeviceMemoryProperties) X(vkEnumerateDeviceExtensionProperties) X(vkCreateDevice) \
+      X(vkGetDeviceProcAddr)
 
-#define MESHLODE_DEVICE_FUNCTIONS(X)                                                                                  \
-  X(vkDestroyDevice)                                                                                                  \
-  X(vkGetDeviceQueue)                                                                                                 \
-  X(vkCreateBuffer)                                                                                                   \
-  X(vkDestroyBuffer)                                                                                                  \
-  X(vkGetBufferMemoryRequirements)                                                                                    \
-  X(vkAllocateMemory)                                                                                                 \
-  X(vkFreeMemory) X(vkBindBufferMemory) X(vkMapMemory) X(vkGetBufferDeviceAddress) X(vkCreateShaderModule)            \
-      X(vkDestroyShaderModule) X(vkCreatePipelineLayout) X(vkDestroyPipelineLayout) X(vkCreateComputePipelines)       \
-          X(vkCreateGraphicsPipelines) X(vkDestroyPipeline) X(vkCreateCommandPool) X(vkDestroyCommandPool)            \
-              X(vkAllocateCommandBuffers) X(vkFreeCommandBuffers) X(vkBeginCommandBuffer) X(vkEndCommandBuffer)       \
-                  X(vkQueueSubmit2) X(vkCreateFence) X(vkDestroyFence) X(vkWaitForFences) X(vkResetFences)            \
-                      X(vkCreateQueryPool) X(vkDestroyQueryPool) X(vkGetQueryPoolResults) X(vkCmdResetQueryPool)      \
-                          X(vkCmdWriteTimestamp2) X(vkCmdBindPipeline) X(vkCmdPushConstants) X(vkCmdDispatch)         \
-                              X(vkCmdDispatchIndirect) X(vkCmdFillBuffer) X(vkCmdCopyBuffer) X(vkCmdPipelineBarrier2) \
-                                  X(vkCmdBeginRendering) X(vkCmdEndRendering) X(vkCmdSetViewport) X(vkCmdSetScissor)  \
-                                      X(vkCmdDrawIndirect)
+#define MESHLODE_DEVICE_FUNCTIONS(X)                                                                                \
+  X(vkDestroyDevice)                                                                                                \
+  X(vkGetDeviceQueue)                                                                                               \
+  X(vkCreateBuffer)                                                                                                 \
+  X(vkDestroyBuffer)                                                                                                \
+  X(vkGetBufferMemoryRequirements)                                                                                  \
+  X(vkAllocateMemory) X(vkFreeMemory) X(vkBindBufferMemory) X(vkMapMemory) X(vkGetBufferDeviceAddress)              \
+      X(vkCreateShaderModule) X(vkDestroyShaderModule) X(vkCreatePipelineLayout) X(vkDestroyPipelineLayout)         \
+          X(vkCreateComputePipelines) X(vkCreateGraphicsPipelines) X(vkDestroyPipeline) X(vkCreateCommandPool)      \
+              X(vkDestroyCommandPool) X(vkAllocateCommandBuffers) X(vkFreeCommandBuffers) X(vkBeginCommandBuffer)   \
+                  X(vkEndCommandBuffer) X(vkQueueSubmit2) X(vkCreateFence) X(vkDestroyFence) X(vkWaitForFences)     \
+                      X(vkResetFences) X(vkCreateQueryPool) X(vkDestroyQueryPool) X(vkGetQueryPoolResults)          \
+                          X(vkCmdResetQueryPool) X(vkCmdWriteTimestamp2) X(vkCmdBindPipeline) X(vkCmdPushConstants) \
+                              X(vkCmdDispatch) X(vkCmdDispatchIndirect) X(vkCmdFillBuffer) X(vkCmdCopyBuffer)       \
+                                  X(vkCmdPipelineBarrier2) X(vkCmdBeginRendering) X(vkCmdEndRendering)              \
+                                      X(vkCmdSetViewport) X(vkCmdSetScissor) X(vkCmdDrawIndirect)
+// clang-format on
 
 struct Functions {
 #define MESHLODE_MEMBER(name) PFN_##name name = nullptr;
