@@ -113,7 +113,8 @@ struct FarPoint {
   double distance = 0.0;
   Vec3d at{0.0};
   std::uint32_t point = 0;  ///< where it was found from
-  GroupId nearest;          ///< of what is nearest; invalid where that is of level 0
+  TreeSlot place{0U};       ///< of what is nearest, in the cut's tree
+  GroupId nearest;          ///< that it is of; invalid for level 0
 };
 
 class WholeCuts {
@@ -186,7 +187,7 @@ class WholeCuts {
       for (std::size_t i = chunk * kChunk; i < std::min(points_.size(), (chunk + 1) * kChunk); ++i) {
         if (!is_far(tree, points_[i].at, enough, place)) continue;
         partials[chunk].push_back({std::sqrt(tree.distance2_at(points_[i].at, place)), points_[i].at,
-                                   static_cast<std::uint32_t>(i), group_at(cut, tree, place)});
+                                   static_cast<std::uint32_t>(i), place, group_at(cut, tree, place)});
       }
     });
     std::vector<FarPoint> found;
@@ -214,17 +215,20 @@ class WholeCuts {
   void climb(const Surface& cut, const SurfaceTree& tree, FarPoint& far) const {
     const std::array<Vec3d, 3> corners = corners_of(mesh_, points_[far.point].triangle);
     SplitMix64 random(far.point);
+    const auto squared_in_frame = [&](double distance) {
+      return static_cast<float>(distance * tree.scale() * distance * tree.scale());
+    };
+    float enough = squared_in_frame(far.distance);
+    TreeSlot place = far.place;
     double length = 1.0;
     for (int step = 0; step < kSteps; ++step, length *= 0.5) {
       for (int i = 0; i < kTries; ++i) {
         const Vec3d tried = far.at + length * (random_point(corners, i % 2 == 0, random) - far.at);
-        const SurfaceTree::Hit hit = tree.find_nearest(tree.to_frame(tried), {}, 0.0F);
-        if (!hit.slot.is_valid()) continue;
-        const double distance = std::sqrt(tree.distance2_at(tried, hit.slot));
+        if (!is_far(tree, tried, enough, place)) continue;
+        const double distance = std::sqrt(tree.distance2_at(tried, place));
         if (distance <= far.distance) continue;
-        far.distance = distance;
-        far.at = tried;
-        far.nearest = group_at(cut, tree, hit.slot);
+        far = {distance, tried, far.point, place, group_at(cut, tree, place)};
+        enough = squared_in_frame(distance);
       }
     }
   }
