@@ -28,9 +28,16 @@ enum class PageMethod : std::uint32_t {
   kStrips = 2,   ///< predicted along the strips
 };
 
-/// \pre codec is not kNone
+/// \pre codec is one of the enumerators, and not kNone
 [[nodiscard]] constexpr PageMethod method_of(Codec codec) {
-  return codec == Codec::kLz4 || codec == Codec::kZstd ? PageMethod::kColumns : PageMethod::kStrips;
+  switch (codec) {  // without a default, so that the compiler names a new codec
+    case Codec::kLz4:
+    case Codec::kZstd: return PageMethod::kColumns;
+    case Codec::kNone:
+    case Codec::kDraco:
+    case Codec::kStrips: break;
+  }
+  return PageMethod::kStrips;
 }
 
 /// A slot of a strip names its vertex in one of three ways.

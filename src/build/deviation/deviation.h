@@ -49,7 +49,6 @@ struct GroupSurface {
 };
 
 struct DeviationTierOptions {
-  bool certified = false;  ///< not of measure_group, which only estimates: certify_group is that tier
   /// Object units: the largest error of what the group replaces, the grid's included. The source was within it of
   /// `finer`.
   double floor = 0.0;

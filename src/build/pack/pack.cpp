@@ -88,11 +88,14 @@ Result<std::vector<std::uint8_t>> store_page(const format::MeshRecord& mesh, std
   std::memcpy(words.data(), page.data(), words.size() * sizeof(std::uint32_t));
   const std::optional<PageModel> model = page.size() % 4 == 0 ? model_page(mesh, words) : std::nullopt;
   if (!model) return Error{ErrorCode::kBuildFailed, "pack", "the page is not in the form that the format prescribes"};
-  switch (codec) {
+  switch (codec) {  // without a default, so that the compiler names a new codec
     case format::Codec::kStrips: return store_prefix_codes(mesh, *model);
     case format::Codec::kDraco: return store_draco(mesh, *model);
-    default: return store_columns(mesh, *model, codec);
+    case format::Codec::kLz4:
+    case format::Codec::kZstd: return store_columns(mesh, *model, codec);
+    case format::Codec::kNone: break;
   }
+  return Error{ErrorCode::kBuildFailed, "pack", "pages of this codec are not stored"};
 }
 
 Result<PackedPage> pack_page(const format::MeshRecord& mesh, std::span<const std::uint8_t> page, format::Codec codec) {
