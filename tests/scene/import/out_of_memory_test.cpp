@@ -127,8 +127,8 @@ std::vector<SeedFile> large_files() {
     obj += "f";
     stl += "facet normal 0 0 1\nouter loop\n";
     for (std::size_t k = i; k < i + 3; ++k) {
-      ply += " " + std::to_string(t[k]);
-      obj += " " + std::to_string(t[k] + 1);
+      ply.append(1, ' ').append(std::to_string(t[k]));
+      obj.append(1, ' ').append(std::to_string(t[k] + 1));
       stl += "vertex " + std::to_string(p[3U * t[k]]) + " " + std::to_string(p[3U * t[k] + 1]) + " 0\n";
     }
     ply += "\n";
