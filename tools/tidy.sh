@@ -13,17 +13,27 @@ base=${MESHLODE_TIDY_BASE:-HEAD~1}
 case ${1:-} in
   --all) mapfile -t files < <(git ls-files '*.cpp' || find src tools tests bench -name '*.cpp') ;;
   '') git rev-parse --verify -q "$base^{commit}" >/dev/null || skip "no history: $base is not there"
-      mapfile -t files < <(git diff --name-only --diff-filter=d "$base" -- '*.cpp') ;;
+      mapfile -t files < <({ git diff --name-only --diff-filter=d "$base" -- '*.cpp'
+                             git ls-files --others --exclude-standard -- '*.cpp'
+                             # Of a header what lies beside it, or else the first file that includes it.
+                             git diff --name-only --diff-filter=d "$base" -- '*.h' | while read -r header; do
+                               if [ -f "${header%.h}.cpp" ]; then echo "${header%.h}.cpp"; continue; fi
+                               git grep -l "include [\"<]${header#*/}" -- '*.cpp' | head -n 1
+                             done; } | sort -u) ;;
   *) files=("$@") ;;
 esac
 [ ${#files[@]} -ne 0 ] || { echo "clang-tidy: no source changed since $base"; exit 0; }
 
-cmake --preset clang -DMESHLODE_TESTS=ON -DMESHLODE_BENCH=ON >/dev/null || exit 1
+cmake --preset clang -DMESHLODE_TESTS=ON -DMESHLODE_BENCH=ON -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON >/dev/null || exit 1
 ninja -C build/clang meshlode_shaders >/dev/null || exit 1
 # Only what the build compiles: the consumer of tests/install has its own.
 known=()
 for file in "${files[@]}"; do
-  if grep -q "\"file\": \"$PWD/$file\"" build/clang/compile_commands.json; then known+=("$file"); fi
+  if grep -q "\"file\": \"$PWD/$file\"" build/clang/compile_commands.json; then
+    known+=("$file")
+  else
+    echo "clang-tidy: $file is not compiled by the preset clang, and not looked at"
+  fi
 done
 [ ${#known[@]} -ne 0 ] || { echo "clang-tidy: nothing to look at"; exit 0; }
 echo "clang-tidy: ${#known[@]} files"

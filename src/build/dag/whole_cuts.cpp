@@ -38,6 +38,8 @@ constexpr int kSteps = 7, kTries = 12;
 /// triangles of the mesh or as such.
 constexpr std::size_t kCutShare = 8;
 constexpr std::size_t kShareOfMesh = 2, kFewTriangles = 250000;
+/// What a flat surface may be off by, as a share of the mesh: the arithmetic of doubles.
+constexpr double kNoise = 1e-12;
 /// A raised group leaves the cut that it was found in, and what takes its place is looked at again.
 constexpr int kRounds = 6;
 
@@ -103,7 +105,8 @@ std::vector<SourcePoint> choose_points(const PreparedMesh& mesh) {
       is_taken[id] = 1;
     }
     const std::array<Vec3d, 3> corners = corners_of(mesh, t);
-    for (std::size_t k = 0; k < each; ++k) points.push_back({random_point(corners, (t + k) % 2 == 0, random), t});
+    for (std::size_t k = 0; k < each; ++k)
+      points.push_back({random_point(corners, (i / step + k) % 2 == 0, random), t});
   }
   return points;
 }
@@ -130,18 +133,19 @@ class WholeCuts {
   std::size_t look() {
     std::vector<double> errors;
     for (const DagGroup& group : dag_.groups) {
-      if (!group.is_terminal && group.error > 0.0) errors.push_back(group.error);
+      if (!group.is_terminal) errors.push_back(group.error);
     }
     std::sort(errors.begin(), errors.end(), std::greater<>());
     errors.erase(std::unique(errors.begin(), errors.end()), errors.end());
     std::vector<double> raised(dag_.groups.size(), 0.0);
+    const double noise = kNoise * mesh_.diagonal;
     std::size_t triangles = 0;
     for (std::size_t k = 0; k < errors.size(); k = next(k)) {
       const Surface cut = cut_at(errors[k]);
       triangles += cut.triangles.size();
       if (k > 0 && triangles > std::max(kShareOfMesh * mesh_.triangles.size(), kFewTriangles)) break;
       for (const FarPoint& far : find_far_points(cut, errors[k])) {
-        if (far.distance <= error_of(far.nearest)) continue;
+        if (far.distance <= std::max(error_of(far.nearest), noise)) continue;
         const GroupId group = group_of(far.at, errors[k]);
         if (!group.is_valid() || far.distance <= dag_.groups[group.value].error) continue;
         raised[group.value] = std::max(raised[group.value], far.distance);

@@ -64,8 +64,9 @@ OneWayDeviation measure_one_way(const Surface& from, const Surface& to, const Tr
   return result;
 }
 
-/// The search prunes by boxes, so that a squared distance may differ in its last bits by where it began.
-constexpr double kSearchRounding = 1e-12;
+/// The search prunes by boxes, so that a distance may differ by where it began: in its last bits, and by what is lost
+/// along an edge that is far longer than the distance, as shares of the distance and of the surfaces' extent.
+constexpr double kSearchRounding = 1e-12, kEdgeRounding = 1e-14;
 
 struct Farthest {
   double distance2 = -1.0;
@@ -89,9 +90,22 @@ class MeasuredPoints {
   std::vector<std::uint32_t> vertices_;
 };
 
+/// Of the box around both.
+double extent_of(const Surface& a, const Surface& b) {
+  Vec3d low(std::numeric_limits<double>::infinity()), high(-low);
+  for (const Surface* surface : {&a, &b}) {
+    for (const Vec3d& p : surface->positions) {
+      low = glm::min(low, p);
+      high = glm::max(high, p);
+    }
+  }
+  return glm::length(high - low);
+}
+
 /// The first of the points that is farthest from the surface of `to`; a distance of -1 where none is as far as
 /// `largest2`, which is the largest known, of other points too, and grows.
-Farthest find_farthest(const MeasuredPoints& points, const TriangleTree& to, std::atomic<double>& largest2) {
+Farthest find_farthest(const MeasuredPoints& points, const TriangleTree& to, double extent,
+                       std::atomic<double>& largest2) {
   std::vector<Farthest> partials((points.size() + kChunk - 1) / kChunk);
   parallel_for_each_index(partials.size(), 1, [&](std::size_t chunk) {
     std::uint32_t hint = 0xFFFFFFFFu;
@@ -100,7 +114,8 @@ Farthest find_farthest(const MeasuredPoints& points, const TriangleTree& to, std
       // farthest of all is never nearer than what is known but by the rounding of boxes and hints. What counts is its
       // distance without a hint.
       double known = largest2.load(std::memory_order_relaxed);
-      const double enough = known * (1.0 - kSearchRounding);
+      const double near = std::max(0.0, std::sqrt(known) * (1.0 - kSearchRounding) - kEdgeRounding * extent);
+      const double enough = near * near;
       const Vec3d point = points[i];
       const NearestPoint nearest = to.nearest_unless_below(enough, point, hint);
       hint = nearest.triangle;
@@ -130,8 +145,9 @@ LargestDeviation find_largest_deviation(const Surface& a, const Surface& b, cons
   }
   std::atomic<double> largest2 = 0.0;
   const MeasuredPoints points_a(a, options), points_b(b, options);
-  const Farthest of_a = find_farthest(points_a, TriangleTree(b), largest2);
-  const Farthest of_b = find_farthest(points_b, TriangleTree(a), largest2);
+  const double extent = extent_of(a, b);
+  const Farthest of_a = find_farthest(points_a, TriangleTree(b), extent, largest2);
+  const Farthest of_b = find_farthest(points_b, TriangleTree(a), extent, largest2);
   out.is_of_a = of_a.distance2 >= of_b.distance2;
   const Farthest& farthest = out.is_of_a ? of_a : of_b;
   out.max = std::sqrt(std::max(0.0, farthest.distance2));

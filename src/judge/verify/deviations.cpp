@@ -13,17 +13,21 @@ namespace meshlode::judge {
 
 namespace {
 
-/// Errors to cut at: from the smallest positive to the largest finite one, evenly in the logarithm.
+/// Errors to cut at: 0 where a group says that, and from the smallest positive to the largest finite one, evenly in the
+/// logarithm.
 std::vector<double> thresholds_of(const run::Asset& asset, const format::MeshRecord& mesh, std::uint32_t count) {
   float low = format::kInfiniteError;
   float high = 0.0F;
+  bool any_zero = false;
   for (std::uint32_t g = mesh.first_group; g < mesh.first_group + mesh.group_count; ++g) {
     const float error = asset.groups()[g].error;
+    if (error == 0.0F) any_zero = true;
     if (error >= format::kInfiniteError || !(error > 0.0F)) continue;
     low = std::min(low, error);
     high = std::max(high, error);
   }
   std::vector<double> thresholds;
+  if (any_zero && count > 0) thresholds.push_back(0.0);
   if (!(high > 0.0F)) return thresholds;
   for (std::uint32_t i = 0; i < count; ++i) {
     const double t = count < 2 ? 1.0 : static_cast<double>(i) / (count - 1);
