@@ -16,6 +16,24 @@ namespace {
 
 constexpr std::size_t kChunk = 1024;  // queries that share a hint and a partial sum, whatever the thread count
 
+/// The points of a surface that are measured: its samples, then all vertices that it uses.
+class MeasuredPoints {
+ public:
+  MeasuredPoints(const Surface& surface, const DeviationOptions& options)
+      : surface_(surface), samples_(surface, options.samples, options.seed), vertices_(used_vertices(surface)) {}
+  [[nodiscard]] std::size_t sample_count() const { return static_cast<std::size_t>(samples_.count()); }
+  [[nodiscard]] std::size_t size() const { return sample_count() + vertices_.size(); }
+  [[nodiscard]] Vec3d operator[](std::size_t i) const {
+    return i < sample_count() ? samples_.position(samples_.sample(i))
+                              : surface_.positions[vertices_[i - sample_count()]];
+  }
+
+ private:
+  const Surface& surface_;
+  AreaSamples samples_;
+  std::vector<std::uint32_t> vertices_;
+};
+
 OneWayDeviation measure_one_way(const Surface& from, const Surface& to, const TriangleTree& tree,
                                 const DeviationOptions& options) {
   OneWayDeviation result;
@@ -24,25 +42,21 @@ OneWayDeviation measure_one_way(const Surface& from, const Surface& to, const Tr
     result.max = result.rms = std::numeric_limits<double>::infinity();
     return result;
   }
-  const AreaSamples samples(from, options.samples, options.seed);
-  const std::uint64_t sample_count = samples.count();
-  const std::vector<std::uint32_t> vertices = used_vertices(from);
-  const std::size_t point_count = static_cast<std::size_t>(sample_count) + vertices.size();
+  const MeasuredPoints points(from, options);
   struct Partial {
     double max2 = -1.0;
     Vec3d worst{0.0};
     double sum2 = 0.0;
   };
-  std::vector<Partial> partials((point_count + kChunk - 1) / kChunk);
+  std::vector<Partial> partials((points.size() + kChunk - 1) / kChunk);
   parallel_for_each_index(partials.size(), 1, [&](std::size_t chunk) {
     Partial& partial = partials[chunk];
     std::uint32_t hint = 0xFFFFFFFFu;
-    for (std::size_t i = chunk * kChunk; i < std::min(point_count, (chunk + 1) * kChunk); ++i) {
-      const bool is_sample = i < sample_count;
-      const Vec3d p = is_sample ? samples.position(samples.sample(i)) : from.positions[vertices[i - sample_count]];
+    for (std::size_t i = chunk * kChunk; i < std::min(points.size(), (chunk + 1) * kChunk); ++i) {
+      const Vec3d p = points[i];
       const NearestPoint nearest = tree.nearest(p, hint);
       hint = nearest.triangle;
-      if (is_sample) partial.sum2 += nearest.distance2;
+      if (i < points.sample_count()) partial.sum2 += nearest.distance2;
       if (nearest.distance2 > partial.max2) {
         partial.max2 = nearest.distance2;
         partial.worst = p;
@@ -58,9 +72,10 @@ OneWayDeviation measure_one_way(const Surface& from, const Surface& to, const Tr
     }
   }
   result.max = std::sqrt(std::max(0.0, total.max2));
-  result.rms = sample_count > 0 ? std::sqrt(total.sum2 / static_cast<double>(sample_count)) : 0.0;
+  const auto samples = static_cast<double>(points.sample_count());
+  result.rms = samples > 0.0 ? std::sqrt(total.sum2 / samples) : 0.0;
   result.worst = total.worst;
-  result.points = point_count;
+  result.points = points.size();
   return result;
 }
 
@@ -71,23 +86,6 @@ constexpr double kSearchRounding = 1e-12, kEdgeRounding = 1e-14;
 struct Farthest {
   double distance2 = -1.0;
   std::size_t point = 0;
-};
-
-/// The points of measure_one_way(), in its order.
-class MeasuredPoints {
- public:
-  MeasuredPoints(const Surface& surface, const DeviationOptions& options)
-      : surface_(surface), samples_(surface, options.samples, options.seed), vertices_(used_vertices(surface)) {}
-  [[nodiscard]] std::size_t size() const { return static_cast<std::size_t>(samples_.count()) + vertices_.size(); }
-  [[nodiscard]] Vec3d operator[](std::size_t i) const {
-    return i < samples_.count() ? samples_.position(samples_.sample(i))
-                                : surface_.positions[vertices_[i - samples_.count()]];
-  }
-
- private:
-  const Surface& surface_;
-  AreaSamples samples_;
-  std::vector<std::uint32_t> vertices_;
 };
 
 /// Of the box around both.

@@ -100,6 +100,22 @@ TEST(WholeCuts, WhatIsCoarserIsRaisedToo) {
   EXPECT_GT(built.dag.groups[group].error, 0.8 * truth[group]);
 }
 
+TEST(WholeCuts, AnErrorOfNothingIsRaisedWhereThereIsOneAndStaysOnAPlane) {
+  Built rock = build(scene::make_rock(16));
+  Built plane = build(scene::make_plane(40));
+  const double truth = rock.dag.groups[coarsest(rock.dag)].error;
+  for (LodDag* dag : {&rock.dag, &plane.dag}) {
+    for (DagGroup& group : dag->groups) {
+      if (!group.is_terminal) group.error = group.deviation = 0.0;
+    }
+  }
+  EXPECT_GT(hold_to_whole_cuts(rock.mesh, kMeasuredMargin, rock.dag), 0U);
+  EXPECT_GT(rock.dag.groups[coarsest(rock.dag)].error, 0.8 * truth);
+  expect_growing(rock.dag);
+  ASSERT_LT(coarsest(plane.dag), plane.dag.groups.size());
+  EXPECT_EQ(hold_to_whole_cuts(plane.mesh, kMeasuredMargin, plane.dag), 0U);
+}
+
 TEST(WholeCuts, DoesNotDependOnTheNumberOfThreads) {
   const Built built = build(scene::make_foliage(800));
   std::vector<double> errors[2];

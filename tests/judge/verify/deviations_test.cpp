@@ -81,6 +81,13 @@ TEST_P(StoredErrors, AreTrueAndAreFoundWhereTheySayHalf) {
   EXPECT_EQ(ids_of(verify_bytes(half.bytes(), built.scene)), "V206") << "no other rule can know";
 }
 
+TEST_P(StoredErrors, AreFoundWhereTheySayNothingDeviates) {
+  const Built built = build_rock(GetParam());
+  AssetEdit none(built.bytes);
+  scale_errors(none, 0.0F);
+  EXPECT_EQ(ids_of(verify_bytes(none.bytes(), built.scene)), "V206") << "no other rule can know";
+}
+
 TEST_P(StoredErrors, AreAtLeastTheDeviationTimesTheMarginOfTheSettings) {
   const Built built = build_rock(GetParam());
   const double margin = GetParam() == format::ErrorTier::kMeasured ? build::kMeasuredMargin : 1.0;
