@@ -235,6 +235,7 @@ class GuardedController : public draco::SequentialAttributeDecodersController {
 
 /// The mesh decoders make their controllers themselves, so a guarded one can only take the place of Draco's and with it
 /// its sequencer, which is private. An explicit instantiation may name private members (C++20, [temp.spec.general]).
+/// cmake/CheckDracoVersion.cmake refuses a Draco of any other version than the one that this was written against.
 struct SequencerOf {
   using Member = std::unique_ptr<draco::PointsSequencer> draco::SequentialAttributeDecodersController::*;
   friend Member member_of(SequencerOf);
