@@ -168,9 +168,9 @@ class ClusterEncoder {
       block.push_back(i == 0 ? 0U : block.back() + (is_new ? 1U : 0U));
       sorted.push_back(triangles[order[i]]);
     }
-    // Where materials meet strips are short, and more of them are to be had by trying.
     const bool is_mixed = key(order.front()).first != key(order.back()).first;
-    strips_ = make_strips(sorted, block, cluster_.vertex_count, {(is_mixed ? 4 : 1) * plan_.strip_trials});
+    strips_ =
+        make_strips(sorted, block, cluster_.vertex_count, {is_mixed ? plan_.mixed_strip_trials : plan_.strip_trials});
     island_.reserve(cluster_.vertex_count);
     for (const std::uint8_t v : strips_.vertex_order) island_.push_back(island[v]);
   }

@@ -22,6 +22,7 @@ struct ChannelPlan {
   std::array<std::int32_t, scene::kMaxUvSets> uv_log2{};
   std::uint32_t material = format::kNone;  ///< of every triangle of the mesh, or kNone
   std::uint32_t strip_trials = 1;
+  std::uint32_t mixed_strip_trials = 1;  ///< of a cluster of several materials
 
   [[nodiscard]] std::uint32_t head_words() const {
     return format::kHeadWords + (layout.has_normal ? format::kNormalHeadWords : 0U);

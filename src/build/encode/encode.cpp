@@ -49,6 +49,7 @@ ChannelPlan plan_channels(const PreparedMesh& mesh, const LodDag& dag, const Enc
   plan.layout = mesh.layout;
   plan.normal_scale = mesh.layout.has_normal ? normal_scale_of(options) : 0;
   plan.strip_trials = options.strip_trials;
+  plan.mixed_strip_trials = options.mixed_strip_trials;
   const std::size_t stride = mesh.layout.stride();
   for (std::uint32_t set = 0; set < mesh.layout.uv_set_count; ++set) {
     UvRange range;
@@ -150,7 +151,7 @@ format::ClusterRecord cluster_record(const DagCluster& cluster, const Hierarchy:
 Status check_input(const PreparedMesh& mesh, const LodDag& dag, const Hierarchy& hierarchy,
                    const EncodeOptions& options) {
   const auto fail = [&](ErrorCode code, const char* detail) { return Error{code, name_mesh(mesh), detail}; };
-  if (!(options.normal_error > 0.0) || options.strip_trials < 1) {
+  if (!(options.normal_error > 0.0) || options.strip_trials < 1 || options.mixed_strip_trials < 1) {
     return fail(ErrorCode::kUsage, "the normal error must be above 0, and the strip trials at least 1");
   }
   if (mesh.layout.has_normal && octahedral_scale_for(options.normal_error) > format::kMaxNormalScale) {

@@ -24,7 +24,9 @@ struct EncodeOptions {
   /// Coordinates so large that 24 bits cannot keep the error are kept as finely as floats hold the largest of them;
   /// false: refused.
   bool uv_error_may_fall_short = true;
-  std::uint32_t strip_trials = 48;  ///< see StripOptions; four times as many in a cluster of several materials
+  std::uint32_t strip_trials = 8;  ///< see StripOptions
+  /// Of a cluster of several materials: strips are short where these meet, and more is to be had by trying.
+  std::uint32_t mixed_strip_trials = 128;
 };
 
 /// The M of the normals that keeps EncodeOptions::normal_error, at most format::kMaxNormalScale.
