@@ -6,6 +6,7 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -48,7 +49,36 @@ class IdTable {
     return {next, true};
   }
 
+  /// The id that `is_same` accepts, or kNone. Side by side with itself.
+  template <class IsSame>
+  [[nodiscard]] std::uint32_t find(std::uint64_t hash, const IsSame& is_same) const {
+    if (slots_.empty()) return kNone;
+    const std::size_t mask = slots_.size() - 1;
+    for (std::size_t at = hash & mask; slots_[at] != kFree; at = (at + 1) & mask) {
+      if (const std::uint32_t id = slots_[at]; is_same(id)) return id;
+    }
+    return kNone;
+  }
+
+  /// All of 0 … count - 1 into an empty table, in any order and on any thread: `for_each(count, insert)` calls
+  /// insert(id) once for each. Who comes first takes the nearer slot, which no later call can tell. `hash_of` gives the
+  /// hash of an id. \pre their keys are distinct
+  template <class ForEach, class HashOf>
+  void fill(std::uint32_t count, const ForEach& for_each, const HashOf& hash_of) {
+    slots_.assign(std::max(slots_.size(), std::bit_ceil(2 * std::size_t{count} + 2)), kFree);
+    count_ = count;
+    for_each(count, [&](std::uint32_t id) {
+      const std::size_t mask = slots_.size() - 1;
+      for (std::size_t at = hash_of(id) & mask;; at = (at + 1) & mask) {
+        std::uint32_t expected = kFree;
+        if (std::atomic_ref(slots_[at]).compare_exchange_strong(expected, id, std::memory_order_relaxed)) return;
+      }
+    });
+  }
+
   [[nodiscard]] std::size_t size() const { return count_; }
+
+  static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
 
  private:
   static constexpr std::uint32_t kFree = 0xFFFFFFFFU;

@@ -11,6 +11,14 @@
 
 namespace meshlode {
 
+/// Of a loop whose turns take some nanoseconds each: so many are worth a task.
+constexpr std::size_t kLoopGrain = 4096;
+
+/// How many threads the caller's arena has: for the length of runs that are done at a time, never for an output.
+inline std::size_t thread_limit() {
+  return static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+}
+
 /// Calls body(i) for i in [0, count), in any order and thread; `body` may write only to what belongs to i.
 template <class Body>
 void parallel_for_each_index(std::size_t count, std::size_t grain, const Body& body) {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/disjoint_sets.h"
+#include "base/local_ids.h"
 
 namespace meshlode::build {
 
@@ -20,20 +21,30 @@ struct EdgeUse {
   auto operator<=>(const EdgeUse&) const = default;
 };
 
-/// Positions renumbered 0 … n-1 in order of value. Returns n.
+/// Positions renumbered 0 … n-1. Returns n.
 std::uint32_t compact(std::span<const Corner3> source, std::vector<Corner3>& out) {
-  std::vector<std::uint32_t> ids;
-  ids.reserve(3 * source.size());
-  for (const Corner3& corners : source) ids.insert(ids.end(), corners.begin(), corners.end());
-  std::sort(ids.begin(), ids.end());
-  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  LocalIds ids(source.size());  // a closed surface has half as many
   out.resize(source.size());
   for (std::size_t t = 0; t < source.size(); ++t) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      out[t][k] = static_cast<std::uint32_t>(std::lower_bound(ids.begin(), ids.end(), source[t][k]) - ids.begin());
-    }
+    for (std::size_t k = 0; k < 3; ++k) out[t][k] = ids.add(source[t][k]);
   }
   return static_cast<std::uint32_t>(ids.size());
+}
+
+/// By insertion where there are few, as nearly always.
+template <class It>
+void sort_few(It first, It last) {
+  constexpr std::ptrdiff_t kFew = 24;
+  if (last - first > kFew) {
+    std::sort(first, last);
+    return;
+  }
+  for (It it = first; it != last; ++it) {
+    const auto value = *it;
+    It hole = it;
+    for (; hole != first && value < *(hole - 1); --hole) *hole = *(hole - 1);
+    *hole = value;
+  }
 }
 
 /// Both ends' edge uses, sorted, in a bucket for each smaller position.
@@ -63,7 +74,7 @@ EdgeBuckets bucket_edges(const std::vector<Corner3>& corners, std::uint32_t posi
     buckets.uses[cursor[low]++] = {high, t};
   });
   for (std::uint32_t bucket = 0; bucket < position_count; ++bucket) {
-    std::sort(buckets.uses.begin() + buckets.start[bucket], buckets.uses.begin() + buckets.start[bucket + 1]);
+    sort_few(buckets.uses.begin() + buckets.start[bucket], buckets.uses.begin() + buckets.start[bucket + 1]);
   }
   return buckets;
 }
@@ -138,7 +149,7 @@ void merge_repeated(Graph& graph) {
       row.emplace_back(graph.neighbor[static_cast<std::size_t>(i)], graph.edge_weight[static_cast<std::size_t>(i)]);
     }
     row_begin = row_end;
-    std::sort(row.begin(), row.end());
+    sort_few(row.begin(), row.end());
     graph.row_start[t] = write;
     for (std::size_t i = 0; i < row.size(); ++i) {
       if (i > 0 && row[i].first == row[i - 1].first) {

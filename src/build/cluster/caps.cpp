@@ -3,12 +3,17 @@
 
 #include <algorithm>
 
+#include "base/local_ids.h"
+
 namespace meshlode::build {
 
 namespace {
 
 std::vector<std::vector<std::uint32_t>> members_of(const Clustering& clustering) {
+  std::vector<std::uint32_t> size(clustering.count, 0);
+  for (const std::uint32_t label : clustering.label) ++size[label];
   std::vector<std::vector<std::uint32_t>> members(clustering.count);
+  for (std::uint32_t part = 0; part < clustering.count; ++part) members[part].reserve(size[part]);
   for (std::uint32_t t = 0; t < clustering.label.size(); ++t) members[clustering.label[t]].push_back(t);
   return members;
 }
@@ -49,13 +54,33 @@ bool move_one(std::uint32_t part, const Graph& graph, const ClusterCaps& caps, C
   return true;
 }
 
-std::size_t count_wedges(std::span<const WedgeTriangle> triangles, const std::vector<std::uint32_t>& members,
-                         std::vector<std::uint32_t>& scratch) {
-  scratch.clear();
-  for (const std::uint32_t t : members) scratch.insert(scratch.end(), triangles[t].begin(), triangles[t].end());
-  std::sort(scratch.begin(), scratch.end());
-  return static_cast<std::size_t>(std::unique(scratch.begin(), scratch.end()) - scratch.begin());
-}
+/// Counts distinct wedges of parts, by the part that each was last seen in.
+class WedgeCounter {
+ public:
+  explicit WedgeCounter(std::span<const WedgeTriangle> triangles) : local_(triangles.size()) {
+    LocalIds ids(triangles.size());
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+      for (std::size_t k = 0; k < 3; ++k) local_[t][k] = ids.add(triangles[t][k]);
+    }
+    seen_.assign(ids.size(), 0);
+  }
+  std::size_t count(const std::vector<std::uint32_t>& members) {
+    ++part_;
+    std::size_t distinct = 0;
+    for (const std::uint32_t t : members) {
+      for (const std::uint32_t wedge : local_[t]) {
+        distinct += seen_[wedge] != part_ ? 1 : 0;
+        seen_[wedge] = part_;
+      }
+    }
+    return distinct;
+  }
+
+ private:
+  std::vector<WedgeTriangle> local_;
+  std::vector<std::uint32_t> seen_;  ///< per wedge
+  std::uint32_t part_ = 0;
+};
 
 /// The part of `graph` between `members`, in their order.
 Graph subgraph(const Graph& graph, const std::vector<std::uint32_t>& members, std::vector<std::int32_t>& local) {
@@ -84,12 +109,11 @@ void enforce_caps(std::span<const WedgeTriangle> triangles, const Graph& graph, 
     while (members[part].size() > caps.max_triangles && move_one(part, graph, caps, clustering, members)) {
     }
   }
-  std::vector<std::uint32_t> scratch;
+  WedgeCounter wedges(triangles);
   std::vector<std::int32_t> local(triangles.size(), -1);
   // New parts are appended, so the loop meets them too.
   for (std::uint32_t part = 0; part < clustering.count; ++part) {
-    while (members[part].size() > caps.max_triangles ||
-           count_wedges(triangles, members[part], scratch) > caps.max_vertices) {
+    while (members[part].size() > caps.max_triangles || wedges.count(members[part]) > caps.max_vertices) {
       std::sort(members[part].begin(), members[part].end());
       Graph sub = subgraph(graph, members[part], local);
       const std::vector<std::uint32_t> half = partition_graph(sub, 2);

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "base/local_ids.h"
 #include "base/parallel.h"
 #include "build/cluster/adjacency.h"
 #include "build/cluster/caps.h"
@@ -24,50 +25,62 @@ struct Range {
   std::size_t begin, end;
 };
 
-/// Splits triangles into chunks at medians of the longest axis. All chunks but those at the far ends hold a multiple of
-/// the target, so that their clusters come out full. `order` is permuted; each chunk's part of it is ascending.
+/// Cuts a range in two at the median of its longest axis. \returns where the second half begins: a multiple of the
+/// target from the first.
+std::size_t cut_in_two(const std::vector<glm::i64vec3>& centers, std::size_t target, const Range& range,
+                       std::vector<std::uint32_t>& order) {
+  const auto begin = order.begin() + static_cast<std::ptrdiff_t>(range.begin);
+  const auto end = order.begin() + static_cast<std::ptrdiff_t>(range.end);
+  glm::i64vec3 low = centers[*begin];
+  glm::i64vec3 high = low;
+  for (auto it = begin; it != end; ++it) {
+    low = glm::min(low, centers[*it]);
+    high = glm::max(high, centers[*it]);
+  }
+  const glm::i64vec3 extent = high - low;
+  const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : (extent.y >= extent.z ? 1 : 2);
+  const std::size_t left = ((range.end - range.begin) / 2 + target / 2) / target * target;
+  std::nth_element(begin, begin + static_cast<std::ptrdiff_t>(left), end, [&](std::uint32_t a, std::uint32_t b) {
+    return centers[a][axis] != centers[b][axis] ? centers[a][axis] < centers[b][axis] : a < b;
+  });
+  return range.begin + left;
+}
+
+/// Splits triangles into chunks at medians. All chunks but those at the far ends hold a multiple of the target, so that
+/// their clusters come out full. `order` is permuted; each chunk's part of it is ascending. Ranges that are as deep as
+/// each other are cut side by side.
 std::vector<Range> split_into_chunks(const std::vector<glm::i64vec3>& centers, std::size_t target,
                                      std::vector<std::uint32_t>& order) {
-  std::vector<Range> chunks;
-  std::vector<Range> stack{{0, order.size()}};
-  while (!stack.empty()) {
-    const Range range = stack.back();
-    stack.pop_back();
-    const std::size_t count = range.end - range.begin;
-    const auto begin = order.begin() + static_cast<std::ptrdiff_t>(range.begin);
-    const auto end = order.begin() + static_cast<std::ptrdiff_t>(range.end);
-    if (count <= kChunkTriangles) {
-      std::sort(begin, end);
-      chunks.push_back(range);
-      continue;
-    }
-    glm::i64vec3 low = centers[*begin];
-    glm::i64vec3 high = low;
-    for (auto it = begin; it != end; ++it) {
-      low = glm::min(low, centers[*it]);
-      high = glm::max(high, centers[*it]);
-    }
-    const glm::i64vec3 extent = high - low;
-    const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : (extent.y >= extent.z ? 1 : 2);
-    const std::size_t left = (count / 2 + target / 2) / target * target;
-    std::nth_element(begin, begin + static_cast<std::ptrdiff_t>(left), end, [&](std::uint32_t a, std::uint32_t b) {
-      return centers[a][axis] != centers[b][axis] ? centers[a][axis] < centers[b][axis] : a < b;
+  std::vector<Range> ranges{{0, order.size()}};
+  const auto is_large = [](const Range& range) { return range.end - range.begin > kChunkTriangles; };
+  while (std::any_of(ranges.begin(), ranges.end(), is_large)) {
+    std::vector<std::size_t> middle(ranges.size());
+    parallel_for_each_index(ranges.size(), 1, [&](std::size_t i) {
+      middle[i] = is_large(ranges[i]) ? cut_in_two(centers, target, ranges[i], order) : ranges[i].end;
     });
-    stack.push_back({range.begin + left, range.end});
-    stack.push_back({range.begin, range.begin + left});
+    std::vector<Range> halves;
+    halves.reserve(2 * ranges.size());
+    for (std::size_t i = 0; i < ranges.size(); ++i) {
+      halves.push_back({ranges[i].begin, middle[i]});
+      if (middle[i] < ranges[i].end) halves.push_back({middle[i], ranges[i].end});
+    }
+    ranges = std::move(halves);
   }
-  return chunks;
+  parallel_for_each_index(ranges.size(), 1, [&](std::size_t i) {
+    std::sort(order.begin() + static_cast<std::ptrdiff_t>(ranges[i].begin),
+              order.begin() + static_cast<std::ptrdiff_t>(ranges[i].end));
+  });
+  return ranges;
 }
 
 /// How many parts the vertex cap asks for: wedges over the cap, with a little room for those on borders.
 std::size_t parts_for_vertices(std::span<const WedgeTriangle> triangles, std::uint32_t max_vertices) {
-  std::vector<std::uint32_t> wedges;
-  wedges.reserve(3 * triangles.size());
-  for (const WedgeTriangle& t : triangles) wedges.insert(wedges.end(), t.begin(), t.end());
-  std::sort(wedges.begin(), wedges.end());
-  const auto count = static_cast<std::size_t>(std::unique(wedges.begin(), wedges.end()) - wedges.begin());
+  LocalIds wedges(triangles.size());
+  for (const WedgeTriangle& t : triangles) {
+    for (const std::uint32_t wedge : t) wedges.add(wedge);
+  }
   const std::size_t room = max_vertices - std::min(max_vertices / 2, 4U);
-  return (count + room - 1) / room;
+  return (wedges.size() + room - 1) / room;
 }
 
 /// From so many pieces per part on, a chunk is a soup.
@@ -130,9 +143,9 @@ Clustering cluster_surface(std::span<const WedgeTriangle> triangles, std::span<c
   if (triangles.size() <= kChunkTriangles) return cluster_chunk(triangles, wedge_position, positions, caps);
 
   std::vector<glm::i64vec3> centers(triangles.size());  // times three: exact
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
+  parallel_for_each_index(triangles.size(), kLoopGrain, [&](std::size_t t) {
     for (const std::uint32_t wedge : triangles[t]) centers[t] += glm::i64vec3(positions[wedge_position[wedge]]);
-  }
+  });
   std::vector<std::uint32_t> order(triangles.size());
   std::iota(order.begin(), order.end(), 0U);
   const std::vector<Range> chunks = split_into_chunks(centers, caps.target_triangles, order);
@@ -147,12 +160,16 @@ Clustering cluster_surface(std::span<const WedgeTriangle> triangles, std::span<c
 
   Clustering clustering;
   clustering.label.resize(triangles.size());
+  std::vector<std::uint32_t> first(chunks.size());
   for (std::size_t c = 0; c < chunks.size(); ++c) {
-    for (std::size_t i = chunks[c].begin; i < chunks[c].end; ++i) {
-      clustering.label[order[i]] = clustering.count + parts[c].label[i - chunks[c].begin];
-    }
+    first[c] = clustering.count;
     clustering.count += parts[c].count;
   }
+  parallel_for_each_index(chunks.size(), 1, [&](std::size_t c) {
+    for (std::size_t i = chunks[c].begin; i < chunks[c].end; ++i) {
+      clustering.label[order[i]] = first[c] + parts[c].label[i - chunks[c].begin];
+    }
+  });
   return clustering;
 }
 

@@ -7,6 +7,8 @@
 #include <span>
 #include <utility>
 
+#include "base/local_ids.h"
+
 namespace meshlode::build {
 
 namespace {
@@ -22,20 +24,71 @@ bool has_three(const std::array<std::uint32_t, 3>& p) {
   return p[0] != p[1] && p[1] != p[2] && p[2] != p[0];
 }
 
-/// A cluster's triangles: those without a host, each followed by its satellites.
+/// Triangles without a host, each followed by its satellites, in flat rows: nearly all of them are alone.
+struct SystemRows {
+  std::vector<std::uint32_t> first;    ///< of a system, into triangles; system count + 1
+  std::vector<std::uint32_t> members;  ///< triangle ids
+
+  [[nodiscard]] std::span<const std::uint32_t> of(std::uint32_t system) const {
+    return {members.data() + first[system], members.data() + first[system + 1]};
+  }
+};
+
+/// The systems of a cluster that has to be divided.
 using Systems = std::vector<std::vector<std::uint32_t>>;
 
-bool is_too_large(const Systems& systems, std::span<const WedgeTriangle> triangles, const ClusterCaps& caps,
-                  std::vector<std::uint32_t>& wedges) {
+/// Systems by cluster, in flat rows, ascending.
+struct PartRows {
+  std::vector<std::uint32_t> first;  ///< of a cluster, into systems; cluster count + 1
+  std::vector<std::uint32_t> systems;
+};
+
+SystemRows rows_of_systems(const std::vector<std::uint32_t>& core, const std::vector<std::uint32_t>& place,
+                           const Hosts& hosts) {
+  SystemRows rows;
+  rows.first.assign(core.size() + 1, 0);
+  for (std::uint32_t t = 0; t < hosts.size(); ++t) ++rows.first[place[hosts[t] == kNoId ? t : hosts[t]] + 1];
+  for (std::size_t i = 0; i < core.size(); ++i) rows.first[i + 1] += rows.first[i];
+  rows.members.resize(hosts.size());
+  std::vector<std::uint32_t> cursor(rows.first.begin(), rows.first.end() - 1);
+  for (std::size_t i = 0; i < core.size(); ++i) rows.members[cursor[i]++] = core[i];
+  for (std::uint32_t t = 0; t < hosts.size(); ++t) {
+    if (hosts[t] != kNoId) rows.members[cursor[place[hosts[t]]]++] = t;
+  }
+  return rows;
+}
+
+PartRows rows_of_parts(const Clustering& clustering) {
+  PartRows rows;
+  rows.first.assign(clustering.count + 1, 0);
+  for (const std::uint32_t label : clustering.label) ++rows.first[label + 1];
+  for (std::uint32_t part = 0; part < clustering.count; ++part) rows.first[part + 1] += rows.first[part];
+  rows.systems.resize(clustering.label.size());
+  std::vector<std::uint32_t> cursor(rows.first.begin(), rows.first.end() - 1);
+  for (std::uint32_t i = 0; i < clustering.label.size(); ++i) rows.systems[cursor[clustering.label[i]]++] = i;
+  return rows;
+}
+
+Systems systems_of(const SystemRows& rows, const PartRows& parts, std::uint32_t part) {
+  Systems systems;
+  for (std::uint32_t i = parts.first[part]; i < parts.first[part + 1]; ++i) {
+    const std::span<const std::uint32_t> members = rows.of(parts.systems[i]);
+    systems.emplace_back(members.begin(), members.end());
+  }
+  return systems;
+}
+
+/// Whether a cluster is over its caps. `for_each_triangle` visits its triangles.
+template <class ForEach>
+bool is_too_large(std::span<const WedgeTriangle> triangles, const ClusterCaps& caps, LocalIds& wedges,
+                  const ForEach& for_each_triangle) {
   std::size_t count = 0;
   wedges.clear();
-  for (const auto& system : systems) {
-    count += system.size();
-    for (const std::uint32_t t : system) wedges.insert(wedges.end(), triangles[t].begin(), triangles[t].end());
-  }
-  std::sort(wedges.begin(), wedges.end());
-  const auto distinct = static_cast<std::size_t>(std::unique(wedges.begin(), wedges.end()) - wedges.begin());
-  return count > caps.max_triangles || distinct > caps.max_vertices;
+  for_each_triangle([&](std::uint32_t t) {
+    ++count;
+    for (const std::uint32_t wedge : triangles[t]) wedges.add(wedge);
+  });
+  return count > caps.max_triangles || wedges.size() > caps.max_vertices;
 }
 
 /// Two clusters of whole systems; a lone system with too many satellites is cut anywhere.
@@ -57,6 +110,52 @@ std::pair<Systems, Systems> divide(const Systems& systems, std::span<const Wedge
   const std::vector<std::uint32_t> half = partition_graph(graph, 2);
   for (std::size_t i = 0; i < systems.size(); ++i) (half[i] == 0 ? halves.first : halves.second).push_back(systems[i]);
   return halves;
+}
+
+struct Surface {
+  std::span<const WedgeTriangle> triangles;
+  std::span<const std::uint32_t> wedge_position;
+};
+
+/// Labels of all triangles: clusters keep their numbers, and what has to be cut off gets those that follow.
+Clustering divide_too_large(const SystemRows& rows, const PartRows& parts, const Surface& surface,
+                            const ClusterCaps& caps) {
+  Clustering clustering;
+  clustering.count = static_cast<std::uint32_t>(parts.first.size() - 1);
+  clustering.label.resize(surface.triangles.size());
+  LocalIds wedges(2 * std::size_t{caps.max_vertices});
+  std::vector<Systems> cut_off;  // their numbers follow those of `parts`
+  const auto settle = [&](std::uint32_t part, Systems systems) {
+    const auto for_each_triangle = [&](auto&& visit) {
+      for (const auto& system : systems) std::for_each(system.begin(), system.end(), visit);
+    };
+    while (is_too_large(surface.triangles, caps, wedges, for_each_triangle)) {
+      auto [keep, split] = divide(systems, surface.triangles, surface.wedge_position);
+      systems = std::move(keep);
+      cut_off.push_back(std::move(split));
+      ++clustering.count;
+    }
+    for_each_triangle([&](std::uint32_t t) { clustering.label[t] = part; });
+  };
+  const std::uint32_t before = clustering.count;
+  for (std::uint32_t part = 0; part < before; ++part) {
+    const auto for_each_triangle = [&](auto&& visit) {
+      for (std::uint32_t i = parts.first[part]; i < parts.first[part + 1]; ++i) {
+        const std::span<const std::uint32_t> members = rows.of(parts.systems[i]);
+        std::for_each(members.begin(), members.end(), visit);
+      }
+    };
+    if (is_too_large(surface.triangles, caps, wedges, for_each_triangle)) {
+      settle(part, systems_of(rows, parts, part));
+    } else {
+      for_each_triangle([&](std::uint32_t t) { clustering.label[t] = part; });
+    }
+  }
+  for (std::uint32_t part = before; part < clustering.count; ++part) {
+    Systems systems = std::move(cut_off[part - before]);
+    settle(part, std::move(systems));
+  }
+  return clustering;
 }
 
 }  // namespace
@@ -140,35 +239,11 @@ Clustering cluster_with_satellites(std::span<const WedgeTriangle> triangles,
     core.push_back(t);
     core_triangles.push_back(triangles[t]);
   }
-  Systems systems(core.size());
-  for (std::size_t i = 0; i < core.size(); ++i) systems[i].push_back(core[i]);
-  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-    if (hosts[t] != kNoId) systems[place[hosts[t]]].push_back(t);
-  }
-  std::vector<std::int32_t> weights;
-  weights.reserve(systems.size());
-  for (const auto& system : systems) weights.push_back(static_cast<std::int32_t>(system.size()));
+  const SystemRows rows = rows_of_systems(core, place, hosts);
+  std::vector<std::int32_t> weights(core.size());
+  for (std::uint32_t i = 0; i < core.size(); ++i) weights[i] = static_cast<std::int32_t>(rows.of(i).size());
   const Clustering of_core = cluster(core_triangles, weights);
-  std::vector<Systems> parts(of_core.count);
-  for (std::size_t i = 0; i < core.size(); ++i) parts[of_core.label[i]].push_back(std::move(systems[i]));
-
-  std::vector<std::uint32_t> wedges;
-  for (std::size_t part = 0; part < parts.size(); ++part) {
-    while (is_too_large(parts[part], triangles, caps, wedges)) {
-      auto [keep, split] = divide(parts[part], triangles, wedge_position);
-      parts[part] = std::move(keep);
-      parts.push_back(std::move(split));
-    }
-  }
-  Clustering clustering;
-  clustering.count = static_cast<std::uint32_t>(parts.size());
-  clustering.label.resize(triangles.size());
-  for (std::uint32_t part = 0; part < parts.size(); ++part) {
-    for (const auto& system : parts[part]) {
-      for (const std::uint32_t t : system) clustering.label[t] = part;
-    }
-  }
-  return clustering;
+  return divide_too_large(rows, rows_of_parts(of_core), {triangles, wedge_position}, caps);
 }
 
 }  // namespace meshlode::build

@@ -2,54 +2,82 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <vector>
 
+#include "base/local_ids.h"
+#include "base/parallel.h"
 #include "build/dag/level_pool.h"
 
 namespace meshlode::build {
 
 namespace {
 
-/// Appends one cluster: triangles sorted by material (stable), vertices numbered by first use.
-void append_cluster(const BuildPool& pool, const BuildCluster& source, std::size_t stride, GroupId group, LodDag& dag) {
-  DagCluster cluster;
-  cluster.level = source.level;
-  cluster.own_group = source.own_group;  // renumbered by the caller
-  cluster.coarser_group = group;
-  cluster.first_vertex = static_cast<std::uint32_t>(dag.vertex_position.size());
-  cluster.first_triangle = static_cast<std::uint32_t>(dag.triangles.size());
-  cluster.triangle_count = source.triangle_count;
+/// A cluster's triangles in the order of the DAG (by material, stable), with vertices numbered by first use.
+struct OrderedCluster {
+  std::vector<std::uint32_t> triangles;  ///< of the pool
+  LocalIds wedges;
 
-  std::vector<std::uint32_t> order(source.triangle_count);
-  std::iota(order.begin(), order.end(), source.first_triangle);
-  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return pool.triangle_material[a] < pool.triangle_material[b];
+  OrderedCluster(const BuildPool& pool, const BuildCluster& source)
+      : triangles(source.triangle_count), wedges(source.triangle_count) {
+    std::iota(triangles.begin(), triangles.end(), source.first_triangle);
+    const auto before = [&](std::uint32_t a, std::uint32_t b) {
+      return pool.triangle_material[a] < pool.triangle_material[b];
+    };
+    if (!std::is_sorted(triangles.begin(), triangles.end(), before)) {
+      std::stable_sort(triangles.begin(), triangles.end(), before);
+    }
+    for (const std::uint32_t t : triangles) {
+      for (const std::uint32_t wedge : pool.triangles[t]) wedges.add(wedge);
+    }
+  }
+};
+
+/// Writes triangles and vertices of one cluster to the places that it was given.
+void write_cluster(const BuildPool& pool, const BuildCluster& source, std::size_t stride, const DagCluster& cluster,
+                   LodDag& dag) {
+  OrderedCluster ordered(pool, source);
+  for (std::size_t i = 0; i < ordered.triangles.size(); ++i) {
+    const std::uint32_t t = ordered.triangles[i];
+    for (std::size_t k = 0; k < 3; ++k) {
+      dag.triangles[cluster.first_triangle + i][k] =
+          static_cast<std::uint8_t>(ordered.wedges.add(pool.triangles[t][k]));
+    }
+    dag.triangle_material[cluster.first_triangle + i] = pool.triangle_material[t];
+  }
+  for (std::size_t v = 0; v < ordered.wedges.size(); ++v) {
+    const std::size_t wedge = ordered.wedges.numbers()[v];
+    dag.vertex_position[cluster.first_vertex + v] = pool.positions[pool.wedge_position[wedge]];
+    std::copy_n(pool.wedge_attributes.begin() + static_cast<std::ptrdiff_t>(wedge * stride), stride,
+                dag.vertex_attributes.begin() + static_cast<std::ptrdiff_t>((cluster.first_vertex + v) * stride));
+  }
+}
+
+/// Counts the vertices of every cluster, gives each its place, and writes them all. `sources`: of the pool, in order.
+void write_clusters(const BuildPool& pool, const std::vector<ClusterId>& sources, std::size_t stride, LodDag& dag) {
+  constexpr std::size_t kGrain = 16;
+  parallel_for_each_index(sources.size(), kGrain, [&](std::size_t i) {
+    const OrderedCluster ordered(pool, pool.cluster(sources[i]));
+    dag.clusters[i].vertex_count = static_cast<std::uint32_t>(ordered.wedges.size());
   });
-  std::vector<std::uint32_t> vertices;  // wedge ids; at most a few hundred, so that linear search is quick enough
-  const auto local_vertex = [&](std::uint32_t wedge) {
-    const auto found = std::find(vertices.begin(), vertices.end(), wedge);
-    if (found != vertices.end()) return static_cast<std::size_t>(found - vertices.begin());
-    vertices.push_back(wedge);
-    return vertices.size() - 1;
-  };
-  for (const std::uint32_t t : order) {
-    std::array<std::uint8_t, 3> local{};
-    for (std::size_t k = 0; k < 3; ++k) local[k] = static_cast<std::uint8_t>(local_vertex(pool.triangles[t][k]));
-    dag.triangles.push_back(local);
-    dag.triangle_material.push_back(pool.triangle_material[t]);
+  std::uint32_t vertices = 0, triangles = 0;
+  for (DagCluster& cluster : dag.clusters) {
+    cluster.first_vertex = vertices;
+    cluster.first_triangle = triangles;
+    vertices += cluster.vertex_count;
+    triangles += cluster.triangle_count;
   }
-  for (const std::uint32_t wedge : vertices) {
-    dag.vertex_position.push_back(pool.positions[pool.wedge_position[wedge]]);
-    const auto first = pool.wedge_attributes.begin() + static_cast<std::ptrdiff_t>(wedge * stride);
-    dag.vertex_attributes.insert(dag.vertex_attributes.end(), first, first + static_cast<std::ptrdiff_t>(stride));
-  }
-  cluster.vertex_count = static_cast<std::uint32_t>(vertices.size());
-  dag.clusters.push_back(cluster);
+  dag.vertex_position.resize(vertices);
+  dag.vertex_attributes.resize(std::size_t{vertices} * stride);
+  dag.triangles.resize(triangles);
+  dag.triangle_material.resize(triangles);
+  parallel_for_each_index(sources.size(), kGrain, [&](std::size_t i) {
+    write_cluster(pool, pool.cluster(sources[i]), stride, dag.clusters[i], dag);
+  });
 }
 
 }  // namespace
 
 LodDag assemble_dag(const BuildPool& pool, const PreparedMesh& mesh) {
-  const std::size_t stride = mesh.layout.stride();
   std::vector<std::uint32_t> order(pool.groups.size());
   std::iota(order.begin(), order.end(), 0U);
   // A group comes after everything made from it. Its level is below theirs, so that sorting by level does it; terminal
@@ -65,6 +93,10 @@ LodDag assemble_dag(const BuildPool& pool, const PreparedMesh& mesh) {
   for (std::uint32_t i = 0; i < order.size(); ++i) new_group[order[i]] = i;
 
   LodDag dag;
+  dag.groups.reserve(pool.groups.size());
+  dag.clusters.reserve(pool.clusters.size());
+  std::vector<ClusterId> sources;
+  sources.reserve(pool.clusters.size());
   for (const std::uint32_t g : order) {
     const BuildGroup& source = pool.groups[g];
     DagGroup group;
@@ -80,13 +112,19 @@ LodDag assemble_dag(const BuildPool& pool, const PreparedMesh& mesh) {
     group.normal_deviation = source.normal_deviation;
     group.uv_deviation = source.uv_deviation;
     for (const ClusterId c : source.clusters) {
-      append_cluster(pool, pool.cluster(c), stride, GroupId(new_group[g]), dag);
-      DagCluster& cluster = dag.clusters.back();
-      if (cluster.own_group.is_valid()) cluster.own_group = GroupId(new_group[cluster.own_group.value]);
+      const BuildCluster& made = pool.cluster(c);
+      DagCluster cluster;
+      cluster.level = made.level;
+      cluster.coarser_group = GroupId(new_group[g]);
+      if (made.own_group.is_valid()) cluster.own_group = GroupId(new_group[made.own_group.value]);
+      cluster.triangle_count = made.triangle_count;
       dag.level_count = std::max(dag.level_count, cluster.level + 1);
+      dag.clusters.push_back(cluster);
+      sources.push_back(c);
     }
     dag.groups.push_back(group);
   }
+  write_clusters(pool, sources, mesh.layout.stride(), dag);
   return dag;
 }
 

@@ -2,8 +2,10 @@
 #include "build/dag/build_dag.h"
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
+#include "base/local_ids.h"
 #include "base/parallel.h"
 #include "build/dag/group_errors.h"
 #include "build/dag/level_pool.h"
@@ -65,6 +67,10 @@ SimplifyInput group_input(const BuildPool& pool, const PreparedMesh& mesh, const
   input.grid = mesh.grid;
   input.layout = mesh.layout;
   const std::size_t stride = mesh.layout.stride();
+  std::size_t triangle_count = 0;
+  for (const ClusterId c : clusters) triangle_count += pool.cluster(c).triangle_count;
+  input.triangles.reserve(triangle_count);
+  input.triangle_material.reserve(triangle_count);
   for (const ClusterId c : clusters) {
     const BuildCluster& cluster = pool.cluster(c);
     const auto first = static_cast<std::ptrdiff_t>(cluster.first_triangle);
@@ -73,31 +79,33 @@ SimplifyInput group_input(const BuildPool& pool, const PreparedMesh& mesh, const
     input.triangle_material.insert(input.triangle_material.end(), pool.triangle_material.begin() + first,
                                    pool.triangle_material.begin() + last);
   }
-  std::vector<std::uint32_t> wedges;
-  wedges.reserve(3 * input.triangles.size());
-  for (const WedgeTriangle& triangle : input.triangles) wedges.insert(wedges.end(), triangle.begin(), triangle.end());
-  std::sort(wedges.begin(), wedges.end());
-  wedges.erase(std::unique(wedges.begin(), wedges.end()), wedges.end());
-  std::vector<std::uint32_t> positions;
-  for (const std::uint32_t w : wedges) positions.push_back(pool.wedge_position[w]);
-  std::sort(positions.begin(), positions.end());
-  positions.erase(std::unique(positions.begin(), positions.end()), positions.end());
-  const auto index_in = [](const std::vector<std::uint32_t>& ids, std::uint32_t id) {
-    return static_cast<std::uint32_t>(std::lower_bound(ids.begin(), ids.end(), id) - ids.begin());
-  };
-  for (const std::uint32_t p : positions) {
-    input.positions.push_back(pool.positions[p]);
-    input.is_locked.push_back(shared.position[p]);
-    input.witnesses.push_back(pool.witnesses[p]);
+  LocalIds wedges(input.triangles.size());
+  for (WedgeTriangle& triangle : input.triangles) {
+    for (std::uint32_t& wedge : triangle) wedge = wedges.add(wedge);
   }
-  for (const std::uint32_t w : wedges) {
-    input.wedge_position.push_back(index_in(positions, pool.wedge_position[w]));
+  const std::vector<std::uint32_t> wedge_place = wedges.sort();
+  for (WedgeTriangle& triangle : input.triangles) {
+    for (std::uint32_t& wedge : triangle) wedge = wedge_place[wedge];
+  }
+  LocalIds positions(wedges.size());
+  input.wedge_position.reserve(wedges.size());
+  input.is_wedge_shared.reserve(wedges.size());
+  input.wedge_attributes.reserve(stride * wedges.size());
+  for (const std::uint32_t w : wedges.numbers()) {
+    input.wedge_position.push_back(positions.add(pool.wedge_position[w]));
     input.is_wedge_shared.push_back(shared.wedge[w]);
     const auto first = pool.wedge_attributes.begin() + static_cast<std::ptrdiff_t>(w * stride);
     input.wedge_attributes.insert(input.wedge_attributes.end(), first, first + static_cast<std::ptrdiff_t>(stride));
   }
-  for (WedgeTriangle& triangle : input.triangles) {
-    for (std::uint32_t& wedge : triangle) wedge = index_in(wedges, wedge);
+  const std::vector<std::uint32_t> position_place = positions.sort();
+  for (std::uint32_t& position : input.wedge_position) position = position_place[position];
+  input.positions.reserve(positions.size());
+  input.is_locked.reserve(positions.size());
+  input.witnesses.reserve(positions.size());
+  for (const std::uint32_t p : positions.numbers()) {
+    input.positions.push_back(pool.positions[p]);
+    input.is_locked.push_back(shared.position[p]);
+    input.witnesses.push_back(pool.witnesses[p]);
   }
   return input;
 }
@@ -107,20 +115,25 @@ GroupInput grouping_input(const BuildPool& pool, const std::vector<ClusterId>& l
   input.position_count = static_cast<std::uint32_t>(pool.positions.size());
   std::vector<std::vector<std::uint32_t>> lists(live.size());
   input.weights.assign(live.size(), 0);
+  input.centers.resize(live.size());
   parallel_for_each_index(live.size(), 16, [&](std::size_t i) {
-    pool.positions_of(live[i], lists[i]);
-    if (options.max_group_bytes == 0) return;
-    input.weights[i] = options.cluster_bytes(pool.count_wedges(live[i]), pool.cluster(live[i]).triangle_count,
-                                             pool.count_materials(live[i]));
-  });
-  input.first_position.push_back(0);
-  for (std::size_t i = 0; i < live.size(); ++i) {
-    input.positions.insert(input.positions.end(), lists[i].begin(), lists[i].end());
-    input.first_position.push_back(static_cast<std::uint32_t>(input.positions.size()));
+    BuildPool::ClusterUse use = pool.use_of(live[i]);
     Vec3d sum(0.0);
-    for (const std::uint32_t p : lists[i]) sum += Vec3d(pool.positions[p]);
-    input.centers.push_back(sum / static_cast<double>(std::max<std::size_t>(1, lists[i].size())));
+    for (const std::uint32_t p : use.positions) sum += Vec3d(pool.positions[p]);
+    input.centers[i] = sum / static_cast<double>(std::max<std::size_t>(1, use.positions.size()));
+    if (options.max_group_bytes > 0) {
+      input.weights[i] = options.cluster_bytes(use.wedges, pool.cluster(live[i]).triangle_count, use.materials);
+    }
+    lists[i] = std::move(use.positions);
+  });
+  input.first_position.assign(live.size() + 1, 0);
+  for (std::size_t i = 0; i < live.size(); ++i) {
+    input.first_position[i + 1] = input.first_position[i] + static_cast<std::uint32_t>(lists[i].size());
   }
+  input.positions.resize(input.first_position.back());
+  parallel_for_each_index(live.size(), 64, [&](std::size_t i) {
+    std::copy(lists[i].begin(), lists[i].end(), input.positions.begin() + input.first_position[i]);
+  });
   return input;
 }
 
@@ -207,24 +220,24 @@ bool report_level(const BuildPool& pool, const Front& front, std::uint32_t round
   return options.on_level(round, triangles);
 }
 
-/// Each group simplified, clustered and measured; nothing of the pool is changed.
-std::vector<Attempt> attempt_groups(const BuildPool& pool, const PreparedMesh& mesh, const GroupMeter& meter,
-                                    const std::vector<ClusterId>& live,
-                                    const std::vector<std::vector<std::uint32_t>>& groups, bool is_first_round,
-                                    const DagOptions& options, const Effort& effort) {
-  const Shared shared = find_shared(pool, live, groups);
-  std::vector<Attempt> attempts(groups.size());
-  parallel_for_each_index(groups.size(), 1, [&](std::size_t g) {
-    std::vector<ClusterId> clusters;
-    for (const std::uint32_t i : groups[g]) clusters.push_back(live[i]);
-    const SimplifyInput finer = group_input(pool, mesh, clusters, shared);
-    const double share = is_first_round ? first_share(g, groups.size()) : 0.5;
-    attempts[g] = simplify_and_cluster(finer, share, groups.size() == 1, options, effort);
-    if (attempts[g].is_accepted) {
-      attempts[g].errors = meter.measure(pool, clusters, finer, attempts[g].result, groups.size());
-    }
-  });
-  return attempts;
+/// The groups of one round, as lists of places in the front.
+using Groups = std::vector<std::vector<std::uint32_t>>;
+
+std::vector<ClusterId> clusters_of(const Front& front, const std::vector<std::uint32_t>& group) {
+  std::vector<ClusterId> clusters;
+  clusters.reserve(group.size());
+  for (const std::uint32_t i : group) clusters.push_back(front.live[i]);
+  return clusters;
+}
+
+/// One group simplified, clustered and measured; nothing of the pool is changed.
+Attempt attempt_group(const BuildPool& pool, const PreparedMesh& mesh, const GroupMeter& meter,
+                      const std::vector<ClusterId>& clusters, const Shared& shared, double share,
+                      std::size_t groups_of_round, const DagOptions& options, const Effort& effort) {
+  const SimplifyInput finer = group_input(pool, mesh, clusters, shared);
+  Attempt attempt = simplify_and_cluster(finer, share, groups_of_round == 1, options, effort);
+  if (attempt.is_accepted) attempt.errors = meter.measure(pool, clusters, finer, attempt.result, groups_of_round);
+  return attempt;
 }
 
 /// The group of `clusters` as what an accepted attempt replaces it by says.
@@ -250,45 +263,65 @@ BuildGroup replaced_group(const BuildPool& pool, const GroupMeter& meter, std::v
   return group;
 }
 
-/// Adds the group and the coarser clusters that replace it.
-void accept(BuildPool& pool, const GroupMeter& meter, std::vector<ClusterId> clusters, const Attempt& attempt,
-            Front& next) {
-  BuildGroup group = replaced_group(pool, meter, std::move(clusters), attempt);
-  if (meter.is_measuring()) {
-    for (const ClusterId c : group.clusters) pool.cluster(c).samples = {};  // carried on by the coarser clusters
-  }
-  const GroupId group_id(pool.groups.size());
-  const std::uint32_t level = group.level + 1;
-  pool.groups.push_back(std::move(group));
-  const auto first = static_cast<std::uint32_t>(pool.clusters.size());
-  pool.add_simplified(attempt.result, attempt.errors.carried, attempt.clustering, level, group_id);
-  for (std::uint32_t c = first; c < pool.clusters.size(); ++c) next.add(ClusterId(c), StuckReason::kNotStuck);
-}
-
-/// The next front: coarser clusters where a group was accepted, the same ones where it got stuck. In the order of
-/// groups.
-Front advance(BuildPool& pool, const GroupMeter& meter, const Front& front,
-              const std::vector<std::vector<std::uint32_t>>& groups, std::vector<Attempt> attempts) {
-  Front next;
+/// Adds a run of groups, and the coarser clusters that replace those that were accepted, to the pool and to the next
+/// front: the same clusters where a group got stuck. In the order of groups.
+void advance(BuildPool& pool, const GroupMeter& meter, const Front& front,
+             std::span<const std::vector<std::uint32_t>> groups, std::span<const Attempt> attempts, Front& next) {
+  std::vector<NewClusters> accepted;
+  auto cluster_count = static_cast<std::uint32_t>(pool.clusters.size());
   for (std::size_t g = 0; g < groups.size(); ++g) {
-    std::vector<ClusterId> clusters;
-    for (const std::uint32_t i : groups[g]) clusters.push_back(front.live[i]);
-    if (attempts[g].is_accepted) {
-      accept(pool, meter, std::move(clusters), attempts[g], next);
-      attempts[g] = {};
+    const Attempt& attempt = attempts[g];
+    std::vector<ClusterId> clusters = clusters_of(front, groups[g]);
+    if (!attempt.is_accepted) {
+      const StuckReason reason = attempt.result.reason;
+      for (const ClusterId c : clusters) {
+        next.add(c, reason == StuckReason::kNotStuck ? StuckReason::kTooSmall : reason);
+      }
       continue;
     }
-    const StuckReason reason = attempts[g].result.reason;
-    for (const ClusterId c : clusters) {
-      next.add(c, reason == StuckReason::kNotStuck ? StuckReason::kTooSmall : reason);
+    for (std::uint32_t c = 0; c < attempt.clustering.count; ++c) {
+      next.add(ClusterId(cluster_count++), StuckReason::kNotStuck);
     }
+    BuildGroup group = replaced_group(pool, meter, std::move(clusters), attempt);
+    if (meter.is_measuring()) {
+      for (const ClusterId c : group.clusters) pool.cluster(c).samples = {};  // carried on by the coarser clusters
+    }
+    accepted.push_back(
+        {attempt.result, attempt.errors.carried, attempt.clustering, group.level + 1, GroupId(pool.groups.size())});
+    pool.groups.push_back(std::move(group));
   }
-  return next;
+  pool.add_simplified(accepted);
 }
 
-Result<LodDag> coarsen(const PreparedMesh& mesh, const DagOptions& options) {
+/// All groups of a front, a run of them at a time: what a run became is in the pool before the next one begins, so that
+/// the results of a whole round are never held at once. Groups see nothing of each other (BuildPool::begin_round), so
+/// that runs of any length give the same. \returns whether any group was accepted
+bool run_round(BuildPool& pool, const PreparedMesh& mesh, const GroupMeter& meter, const Groups& groups,
+               bool is_first_round, const DagOptions& options, const Effort& effort, Front& front) {
+  const std::size_t run = std::max<std::size_t>(64, 16 * thread_limit());
+  const Shared shared = find_shared(pool, front.live, groups);
+  bool any_accepted = false;
+  Front next;
+  pool.begin_round();
+  for (std::size_t first = 0; first < groups.size(); first += run) {
+    std::vector<Attempt> attempts(std::min(run, groups.size() - first));
+    parallel_for_each_index(attempts.size(), 1, [&](std::size_t i) {
+      const double share = is_first_round ? first_share(first + i, groups.size()) : 0.5;
+      attempts[i] = attempt_group(pool, mesh, meter, clusters_of(front, groups[first + i]), shared, share,
+                                  groups.size(), options, effort);
+    });
+    any_accepted = any_accepted || std::any_of(attempts.begin(), attempts.end(),
+                                               [](const Attempt& attempt) { return attempt.is_accepted; });
+    advance(pool, meter, front, std::span(groups).subspan(first, attempts.size()), attempts, next);
+  }
+  pool.end_round();
+  front = std::move(next);
+  return any_accepted;
+}
+
+/// Every level of a mesh that is not empty. Error: cancelled.
+Result<BuildPool> coarsen(const PreparedMesh& mesh, const DagOptions& options) {
   BuildPool pool(mesh);
-  if (mesh.triangles.empty()) return LodDag{};
   const GroupMeter meter(mesh, options.error);
   pool.add_clusters(mesh.triangles, mesh.triangle_material, meter.level0(),
                     cluster_triangles(mesh.triangles, mesh.wedge_position, mesh.positions, options.caps), 0, GroupId());
@@ -302,22 +335,28 @@ Result<LodDag> coarsen(const PreparedMesh& mesh, const DagOptions& options) {
     if (front.live.size() == 1 || effort_index == std::size(kEfforts)) break;
     const Effort& effort = kEfforts[effort_index];
     grouping.target_clusters = effort.target_clusters;
-    const auto groups = group_clusters(grouping_input(pool, front.live, options), grouping);
-    std::vector<Attempt> attempts = attempt_groups(pool, mesh, meter, front.live, groups, round == 0, options, effort);
+    const Groups groups = group_clusters(grouping_input(pool, front.live, options), grouping);
     // Progress keeps the effort where it is; a round without any tries harder, and success at that starts over.
-    const bool any_accepted =
-        std::any_of(attempts.begin(), attempts.end(), [](const Attempt& attempt) { return attempt.is_accepted; });
+    const bool any_accepted = run_round(pool, mesh, meter, groups, round == 0, options, effort, front);
     effort_index = any_accepted ? 0 : effort_index + 1;
-    front = advance(pool, meter, front, groups, std::move(attempts));
   }
   add_terminal_groups(pool, front.live, grouping, options, front.reasons);
-  return assemble_dag(pool, mesh);
+  pool.finish();
+  return pool;
+}
+
+/// The pool and what measured it are gone when this returns.
+Result<LodDag> coarsened_dag(const PreparedMesh& mesh, const DagOptions& options) {
+  const Result<BuildPool> pool = coarsen(mesh, options);
+  if (!pool) return pool.error();
+  return assemble_dag(*pool, mesh);
 }
 
 }  // namespace
 
 Result<LodDag> build_dag(const PreparedMesh& mesh, const DagOptions& options) {
-  Result<LodDag> dag = coarsen(mesh, options);
+  if (mesh.triangles.empty()) return LodDag{};
+  Result<LodDag> dag = coarsened_dag(mesh, options);
   if (dag && options.error == ErrorSource::kMeasured) hold_to_whole_cuts(mesh, kMeasuredMargin, *dag);
   return dag;
 }

@@ -5,22 +5,60 @@
 #include <bit>
 #include <cstring>
 
+#include "base/local_ids.h"
+#include "base/parallel.h"
+
 namespace meshlode::build {
 
-BuildPool::BuildPool(const PreparedMesh& mesh) : stride_(mesh.layout.stride()) {
-  for (const Vec3i& position : mesh.positions) {
-    (void)position_id(position);
-    witnesses.push_back({{position}, 1});
-  }
-  for (std::size_t w = 0; w < mesh.wedge_position.size(); ++w) {
-    (void)wedge_id(mesh.wedge_position[w], mesh.wedge_attributes.data() + w * stride_);
+namespace {
+
+/// Every level has about half of the finer one's. Room that is never written to takes no memory.
+template <class T>
+void reserve_for_levels(std::vector<T>& values, std::size_t level0) {
+  values.reserve(level0 + level0 + level0 / 8);
+}
+
+/// Side by side, in tasks of many.
+constexpr auto kForEachId = [](std::uint32_t count, const auto& visit) {
+  parallel_for_each_index(count, kLoopGrain, [&](std::size_t id) { visit(static_cast<std::uint32_t>(id)); });
+};
+
+void add_distinct(Witnesses& known, const Witnesses& more) {
+  for (std::uint32_t i = 0; i < more.count; ++i) {
+    const auto end = known.points.begin() + known.count;
+    if (known.count < Witnesses::kCapacity && std::find(known.points.begin(), end, more.points[i]) == end) {
+      known.points[known.count++] = more.points[i];
+    }
   }
 }
 
-std::uint64_t BuildPool::hash_position(std::uint32_t id) const {
-  const Vec3i& p = positions[id];
+}  // namespace
+
+BuildPool::BuildPool(const PreparedMesh& mesh)
+    : stride_(mesh.layout.stride()),
+      position_table_(2 * mesh.positions.size()),
+      wedge_table_(2 * mesh.wedge_position.size()) {
+  reserve_for_levels(positions, mesh.positions.size());
+  reserve_for_levels(witnesses, mesh.positions.size());
+  reserve_for_levels(wedge_position, mesh.wedge_position.size());
+  reserve_for_levels(wedge_attributes, mesh.wedge_attributes.size());
+  reserve_for_levels(triangles, mesh.triangles.size());
+  reserve_for_levels(triangle_material, mesh.triangles.size());
+  positions = mesh.positions;
+  wedge_position = mesh.wedge_position;
+  wedge_attributes = mesh.wedge_attributes;
+  witnesses.resize(positions.size());
+  parallel_for_each_index(positions.size(), kLoopGrain, [&](std::size_t p) { witnesses[p] = {{positions[p]}, 1}; });
+  position_table_.fill(static_cast<std::uint32_t>(positions.size()), kForEachId,
+                       [&](std::uint32_t id) { return hash_position(positions[id]); });
+  wedge_table_.fill(static_cast<std::uint32_t>(wedge_position.size()), kForEachId, [&](std::uint32_t id) {
+    return hash_wedge(wedge_position[id], wedge_attributes.data() + id * stride_);
+  });
+}
+
+std::uint64_t BuildPool::hash_position(const Vec3i& position) {
   std::uint64_t h = 0;
-  for (int k = 0; k < 3; ++k) h = hash_word(h, static_cast<std::uint32_t>(p[k]));
+  for (int k = 0; k < 3; ++k) h = hash_word(h, static_cast<std::uint32_t>(position[k]));
   return h;
 }
 
@@ -30,25 +68,30 @@ std::uint64_t BuildPool::hash_wedge(std::uint32_t position, const float* attribu
   return h;
 }
 
+bool BuildPool::is_wedge(std::uint32_t wedge, std::uint32_t position, const float* attributes) const {
+  // Bits, not values: what differs in the sign of a zero is another wedge, as everywhere in the build.
+  return wedge_position[wedge] == position && (stride_ == 0 || std::memcmp(wedge_attributes.data() + wedge * stride_,
+                                                                           attributes, stride_ * sizeof(float)) == 0);
+}
+
 std::uint32_t BuildPool::position_id(const Vec3i& position) {
   const auto next = static_cast<std::uint32_t>(positions.size());
-  positions.push_back(position);
   const IdTable::Entry entry = position_table_.find_or_insert(
-      hash_position(next), next, [&](std::uint32_t other) { return positions[other] == position; },
-      [&](std::uint32_t other) { return hash_position(other); });
-  if (!entry.is_new) positions.pop_back();
+      hash_position(position), next, [&](std::uint32_t other) { return positions[other] == position; },
+      [&](std::uint32_t other) { return hash_position(positions[other]); });
+  if (entry.is_new) {
+    positions.push_back(position);
+    witnesses.emplace_back();
+  }
   return entry.id;
 }
 
 std::uint32_t BuildPool::wedge_id(std::uint32_t position, const float* attributes) {
   const auto next = static_cast<std::uint32_t>(wedge_position.size());
-  const auto is_same = [&](std::uint32_t other) {
-    // Bits, not values: what differs in the sign of a zero is another wedge, as everywhere in the build.
-    return wedge_position[other] == position && (stride_ == 0 || std::memcmp(wedge_attributes.data() + other * stride_,
-                                                                             attributes, stride_ * sizeof(float)) == 0);
-  };
-  const IdTable::Entry entry =
-      wedge_table_.find_or_insert(hash_wedge(position, attributes), next, is_same, [&](std::uint32_t other) {
+  const IdTable::Entry entry = wedge_table_.find_or_insert(
+      hash_wedge(position, attributes), next,
+      [&](std::uint32_t other) { return is_wedge(other, position, attributes); },
+      [&](std::uint32_t other) {
         return hash_wedge(wedge_position[other], wedge_attributes.data() + other * stride_);
       });
   if (entry.is_new) {
@@ -58,84 +101,142 @@ std::uint32_t BuildPool::wedge_id(std::uint32_t position, const float* attribute
   return entry.id;
 }
 
-void BuildPool::add_clusters(const std::vector<WedgeTriangle>& source, const std::vector<std::uint32_t>& materials,
-                             const CarriedTruth& carried, const Clustering& clustering, std::uint32_t level,
-                             GroupId own_group) {
-  const auto first_cluster = clusters.size();
+std::vector<std::uint32_t> BuildPool::add_ranges(const Clustering& clustering, std::uint32_t level, GroupId own_group) {
   std::vector<std::uint32_t> start(clustering.count + 1, 0);
   for (const std::uint32_t label : clustering.label) ++start[label + 1];
+  start[0] = static_cast<std::uint32_t>(triangles.size());
   for (std::size_t i = 1; i < start.size(); ++i) start[i] += start[i - 1];
-  const auto base = static_cast<std::uint32_t>(triangles.size());
   for (std::uint32_t c = 0; c < clustering.count; ++c) {
-    clusters.push_back({level, own_group, base + start[c], start[c + 1] - start[c], {}});
+    clusters.push_back({level, own_group, start[c], start[c + 1] - start[c], {}});
   }
+  triangles.resize(triangles.size() + clustering.label.size());
+  triangle_material.resize(triangles.size());
+  return start;
+}
+
+void BuildPool::fill_clusters(std::span<const WedgeTriangle> source, std::span<const std::uint32_t> wedges,
+                              std::span<const std::uint32_t> materials, const CarriedTruth& carried,
+                              const Clustering& clustering, std::vector<std::uint32_t> start,
+                              std::uint32_t first_cluster) {
+  std::vector<std::uint32_t> sample_count(clustering.count, 0);
+  for (const CarriedSample& sample : carried.samples) ++sample_count[clustering.label[sample.triangle]];
+  for (std::uint32_t c = 0; c < clustering.count; ++c) clusters[first_cluster + c].samples.reserve(sample_count[c]);
   for (const CarriedSample& sample : carried.samples) {
     clusters[first_cluster + clustering.label[sample.triangle]].samples.push_back(sample);
   }
-  triangles.resize(base + source.size());
-  triangle_material.resize(base + source.size());
-  if (!carried.bounds.empty()) triangle_bounds.resize(base + source.size());
   for (std::size_t t = 0; t < source.size(); ++t) {
-    const std::uint32_t slot = base + start[clustering.label[t]]++;
+    const std::uint32_t slot = start[clustering.label[t]]++;
     triangles[slot] = source[t];
+    if (!wedges.empty()) {
+      for (std::uint32_t& wedge : triangles[slot]) wedge = wedges[wedge];
+    }
     triangle_material[slot] = materials[t];
     if (!carried.bounds.empty()) triangle_bounds[slot] = carried.bounds[t];
   }
 }
 
-void BuildPool::add_simplified(const SimplifyResult& result, const CarriedTruth& carried, const Clustering& clustering,
-                               std::uint32_t level, GroupId own_group) {
-  std::vector<std::uint32_t> ids(result.positions.size());
-  for (std::size_t p = 0; p < ids.size(); ++p) {
-    ids[p] = position_id(result.positions[p]);
-    if (ids[p] == witnesses.size()) witnesses.emplace_back();
-    // A locked position keeps what it had and takes over what this group left at it, as far as there is room.
-    Witnesses& known = witnesses[ids[p]];
-    for (std::uint32_t i = 0; i < result.witnesses[p].count; ++i) {
-      const Vec3i& point = result.witnesses[p].points[i];
-      const auto end = known.points.begin() + known.count;
-      if (known.count < Witnesses::kCapacity && std::find(known.points.begin(), end, point) == end) {
-        known.points[known.count++] = point;
-      }
-    }
-  }
-  std::vector<std::uint32_t> wedges(result.wedge_position.size());
-  for (std::size_t w = 0; w < wedges.size(); ++w) {
-    wedges[w] = wedge_id(ids[result.wedge_position[w]], result.wedge_attributes.data() + w * stride_);
-  }
-  std::vector<WedgeTriangle> renumbered = result.triangles;
-  for (WedgeTriangle& triangle : renumbered) {
-    for (std::uint32_t& wedge : triangle) wedge = wedges[wedge];
-  }
-  add_clusters(renumbered, result.triangle_material, carried, clustering, level, own_group);
+void BuildPool::add_clusters(const std::vector<WedgeTriangle>& source, const std::vector<std::uint32_t>& materials,
+                             const CarriedTruth& carried, const Clustering& clustering, std::uint32_t level,
+                             GroupId own_group) {
+  const auto first_cluster = static_cast<std::uint32_t>(clusters.size());
+  std::vector<std::uint32_t> start = add_ranges(clustering, level, own_group);
+  if (!carried.bounds.empty()) triangle_bounds.resize(triangles.size());
+  fill_clusters(source, {}, materials, carried, clustering, std::move(start), first_cluster);
 }
 
-void BuildPool::positions_of(ClusterId cluster, std::vector<std::uint32_t>& out) const {
-  out.clear();
-  const BuildCluster& c = this->cluster(cluster);
+BuildPool::Ids BuildPool::find_known(const SimplifyResult& result) const {
+  Ids ids;
+  ids.positions.resize(result.positions.size());
+  for (std::size_t p = 0; p < ids.positions.size(); ++p) {
+    const Vec3i& position = result.positions[p];
+    ids.positions[p] = position_table_.find(hash_position(position),
+                                            [&](std::uint32_t other) { return positions[other] == position; });
+  }
+  ids.wedges.resize(result.wedge_position.size());
+  for (std::size_t w = 0; w < ids.wedges.size(); ++w) {
+    const std::uint32_t position = ids.positions[result.wedge_position[w]];
+    const float* const attributes = result.wedge_attributes.data() + w * stride_;
+    ids.wedges[w] =
+        position == kNoId ? kNoId : wedge_table_.find(hash_wedge(position, attributes), [&](std::uint32_t other) {
+          return is_wedge(other, position, attributes);
+        });
+  }
+  return ids;
+}
+
+/// A locked position keeps what it had and takes over what a group left at it, as far as there is room.
+void BuildPool::add_witnesses(std::uint32_t position, const Witnesses& more) {
+  Witnesses& known = witnesses[position];
+  if (position >= round_positions_) {
+    add_distinct(known, more);
+    return;
+  }
+  const auto known_end = known.points.begin() + known.count;
+  const bool has_more = std::any_of(more.points.begin(), more.points.begin() + more.count, [&](const Vec3i& point) {
+    return std::find(known.points.begin(), known_end, point) == known_end;
+  });
+  if (has_more && known.count < Witnesses::kCapacity) late_witnesses_.emplace_back(position, more);
+}
+
+void BuildPool::insert_new(const SimplifyResult& result, Ids& ids) {
+  for (std::size_t p = 0; p < ids.positions.size(); ++p) {
+    if (ids.positions[p] == kNoId) ids.positions[p] = position_id(result.positions[p]);
+    add_witnesses(ids.positions[p], result.witnesses[p]);
+  }
+  for (std::size_t w = 0; w < ids.wedges.size(); ++w) {
+    if (ids.wedges[w] != kNoId) continue;
+    ids.wedges[w] = wedge_id(ids.positions[result.wedge_position[w]], result.wedge_attributes.data() + w * stride_);
+  }
+}
+
+void BuildPool::add_simplified(std::span<const NewClusters> added) {
+  std::vector<Ids> ids(added.size());
+  parallel_for_each_index(added.size(), 1, [&](std::size_t g) { ids[g] = find_known(added[g].result); });
+  std::vector<std::vector<std::uint32_t>> start(added.size());
+  std::vector<std::uint32_t> first_cluster(added.size());
+  bool has_bounds = false;
+  for (std::size_t g = 0; g < added.size(); ++g) {
+    insert_new(added[g].result, ids[g]);
+    first_cluster[g] = static_cast<std::uint32_t>(clusters.size());
+    start[g] = add_ranges(added[g].clustering, added[g].level, added[g].own_group);
+    has_bounds = has_bounds || !added[g].carried.bounds.empty();
+  }
+  if (has_bounds) triangle_bounds.resize(triangles.size());
+  parallel_for_each_index(added.size(), 1, [&](std::size_t g) {
+    const NewClusters& group = added[g];
+    fill_clusters(group.result.triangles, ids[g].wedges, group.result.triangle_material, group.carried,
+                  group.clustering, std::move(start[g]), first_cluster[g]);
+  });
+}
+
+void BuildPool::end_round() {
+  for (const auto& [position, more] : late_witnesses_) add_distinct(witnesses[position], more);
+  late_witnesses_.clear();
+}
+
+void BuildPool::finish() {
+  position_table_ = {};
+  wedge_table_ = {};
+  witnesses = {};
+  late_witnesses_ = {};
+  triangle_bounds = {};
+  for (BuildCluster& cluster : clusters) cluster.samples = {};
+}
+
+BuildPool::ClusterUse BuildPool::use_of(ClusterId id) const {
+  const BuildCluster& c = cluster(id);
+  LocalIds wedges(c.triangle_count), used_positions(c.triangle_count), materials(1);
   for (std::uint32_t t = c.first_triangle; t < c.first_triangle + c.triangle_count; ++t) {
-    for (const std::uint32_t wedge : triangles[t]) out.push_back(wedge_position[wedge]);
+    for (const std::uint32_t wedge : triangles[t]) wedges.add(wedge);
+    if (t == c.first_triangle || triangle_material[t] != triangle_material[t - 1]) materials.add(triangle_material[t]);
   }
-  std::sort(out.begin(), out.end());
-  out.erase(std::unique(out.begin(), out.end()), out.end());
-}
-
-std::uint32_t BuildPool::count_wedges(ClusterId cluster) const {
-  const BuildCluster& c = this->cluster(cluster);
-  std::vector<std::uint32_t> wedges;
-  for (std::uint32_t t = c.first_triangle; t < c.first_triangle + c.triangle_count; ++t) {
-    wedges.insert(wedges.end(), triangles[t].begin(), triangles[t].end());
-  }
-  std::sort(wedges.begin(), wedges.end());
-  return static_cast<std::uint32_t>(std::unique(wedges.begin(), wedges.end()) - wedges.begin());
-}
-
-std::uint32_t BuildPool::count_materials(ClusterId cluster) const {
-  const BuildCluster& c = this->cluster(cluster);
-  const auto first = triangle_material.begin() + c.first_triangle;
-  std::vector<std::uint32_t> materials(first, first + c.triangle_count);
-  std::sort(materials.begin(), materials.end());
-  return static_cast<std::uint32_t>(std::unique(materials.begin(), materials.end()) - materials.begin());
+  for (const std::uint32_t wedge : wedges.numbers()) used_positions.add(wedge_position[wedge]);
+  ClusterUse use;
+  use.wedges = static_cast<std::uint32_t>(wedges.size());
+  use.materials = static_cast<std::uint32_t>(materials.size());
+  use.positions = used_positions.numbers();
+  std::sort(use.positions.begin(), use.positions.end());
+  return use;
 }
 
 }  // namespace meshlode::build

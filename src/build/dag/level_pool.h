@@ -4,6 +4,8 @@
 
 #include <cstdint>
 #include <limits>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "base/id_table.h"
@@ -42,6 +44,15 @@ struct BuildGroup {
   StuckReason stuck_reason = StuckReason::kNotStuck;
 };
 
+/// What a group became, on its way into the pool.
+struct NewClusters {
+  const SimplifyResult& result;
+  const CarriedTruth& carried;
+  const Clustering& clustering;
+  std::uint32_t level = 0;
+  GroupId own_group;
+};
+
 class BuildPool {
  public:
   explicit BuildPool(const PreparedMesh& mesh);
@@ -51,15 +62,23 @@ class BuildPool {
   void add_clusters(const std::vector<WedgeTriangle>& triangles, const std::vector<std::uint32_t>& materials,
                     const CarriedTruth& carried, const Clustering& clustering, std::uint32_t level, GroupId own_group);
 
-  /// Adds what a group became. Positions and wedges that are already known (locked ones, or a coincidence on the grid)
-  /// keep their id, so that equal integers are equal ids at every level, and equal attributes with them.
-  void add_simplified(const SimplifyResult& result, const CarriedTruth& carried, const Clustering& clustering,
-                      std::uint32_t level, GroupId own_group);
+  /// Adds what groups became, one after the other. Positions and wedges that are already known (locked ones, or a
+  /// coincidence on the grid) keep their id, so that equal integers are equal ids at every level, and equal attributes
+  /// with them. Witnesses of positions that were there at begin_round() change at end_round(): until then every group
+  /// of a round sees the same.
+  void add_simplified(std::span<const NewClusters> added);
+  void begin_round() { round_positions_ = positions.size(); }
+  void end_round();
+  /// Nothing will be added, simplified or measured any more: frees what only that needs.
+  void finish();
 
-  /// The distinct position ids of a cluster, ascending.
-  void positions_of(ClusterId cluster, std::vector<std::uint32_t>& out) const;
-  [[nodiscard]] std::uint32_t count_wedges(ClusterId cluster) const;  ///< an upper bound of its vertices
-  [[nodiscard]] std::uint32_t count_materials(ClusterId cluster) const;
+  /// Of a cluster: its distinct positions, ascending, and its sizes.
+  struct ClusterUse {
+    std::vector<std::uint32_t> positions;
+    std::uint32_t wedges = 0;  ///< an upper bound of its vertices
+    std::uint32_t materials = 0;
+  };
+  [[nodiscard]] ClusterUse use_of(ClusterId cluster) const;
 
   [[nodiscard]] BuildCluster& cluster(ClusterId id) { return clusters[id.value]; }
   [[nodiscard]] const BuildCluster& cluster(ClusterId id) const { return clusters[id.value]; }
@@ -76,13 +95,30 @@ class BuildPool {
   std::vector<BuildGroup> groups;
 
  private:
+  /// Ids in the pool of what a group became; kNoId: not known yet.
+  struct Ids {
+    std::vector<std::uint32_t> positions, wedges;
+  };
+  [[nodiscard]] Ids find_known(const SimplifyResult& result) const;
+  void insert_new(const SimplifyResult& result, Ids& ids);
+  void add_witnesses(std::uint32_t position, const Witnesses& more);
+  /// Makes room for clusters; returns where the triangles of each go.
+  std::vector<std::uint32_t> add_ranges(const Clustering& clustering, std::uint32_t level, GroupId own_group);
+  /// `start`: of add_ranges. `wedges`: pool ids by the ids in `source`, or nothing where they are pool ids already.
+  void fill_clusters(std::span<const WedgeTriangle> source, std::span<const std::uint32_t> wedges,
+                     std::span<const std::uint32_t> materials, const CarriedTruth& carried,
+                     const Clustering& clustering, std::vector<std::uint32_t> start, std::uint32_t first_cluster);
+
   std::uint32_t position_id(const Vec3i& position);
   std::uint32_t wedge_id(std::uint32_t position, const float* attributes);
-  [[nodiscard]] std::uint64_t hash_position(std::uint32_t id) const;
+  [[nodiscard]] bool is_wedge(std::uint32_t wedge, std::uint32_t position, const float* attributes) const;
+  [[nodiscard]] static std::uint64_t hash_position(const Vec3i& position);
   [[nodiscard]] std::uint64_t hash_wedge(std::uint32_t position, const float* attributes) const;
 
   std::size_t stride_;
   IdTable position_table_, wedge_table_;
+  std::size_t round_positions_ = 0;                                  ///< how many there were when the round began
+  std::vector<std::pair<std::uint32_t, Witnesses>> late_witnesses_;  ///< of older positions, in order
 };
 
 /// The pool as a LodDag: groups from coarse to fine, clusters by group, vertices by first use.
