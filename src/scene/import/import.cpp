@@ -48,18 +48,16 @@ Result<Scene> import_polygons(Format format, const std::filesystem::path& path, 
   const auto named = [&](const Error& error) {
     return Error{error.code, error.where.empty() ? path.string() : path.string() + ": " + error.where, error.detail};
   };
-  auto checked = format == Format::kPly   ? check_ply(bytes, options)
-                 : format == Format::kObj ? check_obj(bytes, options)
-                                          : check_stl(bytes, options);
-  if (!checked) return named(checked.error());
-  auto soup = read_with_openmesh(*checked);
-  if (!soup) return named(soup.error());
+  auto file = format == Format::kPly   ? read_ply(bytes, options)
+              : format == Format::kObj ? read_obj(bytes, options)
+                                       : read_stl(bytes, options);
+  if (!file) return named(file.error());
   Scene scene;
-  scene.left_out = std::move(checked->left_out);
+  scene.left_out = std::move(file->left_out);
   SourceMesh mesh;
   mesh.name = path.stem().string();
-  mesh.drops = checked->drops;
-  auto primitive = triangulate(std::move(*soup), options, mesh.drops, scene.left_out);
+  mesh.drops = file->drops;
+  auto primitive = triangulate(std::move(file->soup), options, mesh.drops, scene.left_out);
   if (!primitive) return named(primitive.error());
   primitive->material = MaterialId(0U);
   if (primitive->indices.empty() && !primitive->positions.empty()) {

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "gltf_builder.h"
 
@@ -179,6 +181,43 @@ TEST_F(ImportPolygons, ObjVertexColoursAreReadWhereEveryVertexHasOne) {
   EXPECT_EQ(primitive(scene).colors[2].z, 1.0F);
 }
 
+TEST_F(ImportPolygons, ObjNumbersAreRoundedOnce) {
+  // 1 + 2^-24 lies half way between two floats and goes to 1; a little more, which a double does not see, goes up.
+  const std::string half = "1.000000059604644775390625";
+  const auto scene = read("a.obj", "v 0 0 0 0.8 1 0\nv 1 0 0 1 1 1\nv 0 1 0 1 1 1\nvt " + half + " " + half +
+                                       "00000000000001\nvt +0.5 1e-50\nvt 4e38\nf 1/1 2/2 3/3\n");
+  ASSERT_TRUE(scene) << describe(scene);
+  const scene::Primitive& p = primitive(scene);
+  EXPECT_EQ(p.uvs[0][0], Vec2f(1.0F, std::nextafter(1.0F, 2.0F)));
+  EXPECT_EQ(p.uvs[0][1], Vec2f(0.5F, 0.0F));
+  EXPECT_EQ(p.uvs[0][2], Vec2f(0.0F, 0.0F));
+  EXPECT_EQ(p.colors[0], Vec4f(0.799999F, 1.0F, 0.0F, 1.0F));  // six digits, of which 999,999 is the last but 1
+}
+
+TEST_F(ImportPolygons, AVertexOfObjThatNoFaceHasDecidesNothing) {
+  const auto scene = read("a.obj", "v 0 0 0 1 1 1\nv 1 0 0 1 1 1\nv 9 9 9 0 0 0\nv 0 1 0 1 1 1\nf 1 2 4\n");
+  ASSERT_TRUE(scene) << describe(scene);
+  for (const Vec4f& color : primitive(scene).colors) EXPECT_EQ(color, Vec4f(1.0F));
+  EXPECT_EQ(primitive(scene).indices, (Corners{0, 1, 3}));
+}
+
+TEST_F(ImportPolygons, PlyColoursOfAnyTypeAreEightBits) {
+  for (const auto& [type, value, level] : {std::tuple("uchar", "51", 51),
+                                           {"ushort", "13107", 51},
+                                           {"float", "0.2", 51},
+                                           {"double", "0.201", 51},
+                                           {"float", "2", 255},
+                                           {"int", "-5", 0}}) {
+    const std::string t = std::string("property ") + type + " ";
+    const auto scene = read("a.ply", "ply\nformat ascii 1.0\nelement vertex 3\n" + t + "red\n" + t + "green\n" + t +
+                                         "blue\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n"
+                                         "property list uchar int vertex_indices\nend_header\n0 0 0 0 0 0\n" +
+                                         value + " 0 0 1 0 0\n0 0 0 0 1 0\n3 0 1 2\n");
+    ASSERT_TRUE(scene) << describe(scene);
+    EXPECT_EQ(primitive(scene).colors[1], Vec4f(static_cast<float>(level) / 255.0F, 0.0F, 0.0F, 1.0F)) << type;
+  }
+}
+
 std::string stl_text() {
   return "solid vertex of things\nfacet normal 0 0 1\n outer loop\n  vertex 0 0 0\n  vertex 1 0 0\n  vertex 0 1 0\n"
          " endloop\nendfacet\nFACET NORMAL 0 0 1\nOUTER LOOP\nVERTEX 1 0 0\nVERTEX 1 1 0\nVERTEX 0 1 0\nENDLOOP\n"
@@ -206,6 +245,16 @@ TEST_F(ImportPolygons, StlTextAndBinaryAreTheSameWeldedMesh) {
     EXPECT_EQ(primitive(*scene).indices.size(), 6U);
     EXPECT_TRUE(primitive(*scene).normals.empty());
   }
+}
+
+TEST_F(ImportPolygons, StlCornersAreOneVertexWhereTheyAreEqualAndOnlyThere) {
+  constexpr float kTiny = std::numeric_limits<float>::denorm_min();
+  const float next = std::nextafter(1.0F, 2.0F);
+  const auto scene =
+      read("a.stl", stl_binary(2, {{0, 0, 0, 1, 0, 0, kTiny, 1, 0}, {-0.0F, 0, 0, next, 0, 0, 0, 1, 0}}));
+  ASSERT_TRUE(scene) << describe(scene);
+  EXPECT_EQ(primitive(scene).indices, (Corners{0, 1, 2, 0, 3, 4}));
+  EXPECT_EQ(primitive(scene).positions[2].x, static_cast<double>(kTiny));
 }
 
 TEST_F(ImportPolygons, StlFaultsAreRefusedAndNothingIsDroppedQuietly) {

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// STL, text and binary: rewritten as binary without facets that would confuse OpenMesh's welding by position, which
-// compares with < and so cannot bear a NaN.
+// STL, text and binary: facets of three positions each, welded where these are equal.
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <cmath>
 #include <cstring>
-#include <limits>
+#include <map>
 
 #include "scene/import/polygons/polygon_soup.h"
 #include "scene/import/polygons/text_scan.h"
@@ -16,6 +15,7 @@ namespace meshlode::scene {
 namespace {
 
 using Facet = std::array<float, 9>;
+using Point = std::array<float, 3>;
 
 Error invalid(std::string where, std::string detail) {
   return {ErrorCode::kInvalid, std::move(where), std::move(detail)};
@@ -37,9 +37,9 @@ bool is_binary(std::span<const std::uint8_t> bytes) {
           head.find('\0') != std::string_view::npos);
 }
 
-class StlChecker {
+class StlReader {
  public:
-  explicit StlChecker(const ImportOptions& options) : options_(options) {}
+  explicit StlReader(const ImportOptions& options) : options_(options) {}
 
   Status read_binary(std::span<const std::uint8_t> bytes) {
     if (bytes.size() < 84) return invalid("header", "cut short");
@@ -84,27 +84,15 @@ class StlChecker {
     return Ok{};
   }
 
-  CheckedMeshFile finish() {
-    CheckedMeshFile out;
-    out.format = CheckedMeshFile::Format::kStl;
-    out.text.assign(80, '\0');
-    append(static_cast<std::uint32_t>(facets_.size()), out.text);
-    for (const Facet& facet : facets_) {
-      out.text.append(12, '\0');
-      out.text.append(reinterpret_cast<const char*>(facet.data()), sizeof(facet));
-      out.text.append(2, '\0');
-    }
-    out.drops.repaired = repaired_;
+  PolygonFile finish() {
+    out_.drops.repaired = repaired_;
     if (points_ != 0) {
-      out.left_out.push_back({std::to_string(points_) + " triangles", "two of their corners are the same point"});
+      out_.left_out.push_back({std::to_string(points_) + " triangles", "two of their corners are the same point"});
     }
-    return out;
+    return std::move(out_);
   }
 
  private:
-  static void append(std::uint32_t value, std::string& text) {
-    text.append(reinterpret_cast<const char*>(&value), sizeof(value));
-  }
   [[nodiscard]] std::string place() const { return "facet " + std::to_string(seen_); }
 
   Status add(const Facet& facet) {
@@ -119,27 +107,39 @@ class StlChecker {
     if (!is_finite) {
       ++repaired_;
     } else if (same(0, 1) || same(1, 2) || same(0, 2)) {
-      ++points_;  // OpenMesh's reader leaves these out without a word
+      ++points_;
     } else {
-      facets_.push_back(facet);
+      for (std::size_t corner = 0; corner < 3; ++corner) {
+        out_.soup.corners.push_back(weld({facet[3 * corner], facet[3 * corner + 1], facet[3 * corner + 2]}));
+      }
+      out_.soup.polygon_sizes.push_back(3);
     }
     return Ok{};
   }
 
+  /// The vertex at a finite position; 0 and -0 are the same place.
+  std::uint32_t weld(const Point& point) {
+    const auto next = static_cast<std::uint32_t>(out_.soup.positions.size());
+    const auto [known, is_new] = vertex_at_.try_emplace(point, next);
+    if (is_new) out_.soup.positions.emplace_back(point[0], point[1], point[2]);
+    return known->second;
+  }
+
   const ImportOptions& options_;
-  std::vector<Facet> facets_;
+  std::map<Point, std::uint32_t> vertex_at_;
   std::uint64_t seen_ = 0, repaired_ = 0, points_ = 0;
+  PolygonFile out_;
 };
 
 }  // namespace
 
-Result<CheckedMeshFile> check_stl(std::span<const std::uint8_t> bytes, const ImportOptions& options) {
-  StlChecker checker(options);
+Result<PolygonFile> read_stl(std::span<const std::uint8_t> bytes, const ImportOptions& options) {
+  StlReader reader(options);
   const Status status = is_binary(bytes)
-                            ? checker.read_binary(bytes)
-                            : checker.read_text({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+                            ? reader.read_binary(bytes)
+                            : reader.read_text({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
   if (!status) return status.error();
-  return checker.finish();
+  return reader.finish();
 }
 
 }  // namespace meshlode::scene

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// PLY (Turk 1994), ascii and both binary orders: walked whole, rewritten as little-endian binary with the properties
-// that are kept, in the types that OpenMesh knows.
+// PLY (Turk 1994), ascii and both binary orders: every element is walked, vertices and faces are kept.
 #include <algorithm>
 #include <cstring>
 #include <optional>
@@ -55,12 +54,7 @@ Error invalid(std::string where, std::string detail) {
   return {ErrorCode::kInvalid, std::move(where), std::move(detail)};
 }
 
-template <class T>
-void append(std::string& text, T value) {
-  text.append(reinterpret_cast<const char*>(&value), sizeof(T));
-}
-
-/// The columns of the rewritten vertices, in the order in which they are written.
+/// What a vertex may have.
 enum Column : std::size_t { kX, kY, kZ, kNx, kNy, kNz, kU, kV, kRed, kGreen, kBlue, kAlpha, kColumnCount };
 
 std::optional<Column> column_of(std::string_view name) {
@@ -89,12 +83,12 @@ std::optional<Column> column_of(std::string_view name) {
   return std::nullopt;
 }
 
-class PlyChecker {
+class PlyReader {
  public:
-  PlyChecker(std::span<const std::uint8_t> bytes, const ImportOptions& options)
+  PlyReader(std::span<const std::uint8_t> bytes, const ImportOptions& options)
       : text_(reinterpret_cast<const char*>(bytes.data()), bytes.size()), options_(options) {}
 
-  Result<CheckedMeshFile> run() {
+  Result<PolygonFile> run() {
     if (auto status = read_header(); !status) return status.error();
     for (const PlyElement& element : elements_) {
       Status status = Ok{};
@@ -107,7 +101,10 @@ class PlyChecker {
       }
       if (!status) return status.error();
     }
-    return finish();
+    if (small_faces_ != 0) {
+      out_.left_out.push_back({std::to_string(small_faces_) + " faces", "they have fewer than three corners"});
+    }
+    return std::move(out_);
   }
 
  private:
@@ -115,8 +112,7 @@ class PlyChecker {
   Status read_vertices(const PlyElement& element);
   Status read_faces(const PlyElement& element);
   Status skip_element(const PlyElement& element);
-  Result<CheckedMeshFile> finish();
-
+  void keep_vertex(const std::array<double, kColumnCount>& value);
   /// The next value of the body; nothing at its end or where it is no number.
   std::optional<double> next(PlyType type) {
     if (is_ascii_) {
@@ -173,12 +169,11 @@ class PlyChecker {
   bool is_ascii_ = true, is_big_endian_ = false;
   std::vector<PlyElement> elements_;
   std::array<bool, kColumnCount> has_{};
-  std::string vertex_bytes_, face_bytes_;
-  std::uint64_t vertex_count_ = 0, face_count_ = 0, small_faces_ = 0;
-  CheckedMeshFile out_;
+  std::uint64_t small_faces_ = 0;
+  PolygonFile out_;
 };
 
-Status PlyChecker::read_header() {
+Status PlyReader::read_header() {
   if (take_line(text_) != "ply") return invalid("header", "it does not begin with ply");
   bool has_format = false;
   for (std::size_t line_number = 2;; ++line_number) {
@@ -224,9 +219,8 @@ Status PlyChecker::read_header() {
   return has_format ? Status(Ok{}) : Status(invalid("header", "the format line is missing"));
 }
 
-Status PlyChecker::read_vertices(const PlyElement& element) {
+Status PlyReader::read_vertices(const PlyElement& element) {
   if (!is_justified(element)) return invalid("element vertex", "more vertices than the file has bytes for");
-  vertex_count_ = element.count;
   std::vector<std::optional<Column>> columns;
   std::array<double, kColumnCount> scale{};
   for (const PlyProperty& property : element.properties) {
@@ -234,7 +228,7 @@ Status PlyChecker::read_vertices(const PlyElement& element) {
     if (column && has_[*column]) column = std::nullopt;  // "u" and "texture_u": the first one counts
     if (column) {
       has_[*column] = true;
-      // Integer colours cover 0 … their type's largest; float ones 0 … 1. All are rewritten to 0 … 255.
+      // Integer colours cover 0 … their type's largest; float ones 0 … 1. All become 0 … 255.
       const bool is_float = property.type == PlyType::kFloat || property.type == PlyType::kDouble;
       scale[*column] = is_float ? 255.0 : size_of(property.type) == 1 ? 1.0 : 255.0 / 65535.0;
     } else if (!property.list_count) {
@@ -243,10 +237,7 @@ Status PlyChecker::read_vertices(const PlyElement& element) {
     columns.push_back(column);
   }
   if (!has_[kX] || !has_[kY] || !has_[kZ]) return invalid("element vertex", "x, y or z is missing");
-  out_.has_normals = has_[kNx] && has_[kNy] && has_[kNz];
-  out_.has_uvs = has_[kU] && has_[kV];
-  out_.has_colors = has_[kRed] && has_[kGreen] && has_[kBlue];
-  out_.exact_positions.reserve(element.count);
+  out_.soup.positions.reserve(element.count);
   for (std::uint64_t v = 0; v < element.count; ++v) {
     std::array<double, kColumnCount> value{};
     value[kAlpha] = 255.0;
@@ -265,25 +256,28 @@ Status PlyChecker::read_vertices(const PlyElement& element) {
                        "property " + property.name.substr(0, 64) + " is cut short or not a number");
       }
     }
-    out_.exact_positions.emplace_back(value[kX], value[kY], value[kZ]);
-    for (std::size_t c = kX; c <= kZ; ++c) append(vertex_bytes_, 0.0F);  // exact_positions has them all
-    if (out_.has_normals) {
-      for (std::size_t c = kNx; c <= kNz; ++c) append(vertex_bytes_, static_cast<float>(value[c]));
-    }
-    if (out_.has_uvs) {
-      for (std::size_t c = kU; c <= kV; ++c) append(vertex_bytes_, static_cast<float>(value[c]));
-    }
-    if (out_.has_colors) {
-      for (std::size_t c = kRed; c <= kAlpha; ++c) {
-        const double level = value[c] >= 0.0 ? std::min(value[c] + 0.5, 255.0) : 0.0;  // NaN becomes 0
-        append(vertex_bytes_, static_cast<std::uint8_t>(level));
-      }
-    }
+    keep_vertex(value);
   }
   return Ok{};
 }
 
-Status PlyChecker::read_faces(const PlyElement& element) {
+void PlyReader::keep_vertex(const std::array<double, kColumnCount>& value) {
+  PolygonSoup& soup = out_.soup;
+  soup.positions.emplace_back(value[kX], value[kY], value[kZ]);
+  if (has_[kNx] && has_[kNy] && has_[kNz]) soup.normals.emplace_back(value[kNx], value[kNy], value[kNz]);
+  if (has_[kU] && has_[kV]) soup.uvs.emplace_back(value[kU], value[kV]);
+  if (has_[kRed] && has_[kGreen] && has_[kBlue]) {
+    Vec4f color;
+    for (std::size_t c = 0; c < 4; ++c) {
+      const double level = value[kRed + c];
+      // Eight bits of whatever type; NaN becomes 0.
+      color[static_cast<int>(c)] = static_cast<std::uint8_t>(level >= 0.0 ? std::min(level + 0.5, 255.0) : 0.0);
+    }
+    soup.colors.push_back(color / 255.0F);
+  }
+}
+
+Status PlyReader::read_faces(const PlyElement& element) {
   if (!is_justified(element)) return invalid("element face", "more faces than the file has bytes for");
   std::size_t list = element.properties.size();
   for (std::size_t p = 0; p < element.properties.size(); ++p) {
@@ -332,14 +326,13 @@ Status PlyChecker::read_faces(const PlyElement& element) {
       out_.drops.repaired += corners.size() - 2;
       continue;
     }
-    append(face_bytes_, static_cast<std::int32_t>(corners.size()));
-    for (const std::uint32_t corner : corners) append(face_bytes_, static_cast<std::int32_t>(corner));
-    ++face_count_;
+    out_.soup.polygon_sizes.push_back(static_cast<std::uint32_t>(corners.size()));
+    out_.soup.corners.insert(out_.soup.corners.end(), corners.begin(), corners.end());
   }
   return Ok{};
 }
 
-Status PlyChecker::skip_element(const PlyElement& element) {
+Status PlyReader::skip_element(const PlyElement& element) {
   if (!is_justified(element))
     return invalid("element " + element.name.substr(0, 64), "more than the file has bytes for");
   if (element.count > 0) {
@@ -359,27 +352,10 @@ Status PlyChecker::skip_element(const PlyElement& element) {
   return Ok{};
 }
 
-Result<CheckedMeshFile> PlyChecker::finish() {
-  out_.format = CheckedMeshFile::Format::kPly;
-  if (small_faces_ != 0) {
-    out_.left_out.push_back({std::to_string(small_faces_) + " faces", "they have fewer than three corners"});
-  }
-  std::string& text = out_.text;
-  text = "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(vertex_count_) + "\n";
-  text += "property float x\nproperty float y\nproperty float z\n";
-  if (out_.has_normals) text += "property float nx\nproperty float ny\nproperty float nz\n";
-  if (out_.has_uvs) text += "property float u\nproperty float v\n";
-  if (out_.has_colors) text += "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty uchar alpha\n";
-  text += "element face " + std::to_string(face_count_) + "\nproperty list int int vertex_indices\nend_header\n";
-  text += vertex_bytes_;
-  text += face_bytes_;
-  return std::move(out_);
-}
-
 }  // namespace
 
-Result<CheckedMeshFile> check_ply(std::span<const std::uint8_t> bytes, const ImportOptions& options) {
-  return PlyChecker(bytes, options).run();
+Result<PolygonFile> read_ply(std::span<const std::uint8_t> bytes, const ImportOptions& options) {
+  return PlyReader(bytes, options).run();
 }
 
 }  // namespace meshlode::scene
