@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A third-party library is seen through one .cpp per room that uses it, never in a header: `grep -r "include <metis"`
-// hits one file. Excepted are GLM, whose types are our vectors, base/parallel.h, whose templates are oneTBB's, and
-// draw/gpu/vulkan/types.h: the Vulkan wrapper is four files, which share that header with nobody.
+// hits one file. Excepted are GLM, whose types are our vectors, base/parallel.h, whose templates are oneTBB's, and two
+// headers that a folder shares with nobody: draw/gpu/vulkan/types.h, because the Vulkan wrapper is four files, and
+// scene/import/gltf/tinygltf.h, because import works on tinygltf's model.
 #include <array>
 #include <map>
 #include <set>
@@ -61,7 +62,22 @@ std::string library_of(const Include& include) {
   return "?";
 }
 
-constexpr std::string_view kVulkanTypes = "src/draw/gpu/vulkan/types.h";
+/// A header that shows a library, to the .cpp files of its own folder and, where that says so, to its headers.
+struct Wrapper {
+  std::string_view library, path;
+  bool is_for_headers = false;
+};
+constexpr std::array kWrappers = {
+    Wrapper{"vulkan", "src/draw/gpu/vulkan/types.h"},
+    Wrapper{"tinygltf", "src/scene/import/gltf/tinygltf.h", true},
+};
+
+const Wrapper* wrapper_at(std::string_view path) {
+  for (const Wrapper& wrapper : kWrappers) {
+    if (wrapper.path == path) return &wrapper;
+  }
+  return nullptr;
+}
 
 TEST(ThirdParty, ALibraryIsSeenByOneFilePerRoomAndNeverInAHeader) {
   std::map<std::pair<std::string, std::string>, std::set<std::string>> users;  // (room, library) -> files
@@ -71,7 +87,7 @@ TEST(ThirdParty, ALibraryIsSeenByOneFilePerRoomAndNeverInAHeader) {
       const std::string path = file.path.generic_string();
       if (library.empty() || library == "glm") continue;
       EXPECT_NE(library, "?") << path << ":" << include.line << ": name <" << include.path << "> in this test";
-      if (path == "src/base/parallel.h" || path == kVulkanTypes) continue;
+      if (path == "src/base/parallel.h" || wrapper_at(path) != nullptr) continue;
       EXPECT_FALSE(file.is_header()) << path << ":" << include.line << " shows " << include.path << " to its users";
       users[{file.room, library}].insert(path);
     }
@@ -83,20 +99,25 @@ TEST(ThirdParty, ALibraryIsSeenByOneFilePerRoomAndNeverInAHeader) {
   }
 }
 
-TEST(ThirdParty, VulkanIsSeenByItsWrapperAlone) {
-  std::size_t users = 0;
+TEST(ThirdParty, AWrappedLibraryIsSeenByItsFolderAlone) {
+  std::map<std::string_view, std::size_t> users;
   for (const SourceFile& file : read_tree({"src", "tools", "bench", "tests"}, kSources)) {
+    const std::string path = file.path.generic_string();
     for (const Include& include : file.includes()) {
-      const std::string path = file.path.generic_string();
-      if (library_of(include) == "vulkan") {
-        EXPECT_EQ(path, kVulkanTypes);
+      const std::string library = library_of(include);
+      for (const Wrapper& wrapper : kWrappers) {
+        if (library == wrapper.library) {
+          EXPECT_EQ(path, wrapper.path) << "line " << include.line;
+        }
+        if (!include.is_quoted || "src/" + include.path != wrapper.path) continue;
+        const std::string_view folder = wrapper.path.substr(0, wrapper.path.rfind('/') + 1);
+        EXPECT_TRUE(path.starts_with(folder) && (wrapper.is_for_headers || path.ends_with(".cpp")))
+            << path << ":" << include.line << " shows " << wrapper.library;
+        ++users[wrapper.path];
       }
-      if (include.path != "draw/gpu/vulkan/types.h") continue;
-      EXPECT_TRUE(path.starts_with("src/draw/gpu/vulkan/") && path.ends_with(".cpp")) << path << ":" << include.line;
-      ++users;
     }
   }
-  EXPECT_GT(users, 0U);
+  EXPECT_EQ(users.size(), kWrappers.size());
 }
 
 TEST(ThirdParty, PublicHeadersShowNone) {

@@ -55,7 +55,8 @@ TEST(ImportRefuses, StructuralFaultsByTheirJsonPath) {
        "/bufferViews/0/byteLength"},
       {gltf("\"accessors\":[{\"componentType\":5124,\"count\":1,\"type\":\"SCALAR\"}]"), "/accessors/0/componentType"},
       {gltf("\"accessors\":[{\"componentType\":5126,\"count\":1,\"type\":\"VEC5\"}]"), "/accessors/0/type"},
-      {gltf("\"accessors\":[{\"componentType\":5126,\"count\":4294967295,\"type\":\"VEC3\"}]"), "/accessors/0/count"},
+      {gltf("\"accessors\":[{\"componentType\":5126,\"count\":4294967295,\"type\":\"VEC3\"}]"), "/accessors/0/count",
+       ErrorCode::kUnsupported},
       {gltf("\"accessors\":[{\"componentType\":5126,\"count\":1.5,\"type\":\"VEC3\"}]"), "/accessors/0/count"},
       {gltf("\"meshes\":[{}]"), "/meshes/0/primitives"},
       {gltf("\"meshes\":[{\"primitives\":[{}]}]"), "/meshes/0/primitives/0/attributes"},
@@ -96,6 +97,73 @@ TEST(ImportRefuses, StructuralFaultsByTheirJsonPath) {
   outside.write("secret.png", "x");
   const TempFolder folder;
   std::filesystem::create_symlink(outside.path() / "secret.png", folder.path() / "link.png");
+  for (const BadFile& bad : files) {
+    expect_refused(scene::import_scene(folder.write("scene.gltf", bad.text), {}), bad);
+  }
+}
+
+/// A buffer of 2^48 - 1 bytes that nobody has, one view over all of it, and an accessor.
+std::string vast(const std::string& accessor) {
+  return gltf(
+      "\"buffers\":[{\"byteLength\":281474976710655}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":"
+      "281474976710655}],\"accessors\":[{\"componentType\":5126,\"type\":\"SCALAR\"," +
+      accessor + "}]");
+}
+
+std::string sparse(const std::string& count, const std::string& indices, const std::string& values) {
+  return "\"count\":4,\"sparse\":{\"count\":" + count + ",\"indices\":{\"componentType\":5125,\"bufferView\":0," +
+         "\"byteOffset\":" + indices + "},\"values\":{\"bufferView\":0,\"byteOffset\":" + values + "}}";
+}
+
+// Cut to 32 bits each of these would be a small number that passes, or a negative one.
+TEST(ImportRefuses, NumbersThatNeedMoreThan32BitsByTheirJsonPath) {
+  const std::string sparse_path = "/accessors/0/sparse/";
+  const std::string small =
+      "\"buffers\":[{\"byteLength\":64,\"uri\":\"data:;base64,AAAA\"}],\"bufferViews\":[{\"buffer\":";
+  const std::string mesh = "\"materials\":[{}],\"meshes\":[{\"primitives\":[{\"attributes\":{";
+  const std::string element = ",\"componentType\":5126,\"type\":\"SCALAR\"}]";
+  std::vector<BadFile> files = {
+      {vast("\"count\":2147483648"), "/accessors/0/count", ErrorCode::kUnsupported},
+      {vast("\"count\":4294967297,\"bufferView\":0"), "/accessors/0/count", ErrorCode::kUnsupported},
+      {vast("\"count\":281474976710656"), "/accessors/0/count"},
+      {vast("\"count\":9007199254740993"), "/accessors/0/count"},
+      {vast("\"count\":70368744177665,\"bufferView\":0"), "/accessors/0"},
+      {vast(sparse("1", "2147483648", "0")), sparse_path + "indices/byteOffset", ErrorCode::kUnsupported},
+      {vast(sparse("1", "0", "2147483648")), sparse_path + "values/byteOffset", ErrorCode::kUnsupported},
+      {vast(sparse("1", "4294967296", "0")), sparse_path + "indices/byteOffset", ErrorCode::kUnsupported},
+      {vast(sparse("1", "0", "4294967296")), sparse_path + "values/byteOffset", ErrorCode::kUnsupported},
+      {vast(sparse("1", "281474976710656", "0")), sparse_path + "indices/byteOffset"},
+      {vast(sparse("4294967297", "0", "0")), sparse_path + "count"},
+  };
+  for (const char* large : {"2147483648", "4294967296", "4294967300", "281474976710656", "18446744073709551616"}) {
+    const std::string n = large;
+    const std::vector<BadFile> each = {
+        {gltf(small + n + ",\"byteLength\":4}]"), "/bufferViews/0/buffer"},
+        {gltf(small + "0,\"byteOffset\":" + n + ",\"byteLength\":4}]"), "/bufferViews/0"},
+        {gltf(small + "0,\"byteLength\":" + n + "}]"), "/bufferViews/0"},
+        {gltf(small + "0,\"byteLength\":4,\"byteStride\":" + n + "}]"), "/bufferViews/0/byteStride"},
+        {gltf("\"accessors\":[{\"count\":1,\"bufferView\":" + n + element), "/accessors/0/bufferView"},
+        {gltf(small + "0,\"byteLength\":64}],\"accessors\":[{\"count\":1,\"bufferView\":0,\"byteOffset\":" + n +
+              element),
+         "/accessors/0"},
+        {gltf("\"accessors\":[{\"count\":1,\"type\":\"SCALAR\",\"componentType\":" + n + "}]"),
+         "/accessors/0/componentType"},
+        {gltf(mesh + "\"POSITION\":" + n + "}}]}]"), "/meshes/0/primitives/0/attributes/POSITION"},
+        {gltf(mesh + "},\"indices\":" + n + "}]}]"), "/meshes/0/primitives/0/indices"},
+        {gltf(mesh + "},\"material\":" + n + "}]}]"), "/meshes/0/primitives/0/material"},
+        {gltf(mesh + "},\"mode\":" + n + "}]}]"), "/meshes/0/primitives/0/mode"},
+        {gltf("\"nodes\":[{\"mesh\":" + n + "}]"), "/nodes/0/mesh"},
+        {gltf("\"nodes\":[{\"children\":[" + n + "]}]"), "/nodes/0/children/0"},
+        {gltf("\"nodes\":[{}],\"scenes\":[{\"nodes\":[" + n + "]}]"), "/scenes/0/nodes/0"},
+        {gltf("\"scenes\":[{}],\"scene\":" + n), "/scene"},
+        {gltf("\"nodes\":[{}],\"skins\":[{\"joints\":[" + n + "]}]"), "/skins/0/joints/0"},
+        {gltf("\"accessors\":[{\"count\":1" + element + ",\"animations\":[{\"samplers\":[{\"input\":" + n +
+              ",\"output\":0}],\"channels\":[]}]"),
+         "/animations/0/samplers/0/input"},
+    };
+    files.insert(files.end(), each.begin(), each.end());
+  }
+  const TempFolder folder;
   for (const BadFile& bad : files) {
     expect_refused(scene::import_scene(folder.write("scene.gltf", bad.text), {}), bad);
   }

@@ -25,6 +25,14 @@ std::uint32_t load_index(const std::uint8_t* bytes, std::uint32_t type) {
 
 }  // namespace
 
+std::uint32_t component_count_of(const tinygltf::Accessor& accessor) {
+  return static_cast<std::uint32_t>(tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type)));
+}
+
+std::uint64_t sparse_count_of(const tinygltf::Accessor& accessor) {
+  return accessor.sparse.isSparse ? static_cast<std::uint64_t>(accessor.sparse.count) : 0;
+}
+
 double read_component(const std::uint8_t* bytes, std::uint32_t component_type, bool normalized) {
   switch (component_type) {
     case kGltfByte: {
@@ -49,45 +57,37 @@ double read_component(const std::uint8_t* bytes, std::uint32_t component_type, b
   }
 }
 
-Result<AccessorReader> AccessorReader::open(const GltfAsset& asset, std::uint32_t index) {
-  const GltfAccessor& accessor = asset.model.accessors[index];
+Result<AccessorReader> AccessorReader::open(const GltfAsset& asset, std::size_t index) {
+  const tinygltf::Accessor& accessor = asset.model.accessors[index];
   const std::string path = "/accessors/" + std::to_string(index);
-  const auto has_data = [&](std::uint32_t view) {
-    const GltfBufferView& v = asset.model.views[view];
-    return v.length == 0 || !asset.buffers[v.buffer].empty();
-  };
-  AccessorReader reader;
-  reader.count_ = accessor.count;
-  reader.component_type_ = accessor.component_type;
-  reader.normalized_ = accessor.normalized;
-  reader.component_size_ = component_size(accessor.component_type);
-  reader.component_count_ = accessor.component_count;
-  const std::uint64_t size = std::uint64_t{reader.component_size_} * reader.component_count_;
-  if (accessor.view != kNoIndex && accessor.count > 0) {
-    if (!has_data(accessor.view)) return asset.no_data(accessor.view, path + "/bufferView");
-    reader.base_ = asset.view_bytes(accessor.view).data() + accessor.offset;
-    reader.stride_ = asset.model.views[accessor.view].stride;
-    if (reader.stride_ == 0) reader.stride_ = size;
+  AccessorReader reader = over({}, accessor.count, static_cast<std::uint32_t>(accessor.componentType),
+                               component_count_of(accessor), accessor.normalized);
+  if (accessor.bufferView >= 0 && accessor.count > 0) {
+    const auto bytes = asset.view_bytes(accessor.bufferView, path + "/bufferView");
+    if (!bytes) return bytes.error();
+    reader.base_ = bytes->data() + accessor.byteOffset;
+    const std::size_t stride = asset.model.bufferViews[accessor.bufferView].byteStride;
+    if (stride != 0) reader.stride_ = stride;
   }
-  if (accessor.sparse && accessor.sparse->count > 0) {
-    const GltfSparse& sparse = *accessor.sparse;
-    for (const std::uint32_t view : {sparse.index_view, sparse.value_view}) {
-      if (!has_data(view)) return asset.no_data(view, path + "/sparse");
+  const auto& sparse = accessor.sparse;
+  if (!sparse.isSparse || sparse.count == 0) return reader;
+  const auto indices = asset.view_bytes(sparse.indices.bufferView, path + "/sparse");
+  if (!indices) return indices.error();
+  const auto values = asset.view_bytes(sparse.values.bufferView, path + "/sparse");
+  if (!values) return values.error();
+  reader.sparse_indices_ = indices->data() + sparse.indices.byteOffset;
+  reader.sparse_values_ = values->data() + sparse.values.byteOffset;
+  reader.sparse_count_ = sparse.count;
+  reader.sparse_index_type_ = static_cast<std::uint32_t>(sparse.indices.componentType);
+  const std::uint32_t step = component_size(reader.sparse_index_type_);
+  std::uint64_t next = 0;
+  for (std::uint64_t i = 0; i < reader.sparse_count_; ++i) {
+    const std::uint32_t at = load_index(reader.sparse_indices_ + i * step, reader.sparse_index_type_);
+    if (at < next || at >= accessor.count) {
+      return asset.invalid(path + "/sparse/indices", "index " + std::to_string(at) + " at " + std::to_string(i) +
+                                                         " is out of range or does not increase");
     }
-    reader.sparse_indices_ = asset.view_bytes(sparse.index_view).data() + sparse.index_offset;
-    reader.sparse_values_ = asset.view_bytes(sparse.value_view).data() + sparse.value_offset;
-    reader.sparse_count_ = sparse.count;
-    reader.sparse_index_type_ = sparse.index_type;
-    const std::uint32_t step = component_size(sparse.index_type);
-    std::uint64_t next = 0;
-    for (std::uint64_t i = 0; i < sparse.count; ++i) {
-      const std::uint32_t at = load_index(reader.sparse_indices_ + i * step, sparse.index_type);
-      if (at < next || at >= accessor.count) {
-        return asset.invalid(path + "/sparse/indices", "index " + std::to_string(at) + " at " + std::to_string(i) +
-                                                           " is out of range or does not increase");
-      }
-      next = std::uint64_t{at} + 1;
-    }
+    next = std::uint64_t{at} + 1;
   }
   return reader;
 }

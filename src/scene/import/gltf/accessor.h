@@ -11,6 +11,11 @@
 
 namespace meshlode::scene {
 
+/// 1 SCALAR … 4 VEC4; 4, 9, 16 for matrices.
+[[nodiscard]] std::uint32_t component_count_of(const tinygltf::Accessor& accessor);
+/// Elements that its sparse part replaces.
+[[nodiscard]] std::uint64_t sparse_count_of(const tinygltf::Accessor& accessor);
+
 /// One integer or float component as it is stored, as a double. Normalized: c / (2^bits - 1), clamped to -1 where
 /// signed (glTF 2.0, section 3.6.2.2).
 [[nodiscard]] double read_component(const std::uint8_t* bytes, std::uint32_t component_type, bool normalized);
@@ -19,7 +24,7 @@ namespace meshlode::scene {
 class AccessorReader {
  public:
   /// Errors: kInvalid where sparse indices do not increase or are out of range, or where the buffer has no data.
-  [[nodiscard]] static Result<AccessorReader> open(const GltfAsset& asset, std::uint32_t accessor);
+  [[nodiscard]] static Result<AccessorReader> open(const GltfAsset& asset, std::size_t accessor);
 
   /// A tightly packed array, as a decoder leaves it. \pre bytes hold count elements
   [[nodiscard]] static AccessorReader over(std::span<const std::uint8_t> bytes, std::uint64_t count,

@@ -5,7 +5,7 @@
 #include <map>
 
 #include "scene/import/gltf/accessor.h"
-#include "scene/import/gltf/check_base.h"
+#include "scene/import/gltf/gltf.h"
 #include "scene/import/gltf/gltf_import.h"
 
 namespace meshlode::scene {
@@ -18,17 +18,16 @@ class AccessorPacker {
   AccessorPacker(const GltfAsset& asset, DecodeBudget& budget) : asset_(asset), budget_(budget) {}
 
   /// The new index of an accessor.
-  Result<std::uint64_t> add(std::uint32_t source) {
+  Result<std::uint64_t> add(int source) {
     if (const auto known = index_of_.find(source); known != index_of_.end()) return known->second;
     const std::string path = "/accessors/" + std::to_string(source);
-    const GltfAccessor& accessor = asset_.model.accessors[source];
-    const std::uint64_t sparse_count = accessor.sparse ? accessor.sparse->count : 0;
-    if (!budget_.take(accessor.count) || !budget_.take(sparse_count)) {
+    const tinygltf::Accessor& accessor = asset_.model.accessors[source];
+    if (!budget_.take(accessor.count) || !budget_.take(sparse_count_of(accessor))) {
       return asset_.invalid(path + "/count", "more elements than the size of the file justifies");
     }
     auto reader = AccessorReader::open(asset_, source);
     if (!reader) return reader.error();
-    const std::size_t size = std::size_t{component_size(accessor.component_type)} * accessor.component_count;
+    const std::size_t size = std::size_t{component_size(accessor.componentType)} * component_count_of(accessor);
     bytes.resize((bytes.size() + 3) / 4 * 4);
     const std::size_t offset = bytes.size();
     bytes.resize(offset + size * accessor.count);
@@ -55,29 +54,28 @@ class AccessorPacker {
  private:
   const GltfAsset& asset_;
   DecodeBudget& budget_;
-  std::map<std::uint32_t, std::uint64_t> index_of_;
+  std::map<int, std::uint64_t> index_of_;
 };
 
 /// Nodes that still matter when skins are gone: they or one of their descendants draw, light or look.
 std::vector<bool> find_visible_nodes(const GltfAsset& asset) {
   const auto& nodes = asset.model.nodes;
   const auto& json = asset.root.items("nodes");
-  std::vector<std::uint32_t> parent(nodes.size(), kNoIndex);
-  for (std::uint32_t n = 0; n < nodes.size(); ++n) {
-    for (const std::uint32_t child : nodes[n].children) parent[child] = n;
+  std::vector<std::size_t> parent(nodes.size(), nodes.size());
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    for (const int child : nodes[n].children) parent[child] = n;
   }
   std::vector<bool> visible(nodes.size(), false);
-  for (std::uint32_t n = 0; n < nodes.size(); ++n) {
-    const bool draws =
-        nodes[n].mesh != kNoIndex || json[n].find("camera") != nullptr || json[n].find("extensions") != nullptr;
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    const bool draws = nodes[n].mesh >= 0 || nodes[n].camera >= 0 || json[n].find("extensions") != nullptr;
     if (!draws) continue;
-    for (std::uint32_t up = n; up != kNoIndex && !visible[up]; up = parent[up]) visible[up] = true;
+    for (std::size_t up = n; up != nodes.size() && !visible[up]; up = parent[up]) visible[up] = true;
   }
   return visible;
 }
 
-bool is_packable(const GltfAccessor& accessor) {
-  return accessor.component_count <= 4 && accessor.count > 0;
+bool is_packable(const tinygltf::Accessor& accessor) {
+  return component_count_of(accessor) <= 4 && accessor.count > 0;
 }
 
 }  // namespace
@@ -85,46 +83,48 @@ bool is_packable(const GltfAccessor& accessor) {
 Status carry_animations(const GltfAsset& asset, DecodeBudget& budget, Json& document, Scene& scene) {
   const std::vector<bool> visible = find_visible_nodes(asset);
   std::vector<bool> is_joint(asset.model.nodes.size(), false);
-  for (const Json& skin : asset.root.items("skins")) {
-    for (const Json& joint : skin.items("joints")) is_joint[joint.index().value_or(0)] = true;
+  for (const tinygltf::Skin& skin : asset.model.skins) {
+    for (const int joint : skin.joints) is_joint[joint] = true;
   }
+  const auto& accessors = asset.model.accessors;
+  const auto is_rigid = [&](const tinygltf::AnimationChannel& channel, const tinygltf::AnimationSampler& sampler) {
+    const int node = channel.target_node;
+    const std::string& path = channel.target_path;
+    return node >= 0 && (path == "translation" || path == "rotation" || path == "scale") &&
+           !(is_joint[node] && !visible[node]) && is_packable(accessors[sampler.input]) &&
+           is_packable(accessors[sampler.output]);
+  };
   AccessorPacker packer(asset, budget);
   Json::Array animations;
   const auto& sources = asset.root.items("animations");
   for (std::size_t a = 0; a < sources.size(); ++a) {
+    const tinygltf::Animation& source = asset.model.animations[a];
+    const auto& channel_texts = sources[a].items("channels");
+    const auto& sampler_texts = sources[a].items("samplers");
     Json::Array channels;
     Json::Array samplers;
-    std::map<std::uint64_t, std::size_t> sampler_of;
+    std::map<int, std::size_t> sampler_of;
     std::size_t skipped = 0;
-    for (const Json& channel : sources[a].items("channels")) {
-      const Json& target = *channel.find("target");
-      const std::string& path = *target.find("path")->string();
-      const Json* node = target.find("node");
-      const std::uint64_t n = node != nullptr ? node->index().value_or(0) : 0;
-      const std::uint64_t source = index_or(channel, "sampler", 0);
-      const Json& sampler = sources[a].items("samplers")[source];
-      const auto input = static_cast<std::uint32_t>(index_or(sampler, "input", 0));
-      const auto output = static_cast<std::uint32_t>(index_or(sampler, "output", 0));
-      const bool is_rigid = node != nullptr && (path == "translation" || path == "rotation" || path == "scale") &&
-                            !(is_joint[n] && !visible[n]) && is_packable(asset.model.accessors[input]) &&
-                            is_packable(asset.model.accessors[output]);
-      if (!is_rigid) {
+    for (std::size_t c = 0; c < source.channels.size(); ++c) {
+      const int old = source.channels[c].sampler;
+      const tinygltf::AnimationSampler& sampler = source.samplers[old];
+      if (!is_rigid(source.channels[c], sampler)) {
         ++skipped;
         continue;
       }
-      auto known = sampler_of.find(source);
+      auto known = sampler_of.find(old);
       if (known == sampler_of.end()) {
-        const auto packed_input = packer.add(input);
+        const auto packed_input = packer.add(sampler.input);
         if (!packed_input) return packed_input.error();
-        const auto packed_output = packer.add(output);
+        const auto packed_output = packer.add(sampler.output);
         if (!packed_output) return packed_output.error();
-        Json packed = sampler;
+        Json packed = sampler_texts[old];
         packed.set("input", Json::make_index(*packed_input));
         packed.set("output", Json::make_index(*packed_output));
-        known = sampler_of.emplace(source, samplers.size()).first;
+        known = sampler_of.emplace(old, samplers.size()).first;
         samplers.push_back(std::move(packed));
       }
-      Json carried = channel;
+      Json carried = channel_texts[c];
       carried.set("sampler", Json::make_index(known->second));
       channels.push_back(std::move(carried));
     }

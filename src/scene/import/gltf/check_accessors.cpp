@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Bounds of buffers, buffer views, accessors and sparse parts (glTF 2.0, sections 3.6.1 and 3.6.2). Every length is
-// compared by subtraction, so that no sum can overflow: all numbers are below 2^53 and every product is checked first.
+// compared by subtraction, so that no sum can overflow: all numbers are below 2^48 and strides below 2^8.
 #include "scene/import/gltf/check_base.h"
 #include "scene/import/gltf/gltf.h"
 
@@ -9,7 +9,7 @@ namespace meshlode::scene {
 namespace {
 
 constexpr std::uint64_t kByteLimit = std::uint64_t{1} << 48U;
-constexpr std::uint64_t kIntLimit = 0x7FFFFFFFu;  // tinygltf keeps indices and sparse offsets in int
+constexpr std::uint64_t kIntMax = 0x7FFFFFFFu;  // tinygltf keeps sparse counts and offsets in an int
 
 struct TypeShape {
   std::string_view name;
@@ -63,12 +63,19 @@ class AccessorChecker : public JsonChecker {
     return true;
   }
 
+  /// What is in order, but more than is kept.
+  bool fits_int(const std::string& path, std::uint64_t value) {
+    return value <= kIntMax ||
+           fail(path, std::to_string(value) + " is not supported, only up to " + std::to_string(kIntMax),
+                ErrorCode::kUnsupported);
+  }
+
   /// `count` elements of `size` bytes every `stride` bytes from `offset` lie inside the view.
   bool check_range(const std::string& path, std::uint64_t view_index, std::uint64_t offset, std::uint64_t count,
                    std::uint64_t size, std::uint64_t stride) {
     const std::uint64_t length = index_or(root_.items("bufferViews")[view_index], "byteLength", 0);
     if (count == 0) return offset <= length || fail(path, "its offset lies outside its buffer view");
-    // count < 2^31 and stride < 2^8: no overflow.
+    // count < 2^48 and stride < 2^8: no overflow.
     const std::uint64_t needed = (count - 1) * stride + size;
     if (offset > length || needed > length - offset) {
       return fail(path, std::to_string(count) + " elements need " + std::to_string(needed) + " bytes from offset " +
@@ -81,8 +88,9 @@ class AccessorChecker : public JsonChecker {
     const std::uint64_t view_count = root_.items("bufferViews").size();
     if (!optional_index(accessor, path, "bufferView", view_count) ||
         !optional_index(accessor, path, "byteOffset", kByteLimit) ||
-        !required_index(accessor, path, "componentType", 5127) || !required_index(accessor, path, "count", kIntLimit) ||
-        !optional_bool(accessor, path, "normalized") || !optional_object(accessor, path, "sparse")) {
+        !required_index(accessor, path, "componentType", 5127) ||
+        !required_index(accessor, path, "count", kByteLimit) || !optional_bool(accessor, path, "normalized") ||
+        !optional_object(accessor, path, "sparse")) {
       return false;
     }
     const std::uint32_t component = component_size(index_or(accessor, "componentType", 0));
@@ -102,6 +110,7 @@ class AccessorChecker : public JsonChecker {
       if (stride < size) return fail(path, "its buffer view's byteStride is smaller than one element");
       if (!check_range(path, view, index_or(accessor, "byteOffset", 0), count, size, stride)) return false;
     }
+    if (!fits_int(path + "/count", count)) return false;
     if (const Json* sparse = accessor.find("sparse")) return check_sparse(*sparse, path + "/sparse", count, size);
     return true;
   }
@@ -115,8 +124,7 @@ class AccessorChecker : public JsonChecker {
       if (object == nullptr) return fail(here, "missing");
       if (!object->is_object()) return fail(here, "not an object");
       if (!required_index(*object, here, "bufferView", view_count)) return false;
-      // tinygltf keeps these offsets in an int.
-      if (!optional_index(*object, here, "byteOffset", kIntLimit)) return false;
+      if (!optional_index(*object, here, "byteOffset", kByteLimit)) return false;
     }
     const Json& indices = *sparse.find("indices");
     if (!required_index(indices, path + "/indices", "componentType", 5126)) return false;
@@ -130,7 +138,9 @@ class AccessorChecker : public JsonChecker {
     return check_range(path + "/indices", index_or(indices, "bufferView", 0), index_or(indices, "byteOffset", 0), count,
                        index_size, index_size) &&
            check_range(path + "/values", index_or(values, "bufferView", 0), index_or(values, "byteOffset", 0), count,
-                       size, size);
+                       size, size) &&
+           fits_int(path + "/indices/byteOffset", index_or(indices, "byteOffset", 0)) &&
+           fits_int(path + "/values/byteOffset", index_or(values, "byteOffset", 0));
   }
 
   const Json& root_;

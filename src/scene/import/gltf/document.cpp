@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "scene/import/gltf/check_base.h"
+#include "scene/import/gltf/gltf.h"
 #include "scene/import/gltf/gltf_import.h"
 
 namespace meshlode::scene {
@@ -72,12 +73,9 @@ Result<std::optional<std::span<const std::uint8_t>>> find_image_bytes(const Gltf
   }
   const Json* view = image.find("bufferView");
   if (view == nullptr) return Found{};
-  const auto index = static_cast<std::uint32_t>(view->index().value_or(0));
-  const GltfBufferView& v = asset.model.views[index];
-  if (v.length > 0 && asset.buffers[v.buffer].empty()) {
-    return asset.invalid(path + "/bufferView", "its buffer has no data");
-  }
-  return Found(asset.view_bytes(index));
+  const auto bytes = asset.view_bytes(view->index().value_or(0), path + "/bufferView");
+  if (!bytes) return bytes.error();
+  return Found(*bytes);
 }
 
 Status carry_images(const GltfAsset& asset, GltfFiles& files, Json& document, Scene& scene) {

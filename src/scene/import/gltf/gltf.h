@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A glTF file on its way to a Scene: its text as a checked tree, its buffers as mapped bytes, its geometry as structs.
+// A glTF file on its way to a Scene: its text as a checked tree and as tinygltf's model, its buffers as mapped bytes.
 #pragma once
 
 #include <algorithm>
@@ -17,11 +17,15 @@
 
 #include "base/file.h"
 #include "base/hash.h"
+#include "scene/import/gltf/tinygltf.h"
 #include "scene/import/json.h"
 
 namespace meshlode::scene {
 
 constexpr std::uint32_t kNoIndex = 0xFFFFFFFFu;
+/// Of glTF text, the file's and what tinygltf reads: it takes the length as an unsigned int, and keeps indices, counts
+/// of sparse elements and their offsets in an int. A list in less text than this has fewer than 2^31 elements.
+constexpr std::uint64_t kMaxTextBytes = 0x7FFFFFFFu;
 
 /// glTF's componentType values.
 enum GltfComponent : std::uint32_t {
@@ -35,57 +39,6 @@ enum GltfComponent : std::uint32_t {
 
 /// Bytes of one component, 0 for a value that is none of glTF's.
 [[nodiscard]] std::uint32_t component_size(std::uint64_t component_type);
-
-struct GltfBufferView {
-  std::uint32_t buffer = 0;
-  std::uint64_t offset = 0, length = 0;  ///< bytes
-  std::uint32_t stride = 0;              ///< bytes, 0: tightly packed
-};
-
-struct GltfSparse {
-  std::uint64_t count = 0;
-  std::uint32_t index_view = 0, value_view = 0;
-  std::uint64_t index_offset = 0, value_offset = 0;
-  std::uint32_t index_type = 0;
-};
-
-struct GltfAccessor {
-  std::uint32_t view = kNoIndex;  ///< none: all zero before the sparse part
-  std::uint64_t offset = 0;
-  std::uint64_t count = 0;
-  std::uint32_t component_type = 0;
-  std::uint32_t component_count = 1;  ///< 1 SCALAR … 4 VEC4; 4, 9, 16 for matrices
-  bool normalized = false;
-  std::optional<GltfSparse> sparse;
-};
-
-struct GltfPrimitive {
-  std::map<std::string, std::uint32_t> attributes;
-  std::uint32_t indices = kNoIndex;
-  std::uint32_t material = kNoIndex;
-  std::uint32_t mode = 4;
-  std::size_t target_count = 0;
-};
-
-struct GltfMesh {
-  std::string name;
-  std::vector<GltfPrimitive> primitives;
-};
-
-struct GltfNode {
-  std::string name;
-  std::uint32_t mesh = kNoIndex, skin = kNoIndex;
-  std::vector<std::uint32_t> children;
-  std::vector<double> matrix, translation, rotation, scale;  ///< empty where absent
-};
-
-/// What tinygltf makes of the geometry and the nodes.
-struct GltfModel {
-  std::vector<GltfBufferView> views;
-  std::vector<GltfAccessor> accessors;
-  std::vector<GltfMesh> meshes;
-  std::vector<GltfNode> nodes;
-};
 
 /// Files and data URIs, each opened and hashed once, in the order in which they are asked for.
 class GltfFiles {
@@ -133,8 +86,10 @@ class DecodeBudget {
 
 struct GltfAsset {
   std::string file;  ///< as named in messages
-  Json root;
-  GltfModel model;
+  Json root;         ///< checked; materials, extensions and what is carried through are read here
+  /// Geometry, nodes, scenes, skins and animations; its lists are as long as those of the tree. It has no buffers, and
+  /// of extensions and extras it knows nothing.
+  tinygltf::Model model;
   std::vector<std::span<const std::uint8_t>> buffers;  ///< by buffer index; empty where a buffer has no data
 
   /// "scene.gltf: /meshes/0": where an error lies.
@@ -144,13 +99,9 @@ struct GltfAsset {
   [[nodiscard]] Error invalid(const std::string& json_path, std::string detail) const {
     return error(ErrorCode::kInvalid, json_path, std::move(detail));
   }
-  /// To read from a view whose buffer has no data: where an extension compresses the view, that is what is not read.
-  [[nodiscard]] Error no_data(std::uint32_t view, const std::string& json_path) const;
-  /// The bytes of a buffer view. \pre the asset is checked and its buffers are loaded
-  [[nodiscard]] std::span<const std::uint8_t> view_bytes(std::uint32_t view) const {
-    const GltfBufferView& v = model.views[view];
-    return buffers[v.buffer].subspan(v.offset, v.length);
-  }
+  /// The bytes of a buffer view. `json_path`: what names the view. Errors: its buffer has no data, kInvalid, or
+  /// kUnsupported where an extension compresses the view. \pre the buffers are loaded
+  [[nodiscard]] Result<std::span<const std::uint8_t>> view_bytes(std::size_t view, const std::string& json_path) const;
 };
 
 /// Checks types, ranges, indices, bounds and cycles of everything that is read later: after this nothing can point
@@ -163,7 +114,8 @@ struct GltfAsset {
 /// Optional extensions that geometry would be lost without. \pre the other checks passed. Errors: kUnsupported.
 [[nodiscard]] Status check_gltf_lost_geometry(const Json& root, const std::string& file);
 
-/// Geometry and nodes of a checked tree, through tinygltf. Nothing that tinygltf would open is handed to it.
-[[nodiscard]] Result<GltfModel> parse_gltf_model(const Json& root);
+/// tinygltf's model of a checked tree; nothing that it would open is handed to it. What it has no number for is -1.
+/// Errors: kInvalid and kUnsupported, without a place.
+[[nodiscard]] Result<tinygltf::Model> read_gltf_model(const Json& root);
 
 }  // namespace meshlode::scene

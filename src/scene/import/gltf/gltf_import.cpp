@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "scene/import/gltf/check_base.h"
+#include "scene/import/gltf/gltf.h"
 #include "scene/import/gltf/primitive.h"
 
 namespace meshlode::scene {
@@ -105,7 +106,7 @@ std::uint64_t count_draco_bytes(const GltfAsset& asset) {
     }
   }
   std::uint64_t sum = 0;
-  for (const std::uint64_t view : views) sum += asset.model.views[view].length;
+  for (const std::uint64_t view : views) sum += asset.model.bufferViews[view].byteLength;
   return sum;
 }
 
@@ -114,13 +115,14 @@ Status read_meshes(const GltfAsset& asset, const ImportOptions& options, DecodeB
   bool needs_default_material = false;
   const Json::Array& meshes = asset.root.items("meshes");  // looked up once: an object's members are a list
   for (std::size_t m = 0; m < asset.model.meshes.size(); ++m) {
+    const tinygltf::Mesh& source = asset.model.meshes[m];
     SourceMesh mesh;
-    mesh.name = asset.model.meshes[m].name;
+    mesh.name = source.name;
     bool has_targets = false;
     std::set<std::string> extensions;
     const Json::Array& primitives = meshes[m].items("primitives");
-    for (std::size_t p = 0; p < asset.model.meshes[m].primitives.size(); ++p) {
-      has_targets = has_targets || asset.model.meshes[m].primitives[p].target_count > 0;
+    for (std::size_t p = 0; p < source.primitives.size(); ++p) {
+      has_targets = has_targets || !source.primitives[p].targets.empty();
       const Json& json = primitives[p];
       if (const Json* object = json.find("extensions")) {
         for (const JsonMember& member : *object->object()) extensions.insert(pointer_part(member.key));
@@ -152,7 +154,11 @@ Status read_meshes(const GltfAsset& asset, const ImportOptions& options, DecodeB
 
 }  // namespace
 
-Error GltfAsset::no_data(std::uint32_t view, const std::string& json_path) const {
+Result<std::span<const std::uint8_t>> GltfAsset::view_bytes(std::size_t view, const std::string& json_path) const {
+  const tinygltf::BufferView& v = model.bufferViews[view];
+  const auto& bytes = buffers[v.buffer];
+  if (!bytes.empty()) return bytes.subspan(v.byteOffset, v.byteLength);
+  if (v.byteLength == 0) return bytes;
   const Json* extensions = root.items("bufferViews")[view].find("extensions");
   if (extensions != nullptr && extensions->object() != nullptr && !extensions->object()->empty()) {
     return error(ErrorCode::kUnsupported, json_path,
@@ -170,6 +176,7 @@ Result<Scene> import_gltf(const std::filesystem::path& path, std::span<const std
   if (!container) return container.error();
   std::string_view text = container->text;
   while (!text.empty() && (text.back() == '\0' || text.back() == ' ')) text.remove_suffix(1);
+  if (text.size() > kMaxTextBytes) return Error{ErrorCode::kUnsupported, asset.file, "more than 2 GiB of glTF text"};
   auto root = parse_json(text);
   if (!root) return Error{ErrorCode::kInvalid, asset.file, root.error().detail};
   asset.root = std::move(*root);
@@ -178,7 +185,7 @@ Result<Scene> import_gltf(const std::filesystem::path& path, std::span<const std
   GltfFiles files(path.parent_path(), options.files_read);
   files.hash(bytes);
   if (auto status = load_buffers(asset, files, *container); !status) return status.error();
-  auto model = parse_gltf_model(asset.root);
+  auto model = read_gltf_model(asset.root);
   if (!model) return Error{model.error().code, asset.file, model.error().detail};
   asset.model = std::move(*model);
 

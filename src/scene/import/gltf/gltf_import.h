@@ -7,11 +7,15 @@
 #include <span>
 #include <vector>
 
-#include "scene/import/gltf/gltf.h"
 #include "scene/import/import.h"
 #include "scene/scene.h"
 
 namespace meshlode::scene {
+
+class DecodeBudget;
+class GltfFiles;
+struct GltfAsset;
+struct Json;
 
 /// `bytes` are the scene file's own. `path` names it in messages and gives the folder that URIs are relative to.
 [[nodiscard]] Result<Scene> import_gltf(const std::filesystem::path& path, std::span<const std::uint8_t> bytes,

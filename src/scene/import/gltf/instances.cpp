@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Nodes to instances: local transforms composed in doubles from the roots down (glTF 2.0, section 3.5.3).
+#include <algorithm>
 #include <cmath>
 
+#include "scene/import/gltf/gltf.h"
 #include "scene/import/gltf/gltf_import.h"
 
 namespace meshlode::scene {
 
 namespace {
 
-Mat4d local_transform(const GltfNode& node) {
+Mat4d local_transform(const tinygltf::Node& node) {
   if (node.matrix.size() == 16) {
     Mat4d m;
     for (int c = 0; c < 4; ++c) {
@@ -42,22 +44,18 @@ Mat4d local_transform(const GltfNode& node) {
 
 std::vector<SceneInstance> read_instances(const GltfAsset& asset, std::vector<LeftOut>& left_out) {
   const auto& nodes = asset.model.nodes;
-  const auto& scenes = asset.root.items("scenes");
-  std::vector<std::uint32_t> roots;
+  const auto& scenes = asset.model.scenes;
+  std::vector<int> roots;
   if (scenes.empty()) {
     std::vector<bool> has_parent(nodes.size(), false);
-    for (const GltfNode& node : nodes) {
-      for (const std::uint32_t child : node.children) has_parent[child] = true;
+    for (const tinygltf::Node& node : nodes) {
+      for (const int child : node.children) has_parent[child] = true;
     }
-    for (std::uint32_t n = 0; n < nodes.size(); ++n) {
-      if (!has_parent[n]) roots.push_back(n);
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+      if (!has_parent[n]) roots.push_back(static_cast<int>(n));
     }
   } else {
-    const Json* chosen = asset.root.find("scene");
-    const std::uint64_t scene = chosen != nullptr ? chosen->index().value_or(0) : 0;
-    for (const Json& node : scenes[scene].items("nodes")) {
-      roots.push_back(static_cast<std::uint32_t>(node.index().value_or(0)));
-    }
+    roots = scenes[std::max(asset.model.defaultScene, 0)].nodes;
     if (scenes.size() > 1) {
       left_out.push_back({"instances of " + std::to_string(scenes.size() - 1) + " other scenes",
                           "only the default scene is instanced"});
@@ -65,7 +63,7 @@ std::vector<SceneInstance> read_instances(const GltfAsset& asset, std::vector<Le
   }
   std::vector<SceneInstance> out;
   struct Visit {
-    std::uint32_t node;
+    int node;
     Mat4d parent;
   };
   std::vector<Visit> stack;
@@ -73,9 +71,11 @@ std::vector<SceneInstance> read_instances(const GltfAsset& asset, std::vector<Le
   while (!stack.empty()) {
     const Visit visit = stack.back();
     stack.pop_back();
-    const GltfNode& node = nodes[visit.node];
+    const tinygltf::Node& node = nodes[visit.node];
     const Mat4d world = visit.parent * local_transform(node);
-    if (node.mesh != kNoIndex) out.push_back({node.name, visit.node, MeshId(node.mesh), world});
+    if (node.mesh >= 0) {
+      out.push_back({node.name, static_cast<std::uint32_t>(visit.node), MeshId(std::size_t(node.mesh)), world});
+    }
     for (auto child = node.children.rbegin(); child != node.children.rend(); ++child) stack.push_back({*child, world});
   }
   return out;

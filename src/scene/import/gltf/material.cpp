@@ -2,6 +2,7 @@
 // The few things of a material that the build acts on. Above all: which UV sets some texture samples, in extensions
 // that are not known here too, because a UV set that no material samples is not stored.
 #include "scene/import/gltf/check_base.h"
+#include "scene/import/gltf/gltf.h"
 #include "scene/import/gltf/gltf_import.h"
 
 namespace meshlode::scene {

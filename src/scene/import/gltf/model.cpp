@@ -1,158 +1,82 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The one file that sees tinygltf. It checks no bounds, opens what URIs name and throws, so it gets neither the file
-// nor its buffers: only a skeleton of views, accessors, meshes and nodes, written from a tree that has been checked,
-// with callbacks that refuse every file. Images and materials never pass through it.
-//
-// The namespace is renamed: Debian's TinyGLTF library is the same code with other options, and a program that links
-// both must not mix them.
-#include "scene/import/gltf/gltf.h"
-
+// The text that tinygltf reads. It is written from the checked tree rather than taken from the file, because tinygltf
+//   opens what buffers and images name and keeps their bytes: both are withheld, and bytes are read where they are
+//   mapped;
+//   reads 3.0 as no integer, so whole numbers are written as such;
+//   refuses indices whose accessor has no view (Draco's), skins without joints and channels without a node: each gets
+//   what says the same and passes;
+//   keeps whole numbers of extensions and extras in 32 bits and drops what is empty or null: both stay on the tree, and
+//   with them materials, which mean more with their extensions than without, and all that is carried through.
+// It checks no bounds: what import reads of its model are members that the checks have looked at, and every one that it
+// keeps in an int was found to fit.
 #include <exception>
-#include <fstream>
 #include <new>
 
-#define tinygltf meshlode_tinygltf
-#define TINYGLTF_IMPLEMENTATION
-#define TINYGLTF_NO_STB_IMAGE
-#define TINYGLTF_NO_STB_IMAGE_WRITE
-#define TINYGLTF_NO_EXTERNAL_IMAGE
-#define TINYGLTF_NO_FS
-#define TINYGLTF_NO_INCLUDE_STB_IMAGE
-#define TINYGLTF_NO_INCLUDE_STB_IMAGE_WRITE
-#include <tiny_gltf.h>
-
 #include "base/guarded.h"
+#include "scene/import/gltf/gltf.h"
 
 namespace meshlode::scene {
 
 namespace {
 
-Json copy_members(const Json& from, std::initializer_list<std::string_view> keys) {
+/// Without extensions and extras, 3.0 as 3. `has_names`: the keys are names of attributes, which may be any.
+Json plain(const Json& json, bool has_names = false) {
+  if (const auto* array = json.array()) {
+    Json::Array out;
+    out.reserve(array->size());
+    for (const Json& item : *array) out.push_back(plain(item, has_names));
+    return Json{std::move(out)};
+  }
+  if (const auto* object = json.object()) {
+    Json::Object out;
+    for (const JsonMember& member : *object) {
+      if (!has_names && (member.key == "extensions" || member.key == "extras")) continue;
+      out.push_back({member.key, plain(member.value, member.key == "attributes" || member.key == "targets")});
+    }
+    return Json{std::move(out)};
+  }
+  const auto index = json.index();
+  return index ? Json::make_index(*index) : json;
+}
+
+void set_missing(Json& object, std::string_view key, const Json& value) {
+  if (object.find(key) == nullptr) object.set(key, value);
+}
+
+/// The list of that name, plain, with `mend` called on each of its objects.
+template <class Mend>
+Json mended(const Json& object, std::string_view key, const Mend& mend) {
+  Json::Array out;
+  for (const Json& item : object.items(key)) mend(out.emplace_back(plain(item)));
+  return Json{std::move(out)};
+}
+
+/// The text, with an empty view after the last one, which accessors without a view name.
+std::string text_for_tinygltf(const Json& root) {
+  const Json empty_view = Json::make_index(root.items("bufferViews").size());
+  const auto leave = [](Json&) {};
   Json out = Json::make_object();
-  for (const std::string_view key : keys) {
-    if (const Json* member = from.find(key)) out.set(key, *member);
-  }
-  return out;
+  Json views = mended(root, "bufferViews", leave);
+  Json view = Json::make_object();
+  view.set("buffer", Json::make_index(0));
+  view.set("byteLength", Json::make_index(0));
+  std::get<Json::Array>(views.value).push_back(std::move(view));
+  out.set("bufferViews", std::move(views));
+  out.set("accessors", mended(root, "accessors", [&](Json& a) { set_missing(a, "bufferView", empty_view); }));
+  for (const std::string_view key : {"meshes", "nodes", "scenes"}) out.set(key, mended(root, key, leave));
+  if (const Json* scene = root.find("scene")) out.set("scene", plain(*scene));
+  out.set("skins", mended(root, "skins", [](Json& skin) { set_missing(skin, "joints", Json::make_array()); }));
+  out.set("animations", mended(root, "animations", [](Json& animation) {
+            Json* channels = animation.find("channels");
+            if (channels == nullptr) return;
+            for (Json& channel : std::get<Json::Array>(channels->value)) {
+              set_missing(*channel.find("target"), "node", Json{std::int64_t{-1}});  // what tinygltf takes for none
+            }
+          }));
+  return dump_json(out);
 }
 
-/// tinygltf reads integers with get<int>(), which accepts only JSON integers: 3.0 is written as 3.
-void normalize_integers(Json& json) {
-  if (auto* array = std::get_if<Json::Array>(&json.value)) {
-    for (Json& item : *array) normalize_integers(item);
-  } else if (auto* object = std::get_if<Json::Object>(&json.value)) {
-    for (JsonMember& member : *object) normalize_integers(member.value);
-  } else if (std::holds_alternative<double>(json.value)) {
-    if (const auto index = json.index()) json = Json::make_index(*index);
-  }
-}
-
-/// The skeleton. Index accessors without a view (as Draco's are) point to a sentinel view after the last one, because
-/// tinygltf refuses them otherwise.
-Json make_skeleton(const Json& root) {
-  const std::uint64_t sentinel = root.items("bufferViews").size();
-  Json out = Json::make_object();
-  Json asset = Json::make_object();
-  asset.set("version", Json::make_string("2.0"));
-  out.set("asset", std::move(asset));
-
-  Json::Array views;
-  for (const Json& view : root.items("bufferViews")) {
-    views.push_back(copy_members(view, {"buffer", "byteOffset", "byteLength", "byteStride"}));
-  }
-  Json last = Json::make_object();
-  last.set("buffer", Json::make_index(0));
-  last.set("byteLength", Json::make_index(0));
-  views.push_back(std::move(last));
-  Json::Array accessors;
-  for (const Json& accessor : root.items("accessors")) {
-    Json item = copy_members(accessor, {"bufferView", "byteOffset", "componentType", "normalized", "count", "type"});
-    if (item.find("bufferView") == nullptr) item.set("bufferView", Json::make_index(sentinel));
-    if (const Json* sparse = accessor.find("sparse")) {
-      Json part = copy_members(*sparse, {"count"});
-      part.set("indices", copy_members(*sparse->find("indices"), {"bufferView", "byteOffset", "componentType"}));
-      part.set("values", copy_members(*sparse->find("values"), {"bufferView", "byteOffset"}));
-      item.set("sparse", std::move(part));
-    }
-    accessors.push_back(std::move(item));
-  }
-  Json::Array meshes;
-  for (const Json& mesh : root.items("meshes")) {
-    Json item = copy_members(mesh, {"name"});
-    Json::Array primitives;
-    for (const Json& primitive : mesh.items("primitives")) {
-      primitives.push_back(copy_members(primitive, {"attributes", "indices", "material", "mode", "targets"}));
-    }
-    item.set("primitives", Json{std::move(primitives)});
-    meshes.push_back(std::move(item));
-  }
-  Json::Array nodes;
-  for (const Json& node : root.items("nodes")) {
-    nodes.push_back(
-        copy_members(node, {"name", "mesh", "skin", "children", "matrix", "translation", "rotation", "scale"}));
-  }
-  out.set("bufferViews", Json{std::move(views)});
-  out.set("accessors", Json{std::move(accessors)});
-  out.set("meshes", Json{std::move(meshes)});
-  out.set("nodes", Json{std::move(nodes)});
-  normalize_integers(out);
-  return out;
-}
-
-std::uint32_t to_index(int value) {
-  return value < 0 ? kNoIndex : static_cast<std::uint32_t>(value);
-}
-
-GltfModel convert(const tinygltf::Model& model) {
-  GltfModel out;
-  const std::size_t sentinel = model.bufferViews.size() - 1;
-  for (std::size_t i = 0; i < sentinel; ++i) {
-    const auto& view = model.bufferViews[i];
-    out.views.push_back(
-        {to_index(view.buffer), view.byteOffset, view.byteLength, static_cast<std::uint32_t>(view.byteStride)});
-  }
-  for (const auto& accessor : model.accessors) {
-    GltfAccessor a;
-    if (to_index(accessor.bufferView) < sentinel) a.view = to_index(accessor.bufferView);
-    a.offset = accessor.byteOffset;
-    a.count = accessor.count;
-    a.component_type = static_cast<std::uint32_t>(accessor.componentType);
-    a.component_count =
-        static_cast<std::uint32_t>(tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type)));
-    a.normalized = accessor.normalized;
-    if (accessor.sparse.isSparse) {
-      const auto& s = accessor.sparse;
-      a.sparse = GltfSparse{static_cast<std::uint64_t>(s.count),
-                            to_index(s.indices.bufferView),
-                            to_index(s.values.bufferView),
-                            static_cast<std::uint64_t>(s.indices.byteOffset),
-                            static_cast<std::uint64_t>(s.values.byteOffset),
-                            static_cast<std::uint32_t>(s.indices.componentType)};
-    }
-    out.accessors.push_back(a);
-  }
-  for (const auto& mesh : model.meshes) {
-    GltfMesh m{mesh.name, {}};
-    for (const auto& primitive : mesh.primitives) {
-      GltfPrimitive p;
-      for (const auto& [name, index] : primitive.attributes) p.attributes[name] = to_index(index);
-      p.indices = to_index(primitive.indices);
-      p.material = to_index(primitive.material);
-      p.mode = static_cast<std::uint32_t>(primitive.mode);
-      p.target_count = primitive.targets.size();
-      m.primitives.push_back(std::move(p));
-    }
-    out.meshes.push_back(std::move(m));
-  }
-  for (const auto& node : model.nodes) {
-    GltfNode n{node.name,   to_index(node.mesh), to_index(node.skin), {},
-               node.matrix, node.translation,    node.rotation,       node.scale};
-    for (const int child : node.children) n.children.push_back(to_index(child));
-    out.nodes.push_back(std::move(n));
-  }
-  return out;
-}
-
-/// tinygltf's own model of a text that names no file. `problems`: what it says beside refusing. What it throws is the
+/// tinygltf's model of a text that names no file. `problems`: what it says beside refusing. What it throws is the
 /// text's fault: that was checked, but by our rules.
 Result<tinygltf::Model> load_model(const std::string& text, std::string& problems) {
   tinygltf::TinyGLTF loader;
@@ -179,31 +103,45 @@ Result<tinygltf::Model> load_model(const std::string& text, std::string& problem
   return model;
 }
 
-/// tinygltf leaves out a primitive that it does not understand; nothing may be missing quietly.
+/// tinygltf leaves out a primitive or a channel that it does not understand; nothing may be missing quietly, and what
+/// stays on the tree is found by its place.
 bool is_whole(const tinygltf::Model& model, const Json& root) {
+  const auto is_all = [](const auto& list, const Json& object, std::string_view key) {
+    return list.size() == object.items(key).size();
+  };
+  bool out = is_all(model.bufferViews, root, "bufferViews") && is_all(model.accessors, root, "accessors") &&
+             is_all(model.meshes, root, "meshes") && is_all(model.nodes, root, "nodes") &&
+             is_all(model.scenes, root, "scenes") && is_all(model.skins, root, "skins") &&
+             is_all(model.animations, root, "animations");
   const auto& meshes = root.items("meshes");
-  bool out = model.meshes.size() == meshes.size() && model.nodes.size() == root.items("nodes").size() &&
-             model.accessors.size() == root.items("accessors").size() &&
-             model.bufferViews.size() == root.items("bufferViews").size() + 1;
   for (std::size_t i = 0; out && i < meshes.size(); ++i) {
-    out = model.meshes[i].primitives.size() == meshes[i].items("primitives").size();
+    out = is_all(model.meshes[i].primitives, meshes[i], "primitives");
+  }
+  const auto& animations = root.items("animations");
+  for (std::size_t i = 0; out && i < animations.size(); ++i) {
+    out = is_all(model.animations[i].channels, animations[i], "channels") &&
+          is_all(model.animations[i].samplers, animations[i], "samplers");
   }
   return out;
 }
 
 }  // namespace
 
-Result<GltfModel> parse_gltf_model(const Json& root) {
-  const Json skeleton = make_skeleton(root);
-  const std::string text = dump_json(skeleton);
-  if (text.size() > 0x7FFFFFFFu) return Error{ErrorCode::kUnsupported, "", "more than 2 GiB of glTF text"};
+Result<tinygltf::Model> read_gltf_model(const Json& root) {
+  const std::string text = text_for_tinygltf(root);
+  if (text.size() > kMaxTextBytes) return Error{ErrorCode::kUnsupported, "", "more than 2 GiB of glTF text"};
   std::string problems;
-  const auto model = load_model(text, problems);
-  if (!model) return model.error();
+  auto model = load_model(text, problems);
+  if (!model) return model;
+  const int empty_view = static_cast<int>(root.items("bufferViews").size());
+  for (auto& accessor : model->accessors) {
+    if (accessor.bufferView == empty_view) accessor.bufferView = -1;
+  }
+  if (!model->bufferViews.empty()) model->bufferViews.pop_back();
   if (!is_whole(*model, root)) {
     return Error{ErrorCode::kInvalid, "", "tinygltf did not understand every part of it: " + problems};
   }
-  return convert(*model);
+  return model;
 }
 
 }  // namespace meshlode::scene

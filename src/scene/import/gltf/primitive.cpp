@@ -17,7 +17,9 @@ namespace meshlode::scene {
 
 namespace {
 
-constexpr std::uint32_t kModeTriangles = 4, kModeStrip = 5, kModeFan = 6;
+constexpr int kModeTriangles = TINYGLTF_MODE_TRIANGLES;
+constexpr int kModeStrip = TINYGLTF_MODE_TRIANGLE_STRIP;
+constexpr int kModeFan = TINYGLTF_MODE_TRIANGLE_FAN;
 
 /// Where the vertices and corners of a primitive come from: accessors or a Draco mesh.
 struct PrimitiveSource {
@@ -55,6 +57,8 @@ class PrimitiveReader {
     const Json* extensions = json_.find("extensions");
     return extensions != nullptr ? extensions->find("KHR_draco_mesh_compression") : nullptr;
   }
+  const tinygltf::Accessor& accessor(int index) const { return asset_.model.accessors[index]; }
+  Result<AccessorReader> open_accessor(int index);
   Status open_accessors();
   Status open_draco(const Json& draco);
   Status check_types() const;
@@ -72,7 +76,7 @@ class PrimitiveReader {
   const PrimitiveContext& context_;
   ImportDrops& drops_;
   std::string path_, what_;
-  const GltfPrimitive& source_;
+  const tinygltf::Primitive& source_;
   const Json& json_;
   PrimitiveSource in_;
   bool is_compact_ = false;
@@ -80,20 +84,19 @@ class PrimitiveReader {
   Primitive out_;
 };
 
+Result<AccessorReader> PrimitiveReader::open_accessor(int index) {
+  if (!context_.budget->take(sparse_count_of(accessor(index)))) return no_budget(path_);
+  return AccessorReader::open(asset_, index);
+}
+
 Status PrimitiveReader::open_accessors() {
-  for (const auto& [name, accessor] : source_.attributes) {
-    if (const auto& sparse = asset_.model.accessors[accessor].sparse) {
-      if (!context_.budget->take(sparse->count)) return no_budget(path_);
-    }
-    auto reader = AccessorReader::open(asset_, accessor);
+  for (const auto& [name, index] : source_.attributes) {
+    auto reader = open_accessor(index);
     if (!reader) return reader.error();
     in_.attributes.emplace(name, *reader);
   }
-  if (source_.indices != kNoIndex) {
-    if (const auto& sparse = asset_.model.accessors[source_.indices].sparse) {
-      if (!context_.budget->take(sparse->count)) return no_budget(path_);
-    }
-    auto reader = AccessorReader::open(asset_, source_.indices);
+  if (source_.indices >= 0) {
+    auto reader = open_accessor(source_.indices);
     if (!reader) return reader.error();
     in_.indices = *reader;
   }
@@ -106,14 +109,13 @@ Status PrimitiveReader::open_draco(const Json& draco) {
   if (source_.mode != kModeTriangles && source_.mode != kModeStrip) {
     return asset_.invalid(path_ + "/mode", "KHR_draco_mesh_compression is for triangles and triangle strips");
   }
-  const auto view = static_cast<std::uint32_t>(draco.find("bufferView")->index().value_or(0));
   DracoExpectation expected;
-  expected.point_count = asset_.model.accessors[source_.attributes.at("POSITION")].count;
+  expected.point_count = accessor(source_.attributes.at("POSITION")).count;
   // A strip comes out of Draco as a list of triangles; without indices only the vertices bound it.
-  const std::uint64_t index_count =
-      source_.indices != kNoIndex ? asset_.model.accessors[source_.indices].count : 12 * expected.point_count;
-  expected.is_face_count_exact = source_.indices != kNoIndex && source_.mode == kModeTriangles;
-  expected.max_face_count = source_.mode == kModeStrip && source_.indices != kNoIndex ? index_count : index_count / 3;
+  const bool has_indices = source_.indices >= 0;
+  const std::uint64_t index_count = has_indices ? accessor(source_.indices).count : 12 * expected.point_count;
+  expected.is_face_count_exact = has_indices && source_.mode == kModeTriangles;
+  expected.max_face_count = source_.mode == kModeStrip && has_indices ? index_count : index_count / 3;
   std::map<std::string, std::uint32_t> ids;
   for (const JsonMember& member : *draco.find("attributes")->object()) {
     if (!source_.attributes.contains(member.key)) {
@@ -125,26 +127,24 @@ Status PrimitiveReader::open_draco(const Json& draco) {
   if (!ids.contains("POSITION")) return asset_.invalid(path + "/attributes", "POSITION is missing");
   expected.max_bytes = context_.budget->left_bytes();
   if (!context_.budget->take(expected.point_count + 3 * expected.max_face_count)) return no_budget(path);
-  if (asset_.buffers[asset_.model.views[view].buffer].empty()) {
-    return asset_.invalid(path + "/bufferView", "its buffer has no data");
-  }
-  auto mesh = decode_draco(asset_.view_bytes(view), expected);
+  const auto bytes = asset_.view_bytes(draco.find("bufferView")->index().value_or(0), path + "/bufferView");
+  if (!bytes) return bytes.error();
+  auto mesh = decode_draco(*bytes, expected);
   if (!mesh) return asset_.error(mesh.error().code, path, mesh.error().detail);
   in_.draco = std::move(*mesh);
   in_.vertex_count = in_.draco->point_count;
-  for (const auto& [name, accessor] : source_.attributes) {
-    const GltfAccessor& a = asset_.model.accessors[accessor];
+  for (const auto& [name, index] : source_.attributes) {
     const auto id = ids.find(name);
     if (id == ids.end()) {
       // An attribute beside the compressed ones is an ordinary accessor.
-      auto reader = AccessorReader::open(asset_, accessor);
+      auto reader = open_accessor(index);
       if (!reader) return reader.error();
       in_.attributes.emplace(name, *reader);
       continue;
     }
     const DracoAttribute& attribute = in_.draco->attributes.at(id->second);
     in_.attributes.emplace(name, AccessorReader::over(attribute.bytes, in_.vertex_count, attribute.component_type,
-                                                      attribute.component_count, a.normalized));
+                                                      attribute.component_count, accessor(index).normalized));
   }
   return Ok{};
 }
@@ -393,7 +393,7 @@ Result<std::optional<Primitive>> PrimitiveReader::run() {
   if (!corners) return corners.error();
   if (auto status = read_positions(*corners); !status) return status.error();
   out_.indices = std::move(*corners);
-  if (source_.material != kNoIndex) out_.material = MaterialId(source_.material);
+  if (source_.material >= 0) out_.material = MaterialId(std::size_t(source_.material));
   if (auto status = read_attributes(); !status) return status.error();
   return std::optional<Primitive>(std::move(out_));
 }
