@@ -38,8 +38,7 @@ GroupEdges::GroupEdges(const GroupSurface& group)
   }
 }
 
-std::vector<std::uint8_t> find_folded(const GroupSurface& surface) {
-  const GroupEdges edges(surface);
+std::vector<std::uint8_t> find_folded(const GroupSurface& surface, const GroupEdges& edges) {
   std::vector<Vec3d> normals;
   normals.reserve(surface.triangles.size());
   for (const auto& t : surface.triangles) {

@@ -23,6 +23,6 @@ struct GroupEdges {
 };
 
 /// Per triangle: whether it has an edge that is folded by more than 60 degrees, or that has not two triangles.
-[[nodiscard]] std::vector<std::uint8_t> find_folded(const GroupSurface& surface);
+[[nodiscard]] std::vector<std::uint8_t> find_folded(const GroupSurface& surface, const GroupEdges& edges);
 
 }  // namespace meshlode::build

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -48,8 +47,10 @@ struct Effort {
 /// not beyond the border that it shares with other groups. Beyond the source's own border there is nobody else.
 class OwnerTest {
  public:
-  OwnerTest(const GroupSurface& finer, std::span<const std::uint8_t> is_shared, double reach, bool is_whole)
-      : finer_(finer), is_shared_(is_shared), reach_(reach), is_whole_(is_whole) {}
+  /// `edges` are those of `finer` and outlive this.
+  OwnerTest(const GroupSurface& finer, const GroupEdges& edges, std::span<const std::uint8_t> is_shared, double reach,
+            bool is_whole)
+      : finer_(finer), edges_(edges), is_shared_(is_shared), reach_(reach), is_whole_(is_whole) {}
   [[nodiscard]] const GroupSurface& finer() const { return finer_; }
   [[nodiscard]] bool is_whole() const { return is_whole_; }
   [[nodiscard]] bool is_known() const { return !finer_.triangles.empty(); }
@@ -60,11 +61,11 @@ class OwnerTest {
   [[nodiscard]] bool is_shared(std::uint32_t position) const { return is_shared_.empty() || is_shared_[position] != 0; }
 
   GroupSurface finer_;
+  const GroupEdges& edges_;
   std::span<const std::uint8_t> is_shared_;
   double reach_;
   bool is_whole_;     ///< there is nobody else
-  SurfaceTree tree_;  ///< over it and its edges, built when first asked
-  std::optional<GroupEdges> edges_;
+  SurfaceTree tree_;  ///< over what is replaced, built when first asked
   TreeSlot place_{0U};
 };
 

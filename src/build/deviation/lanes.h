@@ -32,11 +32,18 @@ using LaneMask = std::int32_t __attribute__((vector_size(16)));
   return result;
 }
 
+// Written as the processor's own instructions have it, the second where neither is less; GCC finds them in no other
+// form.
 [[nodiscard]] inline Lanes min_lanes(Lanes a, Lanes b) {
-  return choose(a < b, a, b);
+  return a < b ? a : b;
 }
 [[nodiscard]] inline Lanes max_lanes(Lanes a, Lanes b) {
-  return choose(a > b, a, b);
+  return a > b ? a : b;
+}
+[[nodiscard]] inline bool any_lane(LaneMask mask) {
+  std::uint64_t halves[2];
+  std::memcpy(halves, &mask, sizeof(mask));
+  return (halves[0] | halves[1]) != 0;
 }
 
 }  // namespace meshlode::build

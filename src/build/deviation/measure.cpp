@@ -116,8 +116,9 @@ GroupDeviation measure_group(const SourceTree& source, const GroupSurface& group
   const Effort effort{64 + group.triangles.size() / 4 + options.extra_effort,
                       options.extra_effort < kLeastExtra ? 0 : options.extra_effort / kSpareShare};
   farthest = measure_to_source(source_tree, group, edges, places, farthest, effort, high);
-  OwnerTest owner(options.finer, options.finer_is_shared, kReach * options.floor, options.is_whole);
-  const std::vector<std::uint8_t> is_folded = find_folded(options.finer);
+  const GroupEdges finer_edges(options.finer);
+  OwnerTest owner(options.finer, finer_edges, options.finer_is_shared, kReach * options.floor, options.is_whole);
+  const std::vector<std::uint8_t> is_folded = find_folded(options.finer, finer_edges);
   farthest = search_source(source.impl(), group, group_tree, owner, is_folded, farthest, high, options.extra_effort,
                            projected);
   result.carried = thin_samples(projected, group.triangles.size(), options.samples_per_triangle, farthest.to_beat());

@@ -55,11 +55,10 @@ class SourceSearch {
     const double radius2 = radius * radius;
     std::size_t points = 0;
     const auto visit = [&](std::uint32_t vertex, std::uint32_t through, TreeSlot place) {
-      const Vec3d& at = source_.positions[vertex];
-      const Vec3d away = at - seed.point;
+      const Vec3d away = source_.positions[vertex] - seed.point;
       if (glm::dot(away, away) > radius2 || !seen_.insert(vertex)) return;
       ++points;
-      const Probe probe = measure(at, place, through);
+      const Probe probe = measure_vertex(vertex, place, through);
       if (is_ours_) frontier_.push_back({vertex, probe.place});
     };
     const TreeSlot start = place_near(seed.point);
@@ -146,9 +145,35 @@ class SourceSearch {
 
   /// A point of a triangle of the source. Raises the maximum.
   Probe measure(const Vec3d& point, TreeSlot place, std::uint32_t owner) {
+    return judge(point, find_near(point, place), place, owner);
+  }
+
+ private:
+  struct Reached {
+    std::uint32_t vertex;
+    TreeSlot place;
+  };
+
+  /// The nearest triangle, or one that is near enough. What is enough only grows: a point that was near enough stays
+  /// so, and what is farther is the nearest.
+  [[nodiscard]] SurfaceTree::Hit find_near(const Vec3d& point, TreeSlot place) const {
     const Vec3f at = tree_.to_frame(point);
-    SurfaceTree::Hit hit = tree_.look_around(at, place, {});
-    if (!(hit.distance2 <= enough_)) hit = tree_.find_nearest(at, hit, enough_);
+    const SurfaceTree::Hit hit = tree_.look_around(at, place, {});
+    return hit.distance2 <= enough_ ? hit : tree_.find_nearest(at, hit, enough_);
+  }
+
+  /// The same as measure() of a vertex of the source, which is looked for once: every triangle around it asks.
+  Probe measure_vertex(std::uint32_t vertex, TreeSlot place, std::uint32_t owner) {
+    const auto [id, is_new] = known_table_.find_or_insert(
+        hash_word(0, vertex), static_cast<std::uint32_t>(known_.size()),
+        [&](std::uint32_t other) { return known_[other].vertex == vertex; },
+        [&](std::uint32_t other) { return hash_word(0, known_[other].vertex); });
+    const Vec3d& point = source_.positions[vertex];
+    if (is_new) known_.push_back({vertex, find_near(point, place)});
+    return judge(point, known_[id].hit, place, owner);
+  }
+
+  Probe judge(const Vec3d& point, const SurfaceTree::Hit& hit, TreeSlot place, std::uint32_t owner) {
     const Probe dismissed{kDismissShare * maximum(), hit.slot.is_valid() ? hit.slot : place};
     is_ours_ = true;
     if (hit.distance2 <= enough_) return dismissed;
@@ -166,12 +191,6 @@ class SourceSearch {
     return {distance, dismissed.place};
   }
 
- private:
-  struct Reached {
-    std::uint32_t vertex;
-    TreeSlot place;
-  };
-
   /// Of the group's tree: where a search around the point may begin.
   [[nodiscard]] TreeSlot place_near(const Vec3d& point) const {
     const TreeSlot nearest = tree_.find_nearest(tree_.to_frame(point), {}, 0.0F).slot;
@@ -188,8 +207,9 @@ class SourceSearch {
   std::size_t look_at(std::uint32_t triangle, TreeSlot place) {
     Patch patch;
     patch.corner = source_.corners(triangle);
+    const auto& ids = source_.triangles[triangle];
     for (std::size_t k = 0; k < 3; ++k) {
-      patch.at_corner[k] = patch.at_middle[k] = measure(patch.corner[k], place, triangle);
+      patch.at_corner[k] = patch.at_middle[k] = measure_vertex(ids[k], place, triangle);
     }
     const double enough = kWorthwhile * maximum();
     if (!(bound_by_one_triangle(tree_, patch) > enough)) return 3;
@@ -207,12 +227,32 @@ class SourceSearch {
     }
     if (!(longest2 > kLargeShare * kLargeShare * radius * radius) || !seen_inside_.insert(triangle)) return;
     patch.owner = triangle;
+    const auto& ids = source_.triangles[triangle];
+    for (std::size_t k = 0; k < 3; ++k) patch.at_corner[k] = measure_vertex(ids[k], place, triangle);
+    if (is_near_throughout(patch)) return;
     for (std::size_t k = 0; k < 3; ++k) {
-      patch.at_corner[k] = measure(patch.corner[k], place, triangle);
       patch.at_middle[k] = measure(patch.middle(k), patch.at_corner[k].place, triangle);
     }
     patch.set_estimate(measure((patch.corner[0] + patch.corner[1] + patch.corner[2]) / 3.0, place, triangle).value);
     large_.push_back(patch);
+  }
+
+  /// Whether one triangle of the group is near enough to all three corners, and so to all that is between them: the
+  /// distance to a convex set is convex.
+  [[nodiscard]] bool is_near_throughout(const Patch& patch) const {
+    const double enough = kDismissShare * maximum(), enough2 = enough * enough;
+    TreeSlot tried;
+    for (const Probe& probe : patch.at_corner) {
+      if (probe.value > enough) return false;
+      if (probe.place == tried) continue;
+      tried = probe.place;
+      const TriangleCorners corners = tree_.corners_at(tried);
+      if (std::all_of(patch.corner.begin(), patch.corner.end(),
+                      [&](const Vec3d& p) { return point_triangle_distance2(p, corners) <= enough2; })) {
+        return true;
+      }
+    }
+    return false;
   }
 
   const SourceTree::Impl& source_;
@@ -223,6 +263,12 @@ class SourceSearch {
   bool is_ours_ = true;           ///< the last point measured: the search may go on from there
   CarriedSample farthest_point_;  ///< of all points measured here
   IdSet seen_, seen_inside_;
+  struct Known {
+    std::uint32_t vertex;
+    SurfaceTree::Hit hit;
+  };
+  IdTable known_table_;       ///< by vertex
+  std::vector<Known> known_;  ///< vertices of the source that were looked for
   std::vector<Reached> frontier_;
   std::vector<Patch> large_;
 };
@@ -299,10 +345,7 @@ double triangle_spacing(const GroupSurface& group) {
 
 bool OwnerTest::is_ours(const Vec3d& point, const Vec3d& facing) {
   if (is_whole_) return true;
-  if (tree_.size() == 0) {
-    tree_.build({finer_.positions, finer_.triangles});
-    edges_.emplace(finer_);
-  }
+  if (tree_.size() == 0) tree_.build({finer_.positions, finer_.triangles});
   const Vec3f at = tree_.to_frame(point);
   const SurfaceTree::Hit hit = tree_.find_nearest(at, tree_.look_around(at, place_, {}), 0.0F);
   if (!hit.slot.is_valid()) return false;
@@ -312,11 +355,11 @@ bool OwnerTest::is_ours(const Vec3d& point, const Vec3d& facing) {
   const std::uint32_t triangle = tree_.triangle_at(place_);
   const NearestFeature feature = nearest_feature(point, corners);
   const auto& ids = finer_.triangles[triangle];
-  if (feature.kind == NearestFeature::Kind::kEdge && edges_->is_border(triangle, feature.index) &&
+  if (feature.kind == NearestFeature::Kind::kEdge && edges_.is_border(triangle, feature.index) &&
       is_shared(ids[feature.index]) && is_shared(ids[(feature.index + 1) % 3])) {
     return false;
   }
-  if (feature.kind == NearestFeature::Kind::kCorner && edges_->is_border_position[ids[feature.index]] != 0 &&
+  if (feature.kind == NearestFeature::Kind::kCorner && edges_.is_border_position[ids[feature.index]] != 0 &&
       is_shared(ids[feature.index])) {
     return false;
   }

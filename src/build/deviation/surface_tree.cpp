@@ -214,57 +214,98 @@ SurfaceTree::Hit SurfaceTree::test_leaf(const Vec3f& point, std::uint32_t index,
   return best;
 }
 
+namespace {
+
+/// What is still to be looked at, the nearest last.
+struct Entry {
+  std::uint32_t index;  ///< within its level
+  std::uint32_t level;
+  float distance2;
+};
+using Stack = std::array<Entry, 3 * kMaxDepth + 4>;
+
+struct PointLanes {
+  Lanes x, y, z;
+};
+
+/// Squared distances to four boxes.
+template <class Node>
+Lanes distances2_to_boxes(const Node& node, const PointLanes& p) {
+  const auto outside = [&](std::size_t axis, Lanes at) {
+    const Lanes below = load_lanes(node.low[axis].data()) - at, above = at - load_lanes(node.high[axis].data());
+    return max_lanes(max_lanes(below, above), lanes(0.0F));
+  };
+  const Lanes dx = outside(0, p.x), dy = outside(1, p.y), dz = outside(2, p.z);
+  return dx * dx + dy * dy + dz * dz;
+}
+
+/// Puts the children that are nearer than `limit` onto the stack. Non-negative floats order like their bits: the
+/// child's number goes into the lowest two, and four integers are sorted with the far ones first.
+void push_children(std::uint32_t first_child, std::uint32_t level, Lanes distance2, float limit, Stack& stack,
+                   std::size_t& size) {
+  std::array<std::uint32_t, 4> keys;
+  for (std::uint32_t k = 0; k < 4; ++k)
+    keys[k] = (std::bit_cast<std::uint32_t>(static_cast<float>(distance2[k])) & ~3U) | k;
+  const auto order = [&](std::size_t i, std::size_t j) {
+    const std::uint32_t a = std::max(keys[i], keys[j]);
+    keys[j] = std::min(keys[i], keys[j]);
+    keys[i] = a;
+  };
+  order(0, 1);
+  order(2, 3);
+  order(0, 2);
+  order(1, 3);
+  order(1, 2);
+  for (const std::uint32_t key : keys) {
+    const float at = std::bit_cast<float>(key & ~3U);
+    if (at < limit) stack[size++] = {first_child + (key & 3U), level, at};
+  }
+}
+
+}  // namespace
+
 SurfaceTree::Hit SurfaceTree::find_nearest(const Vec3f& point, Hit best, float enough) const {
   if (nodes_.empty()) return best;
-  struct Entry {
-    std::uint32_t index;  ///< within its level
-    std::uint32_t level;
-    float distance2;
-  };
-  std::array<Entry, 3 * kMaxDepth + 4> stack;
-  std::size_t size = 0;
+  const PointLanes p{lanes(point.x), lanes(point.y), lanes(point.z)};
   const auto depth = static_cast<std::uint32_t>(level_start_.size() - 1);
-  const Lanes px = lanes(point.x), py = lanes(point.y), pz = lanes(point.z);
-  Entry entry{0, 0, 0.0F};
-  while (true) {
-    if (entry.level == depth) {
-      best = test_leaf(point, entry.index, best);
-      if (best.distance2 <= enough) return best;
-    } else {
-      const Node& node = nodes_[level_start_[entry.level] + entry.index];
-      const Lanes zero = lanes(0.0F);
-      const Lanes dx =
-          max_lanes(max_lanes(load_lanes(node.low[0].data()) - px, px - load_lanes(node.high[0].data())), zero);
-      const Lanes dy =
-          max_lanes(max_lanes(load_lanes(node.low[1].data()) - py, py - load_lanes(node.high[1].data())), zero);
-      const Lanes dz =
-          max_lanes(max_lanes(load_lanes(node.low[2].data()) - pz, pz - load_lanes(node.high[2].data())), zero);
-      const Lanes d = dx * dx + dy * dy + dz * dz;
-      // Non-negative floats order like their bits: the child's number goes into the lowest two, and four integers are
-      // sorted with the far ones first.
-      std::array<std::uint32_t, 4> keys;
-      for (std::uint32_t k = 0; k < 4; ++k)
-        keys[k] = (std::bit_cast<std::uint32_t>(static_cast<float>(d[k])) & ~3U) | k;
-      const auto order = [&](std::size_t i, std::size_t j) {
-        const std::uint32_t a = std::max(keys[i], keys[j]);
-        keys[j] = std::min(keys[i], keys[j]);
-        keys[i] = a;
-      };
-      order(0, 1);
-      order(2, 3);
-      order(0, 2);
-      order(1, 3);
-      order(1, 2);
-      for (const std::uint32_t key : keys) {
-        const float distance2 = std::bit_cast<float>(key & ~3U);
-        if (distance2 < best.distance2) stack[size++] = {4 * entry.index + (key & 3U), entry.level + 1, distance2};
+  Stack stack;
+  std::size_t size = 0;
+  const auto open = [&](std::uint32_t level, std::uint32_t index) {
+    const Lanes distance2 = distances2_to_boxes(nodes_[level_start_[level] + index], p);
+    push_children(4 * index, level + 1, distance2, best.distance2, stack, size);
+  };
+  /// Down whatever is on the stack; false where something is near enough.
+  const auto descend = [&] {
+    while (size > 0) {
+      const Entry entry = stack[--size];
+      if (!(entry.distance2 < best.distance2)) continue;
+      if (entry.level < depth) {
+        open(entry.level, entry.index);
+        continue;
       }
+      best = test_leaf(point, entry.index, best);
+      if (best.distance2 <= enough) return false;
     }
-    do {
-      if (size == 0) return best;
-      entry = stack[--size];
-    } while (!(entry.distance2 < best.distance2));
+    return true;
+  };
+  if (!best.slot.is_valid()) {
+    open(0, 0);
+    descend();
+    return best;
   }
+  // Upwards from the leaf that is known: of each node only the other three children may have something nearer, and
+  // mostly none of them has.
+  std::uint32_t index = best.slot.value / kLeafSize;
+  for (std::uint32_t level = depth; level-- > 0;) {
+    const std::uint32_t known = index & 3U;
+    index >>= 2U;
+    Lanes distance2 = distances2_to_boxes(nodes_[level_start_[level] + index], p);
+    distance2[known] = std::numeric_limits<float>::infinity();
+    if (!any_lane(distance2 < lanes(best.distance2))) continue;
+    push_children(4 * index, level + 1, distance2, best.distance2, stack, size);
+    if (!descend()) return best;
+  }
+  return best;
 }
 
 }  // namespace meshlode::build

@@ -49,7 +49,9 @@ class SurfaceTree {
   [[nodiscard]] Vec3f to_frame(const Vec3d& point) const { return Vec3f((point - center_) * scale_); }
   [[nodiscard]] double scale() const { return scale_; }
 
-  /// The nearest triangle that beats `best`, else `best`. Stops as soon as something is within `enough`.
+  /// The nearest triangle that beats `best`, else `best`. Stops as soon as something is within `enough`. `best` is what
+  /// look_around() says of the same point, and the search goes up from there; or nothing, and it goes down from the
+  /// root.
   [[nodiscard]] Hit find_nearest(const Vec3f& point, Hit best, float enough) const;
   /// The nearest of the four triangles around a slot, if it beats `best`.
   [[nodiscard]] Hit look_around(const Vec3f& point, TreeSlot slot, Hit best) const {
