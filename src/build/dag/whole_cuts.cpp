@@ -111,6 +111,13 @@ std::vector<SourcePoint> choose_points(const PreparedMesh& mesh) {
   return points;
 }
 
+/// A cluster that a point of the source is near to. Cuts that follow one another have most of their clusters in common:
+/// a point that is near enough to one of them need not be looked for in the others.
+struct Near {
+  std::uint32_t cluster = kNoId;
+  float distance = 0.0F;  ///< to it at most, object units, as a SurfaceTree's floats have it
+};
+
 /// A point of the source, far from a cut.
 struct FarPoint {
   double distance = 0.0;
@@ -123,7 +130,12 @@ struct FarPoint {
 class WholeCuts {
  public:
   WholeCuts(const PreparedMesh& mesh, double margin, LodDag& dag)
-      : mesh_(mesh), margin_(margin), dag_(dag), points_(choose_points(mesh)), outputs_(dag.groups.size()) {
+      : mesh_(mesh),
+        margin_(margin),
+        dag_(dag),
+        points_(choose_points(mesh)),
+        near_(points_.size()),
+        outputs_(dag.groups.size()) {
     for (std::uint32_t c = 0; c < dag_.clusters.size(); ++c) {
       if (dag_.clusters[c].own_group.is_valid()) outputs_[dag_.clusters[c].own_group.value].push_back(c);
     }
@@ -169,27 +181,40 @@ class WholeCuts {
     return cut;
   }
 
-  /// The distance of a point from a cut where it is above `enough`, squared and in the tree's frame.
-  static bool is_far(const SurfaceTree& tree, const Vec3d& point, float enough, TreeSlot& place) {
+  /// Where a point is farther from a cut than `enough`, squared and in the tree's frame, its nearest triangle; else one
+  /// that is near enough. `place` is where to begin, and becomes that triangle.
+  static SurfaceTree::Hit find_near(const SurfaceTree& tree, const Vec3d& point, float enough, TreeSlot& place) {
     const Vec3f at = tree.to_frame(point);
     SurfaceTree::Hit hit = tree.look_around(at, place, {});
     if (!(hit.distance2 <= enough)) hit = tree.find_nearest(at, hit, enough);
-    if (!hit.slot.is_valid()) return false;
-    place = hit.slot;
-    return hit.distance2 > enough;
+    if (hit.slot.is_valid()) place = hit.slot;
+    return hit;
+  }
+  static bool is_far(const SurfaceTree& tree, const Vec3d& point, float enough, TreeSlot& place) {
+    const SurfaceTree::Hit hit = find_near(tree, point, enough, place);
+    return hit.slot.is_valid() && hit.distance2 > enough;
   }
 
   /// The farthest points, each with the farthest that was found around it.
-  [[nodiscard]] std::vector<FarPoint> find_far_points(const Surface& cut, double threshold) const {
+  [[nodiscard]] std::vector<FarPoint> find_far_points(const Surface& cut, double threshold) {
     SurfaceTree tree;
     tree.build({cut.positions, cut.triangles});
-    const double scaled = std::max(kLookFrom * threshold, mesh_.level0_deviation) * tree.scale();
+    std::vector<std::uint8_t> is_in_cut(dag_.clusters.size(), 0);
+    for (const std::uint32_t c : cut.cluster) is_in_cut[c] = 1;
+    const double enough_object = std::max(kLookFrom * threshold, mesh_.level0_deviation);
+    const double scaled = enough_object * tree.scale();
     const auto enough = static_cast<float>(scaled * scaled);
     std::vector<std::vector<FarPoint>> partials((points_.size() + kChunk - 1) / kChunk);
     parallel_for_each_index(partials.size(), 1, [&](std::size_t chunk) {
       TreeSlot place{0U};
       for (std::size_t i = chunk * kChunk; i < std::min(points_.size(), (chunk + 1) * kChunk); ++i) {
-        if (!is_far(tree, points_[i].at, enough, place)) continue;
+        Near& near = near_[i];
+        if (near.cluster != kNoId && is_in_cut[near.cluster] != 0 && double{near.distance} <= enough_object) continue;
+        const SurfaceTree::Hit hit = find_near(tree, points_[i].at, enough, place);
+        if (!hit.slot.is_valid()) continue;
+        near = {cut.cluster[tree.triangle_at(place)],
+                static_cast<float>(std::sqrt(double{hit.distance2}) / tree.scale())};
+        if (!(hit.distance2 > enough)) continue;
         partials[chunk].push_back({std::sqrt(tree.distance2_at(points_[i].at, place)), points_[i].at,
                                    static_cast<std::uint32_t>(i), place, group_at(cut, tree, place)});
       }
@@ -300,6 +325,7 @@ class WholeCuts {
   double margin_;
   LodDag& dag_;
   std::vector<SourcePoint> points_;
+  std::vector<Near> near_;                           ///< per point, of the last cut that it was looked for in
   std::vector<std::vector<std::uint32_t>> outputs_;  ///< per group: the clusters made from it
   std::optional<Surface> level0_;                    ///< made when first asked for
   SurfaceTree level0_tree_;
