@@ -12,9 +12,8 @@
 // Errors. Every input is checked before it is used: sizes that do not fit, indices out of range, numbers that are not
 // finite → ErrorCode::kInvalid with a place such as "meshes[0].primitives[2].indices[17]". kUsage: an option that makes
 // no sense, with its name ("BuildOptions::grid_step"). kUnsupported: a budget or grid that needs more bits than the
-// format has, a mesh with more triangles than ids (docs/performance.md), a preset that is not there yet. kBuildFailed:
-// cancelled, out of memory, or more memory needed than allowed. kIo: only from the functions that touch files. No
-// exception leaves.
+// format has, a mesh with more triangles than ids (docs/performance.md). kBuildFailed: cancelled, out of memory, or
+// more memory needed than allowed. kIo: only from the functions that touch files. No exception leaves.
 //
 // Determinism (I10). The same input and options give the same bytes for any number of threads, and for builds that run
 // at the same time.
@@ -29,6 +28,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -101,11 +101,11 @@ enum class AttributeChoice : std::uint8_t {
   kAll,   ///< everything that the source has and the format can hold
 };
 
-/// The trade of time for quality as one word.
+/// The trade of build time for quality and bytes as one word.
 enum class Preset : std::uint8_t {
-  kFast,  ///< kUnsupported yet
-  kDefault,
-  kBest,  ///< kUnsupported yet
+  kFast,     ///< errors are estimated (kQem), topology is a little larger
+  kDefault,  ///< errors are measured (kMeasured)
+  kBest,     ///< as kDefault, with more effort for clusters and the fewest bytes
 };
 
 enum class UvErrorUnit : std::uint8_t {
@@ -116,7 +116,7 @@ enum class UvErrorUnit : std::uint8_t {
 
 /// What `meshlode build` can be told, under the names of its options: `--error-tier`, `--grid` and so on.
 struct BuildOptions {
-  format::ErrorTier error_tier = format::ErrorTier::kMeasured;  ///< what the stored errors are worth
+  std::optional<format::ErrorTier> error_tier;  ///< what the stored errors are worth; nothing: what the preset says
   Preset preset = Preset::kDefault;
   AttributeChoice attributes = AttributeChoice::kAuto;
   double grid_step = 0.0;       ///< mesh units between grid points, for meshes that must abut; 0: from position_error

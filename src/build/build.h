@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <meshlode/build.h>
 #include <meshlode/format.h>
 #include <meshlode/result.h>
 
@@ -16,7 +17,8 @@
 namespace meshlode::build {
 
 struct PipelineOptions {
-  format::ErrorTier error_tier = format::ErrorTier::kMeasured;
+  Preset preset = Preset::kDefault;
+  format::ErrorTier error_tier = format::ErrorTier::kMeasured;  ///< as asked for, or the preset's (build/preset.h)
   AttributeChoice attributes = AttributeChoice::kAuto;
   double grid_step = 0.0;  ///< 0: chosen from the budget; else this step in mesh units
   format::Codec codec = format::Codec::kNone;

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "build/plan/texel_sizes.h"
+#include "build/preset.h"
 #include "format/grid.h"
 
 namespace meshlode::build {
@@ -72,6 +73,8 @@ EncodeOptions encode_options(const PipelineOptions& options, const scene::Source
   encode.normal_error = options.normal_error;
   encode.uv_error = uv_errors(options, source, layout, texels);
   encode.uv_error_may_fall_short = options.uv_error_is_default;
+  encode.strip_trials = settings_of(options.preset).strip_trials;
+  encode.mixed_strip_trials = settings_of(options.preset).mixed_strip_trials;
   return encode;
 }
 
@@ -81,6 +84,7 @@ DagOptions dag_options(const PipelineOptions& options, const PreparedMesh& mesh,
   dag.caps.max_triangles = options.max_cluster_triangles;
   dag.caps.max_vertices = options.max_cluster_vertices;
   dag.caps.target_triangles = options.max_cluster_triangles - std::min(2U, options.max_cluster_triangles / 16);
+  dag.caps.merge_triangles = settings_of(options.preset).merge_triangles;
   dag.simplify.keep_area = is_aggregate(mesh);
   dag.max_group_bytes = format::kMaxPageBytes - kPageFrameBytes;
   dag.cluster_bytes = [&mesh, encode](std::uint32_t vertices, std::uint32_t triangles, std::uint32_t materials) {

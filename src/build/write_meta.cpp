@@ -5,6 +5,7 @@
 
 #include "base/version.h"
 #include "build/dag/build_dag.h"
+#include "build/preset.h"
 #include "format/names.h"
 
 namespace meshlode::build {
@@ -26,6 +27,7 @@ std::string meta_json(const scene::Scene& scene, const PipelineOptions& options,
   meta["generator"] = program_version();
   meta["source"] = {{"file", scene.source_name}, {"hash", scene.source_hash}};
   Json settings;
+  settings["preset"] = name_of(options.preset);
   settings["error_tier"] = format::name_of(options.error_tier);
   settings["error_margin"] = error_margin_of(options.error_tier);
   settings["attributes"] = name_of(options.attributes);

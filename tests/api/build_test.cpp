@@ -175,9 +175,6 @@ TEST(ApiBuild, OptionsThatMakeNoSenseAreUsageErrors) {
 TEST(ApiBuild, WhatCannotBeDoneIsSaidBeforeItIsTried) {
   const Arrays arrays = sphere(4);
   BuildOptions options;
-  options.preset = Preset::kBest;
-  expect_refused(test::build_one(arrays.primitive(), options), ErrorCode::kUnsupported, "BuildOptions::preset");
-  options = {};
   options.normal_error = 0.001;
   EXPECT_EQ(test::build_one(arrays.primitive(), options).error().code, ErrorCode::kUnsupported);
   options = {};
@@ -254,6 +251,34 @@ TEST(ApiBuild, EveryErrorTierIsStored) {
     const auto file = AssetFile::view(*built);
     ASSERT_TRUE(file.ok()) << file.error().message();
     EXPECT_EQ(file->meshes()[0].error_tier, tier);
+  }
+}
+
+TEST(ApiBuild, APresetSetsTheTierThatNobodyAskedForAndIsNamed) {
+  const Arrays arrays = sphere(16);
+  struct Expected {
+    Preset preset;
+    std::optional<format::ErrorTier> asked;
+    format::ErrorTier tier;
+    const char* name;
+  };
+  using format::ErrorTier;
+  for (const Expected& expected : {Expected{Preset::kFast, {}, ErrorTier::kQem, "fast"},
+                                   Expected{Preset::kDefault, {}, ErrorTier::kMeasured, "default"},
+                                   Expected{Preset::kBest, {}, ErrorTier::kMeasured, "best"},
+                                   Expected{Preset::kFast, ErrorTier::kMeasured, ErrorTier::kMeasured, "fast"},
+                                   Expected{Preset::kBest, ErrorTier::kQem, ErrorTier::kQem, "best"}}) {
+    BuildOptions options;
+    options.preset = expected.preset;
+    options.error_tier = expected.asked;
+    const auto built = test::build_one(arrays.primitive(), options);
+    ASSERT_TRUE(built.ok()) << built.error().message();
+    const auto file = AssetFile::view(*built);
+    ASSERT_TRUE(file.ok()) << file.error().message();
+    EXPECT_EQ(file->meshes()[0].error_tier, expected.tier) << expected.name;
+    std::string named = "\"preset\":\"";
+    named += expected.name;
+    EXPECT_NE(file->meta_json().find(named + '"'), std::string_view::npos) << expected.name;
   }
 }
 

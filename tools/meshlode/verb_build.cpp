@@ -15,6 +15,7 @@
 #include "base/json_writer.h"
 #include "base/version.h"
 #include "build/build.h"
+#include "build/preset.h"
 #include "format/names.h"
 #include "options.h"
 #include "outputs.h"
@@ -309,8 +310,8 @@ std::string report_json(const std::vector<JobResult>& results, std::uint32_t job
 
 /// The words of the command line, before they mean anything.
 struct BuildWords {
-  std::string error_tier = format::name_of(format::ErrorTier::kMeasured);
-  std::string preset = "default";
+  std::string error_tier = "auto";
+  std::string preset = build::name_of(Preset::kDefault);
   std::string attributes = build::name_of(AttributeChoice::kAuto);
   std::string grid = "auto";
   std::string position_error = "auto";
@@ -354,12 +355,10 @@ Status set_budgets(const BuildWords& words, build::PipelineOptions& options) {
 }
 
 Result<build::PipelineOptions> make_options(const BuildWords& words) {
-  const auto later = [](const char* option, const std::string& value) {
-    return Error{ErrorCode::kUnsupported, std::string(option) + " " + value, "unsupported yet"};
-  };
   build::PipelineOptions options;
-  options.error_tier = value_in(format::kErrorTierNames, words.error_tier).value_or(options.error_tier);
-  if (words.preset != "default") return later("--preset", words.preset);
+  options.preset = value_in(build::kPresetNames, words.preset).value_or(options.preset);
+  options.error_tier =
+      value_in(format::kErrorTierNames, words.error_tier).value_or(build::settings_of(options.preset).error_tier);
   options.codec = value_in(format::kCodecNames, words.codec).value_or(options.codec);
   options.attributes = value_in(build::kAttributeChoiceNames, words.attributes).value_or(options.attributes);
   if (Status status = set_budgets(words, options); !status) return status.error();
@@ -381,14 +380,18 @@ int run_build(const Verb& verb, std::span<char* const> args) {
   OutputOptions out;
   bool repair = false;
   std::string max_memory = "auto", max_decoded = kDefaultMaxDecodedText;
+  std::vector<std::string> tiers = all_names(format::kErrorTierNames);
+  tiers.insert(tiers.begin(), words.error_tier);
   OptionParser parser(verb);
   parser.add_positionals("input", inputs, ".gltf, .glb, .ply, .obj or .stl files, and folders of them with -O");
   parser.add_value("-o,--output", output, "the asset to write; the input's name with .lode where not given");
   parser.add_value("-O,--output-folder", output_folder, "folder for the assets of many inputs; made where missing");
   parser.add_value("--error-tier", words.error_tier,
-                   "what the errors are worth: qem estimates, measured measures, certified proves",
-                   all_names(format::kErrorTierNames));
-  parser.add_value("--preset", words.preset, "default (fast, best: later)", {"fast", "default", "best"});
+                   "what the errors are worth: qem estimates, measured measures, certified proves; auto: the preset's",
+                   tiers);
+  parser.add_value("--preset", words.preset,
+                   "fast builds fastest and estimates errors, best spends time on clusters and bytes",
+                   all_names(build::kPresetNames));
   parser.add_value("--attributes", words.attributes, "auto keeps what the materials call for, none positions only",
                    all_names(build::kAttributeChoiceNames));
   parser.add_value("--grid", words.grid, "auto, or a step in mesh units for meshes that must abut");

@@ -17,6 +17,7 @@
 #include "base/output_files.h"
 #include "build/api/scene_input.h"
 #include "build/build.h"
+#include "build/preset.h"
 #include "scene/import/import.h"
 
 namespace meshlode {
@@ -29,13 +30,13 @@ bool is_zero_or_more(double value) {
 /// Enumerators come from a caller, who may have cast them from anything.
 Status check_choices(const BuildOptions& options) {
   const auto usage = [](const char* field) { return Error{ErrorCode::kUsage, field, "is not one of its enumerators"}; };
-  if (options.error_tier > format::ErrorTier::kCertified) return usage("BuildOptions::error_tier");
+  if (options.error_tier && *options.error_tier > format::ErrorTier::kCertified)
+    return usage("BuildOptions::error_tier");
   if (options.preset > Preset::kBest) return usage("BuildOptions::preset");
   if (options.attributes > AttributeChoice::kAll) return usage("BuildOptions::attributes");
   if (options.uv_error_unit > UvErrorUnit::kTexels) return usage("BuildOptions::uv_error_unit");
   if (options.codec > format::Codec::kStrips) return usage("BuildOptions::codec");
-  if (options.preset == Preset::kDefault) return Ok{};
-  return Error{ErrorCode::kUnsupported, "BuildOptions::preset", "only kDefault is there yet"};
+  return Ok{};
 }
 
 Status check_numbers(const BuildOptions& options) {
@@ -57,7 +58,8 @@ Result<build::PipelineOptions> make_pipeline_options(const BuildOptions& options
   if (Status status = check_choices(options); !status) return status.error();
   if (Status status = check_numbers(options); !status) return status.error();
   build::PipelineOptions pipeline;
-  pipeline.error_tier = options.error_tier;
+  pipeline.preset = options.preset;
+  pipeline.error_tier = options.error_tier.value_or(build::settings_of(options.preset).error_tier);
   pipeline.attributes = options.attributes;
   pipeline.grid_step = options.grid_step;
   pipeline.position_error = options.position_error;

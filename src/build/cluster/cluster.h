@@ -17,6 +17,8 @@ struct ClusterCaps {
   std::uint32_t max_vertices = 256;
   /// What the partitioner aims at: two below the cap, so that its small imbalance stays inside.
   std::uint32_t target_triangles = 126;
+  /// Triangles may be merged before METIS sees them, for time: build/preset.h says when.
+  bool merge_triangles = true;
 };
 
 /// One part per triangle; parts are 0 … count-1 and none is empty.

@@ -113,6 +113,9 @@ std::string info_text(const run::Asset& asset, const AssetInfo& info, bool list_
   append_format(out, "content hash      %s\n", to_hex(hash).c_str());
   append_format(out, "source            %s   %s\n", printable(meta.source_file).c_str(),
                 printable(meta.source_hash).c_str());
+  if (!meta.preset.empty() && meta.preset != "default") {
+    append_format(out, "preset            %s\n", printable(meta.preset).c_str());
+  }
   append_format(out, "bytes             %s: geometry %s, images %s\n", grouped(header.file_bytes).c_str(),
                 grouped(info.geometry_bytes).c_str(), grouped(info.image_bytes).c_str());
   if (info.source_triangles > 0) {

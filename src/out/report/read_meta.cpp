@@ -71,6 +71,7 @@ MetaInfo read_meta(std::string_view meta_json) {
   const auto dump = [](const Json& j) { return j.dump(-1, ' ', false, Json::error_handler_t::replace); };
   if (const Json* settings = child(json, "settings", Json::value_t::object)) {
     meta.settings = dump(*settings);
+    meta.preset = string_at(*settings, "preset");
     for (const char* key : {"cluster_triangles", "max_cluster_triangles", "triangles_per_cluster"}) {
       const std::int64_t cap = index_at(*settings, key);
       if (cap >= 1 && cap <= 256) meta.cluster_triangles = static_cast<std::uint32_t>(cap);

@@ -20,6 +20,7 @@ struct MetaInfo {
   bool is_valid = false;  ///< false: not JSON, or not an object; everything below is then as here
   std::string generator, source_file, source_hash;
   std::string settings = "{}";          ///< JSON object
+  std::string preset;                   ///< of the settings; empty where it is not said
   std::string plan = "[]";              ///< JSON array
   std::string left_out = "[]";          ///< JSON array
   std::vector<Decision> decisions;      ///< of `plan`, for text

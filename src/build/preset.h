@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Presets: one word for a point on the curve of build time against triangles at equal deviation against bytes. All that
+// a preset sets stands in this table.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include <meshlode/build.h>
+#include <meshlode/format.h>
+
+#include "base/enum_names.h"
+
+namespace meshlode::build {
+
+inline constexpr std::array<EnumName<Preset>, 3> kPresetNames{
+    {{Preset::kFast, "fast"}, {Preset::kDefault, "default"}, {Preset::kBest, "best"}}};
+constexpr const char* name_of(Preset preset) {
+  return name_in(kPresetNames, preset);
+}
+
+struct PresetSettings {
+  format::ErrorTier error_tier;      ///< where the caller asks for none
+  std::uint32_t strip_trials;        ///< EncodeOptions::strip_trials: fewer bytes for time
+  std::uint32_t mixed_strip_trials;  ///< EncodeOptions::mixed_strip_trials
+  bool merge_triangles;              ///< ClusterCaps::merge_triangles: time for a little of the partition's quality
+};
+
+/// In the order of Preset.
+inline constexpr std::array<PresetSettings, 3> kPresetSettings{{
+    {format::ErrorTier::kQem, 1, 4, true},
+    {format::ErrorTier::kMeasured, 8, 128, true},
+    {format::ErrorTier::kMeasured, 48, 192, false},
+}};
+
+/// \pre one of the enumerators
+constexpr const PresetSettings& settings_of(Preset preset) {
+  return kPresetSettings[static_cast<std::size_t>(preset)];
+}
+
+}  // namespace meshlode::build
