@@ -48,7 +48,7 @@ TEST(QualityBench, JudgesCutsAsMetricsDoes) {
     const run::UniformCut cut = run::select_uniform(s.asset, MeshId(0U), thresholds[i]);
     const judge::Surface surface = judge::surface_of_clusters(s.asset, s.decoded, MeshId(0U), cut.clusters);
     const CutFigures figures = judge.measure(cut.clusters);
-    const judge::DeviationReport expected = judge::measure_deviation(s.source, surface, {.samples = 50000});
+    const judge::DeviationReport expected = judge::DeviationFrom(s.source, {.samples = 50000}).measure(surface);
     EXPECT_EQ(figures.triangles, surface.triangles.size());
     EXPECT_DOUBLE_EQ(figures.max_to_cut, expected.a_to_b.max) << "the same samples";
     EXPECT_NEAR(figures.rms_to_cut, expected.a_to_b.rms, 1e-12 + 1e-9 * expected.a_to_b.rms);
@@ -111,13 +111,13 @@ TEST(QualityBench, TheReferenceSimplifiesAndSaysWhatItLeftOut) {
   EXPECT_EQ(reference.refused_count(), 1U);
   EXPECT_EQ(reference.face_count(), sound);
   source.triangles.resize(sound);
-  EXPECT_LT(judge::measure_deviation(source, reference.surface(), {.samples = 5000}).max(), 1e-12);
+  EXPECT_LT(judge::DeviationFrom(source, {.samples = 5000}).measure(reference.surface()).max(), 1e-12);
   double before = 0.0;
   for (const std::size_t faces : {sound / 2, sound / 4, sound / 16}) {
     EXPECT_TRUE(reference.decimate_to(faces));
     EXPECT_LE(reference.face_count(), faces);
     EXPECT_GE(reference.face_count(), faces - 2);
-    const double deviation = judge::measure_deviation(source, reference.surface(), {.samples = 5000}).rms();
+    const double deviation = judge::DeviationFrom(source, {.samples = 5000}).measure(reference.surface()).rms();
     EXPECT_GT(deviation, before);
     before = deviation;
   }

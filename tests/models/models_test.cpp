@@ -133,15 +133,13 @@ void expect_root_within(const Built& built, double limit) {
   const double diagonal = asset.meshes()[0].diagonal;
   const judge::Surface source = judge::surface_of_source(built.scene.meshes[0]);
   const run::UniformCut roots = run::select_uniform(asset, MeshId(0U), HUGE_VAL);
+  const judge::DeviationFrom from_source(source, {});
   const double root =
-      judge::measure_deviation(source, judge::surface_of_clusters(asset, *decoded, MeshId(0U), roots.clusters), {})
-          .max() /
-      diagonal;
+      from_source.measure(judge::surface_of_clusters(asset, *decoded, MeshId(0U), roots.clusters)).max() / diagonal;
   EXPECT_LE(root, limit);
   const run::UniformCut finest = run::select_uniform(asset, MeshId(0U), 0.0);
   const double level0 =
-      judge::measure_deviation(source, judge::surface_of_clusters(asset, *decoded, MeshId(0U), finest.clusters), {})
-          .max();
+      from_source.measure(judge::surface_of_clusters(asset, *decoded, MeshId(0U), finest.clusters)).max();
   EXPECT_LE(level0, finest.stored_error * (1.0 + 1e-6)) << "quantization alone";
   std::printf("root deviates by %.3f%% of the diagonal, level 0 by %.5f%%\n", 100.0 * root, 100.0 * level0 / diagonal);
 }

@@ -54,6 +54,7 @@ std::string to_json(const std::string& path, const std::string& source, const ju
   json.begin_object();
   json.field("file", path);
   json.field("source", source);
+  json.field("quick", options.is_quick);
   json.field("uniform_cuts", options.uniform_cuts);
   json.field("cameras", options.cameras);
   json.field("seed", options.seed);
@@ -103,6 +104,8 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
   OptionParser parser(verb);
   parser.add_positional("file", path, "a .lode asset");
   parser.add_value("--source", source_path, "the scene it was built from");
+  parser.add_flag("--quick", options.is_quick,
+                  "structure, border proof and one measured cut a mesh; the source's triangles are not looked for");
   parser.add_value("--cuts", options.uniform_cuts, "uniform cuts per mesh that cross-check the border proof");
   parser.add_value("--cameras", options.cameras, "random cameras that cross-check selection and hierarchy");
   parser.add_value("--deviation-cuts", options.deviation_cuts,
@@ -138,6 +141,7 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
       source_path, {.repair = was_repaired(*asset), .files_read = &files_read, .max_decoded = *max_decoded});
   output_files().keep(files_read);
   if (!source) return print_error(source.error());
+  if (options.is_quick) options.uniform_cuts = options.cameras = 0;  // as it is reported
   judge::VerifyReport report = judge::verify_asset(*asset, *source, options);
   if (gpu_options.is_on) {
     if (const Status judged = verify_with_gpu(*asset, *source, gpu_options, report); !judged) {
@@ -154,6 +158,7 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
 
 const Verb kVerifyVerb{"verify", "prove an asset against the scene it was built from",
                        "meshlode verify scene.lode --source scene.glb\n"
+                       "  meshlode verify scene.lode --source scene.glb --quick\n"
                        "  meshlode verify scene.lode --source scene.glb --cuts 1000 --cameras 500 --seed 7\n"
                        "  meshlode verify scene.lode --source scene.glb --gpu --orbits 50",
                        run_verify};

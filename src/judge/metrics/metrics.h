@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -41,21 +42,33 @@ struct DeviationReport {
   [[nodiscard]] double rms() const { return a_to_b.rms > b_to_a.rms ? a_to_b.rms : b_to_a.rms; }
 };
 
-/// Infinite where one surface has no triangle and the other has; 0 where both have none.
-[[nodiscard]] DeviationReport measure_deviation(const Surface& a, const Surface& b, const DeviationOptions& options);
-
 /// The larger of both ways' maxima, and where it is.
 struct LargestDeviation {
-  double max = 0.0;          ///< measure_deviation().max() of the same surfaces and options
+  double max = 0.0;          ///< DeviationFrom::measure().max() of the same surfaces and options
   Vec3d worst{0.0};          ///< the first point that is as far away
   bool is_of_a = true;       ///< `worst` is a point of surface a
   std::uint64_t points = 0;  ///< samples and vertices, both ways
 };
 
-/// The maximum alone. A search ends at the first triangle that is nearer than the largest distance found so far: of
-/// surfaces that lie close to each other almost every one is over with a triangle or two, however many cross there.
-[[nodiscard]] LargestDeviation find_largest_deviation(const Surface& a, const Surface& b,
-                                                      const DeviationOptions& options);
+/// A surface a that others are measured against, one after another: what is made of it is made once. Infinite where one
+/// surface has no triangle and the other has; 0 where both have none.
+class DeviationFrom {
+ public:
+  /// \pre `a` outlives this
+  DeviationFrom(const Surface& a, const DeviationOptions& options);
+  ~DeviationFrom();
+  DeviationFrom(DeviationFrom&&) noexcept;
+
+  [[nodiscard]] DeviationReport measure(const Surface& b) const;
+  /// The maximum alone. A search ends at the first triangle that is nearer than the largest distance found so far, and
+  /// there is none where the point before says that much: of surfaces that lie close to each other almost every one is
+  /// over with a triangle or two, however many cross there.
+  [[nodiscard]] LargestDeviation find_largest(const Surface& b) const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
 
 /// Clusters of one mesh as a surface in mesh space (origin included), exactly as decoded. `decoded` has every cluster
 /// of the asset, as decode_all gives them.

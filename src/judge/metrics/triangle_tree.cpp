@@ -51,17 +51,17 @@ constexpr double kMostPieces = 8.0;  // of one triangle
 // In all: twice the triangles, or this many where the triangles are few.
 constexpr double kPieceBudget = 262144.0;
 
-struct Box {
+struct ExactBox {
   Vec3d low, high;
 };
 
-Box box_of(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+ExactBox box_of(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   return {glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))};
 }
 
 /// Into how many pieces a triangle would best be cut.
 double wanted_pieces(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
-  const Box box = box_of(a, b, c);
+  const ExactBox box = box_of(a, b, c);
   const Vec3d size = box.high - box.low;
   const Vec3d cross = glm::cross(b - a, c - a);
   const double area = 0.5 * std::sqrt(glm::dot(cross, cross));
@@ -72,8 +72,8 @@ double wanted_pieces(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
 }
 
 /// The box of what lies between two planes across an axis, a little too large rather than too small.
-Box box_between(const std::array<Vec3d, 3>& corners, int axis, double from, double to) {
-  Box box{Vec3d(std::numeric_limits<double>::infinity()), Vec3d(-std::numeric_limits<double>::infinity())};
+ExactBox box_between(const std::array<Vec3d, 3>& corners, int axis, double from, double to) {
+  ExactBox box{Vec3d(std::numeric_limits<double>::infinity()), Vec3d(-std::numeric_limits<double>::infinity())};
   const auto add = [&](const Vec3d& p) {
     box.low = glm::min(box.low, p);
     box.high = glm::max(box.high, p);
@@ -87,15 +87,48 @@ Box box_between(const std::array<Vec3d, 3>& corners, int axis, double from, doub
       add(p + (q - p) * std::clamp((plane - p[axis]) / (q[axis] - p[axis]), 0.0, 1.0));
     }
   }
-  const Box whole = box_of(corners[0], corners[1], corners[2]);
+  const ExactBox whole = box_of(corners[0], corners[1], corners[2]);
   const Vec3d size = whole.high - whole.low, far = glm::max(glm::abs(whole.low), glm::abs(whole.high));
   const double rounding = 1e-12 * std::max({size.x, size.y, size.z}) + 1e-15 * std::max({far.x, far.y, far.z});
   return {box.low - rounding, box.high + rounding};
 }
 
+float center_of(const std::array<float, 3>& low, const std::array<float, 3>& high, int axis) {
+  const auto k = static_cast<std::size_t>(axis);
+  return 0.5F * low[k] + 0.5F * high[k];
+}
+
 }  // namespace
 
-std::vector<TriangleTree::Piece> TriangleTree::cut_to_pieces(const Surface& surface) {
+void TriangleTree::set_frame(const Surface& surface) {
+  Vec3d low(std::numeric_limits<double>::infinity()), high(-low);
+  for (const auto& t : surface.triangles) {
+    for (const std::uint32_t v : t) {
+      low = glm::min(low, surface.positions[v]);
+      high = glm::max(high, surface.positions[v]);
+    }
+  }
+  origin_ = 0.5 * low + 0.5 * high;
+  const Vec3d half = 0.5 * high - 0.5 * low;
+  int exponent = 0;
+  (void)std::frexp(std::max({half.x, half.y, half.z}), &exponent);
+  scale_ = std::ldexp(1.0, std::clamp(-exponent, -500, 500));  // its square is a double too
+  const Vec3d far = glm::max(glm::abs(low), glm::abs(high));
+  rounding_ = 0x1p-51 * scale_ * std::max({far.x, far.y, far.z});
+}
+
+TriangleTree::Box TriangleTree::to_frame(const Vec3d& low, const Vec3d& high) const {
+  const Vec3d from = to_frame(low) - rounding_, to = to_frame(high) + rounding_;
+  Box box;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto k = static_cast<std::size_t>(axis);
+    box.low[k] = std::nextafter(static_cast<float>(from[axis]), -std::numeric_limits<float>::infinity());
+    box.high[k] = std::nextafter(static_cast<float>(to[axis]), std::numeric_limits<float>::infinity());
+  }
+  return box;
+}
+
+std::vector<TriangleTree::Piece> TriangleTree::cut_to_pieces(const Surface& surface) const {
   const std::size_t count = surface.triangles.size();
   const auto corners_of = [&](std::size_t i) {
     const auto& t = surface.triangles[i];
@@ -103,25 +136,24 @@ std::vector<TriangleTree::Piece> TriangleTree::cut_to_pieces(const Surface& surf
   };
   double most = kMostPieces;
   const double budget = std::max(2.0 * static_cast<double>(count), kPieceBudget);
-  std::vector<double> wanted(count);
+  std::vector<float> wanted(count);
   for (std::size_t i = 0; i < count; ++i) {
     const auto [a, b, c] = corners_of(i);
-    wanted[i] = wanted_pieces(a, b, c);
+    wanted[i] = static_cast<float>(wanted_pieces(a, b, c));  // small whole numbers
   }
   for (; most > 1.0; most *= 0.5) {
     double sum = 0.0;
-    for (const double pieces : wanted) sum += std::min(pieces, most);
+    for (const float pieces : wanted) sum += std::min(double{pieces}, most);
     if (sum <= budget) break;
   }
   std::vector<Piece> pieces;
   pieces.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
     const std::array<Vec3d, 3> corners = corners_of(i);
-    const Box box = box_of(corners[0], corners[1], corners[2]);
-    const auto parts = static_cast<std::uint32_t>(std::min(wanted[i], most));
+    const ExactBox box = box_of(corners[0], corners[1], corners[2]);
+    const auto parts = static_cast<std::uint32_t>(std::min(double{wanted[i]}, most));
     if (parts <= 1) {
-      pieces.push_back(
-          {box.low, box.high, (corners[0] + corners[1] + corners[2]) / 3.0, static_cast<std::uint32_t>(i)});
+      pieces.push_back({to_frame(box.low, box.high), static_cast<std::uint32_t>(i)});
       continue;
     }
     const Vec3d size = box.high - box.low;
@@ -129,8 +161,8 @@ std::vector<TriangleTree::Piece> TriangleTree::cut_to_pieces(const Surface& surf
     double from = box.low[axis];
     for (std::uint32_t part = 1; part <= parts; ++part) {
       const double to = part == parts ? box.high[axis] : box.low[axis] + size[axis] * part / parts;
-      const Box piece = box_between(corners, axis, from, to);
-      pieces.push_back({piece.low, piece.high, 0.5 * (piece.low + piece.high), static_cast<std::uint32_t>(i)});
+      const ExactBox piece = box_between(corners, axis, from, to);
+      pieces.push_back({to_frame(piece.low, piece.high), static_cast<std::uint32_t>(i)});
       from = to;
     }
   }
@@ -139,32 +171,47 @@ std::vector<TriangleTree::Piece> TriangleTree::cut_to_pieces(const Surface& surf
 
 TriangleTree::TriangleTree(const Surface& surface) {
   if (surface.triangles.empty()) return;
+  set_frame(surface);
   std::vector<Piece> pieces = cut_to_pieces(surface);
   const auto count = static_cast<std::uint32_t>(pieces.size());
-  nodes_.reserve(2 * std::size_t{count});
+  nodes_.reserve(count + 1);  // of more than kLeafSize pieces each half has two: no more nodes than pieces
   nodes_.emplace_back();
   split(0, pieces, 0, count);
-  corners_.resize(count);
-  triangle_.resize(count);
-  place_.resize(surface.triangles.size());
-  for (std::uint32_t i = 0; i < count; ++i) {
-    triangle_[i] = pieces[i].triangle;
-    const auto& t = surface.triangles[triangle_[i]];
-    corners_[i] = {surface.positions[t[0]], surface.positions[t[1]], surface.positions[t[2]]};
-    place_[triangle_[i]] = i;
-  }
+  const auto grow = [](Box& box, const Box& other) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      box.low[k] = std::min(box.low[k], other.low[k]);
+      box.high[k] = std::max(box.high[k], other.high[k]);
+    }
+  };
   for (std::size_t n = nodes_.size(); n-- > 0;) {  // children lie behind their node
     Node& node = nodes_[n];
     if (node.count == 0) {
-      node.low = glm::min(nodes_[node.first].low, nodes_[node.first + 1].low);
-      node.high = glm::max(nodes_[node.first].high, nodes_[node.first + 1].high);
+      node.box = nodes_[node.first].box;
+      grow(node.box, nodes_[node.first + 1].box);
       continue;
     }
-    node.low = pieces[node.first].low;
-    node.high = pieces[node.first].high;
-    for (std::uint32_t i = node.first + 1; i < node.first + node.count; ++i) {
-      node.low = glm::min(node.low, pieces[i].low);
-      node.high = glm::max(node.high, pieces[i].high);
+    node.box = pieces[node.first].box;
+    for (std::uint32_t i = node.first + 1; i < node.first + node.count; ++i) grow(node.box, pieces[i].box);
+  }
+  copy_triangles(surface, pieces);
+}
+
+void TriangleTree::copy_triangles(const Surface& surface, const std::vector<Piece>& pieces) {
+  constexpr std::uint32_t kUnused = 0xFFFFFFFFU;
+  std::vector<std::uint32_t> renamed(surface.positions.size(), kUnused);
+  corners_.resize(pieces.size());
+  triangle_.resize(pieces.size());
+  place_.resize(surface.triangles.size());
+  for (std::uint32_t i = 0; i < pieces.size(); ++i) {
+    triangle_[i] = pieces[i].triangle;
+    place_[triangle_[i]] = i;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t v = surface.triangles[triangle_[i]][k];
+      if (renamed[v] == kUnused) {
+        renamed[v] = static_cast<std::uint32_t>(positions_.size());
+        positions_.push_back(surface.positions[v]);
+      }
+      corners_[i][k] = renamed[v];
     }
   }
 }
@@ -175,18 +222,26 @@ void TriangleTree::split(std::uint32_t node, std::vector<Piece>& pieces, std::ui
     nodes_[node].count = count;
     return;
   }
-  Vec3d low = pieces[first].center, high = low;
-  for (std::uint32_t i = first; i < first + count; ++i) {
-    low = glm::min(low, pieces[i].center);
-    high = glm::max(high, pieces[i].center);
+  std::array<float, 3> low, high;
+  for (int axis = 0; axis < 3; ++axis) {
+    low[static_cast<std::size_t>(axis)] = std::numeric_limits<float>::infinity();
+    high[static_cast<std::size_t>(axis)] = -std::numeric_limits<float>::infinity();
   }
-  const Vec3d extent = high - low;
+  for (std::uint32_t i = first; i < first + count; ++i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const float at = center_of(pieces[i].box.low, pieces[i].box.high, axis);
+      low[static_cast<std::size_t>(axis)] = std::min(low[static_cast<std::size_t>(axis)], at);
+      high[static_cast<std::size_t>(axis)] = std::max(high[static_cast<std::size_t>(axis)], at);
+    }
+  }
+  const Vec3f extent(high[0] - low[0], high[1] - low[1], high[2] - low[2]);
   const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
   const std::uint32_t half = count / 2;
   const auto begin = pieces.begin() + first;
   // Pieces of one triangle whose centres agree are alike in all that matters.
   std::nth_element(begin, begin + half, begin + count, [&](const Piece& a, const Piece& b) {
-    return a.center[axis] != b.center[axis] ? a.center[axis] < b.center[axis] : a.triangle < b.triangle;
+    const float at_a = center_of(a.box.low, a.box.high, axis), at_b = center_of(b.box.low, b.box.high, axis);
+    return at_a != at_b ? at_a < at_b : a.triangle < b.triangle;
   });
   const std::uint32_t left = static_cast<std::uint32_t>(nodes_.size());
   nodes_[node].first = left;
@@ -195,17 +250,29 @@ void TriangleTree::split(std::uint32_t node, std::vector<Piece>& pieces, std::ui
   split(left + 1, pieces, first + half, count - half);
 }
 
-double TriangleTree::distance2_to_box(const Node& node, const Vec3d& p) const {
-  const Vec3d outside = glm::max(glm::max(node.low - p, p - node.high), Vec3d(0.0));
-  return glm::dot(outside, outside);
+inline double TriangleTree::distance2_to_box(const Box& box, const Vec3d& p) {
+  const double x = std::max(std::max(double{box.low[0]} - p.x, p.x - double{box.high[0]}), 0.0);
+  const double y = std::max(std::max(double{box.low[1]} - p.y, p.y - double{box.high[1]}), 0.0);
+  const double z = std::max(std::max(double{box.low[2]} - p.z, p.z - double{box.high[2]}), 0.0);
+  return x * x + y * y + z * z;
+}
+
+inline double TriangleTree::distance2_at(const Vec3d& point, std::uint32_t place) const {
+  const auto& t = corners_[place];
+  return distance2_to_triangle(point, positions_[t[0]], positions_[t[1]], positions_[t[2]]);
 }
 
 NearestPoint TriangleTree::nearest_unless_below(double enough, const Vec3d& point, std::uint32_t hint) const {
   NearestPoint best;
   if (nodes_.empty()) return best;
+  const Vec3d at = to_frame(point);
+  const double scale2 = scale_ * scale_;
+  double limit = std::numeric_limits<double>::infinity();  // of the best, in the frame
   const auto try_triangle = [&](std::uint32_t i) {
-    const double d = distance2_to_triangle(point, corners_[i].a, corners_[i].b, corners_[i].c);
-    if (d < best.distance2) best = {d, triangle_[i]};
+    const double d = distance2_at(point, i);
+    if (!(d < best.distance2)) return;
+    best = {d, triangle_[i]};
+    limit = d * scale2;
   };
   if (hint < place_.size()) try_triangle(place_[hint]);
   struct Entry {
@@ -214,41 +281,43 @@ NearestPoint TriangleTree::nearest_unless_below(double enough, const Vec3d& poin
   };
   std::array<Entry, 64> stack;  // median splits: the depth is below 32
   std::size_t size = 0;
-  stack[size++] = {0, distance2_to_box(nodes_[0], point)};
+  stack[size++] = {0, distance2_to_box(nodes_[0].box, at)};
   while (size > 0) {
     if (best.distance2 < enough) return best;
     const Entry entry = stack[--size];
-    if (entry.distance2 >= best.distance2) continue;
+    if (entry.distance2 >= limit) continue;
     const Node& node = nodes_[entry.node];
     if (node.count > 0) {
       for (std::uint32_t i = node.first; i < node.first + node.count; ++i) try_triangle(i);
       continue;
     }
-    Entry near{node.first, distance2_to_box(nodes_[node.first], point)};
-    Entry far{node.first + 1, distance2_to_box(nodes_[node.first + 1], point)};
+    Entry near{node.first, distance2_to_box(nodes_[node.first].box, at)};
+    Entry far{node.first + 1, distance2_to_box(nodes_[node.first + 1].box, at)};
     if (far.distance2 < near.distance2) std::swap(near, far);
-    if (far.distance2 < best.distance2) stack[size++] = far;
-    if (near.distance2 < best.distance2) stack[size++] = near;
+    if (far.distance2 < limit) stack[size++] = far;
+    if (near.distance2 < limit) stack[size++] = near;
   }
   return best;
 }
 
 void TriangleTree::find_within(const Vec3d& point, double distance2, std::vector<NearestPoint>& found) const {
   if (nodes_.empty()) return;
+  const Vec3d at = to_frame(point);
+  const double limit = distance2 * (scale_ * scale_);
   const auto first_found = static_cast<std::ptrdiff_t>(found.size());
   std::array<std::uint32_t, 64> stack;
   std::size_t size = 0;
   stack[size++] = 0;
   while (size > 0) {
     const Node& node = nodes_[stack[--size]];
-    if (distance2_to_box(node, point) > distance2) continue;
+    if (distance2_to_box(node.box, at) > limit) continue;
     if (node.count == 0) {
       stack[size++] = node.first;
       stack[size++] = node.first + 1;
       continue;
     }
     for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-      const double d = distance2_to_triangle(point, corners_[i].a, corners_[i].b, corners_[i].c);
+      const double d = distance2_at(point, i);
       if (d <= distance2) found.push_back({d, triangle_[i]});
     }
   }

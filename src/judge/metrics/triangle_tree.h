@@ -2,8 +2,10 @@
 // Nearest points on a triangle soup, in doubles.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "judge/metrics/metrics.h"
@@ -20,7 +22,8 @@ struct NearestPoint {
 
 /// A bounding volume hierarchy with a fixed shape (median splits along the longest axis of the centres). A triangle
 /// that fills little of its box, a spoke of a wheel say, stands in several leaves, in each for a piece of its length:
-/// else every point near the hub would lie in the boxes of a quarter of the spokes.
+/// else every point near the hub would lie in the boxes of a quarter of the spokes. Distances are exact; boxes are
+/// floats, rounded outwards, so that a node is half as large.
 class TriangleTree {
  public:
   explicit TriangleTree(const Surface& surface);
@@ -33,31 +36,43 @@ class TriangleTree {
   /// The same for a point that is as far away as the squared distance `enough` or farther; of a nearer one some
   /// triangle that is nearer than that.
   [[nodiscard]] NearestPoint nearest_unless_below(double enough, const Vec3d& point, std::uint32_t hint) const;
+  /// Triangles of the surface, those that are near each other one after another; one in several leaves several times.
+  [[nodiscard]] std::span<const std::uint32_t> triangles_in_order() const { return triangle_; }
   /// Every triangle within a squared distance (inclusive), appended in no particular order that is always the same.
   void find_within(const Vec3d& point, double distance2, std::vector<NearestPoint>& found) const;
 
  private:
+  /// In the tree's frame: floats of about unit size.
+  struct Box {
+    std::array<float, 3> low, high;
+  };
   struct Node {
-    Vec3d low, high;
+    Box box;
     std::uint32_t first = 0;  ///< left child (the right one follows it), or first triangle of a leaf
     std::uint32_t count = 0;  ///< triangles of a leaf; 0 for an inner node
   };
-  struct Corners {
-    Vec3d a, b, c;
-  };
   struct Piece {
-    Vec3d low, high, center;
+    Box box;
     std::uint32_t triangle;
   };
 
-  [[nodiscard]] static std::vector<Piece> cut_to_pieces(const Surface& surface);
+  void set_frame(const Surface& surface);
+  [[nodiscard]] Vec3d to_frame(const Vec3d& p) const { return (p - origin_) * scale_; }
+  [[nodiscard]] Box to_frame(const Vec3d& low, const Vec3d& high) const;
+  [[nodiscard]] std::vector<Piece> cut_to_pieces(const Surface& surface) const;
   void split(std::uint32_t node, std::vector<Piece>& pieces, std::uint32_t first, std::uint32_t count);
-  [[nodiscard]] double distance2_to_box(const Node& node, const Vec3d& p) const;
+  void copy_triangles(const Surface& surface, const std::vector<Piece>& pieces);
+  [[nodiscard]] static double distance2_to_box(const Box& box, const Vec3d& p);
+  [[nodiscard]] double distance2_at(const Vec3d& point, std::uint32_t place) const;
 
+  Vec3d origin_{0.0};
+  double scale_ = 1.0;     ///< a power of two: distances in the frame are so many times those outside
+  double rounding_ = 0.0;  ///< what a point of the surface may be off by in the frame, twice
   std::vector<Node> nodes_;
-  std::vector<Corners> corners_;         ///< in leaf order
-  std::vector<std::uint32_t> triangle_;  ///< leaf order -> surface
-  std::vector<std::uint32_t> place_;     ///< surface -> leaf order, a place of several
+  std::vector<Vec3d> positions_;                       ///< in the order in which leaves use them
+  std::vector<std::array<std::uint32_t, 3>> corners_;  ///< in leaf order
+  std::vector<std::uint32_t> triangle_;                ///< leaf order -> surface
+  std::vector<std::uint32_t> place_;                   ///< surface -> leaf order, a place of several
 };
 
 }  // namespace meshlode::judge

@@ -14,7 +14,7 @@ namespace meshlode::judge {
 namespace {
 
 /// Errors to cut at: 0 where a group says that, and from the smallest positive to the largest finite one, evenly in the
-/// logarithm.
+/// logarithm. One alone is in the middle; 0 only where there is no other.
 std::vector<double> thresholds_of(const run::Asset& asset, const format::MeshRecord& mesh, std::uint32_t count) {
   float low = format::kInfiniteError;
   float high = 0.0F;
@@ -27,10 +27,10 @@ std::vector<double> thresholds_of(const run::Asset& asset, const format::MeshRec
     high = std::max(high, error);
   }
   std::vector<double> thresholds;
-  if (any_zero && count > 0) thresholds.push_back(0.0);
+  if (any_zero && (count > 1 || (count == 1 && !(high > 0.0F)))) thresholds.push_back(0.0);
   if (!(high > 0.0F)) return thresholds;
   for (std::uint32_t i = 0; i < count; ++i) {
-    const double t = count < 2 ? 1.0 : static_cast<double>(i) / (count - 1);
+    const double t = count < 2 ? 0.5 : static_cast<double>(i) / (count - 1);
     thresholds.push_back(double{low} * std::pow(double{high} / low, t) * (1.0 + 1e-12));
   }
   return thresholds;
@@ -50,6 +50,7 @@ std::vector<CutDeviation> measure_cuts(const run::Asset& asset, MeshId mesh, con
                                        std::uint64_t samples) {
   const format::MeshRecord& record = asset.meshes()[mesh.value];
   const Surface truth = surface_of_source(source);
+  const DeviationFrom from_truth(truth, {.samples = samples});
   std::vector<CutDeviation> measured;
   std::vector<ClusterId> previous;
   for (const double threshold : thresholds_of(asset, record, cuts)) {
@@ -57,8 +58,7 @@ std::vector<CutDeviation> measure_cuts(const run::Asset& asset, MeshId mesh, con
     if (cut.clusters == previous) continue;
     previous = cut.clusters;
     const Surface surface = surface_of_clusters(asset, clusters, mesh, cut.clusters);
-    measured.push_back({threshold, cut.stored_error, find_largest_deviation(truth, surface, {.samples = samples}),
-                        rounding_of(record)});
+    measured.push_back({threshold, cut.stored_error, from_truth.find_largest(surface), rounding_of(record)});
   }
   return measured;
 }

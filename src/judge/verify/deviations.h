@@ -31,7 +31,8 @@ struct CutDeviation {
 };
 
 /// Up to `cuts` uniform cuts of a mesh, evenly in the logarithm of the error, and before them the cut at 0 where a
-/// group says that it does not deviate; each another one. `samples` are area-uniform samples each way.
+/// group says that it does not deviate; each another one. A single one is in the middle of the errors. `samples` are
+/// area-uniform samples each way.
 [[nodiscard]] std::vector<CutDeviation> measure_cuts(const run::Asset& asset, MeshId mesh,
                                                      const scene::SourceMesh& source,
                                                      std::span<const run::DecodedCluster> clusters, std::uint32_t cuts,

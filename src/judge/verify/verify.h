@@ -15,6 +15,9 @@
 namespace meshlode::judge {
 
 struct VerifyOptions {
+  /// Structure, border proof, what surrounds the geometry, and one measured cut of each mesh, in the middle of its
+  /// errors. Triangles are not looked for, no other cut and no camera is looked at, and the counts below are not asked.
+  bool is_quick = false;
   std::uint32_t uniform_cuts = 300;   ///< cuts per mesh that cross-check I6
   std::uint32_t cameras = 100;        ///< cameras that cross-check I5, I6 and I8
   std::uint32_t deviation_cuts = 12;  ///< uniform cuts per mesh that are measured for I7, where the tier promises it
@@ -30,7 +33,7 @@ struct VerifyReport {
     std::string what;         ///< one line: what was checked
     std::uint64_t items = 0;  ///< how many groups, cuts, triangles …
     std::uint64_t failures = 0;
-    bool skipped = false;  ///< with the reason in `what`: I7 in the qem tier
+    bool skipped = false;  ///< with the reason in `what`: I7 in the qem tier, I1 in a quick look
   };
   std::vector<Check> checks;
 };

@@ -93,7 +93,7 @@ TEST(Certified, HoldsAlongAChainOfLevelsForEveryPart) {
       // What is proven of one triangle holds for it alone.
       for (std::size_t t = 0; t < level.triangles.size(); t += level.triangles.size() / 3 + 1) {
         const judge::Surface one{level.positions, {level.triangles[t]}};
-        EXPECT_GE(certified.bounds[t].to_source, judge::measure_deviation(one, fine, {.samples = 100}).a_to_b.max);
+        EXPECT_GE(certified.bounds[t].to_source, judge::DeviationFrom(one, {.samples = 100}).measure(fine).a_to_b.max);
       }
       bounds = std::move(certified.bounds);
       finer = &level;

@@ -42,7 +42,7 @@ inline build::GroupDeviation measure_one_step(const judge::Surface& fine, const 
 
 /// The larger of the two maxima over dense samples and all vertices.
 inline double dense_truth(const judge::Surface& a, const judge::Surface& b, std::uint64_t samples = 20000) {
-  return judge::measure_deviation(a, b, {.samples = samples}).max();
+  return judge::DeviationFrom(a, {.samples = samples}).measure(b).max();
 }
 
 inline judge::Surface random_soup(Random& random, std::uint32_t count, double size, double edge) {

@@ -8,6 +8,7 @@ json info info a.lode --format json
 json info info a.lode --format json --stuck
 json validate validate a.lode --format json
 json verify verify a.lode --source a.glb --cuts 10 --cameras 3 --format json
+json verify verify a.lode --source a.glb --quick --format json
 json render render a.lode -o a.png --size 64x48 --format json
 json render render a.lode -o a.png --size 64x48 --ortho 3 --error 0.01 --relative --format json
 json extract extract a.lode --error 0.01 --relative -o cut.glb --format json

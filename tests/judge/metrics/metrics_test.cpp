@@ -181,7 +181,7 @@ TEST(Metrics, TheHubOfAWheelIsNoTrap) {
 }
 
 TEST(Metrics, ParallelSquaresAreTheirDistanceApartBothWays) {
-  const DeviationReport r = measure_deviation(make_square(10.0, 0.0, 7), make_square(10.0, 0.25, 3), {20000, 1});
+  const DeviationReport r = DeviationFrom(make_square(10.0, 0.0, 7), {20000, 1}).measure(make_square(10.0, 0.25, 3));
   for (const OneWayDeviation& d : {r.a_to_b, r.b_to_a}) {
     EXPECT_NEAR(d.max, 0.25, 1e-12);
     EXPECT_NEAR(d.rms, 0.25, 1e-12);
@@ -191,7 +191,7 @@ TEST(Metrics, ParallelSquaresAreTheirDistanceApartBothWays) {
 }
 
 TEST(Metrics, ASurfaceIsAtDistanceZeroFromItselfAndItsRefinement) {
-  const DeviationReport r = measure_deviation(make_square(10.0, 1.0, 2), make_square(10.0, 1.0, 9), {20000, 1});
+  const DeviationReport r = DeviationFrom(make_square(10.0, 1.0, 2), {20000, 1}).measure(make_square(10.0, 1.0, 9));
   EXPECT_EQ(r.max(), 0.0);
   EXPECT_EQ(r.rms(), 0.0);
 }
@@ -200,7 +200,7 @@ TEST(Metrics, AMissingPartIsSeenFromOneSideOnlyAndItsRmsIsTheIntegral) {
   // B is the left half: points of A at x > 5 are x - 5 away. rms² = ∫₅¹⁰ (x-5)² dx / 10 = 125/3/10.
   Surface half = make_square(10.0, 0.0, 10);
   for (Vec3d& p : half.positions) p.x *= 0.5;
-  const DeviationReport r = measure_deviation(make_square(10.0, 0.0, 10), half, {200000, 1});
+  const DeviationReport r = DeviationFrom(make_square(10.0, 0.0, 10), {200000, 1}).measure(half);
   EXPECT_DOUBLE_EQ(r.a_to_b.max, 5.0);
   EXPECT_DOUBLE_EQ(r.a_to_b.worst.x, 10.0);
   EXPECT_NEAR(r.a_to_b.rms, std::sqrt(125.0 / 30.0), 1e-4);
@@ -218,16 +218,16 @@ TEST(Metrics, SamplesAreUniformInAreaWhateverTheTriangles) {
     if (m.y > m.x) s.triangles.push_back({base + t[0], base + t[1], base + t[2]});
   }
   Surface edge{{{0, 0, 0}, {0, 8, 0}, {0, 4, 0}}, {{0, 1, 2}}};  // the line x = 0: distance is x, rms = 8/√3
-  EXPECT_NEAR(measure_deviation(s, edge, {200000, 3}).a_to_b.rms, 8.0 / std::sqrt(3.0), 5e-3);
+  EXPECT_NEAR(DeviationFrom(s, {200000, 3}).measure(edge).a_to_b.rms, 8.0 / std::sqrt(3.0), 5e-3);
 }
 
 TEST(Metrics, EmptyAndDegenerateSurfacesAreAnswered) {
   const Surface none, square = make_square(1.0, 0.0, 1);
-  EXPECT_EQ(measure_deviation(none, none, {}).max(), 0.0);
-  EXPECT_TRUE(std::isinf(measure_deviation(square, none, {}).a_to_b.max));
-  EXPECT_EQ(measure_deviation(square, none, {}).b_to_a.max, 0.0);
+  EXPECT_EQ(DeviationFrom(none, {}).measure(none).max(), 0.0);
+  EXPECT_TRUE(std::isinf(DeviationFrom(square, {}).measure(none).a_to_b.max));
+  EXPECT_EQ(DeviationFrom(square, {}).measure(none).b_to_a.max, 0.0);
   const Surface point{{{0, 0, 2}, {9, 9, 9}}, {{0, 0, 0}}};  // the second position is not used
-  const DeviationReport r = measure_deviation(point, square, {1000, 1});
+  const DeviationReport r = DeviationFrom(point, {1000, 1}).measure(square);
   EXPECT_DOUBLE_EQ(r.a_to_b.max, 2.0);
   EXPECT_DOUBLE_EQ(r.b_to_a.max, std::sqrt(6.0));
 }
@@ -259,16 +259,16 @@ TEST(Metrics, TheLargestDeviationAloneIsTheSameWhereverItLies) {
   }
   for (const auto& [a, b] : pairs) {
     const DeviationOptions options{5000, 3};
-    const DeviationReport whole = measure_deviation(a, b, options);
-    const LargestDeviation largest = find_largest_deviation(a, b, options);
+    const DeviationReport whole = DeviationFrom(a, options).measure(b);
+    const LargestDeviation largest = DeviationFrom(a, options).find_largest(b);
     EXPECT_DOUBLE_EQ(largest.max, whole.max());
     EXPECT_EQ(largest.points, whole.a_to_b.points + whole.b_to_a.points);
     EXPECT_DOUBLE_EQ(std::sqrt(TriangleTree(largest.is_of_a ? b : a).nearest(largest.worst).distance2), largest.max);
   }
   const Surface none;
-  EXPECT_EQ(find_largest_deviation(none, none, {}).max, 0.0);
-  EXPECT_TRUE(std::isinf(find_largest_deviation(none, square, {}).max));
-  EXPECT_TRUE(std::isinf(find_largest_deviation(square, none, {}).max));
+  EXPECT_EQ(DeviationFrom(none, {}).find_largest(none).max, 0.0);
+  EXPECT_TRUE(std::isinf(DeviationFrom(none, {}).find_largest(square).max));
+  EXPECT_TRUE(std::isinf(DeviationFrom(square, {}).find_largest(none).max));
 }
 
 // What costs is crossing triangles: every box has every point in it, and only the nearest triangle of all is exact.
@@ -286,8 +286,8 @@ TEST(Metrics, TheLargestDeviationAloneIsFoundQuicklyAmongCrossingTriangles) {
     measure();
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   };
-  const double whole = seconds([&] { (void)measure_deviation(a, b, {20000, 1}); });
-  const double largest = seconds([&] { (void)find_largest_deviation(a, b, {20000, 1}); });
+  const double whole = seconds([&] { (void)DeviationFrom(a, {20000, 1}).measure(b); });
+  const double largest = seconds([&] { (void)DeviationFrom(a, {20000, 1}).find_largest(b); });
   EXPECT_LT(largest, 0.5 * whole);
 }
 
@@ -295,16 +295,16 @@ TEST(Metrics, DoesNotDependOnTheNumberOfThreads) {
   RandomSource random(54);
   const Surface a = make_soup(random, 3000, 1.0, Vec3d(0.0)), b = make_soup(random, 3000, 1.0, Vec3d(0.1));
   DeviationReport one, two;
-  tbb::task_arena(1).execute([&] { one = measure_deviation(a, b, {20000, 9}); });
-  tbb::task_arena(2).execute([&] { two = measure_deviation(a, b, {20000, 9}); });
+  tbb::task_arena(1).execute([&] { one = DeviationFrom(a, {20000, 9}).measure(b); });
+  tbb::task_arena(2).execute([&] { two = DeviationFrom(a, {20000, 9}).measure(b); });
   EXPECT_EQ(one.a_to_b.max, two.a_to_b.max);
   EXPECT_EQ(one.a_to_b.rms, two.a_to_b.rms);
   EXPECT_EQ(one.b_to_a.rms, two.b_to_a.rms);
-  EXPECT_NE(one.a_to_b.rms, measure_deviation(a, b, {20000, 10}).a_to_b.rms) << "the seed is used";
+  EXPECT_NE(one.a_to_b.rms, DeviationFrom(a, {20000, 10}).measure(b).a_to_b.rms) << "the seed is used";
 
   LargestDeviation largest[2];
   for (const int threads : {1, 2}) {
-    tbb::task_arena(threads).execute([&] { largest[threads - 1] = find_largest_deviation(a, b, {20000, 9}); });
+    tbb::task_arena(threads).execute([&] { largest[threads - 1] = DeviationFrom(a, {20000, 9}).find_largest(b); });
   }
   EXPECT_EQ(largest[0].max, largest[1].max);
   EXPECT_EQ(largest[0].worst, largest[1].worst);

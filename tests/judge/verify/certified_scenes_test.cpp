@@ -101,9 +101,9 @@ class CertifiedScene : public testing::TestWithParam<CertifiedCase> {
 
   void expect_within(const std::vector<ClusterId>& cut, double stored, const char* what) {
     if (!judged_.insert(cut).second) return;
-    const double truth =
-        measure_deviation(source_, surface_of_clusters(asset_[0], decoded_, MeshId(0U), cut), {.samples = kSamples})
-            .max();
+    const double truth = DeviationFrom(source_, {.samples = kSamples})
+                             .measure(surface_of_clusters(asset_[0], decoded_, MeshId(0U), cut))
+                             .max();
     EXPECT_LE(truth, stored) << what << " of " << cut.size() << " clusters";
     if (stored > 0.0) tightest_ = std::max(tightest_, truth / stored);
   }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // I7 on assets that were built: what is stored is true, and where it says less it is found (V206, L311).
+#include <algorithm>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -45,11 +47,12 @@ std::string ids_of(const Report& report) {
   return ids;
 }
 
-VerifyReport verify_bytes(const std::vector<std::uint8_t>& bytes, const scene::Scene& scene) {
+VerifyReport verify_bytes(const std::vector<std::uint8_t>& bytes, const scene::Scene& scene, bool is_quick = false) {
   const Result<run::Asset> asset = run::Asset::from_vector(bytes);
   EXPECT_TRUE(asset.ok()) << asset.error().message();
-  return verify_asset(*asset, scene,
-                      {.uniform_cuts = 20, .cameras = 10, .deviation_cuts = 6, .deviation_samples = 20000});
+  return verify_asset(
+      *asset, scene,
+      {.is_quick = is_quick, .uniform_cuts = 20, .cameras = 10, .deviation_cuts = 6, .deviation_samples = 20000});
 }
 
 /// All errors and deviations times `factor`, where they are finite. With a power of two every other rule still holds.
@@ -79,6 +82,7 @@ TEST_P(StoredErrors, AreTrueAndAreFoundWhereTheySayHalf) {
   AssetEdit half(built.bytes);
   scale_errors(half, 0.5F);
   EXPECT_EQ(ids_of(verify_bytes(half.bytes(), built.scene)), "V206") << "no other rule can know";
+  EXPECT_EQ(ids_of(verify_bytes(half.bytes(), built.scene, true)), "V206") << "in one cut";
 }
 
 TEST_P(StoredErrors, AreFoundWhereTheySayNothingDeviates) {
@@ -86,6 +90,7 @@ TEST_P(StoredErrors, AreFoundWhereTheySayNothingDeviates) {
   AssetEdit none(built.bytes);
   scale_errors(none, 0.0F);
   EXPECT_EQ(ids_of(verify_bytes(none.bytes(), built.scene)), "V206") << "no other rule can know";
+  EXPECT_EQ(ids_of(verify_bytes(none.bytes(), built.scene, true)), "V206") << "where 0 is the only cut there is";
 }
 
 TEST_P(StoredErrors, AreAtLeastTheDeviationTimesTheMarginOfTheSettings) {
@@ -107,6 +112,36 @@ TEST_P(StoredErrors, AreAtLeastTheDeviationTimesTheMarginOfTheSettings) {
   edit.group(inner, [&](auto& g) { g.deviation = static_cast<float>(double{g.error} / margin * (1.0 + 1e-5)); });
   edit.seal();
   EXPECT_EQ(ids_of(validate_asset(edit.bytes())), "L311");
+}
+
+// A cluster of level 0 that moves with all of its border is a matter of the source's triangles, which are not looked
+// for.
+TEST(QuickVerify, FindsNothingInWhatWasBuiltAndEachCoarserClusterThatWasMoved) {
+  const Built built = build_rock(format::ErrorTier::kMeasured);
+  const VerifyReport sound = verify_bytes(built.bytes, built.scene, true);
+  EXPECT_EQ(ids_of(sound), "");
+  const auto measured = std::find_if(sound.checks.begin(), sound.checks.end(),
+                                     [](const auto& c) { return c.invariant == "I7" && c.items == 1 && !c.skipped; });
+  EXPECT_NE(measured, sound.checks.end()) << "a cut is measured";
+  AssetEdit original(built.bytes);
+  const auto clusters = original.clusters();
+  std::vector<std::uint32_t> made(clusters.size(), 0);  // per group: clusters made from it
+  for (const auto& cluster : clusters) {
+    if (cluster.own_group != format::kNone) ++made[cluster.own_group];
+  }
+  std::uint32_t moved = 0;
+  for (std::uint32_t c = 0; c < clusters.size(); ++c) {
+    // One that is all of a closed surface has no border.
+    if (clusters[c].own_group == format::kNone || made[clusters[c].own_group] < 2) continue;
+    AssetEdit edit(built.bytes);
+    const std::int32_t by = edit.minimum(c, 0) > 4 ? -1 : 1;
+    edit.move_minimum(c, 0, by);
+    edit.seal();
+    const std::string ids = ids_of(verify_bytes(edit.bytes(), built.scene, true));
+    EXPECT_NE(ids, "") << "cluster " << c << " was moved by a step";
+    ++moved;
+  }
+  EXPECT_GT(moved, 10U);
 }
 
 }  // namespace
