@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -46,6 +47,16 @@ class AttributeQuadrics {
   void write(std::uint32_t wedge, bool is_locked, std::vector<float>& out) const;
 
  private:
+  /// Mostly there are as many as fit: then the compiler knows how many, and loops over them unroll.
+  template <class Body>
+  void with_count(const Body& body) const {
+    if (count() == Capacity) {
+      body(std::integral_constant<std::size_t, Capacity>{});
+    } else {
+      body(count());
+    }
+  }
+
   const SimplifyInput& input_;
   std::vector<double> scale_;  ///< stored value -> weighted value
   std::vector<WedgeQuadric<Capacity>> wedge_;
@@ -75,18 +86,20 @@ void AttributeQuadrics<C>::add_face(const std::array<std::uint32_t, 3>& wedges, 
   const Vec3d to_1 = glm::cross(face.e2, face.normal) / face.twice_area;
   const Vec3d to_2 = glm::cross(face.normal, face.e1) / face.twice_area;
   for (const std::uint32_t wedge : wedges) wedge_[wedge].base.weight += area;
-  for (std::size_t j = 0; j < count(); ++j) {
-    const double s0 = value_[wedges[0]][j];
-    const double s1 = value_[wedges[1]][j];
-    const double s2 = value_[wedges[2]][j];
-    Vec3d gradient(0.0);
-    double offset = (s0 + s1 + s2) / 3.0;
-    if (!is_sliver) {
-      gradient = to_1 * (s1 - s0) + to_2 * (s2 - s0);
-      offset = s0 - glm::dot(gradient, face.p);
+  with_count([&](const auto count) {
+    for (std::size_t j = 0; j < count; ++j) {
+      const double s0 = value_[wedges[0]][j];
+      const double s1 = value_[wedges[1]][j];
+      const double s2 = value_[wedges[2]][j];
+      Vec3d gradient(0.0);
+      double offset = (s0 + s1 + s2) / 3.0;
+      if (!is_sliver) {
+        gradient = to_1 * (s1 - s0) + to_2 * (s2 - s0);
+        offset = s0 - glm::dot(gradient, face.p);
+      }
+      for (const std::uint32_t wedge : wedges) wedge_[wedge].add_face(j, gradient, offset, area);
     }
-    for (const std::uint32_t wedge : wedges) wedge_[wedge].add_face(j, gradient, offset, area);
-  }
+  });
 }
 
 template <std::size_t C>
@@ -100,24 +113,28 @@ template <std::size_t C>
 double AttributeQuadrics<C>::add_classes(Quadric& total, std::span<const WedgeClass> classes,
                                          const Vec3d& given) const {
   double fixed_error = 0.0;
-  for (const WedgeClass& c : classes) {
-    WedgeQuadric<C> joined = wedge_[c.members[0]];
-    for (std::size_t k = 1; k < c.members.size(); ++k) joined.add(wedge_[c.members[k]], count());
-    if (c.fixed != kNoId) {
-      fixed_error += joined.evaluate(given, value_[c.fixed].data(), count());
-    } else {
-      joined.add_reduced_to(total, count());
+  with_count([&](const auto count) {
+    for (const WedgeClass& c : classes) {
+      WedgeQuadric<C> joined = wedge_[c.members[0]];
+      for (std::size_t k = 1; k < c.members.size(); ++k) joined.add(wedge_[c.members[k]], count);
+      if (c.fixed != kNoId) {
+        fixed_error += joined.evaluate(given, value_[c.fixed].data(), count);
+      } else {
+        joined.add_reduced_to(total, count);
+      }
     }
-  }
+  });
   return fixed_error;
 }
 
 template <std::size_t C>
 void AttributeQuadrics<C>::join(const WedgeClass& joined, const Vec3d& place) {
   const std::uint32_t keeper = joined.keeper();
-  for (const std::uint32_t w : joined.members) {
-    if (w != keeper) wedge_[keeper].add(wedge_[w], count());
-  }
+  with_count([&](const auto count) {
+    for (const std::uint32_t w : joined.members) {
+      if (w != keeper) wedge_[keeper].add(wedge_[w], count);
+    }
+  });
   if (joined.fixed != kNoId || !(wedge_[keeper].base.weight > 0.0)) return;
   for (std::size_t j = 0; j < count(); ++j) value_[keeper][j] = wedge_[keeper].best(j, place);
 }

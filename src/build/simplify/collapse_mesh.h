@@ -22,6 +22,7 @@ class CollapseMesh {
 
   [[nodiscard]] std::uint32_t alive_count() const { return alive_count_; }
   [[nodiscard]] std::size_t triangle_count() const { return is_alive_.size(); }
+  [[nodiscard]] std::size_t vertex_count() const { return head_.size(); }
   [[nodiscard]] bool is_alive(std::uint32_t triangle) const { return is_alive_[triangle] != 0; }
   [[nodiscard]] std::uint32_t vertex(std::uint32_t corner) const { return vertex_[corner]; }
   [[nodiscard]] std::uint32_t wedge(std::uint32_t corner) const { return wedge_[corner]; }

@@ -10,15 +10,15 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <functional>
-#include <queue>
 #include <utility>
 #include <vector>
 
 #include "build/simplify/attribute_quadrics.h"
 #include "build/simplify/attribute_scales.h"
+#include "build/simplify/candidate_queue.h"
 #include "build/simplify/collapse_mesh.h"
 #include "build/simplify/collapse_star.h"
+#include "build/simplify/edge_uses.h"
 #include "build/simplify/group_locks.h"
 #include "build/simplify/group_places.h"
 #include "build/simplify/guards.h"
@@ -51,16 +51,6 @@ class GroupSimplifier {
   /// about ten times as far off.
   static constexpr double kTopologyPrice = 10.0;
 
-  struct Candidate {
-    double cost;
-    std::uint32_t a, b;                  ///< a < b
-    std::uint32_t version_a, version_b;  ///< stale if a vertex has changed since
-    bool may_break_topology = false;     ///< the cost already counts that the link condition is broken
-    bool operator>(const Candidate& other) const {
-      if (cost != other.cost) return cost > other.cost;
-      return a != other.a ? a > other.a : b > other.b;
-    }
-  };
   struct Placement {
     Vec3d position{0.0};
     double cost = 0.0;
@@ -70,7 +60,11 @@ class GroupSimplifier {
   void add_faces();
   void run_passes();
   void seed_candidates();
-  void push_candidate(std::uint32_t a, std::uint32_t b);
+  /// False where both ends are locked, which is counted.
+  [[nodiscard]] bool is_free_to_collapse(std::uint32_t a, std::uint32_t b);
+  [[nodiscard]] Candidate make_candidate(std::uint32_t a, std::uint32_t b);
+  /// Versions only grow: their sum is the same where neither has.
+  [[nodiscard]] std::uint32_t versions_of(std::uint32_t a, std::uint32_t b) const { return version_[a] + version_[b]; }
   [[nodiscard]] Placement place(std::uint32_t a, std::uint32_t b);
   [[nodiscard]] Obstacle try_collapse(const Candidate& candidate);
   [[nodiscard]] double price_of(const Candidate& candidate);
@@ -90,7 +84,7 @@ class GroupSimplifier {
   std::vector<std::uint8_t> is_border_;  ///< per vertex
   std::vector<std::uint32_t> version_;   ///< per vertex
 
-  std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> queue_;
+  CandidateQueue queue_;
   std::array<std::uint64_t, 6> obstacles_{};
   double error_ = 0.0;  ///< frame units
   bool has_free_border_ = false, has_broken_topology_ = false, are_flips_relaxed_ = false;
@@ -149,13 +143,12 @@ template <std::size_t C>
 void GroupSimplifier<C>::run_passes() {
   for (int pass = 0; pass < kMaxPasses && mesh_.alive_count() > options_.target_triangles; ++pass) {
     obstacles_.fill(0);
-    queue_ = {};
+    queue_.clear();
     seed_candidates();
     bool any = false;
     while (!queue_.empty() && mesh_.alive_count() > options_.target_triangles) {
-      const Candidate candidate = queue_.top();
-      queue_.pop();
-      if (version_[candidate.a] != candidate.version_a || version_[candidate.b] != candidate.version_b) continue;
+      const Candidate candidate = queue_.pop();
+      if (versions_of(candidate.a, candidate.b) != candidate.versions) continue;
       const Obstacle obstacle = try_collapse(candidate);
       if (obstacle == Obstacle::kNone) {
         any = true;
@@ -170,31 +163,28 @@ void GroupSimplifier<C>::run_passes() {
 
 template <std::size_t C>
 void GroupSimplifier<C>::seed_candidates() {
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
-  edges.reserve(3 * mesh_.alive_count());
-  for (std::uint32_t corner = 0; corner < 3 * mesh_.triangle_count(); ++corner) {
-    if (!mesh_.is_alive(corner / 3)) continue;
-    const std::uint32_t a = mesh_.vertex(corner);
-    const std::uint32_t b = mesh_.vertex(CollapseMesh::next_in_triangle(corner));
-    edges.emplace_back(std::min(a, b), std::max(a, b));
+  const std::vector<EdgeUse> uses = sorted_edge_uses(mesh_);
+  for (std::size_t i = 0; i < uses.size(); ++i) {
+    if (i > 0 && uses[i].a == uses[i - 1].a && uses[i].b == uses[i - 1].b) continue;
+    if (is_free_to_collapse(uses[i].a, uses[i].b)) queue_.append(make_candidate(uses[i].a, uses[i].b));
   }
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-  for (const auto& [a, b] : edges) push_candidate(a, b);
+  queue_.order();
 }
 
 template <std::size_t C>
-void GroupSimplifier<C>::push_candidate(std::uint32_t a, std::uint32_t b) {
-  if (locks_.is_vertex_locked[a] != 0 && locks_.is_vertex_locked[b] != 0) {
-    ++obstacles_[static_cast<std::size_t>(Obstacle::kLocked)];
-    return;
-  }
+bool GroupSimplifier<C>::is_free_to_collapse(std::uint32_t a, std::uint32_t b) {
+  if (locks_.is_vertex_locked[a] == 0 || locks_.is_vertex_locked[b] == 0) return true;
+  ++obstacles_[static_cast<std::size_t>(Obstacle::kLocked)];
+  return false;
+}
+
+template <std::size_t C>
+Candidate GroupSimplifier<C>::make_candidate(std::uint32_t a, std::uint32_t b) {
   if (a > b) std::swap(a, b);
   star_.a.vertex = a;
   star_.b.vertex = b;
   if (classes_.needs_corners(a, b)) gather_corners(mesh_, a, b, star_);
-  const Placement placement = place(a, b);
-  queue_.push({placement.cost, a, b, version_[a], version_[b]});
+  return {place(a, b).cost, a, b, versions_of(a, b)};
 }
 
 /// Where the joined vertex goes, what its attributes become there, and what both cost. \pre the star has its ends, and
@@ -235,7 +225,7 @@ typename GroupSimplifier<C>::Obstacle GroupSimplifier<C>::try_collapse(const Can
   if (!keeps_topology(mesh_, is_border_, star_)) {
     if (!options_.may_relax_topology) return Obstacle::kTopology;
     if (!candidate.may_break_topology) {
-      queue_.push({kTopologyPrice * candidate.cost, a, b, version_[a], version_[b], true});
+      queue_.push({kTopologyPrice * candidate.cost, a, b, versions_of(a, b), true});
       return Obstacle::kPutBack;
     }
     breaks_topology = true;
@@ -244,7 +234,7 @@ typename GroupSimplifier<C>::Obstacle GroupSimplifier<C>::try_collapse(const Can
   gather_outer_edges(mesh_, breaks_topology || has_broken_topology_, star_);
   const double price = price_of(candidate);
   if (price > candidate.cost) {
-    queue_.push({price, a, b, version_[a], version_[b], candidate.may_break_topology});
+    queue_.push({price, a, b, versions_of(a, b), candidate.may_break_topology});
     return Obstacle::kPutBack;
   }
   has_broken_topology_ |= breaks_topology;
@@ -289,7 +279,9 @@ void GroupSimplifier<C>::collapse(std::uint32_t a, std::uint32_t b) {
   classes_.update(mesh_, joined_);
   if (joined_.corners.empty()) error_ = std::max(error_, left_behind_.size(a));
   gather_neighbors(mesh_, joined_);
-  for (const std::uint32_t n : joined_.neighbors) push_candidate(a, n);
+  for (const std::uint32_t n : joined_.neighbors) {
+    if (is_free_to_collapse(a, n)) queue_.push(make_candidate(a, n));
+  }
 }
 
 template <std::size_t C>

@@ -9,6 +9,30 @@
 
 namespace meshlode::build {
 
+namespace {
+
+// A facet whose box is farther off than the nearest so far need not be asked. Computed distances are off by some 1e-15
+// (the frame's sides are 2), which these two exceed: the nearest comes out bit for bit as if all were asked.
+constexpr double kBoxMargin = 1.0 + 1e-7;
+constexpr double kBoxSlack = 1e-20;
+
+/// Equals stay in order. Mostly there are half a dozen, and std::stable_sort would allocate.
+void sort_farthest_first(std::vector<std::pair<double, Vec3i>>& weighed) {
+  constexpr std::size_t kFew = 32;
+  if (weighed.size() > kFew) {
+    std::stable_sort(weighed.begin(), weighed.end(), [](const auto& x, const auto& y) { return x.first > y.first; });
+    return;
+  }
+  for (std::size_t i = 1; i < weighed.size(); ++i) {
+    const std::pair<double, Vec3i> one = weighed[i];
+    std::size_t at = i;
+    for (; at > 0 && weighed[at - 1].first < one.first; --at) weighed[at] = weighed[at - 1];
+    weighed[at] = one;
+  }
+}
+
+}  // namespace
+
 LeftBehind::LeftBehind(std::vector<Witnesses> witnesses, const GroupPlaces& places)
     : witnesses_(std::move(witnesses)), merged_(places.size()), vertex_stamp_(places.size(), 0) {
   for (std::uint32_t v = 0; v < places.size(); ++v) merged_[v] = {places[v], places[v]};
@@ -48,15 +72,26 @@ double LeftBehind::collect_vanishing(CollapseMesh& mesh, const GroupPlaces& plac
   return lost2;
 }
 
+void LeftBehind::gather_facets(const GroupPlaces& places, const CollapseStar& star) {
+  facets_.clear();
+  for (const CollapseStar::OuterEdge& edge : star.outer) {
+    const Vec3d& x = places[edge.x];
+    const Vec3d& y = places[edge.y];
+    facets_.push_back({x, y, glm::min(star.target, glm::min(x, y)), glm::max(star.target, glm::max(x, y))});
+  }
+}
+
 /// The largest squared distance from the vertex's witnesses to the new star.
-double LeftBehind::weigh_witnesses(std::uint32_t vertex, const GroupPlaces& places, const CollapseStar& star) {
+double LeftBehind::weigh_witnesses(std::uint32_t vertex, const GroupPlaces& places, const Vec3d& target) {
   const Witnesses& w = witnesses_[vertex];
   double largest = 0.0;
   for (std::uint32_t i = 0; i < w.count; ++i) {
     const Vec3d point = places.to_frame(w.points[i]);
     double nearest = std::numeric_limits<double>::infinity();
-    for (const CollapseStar::OuterEdge& edge : star.outer) {
-      nearest = std::min(nearest, distance2_to_facet(point, star.target, places[edge.x], places[edge.y]));
+    for (const Facet& facet : facets_) {
+      const Vec3d off = glm::max(glm::max(facet.low - point, point - facet.high), Vec3d(0.0));
+      if (glm::dot(off, off) > kBoxMargin * nearest + kBoxSlack) continue;
+      nearest = std::min(nearest, distance2_to_facet(point, target, facet.x, facet.y));
     }
     weighed_.emplace_back(nearest, w.points[i]);
     largest = std::max(largest, nearest);
@@ -86,9 +121,10 @@ double LeftBehind::distance2_to_rest(const CollapseMesh& mesh, const GroupPlaces
 double LeftBehind::weigh(CollapseMesh& mesh, const GroupPlaces& places, const CollapseStar& star, bool keep_area) {
   const double lost2 = collect_vanishing(mesh, places, star);
   weighed_.clear();
-  double largest = weigh_witnesses(star.a.vertex, places, star);
-  largest = std::max(largest, weigh_witnesses(star.b.vertex, places, star));
-  for (const std::uint32_t v : vanishing_) largest = std::max(largest, weigh_witnesses(v, places, star));
+  gather_facets(places, star);
+  double largest = weigh_witnesses(star.a.vertex, places, star.target);
+  largest = std::max(largest, weigh_witnesses(star.b.vertex, places, star.target));
+  for (const std::uint32_t v : vanishing_) largest = std::max(largest, weigh_witnesses(v, places, star.target));
   if (!star.outer.empty()) return std::max(lost2, largest);
   // The piece vanishes. Of foliage its size is what is lost: its neighbours grow instead. Else what it leaves is as far
   // off as the nearest of what stays.
@@ -102,7 +138,7 @@ double LeftBehind::weigh(CollapseMesh& mesh, const GroupPlaces& places, const Co
 }
 
 void LeftBehind::join(std::uint32_t into, std::uint32_t from) {
-  std::stable_sort(weighed_.begin(), weighed_.end(), [](const auto& x, const auto& y) { return x.first > y.first; });
+  sort_farthest_first(weighed_);
   Witnesses& kept = witnesses_[into];
   kept.count = static_cast<std::uint32_t>(std::min(weighed_.size(), Witnesses::kCapacity));
   for (std::uint32_t i = 0; i < kept.count; ++i) kept.points[i] = weighed_[i].second;
@@ -130,30 +166,49 @@ double LeftBehind::drop_sheets(CollapseMesh& mesh, const GroupPlaces& places, st
   return lost;
 }
 
+namespace {
+
+/// Whether the middle of the edge to `outer[i].y` is asked about with another triangle, that begins there.
+bool begins_another(const std::vector<CollapseStar::OuterEdge>& outer, std::size_t i) {
+  constexpr std::size_t kFew = 32;  // at a hub the search would cost more than asking twice
+  if (outer.size() > kFew) return false;
+  for (std::size_t k = 0; k < outer.size(); ++k) {
+    if (outer[k].x == outer[i].y) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+// The largest over the points of the least over the triangles: neither order nor repetition changes it, so that a point
+// is asked about once, and of the triangles first the one that the new one replaces, which is mostly near.
 double new_surface_distance2(const CollapseMesh& mesh, const GroupPlaces& places, const CollapseStar& star,
                              double least) {
   double farthest = least;
-  const auto reach = [&](const Vec3d& point, std::uint32_t likely) {
-    double nearest = std::numeric_limits<double>::infinity();
-    // True where the triangle is so near that the point does not count.
-    const auto is_near = [&](std::uint32_t corner) {
-      const std::uint32_t t = corner / 3;
-      nearest = std::min(nearest, distance2_to_facet(point, places[mesh.vertex(3 * t)], places[mesh.vertex(3 * t + 1)],
-                                                     places[mesh.vertex(3 * t + 2)]));
-      return nearest <= farthest;
-    };
-    if (is_near(likely)) return;
-    for (const StarEnd* end : {&star.a, &star.b}) {
-      if (std::any_of(end->corners.begin(), end->corners.end(), is_near)) return;
-    }
-    if (nearest < std::numeric_limits<double>::infinity()) farthest = nearest;
+  const auto distance2_to = [&](const Vec3d& point, std::uint32_t corner) {
+    const std::uint32_t t = corner / 3;
+    return distance2_to_facet(point, places[mesh.vertex(3 * t)], places[mesh.vertex(3 * t + 1)],
+                              places[mesh.vertex(3 * t + 2)]);
   };
-  for (const CollapseStar::OuterEdge& edge : star.outer) {  // what a triangle is replaced by is mostly near it
+  const auto reach = [&](const Vec3d& point, std::uint32_t likely) {
+    double nearest = distance2_to(point, likely);
+    if (nearest <= farthest) return;
+    for (const StarEnd* end : {&star.a, &star.b}) {
+      for (const std::uint32_t corner : end->corners) {
+        if (corner == likely) continue;
+        nearest = std::min(nearest, distance2_to(point, corner));
+        if (nearest <= farthest) return;
+      }
+    }
+    farthest = nearest;
+  };
+  for (std::size_t i = 0; i < star.outer.size(); ++i) {
+    const CollapseStar::OuterEdge& edge = star.outer[i];
     const Vec3d& x = places[edge.x];
     const Vec3d& y = places[edge.y];
     reach((star.target + x + y) / 3.0, edge.corner);
     reach((star.target + x) * 0.5, edge.corner);
-    reach((star.target + y) * 0.5, edge.corner);
+    if (!begins_another(star.outer, i)) reach((star.target + y) * 0.5, edge.corner);
   }
   return farthest;
 }

@@ -42,11 +42,12 @@ class SurfaceQuadrics {
   [[nodiscard]] Quadric around(std::uint32_t a, std::uint32_t b) const {
     Quadric total = plane_[a];
     total += plane_[b];
-    total.add_scaled(border_[a], border_weight_);
-    total.add_scaled(border_[b], border_weight_);
+    // Most vertices are on no border, and without weight a quadric is zero.
+    if (border_[a].weight > 0.0) total.add_scaled(border_[a], border_weight_);
+    if (border_[b].weight > 0.0) total.add_scaled(border_[b], border_weight_);
     if (!seam_.empty()) {
-      total.add_scaled(seam_[a], 1.0);
-      total.add_scaled(seam_[b], 1.0);
+      if (seam_[a].weight > 0.0) total.add_scaled(seam_[a], 1.0);
+      if (seam_[b].weight > 0.0) total.add_scaled(seam_[b], 1.0);
     }
     return total;
   }

@@ -70,11 +70,15 @@ void WedgeClasses::join_along_edge(const CollapseMesh& mesh, const CollapseStar&
 void WedgeClasses::collect(const CollapseMesh& mesh, const GroupLocks& locks, const CollapseStar& star) {
   count_ = 0;
   if (class_of_.empty()) return;
-  if (needs_corners(star.a.vertex, star.b.vertex)) {
-    join_along_edge(mesh, star);
-  } else {
-    add_class().members = {only_wedge_[star.a.vertex], only_wedge_[star.b.vertex]};
+  if (!needs_corners(star.a.vertex, star.b.vertex)) {
+    const auto [least, greatest] = std::minmax(only_wedge_[star.a.vertex], only_wedge_[star.b.vertex]);
+    WedgeClass& c = add_class();
+    c.members.push_back(least);
+    c.members.push_back(greatest);
+    c.fixed = locks.is_wedge_locked[least] != 0 ? least : locks.is_wedge_locked[greatest] != 0 ? greatest : kNoId;
+    return;
   }
+  join_along_edge(mesh, star);
   for (std::size_t i = 0; i < count_; ++i) {
     WedgeClass& c = classes_[i];
     std::sort(c.members.begin(), c.members.end());

@@ -67,6 +67,23 @@ TEST(CollapseStar, NeighborsAreAscendingAndEachOnce) {
   EXPECT_EQ(star.a.neighbors, (std::vector<std::uint32_t>{1, 4, 5, 6, 7, 8}));
 }
 
+TEST(CollapseStar, NeighborsOfAHubAreAscendingAndEachOnceToo) {
+  for (const std::uint32_t count : {3U, 23U, 24U, 25U, 200U}) {
+    std::vector<WedgeTriangle> triangles;
+    std::vector<std::uint32_t> expected;
+    for (std::uint32_t i = 0; i < count; ++i) {  // around 0, begun in the middle and turned
+      const std::uint32_t from = 1 + (i + count / 2) % count, to = 1 + (i + count / 2 + 1) % count;
+      triangles.push_back({0, to, from});
+      expected.push_back(1 + i);
+    }
+    DrawnMesh drawn(std::vector<Vec3i>(count + 1), triangles);
+    StarEnd hub;
+    drawn.mesh.corners_of(0, hub.corners);
+    gather_neighbors(drawn.mesh, hub);
+    EXPECT_EQ(hub.neighbors, expected);
+  }
+}
+
 TEST(CollapseStar, TrianglesThatWentAreNotGathered) {
   DrawnMesh drawn = closed_fan();
   drawn.mesh.merge_vertices(0, 1);

@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "build/simplify/left_behind.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
+#include "build/simplify/point_triangle.h"
 #include "support/drawn_mesh.h"
+#include "support/random.h"
 
 namespace meshlode::build {
 namespace {
@@ -120,6 +126,93 @@ TEST(NewSurface, IsAsFarAsItsMiddlesAreFromWhatItReplaces) {
   EXPECT_NEAR(new_surface_distance2(drawn.mesh, drawn.places, star, 0.0), in_frame(drawn, 9), 1e-12)
       << "the middles of the edges at the target";
   EXPECT_EQ(new_surface_distance2(drawn.mesh, drawn.places, star, 0.5), 0.5) << "what nobody asks about";
+}
+
+/// Every point against every triangle.
+double plain_new_surface_distance2(const DrawnMesh& drawn, const CollapseStar& star, double least) {
+  std::vector<std::uint32_t> corners = star.a.corners;
+  corners.insert(corners.end(), star.b.corners.begin(), star.b.corners.end());
+  const auto at = [&](std::uint32_t corner) { return drawn.places[drawn.mesh.vertex(corner)]; };
+  double farthest = least;
+  for (const CollapseStar::OuterEdge& edge : star.outer) {
+    const Vec3d x = drawn.places[edge.x], y = drawn.places[edge.y];
+    for (const Vec3d& point : {(star.target + x + y) / 3.0, (star.target + x) * 0.5, (star.target + y) * 0.5}) {
+      double nearest = std::numeric_limits<double>::infinity();
+      for (const std::uint32_t corner : corners) {
+        const std::uint32_t first = corner - corner % 3;
+        nearest = std::min(nearest, distance2_to_facet(point, at(first), at(first + 1), at(first + 2)));
+      }
+      farthest = std::max(farthest, nearest);
+    }
+  }
+  return farthest;
+}
+
+Vec3i random_point(test::RandomSource& random, std::uint32_t size) {
+  const auto coordinate = [&] { return static_cast<std::int32_t>(random.below(size)); };
+  const std::int32_t x = coordinate(), y = coordinate(), z = coordinate();
+  return {x, y, z};
+}
+
+TEST(NewSurface, IsThatOfEveryPointAgainstEveryTriangleBitForBit) {
+  test::RandomSource random(41);
+  for (int round = 0; round < 300; ++round) {
+    // Triangles around 0 and 1 as they fall, among few points (flat, folded, on each other) or around a hub.
+    const bool is_hub = round % 10 == 0;
+    const std::uint32_t count = is_hub ? 90 : 4 + random.below(8);
+    std::vector<Vec3i> points;
+    for (std::uint32_t v = 0; v < count; ++v) points.push_back(random_point(random, round % 3 == 0 ? 3 : 1000));
+    std::vector<WedgeTriangle> triangles{{0, 1, 2}};
+    for (std::uint32_t v = 2; v + 1 < count; ++v) {
+      triangles.push_back({random.below(2), v, v + 1});
+      const std::uint32_t x = 2 + random.below(count - 2), y = 2 + random.below(count - 2);
+      if (x != y && !is_hub) triangles.push_back({random.below(2), x, y});
+    }
+    DrawnMesh drawn(points, triangles);
+    CollapseStar star = drawn.star(0, 1, round % 2 == 0);
+    star.target = drawn.places.to_frame(random_point(random, 1000));
+    const double exact = plain_new_surface_distance2(drawn, star, 0.0);
+    for (const double least : {0.0, 0.5 * exact, exact, 2.0 * exact}) {
+      EXPECT_EQ(new_surface_distance2(drawn.mesh, drawn.places, star, least),
+                plain_new_surface_distance2(drawn, star, least))
+          << "seed 41, round " << round;
+    }
+  }
+}
+
+TEST(LeftBehind, WitnessesAreWeighedAgainstTheWholeStarBitForBit) {
+  test::RandomSource random(43);
+  for (int round = 0; round < 300; ++round) {
+    std::vector<Vec3i> points;
+    for (const Vec3i& p : test::kFanPoints) points.push_back(p * 100 + random_point(random, round % 2 == 0 ? 2 : 90));
+    DrawnMesh drawn(points, closed_fan().triangles);
+    std::vector<Witnesses> witnesses(points.size());
+    for (Witnesses& w : witnesses) {
+      for (Vec3i& point : w.points) point = random_point(random, 900) - Vec3i(450);
+      w.points[0] = points[random.below(10)];
+      w.count = 3;
+    }
+    CollapseStar star = drawn.star(0, 1);
+    if (round % 3 == 0) star.target = drawn.places.to_frame(points[random.below(10)]);
+    std::vector<std::pair<double, Vec3i>> weighed;
+    for (const std::uint32_t v : {0U, 1U}) {
+      for (const Vec3i& witness : witnesses[v].points) {
+        double nearest = std::numeric_limits<double>::infinity();
+        for (const CollapseStar::OuterEdge& edge : star.outer) {
+          nearest = std::min(nearest, distance2_to_facet(drawn.places.to_frame(witness), star.target,
+                                                         drawn.places[edge.x], drawn.places[edge.y]));
+        }
+        weighed.emplace_back(nearest, witness);
+      }
+    }
+    std::stable_sort(weighed.begin(), weighed.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+    LeftBehind left(witnesses, drawn.places);
+    EXPECT_EQ(left.weigh(drawn.mesh, drawn.places, star, false), weighed[0].first) << "seed 43, round " << round;
+    left.join(0, 1);
+    for (std::size_t i = 0; i < Witnesses::kCapacity; ++i) {
+      EXPECT_EQ(left.witnesses(0).points[i], weighed[i].second) << "seed 43, round " << round;
+    }
+  }
 }
 
 }  // namespace

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The collapses that are waited for, cheapest first. Four of five that come up are stale by then, so that what counts
+// is what a pop touches: a heap of four children a node over small entries.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace meshlode::build {
+
+struct Candidate {
+  double cost;
+  std::uint32_t a, b;               ///< a < b
+  std::uint32_t versions;           ///< of both vertices, summed: stale if either has changed since
+  bool may_break_topology = false;  ///< the cost already counts that the link condition is broken
+
+  /// By cost, then by vertices: no two valid ones are equal.
+  [[nodiscard]] bool is_before(const Candidate& other) const {
+    if (cost != other.cost) return cost < other.cost;
+    return a != other.a ? a < other.a : b < other.b;
+  }
+};
+static_assert(sizeof(Candidate) == 24);
+
+class CandidateQueue {
+ public:
+  [[nodiscard]] bool empty() const { return heap_.empty(); }
+  void clear() { heap_.clear(); }
+
+  void push(const Candidate& candidate) {
+    heap_.push_back(candidate);
+    rise(heap_.size() - 1, candidate);
+  }
+  /// Without putting it in its place: before the next pop or push `order` must be called.
+  void append(const Candidate& candidate) { heap_.push_back(candidate); }
+  void order() {
+    if (heap_.size() < 2) return;
+    for (std::size_t i = (heap_.size() - 2) / kChildren + 1; i-- > 0;) sink(i, Candidate(heap_[i]));
+  }
+
+  /// \pre not empty
+  Candidate pop() {
+    const Candidate first = heap_.front();
+    const Candidate last = heap_.back();
+    heap_.pop_back();
+    if (!heap_.empty()) sink(0, last);
+    return first;
+  }
+
+ private:
+  static constexpr std::size_t kChildren = 4;
+
+  void rise(std::size_t at, const Candidate& candidate) {
+    while (at > 0) {
+      const std::size_t parent = (at - 1) / kChildren;
+      if (!candidate.is_before(heap_[parent])) break;
+      heap_[at] = heap_[parent];
+      at = parent;
+    }
+    heap_[at] = candidate;
+  }
+
+  void sink(std::size_t at, const Candidate& candidate) {
+    for (std::size_t child = kChildren * at + 1; child < heap_.size(); child = kChildren * at + 1) {
+      const std::size_t end = std::min(child + kChildren, heap_.size());
+      std::size_t least = child;
+      for (++child; child < end; ++child) {
+        if (heap_[child].is_before(heap_[least])) least = child;
+      }
+      if (!heap_[least].is_before(candidate)) break;
+      heap_[at] = heap_[least];
+      at = least;
+    }
+    heap_[at] = candidate;
+  }
+
+  std::vector<Candidate> heap_;
+};
+
+}  // namespace meshlode::build
