@@ -3,6 +3,8 @@
 // thread came first (I10), so only loops over indices are offered.
 #pragma once
 
+#include <algorithm>
+#include <atomic>
 #include <cstddef>
 
 #include <tbb/blocked_range.h>
@@ -19,6 +21,11 @@ inline std::size_t thread_limit() {
   return static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
 }
 
+/// How many chunks of `length` cover `count`.
+constexpr std::size_t chunk_count(std::size_t count, std::size_t length) {
+  return (count + length - 1) / length;
+}
+
 /// Calls body(i) for i in [0, count), in any order and thread; `body` may write only to what belongs to i.
 template <class Body>
 void parallel_for_each_index(std::size_t count, std::size_t grain, const Body& body) {
@@ -26,6 +33,27 @@ void parallel_for_each_index(std::size_t count, std::size_t grain, const Body& b
                     [&](const tbb::blocked_range<std::size_t>& range) {
                       for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
                     });
+}
+
+/// Calls body(chunk, begin, end) for the chunks of `length` that [0, count) falls into, side by side. What each finds
+/// is the caller's to put together, in the order of chunks: they are the same for any thread count.
+template <class Body>
+void parallel_for_each_chunk(std::size_t count, std::size_t length, const Body& body) {
+  parallel_for_each_index(chunk_count(count, length), 1, [&](std::size_t chunk) {
+    body(chunk, chunk * length, std::min(count, (chunk + 1) * length));
+  });
+}
+
+/// Calls body(i) once for each i in [0, count), begun in order, at most `at_once` of them at a time. For few and long
+/// turns that use these loops themselves: a thread that waits within one does not begin another.
+template <class Body>
+void parallel_for_each_in_order(std::size_t count, std::size_t at_once, const Body& body) {
+  std::atomic<std::size_t> next = 0;
+  parallel_for_each_index(std::min(count, at_once), 1, [&](std::size_t) {
+    for (std::size_t i = next++; i < count; i = next++) {
+      tbb::this_task_arena::isolate([&] { body(i); });
+    }
+  });
 }
 
 }  // namespace meshlode

@@ -118,21 +118,22 @@ void BuildPool::fill_clusters(std::span<const WedgeTriangle> source, std::span<c
                               std::span<const std::uint32_t> materials, const CarriedTruth& carried,
                               const Clustering& clustering, std::vector<std::uint32_t> start,
                               std::uint32_t first_cluster) {
-  std::vector<std::uint32_t> sample_count(clustering.count, 0);
-  for (const CarriedSample& sample : carried.samples) ++sample_count[clustering.label[sample.triangle]];
-  for (std::uint32_t c = 0; c < clustering.count; ++c) clusters[first_cluster + c].samples.reserve(sample_count[c]);
-  for (const CarriedSample& sample : carried.samples) {
-    clusters[first_cluster + clustering.label[sample.triangle]].samples.push_back(sample);
-  }
-  for (std::size_t t = 0; t < source.size(); ++t) {
-    const std::uint32_t slot = start[clustering.label[t]]++;
-    triangles[slot] = source[t];
-    if (!wedges.empty()) {
-      for (std::uint32_t& wedge : triangles[slot]) wedge = wedges[wedge];
-    }
-    triangle_material[slot] = materials[t];
-    if (!carried.bounds.empty()) triangle_bounds[slot] = carried.bounds[t];
-  }
+  // Places are dealt out in order, one after the other; what goes there is written side by side.
+  std::vector<std::uint32_t> sample_count(clustering.count, 0), place(carried.samples.size()), slot(source.size());
+  const auto cluster_of = [&](std::size_t sample) { return clustering.label[carried.samples[sample].triangle]; };
+  for (std::size_t s = 0; s < place.size(); ++s) place[s] = sample_count[cluster_of(s)]++;
+  for (std::uint32_t c = 0; c < clustering.count; ++c) clusters[first_cluster + c].samples.resize(sample_count[c]);
+  parallel_for_each_index(place.size(), kLoopGrain, [&](std::size_t s) {
+    clusters[first_cluster + cluster_of(s)].samples[place[s]] = carried.samples[s];
+  });
+  for (std::size_t t = 0; t < source.size(); ++t) slot[t] = start[clustering.label[t]]++;
+  parallel_for_each_index(source.size(), kLoopGrain, [&](std::size_t t) {
+    WedgeTriangle& triangle = triangles[slot[t]];
+    triangle = source[t];
+    for (std::size_t k = 0; !wedges.empty() && k < 3; ++k) triangle[k] = wedges[triangle[k]];
+    triangle_material[slot[t]] = materials[t];
+    if (!carried.bounds.empty()) triangle_bounds[slot[t]] = carried.bounds[t];
+  });
 }
 
 void BuildPool::add_clusters(const std::vector<WedgeTriangle>& source, const std::vector<std::uint32_t>& materials,

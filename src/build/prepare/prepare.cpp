@@ -5,8 +5,10 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "base/disjoint_sets.h"
+#include "base/parallel.h"
 #include "build/prepare/corners.h"
 #include "build/prepare/separate_needles.h"
 #include "build/prepare/weld.h"
@@ -25,16 +27,32 @@ void count_source(const scene::SourceMesh& source, PreparedMesh& mesh) {
   }
 }
 
-bool are_finite(const Corners& corners) {
-  return std::all_of(corners.triangles.begin(), corners.triangles.end(), [&](std::uint32_t vertex) {
-    const Vec3d& p = corners.positions[vertex];
-    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+/// Calls visit(i) for each of `count`, by chunks; an accumulator of its own for each chunk, in their order.
+template <class Sum, class Visit>
+std::vector<Sum> sums_of_chunks(std::size_t count, const Sum& first, const Visit& visit) {
+  constexpr std::size_t kLength = 4 * kLoopGrain;
+  std::vector<Sum> sums(chunk_count(count, kLength), first);
+  parallel_for_each_chunk(count, kLength, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+    Sum sum = first;
+    for (std::size_t i = begin; i < end; ++i) visit(i, sum);
+    sums[chunk] = sum;
   });
+  return sums;
+}
+
+bool are_finite(const Corners& corners) {
+  const std::vector<std::uint32_t> wrong =
+      sums_of_chunks(corners.triangles.size(), std::uint32_t{0}, [&](std::size_t i, std::uint32_t& sum) {
+        const Vec3d& p = corners.positions[corners.triangles[i]];
+        sum += std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z) ? 0U : 1U;
+      });
+  return std::all_of(wrong.begin(), wrong.end(), [](std::uint32_t count) { return count == 0; });
 }
 
 /// Takes the triangles away that are no part of the source; returns how many.
 std::uint64_t drop_undrawn(Corners& corners) {
   const std::vector<std::uint8_t> is_undrawn = find_undrawn(corners.positions, corners.triangles);
+  if (std::find(is_undrawn.begin(), is_undrawn.end(), 1) == is_undrawn.end()) return 0;
   std::size_t kept = 0;
   for (std::size_t t = 0; t < is_undrawn.size(); ++t) {
     if (is_undrawn[t] != 0) continue;
@@ -68,12 +86,21 @@ double median_edge_length(const Corners& corners) {
 /// Grid and origin from the bounds of the vertices that the source's triangles use, so that stray points do not coarsen
 /// it.
 Status choose_frame(const Corners& corners, const PrepareOptions& options, PreparedMesh& mesh) {
-  Vec3d low(std::numeric_limits<double>::infinity());
-  Vec3d high(-std::numeric_limits<double>::infinity());
-  for (const std::uint32_t vertex : corners.triangles) {
-    low = glm::min(low, corners.positions[vertex]);
-    high = glm::max(high, corners.positions[vertex]);
+  struct Box {
+    Vec3d low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
+    void add(const Vec3d& from, const Vec3d& to) {
+      low = glm::min(low, from);
+      high = glm::max(high, to);
+    }
+  };
+  Box all;
+  for (const Box& box : sums_of_chunks(corners.triangles.size(), Box{}, [&](std::size_t i, Box&sum) {
+         const Vec3d& p = corners.positions[corners.triangles[i]];
+         sum.add(p, p);
+       })) {
+    all.add(box.low, box.high);
   }
+  const auto& [low, high] = all;
   const Vec3d half = (high - low) * 0.5;
   mesh.diagonal = 2.0 * std::sqrt(glm::dot(half, half));
   if (!std::isfinite(mesh.diagonal)) {
@@ -95,20 +122,19 @@ std::vector<Vec3i> place_on_grid(const Corners& corners, const std::vector<std::
                                  const PrepareOptions& options, PreparedMesh& mesh) {
   std::vector<Vec3i> points(corners.positions.size(), Vec3i(0));
   std::vector<Vec3d> relative(corners.positions.size(), Vec3d(0.0));
-  for (std::size_t v = 0; v < points.size(); ++v) {
-    if (is_used[v] == 0) continue;
+  parallel_for_each_index(points.size(), kLoopGrain, [&](std::size_t v) {
+    if (is_used[v] == 0) return;
     relative[v] = corners.positions[v] - mesh.origin;
     points[v] = mesh.grid.quantize(relative[v]);
-  }
+  });
   // Meshes that must abut share nothing but the grid: there each vertex goes to its own point and nowhere else.
   if (!(options.grid_step > 0.0)) separate_needles(relative, corners.triangles, mesh.grid, points);
-  double deviation2 = 0.0;
-  for (std::size_t v = 0; v < points.size(); ++v) {
-    if (is_used[v] == 0) continue;
+  const std::vector<double> deviations2 = sums_of_chunks(points.size(), 0.0, [&](std::size_t v, double& most) {
+    if (is_used[v] == 0) return;
     const Vec3d moved = mesh.grid.decode(points[v]) - relative[v];
-    deviation2 = std::max(deviation2, glm::dot(moved, moved));
-  }
-  mesh.level0_deviation = std::sqrt(deviation2);
+    most = std::max(most, glm::dot(moved, moved));
+  });
+  mesh.level0_deviation = std::sqrt(*std::max_element(deviations2.begin(), deviations2.end()));
   return points;
 }
 

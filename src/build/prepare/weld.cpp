@@ -71,35 +71,66 @@ struct VertexIds {
   std::vector<std::uint32_t> wedge_of_exact;
 };
 
-/// Runs of the canonical order become positions (grid point), wedges (grid point and attributes) and exact positions.
+/// Of a vertex in canonical order: what it begins. A new point is a new wedge, and that a new exact position.
+struct Begins {
+  std::uint32_t points = 0, wedges = 0, exacts = 0;
+};
+
+void add(Begins& sum, const Begins& more) {
+  sum.points += more.points;
+  sum.wedges += more.wedges;
+  sum.exacts += more.exacts;
+}
+
+/// Runs of the canonical order become positions (grid point), wedges (grid point and attributes) and exact positions:
+/// counted by chunk, then written to where the chunks before end.
 VertexIds weld_vertices(const Corners& corners, const std::vector<Vec3i>& points,
                         const std::vector<std::uint8_t>& is_used, PreparedMesh& mesh) {
+  constexpr std::size_t kLength = 4 * kLoopGrain;
   const std::uint32_t stride = mesh.layout.stride();
-  const std::vector<std::uint32_t> order = canonical_vertex_order(corners, points, stride);
+  std::vector<std::uint32_t> order = canonical_vertex_order(corners, points, stride);
   VertexIds ids;
   ids.exact_of.resize(order.size());
-  std::uint32_t previous = 0;
-  bool has_previous = false;
-  for (const std::uint32_t v : order) {
-    if (is_used[v] == 0) continue;
-    const float* const attributes = corners.attributes_of(v, stride);
-    const bool same_point = has_previous && points[v] == points[previous];
-    const bool same_wedge =
-        same_point && compare_attributes(attributes, corners.attributes_of(previous, stride), stride) == 0;
-    const bool same_exact = same_wedge && corners.positions[v] == corners.positions[previous];
-    if (!same_point) mesh.positions.push_back(points[v]);
-    if (!same_wedge) {
-      mesh.wedge_position.push_back(static_cast<std::uint32_t>(mesh.positions.size() - 1));
-      mesh.wedge_attributes.insert(mesh.wedge_attributes.end(), attributes, attributes + stride);
+  std::erase_if(order, [&](std::uint32_t v) { return is_used[v] == 0; });
+  const auto begins_at = [&](std::size_t i) -> Begins {
+    if (i == 0) return {1, 1, 1};
+    const std::uint32_t v = order[i], previous = order[i - 1];
+    if (points[v] != points[previous]) return {1, 1, 1};
+    const int attributes =
+        compare_attributes(corners.attributes_of(v, stride), corners.attributes_of(previous, stride), stride);
+    if (attributes != 0) return {0, 1, 1};
+    return {0, 0, corners.positions[v] == corners.positions[previous] ? 0U : 1U};
+  };
+  std::vector<Begins> before(chunk_count(order.size(), kLength) + 1);
+  parallel_for_each_chunk(order.size(), kLength, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) add(before[chunk + 1], begins_at(i));
+  });
+  for (std::size_t chunk = 0; chunk + 1 < before.size(); ++chunk) add(before[chunk + 1], before[chunk]);
+  mesh.positions.resize(before.back().points);
+  mesh.wedge_position.resize(before.back().wedges);
+  mesh.wedge_attributes.resize(std::size_t{before.back().wedges} * stride);
+  mesh.exact_positions.resize(before.back().exacts);
+  ids.wedge_of_exact.resize(before.back().exacts);
+  parallel_for_each_chunk(order.size(), kLength, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+    Begins so_far = before[chunk];
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::uint32_t v = order[i];
+      const Begins begun = begins_at(i);
+      add(so_far, begun);
+      const std::uint32_t point = so_far.points - 1, wedge = so_far.wedges - 1, exact = so_far.exacts - 1;
+      if (begun.points != 0) mesh.positions[point] = points[v];
+      if (begun.wedges != 0) {
+        mesh.wedge_position[wedge] = point;
+        std::copy_n(corners.attributes_of(v, stride), stride,
+                    mesh.wedge_attributes.begin() + static_cast<std::ptrdiff_t>(std::size_t{wedge} * stride));
+      }
+      if (begun.exacts != 0) {
+        ids.wedge_of_exact[exact] = wedge;
+        mesh.exact_positions[exact] = corners.positions[v] - mesh.origin;
+      }
+      ids.exact_of[v] = exact;
     }
-    if (!same_exact) {
-      ids.wedge_of_exact.push_back(static_cast<std::uint32_t>(mesh.wedge_position.size() - 1));
-      mesh.exact_positions.push_back(corners.positions[v] - mesh.origin);
-    }
-    ids.exact_of[v] = static_cast<std::uint32_t>(ids.wedge_of_exact.size() - 1);
-    previous = v;
-    has_previous = true;
-  }
+  });
   return ids;
 }
 
@@ -113,14 +144,13 @@ struct CanonicalTriangle {
 /// In order, and each once; counts what was there more often.
 std::vector<CanonicalTriangle> weld_triangles(const Corners& corners, const std::vector<std::uint32_t>& exact_of,
                                               std::uint64_t& duplicates) {
-  std::vector<CanonicalTriangle> triangles;
-  triangles.reserve(corners.materials.size());
-  for (std::size_t t = 0; t < corners.materials.size(); ++t) {
+  std::vector<CanonicalTriangle> triangles(corners.materials.size());
+  parallel_for_each_index(triangles.size(), kLoopGrain, [&](std::size_t t) {
     const std::uint32_t* c = &corners.triangles[3 * t];
     std::array<std::uint32_t, 3> exact{exact_of[c[0]], exact_of[c[1]], exact_of[c[2]]};
     std::rotate(exact.begin(), std::min_element(exact.begin(), exact.end()), exact.end());
-    triangles.push_back({exact, corners.materials[t]});
-  }
+    triangles[t] = {exact, corners.materials[t]};
+  });
   tbb::parallel_sort(triangles.begin(), triangles.end());
   const auto unique_end = std::unique(triangles.begin(), triangles.end());
   duplicates = static_cast<std::uint64_t>(triangles.end() - unique_end);
@@ -145,17 +175,20 @@ void weld(const Corners& corners, const std::vector<Vec3i>& points, const std::v
           PreparedMesh& mesh) {
   const VertexIds ids = weld_vertices(corners, points, is_used, mesh);
   const std::vector<CanonicalTriangle> triangles = weld_triangles(corners, ids.exact_of, mesh.dropped_duplicate);
-  mesh.triangles.reserve(triangles.size());
-  mesh.exact_triangles.reserve(triangles.size());
-  mesh.triangle_material.reserve(triangles.size());
-  for (const CanonicalTriangle& triangle : triangles) {
-    WedgeTriangle wedges{};
-    for (std::size_t k = 0; k < 3; ++k) wedges[k] = ids.wedge_of_exact[triangle.exact[k]];
-    if (!has_area(mesh, wedges)) ++mesh.grid_collapsed;
-    mesh.triangles.push_back(wedges);
-    mesh.exact_triangles.push_back(triangle.exact);
-    mesh.triangle_material.push_back(triangle.material);
-  }
+  mesh.triangles.resize(triangles.size());
+  mesh.exact_triangles.resize(triangles.size());
+  mesh.triangle_material.resize(triangles.size());
+  std::vector<std::uint32_t> collapsed(chunk_count(triangles.size(), kLoopGrain), 0);
+  parallel_for_each_chunk(triangles.size(), kLoopGrain, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      const CanonicalTriangle& triangle = triangles[t];
+      for (std::size_t k = 0; k < 3; ++k) mesh.triangles[t][k] = ids.wedge_of_exact[triangle.exact[k]];
+      if (!has_area(mesh, mesh.triangles[t])) ++collapsed[chunk];
+      mesh.exact_triangles[t] = triangle.exact;
+      mesh.triangle_material[t] = triangle.material;
+    }
+  });
+  for (const std::uint32_t count : collapsed) mesh.grid_collapsed += count;
 }
 
 }  // namespace meshlode::build
