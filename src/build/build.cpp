@@ -2,7 +2,9 @@
 // The whole build as one straight line. Read this first, then the rooms in the order they are called.
 #include "build/build.h"
 
+#include <algorithm>
 #include <array>
+#include <numeric>
 #include <span>
 #include <string>
 #include <utility>
@@ -29,16 +31,18 @@ std::string label_of(const scene::SourceMesh& mesh, std::size_t index) {
   return "mesh " + std::to_string(index) + (mesh.name.empty() ? "" : " '" + mesh.name + "'");
 }
 
-/// Refuses what cannot be built, before any work is done.
-Status check_build(const scene::Scene& scene, const PipelineOptions& options, PipelineReport& report) {
-  if (const Status s = check_options(options); !s) return s;
+/// Refuses what cannot be built, before any work is done. \returns how many meshes may be in work at once
+Result<std::size_t> check_build(const scene::Scene& scene, const PipelineOptions& options, PipelineReport& report) {
+  if (const Status s = check_options(options); !s) return s.error();
   for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
     const std::string label = label_of(scene.meshes[i], i);
-    if (const Status counts = check_mesh_counts(count_mesh(scene.meshes[i]), label); !counts) return counts;
+    if (const Status counts = check_mesh_counts(count_mesh(scene.meshes[i]), label); !counts) return counts.error();
   }
-  const auto threads = static_cast<std::uint32_t>(tbb::this_task_arena::max_concurrency());
-  report.memory_estimate = estimate_memory(scene, options, threads);
-  return check_memory(report.memory_estimate, options);
+  const auto threads = static_cast<std::uint32_t>(thread_limit());
+  const MemoryEstimate estimate = estimate_memory(scene, options, threads);
+  const Result<std::size_t> at_once = fit_memory(estimate, threads, options);
+  report.memory_estimate = estimate.bytes(at_once ? *at_once : 1);
+  return at_once;
 }
 
 struct BuiltMesh {
@@ -46,6 +50,17 @@ struct BuiltMesh {
   std::vector<PlanDecision> decisions;
   StageClock clock;
 };
+
+/// What nobody looks at once the DAG is there.
+void free_surface(PreparedMesh& mesh) {
+  mesh.positions = {};
+  mesh.wedge_position = {};
+  mesh.wedge_attributes = {};
+  mesh.triangles = {};
+  mesh.triangle_material = {};
+  mesh.exact_positions = {};
+  mesh.exact_triangles = {};
+}
 
 /// One mesh from its source triangles to pages. `texels`: texels_of_materials() of the scene.
 Result<BuiltMesh> build_mesh(const scene::Scene& scene, std::size_t index,
@@ -59,7 +74,7 @@ Result<BuiltMesh> build_mesh(const scene::Scene& scene, std::size_t index,
   built.decisions = std::move(plan.decisions);
   built.clock.end(Stage::kPlan);
 
-  const Result<PreparedMesh> mesh = prepare_mesh(source, plan.layout, prepare_options(options));
+  Result<PreparedMesh> mesh = prepare_mesh(source, plan.layout, prepare_options(options));
   if (!mesh) return mesh.error();
   built.clock.end(Stage::kPrepare);
 
@@ -70,6 +85,7 @@ Result<BuiltMesh> build_mesh(const scene::Scene& scene, std::size_t index,
   };
   const Result<LodDag> dag = build_dag(*mesh, coarsening);
   if (!dag) return Error{dag.error().code, label, dag.error().detail};
+  free_surface(*mesh);
   built.clock.end(Stage::kDag);
 
   const Hierarchy hierarchy = build_hierarchy(*dag, *mesh);
@@ -86,14 +102,27 @@ Result<BuiltMesh> build_mesh(const scene::Scene& scene, std::size_t index,
   return built;
 }
 
-/// Every mesh once, side by side. Error: the first mesh's that has one.
+/// Meshes from the largest to the smallest: begun last, a large one would end long after all others.
+std::vector<std::size_t> largest_first(const scene::Scene& scene) {
+  std::vector<std::uint64_t> triangles;
+  for (const scene::SourceMesh& mesh : scene.meshes) triangles.push_back(count_mesh(mesh).triangles);
+  std::vector<std::size_t> order(triangles.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return triangles[a] > triangles[b]; });
+  return order;
+}
+
+/// Every mesh once, so many side by side. Error: the first mesh's that has one.
 Result<std::vector<BuiltMesh>> build_meshes(const scene::Scene& scene, const PipelineOptions& options,
-                                            const ProgressCallback& progress) {
+                                            std::size_t at_once, const ProgressCallback& progress) {
   ProgressMeter meter(scene, progress);
   const auto texels = texels_of_materials(scene);
+  const std::vector<std::size_t> order = largest_first(scene);
   std::vector<Result<BuiltMesh>> results(scene.meshes.size(), Error{});
-  parallel_for_each_index(results.size(), 1,
-                          [&](std::size_t i) { results[i] = build_mesh(scene, i, texels, options, meter); });
+  parallel_for_each_in_order(order.size(), at_once, [&](std::size_t i) {
+    results[order[i]] = build_mesh(scene, order[i], texels, options, meter);
+  });
   std::vector<BuiltMesh> meshes;
   for (Result<BuiltMesh>& result : results) {
     if (!result) return result.error();
@@ -106,8 +135,9 @@ Result<std::vector<BuiltMesh>> build_meshes(const scene::Scene& scene, const Pip
 
 Result<std::vector<std::uint8_t>> build_lode(const scene::Scene& scene, const PipelineOptions& options,
                                              const ProgressCallback& progress, PipelineReport& report) {
-  if (const Status possible = check_build(scene, options, report); !possible) return possible.error();
-  Result<std::vector<BuiltMesh>> meshes = build_meshes(scene, options, progress);
+  const Result<std::size_t> at_once = check_build(scene, options, report);
+  if (!at_once) return at_once.error();
+  Result<std::vector<BuiltMesh>> meshes = build_meshes(scene, options, *at_once, progress);
   if (!meshes) return meshes.error();
 
   WriteInput input;

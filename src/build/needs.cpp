@@ -98,38 +98,41 @@ Status check_mesh_counts(const MeshCounts& counts, const std::string& mesh) {
   return Ok{};
 }
 
-std::uint64_t estimate_memory(const scene::Scene& scene, const PipelineOptions& options, std::uint32_t threads) {
-  threads = std::max(threads, 1U);
-  const bool is_measured = options.error_tier != format::ErrorTier::kQem;
-  std::uint64_t sum = kProcess + kThread * threads + kDocumentByte * scene.document.size();
-  for (const scene::SceneBlob& blob : scene.blobs) sum += 2 * bytes_of(blob.bytes);  // the scene's and the file's
-  std::vector<std::uint64_t> working;
-  for (const scene::SourceMesh& mesh : scene.meshes) {
-    const MeshCounts counts = count_mesh(mesh);
-    for (const scene::Primitive& primitive : mesh.primitives) sum += bytes_of(primitive);
-    sum += kKeptTriangle * counts.triangles;
-    working.push_back(kTriangle * counts.triangles +
-                      (is_measured ? kPosition : kPositionOfQuadric) * count_positions(mesh) +
-                      kVertexFloat * attribute_floats(mesh, options) * counts.vertices);
-  }
-  // As many meshes as there are threads are in work at once: the largest, at worst.
-  const std::size_t at_once = std::min<std::size_t>(threads, working.size());
-  std::partial_sort(working.begin(), working.begin() + static_cast<std::ptrdiff_t>(at_once), working.end(),
-                    std::greater<>());
-  for (std::size_t i = 0; i < at_once; ++i) sum += working[i];
+std::uint64_t MemoryEstimate::bytes(std::size_t at_once) const {
+  std::uint64_t sum = always;
+  for (std::size_t i = 0; i < std::min(at_once, working.size()); ++i) sum += working[i];
   return sum;
 }
 
-Status check_memory(std::uint64_t estimate, const PipelineOptions& options) {
+MemoryEstimate estimate_memory(const scene::Scene& scene, const PipelineOptions& options, std::uint32_t threads) {
+  const bool is_measured = options.error_tier != format::ErrorTier::kQem;
+  MemoryEstimate estimate;
+  estimate.always = kProcess + kThread * std::max(threads, 1U) + kDocumentByte * scene.document.size();
+  for (const scene::SceneBlob& blob : scene.blobs) estimate.always += 2 * bytes_of(blob.bytes);  // and the file's
+  for (const scene::SourceMesh& mesh : scene.meshes) {
+    const MeshCounts counts = count_mesh(mesh);
+    for (const scene::Primitive& primitive : mesh.primitives) estimate.always += bytes_of(primitive);
+    estimate.always += kKeptTriangle * counts.triangles;
+    estimate.working.push_back(kTriangle * counts.triangles +
+                               (is_measured ? kPosition : kPositionOfQuadric) * count_positions(mesh) +
+                               kVertexFloat * attribute_floats(mesh, options) * counts.vertices);
+  }
+  std::sort(estimate.working.begin(), estimate.working.end(), std::greater<>());
+  return estimate;
+}
+
+Result<std::size_t> fit_memory(const MemoryEstimate& estimate, std::uint32_t threads, const PipelineOptions& options) {
+  std::size_t at_once = std::max<std::size_t>(1, std::min<std::size_t>(threads, estimate.working.size()));
   std::uint64_t limit = options.max_memory;
   if (limit == 0) {
     const auto available = available_memory();
-    if (!available) return Ok{};
+    if (!available) return at_once;
     limit = resident_memory() + *available;
   }
-  if (estimate <= limit) return Ok{};
+  while (at_once > 1 && estimate.bytes(at_once) > limit) --at_once;
+  if (estimate.bytes(at_once) <= limit) return at_once;
   return Error{ErrorCode::kBuildFailed, "",
-               "the build needs about " + byte_size_text(estimate) + " of memory, " + byte_size_text(limit) +
+               "the build needs about " + byte_size_text(estimate.bytes(1)) + " of memory, " + byte_size_text(limit) +
                    (options.max_memory == 0 ? " are available (--max-memory SIZE builds all the same)"
                                             : " are allowed by --max-memory")};
 }

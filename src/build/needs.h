@@ -2,7 +2,10 @@
 // What a build will need, known before it begins: counts that fit the ids of a mesh, and memory.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <string>
+#include <vector>
 
 #include <meshlode/result.h>
 
@@ -26,13 +29,24 @@ constexpr std::uint64_t kMaxMeshVertices = 4294967295;
 /// Error: kUnsupported, naming the mesh, its count and the limit.
 [[nodiscard]] Status check_mesh_counts(const MeshCounts& counts, const std::string& mesh);
 
-/// Bytes that the whole process will take at most while it builds this scene on that many threads, the scene included.
-/// Measured (docs/performance.md, "Memory") and meant to be a little more than what will be found: never 0.
-[[nodiscard]] std::uint64_t estimate_memory(const scene::Scene& scene, const PipelineOptions& options,
-                                            std::uint32_t threads);
+/// What the whole process will take at most, the scene included: so much from the beginning to the end, and so much
+/// more while a mesh is in work. Measured (docs/performance.md, "Memory") and meant to be a little more than what will
+/// be found.
+struct MemoryEstimate {
+  std::uint64_t always = 0;            ///< bytes, never 0
+  std::vector<std::uint64_t> working;  ///< bytes by mesh, the largest first
 
-/// Error: kBuildFailed where the estimate is more than PipelineOptions::max_memory, or, where that is 0, than what the
-/// process has and the machine can still give it.
-[[nodiscard]] Status check_memory(std::uint64_t estimate, const PipelineOptions& options);
+  /// With so many meshes in work at once: the largest, at worst.
+  [[nodiscard]] std::uint64_t bytes(std::size_t at_once) const;
+};
+
+[[nodiscard]] MemoryEstimate estimate_memory(const scene::Scene& scene, const PipelineOptions& options,
+                                             std::uint32_t threads);
+
+/// How many meshes may be in work at once, at most one a thread: fewer where memory asks for it, down to one after
+/// another. The limit is PipelineOptions::max_memory or, where that is 0, what the process has and the machine can
+/// still give it. Error: kBuildFailed where one at a time is too much.
+[[nodiscard]] Result<std::size_t> fit_memory(const MemoryEstimate& estimate, std::uint32_t threads,
+                                             const PipelineOptions& options);
 
 }  // namespace meshlode::build

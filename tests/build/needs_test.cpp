@@ -50,19 +50,40 @@ TEST(Needs, FlatNormalsBesideOthersMakeAVertexOfEachCorner) {
   EXPECT_EQ(count_mesh(mesh).vertices, 10u);
 }
 
+constexpr std::uint64_t kMiB = 1u << 20u;
+
 TEST(Needs, MoreThanIsAllowedIsRefusedAndNamesBoth) {
   PipelineOptions options;
-  options.max_memory = std::uint64_t{100} << 20u;
-  EXPECT_TRUE(check_memory(options.max_memory, options));
-  const Status refused = check_memory(options.max_memory + 1, options);
+  options.max_memory = 100 * kMiB;
+  EXPECT_TRUE(fit_memory({60 * kMiB, {40 * kMiB}}, 1, options));
+  const Result<std::size_t> refused = fit_memory({60 * kMiB + 1, {40 * kMiB}}, 1, options);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, ErrorCode::kBuildFailed);
   EXPECT_EQ(refused.error().detail, "the build needs about 100.1MiB of memory, 100MiB are allowed by --max-memory");
   options.max_memory = 0;
-  EXPECT_TRUE(check_memory(1, options));
-  const Status machine = check_memory(std::uint64_t{1} << 60u, options);
+  EXPECT_TRUE(fit_memory({1, {}}, 4, options));
+  const Result<std::size_t> machine = fit_memory({std::uint64_t{1} << 60u, {}}, 1, options);
   ASSERT_FALSE(machine);
   EXPECT_NE(machine.error().detail.find("are available"), std::string::npos) << machine.error().detail;
+}
+
+TEST(Needs, AsManyMeshesAreInWorkAtOnceAsFit) {
+  const MemoryEstimate estimate{10 * kMiB, {50 * kMiB, 30 * kMiB, 20 * kMiB, 20 * kMiB}};
+  EXPECT_EQ(estimate.bytes(0), 10 * kMiB);
+  EXPECT_EQ(estimate.bytes(2), 90 * kMiB);
+  EXPECT_EQ(estimate.bytes(9), 130 * kMiB);
+  PipelineOptions options;
+  const auto at_once = [&](std::uint64_t limit, std::uint32_t threads) {
+    options.max_memory = limit;
+    return fit_memory(estimate, threads, options);
+  };
+  EXPECT_EQ(*at_once(130 * kMiB, 16), 4u);
+  EXPECT_EQ(*at_once(130 * kMiB, 3), 3u) << "one a thread";
+  EXPECT_EQ(*at_once(130 * kMiB - 1, 16), 3u);
+  EXPECT_EQ(*at_once(90 * kMiB, 16), 2u);
+  EXPECT_EQ(*at_once(60 * kMiB, 16), 1u);
+  EXPECT_FALSE(at_once(60 * kMiB - 1, 16));
+  EXPECT_EQ(*fit_memory({1, {}}, 0, options), 1u) << "a scene without meshes";
 }
 
 /// A wavy sheet of 2 · n² triangles, `count` times.
@@ -93,6 +114,25 @@ scene::Scene sheets(std::uint32_t n, std::size_t count, bool has_attributes) {
   mesh.primitives.push_back(std::move(sheet));
   scene.meshes.assign(count, mesh);
   return scene;
+}
+
+TEST(Needs, OneMeshAfterAnotherGivesTheSameBytes) {
+  const scene::Scene scene = sheets(40, 5, false);
+  PipelineOptions options;
+  PipelineReport side_by_side, one_by_one;
+  const MemoryEstimate estimate = estimate_memory(scene, options, 4);
+  tbb::task_arena arena(4);
+  arena.execute([&] {
+    const auto all = build_lode(scene, options, {}, side_by_side);
+    options.max_memory = estimate.bytes(1);
+    const auto each = build_lode(scene, options, {}, one_by_one);
+    ASSERT_TRUE(all && each);
+    EXPECT_EQ(*all, *each);
+    options.max_memory = estimate.bytes(1) - 1;
+    EXPECT_FALSE(build_lode(scene, options, {}, one_by_one));
+  });
+  EXPECT_EQ(side_by_side.memory_estimate, estimate.bytes(4));
+  EXPECT_EQ(one_by_one.memory_estimate, estimate.bytes(1));
 }
 
 /// Triangles that share nothing.
@@ -189,10 +229,10 @@ TEST(Needs, MemoryIsEstimatedFromAboveAndCloseEnough) {
 
 TEST(Needs, AScenesImagesAreCounted) {
   scene::Scene scene = sheets(4, 1, false);
-  const std::uint64_t without = estimate_memory(scene, {}, 1);
+  const std::uint64_t without = estimate_memory(scene, {}, 1).always;
   scene.blobs.resize(1);
   scene.blobs[0].bytes.resize(1000000);
-  EXPECT_EQ(estimate_memory(scene, {}, 1), without + 2000000);
+  EXPECT_EQ(estimate_memory(scene, {}, 1).always, without + 2000000);
 }
 
 }  // namespace
