@@ -18,6 +18,10 @@ bool is_aggregate(const PreparedMesh& mesh) {
   return mesh.piece_count >= kFewestPieces && mesh.triangles.size() <= kLargestPiece * mesh.piece_count;
 }
 
+/// Below so many triangles a build is quick anyway, and any other partition moves the coarse cuts of a mesh by some
+/// hundredths, up or down: luck that small meshes should not draw anew for speed.
+constexpr std::size_t kSmallMesh = 262144;
+
 ErrorSource error_source_of(format::ErrorTier tier) {
   switch (tier) {
     case format::ErrorTier::kMeasured: return ErrorSource::kMeasured;
@@ -84,7 +88,7 @@ DagOptions dag_options(const PipelineOptions& options, const PreparedMesh& mesh,
   dag.caps.max_triangles = options.max_cluster_triangles;
   dag.caps.max_vertices = options.max_cluster_vertices;
   dag.caps.target_triangles = options.max_cluster_triangles - std::min(2U, options.max_cluster_triangles / 16);
-  dag.caps.merge_triangles = settings_of(options.preset).merge_triangles;
+  dag.caps.merge_triangles = settings_of(options.preset).merge_triangles && mesh.triangles.size() >= kSmallMesh;
   dag.simplify.keep_area = is_aggregate(mesh);
   dag.max_group_bytes = format::kMaxPageBytes - kPageFrameBytes;
   dag.cluster_bytes = [&mesh, encode](std::uint32_t vertices, std::uint32_t triangles, std::uint32_t materials) {

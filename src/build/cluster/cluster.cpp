@@ -12,6 +12,7 @@
 #include "build/cluster/adjacency.h"
 #include "build/cluster/caps.h"
 #include "build/cluster/loose_pieces.h"
+#include "build/cluster/merged_partition.h"
 #include "build/cluster/partition.h"
 #include "build/cluster/satellites.h"
 
@@ -90,7 +91,8 @@ Clustering partition_chunk(std::span<const WedgeTriangle> triangles, Graph graph
                            const ClusterCaps& caps) {
   Clustering clustering;
   clustering.count = static_cast<std::uint32_t>(std::min(parts, triangles.size()));
-  clustering.label = partition_graph(graph, clustering.count);
+  clustering.label =
+      caps.merge_triangles ? partition_merged(graph, clustering.count) : partition_graph(graph, clustering.count);
   enforce_caps(triangles, graph, caps, clustering);
   return clustering;
 }

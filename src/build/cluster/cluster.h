@@ -17,7 +17,8 @@ struct ClusterCaps {
   std::uint32_t max_vertices = 256;
   /// What the partitioner aims at: two below the cap, so that its small imbalance stays inside.
   std::uint32_t target_triangles = 126;
-  /// Triangles may be merged before METIS sees them, for time: build/preset.h says when.
+  /// METIS cuts quads of triangles instead of triangles (merged_partition.h): in half the time, and with borders of
+  /// clusters that are a little longer. build/preset.h and build/stage_options.cpp say where.
   bool merge_triangles = true;
 };
 
