@@ -61,7 +61,7 @@ class Bench:
         if not path.exists():
             folder = self.out / "generated"
             folder.mkdir(exist_ok=True)
-            subprocess.run([self.program("meshlode_generate"), folder, "--terrain", str(TERRAIN_TRIANGLES)],
+            subprocess.run([self.program("meshlode_generate"), folder, "--triangles", str(TERRAIN_TRIANGLES)],
                            check=True)
             next(folder.glob("*.glb")).rename(path)
         return path

@@ -1,31 +1,22 @@
 // SPDX-License-Identifier: MIT
 #include "base/byte_size.h"
 
-#include <charconv>
-#include <system_error>
 #include <utility>
+
+#include "base/amounts.h"
 
 namespace meshlode {
 
 namespace {
 
 constexpr std::pair<std::string_view, unsigned> kUnits[] = {{"GiB", 30}, {"MiB", 20}, {"KiB", 10}, {"B", 0}};
-constexpr std::uint64_t kLargest = std::uint64_t{1} << 62U;
 
 }  // namespace
 
 std::optional<std::uint64_t> parse_byte_size(std::string_view text) {
-  unsigned shift = 0;
-  for (const auto& [unit, bits] : kUnits) {
-    if (!text.ends_with(unit)) continue;
-    text.remove_suffix(unit.size());
-    shift = bits;
-    break;
-  }
-  std::uint64_t number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc() || end != text.data() + text.size() || number > kLargest >> shift) return std::nullopt;
-  return number << shift;
+  constexpr AmountUnit kFactors[] = {
+      {"GiB", std::uint64_t{1} << 30U}, {"MiB", std::uint64_t{1} << 20U}, {"KiB", std::uint64_t{1} << 10U}, {"B", 1}};
+  return parse_amount(text, kFactors, std::uint64_t{1} << 62U);
 }
 
 std::string byte_size_text(std::uint64_t bytes) {

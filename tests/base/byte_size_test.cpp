@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "base/amounts.h"
+
 namespace meshlode {
 namespace {
 
@@ -36,6 +38,25 @@ TEST(ByteSize, TextsAreExactOrRoundedUp) {
       EXPECT_EQ(parse_byte_size(text), bytes);
     }
   }
+}
+
+TEST(Amounts, CountsTakeThousandsAndMillions) {
+  EXPECT_EQ(parse_count("0"), 0u);
+  EXPECT_EQ(parse_count("42"), 42u);
+  EXPECT_EQ(parse_count("500K"), 500000u);
+  EXPECT_EQ(parse_count("16M"), 16000000u);
+  EXPECT_EQ(parse_count("4611686018427M"), 4611686018427000000u);
+  for (const char* text :
+       {"", "M", "-1", "+1", "1.5M", "1 M", "1m", "1KM", "1KiB", "0x10", "4611686018428M", "18446744073709551616"}) {
+    EXPECT_FALSE(parse_count(text)) << text;
+  }
+}
+
+TEST(Amounts, TheFirstUnitThatFitsCounts) {
+  constexpr AmountUnit kUnits[] = {{"dozen", 12}, {"en", 100}};
+  EXPECT_EQ(parse_amount("3dozen", kUnits, 36), 36u);
+  EXPECT_FALSE(parse_amount("3dozen", kUnits, 35));
+  EXPECT_EQ(parse_amount("3en", kUnits, 300), 300u);
 }
 
 }  // namespace

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// meshlode_generate OUTDIR              writes the scenes of data/
-// meshlode_generate OUTDIR --terrain N  writes a terrain of about N triangles, for benchmarks
-#include <charconv>
+// meshlode_generate OUTDIR                writes the scenes of data/
+// meshlode_generate OUTDIR --triangles N  writes a terrain of about N triangles (16M, 500K, 42), for benchmarks
+#include <cstdint>
 #include <cstdio>
-#include <cstring>
 #include <filesystem>
+#include <optional>
+#include <string>
 #include <string_view>
+#include <system_error>
 
+#include "base/amounts.h"
 #include "base/file.h"
 #include "scene/samples/samples.h"
 
@@ -24,23 +27,20 @@ int write(const std::filesystem::path& folder, const scene::SampleFile& file) {
   return 0;
 }
 
-int run(const char* out_dir, const char* terrain) {
+int run(const char* out_dir, const char* triangles_text) {
+  constexpr std::uint64_t kFewest = 2, kMost = 100'000'000;
+  const std::optional<std::uint64_t> triangles = triangles_text == nullptr ? std::nullopt : parse_count(triangles_text);
+  if (triangles_text != nullptr && (!triangles || *triangles < kFewest || *triangles > kMost)) {
+    std::fputs("meshlode_generate: --triangles wants a number from 2 to 100M, such as 16M, 500K or 42\n", stderr);
+    return static_cast<int>(ErrorCode::kUsage);
+  }
   std::error_code failure;
   std::filesystem::create_directories(out_dir, failure);
   if (failure) {
     std::fprintf(stderr, "meshlode_generate: %s: %s\n", out_dir, failure.message().c_str());
     return static_cast<int>(ErrorCode::kIo);
   }
-  if (terrain != nullptr) {
-    std::uint64_t triangles = 0;
-    const char* end = terrain + std::strlen(terrain);
-    const auto parsed = std::from_chars(terrain, end, triangles);
-    if (parsed.ec != std::errc{} || parsed.ptr != end || triangles < 2 || triangles > 100'000'000) {
-      std::fputs("meshlode_generate: --terrain wants a number of triangles, 2 to 100000000\n", stderr);
-      return static_cast<int>(ErrorCode::kUsage);
-    }
-    return write(out_dir, scene::make_terrain_file(triangles));
-  }
+  if (triangles) return write(out_dir, scene::make_terrain_file(*triangles));
   for (const std::string& name : scene::sample_names()) {
     if (const int code = write(out_dir, scene::make_sample_file(name)); code != 0) return code;
   }
@@ -50,10 +50,10 @@ int run(const char* out_dir, const char* terrain) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const bool has_terrain = argc == 4 && std::string_view(argv[2]) == "--terrain";
-  if ((argc != 2 && !has_terrain) || argv[1][0] == '-') {
-    std::fputs("usage: meshlode_generate OUTDIR [--terrain TRIANGLES]\n", stderr);
-    return 1;
+  const bool has_triangles = argc == 4 && std::string_view(argv[2]) == "--triangles";
+  if ((argc != 2 && !has_triangles) || argv[1][0] == '-') {
+    std::fputs("usage: meshlode_generate OUTDIR [--triangles NUMBER]\n", stderr);
+    return static_cast<int>(ErrorCode::kUsage);
   }
-  return run(argv[1], has_terrain ? argv[3] : nullptr);
+  return run(argv[1], has_triangles ? argv[3] : nullptr);
 }
