@@ -62,15 +62,30 @@ void free_surface(PreparedMesh& mesh) {
   mesh.exact_triangles = {};
 }
 
+/// The scene, and itself once more where it may be taken apart.
+struct Source {
+  const scene::Scene& scene;
+  scene::Scene* owned = nullptr;
+
+  void free_mesh(std::size_t index) const {
+    if (owned == nullptr) return;
+    for (scene::Primitive& primitive : owned->meshes[index].primitives) {
+      const MaterialId material = primitive.material;
+      primitive = {};
+      primitive.material = material;
+    }
+  }
+};
+
 /// One mesh from its source triangles to pages. `texels`: texels_of_materials() of the scene.
-Result<BuiltMesh> build_mesh(const scene::Scene& scene, std::size_t index,
+Result<BuiltMesh> build_mesh(const Source& from, std::size_t index,
                              std::span<const std::array<double, scene::kMaxUvSets>> texels,
                              const PipelineOptions& options, ProgressMeter& progress) {
-  const scene::SourceMesh& source = scene.meshes[index];
+  const scene::SourceMesh& source = from.scene.meshes[index];
   const std::string label = label_of(source, index);
   BuiltMesh built;
 
-  MeshPlan plan = plan_mesh(source, scene.materials, options.attributes, label);
+  MeshPlan plan = plan_mesh(source, from.scene.materials, options.attributes, label);
   built.decisions = std::move(plan.decisions);
   built.clock.end(Stage::kPlan);
 
@@ -79,6 +94,7 @@ Result<BuiltMesh> build_mesh(const scene::Scene& scene, std::size_t index,
   built.clock.end(Stage::kPrepare);
 
   const EncodeOptions encoding = encode_options(options, source, plan.layout, texels);
+  from.free_mesh(index);
   DagOptions coarsening = dag_options(options, *mesh, encoding);
   coarsening.on_level = [&](std::uint32_t level, std::uint64_t triangles) {
     return progress.report(index, level, triangles);
@@ -114,14 +130,14 @@ std::vector<std::size_t> largest_first(const scene::Scene& scene) {
 }
 
 /// Every mesh once, so many side by side. Error: the first mesh's that has one.
-Result<std::vector<BuiltMesh>> build_meshes(const scene::Scene& scene, const PipelineOptions& options,
-                                            std::size_t at_once, const ProgressCallback& progress) {
-  ProgressMeter meter(scene, progress);
-  const auto texels = texels_of_materials(scene);
-  const std::vector<std::size_t> order = largest_first(scene);
-  std::vector<Result<BuiltMesh>> results(scene.meshes.size(), Error{});
+Result<std::vector<BuiltMesh>> build_meshes(const Source& from, const PipelineOptions& options, std::size_t at_once,
+                                            const ProgressCallback& progress) {
+  ProgressMeter meter(from.scene, progress);
+  const auto texels = texels_of_materials(from.scene);
+  const std::vector<std::size_t> order = largest_first(from.scene);
+  std::vector<Result<BuiltMesh>> results(order.size(), Error{});
   parallel_for_each_in_order(order.size(), at_once, [&](std::size_t i) {
-    results[order[i]] = build_mesh(scene, order[i], texels, options, meter);
+    results[order[i]] = build_mesh(from, order[i], texels, options, meter);
   });
   std::vector<BuiltMesh> meshes;
   for (Result<BuiltMesh>& result : results) {
@@ -131,13 +147,12 @@ Result<std::vector<BuiltMesh>> build_meshes(const scene::Scene& scene, const Pip
   return meshes;
 }
 
-}  // namespace
-
-Result<std::vector<std::uint8_t>> build_lode(const scene::Scene& scene, const PipelineOptions& options,
-                                             const ProgressCallback& progress, PipelineReport& report) {
+Result<std::vector<std::uint8_t>> build_asset_of(const Source& from, const PipelineOptions& options,
+                                                 const ProgressCallback& progress, PipelineReport& report) {
+  const scene::Scene& scene = from.scene;
   const Result<std::size_t> at_once = check_build(scene, options, report);
   if (!at_once) return at_once.error();
-  Result<std::vector<BuiltMesh>> meshes = build_meshes(scene, options, *at_once, progress);
+  Result<std::vector<BuiltMesh>> meshes = build_meshes(from, options, *at_once, progress);
   if (!meshes) return meshes.error();
 
   WriteInput input;
@@ -158,6 +173,18 @@ Result<std::vector<std::uint8_t>> build_lode(const scene::Scene& scene, const Pi
   clock.end(Stage::kWrite);
   clock.add_to(report.stages);
   return bytes;
+}
+
+}  // namespace
+
+Result<std::vector<std::uint8_t>> build_lode(const scene::Scene& scene, const PipelineOptions& options,
+                                             const ProgressCallback& progress, PipelineReport& report) {
+  return build_asset_of({scene, nullptr}, options, progress, report);
+}
+
+Result<std::vector<std::uint8_t>> build_lode(scene::Scene&& scene, const PipelineOptions& options,
+                                             const ProgressCallback& progress, PipelineReport& report) {
+  return build_asset_of({scene, &scene}, options, progress, report);
 }
 
 }  // namespace meshlode::build

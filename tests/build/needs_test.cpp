@@ -128,6 +128,9 @@ TEST(Needs, OneMeshAfterAnotherGivesTheSameBytes) {
     const auto each = build_lode(scene, options, {}, one_by_one);
     ASSERT_TRUE(all && each);
     EXPECT_EQ(*all, *each);
+    const auto taken_apart = build_lode(scene::Scene(scene), options, {}, one_by_one);
+    ASSERT_TRUE(taken_apart);
+    EXPECT_EQ(*all, *taken_apart) << "the scene is freed along the way";
     options.max_memory = estimate.bytes(1) - 1;
     EXPECT_FALSE(build_lode(scene, options, {}, one_by_one));
   });

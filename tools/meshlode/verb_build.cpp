@@ -185,7 +185,7 @@ Result<std::vector<std::uint8_t>> import_and_build(const Job& job, const JobOpti
   }
   result.left_out = scene->left_out;
   build::PipelineReport report;
-  auto bytes = build::build_lode(*scene, options.pipeline, progress.callback(), report);
+  auto bytes = build::build_lode(std::move(*scene), options.pipeline, progress.callback(), report);
   result.memory_estimate = report.memory_estimate;
   result.stages.insert(result.stages.end(), report.stages.begin(), report.stages.end());
   for (const build::PlanDecision& decision : report.decisions) {

@@ -117,14 +117,14 @@ class Callbacks {
   std::optional<std::string> thrown_;
 };
 
-Result<std::vector<std::uint8_t>> run_pipeline(const scene::Scene& scene, const BuildOptions& options) {
+Result<std::vector<std::uint8_t>> run_pipeline(scene::Scene&& scene, const BuildOptions& options) {
   const auto pipeline = make_pipeline_options(options);
   if (!pipeline) return pipeline.error();
   Callbacks callbacks(options);
   if (!callbacks.may_begin()) return callbacks.reason();
   const build::ProgressCallback progress = [&](const build::ProgressEvent& event) { return callbacks.report(event); };
   build::PipelineReport report;
-  const auto build = [&] { return build::build_lode(scene, *pipeline, progress, report); };
+  const auto build = [&] { return build::build_lode(std::move(scene), *pipeline, progress, report); };
   const auto build_in_threads = [&] {
     // More than oneTBB has would only make it warn on stderr.
     const std::size_t available = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
@@ -147,7 +147,7 @@ Result<std::vector<std::uint8_t>> build_asset(const SceneInput& scene, const Bui
   return guarded({}, [&]() -> Result<std::vector<std::uint8_t>> {
     auto made = build::make_scene(scene, options.repair);
     if (!made) return made.error();
-    return run_pipeline(*made, options);
+    return run_pipeline(std::move(*made), options);
   });
 }
 
@@ -172,7 +172,7 @@ Status build_file(const std::filesystem::path& input, const std::filesystem::pat
     OutputFiles files;
     files.keep(files_read);
     if (Status status = files.claim(output); !status) return status;
-    return write_result(run_pipeline(*scene, options), files, output);
+    return write_result(run_pipeline(std::move(*scene), options), files, output);
   });
 }
 
