@@ -94,18 +94,21 @@ AttributeDeviation measure_attributes(const SourceTree& source, const SurfaceAtt
   if ((!layout.has_normal && layout.uv_set_count == 0) || tree.size() == 0) return {};
   constexpr std::array<Weights, 3> kPoints{
       {{2.0 / 3, 1.0 / 6, 1.0 / 6}, {1.0 / 6, 2.0 / 3, 1.0 / 6}, {1.0 / 6, 1.0 / 6, 2.0 / 3}}};
+  const std::uint32_t step = group.triangles.size() > kFewTriangles ? kPointStep : 1;
   double total = 0.0, normal2 = 0.0;
   std::array<std::vector<UvError>, scene::kMaxUvSets> uv_errors;
   TreeSlot place{0U};
+  std::size_t points = 0;
   for (std::uint32_t t = 0; t < group.triangles.size(); ++t) {
     const auto& ids = group.triangles[t];
     const TriangleCorners corners{group.positions[ids[0]], group.positions[ids[1]], group.positions[ids[2]]};
     const Vec3d cross = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
     const double area = std::sqrt(glm::dot(cross, cross));
     if (!(area > 0.0)) continue;
-    total += area;
     const Interpolator ours(group_attributes, stride, t);
     for (const Weights& w : kPoints) {
+      if (points++ % step != 0) continue;
+      total += area;
       const Vec3d point = corners[0] * w.a + corners[1] * w.b + corners[2] * w.c;
       const Vec3f at = tree.to_frame(point);
       const SurfaceTree::Hit hit = tree.find_nearest(at, tree.look_around(at, place, {}), 0.0F);
@@ -115,7 +118,7 @@ AttributeDeviation measure_attributes(const SourceTree& source, const SurfaceAtt
       const Weights there = weights_of(point, tree.corners_at(place));
       if (layout.has_normal) {
         const Vec3d off = ours.normal(w) - theirs.normal(there);
-        normal2 += area / 3.0 * glm::dot(off, off);
+        normal2 += area * glm::dot(off, off);
       }
       for (std::size_t s = 0; s < layout.uv_set_count; ++s) {
         const std::size_t j = layout.uv_offset() + 2 * s;
