@@ -35,16 +35,6 @@ void move_sheets_out_of_star(CollapseStar& star) {
   outer.resize(kept);
 }
 
-/// Into an ascending list.
-void insert_once(std::uint32_t value, std::vector<std::uint32_t>& list) {
-  std::size_t at = list.size();
-  while (at > 0 && list[at - 1] > value) --at;
-  if (at > 0 && list[at - 1] == value) return;
-  list.push_back(value);
-  for (std::size_t i = list.size() - 1; i > at; --i) list[i] = list[i - 1];
-  list[at] = value;
-}
-
 }  // namespace
 
 void gather_corners(CollapseMesh& mesh, std::uint32_t a, std::uint32_t b, CollapseStar& star) {
@@ -54,21 +44,14 @@ void gather_corners(CollapseMesh& mesh, std::uint32_t a, std::uint32_t b, Collap
   mesh.corners_of(b, star.b.corners);
 }
 
-void gather_neighbors(const CollapseMesh& mesh, StarEnd& end) {
-  std::vector<std::uint32_t>& neighbors = end.neighbors;
-  neighbors.clear();
-  constexpr std::size_t kFew = 24;
-  if (end.corners.size() <= kFew) {  // each is met twice or so: put in its place at once, or found there
-    for (const std::uint32_t corner : end.corners) {
-      for (const std::uint32_t v : mesh.others(corner)) insert_once(v, neighbors);
-    }
-    return;
-  }
+void gather_neighbors(const CollapseMesh& mesh, VertexMarks& marks, StarEnd& end) {
+  end.neighbors.clear();
+  marks.start_search();
   for (const std::uint32_t corner : end.corners) {
-    for (const std::uint32_t v : mesh.others(corner)) neighbors.push_back(v);
+    for (const std::uint32_t v : mesh.others(corner)) {
+      if (marks.mark(v)) end.neighbors.push_back(v);
+    }
   }
-  std::sort(neighbors.begin(), neighbors.end());
-  neighbors.erase(std::unique(neighbors.begin(), neighbors.end()), neighbors.end());
 }
 
 void gather_outer_edges(const CollapseMesh& mesh, bool drops_sheets, CollapseStar& star) {

@@ -2,6 +2,7 @@
 // The star of a collapse: the triangles around both ends of an edge, gathered once for all that weighs the collapse.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -14,7 +15,25 @@ namespace meshlode::build {
 struct StarEnd {
   std::uint32_t vertex = 0;
   std::vector<std::uint32_t> corners;    ///< the living ones at the vertex: gather_corners
-  std::vector<std::uint32_t> neighbors;  ///< each once, ascending: gather_neighbors
+  std::vector<std::uint32_t> neighbors;  ///< each once, as its corners come: gather_neighbors
+};
+
+/// Which vertices have been met in a search; a new search forgets them all at once.
+class VertexMarks {
+ public:
+  explicit VertexMarks(std::size_t vertex_count) : search_(vertex_count, 0) {}
+  void start_search() { ++now_; }
+  [[nodiscard]] bool is_marked(std::uint32_t vertex) const { return search_[vertex] == now_; }
+  /// False where it was marked before.
+  bool mark(std::uint32_t vertex) {
+    if (is_marked(vertex)) return false;
+    search_[vertex] = now_;
+    return true;
+  }
+
+ private:
+  std::vector<std::uint64_t> search_;  ///< that met each vertex last
+  std::uint64_t now_ = 0;
 };
 
 /// The star of the edge (a, b), whose ends would become one vertex at `target`. Filled in steps, because a collapse
@@ -34,8 +53,8 @@ struct CollapseStar {
 /// The corners at both ends, which are named here.
 void gather_corners(CollapseMesh& mesh, std::uint32_t a, std::uint32_t b, CollapseStar& star);
 
-/// \pre the corners are gathered
-void gather_neighbors(const CollapseMesh& mesh, StarEnd& end);
+/// They alone are marked then. \pre the corners are gathered
+void gather_neighbors(const CollapseMesh& mesh, VertexMarks& marks, StarEnd& end);
 
 /// The triangles on the edge itself go and have no outer edge. Where sheets are dropped, pairs of triangles that would
 /// lie on each other in opposite orientation do not count: they will be gone. \pre the corners are gathered

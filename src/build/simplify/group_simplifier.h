@@ -89,6 +89,7 @@ class GroupSimplifier {
   double error_ = 0.0;  ///< frame units
   bool has_free_border_ = false, has_broken_topology_ = false, are_flips_relaxed_ = false;
 
+  VertexMarks marks_;
   CollapseStar star_;  ///< of the collapse that is weighed or done
   StarEnd joined_;     ///< the vertex that came of it
 };
@@ -104,7 +105,8 @@ GroupSimplifier<C>::GroupSimplifier(const SimplifyInput& input, const SimplifyOp
       attributes_(input, attribute_scales(input, options, mesh_, places_)),
       classes_(attributes_.count() == 0 ? 0 : input.wedge_position.size(), input.positions.size()),
       left_behind_(input.witnesses, places_),
-      version_(input.positions.size(), 0) {
+      version_(input.positions.size(), 0),
+      marks_(input.positions.size()) {
   add_faces();
   HeldEdges held = find_held_edges(input, options, mesh_);
   surface_.add_walls(held.edges, mesh_, places_);
@@ -222,7 +224,7 @@ typename GroupSimplifier<C>::Obstacle GroupSimplifier<C>::try_collapse(const Can
   if (!keeps_shared_edges(mesh_, locks_, star_)) return Obstacle::kLocked;
   if (attributes_.count() > 0 && !keeps_shared_corners(mesh_, locks_, classes_, star_)) return Obstacle::kSeams;
   bool breaks_topology = false;
-  if (!keeps_topology(mesh_, is_border_, star_)) {
+  if (!keeps_topology(mesh_, is_border_, marks_, star_)) {
     if (!options_.may_relax_topology) return Obstacle::kTopology;
     if (!candidate.may_break_topology) {
       queue_.push({kTopologyPrice * candidate.cost, a, b, versions_of(a, b), true});
@@ -278,7 +280,7 @@ void GroupSimplifier<C>::collapse(std::uint32_t a, std::uint32_t b) {
   mesh_.corners_of(a, joined_.corners);
   classes_.update(mesh_, joined_);
   if (joined_.corners.empty()) error_ = std::max(error_, left_behind_.size(a));
-  gather_neighbors(mesh_, joined_);
+  gather_neighbors(mesh_, marks_, joined_);
   for (const std::uint32_t n : joined_.neighbors) {
     if (is_free_to_collapse(a, n)) queue_.push(make_candidate(a, n));
   }

@@ -100,24 +100,16 @@ struct CommonNeighbors {
   }
 };
 
-CommonNeighbors common_neighbors(const StarEnd& a, const StarEnd& b, std::uint32_t most) {
+/// The neighbours of one end are those that are marked.
+CommonNeighbors common_neighbors(const VertexMarks& marks, const StarEnd& other, std::uint32_t most) {
   CommonNeighbors common;
-  const std::vector<std::uint32_t>& na = a.neighbors;
-  const std::vector<std::uint32_t>& nb = b.neighbors;
-  for (std::size_t i = 0, j = 0; i < na.size() && j < nb.size();) {
-    if (na[i] == nb[j]) {
-      if (common.count == most || common.count == common.vertex.size()) {
-        common.are_too_many = true;
-        return common;
-      }
-      common.vertex[common.count++] = na[i];
-      ++i;
-      ++j;
-    } else if (na[i] < nb[j]) {
-      ++i;
-    } else {
-      ++j;
+  for (const std::uint32_t v : other.neighbors) {
+    if (!marks.is_marked(v)) continue;
+    if (common.count == most || common.count == common.vertex.size()) {
+      common.are_too_many = true;
+      return common;
     }
+    common.vertex[common.count++] = v;
   }
   return common;
 }
@@ -161,7 +153,8 @@ bool keeps_shared_corners(const CollapseMesh& mesh, const GroupLocks& locks, con
   return is_kept(star.a, star.b) && is_kept(star.b, star.a);
 }
 
-bool keeps_topology(const CollapseMesh& mesh, const std::vector<std::uint8_t>& is_border, CollapseStar& star) {
+bool keeps_topology(const CollapseMesh& mesh, const std::vector<std::uint8_t>& is_border, VertexMarks& marks,
+                    CollapseStar& star) {
   const std::uint32_t b = star.b.vertex;
   std::uint32_t shared = 0;
   for (const std::uint32_t corner : star.a.corners) {
@@ -170,9 +163,9 @@ bool keeps_topology(const CollapseMesh& mesh, const std::vector<std::uint8_t>& i
   }
   if (shared >= 2 && is_border[star.a.vertex] != 0 && is_border[b] != 0) return false;
   if (shared == 0) return false;
-  gather_neighbors(mesh, star.a);
-  gather_neighbors(mesh, star.b);
-  const CommonNeighbors common = common_neighbors(star.a, star.b, shared);
+  gather_neighbors(mesh, marks, star.a);
+  gather_neighbors(mesh, marks, star.b);
+  const CommonNeighbors common = common_neighbors(marks, star.a, shared);
   if (common.are_too_many || common.count != shared) return false;
   if (common.count < 2) return true;
   // (a, c, d) and (b, c, d) would lie on each other.

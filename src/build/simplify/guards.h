@@ -31,7 +31,7 @@ namespace meshlode::build {
 /// triangles become one, and two border vertices join along the border only. `is_border` is per vertex. Gathers the
 /// neighbours of both ends where it needs them.
 [[nodiscard]] bool keeps_topology(const CollapseMesh& mesh, const std::vector<std::uint8_t>& is_border,
-                                  CollapseStar& star);
+                                  VertexMarks& marks, CollapseStar& star);
 
 /// Whether a triangle that stays would turn by more than 78 degrees with its corner at star.target. One without area
 /// may: any change of it is for the better.

@@ -11,11 +11,6 @@ namespace meshlode::build {
 
 namespace {
 
-// A facet whose box is farther off than the nearest so far need not be asked. Computed distances are off by some 1e-15
-// (the frame's sides are 2), which these two exceed: the nearest comes out bit for bit as if all were asked.
-constexpr double kBoxMargin = 1.0 + 1e-7;
-constexpr double kBoxSlack = 1e-20;
-
 /// Equals stay in order. Mostly there are half a dozen, and std::stable_sort would allocate.
 void sort_farthest_first(std::vector<std::pair<double, Vec3i>>& weighed) {
   constexpr std::size_t kFew = 32;
@@ -75,23 +70,19 @@ double LeftBehind::collect_vanishing(CollapseMesh& mesh, const GroupPlaces& plac
 void LeftBehind::gather_facets(const GroupPlaces& places, const CollapseStar& star) {
   facets_.clear();
   for (const CollapseStar::OuterEdge& edge : star.outer) {
-    const Vec3d& x = places[edge.x];
-    const Vec3d& y = places[edge.y];
-    facets_.push_back({x, y, glm::min(star.target, glm::min(x, y)), glm::max(star.target, glm::max(x, y))});
+    facets_.emplace_back(star.target, places[edge.x], places[edge.y]);
   }
 }
 
 /// The largest squared distance from the vertex's witnesses to the new star.
-double LeftBehind::weigh_witnesses(std::uint32_t vertex, const GroupPlaces& places, const Vec3d& target) {
+double LeftBehind::weigh_witnesses(std::uint32_t vertex, const GroupPlaces& places) {
   const Witnesses& w = witnesses_[vertex];
   double largest = 0.0;
   for (std::uint32_t i = 0; i < w.count; ++i) {
     const Vec3d point = places.to_frame(w.points[i]);
     double nearest = std::numeric_limits<double>::infinity();
     for (const Facet& facet : facets_) {
-      const Vec3d off = glm::max(glm::max(facet.low - point, point - facet.high), Vec3d(0.0));
-      if (glm::dot(off, off) > kBoxMargin * nearest + kBoxSlack) continue;
-      nearest = std::min(nearest, distance2_to_facet(point, target, facet.x, facet.y));
+      nearest = std::min(nearest, distance2_to_facet(point, facet));
     }
     weighed_.emplace_back(nearest, w.points[i]);
     largest = std::max(largest, nearest);
@@ -122,9 +113,9 @@ double LeftBehind::weigh(CollapseMesh& mesh, const GroupPlaces& places, const Co
   const double lost2 = collect_vanishing(mesh, places, star);
   weighed_.clear();
   gather_facets(places, star);
-  double largest = weigh_witnesses(star.a.vertex, places, star.target);
-  largest = std::max(largest, weigh_witnesses(star.b.vertex, places, star.target));
-  for (const std::uint32_t v : vanishing_) largest = std::max(largest, weigh_witnesses(v, places, star.target));
+  double largest = weigh_witnesses(star.a.vertex, places);
+  largest = std::max(largest, weigh_witnesses(star.b.vertex, places));
+  for (const std::uint32_t v : vanishing_) largest = std::max(largest, weigh_witnesses(v, places));
   if (!star.outer.empty()) return std::max(lost2, largest);
   // The piece vanishes. Of foliage its size is what is lost: its neighbours grow instead. Else what it leaves is as far
   // off as the nearest of what stays.
@@ -185,18 +176,16 @@ bool begins_another(const std::vector<CollapseStar::OuterEdge>& outer, std::size
 double new_surface_distance2(const CollapseMesh& mesh, const GroupPlaces& places, const CollapseStar& star,
                              double least) {
   double farthest = least;
-  const auto distance2_to = [&](const Vec3d& point, std::uint32_t corner) {
+  const auto facet_of = [&](std::uint32_t corner) {
     const std::uint32_t t = corner / 3;
-    return distance2_to_facet(point, places[mesh.vertex(3 * t)], places[mesh.vertex(3 * t + 1)],
-                              places[mesh.vertex(3 * t + 2)]);
+    return Facet(places[mesh.vertex(3 * t)], places[mesh.vertex(3 * t + 1)], places[mesh.vertex(3 * t + 2)]);
   };
-  const auto reach = [&](const Vec3d& point, std::uint32_t likely) {
-    double nearest = distance2_to(point, likely);
+  const auto reach = [&](const Vec3d& point, const Facet& likely) {
+    double nearest = distance2_to_facet(point, likely);
     if (nearest <= farthest) return;
     for (const StarEnd* end : {&star.a, &star.b}) {
       for (const std::uint32_t corner : end->corners) {
-        if (corner == likely) continue;
-        nearest = std::min(nearest, distance2_to(point, corner));
+        nearest = std::min(nearest, distance2_to_facet(point, facet_of(corner)));
         if (nearest <= farthest) return;
       }
     }
@@ -206,9 +195,10 @@ double new_surface_distance2(const CollapseMesh& mesh, const GroupPlaces& places
     const CollapseStar::OuterEdge& edge = star.outer[i];
     const Vec3d& x = places[edge.x];
     const Vec3d& y = places[edge.y];
-    reach((star.target + x + y) / 3.0, edge.corner);
-    reach((star.target + x) * 0.5, edge.corner);
-    if (!begins_another(star.outer, i)) reach((star.target + y) * 0.5, edge.corner);
+    const Facet replaced = facet_of(edge.corner);
+    reach((star.target + x + y) / 3.0, replaced);
+    reach((star.target + x) * 0.5, replaced);
+    if (!begins_another(star.outer, i)) reach((star.target + y) * 0.5, replaced);
   }
   return farthest;
 }

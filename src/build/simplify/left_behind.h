@@ -13,6 +13,7 @@
 #include "build/simplify/collapse_mesh.h"
 #include "build/simplify/collapse_star.h"
 #include "build/simplify/group_places.h"
+#include "build/simplify/point_triangle.h"
 #include "build/simplify/simplify.h"
 
 namespace meshlode::build {
@@ -39,11 +40,6 @@ class LeftBehind {
   [[nodiscard]] double size(std::uint32_t vertex) const { return merged_[vertex].diagonal(); }
 
  private:
-  /// A triangle of the new star, and the box around it.
-  struct Facet {
-    Vec3d x, y;
-    Vec3d low, high;
-  };
   struct Box {
     Vec3d low, high;
     [[nodiscard]] double diagonal() const { return std::sqrt(glm::dot(high - low, high - low)); }
@@ -52,7 +48,7 @@ class LeftBehind {
   [[nodiscard]] double collect_vanishing(CollapseMesh& mesh, const GroupPlaces& places, const CollapseStar& star);
   void gather_facets(const GroupPlaces& places, const CollapseStar& star);
   /// \pre the facets are gathered
-  [[nodiscard]] double weigh_witnesses(std::uint32_t vertex, const GroupPlaces& places, const Vec3d& target);
+  [[nodiscard]] double weigh_witnesses(std::uint32_t vertex, const GroupPlaces& places);
   [[nodiscard]] double distance2_to_rest(const CollapseMesh& mesh, const GroupPlaces& places,
                                          const CollapseStar& star) const;
 
@@ -61,7 +57,7 @@ class LeftBehind {
   // Of the collapse weighed last.
   std::vector<std::uint32_t> vanishing_;           ///< vertices that lose their last triangle with it
   std::vector<std::pair<double, Vec3i>> weighed_;  ///< squared distance to the new star, and the witness
-  std::vector<Facet> facets_;
+  std::vector<Facet> facets_;                      ///< the new star
   std::vector<std::uint32_t> corners_;
   std::uint64_t stamp_ = 0;  ///< what is marked with it was marked in this search
   std::vector<std::uint64_t> vertex_stamp_;

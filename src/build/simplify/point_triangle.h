@@ -7,10 +7,18 @@
 
 namespace meshlode::build {
 
-[[nodiscard]] inline double distance2_to_facet(const Vec3d& p, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
-  const auto distance2 = [&](const Vec3d& q) { return glm::dot(p - q, p - q); };
-  const Vec3d ab = b - a;
-  const Vec3d ac = c - a;
+/// A triangle that several points are asked of.
+struct Facet {
+  Vec3d a, b, c;
+  Vec3d ab, ac;  ///< from a
+
+  Facet(const Vec3d& at_a, const Vec3d& at_b, const Vec3d& at_c)
+      : a(at_a), b(at_b), c(at_c), ab(at_b - at_a), ac(at_c - at_a) {}
+};
+
+[[nodiscard]] inline double distance2_to_facet(const Vec3d& p, const Facet& facet) {
+  const auto& [a, b, c, ab, ac] = facet;
+  const auto distance2 = [&p](const Vec3d& q) { return glm::dot(p - q, p - q); };
   const Vec3d ap = p - a;
   const double d1 = glm::dot(ab, ap);
   const double d2 = glm::dot(ac, ap);
@@ -33,6 +41,10 @@ namespace meshlode::build {
   const double sum = va + vb + vc;
   if (!(sum > 0.0)) return distance2(a);
   return distance2(a + ab * (vb / sum) + ac * (vc / sum));
+}
+
+[[nodiscard]] inline double distance2_to_facet(const Vec3d& p, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+  return distance2_to_facet(p, Facet(a, b, c));
 }
 
 }  // namespace meshlode::build

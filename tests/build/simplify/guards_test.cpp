@@ -22,7 +22,8 @@ bool keeps_topology(DrawnMesh& drawn, std::uint32_t a, std::uint32_t b, const st
   Flags is_border(drawn.points.size(), 0);
   for (const std::uint32_t v : border) is_border[v] = 1;
   CollapseStar star = drawn.star(a, b);
-  return build::keeps_topology(drawn.mesh, is_border, star);
+  VertexMarks marks(drawn.points.size());
+  return build::keeps_topology(drawn.mesh, is_border, marks, star);
 }
 
 TEST(LinkCondition, HoldsInsideAFan) {
