@@ -192,21 +192,23 @@ class ClusterEncoder {
   /// The chart in which the cluster's normals take the fewest bits.
   void choose_chart() {
     std::vector<std::array<std::int32_t, 3>> points;
+    points.reserve(cluster_.vertex_count);
     for (std::size_t i = 0; i < cluster_.vertex_count; ++i) {
       const float* n = attributes(i);
       points.push_back(nearest_octahedral_point({n[0], n[1], n[2]}, plan_.normal_scale));
     }
     std::uint32_t best_bits = 64;
     std::uint32_t best_chart = 0;
-    std::vector<std::int32_t> values(points.size());
     for (std::uint32_t chart = 0; chart < 6; ++chart) {
-      std::array<ValueRange, 2> range;
-      for (std::size_t i = 0; i < 2; ++i) {
-        for (std::size_t v = 0; v < points.size(); ++v) {
-          values[v] = chart_coordinates(points[v], chart, plan_.normal_scale)[i];
+      std::array<std::int32_t, 2> least = chart_coordinates(points[0], chart, plan_.normal_scale), most = least;
+      for (const auto& point : points) {
+        const std::array<std::int32_t, 2> at = chart_coordinates(point, chart, plan_.normal_scale);
+        for (std::size_t i = 0; i < 2; ++i) {
+          least[i] = std::min(least[i], at[i]);
+          most[i] = std::max(most[i], at[i]);
         }
-        range[i] = range_of(values);
       }
+      const std::array<ValueRange, 2> range{range_between(least[0], most[0]), range_between(least[1], most[1])};
       if (range[0].bits + range[1].bits >= best_bits) continue;
       best_bits = range[0].bits + range[1].bits;
       best_chart = chart;

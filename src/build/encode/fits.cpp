@@ -64,10 +64,18 @@ std::int32_t wrap(std::uint32_t value) {
 
 }  // namespace
 
+ValueRange range_between(std::int32_t least, std::int32_t most) {
+  return {least, static_cast<std::uint32_t>(
+                     std::bit_width(static_cast<std::uint32_t>(most) - static_cast<std::uint32_t>(least)))};
+}
+
 ValueRange range_of(std::span<const std::int32_t> values) {
-  const auto [least, most] = std::minmax_element(values.begin(), values.end());
-  return {*least, static_cast<std::uint32_t>(
-                      std::bit_width(static_cast<std::uint32_t>(*most) - static_cast<std::uint32_t>(*least)))};
+  std::int32_t least = values.front(), most = values.front();
+  for (const std::int32_t value : values) {
+    least = std::min(least, value);
+    most = std::max(most, value);
+  }
+  return range_between(least, most);
 }
 
 PositionFit fit_positions(std::span<const std::array<std::int32_t, 3>> positions) {

@@ -15,6 +15,9 @@ struct ValueRange {
   std::int32_t minimum = 0;
   std::uint32_t bits = 0;
 };
+/// \pre least <= most
+[[nodiscard]] ValueRange range_between(std::int32_t least, std::int32_t most);
+/// \pre at least one value
 [[nodiscard]] ValueRange range_of(std::span<const std::int32_t> values);
 
 using RawPosition = std::array<std::uint32_t, 3>;

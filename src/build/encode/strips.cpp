@@ -137,8 +137,8 @@ void find_blocks(Surface& surface, std::span<const std::uint32_t> block) {
 /// A small generator of its own: the same sequence everywhere (I10).
 class Coin {
  public:
-  explicit Coin(std::uint32_t seed) : state_(seed * 2654435761U + 12345U) {}
-  std::uint32_t next() {
+  constexpr explicit Coin(std::uint32_t seed) : state_(seed * 2654435761U + 12345U) {}
+  constexpr std::uint32_t next() {
     state_ ^= state_ << 13U;
     state_ ^= state_ >> 17U;
     state_ ^= state_ << 5U;
@@ -148,6 +148,17 @@ class Coin {
  private:
   std::uint32_t state_;
 };
+
+using Ties = std::array<std::uint8_t, kMaxTriangles>;
+
+constexpr Ties toss(std::uint32_t trial, std::size_t count = kMaxTriangles) {
+  Ties ties{};
+  Coin coin(trial + 1);
+  for (std::size_t t = 0; t < count; ++t) ties[t] = static_cast<std::uint8_t>(coin.next() >> 24U);
+  return ties;
+}
+/// The same for every cluster: those of the usual trials are made once.
+constexpr std::array<Ties, 8> kFirstTies{toss(0), toss(1), toss(2), toss(3), toss(4), toss(5), toss(6), toss(7)};
 
 struct Step {
   std::uint16_t triangle;
@@ -238,10 +249,10 @@ class Striper {
   void start(std::uint32_t trial, Cover& out) {
     out_ = &out;
     out.clear();
-    Coin coin(trial + 1);
+    const Ties ties = trial < kFirstTies.size() ? kFirstTies[trial] : toss(trial, surface_.triangles.size());
     std::fill_n(number_.begin(), surface_.vertex_count, kNotNumbered);
     for (std::size_t t = 0; t < surface_.triangles.size(); ++t) {
-      key_[t] = choice::start(surface_.degree[t], coin.next() >> 24U);
+      key_[t] = choice::start(surface_.degree[t], ties[t]);
     }
     key_[kNobody] = choice::kNever;
   }
