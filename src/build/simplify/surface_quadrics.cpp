@@ -15,7 +15,7 @@ Face face_of(const CollapseMesh& mesh, const GroupPlaces& places, std::uint32_t 
 }
 
 SurfaceQuadrics::SurfaceQuadrics(std::size_t vertex_count, double border_weight)
-    : plane_(vertex_count), border_(vertex_count), border_weight_(border_weight) {}
+    : plane_(vertex_count), border_(vertex_count), has_wall_(vertex_count, 0), border_weight_(border_weight) {}
 
 void SurfaceQuadrics::add_face(const std::array<std::uint32_t, 3>& vertices, const Face& face) {
   const double area = 0.5 * face.twice_area;
@@ -37,6 +37,7 @@ void SurfaceQuadrics::add_walls(std::span<const HeldEdge> edges, const CollapseM
     const double d = -glm::dot(wall, places[held.a]);
     const double weight = held.weight * glm::dot(edge, edge);
     std::vector<Quadric>& quadrics = held.is_border ? border_ : seam_;
+    has_wall_[held.a] = has_wall_[held.b] = 1;
     quadrics[held.a].add_plane(wall, d, weight);
     quadrics[held.b].add_plane(wall, d, weight);
   }
@@ -46,6 +47,7 @@ double SurfaceQuadrics::join(std::uint32_t into, std::uint32_t from, const Vec3d
   plane_[into] += plane_[from];
   border_[into] += border_[from];
   if (!seam_.empty()) seam_[into] += seam_[from];
+  has_wall_[into] |= has_wall_[from];
   double error = 0.0;
   for (const Quadric* q : {&plane_[into], &border_[into]}) {
     if (q->weight > 0.0) error = std::max(error, std::sqrt(q->evaluate(place) / q->weight));

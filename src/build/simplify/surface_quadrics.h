@@ -42,13 +42,7 @@ class SurfaceQuadrics {
   [[nodiscard]] Quadric around(std::uint32_t a, std::uint32_t b) const {
     Quadric total = plane_[a];
     total += plane_[b];
-    // Most vertices are on no border, and without weight a quadric is zero.
-    if (border_[a].weight > 0.0) total.add_scaled(border_[a], border_weight_);
-    if (border_[b].weight > 0.0) total.add_scaled(border_[b], border_weight_);
-    if (!seam_.empty()) {
-      if (seam_[a].weight > 0.0) total.add_scaled(seam_[a], 1.0);
-      if (seam_[b].weight > 0.0) total.add_scaled(seam_[b], 1.0);
-    }
+    if ((has_wall_[a] | has_wall_[b]) != 0) add_walls_around(a, b, total);
     return total;
   }
   /// `into` stands for what `from` stood for too. Returns the root of the mean squared distance at its place, to planes
@@ -61,7 +55,16 @@ class SurfaceQuadrics {
   [[nodiscard]] double total_weight() const { return total_weight_; }
 
  private:
+  void add_walls_around(std::uint32_t a, std::uint32_t b, Quadric& total) const {
+    total.add_scaled(border_[a], border_weight_);
+    total.add_scaled(border_[b], border_weight_);
+    if (seam_.empty()) return;
+    total.add_scaled(seam_[a], 1.0);
+    total.add_scaled(seam_[b], 1.0);
+  }
+
   std::vector<Quadric> plane_, border_, seam_;  ///< seam_ is empty where there is none
+  std::vector<std::uint8_t> has_wall_;          ///< per vertex: most stand on no border and no seam
   double border_weight_;
   double total_weight_ = 0.0;
 };
