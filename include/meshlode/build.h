@@ -126,7 +126,7 @@ struct BuildOptions {
   UvErrorUnit uv_error_unit = UvErrorUnit::kUv;  ///< of uv_error
   format::Codec codec = format::Codec::kNone;    ///< of the pages on disk
   bool repair = false;  ///< drop and count triangles that touch a bad index or non-finite position, instead of refusing
-  std::uint64_t max_memory_bytes = 0;  ///< a build that needs more is refused; 0: what the machine has left
+  std::uint64_t max_memory_bytes = 0;  ///< meshes wait for each other to keep it, or it is refused; 0: what is left
   /// Of build_file: what compressed geometry may take decoded beyond what the size of its file justifies.
   std::uint64_t max_decoded_bytes = std::uint64_t{512} << 20U;
   std::uint32_t thread_count = 0;  ///< `--jobs`: threads at most, up to 4,096; 0: what oneTBB gives the calling thread

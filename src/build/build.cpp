@@ -99,6 +99,10 @@ Result<BuiltMesh> build_mesh(const Source& from, std::size_t index,
   coarsening.on_level = [&](std::uint32_t level, std::uint64_t triangles) {
     return progress.report(index, level, triangles);
   };
+  if (coarsening.error == ErrorSource::kQuadric) {
+    mesh->exact_positions = {};  // what others are measured against
+    mesh->exact_triangles = {};
+  }
   const Result<LodDag> dag = build_dag(*mesh, coarsening);
   if (!dag) return Error{dag.error().code, label, dag.error().detail};
   free_surface(*mesh);

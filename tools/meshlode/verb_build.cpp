@@ -400,8 +400,9 @@ int run_build(const Verb& verb, std::span<char* const> args) {
   parser.add_value("--normal-error", words.normal_error, "the largest angle a stored normal may be off, degrees");
   parser.add_value("--uv-error", words.uv_error, "auto, or the largest move of a UV: UV units, or 0.25px for texels");
   parser.add_value("--codec", words.codec, "disk codec of the pages", all_names(format::kCodecNames));
-  parser.add_value("--max-memory", max_memory,
-                   "auto refuses a build that needs more memory than the machine has; or a size, such as 8GiB");
+  parser.add_value(
+      "--max-memory", max_memory,
+      "what the build may take, such as 8GiB: meshes one by one to keep it, or refused; auto: what is left");
   add_max_decoded_option(parser, max_decoded);
   add_jobs_option(parser, jobs);
   parser.add_value("--report", report_path, "write times and counts as JSON, the same that --format json prints");

@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "base/parallel.h"
 #include "build/cluster/partition.h"
 
 namespace meshlode::build {
@@ -65,14 +66,18 @@ void add_nearby_links(const GroupInput& input, std::vector<Link>& links) {
       }
     }
   }
-  for (std::uint32_t c = 0; c < count; ++c) {
+  const std::size_t first = links.size();
+  links.resize(first + kNearbyLinks * count);
+  parallel_for_each_index(count, 64, [&](std::size_t c) {
     std::sort(near[c].begin(), near[c].end());
     near[c].erase(std::unique(near[c].begin(), near[c].end()), near[c].end());
-    for (std::size_t i = 0; i < std::min(near[c].size(), kNearbyLinks); ++i) {
-      const std::uint32_t other = near[c][i].second;
-      links.push_back({std::min(c, other), std::max(c, other), kNearbyWeight});
+    for (std::size_t i = 0; i < kNearbyLinks; ++i) {
+      const auto own = static_cast<std::uint32_t>(c);
+      const std::uint32_t other = i < near[c].size() ? near[c][i].second : own;
+      links[first + kNearbyLinks * c + i] = {std::min(own, other), std::max(own, other), kNearbyWeight};
     }
-  }
+  });
+  std::erase_if(links, [](const Link& link) { return link.a == link.b; });  // of clusters with few others near by
 }
 
 Graph cluster_graph(const GroupInput& input) {
