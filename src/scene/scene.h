@@ -39,6 +39,26 @@ struct SourceMesh {
 
 enum class AlphaMode : std::uint8_t { kOpaque, kMask, kBlend };
 
+enum class TextureRole : std::uint8_t {
+  kBaseColor,  ///< of metallic-roughness, or specular-glossiness's diffuse texture in its place
+  kMetallicRoughness,
+  kNormal,
+  kOcclusion,
+  kEmissive,
+  kOther  ///< of an extension, known or not; also metallic-roughness beside specular-glossiness
+};
+
+/// A texture reference of a material: what samples which image, with which coordinates.
+struct TextureUse {
+  TextureRole role = TextureRole::kOther;
+  std::uint32_t texture = kNoId;  ///< glTF texture index; kNoId where an unknown extension names none that exists
+  std::uint32_t image = kNoId;    ///< glTF image index (base/gltf_textures.h); kNoId where the texture names none
+  std::uint32_t blob = kNoId;     ///< in Scene::blobs: the image's bytes; kNoId where the source has none
+  std::uint32_t uv_set = 0;       ///< TEXCOORD_n, KHR_texture_transform's where it names one; kMaxUvSets and more occur
+  std::array<double, 2> offset{0.0, 0.0}, scale{1.0, 1.0};  ///< KHR_texture_transform
+  double rotation = 0.0;                                    ///< the same, radians
+};
+
 /// The part of a material that the build and the renderer act on. The rest travels in Scene::document.
 struct SceneMaterial {
   std::string name;
@@ -51,6 +71,7 @@ struct SceneMaterial {
   std::uint32_t base_color_uv_set = kNoId;   ///< TEXCOORD_n of the base colour texture
   std::uint32_t uv_sets_used = 0;  ///< bit n: some texture of the material (unknown extensions too) samples TEXCOORD_n
   bool needs_tangents = false;     ///< a normal map or anisotropy: shading has a direction along the surface
+  std::vector<TextureUse> textures;  ///< every texture reference, in the order of the document
 };
 
 /// A node that draws a mesh, with its world transform composed in doubles.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <string_view>
 
 namespace meshlode::build {
 
@@ -12,6 +13,18 @@ std::uint32_t big_endian(std::span<const std::uint8_t> bytes) {
   std::uint32_t value = 0;
   for (const std::uint8_t byte : bytes) value = value << 8U | byte;
   return value;
+}
+
+std::uint32_t little_endian(std::span<const std::uint8_t> bytes) {
+  std::uint32_t value = 0;
+  for (std::size_t i = bytes.size(); i > 0; --i) value = value << 8U | bytes[i - 1];
+  return value;
+}
+
+bool begins_with(std::span<const std::uint8_t> bytes, std::string_view text) {
+  return bytes.size() >= text.size() && std::equal(text.begin(), text.end(), bytes.begin(), [](char a, std::uint8_t b) {
+           return static_cast<std::uint8_t>(a) == b;
+         });
 }
 
 std::optional<ImageSize> checked(std::uint32_t width, std::uint32_t height) {
@@ -58,11 +71,40 @@ std::optional<ImageSize> read_jpeg(std::span<const std::uint8_t> bytes) {
   return std::nullopt;
 }
 
+/// Identifier, then the header's words: vkFormat, typeSize, pixelWidth, pixelHeight (KTX File Format 2.0, section 3).
+std::optional<ImageSize> read_ktx2(std::span<const std::uint8_t> bytes) {
+  constexpr std::string_view kIdentifier = "\xABKTX 20\xBB\r\n\x1A\n";
+  if (bytes.size() < 28 || !begins_with(bytes, kIdentifier)) return std::nullopt;
+  return checked(little_endian(bytes.subspan(20, 4)), little_endian(bytes.subspan(24, 4)));
+}
+
+/// RIFF, then the first chunk, which is of one of three kinds (RFC 9649, section 2; the bitstreams: RFC 6386, 9.1, and
+/// RFC 9649, 3.4).
+std::optional<ImageSize> read_webp(std::span<const std::uint8_t> bytes) {
+  if (bytes.size() < 30 || !begins_with(bytes, "RIFF") || !begins_with(bytes.subspan(8), "WEBP")) return std::nullopt;
+  const auto name = bytes.subspan(12), data = bytes.subspan(20);
+  if (begins_with(name, "VP8 ")) {
+    const bool is_key_frame = (data[0] & 1U) == 0;
+    if (!is_key_frame || !begins_with(data.subspan(3), "\x9D\x01\x2A")) return std::nullopt;
+    constexpr std::uint32_t kSize = (1U << 14U) - 1;  // above it, how a player might enlarge the picture
+    return checked(little_endian(data.subspan(6, 2)) & kSize, little_endian(data.subspan(8, 2)) & kSize);
+  }
+  if (begins_with(name, "VP8L")) {
+    if (data[0] != 0x2F) return std::nullopt;
+    const std::uint32_t bits = little_endian(data.subspan(1, 4));
+    return checked((bits & 0x3FFFU) + 1, (bits >> 14U & 0x3FFFU) + 1);
+  }
+  if (!begins_with(name, "VP8X")) return std::nullopt;
+  return checked(little_endian(data.subspan(4, 3)) + 1, little_endian(data.subspan(7, 3)) + 1);
+}
+
 }  // namespace
 
 std::optional<ImageSize> read_image_size(std::span<const std::uint8_t> bytes) {
   if (const auto size = read_png(bytes)) return size;
-  return read_jpeg(bytes);
+  if (const auto size = read_jpeg(bytes)) return size;
+  if (const auto size = read_ktx2(bytes)) return size;
+  return read_webp(bytes);
 }
 
 }  // namespace meshlode::build

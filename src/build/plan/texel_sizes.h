@@ -15,7 +15,7 @@ namespace meshlode::build {
 [[nodiscard]] std::array<double, scene::kMaxUvSets> texels_per_unit(const scene::Scene& scene,
                                                                     const scene::SourceMesh& mesh);
 
-/// The same for each of Scene::materials: the document is read once, however many meshes there are …
+/// The same for each of Scene::materials: images are looked at once, however many meshes there are …
 [[nodiscard]] std::vector<std::array<double, scene::kMaxUvSets>> texels_of_materials(const scene::Scene& scene);
 /// … and for the materials of a mesh together.
 [[nodiscard]] std::array<double, scene::kMaxUvSets> texels_per_unit(

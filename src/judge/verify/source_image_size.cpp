@@ -18,7 +18,7 @@ std::optional<std::pair<std::uint32_t, std::uint32_t>> stated_image_size(std::sp
   if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()) ||
       stbi_info_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width, &height, &channels) == 0 ||
       width <= 0 || height <= 0) {
-    return std::nullopt;
+    return stated_container_size(bytes);
   }
   return std::pair{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
 }

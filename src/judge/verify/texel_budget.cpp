@@ -3,84 +3,26 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <string>
 #include <vector>
-
-#include <nlohmann/json.hpp>
 
 #include "format/grid.h"
 
 namespace meshlode::judge {
 
-namespace {
-
-using Json = nlohmann::json;
-
-/// A value by its path, or null.
-const Json& at(const Json& value, const char* key) {
-  static const Json nothing;
-  return value.is_object() && value.contains(key) ? value[key] : nothing;
-}
-const Json& at(const Json& value, const Json& index) {
-  static const Json nothing;
-  return value.is_array() && index.is_number_unsigned() && index.get<std::size_t>() < value.size()
-             ? value[index.get<std::size_t>()]
-             : nothing;
-}
-
-struct TextureUse {
-  std::uint64_t set;
-  double texels;
-};
-
-using ImageSizes = std::map<std::size_t, std::optional<std::pair<std::uint32_t, std::uint32_t>>>;
-
-/// What a unit of texture coordinates crosses in the texture that `info` (a glTF textureInfo) names. `sizes`: of images
-/// that were looked at already, by blob.
-std::optional<TextureUse> texture_use(const scene::Scene& scene, const Json& document, const Json& info,
-                                      ImageSizes& sizes) {
-  const Json& image = at(at(document, "images"), at(at(at(document, "textures"), at(info, "index")), "source"));
-  const Json& blob = at(image, "blob");
-  if (!blob.is_number_unsigned() || blob.get<std::size_t>() >= scene.blobs.size()) return std::nullopt;
-  const auto [known, is_new] = sizes.try_emplace(blob.get<std::size_t>());
-  if (is_new) known->second = stated_image_size(scene.blobs[known->first].bytes);
-  const auto& size = known->second;
-  if (!size) return std::nullopt;
-  TextureUse use{0, 0.0};
-  const Json& transform = at(at(info, "extensions"), "KHR_texture_transform");
-  for (const Json* const place : {&info, &transform}) {
-    const Json& set = at(*place, "texCoord");
-    if (set.is_null()) continue;
-    if (!set.is_number_unsigned()) return std::nullopt;
-    use.set = set.get<std::uint64_t>();
-  }
-  const Json& scale = at(transform, "scale");
-  const bool is_scaled = scale.is_array() && scale.size() == 2 && scale[0].is_number() && scale[1].is_number();
-  const double across = size->first * (is_scaled ? std::abs(scale[0].get<double>()) : 1.0);
-  const double down = size->second * (is_scaled ? std::abs(scale[1].get<double>()) : 1.0);
-  use.texels = std::max(across, down);
-  return use;
-}
-
-}  // namespace
-
 std::vector<std::array<double, scene::kMaxUvSets>> most_texels_of_materials(const scene::Scene& scene) {
-  const Json document = Json::parse(scene.document, nullptr, false);
-  ImageSizes sizes;
+  std::vector<std::optional<std::pair<std::uint32_t, std::uint32_t>>> sizes;  // of the blobs
+  for (const scene::SceneBlob& blob : scene.blobs) {
+    const bool is_image = blob.kind == scene::SceneBlob::Kind::kImage;
+    sizes.push_back(is_image ? stated_image_size(blob.bytes) : std::nullopt);
+  }
   std::vector<std::array<double, scene::kMaxUvSets>> out(scene.materials.size());
   for (std::size_t i = 0; i < out.size(); ++i) {
-    std::array<double, scene::kMaxUvSets>& most = out[i];
-    // Whatever an extension calls its textures, a textureInfo has an index.
-    std::vector<const Json*> open{&at(at(document, "materials"), Json(scene.materials[i].source_index))};
-    while (!open.empty()) {
-      const Json& value = *open.back();
-      open.pop_back();
-      if (!value.is_structured()) continue;
-      for (const Json& inner : value) open.push_back(&inner);
-      const auto use = texture_use(scene, document, value, sizes);
-      if (use && use->set < scene::kMaxUvSets && std::isfinite(use->texels))
-        most[use->set] = std::max(most[use->set], use->texels);
+    for (const scene::TextureUse& use : scene.materials[i].textures) {
+      if (use.blob >= sizes.size() || !sizes[use.blob] || use.uv_set >= scene::kMaxUvSets) continue;
+      const double across = std::abs(use.scale[0]) * sizes[use.blob]->first;
+      const double down = std::abs(use.scale[1]) * sizes[use.blob]->second;
+      const double texels = across < down ? down : across;
+      if (std::isfinite(texels) && texels > out[i][use.uv_set]) out[i][use.uv_set] = texels;
     }
   }
   return out;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// UV budgets in texels, held against the images of the source. Finds textures on its own: what the build took them for
-// is what is judged. Internal to the judge.
+// UV budgets in texels, held against the images of the source. Which images a material samples is what import recorded;
+// how large they are and what a unit of coordinates crosses is found out anew. Internal to the judge.
 #pragma once
 
 #include <array>
@@ -17,8 +17,12 @@
 
 namespace meshlode::judge {
 
-/// Width and height that an image states. Nothing where this reader (stb_image) does not know its kind.
+/// Width and height that an image states. Nothing where its kind is not known. Safe on any bytes.
 [[nodiscard]] std::optional<std::pair<std::uint32_t, std::uint32_t>> stated_image_size(
+    std::span<const std::uint8_t> bytes);
+
+/// The same of KTX2 and WebP alone, which stb_image does not know.
+[[nodiscard]] std::optional<std::pair<std::uint32_t, std::uint32_t>> stated_container_size(
     std::span<const std::uint8_t> bytes);
 
 /// For each TEXCOORD_n the most texels that one unit of it crosses in any texture that a material names; 0 where none

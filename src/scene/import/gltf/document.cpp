@@ -83,6 +83,7 @@ Status carry_images(const GltfAsset& asset, GltfFiles& files, Json& document, Sc
   // Images that share their bytes share a blob, however their URIs are spelled; views that merely overlap do not, so
   // what they add up to is bounded by the buffers they lie in (I11).
   std::map<std::pair<const std::uint8_t*, std::size_t>, std::size_t> blob_of;
+  std::vector<std::uint32_t> blob_of_image;
   std::uint64_t view_bytes = 0;
   std::uint64_t view_limit = std::uint64_t{1} << 20U;
   for (const auto& buffer : asset.buffers) view_limit += buffer.size();
@@ -93,6 +94,7 @@ Status carry_images(const GltfAsset& asset, GltfFiles& files, Json& document, Sc
     Json image = source;
     image.erase("uri");
     image.erase("bufferView");
+    blob_of_image.push_back(kNoId);
     if (!*found) {
       scene.left_out.push_back({"image " + std::to_string(out.size()), "it names no bytes"});
       out.push_back(std::move(image));
@@ -114,6 +116,7 @@ Status carry_images(const GltfAsset& asset, GltfFiles& files, Json& document, Sc
       blob.bytes.assign(bytes.begin(), bytes.end());
       scene.blobs.push_back(std::move(blob));
     }
+    blob_of_image.back() = static_cast<std::uint32_t>(known->second);
     const SceneBlob& blob = scene.blobs[known->second];
     if (image.find("mimeType") == nullptr && !blob.mime_type.empty()) {
       image.set("mimeType", Json::make_string(blob.mime_type));
@@ -125,6 +128,11 @@ Status carry_images(const GltfAsset& asset, GltfFiles& files, Json& document, Sc
     out.push_back(std::move(image));
   }
   if (!out.empty()) document.set("images", Json{std::move(out)});
+  for (SceneMaterial& material : scene.materials) {
+    for (TextureUse& use : material.textures) {
+      if (use.image != kNoId) use.blob = blob_of_image[use.image];
+    }
+  }
   return Ok{};
 }
 

@@ -21,13 +21,14 @@ struct Json;
 [[nodiscard]] Result<Scene> import_gltf(const std::filesystem::path& path, std::span<const std::uint8_t> bytes,
                                         const ImportOptions& options);
 
-/// One SceneMaterial per glTF material, in order. \pre the asset is checked
+/// One SceneMaterial per glTF material, in order; TextureUse::blob is carry_document's. \pre the asset is checked
 [[nodiscard]] std::vector<SceneMaterial> read_materials(const GltfAsset& asset, std::vector<LeftOut>& left_out);
 
 /// The nodes that draw a mesh, depth first over the default scene. \pre the asset is checked: nodes form trees
 [[nodiscard]] std::vector<SceneInstance> read_instances(const GltfAsset& asset, std::vector<LeftOut>& left_out);
 
-/// Fills scene.document and scene.blobs with all that travels unchanged. Opens the images.
+/// Fills scene.document and scene.blobs with all that travels unchanged, and the blobs of the materials' texture uses.
+/// Opens the images.
 [[nodiscard]] Status carry_document(const GltfAsset& asset, GltfFiles& files, DecodeBudget& budget, Scene& scene);
 
 /// The rigid animations of the document: fills `document`'s animations, accessors, bufferViews and buffers, and one

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The few things of a material that the build acts on. Above all: which UV sets some texture samples, in extensions
-// that are not known here too, because a UV set that no material samples is not stored.
+// The few things of a material that the build acts on. Above all: its texture references, in extensions that are not
+// known here too, because a UV set that no material samples is not stored.
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "base/gltf_textures.h"
 #include "scene/import/gltf/check_base.h"
 #include "scene/import/gltf/gltf.h"
 #include "scene/import/gltf/gltf_import.h"
@@ -9,38 +14,75 @@ namespace meshlode::scene {
 
 namespace {
 
-/// texCoord of a texture info; KHR_texture_transform may override it.
-std::uint32_t uv_set_of(const Json& info) {
-  if (const Json* extensions = info.find("extensions")) {
-    const Json* transform = extensions->find("KHR_texture_transform");
-    const Json* override_set = transform != nullptr ? transform->find("texCoord") : nullptr;
-    if (override_set != nullptr && override_set->index()) {
-      return static_cast<std::uint32_t>(std::min<std::uint64_t>(*override_set->index(), kNoIndex));
-    }
+/// The tree as base/gltf_textures.h asks it.
+class Handle {
+ public:
+  Handle() = default;
+  explicit Handle(const Json* json) : json_(json) {}
+
+  [[nodiscard]] bool is_object() const { return json_ != nullptr && json_->is_object(); }
+  [[nodiscard]] Handle find(std::string_view key) const {
+    return Handle(json_ != nullptr ? json_->find(key) : nullptr);
   }
-  return static_cast<std::uint32_t>(std::min<std::uint64_t>(index_or(info, "texCoord", 0), kNoIndex));
+  [[nodiscard]] std::size_t size() const { return array() != nullptr ? array()->size() : 0; }
+  [[nodiscard]] Handle item(std::size_t i) const { return i < size() ? Handle(&(*array())[i]) : Handle(); }
+  [[nodiscard]] std::optional<std::uint64_t> index() const { return json_ != nullptr ? json_->index() : std::nullopt; }
+  [[nodiscard]] std::optional<double> number() const { return json_ != nullptr ? json_->number() : std::nullopt; }
+  template <class Visit>
+  void for_each(const Visit& visit) const {
+    for (std::size_t i = 0; i < size(); ++i) visit(std::string_view(), item(i));
+    if (!is_object()) return;
+    for (const JsonMember& member : *json_->object()) visit(std::string_view(member.key), Handle(&member.value));
+  }
+  bool operator==(const Handle&) const = default;
+
+ private:
+  [[nodiscard]] const Json::Array* array() const { return json_ != nullptr ? json_->array() : nullptr; }
+  const Json* json_ = nullptr;
+};
+
+/// An index below `count`, or kNoId.
+std::uint32_t id_below(std::optional<std::uint64_t> index, std::size_t count) {
+  return index && *index < std::min<std::size_t>(count, kNoId) ? static_cast<std::uint32_t>(*index) : kNoId;
 }
 
-/// Every object under a key that ends in "Texture" and has an "index" is a texture info, wherever it stands.
-void collect_uv_sets(const Json& json, std::uint32_t& sets, bool& has_high_set) {
-  if (const auto* array = json.array()) {
-    for (const Json& item : *array) collect_uv_sets(item, sets, has_high_set);
-    return;
+/// The image of every texture, looked up once: many references may name one texture.
+std::vector<std::uint32_t> images_of_textures(const GltfAsset& asset) {
+  const std::size_t image_count = asset.root.items("images").size();
+  std::vector<std::uint32_t> out;
+  for (const Json& texture : asset.root.items("textures")) {
+    out.push_back(id_below(image_of_texture(Handle(&texture)), image_count));
   }
-  const auto* object = json.object();
-  if (object == nullptr) return;
-  for (const JsonMember& member : *object) {
-    if (member.key == "extras") continue;
-    if (member.key.ends_with("Texture") && member.value.find("index") != nullptr) {
-      const std::uint32_t set = uv_set_of(member.value);
-      if (set < kMaxUvSets) {
-        sets |= 1U << set;
-      } else {
-        has_high_set = true;
-      }
-    }
-    collect_uv_sets(member.value, sets, has_high_set);
-  }
+  return out;
+}
+
+/// Every texture reference of a material. Their blobs are found later, with the images.
+std::vector<TextureUse> read_texture_uses(const Json& json, const std::vector<std::uint32_t>& images) {
+  const Handle material(&json);
+  const Handle metallic = material.find("pbrMetallicRoughness");
+  const bool is_replaced = material.find("extensions").find("KHR_materials_pbrSpecularGlossiness").is_object();
+  const std::array<std::pair<Handle, TextureRole>, 5> roles{{
+      {base_color_info(material), TextureRole::kBaseColor},
+      {is_replaced ? Handle() : metallic.find("metallicRoughnessTexture"), TextureRole::kMetallicRoughness},
+      {material.find("normalTexture"), TextureRole::kNormal},
+      {material.find("occlusionTexture"), TextureRole::kOcclusion},
+      {material.find("emissiveTexture"), TextureRole::kEmissive},
+  }};
+  std::vector<TextureUse> out;
+  for_each_texture_info(material, [&](const Handle& info) {
+    const TextureReference reference = read_texture_info(info);
+    TextureUse use;
+    const auto known = std::find_if(roles.begin(), roles.end(), [&](const auto& role) { return role.first == info; });
+    if (known != roles.end()) use.role = known->second;
+    use.texture = id_below(reference.texture, images.size());
+    if (use.texture != kNoId) use.image = images[use.texture];
+    use.uv_set = static_cast<std::uint32_t>(std::min<std::uint64_t>(reference.uv_set, kNoIndex));
+    use.offset = reference.offset;
+    use.scale = reference.scale;
+    use.rotation = reference.rotation;
+    out.push_back(use);
+  });
+  return out;
 }
 
 float number_or(const Json* json, float fallback) {
@@ -49,20 +91,11 @@ float number_or(const Json* json, float fallback) {
   return number ? static_cast<float>(*number) : fallback;
 }
 
-void read_base_color(const Json& owner, std::string_view factor, std::string_view texture, SceneMaterial& out) {
-  const auto& numbers = owner.items(factor);
-  if (numbers.size() == 4) {
-    for (int c = 0; c < 4; ++c) out.base_color[c] = number_or(&numbers[static_cast<std::size_t>(c)], 1.0F);
-  }
-  if (const Json* info = owner.find(texture)) {
-    out.base_color_texture = static_cast<std::uint32_t>(index_or(*info, "index", kNoIndex));
-    out.base_color_uv_set = uv_set_of(*info);
-  }
+void read_base_color(const Json& owner, std::string_view key, SceneMaterial& out) {
+  const auto& numbers = owner.items(key);
+  if (numbers.size() != 4) return;
+  for (int c = 0; c < 4; ++c) out.base_color[c] = number_or(&numbers[static_cast<std::size_t>(c)], 1.0F);
 }
-
-}  // namespace
-
-namespace {
 
 bool has_direction(const Json& material) {
   if (material.find("normalTexture") != nullptr) return true;
@@ -76,6 +109,7 @@ bool has_direction(const Json& material) {
 }  // namespace
 
 std::vector<SceneMaterial> read_materials(const GltfAsset& asset, std::vector<LeftOut>& left_out) {
+  const std::vector<std::uint32_t> images = images_of_textures(asset);
   std::vector<SceneMaterial> out;
   for (const Json& material : asset.root.items("materials")) {
     SceneMaterial m;
@@ -87,20 +121,28 @@ std::vector<SceneMaterial> read_materials(const GltfAsset& asset, std::vector<Le
     }
     m.alpha_cutoff = number_or(material.find("alphaCutoff"), 0.5F);
     if (const Json* flag = material.find("doubleSided")) m.double_sided = std::get<bool>(flag->value);
-    if (const Json* pbr = material.find("pbrMetallicRoughness")) {
-      read_base_color(*pbr, "baseColorFactor", "baseColorTexture", m);
-    }
+    const Json* pbr = material.find("pbrMetallicRoughness");
     const Json* extensions = material.find("extensions");
     const Json* specular = extensions != nullptr ? extensions->find("KHR_materials_pbrSpecularGlossiness") : nullptr;
+    // Specular-glossiness stands in the place of metallic-roughness, with defaults of its own.
     if (specular != nullptr) {
-      // It stands in the place of metallic-roughness, with defaults of its own: nothing of the two is mixed.
-      m.base_color = Vec4f(1.0F);
-      m.base_color_texture = m.base_color_uv_set = kNoIndex;
-      read_base_color(*specular, "diffuseFactor", "diffuseTexture", m);
+      read_base_color(*specular, "diffuseFactor", m);
+    } else if (pbr != nullptr) {
+      read_base_color(*pbr, "baseColorFactor", m);
     }
     m.needs_tangents = has_direction(material);
+    m.textures = read_texture_uses(material, images);
     bool has_high_set = false;
-    collect_uv_sets(material, m.uv_sets_used, has_high_set);
+    for (const TextureUse& use : m.textures) {
+      if (use.uv_set < kMaxUvSets) {
+        m.uv_sets_used |= 1U << use.uv_set;
+      } else {
+        has_high_set = true;
+      }
+      if (use.role != TextureRole::kBaseColor) continue;
+      m.base_color_texture = use.texture;
+      m.base_color_uv_set = use.uv_set;
+    }
     if (has_high_set) {
       left_out.push_back(
           {"material " + std::to_string(out.size()), "a texture samples TEXCOORD_4 or above, which is not kept"});
