@@ -207,13 +207,14 @@ Result<Drawn> draw_on_cpu(const run::Asset& asset, const run::Camera& camera, co
     if (!seen) return too_many_clusters(asset);
     cut = std::move(*seen);
   }
-  const draw::AlphaMasks masks = draw::load_alpha_masks(asset, images);
+  const std::vector<draw::MaterialTextures> materials = draw::read_material_textures(asset);
+  const draw::AlphaMasks masks = draw::load_alpha_masks(asset, materials, images);
   print_warnings(masks.warnings);
   auto visibility = draw::draw_cut(asset, cut, camera, masks);
   if (!visibility) return visibility.error();
   draw::TextureSet textures;
   const auto view = static_cast<draw::View>(view_number(options.view));
-  if (view == draw::View::kShaded) textures = draw::load_textures(asset, images);
+  if (view == draw::View::kShaded) textures = draw::load_textures(asset, materials, images);
   print_warnings(textures.warnings);
   auto image = draw::shade_view(asset, cut, camera, *visibility, view, textures);
   if (!image) return image.error();

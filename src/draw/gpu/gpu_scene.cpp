@@ -263,7 +263,7 @@ void count_instances(const run::Asset& asset, std::span<const format::InstanceRe
 /// What its materials and meshes call for, by which passes are planned.
 void find_needs(const run::Asset& asset, GpuScene& scene) {
   scene.has_alpha_mask = !scene.alpha_masks->is_empty();
-  scene.has_textures = has_textures(asset);
+  scene.has_textures = has_textures(scene.material_textures);
   scene.has_double_sided = std::any_of(asset.materials().begin(), asset.materials().end(),
                                        [](const format::MaterialRecord& m) { return m.double_sided != 0; });
   scene.has_stored_normals = std::any_of(asset.meshes().begin(), asset.meshes().end(), [](const format::MeshRecord& m) {
@@ -317,8 +317,9 @@ Result<GpuScene> upload_scene(Device& device, const run::Asset& asset,
   out.page_bytes = pages->bytes;
 
   ImageBudget own_budget;
-  out.alpha_masks =
-      std::make_shared<const AlphaMasks>(load_alpha_masks(asset, images != nullptr ? *images : own_budget));
+  out.material_textures = read_material_textures(asset);
+  out.alpha_masks = std::make_shared<const AlphaMasks>(
+      load_alpha_masks(asset, out.material_textures, images != nullptr ? *images : own_budget));
   find_needs(asset, out);
   const Errors errors = find_errors(asset, bounds);
   if (const Status s = upload_tables(device, asset, instances, errors, *pages, out); !s) return s.error();

@@ -23,6 +23,7 @@ struct GpuScene {
   Buffer surfaces, textures, texels;              ///< after upload_textures()
   Buffer mesh_uvs, masks, mask_texels;            ///< read where materials are masked
   std::shared_ptr<const AlphaMasks> alpha_masks;  ///< of the asset, for who compares; never null
+  std::vector<MaterialTextures> material_textures;
   std::uint32_t instance_count = 0;
   std::uint32_t cluster_count = 0;
   std::uint32_t mesh_count = 0;

@@ -103,7 +103,7 @@ Status render_on_gpu(const run::Asset& asset, const run::Camera& camera, const G
   if (!plan) return plan.error();
   out.plan = describe_plan(*plan);
   if (plan->textures) {
-    const TextureSet textures = load_textures(asset, images);
+    const TextureSet textures = load_textures(asset, scene->material_textures, images);
     append(out.warnings, textures.warnings);
     if (const Status s = upload_textures(*device, textures, *scene); !s) return s;
   }

@@ -73,11 +73,14 @@ AlphaMasks load_alpha_masks(const run::Asset& asset) {
 }
 
 AlphaMasks load_alpha_masks(const run::Asset& asset, ImageBudget& budget) {
+  return load_alpha_masks(asset, read_material_textures(asset), budget);
+}
+
+AlphaMasks load_alpha_masks(const run::Asset& asset, std::span<const MaterialTextures> textures, ImageBudget& budget) {
   AlphaMasks out;
   const auto is_masked = [](const format::MaterialRecord& m) { return m.alpha_mode == format::AlphaMode::kMask; };
   if (std::none_of(asset.materials().begin(), asset.materials().end(), is_masked)) return out;
   out.of_material.assign(asset.materials().size(), format::kNone);
-  const std::vector<MaterialTextures> textures = read_material_textures(asset);
   std::map<std::uint32_t, std::uint32_t> image_of_blob;
   for (std::size_t i = 0; i < asset.materials().size(); ++i) {
     const format::MaterialRecord& material = asset.materials()[i];

@@ -48,6 +48,9 @@ struct AlphaMasks {
 
 /// Only images that a masked material samples are decoded, one after the other; of each its alpha is kept. One that the
 /// budget has no room for counts as opaque. A mask that every sample passes (cutoff 0) is none.
+/// `textures`: read_material_textures() of the asset.
+[[nodiscard]] AlphaMasks load_alpha_masks(const run::Asset& asset, std::span<const MaterialTextures> textures,
+                                          ImageBudget& budget);
 [[nodiscard]] AlphaMasks load_alpha_masks(const run::Asset& asset, ImageBudget& budget);
 [[nodiscard]] AlphaMasks load_alpha_masks(const run::Asset& asset);  ///< with a budget of kDefaultMaxDecoded
 

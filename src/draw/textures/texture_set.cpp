@@ -48,8 +48,7 @@ void load(const run::Asset& asset, Wanted& wanted) {
 
 }  // namespace
 
-bool has_textures(const run::Asset& asset) {
-  const std::vector<MaterialTextures> materials = read_material_textures(asset);
+bool has_textures(std::span<const MaterialTextures> materials) {
   return std::any_of(materials.begin(), materials.end(), [](const MaterialTextures& m) {
     return (m.base_color && m.base_color->blob != format::kNone) || (m.normal && m.normal->blob != format::kNone);
   });
@@ -61,8 +60,11 @@ TextureSet load_textures(const run::Asset& asset) {
 }
 
 TextureSet load_textures(const run::Asset& asset, ImageBudget& budget) {
+  return load_textures(asset, read_material_textures(asset), budget);
+}
+
+TextureSet load_textures(const run::Asset& asset, std::span<const MaterialTextures> materials, ImageBudget& budget) {
   TextureSet out;
-  const std::vector<MaterialTextures> materials = read_material_textures(asset);
   std::map<std::pair<std::uint32_t, bool>, std::uint32_t> index;  // of (blob, is sRGB)
   std::vector<Wanted> wanted;
   const auto want = [&](const std::optional<TextureUse>& use, bool is_srgb, std::size_t material) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -34,10 +35,13 @@ struct TextureSet {
 /// Decodes each image once, in the order in which materials name them: one that the budget has no room for, its mip
 /// levels included, counts as not there. So do images beyond kMaxTextureBytes of texels, whatever the budget.
 constexpr std::uint64_t kMaxTextureBytes = std::uint64_t{8} << 30;
+/// `materials`: read_material_textures() of the asset.
+[[nodiscard]] TextureSet load_textures(const run::Asset& asset, std::span<const MaterialTextures> materials,
+                                       ImageBudget& budget);
 [[nodiscard]] TextureSet load_textures(const run::Asset& asset, ImageBudget& budget);
 [[nodiscard]] TextureSet load_textures(const run::Asset& asset);  ///< with a budget of kDefaultMaxDecoded
 
 /// Whether load_textures() would find anything to decode.
-[[nodiscard]] bool has_textures(const run::Asset& asset);
+[[nodiscard]] bool has_textures(std::span<const MaterialTextures> materials);
 
 }  // namespace meshlode::draw

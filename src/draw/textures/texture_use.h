@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which image a material samples, with which UVs and how it repeats: read from the scene's document, which travels
-// through the asset as it was.
+// through the asset as it was, by the rule of base/gltf_textures.h.
 #pragma once
 
 #include <array>
@@ -31,8 +31,8 @@ struct MaterialTextures {
   double normal_scale = 1.0;
 };
 
-/// One entry for each of Asset::materials(). Safe on any document: what is not as glTF has it counts as not there, and
-/// a transform out of range as none.
+/// One entry for each of Asset::materials(). Parses the document: read once, and hand it to all that load images. Safe
+/// on any document: what is not as glTF has it counts as not there, and a transform out of range as none.
 [[nodiscard]] std::vector<MaterialTextures> read_material_textures(const run::Asset& asset);
 
 }  // namespace meshlode::draw

@@ -78,7 +78,7 @@ void check_deviation(const GroupRecord& group, bool is_terminal_group, double ma
 
 /// META's error_margin; 1 where it says nothing. \pre META is sound, or it says nothing
 double margin_of(const FileTables& file, RuleLog& log) {
-  const std::optional<double> margin = meta_real(file.meta, "settings", "error_margin");
+  const std::optional<double> margin = file.facts.error_margin;
   if (!margin) return 1.0;
   const bool is_sound = log.expect(
       *margin >= 1.0 && *margin <= 2.0, Rule::kL311, [] { return std::string("section META: /settings/error_margin"); },

@@ -17,6 +17,15 @@
 
 namespace meshlode::judge {
 
+/// What META says of the build, read once. Empty or nothing where it says nothing, or something of another type.
+struct MetaFacts {
+  std::string source_hash;
+  std::string attributes, error_tier, uv_error_unit;                 ///< settings
+  std::optional<std::uint64_t> cluster_triangles, cluster_vertices;  ///< settings
+  std::optional<double> error_margin;                                ///< settings
+  std::optional<double> position_error, normal_error, uv_error;      ///< settings; uv_error in uv_error_unit
+};
+
 struct FileTables {
   std::span<const std::uint8_t> bytes;
   std::vector<std::vector<std::uint8_t>> decoded;  ///< sections that are stored by columns
@@ -32,6 +41,7 @@ struct FileTables {
   std::vector<std::uint32_t> page_dependencies;
   std::vector<format::BlobRecord> blobs;
   std::string_view meta, scene, strings;
+  MetaFacts facts;                   ///< of meta
   format::SectionEntry page_data{};  ///< zero where the section is missing
   format::SectionEntry blob_data{};
 };
@@ -39,14 +49,10 @@ struct FileTables {
 /// Container rules L001 … L014 (L012 is in content_hash.cpp). Nothing where the tables cannot be read at all.
 [[nodiscard]] std::optional<FileTables> read_tables(std::span<const std::uint8_t> bytes, RuleLog& log);
 
-/// L013.
-void check_texts(const FileTables& file, RuleLog& log);
+/// L013, and file.facts.
+void check_texts(FileTables& file, RuleLog& log);
 [[nodiscard]] bool is_utf8(std::string_view text);
-/// META's /section/key where it is a string; empty elsewhere.
-[[nodiscard]] std::string meta_text(std::string_view meta, const char* section, const char* key);
-/// META's /section/key where it is a whole number; nothing elsewhere.
-[[nodiscard]] std::optional<std::uint64_t> meta_number(std::string_view meta, const char* section, const char* key);
-[[nodiscard]] std::optional<double> meta_real(std::string_view meta, const char* section, const char* key);
+[[nodiscard]] MetaFacts read_meta_facts(std::string_view meta);
 
 /// L101 … L115. True where every id and range is sound, so that the later rules may index.
 [[nodiscard]] bool check_tables(const FileTables& file, RuleLog& log);

@@ -62,32 +62,46 @@ nlohmann::json parse(std::string_view text) {
   return nlohmann::json::parse(text.begin(), text.end(), nullptr, false);
 }
 
-nlohmann::json value_at(std::string_view meta, const char* section, const char* key) {
-  const nlohmann::json root = parse(meta);
-  if (!root.is_object() || !root.contains(section) || !root[section].is_object() || !root[section].contains(key))
-    return {};
-  return root[section][key];
+MetaFacts facts_of(const nlohmann::json& meta) {
+  const auto value = [&](const char* section, const char* key) -> nlohmann::json {
+    if (!meta.is_object() || !meta.contains(section) || !meta[section].is_object()) return {};
+    return meta[section].value(key, nlohmann::json());
+  };
+  const auto text = [&](const char* section, const char* key) {
+    const nlohmann::json found = value(section, key);
+    return found.is_string() ? found.get<std::string>() : std::string();
+  };
+  const auto number = [&](const char* key) {
+    const nlohmann::json found = value("settings", key);
+    return found.is_number_unsigned() ? std::optional(found.get<std::uint64_t>()) : std::nullopt;
+  };
+  const auto real = [&](const char* key) {
+    const nlohmann::json found = value("settings", key);
+    return found.is_number() ? std::optional(found.get<double>()) : std::nullopt;
+  };
+  MetaFacts facts;
+  facts.source_hash = text("source", "hash");
+  facts.attributes = text("settings", "attributes");
+  facts.error_tier = text("settings", "error_tier");
+  facts.uv_error_unit = text("settings", "uv_error_unit");
+  facts.cluster_triangles = number("cluster_triangles");
+  facts.cluster_vertices = number("cluster_vertices");
+  facts.error_margin = real("error_margin");
+  facts.position_error = real("position_error");
+  facts.normal_error = real("normal_error");
+  facts.uv_error = real("uv_error");
+  return facts;
 }
 
 }  // namespace
 
-std::string meta_text(std::string_view meta, const char* section, const char* key) {
-  const nlohmann::json value = value_at(meta, section, key);
-  return value.is_string() ? value.get<std::string>() : std::string();
+MetaFacts read_meta_facts(std::string_view meta) {
+  return facts_of(parse(meta));
 }
 
-std::optional<std::uint64_t> meta_number(std::string_view meta, const char* section, const char* key) {
-  const nlohmann::json value = value_at(meta, section, key);
-  return value.is_number_unsigned() ? std::optional(value.get<std::uint64_t>()) : std::nullopt;
-}
-
-std::optional<double> meta_real(std::string_view meta, const char* section, const char* key) {
-  const nlohmann::json value = value_at(meta, section, key);
-  return value.is_number() ? std::optional(value.get<double>()) : std::nullopt;
-}
-
-void check_texts(const FileTables& file, RuleLog& log) {
+void check_texts(FileTables& file, RuleLog& log) {
   const nlohmann::json meta = file.meta.empty() ? nlohmann::json::object() : parse(file.meta);
+  file.facts = facts_of(meta);
   if (log.expect(
           meta.is_object(), Rule::kL013, [] { return std::string("section META"); },
           [] { return std::string("is not a JSON object"); })) {

@@ -132,8 +132,8 @@ bool has_color(const scene::Primitive& primitive) {
   return std::any_of(primitive.colors.begin(), primitive.colors.end(), [](const Vec4f& c) { return c != Vec4f(1.0F); });
 }
 
-void check_attributes(const run::Asset& asset, const scene::Scene& source, RuleLog& log) {
-  if (meta_text(asset.meta_json(), "settings", "attributes") == "none") return;
+void check_attributes(const run::Asset& asset, const MetaFacts& facts, const scene::Scene& source, RuleLog& log) {
+  if (facts.attributes == "none") return;
   for (std::size_t m = 0; m < std::min(asset.meshes().size(), source.meshes.size()); ++m) {
     const format::MeshRecord& mesh = asset.meshes()[m];
     if (mesh.cluster_count == 0) continue;
@@ -157,11 +157,9 @@ void check_attributes(const run::Asset& asset, const scene::Scene& source, RuleL
   }
 }
 
-void check_caps(const run::Asset& asset, RuleLog& log) {
-  const std::uint64_t triangles =
-      meta_number(asset.meta_json(), "settings", "cluster_triangles").value_or(format::kMaxClusterTriangles);
-  const std::uint64_t vertices =
-      meta_number(asset.meta_json(), "settings", "cluster_vertices").value_or(format::kMaxClusterVertices);
+void check_caps(const run::Asset& asset, const MetaFacts& facts, RuleLog& log) {
+  const std::uint64_t triangles = facts.cluster_triangles.value_or(format::kMaxClusterTriangles);
+  const std::uint64_t vertices = facts.cluster_vertices.value_or(format::kMaxClusterVertices);
   for (std::size_t c = 0; c < asset.clusters().size(); ++c) {
     const format::ClusterRecord& cluster = asset.clusters()[c];
     log.expect(
@@ -175,9 +173,9 @@ void check_caps(const run::Asset& asset, RuleLog& log) {
   }
 }
 
-void check_tiers(const run::Asset& asset, RuleLog& log) {
+void check_tiers(const run::Asset& asset, const MetaFacts& facts, RuleLog& log) {
   log.check(Rule::kV112);
-  const std::string setting = meta_text(asset.meta_json(), "settings", "error_tier");
+  const std::string& setting = facts.error_tier;
   if (setting.empty()) return;
   for (std::size_t m = 0; m < asset.meshes().size(); ++m) {
     if (asset.meshes()[m].cluster_count == 0) continue;
@@ -190,16 +188,14 @@ void check_tiers(const run::Asset& asset, RuleLog& log) {
 
 /// V104 and V105 measure every vertex of level 0 against the bounds of the mesh's record; here those bounds are held
 /// against what was asked for, budgets in texels with the source's images at hand.
-void check_budgets(const run::Asset& asset, const scene::Scene& source, std::span<const run::DecodedCluster> clusters,
-                   RuleLog& log) {
+void check_budgets(const run::Asset& asset, const MetaFacts& facts, const scene::Scene& source,
+                   std::span<const run::DecodedCluster> clusters, RuleLog& log) {
   log.check(Rule::kV113);
-  const auto setting = [&](const char* key) { return meta_real(asset.meta_json(), "settings", key); };
-  const std::optional<double> position = setting("position_error");
-  const std::optional<double> normal = setting("normal_error");
-  std::optional<double> uv = setting("uv_error");
-  const std::string uv_unit = meta_text(asset.meta_json(), "settings", "uv_error_unit");
-  if (uv && uv_unit == "texels") check_texel_budget(asset, source, *uv, clusters, log);
-  if (uv_unit != "uv") uv.reset();
+  const std::optional<double> position = facts.position_error;
+  const std::optional<double> normal = facts.normal_error;
+  const double uv = facts.uv_error.value_or(0.0);
+  const bool is_in_uv = facts.uv_error && facts.uv_error_unit == "uv";
+  if (facts.uv_error && facts.uv_error_unit == "texels") check_texel_budget(asset, source, uv, clusters, log);
   constexpr double kRounding = 1.0 + 1e-6;
   for (std::size_t m = 0; m < asset.meshes().size(); ++m) {
     const format::MeshRecord& mesh = asset.meshes()[m];
@@ -216,11 +212,11 @@ void check_budgets(const run::Asset& asset, const scene::Scene& source, std::spa
                  [&] { return differs("largest angle", degrees, "normal_error", *normal); });
     }
     std::array<bool, scene::kMaxUvSets> is_finest{};
-    if (uv) is_finest = has_finest_step(asset, MeshId(m), clusters);
-    for (std::uint32_t set = 0; uv && set < mesh.uv_set_count; ++set) {
+    if (is_in_uv) is_finest = has_finest_step(asset, MeshId(m), clusters);
+    for (std::uint32_t set = 0; is_in_uv && set < mesh.uv_set_count; ++set) {
       const double half_step = 0.5 * format::exp2_exact(mesh.uv_log2[set]);
-      log.expect(half_step <= *uv * kRounding || is_finest[set], Rule::kV113, at,
-                 [&] { return differs("half a UV step", half_step, "uv_error", *uv); });
+      log.expect(half_step <= uv * kRounding || is_finest[set], Rule::kV113, at,
+                 [&] { return differs("half a UV step", half_step, "uv_error", uv); });
     }
   }
 }
@@ -233,11 +229,12 @@ void check_scene(const run::Asset& asset, const scene::Scene& source, std::span<
   check_instances(asset, source, log);
   check_blobs(asset, source, log);
   log.check(Rule::kV110);
-  check_attributes(asset, source, log);
-  check_caps(asset, log);
-  check_tiers(asset, log);
-  check_budgets(asset, source, clusters, log);
-  const std::string hash = meta_text(asset.meta_json(), "source", "hash");
+  const MetaFacts facts = read_meta_facts(asset.meta_json());
+  check_attributes(asset, facts, source, log);
+  check_caps(asset, facts, log);
+  check_tiers(asset, facts, log);
+  check_budgets(asset, facts, source, clusters, log);
+  const std::string& hash = facts.source_hash;
   log.expect(
       hash == source.source_hash, Rule::kV108, [] { return std::string("section META: /source/hash"); },
       [&] { return "is \"" + hash + "\", the source given has \"" + source.source_hash + "\""; });

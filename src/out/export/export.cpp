@@ -19,7 +19,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/gltf_textures.h"
 #include "base/guarded.h"
+#include "base/json_handle.h"
 #include "format/names.h"
 #include "out/export/cut_geometry.h"
 #include "out/export/float_positions.h"
@@ -75,17 +77,15 @@ Status check_arrays(const Json& object, std::initializer_list<const char*> keys)
 }
 
 /// Largest TEXCOORD_n that a material's texture infos name, over extensions too (KHR_texture_transform may name another
-/// set than its texture info); -1 where nothing is sampled.
-int largest_texcoord(const Json& value, bool is_texture_info = false) {
-  int largest = is_texture_info ? 0 : -1;
-  if (!value.is_structured()) return largest;
-  for (const auto& [key, child] : value.items()) {
-    if (is_texture_info && key == "texCoord" && child.is_number_unsigned()) {
-      largest = std::max(largest, static_cast<int>(std::min<std::uint64_t>(child.get<std::uint64_t>(), 63)));
-    }
-    const bool is_info = child.is_object() && value.is_object() && key.ends_with("Texture") && child.contains("index");
-    largest = std::max(largest, largest_texcoord(child, is_texture_info || is_info));
-  }
+/// set than its texture info, and who does not know it reads the texture info's); -1 where nothing is sampled.
+int largest_texcoord(const Json& material) {
+  constexpr std::uint64_t kMost = 63;
+  int largest = -1;
+  for_each_texture_info(TreeHandle(material), [&](const auto& info) {
+    const TextureReference reference = read_texture_info(info);
+    const std::uint64_t set = std::max(reference.tex_coord, reference.uv_set);
+    largest = std::max(largest, static_cast<int>(std::min(set, kMost)));
+  });
   return largest;
 }
 

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 
-#include "out/report/read_meta.h"
-
 namespace meshlode::out {
 
 namespace {
@@ -80,7 +78,8 @@ MeshInfo describe_mesh(const run::Asset& asset, std::uint32_t mesh_id, std::uint
 
 AssetInfo describe_asset(const run::Asset& asset) {
   AssetInfo info;
-  info.cluster_cap = read_meta(asset.meta_json()).cluster_triangles;
+  info.meta = read_meta(asset.meta_json());
+  info.cluster_cap = info.meta.cluster_triangles;
   if (info.cluster_cap == 0) {
     info.cluster_cap = 128;
     for (const format::ClusterRecord& cluster : asset.clusters()) {

@@ -11,6 +11,7 @@
 #include <meshlode/format.h>
 
 #include "out/report/byte_map.h"
+#include "out/report/read_meta.h"
 #include "run/read/asset.h"
 
 namespace meshlode::out {
@@ -40,6 +41,7 @@ struct MeshInfo {
 };
 
 struct AssetInfo {
+  MetaInfo meta;
   std::uint64_t geometry_bytes = 0;  ///< pages and the tables they need: meshes, groups, clusters, nodes, pages, deps
   std::uint64_t image_bytes = 0;
   std::uint64_t source_triangles = 0, source_vertices = 0;

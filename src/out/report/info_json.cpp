@@ -6,7 +6,6 @@
 #include "base/json_writer.h"
 #include "format/names.h"
 #include "out/report/info.h"
-#include "out/report/read_meta.h"
 
 namespace meshlode::out {
 
@@ -215,7 +214,7 @@ void write_byte_map(JsonWriter& w, const ByteMap& map) {
 }  // namespace
 
 std::string info_json(const run::Asset& asset, const AssetInfo& info, bool list_stuck) {
-  const MetaInfo meta = read_meta(asset.meta_json());
+  const MetaInfo& meta = info.meta;
   const format::FileHeader& header = asset.header();
   Hash128 hash{};
   for (std::size_t i = 0; i < hash.size(); ++i) hash[i] = header.content_hash[i];

@@ -6,7 +6,6 @@
 #include "base/hash.h"
 #include "format/names.h"
 #include "out/report/info.h"
-#include "out/report/read_meta.h"
 
 namespace meshlode::out {
 
@@ -103,7 +102,7 @@ void add_more(std::string& out, std::size_t total, const char* what) {
 }  // namespace
 
 std::string info_text(const run::Asset& asset, const AssetInfo& info, bool list_stuck) {
-  const MetaInfo meta = read_meta(asset.meta_json());
+  const MetaInfo& meta = info.meta;
   const format::FileHeader& header = asset.header();
   Hash128 hash{};
   for (std::size_t i = 0; i < hash.size(); ++i) hash[i] = header.content_hash[i];

@@ -2,7 +2,13 @@
 // nlohmann-json, seen by this file alone in this room.
 #include "out/report/read_meta.h"
 
+#include <limits>
+#include <optional>
+
 #include <nlohmann/json.hpp>
+
+#include "base/gltf_textures.h"
+#include "base/json_handle.h"
 
 namespace meshlode::out {
 
@@ -50,10 +56,9 @@ const Json* child(const Json& object, const char* key, Json::value_t type) {
   return it != object.end() && it->type() == type ? &*it : nullptr;
 }
 
-std::int64_t index_at(const Json& object, const char* key) {
-  if (!object.is_object()) return -1;
-  const auto it = object.find(key);
-  return it != object.end() && it->is_number_unsigned() ? it->get<std::int64_t>() : -1;
+std::int64_t signed_or_none(std::optional<std::uint64_t> index) {
+  constexpr std::uint64_t kLargest = std::numeric_limits<std::int64_t>::max();
+  return index && *index <= kLargest ? static_cast<std::int64_t>(*index) : -1;
 }
 
 }  // namespace
@@ -73,7 +78,7 @@ MetaInfo read_meta(std::string_view meta_json) {
     meta.settings = dump(*settings);
     meta.preset = string_at(*settings, "preset");
     for (const char* key : {"cluster_triangles", "max_cluster_triangles", "triangles_per_cluster"}) {
-      const std::int64_t cap = index_at(*settings, key);
+      const auto cap = TreeHandle(*settings).find(key).index().value_or(0);
       if (cap >= 1 && cap <= 256) meta.cluster_triangles = static_cast<std::uint32_t>(cap);
     }
   }
@@ -96,7 +101,9 @@ std::vector<TextureInfo> read_textures(std::string_view scene_json) {
   const Json json = parse_object(scene_json);
   if (const Json* array = child(json, "textures", Json::value_t::array)) {
     for (const Json& texture : *array) {
-      textures.push_back({string_at(texture, "name"), index_at(texture, "source"), index_at(texture, "sampler")});
+      const TreeHandle handle(texture);
+      textures.push_back({string_at(texture, "name"), signed_or_none(image_of_texture(handle)),
+                          signed_or_none(handle.find("sampler").index())});
     }
   }
   return textures;

@@ -31,7 +31,8 @@ struct MetaInfo {
 
 struct TextureInfo {
   std::string name;
-  std::int64_t image = -1, sampler = -1;
+  std::int64_t image = -1;  ///< of the document, by the rule of base/gltf_textures.h; -1: none
+  std::int64_t sampler = -1;
 };
 [[nodiscard]] std::vector<TextureInfo> read_textures(std::string_view scene_json);
 

@@ -78,6 +78,30 @@ TEST(TextureUse, SetsAndTexturesAreThoseOfTheReference) {
   EXPECT_FALSE(bare.base_color) << "specular-glossiness stands in the place of metallic-roughness";
 }
 
+TEST(TextureUse, AnImageThatAnExtensionNamesIsFound) {
+  const auto blob_of = [](const std::string& texture) {
+    const auto use = textures_with(base_color(R"({"index":0})"),
+                                   R"(,"textures":[)" + texture + R"(],"images":[{},{"blob":0},{"blob":9}])");
+    EXPECT_TRUE(use.base_color) << texture;
+    return use.base_color ? use.base_color->blob : 7;
+  };
+  for (const char* name : {"KHR_texture_basisu", "EXT_texture_webp", "EXT_texture_avif", "MSFT_texture_dds"}) {
+    const std::string extensions = R"("extensions":{")" + std::string(name) + R"(":{"source":1}})";
+    EXPECT_EQ(blob_of("{" + extensions + "}"), 0u) << name;
+    EXPECT_EQ(blob_of(R"({"source":0,)" + extensions + "}"), format::kNone) << "the texture's own source goes first";
+  }
+  EXPECT_EQ(blob_of(R"({"extensions":{"MSFT_texture_dds":{"source":1},"EXT_texture_webp":{"source":0}}})"),
+            format::kNone)
+      << "in the order of the rule, not of the document";
+  for (const char* nonsense :
+       {R"({"extensions":{"KHR_texture_basisu":{"source":3}}})",
+        R"({"extensions":{"KHR_texture_basisu":{"source":2}}})",
+        R"({"extensions":{"KHR_texture_basisu":{"source":-1}}})", R"({"extensions":{"KHR_texture_basisu":1}})",
+        R"({"extensions":[{"source":1}]})", R"({"extensions":{"ACME_texture":{"source":1}}})"}) {
+    EXPECT_EQ(blob_of(nonsense), format::kNone) << nonsense;
+  }
+}
+
 TEST(TextureUse, NonsenseCountsAsNotThere) {
   EXPECT_FALSE(textures_with(base_color(R"({"index":7})"), kTables).base_color);
   EXPECT_FALSE(textures_with(base_color(R"({"index":-1})"), kTables).base_color);

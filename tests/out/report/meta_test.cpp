@@ -53,7 +53,22 @@ TEST(Meta, ListsTextures) {
   EXPECT_EQ(textures[0].image, 2);
   EXPECT_EQ(textures[0].name, "bark");
   EXPECT_EQ(textures[1].image, -1);
+  EXPECT_EQ(textures[0].sampler, 0);
+  EXPECT_EQ(textures[2].image, -1);
   EXPECT_TRUE(read_textures("nonsense").empty());
+}
+
+TEST(Meta, AnImageThatAnExtensionNamesIsTheTexturesImage) {
+  const auto textures = read_textures(
+      R"({"textures":[{"extensions":{"KHR_texture_basisu":{"source":3}}},{"source":1,"extensions":{"EXT_texture_webp":)"
+      R"({"source":2}}},{"extensions":{"EXT_texture_webp":{"source":4},"KHR_texture_basisu":{"source":5}}},)"
+      R"({"extensions":{"EXT_texture_webp":{"source":18446744073709551615}}},{"extensions":7}]})");
+  ASSERT_EQ(textures.size(), 5U);
+  EXPECT_EQ(textures[0].image, 3);
+  EXPECT_EQ(textures[1].image, 1);
+  EXPECT_EQ(textures[2].image, 5);
+  EXPECT_EQ(textures[3].image, -1);
+  EXPECT_EQ(textures[4].image, -1);
 }
 
 }  // namespace

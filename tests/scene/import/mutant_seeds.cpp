@@ -47,7 +47,10 @@ void fill_rich(GltfBuilder& b, std::string& rest) {
       "{\"primitives\":[{\"attributes\":{\"POSITION\":5,\"COLOR_0\":2},\"mode\":6,\"targets\":[{\"POSITION\":0}]}]}],"
       "\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0,\"texCoord\":0},"
       "\"baseColorFactor\":[1,0.5,0.25,1]},\"alphaMode\":\"BLEND\"},{\"extensions\":{\"KHR_materials_clearcoat\":{"
-      "\"clearcoatTexture\":{\"index\":0}}}}],\"textures\":[{\"source\":0,\"sampler\":0}],\"samplers\":[{}],"
+      "\"clearcoatTexture\":{\"index\":1,\"extensions\":{\"KHR_texture_transform\":{\"texCoord\":1,\"scale\":[2,2]}}}}}"
+      "}],"
+      "\"textures\":[{\"source\":0,\"sampler\":0},{\"extensions\":{\"KHR_texture_basisu\":{\"source\":0}}}],"
+      "\"samplers\":[{}],"
       "\"images\":[{\"bufferView\":" +
       std::to_string(image) +
       ",\"mimeType\":\"image/png\"}],\"nodes\":[{\"children\":[1,2],\"scale\":[2,2,2]},{\"mesh\":0,\"matrix\":[1,0,0,0,"
