@@ -43,6 +43,28 @@ TEST(ImportDocument, ImagesBecomeBlobsFromViewsDataUrisAndFiles) {
   EXPECT_EQ(document["textures"][0]["source"], 2);
 }
 
+TEST(ImportDocument, ImagesInBuffersWithoutDataAreRefusedAndEmptyOnesAreEmpty) {
+  const TempFolder folder;
+  const auto import_view = [&](const std::string& view) {
+    const std::string text =
+        "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":8}],\"bufferViews\":[{\"buffer\":0," + view +
+        "}],\"images\":[{\"bufferView\":0,\"mimeType\":\"image/png\"}]}";
+    return scene::import_scene(folder.write("scene.gltf", text), {});
+  };
+  const auto absent = import_view("\"byteLength\":8");
+  ASSERT_FALSE(absent);
+  EXPECT_EQ(absent.error().code, ErrorCode::kInvalid);
+  EXPECT_NE(absent.error().where.find("/images/0/bufferView"), std::string::npos) << describe(absent);
+  const auto compressed = import_view("\"byteLength\":8,\"extensions\":{\"EXT_meshopt_compression\":{}}");
+  ASSERT_FALSE(compressed);
+  EXPECT_EQ(compressed.error().code, ErrorCode::kUnsupported);
+  EXPECT_NE(compressed.error().detail.find("EXT_meshopt_compression"), std::string::npos) << describe(compressed);
+  const auto empty = import_view("\"byteOffset\":4,\"byteLength\":0");
+  ASSERT_TRUE(empty) << describe(empty);
+  ASSERT_EQ(empty->blobs.size(), 1U);
+  EXPECT_TRUE(empty->blobs[0].bytes.empty());
+}
+
 TEST(ImportDocument, GeometryIsGoneAndEverythingElseStays) {
   GltfBuilder b;
   b.floats(kSquare, "VEC3", 3);

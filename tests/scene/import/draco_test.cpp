@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <numeric>
 #include <string>
 
 #include "gltf_builder.h"
@@ -163,6 +164,38 @@ TEST(ImportDraco, AForeignVersionMethodOrTypeIsRefused) {
       if (at == 8 && value == 0) continue;  // the sequential decoder reads other counts there
       bytes[at] = static_cast<std::uint8_t>(value);
       EXPECT_FALSE(scene::decode_draco(bytes, expectation(sample))) << at << " " << value;
+    }
+  }
+}
+
+// An attribute beside the compressed ones is checked once a primitive; many primitives may name the same one.
+TEST(ImportDraco, SparseAttributesBesideItCountAgainstTheBudget) {
+  const DracoSample sample = make_draco_sample(3, true, 5, 11);
+  constexpr std::uint32_t kSparse = 100000;
+  std::vector<std::uint32_t> indices(kSparse);
+  std::iota(indices.begin(), indices.end(), 0U);
+  GltfBuilder b;
+  b.view(sample.bytes);
+  const int sparse_indices = b.view(indices);
+  const int sparse_values = b.view(std::vector<std::uint8_t>(kSparse));
+  b.accessor(-1, 5126, sample.point_count, "VEC3");
+  b.accessor(-1, 5125, 3 * std::size_t{sample.face_count}, "SCALAR");
+  b.accessor(-1, 5121, kSparse, "SCALAR",
+             ",\"sparse\":{\"count\":100000,\"indices\":{\"componentType\":5125,\"bufferView\":" +
+                 std::to_string(sparse_indices) + "},\"values\":{\"bufferView\":" + std::to_string(sparse_values) +
+                 "}}");
+  for (const int count : {1, 60}) {
+    std::string primitives;
+    for (int i = 0; i < count; ++i) {
+      primitives += std::string(i == 0 ? "" : ",") +
+                    "{\"attributes\":{\"POSITION\":0,\"_X\":2},\"indices\":1,\"extensions\":{"
+                    "\"KHR_draco_mesh_compression\":{\"bufferView\":0,\"attributes\":{\"POSITION\":" +
+                    std::to_string(sample.position_id) + "}}}}";
+    }
+    const auto scene = b.import("\"meshes\":[{\"primitives\":[" + primitives + "]}]");
+    EXPECT_EQ(scene.ok(), count == 1) << describe(scene);
+    if (!scene) {
+      EXPECT_NE(scene.error().detail.find("size of the file"), std::string::npos) << describe(scene);
     }
   }
 }

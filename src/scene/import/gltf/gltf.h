@@ -3,11 +3,9 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <map>
-#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -87,8 +85,8 @@ class DecodeBudget {
 struct GltfAsset {
   std::string file;  ///< as named in messages
   Json root;         ///< checked; materials, extensions and what is carried through are read here
-  /// Geometry, nodes, scenes, skins and animations; its lists are as long as those of the tree. It has no buffers, and
-  /// of extensions and extras it knows nothing.
+  /// Accessors and their views, meshes, nodes, scenes, skins and animations, as many of each as the tree has. All else
+  /// is empty: buffers above all, materials, extensions and extras.
   tinygltf::Model model;
   std::vector<std::span<const std::uint8_t>> buffers;  ///< by buffer index; empty where a buffer has no data
 

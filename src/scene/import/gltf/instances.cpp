@@ -74,7 +74,8 @@ std::vector<SceneInstance> read_instances(const GltfAsset& asset, std::vector<Le
     const tinygltf::Node& node = nodes[visit.node];
     const Mat4d world = visit.parent * local_transform(node);
     if (node.mesh >= 0) {
-      out.push_back({node.name, static_cast<std::uint32_t>(visit.node), MeshId(std::size_t(node.mesh)), world});
+      out.push_back(
+          {node.name, static_cast<std::uint32_t>(visit.node), MeshId(static_cast<std::size_t>(node.mesh)), world});
     }
     for (auto child = node.children.rbegin(); child != node.children.rend(); ++child) stack.push_back({*child, world});
   }

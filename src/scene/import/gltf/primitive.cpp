@@ -393,7 +393,7 @@ Result<std::optional<Primitive>> PrimitiveReader::run() {
   if (!corners) return corners.error();
   if (auto status = read_positions(*corners); !status) return status.error();
   out_.indices = std::move(*corners);
-  if (source_.material >= 0) out_.material = MaterialId(std::size_t(source_.material));
+  if (source_.material >= 0) out_.material = MaterialId(static_cast<std::size_t>(source_.material));
   if (auto status = read_attributes(); !status) return status.error();
   return std::optional<Primitive>(std::move(out_));
 }
