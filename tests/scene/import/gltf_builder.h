@@ -117,6 +117,14 @@ inline std::string mesh_text(const std::string& attributes, const std::string& r
          "}]}],\"nodes\":[{\"mesh\":0}],\"scenes\":[{\"nodes\":[0]}],\"scene\":0";
 }
 
+/// The text with a number in every place of '#'.
+inline std::string with_number(std::string text, const std::string& number) {
+  for (std::size_t at = text.find('#'); at != std::string::npos; at = text.find('#', at + number.size())) {
+    text.replace(at, 1, number);
+  }
+  return text;
+}
+
 inline std::string describe(const Result<scene::Scene>& scene) {
   return scene ? "ok" : scene.error().message();
 }

@@ -3,6 +3,7 @@
 // leave out does not get lost on the way.
 #include <gtest/gtest.h>
 
+#include "gltf_builder.h"
 #include "scene/import/gltf/gltf.h"
 
 namespace meshlode::testing {
@@ -20,16 +21,15 @@ scene::tinygltf::Model model_of(const std::string& members) {
 
 TEST(GltfModel, KeepsOffsetsAndLengthsThatNeedMoreThan32Bits) {
   for (const std::uint64_t large : {std::uint64_t{1} << 31U, std::uint64_t{1} << 32U, std::uint64_t{1} << 46U}) {
-    const std::string n = std::to_string(large);
-    const auto model = model_of("\"buffers\":[{\"byteLength\":" + std::to_string(2 * large) +
-                                "}],\"bufferViews\":[{\"buffer\":0,\"byteOffset\":" + n + ",\"byteLength\":" + n +
-                                "},{\"buffer\":0,\"byteLength\":" + std::to_string(large + 64) +
-                                "}],\"accessors\":[{\"bufferView\":1,\"byteOffset\":" + n +
-                                ",\"componentType\":5126,\"count\":1,\"type\":\"VEC3\"}]");
+    const auto model = model_of(
+        with_number("\"buffers\":[{\"byteLength\":281474976710655}],\"bufferViews\":[{\"buffer\":0,\"byteOffset\":#,"
+                    "\"byteLength\":#},{\"buffer\":0,\"byteLength\":281474976710655}],\"accessors\":[{\"bufferView\":1,"
+                    "\"byteOffset\":#,\"componentType\":5126,\"count\":1,\"type\":\"VEC3\"}]",
+                    std::to_string(large)));
     ASSERT_EQ(model.bufferViews.size(), 2U);
     EXPECT_EQ(model.bufferViews[0].byteOffset, large);
     EXPECT_EQ(model.bufferViews[0].byteLength, large);
-    EXPECT_EQ(model.bufferViews[1].byteLength, large + 64);
+    EXPECT_EQ(model.bufferViews[1].byteLength, 281474976710655U);
     ASSERT_EQ(model.accessors.size(), 1U);
     EXPECT_EQ(model.accessors[0].byteOffset, large);
   }

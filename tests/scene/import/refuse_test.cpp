@@ -102,71 +102,70 @@ TEST(ImportRefuses, StructuralFaultsByTheirJsonPath) {
   }
 }
 
-/// A buffer of 2^48 - 1 bytes that nobody has, one view over all of it, and an accessor.
-std::string vast(const std::string& accessor) {
-  return gltf(
-      "\"buffers\":[{\"byteLength\":281474976710655}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":"
-      "281474976710655}],\"accessors\":[{\"componentType\":5126,\"type\":\"SCALAR\"," +
-      accessor + "}]");
-}
-
-std::string sparse(const std::string& count, const std::string& indices, const std::string& values) {
-  return "\"count\":4,\"sparse\":{\"count\":" + count + ",\"indices\":{\"componentType\":5125,\"bufferView\":0," +
-         "\"byteOffset\":" + indices + "},\"values\":{\"bufferView\":0,\"byteOffset\":" + values + "}}";
-}
-
 // Cut to 32 bits each of these would be a small number that passes, or a negative one.
-TEST(ImportRefuses, NumbersThatNeedMoreThan32BitsByTheirJsonPath) {
-  const std::string sparse_path = "/accessors/0/sparse/";
-  const std::string small =
-      "\"buffers\":[{\"byteLength\":64,\"uri\":\"data:;base64,AAAA\"}],\"bufferViews\":[{\"buffer\":";
+TEST(ImportRefuses, IndicesAndBoundsThatNeedMoreThan32BitsByTheirJsonPath) {
+  const std::string buffer = "\"buffers\":[{\"byteLength\":64,\"uri\":\"data:;base64,AAAA\"}],\"bufferViews\":[{";
   const std::string mesh = "\"materials\":[{}],\"meshes\":[{\"primitives\":[{\"attributes\":{";
-  const std::string element = ",\"componentType\":5126,\"type\":\"SCALAR\"}]";
-  std::vector<BadFile> files = {
-      {vast("\"count\":2147483648"), "/accessors/0/count", ErrorCode::kUnsupported},
-      {vast("\"count\":4294967297,\"bufferView\":0"), "/accessors/0/count", ErrorCode::kUnsupported},
-      {vast("\"count\":281474976710656"), "/accessors/0/count"},
-      {vast("\"count\":9007199254740993"), "/accessors/0/count"},
-      {vast("\"count\":70368744177665,\"bufferView\":0"), "/accessors/0"},
-      {vast(sparse("1", "2147483648", "0")), sparse_path + "indices/byteOffset", ErrorCode::kUnsupported},
-      {vast(sparse("1", "0", "2147483648")), sparse_path + "values/byteOffset", ErrorCode::kUnsupported},
-      {vast(sparse("1", "4294967296", "0")), sparse_path + "indices/byteOffset", ErrorCode::kUnsupported},
-      {vast(sparse("1", "0", "4294967296")), sparse_path + "values/byteOffset", ErrorCode::kUnsupported},
-      {vast(sparse("1", "281474976710656", "0")), sparse_path + "indices/byteOffset"},
-      {vast(sparse("4294967297", "0", "0")), sparse_path + "count"},
+  const std::string accessor = "\"accessors\":[{\"type\":\"SCALAR\",\"count\":1,";
+  const std::vector<BadFile> files = {
+      {buffer + "\"buffer\":#,\"byteLength\":4}]", "/bufferViews/0/buffer"},
+      {buffer + "\"buffer\":0,\"byteOffset\":#,\"byteLength\":4}]", "/bufferViews/0"},
+      {buffer + "\"buffer\":0,\"byteLength\":#}]", "/bufferViews/0"},
+      {buffer + "\"buffer\":0,\"byteLength\":4,\"byteStride\":#}]", "/bufferViews/0/byteStride"},
+      {buffer + "\"buffer\":0,\"byteLength\":64}]," + accessor +
+           "\"componentType\":5126,\"bufferView\":0,\"byteOffset\":#}]",
+       "/accessors/0"},
+      {accessor + "\"componentType\":5126,\"bufferView\":#}]", "/accessors/0/bufferView"},
+      {accessor + "\"componentType\":#}]", "/accessors/0/componentType"},
+      {mesh + "\"POSITION\":#}}]}]", "/meshes/0/primitives/0/attributes/POSITION"},
+      {mesh + "},\"indices\":#}]}]", "/meshes/0/primitives/0/indices"},
+      {mesh + "},\"material\":#}]}]", "/meshes/0/primitives/0/material"},
+      {mesh + "},\"mode\":#}]}]", "/meshes/0/primitives/0/mode"},
+      {"\"nodes\":[{\"mesh\":#}]", "/nodes/0/mesh"},
+      {"\"nodes\":[{\"children\":[#]}]", "/nodes/0/children/0"},
+      {"\"nodes\":[{}],\"scenes\":[{\"nodes\":[#]}]", "/scenes/0/nodes/0"},
+      {"\"scenes\":[{}],\"scene\":#", "/scene"},
+      {"\"nodes\":[{}],\"skins\":[{\"joints\":[#]}]", "/skins/0/joints/0"},
+      {accessor +
+           "\"componentType\":5126}],\"animations\":[{\"samplers\":[{\"input\":#,\"output\":0}],\"channels\":[]}]",
+       "/animations/0/samplers/0/input"},
   };
-  for (const char* large : {"2147483648", "4294967296", "4294967300", "281474976710656", "18446744073709551616"}) {
-    const std::string n = large;
-    const std::vector<BadFile> each = {
-        {gltf(small + n + ",\"byteLength\":4}]"), "/bufferViews/0/buffer"},
-        {gltf(small + "0,\"byteOffset\":" + n + ",\"byteLength\":4}]"), "/bufferViews/0"},
-        {gltf(small + "0,\"byteLength\":" + n + "}]"), "/bufferViews/0"},
-        {gltf(small + "0,\"byteLength\":4,\"byteStride\":" + n + "}]"), "/bufferViews/0/byteStride"},
-        {gltf("\"accessors\":[{\"count\":1,\"bufferView\":" + n + element), "/accessors/0/bufferView"},
-        {gltf(small + "0,\"byteLength\":64}],\"accessors\":[{\"count\":1,\"bufferView\":0,\"byteOffset\":" + n +
-              element),
-         "/accessors/0"},
-        {gltf("\"accessors\":[{\"count\":1,\"type\":\"SCALAR\",\"componentType\":" + n + "}]"),
-         "/accessors/0/componentType"},
-        {gltf(mesh + "\"POSITION\":" + n + "}}]}]"), "/meshes/0/primitives/0/attributes/POSITION"},
-        {gltf(mesh + "},\"indices\":" + n + "}]}]"), "/meshes/0/primitives/0/indices"},
-        {gltf(mesh + "},\"material\":" + n + "}]}]"), "/meshes/0/primitives/0/material"},
-        {gltf(mesh + "},\"mode\":" + n + "}]}]"), "/meshes/0/primitives/0/mode"},
-        {gltf("\"nodes\":[{\"mesh\":" + n + "}]"), "/nodes/0/mesh"},
-        {gltf("\"nodes\":[{\"children\":[" + n + "]}]"), "/nodes/0/children/0"},
-        {gltf("\"nodes\":[{}],\"scenes\":[{\"nodes\":[" + n + "]}]"), "/scenes/0/nodes/0"},
-        {gltf("\"scenes\":[{}],\"scene\":" + n), "/scene"},
-        {gltf("\"nodes\":[{}],\"skins\":[{\"joints\":[" + n + "]}]"), "/skins/0/joints/0"},
-        {gltf("\"accessors\":[{\"count\":1" + element + ",\"animations\":[{\"samplers\":[{\"input\":" + n +
-              ",\"output\":0}],\"channels\":[]}]"),
-         "/animations/0/samplers/0/input"},
-    };
-    files.insert(files.end(), each.begin(), each.end());
-  }
   const TempFolder folder;
-  for (const BadFile& bad : files) {
-    expect_refused(scene::import_scene(folder.write("scene.gltf", bad.text), {}), bad);
+  for (const char* large : {"2147483648", "4294967296", "4294967300", "281474976710656", "18446744073709551616"}) {
+    for (const BadFile& bad : files) {
+      const BadFile numbered = {with_number(gltf(bad.text), large), bad.place, bad.code};
+      expect_refused(scene::import_scene(folder.write("scene.gltf", numbered.text), {}), numbered);
+    }
   }
+}
+
+// A buffer of 2^48 - 1 bytes that nobody has, and one view over all of it: only what is kept in 32 bits is at fault.
+TEST(ImportRefuses, CountsAndSparseOffsetsThatAreNotSupportedByTheirJsonPath) {
+  const std::string start =
+      "\"buffers\":[{\"byteLength\":281474976710655}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":281474976710655}],"
+      "\"accessors\":[{\"componentType\":5126,\"type\":\"SCALAR\",\"count\":";
+  const std::string indices =
+      "4,\"sparse\":{\"count\":1,\"values\":{\"bufferView\":0},\"indices\":{\"componentType\":5125,";
+  const std::string values =
+      "4,\"sparse\":{\"count\":1,\"indices\":{\"componentType\":5125,\"bufferView\":0},\"values\":{";
+  const std::string offset = "\"bufferView\":0,\"byteOffset\":#}}}]";
+  const std::vector<BadFile> files = {
+      {start + "#}]", "/accessors/0/count"},
+      {start + "#,\"bufferView\":0}]", "/accessors/0/count"},
+      {start + indices + offset, "/accessors/0/sparse/indices/byteOffset"},
+      {start + values + offset, "/accessors/0/sparse/values/byteOffset"},
+  };
+  const TempFolder folder;
+  const auto expect = [&](const BadFile& bad, const std::string& number, ErrorCode code) {
+    const BadFile numbered = {with_number(gltf(bad.text), number), bad.place, code};
+    expect_refused(scene::import_scene(folder.write("scene.gltf", numbered.text), {}), numbered);
+  };
+  for (const BadFile& bad : files) {
+    for (const char* large : {"2147483648", "4294967296", "4294967300"}) expect(bad, large, ErrorCode::kUnsupported);
+    for (const char* absurd : {"281474976710656", "9007199254740993"}) expect(bad, absurd, ErrorCode::kInvalid);
+  }
+  expect({start + "#,\"bufferView\":0}]", "/accessors/0"}, "70368744177665", ErrorCode::kInvalid);
+  expect({start + "4,\"sparse\":{\"count\":#}}]", "/accessors/0/sparse/count"}, "4294967297", ErrorCode::kInvalid);
 }
 
 TEST(ImportRefuses, AccessorsThatReachOutsideTheirViewByOneByte) {

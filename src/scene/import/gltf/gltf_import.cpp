@@ -133,11 +133,11 @@ Status read_meshes(const GltfAsset& asset, const ImportOptions& options, DecodeB
       needs_default_material = needs_default_material || !(*primitive)->material.is_valid();
       mesh.primitives.push_back(std::move(**primitive));
     }
-    const std::string what = "mesh " + std::to_string(m);
-    if (has_targets) scene.left_out.push_back({what + " morph targets", "only the base shape is built"});
+    const std::string what = "mesh " + std::to_string(m) + " ";
+    if (has_targets) scene.left_out.push_back({what + "morph targets", "only the base shape is built"});
     extensions.erase("KHR_draco_mesh_compression");
     for (const std::string& name : extensions) {
-      scene.left_out.push_back({what + " " + name, "an extension of primitives that is not kept"});
+      scene.left_out.push_back({what + name, "an extension of primitives that is not kept"});
     }
     scene.meshes.push_back(std::move(mesh));
   }

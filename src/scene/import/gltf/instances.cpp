@@ -14,7 +14,7 @@ Mat4d local_transform(const tinygltf::Node& node) {
   if (node.matrix.size() == 16) {
     Mat4d m;
     for (int c = 0; c < 4; ++c) {
-      for (int r = 0; r < 4; ++r) m[c][r] = node.matrix[static_cast<std::size_t>(4 * c + r)];
+      for (int r = 0; r < 4; ++r) m[c][r] = node.matrix[4 * c + r];
     }
     return m;
   }
@@ -34,7 +34,7 @@ Mat4d local_transform(const tinygltf::Node& node) {
     m[2] = {2.0 * (x * z + y * w), 2.0 * (y * z - x * w), 1.0 - 2.0 * (x * x + y * y), 0.0};
   }
   if (node.scale.size() == 3) {
-    for (int c = 0; c < 3; ++c) m[c] *= node.scale[static_cast<std::size_t>(c)];
+    for (int c = 0; c < 3; ++c) m[c] *= node.scale[c];
   }
   if (node.translation.size() == 3) m[3] = {node.translation[0], node.translation[1], node.translation[2], 1.0};
   return m;

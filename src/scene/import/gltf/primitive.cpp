@@ -157,9 +157,7 @@ Status PrimitiveReader::check_types() const {
     const bool is_small = reader.component_type() != kGltfFloat && reader.component_type() != kGltfUnsignedInt;
     bool is_known = true;
     bool is_right = true;
-    if (name == "POSITION") {
-      is_right = n == 3 && (is_float || is_small);
-    } else if (name == "NORMAL") {
+    if (name == "POSITION" || name == "NORMAL") {
       is_right = n == 3 && (is_float || is_small);
     } else if (name.starts_with("TEXCOORD_")) {
       is_right = n == 2 && (is_float || is_small);

@@ -10,7 +10,7 @@
 #define TINYGLTF_NO_INCLUDE_STB_IMAGE_WRITE
 #define TINYGLTF_NO_EXTERNAL_IMAGE
 #define TINYGLTF_NO_FS
-#define tinygltf meshlode_tinygltf
+#define tinygltf meshlode_tinygltf  // NOLINT(readability-identifier-naming): a namespace of theirs
 #include <tiny_gltf.h>
 #undef tinygltf
 
