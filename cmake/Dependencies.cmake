@@ -17,7 +17,7 @@ endfunction()
 find_package(Threads REQUIRED)
 find_package(TBB REQUIRED)
 find_package(nlohmann_json 3 REQUIRED)
-find_package(Boost REQUIRED)  # headers: CGAL's smallest spheres need them, and whole numbers of any length
+find_package(Boost REQUIRED)  # headers: CGAL's need them, and whole numbers of any length
 find_package(METIS REQUIRED)
 find_package(PNG REQUIRED)
 find_package(JPEG REQUIRED)
@@ -39,8 +39,10 @@ if(MESHLODE_TESTS)
   # For its exact predicates, which the tests ask. Its flags (-frounding-math) stay with the targets that link it.
   find_package(CGAL REQUIRED)
 endif()
-if(MESHLODE_BENCH)
-  # The reference simplifier of bench/quality.
+if(MESHLODE_TESTS OR MESHLODE_BENCH)
+  # The tests' oracle of topology and the reference simplifier of bench/quality.
   meshlode_find_library(OpenMesh::Core OpenMeshCore OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh)
+endif()
+if(MESHLODE_BENCH)
   meshlode_find_library(OpenMesh::Tools OpenMeshTools OpenMesh/Tools/Decimater/DecimaterT.hh)
 endif()

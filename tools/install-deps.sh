@@ -8,7 +8,7 @@ packages=(
   g++ cmake ninja-build
   libtbb-dev libglm-dev libxxhash-dev        # base
   nlohmann-json3-dev libtinygltf-dev libdraco-dev  # import
-  libmetis-dev libcgal-dev                   # partition, hierarchy
+  libmetis-dev libcgal-dev                   # partition, hierarchy and repair
   libzstd-dev liblz4-dev                     # pack, unpack
   libpng-dev libjpeg62-turbo-dev             # image
   libstb-dev libcli11-dev                    # raster, command line
@@ -18,7 +18,7 @@ if [ "${1:-}" = --tests ]; then
   packages+=(libgtest-dev clang-14 libclang-rt-14-dev lld-14 assimp-testmodels
              git clang-format-14 clang-tidy-14             # the form of the sources
              python3                                       # the independent readers of the format and of glTF
-             libopenmesh-dev                               # a reference of simplification, for the benchmarks
+             libopenmesh-dev                               # an oracle of topology, a reference simplifier
              make                                          # a stranger's project, built by what CMake takes by itself
              mesa-vulkan-drivers vulkan-validationlayers)  # a Vulkan device on any machine, and its judge
 fi

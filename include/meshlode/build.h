@@ -125,7 +125,9 @@ struct BuildOptions {
   double uv_error = 0.0;        ///< what a texture coordinate may move at most; 0: chosen, invisible
   UvErrorUnit uv_error_unit = UvErrorUnit::kUv;  ///< of uv_error
   format::Codec codec = format::Codec::kNone;    ///< of the pages on disk
-  bool repair = false;  ///< drop and count triangles that touch a bad index or non-finite position, instead of refusing
+  /// Remove and count triangles that touch a bad index or non-finite position, instead of refusing them, that have two
+  /// corners in one place, or the same three as an earlier one of their material; orient the rest coherently.
+  bool repair = false;
   std::uint64_t max_memory_bytes = 0;  ///< meshes wait for each other to keep it, or it is refused; 0: what is left
   /// Of build_file: what compressed geometry may take decoded beyond what the size of its file justifies.
   std::uint64_t max_decoded_bytes = std::uint64_t{512} << 20U;

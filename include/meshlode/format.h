@@ -147,7 +147,7 @@ struct MeshRecord {
   std::uint64_t source_vertices;
   std::uint64_t dropped_degenerate;  ///< triangles without area that are no part of the source
   std::uint64_t dropped_duplicate;   ///< same positions, winding, stored attributes and material
-  std::uint64_t dropped_repaired;    ///< by --repair: non-finite positions, indices out of range
+  std::uint64_t dropped_repaired;    ///< by --repair: non-finite, out of range, degenerate, duplicate
   std::uint64_t grid_collapsed;      ///< triangles of level 0 that have zero area after quantization; they stay
   std::uint32_t first_group;         ///< groups of this mesh are contiguous, coarse to fine
   std::uint32_t group_count;

@@ -121,7 +121,7 @@ typedef struct meshlode_mesh {
   uint64_t source_vertices;
   uint64_t dropped_degenerate; /* triangles without area that are no part of the source */
   uint64_t dropped_duplicate;  /* same positions, winding, stored attributes and material */
-  uint64_t dropped_repaired;   /* non-finite positions, indices out of range */
+  uint64_t dropped_repaired;   /* by --repair: non-finite, out of range, degenerate, duplicate */
   uint64_t grid_collapsed;     /* triangles of level 0 without area on the grid; they stay */
   uint32_t first_group;        /* groups of a mesh are contiguous, coarse to fine */
   uint32_t group_count;

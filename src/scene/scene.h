@@ -27,7 +27,18 @@ struct Primitive {
 
 /// Triangles that import removed, by kind. Nothing is dropped without being counted.
 struct ImportDrops {
-  std::uint64_t repaired = 0;  ///< --repair: triangles touching a non-finite position or an index out of range
+  /// --repair: triangles touching a non-finite position or an index out of range, degenerate ones and duplicates.
+  std::uint64_t repaired = 0;
+};
+
+/// What --repair did to a mesh, by kind (repair/repair.h).
+struct MeshRepairs {
+  std::uint64_t degenerate = 0;  ///< triangles removed, part of ImportDrops::repaired: two corners in one place
+  std::uint64_t duplicate = 0;   ///< triangles removed, part of it too: another of the material has the same corners
+  std::uint64_t turned = 0;      ///< triangles whose orientation was reversed
+  std::uint64_t stitched = 0;    ///< vertices replaced by an equal one
+  std::uint64_t cut_edges = 0;   ///< edges of more than two triangles, taken apart
+  std::uint64_t split = 0;       ///< vertices made because one had several fans of triangles
 };
 
 /// One glTF mesh: one DAG is built from all its primitives.
@@ -35,6 +46,7 @@ struct SourceMesh {
   std::string name;
   std::vector<Primitive> primitives;
   ImportDrops drops;
+  MeshRepairs repairs;
 };
 
 enum class AlphaMode : std::uint8_t { kOpaque, kMask, kBlend };

@@ -61,12 +61,17 @@ class Scratch {
   std::filesystem::path folder_;
 };
 
-void require_sound(const scene::Scene& scene) {
+void require_sound(const scene::Scene& scene, bool is_repaired) {
   for (const scene::SourceMesh& mesh : scene.meshes) {
     for (const scene::Primitive& p : mesh.primitives) {
       const std::size_t n = p.positions.size();
       fuzz::require(p.indices.size() % 3 == 0, "indices are no triangles");
       for (const std::uint32_t i : p.indices) fuzz::require(i < n, "an index is no vertex");
+      for (std::size_t i = 0; is_repaired && i < p.indices.size(); i += 3) {
+        const Vec3d &a = p.positions[p.indices[i]], &b = p.positions[p.indices[i + 1]],
+                    &c = p.positions[p.indices[i + 2]];
+        fuzz::require(a != b && b != c && c != a, "a degenerate triangle");
+      }
       for (const Vec3d& v : p.positions)
         fuzz::require(std::isfinite(v.x + v.y + v.z) || std::abs(v.x) > 1e300, "position");
       fuzz::require(p.normals.empty() || p.normals.size() == n, "normals");
@@ -88,9 +93,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   constexpr const char* kNames[] = {"a.glb", "a.gltf", "a.ply", "a.obj", "a.stl"};
   const std::size_t kind = (data[0] & 0x7FU) % std::size(kNames);
   const auto path = scratch.write(kNames[kind], kind == 0 ? assemble_glb(rest) : std::string(rest));
-  const auto scene = meshlode::scene::import_scene(path, {.repair = (data[0] & 0x80U) != 0});
+  const bool repair = (data[0] & 0x80U) != 0;
+  const auto scene = meshlode::scene::import_scene(path, {.repair = repair});
   if (scene) {
-    require_sound(*scene);
+    require_sound(*scene, repair);
   } else {
     meshlode::fuzz::require(!scene.error().detail.empty(), "a refusal without a reason");
     meshlode::fuzz::require(!scene.error().detail.starts_with("internal error"), scene.error().detail.c_str());

@@ -10,6 +10,7 @@
 #include <optional>
 #include <set>
 #include <string_view>
+#include <utility>
 
 #include "base/byte_size.h"
 #include "base/json_writer.h"
@@ -44,6 +45,8 @@ struct JobResult {
   std::uint64_t meshes = 0, instances = 0;
   std::uint64_t bytes = 0;
   std::uint64_t memory_estimate = 0;  ///< 0: not reached
+  std::uint64_t dropped = 0;          ///< by --repair, of all kinds
+  scene::MeshRepairs repairs;         ///< of all meshes
   std::vector<build::StageTime> stages;
   std::vector<scene::LeftOut> left_out;     ///< by the importer
   std::vector<scene::LeftOut> planned_out;  ///< by the plan
@@ -167,6 +170,19 @@ struct JobOptions {
   bool make_folders = false;  ///< for the output, below -O
 };
 
+/// What --repair did, summed over the meshes.
+void count_repairs(const scene::Scene& scene, JobResult& result) {
+  for (const scene::SourceMesh& mesh : scene.meshes) {
+    result.dropped += mesh.drops.repaired;
+    result.repairs.degenerate += mesh.repairs.degenerate;
+    result.repairs.duplicate += mesh.repairs.duplicate;
+    result.repairs.turned += mesh.repairs.turned;
+    result.repairs.stitched += mesh.repairs.stitched;
+    result.repairs.cut_edges += mesh.repairs.cut_edges;
+    result.repairs.split += mesh.repairs.split;
+  }
+}
+
 Result<std::vector<std::uint8_t>> import_and_build(const Job& job, const JobOptions& options, Progress& progress,
                                                    JobResult& result) {
   const Timer import_timer;
@@ -183,6 +199,7 @@ Result<std::vector<std::uint8_t>> import_and_build(const Job& job, const JobOpti
   for (const scene::SourceMesh& mesh : scene->meshes) {
     for (const scene::Primitive& primitive : mesh.primitives) result.triangles += primitive.indices.size() / 3;
   }
+  count_repairs(*scene, result);
   result.left_out = scene->left_out;
   build::PipelineReport report;
   auto bytes = build::build_lode(std::move(*scene), options.pipeline, progress.callback(), report);
@@ -227,12 +244,35 @@ JobResult run_job(const Job& job, const JobOptions& options, Progress& progress)
   return result;
 }
 
+/// Each kind of repair with its count: what the report and the summary say.
+std::vector<std::pair<const char*, std::uint64_t>> list_repairs(const JobResult& r) {
+  return {{"unusable", r.dropped - r.repairs.degenerate - r.repairs.duplicate},
+          {"degenerate", r.repairs.degenerate},
+          {"duplicate", r.repairs.duplicate},
+          {"turned", r.repairs.turned},
+          {"stitched", r.repairs.stitched},
+          {"cut_edges", r.repairs.cut_edges},
+          {"split", r.repairs.split}};
+}
+
+void print_repairs(const JobResult& r) {
+  std::string text;
+  for (const auto& [kind, count] : list_repairs(r)) {
+    if (count == 0) continue;
+    text += text.empty() ? "" : ", ";
+    text += std::to_string(count) + " " + kind;
+  }
+  std::replace(text.begin(), text.end(), '_', ' ');
+  if (!text.empty()) std::fprintf(stderr, "  repaired: %s\n", text.c_str());
+}
+
 void print_summary(const JobResult& r) {
   std::fprintf(stderr, "%s: %llu triangles in %llu mesh(es) -> %s, %llu bytes, %.2f s (%.0f triangles/s)\n",
                r.job.input.string().c_str(), static_cast<unsigned long long>(r.triangles),
                static_cast<unsigned long long>(r.meshes), r.job.output.string().c_str(),
                static_cast<unsigned long long>(r.bytes), r.seconds,
                r.seconds > 0.0 ? static_cast<double>(r.triangles) / r.seconds : 0.0);
+  print_repairs(r);
   for (const scene::LeftOut& left : r.left_out) {
     std::fprintf(stderr, "  left out: %s: %s\n", left.what.c_str(), left.why.c_str());
   }
@@ -296,6 +336,10 @@ std::string report_json(const std::vector<JobResult>& results, std::uint32_t job
       w.end_object();
     }
     w.end_array();
+    w.key("repaired");
+    w.begin_object();
+    for (const auto& [kind, count] : list_repairs(r)) w.field(kind, count);
+    w.end_object();
     w.key("left_out");
     w.begin_array();
     write_left_out(w, r.left_out);
@@ -406,7 +450,8 @@ int run_build(const Verb& verb, std::span<char* const> args) {
   add_max_decoded_option(parser, max_decoded);
   add_jobs_option(parser, jobs);
   parser.add_value("--report", report_path, "write times and counts as JSON, the same that --format json prints");
-  parser.add_flag("--repair", repair, "drop and count triangles with non-finite positions or indices out of range");
+  parser.add_flag("--repair", repair,
+                  "remove unusable, degenerate and duplicate triangles, orient the rest, split where it is no surface");
   add_output_options(parser, out);
   if (const auto exit_code = parser.parse(args)) return *exit_code;
   if (!output.empty() && !output_folder.empty()) {

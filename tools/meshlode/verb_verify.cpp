@@ -10,6 +10,7 @@
 #include "gpu_checks.h"
 #include "judge/verify/verify.h"
 #include "options.h"
+#include "out/report/read_meta.h"
 #include "outputs.h"
 #include "run/decode/decode.h"
 #include "run/read/asset.h"
@@ -77,10 +78,11 @@ std::string to_json(const std::string& path, const std::string& source, const ju
   return json.text();
 }
 
-/// Triangles that --repair dropped are found again by repairing the source in the same way.
+/// What --repair did to the source is found again by repairing it in the same way.
 bool was_repaired(const run::Asset& asset) {
   const auto meshes = asset.meshes();
-  return std::any_of(meshes.begin(), meshes.end(), [](const format::MeshRecord& m) { return m.dropped_repaired > 0; });
+  return out::read_meta(asset.meta_json()).repair ||
+         std::any_of(meshes.begin(), meshes.end(), [](const format::MeshRecord& m) { return m.dropped_repaired > 0; });
 }
 
 /// Clusters decoded, and a cut that draws each in every instance: what verify keeps at once.
@@ -99,6 +101,7 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
   GpuOptions gpu_options;
   std::uint32_t jobs = 0;
   std::string max_decoded_text = kDefaultMaxDecodedText;
+  bool repair = false;
   judge::VerifyOptions options;
   OutputOptions output;
   OptionParser parser(verb);
@@ -106,6 +109,7 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
   parser.add_value("--source", source_path, "the scene it was built from");
   parser.add_flag("--quick", options.is_quick,
                   "structure, border proof and one measured cut a mesh; the source's triangles are not looked for");
+  parser.add_flag("--repair", repair, "repair the source as build --repair does, also where the asset does not say so");
   parser.add_value("--cuts", options.uniform_cuts, "uniform cuts per mesh that cross-check the border proof");
   parser.add_value("--cameras", options.cameras, "random cameras that cross-check selection and hierarchy");
   parser.add_value("--deviation-cuts", options.deviation_cuts,
@@ -138,7 +142,7 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
   }
   std::vector<FileId> files_read;
   Result<scene::Scene> source = scene::import_scene(
-      source_path, {.repair = was_repaired(*asset), .files_read = &files_read, .max_decoded = *max_decoded});
+      source_path, {.repair = repair || was_repaired(*asset), .files_read = &files_read, .max_decoded = *max_decoded});
   output_files().keep(files_read);
   if (!source) return print_error(source.error());
   if (options.is_quick) options.uniform_cuts = options.cameras = 0;  // as it is reported

@@ -19,6 +19,7 @@
 #include "build/build.h"
 #include "build/preset.h"
 #include "scene/import/import.h"
+#include "scene/repair/repair.h"
 
 namespace meshlode {
 namespace {
@@ -147,6 +148,7 @@ Result<std::vector<std::uint8_t>> build_asset(const SceneInput& scene, const Bui
   return guarded({}, [&]() -> Result<std::vector<std::uint8_t>> {
     auto made = build::make_scene(scene, options.repair);
     if (!made) return made.error();
+    if (options.repair) scene::repair_scene(*made);
     return run_pipeline(std::move(*made), options);
   });
 }

@@ -26,6 +26,7 @@ struct MetaInfo {
   std::vector<Decision> decisions;      ///< of `plan`, for text
   std::vector<LeftOut> left_outs;       ///< of `left_out`, for text
   std::uint32_t cluster_triangles = 0;  ///< of the settings; 0 where it is not said
+  bool repair = false;                  ///< of the settings: the source was repaired
 };
 [[nodiscard]] MetaInfo read_meta(std::string_view meta_json);
 

@@ -13,6 +13,7 @@
 #include "base/hash.h"
 #include "scene/import/gltf/gltf_import.h"
 #include "scene/import/polygons/polygon_soup.h"
+#include "scene/repair/repair.h"
 
 namespace meshlode::scene {
 
@@ -85,7 +86,9 @@ Result<Scene> import_scene(const std::filesystem::path& path, const ImportOption
     }
     auto scene =
         *format == Format::kGltf ? import_gltf(path, bytes, options) : import_polygons(*format, path, bytes, options);
-    if (scene) scene->source_name = path.filename().string();
+    if (!scene) return scene;
+    scene->source_name = path.filename().string();
+    if (options.repair) repair_scene(*scene);
     return scene;
   });
 }

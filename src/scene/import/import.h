@@ -14,7 +14,9 @@
 namespace meshlode::scene {
 
 struct ImportOptions {
-  bool repair = false;  ///< drop (and count) triangles that touch non-finite positions or indices out of range
+  /// Drop (and count) triangles that touch non-finite positions or indices out of range, then repair_scene
+  /// (scene/repair/repair.h).
+  bool repair = false;
   std::vector<FileId>* files_read = nullptr;  ///< gets every file that was opened, also where the import fails
   /// Bytes of indices and vertices that compressed geometry may take beyond what its own size justifies.
   std::uint64_t max_decoded = std::uint64_t{512} << 20U;
