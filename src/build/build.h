@@ -22,7 +22,8 @@ struct PipelineOptions {
   AttributeChoice attributes = AttributeChoice::kAuto;
   double grid_step = 0.0;  ///< 0: chosen from the budget; else this step in mesh units
   format::Codec codec = format::Codec::kNone;
-  bool repair = false;  ///< the scene was imported with repair: recorded, because it changes the bytes
+  std::uint32_t partition_seed = 1;  ///< of METIS; benchmarks vary it, to tell a change from luck
+  bool repair = false;               ///< the scene was imported with repair: recorded, because it changes the bytes
   std::uint32_t max_cluster_triangles = 128;  ///< I2; at most format::kMaxClusterTriangles
   std::uint32_t max_cluster_vertices = 256;   ///< I2; at most format::kMaxClusterVertices
   double position_error = 0.0;                ///< mesh units, the largest distance a vertex moves; 0: chosen, invisible

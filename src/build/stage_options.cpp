@@ -88,6 +88,8 @@ DagOptions dag_options(const PipelineOptions& options, const PreparedMesh& mesh,
   dag.caps.max_triangles = options.max_cluster_triangles;
   dag.caps.max_vertices = options.max_cluster_vertices;
   dag.caps.target_triangles = options.max_cluster_triangles - std::min(2U, options.max_cluster_triangles / 16);
+  dag.caps.seed = options.partition_seed;
+  dag.grouping.seed = options.partition_seed;
   dag.caps.merge_triangles = settings_of(options.preset).merge_triangles && mesh.triangles.size() >= kSmallMesh;
   dag.simplify.keep_area = is_aggregate(mesh);
   dag.max_group_bytes = format::kMaxPageBytes - kPageFrameBytes;

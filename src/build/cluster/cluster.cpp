@@ -91,8 +91,8 @@ Clustering partition_chunk(std::span<const WedgeTriangle> triangles, Graph graph
                            const ClusterCaps& caps) {
   Clustering clustering;
   clustering.count = static_cast<std::uint32_t>(std::min(parts, triangles.size()));
-  clustering.label =
-      caps.merge_triangles ? partition_merged(graph, clustering.count) : partition_graph(graph, clustering.count);
+  clustering.label = caps.merge_triangles ? partition_merged(graph, clustering.count, caps.seed)
+                                          : partition_graph(graph, clustering.count, caps.seed);
   enforce_caps(triangles, graph, caps, clustering);
   return clustering;
 }

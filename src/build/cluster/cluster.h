@@ -20,6 +20,7 @@ struct ClusterCaps {
   /// METIS cuts quads of triangles instead of triangles (merged_partition.h): in half the time, and with borders of
   /// clusters that are a little longer. build/preset.h and build/stage_options.cpp say where.
   bool merge_triangles = true;
+  std::uint32_t seed = 1;  ///< of the partitioner
 };
 
 /// One part per triangle; parts are 0 … count-1 and none is empty.

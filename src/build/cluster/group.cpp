@@ -135,7 +135,7 @@ std::vector<std::vector<std::uint32_t>> group_clusters(const GroupInput& input, 
   std::uint32_t parts = 1;
   if (2 * count > 3 * options.target_clusters) parts = (count + options.target_clusters - 1) / options.target_clusters;
   Graph graph = cluster_graph(input);
-  const std::vector<std::uint32_t> label = partition_graph(graph, parts);
+  const std::vector<std::uint32_t> label = partition_graph(graph, parts, options.seed);
   std::vector<std::vector<std::uint32_t>> groups(parts);
   for (std::uint32_t c = 0; c < count; ++c) groups[label[c]].push_back(c);
   std::erase_if(groups, [](const auto& group) { return group.empty(); });

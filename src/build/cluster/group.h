@@ -14,6 +14,7 @@ struct GroupOptions {
   std::uint32_t target_clusters = 20;  ///< what groups aim at; a retry takes another number to get other neighbours
   std::uint32_t max_clusters = 32;
   std::uint64_t max_weight = ~0ULL;  ///< largest sum of cluster_weight in a group (bytes: a group fits a page)
+  std::uint32_t seed = 1;            ///< of the partitioner
 };
 
 /// The clusters of one level in compressed rows.

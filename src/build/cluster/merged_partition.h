@@ -36,6 +36,6 @@ void refine_parts(const Graph& graph, const PartWeights& weights, int passes, st
 
 /// As partition_graph, in less time and with a slightly longer border. Graphs of few nodes a part go to partition_graph
 /// as they are.
-[[nodiscard]] std::vector<std::uint32_t> partition_merged(Graph& graph, std::uint32_t parts);
+[[nodiscard]] std::vector<std::uint32_t> partition_merged(Graph& graph, std::uint32_t parts, std::uint32_t seed = 1);
 
 }  // namespace meshlode::build

@@ -20,11 +20,11 @@ namespace {
 static_assert(sizeof(idx_t) == sizeof(std::int32_t), "Graph hands its arrays to METIS as they are");
 
 /// False if METIS did not return METIS_OK.
-bool call_metis(Graph& graph, std::uint32_t parts, std::vector<idx_t>& labels) {
+bool call_metis(Graph& graph, std::uint32_t parts, std::uint32_t seed, std::vector<idx_t>& labels) {
   idx_t options[METIS_NOPTIONS];
   METIS_SetDefaultOptions(options);
   options[METIS_OPTION_UFACTOR] = 1;
-  options[METIS_OPTION_SEED] = 1;
+  options[METIS_OPTION_SEED] = static_cast<idx_t>(seed);
   options[METIS_OPTION_NUMBERING] = 0;
   auto node_count = static_cast<idx_t>(graph.node_count());
   idx_t constraint_count = 1;
@@ -57,7 +57,7 @@ bool probe_thread_rand() {
   const std::uint64_t before = meshlode_thread_rand_calls();
   Graph graph = ring();
   std::vector<idx_t> labels;
-  (void)call_metis(graph, 4, labels);
+  (void)call_metis(graph, 4, 1, labels);
   return meshlode_thread_rand_calls() != before;
 }
 
@@ -91,7 +91,7 @@ bool is_partition_concurrent() {
   return concurrent;
 }
 
-std::vector<std::uint32_t> partition_graph(Graph& graph, std::uint32_t parts) {
+std::vector<std::uint32_t> partition_graph(Graph& graph, std::uint32_t parts, std::uint32_t seed) {
   const std::size_t node_count = graph.node_count();
   std::vector<std::uint32_t> labels(node_count, 0);
   if (parts <= 1 || node_count <= 1) return labels;  // METIS divides by zero at one part
@@ -102,10 +102,10 @@ std::vector<std::uint32_t> partition_graph(Graph& graph, std::uint32_t parts) {
   std::vector<idx_t> metis_labels;
   bool ok = false;
   if (is_partition_concurrent()) {
-    ok = call_metis(graph, parts, metis_labels);
+    ok = call_metis(graph, parts, seed, metis_labels);
   } else {
     const std::lock_guard lock(metis_mutex());
-    ok = call_metis(graph, parts, metis_labels);
+    ok = call_metis(graph, parts, seed, metis_labels);
   }
   if (!ok) {
     for (std::size_t i = 0; i < node_count; ++i) labels[i] = static_cast<std::uint32_t>(i * parts / node_count);

@@ -20,7 +20,8 @@ struct Graph {
 /// One label in [0, parts) per node; every part is non-empty if parts <= nodes. Deterministic for any thread, thread
 /// count and caller. Balanced to one in a thousand where the graph allows; caps are the caller's to enforce.
 /// If METIS refuses (it reports no memory, say) nodes are dealt out in index order: never a failure, seldom good.
-[[nodiscard]] std::vector<std::uint32_t> partition_graph(Graph& graph, std::uint32_t parts);
+/// Another `seed` gives another partition, no better or worse on average.
+[[nodiscard]] std::vector<std::uint32_t> partition_graph(Graph& graph, std::uint32_t parts, std::uint32_t seed = 1);
 
 /// True if calls may run side by side: the executable brings its own rand() (meshlode_thread_rand). Otherwise calls
 /// wait for each other; the labels are the same.

@@ -78,14 +78,14 @@ void refine_parts(const Graph& graph, const PartWeights& weights, int passes, st
   }
 }
 
-std::vector<std::uint32_t> partition_merged(Graph& graph, std::uint32_t parts) {
+std::vector<std::uint32_t> partition_merged(Graph& graph, std::uint32_t parts, std::uint32_t seed) {
   constexpr std::size_t kFewestNodes = 32;  // a part: eight quads
   constexpr int kPassesOfPairs = 2, kPassesOfTriangles = 4;
   constexpr std::int64_t kOver = 1, kUnder = 6;  // triangles, than the mean
-  if (parts <= 1 || graph.node_count() < kFewestNodes * parts) return partition_graph(graph, parts);
+  if (parts <= 1 || graph.node_count() < kFewestNodes * parts) return partition_graph(graph, parts, seed);
   MergedGraph pairs = merge_pairs(graph);
   MergedGraph quads = merge_pairs(pairs.graph);
-  if (quads.graph.node_count() < parts) return partition_graph(graph, parts);
+  if (quads.graph.node_count() < parts) return partition_graph(graph, parts, seed);
   const std::int64_t total =
       std::accumulate(pairs.graph.node_weight.begin(), pairs.graph.node_weight.end(), std::int64_t{0});
   const std::int64_t mean = total / parts;
@@ -95,7 +95,7 @@ std::vector<std::uint32_t> partition_merged(Graph& graph, std::uint32_t parts) {
     for (std::size_t n = 0; n < node.size(); ++n) labels[n] = coarse[node[n]];
     return labels;
   };
-  std::vector<std::uint32_t> labels = expand(quads.node, partition_graph(quads.graph, parts));
+  std::vector<std::uint32_t> labels = expand(quads.node, partition_graph(quads.graph, parts, seed));
   refine_parts(pairs.graph, weights, kPassesOfPairs, labels, parts);
   labels = expand(pairs.node, labels);
   refine_parts(graph, weights, kPassesOfTriangles, labels, parts);

@@ -40,17 +40,33 @@ std::vector<std::uint32_t> sizes_of(const std::vector<std::uint32_t>& labels, st
   return sizes;
 }
 
-TEST(Partition, PartsAreBalancedAndTheCutIsShort) {
-  Graph graph = grid_graph(40);
-  const auto labels = partition_graph(graph, 16);
-  for (const std::uint32_t size : sizes_of(labels, 16)) EXPECT_NEAR(size, 100, 3);
+/// Edges between parts.
+int cut_of(const Graph& graph, const std::vector<std::uint32_t>& labels) {
   int cut = 0;
   for (std::size_t i = 0; i < labels.size(); ++i) {
     for (auto e = graph.row_start[i]; e < graph.row_start[i + 1]; ++e) {
       cut += labels[i] != labels[static_cast<std::size_t>(graph.neighbor[static_cast<std::size_t>(e)])] ? 1 : 0;
     }
   }
-  EXPECT_LT(cut / 2, 2 * 24 * 10) << "sixteen squares of ten cut 240 edges; twice that would be no partition";
+  return cut / 2;
+}
+
+TEST(Partition, PartsAreBalancedAndTheCutIsShort) {
+  Graph graph = grid_graph(40);
+  const auto labels = partition_graph(graph, 16);
+  for (const std::uint32_t size : sizes_of(labels, 16)) EXPECT_NEAR(size, 100, 3);
+  EXPECT_LT(cut_of(graph, labels), 2 * 24 * 10)
+      << "sixteen squares of ten cut 240 edges; twice that would be no partition";
+}
+
+TEST(Partition, AnotherSeedIsAnotherPartitionAsGood) {
+  Graph graph = grid_graph(40);
+  const auto first = partition_graph(graph, 16);
+  EXPECT_EQ(partition_graph(graph, 16, 1), first) << "the seed where none is given";
+  const auto second = partition_graph(graph, 16, 2);
+  EXPECT_NE(second, first);
+  for (const std::uint32_t size : sizes_of(second, 16)) EXPECT_NEAR(size, 100, 3);
+  EXPECT_LT(cut_of(graph, second), 2 * 24 * 10);
 }
 
 TEST(Partition, OnePartAndAsManyPartsAsNodesAreFine) {
