@@ -49,6 +49,7 @@ struct BuiltMesh {
   EncodedMesh encoded;
   std::vector<PlanDecision> decisions;
   StageClock clock;
+  std::vector<LevelTime> levels;
 };
 
 /// What nobody looks at once the DAG is there.
@@ -96,7 +97,9 @@ Result<BuiltMesh> build_mesh(const Source& from, std::size_t index,
   const EncodeOptions encoding = encode_options(options, source, plan.layout, texels);
   from.free_mesh(index);
   DagOptions coarsening = dag_options(options, *mesh, encoding);
+  LevelClock levels(index);
   coarsening.on_level = [&](std::uint32_t level, std::uint64_t triangles) {
+    levels.end(level, triangles);
     return progress.report(index, level, triangles);
   };
   if (coarsening.error == ErrorSource::kQuadric) {
@@ -106,6 +109,7 @@ Result<BuiltMesh> build_mesh(const Source& from, std::size_t index,
   const Result<LodDag> dag = build_dag(*mesh, coarsening);
   if (!dag) return Error{dag.error().code, label, dag.error().detail};
   free_surface(*mesh);
+  built.levels = levels.times();
   built.clock.end(Stage::kDag);
 
   const Hierarchy hierarchy = build_hierarchy(*dag, *mesh);
@@ -163,10 +167,12 @@ Result<std::vector<std::uint8_t>> build_asset_of(const Source& from, const Pipel
   input.scene = &scene;
   input.codec = options.codec;
   report.decisions.clear();
+  report.levels.clear();
   for (std::size_t i = 0; i < meshes->size(); ++i) {
     BuiltMesh& mesh = (*meshes)[i];
     mesh.clock.add_to(report.stages);
     report.decisions.insert(report.decisions.end(), mesh.decisions.begin(), mesh.decisions.end());
+    report.levels.insert(report.levels.end(), mesh.levels.begin(), mesh.levels.end());
     input.meshes.push_back(std::move(mesh.encoded));
     input.mesh_names.push_back(scene.meshes[i].name);
   }

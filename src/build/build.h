@@ -49,9 +49,16 @@ struct StageTime {
   std::string stage;
   double seconds = 0.0;
 };
+/// When a mesh's DAG had one more level; `seconds` run from the level before it, or from where the DAG began.
+struct LevelTime {
+  std::uint32_t mesh = 0, level = 0;
+  std::uint64_t triangles = 0;  ///< of the level
+  double seconds = 0.0;         ///< wall time
+};
 struct PipelineReport {
   std::uint64_t memory_estimate = 0;  ///< bytes that the process takes at most, as estimated before the build
   std::vector<StageTime> stages;
+  std::vector<LevelTime> levels;        ///< mesh by mesh
   std::vector<PlanDecision> decisions;  ///< of all meshes, in order
 };
 

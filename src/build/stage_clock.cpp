@@ -17,4 +17,10 @@ void StageClock::add_to(std::vector<StageTime>& stages) const {
   for (std::size_t s = 0; s < kStageCount; ++s) stages[s].seconds += seconds_[s];
 }
 
+void LevelClock::end(std::uint32_t level, std::uint64_t triangles) {
+  const auto now = std::chrono::steady_clock::now();
+  times_.push_back({mesh_, level, triangles, std::chrono::duration<double>(now - last_).count()});
+  last_ = now;
+}
+
 }  // namespace meshlode::build

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Wall seconds of the build's stages.
+// Wall seconds of the build's stages, and of the levels of its longest one.
 #pragma once
 
 #include <array>
@@ -28,6 +28,21 @@ class StageClock {
  private:
   std::chrono::steady_clock::time_point last_;
   std::array<double, kStageCount> seconds_{};
+};
+
+/// Times the levels of one mesh's DAG; runs from when it is made.
+class LevelClock {
+ public:
+  explicit LevelClock(std::size_t mesh)
+      : mesh_(static_cast<std::uint32_t>(mesh)), last_(std::chrono::steady_clock::now()) {}
+
+  void end(std::uint32_t level, std::uint64_t triangles);
+  [[nodiscard]] const std::vector<LevelTime>& times() const { return times_; }
+
+ private:
+  std::uint32_t mesh_;
+  std::chrono::steady_clock::time_point last_;
+  std::vector<LevelTime> times_;
 };
 
 }  // namespace meshlode::build

@@ -48,6 +48,7 @@ struct JobResult {
   std::uint64_t dropped = 0;          ///< by --repair, of all kinds
   scene::MeshRepairs repairs;         ///< of all meshes
   std::vector<build::StageTime> stages;
+  std::vector<build::LevelTime> levels;
   std::vector<scene::LeftOut> left_out;     ///< by the importer
   std::vector<scene::LeftOut> planned_out;  ///< by the plan
   std::vector<scene::LeftOut> losses;       ///< those of them that the scene's materials can show
@@ -205,6 +206,7 @@ Result<std::vector<std::uint8_t>> import_and_build(const Job& job, const JobOpti
   auto bytes = build::build_lode(std::move(*scene), options.pipeline, progress.callback(), report);
   result.memory_estimate = report.memory_estimate;
   result.stages.insert(result.stages.end(), report.stages.begin(), report.stages.end());
+  result.levels = std::move(report.levels);
   for (const build::PlanDecision& decision : report.decisions) {
     if (decision.kept) continue;
     result.planned_out.push_back({decision.what, decision.reason});
@@ -290,6 +292,29 @@ void write_left_out(JsonWriter& w, const std::vector<scene::LeftOut>& items) {
   }
 }
 
+void write_times(JsonWriter& w, const JobResult& r) {
+  w.key("stages");
+  w.begin_array();
+  for (const build::StageTime& stage : r.stages) {
+    w.begin_object();
+    w.field("stage", stage.stage);
+    w.field("seconds", stage.seconds);
+    w.end_object();
+  }
+  w.end_array();
+  w.key("levels");
+  w.begin_array();
+  for (const build::LevelTime& level : r.levels) {
+    w.begin_object();
+    w.field("mesh", level.mesh);
+    w.field("level", level.level);
+    w.field("triangles", level.triangles);
+    w.field("seconds", level.seconds);
+    w.end_object();
+  }
+  w.end_array();
+}
+
 /// docs/schemas/report.schema.json. Times and paths live here and never in an asset.
 std::string report_json(const std::vector<JobResult>& results, std::uint32_t jobs, int exit_code) {
   JsonWriter w;
@@ -327,15 +352,7 @@ std::string report_json(const std::vector<JobResult>& results, std::uint32_t job
     } else {
       w.null();
     }
-    w.key("stages");
-    w.begin_array();
-    for (const build::StageTime& stage : r.stages) {
-      w.begin_object();
-      w.field("stage", stage.stage);
-      w.field("seconds", stage.seconds);
-      w.end_object();
-    }
-    w.end_array();
+    write_times(w, r);
     w.key("repaired");
     w.begin_object();
     for (const auto& [kind, count] : list_repairs(r)) w.field(kind, count);
