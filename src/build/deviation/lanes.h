@@ -21,7 +21,7 @@ using LaneMask = std::int32_t __attribute__((vector_size(16)));
   return value;
 }
 
-/// Lane by lane: a where the mask is set, else b. (Vector ?: of a vector_size type is not in every Clang.)
+/// Lane by lane: a where the mask is set, else b.
 [[nodiscard]] inline Lanes choose(LaneMask mask, Lanes a, Lanes b) {
   LaneMask bits_a, bits_b;
   std::memcpy(&bits_a, &a, sizeof(a));
