@@ -27,7 +27,6 @@
 namespace {
 
 using namespace meshlode;
-using bench::thread_seconds;
 
 double median(std::vector<double> values) {
   std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());

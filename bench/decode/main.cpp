@@ -21,7 +21,6 @@
 namespace {
 
 using namespace meshlode;
-using bench::thread_seconds;
 
 [[noreturn]] void fail(const std::string& where, const std::string& detail) {
   std::fprintf(stderr, "bench_decode: %s: %s\n", where.c_str(), detail.c_str());

@@ -39,6 +39,7 @@ constexpr std::optional<Enum> value_in(const std::array<EnumName<Enum>, N>& name
 template <class Enum, std::size_t N>
 std::vector<std::string> all_names(const std::array<EnumName<Enum>, N>& names) {
   std::vector<std::string> out;
+  out.reserve(N);
   for (const EnumName<Enum>& entry : names) out.emplace_back(entry.name);
   return out;
 }

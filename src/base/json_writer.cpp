@@ -74,7 +74,7 @@ void JsonWriter::separate() {
   if (!is_first_) out_ += ',';
   if (depth_ > 0) {
     out_ += '\n';
-    out_.append(static_cast<std::size_t>(2 * depth_), ' ');
+    out_.append(2 * static_cast<std::size_t>(depth_), ' ');
   }
   is_first_ = false;
 }
@@ -90,7 +90,7 @@ void JsonWriter::close(char bracket) {
   --depth_;
   if (!is_first_) {
     out_ += '\n';
-    out_.append(static_cast<std::size_t>(2 * depth_), ' ');
+    out_.append(2 * static_cast<std::size_t>(depth_), ' ');
   }
   out_ += bracket;
   is_first_ = false;

@@ -18,7 +18,6 @@ namespace meshlode {
 namespace {
 
 using test::Arrays;
-using test::build_one;
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 

@@ -22,7 +22,6 @@ namespace meshlode {
 namespace {
 
 using test::Arrays;
-using test::build_one;
 
 const std::vector<std::uint8_t>& sphere_bytes(format::Codec codec) {
   static std::map<format::Codec, std::vector<std::uint8_t>> made;

@@ -20,7 +20,6 @@ namespace meshlode {
 namespace {
 
 using test::Arrays;
-using test::build_one;
 
 const std::vector<std::uint8_t>& sphere_bytes(format::Codec codec = format::Codec::kNone) {
   static std::map<format::Codec, std::vector<std::uint8_t>> made;

@@ -230,7 +230,7 @@ TEST(HardNumbers, AChangedNeedleIsFoundHoweverManyShareItsCell) {
 
     scene::Primitive lost = shape;
     const auto triangle = random.scaled_below(static_cast<std::uint32_t>(shape.indices.size() / 3));
-    const auto at = lost.indices.begin() + static_cast<std::ptrdiff_t>(3 * triangle);
+    const auto at = lost.indices.begin() + 3 * static_cast<std::ptrdiff_t>(triangle);
     const bool is_degenerate = at[1] == at[2];
     lost.indices.erase(at, at + 3);
     EXPECT_TRUE(rules_broken(*asset, alone(lost)).contains(is_degenerate ? "V102" : "V101")) << "triangle " << triangle;

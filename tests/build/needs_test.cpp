@@ -145,7 +145,8 @@ scene::Scene loose(std::uint32_t count) {
   primitive.positions.clear();
   primitive.indices.clear();
   for (std::uint32_t i = 0; i < 3 * count; ++i) {
-    const double t = i / 3;
+    const std::uint32_t triangle = i / 3;
+    const double t = triangle;
     primitive.positions.emplace_back(std::sin(t) + 0.05 * std::sin(7.0 * i),
                                      std::cos(1.7 * t) + 0.05 * std::cos(5.0 * i),
                                      std::sin(0.3 * t) + 0.05 * std::sin(3.0 * i));

@@ -323,7 +323,7 @@ bool parse(int argc, char** argv, Arguments& arguments) {
     else if (word == "--rule")
       arguments.rule = value;
     else if (!is_whole)
-      return false;
+      return false;  // NOLINT(bugprone-branch-clone): what follows needs a number
     else if (word == "--jobs")
       arguments.jobs = whole;
     else if (word == "--max-triangles")

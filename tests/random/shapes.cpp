@@ -11,9 +11,6 @@ namespace meshlode::test {
 
 namespace {
 
-using scene::cos_turns;
-using scene::sin_turns;
-
 /// Cells of a grid; wrapped sides have as many points as cells.
 struct Cells {
   std::uint32_t columns = 1, rows = 1;
@@ -224,8 +221,8 @@ Shape make_blocks(Dice& dice, std::uint32_t triangles) {
   for (auto& cell : solid) cell = dice.chance(fill) ? 1 : 0;
   const auto is_solid = [&](int x, int y, int z) {
     const int n = static_cast<int>(side);
-    return x >= 0 && y >= 0 && z >= 0 && x < n && y < n && z < n &&
-           solid[static_cast<std::size_t>((z * n + y) * n + x)] != 0;
+    const int index = (z * n + y) * n + x;
+    return x >= 0 && y >= 0 && z >= 0 && x < n && y < n && z < n && solid[static_cast<std::size_t>(index)] != 0;
   };
   std::map<std::array<int, 3>, std::uint32_t> corners;
   const double scale = 1.0 / side;

@@ -23,6 +23,7 @@ class Buffer {
     static_assert(std::endian::native == std::endian::little);
     const std::size_t at = bytes.size();
     bytes.resize(at + sizeof value);
+    // NOLINTNEXTLINE(bugprone-undefined-memory-manipulation): GLM's vectors are plain numbers.
     std::memcpy(bytes.data() + at, &value, sizeof value);
   }
   void align() {

@@ -2,6 +2,7 @@
 #include "build/dag/build_dag.h"
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <utility>
 
@@ -49,7 +50,7 @@ std::uint32_t target_triangles(std::uint32_t source, double share, bool is_whole
   constexpr std::uint32_t kFewest = 7, kMost = 12;  // clusters; below and above, a level more would gain little
   const std::uint32_t before = (source + caps.target_triangles / 2) / caps.target_triangles;
   if (is_whole && before >= kFewest && before <= kMost) return (2 * before + 1) / 3 * caps.target_triangles;
-  const auto clusters = static_cast<std::uint32_t>(share * source / caps.target_triangles + 0.5);
+  const auto clusters = static_cast<std::uint32_t>(std::floor(share * source / caps.target_triangles + 0.5));
   const std::uint32_t target = std::max(1U, clusters) * caps.target_triangles;
   // One cluster at the end of it all may be small; but never ask for much more than the share.
   return std::min(target, std::max(1U, static_cast<std::uint32_t>(1.1 * share * source)));

@@ -20,6 +20,7 @@ namespace {
 
 using Packed = std::array<double, 4>;  // x y z radius
 
+// NOLINTBEGIN(readability-identifier-naming): CGAL asks for these names.
 struct PackedTraits {
   using FT = double;
   using Sphere = Packed;
@@ -30,6 +31,7 @@ struct PackedTraits {
   static const double& radius(const Sphere& s) { return s[3]; }
   static const double* center_cartesian_begin(const Sphere& s) { return s.data(); }
 };
+// NOLINTEND(readability-identifier-naming)
 
 double radius_around(const std::vector<Packed>& balls, const Vec3d& center) {
   double radius = 0.0;

@@ -15,7 +15,6 @@ namespace meshlode::build {
 namespace {
 
 using format::ClusterLayout;
-using format::get_bits;
 
 /// One cluster's strips with the gate of every vertex.
 struct StripWalk {

@@ -10,6 +10,7 @@ namespace {
 /// Byte `plane` of every word.
 std::vector<std::uint8_t> plane_of(const std::vector<std::uint32_t>& words, std::uint32_t plane) {
   std::vector<std::uint8_t> bytes;
+  bytes.reserve(words.size());
   for (const std::uint32_t word : words) bytes.push_back(static_cast<std::uint8_t>(word >> 8U * plane & 0xFFU));
   return bytes;
 }

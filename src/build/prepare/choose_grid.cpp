@@ -41,8 +41,8 @@ format::PositionGrid spell_step(double step, bool may_round_up) {
 /// Errors where coordinates would need more than 24 bits.
 Result<format::PositionGrid> checked_grid(const format::PositionGrid& grid, double largest_half_extent,
                                           const char* what, double value) {
-  if (largest_half_extent / grid.step() > format::kMaxGridCoordinate / grid.mantissa || grid.log2 < kSmallestLog2 ||
-      grid.log2 > kLargestLog2) {
+  const auto most_steps = format::kMaxGridCoordinate / grid.mantissa;
+  if (largest_half_extent / grid.step() > most_steps || grid.log2 < kSmallestLog2 || grid.log2 > kLargestLog2) {
     char text[160];
     std::snprintf(text, sizeof text, "a %s of %g needs more than 24 bits for an extent of %g", what, value,
                   2.0 * largest_half_extent);

@@ -37,8 +37,9 @@ struct Edge {
 /// Whether the triangle is there at all: asked last, because it costs most.
 bool is_there(const ScreenSoup& soup, const VisibilityBuffer& buffer, std::size_t pixel, TriangleKey key) {
   if (key.mask == TriangleKey::kOpaque) return true;
-  return passes_alpha(soup.masked[key.mask], static_cast<double>(pixel % buffer.width) + 0.5 - 0.5 * buffer.width,
-                      static_cast<double>(pixel / buffer.width) + 0.5 - 0.5 * buffer.height);
+  const std::size_t x = pixel % buffer.width, y = pixel / buffer.width;
+  return passes_alpha(soup.masked[key.mask], static_cast<double>(x) + 0.5 - 0.5 * buffer.width,
+                      static_cast<double>(y) + 0.5 - 0.5 * buffer.height);
 }
 
 void put_pixel(const ScreenSoup& soup, VisibilityBuffer& buffer, std::size_t pixel, std::uint32_t depth,

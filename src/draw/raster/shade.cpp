@@ -107,8 +107,8 @@ void shade_item(const ShadeContext& context, const CutPages& pages, const run::C
   for (const std::uint32_t pixel : pixels) {
     const std::uint32_t triangle_index = context.visibility.triangle[pixel];
     const auto& triangle = cluster.triangles[triangle_index];
-    const double px = pixel % image.width + 0.5 - 0.5 * image.width,
-                 py = pixel / image.width + 0.5 - 0.5 * image.height;
+    const std::uint32_t x = pixel % image.width, y = pixel / image.width;
+    const double px = x + 0.5 - 0.5 * image.width, py = y + 0.5 - 0.5 * image.height;
     const Vec3d to_viewer = direction_to_viewer(context.projection, px, py);
     const Vec3d face = to_world.apply(geometric_normal(cluster, triangle));
     const bool is_back = glm::dot(face, to_viewer) < 0.0;

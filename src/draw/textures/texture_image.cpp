@@ -51,9 +51,9 @@ std::uint32_t packed_texel(const Texel& linear, bool is_srgb) {
   std::uint32_t out = 0;
   for (std::size_t k = 0; k < 4; ++k) {
     const double c = std::clamp(static_cast<double>(linear[k]), 0.0, 1.0);
-    const auto step = static_cast<std::size_t>(c * SrgbTables::kSteps + 0.5);
+    const auto step = static_cast<std::size_t>(std::floor(c * SrgbTables::kSteps + 0.5));
     const std::uint32_t byte =
-        is_srgb && k < 3 ? srgb_tables().byte[step] : static_cast<std::uint32_t>(c * 255.0 + 0.5);
+        is_srgb && k < 3 ? srgb_tables().byte[step] : static_cast<std::uint32_t>(std::floor(c * 255.0 + 0.5));
     out |= byte << 8 * k;
   }
   return out;

@@ -71,6 +71,9 @@ class PictureJudge {
     const std::int32_t first = band * kBandRows, last = std::min(first + kBandRows, height) - 1;
     std::vector<std::vector<Candidate>> of_pixel(static_cast<std::size_t>(width) *
                                                  static_cast<std::size_t>(last - first + 1));
+    const auto index_of = [&](std::int32_t x, std::int32_t y) {
+      return static_cast<std::size_t>(y - first) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+    };
     for (const std::uint32_t index : triangles) {
       const TriangleFreedom& freedom = shown_[index].freedom;
       const std::int32_t low = std::max(first, freedom.rows().first), high = std::min(last, freedom.rows().last);
@@ -78,13 +81,13 @@ class PictureJudge {
         for (std::int32_t x = freedom.columns().first; x <= freedom.columns().last; ++x) {
           const auto sample = freedom.at(x, y);
           if (!sample || !passes_alpha_at(shown_[index], x, y)) continue;
-          of_pixel[static_cast<std::size_t>((y - first) * width + x)].push_back({index, *sample});
+          of_pixel[index_of(x, y)].push_back({index, *sample});
         }
       }
     }
     for (std::int32_t y = first; y <= last; ++y) {
       for (std::int32_t x = 0; x < width; ++x) {
-        judge_pixel(x, y, of_pixel[static_cast<std::size_t>((y - first) * width + x)], out);
+        judge_pixel(x, y, of_pixel[index_of(x, y)], out);
       }
     }
   }

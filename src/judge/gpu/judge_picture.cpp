@@ -58,8 +58,8 @@ Result<std::vector<PixelPoint>> unproject(const run::Asset& asset, std::span<con
     run::decode_attributes(mesh, cluster, attributes);
     for (const std::uint32_t pixel : pixels_of[item]) {
       const auto& t = cluster.triangles[drawn.triangle[pixel]];
-      const double px = pixel % drawn.width + 0.5 - 0.5 * drawn.width;
-      const double py = pixel / drawn.width + 0.5 - 0.5 * drawn.height;
+      const std::uint32_t column = pixel % drawn.width, row = pixel / drawn.width;
+      const double px = column + 0.5 - 0.5 * drawn.width, py = row + 0.5 - 0.5 * drawn.height;
       const Vec3d weights =
           corner_weights(to_clip.project(cluster.position(t[0])), to_clip.project(cluster.position(t[1])),
                          to_clip.project(cluster.position(t[2])), px, py);
@@ -87,7 +87,8 @@ std::vector<PixelPoint> unproject_source(const run::Asset& asset, std::span<cons
     const Surface& surface = source[instance.mesh].surface;
     const auto& t = surface.triangles[drawn.triangle[i]];
     const Vec3d corners[3] = {surface.positions[t[0]], surface.positions[t[1]], surface.positions[t[2]]};
-    const auto x = static_cast<double>(i % drawn.width), y = static_cast<double>(i / drawn.width);
+    const std::size_t column = i % drawn.width, row = i / drawn.width;
+    const auto x = static_cast<double>(column), y = static_cast<double>(row);
     const Vec3d weights = corner_weights(
         project_source(projection, instance, corners[0]), project_source(projection, instance, corners[1]),
         project_source(projection, instance, corners[2]), x + 0.5 - 0.5 * drawn.width, y + 0.5 - 0.5 * drawn.height);

@@ -16,10 +16,6 @@ namespace {
 
 using format::ClusterRecord;
 using format::GroupRecord;
-using format::kGroupStuck;
-using format::kGroupTerminal;
-using format::kInfiniteError;
-using format::kNone;
 
 constexpr double kLargestError = 0x1p120;  // of what is finite: a larger deviation cannot have a larger one
 

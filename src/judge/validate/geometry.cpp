@@ -36,7 +36,7 @@ bool is_zero(const Int64Vec3& v) {
 /// Whether a cone holds a normal: every unit view direction v with v·axis >= cutoff has v·n >= 0. With axis A and
 /// cutoff C in 1/127 that is, for C < 127 and |A| >= C: A·n > 0 and (A·n)² >= (|A|² - C²)·|n|². Integers below 2^127.
 bool cone_holds(const format::ClusterRecord& cluster, const Int64Vec3& n) {
-  const std::int64_t cutoff = cluster.cone_cutoff;
+  const std::int64_t cutoff = cluster.cone_cutoff;  // NOLINT(bugprone-signed-char-misuse): a number, no character
   if (cutoff == 127) return true;
   const std::int64_t a[3] = {cluster.cone_axis[0], cluster.cone_axis[1], cluster.cone_axis[2]};
   const std::int64_t axis2 = a[0] * a[0] + a[1] * a[1] + a[2] * a[2];

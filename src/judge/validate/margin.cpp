@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "judge/validate/margin.h"
 
+#include <array>
+#include <bit>
 #include <cmath>
-#include <cstring>
+#include <cstdint>
 
 #include <meshlode/format.h>
 
@@ -39,7 +41,8 @@ bool has_sphere_margin(const ExactBall& coarser, const ExactBall& finer) {
 }
 
 bool are_same_bits(const ExactBall& a, const ExactBall& b) {
-  return std::memcmp(&a, &b, sizeof a) == 0;
+  using Bits = std::array<std::uint32_t, 4>;
+  return std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b);
 }
 
 }  // namespace meshlode::judge

@@ -14,8 +14,6 @@ namespace meshlode::judge {
 
 namespace {
 
-using format::kNone;
-
 class TableChecker {
  public:
   TableChecker(const FileTables& file, RuleLog& log) : file_(file), log_(log) {}

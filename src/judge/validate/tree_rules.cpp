@@ -13,7 +13,6 @@ namespace meshlode::judge {
 
 namespace {
 
-using format::kInfiniteError;
 using format::NodeRecord;
 
 template <class Record>

@@ -13,8 +13,6 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "pages are read as they lie in memory");
 
-using format::get_field;
-
 class PageChecker {
  public:
   PageChecker(const Asset& asset, PageId page, std::span<const std::uint32_t> words)

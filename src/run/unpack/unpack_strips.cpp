@@ -44,8 +44,8 @@ constexpr SlotMasks<L> make_slot_masks() {
 template <class L>
 constexpr SlotMasks<L> kSlotMasks = make_slot_masks<L>();
 
-/// `Q`: vectors that a vertex takes.
-template <class L, std::uint32_t Q>
+/// `kQuads`: vectors that a vertex takes.
+template <class L, std::uint32_t kQuads>
 class StripUnpacker {
  public:
   StripUnpacker(const format::MeshRecord& mesh, const PagePlan& plan, const StripValues<L>& values,
@@ -82,11 +82,11 @@ class StripUnpacker {
   using Vector = typename L::Vector;
   using SignedVector = typename L::SignedVector;
   struct Vectors {
-    Vector of[Q];
+    Vector of[kQuads];
   };
   /// The fields of a vertex by slot.
   union Vertex {
-    Word lane[Q * L::kLanes];
+    Word lane[kQuads * L::kLanes];
     Vectors vectors;
   };
   static constexpr std::uint32_t kNormalQuad = kNormalSlot / L::kLanes;
@@ -168,8 +168,8 @@ class StripUnpacker {
     const ClusterLayout& layout = cluster.layout;
     Vertex* const raw = raw_.data() + plan_.first_vertex[c];
     const Vector normals = normals_.vector;
-    std::array<const Quad<L>*, Q> errors;
-    for (std::uint32_t q = 0; q < Q; ++q) errors[q] = values_.errors[q].data() + next_error_;
+    std::array<const Quad<L>*, kQuads> errors;
+    for (std::uint32_t q = 0; q < kQuads; ++q) errors[q] = values_.errors[q].data() + next_error_;
     std::uint32_t next = 0;   // vertices named so far
     std::uint32_t slot = 0;   // slots so far: the others were references
     std::uint32_t error = 0;  // new vertices so far
@@ -182,7 +182,7 @@ class StripUnpacker {
       const std::uint32_t vertex = reference ^ ((reference ^ next) & (0U - is_fresh));
       const Vector is_new = kSlotMasks<L>.is_new[byte].vector;
       Vectors out;
-      for (std::uint32_t q = 0; q < Q; ++q) {
+      for (std::uint32_t q = 0; q < kQuads; ++q) {
         // Only n is late: what it is not needed for comes first.
         Vector known = a.of[q] - c3.of[q];
         Vector named = raw[vertex].vectors.of[q] & ~is_new;
@@ -217,7 +217,7 @@ class StripUnpacker {
         // same way a stays; where the turn changes it is left, and the one that came before the newest is kept.
         const Vector change = kSlotMasks<L>.change[byte].vector;
         Vectors left;
-        for (std::uint32_t q = 0; q < Q; ++q) {
+        for (std::uint32_t q = 0; q < kQuads; ++q) {
           const Vector exchange = (a.of[q] ^ b.of[q]) & change;
           a.of[q] ^= exchange;
           left.of[q] = b.of[q] ^ exchange;
@@ -238,7 +238,7 @@ class StripUnpacker {
     const Vertex* const raw = raw_.data() + plan_.first_vertex[c];
     ByteSink sink(stream_.data());
     put_positions(sink, layout, raw);
-    if constexpr (Q * L::kLanes > kNormalSlot) put_attributes(sink, cluster, raw);
+    if constexpr (kQuads * L::kLanes > kNormalSlot) put_attributes(sink, cluster, raw);
     put_topology(sink, layout);
     sink.flush();
     std::memcpy(page_.data() + layout.stream_word, stream_.data(),
@@ -344,19 +344,19 @@ class StripUnpacker {
 };
 
 #if MESHLODE_HAS_BMI2_PATH
-template <class L, std::uint32_t Q>
-MESHLODE_FOR_BMI2 bool run_with_bmi2(StripUnpacker<L, Q>& unpacker) {
+template <class L, std::uint32_t kQuads>
+MESHLODE_FOR_BMI2 bool run_with_bmi2(StripUnpacker<L, kQuads>& unpacker) {
   return unpacker.run();
 }
 #endif
 
-template <class L, std::uint32_t Q = 1>
+template <class L, std::uint32_t kQuads = 1>
 bool unpack_page_strips(const format::MeshRecord& mesh, const PagePlan& plan, const StripValues<L>& values,
                         std::span<std::uint32_t> page) {
-  if constexpr (Q < kMaxQuads<L>) {
-    if (quad_count<L>(mesh) > Q) return unpack_page_strips<L, Q + 1>(mesh, plan, values, page);
+  if constexpr (kQuads < kMaxQuads<L>) {
+    if (quad_count<L>(mesh) > kQuads) return unpack_page_strips<L, kQuads + 1>(mesh, plan, values, page);
   }
-  const auto unpacker = std::make_unique<StripUnpacker<L, Q>>(mesh, plan, values, page);
+  const auto unpacker = std::make_unique<StripUnpacker<L, kQuads>>(mesh, plan, values, page);
 #if MESHLODE_HAS_BMI2_PATH
   if (has_bmi2()) return run_with_bmi2(*unpacker);
 #endif

@@ -163,6 +163,7 @@ bool orient(Faces& faces, std::uint32_t point_count, MeshRepairs& repairs) {
 /// -1, 0 or 1, of the bits: what differs in no bit is one vertex.
 int compare_attributes(const Primitive& primitive, std::uint32_t a, std::uint32_t b) {
   const auto compare = [&](const auto& values) {
+    // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison): the bits are what is asked about.
     return values.empty() ? 0 : std::memcmp(&values[a], &values[b], sizeof(values[a]));
   };
   int order = compare(primitive.normals);

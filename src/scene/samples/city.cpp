@@ -66,19 +66,19 @@ GlbMesh make_tower() {
 
 /// A closed house with a gable: walls of the first material, roof of the second.
 GlbMesh make_house() {
-  constexpr std::uint32_t n = 6;
+  constexpr std::uint32_t kSteps = 6;
   TwoMaterials parts;
   const Vec3d low[4] = {{-3.0, 0.0, 4.0}, {3.0, 0.0, 4.0}, {3.0, 0.0, -4.0}, {-3.0, 0.0, -4.0}};
   const Vec3d rise(0.0, 3.0, 0.0), front(0.0, 5.5, 4.0), back(0.0, 5.5, -4.0);
   for (int side = 0; side < 4; ++side) {
     const Vec3d a = low[side], b = low[(side + 1) % 4];
-    parts.a.quad(a, b, b + rise, a + rise, n, n);
+    parts.a.quad(a, b, b + rise, a + rise, kSteps, kSteps);
   }
-  parts.a.triangle(low[0] + rise, low[1] + rise, front, n);
-  parts.a.triangle(low[2] + rise, low[3] + rise, back, n);
-  parts.a.quad(low[3], low[2], low[1], low[0], n, n);
-  parts.b.quad(low[1] + rise, low[2] + rise, back, front, n, n);
-  parts.b.quad(low[3] + rise, low[0] + rise, front, back, n, n);
+  parts.a.triangle(low[0] + rise, low[1] + rise, front, kSteps);
+  parts.a.triangle(low[2] + rise, low[3] + rise, back, kSteps);
+  parts.a.quad(low[3], low[2], low[1], low[0], kSteps, kSteps);
+  parts.b.quad(low[1] + rise, low[2] + rise, back, front, kSteps, kSteps);
+  parts.b.quad(low[3] + rise, low[0] + rise, front, back, kSteps, kSteps);
   return parts.finish("house", kPlaster, kTiles);
 }
 

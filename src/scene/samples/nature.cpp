@@ -63,7 +63,8 @@ Primitive make_rock(std::uint32_t n, std::uint64_t seed) {
         const Vec3d direction = unit(Vec3d(cube_lattice_point(face, i, j, n)));
         out.positions.push_back(direction * rock_radius(direction, seed));
         // Six charts in a 3 × 2 atlas with a small margin, so that charts do not touch.
-        const double u = (face % 3 + 0.02 + 0.96 * i / n) / 3.0, v = (face / 3 + 0.02 + 0.96 * j / n) / 2.0;
+        const auto column = face % 3, row = face / 3;
+        const double u = (column + 0.02 + 0.96 * i / n) / 3.0, v = (row + 0.02 + 0.96 * j / n) / 2.0;
         out.uvs[0].emplace_back(static_cast<float>(u), static_cast<float>(v));
       }
     }

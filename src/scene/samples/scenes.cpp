@@ -80,6 +80,7 @@ constexpr std::array<NamedScene, 5> kScenes{{
 
 std::vector<std::string> sample_names() {
   std::vector<std::string> names;
+  names.reserve(kScenes.size());
   for (const NamedScene& scene : kScenes) names.emplace_back(scene.name);
   return names;
 }

@@ -18,9 +18,7 @@
 namespace meshlode::build {
 namespace {
 
-using testing_support::add_triangle;
 using testing_support::Chain;
-using testing_support::point;
 
 struct Built {
   PreparedMesh mesh;

@@ -12,9 +12,6 @@
 namespace meshlode::build {
 namespace {
 
-using test::as_group;
-using test::as_surface;
-using test::dense_truth;
 using test::Random;
 
 std::vector<TriangleBound> no_bounds(const judge::Surface& surface) {

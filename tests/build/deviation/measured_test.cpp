@@ -13,10 +13,6 @@
 namespace meshlode::build {
 namespace {
 
-using test::as_group;
-using test::as_surface;
-using test::dense_truth;
-using test::measure_one_step;
 using test::Random;
 
 TEST(Measured, AShiftedPlaneIsOffByItsShift) {

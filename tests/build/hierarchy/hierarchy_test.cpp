@@ -258,6 +258,7 @@ TEST(Hierarchy, BvhHasEachGroupInOneLeafAndNestsItsChildren) {
         ++leaves[node.first];
         const run::StoredBound leaf = bound_of_node(n);
         const run::StoredBound group = bound(h.group_spheres[node.first], h.group_errors[node.first]);
+        // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison): the same bits are promised.
         EXPECT_EQ(std::memcmp(&leaf, &group, sizeof(leaf)), 0);
         continue;
       }

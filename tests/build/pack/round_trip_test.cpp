@@ -13,7 +13,6 @@ namespace meshlode::build {
 namespace {
 
 using format::Codec;
-using test::make_random_page;
 using test::RandomPage;
 using test::RandomPageOptions;
 

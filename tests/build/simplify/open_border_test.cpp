@@ -20,7 +20,6 @@ namespace {
 
 using test::IntegerMesh;
 using test::Random;
-using testing_support::add_triangle;
 using testing_support::Chain;
 using testing_support::Point;
 using testing_support::point;

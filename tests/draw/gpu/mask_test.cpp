@@ -14,8 +14,6 @@
 namespace meshlode::draw::test {
 namespace {
 
-using meshlode::test::built;
-using meshlode::test::mask_scene;
 using meshlode::test::MaskSceneOptions;
 using Masks = GpuTest;
 

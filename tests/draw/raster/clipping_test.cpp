@@ -119,7 +119,10 @@ TEST(RasterClip, ClippedGridsCoverEveryPixelExactlyOnce) {
     std::vector<std::array<ClipVertex, 3>> triangles;
     for (int j = 0; j < kCells; ++j) {
       for (int i = 0; i < kCells; ++i) {
-        const auto at = [&](int x, int y) { return points[static_cast<std::size_t>((j + y) * (kCells + 1) + i + x)]; };
+        const auto at = [&](int x, int y) {
+          const int index = (j + y) * (kCells + 1) + i + x;
+          return points[static_cast<std::size_t>(index)];
+        };
         triangles.push_back({at(0, 0), at(1, 0), at(1, 1)});
         triangles.push_back({at(0, 0), at(1, 1), at(0, 1)});
       }

@@ -86,7 +86,7 @@ TEST(Raster, AreaInPixelsIsTheClosedForm) {
   // A big triangle at an odd angle: pixels = area up to half the border.
   test::Random random(5);
   for (int i = 0; i < 200; ++i) {
-    constexpr ImageSize size{600, 600};
+    constexpr ImageSize kLarge{600, 600};
     const ScreenVertex a{random.between(0, 153600), random.between(0, 153600), 1},
         b{random.between(0, 153600), random.between(0, 153600), 1},
         c{random.between(0, 153600), random.between(0, 153600), 1};
@@ -96,7 +96,7 @@ TEST(Raster, AreaInPixelsIsTheClosedForm) {
     };
     const double border = length(a, b) + length(b, c) + length(c, a);
     const auto pixels =
-        static_cast<double>(test::count_drawn(test::draw(one_triangle(a, b, c, Culling::kNone, size), size)));
+        static_cast<double>(test::count_drawn(test::draw(one_triangle(a, b, c, Culling::kNone, kLarge), kLarge)));
     EXPECT_NEAR(pixels, area, 0.75 * border + 2.0);
   }
 }
@@ -165,7 +165,10 @@ TEST(Raster, GridsOfTrianglesCoverThePictureExactlyOnce) {
     std::uint32_t id = 0;
     for (int j = 0; j < kCells; ++j) {
       for (int i = 0; i < kCells; ++i) {
-        const auto at = [&](int x, int y) { return points[static_cast<std::size_t>((j + y) * (kCells + 1) + i + x)]; };
+        const auto at = [&](int x, int y) {
+          const int index = (j + y) * (kCells + 1) + i + x;
+          return points[static_cast<std::size_t>(index)];
+        };
         const bool is_flipped = random.next() % 2 == 0;
         const ScreenVertex a = at(0, 0), b = at(1, 0), c = at(1, 1), d = at(0, 1);
         if (is_flipped) {
@@ -272,9 +275,9 @@ TEST(Raster, OffScreenTrianglesAreLeftOut) {
 }
 
 TEST(Raster, LargestCoordinatesDoNotOverflow) {
-  constexpr std::int32_t far = 1 << 28;
-  const ScreenSoup soup = one_triangle({-far, -far, 7}, {far, -far, 7}, {-far, far, 7});
-  const ScreenSoup rest = one_triangle({far, -far, 7}, {far, far, 7}, {-far, far, 7});
+  constexpr std::int32_t kFar = 1 << 28;
+  const ScreenSoup soup = one_triangle({-kFar, -kFar, 7}, {kFar, -kFar, 7}, {-kFar, kFar, 7});
+  const ScreenSoup rest = one_triangle({kFar, -kFar, 7}, {kFar, kFar, 7}, {-kFar, kFar, 7});
   const std::size_t drawn = test::count_drawn(test::draw(soup, kSize));
   EXPECT_EQ(drawn + test::count_drawn(test::draw(rest, kSize)), 64u * 64u);
 }

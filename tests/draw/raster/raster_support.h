@@ -17,7 +17,8 @@ class Random : public SplitMix64 {
   double range(double low, double high) { return SplitMix64::between(low, high); }
   /// low … high, both included.
   std::int32_t between(std::int32_t low, std::int32_t high) {
-    return low + static_cast<std::int32_t>(below(static_cast<std::uint64_t>(high - low + 1)));
+    const std::int32_t count = high - low + 1;
+    return low + static_cast<std::int32_t>(below(static_cast<std::uint64_t>(count)));
   }
 };
 

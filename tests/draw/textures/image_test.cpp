@@ -12,8 +12,6 @@
 namespace meshlode::draw {
 namespace {
 
-using test::make_jpeg;
-using test::make_png;
 using test::PngKind;
 
 constexpr std::uint32_t kWidth = 37, kHeight = 11;  // rows of 1, 2 and 4 bits do not end with their byte

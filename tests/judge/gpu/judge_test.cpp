@@ -81,9 +81,11 @@ TEST_F(Judge, InstancesGetTheBitsOfTheCpu) {
       const format::MeshRecord& mesh = asset.meshes()[instance.mesh];
       const run::MetricView view =
           run::make_metric_view(named.camera, 0.7, instance, mesh, run::mesh_reach(run::tables_of(asset), mesh));
+      // NOLINTBEGIN(bugprone-suspicious-memory-comparison): the same bits are promised.
       EXPECT_EQ(std::memcmp(&view, &v.view, sizeof view), 0) << "view of instance " << v.instance;
       const draw::GridToClip clip = draw::make_grid_to_clip(*projection, mesh, instance);
       EXPECT_EQ(std::memcmp(&clip, v.clip, sizeof v.clip), 0) << "rows of instance " << v.instance;
+      // NOLINTEND(bugprone-suspicious-memory-comparison)
     }
   }
 }

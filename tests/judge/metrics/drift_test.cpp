@@ -30,7 +30,8 @@ ShadedSurface make_square(const SquareOptions& o) {
       const auto base = static_cast<std::uint32_t>(s.surface.positions.size());
       const double add = (x + 0.5) / o.n < o.seam ? o.left : o.right;
       for (std::uint32_t k = 0; k < 4; ++k) {
-        const double px = static_cast<double>(x + k % 2) / o.n, py = static_cast<double>(y + k / 2) / o.n;
+        const std::uint32_t column = x + k % 2, row = y + k / 2;
+        const double px = static_cast<double>(column) / o.n, py = static_cast<double>(row) / o.n;
         s.surface.positions.push_back({px, py, 0.0});
         s.normals.push_back(Vec3f(Vec3d(std::sin(o.tilt), 0.0, std::cos(o.tilt))));
         s.uvs[0].push_back(Vec2f(Vec2d(px + add, py)));

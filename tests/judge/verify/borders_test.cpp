@@ -13,7 +13,6 @@
 namespace meshlode::judge {
 namespace {
 
-using test::asset_of;
 using test::Corner;
 using test::Patch;
 using test::Triangle;

@@ -223,7 +223,7 @@ TEST(Decode, EqualVerticesHaveEqualIntegersInEveryCluster) {
         std::vector<float> key{static_cast<float>(q.x), static_cast<float>(q.y), static_cast<float>(q.z)};
         key.insert(key.end(), sample.dag.vertex_attributes.begin() + static_cast<std::ptrdiff_t>(vertex * stride),
                    sample.dag.vertex_attributes.begin() + static_cast<std::ptrdiff_t>((vertex + 1) * stride));
-        const auto first = clusters[i].channels.begin() + static_cast<std::ptrdiff_t>(v * clusters[i].channel_count);
+        const auto first = clusters[i].channels.begin() + static_cast<std::ptrdiff_t>(v) * clusters[i].channel_count;
         const std::vector<std::int32_t> value(first, first + clusters[i].channel_count);
         const auto [at, is_new] = seen.emplace(key, value);
         if (is_new) continue;

@@ -39,8 +39,8 @@ struct Found {
   std::uint64_t cameras = 0, passing = 0, violations = 0;
 };
 Found search(std::uint64_t seed, std::uint32_t meshes, bool is_grown) {
-  constexpr std::array kinds{TransformKind::kIdentity, TransformKind::kRigid, TransformKind::kMirrored,
-                             TransformKind::kNonUniform, TransformKind::kSheared};
+  constexpr std::array kKinds{TransformKind::kIdentity, TransformKind::kRigid, TransformKind::kMirrored,
+                              TransformKind::kNonUniform, TransformKind::kSheared};
   RandomSource random(seed);
   Found out;
   for (std::uint32_t m = 0; m < meshes; ++m) {
@@ -65,7 +65,7 @@ Found search(std::uint64_t seed, std::uint32_t meshes, bool is_grown) {
     if (!is_grown) far.bound.error = coarsest;
     const double reach = mesh_reach(tables, tables.meshes[0]);
     for (int i = 0; i < 400; ++i) {
-      const TransformKind kind = kinds[random.below(5)];
+      const TransformKind kind = kKinds[random.below(5)];
       format::InstanceRecord instance =
           test::make_random_instance(random, kind, random.chance(0.3) ? 1e3 * reach : reach);
       const double* row = instance.transform;

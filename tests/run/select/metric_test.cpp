@@ -105,6 +105,7 @@ TEST(Metric, DoesNotChangeWhenTheWorldIsScaledByAPowerOfTwo) {
     cb.near_distance = ca.near_distance * s;
     const format::MeshRecord mesh{};
     const MetricView va = make_metric_view(ca, 1.0, a, mesh, 3.0), vb = make_metric_view(cb, 1.0, b, mesh, 3.0);
+    // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison): the same bits are promised.
     EXPECT_EQ(std::memcmp(&va, &vb, sizeof(va)), 0) << i;
   }
 }
@@ -141,8 +142,8 @@ Nested make_tight_pair(RandomSource& random, double size, double offset, double 
 // distance to the finer one is smallest: the worst case for monotonicity.
 std::uint64_t count_violations(std::uint64_t seed, std::uint32_t triples, double margin, std::uint64_t* decided) {
   RandomSource random(seed);
-  constexpr std::array kinds{TransformKind::kIdentity, TransformKind::kRigid, TransformKind::kMirrored,
-                             TransformKind::kNonUniform, TransformKind::kSheared};
+  constexpr std::array kKinds{TransformKind::kIdentity, TransformKind::kRigid, TransformKind::kMirrored,
+                              TransformKind::kNonUniform, TransformKind::kSheared};
   std::uint64_t violations = 0;
   *decided = 0;
   for (std::uint32_t i = 0; i < triples; ++i) {
@@ -152,7 +153,7 @@ std::uint64_t count_violations(std::uint64_t seed, std::uint32_t triples, double
     if (margin >= 1.0) {
       EXPECT_TRUE(is_nested(n.coarser, n.finer));
     }
-    const TransformKind kind = kinds[random.below(5)];  // drawn in order: that of arguments is the compiler's
+    const TransformKind kind = kKinds[random.below(5)];  // drawn in order: that of arguments is the compiler's
     const double away = random.chance(0.3) ? size * 1e6 : size;
     const format::InstanceRecord instance = test::make_random_instance(random, kind, away);
     const double* m = instance.transform;

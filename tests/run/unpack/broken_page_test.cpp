@@ -15,7 +15,6 @@ namespace meshlode::run {
 namespace {
 
 using format::Codec;
-using test::make_random_page;
 using test::RandomPage;
 
 struct Stored {

@@ -54,9 +54,11 @@ struct Functions {
   MESHLODE_INSTANCE_FUNCTIONS(MESHLODE_MEMBER)
   MESHLODE_DEVICE_FUNCTIONS(MESHLODE_MEMBER)
 #undef MESHLODE_MEMBER
+  // NOLINTBEGIN(readability-identifier-naming): the functions' own names, as the macro gives them above.
   PFN_vkCreateDebugUtilsMessengerEXT vkCreateDebugUtilsMessengerEXT = nullptr;
   PFN_vkDestroyDebugUtilsMessengerEXT vkDestroyDebugUtilsMessengerEXT = nullptr;
   PFN_vkCmdDrawMeshTasksIndirectEXT vkCmdDrawMeshTasksIndirectEXT = nullptr;
+  // NOLINTEND(readability-identifier-naming)
 };
 
 constexpr std::uint32_t kPushBytes = 128;
