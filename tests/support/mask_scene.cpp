@@ -51,7 +51,8 @@ scene::Scene mask_scene(const MaskSceneOptions& options) {
   wall.primitives[0].material = MaterialId(0u);
   scene.materials[0].source_index = 0;
   for (std::uint32_t k = 0; k < 9; ++k) {
-    const double x = 2.2 * (k % 3) - 2.2, y = 2.2 * (k / 3) - 2.2, lean = 0.25 * (k % 4);
+    const std::uint32_t column = k % 3, row = k / 3;
+    const double x = 2.2 * column - 2.2, y = 2.2 * row - 2.2, lean = 0.25 * (k % 4);
     scene::Primitive card = make_card({x - 1.0, y - 1.0, lean}, {x + 1.0, y - 1.0, -lean}, {x + 1.0, y + 1.0, lean},
                                       {x - 1.0, y + 1.0, 0.1}, options.cells);
     card.material = MaterialId(1 + k);

@@ -283,7 +283,7 @@ void fill_hierarchy(SampleMesh& sample) {
     node.first = g;
     return node;
   };
-  const auto above = [&](std::vector<format::NodeRecord> children, std::uint32_t first) {
+  const auto above = [&](const std::vector<format::NodeRecord>& children, std::uint32_t first) {
     format::NodeRecord node{};
     Vec3d center(0.0);
     for (const auto& child : children) center += Vec3d(child.center[0], child.center[1], child.center[2]);
