@@ -102,6 +102,17 @@ TEST(TextureUse, AnImageThatAnExtensionNamesIsFound) {
   }
 }
 
+TEST(TextureUse, WholeNumbersWithAPointAreIndicesAsTheyAreForTheImporter) {
+  const char* tables = R"(,"textures":[{"source":1.0}],"images":[{},{"blob":0}])";
+  const auto use = textures_with(base_color(R"({"index":0.0})"), tables);
+  ASSERT_TRUE(use.base_color);
+  EXPECT_EQ(use.base_color->blob, 0U);
+  for (const char* index : {"0.5", "-1.0", "1e300"}) {
+    const std::string info = R"({"index":)" + std::string(index) + "}";
+    EXPECT_FALSE(textures_with(base_color(info), tables).base_color) << index;
+  }
+}
+
 TEST(TextureUse, NonsenseCountsAsNotThere) {
   EXPECT_FALSE(textures_with(base_color(R"({"index":7})"), kTables).base_color);
   EXPECT_FALSE(textures_with(base_color(R"({"index":-1})"), kTables).base_color);
