@@ -4,17 +4,16 @@
 // most x, by the selection error and for the RMS by the quadric's too, and what that very cut does to shading normals
 // and UVs; with --normals the fewest that keep the normals as well. docs/quality.md explains the measures.
 #include <algorithm>
-#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include <tbb/global_control.h>
-
+#include "command_line.h"
 #include "cut_judge.h"
 #include "cut_search.h"
 #include "format/names.h"
@@ -31,81 +30,39 @@ namespace {
 using namespace meshlode;
 using namespace meshlode::bench;
 
-constexpr const char* kUsage =
-    "usage: bench_quality SCENE ASSET [options]\n"
-    "  --cuts N          cuts in the table, thresholds evenly in logarithms (24; 0 for none)\n"
-    "  --from T --to T   their range, shares of the diagonal (1e-4, 2e-2)\n"
-    "  --by selection|quadric   the stored number that the table's cuts go by (selection)\n"
-    "  --max X,...       triangles at equal true maximum (1e-3,2e-3,5e-3; none)\n"
-    "  --rms X,...       triangles at equal true RMS (1e-4,3e-4,1e-3; none)\n"
-    "  --drift all|equal|none   normals and UVs of every cut, of those at equal deviation, of none (equal)\n"
-    "  --normals DEG     cuts at equal maximum must also keep normals within DEG degrees RMS, the worse way\n"
-    "  --reference       OpenMesh's decimater (quadrics, whole mesh) at the same deviations\n"
-    "  --samples N       area-uniform samples each way, all vertices on top (200000)\n"
-    "  --jobs N          threads (one per core)\n"
-    "  --json FILE       write the figures there too\n";
-
 struct Options {
   std::string scene, asset, json, by = name_in(run::kCutErrorNames, run::CutError::kSelection), drift = "equal";
   bool with_reference = false;
-  int cuts = 24, jobs = 0;
+  int cuts = 24;
+  std::size_t jobs = 0;
   std::uint64_t samples = 200000;
   double from = 1e-4, to = 2e-2;
   double normals = 0.0;  ///< degrees; 0: no bound
   std::vector<double> at_max{1e-3, 2e-3, 5e-3}, at_rms{1e-4, 3e-4, 1e-3};
 };
 
-template <class Number>
-bool read_number(const std::string& text, Number& out) {
-  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), out);
-  return error == std::errc{} && stop == text.data() + text.size();
-}
-
-bool read_list(const std::string& text, std::vector<double>& out) {
-  out.clear();
-  if (text == "none") return true;
-  for (std::size_t at = 0; at <= text.size();) {
-    const std::size_t comma = std::min(text.find(',', at), text.size());
-    double x = 0.0;
-    if (!read_number(text.substr(at, comma - at), x) || !(x > 0.0)) return false;
-    out.push_back(x);
-    at = comma + 1;
-  }
-  return true;
-}
-
-bool parse(int argc, char** argv, Options& o) {
-  std::vector<std::string> files;
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
-    if (word.rfind("--", 0) != 0) {
-      files.push_back(word);
-      continue;
-    }
-    if (word == "--reference") {
-      o.with_reference = true;
-      continue;
-    }
-    if (i + 1 >= argc) return false;
-    const std::string value = argv[++i];
-    const bool is_read = word == "--cuts"      ? read_number(value, o.cuts)
-                         : word == "--samples" ? read_number(value, o.samples)
-                         : word == "--from"    ? read_number(value, o.from)
-                         : word == "--to"      ? read_number(value, o.to)
-                         : word == "--normals" ? read_number(value, o.normals)
-                         : word == "--jobs"    ? read_number(value, o.jobs)
-                         : word == "--max"     ? read_list(value, o.at_max)
-                         : word == "--rms"     ? read_list(value, o.at_rms)
-                         : word == "--json"    ? (o.json = value, true)
-                         : word == "--by"      ? (o.by = value, value_in(run::kCutErrorNames, value).has_value())
-                         : word == "--drift" ? (o.drift = value, value == "all" || value == "equal" || value == "none")
-                                             : false;
-    if (!is_read) return false;
-  }
-  if (files.size() != 2 || o.cuts < 0 || !(o.from > 0.0) || !(o.to >= o.from)) return false;
-  o.scene = files[0];
-  o.asset = files[1];
-  return true;
+std::optional<int> read_options(int argc, char** argv, Options& o) {
+  CLI::App app("Uniform cuts of an asset against its source", "bench_quality");
+  app.option_defaults()->always_capture_default();
+  app.add_option("scene", o.scene, "the source")->required();
+  app.add_option("asset", o.asset, "what was built from it")->required();
+  app.add_option("--cuts", o.cuts, "cuts in the table, thresholds evenly in logarithms; 0 for none")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--from", o.from, "least threshold, a share of the diagonal")->check(CLI::PositiveNumber);
+  app.add_option("--to", o.to, "largest threshold, a share of the diagonal")->check(CLI::PositiveNumber);
+  app.add_option("--by", o.by, "the stored number that the table's cuts go by: selection or quadric")
+      ->check(CLI::IsMember({"selection", "quadric"}));
+  bench::add_numbers(app, "--max", o.at_max, "triangles at equal true maximum (1e-3,2e-3,5e-3; none)");
+  bench::add_numbers(app, "--rms", o.at_rms, "triangles at equal true RMS (1e-4,3e-4,1e-3; none)");
+  app.add_option("--drift", o.drift, "normals and UVs of all cuts, of those at equal deviation, of none")
+      ->check(CLI::IsMember({"all", "equal", "none"}));
+  app.add_option("--normals", o.normals,
+                 "cuts at equal maximum must also keep normals within so many degrees RMS, the worse way");
+  app.add_flag("--reference", o.with_reference, "OpenMesh's decimater (quadrics, whole mesh) at the same deviations");
+  app.add_option("--samples", o.samples, bench::kSamplesHelp);
+  app.add_option("--jobs", o.jobs, bench::kJobsHelp);
+  app.add_option("--json", o.json, "write the figures there too");
+  return bench::read_command_line(app, argc, argv);
 }
 
 /// One mesh with everything that its cuts are measured against.
@@ -237,14 +194,12 @@ class MeshBench {
 
 int main(int argc, char** argv) {
   Options options;
-  if (!parse(argc, argv, options)) {
-    std::fputs(kUsage, stderr);
+  if (const std::optional<int> exit_code = read_options(argc, argv, options)) return *exit_code;
+  if (!(options.to >= options.from)) {
+    std::fputs("--to is less than --from\n", stderr);
     return 1;
   }
-  const auto threads = static_cast<std::size_t>(std::max(options.jobs, 0));
-  const std::size_t allowed =
-      threads > 0 ? threads : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, allowed);
+  const bench::ThreadLimit limit(options.jobs);
   const Result<scene::Scene> scene = scene::import_scene(options.scene, {});
   const Result<run::Asset> asset = run::Asset::open(options.asset);
   if (!scene || !asset) {

@@ -3,19 +3,18 @@
 // `verify` does (V206) and prints true over stored, then how many of the whole series are above 1 and 1.05. Errors are
 // the deviations that were found times the margin, so that one series tells what any other margin would give.
 #include <algorithm>
-#include <charconv>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include <tbb/global_control.h>
-
 #include "build/build.h"
 #include "build/dag/build_dag.h"
+#include "command_line.h"
 #include "judge/verify/deviations.h"
 #include "random/scene.h"
 #include "run/decode/decode.h"
@@ -26,14 +25,6 @@ namespace {
 
 using namespace meshlode;
 
-constexpr const char* kUsage =
-    "usage: bench_margin [SCENE...] [options]\n"
-    "  --random FIRST,COUNT,STEP   scenes of the tests' generator (tests/random): seeds FIRST, FIRST + STEP, ...\n"
-    "  --cuts N       uniform cuts of each mesh (12)\n"
-    "  --samples N    area-uniform samples each way, all vertices on top (200000)\n"
-    "  --jobs N       threads (one per core)\n"
-    "  --above X      print only cuts whose true over stored is above X (0)\n";
-
 struct Options {
   std::vector<std::string> scenes;
   std::vector<std::uint64_t> random;  ///< first seed, count, step
@@ -43,40 +34,20 @@ struct Options {
   double above = 0.0;
 };
 
-template <class Number>
-bool read_number(const std::string& text, Number& out) {
-  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), out);
-  return error == std::errc{} && stop == text.data() + text.size();
-}
-
-bool read_list(const std::string& text, std::vector<std::uint64_t>& out) {
-  for (std::size_t at = 0; at <= text.size();) {
-    const std::size_t comma = std::min(text.find(',', at), text.size());
-    out.emplace_back();
-    if (!read_number(text.substr(at, comma - at), out.back())) return false;
-    at = comma + 1;
-  }
-  return true;
-}
-
-bool parse(int argc, char** argv, Options& o) {
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
-    if (word.rfind("--", 0) != 0) {
-      o.scenes.push_back(word);
-      continue;
-    }
-    if (i + 1 >= argc) return false;
-    const std::string value = argv[++i];
-    const bool is_read = word == "--cuts"      ? read_number(value, o.cuts)
-                         : word == "--samples" ? read_number(value, o.samples)
-                         : word == "--jobs"    ? read_number(value, o.jobs)
-                         : word == "--above"   ? read_number(value, o.above)
-                         : word == "--random"  ? read_list(value, o.random) && o.random.size() == 3
-                                               : false;
-    if (!is_read) return false;
-  }
-  return (!o.scenes.empty() || !o.random.empty()) && o.cuts > 0;
+std::optional<int> read_options(int argc, char** argv, Options& o) {
+  CLI::App app("How true the errors of the tier `measured` are: true over stored of uniform cuts", "bench_margin");
+  app.option_defaults()->always_capture_default();
+  app.add_option("scenes", o.scenes, "scenes");
+  app.add_option("--random", o.random,
+                 "FIRST,COUNT,STEP: scenes of the tests' generator (tests/random), seeds FIRST, "
+                 "FIRST + STEP, ...")
+      ->delimiter(',')
+      ->expected(3);
+  app.add_option("--cuts", o.cuts, "uniform cuts of each mesh")->check(CLI::PositiveNumber);
+  app.add_option("--samples", o.samples, bench::kSamplesHelp);
+  app.add_option("--jobs", o.jobs, bench::kJobsHelp);
+  app.add_option("--above", o.above, "print only cuts whose true over stored is above this");
+  return bench::read_command_line(app, argc, argv);
 }
 
 struct Series {
@@ -146,13 +117,8 @@ std::size_t count_above(const Series& series, double limit) {
 
 int main(int argc, char** argv) {
   Options options;
-  if (!parse(argc, argv, options)) {
-    std::fputs(kUsage, stderr);
-    return 1;
-  }
-  const std::size_t allowed =
-      options.jobs > 0 ? options.jobs : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, allowed);
+  if (const std::optional<int> exit_code = read_options(argc, argv, options)) return *exit_code;
+  const bench::ThreadLimit limit(options.jobs);
   Series series;
   for (const std::string& path : options.scenes) {
     const Result<scene::Scene> scene = scene::import_scene(path, {});

@@ -2,7 +2,6 @@
 // Seeds: triangles at equal true deviation of one scene under several seeds of the partitioner. A partition is partly
 // luck; how much shows in how the figures differ from seed to seed. compare_seeds.py holds two runs against each other.
 #include <algorithm>
-#include <charconv>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -10,11 +9,10 @@
 #include <string>
 #include <vector>
 
-#include <tbb/global_control.h>
-
 #include "base/json_writer.h"
 #include "build/build.h"
 #include "build/preset.h"
+#include "command_line.h"
 #include "cut_judge.h"
 #include "cut_search.h"
 #include "run/decode/decode.h"
@@ -24,14 +22,6 @@
 namespace {
 
 using namespace meshlode;
-
-constexpr const char* kUsage =
-    "usage: bench_seeds SCENE... [options]\n"
-    "  --seeds N      seeds 1 to N of the partitioner (5)\n"
-    "  --preset NAME  fast, default or best (default)\n"
-    "  --samples N    area-uniform samples each way, all vertices on top (200000)\n"
-    "  --jobs N       threads (one per core)\n"
-    "  --json FILE    write the figures there too\n";
 
 /// Shares of the diagonal.
 constexpr double kAtMax[] = {1e-3, 2e-3, 5e-3};
@@ -56,30 +46,16 @@ struct SeedCut {
   std::uint64_t triangles = 0;
 };
 
-template <class Number>
-bool read_number(const std::string& text, Number& out) {
-  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), out);
-  return error == std::errc{} && stop == text.data() + text.size();
-}
-
-bool parse(int argc, char** argv, Options& o) {
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
-    if (word.rfind("--", 0) != 0) {
-      o.scenes.push_back(word);
-      continue;
-    }
-    if (i + 1 >= argc) return false;
-    const std::string value = argv[++i];
-    const bool is_read = word == "--seeds"     ? read_number(value, o.seeds)
-                         : word == "--samples" ? read_number(value, o.samples)
-                         : word == "--jobs"    ? read_number(value, o.jobs)
-                         : word == "--preset"  ? (o.preset = value, true)
-                         : word == "--json"    ? (o.json = value, true)
-                                               : false;
-    if (!is_read) return false;
-  }
-  return !o.scenes.empty() && o.seeds > 0;
+std::optional<int> read_options(int argc, char** argv, Options& o) {
+  CLI::App app("Triangles at equal true deviation under several seeds of the partitioner", "bench_seeds");
+  app.option_defaults()->always_capture_default();
+  app.add_option("scenes", o.scenes, "scenes")->required();
+  app.add_option("--seeds", o.seeds, "seeds 1 to N of the partitioner")->check(CLI::PositiveNumber);
+  app.add_option("--preset", o.preset, "fast, default or best")->check(CLI::IsMember({"fast", "default", "best"}));
+  app.add_option("--samples", o.samples, bench::kSamplesHelp);
+  app.add_option("--jobs", o.jobs, bench::kJobsHelp);
+  app.add_option("--json", o.json, "write the figures there too");
+  return bench::read_command_line(app, argc, argv);
 }
 
 void measure_mesh(const scene::SourceMesh& source, const run::Asset& asset,
@@ -150,21 +126,11 @@ std::string seeds_json(const std::vector<SeedCut>& cuts) {
 
 int main(int argc, char** argv) {
   Options options;
-  if (!parse(argc, argv, options)) {
-    std::fputs(kUsage, stderr);
-    return 1;
-  }
-  const std::optional<Preset> preset = value_in(build::kPresetNames, options.preset);
-  if (!preset) {
-    std::fputs(kUsage, stderr);
-    return 1;
-  }
+  if (const std::optional<int> exit_code = read_options(argc, argv, options)) return *exit_code;
   build::PipelineOptions pipeline;
-  pipeline.preset = *preset;
-  pipeline.error_tier = build::settings_of(*preset).error_tier;
-  const std::size_t allowed =
-      options.jobs > 0 ? options.jobs : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, allowed);
+  pipeline.preset = *value_in(build::kPresetNames, options.preset);
+  pipeline.error_tier = build::settings_of(pipeline.preset).error_tier;
+  const bench::ThreadLimit limit(options.jobs);
   std::vector<SeedCut> cuts;
   for (const std::string& path : options.scenes) {
     const Status measured = measure_scene(path, options, pipeline, cuts);

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/json_depth.h"
 #include "judge/validate/file_tables.h"
 
 namespace meshlode::judge {
@@ -36,29 +37,8 @@ namespace {
 /// Nesting beyond this is refused before the parser recurses.
 constexpr int kMaxDepth = 512;
 
-bool is_shallow(std::string_view text) {
-  int depth = 0;
-  bool in_string = false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (in_string) {
-      if (c == '\\')
-        ++i;
-      else if (c == '"')
-        in_string = false;
-    } else if (c == '"') {
-      in_string = true;
-    } else if (c == '{' || c == '[') {
-      if (++depth > kMaxDepth) return false;
-    } else if (c == '}' || c == ']') {
-      --depth;
-    }
-  }
-  return true;
-}
-
 nlohmann::json parse(std::string_view text) {
-  if (!is_utf8(text) || !is_shallow(text)) return nlohmann::json(nlohmann::json::value_t::discarded);
+  if (!is_utf8(text) || !is_nested_within(text, kMaxDepth)) return nlohmann::json(nlohmann::json::value_t::discarded);
   return nlohmann::json::parse(text.begin(), text.end(), nullptr, false);
 }
 

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/gltf_textures.h"
+#include "base/json_depth.h"
 #include "base/json_handle.h"
 
 namespace meshlode::out {
@@ -17,28 +18,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// nlohmann parses without recursion but dumps with it, so that deep nesting must not get in.
-bool is_shallow(std::string_view text) {
-  constexpr int kMaxDepth = 200;
-  int depth = 0;
-  bool in_string = false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (in_string) {
-      if (c == '\\') ++i;
-      if (c == '"') in_string = false;
-    } else if (c == '"') {
-      in_string = true;
-    } else if (c == '{' || c == '[') {
-      if (++depth > kMaxDepth) return false;
-    } else if (c == '}' || c == ']') {
-      --depth;
-    }
-  }
-  return true;
-}
+constexpr int kMaxDepth = 200;
 
 Json parse_object(std::string_view text) {
-  if (!is_shallow(text)) return {};
+  if (!is_nested_within(text, kMaxDepth)) return {};
   Json json = Json::parse(text.begin(), text.end(), nullptr, false);
   return json.is_object() ? json : Json{};
 }

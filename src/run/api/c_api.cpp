@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "run/api/camera_of_view.h"
 #include "run/decode/decode.h"
 #include "run/read/asset.h"
 #include "run/select/select.h"
@@ -82,36 +83,6 @@ const Out* view(std::span<const In> records, std::uint32_t* count) {
   static_assert(sizeof(Out) == sizeof(In));
   *count = static_cast<std::uint32_t>(records.size());
   return reinterpret_cast<const Out*>(records.data());
-}
-
-bool is_positive(double value) {
-  return value > 0.0 && std::isfinite(value);
-}
-
-/// The camera of a view, or nothing and the field at fault.
-std::optional<run::Camera> make_camera(const meshlode_view& view, const char*& fault) {
-  for (const double c : view.eye) {
-    if (!std::isfinite(c)) fault = "view->eye is not finite";
-  }
-  if (view.height_px == 0) fault = "view->height_px is 0";
-  if (!is_positive(view.near_distance)) fault = "view->near_distance is not above 0";
-  constexpr double kPi = 3.14159265358979323846;
-  if (view.is_orthographic != 0) {
-    if (!is_positive(view.ortho_height)) fault = "view->ortho_height is not above 0";
-  } else if (!(view.fovy_radians > 0.0 && view.fovy_radians < kPi)) {
-    fault = "view->fovy_radians is not between 0 and pi";
-  }
-  if (fault != nullptr) return std::nullopt;
-  run::Camera camera;
-  camera.eye = {view.eye[0], view.eye[1], view.eye[2]};
-  camera.target = camera.eye - Vec3d(0.0, 0.0, 1.0);  // any direction: the rule does not look at it
-  camera.is_orthographic = view.is_orthographic != 0;
-  camera.fovy = view.fovy_radians;
-  camera.ortho_height = view.ortho_height;
-  camera.near_distance = view.near_distance;
-  camera.height = view.height_px;
-  camera.width = view.height_px;
-  return camera;
 }
 
 std::uint32_t page_of(const run::Asset& asset, std::uint32_t cluster) {
@@ -257,14 +228,16 @@ const char* meshlode_scene_json(const meshlode_asset* asset, size_t* bytes) {
 
 meshlode_status meshlode_select_view(const meshlode_asset* asset, const meshlode_view* view, double pixel_error,
                                      meshlode_draw_item* items, size_t capacity, size_t* count, meshlode_error* error) {
-  const char* fault = nullptr;
-  const auto camera = make_camera(*view, fault);
-  if (!camera) return fail(error, MESHLODE_USAGE, fault);
+  const run::ViewFault fault = run::fault_of_view(*view);
+  if (fault.field != nullptr) {
+    return fail(error, MESHLODE_USAGE, (std::string("view->") + fault.field + " " + fault.detail).c_str());
+  }
+  const run::Camera camera = run::camera_of_view(*view);
   if (!(pixel_error >= 0.0) || !std::isfinite(pixel_error)) {
     return fail(error, MESHLODE_USAGE, "pixel_error is not a number >= 0");
   }
   return guard(error, [&] {
-    const std::vector<run::ClusterInstance> drawn = run::select_bvh(asset->asset, *camera, pixel_error);
+    const std::vector<run::ClusterInstance> drawn = run::select_bvh(asset->asset, camera, pixel_error);
     *count = drawn.size();
     for (std::size_t i = 0; i < std::min(capacity, drawn.size()); ++i) {
       items[i] = {drawn[i].instance.value, drawn[i].cluster.value};

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "run/api/camera_of_view.h"
 #include "run/decode/decode.h"
 #include "run/read/asset.h"
 #include "run/select/select.h"
@@ -19,32 +20,10 @@ Error usage(const char* where, const char* detail) {
   return Error{ErrorCode::kUsage, where, detail};
 }
 
-bool is_positive(double value) {
-  return value > 0.0 && std::isfinite(value);
-}
-
 Result<run::Camera> make_camera(const View& view) {
-  for (const double c : view.eye) {
-    if (!std::isfinite(c)) return usage("View::eye", "is not finite");
-  }
-  if (view.height_px == 0) return usage("View::height_px", "is 0");
-  if (!is_positive(view.near_distance)) return usage("View::near_distance", "is not above 0");
-  constexpr double kPi = 3.14159265358979323846;
-  if (view.is_orthographic) {
-    if (!is_positive(view.ortho_height)) return usage("View::ortho_height", "is not above 0");
-  } else if (!(view.fovy_radians > 0.0 && view.fovy_radians < kPi)) {
-    return usage("View::fovy_radians", "is not between 0 and pi");
-  }
-  run::Camera camera;
-  camera.eye = {view.eye[0], view.eye[1], view.eye[2]};
-  camera.target = camera.eye - Vec3d(0.0, 0.0, 1.0);  // any direction: the rule does not look at it
-  camera.is_orthographic = view.is_orthographic;
-  camera.fovy = view.fovy_radians;
-  camera.ortho_height = view.ortho_height;
-  camera.near_distance = view.near_distance;
-  camera.height = view.height_px;
-  camera.width = view.height_px;
-  return camera;
+  const run::ViewFault fault = run::fault_of_view(view);
+  if (fault.field != nullptr) return Error{ErrorCode::kUsage, std::string("View::") + fault.field, fault.detail};
+  return run::camera_of_view(view);
 }
 
 template <class Out, class In>

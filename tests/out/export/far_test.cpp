@@ -14,14 +14,7 @@ namespace {
 using test::Glb;
 
 Glb export_finest(const run::Asset& asset) {
-  auto bytes = export_glb(asset, test::finest_cuts(asset));
-  if (!bytes) {
-    ADD_FAILURE() << bytes.error().message();
-    return {};
-  }
-  Glb glb = Glb::parse(*bytes);
-  glb.expect_sound();
-  return glb;
+  return test::read_sound(export_glb(asset, test::finest_cuts(asset)));
 }
 
 TEST(ExportFar, AMeshAMillionUnitsAwayKeepsItsFeaturesThroughAChildNode) {

@@ -163,6 +163,16 @@ void Glb::expect_sound() const {
   }
 }
 
+Glb read_sound(const Result<std::vector<std::uint8_t>>& bytes) {
+  if (!bytes) {
+    ADD_FAILURE() << bytes.error().message();
+    return {};
+  }
+  Glb glb = Glb::parse(*bytes);
+  glb.expect_sound();
+  return glb;
+}
+
 std::vector<PlacedTriangle> triangles_of(const Glb& glb, std::size_t mesh, Point translation) {
   std::vector<PlacedTriangle> triangles;
   for (const auto& primitive : glb.json.at("meshes").at(mesh).at("primitives")) {

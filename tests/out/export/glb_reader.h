@@ -10,6 +10,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <meshlode/result.h>
+
 namespace meshlode::test {
 
 struct Glb {
@@ -24,6 +26,9 @@ struct Glb {
   /// Structural rules that hold for every file: indices in range, alignment, min and max, targets, one buffer.
   void expect_sound() const;
 };
+
+/// Of what an exporter returned: an error, and whatever is not sound, is a test failure.
+[[nodiscard]] Glb read_sound(const Result<std::vector<std::uint8_t>>& bytes);
 
 using Point = std::array<double, 3>;
 /// One triangle with its material (-1 the default), rotated so that the smallest corner is first.
