@@ -16,7 +16,7 @@
 #include "judge/metrics/metrics.h"
 #include "judge/validate/validate.h"
 #include "judge/verify/verify.h"
-#include "run/select/random_scene.h"
+#include "run/select/random_dag.h"
 #include "run/select/select.h"
 #include "scene/import/import.h"
 #include "scene/samples/samples.h"

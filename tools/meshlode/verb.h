@@ -1,12 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The table of verbs: `meshlode VERB …`. One verb = one file verb_<name>.cpp that defines `const Verb k<Name>Verb`.
-//
-// To add a verb:
-//   1. write verb_<name>.cpp: `const Verb kFooVerb{"foo", "one line", "meshlode foo a.lode", run_foo};` with
-//      `int run_foo(const Verb& verb, std::span<char* const> args)`; parse with OptionParser (options.h), print errors
-//      with print_error, return 0 or the ErrorCode's value;
-//   2. declare kFooVerb at the end of this header and name it in verb_table.cpp;
-//   3. name the file in CMakeLists.txt.
+// How to add one: CONTRIBUTING.md.
 // Third-party headers stay out of verb files: CLI11 is in options.cpp, JSON output is base/json_writer.h.
 #pragma once
 

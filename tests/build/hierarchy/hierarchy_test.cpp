@@ -13,7 +13,7 @@
 #include "build/hierarchy/lod_bounds.h"
 #include "build/hierarchy/margins.h"
 #include "run/select/nesting.h"
-#include "run/select/random_scene.h"
+#include "run/select/random_dag.h"
 
 namespace meshlode::build {
 namespace {

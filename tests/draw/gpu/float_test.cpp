@@ -12,7 +12,7 @@
 #include "gpu_support.h"
 #include "judge/gpu/compare_frame.h"
 #include "run/select/far_instance.h"
-#include "run/select/random_scene.h"
+#include "run/select/random_dag.h"
 
 namespace meshlode::draw::test {
 namespace {

@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-#include "run/select/random_scene.h"
+#include "run/select/random_dag.h"
 
 namespace meshlode::run {
 namespace {

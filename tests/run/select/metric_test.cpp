@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include "run/select/nesting.h"
-#include "run/select/random_scene.h"
+#include "run/select/random_dag.h"
 #include "run/select/select.h"
 
 namespace meshlode::run {

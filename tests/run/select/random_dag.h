@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// RandomSource LOD DAGs, transforms and cameras, so that selection is tested without the stages that build real DAGs.
+// Random LOD DAGs, transforms and cameras, so that selection is tested without the stages that build real DAGs.
 #pragma once
 
 #include <algorithm>
