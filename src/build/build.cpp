@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "base/release.h"
 #include "build/dag/build_dag.h"
 #include "build/encode/encode.h"
 #include "build/hierarchy/hierarchy.h"
@@ -54,13 +55,8 @@ struct BuiltMesh {
 
 /// What nobody looks at once the DAG is there.
 void free_surface(PreparedMesh& mesh) {
-  mesh.positions = {};
-  mesh.wedge_position = {};
-  mesh.wedge_attributes = {};
-  mesh.triangles = {};
-  mesh.triangle_material = {};
-  mesh.exact_positions = {};
-  mesh.exact_triangles = {};
+  release(mesh.positions, mesh.wedge_position, mesh.wedge_attributes, mesh.triangles, mesh.triangle_material,
+          mesh.exact_positions, mesh.exact_triangles);
 }
 
 /// The scene, and itself once more where it may be taken apart.
@@ -103,8 +99,7 @@ Result<BuiltMesh> build_mesh(const Source& from, std::size_t index,
     return progress.report(index, level, triangles);
   };
   if (coarsening.error == ErrorSource::kQuadric) {
-    mesh->exact_positions = {};  // what others are measured against
-    mesh->exact_triangles = {};
+    release(mesh->exact_positions, mesh->exact_triangles);  // what others are measured against
   }
   const Result<LodDag> dag = build_dag(*mesh, coarsening);
   if (!dag) return Error{dag.error().code, label, dag.error().detail};

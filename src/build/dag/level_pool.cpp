@@ -7,6 +7,7 @@
 
 #include "base/local_ids.h"
 #include "base/parallel.h"
+#include "base/release.h"
 
 namespace meshlode::build {
 
@@ -218,10 +219,8 @@ void BuildPool::end_round() {
 void BuildPool::finish() {
   position_table_ = {};
   wedge_table_ = {};
-  witnesses = {};
-  late_witnesses_ = {};
-  triangle_bounds = {};
-  for (BuildCluster& cluster : clusters) cluster.samples = {};
+  release(witnesses, late_witnesses_, triangle_bounds);
+  for (BuildCluster& cluster : clusters) release(cluster.samples);
 }
 
 BuildPool::ClusterUse BuildPool::use_of(ClusterId id) const {
