@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "base/parallel.h"
-#include "base/release.h"
 #include "build/dag/build_dag.h"
 #include "build/encode/encode.h"
 #include "build/hierarchy/hierarchy.h"
@@ -53,12 +52,6 @@ struct BuiltMesh {
   std::vector<LevelTime> levels;
 };
 
-/// What nobody looks at once the DAG is there.
-void free_surface(PreparedMesh& mesh) {
-  release(mesh.positions, mesh.wedge_position, mesh.wedge_attributes, mesh.triangles, mesh.triangle_material,
-          mesh.exact_positions, mesh.exact_triangles);
-}
-
 /// The scene, and itself once more where it may be taken apart.
 struct Source {
   const scene::Scene& scene;
@@ -98,12 +91,8 @@ Result<BuiltMesh> build_mesh(const Source& from, std::size_t index,
     levels.end(level, triangles);
     return progress.report(index, level, triangles);
   };
-  if (coarsening.error == ErrorSource::kQuadric) {
-    release(mesh->exact_positions, mesh->exact_triangles);  // what others are measured against
-  }
-  const Result<LodDag> dag = build_dag(*mesh, coarsening);
+  const Result<LodDag> dag = build_dag_and_free(*mesh, coarsening);
   if (!dag) return Error{dag.error().code, label, dag.error().detail};
-  free_surface(*mesh);
   built.levels = levels.times();
   built.clock.end(Stage::kDag);
 

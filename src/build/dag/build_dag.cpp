@@ -321,12 +321,15 @@ bool run_round(BuildPool& pool, const PreparedMesh& mesh, const GroupMeter& mete
   return any_accepted;
 }
 
-/// Every level of a mesh that is not empty. Error: cancelled.
-Result<BuildPool> coarsen(const PreparedMesh& mesh, const DagOptions& options) {
+/// Every level of a mesh that is not empty; of the mesh its exact triangles are left, where they are measured against.
+/// Error: cancelled.
+Result<BuildPool> coarsen(PreparedMesh& mesh, const DagOptions& options) {
+  if (options.error == ErrorSource::kQuadric) release(mesh.exact_positions, mesh.exact_triangles);
+  const Clustering level0 = cluster_triangles(mesh.triangles, mesh.wedge_position, mesh.positions, options.caps);
   BuildPool pool(mesh);
   const GroupMeter meter(mesh, options.error);
-  pool.add_clusters(mesh.triangles, mesh.triangle_material, meter.level0(),
-                    cluster_triangles(mesh.triangles, mesh.wedge_position, mesh.positions, options.caps), 0, GroupId());
+  pool.add_clusters(mesh.triangles, mesh.triangle_material, meter.level0(pool), level0, 0, GroupId());
+  release(mesh.triangles, mesh.triangle_material);
   Front front = level0_of(pool);
   GroupOptions grouping = options.grouping;
   if (options.max_group_bytes > 0) grouping.max_weight = options.max_group_bytes;
@@ -348,7 +351,7 @@ Result<BuildPool> coarsen(const PreparedMesh& mesh, const DagOptions& options) {
 }
 
 /// The pool and what measured it are gone when this returns.
-Result<LodDag> coarsened_dag(const PreparedMesh& mesh, const DagOptions& options) {
+Result<LodDag> coarsened_dag(PreparedMesh& mesh, const DagOptions& options) {
   const Result<BuildPool> pool = coarsen(mesh, options);
   if (!pool) return pool.error();
   return assemble_dag(*pool, mesh);
@@ -357,9 +360,15 @@ Result<LodDag> coarsened_dag(const PreparedMesh& mesh, const DagOptions& options
 }  // namespace
 
 Result<LodDag> build_dag(const PreparedMesh& mesh, const DagOptions& options) {
+  PreparedMesh copy = mesh;
+  return build_dag_and_free(copy, options);
+}
+
+Result<LodDag> build_dag_and_free(PreparedMesh& mesh, const DagOptions& options) {
   if (mesh.triangles.empty()) return LodDag{};
   Result<LodDag> dag = coarsened_dag(mesh, options);
   if (dag && options.error == ErrorSource::kMeasured) hold_to_whole_cuts(mesh, kMeasuredMargin, *dag);
+  release(mesh.exact_positions, mesh.exact_triangles);
   return dag;
 }
 

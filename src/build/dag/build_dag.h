@@ -44,5 +44,7 @@ struct DagOptions {
 
 /// Errors: kBuildFailed when cancelled.
 [[nodiscard]] Result<LodDag> build_dag(const PreparedMesh& mesh, const DagOptions& options);
+/// The same. The mesh's surface is taken apart and freed along the way: its name, frame, layout and counts are left.
+[[nodiscard]] Result<LodDag> build_dag_and_free(PreparedMesh& mesh, const DagOptions& options);
 
 }  // namespace meshlode::build

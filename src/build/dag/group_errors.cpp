@@ -33,14 +33,27 @@ struct Decoded {
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
+/// The wedge of each exact position with attributes; nothing where these are the wedges themselves.
+std::vector<std::uint32_t> wedges_of_exact(const PreparedMesh& mesh) {
+  std::vector<std::uint32_t> wedge_of;
+  if (mesh.exact_triangles == mesh.triangles) return wedge_of;
+  wedge_of.resize(mesh.exact_positions.size());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) wedge_of[mesh.exact_triangles[t][k]] = mesh.triangles[t][k];
+  }
+  return wedge_of;
+}
+
 }  // namespace
 
 GroupMeter::GroupMeter(const PreparedMesh& mesh, ErrorSource tier)
     : mesh_(mesh), is_certified_(tier == ErrorSource::kCertified) {
-  if (tier != ErrorSource::kQuadric) source_.emplace(mesh.exact_positions, mesh.exact_triangles);
+  if (tier == ErrorSource::kQuadric) return;
+  source_.emplace(mesh.exact_positions, mesh.exact_triangles);
+  wedge_of_exact_ = wedges_of_exact(mesh);
 }
 
-CarriedTruth GroupMeter::level0() const {
+CarriedTruth GroupMeter::level0(const BuildPool& pool) const {
   CarriedTruth carried;
   if (!is_measuring()) return carried;
   if (!is_certified_) {
@@ -52,7 +65,7 @@ CarriedTruth GroupMeter::level0() const {
     TriangleCorners3 exact, on_grid;
     for (std::size_t k = 0; k < 3; ++k) {
       exact[k] = mesh_.exact_positions[mesh_.exact_triangles[t][k]];
-      on_grid[k] = mesh_.grid.decode(mesh_.positions[mesh_.wedge_position[mesh_.triangles[t][k]]]);
+      on_grid[k] = mesh_.grid.decode(pool.positions[pool.wedge_position[mesh_.triangles[t][k]]]);
     }
     carried.bounds.push_back(initial_bound(exact, on_grid));
   }
@@ -107,7 +120,7 @@ GroupErrors GroupMeter::measure(const BuildPool& pool, const std::vector<Cluster
     errors.carried.samples = std::move(group.carried);
   }
   const AttributeDeviation attributes =
-      measure_attributes(*source_, {mesh_.wedge_attributes, mesh_.triangles}, after.surface(),
+      measure_attributes(*source_, {pool.wedge_attributes, mesh_.exact_triangles, wedge_of_exact_}, after.surface(),
                          {coarser.wedge_attributes, coarser.triangles}, mesh_.layout);
   errors.normal_deviation = std::max(errors.normal_deviation, attributes.normal);
   errors.uv_deviation = std::max(errors.uv_deviation, attributes.uv);

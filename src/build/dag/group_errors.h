@@ -3,6 +3,7 @@
 // handed on from level to level to know it.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -25,12 +26,12 @@ struct GroupErrors {
 
 class GroupMeter {
  public:
-  /// The mesh must outlive the meter. kQuadric measures nothing.
+  /// The mesh's frame and exact triangles must outlive the meter. kQuadric measures nothing.
   GroupMeter(const PreparedMesh& mesh, ErrorSource tier);
 
   [[nodiscard]] bool is_measuring() const { return source_.has_value(); }
-  /// For the triangles of level 0.
-  [[nodiscard]] CarriedTruth level0() const;
+  /// For the triangles of level 0, which the mesh still has; `pool` has its positions.
+  [[nodiscard]] CarriedTruth level0(const BuildPool& pool) const;
   /// `clusters` of the pool, with their triangles in `finer`, became `coarser`.
   [[nodiscard]] GroupErrors measure(const BuildPool& pool, const std::vector<ClusterId>& clusters,
                                     const SimplifyInput& finer, const SimplifyResult& coarser,
@@ -40,6 +41,7 @@ class GroupMeter {
   const PreparedMesh& mesh_;
   bool is_certified_;
   std::optional<SourceTree> source_;
+  std::vector<std::uint32_t> wedge_of_exact_;  ///< by id in the exact triangles; empty: they are those of wedges
 };
 
 }  // namespace meshlode::build

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <utility>
 
 #include "base/local_ids.h"
 #include "base/parallel.h"
@@ -17,6 +18,14 @@ namespace {
 template <class T>
 void reserve_for_levels(std::vector<T>& values, std::size_t level0) {
   values.reserve(level0 + level0 + level0 / 8);
+}
+
+/// A mesh's array with room for the levels to come.
+template <class T>
+std::vector<T> take_level0(std::vector<T>& level0) {
+  std::vector<T> taken = std::exchange(level0, {});
+  reserve_for_levels(taken, taken.size());
+  return taken;
 }
 
 /// Side by side, in tasks of many.
@@ -35,19 +44,16 @@ void add_distinct(Witnesses& known, const Witnesses& more) {
 
 }  // namespace
 
-BuildPool::BuildPool(const PreparedMesh& mesh)
-    : stride_(mesh.layout.stride()),
-      position_table_(2 * mesh.positions.size()),
-      wedge_table_(2 * mesh.wedge_position.size()) {
-  reserve_for_levels(positions, mesh.positions.size());
-  reserve_for_levels(witnesses, mesh.positions.size());
-  reserve_for_levels(wedge_position, mesh.wedge_position.size());
-  reserve_for_levels(wedge_attributes, mesh.wedge_attributes.size());
+BuildPool::BuildPool(PreparedMesh& mesh)
+    : positions(take_level0(mesh.positions)),
+      wedge_position(take_level0(mesh.wedge_position)),
+      wedge_attributes(take_level0(mesh.wedge_attributes)),
+      stride_(mesh.layout.stride()),
+      position_table_(2 * positions.size()),
+      wedge_table_(2 * wedge_position.size()) {
+  reserve_for_levels(witnesses, positions.size());
   reserve_for_levels(triangles, mesh.triangles.size());
   reserve_for_levels(triangle_material, mesh.triangles.size());
-  positions = mesh.positions;
-  wedge_position = mesh.wedge_position;
-  wedge_attributes = mesh.wedge_attributes;
   witnesses.resize(positions.size());
   parallel_for_each_index(positions.size(), kLoopGrain, [&](std::size_t p) { witnesses[p] = {{positions[p]}, 1}; });
   position_table_.fill(static_cast<std::uint32_t>(positions.size()), kForEachId,

@@ -55,7 +55,8 @@ struct NewClusters {
 
 class BuildPool {
  public:
-  explicit BuildPool(const PreparedMesh& mesh);
+  /// Takes the mesh's positions and wedges: here they keep their ids.
+  explicit BuildPool(PreparedMesh& mesh);
 
   /// Adds the clusters of `triangles` (wedges of this pool), in the clustering's order. What is carried names those
   /// triangles and goes with their clusters.

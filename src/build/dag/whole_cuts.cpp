@@ -155,7 +155,7 @@ class WholeCuts {
     for (std::size_t k = 0; k < errors.size(); k = next(k)) {
       const Surface cut = cut_at(errors[k]);
       triangles += cut.triangles.size();
-      if (k > 0 && triangles > std::max(kShareOfMesh * mesh_.triangles.size(), kFewTriangles)) break;
+      if (k > 0 && triangles > std::max(kShareOfMesh * mesh_.exact_triangles.size(), kFewTriangles)) break;
       for (const FarPoint& far : find_far_points(cut, errors[k])) {
         if (far.distance <= std::max(error_of(far.nearest), noise)) continue;
         const GroupId group = group_of(far.at, errors[k]);

@@ -22,6 +22,7 @@ namespace meshlode::build {
 /// are const and may run side by side. Deterministic: same bits for any thread count, compiler and processor (I10).
 class SourceTree {
  public:
+  /// What the spans show must outlive the tree.
   SourceTree(std::span<const Vec3d> positions, std::span<const std::array<std::uint32_t, 3>> triangles);
   ~SourceTree();
   SourceTree(SourceTree&&) noexcept;

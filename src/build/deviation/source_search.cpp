@@ -62,12 +62,12 @@ class SourceSearch {
       if (is_ours_) frontier_.push_back({vertex, probe.place});
     };
     const TreeSlot start = place_near(seed.point);
-    for (const std::uint32_t vertex : source_.triangles[first]) visit(vertex, first, start);
+    for (const std::uint32_t vertex : source_.vertices(first)) visit(vertex, first, start);
     look_inside(first, radius, start);
     for (std::size_t next = 0; next < frontier_.size() && points < kMaxPointsPerSeed; ++next) {
       const Reached reached = frontier_[next];
       for (const std::uint32_t triangle : source_.triangles_around(reached.vertex)) {
-        for (const std::uint32_t vertex : source_.triangles[triangle]) visit(vertex, triangle, reached.place);
+        for (const std::uint32_t vertex : source_.vertices(triangle)) visit(vertex, triangle, reached.place);
         look_inside(triangle, radius, reached.place);
       }
     }
@@ -81,7 +81,7 @@ class SourceSearch {
     const std::uint32_t triangle = source_.tree.triangle_at(hit.slot);
     const TreeSlot place = place_near(point);
     look_inside(triangle, 0.0, place);
-    for (const std::uint32_t corner : source_.triangles[triangle]) {
+    for (const std::uint32_t corner : source_.vertices(triangle)) {
       for (const std::uint32_t around : source_.triangles_around(corner)) look_inside(around, 0.0, place);
     }
   }
@@ -207,7 +207,7 @@ class SourceSearch {
   std::size_t look_at(std::uint32_t triangle, TreeSlot place) {
     Patch patch;
     patch.corner = source_.corners(triangle);
-    const auto& ids = source_.triangles[triangle];
+    const std::array<std::uint32_t, 3> ids = source_.vertices(triangle);
     for (std::size_t k = 0; k < 3; ++k) {
       patch.at_corner[k] = patch.at_middle[k] = measure_vertex(ids[k], place, triangle);
     }
@@ -227,7 +227,7 @@ class SourceSearch {
     }
     if (!(longest2 > kLargeShare * kLargeShare * radius * radius) || !seen_inside_.insert(triangle)) return;
     patch.owner = triangle;
-    const auto& ids = source_.triangles[triangle];
+    const std::array<std::uint32_t, 3> ids = source_.vertices(triangle);
     for (std::size_t k = 0; k < 3; ++k) patch.at_corner[k] = measure_vertex(ids[k], place, triangle);
     if (is_near_throughout(patch)) return;
     for (std::size_t k = 0; k < 3; ++k) {

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "base/id_table.h"
-#include "base/parallel.h"
+#include "base/release.h"
 
 namespace meshlode::build {
 
@@ -39,45 +39,42 @@ Spacing choose_spacing(const SourceTree::Impl& source) {
   return {std::min(2.0 * mean_edge, std::sqrt(area / kLeastSamples))};
 }
 
-/// Copies the source with one id for each position, numbered by first use: seams of attributes do not stop a search.
-void weld(std::span<const Vec3d> positions, std::span<const std::array<std::uint32_t, 3>> triangles,
-          SourceTree::Impl& out) {
+/// Of each position the first one in the same place; nothing where no two are.
+std::vector<std::uint32_t> weld(std::span<const Vec3d> positions) {
   IdTable table(positions.size());
-  const auto hash_of = [](const Vec3d& p) {
+  const auto hash_of = [&](std::uint32_t id) {
     std::uint64_t h = 0;
-    for (int k = 0; k < 3; ++k) h = hash_word(h, std::bit_cast<std::uint64_t>(p[k]));
+    for (int k = 0; k < 3; ++k) h = hash_word(h, std::bit_cast<std::uint64_t>(positions[id][k] + 0.0));  // one zero
     return h;
   };
-  std::vector<std::uint32_t> id(positions.size());
-  out.positions.reserve(positions.size());
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    const Vec3d p = positions[i] + 0.0;  // one zero, not two
-    const IdTable::Entry entry = table.find_or_insert(
-        hash_of(p), static_cast<std::uint32_t>(out.positions.size()),
-        [&](std::uint32_t other) { return out.positions[other] == p; },
-        [&](std::uint32_t other) { return hash_of(out.positions[other]); });
-    if (entry.is_new) out.positions.push_back(p);
-    id[i] = entry.id;
+  std::vector<std::uint32_t> first(positions.size());
+  for (std::uint32_t i = 0; i < first.size(); ++i) {
+    first[i] = table
+                   .find_or_insert(
+                       hash_of(i), i, [&](std::uint32_t other) { return positions[other] == positions[i]; }, hash_of)
+                   .id;
   }
-  out.triangles.reserve(triangles.size());
-  for (const auto& t : triangles) out.triangles.push_back({id[t[0]], id[t[1]], id[t[2]]});
+  if (table.size() == positions.size()) release(first);
+  return first;
 }
 
 }  // namespace
 
 SourceTree::SourceTree(std::span<const Vec3d> positions, std::span<const std::array<std::uint32_t, 3>> triangles)
     : impl_(std::make_unique<Impl>()) {
-  weld(positions, triangles, *impl_);
-  impl_->tree.build({impl_->positions, impl_->triangles});
+  impl_->positions = positions;
+  impl_->triangles = triangles;
+  impl_->vertex_of = weld(positions);
+  impl_->tree.build({positions, triangles});
   std::vector<std::uint32_t>& first = impl_->first_corner;
-  first.assign(impl_->positions.size() + 2, 0);
-  for (const auto& t : impl_->triangles) {
-    for (const std::uint32_t v : t) ++first[v + 2];
+  first.assign(positions.size() + 2, 0);
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+    for (const std::uint32_t v : impl_->vertices(t)) ++first[v + 2];
   }
   for (std::size_t v = 2; v < first.size(); ++v) first[v] += first[v - 1];
   impl_->triangle_of_corner.resize(3 * triangles.size());
   for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-    for (const std::uint32_t v : impl_->triangles[t]) impl_->triangle_of_corner[first[v + 1]++] = t;
+    for (const std::uint32_t v : impl_->vertices(t)) impl_->triangle_of_corner[first[v + 1]++] = t;
   }
   first.pop_back();
   impl_->place.resize(triangles.size());
@@ -97,8 +94,8 @@ std::vector<CarriedSample> initial_samples(const SourceTree& source) {
   std::vector<std::uint8_t> is_taken(impl.positions.size(), 0);
   samples.reserve(impl.positions.size());
   for (std::uint32_t t = 0; t < impl.triangles.size(); ++t) {
-    const auto& corners = impl.triangles[t];
-    const std::array<Vec3d, 3> p{impl.positions[corners[0]], impl.positions[corners[1]], impl.positions[corners[2]]};
+    const std::array<std::uint32_t, 3> corners = impl.vertices(t);
+    const TriangleCorners p = impl.corners(t);
     const auto add = [&](const Vec3d& point) { samples.push_back({point, t, 0.0F, impl.place_of(t)}); };
     for (std::size_t k = 0; k < 3; ++k) {
       if (is_taken[corners[k]] == 0) add(p[k]);

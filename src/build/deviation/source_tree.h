@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What SourceTree hides: its own copy of the source, and the tree over it.
+// What SourceTree hides: the source, and the tree over it.
 #pragma once
 
 #include <array>
@@ -13,10 +13,11 @@
 namespace meshlode::build {
 
 struct SourceTree::Impl {
-  std::vector<Vec3d> positions;
-  std::vector<std::array<std::uint32_t, 3>> triangles;
-  SurfaceTree tree;                         ///< over the two above
-  std::vector<std::uint32_t> first_corner;  ///< per position and one more: into triangle_of_corner
+  std::span<const Vec3d> positions;
+  std::span<const std::array<std::uint32_t, 3>> triangles;
+  std::vector<std::uint32_t> vertex_of;     ///< per position: the first in the same place; empty: all are apart
+  SurfaceTree tree;                         ///< over positions and triangles
+  std::vector<std::uint32_t> first_corner;  ///< per vertex and one more: into triangle_of_corner
   std::vector<std::uint32_t> triangle_of_corner;
   std::vector<TreeSlot> place;  ///< per triangle: its place in the tree
 
@@ -25,9 +26,13 @@ struct SourceTree::Impl {
     const auto& t = triangles[triangle];
     return {positions[t[0]], positions[t[1]], positions[t[2]]};
   }
-  [[nodiscard]] std::span<const std::uint32_t> triangles_around(std::uint32_t position) const {
-    return std::span(triangle_of_corner)
-        .subspan(first_corner[position], first_corner[position + 1] - first_corner[position]);
+  /// Corners by vertex: seams of attributes do not stop a search.
+  [[nodiscard]] std::array<std::uint32_t, 3> vertices(std::uint32_t triangle) const {
+    const auto& t = triangles[triangle];
+    return vertex_of.empty() ? t : std::array{vertex_of[t[0]], vertex_of[t[1]], vertex_of[t[2]]};
+  }
+  [[nodiscard]] std::span<const std::uint32_t> triangles_around(std::uint32_t vertex) const {
+    return std::span(triangle_of_corner).subspan(first_corner[vertex], first_corner[vertex + 1] - first_corner[vertex]);
   }
 };
 
