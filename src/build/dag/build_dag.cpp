@@ -107,7 +107,7 @@ SimplifyInput group_input(const BuildPool& pool, const PreparedMesh& mesh, const
   for (const std::uint32_t p : positions.numbers()) {
     input.positions.push_back(pool.positions[p]);
     input.is_locked.push_back(shared.position[p]);
-    input.witnesses.push_back(pool.witnesses[p]);
+    input.witnesses.push_back(pool.witnesses_at(p));
   }
   return input;
 }

@@ -33,12 +33,20 @@ constexpr auto kForEachId = [](std::uint32_t count, const auto& visit) {
   parallel_for_each_index(count, kLoopGrain, [&](std::size_t id) { visit(static_cast<std::uint32_t>(id)); });
 };
 
-void add_distinct(Witnesses& known, const Witnesses& more) {
-  for (std::uint32_t i = 0; i < more.count; ++i) {
-    const auto end = known.points.begin() + known.count;
-    if (known.count < Witnesses::kCapacity && std::find(known.points.begin(), end, more.points[i]) == end) {
-      known.points[known.count++] = more.points[i];
-    }
+constexpr WitnessIds kNoWitnesses{kNoId, kNoId, kNoId};
+
+WitnessIds ids_of(const Witnesses& witnesses) {
+  WitnessIds ids = kNoWitnesses;
+  std::copy_n(witnesses.ids.begin(), witnesses.count, ids.begin());
+  return ids;
+}
+
+/// As far as there is room.
+void add_distinct(WitnessIds& known, const WitnessIds& more) {
+  for (const std::uint32_t id : more) {
+    const auto same_or_free =
+        std::find_if(known.begin(), known.end(), [&](std::uint32_t other) { return other == id || other == kNoId; });
+    if (same_or_free != known.end()) *same_or_free = id;
   }
 }
 
@@ -54,8 +62,9 @@ BuildPool::BuildPool(PreparedMesh& mesh)
   reserve_for_levels(witnesses, positions.size());
   reserve_for_levels(triangles, mesh.triangles.size());
   reserve_for_levels(triangle_material, mesh.triangles.size());
-  witnesses.resize(positions.size());
-  parallel_for_each_index(positions.size(), kLoopGrain, [&](std::size_t p) { witnesses[p] = {{positions[p]}, 1}; });
+  witnesses.resize(positions.size(), kNoWitnesses);
+  parallel_for_each_index(positions.size(), kLoopGrain,
+                          [&](std::size_t p) { witnesses[p].front() = static_cast<std::uint32_t>(p); });
   position_table_.fill(static_cast<std::uint32_t>(positions.size()), kForEachId,
                        [&](std::uint32_t id) { return hash_position(positions[id]); });
   wedge_table_.fill(static_cast<std::uint32_t>(wedge_position.size()), kForEachId, [&](std::uint32_t id) {
@@ -88,7 +97,7 @@ std::uint32_t BuildPool::position_id(const Vec3i& position) {
       [&](std::uint32_t other) { return hash_position(positions[other]); });
   if (entry.is_new) {
     positions.push_back(position);
-    witnesses.emplace_back();
+    witnesses.push_back(kNoWitnesses);
   }
   return entry.id;
 }
@@ -173,23 +182,31 @@ BuildPool::Ids BuildPool::find_known(const SimplifyResult& result) const {
 }
 
 /// A locked position keeps what it had and takes over what a group left at it, as far as there is room.
-void BuildPool::add_witnesses(std::uint32_t position, const Witnesses& more) {
-  Witnesses& known = witnesses[position];
-  if (position >= round_positions_) {
-    add_distinct(known, more);
-    return;
+void BuildPool::add_witnesses(std::uint32_t position, const WitnessIds& more) {
+  WitnessIds known = witnesses[position];
+  add_distinct(known, more);
+  if (known == witnesses[position]) return;
+  if (position < round_positions_) {
+    late_witnesses_.emplace_back(position, more);
+  } else {
+    witnesses[position] = known;
   }
-  const auto known_end = known.points.begin() + known.count;
-  const bool has_more = std::any_of(more.points.begin(), more.points.begin() + more.count, [&](const Vec3i& point) {
-    return std::find(known.points.begin(), known_end, point) == known_end;
-  });
-  if (has_more && known.count < Witnesses::kCapacity) late_witnesses_.emplace_back(position, more);
+}
+
+Witnesses BuildPool::witnesses_at(std::uint32_t position) const {
+  Witnesses out;
+  for (const std::uint32_t id : witnesses[position]) {
+    if (id == kNoId) break;
+    out.points[out.count] = positions[id];
+    out.ids[out.count++] = id;
+  }
+  return out;
 }
 
 void BuildPool::insert_new(const SimplifyResult& result, Ids& ids) {
   for (std::size_t p = 0; p < ids.positions.size(); ++p) {
     if (ids.positions[p] == kNoId) ids.positions[p] = position_id(result.positions[p]);
-    add_witnesses(ids.positions[p], result.witnesses[p]);
+    add_witnesses(ids.positions[p], ids_of(result.witnesses[p]));
   }
   for (std::size_t w = 0; w < ids.wedges.size(); ++w) {
     if (ids.wedges[w] != kNoId) continue;

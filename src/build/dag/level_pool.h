@@ -2,6 +2,7 @@
 // The growing store of a build: positions, wedges and clusters of all levels so far. Used by the dag room alone.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -53,6 +54,9 @@ struct NewClusters {
   GroupId own_group;
 };
 
+/// Witnesses are points of level 0: their ids; kNoId where there are fewer.
+using WitnessIds = std::array<std::uint32_t, Witnesses::kCapacity>;
+
 class BuildPool {
  public:
   /// Takes the mesh's positions and wedges: here they keep their ids.
@@ -81,12 +85,13 @@ class BuildPool {
   };
   [[nodiscard]] ClusterUse use_of(ClusterId cluster) const;
 
+  [[nodiscard]] Witnesses witnesses_at(std::uint32_t position) const;
   [[nodiscard]] BuildCluster& cluster(ClusterId id) { return clusters[id.value]; }
   [[nodiscard]] const BuildCluster& cluster(ClusterId id) const { return clusters[id.value]; }
   [[nodiscard]] const BuildGroup& group(GroupId id) const { return groups[id.value]; }
 
   std::vector<Vec3i> positions;
-  std::vector<Witnesses> witnesses;  ///< per position
+  std::vector<WitnessIds> witnesses;  ///< per position
   std::vector<std::uint32_t> wedge_position;
   std::vector<float> wedge_attributes;
   std::vector<WedgeTriangle> triangles;
@@ -102,7 +107,7 @@ class BuildPool {
   };
   [[nodiscard]] Ids find_known(const SimplifyResult& result) const;
   void insert_new(const SimplifyResult& result, Ids& ids);
-  void add_witnesses(std::uint32_t position, const Witnesses& more);
+  void add_witnesses(std::uint32_t position, const WitnessIds& more);
   /// Makes room for clusters; returns where the triangles of each go.
   std::vector<std::uint32_t> add_ranges(const Clustering& clustering, std::uint32_t level, GroupId own_group);
   /// `start`: of add_ranges. `wedges`: pool ids by the ids in `source`, or nothing where they are pool ids already.
@@ -118,8 +123,8 @@ class BuildPool {
 
   std::size_t stride_;
   IdTable position_table_, wedge_table_;
-  std::size_t round_positions_ = 0;                                  ///< how many there were when the round began
-  std::vector<std::pair<std::uint32_t, Witnesses>> late_witnesses_;  ///< of older positions, in order
+  std::size_t round_positions_ = 0;                                   ///< how many there were when the round began
+  std::vector<std::pair<std::uint32_t, WitnessIds>> late_witnesses_;  ///< of older positions, in order
 };
 
 /// The pool as a LodDag: groups from coarse to fine, clusters by group, vertices by first use.

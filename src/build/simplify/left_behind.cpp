@@ -12,16 +12,17 @@ namespace meshlode::build {
 namespace {
 
 /// Equals stay in order. Mostly there are half a dozen, and std::stable_sort would allocate.
-void sort_farthest_first(std::vector<std::pair<double, Vec3i>>& weighed) {
+void sort_farthest_first(std::vector<WeighedWitness>& weighed) {
   constexpr std::size_t kFew = 32;
   if (weighed.size() > kFew) {
-    std::stable_sort(weighed.begin(), weighed.end(), [](const auto& x, const auto& y) { return x.first > y.first; });
+    std::stable_sort(weighed.begin(), weighed.end(),
+                     [](const auto& x, const auto& y) { return x.distance2 > y.distance2; });
     return;
   }
   for (std::size_t i = 1; i < weighed.size(); ++i) {
-    const std::pair<double, Vec3i> one = weighed[i];
+    const WeighedWitness one = weighed[i];
     std::size_t at = i;
-    for (; at > 0 && weighed[at - 1].first < one.first; --at) weighed[at] = weighed[at - 1];
+    for (; at > 0 && weighed[at - 1].distance2 < one.distance2; --at) weighed[at] = weighed[at - 1];
     weighed[at] = one;
   }
 }
@@ -84,7 +85,7 @@ double LeftBehind::weigh_witnesses(std::uint32_t vertex, const GroupPlaces& plac
     for (const Facet& facet : facets_) {
       nearest = std::min(nearest, distance2_to_facet(point, facet));
     }
-    weighed_.emplace_back(nearest, w.points[i]);
+    weighed_.push_back({nearest, w.points[i], w.ids[i]});
     largest = std::max(largest, nearest);
   }
   return largest;
@@ -94,8 +95,8 @@ double LeftBehind::weigh_witnesses(std::uint32_t vertex, const GroupPlaces& plac
 double LeftBehind::distance2_to_rest(const CollapseMesh& mesh, const GroupPlaces& places,
                                      const CollapseStar& star) const {
   double largest = 0.0;
-  for (const auto& [unused, point] : weighed_) {
-    const Vec3d p = places.to_frame(point);
+  for (const WeighedWitness& witness : weighed_) {
+    const Vec3d p = places.to_frame(witness.point);
     double nearest = std::numeric_limits<double>::infinity();
     for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t) {
       if (!mesh.is_alive(t)) continue;
@@ -132,7 +133,10 @@ void LeftBehind::join(std::uint32_t into, std::uint32_t from) {
   sort_farthest_first(weighed_);
   Witnesses& kept = witnesses_[into];
   kept.count = static_cast<std::uint32_t>(std::min(weighed_.size(), Witnesses::kCapacity));
-  for (std::uint32_t i = 0; i < kept.count; ++i) kept.points[i] = weighed_[i].second;
+  for (std::uint32_t i = 0; i < kept.count; ++i) {
+    kept.points[i] = weighed_[i].point;
+    kept.ids[i] = weighed_[i].id;
+  }
   merged_[into].low = glm::min(merged_[into].low, merged_[from].low);
   merged_[into].high = glm::max(merged_[into].high, merged_[from].high);
 }

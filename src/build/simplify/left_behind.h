@@ -7,7 +7,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 #include "build/simplify/collapse_mesh.h"
@@ -17,6 +16,12 @@
 #include "build/simplify/simplify.h"
 
 namespace meshlode::build {
+
+struct WeighedWitness {
+  double distance2;  ///< to the new star, in the frame
+  Vec3i point;
+  std::uint32_t id;
+};
 
 /// What each vertex stands for: its witnesses, and the box around all input vertices that came to it.
 class LeftBehind {
@@ -56,7 +61,7 @@ class LeftBehind {
   std::vector<Box> merged_;
   // Of the collapse weighed last.
   std::vector<std::uint32_t> vanishing_;           ///< vertices that lose their last triangle with it
-  std::vector<std::pair<double, Vec3i>> weighed_;  ///< squared distance to the new star, and the witness
+  std::vector<WeighedWitness> weighed_;
   std::vector<Facet> facets_;                      ///< the new star
   std::vector<std::uint32_t> corners_;
   std::uint64_t stamp_ = 0;  ///< what is marked with it was marked in this search

@@ -41,6 +41,7 @@ struct Witnesses {
   static constexpr std::size_t kCapacity = 3;
   std::array<Vec3i, kCapacity> points;  ///< grid units
   std::uint32_t count = 0;
+  std::array<std::uint32_t, kCapacity> ids{};  ///< what the caller calls each of them: comes back with it
 };
 
 /// A group with local ids. Wedges are per position; see PreparedMesh.
