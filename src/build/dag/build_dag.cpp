@@ -286,7 +286,7 @@ void advance(BuildPool& pool, const GroupMeter& meter, const Front& front,
     }
     BuildGroup group = replaced_group(pool, meter, std::move(clusters), attempt);
     if (meter.is_measuring()) {
-      for (const ClusterId c : group.clusters) release(pool.cluster(c).samples);  // carried on by the coarser clusters
+      for (const ClusterId c : group.clusters) pool.cluster(c).samples.free();  // carried on by the coarser clusters
     }
     accepted.push_back(
         {attempt.result, attempt.errors.carried, attempt.clustering, group.level + 1, GroupId(pool.groups.size())});

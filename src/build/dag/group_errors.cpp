@@ -99,9 +99,10 @@ GroupErrors GroupMeter::measure(const BuildPool& pool, const std::vector<Cluster
     errors.carried.bounds = std::move(group.bounds);
   } else {
     std::vector<CarriedSample> samples;
-    for (const ClusterId c : clusters) {
-      samples.insert(samples.end(), pool.cluster(c).samples.begin(), pool.cluster(c).samples.end());
-    }
+    std::size_t sample_count = 0;
+    for (const ClusterId c : clusters) sample_count += pool.cluster(c).samples.size();
+    samples.reserve(sample_count);
+    for (const ClusterId c : clusters) pool.cluster(c).samples.append_to(samples, mesh_.exact_positions);
     // Cards and the like: no neighbour leads to a piece that went, so more of their points have to be carried.
     const std::size_t wanted =
         before.positions.size() > before.triangles.size() ? 16 * kSamplesPerGroup : kSamplesPerGroup;

@@ -130,18 +130,32 @@ std::vector<std::uint32_t> BuildPool::add_ranges(const Clustering& clustering, s
   return start;
 }
 
+void BuildPool::fill_samples(std::span<const CarriedSample> samples, const Clustering& clustering,
+                             std::uint32_t first_cluster) {
+  struct Count {
+    std::size_t samples = 0, loose = 0;
+  };
+  std::vector<Count> counts(clustering.count);
+  for (const CarriedSample& sample : samples) {
+    Count& count = counts[clustering.label[sample.triangle]];
+    ++count.samples;
+    if (sample.vertex == kNoId) ++count.loose;
+  }
+  for (std::uint32_t c = 0; c < clustering.count; ++c) {
+    clusters[first_cluster + c].samples.reserve(counts[c].samples, counts[c].loose);
+  }
+  for (const CarriedSample& sample : samples) {
+    clusters[first_cluster + clustering.label[sample.triangle]].samples.add(sample);
+  }
+}
+
 void BuildPool::fill_clusters(std::span<const WedgeTriangle> source, std::span<const std::uint32_t> wedges,
                               std::span<const std::uint32_t> materials, const CarriedTruth& carried,
                               const Clustering& clustering, std::vector<std::uint32_t> start,
                               std::uint32_t first_cluster) {
+  fill_samples(carried.samples, clustering, first_cluster);
   // Places are dealt out in order, one after the other; what goes there is written side by side.
-  std::vector<std::uint32_t> sample_count(clustering.count, 0), place(carried.samples.size()), slot(source.size());
-  const auto cluster_of = [&](std::size_t sample) { return clustering.label[carried.samples[sample].triangle]; };
-  for (std::size_t s = 0; s < place.size(); ++s) place[s] = sample_count[cluster_of(s)]++;
-  for (std::uint32_t c = 0; c < clustering.count; ++c) clusters[first_cluster + c].samples.resize(sample_count[c]);
-  parallel_for_each_index(place.size(), kLoopGrain, [&](std::size_t s) {
-    clusters[first_cluster + cluster_of(s)].samples[place[s]] = carried.samples[s];
-  });
+  std::vector<std::uint32_t> slot(source.size());
   for (std::size_t t = 0; t < source.size(); ++t) slot[t] = start[clustering.label[t]]++;
   parallel_for_each_index(source.size(), kLoopGrain, [&](std::size_t t) {
     WedgeTriangle& triangle = triangles[slot[t]];
@@ -243,7 +257,7 @@ void BuildPool::finish() {
   position_table_ = {};
   wedge_table_ = {};
   release(witnesses, late_witnesses_, triangle_bounds);
-  for (BuildCluster& cluster : clusters) release(cluster.samples);
+  for (BuildCluster& cluster : clusters) cluster.samples.free();
 }
 
 BuildPool::ClusterUse BuildPool::use_of(ClusterId id) const {

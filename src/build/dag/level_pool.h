@@ -12,6 +12,7 @@
 #include "base/id_table.h"
 #include "base/ids.h"
 #include "build/cluster/cluster.h"
+#include "build/dag/kept_samples.h"
 #include "build/deviation/deviation.h"
 #include "build/lod_dag.h"
 #include "build/prepared.h"
@@ -24,7 +25,7 @@ struct BuildCluster {
   std::uint32_t level = 0;
   GroupId own_group;  ///< of BuildPool::groups; invalid at level 0
   std::uint32_t first_triangle = 0, triangle_count = 0;
-  std::vector<CarriedSample> samples;  ///< of the source, where deviations are measured
+  KeptSamples samples;  ///< of the source, where deviations are measured
 };
 
 /// What a tier knows of triangles and hands on with them; empty where it needs none.
@@ -110,6 +111,7 @@ class BuildPool {
   void add_witnesses(std::uint32_t position, const WitnessIds& more);
   /// Makes room for clusters; returns where the triangles of each go.
   std::vector<std::uint32_t> add_ranges(const Clustering& clustering, std::uint32_t level, GroupId own_group);
+  void fill_samples(std::span<const CarriedSample> samples, const Clustering& clustering, std::uint32_t first_cluster);
   /// `start`: of add_ranges. `wedges`: pool ids by the ids in `source`, or nothing where they are pool ids already.
   void fill_clusters(std::span<const WedgeTriangle> source, std::span<const std::uint32_t> wedges,
                      std::span<const std::uint32_t> materials, const CarriedTruth& carried,

@@ -37,10 +37,11 @@ class SourceTree {
 
 /// A point of the source on its way up the DAG.
 struct CarriedSample {
-  Vec3d point;                 ///< on the source, relative to the origin, object units
-  std::uint32_t triangle = 0;  ///< of the surface that carries it: the one its nearest point lies on
-  float distance = 0.0F;       ///< to that surface, for thinning
-  TreeSlot place{0U};          ///< of the SourceTree: where a search for the source near this point may begin
+  Vec3d point;                   ///< on the source, relative to the origin, object units
+  std::uint32_t triangle = 0;    ///< of the surface that carries it: the one its nearest point lies on
+  float distance = 0.0F;         ///< to that surface, for thinning
+  TreeSlot place{0U};            ///< of the SourceTree: where a search for the source near this point may begin
+  std::uint32_t vertex = kNoId;  ///< of the source's positions, where it is known that the point is one of them
 };
 
 /// A simplified group. Triangle ids are indices into `triangles`.

@@ -96,9 +96,11 @@ std::vector<CarriedSample> initial_samples(const SourceTree& source) {
   for (std::uint32_t t = 0; t < impl.triangles.size(); ++t) {
     const std::array<std::uint32_t, 3> corners = impl.vertices(t);
     const TriangleCorners p = impl.corners(t);
-    const auto add = [&](const Vec3d& point) { samples.push_back({point, t, 0.0F, impl.place_of(t)}); };
+    const auto add = [&](const Vec3d& point, std::uint32_t vertex = kNoId) {
+      samples.push_back({point, t, 0.0F, impl.place_of(t), vertex});
+    };
     for (std::size_t k = 0; k < 3; ++k) {
-      if (is_taken[corners[k]] == 0) add(p[k]);
+      if (is_taken[corners[k]] == 0) add(p[k], corners[k]);
       is_taken[corners[k]] = 1;
     }
     for (std::size_t k = 0; k < 3; ++k) {

@@ -60,9 +60,9 @@ class LeftBehind {
   std::vector<Witnesses> witnesses_;
   std::vector<Box> merged_;
   // Of the collapse weighed last.
-  std::vector<std::uint32_t> vanishing_;           ///< vertices that lose their last triangle with it
+  std::vector<std::uint32_t> vanishing_;  ///< vertices that lose their last triangle with it
   std::vector<WeighedWitness> weighed_;
-  std::vector<Facet> facets_;                      ///< the new star
+  std::vector<Facet> facets_;  ///< the new star
   std::vector<std::uint32_t> corners_;
   std::uint64_t stamp_ = 0;  ///< what is marked with it was marked in this search
   std::vector<std::uint64_t> vertex_stamp_;
