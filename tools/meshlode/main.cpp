@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // meshlode VERB ARGUMENTS: finds the verb and runs it. Exit codes are ErrorCode's values (include/meshlode/result.h).
+#include <malloc.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <span>
@@ -48,11 +50,23 @@ int run(std::span<char* const> args) {
   return print_error({ErrorCode::kUsage, "", "unknown verb '" + std::string(name) + "'; see meshlode --help"});
 }
 
+/// Large arrays go back to the system as soon as they are freed. Left to itself, glibc takes the first one that is
+/// freed as a sign to keep all up to its size for later, in gaps between what is still in use: a sixth of a build's
+/// peak.
+void give_back_large_arrays() {
+#ifdef __GLIBC__
+  constexpr int kLargeArray = 2 << 20, kKeptAtTheEnd = 32 << 20;  // bytes
+  mallopt(M_MMAP_THRESHOLD, kLargeArray);
+  mallopt(M_TRIM_THRESHOLD, kKeptAtTheEnd);
+#endif
+}
+
 }  // namespace
 }  // namespace meshlode::cli
 
 int main(int argc, char** argv) {
   using meshlode::cli::print_error;
+  meshlode::cli::give_back_large_arrays();
   meshlode::cli::watch_signals();
   const auto arguments = std::span<char* const>(argv, static_cast<std::size_t>(argc)).subspan(argc > 0 ? 1 : 0);
   const auto code = meshlode::guarded({}, [&]() -> meshlode::Result<int> { return meshlode::cli::run(arguments); });
