@@ -7,7 +7,7 @@ set -euo pipefail
 packages=(
   g++ cmake ninja-build
   libtbb-dev libglm-dev libxxhash-dev        # base
-  nlohmann-json3-dev libtinygltf-dev libdraco-dev  # import
+  nlohmann-json3-dev libtinygltf-dev libdraco-dev libmeshoptimizer-dev  # import
   libmetis-dev libcgal-dev                   # partition, hierarchy and repair
   libzstd-dev liblz4-dev                     # pack, unpack
   libpng-dev libjpeg62-turbo-dev             # image

@@ -93,7 +93,7 @@ class Gltf:
     def view(self, index):
         """(bytes, stride or None)"""
         view = self.root["bufferViews"][index]
-        if "EXT_meshopt_compression" in view.get("extensions", {}) and "buffer" not in view:
+        if any(name.endswith("_meshopt_compression") for name in view.get("extensions", {})):
             raise Unsupported("EXT_meshopt_compression")
         at = view.get("byteOffset", 0)
         return self.buffers[view["buffer"]][at:at + view["byteLength"]], view.get("byteStride")

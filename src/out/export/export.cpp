@@ -38,7 +38,8 @@ constexpr int kArrayBuffer = 34962, kElementArrayBuffer = 34963;
 constexpr std::size_t kMaxDepth = 200;  // of JSON nesting: copying and writing a document are recursive
 
 /// Extensions that describe how geometry was stored; the exported geometry is plain.
-constexpr std::array<std::string_view, 4> kGeometryExtensions = {"EXT_mesh_gpu_instancing", "EXT_meshopt_compression",
+constexpr std::array<std::string_view, 5> kGeometryExtensions = {"EXT_mesh_gpu_instancing", "EXT_meshopt_compression",
+                                                                 "KHR_meshopt_compression",
                                                                  "KHR_draco_mesh_compression", "KHR_mesh_quantization"};
 
 struct ExportedMesh {

@@ -55,6 +55,22 @@ class GltfBuilder {
     views.push_back(text + "}");
     return static_cast<int>(views.size()) - 1;
   }
+  /// A view in a fallback buffer without data, whose bytes are a stream in buffer 0. `mode` such as "TRIANGLES".
+  int meshopt_view(const std::vector<std::uint8_t>& stream, std::size_t count, std::size_t stride,
+                   const std::string& mode, const std::string& filter = "NONE") {
+    const std::size_t offset = (bin.size() + 3) / 4 * 4;
+    bin.resize(offset);
+    bin.insert(bin.end(), stream.begin(), stream.end());
+    const auto n = [](std::size_t value) { return std::to_string(value); };
+    std::string text = "{\"buffer\":1,\"byteOffset\":" + n(fallback_bytes) + ",\"byteLength\":" + n(count * stride);
+    if (mode == "ATTRIBUTES") text += ",\"byteStride\":" + n(stride);
+    text += ",\"extensions\":{\"" + meshopt_name + "\":{\"buffer\":0,\"byteOffset\":" + n(offset) +
+            ",\"byteLength\":" + n(stream.size()) + ",\"byteStride\":" + n(stride) + ",\"count\":" + n(count) +
+            ",\"mode\":\"" + mode + "\",\"filter\":\"" + filter + "\"}}}";
+    fallback_bytes += (count * stride + 3) / 4 * 4;
+    views.push_back(text);
+    return static_cast<int>(views.size()) - 1;
+  }
   int accessor(int view_index, int component, std::size_t count, const std::string& type,
                const std::string& extra = "") {
     std::string text = "{\"componentType\":" + std::to_string(component) + ",\"count\":" + std::to_string(count) +
@@ -74,7 +90,14 @@ class GltfBuilder {
   /// `buffer` is the text of buffer 0 after its byteLength, such as ",\"uri\":\"b.bin\"".
   [[nodiscard]] std::string json(const std::string& rest, const std::string& buffer) const {
     std::string text = "{\"asset\":{\"version\":\"2.0\"}";
-    if (!bin.empty()) text += ",\"buffers\":[{\"byteLength\":" + std::to_string(bin.size()) + buffer + "}]";
+    if (!bin.empty()) {
+      text += ",\"buffers\":[{\"byteLength\":" + std::to_string(bin.size()) + buffer + "}";
+      if (fallback_bytes > 0) {
+        text += ",{\"byteLength\":" + std::to_string(fallback_bytes) + ",\"extensions\":{\"" + meshopt_name +
+                "\":{\"fallback\":true}}}";
+      }
+      text += "]";
+    }
     text += list("bufferViews", views) + list("accessors", accessors);
     return text + (rest.empty() ? "" : "," + rest) + "}";
   }
@@ -97,6 +120,8 @@ class GltfBuilder {
 
   std::vector<std::uint8_t> bin;
   std::vector<std::string> views, accessors;
+  std::size_t fallback_bytes = 0;  ///< of buffer 1
+  std::string meshopt_name = "EXT_meshopt_compression";
 
  private:
   static std::string list(const std::string& key, const std::vector<std::string>& items) {

@@ -7,6 +7,7 @@
 
 #include "draco_samples.h"
 #include "gltf_builder.h"
+#include "meshopt_samples.h"
 
 namespace meshlode::testing {
 
@@ -82,6 +83,8 @@ std::vector<SeedFile> make_seed_files() {
       seeds.push_back({"draco.glb", make_draco_glb(make_draco_sample(5, edgebreaker, speed, speed == 5 ? 0 : 11))});
     }
   }
+  seeds.push_back({"meshopt.glb", make_meshopt_pair(5).meshopt_glb});
+  seeds.push_back({"filtered.glb", make_filtered_glb(5)});
   seeds.push_back({"square.ply",
                    "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
                    "property uchar red\nproperty uchar green\nproperty uchar blue\nelement face 2\n"

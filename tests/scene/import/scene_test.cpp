@@ -185,23 +185,21 @@ TEST(ImportScene, OptionalExtensionsThatHoldTheGeometryAreRefused) {
   GltfBuilder coded = square();
   coded.array(std::vector<std::uint16_t>(12), 5123, "VEC3", 3, ",\"extensions\":{\"WEB3D_quantized_attributes\":{}}");
   expect_refused(coded.import(kMesh), "/accessors/2/extensions/WEB3D_quantized_attributes");
-  // A compressed view whose fallback buffer was not written.
+  // A view whose bytes another extension holds.
   const std::string views =
-      "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":36,\"extensions\":{\"EXT_meshopt_compression\":{"
-      "\"fallback\":true}}}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":36,\"extensions\":{"
-      "\"EXT_meshopt_compression\":{\"buffer\":1}}}],\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":"
-      "3,"
-      "\"type\":\"VEC3\"}]," +
+      "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":36}],\"bufferViews\":[{\"buffer\":0,"
+      "\"byteLength\":36,\"extensions\":{\"ACME_packed_views\":{}}}],\"accessors\":[{\"bufferView\":0,"
+      "\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}]," +
       mesh_text("\"POSITION\":0") + "}";
   const TempFolder folder;
-  expect_refused(scene::import_scene(folder.write("scene.gltf", views), {}), "EXT_meshopt_compression");
+  expect_refused(scene::import_scene(folder.write("scene.gltf", views), {}), "ACME_packed_views");
 }
 
 TEST(ImportScene, OptionalExtensionsWithAFallbackAreLeftOut) {
-  // The compressed view's own buffer has its bytes, so nothing is lost without the extension.
+  // The view's own buffer has its bytes, so nothing is lost without the extension.
   GltfBuilder b = square();
-  b.views[0].insert(b.views[0].size() - 1, ",\"extensions\":{\"EXT_meshopt_compression\":{\"buffer\":0}}");
-  const auto scene = b.import(kMesh + ",\"extensionsUsed\":[\"EXT_meshopt_compression\"]");
+  b.views[0].insert(b.views[0].size() - 1, ",\"extensions\":{\"ACME_packed_views\":{\"buffer\":0}}");
+  const auto scene = b.import(kMesh + ",\"extensionsUsed\":[\"ACME_packed_views\"]");
   ASSERT_TRUE(scene) << describe(scene);
   EXPECT_EQ(scene->meshes[0].primitives[0].indices.size(), 6U);
   EXPECT_TRUE(square().import(mesh_text("\"POSITION\":0", ",\"indices\":1,\"extensions\":{\"ACME_outline\":{}}")));

@@ -181,6 +181,8 @@ class GltfChecker : public JsonChecker {
 bool is_known_extension(std::string_view name) {
   constexpr std::string_view kKnown[] = {"KHR_draco_mesh_compression",
                                          "KHR_mesh_quantization",
+                                         "EXT_meshopt_compression",
+                                         "KHR_meshopt_compression",
                                          "KHR_texture_transform",
                                          "KHR_texture_basisu",
                                          "KHR_lights_punctual",
@@ -253,6 +255,7 @@ Status check_gltf(const Json& root, const std::string& file) {
   if (!head.ok()) return head.status();
   if (auto status = check_gltf_extensions(root, file); !status) return status;
   if (auto status = check_gltf_accessors(root, file); !status) return status;
+  if (auto status = check_gltf_meshopt(root, file); !status) return status;
   GltfChecker checker(root, file);
   checker.run();
   if (!checker.ok()) return checker.status();

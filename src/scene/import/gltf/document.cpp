@@ -87,6 +87,7 @@ Status carry_images(const GltfAsset& asset, GltfFiles& files, Json& document, Sc
   std::uint64_t view_bytes = 0;
   std::uint64_t view_limit = std::uint64_t{1} << 20U;
   for (const auto& buffer : asset.buffers) view_limit += buffer.size();
+  for (const auto& view : asset.decoded_views) view_limit += view.size();
   for (const Json& source : asset.root.items("images")) {
     const std::string path = "/images/" + std::to_string(out.size());
     auto found = find_image_bytes(asset, files, source, path);
@@ -138,7 +139,8 @@ Status carry_images(const GltfAsset& asset, GltfFiles& files, Json& document, Sc
 
 void carry_extension_names(const Json& root, Json& document) {
   constexpr std::string_view kGone[] = {"KHR_draco_mesh_compression", "KHR_mesh_quantization",
-                                        "EXT_meshopt_compression", "EXT_mesh_gpu_instancing"};
+                                        "EXT_meshopt_compression", "KHR_meshopt_compression",
+                                        "EXT_mesh_gpu_instancing"};
   for (const std::string_view key : {"extensionsUsed", "extensionsRequired"}) {
     Json::Array kept;
     for (const Json& name : root.items(key)) {

@@ -62,15 +62,16 @@ class GltfFiles {
 
 /// How much may be decoded: a bound that grows with the file, so that a small file cannot ask for gigabytes by naming
 /// the same bytes again and again, or by a count that no byte stands behind (I11). Counted in vertices and indices.
-/// A byte of Draco's may stand for 60 of them, but only as long as they take less than `max_decoded` bytes; beyond that
-/// the stream's size must justify them as that of other buffers does.
+/// A byte of Draco's or meshoptimizer's may stand for 60 of them, but only as long as they take less than `max_decoded`
+/// bytes; beyond that the stream's size must justify them as that of other buffers does.
 class DecodeBudget {
  public:
   static constexpr std::uint64_t kElementBytes = 24;  ///< of a position, the largest of them
 
-  DecodeBudget(std::uint64_t file_bytes, std::uint64_t draco_bytes, std::uint64_t max_decoded)
+  /// `compressed_bytes`: of the streams, at most as many as the files have.
+  DecodeBudget(std::uint64_t file_bytes, std::uint64_t compressed_bytes, std::uint64_t max_decoded)
       : left_((std::uint64_t{1} << 20U) + 4 * file_bytes +
-              std::min(60 * draco_bytes, std::max(4 * draco_bytes, max_decoded / kElementBytes))) {}
+              std::min(60 * compressed_bytes, std::max(4 * compressed_bytes, max_decoded / kElementBytes))) {}
   [[nodiscard]] std::uint64_t left_bytes() const { return left_ * kElementBytes; }
   [[nodiscard]] bool take(std::uint64_t elements) {
     if (elements > left_) return false;
@@ -89,6 +90,8 @@ struct GltfAsset {
   /// is empty: buffers above all, materials, extensions and extras.
   tinygltf::Model model;
   std::vector<std::span<const std::uint8_t>> buffers;  ///< by buffer index; empty where a buffer has no data
+  /// By view, where any is compressed (meshopt_views.h): the bytes that stand in the place of its buffer's.
+  std::vector<std::vector<std::uint8_t>> decoded_views;
 
   /// "scene.gltf: /meshes/0": where an error lies.
   [[nodiscard]] Error error(ErrorCode code, const std::string& json_path, std::string detail) const {
@@ -109,6 +112,8 @@ struct GltfAsset {
 [[nodiscard]] Status check_gltf_extensions(const Json& root, const std::string& file);
 [[nodiscard]] Status check_gltf_accessors(const Json& root, const std::string& file);
 [[nodiscard]] Status check_gltf_nodes(const Json& root, const std::string& file);
+/// \pre check_gltf_accessors passed. Errors: kInvalid; kUnsupported for a mode or filter that is not known.
+[[nodiscard]] Status check_gltf_meshopt(const Json& root, const std::string& file);
 /// Optional extensions that geometry would be lost without. \pre the other checks passed. Errors: kUnsupported.
 [[nodiscard]] Status check_gltf_lost_geometry(const Json& root, const std::string& file);
 

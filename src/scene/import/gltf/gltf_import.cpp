@@ -9,6 +9,7 @@
 
 #include "scene/import/gltf/check_base.h"
 #include "scene/import/gltf/gltf.h"
+#include "scene/import/gltf/meshopt_views.h"
 #include "scene/import/gltf/primitive.h"
 
 namespace meshlode::scene {
@@ -77,6 +78,10 @@ Status load_buffers(GltfAsset& asset, GltfFiles& files, const Container& contain
     const std::string path = "/buffers/" + std::to_string(i);
     std::span<const std::uint8_t> bytes;
     const std::uint64_t length = index_or(buffers[i], "byteLength", 0);
+    if (is_meshopt_fallback(buffers[i])) {
+      asset.buffers.emplace_back();  // every view in it is compressed, and read from where its extension says
+      continue;
+    }
     if (const Json* uri = buffers[i].find("uri")) {
       auto opened = files.open(*uri->string());
       if (!opened) return asset.error(opened.error().code, path + "/uri", opened.error().detail);
@@ -155,6 +160,9 @@ Status read_meshes(const GltfAsset& asset, const ImportOptions& options, DecodeB
 }  // namespace
 
 Result<std::span<const std::uint8_t>> GltfAsset::view_bytes(std::size_t view, const std::string& json_path) const {
+  if (!decoded_views.empty() && !decoded_views[view].empty()) {
+    return std::span<const std::uint8_t>(decoded_views[view]);
+  }
   const tinygltf::BufferView& v = model.bufferViews[view];
   const auto& bytes = buffers[v.buffer];
   if (!bytes.empty()) return bytes.subspan(v.byteOffset, v.byteLength);
@@ -189,8 +197,16 @@ Result<Scene> import_gltf(const std::filesystem::path& path, std::span<const std
   if (!model) return Error{model.error().code, asset.file, model.error().detail};
   asset.model = std::move(*model);
 
+  const std::uint64_t file_bytes = bytes.size() + files.total_bytes();
+  const std::uint64_t stream_bytes = std::min(count_meshopt_bytes(asset.root), file_bytes);
+  const std::uint64_t max_view_bytes =
+      std::max(16 * stream_bytes, std::min(kMeshoptMaxExpansion * stream_bytes, options.max_decoded));
+  if (auto status = decode_meshopt_views(asset, max_view_bytes); !status) return status.error();
+
   Scene scene;
-  DecodeBudget budget(bytes.size() + files.total_bytes(), count_draco_bytes(asset), options.max_decoded);
+  // Streams may overlap, and one of Draco's may come out of a compressed view: no more of them than the files have.
+  const std::uint64_t draco_bytes = std::min(count_draco_bytes(asset), file_bytes);
+  DecodeBudget budget(file_bytes, std::min(draco_bytes + stream_bytes, file_bytes), options.max_decoded);
   scene.materials = read_materials(asset, scene.left_out);
   if (auto status = read_meshes(asset, options, budget, scene); !status) return status.error();
   scene.instances = read_instances(asset, scene.left_out);

@@ -50,7 +50,7 @@ class PrimitiveReader {
     context_.left_out->push_back({part.empty() ? what_ : what_ + " " + part, std::move(why)});
   }
   Error no_budget(const std::string& path) const {
-    return asset_.invalid(path, "it decodes to more than the size of the file justifies (and, for Draco, " +
+    return asset_.invalid(path, "it decodes to more than the size of the file justifies (and, where compressed, " +
                                     byte_size_text(context_.options->max_decoded) + " of --max-decoded)");
   }
   const Json* draco_json() const {
