@@ -89,7 +89,7 @@ struct SceneMaterial {
 /// A node that draws a mesh, with its world transform composed in doubles.
 struct SceneInstance {
   std::string name;
-  std::uint32_t node = 0;  ///< glTF node index
+  std::uint32_t node = 0;  ///< of the document; behind the file's own nodes for instances of EXT_mesh_gpu_instancing
   MeshId mesh;
   Mat4d transform{1.0};  ///< mesh space to world, column-major
 };

@@ -74,6 +74,37 @@ class Gltf:
         for i, buffer in enumerate(root.get("buffers", [])):
             data = binary if i == 0 and binary is not None and "uri" not in buffer else self.bytes_of(buffer)
             self.buffers.append(data)
+        self.expand_instances()
+
+    def expand_instances(self):
+        """EXT_mesh_gpu_instancing: a node for each instance (docs/import.md), behind the others."""
+        added, nodes = [], self.root.get("nodes", [])
+        for n, node in enumerate(nodes):
+            instancing = node.get("extensions", {}).pop("EXT_mesh_gpu_instancing", None)
+            if instancing is None:
+                continue
+            if not node["extensions"]:
+                del node["extensions"]
+            if "mesh" not in node:
+                continue
+            rows = {name: self.accessor(index) for name, index in instancing["attributes"].items()}
+            mesh, first = node.pop("mesh"), len(nodes) + len(added)
+            count = len(next(iter(rows.values())))
+            for i in range(count):
+                instance = {"name": f"{node.get('name') or f'node {n}'}[{i}]", "mesh": mesh}
+                if "TRANSLATION" in rows:
+                    instance["translation"] = list(rows["TRANSLATION"][i])
+                if "ROTATION" in rows:
+                    x, y, z, w = rows["ROTATION"][i]
+                    length = math.sqrt(x * x + y * y + z * z + w * w)
+                    instance["rotation"] = [x / length, y / length, z / length, w / length]
+                if "SCALE" in rows:
+                    instance["scale"] = list(rows["SCALE"][i])
+                added.append(instance)
+            children = list(range(first, first + count)) + node.get("children", [])
+            if children:
+                node["children"] = children
+        nodes += added
 
     def bytes_of(self, item):
         """The bytes of an image or a buffer; None where it names none."""

@@ -4,7 +4,8 @@
 Every scene draws at random from what glTF 2.0 and KHR_mesh_quantization allow: component types, normalization, strides,
 offsets, sparse accessors with and without a base, strips and fans with stitches, with and without indices, shared and
 unused vertices, several materials and the default one, texture transforms, data URIs, escaped file names and GLB, node
-trees with matrices, mirrors and shears, several scenes, animations, and things that are to be left out."""
+trees with matrices, mirrors and shears, instances of EXT_mesh_gpu_instancing, several scenes, animations, and things
+that are to be left out."""
 
 import base64
 import json
@@ -18,6 +19,10 @@ import zlib
 SIZES = {5120: ("b", 1), 5121: ("B", 1), 5122: ("h", 2), 5123: ("H", 2), 5125: ("I", 4), 5126: ("f", 4)}
 LARGEST = {5120: 127, 5121: 255, 5122: 32767, 5123: 65535}
 WIDTHS = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4"}
+
+
+def as_f32(value):
+    return struct.unpack("<f", struct.pack("<f", value))[0]
 
 
 def png(side, color):
@@ -287,6 +292,9 @@ class Scene:
                     node["scale"] = [r.choice((-1, 1)) * r.uniform(0.1, 3) for _ in range(3)]
             if r.random() < 0.3:
                 node["extras"] = {"key": len(nodes)}
+            if r.random() < 0.15:
+                self.extensions.add("EXT_mesh_gpu_instancing")
+                node["extensions"] = {"EXT_mesh_gpu_instancing": {"attributes": self.instance_attributes()}}
             nodes.append(node)
         order = list(range(len(nodes)))
         r.shuffle(order)
@@ -315,6 +323,24 @@ class Scene:
                     "channels": [{"sampler": 0, "target": {"node": r.choice(moving), "path": "translation"}},
                                  {"sampler": 1, "target": {"node": r.choice(moving), "path": "rotation"}}]}]
 
+    def instance_attributes(self):
+        r, out = self.random, {}
+        count = r.randrange(1, 6)
+        if r.random() < 0.7:
+            rows = [tuple(as_f32(r.uniform(-9, 9)) for _ in range(3)) for _ in range(count)]
+            out["TRANSLATION"] = self.accessor(rows, 5126, is_vertex=False)
+        if r.random() < 0.7:
+            kind = r.choice((5120, 5122, 5126))
+            rows = [tuple(as_f32(r.gauss(0, 1)) if kind == 5126 else r.randint(-LARGEST[kind], LARGEST[kind])
+                          for _ in range(3)) + (1,) for _ in range(count)]
+            out["ROTATION"] = self.accessor(rows, kind, kind != 5126, is_vertex=False)
+        if r.random() < 0.5 or not out:
+            rows = [tuple(as_f32(r.choice((-1, 1)) * r.uniform(0.1, 3)) for _ in range(3)) for _ in range(count)]
+            out["SCALE"] = self.accessor(rows, 5126, is_vertex=False)
+        if r.random() < 0.2:
+            out["_ID"] = self.accessor([(i,) for i in range(count)], 5121, is_vertex=False)
+        return out
+
     def build(self):
         r, root = self.random, self.root
         materials = self.materials()
@@ -339,7 +365,7 @@ class Scene:
         self.nodes(len(meshes))
         if self.extensions:
             root["extensionsUsed"] = sorted(self.extensions)
-            required = [e for e in sorted(self.extensions) if e == "KHR_mesh_quantization"]
+            required = [e for e in sorted(self.extensions) if e in ("KHR_mesh_quantization", "EXT_mesh_gpu_instancing")]
             if required:
                 root["extensionsRequired"] = required
         return bool(materials)

@@ -85,6 +85,15 @@ std::vector<SeedFile> make_seed_files() {
   }
   seeds.push_back({"meshopt.glb", make_meshopt_pair(5).meshopt_glb});
   seeds.push_back({"filtered.glb", make_filtered_glb(5)});
+  GltfBuilder many;
+  many.floats(kSquare, "VEC3", 3);
+  many.floats({1, 2, 3, 4, 5, 6}, "VEC3", 3);
+  many.array(std::vector<std::int16_t>{0, 0, 0, 32767, 0, 0, 23170, 23170}, 5122, "VEC4", 4, ",\"normalized\":true");
+  seeds.push_back(
+      {"instances.glb", many.glb("\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],"
+                                 "\"nodes\":[{\"mesh\":0,\"children\":[1],\"name\":\"tree\",\"extensions\":{"
+                                 "\"EXT_mesh_gpu_instancing\":{\"attributes\":{\"TRANSLATION\":1,"
+                                 "\"ROTATION\":2,\"SCALE\":1,\"_ID\":1}}}},{}]")});
   seeds.push_back({"square.ply",
                    "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
                    "property uchar red\nproperty uchar green\nproperty uchar blue\nelement face 2\n"

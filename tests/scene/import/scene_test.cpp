@@ -162,14 +162,13 @@ TEST(ImportScene, OptionalExtensionsThatHoldTheGeometryAreRefused) {
     EXPECT_NE(scene.error().message().find(where), std::string::npos) << describe(scene);
   };
   // Four copies that would become one, whether the name is in extensionsUsed or not.
-  for (const std::string name : {"EXT_mesh_gpu_instancing", "KHR_mesh_gpu_instancing"}) {
-    for (const std::string& used : {std::string(), ",\"extensionsUsed\":[\"" + name + "\"]"}) {
-      GltfBuilder b = square();
-      const int moves = b.floats({0, 0, 0, 2, 0, 0, 4, 0, 0, 6, 0, 0}, "VEC3", 3);
-      expect_refused(b.import(kMesh + ",\"nodes\":[{},{\"mesh\":0,\"extensions\":{\"" + name +
-                              "\":{\"attributes\":{\"TRANSLATION\":" + std::to_string(moves) + "}}}}]" + used),
-                     "/nodes/1/extensions/" + name);
-    }
+  const std::string name = "KHR_mesh_gpu_instancing";
+  for (const std::string& used : {std::string(), ",\"extensionsUsed\":[\"" + name + "\"]"}) {
+    GltfBuilder b = square();
+    const int moves = b.floats({0, 0, 0, 2, 0, 0, 4, 0, 0, 6, 0, 0}, "VEC3", 3);
+    expect_refused(b.import(kMesh + ",\"nodes\":[{},{\"mesh\":0,\"extensions\":{\"" + name +
+                            "\":{\"attributes\":{\"TRANSLATION\":" + std::to_string(moves) + "}}}}]" + used),
+                   "/nodes/1/extensions/" + name);
   }
   // Vertices that a compression holds: the accessor alone is all zero.
   GltfBuilder hollow;

@@ -183,6 +183,7 @@ bool is_known_extension(std::string_view name) {
                                          "KHR_mesh_quantization",
                                          "EXT_meshopt_compression",
                                          "KHR_meshopt_compression",
+                                         "EXT_mesh_gpu_instancing",
                                          "KHR_texture_transform",
                                          "KHR_texture_basisu",
                                          "KHR_lights_punctual",

@@ -15,9 +15,9 @@ namespace {
 
 constexpr std::string_view kDraco = "KHR_draco_mesh_compression";
 
-/// EXT_mesh_gpu_instancing, and whatever other prefix it may be ratified under.
-bool is_instancing(std::string_view name) {
-  return name.ends_with("_mesh_gpu_instancing");
+/// EXT_mesh_gpu_instancing is read; whatever other prefix it may be ratified under may mean something else.
+bool is_unread_instancing(std::string_view name) {
+  return name.ends_with("_mesh_gpu_instancing") && name != "EXT_mesh_gpu_instancing";
 }
 
 /// Attributes that the importer reads; others are left out, and said so.
@@ -64,7 +64,7 @@ class LostGeometryChecker : public JsonChecker {
       const Json::Object* extensions = extensions_of(nodes[n]);
       if (extensions == nullptr) continue;
       for (const JsonMember& member : *extensions) {
-        if (!is_instancing(member.key)) continue;
+        if (!is_unread_instancing(member.key)) continue;
         unread("/nodes/" + std::to_string(n), member.key, "the mesh's instances are lost");
       }
     }

@@ -43,13 +43,29 @@ class NodeChecker : public JsonChecker {
       if (is_zero) return fail(path + "/rotation", "a quaternion of length zero");
     }
     const Json* extensions = node.find("extensions");
-    const Json* light = extensions != nullptr ? extensions->find("KHR_lights_punctual") : nullptr;
+    return extensions == nullptr || (check_light(*extensions, path) && check_instancing(*extensions, path));
+  }
+
+  bool check_light(const Json& extensions, const std::string& path) {
+    const Json* light = extensions.find("KHR_lights_punctual");
     if (light == nullptr) return true;
     const std::string here = path + "/extensions/KHR_lights_punctual";
     if (!light->is_object()) return fail(here, "not an object");
     const Json* root_extensions = root_.find("extensions");
     const Json* lights = root_extensions != nullptr ? root_extensions->find("KHR_lights_punctual") : nullptr;
     return required_index(*light, here, "light", lights != nullptr ? lights->items("lights").size() : 0);
+  }
+
+  bool check_instancing(const Json& extensions, const std::string& path) {
+    const Json* instancing = extensions.find("EXT_mesh_gpu_instancing");
+    if (instancing == nullptr) return true;
+    const std::string here = path + "/extensions/EXT_mesh_gpu_instancing";
+    if (!instancing->is_object()) return fail(here, "not an object");
+    const Json* attributes = instancing->find("attributes");
+    if (attributes == nullptr || !attributes->is_object() || attributes->object()->empty()) {
+      return fail(here + "/attributes", "missing, or without an attribute");
+    }
+    return index_map(*attributes, here + "/attributes", root_.items("accessors").size());
   }
 
   bool check_trees() {

@@ -9,6 +9,7 @@
 
 #include "scene/import/gltf/check_base.h"
 #include "scene/import/gltf/gltf.h"
+#include "scene/import/gltf/instancing.h"
 #include "scene/import/gltf/meshopt_views.h"
 #include "scene/import/gltf/primitive.h"
 
@@ -209,6 +210,7 @@ Result<Scene> import_gltf(const std::filesystem::path& path, std::span<const std
   DecodeBudget budget(file_bytes, std::min(draco_bytes + stream_bytes, file_bytes), options.max_decoded);
   scene.materials = read_materials(asset, scene.left_out);
   if (auto status = read_meshes(asset, options, budget, scene); !status) return status.error();
+  if (auto status = expand_instancing(asset, budget, scene.left_out); !status) return status.error();
   scene.instances = read_instances(asset, scene.left_out);
   const std::size_t skin_count = asset.root.items("skins").size();
   for (std::size_t s = 0; s < skin_count; ++s) {
