@@ -27,15 +27,11 @@ namespace meshlode::build {
 
 namespace {
 
-std::string label_of(const scene::SourceMesh& mesh, std::size_t index) {
-  return "mesh " + std::to_string(index) + (mesh.name.empty() ? "" : " '" + mesh.name + "'");
-}
-
 /// Refuses what cannot be built, before any work is done. \returns how many meshes may be in work at once
 Result<std::size_t> check_build(const scene::Scene& scene, const PipelineOptions& options, PipelineReport& report) {
   if (const Status s = check_options(options); !s) return s.error();
   for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
-    const std::string label = label_of(scene.meshes[i], i);
+    const std::string label = mesh_label(scene.meshes[i], i);
     if (const Status counts = check_mesh_counts(count_mesh(scene.meshes[i]), label); !counts) return counts.error();
   }
   const auto threads = static_cast<std::uint32_t>(thread_limit());
@@ -72,7 +68,7 @@ Result<BuiltMesh> build_mesh(const Source& from, std::size_t index,
                              std::span<const std::array<double, scene::kMaxUvSets>> texels,
                              const PipelineOptions& options, ProgressMeter& progress) {
   const scene::SourceMesh& source = from.scene.meshes[index];
-  const std::string label = label_of(source, index);
+  const std::string label = mesh_label(source, index);
   BuiltMesh built;
 
   MeshPlan plan = plan_mesh(source, from.scene.materials, options.attributes, label);

@@ -2,14 +2,13 @@
 #include "build/needs.h"
 
 #include <algorithm>
-#include <bit>
 #include <functional>
 #include <string>
 #include <vector>
 
 #include "base/byte_size.h"
 #include "base/memory.h"
-#include "base/random.h"
+#include "build/plan/count_wedges.h"
 
 namespace meshlode::build {
 
@@ -37,27 +36,6 @@ std::uint64_t bytes_of(const scene::Primitive& primitive) {
                       bytes_of(primitive.indices);
   for (const auto& uvs : primitive.uvs) sum += bytes_of(uvs);
   return sum;
-}
-
-/// Distinct positions of a mesh: of those whose hash falls into a share that leaves half a million, exactly; the others
-/// are taken to be like them (Flajolet 1990).
-std::uint64_t count_positions(const scene::SourceMesh& mesh) {
-  constexpr std::uint64_t kSample = std::uint64_t{1} << 19U;
-  std::uint64_t vertices = 0;
-  for (const scene::Primitive& primitive : mesh.primitives) vertices += primitive.positions.size();
-  std::uint32_t bits = 0;
-  while (vertices >> bits > kSample) ++bits;
-  const std::uint64_t mask = (std::uint64_t{1} << bits) - 1;
-  std::vector<std::uint64_t> seen;
-  for (const scene::Primitive& primitive : mesh.primitives) {
-    for (const Vec3d& p : primitive.positions) {
-      std::uint64_t hash = 0;
-      for (int k = 0; k < 3; ++k) hash = mix64(hash + std::bit_cast<std::uint64_t>(p[k] + 0.0) + kGoldenGamma);
-      if ((hash & mask) == 0) seen.push_back(hash);
-    }
-  }
-  std::sort(seen.begin(), seen.end());
-  return static_cast<std::uint64_t>(std::unique(seen.begin(), seen.end()) - seen.begin()) << bits;
 }
 
 /// Floats of a vertex beside its position, as many as may be kept.
@@ -114,7 +92,7 @@ MemoryEstimate estimate_memory(const scene::Scene& scene, const PipelineOptions&
     for (const scene::Primitive& primitive : mesh.primitives) estimate.always += bytes_of(primitive);
     estimate.always += kKeptTriangle * counts.triangles;
     estimate.working.push_back(kTriangle * counts.triangles +
-                               (is_measured ? kPosition : kPositionOfQuadric) * count_positions(mesh) +
+                               (is_measured ? kPosition : kPositionOfQuadric) * count_wedges(mesh, {}) +
                                kVertexFloat * attribute_floats(mesh, options) * counts.vertices);
   }
   std::sort(estimate.working.begin(), estimate.working.end(), std::greater<>());

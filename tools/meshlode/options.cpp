@@ -71,8 +71,10 @@ void OptionParser::add_value(const char* name, std::optional<std::uint32_t>& tar
 void OptionParser::add_value(const char* name, std::optional<std::uint64_t>& target, const char* help) {
   add_option(state_->app, name, target, help);
 }
-void OptionParser::add_value(const char* name, std::optional<std::string>& target, const char* help) {
-  add_option(state_->app, name, target, help);
+void OptionParser::add_value(const char* name, std::optional<std::string>& target, const char* help,
+                             const std::vector<std::string>& choices) {
+  CLI::Option* option = add_option(state_->app, name, target, help);
+  if (!choices.empty()) option->check(CLI::IsMember(choices));
 }
 void OptionParser::add_positional(const char* name, std::string& target, const char* help) {
   add_option(state_->app, name, target, help)->required();

@@ -36,7 +36,8 @@ class OptionParser {
   void add_value(const char* name, std::optional<double>& target, const char* help);
   void add_value(const char* name, std::optional<std::uint32_t>& target, const char* help);
   void add_value(const char* name, std::optional<std::uint64_t>& target, const char* help);
-  void add_value(const char* name, std::optional<std::string>& target, const char* help);
+  void add_value(const char* name, std::optional<std::string>& target, const char* help,
+                 const std::vector<std::string>& choices = {});
   void add_positional(const char* name, std::string& target, const char* help);                ///< exactly one
   void add_positionals(const char* name, std::vector<std::string>& target, const char* help);  ///< one or more
 

@@ -2,22 +2,18 @@
 // build: scenes in, assets out. One input with -o, or many inputs and folders with -O; a batch goes on after a failure
 // and exits with its worst code.
 #include <algorithm>
-#include <charconv>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <optional>
 #include <set>
-#include <string_view>
 #include <utility>
 
 #include "base/byte_size.h"
 #include "base/json_writer.h"
 #include "base/version.h"
 #include "build/build.h"
-#include "build/preset.h"
-#include "format/names.h"
+#include "build/settings/settings.h"
+#include "build_options.h"
 #include "options.h"
 #include "outputs.h"
 #include "progress.h"
@@ -369,119 +365,38 @@ std::string report_json(const std::vector<JobResult>& results, std::uint32_t job
   return w.text();
 }
 
-/// The words of the command line, before they mean anything.
-struct BuildWords {
-  std::string error_tier = "auto";
-  std::string preset = build::name_of(Preset::kDefault);
-  std::string attributes = build::name_of(AttributeChoice::kAuto);
-  std::string grid = "auto";
-  std::string position_error = "auto";
-  std::string normal_error = "0.1";
-  std::string uv_error = "auto";
-  std::string codec = format::name_of(format::Codec::kNone);
-};
-
-/// A finite number above 0, all of the text.
-std::optional<double> parse_positive(std::string_view text) {
-  double value = 0.0;
-  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || rest != text.data() + text.size() || !(value > 0.0) || !std::isfinite(value)) {
-    return std::nullopt;
-  }
-  return value;
-}
-
-/// The accuracy budgets.
-Status set_budgets(const BuildWords& words, build::PipelineOptions& options) {
-  if (words.position_error != "auto") {
-    if (words.grid != "auto") return Error{ErrorCode::kUsage, "--position-error", "give this or --grid, not both"};
-    const auto error = parse_positive(words.position_error);
-    if (!error) return Error{ErrorCode::kUsage, "--position-error", "give auto or a distance above 0 in mesh units"};
-    options.position_error = *error;
-  }
-  const auto normal = parse_positive(words.normal_error);
-  if (!normal) return Error{ErrorCode::kUsage, "--normal-error", "give an angle above 0 in degrees"};
-  options.normal_error = *normal;
-  if (words.uv_error != "auto") {
-    std::string_view text = words.uv_error;
-    options.uv_error_is_texels = text.ends_with("px");
-    options.uv_error_is_default = false;
-    if (options.uv_error_is_texels) text.remove_suffix(2);
-    const auto error = parse_positive(text);
-    if (!error)
-      return Error{ErrorCode::kUsage, "--uv-error", "give auto, a number above 0 in UV units, or texels as 0.25px"};
-    options.uv_error = *error;
-  }
-  return Ok{};
-}
-
-Result<build::PipelineOptions> make_options(const BuildWords& words) {
-  build::PipelineOptions options;
-  options.preset = value_in(build::kPresetNames, words.preset).value_or(options.preset);
-  options.error_tier =
-      value_in(format::kErrorTierNames, words.error_tier).value_or(build::settings_of(options.preset).error_tier);
-  options.codec = value_in(format::kCodecNames, words.codec).value_or(options.codec);
-  options.attributes = value_in(build::kAttributeChoiceNames, words.attributes).value_or(options.attributes);
-  if (Status status = set_budgets(words, options); !status) return status.error();
-  if (words.grid != "auto") {
-    const char* end = words.grid.data() + words.grid.size();
-    const auto [rest, error] = std::from_chars(words.grid.data(), end, options.grid_step);
-    if (error != std::errc{} || rest != end || !(options.grid_step > 0.0) || !std::isfinite(options.grid_step)) {
-      return Error{ErrorCode::kUsage, "--grid", "give auto or a step above 0 in mesh units"};
-    }
-  }
-  return options;
-}
-
 int run_build(const Verb& verb, std::span<char* const> args) {
   std::vector<std::string> inputs;
   std::string output, output_folder, report_path;
   BuildWords words;
   std::uint32_t jobs = 0;
   OutputOptions out;
-  bool repair = false;
   std::string max_memory = "auto", max_decoded = kDefaultMaxDecodedText;
-  std::vector<std::string> tiers = all_names(format::kErrorTierNames);
-  tiers.insert(tiers.begin(), words.error_tier);
   OptionParser parser(verb);
   parser.add_positionals("input", inputs, ".gltf, .glb, .ply, .obj or .stl files, and folders of them with -O");
   parser.add_value("-o,--output", output, "the asset to write; the input's name with .lode where not given");
   parser.add_value("-O,--output-folder", output_folder, "folder for the assets of many inputs; made where missing");
-  parser.add_value("--error-tier", words.error_tier,
-                   "what the errors are worth: qem estimates, measured measures, certified proves; auto: the preset's",
-                   tiers);
-  parser.add_value("--preset", words.preset,
-                   "fast builds fastest and estimates errors, best spends time on clusters and bytes",
-                   all_names(build::kPresetNames));
-  parser.add_value("--attributes", words.attributes, "auto keeps what the materials call for, none positions only",
-                   all_names(build::kAttributeChoiceNames));
-  parser.add_value("--grid", words.grid, "auto, or a step in mesh units for meshes that must abut");
-  parser.add_value("--position-error", words.position_error,
-                   "auto, or the largest distance a vertex may move, mesh units");
-  parser.add_value("--normal-error", words.normal_error, "the largest angle a stored normal may be off, degrees");
-  parser.add_value("--uv-error", words.uv_error, "auto, or the largest move of a UV: UV units, or 0.25px for texels");
-  parser.add_value("--codec", words.codec, "disk codec of the pages", all_names(format::kCodecNames));
+  add_build_options(parser, words);
   parser.add_value(
       "--max-memory", max_memory,
       "what the build may take, such as 8GiB: meshes one by one to keep it, or refused; auto: what is left");
   add_max_decoded_option(parser, max_decoded);
   add_jobs_option(parser, jobs);
   parser.add_value("--report", report_path, "write times and counts as JSON, the same that --format json prints");
-  parser.add_flag("--repair", repair,
-                  "remove unusable, degenerate and duplicate triangles, orient the rest, split where it is no surface");
   add_output_options(parser, out);
   if (const auto exit_code = parser.parse(args)) return *exit_code;
   if (!output.empty() && !output_folder.empty()) {
     return print_error({ErrorCode::kUsage, "", "give -o or -O, not both"});
   }
-  Result<build::PipelineOptions> options = make_options(words);
-  if (!options) return print_error(options.error());
-  options->repair = repair;
+  const build::SettingLayer given = given_settings(words);
+  const Result<build::Settled> settled = build::settle({&given, 1});
+  if (!settled) return print_error(settled.error());
+  build::PipelineOptions options = settled->options;
   if (max_memory != "auto") {
     const auto bytes = parse_byte_size(max_memory);
     if (!bytes || *bytes == 0)
       return print_error({ErrorCode::kUsage, "--max-memory", "give auto or a size above 0, such as 8GiB"});
-    options->max_memory = *bytes;
+    options.max_memory = *bytes;
   }
   const Result<std::uint64_t> decoded = parse_max_decoded(max_decoded);
   if (!decoded) return print_error(decoded.error());
@@ -491,7 +406,7 @@ int run_build(const Verb& verb, std::span<char* const> args) {
   if (const Status made = make_folder(output_folder); !made) return print_error(made.error());
   if (const Status free = check_outputs(*plan, report_path); !free) return print_error(free.error());
   const JobOptions job_options{
-      *options, {.repair = repair, .max_decoded = *decoded}, report_path, !output_folder.empty()};
+      options, {.repair = options.repair, .max_decoded = *decoded}, report_path, !output_folder.empty()};
 
   JobLimit limit(jobs);
   std::vector<JobResult> results;

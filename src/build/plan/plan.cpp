@@ -46,11 +46,15 @@ bool is_all_white(const scene::SourceMesh& mesh) {
 
 }  // namespace
 
+std::string mesh_label(const scene::SourceMesh& mesh, std::size_t index) {
+  return "mesh " + std::to_string(index) + (mesh.name.empty() ? "" : " '" + mesh.name + "'");
+}
+
 MeshPlan plan_mesh(const scene::SourceMesh& mesh, const std::vector<scene::SceneMaterial>& materials,
                    AttributeChoice choice, const std::string& mesh_label) {
   MeshPlan plan;
   const auto decide = [&](const std::string& what, bool kept, const char* reason) {
-    plan.decisions.push_back({mesh_label + ": " + what, kept, reason, false});
+    plan.decisions.push_back({mesh_label + ": " + what, kept, reason, false, what});
     return kept;
   };
 

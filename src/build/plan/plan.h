@@ -23,14 +23,18 @@ constexpr const char* name_of(AttributeChoice choice) {
 struct PlanDecision {
   std::string what;  ///< "mesh 0: TEXCOORD_0"
   bool kept = false;
-  std::string reason;    ///< "no material samples a texture through it"
-  bool is_loss = false;  ///< left out although the scene's materials can show it
+  std::string reason;       ///< "no material samples a texture through it"
+  bool is_loss = false;     ///< left out although the scene's materials can show it
+  std::string attribute{};  ///< "TEXCOORD_0"; empty where the decision is about something else
 };
 
 struct MeshPlan {
   AttributeLayout layout;
   std::vector<PlanDecision> decisions;
 };
+
+/// "mesh 3 'rock'", what decisions and errors call a mesh.
+[[nodiscard]] std::string mesh_label(const scene::SourceMesh& mesh, std::size_t index);
 
 /// Decides the attributes of one mesh. `mesh_label` starts each decision's `what`.
 [[nodiscard]] MeshPlan plan_mesh(const scene::SourceMesh& mesh, const std::vector<scene::SceneMaterial>& materials,

@@ -83,16 +83,16 @@ double median_edge_length(const Corners& corners) {
   return std::sqrt(*middle);
 }
 
-/// Grid and origin from the bounds of the vertices that the source's triangles use, so that stray points do not coarsen
-/// it.
-Status choose_frame(const Corners& corners, const PrepareOptions& options, PreparedMesh& mesh) {
-  struct Box {
-    Vec3d low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
-    void add(const Vec3d& from, const Vec3d& to) {
-      low = glm::min(low, from);
-      high = glm::max(high, to);
-    }
-  };
+struct Box {
+  Vec3d low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
+  void add(const Vec3d& from, const Vec3d& to) {
+    low = glm::min(low, from);
+    high = glm::max(high, to);
+  }
+};
+
+/// Of the vertices that triangles use: stray points do not coarsen the grid.
+Box box_of_corners(const Corners& corners) {
   Box all;
   for (const Box& box : sums_of_chunks(corners.triangles.size(), Box{}, [&](std::size_t i, Box&sum) {
          const Vec3d& p = corners.positions[corners.triangles[i]];
@@ -100,6 +100,12 @@ Status choose_frame(const Corners& corners, const PrepareOptions& options, Prepa
        })) {
     all.add(box.low, box.high);
   }
+  return all;
+}
+
+/// Grid and origin from the bounds of the source.
+Status choose_frame(const Corners& corners, const PrepareOptions& options, PreparedMesh& mesh) {
+  const Box all = box_of_corners(corners);
   const auto& [low, high] = all;
   const Vec3d half = (high - low) * 0.5;
   mesh.diagonal = 2.0 * std::sqrt(glm::dot(half, half));
@@ -158,6 +164,21 @@ std::uint64_t count_pieces(const PreparedMesh& mesh) {
 }
 
 }  // namespace
+
+Result<GridPlan> plan_grid(const scene::SourceMesh& source, const PrepareOptions& options) {
+  const std::string where = "mesh '" + source.name + "'";
+  Corners corners = gather_corners(source, {});
+  if (!are_finite(corners)) return Error{ErrorCode::kInvalid, where, "a position is not finite"};
+  drop_undrawn(corners);
+  if (corners.triangles.empty()) return GridPlan{};
+  PreparedMesh mesh;
+  if (const Status frame = choose_frame(corners, options, mesh); !frame) {
+    return Error{frame.error().code, where, frame.error().detail};
+  }
+  const Box box = box_of_corners(corners);
+  const Vec3d sides = box.high - box.low;
+  return GridPlan{mesh.grid, std::max({sides.x, sides.y, sides.z}), median_edge_length(corners)};
+}
 
 Result<PreparedMesh> prepare_mesh(const scene::SourceMesh& source, const AttributeLayout& layout,
                                   const PrepareOptions& options) {

@@ -26,6 +26,16 @@ struct PrepareOptions {
 [[nodiscard]] Result<format::PositionGrid> choose_grid(double largest_half_extent, double diagonal, double median_edge,
                                                        const PrepareOptions& options);
 
+/// The grid that prepare_mesh() will choose, and what it is chosen for.
+struct GridPlan {
+  format::PositionGrid grid;
+  double largest_side = 0.0;  ///< of the bounding box of what is drawn, object units; 0: nothing is
+  double median_edge = 0.0;   ///< of a sample of the triangles, object units
+};
+
+/// Errors: those of prepare_mesh().
+[[nodiscard]] Result<GridPlan> plan_grid(const scene::SourceMesh& mesh, const PrepareOptions& options);
+
 /// Errors: kUnsupported (the grid needs more than 24 bits), kInvalid (a position is not finite).
 [[nodiscard]] Result<PreparedMesh> prepare_mesh(const scene::SourceMesh& mesh, const AttributeLayout& layout,
                                                 const PrepareOptions& options);

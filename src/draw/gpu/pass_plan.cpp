@@ -15,6 +15,19 @@ constexpr std::uint64_t kOcclusionClusters = 1000000;
 
 Result<PassPlan> plan_passes(const GpuScene& scene, const DeviceInfo& device, std::uint32_t width, std::uint32_t height,
                              const std::vector<std::string>& force, bool has_colors) {
+  PassFacts facts;
+  facts.instance_count = scene.instance_count;
+  facts.cluster_instances = scene.cluster_instances;
+  facts.bvh_depth = scene.bvh_depth;
+  facts.has_single_root = scene.max_root_triangles > 0;
+  facts.has_double_sided = scene.has_double_sided;
+  facts.has_alpha_mask = scene.has_alpha_mask;
+  facts.has_textures = scene.has_textures;
+  return plan_passes(facts, device, width, height, force, has_colors);
+}
+
+Result<PassPlan> plan_passes(const PassFacts& scene, const DeviceInfo& device, std::uint32_t width,
+                             std::uint32_t height, const std::vector<std::string>& force, bool has_colors) {
   constexpr std::array kNames = {"double-sided", "alpha-mask", "occlusion", "hardware", "textures", "all"};
   for (const std::string& name : force) {
     if (std::find(kNames.begin(), kNames.end(), name) == kNames.end()) {
@@ -35,12 +48,13 @@ Result<PassPlan> plan_passes(const GpuScene& scene, const DeviceInfo& device, st
   };
   decide("instances", true, false, std::to_string(scene.instance_count) + " instances to cull and set up");
   decide("traverse", true, false,
-         std::to_string(scene.bvh_depth) + " depths of the BVH, a dispatch for all but the last");
+         (scene.bvh_depth > 0 ? std::to_string(scene.bvh_depth) + " depths of the BVH" : std::string("the BVH")) +
+             ", a dispatch for all depths but the last");
   decide("clusters", true, false, "members of open groups");
   decide("software", true, false, "every cluster that is not the hardware's");
-  decide("far", scene.max_root_triangles > 0 && !is_forced("hardware"), false,
-         scene.max_root_triangles > 0 ? "a mesh has one root: where it covers a few pixels it goes past the BVH"
-                                      : "no mesh has one root cluster alone");
+  decide("far", scene.has_single_root && !is_forced("hardware"), false,
+         scene.has_single_root ? "a mesh has one root: where it covers a few pixels it goes past the BVH"
+                               : "no mesh has one root cluster alone");
   decide("clipped", true, false, "triangles across the near plane; no work where there are none");
   plan.options.double_sided =
       decide("double-sided", scene.has_double_sided, is_forced("double-sided"),
@@ -67,12 +81,12 @@ Result<PassPlan> plan_passes(const GpuScene& scene, const DeviceInfo& device, st
   return plan;
 }
 
-std::string describe_plan(const PassPlan& plan) {
+std::string describe_plan(const PassPlan& plan, const std::string& indent) {
   std::string out;
   for (const PassDecision& d : plan.decisions) {
     std::string pass = d.pass;
     pass.resize(14, ' ');
-    out += pass + (d.runs ? "runs   " : "-      ") + d.reason + "\n";
+    out += indent + pass + (d.runs ? "runs   " : "-      ") + d.reason + "\n";
   }
   return out;
 }

@@ -4,6 +4,7 @@
 
 #include "base/append_format.h"
 #include "base/hash.h"
+#include "base/printable.h"
 #include "format/names.h"
 #include "out/report/info.h"
 
@@ -13,25 +14,11 @@ namespace {
 
 constexpr std::size_t kMaxRows = 40;  ///< of meshes, materials and the like: a city has thousands; JSON lists all
 
-/// 1234567 -> "1,234,567".
-std::string grouped(std::uint64_t n) {
-  std::string digits = std::to_string(n);
-  for (std::size_t i = digits.size(); i > 3; i -= 3) digits.insert(i - 3, 1, ',');
-  return digits;
-}
-
-/// Names come from a file: no control characters reach the terminal.
-std::string printable(std::string_view name, std::size_t limit = 60) {
-  std::string out;
-  for (const char c : name.substr(0, limit)) out += static_cast<unsigned char>(c) < 0x20 || c == 0x7F ? '?' : c;
-  return out.empty() ? "(no name)" : out;
-}
-
 void add_mesh(std::string& out, const run::Asset& asset, std::uint32_t id, const MeshInfo& info) {
   const format::MeshRecord& mesh = asset.meshes()[id];
   append_format(out, "\nmesh %u  %s\n", id, printable(asset.string(mesh.name)).c_str());
   append_format(out, "  %s source triangles, %s stored (%.3fx), diagonal %.6g, grid step %u * 2^%d, tier %s\n",
-                grouped(mesh.source_triangles).c_str(), grouped(info.triangles).c_str(),
+                grouped_digits(mesh.source_triangles).c_str(), grouped_digits(info.triangles).c_str(),
                 mesh.source_triangles == 0
                     ? 0.0
                     : static_cast<double>(info.triangles) / static_cast<double>(mesh.source_triangles),
@@ -60,10 +47,11 @@ void add_mesh(std::string& out, const run::Asset& asset, std::uint32_t id, const
                 has_normals ? "  normals/deg" : "", has_uvs ? "         UVs" : "");
   for (const LevelInfo& level : info.levels) {
     append_format(out, "  %5u  %8s  %10s  %10s  %5llu  %5.3f  %6llu  %5llu  %10.4g  %10.4g", level.level,
-                  grouped(level.clusters).c_str(), grouped(level.triangles).c_str(), grouped(level.vertices).c_str(),
-                  static_cast<unsigned long long>(level.full_clusters), level.fill,
-                  static_cast<unsigned long long>(level.groups), static_cast<unsigned long long>(level.stuck_groups),
-                  static_cast<double>(level.error_min), static_cast<double>(level.error_max));
+                  grouped_digits(level.clusters).c_str(), grouped_digits(level.triangles).c_str(),
+                  grouped_digits(level.vertices).c_str(), static_cast<unsigned long long>(level.full_clusters),
+                  level.fill, static_cast<unsigned long long>(level.groups),
+                  static_cast<unsigned long long>(level.stuck_groups), static_cast<double>(level.error_min),
+                  static_cast<double>(level.error_max));
     if (has_normals) append_format(out, "  %11.4g", static_cast<double>(level.normal_deviation_max));
     if (has_uvs) append_format(out, "  %10.4g", static_cast<double>(level.uv_deviation_max));
     out += '\n';
@@ -91,7 +79,7 @@ void add_byte_map(std::string& out, const ByteMap& map, const AssetInfo& info) {
   if (info.stored_triangles > 0) {
     row("/tri", map.total, static_cast<double>(info.stored_triangles), 3);
     append_format(out, "  (/src, /tri: bytes per source and per stored triangle; tables beside the pages: %s bytes)\n",
-                  grouped(map.table_bytes).c_str());
+                  grouped_digits(map.table_bytes).c_str());
   }
 }
 
@@ -115,25 +103,26 @@ std::string info_text(const run::Asset& asset, const AssetInfo& info, bool list_
   if (!meta.preset.empty() && meta.preset != "default") {
     append_format(out, "preset            %s\n", printable(meta.preset).c_str());
   }
-  append_format(out, "bytes             %s: geometry %s, images %s\n", grouped(header.file_bytes).c_str(),
-                grouped(info.geometry_bytes).c_str(), grouped(info.image_bytes).c_str());
+  append_format(out, "bytes             %s: geometry %s, images %s\n", grouped_digits(header.file_bytes).c_str(),
+                grouped_digits(info.geometry_bytes).c_str(), grouped_digits(info.image_bytes).c_str());
   if (info.source_triangles > 0) {
     append_format(out, "                  %.2f geometry bytes per source triangle\n",
                   static_cast<double>(info.geometry_bytes) / static_cast<double>(info.source_triangles));
   }
   append_format(out, "scene             %zu mesh(es), %zu instance(s), %zu material(s), %zu page(s)\n",
                 asset.meshes().size(), asset.instances().size(), asset.materials().size(), asset.pages().size());
-  append_format(out, "source            %s triangles, %s vertices\n", grouped(info.source_triangles).c_str(),
-                grouped(info.source_vertices).c_str());
+  append_format(out, "source            %s triangles, %s vertices\n", grouped_digits(info.source_triangles).c_str(),
+                grouped_digits(info.source_vertices).c_str());
   append_format(out, "stored            %s triangles, %s vertices in %s clusters, %s groups, %s level(s)\n",
-                grouped(info.stored_triangles).c_str(), grouped(info.stored_vertices).c_str(),
-                grouped(asset.clusters().size()).c_str(), grouped(asset.groups().size()).c_str(),
-                grouped(info.levels).c_str());
-  append_format(out, "roots             %s (at most %s a mesh), %s stuck group(s)\n", grouped(info.roots).c_str(),
-                grouped(info.max_roots_per_mesh).c_str(), grouped(info.stuck_groups).c_str());
+                grouped_digits(info.stored_triangles).c_str(), grouped_digits(info.stored_vertices).c_str(),
+                grouped_digits(asset.clusters().size()).c_str(), grouped_digits(asset.groups().size()).c_str(),
+                grouped_digits(info.levels).c_str());
+  append_format(out, "roots             %s (at most %s a mesh), %s stuck group(s)\n",
+                grouped_digits(info.roots).c_str(), grouped_digits(info.max_roots_per_mesh).c_str(),
+                grouped_digits(info.stuck_groups).c_str());
   append_format(out, "dropped           %s degenerate, %s duplicate, %s repaired\n",
-                grouped(info.dropped_degenerate).c_str(), grouped(info.dropped_duplicate).c_str(),
-                grouped(info.dropped_repaired).c_str());
+                grouped_digits(info.dropped_degenerate).c_str(), grouped_digits(info.dropped_duplicate).c_str(),
+                grouped_digits(info.dropped_repaired).c_str());
   // What the plan leaves out is among what was left out, with its reason.
   std::size_t rows = 0;
   for (const MetaInfo::Decision& decision : meta.decisions) {
@@ -175,8 +164,8 @@ std::string info_text(const run::Asset& asset, const AssetInfo& info, bool list_
   if (info.byte_map) add_byte_map(out, *info.byte_map, info);
   append_format(out, "\nsections        bytes     decoded\n");
   for (const format::SectionEntry& section : asset.sections()) {
-    append_format(out, "  %s  %12s %11s\n", section_name(section.id).c_str(), grouped(section.bytes).c_str(),
-                  grouped(section_decoded_bytes(asset, section)).c_str());
+    append_format(out, "  %s  %12s %11s\n", section_name(section.id).c_str(), grouped_digits(section.bytes).c_str(),
+                  grouped_digits(section_decoded_bytes(asset, section)).c_str());
   }
   return out;
 }

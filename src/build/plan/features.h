@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a scene has beside triangles and attributes, and what becomes of each: acted on, carried through, or left out.
+#pragma once
+
+#include <vector>
+
+#include "build/plan/plan.h"
+#include "scene/scene.h"
+
+namespace meshlode::build {
+
+/// In a fixed order; only what the scene has. What import left out comes last, in its words.
+[[nodiscard]] std::vector<PlanDecision> list_features(const scene::Scene& scene);
+
+}  // namespace meshlode::build

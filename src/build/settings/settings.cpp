@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "build/settings/settings.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <utility>
+
+#include "base/nearest_name.h"
+#include "build/preset.h"
+#include "format/names.h"
+
+namespace meshlode::build {
+
+namespace {
+
+constexpr std::array<SettingInfo, kSettingCount> kSettings{{
+    {Setting::kErrorTier, "error-tier",
+     "what the errors are worth: qem estimates, measured measures, certified proves; auto: the preset's", "auto"},
+    {Setting::kPreset, "preset", "fast builds fastest and estimates errors, best spends time on clusters and bytes",
+     "default"},
+    {Setting::kAttributes, "attributes", "auto keeps what the materials call for, none positions only", "auto"},
+    {Setting::kGrid, "grid", "auto, or a step in mesh units for meshes that must abut", "auto"},
+    {Setting::kPositionError, "position-error", "auto, or the largest distance a vertex may move, mesh units", "auto"},
+    {Setting::kNormalError, "normal-error", "the largest angle a stored normal may be off, degrees", "0.1"},
+    {Setting::kUvError, "uv-error", "auto, or the largest move of a UV: UV units, or 0.25px for texels", "auto"},
+    {Setting::kCodec, "codec", "disk codec of the pages", "none"},
+    {Setting::kRepair, "repair",
+     "remove unusable, degenerate and duplicate triangles, orient the rest, split where it is no surface", "false"},
+}};
+
+/// A finite number above 0, all of the text.
+std::optional<double> parse_positive(std::string_view text) {
+  double value = 0.0;
+  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || rest != text.data() + text.size() || !(value > 0.0) || !std::isfinite(value)) {
+    return std::nullopt;
+  }
+  return value;
+}
+
+std::optional<double> parse_uv_error(std::string_view text) {
+  if (text.ends_with("px")) text.remove_suffix(2);
+  return parse_positive(text);
+}
+
+std::size_t index_of(Setting setting) {
+  return static_cast<std::size_t>(setting);
+}
+
+/// How a place calls one of its settings.
+std::string place_of(const SettingLayer& layer, Setting setting) {
+  return (layer.code == ErrorCode::kUsage ? "--" : layer.from + ": /") + std::string(info_of(setting).name);
+}
+
+/// The words of all layers so far.
+class Settling {
+ public:
+  Settling() {
+    for (const SettingInfo& info : kSettings) words_[index_of(info.setting)] = {info.usual, "default"};
+  }
+
+  Status add(const SettingLayer& layer) {
+    for (const SettingInfo& info : kSettings) {
+      const auto& word = layer.words[index_of(info.setting)];
+      if (!word) continue;
+      const std::string fault = find_fault(info.setting, *word);
+      if (!fault.empty()) return Error{layer.code, place_of(layer, info.setting), fault};
+    }
+    if (Status grids = choose_grid_word(layer); !grids) return grids;
+    for (std::size_t i = 0; i < kSettingCount; ++i) {
+      if (layer.words[i]) words_[i] = {*layer.words[i], layer.from};
+    }
+    return Ok{};
+  }
+
+  [[nodiscard]] const std::array<SettledWord, kSettingCount>& words() const { return words_; }
+
+ private:
+  /// A grid and a position error exclude each other: the later layer's stays.
+  Status choose_grid_word(const SettingLayer& layer) {
+    const auto says = [&](Setting setting) {
+      const auto& word = layer.words[index_of(setting)];
+      return word && *word != "auto";
+    };
+    if (says(Setting::kGrid) && says(Setting::kPositionError)) {
+      const std::string other = (layer.code == ErrorCode::kUsage ? "--" : "") + std::string("grid");
+      return Error{layer.code, place_of(layer, Setting::kPositionError), "give this or " + other + ", not both"};
+    }
+    if (says(Setting::kGrid)) words_[index_of(Setting::kPositionError)] = {"auto", layer.from};
+    if (says(Setting::kPositionError)) words_[index_of(Setting::kGrid)] = {"auto", layer.from};
+    return Ok{};
+  }
+
+  std::array<SettledWord, kSettingCount> words_;
+};
+
+/// \pre every word is one: find_fault()
+PipelineOptions options_of(const std::array<SettledWord, kSettingCount>& words) {
+  const auto word = [&](Setting setting) -> const std::string& { return words[index_of(setting)].word; };
+  PipelineOptions options;
+  options.preset = value_in(kPresetNames, word(Setting::kPreset)).value_or(options.preset);
+  options.error_tier =
+      value_in(format::kErrorTierNames, word(Setting::kErrorTier)).value_or(settings_of(options.preset).error_tier);
+  options.codec = value_in(format::kCodecNames, word(Setting::kCodec)).value_or(options.codec);
+  options.attributes = value_in(kAttributeChoiceNames, word(Setting::kAttributes)).value_or(options.attributes);
+  options.grid_step = parse_positive(word(Setting::kGrid)).value_or(0.0);
+  options.position_error = parse_positive(word(Setting::kPositionError)).value_or(0.0);
+  options.normal_error = parse_positive(word(Setting::kNormalError)).value_or(options.normal_error);
+  if (const auto uv_error = parse_uv_error(word(Setting::kUvError))) {
+    options.uv_error = *uv_error;
+    options.uv_error_is_texels = word(Setting::kUvError).ends_with("px");
+    options.uv_error_is_default = false;
+  }
+  options.repair = word(Setting::kRepair) == "true";
+  return options;
+}
+
+std::string list(const std::vector<std::string>& names) {
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    text += (i == 0 ? "" : i + 1 == names.size() ? " or " : ", ") + names[i];
+  }
+  return text;
+}
+
+}  // namespace
+
+std::span<const SettingInfo, kSettingCount> all_settings() {
+  return kSettings;
+}
+
+const SettingInfo& info_of(Setting setting) {
+  return kSettings[index_of(setting)];
+}
+
+std::vector<std::string> choices_of(Setting setting) {
+  switch (setting) {
+    case Setting::kErrorTier: {
+      std::vector<std::string> names = all_names(format::kErrorTierNames);
+      names.insert(names.begin(), "auto");
+      return names;
+    }
+    case Setting::kPreset: return all_names(kPresetNames);
+    case Setting::kAttributes: return all_names(kAttributeChoiceNames);
+    case Setting::kCodec: return all_names(format::kCodecNames);
+    case Setting::kRepair: return {"false", "true"};
+    default: return {};
+  }
+}
+
+std::string find_fault(Setting setting, std::string_view word) {
+  const std::vector<std::string> choices = choices_of(setting);
+  if (!choices.empty()) {
+    if (std::find(choices.begin(), choices.end(), word) != choices.end()) return {};
+    return "'" + std::string(word.substr(0, 64)) + "' is not one of " + list(choices) + "; the nearest is " +
+           nearest_name(word, choices);
+  }
+  switch (setting) {
+    case Setting::kGrid:
+      return word == "auto" || parse_positive(word) ? "" : "give auto or a step above 0 in mesh units";
+    case Setting::kPositionError:
+      return word == "auto" || parse_positive(word) ? "" : "give auto or a distance above 0 in mesh units";
+    case Setting::kNormalError: return parse_positive(word) ? "" : "give an angle above 0 in degrees";
+    case Setting::kUvError:
+      return word == "auto" || parse_uv_error(word) ? ""
+                                                    : "give auto, a number above 0 in UV units, or texels as 0.25px";
+    default: return {};
+  }
+}
+
+Result<Settled> settle(std::span<const SettingLayer> layers) {
+  Settling settling;
+  for (const SettingLayer& layer : layers) {
+    if (const Status added = settling.add(layer); !added) return added.error();
+  }
+  return Settled{options_of(settling.words()), settling.words()};
+}
+
+}  // namespace meshlode::build

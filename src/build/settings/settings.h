@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The settings of a build as words, from several places: which there are, what each may say, and what they mean
+// together. A later place wins over an earlier one; the command line is the last.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <meshlode/result.h>
+
+#include "build/build.h"
+
+namespace meshlode::build {
+
+/// Everything that changes the bytes of an asset. The order is that of the help.
+enum class Setting : std::uint8_t {
+  kErrorTier,
+  kPreset,
+  kAttributes,
+  kGrid,
+  kPositionError,
+  kNormalError,
+  kUvError,
+  kCodec,
+  kRepair,
+};
+constexpr std::size_t kSettingCount = 9;
+
+struct SettingInfo {
+  Setting setting;
+  const char* name;  ///< of the long option, without its dashes
+  const char* help;
+  const char* usual;  ///< the word where nobody says anything
+};
+[[nodiscard]] std::span<const SettingInfo, kSettingCount> all_settings();
+[[nodiscard]] const SettingInfo& info_of(Setting setting);
+/// The words that a setting may be; none where it is a number.
+[[nodiscard]] std::vector<std::string> choices_of(Setting setting);
+
+/// Why a word is none of this setting; empty where it is one.
+[[nodiscard]] std::string find_fault(Setting setting, std::string_view word);
+
+using SettingWords = std::array<std::optional<std::string>, kSettingCount>;
+
+/// What one place says.
+struct SettingLayer {
+  std::string from;                    ///< "the command line", or a file
+  ErrorCode code = ErrorCode::kUsage;  ///< of what is wrong here
+  SettingWords words;
+
+  [[nodiscard]] std::optional<std::string>& operator[](Setting setting) {
+    return words[static_cast<std::size_t>(setting)];
+  }
+};
+
+/// A setting's word, and who said it.
+struct SettledWord {
+  std::string word;
+  std::string from;  ///< "default", or a layer's
+};
+
+struct Settled {
+  PipelineOptions options;
+  std::array<SettledWord, kSettingCount> words;
+
+  [[nodiscard]] const SettledWord& operator[](Setting setting) const {
+    return words[static_cast<std::size_t>(setting)];
+  }
+};
+
+/// All layers together. Errors: a layer's code, with its place, for a word that is none and for two that exclude each
+/// other in one layer (a grid and a position error); across layers the later one wins.
+[[nodiscard]] Result<Settled> settle(std::span<const SettingLayer> layers);
+
+}  // namespace meshlode::build

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// plan: what a build of a scene will keep, and why, without building it.
+#include <string>
+#include <vector>
+
+#include "base/json_writer.h"
+#include "build/plan/plan_report.h"
+#include "build/plan/scene_plan.h"
+#include "build/settings/settings.h"
+#include "build_options.h"
+#include "options.h"
+#include "scene/import/import.h"
+#include "scene_passes.h"
+#include "verb.h"
+
+namespace meshlode::cli {
+
+namespace {
+
+std::string plan_text(const scene::Scene& scene, const build::ScenePlan& plan, const draw::PassPlan& passes) {
+  std::uint64_t triangles = 0;
+  for (const build::PlannedMesh& mesh : plan.meshes) triangles += mesh.triangles;
+  std::string text = "scene: " + std::to_string(triangles) + " triangles in " + std::to_string(plan.meshes.size()) +
+                     " mesh(es), " + std::to_string(scene.instances.size()) + " instance(s), " +
+                     std::to_string(scene.materials.size()) + " material(s)\n";
+  text += build::describe_plan(plan);
+  return text + "passes of render --gpu and verify --gpu\n" + draw::describe_plan(passes, "  ");
+}
+
+std::string plan_json(const scene::Scene& scene, const build::ScenePlan& plan, const draw::PassPlan& passes) {
+  JsonWriter json;
+  json.begin_object();
+  json.field("source", scene.source_name);
+  json.field("instances", scene.instances.size());
+  json.field("materials", scene.materials.size());
+  build::write_plan(json, plan);
+  json.key("passes");
+  json.begin_array();
+  for (const draw::PassDecision& pass : passes.decisions) {
+    json.begin_object();
+    json.field("pass", pass.pass);
+    json.field("runs", pass.runs);
+    json.field("reason", pass.reason);
+    json.end_object();
+  }
+  json.end_array();
+  json.end_object();
+  return json.text();
+}
+
+int run_plan(const Verb& verb, std::span<char* const> args) {
+  std::string path, max_decoded = kDefaultMaxDecodedText;
+  BuildWords words;
+  std::uint32_t jobs = 0;
+  OutputOptions output;
+  OptionParser parser(verb);
+  parser.add_positional("input", path, "a .gltf, .glb, .ply, .obj or .stl file");
+  add_build_options(parser, words);
+  add_max_decoded_option(parser, max_decoded);
+  add_jobs_option(parser, jobs);
+  add_output_options(parser, output);
+  if (const auto exit_code = parser.parse(args)) return *exit_code;
+  const Result<std::uint64_t> decoded = parse_max_decoded(max_decoded);
+  if (!decoded) return print_error(decoded.error());
+  const build::SettingLayer given = given_settings(words);
+  const Result<build::Settled> settled = build::settle({&given, 1});
+  if (!settled) return print_error(settled.error());
+  const build::PipelineOptions& options = settled->options;
+
+  const JobLimit limit(jobs);
+  const Result<scene::Scene> scene = scene::import_scene(path, {.repair = options.repair, .max_decoded = *decoded});
+  if (!scene) return print_error(scene.error());
+  const Result<build::ScenePlan> plan = build::plan_scene(*scene, options);
+  if (!plan) {
+    Error error = plan.error();
+    error.where = path + (error.where.empty() ? "" : ": ") + error.where;
+    return print_error(error);
+  }
+  const draw::PassPlan passes = plan_scene_passes(*scene, *plan, options.max_cluster_triangles);
+  const std::string text = output.json() ? plan_json(*scene, *plan, passes) : plan_text(*scene, *plan, passes);
+  return print_out(text) ? 0 : static_cast<int>(ErrorCode::kIo);
+}
+
+}  // namespace
+
+const Verb kPlanVerb{"plan", "what a build will keep of a scene, and why, without building it",
+                     "meshlode plan scene.glb\n  meshlode plan scene.glb --format json", run_plan};
+
+}  // namespace meshlode::cli
