@@ -101,6 +101,15 @@ enum class AttributeChoice : std::uint8_t {
   kAll,   ///< everything that the source has and the format can hold
 };
 
+/// Attributes as bits of a set: BuildOptions::keep and BuildOptions::drop.
+constexpr std::uint32_t kAttributeNormal = 1;
+/// TEXCOORD_n, n below format::kMaxUvSets.
+constexpr std::uint32_t attribute_texcoord(std::uint32_t n) {
+  return 2U << n;
+}
+constexpr std::uint32_t kAttributeColor = 32;
+constexpr std::uint32_t kAllAttributes = 63;
+
 /// The trade of build time for quality and bytes as one word.
 enum class Preset : std::uint8_t {
   kFast,     ///< errors are estimated (kQem), topology is a little larger
@@ -119,7 +128,9 @@ struct BuildOptions {
   std::optional<format::ErrorTier> error_tier;  ///< what the stored errors are worth; nothing: what the preset says
   Preset preset = Preset::kDefault;
   AttributeChoice attributes = AttributeChoice::kAuto;
-  double grid_step = 0.0;       ///< mesh units between grid points, for meshes that must abut; 0: from position_error
+  std::uint32_t keep = 0;  ///< attributes that are stored although `attributes` would not, where the source has them
+  std::uint32_t drop = 0;  ///< attributes that are not stored although `attributes` would; none of `keep`'s
+  double grid_step = 0.0;  ///< mesh units between grid points, for meshes that must abut; 0: from position_error
   double position_error = 0.0;  ///< mesh units that a vertex may move at most; 0: chosen, invisible. Not with grid_step
   double normal_error = 0.1;    ///< degrees, above 0, that a stored normal may be off at most
   double uv_error = 0.0;        ///< what a texture coordinate may move at most; 0: chosen, invisible

@@ -71,7 +71,7 @@ Result<BuiltMesh> build_mesh(const Source& from, std::size_t index,
   const std::string label = mesh_label(source, index);
   BuiltMesh built;
 
-  MeshPlan plan = plan_mesh(source, from.scene.materials, options.attributes, label);
+  MeshPlan plan = plan_mesh(source, from.scene.materials, request_of(options), label);
   built.decisions = std::move(plan.decisions);
   built.clock.end(Stage::kPlan);
 

@@ -20,7 +20,8 @@ struct PipelineOptions {
   Preset preset = Preset::kDefault;
   format::ErrorTier error_tier = format::ErrorTier::kMeasured;  ///< as asked for, or the preset's (build/preset.h)
   AttributeChoice attributes = AttributeChoice::kAuto;
-  double grid_step = 0.0;  ///< 0: chosen from the budget; else this step in mesh units
+  std::uint32_t keep = 0, drop = 0;  ///< attributes by name (plan/attributes.h); none is in both
+  double grid_step = 0.0;            ///< 0: chosen from the budget; else this step in mesh units
   format::Codec codec = format::Codec::kNone;
   std::uint32_t partition_seed = 1;  ///< of METIS; benchmarks vary it, to tell a change from luck
   bool repair = false;               ///< the scene was imported with repair: recorded, because it changes the bytes

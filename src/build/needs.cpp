@@ -40,7 +40,7 @@ std::uint64_t bytes_of(const scene::Primitive& primitive) {
 
 /// Floats of a vertex beside its position, as many as may be kept.
 std::uint64_t attribute_floats(const scene::SourceMesh& mesh, const PipelineOptions& options) {
-  if (options.attributes == AttributeChoice::kNone) return 0;
+  if (options.attributes == AttributeChoice::kNone && options.keep == 0) return 0;
   std::uint64_t floats = 0;
   for (const scene::Primitive& primitive : mesh.primitives) {
     std::uint64_t own = primitive.normals.empty() ? 0 : 3;

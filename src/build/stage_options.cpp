@@ -60,7 +60,14 @@ Status check_options(const PipelineOptions& options) {
       options.max_cluster_vertices < 3 || options.max_cluster_vertices > format::kMaxClusterVertices) {
     return Error{ErrorCode::kUsage, "", "a cluster holds 1 to 256 triangles and 3 to 256 vertices"};
   }
+  if ((options.keep & options.drop) != 0) {
+    return Error{ErrorCode::kUsage, "", "an attribute cannot be both kept and dropped"};
+  }
   return Ok{};
+}
+
+AttributeRequest request_of(const PipelineOptions& options) {
+  return {options.attributes, options.keep, options.drop};
 }
 
 PrepareOptions prepare_options(const PipelineOptions& options) {

@@ -20,6 +20,8 @@ namespace meshlode::build {
 /// Errors: kUsage for a cluster size that the format has not.
 [[nodiscard]] Status check_options(const PipelineOptions& options);
 
+[[nodiscard]] AttributeRequest request_of(const PipelineOptions& options);
+
 [[nodiscard]] PrepareOptions prepare_options(const PipelineOptions& options);
 
 /// `texels`: texels_of_materials() of the scene, for a budget that is given in texels.

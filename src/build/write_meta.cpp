@@ -5,6 +5,7 @@
 
 #include "base/version.h"
 #include "build/dag/build_dag.h"
+#include "build/plan/attributes.h"
 #include "build/preset.h"
 #include "format/names.h"
 
@@ -31,6 +32,11 @@ std::string meta_json(const scene::Scene& scene, const PipelineOptions& options,
   settings["error_tier"] = format::name_of(options.error_tier);
   settings["error_margin"] = error_margin_of(options.error_tier);
   settings["attributes"] = name_of(options.attributes);
+  // By name only where a name made a difference: one that made none changes no byte.
+  for (const bool kept : {true, false}) {
+    const std::vector<std::string> names = names_of_attributes(forced_attributes(decisions, kept));
+    if (!names.empty()) settings[kept ? "keep" : "drop"] = names;
+  }
   settings["grid"] = options.grid_step > 0.0 ? Json(options.grid_step) : Json("auto");
   settings["codec"] = format::name_of(options.codec);
   settings["repair"] = options.repair;

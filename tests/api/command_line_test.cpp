@@ -38,6 +38,8 @@ const Saying kSayings[] = {
      [](BuildOptions& o) { o.preset = Preset::kFast, o.error_tier = format::ErrorTier::kMeasured; }},
     {"--attributes none", [](BuildOptions& o) { o.attributes = AttributeChoice::kNone; }},
     {"--attributes all", [](BuildOptions& o) { o.attributes = AttributeChoice::kAll; }},
+    {"--keep NORMAL", [](BuildOptions& o) { o.keep = kAttributeNormal; }},
+    {"--drop TEXCOORD_0", [](BuildOptions& o) { o.drop = attribute_texcoord(0); }, "foliage.glb"},
     {"--grid 0.01", [](BuildOptions& o) { o.grid_step = 0.01; }},
     {"--position-error 0.002", [](BuildOptions& o) { o.position_error = 0.002; }},
     {"--normal-error 0.5", [](BuildOptions& o) { o.normal_error = 0.5; }},

@@ -51,6 +51,11 @@ Status check_numbers(const BuildOptions& options) {
     return usage("BuildOptions::normal_error", "is not a number above 0");
   }
   if (!is_zero_or_more(options.uv_error)) return usage("BuildOptions::uv_error", "is not a number >= 0");
+  for (const auto& [field, bits] :
+       {std::pair("BuildOptions::keep", options.keep), {"BuildOptions::drop", options.drop}}) {
+    if ((bits & ~kAllAttributes) != 0) return usage(field, "has bits that are no attribute's");
+  }
+  if ((options.keep & options.drop) != 0) return usage("BuildOptions::drop", "has an attribute of keep");
   if (options.thread_count > 4096) return usage("BuildOptions::thread_count", "is above 4096");
   return Ok{};
 }
@@ -62,6 +67,8 @@ Result<build::PipelineOptions> make_pipeline_options(const BuildOptions& options
   pipeline.preset = options.preset;
   pipeline.error_tier = options.error_tier.value_or(build::settings_of(options.preset).error_tier);
   pipeline.attributes = options.attributes;
+  pipeline.keep = options.keep;
+  pipeline.drop = options.drop;
   pipeline.grid_step = options.grid_step;
   pipeline.position_error = options.position_error;
   pipeline.normal_error = options.normal_error;

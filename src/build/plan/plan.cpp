@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "build/plan/attributes.h"
 
 namespace meshlode::build {
 
@@ -44,6 +47,108 @@ bool is_all_white(const scene::SourceMesh& mesh) {
   return true;
 }
 
+/// What the primitives of a mesh have, and what its materials show of it.
+struct MeshContents {
+  bool any_normals = false, any_colors = false;
+  bool any_tangents = false, shown_tangents = false;
+  std::uint32_t uv_sets = 0, sampled_uv_sets = 0;  ///< bit n: TEXCOORD_n
+};
+
+MeshContents contents_of(const scene::SourceMesh& mesh, const std::vector<scene::SceneMaterial>& materials) {
+  MeshContents out;
+  for (const scene::Primitive& primitive : mesh.primitives) {
+    out.any_normals |= !primitive.normals.empty();
+    out.any_colors |= !primitive.colors.empty();
+    out.any_tangents |= primitive.has_tangents;
+    for (std::size_t set = 0; set < scene::kMaxUvSets; ++set) {
+      if (!primitive.uvs[set].empty()) out.uv_sets |= 1U << set;
+    }
+    if (primitive.material.is_valid() && primitive.material.value < materials.size()) {
+      const scene::SceneMaterial& material = materials[primitive.material.value];
+      out.sampled_uv_sets |= material.uv_sets_used;
+      out.shown_tangents |= primitive.has_tangents && material.needs_tangents;
+    }
+  }
+  return out;
+}
+
+/// Whether an attribute is stored, and the decision's words.
+struct Verdict {
+  bool kept = false;
+  const char* reason = "";
+};
+
+class Planner {
+ public:
+  Planner(const AttributeRequest& request, const std::string& label) : request_(request), label_(label) {}
+
+  void plan_normals(const scene::SourceMesh& mesh, bool any_normals) {
+    AttributeLayout& layout = plan_.layout;
+    const bool is_none = request_.choice == AttributeChoice::kNone;
+    if (!any_normals) {
+      if (is_none) return;
+      layout.flat_normal = true;
+      add("flat normals", {true, "the source has none: they follow from the triangles"});
+      return;
+    }
+    const bool is_flat = !is_none && has_flat_normals(mesh);
+    Verdict verdict{true, "shading differs from the triangles' own normals"};
+    if (is_none) verdict = {false, "left out by option"};
+    if (is_flat) verdict = {false, "every normal is its triangle's own: they follow from the triangles"};
+    layout.has_normal = decide("NORMAL", kAttributeNormal, verdict);
+    layout.flat_normal = is_flat && !layout.has_normal;
+  }
+
+  void plan_uvs(std::uint32_t sets, std::uint32_t sampled) {
+    for (std::uint32_t set = 0; set < scene::kMaxUvSets; ++set) {
+      if ((sets >> set & 1U) == 0) continue;
+      Verdict verdict{false, "no material samples a texture through it"};
+      if ((sampled >> set & 1U) != 0) verdict = {true, "a material samples a texture through it"};
+      if (request_.choice == AttributeChoice::kAll) verdict = {true, "kept by option"};
+      if (request_.choice == AttributeChoice::kNone) verdict = {false, "left out by option"};
+      if (!decide("TEXCOORD_" + std::to_string(set), attribute_texcoord(set), verdict)) continue;
+      plan_.layout.uv_set_source[plan_.layout.uv_set_count++] = static_cast<std::uint8_t>(set);
+    }
+  }
+
+  void plan_colors(const scene::SourceMesh& mesh) {
+    Verdict verdict{true, "not all white"};
+    if (request_.choice == AttributeChoice::kAuto && is_all_white(mesh)) verdict = {false, "all white"};
+    if (request_.choice == AttributeChoice::kNone) verdict = {false, "left out by option"};
+    plan_.layout.has_color = decide("COLOR_0", kAttributeColor, verdict);
+  }
+
+  /// The format stores none, whatever is asked for.
+  void plan_tangents(bool are_shown) {
+    if (request_.choice == AttributeChoice::kNone) return add("TANGENT", {false, "left out by option"});
+    if (!are_shown) return add("TANGENT", {false, "no material has a normal map or anisotropy"});
+    add("TANGENT", {false, "the format has none: shading derives tangents from normals and texture coordinates"});
+    plan_.decisions.back().is_loss = true;
+  }
+
+  [[nodiscard]] MeshPlan take() { return std::move(plan_); }
+
+ private:
+  void add(const std::string& what, const Verdict& verdict) {
+    plan_.decisions.push_back({label_ + ": " + what, verdict.kept, verdict.reason, false, what});
+  }
+
+  /// The rule's verdict, unless the attribute is named and that says otherwise.
+  bool decide(const std::string& what, std::uint32_t bit, Verdict verdict) {
+    const bool keeps = !verdict.kept && (request_.keep & bit) != 0;
+    const bool drops = verdict.kept && (request_.drop & bit) != 0;
+    if (keeps) verdict = {true, "kept by name"};
+    if (drops) verdict = {false, "dropped by name"};
+    add(what, verdict);
+    plan_.decisions.back().is_forced = keeps || drops;
+    return verdict.kept;
+  }
+
+  const AttributeRequest& request_;
+  const std::string& label_;
+  MeshPlan plan_;
+};
+
 }  // namespace
 
 std::string mesh_label(const scene::SourceMesh& mesh, std::size_t index) {
@@ -51,79 +156,23 @@ std::string mesh_label(const scene::SourceMesh& mesh, std::size_t index) {
 }
 
 MeshPlan plan_mesh(const scene::SourceMesh& mesh, const std::vector<scene::SceneMaterial>& materials,
-                   AttributeChoice choice, const std::string& mesh_label) {
-  MeshPlan plan;
-  const auto decide = [&](const std::string& what, bool kept, const char* reason) {
-    plan.decisions.push_back({mesh_label + ": " + what, kept, reason, false, what});
-    return kept;
-  };
+                   const AttributeRequest& request, const std::string& mesh_label) {
+  const MeshContents contents = contents_of(mesh, materials);
+  Planner planner(request, mesh_label);
+  planner.plan_normals(mesh, contents.any_normals);
+  planner.plan_uvs(contents.uv_sets, contents.sampled_uv_sets);
+  if (contents.any_colors) planner.plan_colors(mesh);
+  if (contents.any_tangents) planner.plan_tangents(contents.shown_tangents);
+  return planner.take();
+}
 
-  bool any_normals = false;
-  bool any_colors = false;
-  bool any_tangents = false;
-  bool shown_tangents = false;
-  std::uint32_t uv_sets_present = 0;
-  std::uint32_t uv_sets_sampled = 0;
-  for (const scene::Primitive& primitive : mesh.primitives) {
-    any_normals |= !primitive.normals.empty();
-    any_colors |= !primitive.colors.empty();
-    any_tangents |= primitive.has_tangents;
-    for (std::size_t set = 0; set < scene::kMaxUvSets; ++set) {
-      if (!primitive.uvs[set].empty()) uv_sets_present |= 1U << set;
-    }
-    if (primitive.material.is_valid() && primitive.material.value < materials.size()) {
-      const scene::SceneMaterial& material = materials[primitive.material.value];
-      uv_sets_sampled |= material.uv_sets_used;
-      shown_tangents |= primitive.has_tangents && material.needs_tangents;
-    }
+std::uint32_t forced_attributes(const std::vector<PlanDecision>& decisions, bool kept) {
+  std::uint32_t bits = 0;
+  for (const PlanDecision& decision : decisions) {
+    if (!decision.is_forced || decision.kept != kept) continue;
+    bits |= value_in(kAttributeNames, decision.attribute).value_or(0);
   }
-
-  AttributeLayout& layout = plan.layout;
-  if (choice == AttributeChoice::kNone) {
-    if (any_normals) decide("NORMAL", false, "left out by option");
-  } else if (!any_normals) {
-    layout.flat_normal = decide("flat normals", true, "the source has none: they follow from the triangles");
-  } else if (has_flat_normals(mesh)) {
-    layout.flat_normal = true;
-    decide("NORMAL", false, "every normal is its triangle's own: they follow from the triangles");
-  } else {
-    layout.has_normal = decide("NORMAL", true, "shading differs from the triangles' own normals");
-  }
-
-  for (std::uint32_t set = 0; set < scene::kMaxUvSets; ++set) {
-    if ((uv_sets_present >> set & 1U) == 0) continue;
-    const std::string name = "TEXCOORD_" + std::to_string(set);
-    bool kept = false;
-    if (choice == AttributeChoice::kNone) {
-      kept = decide(name, false, "left out by option");
-    } else if (choice == AttributeChoice::kAll) {
-      kept = decide(name, true, "kept by option");
-    } else if ((uv_sets_sampled >> set & 1U) != 0) {
-      kept = decide(name, true, "a material samples a texture through it");
-    } else {
-      kept = decide(name, false, "no material samples a texture through it");
-    }
-    if (kept) layout.uv_set_source[layout.uv_set_count++] = static_cast<std::uint8_t>(set);
-  }
-
-  if (any_colors) {
-    if (choice == AttributeChoice::kNone) {
-      decide("COLOR_0", false, "left out by option");
-    } else if (choice == AttributeChoice::kAuto && is_all_white(mesh)) {
-      decide("COLOR_0", false, "all white");
-    } else {
-      layout.has_color = decide("COLOR_0", true, "not all white");
-    }
-  }
-  if (any_tangents && choice == AttributeChoice::kNone) {
-    decide("TANGENT", false, "left out by option");
-  } else if (shown_tangents) {
-    decide("TANGENT", false, "the format has none: shading derives tangents from normals and texture coordinates");
-    plan.decisions.back().is_loss = true;
-  } else if (any_tangents) {
-    decide("TANGENT", false, "no material has a normal map or anisotropy");
-  }
-  return plan;
+  return bits;
 }
 
 }  // namespace meshlode::build

@@ -26,6 +26,13 @@ struct PlanDecision {
   std::string reason;       ///< "no material samples a texture through it"
   bool is_loss = false;     ///< left out although the scene's materials can show it
   std::string attribute{};  ///< "TEXCOORD_0"; empty where the decision is about something else
+  bool is_forced = false;   ///< by a name in AttributeRequest::keep or drop, against what would have been decided
+};
+
+/// What the caller asks for: by rule, then by name.
+struct AttributeRequest {
+  AttributeChoice choice = AttributeChoice::kAuto;
+  std::uint32_t keep = 0, drop = 0;  ///< bits of plan/attributes.h; none is in both
 };
 
 struct MeshPlan {
@@ -38,6 +45,9 @@ struct MeshPlan {
 
 /// Decides the attributes of one mesh. `mesh_label` starts each decision's `what`.
 [[nodiscard]] MeshPlan plan_mesh(const scene::SourceMesh& mesh, const std::vector<scene::SceneMaterial>& materials,
-                                 AttributeChoice choice, const std::string& mesh_label);
+                                 const AttributeRequest& request, const std::string& mesh_label);
+
+/// Names that made a difference in some mesh: bits of what was kept, or dropped, by name alone.
+[[nodiscard]] std::uint32_t forced_attributes(const std::vector<PlanDecision>& decisions, bool kept);
 
 }  // namespace meshlode::build

@@ -35,7 +35,7 @@ class MeshPlanner {
   MeshPlanner(const scene::Scene& scene, std::size_t index, const PipelineOptions& options, Texels texels)
       : mesh_(scene.meshes[index]),
         options_(options),
-        plan_(plan_mesh(mesh_, scene.materials, options.attributes, mesh_label(mesh_, index))) {
+        plan_(plan_mesh(mesh_, scene.materials, request_of(options), mesh_label(mesh_, index))) {
     out_.label = mesh_label(mesh_, index);
     choose_uv_steps(texels);
   }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/nearest_name.h"
+#include "build/plan/attributes.h"
 #include "build/preset.h"
 #include "format/names.h"
 
@@ -20,6 +21,9 @@ constexpr std::array<SettingInfo, kSettingCount> kSettings{{
     {Setting::kPreset, "preset", "fast builds fastest and estimates errors, best spends time on clusters and bytes",
      "default"},
     {Setting::kAttributes, "attributes", "auto keeps what the materials call for, none positions only", "auto"},
+    {Setting::kKeep, "keep",
+     "attributes to store all the same: NORMAL, TEXCOORD_0 to 3, COLOR_0, comma by comma, or all", ""},
+    {Setting::kDrop, "drop", "attributes to leave out all the same", ""},
     {Setting::kGrid, "grid", "auto, or a step in mesh units for meshes that must abut", "auto"},
     {Setting::kPositionError, "position-error", "auto, or the largest distance a vertex may move, mesh units", "auto"},
     {Setting::kNormalError, "normal-error", "the largest angle a stored normal may be off, degrees", "0.1"},
@@ -53,6 +57,18 @@ std::string place_of(const SettingLayer& layer, Setting setting) {
   return (layer.code == ErrorCode::kUsage ? "--" : layer.from + ": /") + std::string(info_of(setting).name);
 }
 
+/// \pre find_fault() finds none
+std::uint32_t attributes_of(const std::string& word) {
+  const auto bits = parse_attributes(word);
+  return bits ? *bits : 0;
+}
+
+std::string join(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ",") + name;
+  return text;
+}
+
 /// The words of all layers so far.
 class Settling {
  public:
@@ -68,6 +84,7 @@ class Settling {
       if (!fault.empty()) return Error{layer.code, place_of(layer, info.setting), fault};
     }
     if (Status grids = choose_grid_word(layer); !grids) return grids;
+    if (Status names = choose_names(layer); !names) return names;
     for (std::size_t i = 0; i < kSettingCount; ++i) {
       if (layer.words[i]) words_[i] = {*layer.words[i], layer.from};
     }
@@ -92,6 +109,28 @@ class Settling {
     return Ok{};
   }
 
+  /// A name that is kept and dropped: the later layer's stays.
+  Status choose_names(const SettingLayer& layer) {
+    const auto& kept = layer.words[index_of(Setting::kKeep)];
+    const auto& dropped = layer.words[index_of(Setting::kDrop)];
+    const std::uint32_t both = attributes_of(kept.value_or("")) & attributes_of(dropped.value_or(""));
+    if (both != 0) {
+      return Error{layer.code, place_of(layer, Setting::kDrop), names_of_attributes(both)[0] + " is kept by name too"};
+    }
+    if (layer.words[index_of(Setting::kAttributes)]) {
+      for (const Setting setting : {Setting::kKeep, Setting::kDrop}) words_[index_of(setting)] = {"", layer.from};
+    }
+    if (kept) remove_names(Setting::kDrop, attributes_of(*kept), layer.from);
+    if (dropped) remove_names(Setting::kKeep, attributes_of(*dropped), layer.from);
+    return Ok{};
+  }
+
+  void remove_names(Setting setting, std::uint32_t bits, const std::string& from) {
+    SettledWord& word = words_[index_of(setting)];
+    const std::uint32_t before = attributes_of(word.word);
+    if ((before & bits) != 0) word = {join(names_of_attributes(before & ~bits)), from};
+  }
+
   std::array<SettledWord, kSettingCount> words_;
 };
 
@@ -104,6 +143,8 @@ PipelineOptions options_of(const std::array<SettledWord, kSettingCount>& words) 
       value_in(format::kErrorTierNames, word(Setting::kErrorTier)).value_or(settings_of(options.preset).error_tier);
   options.codec = value_in(format::kCodecNames, word(Setting::kCodec)).value_or(options.codec);
   options.attributes = value_in(kAttributeChoiceNames, word(Setting::kAttributes)).value_or(options.attributes);
+  options.keep = attributes_of(word(Setting::kKeep));
+  options.drop = attributes_of(word(Setting::kDrop));
   options.grid_step = parse_positive(word(Setting::kGrid)).value_or(0.0);
   options.position_error = parse_positive(word(Setting::kPositionError)).value_or(0.0);
   options.normal_error = parse_positive(word(Setting::kNormalError)).value_or(options.normal_error);
@@ -157,6 +198,11 @@ std::string find_fault(Setting setting, std::string_view word) {
            nearest_name(word, choices);
   }
   switch (setting) {
+    case Setting::kKeep:
+    case Setting::kDrop: {
+      const auto bits = parse_attributes(word);
+      return bits ? "" : bits.error().detail;
+    }
     case Setting::kGrid:
       return word == "auto" || parse_positive(word) ? "" : "give auto or a step above 0 in mesh units";
     case Setting::kPositionError:

@@ -23,6 +23,8 @@ enum class Setting : std::uint8_t {
   kErrorTier,
   kPreset,
   kAttributes,
+  kKeep,
+  kDrop,
   kGrid,
   kPositionError,
   kNormalError,
@@ -30,7 +32,7 @@ enum class Setting : std::uint8_t {
   kCodec,
   kRepair,
 };
-constexpr std::size_t kSettingCount = 9;
+constexpr std::size_t kSettingCount = 11;
 
 struct SettingInfo {
   Setting setting;
@@ -75,7 +77,8 @@ struct Settled {
 };
 
 /// All layers together. Errors: a layer's code, with its place, for a word that is none and for two that exclude each
-/// other in one layer (a grid and a position error); across layers the later one wins.
+/// other in one layer (a grid and a position error, a name kept and dropped); across layers the later one wins. A layer
+/// that says `attributes` does away with the names of earlier ones.
 [[nodiscard]] Result<Settled> settle(std::span<const SettingLayer> layers);
 
 }  // namespace meshlode::build

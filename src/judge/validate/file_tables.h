@@ -21,6 +21,7 @@ namespace meshlode::judge {
 struct MetaFacts {
   std::string source_hash;
   std::string attributes, error_tier, uv_error_unit;                 ///< settings
+  std::vector<std::string> dropped;                                  ///< settings: attributes, by name
   std::optional<std::uint64_t> cluster_triangles, cluster_vertices;  ///< settings
   std::optional<double> error_margin;                                ///< settings
   std::optional<double> position_error, normal_error, uv_error;      ///< settings; uv_error in uv_error_unit

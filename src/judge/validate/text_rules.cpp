@@ -62,6 +62,9 @@ MetaFacts facts_of(const nlohmann::json& meta) {
   MetaFacts facts;
   facts.source_hash = text("source", "hash");
   facts.attributes = text("settings", "attributes");
+  for (const nlohmann::json& name : value("settings", "drop")) {
+    if (name.is_string()) facts.dropped.push_back(name.get<std::string>());
+  }
   facts.error_tier = text("settings", "error_tier");
   facts.uv_error_unit = text("settings", "uv_error_unit");
   facts.cluster_triangles = number("cluster_triangles");

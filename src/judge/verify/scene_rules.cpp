@@ -134,24 +134,29 @@ bool has_color(const scene::Primitive& primitive) {
 
 void check_attributes(const run::Asset& asset, const MetaFacts& facts, const scene::Scene& source, RuleLog& log) {
   if (facts.attributes == "none") return;
+  const auto is_dropped = [&](const std::string& name) {
+    return std::find(facts.dropped.begin(), facts.dropped.end(), name) != facts.dropped.end();
+  };
   for (std::size_t m = 0; m < std::min(asset.meshes().size(), source.meshes.size()); ++m) {
     const format::MeshRecord& mesh = asset.meshes()[m];
     if (mesh.cluster_count == 0) continue;
     const auto at = [&] { return place("mesh", m); };
-    log.expect(mesh.normal_mode != format::NormalMode::kNone, Rule::kV110, at,
+    log.expect(mesh.normal_mode != format::NormalMode::kNone || is_dropped("NORMAL"), Rule::kV110, at,
                [] { return std::string("normals are left out"); });
-    log.expect(mesh.normal_mode == format::NormalMode::kStored || !has_own_shading(source.meshes[m]), Rule::kV110, at,
-               [] { return std::string("normals differ from the triangles' own and are not stored"); });
+    log.expect(
+        mesh.normal_mode == format::NormalMode::kStored || is_dropped("NORMAL") || !has_own_shading(source.meshes[m]),
+        Rule::kV110, at, [] { return std::string("normals differ from the triangles' own and are not stored"); });
     for (const scene::Primitive& primitive : source.meshes[m].primitives) {
-      log.expect(mesh.has_color != 0 || !has_color(primitive), Rule::kV110, at,
+      log.expect(mesh.has_color != 0 || is_dropped("COLOR_0") || !has_color(primitive), Rule::kV110, at,
                  [] { return std::string("colours are not stored"); });
       if (primitive.material.value >= source.materials.size()) continue;
       for (std::uint32_t set = 0; set < scene::kMaxUvSets; ++set) {
         const bool is_used =
             (source.materials[primitive.material.value].uv_sets_used >> set & 1U) != 0 && !primitive.uvs[set].empty();
         const auto* end = mesh.uv_set_source + mesh.uv_set_count;
-        log.expect(!is_used || std::find(mesh.uv_set_source, end, set) != end, Rule::kV110, at,
-                   [&] { return "TEXCOORD_" + std::to_string(set) + " is sampled and not stored"; });
+        log.expect(
+            !is_used || is_dropped("TEXCOORD_" + std::to_string(set)) || std::find(mesh.uv_set_source, end, set) != end,
+            Rule::kV110, at, [&] { return "TEXCOORD_" + std::to_string(set) + " is sampled and not stored"; });
       }
     }
   }

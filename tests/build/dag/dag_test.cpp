@@ -27,7 +27,7 @@ struct Built {
 
 Built build(const scene::Primitive& shape, const DagOptions& options = {}) {
   const scene::SourceMesh source = scene::as_mesh(shape);
-  const MeshPlan plan = plan_mesh(source, {}, AttributeChoice::kAll, "m");
+  const MeshPlan plan = plan_mesh(source, {}, {AttributeChoice::kAll}, "m");
   Built built{*prepare_mesh(source, plan.layout, {}), {}};
   Result<LodDag> dag = build_dag(built.mesh, options);
   EXPECT_TRUE(dag.ok());

@@ -24,7 +24,7 @@ struct Built {
 
 Built build(const scene::Primitive& shape) {
   const scene::SourceMesh source = scene::as_mesh(shape);
-  const MeshPlan plan = plan_mesh(source, {}, AttributeChoice::kNone, "m");
+  const MeshPlan plan = plan_mesh(source, {}, {AttributeChoice::kNone}, "m");
   Built built{*prepare_mesh(source, plan.layout, {}), {}};
   DagOptions options;
   options.error = ErrorSource::kMeasured;

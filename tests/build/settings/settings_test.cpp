@@ -71,6 +71,24 @@ TEST(Settings, AGridAndAPositionErrorExcludeEachOther) {
   EXPECT_EQ(grid->options.position_error, 0.0);
 }
 
+TEST(Settings, ANameIsKeptOrDroppedByTheLaterLayer) {
+  const std::array layers{layer_of({{Setting::kKeep, "NORMAL,COLOR_0"}}),
+                          layer_of({{Setting::kDrop, "NORMAL"}}, "near")};
+  const auto settled = settle(layers);
+  ASSERT_TRUE(settled);
+  EXPECT_EQ(settled->options.keep, kAttributeColor);
+  EXPECT_EQ(settled->options.drop, kAttributeNormal);
+  EXPECT_EQ((*settled)[Setting::kKeep].from, "near");
+
+  const std::array anew{layers[0], layer_of({{Setting::kAttributes, "none"}}, "near")};
+  EXPECT_EQ(settle(anew)->options.keep, 0U) << "a rule of a later layer begins anew";
+
+  const SettingLayer both = layer_of({{Setting::kKeep, "all"}, {Setting::kDrop, "COLOR_0"}});
+  const auto refused = settle({&both, 1});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().where, "a file: /drop");
+}
+
 TEST(Settings, UvErrorsKnowTheirUnit) {
   const SettingLayer texels = layer_of({{Setting::kUvError, "0.25px"}});
   EXPECT_TRUE(settle({&texels, 1})->options.uv_error_is_texels);
@@ -89,6 +107,8 @@ TEST(Settings, WordsThatAreNoneAreRefusedWithTheNearest) {
                                                               {Setting::kPositionError, "nan"},
                                                               {Setting::kPositionError, "-1"},
                                                               {Setting::kNormalError, "auto"},
+                                                              {Setting::kKeep, "NORMALS"},
+                                                              {Setting::kDrop, ","},
                                                               {Setting::kUvError, "px"},
                                                               {Setting::kUvError, "1 px"},
                                                               {Setting::kCodec, "gzip"},
