@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // plan: what a build of a scene will keep, and why, without building it.
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/json_writer.h"
@@ -8,6 +10,7 @@
 #include "build/plan/scene_plan.h"
 #include "build/settings/settings.h"
 #include "build_options.h"
+#include "measure_plan.h"
 #include "options.h"
 #include "scene/import/import.h"
 #include "scene_passes.h"
@@ -17,26 +20,35 @@ namespace meshlode::cli {
 
 namespace {
 
-std::string plan_text(const scene::Scene& scene, const build::ScenePlan& plan, const draw::PassPlan& passes) {
+/// All that is printed.
+struct Planned {
+  build::ScenePlan scene;
+  draw::PassPlan passes;
+  std::optional<PlanMeasurement> measured;
+};
+
+std::string plan_text(const scene::Scene& scene, const Planned& planned) {
+  const build::ScenePlan& plan = planned.scene;
   std::uint64_t triangles = 0;
   for (const build::PlannedMesh& mesh : plan.meshes) triangles += mesh.triangles;
   std::string text = "scene: " + std::to_string(triangles) + " triangles in " + std::to_string(plan.meshes.size()) +
                      " mesh(es), " + std::to_string(scene.instances.size()) + " instance(s), " +
                      std::to_string(scene.materials.size()) + " material(s)\n";
   text += build::describe_plan(plan);
-  return text + "passes of render --gpu and verify --gpu\n" + draw::describe_plan(passes, "  ");
+  text += "passes of render --gpu and verify --gpu\n" + draw::describe_plan(planned.passes, "  ");
+  return planned.measured ? text + describe_measurement(*planned.measured) : text;
 }
 
-std::string plan_json(const scene::Scene& scene, const build::ScenePlan& plan, const draw::PassPlan& passes) {
+std::string plan_json(const scene::Scene& scene, const Planned& planned) {
   JsonWriter json;
   json.begin_object();
   json.field("source", scene.source_name);
   json.field("instances", scene.instances.size());
   json.field("materials", scene.materials.size());
-  build::write_plan(json, plan);
+  build::write_plan(json, planned.scene);
   json.key("passes");
   json.begin_array();
-  for (const draw::PassDecision& pass : passes.decisions) {
+  for (const draw::PassDecision& pass : planned.passes.decisions) {
     json.begin_object();
     json.field("pass", pass.pass);
     json.field("runs", pass.runs);
@@ -44,6 +56,12 @@ std::string plan_json(const scene::Scene& scene, const build::ScenePlan& plan, c
     json.end_object();
   }
   json.end_array();
+  json.key("measured");
+  if (planned.measured) {
+    write_measurement(json, *planned.measured);
+  } else {
+    json.null();
+  }
   json.end_object();
   return json.text();
 }
@@ -51,10 +69,15 @@ std::string plan_json(const scene::Scene& scene, const build::ScenePlan& plan, c
 int run_plan(const Verb& verb, std::span<char* const> args) {
   std::string path, max_decoded = kDefaultMaxDecodedText;
   BuildWords words;
+  MeasureOptions measure;
+  bool is_measured = false;
   std::uint32_t jobs = 0;
   OutputOptions output;
   OptionParser parser(verb);
   parser.add_positional("input", path, "a .gltf, .glb, .ply, .obj or .stl file");
+  parser.add_flag("--measure", is_measured,
+                  "build by the plan and with --keep all, three times each, and compare both");
+  parser.add_value("--device", measure.device, "with --measure: a Vulkan device by index or a part of its name");
   add_build_options(parser, words);
   add_max_decoded_option(parser, max_decoded);
   add_jobs_option(parser, jobs);
@@ -67,23 +90,31 @@ int run_plan(const Verb& verb, std::span<char* const> args) {
   if (!settled) return print_error(settled.error());
   const build::PipelineOptions& options = settled->options;
 
-  const JobLimit limit(jobs);
+  JobLimit limit(jobs);
   const Result<scene::Scene> scene = scene::import_scene(path, {.repair = options.repair, .max_decoded = *decoded});
   if (!scene) return print_error(scene.error());
-  const Result<build::ScenePlan> plan = build::plan_scene(*scene, options);
-  if (!plan) {
-    Error error = plan.error();
+  const auto fail = [&](Error error) {
     error.where = path + (error.where.empty() ? "" : ": ") + error.where;
     return print_error(error);
+  };
+  Result<build::ScenePlan> plan = build::plan_scene(*scene, options);
+  if (!plan) return fail(plan.error());
+  Planned planned{std::move(*plan), {}, {}};
+  planned.passes = plan_scene_passes(*scene, planned.scene, options.max_cluster_triangles);
+  if (is_measured) {
+    measure.max_decoded = *decoded;
+    std::optional<Result<PlanMeasurement>> measured;
+    limit.run([&] { measured = measure_plan(*scene, options, measure); });
+    if (!*measured) return fail(measured->error());
+    planned.measured = std::move(**measured);
   }
-  const draw::PassPlan passes = plan_scene_passes(*scene, *plan, options.max_cluster_triangles);
-  const std::string text = output.json() ? plan_json(*scene, *plan, passes) : plan_text(*scene, *plan, passes);
+  const std::string text = output.json() ? plan_json(*scene, planned) : plan_text(*scene, planned);
   return print_out(text) ? 0 : static_cast<int>(ErrorCode::kIo);
 }
 
 }  // namespace
 
-const Verb kPlanVerb{"plan", "what a build will keep of a scene, and why, without building it",
-                     "meshlode plan scene.glb\n  meshlode plan scene.glb --format json", run_plan};
+const Verb kPlanVerb{"plan", "what a build will keep of a scene, and why; with --measure what that saves",
+                     "meshlode plan scene.glb\n  meshlode plan scene.glb --measure --format json", run_plan};
 
 }  // namespace meshlode::cli

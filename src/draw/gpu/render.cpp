@@ -43,15 +43,20 @@ run::Camera beside(const run::Camera& camera) {
 
 /// The frame, complete.
 Status draw_frame(Renderer& renderer, const run::Asset& asset, const run::Camera& camera,
-                  const GpuRenderOptions& options, const DeviceInfo& device) {
+                  const GpuRenderOptions& options, const DeviceInfo& device, GpuPicture& out) {
   const auto depth = depth_of_scene(asset, camera);
   if (!depth) return depth.error();
   if (options.view == VIEW_OCCLUDED) {
     const auto before = renderer.draw(beside(camera), options.pixel_error, *depth);
     if (!before) return before.error();
   }
+  for (std::uint32_t i = 1; i < options.frames; ++i) {
+    const auto earlier = renderer.draw(camera, options.pixel_error, *depth);
+    if (!earlier) return earlier.error();
+  }
   const auto frame = renderer.draw(camera, options.pixel_error, *depth);
   if (!frame) return frame.error();
+  for (const Commands::Time& time : frame->times) out.frame_milliseconds += time.milliseconds;
   if (frame->overflow == 0) return Ok{};
   return Error{ErrorCode::kUnsupported, device.name,
                "the picture is not complete: overflow of " + describe_overflow(frame->overflow)};
@@ -102,6 +107,7 @@ Status render_on_gpu(const run::Asset& asset, const run::Camera& camera, const G
   const auto plan = plan_view(*scene, device->info(), camera, options);
   if (!plan) return plan.error();
   out.plan = describe_plan(*plan);
+  out.device = device->info().name;
   if (plan->textures) {
     const TextureSet textures = load_textures(asset, scene->material_textures, images);
     append(out.warnings, textures.warnings);
@@ -109,7 +115,7 @@ Status render_on_gpu(const run::Asset& asset, const run::Camera& camera, const G
   }
   auto renderer = Renderer::make(*device, *scene, plan->options);
   if (!renderer) return renderer.error();
-  if (const Status s = draw_frame(*renderer, asset, camera, options, device->info()); !s) return s;
+  if (const Status s = draw_frame(*renderer, asset, camera, options, device->info(), out); !s) return s;
   return read_picture(*renderer, asset, options.view, out);
 }
 

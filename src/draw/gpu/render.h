@@ -22,6 +22,7 @@ struct GpuRenderOptions {
   double pixel_error = 1.0;
   run::AttributeBounds bounds;     ///< a group that deviates by more never passes
   std::vector<std::string> force;  ///< passes to run although the scene does not call for them: plan_passes()
+  std::uint32_t frames = 1;        ///< drawn one after the other; the last one is read. \pre at least 1
 };
 
 struct GpuPicture {
@@ -30,6 +31,8 @@ struct GpuPicture {
   Image image;
   std::vector<std::string> warnings;  ///< images that could not be read
   std::string plan;                   ///< which passes ran and why, a line each: describe_plan()
+  std::string device;                 ///< its name
+  double frame_milliseconds = 0.0;    ///< of the last frame's passes by the device's clock, without reading it back
 };
 
 /// Selects, draws and colours the cut of `camera`. `images`: what decoded masks and textures may take. Warnings and
