@@ -17,7 +17,6 @@
 #include "command_line.h"
 #include "judge/verify/deviations.h"
 #include "random/scene.h"
-#include "run/decode/decode.h"
 #include "run/read/asset.h"
 #include "scene/import/import.h"
 
@@ -69,12 +68,11 @@ void measure_scene(const std::string& name, const scene::Scene& scene, const Opt
   }
   const Result<run::Asset> asset = run::Asset::from_vector(std::move(*bytes));
   if (!asset) return;
-  const Result<std::vector<run::DecodedCluster>> decoded = run::decode_all(*asset);
-  if (!decoded) return;
   for (std::uint32_t m = 0; m < scene.meshes.size(); ++m) {
     series.triangles += asset->meshes()[m].source_triangles;
-    for (const judge::CutDeviation& cut :
-         judge::measure_cuts(*asset, MeshId(m), scene.meshes[m], *decoded, options.cuts, options.samples)) {
+    const auto measured = judge::measure_cuts(*asset, MeshId(m), scene.meshes[m], options.cuts, options.samples);
+    if (!measured) return;
+    for (const judge::CutDeviation& cut : *measured) {
       const double ratio = cut.is_above(1.0) ? cut.ratio() : std::min(cut.ratio(), 1.0);
       series.ratios.push_back(ratio);
       if (!(ratio > options.above)) continue;

@@ -75,6 +75,10 @@ class DeviationFrom {
 [[nodiscard]] Surface surface_of_clusters(const run::Asset& asset, std::span<const run::DecodedCluster> decoded,
                                           MeshId mesh, std::span<const ClusterId> clusters);
 
+/// The same, decoded here, page by page. Errors: as run::load_page().
+[[nodiscard]] Result<Surface> surface_of_clusters(const run::Asset& asset, MeshId mesh,
+                                                  std::span<const ClusterId> clusters);
+
 /// The source: the triangles that have area, exactly (docs/format.md, "The source"), all primitives of the mesh
 /// together, as read.
 [[nodiscard]] Surface surface_of_source(const scene::SourceMesh& mesh);

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/release.h"
+
 namespace meshlode::judge {
 namespace {
 
@@ -193,26 +195,29 @@ TriangleTree::TriangleTree(const Surface& surface) {
     node.box = pieces[node.first].box;
     for (std::uint32_t i = node.first + 1; i < node.first + node.count; ++i) grow(node.box, pieces[i].box);
   }
-  copy_triangles(surface, pieces);
+  triangle_.resize(pieces.size());
+  for (std::size_t i = 0; i < pieces.size(); ++i) triangle_[i] = pieces[i].triangle;
+  release(pieces);  // their boxes are most of what it takes to build a tree
+  copy_triangles(surface);
 }
 
-void TriangleTree::copy_triangles(const Surface& surface, const std::vector<Piece>& pieces) {
+void TriangleTree::copy_triangles(const Surface& surface) {
   constexpr std::uint32_t kUnused = 0xFFFFFFFFU;
   std::vector<std::uint32_t> renamed(surface.positions.size(), kUnused);
-  corners_.resize(pieces.size());
-  triangle_.resize(pieces.size());
+  corners_.resize(triangle_.size());
   place_.resize(surface.triangles.size());
-  for (std::uint32_t i = 0; i < pieces.size(); ++i) {
-    triangle_[i] = pieces[i].triangle;
+  std::uint32_t used = 0;
+  for (std::uint32_t i = 0; i < triangle_.size(); ++i) {
     place_[triangle_[i]] = i;
     for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t v = surface.triangles[triangle_[i]][k];
-      if (renamed[v] == kUnused) {
-        renamed[v] = static_cast<std::uint32_t>(positions_.size());
-        positions_.push_back(surface.positions[v]);
-      }
-      corners_[i][k] = renamed[v];
+      std::uint32_t& name = renamed[surface.triangles[triangle_[i]][k]];
+      if (name == kUnused) name = used++;
+      corners_[i][k] = name;
     }
+  }
+  positions_.resize(used);
+  for (std::size_t v = 0; v < renamed.size(); ++v) {
+    if (renamed[v] != kUnused) positions_[renamed[v]] = surface.positions[v];
   }
 }
 

@@ -61,7 +61,7 @@ class TriangleTree {
   [[nodiscard]] Box to_frame(const Vec3d& low, const Vec3d& high) const;
   [[nodiscard]] std::vector<Piece> cut_to_pieces(const Surface& surface) const;
   void split(std::uint32_t node, std::vector<Piece>& pieces, std::uint32_t first, std::uint32_t count);
-  void copy_triangles(const Surface& surface, const std::vector<Piece>& pieces);
+  void copy_triangles(const Surface& surface);
   [[nodiscard]] static double distance2_to_box(const Box& box, const Vec3d& p);
   [[nodiscard]] double distance2_at(const Vec3d& point, std::uint32_t place) const;
 

@@ -45,9 +45,8 @@ double rounding_of(const format::MeshRecord& mesh) {
 
 }  // namespace
 
-std::vector<CutDeviation> measure_cuts(const run::Asset& asset, MeshId mesh, const scene::SourceMesh& source,
-                                       std::span<const run::DecodedCluster> clusters, std::uint32_t cuts,
-                                       std::uint64_t samples) {
+Result<std::vector<CutDeviation>> measure_cuts(const run::Asset& asset, MeshId mesh, const scene::SourceMesh& source,
+                                               std::uint32_t cuts, std::uint64_t samples) {
   const format::MeshRecord& record = asset.meshes()[mesh.value];
   const Surface truth = surface_of_source(source);
   const DeviationFrom from_truth(truth, {.samples = samples});
@@ -57,14 +56,14 @@ std::vector<CutDeviation> measure_cuts(const run::Asset& asset, MeshId mesh, con
     const run::UniformCut cut = run::select_uniform(asset, mesh, threshold);
     if (cut.clusters == previous) continue;
     previous = cut.clusters;
-    const Surface surface = surface_of_clusters(asset, clusters, mesh, cut.clusters);
-    measured.push_back({threshold, cut.stored_error, from_truth.find_largest(surface), rounding_of(record)});
+    const Result<Surface> surface = surface_of_clusters(asset, mesh, cut.clusters);
+    if (!surface) return surface.error();
+    measured.push_back({threshold, cut.stored_error, from_truth.find_largest(*surface), rounding_of(record)});
   }
   return measured;
 }
 
-DeviationTotals check_deviations(const run::Asset& asset, const scene::Scene& source,
-                                 std::span<const run::DecodedCluster> clusters, std::uint32_t cuts,
+DeviationTotals check_deviations(const run::Asset& asset, const scene::Scene& source, std::uint32_t cuts,
                                  std::uint64_t samples, RuleLog& log) {
   DeviationTotals totals;
   std::vector<double> ratios;
@@ -72,7 +71,12 @@ DeviationTotals check_deviations(const run::Asset& asset, const scene::Scene& so
     const format::ErrorTier tier = asset.meshes()[m].error_tier;
     if (tier == format::ErrorTier::kQem) continue;
     const double limit = tier == format::ErrorTier::kCertified ? 1.0 : 1.0 + kMeasuredShortfall;
-    for (const CutDeviation& cut : measure_cuts(asset, MeshId(m), source.meshes[m], clusters, cuts, samples)) {
+    const auto measured = measure_cuts(asset, MeshId(m), source.meshes[m], cuts, samples);
+    if (!measured) {
+      log.add(Rule::kL204, measured.error().where, measured.error().detail);
+      continue;
+    }
+    for (const CutDeviation& cut : *measured) {
       ratios.push_back(cut.ratio());
       ++totals.cuts;
       if (cut.is_above(1.0)) ++totals.exceeded;

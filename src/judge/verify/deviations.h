@@ -32,11 +32,10 @@ struct CutDeviation {
 
 /// Up to `cuts` uniform cuts of a mesh, evenly in the logarithm of the error, and before them the cut at 0 where a
 /// group says that it does not deviate; each another one. A single one is in the middle of the errors. `samples` are
-/// area-uniform samples each way.
-[[nodiscard]] std::vector<CutDeviation> measure_cuts(const run::Asset& asset, MeshId mesh,
-                                                     const scene::SourceMesh& source,
-                                                     std::span<const run::DecodedCluster> clusters, std::uint32_t cuts,
-                                                     std::uint64_t samples);
+/// area-uniform samples each way. Clusters are decoded cut by cut. Errors: as run::load_page().
+[[nodiscard]] Result<std::vector<CutDeviation>> measure_cuts(const run::Asset& asset, MeshId mesh,
+                                                             const scene::SourceMesh& source, std::uint32_t cuts,
+                                                             std::uint64_t samples);
 
 struct DeviationTotals {
   std::uint64_t cuts = 0;      ///< measured
@@ -47,8 +46,7 @@ struct DeviationTotals {
 
 /// measure_cuts() of every mesh whose tier promises something. A `measured` cut fails above 1 + kMeasuredShortfall, a
 /// `certified` one above 1.
-DeviationTotals check_deviations(const run::Asset& asset, const scene::Scene& source,
-                                 std::span<const run::DecodedCluster> clusters, std::uint32_t cuts,
+DeviationTotals check_deviations(const run::Asset& asset, const scene::Scene& source, std::uint32_t cuts,
                                  std::uint64_t samples, RuleLog& log);
 
 }  // namespace meshlode::judge

@@ -7,6 +7,7 @@
 #include <initializer_list>
 #include <iterator>
 
+#include "base/release.h"
 #include "judge/verify/cuts.h"
 #include "judge/verify/deviations.h"
 #include "judge/verify/source_rules.h"
@@ -149,8 +150,7 @@ void add_cuts(const run::Asset& asset, std::span<const run::DecodedCluster> clus
   report.take(camera_log);
 }
 
-void add_deviations(const run::Asset& asset, const scene::Scene& source, std::span<const run::DecodedCluster> clusters,
-                    const VerifyOptions& options, Report& report) {
+void add_deviations(const run::Asset& asset, const scene::Scene& source, const VerifyOptions& options, Report& report) {
   const auto meshes = asset.meshes();
   const bool is_qem = std::all_of(meshes.begin(), meshes.end(),
                                   [](const format::MeshRecord& m) { return m.error_tier == format::ErrorTier::kQem; });
@@ -158,7 +158,7 @@ void add_deviations(const run::Asset& asset, const scene::Scene& source, std::sp
   const std::uint32_t cuts = options.is_quick ? 1 : options.deviation_cuts;
   if (cuts == 0) return report.skip("I7", "not checked: no cut was to be measured");
   RuleLog log;
-  const DeviationTotals totals = check_deviations(asset, source, clusters, cuts, options.deviation_samples, log);
+  const DeviationTotals totals = check_deviations(asset, source, cuts, options.deviation_samples, log);
   char text[160];
   std::snprintf(text, sizeof text,
                 "cuts deviate by what they store: true/stored median %.2f, largest %.3f, above 1 in %llu cuts",
@@ -172,7 +172,7 @@ void add_deviations(const run::Asset& asset, const scene::Scene& source, std::sp
 VerifyReport verify_asset(const run::Asset& asset, const scene::Scene& source, const VerifyOptions& options) {
   Report report;
   add_structure(asset, report);
-  const Result<std::vector<run::DecodedCluster>> clusters = run::decode_all(asset);
+  Result<std::vector<run::DecodedCluster>> clusters = run::decode_all(asset);
   if (clusters) {
     add_source(asset, source, *clusters, options.is_quick, report);
     if (options.is_quick) {
@@ -180,7 +180,8 @@ VerifyReport verify_asset(const run::Asset& asset, const scene::Scene& source, c
     } else {
       add_cuts(asset, *clusters, options, report);
     }
-    add_deviations(asset, source, *clusters, options, report);
+    release(*clusters);  // cuts are decoded one by one
+    add_deviations(asset, source, options, report);
   } else {
     report.add_check("I1", "not reached: " + clusters.error().message(), 0, 1);
     if (report.out.finding_count == 0) {
