@@ -40,6 +40,7 @@ std::string meta_json(const scene::Scene& scene, const PipelineOptions& options,
   settings["grid"] = options.grid_step > 0.0 ? Json(options.grid_step) : Json("auto");
   settings["codec"] = format::name_of(options.codec);
   settings["repair"] = options.repair;
+  if (!scene.choice.empty()) settings["scene"] = scene.choice;
   settings["cluster_triangles"] = options.max_cluster_triangles;
   settings["cluster_vertices"] = options.max_cluster_vertices;
   settings["position_error"] = options.position_error > 0.0 ? Json(options.position_error) : Json("auto");

@@ -112,10 +112,11 @@ struct LeftOut {
 
 struct Scene {
   std::string source_name;  ///< base name of the file
+  std::string choice;       ///< ImportOptions::scene: which scene of the file was asked for; empty: its default
   std::string source_hash;  ///< XXH3-128 in hex over the file and all it refers to, in order of reference
   std::vector<SourceMesh> meshes;
   std::vector<SceneMaterial> materials;  ///< glTF's in order; the default material last, where a primitive has none
-  std::vector<SceneInstance> instances;  ///< depth first over the default scene
+  std::vector<SceneInstance> instances;  ///< depth first over the default scene, or the one that was chosen
   std::vector<SceneBlob> blobs;
   /// glTF-shaped JSON (asset, scene, scenes, nodes, materials, textures, samplers, images, cameras, animations, the
   /// accessors and bufferViews that animations use, extensions of the root): carried through unchanged except that

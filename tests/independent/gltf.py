@@ -171,7 +171,7 @@ class Gltf:
             yield attributes, triangles_of(mode, corners), primitive.get("material")
 
     def instances(self):
-        """(node, world matrix) of every node with a mesh, depth first over the default scene."""
+        """(node, world matrix) of every visible node with a mesh, depth first over the default scene."""
         nodes, scenes = self.root.get("nodes", []), self.root.get("scenes", [])
         if scenes:
             roots = scenes[self.root.get("scene", 0)].get("nodes", [])
@@ -181,6 +181,8 @@ class Gltf:
         todo = [(n, IDENTITY) for n in reversed(roots)]
         while todo:
             n, parent = todo.pop()
+            if not nodes[n].get("extensions", {}).get("KHR_node_visibility", {}).get("visible", True):
+                continue
             world = multiply(parent, local_matrix(nodes[n]))
             if "mesh" in nodes[n]:
                 yield n, world

@@ -295,6 +295,9 @@ class Scene:
             if r.random() < 0.15:
                 self.extensions.add("EXT_mesh_gpu_instancing")
                 node["extensions"] = {"EXT_mesh_gpu_instancing": {"attributes": self.instance_attributes()}}
+            if r.random() < 0.15:
+                self.extensions.add("KHR_node_visibility")
+                node.setdefault("extensions", {})["KHR_node_visibility"] = {"visible": r.random() < 0.5}
             nodes.append(node)
         order = list(range(len(nodes)))
         r.shuffle(order)

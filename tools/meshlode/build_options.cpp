@@ -14,6 +14,8 @@ void add_build_options(OptionParser& parser, BuildWords& words) {
       parser.add_value(name.c_str(), words.layer[info.setting], info.help, build::choices_of(info.setting));
     }
   }
+  parser.add_value("--scene", words.scene,
+                   "which scene of a glTF is instanced: a name, an index or all; the file's default where not given");
 }
 
 build::SettingLayer given_settings(const BuildWords& words) {

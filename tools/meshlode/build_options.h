@@ -2,6 +2,8 @@
 // The options of every verb that builds or plans a build: a table of settings (build/settings/), read as one layer.
 #pragma once
 
+#include <string>
+
 #include "build/settings/settings.h"
 #include "options.h"
 
@@ -10,6 +12,7 @@ namespace meshlode::cli {
 struct BuildWords {
   build::SettingLayer layer{"the command line", ErrorCode::kUsage, {}};
   bool repair = false;
+  std::string scene;  ///< of the file: a name, an index or `all`; empty: its default
 };
 
 /// `--error-tier`, `--preset` and so on.

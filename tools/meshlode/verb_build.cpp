@@ -405,8 +405,13 @@ int run_build(const Verb& verb, std::span<char* const> args) {
 
   if (const Status made = make_folder(output_folder); !made) return print_error(made.error());
   if (const Status free = check_outputs(*plan, report_path); !free) return print_error(free.error());
-  const JobOptions job_options{
-      options, {.repair = options.repair, .max_decoded = *decoded}, report_path, !output_folder.empty()};
+  JobOptions job_options;
+  job_options.pipeline = options;
+  job_options.import.repair = options.repair;
+  job_options.import.scene = words.scene;
+  job_options.import.max_decoded = *decoded;
+  job_options.report_path = report_path;
+  job_options.make_folders = !output_folder.empty();
 
   JobLimit limit(jobs);
   std::vector<JobResult> results;

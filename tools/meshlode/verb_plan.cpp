@@ -91,7 +91,8 @@ int run_plan(const Verb& verb, std::span<char* const> args) {
   const build::PipelineOptions& options = settled->options;
 
   JobLimit limit(jobs);
-  const Result<scene::Scene> scene = scene::import_scene(path, {.repair = options.repair, .max_decoded = *decoded});
+  const Result<scene::Scene> scene =
+      scene::import_scene(path, {.repair = options.repair, .scene = words.scene, .max_decoded = *decoded});
   if (!scene) return print_error(scene.error());
   const auto fail = [&](Error error) {
     error.where = path + (error.where.empty() ? "" : ": ") + error.where;

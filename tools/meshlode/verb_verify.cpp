@@ -141,8 +141,10 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
     return print_error({size.error().code, path + ": " + size.error().where, size.error().detail});
   }
   std::vector<FileId> files_read;
-  Result<scene::Scene> source = scene::import_scene(
-      source_path, {.repair = repair || was_repaired(*asset), .files_read = &files_read, .max_decoded = *max_decoded});
+  Result<scene::Scene> source = scene::import_scene(source_path, {.repair = repair || was_repaired(*asset),
+                                                                  .scene = out::read_meta(asset->meta_json()).scene,
+                                                                  .files_read = &files_read,
+                                                                  .max_decoded = *max_decoded});
   output_files().keep(files_read);
   if (!source) return print_error(source.error());
   if (options.is_quick) options.uniform_cuts = options.cameras = 0;  // as it is reported

@@ -60,6 +60,7 @@ MetaInfo read_meta(std::string_view meta_json) {
   if (const Json* settings = child(json, "settings", Json::value_t::object)) {
     meta.settings = dump(*settings);
     meta.preset = string_at(*settings, "preset");
+    meta.scene = string_at(*settings, "scene");
     meta.repair = settings->contains("repair") && (*settings)["repair"] == true;
     for (const char* key : {"cluster_triangles", "max_cluster_triangles", "triangles_per_cluster"}) {
       const auto cap = TreeHandle(*settings).find(key).index().value_or(0);

@@ -27,6 +27,7 @@ struct MetaInfo {
   std::vector<LeftOut> left_outs;       ///< of `left_out`, for text
   std::uint32_t cluster_triangles = 0;  ///< of the settings; 0 where it is not said
   bool repair = false;                  ///< of the settings: the source was repaired
+  std::string scene;                    ///< of the settings: the scene that was asked for; empty: the default one
 };
 [[nodiscard]] MetaInfo read_meta(std::string_view meta_json);
 

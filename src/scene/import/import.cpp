@@ -84,6 +84,9 @@ Result<Scene> import_scene(const std::filesystem::path& path, const ImportOption
     if (!format) {
       return Error{ErrorCode::kUnsupported, path.string(), "not glTF, GLB, PLY, OBJ or STL, by content or extension"};
     }
+    if (*format != Format::kGltf && !options.scene.empty() && options.scene != "all") {
+      return Error{ErrorCode::kUsage, path.string(), "--scene: only glTF has scenes"};
+    }
     auto scene =
         *format == Format::kGltf ? import_gltf(path, bytes, options) : import_polygons(*format, path, bytes, options);
     if (!scene) return scene;

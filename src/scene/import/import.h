@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include <meshlode/result.h>
@@ -17,6 +18,8 @@ struct ImportOptions {
   /// Drop (and count) triangles that touch non-finite positions or indices out of range, then repair_scene
   /// (scene/repair/repair.h).
   bool repair = false;
+  /// glTF: the name or else the index of the scene that is instanced, or "all"; empty: the file's default.
+  std::string scene{};
   std::vector<FileId>* files_read = nullptr;  ///< gets every file that was opened, also where the import fails
   /// Bytes of indices and vertices that compressed geometry may take beyond what its own size justifies.
   std::uint64_t max_decoded = std::uint64_t{512} << 20U;
@@ -24,7 +27,7 @@ struct ImportOptions {
 
 /// Reads .gltf, .glb, .ply, .obj or .stl (told apart by content where possible, else by extension).
 /// Errors: kIo the file (or one it refers to) cannot be read; kInvalid it breaks its format; kUnsupported it requires a
-/// geometry extension that is not known.
+/// geometry extension that is not known; kUsage there is no such scene.
 [[nodiscard]] Result<Scene> import_scene(const std::filesystem::path& path, const ImportOptions& options);
 
 }  // namespace meshlode::scene

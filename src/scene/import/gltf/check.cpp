@@ -184,6 +184,7 @@ bool is_known_extension(std::string_view name) {
                                          "EXT_meshopt_compression",
                                          "KHR_meshopt_compression",
                                          "EXT_mesh_gpu_instancing",
+                                         "KHR_node_visibility",
                                          "KHR_texture_transform",
                                          "KHR_texture_basisu",
                                          "KHR_lights_punctual",

@@ -43,7 +43,8 @@ class NodeChecker : public JsonChecker {
       if (is_zero) return fail(path + "/rotation", "a quaternion of length zero");
     }
     const Json* extensions = node.find("extensions");
-    return extensions == nullptr || (check_light(*extensions, path) && check_instancing(*extensions, path));
+    return extensions == nullptr || (check_light(*extensions, path) && check_instancing(*extensions, path) &&
+                                     check_visibility(*extensions, path));
   }
 
   bool check_light(const Json& extensions, const std::string& path) {
@@ -66,6 +67,14 @@ class NodeChecker : public JsonChecker {
       return fail(here + "/attributes", "missing, or without an attribute");
     }
     return index_map(*attributes, here + "/attributes", root_.items("accessors").size());
+  }
+
+  bool check_visibility(const Json& extensions, const std::string& path) {
+    const Json* visibility = extensions.find("KHR_node_visibility");
+    if (visibility == nullptr) return true;
+    const std::string here = path + "/extensions/KHR_node_visibility";
+    if (!visibility->is_object()) return fail(here, "not an object");
+    return optional_bool(*visibility, here, "visible");
   }
 
   bool check_trees() {

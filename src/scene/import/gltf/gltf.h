@@ -92,6 +92,7 @@ struct GltfAsset {
   std::vector<std::span<const std::uint8_t>> buffers;  ///< by buffer index; empty where a buffer has no data
   /// By view, where any is compressed (meshopt_views.h): the bytes that stand in the place of its buffer's.
   std::vector<std::vector<std::uint8_t>> decoded_views;
+  bool has_every_scene = false;  ///< the default scene is one that choose_scene() made of all others
 
   /// "scene.gltf: /meshes/0": where an error lies.
   [[nodiscard]] Error error(ErrorCode code, const std::string& json_path, std::string detail) const {

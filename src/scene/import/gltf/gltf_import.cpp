@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "scene/import/gltf/check_base.h"
+#include "scene/import/gltf/choose_scene.h"
 #include "scene/import/gltf/gltf.h"
 #include "scene/import/gltf/instancing.h"
 #include "scene/import/gltf/meshopt_views.h"
@@ -197,6 +198,7 @@ Result<Scene> import_gltf(const std::filesystem::path& path, std::span<const std
   auto model = read_gltf_model(asset.root);
   if (!model) return Error{model.error().code, asset.file, model.error().detail};
   asset.model = std::move(*model);
+  if (auto status = choose_scene(asset, options.scene); !status) return status.error();
 
   const std::uint64_t file_bytes = bytes.size() + files.total_bytes();
   const std::uint64_t stream_bytes = std::min(count_meshopt_bytes(asset.root), file_bytes);
@@ -211,7 +213,8 @@ Result<Scene> import_gltf(const std::filesystem::path& path, std::span<const std
   scene.materials = read_materials(asset, scene.left_out);
   if (auto status = read_meshes(asset, options, budget, scene); !status) return status.error();
   if (auto status = expand_instancing(asset, budget, scene.left_out); !status) return status.error();
-  scene.instances = read_instances(asset, scene.left_out);
+  scene.instances = read_instances(asset, options.scene, scene.left_out);
+  scene.choice = options.scene;
   const std::size_t skin_count = asset.root.items("skins").size();
   for (std::size_t s = 0; s < skin_count; ++s) {
     scene.left_out.push_back({"skin " + std::to_string(s), "meshes are built static, in their bind pose"});

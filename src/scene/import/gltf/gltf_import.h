@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "scene/import/import.h"
@@ -24,8 +25,10 @@ struct Json;
 /// One SceneMaterial per glTF material, in order; TextureUse::blob is carry_document's. \pre the asset is checked
 [[nodiscard]] std::vector<SceneMaterial> read_materials(const GltfAsset& asset, std::vector<LeftOut>& left_out);
 
-/// The nodes that draw a mesh, depth first over the default scene. \pre the asset is checked: nodes form trees
-[[nodiscard]] std::vector<SceneInstance> read_instances(const GltfAsset& asset, std::vector<LeftOut>& left_out);
+/// The visible nodes that draw a mesh, depth first over the default scene, which `choice` made so where it is not empty
+/// (choose_scene.h). \pre the asset is checked: nodes form trees
+[[nodiscard]] std::vector<SceneInstance> read_instances(const GltfAsset& asset, std::string_view choice,
+                                                        std::vector<LeftOut>& left_out);
 
 /// Fills scene.document and scene.blobs with all that travels unchanged, and the blobs of the materials' texture uses.
 /// Opens the images.
