@@ -12,6 +12,7 @@
 #include "base/guarded.h"
 #include "base/hash.h"
 #include "scene/import/gltf/gltf_import.h"
+#include "scene/import/polygons/obj_materials.h"
 #include "scene/import/polygons/polygon_soup.h"
 #include "scene/repair/repair.h"
 
@@ -43,7 +44,14 @@ std::optional<Format> find_format(const std::filesystem::path& path, std::span<c
   return std::nullopt;
 }
 
-/// One mesh, one default material, one instance.
+/// OBJ's texture coordinates begin below, glTF's above.
+void turn_uvs(std::vector<Primitive>& primitives) {
+  for (Primitive& primitive : primitives) {
+    for (Vec2f& uv : primitive.uvs[0]) uv.y = 1.0F - uv.y;
+  }
+}
+
+/// One mesh, one instance; the materials that an OBJ names, or the default one.
 Result<Scene> import_polygons(Format format, const std::filesystem::path& path, std::span<const std::uint8_t> bytes,
                               const ImportOptions& options) {
   const auto named = [&](const Error& error) {
@@ -58,17 +66,22 @@ Result<Scene> import_polygons(Format format, const std::filesystem::path& path, 
   SourceMesh mesh;
   mesh.name = path.stem().string();
   mesh.drops = file->drops;
-  auto primitive = triangulate(std::move(file->soup), options, mesh.drops, scene.left_out);
-  if (!primitive) return named(primitive.error());
-  primitive->material = MaterialId(0U);
-  if (primitive->indices.empty() && !primitive->positions.empty()) {
+  Hasher hasher;
+  hasher.update(bytes);
+  add_obj_materials(path, *file, options, hasher, scene);
+  auto primitives = triangulate(std::move(file->soup), options, mesh.drops, scene.left_out);
+  if (!primitives) return named(primitives.error());
+  for (Primitive& primitive : *primitives) {
+    if (!primitive.material.is_valid()) primitive.material = MaterialId(scene.materials.size() - 1);
+  }
+  if (primitives->size() == 1 && primitives->front().indices.empty() && !primitives->front().positions.empty()) {
     scene.left_out.push_back({"points", "the file has no faces"});
   }
-  mesh.primitives.push_back(std::move(*primitive));
-  scene.materials.emplace_back();
+  if (!scene.blobs.empty()) turn_uvs(*primitives);  // without a texture nobody samples with them
+  mesh.primitives = std::move(*primitives);
   scene.instances.push_back({mesh.name, 0, MeshId(0U), Mat4d(1.0)});
   scene.meshes.push_back(std::move(mesh));
-  scene.source_hash = to_hex(hash128(bytes));
+  scene.source_hash = to_hex(hasher.digest());
   return scene;
 }
 

@@ -153,7 +153,7 @@ TEST_F(ImportPolygons, ObjCornersBecomeWedges) {
   EXPECT_EQ(p.uvs[0][p.indices[3]], Vec2f(0.5F, 0.5F));
   EXPECT_EQ(p.normals[p.indices[5]], Vec3f(0, 0, 1));
   ASSERT_EQ(scene->left_out.size(), 1U);
-  EXPECT_EQ(scene->left_out[0].what, "mtllib");
+  EXPECT_EQ(scene->left_out[0].what, "mtllib ../../secret.mtl");
 }
 
 TEST_F(ImportPolygons, ObjFaultsAreNamedByTheirLine) {

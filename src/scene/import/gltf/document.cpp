@@ -8,6 +8,7 @@
 #include "scene/import/gltf/check_base.h"
 #include "scene/import/gltf/gltf.h"
 #include "scene/import/gltf/gltf_import.h"
+#include "scene/import/image_mime.h"
 
 namespace meshlode::scene {
 
@@ -39,19 +40,6 @@ void drop_binary_extensions(Json& object, const std::string& what, std::vector<L
   std::sort(dropped.begin(), dropped.end());
   extensions->erase_all(dropped);
   if (extensions->object()->empty()) object.erase("extensions");
-}
-
-std::string_view sniff_mime(std::span<const std::uint8_t> bytes) {
-  const auto starts = [&](std::initializer_list<int> magic) {
-    return bytes.size() >= magic.size() &&
-           std::equal(magic.begin(), magic.end(), bytes.begin(), [](int a, std::uint8_t b) { return a == b; });
-  };
-  if (starts({0x89, 'P', 'N', 'G'})) return "image/png";
-  if (starts({0xFF, 0xD8, 0xFF})) return "image/jpeg";
-  if (starts({0xAB, 'K', 'T', 'X'})) return "image/ktx2";
-  if (starts({'R', 'I', 'F', 'F'})) return "image/webp";
-  if (starts({'D', 'D', 'S', ' '})) return "image/vnd-ms.dds";
-  return "";
 }
 
 std::string image_name(const Json& image) {
@@ -112,7 +100,7 @@ Status carry_images(const GltfAsset& asset, GltfFiles& files, Json& document, Sc
       blob.kind = SceneBlob::Kind::kImage;
       blob.name = image_name(source);
       const Json* mime = source.find("mimeType");
-      blob.mime_type = mime != nullptr ? *mime->string() : std::string(sniff_mime(bytes));
+      blob.mime_type = mime != nullptr ? *mime->string() : std::string(sniff_image_mime(bytes));
       blob.source_index = static_cast<std::uint32_t>(out.size());
       blob.bytes.assign(bytes.begin(), bytes.end());
       scene.blobs.push_back(std::move(blob));

@@ -130,7 +130,6 @@ Result<DataUri> decode_data_uri(std::string_view uri) {
 }
 
 Result<std::filesystem::path> resolve_uri(const std::filesystem::path& folder, std::string_view uri) {
-  namespace fs = std::filesystem;
   if (has_scheme(uri)) {
     return Error{ErrorCode::kUnsupported, "",
                  "only data URIs and relative paths are read, not \"" + std::string(uri.substr(0, 60)) + "\""};
@@ -138,20 +137,26 @@ Result<std::filesystem::path> resolve_uri(const std::filesystem::path& folder, s
   auto decoded = percent_decode(uri);
   if (!decoded) return decoded.error();
   if (decoded->empty()) return invalid("an empty URI");
-  const fs::path relative(*decoded);
-  if (relative.is_absolute()) return invalid("an absolute path: \"" + *decoded + "\"");
+  return resolve_below(folder, *decoded);
+}
+
+Result<std::filesystem::path> resolve_below(const std::filesystem::path& folder, const std::string& path) {
+  namespace fs = std::filesystem;
+  if (path.find('\0') != std::string::npos) return invalid("a NUL byte in a path");
+  const fs::path relative(path);
+  if (relative.is_absolute()) return invalid("an absolute path: \"" + path + "\"");
   // First by its letters, so that nothing outside is even looked at; then as it is on the disk, links followed.
   const fs::path tidy = relative.lexically_normal();
   if (tidy.begin() != tidy.end() && *tidy.begin() == "..") {
-    return invalid("a path that leaves the scene's folder: \"" + *decoded + "\"");
+    return invalid("a path that leaves the scene's folder: \"" + path + "\"");
   }
   std::error_code error;
   const fs::path root = fs::canonical(folder.empty() ? fs::path(".") : folder, error);
   if (error) return Error{ErrorCode::kIo, "", "the scene's folder cannot be resolved: " + error.message()};
   const fs::path file = fs::canonical(root / tidy, error);
-  if (error) return Error{ErrorCode::kIo, "", "cannot open \"" + *decoded + "\": " + error.message()};
+  if (error) return Error{ErrorCode::kIo, "", "cannot open \"" + path + "\": " + error.message()};
   if (!is_below(root, file)) {
-    return invalid("a link that leaves the scene's folder: \"" + *decoded + "\"");
+    return invalid("a link that leaves the scene's folder: \"" + path + "\"");
   }
   return file;
 }

@@ -33,4 +33,7 @@ struct DataUri {
 /// kIo it does not exist.
 [[nodiscard]] Result<std::filesystem::path> resolve_uri(const std::filesystem::path& folder, std::string_view uri);
 
+/// The same of a plain path, which must be relative.
+[[nodiscard]] Result<std::filesystem::path> resolve_below(const std::filesystem::path& folder, const std::string& path);
+
 }  // namespace meshlode::scene

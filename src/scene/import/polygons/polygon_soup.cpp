@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <utility>
 
 namespace meshlode::scene {
 
@@ -44,23 +46,51 @@ bool is_stored_exactly(const Vec3d& p) {
   return std::fabs(p.x) <= kMax && std::fabs(p.y) <= kMax && std::fabs(p.z) <= kMax;  // false for NaN
 }
 
-/// Keeps the vertices that `corners` name, in order.
-void keep_used_vertices(Primitive& primitive) {
-  std::vector<std::uint32_t> used = primitive.indices;
+/// The triangles of `corners` with the vertices that they name, in order.
+Primitive part_of(const Primitive& whole, std::vector<std::uint32_t> corners) {
+  std::vector<std::uint32_t> used = corners;
   std::sort(used.begin(), used.end());
   used.erase(std::unique(used.begin(), used.end()), used.end());
-  const auto gather = [&](auto& values) {
-    if (values.empty()) return;
-    for (std::size_t i = 0; i < used.size(); ++i) values[i] = values[used[i]];  // used[i] >= i
-    values.resize(used.size());
+  const auto gather = [&](const auto& from, auto& to) {
+    if (from.empty()) return;
+    to.reserve(used.size());
+    for (const std::uint32_t v : used) to.push_back(from[v]);
   };
-  gather(primitive.positions);
-  gather(primitive.normals);
-  gather(primitive.uvs[0]);
-  gather(primitive.colors);
-  for (std::uint32_t& corner : primitive.indices) {
+  Primitive out;
+  gather(whole.positions, out.positions);
+  gather(whole.normals, out.normals);
+  gather(whole.uvs[0], out.uvs[0]);
+  gather(whole.colors, out.colors);
+  for (std::uint32_t& corner : corners) {
     corner = static_cast<std::uint32_t>(std::lower_bound(used.begin(), used.end(), corner) - used.begin());
   }
+  out.indices = std::move(corners);
+  return out;
+}
+
+MaterialId material_id(std::uint32_t material) {
+  return material == kNoId ? MaterialId() : MaterialId(std::size_t{material});
+}
+
+/// One primitive for each material. `materials`: of the triangles, or empty.
+std::vector<Primitive> split(Primitive whole, const std::vector<std::uint32_t>& materials) {
+  std::map<std::uint32_t, std::vector<std::uint32_t>> corners;  // kNoId is the last
+  for (std::size_t t = 0; t < materials.size(); ++t) {
+    std::vector<std::uint32_t>& list = corners[materials[t]];
+    list.insert(list.end(), whole.indices.begin() + static_cast<std::ptrdiff_t>(3 * t),
+                whole.indices.begin() + static_cast<std::ptrdiff_t>(3 * t + 3));
+  }
+  std::vector<Primitive> out;
+  if (corners.size() < 2) {
+    if (!corners.empty()) whole.material = material_id(corners.begin()->first);
+    out.push_back(std::move(whole));
+    return out;
+  }
+  for (auto& [material, list] : corners) {
+    out.push_back(part_of(whole, std::move(list)));
+    out.back().material = material_id(material);
+  }
+  return out;
 }
 
 template <class Vec>
@@ -82,8 +112,8 @@ std::size_t replace_broken(std::vector<Vec>& values, int components, const Vec& 
 
 }  // namespace
 
-Result<Primitive> triangulate(PolygonSoup soup, const ImportOptions& options, ImportDrops& drops,
-                              std::vector<LeftOut>& left_out) {
+Result<std::vector<Primitive>> triangulate(PolygonSoup soup, const ImportOptions& options, ImportDrops& drops,
+                                           std::vector<LeftOut>& left_out) {
   Primitive out;
   bool needs_compaction = false;
   for (std::size_t v = 0; v < soup.positions.size(); ++v) {
@@ -95,8 +125,10 @@ Result<Primitive> triangulate(PolygonSoup soup, const ImportOptions& options, Im
     needs_compaction = true;
   }
   out.indices.reserve(soup.corners.size());
+  std::vector<std::uint32_t> materials;
   std::size_t first = 0;
-  for (const std::uint32_t size : soup.polygon_sizes) {
+  for (std::size_t p = 0; p < soup.polygon_sizes.size(); ++p) {
+    const std::uint32_t size = soup.polygon_sizes[p];
     const std::span<const std::uint32_t> polygon(soup.corners.data() + first, size);
     first += size;
     const bool is_whole = !needs_compaction || std::all_of(polygon.begin(), polygon.end(), [&](std::uint32_t v) {
@@ -106,6 +138,7 @@ Result<Primitive> triangulate(PolygonSoup soup, const ImportOptions& options, Im
       drops.repaired += size - 2;
       continue;
     }
+    if (!soup.polygon_materials.empty()) materials.insert(materials.end(), size - 2, soup.polygon_materials[p]);
     const std::size_t start = find_fan_corner(soup.positions, polygon);
     for (std::size_t i = 1; i + 1 < size; ++i) {
       out.indices.insert(out.indices.end(),
@@ -116,7 +149,10 @@ Result<Primitive> triangulate(PolygonSoup soup, const ImportOptions& options, Im
   out.normals = std::move(soup.normals);
   out.uvs[0] = std::move(soup.uvs);
   out.colors = std::move(soup.colors);
-  if (needs_compaction) keep_used_vertices(out);
+  if (needs_compaction) {
+    std::vector<std::uint32_t> corners = std::move(out.indices);
+    out = part_of(out, std::move(corners));
+  }
   if (const std::size_t bad = replace_broken(out.normals, 3, Vec3f(0.0F, 0.0F, 1.0F), true); bad != 0) {
     // Half a set of normals is worse than none: flat ones are what a file without normals gets.
     out.normals.clear();
@@ -131,7 +167,7 @@ Result<Primitive> triangulate(PolygonSoup soup, const ImportOptions& options, Im
   for (Vec4f& color : out.colors) {
     for (int c = 0; c < 4; ++c) color[c] = std::clamp(color[c], 0.0F, 1.0F);
   }
-  return out;
+  return split(std::move(out), materials);
 }
 
 }  // namespace meshlode::scene

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <meshlode/result.h>
@@ -19,18 +20,21 @@ namespace meshlode::scene {
 
 /// Vertices and polygons as a file has them.
 struct PolygonSoup {
-  std::vector<Vec3d> positions;              ///< with all their digits; NaN and infinity too
-  std::vector<Vec3f> normals;                ///< empty or one per vertex
-  std::vector<Vec2f> uvs;                    ///< empty or one per vertex
-  std::vector<Vec4f> colors;                 ///< empty or one per vertex
-  std::vector<std::uint32_t> corners;        ///< of all polygons, one after the other
-  std::vector<std::uint32_t> polygon_sizes;  ///< 3 or more each
+  std::vector<Vec3d> positions;                  ///< with all their digits; NaN and infinity too
+  std::vector<Vec3f> normals;                    ///< empty or one per vertex
+  std::vector<Vec2f> uvs;                        ///< empty or one per vertex
+  std::vector<Vec4f> colors;                     ///< empty or one per vertex
+  std::vector<std::uint32_t> corners;            ///< of all polygons, one after the other
+  std::vector<std::uint32_t> polygon_sizes;      ///< 3 or more each
+  std::vector<std::uint32_t> polygon_materials;  ///< empty, or for each an index into material_names or kNoId
 };
 
 struct PolygonFile {
   PolygonSoup soup;
   ImportDrops drops;
   std::vector<LeftOut> left_out;
+  std::vector<std::string> material_names;      ///< of OBJ's usemtl, each once
+  std::vector<std::string> material_libraries;  ///< of its mtllib, a line each
 };
 
 /// Errors: kInvalid or kUnsupported, with the place in `where` for the caller to put the file's name before.
@@ -39,8 +43,9 @@ struct PolygonFile {
 [[nodiscard]] Result<PolygonFile> read_stl(std::span<const std::uint8_t> bytes, const ImportOptions& options);
 
 /// Polygons become triangles by fans, from a corner whose fan folds nowhere where there is one. Triangles with a
-/// position that is not finite are refused, or dropped and counted with options.repair.
-[[nodiscard]] Result<Primitive> triangulate(PolygonSoup soup, const ImportOptions& options, ImportDrops& drops,
-                                            std::vector<LeftOut>& left_out);
+/// position that is not finite are refused, or dropped and counted with options.repair. One primitive for each material
+/// that a polygon has, those without one last; one without a material where there are none.
+[[nodiscard]] Result<std::vector<Primitive>> triangulate(PolygonSoup soup, const ImportOptions& options,
+                                                         ImportDrops& drops, std::vector<LeftOut>& left_out);
 
 }  // namespace meshlode::scene

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Wavefront OBJ: v, vt, vn and f; everything else is left out, above all mtllib, which names files wherever it likes.
+// Wavefront OBJ: v, vt, vn, f, usemtl and mtllib, whose files are read elsewhere (obj_materials.h); everything else is
+// left out.
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <charconv>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <optional>
 #include <set>
@@ -16,7 +18,8 @@ namespace meshlode::scene {
 
 namespace {
 
-constexpr std::size_t kMaxCorners = 4096;  // the search for repeated corners is quadratic
+constexpr std::size_t kMaxCorners = 4096;     // the search for repeated corners is quadratic
+constexpr std::size_t kMaxMaterials = 65536;  // each is a material of the scene, however short its name
 
 Error invalid(std::size_t line, std::string detail) {
   return {ErrorCode::kInvalid, "line " + std::to_string(line), std::move(detail)};
@@ -53,6 +56,11 @@ class ObjReader {
         status = read_normal(line);
       } else if (keyword == "f") {
         status = read_face(line);
+      } else if (keyword == "usemtl") {
+        status = use_material(trimmed(line));
+      } else if (keyword == "mtllib") {
+        const std::string_view name = trimmed(line);
+        if (!name.empty()) libraries_.emplace(name);
       } else if (!keyword.empty() && keyword.front() != '#') {
         skipped_.insert(std::string(keyword.substr(0, 16)));
         if (skipped_.size() > 64) return invalid(line_, "not OBJ: too many unknown keywords");
@@ -67,6 +75,7 @@ class ObjReader {
   Status read_uv(std::string_view line);
   Status read_normal(std::string_view line);
   Status read_face(std::string_view line);
+  Status use_material(std::string_view name);
   void report();
   PolygonFile finish();
 
@@ -110,7 +119,10 @@ class ObjReader {
   std::vector<Vec2f> uvs_;
   std::vector<Vec3f> normals_;
   std::vector<Corner> corners_;
-  std::vector<std::uint32_t> face_sizes_;
+  std::vector<std::uint32_t> face_sizes_, face_materials_;
+  std::map<std::string, std::uint32_t, std::less<>> material_of_;  ///< index by name
+  std::uint32_t material_ = kNoId;                                 ///< of the faces that follow
+  std::set<std::string> libraries_;
   std::set<std::string> skipped_;
   PolygonFile out_;
 };
@@ -214,6 +226,23 @@ Status ObjReader::read_face(std::string_view line) {
       std::all_of(corners.begin(), corners.end(), [](const Corner& c) { return c.normal != 0; }) ? 1U : 0U;
   corners_.insert(corners_.end(), corners.begin(), corners.end());
   face_sizes_.push_back(static_cast<std::uint32_t>(corners.size()));
+  face_materials_.push_back(material_);
+  return Ok{};
+}
+
+Status ObjReader::use_material(std::string_view name) {
+  const auto known = material_of_.find(name);
+  if (known != material_of_.end()) {
+    material_ = known->second;
+    return Ok{};
+  }
+  if (material_of_.size() >= kMaxMaterials) {
+    return Error{ErrorCode::kUnsupported, "line " + std::to_string(line_),
+                 "more than " + std::to_string(kMaxMaterials) + " materials"};
+  }
+  material_ = static_cast<std::uint32_t>(material_of_.size());
+  material_of_.emplace(name, material_);
+  out_.material_names.emplace_back(name);
   return Ok{};
 }
 
@@ -257,9 +286,7 @@ void ObjReader::report() {
     out_.left_out.push_back({std::to_string(small_faces_) + " faces", "they have fewer than three distinct corners"});
   }
   for (const std::string& keyword : skipped_) {
-    if (keyword == "mtllib" || keyword == "usemtl") {
-      out_.left_out.push_back({keyword, "materials of OBJ are not read"});
-    } else if (keyword == "p" || keyword == "l") {
+    if (keyword == "p" || keyword == "l") {
       out_.left_out.push_back({keyword, "points and lines are not triangles"});
     } else if (keyword != "o" && keyword != "g" && keyword != "s") {
       std::string shown = keyword;
@@ -281,6 +308,8 @@ PolygonFile ObjReader::finish() {
   wedges.soup.corners.reserve(corners_.size());
   for (const Corner& corner : corners_) wedges.soup.corners.push_back(wedges.take(corner));
   wedges.soup.polygon_sizes = std::move(face_sizes_);
+  if (!out_.material_names.empty()) wedges.soup.polygon_materials = std::move(face_materials_);
+  out_.material_libraries.assign(libraries_.begin(), libraries_.end());
   out_.soup = std::move(wedges.soup);
   return std::move(out_);
 }

@@ -14,6 +14,8 @@ namespace meshlode::scene {
 
 /// Takes the next word off the front; empty at the end.
 std::string_view take_word(std::string_view& text);
+/// Without blanks at either end.
+[[nodiscard]] std::string_view trimmed(std::string_view text);
 /// Takes a line off the front, without its end.
 std::string_view take_line(std::string_view& text);
 /// A whole word as a number; "nan" and "inf" are numbers, "1x" is not. Too large: infinite; too small: zero.

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/import/polygons/obj_materials.h"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "base/file.h"
+#include "scene/import/gltf/uri.h"
+#include "scene/import/image_mime.h"
+#include "scene/import/json.h"
+#include "scene/import/polygons/read_mtl.h"
+#include "scene/import/polygons/text_scan.h"
+
+namespace meshlode::scene {
+
+namespace {
+
+/// A name of the file's for a terminal.
+std::string shown(std::string_view name) {
+  std::string out(name.substr(0, 64));
+  std::replace_if(
+      out.begin(), out.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }, '?');
+  return out;
+}
+
+class ObjMaterials {
+ public:
+  ObjMaterials(const std::filesystem::path& path, const ImportOptions& options, Hasher& hasher, Scene& scene)
+      : folder_(path.parent_path()), options_(options), hasher_(hasher), scene_(scene) {}
+
+  void run(const PolygonFile& file) {
+    for (const std::string& line : file.material_libraries) open_library(line);
+    std::set<std::string> unknown;
+    for (const std::string& name : file.material_names) {
+      const auto found = by_name_.find(name);
+      if (found == by_name_.end()) unknown.insert(name);
+      add(name, found == by_name_.end() ? MtlMaterial{} : found->second);
+    }
+    if (!unknown.empty()) {
+      leave_out("material " + shown(*unknown.begin()) +
+                    (unknown.size() > 1 ? " and " + std::to_string(unknown.size() - 1) + " more" : ""),
+                "no mtllib that could be read has it; it is plain white");
+    }
+    const auto& used = file.soup.polygon_materials;  // kNoId before any usemtl
+    if (used.empty() || std::find(used.begin(), used.end(), kNoId) != used.end()) scene_.materials.emplace_back();
+    if (!materials_.empty()) write_document();
+  }
+
+ private:
+  void leave_out(std::string what, std::string why) { scene_.left_out.push_back({std::move(what), std::move(why)}); }
+
+  /// A file below the scene's folder. Windows writes its paths the other way.
+  Result<MappedFile> open(std::string name, std::filesystem::path& path) {
+    std::replace(name.begin(), name.end(), '\\', '/');
+    auto resolved = resolve_below(folder_, name);
+    if (!resolved) return resolved.error();
+    path = *resolved;
+    auto file = MappedFile::open(path);
+    if (!file) return file;
+    if (options_.files_read != nullptr) options_.files_read->push_back(file->id());
+    return file;
+  }
+
+  bool read_library(const std::string& name) {
+    std::filesystem::path path;
+    const auto file = open(name, path);
+    if (!file) return false;
+    if (!read_.insert(path).second) return true;
+    hasher_.update(file->bytes());
+    for (MtlMaterial& material : read_mtl(file->bytes())) {
+      std::string key = material.name;
+      by_name_.try_emplace(std::move(key), std::move(material));  // the first of a name counts
+    }
+    return true;
+  }
+
+  /// One name with blanks, or several.
+  void open_library(const std::string& line) {
+    if (read_library(line)) return;
+    std::string_view rest = line;
+    for (std::string_view name = take_word(rest); !name.empty(); name = take_word(rest)) {
+      if (!read_library(std::string(name))) {
+        leave_out("mtllib " + shown(name), "it cannot be opened below the scene's folder");
+      }
+    }
+  }
+
+  /// The image of that name; kNoId where it cannot be opened, which is said once.
+  std::uint32_t image_of(const std::string& name) {
+    if (const auto known = image_by_name_.find(name); known != image_by_name_.end()) return known->second;
+    std::uint32_t& image = image_by_name_[name];
+    image = kNoId;
+    std::filesystem::path path;
+    const auto file = open(name, path);
+    if (!file) {
+      leave_out("map_Kd " + shown(name), "it cannot be opened below the scene's folder");
+      return kNoId;
+    }
+    const auto [known, is_new] = image_by_path_.try_emplace(path, static_cast<std::uint32_t>(images_.size()));
+    image = known->second;
+    if (!is_new) return image;
+    hasher_.update(file->bytes());
+    SceneBlob blob;
+    blob.name = path.filename().string();
+    blob.mime_type = std::string(sniff_image_mime(file->bytes()));
+    blob.source_index = image;
+    blob.bytes.assign(file->bytes().begin(), file->bytes().end());
+    Json json = Json::make_object();
+    json.set("name", Json::make_string(blob.name));
+    if (!blob.mime_type.empty()) json.set("mimeType", Json::make_string(blob.mime_type));
+    json.set("blob", Json::make_index(scene_.blobs.size()));
+    images_.push_back(std::move(json));
+    scene_.blobs.push_back(std::move(blob));
+    return image;
+  }
+
+  void add(const std::string& name, const MtlMaterial& from) {
+    SceneMaterial material;
+    material.name = name;
+    material.source_index = static_cast<std::uint32_t>(materials_.size());
+    const std::uint32_t image = from.texture.empty() ? kNoId : image_of(from.texture);
+    Json factor = Json::make_array();
+    for (int c = 0; c < 4; ++c) {
+      const double value = c < 3 ? from.diffuse[static_cast<std::size_t>(c)] : from.opacity;
+      material.base_color[c] = static_cast<float>(value);
+      std::get<Json::Array>(factor.value).push_back(Json::make_number(value));
+    }
+    Json pbr = Json::make_object();
+    pbr.set("baseColorFactor", std::move(factor));
+    if (image != kNoId) {
+      Json info = Json::make_object();
+      info.set("index", Json::make_index(image));  // each image has one texture
+      pbr.set("baseColorTexture", std::move(info));
+      material.base_color_texture = image;
+      material.base_color_uv_set = 0;
+      material.uv_sets_used = 1;
+      TextureUse use;
+      use.role = TextureRole::kBaseColor;
+      use.texture = use.image = use.blob = image;  // an OBJ has no other blobs
+      material.textures.push_back(use);
+    }
+    pbr.set("metallicFactor", Json::make_number(0.0));
+    Json json = Json::make_object();
+    json.set("name", Json::make_string(name));
+    json.set("pbrMetallicRoughness", std::move(pbr));
+    if (from.opacity < 1.0) {
+      material.alpha_mode = AlphaMode::kBlend;
+      json.set("alphaMode", Json::make_string("BLEND"));
+    }
+    materials_.push_back(std::move(json));
+    scene_.materials.push_back(std::move(material));
+  }
+
+  void write_document() {
+    Json document = Json::make_object();
+    Json asset = Json::make_object();
+    asset.set("version", Json::make_string("2.0"));
+    document.set("asset", std::move(asset));
+    document.set("materials", Json{std::move(materials_)});
+    if (!images_.empty()) {
+      Json::Array textures;
+      for (std::size_t i = 0; i < images_.size(); ++i) {
+        Json texture = Json::make_object();
+        texture.set("source", Json::make_index(i));
+        textures.push_back(std::move(texture));
+      }
+      document.set("textures", Json{std::move(textures)});
+      document.set("images", Json{std::move(images_)});
+    }
+    scene_.document = dump_json(document);
+  }
+
+  std::filesystem::path folder_;
+  const ImportOptions& options_;
+  Hasher& hasher_;
+  Scene& scene_;
+  std::set<std::filesystem::path> read_;
+  std::map<std::string, MtlMaterial> by_name_;
+  std::map<std::string, std::uint32_t> image_by_name_;
+  std::map<std::filesystem::path, std::uint32_t> image_by_path_;
+  Json::Array materials_, images_;
+};
+
+}  // namespace
+
+void add_obj_materials(const std::filesystem::path& path, const PolygonFile& file, const ImportOptions& options,
+                       Hasher& hasher, Scene& scene) {
+  ObjMaterials(path, options, hasher, scene).run(file);
+}
+
+}  // namespace meshlode::scene

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// usemtl and mtllib: colours, textures and opacity as a glTF would have them; what is missing is said, and nothing is
+// opened outside the scene's folder.
+#include <gtest/gtest.h>
+
+#include "gltf_builder.h"
+#include "scene/import/json.h"
+#include "scene/import/polygons/read_mtl.h"
+
+namespace meshlode::testing {
+namespace {
+
+/// Four corners with UVs, and faces.
+std::string obj(const std::string& faces, const std::string& head = "mtllib a.mtl\n") {
+  return head + "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 0.25\nvt 0 1\n" + faces;
+}
+
+const std::string kRed = "usemtl red\nf 1/1 2/2 3/3\n", kGlass = "usemtl old glass\nf 1/1 3/3 4/4\n";
+const std::string kMtl =
+    "# made by hand\nnewmtl red\nKd 1 0.5 0\nNs 10\n\nnewmtl old glass\nKd 0.25\nd 0.5\nmap_Kd -s 2 2 -clamp on my "
+    "tex.png\n";
+const std::string kPng = "\x89PNG\r\n";
+
+std::string left_out(const scene::Scene& scene) {
+  std::string out;
+  for (const scene::LeftOut& item : scene.left_out) out += item.what + "; ";
+  return out;
+}
+
+TEST(ImportObjMaterials, ColoursTexturesAndOpacityAreTheScenes) {
+  const TempFolder folder;
+  folder.write("a.mtl", kMtl);
+  folder.write("my tex.png", kPng);
+  const auto scene = scene::import_scene(folder.write("a.obj", obj(kRed + kGlass)), {});
+  ASSERT_TRUE(scene) << describe(scene);
+  EXPECT_EQ(left_out(*scene), "");
+  ASSERT_EQ(scene->materials.size(), 2U);
+  const scene::SceneMaterial &red = scene->materials[0], &glass = scene->materials[1];
+  EXPECT_EQ(red.name, "red");
+  EXPECT_EQ(red.base_color, Vec4f(1.0F, 0.5F, 0.0F, 1.0F));
+  EXPECT_EQ(red.alpha_mode, scene::AlphaMode::kOpaque);
+  EXPECT_EQ(red.uv_sets_used, 0U);
+  EXPECT_EQ(glass.name, "old glass");
+  EXPECT_EQ(glass.base_color, Vec4f(0.25F, 0.25F, 0.25F, 0.5F));
+  EXPECT_EQ(glass.alpha_mode, scene::AlphaMode::kBlend);
+  EXPECT_EQ(glass.base_color_texture, 0U);
+  ASSERT_EQ(glass.textures.size(), 1U);
+  EXPECT_EQ(glass.textures[0].blob, 0U);
+  ASSERT_EQ(scene->blobs.size(), 1U);
+  EXPECT_EQ(scene->blobs[0].mime_type, "image/png");
+  EXPECT_EQ(std::string(scene->blobs[0].bytes.begin(), scene->blobs[0].bytes.end()), kPng);
+  ASSERT_EQ(scene->meshes[0].primitives.size(), 2U);
+  const scene::Primitive& second = scene->meshes[0].primitives[1];
+  EXPECT_EQ(second.material.value, 1U);
+  ASSERT_EQ(second.positions.size(), 3U);  // its own vertices, and no other
+  EXPECT_EQ(second.positions[second.indices[1]], Vec3d(1, 1, 0));
+  EXPECT_EQ(second.uvs[0][second.indices[1]], Vec2f(1.0F, 0.75F));  // glTF's begin above
+  const auto document = scene::parse_json(scene->document);
+  ASSERT_TRUE(document);
+  EXPECT_EQ(scene::dump_json(document->items("materials")[1]),
+            "{\"name\":\"old glass\",\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.25,0.25,0.25,0.5],"
+            "\"baseColorTexture\":{\"index\":0},\"metallicFactor\":0.0},\"alphaMode\":\"BLEND\"}");
+  EXPECT_EQ(scene::dump_json(document->items("images")[0]),
+            "{\"name\":\"my tex.png\",\"mimeType\":\"image/png\",\"blob\":0}");
+  EXPECT_EQ(scene::dump_json(document->items("textures")[0]), "{\"source\":0}");
+}
+
+TEST(ImportObjMaterials, WhatIsMissingIsAWarning) {
+  const TempFolder folder;
+  const auto path = folder.write("a.obj", obj(kRed + kGlass));
+  const auto bare = scene::import_scene(path, {});
+  ASSERT_TRUE(bare) << describe(bare);
+  EXPECT_EQ(left_out(*bare), "mtllib a.mtl; material old glass and 1 more; ");
+  EXPECT_EQ(bare->materials[0].name, "red");
+  EXPECT_EQ(bare->materials[0].base_color, Vec4f(1.0F));
+  EXPECT_EQ(bare->meshes[0].primitives.size(), 2U);
+  folder.write("a.mtl", kMtl);
+  const auto untextured = scene::import_scene(path, {});
+  ASSERT_TRUE(untextured) << describe(untextured);
+  EXPECT_EQ(left_out(*untextured), "map_Kd my tex.png; ");
+  EXPECT_EQ(untextured->materials[1].base_color_texture, kNoId);
+  EXPECT_EQ(untextured->meshes[0].primitives[1].uvs[0][1], Vec2f(1.0F, 0.25F));  // nobody samples with them
+  EXPECT_NE(untextured->source_hash, bare->source_hash);                         // it covers the library
+}
+
+TEST(ImportObjMaterials, NothingIsOpenedOutsideTheFolder) {
+  const TempFolder folder;
+  folder.write("secret.mtl", "newmtl red\nKd 0 0 0\n");
+  folder.write("secret.png", kPng);
+  folder.write("below/a.mtl", "newmtl red\nmap_Kd ../secret.png\nnewmtl green\nmap_Kd " +
+                                  (folder.path() / "secret.png").string() + "\nnewmtl blue\nmap_Kd ..\\secret.png\n");
+  std::vector<FileId> files_read;
+  const std::string faces = kRed + "usemtl green\nf 1/1 2/2 3/3\nusemtl blue\nf 1/1 2/2 3/3\n";
+  const auto scene = scene::import_scene(
+      folder.write("below/a.obj", obj(faces, "mtllib ../secret.mtl\nmtllib a.mtl " + folder.path().string() + "\n")),
+      {.files_read = &files_read});
+  ASSERT_TRUE(scene) << describe(scene);
+  EXPECT_EQ(files_read.size(), 2U);  // a.obj and a.mtl
+  EXPECT_TRUE(scene->blobs.empty());
+  EXPECT_EQ(scene->materials[0].base_color, Vec4f(1.0F));
+  EXPECT_EQ(scene->left_out.size(), 5U) << left_out(*scene);
+}
+
+TEST(ImportObjMaterials, FacesBeforeAnyUsemtlHaveTheDefaultMaterial) {
+  const TempFolder folder;
+  const auto scene = scene::import_scene(folder.write("a.obj", obj("f 1 2 3\n" + kRed + "usemtl red\n", "")), {});
+  ASSERT_TRUE(scene) << describe(scene);
+  ASSERT_EQ(scene->materials.size(), 2U);
+  EXPECT_EQ(scene->materials[0].name, "red");
+  EXPECT_EQ(scene->materials[1].source_index, kNoId);
+  ASSERT_EQ(scene->meshes[0].primitives.size(), 2U);
+  EXPECT_EQ(scene->meshes[0].primitives[0].material.value, 0U);
+  EXPECT_EQ(scene->meshes[0].primitives[1].material.value, 1U);
+  // No material at all: as ever.
+  const auto plain = scene::import_scene(folder.write("b.obj", obj("f 1 2 3\n", "")), {});
+  ASSERT_TRUE(plain);
+  EXPECT_EQ(plain->document, "{}");
+  EXPECT_EQ(plain->materials.size(), 1U);
+}
+
+TEST(ImportObjMaterials, OneImageOfManyMaterialsIsThereOnce) {
+  const TempFolder folder;
+  std::string mtl, faces;
+  for (int i = 0; i < 50; ++i) {
+    const std::string name = "m" + std::to_string(i);
+    mtl += "newmtl " + name + "\nmap_Kd " + (i % 2 == 0 ? "" : "./") + "tex.png\n";
+    faces += "usemtl " + name + "\nf 1/1 2/2 3/3\n";
+  }
+  folder.write("a.mtl", mtl);
+  folder.write("tex.png", kPng);
+  const auto scene = scene::import_scene(folder.write("a.obj", obj(faces)), {});
+  ASSERT_TRUE(scene) << describe(scene);
+  EXPECT_EQ(scene->materials.size(), 50U);
+  EXPECT_EQ(scene->blobs.size(), 1U);
+}
+
+TEST(ImportObjMaterials, TooManyMaterialsAreRefused) {
+  std::string faces;
+  for (int i = 0; i <= 65536; ++i) faces += "usemtl " + std::to_string(i) + "\n";
+  const TempFolder folder;
+  const auto scene = scene::import_scene(folder.write("a.obj", obj(faces)), {});
+  ASSERT_FALSE(scene);
+  EXPECT_EQ(scene.error().code, ErrorCode::kUnsupported);
+}
+
+TEST(ReadMtl, WhatMakesNoSenseIsPassedOver) {
+  const std::string text =
+      "Kd 1 1 1\nmap_Kd lost.png\nnewmtl a\nKd nan 0 0\nKd 1 x 0\nKd spectral a.rfl\nd -halo 0.5\nTr 0.25\nKd 2 -1 "
+      "0.5\n"
+      "map_Kd -o 0.1 0.2 0.3 -mm 0 1 -bm 1e99 dir/b c.png \t\r\nnewmtl\nnewmtl b\nmap_Kd\nmap_Kd -s\nTr inf\n";
+  const auto materials = scene::read_mtl({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+  ASSERT_EQ(materials.size(), 3U);
+  EXPECT_EQ(materials[0].name, "a");
+  EXPECT_EQ(materials[0].diffuse, (std::array{1.0, 0.0, 0.5}));
+  EXPECT_EQ(materials[0].opacity, 0.75);
+  EXPECT_EQ(materials[0].texture, "dir/b c.png");
+  EXPECT_EQ(materials[2].texture, "");
+  EXPECT_EQ(materials[2].opacity, 1.0);
+}
+
+}  // namespace
+}  // namespace meshlode::testing
