@@ -10,7 +10,7 @@ packages=(
   nlohmann-json3-dev libtinygltf-dev libdraco-dev libmeshoptimizer-dev  # import
   libmetis-dev libcgal-dev                   # partition, hierarchy and repair
   libzstd-dev liblz4-dev                     # pack, unpack
-  libpng-dev libjpeg62-turbo-dev             # image
+  libpng-dev libjpeg62-turbo-dev libwebp-dev # image
   libstb-dev libcli11-dev                    # raster, command line
   libvulkan-dev glslc                        # gpu: headers and the shader compiler; the loader is opened at run time
 )

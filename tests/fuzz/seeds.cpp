@@ -81,6 +81,11 @@ std::vector<std::pair<std::string, Bytes>> make_images() {
                           test::make_jpeg(21, 13, components, is_progressive, part));
     }
   }
+  const Bytes part(pixels.begin(), pixels.begin() + std::ptrdiff_t{4} * 21 * 13);
+  for (const bool is_lossless : {true, false}) {
+    images.emplace_back(is_lossless ? "image-lossless.webp" : "image-lossy.webp",
+                        test::make_webp(21, 13, is_lossless, part));
+  }
   return images;
 }
 

@@ -40,6 +40,7 @@ constexpr std::array kLibraries = {
     Library{"libpng", "png.h"},
     Library{"libjpeg", "jpeglib.h"},
     Library{"libjpeg", "jerror.h"},
+    Library{"libwebp", "webp/"},
     Library{"vulkan", "vulkan/"},
     Library{"boost", "boost/"},
     Library{"gmp", "gmp"},

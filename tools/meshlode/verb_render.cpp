@@ -29,6 +29,7 @@ struct RenderOptions {
   std::optional<double> error;
   bool is_relative = false;
   bool gpu = false, explain = false;
+  bool is_strict = false;  ///< a warning is an error
   std::string device, force;
   std::uint32_t jobs = 0;
   std::string max_decoded = kDefaultMaxDecodedText;
@@ -173,8 +174,11 @@ struct Drawn {
   draw::Image image;
 };
 
-void print_warnings(const std::vector<std::string>& warnings) {
+/// Errors: with --strict kUnsupported, where there is a warning: the picture would not be what the asset describes.
+Status print_warnings(const std::vector<std::string>& warnings, const RenderOptions& options) {
   for (const std::string& warning : warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  if (warnings.empty() || !options.is_strict) return Ok{};
+  return Error{ErrorCode::kUnsupported, options.input, "--strict: not all images can be drawn"};
 }
 
 /// By the device; what it says of its passes and of images is printed also where no picture came of it.
@@ -188,9 +192,10 @@ Result<Drawn> draw_on_gpu(const run::Asset& asset, const run::Camera& camera, co
   if (!options.force.empty()) render.force.push_back(options.force);
   draw::GpuPicture picture;
   const Status drawn = draw::render_on_gpu(asset, camera, render, images, picture);
-  print_warnings(picture.warnings);
+  const Status complete = print_warnings(picture.warnings, options);
   if (options.explain) std::fprintf(stderr, "%s", picture.plan.c_str());
   if (!drawn) return drawn.error();
+  if (!complete) return complete.error();
   return Drawn{std::move(picture.cut), std::move(picture.visibility), std::move(picture.image)};
 }
 
@@ -209,13 +214,13 @@ Result<Drawn> draw_on_cpu(const run::Asset& asset, const run::Camera& camera, co
   }
   const std::vector<draw::MaterialTextures> materials = draw::read_material_textures(asset);
   const draw::AlphaMasks masks = draw::load_alpha_masks(asset, materials, images);
-  print_warnings(masks.warnings);
+  if (const Status complete = print_warnings(masks.warnings, options); !complete) return complete.error();
   auto visibility = draw::draw_cut(asset, cut, camera, masks);
   if (!visibility) return visibility.error();
   draw::TextureSet textures;
   const auto view = static_cast<draw::View>(view_number(options.view));
   if (view == draw::View::kShaded) textures = draw::load_textures(asset, materials, images);
-  print_warnings(textures.warnings);
+  if (const Status complete = print_warnings(textures.warnings, options); !complete) return complete.error();
   auto image = draw::shade_view(asset, cut, camera, *visibility, view, textures);
   if (!image) return image.error();
   return Drawn{std::move(cut), std::move(*visibility), std::move(*image)};
@@ -239,6 +244,7 @@ int run_render(const Verb& verb, std::span<char* const> args) {
   parser.add_flag("--explain", options.explain, "with --gpu: say which passes run, and why");
   parser.add_value("--force", options.force, "with --gpu: a pass that the scene does not call for",
                    {"double-sided", "alpha-mask", "occlusion", "hardware", "textures", "all"});
+  parser.add_flag("--strict", options.is_strict, "an image that cannot be drawn is an error, and nothing is written");
   add_max_decoded_option(parser, options.max_decoded);
   add_jobs_option(parser, options.jobs);
   add_output_options(parser, options.report);

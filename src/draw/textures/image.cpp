@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cstddef>
+#include <string_view>
 
 #include "draw/textures/image_readers.h"
 
@@ -29,9 +31,19 @@ Result<ImageHeader> read_any(std::span<const std::uint8_t> bytes, std::vector<st
   const auto begins_with = [&](std::span<const std::uint8_t> first) {
     return bytes.size() >= first.size() && std::equal(first.begin(), first.end(), bytes.begin());
   };
+  const auto has_at = [&](std::size_t at, std::string_view text) {
+    return bytes.size() >= at + text.size() &&
+           std::equal(text.begin(), text.end(), bytes.begin() + static_cast<std::ptrdiff_t>(at));
+  };
   if (begins_with(kPng)) return read_png(bytes, texels);
   if (begins_with(kJpeg)) return read_jpeg(bytes, texels);
-  return Error{ErrorCode::kUnsupported, "image", "neither PNG nor JPEG"};
+  if (has_at(0, "RIFF") && has_at(8, "WEBP")) return read_webp(bytes, texels);
+  // What glTF's extensions carry beside them, by name.
+  const char* kind = has_at(1, "KTX 20")    ? "KTX2 (Basis Universal) is not decoded"
+                     : has_at(0, "DDS ")    ? "DDS is not decoded"
+                     : has_at(4, "ftypavi") ? "AVIF is not decoded"
+                                            : "neither PNG, JPEG nor WebP";
+  return Error{ErrorCode::kUnsupported, "image", kind};
 }
 
 }  // namespace

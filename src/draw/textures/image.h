@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pixels of PNG and JPEG files, for who draws textures. The build never looks at a pixel.
+// Pixels of PNG, JPEG and WebP files, for who draws textures. The build never looks at a pixel.
 #pragma once
 
 #include <cstdint>
@@ -27,8 +27,8 @@ struct DecodedImage {
 /// What the first bytes of a file say.
 struct ImageHeader {
   std::uint32_t width = 0, height = 0;
-  /// What the library keeps beside the texels while it decodes: coefficients of a JPEG of several scans. An upper
-  /// bound.
+  /// What the library keeps beside the texels while it decodes: coefficients of a JPEG of several scans, pixels and
+  /// planes of WebP. An upper bound.
   std::uint64_t decoder_bytes = 0;
 };
 
@@ -36,11 +36,11 @@ struct ImageHeader {
 /// 4 · width · height + decoder_bytes to decode.
 [[nodiscard]] Result<ImageHeader> read_image_header(std::span<const std::uint8_t> bytes);
 
-/// PNG of every kind (16-bit channels are scaled to 8) and JPEG of grey or colour, by their first bytes. Safe on any
-/// bytes: memory and time are bounded by what a file of this size can hold.
-/// Errors: kInvalid for a damaged file; kUnsupported for another format, a JPEG of four colours or with arithmetic
-/// coding, and more than kMaxTextureSide texels a side. `capacity`: texels that there is room for, where that is more,
-/// so that what is appended need not move them.
+/// PNG of every kind (16-bit channels are scaled to 8), JPEG of grey or colour and WebP, by their first bytes. Safe on
+/// any bytes: memory and time are bounded by what a file of this size can hold; a WebP of any size may hold 2^24
+/// texels. Errors: kInvalid for a damaged file; kUnsupported for another format, a JPEG of four colours or with
+/// arithmetic coding, an animated WebP, and more than kMaxTextureSide texels a side. `capacity`: texels that there is
+/// room for, where that is more, so that what is appended need not move them.
 [[nodiscard]] Result<DecodedImage> decode_image(std::span<const std::uint8_t> bytes, std::uint64_t capacity = 0);
 
 }  // namespace meshlode::draw

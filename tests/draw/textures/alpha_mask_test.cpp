@@ -79,6 +79,12 @@ TEST(AlphaMask, AnImageThatCannotBeHadIsOpaqueAndSaysSo) {
   ASSERT_EQ(broken.masks.size(), 9u);
   for (const AlphaMask& mask : broken.masks) EXPECT_EQ(mask.image, format::kNone);
 
+  options.image = {0xAB, 'K', 'T', 'X', ' ', '2', '0', 0xBB, 0x0D, 0x0A, 0x1A, 0x0A};
+  const AlphaMasks carried = load_alpha_masks(open(test::mask_scene(options)));
+  ASSERT_EQ(carried.warnings.size(), 1u);
+  EXPECT_NE(carried.warnings[0].find("KTX2"), std::string::npos) << carried.warnings[0];
+  for (const AlphaMask& mask : carried.masks) EXPECT_EQ(mask.image, format::kNone);
+
   scene::Scene scene = test::mask_scene({});
   const std::size_t at = scene.document.find(R"("blob":0)");
   ASSERT_NE(at, std::string::npos);

@@ -6,6 +6,7 @@
 
 #include <jpeglib.h>
 #include <png.h>
+#include <webp/encode.h>
 
 namespace meshlode::test {
 
@@ -83,6 +84,33 @@ std::vector<std::uint8_t> make_jpeg(std::uint32_t width, std::uint32_t height, i
   jpeg_destroy_compress(&info);
   std::vector<std::uint8_t> out(bytes, bytes + count);
   std::free(bytes);
+  return out;
+}
+
+std::vector<std::uint8_t> make_webp(std::uint32_t width, std::uint32_t height, bool is_lossless,
+                                    const std::vector<std::uint8_t>& pixels) {
+  const int w = static_cast<int>(width), h = static_cast<int>(height);
+  std::uint8_t* bytes = nullptr;
+  WebPConfig config;
+  WebPPicture picture;
+  if (WebPConfigInit(&config) == 0 || WebPPictureInit(&picture) == 0) return {};
+  config.lossless = is_lossless ? 1 : 0;
+  config.quality = 95.0F;
+  config.exact = 1;  // colours behind alpha 0 too
+  picture.use_argb = config.lossless;
+  picture.width = w;
+  picture.height = h;
+  WebPMemoryWriter writer;
+  WebPMemoryWriterInit(&writer);
+  picture.writer = WebPMemoryWrite;
+  picture.custom_ptr = &writer;
+  std::vector<std::uint8_t> out;
+  if (WebPPictureImportRGBA(&picture, pixels.data(), 4 * w) != 0 && WebPEncode(&config, &picture) != 0) {
+    bytes = writer.mem;
+    out.assign(bytes, bytes + writer.size);
+  }
+  WebPPictureFree(&picture);
+  WebPMemoryWriterClear(&writer);
   return out;
 }
 

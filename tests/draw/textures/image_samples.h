@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// PNG and JPEG files of every kind that the reader takes, written by the libraries' encoders.
+// PNG, JPEG and WebP files of every kind that the reader takes, written by the libraries' encoders.
 #pragma once
 
 #include <cstdint>
@@ -25,5 +25,9 @@ struct PaletteEntry {
 /// `components` bytes a pixel: 1 grey, 3 RGB, 4 CMYK.
 [[nodiscard]] std::vector<std::uint8_t> make_jpeg(std::uint32_t width, std::uint32_t height, int components,
                                                   bool is_progressive, const std::vector<std::uint8_t>& pixels);
+
+/// Four bytes a pixel.
+[[nodiscard]] std::vector<std::uint8_t> make_webp(std::uint32_t width, std::uint32_t height, bool is_lossless,
+                                                  const std::vector<std::uint8_t>& pixels);
 
 }  // namespace meshlode::test

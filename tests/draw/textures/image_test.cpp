@@ -120,6 +120,25 @@ TEST(Jpeg, GreyAndColourAreReadNearlyAsTheyWere) {
   }
 }
 
+TEST(Webp, LosslessIsReadExactlyAndLossyNearly) {
+  std::vector<std::uint8_t> pixels;
+  for (std::uint32_t y = 0; y < kHeight; ++y) {
+    for (std::uint32_t x = 0; x < kWidth; ++x) {
+      for (std::uint32_t c = 0; c < 4; ++c) pixels.push_back(static_cast<std::uint8_t>(60 + 3 * x + 2 * y + 5 * c));
+    }
+  }
+  for (const bool is_lossless : {true, false}) {
+    const auto image = decode_image(test::make_webp(kWidth, kHeight, is_lossless, pixels));
+    ASSERT_TRUE(image) << image.error().message();
+    ASSERT_EQ(image->width, kWidth);
+    ASSERT_EQ(image->height, kHeight);
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      const int off = std::abs(int{image->rgba()[i]} - int{pixels[i]});
+      ASSERT_LE(off, is_lossless || i % 4 == 3 ? 0 : 8) << i;  // alpha is lossless in both
+    }
+  }
+}
+
 TEST(Jpeg, FourColoursAreRefused) {
   const std::vector<std::uint8_t> pixels(4 * kWidth * kHeight, 100);
   const auto image = decode_image(test::make_jpeg(kWidth, kHeight, 4, false, pixels));

@@ -2,6 +2,9 @@
 // Any bytes: an error or an image, in bounded time and memory (I11).
 #include <gtest/gtest.h>
 
+#include <string>
+#include <utility>
+
 #include "draw/textures/image.h"
 #include "image_samples.h"
 
@@ -26,7 +29,9 @@ std::vector<Bytes> samples() {
           test::make_png(19, 17, {2, 16, true, false}, noise(19 * 17 * 6)),
           test::make_jpeg(19, 17, 3, false, noise(19 * 17 * 3)),
           test::make_jpeg(19, 17, 3, true, noise(19 * 17 * 3)),
-          test::make_jpeg(19, 17, 1, false, noise(19 * 17))};
+          test::make_jpeg(19, 17, 1, false, noise(19 * 17)),
+          test::make_webp(19, 17, true, noise(19 * 17 * 4)),
+          test::make_webp(19, 17, false, noise(19 * 17 * 4))};
 }
 
 /// Reads, and looks at what came out.
@@ -106,11 +111,41 @@ TEST(Image, AShortFileGetsNoLargeImage) {
 
 TEST(Image, OtherFormatsAreRefused) {
   for (const Bytes& bytes :
-       {Bytes{}, Bytes{0x89}, Bytes{'R', 'I', 'F', 'F', 0, 0, 0, 0, 'W', 'E', 'B', 'P'}, Bytes(64, 0)}) {
+       {Bytes{}, Bytes{0x89}, Bytes{'R', 'I', 'F', 'F', 0, 0, 0, 0, 'W', 'A', 'V', 'E'}, Bytes(64, 0)}) {
     const auto image = decode_image(bytes);
     ASSERT_FALSE(image);
     EXPECT_EQ(image.error().code, ErrorCode::kUnsupported);
   }
+}
+
+TEST(Image, WhatGltfCarriesAndNobodyDecodesIsNamed) {
+  const std::pair<Bytes, std::string> kinds[] = {
+      {{0xAB, 'K', 'T', 'X', ' ', '2', '0', 0xBB, 0x0D, 0x0A, 0x1A, 0x0A}, "KTX2"},
+      {{'D', 'D', 'S', ' ', 124, 0, 0, 0}, "DDS"},
+      {{0, 0, 0, 28, 'f', 't', 'y', 'p', 'a', 'v', 'i', 'f'}, "AVIF"},
+      {{'G', 'I', 'F', '8', '9', 'a'}, "neither PNG, JPEG nor WebP"}};
+  for (const auto& [bytes, name] : kinds) {
+    const auto image = read_image_header(bytes);
+    ASSERT_FALSE(image);
+    EXPECT_EQ(image.error().code, ErrorCode::kUnsupported);
+    EXPECT_NE(image.error().detail.find(name), std::string::npos) << image.error().detail;
+  }
+}
+
+// One colour costs a WebP nothing, so that it could claim any size.
+TEST(Image, AWebpOfAFewBytesGetsNoHugeImage) {
+  Bytes webp = test::make_webp(16, 16, true, Bytes(16 * 16 * 4, 255));
+  ASSERT_GT(webp.size(), 25u);
+  ASSERT_EQ(webp[20], 0x2F);  // VP8L: 14 bits of width - 1 and of height - 1 follow
+  for (const std::size_t at : {21u, 22u, 23u, 24u})
+    webp[at] = static_cast<std::uint8_t>(webp[at] | (at == 24 ? 0x0F : 0xFF));
+  const auto large = decode_image(webp);
+  ASSERT_FALSE(large);
+  EXPECT_NE(large.error().detail.find("too short"), std::string::npos) << large.error().detail;
+  webp.resize(16);
+  const auto cut = decode_image(webp);
+  ASSERT_FALSE(cut);
+  EXPECT_EQ(cut.error().code, ErrorCode::kInvalid);
 }
 
 }  // namespace
