@@ -30,10 +30,15 @@ struct Farthest {
                                                       std::size_t triangle_count, std::uint32_t samples_per_triangle,
                                                       double maximum);
 
+/// With less effort on top (DeviationTierOptions::extra_effort) nothing is spared: the groups are many, and small
+/// against the mesh.
+constexpr std::uint32_t kLeastExtra = 300;
+
 /// Triangles and their parts that may be divided.
 struct Effort {
   std::size_t promising = 0;
   std::size_t spare = 0;  ///< where nothing is promised, but a bound leaves room
+  double rise = 1.0;      ///< what a patch promises: how far it may rise above its points (patch.h)
 };
 
 /// Group to source, by adaptive subdivision near the maximum. `places` has

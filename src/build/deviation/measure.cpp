@@ -14,20 +14,19 @@ namespace meshlode::build {
 
 namespace {
 
-// Points nearer than this share of the maximum are not measured exactly: nothing beside them will exceed it.
-constexpr double kDismissShare = 0.5;
 // Points above this share of the maximum are told: the other direction may have its maximum beside them.
 constexpr double kNearMaximum = 0.9;
 // Of the effort on top, this part goes where nothing promises anything.
 constexpr std::uint32_t kSpareShare = 3;
-// With less effort on top nothing is spared: the groups are many, and small against the mesh.
-constexpr std::uint32_t kLeastExtra = 300;
 // What was within the errors of the finer levels, which are estimates from below.
 constexpr double kReach = 1.3;
 /// Distances to the source, with the maximum so far.
 class SourceProbe {
  public:
-  SourceProbe(const SurfaceTree& tree, const Farthest& farthest) : tree_(tree), farthest_(farthest) { set_enough(); }
+  SourceProbe(const SurfaceTree& tree, double rise, const Farthest& farthest)
+      : tree_(tree), dismiss_share_(1.0 / (1.0 + rise)), farthest_(farthest) {
+    set_enough();
+  }
 
   [[nodiscard]] Probe measure(const Vec3d& point, TreeSlot place, std::uint32_t /*owner*/ = 0) {
     const Vec3f at = tree_.to_frame(point);
@@ -49,11 +48,13 @@ class SourceProbe {
 
  private:
   void set_enough() {
-    const double enough = kDismissShare * maximum() * tree_.scale();
+    const double enough = dismiss_share_ * maximum() * tree_.scale();
     enough_ = static_cast<float>(enough * enough);
   }
 
   const SurfaceTree& tree_;
+  /// Points nearer than this share of the maximum are not measured exactly: no patch of such points may rise above it.
+  double dismiss_share_;
   Farthest farthest_;
   float enough_ = 0.0F;              ///< squared, in the tree's frame
   std::vector<CarriedSample> high_;  ///< near what was the maximum then
@@ -64,15 +65,15 @@ class SourceProbe {
 Farthest measure_to_source(const SurfaceTree& source, const GroupSurface& group, const GroupEdges& edges,
                            const std::vector<TreeSlot>& places, Farthest farthest, Effort budget,
                            std::vector<CarriedSample>& high) {
-  SourceProbe probe(source, farthest);
+  SourceProbe probe(source, budget.rise, farthest);
   const std::size_t count = group.triangles.size();
   std::vector<Probe> at_vertex(group.positions.size(), {0.0, TreeSlot()});
-  std::vector<Patch> patches(count);
   std::vector<Probe> at_edge(edges.use_count.size(), {0.0, TreeSlot()});
   TreeSlot place{0U};
+  PatchQueue<SourceProbe> queue(probe, budget.rise, budget.spare);
   for (std::size_t t = 0; t < count; ++t) {
     const auto& ids = group.triangles[t];
-    Patch& patch = patches[t];
+    Patch patch;
     if (places[t].is_valid()) place = places[t];
     for (std::size_t k = 0; k < 3; ++k) patch.corner[k] = group.positions[ids[k]];
     const Probe center = probe.measure((patch.corner[0] + patch.corner[1] + patch.corner[2]) / 3.0, place);
@@ -87,11 +88,9 @@ Farthest measure_to_source(const SurfaceTree& source, const GroupSurface& group,
       if (!middle.place.is_valid()) middle = probe.measure(patch.middle(k), place);
       patch.at_middle[k] = middle;
     }
-    patch.set_estimate(center.value);
+    patch.set_estimate(center.value, budget.rise);
+    queue.add(patch);
   }
-  // Every patch is made before any is divided: what promises most comes first.
-  PatchQueue<SourceProbe> queue(probe, budget.spare);
-  for (const Patch& patch : patches) queue.add(patch);
   queue.refine(budget.promising);
   high = probe.take_high();
   return probe.farthest();
@@ -113,8 +112,9 @@ GroupDeviation measure_group(const SourceTree& source, const GroupSurface& group
   std::vector<TreeSlot> places(group.triangles.size());
   for (const CarriedSample& sample : projected) places[sample.triangle] = sample.place;
   std::vector<CarriedSample> high;
-  const Effort effort{64 + group.triangles.size() / 4 + options.extra_effort,
-                      options.extra_effort < kLeastExtra ? 0 : options.extra_effort / kSpareShare};
+  const bool is_spared = options.extra_effort >= kLeastExtra;
+  const Effort effort{64 + group.triangles.size() / (is_spared ? 4 : 8) + options.extra_effort,
+                      is_spared ? options.extra_effort / kSpareShare : 0, is_spared ? kHighestRise : kUsualRise};
   farthest = measure_to_source(source_tree, group, edges, places, farthest, effort, high);
   const GroupEdges finer_edges(options.finer);
   OwnerTest owner(options.finer, finer_edges, options.finer_is_shared, kReach * options.floor, options.is_whole);

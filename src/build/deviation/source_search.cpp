@@ -19,6 +19,9 @@ namespace meshlode::build {
 namespace {
 
 constexpr std::size_t kMaxSeeds = 64;
+// Seeds lie close together, where the distance is large: most have been searched around when their turn comes. Of the
+// others so many are, and all where the effort allows it.
+constexpr std::size_t kUsualDiscs = 16, kNewDisc = 16;
 constexpr std::size_t kMaxPointsPerSeed = 4096;
 // A seed nearer than this share of the maximum is not searched around.
 constexpr double kSeedShare = 0.5;
@@ -47,8 +50,9 @@ class SourceSearch {
   [[nodiscard]] double maximum() const { return farthest_.to_beat(); }
   [[nodiscard]] const Farthest& farthest() const { return farthest_; }
 
-  /// Returns the farthest point found around a seed, if it is farther than the maximum was.
-  void search_around(const CarriedSample& seed, double radius, std::vector<CarriedSample>& found) {
+  /// Takes the farthest point found around a seed, if it is farther than the maximum was. Returns how many vertices it
+  /// looked at: those that no other seed led to.
+  std::size_t search_around(const CarriedSample& seed, double radius, std::vector<CarriedSample>& found) {
     const double before = maximum();
     frontier_.clear();
     const std::uint32_t first = source_.tree.triangle_at(seed.place);
@@ -72,6 +76,7 @@ class SourceSearch {
       }
     }
     if (maximum() > before) found.push_back(farthest_point_);
+    return points;
   }
 
   /// The triangle of the source that is nearest to a point of what the group replaces, and those around it.
@@ -136,7 +141,7 @@ class SourceSearch {
   /// Large triangles of the source that were met: the maximum may lie between their corners.
   void refine(Effort effort, std::vector<CarriedSample>& found) {
     const double before = maximum();
-    PatchQueue<SourceSearch> queue(*this, effort.spare);
+    PatchQueue<SourceSearch> queue(*this, effort.rise, effort.spare);
     for (const Patch& patch : large_) queue.add(patch);
     large_.clear();
     queue.refine(effort.promising);
@@ -233,7 +238,8 @@ class SourceSearch {
     for (std::size_t k = 0; k < 3; ++k) {
       patch.at_middle[k] = measure(patch.middle(k), patch.at_corner[k].place, triangle);
     }
-    patch.set_estimate(measure((patch.corner[0] + patch.corner[1] + patch.corner[2]) / 3.0, place, triangle).value);
+    const Vec3d center = (patch.corner[0] + patch.corner[1] + patch.corner[2]) / 3.0;
+    patch.set_estimate(measure(center, place, triangle).value, kHighestRise);
     large_.push_back(patch);
   }
 
@@ -373,12 +379,16 @@ Farthest search_source(const SourceTree::Impl& source, const GroupSurface& group
   const double radius = triangle_spacing(group);
   SourceSearch search(source, group_tree, owner, farthest);
   std::vector<CarriedSample> found;
-  for (const CarriedSample& seed : choose_seeds(samples, kSeedShare * farthest.to_beat())) {
-    search.search_around(seed, radius, found);
-  }
-  for (const CarriedSample& seed : choose_seeds(high, kSeedShare * farthest.to_beat())) {
-    search.search_around(seed, 0.5 * radius, found);
-  }
+  const auto search_around_all = [&](std::span<const CarriedSample> seeds, double within) {
+    std::size_t discs = 0;
+    for (const CarriedSample& seed : seeds) {
+      if (discs < (budget < kLeastExtra ? kUsualDiscs : kMaxSeeds)) {
+        discs += search.search_around(seed, within, found) >= kNewDisc ? 1 : 0;
+      }
+    }
+  };
+  search_around_all(choose_seeds(samples, kSeedShare * farthest.to_beat()), radius);
+  search_around_all(choose_seeds(high, kSeedShare * farthest.to_beat()), 0.5 * radius);
   for (const Vec3d& point : choose_far_points(owner.finer(), is_folded, group_tree, kFarShare * search.maximum())) {
     search.search_behind(point);
   }
