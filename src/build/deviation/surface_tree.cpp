@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <limits>
+#include <span>
 
 #include "base/parallel.h"
 #include "build/deviation/lanes.h"
@@ -18,6 +20,11 @@ constexpr std::size_t kMaxDepth = 16;  // 4^16 leaves
 
 // Below this sine a triangle's normal is not trusted in floats: its edges answer for it.
 constexpr float kNeedleSine = 1e-4F;
+
+// How many items are parted by counting each against each, and how many by bins, on the stack.
+constexpr std::size_t kFewItems = 32, kManyItems = 4096;
+// Items of a smaller extent are not put into bins: its reciprocal would be infinite.
+constexpr float kLeastSize = 1e-30F;
 
 struct Vec3Lanes {
   Lanes x, y, z;
@@ -50,6 +57,91 @@ struct AlongAxis {
     return a.center[axis] != b.center[axis] ? a.center[axis] < b.center[axis] : a.triangle < b.triangle;
   }
 };
+
+/// A box around some items; what the fourth lane holds means nothing.
+struct ItemBox {
+  Lanes low, high;
+};
+
+template <class Item>
+ItemBox box_of(std::span<const Item> items) {
+  const auto lanes_of = [](const Item& item) {
+    static_assert(sizeof(Item) == sizeof(Lanes));
+    Lanes value;
+    std::memcpy(&value, &item, sizeof(value));
+    return value;
+  };
+  ItemBox box{lanes_of(items[0]), lanes_of(items[0])};
+  for (const Item& item : items) {
+    box.low = min_lanes(lanes_of(item), box.low);
+    box.high = max_lanes(lanes_of(item), box.high);
+  }
+  return box;
+}
+
+/// The lesser half first, of few: each is counted against each, without a branch.
+template <class Item>
+void part_few(std::span<Item> items, std::size_t half, const AlongAxis& order) {
+  std::array<std::uint64_t, kFewItems> keys;  // they order as AlongAxis does
+  std::array<Item, kFewItems> parted;
+  const std::size_t count = items.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto bits = std::bit_cast<std::uint32_t>(items[i].center[order.axis] + 0.0F);  // one zero, not two
+    const std::uint32_t ascending = bits ^ ((bits >> 31U) != 0 ? 0xFFFFFFFFU : 0x80000000U);
+    keys[i] = static_cast<std::uint64_t>(ascending) << 32U | items[i].triangle;
+  }
+  std::size_t left = 0, right = half;
+  for (std::size_t i = 0; i < count; ++i) {
+    std::size_t rank = 0;
+    for (std::size_t j = 0; j < count; ++j) rank += keys[j] < keys[i] ? 1 : 0;
+    const bool is_left = rank < half;
+    parted[is_left ? left : right] = items[i];
+    left += is_left ? 1 : 0;
+    right += is_left ? 0 : 1;
+  }
+  std::copy_n(parted.begin(), count, items.begin());
+}
+
+/// The lesser half first: by bins along the axis, so that only those of the median's bin are compared.
+template <class Item>
+void part_many(std::span<Item> items, std::size_t half, const AlongAxis& order, float low, float size) {
+  constexpr std::size_t kBins = 64;
+  // Rounding keeps the order: nothing in a lower bin is greater.
+  const float scale = static_cast<float>(kBins - 1) / size;
+  const auto bin_of = [&](const Item& item) {
+    return static_cast<std::size_t>(static_cast<std::int32_t>((item.center[order.axis] - low) * scale));
+  };
+  std::array<std::uint32_t, kBins + 1> start{};
+  for (const Item& item : items) ++start[bin_of(item) + 1];
+  for (std::size_t bin = 0; bin < kBins; ++bin) start[bin + 1] += start[bin];
+  std::size_t middle = 0;
+  while (start[middle + 1] < half) ++middle;
+  const std::size_t first = start[middle], last = start[middle + 1];
+  std::array<Item, kManyItems> parted;
+  std::array<std::size_t, 3> next{0, first, last};
+  for (const Item& item : items) {
+    const std::size_t bin = bin_of(item);
+    parted[next[(bin >= middle ? 1U : 0U) + (bin > middle ? 1U : 0U)]++] = item;
+  }
+  std::nth_element(parted.begin() + static_cast<std::ptrdiff_t>(first),
+                   parted.begin() + static_cast<std::ptrdiff_t>(half),
+                   parted.begin() + static_cast<std::ptrdiff_t>(last), order);
+  std::copy_n(parted.begin(), items.size(), items.begin());
+}
+
+/// Halves by the median along the longest side: the first `half` items are less than the others. Which of them come
+/// first on either side is left open.
+template <class Item>
+void part_at_median(std::span<Item> items, std::size_t half) {
+  const ItemBox box = box_of(std::span<const Item>(items));
+  const Lanes size = box.high - box.low;
+  const std::size_t axis = size[0] >= size[1] && size[0] >= size[2] ? 0 : size[1] >= size[2] ? 1 : 2;
+  const AlongAxis order{axis};
+  if (items.size() <= kFewItems) return part_few(items, half, order);
+  if (items.size() <= kManyItems && size[axis] > kLeastSize)
+    return part_many(items, half, order, box.low[axis], size[axis]);
+  std::nth_element(items.begin(), items.begin() + static_cast<std::ptrdiff_t>(half), items.end(), order);
+}
 
 }  // namespace
 
@@ -112,23 +204,11 @@ void SurfaceTree::sort_items(std::vector<Item>& items) const {
     const std::size_t half = kLeafSize << halving;
     const std::size_t pieces = (items.size() + 2 * half - 1) / (2 * half);
     parallel_for_each_index(pieces, std::max<std::size_t>(1, 8192 / half), [&](std::size_t piece) {
-      const auto first = items.begin() + static_cast<std::ptrdiff_t>(2 * half * piece);
       const std::size_t count = std::min(2 * half, items.size() - 2 * half * piece);
-      if (count <= half) return;
-      std::array<float, 3> low = first->center, high = low;
-      for (std::size_t i = 1; i < count; ++i) {
-        for (std::size_t k = 0; k < 3; ++k) {
-          low[k] = std::min(low[k], first[static_cast<std::ptrdiff_t>(i)].center[k]);
-          high[k] = std::max(high[k], first[static_cast<std::ptrdiff_t>(i)].center[k]);
-        }
-      }
-      const std::array<float, 3> size{high[0] - low[0], high[1] - low[1], high[2] - low[2]};
-      const std::size_t axis = size[0] >= size[1] && size[0] >= size[2] ? 0 : size[1] >= size[2] ? 1 : 2;
-      std::nth_element(first, first + static_cast<std::ptrdiff_t>(half), first + static_cast<std::ptrdiff_t>(count),
-                       AlongAxis{axis});
+      if (count > half) part_at_median(std::span(items).subspan(2 * half * piece, count), half);
     });
   }
-  // nth_element leaves each side in an order of the library's choosing: inside a leaf it is made ours.
+  // The order of each side is nobody's choice so far: inside a leaf it is made ours.
   parallel_for_each_index(leaves_.size(), 1024, [&](std::size_t leaf) {
     const auto first = items.begin() + static_cast<std::ptrdiff_t>(kLeafSize * leaf);
     const auto last = items.begin() + static_cast<std::ptrdiff_t>(std::min(kLeafSize * (leaf + 1), items.size()));
