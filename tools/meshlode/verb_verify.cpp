@@ -144,7 +144,8 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
   Result<scene::Scene> source = scene::import_scene(source_path, {.repair = repair || was_repaired(*asset),
                                                                   .scene = out::read_meta(asset->meta_json()).scene,
                                                                   .files_read = &files_read,
-                                                                  .max_decoded = *max_decoded});
+                                                                  .max_decoded = *max_decoded,
+                                                                  .may_lack_images = true});
   output_files().keep(files_read);
   if (!source) return print_error(source.error());
   if (options.is_quick) options.uniform_cuts = options.cameras = 0;  // as it is reported

@@ -109,4 +109,13 @@ Result<Scene> import_scene(const std::filesystem::path& path, const ImportOption
   });
 }
 
+Result<std::vector<FileReference>> list_references(const std::filesystem::path& path) {
+  return guarded(path, [&]() -> Result<std::vector<FileReference>> {
+    const auto file = MappedFile::open(path);
+    if (!file) return file.error();
+    if (find_format(path, file->bytes()) != Format::kGltf) return std::vector<FileReference>{};
+    return list_gltf_references(path, file->bytes());
+  });
+}
+
 }  // namespace meshlode::scene

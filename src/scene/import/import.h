@@ -23,11 +23,27 @@ struct ImportOptions {
   std::vector<FileId>* files_read = nullptr;  ///< gets every file that was opened, also where the import fails
   /// Bytes of indices and vertices that compressed geometry may take beyond what its own size justifies.
   std::uint64_t max_decoded = std::uint64_t{512} << 20U;
+  /// An image whose file cannot be opened is left out and said so (Scene::left_out), for geometry does not need it;
+  /// else it is kIo, as a missing buffer always is.
+  bool may_lack_images = false;
 };
 
 /// Reads .gltf, .glb, .ply, .obj or .stl (told apart by content where possible, else by extension).
 /// Errors: kIo the file (or one it refers to) cannot be read; kInvalid it breaks its format; kUnsupported it requires a
 /// geometry extension that is not known; kUsage there is no such scene.
 [[nodiscard]] Result<Scene> import_scene(const std::filesystem::path& path, const ImportOptions& options);
+
+/// A file that a scene names.
+struct FileReference {
+  enum class Kind : std::uint8_t { kBuffer, kImage };
+  Kind kind = Kind::kBuffer;
+  std::string uri;             ///< as the scene has it
+  std::filesystem::path path;  ///< below the scene's folder, whether or not there is such a file; links not followed
+};
+
+/// Every file that import_scene opens, or would open were it there, beside the scene's own: each path once, in the
+/// order of import. Reads the scene's text and looks for the files, but opens none. Errors: as import_scene, as far as
+/// it looks; what it finds nothing wrong with may still be refused there.
+[[nodiscard]] Result<std::vector<FileReference>> list_references(const std::filesystem::path& path);
 
 }  // namespace meshlode::scene

@@ -50,23 +50,33 @@ std::string image_name(const Json& image) {
   return path.substr(path.find_last_of('/') + 1);  // npos + 1 == 0
 }
 
-/// The bytes of an image where it names any.
-Result<std::optional<std::span<const std::uint8_t>>> find_image_bytes(const GltfAsset& asset, GltfFiles& files,
-                                                                      const Json& image, const std::string& path) {
-  using Found = std::optional<std::span<const std::uint8_t>>;
+/// The bytes of an image where it names any, and else why it has none.
+struct ImageBytes {
+  std::optional<std::span<const std::uint8_t>> bytes;
+  std::string why;
+};
+
+Result<ImageBytes> find_image_bytes(const GltfAsset& asset, GltfFiles& files, const ImportOptions& options,
+                                    const Json& image, const std::string& path) {
+  using Found = ImageBytes;
   if (const Json* uri = image.find("uri")) {
     auto opened = files.open(*uri->string());
+    if (!opened && opened.error().code == ErrorCode::kIo && options.may_lack_images) {
+      // In the words of the scene: what the machine says would be another text on another one (I10).
+      return Found{std::nullopt, "its file \"" + *uri->string() + "\" cannot be opened"};
+    }
     if (!opened) return asset.error(opened.error().code, path + "/uri", opened.error().detail);
-    return Found(*opened);
+    return Found{*opened, {}};
   }
   const Json* view = image.find("bufferView");
-  if (view == nullptr) return Found{};
+  if (view == nullptr) return Found{std::nullopt, "it names no bytes"};
   const auto bytes = asset.view_bytes(view->index().value_or(0), path + "/bufferView");
   if (!bytes) return bytes.error();
-  return Found(*bytes);
+  return Found{*bytes, {}};
 }
 
-Status carry_images(const GltfAsset& asset, GltfFiles& files, Json& document, Scene& scene) {
+Status carry_images(const GltfAsset& asset, GltfFiles& files, const ImportOptions& options, Json& document,
+                    Scene& scene) {
   Json::Array out;
   // Images that share their bytes share a blob, however their URIs are spelled; views that merely overlap do not, so
   // what they add up to is bounded by the buffers they lie in (I11).
@@ -78,18 +88,18 @@ Status carry_images(const GltfAsset& asset, GltfFiles& files, Json& document, Sc
   for (const auto& view : asset.decoded_views) view_limit += view.size();
   for (const Json& source : asset.root.items("images")) {
     const std::string path = "/images/" + std::to_string(out.size());
-    auto found = find_image_bytes(asset, files, source, path);
+    const auto found = find_image_bytes(asset, files, options, source, path);
     if (!found) return found.error();
     Json image = source;
     image.erase("uri");
     image.erase("bufferView");
     blob_of_image.push_back(kNoId);
-    if (!*found) {
-      scene.left_out.push_back({"image " + std::to_string(out.size()), "it names no bytes"});
+    if (!found->bytes) {
+      scene.left_out.push_back({"image " + std::to_string(out.size()), found->why});
       out.push_back(std::move(image));
       continue;
     }
-    const std::span<const std::uint8_t> bytes = **found;
+    const std::span<const std::uint8_t> bytes = *found->bytes;
     const auto [known, is_new] = blob_of.try_emplace({bytes.data(), bytes.size()}, scene.blobs.size());
     if (is_new) {
       if (source.find("uri") == nullptr) view_bytes += bytes.size();
@@ -161,7 +171,8 @@ void carry_nodes(const GltfAsset& asset, Json& document, Scene& scene) {
 
 }  // namespace
 
-Status carry_document(const GltfAsset& asset, GltfFiles& files, DecodeBudget& budget, Scene& scene) {
+Status carry_document(const GltfAsset& asset, GltfFiles& files, const ImportOptions& options, DecodeBudget& budget,
+                      Scene& scene) {
   Json document = Json::make_object();
   const auto copy = [&](std::string_view key) {
     if (const Json* member = asset.root.find(key)) document.set(key, *member);
@@ -172,7 +183,7 @@ Status carry_document(const GltfAsset& asset, GltfFiles& files, DecodeBudget& bu
   copy("scenes");
   carry_nodes(asset, document, scene);
   for (const std::string_view key : {"materials", "textures", "samplers", "cameras"}) copy(key);
-  if (auto status = carry_images(asset, files, document, scene); !status) return status;
+  if (auto status = carry_images(asset, files, options, document, scene); !status) return status;
   if (auto status = carry_animations(asset, budget, document, scene); !status) return status;
   copy("extensions");
   copy("extras");

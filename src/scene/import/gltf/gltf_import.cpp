@@ -13,6 +13,7 @@
 #include "scene/import/gltf/instancing.h"
 #include "scene/import/gltf/meshopt_views.h"
 #include "scene/import/gltf/primitive.h"
+#include "scene/import/gltf/uri.h"
 
 namespace meshlode::scene {
 
@@ -72,6 +73,15 @@ Result<Container> open_container(const std::string& file, std::span<const std::u
     at = std::min(bytes.size(), (at + 3) / 4 * 4);
   }
   return out;
+}
+
+/// The JSON of a container.
+Result<Json> read_tree(const std::string& file, std::string_view text) {
+  while (!text.empty() && (text.back() == '\0' || text.back() == ' ')) text.remove_suffix(1);
+  if (text.size() > kMaxTextBytes) return Error{ErrorCode::kUnsupported, file, "more than 2 GiB of glTF text"};
+  auto root = parse_json(text);
+  if (!root) return Error{ErrorCode::kInvalid, file, root.error().detail};
+  return root;
 }
 
 Status load_buffers(GltfAsset& asset, GltfFiles& files, const Container& container) {
@@ -184,11 +194,8 @@ Result<Scene> import_gltf(const std::filesystem::path& path, std::span<const std
   asset.file = path.string();
   auto container = open_container(asset.file, bytes);
   if (!container) return container.error();
-  std::string_view text = container->text;
-  while (!text.empty() && (text.back() == '\0' || text.back() == ' ')) text.remove_suffix(1);
-  if (text.size() > kMaxTextBytes) return Error{ErrorCode::kUnsupported, asset.file, "more than 2 GiB of glTF text"};
-  auto root = parse_json(text);
-  if (!root) return Error{ErrorCode::kInvalid, asset.file, root.error().detail};
+  auto root = read_tree(asset.file, container->text);
+  if (!root) return root.error();
   asset.root = std::move(*root);
   if (auto status = check_gltf(asset.root, asset.file); !status) return status.error();
 
@@ -219,9 +226,39 @@ Result<Scene> import_gltf(const std::filesystem::path& path, std::span<const std
   for (std::size_t s = 0; s < skin_count; ++s) {
     scene.left_out.push_back({"skin " + std::to_string(s), "meshes are built static, in their bind pose"});
   }
-  if (auto status = carry_document(asset, files, budget, scene); !status) return status.error();
+  if (auto status = carry_document(asset, files, options, budget, scene); !status) return status.error();
   scene.source_hash = files.hash_hex();
   return scene;
+}
+
+Result<std::vector<FileReference>> list_gltf_references(const std::filesystem::path& path,
+                                                        std::span<const std::uint8_t> bytes) {
+  using Kind = FileReference::Kind;
+  const std::string file = path.string();
+  const auto container = open_container(file, bytes);
+  if (!container) return container.error();
+  const auto root = read_tree(file, container->text);
+  if (!root) return root.error();
+  std::vector<FileReference> references;
+  std::set<std::filesystem::path> known;
+  for (const Kind kind : {Kind::kBuffer, Kind::kImage}) {
+    const std::string_view key = kind == Kind::kBuffer ? "buffers" : "images";
+    const Json::Array& items = root->items(key);
+    for (std::size_t i = 0; i < items.size(); ++i) {
+      const Json* uri = items[i].find("uri");
+      if (uri == nullptr || uri->string() == nullptr || is_data_uri(*uri->string())) continue;
+      const auto found = resolve_uri(path.parent_path(), *uri->string());
+      if (!found && found.error().code != ErrorCode::kIo) {
+        const std::string place = file + ": /" + std::string(key) + "/" + std::to_string(i) + "/uri";
+        return Error{found.error().code, place, found.error().detail};
+      }
+      const auto name = percent_decode(*uri->string());
+      if (!name) return name.error();
+      const std::filesystem::path where = path.parent_path() / std::filesystem::path(*name).lexically_normal();
+      if (known.insert(where).second) references.push_back({kind, *uri->string(), where});
+    }
+  }
+  return references;
 }
 
 }  // namespace meshlode::scene

@@ -22,6 +22,10 @@ struct Json;
 [[nodiscard]] Result<Scene> import_gltf(const std::filesystem::path& path, std::span<const std::uint8_t> bytes,
                                         const ImportOptions& options);
 
+/// list_references (import/import.h) of a glTF or GLB file.
+[[nodiscard]] Result<std::vector<FileReference>> list_gltf_references(const std::filesystem::path& path,
+                                                                      std::span<const std::uint8_t> bytes);
+
 /// One SceneMaterial per glTF material, in order; TextureUse::blob is carry_document's. \pre the asset is checked
 [[nodiscard]] std::vector<SceneMaterial> read_materials(const GltfAsset& asset, std::vector<LeftOut>& left_out);
 
@@ -32,7 +36,8 @@ struct Json;
 
 /// Fills scene.document and scene.blobs with all that travels unchanged, and the blobs of the materials' texture uses.
 /// Opens the images.
-[[nodiscard]] Status carry_document(const GltfAsset& asset, GltfFiles& files, DecodeBudget& budget, Scene& scene);
+[[nodiscard]] Status carry_document(const GltfAsset& asset, GltfFiles& files, const ImportOptions& options,
+                                    DecodeBudget& budget, Scene& scene);
 
 /// The rigid animations of the document: fills `document`'s animations, accessors, bufferViews and buffers, and one
 /// blob with the bytes they need. What is not rigid node animation is left out and said so.

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which files a scene names, and what becomes of it where one of them is not there.
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "gltf_builder.h"
+
+namespace meshlode::testing {
+namespace {
+
+using scene::FileReference;
+
+/// One triangle in b.bin, with a material whose base colour is the first of these images.
+std::filesystem::path write_scene(const TempFolder& folder, const std::string& images) {
+  GltfBuilder b;
+  const int positions = b.floats(kSquare, "VEC3", 3);
+  const std::string text =
+      b.json("\"images\":[" + images +
+                 "],\"textures\":[{\"source\":0}],\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{"
+                 "\"index\":0}}"
+                 "}],\"meshes\":[{\"primitives\":[{\"material\":0,\"attributes\":{\"POSITION\":" +
+                 std::to_string(positions) + "}}]}],\"nodes\":[{\"mesh\":0}],\"scenes\":[{\"nodes\":[0]}]",
+             ",\"uri\":\"b.bin\"");
+  folder.write("b.bin", std::string(b.bin.begin(), b.bin.end()));
+  return folder.write("scene.gltf", text);
+}
+
+TEST(ImportReferences, EveryFileIsListedOnceWhetherOrNotItIsThere) {
+  const TempFolder folder;
+  folder.write("tex/a b.png", "a picture");
+  const auto path = write_scene(folder,
+                                "{\"uri\":\"tex/a%20b.png\"},{\"uri\":\"tex/../tex/a%20b.png\"},{\"uri\":\"gone.png\"},"
+                                "{\"uri\":\"data:image/png;base64,AAAA\"}");
+  const auto references = scene::list_references(path);
+  ASSERT_TRUE(references) << references.error().message();
+  ASSERT_EQ(references->size(), 3U);
+  EXPECT_EQ((*references)[0].kind, FileReference::Kind::kBuffer);
+  EXPECT_EQ((*references)[0].path, folder.path() / "b.bin");
+  EXPECT_EQ((*references)[1].kind, FileReference::Kind::kImage);
+  EXPECT_EQ((*references)[1].uri, "tex/a%20b.png");
+  EXPECT_EQ((*references)[1].path, folder.path() / "tex/a b.png");
+  EXPECT_EQ((*references)[2].path, folder.path() / "gone.png");
+}
+
+/// The list is what a cache trusts: nothing may be read that is not on it.
+TEST(ImportReferences, TheListHoldsAllThatImportOpens) {
+  const TempFolder folder;
+  folder.write("a.png", "a picture");
+  const auto path = write_scene(folder, "{\"uri\":\"a.png\"}");
+  std::vector<FileId> opened;
+  ASSERT_TRUE(scene::import_scene(path, {.files_read = &opened}));
+  const auto references = scene::list_references(path);
+  ASSERT_TRUE(references);
+  std::set<FileId> listed{find_file_id(path).value()};
+  for (const FileReference& reference : *references) listed.insert(find_file_id(reference.path).value());
+  EXPECT_EQ(std::set<FileId>(opened.begin(), opened.end()), listed);
+  EXPECT_EQ(opened.size(), 3U);
+}
+
+TEST(ImportReferences, WhatLeavesTheFolderIsRefusedAsImportDoes) {
+  const TempFolder folder;
+  for (const char* uri : {"../a.png", "/etc/passwd", "%zz", "http://example.org/a.png", ""}) {
+    const auto path = write_scene(folder, "{\"uri\":\"" + std::string(uri) + "\"}");
+    const auto references = scene::list_references(path);
+    const auto scene = scene::import_scene(path, {.may_lack_images = true});
+    ASSERT_FALSE(references) << uri;
+    ASSERT_FALSE(scene) << uri;
+    EXPECT_EQ(references.error().message(), scene.error().message());
+    EXPECT_EQ(references.error().code, scene.error().code);
+  }
+}
+
+TEST(ImportReferences, NoBytesMakeItDoMoreThanRefuse) {
+  const TempFolder folder;
+  for (const char* text : {"", "{", "[]", "{\"buffers\":3,\"images\":[1,null,{\"uri\":[]},{}]}", "glTF\2"}) {
+    const auto references = scene::list_references(folder.write("scene.gltf", text));
+    EXPECT_TRUE(!references || references->empty()) << text;
+  }
+  EXPECT_FALSE(scene::list_references(folder.path() / "none.gltf"));
+  EXPECT_TRUE(scene::list_references(folder.write("a.obj", "mtllib a.mtl\n")).value().empty());
+}
+
+TEST(ImportReferences, AMissingImageIsLeftOutAndNamedWhereThatIsAllowed) {
+  const TempFolder folder;
+  folder.write("b.png", "another picture");
+  const auto path = write_scene(folder, "{\"uri\":\"gone.png\"},{\"uri\":\"b.png\"}");
+  const auto strict = scene::import_scene(path, {});
+  ASSERT_FALSE(strict);
+  EXPECT_EQ(strict.error().code, ErrorCode::kIo);
+  const auto scene = scene::import_scene(path, {.may_lack_images = true});
+  ASSERT_TRUE(scene) << describe(scene);
+  ASSERT_FALSE(scene->left_out.empty());
+  EXPECT_EQ(scene->left_out.back().what, "image 0");
+  EXPECT_EQ(scene->left_out.back().why, "its file \"gone.png\" cannot be opened");
+  ASSERT_EQ(scene->blobs.size(), 1U);
+  EXPECT_EQ(scene->blobs[0].name, "b.png");
+  ASSERT_EQ(scene->materials.at(0).textures.size(), 1U);
+  EXPECT_EQ(scene->materials[0].textures[0].image, 0U);
+  EXPECT_EQ(scene->materials[0].textures[0].blob, kNoId);
+  EXPECT_FALSE(nlohmann::json::parse(scene->document)["images"][0].contains("blob"));
+}
+
+TEST(ImportReferences, AMissingBufferIsAnErrorAlways) {
+  const TempFolder folder;
+  const auto path = write_scene(folder, "{\"uri\":\"gone.png\"}");
+  std::filesystem::remove(folder.path() / "b.bin");
+  const auto scene = scene::import_scene(path, {.may_lack_images = true});
+  ASSERT_FALSE(scene);
+  EXPECT_EQ(scene.error().code, ErrorCode::kIo);
+  EXPECT_NE(scene.error().where.find("/buffers/0/uri"), std::string::npos) << describe(scene);
+}
+
+}  // namespace
+}  // namespace meshlode::testing
