@@ -2,12 +2,12 @@
 # Signals, pipes that nobody reads, full devices and limits: exit 2, one line, and no file that is not whole.
 cp "$DATA/rock.glb" r.glb
 cp "$DATA/crystal.glb" a.glb
-# interrupt SIGNAL ENV_OPTION: a build that is sent a signal once it has said something.
+# interrupt SIGNAL ENV_OPTION: a build that is sent a signal once it waits for some, in a thread of its own.
 interrupt() {
   : >../stderr
   env "$2" "$MESHLODE" build r.glb -o r.lode --report r.json >../stdout 2>../stderr &
   local child=$! status
-  for _ in $(seq 500); do [ -s ../stderr ] && break; sleep 0.02; done
+  for _ in $(seq 500); do [ "$(ls "/proc/$child/task" | wc -l)" -gt 1 ] && break; sleep 0.02; done
   kill "-$1" "$child"
   wait "$child"; status=$?
   echo "$1, $2: exit $status, $(grep -c '^meshlode: ' ../stderr) error line(s), of them named: $(grep -c "interrupted by SIG$1" ../stderr)"

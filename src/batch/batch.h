@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Many scenes become assets, one after another on all threads: the page to read first of this floor.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "base/output_files.h"
+#include "batch/cache/cache.h"
+#include "batch/jobs/jobs.h"
+#include "batch/work/job_result.h"
+#include "build/build.h"
+#include "scene/import/import.h"
+
+namespace meshlode::batch {
+
+struct BatchOptions {
+  build::PipelineOptions pipeline;
+  scene::ImportOptions import;
+  const Cache* cache = nullptr;           ///< may be none
+  bool is_dry_run = false;                ///< nothing is written: what would be done, and why
+  bool fail_fast = false;                 ///< what comes after a failure is skipped
+  bool make_folders = false;              ///< for the outputs
+  bool lists_files = false;               ///< JobResult::files is wanted, without a cache too
+  std::vector<std::string> side_outputs;  ///< other files that the command writes: none may be a file of a scene
+};
+
+/// What the caller may show. All may be empty.
+struct BatchWatcher {
+  std::function<void(std::size_t job)> on_start;
+  build::ProgressCallback on_progress;  ///< of the job started last
+  std::function<void(std::size_t job, const JobResult& result, const Error* error)> on_end;
+};
+
+/// One result a job, in the order of jobs. `files` knows the outputs and what was read: what the scenes are made of is
+/// kept from being written over. A job's failure is in its result, and does not stop the others but where asked to.
+[[nodiscard]] std::vector<JobResult> run_batch(const std::vector<Job>& jobs, const BatchOptions& options,
+                                               OutputFiles& files, const BatchWatcher& watcher);
+
+/// The worst exit code, 0 for none.
+[[nodiscard]] int worst_exit_code(const std::vector<JobResult>& results);
+
+}  // namespace meshlode::batch

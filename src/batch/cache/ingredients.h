@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// All that the bytes of an asset depend on, as text: its hash is the key of the cache, and two of them say what
+// changed.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "base/hash.h"
+#include "batch/depend/dependencies.h"
+#include "build/build.h"
+#include "scene/import/import.h"
+
+namespace meshlode::batch {
+
+/// The settings that change bytes, a line each. One that only refuses (memory, decoded bytes) is not among them.
+[[nodiscard]] std::string settings_text(const build::PipelineOptions& options, const scene::ImportOptions& import);
+
+/// `program`: find_program_id(). No path but the names that the scene itself has: a scene that moved, or lies on
+/// another machine, has the same ingredients. \pre `files` are find_dependencies() of the scene
+[[nodiscard]] std::string ingredients_text(const Hash128& program, const std::string& settings,
+                                           std::span<const Dependency> files);
+
+[[nodiscard]] Hash128 key_of(const std::string& ingredients);
+
+/// What is different, in words: "codec is zstd, was none; image a.png changed". Empty where nothing is.
+[[nodiscard]] std::string explain_change(const std::string& before, const std::string& now);
+
+}  // namespace meshlode::batch

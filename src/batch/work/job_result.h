@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What became of one file of a batch: all that reports, manifests and tables are written from.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/enum_names.h"
+#include "base/hash.h"
+#include "batch/depend/dependencies.h"
+#include "batch/jobs/jobs.h"
+#include "build/build.h"
+#include "scene/scene.h"
+
+namespace meshlode::batch {
+
+enum class JobStatus : std::uint8_t {
+  kBuilt,
+  kCached,     ///< the output was written from the cache
+  kUnchanged,  ///< the output already was what would have been written
+  kFailed,
+  kSkipped,     ///< after another one's failure
+  kWouldBuild,  ///< --dry-run
+  kWouldCopy,   ///< --dry-run
+};
+constexpr std::size_t kJobStatusCount = 7;
+inline constexpr std::array<EnumName<JobStatus>, kJobStatusCount> kJobStatusNames{
+    {{JobStatus::kBuilt, "built"},
+     {JobStatus::kCached, "cached"},
+     {JobStatus::kUnchanged, "unchanged"},
+     {JobStatus::kFailed, "failed"},
+     {JobStatus::kSkipped, "skipped"},
+     {JobStatus::kWouldBuild, "would_build"},
+     {JobStatus::kWouldCopy, "would_copy"}}};
+constexpr const char* name_of(JobStatus status) {
+  return name_in(kJobStatusNames, status);
+}
+
+/// What the scene and its build were like; the cache keeps it beside the asset.
+struct JobFacts {
+  std::uint64_t triangles = 0, meshes = 0, instances = 0;
+  std::uint64_t bytes = 0;                  ///< of the asset
+  std::uint64_t dropped = 0;                ///< by --repair, of all kinds
+  scene::MeshRepairs repairs;               ///< of all meshes
+  std::vector<scene::LeftOut> left_out;     ///< by the importer
+  std::vector<scene::LeftOut> planned_out;  ///< by the plan
+  std::vector<scene::LeftOut> losses;       ///< those of them that the scene's materials can show
+};
+
+struct JobResult {
+  Job job;
+  JobStatus status = JobStatus::kSkipped;
+  int exit_code = 0;
+  std::string error;
+  std::string reason;  ///< why it was built, or would be; empty where nobody asked (no cache)
+  JobFacts facts;
+  Hash128 asset_hash{};               ///< of the asset's bytes; zeros where there is none
+  double seconds = 0.0;               ///< wall time
+  std::uint64_t memory_estimate = 0;  ///< 0: not reached
+  std::uint64_t meshes_from_cache = 0;
+  std::vector<build::StageTime> stages;
+  std::vector<build::LevelTime> levels;
+  std::vector<Dependency> files;             ///< where asked for
+  std::vector<std::string> refused_outputs;  ///< of BatchOptions::side_outputs: they are files of the scene
+
+  [[nodiscard]] bool has_asset() const {
+    return status == JobStatus::kBuilt || status == JobStatus::kCached || status == JobStatus::kUnchanged;
+  }
+};
+
+/// Each kind of repair with its count.
+[[nodiscard]] inline std::vector<std::pair<const char*, std::uint64_t>> list_repairs(const JobFacts& facts) {
+  return {{"unusable", facts.dropped - facts.repairs.degenerate - facts.repairs.duplicate},
+          {"degenerate", facts.repairs.degenerate},
+          {"duplicate", facts.repairs.duplicate},
+          {"turned", facts.repairs.turned},
+          {"stitched", facts.repairs.stitched},
+          {"cut_edges", facts.repairs.cut_edges},
+          {"split", facts.repairs.split}};
+}
+
+}  // namespace meshlode::batch

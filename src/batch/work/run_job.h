@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One scene of a batch: found unchanged, taken from the cache, or imported, built and written.
+#pragma once
+
+#include "batch/batch.h"
+
+namespace meshlode::batch {
+
+/// `error`: why the job failed, where its result says that it did.
+[[nodiscard]] JobResult run_job(const Job& job, const BatchOptions& options, OutputFiles& files,
+                                const build::ProgressCallback& progress, Error& error);
+
+}  // namespace meshlode::batch

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A batch end to end: what is built, what is taken, what is left alone, and that all of it is the same bytes.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "batch/batch.h"
+#include "batch/cache/program_id.h"
+#include "batch_folder.h"
+#include "support/random.h"
+
+namespace meshlode::batch {
+namespace {
+
+namespace fs = std::filesystem;
+
+class BatchTest : public testing::Test {
+ protected:
+  /// Builds in/NAME.gltf to OUT/NAME.lode.
+  std::vector<JobResult> run(const std::vector<std::string>& names, const std::string& out, BatchOptions options = {},
+                             bool with_cache = true) {
+    std::optional<Cache> cache;
+    if (with_cache) {
+      cache.emplace(Store::open(folder_.path("cache"), {.is_read_only = options.is_dry_run}).value(), Hash128{1});
+      options.cache = &*cache;
+    }
+    options.make_folders = true;
+    options.pipeline.preset = Preset::kFast;
+    std::vector<Job> jobs;
+    for (const std::string& name : names) {
+      jobs.push_back({folder_.path("in/" + name + ".gltf"), folder_.path(out + "/" + name + ".lode")});
+    }
+    OutputFiles files;
+    return run_batch(jobs, options, files, {});
+  }
+  static std::string statuses(const std::vector<JobResult>& results) {
+    std::string text;
+    for (const JobResult& r : results) text += (text.empty() ? "" : " ") + std::string(name_of(r.status));
+    return text;
+  }
+  [[nodiscard]] std::string asset(const std::string& name) const { return BatchFolder::text_of(folder_.path(name)); }
+
+  BatchFolder folder_;
+};
+
+TEST_F(BatchTest, ASecondRunDoesNothingAndAChangeRebuildsItsDependantsAlone) {
+  for (const std::uint32_t i : {1, 2, 3}) folder_.write_scene("in/" + std::to_string(i), i);
+  EXPECT_EQ(statuses(run({"1", "2", "3"}, "out")), "built built built");
+  const auto written_at = fs::last_write_time(folder_.path("out/1.lode"));
+  EXPECT_EQ(statuses(run({"1", "2", "3"}, "out")), "unchanged unchanged unchanged");
+  EXPECT_EQ(fs::last_write_time(folder_.path("out/1.lode")), written_at);
+
+  folder_.write("in/2.png", "a picture of 3");  // one byte of one texture
+  const auto results = run({"1", "2", "3"}, "out");
+  EXPECT_EQ(statuses(results), "unchanged built unchanged");
+  EXPECT_EQ(results[1].reason, "image 2.png changed");
+  folder_.write("in/2.png", "a picture of 2");
+  EXPECT_EQ(statuses(run({"1", "2", "3"}, "out")), "unchanged cached unchanged");
+
+  BatchOptions other;
+  other.pipeline.codec = format::Codec::kLz4;
+  const auto with_codec = run({"1", "2"}, "out", other);
+  EXPECT_EQ(statuses(with_codec), "built built");
+  EXPECT_EQ(with_codec[0].reason, "codec is lz4, was none");
+  EXPECT_EQ(statuses(run({"1", "2", "3"}, "out")), "cached cached unchanged");
+}
+
+TEST_F(BatchTest, WhatIsTakenIsWhatWouldBeBuilt) {
+  folder_.write_scene("in/1", 1);
+  const auto built = run({"1"}, "first");
+  const auto taken = run({"1"}, "second");
+  EXPECT_EQ(statuses(run({"1"}, "third", {}, false)), "built");
+  EXPECT_EQ(statuses(taken), "cached");
+  EXPECT_EQ(asset("first/1.lode"), asset("second/1.lode"));
+  EXPECT_EQ(asset("first/1.lode"), asset("third/1.lode"));
+  EXPECT_EQ(built[0].facts.triangles, 72U);
+  EXPECT_EQ(taken[0].facts.triangles, 72U);
+  EXPECT_EQ(taken[0].asset_hash, built[0].asset_hash);
+}
+
+// Twenty dozen edits of random files and settings, with returns to what was there before: always what a clean build
+// writes.
+TEST_F(BatchTest, TwoHundredRandomEditsGiveTheBytesOfCleanBuilds) {
+  test::Random random(7);
+  std::map<std::string, int> seen;
+  for (const std::uint32_t i : {1, 2}) folder_.write_scene("in/" + std::to_string(i), i, 3);
+  BatchOptions options;
+  for (int edit = 0; edit < 200; ++edit) {
+    const std::string name = random.below(2) == 0 ? "1" : "2";
+    const auto variant = static_cast<std::uint32_t>(random.below(3));
+    switch (random.below(6)) {
+      case 0: folder_.write_scene("in/" + name, variant, 3); break;
+      case 1: folder_.write("in/" + name + ".png", std::string(variant + 1, 'p')); break;
+      case 2: fs::remove(folder_.path("in/" + name + ".png")); break;
+      case 3: options.pipeline.normal_error = 0.1 * (1.0 + variant); break;
+      case 4: options.pipeline.codec = variant == 0 ? format::Codec::kLz4 : format::Codec::kNone; break;
+      default: fs::remove(folder_.path("out/" + name + ".lode"));
+    }
+    options.import.may_lack_images = true;
+    for (const JobResult& r : run({"1", "2"}, "out", options)) {
+      ASSERT_EQ(r.error, "") << "edit " << edit;
+      ++seen[name_of(r.status)];
+    }
+    run({"1", "2"}, "clean", options, false);
+    for (const char* file : {"/1.lode", "/2.lode"}) {
+      ASSERT_EQ(asset(std::string("out") + file), asset(std::string("clean") + file)) << "edit " << edit;
+    }
+  }
+  for (const char* status : {"built", "cached", "unchanged"}) EXPECT_GT(seen[status], 20) << status;
+}
+
+TEST_F(BatchTest, ADryRunWritesNothingAndSaysWhatTheRunThenDoes) {
+  folder_.write_scene("in/1", 1);
+  BatchOptions dry;
+  dry.is_dry_run = true;
+  const auto before = run({"1"}, "out", dry);
+  EXPECT_EQ(statuses(before), "would_build");
+  EXPECT_EQ(before[0].reason, "not built before");
+  EXPECT_FALSE(fs::exists(folder_.path("cache")));
+  EXPECT_FALSE(fs::exists(folder_.path("out")));
+  run({"1"}, "out");
+  EXPECT_EQ(statuses(run({"1"}, "out", dry)), "unchanged");
+  fs::remove(folder_.path("out/1.lode"));
+  EXPECT_EQ(statuses(run({"1"}, "out", dry)), "would_copy");
+  folder_.write("in/1.png", "x");
+  EXPECT_EQ(run({"1"}, "out", dry)[0].reason, "image 1.png changed");
+  fs::remove(folder_.path("in/1.bin"));
+  EXPECT_EQ(statuses(run({"1"}, "out", dry)), "failed");
+}
+
+TEST_F(BatchTest, AnEntryThatWasSpoiltIsBuiltAnew) {
+  folder_.write_scene("in/1", 1);
+  run({"1"}, "out");
+  const std::string sound = asset("out/1.lode");
+  for (const char* kind : {"cache/asset", "cache/record"}) {
+    for (const auto& entry : fs::recursive_directory_iterator(folder_.path(kind))) {
+      if (entry.is_regular_file()) fs::resize_file(entry.path(), fs::file_size(entry.path()) / 2);
+    }
+    fs::remove(folder_.path("out/1.lode"));
+    EXPECT_EQ(statuses(run({"1"}, "out")), "built") << kind;
+    EXPECT_EQ(asset("out/1.lode"), sound);
+  }
+}
+
+TEST_F(BatchTest, OneFailureStopsTheOthersOnlyWhereAsked) {
+  folder_.write_scene("in/1", 1);
+  folder_.write("in/2.gltf", "broken");
+  folder_.write_scene("in/3", 3);
+  const auto all = run({"1", "2", "3"}, "out");
+  EXPECT_EQ(statuses(all), "built failed built");
+  EXPECT_EQ(worst_exit_code(all), 3);
+  BatchOptions fast;
+  fast.fail_fast = true;
+  EXPECT_EQ(statuses(run({"1", "2", "3"}, "out", fast)), "unchanged failed skipped");
+}
+
+TEST_F(BatchTest, AMissingTextureIsAnErrorWhereStrictWhateverTheCacheHas) {
+  folder_.write_scene("in/1", 1);
+  fs::remove(folder_.path("in/1.png"));
+  BatchOptions lenient;
+  lenient.import.may_lack_images = true;
+  EXPECT_EQ(statuses(run({"1"}, "out", lenient)), "built");
+  const auto again = run({"1"}, "out", lenient);
+  EXPECT_EQ(statuses(again), "unchanged");
+  EXPECT_EQ(again[0].facts.left_out.size(), 1U);
+  EXPECT_EQ(statuses(run({"1"}, "out")), "failed");
+  folder_.write("in/1.png", "there again");
+  EXPECT_EQ(statuses(run({"1"}, "out", lenient)), "built");
+}
+
+// Whoever reads the asset from the cache must not be given what came of files that changed in between.
+TEST_F(BatchTest, ASceneThatChangesWhileItIsBuiltIsNotKept) {
+  folder_.write_scene("in/1", 1);
+  const Cache cache(Store::open(folder_.path("cache"), {}).value(), Hash128{1});
+  BatchOptions options;
+  options.cache = &cache;
+  options.pipeline.preset = Preset::kFast;
+  BatchWatcher watcher;
+  watcher.on_progress = [&](const build::ProgressEvent&) {
+    folder_.write("in/1.png", "written meanwhile");
+    return true;
+  };
+  OutputFiles files;
+  const auto results = run_batch({{folder_.path("in/1.gltf"), folder_.path("1.lode")}}, options, files, watcher);
+  EXPECT_EQ(statuses(results), "built");
+  EXPECT_FALSE(fs::exists(folder_.path("cache/record")));
+}
+
+}  // namespace
+}  // namespace meshlode::batch

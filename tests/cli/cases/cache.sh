@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# The cache: a second run does nothing, a change rebuilds its dependants alone, and every asset is what a clean build gives.
+one='\000\000\200\077' zero='\000\000\000\000'
+scene() {
+  printf "$zero$zero$zero$one$zero$zero$zero$one$zero" >"$1.bin"
+  printf 'a picture' >"$1.png"
+  printf '{"asset":{"version":"2.0"},"buffers":[{"uri":"%s.bin","byteLength":36}],"bufferViews":[{"buffer":0,"byteLength":36}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],"images":[{"uri":"%s.png"}],
+"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"nodes":[{"mesh":0}],"scenes":[{"nodes":[0]}],"scene":0}' \
+    "$(basename "$1")" "$(basename "$1")" >"$1.gltf"
+}
+mkdir in
+scene in/a; scene in/b; scene in/c
+# statuses ARGS…: the last line of the summary
+statuses() { "$MESHLODE" build in -O out --cache cache "$@" 2>&1 | tail -n 1 | sed -E 's/ +[0-9,]+ +[0-9,]+ +[0-9.]+  //'; }
+run build in -O out --cache cache --dry-run
+files
+statuses
+touch -d '2001-01-01' out/*.lode
+statuses
+echo "written again: $(find out -name '*.lode' -newermt 2002-01-01 | wc -l)"
+run build in -O out --cache cache --dry-run
+printf 'A picture' >in/b.png
+run build in -O out --cache cache --dry-run
+statuses
+run build in -O out --cache cache --dry-run --codec zstd --normal-error 0.2
+statuses --normal-error 0.2
+rm out/a.lode
+run build in -O out --cache cache --dry-run --normal-error 0.2
+statuses --normal-error 0.2
+"$MESHLODE" build --quiet in -O clean --normal-error 0.2 && diff -r out clean && echo "as a clean build"
+echo "by the environment: $(MESHLODE_CACHE=cache "$MESHLODE" build in -O env --normal-error 0.2 2>&1 | tail -n 1 | sed 's/.*  //')"
+echo "not by the environment: $(MESHLODE_CACHE=cache "$MESHLODE" build in -O env --no-cache 2>&1 | tail -n 1 | sed 's/.*  //')"
+# A scene that moved is the same scene.
+mkdir elsewhere && cp in/a.* elsewhere
+"$MESHLODE" build elsewhere/a.gltf -o moved.lode --cache cache --normal-error 0.2 2>&1 | grep -c 'from the cache'
+mkdir mine && printf 'thesis' >mine/work.txt
+run build in/a.gltf -o a.lode --cache mine
+run build in/a.gltf -o a.lode --cache in/a.bin
+# What cannot be kept is said, and the asset is written all the same.
+rm -r cache/record && printf 'in the way' >cache/record
+"$MESHLODE" build --quiet in/a.gltf -o blocked.lode --cache cache 2>../stderr; echo "exit $?, $(grep -c '^meshlode: cache/record' ../stderr) line"
+rm cache/record
+statuses --cache-limit 2KiB
+echo "within the limit: $(find cache/*/ -type f -printf '%s\n' | awk '{ sum += $1 } END { print (sum <= 2048) }')"

@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# kill -9 at random moments, of two batches at once that share a cache: nothing broken is ever there, the next run
+# completes, and its bytes are those of a clean run. KILLS: how often (10; the slow test takes 50).
+RANDOM=${SEED:-20}
+mkdir in
+# terrain SIDE SEED: an OBJ of 2 SIDE^2 triangles
+terrain() {
+  awk -v n="$1" -v seed="$2" 'BEGIN {
+    srand(seed)
+    for (y = 0; y <= n; ++y) for (x = 0; x <= n; ++x) printf "v %d %d %.4f\n", x, y, rand()
+    for (y = 0; y < n; ++y) for (x = 0; x < n; ++x) {
+      a = y * (n + 1) + x + 1
+      printf "f %d %d %d\nf %d %d %d\n", a, a + 1, a + n + 2, a, a + n + 2, a + n + 1
+    }
+  }'
+}
+for i in 1 2 3 4 5 6 7 8; do terrain $((10 + 5 * i)) "$i" >"in/$i.obj"; done
+"$MESHLODE" build --quiet in -O clean --preset fast
+# Whole assets, each the clean one or none: also in the moment after a kill.
+check() {
+  local file
+  for file in one/*.lode two/*.lode; do
+    [ -e "$file" ] || continue
+    cmp -s "$file" "clean/$(basename "$file")" || echo "broken: $file"
+  done
+}
+killed=0
+for _ in $(seq "${KILLS:-10}"); do
+  rm -rf one/*.lode
+  [ $((RANDOM % 3)) -ne 0 ] || rm -rf cache
+  "$MESHLODE" build --quiet in -O one --preset fast --cache cache 2>>../stderr &
+  first=$!
+  "$MESHLODE" build --quiet in -O two --preset fast --cache cache --cache-limit 200KiB 2>>../stderr &
+  second=$!
+  sleep "0.$(printf '%03d' $((RANDOM % 400)))"
+  kill -KILL "$first" 2>/dev/null && killed=$((killed + 1))
+  [ $((RANDOM % 2)) -ne 0 ] || kill -KILL "$second" 2>/dev/null
+  wait "$first" "$second" 2>/dev/null
+  check
+done
+[ "$killed" -gt 0 ] && echo "some were killed"
+"$MESHLODE" build --quiet in -O one --preset fast --cache cache; echo "exit $?"
+"$MESHLODE" build --quiet in -O two --preset fast --cache cache; echo "exit $?"
+for folder in one two; do diff -r clean "$folder" && echo "$folder: as a clean run"; done
+"$MESHLODE" build in -O one --preset fast --cache cache 2>&1 | grep -o 'nothing to do.*'
+# What killed writers left in the cache is gone where it was written to since, and by the next trim everywhere.
+"$MESHLODE" build --quiet in -O one --preset fast --cache cache --cache-limit 1GiB
+find cache one two -name '.meshlode-*'
+echo "entries: $(find cache/asset -type f | wc -l) assets"

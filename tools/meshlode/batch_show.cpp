@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "batch_show.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <system_error>
+
+#include <unistd.h>
+
+#include "options.h"
+#include "scene/import/import.h"
+
+namespace meshlode::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string plain(std::string text) {
+  for (char& c : text) {
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = '?';
+  }
+  return text;
+}
+
+/// Bytes of the scene and of what it names.
+std::uint64_t weigh(const fs::path& scene) {
+  const auto size_of = [](const fs::path& path) {
+    std::error_code error;
+    const auto size = fs::file_size(path, error);
+    return error ? std::uint64_t{0} : std::uint64_t{size};
+  };
+  std::uint64_t bytes = 1 + size_of(scene);
+  if (scene.extension() != ".gltf") return bytes;
+  if (const auto references = scene::list_references(scene)) {
+    for (const scene::FileReference& reference : *references) bytes += size_of(reference.path);
+  }
+  return bytes;
+}
+
+/// Only a bar of several files has to tell how long they take.
+std::vector<std::uint64_t> weights_of(const std::vector<batch::Job>& jobs, bool is_wanted) {
+  std::vector<std::uint64_t> weights;
+  for (const batch::Job& job : jobs) weights.push_back(is_wanted && jobs.size() > 1 ? weigh(job.input) : 1);
+  return weights;
+}
+
+void print_repairs(const batch::JobFacts& facts) {
+  std::string text;
+  for (const auto& [kind, count] : batch::list_repairs(facts)) {
+    if (count == 0) continue;
+    text += text.empty() ? "" : ", ";
+    text += std::to_string(count) + " " + kind;
+  }
+  std::replace(text.begin(), text.end(), '_', ' ');
+  if (!text.empty()) std::fprintf(stderr, "  repaired: %s\n", text.c_str());
+}
+
+void print_line(const batch::JobResult& r) {
+  const std::string input = plain(r.job.input.string()), output = plain(r.job.output.string());
+  if (r.status == batch::JobStatus::kUnchanged) {
+    std::fprintf(stderr, "%s: unchanged, %s is up to date\n", input.c_str(), output.c_str());
+    return;
+  }
+  std::fprintf(stderr, "%s: %llu triangles in %llu mesh(es) -> %s, %llu bytes, ", input.c_str(),
+               static_cast<unsigned long long>(r.facts.triangles), static_cast<unsigned long long>(r.facts.meshes),
+               output.c_str(), static_cast<unsigned long long>(r.facts.bytes));
+  if (r.status == batch::JobStatus::kCached) {
+    std::fprintf(stderr, "from the cache, %.2f s\n", r.seconds);
+  } else {
+    std::fprintf(stderr, "%.2f s (%.0f triangles/s)\n", r.seconds,
+                 r.seconds > 0.0 ? static_cast<double>(r.facts.triangles) / r.seconds : 0.0);
+  }
+}
+
+void print_left_out(const batch::JobFacts& facts) {
+  print_repairs(facts);
+  for (const scene::LeftOut& left : facts.left_out) {
+    std::fprintf(stderr, "  left out: %s: %s\n", plain(left.what).c_str(), plain(left.why).c_str());
+  }
+  if (facts.losses.empty()) return;  // one line for all meshes of a scene
+  const std::string more = facts.losses.size() > 1 ? " and " + std::to_string(facts.losses.size() - 1) + " more" : "";
+  std::fprintf(stderr, "  left out: %s%s: %s\n", facts.losses[0].what.c_str(), more.c_str(),
+               facts.losses[0].why.c_str());
+}
+
+}  // namespace
+
+BatchShow::BatchShow(const std::vector<batch::Job>& jobs, bool quiet, bool has_lines)
+    : jobs_(jobs),
+      has_bar_(!quiet && ::isatty(STDERR_FILENO) == 1),
+      has_lines_(!quiet && has_lines),
+      time_left_(weights_of(jobs, has_bar_)) {}
+
+void BatchShow::start(std::size_t job) {
+  job_ = job;
+  name_ = plain(jobs_[job].input.filename().string());
+  fraction_ = 0.0;
+  started_ = std::chrono::steady_clock::now();
+}
+
+void BatchShow::wipe() {
+  if (is_drawn_) std::fputs("\r\033[K", stderr);
+  is_drawn_ = false;
+}
+
+void BatchShow::show(const build::ProgressEvent& event) {
+  // Meshes finish in any order: a bar that runs backwards helps nobody.
+  fraction_ = std::max(fraction_, std::clamp(event.fraction, 0.0, 1.0));
+  const double done = time_left_.fraction_done(job_, fraction_);
+  const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count();
+  const auto left = time_left_.seconds_left(job_, fraction_, elapsed);
+  constexpr std::size_t kWidth = 24;
+  const auto filled = static_cast<std::size_t>(done * kWidth);
+  const std::string bar = std::string(filled, '#') + std::string(kWidth - filled, '.');
+  const std::string place =
+      jobs_.size() > 1 ? "[" + std::to_string(job_ + 1) + "/" + std::to_string(jobs_.size()) + "] " : "";
+  std::fprintf(stderr, "\r\033[K%s%.20s [%s] %3d%% mesh %u/%u level %u%s%s", place.c_str(), name_.c_str(), bar.c_str(),
+               static_cast<int>(100.0 * done), event.mesh + 1, event.mesh_count, event.level, left ? ", " : "",
+               left ? batch::time_left_text(*left).c_str() : "");
+  std::fflush(stderr);
+  is_drawn_ = true;
+}
+
+void BatchShow::end(std::size_t job, const batch::JobResult& result, const Error* error) {
+  wipe();
+  time_left_.finish(job, result.seconds, result.status == batch::JobStatus::kBuilt);
+  if (error != nullptr) print_error(*error);
+  if (error != nullptr || !has_lines_) return;
+  if (jobs_.size() > 1) std::fprintf(stderr, "[%zu/%zu] ", job + 1, jobs_.size());
+  print_line(result);
+  print_left_out(result.facts);
+}
+
+batch::BatchWatcher BatchShow::watcher() {
+  batch::BatchWatcher watcher;
+  watcher.on_start = [this](std::size_t job) { start(job); };
+  watcher.on_end = [this](std::size_t job, const batch::JobResult& result, const Error* error) {
+    end(job, result, error);
+  };
+  if (has_bar_) {
+    watcher.on_progress = [this](const build::ProgressEvent& event) {
+      show(event);
+      return true;
+    };
+  }
+  return watcher;
+}
+
+}  // namespace meshlode::cli
