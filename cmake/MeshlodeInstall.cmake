@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # What an installed meshlode offers: the program, and for find_package(meshlode)
+#   meshlode::program  the command line, and meshlode_add_assets() to build assets with it (MeshlodeAssets.cmake).
 #   meshlode::runtime  static, MIT: read, unpack, select, decode behind <meshlode/runtime.h>. Needs nothing but the C and
 #                      C++ runtime (and zstd, lz4 where the codecs are built in).
 #   meshlode::c        shared, MIT: the same behind <meshlode/meshlode.h>, for C. Its C++ runtime is inside; what it needs
@@ -9,7 +10,8 @@
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
-install(TARGETS meshlode_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+set_target_properties(meshlode_cli PROPERTIES EXPORT_NAME program)
+install(TARGETS meshlode_cli EXPORT meshlodeTargets RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(FILES LICENSES/GPL-3.0-or-later.txt LICENSES/MIT.txt DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY docs/schemas/ DESTINATION ${CMAKE_INSTALL_DATADIR}/meshlode/schemas FILES_MATCHING PATTERN "*.json")
 
@@ -66,6 +68,7 @@ install(FILES include/meshlode/build.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/m
 set(meshlode_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/meshlode)
 install(TARGETS meshlode_runtime meshlode_c meshlode_build_library EXPORT meshlodeTargets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(EXPORT meshlodeTargets NAMESPACE meshlode:: FILE meshlodeConfig.cmake DESTINATION ${meshlode_package_dir})
+install(EXPORT meshlodeTargets NAMESPACE meshlode:: DESTINATION ${meshlode_package_dir})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/meshlodeConfigVersion.cmake COMPATIBILITY SameMinorVersion)
-install(FILES ${PROJECT_BINARY_DIR}/meshlodeConfigVersion.cmake DESTINATION ${meshlode_package_dir})
+install(FILES ${PROJECT_BINARY_DIR}/meshlodeConfigVersion.cmake cmake/meshlodeConfig.cmake cmake/MeshlodeAssets.cmake
+        DESTINATION ${meshlode_package_dir})
