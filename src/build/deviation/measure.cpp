@@ -41,7 +41,7 @@ class SourceProbe {
     if (value > kNearMaximum * maximum()) high_.push_back({point, 0, static_cast<float>(value), hit.slot});
     return {value, hit.slot};
   }
-  [[nodiscard]] double convex_bound(const Patch& patch) const { return bound_by_one_triangle(tree_, patch); }
+  [[nodiscard]] const SurfaceTree& tree() const { return tree_; }
   [[nodiscard]] double maximum() const { return farthest_.to_beat(); }
   [[nodiscard]] const Farthest& farthest() const { return farthest_; }
   [[nodiscard]] std::vector<CarriedSample> take_high() { return std::move(high_); }

@@ -69,12 +69,13 @@ struct Patch {
 
 /// The distance to a triangle is convex, so that no point of a patch is farther from it than a corner is: of the
 /// triangles of the other side that are near the six points, the one that is best for all three corners bounds the
-/// patch.
-[[nodiscard]] inline double bound_by_one_triangle(const SurfaceTree& other, const Patch& patch) {
+/// patch. A bound of no more than `enough` is as good as a lower one.
+[[nodiscard]] inline double bound_by_one_triangle(const SurfaceTree& other, const Patch& patch, double enough) {
   double best2 = std::numeric_limits<double>::infinity();
+  const double enough2 = enough * enough;
   std::array<TreeSlot, 6> tried;
   std::size_t count = 0;
-  for (std::size_t k = 0; k < 6; ++k) {
+  for (std::size_t k = 0; k < 6 && best2 > enough2; ++k) {
     const TreeSlot place = k < 3 ? patch.at_corner[k].place : patch.at_middle[k - 3].place;
     if (std::find(tried.begin(), tried.begin() + static_cast<std::ptrdiff_t>(count), place) !=
         tried.begin() + static_cast<std::ptrdiff_t>(count)) {
@@ -91,8 +92,8 @@ struct Patch {
   return std::sqrt(best2);
 }
 
-/// Probes has measure(point, place, owner) -> Probe, maximum(), the largest value measured so far, and
-/// convex_bound(patch), another bound of a patch (below).
+/// Probes has measure(point, place, owner) -> Probe, maximum(), the largest value measured so far, and tree(), over the
+/// other side.
 template <class Probes>
 class PatchQueue {
  public:
@@ -147,7 +148,10 @@ class PatchQueue {
   /// Lowers the estimate to what is possible at all. False where that is not worthwhile.
   bool bound(Patch& patch) {
     patch.estimate = std::min(patch.estimate, patch.bound());
-    if (is_worthwhile(patch.estimate)) patch.estimate = std::min(patch.estimate, probes_.convex_bound(patch));
+    if (is_worthwhile(patch.estimate)) {
+      const double enough = kWorthwhile * probes_.maximum();
+      patch.estimate = std::min(patch.estimate, bound_by_one_triangle(probes_.tree(), patch, enough));
+    }
     patch.is_bounded = true;
     return is_worthwhile(patch.estimate);
   }

@@ -46,7 +46,7 @@ class SourceSearch {
     set_enough();
   }
 
-  [[nodiscard]] double convex_bound(const Patch& patch) const { return bound_by_one_triangle(tree_, patch); }
+  [[nodiscard]] const SurfaceTree& tree() const { return tree_; }
   [[nodiscard]] double maximum() const { return farthest_.to_beat(); }
   [[nodiscard]] const Farthest& farthest() const { return farthest_; }
 
@@ -217,7 +217,7 @@ class SourceSearch {
       patch.at_corner[k] = patch.at_middle[k] = measure_vertex(ids[k], place, triangle);
     }
     const double enough = kWorthwhile * maximum();
-    if (!(bound_by_one_triangle(tree_, patch) > enough)) return 3;
+    if (!(bound_by_one_triangle(tree_, patch, enough) > enough)) return 3;
     look_inside(triangle, 0.0, place);
     return 10;
   }

@@ -288,6 +288,7 @@ SurfaceTree::Hit SurfaceTree::test_leaf(const Vec3f& point, std::uint32_t index,
       min_lanes(segment_distance2(pa, ab, dot(pa, ab), ab2),
                 min_lanes(segment_distance2(pa, ac, dot(pa, ac), ac2), segment_distance2(pb, bc, dot(pb, bc), bc2)));
   const Lanes distance2 = choose(is_over, by_plane, by_edge);
+  if (!any_lane(distance2 < lanes(best.distance2))) return best;
   for (std::uint32_t k = 0; k < kLeafSize; ++k) {
     if (distance2[k] < best.distance2) best = {TreeSlot(std::min(4 * index + k, size() - 1)), distance2[k]};
   }
