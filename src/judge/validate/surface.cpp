@@ -68,8 +68,7 @@ std::vector<KeyUse> cluster_chain(const run::DecodedCluster& cluster, std::span<
     while (i < uses.size() && uses[i].key == sum.key) sum.net += uses[i++].net;
     if (sum.net != 0) uses[kept++] = sum;
   }
-  uses.resize(kept);
-  return uses;
+  return {uses.begin(), uses.begin() + static_cast<std::ptrdiff_t>(kept)};  // a sixth of the room, all chains stay
 }
 
 }  // namespace

@@ -52,15 +52,16 @@ struct SegmentOrder {
 
 }  // namespace
 
-std::vector<std::uint8_t> find_drawn(std::span<const std::array<Vec3d, 3>> triangles) {
+std::vector<std::uint8_t> find_drawn(const TriangleCorners& triangles) {
   std::vector<std::uint8_t> is_drawn(triangles.size());
   parallel_for_each_index(triangles.size(), 4096, [&](std::size_t t) {
-    is_drawn[t] = has_area(triangles[t][0], triangles[t][1], triangles[t][2]) ? 1 : 0;
+    const auto [a, b, c] = triangles[t];
+    is_drawn[t] = has_area(a, b, c) ? 1 : 0;
   });
   std::vector<Strand> strands;
   std::map<Segment, SegmentUse, SegmentOrder> uses;
   for (std::size_t t = 0; t < triangles.size(); ++t) {
-    const auto& [a, b, c] = triangles[t];
+    const auto [a, b, c] = triangles[t];
     if (is_drawn[t] != 0 || a == b || b == c || c == a) continue;
     strands.push_back(make_strand(t, triangles[t]));
     for (const Segment& s : {strands.back().whole, strands.back().lower, strands.back().upper}) {
@@ -78,8 +79,9 @@ std::vector<std::uint8_t> find_drawn(std::span<const std::array<Vec3d, 3>> trian
   };
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     if (is_drawn[t] == 0) continue;
+    const TriangleCorners::Corners corners = triangles[t];
     for (std::size_t k = 0; k < 3; ++k) {
-      const Point from = as_point(triangles[t][k]), to = as_point(triangles[t][(k + 1) % 3]);
+      const Point from = as_point(corners[k]), to = as_point(corners[(k + 1) % 3]);
       cover(from < to ? Segment{from, to} : Segment{to, from});
     }
   }

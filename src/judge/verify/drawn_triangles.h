@@ -3,16 +3,14 @@
 // and those without that lie along edges of these. Internal to the judge.
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <span>
 #include <vector>
 
-#include "base/vec.h"
+#include "judge/verify/triangle_corners.h"
 
 namespace meshlode::judge {
 
 /// Per triangle 1 if it belongs into level 0. `triangles` are corners as the file has them. O(n log n).
-[[nodiscard]] std::vector<std::uint8_t> find_drawn(std::span<const std::array<Vec3d, 3>> triangles);
+[[nodiscard]] std::vector<std::uint8_t> find_drawn(const TriangleCorners& triangles);
 
 }  // namespace meshlode::judge

@@ -2,6 +2,7 @@
 #include "judge/verify/moved_vertices.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -54,18 +55,42 @@ GridPoint MovedVertices::point_of(const Vec3d& position) const {
   return point_at(relative(position));
 }
 
-void MovedVertices::find(std::span<const std::array<Vec3d, 3>> triangles) {
+std::vector<GridPoint> MovedVertices::points_beside(const TriangleCorners& triangles,
+                                                    const std::vector<std::pair<Place, Place>>& needles) const {
+  const auto make_set = [](std::vector<GridPoint>& points) {
+    std::sort(points.begin(), points.end());
+    points.erase(std::unique(points.begin(), points.end()), points.end());
+  };
+  std::vector<GridPoint> beside;
+  for (const auto& [first, unused] : needles) {
+    const GridPoint at = nearest(std::make_from_tuple<Vec3d>(first));  // and that of the second
+    for (std::size_t turn = 0; turn < 6; ++turn) {
+      beside.push_back(at);
+      beside.back()[turn % 3] += turn < 3 ? 1 : -1;
+    }
+  }
+  make_set(beside);
+  std::vector<GridPoint> taken;
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    for (const Vec3d& corner : triangles[t]) {
+      const GridPoint point = nearest(relative(corner));
+      if (std::binary_search(beside.begin(), beside.end(), point)) taken.push_back(point);
+    }
+  }
+  make_set(taken);
+  return taken;
+}
+
+void MovedVertices::find(const TriangleCorners& triangles) {
   moved_.clear();
   std::vector<std::pair<Place, Place>> narrow;  // ends of needles whose two corners are nearest to one point
-  std::vector<GridPoint> taken;                 // points that a vertex is nearest to
-  taken.reserve(3 * triangles.size());
-  for (const std::array<Vec3d, 3>& triangle : triangles) {
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    const TriangleCorners::Corners triangle = triangles[t];
     std::array<Vec3d, 3> corner;
     std::array<GridPoint, 3> point;
     for (std::size_t k = 0; k < 3; ++k) {
       corner[k] = relative(triangle[k]);
       point[k] = nearest(corner[k]);
-      taken.push_back(point[k]);
     }
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t next = (k + 1) % 3;
@@ -77,8 +102,8 @@ void MovedVertices::find(std::span<const std::array<Vec3d, 3>> triangles) {
   if (narrow.empty()) return;
   std::sort(narrow.begin(), narrow.end());
   narrow.erase(std::unique(narrow.begin(), narrow.end()), narrow.end());
-  std::sort(taken.begin(), taken.end());
-  taken.erase(std::unique(taken.begin(), taken.end()), taken.end());
+  // No vertex goes any farther: of two that have moved, none is where the other is.
+  const std::vector<GridPoint> taken = points_beside(triangles, narrow);
 
   struct Move {
     double distance2;

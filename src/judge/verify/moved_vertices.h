@@ -8,12 +8,13 @@
 // a puzzle: where a grid collapses hundreds of triangles into one cell, what is left of them fits many places.
 #pragma once
 
-#include <array>
 #include <map>
-#include <span>
 #include <tuple>
+#include <utility>
+#include <vector>
 
 #include "base/vec.h"
+#include "judge/verify/triangle_corners.h"
 #include "judge/verify/triangle_key.h"
 
 namespace meshlode::judge {
@@ -25,7 +26,7 @@ class MovedVertices {
 
   /// Finds the vertices that the rule moves. `triangles` are the corners, in the source, of those in level 0; their
   /// order does not matter. O(n log n).
-  void find(std::span<const std::array<Vec3d, 3>> triangles);
+  void find(const TriangleCorners& triangles);
 
   /// The vertex's point on the grid. A source that is not the asset's may lie anywhere; such a corner matches nothing.
   [[nodiscard]] GridPoint point_of(const Vec3d& position) const;
@@ -37,6 +38,9 @@ class MovedVertices {
   [[nodiscard]] Vec3d relative(const Vec3d& position) const { return position + 0.0 - origin_; }
   [[nodiscard]] GridPoint nearest(const Vec3d& relative) const;
   [[nodiscard]] GridPoint point_at(const Vec3d& relative) const;
+  /// Points beside the needles that a vertex of the triangles is nearest to, ascending.
+  [[nodiscard]] std::vector<GridPoint> points_beside(const TriangleCorners& triangles,
+                                                     const std::vector<std::pair<Place, Place>>& needles) const;
 
   Vec3d origin_{0.0};
   double step_ = 1.0;

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <compare>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -17,6 +16,7 @@
 #include "judge/verify/drawn_triangles.h"
 #include "judge/verify/moved_vertices.h"
 #include "judge/verify/source_rules.h"
+#include "judge/verify/triangle_corners.h"
 #include "judge/verify/triangle_key.h"
 
 namespace meshlode::judge {
@@ -44,15 +44,28 @@ struct Corner {
 
 using ExactTriangle = std::array<Corner, 3>;
 
-struct SourceTriangle {
-  TriangleKey key;
+/// A triangle of the source.
+struct SourcePlace {
   std::uint32_t primitive, triangle;
 };
-
-struct StoredTriangle {
-  TriangleKey key;
+/// A triangle of level 0.
+struct StoredPlace {
   std::uint32_t cluster, triangle;
 };
+
+struct SourceTriangle {
+  TriangleKey key;
+  SourcePlace place;
+};
+struct StoredTriangle {
+  TriangleKey key;
+  StoredPlace place;
+};
+
+/// Keys are six times as large as places: they are made for one range of keys at a time, in so many ranges.
+constexpr std::size_t kRanges = 16;
+/// Triangles of level 0 that the ranges are chosen by.
+constexpr std::size_t kRangeSamples = 4096;
 
 class SourceMatcher {
  public:
@@ -72,6 +85,7 @@ class SourceMatcher {
     check_counts();
     gather_source();
     gather_stored();
+    choose_ranges();
     find_moved();
     check_moves();
     match();
@@ -103,23 +117,21 @@ class SourceMatcher {
   }
 
   void gather_source() {
-    std::vector<std::array<Vec3d, 3>> corners;
+    std::size_t count = 0;
+    for (const scene::Primitive& primitive : source_.primitives) count += primitive.indices.size() / 3;
+    sources_.reserve(count);
     for (std::uint32_t p = 0; p < source_.primitives.size(); ++p) {
-      const scene::Primitive& primitive = source_.primitives[p];
-      for (std::uint32_t t = 0; t < primitive.indices.size() / 3; ++t) {
-        sources_.push_back({{primitive.material.value, {}}, p, t});
-        corners.push_back(corners_of(sources_.back()));
-      }
+      for (std::uint32_t t = 0; t < source_.primitives[p].indices.size() / 3; ++t) sources_.push_back({p, t});
     }
-    const std::vector<std::uint8_t> is_drawn = find_drawn(corners);
+    const std::vector<std::uint8_t> is_drawn = find_drawn(source_corners());
     Vec3d low(0.0);
     Vec3d high(0.0);
     bool has_bounds = false;
     std::size_t kept = 0;
-    for (std::size_t i = 0; i < corners.size(); ++i) {
+    for (std::size_t i = 0; i < count; ++i) {
       if (is_drawn[i] == 0) continue;
       sources_[kept++] = sources_[i];
-      for (const Vec3d& corner : corners[i]) {
+      for (const Vec3d& corner : corners_of(sources_[kept - 1])) {
         low = has_bounds ? glm::min(low, corner) : corner;
         high = has_bounds ? glm::max(high, corner) : corner;
         has_bounds = true;
@@ -132,16 +144,13 @@ class SourceMatcher {
     const double diagonal = has_bounds ? std::sqrt(glm::dot(high - low, high - low)) : 0.0;
     log_.expect(std::fabs(mesh_.diagonal - diagonal) <= 1e-9 * diagonal, Rule::kV103, at,
                 [&] { return differs("diagonal", mesh_.diagonal, "source", diagonal); });
-    put_on_grid();
   }
 
-  void sort_sources() {
-    std::sort(sources_.begin(), sources_.end(), [](const SourceTriangle& a, const SourceTriangle& b) {
-      return std::tie(a.key, a.primitive, a.triangle) < std::tie(b.key, b.primitive, b.triangle);
-    });
+  [[nodiscard]] TriangleCorners source_corners() const {
+    return {sources_.size(), [this](std::size_t i) { return corners_of(sources_[i]); }};
   }
 
-  [[nodiscard]] std::array<Vec3d, 3> corners_of(const SourceTriangle& s) const {
+  [[nodiscard]] std::array<Vec3d, 3> corners_of(const SourcePlace& s) const {
     const scene::Primitive& primitive = source_.primitives[s.primitive];
     const std::uint32_t* index = &primitive.indices[3 * std::size_t{s.triangle}];
     return {primitive.positions[index[0]], primitive.positions[index[1]], primitive.positions[index[2]]};
@@ -152,30 +161,68 @@ class SourceMatcher {
   void find_moved() {
     const std::size_t unexplained = count_unexplained();
     if (unexplained == 0) return;
-    std::vector<std::array<Vec3d, 3>> corners;
-    corners.reserve(sources_.size());
-    for (const SourceTriangle& s : sources_) corners.push_back(corners_of(s));
     MovedVertices nearest = std::exchange(vertices_, MovedVertices(origin_, step_));
-    vertices_.find(corners);
+    vertices_.find(source_corners());
     if (vertices_.empty()) return;
-    put_on_grid();
+    deal_sources();
     if (count_unexplained() <= unexplained) return;
     vertices_ = std::move(nearest);
-    put_on_grid();
+    deal_sources();
   }
 
   /// Calls visit(key, of the source, of level 0) for each distinct triangle on the grid, in the order of keys.
   template <class Visit>
   void for_each_key(const Visit& visit) const {
-    for (std::size_t i = 0, j = 0; i < sources_.size() || j < stored_.size();) {
-      const bool take_source = j == stored_.size() || (i < sources_.size() && sources_[i].key <= stored_[j].key);
-      const TriangleKey key = take_source ? sources_[i].key : stored_[j].key;
-      const std::size_t i0 = i;
-      const std::size_t j0 = j;
-      while (i < sources_.size() && sources_[i].key == key) ++i;
-      while (j < stored_.size() && stored_[j].key == key) ++j;
-      visit(key, std::span(sources_).subspan(i0, i - i0), std::span(stored_).subspan(j0, j - j0));
+    std::vector<SourceTriangle> sources;
+    std::vector<StoredTriangle> stored;
+    for (std::size_t range = 0; range <= range_ends_.size(); ++range) {
+      gather_range(sources_, source_range_, range, sources);
+      gather_range(stored_, stored_range_, range, stored);
+      for (std::size_t i = 0, j = 0; i < sources.size() || j < stored.size();) {
+        const bool take_source = j == stored.size() || (i < sources.size() && sources[i].key <= stored[j].key);
+        const TriangleKey key = take_source ? sources[i].key : stored[j].key;
+        const std::size_t i0 = i;
+        const std::size_t j0 = j;
+        while (i < sources.size() && sources[i].key == key) ++i;
+        while (j < stored.size() && stored[j].key == key) ++j;
+        visit(key, std::span(sources).subspan(i0, i - i0), std::span(stored).subspan(j0, j - j0));
+      }
     }
+  }
+
+  /// The triangles of a range with their keys, sorted; equal ones by their places, which ascend.
+  template <class Place, class Triangle>
+  void gather_range(const std::vector<Place>& places, const std::vector<std::uint8_t>& range_of, std::size_t range,
+                    std::vector<Triangle>& out) const {
+    out.clear();
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      if (range_of[i] == range) out.push_back({key_of(places[i]), places[i]});
+    }
+    std::stable_sort(out.begin(), out.end(), [](const Triangle& a, const Triangle& b) { return a.key < b.key; });
+  }
+
+  [[nodiscard]] std::uint8_t range_of(const TriangleKey& key) const {
+    return static_cast<std::uint8_t>(std::upper_bound(range_ends_.begin(), range_ends_.end(), key) -
+                                     range_ends_.begin());
+  }
+
+  void choose_ranges() {
+    std::vector<TriangleKey> keys;
+    const std::size_t step = std::max<std::size_t>(1, stored_.size() / kRangeSamples);
+    for (std::size_t i = 0; i < stored_.size(); i += step) keys.push_back(key_of(stored_[i]));
+    std::sort(keys.begin(), keys.end());
+    if (step > 1) {
+      for (std::size_t k = 1; k < kRanges; ++k) range_ends_.push_back(keys[k * keys.size() / kRanges]);
+    }
+    stored_range_.resize(stored_.size());
+    for (std::size_t i = 0; i < stored_.size(); ++i) stored_range_[i] = range_of(key_of(stored_[i]));
+    deal_sources();
+  }
+
+  /// Into ranges, by where the vertices are on the grid.
+  void deal_sources() {
+    source_range_.resize(sources_.size());
+    for (std::size_t i = 0; i < sources_.size(); ++i) source_range_[i] = range_of(key_of(sources_[i]));
   }
 
   /// Distinct triangles on the grid that only the source or only level 0 has. How often each is there need not be
@@ -188,18 +235,26 @@ class SourceMatcher {
     return count;
   }
 
-  void put_on_grid() {
-    for (SourceTriangle& s : sources_) {
-      const std::array<Vec3d, 3> corner = corners_of(s);
-      s.key.corners = rotate_to_smallest(
-          {vertices_.point_of(corner[0]), vertices_.point_of(corner[1]), vertices_.point_of(corner[2])});
+  [[nodiscard]] TriangleKey key_of(const SourcePlace& s) const {
+    const std::array<Vec3d, 3> corner = corners_of(s);
+    return {source_.primitives[s.primitive].material.value,
+            rotate_to_smallest(
+                {vertices_.point_of(corner[0]), vertices_.point_of(corner[1]), vertices_.point_of(corner[2])})};
+  }
+
+  [[nodiscard]] TriangleKey key_of(const StoredPlace& s) const {
+    const run::DecodedCluster& cluster = clusters_[s.cluster];
+    GridCorners grid{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3i p = cluster.position(cluster.triangles[s.triangle][k]);
+      grid[k] = {p.x, p.y, p.z};
     }
-    sort_sources();
+    return {cluster.triangle_material[s.triangle], rotate_to_smallest(grid)};
   }
 
   void check_moves() {
     double moved2 = 0.0;
-    for (const SourceTriangle& s : sources_) {
+    for (const SourcePlace& s : sources_) {
       for (const Vec3d& p : corners_of(s)) {
         const GridPoint q = vertices_.point_of(p);
         const Vec3d moved = Vec3d(q[0], q[1], q[2]) * step_ - (p - origin_);
@@ -217,20 +272,9 @@ class SourceMatcher {
   void gather_stored() {
     for (std::uint32_t c = mesh_.first_cluster; c < mesh_.first_cluster + mesh_.cluster_count; ++c) {
       if (asset_.clusters()[c].own_group != format::kNone) continue;
-      const run::DecodedCluster& cluster = clusters_[c];
-      for (std::uint32_t t = 0; t < cluster.triangles.size(); ++t) {
-        GridCorners grid{};
-        for (std::size_t k = 0; k < 3; ++k) {
-          const Vec3i p = cluster.position(cluster.triangles[t][k]);
-          grid[k] = {p.x, p.y, p.z};
-        }
-        stored_.push_back({{cluster.triangle_material[t], rotate_to_smallest(grid)}, c, t});
-      }
+      for (std::uint32_t t = 0; t < clusters_[c].triangles.size(); ++t) stored_.push_back({c, t});
     }
     counts_.level0_triangles = stored_.size();
-    std::sort(stored_.begin(), stored_.end(), [](const StoredTriangle& a, const StoredTriangle& b) {
-      return std::tie(a.key, a.cluster, a.triangle) < std::tie(b.key, b.cluster, b.triangle);
-    });
   }
 
   /// The source's corner with the attributes that the asset stores, as prepared: -0 is 0, missing ones have defaults.
@@ -257,7 +301,7 @@ class SourceMatcher {
     return corner;
   }
 
-  [[nodiscard]] ExactTriangle exact_triangle(const SourceTriangle& triangle) const {
+  [[nodiscard]] ExactTriangle exact_triangle(const SourcePlace& triangle) const {
     const scene::Primitive& primitive = source_.primitives[triangle.primitive];
     const std::uint32_t* index = &primitive.indices[3 * std::size_t{triangle.triangle}];
     const Vec3d a = primitive.positions[index[0]];
@@ -286,9 +330,9 @@ class SourceMatcher {
     std::vector<SourceClass> all;
     for (const SourceTriangle& s : sources) {
       SourceClass one;
-      one.triangle = exact_triangle(s);
+      one.triangle = exact_triangle(s.place);
       one.count = 1;
-      one.has_own_normals = !stores_normals() || !source_.primitives[s.primitive].normals.empty();
+      one.has_own_normals = !stores_normals() || !source_.primitives[s.place.primitive].normals.empty();
       all.push_back(std::move(one));
     }
     if (all.size() == 1) return all;
@@ -345,16 +389,16 @@ class SourceMatcher {
     for (const StoredTriangle& triangle : stored) {
       counts_.corners += 3;
       const bool found = std::any_of(classes.begin(), classes.end(),
-                                     [&](const SourceClass& one) { return has_attributes_of(triangle, one); });
+                                     [&](const SourceClass& one) { return has_attributes_of(triangle.place, one); });
       if (!found) {
         log_.add(Rule::kV104, key_text(key),
-                 place("cluster", triangle.cluster, "triangle", triangle.triangle) +
+                 place("cluster", triangle.place.cluster, "triangle", triangle.place.triangle) +
                      " has attributes of no source triangle in its place");
       }
     }
   }
 
-  [[nodiscard]] bool has_attributes_of(const StoredTriangle& stored, const SourceClass& one) {
+  [[nodiscard]] bool has_attributes_of(const StoredPlace& stored, const SourceClass& one) {
     if (decoded_cluster_ != stored.cluster) {
       run::decode_attributes(mesh_, clusters_[stored.cluster], decoded_);
       decoded_cluster_ = stored.cluster;
@@ -429,8 +473,10 @@ class SourceMatcher {
   double step_;
   Vec3d origin_;
   MovedVertices vertices_;
-  std::vector<SourceTriangle> sources_;
-  std::vector<StoredTriangle> stored_;
+  std::vector<SourcePlace> sources_;
+  std::vector<StoredPlace> stored_;
+  std::vector<TriangleKey> range_ends_;                    ///< ascending: where the next range of keys begins
+  std::vector<std::uint8_t> source_range_, stored_range_;  ///< per source and stored triangle
   std::uint64_t degenerate_ = 0, duplicates_most_ = 0;
   run::ClusterAttributes decoded_;
   std::uint32_t decoded_cluster_ = format::kNone;
