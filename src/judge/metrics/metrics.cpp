@@ -234,7 +234,8 @@ LargestDeviation DeviationFrom::find_largest(const Surface& b) const {
   std::atomic<double> largest2 = 0.0;
   const MeasuredPoints& points_a = parts_->points;
   const double extent = extent_of(parts_->bounds, bounds_of(b));
-  const Farthest of_a = find_farthest(parts_->sequence, TriangleTree(b), extent, largest2);
+  const Farthest of_a =
+      find_farthest(parts_->sequence, TriangleTree(b, TriangleTree::Positions::kShared), extent, largest2);
   const MeasuredPoints points_b(b, parts_->options);
   const Farthest of_b = find_farthest(PointSequence(points_b), parts_->tree, extent, largest2);
   out.is_of_a = of_a.distance2 >= of_b.distance2;

@@ -95,9 +95,11 @@ ExactBox box_between(const std::array<Vec3d, 3>& corners, int axis, double from,
   return {box.low - rounding, box.high + rounding};
 }
 
-float center_of(const std::array<float, 3>& low, const std::array<float, 3>& high, int axis) {
-  const auto k = static_cast<std::size_t>(axis);
-  return 0.5F * low[k] + 0.5F * high[k];
+template <class Box>
+std::array<float, 3> center_of(const Box& box) {
+  std::array<float, 3> center;
+  for (std::size_t k = 0; k < 3; ++k) center[k] = 0.5F * box.low[k] + 0.5F * box.high[k];
+  return center;
 }
 
 }  // namespace
@@ -130,7 +132,7 @@ TriangleTree::Box TriangleTree::to_frame(const Vec3d& low, const Vec3d& high) co
   return box;
 }
 
-std::vector<TriangleTree::Piece> TriangleTree::cut_to_pieces(const Surface& surface) const {
+TriangleTree::Items TriangleTree::cut_to_pieces(const Surface& surface) const {
   const std::size_t count = surface.triangles.size();
   const auto corners_of = [&](std::size_t i) {
     const auto& t = surface.triangles[i];
@@ -148,14 +150,15 @@ std::vector<TriangleTree::Piece> TriangleTree::cut_to_pieces(const Surface& surf
     for (const float pieces : wanted) sum += std::min(double{pieces}, most);
     if (sum <= budget) break;
   }
-  std::vector<Piece> pieces;
-  pieces.reserve(count);
+  Items out{surface, {}, {}};
+  out.items.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
     const std::array<Vec3d, 3> corners = corners_of(i);
     const ExactBox box = box_of(corners[0], corners[1], corners[2]);
+    const auto triangle = static_cast<std::uint32_t>(i);
     const auto parts = static_cast<std::uint32_t>(std::min(double{wanted[i]}, most));
     if (parts <= 1) {
-      pieces.push_back({to_frame(box.low, box.high), static_cast<std::uint32_t>(i)});
+      out.items.push_back({center_of(to_frame(box.low, box.high)), triangle});
       continue;
     }
     const Vec3d size = box.high - box.low;
@@ -164,21 +167,31 @@ std::vector<TriangleTree::Piece> TriangleTree::cut_to_pieces(const Surface& surf
     for (std::uint32_t part = 1; part <= parts; ++part) {
       const double to = part == parts ? box.high[axis] : box.low[axis] + size[axis] * part / parts;
       const ExactBox piece = box_between(corners, axis, from, to);
-      pieces.push_back({to_frame(piece.low, piece.high), static_cast<std::uint32_t>(i)});
+      out.pieces.push_back({to_frame(piece.low, piece.high), triangle});
+      out.items.push_back(
+          {center_of(out.pieces.back().box), static_cast<std::uint32_t>(count + out.pieces.size() - 1)});
       from = to;
     }
   }
-  return pieces;
+  return out;
 }
 
-TriangleTree::TriangleTree(const Surface& surface) {
+TriangleTree::Box TriangleTree::box_of_item(const Items& items, const Item& item) const {
+  const Surface& surface = items.surface;
+  if (item.id >= surface.triangles.size()) return items.pieces[item.id - surface.triangles.size()].box;
+  const auto& t = surface.triangles[item.id];
+  const ExactBox box = box_of(surface.positions[t[0]], surface.positions[t[1]], surface.positions[t[2]]);
+  return to_frame(box.low, box.high);
+}
+
+TriangleTree::TriangleTree(const Surface& surface, Positions positions) {
   if (surface.triangles.empty()) return;
   set_frame(surface);
-  std::vector<Piece> pieces = cut_to_pieces(surface);
-  const auto count = static_cast<std::uint32_t>(pieces.size());
-  nodes_.reserve(count + 1);  // of more than kLeafSize pieces each half has two: no more nodes than pieces
+  Items items = cut_to_pieces(surface);
+  const auto count = static_cast<std::uint32_t>(items.items.size());
+  nodes_.reserve(count + 1);  // of more than kLeafSize items each half has two: no more nodes than items
   nodes_.emplace_back();
-  split(0, pieces, 0, count);
+  split(0, items, 0, count);
   const auto grow = [](Box& box, const Box& other) {
     for (std::size_t k = 0; k < 3; ++k) {
       box.low[k] = std::min(box.low[k], other.low[k]);
@@ -192,36 +205,47 @@ TriangleTree::TriangleTree(const Surface& surface) {
       grow(node.box, nodes_[node.first + 1].box);
       continue;
     }
-    node.box = pieces[node.first].box;
-    for (std::uint32_t i = node.first + 1; i < node.first + node.count; ++i) grow(node.box, pieces[i].box);
+    node.box = box_of_item(items, items.items[node.first]);
+    for (std::uint32_t i = node.first + 1; i < node.first + node.count; ++i) {
+      grow(node.box, box_of_item(items, items.items[i]));
+    }
   }
-  triangle_.resize(pieces.size());
-  for (std::size_t i = 0; i < pieces.size(); ++i) triangle_[i] = pieces[i].triangle;
-  release(pieces);  // their boxes are most of what it takes to build a tree
+  triangle_.resize(count);
+  for (std::size_t i = 0; i < count; ++i) triangle_[i] = items.triangle_of(items.items[i]);
+  release(items.items, items.pieces);
   copy_triangles(surface);
+  positions_ = surface.positions;
+  if (positions == Positions::kCopied) copy_positions(surface);
 }
 
 void TriangleTree::copy_triangles(const Surface& surface) {
-  constexpr std::uint32_t kUnused = 0xFFFFFFFFU;
-  std::vector<std::uint32_t> renamed(surface.positions.size(), kUnused);
   corners_.resize(triangle_.size());
   place_.resize(surface.triangles.size());
-  std::uint32_t used = 0;
   for (std::uint32_t i = 0; i < triangle_.size(); ++i) {
     place_[triangle_[i]] = i;
-    for (std::size_t k = 0; k < 3; ++k) {
-      std::uint32_t& name = renamed[surface.triangles[triangle_[i]][k]];
-      if (name == kUnused) name = used++;
-      corners_[i][k] = name;
-    }
-  }
-  positions_.resize(used);
-  for (std::size_t v = 0; v < renamed.size(); ++v) {
-    if (renamed[v] != kUnused) positions_[renamed[v]] = surface.positions[v];
+    corners_[i] = surface.triangles[triangle_[i]];
   }
 }
 
-void TriangleTree::split(std::uint32_t node, std::vector<Piece>& pieces, std::uint32_t first, std::uint32_t count) {
+void TriangleTree::copy_positions(const Surface& surface) {
+  constexpr std::uint32_t kUnused = 0xFFFFFFFFU;
+  std::vector<std::uint32_t> renamed(surface.positions.size(), kUnused);
+  std::uint32_t used = 0;
+  for (auto& corners : corners_) {
+    for (std::uint32_t& corner : corners) {
+      std::uint32_t& name = renamed[corner];
+      if (name == kUnused) name = used++;
+      corner = name;
+    }
+  }
+  copied_.resize(used);
+  for (std::size_t v = 0; v < renamed.size(); ++v) {
+    if (renamed[v] != kUnused) copied_[renamed[v]] = surface.positions[v];
+  }
+  positions_ = copied_;
+}
+
+void TriangleTree::split(std::uint32_t node, Items& items, std::uint32_t first, std::uint32_t count) {
   if (count <= kLeafSize) {
     nodes_[node].first = first;
     nodes_[node].count = count;
@@ -233,26 +257,26 @@ void TriangleTree::split(std::uint32_t node, std::vector<Piece>& pieces, std::ui
     high[static_cast<std::size_t>(axis)] = -std::numeric_limits<float>::infinity();
   }
   for (std::uint32_t i = first; i < first + count; ++i) {
-    for (int axis = 0; axis < 3; ++axis) {
-      const float at = center_of(pieces[i].box.low, pieces[i].box.high, axis);
-      low[static_cast<std::size_t>(axis)] = std::min(low[static_cast<std::size_t>(axis)], at);
-      high[static_cast<std::size_t>(axis)] = std::max(high[static_cast<std::size_t>(axis)], at);
+    const std::array<float, 3>& center = items.items[i].center;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      low[axis] = std::min(low[axis], center[axis]);
+      high[axis] = std::max(high[axis], center[axis]);
     }
   }
   const Vec3f extent(high[0] - low[0], high[1] - low[1], high[2] - low[2]);
-  const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
+  const std::size_t axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
   const std::uint32_t half = count / 2;
-  const auto begin = pieces.begin() + first;
+  const auto begin = items.items.begin() + first;
   // Pieces of one triangle whose centres agree are alike in all that matters.
-  std::nth_element(begin, begin + half, begin + count, [&](const Piece& a, const Piece& b) {
-    const float at_a = center_of(a.box.low, a.box.high, axis), at_b = center_of(b.box.low, b.box.high, axis);
-    return at_a != at_b ? at_a < at_b : a.triangle < b.triangle;
+  std::nth_element(begin, begin + half, begin + count, [&](const Item& a, const Item& b) {
+    return a.center[axis] != b.center[axis] ? a.center[axis] < b.center[axis]
+                                            : items.triangle_of(a) < items.triangle_of(b);
   });
   const std::uint32_t left = static_cast<std::uint32_t>(nodes_.size());
   nodes_[node].first = left;
   nodes_.resize(nodes_.size() + 2);
-  split(left, pieces, first, half);  // depth: log2 of the number of pieces
-  split(left + 1, pieces, first + half, count - half);
+  split(left, items, first, half);  // depth: log2 of the number of pieces
+  split(left + 1, items, first + half, count - half);
 }
 
 inline double TriangleTree::distance2_to_box(const Box& box, const Vec3d& p) {

@@ -26,7 +26,12 @@ struct NearestPoint {
 /// floats, rounded outwards, so that a node is half as large.
 class TriangleTree {
  public:
-  explicit TriangleTree(const Surface& surface);
+  /// A copy of the positions lies in the order of the leaves, which is quicker where that of the surface leaps. Without
+  /// one the surface must outlive the tree.
+  enum class Positions : std::uint8_t { kCopied, kShared };
+  explicit TriangleTree(const Surface& surface, Positions positions = Positions::kCopied);
+  TriangleTree(const TriangleTree&) = delete;
+  TriangleTree(TriangleTree&&) = default;
 
   /// The nearest triangle. `hint` names a triangle that is probably near, and changes the time taken alone; it may be
   /// none. Infinite for an empty tree. Safe from several threads.
@@ -51,17 +56,33 @@ class TriangleTree {
     std::uint32_t first = 0;  ///< left child (the right one follows it), or first triangle of a leaf
     std::uint32_t count = 0;  ///< triangles of a leaf; 0 for an inner node
   };
+  /// A part of a triangle that is cut.
   struct Piece {
     Box box;
     std::uint32_t triangle;
+  };
+  /// What the tree is made of while it is made: whole triangles, and pieces.
+  struct Item {
+    std::array<float, 3> center;  ///< of the box
+    std::uint32_t id;             ///< of a triangle; from their number on, of a piece
+  };
+  struct Items {
+    const Surface& surface;
+    std::vector<Item> items;
+    std::vector<Piece> pieces;
+    [[nodiscard]] std::uint32_t triangle_of(const Item& item) const {
+      return item.id < surface.triangles.size() ? item.id : pieces[item.id - surface.triangles.size()].triangle;
+    }
   };
 
   void set_frame(const Surface& surface);
   [[nodiscard]] Vec3d to_frame(const Vec3d& p) const { return (p - origin_) * scale_; }
   [[nodiscard]] Box to_frame(const Vec3d& low, const Vec3d& high) const;
-  [[nodiscard]] std::vector<Piece> cut_to_pieces(const Surface& surface) const;
-  void split(std::uint32_t node, std::vector<Piece>& pieces, std::uint32_t first, std::uint32_t count);
+  [[nodiscard]] Items cut_to_pieces(const Surface& surface) const;
+  [[nodiscard]] Box box_of_item(const Items& items, const Item& item) const;
+  void split(std::uint32_t node, Items& items, std::uint32_t first, std::uint32_t count);
   void copy_triangles(const Surface& surface);
+  void copy_positions(const Surface& surface);
   [[nodiscard]] static double distance2_to_box(const Box& box, const Vec3d& p);
   [[nodiscard]] double distance2_at(const Vec3d& point, std::uint32_t place) const;
 
@@ -69,7 +90,8 @@ class TriangleTree {
   double scale_ = 1.0;     ///< a power of two: distances in the frame are so many times those outside
   double rounding_ = 0.0;  ///< what a point of the surface may be off by in the frame, twice
   std::vector<Node> nodes_;
-  std::vector<Vec3d> positions_;                       ///< in the order in which leaves use them
+  std::vector<Vec3d> copied_;                          ///< in the order in which leaves use them
+  std::span<const Vec3d> positions_;                   ///< the copied ones, or the surface's
   std::vector<std::array<std::uint32_t, 3>> corners_;  ///< in leaf order
   std::vector<std::uint32_t> triangle_;                ///< leaf order -> surface
   std::vector<std::uint32_t> place_;                   ///< surface -> leaf order, a place of several
