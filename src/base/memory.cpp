@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "base/memory.h"
 
+#include <malloc.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -82,6 +83,12 @@ std::optional<std::uint64_t> available_memory(const fs::path& root) {
   }
   if (amounts.empty()) return std::nullopt;
   return *std::min_element(amounts.begin(), amounts.end());
+}
+
+void give_back_freed_memory() {
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
 }
 
 std::uint64_t resident_memory() {

@@ -14,6 +14,10 @@ namespace meshlode {
 /// can be dropped counts as free), and RLIMIT_AS. Nothing where none of them says. `root` stands for / in tests.
 [[nodiscard]] std::optional<std::uint64_t> available_memory(const std::filesystem::path& root = "/");
 
+/// Gives what was freed piece by piece back to the system, between stages that need much of it in another form. With
+/// glibc alone; elsewhere nothing happens.
+void give_back_freed_memory();
+
 /// Bytes of this process that are in memory now; 0 where it cannot be told.
 [[nodiscard]] std::uint64_t resident_memory();
 

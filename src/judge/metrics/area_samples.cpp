@@ -53,6 +53,7 @@ std::vector<std::uint32_t> used_vertices(const Surface& surface) {
     for (const std::uint32_t v : t) is_used[v] = 1;
   }
   std::vector<std::uint32_t> used;
+  used.reserve(static_cast<std::size_t>(std::count(is_used.begin(), is_used.end(), 1)));
   for (std::size_t v = 0; v < is_used.size(); ++v) {
     if (is_used[v] != 0) used.push_back(static_cast<std::uint32_t>(v));
   }

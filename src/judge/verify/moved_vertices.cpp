@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/id_table.h"
+
 namespace meshlode::judge {
 
 namespace {
@@ -21,6 +23,8 @@ constexpr std::int32_t kLargestCoordinate = (1 << 23) - 1;
 constexpr std::int64_t kNeedleLength = 4;
 /// Squared half diagonal of a cell, in steps.
 constexpr double kReach2 = 0.75;
+
+constexpr std::size_t kSlots = 65536;
 
 auto tuple_of(const Vec3d& p) {
   return std::tuple(p.x, p.y, p.z);
@@ -44,11 +48,16 @@ GridPoint MovedVertices::nearest(const Vec3d& relative) const {
 }
 
 GridPoint MovedVertices::point_at(const Vec3d& relative) const {
-  if (!moved_.empty()) {
-    const auto found = moved_.find(tuple_of(relative));
-    if (found != moved_.end()) return found->second;
-  }
-  return nearest(relative);
+  const GridPoint at = nearest(relative);
+  if (moved_.empty() || moved_from_[slot_of(at)] == 0) return at;
+  const auto found = moved_.find(tuple_of(relative));
+  return found == moved_.end() ? at : found->second;
+}
+
+std::size_t MovedVertices::slot_of(const GridPoint& point) {
+  std::uint64_t hash = 0;
+  for (const std::int32_t coordinate : point) hash = hash_word(hash, static_cast<std::uint32_t>(coordinate));
+  return hash % kSlots;
 }
 
 GridPoint MovedVertices::point_of(const Vec3d& position) const {
@@ -83,6 +92,7 @@ std::vector<GridPoint> MovedVertices::points_beside(const TriangleCorners& trian
 
 void MovedVertices::find(const TriangleCorners& triangles) {
   moved_.clear();
+  moved_from_.assign(kSlots, 0);
   std::vector<std::pair<Place, Place>> narrow;  // ends of needles whose two corners are nearest to one point
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     const TriangleCorners::Corners triangle = triangles[t];
@@ -133,6 +143,7 @@ void MovedVertices::find(const TriangleCorners& triangles) {
     }
     if (!best) continue;
     moved_.emplace(best->who, best->to);
+    moved_from_[slot_of(from)] = 1;
     arrived.insert(best->to);
   }
 }

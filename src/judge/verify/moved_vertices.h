@@ -38,6 +38,7 @@ class MovedVertices {
   [[nodiscard]] Vec3d relative(const Vec3d& position) const { return position + 0.0 - origin_; }
   [[nodiscard]] GridPoint nearest(const Vec3d& relative) const;
   [[nodiscard]] GridPoint point_at(const Vec3d& relative) const;
+  [[nodiscard]] static std::size_t slot_of(const GridPoint& point);
   /// Points beside the needles that a vertex of the triangles is nearest to, ascending.
   [[nodiscard]] std::vector<GridPoint> points_beside(const TriangleCorners& triangles,
                                                      const std::vector<std::pair<Place, Place>>& needles) const;
@@ -45,6 +46,7 @@ class MovedVertices {
   Vec3d origin_{0.0};
   double step_ = 1.0;
   std::map<Place, GridPoint> moved_;
+  std::vector<std::uint8_t> moved_from_;  ///< by slot_of() a point: whether any was moved from one of that slot
 };
 
 }  // namespace meshlode::judge

@@ -7,6 +7,7 @@
 #include <initializer_list>
 #include <iterator>
 
+#include "base/memory.h"
 #include "base/release.h"
 #include "judge/verify/cuts.h"
 #include "judge/verify/deviations.h"
@@ -181,6 +182,7 @@ VerifyReport verify_asset(const run::Asset& asset, const scene::Scene& source, c
       add_cuts(asset, *clusters, options, report);
     }
     release(*clusters);  // cuts are decoded one by one
+    give_back_freed_memory();
     add_deviations(asset, source, options, report);
   } else {
     report.add_check("I1", "not reached: " + clusters.error().message(), 0, 1);
