@@ -75,6 +75,28 @@ class Gltf:
             data = binary if i == 0 and binary is not None and "uri" not in buffer else self.bytes_of(buffer)
             self.buffers.append(data)
         self.expand_instances()
+        if len(self.root.get("meshes", [])) > 1:
+            self.merge_meshes()
+
+    def merge_meshes(self):
+        """Of equal meshes the first is drawn in the place of the others, which lose their primitives (docs/import.md)."""
+        kept = ("POSITION", "NORMAL", "COLOR_0", "TEXCOORD_0", "TEXCOORD_1", "TEXCOORD_2", "TEXCOORD_3")
+        first, place = {}, {}
+        try:
+            for m, mesh in enumerate(self.root["meshes"]):
+                parts = [(material, "TANGENT" in attributes, triangles,
+                          [(name, attributes[name]) for name in kept if name in attributes])
+                         for attributes, triangles, material in self.primitives(m)]
+                if any(part[2] for part in parts):
+                    place[m] = first.setdefault(repr(parts), m)
+        except (Unsupported, KeyError):  # what cannot be read here, or is a document without its geometry
+            return
+        for m, other in place.items():
+            if m != other:
+                self.root["meshes"][m]["primitives"] = []
+        for node in self.root.get("nodes", []):
+            if "mesh" in node:
+                node["mesh"] = place.get(node["mesh"], node["mesh"])
 
     def expand_instances(self):
         """EXT_mesh_gpu_instancing: a node for each instance (docs/import.md), behind the others."""

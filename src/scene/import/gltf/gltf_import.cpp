@@ -11,6 +11,7 @@
 #include "scene/import/gltf/choose_scene.h"
 #include "scene/import/gltf/gltf.h"
 #include "scene/import/gltf/instancing.h"
+#include "scene/import/gltf/merge_meshes.h"
 #include "scene/import/gltf/meshopt_views.h"
 #include "scene/import/gltf/primitive.h"
 #include "scene/import/gltf/uri.h"
@@ -222,6 +223,7 @@ Result<Scene> import_gltf(const std::filesystem::path& path, std::span<const std
   if (auto status = expand_instancing(asset, budget, scene.left_out); !status) return status.error();
   scene.instances = read_instances(asset, options.scene, scene.left_out);
   scene.choice = options.scene;
+  merge_equal_meshes(asset, scene);
   const std::size_t skin_count = asset.root.items("skins").size();
   for (std::size_t s = 0; s < skin_count; ++s) {
     scene.left_out.push_back({"skin " + std::to_string(s), "meshes are built static, in their bind pose"});
