@@ -87,8 +87,9 @@ class Gltf:
                 parts = [(material, "TANGENT" in attributes, triangles,
                           [(name, attributes[name]) for name in kept if name in attributes])
                          for attributes, triangles, material in self.primitives(m)]
+                variants = [p.get("extensions", {}).get("KHR_materials_variants") for p in mesh["primitives"]]
                 if any(part[2] for part in parts):
-                    place[m] = first.setdefault(repr(parts), m)
+                    place[m] = first.setdefault(repr((parts, variants)), m)
         except (Unsupported, KeyError):  # what cannot be read here, or is a document without its geometry
             return
         for m, other in place.items():

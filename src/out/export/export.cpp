@@ -106,7 +106,7 @@ class Exporter {
 
  private:
   Status add_mesh(MeshId mesh);
-  Result<Json> make_mesh(const format::MeshRecord& record, std::span<const CutPrimitive> primitives,
+  Result<Json> make_mesh(const format::MeshRecord& record, const Json* source, std::span<const CutPrimitive> primitives,
                          const Vec3d& baked);
   Result<Json> make_primitive(const format::MeshRecord& record, const CutPrimitive& primitive, const Vec3d& baked);
   Status add_positions(const format::MeshRecord& record, const run::DecodedCluster& vertices, const Vec3d& baked,
@@ -387,13 +387,29 @@ Result<Json> Exporter::make_primitive(const format::MeshRecord& record, const Cu
   return result;
 }
 
-Result<Json> Exporter::make_mesh(const format::MeshRecord& record, std::span<const CutPrimitive> primitives,
-                                 const Vec3d& baked) {
+/// What the document has for the primitives of a mesh, by material (KHR_materials_variants); null: the default one.
+std::map<Json, const Json*> extensions_by_material(const Json* mesh) {
+  std::map<Json, const Json*> out;
+  if (mesh == nullptr || !mesh->is_object()) return out;
+  const auto carried = mesh->find("primitives");
+  if (carried == mesh->end() || !carried->is_array()) return out;
+  for (const Json& one : *carried) {
+    if (!one.is_object() || !one.contains("extensions") || !one.at("extensions").is_object()) continue;
+    out.try_emplace(one.value("material", Json()), &one.at("extensions"));
+  }
+  return out;
+}
+
+Result<Json> Exporter::make_mesh(const format::MeshRecord& record, const Json* source,
+                                 std::span<const CutPrimitive> primitives, const Vec3d& baked) {
   Json json = Json::object();
   json["primitives"] = Json::array();
+  const auto extensions = extensions_by_material(source);
   for (const CutPrimitive& primitive : primitives) {
     auto made = make_primitive(record, primitive, baked);
     if (!made) return made.error();
+    const auto known = extensions.find(made->value("material", Json()));
+    if (known != extensions.end()) (*made)["extensions"] = *known->second;
     json["primitives"].push_back(std::move(*made));
   }
   return json;
@@ -417,7 +433,7 @@ Status Exporter::add_mesh(MeshId mesh) {
   if (source != nullptr && source->is_object() && source->contains("name")) exported.name = source->at("name");
   if (exported.name.empty()) exported.name = asset_.string(record.name);
   for (std::size_t k = 0; k < levels.size(); ++k) {
-    auto json = make_mesh(record, levels[k], baked);
+    auto json = make_mesh(record, source, levels[k], baked);
     if (!json) return json.error();
     const std::string name = k == 0 || exported.name.empty() ? exported.name : level_name(exported.name, k);
     if (!name.empty()) (*json)["name"] = name;

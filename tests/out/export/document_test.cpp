@@ -51,6 +51,25 @@ TEST(ExportDocument, NodesNamesExtrasAndUnknownExtensionsStay) {
   EXPECT_EQ(glb.json["meshes"][0]["extras"], source["meshes"][0]["extras"]);
 }
 
+TEST(ExportDocument, MaterialVariantsComeBackWithTheirPrimitives) {
+  scene::Scene scene = test::make_rock_scene(6);
+  json document = json::parse(scene.document);
+  const json first = json::parse(R"({"KHR_materials_variants":{"mappings":[{"material":1,"variants":[0]}]}})");
+  const json last = json::parse(R"({"KHR_materials_variants":{"mappings":[{"material":0,"variants":[0]}]}})");
+  document["extensionsUsed"] = {"KHR_materials_variants"};
+  document["extensions"]["KHR_materials_variants"]["variants"] = json::parse(R"([{"name":"wet"}])");
+  document["meshes"][0]["primitives"] =
+      json::array({{{"material", 0}, {"extensions", first}}, {{"extensions", last}}, 7, json::object()});
+  scene.document = document.dump();
+  const Glb glb = export_scene(scene);
+  EXPECT_EQ(glb.json["extensions"]["KHR_materials_variants"]["variants"][0]["name"], "wet");
+  const auto& primitives = glb.json["meshes"][0]["primitives"];
+  ASSERT_EQ(primitives.size(), 3U);  // of materials 0, 1 and the default one
+  EXPECT_EQ(primitives[0]["extensions"], first);
+  EXPECT_FALSE(primitives[1].contains("extensions"));
+  EXPECT_EQ(primitives[2]["extensions"], last);
+}
+
 TEST(ExportDocument, ImagesAnimationsLightsAndCamerasStay) {
   scene::Scene scene = test::make_rock_scene(6);
   json document = json::parse(scene.document);

@@ -4,6 +4,7 @@
 
 #include "scene/import/gltf/check_base.h"
 #include "scene/import/gltf/gltf.h"
+#include "scene/import/gltf/variants.h"
 
 namespace meshlode::scene {
 
@@ -261,6 +262,7 @@ Status check_gltf(const Json& root, const std::string& file) {
   GltfChecker checker(root, file);
   checker.run();
   if (!checker.ok()) return checker.status();
+  if (auto status = check_gltf_variants(root, file); !status) return status;
   if (auto status = check_gltf_nodes(root, file); !status) return status;
   return check_gltf_lost_geometry(root, file);
 }

@@ -8,6 +8,7 @@
 #include "scene/import/gltf/check_base.h"
 #include "scene/import/gltf/gltf.h"
 #include "scene/import/gltf/gltf_import.h"
+#include "scene/import/gltf/variants.h"
 #include "scene/import/image_mime.h"
 
 namespace meshlode::scene {
@@ -164,6 +165,8 @@ void carry_nodes(const GltfAsset& asset, Json& document, Scene& scene) {
     for (const std::string_view key : {"name", "extras"}) {
       if (const Json* member = source.find(key)) mesh.set(key, *member);
     }
+    Json::Array primitives = variant_primitives(asset, meshes.size(), scene.left_out);
+    if (!primitives.empty()) mesh.set("primitives", Json{std::move(primitives)});
     meshes.push_back(std::move(mesh));
   }
   if (!meshes.empty()) document.set("meshes", Json{std::move(meshes)});

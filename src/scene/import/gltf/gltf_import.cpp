@@ -15,6 +15,7 @@
 #include "scene/import/gltf/meshopt_views.h"
 #include "scene/import/gltf/primitive.h"
 #include "scene/import/gltf/uri.h"
+#include "scene/import/gltf/variants.h"
 
 namespace meshlode::scene {
 
@@ -154,6 +155,7 @@ Status read_meshes(const GltfAsset& asset, const ImportOptions& options, DecodeB
     const std::string what = "mesh " + std::to_string(m) + " ";
     if (has_targets) scene.left_out.push_back({what + "morph targets", "only the base shape is built"});
     extensions.erase("KHR_draco_mesh_compression");
+    extensions.erase("KHR_materials_variants");
     for (const std::string& name : extensions) {
       scene.left_out.push_back({what + name, "an extension of primitives that is not kept"});
     }
@@ -219,6 +221,7 @@ Result<Scene> import_gltf(const std::filesystem::path& path, std::span<const std
   const std::uint64_t draco_bytes = std::min(count_draco_bytes(asset), file_bytes);
   DecodeBudget budget(file_bytes, std::min(draco_bytes + stream_bytes, file_bytes), options.max_decoded);
   scene.materials = read_materials(asset, scene.left_out);
+  keep_uv_sets_of_variants(asset, scene.materials);
   if (auto status = read_meshes(asset, options, budget, scene); !status) return status.error();
   if (auto status = expand_instancing(asset, budget, scene.left_out); !status) return status.error();
   scene.instances = read_instances(asset, options.scene, scene.left_out);

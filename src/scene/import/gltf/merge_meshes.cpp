@@ -9,6 +9,7 @@
 
 #include "base/hash.h"
 #include "scene/import/gltf/check_base.h"
+#include "scene/import/gltf/variants.h"
 
 namespace meshlode::scene {
 
@@ -73,16 +74,24 @@ Hash128 hash_of(const SourceMesh& mesh) {
   return hasher.digest();
 }
 
+std::string variants_of(const GltfAsset& asset, std::uint32_t mesh) {
+  std::vector<LeftOut> said_elsewhere;
+  return dump_json(Json{variant_primitives(asset, mesh, said_elsewhere)});
+}
+
 /// For each mesh the one that is built in its place: itself, or the first that equals it. Of several with one hash only
 /// the first is compared: a collision costs a mesh that could have been shared, and nothing else.
-std::vector<std::uint32_t> find_first_equal(const std::vector<SourceMesh>& meshes) {
+std::vector<std::uint32_t> find_first_equal(const GltfAsset& asset, const std::vector<SourceMesh>& meshes) {
   std::vector<std::uint32_t> out(meshes.size());
   std::map<Hash128, std::uint32_t> first;
   for (std::uint32_t m = 0; m < meshes.size(); ++m) {
     out[m] = m;
     if (!has_triangles(meshes[m])) continue;
     const auto [known, is_new] = first.try_emplace(hash_of(meshes[m]), m);
-    if (!is_new && is_same(meshes[known->second], meshes[m])) out[m] = known->second;
+    if (!is_new && is_same(meshes[known->second], meshes[m]) &&
+        variants_of(asset, known->second) == variants_of(asset, m)) {
+      out[m] = known->second;
+    }
   }
   return out;
 }
@@ -91,7 +100,7 @@ std::vector<std::uint32_t> find_first_equal(const std::vector<SourceMesh>& meshe
 
 void merge_equal_meshes(GltfAsset& asset, Scene& scene) {
   constexpr std::size_t kMostNamed = 8;
-  const std::vector<std::uint32_t> place = find_first_equal(scene.meshes);
+  const std::vector<std::uint32_t> place = find_first_equal(asset, scene.meshes);
   std::string names;
   std::size_t merged = 0;
   for (std::uint32_t m = 0; m < place.size(); ++m) {
