@@ -23,6 +23,11 @@ std::optional<FileStamp> stamp_of(const std::filesystem::path& path) {
                    nanoseconds(info.st_ctim)};
 }
 
+FileKind kind_of(scene::FileReference::Kind kind) {
+  using Kind = scene::FileReference::Kind;
+  return kind == Kind::kImage ? FileKind::kImage : kind == Kind::kBuffer ? FileKind::kBuffer : FileKind::kMaterials;
+}
+
 /// Looks at the stamp first: what is written while it is hashed has another one afterwards.
 Status look_at(Dependency& file) {
   file.stamp = stamp_of(file.path);
@@ -38,7 +43,13 @@ Status look_at(Dependency& file) {
 }  // namespace
 
 const char* name_of(FileKind kind) {
-  return kind == FileKind::kScene ? "scene" : kind == FileKind::kBuffer ? "buffer" : "image";
+  switch (kind) {
+    case FileKind::kScene: return "scene";
+    case FileKind::kBuffer: return "buffer";
+    case FileKind::kImage: return "image";
+    case FileKind::kMaterials: break;
+  }
+  return "materials";
 }
 
 Result<std::vector<Dependency>> find_dependencies(const std::filesystem::path& scene) {
@@ -48,8 +59,7 @@ Result<std::vector<Dependency>> find_dependencies(const std::filesystem::path& s
   const auto references = scene::list_references(scene);
   if (!references) return references.error();
   for (const scene::FileReference& reference : *references) {
-    const bool is_image = reference.kind == scene::FileReference::Kind::kImage;
-    files.push_back({is_image ? FileKind::kImage : FileKind::kBuffer, reference.uri, reference.path, std::nullopt, {}});
+    files.push_back({kind_of(reference.kind), reference.uri, reference.path, std::nullopt, {}});
     static_cast<void>(look_at(files.back()));  // what is missing is the import's to judge
   }
   return files;

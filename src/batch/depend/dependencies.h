@@ -16,7 +16,7 @@
 
 namespace meshlode::batch {
 
-enum class FileKind : std::uint8_t { kScene, kBuffer, kImage };
+enum class FileKind : std::uint8_t { kScene, kBuffer, kImage, kMaterials };
 [[nodiscard]] const char* name_of(FileKind kind);
 
 /// Tells whether a file was written since: of this machine alone.

@@ -100,7 +100,8 @@ class Run {
   /// --dry-run.
   Status plan() {
     for (const Dependency& file : result_.files) {
-      const bool is_needed = file.kind == FileKind::kBuffer || !options_.import.may_lack_images;
+      const bool is_needed =
+          file.kind == FileKind::kBuffer || (file.kind == FileKind::kImage && !options_.import.may_lack_images);
       if (!file.stamp && is_needed) return Error{ErrorCode::kIo, file.path.string(), "cannot be opened"};
     }
     result_.status = JobStatus::kWouldBuild;

@@ -113,8 +113,10 @@ Result<std::vector<FileReference>> list_references(const std::filesystem::path& 
   return guarded(path, [&]() -> Result<std::vector<FileReference>> {
     const auto file = MappedFile::open(path);
     if (!file) return file.error();
-    if (find_format(path, file->bytes()) != Format::kGltf) return std::vector<FileReference>{};
-    return list_gltf_references(path, file->bytes());
+    const auto format = find_format(path, file->bytes());
+    if (format == Format::kGltf) return list_gltf_references(path, file->bytes());
+    if (format == Format::kObj) return list_obj_references(path, file->bytes());
+    return std::vector<FileReference>{};
   });
 }
 

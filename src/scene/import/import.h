@@ -35,9 +35,10 @@ struct ImportOptions {
 
 /// A file that a scene names.
 struct FileReference {
-  enum class Kind : std::uint8_t { kBuffer, kImage };
+  /// Materials are an OBJ's libraries, which it can do without.
+  enum class Kind : std::uint8_t { kBuffer, kImage, kMaterials };
   Kind kind = Kind::kBuffer;
-  std::string uri;             ///< as the scene has it
+  std::string uri;             ///< as the scene, or its library, has it
   std::filesystem::path path;  ///< below the scene's folder, whether or not there is such a file; links not followed
 };
 

@@ -82,7 +82,35 @@ TEST(ImportReferences, NoBytesMakeItDoMoreThanRefuse) {
     EXPECT_TRUE(!references || references->empty()) << text;
   }
   EXPECT_FALSE(scene::list_references(folder.path() / "none.gltf"));
-  EXPECT_TRUE(scene::list_references(folder.write("a.obj", "mtllib a.mtl\n")).value().empty());
+  EXPECT_TRUE(scene::list_references(folder.write("a.obj", "mtllib\nmtllib ../a.mtl\n")).value().empty());
+}
+
+/// As for glTF: nothing is opened that is not listed, and what may come to be there is listed too.
+TEST(ImportReferences, TheLibrariesAndTexturesOfAnObjAreListed) {
+  const TempFolder folder;
+  folder.write("my set.mtl", "newmtl a\nmap_Kd tex\\a.png\nnewmtl b\nmap_Kd gone.png\n");
+  folder.write("tex/a.png", "a picture");
+  const auto path = folder.write("a.obj",
+                                 "mtllib my set.mtl\nmtllib x.mtl \\\n y.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n"
+                                 "usemtl a\nf 1 2 3\n");
+  const auto references = scene::list_references(path);
+  ASSERT_TRUE(references) << references.error().message();
+  std::vector<std::string> listed;
+  for (const FileReference& reference : *references) {
+    listed.push_back(reference.path.lexically_relative(folder.path()).string());
+  }
+  EXPECT_EQ(listed,
+            (std::vector<std::string>{"my set.mtl", "tex/a.png", "gone.png", "x.mtl   y.mtl", "x.mtl", "y.mtl"}));
+  EXPECT_EQ(references->front().kind, FileReference::Kind::kMaterials);
+  EXPECT_EQ((*references)[1].kind, FileReference::Kind::kImage);
+  std::vector<FileId> opened;
+  ASSERT_TRUE(scene::import_scene(path, {.files_read = &opened}));
+  EXPECT_EQ(opened.size(), 3U);
+  std::set<FileId> known{find_file_id(path).value()};
+  for (const FileReference& reference : *references) {
+    if (const auto id = find_file_id(reference.path)) known.insert(*id);
+  }
+  for (const FileId& id : opened) EXPECT_TRUE(known.contains(id));
 }
 
 TEST(ImportReferences, AMissingImageIsLeftOutAndNamedWhereThatIsAllowed) {

@@ -252,6 +252,7 @@ Result<std::vector<FileReference>> list_gltf_references(const std::filesystem::p
     for (std::size_t i = 0; i < items.size(); ++i) {
       const Json* uri = items[i].find("uri");
       if (uri == nullptr || uri->string() == nullptr || is_data_uri(*uri->string())) continue;
+      if (kind == Kind::kBuffer && is_meshopt_fallback(items[i])) continue;
       const auto found = resolve_uri(path.parent_path(), *uri->string());
       if (!found && found.error().code != ErrorCode::kIo) {
         const std::string place = file + ": /" + std::string(key) + "/" + std::to_string(i) + "/uri";

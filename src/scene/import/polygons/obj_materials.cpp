@@ -27,6 +27,12 @@ std::string shown(std::string_view name) {
   return out;
 }
 
+/// Windows writes its paths the other way.
+std::string with_slashes(std::string name) {
+  std::replace(name.begin(), name.end(), '\\', '/');
+  return name;
+}
+
 class ObjMaterials {
  public:
   ObjMaterials(const std::filesystem::path& path, const ImportOptions& options, Hasher& hasher, Scene& scene)
@@ -53,10 +59,8 @@ class ObjMaterials {
  private:
   void leave_out(std::string what, std::string why) { scene_.left_out.push_back({std::move(what), std::move(why)}); }
 
-  /// A file below the scene's folder. Windows writes its paths the other way.
-  Result<MappedFile> open(std::string name, std::filesystem::path& path) {
-    std::replace(name.begin(), name.end(), '\\', '/');
-    auto resolved = resolve_below(folder_, name);
+  Result<MappedFile> open(const std::string& name, std::filesystem::path& path) {
+    auto resolved = resolve_below(folder_, with_slashes(name));
     if (!resolved) return resolved.error();
     path = *resolved;
     auto file = MappedFile::open(path);
@@ -185,7 +189,63 @@ class ObjMaterials {
   Json::Array materials_, images_;
 };
 
+class ReferenceList {
+ public:
+  explicit ReferenceList(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+  /// The line of a mtllib: one name with blanks, or several. Where the one is not there, another may be some day.
+  void add_libraries(std::string_view line) {
+    if (add_library(std::string(line))) return;
+    for (std::string_view name = take_word(line); !name.empty(); name = take_word(line)) {
+      add_library(std::string(name));
+    }
+  }
+
+  [[nodiscard]] std::vector<FileReference> take() { return std::move(references_); }
+
+ private:
+  using Kind = FileReference::Kind;
+
+  /// \returns where it is; nothing where it is not, or may not be opened
+  std::optional<std::filesystem::path> add(Kind kind, const std::string& name) {
+    const std::string path = with_slashes(name);
+    auto resolved = resolve_below(folder_, path);
+    if (!resolved && resolved.error().code != ErrorCode::kIo) return std::nullopt;
+    const std::filesystem::path where = folder_ / std::filesystem::path(path).lexically_normal();
+    if (known_.insert(where).second) references_.push_back({kind, name, where});
+    return resolved ? std::optional(std::move(*resolved)) : std::nullopt;
+  }
+
+  bool add_library(const std::string& name) {
+    const auto path = add(Kind::kMaterials, name);
+    if (!path) return false;
+    const auto file = MappedFile::open(*path);
+    if (!file) return false;
+    for (const MtlMaterial& material : read_mtl(file->bytes())) {
+      if (!material.texture.empty()) add(Kind::kImage, material.texture);
+    }
+    return true;
+  }
+
+  std::filesystem::path folder_;
+  std::set<std::filesystem::path> known_;
+  std::vector<FileReference> references_;
+};
+
 }  // namespace
+
+std::vector<FileReference> list_obj_references(const std::filesystem::path& path, std::span<const std::uint8_t> bytes) {
+  std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  std::set<std::string> libraries;  // in the order of the import
+  std::string joined;
+  for (std::size_t lines = 0; !text.empty();) {
+    std::string_view line = take_joined_line(text, joined, lines);
+    if (take_word(line) == "mtllib" && !trimmed(line).empty()) libraries.emplace(trimmed(line));
+  }
+  ReferenceList list(path.parent_path());
+  for (const std::string& line : libraries) list.add_libraries(line);
+  return list.take();
+}
 
 void add_obj_materials(const std::filesystem::path& path, const PolygonFile& file, const ImportOptions& options,
                        Hasher& hasher, Scene& scene) {

@@ -2,9 +2,11 @@
 // The materials that an OBJ's faces name become materials of the scene, as a glTF would have them.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <span>
 #include <string>
+#include <vector>
 
 #include <meshlode/result.h>
 
@@ -20,5 +22,9 @@ namespace meshlode::scene {
 /// so is a material that no library has.
 void add_obj_materials(const std::filesystem::path& path, const PolygonFile& file, const ImportOptions& options,
                        Hasher& hasher, Scene& scene);
+
+/// Every file that add_obj_materials opens, or would open were it there: libraries, and what their map_Kd name.
+[[nodiscard]] std::vector<FileReference> list_obj_references(const std::filesystem::path& path,
+                                                             std::span<const std::uint8_t> bytes);
 
 }  // namespace meshlode::scene

@@ -33,19 +33,7 @@ class ObjReader {
     std::string joined;
     while (!text_.empty()) {
       ++line_;
-      std::string_view line = take_line(text_);
-      if (!line.empty() && line.back() == '\\') {  // a line that goes on
-        joined.assign(line.substr(0, line.size() - 1));
-        while (!text_.empty()) {
-          ++line_;
-          std::string_view more = take_line(text_);
-          const bool goes_on = !more.empty() && more.back() == '\\';
-          if (goes_on) more.remove_suffix(1);
-          joined.append(" ").append(more);
-          if (!goes_on) break;
-        }
-        line = joined;
-      }
+      std::string_view line = take_joined_line(text_, joined, line_);
       const std::string_view keyword = take_word(line);
       Status status = Ok{};
       if (keyword == "v") {

@@ -31,6 +31,21 @@ std::string_view take_line(std::string_view& text) {
   return line;
 }
 
+std::string_view take_joined_line(std::string_view& text, std::string& joined, std::size_t& count) {
+  const std::string_view line = take_line(text);
+  if (line.empty() || line.back() != '\\') return line;
+  joined.assign(line.substr(0, line.size() - 1));
+  while (!text.empty()) {
+    ++count;
+    std::string_view more = take_line(text);
+    const bool goes_on = !more.empty() && more.back() == '\\';
+    if (goes_on) more.remove_suffix(1);
+    joined.append(" ").append(more);
+    if (!goes_on) break;
+  }
+  return joined;
+}
+
 std::optional<double> parse_number(std::string_view word) {
   if (!word.empty() && word.front() == '+') word.remove_prefix(1);
   double value = 0.0;
