@@ -20,6 +20,9 @@
 #include "build/progress_meter.h"
 #include "build/stage_clock.h"
 #include "build/stage_options.h"
+#include "build/store/mesh_key.h"
+#include "build/store/mesh_store.h"
+#include "build/store/stored_mesh.h"
 #include "build/write/write.h"
 #include "build/write_meta.h"
 
@@ -46,6 +49,36 @@ struct BuiltMesh {
   std::vector<PlanDecision> decisions;
   StageClock clock;
   std::vector<LevelTime> levels;
+  bool was_stored = false;
+};
+
+/// Where PipelineOptions::mesh_store may have one mesh, or will be given it.
+struct StoredPlace {
+  MeshStore* store = nullptr;  ///< none: it is not asked
+  Hash128 key{};
+
+  StoredPlace(const scene::SourceMesh& source, const AttributeLayout& layout, const EncodeOptions& encoding,
+              const PipelineOptions& options) {
+    if (options.mesh_store == nullptr || !options.mesh_store->wants(count_mesh(source).triangles)) return;
+    store = options.mesh_store;
+    key = mesh_key(source, layout, encoding, options);
+  }
+
+  /// What was kept becomes `built`. False: nothing was.
+  [[nodiscard]] bool take(const std::string& label, BuiltMesh& built) const {
+    const auto bytes = store != nullptr ? store->find(key) : std::nullopt;
+    auto mesh = bytes ? read_stored_mesh(*bytes, label) : std::nullopt;
+    if (!mesh) return false;
+    built.encoded = std::move(mesh->encoded);
+    built.decisions.insert(built.decisions.end(), mesh->decisions.begin(), mesh->decisions.end());
+    built.was_stored = true;
+    return true;
+  }
+
+  void keep(const BuiltMesh& built, std::size_t first_decision, const std::string& label) const {
+    if (store == nullptr) return;
+    store->keep(key, stored_mesh_bytes(built.encoded, std::span(built.decisions).subspan(first_decision), label));
+  }
 };
 
 /// The scene, and itself once more where it may be taken apart.
@@ -75,12 +108,20 @@ Result<BuiltMesh> build_mesh(const Source& from, std::size_t index,
   built.decisions = std::move(plan.decisions);
   built.clock.end(Stage::kPlan);
 
+  const EncodeOptions encoding = encode_options(options, source, plan.layout, texels);
+  const StoredPlace place(source, plan.layout, encoding, options);
+  const std::size_t planned = built.decisions.size();
+  if (place.take(label, built)) {
+    from.free_mesh(index);
+    if (!progress.report(index, 0, 0)) return Error{ErrorCode::kBuildFailed, label, "cancelled"};
+    return built;
+  }
+
   Result<PreparedMesh> mesh = prepare_mesh(source, plan.layout, prepare_options(options));
   if (!mesh) return mesh.error();
+  from.free_mesh(index);
   built.clock.end(Stage::kPrepare);
 
-  const EncodeOptions encoding = encode_options(options, source, plan.layout, texels);
-  from.free_mesh(index);
   DagOptions coarsening = dag_options(options, *mesh, encoding);
   LevelClock levels(index);
   coarsening.on_level = [&](std::uint32_t level, std::uint64_t triangles) {
@@ -102,6 +143,7 @@ Result<BuiltMesh> build_mesh(const Source& from, std::size_t index,
   for (PlanDecision& decision : late_decisions(*mesh, coarsening, encoding, built.encoded, label)) {
     built.decisions.push_back(std::move(decision));
   }
+  place.keep(built, planned, label);
   built.clock.end(Stage::kEncode);
   return built;
 }
@@ -148,9 +190,11 @@ Result<std::vector<std::uint8_t>> build_asset_of(const Source& from, const Pipel
   input.codec = options.codec;
   report.decisions.clear();
   report.levels.clear();
+  report.stored_meshes = 0;
   for (std::size_t i = 0; i < meshes->size(); ++i) {
     BuiltMesh& mesh = (*meshes)[i];
     mesh.clock.add_to(report.stages);
+    report.stored_meshes += mesh.was_stored ? 1 : 0;
     report.decisions.insert(report.decisions.end(), mesh.decisions.begin(), mesh.decisions.end());
     report.levels.insert(report.levels.end(), mesh.levels.begin(), mesh.levels.end());
     input.meshes.push_back(std::move(mesh.encoded));

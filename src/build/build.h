@@ -16,6 +16,8 @@
 
 namespace meshlode::build {
 
+class MeshStore;
+
 struct PipelineOptions {
   Preset preset = Preset::kDefault;
   format::ErrorTier error_tier = format::ErrorTier::kMeasured;  ///< as asked for, or the preset's (build/preset.h)
@@ -33,6 +35,7 @@ struct PipelineOptions {
   bool uv_error_is_texels = true;             ///< of the material's largest texture; else UV units
   bool uv_error_is_default = true;            ///< no texture counts as smaller than 2,048 texels then
   std::uint64_t max_memory = 0;  ///< bytes that the process may take (build/needs.h); 0: what the machine has
+  MeshStore* mesh_store = nullptr;  ///< meshes that were built before (build/store/mesh_store.h); the same bytes
 };
 
 /// Called from one thread at a time, in no promised order between meshes. Return false to cancel.
@@ -61,6 +64,7 @@ struct PipelineReport {
   std::vector<StageTime> stages;
   std::vector<LevelTime> levels;        ///< mesh by mesh
   std::vector<PlanDecision> decisions;  ///< of all meshes, in order
+  std::uint64_t stored_meshes = 0;      ///< those that came from the mesh store
 };
 
 /// Thread count is the caller's: run inside a tbb::task_arena or under tbb::global_control.

@@ -113,6 +113,28 @@ TEST_F(BatchTest, TwoHundredRandomEditsGiveTheBytesOfCleanBuilds) {
   for (const char* status : {"built", "cached", "unchanged"}) EXPECT_GT(seen[status], 20) << status;
 }
 
+// Below the file: another texture leaves the mesh as it was, another option does not.
+TEST_F(BatchTest, AMeshThatIsTheSameIsNotBuiltAgain) {
+  folder_.write_scene("in/1", 1, 24);
+  EXPECT_EQ(run({"1"}, "out")[0].meshes_from_cache, 0U);
+  folder_.write("in/1.png", "another picture");
+  const auto painted = run({"1"}, "out");
+  EXPECT_EQ(statuses(painted), "built");
+  EXPECT_EQ(painted[0].meshes_from_cache, 1U);
+  BatchOptions packed;
+  packed.pipeline.codec = format::Codec::kZstd;  // of the same mesh
+  EXPECT_EQ(run({"1"}, "packed", packed)[0].meshes_from_cache, 1U);
+  BatchOptions finer;
+  finer.pipeline.position_error = 1e-4;
+  EXPECT_EQ(run({"1"}, "finer", finer)[0].meshes_from_cache, 0U);
+  run({"1"}, "clean/out", {}, false);
+  run({"1"}, "clean/packed", packed, false);
+  run({"1"}, "clean/finer", finer, false);
+  for (const char* name : {"out/1.lode", "packed/1.lode", "finer/1.lode"}) {
+    EXPECT_EQ(asset(name), asset(std::string("clean/") + name)) << name;
+  }
+}
+
 TEST_F(BatchTest, ADryRunWritesNothingAndSaysWhatTheRunThenDoes) {
   folder_.write_scene("in/1", 1);
   BatchOptions dry;

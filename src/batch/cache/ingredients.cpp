@@ -81,9 +81,10 @@ std::string settings_text(const build::PipelineOptions& options, const scene::Im
   // Every member has a name here, so that one more does not compile before it is written down or left out on purpose.
   const auto& [preset, error_tier, attributes, keep, drop, grid_step, codec, partition_seed, repair,
                max_cluster_triangles, max_cluster_vertices, position_error, normal_error, uv_error, uv_error_is_texels,
-               uv_error_is_default, max_memory] = options;
+               uv_error_is_default, max_memory, mesh_store] = options;
   const auto& [import_repair, scene, files_read, max_decoded, may_lack_images] = import;
   static_cast<void>(max_memory);       // whether, not what
+  static_cast<void>(mesh_store);       // how soon
   static_cast<void>(max_decoded);      // the same
   static_cast<void>(may_lack_images);  // the same: a missing image is an ingredient of its own
   static_cast<void>(files_read);       // an output

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "batch/cache/ingredients.h"
+#include "batch/cache/mesh_entries.h"
 
 namespace meshlode::batch {
 
@@ -176,7 +177,10 @@ class Run {
     result_.stages.push_back({"import", import_timer.seconds()});
     count_scene(*scene, result_.facts);
     build::PipelineReport report;
-    const auto bytes = build::build_lode(std::move(*scene), options_.pipeline, progress_, report);
+    build::PipelineOptions pipeline = options_.pipeline;
+    std::optional<MeshEntries> meshes;
+    if (options_.cache != nullptr) pipeline.mesh_store = &meshes.emplace(*options_.cache);
+    const auto bytes = build::build_lode(std::move(*scene), pipeline, progress_, report);
     take_report(report);
     if (!bytes) return bytes.error();
     const Timer write_timer;
@@ -195,6 +199,7 @@ class Run {
 
   void take_report(build::PipelineReport& report) {
     result_.memory_estimate = report.memory_estimate;
+    result_.meshes_from_cache = report.stored_meshes;
     result_.stages.insert(result_.stages.end(), report.stages.begin(), report.stages.end());
     result_.levels = std::move(report.levels);
     for (const build::PlanDecision& decision : report.decisions) {

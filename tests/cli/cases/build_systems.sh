@@ -18,7 +18,7 @@ unset MESHLODE_CACHE MAKEFLAGS MFLAGS
 tries() {
   local name=$1; shift
   # Which assets were built, by the lines that the tool prints
-  built() { "$@" 2>&1 | grep -oE '(LODE |-o )assets/[a-z]+\.lode' | sed 's/.* //' | tr '\n' ' '; echo "exit ${PIPESTATUS[0]}"; }
+  built() { "$@" 2>&1 | grep -oE '(LODE |-o )assets/[a-z]+\.lode' | sed 's/.* //' | LC_ALL=C sort | uniq | tr '\n' ' '; echo "exit ${PIPESTATUS[0]}"; }
   echo "$name, at first: $(built "$@")"
   echo "$name, again: $(built "$@")"
   sleep 0.05; printf 'A picture' >scenes/tree.png

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// All that one built mesh depends on, as a hash.
+#pragma once
+
+#include "base/hash.h"
+#include "build/build.h"
+#include "build/encode/encode.h"
+#include "build/prepared.h"
+#include "scene/scene.h"
+
+namespace meshlode::build {
+
+/// Over the mesh's triangles, attributes and materials' ids, and over what the plan and the textures made of the
+/// options for it: a material's colour, a texture's pixels, other meshes, nodes and names are not in it. Bits, not
+/// values: -0 is another mesh than 0.
+[[nodiscard]] Hash128 mesh_key(const scene::SourceMesh& mesh, const AttributeLayout& layout,
+                               const EncodeOptions& encode, const PipelineOptions& options);
+
+}  // namespace meshlode::build
