@@ -13,6 +13,7 @@
 #include "build/store/mesh_key.h"
 #include "build/store/mesh_store.h"
 #include "build/store/stored_mesh.h"
+#include "format/names.h"
 #include "scene/samples/samples.h"
 #include "support/random.h"
 
@@ -201,6 +202,14 @@ TEST(StoredMesh, HostileBytesAreRefusedOrBuildSomethingWithoutACrash) {
     }
     const auto mesh = read_stored_mesh(changed, "mesh 0");
     refused += mesh ? 0 : 1;
+    if (!mesh || i % 8 != 0) continue;
+    MemoryStore hostile;
+    hostile.entries = store.entries;
+    hostile.entries.begin()->second = changed;
+    options.mesh_store = &hostile;
+    options.codec = format::kCodecNames[random.below(format::kCodecNames.size())].value;
+    PipelineReport report;
+    static_cast<void>(build_lode(scene, options, {}, report));
   }
   EXPECT_GT(refused, 400U);
   std::vector<std::uint8_t> longer = sound;
