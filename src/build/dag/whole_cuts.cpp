@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -11,6 +12,7 @@
 #include <span>
 #include <vector>
 
+#include "base/id_table.h"
 #include "base/ids.h"
 #include "base/parallel.h"
 #include "base/random.h"
@@ -34,10 +36,10 @@ constexpr double kLookFrom = 0.7;
 constexpr std::size_t kClimbed = 32, kClimbedOfGroup = 4;
 /// Steps of such a search, each half as long as the one before, and points tried at each.
 constexpr int kSteps = 7, kTries = 12;
-/// From cut to cut so many more groups are finer, as a share of those that are; and what all cuts together may have, in
-/// triangles of the mesh or as such.
+/// From cut to cut so many more groups are finer, as a share of those that are; and what all cuts together may have,
+/// where that is more than the mesh has.
 constexpr std::size_t kCutShare = 8;
-constexpr std::size_t kShareOfMesh = 2, kFewTriangles = 250000;
+constexpr std::size_t kFewTriangles = 250000;
 /// What a flat surface may be off by, as a share of the mesh: the arithmetic of doubles.
 constexpr double kNoise = 1e-12;
 /// A raised group leaves the cut that it was found in, and what takes its place is looked at again.
@@ -153,15 +155,21 @@ class WholeCuts {
     const double noise = kNoise * mesh_.diagonal;
     std::size_t triangles = 0;
     for (std::size_t k = 0; k < errors.size(); k = next(k)) {
-      const Surface cut = cut_at(errors[k]);
-      triangles += cut.triangles.size();
-      if (k > 0 && triangles > std::max(kShareOfMesh * mesh_.exact_triangles.size(), kFewTriangles)) break;
+      const std::vector<std::uint32_t> clusters = cut_at(errors[k]);
+      for (const std::uint32_t c : clusters) triangles += dag_.clusters[c].triangle_count;
+      if (k > 0 && triangles > std::max(mesh_.exact_triangles.size(), kFewTriangles)) break;
+      const std::uint64_t hash = hash_of(errors[k], clusters);
+      if (std::find(true_cuts_.begin(), true_cuts_.end(), hash) != true_cuts_.end()) continue;
+      const Surface cut = surface_of(clusters);
+      bool is_true = true;
       for (const FarPoint& far : find_far_points(cut, errors[k])) {
         if (far.distance <= std::max(error_of(far.nearest), noise)) continue;
         const GroupId group = group_of(far.at, errors[k]);
         if (!group.is_valid() || far.distance <= dag_.groups[group.value].error) continue;
         raised[group.value] = std::max(raised[group.value], far.distance);
+        is_true = false;
       }
+      if (is_true) true_cuts_.push_back(hash);
     }
     return raise(raised);
   }
@@ -171,14 +179,26 @@ class WholeCuts {
 
   [[nodiscard]] double error_of(GroupId group) const { return group.is_valid() ? dag_.groups[group.value].error : 0.0; }
 
-  [[nodiscard]] Surface cut_at(double threshold) const {
-    Surface cut;
+  /// Its clusters, ascending.
+  [[nodiscard]] std::vector<std::uint32_t> cut_at(double threshold) const {
+    std::vector<std::uint32_t> clusters;
     for (std::uint32_t c = 0; c < dag_.clusters.size(); ++c) {
       const DagCluster& cluster = dag_.clusters[c];
       if (error_of(cluster.own_group) <= threshold && error_of(cluster.coarser_group) > threshold)
-        cut.add(mesh_, dag_, c);
+        clusters.push_back(c);
     }
-    return cut;
+    return clusters;
+  }
+  [[nodiscard]] Surface surface_of(const std::vector<std::uint32_t>& clusters) const {
+    Surface surface;
+    for (const std::uint32_t c : clusters) surface.add(mesh_, dag_, c);
+    return surface;
+  }
+
+  static std::uint64_t hash_of(double threshold, const std::vector<std::uint32_t>& clusters) {
+    std::uint64_t hash = hash_word(0, std::bit_cast<std::uint64_t>(threshold));
+    for (const std::uint32_t c : clusters) hash = hash_word(hash, c);
+    return hash;
   }
 
   /// Where a point is farther from a cut than `enough`, squared and in the tree's frame, its nearest triangle; else one
@@ -325,6 +345,8 @@ class WholeCuts {
   double margin_;
   LodDag& dag_;
   std::vector<SourcePoint> points_;
+  /// Hashes of cuts that raised nothing. A round raises few groups, and leaves most cuts as they were.
+  std::vector<std::uint64_t> true_cuts_;
   std::vector<Near> near_;                           ///< per point, of the last cut that it was looked for in
   std::vector<std::vector<std::uint32_t>> outputs_;  ///< per group: the clusters made from it
   std::optional<Surface> level0_;                    ///< made when first asked for

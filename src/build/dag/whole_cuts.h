@@ -13,8 +13,8 @@ namespace meshlode::build {
 
 /// Raises `deviation` and `error` of groups that are farther from some point of the source than their error says, and
 /// of what is coarser (I4). Most DAGs come back as they are. Looks at the coarsest cuts, group by group, then in steps
-/// of an eighth of the groups, as long as the cuts together have no more triangles than a few times the mesh. \returns
-/// how many groups were raised. The same for any thread count (I10).
+/// of an eighth of the groups, as long as the cuts together have no more triangles than the mesh, or than a few hundred
+/// thousand. \returns how many groups were raised. The same for any thread count (I10).
 std::size_t hold_to_whole_cuts(const PreparedMesh& mesh, double margin, LodDag& dag);
 
 }  // namespace meshlode::build
