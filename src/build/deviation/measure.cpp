@@ -113,7 +113,7 @@ GroupDeviation measure_group(const SourceTree& source, const GroupSurface& group
   for (const CarriedSample& sample : projected) places[sample.triangle] = sample.place;
   std::vector<CarriedSample> high;
   const bool is_spared = options.extra_effort >= kLeastExtra;
-  const Effort effort{64 + group.triangles.size() / (is_spared ? 4 : 8) + options.extra_effort,
+  const Effort effort{64 + group.triangles.size() / (is_spared ? 4 : 16) + options.extra_effort,
                       is_spared ? options.extra_effort / kSpareShare : 0, is_spared ? kHighestRise : kUsualRise};
   farthest = measure_to_source(source_tree, group, edges, places, farthest, effort, high);
   const GroupEdges finer_edges(options.finer);
