@@ -174,6 +174,10 @@ TEST(ImportInstancing, NoMoreInstancesThanTheFileHasBytesFor) {
 
   const std::string name = ",\"name\":\"" + std::string(100000, 'n') + "\"";
   expect_too_many(shared.import(with_nodes(instanced("\"TRANSLATION\":2", name))));
+  GltfBuilder some = square();
+  some.accessor(-1, 5126, 20000, "VEC3");
+  EXPECT_TRUE(some.import(with_nodes(instanced("\"TRANSLATION\":2"))));
+  expect_too_many(some.import(with_nodes(instanced("\"TRANSLATION\":2")), {.max_decoded = std::uint64_t{1} << 20U}));
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5));
 }
 

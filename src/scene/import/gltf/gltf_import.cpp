@@ -223,7 +223,9 @@ Result<Scene> import_gltf(const std::filesystem::path& path, std::span<const std
   scene.materials = read_materials(asset, scene.left_out);
   keep_uv_sets_of_variants(asset, scene.materials);
   if (auto status = read_meshes(asset, options, budget, scene); !status) return status.error();
-  if (auto status = expand_instancing(asset, budget, scene.left_out); !status) return status.error();
+  if (auto status = expand_instancing(asset, budget, file_bytes, options.max_decoded, scene.left_out); !status) {
+    return status.error();
+  }
   scene.instances = read_instances(asset, options.scene, scene.left_out);
   scene.choice = options.scene;
   merge_equal_meshes(asset, scene);

@@ -17,8 +17,11 @@ namespace meshlode::scene {
 namespace {
 
 constexpr std::string_view kExtension = "EXT_mesh_gpu_instancing";
-/// What a node costs as text, as a tree and as an instance, in elements of the budget (24 bytes each), beside its name.
-constexpr std::uint64_t kInstanceElements = 16;
+/// What an instance takes of the budget beside its name, and what it takes of memory in the course of a build: as a
+/// tree, as a node of the model, as text, as an instance (measured: 3.9 KB).
+constexpr std::uint64_t kInstanceElements = 16, kInstanceBytes = 4096;
+/// 32 bytes of attributes are what an instance usually has.
+constexpr std::uint64_t kMemoryOfAByte = kInstanceBytes / 32;
 
 /// The attributes of one node's instances. Missing ones are the identity's.
 struct InstanceAttributes {
@@ -35,18 +38,27 @@ bool has_type(std::string_view name, const AccessorReader& reader) {
 
 class InstanceExpander {
  public:
-  InstanceExpander(GltfAsset& asset, DecodeBudget& budget) : asset_(asset), budget_(budget) {}
+  InstanceExpander(GltfAsset& asset, DecodeBudget& budget, std::uint64_t max_bytes)
+      : asset_(asset), budget_(budget), left_bytes_(max_bytes) {}
 
   Status run(std::vector<LeftOut>& left_out) {
     const std::size_t node_count = asset_.model.nodes.size();
+    std::uint64_t instance_count = 0;
     for (std::size_t n = 0; n < node_count; ++n) {
-      const Json* extensions = nodes()[n].find("extensions");
-      const Json* instancing = extensions != nullptr ? extensions->find(kExtension) : nullptr;
-      if (instancing == nullptr) continue;
-      if (Status status = expand(n, *instancing); !status) return status;
+      const Json* attributes = attributes_of(n);
+      if (attributes == nullptr || asset_.model.nodes[n].mesh < 0) continue;
+      const std::uint64_t count = count_of(*attributes);
+      if (!take(count, stem_of(n).size())) return no_budget(path_of(n));
+      instance_count += count;
     }
-    for (Json& node : new_nodes_) nodes().push_back(std::move(node));
-    for (auto& node : new_model_nodes_) asset_.model.nodes.push_back(std::move(node));
+    if (node_count == 0) return Ok{};
+    nodes().reserve(node_count + instance_count);  // nothing moves from here on
+    asset_.model.nodes.reserve(node_count + instance_count);
+    for (std::size_t n = 0; n < node_count; ++n) {
+      const Json* attributes = attributes_of(n);
+      if (attributes == nullptr) continue;
+      if (Status status = expand(n, *attributes); !status) return status;
+    }
     for (const std::string& name : ignored_) {
       left_out.push_back({"instance attribute " + pointer_part(name), "only where an instance stands is kept"});
     }
@@ -59,6 +71,34 @@ class InstanceExpander {
 
  private:
   Json::Array& nodes() { return std::get<Json::Array>(asset_.root.find("nodes")->value); }
+
+  const Json* attributes_of(std::size_t n) {
+    const Json* extensions = asset_.root.items("nodes")[n].find("extensions");
+    const Json* instancing = extensions != nullptr ? extensions->find(kExtension) : nullptr;
+    return instancing != nullptr ? instancing->find("attributes") : nullptr;
+  }
+
+  /// All attributes have as many elements, or are refused later.
+  [[nodiscard]] std::uint64_t count_of(const Json& attributes) const {
+    return asset_.model.accessors[attributes.object()->front().value.index().value_or(0)].count;
+  }
+
+  [[nodiscard]] std::string stem_of(std::size_t n) const {
+    const std::string& name = asset_.model.nodes[n].name;
+    return name.empty() ? "node " + std::to_string(n) : name;
+  }
+
+  static std::string path_of(std::size_t n) {
+    return "/nodes/" + std::to_string(n) + "/extensions/" + std::string(kExtension) + "/attributes";
+  }
+
+  /// The budget and the memory of so many instances. \pre count < 2^31 and name_bytes too
+  bool take(std::uint64_t count, std::uint64_t name_bytes) {
+    const std::uint64_t bytes_each = kInstanceBytes + 8 * name_bytes;
+    if (count > left_bytes_ / bytes_each) return false;
+    left_bytes_ -= count * bytes_each;
+    return budget_.take(count * (kInstanceElements + name_bytes / 8));
+  }
 
   Result<InstanceAttributes> open(const Json& attributes, const std::string& path) {
     InstanceAttributes out;
@@ -92,7 +132,7 @@ class InstanceExpander {
   }
 
   Error no_budget(const std::string& path) const {
-    return asset_.invalid(path, "more instances than the size of the file justifies");
+    return asset_.invalid(path, "more instances than the size of the file, and --max-decoded, justify");
   }
 
   /// The numbers of an attribute of an instance, into both forms of its node. False where they are not finite or no
@@ -110,6 +150,8 @@ class InstanceExpander {
       if (!(length > 0.0)) return false;
     }
     Json::Array numbers;
+    numbers.reserve(count);
+    model.reserve(count);
     for (std::size_t c = 0; c < count; ++c) {
       const double value = element[c] / length;
       if (!std::isfinite(value)) return false;
@@ -120,24 +162,21 @@ class InstanceExpander {
     return true;
   }
 
-  Status expand(std::size_t n, const Json& instancing) {
-    const std::string path = "/nodes/" + std::to_string(n) + "/extensions/" + std::string(kExtension) + "/attributes";
+  Status expand(std::size_t n, const Json& attribute_list) {
+    const std::string path = path_of(n);
     const int mesh = asset_.model.nodes[n].mesh;
     if (mesh < 0) {
       ++nodes_without_mesh_;
       forget_extension(n);
       return Ok{};
     }
-    const auto attributes = open(*instancing.find("attributes"), path);
+    const auto attributes = open(attribute_list, path);
     if (!attributes) return attributes.error();
-    const std::string& name = asset_.model.nodes[n].name;
-    const std::string stem = name.empty() ? "node " + std::to_string(n) : name;
-    const std::uint64_t each = kInstanceElements + stem.size() / 8;
-    if (attributes->count > budget_.left_bytes() / DecodeBudget::kElementBytes / each) return no_budget(path);
-    if (!budget_.take(attributes->count * each)) return no_budget(path);
+    const std::string stem = stem_of(n);
     std::vector<int> children;
     for (std::uint64_t i = 0; i < attributes->count; ++i) {
       Json json = Json::make_object();
+      std::get<Json::Object>(json.value).reserve(5);
       tinygltf::Node node;
       node.name = stem + "[" + std::to_string(i) + "]";
       node.mesh = mesh;
@@ -148,9 +187,9 @@ class InstanceExpander {
           !set(attributes->scale, i, "scale", json, node.scale)) {
         return asset_.invalid(path, "instance " + std::to_string(i) + " is not finite or turned by no quaternion");
       }
-      children.push_back(static_cast<int>(asset_.model.nodes.size() + new_nodes_.size()));
-      new_nodes_.push_back(std::move(json));
-      new_model_nodes_.push_back(std::move(node));
+      children.push_back(static_cast<int>(asset_.model.nodes.size()));
+      nodes().push_back(std::move(json));
+      asset_.model.nodes.push_back(std::move(node));
     }
     adopt(n, children);
     forget_extension(n);
@@ -181,16 +220,17 @@ class InstanceExpander {
 
   GltfAsset& asset_;
   DecodeBudget& budget_;
-  Json::Array new_nodes_;
-  std::vector<tinygltf::Node> new_model_nodes_;
+  std::uint64_t left_bytes_;
   std::set<std::string> ignored_;
   std::size_t nodes_without_mesh_ = 0;
 };
 
 }  // namespace
 
-Status expand_instancing(GltfAsset& asset, DecodeBudget& budget, std::vector<LeftOut>& left_out) {
-  return InstanceExpander(asset, budget).run(left_out);
+Status expand_instancing(GltfAsset& asset, DecodeBudget& budget, std::uint64_t file_bytes, std::uint64_t max_decoded,
+                         std::vector<LeftOut>& left_out) {
+  const std::uint64_t max_bytes = std::max(max_decoded, kMemoryOfAByte * file_bytes);
+  return InstanceExpander(asset, budget, max_bytes).run(left_out);
 }
 
 }  // namespace meshlode::scene
