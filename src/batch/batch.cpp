@@ -18,7 +18,7 @@ std::vector<JobResult> run_batch(const std::vector<Job>& jobs, const BatchOption
     }
     if (watcher.on_start) watcher.on_start(i);
     Error error;
-    results.push_back(run_job(jobs[i], options, files, watcher.on_progress, error));
+    results.push_back(run_job(jobs[i], options, files, watcher, error));
     const bool has_failed = results.back().exit_code != 0;
     if (watcher.on_end) watcher.on_end(i, results.back(), has_failed ? &error : nullptr);
     is_over = has_failed && options.fail_fast;

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -13,12 +14,17 @@
 #include "batch/jobs/jobs.h"
 #include "batch/work/job_result.h"
 #include "build/build.h"
+#include "build/settings/settings.h"
 #include "scene/import/import.h"
 
 namespace meshlode::batch {
 
+/// The settings of one job: files beside its scene and above it, outermost first, then what was given.
+using SettingsOf = std::function<Result<std::vector<build::SettingLayer>>(const Job& job)>;
+
 struct BatchOptions {
-  build::PipelineOptions pipeline;
+  build::PipelineOptions pipeline;  ///< of all jobs
+  SettingsOf settings_of;           ///< where there is one, a job's own settings go before `pipeline`
   scene::ImportOptions import;
   const Cache* cache = nullptr;           ///< may be none
   bool is_dry_run = false;                ///< nothing is written: what would be done, and why
@@ -31,6 +37,10 @@ struct BatchOptions {
 /// What the caller may show. All may be empty.
 struct BatchWatcher {
   std::function<void(std::size_t job)> on_start;
+  /// The scene of the job started last is imported, and about to be built so.
+  std::function<void(const scene::Scene& scene, std::span<const build::SettingLayer> layers,
+                     const build::PipelineOptions& options)>
+      on_scene;
   build::ProgressCallback on_progress;  ///< of the job started last
   std::function<void(std::size_t job, const JobResult& result, const Error* error)> on_end;
 };

@@ -32,7 +32,7 @@ namespace {
 
 /// Refuses what cannot be built, before any work is done. \returns how many meshes may be in work at once
 Result<std::size_t> check_build(const scene::Scene& scene, const PipelineOptions& options, PipelineReport& report) {
-  if (const Status s = check_options(options); !s) return s.error();
+  if (const Status s = check_options(options, scene.meshes.size()); !s) return s.error();
   for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
     const std::string label = mesh_label(scene.meshes[i], i);
     if (const Status counts = check_mesh_counts(count_mesh(scene.meshes[i]), label); !counts) return counts.error();
@@ -58,10 +58,10 @@ struct StoredPlace {
   Hash128 key{};
 
   StoredPlace(const scene::SourceMesh& source, const AttributeLayout& layout, const EncodeOptions& encoding,
-              const PipelineOptions& options) {
+              const MeshOptions& own, const SceneOptions& options) {
     if (options.mesh_store == nullptr || !options.mesh_store->wants(count_mesh(source).triangles)) return;
     store = options.mesh_store;
-    key = mesh_key(source, layout, encoding, options);
+    key = mesh_key(source, layout, encoding, own, options);
   }
 
   /// What was kept becomes `built`. False: nothing was.
@@ -102,14 +102,15 @@ Result<BuiltMesh> build_mesh(const Source& from, std::size_t index,
                              const PipelineOptions& options, ProgressMeter& progress) {
   const scene::SourceMesh& source = from.scene.meshes[index];
   const std::string label = mesh_label(source, index);
+  const MeshOptions& own = options.of_mesh(index);
   BuiltMesh built;
 
-  MeshPlan plan = plan_mesh(source, from.scene.materials, request_of(options), label);
+  MeshPlan plan = plan_mesh(source, from.scene.materials, request_of(own), label);
   built.decisions = std::move(plan.decisions);
   built.clock.end(Stage::kPlan);
 
-  const EncodeOptions encoding = encode_options(options, source, plan.layout, texels);
-  const StoredPlace place(source, plan.layout, encoding, options);
+  const EncodeOptions encoding = encode_options(options.preset, own, source, plan.layout, texels);
+  const StoredPlace place(source, plan.layout, encoding, own, options);
   const std::size_t planned = built.decisions.size();
   if (place.take(label, built)) {
     from.free_mesh(index);
@@ -117,12 +118,12 @@ Result<BuiltMesh> build_mesh(const Source& from, std::size_t index,
     return built;
   }
 
-  Result<PreparedMesh> mesh = prepare_mesh(source, plan.layout, prepare_options(options));
+  Result<PreparedMesh> mesh = prepare_mesh(source, plan.layout, prepare_options(own));
   if (!mesh) return mesh.error();
   from.free_mesh(index);
   built.clock.end(Stage::kPrepare);
 
-  DagOptions coarsening = dag_options(options, *mesh, encoding);
+  DagOptions coarsening = dag_options(options, own, *mesh, encoding);
   LevelClock levels(index);
   coarsening.on_level = [&](std::uint32_t level, std::uint64_t triangles) {
     levels.end(level, triangles);
@@ -139,7 +140,7 @@ Result<BuiltMesh> build_mesh(const Source& from, std::size_t index,
   Result<EncodedMesh> encoded = encode_mesh(*mesh, *dag, hierarchy, encoding);
   if (!encoded) return encoded.error();
   built.encoded = std::move(*encoded);
-  built.encoded.record.error_tier = options.error_tier;
+  built.encoded.record.error_tier = own.error_tier;
   for (PlanDecision& decision : late_decisions(*mesh, coarsening, encoding, built.encoded, label)) {
     built.decisions.push_back(std::move(decision));
   }
@@ -195,6 +196,7 @@ Result<std::vector<std::uint8_t>> build_asset_of(const Source& from, const Pipel
     BuiltMesh& mesh = (*meshes)[i];
     mesh.clock.add_to(report.stages);
     report.stored_meshes += mesh.was_stored ? 1 : 0;
+    for (PlanDecision& decision : mesh.decisions) decision.mesh = static_cast<std::uint32_t>(i);
     report.decisions.insert(report.decisions.end(), mesh.decisions.begin(), mesh.decisions.end());
     report.levels.insert(report.levels.end(), mesh.levels.begin(), mesh.levels.end());
     input.meshes.push_back(std::move(mesh.encoded));

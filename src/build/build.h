@@ -2,6 +2,7 @@
 // The whole build, scene in and file bytes out. src/build/build.cpp is the page to read first.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -18,24 +19,39 @@ namespace meshlode::build {
 
 class MeshStore;
 
-struct PipelineOptions {
-  Preset preset = Preset::kDefault;
+/// What may be set for each mesh by itself.
+struct MeshOptions {
   format::ErrorTier error_tier = format::ErrorTier::kMeasured;  ///< as asked for, or the preset's (build/preset.h)
   AttributeChoice attributes = AttributeChoice::kAuto;
   std::uint32_t keep = 0, drop = 0;  ///< attributes by name (plan/attributes.h); none is in both
   double grid_step = 0.0;            ///< 0: chosen from the budget; else this step in mesh units
+  double position_error = 0.0;       ///< mesh units, the largest distance a vertex moves; 0: chosen, invisible
+  double normal_error = 0.1;         ///< degrees, the largest angle between a stored normal and the source's
+  double uv_error = 0.125;           ///< the largest move of a texture coordinate, in the unit below
+  bool uv_error_is_texels = true;    ///< of the material's largest texture; else UV units
+  bool uv_error_is_default = true;   ///< no texture counts as smaller than 2,048 texels then
+
+  bool operator==(const MeshOptions&) const = default;
+};
+
+/// What is said once for all meshes.
+struct SceneOptions {
+  Preset preset = Preset::kDefault;
   format::Codec codec = format::Codec::kNone;
   std::uint32_t partition_seed = 1;  ///< of METIS; benchmarks vary it, to tell a change from luck
   bool repair = false;               ///< the scene was imported with repair: recorded, because it changes the bytes
   std::uint32_t max_cluster_triangles = 128;  ///< I2; at most format::kMaxClusterTriangles
   std::uint32_t max_cluster_vertices = 256;   ///< I2; at most format::kMaxClusterVertices
-  double position_error = 0.0;                ///< mesh units, the largest distance a vertex moves; 0: chosen, invisible
-  double normal_error = 0.1;                  ///< degrees, the largest angle between a stored normal and the source's
-  double uv_error = 0.125;                    ///< the largest move of a texture coordinate, in the unit below
-  bool uv_error_is_texels = true;             ///< of the material's largest texture; else UV units
-  bool uv_error_is_default = true;            ///< no texture counts as smaller than 2,048 texels then
-  std::uint64_t max_memory = 0;  ///< bytes that the process may take (build/needs.h); 0: what the machine has
+  std::uint64_t max_memory = 0;     ///< bytes that the process may take (build/needs.h); 0: what the machine has
   MeshStore* mesh_store = nullptr;  ///< meshes that were built before (build/store/mesh_store.h); the same bytes
+  /// One for each mesh of the scene, in the place of the whole's; empty: all as the whole.
+  std::vector<MeshOptions> mesh_options;
+};
+
+struct PipelineOptions : MeshOptions, SceneOptions {
+  [[nodiscard]] const MeshOptions& of_mesh(std::size_t mesh) const {
+    return mesh_options.empty() ? *this : mesh_options[mesh];
+  }
 };
 
 /// Called from one thread at a time, in no promised order between meshes. Return false to cancel.

@@ -39,7 +39,7 @@ std::uint64_t bytes_of(const scene::Primitive& primitive) {
 }
 
 /// Floats of a vertex beside its position, as many as may be kept.
-std::uint64_t attribute_floats(const scene::SourceMesh& mesh, const PipelineOptions& options) {
+std::uint64_t attribute_floats(const scene::SourceMesh& mesh, const MeshOptions& options) {
   if (options.attributes == AttributeChoice::kNone && options.keep == 0) return 0;
   std::uint64_t floats = 0;
   for (const scene::Primitive& primitive : mesh.primitives) {
@@ -83,17 +83,19 @@ std::uint64_t MemoryEstimate::bytes(std::size_t at_once) const {
 }
 
 MemoryEstimate estimate_memory(const scene::Scene& scene, const PipelineOptions& options, std::uint32_t threads) {
-  const bool is_measured = options.error_tier != format::ErrorTier::kQem;
   MemoryEstimate estimate;
   estimate.always = kProcess + kThread * std::max(threads, 1U) + kDocumentByte * scene.document.size();
   for (const scene::SceneBlob& blob : scene.blobs) estimate.always += 2 * bytes_of(blob.bytes);  // and the file's
-  for (const scene::SourceMesh& mesh : scene.meshes) {
+  for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
+    const scene::SourceMesh& mesh = scene.meshes[i];
+    const MeshOptions& own = options.of_mesh(i);
+    const bool is_measured = own.error_tier != format::ErrorTier::kQem;
     const MeshCounts counts = count_mesh(mesh);
     for (const scene::Primitive& primitive : mesh.primitives) estimate.always += bytes_of(primitive);
     estimate.always += kKeptTriangle * counts.triangles;
     estimate.working.push_back(kTriangle * counts.triangles +
                                (is_measured ? kPosition : kPositionOfQuadric) * count_wedges(mesh, {}) +
-                               kVertexFloat * attribute_floats(mesh, options) * counts.vertices);
+                               kVertexFloat * attribute_floats(mesh, own) * counts.vertices);
   }
   std::sort(estimate.working.begin(), estimate.working.end(), std::greater<>());
   return estimate;

@@ -32,7 +32,7 @@ ErrorSource error_source_of(format::ErrorTier tier) {
 }
 
 /// The budget of each stored UV set in UV units; 0 leaves it to encode, where no texture's size is known.
-std::array<double, scene::kMaxUvSets> uv_errors(const PipelineOptions& options, const scene::SourceMesh& source,
+std::array<double, scene::kMaxUvSets> uv_errors(const MeshOptions& options, const scene::SourceMesh& source,
                                                 const AttributeLayout& layout,
                                                 std::span<const std::array<double, scene::kMaxUvSets>> texels) {
   std::array<double, scene::kMaxUvSets> errors{};
@@ -55,43 +55,49 @@ std::array<double, scene::kMaxUvSets> uv_errors(const PipelineOptions& options, 
 
 }  // namespace
 
-Status check_options(const PipelineOptions& options) {
+Status check_options(const PipelineOptions& options, std::size_t mesh_count) {
   if (options.max_cluster_triangles == 0 || options.max_cluster_triangles > format::kMaxClusterTriangles ||
       options.max_cluster_vertices < 3 || options.max_cluster_vertices > format::kMaxClusterVertices) {
     return Error{ErrorCode::kUsage, "", "a cluster holds 1 to 256 triangles and 3 to 256 vertices"};
   }
-  if ((options.keep & options.drop) != 0) {
+  if (!options.mesh_options.empty() && options.mesh_options.size() != mesh_count) {
+    return Error{ErrorCode::kUsage, "", "options of meshes are as many as there are meshes"};
+  }
+  for (std::size_t i = 0; i < mesh_count; ++i) {
+    const MeshOptions& own = options.of_mesh(i);
+    if ((own.keep & own.drop) == 0) continue;
     return Error{ErrorCode::kUsage, "", "an attribute cannot be both kept and dropped"};
   }
   return Ok{};
 }
 
-AttributeRequest request_of(const PipelineOptions& options) {
+AttributeRequest request_of(const MeshOptions& options) {
   return {options.attributes, options.keep, options.drop};
 }
 
-PrepareOptions prepare_options(const PipelineOptions& options) {
+PrepareOptions prepare_options(const MeshOptions& options) {
   PrepareOptions prepare;
   prepare.grid_step = options.grid_step;
   prepare.position_error = options.position_error;
   return prepare;
 }
 
-EncodeOptions encode_options(const PipelineOptions& options, const scene::SourceMesh& source,
+EncodeOptions encode_options(Preset preset, const MeshOptions& options, const scene::SourceMesh& source,
                              const AttributeLayout& layout,
                              std::span<const std::array<double, scene::kMaxUvSets>> texels) {
   EncodeOptions encode;
   encode.normal_error = options.normal_error;
   encode.uv_error = uv_errors(options, source, layout, texels);
   encode.uv_error_may_fall_short = options.uv_error_is_default;
-  encode.strip_trials = settings_of(options.preset).strip_trials;
-  encode.mixed_strip_trials = settings_of(options.preset).mixed_strip_trials;
+  encode.strip_trials = settings_of(preset).strip_trials;
+  encode.mixed_strip_trials = settings_of(preset).mixed_strip_trials;
   return encode;
 }
 
-DagOptions dag_options(const PipelineOptions& options, const PreparedMesh& mesh, const EncodeOptions& encode) {
+DagOptions dag_options(const PipelineOptions& options, const MeshOptions& own, const PreparedMesh& mesh,
+                       const EncodeOptions& encode) {
   DagOptions dag;
-  dag.error = error_source_of(options.error_tier);
+  dag.error = error_source_of(own.error_tier);
   dag.caps.max_triangles = options.max_cluster_triangles;
   dag.caps.max_vertices = options.max_cluster_vertices;
   dag.caps.target_triangles = options.max_cluster_triangles - std::min(2U, options.max_cluster_triangles / 16);

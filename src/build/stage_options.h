@@ -17,20 +17,21 @@
 
 namespace meshlode::build {
 
-/// Errors: kUsage for a cluster size that the format has not.
-[[nodiscard]] Status check_options(const PipelineOptions& options);
+/// Errors: kUsage for a cluster size that the format has not, an attribute that is both kept and dropped, and for mesh
+/// options of another number of meshes.
+[[nodiscard]] Status check_options(const PipelineOptions& options, std::size_t mesh_count);
 
-[[nodiscard]] AttributeRequest request_of(const PipelineOptions& options);
+[[nodiscard]] AttributeRequest request_of(const MeshOptions& options);
 
-[[nodiscard]] PrepareOptions prepare_options(const PipelineOptions& options);
+[[nodiscard]] PrepareOptions prepare_options(const MeshOptions& options);
 
 /// `texels`: texels_of_materials() of the scene, for a budget that is given in texels.
-[[nodiscard]] EncodeOptions encode_options(const PipelineOptions& options, const scene::SourceMesh& source,
+[[nodiscard]] EncodeOptions encode_options(Preset preset, const MeshOptions& options, const scene::SourceMesh& source,
                                            const AttributeLayout& layout,
                                            std::span<const std::array<double, scene::kMaxUvSets>> texels);
 
-/// `encode` says what a cluster will take in a page. \pre the mesh outlives what is returned
-[[nodiscard]] DagOptions dag_options(const PipelineOptions& options, const PreparedMesh& mesh,
+/// `own` are the mesh's; `encode` says what a cluster will take in a page. \pre the mesh outlives what is returned
+[[nodiscard]] DagOptions dag_options(const PipelineOptions& options, const MeshOptions& own, const PreparedMesh& mesh,
                                      const EncodeOptions& encode);
 
 /// What was decided after the plan: that pieces which stay grow, and where texture coordinates are too large for their

@@ -170,8 +170,10 @@ TEST(Mutation, ADependencyLeftOutIsFoundByItsRule) {
 /// Small clusters, so that few triangles make a DAG of many groups. The sample's scene has what one mesh has not:
 /// several materials, two UV sets, colours, mirrored and singular instances, an empty mesh, blobs.
 TEST(Mutation, ThousandsOfMutantsOfTheMeasuredTierAreFound) {
-  const build::PipelineOptions options{.max_cluster_triangles = 48};
-  run_mutants({make_built("the sample's scene", test::sample_scene(), {.max_cluster_triangles = 16}),
+  build::PipelineOptions options, smallest;
+  options.max_cluster_triangles = 48;
+  smallest.max_cluster_triangles = 16;
+  run_mutants({make_built("the sample's scene", test::sample_scene(), smallest),
                make_built("a rock", alone(scene::make_rock(16)), options),
                make_built("a terrain", alone(scene::make_terrain(48, 48)), options)},
               MESHLODE_MUTANTS_PER_KIND);

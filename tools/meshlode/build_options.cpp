@@ -2,6 +2,10 @@
 #include "build_options.h"
 
 #include <string>
+#include <utility>
+
+#include "build/settings/settings_file.h"
+#include "outputs.h"
 
 namespace meshlode::cli {
 
@@ -16,12 +20,36 @@ void add_build_options(OptionParser& parser, BuildWords& words) {
   }
   parser.add_value("--scene", words.scene,
                    "which scene of a glTF is instanced: a name, an index or all; the file's default where not given");
+  parser.add_value("--settings-root", words.root,
+                   "folder above the scene: every meshlode.json from there down counts, not only the one beside it");
+  parser.add_flag("--no-settings-file", words.no_file, "pass over meshlode.json beside the scene and in folders above");
 }
 
 build::SettingLayer given_settings(const BuildWords& words) {
   build::SettingLayer layer = words.layer;
   if (words.repair) layer[build::Setting::kRepair] = "true";
   return layer;
+}
+
+Result<std::vector<build::SettingLayer>> settings_for(const BuildWords& words, const std::filesystem::path& scene,
+                                                      const std::filesystem::path& root) {
+  std::vector<build::SettingLayer> layers;
+  if (!words.no_file) {
+    std::vector<FileId> files_read;
+    auto files =
+        build::read_settings_files(scene, words.root.empty() ? root : std::filesystem::path(words.root), files_read);
+    output_files().keep(files_read);
+    if (!files) return files.error();
+    layers = std::move(*files);
+  }
+  layers.push_back(given_settings(words));
+  return layers;
+}
+
+std::vector<std::string> names_of_meshes(const scene::Scene& scene) {
+  std::vector<std::string> names;
+  for (const scene::SourceMesh& mesh : scene.meshes) names.push_back(mesh.name);
+  return names;
 }
 
 }  // namespace meshlode::cli

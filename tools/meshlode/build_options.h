@@ -2,23 +2,36 @@
 // The options of every verb that builds or plans a build: a table of settings (build/settings/), read as one layer.
 #pragma once
 
+#include <filesystem>
 #include <string>
+#include <vector>
 
 #include "build/settings/settings.h"
 #include "options.h"
+#include "scene/scene.h"
 
 namespace meshlode::cli {
 
 struct BuildWords {
-  build::SettingLayer layer{"the command line", ErrorCode::kUsage, {}};
+  build::SettingLayer layer{"the command line", ErrorCode::kUsage, {}, {}};
   bool repair = false;
   std::string scene;  ///< of the file: a name, an index or `all`; empty: its default
+  bool no_file = false;
+  std::string root;  ///< the outermost folder whose file counts; empty: the caller's
 };
 
-/// `--error-tier`, `--preset` and so on.
+/// `--error-tier`, `--preset` and so on, and `--no-settings-file`.
 void add_build_options(OptionParser& parser, BuildWords& words);
 
 /// What was given, after the parse.
 [[nodiscard]] build::SettingLayer given_settings(const BuildWords& words);
+
+/// The files' layers from `root` down to the scene's folder, then what was given: build/settings/settings_file.h. Files
+/// that were read are no outputs from here on.
+[[nodiscard]] Result<std::vector<build::SettingLayer>> settings_for(const BuildWords& words,
+                                                                    const std::filesystem::path& scene,
+                                                                    const std::filesystem::path& root);
+
+[[nodiscard]] std::vector<std::string> names_of_meshes(const scene::Scene& scene);
 
 }  // namespace meshlode::cli

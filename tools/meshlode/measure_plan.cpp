@@ -177,9 +177,13 @@ Result<PlanMeasurement> measure_plan(const scene::Scene& scene, const build::Pip
   out.assets[0].name = "plan";
   out.assets[1].name = "keep_all";
   build::PipelineOptions all = options;
-  all.attributes = AttributeChoice::kAll;
-  all.keep = kAllAttributes;
-  all.drop = 0;
+  const auto keep_all = [](build::MeshOptions& own) {
+    own.attributes = AttributeChoice::kAll;
+    own.keep = kAllAttributes;
+    own.drop = 0;
+  };
+  keep_all(all);
+  for (build::MeshOptions& own : all.mesh_options) keep_all(own);
   auto loaded = build_rounds(scene, {options, all}, measure, out);
   if (!loaded) return loaded.error();
   for (std::size_t side = 0; side < 2; ++side) {

@@ -163,6 +163,7 @@ Status set_options(const BuildWords& words, const LimitWords& limits, batch::Bat
   const Result<build::Settled> settled = build::settle({&given, 1});
   if (!settled) return settled.error();
   options.pipeline = settled->options;
+  options.settings_of = [words](const Job& job) { return settings_for(words, job.input, job.root); };
   options.import.repair = options.pipeline.repair;
   options.import.scene = words.scene;
   if (limits.max_memory != "auto") {

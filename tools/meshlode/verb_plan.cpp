@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/json_writer.h"
+#include "base/printable.h"
 #include "build/plan/plan_report.h"
 #include "build/plan/scene_plan.h"
 #include "build/settings/settings.h"
@@ -22,10 +23,56 @@ namespace {
 
 /// All that is printed.
 struct Planned {
+  build::Settled settings;
+  std::vector<build::SettledMesh> meshes;  ///< empty: none has settings of its own
   build::ScenePlan scene;
   draw::PassPlan passes;
   std::optional<PlanMeasurement> measured;
 };
+
+std::string settings_text(const Planned& planned) {
+  std::string text = "settings\n";
+  const auto line = [&](const std::string& of, build::Setting setting, const build::SettledWord& word) {
+    text += "  " + of + build::info_of(setting).name + " " +
+            (word.word.empty() ? "(none)" : printable(word.word, 100)) + ": " + printable(word.from, 200) + "\n";
+  };
+  for (const build::SettingInfo& info : build::all_settings()) line("", info.setting, planned.settings[info.setting]);
+  constexpr std::size_t kMaxRows = 40;
+  std::size_t rows = 0;
+  for (std::size_t i = 0; i < planned.meshes.size(); ++i) {
+    for (const auto& [setting, word] : planned.meshes[i].own) {
+      if (rows++ < kMaxRows) line(printable(planned.scene.meshes[i].label, 120) + ": ", setting, word);
+    }
+  }
+  if (rows > kMaxRows) text += "  … and " + std::to_string(rows - kMaxRows) + " more (plan --format json lists all)\n";
+  return text;
+}
+
+void write_settings(JsonWriter& json, const Planned& planned) {
+  const auto write = [&](build::Setting setting, const build::SettledWord& word) {
+    json.field("name", build::info_of(setting).name);
+    json.field("word", word.word);
+    json.field("from", word.from);
+    json.end_object();
+  };
+  json.key("settings");
+  json.begin_array();
+  for (const build::SettingInfo& info : build::all_settings()) {
+    json.begin_object();
+    write(info.setting, planned.settings[info.setting]);
+  }
+  json.end_array();
+  json.key("mesh_settings");
+  json.begin_array();
+  for (std::size_t i = 0; i < planned.meshes.size(); ++i) {
+    for (const auto& [setting, word] : planned.meshes[i].own) {
+      json.begin_object();
+      json.field("mesh", i);
+      write(setting, word);
+    }
+  }
+  json.end_array();
+}
 
 std::string plan_text(const scene::Scene& scene, const Planned& planned) {
   const build::ScenePlan& plan = planned.scene;
@@ -34,7 +81,7 @@ std::string plan_text(const scene::Scene& scene, const Planned& planned) {
   std::string text = "scene: " + std::to_string(triangles) + " triangles in " + std::to_string(plan.meshes.size()) +
                      " mesh(es), " + std::to_string(scene.instances.size()) + " instance(s), " +
                      std::to_string(scene.materials.size()) + " material(s)\n";
-  text += build::describe_plan(plan);
+  text += settings_text(planned) + build::describe_plan(plan);
   text += "passes of render --gpu and verify --gpu\n" + draw::describe_plan(planned.passes, "  ");
   return planned.measured ? text + describe_measurement(*planned.measured) : text;
 }
@@ -45,6 +92,7 @@ std::string plan_json(const scene::Scene& scene, const Planned& planned) {
   json.field("source", scene.source_name);
   json.field("instances", scene.instances.size());
   json.field("materials", scene.materials.size());
+  write_settings(json, planned);
   build::write_plan(json, planned.scene);
   json.key("passes");
   json.begin_array();
@@ -85,10 +133,11 @@ int run_plan(const Verb& verb, std::span<char* const> args) {
   if (const auto exit_code = parser.parse(args)) return *exit_code;
   const Result<std::uint64_t> decoded = parse_max_decoded(max_decoded);
   if (!decoded) return print_error(decoded.error());
-  const build::SettingLayer given = given_settings(words);
-  const Result<build::Settled> settled = build::settle({&given, 1});
+  const auto layers = settings_for(words, path, {});
+  if (!layers) return print_error(layers.error());
+  Result<build::Settled> settled = build::settle(*layers);
   if (!settled) return print_error(settled.error());
-  const build::PipelineOptions& options = settled->options;
+  build::PipelineOptions options = settled->options;
 
   JobLimit limit(jobs);
   const Result<scene::Scene> scene =
@@ -98,9 +147,12 @@ int run_plan(const Verb& verb, std::span<char* const> args) {
     error.where = path + (error.where.empty() ? "" : ": ") + error.where;
     return print_error(error);
   };
+  auto meshes = build::settle_meshes(*layers, names_of_meshes(*scene));
+  if (!meshes) return print_error(meshes.error());
+  for (const build::SettledMesh& mesh : *meshes) options.mesh_options.push_back(mesh.options);
   Result<build::ScenePlan> plan = build::plan_scene(*scene, options);
   if (!plan) return fail(plan.error());
-  Planned planned{std::move(*plan), {}, {}};
+  Planned planned{std::move(*settled), std::move(*meshes), std::move(*plan), {}, {}};
   planned.passes = plan_scene_passes(*scene, planned.scene, options.max_cluster_triangles);
   if (is_measured) {
     measure.max_decoded = *decoded;

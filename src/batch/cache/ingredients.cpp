@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "batch/cache/ingredients.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <map>
@@ -79,10 +80,12 @@ std::string describe(const std::string& key, const std::string* before, const st
 
 std::string settings_text(const build::PipelineOptions& options, const scene::ImportOptions& import) {
   // Every member has a name here, so that one more does not compile before it is written down or left out on purpose.
-  const auto& [preset, error_tier, attributes, keep, drop, grid_step, codec, partition_seed, repair,
-               max_cluster_triangles, max_cluster_vertices, position_error, normal_error, uv_error, uv_error_is_texels,
-               uv_error_is_default, max_memory, mesh_store] = options;
+  const auto& [error_tier, attributes, keep, drop, grid_step, position_error, normal_error, uv_error,
+               uv_error_is_texels, uv_error_is_default] = static_cast<const build::MeshOptions&>(options);
+  const auto& [preset, codec, partition_seed, repair, max_cluster_triangles, max_cluster_vertices, max_memory,
+               mesh_store, mesh_options] = static_cast<const build::SceneOptions&>(options);
   const auto& [import_repair, scene, files_read, max_decoded, may_lack_images] = import;
+  static_cast<void>(mesh_options);     // not known before the import: mesh_rules_text()
   static_cast<void>(max_memory);       // whether, not what
   static_cast<void>(mesh_store);       // how soon
   static_cast<void>(max_decoded);      // the same
@@ -110,6 +113,24 @@ std::string settings_text(const build::PipelineOptions& options, const scene::Im
   };
   std::string text;
   for (const auto& [name, value] : lines) text += std::string(name) + " " + value + "\n";
+  return text;
+}
+
+std::string mesh_rules_text(std::span<const build::SettingLayer> layers) {
+  if (std::all_of(layers.begin(), layers.end(), [](const auto& layer) { return layer.mesh_rules.empty(); })) return {};
+  std::string text;
+  const auto add = [&](const std::string& place, const build::SettingWords& words) {
+    for (const build::SettingInfo& info : build::all_settings()) {
+      const auto& word = words[static_cast<std::size_t>(info.setting)];
+      if (word) text += place + ":" + info.name + " " + word_of(*word) + "\n";
+    }
+  };
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    const std::string layer = "layer-" + std::to_string(i);
+    add(layer, layers[i].words);
+    for (const build::SettingLayer::MeshRule& rule : layers[i].mesh_rules)
+      add(layer + ":" + word_of(rule.glob), rule.words);
+  }
   return text;
 }
 

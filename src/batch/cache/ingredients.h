@@ -9,12 +9,17 @@
 #include "base/hash.h"
 #include "batch/depend/dependencies.h"
 #include "build/build.h"
+#include "build/settings/settings.h"
 #include "scene/import/import.h"
 
 namespace meshlode::batch {
 
 /// The settings that change bytes, a line each. One that only refuses (memory, decoded bytes) is not among them.
 [[nodiscard]] std::string settings_text(const build::PipelineOptions& options, const scene::ImportOptions& import);
+
+/// What the layers say of meshes by name, and, since a later layer wins, what they say of all; empty where no layer has
+/// such a rule.
+[[nodiscard]] std::string mesh_rules_text(std::span<const build::SettingLayer> layers);
 
 /// `program`: find_program_id(). No path but the names that the scene itself has: a scene that moved, or lies on
 /// another machine, has the same ingredients. \pre `files` are find_dependencies() of the scene

@@ -47,15 +47,23 @@ const char* name_of(FileKind kind) {
     case FileKind::kScene: return "scene";
     case FileKind::kBuffer: return "buffer";
     case FileKind::kImage: return "image";
-    case FileKind::kMaterials: break;
+    case FileKind::kMaterials: return "materials";
+    case FileKind::kSettings: break;
   }
-  return "materials";
+  return "settings";
+}
+
+Result<Dependency> find_file(FileKind kind, const std::filesystem::path& path) {
+  Dependency file{kind, path.filename().string(), path, std::nullopt, {}};
+  if (const Status seen = look_at(file); !seen) return seen.error();
+  return file;
 }
 
 Result<std::vector<Dependency>> find_dependencies(const std::filesystem::path& scene) {
   std::vector<Dependency> files;
-  files.push_back({FileKind::kScene, scene.filename().string(), scene, std::nullopt, {}});
-  if (const Status seen = look_at(files.front()); !seen) return seen.error();
+  auto own = find_file(FileKind::kScene, scene);
+  if (!own) return own.error();
+  files.push_back(std::move(*own));
   const auto references = scene::list_references(scene);
   if (!references) return references.error();
   for (const scene::FileReference& reference : *references) {

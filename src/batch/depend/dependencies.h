@@ -16,7 +16,7 @@
 
 namespace meshlode::batch {
 
-enum class FileKind : std::uint8_t { kScene, kBuffer, kImage, kMaterials };
+enum class FileKind : std::uint8_t { kScene, kBuffer, kImage, kMaterials, kSettings };
 [[nodiscard]] const char* name_of(FileKind kind);
 
 /// Tells whether a file was written since: of this machine alone.
@@ -38,6 +38,9 @@ struct Dependency {
 /// The scene first, then in the order of import, each file once. Errors: as scene::list_references; kIo the scene
 /// itself cannot be opened.
 [[nodiscard]] Result<std::vector<Dependency>> find_dependencies(const std::filesystem::path& scene);
+
+/// One file beside these. Errors: kIo it cannot be opened.
+[[nodiscard]] Result<Dependency> find_file(FileKind kind, const std::filesystem::path& path);
 
 /// Whether every file is still as it was when it was hashed, those included that were missing.
 [[nodiscard]] bool are_unchanged(std::span<const Dependency> dependencies);

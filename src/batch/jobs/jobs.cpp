@@ -104,9 +104,11 @@ Result<std::vector<Job>> plan_jobs(const std::vector<std::string>& inputs, const
     if (!found) return found.error();
     for (const fs::path& path : found->files) {
       const fs::path inner = found->base.empty() ? path : path.lexically_relative(found->base);
-      jobs.push_back({path, !output.empty()         ? fs::path(output)
-                            : output_folder.empty() ? with_lode_extension(path)
-                                                    : output_folder / with_lode_extension(inner)});
+      jobs.push_back({path,
+                      !output.empty()         ? fs::path(output)
+                      : output_folder.empty() ? with_lode_extension(path)
+                                              : output_folder / with_lode_extension(inner),
+                      found->base});
     }
   }
   if (!output.empty() && (jobs.size() != 1 || inputs.size() != 1)) {

@@ -14,6 +14,7 @@ namespace meshlode::batch {
 struct Job {
   std::filesystem::path input;
   std::filesystem::path output;
+  std::filesystem::path root = {};  ///< the folder that was given, where the input was found below one
 };
 
 /// Which file becomes which, inputs in the order given, what lies below a folder or matches a pattern in byte order.

@@ -50,6 +50,12 @@ void count_scene(const scene::Scene& scene, JobFacts& facts) {
   facts.left_out = scene.left_out;
 }
 
+std::vector<std::string> names_of_meshes(const scene::Scene& scene) {
+  std::vector<std::string> names;
+  for (const scene::SourceMesh& mesh : scene.meshes) names.push_back(mesh.name);
+  return names;
+}
+
 /// Whether the file at `path` holds an asset already.
 bool holds(const fs::path& path, const AssetRecord& record) {
   const auto file = MappedFile::open(path);
@@ -58,24 +64,26 @@ bool holds(const fs::path& path, const AssetRecord& record) {
 
 class Run {
  public:
-  Run(const Job& job, const BatchOptions& options, OutputFiles& files, const build::ProgressCallback& progress)
-      : options_(options), files_(files), progress_(progress) {
+  Run(const Job& job, const BatchOptions& options, OutputFiles& files, const BatchWatcher& watcher)
+      : options_(options), pipeline_(options.pipeline), import_(options.import), files_(files), watcher_(watcher) {
     result_.job = job;
   }
 
   JobResult take() { return std::move(result_); }
 
   Status go() {
+    if (Status settled = settle(); !settled) return settled;
     const bool wants_files = options_.cache != nullptr || options_.lists_files || options_.is_dry_run;
     std::optional<Error> unreadable;
     if (wants_files) {
       auto found = find_dependencies(result_.job.input);
       if (found) {
         result_.files = std::move(*found);
-        const std::string settings = settings_text(options_.pipeline, options_.import);
+        const std::string settings = settings_text(pipeline_, import_) + mesh_rules_text(layers_);
         if (options_.cache != nullptr) {
           ingredients_ = ingredients_text(options_.cache->program(), settings, result_.files);
         }
+        add_settings_files();
       } else {
         unreadable = found.error();  // the import will say the same, and more
       }
@@ -92,9 +100,32 @@ class Run {
   }
 
  private:
+  /// What files say of this job, and what was given.
+  Status settle() {
+    if (!options_.settings_of) return Ok{};
+    auto layers = options_.settings_of(result_.job);
+    if (!layers) return layers.error();
+    layers_ = std::move(*layers);
+    auto settled = build::settle(layers_);
+    if (!settled) return settled.error();
+    settled->options.max_memory = pipeline_.max_memory;
+    pipeline_ = std::move(settled->options);
+    import_.repair = pipeline_.repair;
+    return Ok{};
+  }
+
+  /// For who lists the files. What they say is in the settings, where they lie is nobody's business: not in the key.
+  void add_settings_files() {
+    for (const build::SettingLayer& layer : layers_) {
+      if (layer.code == ErrorCode::kUsage) continue;  // the command line
+      auto file = find_file(FileKind::kSettings, layer.from);
+      if (file) result_.files.push_back(std::move(*file));
+    }
+  }
+
   /// What the import refuses is not taken from a run that was allowed more.
   [[nodiscard]] bool lacks_files() const {
-    return !options_.import.may_lack_images &&
+    return !import_.may_lack_images &&
            std::any_of(result_.files.begin(), result_.files.end(), [](const Dependency& f) { return !f.stamp; });
   }
 
@@ -102,7 +133,7 @@ class Run {
   Status plan() {
     for (const Dependency& file : result_.files) {
       const bool is_needed =
-          file.kind == FileKind::kBuffer || (file.kind == FileKind::kImage && !options_.import.may_lack_images);
+          file.kind == FileKind::kBuffer || (file.kind == FileKind::kImage && !import_.may_lack_images);
       if (!file.stamp && is_needed) return Error{ErrorCode::kIo, file.path.string(), "cannot be opened"};
     }
     result_.status = JobStatus::kWouldBuild;
@@ -169,18 +200,20 @@ class Run {
   Status build_and_write() {
     const Timer import_timer;
     std::vector<FileId> read;
-    scene::ImportOptions import = options_.import;
-    import.files_read = &read;
-    Result<scene::Scene> scene = scene::import_scene(result_.job.input, import);
+    import_.files_read = &read;
+    Result<scene::Scene> scene = scene::import_scene(result_.job.input, import_);
+    import_.files_read = nullptr;
     if (Status free = check_outputs(read); !free) return free;
     if (!scene) return scene.error();
     result_.stages.push_back({"import", import_timer.seconds()});
     count_scene(*scene, result_.facts);
+    if (Status set = build::set_mesh_options(layers_, names_of_meshes(*scene), pipeline_); !set) return set;
+    if (watcher_.on_scene) watcher_.on_scene(*scene, layers_, pipeline_);
     build::PipelineReport report;
-    build::PipelineOptions pipeline = options_.pipeline;
     std::optional<MeshEntries> meshes;
-    if (options_.cache != nullptr) pipeline.mesh_store = &meshes.emplace(*options_.cache);
-    const auto bytes = build::build_lode(std::move(*scene), pipeline, progress_, report);
+    if (options_.cache != nullptr) pipeline_.mesh_store = &meshes.emplace(*options_.cache);
+    const auto bytes = build::build_lode(std::move(*scene), pipeline_, watcher_.on_progress, report);
+    pipeline_.mesh_store = nullptr;
     take_report(report);
     if (!bytes) return bytes.error();
     const Timer write_timer;
@@ -210,18 +243,21 @@ class Run {
   }
 
   const BatchOptions& options_;
+  build::PipelineOptions pipeline_;  ///< this job's
+  scene::ImportOptions import_;
+  std::vector<build::SettingLayer> layers_;  ///< empty where nobody asked for files
   OutputFiles& files_;
-  const build::ProgressCallback& progress_;
+  const BatchWatcher& watcher_;
   std::string ingredients_;  ///< empty: not known, so neither looked up nor kept
   JobResult result_;
 };
 
 }  // namespace
 
-JobResult run_job(const Job& job, const BatchOptions& options, OutputFiles& files,
-                  const build::ProgressCallback& progress, Error& error) {
+JobResult run_job(const Job& job, const BatchOptions& options, OutputFiles& files, const BatchWatcher& watcher,
+                  Error& error) {
   const Timer timer;
-  Run run(job, options, files, progress);
+  Run run(job, options, files, watcher);
   const Status done = run.go();
   JobResult result = run.take();
   result.seconds = timer.seconds();

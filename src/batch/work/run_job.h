@@ -8,6 +8,6 @@ namespace meshlode::batch {
 
 /// `error`: why the job failed, where its result says that it did.
 [[nodiscard]] JobResult run_job(const Job& job, const BatchOptions& options, OutputFiles& files,
-                                const build::ProgressCallback& progress, Error& error);
+                                const BatchWatcher& watcher, Error& error);
 
 }  // namespace meshlode::batch

@@ -166,7 +166,7 @@ MeshPlan plan_mesh(const scene::SourceMesh& mesh, const std::vector<scene::Scene
   return planner.take();
 }
 
-std::uint32_t forced_attributes(const std::vector<PlanDecision>& decisions, bool kept) {
+std::uint32_t forced_attributes(std::span<const PlanDecision> decisions, bool kept) {
   std::uint32_t bits = 0;
   for (const PlanDecision& decision : decisions) {
     if (!decision.is_forced || decision.kept != kept) continue;

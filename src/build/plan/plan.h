@@ -3,6 +3,8 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -27,6 +29,7 @@ struct PlanDecision {
   bool is_loss = false;     ///< left out although the scene's materials can show it
   std::string attribute{};  ///< "TEXCOORD_0"; empty where the decision is about something else
   bool is_forced = false;   ///< by a name in AttributeRequest::keep or drop, against what would have been decided
+  std::uint32_t mesh = 0;   ///< which mesh of the scene; set where decisions of several are in one list
 };
 
 /// What the caller asks for: by rule, then by name.
@@ -47,7 +50,7 @@ struct MeshPlan {
 [[nodiscard]] MeshPlan plan_mesh(const scene::SourceMesh& mesh, const std::vector<scene::SceneMaterial>& materials,
                                  const AttributeRequest& request, const std::string& mesh_label);
 
-/// Names that made a difference in some mesh: bits of what was kept, or dropped, by name alone.
-[[nodiscard]] std::uint32_t forced_attributes(const std::vector<PlanDecision>& decisions, bool kept);
+/// Names that made a difference: bits of what was kept, or dropped, by name alone.
+[[nodiscard]] std::uint32_t forced_attributes(std::span<const PlanDecision> decisions, bool kept);
 
 }  // namespace meshlode::build

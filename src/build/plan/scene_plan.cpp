@@ -35,7 +35,8 @@ class MeshPlanner {
   MeshPlanner(const scene::Scene& scene, std::size_t index, const PipelineOptions& options, Texels texels)
       : mesh_(scene.meshes[index]),
         options_(options),
-        plan_(plan_mesh(mesh_, scene.materials, request_of(options), mesh_label(mesh_, index))) {
+        own_(options.of_mesh(index)),
+        plan_(plan_mesh(mesh_, scene.materials, request_of(options.of_mesh(index)), mesh_label(mesh_, index))) {
     out_.label = mesh_label(mesh_, index);
     choose_uv_steps(texels);
   }
@@ -47,7 +48,7 @@ class MeshPlanner {
     out_.is_whole = counts.triangles > 0 && counts.triangles <= options_.max_cluster_triangles &&
                     counts.vertices <= options_.max_cluster_vertices;
     out_.layout = plan_.layout;
-    const auto grid = plan_grid(mesh_, prepare_options(options_));
+    const auto grid = plan_grid(mesh_, prepare_options(own_));
     if (!grid) return grid.error();
     out_.grid = grid->grid;
     facts_ = size_facts(mesh_, *grid);
@@ -69,7 +70,7 @@ class MeshPlanner {
     for (std::uint32_t set = 0; set < scene::kMaxUvSets; ++set) {
       all.uv_set_source[all.uv_set_count++] = static_cast<std::uint8_t>(set);
     }
-    encode_ = encode_options(options_, mesh_, all, texels);
+    encode_ = encode_options(options_.preset, own_, mesh_, all, texels);
     for (std::size_t set = 0; set < scene::kMaxUvSets; ++set) {
       UvRange range;
       for (const scene::Primitive& primitive : mesh_.primitives) {
@@ -89,8 +90,8 @@ class MeshPlanner {
     std::snprintf(text, sizeof text, "step %u * 2^%d, %d bits a coordinate at most", grid.grid.mantissa, grid.grid.log2,
                   bits_for(grid.largest_side / grid.grid.step()));
     PlanDecision decision{out_.label + ": POSITION", true, "always stored", false, "POSITION"};
-    if (options_.grid_step > 0.0) decision.reason = "the grid that was given";
-    if (options_.position_error > 0.0) decision.reason = "the budget that was given";
+    if (own_.grid_step > 0.0) decision.reason = "the grid that was given";
+    if (own_.position_error > 0.0) decision.reason = "the budget that was given";
     out_.attributes.push_back({std::move(decision), text, bytes});
   }
 
@@ -122,7 +123,7 @@ class MeshPlanner {
 
   [[nodiscard]] std::string normal_precision() const {
     char text[96];
-    std::snprintf(text, sizeof text, "within %g degrees, %d bits a coordinate at most", options_.normal_error,
+    std::snprintf(text, sizeof text, "within %g degrees, %d bits a coordinate at most", own_.normal_error,
                   bits_for(2.0 * normal_scale_of(encode_)));
     return text;
   }
@@ -136,6 +137,7 @@ class MeshPlanner {
 
   const scene::SourceMesh& mesh_;
   const PipelineOptions& options_;
+  const MeshOptions& own_;
   MeshPlan plan_;
   EncodeOptions encode_;
   std::array<std::int32_t, scene::kMaxUvSets> uv_log2_{};

@@ -17,20 +17,22 @@ namespace {
 
 constexpr std::array<SettingInfo, kSettingCount> kSettings{{
     {Setting::kErrorTier, "error-tier",
-     "what the errors are worth: qem estimates, measured measures, certified proves; auto: the preset's", "auto"},
+     "what the errors are worth: qem estimates, measured measures, certified proves; auto: the preset's", "auto", true},
     {Setting::kPreset, "preset", "fast builds fastest and estimates errors, best spends time on clusters and bytes",
-     "default"},
-    {Setting::kAttributes, "attributes", "auto keeps what the materials call for, none positions only", "auto"},
+     "default", false},
+    {Setting::kAttributes, "attributes", "auto keeps what the materials call for, none positions only", "auto", true},
     {Setting::kKeep, "keep",
-     "attributes to store all the same: NORMAL, TEXCOORD_0 to 3, COLOR_0, comma by comma, or all", ""},
-    {Setting::kDrop, "drop", "attributes to leave out all the same", ""},
-    {Setting::kGrid, "grid", "auto, or a step in mesh units for meshes that must abut", "auto"},
-    {Setting::kPositionError, "position-error", "auto, or the largest distance a vertex may move, mesh units", "auto"},
-    {Setting::kNormalError, "normal-error", "the largest angle a stored normal may be off, degrees", "0.1"},
-    {Setting::kUvError, "uv-error", "auto, or the largest move of a UV: UV units, or 0.25px for texels", "auto"},
-    {Setting::kCodec, "codec", "disk codec of the pages", "none"},
+     "attributes to store all the same: NORMAL, TEXCOORD_0 to 3, COLOR_0, comma by comma, or all", "", true},
+    {Setting::kDrop, "drop", "attributes to leave out all the same", "", true},
+    {Setting::kGrid, "grid", "auto, or a step in mesh units for meshes that must abut", "auto", true},
+    {Setting::kPositionError, "position-error", "auto, or the largest distance a vertex may move, mesh units", "auto",
+     true},
+    {Setting::kNormalError, "normal-error", "the largest angle a stored normal may be off, degrees", "0.1", true},
+    {Setting::kUvError, "uv-error", "auto, or the largest move of a UV: UV units, or 0.25px for texels", "auto", true},
+    {Setting::kCodec, "codec", "disk codec of the pages", "none", false},
     {Setting::kRepair, "repair",
-     "remove unusable, degenerate and duplicate triangles, orient the rest, split where it is no surface", "false"},
+     "remove unusable, degenerate and duplicate triangles, orient the rest, split where it is no surface", "false",
+     false},
 }};
 
 /// A finite number above 0, all of the text.
@@ -52,9 +54,23 @@ std::size_t index_of(Setting setting) {
   return static_cast<std::size_t>(setting);
 }
 
-/// How a place calls one of its settings.
-std::string place_of(const SettingLayer& layer, Setting setting) {
-  return (layer.code == ErrorCode::kUsage ? "--" : layer.from + ": /") + std::string(info_of(setting).name);
+/// Words of one place that are looked at together.
+struct Saying {
+  const SettingWords& words;
+  std::string from;         ///< for those who ask where a word came from
+  std::string prefix = {};  ///< of its settings in error messages: "--", or a file and the path to them
+  ErrorCode code = ErrorCode::kUsage;
+
+  [[nodiscard]] const std::optional<std::string>& word(Setting setting) const { return words[index_of(setting)]; }
+  [[nodiscard]] std::string place(Setting setting) const { return prefix + info_of(setting).name; }
+};
+
+Saying saying_of(const SettingLayer& layer) {
+  return {layer.words, layer.from, layer.code == ErrorCode::kUsage ? "--" : layer.from + ": /", layer.code};
+}
+
+Saying saying_of(const SettingLayer& layer, const SettingLayer::MeshRule& rule) {
+  return {rule.words, layer.from + ": meshes/" + rule.glob, layer.from + ": /meshes/" + rule.glob + "/", layer.code};
 }
 
 /// \pre find_fault() finds none
@@ -76,17 +92,17 @@ class Settling {
     for (const SettingInfo& info : kSettings) words_[index_of(info.setting)] = {info.usual, "default"};
   }
 
-  Status add(const SettingLayer& layer) {
+  Status add(const Saying& saying) {
     for (const SettingInfo& info : kSettings) {
-      const auto& word = layer.words[index_of(info.setting)];
+      const auto& word = saying.word(info.setting);
       if (!word) continue;
       const std::string fault = find_fault(info.setting, *word);
-      if (!fault.empty()) return Error{layer.code, place_of(layer, info.setting), fault};
+      if (!fault.empty()) return Error{saying.code, saying.place(info.setting), fault};
     }
-    if (Status grids = choose_grid_word(layer); !grids) return grids;
-    if (Status names = choose_names(layer); !names) return names;
+    if (Status grids = choose_grid_word(saying); !grids) return grids;
+    if (Status names = choose_names(saying); !names) return names;
     for (std::size_t i = 0; i < kSettingCount; ++i) {
-      if (layer.words[i]) words_[i] = {*layer.words[i], layer.from};
+      if (saying.words[i]) words_[i] = {*saying.words[i], saying.from};
     }
     return Ok{};
   }
@@ -94,34 +110,31 @@ class Settling {
   [[nodiscard]] const std::array<SettledWord, kSettingCount>& words() const { return words_; }
 
  private:
-  /// A grid and a position error exclude each other: the later layer's stays.
-  Status choose_grid_word(const SettingLayer& layer) {
-    const auto says = [&](Setting setting) {
-      const auto& word = layer.words[index_of(setting)];
-      return word && *word != "auto";
-    };
+  /// A grid and a position error exclude each other: the later one stays.
+  Status choose_grid_word(const Saying& saying) {
+    const auto says = [&](Setting setting) { return saying.word(setting) && *saying.word(setting) != "auto"; };
     if (says(Setting::kGrid) && says(Setting::kPositionError)) {
-      const std::string other = (layer.code == ErrorCode::kUsage ? "--" : "") + std::string("grid");
-      return Error{layer.code, place_of(layer, Setting::kPositionError), "give this or " + other + ", not both"};
+      const std::string other = (saying.code == ErrorCode::kUsage ? "--" : "") + std::string("grid");
+      return Error{saying.code, saying.place(Setting::kPositionError), "give this or " + other + ", not both"};
     }
-    if (says(Setting::kGrid)) words_[index_of(Setting::kPositionError)] = {"auto", layer.from};
-    if (says(Setting::kPositionError)) words_[index_of(Setting::kGrid)] = {"auto", layer.from};
+    if (says(Setting::kGrid)) words_[index_of(Setting::kPositionError)] = {"auto", saying.from};
+    if (says(Setting::kPositionError)) words_[index_of(Setting::kGrid)] = {"auto", saying.from};
     return Ok{};
   }
 
-  /// A name that is kept and dropped: the later layer's stays.
-  Status choose_names(const SettingLayer& layer) {
-    const auto& kept = layer.words[index_of(Setting::kKeep)];
-    const auto& dropped = layer.words[index_of(Setting::kDrop)];
+  /// A name that is kept and dropped: the later one stays.
+  Status choose_names(const Saying& saying) {
+    const auto& kept = saying.word(Setting::kKeep);
+    const auto& dropped = saying.word(Setting::kDrop);
     const std::uint32_t both = attributes_of(kept.value_or("")) & attributes_of(dropped.value_or(""));
     if (both != 0) {
-      return Error{layer.code, place_of(layer, Setting::kDrop), names_of_attributes(both)[0] + " is kept by name too"};
+      return Error{saying.code, saying.place(Setting::kDrop), names_of_attributes(both)[0] + " is kept by name too"};
     }
-    if (layer.words[index_of(Setting::kAttributes)]) {
-      for (const Setting setting : {Setting::kKeep, Setting::kDrop}) words_[index_of(setting)] = {"", layer.from};
+    if (saying.word(Setting::kAttributes)) {
+      for (const Setting setting : {Setting::kKeep, Setting::kDrop}) words_[index_of(setting)] = {"", saying.from};
     }
-    if (kept) remove_names(Setting::kDrop, attributes_of(*kept), layer.from);
-    if (dropped) remove_names(Setting::kKeep, attributes_of(*dropped), layer.from);
+    if (kept) remove_names(Setting::kDrop, attributes_of(*kept), saying.from);
+    if (dropped) remove_names(Setting::kKeep, attributes_of(*dropped), saying.from);
     return Ok{};
   }
 
@@ -215,12 +228,76 @@ std::string find_fault(Setting setting, std::string_view word) {
   }
 }
 
+bool is_match(std::string_view glob, std::string_view name) {
+  std::size_t g = 0, n = 0;
+  std::optional<std::size_t> star;  // the last one met, and what it has taken
+  std::size_t taken = 0;
+  while (n < name.size()) {
+    if (g < glob.size() && glob[g] == '*') {
+      star = g++;
+      taken = n;
+    } else if (g < glob.size() && (glob[g] == '?' || glob[g] == name[n])) {
+      ++g;
+      ++n;
+    } else if (star) {
+      g = *star + 1;
+      n = ++taken;
+    } else {
+      return false;
+    }
+  }
+  while (g < glob.size() && glob[g] == '*') ++g;
+  return g == glob.size();
+}
+
 Result<Settled> settle(std::span<const SettingLayer> layers) {
   Settling settling;
   for (const SettingLayer& layer : layers) {
-    if (const Status added = settling.add(layer); !added) return added.error();
+    if (const Status added = settling.add(saying_of(layer)); !added) return added.error();
+    for (const SettingLayer::MeshRule& rule : layer.mesh_rules) {
+      Settling alone;
+      if (const Status sound = alone.add(saying_of(layer, rule)); !sound) return sound.error();
+    }
   }
   return Settled{options_of(settling.words()), settling.words()};
+}
+
+Result<std::vector<SettledMesh>> settle_meshes(std::span<const SettingLayer> layers,
+                                               std::span<const std::string> mesh_names) {
+  const Result<Settled> whole = settle(layers);
+  if (!whole) return whole.error();
+  const bool has_rules =
+      std::any_of(layers.begin(), layers.end(), [](const SettingLayer& layer) { return !layer.mesh_rules.empty(); });
+  bool is_any = false;
+  std::vector<SettledMesh> out;
+  for (std::size_t i = 0; has_rules && i < mesh_names.size(); ++i) {
+    Settling settling;
+    for (const SettingLayer& layer : layers) {
+      if (const Status added = settling.add(saying_of(layer)); !added) return added.error();
+      for (const SettingLayer::MeshRule& rule : layer.mesh_rules) {
+        if (!is_match(rule.glob, mesh_names[i])) continue;
+        is_any = true;
+        if (const Status added = settling.add(saying_of(layer, rule)); !added) return added.error();
+      }
+    }
+    SettledMesh& mesh = out.emplace_back();
+    mesh.options = options_of(settling.words());
+    for (const SettingInfo& info : kSettings) {
+      const SettledWord& word = settling.words()[index_of(info.setting)];
+      if (word.word != (*whole)[info.setting].word) mesh.own.emplace_back(info.setting, word);
+    }
+  }
+  if (!is_any) out.clear();
+  return out;
+}
+
+Status set_mesh_options(std::span<const SettingLayer> layers, std::span<const std::string> mesh_names,
+                        PipelineOptions& options) {
+  Result<std::vector<SettledMesh>> meshes = settle_meshes(layers, mesh_names);
+  if (!meshes) return meshes.error();
+  options.mesh_options.clear();
+  for (const SettledMesh& mesh : *meshes) options.mesh_options.push_back(mesh.options);
+  return Ok{};
 }
 
 }  // namespace meshlode::build

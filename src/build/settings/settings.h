@@ -10,6 +10,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <meshlode/result.h>
@@ -39,6 +40,7 @@ struct SettingInfo {
   const char* name;  ///< of the long option, without its dashes
   const char* help;
   const char* usual;  ///< the word where nobody says anything
+  bool is_of_mesh;    ///< each mesh may have its own
 };
 [[nodiscard]] std::span<const SettingInfo, kSettingCount> all_settings();
 [[nodiscard]] const SettingInfo& info_of(Setting setting);
@@ -55,6 +57,11 @@ struct SettingLayer {
   std::string from;                    ///< "the command line", or a file
   ErrorCode code = ErrorCode::kUsage;  ///< of what is wrong here
   SettingWords words;
+  struct MeshRule {
+    std::string glob;    ///< of the names of meshes: is_match()
+    SettingWords words;  ///< of those that a mesh may have
+  };
+  std::vector<MeshRule> mesh_rules;  ///< after `words`; a later one wins over an earlier one
 
   [[nodiscard]] std::optional<std::string>& operator[](Setting setting) {
     return words[static_cast<std::size_t>(setting)];
@@ -76,9 +83,27 @@ struct Settled {
   }
 };
 
-/// All layers together. Errors: a layer's code, with its place, for a word that is none and for two that exclude each
-/// other in one layer (a grid and a position error, a name kept and dropped); across layers the later one wins. A layer
-/// that says `attributes` does away with the names of earlier ones.
+/// '*' is any number of characters, '?' is one, all others are themselves; the whole name.
+[[nodiscard]] bool is_match(std::string_view glob, std::string_view name);
+
+/// All layers together, for the scene as a whole. Errors: a layer's code, with its place, for a word that is none and
+/// for two that exclude each other in one layer (a grid and a position error, a name kept and dropped); across layers
+/// the later one wins. A layer that says `attributes` does away with the names of earlier ones.
 [[nodiscard]] Result<Settled> settle(std::span<const SettingLayer> layers);
+
+/// What a mesh has for itself, in the place of the whole's.
+struct SettledMesh {
+  MeshOptions options;
+  std::vector<std::pair<Setting, SettledWord>> own;  ///< the words that differ from the whole's
+};
+
+/// The same for each mesh by its name: a layer's own words, then its rules that match, then the next layer. Empty where
+/// no rule matches any.
+[[nodiscard]] Result<std::vector<SettledMesh>> settle_meshes(std::span<const SettingLayer> layers,
+                                                             std::span<const std::string> mesh_names);
+
+/// The options of a build of these meshes. Errors: as settle().
+[[nodiscard]] Status set_mesh_options(std::span<const SettingLayer> layers, std::span<const std::string> mesh_names,
+                                      PipelineOptions& options);
 
 }  // namespace meshlode::build

@@ -77,36 +77,42 @@ void add_encoding(KeyHasher& key, const EncodeOptions& encode) {
   key.value(mixed_strip_trials);
 }
 
-void add_options(KeyHasher& key, const PipelineOptions& options) {
-  const auto& [preset, error_tier, attributes, keep, drop, grid_step, codec, partition_seed, repair,
-               max_cluster_triangles, max_cluster_vertices, position_error, normal_error, uv_error, uv_error_is_texels,
-               uv_error_is_default, max_memory, mesh_store] = options;
-  key.value(preset);
+void add_own_options(KeyHasher& key, const MeshOptions& own) {
+  const auto& [error_tier, attributes, keep, drop, grid_step, position_error, normal_error, uv_error,
+               uv_error_is_texels, uv_error_is_default] = own;
   key.value(error_tier);
   key.value(grid_step);
-  key.value(partition_seed);
-  key.value(max_cluster_triangles);
-  key.value(max_cluster_vertices);
   key.value(position_error);
   static_cast<void>(attributes);  // the layout says what they came to, and EncodeOptions what the budgets did
-  static_cast<void>(keep);        // the same
+  static_cast<void>(keep);
   static_cast<void>(drop);
   static_cast<void>(normal_error);
   static_cast<void>(uv_error);
   static_cast<void>(uv_error_is_texels);
   static_cast<void>(uv_error_is_default);
+}
+
+void add_scene_options(KeyHasher& key, const SceneOptions& options) {
+  const auto& [preset, codec, partition_seed, repair, max_cluster_triangles, max_cluster_vertices, max_memory,
+               mesh_store, mesh_options] = options;
+  key.value(preset);
+  key.value(partition_seed);
+  key.value(max_cluster_triangles);
+  key.value(max_cluster_vertices);
   static_cast<void>(codec);   // of the pages on disk, later
   static_cast<void>(repair);  // the triangles are as they are
   static_cast<void>(max_memory);
   static_cast<void>(mesh_store);
+  static_cast<void>(mesh_options);  // this mesh's are its own
 }
 
 }  // namespace
 
 Hash128 mesh_key(const scene::SourceMesh& mesh, const AttributeLayout& layout, const EncodeOptions& encode,
-                 const PipelineOptions& options) {
+                 const MeshOptions& own, const SceneOptions& options) {
   KeyHasher key;
-  add_options(key, options);
+  add_own_options(key, own);
+  add_scene_options(key, options);
   add_layout(key, layout);
   add_encoding(key, encode);
   add_mesh(key, mesh);

@@ -14,6 +14,6 @@ namespace meshlode::build {
 /// options for it: a material's colour, a texture's pixels, other meshes, nodes and names are not in it. Bits, not
 /// values: -0 is another mesh than 0.
 [[nodiscard]] Hash128 mesh_key(const scene::SourceMesh& mesh, const AttributeLayout& layout,
-                               const EncodeOptions& encode, const PipelineOptions& options);
+                               const EncodeOptions& encode, const MeshOptions& own, const SceneOptions& options);
 
 }  // namespace meshlode::build

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -19,12 +20,23 @@ namespace meshlode::judge {
 
 /// What META says of the build, read once. Empty or nothing where it says nothing, or something of another type.
 struct MetaFacts {
+  /// Settings that a mesh may have for itself.
+  struct OfMesh {
+    std::string attributes, error_tier, uv_error_unit;
+    std::vector<std::string> dropped;                              ///< attributes, by name
+    std::optional<double> position_error, normal_error, uv_error;  ///< uv_error in uv_error_unit
+  };
   std::string source_hash;
-  std::string attributes, error_tier, uv_error_unit;                 ///< settings
-  std::vector<std::string> dropped;                                  ///< settings: attributes, by name
   std::optional<std::uint64_t> cluster_triangles, cluster_vertices;  ///< settings
   std::optional<double> error_margin;                                ///< settings
-  std::optional<double> position_error, normal_error, uv_error;      ///< settings; uv_error in uv_error_unit
+  OfMesh whole;                                                      ///< settings
+  std::vector<OfMesh> apart;                                         ///< settings/mesh_settings …
+  std::map<std::uint64_t, std::size_t> apart_of_mesh;                ///< … of these meshes
+
+  [[nodiscard]] const OfMesh& of_mesh(std::uint64_t mesh) const {
+    const auto found = apart_of_mesh.find(mesh);
+    return found == apart_of_mesh.end() ? whole : apart[found->second];
+  }
 };
 
 struct FileTables {

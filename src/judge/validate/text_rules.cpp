@@ -42,37 +42,52 @@ nlohmann::json parse(std::string_view text) {
   return nlohmann::json::parse(text.begin(), text.end(), nullptr, false);
 }
 
-MetaFacts facts_of(const nlohmann::json& meta) {
-  const auto value = [&](const char* section, const char* key) -> nlohmann::json {
-    if (!meta.is_object() || !meta.contains(section) || !meta[section].is_object()) return {};
-    return meta[section].value(key, nlohmann::json());
-  };
-  const auto text = [&](const char* section, const char* key) {
-    const nlohmann::json found = value(section, key);
-    return found.is_string() ? found.get<std::string>() : std::string();
-  };
-  const auto number = [&](const char* key) {
-    const nlohmann::json found = value("settings", key);
-    return found.is_number_unsigned() ? std::optional(found.get<std::uint64_t>()) : std::nullopt;
-  };
-  const auto real = [&](const char* key) {
-    const nlohmann::json found = value("settings", key);
-    return found.is_number() ? std::optional(found.get<double>()) : std::nullopt;
-  };
-  MetaFacts facts;
-  facts.source_hash = text("source", "hash");
-  facts.attributes = text("settings", "attributes");
-  for (const nlohmann::json& name : value("settings", "drop")) {
+nlohmann::json value_at(const nlohmann::json& object, const char* key) {
+  return object.is_object() ? object.value(key, nlohmann::json()) : nlohmann::json();
+}
+
+std::string text_at(const nlohmann::json& object, const char* key) {
+  const nlohmann::json found = value_at(object, key);
+  return found.is_string() ? found.get<std::string>() : std::string();
+}
+
+std::optional<double> real_at(const nlohmann::json& object, const char* key) {
+  const nlohmann::json found = value_at(object, key);
+  return found.is_number() ? std::optional(found.get<double>()) : std::nullopt;
+}
+
+MetaFacts::OfMesh mesh_facts_of(const nlohmann::json& settings) {
+  MetaFacts::OfMesh facts;
+  facts.attributes = text_at(settings, "attributes");
+  facts.error_tier = text_at(settings, "error_tier");
+  facts.uv_error_unit = text_at(settings, "uv_error_unit");
+  for (const nlohmann::json& name : value_at(settings, "drop")) {
     if (name.is_string()) facts.dropped.push_back(name.get<std::string>());
   }
-  facts.error_tier = text("settings", "error_tier");
-  facts.uv_error_unit = text("settings", "uv_error_unit");
+  facts.position_error = real_at(settings, "position_error");
+  facts.normal_error = real_at(settings, "normal_error");
+  facts.uv_error = real_at(settings, "uv_error");
+  return facts;
+}
+
+MetaFacts facts_of(const nlohmann::json& meta) {
+  const nlohmann::json settings = value_at(meta, "settings");
+  const auto number = [&](const char* key) {
+    const nlohmann::json found = value_at(settings, key);
+    return found.is_number_unsigned() ? std::optional(found.get<std::uint64_t>()) : std::nullopt;
+  };
+  MetaFacts facts;
+  facts.source_hash = text_at(value_at(meta, "source"), "hash");
+  facts.whole = mesh_facts_of(settings);
   facts.cluster_triangles = number("cluster_triangles");
   facts.cluster_vertices = number("cluster_vertices");
-  facts.error_margin = real("error_margin");
-  facts.position_error = real("position_error");
-  facts.normal_error = real("normal_error");
-  facts.uv_error = real("uv_error");
+  facts.error_margin = real_at(settings, "error_margin");
+  for (const nlohmann::json& apart : value_at(settings, "mesh_settings")) {
+    for (const nlohmann::json& mesh : value_at(apart, "meshes")) {
+      if (mesh.is_number_unsigned()) facts.apart_of_mesh[mesh.get<std::uint64_t>()] = facts.apart.size();
+    }
+    facts.apart.push_back(mesh_facts_of(apart));
+  }
   return facts;
 }
 

@@ -133,13 +133,13 @@ bool has_color(const scene::Primitive& primitive) {
 }
 
 void check_attributes(const run::Asset& asset, const MetaFacts& facts, const scene::Scene& source, RuleLog& log) {
-  if (facts.attributes == "none") return;
-  const auto is_dropped = [&](const std::string& name) {
-    return std::find(facts.dropped.begin(), facts.dropped.end(), name) != facts.dropped.end();
-  };
   for (std::size_t m = 0; m < std::min(asset.meshes().size(), source.meshes.size()); ++m) {
     const format::MeshRecord& mesh = asset.meshes()[m];
-    if (mesh.cluster_count == 0) continue;
+    const MetaFacts::OfMesh& own = facts.of_mesh(m);
+    if (mesh.cluster_count == 0 || own.attributes == "none") continue;
+    const auto is_dropped = [&](const std::string& name) {
+      return std::find(own.dropped.begin(), own.dropped.end(), name) != own.dropped.end();
+    };
     const auto at = [&] { return place("mesh", m); };
     log.expect(mesh.normal_mode != format::NormalMode::kNone || is_dropped("NORMAL"), Rule::kV110, at,
                [] { return std::string("normals are left out"); });
@@ -180,10 +180,9 @@ void check_caps(const run::Asset& asset, const MetaFacts& facts, RuleLog& log) {
 
 void check_tiers(const run::Asset& asset, const MetaFacts& facts, RuleLog& log) {
   log.check(Rule::kV112);
-  const std::string& setting = facts.error_tier;
-  if (setting.empty()) return;
   for (std::size_t m = 0; m < asset.meshes().size(); ++m) {
-    if (asset.meshes()[m].cluster_count == 0) continue;
+    const std::string& setting = facts.of_mesh(m).error_tier;
+    if (setting.empty() || asset.meshes()[m].cluster_count == 0) continue;
     const format::ErrorTier tier = asset.meshes()[m].error_tier;
     log.expect(
         value_in(format::kErrorTierNames, setting) == tier, Rule::kV112, [&] { return place("mesh", m); },
@@ -191,20 +190,34 @@ void check_tiers(const run::Asset& asset, const MetaFacts& facts, RuleLog& log) 
   }
 }
 
+struct Budgets {
+  std::optional<double> position, normal, uv;  ///< uv in UV units
+};
+
+Budgets budgets_of(const MetaFacts::OfMesh& facts) {
+  return {facts.position_error, facts.normal_error, facts.uv_error_unit == "uv" ? facts.uv_error : std::nullopt};
+}
+
 /// V104 and V105 measure every vertex of level 0 against the bounds of the mesh's record; here those bounds are held
 /// against what was asked for, budgets in texels with the source's images at hand.
 void check_budgets(const run::Asset& asset, const MetaFacts& facts, const scene::Scene& source,
                    std::span<const run::DecodedCluster> clusters, RuleLog& log) {
   log.check(Rule::kV113);
-  const std::optional<double> position = facts.position_error;
-  const std::optional<double> normal = facts.normal_error;
-  const double uv = facts.uv_error.value_or(0.0);
-  const bool is_in_uv = facts.uv_error && facts.uv_error_unit == "uv";
-  if (facts.uv_error && facts.uv_error_unit == "texels") check_texel_budget(asset, source, uv, clusters, log);
+  std::vector<std::optional<double>> texels;
+  for (std::size_t m = 0; m < asset.meshes().size(); ++m) {
+    const MetaFacts::OfMesh& own = facts.of_mesh(m);
+    texels.push_back(own.uv_error_unit == "texels" ? own.uv_error : std::nullopt);
+  }
+  check_texel_budget(asset, source, texels, clusters, log);
   constexpr double kRounding = 1.0 + 1e-6;
   for (std::size_t m = 0; m < asset.meshes().size(); ++m) {
     const format::MeshRecord& mesh = asset.meshes()[m];
     if (mesh.cluster_count == 0) continue;
+    const Budgets budgets = budgets_of(facts.of_mesh(m));
+    const std::optional<double>& position = budgets.position;
+    const std::optional<double>& normal = budgets.normal;
+    const double uv = budgets.uv.value_or(0.0);
+    const bool is_in_uv = budgets.uv.has_value();
     const auto at = [&] { return place("mesh", m); };
     if (position) {
       log.expect(double{mesh.level0_deviation} <= *position * kRounding, Rule::kV113, at, [&] {

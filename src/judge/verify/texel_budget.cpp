@@ -56,13 +56,15 @@ std::array<bool, scene::kMaxUvSets> has_finest_step(const run::Asset& asset, Mes
   return is_finest;
 }
 
-void check_texel_budget(const run::Asset& asset, const scene::Scene& source, double texels,
+void check_texel_budget(const run::Asset& asset, const scene::Scene& source,
+                        std::span<const std::optional<double>> texels_of_mesh,
                         std::span<const run::DecodedCluster> clusters, RuleLog& log) {
   constexpr double kRounding = 1.0 + 1e-6;
   const auto of_materials = most_texels_of_materials(source);
   for (std::size_t m = 0; m < asset.meshes().size() && m < source.meshes.size(); ++m) {
     const format::MeshRecord& mesh = asset.meshes()[m];
-    if (mesh.cluster_count == 0 || mesh.uv_set_count == 0) continue;
+    if (mesh.cluster_count == 0 || mesh.uv_set_count == 0 || !texels_of_mesh[m]) continue;
+    const double texels = *texels_of_mesh[m];
     const auto most = most_texels(of_materials, source.meshes[m]);
     const auto is_finest = has_finest_step(asset, MeshId(m), clusters);
     for (std::uint32_t set = 0; set < mesh.uv_set_count; ++set) {

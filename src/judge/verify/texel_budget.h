@@ -37,8 +37,10 @@ namespace meshlode::judge {
 [[nodiscard]] std::array<bool, scene::kMaxUvSets> has_finest_step(const run::Asset& asset, MeshId mesh,
                                                                   std::span<const run::DecodedCluster> clusters);
 
-/// V113 for UVs: half a step of each stored set is at most `texels` texels, or as fine as 24 bits hold the coordinates.
-void check_texel_budget(const run::Asset& asset, const scene::Scene& source, double texels,
+/// V113 for UVs: half a step of each stored set is at most so many texels, or as fine as 24 bits hold the coordinates.
+/// `texels_of_mesh`: one for each mesh of the asset; nothing where its budget is not in texels.
+void check_texel_budget(const run::Asset& asset, const scene::Scene& source,
+                        std::span<const std::optional<double>> texels_of_mesh,
                         std::span<const run::DecodedCluster> clusters, RuleLog& log);
 
 }  // namespace meshlode::judge

@@ -10,7 +10,7 @@ namespace {
 
 SettingLayer layer_of(std::initializer_list<std::pair<Setting, const char*>> words, std::string from = "a file",
                       ErrorCode code = ErrorCode::kInvalid) {
-  SettingLayer layer{std::move(from), code, {}};
+  SettingLayer layer{std::move(from), code, {}, {}};
   for (const auto& [setting, word] : words) layer[setting] = word;
   return layer;
 }

@@ -162,19 +162,19 @@ TEST(StoredMesh, EveryPartOfAMeshIsInItsKey) {
   meshes[10].primitives[0].positions.pop_back();
   std::map<Hash128, std::size_t> keys;
   for (std::size_t i = 0; i < meshes.size(); ++i) {
-    EXPECT_TRUE(keys.emplace(mesh_key(meshes[i], {}, {}, {}), i).second) << i;
+    EXPECT_TRUE(keys.emplace(mesh_key(meshes[i], {}, {}, {}, {}), i).second) << i;
   }
   AttributeLayout layout;
   layout.uv_set_source[1] = 1;
-  EXPECT_TRUE(keys.emplace(mesh_key(mesh, layout, {}, {}), 0).second);
+  EXPECT_TRUE(keys.emplace(mesh_key(mesh, layout, {}, {}, {}), 0).second);
   EncodeOptions encode;
   encode.uv_error[3] = 0.5;
-  EXPECT_TRUE(keys.emplace(mesh_key(mesh, {}, encode, {}), 0).second);
+  EXPECT_TRUE(keys.emplace(mesh_key(mesh, {}, encode, {}, {}), 0).second);
   PipelineOptions options;
   options.partition_seed = 2;
-  EXPECT_TRUE(keys.emplace(mesh_key(mesh, {}, {}, options), 0).second);
+  EXPECT_TRUE(keys.emplace(mesh_key(mesh, {}, {}, options, options), 0).second);
   meshes[0].name = "renamed";
-  EXPECT_FALSE(keys.emplace(mesh_key(meshes[0], {}, {}, {}), 0).second);
+  EXPECT_FALSE(keys.emplace(mesh_key(meshes[0], {}, {}, {}, {}), 0).second);
 }
 
 // An entry is hashed before it gets here, but whoever can write into a cache can hash too.

@@ -87,8 +87,10 @@ class CertifiedScene : public testing::TestWithParam<CertifiedCase> {
   void SetUp() override {
     scene_ = scene::as_scene(scene::as_mesh(GetParam().make()));
     build::PipelineReport report;
-    auto bytes = build::build_lode(
-        scene_, {.error_tier = format::ErrorTier::kCertified, .max_cluster_triangles = kClusterCap}, {}, report);
+    build::PipelineOptions options;
+    options.error_tier = format::ErrorTier::kCertified;
+    options.max_cluster_triangles = kClusterCap;
+    auto bytes = build::build_lode(scene_, options, {}, report);
     ASSERT_TRUE(bytes.ok()) << bytes.error().message();
     auto asset = run::Asset::from_vector(std::move(*bytes));
     ASSERT_TRUE(asset.ok()) << asset.error().message();

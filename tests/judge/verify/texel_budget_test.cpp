@@ -29,6 +29,10 @@ std::vector<std::uint8_t> png_of(std::uint32_t width, std::uint32_t height) {
   return bytes;
 }
 
+std::vector<std::optional<double>> same_for_all(const run::Asset& asset, double texels) {
+  return std::vector<std::optional<double>>(asset.meshes().size(), texels);
+}
+
 /// The sample, whose materials all sample one texture of this width by each of their coordinates.
 scene::Scene scene_with(std::uint32_t width) {
   scene::Scene scene = test::sample_scene();
@@ -123,7 +127,7 @@ TEST(TexelBudget, AStepThatIsTooCoarseForATextureIsFound) {
   const auto width = static_cast<std::uint32_t>(std::ldexp(0.25, 1 - coarsest));
   for (const bool is_too_wide : {false, true}) {
     RuleLog log;
-    check_texel_budget(*asset, scene_with(is_too_wide ? 2 * width : width), 0.25, *clusters, log);
+    check_texel_budget(*asset, scene_with(is_too_wide ? 2 * width : width), same_for_all(*asset, 0.25), *clusters, log);
     EXPECT_EQ(log.count_of(Rule::kV113) > 0, is_too_wide) << width;
   }
 }
@@ -146,7 +150,7 @@ TEST(TexelBudget, AStepAsFineAsTheCoordinatesLeaveIsWithinAnyBudget) {
     }
     ASSERT_TRUE(is_any_set);
     RuleLog log;
-    check_texel_budget(*asset, scene_with(1U << 20U), 1e-6, *clusters, log);
+    check_texel_budget(*asset, scene_with(1U << 20U), same_for_all(*asset, 1e-6), *clusters, log);
     EXPECT_EQ(log.count_of(Rule::kV113) == 0, largest != (1 << 23) - 1) << largest;
   }
 }

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# meshlode.json beside a scene and in folders above it: inherited downwards, the nearer wins, the command line before both.
+mkdir -p in/deep
+cp "$DATA/city.glb" in/city.glb
+cp "$DATA/foliage.glb" in/deep/foliage.glb
+# What an asset's settings say.
+tell() { "$MESHLODE" info "$1" --format json | tr -d ' \n' | sed 's/.*"settings"://; s/,"totals".*//'; echo; }
+echo '{"codec": "zstd", "normal-error": 0.5}' >in/meshlode.json
+echo '{"codec": "lz4", "drop": ["TEXCOORD_0"]}' >in/deep/meshlode.json
+code build --quiet in -O out
+tell out/city.lode
+tell out/deep/foliage.lode
+code verify --quiet --quick out/deep/foliage.lode --source in/deep/foliage.glb
+code build --quiet in/deep/foliage.glb -o alone.lode
+tell alone.lode
+code build --quiet in/deep/foliage.glb -o rooted.lode --settings-root in
+cmp rooted.lode out/deep/foliage.lode && echo "as from the folder"
+code build --quiet in/deep/foliage.glb -o called.lode --codec none --keep TEXCOORD_0
+tell called.lode
+code build --quiet in/deep/foliage.glb -o plain.lode --no-settings-file
+mv in/deep/meshlode.json in/deep/not.json
+code build --quiet in/deep/foliage.glb -o usual.lode
+cmp plain.lode usual.lode && echo "passed over"
+# Settings of meshes by name and by glob.
+echo '{"meshes": {"*": {"normal-error": 1}, "tower": {"position-error": 0.01, "error-tier": "qem"}}}' >in/meshlode.json
+"$JSON_CHECK" "$SCHEMAS/settings.schema.json" <in/meshlode.json
+"$MESHLODE" plan in/city.glb | sed -n '/^settings/,/^attributes/p'
+code build --quiet in/city.glb -o meshes.lode
+tell meshes.lode
+code validate --quiet meshes.lode
+code verify --quiet --quick meshes.lode --source in/city.glb
+code build --quiet in/city.glb -o again.lode --jobs 1
+cmp meshes.lode again.lode && echo "the same with one thread"
+json plan plan in/city.glb --format json
+json info info meshes.lode --format json
+# The example of docs/plan.md is one.
+sed -n '/^```json/,/^```$/p' "$REPOSITORY/docs/plan.md" | grep -v '^```' >in/meshlode.json
+"$JSON_CHECK" "$SCHEMAS/settings.schema.json" <in/meshlode.json
+code plan in/city.glb
+# What cannot be settings: exit 3, as any input that breaks its rules.
+refuse() { printf '%s' "$1" >in/meshlode.json; run build in/city.glb -o no.lode; }
+refuse '{"codecs": "zstd"}'
+refuse '{"jobs": 1}'
+refuse '{"codec": "gzip"}'
+refuse '{"grid": -1}'
+refuse '{"grid": 1, "position-error": 1}'
+refuse '{"keep": ["NORMALS"]}'
+refuse '{"meshes": {"tower": {"preset": "fast"}}}'
+refuse '{"meshes": {"tower": {"uv_error": 1}}}'
+refuse '{"codec": '
+refuse '[]'
+run plan in/city.glb
+code build --quiet in -O out2
+# It was read: nothing is written over it.
+echo '{}' >in/meshlode.json
+run build in/city.glb -o in/meshlode.json
+rm -f ./*.lode
+files
