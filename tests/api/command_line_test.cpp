@@ -108,8 +108,8 @@ TEST(ApiCommandLine, WhatBothSayTheSameWayGivesTheSameBytes) {
 
 TEST(ApiCommandLine, EveryOptionOfBuildIsSaid) {
   // Files, reports and the terminal are the program's own.
-  std::set<std::string> said = {"--help",   "--output", "--output-folder",    "--report",
-                                "--format", "--quiet",  "--no-settings-file", "--settings-root"};
+  std::set<std::string> said = {"--help",  "--output",           "--output-folder", "--report", "--format",
+                                "--quiet", "--no-settings-file", "--settings-root", "--explain"};
   for (const Saying& saying : kSayings) said.merge(options_in(saying.words));
   const std::set<std::string> offered = options_in(run_program("build --help"));
   ASSERT_TRUE(offered.contains("--error-tier"));

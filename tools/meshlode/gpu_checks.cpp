@@ -101,6 +101,9 @@ Status verify_with_gpu(const run::Asset& asset, const scene::Scene& source, cons
   }
   const auto verified = judge::verify_on_gpu(asset, source, judge);
   if (!verified) return verified.error();
+  if (options.is_explained) {
+    std::fprintf(stderr, "passes of %s\n%s", verified->device.name.c_str(), verified->plan.c_str());
+  }
   for (const std::string& warning : verified->warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
   if (!options.out_folder.empty()) {
     if (const Status written = write_text(report_path, gpu_json(options, *verified)); !written) return written;

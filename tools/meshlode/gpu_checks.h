@@ -15,6 +15,7 @@ namespace meshlode::cli {
 
 struct GpuOptions {
   bool is_on = false;
+  bool is_explained = false;
   std::string device, path, out_folder;
   std::uint32_t orbits = 6;
   double pixel_error = 1.0;

@@ -5,9 +5,11 @@
 #include <cstdio>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "base/byte_size.h"
+#include "base/printable.h"
 #include "batch/batch.h"
 #include "batch/cache/ingredients.h"
 #include "batch/cache/program_id.h"
@@ -18,6 +20,7 @@
 #include "batch_show.h"
 #include "build/settings/settings.h"
 #include "build_options.h"
+#include "explain.h"
 #include "options.h"
 #include "outputs.h"
 #include "verb.h"
@@ -65,6 +68,7 @@ struct BuildCommand {
   batch::BatchOptions options;
   std::optional<batch::Cache> cache;
   std::string report_path;
+  bool is_explained = false;
   std::uint32_t jobs = 0;
   OutputOptions out;
 };
@@ -130,13 +134,23 @@ int write_side_outputs(const BuildCommand& command, const std::vector<JobResult>
   return worst;
 }
 
+/// --explain.
+void print_plan(const scene::Scene& scene, std::span<const build::SettingLayer> layers,
+                const build::PipelineOptions& options) {
+  const Result<std::string> text = explain_build({layers.begin(), layers.end()}, options, scene);
+  if (!text) return;  // the build will refuse it for the same reason
+  std::fprintf(stderr, "plan of %s\n%s", printable(scene.source_name, 200).c_str(), text->c_str());
+}
+
 /// Runs the jobs and tells of them. \returns the exit code
 int run_jobs(const std::vector<Job>& jobs, const BuildCommand& command) {
   const bool is_dry = command.words.dry_run;
   BatchShow show(jobs, command.out.quiet, !command.out.json() && !is_dry);
   JobLimit limit(command.jobs);
   std::vector<JobResult> results;
-  limit.run([&] { results = batch::run_batch(jobs, command.options, output_files(), show.watcher()); });
+  batch::BatchWatcher watcher = show.watcher();
+  if (command.is_explained) watcher.on_scene = print_plan;
+  limit.run([&] { results = batch::run_batch(jobs, command.options, output_files(), watcher); });
   int worst = batch::worst_exit_code(results);
   const std::string report = batch::report_json(results, command.jobs, worst);
   if (!is_dry) worst = std::max(worst, write_side_outputs(command, results, report));
@@ -191,6 +205,7 @@ int run_build(const Verb& verb, std::span<char* const> args) {
   parser.add_value("-o,--output", output, "the asset to write; the input's name with .lode where not given");
   parser.add_value("-O,--output-folder", output_folder, "folder for the assets of many inputs; made where missing");
   add_build_options(parser, words);
+  parser.add_flag("--explain", command.is_explained, "say what is kept, and why, as plan does");
   parser.add_value(
       "--max-memory", limits.max_memory,
       "what the build may take, such as 8GiB: meshes one by one to keep it, or refused; auto: what is left");

@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "base/json_writer.h"
-#include "base/printable.h"
 #include "build/plan/plan_report.h"
 #include "build/plan/scene_plan.h"
 #include "build/settings/settings.h"
 #include "build_options.h"
+#include "explain.h"
 #include "measure_plan.h"
 #include "options.h"
 #include "scene/import/import.h"
@@ -29,24 +29,6 @@ struct Planned {
   draw::PassPlan passes;
   std::optional<PlanMeasurement> measured;
 };
-
-std::string settings_text(const Planned& planned) {
-  std::string text = "settings\n";
-  const auto line = [&](const std::string& of, build::Setting setting, const build::SettledWord& word) {
-    text += "  " + of + build::info_of(setting).name + " " +
-            (word.word.empty() ? "(none)" : printable(word.word, 100)) + ": " + printable(word.from, 200) + "\n";
-  };
-  for (const build::SettingInfo& info : build::all_settings()) line("", info.setting, planned.settings[info.setting]);
-  constexpr std::size_t kMaxRows = 40;
-  std::size_t rows = 0;
-  for (std::size_t i = 0; i < planned.meshes.size(); ++i) {
-    for (const auto& [setting, word] : planned.meshes[i].own) {
-      if (rows++ < kMaxRows) line(printable(planned.scene.meshes[i].label, 120) + ": ", setting, word);
-    }
-  }
-  if (rows > kMaxRows) text += "  … and " + std::to_string(rows - kMaxRows) + " more (plan --format json lists all)\n";
-  return text;
-}
 
 void write_settings(JsonWriter& json, const Planned& planned) {
   const auto write = [&](build::Setting setting, const build::SettledWord& word) {
@@ -81,7 +63,7 @@ std::string plan_text(const scene::Scene& scene, const Planned& planned) {
   std::string text = "scene: " + std::to_string(triangles) + " triangles in " + std::to_string(plan.meshes.size()) +
                      " mesh(es), " + std::to_string(scene.instances.size()) + " instance(s), " +
                      std::to_string(scene.materials.size()) + " material(s)\n";
-  text += settings_text(planned) + build::describe_plan(plan);
+  text += describe_settings(planned.settings, planned.meshes, scene) + build::describe_plan(plan);
   text += "passes of render --gpu and verify --gpu\n" + draw::describe_plan(planned.passes, "  ");
   return planned.measured ? text + describe_measurement(*planned.measured) : text;
 }

@@ -14,6 +14,7 @@
 #include "draw/gpu/shaders/frame.h"
 #include "draw/raster/legend.h"
 #include "draw/raster/raster.h"
+#include "explain.h"
 #include "options.h"
 #include "outputs.h"
 #include "verb.h"
@@ -193,7 +194,7 @@ Result<Drawn> draw_on_gpu(const run::Asset& asset, const run::Camera& camera, co
   draw::GpuPicture picture;
   const Status drawn = draw::render_on_gpu(asset, camera, render, images, picture);
   const Status complete = print_warnings(picture.warnings, options);
-  if (options.explain) std::fprintf(stderr, "%s", picture.plan.c_str());
+  if (options.explain) std::fprintf(stderr, "passes of %s\n%s", picture.device.c_str(), picture.plan.c_str());
   if (!drawn) return drawn.error();
   if (!complete) return complete.error();
   return Drawn{std::move(picture.cut), std::move(picture.visibility), std::move(picture.image)};
@@ -215,10 +216,11 @@ Result<Drawn> draw_on_cpu(const run::Asset& asset, const run::Camera& camera, co
   const std::vector<draw::MaterialTextures> materials = draw::read_material_textures(asset);
   const draw::AlphaMasks masks = draw::load_alpha_masks(asset, materials, images);
   if (const Status complete = print_warnings(masks.warnings, options); !complete) return complete.error();
+  const auto view = static_cast<draw::View>(view_number(options.view));
+  if (options.explain) std::fprintf(stderr, "%s", describe_cpu_passes(asset, masks, view).c_str());
   auto visibility = draw::draw_cut(asset, cut, camera, masks);
   if (!visibility) return visibility.error();
   draw::TextureSet textures;
-  const auto view = static_cast<draw::View>(view_number(options.view));
   if (view == draw::View::kShaded) textures = draw::load_textures(asset, materials, images);
   if (const Status complete = print_warnings(textures.warnings, options); !complete) return complete.error();
   auto image = draw::shade_view(asset, cut, camera, *visibility, view, textures);
@@ -241,7 +243,7 @@ int run_render(const Verb& verb, std::span<char* const> args) {
   add_bounds_options(parser, options.bounds);
   parser.add_flag("--gpu", options.gpu, "select and draw on a Vulkan device");
   parser.add_value("--device", options.device, "with --gpu: an index or a part of the name (the first that can)");
-  parser.add_flag("--explain", options.explain, "with --gpu: say which passes run, and why");
+  parser.add_flag("--explain", options.explain, "say what the asset keeps, which passes run, and why");
   parser.add_value("--force", options.force, "with --gpu: a pass that the scene does not call for",
                    {"double-sided", "alpha-mask", "occlusion", "hardware", "textures", "all"});
   parser.add_flag("--strict", options.is_strict, "an image that cannot be drawn is an error, and nothing is written");
@@ -281,6 +283,7 @@ int run_render(const Verb& verb, std::span<char* const> args) {
       error.where = options.input + (error.where.empty() ? "" : ": ") + error.where;
     return print_error(error);
   };
+  if (options.explain) std::fprintf(stderr, "%s", describe_recorded_plan(*asset).c_str());
   draw::ImageBudget images(*max_decoded);
   const Result<Drawn> drawn = options.gpu ? draw_on_gpu(*asset, *camera, options, *bounds, images)
                                           : draw_on_cpu(*asset, *camera, options, *bounds, images);

@@ -6,6 +6,7 @@
 
 #include "base/file.h"
 #include "base/json_writer.h"
+#include "explain.h"
 #include "findings.h"
 #include "gpu_checks.h"
 #include "judge/verify/verify.h"
@@ -122,6 +123,8 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
   parser.add_value("--out-dir", gpu_options.out_folder,
                    "with --gpu: an existing folder for heat maps of the worst cameras and a report, gpu.json");
   parser.add_value("--pixel-error", gpu_options.pixel_error, "with --gpu: allowed displacement in pixels (1)");
+  parser.add_flag("--explain", gpu_options.is_explained,
+                  "say what the asset keeps, and with --gpu which passes the device runs, and why");
   add_max_decoded_option(parser, max_decoded_text);
   add_jobs_option(parser, jobs);
   add_output_options(parser, output);
@@ -140,6 +143,7 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
   if (const Status size = check_size(*asset); !size) {
     return print_error({size.error().code, path + ": " + size.error().where, size.error().detail});
   }
+  if (gpu_options.is_explained) std::fprintf(stderr, "%s", describe_recorded_plan(*asset).c_str());
   std::vector<FileId> files_read;
   Result<scene::Scene> source = scene::import_scene(source_path, {.repair = repair || was_repaired(*asset),
                                                                   .scene = out::read_meta(asset->meta_json()).scene,

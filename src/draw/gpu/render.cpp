@@ -106,7 +106,7 @@ Status render_on_gpu(const run::Asset& asset, const run::Camera& camera, const G
   append(out.warnings, scene->alpha_masks->warnings);
   const auto plan = plan_view(*scene, device->info(), camera, options);
   if (!plan) return plan.error();
-  out.plan = describe_plan(*plan);
+  out.plan = describe_plan(*plan, "  ");
   out.device = device->info().name;
   if (plan->textures) {
     const TextureSet textures = load_textures(asset, scene->material_textures, images);

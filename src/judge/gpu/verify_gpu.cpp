@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/file.h"
+#include "draw/gpu/pass_plan.h"
 #include "judge/gpu/compare_frame.h"
 #include "judge/gpu/hardware_judge.h"
 #include "judge/gpu/judge_picture.h"
@@ -169,13 +170,9 @@ struct Renderers {
   draw::Renderer plain, culling;
 };
 
-Result<Renderers> make_renderers(const draw::Device& device, const draw::GpuScene& scene, PictureSize size) {
-  draw::RendererOptions plain;
-  plain.width = size.width;
-  plain.height = size.height;
-  plain.frustum = false;
-  plain.double_sided = scene.has_double_sided;
-  plain.alpha_mask = scene.has_alpha_mask;
+Result<Renderers> make_renderers(const draw::Device& device, const draw::GpuScene& scene, const draw::PassPlan& plan) {
+  draw::RendererOptions plain = plan.options;
+  plain.frustum = plain.occlusion = false;
   draw::RendererOptions culling = plain;
   culling.frustum = culling.occlusion = true;
   auto renderer = draw::Renderer::make(device, scene, plain);
@@ -321,7 +318,12 @@ Result<GpuVerifyReport> verify_on_gpu(const run::Asset& asset, const scene::Scen
   const Promise promise = promise_of(asset, meshes, *scene);
   const auto every_cluster = run::decode_all(asset);
   if (!every_cluster) return every_cluster.error();
-  auto renderers = make_renderers(*device, *scene, options.sizes[0]);
+  // Culling and hardware raster are judged whether or not the scene calls for them.
+  const auto plan =
+      draw::plan_passes(*scene, device->info(), options.sizes[0].width, options.sizes[0].height, {"occlusion"});
+  if (!plan) return plan.error();
+  out.plan = draw::describe_plan(*plan, "  ");
+  auto renderers = make_renderers(*device, *scene, *plan);
   if (!renderers) return renderers.error();
   for (GpuCheck* check : {&checks.by_vertex, &checks.by_mesh}) {
     const bool by_mesh_shaders = check == &checks.by_mesh;

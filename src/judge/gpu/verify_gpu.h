@@ -58,6 +58,7 @@ struct GpuVerifyReport {
   double largest_px = 0.0, largest_share = 0.0;  ///< of all cameras: PictureReport's
   std::vector<JudgedCamera> cameras;
   std::vector<std::string> warnings;  ///< images that could not be read
+  std::string plan;                   ///< which passes draw the asset and why, a line each
 };
 
 /// `source`: what the asset was built from; without meshes no picture is judged by it. Errors: kUnsupported without a

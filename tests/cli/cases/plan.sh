@@ -41,4 +41,13 @@ sed -n 's/,//g; s/^  file bytes *\([0-9]*\) *\([0-9]*\) .*/\1 \2 /p' measured.tx
 grep -cE "^  (build, seconds|frame of the CPU, ms) +[0-9.]+ +[0-9.]+ " measured.txt
 "$MESHLODE" plan colors.ply --measure | grep "same content"
 rm -f ./*.lode ./*.txt
+# --explain: the lines of plan on stderr, where the verb acts by it.
+run plan foliage.glb >plan.txt
+"$MESHLODE" build foliage.glb -o a.lode --explain --quiet 2>explained.txt
+sed -n '/^settings/,/^passes/p' plan.txt | grep -v '^passes' >expected.txt
+tail -n +2 explained.txt | cmp - expected.txt && echo "build explains what plan says"
+run render a.lode -o a.png --size 64x48 --explain --quiet
+run render a.lode -o a.png --size 64x48 --view clusters --explain --quiet | grep -E "^  (alpha-mask|textures)"
+"$MESHLODE" verify a.lode --source foliage.glb --quick --quiet --explain 2>&1 | head -2
+rm -f ./*.lode ./*.txt ./*.png
 files

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "explain.h"
+
+#include <algorithm>
+
+#include "base/printable.h"
+#include "build/plan/plan_report.h"
+#include "build/plan/scene_plan.h"
+#include "build_options.h"
+#include "draw/gpu/pass_plan.h"
+#include "out/report/read_meta.h"
+
+namespace meshlode::cli {
+
+namespace {
+
+constexpr std::size_t kMaxRows = 40;
+
+std::string more_rows(std::size_t rows) {
+  if (rows <= kMaxRows) return "";
+  return "  … and " + std::to_string(rows - kMaxRows) + " more (--format json of plan and info lists all)\n";
+}
+
+}  // namespace
+
+std::string describe_settings(const build::Settled& settled, const std::vector<build::SettledMesh>& meshes,
+                              const scene::Scene& scene) {
+  std::string text = "settings\n";
+  const auto line = [&](const std::string& of, build::Setting setting, const build::SettledWord& word) {
+    text += "  " + of + build::info_of(setting).name + " " +
+            (word.word.empty() ? "(none)" : printable(word.word, 100)) + ": " + printable(word.from, 200) + "\n";
+  };
+  for (const build::SettingInfo& info : build::all_settings()) line("", info.setting, settled[info.setting]);
+  std::size_t rows = 0;
+  for (std::size_t i = 0; i < meshes.size(); ++i) {
+    const std::string label = printable(build::mesh_label(scene.meshes[i], i), 120) + ": ";
+    for (const auto& [setting, word] : meshes[i].own) {
+      if (rows++ < kMaxRows) line(label, setting, word);
+    }
+  }
+  return text + more_rows(rows);
+}
+
+Result<std::string> explain_build(const std::vector<build::SettingLayer>& layers, const build::PipelineOptions& options,
+                                  const scene::Scene& scene) {
+  const auto settled = build::settle(layers);
+  if (!settled) return settled.error();
+  const auto meshes = build::settle_meshes(layers, names_of_meshes(scene));
+  if (!meshes) return meshes.error();
+  const auto plan = build::plan_scene(scene, options);
+  if (!plan) return plan.error();
+  return describe_settings(*settled, *meshes, scene) + build::describe_plan(*plan);
+}
+
+std::string describe_recorded_plan(const run::Asset& asset) {
+  const out::MetaInfo meta = out::read_meta(asset.meta_json());
+  std::string text = "plan of the asset\n";
+  std::size_t rows = 0;
+  const auto line = [&](const char* fate, const std::string& what, const std::string& reason) {
+    if (rows++ < kMaxRows)
+      text += std::string("  ") + fate + printable(what, 120) + ": " + printable(reason, 300) + "\n";
+  };
+  for (const out::MetaInfo::Decision& decision : meta.decisions) {
+    if (decision.is_kept) line("kept      ", decision.what, decision.reason);
+  }
+  for (const out::MetaInfo::LeftOut& left : meta.left_outs) line("left out  ", left.what, left.why);
+  return text + more_rows(rows);
+}
+
+std::string describe_cpu_passes(const run::Asset& asset, const draw::AlphaMasks& masks, draw::View view) {
+  const auto materials = asset.materials();
+  const bool has_double_sided = std::any_of(materials.begin(), materials.end(),
+                                            [](const format::MaterialRecord& m) { return m.double_sided != 0; });
+  const auto has_texture = [](const draw::MaterialTextures& m) { return m.base_color || m.normal; };
+  const auto textures = draw::read_material_textures(asset);
+  const bool has_textures = std::any_of(textures.begin(), textures.end(), has_texture);
+  const bool is_shaded = view == draw::View::kShaded;
+  draw::PassPlan plan;
+  plan.decisions.push_back(
+      {"select", std::to_string(asset.instances().size()) + " instances by the BVH or one error", true});
+  plan.decisions.push_back({"software", "every cluster of the cut, by integers", true});
+  plan.decisions.push_back({"double-sided",
+                            has_double_sided ? "a material is double sided: its back faces are drawn"
+                                             : "no material is double sided: back faces are dropped",
+                            has_double_sided});
+  plan.decisions.push_back({"alpha-mask",
+                            masks.is_empty() ? "no sample can fail an alpha test: no image is decoded for it"
+                                             : "a material is masked: its samples look their texel up",
+                            !masks.is_empty()});
+  plan.decisions.push_back({"textures",
+                            !has_textures ? "no material has a base colour or normal texture"
+                            : is_shaded   ? "colours are shaded: base colours and normals, with their mip levels"
+                                          : "the view shows none: no image is decoded but those of masks",
+                            has_textures && is_shaded});
+  return "passes of the CPU\n" + draw::describe_plan(plan, "  ");
+}
+
+}  // namespace meshlode::cli
