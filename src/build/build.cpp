@@ -14,6 +14,7 @@
 #include "build/encode/encode.h"
 #include "build/hierarchy/hierarchy.h"
 #include "build/needs.h"
+#include "build/plan/features.h"
 #include "build/plan/plan.h"
 #include "build/plan/texel_sizes.h"
 #include "build/prepare/prepare.h"
@@ -178,6 +179,23 @@ Result<std::vector<BuiltMesh>> build_meshes(const Source& from, const PipelineOp
   return meshes;
 }
 
+/// What the asset says of its scene beside the meshes' decisions.
+void add_scene_decisions(const scene::Scene& scene, const std::vector<EncodedMesh>& meshes,
+                         std::vector<PlanDecision>& decisions) {
+  for (PlanDecision& decision : list_ruled_features(scene)) {
+    decision.what = "scene: " + decision.what;
+    decision.mesh = format::kNone;
+    decisions.push_back(std::move(decision));
+  }
+  const auto whole = std::count_if(meshes.begin(), meshes.end(),
+                                   [](const EncodedMesh& mesh) { return mesh.record.cluster_count == 1; });
+  if (whole == 0) return;
+  PlanDecision decision{"scene: " + std::to_string(whole) + " of " + std::to_string(meshes.size()) + " meshes", true,
+                        "one cluster each: passed through without levels of detail"};
+  decision.mesh = format::kNone;
+  decisions.push_back(std::move(decision));
+}
+
 Result<std::vector<std::uint8_t>> build_asset_of(const Source& from, const PipelineOptions& options,
                                                  const ProgressCallback& progress, PipelineReport& report) {
   const scene::Scene& scene = from.scene;
@@ -202,6 +220,7 @@ Result<std::vector<std::uint8_t>> build_asset_of(const Source& from, const Pipel
     input.meshes.push_back(std::move(mesh.encoded));
     input.mesh_names.push_back(scene.meshes[i].name);
   }
+  add_scene_decisions(scene, input.meshes, report.decisions);
   input.meta_json = meta_json(scene, options, report.decisions);
 
   StageClock clock;

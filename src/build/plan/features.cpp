@@ -25,12 +25,17 @@ class FeatureList {
  public:
   explicit FeatureList(const scene::Scene& scene) : scene_(scene) {}
 
-  std::vector<PlanDecision> take() {
+  std::vector<PlanDecision> take_all() {
     add_materials();
     add_images();
     add_instances();
     add_document();
     for (const scene::LeftOut& left : scene_.left_out) add(left.what, false, left.why);
+    return std::move(out_);
+  }
+  std::vector<PlanDecision> take_ruled() {
+    add_materials();
+    add_instances();
     return std::move(out_);
   }
 
@@ -139,7 +144,11 @@ class FeatureList {
 }  // namespace
 
 std::vector<PlanDecision> list_features(const scene::Scene& scene) {
-  return FeatureList(scene).take();
+  return FeatureList(scene).take_all();
+}
+
+std::vector<PlanDecision> list_ruled_features(const scene::Scene& scene) {
+  return FeatureList(scene).take_ruled();
 }
 
 }  // namespace meshlode::build

@@ -12,4 +12,8 @@ namespace meshlode::build {
 /// In a fixed order; only what the scene has. What import left out comes last, in its words.
 [[nodiscard]] std::vector<PlanDecision> list_features(const scene::Scene& scene);
 
+/// Those of them that a rule decides, of materials and instances: what the asset records. What is carried through
+/// stands in the asset anyway.
+[[nodiscard]] std::vector<PlanDecision> list_ruled_features(const scene::Scene& scene);
+
 }  // namespace meshlode::build

@@ -29,7 +29,7 @@ struct PlanDecision {
   bool is_loss = false;     ///< left out although the scene's materials can show it
   std::string attribute{};  ///< "TEXCOORD_0"; empty where the decision is about something else
   bool is_forced = false;   ///< by a name in AttributeRequest::keep or drop, against what would have been decided
-  std::uint32_t mesh = 0;   ///< which mesh of the scene; set where decisions of several are in one list
+  std::uint32_t mesh = 0;   ///< which mesh of the scene, kNone for none; set where decisions of several are in one list
 };
 
 /// What the caller asks for: by rule, then by name.

@@ -123,6 +123,11 @@ std::string info_text(const run::Asset& asset, const AssetInfo& info, bool list_
   append_format(out, "dropped           %s degenerate, %s duplicate, %s repaired\n",
                 grouped_digits(info.dropped_degenerate).c_str(), grouped_digits(info.dropped_duplicate).c_str(),
                 grouped_digits(info.dropped_repaired).c_str());
+  std::size_t setting_rows = 0;
+  for (const std::string& line : meta.setting_lines) {
+    if (setting_rows++ < kMaxRows) append_format(out, "settings          %s\n", printable(line, 400).c_str());
+  }
+  add_more(out, setting_rows, "meshes' settings");
   // What the plan leaves out is among what was left out, with its reason.
   std::size_t rows = 0;
   for (const MetaInfo::Decision& decision : meta.decisions) {

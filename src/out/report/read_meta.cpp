@@ -44,6 +44,26 @@ std::int64_t signed_or_none(std::optional<std::uint64_t> index) {
   return index && *index <= kLargest ? static_cast<std::int64_t>(*index) : -1;
 }
 
+/// "preset default, error_tier measured, …"
+std::string line_of(const Json& settings) {
+  std::string line;
+  for (const auto& [key, value] : settings.items()) {
+    if (key == "mesh_settings") continue;
+    line += (line.empty() ? "" : ", ") + key + " " + string_at(settings, key.c_str());
+  }
+  return line;
+}
+
+std::vector<std::string> lines_of(const Json& settings) {
+  std::vector<std::string> lines{line_of(settings)};
+  if (const Json* apart = child(settings, "mesh_settings", Json::value_t::array)) {
+    for (const Json& entry : *apart) {
+      if (entry.is_object()) lines.push_back(line_of(entry));
+    }
+  }
+  return lines;
+}
+
 }  // namespace
 
 MetaInfo read_meta(std::string_view meta_json) {
@@ -59,6 +79,7 @@ MetaInfo read_meta(std::string_view meta_json) {
   const auto dump = [](const Json& j) { return j.dump(-1, ' ', false, Json::error_handler_t::replace); };
   if (const Json* settings = child(json, "settings", Json::value_t::object)) {
     meta.settings = dump(*settings);
+    meta.setting_lines = lines_of(*settings);
     meta.preset = string_at(*settings, "preset");
     meta.scene = string_at(*settings, "scene");
     meta.repair = settings->contains("repair") && (*settings)["repair"] == true;

@@ -19,15 +19,16 @@ struct MetaInfo {
   };
   bool is_valid = false;  ///< false: not JSON, or not an object; everything below is then as here
   std::string generator, source_file, source_hash;
-  std::string settings = "{}";          ///< JSON object
-  std::string preset;                   ///< of the settings; empty where it is not said
-  std::string plan = "[]";              ///< JSON array
-  std::string left_out = "[]";          ///< JSON array
-  std::vector<Decision> decisions;      ///< of `plan`, for text
-  std::vector<LeftOut> left_outs;       ///< of `left_out`, for text
-  std::uint32_t cluster_triangles = 0;  ///< of the settings; 0 where it is not said
-  bool repair = false;                  ///< of the settings: the source was repaired
-  std::string scene;                    ///< of the settings: the scene that was asked for; empty: the default one
+  std::string settings = "{}";             ///< JSON object
+  std::vector<std::string> setting_lines;  ///< of `settings`, for text: the whole's, then those of meshes
+  std::string preset;                      ///< of the settings; empty where it is not said
+  std::string plan = "[]";                 ///< JSON array
+  std::string left_out = "[]";             ///< JSON array
+  std::vector<Decision> decisions;         ///< of `plan`, for text
+  std::vector<LeftOut> left_outs;          ///< of `left_out`, for text
+  std::uint32_t cluster_triangles = 0;     ///< of the settings; 0 where it is not said
+  bool repair = false;                     ///< of the settings: the source was repaired
+  std::string scene;                       ///< of the settings: the scene that was asked for; empty: the default
 };
 [[nodiscard]] MetaInfo read_meta(std::string_view meta_json);
 

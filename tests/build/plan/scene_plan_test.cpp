@@ -96,6 +96,20 @@ TEST(ScenePlan, WhatIsLeftOutHasASaving) {
   EXPECT_TRUE(uvs->precision.empty());
 }
 
+TEST(ScenePlan, TheAssetRecordsWhatRulesDecide) {
+  scene::Scene scene = scene_of(scene::make_plane(3));
+  scene.materials[0].alpha_mode = scene::AlphaMode::kBlend;
+  PipelineReport report;
+  auto bytes = build_lode(scene, {}, {}, report);
+  ASSERT_TRUE(bytes);
+  const auto asset = run::Asset::from_vector(std::move(*bytes));
+  ASSERT_TRUE(asset);
+  for (const char* what : {"scene: 1 blended material", "scene: 1 of 1 meshes"}) {
+    EXPECT_NE(asset->meta_json().find(std::string("{\"what\":\"") + what + "\",\"kept\":true"), std::string::npos)
+        << what;
+  }
+}
+
 TEST(ScenePlan, RefusesWhatTheBuildRefuses) {
   PipelineOptions options;
   options.grid_step = 1e-12;

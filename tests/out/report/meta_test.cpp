@@ -71,5 +71,15 @@ TEST(Meta, AnImageThatAnExtensionNamesIsTheTexturesImage) {
   EXPECT_EQ(textures[4].image, -1);
 }
 
+TEST(Meta, SettingsAreALineForTheWholeAndOneForEachKindOfMesh) {
+  const MetaInfo meta = read_meta(
+      R"({"settings":{"preset":"fast","repair":false,"normal_error":0.5,"keep":["NORMAL"],"mesh_settings":
+      [{"meshes":[1,2],"error_tier":"qem"},7]}})");
+  ASSERT_EQ(meta.setting_lines.size(), 2U);
+  EXPECT_EQ(meta.setting_lines[0], R"(preset fast, repair false, normal_error 0.5, keep ["NORMAL"])");
+  EXPECT_EQ(meta.setting_lines[1], "meshes [1,2], error_tier qem");
+  EXPECT_TRUE(read_meta(R"({"settings":[1]})").setting_lines.empty());
+}
+
 }  // namespace
 }  // namespace meshlode::out
