@@ -21,10 +21,11 @@ constexpr std::uint64_t kProcess = 22u << 20u;
 constexpr std::uint64_t kThread = 3u << 20u;
 constexpr std::uint64_t kDocumentByte = 40;
 constexpr std::uint64_t kKeptTriangle = 30;
-constexpr std::uint64_t kTriangle = 100;
-constexpr std::uint64_t kPosition = 420;
-constexpr std::uint64_t kPositionOfQuadric = 210;
-constexpr std::uint64_t kVertexFloat = 15;
+constexpr std::uint64_t kTriangle = 10;
+constexpr std::uint64_t kTriangleOfCertified = 50;
+constexpr std::uint64_t kPosition = 345;
+constexpr std::uint64_t kPositionOfQuadric = 205;
+constexpr std::uint64_t kVertexFloat = 8;
 
 template <class T>
 std::uint64_t bytes_of(const std::vector<T>& values) {
@@ -90,10 +91,11 @@ MemoryEstimate estimate_memory(const scene::Scene& scene, const PipelineOptions&
     const scene::SourceMesh& mesh = scene.meshes[i];
     const MeshOptions& own = options.of_mesh(i);
     const bool is_measured = own.error_tier != format::ErrorTier::kQem;
+    const bool is_certified = own.error_tier == format::ErrorTier::kCertified;
     const MeshCounts counts = count_mesh(mesh);
     for (const scene::Primitive& primitive : mesh.primitives) estimate.always += bytes_of(primitive);
     estimate.always += kKeptTriangle * counts.triangles;
-    estimate.working.push_back(kTriangle * counts.triangles +
+    estimate.working.push_back((is_certified ? kTriangleOfCertified : kTriangle) * counts.triangles +
                                (is_measured ? kPosition : kPositionOfQuadric) * count_wedges(mesh, {}) +
                                kVertexFloat * attribute_floats(mesh, own) * counts.vertices);
   }

@@ -224,6 +224,7 @@ TEST(Needs, MemoryIsEstimatedFromAboveAndCloseEnough) {
   expect_close(measure([] { return sheets(160, 1, true); }, kMeasured, 2),
                "with normals, UVs and colours, two threads");
   expect_close(measure([] { return sheets(160, 1, false); }, kQem, 2), "the quadric's tier");
+  expect_close(measure([] { return sheets(160, 1, false); }, kCertified, 2), "the certified tier");
   expect_close(measure([] { return sheets(50, 12, false); }, kMeasured, 2), "twelve meshes of 5,000");
   expect_close(measure([] { return sheets(20, 1, false); }, kMeasured, 1), "800 triangles");
   expect_close(measure([] { return loose(20000); }, kMeasured, 1), "20,000 loose triangles");
