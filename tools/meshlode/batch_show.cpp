@@ -42,6 +42,7 @@ std::uint64_t weigh(const fs::path& scene) {
 /// Only a bar of several files has to tell how long they take.
 std::vector<std::uint64_t> weights_of(const std::vector<batch::Job>& jobs, bool is_wanted) {
   std::vector<std::uint64_t> weights;
+  weights.reserve(jobs.size());
   for (const batch::Job& job : jobs) weights.push_back(is_wanted && jobs.size() > 1 ? weigh(job.input) : 1);
   return weights;
 }
