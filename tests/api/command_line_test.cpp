@@ -48,6 +48,7 @@ const Saying kSayings[] = {
      "foliage.glb"},
     {"--codec strips", [](BuildOptions& o) { o.codec = format::Codec::kStrips; }},
     {"--codec zstd --jobs 2", [](BuildOptions& o) { o.codec = format::Codec::kZstd, o.thread_count = 2; }},
+    {"--strict", [](BuildOptions&) {}},  // the library always is
     {"--repair", [](BuildOptions& o) { o.repair = true; }},
     {"--max-memory 64GiB", [](BuildOptions& o) { o.max_memory_bytes = std::uint64_t{64} << 30U; }},
     {"--max-decoded 1MiB", [](BuildOptions& o) { o.max_decoded_bytes = std::uint64_t{1} << 20U; }},
@@ -107,9 +108,11 @@ TEST(ApiCommandLine, WhatBothSayTheSameWayGivesTheSameBytes) {
 }
 
 TEST(ApiCommandLine, EveryOptionOfBuildIsSaid) {
-  // Files, reports and the terminal are the program's own.
-  std::set<std::string> said = {"--help",  "--output",           "--output-folder", "--report", "--format",
-                                "--quiet", "--no-settings-file", "--settings-root", "--explain"};
+  // Files, reports, the terminal, batches and the cache are the program's own, and which scene of a file is built.
+  std::set<std::string> said = {
+      "--help",    "--output",    "--output-folder", "--report", "--format",           "--quiet",
+      "--junit",   "--manifest",  "--depfile",       "--cache",  "--no-cache",         "--cache-limit",
+      "--dry-run", "--fail-fast", "--explain",       "--scene",  "--no-settings-file", "--settings-root"};
   for (const Saying& saying : kSayings) said.merge(options_in(saying.words));
   const std::set<std::string> offered = options_in(run_program("build --help"));
   ASSERT_TRUE(offered.contains("--error-tier"));

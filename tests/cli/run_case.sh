@@ -13,6 +13,7 @@ expected=${case_file%.sh}.expected
 REPOSITORY=$(cd "$(dirname "$0")/../.." && pwd)
 DATA=$REPOSITORY/data
 SCHEMAS=$REPOSITORY/docs/schemas
+unset MESHLODE_CACHE
 work=$(mktemp -d); trap 'rm -rf "$work"' EXIT
 cd "$work"
 mkdir work && cd work

@@ -48,9 +48,9 @@ constexpr std::array kLibraries = {
 
 /// Standard C++ headers have neither dot nor slash; these are the C and POSIX headers in use.
 bool is_system(const std::string& path) {
-  static const std::set<std::string> posix = {"unistd.h",   "fcntl.h",        "sys/mman.h", "sys/stat.h", "sys/types.h",
-                                              "sys/file.h", "sys/resource.h", "fenv.h",     "dlfcn.h",    "link.h",
-                                              "pthread.h",  "immintrin.h",    "stdint.h",   "stddef.h",   "stdlib.h"};
+  static const std::set<std::string> posix = {
+      "unistd.h", "fcntl.h", "sys/mman.h", "sys/stat.h",  "sys/types.h", "sys/file.h", "sys/resource.h", "fenv.h",
+      "dlfcn.h",  "link.h",  "pthread.h",  "immintrin.h", "stdint.h",    "stddef.h",   "stdlib.h",       "malloc.h"};
   return path.find_first_of("./") == std::string::npos || posix.contains(path);
 }
 
