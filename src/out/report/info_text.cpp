@@ -87,6 +87,14 @@ void add_more(std::string& out, std::size_t total, const char* what) {
   if (total > kMaxRows) append_format(out, "  … and %zu more %s (--format json lists all)\n", total - kMaxRows, what);
 }
 
+void append_sections(std::string& out, const run::Asset& asset) {
+  append_format(out, "\nsections        bytes     decoded\n");
+  for (const format::SectionEntry& section : asset.sections()) {
+    append_format(out, "  %s  %12s %11s\n", section_name(section.id).c_str(), grouped_digits(section.bytes).c_str(),
+                  grouped_digits(section_decoded_bytes(asset, section)).c_str());
+  }
+}
+
 }  // namespace
 
 std::string info_text(const run::Asset& asset, const AssetInfo& info, bool list_stuck) {
@@ -167,11 +175,7 @@ std::string info_text(const run::Asset& asset, const AssetInfo& info, bool list_
   }
   add_more(out, asset.materials().size(), "materials");
   if (info.byte_map) add_byte_map(out, *info.byte_map, info);
-  append_format(out, "\nsections        bytes     decoded\n");
-  for (const format::SectionEntry& section : asset.sections()) {
-    append_format(out, "  %s  %12s %11s\n", section_name(section.id).c_str(), grouped_digits(section.bytes).c_str(),
-                  grouped_digits(section_decoded_bytes(asset, section)).c_str());
-  }
+  append_sections(out, asset);
   return out;
 }
 
