@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -126,7 +127,52 @@ Json settings_json(const scene::Scene& scene, const PipelineOptions& options,
   return settings;
 }
 
+/// One past the string that begins at `at`. Stays inside any text: the parser that accepted it stops at a zero byte.
+std::size_t end_of_string(std::string_view text, std::size_t at) {
+  for (++at; at < text.size() && text[at] != '"'; ++at) {
+    if (text[at] == '\\') ++at;
+  }
+  return std::min(at + 1, text.size());
+}
+
+/// Where the string lies that is the codec of the settings, quotes and all; empty where there is none.
+std::pair<std::size_t, std::size_t> find_codec(std::string_view text) {
+  int depth = 0;
+  bool is_settings = false, is_codec = false;  // the last key at depth 1, at depth 2 below it
+  for (std::size_t at = 0; at < text.size();) {
+    const char c = text[at];
+    if (c == '{' || c == '[') {
+      ++depth;
+    } else if (c == '}' || c == ']') {
+      --depth;
+    }
+    if (c != '"') {
+      ++at;
+      continue;
+    }
+    const std::size_t end = end_of_string(text, at);
+    const std::string_view word = text.substr(at, end - at);
+    const std::size_t next = text.find_first_not_of(" \t\r\n", end);
+    if (next != std::string_view::npos && text[next] == ':') {
+      if (depth == 1) is_settings = word == R"("settings")";
+      if (depth <= 2) is_codec = depth == 2 && is_settings && word == R"("codec")";
+    } else if (depth == 2 && is_codec) {
+      return {at, end};
+    }
+    at = end;
+  }
+  return {0, 0};
+}
+
 }  // namespace
+
+std::string meta_with_codec(std::string_view meta, format::Codec codec) {
+  std::string text(meta);
+  if (!Json::accept(text)) return text;
+  const auto [begin, end] = find_codec(text);
+  if (end > begin) text.replace(begin, end - begin, '"' + std::string(format::name_of(codec)) + '"');
+  return text;
+}
 
 std::string meta_json(const scene::Scene& scene, const PipelineOptions& options,
                       const std::vector<PlanDecision>& decisions) {

@@ -3,7 +3,10 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
+
+#include <meshlode/format.h>
 
 #include "build/build.h"
 #include "build/plan/plan.h"
@@ -12,5 +15,9 @@ namespace meshlode::build {
 
 [[nodiscard]] std::string meta_json(const scene::Scene& scene, const PipelineOptions& options,
                                     const std::vector<PlanDecision>& decisions);
+
+/// The same text with another name for the codec in its settings, to the byte. A text that is no JSON, or does not say
+/// a codec, stays as it is.
+[[nodiscard]] std::string meta_with_codec(std::string_view meta, format::Codec codec);
 
 }  // namespace meshlode::build

@@ -26,5 +26,6 @@ extern const Verb kValidateVerb;
 extern const Verb kVerifyVerb;
 extern const Verb kRenderVerb;
 extern const Verb kExtractVerb;
+extern const Verb kRepackVerb;
 
 }  // namespace meshlode::cli

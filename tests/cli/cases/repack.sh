@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Another codec without the scene: the bytes of a build with that codec, from every codec to every other.
+codecs="none lz4 zstd strips draco"
+cp "$DATA/crystal.glb" a.glb
+for codec in $codecs; do
+  code build --quiet a.glb -o "$codec.lode" --codec "$codec"
+done
+for from in $codecs; do
+  for to in $codecs; do
+    "$MESHLODE" repack --quiet "$from.lode" -o out.lode --codec "$to" || echo "failed: $from to $to"
+    cmp out.lode "$to.lode" || echo "other bytes: $from to $to"
+    rm -f out.lode
+  done
+done
+cp "$DATA/rock.glb" b.glb  # with an image
+code build --quiet b.glb -o b.lode --codec lz4
+code build --quiet b.glb -o b_strips.lode --codec strips
+for jobs in 1 3; do
+  code repack --quiet b.lode -o "out$jobs.lode" --codec strips --jobs $jobs
+  cmp "out$jobs.lode" b_strips.lode && echo same bytes
+done
+code validate --quiet out1.lode
+hash_of() { "$MESHLODE" info "$1" --format json | grep -o '"content_hash": *"[0-9a-f]*"'; }
+[ "$(hash_of b.lode)" = "$(hash_of out1.lode)" ] && echo same content
+"$MESHLODE" repack b.lode -o out.lode --codec none | sed 's/[0-9]\{4,\} bytes/N bytes/g; s/[0-9a-f]\{32\}/HASH/'
+code verify out.lode --source b.glb --quick --quiet
+
+run repack b.lode
+run repack b.lode -o c.lode
+run repack b.lode -o c.lode --codec gzip
+run repack b.lode -o b.lode --codec none
+ln -s b.lode link
+run repack b.lode -o link --codec none
+run repack missing.lode -o c.lode --codec none
+run repack a.glb -o c.lode --codec none
+head -c 5000 b.lode >short.lode
+code repack short.lode -o c.lode --codec none
+# A byte of the image, which no checksum that opening looks at covers.
+cp b.lode broken.lode
+printf '\001' | dd of=broken.lode bs=1 seek=$(($(wc -c <b.lode) - 100)) conv=notrunc status=none
+run repack broken.lode -o c.lode --codec none
+run repack b.lode -o c.lode --codec none --max-decoded 0x
+run repack b.lode -o no/such/folder/c.lode --codec none
+files

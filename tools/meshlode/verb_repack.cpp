@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// repack: an asset with its pages under another codec, without the scene that it was built from. What it says stays the
+// same, and so does its content hash, which is computed again before anything is done and again of what will be
+// written.
+#include <cstring>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/hash.h"
+#include "base/json_writer.h"
+#include "build/write/repack.h"
+#include "build/write_meta.h"
+#include "format/names.h"
+#include "options.h"
+#include "outputs.h"
+#include "run/decode/decode.h"
+#include "run/read/asset.h"
+#include "run/unpack/content_hash.h"
+#include "run/unpack/unpack.h"
+#include "verb.h"
+
+namespace meshlode::cli {
+
+namespace {
+
+struct RepackOptions {
+  std::string input;
+  std::optional<std::string> output, codec;
+  std::uint32_t jobs = 0;
+  std::string max_decoded = kDefaultMaxDecodedText;
+  OutputOptions out;
+};
+
+Hash128 stated_hash(const run::Asset& asset) {
+  Hash128 hash{};
+  std::memcpy(hash.data(), asset.header().content_hash, hash.size());
+  return hash;
+}
+
+/// An asset that does not say what its own hash is of has been changed since it was written.
+Status check_content(const run::Asset& asset) {
+  const auto hash = run::hash_asset_content(asset);
+  if (!hash) return hash.error();
+  if (*hash == stated_hash(asset)) return Ok{};
+  return Error{ErrorCode::kInvalid, "header, field content_hash", "is not that of the content"};
+}
+
+Result<std::vector<std::uint8_t>> repack(const run::Asset& asset, format::Codec codec) {
+  std::uint64_t page_bytes = 0;
+  for (const format::PageRecord& page : asset.pages()) page_bytes += page.bytes;
+  if (const Status status = run::check_decoded_bytes(asset, page_bytes); !status) return status.error();
+  if (const Status status = check_content(asset); !status) return status.error();
+
+  build::RepackInput input;
+  for (const format::SectionEntry& entry : asset.sections()) {
+    input.sections.push_back({entry, asset.section_bytes(entry)});
+  }
+  input.content_hash = stated_hash(asset);
+  input.meta_json = build::meta_with_codec(asset.meta_json(), codec);
+  input.load_page = [&](std::size_t p) -> Result<std::vector<std::uint8_t>> {
+    const auto page = run::load_page(asset, PageId{p});
+    if (!page) return page.error();
+    return std::vector<std::uint8_t>(page->bytes().begin(), page->bytes().end());
+  };
+  input.codec = codec;
+  auto bytes = build::repack_asset(input);
+  if (!bytes) return bytes.error();
+
+  const auto written = run::Asset::from_bytes(*bytes);
+  const Status same = written ? check_content(*written) : Status(written.error());
+  if (!same) return Error{ErrorCode::kBuildFailed, "what would be written", same.error().message()};
+  return bytes;
+}
+
+std::string describe_json(const RepackOptions& o, const run::Asset& asset, std::size_t bytes) {
+  JsonWriter w;
+  w.begin_object();
+  w.field("file", o.input);
+  w.field("output", *o.output);
+  w.field("codec", *o.codec);
+  w.field("content_hash", to_hex(stated_hash(asset)));
+  w.field("input_bytes", asset.bytes().size());
+  w.field("bytes", bytes);
+  w.end_object();
+  return w.text();
+}
+
+std::string describe_text(const RepackOptions& o, const run::Asset& asset, std::size_t bytes) {
+  return o.input + ": " + std::to_string(asset.bytes().size()) + " bytes -> " + *o.output + ", " +
+         std::to_string(bytes) + " bytes with " + *o.codec + ", content " + to_hex(stated_hash(asset)) + "\n";
+}
+
+/// The place within the file, after its name.
+int print_error_in(const std::string& file, Error error) {
+  error.where = error.where.empty() ? file : file + ": " + error.where;
+  return print_error(error);
+}
+
+int run_repack(const Verb& verb, std::span<char* const> args) {
+  RepackOptions o;
+  OptionParser parser(verb);
+  parser.add_positional("FILE", o.input, "a .lode asset");
+  parser.add_value("-o,--output", o.output, "the asset to write");
+  parser.add_value("--codec", o.codec, "how pages are stored on disk", all_names(format::kCodecNames));
+  add_jobs_option(parser, o.jobs);
+  add_max_decoded_option(parser, o.max_decoded);
+  add_output_options(parser, o.out);
+  if (const auto exit_code = parser.parse(args)) return *exit_code;
+  if (!o.output) return print_error({ErrorCode::kUsage, "-o", "say where the asset goes"});
+  if (!o.codec) return print_error({ErrorCode::kUsage, "--codec", "say how pages are to be stored"});
+  const std::optional<format::Codec> codec = value_in(format::kCodecNames, *o.codec);
+  const Result<std::uint64_t> max_decoded = parse_max_decoded(o.max_decoded);
+  if (!max_decoded) return print_error(max_decoded.error());
+
+  const auto asset = run::Asset::open(o.input, *max_decoded);
+  if (!asset) return print_error(asset.error());
+  if (const auto id = asset->file_id()) output_files().keep(*id);
+  if (const Status free = output_files().claim(*o.output); !free) return print_error(free.error());
+  Result<std::vector<std::uint8_t>> bytes = Error{};
+  JobLimit jobs(o.jobs);
+  jobs.run([&] { bytes = repack(*asset, *codec); });
+  if (!bytes) return print_error_in(o.input, bytes.error());
+  if (const Status status = output_files().write(*o.output, *bytes); !status) return print_error(status.error());
+  if (o.out.quiet && !o.out.json()) return 0;
+  const std::string text =
+      o.out.json() ? describe_json(o, *asset, bytes->size()) : describe_text(o, *asset, bytes->size());
+  return print_out(text) ? 0 : static_cast<int>(ErrorCode::kIo);
+}
+
+}  // namespace
+
+const Verb kRepackVerb{"repack", "store an asset's pages with another codec, without building it again",
+                       "meshlode repack scene.lode -o small.lode --codec strips\n"
+                       "  meshlode repack scene.lode -o plain.lode --codec none",
+                       run_repack};
+
+}  // namespace meshlode::cli
