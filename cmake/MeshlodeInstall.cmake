@@ -7,13 +7,16 @@
 #                      is libc (and zstd, lz4).
 #   meshlode::build    shared, GPL-3.0-or-later: the builder behind <meshlode/build.h>. Shared, so that its third-party
 #                      libraries are its own affair.
+# Each file belongs to one of three components, which are the packages of MeshlodePackages.cmake: runtime (the C library),
+# tools (the program and the builder's library) and dev (headers, the static library, what find_package reads).
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 set_target_properties(meshlode_cli PROPERTIES EXPORT_NAME program)
-install(TARGETS meshlode_cli EXPORT meshlodeTargets RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-install(FILES LICENSES/GPL-3.0-or-later.txt LICENSES/MIT.txt DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(DIRECTORY docs/schemas/ DESTINATION ${CMAKE_INSTALL_DATADIR}/meshlode/schemas FILES_MATCHING PATTERN "*.json")
+install(TARGETS meshlode_cli EXPORT meshlodeTargets RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT tools)
+install(FILES LICENSES/GPL-3.0-or-later.txt LICENSES/MIT.txt DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT tools)
+install(DIRECTORY docs/schemas/ DESTINATION ${CMAKE_INSTALL_DATADIR}/meshlode/schemas COMPONENT tools
+        FILES_MATCHING PATTERN "*.json")
 
 option(MESHLODE_INSTALL_DRACO "The installed runtime libraries read pages stored with draco, and need libdraco" OFF)
 set(meshlode_runtime_objects $<TARGET_OBJECTS:meshlode_base_objects> $<TARGET_OBJECTS:meshlode_format_objects>
@@ -54,8 +57,9 @@ endif()
 
 install(FILES include/meshlode/format.h include/meshlode/page.h include/meshlode/decode.glsl
               include/meshlode/result.h include/meshlode/runtime.h include/meshlode/meshlode.h
-        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/meshlode)
+        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/meshlode COMPONENT dev)
 
+# Shows the functions of <meshlode/build.h> and nothing else: METIS, CGAL and what else is inside is nobody's business.
 # meshlode_thread_rand stays out: a library must not replace its host's rand().
 add_library(meshlode_build_library SHARED $<TARGET_OBJECTS:meshlode_build>)
 target_link_libraries(meshlode_build_library PRIVATE meshlode_build)
@@ -63,12 +67,18 @@ set_target_properties(meshlode_build_library PROPERTIES OUTPUT_NAME meshlode_bui
                                                         VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})
 target_include_directories(meshlode_build_library INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
 target_compile_features(meshlode_build_library INTERFACE cxx_std_20)
-install(FILES include/meshlode/build.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/meshlode)
+set(meshlode_build_symbols ${CMAKE_CURRENT_LIST_DIR}/meshlode_build.map)
+target_link_options(meshlode_build_library PRIVATE -Wl,--version-script=${meshlode_build_symbols})
+set_property(TARGET meshlode_build_library APPEND PROPERTY LINK_DEPENDS ${meshlode_build_symbols})
+install(FILES include/meshlode/build.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/meshlode COMPONENT dev)
 
 set(meshlode_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/meshlode)
-install(TARGETS meshlode_runtime meshlode_c meshlode_build_library EXPORT meshlodeTargets
-        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(EXPORT meshlodeTargets NAMESPACE meshlode:: DESTINATION ${meshlode_package_dir})
+install(TARGETS meshlode_runtime EXPORT meshlodeTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT dev)
+install(TARGETS meshlode_c EXPORT meshlodeTargets
+        LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT runtime NAMELINK_COMPONENT dev)
+install(TARGETS meshlode_build_library EXPORT meshlodeTargets
+        LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT tools NAMELINK_COMPONENT dev)
+install(EXPORT meshlodeTargets NAMESPACE meshlode:: DESTINATION ${meshlode_package_dir} COMPONENT dev)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/meshlodeConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/meshlodeConfigVersion.cmake cmake/meshlodeConfig.cmake cmake/MeshlodeAssets.cmake
-        DESTINATION ${meshlode_package_dir})
+        DESTINATION ${meshlode_package_dir} COMPONENT dev)

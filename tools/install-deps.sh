@@ -20,6 +20,7 @@ if [ "${1:-}" = --tests ]; then
              python3                                       # the independent readers of the format and of glTF
              libopenmesh-dev                               # an oracle of topology, a reference simplifier
              make                                          # a stranger's project, built by what CMake takes by itself
+             file dpkg-dev debootstrap                     # Debian packages, and a bare root to install them in
              mesa-vulkan-drivers vulkan-validationlayers)  # a Vulkan device on any machine, and its judge
 fi
 
