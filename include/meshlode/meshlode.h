@@ -59,7 +59,8 @@ typedef enum meshlode_status {
   MESHLODE_INVALID = 3, /* the bytes are not an asset; the text names the place in them */
   MESHLODE_OUT_OF_MEMORY = 4,
   MESHLODE_UNSUPPORTED = 5, /* a newer version, an unknown required section, a codec that is not built in */
-  MESHLODE_TOO_SMALL = 7    /* the caller's memory is too small; what is needed was stored where the function says */
+  MESHLODE_TOO_SMALL = 7,   /* the caller's memory is too small; what is needed was stored where the function says */
+  MESHLODE_BUILD_FAILED = 8 /* from <meshlode/meshlode_build.h> alone: cancelled, or not enough memory */
 } meshlode_status;
 
 typedef struct meshlode_error {

@@ -79,7 +79,7 @@ inside "$entry validate strips.lode && $entry verify strips.lode --source crysta
 echo "== programs against libmeshlode-dev"
 mkdir -p "$root/packages" "$root/examples"
 cp "$work/debs"/*.deb "$root/packages/"
-cp -r "$source/tests/api/example.cpp" "$source/tests/api/c_example.c" "$source/tests/install/consumer" "$root/examples/"
+cp -r "$source/tests/api"/{example.cpp,c_example.c,c_build_example.c} "$source/tests/install/consumer" "$root/examples/"
 inside "apt-get update && apt-get install -y --no-install-recommends /packages/*.deb g++ cmake make" >"$work/log" 2>&1 ||
   { cat "$work/log"; fail "the packages do not install"; }
 folder=/examples
@@ -90,6 +90,7 @@ while read -r line; do
 done < <(grep -E '^(c\+\+|cc) ' "$source/docs/packages.md")
 inside "./example example.lode"
 inside "./c_example example.lode"
+inside "./c_build_example"
 inside "ldd ./c_example" | grep -F libmeshlode.so.0 || fail "the C example does not use libmeshlode.so.0"
 inside "cmake -S consumer -B b >/dev/null && cmake --build b" >"$work/log" 2>&1 || { cat "$work/log"; fail "the consumer"; }
 inside "b/use_build triangle.lode && b/use_runtime triangle.lode && b/use_c triangle.lode"

@@ -21,8 +21,10 @@ holds() {
 holds "$c_library" meshlode
 holds "$build_library" meshlode_build
 
-# What the C header declares is what the library has.
-declared=$(sed -n 's/^MESHLODE_API .*\(meshlode_[a-z0-9_]*\)(.*/\1/p' "$source/include/meshlode/meshlode.h" | LC_ALL=C sort)
-diff -u "$lists/meshlode.symbols" <(echo "$declared") || fail "meshlode.h declares other functions"
+# What the C headers declare is what the libraries have.
+declared() { sed -n 's/^MESHLODE_API .*\(meshlode_[a-z0-9_]*\)(.*/\1/p' "$source/include/meshlode/$1" | LC_ALL=C sort; }
+diff -u "$lists/meshlode.symbols" <(declared meshlode.h) || fail "meshlode.h declares other functions"
+diff -u <(grep '^meshlode_' "$lists/meshlode_build.symbols") <(declared meshlode_build.h) ||
+  fail "meshlode_build.h declares other functions"
 [ $failed -eq 0 ] || exit 1
 echo "PASSED: $(wc -l <"$lists/meshlode.symbols") symbols of C, $(wc -l <"$lists/meshlode_build.symbols") of the builder"

@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// <meshlode/meshlode_build.h> over <meshlode/build.h>: C's pointers and counts become spans, and enumerators that C
+// writes as numbers are looked at before they are one.
+#include <meshlode/meshlode_build.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+#include <iterator>
+#include <limits>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <meshlode/build.h>
+
+#include "base/guarded.h"
+#include "base/output_files.h"
+
+namespace meshlode {
+namespace {
+
+/// A view of what lies in a scene_input: names and arrays are the caller's, tables of views are here.
+struct SceneViews {
+  std::vector<std::vector<PrimitiveInput>> primitives;
+  std::vector<MeshInput> meshes;
+  std::vector<MaterialInput> materials;
+  std::vector<InstanceInput> instances;
+};
+
+Error usage(std::string where, const char* detail) {
+  return {ErrorCode::kUsage, std::move(where), detail};
+}
+
+std::string at(const char* array, std::size_t index) {
+  return std::string(array) + '[' + std::to_string(index) + ']';
+}
+
+std::string_view text_of(const char* text) {
+  return text == nullptr ? std::string_view() : std::string_view(text);
+}
+
+template <class T>
+std::span<const T> numbers(const T* first, std::size_t components, std::size_t count) {
+  return first == nullptr ? std::span<const T>() : std::span<const T>(first, components * count);
+}
+
+/// As many as fit 32-bit ids, so that no product of a count wraps around.
+Status check_table(const void* first, std::size_t count, const std::string& where) {
+  if (count > std::numeric_limits<std::uint32_t>::max()) return usage(where, "is more than there are ids for");
+  if (count > 0 && first == nullptr) return usage(where, "has a count and no elements");
+  return Ok{};
+}
+
+Result<PrimitiveInput> view(const meshlode_primitive_input& in, const std::string& where) {
+  if (Status status = check_table(&in, in.vertex_count, where + ".vertex_count"); !status) return status.error();
+  if (Status status = check_table(in.indices, in.triangle_count, where + ".indices"); !status) return status.error();
+  PrimitiveInput out;
+  out.positions = numbers(in.positions, 3, in.vertex_count);
+  out.positions_double = numbers(in.positions_double, 3, in.vertex_count);
+  out.normals = numbers(in.normals, 3, in.vertex_count);
+  for (std::size_t k = 0; k < out.uvs.size(); ++k) out.uvs[k] = numbers(in.uvs[k], 2, in.vertex_count);
+  out.colors = numbers(in.colors, 4, in.vertex_count);
+  out.indices = numbers(in.indices, 3, in.triangle_count);
+  out.material = in.material;
+  return out;
+}
+
+MaterialInput view(const meshlode_material_input& in) {
+  MaterialInput out;
+  out.name = text_of(in.name);
+  std::copy(std::begin(in.base_color), std::end(in.base_color), out.base_color.begin());
+  out.alpha_mode = static_cast<format::AlphaMode>(in.alpha_mode);  // checked with the scene
+  out.alpha_cutoff = in.alpha_cutoff;
+  out.double_sided = in.double_sided != 0;
+  out.uv_sets_used = in.uv_sets_used;
+  return out;
+}
+
+InstanceInput view(const meshlode_instance_input& in) {
+  InstanceInput out;
+  out.name = text_of(in.name);
+  out.mesh = in.mesh;
+  std::copy(std::begin(in.transform), std::end(in.transform), out.transform.begin());
+  return out;
+}
+
+Status view_meshes(const meshlode_scene_input& scene, SceneViews& out) {
+  for (std::size_t m = 0; m < scene.mesh_count; ++m) {
+    const meshlode_mesh_input& mesh = scene.meshes[m];
+    const std::string where = at("meshes", m);
+    const Status has_all = check_table(mesh.primitives, mesh.primitive_count, where + ".primitives");
+    if (!has_all) return has_all;
+    std::vector<PrimitiveInput>& primitives = out.primitives.emplace_back();
+    for (std::size_t p = 0; p < mesh.primitive_count; ++p) {
+      auto primitive = view(mesh.primitives[p], where + "." + at("primitives", p));
+      if (!primitive) return primitive.error();
+      primitives.push_back(*primitive);
+    }
+    out.meshes.push_back({text_of(mesh.name), {}});
+  }
+  for (std::size_t m = 0; m < scene.mesh_count; ++m) out.meshes[m].primitives = out.primitives[m];
+  return Ok{};
+}
+
+Result<SceneInput> view_scene(const meshlode_scene_input* scene, SceneViews& views) {
+  if (scene == nullptr) return usage("scene", "is not there");
+  if (Status s = check_table(scene->meshes, scene->mesh_count, "meshes"); !s) return s.error();
+  if (Status s = check_table(scene->materials, scene->material_count, "materials"); !s) return s.error();
+  if (Status s = check_table(scene->instances, scene->instance_count, "instances"); !s) return s.error();
+  if (Status s = view_meshes(*scene, views); !s) return s.error();
+  for (std::size_t i = 0; i < scene->material_count; ++i) views.materials.push_back(view(scene->materials[i]));
+  for (std::size_t i = 0; i < scene->instance_count; ++i) views.instances.push_back(view(scene->instances[i]));
+  SceneInput out;
+  out.name = text_of(scene->name);
+  out.meshes = views.meshes;
+  out.materials = views.materials;
+  out.instances = views.instances;
+  return out;
+}
+
+Result<BuildOptions> read_options(const meshlode_build_options& in) {
+  const auto limit = [](const char* field) { return usage(field, "is not one of its enumerators"); };
+  if (in.error_tier > 2 && in.error_tier != MESHLODE_TIER_OF_PRESET) return limit("error_tier");
+  if (in.preset > 2) return limit("preset");
+  if (in.attributes > 2) return limit("attributes");
+  BuildOptions out;
+  if (in.error_tier != MESHLODE_TIER_OF_PRESET) out.error_tier = static_cast<format::ErrorTier>(in.error_tier);
+  out.preset = static_cast<Preset>(in.preset);
+  out.attributes = static_cast<AttributeChoice>(in.attributes);
+  out.codec = static_cast<format::Codec>(in.codec);  // as wide as C's, and checked there
+  out.grid_step = in.grid_step;
+  out.position_error = in.position_error;
+  out.normal_error = in.normal_error;
+  out.uv_error = in.uv_error;
+  out.uv_error_unit = in.uv_error_is_texels != 0 ? UvErrorUnit::kTexels : UvErrorUnit::kUv;
+  out.repair = in.repair != 0;
+  out.max_memory_bytes = in.max_memory_bytes;
+  out.thread_count = in.thread_count;
+  return out;
+}
+
+Result<std::vector<std::uint8_t>> build_bytes(const meshlode_scene_input* scene, const meshlode_build_options* given) {
+  meshlode_build_options options;
+  meshlode_build_defaults(&options);
+  if (given != nullptr) options = *given;
+  SceneViews views;
+  const auto input = view_scene(scene, views);
+  if (!input) return input.error();
+  auto read = read_options(options);
+  if (!read) return read.error();
+  bool is_cancelled = false;
+  if (options.on_progress != nullptr) {
+    read->on_progress = [&](const BuildProgress& progress) {
+      is_cancelled = is_cancelled || options.on_progress(progress.fraction, options.user) != 0;
+    };
+    read->should_cancel = [&] { return is_cancelled; };
+  }
+  return build_asset(*input, *read);
+}
+
+meshlode_status status_of(ErrorCode code) {
+  switch (code) {
+    case ErrorCode::kUsage: return MESHLODE_USAGE;
+    case ErrorCode::kIo: return MESHLODE_IO;
+    case ErrorCode::kInvalid: return MESHLODE_INVALID;
+    case ErrorCode::kUnsupported: return MESHLODE_UNSUPPORTED;
+    case ErrorCode::kBuildFailed:
+    case ErrorCode::kCheckFailed: break;
+  }
+  return MESHLODE_BUILD_FAILED;
+}
+
+meshlode_status report(const Status& result, meshlode_error* error) {
+  const meshlode_status status = result ? MESHLODE_OK : status_of(result.error().code);
+  if (error == nullptr) return status;
+  const std::string text = result ? std::string() : result.error().message();
+  error->status = status;
+  std::size_t size = std::min(text.size(), sizeof error->text - 1);
+  // Not in the middle of a character of UTF-8.
+  while (size > 0 && size < text.size() && (static_cast<unsigned char>(text[size]) & 0xC0U) == 0x80U) --size;
+  std::memcpy(error->text, text.data(), size);
+  error->text[size] = '\0';
+  return status;
+}
+
+}  // namespace
+}  // namespace meshlode
+
+extern "C" {
+
+void meshlode_build_defaults(meshlode_build_options* options) {
+  const meshlode::BuildOptions defaults;
+  *options = {};
+  options->error_tier = MESHLODE_TIER_OF_PRESET;
+  options->preset = static_cast<uint32_t>(defaults.preset);
+  options->attributes = static_cast<uint32_t>(defaults.attributes);
+  options->normal_error = defaults.normal_error;
+}
+
+meshlode_status meshlode_build_to_buffer(const meshlode_scene_input* scene, const meshlode_build_options* options,
+                                         void** bytes, size_t* size, meshlode_error* error) {
+  using meshlode::Status;
+  return meshlode::report(meshlode::guarded({},
+                                            [&]() -> Status {
+                                              if (bytes == nullptr || size == nullptr)
+                                                return meshlode::usage("bytes", "has no place");
+                                              const auto built = meshlode::build_bytes(scene, options);
+                                              if (!built) return built.error();
+                                              void* const copy =
+                                                  std::malloc(built->size());  // at least a header, so never empty
+                                              if (copy == nullptr) return meshlode::out_of_memory({});
+                                              std::memcpy(copy, built->data(), built->size());
+                                              *bytes = copy;
+                                              *size = built->size();
+                                              return meshlode::Ok{};
+                                            }),
+                          error);
+}
+
+void meshlode_build_free(void* bytes) {
+  std::free(bytes);
+}
+
+meshlode_status meshlode_build_to_file(const meshlode_scene_input* scene, const meshlode_build_options* options,
+                                       const char* path, meshlode_error* error) {
+  using meshlode::Status;
+  return meshlode::report(meshlode::guarded({},
+                                            [&]() -> Status {
+                                              if (path == nullptr) return meshlode::usage("path", "is not there");
+                                              meshlode::OutputFiles files;
+                                              if (Status free = files.claim(path); !free) return free;
+                                              const auto built = meshlode::build_bytes(scene, options);
+                                              if (!built) return built.error();
+                                              return files.write(path, *built);
+                                            }),
+                          error);
+}
+
+}  // extern "C"
