@@ -22,10 +22,14 @@ namespace meshlode::batch {
 /// The settings of one job: files beside its scene and above it, outermost first, then what was given.
 using SettingsOf = std::function<Result<std::vector<build::SettingLayer>>(const Job& job)>;
 
+/// Looks at an asset that a job has made, or found made. Errors: kCheckFailed, or why it could not be looked at.
+using CheckAsset = std::function<Status(const std::filesystem::path& asset)>;
+
 struct BatchOptions {
   build::PipelineOptions pipeline;  ///< of all jobs
   SettingsOf settings_of;           ///< where there is one, a job's own settings go before `pipeline`
   scene::ImportOptions import;
+  CheckAsset check_asset;                 ///< where there is one, its error is the job's; the asset stays
   const Cache* cache = nullptr;           ///< may be none
   bool is_dry_run = false;                ///< nothing is written: what would be done, and why
   bool fail_fast = false;                 ///< what comes after a failure is skipped

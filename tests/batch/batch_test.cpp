@@ -69,6 +69,37 @@ TEST_F(BatchTest, ASecondRunDoesNothingAndAChangeRebuildsItsDependantsAlone) {
   EXPECT_EQ(statuses(run({"1", "2", "3"}, "out")), "cached cached unchanged");
 }
 
+TEST_F(BatchTest, AnAssetThatIsRefusedStaysAndFailsItsJobHoweverItCame) {
+  for (const std::uint32_t i : {1, 2}) folder_.write_scene("in/" + std::to_string(i), i);
+  std::vector<fs::path> seen;
+  BatchOptions picky;
+  picky.check_asset = [&](const fs::path& asset) -> Status {
+    EXPECT_TRUE(fs::exists(asset)) << asset;
+    seen.push_back(asset);
+    if (asset.filename() == "1.lode") return Error{ErrorCode::kCheckFailed, asset.string(), "too much"};
+    return Ok{};
+  };
+  const auto built = run({"1", "2"}, "out", picky);
+  EXPECT_EQ(statuses(built), "failed built");
+  EXPECT_EQ(built[0].exit_code, static_cast<int>(ErrorCode::kCheckFailed));
+  EXPECT_EQ(worst_exit_code(built), static_cast<int>(ErrorCode::kCheckFailed));
+  EXPECT_NE(built[0].error.find("too much"), std::string::npos);
+  EXPECT_EQ(statuses(run({"1", "2"}, "out", picky)), "failed unchanged");
+  EXPECT_EQ(statuses(run({"1", "2"}, "other", picky)), "failed cached");
+  EXPECT_EQ(seen.size(), 6U);
+  EXPECT_EQ(statuses(run({"1", "2"}, "out")), "unchanged unchanged");
+  picky.fail_fast = true;
+  EXPECT_EQ(statuses(run({"1", "2"}, "out", picky)), "failed skipped");
+  picky.is_dry_run = true;
+  EXPECT_EQ(statuses(run({"1", "2"}, "out", picky)), "unchanged unchanged");
+  EXPECT_EQ(seen.size(), 7U);
+  // What was not made is not looked at.
+  picky.is_dry_run = false;
+  folder_.write("in/3.gltf", "broken");
+  EXPECT_EQ(statuses(run({"3"}, "out", picky)), "failed");
+  EXPECT_EQ(seen.size(), 7U);
+}
+
 TEST_F(BatchTest, WhatIsTakenIsWhatWouldBeBuilt) {
   folder_.write_scene("in/1", 1);
   const auto built = run({"1"}, "first");

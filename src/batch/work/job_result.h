@@ -19,9 +19,9 @@ namespace meshlode::batch {
 
 enum class JobStatus : std::uint8_t {
   kBuilt,
-  kCached,     ///< the output was written from the cache
-  kUnchanged,  ///< the output already was what would have been written
-  kFailed,
+  kCached,      ///< the output was written from the cache
+  kUnchanged,   ///< the output already was what would have been written
+  kFailed,      ///< no asset, or one that BatchOptions::check_asset refused
   kSkipped,     ///< after another one's failure
   kWouldBuild,  ///< --dry-run
   kWouldCopy,   ///< --dry-run

@@ -258,8 +258,9 @@ JobResult run_job(const Job& job, const BatchOptions& options, OutputFiles& file
                   Error& error) {
   const Timer timer;
   Run run(job, options, files, watcher);
-  const Status done = run.go();
+  Status done = run.go();
   JobResult result = run.take();
+  if (done && options.check_asset && !options.is_dry_run) done = options.check_asset(job.output);
   result.seconds = timer.seconds();
   if (done) return result;
   error = done.error();
