@@ -18,6 +18,7 @@
 #include "batch/tell/tell.h"
 #include "batch_options.h"
 #include "batch_show.h"
+#include "budget_options.h"
 #include "build/settings/settings.h"
 #include "build_options.h"
 #include "explain.h"
@@ -67,7 +68,7 @@ struct BuildCommand {
   BatchWords words;
   batch::BatchOptions options;
   std::optional<batch::Cache> cache;
-  std::string report_path;
+  std::string report_path, fail_if;
   bool is_explained = false;
   std::uint32_t jobs = 0;
   OutputOptions out;
@@ -193,6 +194,17 @@ Status set_options(const BuildWords& words, const LimitWords& limits, batch::Bat
   return Ok{};
 }
 
+/// --fail-if: each asset is looked at when it is there.
+Status set_budget(BuildCommand& command) {
+  auto conditions = out::read_budget(command.fail_if, out::info_schema());
+  if (!conditions) return conditions.error();
+  if (conditions->empty()) return Ok{};
+  command.options.check_asset = [budget = std::move(*conditions)](const fs::path& asset) {
+    return check_asset_budget(asset, budget);
+  };
+  return Ok{};
+}
+
 int run_build(const Verb& verb, std::span<char* const> args) {
   std::vector<std::string> inputs;
   std::string output, output_folder;
@@ -214,12 +226,14 @@ int run_build(const Verb& verb, std::span<char* const> args) {
   parser.add_value("--report", command.report_path,
                    "write times and counts as JSON, the same that --format json prints");
   add_batch_options(parser, command.words);
+  add_budget_option(parser, command.fail_if);
   add_output_options(parser, command.out);
   if (const auto exit_code = parser.parse(args)) return *exit_code;
   if (!output.empty() && !output_folder.empty()) {
     return print_error({ErrorCode::kUsage, "", "give -o or -O, not both"});
   }
   if (const Status set = set_options(words, limits, command.options); !set) return print_error(set.error());
+  if (const Status set = set_budget(command); !set) return print_error(set.error());
   const auto plan = batch::plan_jobs(inputs, output, output_folder);
   if (!plan) return print_error(plan.error());
   if (const Status opened = open_cache(command); !opened) return print_error(opened.error());

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "budget_options.h"
 #include "options.h"
 #include "out/report/info.h"
 #include "run/read/asset.h"
@@ -9,14 +10,17 @@ namespace meshlode::cli {
 namespace {
 
 int run_info(const Verb& verb, std::span<char* const> args) {
-  std::string path;
+  std::string path, fail_if;
   OutputOptions output;
   bool list_stuck = false;
   OptionParser parser(verb);
   parser.add_positional("file", path, "a .lode asset");
   add_output_options(parser, output);
   parser.add_flag("--stuck", list_stuck, "list every stuck group with its reason (extract --stuck shows them)");
+  add_budget_option(parser, fail_if);
   if (const auto exit_code = parser.parse(args)) return *exit_code;
+  const auto budget = out::read_budget(fail_if, out::info_schema());
+  if (!budget) return print_error(budget.error());
 
   const Result<run::Asset> asset = run::Asset::open(path);
   if (!asset) return print_error(asset.error());
@@ -29,12 +33,17 @@ int run_info(const Verb& verb, std::span<char* const> args) {
   }
   const std::string text =
       output.json() ? out::info_json(*asset, info, list_stuck) : out::info_text(*asset, info, list_stuck);
-  return print_out(text) ? 0 : static_cast<int>(ErrorCode::kIo);
+  if (!print_out(text)) return static_cast<int>(ErrorCode::kIo);
+  if (budget->empty()) return 0;
+  const auto broken = out::judge_budget(*budget, out::info_json(*asset, info, true));
+  return broken ? print_broken(path, *broken) : print_error(broken.error());
 }
 
 }  // namespace
 
 const Verb kInfoVerb{"info", "what is in an asset: totals, levels, materials, sections",
-                     "meshlode info scene.lode\n  meshlode info scene.lode --format json", run_info};
+                     "meshlode info scene.lode\n  meshlode info scene.lode --format json\n"
+                     "  meshlode info scene.lode --fail-if 'totals.bytes_per_source_triangle>10, any(meshes).roots>1'",
+                     run_info};
 
 }  // namespace meshlode::cli

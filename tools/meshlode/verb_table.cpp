@@ -7,7 +7,7 @@ namespace meshlode::cli {
 namespace {
 
 const Verb* const kVerbs[] = {
-    &kBuildVerb, &kPlanVerb, &kInfoVerb, &kValidateVerb, &kVerifyVerb, &kRenderVerb, &kExtractVerb, &kRepackVerb,
+    &kBuildVerb, &kPlanVerb, &kInfoVerb, &kCompareVerb, &kValidateVerb, &kVerifyVerb, &kRenderVerb, &kExtractVerb, &kRepackVerb,
 };
 
 }  // namespace

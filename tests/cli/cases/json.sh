@@ -6,6 +6,7 @@ code build --quiet a.glb -o a.lode --report report.json
 "$JSON_CHECK" "$SCHEMAS/report.schema.json" <report.json
 json info info a.lode --format json
 json info info a.lode --format json --stuck
+json compare compare a.lode a.lode --format json --render --size 64x48
 json validate validate a.lode --format json
 json verify verify a.lode --source a.glb --cuts 10 --cameras 3 --format json
 json verify verify a.lode --source a.glb --quick --format json

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "budget_options.h"
+
+#include <utility>
+
+#include "out/report/info.h"
+#include "run/read/asset.h"
+
+namespace meshlode::cli {
+
+void add_budget_option(OptionParser& parser, std::string& conditions) {
+  parser.add_value("--fail-if", conditions,
+                   "conditions between commas over the keys of --format json, such as "
+                   "'totals.clusters>5000, any(meshes).stuck_groups>0'; where one holds, the exit code is 6");
+}
+
+int print_broken(const std::string& where, const std::vector<out::BrokenCondition>& broken) {
+  int exit_code = 0;
+  for (const out::BrokenCondition& one : broken) {
+    exit_code = print_error({ErrorCode::kCheckFailed, where, one.message()});
+  }
+  return exit_code;
+}
+
+Status check_asset_budget(const std::filesystem::path& path, const std::vector<out::Condition>& conditions) {
+  const Result<run::Asset> asset = run::Asset::open(path);
+  if (!asset) return asset.error();
+  out::AssetInfo info = out::describe_asset(*asset);
+  if (out::mentions(conditions, "byte_map")) {
+    Result<out::ByteMap> byte_map = out::map_bytes(*asset);
+    if (!byte_map) return byte_map.error();
+    info.byte_map = std::move(*byte_map);
+  }
+  const auto broken = out::judge_budget(conditions, out::info_json(*asset, info, true));
+  if (!broken) return broken.error();
+  if (!broken->empty()) return out::budget_error(*broken, path.string());
+  return Ok{};
+}
+
+}  // namespace meshlode::cli

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// compare: two assets side by side, and whether what changed is within limits.
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "budget_options.h"
+#include "camera_options.h"
+#include "draw_pair.h"
+#include "options.h"
+#include "out/compare/compare.h"
+#include "run/read/asset.h"
+#include "verb.h"
+
+namespace meshlode::cli {
+
+namespace {
+
+struct CompareOptions {
+  std::string before, after, fail_if;
+  bool is_rendered = false;
+  CameraOptions camera;
+  std::string max_decoded = kDefaultMaxDecodedText;
+  std::uint32_t jobs = 0;
+  OutputOptions output;
+};
+
+/// The errors of drawing are those of an asset's pages; which of the two is said by neither.
+Error in_picture(Error error) {
+  if (error.code == ErrorCode::kInvalid) error.where = "--render" + (error.where.empty() ? "" : ": " + error.where);
+  return error;
+}
+
+int run_compare(const Verb& verb, std::span<char* const> args) {
+  CompareOptions options;
+  OptionParser parser(verb);
+  parser.add_positional("old", options.before, "a .lode asset");
+  parser.add_positional("new", options.after, "another, with which the first is compared");
+  parser.add_flag("--render", options.is_rendered, "draw both with one camera, and compare the pictures");
+  add_camera_options(parser, options.camera);
+  add_budget_option(parser, options.fail_if);
+  add_max_decoded_option(parser, options.max_decoded);
+  add_jobs_option(parser, options.jobs);
+  add_output_options(parser, options.output);
+  if (const auto exit_code = parser.parse(args)) return *exit_code;
+  const auto budget = out::read_budget(options.fail_if, out::compare_schema());
+  if (!budget) return print_error(budget.error());
+  if (out::mentions(*budget, "picture") && !options.is_rendered) {
+    return print_error({ErrorCode::kUsage, "--fail-if", "picture needs --render"});
+  }
+  if ((options.camera.camera || options.camera.ortho_height) && !options.is_rendered) {
+    return print_error({ErrorCode::kUsage, "--camera", "needs --render"});
+  }
+  const Result<std::uint64_t> max_decoded = parse_max_decoded(options.max_decoded);
+  if (!max_decoded) return print_error(max_decoded.error());
+
+  const JobLimit limit(options.jobs);
+  const Result<run::Asset> before = run::Asset::open(options.before, *max_decoded);
+  if (!before) return print_error(before.error());
+  const Result<run::Asset> after = run::Asset::open(options.after, *max_decoded);
+  if (!after) return print_error(after.error());
+  out::AssetComparison comparison = out::compare_assets(*before, *after);
+  comparison.before.file = options.before;
+  comparison.after.file = options.after;
+  if (options.is_rendered) {
+    std::vector<std::string> warnings;
+    auto picture = draw_pair({*before, *after, *max_decoded}, options.camera, warnings);
+    for (const std::string& warning : warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+    if (!picture) return print_error(in_picture(picture.error()));
+    comparison.picture = std::move(*picture);
+  }
+  std::vector<out::BrokenCondition> broken;
+  if (!budget->empty()) {
+    auto judged = out::judge_budget(*budget, out::comparison_json(comparison));
+    if (!judged) return print_error(judged.error());
+    broken = std::move(*judged);
+  }
+  std::string text;
+  if (options.output.json()) {
+    text = out::comparison_json(comparison, broken);
+  } else if (!options.output.quiet) {
+    text = out::comparison_text(comparison);
+  }
+  if (!print_out(text)) return static_cast<int>(ErrorCode::kIo);
+  return print_broken(options.after, broken);
+}
+
+}  // namespace
+
+const Verb kCompareVerb{"compare", "what changed between two assets, and whether it is within limits",
+                        "meshlode compare old.lode new.lode\n"
+                        "  meshlode compare old.lode new.lode --render --format json "
+                        "--fail-if 'file_bytes.ratio>1.02, any(meshes).levels.change!=0, picture.psnr<40'",
+                        run_compare};
+
+}  // namespace meshlode::cli
