@@ -1,13 +1,38 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The structural judge and the exporter on any bytes: what `validate` and `extract` do with a hostile file. Both read
-// what the runtime does not: the JSON sections, texts, and pages that were found wrong.
+// The structural judge, the exporter and the reports on any bytes: what `validate`, `extract`, `info` and `compare` do
+// with a hostile file. They read what the runtime does not: the JSON sections, texts, and pages that were found wrong.
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "asset_mutator.h"
 #include "harness.h"
 #include "judge/validate/validate.h"
+#include "out/compare/compare.h"
 #include "out/export/choose_cuts.h"
 #include "out/export/export.h"
+
+namespace {
+
+/// Both documents are JSON whatever the file holds, and an asset is equal to itself.
+void report(const meshlode::run::Asset& asset) {
+  using namespace meshlode;
+  const auto judge = [](std::string_view text, std::string_view schema, const std::string& document) {
+    const auto budget = out::read_budget(text, schema);
+    fuzz::require(budget.ok() && out::judge_budget(*budget, document).ok(), "a document is no JSON");
+  };
+  const out::AssetComparison same = out::compare_assets(asset, asset);
+  fuzz::require(same.is_content_equal && same.settings.empty() && same.meshes_added.empty() &&
+                    same.meshes_removed.empty() && same.images.changed.empty(),
+                "an asset differs from itself");
+  judge("any(meshes).any(by_level).error_max.change!=0, any(settings).key==a", out::compare_schema(),
+        out::comparison_json(same));
+  fuzz::require(!out::comparison_text(same).empty(), "no text");
+  judge("any(meshes).stuck_groups>0, any(stuck).triangles>1", out::info_schema(),
+        out::info_json(asset, out::describe_asset(asset), true));
+}
+
+}  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace meshlode;
@@ -16,6 +41,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto asset = run::Asset::from_bytes(bytes);
   fuzz::require(asset.ok() || report.finding_count > 0, "the judge finds nothing in a file that does not open");
   if (!asset || asset->instances().size() > 1000) return 0;
+  report(*asset);
   std::vector<out::LodChain> chains(asset->meshes().size());
   for (std::size_t m = 0; m < chains.size(); ++m) {
     chains[m].cuts = {out::choose_level_cut(*asset, MeshId(m), 0).clusters};
