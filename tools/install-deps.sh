@@ -1,7 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# install-deps.sh [--tests]: the Debian 12 packages that building meshlode needs; with --tests also what its tests need
-# (a second compiler for the comparison of content hashes, sample models). Nothing happens where all are there.
+# install-deps.sh [--tests [--slurm]]: the Debian 12 packages that building meshlode needs; with --tests also what its tests need
+# (a second compiler for the comparison of content hashes, sample models), with --slurm a scheduler, which the test of
+# tools/cluster starts for itself; a system that starts the services of what it installs may start munge's. Nothing happens where
+# all are there.
 set -euo pipefail
 
 packages=(
@@ -23,6 +25,8 @@ if [ "${1:-}" = --tests ]; then
              file dpkg-dev debootstrap                     # Debian packages, and a bare root to install them in
              mesa-vulkan-drivers vulkan-validationlayers)  # a Vulkan device on any machine, and its judge
 fi
+
+[ "${2:-}" != --slurm ] || packages+=(slurm-wlm munge)
 
 is_installed() { [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; }
 missing=()

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# test.sh [--all | --all=GROUP]: installs what is missing, then
+# test.sh [--all | --all=GROUP]: installs what is missing (a Slurm for --all and --all=slurm alone), then
 #   1. a release build and its tests (--all: the long ones too; --all=GROUP: those of them whose names have GROUP in them),
 #   2. a sanitized core, built by clang with address and undefined behaviour sanitizers: the programs that read hostile
 #      bytes and those of the rooms that do arithmetic on indices (label `sanitized`; --all: every program),
@@ -93,7 +93,9 @@ skipped() {
   ' "$logs/$1.said" "$logs/$1.log"
 }
 
-tools/install-deps.sh --tests || exit 1
+slurm=()
+[ $all = no ] && [[ $group != *slurm* ]] || slurm=(--slurm)
+tools/install-deps.sh --tests "${slurm[@]}" || exit 1
 part "format" check_format
 part "release build" build_release && part "release tests" test_release
 [ -z "$group" ] || part "long tests" test_group

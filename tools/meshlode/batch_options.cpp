@@ -42,6 +42,9 @@ void add_batch_options(OptionParser& parser, BatchWords& words) {
                    "$MESHLODE_CACHE where not given");
   parser.add_value("--cache-limit", words.cache_limit, "what the cache keeps at most, such as 20GiB; or none");
   parser.add_flag("--no-cache", words.no_cache, "use no cache, whatever $MESHLODE_CACHE says");
+  parser.add_value(
+      "--shard", words.shard,
+      "I/N, such as 3/8: only the I-th of N shares of about equal cost; merge makes one manifest of theirs");
   parser.add_flag("--dry-run", words.dry_run, "write nothing; say what would be built, and why");
 }
 

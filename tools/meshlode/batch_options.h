@@ -17,6 +17,7 @@ struct BatchWords {
   std::string junit, manifest, depfile;  ///< paths, empty for none
   std::string cache;                     ///< a folder; empty: $MESHLODE_CACHE, or none
   std::string cache_limit = "none";
+  std::string shard;  ///< "3/8"; empty: the whole batch
 
   /// Those of the three files that are written.
   [[nodiscard]] std::vector<std::string> outputs() const;

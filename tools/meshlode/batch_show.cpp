@@ -3,19 +3,15 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
-#include <system_error>
 
 #include <unistd.h>
 
+#include "batch/jobs/weigh.h"
 #include "options.h"
-#include "scene/import/import.h"
 
 namespace meshlode::cli {
 
 namespace {
-
-namespace fs = std::filesystem;
 
 std::string plain(std::string text) {
   for (char& c : text) {
@@ -24,26 +20,12 @@ std::string plain(std::string text) {
   return text;
 }
 
-/// Bytes of the scene and of what it names.
-std::uint64_t weigh(const fs::path& scene) {
-  const auto size_of = [](const fs::path& path) {
-    std::error_code error;
-    const auto size = fs::file_size(path, error);
-    return error ? std::uint64_t{0} : std::uint64_t{size};
-  };
-  std::uint64_t bytes = 1 + size_of(scene);
-  if (scene.extension() != ".gltf") return bytes;
-  if (const auto references = scene::list_references(scene)) {
-    for (const scene::FileReference& reference : *references) bytes += size_of(reference.path);
-  }
-  return bytes;
-}
-
 /// Only a bar of several files has to tell how long they take.
 std::vector<std::uint64_t> weights_of(const std::vector<batch::Job>& jobs, bool is_wanted) {
   std::vector<std::uint64_t> weights;
   weights.reserve(jobs.size());
-  for (const batch::Job& job : jobs) weights.push_back(is_wanted && jobs.size() > 1 ? weigh(job.input) : 1);
+  for (const batch::Job& job : jobs)
+    weights.push_back(is_wanted && jobs.size() > 1 ? batch::weigh_scene(job.input) : 1);
   return weights;
 }
 

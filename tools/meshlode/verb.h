@@ -20,6 +20,7 @@ struct Verb {
 [[nodiscard]] std::span<const Verb* const> all_verbs();
 
 extern const Verb kBuildVerb;
+extern const Verb kMergeVerb;
 extern const Verb kPlanVerb;
 extern const Verb kInfoVerb;
 extern const Verb kCompareVerb;

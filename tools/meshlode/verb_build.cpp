@@ -2,10 +2,12 @@
 // build: scenes in, assets out. One input with -o, or many inputs and folders with -O; a batch goes on after a failure
 // and exits with its worst code.
 #include <algorithm>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
 #include <span>
+#include <system_error>
 #include <utility>
 
 #include "base/byte_size.h"
@@ -15,6 +17,9 @@
 #include "batch/cache/program_id.h"
 #include "batch/depend/depfile.h"
 #include "batch/jobs/jobs.h"
+#include "batch/jobs/weigh.h"
+#include "batch/shard/partition.h"
+#include "batch/shard/read_manifest.h"
 #include "batch/tell/tell.h"
 #include "batch_options.h"
 #include "batch_show.h"
@@ -69,6 +74,7 @@ struct BuildCommand {
   batch::BatchOptions options;
   std::optional<batch::Cache> cache;
   std::string report_path, fail_if;
+  std::optional<batch::ShardPlan> shard;
   bool is_explained = false;
   std::uint32_t jobs = 0;
   OutputOptions out;
@@ -86,6 +92,38 @@ Status open_cache(BuildCommand& command) {
   if (!program) return program.error();
   command.cache.emplace(std::move(*store), *program);
   command.options.cache = &*command.cache;
+  return Ok{};
+}
+
+/// Of all jobs those that this command is to do.
+Result<std::vector<Job>> take_share(const std::vector<Job>& jobs, BuildCommand& command) {
+  if (command.words.shard.empty()) return jobs;
+  const auto shard = batch::parse_shard(command.words.shard);
+  if (!shard) return shard.error();
+  if (command.words.fail_fast) {
+    return Error{ErrorCode::kUsage, "--shard",
+                 "give this or --fail-fast: shards know nothing of each other's failures"};
+  }
+  std::vector<std::uint64_t> weights;
+  weights.reserve(jobs.size());
+  for (const Job& job : jobs) weights.push_back(batch::weigh_scene(job.input));
+  command.shard = batch::plan_shard(jobs, weights, *shard);
+  std::vector<Job> mine;
+  for (const std::uint64_t position : command.shard->positions) mine.push_back(jobs[position]);
+  return mine;
+}
+
+/// A shard's manifest says that the shard is complete. So one of an earlier run goes before anything is done: should
+/// this run be killed, nobody must take it for its.
+Status remove_old_manifest(const BuildCommand& command) {
+  const fs::path path = command.words.manifest;
+  if (!command.shard || path.empty() || command.words.dry_run) return Ok{};
+  const auto old = batch::read_manifest(path);
+  if (!old || !old->shard) return Ok{};  // none, or a file of another kind, which is not ours to remove
+  std::error_code error;
+  const fs::path target = fs::canonical(path, error);
+  if (!error) fs::remove(target, error);
+  if (error) return Error{ErrorCode::kIo, path.string(), error.message()};
   return Ok{};
 }
 
@@ -130,7 +168,8 @@ int write_side_outputs(const BuildCommand& command, const std::vector<JobResult>
     const auto program = command.cache ? Result<Hash128>(command.cache->program()) : batch::find_program_id();
     if (!program) return std::max(worst, print_error(program.error()));
     const std::string settings = batch::settings_text(command.options.pipeline, command.options.import);
-    write(command.words.manifest, batch::manifest_json(results, *program, settings, worst_job));
+    const batch::ShardPlan* shard = command.shard ? &*command.shard : nullptr;
+    write(command.words.manifest, batch::manifest_json(results, *program, settings, worst_job, shard));
   }
   return worst;
 }
@@ -236,6 +275,8 @@ int run_build(const Verb& verb, std::span<char* const> args) {
   if (const Status set = set_budget(command); !set) return print_error(set.error());
   const auto plan = batch::plan_jobs(inputs, output, output_folder);
   if (!plan) return print_error(plan.error());
+  const auto share = take_share(*plan, command);
+  if (!share) return print_error(share.error());
   if (const Status opened = open_cache(command); !opened) return print_error(opened.error());
 
   std::vector<std::string> side_outputs = command.words.outputs();
@@ -243,6 +284,7 @@ int run_build(const Verb& verb, std::span<char* const> args) {
   if (!command.words.dry_run) {
     if (const Status made = make_folder(output_folder); !made) return print_error(made.error());
     if (const Status free = check_outputs(*plan, side_outputs); !free) return print_error(free.error());
+    if (const Status removed = remove_old_manifest(command); !removed) return print_error(removed.error());
   }
   command.options.import.may_lack_images = !command.words.strict;
   command.options.is_dry_run = command.words.dry_run;
@@ -252,7 +294,7 @@ int run_build(const Verb& verb, std::span<char* const> args) {
   command.options.side_outputs = std::move(side_outputs);
   int none = 0;
   if (plan->empty()) none = print_error({ErrorCode::kIo, inputs.front(), "no scene below this folder"});
-  return std::max(none, run_jobs(*plan, command));
+  return std::max(none, run_jobs(*share, command));
 }
 
 }  // namespace

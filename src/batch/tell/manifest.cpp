@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <cassert>
+#include <cstddef>
+#include <cstdint>
 #include <string_view>
 
 #include "base/json_writer.h"
@@ -41,8 +44,10 @@ void write_file(JsonWriter& w, const Dependency& file) {
   w.end_object();
 }
 
-void write_result(JsonWriter& w, const JobResult& r) {
+/// `position`: where the file is in the whole batch, of a shard's alone.
+void write_result(JsonWriter& w, const JobResult& r, const std::uint64_t* position) {
   w.begin_object();
+  if (position != nullptr) w.field("position", *position);
   w.field("input", r.job.input.string());
   w.field("output", r.job.output.string());
   w.field("status", name_of(r.status));
@@ -68,19 +73,33 @@ void write_result(JsonWriter& w, const JobResult& r) {
   w.end_object();
 }
 
+void write_shard(JsonWriter& w, const ShardPlan& plan) {
+  w.key("shard");
+  w.begin_object();
+  w.field("index", plan.shard.index);
+  w.field("count", plan.shard.count);
+  w.field("files", plan.batch_jobs);
+  w.field("batch", to_hex(plan.batch));
+  w.end_object();
+}
+
 }  // namespace
 
 std::string manifest_json(const std::vector<JobResult>& results, const Hash128& program, const std::string& settings,
-                          int exit_code) {
+                          int exit_code, const ShardPlan* shard) {
+  assert(shard == nullptr || shard->positions.size() == results.size());
   JsonWriter w;
   w.begin_object();
   w.field("generator", program_version());
   w.field("program", to_hex(program));
   write_settings(w, settings);
   w.field("exit_code", exit_code);
+  if (shard != nullptr) write_shard(w, *shard);
   w.key("assets");
   w.begin_array();
-  for (const JobResult& r : results) write_result(w, r);
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    write_result(w, results[i], shard != nullptr ? &shard->positions[i] : nullptr);
+  }
   w.end_array();
   w.end_object();
   return w.text();

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/hash.h"
+#include "batch/shard/partition.h"
 #include "batch/work/job_result.h"
 
 namespace meshlode::batch {
@@ -15,9 +16,10 @@ namespace meshlode::batch {
 [[nodiscard]] std::string report_json(const std::vector<JobResult>& results, std::uint32_t jobs, int exit_code);
 
 /// docs/schemas/manifest.schema.json: every file with its status, what it was made of and what came of it.
-/// `settings`: settings_text(). `program`: find_program_id().
+/// `settings`: settings_text(). `program`: find_program_id(). `shard`: what the results are a share of, where they are:
+/// then it has as many positions as there are results.
 [[nodiscard]] std::string manifest_json(const std::vector<JobResult>& results, const Hash128& program,
-                                        const std::string& settings, int exit_code);
+                                        const std::string& settings, int exit_code, const ShardPlan* shard = nullptr);
 
 /// A test case a file, as build servers show them: a failure with its line, a skipped one as skipped.
 [[nodiscard]] std::string junit_xml(const std::vector<JobResult>& results);

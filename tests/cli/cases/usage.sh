@@ -4,7 +4,7 @@ code
 code --help
 code --version
 run frobnicate
-for verb in build plan info compare validate verify render extract repack; do
+for verb in build merge plan info compare validate verify render extract repack; do
   code "$verb" --help
   code "$verb"
   code "$verb" a.lode --no-such-option

@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Shards and their merge: the manifest and the assets of one batch, to the byte but for the seconds; what is missing, twice,
+# stale or changed is refused, and a shard that was killed leaves no manifest.
+mkdir -p in/deep
+# terrain SIDE SEED: an OBJ of 2 SIDE^2 triangles
+terrain() {
+  awk -v n="$1" -v seed="$2" 'BEGIN {
+    srand(seed)
+    for (y = 0; y <= n; ++y) for (x = 0; x <= n; ++x) printf "v %d %d %.4f\n", x, y, rand()
+    for (y = 0; y < n; ++y) for (x = 0; x < n; ++x) {
+      a = y * (n + 1) + x + 1
+      printf "f %d %d %d\nf %d %d %d\n", a, a + 1, a + n + 2, a, a + n + 2, a + n + 1
+    }
+  }'
+}
+for i in 1 2 3 4 5; do terrain $((4 + 2 * i)) "$i" >"in/$i.obj"; done
+cp "$DATA/crystal.glb" in/deep/crystal.glb
+printf '{"codec": "zstd"}' >in/deep/meshlode.json
+printf 'broken' >in/deep/broken.glb
+printf 'mtllib 5.mtl\n' >>in/5.obj
+printf 'newmtl a\n' >in/5.mtl
+timeless() { sed -E 's/^(      "seconds": ).*/\1S,/'; }
+# shard I/N OPTION…
+shard() { "$MESHLODE" build --quiet in -O out --shard "$1" --manifest "parts/shard-${1%/*}.json" "${@:2}" 2>/dev/null; echo "shard $*: exit $?"; }
+
+"$MESHLODE" build --quiet in -O out --manifest local.json 2>/dev/null; echo "local: exit $?"
+mv out local
+mkdir parts
+for i in 1 2 3; do
+  shard "$i/3"
+  "$JSON_CHECK" "$SCHEMAS/manifest.schema.json" <"parts/shard-$i.json"
+done
+run merge parts/shard-3.json parts/shard-1.json parts/shard-2.json -o merged.json
+"$JSON_CHECK" "$SCHEMAS/manifest.schema.json" <merged.json
+cmp <(timeless <local.json) <(timeless <merged.json) && echo "the manifest of one batch"
+diff -r local out && echo "the assets of one batch"
+
+echo "what is not a whole batch"
+run merge parts/shard-1.json parts/shard-3.json -o m.json
+run merge parts/*.json parts/shard-2.json -o m.json
+run merge local.json -o m.json
+run merge parts/shard-1.json missing.json -o m.json
+run merge parts/*.json -o parts/shard-2.json
+run merge parts/*.json -o out/1.lode
+run merge parts/*.json -o in/5.mtl
+run merge parts/*.json
+cp out/2.lode kept; printf 'x' >>out/2.lode
+run merge parts/*.json -o m.json
+mv kept out/2.lode
+shard 2/3 --codec lz4
+run merge parts/*.json -o m.json
+shard 2/3
+terrain 60 6 >in/1.obj
+shard 2/3
+"$MESHLODE" merge parts/*.json -o m.json 2>&1 | grep -o 'inputs changed between shards.*'
+terrain 6 1 >in/1.obj
+cp in/2.obj in/new.obj
+shard 2/3
+run merge parts/*.json -o m.json
+rm in/new.obj
+
+echo "a shard that is killed"
+for i in 1 2 3; do shard "$i/3"; done
+terrain 200 7 >in/deep/large.obj
+for i in 1 2 3; do shard "$i/3" --dry-run; done
+"$MESHLODE" build --quiet in -O out --shard 1/3 --manifest parts/shard-1.json 2>/dev/null &
+until [ ! -e parts/shard-1.json ]; do sleep 0.01; done
+kill -KILL $!; wait $! 2>/dev/null
+[ -e parts/shard-1.json ] || echo "its manifest is gone"
+rm in/deep/large.obj
+run merge parts/*.json -o m.json
+shard 1/3
+code merge --quiet parts/*.json -o m.json
+cmp <(timeless <local.json) <(timeless <m.json) && echo "the manifest of one batch"
+
+echo "usage"
+run build in -O out --shard 4/3
+run build in -O out --shard 1/2 --fail-fast
+run build in/1.obj -o 1.lode --shard 2/2 --manifest none.json
+run build in/1.obj -o 1.lode --shard 2/2 --manifest in/1.obj
+mkdir nothing
+run build nothing -O out --shard 1/2
+"$MESHLODE" build in -O dry --shard 2/3 --dry-run
+echo "exit $?"
+files

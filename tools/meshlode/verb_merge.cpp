@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// merge: the manifests that `build --shard` wrote become the one that a single batch would have written, if nothing is
+// missing and nothing is there twice.
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/file.h"
+#include "batch/shard/merge.h"
+#include "batch/shard/read_manifest.h"
+#include "batch/tell/tell.h"
+#include "options.h"
+#include "outputs.h"
+#include "verb.h"
+
+namespace meshlode::cli {
+
+namespace {
+
+void keep(const std::filesystem::path& path) {
+  if (const auto id = find_file_id(path)) output_files().keep(*id);
+}
+
+/// Neither scenes and what they name nor assets are written over.
+void keep_files(const std::vector<batch::JobResult>& results) {
+  for (const batch::JobResult& r : results) {
+    keep(r.job.input);
+    keep(r.job.output);
+    for (const batch::Dependency& file : r.files) keep(file.path);
+  }
+}
+
+int run_merge(const Verb& verb, std::span<char* const> args) {
+  std::vector<std::string> paths;
+  std::string output;
+  bool is_quiet = false;
+  OptionParser parser(verb);
+  parser.add_positionals("manifest", paths, "the manifests of all shards, in any order");
+  parser.add_value("-o,--output", output, "the manifest to write");
+  parser.add_flag("--quiet", is_quiet, "no summary; errors are still printed");
+  if (const auto exit_code = parser.parse(args)) return *exit_code;
+  if (output.empty()) return print_error({ErrorCode::kUsage, "", "give -o FILE"});
+
+  std::vector<batch::ShardManifest> shards;
+  for (const std::string& path : paths) {
+    keep(path);
+    auto manifest = batch::read_manifest(path);
+    if (!manifest) return print_error(manifest.error());
+    shards.push_back({path, std::move(*manifest)});
+  }
+  const auto merged = batch::merge_shards(std::move(shards));
+  if (!merged) return print_error(merged.error());
+  keep_files(merged->results);
+  if (const Status there = batch::check_assets(merged->results); !there) return print_error(there.error());
+  const std::string text = batch::manifest_json(merged->results, merged->program, merged->settings, merged->exit_code);
+  if (const Status written = write_text(output, text); !written) return print_error(written.error());
+  for (const batch::JobResult& r : merged->results) {
+    if (r.exit_code != 0) print_error({static_cast<ErrorCode>(r.exit_code), "", r.error});
+  }
+  if (!is_quiet) std::fprintf(stderr, "%s\n", batch::summary_line(merged->results).c_str());
+  return merged->exit_code;
+}
+
+}  // namespace
+
+const Verb kMergeVerb{"merge", "make one manifest of those of all shards of a batch, if nothing is missing",
+                      "meshlode build in/ -O out/ --shard 1/2 --manifest out/shard-1.json\n"
+                      "  meshlode build in/ -O out/ --shard 2/2 --manifest out/shard-2.json\n"
+                      "  meshlode merge out/shard-*.json -o out/manifest.json",
+                      run_merge};
+
+}  // namespace meshlode::cli
