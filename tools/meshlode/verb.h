@@ -22,6 +22,7 @@ struct Verb {
 extern const Verb kBuildVerb;
 extern const Verb kMergeVerb;
 extern const Verb kPlanVerb;
+extern const Verb kDoctorVerb;
 extern const Verb kInfoVerb;
 extern const Verb kCompareVerb;
 extern const Verb kValidateVerb;

@@ -7,8 +7,8 @@ namespace meshlode::cli {
 namespace {
 
 const Verb* const kVerbs[] = {
-    &kBuildVerb, &kMergeVerb, &kPlanVerb, &kInfoVerb, &kCompareVerb, &kValidateVerb, &kVerifyVerb, &kRenderVerb,
-    &kExtractVerb, &kRepackVerb,
+    &kBuildVerb, &kMergeVerb, &kPlanVerb, &kDoctorVerb, &kInfoVerb, &kCompareVerb, &kValidateVerb, &kVerifyVerb,
+    &kRenderVerb, &kExtractVerb, &kRepackVerb,
 };
 
 }  // namespace

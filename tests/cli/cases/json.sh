@@ -4,6 +4,8 @@ cp "$DATA/crystal.glb" a.glb
 json report build a.glb --format json
 code build --quiet a.glb -o a.lode --report report.json
 "$JSON_CHECK" "$SCHEMAS/report.schema.json" <report.json
+json doctor doctor a.glb --format json
+json doctor doctor a.lode --format json
 json info info a.lode --format json
 json info info a.lode --format json --stuck
 json compare compare a.lode a.lode --format json --render --size 64x48

@@ -4,7 +4,7 @@ code
 code --help
 code --version
 run frobnicate
-for verb in build merge plan info compare validate verify render extract repack; do
+for verb in build merge plan doctor info compare validate verify render extract repack; do
   code "$verb" --help
   code "$verb"
   code "$verb" a.lode --no-such-option
@@ -26,4 +26,6 @@ run build a.glb --uv-error 1pxl
 run build a.glb --uv-error 0px
 run build a.glb a.glb -O out
 run info --format yaml a.lode
+run doctor a.glb --fail-on needle
+run doctor a.glb --fail-on ""
 files

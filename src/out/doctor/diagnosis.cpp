@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "out/doctor/diagnosis.h"
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+#include "base/append_format.h"
+#include "base/json_writer.h"
+#include "base/nearest_name.h"
+#include "base/printable.h"
+
+namespace meshlode::out {
+
+namespace {
+
+constexpr double kHighShare = 0.1, kMediumShare = 0.01;
+constexpr std::size_t kMaxPlaces = 4;  ///< of a diagnosis in the text; JSON has all
+
+std::string describe_cost(const DiagnosisCost& cost) {
+  std::string text;
+  if (cost.unit == "object units") {
+    append_format(text, "%s %.3g %s", cost.kind.c_str(), cost.amount, cost.unit.c_str());
+  } else {
+    append_format(text, "%s %s %s", cost.kind.c_str(),
+                  grouped_digits(static_cast<std::uint64_t>(std::max(0.0, cost.amount))).c_str(), cost.unit.c_str());
+  }
+  return text;
+}
+
+void add_place_text(const DiagnosisPlace& place, std::string& text) {
+  text += "     " + place.where + ": " + place.detail + "\n";
+  if (!place.costs.empty()) {
+    text += "       costs";
+    for (std::size_t i = 0; i < place.costs.size(); ++i) {
+      text += (i == 0 ? " " : ", ") + describe_cost(place.costs[i]);
+    }
+    text += '\n';
+  }
+  if (!place.triangles.empty()) {
+    text += "       triangles (primitive:triangle)";
+    for (const DiagnosisTriangle& one : place.triangles) {
+      append_format(text, " %u:%u", one.primitive, one.triangle);
+    }
+    text += place.triangle_count > place.triangles.size() ? " …\n" : "\n";
+  }
+  if (!place.groups.empty()) {
+    text += "       groups";
+    for (const std::uint32_t group : place.groups) append_format(text, " %u", group);
+    text += place.count > place.groups.size() ? " …\n" : "\n";
+  }
+}
+
+void write_place(const DiagnosisPlace& place, JsonWriter& json) {
+  json.begin_object();
+  json.field("where", place.where);
+  json.key("mesh");
+  if (place.mesh == ~0U) {
+    json.null();
+  } else {
+    json.value(place.mesh);
+  }
+  json.field("count", place.count);
+  json.field("detail", place.detail);
+  json.field("share", place.share);
+  json.key("costs");
+  json.begin_array();
+  for (const DiagnosisCost& cost : place.costs) {
+    json.begin_object();
+    json.field("kind", cost.kind);
+    json.field("amount", cost.amount);
+    json.field("unit", cost.unit);
+    json.end_object();
+  }
+  json.end_array();
+  json.field("triangle_count", place.triangle_count);
+  json.key("triangles");
+  json.begin_array();
+  for (const DiagnosisTriangle& one : place.triangles) {
+    json.begin_object();
+    json.field("primitive", one.primitive);
+    json.field("triangle", one.triangle);
+    json.end_object();
+  }
+  json.end_array();
+  json.key("groups");
+  json.begin_array();
+  for (const std::uint32_t group : place.groups) json.value(group);
+  json.end_array();
+  json.end_object();
+}
+
+}  // namespace
+
+const char* severity_of(double share) {
+  if (share >= kHighShare) return "high";
+  return share >= kMediumShare ? "medium" : "low";
+}
+
+void add_place(std::vector<Diagnosis>& diagnoses, const Diagnosis& words, DiagnosisPlace place) {
+  const auto is_it = [&](const Diagnosis& one) { return one.id == words.id; };
+  auto at = std::find_if(diagnoses.begin(), diagnoses.end(), is_it);
+  if (at == diagnoses.end()) {
+    diagnoses.push_back(words);
+    at = diagnoses.end() - 1;
+  }
+  at->count += place.count;
+  at->share = std::min(1.0, at->share + place.share);
+  at->places.push_back(std::move(place));
+}
+
+void rank(std::vector<Diagnosis>& diagnoses) {
+  for (Diagnosis& diagnosis : diagnoses) {
+    std::stable_sort(diagnosis.places.begin(), diagnosis.places.end(),
+                     [](const DiagnosisPlace& a, const DiagnosisPlace& b) { return a.share > b.share; });
+  }
+  std::sort(diagnoses.begin(), diagnoses.end(),
+            [](const Diagnosis& a, const Diagnosis& b) { return std::tie(b.share, a.id) < std::tie(a.share, b.id); });
+}
+
+std::string doctor_text(const DoctorReport& report) {
+  std::string text = report.file + ": " + grouped_digits(report.triangles) + " triangles in " +
+                     grouped_digits(report.meshes) + " mesh(es), ";
+  text += report.diagnoses.empty() ? "nothing found\n"
+                                   : std::to_string(report.diagnoses.size()) + " kind(s) of fault, worst first\n";
+  std::size_t number = 0;
+  for (const Diagnosis& diagnosis : report.diagnoses) {
+    append_format(text, "\n%2zu. %s [%s]: %s, %s\n", ++number, diagnosis.id.c_str(), severity_of(diagnosis.share),
+                  diagnosis.title.c_str(), grouped_digits(diagnosis.count).c_str());
+    for (std::size_t i = 0; i < std::min(kMaxPlaces, diagnosis.places.size()); ++i) {
+      add_place_text(diagnosis.places[i], text);
+    }
+    if (diagnosis.places.size() > kMaxPlaces) {
+      append_format(text, "     … and %zu more (--format json lists all)\n", diagnosis.places.size() - kMaxPlaces);
+    }
+    text += "     remedy: " + diagnosis.remedy + "\n";
+  }
+  return text;
+}
+
+std::string doctor_json(const DoctorReport& report) {
+  JsonWriter json;
+  json.begin_object();
+  json.field("file", report.file);
+  json.field("kind", report.is_asset ? "asset" : "scene");
+  json.field("meshes", report.meshes);
+  json.field("triangles", report.triangles);
+  json.key("faults");
+  json.begin_array();
+  for (const Diagnosis& diagnosis : report.diagnoses) {
+    json.begin_object();
+    json.field("id", diagnosis.id);
+    json.field("title", diagnosis.title);
+    json.field("severity", severity_of(diagnosis.share));
+    json.field("share", diagnosis.share);
+    json.field("count", diagnosis.count);
+    json.field("remedy", diagnosis.remedy);
+    json.key("places");
+    json.begin_array();
+    for (const DiagnosisPlace& place : diagnosis.places) write_place(place, json);
+    json.end_array();
+    json.end_object();
+  }
+  json.end_array();
+  json.key("failed_on");
+  json.begin_array();
+  for (const std::string& id : report.failed_on) json.value(id);
+  json.end_array();
+  json.end_object();
+  return json.text();
+}
+
+Result<std::vector<std::string>> find_failures(std::string_view words, const std::vector<std::string>& known,
+                                               const std::vector<Diagnosis>& diagnoses) {
+  std::vector<std::string> failed;
+  const auto fail_on = [&](std::string_view word) {
+    for (const Diagnosis& one : diagnoses) {
+      const bool is_asked = word == "any" || one.id == word;
+      if (is_asked && std::find(failed.begin(), failed.end(), one.id) == failed.end()) failed.push_back(one.id);
+    }
+  };
+  do {
+    const std::string_view word = words.substr(0, words.find(','));
+    words.remove_prefix(std::min(words.size(), word.size() + 1));
+    if (word != "any" && std::find(known.begin(), known.end(), word) == known.end()) {
+      return Error{ErrorCode::kUsage, "--fail-on",
+                   "no fault is called '" + printable(word) + "'; the nearest is " + nearest_name(word, known)};
+    }
+    fail_on(word);
+  } while (!words.empty());
+  return failed;
+}
+
+}  // namespace meshlode::out

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// doctor names what is wrong with a scene, worst first: of scenes broken on purpose by one known fault, that fault.
+#include "meshlode/doctor_words.h"
+
+#include <algorithm>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "broken_scenes.h"
+#include "scene/detect/fault.h"
+
+namespace meshlode::cli {
+namespace {
+
+std::string ids_of(const std::vector<out::Diagnosis>& diagnoses) {
+  std::string text;
+  for (const out::Diagnosis& one : diagnoses) text += one.id + " " + std::to_string(one.share) + "; ";
+  return text;
+}
+
+TEST(Doctor, FindsNothingInASoundScene) {
+  EXPECT_TRUE(diagnose_scene(test::sound_scene()).empty());
+  EXPECT_TRUE(diagnose_scene(scene::Scene{}).empty());
+}
+
+TEST(Doctor, NamesTheFaultOfABrokenSceneFirst) {
+  for (const test::BrokenScene& broken : test::broken_scenes()) {
+    const std::vector<out::Diagnosis> diagnoses = diagnose_scene(broken.scene);
+    ASSERT_FALSE(diagnoses.empty()) << broken.id;
+    EXPECT_EQ(diagnoses[0].id, broken.id) << ids_of(diagnoses);
+    EXPECT_FALSE(diagnoses[0].title.empty());
+    EXPECT_FALSE(diagnoses[0].remedy.empty());
+    EXPECT_GT(diagnoses[0].share, 0.0) << broken.id;
+    ASSERT_FALSE(diagnoses[0].places.empty());
+    EXPECT_FALSE(diagnoses[0].places[0].detail.empty()) << broken.id;
+    EXPECT_FALSE(diagnoses[0].places[0].costs.empty()) << broken.id;
+  }
+}
+
+TEST(Doctor, ThereIsABrokenSceneForEveryFault) {
+  std::set<std::string> broken;
+  for (const test::BrokenScene& scene : test::broken_scenes()) broken.insert(scene.id);
+  const std::vector<std::string> ids = source_fault_ids();
+  EXPECT_EQ(broken, std::set<std::string>(ids.begin(), ids.end()));
+}
+
+/// What is ranked first is what costs most over the whole scene, whichever mesh has it.
+TEST(Doctor, RanksByShareOfTheWholeScene) {
+  const std::vector<test::BrokenScene> scenes = test::broken_scenes();
+  const auto named = [&](const char* id) {
+    return std::find_if(scenes.begin(), scenes.end(), [&](const test::BrokenScene& one) { return one.id == id; })
+        ->scene;
+  };
+  // Degenerate: an eleventh of a sphere of 4800 triangles; turned: two thirds of it.
+  scene::Scene both = named("degenerate-faces");
+  both.meshes.push_back(named("inconsistent-orientation").meshes[0]);
+  both.instances.push_back(both.instances[0]);
+  both.instances[1].mesh = MeshId(1U);
+  std::vector<out::Diagnosis> diagnoses = diagnose_scene(both);
+  ASSERT_EQ(diagnoses.size(), 2U) << ids_of(diagnoses);
+  EXPECT_EQ(diagnoses[0].id, "inconsistent-orientation");
+  // Twenty more degenerate spheres, and the turned one is a small part.
+  for (int i = 0; i < 20; ++i) {
+    both.meshes.push_back(both.meshes[0]);
+    both.instances.push_back(both.instances[0]);
+    both.instances.back().mesh = MeshId(both.meshes.size() - 1);
+  }
+  diagnoses = diagnose_scene(both);
+  ASSERT_EQ(diagnoses.size(), 2U) << ids_of(diagnoses);
+  EXPECT_EQ(diagnoses[0].id, "degenerate-faces");
+  EXPECT_EQ(diagnoses[0].places.size(), 21U);
+}
+
+}  // namespace
+}  // namespace meshlode::cli

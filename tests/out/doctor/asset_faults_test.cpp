@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the tables of an asset say of its source.
+#include "out/doctor/asset_faults.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "build/build.h"
+#include "build/odd_shapes.h"
+#include "judge/validate/edit.h"
+#include "scene/samples/samples.h"
+
+namespace meshlode::out {
+namespace {
+
+std::vector<std::uint8_t> bytes_of(const scene::Scene& scene, format::ErrorTier tier = format::ErrorTier::kMeasured) {
+  build::PipelineOptions options;
+  options.error_tier = tier;
+  build::PipelineReport report;
+  auto bytes = build::build_lode(scene, options, {}, report);
+  EXPECT_TRUE(bytes.ok());
+  return bytes ? std::move(*bytes) : std::vector<std::uint8_t>{};
+}
+
+std::vector<Diagnosis> diagnose(std::vector<std::uint8_t> bytes) {
+  const auto asset = run::Asset::from_vector(std::move(bytes));
+  EXPECT_TRUE(asset.ok());
+  if (!asset) return {};
+  std::vector<Diagnosis> diagnoses = diagnose_asset(*asset);
+  rank(diagnoses);
+  const std::vector<std::string> known = asset_fault_ids();
+  for (const Diagnosis& one : diagnoses) {
+    EXPECT_NE(std::find(known.begin(), known.end(), one.id), known.end()) << one.id;
+  }
+  return diagnoses;
+}
+
+TEST(AssetFaults, NothingIsWrongWithASphere) {
+  EXPECT_TRUE(diagnose(bytes_of(scene::as_scene(scene::as_mesh(scene::make_sphere(16))))).empty());
+}
+
+TEST(AssetFaults, StuckGroupsAreCountedByReason) {
+  const scene::Scene chaos = scene::as_scene(scene::as_mesh(test::make_lattice_chaos(20000, 8, 7), "chaos"));
+  test::AssetEdit edit(bytes_of(chaos));
+  std::uint64_t stuck = 0;
+  for (std::size_t g = 0; g < edit.groups().size(); ++g) {
+    if ((edit.groups()[g].flags & format::kGroupStuck) == 0) continue;
+    edit.group(g, [&](auto& r) { r.stuck_reason = static_cast<format::StuckReason>(1 + stuck % 6); });
+    ++stuck;
+  }
+  edit.seal();
+  std::uint64_t told = 0, kinds = 0;
+  for (const Diagnosis& one : diagnose(edit.bytes())) {
+    if (!one.id.starts_with("stuck-")) continue;
+    ++kinds;
+    told += one.count;
+    EXPECT_FALSE(one.places.at(0).groups.empty());
+    EXPECT_GT(one.share, 0.0);
+  }
+  EXPECT_EQ(kinds, 6U);
+  EXPECT_EQ(told, stuck);
+}
+
+TEST(AssetFaults, OneGroupOfManyThatHoldsTheError) {
+  test::AssetEdit edit(bytes_of(scene::as_scene(scene::as_mesh(scene::make_sphere(64)))));
+  std::vector<std::size_t> first_level;
+  for (std::size_t g = 0; g < edit.groups().size(); ++g) {
+    if (edit.groups()[g].level == 0) first_level.push_back(g);
+  }
+  ASSERT_GE(first_level.size(), 20U);
+  const auto is_named = [](const std::vector<Diagnosis>& diagnoses) {
+    return std::any_of(diagnoses.begin(), diagnoses.end(),
+                       [](const Diagnosis& one) { return one.id == "error-in-few-groups"; });
+  };
+  EXPECT_FALSE(is_named(diagnose(edit.bytes())));
+  edit.group(first_level[3], [](auto& r) { r.error = 0.5F; });
+  edit.seal();
+  const std::vector<Diagnosis> diagnoses = diagnose(edit.bytes());
+  ASSERT_TRUE(is_named(diagnoses));
+  EXPECT_EQ(diagnoses[0].id, "error-in-few-groups");
+  EXPECT_EQ(diagnoses[0].places.at(0).groups.at(0), first_level[3]);
+  EXPECT_DOUBLE_EQ(diagnoses[0].places[0].costs.at(0).amount, 0.5);
+}
+
+TEST(AssetFaults, DroppedTrianglesEstimatesAndWhatWasLeftOut) {
+  scene::Scene scene = scene::as_scene(scene::as_mesh(scene::make_zero_areas(12)));
+  scene.left_out.push_back({"skin 0", "no joints"});
+  const std::vector<Diagnosis> diagnoses = diagnose(bytes_of(scene, format::ErrorTier::kQem));
+  ASSERT_EQ(diagnoses.size(), 3U);
+  EXPECT_EQ(diagnoses[0].id, "dropped-faces");
+  EXPECT_GT(diagnoses[0].count, 0U);
+  EXPECT_EQ(diagnoses[1].id, "unmeasured-errors");
+  EXPECT_EQ(diagnoses[2].id, "left-out");
+  EXPECT_EQ(diagnoses[2].places.at(0).where, "skin 0");
+}
+
+TEST(AssetFaults, ManySmallMeshes) {
+  scene::Scene scene = scene::as_scene(scene::as_mesh(scene::make_cube(1)));
+  EXPECT_TRUE(diagnose(bytes_of(scene)).empty());
+  for (std::uint32_t i = 1; i < 16; ++i) {
+    scene.instances.push_back(scene.instances[0]);
+    scene.instances.back().node = i;
+  }
+  const std::vector<Diagnosis> diagnoses = diagnose(bytes_of(scene));
+  ASSERT_EQ(diagnoses.size(), 1U);
+  EXPECT_EQ(diagnoses[0].id, "small-meshes");
+  EXPECT_DOUBLE_EQ(diagnoses[0].share, 1.0);
+}
+
+}  // namespace
+}  // namespace meshlode::out

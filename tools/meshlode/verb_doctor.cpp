@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// doctor: what in a source costs accuracy, bytes or time, worst first; of an asset, what its tables say of that.
+#include <algorithm>
+#include <cstring>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <meshlode/format.h>
+
+#include "base/file.h"
+#include "doctor_words.h"
+#include "options.h"
+#include "out/doctor/asset_faults.h"
+#include "out/doctor/diagnosis.h"
+#include "run/read/asset.h"
+#include "scene/import/import.h"
+#include "verb.h"
+
+namespace meshlode::cli {
+
+namespace {
+
+/// By its first four bytes, whatever it is called.
+Result<bool> is_asset(const std::string& path) {
+  const Result<MappedFile> file = MappedFile::open(path);
+  if (!file) return file.error();
+  const std::span<const std::uint8_t> bytes = file->bytes();
+  std::uint32_t magic = 0;
+  if (bytes.size() < sizeof(magic)) return false;
+  std::memcpy(&magic, bytes.data(), sizeof(magic));
+  return magic == format::kMagic;
+}
+
+Result<out::DoctorReport> examine_asset(const std::string& path, std::uint64_t max_decoded) {
+  const Result<run::Asset> asset = run::Asset::open(path, max_decoded);
+  if (!asset) return asset.error();
+  out::DoctorReport report;
+  report.is_asset = true;
+  report.meshes = asset->meshes().size();
+  for (const format::MeshRecord& mesh : asset->meshes()) report.triangles += mesh.source_triangles;
+  report.diagnoses = out::diagnose_asset(*asset);
+  out::rank(report.diagnoses);
+  return report;
+}
+
+Result<out::DoctorReport> examine(const std::string& path, const scene::ImportOptions& options) {
+  const Result<bool> asset = is_asset(path);
+  if (!asset) return asset.error();
+  if (*asset) return examine_asset(path, options.max_decoded);
+  const Result<scene::Scene> scene = scene::import_scene(path, options);
+  if (!scene) return scene.error();
+  return report_on_scene(*scene);
+}
+
+std::vector<std::string> all_fault_ids() {
+  std::vector<std::string> ids = source_fault_ids();
+  for (std::string& id : out::asset_fault_ids()) {
+    if (std::find(ids.begin(), ids.end(), id) == ids.end()) ids.push_back(std::move(id));
+  }
+  return ids;
+}
+
+int run_doctor(const Verb& verb, std::span<char* const> args) {
+  std::string path, max_decoded = kDefaultMaxDecodedText;
+  std::optional<std::string> fail_on;
+  scene::ImportOptions options;
+  OutputOptions output;
+  OptionParser parser(verb);
+  parser.add_positional("file", path, "a .gltf, .glb, .ply, .obj or .stl scene, or a .lode asset");
+  parser.add_value("--fail-on", fail_on, "exit with 6 where one of these is found: ids between commas, or any");
+  parser.add_value("--scene", options.scene, "glTF: the name or index of the scene to examine, or all");
+  add_max_decoded_option(parser, max_decoded);
+  add_output_options(parser, output);
+  if (const auto exit_code = parser.parse(args)) return *exit_code;
+  const Result<std::uint64_t> decoded = parse_max_decoded(max_decoded);
+  if (!decoded) return print_error(decoded.error());
+  options.max_decoded = *decoded;
+  options.may_lack_images = true;
+  // Before any work: a misspelt id.
+  if (fail_on) {
+    if (auto known = out::find_failures(*fail_on, all_fault_ids(), {}); !known) return print_error(known.error());
+  }
+  Result<out::DoctorReport> report = examine(path, options);
+  if (!report) return print_error(report.error());
+  report->file = path;
+  if (fail_on) report->failed_on = *out::find_failures(*fail_on, all_fault_ids(), report->diagnoses);
+  const std::string text = output.json() ? out::doctor_json(*report) : out::doctor_text(*report);
+  const bool is_silent = output.quiet && !output.json() && report->diagnoses.empty();
+  if (!is_silent && !print_out(text)) return static_cast<int>(ErrorCode::kIo);
+  return report->failed_on.empty() ? 0 : static_cast<int>(ErrorCode::kCheckFailed);
+}
+
+}  // namespace
+
+const Verb kDoctorVerb{"doctor", "what in a source costs accuracy, bytes or time, worst first, with the remedy",
+                       "meshlode doctor scene.glb\n  meshlode doctor scene.glb --fail-on unwelded-seams,not-finite\n"
+                       "  meshlode doctor scene.lode --format json",
+                       run_doctor};
+
+}  // namespace meshlode::cli
