@@ -109,8 +109,12 @@ std::optional<int> OptionParser::parse(std::span<char* const> args) {
   }
 }
 
-void add_output_options(OptionParser& parser, OutputOptions& options) {
-  parser.add_value("--format", options.format, "what is printed on stdout: text or json", {"text", "json"});
+void add_output_options(OptionParser& parser, OutputOptions& options, const std::vector<std::string>& more_formats) {
+  std::vector<std::string> formats{"text", "json"};
+  formats.insert(formats.end(), more_formats.begin(), more_formats.end());
+  std::string help = "what is printed on stdout: " + formats.front();
+  for (std::size_t i = 1; i < formats.size(); ++i) help += (i + 1 < formats.size() ? ", " : " or ") + formats[i];
+  parser.add_value("--format", options.format, help.c_str(), formats);
   parser.add_flag("--quiet", options.quiet, "no progress and no summary; errors are still printed");
 }
 

@@ -49,13 +49,14 @@ class OptionParser {
   std::unique_ptr<State> state_;
 };
 
-/// `--format text|json` and `--quiet`.
+/// `--format text|json` and `--quiet`; with `more_formats` these too.
 struct OutputOptions {
   std::string format = "text";
   bool quiet = false;
   [[nodiscard]] bool json() const { return format == "json"; }
 };
-void add_output_options(OptionParser& parser, OutputOptions& options);
+void add_output_options(OptionParser& parser, OutputOptions& options,
+                        const std::vector<std::string>& more_formats = {});
 
 /// `--jobs N`: threads; 0 (the default) is one per core.
 void add_jobs_option(OptionParser& parser, std::uint32_t& jobs);

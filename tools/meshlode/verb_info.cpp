@@ -3,11 +3,20 @@
 #include "options.h"
 #include "out/report/info.h"
 #include "run/read/asset.h"
+#include "terminal.h"
 #include "verb.h"
 
 namespace meshlode::cli {
 
 namespace {
+
+std::string describe(const run::Asset& asset, const out::AssetInfo& info, const std::string& format, bool list_stuck) {
+  if (format == "json") return out::info_json(asset, info, list_stuck);
+  if (format == "csv") return out::info_csv(asset, info, list_stuck);
+  if (format == "markdown") return out::info_markdown(asset, info, list_stuck);
+  const auto style = is_unicode_terminal() ? out::BarStyle::kBlocks : out::BarStyle::kAscii;
+  return out::info_text(asset, info, list_stuck, style);
+}
 
 int run_info(const Verb& verb, std::span<char* const> args) {
   std::string path, fail_if;
@@ -15,7 +24,7 @@ int run_info(const Verb& verb, std::span<char* const> args) {
   bool list_stuck = false;
   OptionParser parser(verb);
   parser.add_positional("file", path, "a .lode asset");
-  add_output_options(parser, output);
+  add_output_options(parser, output, {"csv", "markdown"});
   parser.add_flag("--stuck", list_stuck, "list every stuck group with its reason (extract --stuck shows them)");
   add_budget_option(parser, fail_if);
   if (const auto exit_code = parser.parse(args)) return *exit_code;
@@ -25,15 +34,16 @@ int run_info(const Verb& verb, std::span<char* const> args) {
   const Result<run::Asset> asset = run::Asset::open(path);
   if (!asset) return print_error(asset.error());
   out::AssetInfo info = out::describe_asset(*asset);
-  Result<out::ByteMap> byte_map = out::map_bytes(*asset);
-  if (byte_map) {
-    info.byte_map = std::move(*byte_map);
-  } else {
-    (void)print_error(byte_map.error());  // what the tables say is still true
+  // CSV has no byte map; it takes a reading of every page.
+  if (output.format != "csv" || out::mentions(*budget, "byte_map")) {
+    Result<out::ByteMap> byte_map = out::map_bytes(*asset);
+    if (byte_map) {
+      info.byte_map = std::move(*byte_map);
+    } else {
+      (void)print_error(byte_map.error());  // what the tables say is still true
+    }
   }
-  const std::string text =
-      output.json() ? out::info_json(*asset, info, list_stuck) : out::info_text(*asset, info, list_stuck);
-  if (!print_out(text)) return static_cast<int>(ErrorCode::kIo);
+  if (!print_out(describe(*asset, info, output.format, list_stuck))) return static_cast<int>(ErrorCode::kIo);
   if (budget->empty()) return 0;
   const auto broken = out::judge_budget(*budget, out::info_json(*asset, info, true));
   return broken ? print_broken(path, *broken) : print_error(broken.error());
@@ -41,8 +51,9 @@ int run_info(const Verb& verb, std::span<char* const> args) {
 
 }  // namespace
 
-const Verb kInfoVerb{"info", "what is in an asset: totals, levels, materials, sections",
+const Verb kInfoVerb{"info", "what is in an asset: totals, levels, materials, bytes, sections",
                      "meshlode info scene.lode\n  meshlode info scene.lode --format json\n"
+                     "  meshlode info scene.lode --format csv >levels.csv\n"
                      "  meshlode info scene.lode --fail-if 'totals.bytes_per_source_triangle>10, any(meshes).roots>1'",
                      run_info};
 

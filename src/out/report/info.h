@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What `meshlode info` says about an asset: statistics over its tables, as data, as JSON and as text.
-// The JSON's keys are a promise (docs/schemas/info.schema.json).
+// What `meshlode info` says about an asset: statistics over its tables, as data, as JSON, CSV, Markdown and text.
+// The JSON's keys (docs/schemas/info.schema.json) and the columns of CSV (docs/info.md) are a promise.
 #pragma once
 
 #include <cstdint>
@@ -10,6 +10,7 @@
 
 #include <meshlode/format.h>
 
+#include "out/report/bar.h"
 #include "out/report/byte_map.h"
 #include "out/report/read_meta.h"
 #include "run/read/asset.h"
@@ -57,7 +58,12 @@ struct AssetInfo {
 
 /// With `list_stuck`, every stuck group is listed with its reason.
 [[nodiscard]] std::string info_json(const run::Asset& asset, const AssetInfo& info, bool list_stuck);
-[[nodiscard]] std::string info_text(const run::Asset& asset, const AssetInfo& info, bool list_stuck);
+[[nodiscard]] std::string info_text(const run::Asset& asset, const AssetInfo& info, bool list_stuck,
+                                    BarStyle style = BarStyle::kAscii);
+/// What the text says, as tables of GitHub's Markdown. Nothing in a name is markup.
+[[nodiscard]] std::string info_markdown(const run::Asset& asset, const AssetInfo& info, bool list_stuck);
+/// One table with a head line: the levels of all meshes, or with `list_stuck` the stuck groups (docs/info.md).
+[[nodiscard]] std::string info_csv(const run::Asset& asset, const AssetInfo& info, bool list_stuck);
 
 [[nodiscard]] std::string section_name(std::uint32_t id);  ///< four letters, '?' for bytes that are not printable
 [[nodiscard]] std::uint64_t section_decoded_bytes(const run::Asset& asset, const format::SectionEntry& section);
