@@ -69,6 +69,23 @@ TEST(OptionParser, AnswersUsageForWhatItDoesNotKnow) {
   EXPECT_EQ(parse({"--help"}).exit_code, 0);
 }
 
+std::string told_of(const std::vector<std::string>& words) {
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(parse(words).exit_code, static_cast<int>(ErrorCode::kUsage));
+  return testing::internal::GetCapturedStderr();
+}
+
+TEST(OptionParser, NamesTheNearestOfItsOptions) {
+  const std::string flag = "meshlode: unknown option '--falg'; the nearest is --flag; see meshlode test --help\n";
+  EXPECT_EQ(told_of({"a", "--falg"}), flag);
+  EXPECT_EQ(told_of({"--falg"}), flag) << "before what it misses";
+  EXPECT_EQ(told_of({"a", "--falg=7"}), flag);
+  EXPECT_EQ(told_of({"a", "--NUMBR", "7"}),
+            "meshlode: unknown option '--NUMBR'; the nearest is --number; see meshlode test --help\n");
+  EXPECT_EQ(told_of({"a", "b"}).find("nearest"), std::string::npos) << "no option";
+  EXPECT_EQ(told_of({"a", "--", "--falg"}).find("nearest"), std::string::npos) << "no option";
+}
+
 TEST(JobLimit, RunsTheWorkOnce) {
   for (const std::uint32_t jobs : {0U, 1U, 2U, 4U, 4'000'000'000U}) {
     int runs = 0;

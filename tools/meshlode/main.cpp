@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/guarded.h"
 #include "base/version.h"
@@ -32,6 +33,19 @@ std::string help() {
          "            5 unsupported, 6 a check failed\n";
 }
 
+/// The verb or option of the program that is nearest to what it is not.
+int unknown_verb(std::string_view name) {
+  std::vector<std::string> known;
+  const bool is_option = name.starts_with('-');
+  if (is_option) {
+    known = {"--help", "--version"};
+  } else {
+    for (const Verb* verb : all_verbs()) known.emplace_back(verb->name);
+  }
+  return print_error(
+      {ErrorCode::kUsage, "", unknown_word(is_option ? "option" : "verb", name, known) + "; see meshlode --help"});
+}
+
 int print_or_fail(const std::string& text) {
   return print_out(text) ? 0 : static_cast<int>(ErrorCode::kIo);
 }
@@ -47,7 +61,7 @@ int run(std::span<char* const> args) {
   for (const Verb* verb : all_verbs()) {
     if (name == verb->name) return verb->run(*verb, args.subspan(1));
   }
-  return print_error({ErrorCode::kUsage, "", "unknown verb '" + std::string(name) + "'; see meshlode --help"});
+  return unknown_verb(name);
 }
 
 /// Large arrays go back to the system as soon as they are freed. Left to itself, glibc takes the first one that is

@@ -8,12 +8,15 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <utility>
 
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 #include <CLI/CLI.hpp>
 
 #include "base/byte_size.h"
+#include "base/nearest_name.h"
+#include "base/printable.h"
 
 namespace meshlode::cli {
 
@@ -27,60 +30,75 @@ struct OptionParser::State {
   explicit State(const Verb& verb) : app(verb.summary, std::string("meshlode ") + verb.name) {
     app.footer(std::string("Example:\n  ") + verb.example);
     app.allow_extras(false);
+    note(*app.get_help_ptr(), {}, {});
   }
+
+  /// One value, the last one given wins nothing: giving an option twice is a usage error (CLI11's default).
+  template <class T>
+  void add(const char* name, T& target, const char* help, const std::vector<std::string>& choices = {},
+           bool is_required = false) {
+    CLI::Option& option = *app.add_option(name, target, help);
+    const std::string value = option.get_type_name();
+    if (!choices.empty()) option.check(CLI::IsMember(choices));
+    option.required(is_required);
+    note(option, value, choices);
+  }
+
+  void note(const CLI::Option& option, std::string value, const std::vector<std::string>& choices) {
+    OptionInfo info;
+    for (const std::string& name : option.get_snames()) info.names.push_back("-" + name);
+    for (const std::string& name : option.get_lnames()) info.names.push_back("--" + name);
+    info.is_positional = option.get_positional();
+    if (info.is_positional) info.names = {option.get_name(true)};
+    info.value = std::move(value);
+    info.choices = choices;
+    info.help = option.get_description();
+    info.is_required = option.get_required();
+    info.is_many = option.get_items_expected_max() > 1;
+    options.push_back(std::move(info));
+  }
+
   CLI::App app;
+  OptionTable options;  ///< as the app has them, in the order of the help
 };
 
 OptionParser::OptionParser(const Verb& verb) : state_(std::make_unique<State>(verb)) {}
 OptionParser::~OptionParser() = default;
 
 void OptionParser::add_flag(const char* name, bool& target, const char* help) {
-  state_->app.add_flag(name, target, help);
+  state_->note(*state_->app.add_flag(name, target, help), {}, {});
 }
-
-namespace {
-
-/// One value, the last one given wins nothing: giving an option twice is a usage error (CLI11's default).
-template <class T>
-CLI::Option* add_option(CLI::App& app, const char* name, T& target, const char* help) {
-  return app.add_option(name, target, help);
-}
-
-}  // namespace
-
 void OptionParser::add_value(const char* name, std::string& target, const char* help,
                              const std::vector<std::string>& choices) {
-  CLI::Option* option = add_option(state_->app, name, target, help);
-  if (!choices.empty()) option->check(CLI::IsMember(choices));
+  state_->add(name, target, help, choices);
 }
 void OptionParser::add_value(const char* name, double& target, const char* help) {
-  add_option(state_->app, name, target, help);
+  state_->add(name, target, help);
 }
 void OptionParser::add_value(const char* name, std::uint32_t& target, const char* help) {
-  add_option(state_->app, name, target, help);
+  state_->add(name, target, help);
 }
 void OptionParser::add_value(const char* name, std::uint64_t& target, const char* help) {
-  add_option(state_->app, name, target, help);
+  state_->add(name, target, help);
 }
 void OptionParser::add_value(const char* name, std::optional<double>& target, const char* help) {
-  add_option(state_->app, name, target, help);
+  state_->add(name, target, help);
 }
 void OptionParser::add_value(const char* name, std::optional<std::uint32_t>& target, const char* help) {
-  add_option(state_->app, name, target, help);
+  state_->add(name, target, help);
 }
 void OptionParser::add_value(const char* name, std::optional<std::uint64_t>& target, const char* help) {
-  add_option(state_->app, name, target, help);
+  state_->add(name, target, help);
 }
 void OptionParser::add_value(const char* name, std::optional<std::string>& target, const char* help,
                              const std::vector<std::string>& choices) {
-  CLI::Option* option = add_option(state_->app, name, target, help);
-  if (!choices.empty()) option->check(CLI::IsMember(choices));
+  state_->add(name, target, help, choices);
 }
 void OptionParser::add_positional(const char* name, std::string& target, const char* help) {
-  add_option(state_->app, name, target, help)->required();
+  state_->add(name, target, help, {}, true);
 }
 void OptionParser::add_positionals(const char* name, std::vector<std::string>& target, const char* help) {
-  add_option(state_->app, name, target, help)->required();
+  state_->add(name, target, help, {}, true);
 }
 
 void add_max_decoded_option(OptionParser& parser, std::string& size) {
@@ -95,6 +113,30 @@ Result<std::uint64_t> parse_max_decoded(const std::string& size) {
   return *bytes;
 }
 
+namespace {
+
+/// The first word that looks like an option and is none.
+std::optional<std::string> find_unknown_option(const CLI::App& app) {
+  for (const std::string& word : app.remaining()) {
+    if (word == "--") break;  // what follows are arguments, whatever they look like
+    if (word.size() > 1 && word.front() == '-') return word.substr(0, word.find('='));
+  }
+  return std::nullopt;
+}
+
+/// What is wrong with the arguments. An unknown option is named first: that an argument is missing is often its fault.
+std::string usage_fault(const CLI::App& app, const OptionTable& options, const CLI::ParseError& error) {
+  const auto word = find_unknown_option(app);
+  if (!word) return error.what();
+  std::vector<std::string> known;
+  for (const OptionInfo& option : options) {
+    if (!option.is_positional) known.insert(known.end(), option.names.begin(), option.names.end());
+  }
+  return unknown_word("option", *word, known);
+}
+
+}  // namespace
+
 std::optional<int> OptionParser::parse(std::span<char* const> args) {
   // CLI11 takes the arguments last first.
   std::vector<std::string> reversed(args.rbegin(), args.rend());
@@ -104,8 +146,8 @@ std::optional<int> OptionParser::parse(std::span<char* const> args) {
   } catch (const CLI::CallForHelp&) {
     return print_out(state_->app.help()) ? 0 : static_cast<int>(ErrorCode::kIo);
   } catch (const CLI::ParseError& e) {
-    const std::string name = state_->app.get_name();
-    return print_error({ErrorCode::kUsage, "", std::string(e.what()) + "; see " + name + " --help"});
+    const std::string fault = usage_fault(state_->app, state_->options, e);
+    return print_error({ErrorCode::kUsage, "", fault + "; see " + state_->app.get_name() + " --help"});
   }
 }
 
@@ -150,6 +192,10 @@ std::optional<std::vector<double>> parse_numbers(std::string_view text) {
     if (comma == std::string_view::npos) return numbers;
     text.remove_prefix(comma + 1);
   }
+}
+
+std::string unknown_word(std::string_view what, std::string_view word, const std::vector<std::string>& known) {
+  return "unknown " + std::string(what) + " '" + printable(word, 64) + "'; the nearest is " + nearest_name(word, known);
 }
 
 int print_error(const Error& error) {

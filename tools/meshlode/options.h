@@ -13,6 +13,7 @@
 
 #include <meshlode/result.h>
 
+#include "option_table.h"
 #include "verb.h"
 
 namespace meshlode::cli {
@@ -41,7 +42,8 @@ class OptionParser {
   void add_positional(const char* name, std::string& target, const char* help);                ///< exactly one
   void add_positionals(const char* name, std::vector<std::string>& target, const char* help);  ///< one or more
 
-  /// Nothing: go on. A value: leave with this exit code (help was printed, or a usage error).
+  /// Nothing: go on. A value: leave with this exit code (help was printed, a usage error, or the verb was only asked
+  /// for its options: Verb::listed_options).
   [[nodiscard]] std::optional<int> parse(std::span<char* const> args);
 
  private:
@@ -84,6 +86,10 @@ class JobLimit {
 
 /// "1,0.5,2e-3": numbers between commas; nothing where a part is not a finite number.
 [[nodiscard]] std::optional<std::vector<double>> parse_numbers(std::string_view text);
+
+/// "unknown WHAT 'word'; the nearest is NAME", for words of the command line. \pre not empty: known
+[[nodiscard]] std::string unknown_word(std::string_view what, std::string_view word,
+                                       const std::vector<std::string>& known);
 
 /// One line on stderr, "meshlode: where: detail", and the exit code to return.
 int print_error(const Error& error);

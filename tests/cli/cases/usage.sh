@@ -4,6 +4,8 @@ code
 code --help
 code --version
 run frobnicate
+run VLIDATE
+run --versoin
 for verb in build merge plan doctor info compare validate verify render extract repack; do
   code "$verb" --help
   code "$verb"
@@ -11,6 +13,10 @@ for verb in build merge plan doctor info compare validate verify render extract 
 done
 run build
 run build a.glb --no-such-option
+run build a.glb --prset fast
+run build --prset=fast
+run info a.lode --stuk
+run info a.lode b.lode
 run build a.glb -o a.lode -O out
 run build a.glb b.glb -o a.lode
 run build a.glb --codec gzip
