@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What an installed meshlode offers: the program, and for find_package(meshlode)
+# What an installed meshlode offers: the program, its man pages and completion scripts, and for find_package(meshlode)
 #   meshlode::program  the command line, and meshlode_add_assets() to build assets with it (MeshlodeAssets.cmake).
 #   meshlode::runtime  static, MIT: read, unpack, select, decode behind <meshlode/runtime.h>. Needs nothing but the C and
 #                      C++ runtime (and zstd, lz4 where the codecs are built in).
@@ -14,6 +14,12 @@ include(CMakePackageConfigHelpers)
 
 set_target_properties(meshlode_cli PROPERTIES EXPORT_NAME program)
 install(TARGETS meshlode_cli EXPORT meshlodeTargets RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT tools)
+# What the program wrote of itself (tools/meshlode/CMakeLists.txt): the folder, because it knows its verbs.
+install(DIRECTORY ${PROJECT_BINARY_DIR}/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT tools)
+set(meshlode_scripts ${PROJECT_BINARY_DIR}/completions)
+install(FILES ${meshlode_scripts}/meshlode DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT tools)
+install(FILES ${meshlode_scripts}/_meshlode DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions COMPONENT tools)
+install(FILES ${meshlode_scripts}/meshlode.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d COMPONENT tools)
 install(FILES LICENSES/GPL-3.0-or-later.txt LICENSES/MIT.txt DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT tools)
 install(DIRECTORY docs/schemas/ DESTINATION ${CMAKE_INSTALL_DATADIR}/meshlode/schemas COMPONENT tools
         FILES_MATCHING PATTERN "*.json")

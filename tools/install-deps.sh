@@ -23,6 +23,7 @@ if [ "${1:-}" = --tests ]; then
              libopenmesh-dev                               # an oracle of topology, a reference simplifier
              make                                          # a stranger's project, built by what CMake takes by itself
              file dpkg-dev debootstrap                     # Debian packages, and a bare root to install them in
+             zsh fish mandoc man-db                        # readers of completion scripts and of man pages
              mesa-vulkan-drivers vulkan-validationlayers)  # a Vulkan device on any machine, and its judge
 fi
 

@@ -86,6 +86,36 @@ TEST(OptionParser, NamesTheNearestOfItsOptions) {
   EXPECT_EQ(told_of({"a", "--", "--falg"}).find("nearest"), std::string::npos) << "no option";
 }
 
+TEST(OptionParser, ListsItsOptionsInsteadOfParsing) {
+  OptionTable table;
+  Verb verb = kTestVerb;
+  verb.listed_options = &table;
+  std::string file, choice;
+  std::vector<std::string> files;
+  std::optional<std::string> maybe;
+  bool flag = false;
+  OptionParser parser(verb);
+  parser.add_positional("file", file, "a file");
+  parser.add_value("-c,--choice", choice, "one of two", {"a", "b"});
+  parser.add_flag("--flag", flag, "on");
+  parser.add_positional("maybe", maybe, "or none", {"x"});
+  parser.add_positionals("more", files, "files");
+  EXPECT_EQ(parser.parse({}), 0) << "nothing is missed";
+  ASSERT_EQ(table.size(), 6U);
+  EXPECT_EQ(table[0].names, (std::vector<std::string>{"-h", "--help"}));
+  EXPECT_EQ(table[0].value, "");
+  EXPECT_EQ(table[1].names, std::vector<std::string>{"file"});
+  EXPECT_TRUE(table[1].is_positional && table[1].is_required && !table[1].is_many);
+  EXPECT_EQ(table[2].names, (std::vector<std::string>{"-c", "--choice"}));
+  EXPECT_EQ(table[2].value, "TEXT");
+  EXPECT_EQ(table[2].choices, (std::vector<std::string>{"a", "b"}));
+  EXPECT_EQ(table[2].help, "one of two");
+  EXPECT_EQ(table[3].value, "") << "a flag";
+  EXPECT_TRUE(table[4].is_positional && !table[4].is_required);
+  EXPECT_EQ(table[4].choices, std::vector<std::string>{"x"});
+  EXPECT_TRUE(table[5].is_positional && table[5].is_many);
+}
+
 TEST(JobLimit, RunsTheWorkOnce) {
   for (const std::uint32_t jobs : {0U, 1U, 2U, 4U, 4'000'000'000U}) {
     int runs = 0;

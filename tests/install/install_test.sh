@@ -7,6 +7,10 @@ cmake=$1 build=$2 compiler=$3 consumer=$4
 work=$(mktemp -d); trap 'rm -rf "$work"' EXIT
 "$cmake" --install "$build" --prefix "$work/prefix" >/dev/null
 "$work/prefix/bin/meshlode" --version
+for file in man/man1/meshlode.1 man/man1/meshlode-build.1 bash-completion/completions/meshlode \
+            zsh/site-functions/_meshlode fish/vendor_completions.d/meshlode.fish; do
+  [ -s "$work/prefix/share/$file" ] || { echo "FAILED: share/$file is not installed"; exit 1; }
+done
 "$cmake" -S "$consumer" -B "$work/consumer" -DCMAKE_PREFIX_PATH="$work/prefix" -DCMAKE_CXX_COMPILER="$compiler" >/dev/null
 "$cmake" --build "$work/consumer"
 "$work/consumer/use_build" "$work/triangle.lode"

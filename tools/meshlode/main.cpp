@@ -11,12 +11,30 @@
 
 #include "base/guarded.h"
 #include "base/version.h"
+#include "exit_codes.h"
 #include "options.h"
 #include "outputs.h"
 #include "verb.h"
 
 namespace meshlode::cli {
 namespace {
+
+std::string exit_codes() {
+  const std::string head = "exit codes: ";
+  std::string text, line = head;
+  for (std::size_t i = 0; i < kExitCodes.size(); ++i) {
+    const std::string item =
+        std::to_string(kExitCodes[i].code) + " " + kExitCodes[i].meaning + (i + 1 < kExitCodes.size() ? "," : "");
+    if (line.size() + item.size() > 110) {
+      text += line + "\n";
+      line = std::string(head.size(), ' ');
+    } else if (i > 0) {
+      line += ' ';
+    }
+    line += item;
+  }
+  return text + line + "\n";
+}
 
 std::string help() {
   std::string text =
@@ -28,9 +46,8 @@ std::string help() {
     text += "  " + name + " " + verb->summary + "\n";
   }
   return text +
-         "\n`meshlode VERB --help` shows a verb's options and an example.\n"
-         "exit codes: 0 ok, 1 usage, 2 input or output failed (an interrupt too), 3 invalid input, 4 build failed,\n"
-         "            5 unsupported, 6 a check failed\n";
+         "\n`meshlode VERB --help` shows a verb's options and an example.\n" +
+         exit_codes();
 }
 
 /// The verb or option of the program that is nearest to what it is not.

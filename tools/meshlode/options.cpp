@@ -27,7 +27,8 @@ constexpr std::uint32_t kMaxJobs = 256;  ///< threads beyond that only cost memo
 }  // namespace
 
 struct OptionParser::State {
-  explicit State(const Verb& verb) : app(verb.summary, std::string("meshlode ") + verb.name) {
+  explicit State(const Verb& verb)
+      : app(verb.summary, std::string("meshlode ") + verb.name), listed_options(verb.listed_options) {
     app.footer(std::string("Example:\n  ") + verb.example);
     app.allow_extras(false);
     note(*app.get_help_ptr(), {}, {});
@@ -60,6 +61,7 @@ struct OptionParser::State {
 
   CLI::App app;
   OptionTable options;  ///< as the app has them, in the order of the help
+  OptionTable* listed_options;
 };
 
 OptionParser::OptionParser(const Verb& verb) : state_(std::make_unique<State>(verb)) {}
@@ -96,6 +98,10 @@ void OptionParser::add_value(const char* name, std::optional<std::string>& targe
 }
 void OptionParser::add_positional(const char* name, std::string& target, const char* help) {
   state_->add(name, target, help, {}, true);
+}
+void OptionParser::add_positional(const char* name, std::optional<std::string>& target, const char* help,
+                                  const std::vector<std::string>& choices) {
+  state_->add(name, target, help, choices);
 }
 void OptionParser::add_positionals(const char* name, std::vector<std::string>& target, const char* help) {
   state_->add(name, target, help, {}, true);
@@ -138,6 +144,10 @@ std::string usage_fault(const CLI::App& app, const OptionTable& options, const C
 }  // namespace
 
 std::optional<int> OptionParser::parse(std::span<char* const> args) {
+  if (state_->listed_options != nullptr) {
+    *state_->listed_options = state_->options;
+    return 0;
+  }
   // CLI11 takes the arguments last first.
   std::vector<std::string> reversed(args.rbegin(), args.rend());
   try {

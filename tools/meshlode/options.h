@@ -39,7 +39,9 @@ class OptionParser {
   void add_value(const char* name, std::optional<std::uint64_t>& target, const char* help);
   void add_value(const char* name, std::optional<std::string>& target, const char* help,
                  const std::vector<std::string>& choices = {});
-  void add_positional(const char* name, std::string& target, const char* help);                ///< exactly one
+  void add_positional(const char* name, std::string& target, const char* help);  ///< exactly one
+  void add_positional(const char* name, std::optional<std::string>& target, const char* help,
+                      const std::vector<std::string>& choices);                                ///< one or none
   void add_positionals(const char* name, std::vector<std::string>& target, const char* help);  ///< one or more
 
   /// Nothing: go on. A value: leave with this exit code (help was printed, a usage error, or the verb was only asked

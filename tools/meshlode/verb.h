@@ -5,6 +5,9 @@
 #pragma once
 
 #include <span>
+#include <vector>
+
+#include "option_table.h"
 
 namespace meshlode::cli {
 
@@ -14,10 +17,15 @@ struct Verb {
   const char* example;  ///< one or more command lines, shown at the end of the verb's help
   /// Runs the verb on the arguments after its name and returns the exit code.
   int (*run)(const Verb& verb, std::span<char* const> args);
+  /// Not null: run() puts its options here when it parses, and does nothing else.
+  OptionTable* listed_options = nullptr;
 };
 
 /// Every verb that is built in, in the order of the help.
 [[nodiscard]] std::span<const Verb* const> all_verbs();
+
+/// The same with the options of each, asked of the verbs themselves.
+[[nodiscard]] std::vector<VerbHelp> all_verb_help();
 
 extern const Verb kBuildVerb;
 extern const Verb kMergeVerb;
@@ -30,5 +38,7 @@ extern const Verb kVerifyVerb;
 extern const Verb kRenderVerb;
 extern const Verb kExtractVerb;
 extern const Verb kRepackVerb;
+extern const Verb kCompletionVerb;
+extern const Verb kManVerb;
 
 }  // namespace meshlode::cli

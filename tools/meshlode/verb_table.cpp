@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The one list of verbs: dispatch and help both read it.
+// The one list of verbs: dispatch, help, completion and man pages read it.
 #include "verb.h"
+
+#include <utility>
 
 namespace meshlode::cli {
 
@@ -8,13 +10,25 @@ namespace {
 
 const Verb* const kVerbs[] = {
     &kBuildVerb, &kMergeVerb, &kPlanVerb, &kDoctorVerb, &kInfoVerb, &kCompareVerb, &kValidateVerb, &kVerifyVerb,
-    &kRenderVerb, &kExtractVerb, &kRepackVerb,
+    &kRenderVerb, &kExtractVerb, &kRepackVerb, &kCompletionVerb, &kManVerb,
 };
 
 }  // namespace
 
 std::span<const Verb* const> all_verbs() {
   return kVerbs;
+}
+
+std::vector<VerbHelp> all_verb_help() {
+  std::vector<VerbHelp> all;
+  for (const Verb* verb : all_verbs()) {
+    VerbHelp help{verb->name, verb->summary, verb->example, {}};
+    Verb asked = *verb;
+    asked.listed_options = &help.options;
+    asked.run(asked, {});
+    all.push_back(std::move(help));
+  }
+  return all;
 }
 
 }  // namespace meshlode::cli
