@@ -2,7 +2,8 @@
 // A third-party library is seen through one .cpp per room that uses it, never in a header: `grep -r "include <metis"`
 // hits one file. Excepted are GLM, whose types are our vectors, base/parallel.h, whose templates are oneTBB's, and two
 // headers that a folder shares with nobody: draw/gpu/vulkan/types.h, because the Vulkan wrapper is four files, and
-// scene/import/gltf/tinygltf.h, because import works on tinygltf's model.
+// scene/import/gltf/tinygltf.h, because import works on tinygltf's model. tools/meshlode/library_versions.cpp sees
+// nearly all of them, for their versions alone.
 #include <array>
 #include <map>
 #include <set>

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "base/guarded.h"
-#include "base/version.h"
 #include "exit_codes.h"
+#include "library_versions.h"
 #include "options.h"
 #include "outputs.h"
 #include "verb.h"
@@ -46,7 +46,7 @@ std::string help() {
     text += "  " + name + " " + verb->summary + "\n";
   }
   return text +
-         "\n`meshlode VERB --help` shows a verb's options and an example.\n" +
+         "\n`meshlode VERB --help` shows a verb's options and an example; `meshlode --version` what it is built of.\n" +
          exit_codes();
 }
 
@@ -74,7 +74,7 @@ int run(std::span<char* const> args) {
   }
   const std::string_view name = args[0];
   if (name == "--help" || name == "-h" || name == "help") return print_or_fail(help());
-  if (name == "--version") return print_or_fail(std::string(program_version()) + "\n");
+  if (name == "--version") return print_or_fail(version_text());
   for (const Verb* verb : all_verbs()) {
     if (name == verb->name) return verb->run(*verb, args.subspan(1));
   }

@@ -129,7 +129,7 @@ std::string program_man_page(std::span<const VerbHelp> verbs, const std::string&
     text += ".TP\n" + bold(verb.name) + "\n" + roff(one_line(verb.summary)) + "\n";
   }
   text += ".SH OPTIONS\n.TP\n" + bold("-h") + ", " + bold("--help") + "\nthe verbs and the exit codes\n.TP\n" +
-          bold("--version") + "\nthe program\\(aqs version\n";
+          bold("--version") + "\nthe program\\(aqs version and build id, and the versions of its libraries\n";
   return text + exit_status() + see_also(verbs, {});
 }
 

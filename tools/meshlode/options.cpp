@@ -12,6 +12,7 @@
 
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
+#include <tbb/version.h>
 #include <CLI/CLI.hpp>
 
 #include "base/byte_size.h"
@@ -206,6 +207,14 @@ std::optional<std::vector<double>> parse_numbers(std::string_view text) {
 
 std::string unknown_word(std::string_view what, std::string_view word, const std::vector<std::string>& known) {
   return "unknown " + std::string(what) + " '" + printable(word, 64) + "'; the nearest is " + nearest_name(word, known);
+}
+
+std::string cli11_version() {
+  return CLI11_VERSION;
+}
+
+std::string onetbb_version() {
+  return TBB_runtime_version();
 }
 
 int print_error(const Error& error) {

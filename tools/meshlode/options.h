@@ -93,6 +93,10 @@ class JobLimit {
 [[nodiscard]] std::string unknown_word(std::string_view what, std::string_view word,
                                        const std::vector<std::string>& known);
 
+/// Versions of the two libraries that are seen by options.cpp alone.
+[[nodiscard]] std::string cli11_version();
+[[nodiscard]] std::string onetbb_version();
+
 /// One line on stderr, "meshlode: where: detail", and the exit code to return.
 int print_error(const Error& error);
 
