@@ -65,7 +65,8 @@ install(FILES include/meshlode/format.h include/meshlode/page.h include/meshlode
               include/meshlode/result.h include/meshlode/runtime.h include/meshlode/meshlode.h
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/meshlode COMPONENT dev)
 
-# Shows the functions of <meshlode/build.h> and <meshlode/meshlode_build.h>, and nothing else: METIS, CGAL and what else is inside is nobody's business.
+# Shows the functions of <meshlode/build.h> and <meshlode/meshlode_build.h>, and nothing else: CGAL and what else is inside
+# is nobody's business.
 # meshlode_thread_rand stays out: a library must not replace its host's rand().
 add_library(meshlode_build_library SHARED $<TARGET_OBJECTS:meshlode_build>)
 target_link_libraries(meshlode_build_library PRIVATE meshlode_build)
@@ -76,7 +77,8 @@ target_compile_features(meshlode_build_library INTERFACE cxx_std_20)
 set(meshlode_build_symbols ${CMAKE_CURRENT_LIST_DIR}/meshlode_build.map)
 target_link_options(meshlode_build_library PRIVATE -Wl,--version-script=${meshlode_build_symbols})
 set_property(TARGET meshlode_build_library APPEND PROPERTY LINK_DEPENDS ${meshlode_build_symbols})
-install(FILES include/meshlode/build.h include/meshlode/meshlode_build.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/meshlode COMPONENT dev)
+install(FILES include/meshlode/build.h include/meshlode/meshlode_build.h
+        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/meshlode COMPONENT dev)
 
 set(meshlode_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/meshlode)
 install(TARGETS meshlode_runtime EXPORT meshlodeTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT dev)

@@ -3,7 +3,7 @@
 # dpkg-shlibdeps, which find out on what the binaries depend.
 #   libmeshlode0     MIT: libmeshlode.so.0, for C
 #   libmeshlode-dev  headers, the static runtime, what find_package(meshlode) reads
-#   meshlode         GPL: the program, libmeshlode_build.so.0, schemas
+#   meshlode         GPL: the program, its man pages and completion scripts, libmeshlode_build.so.0, schemas
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME meshlode)
 set(CPACK_PACKAGE_VENDOR meshlode)

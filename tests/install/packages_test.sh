@@ -13,10 +13,11 @@ fail() { echo "FAILED: $*"; failed=1; }
 
 "$cpack" --config "$build/CPackConfig.cmake" -B "$work" >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
 deb() { echo "$work/$1_"*.deb; }
-# files_of PACKAGE: as a release build with a plain lib folder names them
+# files_of PACKAGE: as a release build with a plain lib folder names them; any verb, any schema
 files_of() {
   dpkg-deb --fsys-tarfile "$(deb "$1")" | tar t | grep -v '/$' |
-    sed 's|^\./usr/lib/[a-z0-9_]*-linux-gnu/|./usr/lib/|; s|Targets-[a-z]*\.cmake$|Targets-release.cmake|' | LC_ALL=C sort
+    sed 's|^\./usr/lib/[a-z0-9_]*-linux-gnu/|./usr/lib/|; s|Targets-[a-z]*\.cmake$|Targets-release.cmake|
+         s|man1/meshlode-[a-z]*\.1$|man1/meshlode-VERB.1|; s|schemas/[a-z]*\.schema|schemas/NAME.schema|' | LC_ALL=C sort -u
 }
 field() { dpkg-deb -f "$(deb "$1")" "$2"; }
 for list in "$source"/tests/install/packages/*.files; do
