@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Another codec without the scene: the bytes of a build with that codec, from every codec to every other.
 codecs="none lz4 zstd strips draco"
-cp "$DATA/crystal.glb" a.glb
+cp "$DATA/city.glb" a.glb  # five meshes
 for codec in $codecs; do
   code build --quiet a.glb -o "$codec.lode" --codec "$codec"
 done
@@ -33,8 +33,26 @@ ln -s b.lode link
 run repack b.lode -o link --codec none
 run repack missing.lode -o c.lode --codec none
 run repack a.glb -o c.lode --codec none
-head -c 5000 b.lode >short.lode
-code repack short.lode -o c.lode --codec none
+for size in 0 1 127 128 1000 5000 20000 $(($(wc -c <b.lode) - 1)); do
+  head -c "$size" b.lode >short.lode
+  code repack --quiet short.lode -o c.lode --codec none
+done
+# A bit in each of 40 places all over the file: refused, or one that nothing reads (between sections).
+last=$(($(wc -c <zstd.lode) - 1)) refused=0
+for i in $(seq 0 39); do
+  cp zstd.lode changed.lode
+  at=$((i * last / 39))
+  byte=$(od -An -tu1 -j $at -N 1 zstd.lode)
+  printf "\\$(printf %o $((byte ^ 16)))" | dd of=changed.lode bs=1 seek=$at conv=notrunc status=none
+  "$MESHLODE" repack --quiet changed.lode -o c.lode --codec strips 2>../stderr
+  case $? in
+    0) cmp c.lode strips.lode; rm c.lode ;;
+    3) refused=$((refused + 1)) ;;
+    *) echo "byte $at: $(cat ../stderr)" ;;
+  esac
+done
+[ $refused -ge 30 ] && echo "changed bytes: refused"
+rm changed.lode
 # A byte of the image, which no checksum that opening looks at covers.
 cp b.lode broken.lode
 printf '\001' | dd of=broken.lode bs=1 seek=$(($(wc -c <b.lode) - 100)) conv=notrunc status=none
