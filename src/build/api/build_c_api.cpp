@@ -4,6 +4,7 @@
 #include <meshlode/meshlode_build.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstdlib>
 #include <cstring>
 #include <iterator>
@@ -151,14 +152,36 @@ Result<std::vector<std::uint8_t>> build_bytes(const meshlode_scene_input* scene,
   if (!input) return input.error();
   auto read = read_options(options);
   if (!read) return read.error();
-  bool is_cancelled = false;
+  std::atomic<bool> is_cancelled = false;  // the two are not called from the same thread
   if (options.on_progress != nullptr) {
     read->on_progress = [&](const BuildProgress& progress) {
-      is_cancelled = is_cancelled || options.on_progress(progress.fraction, options.user) != 0;
+      if (!is_cancelled && options.on_progress(progress.fraction, options.user) != 0) is_cancelled = true;
     };
-    read->should_cancel = [&] { return is_cancelled; };
+    read->should_cancel = [&] { return is_cancelled.load(); };
   }
   return build_asset(*input, *read);
+}
+
+Status build_to_buffer(const meshlode_scene_input* scene, const meshlode_build_options* options, void** bytes,
+                       std::size_t* size) {
+  if (bytes == nullptr || size == nullptr) return usage("bytes", "has no place");
+  const auto built = build_bytes(scene, options);
+  if (!built) return built.error();
+  void* const copy = std::malloc(built->size());  // at least a header, so never empty
+  if (copy == nullptr) return out_of_memory({});
+  std::memcpy(copy, built->data(), built->size());
+  *bytes = copy;
+  *size = built->size();
+  return Ok{};
+}
+
+Status build_to_file(const meshlode_scene_input* scene, const meshlode_build_options* options, const char* path) {
+  if (path == nullptr) return usage("path", "is not there");
+  OutputFiles files;
+  if (Status free = files.claim(path); !free) return free;
+  const auto built = build_bytes(scene, options);
+  if (!built) return built.error();
+  return files.write(path, *built);
 }
 
 meshlode_status status_of(ErrorCode code) {
@@ -202,22 +225,8 @@ void meshlode_build_defaults(meshlode_build_options* options) {
 
 meshlode_status meshlode_build_to_buffer(const meshlode_scene_input* scene, const meshlode_build_options* options,
                                          void** bytes, size_t* size, meshlode_error* error) {
-  using meshlode::Status;
-  return meshlode::report(meshlode::guarded({},
-                                            [&]() -> Status {
-                                              if (bytes == nullptr || size == nullptr)
-                                                return meshlode::usage("bytes", "has no place");
-                                              const auto built = meshlode::build_bytes(scene, options);
-                                              if (!built) return built.error();
-                                              void* const copy =
-                                                  std::malloc(built->size());  // at least a header, so never empty
-                                              if (copy == nullptr) return meshlode::out_of_memory({});
-                                              std::memcpy(copy, built->data(), built->size());
-                                              *bytes = copy;
-                                              *size = built->size();
-                                              return meshlode::Ok{};
-                                            }),
-                          error);
+  const auto build = [&] { return meshlode::build_to_buffer(scene, options, bytes, size); };
+  return meshlode::report(meshlode::guarded({}, build), error);
 }
 
 void meshlode_build_free(void* bytes) {
@@ -226,17 +235,8 @@ void meshlode_build_free(void* bytes) {
 
 meshlode_status meshlode_build_to_file(const meshlode_scene_input* scene, const meshlode_build_options* options,
                                        const char* path, meshlode_error* error) {
-  using meshlode::Status;
-  return meshlode::report(meshlode::guarded({},
-                                            [&]() -> Status {
-                                              if (path == nullptr) return meshlode::usage("path", "is not there");
-                                              meshlode::OutputFiles files;
-                                              if (Status free = files.claim(path); !free) return free;
-                                              const auto built = meshlode::build_bytes(scene, options);
-                                              if (!built) return built.error();
-                                              return files.write(path, *built);
-                                            }),
-                          error);
+  const auto build = [&] { return meshlode::build_to_file(scene, options, path); };
+  return meshlode::report(meshlode::guarded({}, build), error);
 }
 
 }  // extern "C"
