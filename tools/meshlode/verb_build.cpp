@@ -72,15 +72,26 @@ Status make_folder(const fs::path& folder) {
 struct BuildCommand {
   BatchWords words;
   batch::BatchOptions options;
+  Hash128 program{};  ///< where a cache or a manifest wants it
   std::optional<batch::Cache> cache;
-  std::string report_path, fail_if;
+  std::string report_path;
+  std::optional<std::string> fail_if;
   std::optional<batch::ShardPlan> shard;
   bool is_explained = false;
   std::uint32_t jobs = 0;
   OutputOptions out;
 };
 
-/// Opens the cache where one is wanted.
+/// Before anything is built: TBB loads further libraries as it starts, which are not to be told apart by.
+Status find_program(BuildCommand& command) {
+  if (command.words.cache_folder().empty() && command.words.manifest.empty()) return Ok{};
+  const auto program = batch::find_program_id();
+  if (!program) return program.error();
+  command.program = *program;
+  return Ok{};
+}
+
+/// Opens the cache where one is wanted. \pre find_program()
 Status open_cache(BuildCommand& command) {
   const std::string folder = command.words.cache_folder();
   const Result<std::uint64_t> limit = command.words.limit();
@@ -88,9 +99,7 @@ Status open_cache(BuildCommand& command) {
   if (folder.empty()) return Ok{};
   auto store = batch::Store::open(folder, {*limit, command.words.dry_run});
   if (!store) return store.error();
-  const auto program = batch::find_program_id();
-  if (!program) return program.error();
-  command.cache.emplace(std::move(*store), *program);
+  command.cache.emplace(std::move(*store), command.program);
   command.options.cache = &*command.cache;
   return Ok{};
 }
@@ -165,11 +174,9 @@ int write_side_outputs(const BuildCommand& command, const std::vector<JobResult>
   if (!command.words.junit.empty()) write(command.words.junit, batch::junit_xml(results));
   if (!command.words.depfile.empty()) write(command.words.depfile, depfile_of(results));
   if (!command.words.manifest.empty()) {
-    const auto program = command.cache ? Result<Hash128>(command.cache->program()) : batch::find_program_id();
-    if (!program) return std::max(worst, print_error(program.error()));
     const std::string settings = batch::settings_text(command.options.pipeline, command.options.import);
     const batch::ShardPlan* shard = command.shard ? &*command.shard : nullptr;
-    write(command.words.manifest, batch::manifest_json(results, *program, settings, worst_job, shard));
+    write(command.words.manifest, batch::manifest_json(results, command.program, settings, worst_job, shard));
   }
   return worst;
 }
@@ -235,7 +242,7 @@ Status set_options(const BuildWords& words, const LimitWords& limits, batch::Bat
 
 /// --fail-if: each asset is looked at when it is there.
 Status set_budget(BuildCommand& command) {
-  auto conditions = out::read_budget(command.fail_if, out::info_schema());
+  auto conditions = read_budget_option(command.fail_if, out::info_schema());
   if (!conditions) return conditions.error();
   if (conditions->empty()) return Ok{};
   command.options.check_asset = [budget = std::move(*conditions)](const fs::path& asset) {
@@ -265,7 +272,8 @@ int run_build(const Verb& verb, std::span<char* const> args) {
   parser.add_value("--report", command.report_path,
                    "write times and counts as JSON, the same that --format json prints");
   add_batch_options(parser, command.words);
-  add_budget_option(parser, command.fail_if);
+  add_budget_option(parser, command.fail_if, "info --format json",
+                    "totals.bytes_per_source_triangle>10, any(meshes).stuck_groups>0");
   add_output_options(parser, command.out);
   if (const auto exit_code = parser.parse(args)) return *exit_code;
   if (!output.empty() && !output_folder.empty()) {
@@ -277,6 +285,7 @@ int run_build(const Verb& verb, std::span<char* const> args) {
   if (!plan) return print_error(plan.error());
   const auto share = take_share(*plan, command);
   if (!share) return print_error(share.error());
+  if (const Status found = find_program(command); !found) return print_error(found.error());
   if (const Status opened = open_cache(command); !opened) return print_error(opened.error());
 
   std::vector<std::string> side_outputs = command.words.outputs();
