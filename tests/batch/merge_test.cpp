@@ -145,6 +145,14 @@ TEST_F(MergeTest, AFileInTwoShardsOrInNoneIsFound) {
   EXPECT_EQ(refused, kShards);
 }
 
+TEST_F(MergeTest, WhatNamesOtherFilesThanTheBatchHadIsRefused) {
+  std::string text = shard(2);
+  const std::size_t at = text.find("\"output\": \"out/") + 15;
+  text[at] = 'z';
+  EXPECT_EQ(merged({shard(1), text, shard(3)}),
+            "the files of the shards are not those of their batch: a manifest was edited, or a name is not UTF-8");
+}
+
 TEST_F(MergeTest, WhatAnotherVersionWroteIsNotRewritten) {
   std::string text = shard(1, kWeights, 1);
   const std::size_t at = text.find("\"generator\": \"") + 14;
@@ -172,6 +180,7 @@ TEST_F(MergeTest, ContradictionsAreRefusedWithTheirPlace) {
   EXPECT_EQ(refused("\"kind\": \"image\"", "\"kind\": \"picture\""), "/assets/0/kind");
   EXPECT_EQ(refused("\"codec\": \"strips\"", "\"codec\": 5"), "/settings");
   EXPECT_EQ(refused("\"assets\": [", "\"assets\": [1,"), "/assets");
+  EXPECT_EQ(refused("\"exit_code\": 0", "\"exit_code\": 6"), "/exit_code");
 }
 
 // Any bytes: an error or a manifest, under sanitizers in tools/test.sh.

@@ -61,6 +61,8 @@ int run_merge(const Verb& verb, std::span<char* const> args) {
   for (const batch::JobResult& r : merged->results) {
     if (r.exit_code != 0) print_error({static_cast<ErrorCode>(r.exit_code), "", r.error});
   }
+  // As build says of such a batch.
+  if (merged->results.empty()) return print_error({ErrorCode::kIo, "", "the shards are those of a batch of no files"});
   if (!is_quiet) std::fprintf(stderr, "%s\n", batch::summary_line(merged->results).c_str());
   return merged->exit_code;
 }

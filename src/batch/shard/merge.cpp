@@ -113,6 +113,12 @@ Result<Manifest> merge_shards(std::vector<ShardManifest> shards) {
                  "file " + std::to_string(merged.results.size() + 1) + " of " + std::to_string(batch_jobs) +
                      " is in no shard" + kAgain};
   }
+  std::vector<Job> jobs;
+  for (const JobResult& result : merged.results) jobs.push_back(result.job);
+  if (hash_jobs(jobs) != first.shard->batch) {
+    return Error{ErrorCode::kCheckFailed, "",
+                 "the files of the shards are not those of their batch: a manifest was edited, or a name is not UTF-8"};
+  }
   merged.exit_code = worst_exit_code(merged.results);
   return merged;
 }

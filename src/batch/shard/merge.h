@@ -18,7 +18,8 @@ struct ShardManifest {
 
 /// What one batch on one machine would have told: its files in its order, each exactly once, and its worst exit code.
 /// Errors: kInvalid one is of no shard; kCheckFailed shards are missing, twice, of different batches, settings or
-/// programs, another program than this one wrote them, or a file of the batch is in none or in several of them.
+/// programs, another program than this one wrote them, or a file of the batch is in none or in several of them, or
+/// they name other files than the batch had.
 [[nodiscard]] Result<Manifest> merge_shards(std::vector<ShardManifest> shards);
 
 /// Whether every asset that is told of lies where it should, with its bytes. Errors: kCheckFailed.

@@ -28,6 +28,8 @@ std::uint64_t saturated_sum(std::uint64_t a, std::uint64_t b) {
   return a > std::numeric_limits<std::uint64_t>::max() - b ? std::numeric_limits<std::uint64_t>::max() : a + b;
 }
 
+}  // namespace
+
 Hash128 hash_jobs(const std::vector<Job>& jobs) {
   Hasher hasher;
   const auto add = [&](const std::string& path) {  // with the zero behind it, which no path has
@@ -39,8 +41,6 @@ Hash128 hash_jobs(const std::vector<Job>& jobs) {
   }
   return hasher.digest();
 }
-
-}  // namespace
 
 Result<Shard> parse_shard(std::string_view text) {
   const std::size_t slash = text.find('/');

@@ -22,6 +22,9 @@ struct Shard {
 };
 constexpr std::uint32_t kMaxShards = 100'000;
 
+/// What a batch is known by: inputs and outputs of all its jobs, in their order.
+[[nodiscard]] Hash128 hash_jobs(const std::vector<Job>& jobs);
+
 /// "3/8". Errors: kUsage for what is no such pair, 1 to kMaxShards.
 [[nodiscard]] Result<Shard> parse_shard(std::string_view text);
 
@@ -35,7 +38,7 @@ constexpr std::uint32_t kMaxShards = 100'000;
 struct ShardPlan {
   Shard shard;
   std::uint64_t batch_jobs = 0;          ///< of all shards
-  Hash128 batch{};                       ///< over inputs and outputs of all jobs, in their order
+  Hash128 batch{};                       ///< hash_jobs() of all
   std::vector<std::uint64_t> positions;  ///< of this shard's jobs among all, ascending
 };
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/file.h"
+#include "batch/batch.h"
 #include "scene/import/json.h"
 
 namespace meshlode::batch {
@@ -189,6 +190,8 @@ Result<Manifest> parse_manifest(std::string_view text) {
     }
     manifest.results.push_back(read_result(in, assets[i]));
   }
+  in.enter("");
+  if (manifest.exit_code != worst_exit_code(manifest.results)) in.refuse("exit_code", "contradicts the assets");
   if (!in.is_sound()) return in.error();
   return manifest;
 }

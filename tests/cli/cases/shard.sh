@@ -14,7 +14,7 @@ terrain() {
   }'
 }
 for i in 1 2 3 4 5; do terrain $((4 + 2 * i)) "$i" >"in/$i.obj"; done
-cp "$DATA/crystal.glb" in/deep/crystal.glb
+terrain 40 6 >in/deep/6.obj
 printf '{"codec": "zstd"}' >in/deep/meshlode.json
 printf 'broken' >in/deep/broken.glb
 printf 'mtllib 5.mtl\n' >>in/5.obj
@@ -40,6 +40,13 @@ run merge parts/shard-1.json parts/shard-3.json -o m.json
 run merge parts/*.json parts/shard-2.json -o m.json
 run merge local.json -o m.json
 run merge parts/shard-1.json missing.json -o m.json
+printf '{"shard": ' >cut.json; run merge cut.json -o m.json; rm cut.json
+sed 's|"out/2.lode"|"out/3.lode"|' parts/shard-2.json >foreign.json
+cmp -s foreign.json parts/shard-2.json || run merge parts/shard-[13].json foreign.json -o m.json
+sed 's|"exit_code": 3|"exit_code": 0|' parts/shard-2.json >foreign.json
+run merge parts/shard-[13].json foreign.json -o m.json
+rm foreign.json
+mkfifo pipe; run merge pipe -o m.json; rm pipe
 run merge parts/*.json -o parts/shard-2.json
 run merge parts/*.json -o out/1.lode
 run merge parts/*.json -o in/5.mtl
@@ -50,7 +57,7 @@ mv kept out/2.lode
 shard 2/3 --codec lz4
 run merge parts/*.json -o m.json
 shard 2/3
-terrain 60 6 >in/1.obj
+terrain 60 1 >in/1.obj
 shard 2/3
 "$MESHLODE" merge parts/*.json -o m.json 2>&1 | grep -o 'inputs changed between shards.*'
 terrain 6 1 >in/1.obj
@@ -58,6 +65,21 @@ cp in/2.obj in/new.obj
 shard 2/3
 run merge parts/*.json -o m.json
 rm in/new.obj
+
+echo "with the other options of a batch"
+words=(--cache cache --fail-if 'totals.source_triangles>1000')
+"$MESHLODE" build --quiet in -O out --manifest local-2.json "${words[@]}" 2>/dev/null; echo "local: exit $?"
+# One without the cache: the manifests are of one program all the same.
+shard 1/3 "${words[@]}" --junit junit.xml --report report.json --depfile depfile
+grep -o 'testsuites name="meshlode" tests="[0-9]*" failures="[0-9]*"' junit.xml
+grep -c '"output":' report.json; grep -c '^out/' depfile
+shard 2/3 --fail-if 'totals.source_triangles>1000'
+shard 3/3 "${words[@]}"
+code merge --quiet parts/*.json -o m.json
+built() { timeless <"$1" | sed -E 's/"(unchanged|cached)"/"built"/'; }
+[ -s m.json ] && cmp <(built local-2.json) <(built m.json) && echo "the manifest of one batch"
+run build in -O out --shard 2/3 --cache cache --dry-run
+rm -rf cache junit.xml report.json depfile local-2.json m.json
 
 echo "a shard that is killed"
 for i in 1 2 3; do shard "$i/3"; done
@@ -79,7 +101,9 @@ run build in -O out --shard 1/2 --fail-fast
 run build in/1.obj -o 1.lode --shard 2/2 --manifest none.json
 run build in/1.obj -o 1.lode --shard 2/2 --manifest in/1.obj
 mkdir nothing
-run build nothing -O out --shard 1/2
+run build nothing -O out --shard 1/1 --manifest none.json
+run merge none.json -o m.json
+run build in -O out --shard 1/2 --manifest a.json --manifest b.json
 "$MESHLODE" build in -O dry --shard 2/3 --dry-run
 echo "exit $?"
 files
