@@ -14,13 +14,7 @@
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
-#if defined(__SANITIZE_ADDRESS__)
-#define MESHLODE_SANITIZED 1
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-#define MESHLODE_SANITIZED 1
-#endif
-#endif
+#include "support/sanitized.h"
 
 namespace meshlode::build {
 namespace {
@@ -208,9 +202,7 @@ Measured measure(const MakeScene& make_scene, format::ErrorTier tier, int thread
 
 /// Never less than what is taken, and at most 1.8 times as much and what the program itself is taken for.
 void expect_close(const Measured& measured, const std::string& what) {
-#ifdef MESHLODE_SANITIZED
-  GTEST_SKIP() << "a sanitizer's own memory is not estimated";
-#endif
+  if (test::kIsSanitized) GTEST_SKIP() << "a sanitizer's own memory is not estimated";
   const double ratio = static_cast<double>(measured.estimate) / static_cast<double>(measured.peak);
   std::printf("%s: %.1f MiB estimated, %.1f MiB taken, %.2f\n", what.c_str(),
               static_cast<double>(measured.estimate) / 0x1p20, static_cast<double>(measured.peak) / 0x1p20, ratio);

@@ -16,6 +16,7 @@
 #include "format/names.h"
 #include "scene/samples/samples.h"
 #include "support/random.h"
+#include "support/sanitized.h"
 
 namespace meshlode::build {
 namespace {
@@ -102,7 +103,10 @@ std::vector<std::uint8_t> build(const scene::Scene& scene, const PipelineOptions
   return bytes ? *bytes : std::vector<std::uint8_t>{};
 }
 
-TEST(StoredMesh, TwoHundredRandomEditsGiveTheBytesOfCleanBuilds) {
+/// Two hundred in all; a sanitized build, ten times slower, tries fewer.
+constexpr int kEditsOfASeed = test::kIsSanitized ? 10 : 50;
+
+TEST(StoredMesh, RandomEditsGiveTheBytesOfCleanBuilds) {
   std::uint64_t stored = 0, meshes = 0;
   for (std::uint64_t seed = 0; seed < 4; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -111,7 +115,7 @@ TEST(StoredMesh, TwoHundredRandomEditsGiveTheBytesOfCleanBuilds) {
     PipelineOptions options;
     if (seed != 1) options.preset = Preset::kFast, options.error_tier = format::ErrorTier::kQem;
     MemoryStore store;
-    for (int i = 0; i < 50; ++i) {
+    for (int i = 0; i < kEditsOfASeed; ++i) {
       PipelineOptions with_store = options;
       with_store.mesh_store = &store;
       const auto with = build(scene, with_store, &stored);

@@ -33,9 +33,9 @@ run plan colors.ply --grid 1e-9
 run plan missing.glb
 # Measured: the bytes are the builds' own; times vary.
 json plan plan colors.ply --measure --format json
-"$MESHLODE" build --quiet foliage.glb -o planned.lode
-"$MESHLODE" build --quiet foliage.glb -o all.lode --attributes all --keep all
-"$MESHLODE" plan foliage.glb --measure >measured.txt 2>/dev/null
+"$MESHLODE" build --quiet city.glb -o planned.lode
+"$MESHLODE" build --quiet city.glb -o all.lode --attributes all --keep all
+"$MESHLODE" plan city.glb --measure >measured.txt 2>/dev/null
 for name in planned all; do wc -c <$name.lode; done | tr '\n' ' ' >bytes.txt
 sed -n 's/,//g; s/^  file bytes *\([0-9]*\) *\([0-9]*\) .*/\1 \2 /p' measured.txt | tr -d '\n' | cmp - bytes.txt && echo "bytes are those of the builds"
 grep -cE "^  (build, seconds|frame of the CPU, ms) +[0-9.]+ +[0-9.]+ " measured.txt
