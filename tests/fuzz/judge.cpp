@@ -15,7 +15,7 @@
 namespace {
 
 /// Both documents are JSON whatever the file holds, and an asset is equal to itself.
-void report(const meshlode::run::Asset& asset) {
+void print_reports(const meshlode::run::Asset& asset) {
   using namespace meshlode;
   const auto judge = [](std::string_view text, std::string_view schema, const std::string& document) {
     const auto budget = out::read_budget(text, schema);
@@ -41,7 +41,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto asset = run::Asset::from_bytes(bytes);
   fuzz::require(asset.ok() || report.finding_count > 0, "the judge finds nothing in a file that does not open");
   if (!asset || asset->instances().size() > 1000) return 0;
-  report(*asset);
+  print_reports(*asset);
   std::vector<out::LodChain> chains(asset->meshes().size());
   for (std::size_t m = 0; m < chains.size(); ++m) {
     chains[m].cuts = {out::choose_level_cut(*asset, MeshId(m), 0).clusters};
