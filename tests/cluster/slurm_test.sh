@@ -13,12 +13,16 @@ skip() {
   [ "${MESHLODE_REQUIRE_SLURM:-}" != 1 ] || { echo "FAILED: $*, and MESHLODE_REQUIRE_SLURM=1"; exit 1; }
   echo "SKIPPED: $*"; exit 77
 }
-for tool in munged slurmctld slurmd sbatch squeue sinfo scancel scontrol python3; do
+for tool in munged slurmctld slurmd sbatch squeue sinfo scancel scontrol python3 setpriv; do
   command -v $tool >/dev/null || skip "no $tool (Debian: slurm-wlm munge)"
 done
 
 work=$(mktemp -d /tmp/meshlode-slurm.XXXXXX); chmod 755 "$work"
 daemons=()
+# The folder's processes; zombies, which the machine's init has yet to bury, have no environment.
+# shellcheck disable=SC2016
+processes() { env -i -C / bash -c 'grep -lsF "$1" /proc/[0-9]*/environ | cut -d/ -f3 | tr "\n" " "' - "$work"; }
+is_alone() { [ -z "$(processes)" ]; }
 finish() {
   local status=$? pid
   if [ $status -ne 0 ] && [ ${#daemons[@]} -eq 3 ]; then  # nothing of ours is left running
@@ -32,13 +36,19 @@ finish() {
     kill -KILL "$pid" 2>/dev/null
   done
   wait 2>/dev/null
+  # All that was started here has the folder in its environment.
+  within 10 is_alone || { echo "FAILED: left running: $(processes)"; [ $status -ne 0 ] || status=1; }
   if [ "${KEEP:-0}" = 1 ]; then echo "kept: $work"; else rm -rf "$work"; fi
   exit $status
 }
 trap finish EXIT
+trap 'exit 143' TERM INT HUP
 fail() {
   echo "FAILED: $*"
-  for log in munged slurmctld slurmd; do echo "-- $log"; tail -n 15 "$work/log/$log" 2>/dev/null; done
+  for log in munged slurmctld slurmd; do
+    echo "-- $log"
+    grep -vs 'Unauthorized credential' "$work/log/$log" | tail -n 15
+  done
   tail -n 20 "$work"/cluster/state/log/* 2>/dev/null
   exit 1
 }
@@ -90,14 +100,16 @@ SchedulerParameters=batch_sched_delay=0,sched_interval=2
 NodeName=$node NodeAddr=127.0.0.1 CPUs=4 Boards=1 SocketsPerBoard=1 CoresPerSocket=4 ThreadsPerCore=1 State=UNKNOWN
 PartitionName=all Nodes=$node Default=YES MaxTime=INFINITE State=UP
 CONF
-munged --foreground --key-file="$work/munge/key" --socket="$work/socket/munge" --pid-file="$work/munge/pid" \
+# Should this script be killed, they are too.
+started() { exec setpriv --pdeathsig TERM "$@"; }
+started munged --foreground --key-file="$work/munge/key" --socket="$work/socket/munge" --pid-file="$work/munge/pid" \
        --log-file="$work/log/munged.log" --seed-file="$work/munge/seed" --origin=127.0.0.1 >"$work/log/munged" 2>&1 &
 daemons+=($!)
 within 20 test -S "$work/socket/munge" || fail "munged does not start"
-slurmctld -D >"$work/log/slurmctld.out" 2>&1 & daemons+=($!)
+started slurmctld -D >"$work/log/slurmctld.out" 2>&1 & daemons+=($!)
 is_up() { scontrol ping 2>/dev/null | grep -q ' is UP'; }
 within 20 is_up || fail "slurmctld does not answer"
-slurmd -D >"$work/log/slurmd.out" 2>&1 & daemons+=($!)
+started slurmd -D >"$work/log/slurmd.out" 2>&1 & daemons+=($!)
 is_idle() { [ "$(sinfo -h -o %T 2>/dev/null)" = idle ]; }
 within 60 is_idle || fail "the node is not idle but $(sinfo -h -o '%T %E' 2>&1)"
 echo "Slurm: $(scontrol --version), as $(id -un), $(sinfo -h -o '%D node(s), %c CPUs')"
@@ -152,8 +164,15 @@ cd "$work/cluster" || exit 1
 export MESHLODE=$work/meshlode
 submit=$repository/tools/cluster/submit.sh
 id_of() { sed -n "s/^$1 //p" <<<"$2"; }
-is_over() { [ -z "$(squeue -h -j "$1" 2>/dev/null)" ]; }
+is_over() { [ -z "$(squeue -h ${1:+-j "$1"} 2>/dev/null)" ]; }  # of all jobs where no id is given
 code_of() { scontrol -o show job "$1" | sed -n 's/.* ExitCode=\([0-9]*\):.*/\1/p'; }
+
+for refused in "--junit j.xml" "--report=r.json" "--manifest m.json" "--shard 1/2" "--dry-run" "--fail-fast"; do
+  # shellcheck disable=SC2086
+  "$submit" --shards 4 refused in -O out $refused >"$work/refused" 2>&1 && fail "submit.sh takes $refused"
+  grep -q '^submit.sh: --' "$work/refused" || fail "submit.sh does not say why it refuses $refused: $(cat "$work/refused")"
+done
+if [ -e refused ] || ! is_over ''; then fail "something was submitted"; fi
 
 first=$("$submit" --shards 4 --sbatch --cpus-per-task=1 state in -O out "${settings[@]}" --cache cache) || fail "submit.sh"
 echo "$first"

@@ -3,9 +3,10 @@
 # submit.sh --shards N [OPTION]… FOLDER ARGUMENT…   builds a batch as a Slurm job array of N shards, and merges
 # submit.sh --resume [OPTION]… FOLDER               those shards alone that are not complete, and merges
 #
-# ARGUMENTs are those of `meshlode build`: inputs, -O, settings, --cache. All state is files in FOLDER, which every node
-# sees under this name: what was asked for, shard-I.json once shard I is complete, manifest.json once all are, log/.
-# Prints the ids: "array ID" (where shards are left to do) and "merge ID". docs/cluster.md
+# ARGUMENTs are those of `meshlode build`: inputs, -O, settings, --cache, --fail-if; not the files that a build writes beside its
+# assets. All state is files in FOLDER, which every node sees under this name: what was asked for, shard-I.json once shard I is
+# complete, manifest.json once all are, log/. Prints the ids: "array ID" (where shards are left to do) and "merge ID".
+# docs/cluster.md
 #
 #   --retries N      times that a shard which a signal ended is started again on its node (2)
 #   --sbatch OPTION  of sbatch, for the shards; may be given again: --sbatch --cpus-per-task=8 --sbatch --mem=16G
@@ -13,7 +14,7 @@
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 fail() { echo "submit.sh: $*" >&2; exit 1; }
-usage() { sed -n '3,12s/^# \{0,1\}//p' "$0" >&2; exit 1; }
+usage() { sed -n '3,13s/^# \{0,1\}//p' "$0" >&2; exit 1; }
 
 shards='' retries=2 resume=no options=()
 while [ $# -gt 0 ]; do
@@ -30,6 +31,14 @@ done
 [[ $retries =~ ^[0-9]{1,3}$ ]] || fail "--retries: give a number"
 command -v sbatch >/dev/null || fail "no sbatch on the PATH"
 
+for argument in "${@:2}"; do
+  case ${argument%%=*} in
+    --junit | --report | --depfile) fail "$argument: each shard would write this file over the others'" ;;
+    --shard | --manifest) fail "$argument: is given to each shard by this script" ;;
+    --dry-run | --fail-fast) fail "$argument: not for shards" ;;
+    -o | --output) fail "$argument: give -O" ;;
+  esac
+done
 mkdir -p "$1/log"
 state=$(cd "$1" && pwd); shift
 if [ $resume = no ]; then
