@@ -14,13 +14,15 @@ verbs=$("$MESHLODE" --help | sed -n '/^verbs:/,/^$/s/^  \([a-z]*\) .*/\1/p')
 options=0
 for verb in $verbs; do
   offered=" $(complete_words meshlode "$verb" -) "
+  in_zsh=$(sed -n "/^    $verb)\$/,/^      ;;\$/p" zsh.txt)
+  in_fish=$(grep -F -e "'__meshlode_verb_is $verb'" fish.txt)
   # At the beginning of a line of the help, "-o,--output TEXT".
   for option in $("$MESHLODE" "$verb" --help | sed -n 's/^  \(-[^ ]*\).*/\1/p' | tr , ' '); do
     options=$((options + 1))
     [[ $offered == *" $option "* ]] || echo "bash lacks $verb $option"
-    sed -n "/^    $verb)\$/,/^      ;;\$/p" zsh.txt | grep -qE -e "[')]$option[]=+[]" || echo "zsh lacks $verb $option"
+    grep -qE -e "[')]$option[]=+[]" <<<"$in_zsh" || echo "zsh lacks $verb $option"
     case $option in --*) fish="-l ${option#--}" ;; *) fish="-s ${option#-}" ;; esac
-    grep -F -e "'__meshlode_verb_is $verb'" fish.txt | grep -qF -e " $fish " || echo "fish lacks $verb $option"
+    grep -qF -e " $fish " <<<"$in_fish" || echo "fish lacks $verb $option"
   done
 done
 [ "$options" -gt 100 ] && echo "options"
