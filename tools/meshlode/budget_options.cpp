@@ -8,10 +8,17 @@
 
 namespace meshlode::cli {
 
-void add_budget_option(OptionParser& parser, std::string& conditions) {
-  parser.add_value("--fail-if", conditions,
-                   "conditions between commas over the keys of --format json, such as "
-                   "'totals.clusters>5000, any(meshes).stuck_groups>0'; where one holds, the exit code is 6");
+void add_budget_option(OptionParser& parser, std::optional<std::string>& conditions, const std::string& keys,
+                       const std::string& example) {
+  const std::string help = "conditions between commas over the keys of " + keys + ", such as '" + example +
+                           "'; where one holds, the exit code is 6";
+  parser.add_value("--fail-if", conditions, help.c_str());
+}
+
+Result<std::vector<out::Condition>> read_budget_option(const std::optional<std::string>& conditions,
+                                                       std::string_view schema) {
+  if (!conditions) return std::vector<out::Condition>();
+  return out::read_budget(*conditions, schema);
 }
 
 int print_broken(const std::string& where, const std::vector<out::BrokenCondition>& broken) {

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <meshlode/result.h>
@@ -13,7 +15,14 @@
 
 namespace meshlode::cli {
 
-void add_budget_option(OptionParser& parser, std::string& conditions);
+/// `keys`: where the keys are to be looked up, `example`: conditions over them, for the help.
+void add_budget_option(OptionParser& parser, std::optional<std::string>& conditions, const std::string& keys,
+                       const std::string& example);
+
+/// out::read_budget() of what was given; no conditions where nothing was. Errors: kUsage, for an empty text too: a
+/// pipeline whose variable is unset must not pass for one whose budget holds.
+[[nodiscard]] Result<std::vector<out::Condition>> read_budget_option(const std::optional<std::string>& conditions,
+                                                                     std::string_view schema);
 
 /// One line on stderr for each condition. \returns the exit code, 0 where none is broken
 int print_broken(const std::string& where, const std::vector<out::BrokenCondition>& broken);

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <optional>
+#include <string>
+#include <utility>
+
 #include "budget_options.h"
 #include "options.h"
 #include "out/report/info.h"
@@ -19,31 +23,40 @@ std::string describe(const run::Asset& asset, const out::AssetInfo& info, const 
 }
 
 int run_info(const Verb& verb, std::span<char* const> args) {
-  std::string path, fail_if;
+  std::string path;
+  std::optional<std::string> fail_if;
   OutputOptions output;
   bool list_stuck = false;
   OptionParser parser(verb);
   parser.add_positional("file", path, "a .lode asset");
   add_output_options(parser, output, {"csv", "markdown"});
   parser.add_flag("--stuck", list_stuck, "list every stuck group with its reason (extract --stuck shows them)");
-  add_budget_option(parser, fail_if);
+  add_budget_option(parser, fail_if, "--format json", "totals.clusters>5000, any(meshes).stuck_groups>0");
   if (const auto exit_code = parser.parse(args)) return *exit_code;
-  const auto budget = out::read_budget(fail_if, out::info_schema());
+  const auto budget = read_budget_option(fail_if, out::info_schema());
   if (!budget) return print_error(budget.error());
 
   const Result<run::Asset> asset = run::Asset::open(path);
   if (!asset) return print_error(asset.error());
   out::AssetInfo info = out::describe_asset(*asset);
   // CSV has no byte map; it takes a reading of every page.
-  if (output.format != "csv" || out::mentions(*budget, "byte_map")) {
+  const bool is_map_judged = out::mentions(*budget, "byte_map");
+  if (output.format != "csv" || is_map_judged) {
     Result<out::ByteMap> byte_map = out::map_bytes(*asset);
     if (byte_map) {
       info.byte_map = std::move(*byte_map);
     } else {
-      (void)print_error(byte_map.error());  // what the tables say is still true
+      Error error = byte_map.error();
+      error.where = path + ": " + error.where;
+      const int broken_page = print_error(error);
+      if (is_map_judged) return broken_page;
+      // What the tables say is still true.
     }
   }
-  if (!print_out(describe(*asset, info, output.format, list_stuck))) return static_cast<int>(ErrorCode::kIo);
+  const bool is_silent = output.quiet && output.format == "text";
+  if (!is_silent && !print_out(describe(*asset, info, output.format, list_stuck))) {
+    return static_cast<int>(ErrorCode::kIo);
+  }
   if (budget->empty()) return 0;
   const auto broken = out::judge_budget(*budget, out::info_json(*asset, info, true));
   return broken ? print_broken(path, *broken) : print_error(broken.error());

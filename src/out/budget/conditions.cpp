@@ -47,7 +47,7 @@ class Scanner {
   Result<std::vector<Condition>> scan() {
     std::vector<Condition> conditions;
     skip_spaces();
-    if (is_at_end()) return conditions;
+    if (is_at_end()) return Error{ErrorCode::kUsage, kOption, "is empty: give a condition"};
     while (true) {
       auto condition = scan_condition();
       if (!condition) return condition.error();
@@ -210,7 +210,9 @@ class Scanner {
       return expected("K, M, KiB, MiB, GiB or nothing behind a number");
     }
     skip_spaces();
-    out = number * *factor;
+    number *= *factor;
+    if (!std::isfinite(number)) return Error{ErrorCode::kUsage, kOption, "a number beyond 1.8e308"};
+    out = number;
     return Ok{};
   }
 

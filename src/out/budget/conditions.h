@@ -59,8 +59,7 @@ struct Condition {
 constexpr std::size_t kMaxConditionsBytes = 16384;  ///< of text
 constexpr std::size_t kMaxSteps = 32;               ///< of one path
 
-/// One or more conditions between commas; none for a text of spaces. The text is hostile. Errors: kUsage with what was
-/// expected and where.
+/// One or more conditions between commas. The text is hostile. Errors: kUsage with what was expected and where.
 [[nodiscard]] Result<std::vector<Condition>> parse_conditions(std::string_view text);
 
 /// Whether one of the paths begins with this key.

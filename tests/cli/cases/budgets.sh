@@ -37,10 +37,37 @@ budget 'totals>1'
 budget 'content_hash>1'
 budget 'sections["MASH"].bytes>1'
 budget 'any(any(meshes))>1'
+budget 'totals.clusters>nan'
+budget 'totals.clusters==nan'
+budget 'totals.clusters>1e999'
+budget ''  # a variable that somebody forgot to set
+# As long as a word of the command line may be, and beyond what a budget may be.
+"$MESHLODE" info large.lode --fail-if "$(head -c 130000 /dev/zero | tr '\0' '(')" 2>&1 >/dev/null | cut -c 1-80
 for text in '(' 'any(' 'a[' 'a.' 'any(a).' "'" 'a>1,'; do
   "$MESHLODE" info large.lode --fail-if "$(yes "$text" | head -n 3000 | tr -d '\n')" 2>&1 >/dev/null |
     cut -c 1-80
 done
+# In every form: the same is printed with a budget as without, and the same fails.
+for format in text json csv markdown; do
+  "$MESHLODE" info large.lode --format $format >plain
+  "$MESHLODE" info large.lode --format $format --fail-if 'totals.meshes>0, byte_map.pages.total<1' >judged 2>errors
+  echo "$format: exit $?, $(wc -l <errors) line(s)"
+  cmp plain judged
+done
+run info large.lode --quiet --fail-if 'totals.meshes>0'
+rm plain judged errors
+# A page that is broken: of no figure of the byte map may be said that it is within its limit; the tables are sound.
+cp large.lode broken.lode
+printf '\377' | dd of=broken.lode bs=1 seek=$(($(wc -c <broken.lode) - 40)) conv=notrunc status=none
+for format in text json csv markdown; do
+  for budget in 'byte_map.pages.total>1MiB' 'totals.meshes>1' 'totals.meshes>0'; do
+    echo "$format, $budget: $("$MESHLODE" info broken.lode --format $format --fail-if "$budget" 2>&1 >/dev/null)"
+    "$MESHLODE" info broken.lode --format $format --fail-if "$budget" >/dev/null 2>&1 || echo "exit $?"
+  done
+done
+head -c 1000 large.lode >cut.lode
+run info cut.lode --fail-if 'totals.meshes>0' | sed 's,says [0-9]*,says N,'
+rm broken.lode cut.lode
 json info info large.lode --format json --fail-if 'totals.meshes>0'
 run info missing.lode --fail-if 'totals.meshes>0'
 # A batch goes on, the asset stays, a second look finds the same, and who asks for less is content.

@@ -73,10 +73,11 @@ TEST(Conditions, StandBetweenCommasAndKeepTheirText) {
   EXPECT_EQ((*parsed)[1].relation, Relation::kLessEqual);
   EXPECT_TRUE(mentions(*parsed, "d"));
   EXPECT_FALSE(mentions(*parsed, "c"));
-  EXPECT_TRUE(parse_conditions("  ")->empty());
 }
 
 TEST(Conditions, SayWhatWasExpectedAndWhatWasFound) {
+  EXPECT_EQ(refusal(""), "is empty: give a condition");
+  EXPECT_EQ(refusal(" \n"), "is empty: give a condition");
   EXPECT_EQ(refusal("a"), "expected one of > >= < <= == !=, found the end");
   EXPECT_EQ(refusal("a>"), "expected a number, a text, true, false or null, found the end");
   EXPECT_EQ(refusal("a=1"), "expected one of > >= < <= == !=, found '=1'");
@@ -92,12 +93,18 @@ TEST(Conditions, SayWhatWasExpectedAndWhatWasFound) {
   EXPECT_EQ(refusal("a>1kg"), "expected K, M, KiB, MiB, GiB or nothing behind a number, found 'kg'");
   EXPECT_EQ(refusal("a>-inf").substr(0, 17), "expected a number");
   EXPECT_EQ(refusal("a>nan"), "a>nan: > compares numbers");
+  EXPECT_EQ(refusal("a>-nan").substr(0, 17), "expected a number");
+  EXPECT_EQ(refusal("a>1e999").substr(0, 17), "expected a number");
+  EXPECT_EQ(refusal("a>1e308M"), "a number beyond 1.8e308");
   EXPECT_EQ(refusal("a<='x'"), "a<='x': <= compares numbers");
   EXPECT_EQ(refusal("count(a).b>1"), "expected one of > >= < <= == !=, found '.b>1'");
 }
 
 TEST(Conditions, LongTextsAndPathsAreRefused) {
-  EXPECT_NE(refusal(std::string(kMaxConditionsBytes + 1, ' ')), "taken");
+  for (const char byte : {' ', 'a', '(', '[', '9', '"', '\0'}) {
+    EXPECT_EQ(refusal(std::string(kMaxConditionsBytes + 1, byte)), "more than 16384 bytes");
+    EXPECT_EQ(refusal(std::string(1 << 20, byte)), "more than 16384 bytes");
+  }
   std::string path = "a";
   for (std::size_t i = 1; i < kMaxSteps; ++i) path += ".a";
   EXPECT_EQ(refusal(path + ">1"), "taken");
