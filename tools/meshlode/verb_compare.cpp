@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // compare: two assets side by side, and whether what changed is within limits.
+#include <cstdint>
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +11,7 @@
 #include "draw_pair.h"
 #include "options.h"
 #include "out/compare/compare.h"
+#include "out/compare/stored_bytes.h"
 #include "run/read/asset.h"
 #include "verb.h"
 
@@ -17,7 +20,8 @@ namespace meshlode::cli {
 namespace {
 
 struct CompareOptions {
-  std::string before, after, fail_if;
+  std::string before, after;
+  std::optional<std::string> fail_if;
   bool is_rendered = false;
   CameraOptions camera;
   std::string max_decoded = kDefaultMaxDecodedText;
@@ -31,6 +35,18 @@ Error in_picture(Error error) {
   return error;
 }
 
+/// Errors: those of opening; kInvalid for damaged pages and images, which opening does not look at.
+Result<run::Asset> open_sound(const std::string& path, std::uint64_t max_decoded) {
+  Result<run::Asset> asset = run::Asset::open(path, max_decoded);
+  if (!asset) return asset;
+  if (const Status sound = out::check_stored_bytes(*asset); !sound) {
+    Error error = sound.error();
+    error.where = path + ": " + error.where;
+    return error;
+  }
+  return asset;
+}
+
 int run_compare(const Verb& verb, std::span<char* const> args) {
   CompareOptions options;
   OptionParser parser(verb);
@@ -38,12 +54,12 @@ int run_compare(const Verb& verb, std::span<char* const> args) {
   parser.add_positional("new", options.after, "another, with which the first is compared");
   parser.add_flag("--render", options.is_rendered, "draw both with one camera, and compare the pictures");
   add_camera_options(parser, options.camera);
-  add_budget_option(parser, options.fail_if);
+  add_budget_option(parser, options.fail_if, "--format json", "file_bytes.ratio>1.02, any(meshes).levels.change!=0");
   add_max_decoded_option(parser, options.max_decoded);
   add_jobs_option(parser, options.jobs);
   add_output_options(parser, options.output);
   if (const auto exit_code = parser.parse(args)) return *exit_code;
-  const auto budget = out::read_budget(options.fail_if, out::compare_schema());
+  const auto budget = read_budget_option(options.fail_if, out::compare_schema());
   if (!budget) return print_error(budget.error());
   if (out::mentions(*budget, "picture") && !options.is_rendered) {
     return print_error({ErrorCode::kUsage, "--fail-if", "picture needs --render"});
@@ -55,9 +71,9 @@ int run_compare(const Verb& verb, std::span<char* const> args) {
   if (!max_decoded) return print_error(max_decoded.error());
 
   const JobLimit limit(options.jobs);
-  const Result<run::Asset> before = run::Asset::open(options.before, *max_decoded);
+  const Result<run::Asset> before = open_sound(options.before, *max_decoded);
   if (!before) return print_error(before.error());
-  const Result<run::Asset> after = run::Asset::open(options.after, *max_decoded);
+  const Result<run::Asset> after = open_sound(options.after, *max_decoded);
   if (!after) return print_error(after.error());
   out::AssetComparison comparison = out::compare_assets(*before, *after);
   comparison.before.file = options.before;
