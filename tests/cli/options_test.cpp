@@ -82,6 +82,11 @@ TEST(OptionParser, NamesTheNearestOfItsOptions) {
   EXPECT_EQ(told_of({"a", "--falg=7"}), flag);
   EXPECT_EQ(told_of({"a", "--NUMBR", "7"}),
             "meshlode: unknown option '--NUMBR'; the nearest is --number; see meshlode test --help\n");
+  // A letter is nearer to it, but nobody writes two dashes for one.
+  EXPECT_EQ(told_of({"a", "--fl"}),
+            "meshlode: unknown option '--fl'; the nearest is --flag; see meshlode test --help\n");
+  EXPECT_EQ(told_of({"a", "-flag"}),
+            "meshlode: unknown option '-flag'; the nearest is --flag; see meshlode test --help\n");
   EXPECT_EQ(told_of({"a", "b"}).find("nearest"), std::string::npos) << "no option";
   EXPECT_EQ(told_of({"a", "--", "--falg"}).find("nearest"), std::string::npos) << "no option";
 }

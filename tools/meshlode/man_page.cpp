@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cctype>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "exit_codes.h"
@@ -47,6 +48,21 @@ std::string one_line(std::string text) {
   return text;
 }
 
+/// Lines of the page's source, which a reader fills anew, of 80 characters at most unless a word is longer.
+std::string in_lines(std::string text) {
+  constexpr std::size_t kWidth = 64;  // of what roff() may lengthen
+  text = one_line(std::move(text));
+  std::size_t first = 0;
+  while (text.size() - first > kWidth) {
+    std::size_t space = text.rfind(' ', first + kWidth);
+    if (space == std::string::npos || space < first) space = text.find(' ', first);
+    if (space == std::string::npos) break;
+    text[space] = '\n';
+    first = space + 1;
+  }
+  return text;
+}
+
 std::string page_title(const std::string& verb) {
   return verb.empty() ? "meshlode" : "meshlode-" + verb;
 }
@@ -68,7 +84,7 @@ std::string option_text(const OptionInfo& option) {
   }
   if (option.is_positional && option.is_many) text += " ...";
   if (!option.is_positional && !option.value.empty()) text += " " + italic(option.value);
-  text += "\n" + roff(one_line(option.help)) + "\n";
+  text += "\n" + roff(in_lines(option.help)) + "\n";
   if (option.choices.empty()) return text;
   text += ".br\nOne of ";
   for (std::size_t i = 0; i < option.choices.size(); ++i) {
@@ -126,7 +142,7 @@ std::string program_man_page(std::span<const VerbHelp> verbs, const std::string&
           bold("meshlode --help") + " | " + bold("--version") + "\n.SH VERBS\nEach has a page of its own, and " +
           bold("--help") + ".\n";
   for (const VerbHelp& verb : verbs) {
-    text += ".TP\n" + bold(verb.name) + "\n" + roff(one_line(verb.summary)) + "\n";
+    text += ".TP\n" + bold(verb.name) + "\n" + roff(in_lines(verb.summary)) + "\n";
   }
   text += ".SH OPTIONS\n.TP\n" + bold("-h") + ", " + bold("--help") + "\nthe verbs and the exit codes\n.TP\n" +
           bold("--version") + "\nthe program\\(aqs version and build id, and the versions of its libraries\n";

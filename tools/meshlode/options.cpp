@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <iterator>
 #include <utility>
 
 #include <tbb/global_control.h>
@@ -136,8 +137,11 @@ std::string usage_fault(const CLI::App& app, const OptionTable& options, const C
   const auto word = find_unknown_option(app);
   if (!word) return error.what();
   std::vector<std::string> known;
+  const bool is_long = word->starts_with("--");  // nobody who wrote two dashes meant a letter
   for (const OptionInfo& option : options) {
-    if (!option.is_positional) known.insert(known.end(), option.names.begin(), option.names.end());
+    if (option.is_positional) continue;
+    std::copy_if(option.names.begin(), option.names.end(), std::back_inserter(known),
+                 [&](const std::string& name) { return !is_long || name.starts_with("--"); });
   }
   return unknown_word("option", *word, known);
 }
