@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# kill -9 at random moments, of two batches at once that share a cache: nothing broken is ever there, the next run
-# completes, and its bytes are those of a clean run. KILLS: how often (10; the slow test takes 50).
+# kill -9 at random moments, of two batches at once that share a cache: nothing broken is ever there, neither an asset nor an
+# entry of the cache, the next run completes, and its bytes are those of a clean run. KILLS: how often (10; the slow test
+# takes 50).
 RANDOM=${SEED:-20}
 mkdir in
 # terrain SIDE SEED: an OBJ of 2 SIDE^2 triangles
@@ -16,28 +17,39 @@ terrain() {
 }
 for i in 1 2 3 4 5 6 7 8; do terrain $((10 + 5 * i)) "$i" >"in/$i.obj"; done
 "$MESHLODE" build --quiet in -O clean --preset fast
-# Whole assets, each the clean one or none: also in the moment after a kill.
+# What undisturbed batches keep: entries have the same bytes under the same key, last/ under the output's.
+for folder in one two; do "$MESHLODE" build --quiet in -O $folder --preset fast --cache clean_cache; done
+rm -r one/* two/*
+# Whole files, each the clean one or none: also in the moment after a kill.
+to_be_there='^Only in clean\|^Only in .*: \.meshlode-[^ ]*\.tmp$'
 check() {
-  local file
-  for file in one/*.lode two/*.lode; do
-    [ -e "$file" ] || continue
-    cmp -s "$file" "clean/$(basename "$file")" || echo "broken: $file"
-  done
+  local kind
+  for kind in one two; do diff -rq clean $kind; done | grep -v "$to_be_there"
+  for kind in asset record mesh last; do
+    [ ! -d cache/$kind ] || diff -rq clean_cache/$kind cache/$kind
+  done | grep -v "$to_be_there"
 }
-killed=0
+killed=0 first_killed=0 leftovers=0
 for _ in $(seq "${KILLS:-10}"); do
   rm -rf one/*.lode
-  [ $((RANDOM % 3)) -ne 0 ] || rm -rf cache
+  case $((RANDOM % 3)) in
+    0) rm -rf cache ;;
+    1) rm -rf cache/asset cache/record ;;  # meshes are left to be found
+  esac
   "$MESHLODE" build --quiet in -O one --preset fast --cache cache 2>>../stderr &
   first=$!
   "$MESHLODE" build --quiet in -O two --preset fast --cache cache --cache-limit 200KiB 2>>../stderr &
   second=$!
   sleep "0.$(printf '%03d' $((RANDOM % 400)))"
-  kill -KILL "$first" 2>/dev/null && killed=$((killed + 1))
+  kill -KILL "$first" 2>/dev/null
   [ $((RANDOM % 2)) -ne 0 ] || kill -KILL "$second" 2>/dev/null
-  wait "$first" "$second" 2>/dev/null
+  wait "$first" 2>/dev/null; [ $? -ne 137 ] || first_killed=$((first_killed + 1))
+  wait "$second" 2>/dev/null; [ $? -ne 137 ] || killed=$((killed + 1))
+  leftovers=$((leftovers + $(find cache one two -name '.meshlode-*' | wc -l)))
   check
 done
+killed=$((killed + first_killed))
+echo "killed in the middle: $killed batches, $first_killed of them the first of two; they left $leftovers temporary files" >&3
 [ "$killed" -gt 0 ] && echo "some were killed"
 "$MESHLODE" build --quiet in -O one --preset fast --cache cache; echo "exit $?"
 "$MESHLODE" build --quiet in -O two --preset fast --cache cache; echo "exit $?"
@@ -46,4 +58,9 @@ for folder in one two; do diff -r clean "$folder" && echo "$folder: as a clean r
 # What killed writers left in the cache is gone where it was written to since, and by the next trim everywhere.
 "$MESHLODE" build --quiet in -O one --preset fast --cache cache --cache-limit 1GiB
 find cache one two -name '.meshlode-*'
-echo "entries: $(find cache/asset -type f | wc -l) assets"
+echo "entries: $(find cache/asset -type f | wc -l) assets, $(find cache/mesh -type f | wc -l) meshes"
+# The meshes alone.
+rm -r cache/asset cache/record one/*
+"$MESHLODE" build --quiet in -O one --preset fast --cache cache --report report.json
+diff -r clean one && echo "from $(grep -c '"meshes_from_cache": 1,' report.json) meshes of the cache: as a clean run"
+check
