@@ -43,7 +43,7 @@ bool are_nodes_sound(const EncodedMesh& mesh) {
 bool are_pages_sound(const EncodedMesh& mesh) {
   std::uint64_t groups = 0, clusters = 0;
   for (const EncodedMesh::Page& page : mesh.pages) {
-    if (page.first_group != groups || page.first_cluster != clusters) return false;
+    if (page.first_group != groups || page.first_cluster != clusters || page.group_count == 0) return false;
     groups += page.group_count;
     clusters += page.cluster_count;
     const std::size_t size = page.bytes.size();

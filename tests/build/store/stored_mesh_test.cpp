@@ -250,6 +250,13 @@ TEST(StoredMesh, IdsOutsideTheirTablesAreRefused) {
   EXPECT_TRUE(is_refused([](EncodedMesh& m) { m.record.uv_set_count = 5; }));
   EXPECT_TRUE(is_refused([](EncodedMesh& m) { m.record.node_count += 1; }));
   EXPECT_TRUE(is_refused([](EncodedMesh& m) { m.pages.clear(); }));
+  // Whose first group would be the one behind the last.
+  EXPECT_TRUE(is_refused([](EncodedMesh& m) {
+    EncodedMesh::Page page = m.pages.back();
+    page.first_group += page.group_count, page.first_cluster += page.cluster_count;
+    page.group_count = page.cluster_count = 0;
+    m.pages.push_back(page);
+  }));
 }
 
 }  // namespace
