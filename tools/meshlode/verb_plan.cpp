@@ -122,8 +122,8 @@ int run_plan(const Verb& verb, std::span<char* const> args) {
   build::PipelineOptions options = settled->options;
 
   JobLimit limit(jobs);
-  const Result<scene::Scene> scene =
-      scene::import_scene(path, {.repair = options.repair, .scene = words.scene, .max_decoded = *decoded});
+  const Result<scene::Scene> scene = scene::import_scene(
+      path, {.repair = options.repair, .scene = words.scene, .max_decoded = *decoded, .may_lack_images = true});
   if (!scene) return print_error(scene.error());
   const auto fail = [&](Error error) {
     error.where = path + (error.where.empty() ? "" : ": ") + error.where;

@@ -68,7 +68,7 @@ Result<Scene> import_polygons(Format format, const std::filesystem::path& path, 
   mesh.drops = file->drops;
   Hasher hasher;
   hasher.update(bytes);
-  add_obj_materials(path, *file, options, hasher, scene);
+  if (const Status added = add_obj_materials(path, *file, options, hasher, scene); !added) return named(added.error());
   auto primitives = triangulate(std::move(file->soup), options, mesh.drops, scene.left_out);
   if (!primitives) return named(primitives.error());
   for (Primitive& primitive : *primitives) {

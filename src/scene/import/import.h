@@ -23,8 +23,8 @@ struct ImportOptions {
   std::vector<FileId>* files_read = nullptr;  ///< gets every file that was opened, also where the import fails
   /// Bytes of indices and vertices that compressed geometry may take beyond what its own size justifies.
   std::uint64_t max_decoded = std::uint64_t{512} << 20U;
-  /// An image whose file cannot be opened is left out and said so (Scene::left_out), for geometry does not need it;
-  /// else it is kIo, as a missing buffer always is.
+  /// An image whose file cannot be opened, and a library of an OBJ's materials, is left out and said so
+  /// (Scene::left_out), for geometry does not need it; else it is kIo, as a missing buffer always is.
   bool may_lack_images = false;
 };
 

@@ -65,17 +65,20 @@ TEST(ImportObjMaterials, ColoursTexturesAndOpacityAreTheScenes) {
   EXPECT_EQ(scene::dump_json(document->items("textures")[0]), "{\"source\":0}");
 }
 
-TEST(ImportObjMaterials, WhatIsMissingIsAWarning) {
+TEST(ImportObjMaterials, WhatIsMissingIsAWarningOrAnError) {
   const TempFolder folder;
   const auto path = folder.write("a.obj", obj(kRed + kGlass));
-  const auto bare = scene::import_scene(path, {});
+  const auto strict = [&] { return describe(scene::import_scene(path, {})); };
+  const auto bare = scene::import_scene(path, {.may_lack_images = true});
+  EXPECT_EQ(strict(), path.string() + ": mtllib a.mtl: it cannot be opened below the scene's folder");
   ASSERT_TRUE(bare) << describe(bare);
   EXPECT_EQ(left_out(*bare), "mtllib a.mtl; material old glass and 1 more; ");
   EXPECT_EQ(bare->materials[0].name, "red");
   EXPECT_EQ(bare->materials[0].base_color, Vec4f(1.0F));
   EXPECT_EQ(bare->meshes[0].primitives.size(), 2U);
   folder.write("a.mtl", kMtl);
-  const auto untextured = scene::import_scene(path, {});
+  const auto untextured = scene::import_scene(path, {.may_lack_images = true});
+  EXPECT_EQ(strict(), path.string() + ": map_Kd my tex.png: it cannot be opened below the scene's folder");
   ASSERT_TRUE(untextured) << describe(untextured);
   EXPECT_EQ(left_out(*untextured), "map_Kd my tex.png; ");
   EXPECT_EQ(untextured->materials[1].base_color_texture, kNoId);
@@ -93,7 +96,7 @@ TEST(ImportObjMaterials, NothingIsOpenedOutsideTheFolder) {
   const std::string faces = kRed + "usemtl green\nf 1/1 2/2 3/3\nusemtl blue\nf 1/1 2/2 3/3\n";
   const auto scene = scene::import_scene(
       folder.write("below/a.obj", obj(faces, "mtllib ../secret.mtl\nmtllib a.mtl " + folder.path().string() + "\n")),
-      {.files_read = &files_read});
+      {.files_read = &files_read, .may_lack_images = true});
   ASSERT_TRUE(scene) << describe(scene);
   EXPECT_EQ(files_read.size(), 2U);  // a.obj and a.mtl
   EXPECT_TRUE(scene->blobs.empty());

@@ -38,7 +38,7 @@ class ObjMaterials {
   ObjMaterials(const std::filesystem::path& path, const ImportOptions& options, Hasher& hasher, Scene& scene)
       : folder_(path.parent_path()), options_(options), hasher_(hasher), scene_(scene) {}
 
-  void run(const PolygonFile& file) {
+  Status run(const PolygonFile& file) {
     for (const std::string& line : file.material_libraries) open_library(line);
     std::set<std::string> unknown;
     for (const std::string& name : file.material_names) {
@@ -54,10 +54,18 @@ class ObjMaterials {
     const auto& used = file.soup.polygon_materials;  // kNoId before any usemtl
     if (used.empty() || std::find(used.begin(), used.end(), kNoId) != used.end()) scene_.materials.emplace_back();
     if (!materials_.empty()) write_document();
+    return missing_;
   }
 
  private:
   void leave_out(std::string what, std::string why) { scene_.left_out.push_back({std::move(what), std::move(why)}); }
+
+  /// A file that geometry does not need.
+  void lack(const std::string& what) {
+    const char* const why = "it cannot be opened below the scene's folder";
+    if (!options_.may_lack_images && missing_) missing_ = Error{ErrorCode::kIo, what, why};
+    leave_out(what, why);
+  }
 
   Result<MappedFile> open(const std::string& name, std::filesystem::path& path) {
     auto resolved = resolve_below(folder_, with_slashes(name));
@@ -88,7 +96,7 @@ class ObjMaterials {
     std::string_view rest = line;
     for (std::string_view name = take_word(rest); !name.empty(); name = take_word(rest)) {
       if (!read_library(std::string(name))) {
-        leave_out("mtllib " + shown(name), "it cannot be opened below the scene's folder");
+        lack("mtllib " + shown(name));
       }
     }
   }
@@ -101,7 +109,7 @@ class ObjMaterials {
     std::filesystem::path path;
     const auto file = open(name, path);
     if (!file) {
-      leave_out("map_Kd " + shown(name), "it cannot be opened below the scene's folder");
+      lack("map_Kd " + shown(name));
       return kNoId;
     }
     const auto [known, is_new] = image_by_path_.try_emplace(path, static_cast<std::uint32_t>(images_.size()));
@@ -187,6 +195,7 @@ class ObjMaterials {
   std::map<std::string, std::uint32_t> image_by_name_;
   std::map<std::filesystem::path, std::uint32_t> image_by_path_;
   Json::Array materials_, images_;
+  Status missing_ = Ok{};  ///< the first file that may not be missing
 };
 
 class ReferenceList {
@@ -247,9 +256,9 @@ std::vector<FileReference> list_obj_references(const std::filesystem::path& path
   return list.take();
 }
 
-void add_obj_materials(const std::filesystem::path& path, const PolygonFile& file, const ImportOptions& options,
-                       Hasher& hasher, Scene& scene) {
-  ObjMaterials(path, options, hasher, scene).run(file);
+Status add_obj_materials(const std::filesystem::path& path, const PolygonFile& file, const ImportOptions& options,
+                         Hasher& hasher, Scene& scene) {
+  return ObjMaterials(path, options, hasher, scene).run(file);
 }
 
 }  // namespace meshlode::scene

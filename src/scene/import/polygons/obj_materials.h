@@ -20,8 +20,9 @@ namespace meshlode::scene {
 /// Fills scene.materials (one for each name, then the default one), blobs and document, from libraries and textures
 /// below the folder of `path`; each file that is opened is hashed. What cannot be opened is said in scene.left_out, and
 /// so is a material that no library has.
-void add_obj_materials(const std::filesystem::path& path, const PolygonFile& file, const ImportOptions& options,
-                       Hasher& hasher, Scene& scene);
+/// Errors: kIo, at the statement, where a library or a texture cannot be opened and options.may_lack_images is not set
+[[nodiscard]] Status add_obj_materials(const std::filesystem::path& path, const PolygonFile& file,
+                                       const ImportOptions& options, Hasher& hasher, Scene& scene);
 
 /// Every file that add_obj_materials opens, or would open were it there: libraries, and what their map_Kd name.
 [[nodiscard]] std::vector<FileReference> list_obj_references(const std::filesystem::path& path,
