@@ -92,6 +92,20 @@ Scene far_away() {
   return scene_of(std::move(shape));
 }
 
+/// Pebbles on a plane that is a quarter of a million times as wide.
+Scene with_pebbles() {
+  Primitive shape = scene::make_plane(20, 1000.0);
+  shape.normals.assign(shape.positions.size(), Vec3f(0.0F, 1.0F, 0.0F));
+  const Primitive pebble = scene::with_smooth_normals(scene::make_sphere(4, 0.004));
+  for (int i = 0; i < 3; ++i) {
+    const auto first = static_cast<std::uint32_t>(shape.positions.size());
+    for (const Vec3d& p : pebble.positions) shape.positions.push_back(p + Vec3d(i * 10.0, 1.0, i * 7.0));
+    shape.normals.insert(shape.normals.end(), pebble.normals.begin(), pebble.normals.end());
+    for (const std::uint32_t v : pebble.indices) shape.indices.push_back(first + v);
+  }
+  return scene_of(std::move(shape));
+}
+
 Scene of_small_meshes() {
   Scene scene;
   scene.materials.emplace_back();
@@ -198,6 +212,7 @@ std::vector<BrokenScene> broken_scenes() {
   add("needles", scene_of(scene::make_slivers(2000)));
   add("error-in-few-triangles", with_spike());
   add("far-from-origin", far_away());
+  add("finer-than-grid", with_pebbles());
   add("split-normals", with_normals_split_everywhere());
   add("uv-islands", with_islands());
   add("missing-uvs", with_coordinates(false, true));

@@ -43,8 +43,19 @@ TEST(Doctor, NamesTheFaultOfABrokenSceneFirst) {
 TEST(Doctor, ThereIsABrokenSceneForEveryFault) {
   std::set<std::string> broken;
   for (const test::BrokenScene& scene : test::broken_scenes()) broken.insert(scene.id);
+  broken.insert("left-out");  // the next test
   const std::vector<std::string> ids = source_fault_ids();
   EXPECT_EQ(broken, std::set<std::string>(ids.begin(), ids.end()));
+}
+
+TEST(Doctor, SaysWhatTheImportLeftOutLast) {
+  scene::Scene scene = test::broken_scenes()[0].scene;
+  scene.left_out.push_back({"skin 0", "meshes are static"});
+  const std::vector<out::Diagnosis> diagnoses = diagnose_scene(scene);
+  ASSERT_EQ(diagnoses.size(), 2U) << ids_of(diagnoses);
+  EXPECT_EQ(diagnoses[1].id, "left-out");
+  EXPECT_EQ(diagnoses[1].places.at(0).where, "skin 0");
+  EXPECT_EQ(diagnoses[1].places[0].detail, "meshes are static");
 }
 
 /// What is ranked first is what costs most over the whole scene, whichever mesh has it.

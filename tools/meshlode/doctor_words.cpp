@@ -22,36 +22,40 @@ struct Words {
 };
 
 constexpr std::array<Words, scene::kFaultNames.size()> kWords{{
-    {FaultKind::kNotFinite, "vertices that are infinite or no number",
+    {FaultKind::kNotFinite, "vertices with an infinity or what is no number",
      "mend the exporter; build --repair drops triangles at such positions"},
-    {FaultKind::kDegenerate, "triangles without area", "remove them, or build with --repair"},
+    {FaultKind::kDegenerate, "triangles without area",
+     "merge vertices by distance and dissolve such faces; build --repair removes those with two corners in one place"},
     {FaultKind::kDuplicate, "triangles on the points of another one",
-     "remove the copies; where both sides are meant, make the material double-sided"},
+     "delete the copies; where both sides are meant to be seen, make the material double-sided"},
     {FaultKind::kNonManifold, "edges of more than two triangles",
-     "take sheets that meet apart, or remove the inner one; build --repair cuts there"},
+     "take apart the sheets that meet there, or delete inner faces; build --repair cuts them"},
     {FaultKind::kMisoriented, "edges whose two triangles face opposite sides",
-     "recalculate normals outside in the modelling program, or build with --repair"},
-    {FaultKind::kUnweldedSeam, "border points that are nearly another one",
-     "merge vertices by distance: the gap opens as the two borders are simplified apart"},
+     "recalculate normals to the outside in the modelling program, or build with --repair"},
+    {FaultKind::kUnweldedSeam, "points of borders that are nearly another one",
+     "merge vertices by a distance just above the gaps: borders are simplified apart, and gaps open"},
     {FaultKind::kNeedles, "triangles more than 100 times longer than high",
      "remesh or triangulate anew: their normals are noise, and collapses turn them over"},
-    {FaultKind::kErrorInFew, "triangles that hold half of the error and more",
-     "look at them first: spikes, stray vertices and slivers keep the rest fine"},
-    {FaultKind::kFarFromOrigin, "vertices where floats are too coarse for the edges",
-     "move the mesh to its own origin and the distance into its node"},
-    {FaultKind::kSplitNormals, "wedges that a normal splits and no angle justifies",
+    {FaultKind::kErrorInFew, "triangles, a thousandth of all, that hold half of the error or more",
+     "look at them first: a spike or a stray vertex there costs as much as all the rest of the surface"},
+    {FaultKind::kFarFromOrigin, "vertices so far from the origin that floats are coarse beside the edges",
+     "move the mesh to its own origin, and the distance into the translation of its node"},
+    {FaultKind::kFinerThanGrid, "triangles that vanish on the position grid: the mesh is too large for them",
+     "give fine parts a mesh of their own, delete them, or build with a smaller --position-error"},
+    {FaultKind::kSplitNormals, "vertices that normals split where the surface is smooth",
      "shade smooth, with sharp edges by angle, and export again"},
-    {FaultKind::kUvIslands, "UV islands",
-     "unwrap into fewer islands, or sew those that lie side by side: every seam is locked and stored twice"},
-    {FaultKind::kMissingUvs, "primitives whose material samples texture coordinates that they have not",
+    {FaultKind::kUvIslands, "UV islands, many more than pieces of the surface",
+     "unwrap into fewer islands, or sew those that lie side by side: vertices at seams are stored twice, and seams "
+     "hold up simplification"},
+    {FaultKind::kMissingUvs, "primitives without the texture coordinates that their material samples",
      "unwrap them, or give them a material without textures"},
-    {FaultKind::kUnusedUvs, "UV sets that no texture is sampled with", "remove them from the export"},
+    {FaultKind::kUnusedUvs, "UV sets that no texture is sampled with",
+     "leave them out of the export: no asset has them"},
     {FaultKind::kManyMaterials, "materials of one mesh", "join materials in an atlas, or split the mesh by material"},
     {FaultKind::kSmallMeshes, "meshes of one cluster, drawn as they are at any distance",
      "merge meshes that lie together and share materials"},
-    {FaultKind::kUndrawnMeshes, "meshes that no node draws", "remove them: they are built all the same"},
-    {FaultKind::kUnsampledImages, "images that no material samples",
-     "remove them: they are carried through as they are"},
+    {FaultKind::kUndrawnMeshes, "meshes that no node draws", "delete them: they are built all the same"},
+    {FaultKind::kUnsampledImages, "images that no material samples", "delete them: an asset carries them all the same"},
 }};
 
 const Words& words_of(FaultKind kind) {
@@ -65,56 +69,52 @@ std::uint64_t whole(double figure) {
   return static_cast<std::uint64_t>(figure);
 }
 
-std::string detail_of(const scene::Fault& fault) {
+std::string short_of(double figure) {
   std::string text;
-  const std::string count = grouped_digits(fault.count), triangles = grouped_digits(fault.triangle_count);
-  const char *n = count.c_str(), *t = triangles.c_str();
-  switch (fault.kind) {
-    case FaultKind::kNotFinite: append_format(text, "%s vertices, %s triangles at them", n, t); break;
-    case FaultKind::kDegenerate: append_format(text, "%s triangles", n); break;
-    case FaultKind::kDuplicate:
-      append_format(text, "%s triangles, %s of them facing the other way", n,
-                    grouped_digits(whole(fault.measure)).c_str());
-      break;
-    case FaultKind::kNonManifold:
-      append_format(text, "%s edges of up to %.0f triangles, %s triangles at them", n, fault.measure, t);
-      break;
-    case FaultKind::kMisoriented: append_format(text, "%s edges, %s triangles to turn", n, t); break;
-    case FaultKind::kUnweldedSeam:
-      append_format(text, "%s points, gaps of up to %.3g, %s triangles at them", n, fault.measure, t);
-      break;
-    case FaultKind::kNeedles:
-      append_format(text, "%s triangles, the worst %.3g times longer than high", n, fault.measure);
-      break;
-    case FaultKind::kErrorInFew:
-      append_format(text, "%s triangles, a thousandth, hold %.0f%% of the error", n, 100.0 * fault.measure);
-      break;
-    case FaultKind::kFarFromOrigin:
-      append_format(text, "%s vertices, floats there are %.3g apart", n, fault.measure);
-      break;
-    case FaultKind::kSplitNormals:
-      append_format(text, "%s wedges too many on %s points", n, grouped_digits(whole(fault.measure)).c_str());
-      break;
-    case FaultKind::kUvIslands:
-      append_format(text, "%s islands on %s piece(s) of surface, %s triangles at seams", n,
-                    grouped_digits(whole(fault.measure)).c_str(), t);
-      break;
-    case FaultKind::kMissingUvs: append_format(text, "%s primitive(s), %s triangles", n, t); break;
-    case FaultKind::kUnusedUvs: append_format(text, "%s set(s) of primitives", n); break;
-    case FaultKind::kManyMaterials: append_format(text, "%s materials, %s triangles where two meet", n, t); break;
-    case FaultKind::kSmallMeshes:
-      append_format(text, "%s mesh(es) with %s triangles, drawn %s times", n, t,
-                    grouped_digits(whole(fault.measure)).c_str());
-      break;
-    case FaultKind::kUndrawnMeshes: append_format(text, "%s mesh(es) with %s triangles", n, t); break;
-    case FaultKind::kUnsampledImages: append_format(text, "%s image(s)", n); break;
-  }
-  if (fault.mesh == kNoId && !fault.meshes.empty()) {
-    text += ": mesh";
-    for (const std::uint32_t mesh : fault.meshes) text += " " + std::to_string(mesh);
-    if (fault.count > fault.meshes.size()) text += " …";
-  }
+  append_format(text, "%.3g", figure);
   return text;
+}
+
+/// What was counted, and the figure that goes with it (FaultKind says which).
+std::string detail_of(const scene::Fault& fault) {
+  const auto count = [&](const char* many) { return out::counted(fault.count, many); };
+  const auto measured = [&](const char* many) { return out::counted(whole(fault.measure), many); };
+  const std::string triangles = out::counted(fault.triangle_count, "triangles");
+  switch (fault.kind) {
+    case FaultKind::kNotFinite: return count("vertices") + ", " + triangles + " at them";
+    case FaultKind::kDegenerate: return triangles;
+    case FaultKind::kDuplicate:
+      return triangles + ", " + grouped_digits(whole(fault.measure)) + " of them facing the other way";
+    case FaultKind::kNonManifold:
+      return count("edges") + " of up to " + measured("triangles") + ", " + triangles + " at them";
+    case FaultKind::kMisoriented: return count("edges") + ", " + triangles + " to turn";
+    case FaultKind::kUnweldedSeam:
+      return count("points") + ", gaps of up to " + short_of(fault.measure) + ", " + triangles + " at them";
+    case FaultKind::kNeedles: return triangles + ", the worst " + short_of(fault.measure) + " times longer than high";
+    case FaultKind::kErrorInFew: return triangles + " with " + short_of(100.0 * fault.measure) + "% of the error";
+    case FaultKind::kFarFromOrigin:
+      return count("vertices") + ", floats there are " + short_of(fault.measure) + " apart";
+    case FaultKind::kFinerThanGrid: return triangles + ", on a grid of " + short_of(fault.measure);
+    case FaultKind::kSplitNormals: return count("vertices") + " too many on " + measured("points");
+    case FaultKind::kUvIslands:
+      return count("islands") + " on " + measured("pieces") + " of surface, " + triangles + " at seams";
+    case FaultKind::kMissingUvs: return count("primitives") + " of " + triangles;
+    case FaultKind::kUnusedUvs: return count("sets");
+    case FaultKind::kManyMaterials: return count("materials") + ", " + triangles + " where two meet";
+    case FaultKind::kSmallMeshes:
+      return count("meshes") + " of " + triangles + ", drawn " + grouped_digits(whole(fault.measure)) + " times";
+    case FaultKind::kUndrawnMeshes: return count("meshes") + " of " + triangles;
+    case FaultKind::kUnsampledImages: return count("images");
+  }
+  return {};
+}
+
+/// Those of a fault of the scene, by number.
+std::string list_meshes(const scene::Fault& fault) {
+  if (fault.meshes.empty()) return {};
+  std::string text = fault.count == 1 ? ": mesh" : ": meshes";
+  for (const std::uint32_t mesh : fault.meshes) text += " " + std::to_string(mesh);
+  return text + (fault.count > fault.meshes.size() ? " …" : "");
 }
 
 std::uint64_t triangles_of(const scene::SourceMesh& mesh) {
@@ -136,12 +136,12 @@ out::DiagnosisPlace place_of(const scene::Scene& scene, const scene::Fault& faul
   if (fault.mesh != kNoId) {
     const scene::SourceMesh& mesh = scene.meshes[fault.mesh];
     place.mesh = fault.mesh;
-    place.where = "mesh " + std::to_string(fault.mesh) + " '" + printable(mesh.name) + "'";
+    place.where = out::mesh_words(fault.mesh, mesh.name);
     weight = all_triangles == 0 ? 0.0 : static_cast<double>(triangles_of(mesh)) / static_cast<double>(all_triangles);
   }
   place.count = fault.count;
   place.triangle_count = fault.triangle_count;
-  place.detail = detail_of(fault);
+  place.detail = detail_of(fault) + (fault.mesh == kNoId ? list_meshes(fault) : "");
   place.share = fault.costs.empty() ? 0.0 : weight * fault.costs[0].share;
   for (const scene::FaultTriangle& one : fault.triangles) place.triangles.push_back({one.primitive, one.triangle});
   for (const scene::FaultCost& cost : fault.costs) {
@@ -153,7 +153,9 @@ out::DiagnosisPlace place_of(const scene::Scene& scene, const scene::Fault& faul
 }  // namespace
 
 std::vector<std::string> source_fault_ids() {
-  return all_names(scene::kFaultNames);
+  std::vector<std::string> ids = all_names(scene::kFaultNames);
+  ids.emplace_back(out::kLeftOutId);
+  return ids;
 }
 
 std::vector<out::Diagnosis> diagnose_scene(const scene::Scene& scene) {
@@ -166,6 +168,7 @@ std::vector<out::Diagnosis> diagnose_scene(const scene::Scene& scene) {
     words.remedy = words_of(fault.kind).remedy;
     out::add_place(diagnoses, words, place_of(scene, fault, all));
   }
+  for (const scene::LeftOut& left : scene.left_out) out::add_left_out(diagnoses, left.what, left.why);
   out::rank(diagnoses);
   return diagnoses;
 }

@@ -13,7 +13,8 @@ namespace meshlode::cli {
 /// Ids of all that diagnose_scene() may find, in one order.
 [[nodiscard]] std::vector<std::string> source_fault_ids();
 
-/// What scene::examine_scene finds, ranked: a share of a mesh counts as much as the mesh has triangles.
+/// What scene::examine_scene finds and what the import left out, ranked: a share of a mesh counts as much as the mesh
+/// has triangles.
 [[nodiscard]] std::vector<out::Diagnosis> diagnose_scene(const scene::Scene& scene);
 
 /// A report without its file: diagnose_scene() and how large the scene is.

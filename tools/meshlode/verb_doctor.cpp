@@ -69,7 +69,8 @@ int run_doctor(const Verb& verb, std::span<char* const> args) {
   OutputOptions output;
   OptionParser parser(verb);
   parser.add_positional("file", path, "a .gltf, .glb, .ply, .obj or .stl scene, or a .lode asset");
-  parser.add_value("--fail-on", fail_on, "exit with 6 where one of these is found: ids between commas, or any");
+  parser.add_value("--fail-on", fail_on,
+                   "exit with 6 where one of these is found: ids, high, medium (and worse) or any, between commas");
   parser.add_value("--scene", options.scene, "glTF: the name or index of the scene to examine, or all");
   add_max_decoded_option(parser, max_decoded);
   add_output_options(parser, output);

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <set>
 #include <utility>
 
 #include <meshlode/format.h>
@@ -34,14 +35,13 @@ constexpr Words kFewGroups{"error-in-few-groups", "a twentieth of the groups hol
                            "look at them with `extract --error`: spikes and slivers there keep the whole level fine"};
 constexpr Words kDropped{"dropped-faces", "triangles of the source that the build dropped",
                          "remove degenerate and doubled faces from the source"};
-constexpr Words kCollapsed{"grid-collapsed", "triangles that the position grid takes the area of",
-                           "give --position-error a smaller distance, or remove detail that is finer than the grid"};
+constexpr Words kCollapsed{"grid-collapsed", "triangles of level 0 that have no area on the position grid",
+                           "give fine parts a mesh of their own, or --position-error a smaller distance; slivers and "
+                           "triangles on a line are better removed from the source"};
 constexpr Words kSmall{"small-meshes", "meshes of one cluster, drawn as they are at any distance",
                        "merge meshes that lie together and share materials"};
 constexpr Words kUnmeasured{"unmeasured-errors", "meshes whose errors are estimates of the quadric",
                             "build with --error-tier measured"};
-constexpr Words kLeftOut{"left-out", "things of the source that the asset has not",
-                         "`info` lists them; what is not meant to be lost needs another form in the source"};
 
 struct StuckWords {
   StuckReason reason;
@@ -50,7 +50,7 @@ struct StuckWords {
 constexpr std::array<StuckWords, 6> kStuck{{
     {StuckReason::kLocked,
      {"stuck-locked", "groups that could not be simplified: too much is shared with other groups",
-      "weld seams and remove T-junctions around them"}},
+      "weld seams, and remove T-junctions and points of hundreds of triangles around them"}},
     {StuckReason::kFlips,
      {"stuck-flips", "groups that could not be simplified: every collapse would turn a triangle over",
       "remove needles and folded faces there"}},
@@ -62,7 +62,7 @@ constexpr std::array<StuckWords, 6> kStuck{{
       "weld pieces that touch; draw leaves and gravel as instances or cards"}},
     {StuckReason::kTooSmall,
      {"stuck-too-small", "groups that could not be simplified: nothing is left to remove",
-      "merge small meshes; nothing else is needed"}},
+      "nothing, or merge small meshes that lie together"}},
     {StuckReason::kTopology,
      {"stuck-topology", "groups that could not be simplified: every collapse would break the surface",
       "take edges of more than two triangles apart, or build with --repair"}},
@@ -100,7 +100,7 @@ class Examiner {
   [[nodiscard]] DiagnosisPlace place_of(std::uint32_t mesh) const {
     DiagnosisPlace place;
     place.mesh = mesh;
-    place.where = "mesh " + std::to_string(mesh) + " '" + printable(asset_.string(asset_.meshes()[mesh].name)) + "'";
+    place.where = mesh_words(mesh, asset_.string(asset_.meshes()[mesh].name));
     return place;
   }
   static void add_triangles(DiagnosisPlace& place, const char* kind, std::uint64_t triangles) {
@@ -121,8 +121,8 @@ class Examiner {
       if (place.count == 0) continue;
       add_triangles(place, "time", triangles);
       place.share = share_of(triangles, info_.source_triangles);
-      append_format(place.detail, "%s group(s) with %s triangles that nothing coarser replaces",
-                    grouped_digits(place.count).c_str(), grouped_digits(triangles).c_str());
+      append_format(place.detail, "%s with %s that nothing coarser replaces", counted(place.count, "groups").c_str(),
+                    counted(triangles, "triangles").c_str());
       add_place(out_, diagnosis_of(stuck.words), std::move(place));
     }
   }
@@ -189,8 +189,8 @@ class Examiner {
     if (place.count == 0) return;
     add_triangles(place, "accuracy", place.count);
     place.share = share_of(place.count, info_.source_triangles);
-    append_format(place.detail, "%s triangles of level 0 on a grid of %u * 2^%d", digits(place.count).c_str(),
-                  record.grid.mantissa, record.grid.log2);
+    append_format(place.detail, "%s, on a grid of %.3g object units", counted(place.count, "triangles").c_str(),
+                  std::ldexp(record.grid.mantissa, record.grid.log2));
     add_place(out_, diagnosis_of(kCollapsed), std::move(place));
   }
 
@@ -226,18 +226,19 @@ class Examiner {
     if (small_draws < kManySmallDraws || !(all > 0.0)) return;
     place.costs.push_back({"time", small, "triangles"});
     place.share = small / all;
-    append_format(place.detail, "%s mesh(es) of one cluster, drawn %s times", grouped_digits(place.count).c_str(),
+    append_format(place.detail, "%s of one cluster, drawn %s times", counted(place.count, "meshes").c_str(),
                   grouped_digits(small_draws).c_str());
     add_place(out_, diagnosis_of(kSmall), std::move(place));
   }
 
+  /// What the plan left out it left out for good reasons: nothing is lost by it.
   void add_left_out() {
+    std::set<std::pair<std::string, std::string>> planned;
+    for (const MetaInfo::Decision& decision : info_.meta.decisions) {
+      if (!decision.is_kept) planned.emplace(decision.what, decision.reason);
+    }
     for (const MetaInfo::LeftOut& left : info_.meta.left_outs) {
-      DiagnosisPlace place;
-      place.where = printable(left.what, 120);
-      place.count = 1;
-      place.detail = printable(left.why, 160);
-      add_place(out_, diagnosis_of(kLeftOut), std::move(place));
+      if (planned.count({left.what, left.why}) == 0) out::add_left_out(out_, left.what, left.why);
     }
   }
 
@@ -249,11 +250,9 @@ class Examiner {
 }  // namespace
 
 std::vector<std::string> asset_fault_ids() {
-  std::vector<std::string> ids;
+  std::vector<std::string> ids{kFewGroups.id, kDropped.id, kCollapsed.id, kSmall.id, kUnmeasured.id, kLeftOutId};
+  ids.reserve(ids.size() + kStuck.size());
   for (const StuckWords& stuck : kStuck) ids.emplace_back(stuck.words.id);
-  for (const Words& words : {kFewGroups, kDropped, kCollapsed, kSmall, kUnmeasured, kLeftOut}) {
-    ids.emplace_back(words.id);
-  }
   return ids;
 }
 

@@ -15,15 +15,20 @@ namespace meshlode::out {
 namespace {
 
 constexpr double kHighShare = 0.1, kMediumShare = 0.01;
+constexpr std::string_view kHigh = "high", kMedium = "medium", kLow = "low", kAny = "any";
 constexpr std::size_t kMaxPlaces = 4;  ///< of a diagnosis in the text; JSON has all
 
 std::string describe_cost(const DiagnosisCost& cost) {
-  std::string text;
+  std::string text = cost.kind;
+  const auto whole = static_cast<std::uint64_t>(std::max(0.0, cost.amount));
   if (cost.unit == "object units") {
-    append_format(text, "%s %.3g %s", cost.kind.c_str(), cost.amount, cost.unit.c_str());
+    append_format(text, " (%.3g object units)", cost.amount);
+  } else if (cost.unit == "triangles") {
+    text += " (" + counted(whole, cost.unit) + ")";
   } else {
-    append_format(text, "%s %s %s", cost.kind.c_str(),
-                  grouped_digits(static_cast<std::uint64_t>(std::max(0.0, cost.amount))).c_str(), cost.unit.c_str());
+    const bool is_estimate = cost.unit == "asset bytes";
+    append_format(text, " (%s%s of the %s)", is_estimate ? "about " : "", grouped_digits(whole).c_str(),
+                  is_estimate ? "asset" : "source");
   }
   return text;
 }
@@ -92,9 +97,33 @@ void write_place(const DiagnosisPlace& place, JsonWriter& json) {
 
 }  // namespace
 
+std::string mesh_words(std::uint32_t mesh, std::string_view name) {
+  return "mesh " + std::to_string(mesh) + (name.empty() ? "" : " '" + printable(name) + "'");
+}
+
+std::string counted(std::uint64_t count, std::string_view many) {
+  if (count != 1) return grouped_digits(count) + " " + std::string(many);
+  if (many == "vertices") return "1 vertex";
+  many.remove_suffix(many.ends_with("shes") ? 2 : 1);
+  return "1 " + std::string(many);
+}
+
+void add_left_out(std::vector<Diagnosis>& diagnoses, std::string_view what, std::string_view why) {
+  Diagnosis words;
+  words.id = kLeftOutId;
+  words.title = "things of the source that no asset has";
+  words.remedy =
+      "where it is meant to be kept, export it in a form that is read (docs/import.md), and put missing files in place";
+  DiagnosisPlace place;
+  place.where = printable(what, 120);
+  place.count = 1;
+  place.detail = printable(why, 160);
+  add_place(diagnoses, words, std::move(place));
+}
+
 const char* severity_of(double share) {
-  if (share >= kHighShare) return "high";
-  return share >= kMediumShare ? "medium" : "low";
+  if (share >= kHighShare) return kHigh.data();
+  return share >= kMediumShare ? kMedium.data() : kLow.data();
 }
 
 void add_place(std::vector<Diagnosis>& diagnoses, const Diagnosis& words, DiagnosisPlace place) {
@@ -119,14 +148,17 @@ void rank(std::vector<Diagnosis>& diagnoses) {
 }
 
 std::string doctor_text(const DoctorReport& report) {
-  std::string text = report.file + ": " + grouped_digits(report.triangles) + " triangles in " +
-                     grouped_digits(report.meshes) + " mesh(es), ";
-  text += report.diagnoses.empty() ? "nothing found\n"
-                                   : std::to_string(report.diagnoses.size()) + " kind(s) of fault, worst first\n";
+  std::string text =
+      report.file + ": " + counted(report.triangles, "triangles") + " in " + counted(report.meshes, "meshes") + ", ";
+  text += report.diagnoses.empty() ? "nothing found\n" : counted(report.diagnoses.size(), "faults") + ", worst first\n";
   std::size_t number = 0;
   for (const Diagnosis& diagnosis : report.diagnoses) {
-    append_format(text, "\n%2zu. %s [%s]: %s, %s\n", ++number, diagnosis.id.c_str(), severity_of(diagnosis.share),
-                  diagnosis.title.c_str(), grouped_digits(diagnosis.count).c_str());
+    append_format(text, "\n%2zu. %s [%s", ++number, diagnosis.id.c_str(), severity_of(diagnosis.share));
+    const double percent = 100.0 * diagnosis.share;
+    if (percent > 0.0) append_format(text, percent < 10.0 ? ", %.2g%%" : ", %.0f%%", percent);
+    text += "]: " + diagnosis.title;
+    if (diagnosis.places.size() > 1) text += ", " + grouped_digits(diagnosis.count) + " in all";
+    text += '\n';
     for (std::size_t i = 0; i < std::min(kMaxPlaces, diagnosis.places.size()); ++i) {
       add_place_text(diagnosis.places[i], text);
     }
@@ -175,14 +207,17 @@ Result<std::vector<std::string>> find_failures(std::string_view words, const std
   std::vector<std::string> failed;
   const auto fail_on = [&](std::string_view word) {
     for (const Diagnosis& one : diagnoses) {
-      const bool is_asked = word == "any" || one.id == word;
+      const bool is_high = severity_of(one.share) == kHigh, is_low = severity_of(one.share) == kLow;
+      const bool is_asked =
+          one.id == word || word == kAny || (word == kHigh && is_high) || (word == kMedium && !is_low);
       if (is_asked && std::find(failed.begin(), failed.end(), one.id) == failed.end()) failed.push_back(one.id);
     }
   };
   do {
     const std::string_view word = words.substr(0, words.find(','));
     words.remove_prefix(std::min(words.size(), word.size() + 1));
-    if (word != "any" && std::find(known.begin(), known.end(), word) == known.end()) {
+    const bool is_known = word == kAny || word == kHigh || word == kMedium;
+    if (!is_known && std::find(known.begin(), known.end(), word) == known.end()) {
       return Error{ErrorCode::kUsage, "--fail-on",
                    "no fault is called '" + printable(word) + "'; the nearest is " + nearest_name(word, known)};
     }

@@ -26,7 +26,7 @@ struct DiagnosisTriangle {
 
 /// One mesh that has the fault, or the scene.
 struct DiagnosisPlace {
-  std::string where;         ///< "mesh 3 'rock'", or "scene"
+  std::string where;         ///< as mesh_words() has it, "scene", or what was left out
   std::uint32_t mesh = ~0U;  ///< ~0: the scene
   std::uint64_t count = 0;   ///< of what the diagnosis counts
   std::uint64_t triangle_count = 0;
@@ -40,7 +40,7 @@ struct DiagnosisPlace {
 /// A fault wherever it is.
 struct Diagnosis {
   std::string id;      ///< stable, words with hyphens
-  std::string title;   ///< what it is
+  std::string title;   ///< what is counted, in the plural
   std::string remedy;  ///< what to do about it
   std::uint64_t count = 0;
   double share = 0.0;  ///< sum over its places, at most 1
@@ -49,6 +49,16 @@ struct Diagnosis {
 
 /// From a tenth of the scene "high", from a hundredth "medium", else "low".
 [[nodiscard]] const char* severity_of(double share);
+
+/// "mesh 3 'rock'", "mesh 3" where it has no name; without control characters.
+[[nodiscard]] std::string mesh_words(std::uint32_t mesh, std::string_view name);
+
+/// "1 triangle", "1,234 triangles": `many` is the word in the plural, with an s, "meshes" or "vertices".
+[[nodiscard]] std::string counted(std::uint64_t count, std::string_view many);
+
+constexpr const char* kLeftOutId = "left-out";
+/// What an import has not handed on, of a source and of an asset alike; it has no share.
+void add_left_out(std::vector<Diagnosis>& diagnoses, std::string_view what, std::string_view why);
 
 /// Adds a place to the diagnosis of that id, which is made where there is none yet.
 void add_place(std::vector<Diagnosis>& diagnoses, const Diagnosis& words, DiagnosisPlace place);
@@ -67,8 +77,8 @@ struct DoctorReport {
 [[nodiscard]] std::string doctor_text(const DoctorReport& report);
 [[nodiscard]] std::string doctor_json(const DoctorReport& report);
 
-/// "a,b" or "any": those of the words that were found. Errors: kUsage for a word that is no id of `known`, with the
-/// nearest that is.
+/// "a,b": those of the words that were found; "any": whatever was, "medium" and "high": of that severity or a higher
+/// one. Errors: kUsage for a word that is none of these and no id of `known`, with the nearest that is.
 [[nodiscard]] Result<std::vector<std::string>> find_failures(std::string_view words,
                                                              const std::vector<std::string>& known,
                                                              const std::vector<Diagnosis>& diagnoses);

@@ -251,9 +251,9 @@ Fault find_unused_uvs(const SourceMesh& mesh, const Topology& topology, std::spa
     all += static_cast<double>(of_uvs + primitive.positions.size() * 12 + primitive.normals.size() * 12 +
                                primitive.colors.size() * 16 + primitive.indices.size() * 4);
   }
-  // Half: no asset has them.
+  // A twentieth: no asset has them.
   if (fault.count > 0) {
-    fault.costs.push_back({CostKind::kBytes, CostUnit::kSourceBytes, bytes, 0.5 * bytes / std::max(1.0, all)});
+    fault.costs.push_back({CostKind::kBytes, CostUnit::kSourceBytes, bytes, 0.05 * bytes / std::max(1.0, all)});
   }
   return fault;
 }

@@ -141,6 +141,7 @@ std::vector<Fault> examine_mesh(const SourceMesh& mesh, std::span<const SceneMat
   keep(find_needles(topology));
   keep(find_error_in_few(topology));
   keep(find_far_from_origin(topology));
+  keep(find_finer_than_grid(topology));
   keep(find_split_normals(mesh, topology));
   keep(find_uv_islands(mesh, topology, materials));
   keep(find_missing_uvs(mesh, topology, materials));

@@ -14,7 +14,7 @@ namespace meshlode::scene {
 [[nodiscard]] Fault find_misoriented(const Topology& topology);
 
 /// Points of border edges that lie within a ten-thousandth of the diagonal, and a tenth of the median border edge, of
-/// another one that no edge joins them with.
+/// another one that no edge joins them with: where they are one of a hundred points of borders or more.
 [[nodiscard]] Fault find_unwelded_seams(const Topology& topology);
 
 }  // namespace meshlode::scene

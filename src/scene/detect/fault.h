@@ -24,6 +24,7 @@ enum class FaultKind : std::uint8_t {
   kNeedles,          ///< triangles much longer than high; the largest ratio
   kErrorInFew,       ///< triangles; the share of the error that they hold
   kFarFromOrigin,    ///< vertices; the step of floats at the farthest coordinate, object units
+  kFinerThanGrid,    ///< triangles; the step of the position grid that they vanish on, object units
   kSplitNormals,     ///< wedges that a normal made and no angle justifies; points
   kUvIslands,        ///< pieces of the worst used UV set; pieces of the surface itself
   kMissingUvs,       ///< primitives whose material samples a UV set that they have not
@@ -35,7 +36,7 @@ enum class FaultKind : std::uint8_t {
 };
 
 /// Stable: what `--fail-on` names.
-inline constexpr std::array<EnumName<FaultKind>, 17> kFaultNames{{
+inline constexpr std::array<EnumName<FaultKind>, 18> kFaultNames{{
     {FaultKind::kNotFinite, "not-finite"},
     {FaultKind::kDegenerate, "degenerate-faces"},
     {FaultKind::kDuplicate, "duplicate-faces"},
@@ -45,6 +46,7 @@ inline constexpr std::array<EnumName<FaultKind>, 17> kFaultNames{{
     {FaultKind::kNeedles, "needles"},
     {FaultKind::kErrorInFew, "error-in-few-triangles"},
     {FaultKind::kFarFromOrigin, "far-from-origin"},
+    {FaultKind::kFinerThanGrid, "finer-than-grid"},
     {FaultKind::kSplitNormals, "split-normals"},
     {FaultKind::kUvIslands, "uv-islands"},
     {FaultKind::kMissingUvs, "missing-uvs"},

@@ -32,7 +32,19 @@ double choose_unit(const SourceMesh& mesh) {
   return std::ldexp(1.0, std::clamp(exponent, -1021, 1021));
 }
 
-/// Fills `points` and returns the point of each vertex, kNoId for one that is not finite.
+/// By vertex, 1 where a triangle has it: files share one array of vertices among meshes.
+std::vector<std::uint8_t> find_used_vertices(const SourceMesh& mesh, const Topology& topology) {
+  std::vector<std::uint8_t> is_used(topology.first_vertex.back(), 0);
+  for (std::size_t p = 0; p < mesh.primitives.size(); ++p) {
+    const std::vector<std::uint32_t>& indices = mesh.primitives[p].indices;
+    for (std::size_t i = 0; i < indices.size() / 3 * 3; ++i) {
+      if (indices[i] < mesh.primitives[p].positions.size()) is_used[topology.first_vertex[p] + indices[i]] = 1;
+    }
+  }
+  return is_used;
+}
+
+/// Fills `points` and returns the point of each vertex, kNoId for one that is not used or not finite.
 std::vector<std::uint32_t> weld_points(const SourceMesh& mesh, Topology& topology) {
   std::vector<Vec3d> positions;
   positions.reserve(topology.first_vertex.back());
@@ -40,10 +52,11 @@ std::vector<std::uint32_t> weld_points(const SourceMesh& mesh, Topology& topolog
   for (const Primitive& primitive : mesh.primitives) {
     for (const Vec3d& p : primitive.positions) positions.push_back(p * scale);
   }
+  const std::vector<std::uint8_t> is_used = find_used_vertices(mesh, topology);
   std::vector<std::uint32_t> order;
   order.reserve(positions.size());
   for (std::uint32_t v = 0; v < positions.size(); ++v) {
-    if (is_finite(positions[v])) order.push_back(v);
+    if (is_used[v] != 0 && is_finite(positions[v])) order.push_back(v);
   }
   std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
     const Vec3d &p = positions[a], &q = positions[b];
@@ -140,10 +153,11 @@ void add_edges(Topology& topology) {
   std::sort(topology.edges.begin(), topology.edges.end(), [](const TopologyEdge& a, const TopologyEdge& b) {
     return std::tie(a.low, a.high, a.triangle, a.corner) < std::tie(b.low, b.high, b.triangle, b.corner);
   });
-  topology.for_each_edge([&](std::span<const TopologyEdge> edge) {
-    const Vec3d along = topology.points[edge[0].high] - topology.points[edge[0].low];
+  lengths.reserve(topology.edges.size());
+  for (const TopologyEdge& edge : topology.edges) {
+    const Vec3d along = topology.points[edge.high] - topology.points[edge.low];
     lengths.push_back(std::sqrt(glm::dot(along, along)));
-  });
+  }
   if (lengths.empty()) return;
   const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
   std::nth_element(lengths.begin(), middle, lengths.end());

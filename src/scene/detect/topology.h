@@ -36,10 +36,11 @@ struct TopologyEdge {
 
 /// All primitives of a mesh together.
 struct Topology {
-  std::vector<Vec3d> points;  ///< distinct finite positions over `unit`: within 1, or 8 at the end of doubles
-  double unit = 1.0;          ///< a power of two: object units in a unit of `points`
-  double diagonal = 0.0;      ///< of the bounding box of `points`, in their unit
-  double median_edge = 0.0;   ///< of the edges of sound triangles, in that unit; 0 where there are none
+  std::vector<Vec3d>
+      points;             ///< distinct finite positions of triangles over `unit`: within 1, or 8 at the end of doubles
+  double unit = 1.0;      ///< a power of two: object units in a unit of `points`
+  double diagonal = 0.0;  ///< of the bounding box of `points`, in their unit
+  double median_edge = 0.0;  ///< of the three edges of each sound triangle, in that unit; 0 where there are none
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< points; kNoId of a triangle that is kNotFinite
   std::vector<std::array<std::uint32_t, 3>> vertices;   ///< of the same corners, numbered through all primitives
   std::vector<std::uint32_t> first_vertex;              ///< of each primitive, and one past the last

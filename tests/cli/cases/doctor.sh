@@ -4,7 +4,7 @@ for name in rock terrain crystal foliage city; do
   cp "$DATA/$name.glb" $name.glb
   run doctor $name.glb
 done
-# A square of two triangles, then the first of them again, then one without area.
+# A square of two triangles; then one of them again, once in either direction, one without area, and a line.
 cat >square.obj <<'OBJ'
 v 0 0 0
 v 1 0 0
@@ -19,6 +19,7 @@ cat >>broken.obj <<'OBJ'
 f 2 3 1
 f 2 1 3
 f 1 5 3
+l 1 2
 OBJ
 run doctor square.obj
 run doctor square.obj --quiet
@@ -26,7 +27,9 @@ run doctor broken.obj
 code doctor broken.obj --fail-on needles
 code doctor broken.obj --fail-on needles,degenerate-faces
 code doctor broken.obj --fail-on any
-code doctor square.obj --fail-on any
+code doctor broken.obj --fail-on medium
+code doctor broken.obj --fail-on left-out
+code doctor square.obj --fail-on any,high
 json doctor doctor broken.obj --format json --fail-on any
 json doctor doctor rock.glb --format json
 "$MESHLODE" doctor broken.obj --format json --fail-on any | tr -d ' \n' | grep -oE '"(id|failed_on)":[^,]*' | head -n 3

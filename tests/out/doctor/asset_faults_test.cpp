@@ -3,6 +3,7 @@
 #include "out/doctor/asset_faults.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "build/build.h"
 #include "build/odd_shapes.h"
 #include "judge/validate/edit.h"
+#include "scene/detect/face_faults.h"
 #include "scene/samples/samples.h"
 
 namespace meshlode::out {
@@ -96,6 +98,24 @@ TEST(AssetFaults, DroppedTrianglesEstimatesAndWhatWasLeftOut) {
   EXPECT_EQ(diagnoses[1].id, "unmeasured-errors");
   EXPECT_EQ(diagnoses[2].id, "left-out");
   EXPECT_EQ(diagnoses[2].places.at(0).where, "skin 0");
+  EXPECT_EQ(diagnoses[2].count, 1U) << "what the plan left out is no loss";
+}
+
+/// What the source says before a build is what the build then counts: the grid is the same.
+TEST(AssetFaults, CollapsesWhatTheSourceWarnsOf) {
+  scene::Primitive shape = scene::make_plane(30, 1000.0);
+  const scene::Primitive ball = scene::make_sphere(5, 0.001);
+  const auto first = static_cast<std::uint32_t>(shape.positions.size());
+  for (const Vec3d& p : ball.positions) shape.positions.push_back(p + Vec3d(0.5, 1.0, 0.5));
+  for (const std::uint32_t v : ball.indices) shape.indices.push_back(first + v);
+  const scene::SourceMesh mesh = scene::as_mesh(shape);
+  const scene::Fault warned = scene::find_finer_than_grid(scene::make_topology(mesh));
+  EXPECT_EQ(warned.count, 300U);
+  const auto asset = run::Asset::from_vector(bytes_of(scene::as_scene(mesh)));
+  ASSERT_TRUE(asset.ok());
+  const format::Grid& grid = asset->meshes()[0].grid;
+  EXPECT_EQ(warned.measure, std::ldexp(grid.mantissa, grid.log2));
+  EXPECT_EQ(warned.count, asset->meshes()[0].grid_collapsed);
 }
 
 TEST(AssetFaults, ManySmallMeshes) {

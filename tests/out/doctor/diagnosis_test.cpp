@@ -71,11 +71,23 @@ TEST(Diagnosis, FailsOnWhatWasAskedForAndFound) {
   EXPECT_TRUE(failures("d")->empty());
   EXPECT_EQ(*failures("d,b,b"), std::vector<std::string>{"b"});
   EXPECT_EQ(*failures("any"), (std::vector<std::string>{"a", "c", "b"}));
-  for (const char* wrong : {"", "e", "a,e", ",a", "a b", "A"}) {
+  EXPECT_EQ(*failures("high"), (std::vector<std::string>{"a", "c"}));
+  EXPECT_EQ(*failures("medium,b"), (std::vector<std::string>{"a", "c", "b"}));
+  for (const char* wrong : {"", "e", "a,e", ",a", "a b", "A", "low"}) {
     const auto result = failures(wrong);
     ASSERT_FALSE(result.ok()) << wrong;
     EXPECT_EQ(result.error().code, ErrorCode::kUsage);
   }
+}
+
+TEST(Diagnosis, CountsAndNamesInWords) {
+  EXPECT_EQ(counted(1, "triangles"), "1 triangle");
+  EXPECT_EQ(counted(1, "meshes"), "1 mesh");
+  EXPECT_EQ(counted(0, "meshes"), "0 meshes");
+  EXPECT_EQ(counted(1234, "edges"), "1,234 edges");
+  EXPECT_EQ(counted(1, "vertices"), "1 vertex");
+  EXPECT_EQ(mesh_words(3, "a\nb"), "mesh 3 'a?b'");
+  EXPECT_EQ(mesh_words(0, ""), "mesh 0");
 }
 
 TEST(Diagnosis, TheTextHasEachFaultWithItsPlacesAndItsRemedy) {
@@ -86,8 +98,8 @@ TEST(Diagnosis, TheTextHasEachFaultWithItsPlacesAndItsRemedy) {
   report.diagnoses[0].places[0].triangle_count = 2;
   report.diagnoses[0].places[0].costs = {{"time", 1234.0, "triangles"}, {"accuracy", 0.5, "object units"}};
   const std::string text = doctor_text(report);
-  for (const char* part : {" 1. a [high]", " 3. b [low]", "1:23 …", "remedy: a remedy",
-                           "costs time 1,234 triangles, accuracy 0.5 object units"}) {
+  for (const char* part : {" 1. a [high, 40%]: a title, 8 in all\n", " 3. b [low, 0.5%]: a title\n", "1:23 …",
+                           "remedy: a remedy", "costs time (1,234 triangles), accuracy (0.5 object units)"}) {
     EXPECT_NE(text.find(part), std::string::npos) << part << " in\n" << text;
   }
   report.diagnoses.clear();

@@ -66,6 +66,14 @@ TEST(Topology, PointsAreWhereVerticesAre) {
   EXPECT_DOUBLE_EQ(topology.median_edge * topology.unit, 1.0);
 }
 
+TEST(Topology, PassesOverVerticesWithoutATriangle) {
+  Primitive square = make_square();
+  square.positions.emplace_back(1e6, 0.0, 0.0);
+  const Topology topology = topology_of(square);
+  EXPECT_EQ(topology.points.size(), 4U);
+  EXPECT_DOUBLE_EQ(topology.diagonal * topology.unit, std::sqrt(2.0));
+}
+
 TEST(Topology, NamesTrianglesByTheirPrimitive) {
   SourceMesh mesh = as_mesh(make_square());
   mesh.primitives.emplace_back();  // without triangles
@@ -167,6 +175,41 @@ TEST(Detect, FindsGapsAlongBordersAndTheirWidth) {
   EXPECT_EQ(find_unwelded_seams(topology_of(plane)).count, 0U) << "equal positions are welded";
   for (std::size_t i = first; i < plane.positions.size(); ++i) plane.positions[i].x += 0.1;
   EXPECT_EQ(find_unwelded_seams(topology_of(plane)).count, 0U) << "a gap that can be seen is meant";
+}
+
+/// Leaf cards, and one more that nearly touches the first in one corner.
+Primitive touching_cards(std::uint32_t count) {
+  Primitive cards = make_foliage(count);
+  const Vec3d move = cards.positions[0] - cards.positions[2] + Vec3d(1e-5, 0.0, 0.0);
+  const auto first = static_cast<std::uint32_t>(cards.positions.size());
+  for (std::size_t k = 0; k < 4; ++k) cards.positions.push_back(cards.positions[k] + move);
+  for (std::size_t k = 0; k < 6; ++k) cards.indices.push_back(cards.indices[k] + first);
+  return cards;
+}
+
+TEST(Detect, AFewPointsOfManyAreNearByChance) {
+  EXPECT_EQ(find_unwelded_seams(topology_of(touching_cards(20))).count, 2U);
+  EXPECT_EQ(find_unwelded_seams(topology_of(touching_cards(200))).count, 0U);
+}
+
+TEST(Detect, DetailThatVanishesOnTheGrid) {
+  Primitive shape = make_plane(20, 1000.0);  // a grid of 1/16 or finer: 2.5e-5 of 2828 and more, a power of two
+  const auto add = [&](double radius, const Vec3d& at) {
+    const Primitive ball = make_sphere(4, radius);
+    const auto first = static_cast<std::uint32_t>(shape.positions.size());
+    for (const Vec3d& p : ball.positions) shape.positions.push_back(p + at);
+    for (const std::uint32_t v : ball.indices) shape.indices.push_back(first + v);
+  };
+  add(10.0, Vec3d(0.0, 50.0, 0.0));
+  EXPECT_EQ(find_finer_than_grid(topology_of(shape)).count, 0U) << "small beside the plane, large beside the grid";
+  add(0.001, Vec3d(0.5, 1.0, 0.5));
+  const Fault fault = find_finer_than_grid(topology_of(shape));
+  EXPECT_EQ(fault.measure, 1.0 / 16.0);
+  EXPECT_EQ(fault.count, 192U) << "all of the second ball";
+  ASSERT_FALSE(fault.triangles.empty());
+  EXPECT_EQ(fault.triangles[0].triangle, 800U + 192U);
+  EXPECT_EQ(find_finer_than_grid(topology_of(scaled(shape, 1e-150))).count, 192U) << "no unit is meant";
+  EXPECT_EQ(find_finer_than_grid(topology_of(make_slivers(200, 1e5))).count, 0U) << "needles are another fault";
 }
 
 TEST(Detect, NeedlesAreLongerThanHigh) {
