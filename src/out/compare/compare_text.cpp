@@ -17,7 +17,8 @@ std::string number_text(const std::optional<double>& number, Change::Kind kind) 
   if (kind == Change::Kind::kCount && std::abs(*number) < 0x1p53) {
     return (*number < 0.0 ? "-" : "") + grouped_digits(static_cast<std::uint64_t>(std::abs(*number)));
   }
-  if (*number >= static_cast<double>(format::kInfiniteError)) return "infinite";
+  // Figures of what was built are finite: the format writes infinity for those that nobody took.
+  if (*number >= static_cast<double>(format::kInfiniteError)) return "not measured";
   std::string text;
   append_format(text, "%.6g", *number);
   return text;

@@ -160,6 +160,17 @@ TEST(Compare, MeshesMaterialsAndSettingsThatDifferAreNamed) {
   EXPECT_NE(text.find("emissiveFactor"), std::string::npos) << text;
 }
 
+TEST(Compare, AFigureThatWasNotMeasuredIsCalledSo) {
+  AssetComparison comparison;
+  comparison.totals = {
+      {"deviation", 0.5, static_cast<double>(format::kInfiniteError), Change::Kind::kFloat},
+      {"clusters", std::nullopt, 7.0, Change::Kind::kCount},
+  };
+  const std::string text = comparison_text(comparison);
+  EXPECT_NE(text.find("0.5     not measured                -         -\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("-                7                -         -\n"), std::string::npos) << text;
+}
+
 TEST(Compare, AFailedConditionIsInTheDocument) {
   const run::Asset asset = asset_of(test::make_rock_scene(8));
   const AssetComparison comparison = compare_assets(asset, asset);
