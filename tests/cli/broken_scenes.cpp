@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "broken_scenes.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <string>
 #include <utility>
 
 #include "scene/samples/samples.h"
+#include "scene/samples/write_glb.h"
+#include "scene/samples/write_png.h"
 
 namespace meshlode::test {
 
@@ -118,9 +122,19 @@ Scene of_small_meshes() {
   return scene;
 }
 
+Scene with_coordinates(bool has_them, bool are_sampled) {
+  Primitive shape = sphere();
+  for (std::size_t i = 0; has_them && i < shape.positions.size(); ++i) {
+    shape.uvs[0].emplace_back(shape.positions[i].x, shape.positions[i].y);
+  }
+  Scene scene = scene_of(std::move(shape));
+  scene.materials[0].uv_sets_used = are_sampled ? 1 : 0;
+  return scene;
+}
+
 /// Two images, of which the material samples one.
 Scene with_unsampled_image() {
-  Scene scene = scene_of(sphere());
+  Scene scene = with_coordinates(true, true);
   scene.blobs.resize(2);
   scene.blobs[0].bytes.resize(50'000);
   scene.blobs[1].bytes.resize(50'000);
@@ -170,19 +184,9 @@ Scene with_many_materials() {
   return scene;
 }
 
-Scene with_coordinates(bool has_them, bool are_sampled) {
-  Primitive shape = sphere();
-  for (std::size_t i = 0; has_them && i < shape.positions.size(); ++i) {
-    shape.uvs[0].emplace_back(shape.positions[i].x, shape.positions[i].y);
-  }
-  Scene scene = scene_of(std::move(shape));
-  scene.materials[0].uv_sets_used = are_sampled ? 1 : 0;
-  return scene;
-}
-
 Scene with_undrawn_mesh() {
   Scene scene = sound_scene();
-  scene.meshes.push_back(scene::as_mesh(sphere()));
+  scene.meshes.push_back(scene::as_mesh(scene::with_smooth_normals(scene::make_torus(60, 40))));
   return scene;
 }
 
@@ -198,6 +202,28 @@ Scene with_no_numbers() {
 
 scene::Scene sound_scene() {
   return scene_of(sphere());
+}
+
+std::vector<std::uint8_t> as_glb(const scene::Scene& scene) {
+  scene::GlbScene glb;
+  const std::size_t images = std::max<std::size_t>(1, scene.blobs.size());
+  for (std::size_t i = 0; i < images; ++i) {
+    glb.images.push_back({"image " + std::to_string(i), scene::encode_png(scene::make_stone_texture(64))});
+  }
+  bool is_any_sampled = false;
+  for (const scene::SceneMaterial& material : scene.materials) {
+    glb.materials.emplace_back();
+    if (material.uv_sets_used != 0) glb.materials.back().base_color_image = 0;
+    is_any_sampled = is_any_sampled || material.uv_sets_used != 0;
+  }
+  if (!is_any_sampled) glb.images.clear();
+  for (const scene::SourceMesh& mesh : scene.meshes) glb.meshes.push_back({mesh.name, mesh.primitives, false});
+  for (const scene::SceneInstance& instance : scene.instances) {
+    glb.roots.push_back(static_cast<std::uint32_t>(glb.nodes.size()));
+    glb.nodes.emplace_back();
+    glb.nodes.back().mesh = instance.mesh.value;
+  }
+  return scene::write_glb(glb);
 }
 
 std::vector<BrokenScene> broken_scenes() {

@@ -3,6 +3,10 @@
 #include "meshlode/doctor_words.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <set>
 #include <string>
 #include <vector>
@@ -10,7 +14,7 @@
 #include <gtest/gtest.h>
 
 #include "broken_scenes.h"
-#include "scene/detect/fault.h"
+#include "scene/import/import.h"
 
 namespace meshlode::cli {
 namespace {
@@ -38,6 +42,22 @@ TEST(Doctor, NamesTheFaultOfABrokenSceneFirst) {
     EXPECT_FALSE(diagnoses[0].places[0].detail.empty()) << broken.id;
     EXPECT_FALSE(diagnoses[0].places[0].costs.empty()) << broken.id;
   }
+}
+
+/// What an exporter would write of it: floats, and whatever import makes of them.
+TEST(Doctor, NamesTheFaultOfABrokenFileFirst) {
+  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "meshlode-doctor-test.glb";
+  for (const test::BrokenScene& broken : test::broken_scenes()) {
+    const std::vector<std::uint8_t> bytes = test::as_glb(broken.scene);
+    std::ofstream(path, std::ios::binary).write(reinterpret_cast<const char*>(bytes.data()), std::ssize(bytes));
+    const Result<scene::Scene> scene = scene::import_scene(path, {});
+    ASSERT_TRUE(scene.ok()) << broken.id << ": " << scene.error().detail;
+    const std::vector<out::Diagnosis> diagnoses = diagnose_scene(*scene);
+    ASSERT_FALSE(diagnoses.empty()) << broken.id;
+    // Import mends normals that are no numbers, and says so.
+    EXPECT_EQ(diagnoses[0].id, broken.id == "not-finite" ? "left-out" : broken.id) << ids_of(diagnoses);
+  }
+  std::filesystem::remove(path);
 }
 
 TEST(Doctor, ThereIsABrokenSceneForEveryFault) {
