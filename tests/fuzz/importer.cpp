@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The importer on any bytes. The first byte chooses the kind of file (and --repair); a GLB comes as the length of its
-// JSON, its JSON and its binary chunk, because a fuzzer would spend its time on the three lengths of the container.
+// The importer on any bytes, and what lists the files of a scene. The first byte chooses the kind of file, --repair,
+// and whether all scenes are instanced and missing images allowed; a GLB comes as the length of its JSON, its JSON and
+// its binary chunk, because a fuzzer would spend its time on the three lengths of the container.
 #include <unistd.h>
 
 #include <cmath>
@@ -39,9 +40,14 @@ std::string assemble_glb(std::string_view input) {
 class Scratch {
  public:
   Scratch() {
-    const char* root = std::getenv("MESHLODE_FUZZ_TMP");
-    folder_ = std::filesystem::path(root != nullptr ? root : std::filesystem::temp_directory_path().string()) /
-              ("meshlode-fuzz-" + std::to_string(getpid()));
+    std::error_code none;
+    std::filesystem::path root = "/dev/shm";  // in memory: a disk would be written to for each input
+    if (const char* given = std::getenv("MESHLODE_FUZZ_TMP")) {
+      root = given;
+    } else if (!std::filesystem::is_directory(root, none)) {
+      root = std::filesystem::temp_directory_path();
+    }
+    folder_ = root / ("meshlode-fuzz-" + std::to_string(getpid()));
     std::filesystem::create_directories(folder_);
   }
   ~Scratch() {
@@ -91,15 +97,19 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size == 0) return 0;
   const std::string_view rest(reinterpret_cast<const char*>(data) + 1, size - 1);
   constexpr const char* kNames[] = {"a.glb", "a.gltf", "a.ply", "a.obj", "a.stl"};
-  const std::size_t kind = (data[0] & 0x7FU) % std::size(kNames);
+  const std::size_t kind = (data[0] & 0x3FU) % std::size(kNames);
   const auto path = scratch.write(kNames[kind], kind == 0 ? assemble_glb(rest) : std::string(rest));
   const bool repair = (data[0] & 0x80U) != 0;
-  const auto scene = meshlode::scene::import_scene(path, {.repair = repair});
+  const bool takes_all = (data[0] & 0x40U) != 0;
+  const auto scene = meshlode::scene::import_scene(
+      path, {.repair = repair, .scene = takes_all ? "all" : "", .may_lack_images = takes_all});
   if (scene) {
     require_sound(*scene, repair);
   } else {
     meshlode::fuzz::require(!scene.error().detail.empty(), "a refusal without a reason");
     meshlode::fuzz::require(!scene.error().detail.starts_with("internal error"), scene.error().detail.c_str());
   }
+  const auto references = meshlode::scene::list_references(path);
+  meshlode::fuzz::require(references || !references.error().detail.empty(), "a refusal without a reason");
   return 0;
 }

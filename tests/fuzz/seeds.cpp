@@ -12,6 +12,7 @@
 #include "format/names.h"
 #include "run/read/asset.h"
 #include "scene/import/mutant_seeds.h"
+#include "stored_seeds.h"
 #include "support/sample_asset.h"
 
 namespace {
@@ -173,5 +174,6 @@ int main(int argc, char** argv) {
     const Bytes bytes = importer_input(seed);
     if (!bytes.empty()) write(folder / "importer" / (std::to_string(index++) + "-" + seed.name), bytes);
   }
+  for (const auto& [name, bytes] : fuzz::make_stored_seeds()) write(folder / "stored" / name, bytes);
   return 0;
 }
