@@ -54,8 +54,9 @@ constexpr std::array<Words, scene::kFaultNames.size()> kWords{{
     {FaultKind::kManyMaterials, "materials of one mesh", "join materials in an atlas, or split the mesh by material"},
     {FaultKind::kSmallMeshes, "meshes of one cluster, drawn as they are at any distance",
      "merge meshes that lie together and share materials"},
-    {FaultKind::kUndrawnMeshes, "meshes that no node draws", "delete them: they are built all the same"},
-    {FaultKind::kUnsampledImages, "images that no material samples", "delete them: an asset carries them all the same"},
+    {FaultKind::kUndrawnMeshes, "meshes that no node of the scene draws", "delete them: they are built all the same"},
+    {FaultKind::kUnsampledImages, "images that no material samples",
+     "delete them, where no extension needs them: an asset carries them all the same"},
 }};
 
 const Words& words_of(FaultKind kind) {
@@ -117,15 +118,9 @@ std::string list_meshes(const scene::Fault& fault) {
   return text + (fault.count > fault.meshes.size() ? " …" : "");
 }
 
-std::uint64_t triangles_of(const scene::SourceMesh& mesh) {
-  std::uint64_t count = 0;
-  for (const scene::Primitive& primitive : mesh.primitives) count += primitive.indices.size() / 3;
-  return count;
-}
-
 std::uint64_t triangles_of(const scene::Scene& scene) {
   std::uint64_t count = 0;
-  for (const scene::SourceMesh& mesh : scene.meshes) count += triangles_of(mesh);
+  for (const scene::SourceMesh& mesh : scene.meshes) count += scene::triangles_of(mesh);
   return count;
 }
 
@@ -137,7 +132,8 @@ out::DiagnosisPlace place_of(const scene::Scene& scene, const scene::Fault& faul
     const scene::SourceMesh& mesh = scene.meshes[fault.mesh];
     place.mesh = fault.mesh;
     place.where = out::mesh_words(fault.mesh, mesh.name);
-    weight = all_triangles == 0 ? 0.0 : static_cast<double>(triangles_of(mesh)) / static_cast<double>(all_triangles);
+    weight =
+        all_triangles == 0 ? 0.0 : static_cast<double>(scene::triangles_of(mesh)) / static_cast<double>(all_triangles);
   }
   place.count = fault.count;
   place.triangle_count = fault.triangle_count;

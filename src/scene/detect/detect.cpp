@@ -17,12 +17,6 @@ namespace {
 /// What one cluster holds by default (I2).
 constexpr std::uint64_t kClusterTriangles = 128, kClusterVertices = 256;
 
-std::uint64_t triangles_of(const SourceMesh& mesh) {
-  std::uint64_t count = 0;
-  for (const Primitive& primitive : mesh.primitives) count += primitive.indices.size() / 3;
-  return count;
-}
-
 bool is_one_cluster(const SourceMesh& mesh) {
   std::uint64_t vertices = 0;
   for (const Primitive& primitive : mesh.primitives) vertices += primitive.positions.size();
@@ -126,6 +120,12 @@ void keep_found(Fault fault, std::uint32_t mesh, std::vector<Fault>& faults) {
 }
 
 }  // namespace
+
+std::uint64_t triangles_of(const SourceMesh& mesh) {
+  std::uint64_t count = 0;
+  for (const Primitive& primitive : mesh.primitives) count += primitive.indices.size() / 3;
+  return count;
+}
 
 std::vector<Fault> examine_mesh(const SourceMesh& mesh, std::span<const SceneMaterial> materials) {
   std::vector<Fault> faults;

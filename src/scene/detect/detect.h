@@ -12,6 +12,8 @@
 
 namespace meshlode::scene {
 
+[[nodiscard]] std::uint64_t triangles_of(const SourceMesh& mesh);
+
 /// Everything that is found in a mesh, in the order of FaultKind; costs by their share. Any indices and any floats:
 /// what import refuses is found here too. A mesh too large for ids of 32 bits has no faults. O(n log n).
 [[nodiscard]] std::vector<Fault> examine_mesh(const SourceMesh& mesh, std::span<const SceneMaterial> materials);
