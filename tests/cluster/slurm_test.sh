@@ -17,6 +17,7 @@ for tool in munged slurmctld slurmd sbatch squeue sinfo scancel scontrol python3
   command -v $tool >/dev/null || skip "no $tool (Debian: slurm-wlm munge)"
 done
 
+state='state at 100%a'  # no character of a folder's name means anything
 work=$(mktemp -d /tmp/meshlode-slurm.XXXXXX); chmod 755 "$work"
 daemons=()
 # The folder's processes; zombies, which the machine's init has yet to bury, have no environment.
@@ -49,7 +50,7 @@ fail() {
     echo "-- $log"
     grep -vs 'Unauthorized credential' "$work/log/$log" | tail -n 15
   done
-  tail -n 20 "$work"/cluster/state/log/* 2>/dev/null
+  tail -n 20 "$work/cluster/$state"/log/* 2>/dev/null
   exit 1
 }
 # within SECONDS COMMAND…: asks every 0.2 s until the command succeeds
@@ -174,7 +175,7 @@ for refused in "--junit j.xml" "--report=r.json" "--manifest m.json" "--shard 1/
 done
 if [ -e refused ] || ! is_over ''; then fail "something was submitted"; fi
 
-first=$("$submit" --shards 4 --sbatch --cpus-per-task=1 state in -O out "${settings[@]}" --cache cache) || fail "submit.sh"
+first=$("$submit" --shards 4 --sbatch --cpus-per-task=1 "$state" in -O out "${settings[@]}" --cache cache) || fail "submit.sh"
 echo "$first"
 array=$(id_of array "$first") merge=$(id_of merge "$first")
 within 180 test -e "$work/waiting" || fail "shard 3 does not begin"
@@ -184,34 +185,34 @@ within 60 is_over "$merge" || fail "the merge is not over: $(squeue -h 2>&1)"
 [ -e "$work/killed" ] || fail "shard 2 was not killed"
 echo "killed at: $(cat "$work/killed")"
 echo "cancelled at: $(cat "$work/waiting")"
-grep -q 'shard 2/4 was ended by signal 9; attempt 2 of 3' state/log/shard-2.txt || fail "shard 2 was not begun again"
-[ -e state/shard-2.json ] || fail "shard 2 was not completed by its second attempt"
-[ ! -e state/shard-3.json ] || fail "the cancelled shard has a manifest"
+grep -q 'shard 2/4 was ended by signal 9; attempt 2 of 3' "$state"/log/shard-2.txt || fail "shard 2 was not begun again"
+[ -e "$state"/shard-2.json ] || fail "shard 2 was not completed by its second attempt"
+[ ! -e "$state"/shard-3.json ] || fail "the cancelled shard has a manifest"
 [ "$(code_of "$merge")" = 6 ] || fail "merging without shard 3 exits with $(code_of "$merge")"
-grep -q 'shard 3 of 4 is missing' state/log/merge.txt || fail "the merge does not say what is missing"
-[ ! -e state/manifest.json ] || fail "there is a manifest without shard 3"
+grep -q 'shard 3 of 4 is missing' "$state"/log/merge.txt || fail "the merge does not say what is missing"
+[ ! -e "$state"/manifest.json ] || fail "there is a manifest without shard 3"
 [ "$(find out -name '*.lode' | wc -l)" -lt 30 ] || fail "nothing was missing"
 
-second=$("$submit" --resume state) || fail "submit.sh --resume"
+second=$("$submit" --resume "$state") || fail "submit.sh --resume"
 echo "$second"
 array=$(id_of array "$second") merge=$(id_of merge "$second")
 [ "$(scontrol -o show job "$array" | grep -o 'ArrayTaskId=[0-9,-]*' | sort -u)" = ArrayTaskId=3 ] || fail "not shard 3 alone"
 within 300 is_over "$array" || fail "the second array is not over"
 within 60 is_over "$merge" || fail "the second merge is not over"
-[ "$(code_of "$merge")" = 0 ] || fail "the second merge exits with $(code_of "$merge"): $(cat state/log/merge.txt)"
+[ "$(code_of "$merge")" = 0 ] || fail "the second merge exits with $(code_of "$merge"): $(cat "$state"/log/merge.txt)"
 
 # Seconds are the machine's, and whether an asset was built or taken from the cache depends on what was killed when.
 same() { sed -E -e 's/^(      "seconds": ).*/\1S,/' -e 's/^(      "status": ")(cached|unchanged)"/\1built"/' "$1"; }
-"$json_check" "$repository/docs/schemas/manifest.schema.json" <state/manifest.json || fail "the manifest's schema"
-diff <(same ../local/manifest.json) <(same state/manifest.json) || fail "the manifest is not that of a local batch"
+"$json_check" "$repository/docs/schemas/manifest.schema.json" <"$state"/manifest.json || fail "the manifest's schema"
+diff <(same ../local/manifest.json) <(same "$state"/manifest.json) || fail "the manifest is not that of a local batch"
 diff -r ../local/out out || fail "the assets are not those of a local batch"
-echo "taken from the cache or found unchanged: $(grep -c '"status": "\(cached\|unchanged\)"' state/manifest.json) of 30"
-[ "$(grep -c '"status": "\(cached\|unchanged\)"' state/manifest.json)" -ge 2 ] || fail "what was finished was built again"
+echo "taken from the cache or found unchanged: $(grep -c '"status": "\(cached\|unchanged\)"' "$state"/manifest.json) of 30"
+[ "$(grep -c '"status": "\(cached\|unchanged\)"' "$state"/manifest.json)" -ge 2 ] || fail "what was finished was built again"
 
 # Nothing is left to do: no array, and the merge says the same.
-third=$("$submit" --resume state) || fail "submit.sh --resume"
+third=$("$submit" --resume "$state") || fail "submit.sh --resume"
 [ -z "$(id_of array "$third")" ] || fail "complete shards are built again"
 merge=$(id_of merge "$third")
 within 60 is_over "$merge" || fail "the third merge is not over"
-diff <(same ../local/manifest.json) <(same state/manifest.json) || fail "merged again it is another manifest"
+diff <(same ../local/manifest.json) <(same "$state"/manifest.json) || fail "merged again it is another manifest"
 echo "PASSED: 30 files, 4 shards, one killed and one cancelled: as a local batch"

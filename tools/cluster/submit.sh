@@ -60,16 +60,17 @@ left=()
 for ((i = 1; i <= shards; ++i)); do
   grep -qs '^  "exit_code": 0,$' "$state/shard-$i.json" || left+=("$i")
 done
+pattern=${state//%/%%}  # to Slurm a lone % begins a pattern
 after=()
 if [ ${#left[@]} -gt 0 ]; then
   # --requeue: a shard whose node goes away is begun again elsewhere.
-  array=$(sbatch --parsable --requeue --job-name=meshlode --chdir="$folder" --output="$state/log/shard-%a.txt" \
+  array=$(sbatch --parsable --requeue --job-name=meshlode --chdir="$folder" --output="$pattern/log/shard-%a.txt" \
                  --open-mode=append --array="$(IFS=,; echo "${left[*]}")" "${options[@]}" \
                  "$here/shard.sh" "$state" "$retries")
   array=${array%%;*}
   echo "array $array"
   after=(--dependency="afterany:$array")
 fi
-merge=$(sbatch --parsable --requeue --job-name=meshlode-merge --chdir="$folder" --output="$state/log/merge.txt" \
+merge=$(sbatch --parsable --requeue --job-name=meshlode-merge --chdir="$folder" --output="$pattern/log/merge.txt" \
                --open-mode=append "${after[@]}" "$here/merge.sh" "$state")
 echo "merge ${merge%%;*}"
