@@ -90,7 +90,9 @@ std::string zsh_verb(const VerbHelp& verb) {
     if (option.is_positional) {
       const std::string name = escaped(option.names.front(), kSpecial);
       const std::string many = option.is_many ? "*" : option.is_required ? "" : ":";
-      text += " \\\n        " + shell_quoted(many + ":" + name + ":" + zsh_action(option));
+      std::string spec = many;
+      spec += ":" + name + ":" + zsh_action(option);
+      text += " \\\n        " + shell_quoted(spec);
       continue;
     }
     for (const std::string& name : option.names) {

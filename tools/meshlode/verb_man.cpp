@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // man: the manual pages, as this very program would have them.
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <utility>
@@ -41,7 +42,8 @@ int run_man(const Verb& verb, std::span<char* const> args) {
   const std::string wanted = man_page_name(page.value_or(kProgram) == kProgram ? "" : *page);
   for (const auto& [name, text] : pages) {
     if (!folder.empty()) {
-      if (const Status written = write_text(folder + "/" + name, text); !written) return print_error(written.error());
+      const std::string path = (std::filesystem::path(folder) / name).string();
+      if (const Status written = write_text(path, text); !written) return print_error(written.error());
     } else if (name == wanted) {
       return print_out(text) ? 0 : static_cast<int>(ErrorCode::kIo);
     }

@@ -130,6 +130,7 @@ MeshChange compare_mesh(const Described& before, const Described& after, const E
 
 std::vector<OneSided> one_sided(const std::vector<std::string_view>& names, const std::vector<std::size_t>& indices) {
   std::vector<OneSided> out;
+  out.reserve(indices.size());
   for (const std::size_t i : indices) out.push_back({std::string(names[i]), static_cast<std::uint32_t>(i)});
   return out;
 }
@@ -191,6 +192,7 @@ void compare_materials(const run::Asset& a, const run::Asset& b, ListChange& out
   const Matches matches = match_by_name(before, after);
   const std::vector<EntryPair> pairs = entry_pairs(before, after, matches);
   std::vector<std::pair<std::size_t, std::size_t>> sources;
+  sources.reserve(pairs.size());
   for (const EntryPair& pair : pairs) {
     sources.emplace_back(a.materials()[pair.old_index].source_index, b.materials()[pair.new_index].source_index);
   }

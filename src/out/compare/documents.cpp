@@ -30,11 +30,11 @@ std::string text_of(const Json& object, const std::string& key) {
 
 /// An object, empty where there is none.
 const Json& material_at(const Json& document, std::size_t index) {
-  static const Json kNoMaterial = Json::object();
+  static const Json no_material = Json::object();
   const auto materials = document.find("materials");
-  if (materials == document.end() || !materials->is_array() || index >= materials->size()) return kNoMaterial;
+  if (materials == document.end() || !materials->is_array() || index >= materials->size()) return no_material;
   const Json& material = (*materials)[index];
-  return material.is_object() ? material : kNoMaterial;
+  return material.is_object() ? material : no_material;
 }
 
 }  // namespace
