@@ -20,7 +20,7 @@ constexpr std::size_t kMaxPlaces = 4;  ///< of a diagnosis in the text; JSON has
 
 std::string describe_cost(const DiagnosisCost& cost) {
   std::string text = cost.kind;
-  const auto whole = static_cast<std::uint64_t>(std::max(0.0, cost.amount));
+  const auto whole = static_cast<std::uint64_t>(std::clamp(cost.amount, 0.0, 0x1p63));
   if (cost.unit == "object units") {
     append_format(text, " (%.3g object units)", cost.amount);
   } else if (cost.unit == "triangles") {

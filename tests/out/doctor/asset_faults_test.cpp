@@ -3,13 +3,16 @@
 #include "out/doctor/asset_faults.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "base/random.h"
 #include "build/build.h"
 #include "build/odd_shapes.h"
 #include "judge/validate/edit.h"
@@ -129,6 +132,38 @@ TEST(AssetFaults, ManySmallMeshes) {
   ASSERT_EQ(diagnoses.size(), 1U);
   EXPECT_EQ(diagnoses[0].id, "small-meshes");
   EXPECT_DOUBLE_EQ(diagnoses[0].share, 1.0);
+}
+
+/// Whatever a record says, as long as the asset opens.
+TEST(AssetFaultsHostile, AnyBytesInTheTables) {
+  test::AssetEdit sound(bytes_of(scene::as_scene(scene::as_mesh(scene::make_sphere(12)))));
+  SplitMix64 random(3);
+  std::uint64_t opened = 0;
+  for (int i = 0; i < 400; ++i) {
+    test::AssetEdit edit = sound;
+    constexpr std::array kTables{format::SectionId::kMeshes, format::SectionId::kGroups, format::SectionId::kInstances,
+                                 format::SectionId::kMeta, format::SectionId::kStrings};
+    const format::SectionEntry section = edit.section(kTables[random.below(kTables.size())]);
+    if (section.bytes == 0) continue;
+    const std::size_t first = section.offset + random.below(section.bytes);
+    const std::size_t end = std::min<std::size_t>(first + 1 + random.below(8), section.offset + section.bytes);
+    for (std::size_t b = first; b < end; ++b) {
+      edit.bytes()[b] = random.chance(0.5) ? 0xFF : static_cast<std::uint8_t>(random.next());
+    }
+    edit.seal();
+    const auto asset = run::Asset::from_vector(edit.bytes());
+    if (!asset) continue;
+    ++opened;
+    DoctorReport report;
+    report.diagnoses = diagnose_asset(*asset);
+    rank(report.diagnoses);
+    for (const Diagnosis& one : report.diagnoses) {
+      EXPECT_TRUE(one.share >= 0.0 && one.share <= 1.0) << one.id << " in trial " << i;
+    }
+    EXPECT_FALSE(doctor_text(report).empty());
+    EXPECT_FALSE(doctor_json(report).empty());
+  }
+  EXPECT_GT(opened, 50U);
 }
 
 }  // namespace
