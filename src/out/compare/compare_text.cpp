@@ -88,6 +88,12 @@ void add_meshes(std::string& out, const AssetComparison& comparison) {
   }
   add_more(out, shown, "meshes that differ");
   std::string rows;
+  std::size_t renamed = 0;
+  for (const MeshChange& mesh : comparison.meshes) {
+    if (mesh.mesh.old_name == mesh.mesh.new_name) continue;
+    if (renamed++ < kMaxRows) rows += "  renamed: " + pair_text(mesh.mesh) + "\n";
+  }
+  add_more(rows, renamed, "renamed");
   add_one_sided(rows, "added", comparison.meshes_added);
   add_one_sided(rows, "removed", comparison.meshes_removed);
   add_rows(out, "\nmeshes", rows);
@@ -156,7 +162,7 @@ std::string comparison_text(const AssetComparison& comparison) {
   add_meshes(body, comparison);
   add_list(body, "\nmaterials", comparison.materials);
   add_list(body, "\nimages", comparison.images);
-  out += body.empty() ? "\nno number differs, nor a setting, a material or an image\n" : body;
+  out += body.empty() ? "\nno number differs, nor a name, a setting, a material or an image\n" : body;
   if (comparison.picture) add_picture(out, *comparison.picture);
   return out;
 }

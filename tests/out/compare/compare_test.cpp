@@ -160,6 +160,15 @@ TEST(Compare, MeshesMaterialsAndSettingsThatDifferAreNamed) {
   EXPECT_NE(text.find("emissiveFactor"), std::string::npos) << text;
 }
 
+TEST(Compare, AMeshWithAnotherNameAndTheSameNumbersIsTold) {
+  scene::Scene scene = test::make_rock_scene(8);
+  const run::Asset before = asset_of(scene);
+  scene.meshes[0].name = "boulder";
+  const AssetComparison comparison = compare_assets(before, asset_of(scene));
+  EXPECT_NE(comparison_text(comparison).find("renamed: 0  boulder, formerly rock\n"), std::string::npos);
+  EXPECT_EQ(Json::parse(comparison_json(comparison)).at("meshes").at(0).at("old_name"), "rock");
+}
+
 TEST(Compare, AFigureThatWasNotMeasuredIsCalledSo) {
   AssetComparison comparison;
   comparison.totals = {
