@@ -204,7 +204,8 @@ std::string doctor_json(const DoctorReport& report) {
 
 Result<std::vector<std::string>> find_failures(std::string_view words, const std::vector<std::string>& known,
                                                const std::vector<Diagnosis>& diagnoses) {
-  std::vector<std::string> failed;
+  std::vector<std::string> failed, names = known;
+  for (const std::string_view name : {kHigh, kMedium, kAny}) names.emplace_back(name);
   const auto fail_on = [&](std::string_view word) {
     for (const Diagnosis& one : diagnoses) {
       const bool is_high = severity_of(one.share) == kHigh, is_low = severity_of(one.share) == kLow;
@@ -216,10 +217,10 @@ Result<std::vector<std::string>> find_failures(std::string_view words, const std
   do {
     const std::string_view word = words.substr(0, words.find(','));
     words.remove_prefix(std::min(words.size(), word.size() + 1));
-    const bool is_known = word == kAny || word == kHigh || word == kMedium;
-    if (!is_known && std::find(known.begin(), known.end(), word) == known.end()) {
+    if (word.empty()) return Error{ErrorCode::kUsage, "--fail-on", "give ids between commas, high, medium or any"};
+    if (std::find(names.begin(), names.end(), word) == names.end()) {
       return Error{ErrorCode::kUsage, "--fail-on",
-                   "no fault is called '" + printable(word) + "'; the nearest is " + nearest_name(word, known)};
+                   "no fault is called '" + printable(word) + "'; the nearest is " + nearest_name(word, names)};
     }
     fail_on(word);
   } while (!words.empty());

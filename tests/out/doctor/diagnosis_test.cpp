@@ -73,6 +73,7 @@ TEST(Diagnosis, FailsOnWhatWasAskedForAndFound) {
   EXPECT_EQ(*failures("any"), (std::vector<std::string>{"a", "c", "b"}));
   EXPECT_EQ(*failures("high"), (std::vector<std::string>{"a", "c"}));
   EXPECT_EQ(*failures("medium,b"), (std::vector<std::string>{"a", "c", "b"}));
+  EXPECT_NE(failures("hihg").error().detail.find("the nearest is high"), std::string::npos);
   for (const char* wrong : {"", "e", "a,e", ",a", "a b", "A", "low"}) {
     const auto result = failures(wrong);
     ASSERT_FALSE(result.ok()) << wrong;
