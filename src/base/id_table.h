@@ -6,7 +6,6 @@
 #pragma once
 
 #include <algorithm>
-#include <atomic>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -71,7 +70,10 @@ class IdTable {
       const std::size_t mask = slots_.size() - 1;
       for (std::size_t at = hash_of(id) & mask;; at = (at + 1) & mask) {
         std::uint32_t expected = kFree;
-        if (std::atomic_ref(slots_[at]).compare_exchange_strong(expected, id, std::memory_order_relaxed)) return;
+        // std::atomic_ref, which libc++ 14 lacks.
+        const bool is_mine =
+            __atomic_compare_exchange_n(&slots_[at], &expected, id, false, __ATOMIC_RELAXED, __ATOMIC_RELAXED);
+        if (is_mine) return;
       }
     });
   }

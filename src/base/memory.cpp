@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "base/memory.h"
 
-#include <malloc.h>
-#include <sys/resource.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <fstream>
 #include <sstream>
 #include <string>
 #include <vector>
+
+#include "base/system.h"
 
 namespace meshlode {
 
@@ -76,26 +74,17 @@ std::optional<std::uint64_t> available_memory(const fs::path& root) {
       add_groups(root / "sys/fs/cgroup/memory", group, kVersion1, amounts);
     }
   }
-  rlimit limit{};
-  if (root == "/" && getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY) {
-    const std::uint64_t used = resident_memory();  // of addresses more are taken: an estimate, as all of this is
-    amounts.push_back(limit.rlim_cur - std::min<std::uint64_t>(limit.rlim_cur, used));
-  }
+  if (const Amount left = root == "/" ? system::memory_left() : std::nullopt) amounts.push_back(*left);
   if (amounts.empty()) return std::nullopt;
   return *std::min_element(amounts.begin(), amounts.end());
 }
 
 void give_back_freed_memory() {
-#ifdef __GLIBC__
-  malloc_trim(0);
-#endif
+  system::give_back_freed_memory();
 }
 
 std::uint64_t resident_memory() {
-  std::ifstream in("/proc/self/statm");
-  std::uint64_t pages = 0, resident = 0;
-  if (!(in >> pages >> resident)) return 0;
-  return resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+  return system::resident_memory();
 }
 
 }  // namespace meshlode

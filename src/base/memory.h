@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How much memory this process may still take, as Linux tells: what the machine has, and what its control groups leave
-// it.
+// How much memory this process may still take: on Linux what the machine has, and what its control groups leave
+// it; elsewhere what the system says (base/system.h).
 #pragma once
 
 #include <cstdint>

@@ -1,38 +1,24 @@
 // SPDX-License-Identifier: MIT
 #include "base/output_files.h"
 
-#include <fcntl.h>
-#include <sys/file.h>
-#include <sys/stat.h>
-#include <unistd.h>
 #include <algorithm>
-#include <array>
-#include <cerrno>
-#include <cstring>
 #include <optional>
 #include <string_view>
+
+#include "base/system.h"
 
 namespace meshlode {
 
 namespace {
 
 namespace fs = std::filesystem;
+using system::FileKind;
 
 constexpr std::string_view kPrefix = ".meshlode-", kSuffix = ".tmp";
 constexpr std::size_t kDigits = 16;
 
 Error io_error(const fs::path& path, const char* what) {
-  return {ErrorCode::kIo, path.string(), std::string(what) + ": " + std::strerror(errno)};
-}
-
-std::optional<struct stat> stat_of(const fs::path& path) {
-  struct stat info {};
-  if (::stat(path.c_str(), &info) != 0) return std::nullopt;
-  return info;
-}
-
-FileId id_of(const struct stat& info) {
-  return {static_cast<std::uint64_t>(info.st_dev), static_cast<std::uint64_t>(info.st_ino)};
+  return {ErrorCode::kIo, path.string(), std::string(what) + ": " + system::last_error()};
 }
 
 fs::path folder_of(const fs::path& path) {
@@ -52,16 +38,9 @@ fs::path follow_links(fs::path path) {
 }
 
 std::string random_name() {
-  std::array<std::uint8_t, kDigits / 2> bytes{};
-  if (::getentropy(bytes.data(), bytes.size()) != 0) {
-    const auto pid = static_cast<std::uint64_t>(::getpid());  // names need only be free: the file is opened exclusively
-    std::memcpy(bytes.data(), &pid, sizeof pid);
-  }
   std::string name(kPrefix);
-  for (const std::uint8_t byte : bytes) {
-    name += "0123456789abcdef"[byte >> 4U];
-    name += "0123456789abcdef"[byte & 15U];
-  }
+  std::uint64_t number = system::random_number();
+  for (std::size_t i = 0; i < kDigits; ++i, number >>= 4U) name += "0123456789abcdef"[number & 15U];
   return name += kSuffix;
 }
 
@@ -72,65 +51,32 @@ bool is_temporary_name(std::string_view name) {
   return digits.find_first_not_of("0123456789abcdef") == std::string_view::npos;
 }
 
-/// Unlinks the temporary files in a folder that no living writer has locked. What cannot be opened or locked stays.
+/// Removes the temporary files in a folder that no living writer has locked. What cannot be opened or locked stays.
 void remove_left_behind(const fs::path& folder) {
   std::error_code error;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
-    if (!is_temporary_name(entry->path().filename().native())) continue;
-    const int file = ::open(entry->path().c_str(), O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
-    if (file < 0) continue;
-    struct stat info {};
-    // A name without links is one that its owner has just renamed or removed.
-    if (::fstat(file, &info) == 0 && S_ISREG(info.st_mode) && ::flock(file, LOCK_EX | LOCK_NB) == 0 &&
-        ::fstat(file, &info) == 0 && info.st_nlink > 0) {
-      ::unlink(entry->path().c_str());
-    }
-    ::close(file);
+    if (is_temporary_name(entry->path().filename().string())) system::remove_unlocked(entry->path());
   }
-}
-
-bool write_all(int descriptor, std::span<const std::uint8_t> bytes) {
-  while (!bytes.empty()) {
-    const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written == 0) errno = EIO;
-    if (written <= 0) return false;
-    bytes = bytes.subspan(static_cast<std::size_t>(written));
-  }
-  return true;
 }
 
 /// Devices and pipes: there is nothing to rename over.
 Status write_through(const fs::path& path, std::span<const std::uint8_t> bytes) {
-  const int descriptor = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
-  if (descriptor < 0) return io_error(path, "cannot open");
-  if (!write_all(descriptor, bytes)) {
+  const system::Handle device = system::open_device(path);
+  if (device == system::kNoHandle) return io_error(path, "cannot open");
+  if (!system::write_all(device, bytes)) {
     Error error = io_error(path, "cannot write");
-    ::close(descriptor);
+    system::close(device);
     return error;
   }
-  if (::close(descriptor) != 0) return io_error(path, "cannot close");
+  if (!system::close(device)) return io_error(path, "cannot close");
   return Ok{};
-}
-
-/// The rename itself must survive a power cut. File systems that cannot sync folders, and folders that may be written
-/// but not read, are left alone.
-Status sync_folder(const fs::path& path) {
-  const int folder = ::open(folder_of(path).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (folder < 0) return Ok{};
-  Status status = Ok{};
-  if (::fsync(folder) != 0 && errno != EINVAL && errno != ENOTSUP && errno != EROFS) {
-    status = io_error(path, "written, but its folder cannot be synced");
-  }
-  ::close(folder);
-  return status;
 }
 
 }  // namespace
 
 struct OutputFiles::Temporary {
   std::string name;
-  int descriptor = -1;
+  system::Handle handle = system::kNoHandle;
 };
 
 void OutputFiles::keep(FileId id) {
@@ -145,12 +91,12 @@ void OutputFiles::keep(std::span<const FileId> ids) {
 
 /// \pre mutex_ is held
 Status OutputFiles::check_identity(const fs::path& path) const {
-  const auto info = stat_of(path);
+  const auto info = system::find_info(path);
   if (!info) return Ok{};
-  if (read_.contains(id_of(*info))) {
+  if (read_.contains(info->id)) {
     return Error{ErrorCode::kUsage, path.string(), "the output would overwrite a file that was read"};
   }
-  if (written_.contains(id_of(*info))) {
+  if (written_.contains(info->id)) {
     return Error{ErrorCode::kUsage, path.string(), "the output would overwrite another output"};
   }
   return Ok{};
@@ -159,19 +105,17 @@ Status OutputFiles::check_identity(const fs::path& path) const {
 Status OutputFiles::claim(const fs::path& path) {
   const std::lock_guard lock(mutex_);
   if (Status status = check_identity(path); !status) return status;
-  if (const auto info = stat_of(path); info && !S_ISREG(info->st_mode)) {
-    if (S_ISDIR(info->st_mode)) return Error{ErrorCode::kIo, path.string(), "is a folder"};
-    if (::faccessat(AT_FDCWD, path.c_str(), W_OK, AT_EACCESS) != 0) return io_error(path, "cannot be written");
+  if (const auto info = system::find_info(path); info && info->kind != FileKind::kRegular) {
+    if (info->kind == FileKind::kFolder) return Error{ErrorCode::kIo, path.string(), "is a folder"};
+    if (!system::may_write(path, info->kind)) return io_error(path, "cannot be written");
     return Ok{};
   }
   const fs::path folder = folder_of(follow_links(path));
-  const auto info = stat_of(folder);
+  const auto info = system::find_info(folder);
   if (!info) return io_error(path, "cannot be written, its folder");
-  if (!S_ISDIR(info->st_mode)) return Error{ErrorCode::kIo, path.string(), "lies in a file, not in a folder"};
-  if (::faccessat(AT_FDCWD, folder.c_str(), W_OK | X_OK, AT_EACCESS) != 0) {
-    return io_error(path, "cannot be written, its folder");
-  }
-  if (swept_.insert(id_of(*info)).second) remove_left_behind(folder);
+  if (info->kind != FileKind::kFolder) return Error{ErrorCode::kIo, path.string(), "lies in a file, not in a folder"};
+  if (!system::may_write(folder, info->kind)) return io_error(path, "cannot be written, its folder");
+  if (swept_.insert(info->id).second) remove_left_behind(folder);
   return Ok{};
 }
 
@@ -183,18 +127,11 @@ Status OutputFiles::create(Temporary& file, const fs::path& path) {
     const std::lock_guard lock(mutex_);
     if (is_abandoned_) return Error{ErrorCode::kIo, path.string(), "not written: interrupted"};
     file.name = (folder / random_name()).string();
-    // Born with the mode that any other new file here would have.
-    file.descriptor = ::open(file.name.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (file.descriptor < 0 && errno == EEXIST) continue;
-    if (file.descriptor < 0) return io_error(path, "cannot create a temporary file beside it");
-    // A file system without locks is one where nobody can take this file for a dead one either.
-    ::flock(file.descriptor, LOCK_EX);
-    struct stat info {};
-    if (::fstat(file.descriptor, &info) == 0 && info.st_nlink > 0) {
-      temporaries_.push_back(file.name);
-      return Ok{};
-    }
-    ::close(file.descriptor);  // someone took it for a dead one before it was locked
+    const system::Created created = system::create_locked(file.name, file.handle);
+    if (created == system::Created::kFailed) return io_error(path, "cannot create a temporary file beside it");
+    if (created == system::Created::kNameTaken) continue;
+    temporaries_.push_back(file.name);
+    return Ok{};
   }
   return Error{ErrorCode::kIo, path.string(), "cannot create a temporary file beside it"};
 }
@@ -207,53 +144,56 @@ Status OutputFiles::put_in_place(Temporary& file, const fs::path& path, const fs
   const std::lock_guard lock(mutex_);
   if (is_abandoned_) return Error{ErrorCode::kIo, path.string(), "not written: interrupted"};
   if (Status status = check_identity(path); !status) return status;
-  struct stat info {};
-  if (::fstat(file.descriptor, &info) != 0) return io_error(path, "cannot stat its temporary file");
-  if (::rename(file.name.c_str(), target.c_str()) != 0) return io_error(path, "cannot rename into place");
+  const auto info = system::info_of(file.handle);
+  if (!info) return io_error(path, "cannot stat its temporary file");
+  if (!system::rename_over(file.name, target)) return io_error(path, "cannot rename into place");
   forget(file);
-  written_.insert(id_of(info));
+  written_.insert(info->id);
   return Ok{};
 }
 
 Status OutputFiles::write(const fs::path& path, std::span<const std::uint8_t> bytes) {
   if (Status status = claim(path); !status) return status;
-  if (const auto info = stat_of(path); info && !S_ISREG(info->st_mode)) return write_through(path, bytes);
+  const auto there = system::find_info(path);
+  if (there && there->kind != FileKind::kRegular) return write_through(path, bytes);
   const fs::path target = follow_links(path);
   Temporary file;
   if (Status status = create(file, path); !status) return status;
   Status status = Ok{};
-  if (!write_all(file.descriptor, bytes)) {
+  if (!system::write_all(file.handle, bytes)) {
     status = io_error(path, "cannot write");
-  } else if (::fsync(file.descriptor) != 0) {
+  } else if (!system::sync(file.handle)) {
     status = io_error(path, "cannot sync");
   } else {
     status = put_in_place(file, path, target);
   }
   if (!status) {
     const std::lock_guard lock(mutex_);
-    ::unlink(file.name.c_str());
+    system::remove_file(file.name);
     forget(file);
   }
-  ::close(file.descriptor);  // after the sync it has nothing to report
+  system::close(file.handle);  // after the sync it has nothing to report
   if (!status) return status;
-  return sync_folder(target);
+  // The rename itself must survive a power cut.
+  if (!system::sync_folder(folder_of(target))) return io_error(path, "written, but its folder cannot be synced");
+  return Ok{};
 }
 
 void OutputFiles::abandon() {
   const std::lock_guard lock(mutex_);
   is_abandoned_ = true;
-  for (const std::string& name : temporaries_) ::unlink(name.c_str());
+  for (const std::string& name : temporaries_) system::remove_file(name);
   temporaries_.clear();
 }
 
 bool is_same_place(const fs::path& a, const fs::path& b) {
-  const auto info_a = stat_of(a), info_b = stat_of(b);
-  if (info_a && info_b) return id_of(*info_a) == id_of(*info_b);
+  const auto info_a = system::find_info(a), info_b = system::find_info(b);
+  if (info_a && info_b) return info_a->id == info_b->id;
   if (info_a || info_b) return false;
   const fs::path end_a = follow_links(a), end_b = follow_links(b);
-  const auto folder_a = stat_of(folder_of(end_a)), folder_b = stat_of(folder_of(end_b));
+  const auto folder_a = system::find_info(folder_of(end_a)), folder_b = system::find_info(folder_of(end_b));
   if (!folder_a || !folder_b) return end_a.lexically_normal() == end_b.lexically_normal();
-  return id_of(*folder_a) == id_of(*folder_b) && end_a.filename() == end_b.filename();
+  return folder_a->id == folder_b->id && end_a.filename() == end_b.filename();
 }
 
 Status write_file_atomically(const fs::path& path, std::span<const std::uint8_t> bytes) {

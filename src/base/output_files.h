@@ -2,7 +2,7 @@
 // What a command writes: files appear whole or not at all, and never over a file that the command has read.
 //
 // A file is written under a temporary name in its own folder, `.meshlode-<16 hexadecimal digits>.tmp`, synced, renamed
-// over its final name, and the folder is synced. The writer holds a lock (flock) on the temporary file while it lives:
+// over its final name, and the folder is synced. The writer holds a lock on the temporary file while it lives:
 // a file of such a name that nobody has locked is what a killed process left, and the next command that writes into the
 // folder removes it.
 #pragma once

@@ -47,12 +47,18 @@ constexpr std::array kLibraries = {
     Library{"gmp", "gmp"},
 };
 
-/// Standard C++ headers have neither dot nor slash; these are the C and POSIX headers in use.
+/// Those of an operating system that are in use: of POSIX, of glibc, of Windows.
+bool is_of_a_system(const std::string& path) {
+  static const std::set<std::string> headers = {
+      "unistd.h", "fcntl.h", "sys/mman.h", "sys/stat.h", "sys/types.h", "sys/file.h", "sys/wait.h", "sys/resource.h",
+      "dlfcn.h",  "link.h",  "pthread.h",  "malloc.h",   "windows.h",   "ntsecapi.h", "psapi.h"};
+  return headers.contains(path);
+}
+
+/// Standard C++ headers have neither dot nor slash; these are the C headers in use.
 bool is_system(const std::string& path) {
-  static const std::set<std::string> posix = {
-      "unistd.h", "fcntl.h", "sys/mman.h", "sys/stat.h",  "sys/types.h", "sys/file.h", "sys/resource.h", "fenv.h",
-      "dlfcn.h",  "link.h",  "pthread.h",  "immintrin.h", "stdint.h",    "stddef.h",   "stdlib.h",       "malloc.h"};
-  return path.find_first_of("./") == std::string::npos || posix.contains(path);
+  static const std::set<std::string> c = {"fenv.h", "immintrin.h", "stdint.h", "stddef.h", "stdlib.h"};
+  return path.find_first_of("./") == std::string::npos || c.contains(path) || is_of_a_system(path);
 }
 
 /// Name of the library, empty for the system's and our own headers, "?" for one nobody has named here.
@@ -120,6 +126,24 @@ TEST(ThirdParty, AWrappedLibraryIsSeenByItsFolderAlone) {
     }
   }
   EXPECT_EQ(users.size(), kWrappers.size());
+}
+
+/// docs/portability.md: what an engine ships asks the system in one place.
+TEST(ThirdParty, TheRuntimeSeesTheSystemInOneFileForEach) {
+  std::set<std::string> bodies;
+  for (const SourceFile& file : read_tree({"src/base", "src/format", "src/run", "include"}, kSources)) {
+    const std::string path = file.path.generic_string();
+    for (const Include& include : file.includes()) {
+      if (!is_of_a_system(include.path)) continue;
+      EXPECT_TRUE(path.starts_with("src/base/system_")) << path << ":" << include.line << " asks the system itself";
+      bodies.insert(path);
+    }
+    if (path.starts_with("src/base/system_")) continue;
+    for (const char* name : {"_WIN32", "__linux__", "__unix__", "__APPLE__", "__GLIBC__"}) {
+      EXPECT_EQ(file.text.find(name), std::string::npos) << path << " asks which system it is on: " << name;
+    }
+  }
+  EXPECT_EQ(bodies, (std::set<std::string>{"src/base/system_posix.cpp", "src/base/system_windows.cpp"}));
 }
 
 TEST(ThirdParty, PublicHeadersShowNone) {
