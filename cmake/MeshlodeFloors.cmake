@@ -53,6 +53,7 @@ function(meshlode_add_runtime_floor name)
   set_target_properties(meshlode_${name} PROPERTIES LINKER_LANGUAGE CXX)
   target_link_libraries(meshlode_${name} PRIVATE meshlode_${name}_objects ${arg_LIBS} PUBLIC ${arg_FLOORS})
   target_include_directories(meshlode_${name} PUBLIC ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR}/include)
+  target_compile_features(meshlode_${name} PUBLIC cxx_std_20)  # for a project that has these sources inside
 endfunction()
 
 # GoogleTest's header is half of what compiling a test costs; it is compiled once. Compiler caches do not see through that,

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# install-deps.sh [--tests [--slurm]]: the Debian 12 packages that building meshlode needs; with --tests also what its tests need
-# (a second compiler for the comparison of content hashes, sample models), with --slurm a scheduler, which the test of
-# tools/cluster starts for itself; a system that starts the services of what it installs may start munge's. Nothing happens where
-# all are there.
+# install-deps.sh [--tests [--slurm] [--portability]]: the Debian 12 packages that building meshlode needs; with --tests also
+# what its tests need (a second compiler for the comparison of content hashes, sample models), with --slurm a scheduler, which
+# the test of tools/cluster starts for itself (a system that starts the services of what it installs may start munge's), with
+# --portability another standard library, and a compiler for another system. Nothing happens where all are there.
 set -euo pipefail
 
 packages=(
@@ -27,7 +27,12 @@ if [ "${1:-}" = --tests ]; then
              mesa-vulkan-drivers vulkan-validationlayers)  # a Vulkan device on any machine, and its judge
 fi
 
-[ "${2:-}" != --slurm ] || packages+=(slurm-wlm munge)
+for group in "${@:2}"; do
+  case $group in
+    --slurm) packages+=(slurm-wlm munge) ;;
+    --portability) packages+=(libc++-14-dev libc++abi-14-dev googletest g++-mingw-w64-x86-64 wine64) ;;
+  esac
+done
 
 is_installed() { [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; }
 missing=()

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# test.sh [--all | --all=GROUP]: installs what is missing (a Slurm for --all and --all=slurm alone), then
+# test.sh [--all | --all=GROUP]: installs what is missing (a Slurm for --all and --all=slurm alone, another standard library
+# and mingw-w64 for --all and --all=portability), then
 #   1. a release build and its tests (--all: the long ones too; --all=GROUP: those of them whose names have GROUP in them),
 #   2. a sanitized core, built by clang with address and undefined behaviour sanitizers: the programs that read hostile
 #      bytes and those of the rooms that do arithmetic on indices (label `sanitized`; --all: every program),
@@ -93,9 +94,11 @@ skipped() {
   ' "$logs/$1.said" "$logs/$1.log"
 }
 
-slurm=()
-[ $all = no ] && [[ $group != *slurm* ]] || slurm=(--slurm)
-tools/install-deps.sh --tests "${slurm[@]}" || exit 1
+groups=()
+for name in slurm portability; do
+  [ $all = no ] && [[ $group != *$name* ]] || groups+=(--"$name")
+done
+tools/install-deps.sh --tests "${groups[@]}" || exit 1
 part "format" check_format
 part "release build" build_release && part "release tests" test_release
 [ -z "$group" ] || part "long tests" test_group

@@ -30,7 +30,7 @@ TEST(Guarded, OurOwnMistakesAreInternalErrors) {
   const auto of_library = guarded("a.glb", []() -> Result<int> { return std::map<int, int>().at(3); });
   ASSERT_FALSE(of_library.ok());
   EXPECT_EQ(of_library.error().code, ErrorCode::kBuildFailed);
-  EXPECT_TRUE(of_library.error().detail.starts_with("internal error (map::at)")) << of_library.error().detail;
+  EXPECT_TRUE(of_library.error().detail.starts_with("internal error (map::at")) << of_library.error().detail;
   EXPECT_NE(of_library.error().detail.find("please report it"), std::string::npos);
   const auto too_long = guarded("a.glb", []() -> Status {
     std::vector<int>().reserve(static_cast<std::size_t>(-1));  // length_error, which is no bad_alloc

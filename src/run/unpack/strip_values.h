@@ -57,7 +57,7 @@ class UnfilledArray {
  public:
   /// `behind`: items that can be read but do not count.
   void resize(std::size_t size, std::size_t behind = 0) {
-    items_ = std::make_unique_for_overwrite<T[]>(size + behind);
+    items_.reset(new T[size + behind]);  // std::make_unique_for_overwrite, which libc++ 14 lacks
     size_ = size;
   }
   [[nodiscard]] T* data() { return items_.get(); }
