@@ -6,29 +6,11 @@
 
 #include <meshlode/format.h>
 
+#include "base/utf8.h"
+
 namespace meshlode {
 
 namespace {
-
-/// Bytes of the UTF-8 sequence at the start of `s`, 0 where it is not one (RFC 3629: no surrogates, no overlong forms).
-std::size_t utf8_length(std::string_view s) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(s[i]); };
-  const unsigned char b = byte(0);
-  const std::size_t n = b < 0x80                ? 1
-                        : b >= 0xC2 && b < 0xE0 ? 2
-                        : b >= 0xE0 && b < 0xF0 ? 3
-                        : b >= 0xF0 && b < 0xF5 ? 4
-                                                : 0;
-  if (n == 0 || n > s.size()) return 0;
-  for (std::size_t i = 1; i < n; ++i) {
-    if ((byte(i) & 0xC0) != 0x80) return 0;
-  }
-  if ((b == 0xE0 && byte(1) < 0xA0) || (b == 0xED && byte(1) >= 0xA0) || (b == 0xF0 && byte(1) < 0x90) ||
-      (b == 0xF4 && byte(1) >= 0x90)) {
-    return 0;
-  }
-  return n;
-}
 
 std::string quote(std::string_view text) {
   constexpr char kHex[] = "0123456789abcdef";

@@ -11,6 +11,7 @@
 #include "base/file.h"
 #include "base/guarded.h"
 #include "base/hash.h"
+#include "base/utf8.h"
 #include "scene/import/gltf/gltf_import.h"
 #include "scene/import/polygons/obj_materials.h"
 #include "scene/import/polygons/polygon_soup.h"
@@ -64,7 +65,7 @@ Result<Scene> import_polygons(Format format, const std::filesystem::path& path, 
   Scene scene;
   scene.left_out = std::move(file->left_out);
   SourceMesh mesh;
-  mesh.name = path.stem().string();
+  mesh.name = as_utf8(path.stem().string());
   mesh.drops = file->drops;
   Hasher hasher;
   hasher.update(bytes);

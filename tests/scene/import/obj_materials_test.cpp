@@ -65,6 +65,24 @@ TEST(ImportObjMaterials, ColoursTexturesAndOpacityAreTheScenes) {
   EXPECT_EQ(scene::dump_json(document->items("textures")[0]), "{\"source\":0}");
 }
 
+// As programs write them that know one language: names of an asset are UTF-8.
+TEST(ImportObjMaterials, NamesInOtherEncodingsAreReadAndShownAsFarAsTheyCan) {
+  const TempFolder folder;
+  folder.write("a.mtl", "newmtl gr\xFCn\nKd 0 1 0\nmap_Kd bl\xE4tter.png\n");
+  folder.write("bl\xE4tter.png", kPng);
+  const auto scene = scene::import_scene(folder.write("b\xE4r.obj", obj("usemtl gr\xFCn\nf 1/1 2/2 3/3\n")), {});
+  ASSERT_TRUE(scene) << describe(scene);
+  EXPECT_EQ(left_out(*scene), "");
+  EXPECT_EQ(scene->meshes[0].name, "b\xEF\xBF\xBDr");
+  EXPECT_EQ(scene->instances[0].name, "b\xEF\xBF\xBDr");
+  ASSERT_EQ(scene->materials.size(), 1U);
+  EXPECT_EQ(scene->materials[0].name, "gr\xEF\xBF\xBDn");
+  EXPECT_EQ(scene->materials[0].base_color, Vec4f(0.0F, 1.0F, 0.0F, 1.0F));
+  ASSERT_EQ(scene->blobs.size(), 1U);
+  EXPECT_EQ(scene->blobs[0].name, "bl\xEF\xBF\xBDtter.png");
+  EXPECT_TRUE(scene::parse_json(scene->document));
+}
+
 TEST(ImportObjMaterials, WhatIsMissingIsAWarningOrAnError) {
   const TempFolder folder;
   const auto path = folder.write("a.obj", obj(kRed + kGlass));

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/file.h"
+#include "base/utf8.h"
 #include "scene/import/gltf/uri.h"
 #include "scene/import/image_mime.h"
 #include "scene/import/json.h"
@@ -117,7 +118,7 @@ class ObjMaterials {
     if (!is_new) return image;
     hasher_.update(file->bytes());
     SceneBlob blob;
-    blob.name = path.filename().string();
+    blob.name = as_utf8(path.filename().string());
     blob.mime_type = std::string(sniff_image_mime(file->bytes()));
     blob.source_index = image;
     blob.bytes.assign(file->bytes().begin(), file->bytes().end());
@@ -132,7 +133,7 @@ class ObjMaterials {
 
   void add(const std::string& name, const MtlMaterial& from) {
     SceneMaterial material;
-    material.name = name;
+    material.name = as_utf8(name);
     material.source_index = static_cast<std::uint32_t>(materials_.size());
     const std::uint32_t image = from.texture.empty() ? kNoId : image_of(from.texture);
     Json factor = Json::make_array();
@@ -157,7 +158,7 @@ class ObjMaterials {
     }
     pbr.set("metallicFactor", Json::make_number(0.0));
     Json json = Json::make_object();
-    json.set("name", Json::make_string(name));
+    json.set("name", Json::make_string(material.name));
     json.set("pbrMetallicRoughness", std::move(pbr));
     if (from.opacity < 1.0) {
       material.alpha_mode = AlphaMode::kBlend;
