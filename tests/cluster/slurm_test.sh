@@ -141,6 +141,7 @@ settings=(--preset fast)
 # each once. Stopped first, so that no program is too quick for it.
 cat >"$work/meshlode" <<WRAPPER
 #!/usr/bin/env bash
+echo "\$*" >>$work/words
 case " \$* " in
   *" --shard 2/4 "*) mark=$work/killed ;;
   *" --shard 3/4 "*) mark=$work/waiting ;;
@@ -200,6 +201,9 @@ array=$(id_of array "$second") merge=$(id_of merge "$second")
 within 300 is_over "$array" || fail "the second array is not over"
 within 60 is_over "$merge" || fail "the second merge is not over"
 [ "$(code_of "$merge")" = 0 ] || fail "the second merge exits with $(code_of "$merge"): $(cat "$state"/log/merge.txt)"
+
+# A CPU each: asked for at first, Slurm's default when resumed.
+[ "$(grep -c -- ' --jobs 1 --shard ./4 ' "$work/words")" = 6 ] || fail "threads: $(cat "$work/words")"
 
 # Seconds are the machine's, and whether an asset was built or taken from the cache depends on what was killed when.
 same() { sed -E -e 's/^(      "seconds": ).*/\1S,/' -e 's/^(      "status": ")(cached|unchanged)"/\1built"/' "$1"; }

@@ -8,8 +8,9 @@ mapfile -d '' -t batch <"$state/batch"
 program=${batch[0]} folder=${batch[1]} shards=${batch[2]} arguments=("${batch[@]:3}")
 cd "$folder" || exit 2
 # As many threads as Slurm gave, where nobody asked for another number.
-if [ -n "${SLURM_CPUS_PER_TASK:-}" ] && [[ " ${arguments[*]} " != *" --jobs"[\ =]* ]]; then
-  arguments+=(--jobs "$SLURM_CPUS_PER_TASK")
+cpus=${SLURM_CPUS_PER_TASK:-${SLURM_CPUS_ON_NODE:-}}
+if [ -n "$cpus" ] && [[ " ${arguments[*]} " != *" --jobs"[\ =]* ]]; then
+  arguments+=(--jobs "$cpus")
 fi
 for ((attempt = 0; ; ++attempt)); do
   "$program" build "${arguments[@]}" --shard "$shard/$shards" --manifest "$state/shard-$shard.json"
