@@ -16,7 +16,6 @@ namespace {
 
 constexpr double kCosSmooth = 0.93969262078590843;  ///< of kSmoothDegrees
 constexpr double kCosSame = 0.99996192306417131;    ///< of half a degree: what a build takes for flat
-constexpr std::uint64_t kPointsPerWedge = 100;
 constexpr std::uint64_t kFewestIslands = 16;
 constexpr std::uint64_t kTrianglesPerIsland = 64;
 constexpr double kTrianglesPerCluster = 128.0;
@@ -187,7 +186,7 @@ Fault find_split_normals(const SourceMesh& mesh, const Topology& topology) {
     for (std::size_t i = first; more > 0 && i < end; ++i) concerned.mark(corners[i].id / 3);
     fault.count += more;
   }
-  if (fault.count == 0 || fault.count * kPointsPerWedge < topology.points.size()) {
+  if (fault.count == 0 || fault.count * kOneInAHundred < topology.points.size()) {
     return fault_of(FaultKind::kSplitNormals);
   }
   fault.measure = static_cast<double>(topology.points.size());

@@ -8,6 +8,7 @@
 #include "scene/detect/attribute_faults.h"
 #include "scene/detect/edge_faults.h"
 #include "scene/detect/face_faults.h"
+#include "scene/detect/precision_faults.h"
 #include "scene/detect/topology.h"
 
 namespace meshlode::scene {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Detect: what in a source costs accuracy, bytes or time. Each fault is one function over a mesh (face_faults.h,
-// edge_faults.h, attribute_faults.h) that whoever has a mesh may ask; these ask all of them.
+// edge_faults.h, precision_faults.h, attribute_faults.h) that whoever has a mesh may ask; these ask all of them.
 #pragma once
 
 #include <cstdint>

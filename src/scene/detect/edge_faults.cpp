@@ -16,7 +16,6 @@ namespace {
 
 constexpr double kSeamOfDiagonal = 1e-4;
 constexpr double kSeamOfEdge = 0.1;
-constexpr std::uint64_t kPointsPerLoose = 100;
 /// Below it, in units of the largest coordinate, gaps are not told from rounding, and cells could not be counted.
 constexpr double kLeastSeam = 0x1p-40;
 /// Border points of one cell that are looked at: a file can put all of them into one.
@@ -201,7 +200,7 @@ Fault find_unwelded_seams(const Topology& topology) {
     fault.measure = std::max(fault.measure, gap * topology.unit);
   }
   // Leaves and gravel come that near by chance.
-  if (fault.count * kPointsPerLoose < border.points.size()) return fault_of(FaultKind::kUnweldedSeam);
+  if (fault.count * kOneInAHundred < border.points.size()) return fault_of(FaultKind::kUnweldedSeam);
   if (fault.count == 0) return fault;
   ConcernedTriangles concerned(topology);
   for (const std::uint32_t triangle : border.triangles) {

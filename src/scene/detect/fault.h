@@ -99,6 +99,9 @@ struct FaultTriangle {
   constexpr auto operator<=>(const FaultTriangle&) const = default;
 };
 
+/// Of what most sources have a little of, one in so many and more are a fault.
+constexpr std::uint64_t kOneInAHundred = 100;
+
 constexpr std::size_t kMaxListedTriangles = 16;
 constexpr std::size_t kMaxListedMeshes = 16;
 

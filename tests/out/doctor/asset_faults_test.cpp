@@ -16,7 +16,7 @@
 #include "build/build.h"
 #include "build/odd_shapes.h"
 #include "judge/validate/edit.h"
-#include "scene/detect/face_faults.h"
+#include "scene/detect/precision_faults.h"
 #include "scene/samples/samples.h"
 
 namespace meshlode::out {
