@@ -192,7 +192,7 @@ TEST(RepackMeta, AnyOtherTextStaysAsItIs) {
         std::string(R"({"settings":{"codec":5}})"), std::string(R"({"settings":{"codec":["zstd"]}})"),
         std::string(R"({"settings":["codec","zstd"]})"), std::string(R"([{"settings":{"codec":"zstd"}}])"),
         std::string(R"({"settings":{"deeper":{"codec":"zstd"}}})"), std::string(R"({"settings":{"codec":"zstd"})"),
-        std::string("{\"settings\":{\"codec\":\"\xFF\"}}"), std::string("{}\0\"settings", 13), std::string("\"\\")}) {
+        std::string("{\"settings\":{\"codec\":\"\xFF\"}}"), std::string("{}\0\"settings", 12), std::string("\"\\")}) {
     EXPECT_EQ(meta_with_codec(text, format::Codec::kLz4), text);
   }
 }
