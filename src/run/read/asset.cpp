@@ -72,6 +72,7 @@ std::span<const std::uint8_t> Asset::stored_page(PageId page) const {
 }
 
 std::span<const std::uint8_t> Asset::section_bytes(const format::SectionEntry& entry) const {
+  if (entry.bytes == 0) return {};  // at the offset of the section behind it
   const auto decoded = decoded_.find(entry.offset);
   return decoded != decoded_.end() ? std::span<const std::uint8_t>(decoded->second)
                                    : bytes_.subspan(entry.offset, entry.bytes);

@@ -161,6 +161,30 @@ TEST(Write, TablesShrinkWhereACodecIsChosen) {
   EXPECT_GE(packed_count, 3U) << "at least clusters, nodes and the scene";
 }
 
+/// A section without bytes begins where the next one does, which may be stored by columns.
+TEST(Write, ASectionWithoutBytesIsEmptyWhateverLiesBehindIt) {
+  scene::Scene scene;  // no instance, no name
+  scene.materials.resize(test::sample_scene().materials.size());
+  for (const format::Codec codec : kCodecs) {
+    WriteInput input = patch_input(scene);
+    input.mesh_names.clear();
+    while (input.meshes.size() < 64) input.meshes.push_back(input.meshes[0]);
+    input.mesh_names.resize(input.meshes.size());
+    input.codec = codec;
+    const auto bytes = write_asset(std::move(input));
+    ASSERT_TRUE(bytes.ok()) << bytes.error().message();
+    const auto asset = run::Asset::from_vector(*bytes);
+    ASSERT_TRUE(asset.ok()) << asset.error().message();
+    EXPECT_TRUE(asset->instances().empty());
+    for (const format::SectionEntry& entry : asset->sections()) {
+      EXPECT_EQ(asset->section_bytes(entry).size(), entry.decoded_bytes);
+    }
+    const auto hash = run::hash_asset_content(*asset);
+    ASSERT_TRUE(hash.ok());
+    EXPECT_EQ(*hash, content_hash(*bytes));
+  }
+}
+
 TEST(Write, AnInstanceOfNoMeshIsRefused) {
   scene::Scene scene = one_instance_scene();
   scene.instances[0].mesh = MeshId{1U};
