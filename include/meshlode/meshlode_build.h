@@ -89,6 +89,9 @@ typedef struct meshlode_build_options {
   uint32_t error_tier; /* 0 qem, 1 measured, 2 certified, or MESHLODE_TIER_OF_PRESET */
   uint32_t preset;     /* 0 fast, 1 default, 2 best */
   uint32_t attributes; /* 0 auto, 1 none, 2 all */
+  /* Sets of attributes, bit 0 normals, bit 1 + k UV set k, bit 5 colours: stored although `attributes` would not, where
+   * the source has them, and not stored although it would. None is in both. */
+  uint32_t keep, drop;
   uint32_t codec;      /* of the pages on disk: 0 none, 1 LZ4, 2 Zstandard, 3 Draco, 4 strips */
   double grid_step, position_error, normal_error, uv_error;
   int uv_error_is_texels;

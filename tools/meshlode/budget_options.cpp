@@ -29,8 +29,9 @@ int print_broken(const std::string& where, const std::vector<out::BrokenConditio
   return exit_code;
 }
 
-Status check_asset_budget(const std::filesystem::path& path, const std::vector<out::Condition>& conditions) {
-  const Result<run::Asset> asset = run::Asset::open(path);
+Status check_asset_budget(const std::filesystem::path& path, const std::vector<out::Condition>& conditions,
+                          std::uint64_t max_decoded) {
+  const Result<run::Asset> asset = run::Asset::open(path, max_decoded);
   if (!asset) return asset.error();
   out::AssetInfo info = out::describe_asset(*asset);
   if (out::mentions(conditions, "byte_map")) {

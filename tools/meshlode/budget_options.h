@@ -2,6 +2,7 @@
 // `--fail-if CONDITIONS` (docs/compare.md): budgets over the keys of `info`, and of `compare` over its own.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -28,8 +29,8 @@ void add_budget_option(OptionParser& parser, std::optional<std::string>& conditi
 int print_broken(const std::string& where, const std::vector<out::BrokenCondition>& broken);
 
 /// The asset of this file against conditions over `info`. Errors: kCheckFailed with all conditions that hold; those of
-/// opening the file.
+/// opening the file, of which at most so many bytes are decoded.
 [[nodiscard]] Status check_asset_budget(const std::filesystem::path& path,
-                                        const std::vector<out::Condition>& conditions);
+                                        const std::vector<out::Condition>& conditions, std::uint64_t max_decoded);
 
 }  // namespace meshlode::cli

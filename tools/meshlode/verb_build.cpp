@@ -245,9 +245,8 @@ Status set_budget(BuildCommand& command) {
   auto conditions = read_budget_option(command.fail_if, out::info_schema());
   if (!conditions) return conditions.error();
   if (conditions->empty()) return Ok{};
-  command.options.check_asset = [budget = std::move(*conditions)](const fs::path& asset) {
-    return check_asset_budget(asset, budget);
-  };
+  command.options.check_asset = [budget = std::move(*conditions), max_decoded = command.options.import.max_decoded](
+                                    const fs::path& asset) { return check_asset_budget(asset, budget, max_decoded); };
   return Ok{};
 }
 

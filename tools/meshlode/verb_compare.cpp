@@ -29,6 +29,11 @@ struct CompareOptions {
   OutputOptions output;
 };
 
+bool is_camera_given(const CameraOptions& camera) {
+  const CameraOptions usual;
+  return camera.camera || camera.ortho_height || camera.size != usual.size || camera.pixel_error != usual.pixel_error;
+}
+
 /// The errors of drawing are those of an asset's pages; which of the two is said by neither.
 Error in_picture(Error error) {
   if (error.code == ErrorCode::kInvalid) error.where = "--render" + (error.where.empty() ? "" : ": " + error.where);
@@ -64,8 +69,8 @@ int run_compare(const Verb& verb, std::span<char* const> args) {
   if (out::mentions(*budget, "picture") && !options.is_rendered) {
     return print_error({ErrorCode::kUsage, "--fail-if", "picture needs --render"});
   }
-  if ((options.camera.camera || options.camera.ortho_height) && !options.is_rendered) {
-    return print_error({ErrorCode::kUsage, "--camera", "needs --render"});
+  if (!options.is_rendered && is_camera_given(options.camera)) {
+    return print_error({ErrorCode::kUsage, "", "--camera, --ortho, --size and --pixel-error need --render"});
   }
   const Result<std::uint64_t> max_decoded = parse_max_decoded(options.max_decoded);
   if (!max_decoded) return print_error(max_decoded.error());

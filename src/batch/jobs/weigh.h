@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a scene will cost to build, guessed before any of it is read: by its bytes.
+// What a scene will cost to build, guessed before any geometry is read: by its bytes.
 #pragma once
 
 #include <cstdint>

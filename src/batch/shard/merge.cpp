@@ -49,7 +49,7 @@ Status check_each(const std::vector<ShardManifest>& shards) {
   return Ok{};
 }
 
-/// Shards that nobody gave, in words: "shards 2 and 5 of 8 are missing".
+/// Shards that nobody gave, in words: "shards 2, 5 of 8 are missing".
 std::string missing_words(const std::vector<ShardManifest>& shards, std::uint32_t count) {
   constexpr std::size_t kNamed = 20;
   std::set<std::uint32_t> there;

@@ -131,6 +131,8 @@ Result<BuildOptions> read_options(const meshlode_build_options& in) {
   if (in.error_tier != MESHLODE_TIER_OF_PRESET) out.error_tier = static_cast<format::ErrorTier>(in.error_tier);
   out.preset = static_cast<Preset>(in.preset);
   out.attributes = static_cast<AttributeChoice>(in.attributes);
+  out.keep = in.keep;
+  out.drop = in.drop;
   out.codec = static_cast<format::Codec>(in.codec);  // as wide as C's, and checked there
   out.grid_step = in.grid_step;
   out.position_error = in.position_error;
@@ -220,7 +222,17 @@ void meshlode_build_defaults(meshlode_build_options* options) {
   options->error_tier = MESHLODE_TIER_OF_PRESET;
   options->preset = static_cast<uint32_t>(defaults.preset);
   options->attributes = static_cast<uint32_t>(defaults.attributes);
+  options->keep = defaults.keep;
+  options->drop = defaults.drop;
+  options->codec = static_cast<uint32_t>(defaults.codec);
+  options->grid_step = defaults.grid_step;
+  options->position_error = defaults.position_error;
   options->normal_error = defaults.normal_error;
+  options->uv_error = defaults.uv_error;
+  options->uv_error_is_texels = defaults.uv_error_unit == meshlode::UvErrorUnit::kTexels ? 1 : 0;
+  options->repair = defaults.repair ? 1 : 0;
+  options->max_memory_bytes = defaults.max_memory_bytes;
+  options->thread_count = defaults.thread_count;
 }
 
 meshlode_status meshlode_build_to_buffer(const meshlode_scene_input* scene, const meshlode_build_options* options,
