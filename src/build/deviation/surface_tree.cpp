@@ -9,6 +9,7 @@
 #include <span>
 
 #include "base/parallel.h"
+#include "base/release.h"
 #include "build/deviation/lanes.h"
 
 namespace meshlode::build {
@@ -145,7 +146,7 @@ void part_at_median(std::span<Item> items, std::size_t half) {
 
 }  // namespace
 
-void SurfaceTree::build(const Surface& surface) {
+void SurfaceTree::build(const Surface& surface, Leaves leaves) {
   surface_ = surface;
   slot_triangle_.clear();
   leaves_.clear();
@@ -161,7 +162,7 @@ void SurfaceTree::build(const Surface& surface) {
     items[i] = {{center.x, center.y, center.z}, static_cast<std::uint32_t>(i)};
   });
   // Whole levels, so that places follow from numbers: 4^depth leaves have room for all.
-  const auto leaf_count = (items.size() + kLeafSize - 1) / kLeafSize;
+  const std::size_t leaf_count = (items.size() + kLeafSize - 1) / kLeafSize;
   std::size_t depth = 1;
   while ((std::size_t{1} << (2 * depth)) < leaf_count) ++depth;
   std::size_t at = 0;
@@ -172,11 +173,14 @@ void SurfaceTree::build(const Surface& surface) {
   }
   level_start_.push_back(static_cast<std::uint32_t>(at));
   nodes_.resize(at);
-  leaves_.resize(leaf_count);
   sort_items(items);
   slot_triangle_.resize(items.size());
   for (std::size_t i = 0; i < items.size(); ++i) slot_triangle_[i] = items[i].triangle;
-  fill_leaves();
+  release(items);
+  if (leaves == Leaves::kHeld) {
+    leaves_.resize(leaf_count);
+    parallel_for_each_index(leaf_count, 1024, [&](std::size_t i) { leaves_[i] = make_leaf(i); });
+  }
   fill_nodes();
 }
 
@@ -209,28 +213,28 @@ void SurfaceTree::sort_items(std::vector<Item>& items) const {
     });
   }
   // The order of each side is nobody's choice so far: inside a leaf it is made ours.
-  parallel_for_each_index(leaves_.size(), 1024, [&](std::size_t leaf) {
+  parallel_for_each_index((items.size() + kLeafSize - 1) / kLeafSize, 1024, [&](std::size_t leaf) {
     const auto first = items.begin() + static_cast<std::ptrdiff_t>(kLeafSize * leaf);
     const auto last = items.begin() + static_cast<std::ptrdiff_t>(std::min(kLeafSize * (leaf + 1), items.size()));
     std::sort(first, last, [](const Item& a, const Item& b) { return a.triangle < b.triangle; });
   });
 }
 
-void SurfaceTree::fill_leaves() {
-  parallel_for_each_index(leaves_.size(), 1024, [&](std::size_t i) {
-    for (std::size_t k = 0; k < kLeafSize; ++k) {
-      // A leaf that is not full repeats its last triangle, which then never wins against itself.
-      const std::size_t slot = std::min(kLeafSize * i + k, slot_triangle_.size() - 1);
-      const TriangleCorners corners = corners_at(TreeSlot(slot));
-      const Vec3f a = to_frame(corners[0]);
-      const Vec3f ab((corners[1] - corners[0]) * scale_), ac((corners[2] - corners[0]) * scale_);
-      for (int axis = 0; axis < 3; ++axis) {
-        leaves_[i].a[static_cast<std::size_t>(axis)][k] = a[axis];
-        leaves_[i].ab[static_cast<std::size_t>(axis)][k] = ab[axis];
-        leaves_[i].ac[static_cast<std::size_t>(axis)][k] = ac[axis];
-      }
+SurfaceTree::Leaf SurfaceTree::make_leaf(std::size_t index) const {
+  Leaf leaf;
+  for (std::size_t k = 0; k < kLeafSize; ++k) {
+    // A leaf that is not full repeats its last triangle, which then never wins against itself.
+    const std::size_t slot = std::min(kLeafSize * index + k, slot_triangle_.size() - 1);
+    const TriangleCorners corners = corners_at(TreeSlot(slot));
+    const Vec3f a = to_frame(corners[0]);
+    const Vec3f ab((corners[1] - corners[0]) * scale_), ac((corners[2] - corners[0]) * scale_);
+    for (int axis = 0; axis < 3; ++axis) {
+      leaf.a[static_cast<std::size_t>(axis)][k] = a[axis];
+      leaf.ab[static_cast<std::size_t>(axis)][k] = ab[axis];
+      leaf.ac[static_cast<std::size_t>(axis)][k] = ac[axis];
     }
-  });
+  }
+  return leaf;
 }
 
 void SurfaceTree::fill_nodes() {
@@ -239,7 +243,7 @@ void SurfaceTree::fill_nodes() {
   for (std::size_t level = depth; level-- > 0;) {
     const std::size_t count = level_start_[level + 1] - level_start_[level];
     const std::size_t child_count =
-        level + 1 == depth ? leaves_.size() : level_start_[level + 2] - level_start_[level + 1];
+        level + 1 == depth ? leaf_count() : level_start_[level + 2] - level_start_[level + 1];
     parallel_for_each_index(count, 1024, [&](std::size_t i) {
       Node& node = nodes_[level_start_[level] + i];
       for (std::size_t k = 0; k < 4; ++k) {
@@ -247,7 +251,7 @@ void SurfaceTree::fill_nodes() {
         for (std::size_t axis = 0; axis < 3; ++axis) {
           float low = infinity, high = -infinity;  // no child: infinitely far from every point
           if (child < child_count && level + 1 == depth) {
-            const Leaf& leaf = leaves_[child];
+            const Leaf leaf = leaves_.empty() ? make_leaf(child) : leaves_[child];
             for (std::size_t j = 0; j < kLeafSize; ++j) {
               const float a = leaf.a[axis][j], b = a + leaf.ab[axis][j], c = a + leaf.ac[axis][j];
               low = std::min(low, std::min(a, std::min(b, c)));
@@ -270,7 +274,9 @@ void SurfaceTree::fill_nodes() {
 
 // Four triangles at once: over the inside the plane answers, elsewhere the nearest edge.
 SurfaceTree::Hit SurfaceTree::test_leaf(const Vec3f& point, std::uint32_t index, Hit best) const {
-  const Leaf& leaf = leaves_[index];
+  Leaf made;
+  if (leaves_.empty()) made = make_leaf(index);
+  const Leaf& leaf = leaves_.empty() ? made : leaves_[index];
   const Vec3Lanes p{lanes(point.x), lanes(point.y), lanes(point.z)};
   const Vec3Lanes ab = load3(leaf.ab), ac = load3(leaf.ac);
   const Vec3Lanes pa = p - load3(leaf.a);

@@ -29,8 +29,11 @@ class SurfaceTree {
     std::span<const std::array<std::uint32_t, 3>> triangles;
   };
 
+  /// Leaves hold 36 bytes a triangle, or are made from the surface whenever they are looked at: the same numbers.
+  enum class Leaves : std::uint8_t { kHeld, kMade };
+
   /// The spans must outlive the tree. Every index in range, every position finite.
-  void build(const Surface& surface);
+  void build(const Surface& surface, Leaves leaves = Leaves::kHeld);
 
   [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(slot_triangle_.size()); }
   [[nodiscard]] std::uint32_t triangle_at(TreeSlot slot) const { return slot_triangle_[slot.value]; }
@@ -93,7 +96,8 @@ class SurfaceTree {
 
   void set_frame();
   void sort_items(std::vector<Item>& items) const;
-  void fill_leaves();
+  [[nodiscard]] std::size_t leaf_count() const { return (slot_triangle_.size() + 3) / 4; }
+  [[nodiscard]] Leaf make_leaf(std::size_t index) const;
   void fill_nodes();
   [[nodiscard]] Hit test_leaf(const Vec3f& point, std::uint32_t leaf, Hit best) const;
 
@@ -101,7 +105,7 @@ class SurfaceTree {
   Vec3d center_{0.0};
   double scale_ = 1.0;
   std::vector<std::uint32_t> slot_triangle_;
-  std::vector<Leaf> leaves_;
+  std::vector<Leaf> leaves_;  ///< or none, where they are made
   std::vector<Node> nodes_;
   std::vector<std::uint32_t> level_start_;  ///< of nodes_, from the root; node i of a level has children 4i … 4i+3
 };

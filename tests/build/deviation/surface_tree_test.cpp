@@ -22,6 +22,28 @@ double brute_force(const judge::Surface& surface, const Vec3d& p) {
   return std::sqrt(best);
 }
 
+TEST(SurfaceTree, LeavesThatAreMadeAnswerAsThoseThatAreHeld) {
+  Random random(5);
+  for (const std::uint32_t count : {1U, 4U, 7U, 64U, 65U, 1500U}) {
+    const judge::Surface surface = test::random_soup(random, count, 1.0, 0.1);
+    SurfaceTree held, made;
+    held.build({surface.positions, surface.triangles});
+    made.build({surface.positions, surface.triangles}, SurfaceTree::Leaves::kMade);
+    ASSERT_EQ(made.size(), count);
+    TreeSlot place{0U};
+    for (int i = 0; i < 200; ++i) {
+      const Vec3f p = held.to_frame(Vec3d(random.signed_unit(), random.signed_unit(), random.signed_unit()));
+      const SurfaceTree::Hit around = held.look_around(p, place, {}), same_around = made.look_around(p, place, {});
+      EXPECT_EQ(around.slot, same_around.slot);
+      EXPECT_EQ(around.distance2, same_around.distance2) << "the same bits";
+      const SurfaceTree::Hit hit = held.find_nearest(p, around, 0.0F), same = made.find_nearest(p, same_around, 0.0F);
+      EXPECT_EQ(hit.slot, same.slot);
+      EXPECT_EQ(hit.distance2, same.distance2);
+      place = hit.slot;
+    }
+  }
+}
+
 TEST(SurfaceTree, FindsTheNearestTriangleAtEveryScale) {
   Random random(1);
   for (const double scale : {1e-6, 1.0, 1e9}) {
