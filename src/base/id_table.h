@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
-// A hash table of ids that are looked up by what they stand for: open addressing, linear probing, at most half full
-// (Knuth, The Art of Computer Programming, vol. 3, 6.4). It holds ids alone: their keys stay in the caller's arrays.
-// Nobody can walk over its slots, so that what a caller gets depends on the order of its insertions, never on the hash
-// (I10).
+// A hash table of ids that are looked up by what they stand for: open addressing, linear probing, at most two thirds
+// full (Knuth, The Art of Computer Programming, vol. 3, 6.4). It holds ids alone: their keys stay in the caller's
+// arrays. Nobody can walk over its slots, so that what a caller gets depends on the order of its insertions, never on
+// the hash (I10).
 #pragma once
 
 #include <algorithm>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -25,7 +24,7 @@ class IdTable {
  public:
   IdTable() = default;
   /// With room for `count` ids before it first grows.
-  explicit IdTable(std::size_t count) : slots_(std::bit_ceil(2 * count + 2), kFree) {}
+  explicit IdTable(std::size_t count) : slots_(slots_for(count), kFree) {}
 
   struct Entry {
     std::uint32_t id;
@@ -36,11 +35,11 @@ class IdTable {
   /// the hash of an id that is already in, and is asked where the table grows. \pre next < 2^32 - 1
   template <class IsSame, class HashOf>
   Entry find_or_insert(std::uint64_t hash, std::uint32_t next, const IsSame& is_same, const HashOf& hash_of) {
-    if (2 * (count_ + 1) > slots_.size()) grow(hash_of);
+    if (slots_for(count_ + 1) > slots_.size()) grow(hash_of);
     std::uint32_t* const slots = slots_.data();  // what is_same reads could be anything, to the compiler
-    const std::size_t mask = slots_.size() - 1;
-    std::size_t at = hash & mask;
-    for (; slots[at] != kFree; at = (at + 1) & mask) {
+    const std::size_t size = slots_.size();
+    std::size_t at = first_slot(hash, size);
+    for (; slots[at] != kFree; at = next_slot(at, size)) {
       if (const std::uint32_t id = slots[at]; is_same(id)) return {id, false};
     }
     slots[at] = next;
@@ -52,8 +51,8 @@ class IdTable {
   template <class IsSame>
   [[nodiscard]] std::uint32_t find(std::uint64_t hash, const IsSame& is_same) const {
     if (slots_.empty()) return kNone;
-    const std::size_t mask = slots_.size() - 1;
-    for (std::size_t at = hash & mask; slots_[at] != kFree; at = (at + 1) & mask) {
+    const std::size_t size = slots_.size();
+    for (std::size_t at = first_slot(hash, size); slots_[at] != kFree; at = next_slot(at, size)) {
       if (const std::uint32_t id = slots_[at]; is_same(id)) return id;
     }
     return kNone;
@@ -64,11 +63,11 @@ class IdTable {
   /// hash of an id. \pre their keys are distinct
   template <class ForEach, class HashOf>
   void fill(std::uint32_t count, const ForEach& for_each, const HashOf& hash_of) {
-    slots_.assign(std::max(slots_.size(), std::bit_ceil(2 * std::size_t{count} + 2)), kFree);
+    slots_.assign(std::max(slots_.size(), slots_for(count)), kFree);
     count_ = count;
     for_each(count, [&](std::uint32_t id) {
-      const std::size_t mask = slots_.size() - 1;
-      for (std::size_t at = hash_of(id) & mask;; at = (at + 1) & mask) {
+      const std::size_t size = slots_.size();
+      for (std::size_t at = first_slot(hash_of(id), size);; at = next_slot(at, size)) {
         std::uint32_t expected = kFree;
         // std::atomic_ref, which libc++ 14 lacks.
         const bool is_mine =
@@ -85,19 +84,28 @@ class IdTable {
  private:
   static constexpr std::uint32_t kFree = 0xFFFFFFFFU;
 
+  [[nodiscard]] static constexpr std::size_t slots_for(std::size_t count) { return count + count / 2 + 2; }
+  /// The low half of the hash as a share of all slots: any number of these will do.
+  [[nodiscard]] static constexpr std::size_t first_slot(std::uint64_t hash, std::size_t size) {
+    return static_cast<std::size_t>((hash & 0xFFFFFFFFU) * size >> 32U);
+  }
+  [[nodiscard]] static constexpr std::size_t next_slot(std::size_t at, std::size_t size) {
+    return at + 1 == size ? 0 : at + 1;
+  }
+
   template <class HashOf>
   void grow(const HashOf& hash_of) {
-    std::vector<std::uint32_t> old(std::max<std::size_t>(64, 4 * slots_.size()), kFree);
+    std::vector<std::uint32_t> old(std::max<std::size_t>(64, 3 * slots_.size()), kFree);
     old.swap(slots_);
     for (const std::uint32_t id : old) {
       if (id == kFree) continue;
-      std::size_t at = hash_of(id) & (slots_.size() - 1);
-      while (slots_[at] != kFree) at = (at + 1) & (slots_.size() - 1);
+      std::size_t at = first_slot(hash_of(id), slots_.size());
+      while (slots_[at] != kFree) at = next_slot(at, slots_.size());
       slots_[at] = id;
     }
   }
 
-  std::vector<std::uint32_t> slots_;  ///< ids, or kFree; a power of two of them
+  std::vector<std::uint32_t> slots_;  ///< ids, or kFree
   std::size_t count_ = 0;
 };
 

@@ -23,8 +23,8 @@ constexpr std::uint64_t kDocumentByte = 40;
 constexpr std::uint64_t kKeptTriangle = 30;
 constexpr std::uint64_t kTriangle = 10;
 constexpr std::uint64_t kTriangleOfCertified = 50;
-constexpr std::uint64_t kPosition = 345;
-constexpr std::uint64_t kPositionOfQuadric = 205;
+constexpr std::uint64_t kPosition = 230;
+constexpr std::uint64_t kPositionOfQuadric = 180;
 constexpr std::uint64_t kVertexFloat = 8;
 
 template <class T>

@@ -6,6 +6,7 @@
 
 #include "base/local_ids.h"
 #include "base/parallel.h"
+#include "base/release.h"
 #include "build/dag/level_pool.h"
 
 namespace meshlode::build {
@@ -32,9 +33,9 @@ struct OrderedCluster {
   }
 };
 
-/// Writes triangles and vertices of one cluster to the places that it was given.
-void write_cluster(const BuildPool& pool, const BuildCluster& source, std::size_t stride, const DagCluster& cluster,
-                   LodDag& dag) {
+/// Writes a cluster's triangles to the places that it was given, and of its vertices the wedges.
+void write_cluster(const BuildPool& pool, const BuildCluster& source, const DagCluster& cluster, LodDag& dag,
+                   std::vector<std::uint32_t>& wedge_of_vertex) {
   OrderedCluster ordered(pool, source);
   for (std::size_t i = 0; i < ordered.triangles.size(); ++i) {
     const std::uint32_t t = ordered.triangles[i];
@@ -44,16 +45,13 @@ void write_cluster(const BuildPool& pool, const BuildCluster& source, std::size_
     }
     dag.triangle_material[cluster.first_triangle + i] = pool.triangle_material[t];
   }
-  for (std::size_t v = 0; v < ordered.wedges.size(); ++v) {
-    const std::size_t wedge = ordered.wedges.numbers()[v];
-    dag.vertex_position[cluster.first_vertex + v] = pool.positions[pool.wedge_position[wedge]];
-    std::copy_n(pool.wedge_attributes.begin() + static_cast<std::ptrdiff_t>(wedge * stride), stride,
-                dag.vertex_attributes.begin() + static_cast<std::ptrdiff_t>((cluster.first_vertex + v) * stride));
-  }
+  std::copy(ordered.wedges.numbers().begin(), ordered.wedges.numbers().end(),
+            wedge_of_vertex.begin() + cluster.first_vertex);
 }
 
 /// Counts the vertices of every cluster, gives each its place, and writes them all. `sources`: of the pool, in order.
-void write_clusters(const BuildPool& pool, const std::vector<ClusterId>& sources, std::size_t stride, LodDag& dag) {
+/// What has been written is freed in the pool, so that little of it is there twice.
+void write_clusters(BuildPool& pool, const std::vector<ClusterId>& sources, std::size_t stride, LodDag& dag) {
   constexpr std::size_t kGrain = 16;
   parallel_for_each_index(sources.size(), kGrain, [&](std::size_t i) {
     const OrderedCluster ordered(pool, pool.cluster(sources[i]));
@@ -66,18 +64,30 @@ void write_clusters(const BuildPool& pool, const std::vector<ClusterId>& sources
     vertices += cluster.vertex_count;
     triangles += cluster.triangle_count;
   }
-  dag.vertex_position.resize(vertices);
-  dag.vertex_attributes.resize(std::size_t{vertices} * stride);
+  std::vector<std::uint32_t> wedge_of_vertex(vertices);
   dag.triangles.resize(triangles);
   dag.triangle_material.resize(triangles);
   parallel_for_each_index(sources.size(), kGrain, [&](std::size_t i) {
-    write_cluster(pool, pool.cluster(sources[i]), stride, dag.clusters[i], dag);
+    write_cluster(pool, pool.cluster(sources[i]), dag.clusters[i], dag, wedge_of_vertex);
   });
+  release(pool.triangles, pool.clusters, pool.groups);
+  pool.triangle_material = {};
+  dag.vertex_position.resize(vertices);
+  parallel_for_each_index(vertices, kLoopGrain, [&](std::size_t v) {
+    dag.vertex_position[v] = pool.positions[pool.wedge_position[wedge_of_vertex[v]]];
+  });
+  release(pool.positions, pool.wedge_position);
+  dag.vertex_attributes.resize(std::size_t{vertices} * stride);
+  parallel_for_each_index(vertices, kLoopGrain, [&](std::size_t v) {
+    std::copy_n(pool.wedge_attributes.begin() + static_cast<std::ptrdiff_t>(wedge_of_vertex[v] * stride), stride,
+                dag.vertex_attributes.begin() + static_cast<std::ptrdiff_t>(v * stride));
+  });
+  release(pool.wedge_attributes);
 }
 
 }  // namespace
 
-LodDag assemble_dag(const BuildPool& pool, const PreparedMesh& mesh) {
+LodDag assemble_dag(BuildPool&& pool, const PreparedMesh& mesh) {
   std::vector<std::uint32_t> order(pool.groups.size());
   std::iota(order.begin(), order.end(), 0U);
   // A group comes after everything made from it. Its level is below theirs, so that sorting by level does it; terminal

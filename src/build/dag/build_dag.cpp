@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/local_ids.h"
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "base/release.h"
 #include "build/dag/group_errors.h"
@@ -78,8 +79,10 @@ SimplifyInput group_input(const BuildPool& pool, const PreparedMesh& mesh, const
     const auto first = static_cast<std::ptrdiff_t>(cluster.first_triangle);
     const auto last = first + static_cast<std::ptrdiff_t>(cluster.triangle_count);
     input.triangles.insert(input.triangles.end(), pool.triangles.begin() + first, pool.triangles.begin() + last);
-    input.triangle_material.insert(input.triangle_material.end(), pool.triangle_material.begin() + first,
-                                   pool.triangle_material.begin() + last);
+    for (std::size_t t = cluster.first_triangle; t < std::size_t{cluster.first_triangle} + cluster.triangle_count;
+         ++t) {
+      input.triangle_material.push_back(pool.triangle_material[t]);
+    }
   }
   LocalIds wedges(input.triangles.size());
   for (WedgeTriangle& triangle : input.triangles) {
@@ -350,11 +353,15 @@ Result<BuildPool> coarsen(PreparedMesh& mesh, const DagOptions& options) {
   return pool;
 }
 
+/// Of so many triangles what was freed in small pieces, the samples of clusters above all, is worth giving back before
+/// what comes next takes memory in large ones.
+constexpr std::size_t kLargeDag = 500000;
+
 /// The pool and what measured it are gone when this returns.
 Result<LodDag> coarsened_dag(PreparedMesh& mesh, const DagOptions& options) {
-  const Result<BuildPool> pool = coarsen(mesh, options);
+  Result<BuildPool> pool = coarsen(mesh, options);
   if (!pool) return pool.error();
-  return assemble_dag(*pool, mesh);
+  return assemble_dag(std::move(*pool), mesh);
 }
 
 }  // namespace
@@ -367,6 +374,7 @@ Result<LodDag> build_dag(const PreparedMesh& mesh, const DagOptions& options) {
 Result<LodDag> build_dag_and_free(PreparedMesh& mesh, const DagOptions& options) {
   if (mesh.triangles.empty()) return LodDag{};
   Result<LodDag> dag = coarsened_dag(mesh, options);
+  if (dag && dag->triangles.size() >= kLargeDag) give_back_freed_memory();
   if (dag && options.error == ErrorSource::kMeasured) hold_to_whole_cuts(mesh, kMeasuredMargin, *dag);
   release(mesh.exact_positions, mesh.exact_triangles);
   return dag;

@@ -61,7 +61,7 @@ BuildPool::BuildPool(PreparedMesh& mesh)
       wedge_table_(2 * wedge_position.size()) {
   reserve_for_levels(witnesses, positions.size());
   reserve_for_levels(triangles, mesh.triangles.size());
-  reserve_for_levels(triangle_material, mesh.triangles.size());
+  triangle_material.expect(triangles.capacity());
   witnesses.resize(positions.size(), kNoWitnesses);
   parallel_for_each_index(positions.size(), kLoopGrain,
                           [&](std::size_t p) { witnesses[p].front() = static_cast<std::uint32_t>(p); });
@@ -126,7 +126,6 @@ std::vector<std::uint32_t> BuildPool::add_ranges(const Clustering& clustering, s
     clusters.push_back({level, own_group, start[c], start[c + 1] - start[c], {}});
   }
   triangles.resize(triangles.size() + clustering.label.size());
-  triangle_material.resize(triangles.size());
   return start;
 }
 
@@ -161,7 +160,7 @@ void BuildPool::fill_clusters(std::span<const WedgeTriangle> source, std::span<c
     WedgeTriangle& triangle = triangles[slot[t]];
     triangle = source[t];
     for (std::size_t k = 0; !wedges.empty() && k < 3; ++k) triangle[k] = wedges[triangle[k]];
-    triangle_material[slot[t]] = materials[t];
+    triangle_material.set(slot[t], materials[t]);
     if (!carried.bounds.empty()) triangle_bounds[slot[t]] = carried.bounds[t];
   });
 }
@@ -171,6 +170,7 @@ void BuildPool::add_clusters(const std::vector<WedgeTriangle>& source, const std
                              GroupId own_group) {
   const auto first_cluster = static_cast<std::uint32_t>(clusters.size());
   std::vector<std::uint32_t> start = add_ranges(clustering, level, own_group);
+  triangle_material.add(materials);
   if (!carried.bounds.empty()) triangle_bounds.resize(triangles.size());
   fill_clusters(source, {}, materials, carried, clustering, std::move(start), first_cluster);
 }
@@ -238,6 +238,7 @@ void BuildPool::add_simplified(std::span<const NewClusters> added) {
     insert_new(added[g].result, ids[g]);
     first_cluster[g] = static_cast<std::uint32_t>(clusters.size());
     start[g] = add_ranges(added[g].clustering, added[g].level, added[g].own_group);
+    triangle_material.add(added[g].result.triangle_material);
     has_bounds = has_bounds || !added[g].carried.bounds.empty();
   }
   if (has_bounds) triangle_bounds.resize(triangles.size());

@@ -13,6 +13,7 @@
 #include "base/ids.h"
 #include "build/cluster/cluster.h"
 #include "build/dag/kept_samples.h"
+#include "build/dag/triangle_materials.h"
 #include "build/deviation/deviation.h"
 #include "build/lod_dag.h"
 #include "build/prepared.h"
@@ -96,7 +97,7 @@ class BuildPool {
   std::vector<std::uint32_t> wedge_position;
   std::vector<float> wedge_attributes;
   std::vector<WedgeTriangle> triangles;
-  std::vector<std::uint32_t> triangle_material;
+  TriangleMaterials triangle_material;
   std::vector<TriangleBound> triangle_bounds;  ///< certified tier only
   std::vector<BuildCluster> clusters;
   std::vector<BuildGroup> groups;
@@ -129,7 +130,7 @@ class BuildPool {
   std::vector<std::pair<std::uint32_t, WitnessIds>> late_witnesses_;  ///< of older positions, in order
 };
 
-/// The pool as a LodDag: groups from coarse to fine, clusters by group, vertices by first use.
-[[nodiscard]] LodDag assemble_dag(const BuildPool& pool, const PreparedMesh& mesh);
+/// The pool as a LodDag: groups from coarse to fine, clusters by group, vertices by first use. Takes the pool apart.
+[[nodiscard]] LodDag assemble_dag(BuildPool&& pool, const PreparedMesh& mesh);
 
 }  // namespace meshlode::build

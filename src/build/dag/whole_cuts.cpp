@@ -290,7 +290,7 @@ class WholeCuts {
       for (std::uint32_t c = 0; c < dag_.clusters.size(); ++c) {
         if (!dag_.clusters[c].own_group.is_valid()) level0_->add(mesh_, dag_, c);
       }
-      level0_tree_.build({level0_->positions, level0_->triangles});
+      level0_tree_.build({level0_->positions, level0_->triangles}, SurfaceTree::Leaves::kMade);
     }
     const SurfaceTree::Hit hit = level0_tree_.find_nearest(level0_tree_.to_frame(point), {}, 0.0F);
     if (!hit.slot.is_valid()) return {};
