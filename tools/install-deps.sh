@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# install-deps.sh [--tests [--slurm] [--portability]]: the Debian 12 packages that building meshlode needs; with --tests also
-# what its tests need (a second compiler for the comparison of content hashes, sample models), with --slurm a scheduler, which
-# the test of tools/cluster starts for itself (a system that starts the services of what it installs may start munge's), with
-# --portability another standard library, and a compiler for another system. Nothing happens where all are there.
+# install-deps.sh [--tests [--GROUP...]]: the Debian 12 packages that building meshlode needs; with --tests also what its tests
+# need (a second compiler for the comparison of content hashes, sample models), and by group what tools/test.sh --all=GROUP
+# needs beyond that: --npm encoders' npm, --packages a bare root, --portability another standard library and a compiler for
+# another system, --slurm a scheduler, which the test of tools/cluster starts for itself (a system that starts the services of
+# what it installs may start munge's). Nothing happens where all are there.
 set -euo pipefail
 
 packages=(
@@ -22,15 +23,17 @@ if [ "${1:-}" = --tests ]; then
              python3                                       # the independent readers of the format and of glTF
              libopenmesh-dev                               # an oracle of topology, a reference simplifier
              make                                          # a stranger's project, built by what CMake takes by itself
-             file dpkg-dev debootstrap                     # Debian packages, and a bare root to install them in
              zsh fish mandoc man-db                        # readers of completion scripts and of man pages
              mesa-vulkan-drivers vulkan-validationlayers)  # a Vulkan device on any machine, and its judge
 fi
 
 for group in "${@:2}"; do
   case $group in
-    --slurm) packages+=(slurm-wlm munge) ;;
+    --npm) command -v npm >/dev/null || packages+=(nodejs npm) ;;  # which may come from elsewhere
+    --packages) packages+=(file dpkg-dev debootstrap) ;;
     --portability) packages+=(libc++-14-dev libc++abi-14-dev googletest g++-mingw-w64-x86-64 wine64) ;;
+    --slurm) packages+=(slurm-wlm munge) ;;
+    *) echo "install-deps.sh: no group $group" >&2; exit 1 ;;
   esac
 done
 

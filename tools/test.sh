@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# test.sh [--all | --all=GROUP]: installs what is missing (a Slurm for --all and --all=slurm alone, another standard library
-# and mingw-w64 for --all and --all=portability), then
+# test.sh [--all | --all=GROUP]: installs what is missing (what the groups npm, packages, portability and slurm need for
+# themselves for --all and --all=GROUP alone), then
 #   1. a release build and its tests (--all: the long ones too; --all=GROUP: those of them whose names have GROUP in them),
 #   2. a sanitized core, built by clang with address and undefined behaviour sanitizers: the programs that read hostile
 #      bytes and those of the rooms that do arithmetic on indices (label `sanitized`; --all: every program),
@@ -26,6 +26,11 @@ mkdir -p "$logs"
 rm -f "$logs"/*.log "$logs"/*.said
 export ASAN_OPTIONS=${ASAN_OPTIONS:-detect_leaks=1:allocator_may_return_null=1}
 export UBSAN_OPTIONS=${UBSAN_OPTIONS:-print_stacktrace=1:halt_on_error=1}
+
+# Thousands of small files that nobody looks at again: in memory, where there is room, tests of batches take a fifth.
+if [ -z "${TMPDIR:-}" ] && [ "$(df --output=avail /dev/shm 2>/dev/null | tail -n 1)" -ge $((4 * 1024 * 1024)) ] 2>/dev/null; then
+  export TMPDIR=/dev/shm
+fi
 
 step() { echo; echo "== $* (after ${SECONDS} s)"; }
 # part NAME COMMAND...: runs it, keeps its output, remembers a failure. 77 is a part that cannot run here, and says why.
@@ -95,7 +100,7 @@ skipped() {
 }
 
 groups=()
-for name in slurm portability; do
+for name in npm packages portability slurm; do
   [ $all = no ] && [[ $group != *$name* ]] || groups+=(--"$name")
 done
 tools/install-deps.sh --tests "${groups[@]}" || exit 1
