@@ -14,6 +14,7 @@
 #include <string>
 
 #include "base/parallel.h"
+#include "base/release.h"
 #include "build/encode/cluster_bytes.h"
 #include "build/encode/quantize_normal.h"
 #include "build/encode/uv_grid.h"
@@ -343,7 +344,12 @@ Result<EncodedMesh> encode_mesh(const PreparedMesh& mesh, const LodDag& dag, con
   auto pages = deal_pages(mesh, dag, group_words);
   if (!pages) return pages.error();
   out.pages = std::move(*pages);
-  parallel_for_each_index(out.pages.size(), 1, [&](std::size_t p) { assemble_page(group_words, plan, out.pages[p]); });
+  parallel_for_each_index(out.pages.size(), 1, [&](std::size_t p) {
+    const EncodedMesh::Page& page = out.pages[p];
+    assemble_page(group_words, plan, out.pages[p]);
+    for (std::uint32_t g = page.first_group; g < page.first_group + page.group_count; ++g)
+      release(group_words[g].clusters);
+  });
 
   out.groups.reserve(dag.groups.size());
   for (std::size_t g = 0; g < dag.groups.size(); ++g) {
