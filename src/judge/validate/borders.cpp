@@ -20,13 +20,12 @@ std::vector<std::uint32_t> members_of(const MeshSurface& surface, const GroupRec
   return members;
 }
 
-ClusterSet set_of(const MeshSurface& surface, std::span<const run::DecodedCluster> clusters,
-                  std::span<const std::uint32_t> members) {
+ClusterSet set_of(const MeshSurface& surface, std::span<const std::uint32_t> members) {
   ClusterSet set;
   set.chain = sum_chains(surface, members);
   for (const std::uint32_t c : members) {
     const std::uint32_t* position = surface.vertex_position.data() + surface.first_vertex[c];
-    for (const auto& t : clusters[surface.first_cluster + c].triangles) {
+    for (const auto& t : surface.triangles(c)) {
       set.triangles.push_back({position[t[0]], position[t[1]], position[t[2]]});
     }
   }
@@ -43,8 +42,7 @@ std::vector<std::uint32_t> groups_from_fine_to_coarse(const run::Asset& asset, c
 
 }  // namespace
 
-BorderProof prove_borders(const run::Asset& asset, const MeshSurface& surface,
-                          std::span<const run::DecodedCluster> clusters) {
+BorderProof prove_borders(const run::Asset& asset, const MeshSurface& surface) {
   BorderProof proof;
   BorderSet& border = proof.border;
   border.plus.assign(surface.edges.size(), 0);
@@ -66,8 +64,7 @@ BorderProof prove_borders(const run::Asset& asset, const MeshSurface& surface,
     const std::vector<std::uint32_t>& made = surface.made[g - surface.first_group];
     const std::vector<Exchange> exchanges = exchanges_of(sum_chains(surface, members), sum_chains(surface, made));
     if (exchanges.empty()) continue;
-    std::string reason = refuse_exchange(surface, border, exchanges, set_of(surface, clusters, members),
-                                         set_of(surface, clusters, made));
+    std::string reason = refuse_exchange(surface, border, exchanges, set_of(surface, members), set_of(surface, made));
     if (!reason.empty()) {
       proof.violations.push_back({g, std::move(reason)});
       continue;  // what a broken group adds is no border of the source
@@ -110,11 +107,11 @@ std::vector<Wedge> wedges_at(const MeshSurface& surface, std::span<const std::ui
 /// Calls visit(edge, lower vertex, higher vertex) for each use of one of `edges` (ascending) by a triangle of the
 /// clusters.
 template <class Visit>
-void for_each_use(const MeshSurface& surface, std::span<const run::DecodedCluster> clusters,
-                  std::span<const std::uint32_t> members, std::span<const std::uint32_t> edges, const Visit& visit) {
+void for_each_use(const MeshSurface& surface, std::span<const std::uint32_t> members,
+                  std::span<const std::uint32_t> edges, const Visit& visit) {
   for (const std::uint32_t c : members) {
     const std::uint32_t base = surface.first_vertex[c];
-    for (const auto& triangle : clusters[surface.first_cluster + c].triangles) {
+    for (const auto& triangle : surface.triangles(c)) {
       for (std::size_t k = 0; k < 3; ++k) {
         std::uint32_t v = base + triangle[k];
         std::uint32_t w = base + triangle[(k + 1) % 3];
@@ -132,7 +129,6 @@ void for_each_use(const MeshSurface& surface, std::span<const run::DecodedCluste
 }  // namespace
 
 std::vector<BorderViolation> check_shared_attributes(const run::Asset& asset, const MeshSurface& surface,
-                                                     std::span<const run::DecodedCluster> clusters,
                                                      const BorderSet& border) {
   std::vector<BorderViolation> out;
   std::vector<std::uint32_t> kept;
@@ -160,7 +156,7 @@ std::vector<BorderViolation> check_shared_attributes(const run::Asset& asset, co
     ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
     const std::vector<Wedge> finer = wedges_at(surface, members, ends);
     uses.clear();
-    for_each_use(surface, clusters, surface.made[k], kept, [&](std::uint32_t edge, std::uint32_t v, std::uint32_t w) {
+    for_each_use(surface, surface.made[k], kept, [&](std::uint32_t edge, std::uint32_t v, std::uint32_t w) {
       uses.push_back({edge, v, w});
     });
     std::sort(uses.begin(), uses.end());

@@ -39,15 +39,12 @@ struct BorderProof {
   std::uint64_t groups = 0;                 ///< checked
 };
 
-/// \pre `clusters` is decode_all of the asset
-[[nodiscard]] BorderProof prove_borders(const run::Asset& asset, const MeshSurface& surface,
-                                        std::span<const run::DecodedCluster> clusters);
+[[nodiscard]] BorderProof prove_borders(const run::Asset& asset, const MeshSurface& surface);
 
 /// Attributes on shared borders (I3, L506). A border edge that a group shares is drawn by its neighbours too, so what
 /// the coarser set has at its ends must be what the finer set has there. At a seam a position has several wedges, and
 /// the edge may come to use another of them. At most one violation per group, ascending.
 [[nodiscard]] std::vector<BorderViolation> check_shared_attributes(const run::Asset& asset, const MeshSurface& surface,
-                                                                   std::span<const run::DecodedCluster> clusters,
                                                                    const BorderSet& border);
 
 }  // namespace meshlode::judge

@@ -4,13 +4,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <optional>
 #include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "format/grid.h"
 #include "judge/validate/borders.h"
 #include "judge/validate/exact.h"
 #include "judge/validate/surface.h"
+#include "run/decode/decode.h"
 
 namespace meshlode::judge {
 
@@ -50,22 +54,39 @@ bool cone_holds(const format::ClusterRecord& cluster, const Int64Vec3& n) {
 
 class MeshGeometry {
  public:
-  MeshGeometry(const run::Asset& asset, std::size_t mesh, std::span<const run::DecodedCluster> clusters, RuleLog& log)
+  MeshGeometry(const run::Asset& asset, std::size_t mesh, RuleLog& log)
       : asset_(asset),
         m_(mesh),
         mesh_(asset.meshes()[mesh]),
-        clusters_(clusters),
         log_(log),
         step_(format::exp2_exact(mesh_.grid.log2) * mesh_.grid.mantissa) {}
 
-  void run() {
-    for (std::uint32_t k = 0; k < mesh_.cluster_count; ++k) check_cluster(mesh_.first_cluster + k);
+  [[nodiscard]] Status run() {
+    SurfaceBuilder builder(asset_, MeshId(static_cast<std::uint32_t>(m_)));
+    run::DecodedCluster decoded;
+    std::optional<run::PageBytes> page;
+    std::uint32_t page_id = format::kNone;
+    first_material_.assign(1, 0);
+    for (std::uint32_t c = mesh_.first_cluster; c < mesh_.first_cluster + mesh_.cluster_count; ++c) {
+      const std::uint32_t id = asset_.groups()[asset_.clusters()[c].coarser_group].page;
+      if (id != page_id) {
+        Result<run::PageBytes> loaded = run::load_page(asset_, PageId(id));
+        if (!loaded) return loaded.error();
+        page = std::move(*loaded);
+        page_id = id;
+      }
+      run::decode_cluster(asset_, *page, ClusterId(c), decoded);
+      check_cluster(c, decoded);
+      add_materials(decoded);
+      builder.add(decoded);
+    }
     check_mesh_counts();
-    const MeshSurface surface = build_surface(asset_, MeshId(static_cast<std::uint32_t>(m_)), clusters_);
-    const BorderProof proof = prove_borders(asset_, surface, clusters_);
+    const MeshSurface surface = builder.finish();
+    const BorderProof proof = prove_borders(asset_, surface);
     report(Rule::kL507, proof.violations);
     check_materials(surface);
-    report(Rule::kL506, check_shared_attributes(asset_, surface, clusters_, proof.border));
+    report(Rule::kL506, check_shared_attributes(asset_, surface, proof.border));
+    return Ok{};
   }
 
  private:
@@ -73,9 +94,15 @@ class MeshGeometry {
     for (const BorderViolation& v : violations) log_.add(rule, place("mesh", m_, "group", v.group), v.detail);
   }
 
+  void add_materials(const run::DecodedCluster& cluster) {
+    const std::set<std::uint32_t> distinct(cluster.triangle_material.begin(), cluster.triangle_material.end());
+    materials_.insert(materials_.end(), distinct.begin(), distinct.end());
+    first_material_.push_back(static_cast<std::uint32_t>(materials_.size()));
+  }
+
+  /// Of a cluster of the mesh.
   [[nodiscard]] std::set<std::uint32_t> materials_of(std::uint32_t cluster) const {
-    const auto& materials = clusters_[cluster].triangle_material;
-    return {materials.begin(), materials.end()};
+    return {materials_.begin() + first_material_[cluster], materials_.begin() + first_material_[cluster + 1]};
   }
 
   void check_materials(const MeshSurface& surface) {
@@ -83,9 +110,10 @@ class MeshGeometry {
       const format::GroupRecord& group = asset_.groups()[surface.first_group + k];
       if (surface.made[k].empty()) continue;
       std::set<std::uint32_t> finer;
-      for (std::uint32_t i = 0; i < group.cluster_count; ++i) finer.merge(materials_of(group.first_cluster + i));
+      for (std::uint32_t i = 0; i < group.cluster_count; ++i)
+        finer.merge(materials_of(group.first_cluster - surface.first_cluster + i));
       for (const std::uint32_t c : surface.made[k]) {
-        const std::set<std::uint32_t> coarser = materials_of(surface.first_cluster + c);
+        const std::set<std::uint32_t> coarser = materials_of(c);
         log_.expect(
             std::includes(finer.begin(), finer.end(), coarser.begin(), coarser.end()), Rule::kL509,
             [&] { return place("mesh", m_, "cluster", surface.first_cluster + c); },
@@ -94,9 +122,8 @@ class MeshGeometry {
     }
   }
 
-  void check_cluster(std::uint32_t c) {
+  void check_cluster(std::uint32_t c, const run::DecodedCluster& cluster) {
     const format::ClusterRecord& record = asset_.clusters()[c];
-    const run::DecodedCluster& cluster = clusters_[c];
     const auto at = [&] { return place("mesh", m_, "cluster", c); };
     const format::CullSphere sphere = format::cull_sphere(mesh_, record);
     const ExactBall ball{{sphere.center[0], sphere.center[1], sphere.center[2]}, sphere.radius};
@@ -155,9 +182,10 @@ class MeshGeometry {
   const run::Asset& asset_;
   std::size_t m_;
   const format::MeshRecord& mesh_;
-  std::span<const run::DecodedCluster> clusters_;
   RuleLog& log_;
   double step_;
+  std::vector<std::uint32_t> first_material_;  ///< per cluster of the mesh, one more at the end
+  std::vector<std::uint32_t> materials_;       ///< distinct within a cluster, ascending
   std::uint64_t collapsed_ = 0, level0_triangles_ = 0;
   Vec3i lowest_{0}, highest_{0};
   bool has_vertex_ = false;
@@ -165,11 +193,14 @@ class MeshGeometry {
 
 }  // namespace
 
-void check_geometry(const run::Asset& asset, std::span<const run::DecodedCluster> clusters, RuleLog& log) {
+Status check_geometry(const run::Asset& asset, RuleLog& log) {
   for (const Rule rule : {Rule::kL116, Rule::kL501, Rule::kL502, Rule::kL503, Rule::kL504, Rule::kL505, Rule::kL506,
                           Rule::kL507, Rule::kL508, Rule::kL509})
     log.check(rule);
-  for (std::size_t m = 0; m < asset.meshes().size(); ++m) MeshGeometry(asset, m, clusters, log).run();
+  for (std::size_t m = 0; m < asset.meshes().size(); ++m) {
+    if (Status status = MeshGeometry(asset, m, log).run(); !status) return status;
+  }
+  return Ok{};
 }
 
 }  // namespace meshlode::judge

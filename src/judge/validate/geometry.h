@@ -2,14 +2,15 @@
 // Geometry rules on decoded integers (L116, L501 … L509). Internal to the judge.
 #pragma once
 
-#include <span>
+#include <meshlode/result.h>
 
 #include "judge/validate/rules.h"
-#include "run/decode/decode.h"
+#include "run/read/asset.h"
 
 namespace meshlode::judge {
 
-/// \pre the asset's tables and pages are sound; `clusters` is decode_all of the asset
-void check_geometry(const run::Asset& asset, std::span<const run::DecodedCluster> clusters, RuleLog& log);
+/// Clusters are decoded one by one. Error: of the first page that the reader refuses. \pre the asset's tables and pages
+/// are sound
+[[nodiscard]] Status check_geometry(const run::Asset& asset, RuleLog& log);
 
 }  // namespace meshlode::judge

@@ -4,56 +4,27 @@
 #include <algorithm>
 #include <compare>
 #include <string>
+#include <utility>
 
 #include "base/hash.h"
 #include "base/parallel.h"
+#include "base/release.h"
 
 namespace meshlode::judge {
 
 namespace {
-
-struct PositionKey {
-  std::int32_t x, y, z;
-  std::uint32_t vertex;
-  auto operator<=>(const PositionKey&) const = default;
-};
 
 struct KeyUse {
   std::uint64_t key;
   std::int32_t net;
 };
 
-void name_positions(std::span<const run::DecodedCluster> clusters, MeshSurface& out) {
-  out.first_vertex.assign(1, 0);
-  for (const run::DecodedCluster& cluster : clusters)
-    out.first_vertex.push_back(out.first_vertex.back() + cluster.vertex_count);
-  std::vector<PositionKey> keys(out.first_vertex.back());
-  out.vertex_position.resize(keys.size());
-  out.vertex_attributes.resize(keys.size());
-  parallel_for_each_index(clusters.size(), 16, [&](std::size_t c) {
-    const run::DecodedCluster& cluster = clusters[c];
-    for (std::uint32_t v = 0; v < cluster.vertex_count; ++v) {
-      const std::uint32_t vertex = out.first_vertex[c] + v;
-      const Vec3i p = cluster.position(v);
-      keys[vertex] = {p.x, p.y, p.z, vertex};
-      const std::int32_t* channels = &cluster.channels[std::size_t{v} * cluster.channel_count];
-      const std::span attributes(channels + 3, cluster.channel_count - 3);
-      out.vertex_attributes[vertex] =
-          hash64({reinterpret_cast<const std::uint8_t*>(attributes.data()), attributes.size_bytes()});
-    }
-  });
-  std::sort(keys.begin(), keys.end());
-  for (const PositionKey& key : keys) {
-    const Vec3i p{key.x, key.y, key.z};
-    if (out.positions.empty() || out.positions.back() != p) out.positions.push_back(p);
-    out.vertex_position[key.vertex] = static_cast<std::uint32_t>(out.positions.size() - 1);
-  }
-}
-
-std::vector<KeyUse> cluster_chain(const run::DecodedCluster& cluster, std::span<const std::uint32_t> positions) {
+/// `positions`: of the cluster's vertices.
+std::vector<KeyUse> cluster_chain(std::span<const std::array<std::uint8_t, 3>> triangles,
+                                  std::span<const std::uint32_t> positions) {
   std::vector<KeyUse> uses;
-  uses.reserve(cluster.triangles.size() * 3);
-  for (const auto& triangle : cluster.triangles) {
+  uses.reserve(triangles.size() * 3);
+  for (const auto& triangle : triangles) {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint64_t a = positions[triangle[k]];
       const std::uint64_t b = positions[triangle[(k + 1) % 3]];
@@ -68,54 +39,107 @@ std::vector<KeyUse> cluster_chain(const run::DecodedCluster& cluster, std::span<
     while (i < uses.size() && uses[i].key == sum.key) sum.net += uses[i++].net;
     if (sum.net != 0) uses[kept++] = sum;
   }
-  return {uses.begin(), uses.begin() + static_cast<std::ptrdiff_t>(kept)};  // a sixth of the room, all chains stay
+  uses.resize(kept);
+  return uses;
 }
 
 }  // namespace
 
-MeshSurface build_surface(const run::Asset& asset, MeshId mesh, std::span<const run::DecodedCluster> all_clusters) {
+SurfaceBuilder::SurfaceBuilder(const run::Asset& asset, MeshId mesh) : asset_(asset) {
   const format::MeshRecord& record = asset.meshes()[mesh.value];
-  MeshSurface out;
-  out.mesh = mesh;
-  out.first_cluster = record.first_cluster;
-  out.cluster_count = record.cluster_count;
-  out.first_group = record.first_group;
-  out.group_count = record.group_count;
-  const auto clusters = all_clusters.subspan(record.first_cluster, record.cluster_count);
-  name_positions(clusters, out);
-
-  std::vector<std::vector<KeyUse>> chains(clusters.size());
-  parallel_for_each_index(clusters.size(), 16, [&](std::size_t c) {
-    chains[c] = cluster_chain(clusters[c], std::span(out.vertex_position).subspan(out.first_vertex[c]));
-  });
-  std::vector<std::uint64_t> keys;
-  for (const auto& chain : chains) {
-    for (const KeyUse& use : chain) keys.push_back(use.key);
+  surface_.mesh = mesh;
+  surface_.first_cluster = record.first_cluster;
+  surface_.cluster_count = record.cluster_count;
+  surface_.first_group = record.first_group;
+  surface_.group_count = record.group_count;
+  surface_.first_vertex.assign(1, 0);
+  surface_.first_triangle.assign(1, 0);
+  std::size_t vertices = 0, triangles = 0;
+  for (const format::ClusterRecord& cluster : asset.clusters().subspan(record.first_cluster, record.cluster_count)) {
+    vertices += std::size_t{cluster.vertices_less_1} + 1;
+    triangles += std::size_t{cluster.triangles_less_1} + 1;
   }
+  keys_.reserve(vertices);
+  surface_.vertex_attributes.reserve(vertices);
+  surface_.triangle_vertices.reserve(triangles);
+}
+
+void SurfaceBuilder::add(const run::DecodedCluster& cluster) {
+  for (std::uint32_t v = 0; v < cluster.vertex_count; ++v) {
+    const Vec3i p = cluster.position(v);
+    keys_.push_back({p.x, p.y, p.z, static_cast<std::uint32_t>(keys_.size())});
+    const std::int32_t* channels = &cluster.channels[std::size_t{v} * cluster.channel_count];
+    const std::span attributes(channels + 3, cluster.channel_count - 3);
+    surface_.vertex_attributes.push_back(
+        hash64({reinterpret_cast<const std::uint8_t*>(attributes.data()), attributes.size_bytes()}));
+  }
+  surface_.triangle_vertices.insert(surface_.triangle_vertices.end(), cluster.triangles.begin(),
+                                    cluster.triangles.end());
+  surface_.first_vertex.push_back(static_cast<std::uint32_t>(keys_.size()));
+  surface_.first_triangle.push_back(static_cast<std::uint32_t>(surface_.triangle_vertices.size()));
+}
+
+void SurfaceBuilder::name_positions() {
+  std::sort(keys_.begin(), keys_.end());
+  surface_.vertex_position.resize(keys_.size());
+  for (const PositionKey& key : keys_) {
+    const Vec3i p{key.x, key.y, key.z};
+    if (surface_.positions.empty() || surface_.positions.back() != p) surface_.positions.push_back(p);
+    surface_.vertex_position[key.vertex] = static_cast<std::uint32_t>(surface_.positions.size() - 1);
+  }
+  release(keys_);
+}
+
+void SurfaceBuilder::add_chains() {
+  constexpr std::size_t kAtOnce = 4096;  // clusters
+  MeshSurface& out = surface_;
+  std::vector<KeyUse> uses;
+  out.first_use.assign(1, 0);
+  for (std::size_t first = 0; first < out.cluster_count; first += kAtOnce) {
+    std::vector<std::vector<KeyUse>> chains(std::min<std::size_t>(kAtOnce, out.cluster_count - first));
+    parallel_for_each_index(chains.size(), 16, [&](std::size_t i) {
+      const std::size_t c = first + i;
+      chains[i] = cluster_chain(out.triangles(static_cast<std::uint32_t>(c)),
+                                std::span(out.vertex_position).subspan(out.first_vertex[c]));
+    });
+    for (const std::vector<KeyUse>& chain : chains) {
+      uses.insert(uses.end(), chain.begin(), chain.end());
+      out.first_use.push_back(static_cast<std::uint32_t>(uses.size()));
+    }
+  }
+  std::vector<std::uint64_t> keys(uses.size());
+  for (std::size_t i = 0; i < uses.size(); ++i) keys[i] = uses[i].key;
   std::sort(keys.begin(), keys.end());
   keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
   out.edges.reserve(keys.size());
   for (const std::uint64_t key : keys) {
     out.edges.push_back({static_cast<std::uint32_t>(key >> 32), static_cast<std::uint32_t>(key & 0xFFFFFFFFU)});
   }
-  out.first_use.assign(1, 0);
-  for (const auto& chain : chains)
-    out.first_use.push_back(out.first_use.back() + static_cast<std::uint32_t>(chain.size()));
-  out.uses.resize(out.first_use.back());
-  parallel_for_each_index(clusters.size(), 64, [&](std::size_t c) {
-    std::size_t slot = out.first_use[c];
-    for (const KeyUse& use : chains[c]) {
-      const auto found = std::lower_bound(keys.begin(), keys.end(), use.key);
-      out.uses[slot++] = {static_cast<std::uint32_t>(found - keys.begin()), use.net};
-    }
+  out.uses.resize(uses.size());
+  parallel_for_each_index(uses.size(), kLoopGrain, [&](std::size_t i) {
+    const auto found = std::lower_bound(keys.begin(), keys.end(), uses[i].key);
+    out.uses[i] = {static_cast<std::uint32_t>(found - keys.begin()), uses[i].net};
   });
+}
 
-  out.made.resize(record.group_count);
-  for (std::uint32_t c = 0; c < record.cluster_count; ++c) {
-    const std::uint32_t own = asset.clusters()[record.first_cluster + c].own_group;
-    if (own != format::kNone) out.made[own - record.first_group].push_back(c);
+MeshSurface SurfaceBuilder::finish() {
+  name_positions();
+  add_chains();
+  surface_.made.resize(surface_.group_count);
+  for (std::uint32_t c = 0; c < surface_.cluster_count; ++c) {
+    const std::uint32_t own = asset_.clusters()[surface_.first_cluster + c].own_group;
+    if (own != format::kNone) surface_.made[own - surface_.first_group].push_back(c);
   }
-  return out;
+  return std::move(surface_);
+}
+
+MeshSurface build_surface(const run::Asset& asset, MeshId mesh, std::span<const run::DecodedCluster> clusters) {
+  const format::MeshRecord& record = asset.meshes()[mesh.value];
+  SurfaceBuilder builder(asset, mesh);
+  for (const run::DecodedCluster& cluster : clusters.subspan(record.first_cluster, record.cluster_count)) {
+    builder.add(cluster);
+  }
+  return builder.finish();
 }
 
 std::vector<EdgeUse> sum_chains(const MeshSurface& surface, std::span<const std::uint32_t> clusters) {

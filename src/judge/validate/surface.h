@@ -30,18 +30,47 @@ struct MeshSurface {
   MeshId mesh;
   std::uint32_t first_cluster = 0, cluster_count = 0;
   std::uint32_t first_group = 0, group_count = 0;
-  std::vector<Vec3i> positions;                     ///< distinct, ascending
-  std::vector<std::uint32_t> first_vertex;          ///< per cluster of the mesh, one more at the end
-  std::vector<std::uint32_t> vertex_position;       ///< into positions
-  std::vector<std::uint64_t> vertex_attributes;     ///< hash of the channels after the position
-  std::vector<std::array<std::uint32_t, 2>> edges;  ///< positions, ascending; those of some cluster's chain
-  std::vector<std::uint32_t> first_use;             ///< per cluster of the mesh, one more at the end
-  std::vector<EdgeUse> uses;                        ///< ascending by edge within a cluster
-  std::vector<std::vector<std::uint32_t>> made;     ///< per group of the mesh: clusters (of the mesh) made from it
+  std::vector<Vec3i> positions;                                ///< distinct, ascending
+  std::vector<std::uint32_t> first_vertex;                     ///< per cluster of the mesh, one more at the end
+  std::vector<std::uint32_t> vertex_position;                  ///< into positions
+  std::vector<std::uint64_t> vertex_attributes;                ///< hash of the channels after the position
+  std::vector<std::uint32_t> first_triangle;                   ///< per cluster of the mesh, one more at the end
+  std::vector<std::array<std::uint8_t, 3>> triangle_vertices;  ///< local to the cluster
+  std::vector<std::array<std::uint32_t, 2>> edges;             ///< positions, ascending; those of some cluster's chain
+  std::vector<std::uint32_t> first_use;                        ///< per cluster of the mesh, one more at the end
+  std::vector<EdgeUse> uses;                                   ///< ascending by edge within a cluster
+  std::vector<std::vector<std::uint32_t>> made;  ///< per group of the mesh: clusters (of the mesh) made from it
 
   [[nodiscard]] std::span<const EdgeUse> chain(std::uint32_t cluster) const {
     return std::span(uses).subspan(first_use[cluster], first_use[cluster + 1] - first_use[cluster]);
   }
+  [[nodiscard]] std::span<const std::array<std::uint8_t, 3>> triangles(std::uint32_t cluster) const {
+    return std::span(triangle_vertices)
+        .subspan(first_triangle[cluster], first_triangle[cluster + 1] - first_triangle[cluster]);
+  }
+};
+
+/// The surface of a mesh from its clusters, one after the other, so that they need not all be decoded at once.
+class SurfaceBuilder {
+ public:
+  /// \pre every id of the mesh's tables is in range
+  SurfaceBuilder(const run::Asset& asset, MeshId mesh);
+  /// Each cluster of the mesh, in order.
+  void add(const run::DecodedCluster& cluster);
+  [[nodiscard]] MeshSurface finish();
+
+ private:
+  struct PositionKey {
+    std::int32_t x, y, z;
+    std::uint32_t vertex;
+    auto operator<=>(const PositionKey&) const = default;
+  };
+  void name_positions();
+  void add_chains();
+
+  const run::Asset& asset_;
+  MeshSurface surface_;
+  std::vector<PositionKey> keys_;  ///< of all vertices
 };
 
 /// \pre every id of the mesh's tables is in range; `clusters` is decode_all of the asset

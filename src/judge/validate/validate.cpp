@@ -44,12 +44,8 @@ void run_rules(std::span<const std::uint8_t> bytes, RuleLog& log) {
     return;
   }
   if (!pages_sound) return;
-  const Result<std::vector<run::DecodedCluster>> clusters = run::decode_all(*asset);
-  if (!clusters) {
-    if (log.finding_count() == 0) log.add(Rule::kL099, clusters.error().where, clusters.error().detail);
-    return;
-  }
-  check_geometry(*asset, *clusters, log);
+  const Status geometry = check_geometry(*asset, log);
+  if (!geometry && log.finding_count() == 0) log.add(Rule::kL099, geometry.error().where, geometry.error().detail);
 }
 
 }  // namespace

@@ -9,7 +9,7 @@ namespace meshlode::judge {
 MeshJudge make_mesh_judge(const run::Asset& asset, MeshId mesh, std::span<const run::DecodedCluster> clusters) {
   MeshJudge judge;
   judge.surface = build_surface(asset, mesh, clusters);
-  judge.border = prove_borders(asset, judge.surface, clusters).border;
+  judge.border = prove_borders(asset, judge.surface).border;
   judge.group_order.resize(judge.surface.group_count);
   std::iota(judge.group_order.begin(), judge.group_order.end(), 0U);
   const auto groups = asset.groups().subspan(judge.surface.first_group, judge.surface.group_count);

@@ -59,7 +59,7 @@ bool judge_accepts(const build::SimplifyInput& finer, const build::SimplifyResul
   const run::Asset asset = test::asset_of({as_patch(finer)}, as_patch(coarser));
   const auto clusters = run::decode_all(asset);
   EXPECT_TRUE(clusters.ok());
-  return prove_borders(asset, build_surface(asset, MeshId(0U), *clusters), *clusters).violations.empty();
+  return prove_borders(asset, build_surface(asset, MeshId(0U), *clusters)).violations.empty();
 }
 
 /// What a faulty builder might have made of it.
