@@ -42,7 +42,9 @@ struct SceneOptions {
   bool repair = false;               ///< the scene was imported with repair: recorded, because it changes the bytes
   std::uint32_t max_cluster_triangles = 128;  ///< I2; at most format::kMaxClusterTriangles
   std::uint32_t max_cluster_vertices = 256;   ///< I2; at most format::kMaxClusterVertices
-  std::uint64_t max_memory = 0;     ///< bytes that the process may take (build/needs.h); 0: what the machine has
+  std::uint64_t max_memory = 0;  ///< bytes that the process may take (build/needs.h); 0: what the machine has
+  /// Large arrays of the process go to a file before they would exceed max_memory (tools/meshlode/spill.h).
+  bool spills = false;
   MeshStore* mesh_store = nullptr;  ///< meshes that were built before (build/store/mesh_store.h); the same bytes
   /// One for each mesh of the scene, in the place of the whole's; empty: all as the whole.
   std::vector<MeshOptions> mesh_options;

@@ -26,6 +26,10 @@ constexpr std::uint64_t kTriangleOfCertified = 50;
 constexpr std::uint64_t kPosition = 230;
 constexpr std::uint64_t kPositionOfQuadric = 180;
 constexpr std::uint64_t kVertexFloat = 8;
+// Where large arrays go to a file: of a triangle what stays in memory all the same, and what the groups in hand take. A
+// quarter of the limit is for the arrays.
+constexpr std::uint64_t kUnspilledTriangle = 30;
+constexpr std::uint64_t kSpillRoom = 24u << 20u;
 
 template <class T>
 std::uint64_t bytes_of(const std::vector<T>& values) {
@@ -86,6 +90,7 @@ std::uint64_t MemoryEstimate::bytes(std::size_t at_once) const {
 MemoryEstimate estimate_memory(const scene::Scene& scene, const PipelineOptions& options, std::uint32_t threads) {
   MemoryEstimate estimate;
   estimate.always = kProcess + kThread * std::max(threads, 1U) + kDocumentByte * scene.document.size();
+  estimate.spilled = estimate.always + kSpillRoom;
   for (const scene::SceneBlob& blob : scene.blobs) estimate.always += 2 * bytes_of(blob.bytes);  // and the file's
   for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
     const scene::SourceMesh& mesh = scene.meshes[i];
@@ -95,10 +100,12 @@ MemoryEstimate estimate_memory(const scene::Scene& scene, const PipelineOptions&
     const MeshCounts counts = count_mesh(mesh);
     for (const scene::Primitive& primitive : mesh.primitives) estimate.always += bytes_of(primitive);
     estimate.always += kKeptTriangle * counts.triangles;
+    estimate.spilled += kUnspilledTriangle * counts.triangles;
     estimate.working.push_back((is_certified ? kTriangleOfCertified : kTriangle) * counts.triangles +
                                (is_measured ? kPosition : kPositionOfQuadric) * count_wedges(mesh, {}) +
                                kVertexFloat * attribute_floats(mesh, own) * counts.vertices);
   }
+  estimate.spilled += estimate.spilled / 3;
   std::sort(estimate.working.begin(), estimate.working.end(), std::greater<>());
   return estimate;
 }
@@ -112,9 +119,10 @@ Result<std::size_t> fit_memory(const MemoryEstimate& estimate, std::uint32_t thr
     limit = resident_memory() + *available;
   }
   while (at_once > 1 && estimate.bytes(at_once) > limit) --at_once;
-  if (estimate.bytes(at_once) <= limit) return at_once;
+  if (estimate.bytes(at_once) <= limit || (options.spills && estimate.spilled <= limit)) return at_once;
+  const std::uint64_t needed = options.spills ? std::min(estimate.spilled, estimate.bytes(1)) : estimate.bytes(1);
   return Error{ErrorCode::kBuildFailed, "",
-               "the build needs about " + byte_size_text(estimate.bytes(1)) + " of memory, " + byte_size_text(limit) +
+               "the build needs about " + byte_size_text(needed) + " of memory, " + byte_size_text(limit) +
                    (options.max_memory == 0 ? " are available (--max-memory SIZE builds all the same)"
                                             : " are allowed by --max-memory")};
 }

@@ -35,6 +35,8 @@ constexpr std::uint64_t kMaxMeshVertices = 4294967295;
 struct MemoryEstimate {
   std::uint64_t always = 0;            ///< bytes, never 0
   std::vector<std::uint64_t> working;  ///< bytes by mesh, the largest first
+  /// Where large arrays go to a file (PipelineOptions::spills): what is too small for that, and room to work in.
+  std::uint64_t spilled = 0;
 
   /// With so many meshes in work at once: the largest, at worst.
   [[nodiscard]] std::uint64_t bytes(std::size_t at_once) const;
@@ -45,7 +47,7 @@ struct MemoryEstimate {
 
 /// How many meshes may be in work at once, at most one a thread: fewer where memory asks for it, down to one after
 /// another. The limit is PipelineOptions::max_memory or, where that is 0, what the process has and the machine can
-/// still give it. Error: kBuildFailed where one at a time is too much.
+/// still give it. Error: kBuildFailed where one at a time is too much, and spilling does not help.
 [[nodiscard]] Result<std::size_t> fit_memory(const MemoryEstimate& estimate, std::uint32_t threads,
                                              const PipelineOptions& options);
 

@@ -61,6 +61,23 @@ TEST(Needs, MoreThanIsAllowedIsRefusedAndNamesBoth) {
   EXPECT_NE(machine.error().detail.find("are available"), std::string::npos) << machine.error().detail;
 }
 
+TEST(Needs, WhatSpillsIsRefusedOnlyBelowWhatStaysInMemory) {
+  PipelineOptions options;
+  options.max_memory = 70 * kMiB;
+  const MemoryEstimate estimate{60 * kMiB, {40 * kMiB, 5 * kMiB}, 70 * kMiB};
+  EXPECT_FALSE(fit_memory(estimate, 2, options));
+  options.spills = true;
+  const Result<std::size_t> kept = fit_memory(estimate, 2, options);
+  ASSERT_TRUE(kept);
+  EXPECT_EQ(*kept, 1u) << "one mesh after another";
+  options.max_memory = 70 * kMiB - 1;
+  const Result<std::size_t> refused = fit_memory(estimate, 2, options);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().detail, "the build needs about 70MiB of memory, 70MiB are allowed by --max-memory");
+  options.max_memory = 110 * kMiB;
+  EXPECT_EQ(*fit_memory(estimate, 2, options), 2u) << "no need to";
+}
+
 TEST(Needs, AsManyMeshesAreInWorkAtOnceAsFit) {
   const MemoryEstimate estimate{10 * kMiB, {50 * kMiB, 30 * kMiB, 20 * kMiB, 20 * kMiB}};
   EXPECT_EQ(estimate.bytes(0), 10 * kMiB);
@@ -222,6 +239,13 @@ TEST(Needs, MemoryIsEstimatedFromAboveAndCloseEnough) {
   expect_close(measure([] { return loose(20000); }, kMeasured, 1), "20,000 loose triangles");
   expect_close(measure([] { return unshared(sheets(120, 1, false)); }, kMeasured, 1),
                "28,800 triangles, no vertex shared");
+}
+
+TEST(Needs, ALargeMeshSpillsMostOfWhatItTakes) {
+  const scene::Scene scene = sheets(500, 1, true);  // 500,000 triangles
+  const MemoryEstimate estimate = estimate_memory(scene, {}, 1);
+  EXPECT_LT(estimate.spilled, estimate.bytes(1));
+  EXPECT_GT(estimate.spilled, 500000u * 30u);
 }
 
 TEST(Needs, AScenesImagesAreCounted) {

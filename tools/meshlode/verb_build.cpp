@@ -10,7 +10,6 @@
 #include <system_error>
 #include <utility>
 
-#include "base/byte_size.h"
 #include "base/printable.h"
 #include "batch/batch.h"
 #include "batch/cache/ingredients.h"
@@ -27,6 +26,7 @@
 #include "build/settings/settings.h"
 #include "build_options.h"
 #include "explain.h"
+#include "memory_limit.h"
 #include "options.h"
 #include "outputs.h"
 #include "verb.h"
@@ -217,6 +217,7 @@ int run_jobs(const std::vector<Job>& jobs, const BuildCommand& command) {
 /// Words that change no byte of an asset.
 struct LimitWords {
   std::string max_memory = "auto", max_decoded = kDefaultMaxDecodedText;
+  fs::path outputs;  ///< the folder of the assets
 };
 
 Status set_options(const BuildWords& words, const LimitWords& limits, batch::BatchOptions& options) {
@@ -227,13 +228,11 @@ Status set_options(const BuildWords& words, const LimitWords& limits, batch::Bat
   options.settings_of = [words](const Job& job) { return settings_for(words, job.input, job.root); };
   options.import.repair = options.pipeline.repair;
   options.import.scene = words.scene;
-  if (limits.max_memory != "auto") {
-    const auto bytes = parse_byte_size(limits.max_memory);
-    if (!bytes || *bytes == 0) {
-      return Error{ErrorCode::kUsage, "--max-memory", "give auto or a size above 0, such as 8GiB"};
-    }
-    options.pipeline.max_memory = *bytes;
-  }
+  const auto memory = keep_memory_limit(limits.max_memory, limits.outputs);
+  if (!memory) return memory.error();
+  options.pipeline.max_memory = memory->bytes;
+  // Where no file can be made, what is too large is refused, as it would be without one.
+  options.pipeline.spills = memory->bytes > 0 && memory->spilling;
   const Result<std::uint64_t> decoded = parse_max_decoded(limits.max_decoded);
   if (!decoded) return decoded.error();
   options.import.max_decoded = *decoded;
@@ -263,9 +262,9 @@ int run_build(const Verb& verb, std::span<char* const> args) {
   parser.add_value("-O,--output-folder", output_folder, "folder for the assets of many inputs; made where missing");
   add_build_options(parser, words);
   parser.add_flag("--explain", command.is_explained, "say what is kept, and why, as plan does");
-  parser.add_value(
-      "--max-memory", limits.max_memory,
-      "what the build may take, such as 8GiB: meshes one by one to keep it, or refused; auto: what is left");
+  parser.add_value("--max-memory", limits.max_memory,
+                   "what the build may take, such as 8GiB: meshes one by one and large arrays in a temporary file "
+                   "to keep it, or refused; auto: what is left");
   add_max_decoded_option(parser, limits.max_decoded);
   add_jobs_option(parser, command.jobs);
   parser.add_value("--report", command.report_path,
@@ -278,6 +277,7 @@ int run_build(const Verb& verb, std::span<char* const> args) {
   if (!output.empty() && !output_folder.empty()) {
     return print_error({ErrorCode::kUsage, "", "give -o or -O, not both"});
   }
+  limits.outputs = output_folder.empty() ? fs::path(output).parent_path() : fs::path(output_folder);
   if (const Status set = set_options(words, limits, command.options); !set) return print_error(set.error());
   if (const Status set = set_budget(command); !set) return print_error(set.error());
   const auto plan = batch::plan_jobs(inputs, output, output_folder);

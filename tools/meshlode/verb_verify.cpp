@@ -10,6 +10,7 @@
 #include "findings.h"
 #include "gpu_checks.h"
 #include "judge/verify/verify.h"
+#include "memory_limit.h"
 #include "options.h"
 #include "out/report/read_meta.h"
 #include "outputs.h"
@@ -101,7 +102,7 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
   std::string source_path;
   GpuOptions gpu_options;
   std::uint32_t jobs = 0;
-  std::string max_decoded_text = kDefaultMaxDecodedText;
+  std::string max_decoded_text = kDefaultMaxDecodedText, max_memory = "auto";
   bool repair = false;
   judge::VerifyOptions options;
   OutputOptions output;
@@ -125,6 +126,7 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
   parser.add_value("--pixel-error", gpu_options.pixel_error, "with --gpu: allowed displacement in pixels (1)");
   parser.add_flag("--explain", gpu_options.is_explained,
                   "say what the asset keeps, and with --gpu which passes the device runs, and why");
+  add_max_memory_option(parser, max_memory);
   add_max_decoded_option(parser, max_decoded_text);
   add_jobs_option(parser, jobs);
   add_output_options(parser, output);
@@ -134,6 +136,7 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
 
   const Result<std::uint64_t> max_decoded = parse_max_decoded(max_decoded_text);
   if (!max_decoded) return print_error(max_decoded.error());
+  if (const Status kept = keep_memory_limit_of_check(max_memory); !kept) return print_error(kept.error());
   gpu_options.max_decoded = *max_decoded;
 
   const JobLimit limit(jobs);

@@ -109,6 +109,7 @@ class Run {
     auto settled = build::settle(layers_);
     if (!settled) return settled.error();
     settled->options.max_memory = pipeline_.max_memory;
+    settled->options.spills = pipeline_.spills;
     pipeline_ = std::move(settled->options);
     import_.repair = pipeline_.repair;
     return Ok{};

@@ -93,7 +93,7 @@ void add_own_options(KeyHasher& key, const MeshOptions& own) {
 }
 
 void add_scene_options(KeyHasher& key, const SceneOptions& options) {
-  const auto& [preset, codec, partition_seed, repair, max_cluster_triangles, max_cluster_vertices, max_memory,
+  const auto& [preset, codec, partition_seed, repair, max_cluster_triangles, max_cluster_vertices, max_memory, spills,
                mesh_store, mesh_options] = options;
   key.value(preset);
   key.value(partition_seed);
@@ -102,6 +102,7 @@ void add_scene_options(KeyHasher& key, const SceneOptions& options) {
   static_cast<void>(codec);   // of the pages on disk, later
   static_cast<void>(repair);  // the triangles are as they are
   static_cast<void>(max_memory);
+  static_cast<void>(spills);
   static_cast<void>(mesh_store);
   static_cast<void>(mesh_options);  // this mesh's are its own
 }

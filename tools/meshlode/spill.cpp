@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "spill.h"
+
+#include <fcntl.h>
+#include <malloc.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "spill_area.h"
+
+namespace meshlode::cli {
+
+namespace {
+
+/// Arrays of so many bytes may go to the file. What a group needs while it is in work is smaller.
+constexpr std::size_t kLargeArray = std::size_t{1} << 20U;
+/// Large arrays take this part of the limit before the first of them goes to the file.
+constexpr std::uint64_t kSharesInMemory = 4;
+/// Shares of the limit where dropping begins and ends, in eighths. Several threads that read what is in the page cache
+/// map a hundred MiB in the time between two looks, on a busy machine.
+constexpr std::uint64_t kBegin = 6, kEnd = 5;
+constexpr std::size_t kDropped = std::size_t{32} << 20U;  // of addresses, at a time
+constexpr std::chrono::milliseconds kBetweenLooks{1};
+
+class Spill {
+ public:
+  Spill(std::unique_ptr<SpillArea> area, std::filesystem::path folder, std::uint64_t limit)
+      : area_(std::move(area)),
+        folder_(std::move(folder)),
+        limit_(limit),
+        statm_(::open("/proc/self/statm", O_RDONLY | O_CLOEXEC)),
+        page_(static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE))) {
+    std::thread([this] { keep_limit(); }).detach();
+  }
+
+  [[nodiscard]] void* allocate(std::size_t bytes) noexcept {
+    if (in_memory_.load(std::memory_order_relaxed) + static_cast<std::int64_t>(bytes) <=
+        static_cast<std::int64_t>(limit_ / kSharesInMemory)) {
+      void* const array = std::malloc(bytes);
+      if (array != nullptr) in_memory_ += static_cast<std::int64_t>(malloc_usable_size(array));
+      return array;
+    }
+    void* const array = area_->allocate(bytes);
+    if (array == nullptr) is_full_ = true;
+    return array;
+  }
+  [[nodiscard]] bool owns(const void* array) const noexcept { return area_->owns(array); }
+  void free(void* array) noexcept { area_->free(array); }
+  /// Before an array that is not the file's is freed.
+  void forget(void* array) noexcept {
+    const std::size_t bytes = malloc_usable_size(array);
+    if (bytes >= kLargeArray) in_memory_ -= static_cast<std::int64_t>(bytes);
+  }
+  [[nodiscard]] bool is_full() const { return is_full_; }
+  [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
+
+ private:
+  [[nodiscard]] std::uint64_t resident() const {
+    char text[128];
+    const ssize_t length = ::pread(statm_, text, sizeof text - 1, 0);
+    if (length <= 0) return 0;
+    text[length] = '\0';
+    char* end = nullptr;
+    (void)std::strtoull(text, &end, 10);
+    return std::strtoull(end, nullptr, 10) * page_;
+  }
+
+  void keep_limit() {
+    for (;;) {
+      std::this_thread::sleep_for(kBetweenLooks);
+      if (resident() <= limit_ / 8 * kBegin) continue;
+      bool is_round_over = false;
+      while (!is_round_over && resident() > limit_ / 8 * kEnd) is_round_over = !area_->drop(kDropped);
+    }
+  }
+
+  std::unique_ptr<SpillArea> area_;
+  std::filesystem::path folder_;
+  std::uint64_t limit_;
+  int statm_;
+  std::uint64_t page_;
+  std::atomic<std::int64_t> in_memory_ = 0;  ///< bytes of large arrays that are not the file's
+  std::atomic<bool> is_full_ = false;
+};
+
+/// Never freed: other threads may allocate until the process ends.
+constinit std::atomic<Spill*> the_spill = nullptr;
+
+}  // namespace
+
+Status start_spilling(std::uint64_t limit, std::span<const std::filesystem::path> folders) {
+#ifdef MESHLODE_SANITIZED
+  (void)limit;
+  (void)folders;
+  return Error{ErrorCode::kUnsupported, "", "large arrays stay in memory under sanitizers"};
+#else
+  if (the_spill.load() != nullptr) return Ok{};
+  Error last{ErrorCode::kIo, "", "no folder for a temporary file"};
+  for (const std::filesystem::path& folder : folders) {
+    auto area = SpillArea::open(folder);
+    if (area) {
+      the_spill = new Spill(std::move(*area), folder, limit);
+      return Ok{};
+    }
+    last = area.error();
+  }
+  return last;
+#endif
+}
+
+std::optional<std::filesystem::path> full_spill_folder() {
+  const Spill* const spill = the_spill.load();
+  return spill != nullptr && spill->is_full() ? std::optional(spill->folder()) : std::nullopt;
+}
+
+void* new_array(std::size_t bytes) noexcept {
+  Spill* const spill = bytes < kLargeArray ? nullptr : the_spill.load(std::memory_order_acquire);
+  return spill != nullptr ? spill->allocate(bytes) : std::malloc(std::max<std::size_t>(bytes, 1));
+}
+
+void delete_array(void* array) noexcept {
+  Spill* const spill = array == nullptr ? nullptr : the_spill.load(std::memory_order_acquire);
+  if (spill != nullptr && spill->owns(array)) return spill->free(array);
+  if (spill != nullptr) spill->forget(array);
+  std::free(array);
+}
+
+}  // namespace meshlode::cli
