@@ -27,7 +27,7 @@ echo "== packages"
 echo "== a bare Debian 12"
 sources() { find /etc/apt -name '*.list' -o -name '*.sources'; }
 mirror=$(sources | xargs -r grep -hE "^(URIs:|deb )" | sed -E "s/^(URIs:|deb) +(\[[^]]*\] +)?([^ ]+).*/\3/; 1!d" || true)
-mirror=${mirror:-http://deb.debian.org/debian}
+[ -n "$mirror" ] || skip "apt knows no mirror"
 debootstrap --variant=minbase bookworm "$root" "$mirror" >"$work/log" 2>&1 || skip "no Debian from $mirror: $(tail -n 1 "$work/log")"
 # What the machine knows about mirrors and proxies; docker's own image has as much.
 rm -f "$root/etc/apt/sources.list"
