@@ -123,7 +123,7 @@ Result<std::size_t> fit_memory(const MemoryEstimate& estimate, std::uint32_t thr
   const std::uint64_t needed = options.spills ? std::min(estimate.spilled, estimate.bytes(1)) : estimate.bytes(1);
   return Error{ErrorCode::kBuildFailed, "",
                "the build needs about " + byte_size_text(needed) + " of memory, " + byte_size_text(limit) +
-                   (options.max_memory == 0 ? " are available (--max-memory SIZE builds all the same)"
+                   (options.max_memory == 0 ? " are available (meshlode --max-memory SIZE keeps to SIZE with a file)"
                                             : " are allowed by --max-memory")};
 }
 

@@ -15,6 +15,7 @@
 #include <thread>
 #include <utility>
 
+#include "base/memory.h"
 #include "spill_area.h"
 
 namespace meshlode::cli {
@@ -27,7 +28,7 @@ constexpr std::size_t kLargeArray = std::size_t{1} << 20U;
 constexpr std::uint64_t kSharesInMemory = 4;
 /// Shares of the limit where dropping begins and ends, in eighths. Several threads that read what is in the page cache
 /// map a hundred MiB in the time between two looks, on a busy machine.
-constexpr std::uint64_t kBegin = 6, kEnd = 5;
+constexpr std::uint64_t kBegin = 5, kEnd = 4;
 constexpr std::size_t kDropped = std::size_t{32} << 20U;  // of addresses, at a time
 constexpr std::chrono::milliseconds kBetweenLooks{1};
 
@@ -104,6 +105,7 @@ Status start_spilling(std::uint64_t limit, std::span<const std::filesystem::path
   return Error{ErrorCode::kUnsupported, "", "large arrays stay in memory under sanitizers"};
 #else
   if (the_spill.load() != nullptr) return Ok{};
+  if (resident_memory() == 0) return Error{ErrorCode::kIo, "/proc/self/statm", "does not say what is in memory"};
   Error last{ErrorCode::kIo, "", "no folder for a temporary file"};
   for (const std::filesystem::path& folder : folders) {
     auto area = SpillArea::open(folder);

@@ -8,6 +8,7 @@
 #include <system_error>
 #include <utility>
 
+#include "base/guarded.h"
 #include "batch/cache/ingredients.h"
 #include "batch/cache/mesh_entries.h"
 
@@ -96,7 +97,8 @@ class Run {
       }
       result_.reason = options_.cache->explain(result_.job.output, ingredients_);
     }
-    return build_and_write();
+    // One scene that runs out of memory is one failed job.
+    return guarded(result_.job.input, [&] { return build_and_write(); });
   }
 
  private:

@@ -9,4 +9,8 @@ grep -c 'a.glb: the build needs about .* of memory, 1MiB are allowed by --max-me
 for report in enough small; do grep -cE '"memory_estimate_bytes": ?[1-9][0-9]{7}' $report.json; done
 run build a.glb -o b.lode --max-memory 0
 run build a.glb -o b.lode --max-memory lots
+run validate a.lode --max-memory 1GiB
+run validate a.lode --max-memory lots
+code verify a.lode --source a.glb --quick --quiet --max-memory 1GiB
+run verify a.lode --source a.glb --max-memory 0
 files
