@@ -58,9 +58,10 @@ for folder in one two; do diff -r clean "$folder" && echo "$folder: as a clean r
 # What killed writers left in the cache is gone where it was written to since, and by the next trim everywhere.
 "$MESHLODE" build --quiet in -O one --preset fast --cache cache --cache-limit 1GiB
 find cache one two -name '.meshlode-*'
-echo "entries: $(find cache/asset -type f | wc -l) assets, $(find cache/mesh -type f | wc -l) meshes"
-# The meshes alone.
+# The meshes alone: how many the trimming of a killed batch left depends on the moment, but each is taken.
+meshes=$(find cache/mesh -type f | wc -l)
 rm -r cache/asset cache/record one/*
 "$MESHLODE" build --quiet in -O one --preset fast --cache cache --report report.json
-diff -r clean one && echo "from $(grep -c '"meshes_from_cache": 1,' report.json) meshes of the cache: as a clean run"
+[ "$(grep -c '"meshes_from_cache": 1,' report.json)" -eq "$meshes" ] && echo "all meshes of the cache are taken"
+diff -r clean one && echo "from them: as a clean run"
 check
