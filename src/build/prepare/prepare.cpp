@@ -10,6 +10,7 @@
 #include "base/disjoint_sets.h"
 #include "base/parallel.h"
 #include "build/prepare/corners.h"
+#include "build/prepare/median_edge.h"
 #include "build/prepare/separate_needles.h"
 #include "build/prepare/weld.h"
 #include "build/prepare/zero_area.h"
@@ -64,24 +65,7 @@ std::uint64_t drop_undrawn(Corners& corners) {
   return is_undrawn.size() - kept;
 }
 
-double median_edge_length(const Corners& corners) {
-  // A sample of the edges is enough to choose a power of two.
-  std::vector<double> lengths2;
-  const std::size_t triangle_count = corners.materials.size();
-  const std::size_t stride = std::max<std::size_t>(1, triangle_count / 20000);
-  for (std::size_t t = 0; t < triangle_count; t += stride) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3d edge =
-          corners.positions[corners.triangles[3 * t + k]] - corners.positions[corners.triangles[3 * t + (k + 1) % 3]];
-      const double length2 = glm::dot(edge, edge);
-      if (length2 > 0.0) lengths2.push_back(length2);
-    }
-  }
-  if (lengths2.empty()) return 0.0;
-  const auto middle = lengths2.begin() + static_cast<std::ptrdiff_t>(lengths2.size() / 2);
-  std::nth_element(lengths2.begin(), middle, lengths2.end());
-  return std::sqrt(*middle);
-}
+constexpr double kSmallestDiagonal = 0x1p-500;  ///< its square keeps all bits of a double, with room to spare
 
 struct Box {
   Vec3d low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
@@ -113,6 +97,10 @@ Status choose_frame(const Corners& corners, const PrepareOptions& options, Prepa
     return Error{ErrorCode::kUnsupported, {}, "its extent overflows a double when squared"};
   }
   const double largest_half = std::max({half.x, half.y, half.z});
+  // Squares of the smallest sizes vanish, and a mesh must not become a point by that.
+  if (largest_half > 0.0 && mesh.diagonal < kSmallestDiagonal) {
+    return Error{ErrorCode::kUnsupported, {}, "its extent vanishes from a double when squared"};
+  }
   const Result<format::PositionGrid> grid =
       choose_grid(largest_half, mesh.diagonal, median_edge_length(corners), options);
   if (!grid) return grid.error();

@@ -30,13 +30,14 @@ struct PrepareOptions {
 struct GridPlan {
   format::PositionGrid grid;
   double largest_side = 0.0;  ///< of the bounding box of what is drawn, object units; 0: nothing is
-  double median_edge = 0.0;   ///< of a sample of the triangles, object units
+  double median_edge = 0.0;   ///< median_edge_length(), object units
 };
 
 /// Errors: those of prepare_mesh().
 [[nodiscard]] Result<GridPlan> plan_grid(const scene::SourceMesh& mesh, const PrepareOptions& options);
 
-/// Errors: kUnsupported (the grid needs more than 24 bits), kInvalid (a position is not finite).
+/// Errors: kUnsupported (the grid needs more than 24 bits; the extent is too large or too small for a double to
+/// square), kInvalid (a position is not finite).
 [[nodiscard]] Result<PreparedMesh> prepare_mesh(const scene::SourceMesh& mesh, const AttributeLayout& layout,
                                                 const PrepareOptions& options);
 

@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include "build/prepare/corners.h"
+#include "build/prepare/median_edge.h"
 #include "scene/samples/samples.h"
 
 namespace meshlode::build {
@@ -43,6 +45,46 @@ TEST(Prepare, RenumberingTheInputChangesNothing) {
   EXPECT_EQ(a.positions, b.positions);
   EXPECT_EQ(a.triangles, b.triangles);
   EXPECT_EQ(a.wedge_position, b.wedge_position);
+}
+
+/// Small triangles first, then large ones: a sample in the file's order sees a share of each that the order decides.
+scene::Primitive two_sizes(std::uint32_t pairs) {
+  scene::Primitive shape;
+  for (std::uint32_t t = 0; t < 2 * pairs; ++t) {
+    const double size = t < pairs ? 1.0 + 1e-5 * t : 64.0 + 1e-3 * t;
+    const Vec3d at(100.0 * (t % 200), 100.0 * std::floor(t / 200.0), 0.0);
+    const auto first = static_cast<std::uint32_t>(shape.positions.size());
+    shape.positions.insert(shape.positions.end(), {at, at + Vec3d(size, 0, 0), at + Vec3d(0, size, 0)});
+    shape.indices.insert(shape.indices.end(), {first, first + 1, first + 2});
+  }
+  return shape;
+}
+
+TEST(Prepare, RenumberingALargeInputDoesNotChangeTheGridEither) {
+  const scene::Primitive shape = two_sizes(22500);
+  const auto grid = plan_grid(scene::as_mesh(shape), {}), of_shuffled = plan_grid(scene::as_mesh(shuffled(shape)), {});
+  ASSERT_TRUE(grid.ok() && of_shuffled.ok());
+  EXPECT_EQ(grid->median_edge, of_shuffled->median_edge);
+  EXPECT_EQ(grid->grid.step(), of_shuffled->grid.step());
+}
+
+TEST(MedianEdge, IsThatOfAllEdgesThatHaveALength) {
+  for (const std::uint32_t pairs : {0U, 1U, 7U, 5000U, 20000U}) {
+    scene::Primitive shape = two_sizes(pairs);
+    shape.indices.insert(shape.indices.end(), 9 * std::size_t{pairs}, 0);  // edges without a length do not count
+    std::vector<double> lengths;
+    for (std::size_t i = 0; i < shape.indices.size(); ++i) {
+      const std::size_t next = i % 3 == 2 ? i - 2 : i + 1;
+      const double length = glm::length(shape.positions[shape.indices[next]] - shape.positions[shape.indices[i]]);
+      if (length > 0.0) lengths.push_back(length);
+    }
+    std::sort(lengths.begin(), lengths.end());
+    const double expected = lengths.empty() ? 0.0 : lengths[lengths.size() / 2];
+    const double median = median_edge_length(gather_corners(scene::as_mesh(shape), {}));
+    EXPECT_LE(median, expected * (1.0 + 1e-15)) << pairs;
+    EXPECT_GE(median, expected * (1.0 - 0x1p-21)) << pairs;
+    EXPECT_EQ(std::ilogb(median), std::ilogb(expected)) << pairs;
+  }
 }
 
 TEST(Prepare, WeldsVerticesThatAreOneInSpace) {
@@ -188,6 +230,21 @@ TEST(Prepare, RefusesAGridThatNeedsMoreThan24Bits) {
   const auto mesh = prepare_mesh(scene::as_mesh(scene::make_cube(2)), {}, options);
   ASSERT_FALSE(mesh.ok());
   EXPECT_EQ(mesh.error().code, ErrorCode::kUnsupported);
+}
+
+TEST(Prepare, RefusesExtentsWhoseSquareADoubleCannotHold) {
+  // 1e-163 squared is no longer a normal double, 1e-200 squared is zero: neither may become a mesh of one point.
+  for (const double scale : {1e-300, 1e-200, 1e-163, 1e-155, 1e160, 1e200}) {
+    const auto mesh = prepare_mesh(scene::as_mesh(scene::scaled(scene::make_cube(2), scale)), {}, {});
+    ASSERT_FALSE(mesh.ok()) << scale;
+    EXPECT_EQ(mesh.error().code, ErrorCode::kUnsupported) << scale;
+    EXPECT_FALSE(plan_grid(scene::as_mesh(scene::scaled(scene::make_cube(2), scale)), {}).ok()) << scale;
+  }
+  for (const double scale : {1e-30, 1e30}) {
+    const auto mesh = prepare_mesh(scene::as_mesh(scene::scaled(scene::make_cube(2), scale)), {}, {});
+    ASSERT_TRUE(mesh.ok()) << scale;
+    EXPECT_EQ(mesh->triangles.size(), std::size_t{6 * 2 * 2 * 2}) << scale;
+  }
 }
 
 TEST(Prepare, RefusesPositionsThatAreNotFinite) {
