@@ -24,6 +24,9 @@ namespace {
 
 /// Arrays of so many bytes may go to the file. What a group needs while it is in work is smaller.
 constexpr std::size_t kLargeArray = std::size_t{1} << 20U;
+/// malloc() may give so much more than was asked for: arrays shorter than both together are not counted, neither when
+/// they are made nor when they are freed, where nothing tells what was asked for.
+constexpr std::size_t kSlack = std::size_t{1} << 16U;
 /// Large arrays take this part of the limit before the first of them goes to the file.
 constexpr std::uint64_t kSharesInMemory = 4;
 /// Shares of the limit where dropping begins and ends, in eighths. Several threads that read what is in the page cache
@@ -47,7 +50,7 @@ class Spill {
     if (in_memory_.load(std::memory_order_relaxed) + static_cast<std::int64_t>(bytes) <=
         static_cast<std::int64_t>(limit_ / kSharesInMemory)) {
       void* const array = std::malloc(bytes);
-      if (array != nullptr) in_memory_ += static_cast<std::int64_t>(malloc_usable_size(array));
+      if (array != nullptr) in_memory_ += counted_bytes(array);
       return array;
     }
     void* const array = area_->allocate(bytes);
@@ -57,14 +60,15 @@ class Spill {
   [[nodiscard]] bool owns(const void* array) const noexcept { return area_->owns(array); }
   void free(void* array) noexcept { area_->free(array); }
   /// Before an array that is not the file's is freed.
-  void forget(void* array) noexcept {
-    const std::size_t bytes = malloc_usable_size(array);
-    if (bytes >= kLargeArray) in_memory_ -= static_cast<std::int64_t>(bytes);
-  }
+  void forget(void* array) noexcept { in_memory_ -= counted_bytes(array); }
   [[nodiscard]] bool is_full() const { return is_full_; }
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
 
  private:
+  [[nodiscard]] static std::int64_t counted_bytes(void* array) noexcept {
+    const std::size_t bytes = malloc_usable_size(array);
+    return bytes >= kLargeArray + kSlack ? static_cast<std::int64_t>(bytes) : 0;
+  }
   [[nodiscard]] std::uint64_t resident() const {
     char text[128];
     const ssize_t length = ::pread(statm_, text, sizeof text - 1, 0);
