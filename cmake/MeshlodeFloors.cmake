@@ -4,41 +4,73 @@
 
 # Under sanitizers the floors share a precompiled header: reading the standard library is a third of what compiling
 # them costs there. Release builds do without, so that every file is also seen to include what it needs. GLM comes by the
-# house's own header, which sets its options first: with others its types would be passed in another way.
+# house's own header, which sets its options first: with others its types would be passed in another way. QUICKLY: not
+# optimised, which takes off more than half of the rest, for code whose running time under sanitizers does not matter.
 function(meshlode_share_floor_headers name)
-  if(NOT MESHLODE_SANITIZE OR CMAKE_CXX_COMPILER_LAUNCHER OR NOT CMAKE_CXX_COMPILER_ID MATCHES Clang)
+  cmake_parse_arguments(arg "QUICKLY" "" "" ${ARGN})
+  if(NOT MESHLODE_SANITIZE)
     return()
   endif()
-  if(NOT TARGET meshlode_floor_headers)
-    file(WRITE "${PROJECT_BINARY_DIR}/floor_headers.cpp" "")
-    add_library(meshlode_floor_headers STATIC EXCLUDE_FROM_ALL "${PROJECT_BINARY_DIR}/floor_headers.cpp")
-    target_link_libraries(meshlode_floor_headers PRIVATE meshlode_flags)
-    target_include_directories(meshlode_floor_headers PRIVATE ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR}/include)
-    target_precompile_headers(meshlode_floor_headers PRIVATE <algorithm> <array> <cmath> <cstdint> <cstring> <filesystem>
+  set(headers meshlode_floor_headers)
+  if(arg_QUICKLY AND NOT MESHLODE_FUZZ)
+    set(headers meshlode_quick_floor_headers)
+    target_compile_options(${name} PRIVATE -O0)
+  endif()
+  if(CMAKE_CXX_COMPILER_LAUNCHER OR NOT CMAKE_CXX_COMPILER_ID MATCHES Clang)
+    return()
+  endif()
+  # Programs are position-independent in another way than libraries are, and the compiler minds.
+  get_target_property(type ${name} TYPE)
+  if(type STREQUAL "EXECUTABLE")
+    string(APPEND headers "_of_programs")
+  endif()
+  if(NOT TARGET ${headers})
+    file(WRITE "${PROJECT_BINARY_DIR}/${headers}.cpp" "")
+    if(type STREQUAL "EXECUTABLE")
+      file(WRITE "${PROJECT_BINARY_DIR}/${headers}.cpp" "int main() {}\n")
+      add_executable(${headers} EXCLUDE_FROM_ALL "${PROJECT_BINARY_DIR}/${headers}.cpp")
+    else()
+      add_library(${headers} STATIC EXCLUDE_FROM_ALL "${PROJECT_BINARY_DIR}/${headers}.cpp")
+    endif()
+    target_link_libraries(${headers} PRIVATE meshlode_flags)
+    target_include_directories(${headers} PRIVATE ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR}/include)
+    if(arg_QUICKLY AND NOT MESHLODE_FUZZ)
+      target_compile_options(${headers} PRIVATE -O0)
+    endif()
+    target_precompile_headers(${headers} PRIVATE <algorithm> <array> <cmath> <cstdint> <cstring> <filesystem>
                               <functional> <map> <optional> <set> <span> <string> <string_view> <utility> <variant>
                               <vector> ${PROJECT_SOURCE_DIR}/src/base/vec.h)
   endif()
-  target_precompile_headers(${name} REUSE_FROM meshlode_floor_headers)
+  target_precompile_headers(${name} REUSE_FROM ${headers})
 endfunction()
 
 # What every target of a floor has: flags, src/ and include/ to include from, its libraries. LIBS are third-party and
 # private, because a library is seen through one wrapper file of a room only. A function is declared in a header or seen by
 # its own file alone, so that two files of one namespace cannot define the same one.
 function(meshlode_set_up_floor_target target)
-  target_link_libraries(${target} PRIVATE meshlode_flags ${ARGN})
+  cmake_parse_arguments(arg "QUICKLY" "" "" ${ARGN})
+  target_link_libraries(${target} PRIVATE meshlode_flags ${arg_UNPARSED_ARGUMENTS})
   target_compile_options(${target} PRIVATE $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wmissing-declarations>)
   target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src>
                                               $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>)
-  meshlode_share_floor_headers(${target})
+  set(how)
+  if(arg_QUICKLY)
+    set(how QUICKLY)
+  endif()
+  meshlode_share_floor_headers(${target} ${how})
 endfunction()
 
-# meshlode_add_floor(NAME SOURCES room/a.cpp ... [FLOORS base format ...] [LIBS Some::target ...])
-# FLOORS are public: their headers are included by this floor's headers.
+# meshlode_add_floor(NAME SOURCES room/a.cpp ... [FLOORS base format ...] [LIBS Some::target ...] [QUICKLY])
+# FLOORS are public: their headers are included by this floor's headers. QUICKLY: see meshlode_share_floor_headers().
 function(meshlode_add_floor name)
-  cmake_parse_arguments(arg "" "" "SOURCES;FLOORS;LIBS" ${ARGN})
+  cmake_parse_arguments(arg "QUICKLY" "" "SOURCES;FLOORS;LIBS" ${ARGN})
   list(TRANSFORM arg_FLOORS PREPEND meshlode_)
   add_library(meshlode_${name} STATIC ${arg_SOURCES})
-  meshlode_set_up_floor_target(meshlode_${name} ${arg_LIBS})
+  set(how)
+  if(arg_QUICKLY)
+    set(how QUICKLY)
+  endif()
+  meshlode_set_up_floor_target(meshlode_${name} ${how} ${arg_LIBS})
   target_link_libraries(meshlode_${name} PUBLIC ${arg_FLOORS})
 endfunction()
 
@@ -80,16 +112,6 @@ function(meshlode_compile_quickly name)
     target_compile_options(${name} PRIVATE -O0)
   elseif(CMAKE_BUILD_TYPE STREQUAL "Release")
     target_compile_options(${name} PRIVATE -O1)
-  endif()
-endfunction()
-
-# The same for files of a floor that are large third-party headers above all (20 s of compiling each, at -O1).
-function(meshlode_compile_files_quickly)
-  if(MESHLODE_SANITIZE AND NOT MESHLODE_FUZZ)
-    foreach(file IN LISTS ARGN)
-      set_property(SOURCE ${file} APPEND PROPERTY COMPILE_OPTIONS -O0)
-      set_source_files_properties(${file} PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
-    endforeach()
   endif()
 endfunction()
 
