@@ -4,7 +4,9 @@ set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_C_STANDARD 11)
-set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+if(NOT CMAKE_SYSTEM_PROCESSOR STREQUAL "wasm32")  # a module lies where it likes, and its tables cost less so
+  set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+endif()
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
@@ -24,6 +26,10 @@ target_compile_options(meshlode_flags INTERFACE -ffp-contract=off
 # warnings of arrays stay on.
 target_compile_options(meshlode_flags INTERFACE
   $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-restrict -Wno-stringop-overflow -Wno-array-bounds>)
+if(CMAKE_SYSTEM_PROCESSOR STREQUAL "wasm32")
+  # size_t has 32 bits there: what is cut to it was compared, in 64, with the size of the file.
+  target_compile_options(meshlode_flags INTERFACE -Wno-shorten-64-to-32)
+endif()
 if(MESHLODE_WERROR)
   target_compile_options(meshlode_flags INTERFACE -Werror)
 endif()

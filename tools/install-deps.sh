@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # install-deps.sh [--tests [--GROUP...]]: the Debian 12 packages that building meshlode needs; with --tests also what its tests
 # need (a second compiler for the comparison of content hashes, sample models), and by group what tools/test.sh --all=GROUP
-# needs beyond that: --npm encoders' npm, --packages a bare root, --portability another standard library and a compiler for
-# another system, --slurm a scheduler, which the test of tools/cluster starts for itself (a system that starts the services of
-# what it installs may start munge's). Nothing happens where all are there.
+# needs beyond that: --browser a browser, --npm encoders' npm, --packages a bare root, --portability another standard library and
+# a compiler for another system, --slurm a scheduler, which the test of tools/cluster starts for itself (a system that starts the
+# services of what it installs may start munge's), --wasm libraries for WebAssembly. Nothing happens where all are there.
 set -euo pipefail
 
 packages=(
@@ -27,11 +27,15 @@ if [ "${1:-}" = --tests ]; then
              mesa-vulkan-drivers vulkan-validationlayers)  # a Vulkan device on any machine, and its judge
 fi
 
+# A back end of clang's, and the standard libraries for it.
+wasm=(clang-14 lld-14 wasi-libc libc++-14-dev-wasm32 libc++abi-14-dev-wasm32 libclang-rt-14-dev-wasm32)
 for group in "${@:2}"; do
   case $group in
     --npm) command -v npm >/dev/null || packages+=(nodejs npm) ;;  # which may come from elsewhere
     --packages) packages+=(file dpkg-dev debootstrap) ;;
     --portability) packages+=(libc++-14-dev libc++abi-14-dev googletest g++-mingw-w64-x86-64 wine64) ;;
+    --wasm) packages+=("${wasm[@]}"); command -v node >/dev/null || packages+=(nodejs) ;;
+    --browser) packages+=(chromium fonts-dejavu-core "${wasm[@]}"); command -v node >/dev/null || packages+=(nodejs) ;;
     --slurm) packages+=(slurm-wlm munge) ;;
     *) echo "install-deps.sh: no group $group" >&2; exit 1 ;;
   esac

@@ -71,7 +71,7 @@ bool ColumnSource::read_codes(std::uint8_t* out, std::size_t count, std::size_t 
   at_ += sizeof(code_bytes);
   if (code_bytes > size_ - at_ || !fill_code_table(std::span(lengths).first(symbols), Meaning::kSymbol, table_))
     return false;
-  std::uint64_t bit = at_ * 8;
+  std::uint64_t bit = std::uint64_t{at_} * 8;
   at_ += code_bytes;
   for (std::size_t done = 0; done < count;) {
     const std::size_t chunk_end = std::min(done + kChunk, count);
@@ -84,7 +84,7 @@ bool ColumnSource::read_codes(std::uint8_t* out, std::size_t count, std::size_t 
     for (; done < chunk_end; ++done) {
       out[done * stride] = static_cast<std::uint8_t>(first + take_symbol(buffer_.data(), bit, table_));
     }
-    if (bit > at_ * 8) return false;
+    if (bit > std::uint64_t{at_} * 8) return false;
   }
   return true;
 }

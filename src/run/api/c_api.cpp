@@ -62,6 +62,7 @@ meshlode_status succeed(meshlode_error* error) {
 /// Calls `body`, which returns a status; memory that cannot be had is a status too.
 template <class Body>
 meshlode_status guard(meshlode_error* error, const Body& body) {
+#ifdef __cpp_exceptions
   try {
     return body();
   } catch (const std::bad_alloc&) {
@@ -69,6 +70,11 @@ meshlode_status guard(meshlode_error* error, const Body& body) {
   } catch (...) {
     return fail(error, MESHLODE_INVALID, "unexpected failure");
   }
+#else
+  // Nothing throws, and memory that cannot be had ends the program or module (tools/wasm/module.cpp).
+  static_cast<void>(error);
+  return body();
+#endif
 }
 
 meshlode_status take(Result<run::Asset> asset, meshlode_asset** out, meshlode_error* error) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "run/read/asset.h"
 
+#include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "base/byte_size.h"
@@ -82,7 +84,8 @@ Status Asset::index() {
   const auto sections = index_sections(bytes_);
   if (!sections) return sections.error();
   using enum format::SectionId;
-  std::uint64_t left = max_decoded_bytes();
+  // Of a processor of 32 bits no vector is larger, whatever the caller allows.
+  std::uint64_t left = std::min<std::uint64_t>(max_decoded_bytes(), std::numeric_limits<std::size_t>::max());
   for (const auto& [id, entry] : sections->known) {
     if (entry->codec == static_cast<std::uint32_t>(format::SectionCodec::kPlain)) continue;
     const auto stored = bytes_.subspan(entry->offset, entry->bytes);

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: MIT
+// Units: mesh space is the source mesh's; errors are distances in it; decoded positions are relative to Mesh.origin.
+
+export const NONE: number;
+export const INFINITE_ERROR: number;
+export const STUCK_REASONS: readonly string[];
+export const CODECS: readonly string[];
+export const GROUP_TERMINAL: number;
+export const GROUP_STUCK: number;
+
+export type Status = 'usage' | 'io' | 'invalid' | 'out_of_memory' | 'unsupported' | 'too_small';
+
+/** What the runtime refuses, with its place in the message. */
+export class MeshlodeError extends Error {
+  readonly status: Status;
+}
+
+type Triple = [number, number, number];
+
+export interface Mesh {
+  name: string;
+  origin: Triple;
+  gridStep: number;
+  /** Relative to origin, units of the mesh. */
+  boundsMin: Triple;
+  boundsMax: Triple;
+  diagonal: number;
+  level0Deviation: number;
+  /** 0 qem, 1 measured, 2 certified. */
+  errorTier: number;
+  /** 0 none, 1 stored, 2 flat. */
+  normalMode: number;
+  normalScale: number;
+  uvSetCount: number;
+  hasColor: boolean;
+  uvSetSource: number[];
+  /** Of every triangle; NONE: decoding says which. */
+  material: number;
+  sphereLog2: number;
+  levelCount: number;
+  sourceTriangles: number;
+  sourceVertices: number;
+  firstGroup: number;
+  groupCount: number;
+  firstCluster: number;
+  clusterCount: number;
+}
+
+export interface Material {
+  name: string;
+  sourceIndex: number;
+  /** 0 opaque, 1 mask, 2 blend. */
+  alphaMode: number;
+  baseColor: [number, number, number, number];
+  alphaCutoff: number;
+  doubleSided: boolean;
+  baseColorTexture: number;
+  baseColorUvSet: number;
+}
+
+export interface Instance {
+  name: string;
+  /** Mesh space to world, row-major 3x4. */
+  transform: Float64Array;
+  scale: number;
+  mesh: number;
+  node: number;
+  flags: number;
+}
+
+export interface Group {
+  center: Triple;
+  radius: number;
+  /** INFINITE_ERROR: never passes. */
+  error: number;
+  quadricError: number;
+  deviation: number;
+  normalDeviation: number;
+  uvDeviation: number;
+  firstCluster: number;
+  mesh: number;
+  page: number;
+  clusterCount: number;
+  level: number;
+  flags: number;
+  /** Into STUCK_REASONS. */
+  stuckReason: number;
+}
+
+export interface Cluster {
+  center: Triple;
+  radius: number;
+  coneAxis: Triple;
+  coneCutoff: number;
+  /** NONE at level 0. */
+  ownGroup: number;
+  coarserGroup: number;
+  vertexCount: number;
+  triangleCount: number;
+  level: number;
+}
+
+export interface Page {
+  offset: number;
+  storedBytes: number;
+  bytes: number;
+  /** Into CODECS. */
+  codec: number;
+  firstGroup: number;
+  groupCount: number;
+  firstCluster: number;
+  clusterCount: number;
+}
+
+export interface View {
+  /** World space; of a perspective view. */
+  eye?: Triple;
+  isOrthographic?: boolean;
+  /** Full vertical angle. */
+  fovyRadians?: number;
+  orthoHeight?: number;
+  nearDistance: number;
+  heightPx: number;
+}
+
+export interface DecodedFloats {
+  vertexCount: number;
+  triangleCount: number;
+  positions: Float32Array;
+  normals: Float32Array | null;
+  uvs: Float32Array[];
+  colors: Float32Array | null;
+  triangles: Uint8Array;
+  triangleMaterials: Uint32Array;
+}
+
+export interface DecodedIntegers {
+  vertexCount: number;
+  triangleCount: number;
+  channelCount: number;
+  values: Int32Array;
+  triangles: Uint8Array;
+  triangleMaterials: Uint32Array;
+}
+
+export interface Asset {
+  readonly meshes: Mesh[];
+  readonly materials: Material[];
+  readonly instances: Instance[];
+  readonly groups: Group[];
+  readonly clusters: Cluster[];
+  readonly pages: Page[];
+  readonly meta: unknown;
+  readonly scene: unknown;
+  selectUniform(mesh: number, maxError: number): { clusters: Uint32Array; storedError: number };
+  selectView(view: View, pixelError: number): { instances: Uint32Array; clusters: Uint32Array };
+  pageOf(cluster: number): number;
+  pageDependencies(page: number): Uint32Array;
+  streamingOrder(): Uint32Array;
+  /** Errors: invalid, where the page is broken; unsupported, where its codec is not none or strips. */
+  loadPage(page: number): void;
+  dropPage(page: number): void;
+  /** Loads the cluster's page where it is not loaded. */
+  decodeFloats(cluster: number): DecodedFloats;
+  decodeIntegers(cluster: number): DecodedIntegers;
+  close(): void;
+}
+
+export interface Runtime {
+  readonly formatVersion: number;
+  open(bytes: Uint8Array): Asset;
+}
+
+export function loadRuntime(source?: BufferSource | WebAssembly.Module): Promise<Runtime>;
