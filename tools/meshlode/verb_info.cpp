@@ -3,9 +3,13 @@
 #include <string>
 #include <utility>
 
+#include "base/byte_size.h"
 #include "budget_options.h"
+#include "info_page.h"
 #include "options.h"
+#include "out/page/viewer_page.h"
 #include "out/report/info.h"
+#include "outputs.h"
 #include "run/read/asset.h"
 #include "terminal.h"
 #include "verb.h"
@@ -22,26 +26,66 @@ std::string describe(const run::Asset& asset, const out::AssetInfo& info, const 
   return out::info_text(asset, info, list_stuck, style);
 }
 
+/// `--html`: the page beside what is printed.
+struct PageOptions {
+  std::optional<std::string> path, limit;
+  std::uint64_t max_page_bytes = out::kDefaultPageBytes;
+};
+
+void add_page_options(OptionParser& parser, PageOptions& page) {
+  parser.add_value("--html", page.path, "write a page to look at the DAG and its cuts in a browser");
+  parser.add_value("--html-limit", page.limit,
+                   "bytes of geometry in that page, such as 8MiB: of a larger asset the coarse levels (32MiB)");
+}
+
+/// What can be told before the asset is read.
+Status check_page_options(PageOptions& page) {
+  if (page.limit) {
+    const auto bytes = parse_byte_size(*page.limit);
+    if (!page.path) return Error{ErrorCode::kUsage, "--html-limit", "is for --html"};
+    if (!bytes) return Error{ErrorCode::kUsage, "--html-limit", "give a size, such as 8MiB"};
+    page.max_page_bytes = *bytes;
+  }
+  return page.path ? can_write_info_page() : Ok{};
+}
+
+Status claim_page(const run::Asset& asset, const PageOptions& page) {
+  if (!page.path) return Ok{};
+  if (const auto id = asset.file_id()) output_files().keep(*id);
+  return output_files().claim(*page.path);
+}
+
+Status write_page(const run::Asset& asset, const std::string& path, const std::optional<out::ByteMap>& byte_map,
+                  const PageOptions& options) {
+  if (!options.path) return Ok{};
+  const auto page = info_page(asset, path, byte_map, options.max_page_bytes);
+  if (!page) return page.error();
+  return write_text(*options.path, *page);
+}
+
 int run_info(const Verb& verb, std::span<char* const> args) {
   std::string path;
   std::optional<std::string> fail_if;
+  PageOptions page;
   OutputOptions output;
   bool list_stuck = false;
   OptionParser parser(verb);
   parser.add_positional("file", path, "a .lode asset");
   add_output_options(parser, output, {"csv", "markdown"});
   parser.add_flag("--stuck", list_stuck, "list every stuck group with its reason (extract --stuck shows them)");
+  add_page_options(parser, page);
   add_budget_option(parser, fail_if, "--format json", "totals.clusters>5000, any(meshes).stuck_groups>0");
   if (const auto exit_code = parser.parse(args)) return *exit_code;
   const auto budget = read_budget_option(fail_if, out::info_schema());
   if (!budget) return print_error(budget.error());
-
+  if (const Status sane = check_page_options(page); !sane) return print_error(sane.error());
   const Result<run::Asset> asset = run::Asset::open(path);
   if (!asset) return print_error(asset.error());
+  if (const Status free = claim_page(*asset, page); !free) return print_error(free.error());
   out::AssetInfo info = out::describe_asset(*asset);
   // CSV has no byte map; it takes a reading of every page.
   const bool is_map_judged = out::mentions(*budget, "byte_map");
-  if (output.format != "csv" || is_map_judged) {
+  if (output.format != "csv" || is_map_judged || page.path) {
     Result<out::ByteMap> byte_map = out::map_bytes(*asset);
     if (byte_map) {
       info.byte_map = std::move(*byte_map);
@@ -53,6 +97,8 @@ int run_info(const Verb& verb, std::span<char* const> args) {
       // What the tables say is still true.
     }
   }
+  if (const Status written = write_page(*asset, path, info.byte_map, page); !written)
+    return print_error(written.error());
   const bool is_silent = output.quiet && output.format == "text";
   if (!is_silent && !print_out(describe(*asset, info, output.format, list_stuck))) {
     return static_cast<int>(ErrorCode::kIo);
@@ -66,6 +112,7 @@ int run_info(const Verb& verb, std::span<char* const> args) {
 
 const Verb kInfoVerb{"info", "what is in an asset: totals, levels, materials, bytes, sections",
                      "meshlode info scene.lode\n  meshlode info scene.lode --format json\n"
+                     "  meshlode info scene.lode --html scene.html\n"
                      "  meshlode info scene.lode --format csv >levels.csv\n"
                      "  meshlode info scene.lode --fail-if 'totals.bytes_per_source_triangle>10, any(meshes).roots>1'",
                      run_info};

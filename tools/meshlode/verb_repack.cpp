@@ -2,7 +2,6 @@
 // repack: an asset with its pages under another codec, without the scene that it was built from. What it says stays the
 // same, and so does its content hash, which is computed again before anything is done and again of what will be
 // written.
-#include <cstring>
 #include <optional>
 #include <string>
 #include <utility>
@@ -10,15 +9,11 @@
 
 #include "base/hash.h"
 #include "base/json_writer.h"
-#include "build/write/repack.h"
-#include "build/write_meta.h"
 #include "format/names.h"
 #include "options.h"
 #include "outputs.h"
-#include "run/decode/decode.h"
+#include "repacked.h"
 #include "run/read/asset.h"
-#include "run/unpack/content_hash.h"
-#include "run/unpack/unpack.h"
 #include "verb.h"
 
 namespace meshlode::cli {
@@ -32,47 +27,6 @@ struct RepackOptions {
   std::string max_decoded = kDefaultMaxDecodedText;
   OutputOptions out;
 };
-
-Hash128 stated_hash(const run::Asset& asset) {
-  Hash128 hash{};
-  std::memcpy(hash.data(), asset.header().content_hash, hash.size());
-  return hash;
-}
-
-/// An asset that does not say what its own hash is of has been changed since it was written.
-Status check_content(const run::Asset& asset) {
-  const auto hash = run::hash_asset_content(asset);
-  if (!hash) return hash.error();
-  if (*hash == stated_hash(asset)) return Ok{};
-  return Error{ErrorCode::kInvalid, "header, field content_hash", "is not that of the content"};
-}
-
-Result<std::vector<std::uint8_t>> repack(const run::Asset& asset, format::Codec codec) {
-  std::uint64_t page_bytes = 0;
-  for (const format::PageRecord& page : asset.pages()) page_bytes += page.bytes;
-  if (const Status status = run::check_decoded_bytes(asset, page_bytes); !status) return status.error();
-  if (const Status status = check_content(asset); !status) return status.error();
-
-  build::RepackInput input;
-  for (const format::SectionEntry& entry : asset.sections()) {
-    input.sections.push_back({entry, asset.section_bytes(entry)});
-  }
-  input.content_hash = stated_hash(asset);
-  input.meta_json = build::meta_with_codec(asset.meta_json(), codec);
-  input.load_page = [&](std::size_t p) -> Result<std::vector<std::uint8_t>> {
-    const auto page = run::load_page(asset, PageId{p});
-    if (!page) return page.error();
-    return std::vector<std::uint8_t>(page->bytes().begin(), page->bytes().end());
-  };
-  input.codec = codec;
-  auto bytes = build::repack_asset(input);
-  if (!bytes) return bytes.error();
-
-  const auto written = run::Asset::from_bytes(*bytes);
-  const Status same = written ? check_content(*written) : Status(written.error());
-  if (!same) return Error{ErrorCode::kBuildFailed, "what would be written", same.error().message()};
-  return bytes;
-}
 
 std::string describe_json(const RepackOptions& o, const run::Asset& asset, std::size_t bytes) {
   JsonWriter w;
@@ -120,7 +74,7 @@ int run_repack(const Verb& verb, std::span<char* const> args) {
   if (const Status free = output_files().claim(*o.output); !free) return print_error(free.error());
   Result<std::vector<std::uint8_t>> bytes = Error{};
   JobLimit jobs(o.jobs);
-  jobs.run([&] { bytes = repack(*asset, *codec); });
+  jobs.run([&] { bytes = repacked(*asset, *codec); });
   if (!bytes) return print_error_in(o.input, bytes.error());
   if (const Status status = output_files().write(*o.output, *bytes); !status) return print_error(status.error());
   if (o.out.quiet && !o.out.json()) return 0;
