@@ -79,4 +79,15 @@ struct CameraTotals {
 CameraTotals check_cameras(const run::Asset& asset, std::span<const MeshJudge> judges, std::uint32_t count,
                            std::uint64_t seed, RuleLog& log, const Selectors& selectors = {});
 
+struct CrowdedTotals {
+  std::uint64_t cuts = 0;       ///< counted, level 0 among them
+  std::uint64_t of_source = 0;  ///< edges of more than two triangles at level 0, summed over meshes
+  std::uint64_t of_cuts = 0;    ///< the same of each mesh's cut that has most
+};
+
+/// Adds the edges of more than two triangles of level 0 and of `count` uniform cuts of one mesh, evenly by the rank of
+/// their errors. Nothing is wrong with them: they are told (docs/validation.md).
+void count_crowded_cuts(const run::Asset& asset, const MeshSurface& surface, std::uint32_t count,
+                        CrowdedTotals& totals);
+
 }  // namespace meshlode::judge

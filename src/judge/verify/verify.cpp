@@ -17,6 +17,9 @@ namespace meshlode::judge {
 
 namespace {
 
+/// Uniform cuts of a mesh whose edges are counted: a sort of all their edges each.
+constexpr std::uint32_t kCrowdedCuts = 12;
+
 class Report {
  public:
   void add_check(std::string invariant, std::string what, std::uint64_t items, std::uint64_t failures) {
@@ -136,6 +139,14 @@ void add_cuts(const run::Asset& asset, std::span<const run::DecodedCluster> clus
       "uniform cuts have no border that the source has not (" + std::to_string(uniform.open_cuts) + " of open meshes)",
       uniform.cuts, failures_of(log, {Rule::kV202}));
   report.take(log);
+  CrowdedTotals crowded;
+  for (const MeshJudge& judge : judges) {
+    count_crowded_cuts(asset, judge.surface, std::min(options.uniform_cuts, kCrowdedCuts), crowded);
+  }
+  report.add_check("",
+                   "edges of more than two triangles are told: " + std::to_string(crowded.of_source) +
+                       " at level 0, at most " + std::to_string(crowded.of_cuts) + " in a cut",
+                   crowded.cuts, 0);
 
   RuleLog camera_log;
   const CameraTotals cameras = check_cameras(asset, judges, options.cameras, options.seed, camera_log);
