@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// hard_cases: the hard cases one by one, their sweeps, and the table of docs/hard-cases.md.
+#include <algorithm>
+#include <atomic>
+#include <charconv>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "run/sweep.h"
+#include "table/pictures.h"
+#include "table/table.h"
+
+namespace meshlode::test::hard {
+namespace {
+
+constexpr std::uint32_t kPictureColumns = 10;
+
+struct Arguments {
+  std::vector<std::string> names;
+  std::string table, picture;
+  bool is_quick = false;
+  std::size_t jobs = 2;
+};
+
+const HardCase* find_case(const std::string& name) {
+  const auto found =
+      std::find_if(hard_cases().begin(), hard_cases().end(), [&](const HardCase& one) { return name == one.name; });
+  return found == hard_cases().end() ? nullptr : &*found;
+}
+
+int usage() {
+  std::fputs(
+      "usage: hard_cases list\n"
+      "       hard_cases trial CASE PARAMETER [--laws]      the lines that a sweep reads\n"
+      "       hard_cases sweep [CASE...] [--quick] [--jobs N] [--table FILE] [--picture FILE]\n",
+      stderr);
+  return 1;
+}
+
+int trial(const std::vector<std::string>& words) {
+  if (words.size() < 3) return usage();
+  const HardCase* hard_case = find_case(words[1]);
+  if (hard_case == nullptr) return usage();
+  const bool all_laws = words.size() > 3 && words[3] == "--laws";
+  const Trial result = try_case(*hard_case, std::strtod(words[2].c_str(), nullptr), all_laws);
+  std::fputs(text_of(result).c_str(), stdout);
+  return 0;
+}
+
+bool write_file(const std::string& path, const std::string& bytes) {
+  std::ofstream out(path, std::ios::binary);
+  out << bytes;
+  out.close();
+  if (!out) std::fprintf(stderr, "%s: cannot be written\n", path.c_str());
+  return static_cast<bool>(out);
+}
+
+int sweep(const std::string& program, const Arguments& arguments) {
+  std::vector<const HardCase*> chosen;
+  for (const std::string& name : arguments.names) {
+    chosen.push_back(find_case(name));
+    if (chosen.back() == nullptr) return usage();
+  }
+  if (arguments.names.empty()) {
+    for (const HardCase& one : hard_cases()) {
+      if (one.is_quick || !arguments.is_quick) chosen.push_back(&one);
+    }
+  }
+  std::vector<Swept> swept(chosen.size());
+  std::atomic<std::size_t> next = 0;
+  std::mutex printing;
+  std::vector<std::thread> threads;
+  for (std::size_t job = 0; job < arguments.jobs; ++job) {
+    threads.emplace_back([&] {
+      for (std::size_t i = next++; i < chosen.size(); i = next++) {
+        const Ask ask = [&](double parameter, bool all_laws) {
+          return try_apart(program, *chosen[i], parameter, all_laws);
+        };
+        swept[i] = sweep_case(*chosen[i], ask, {}, arguments.is_quick);
+        const std::lock_guard lock(printing);
+        std::fputs(line_of(swept[i]).c_str(), stdout);
+        std::fflush(stdout);
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  if (!arguments.table.empty() && !write_file(arguments.table, table_of(swept))) return 2;
+  if (!arguments.picture.empty()) {
+    const std::vector<std::uint8_t> png = contact_sheet(chosen, kPictureColumns);
+    if (!write_file(arguments.picture, {png.begin(), png.end()})) return 2;
+  }
+  const auto failed = std::count_if(swept.begin(), swept.end(), has_failed);
+  std::printf("%zu cases, %td fail\n", swept.size(), failed);
+  return failed == 0 ? 0 : 6;
+}
+
+int dispatch(const std::string& program, const std::vector<std::string>& words) {
+  if (words.empty()) return usage();
+  if (words[0] == "trial") return trial(words);
+  if (words[0] == "list") {
+    for (const HardCase& one : hard_cases()) {
+      std::printf("%-20s %-16s %s%s\n", one.name, one.room, one.parameter, one.is_quick ? " (quick)" : "");
+    }
+    return 0;
+  }
+  if (words[0] != "sweep") return usage();
+  Arguments arguments;
+  for (std::size_t i = 1; i < words.size(); ++i) {
+    if (words[i] == "--quick") {
+      arguments.is_quick = true;
+    } else if (words[i] == "--table" && i + 1 < words.size()) {
+      arguments.table = words[++i];
+    } else if (words[i] == "--picture" && i + 1 < words.size()) {
+      arguments.picture = words[++i];
+    } else if (words[i] == "--jobs" && i + 1 < words.size()) {
+      const std::string& text = words[++i];
+      const auto parsed = std::from_chars(text.data(), text.data() + text.size(), arguments.jobs);
+      if (parsed.ec != std::errc{} || arguments.jobs == 0) return usage();
+    } else if (words[i].starts_with("--")) {
+      return usage();
+    } else {
+      arguments.names.push_back(words[i]);
+    }
+  }
+  return sweep(program, arguments);
+}
+
+}  // namespace
+}  // namespace meshlode::test::hard
+
+int main(int argc, char** argv) {
+  return meshlode::test::hard::dispatch("/proc/self/exe", {argv + 1, argv + argc});
+}
