@@ -54,6 +54,16 @@ TEST(HardSuite, ALawFindsAnAssetOfAnotherSource) {
   EXPECT_EQ(check_company(wrong).verdict, Verdict::kFails);
 }
 
+/// Squares of its distances vanish from doubles; the judge's own may not.
+TEST(HardSuite, ATinyInstanceIsJudgedByItsDistances) {
+  Sample sample = sample_of(scene::make_rock(10));
+  for (int axis = 0; axis < 3; ++axis) sample.scene.instances[0].transform[axis] *= 1e-200;
+  const Result<Built> tiny = build_sample(std::move(sample));
+  ASSERT_TRUE(tiny.ok());
+  const LawResult result = check_invariants(*tiny);
+  EXPECT_EQ(result.verdict, Verdict::kHolds) << result.detail;
+}
+
 TEST(HardSuite, ASweepEndsWhereTheVerdictChanges) {
   HardCase fake{.room = "-", .name = "fake", .parameter = "-", .sweep = {1.0, 100.0, 1e6}};
   const Ask ask = [](double parameter, bool) {

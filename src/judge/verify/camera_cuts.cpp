@@ -103,11 +103,13 @@ Answer decide(const View& view, const format::InstanceRecord& instance, const fo
     const Vec3d origin(mesh.origin[0], mesh.origin[1], mesh.origin[2]);
     const Vec3d away = transform_point(instance, origin + c) - camera.eye;
     const Vec3d translation = transform_point(instance, origin) - camera.eye;
-    const double distance = std::sqrt(glm::dot(away, away));
+    // Where squares overflow the runtime draws what is finest (docs/numerics.md); where they vanish it does not care.
+    if (!std::isfinite(glm::dot(away, away) + glm::dot(translation, translation))) return Answer::kTooClose;
+    const double distance = std::hypot(away.x, away.y, away.z);
     const double reach = sigma * (std::sqrt(glm::dot(c, c)) + group.radius);
     right *= std::max(distance - group.radius * sigma, camera.near_distance);
     // Single precision relative to everything that was added or subtracted on the way.
-    slack = view.pixel_error * (distance + reach + std::sqrt(glm::dot(translation, translation)));
+    slack = view.pixel_error * (distance + reach + std::hypot(translation.x, translation.y, translation.z));
   }
   slack = (slack + left + right) * 4e-6;
   if (std::fabs(left - right) <= slack || !std::isfinite(left) || !std::isfinite(right)) return Answer::kTooClose;
