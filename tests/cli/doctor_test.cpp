@@ -14,6 +14,8 @@
 #include <gtest/gtest.h>
 
 #include "broken_scenes.h"
+#include "hard_case.h"
+#include "scene/detect/detect.h"
 #include "scene/import/import.h"
 
 namespace meshlode::cli {
@@ -66,6 +68,29 @@ TEST(Doctor, ThereIsABrokenSceneForEveryFault) {
   broken.insert("left-out");  // the next test
   const std::vector<std::string> ids = source_fault_ids();
   EXPECT_EQ(broken, std::set<std::string>(ids.begin(), ids.end()));
+}
+
+/// The case of docs/hard-cases.md that a fault names has that fault somewhere along its parameter.
+TEST(Doctor, TheHardCaseThatItNamesHasTheFault) {
+  const auto has_fault = [](const test::hard::HardCase& hard_case, scene::FaultKind kind) {
+    return std::any_of(hard_case.sweep.begin(), hard_case.sweep.end(), [&](double parameter) {
+      const Result<test::hard::Sample> sample = hard_case.make(parameter);
+      if (!sample) return kind == scene::FaultKind::kNotFinite;  // import refuses it, with that reason
+      const std::vector<scene::Fault> faults = scene::examine_scene(sample->scene);
+      return std::any_of(faults.begin(), faults.end(), [&](const scene::Fault& one) { return one.kind == kind; });
+    });
+  };
+  std::size_t count = 0;
+  for (const auto& [kind, name] : scene::kFaultNames) {
+    const std::string case_name = hard_case_of(kind);
+    if (case_name.empty()) continue;
+    ++count;
+    const auto cases = test::hard::hard_cases();
+    const auto found = std::find_if(cases.begin(), cases.end(), [&](const auto& one) { return one.name == case_name; });
+    ASSERT_NE(found, cases.end()) << name << " names " << case_name;
+    EXPECT_TRUE(has_fault(*found, kind)) << name << " names " << case_name;
+  }
+  EXPECT_GE(count, 8U);
 }
 
 TEST(Doctor, SaysWhatTheImportLeftOutLast) {

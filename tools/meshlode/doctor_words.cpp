@@ -19,29 +19,31 @@ using scene::FaultKind;
 struct Words {
   FaultKind kind;
   const char *title, *remedy;
+  const char* hard_case = "";  ///< of docs/hard-cases.md
 };
 
 constexpr std::array<Words, scene::kFaultNames.size()> kWords{{
     {FaultKind::kNotFinite, "vertices with an infinity or what is no number",
-     "mend the exporter; build --repair drops triangles at such positions"},
+     "mend the exporter; build --repair drops triangles at such positions", "nan"},
     {FaultKind::kDegenerate, "triangles without area",
-     "merge vertices by distance and dissolve such faces; build --repair removes those with two corners in one place"},
+     "merge vertices by distance and dissolve such faces; build --repair removes those with two corners in one place",
+     "repeated"},
     {FaultKind::kDuplicate, "triangles on the points of another one",
-     "delete the copies; where both sides are meant to be seen, make the material double-sided"},
+     "delete the copies; where both sides are meant to be seen, make the material double-sided", "repeated"},
     {FaultKind::kNonManifold, "edges of more than two triangles",
-     "take apart the sheets that meet there, or delete inner faces; build --repair cuts them"},
+     "take apart the sheets that meet there, or delete inner faces; build --repair cuts them", "book"},
     {FaultKind::kMisoriented, "edges whose two triangles face opposite sides",
-     "recalculate normals to the outside in the modelling program, or build with --repair"},
+     "recalculate normals to the outside in the modelling program, or build with --repair", "mixed-winding"},
     {FaultKind::kUnweldedSeam, "points of borders that are nearly another one",
      "merge vertices by a distance just above the gaps: borders are simplified apart, and gaps open"},
     {FaultKind::kNeedles, "triangles more than 100 times longer than high",
-     "remesh or triangulate anew: their normals are noise, and collapses turn them over"},
+     "remesh or triangulate anew: their normals are noise, and collapses turn them over", "needles"},
     {FaultKind::kErrorInFew, "triangles, a thousandth of all, that hold half of the error or more",
      "look at them first: a spike or a stray vertex there costs as much as all the rest of the surface"},
     {FaultKind::kFarFromOrigin, "vertices so far from the origin that floats are coarse beside the edges",
-     "move the mesh to its own origin, and the distance into the translation of its node"},
+     "move the mesh to its own origin, and the distance into the translation of its node", "far-floats"},
     {FaultKind::kFinerThanGrid, "triangles that vanish on the position grid: the mesh is too large for them",
-     "give fine parts a mesh of their own, delete them, or build with a smaller --position-error"},
+     "give fine parts a mesh of their own, delete them, or build with a smaller --position-error", "two-sizes"},
     {FaultKind::kSplitNormals, "vertices that normals split where the surface is smooth",
      "shade smooth, with sharp edges by angle, and export again"},
     {FaultKind::kUvIslands, "UV islands, many more than pieces of the surface",
@@ -148,6 +150,10 @@ out::DiagnosisPlace place_of(const scene::Scene& scene, const scene::Fault& faul
 
 }  // namespace
 
+const char* hard_case_of(FaultKind kind) {
+  return words_of(kind).hard_case;
+}
+
 std::vector<std::string> source_fault_ids() {
   std::vector<std::string> ids = all_names(scene::kFaultNames);
   ids.emplace_back(out::kLeftOutId);
@@ -162,6 +168,7 @@ std::vector<out::Diagnosis> diagnose_scene(const scene::Scene& scene) {
     words.id = name_of(fault.kind);
     words.title = words_of(fault.kind).title;
     words.remedy = words_of(fault.kind).remedy;
+    words.hard_case = hard_case_of(fault.kind);
     out::add_place(diagnoses, words, place_of(scene, fault, all));
   }
   for (const scene::LeftOut& left : scene.left_out) out::add_left_out(diagnoses, left.what, left.why);

@@ -6,12 +6,16 @@
 #include <vector>
 
 #include "out/doctor/diagnosis.h"
+#include "scene/detect/fault.h"
 #include "scene/scene.h"
 
 namespace meshlode::cli {
 
 /// Ids of all that diagnose_scene() may find, in one order.
 [[nodiscard]] std::vector<std::string> source_fault_ids();
+
+/// The case of docs/hard-cases.md that tries a fault along a parameter; empty: there is none.
+[[nodiscard]] const char* hard_case_of(scene::FaultKind kind);
 
 /// What scene::examine_scene finds and what the import left out, ranked: a share of a mesh counts as much as the mesh
 /// has triangles.

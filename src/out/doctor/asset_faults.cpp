@@ -29,15 +29,17 @@ constexpr double kLowShare = 1e-4;           ///< of what has no share: named la
 
 struct Words {
   const char *id, *title, *remedy;
+  const char* hard_case = "";  ///< of docs/hard-cases.md
 };
 
 constexpr Words kFewGroups{"error-in-few-groups", "a twentieth of the groups holds half of the first level's error",
                            "look at them with `extract --error`: spikes and slivers there keep the whole level fine"};
 constexpr Words kDropped{"dropped-faces", "triangles of the source that the build dropped",
-                         "remove degenerate and doubled faces from the source"};
+                         "remove degenerate and doubled faces from the source", "repeated"};
 constexpr Words kCollapsed{"grid-collapsed", "triangles of level 0 that have no area on the position grid",
                            "give fine parts a mesh of their own, or --position-error a smaller distance; slivers and "
-                           "triangles on a line are better removed from the source"};
+                           "triangles on a line are better removed from the source",
+                           "two-sizes"};
 constexpr Words kSmall{"small-meshes", "meshes of one cluster, drawn as they are at any distance",
                        "merge meshes that lie together and share materials"};
 constexpr Words kUnmeasured{"unmeasured-errors", "meshes whose errors are estimates of the quadric",
@@ -73,6 +75,7 @@ Diagnosis diagnosis_of(const Words& words) {
   diagnosis.id = words.id;
   diagnosis.title = words.title;
   diagnosis.remedy = words.remedy;
+  diagnosis.hard_case = words.hard_case;
   return diagnosis;
 }
 

@@ -166,6 +166,7 @@ std::string doctor_text(const DoctorReport& report) {
       append_format(text, "     … and %zu more (--format json lists all)\n", diagnosis.places.size() - kMaxPlaces);
     }
     text += "     remedy: " + diagnosis.remedy + "\n";
+    if (!diagnosis.hard_case.empty()) text += "     case: docs/hard-cases.md#" + diagnosis.hard_case + "\n";
   }
   return text;
 }
@@ -187,6 +188,7 @@ std::string doctor_json(const DoctorReport& report) {
     json.field("share", diagnosis.share);
     json.field("count", diagnosis.count);
     json.field("remedy", diagnosis.remedy);
+    if (!diagnosis.hard_case.empty()) json.field("hard_case", diagnosis.hard_case);
     json.key("places");
     json.begin_array();
     for (const DiagnosisPlace& place : diagnosis.places) write_place(place, json);
