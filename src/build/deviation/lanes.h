@@ -21,6 +21,10 @@ using LaneMask = std::int32_t __attribute__((vector_size(16)));
   return value;
 }
 
+inline void store_lanes(Lanes value, float* to) {
+  std::memcpy(to, &value, sizeof(value));
+}
+
 /// Lane by lane: a where the mask is set, else b.
 [[nodiscard]] inline Lanes choose(LaneMask mask, Lanes a, Lanes b) {
   LaneMask bits_a, bits_b;

@@ -2,6 +2,7 @@
 #include "build/deviation/surface_tree.h"
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -18,6 +19,11 @@ namespace {
 
 constexpr std::uint32_t kLeafSize = 4;
 constexpr std::size_t kMaxDepth = 16;  // 4^16 leaves
+
+// Of leaves that are made a thread keeps so many: what a group's queries come back to, in a quarter of a core's cache.
+constexpr std::size_t kCachedLeaves = 1024;
+// Trees of at most so many leaves hold their terms too, 32 bytes a triangle.
+constexpr std::size_t kFewLeaves = 16384;
 
 // Below this sine a triangle's normal is not trusted in floats: its edges answer for it.
 constexpr float kNeedleSine = 1e-4F;
@@ -150,9 +156,12 @@ void SurfaceTree::build(const Surface& surface, Leaves leaves) {
   surface_ = surface;
   slot_triangle_.clear();
   leaves_.clear();
+  terms_.clear();
   nodes_.clear();
   level_start_.clear();
   if (surface.triangles.empty()) return;
+  static std::atomic<std::uint64_t> trees = 0;
+  serial_ = ++trees;
   set_frame();
   std::vector<Item> items(surface.triangles.size());
   parallel_for_each_index(items.size(), 4096, [&](std::size_t i) {
@@ -180,6 +189,10 @@ void SurfaceTree::build(const Surface& surface, Leaves leaves) {
   if (leaves == Leaves::kHeld) {
     leaves_.resize(leaf_count);
     parallel_for_each_index(leaf_count, 1024, [&](std::size_t i) { leaves_[i] = make_leaf(i); });
+  }
+  if (leaves == Leaves::kHeld && leaf_count <= kFewLeaves) {
+    terms_.reserve(leaf_count);
+    for (const Leaf& leaf : leaves_) terms_.push_back(terms_of(leaf));
   }
   fill_nodes();
 }
@@ -272,23 +285,65 @@ void SurfaceTree::fill_nodes() {
   }
 }
 
-// Four triangles at once: over the inside the plane answers, elsewhere the nearest edge.
-SurfaceTree::Hit SurfaceTree::test_leaf(const Vec3f& point, std::uint32_t index, Hit best) const {
-  Leaf made;
-  if (leaves_.empty()) made = make_leaf(index);
-  const Leaf& leaf = leaves_.empty() ? made : leaves_[index];
-  const Vec3Lanes p{lanes(point.x), lanes(point.y), lanes(point.z)};
+SurfaceTree::LeafTerms SurfaceTree::terms_of(const Leaf& leaf) {
   const Vec3Lanes ab = load3(leaf.ab), ac = load3(leaf.ac);
-  const Vec3Lanes pa = p - load3(leaf.a);
-  const Vec3Lanes bc = ac - ab, pb = pa - ab;
+  const Vec3Lanes bc = ac - ab;
   const Vec3Lanes n = cross(ab, ac);
   const Lanes nn = dot(n, n);
   const Lanes ab2 = dot(ab, ab), ac2 = dot(ac, ac), bc2 = dot(bc, bc);
   const Lanes longest2 = max_lanes(ab2, max_lanes(ac2, bc2));
+  const LaneMask is_sound = nn > kNeedleSine * kNeedleSine * longest2 * longest2;
+  LeafTerms terms;
+  store_lanes(n.x, terms.normal[0].data());
+  store_lanes(n.y, terms.normal[1].data());
+  store_lanes(n.z, terms.normal[2].data());
+  store_lanes(nn, terms.normal2.data());
+  store_lanes(ab2, terms.ab2.data());
+  store_lanes(ac2, terms.ac2.data());
+  store_lanes(bc2, terms.bc2.data());
+  std::memcpy(terms.is_sound.data(), &is_sound, sizeof(is_sound));
+  return terms;
+}
+
+const SurfaceTree::CachedLeaf& SurfaceTree::made_leaf(std::uint32_t index) const {
+  thread_local std::vector<CachedLeaf> cache;
+  if (cache.empty()) cache.resize(kCachedLeaves);
+  CachedLeaf& cached = cache[index % kCachedLeaves];
+  if (cached.tree != serial_ || cached.index != index) {
+    cached.leaf = make_leaf(index);
+    cached.terms = terms_of(cached.leaf);
+    cached.tree = serial_;
+    cached.index = index;
+  }
+  return cached;
+}
+
+SurfaceTree::Hit SurfaceTree::test_leaf(const Vec3f& point, std::uint32_t index, Hit best) const {
+  if (leaves_.empty()) {
+    const CachedLeaf& made = made_leaf(index);
+    return test_triangles(point, index, made.leaf, made.terms, best);
+  }
+  const Leaf& leaf = leaves_[index];
+  return terms_.empty() ? test_triangles(point, index, leaf, terms_of(leaf), best)
+                        : test_triangles(point, index, leaf, terms_[index], best);
+}
+
+// Four triangles at once: over the inside the plane answers, elsewhere the nearest edge.
+inline SurfaceTree::Hit SurfaceTree::test_triangles(const Vec3f& point, std::uint32_t index, const Leaf& leaf,
+                                                    const LeafTerms& terms, Hit best) const {
+  const Vec3Lanes p{lanes(point.x), lanes(point.y), lanes(point.z)};
+  const Vec3Lanes ab = load3(leaf.ab), ac = load3(leaf.ac);
+  const Vec3Lanes pa = p - load3(leaf.a);
+  const Vec3Lanes bc = ac - ab, pb = pa - ab;
+  const Vec3Lanes n = load3(terms.normal);
+  const Lanes nn = load_lanes(terms.normal2.data());
+  const Lanes ab2 = load_lanes(terms.ab2.data()), ac2 = load_lanes(terms.ac2.data());
+  const Lanes bc2 = load_lanes(terms.bc2.data());
+  LaneMask is_sound;
+  std::memcpy(&is_sound, terms.is_sound.data(), sizeof(is_sound));
   const Lanes u = dot(cross(ab, pa), n), v = dot(cross(pa, ac), n), w = nn - u - v;
   const Lanes height = dot(pa, n);
-  const LaneMask is_over =
-      (u >= 0.0F) & (v >= 0.0F) & (w >= 0.0F) & (nn > kNeedleSine * kNeedleSine * longest2 * longest2);
+  const LaneMask is_over = (u >= 0.0F) & (v >= 0.0F) & (w >= 0.0F) & is_sound;
   const Lanes by_plane = height * height / max_lanes(nn, lanes(1e-37F));
   const Lanes by_edge =
       min_lanes(segment_distance2(pa, ab, dot(pa, ab), ab2),
@@ -309,7 +364,7 @@ struct Entry {
   std::uint32_t level;
   float distance2;
 };
-using Stack = std::array<Entry, 3 * kMaxDepth + 4>;
+using Stack = std::array<Entry, 3 * kMaxDepth + 8>;
 
 struct PointLanes {
   Lanes x, y, z;
@@ -345,7 +400,8 @@ void push_children(std::uint32_t first_child, std::uint32_t level, Lanes distanc
   order(1, 2);
   for (const std::uint32_t key : keys) {
     const float at = std::bit_cast<float>(key & ~3U);
-    if (at < limit) stack[size++] = {first_child + (key & 3U), level, at};
+    stack[size] = {first_child + (key & 3U), level, at};  // which of them are near is a toss: no branch
+    size += at < limit ? 1 : 0;
   }
 }
 

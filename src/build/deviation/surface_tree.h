@@ -89,6 +89,19 @@ class SurfaceTree {
   struct Leaf {
     std::array<std::array<float, 4>, 3> a, ab, ac;  ///< [axis][triangle]
   };
+  /// What of a leaf's distances does not depend on the point: worked out once where a leaf is asked often.
+  struct LeafTerms {
+    std::array<std::array<float, 4>, 3> normal;   ///< [axis][triangle]
+    std::array<float, 4> normal2, ab2, ac2, bc2;  ///< squared lengths, by triangle
+    std::array<std::int32_t, 4> is_sound;         ///< all bits: the normal is trusted
+  };
+  /// Of a leaf that is made when it is looked at.
+  struct CachedLeaf {
+    Leaf leaf;
+    LeafTerms terms;
+    std::uint64_t tree = 0;  ///< its serial number
+    std::uint32_t index = 0;
+  };
   struct Item {
     std::array<float, 3> center;
     std::uint32_t triangle;
@@ -98,14 +111,21 @@ class SurfaceTree {
   void sort_items(std::vector<Item>& items) const;
   [[nodiscard]] std::size_t leaf_count() const { return (slot_triangle_.size() + 3) / 4; }
   [[nodiscard]] Leaf make_leaf(std::size_t index) const;
+  [[nodiscard]] static LeafTerms terms_of(const Leaf& leaf);
+  /// Makes the leaf, unless this thread has it from a look before.
+  [[nodiscard]] const CachedLeaf& made_leaf(std::uint32_t index) const;
   void fill_nodes();
   [[nodiscard]] Hit test_leaf(const Vec3f& point, std::uint32_t leaf, Hit best) const;
+  [[nodiscard]] Hit test_triangles(const Vec3f& point, std::uint32_t index, const Leaf& leaf, const LeafTerms& terms,
+                                   Hit best) const;
 
   Surface surface_;
   Vec3d center_{0.0};
   double scale_ = 1.0;
   std::vector<std::uint32_t> slot_triangle_;
-  std::vector<Leaf> leaves_;  ///< or none, where they are made
+  std::vector<Leaf> leaves_;      ///< or none, where they are made
+  std::vector<LeafTerms> terms_;  ///< of the leaves that are held, where they are few
+  std::uint64_t serial_ = 0;      ///< no other tree of the process has it
   std::vector<Node> nodes_;
   std::vector<std::uint32_t> level_start_;  ///< of nodes_, from the root; node i of a level has children 4i … 4i+3
 };
