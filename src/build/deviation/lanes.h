@@ -21,6 +21,15 @@ using LaneMask = std::int32_t __attribute__((vector_size(16)));
   return value;
 }
 
+[[nodiscard]] inline LaneMask mask_lanes(std::int32_t x) {
+  return LaneMask{x, x, x, x};
+}
+[[nodiscard]] inline LaneMask load_mask(const std::int32_t* from) {
+  LaneMask value;
+  std::memcpy(&value, from, sizeof(value));
+  return value;
+}
+
 inline void store_lanes(Lanes value, float* to) {
   std::memcpy(to, &value, sizeof(value));
 }

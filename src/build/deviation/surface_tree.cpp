@@ -86,21 +86,30 @@ ItemBox box_of(std::span<const Item> items) {
   return box;
 }
 
-/// The lesser half first, of few: each is counted against each, without a branch.
+/// The lesser half first, of few: each is counted against each, four at a time and without a branch.
 template <class Item>
 void part_few(std::span<Item> items, std::size_t half, const AlongAxis& order) {
-  std::array<std::uint64_t, kFewItems> keys;  // they order as AlongAxis does
+  // Keys order as floats do. Behind the last item there are some that are less than none.
+  constexpr std::int32_t kGreatest = std::numeric_limits<std::int32_t>::max();
+  std::array<std::int32_t, kFewItems> keys, triangles;
   std::array<Item, kFewItems> parted;
-  const std::size_t count = items.size();
+  const std::size_t count = items.size(), padded = (count + 3) / 4 * 4;
   for (std::size_t i = 0; i < count; ++i) {
-    const auto bits = std::bit_cast<std::uint32_t>(items[i].center[order.axis] + 0.0F);  // one zero, not two
-    const std::uint32_t ascending = bits ^ ((bits >> 31U) != 0 ? 0xFFFFFFFFU : 0x80000000U);
-    keys[i] = static_cast<std::uint64_t>(ascending) << 32U | items[i].triangle;
+    const auto bits = std::bit_cast<std::int32_t>(items[i].center[order.axis] + 0.0F);  // one zero, not two
+    keys[i] = bits ^ (bits < 0 ? kGreatest : 0);
+    triangles[i] = static_cast<std::int32_t>(items[i].triangle);
   }
+  std::fill(keys.begin() + count, keys.begin() + padded, kGreatest);
+  std::fill(triangles.begin() + count, triangles.begin() + padded, kGreatest);
   std::size_t left = 0, right = half;
   for (std::size_t i = 0; i < count; ++i) {
-    std::size_t rank = 0;
-    for (std::size_t j = 0; j < count; ++j) rank += keys[j] < keys[i] ? 1 : 0;
+    const LaneMask key = mask_lanes(keys[i]), triangle = mask_lanes(triangles[i]);
+    LaneMask less{};  // minus how many are less, lane by lane
+    for (std::size_t j = 0; j < padded; j += 4) {
+      const LaneMask other = load_mask(&keys[j]);
+      less += (other < key) | ((other == key) & (load_mask(&triangles[j]) < triangle));
+    }
+    const auto rank = static_cast<std::size_t>(-(less[0] + less[1] + less[2] + less[3]));
     const bool is_left = rank < half;
     parted[is_left ? left : right] = items[i];
     left += is_left ? 1 : 0;
@@ -385,9 +394,11 @@ Lanes distances2_to_boxes(const Node& node, const PointLanes& p) {
 /// child's number goes into the lowest two, and four integers are sorted with the far ones first.
 void push_children(std::uint32_t first_child, std::uint32_t level, Lanes distance2, float limit, Stack& stack,
                    std::size_t& size) {
+  LaneMask bits;
+  std::memcpy(&bits, &distance2, sizeof(bits));
+  bits = (bits & ~3) | LaneMask{0, 1, 2, 3};
   std::array<std::uint32_t, 4> keys;
-  for (std::uint32_t k = 0; k < 4; ++k)
-    keys[k] = (std::bit_cast<std::uint32_t>(static_cast<float>(distance2[k])) & ~3U) | k;
+  std::memcpy(keys.data(), &bits, sizeof(bits));
   const auto order = [&](std::size_t i, std::size_t j) {
     const std::uint32_t a = std::max(keys[i], keys[j]);
     keys[j] = std::min(keys[i], keys[j]);
