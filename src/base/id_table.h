@@ -120,6 +120,9 @@ class IdSet {
             [](std::uint32_t other) { return hash_word(0, other); })
         .is_new;
   }
+  [[nodiscard]] bool has(std::uint32_t id) const {
+    return table_.find(hash_word(0, id), [id](std::uint32_t other) { return other == id; }) != IdTable::kNone;
+  }
 
  private:
   IdTable table_;

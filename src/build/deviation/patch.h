@@ -83,10 +83,10 @@ struct Patch {
       continue;
     }
     tried[count++] = place;
-    const TriangleCorners corners = other.corners_at(place);
+    const TriangleDistance triangle(other.corners_at(place));
     double farthest2 = 0.0;
     for (std::size_t j = 0; j < 3 && farthest2 < best2; ++j) {
-      farthest2 = std::max(farthest2, point_triangle_distance2(patch.corner[j], corners));
+      farthest2 = std::max(farthest2, triangle.squared_to(patch.corner[j]));
     }
     best2 = std::min(best2, farthest2);
   }

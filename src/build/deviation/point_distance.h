@@ -21,6 +21,44 @@ using TriangleCorners = std::array<Vec3d, 3>;
   return glm::dot(away, away);
 }
 
+/// A triangle that several points are asked of: what does not depend on them is worked out once.
+class TriangleDistance {
+ public:
+  explicit TriangleDistance(const TriangleCorners& corners)
+      : a_(corners[0]),
+        b_(corners[1]),
+        ab_(corners[1] - corners[0]),
+        ac_(corners[2] - corners[0]),
+        bc_(corners[2] - corners[1]),
+        n_(glm::cross(ab_, ac_)),
+        nn_(glm::dot(n_, n_)) {
+    const double longest2 = std::max(glm::dot(ab_, ab_), std::max(glm::dot(ac_, ac_), glm::dot(bc_, bc_)));
+    // Twice the area against the longest edge: a sine. Below 1e-5 the normal begins to feel the rounding, and the
+    // inside is that close to the edges anyway.
+    has_inside_ = nn_ > 1e-10 * longest2 * longest2;
+  }
+
+  /// As point_triangle_distance2().
+  [[nodiscard]] double squared_to(const Vec3d& p) const {
+    const Vec3d pa = p - a_;
+    if (has_inside_) {
+      const double v = glm::dot(glm::cross(pa, ac_), n_) / nn_;
+      const double w = glm::dot(glm::cross(ab_, pa), n_) / nn_;
+      if (v >= 0.0 && w >= 0.0 && w <= 1.0 - v) {
+        const Vec3d away = pa - ab_ * v - ac_ * w;
+        return glm::dot(away, away);
+      }
+    }
+    return std::min(point_segment_distance2(pa, ab_),
+                    std::min(point_segment_distance2(pa, ac_), point_segment_distance2(p - b_, bc_)));
+  }
+
+ private:
+  Vec3d a_, b_, ab_, ac_, bc_, n_;
+  double nn_;
+  bool has_inside_;
+};
+
 /// Squared distance. The triangle may be a needle, a segment or a point. Whatever is returned is the distance to a
 /// point of the triangle that was worked out, so that an ill-conditioned triangle makes it larger than need be, never
 /// smaller: with u = 2^-53, d what is returned and L the longest edge, the true distance is at most √d² · (1 + 8u) + 9u
@@ -28,25 +66,7 @@ using TriangleCorners = std::array<Vec3d, 3>;
 /// exact but for u each; pa, the two products and the two subtractions lose 2|pa| + 5L + √d² times u, where |pa| <= √d²
 /// + L; and the sum of squares 3u of d².) Tested against exact arithmetic.
 [[nodiscard]] inline double point_triangle_distance2(const Vec3d& p, const TriangleCorners& corners) {
-  const Vec3d ab = corners[1] - corners[0];
-  const Vec3d ac = corners[2] - corners[0];
-  const Vec3d bc = corners[2] - corners[1];
-  const Vec3d pa = p - corners[0];
-  const Vec3d n = glm::cross(ab, ac);
-  const double nn = glm::dot(n, n);
-  const double longest2 = std::max(glm::dot(ab, ab), std::max(glm::dot(ac, ac), glm::dot(bc, bc)));
-  // Twice the area against the longest edge: a sine. Below 1e-5 the normal begins to feel the rounding, and the inside
-  // is that close to the edges anyway.
-  if (nn > 1e-10 * longest2 * longest2) {
-    const double v = glm::dot(glm::cross(pa, ac), n) / nn;
-    const double w = glm::dot(glm::cross(ab, pa), n) / nn;
-    if (v >= 0.0 && w >= 0.0 && w <= 1.0 - v) {
-      const Vec3d away = pa - ab * v - ac * w;
-      return glm::dot(away, away);
-    }
-  }
-  return std::min(point_segment_distance2(pa, ab),
-                  std::min(point_segment_distance2(pa, ac), point_segment_distance2(p - corners[1], bc)));
+  return TriangleDistance(corners).squared_to(p);
 }
 
 /// What of a triangle is nearest to a point: its inside, or an edge (k: from corner k to the next) or a corner.

@@ -223,6 +223,7 @@ class SourceSearch {
   }
 
   void look_inside(std::uint32_t triangle, double radius, TreeSlot place) {
+    if (seen_inside_.has(triangle)) return;  // most are met by each of their corners
     Patch patch;
     patch.corner = source_.corners(triangle);
     double longest2 = 0.0;
@@ -230,7 +231,8 @@ class SourceSearch {
       const Vec3d edge = patch.corner[(k + 1) % 3] - patch.corner[k];
       longest2 = std::max(longest2, glm::dot(edge, edge));
     }
-    if (!(longest2 > kLargeShare * kLargeShare * radius * radius) || !seen_inside_.insert(triangle)) return;
+    if (!(longest2 > kLargeShare * kLargeShare * radius * radius)) return;
+    seen_inside_.insert(triangle);
     patch.owner = triangle;
     const std::array<std::uint32_t, 3> ids = source_.vertices(triangle);
     for (std::size_t k = 0; k < 3; ++k) patch.at_corner[k] = measure_vertex(ids[k], place, triangle);
@@ -252,9 +254,9 @@ class SourceSearch {
       if (probe.value > enough) return false;
       if (probe.place == tried) continue;
       tried = probe.place;
-      const TriangleCorners corners = tree_.corners_at(tried);
+      const TriangleDistance triangle(tree_.corners_at(tried));
       if (std::all_of(patch.corner.begin(), patch.corner.end(),
-                      [&](const Vec3d& p) { return point_triangle_distance2(p, corners) <= enough2; })) {
+                      [&](const Vec3d& p) { return triangle.squared_to(p) <= enough2; })) {
         return true;
       }
     }
