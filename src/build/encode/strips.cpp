@@ -271,16 +271,20 @@ class Striper {
   }
 
   [[nodiscard]] std::size_t choose_start(std::size_t begin, std::size_t end, std::uint32_t trial) const {
-    std::size_t best = begin;
-    std::uint32_t best_key = choice::kNever;
-    for (std::size_t t = begin; t < end; ++t) {
-      const std::uint32_t key = trial % 2 == 0 ? key_[t] : choice::by_age(key_[t]);
-      if (key < best_key) {
-        best = t;
-        best_key = key;
-      }
-    }
+    const auto age_of = [](std::uint32_t key) { return choice::by_age(key); };
+    const auto as_it_is = [](std::uint32_t key) { return key; };
+    const std::size_t best = trial % 2 == 0 ? find_least(begin, end, as_it_is) : find_least(begin, end, age_of);
     assert(choice::is_free(key_[best]));
+    return best;
+  }
+
+  /// The first of the least: in two loops, the long one of which has no branch.
+  template <class Value>
+  [[nodiscard]] std::size_t find_least(std::size_t begin, std::size_t end, const Value& value_of) const {
+    std::uint32_t least = choice::kNever;
+    for (std::size_t t = begin; t < end; ++t) least = std::min(least, value_of(key_[t]));
+    std::size_t best = begin;
+    while (value_of(key_[best]) != least) ++best;
     return best;
   }
 
