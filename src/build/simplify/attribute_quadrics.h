@@ -115,8 +115,10 @@ double AttributeQuadrics<C>::add_classes(Quadric& total, std::span<const WedgeCl
   double fixed_error = 0.0;
   with_count([&](const auto count) {
     for (const WedgeClass& c : classes) {
-      WedgeQuadric<C> joined = wedge_[c.members[0]];
-      for (std::size_t k = 1; k < c.members.size(); ++k) joined.add(wedge_[c.members[k]], count);
+      const std::size_t members = c.members.size();
+      const WedgeQuadric<C>& first = wedge_[c.members[0]];
+      WedgeQuadric<C> joined = members > 1 ? WedgeQuadric<C>::sum(first, wedge_[c.members[1]], count) : first;
+      for (std::size_t k = 2; k < members; ++k) joined.add(wedge_[c.members[k]], count);
       if (c.fixed != kNoId) {
         fixed_error += joined.evaluate(given, value_[c.fixed].data(), count);
       } else {

@@ -124,6 +124,18 @@ struct WedgeQuadric {
     }
   }
 
+  /// The sum of two, without a copy of either.
+  [[nodiscard]] static WedgeQuadric sum(const WedgeQuadric& p, const WedgeQuadric& q, std::size_t attribute_count) {
+    WedgeQuadric out;
+    out.base = p.base;
+    out.base += q.base;
+    for (std::size_t j = 0; j < attribute_count; ++j) {
+      out.gradient[j] = p.gradient[j] + q.gradient[j];
+      out.offset[j] = p.offset[j] + q.offset[j];
+    }
+    return out;
+  }
+
   /// Adds a face of weight w on which attribute j is g·p + d.
   void add_face(std::size_t j, const Vec3d& g, double d, double w) {
     base.add_plane(g, d, w);
