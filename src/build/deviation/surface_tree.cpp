@@ -327,6 +327,7 @@ const SurfaceTree::CachedLeaf& SurfaceTree::made_leaf(std::uint32_t index) const
   return cached;
 }
 
+MESHLODE_CLONED_FOR_AVX2
 SurfaceTree::Hit SurfaceTree::test_leaf(const Vec3f& point, std::uint32_t index, Hit best) const {
   if (leaves_.empty()) {
     const CachedLeaf& made = made_leaf(index);
@@ -418,6 +419,7 @@ void push_children(std::uint32_t first_child, std::uint32_t level, Lanes distanc
 
 }  // namespace
 
+MESHLODE_CLONED_FOR_AVX2
 SurfaceTree::Hit SurfaceTree::find_nearest(const Vec3f& point, Hit best, float enough) const {
   if (nodes_.empty()) return best;
   const PointLanes p{lanes(point.x), lanes(point.y), lanes(point.z)};
