@@ -14,10 +14,10 @@
 #include <vector>
 
 #include "command_line.h"
-#include "cut_judge.h"
-#include "cut_search.h"
 #include "format/names.h"
 #include "judge/metrics/attribute_drift.h"
+#include "judge/metrics/cut_judge.h"
+#include "judge/metrics/cut_search.h"
 #include "out/report/info.h"
 #include "quality_report.h"
 #include "reference.h"
@@ -91,15 +91,15 @@ class MeshBench {
       const double share = options_.cuts > 1 ? static_cast<double>(i) / (options_.cuts - 1) : 0.0;
       const double threshold = options_.from * std::pow(options_.to / options_.from, share);
       const run::UniformCut cut = run::select_uniform(asset_, mesh_, threshold * record.diagonal, by);
-      const bench::CutFigures figures = judge_.measure(cut.clusters);
+      const judge::CutFigures figures = judge_.measure(cut.clusters);
       if (!out.cuts.empty() && out.cuts.back().figures.triangles == figures.triangles) continue;
       out.cuts.push_back(measured(threshold, cut, figures, options_.drift == "all"));
     }
     for (const double x : options_.at_max)
-      out.equal.push_back(equal(run::CutError::kSelection, bench::Figure::kMax, x));
+      out.equal.push_back(equal(run::CutError::kSelection, judge::Figure::kMax, x));
     for (const double x : options_.at_rms) {
-      out.equal.push_back(equal(run::CutError::kSelection, bench::Figure::kRms, x));
-      out.equal.push_back(equal(run::CutError::kQuadric, bench::Figure::kRms, x));
+      out.equal.push_back(equal(run::CutError::kSelection, judge::Figure::kRms, x));
+      out.equal.push_back(equal(run::CutError::kQuadric, judge::Figure::kRms, x));
     }
     if (options_.with_reference) add_reference(out);
     return out;
@@ -123,7 +123,7 @@ class MeshBench {
       const auto faces =
           static_cast<std::size_t>(static_cast<double>(reference.face_count()) * (steps == 1 ? 0.5 : kStep));
       goes_on = reference.decimate_to(faces);
-      const bench::CutFigures figures = judge_.measure(reference.surface());
+      const judge::CutFigures figures = judge_.measure(reference.surface());
       bool is_any_within = false;
       for (bench::EqualDeviation& one : wanted) {
         const double figure = (one.figure == "max" ? figures.max() : figures.rms()) / out.diagonal;
@@ -141,7 +141,7 @@ class MeshBench {
     }
   }
 
-  bench::MeasuredCut measured(double threshold, const run::UniformCut& cut, const bench::CutFigures& figures,
+  bench::MeasuredCut measured(double threshold, const run::UniformCut& cut, const judge::CutFigures& figures,
                               bool with_drift) {
     const double diagonal = asset_.meshes()[mesh_.value].diagonal;
     bench::MeasuredCut out{threshold, cut.stored_error / diagonal, figures, {}};
@@ -154,24 +154,24 @@ class MeshBench {
     return out;
   }
 
-  bench::EqualDeviation equal(run::CutError by, bench::Figure figure, double x) {
+  bench::EqualDeviation equal(run::CutError by, judge::Figure figure, double x) {
     const auto start = std::chrono::steady_clock::now();
     const double diagonal = asset_.meshes()[mesh_.value].diagonal;
     bench::EqualDeviation out{by == run::CutError::kQuadric ? "quadric cuts" : "cuts",
-                              figure == bench::Figure::kMax ? "max" : "rms",
+                              figure == judge::Figure::kMax ? "max" : "rms",
                               x,
                               {},
                               0,
                               0,
                               0.0};
-    bench::CutSearch search{by, figure, x * diagonal};
-    if (options_.normals > 0.0 && figure == bench::Figure::kMax) {
-      search.accepts = [&](const run::UniformCut& cut, const bench::CutFigures& figures) {
+    judge::CutSearch search{by, figure, x * diagonal};
+    if (options_.normals > 0.0 && figure == judge::Figure::kMax) {
+      search.accepts = [&](const run::UniformCut& cut, const judge::CutFigures& figures) {
         const bench::MeasuredCut one = measured(0.0, cut, figures, true);
         return one.drift && std::max(one.drift->normal_a_to_b.rms, one.drift->normal_b_to_a.rms) <= options_.normals;
       };
     }
-    const auto found = bench::find_fewest_triangles(judge_, asset_, mesh_, search);
+    const auto found = judge::find_fewest_triangles(judge_, asset_, mesh_, search);
     if (found) {
       out.cut = measured(found->threshold / diagonal, found->cut, found->figures, options_.drift != "none");
       out.cuts_measured = found->cuts_measured;
@@ -187,7 +187,7 @@ class MeshBench {
   const Options& options_;
   judge::Surface source_;
   judge::DriftSurface shaded_;
-  bench::CutJudge judge_;
+  judge::CutJudge judge_;
 };
 
 }  // namespace

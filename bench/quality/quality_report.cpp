@@ -16,7 +16,7 @@ judge::OneWayDrift worse(const judge::OneWayDrift& a, const judge::OneWayDrift& 
 }
 
 void add_cut(std::string& out, const MeasuredCut& cut, double diagonal) {
-  const CutFigures& f = cut.figures;
+  const judge::CutFigures& f = cut.figures;
   append_format(out, "%9llu  %9.3e %9.3e  %9.3e %9.3e", static_cast<unsigned long long>(f.triangles),
                 f.max() / diagonal, f.rms() / diagonal, f.max_to_cut / diagonal, f.max_to_source / diagonal);
   if (cut.stored > 0.0) append_format(out, "  %9.3e %6.3f", cut.stored, f.max() / diagonal / cut.stored);

@@ -7,16 +7,16 @@
 #include <string>
 #include <vector>
 
-#include "cut_judge.h"
 #include "judge/metrics/attribute_drift.h"
+#include "judge/metrics/cut_judge.h"
 
 namespace meshlode::bench {
 
 /// A cut with what it deviates by.
 struct MeasuredCut {
-  double threshold = 0.0;  ///< share of the diagonal
-  double stored = 0.0;     ///< the cut's stored error, share of the diagonal
-  CutFigures figures;      ///< object units
+  double threshold = 0.0;     ///< share of the diagonal
+  double stored = 0.0;        ///< the cut's stored error, share of the diagonal
+  judge::CutFigures figures;  ///< object units
   std::optional<judge::DriftReport> drift;
 };
 

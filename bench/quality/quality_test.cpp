@@ -7,13 +7,19 @@
 #include <glm/trigonometric.hpp>
 
 #include "build/build.h"
-#include "cut_judge.h"
-#include "cut_search.h"
+#include "judge/metrics/cut_judge.h"
+#include "judge/metrics/cut_search.h"
 #include "reference.h"
 #include "scene/samples/samples.h"
 
 namespace meshlode::bench {
 namespace {
+
+using judge::cut_thresholds;
+using judge::CutFigures;
+using judge::CutJudge;
+using judge::Figure;
+using judge::find_fewest_triangles;
 
 struct Sample {
   judge::Surface source;

@@ -13,8 +13,8 @@
 #include "build/build.h"
 #include "build/preset.h"
 #include "command_line.h"
-#include "cut_judge.h"
-#include "cut_search.h"
+#include "judge/metrics/cut_judge.h"
+#include "judge/metrics/cut_search.h"
 #include "run/decode/decode.h"
 #include "run/read/asset.h"
 #include "scene/import/import.h"
@@ -64,10 +64,10 @@ void measure_mesh(const scene::SourceMesh& source, const run::Asset& asset,
   const double diagonal = asset.meshes()[one.mesh].diagonal;
   const judge::Surface surface = judge::surface_of_source(source);
   if (surface.triangles.size() < kFewTriangles || !(diagonal > 0.0)) return;
-  bench::CutJudge judge(surface, asset, decoded, MeshId(one.mesh), options.samples);
-  const auto find = [&](bench::Figure figure, const char* name, double x) {
+  judge::CutJudge judge(surface, asset, decoded, MeshId(one.mesh), options.samples);
+  const auto find = [&](judge::Figure figure, const char* name, double x) {
     const auto found =
-        bench::find_fewest_triangles(judge, asset, MeshId(one.mesh), {run::CutError::kSelection, figure, x * diagonal});
+        judge::find_fewest_triangles(judge, asset, MeshId(one.mesh), {run::CutError::kSelection, figure, x * diagonal});
     one.figure = name;
     one.x = x;
     one.triangles = found ? found->figures.triangles : 0;
@@ -76,8 +76,8 @@ void measure_mesh(const scene::SourceMesh& source, const run::Asset& asset,
                 static_cast<unsigned long long>(one.triangles));
     std::fflush(stdout);
   };
-  for (const double x : kAtMax) find(bench::Figure::kMax, "max", x);
-  for (const double x : kAtRms) find(bench::Figure::kRms, "rms", x);
+  for (const double x : kAtMax) find(judge::Figure::kMax, "max", x);
+  for (const double x : kAtRms) find(judge::Figure::kRms, "rms", x);
 }
 
 /// Error: what the build or the reader says.

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cut_search.h"
+#include "judge/metrics/cut_search.h"
 
 #include <algorithm>
 
-namespace meshlode::bench {
+namespace meshlode::judge {
 namespace {
 
 constexpr double kReach = 3.0;          // stored errors of cuts that are tried for the maximum, over x
@@ -79,4 +79,4 @@ std::optional<FoundCut> find_fewest_triangles(CutJudge& judge, const run::Asset&
   return found;
 }
 
-}  // namespace meshlode::bench
+}  // namespace meshlode::judge

@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
-#include "cut_judge.h"
+#include "judge/metrics/cut_judge.h"
 
-namespace meshlode::bench {
+namespace meshlode::judge {
 
 enum class Figure { kMax, kRms };
 
@@ -39,4 +39,4 @@ struct CutSearch {
 [[nodiscard]] std::optional<FoundCut> find_fewest_triangles(CutJudge& judge, const run::Asset& asset, MeshId mesh,
                                                             const CutSearch& search);
 
-}  // namespace meshlode::bench
+}  // namespace meshlode::judge

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cut_judge.h"
+#include "judge/metrics/cut_judge.h"
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <utility>
 
 #include "base/parallel.h"
 
-namespace meshlode::bench {
+namespace meshlode::judge {
 namespace {
 
 constexpr std::size_t kChunk = 1024;
@@ -16,57 +17,64 @@ constexpr double kAreaKept = 0.75;
 
 }  // namespace
 
-CutJudge::CutJudge(const judge::Surface& source, const run::Asset& asset, std::span<const run::DecodedCluster> decoded,
-                   MeshId mesh, std::uint64_t samples)
-    : source_(source), asset_(asset), decoded_(decoded), mesh_(mesh), samples_(samples), source_tree_(source) {
-  const judge::AreaSamples area_samples(source, samples, 1);
-  sample_count_ = static_cast<std::size_t>(area_samples.count());
-  for (std::size_t i = 0; i < sample_count_; ++i) points_.push_back(area_samples.position(area_samples.sample(i)));
-  for (const std::uint32_t v : judge::used_vertices(source)) points_.push_back(source.positions[v]);
-  if (area_samples.area() > 0.0) density_ = static_cast<double>(samples) / (kAreaKept * area_samples.area());
+CutSource::CutSource(const Surface& source, std::uint64_t sample_target) : samples(sample_target), tree(source) {
+  const AreaSamples area_samples(source, samples, 1);
+  sample_count = static_cast<std::size_t>(area_samples.count());
+  for (std::size_t i = 0; i < sample_count; ++i) points.push_back(area_samples.position(area_samples.sample(i)));
+  for (const std::uint32_t v : used_vertices(source)) points.push_back(source.positions[v]);
+  if (area_samples.area() > 0.0) density = static_cast<double>(samples) / (kAreaKept * area_samples.area());
+}
+
+CutJudge::CutJudge(std::shared_ptr<const CutSource> source, const run::Asset& asset,
+                   std::span<const run::DecodedCluster> decoded, MeshId mesh)
+    : source_(std::move(source)), asset_(asset), decoded_(decoded), mesh_(mesh) {
   clusters_.resize(asset.clusters().size());
 }
 
+CutJudge::CutJudge(const Surface& source, const run::Asset& asset, std::span<const run::DecodedCluster> decoded,
+                   MeshId mesh, std::uint64_t samples)
+    : CutJudge(std::make_shared<const CutSource>(source, samples), asset, decoded, mesh) {}
+
 CutJudge::ClusterFigures CutJudge::measure_cluster(ClusterId cluster) const {
-  const judge::Surface surface = judge::surface_of_clusters(asset_, decoded_, mesh_, std::span(&cluster, 1));
+  const Surface surface = surface_of_clusters(asset_, decoded_, mesh_, std::span(&cluster, 1));
   ClusterFigures out;
   out.is_known = true;
-  const double area = judge::AreaSamples(surface, 0, 0).area();
-  const judge::AreaSamples samples(surface, static_cast<std::uint64_t>(std::ceil(area * density_)), cluster.value + 2);
+  const double area = AreaSamples(surface, 0, 0).area();
+  const AreaSamples samples(surface, static_cast<std::uint64_t>(std::ceil(area * source_->density)), cluster.value + 2);
   std::uint32_t hint = 0xFFFFFFFFu;
   const auto distance2 = [&](const Vec3d& p) {
-    const judge::NearestPoint nearest = source_tree_.nearest(p, hint);
+    const NearestPoint nearest = source_->tree.nearest(p, hint);
     hint = nearest.triangle;
     out.max2 = std::max(out.max2, nearest.distance2);
     return nearest.distance2;
   };
   double sum2 = 0.0;
   for (std::uint64_t i = 0; i < samples.count(); ++i) sum2 += distance2(samples.position(samples.sample(i)));
-  for (const std::uint32_t v : judge::used_vertices(surface)) (void)distance2(surface.positions[v]);
+  for (const std::uint32_t v : used_vertices(surface)) (void)distance2(surface.positions[v]);
   out.area = area;
   out.mean2 = samples.count() > 0 ? sum2 / static_cast<double>(samples.count()) : 0.0;
   return out;
 }
 
-CutJudge::Forward CutJudge::measure_to_cut(const judge::TriangleTree& cut, const Limit& limit,
+CutJudge::Forward CutJudge::measure_to_cut(const TriangleTree& cut, const Limit& limit,
                                            std::vector<std::uint32_t>* worst) const {
   const double max2 = limit.max * limit.max;
-  const double sum2 = limit.rms * limit.rms * static_cast<double>(sample_count_);
+  const double sum2 = limit.rms * limit.rms * static_cast<double>(source_->sample_count);
   struct Partial {
     double sum2 = 0.0, max2 = -1.0;
     std::uint32_t worst = 0;
   };
-  std::vector<Partial> partials((points_.size() + kChunk - 1) / kChunk);
+  std::vector<Partial> partials((source_->points.size() + kChunk - 1) / kChunk);
   std::atomic<bool> is_within = true;
   std::atomic<double> sum2_so_far = 0.0;  // in any order: it decides only far from the limit, the exact sum below at it
   parallel_for_each_index(partials.size(), 1, [&](std::size_t chunk) {
     Partial& partial = partials[chunk];
     std::uint32_t hint = 0xFFFFFFFFu;
-    for (std::size_t i = chunk * kChunk; i < std::min(points_.size(), (chunk + 1) * kChunk); ++i) {
+    for (std::size_t i = chunk * kChunk; i < std::min(source_->points.size(), (chunk + 1) * kChunk); ++i) {
       if (!is_within.load(std::memory_order_relaxed)) return;
-      const judge::NearestPoint nearest = cut.nearest(points_[i], hint);
+      const NearestPoint nearest = cut.nearest(source_->points[i], hint);
       hint = nearest.triangle;
-      if (i < sample_count_) partial.sum2 += nearest.distance2;
+      if (i < source_->sample_count) partial.sum2 += nearest.distance2;
       if (nearest.distance2 > partial.max2) {
         partial.max2 = nearest.distance2;
         partial.worst = static_cast<std::uint32_t>(i);
@@ -120,9 +128,9 @@ std::optional<CutFigures> CutJudge::measure_within(std::span<const ClusterId> cl
   out.rms_to_source = area > 0.0 ? std::sqrt(sum2 / area) : 0.0;
   if (max2 > limit2 || out.rms_to_source > limit.rms) return std::nullopt;
 
-  const judge::TriangleTree tree(judge::surface_of_clusters(asset_, decoded_, mesh_, clusters));
+  const TriangleTree tree(surface_of_clusters(asset_, decoded_, mesh_, clusters));
   for (std::size_t i = suspects_.size(); i-- > 0;) {
-    if (tree.nearest(points_[suspects_[i]]).distance2 > limit2) return std::nullopt;
+    if (tree.nearest(source_->points[suspects_[i]]).distance2 > limit2) return std::nullopt;
   }
   const Forward forward = measure_to_cut(tree, limit, &suspects_);
   if (suspects_.size() > kMaxSuspects) {
@@ -130,27 +138,29 @@ std::optional<CutFigures> CutJudge::measure_within(std::span<const ClusterId> cl
   }
   if (!forward.is_within) return std::nullopt;
   out.max_to_cut = std::sqrt(forward.max2);
-  out.rms_to_cut = sample_count_ > 0 ? std::sqrt(forward.sum2 / static_cast<double>(sample_count_)) : 0.0;
+  const auto count = static_cast<double>(source_->sample_count);
+  out.rms_to_cut = source_->sample_count > 0 ? std::sqrt(forward.sum2 / count) : 0.0;
   return out;
 }
 
-CutFigures CutJudge::measure(const judge::Surface& surface) const {
+CutFigures CutJudge::measure(const Surface& surface) const {
   CutFigures out;
   out.triangles = surface.triangles.size();
-  const judge::TriangleTree tree(surface);
+  const TriangleTree tree(surface);
   const Forward forward = measure_to_cut(tree, {}, nullptr);
   out.max_to_cut = std::sqrt(forward.max2);
-  out.rms_to_cut = sample_count_ > 0 ? std::sqrt(forward.sum2 / static_cast<double>(sample_count_)) : 0.0;
+  const auto points = static_cast<double>(source_->sample_count);
+  out.rms_to_cut = source_->sample_count > 0 ? std::sqrt(forward.sum2 / points) : 0.0;
 
-  const judge::AreaSamples samples(surface, samples_, 2);
-  const std::vector<std::uint32_t> vertices = judge::used_vertices(surface);
+  const AreaSamples samples(surface, source_->samples, 2);
+  const std::vector<std::uint32_t> vertices = used_vertices(surface);
   const auto count = static_cast<std::size_t>(samples.count());
   std::vector<double> sums((count + vertices.size() + kChunk - 1) / kChunk, 0.0), maxima(sums.size(), 0.0);
   parallel_for_each_index(sums.size(), 1, [&](std::size_t chunk) {
     std::uint32_t hint = 0xFFFFFFFFu;
     for (std::size_t i = chunk * kChunk; i < std::min(count + vertices.size(), (chunk + 1) * kChunk); ++i) {
       const Vec3d p = i < count ? samples.position(samples.sample(i)) : surface.positions[vertices[i - count]];
-      const judge::NearestPoint nearest = source_tree_.nearest(p, hint);
+      const NearestPoint nearest = source_->tree.nearest(p, hint);
       hint = nearest.triangle;
       if (i < count) sums[chunk] += nearest.distance2;
       maxima[chunk] = std::max(maxima[chunk], nearest.distance2);
@@ -166,4 +176,4 @@ CutFigures CutJudge::measure(const judge::Surface& surface) const {
   return out;
 }
 
-}  // namespace meshlode::bench
+}  // namespace meshlode::judge

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -15,7 +16,7 @@
 #include "run/decode/decode.h"
 #include "run/select/select.h"
 
-namespace meshlode::bench {
+namespace meshlode::judge {
 
 /// Object units. RMS over area-uniform samples; maxima over samples and all vertices.
 struct CutFigures {
@@ -26,12 +27,26 @@ struct CutFigures {
   [[nodiscard]] double rms() const { return rms_to_cut > rms_to_source ? rms_to_cut : rms_to_source; }
 };
 
+/// A source made ready to be measured from, for as many assets as there are.
+struct CutSource {
+  /// At least `samples` area-uniform samples each way for cuts that have three quarters of the source's area or more.
+  CutSource(const Surface& source, std::uint64_t samples);
+
+  std::uint64_t samples = 0;
+  TriangleTree tree;
+  std::vector<Vec3d> points;  ///< samples, then vertices
+  std::size_t sample_count = 0;
+  double density = 0.0;  ///< samples per unit of area, on cuts
+};
+
 class CutJudge {
  public:
-  /// At least `samples` area-uniform samples each way for cuts that have three quarters of the source's area or more.
   /// \pre the arguments outlive this
-  CutJudge(const judge::Surface& source, const run::Asset& asset, std::span<const run::DecodedCluster> decoded,
-           MeshId mesh, std::uint64_t samples);
+  CutJudge(std::shared_ptr<const CutSource> source, const run::Asset& asset,
+           std::span<const run::DecodedCluster> decoded, MeshId mesh);
+  /// Of a source that nothing else is measured from.
+  CutJudge(const Surface& source, const run::Asset& asset, std::span<const run::DecodedCluster> decoded, MeshId mesh,
+           std::uint64_t samples);
 
   [[nodiscard]] CutFigures measure(std::span<const ClusterId> clusters) { return *measure_within(clusters, {}); }
   struct Limit {
@@ -40,7 +55,7 @@ class CutJudge {
   /// Nothing where the maximum or the RMS is above its limit.
   [[nodiscard]] std::optional<CutFigures> measure_within(std::span<const ClusterId> clusters, const Limit& limit);
   /// The same for a surface that is no cut (nothing is kept).
-  [[nodiscard]] CutFigures measure(const judge::Surface& surface) const;
+  [[nodiscard]] CutFigures measure(const Surface& surface) const;
 
  private:
   struct ClusterFigures {
@@ -52,20 +67,15 @@ class CutJudge {
     bool is_within = true;
   };
   [[nodiscard]] ClusterFigures measure_cluster(ClusterId cluster) const;
-  [[nodiscard]] Forward measure_to_cut(const judge::TriangleTree& cut, const Limit& limit,
+  [[nodiscard]] Forward measure_to_cut(const TriangleTree& cut, const Limit& limit,
                                        std::vector<std::uint32_t>* worst) const;
 
-  const judge::Surface& source_;
+  std::shared_ptr<const CutSource> source_;
   const run::Asset& asset_;
   std::span<const run::DecodedCluster> decoded_;
   MeshId mesh_;
-  std::uint64_t samples_;
-  double density_ = 0.0;  ///< samples per unit of area, on cuts
-  judge::TriangleTree source_tree_;
-  std::vector<Vec3d> points_;  ///< of the source: samples, then vertices
-  std::size_t sample_count_ = 0;
   std::vector<ClusterFigures> clusters_;
   std::vector<std::uint32_t> suspects_;  ///< points that were far from some cut, latest last
 };
 
-}  // namespace meshlode::bench
+}  // namespace meshlode::judge
