@@ -34,14 +34,17 @@ struct MeshOptions {
   bool operator==(const MeshOptions&) const = default;
 };
 
+constexpr std::uint32_t kUsualGroupClusters = 20, kFewestGroupClusters = 4, kMostGroupClusters = 32;
+
 /// What is said once for all meshes.
 struct SceneOptions {
   Preset preset = Preset::kDefault;
   format::Codec codec = format::Codec::kNone;
   std::uint32_t partition_seed = 1;  ///< of METIS; benchmarks vary it, to tell a change from luck
   bool repair = false;               ///< the scene was imported with repair: recorded, because it changes the bytes
-  std::uint32_t max_cluster_triangles = 128;  ///< I2; at most format::kMaxClusterTriangles
-  std::uint32_t max_cluster_vertices = 256;   ///< I2; at most format::kMaxClusterVertices
+  std::uint32_t max_cluster_triangles = 128;           ///< I2; at most format::kMaxClusterTriangles
+  std::uint32_t max_cluster_vertices = 256;            ///< I2; at most format::kMaxClusterVertices
+  std::uint32_t group_clusters = kUsualGroupClusters;  ///< what groups aim at, kFewestGroupClusters to 32
   std::uint64_t max_memory = 0;  ///< bytes that the process may take (build/needs.h); 0: what the machine has
   /// Large arrays of the process go to a file before they would exceed max_memory (tools/meshlode/spill.h).
   bool spills = false;

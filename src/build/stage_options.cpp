@@ -60,6 +60,9 @@ Status check_options(const PipelineOptions& options, std::size_t mesh_count) {
       options.max_cluster_vertices < 3 || options.max_cluster_vertices > format::kMaxClusterVertices) {
     return Error{ErrorCode::kUsage, "", "a cluster holds 1 to 256 triangles and 3 to 256 vertices"};
   }
+  if (options.group_clusters < kFewestGroupClusters || options.group_clusters > kMostGroupClusters) {
+    return Error{ErrorCode::kUsage, "", "a group aims at 4 to 32 clusters"};
+  }
   if (!options.mesh_options.empty() && options.mesh_options.size() != mesh_count) {
     return Error{ErrorCode::kUsage, "", "options of meshes are as many as there are meshes"};
   }
@@ -103,6 +106,7 @@ DagOptions dag_options(const PipelineOptions& options, const MeshOptions& own, c
   dag.caps.target_triangles = options.max_cluster_triangles - std::min(2U, options.max_cluster_triangles / 16);
   dag.caps.seed = options.partition_seed;
   dag.grouping.seed = options.partition_seed;
+  dag.grouping.target_clusters = options.group_clusters;
   dag.caps.merge_triangles = settings_of(options.preset).merge_triangles && mesh.triangles.size() >= kSmallMesh;
   dag.simplify.keep_area = is_aggregate(mesh);
   dag.max_group_bytes = format::kMaxPageBytes - kPageFrameBytes;

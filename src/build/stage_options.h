@@ -17,8 +17,8 @@
 
 namespace meshlode::build {
 
-/// Errors: kUsage for a cluster size that the format has not, an attribute that is both kept and dropped, and for mesh
-/// options of another number of meshes.
+/// Errors: kUsage for a cluster size that the format has not, a group size out of range, an attribute that is both kept
+/// and dropped, and for mesh options of another number of meshes.
 [[nodiscard]] Status check_options(const PipelineOptions& options, std::size_t mesh_count);
 
 [[nodiscard]] AttributeRequest request_of(const MeshOptions& options);

@@ -122,6 +122,7 @@ Json settings_json(const scene::Scene& scene, const PipelineOptions& options,
   if (!scene.choice.empty()) settings["scene"] = scene.choice;
   settings["cluster_triangles"] = options.max_cluster_triangles;
   settings["cluster_vertices"] = options.max_cluster_vertices;
+  if (options.group_clusters != kUsualGroupClusters) settings["group_clusters"] = options.group_clusters;
   put_budgets(settings, options);
   put_mesh_settings(settings, options, own);
   return settings;

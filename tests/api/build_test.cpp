@@ -161,6 +161,10 @@ TEST(ApiBuild, OptionsThatMakeNoSenseAreUsageErrors) {
   expect_usage("position_error", [](BuildOptions& o) { o.position_error = -1e-9; });
   expect_usage("position_error", [](BuildOptions& o) { o.position_error = o.grid_step = 0.01; });
   expect_usage("normal_error", [](BuildOptions& o) { o.normal_error = 0.0; });
+  expect_usage("cluster_triangles", [](BuildOptions& o) { o.cluster_triangles = 257; });
+  expect_usage("cluster_triangles", [](BuildOptions& o) { o.cluster_triangles = 0; });
+  expect_usage("group_clusters", [](BuildOptions& o) { o.group_clusters = 3; });
+  expect_usage("group_clusters", [](BuildOptions& o) { o.group_clusters = 33; });
   expect_usage("normal_error", [](BuildOptions& o) { o.normal_error = HUGE_VAL; });
   expect_usage("uv_error", [](BuildOptions& o) { o.uv_error = std::nan(""); });
   expect_usage("thread_count", [](BuildOptions& o) { o.thread_count = 4097; });

@@ -56,6 +56,12 @@ Status check_numbers(const BuildOptions& options) {
     if ((bits & ~kAllAttributes) != 0) return usage(field, "has bits that are no attribute's");
   }
   if ((options.keep & options.drop) != 0) return usage("BuildOptions::drop", "has an attribute of keep");
+  if (options.cluster_triangles < 1 || options.cluster_triangles > format::kMaxClusterTriangles) {
+    return usage("BuildOptions::cluster_triangles", "is not 1 to 256");
+  }
+  if (options.group_clusters < build::kFewestGroupClusters || options.group_clusters > build::kMostGroupClusters) {
+    return usage("BuildOptions::group_clusters", "is not 4 to 32");
+  }
   if (options.thread_count > 4096) return usage("BuildOptions::thread_count", "is above 4096");
   return Ok{};
 }
@@ -78,6 +84,8 @@ Result<build::PipelineOptions> make_pipeline_options(const BuildOptions& options
     pipeline.uv_error_is_default = false;
   }
   pipeline.codec = options.codec;
+  pipeline.max_cluster_triangles = options.cluster_triangles;
+  pipeline.group_clusters = options.group_clusters;
   pipeline.repair = options.repair;
   pipeline.max_memory = options.max_memory_bytes;
   return pipeline;

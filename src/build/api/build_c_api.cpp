@@ -134,6 +134,8 @@ Result<BuildOptions> read_options(const meshlode_build_options& in) {
   out.keep = in.keep;
   out.drop = in.drop;
   out.codec = static_cast<format::Codec>(in.codec);  // as wide as C's, and checked there
+  out.cluster_triangles = in.cluster_triangles;
+  out.group_clusters = in.group_clusters;
   out.grid_step = in.grid_step;
   out.position_error = in.position_error;
   out.normal_error = in.normal_error;
@@ -225,6 +227,8 @@ void meshlode_build_defaults(meshlode_build_options* options) {
   options->keep = defaults.keep;
   options->drop = defaults.drop;
   options->codec = static_cast<uint32_t>(defaults.codec);
+  options->cluster_triangles = defaults.cluster_triangles;
+  options->group_clusters = defaults.group_clusters;
   options->grid_step = defaults.grid_step;
   options->position_error = defaults.position_error;
   options->normal_error = defaults.normal_error;

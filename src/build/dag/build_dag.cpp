@@ -324,6 +324,12 @@ bool run_round(BuildPool& pool, const PreparedMesh& mesh, const GroupMeter& mete
   return any_accepted;
 }
 
+/// The efforts' sizes are those of the usual one: where another is asked for, retries are as much larger or smaller.
+std::uint32_t groups_aim_at(const Effort& effort, const GroupOptions& asked) {
+  const std::uint32_t usual = GroupOptions().target_clusters;
+  return std::clamp(effort.target_clusters * asked.target_clusters / usual, 2U, asked.max_clusters);
+}
+
 /// Every level of a mesh that is not empty; of the mesh its exact triangles are left, where they are measured against.
 /// Error: cancelled.
 Result<BuildPool> coarsen(PreparedMesh& mesh, const DagOptions& options) {
@@ -342,7 +348,7 @@ Result<BuildPool> coarsen(PreparedMesh& mesh, const DagOptions& options) {
     if (front.live.size() == 1) front.reasons.assign(1, StuckReason::kNotStuck);
     if (front.live.size() == 1 || effort_index == std::size(kEfforts)) break;
     const Effort& effort = kEfforts[effort_index];
-    grouping.target_clusters = effort.target_clusters;
+    grouping.target_clusters = groups_aim_at(effort, options.grouping);
     const Groups groups = group_clusters(grouping_input(pool, front.live, options), grouping);
     // Progress keeps the effort where it is; a round without any tries harder, and success at that starts over.
     const bool any_accepted = run_round(pool, mesh, meter, groups, round == 0, options, effort, front);

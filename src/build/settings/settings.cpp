@@ -30,6 +30,9 @@ constexpr std::array<SettingInfo, kSettingCount> kSettings{{
     {Setting::kNormalError, "normal-error", "the largest angle a stored normal may be off, degrees", "0.1", true},
     {Setting::kUvError, "uv-error", "auto, or the largest move of a UV: UV units, or 0.25px for texels", "auto", true},
     {Setting::kCodec, "codec", "disk codec of the pages", "none", false},
+    {Setting::kClusterTriangles, "cluster-triangles", "the most triangles of a cluster, 1 to 256", "128", false},
+    {Setting::kGroupClusters, "group-clusters", "how many clusters are simplified together, about: 4 to 32", "20",
+     false},
     {Setting::kRepair, "repair",
      "remove unusable, degenerate and duplicate triangles, orient the rest, split where it is no surface", "false",
      false},
@@ -48,6 +51,22 @@ std::optional<double> parse_positive(std::string_view text) {
 std::optional<double> parse_uv_error(std::string_view text) {
   if (text.ends_with("px")) text.remove_suffix(2);
   return parse_positive(text);
+}
+
+std::optional<std::uint32_t> parse_count(std::string_view text, std::uint32_t fewest, std::uint32_t most) {
+  std::uint32_t value = 0;
+  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool is_number = error == std::errc{} && rest == text.data() + text.size();
+  if (!is_number || value < fewest || value > most) return std::nullopt;
+  return value;
+}
+
+std::optional<std::uint32_t> parse_cluster_triangles(std::string_view text) {
+  return parse_count(text, 1, format::kMaxClusterTriangles);
+}
+
+std::optional<std::uint32_t> parse_group_clusters(std::string_view text) {
+  return parse_count(text, kFewestGroupClusters, kMostGroupClusters);
 }
 
 std::size_t index_of(Setting setting) {
@@ -166,6 +185,9 @@ PipelineOptions options_of(const std::array<SettledWord, kSettingCount>& words) 
     options.uv_error_is_texels = word(Setting::kUvError).ends_with("px");
     options.uv_error_is_default = false;
   }
+  options.max_cluster_triangles =
+      parse_cluster_triangles(word(Setting::kClusterTriangles)).value_or(options.max_cluster_triangles);
+  options.group_clusters = parse_group_clusters(word(Setting::kGroupClusters)).value_or(options.group_clusters);
   options.repair = word(Setting::kRepair) == "true";
   return options;
 }
@@ -220,6 +242,10 @@ std::string find_fault(Setting setting, std::string_view word) {
       return word == "auto" || parse_positive(word) ? "" : "give auto or a step above 0 in mesh units";
     case Setting::kPositionError:
       return word == "auto" || parse_positive(word) ? "" : "give auto or a distance above 0 in mesh units";
+    case Setting::kClusterTriangles:
+      return parse_cluster_triangles(word) ? "" : "give a whole number of triangles from 1 to 256";
+    case Setting::kGroupClusters:
+      return parse_group_clusters(word) ? "" : "give a whole number of clusters from 4 to 32";
     case Setting::kNormalError: return parse_positive(word) ? "" : "give an angle above 0 in degrees";
     case Setting::kUvError:
       return word == "auto" || parse_uv_error(word) ? ""

@@ -31,9 +31,11 @@ enum class Setting : std::uint8_t {
   kNormalError,
   kUvError,
   kCodec,
+  kClusterTriangles,
+  kGroupClusters,
   kRepair,
 };
-constexpr std::size_t kSettingCount = 11;
+constexpr std::size_t kSettingCount = 13;
 
 struct SettingInfo {
   Setting setting;

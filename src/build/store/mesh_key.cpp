@@ -93,12 +93,13 @@ void add_own_options(KeyHasher& key, const MeshOptions& own) {
 }
 
 void add_scene_options(KeyHasher& key, const SceneOptions& options) {
-  const auto& [preset, codec, partition_seed, repair, max_cluster_triangles, max_cluster_vertices, max_memory, spills,
-               mesh_store, mesh_options] = options;
+  const auto& [preset, codec, partition_seed, repair, max_cluster_triangles, max_cluster_vertices, group_clusters,
+               max_memory, spills, mesh_store, mesh_options] = options;
   key.value(preset);
   key.value(partition_seed);
   key.value(max_cluster_triangles);
   key.value(max_cluster_vertices);
+  key.value(group_clusters);
   static_cast<void>(codec);   // of the pages on disk, later
   static_cast<void>(repair);  // the triangles are as they are
   static_cast<void>(max_memory);

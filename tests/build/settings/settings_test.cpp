@@ -89,6 +89,15 @@ TEST(Settings, ANameIsKeptOrDroppedByTheLaterLayer) {
   EXPECT_EQ(refused.error().where, "a file: /drop");
 }
 
+TEST(Settings, ClustersHaveASize) {
+  EXPECT_EQ(settle({})->options.max_cluster_triangles, 128U);
+  const SettingLayer layer = layer_of({{Setting::kClusterTriangles, "64"}});
+  EXPECT_EQ(settle({&layer, 1})->options.max_cluster_triangles, 64U);
+  const SettingLayer groups = layer_of({{Setting::kGroupClusters, "12"}});
+  EXPECT_EQ(settle({&groups, 1})->options.group_clusters, 12U);
+  EXPECT_EQ(settle({})->options.group_clusters, 20U);
+}
+
 TEST(Settings, UvErrorsKnowTheirUnit) {
   const SettingLayer texels = layer_of({{Setting::kUvError, "0.25px"}});
   EXPECT_TRUE(settle({&texels, 1})->options.uv_error_is_texels);
@@ -112,6 +121,12 @@ TEST(Settings, WordsThatAreNoneAreRefusedWithTheNearest) {
                                                               {Setting::kUvError, "px"},
                                                               {Setting::kUvError, "1 px"},
                                                               {Setting::kCodec, "gzip"},
+                                                              {Setting::kClusterTriangles, "0"},
+                                                              {Setting::kClusterTriangles, "257"},
+                                                              {Setting::kClusterTriangles, "64.5"},
+                                                              {Setting::kClusterTriangles, "-1"},
+                                                              {Setting::kGroupClusters, "3"},
+                                                              {Setting::kGroupClusters, "33"},
                                                               {Setting::kRepair, "1"}}) {
     EXPECT_FALSE(find_fault(setting, word).empty()) << info_of(setting).name << " " << word;
     const SettingLayer layer = layer_of({{setting, word}});

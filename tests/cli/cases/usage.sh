@@ -32,6 +32,7 @@ run build a.glb --uv-error 1pxl
 run build a.glb --uv-error 0px
 run build a.glb a.glb -O out
 run info --format yaml a.lode
+run build a.glb --cluster-triangles 257
 run doctor a.glb --fail-on needle
 run doctor a.glb --fail-on ""
 files
