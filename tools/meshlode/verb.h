@@ -33,6 +33,7 @@ extern const Verb kPlanVerb;
 extern const Verb kDoctorVerb;
 extern const Verb kInfoVerb;
 extern const Verb kCompareVerb;
+extern const Verb kSweepVerb;
 extern const Verb kValidateVerb;
 extern const Verb kVerifyVerb;
 extern const Verb kRenderVerb;

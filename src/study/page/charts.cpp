@@ -137,8 +137,10 @@ Chart chart_pair(const ReportData& data, const Frontier& frontier, const Metric&
   return chart;
 }
 
-/// qem, measured or certified, whatever the knob is called; empty where no setting says it.
+/// qem, measured or certified: as the asset says, else a setting, whatever the knob is called; empty where neither
+/// does.
 std::string error_tier(const Point& point) {
+  if (!point.error_tier.empty()) return point.error_tier;
   for (const auto& [name, value] : point.settings) {
     if (value == "qem" || value == "measured" || value == "certified") return value;
   }

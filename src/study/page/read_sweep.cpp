@@ -155,7 +155,9 @@ Point read_point(Reader& in, const Json& json) {
     if (in.member(figure.value, "value") == nullptr) in.refuse(figure.key, "a figure without a value");
     point.figures[figure.key] = read_figure(in, figure.value);
   }
-  for (const Json& one : in.list(in.object(json, "asset"), "sections")) {
+  const Json& asset = in.object(json, "asset");
+  point.error_tier = in.text(in.object(asset, "settings"), "error_tier");
+  for (const Json& one : in.list(asset, "sections")) {
     point.sections.push_back({in.text(one, "name"), in.count(one, "bytes"), in.count(one, "bytes_decoded")});
   }
   point.cuts = read_cuts(in, json);

@@ -74,6 +74,7 @@ struct Point {
   std::vector<std::string> changed;             ///< knobs
   std::optional<std::string> error;             ///< why it failed
   std::string content_hash, same_asset_as;      ///< empty where there is none
+  std::string error_tier;                       ///< as the asset records it, whatever the setting left open
   bool is_experimental = false;
   std::map<std::string, Figure> figures;  ///< by the metric's key
   std::vector<ByteShare> sections;

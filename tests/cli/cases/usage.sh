@@ -6,7 +6,7 @@ code --version
 run frobnicate
 run VLIDATE
 run --versoin
-for verb in build merge plan doctor info compare validate verify render extract repack completion man; do
+for verb in build merge plan doctor info compare sweep validate verify render extract repack completion man; do
   code "$verb" --help
   code "$verb"
   code "$verb" a.lode --no-such-option
@@ -32,6 +32,10 @@ run build a.glb --uv-error 1pxl
 run build a.glb --uv-error 0px
 run build a.glb a.glb -O out
 run info --format yaml a.lode
+run sweep a.glb
+run sweep a.glb -o r --budget 5x
+run sweep a.glb -o r --want bytes
+run sweep a.glb -o r --want 'devation<=1, bytes min'
 run build a.glb --cluster-triangles 257
 run doctor a.glb --fail-on needle
 run doctor a.glb --fail-on ""

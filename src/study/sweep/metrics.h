@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The figures of a point: their names, which is better, and how repeated ones become one.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace meshlode::study {
+
+struct Metric {
+  const char* key;
+  const char* title;
+  const char* unit;
+  bool is_less_better;
+  const char* group;  ///< build, size, accuracy, triangles, load, picture
+  bool is_timed;      ///< differs from run to run
+  const char* description;
+};
+
+/// In the order of columns. Keys never change their meaning.
+[[nodiscard]] std::span<const Metric> all_metrics();
+/// Nothing for another word. Short words that people say ("bytes", "time") are known too.
+[[nodiscard]] const Metric* find_metric(std::string_view word);
+/// Keys, then the short words.
+[[nodiscard]] std::vector<std::string> metric_words();
+
+/// Shares of a mesh's diagonal at which the fewest triangles are figures.
+constexpr double kAtMax = 1e-3, kAtRms = 3e-4;
+
+/// Repeated measurements of one metric.
+struct Figure {
+  double value = 0.0;  ///< the median; of an even number the mean of the middle two
+  double min = 0.0, max = 0.0;
+  std::uint32_t count = 0;
+};
+/// \pre not empty
+[[nodiscard]] Figure figure_of(std::vector<double> values);
+
+/// By the metric's key.
+using Figures = std::map<std::string, Figure>;
+
+/// Whether one figure is better than another beyond doubt: every measurement of it than every one of the other.
+[[nodiscard]] bool is_clearly_better(const Metric& metric, const Figure& a, const Figure& b);
+
+}  // namespace meshlode::study

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which points a sweep looks at.
+#include "study/sweep/points.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace meshlode::study {
+namespace {
+
+constexpr SceneFacts kAll{2.5, true, true};
+
+TEST(SweepPoints, TheBaselineIsFirstAndHasNoArguments) {
+  const std::vector<Knob> knobs = make_knobs(kAll);
+  const std::vector<Point> points = make_points(knobs);
+  ASSERT_FALSE(points.empty());
+  EXPECT_EQ(points[0].kind, PointKind::kBaseline);
+  EXPECT_TRUE(build_arguments(knobs, points[0]).empty());
+  EXPECT_TRUE(draw_arguments(knobs, points[0]).empty());
+  EXPECT_EQ(point_label(knobs, points[0]), "baseline");
+  EXPECT_EQ(settings_key(knobs, points[0]), "") << "what is measured before there are knobs is found by it";
+}
+
+TEST(SweepPoints, EveryKnobHasTwoValuesOrMoreAndAtLeast24PointsThereAre) {
+  const std::vector<Knob> knobs = make_knobs(kAll);
+  const std::vector<Point> points = make_points(knobs);
+  EXPECT_GE(points.size(), 24U);
+  for (std::size_t k = 0; k < knobs.size(); ++k) {
+    std::set<std::size_t> values;
+    for (const Point& point : points) values.insert(point.values[k]);
+    EXPECT_GE(values.size(), 2U) << knobs[k].name;
+    EXPECT_TRUE(values.contains(knobs[k].usual)) << knobs[k].name;
+  }
+}
+
+TEST(SweepPoints, OneFactorChangesOneKnobAndACornerMore) {
+  const std::vector<Knob> knobs = make_knobs(kAll);
+  std::set<std::string> ids;
+  std::size_t corners = 0;
+  for (const Point& point : make_points(knobs)) {
+    const std::size_t changes = changed_knobs(knobs, point).size();
+    if (point.kind == PointKind::kBaseline) {
+      EXPECT_EQ(changes, 0U);
+    }
+    if (point.kind == PointKind::kOneFactor) {
+      EXPECT_EQ(changes, 1U);
+    }
+    if (point.kind == PointKind::kCorner) {
+      EXPECT_GE(changes, 2U);
+    }
+    corners += point.kind == PointKind::kCorner ? 1U : 0U;
+    EXPECT_TRUE(ids.insert(point_id(knobs, point)).second) << point_label(knobs, point);
+    EXPECT_EQ(point_id(knobs, point).size(), 16U);
+  }
+  EXPECT_GE(corners, 4U);
+}
+
+TEST(SweepPoints, AScenesBudgetsAreLeftOutWhereItHasNone) {
+  const std::vector<Knob> bare = make_knobs({1.0, false, false});
+  for (const Knob& knob : bare) {
+    EXPECT_NE(knob.name, "normal_error");
+    EXPECT_NE(knob.name, "uv_error");
+  }
+  // The same settings have the same id, whatever else is in the sweep.
+  std::map<std::string, std::string> id_of_key;
+  const std::vector<Knob> all = make_knobs({1.0, true, true});
+  for (const Point& point : make_points(all)) id_of_key[settings_key(all, point)] = point_id(all, point);
+  for (const Point& point : make_points(bare)) {
+    EXPECT_EQ(id_of_key.at(settings_key(bare, point)), point_id(bare, point));
+  }
+}
+
+TEST(SweepPoints, PositionBudgetsAreRoundAndNearTheirShareOfTheDiagonal) {
+  for (const double diagonal : {1.0, 2.5, 0.0173, 4200.0}) {
+    const std::vector<Knob> knobs = make_knobs({diagonal, false, false});
+    const auto is_position = [](const Knob& k) { return k.name == "position_error"; };
+    const auto knob = std::find_if(knobs.begin(), knobs.end(), is_position);
+    ASSERT_NE(knob, knobs.end());
+    double before = 0.0;
+    for (std::size_t v = 1; v < knob->values.size(); ++v) {
+      const double value = std::stod(knob->values[v].word);
+      EXPECT_GT(value, before);
+      before = value;
+      EXPECT_GT(value / diagonal, 0.6 * 1e-5);
+      EXPECT_LT(value / diagonal, 1.6 * 1e-3);
+    }
+  }
+}
+
+TEST(SweepPoints, DrawKnobsChangeNoAsset) {
+  const std::vector<Knob> knobs = make_knobs(kAll);
+  bool has_draw = false;
+  for (const Point& point : make_points(knobs)) {
+    const auto changed = changed_knobs(knobs, point);
+    if (changed != std::vector<std::string>{"pixel_error"}) continue;
+    has_draw = true;
+    EXPECT_EQ(build_key(knobs, point), "");
+    EXPECT_TRUE(build_arguments(knobs, point).empty());
+    ASSERT_EQ(draw_arguments(knobs, point).size(), 2U);
+    EXPECT_EQ(draw_arguments(knobs, point)[0], "--pixel-error");
+    EXPECT_EQ(std::stod(draw_arguments(knobs, point)[1]), number_of(knobs, point, "pixel_error", 0.0));
+    EXPECT_NE(number_of(knobs, point, "pixel_error", 1.0), 1.0);
+  }
+  EXPECT_TRUE(has_draw);
+}
+
+}  // namespace
+}  // namespace meshlode::study

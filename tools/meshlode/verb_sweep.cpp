@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// sweep: what each notch of accuracy costs in time and bytes, for one scene, measured.
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <unistd.h>
+
+#include "base/append_format.h"
+#include "base/file.h"
+#include "base/hash.h"
+#include "base/output_files.h"
+#include "batch/cache/program_id.h"
+#include "batch/tell/time_left.h"
+#include "camera_options.h"
+#include "options.h"
+#include "study/page/page.h"
+#include "study/page/read_sweep.h"
+#include "study/sweep/sweep.h"
+#include "verb.h"
+
+namespace meshlode::cli {
+
+namespace {
+
+/// Pictures are small: FLIP looks at every pixel's surroundings, and a point has two.
+constexpr std::uint32_t kWidth = 640, kHeight = 360;
+
+/// "90", "90s", "5m", "1.5h": seconds above 0.
+std::optional<double> parse_duration(std::string_view text) {
+  double unit = 1.0;
+  if (text.ends_with('h')) unit = 3600.0;
+  if (text.ends_with('m')) unit = 60.0;
+  if (text.ends_with('h') || text.ends_with('m') || text.ends_with('s')) text.remove_suffix(1);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool is_whole = error == std::errc{} && end == text.data() + text.size();
+  if (!is_whole || !(value > 0.0) || !std::isfinite(value * unit)) return std::nullopt;
+  return value * unit;
+}
+
+/// Wishes with semicolons between them.
+Result<std::vector<study::Wish>> parse_wishes(const std::string& text) {
+  std::vector<study::Wish> wishes;
+  for (std::size_t at = 0; at <= text.size() && !text.empty();) {
+    const std::size_t end = std::min(text.find(';', at), text.size());
+    auto wish = study::parse_wish(std::string_view(text).substr(at, end - at));
+    if (!wish) return wish.error();
+    wishes.push_back(std::move(*wish));
+    at = end + 1;
+  }
+  return wishes;
+}
+
+struct SweepWords {
+  std::string scene, report, max_decoded = kDefaultMaxDecodedText;
+  std::optional<std::string> budget, want;
+  OutputOptions out;
+};
+
+/// A bar on a terminal, a line a build elsewhere.
+class SweepShow {
+ public:
+  explicit SweepShow(bool quiet) : is_quiet_(quiet), has_bar_(!quiet && ::isatty(STDERR_FILENO) == 1) {}
+  ~SweepShow() { wipe(); }
+  SweepShow(const SweepShow&) = delete;
+  SweepShow& operator=(const SweepShow&) = delete;
+
+  void show(const study::SweepProgress& progress) {
+    if (is_quiet_) return;
+    std::string line;
+    append_format(line, "round %u/%u, asset %zu/%zu: %.60s", progress.round, progress.rounds, progress.point + 1,
+                  progress.points, progress.label.c_str());
+    if (progress.seconds_left > 0.0) line += ", " + batch::time_left_text(progress.seconds_left);
+    if (!has_bar_) {
+      std::fprintf(stderr, "%s\n", line.c_str());
+      return;
+    }
+    constexpr std::size_t kBar = 24;
+    const auto filled = static_cast<std::size_t>(progress.fraction * kBar);
+    const std::string bar = std::string(filled, '#') + std::string(kBar - filled, '.');
+    std::fprintf(stderr, "\r\033[K[%s] %3d%% %s", bar.c_str(), static_cast<int>(100.0 * progress.fraction),
+                 line.c_str());
+    std::fflush(stderr);
+    is_drawn_ = true;
+  }
+
+  void wipe() {
+    if (is_drawn_) std::fputs("\r\033[K", stderr);
+    is_drawn_ = false;
+  }
+
+ private:
+  bool is_quiet_, has_bar_, is_drawn_ = false;
+};
+
+std::string command_of(const SweepWords& words, const study::SweepOptions& options) {
+  std::string text = "meshlode sweep " + study::shell_word(words.scene) + " -o " + study::shell_word(words.report);
+  if (words.budget) text += " --budget " + study::shell_word(*words.budget);
+  if (words.want) text += " --want " + study::shell_word(*words.want);
+  if (!options.scene_choice.empty()) text += " --scene " + study::shell_word(options.scene_choice);
+  text += " --rounds " + std::to_string(options.rounds) + " --samples " + std::to_string(options.samples);
+  if (options.jobs > 0) text += " --jobs " + std::to_string(options.jobs);
+  return text;
+}
+
+Status set_options(const SweepWords& words, study::SweepOptions& options) {
+  if (words.report.empty()) return Error{ErrorCode::kUsage, "--output", "name the folder of the report"};
+  if (options.rounds < 1 || options.rounds > 1000) return Error{ErrorCode::kUsage, "--rounds", "give 1 to 1000"};
+  constexpr std::uint64_t kMostSamples = 100'000'000;
+  if (options.samples < 1 || options.samples > kMostSamples) {
+    return Error{ErrorCode::kUsage, "--samples", "give 1 to 100000000"};
+  }
+  if (words.budget) {
+    const auto seconds = parse_duration(*words.budget);
+    if (!seconds) return Error{ErrorCode::kUsage, "--budget", "give a time such as 90s, 5m or 1h"};
+    options.budget = *seconds;
+  }
+  auto wishes = parse_wishes(words.want.value_or(""));
+  if (!wishes) return wishes.error();
+  options.wishes = std::move(*wishes);
+  const Result<std::uint64_t> decoded = parse_max_decoded(words.max_decoded);
+  if (!decoded) return decoded.error();
+  options.max_decoded = *decoded;
+  options.scene = words.scene;
+  options.report = words.report;
+  options.command = command_of(words, options);
+  options.frame_scene = [](const run::Asset& asset) { return frame_scene(asset, kWidth, kHeight); };
+  // Before any thread is started: libraries that are loaded later are not this program's.
+  const auto program = batch::find_program_id();
+  if (!program) return program.error();
+  options.program_id = to_hex(*program);
+  // Not its path: that may be another program's by the time of the last round.
+  options.program = "/proc/self/exe";
+  return Ok{};
+}
+
+/// The answers, a line each.
+std::string summary_text(const study::SweepOptions& options, const study::SweepResult& result) {
+  std::string text;
+  std::size_t done = 0, failed = 0;
+  for (const study::PointResult& one : result.points) {
+    done += one.is_done && one.error.empty() ? 1U : 0U;
+    failed += one.error.empty() ? 0U : 1U;
+  }
+  append_format(text, "%zu points measured, %zu failed, %zu left out, %.0f s: ", done, failed,
+                result.points.size() - done - failed, result.spent);
+  text += options.report.string() + "/index.html\n";
+  for (const study::Recommendation& one : result.recommendations) {
+    text += one.wish.text + ": ";
+    if (!one.answer.point) {
+      text += one.answer.why + "\n";
+      continue;
+    }
+    const study::PointResult& point = result.points[*one.answer.point];
+    append_format(text, "%s %.6g, ", one.wish.goal->key, point.figures.at(one.wish.goal->key).value);
+    text += one.answer.why + "\n  " + study::build_command(options, result, point.point) + "\n";
+  }
+  return text;
+}
+
+Status keep_result(const study::SweepOptions& options, const study::SweepResult& result) {
+  const auto write = [&](const char* name, const std::string& text) {
+    return write_file_atomically(options.report / name,
+                                 {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+  };
+  if (Status written = write("sweep.csv", study::sweep_csv(result)); !written) return written;
+  const std::string json = study::sweep_json(options, result);
+  if (Status written = write("sweep.json", json); !written) return written;
+  auto data = study::page::read_sweep(json);
+  if (!data) return data.error();
+  if (Status read = study::page::read_pictures(*data, options.report); !read) return read;
+  OutputFiles files;
+  return study::page::write_report(*data, options.report, files);
+}
+
+int run_sweep(const Verb& verb, std::span<char* const> args) {
+  SweepWords words;
+  study::SweepOptions options;
+  OptionParser parser(verb);
+  parser.add_positional("scene", words.scene, "a .gltf, .glb, .ply, .obj or .stl scene");
+  parser.add_value("-o,--output", words.report, "the folder of the report (required); a sweep in it goes on");
+  parser.add_value("--budget", words.budget, "wall time to keep within, such as 90s, 5m or 1h; not given: all points");
+  parser.add_value("--want", words.want,
+                   "bounds and a goal, as in 'deviation<=1e-4, bytes min'; several with semicolons between them");
+  parser.add_value("--rounds", options.rounds, "how often each asset is built (3)");
+  parser.add_value("--samples", options.samples, "area-uniform samples of deviations, each way (100000)");
+  parser.add_value("--scene", options.scene_choice, "glTF: the name or index of the scene to build, or all");
+  add_max_decoded_option(parser, words.max_decoded);
+  add_jobs_option(parser, options.jobs);
+  add_output_options(parser, words.out);
+  if (const auto exit_code = parser.parse(args)) return *exit_code;
+  if (const Status set = set_options(words, options); !set) return print_error(set.error());
+
+  SweepShow show(words.out.quiet);
+  std::string text;
+  Status swept = Ok{};
+  JobLimit limit(options.jobs);
+  limit.run([&] {
+    swept = study::run_sweep(
+        options, [&](const study::SweepProgress& progress) { show.show(progress); },
+        [&](const study::SweepResult& result) {
+          text = words.out.json() ? study::sweep_json(options, result) : summary_text(options, result);
+          return keep_result(options, result);
+        });
+  });
+  show.wipe();
+  if (!swept) return print_error(swept.error());
+  const bool is_silent = words.out.quiet && !words.out.json();
+  if (!is_silent && !print_out(text)) return static_cast<int>(ErrorCode::kIo);
+  return 0;
+}
+
+}  // namespace
+
+const Verb kSweepVerb{"sweep", "measure what each notch of accuracy costs in time and bytes, for one scene",
+                      "meshlode sweep scene.glb -o report/ --budget 5m\n"
+                      "  meshlode sweep scene.glb -o report/ --want 'deviation<=1e-4, bytes min'",
+                      run_sweep};
+
+}  // namespace meshlode::cli
