@@ -48,6 +48,11 @@ void add_count_rows(std::vector<Row>& rows, const run::Asset& asset, const Asset
   rows.push_back({"dropped", grouped_digits(info.dropped_degenerate) + " degenerate, " +
                                  grouped_digits(info.dropped_duplicate) + " duplicate, " +
                                  grouped_digits(info.dropped_repaired) + " repaired"});
+  std::uint64_t collapsed = 0;
+  for (const format::MeshRecord& mesh : asset.meshes()) collapsed += mesh.grid_collapsed;
+  if (collapsed > 0) {
+    rows.push_back({"flat", grouped_digits(collapsed) + " triangles of level 0 have no area on the position grid"});
+  }
 }
 
 void add_more_row(std::vector<Row>& rows, std::size_t total, const char* what) {
