@@ -4,6 +4,7 @@
 
 #include <concepts>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -38,6 +39,29 @@ class JsonWriter {
   void field(std::string_view name, const T& v) {
     key(name);
     value(v);
+  }
+
+  /// A list of values.
+  template <class Range>
+  void array_field(std::string_view name, const Range& values) {
+    key(name);
+    begin_array();
+    for (const auto& v : values) value(v);
+    end_array();
+  }
+  /// null where there is none.
+  template <class T>
+  void optional_field(std::string_view name, const std::optional<T>& v) {
+    key(name);
+    if (v) {
+      value(*v);
+    } else {
+      null();
+    }
+  }
+  /// null where it is empty.
+  void text_or_null_field(std::string_view name, std::string_view text) {
+    optional_field(name, text.empty() ? std::nullopt : std::optional(text));
   }
 
   /// The document and a line break. \pre every begin has its end

@@ -2,6 +2,8 @@
 #include "base/json_writer.h"
 
 #include <limits>
+#include <optional>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -34,6 +36,21 @@ TEST(JsonWriter, NestsAndSeparates) {
   w.raw("{\"b\":[]}");
   w.end_object();
   EXPECT_EQ(w.text(), "{\n  \"a\": 1,\n  \"list\": [\n    true,\n    null,\n    {}\n  ],\n  \"raw\": {\"b\":[]}\n}\n");
+}
+
+TEST(JsonWriter, ListsAndWhatMayBeMissing) {
+  JsonWriter w;
+  w.begin_object();
+  w.array_field("list", std::vector<int>{1, 2});
+  w.array_field("none", std::vector<int>{});
+  w.optional_field("there", std::optional<double>(0.5));
+  w.optional_field("missing", std::optional<double>());
+  w.text_or_null_field("text", "a");
+  w.text_or_null_field("empty", "");
+  w.end_object();
+  EXPECT_EQ(w.text(),
+            "{\n  \"list\": [\n    1,\n    2\n  ],\n  \"none\": [],\n  \"there\": 0.5,\n  \"missing\": null,\n"
+            "  \"text\": \"a\",\n  \"empty\": null\n}\n");
 }
 
 TEST(JsonWriter, WritesInfinityAndNanAsNull) {

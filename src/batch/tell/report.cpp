@@ -39,23 +39,14 @@ void write_times(JsonWriter& w, const JobResult& r) {
   w.end_array();
 }
 
-void write_text_or_null(JsonWriter& w, const char* key, const std::string& text) {
-  w.key(key);
-  if (text.empty()) {
-    w.null();
-  } else {
-    w.value(text);
-  }
-}
-
 void write_build(JsonWriter& w, const JobResult& r) {
   w.begin_object();
   w.field("input", r.job.input.string());
   w.field("output", r.job.output.string());
   w.field("status", name_of(r.status));
-  write_text_or_null(w, "reason", r.reason);
+  w.text_or_null_field("reason", r.reason);
   w.field("exit_code", r.exit_code);
-  write_text_or_null(w, "error", r.error);
+  w.text_or_null_field("error", r.error);
   w.field("meshes", r.facts.meshes);
   w.field("meshes_from_cache", r.meshes_from_cache);
   w.field("instances", r.facts.instances);

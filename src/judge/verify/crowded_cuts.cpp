@@ -13,13 +13,7 @@ namespace {
 
 /// `count` errors of groups, evenly by rank, the largest among them; fewer where there are fewer.
 std::vector<float> errors_to_cut_at(const run::Asset& asset, const MeshSurface& surface, std::uint32_t count) {
-  std::vector<float> errors;
-  for (std::uint32_t k = 0; k < surface.group_count; ++k) {
-    const float error = asset.groups()[surface.first_group + k].error;
-    if (error < format::kInfiniteError) errors.push_back(error);
-  }
-  std::sort(errors.begin(), errors.end());
-  errors.erase(std::unique(errors.begin(), errors.end()), errors.end());
+  std::vector<float> errors = finite_group_errors(asset, surface);
   if (errors.size() <= count) return errors;
   std::vector<float> chosen;
   for (std::uint32_t i = 1; i <= count; ++i) chosen.push_back(errors[i * errors.size() / count - 1]);

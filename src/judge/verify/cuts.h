@@ -59,6 +59,9 @@ struct CutFaults {
 /// Border: the chain of the cut has only edges that the source's border allows.
 [[nodiscard]] std::string find_border_fault(const MeshJudge& judge, std::span<const std::uint8_t> drawn);
 
+/// The errors of a mesh's groups that are not infinite, rising, each once: where its uniform cuts change.
+[[nodiscard]] std::vector<float> finite_group_errors(const run::Asset& asset, const MeshSurface& surface);
+
 struct CutTotals {
   std::uint64_t cuts = 0;       ///< judged
   std::uint64_t open_cuts = 0;  ///< of meshes whose source is open

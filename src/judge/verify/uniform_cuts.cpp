@@ -9,10 +9,7 @@
 
 namespace meshlode::judge {
 
-namespace {
-
-/// Half at exact errors (evenly by rank), a quarter just below them, a quarter evenly in the logarithm; 0 first.
-std::vector<double> choose_thresholds(const run::Asset& asset, const MeshSurface& surface, std::uint32_t count) {
+std::vector<float> finite_group_errors(const run::Asset& asset, const MeshSurface& surface) {
   std::vector<float> errors;
   for (std::uint32_t k = 0; k < surface.group_count; ++k) {
     const float error = asset.groups()[surface.first_group + k].error;
@@ -20,6 +17,14 @@ std::vector<double> choose_thresholds(const run::Asset& asset, const MeshSurface
   }
   std::sort(errors.begin(), errors.end());
   errors.erase(std::unique(errors.begin(), errors.end()), errors.end());
+  return errors;
+}
+
+namespace {
+
+/// Half at exact errors (evenly by rank), a quarter just below them, a quarter evenly in the logarithm; 0 first.
+std::vector<double> choose_thresholds(const run::Asset& asset, const MeshSurface& surface, std::uint32_t count) {
+  const std::vector<float> errors = finite_group_errors(asset, surface);
   std::vector<double> thresholds{0.0};
   if (errors.empty()) return thresholds;
   const std::uint32_t at = count / 2;

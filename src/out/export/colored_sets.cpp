@@ -90,14 +90,6 @@ Status add_mesh(const run::Asset& asset, MeshId mesh, std::span<const ColoredSet
   return Ok{};
 }
 
-template <class Values>
-void write_array(JsonWriter& w, const char* name, const Values& values) {
-  w.key(name);
-  w.begin_array();
-  for (const auto v : values) w.value(v);
-  w.end_array();
-}
-
 void write_materials(JsonWriter& w, const Document& document) {
   w.key("materials");
   w.begin_array();
@@ -107,7 +99,7 @@ void write_materials(JsonWriter& w, const Document& document) {
     w.field("doubleSided", true);
     w.key("pbrMetallicRoughness");
     w.begin_object();
-    write_array(w, "baseColorFactor", std::array{color[0], color[1], color[2], 1.0F});
+    w.array_field("baseColorFactor", std::array{color[0], color[1], color[2], 1.0F});
     w.field("metallicFactor", 0);
     w.field("roughnessFactor", 1);
     w.end_object();
@@ -145,8 +137,8 @@ void write_views_and_accessors(JsonWriter& w, const Document& document) {
     w.field("componentType", kFloat);
     w.field("count", p.position_count);
     w.field("type", "VEC3");
-    write_array(w, "min", std::array{p.low.x, p.low.y, p.low.z});
-    write_array(w, "max", std::array{p.high.x, p.high.y, p.high.z});
+    w.array_field("min", std::array{p.low.x, p.low.y, p.low.z});
+    w.array_field("max", std::array{p.high.x, p.high.y, p.high.z});
     w.end_object();
     w.begin_object();
     w.field("bufferView", next++);
@@ -201,12 +193,12 @@ void write_nodes(JsonWriter& w, const run::Asset& asset, const Document& documen
       roots.push_back(next++);
       w.begin_object();
       w.field("name", asset.string(instance.name));
-      write_array(w, "matrix", matrix);
+      w.array_field("matrix", matrix);
       if (is_moved) {
-        write_array(w, "children", std::array{next++});
+        w.array_field("children", std::array{next++});
         w.end_object();
         w.begin_object();
-        write_array(w, "translation", std::array{mesh.translation.x, mesh.translation.y, mesh.translation.z});
+        w.array_field("translation", std::array{mesh.translation.x, mesh.translation.y, mesh.translation.z});
       }
       w.field("mesh", m);
       w.end_object();
@@ -216,7 +208,7 @@ void write_nodes(JsonWriter& w, const run::Asset& asset, const Document& documen
   w.key("scenes");
   w.begin_array();
   w.begin_object();
-  if (!roots.empty()) write_array(w, "nodes", roots);
+  if (!roots.empty()) w.array_field("nodes", roots);
   w.end_object();
   w.end_array();
   w.field("scene", 0);

@@ -21,14 +21,6 @@ void id_field(JsonWriter& w, const char* name, std::uint32_t id) {
   }
 }
 
-template <class Range>
-void array_field(JsonWriter& w, const char* name, const Range& values) {
-  w.key(name);
-  w.begin_array();
-  for (const auto& v : values) w.value(v);
-  w.end_array();
-}
-
 void write_totals(JsonWriter& w, const run::Asset& asset, const AssetInfo& info) {
   w.key("totals");
   w.begin_object();
@@ -64,7 +56,7 @@ void write_materials(JsonWriter& w, const run::Asset& asset) {
     w.field("alpha_mode", format::name_of(material.alpha_mode));
     w.field("alpha_cutoff", material.alpha_cutoff);
     w.field("double_sided", material.double_sided != 0);
-    array_field(w, "base_color", material.base_color);
+    w.array_field("base_color", material.base_color);
     id_field(w, "base_color_texture", material.base_color_texture);
     id_field(w, "base_color_uv_set", material.base_color_uv_set);
     w.end_object();
@@ -105,7 +97,7 @@ void write_instances(JsonWriter& w, const run::Asset& asset) {
     w.field("name", asset.string(instance.name));
     w.field("mesh", instance.mesh);
     w.field("node", instance.node);
-    array_field(w, "transform", instance.transform);  // row-major 3×4
+    w.array_field("transform", instance.transform);  // row-major 3×4
     w.field("scale", instance.scale);
     w.field("mirrored", (instance.flags & format::kInstanceMirrored) != 0);
     w.field("singular", (instance.flags & format::kInstanceSingular) != 0);
@@ -142,7 +134,7 @@ void write_mesh(JsonWriter& w, const run::Asset& asset, std::uint32_t id, const 
   w.field("clusters", info.clusters);
   w.field("groups", mesh.group_count);
   w.field("diagonal", mesh.diagonal);
-  array_field(w, "origin", mesh.origin);
+  w.array_field("origin", mesh.origin);
   w.field("grid_log2", mesh.grid.log2);
   w.field("grid_mantissa", mesh.grid.mantissa);
   w.field("error_tier", format::name_of(mesh.error_tier));

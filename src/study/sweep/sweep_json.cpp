@@ -14,33 +14,6 @@ namespace meshlode::study {
 
 namespace {
 
-template <class T>
-void write_optional(JsonWriter& w, const char* key, const std::optional<T>& value) {
-  w.key(key);
-  if (value) {
-    w.value(*value);
-  } else {
-    w.null();
-  }
-}
-
-void write_text_or_null(JsonWriter& w, const char* key, const std::string& text) {
-  w.key(key);
-  if (text.empty()) {
-    w.null();
-  } else {
-    w.value(text);
-  }
-}
-
-template <class List>
-void write_list(JsonWriter& w, const char* key, const List& list) {
-  w.key(key);
-  w.begin_array();
-  for (const auto& value : list) w.value(value);
-  w.end_array();
-}
-
 void write_ids(JsonWriter& w, const char* key, const SweepResult& result, const std::vector<std::size_t>& points) {
   w.key(key);
   w.begin_array();
@@ -70,11 +43,11 @@ void write_head(JsonWriter& w, const SweepOptions& options, const SweepResult& r
   w.field("threads", result.machine.threads);
   w.field("memory_bytes", result.machine.memory_bytes);
   w.field("system", result.machine.system);
-  write_text_or_null(w, "vulkan", result.machine.vulkan.name);
+  w.text_or_null_field("vulkan", result.machine.vulkan.name);
   w.field("vulkan_reason", result.machine.vulkan.reason);
   w.end_object();
   w.field("command", options.command);
-  write_optional(w, "budget_seconds", options.budget > 0.0 ? std::optional(options.budget) : std::nullopt);
+  w.optional_field("budget_seconds", options.budget > 0.0 ? std::optional(options.budget) : std::nullopt);
   w.field("spent_seconds", result.spent);
   w.field("rounds", options.rounds);
   w.field("complete", result.is_complete);
@@ -128,11 +101,11 @@ void write_views(JsonWriter& w, const SweepResult& result) {
     w.field("name", result.views[v].name);
     w.field("width", camera.width);
     w.field("height", camera.height);
-    write_list(w, "eye", std::vector<double>{camera.eye.x, camera.eye.y, camera.eye.z});
-    write_list(w, "target", std::vector<double>{camera.target.x, camera.target.y, camera.target.z});
+    w.array_field("eye", std::vector<double>{camera.eye.x, camera.eye.y, camera.eye.z});
+    w.array_field("target", std::vector<double>{camera.target.x, camera.target.y, camera.target.z});
     w.field("fovy", camera.fovy);
     w.field("near", camera.near_distance);
-    write_text_or_null(w, "picture", v < result.full_pictures.size() ? result.full_pictures[v] : "");
+    w.text_or_null_field("picture", v < result.full_pictures.size() ? result.full_pictures[v] : "");
     w.end_object();
   }
   w.end_array();
@@ -143,7 +116,7 @@ void write_settings(JsonWriter& w, std::span<const Knob> knobs, const Point& poi
   w.begin_object();
   for (std::size_t k = 0; k < knobs.size(); ++k) w.field(knobs[k].name, knobs[k].values[point.values[k]].word);
   w.end_object();
-  write_list(w, "changed", changed_knobs(knobs, point));
+  w.array_field("changed", changed_knobs(knobs, point));
 }
 
 void write_figures(JsonWriter& w, const Figures& figures) {
@@ -176,7 +149,7 @@ void write_asset(JsonWriter& w, const AssetFacts& asset) {
   w.field("stuck_groups", asset.stuck_groups);
   w.field("stored_triangles", asset.stored_triangles);
   w.field("stored_vertices", asset.stored_vertices);
-  write_list(w, "level_triangles", asset.level_triangles);
+  w.array_field("level_triangles", asset.level_triangles);
   w.key("sections");
   w.begin_array();
   for (const SectionBytes& section : asset.sections) {
@@ -200,8 +173,8 @@ void write_cuts(JsonWriter& w, const Measurement* asset) {
     w.field("stored", row.stored);
     w.field("max", row.max);
     w.field("rms", row.rms);
-    write_optional(w, "normal", row.normal);
-    write_optional(w, "uv", row.uv);
+    w.optional_field("normal", row.normal);
+    w.optional_field("uv", row.uv);
     w.end_object();
   }
   w.end_array();
@@ -211,8 +184,8 @@ void write_cuts(JsonWriter& w, const Measurement* asset) {
     w.begin_object();
     w.field("figure", row.figure);
     w.field("x", row.x);
-    write_optional(w, "triangles", row.triangles);
-    write_optional(w, "threshold", row.threshold);
+    w.optional_field("triangles", row.triangles);
+    w.optional_field("threshold", row.threshold);
     w.end_object();
   }
   w.end_array();
@@ -226,12 +199,12 @@ void write_pictures(JsonWriter& w, const Measurement* drawn) {
     w.field("view", row.view);
     w.field("triangles", row.triangles);
     w.field("clusters", row.clusters);
-    write_optional(w, "psnr", row.psnr);
+    w.optional_field("psnr", row.psnr);
     w.field("flip_mean", row.flip_mean);
     w.field("flip_median", row.flip_median);
     w.field("flip_max", row.flip_max);
-    write_text_or_null(w, "picture", row.picture);
-    write_text_or_null(w, "heat", row.heat);
+    w.text_or_null_field("picture", row.picture);
+    w.text_or_null_field("heat", row.heat);
     w.end_object();
   }
   w.end_array();
@@ -261,10 +234,10 @@ void write_point(JsonWriter& w, const SweepOptions& options, const SweepResult& 
   w.field("command", build_command(options, result, one.point));
   w.field("draw_command", draw_command(options, result, one.point));
   w.field("status", one.error.empty() ? "done" : "failed");
-  write_text_or_null(w, "error", one.error);
+  w.text_or_null_field("error", one.error);
   w.field("from_state", one.is_from_state);
-  write_text_or_null(w, "content_hash", is_measured ? one.asset->asset.content_hash : "");
-  write_text_or_null(w, "same_asset_as", is_measured ? same_asset_as(result, at) : "");
+  w.text_or_null_field("content_hash", is_measured ? one.asset->asset.content_hash : "");
+  w.text_or_null_field("same_asset_as", is_measured ? same_asset_as(result, at) : "");
   write_figures(w, one.figures);
   if (is_measured) write_asset(w, one.asset->asset);
   write_cuts(w, is_measured ? one.asset : nullptr);
@@ -306,9 +279,9 @@ void write_recommendation(JsonWriter& w, const SweepOptions& options, const Swee
   }
   w.end_array();
   const PointResult* point = one.answer.point ? &result.points[*one.answer.point] : nullptr;
-  write_text_or_null(w, "point", point ? point->id : "");
-  write_text_or_null(w, "command", point ? build_command(options, result, point->point) : "");
-  write_optional(w, "value", point ? std::optional(point->figures.at(one.wish.goal->key).value) : std::nullopt);
+  w.text_or_null_field("point", point ? point->id : "");
+  w.text_or_null_field("command", point ? build_command(options, result, point->point) : "");
+  w.optional_field("value", point ? std::optional(point->figures.at(one.wish.goal->key).value) : std::nullopt);
   write_ids(w, "as_good", result, one.answer.as_good);
   w.field("why", one.answer.why);
   w.end_object();
