@@ -15,6 +15,7 @@
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/output_files.h"
+#include "base/printable.h"
 #include "batch/cache/program_id.h"
 #include "batch/tell/time_left.h"
 #include "camera_options.h"
@@ -105,8 +106,14 @@ std::string command_of(const SweepWords& words, const study::SweepOptions& optio
   if (words.want) text += " --want " + study::shell_word(*words.want);
   if (!options.scene_choice.empty()) text += " --scene " + study::shell_word(options.scene_choice);
   text += " --rounds " + std::to_string(options.rounds) + " --samples " + std::to_string(options.samples);
+  if (!options.max_decoded_text.empty()) text += " --max-decoded " + study::shell_word(options.max_decoded_text);
   if (options.jobs > 0) text += " --jobs " + std::to_string(options.jobs);
   return text;
+}
+
+/// A path that no command takes for an option.
+std::string as_operand(const std::string& path) {
+  return path.starts_with('-') ? "./" + path : path;
 }
 
 Status set_options(const SweepWords& words, study::SweepOptions& options) {
@@ -127,6 +134,7 @@ Status set_options(const SweepWords& words, study::SweepOptions& options) {
   const Result<std::uint64_t> decoded = parse_max_decoded(words.max_decoded);
   if (!decoded) return decoded.error();
   options.max_decoded = *decoded;
+  if (words.max_decoded != kDefaultMaxDecodedText) options.max_decoded_text = words.max_decoded;
   options.scene = words.scene;
   options.report = words.report;
   options.command = command_of(words, options);
@@ -150,7 +158,7 @@ std::string summary_text(const study::SweepOptions& options, const study::SweepR
   }
   append_format(text, "%zu points measured, %zu failed, %zu left out, %.0f s: ", done, failed,
                 result.points.size() - done - failed, result.spent);
-  text += options.report.string() + "/index.html\n";
+  text += printable(options.report.string(), std::string::npos) + "/index.html\n";
   for (const study::Recommendation& one : result.recommendations) {
     text += one.wish.text + ": ";
     if (!one.answer.point) {
@@ -159,7 +167,8 @@ std::string summary_text(const study::SweepOptions& options, const study::SweepR
     }
     const study::PointResult& point = result.points[*one.answer.point];
     append_format(text, "%s %.6g, ", one.wish.goal->key, point.figures.at(one.wish.goal->key).value);
-    text += one.answer.why + "\n  " + study::build_command(options, result, point.point) + "\n";
+    text += one.answer.why + "\n  " + printable(study::build_command(options, result, point.point), std::string::npos) +
+            "\n";
   }
   return text;
 }
@@ -195,6 +204,8 @@ int run_sweep(const Verb& verb, std::span<char* const> args) {
   add_jobs_option(parser, options.jobs);
   add_output_options(parser, words.out);
   if (const auto exit_code = parser.parse(args)) return *exit_code;
+  words.scene = as_operand(words.scene);
+  words.report = as_operand(words.report);
   if (const Status set = set_options(words, options); !set) return print_error(set.error());
 
   SweepShow show(words.out.quiet);

@@ -100,7 +100,6 @@ Figure read_figure(Reader& in, const Json& json) {
   figure.low = in.maybe_number(json, "min").value_or(figure.value);
   figure.high = in.maybe_number(json, "max").value_or(figure.value);
   figure.count = in.maybe_count(json, "n").value_or(1);
-  figure.is_from_earlier_run = in.truth(json, "stored");
   return figure;
 }
 

@@ -17,7 +17,6 @@ struct Figure {
   double value = 0.0;
   double low = 0.0, high = 0.0;  ///< of the `count` measurements
   std::uint64_t count = 1;
-  bool is_from_earlier_run = false;
 };
 
 /// One thing that is measured of every point.

@@ -28,7 +28,8 @@ Cell change_cell(const Figure* base, const Figure* figure, const Metric& metric)
   if (figure == nullptr) return {"-", {}, {}};
   const std::string amount = amount_text(figure->value, metric.unit);
   if (base == nullptr || base == figure) return {amount, figure->value, {}};
-  const bool is_within = metric.is_timed && figure->low <= base->high && base->low <= figure->high;
+  const bool has_spread = figure->count >= 2 && base->count >= 2;
+  const bool is_within = metric.is_timed && (!has_spread || (figure->low <= base->high && base->low <= figure->high));
   return {amount, figure->value, is_within ? "≈" : change_text(base->value, figure->value)};
 }
 

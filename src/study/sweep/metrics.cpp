@@ -100,6 +100,7 @@ Figure figure_of(std::vector<double> values) {
 }
 
 bool is_clearly_better(const Metric& metric, const Figure& a, const Figure& b) {
+  if (metric.is_timed && (a.count < 2 || b.count < 2)) return false;  // nobody knows what noise is in it
   return metric.is_less_better ? a.max < b.min : a.min > b.max;
 }
 

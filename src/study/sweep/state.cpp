@@ -88,6 +88,11 @@ Status State::add(Measurement measurement) {
   return status;
 }
 
+void State::keep_for_this_run(Measurement measurement) {
+  const std::tuple key(measurement.kind, measurement.key, measurement.round);
+  measurements_.insert_or_assign(key, std::move(measurement));
+}
+
 double State::spent() const {
   double seconds = 0.0;
   for (const auto& [key, measurement] : measurements_) seconds += measurement.seconds;

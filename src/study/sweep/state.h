@@ -31,6 +31,8 @@ class State {
   [[nodiscard]] const Measurement* find_content(const std::string& content_hash) const;
   /// Keeps it, on disk first. Errors: kIo.
   [[nodiscard]] Status add(Measurement measurement);
+  /// In memory alone.
+  void keep_for_this_run(Measurement measurement);
   /// Wall seconds of all measurements.
   [[nodiscard]] double spent() const;
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
+#include <fstream>
 #include <map>
 #include <system_error>
 #include <utility>
@@ -67,14 +69,42 @@ SceneFacts facts_of(const run::Asset& asset) {
   return facts;
 }
 
+/// A folder of this run's own for assets, gone when it ends.
+class WorkFolder {
+ public:
+  /// Below `parent`. Error: kIo.
+  static Result<WorkFolder> make(const fs::path& parent) {
+    std::string name = (parent / ".meshlode-sweep-XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr) {
+      return Error{ErrorCode::kIo, parent.string(), std::error_code(errno, std::generic_category()).message()};
+    }
+    return WorkFolder(name);
+  }
+  WorkFolder(WorkFolder&& other) noexcept : path_(std::exchange(other.path_, {})) {}
+  WorkFolder(const WorkFolder&) = delete;
+  WorkFolder& operator=(const WorkFolder&) = delete;
+  ~WorkFolder() {
+    std::error_code ignored;
+    if (!path_.empty()) fs::remove_all(path_, ignored);
+  }
+  [[nodiscard]] const fs::path& path() const { return path_; }
+
+ private:
+  explicit WorkFolder(fs::path path) : path_(std::move(path)) {}
+  fs::path path_;
+};
+
 class Sweep {
  public:
-  Sweep(const SweepOptions& options, const SweepWatcher& watcher, scene::Scene scene, State state, SweepResult& result)
+  Sweep(const SweepOptions& options, const SweepWatcher& watcher, scene::Scene scene, State state, WorkFolder work,
+        std::string picture_tag, SweepResult& result)
       : options_(options),
         watcher_(watcher),
         scene_(std::move(scene)),
         source_(scene_, options.samples),
         state_(std::move(state)),
+        work_(std::move(work)),
+        picture_tag_(std::move(picture_tag)),
         result_(result) {}
 
   Status run(const KeepResult& keep) {
@@ -89,18 +119,15 @@ class Sweep {
       collect_results(state_, options_.rounds, result_);
       if (Status kept = keep(result_); !kept) return kept;
     }
-    std::error_code ignored;
-    fs::remove_all(work_folder(), ignored);
     return Ok{};
   }
 
  private:
-  [[nodiscard]] fs::path work_folder() const { return options_.report / "work"; }
   [[nodiscard]] double spent() const { return state_.spent() + unrecorded_; }
 
   /// The baseline's asset stays until the end: views and knobs come from it. Its settings key is empty.
   Status measure_baseline() {
-    const fs::path file = work_folder() / "baseline.lode";
+    const fs::path file = work_.path() / "baseline.lode";
     Status built = build({}, file, 1);
     if (!built) return built;
     if (const Measurement* failed = state_.find(MeasurementKind::kBuild, {}, 1); failed && !failed->error.empty()) {
@@ -163,15 +190,16 @@ class Sweep {
     if (!state_.find(MeasurementKind::kBuild, group.key, round_)) return true;
     if (!state_.find(MeasurementKind::kAsset, group.key)) return true;
     return std::any_of(group.points.begin(), group.points.end(), [&](std::size_t p) {
-      return !state_.find(MeasurementKind::kDraw, key_of(p)) ||
+      return !find_measured(MeasurementKind::kDraw, key_of(p), 0) ||
              !state_.find(MeasurementKind::kFrames, key_of(p), round_);
     });
   }
 
   [[nodiscard]] bool has_failed(const Group& group) const {
     const Measurement* build = state_.find(MeasurementKind::kBuild, group.key, 1);
+    const Measurement* now = state_.find(MeasurementKind::kBuild, group.key, round_);
     const Measurement* asset = state_.find(MeasurementKind::kAsset, group.key);
-    return (build && !build->error.empty()) || (asset && !asset->error.empty());
+    return (build && !build->error.empty()) || (now && !now->error.empty()) || (asset && !asset->error.empty());
   }
 
   /// What a round of the group will take: as it took before, else as planned.
@@ -191,7 +219,7 @@ class Sweep {
     if (options_.budget > 0.0 && spent() + expected(group) > options_.budget) return Ok{};
     tell(group);
     const bool is_baseline = group.key.empty();
-    const fs::path file = work_folder() / (is_baseline ? "baseline.lode" : "point.lode");
+    const fs::path file = work_.path() / (is_baseline ? "baseline.lode" : "point.lode");
     if (Status built = build(result_.points[group.points.front()].point, file, round_); !built) return built;
     if (has_failed(group)) return Ok{};
     const auto asset = run::Asset::open(file, options_.max_decoded);
@@ -231,6 +259,9 @@ class Sweep {
     std::vector<std::string> arguments{"build",   options_.scene.string(), "-o",     file.string(),
                                        "--quiet", "--no-settings-file",    "--jobs", std::to_string(options_.jobs)};
     if (!options_.scene_choice.empty()) arguments.insert(arguments.end(), {"--scene", options_.scene_choice});
+    if (!options_.max_decoded_text.empty()) {
+      arguments.insert(arguments.end(), {"--max-decoded", options_.max_decoded_text});
+    }
     if (!point.values.empty()) {
       const std::vector<std::string> settings = build_arguments(result_.knobs, point);
       arguments.insert(arguments.end(), settings.begin(), settings.end());
@@ -259,6 +290,14 @@ class Sweep {
       unrecorded_ += m.seconds;
       return Ok{};
     }
+    // Whoever killed it, or a disk that was full, may not be there the next time: that is not kept for another run.
+    constexpr int kNotFound = 127, kSignal = 128;
+    const bool is_of_this_run =
+        run->exit_code == static_cast<int>(ErrorCode::kIo) || run->exit_code == kNotFound || run->exit_code > kSignal;
+    if (is_of_this_run) {
+      state_.keep_for_this_run(std::move(m));
+      return Ok{};
+    }
     return state_.add(std::move(m));
   }
 
@@ -277,7 +316,7 @@ class Sweep {
   /// Takes a measurement that the state lacks; where it fails, so does the point.
   template <class Take>
   Status take(MeasurementKind kind, const std::string& key, std::uint32_t round, const Take& measure) {
-    if (state_.find(kind, key, round)) return Ok{};
+    if (find_measured(kind, key, round)) return Ok{};
     Measurement m;
     m.kind = kind;
     m.key = key;
@@ -298,7 +337,8 @@ class Sweep {
       const PointResult& one = result_.points[group.points[i]];
       const double pixels = number_of(result_.knobs, one.point, "pixel_error", 1.0);
       const std::string key = key_of(group.points[i]);
-      if (const Measurement* twin = find_drawn_twin(asset, pixels); twin && !state_.find(MeasurementKind::kDraw, key)) {
+      if (const Measurement* twin = find_drawn_twin(asset, pixels);
+          twin && !find_measured(MeasurementKind::kDraw, key, 0)) {
         Measurement same = *twin;
         same.key = key;
         same.seconds = 0.0;
@@ -307,7 +347,7 @@ class Sweep {
       }
       done = take(MeasurementKind::kDraw, key, 0, [&](Measurement& m) {
         return draw_point(
-            asset, views_, pixels, one.id,
+            asset, views_, pixels, one.id + "-" + picture_tag_,
             [&](const std::string& path, const draw::Image& image) { return write_picture(path, image); }, m);
       });
       if (!done) break;
@@ -334,10 +374,25 @@ class Sweep {
       if (number_of(result_.knobs, one.point, "pixel_error", 1.0) != pixels) continue;
       const Measurement* other = state_.find(MeasurementKind::kAsset, build_key(result_.knobs, one.point));
       if (other == nullptr || other->asset.content_hash != hash) continue;
-      const Measurement* drawn = state_.find(MeasurementKind::kDraw, settings_key(result_.knobs, one.point));
+      const Measurement* drawn = find_measured(MeasurementKind::kDraw, settings_key(result_.knobs, one.point), 0);
       if (drawn != nullptr && drawn->error.empty()) return drawn;
     }
     return nullptr;
+  }
+
+  /// Null, too, where a picture of it is gone.
+  [[nodiscard]] const Measurement* find_measured(MeasurementKind kind, const std::string& key,
+                                                 std::uint32_t round) const {
+    const Measurement* found = state_.find(kind, key, round);
+    if (found == nullptr) return nullptr;
+    const auto is_gone = [&](const std::string& path) {
+      std::error_code ignored;
+      return !path.empty() && !fs::exists(options_.report / path, ignored);
+    };
+    const bool is_whole = std::none_of(found->pictures.begin(), found->pictures.end(), [&](const PictureRow& row) {
+      return is_gone(row.picture) || is_gone(row.heat);
+    });
+    return is_whole ? found : nullptr;
   }
 
   [[nodiscard]] Status write_picture(const std::string& path, const draw::Image& image) const {
@@ -349,6 +404,8 @@ class Sweep {
   scene::Scene scene_;
   SourceMeasure source_;  ///< of scene_
   State state_;
+  WorkFolder work_;
+  std::string picture_tag_;  ///< in pictures' names: another scene or program has others of the same settings
   SweepResult& result_;
   ViewSet views_;
   std::vector<Group> groups_;
@@ -361,16 +418,24 @@ class Sweep {
 std::string fingerprint_of(const SweepOptions& options, const SweepResult& result) {
   const std::string text = options.program_id + "\n" + result.machine.name + "\n" + result.machine.system + "\n" +
                            std::to_string(result.machine.threads) + "\n" + result.scene.hash + "\n" +
-                           options.scene_choice + "\n" + std::to_string(options.samples) + "\n";
+                           options.scene_choice + "\n" + std::to_string(options.samples) + "\n" +
+                           std::to_string(options.max_decoded) + "\n";
   return to_hex(hash128({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}));
 }
 
-Status make_folders(const fs::path& report) {
-  for (const fs::path& folder : {report, report / "pictures", report / "work"}) {
-    std::error_code error;
-    fs::create_directories(folder, error);
-    if (error) return Error{ErrorCode::kIo, folder.string(), error.message()};
+/// The report's folder: new, empty or an earlier sweep's, so that nothing of anybody else's is written over.
+Status make_folders(const fs::path& report, const fs::path& state) {
+  std::error_code error;
+  fs::create_directories(report, error);
+  if (error) return Error{ErrorCode::kIo, report.string(), error.message()};
+  const bool is_empty = fs::is_empty(report, error);
+  if (error) return Error{ErrorCode::kIo, report.string(), error.message()};
+  if (!is_empty && !fs::exists(state, error)) {
+    return Error{ErrorCode::kUsage, report.string(), "has other things in it; name a new folder, or that of a sweep"};
   }
+  if (!std::ofstream(state, std::ios::app)) return Error{ErrorCode::kIo, state.string(), "cannot write"};
+  fs::create_directories(report / "pictures", error);
+  if (error) return Error{ErrorCode::kIo, (report / "pictures").string(), error.message()};
   return Ok{};
 }
 
@@ -383,15 +448,20 @@ Status run_sweep(const SweepOptions& options, const SweepWatcher& watcher, const
   import.may_lack_images = true;
   Result<scene::Scene> scene = scene::import_scene(options.scene, import);
   if (!scene) return scene.error();
-  if (Status made = make_folders(options.report); !made) return made;
+  const fs::path state_file = options.report / "sweep-state.txt";
+  if (Status made = make_folders(options.report, state_file); !made) return made;
+  Result<WorkFolder> work = WorkFolder::make(options.report);
+  if (!work) return work.error();
   SweepResult result;
   result.scene = summary_of(*scene);
   const MachineFacts machine = describe_machine();
   result.machine = {
       machine.processor, machine.system, options.jobs > 0 ? options.jobs : machine.threads, machine.memory_bytes, {}};
-  Result<State> state = State::open(options.report / "sweep-state.txt", fingerprint_of(options, result));
+  const std::string fingerprint = fingerprint_of(options, result);
+  Result<State> state = State::open(state_file, fingerprint);
   if (!state) return state.error();
-  Sweep sweep(options, watcher, std::move(*scene), std::move(*state), result);
+  Sweep sweep(options, watcher, std::move(*scene), std::move(*state), std::move(*work), fingerprint.substr(0, 8),
+              result);
   return sweep.run([&](const SweepResult& so_far) {
     answer_all(options.wishes, result);
     return keep(so_far);

@@ -306,6 +306,7 @@ std::string shell_word(const std::string& word) {
 std::string build_command(const SweepOptions& options, const SweepResult& result, const Point& point) {
   std::vector<std::string> words{"meshlode", "build", options.scene.string(), "-o", "out.lode", "--no-settings-file"};
   if (!options.scene_choice.empty()) words.insert(words.end(), {"--scene", options.scene_choice});
+  if (!options.max_decoded_text.empty()) words.insert(words.end(), {"--max-decoded", options.max_decoded_text});
   const std::vector<std::string> settings = build_arguments(result.knobs, point);
   words.insert(words.end(), settings.begin(), settings.end());
   return joined(words);

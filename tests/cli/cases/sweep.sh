@@ -8,6 +8,13 @@ code sweep a.glb -o report --quiet --rounds 2 --samples 500 --budget 4s
 cmp first.csv report/sweep.csv && echo "the same table"
 "$JSON_CHECK" "$SCHEMAS/sweep.schema.json" <report/sweep.json
 ls report
+# A picture that is gone is drawn again, and nothing else is measured; what lies in the folder stays.
+mkdir report/work
+touch report/work/mine
+gone=$(ls report/pictures | head -n 1)
+rm "report/pictures/$gone"
+code sweep a.glb -o report --quiet --rounds 2 --samples 500 --budget 4s
+[ -s "report/pictures/$gone" ] && cmp first.csv report/sweep.csv && ls -A report
 # What is recommended keeps what was wished.
 json sweep sweep a.glb -o report --rounds 2 --samples 500 --budget 4s --want 'deviation<=1, bytes min' --format json
 # Killed twice on its way: nothing that was finished is measured again, and the rest is.
@@ -22,3 +29,11 @@ head -c "$(stat -c %s before.txt)" killed/sweep-state.txt | cmp - before.txt && 
 [ -z "$(cut -d ' ' -f 3- killed/sweep-state.txt | grep -o '"kind":"[a-z]*","key":"[^"]*","round":[0-9]*' | sort | uniq -d)" ] &&
   echo "nothing was measured twice"
 run sweep missing.glb -o other
+# A folder with other things is no report; a scene's name is no option.
+mkdir others
+touch others/photo.jpg
+run sweep a.glb -o others
+ls -A others
+cp a.glb ./-a.glb
+code sweep -o dash --quiet --rounds 1 --samples 500 --budget 1s --want 'deviation<=1, bytes min' -- -a.glb
+grep -o 'meshlode build ./-a.glb' dash/sweep.json | sort -u

@@ -23,15 +23,15 @@ ReportData two_points() {
   base.id = "a";
   base.label = "baseline";
   base.settings["codec"] = "zstd";
-  base.figures["build_user_seconds"] = {2.0, 1.9, 2.2, 3, false};
-  base.figures["file_bytes"] = {1000.0, 1000.0, 1000.0, 1, false};
+  base.figures["build_user_seconds"] = {2.0, 1.9, 2.2, 3};
+  base.figures["file_bytes"] = {1000.0, 1000.0, 1000.0, 1};
   other = base;
   other.id = "b";
   other.label = "codec none";
   other.changed = {"codec"};
   other.settings["codec"] = "none";
-  other.figures["build_user_seconds"] = {2.3, 2.1, 2.4, 3, false};
-  other.figures["file_bytes"] = {1250.0, 1250.0, 1250.0, 1, false};
+  other.figures["build_user_seconds"] = {2.3, 2.1, 2.4, 3};
+  other.figures["file_bytes"] = {1250.0, 1250.0, 1250.0, 1};
   data.points = {base, other};
   return data;
 }
@@ -50,8 +50,14 @@ TEST(Tables, ClaimNothingInsideTheSpread) {
 
 TEST(Tables, SayAChangeBeyondTheSpread) {
   ReportData data = two_points();
-  data.points[1].figures["build_user_seconds"] = {4.0, 3.9, 4.1, 3, false};
+  data.points[1].figures["build_user_seconds"] = {4.0, 3.9, 4.1, 3};
   EXPECT_EQ(tabulate_knobs(data)[0].rows[1].cells[1].note, "×2");
+}
+
+TEST(Tables, OneMeasurementOfTimeHasNoSpreadToBeBeyond) {
+  ReportData data = two_points();
+  data.points[1].figures["build_user_seconds"] = {9.0, 9.0, 9.0, 1};
+  EXPECT_EQ(tabulate_knobs(data)[0].rows[1].cells[1].note, "≈");
 }
 
 TEST(Tables, AKnobThatWasNotTurnedHasNone) {
@@ -95,8 +101,8 @@ TEST(Tables, WrittenHaveWhatTheScriptSortsBy) {
 
 TEST(Charts, AFrontierHasALineAndEveryPointItsKnob) {
   ReportData data = two_points();
-  data.points[0].figures["deviation"] = {1e-4, 1e-4, 1e-4, 1, false};
-  data.points[1].figures["deviation"] = {0.0, 0.0, 0.0, 1, false};
+  data.points[0].figures["deviation"] = {1e-4, 1e-4, 1e-4, 1};
+  data.points[1].figures["deviation"] = {0.0, 0.0, 0.0, 1};
   data.frontiers.push_back({"file_bytes", "deviation", {"a", "b"}});
   const auto charts = chart_frontiers(data);
   ASSERT_EQ(charts.size(), 1U);

@@ -44,6 +44,13 @@ TEST(SweepAnswers, DominatedIsWhoIsClearlyWorseInOneAndBetterInNone) {
   EXPECT_TRUE(dominated[3].empty()) << "slower and smaller";
 }
 
+TEST(SweepAnswers, OneMeasurementOfTimeWinsNothing) {
+  std::vector<Figures> all{figures(1.0, 1.0, 100, 1e-4, 50), figures(9.0, 9.0, 100, 1e-4, 50)};
+  EXPECT_EQ(find_dominators(candidates_of(all))[1], std::vector<std::size_t>{0});
+  all[1]["build_user_seconds"].count = 1;
+  EXPECT_TRUE(find_dominators(candidates_of(all))[1].empty()) << "nobody knows what noise is in it";
+}
+
 TEST(SweepAnswers, WhoLacksAFigureIsLeftAlone) {
   std::vector<Figures> all{figures(1.0, 1.0, 100, 1e-4, 50), figures(2.0, 2.0, 200, 2e-4, 60)};
   all[1].erase("triangles_at_max");

@@ -150,5 +150,19 @@ TEST_F(SweepState, HostileLinesAreNone) {
   }
 }
 
+TEST_F(SweepState, WhatIsKeptForThisRunIsNotThereInTheNext) {
+  {
+    auto state = State::open(file_, "print");
+    ASSERT_TRUE(state);
+    state->keep_for_this_run(sample(MeasurementKind::kBuild, "killed", 1));
+    ASSERT_TRUE(state->add(sample(MeasurementKind::kBuild, "done", 1)));
+    EXPECT_NE(state->find(MeasurementKind::kBuild, "killed", 1), nullptr);
+  }
+  const auto again = State::open(file_, "print");
+  ASSERT_TRUE(again);
+  EXPECT_EQ(again->find(MeasurementKind::kBuild, "killed", 1), nullptr);
+  EXPECT_NE(again->find(MeasurementKind::kBuild, "done", 1), nullptr);
+}
+
 }  // namespace
 }  // namespace meshlode::study
