@@ -119,7 +119,7 @@ Result<BuiltMesh> build_mesh(const Source& from, std::size_t index,
     return built;
   }
 
-  Result<PreparedMesh> mesh = prepare_mesh(source, plan.layout, prepare_options(own));
+  Result<PreparedMesh> mesh = prepare_mesh(source, plan.layout, prepare_options(own, options.experiment.care));
   if (!mesh) return mesh.error();
   from.free_mesh(index);
   built.clock.end(Stage::kPrepare);
@@ -135,7 +135,7 @@ Result<BuiltMesh> build_mesh(const Source& from, std::size_t index,
   built.levels = levels.times();
   built.clock.end(Stage::kDag);
 
-  const Hierarchy hierarchy = build_hierarchy(*dag, *mesh);
+  const Hierarchy hierarchy = build_hierarchy(*dag, *mesh, options.experiment.care.spheres);
   built.clock.end(Stage::kHierarchy);
 
   Result<EncodedMesh> encoded = encode_mesh(*mesh, *dag, hierarchy, encoding);
@@ -181,7 +181,12 @@ Result<std::vector<BuiltMesh>> build_meshes(const Source& from, const PipelineOp
 
 /// What the asset says of its scene beside the meshes' decisions.
 void add_scene_decisions(const scene::Scene& scene, const std::vector<EncodedMesh>& meshes,
-                         std::vector<PlanDecision>& decisions) {
+                         const Experiment& experiment, std::vector<PlanDecision>& decisions) {
+  if (!experiment.is_none()) {
+    PlanDecision decision{"scene: experimental", true, describe(experiment)};
+    decision.mesh = format::kNone;
+    decisions.push_back(std::move(decision));
+  }
   for (PlanDecision& decision : list_ruled_features(scene)) {
     decision.what = "scene: " + decision.what;
     decision.mesh = format::kNone;
@@ -220,7 +225,7 @@ Result<std::vector<std::uint8_t>> build_asset_of(const Source& from, const Pipel
     input.meshes.push_back(std::move(mesh.encoded));
     input.mesh_names.push_back(scene.meshes[i].name);
   }
-  add_scene_decisions(scene, input.meshes, report.decisions);
+  add_scene_decisions(scene, input.meshes, options.experiment, report.decisions);
   input.meta_json = meta_json(scene, options, report.decisions);
 
   StageClock clock;

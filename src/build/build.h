@@ -12,6 +12,7 @@
 #include <meshlode/format.h>
 #include <meshlode/result.h>
 
+#include "build/experiment.h"
 #include "build/plan/plan.h"
 #include "scene/scene.h"
 
@@ -49,6 +50,7 @@ struct SceneOptions {
   /// Large arrays of the process go to a file before they would exceed max_memory (tools/meshlode/spill.h).
   bool spills = false;
   MeshStore* mesh_store = nullptr;  ///< meshes that were built before (build/store/mesh_store.h); the same bytes
+  Experiment experiment;            ///< none but in studies
   /// One for each mesh of the scene, in the place of the whole's; empty: all as the whole.
   std::vector<MeshOptions> mesh_options;
 };

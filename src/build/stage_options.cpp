@@ -78,10 +78,11 @@ AttributeRequest request_of(const MeshOptions& options) {
   return {options.attributes, options.keep, options.drop};
 }
 
-PrepareOptions prepare_options(const MeshOptions& options) {
+PrepareOptions prepare_options(const MeshOptions& options, const Care& care) {
   PrepareOptions prepare;
   prepare.grid_step = options.grid_step;
   prepare.position_error = options.position_error;
+  prepare.separates_needles = care.needles;
   return prepare;
 }
 
@@ -109,6 +110,7 @@ DagOptions dag_options(const PipelineOptions& options, const MeshOptions& own, c
   dag.grouping.target_clusters = options.group_clusters;
   dag.caps.merge_triangles = settings_of(options.preset).merge_triangles && mesh.triangles.size() >= kSmallMesh;
   dag.simplify.keep_area = is_aggregate(mesh);
+  dag.simplify.experiment = options.experiment;
   dag.max_group_bytes = format::kMaxPageBytes - kPageFrameBytes;
   dag.cluster_bytes = [&mesh, encode](std::uint32_t vertices, std::uint32_t triangles, std::uint32_t materials) {
     return max_cluster_bytes(mesh.layout, encode, vertices, triangles, materials);

@@ -23,7 +23,7 @@ namespace meshlode::build {
 
 [[nodiscard]] AttributeRequest request_of(const MeshOptions& options);
 
-[[nodiscard]] PrepareOptions prepare_options(const MeshOptions& options);
+[[nodiscard]] PrepareOptions prepare_options(const MeshOptions& options, const Care& care = {});
 
 /// `texels`: texels_of_materials() of the scene, for a budget that is given in texels.
 [[nodiscard]] EncodeOptions encode_options(Preset preset, const MeshOptions& options, const scene::SourceMesh& source,

@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "base/append_format.h"
 #include "run/sweep.h"
 #include "table/pictures.h"
 #include "table/table.h"
@@ -36,8 +37,9 @@ const HardCase* find_case(const std::string& name) {
 int usage() {
   std::fputs(
       "usage: hard_cases list\n"
-      "       hard_cases trial CASE PARAMETER [--laws]      the lines that a sweep reads\n"
-      "       hard_cases sweep [CASE...] [--quick] [--jobs N] [--table FILE] [--picture FILE]\n",
+      "       hard_cases trial CASE PARAMETER [--laws] [--care NAME=off]      the lines that a sweep reads\n"
+      "       hard_cases sweep [CASE...] [--quick] [--jobs N] [--table FILE] [--picture FILE]\n"
+      "       hard_cases care NAME=off [CASE...] [--quick] [--jobs N]      whose verdict is worse without that care\n",
       stderr);
   return 1;
 }
@@ -46,8 +48,11 @@ int trial(const std::vector<std::string>& words) {
   if (words.size() < 3) return usage();
   const HardCase* hard_case = find_case(words[1]);
   if (hard_case == nullptr) return usage();
-  const bool all_laws = words.size() > 3 && words[3] == "--laws";
-  const Trial result = try_case(*hard_case, std::strtod(words[2].c_str(), nullptr), all_laws);
+  const bool all_laws = std::find(words.begin() + 3, words.end(), "--laws") != words.end();
+  const auto care_word = std::find(words.begin() + 3, words.end(), "--care");
+  const auto care = build::parse_care(care_word == words.end() || care_word + 1 == words.end() ? "all" : care_word[1]);
+  if (!care) return usage();
+  const Trial result = try_case(*hard_case, std::strtod(words[2].c_str(), nullptr), all_laws, *care);
   std::fputs(text_of(result).c_str(), stdout);
   return 0;
 }
@@ -60,35 +65,76 @@ bool write_file(const std::string& path, const std::string& bytes) {
   return static_cast<bool>(out);
 }
 
-int sweep(const std::string& program, const Arguments& arguments) {
+/// Those that are named; none named: all, or the quick ones. Empty where a name is none.
+std::vector<const HardCase*> chosen_cases(const Arguments& arguments) {
   std::vector<const HardCase*> chosen;
   for (const std::string& name : arguments.names) {
     chosen.push_back(find_case(name));
-    if (chosen.back() == nullptr) return usage();
+    if (chosen.back() == nullptr) return {};
   }
-  if (arguments.names.empty()) {
-    for (const HardCase& one : hard_cases()) {
-      if (one.is_quick || !arguments.is_quick) chosen.push_back(&one);
-    }
+  if (!arguments.names.empty()) return chosen;
+  for (const HardCase& one : hard_cases()) {
+    if (one.is_quick || !arguments.is_quick) chosen.push_back(&one);
   }
-  std::vector<Swept> swept(chosen.size());
+  return chosen;
+}
+
+/// body(i) returns what is printed of the i-th, whole.
+template <class Body>
+void for_each_case(std::size_t count, std::size_t jobs, const Body& body) {
   std::atomic<std::size_t> next = 0;
   std::mutex printing;
   std::vector<std::thread> threads;
-  for (std::size_t job = 0; job < arguments.jobs; ++job) {
+  for (std::size_t job = 0; job < jobs; ++job) {
     threads.emplace_back([&] {
-      for (std::size_t i = next++; i < chosen.size(); i = next++) {
-        const Ask ask = [&](double parameter, bool all_laws) {
-          return try_apart(program, *chosen[i], parameter, all_laws);
-        };
-        swept[i] = sweep_case(*chosen[i], ask, {}, arguments.is_quick);
+      for (std::size_t i = next++; i < count; i = next++) {
+        const std::string text = body(i);
         const std::lock_guard lock(printing);
-        std::fputs(line_of(swept[i]).c_str(), stdout);
+        std::fputs(text.c_str(), stdout);
         std::fflush(stdout);
       }
     });
   }
   for (std::thread& thread : threads) thread.join();
+}
+
+/// A line each parameter of a case, of those of its sweep, at which the verdict is worse without the care.
+int study_care(const std::string& program, const Arguments& arguments, const std::string& care) {
+  const std::vector<const HardCase*> chosen = chosen_cases(arguments);
+  if (chosen.empty() || !build::parse_care(care)) return usage();
+  constexpr const char* kVerdicts[] = {"holds", "bound", "refused", "not asked", "fails"};
+  static_assert(static_cast<int>(Verdict::kFails) == 4);
+  std::atomic<std::size_t> worse = 0, tried = 0;
+  for_each_case(chosen.size(), arguments.jobs, [&](std::size_t i) {
+    const HardCase& one = *chosen[i];
+    std::string text;
+    for (std::size_t p = 0; p < one.sweep.size() && (p == 0 || !arguments.is_quick); ++p) {
+      const Trial with = try_apart(program, one, one.sweep[p], p == 0);
+      const Trial without = try_apart(program, one, one.sweep[p], p == 0, care);
+      ++tried;
+      if (without.verdict <= with.verdict) continue;
+      ++worse;
+      append_format(text, "%s\t%s\t%.6g\t%s\t%s\t%.200s\n", care.c_str(), one.name, one.sweep[p],
+                    kVerdicts[static_cast<int>(with.verdict)], kVerdicts[static_cast<int>(without.verdict)],
+                    without.detail.c_str());
+    }
+    return text;
+  });
+  std::printf("%s\t%zu tried, %zu worse\n", care.c_str(), tried.load(), worse.load());
+  return 0;
+}
+
+int sweep(const std::string& program, const Arguments& arguments) {
+  const std::vector<const HardCase*> chosen = chosen_cases(arguments);
+  if (chosen.empty()) return usage();
+  std::vector<Swept> swept(chosen.size());
+  for_each_case(chosen.size(), arguments.jobs, [&](std::size_t i) {
+    const Ask ask = [&](double parameter, bool all_laws) {
+      return try_apart(program, *chosen[i], parameter, all_laws);
+    };
+    swept[i] = sweep_case(*chosen[i], ask, {}, arguments.is_quick);
+    return line_of(swept[i]);
+  });
   if (!arguments.table.empty() && !write_file(arguments.table, table_of(swept))) return 2;
   if (!arguments.picture.empty()) {
     const std::vector<std::uint8_t> png = contact_sheet(chosen, kPictureColumns);
@@ -108,9 +154,10 @@ int dispatch(const std::string& program, const std::vector<std::string>& words) 
     }
     return 0;
   }
-  if (words[0] != "sweep") return usage();
+  const bool is_care = words[0] == "care" && words.size() > 1;
+  if (words[0] != "sweep" && !is_care) return usage();
   Arguments arguments;
-  for (std::size_t i = 1; i < words.size(); ++i) {
+  for (std::size_t i = is_care ? 2 : 1; i < words.size(); ++i) {
     if (words[i] == "--quick") {
       arguments.is_quick = true;
     } else if (words[i] == "--table" && i + 1 < words.size()) {
@@ -127,7 +174,7 @@ int dispatch(const std::string& program, const std::vector<std::string>& words) 
       arguments.names.push_back(words[i]);
     }
   }
-  return sweep(program, arguments);
+  return is_care ? study_care(program, arguments, words[1]) : sweep(program, arguments);
 }
 
 }  // namespace

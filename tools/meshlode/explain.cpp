@@ -30,7 +30,11 @@ std::string describe_settings(const build::Settled& settled, const std::vector<b
     text += "  " + of + build::info_of(setting).name + " " +
             (word.word.empty() ? "(none)" : printable(word.word, 100)) + ": " + printable(word.from, 200) + "\n";
   };
-  for (const build::SettingInfo& info : build::all_settings()) line("", info.setting, settled[info.setting]);
+  for (const build::SettingInfo& info : build::all_settings()) {
+    const build::SettledWord& word = settled[info.setting];
+    const bool is_silent = info.is_experimental && word.word == info.usual;  // nobody studies anything
+    if (!is_silent) line("", info.setting, word);
+  }
   std::size_t rows = 0;
   for (std::size_t i = 0; i < meshes.size(); ++i) {
     const std::string label = printable(build::mesh_label(scene.meshes[i], i), 120) + ": ";

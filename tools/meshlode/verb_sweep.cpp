@@ -14,6 +14,7 @@
 #include "base/append_format.h"
 #include "base/file.h"
 #include "base/hash.h"
+#include "base/nearest_name.h"
 #include "base/output_files.h"
 #include "base/printable.h"
 #include "batch/cache/program_id.h"
@@ -58,9 +59,25 @@ Result<std::vector<study::Wish>> parse_wishes(const std::string& text) {
   return wishes;
 }
 
+/// Names with commas between them. Error: kUsage for one that no knob has.
+Result<std::vector<std::string>> parse_knobs(std::string text) {
+  std::replace(text.begin(), text.end(), '-', '_');
+  const std::vector<std::string> known = study::all_knob_names();
+  std::vector<std::string> names;
+  for (std::size_t at = 0; at <= text.size(); at = std::min(text.find(',', at), text.size()) + 1) {
+    const std::string name = text.substr(at, text.find(',', at) - at);
+    if (std::find(known.begin(), known.end(), name) == known.end()) {
+      return Error{ErrorCode::kUsage, "--knobs",
+                   "'" + name.substr(0, 64) + "' is no knob; the nearest is " + nearest_name(name, known)};
+    }
+    names.push_back(name);
+  }
+  return names;
+}
+
 struct SweepWords {
   std::string scene, report, max_decoded = kDefaultMaxDecodedText;
-  std::optional<std::string> budget, want;
+  std::optional<std::string> budget, want, knobs;
   OutputOptions out;
 };
 
@@ -104,6 +121,7 @@ std::string command_of(const SweepWords& words, const study::SweepOptions& optio
   std::string text = "meshlode sweep " + study::shell_word(words.scene) + " -o " + study::shell_word(words.report);
   if (words.budget) text += " --budget " + study::shell_word(*words.budget);
   if (words.want) text += " --want " + study::shell_word(*words.want);
+  if (words.knobs) text += " --knobs " + study::shell_word(*words.knobs);
   if (!options.scene_choice.empty()) text += " --scene " + study::shell_word(options.scene_choice);
   text += " --rounds " + std::to_string(options.rounds) + " --samples " + std::to_string(options.samples);
   if (!options.max_decoded_text.empty()) text += " --max-decoded " + study::shell_word(options.max_decoded_text);
@@ -131,6 +149,11 @@ Status set_options(const SweepWords& words, study::SweepOptions& options) {
   auto wishes = parse_wishes(words.want.value_or(""));
   if (!wishes) return wishes.error();
   options.wishes = std::move(*wishes);
+  if (words.knobs) {
+    auto knobs = parse_knobs(*words.knobs);
+    if (!knobs) return knobs.error();
+    options.knobs = std::move(*knobs);
+  }
   const Result<std::uint64_t> decoded = parse_max_decoded(words.max_decoded);
   if (!decoded) return decoded.error();
   options.max_decoded = *decoded;
@@ -197,6 +220,8 @@ int run_sweep(const Verb& verb, std::span<char* const> args) {
   parser.add_value("--budget", words.budget, "wall time to keep within, such as 90s, 5m or 1h; not given: all points");
   parser.add_value("--want", words.want,
                    "bounds and a goal, as in 'deviation<=1e-4, bytes min'; several with semicolons between them");
+  parser.add_value("--knobs", words.knobs,
+                   "names of the knobs to turn, comma by comma (docs/sweep.md); not given: the usual ones");
   parser.add_value("--rounds", options.rounds, "how often each asset is built (3)");
   parser.add_value("--samples", options.samples, "area-uniform samples of deviations, each way (100000)");
   parser.add_value("--scene", options.scene_choice, "glTF: the name or index of the scene to build, or all");

@@ -83,7 +83,8 @@ std::string settings_text(const build::PipelineOptions& options, const scene::Im
   const auto& [error_tier, attributes, keep, drop, grid_step, position_error, normal_error, uv_error,
                uv_error_is_texels, uv_error_is_default] = static_cast<const build::MeshOptions&>(options);
   const auto& [preset, codec, partition_seed, repair, max_cluster_triangles, max_cluster_vertices, group_clusters,
-               max_memory, spills, mesh_store, mesh_options] = static_cast<const build::SceneOptions&>(options);
+               max_memory, spills, mesh_store, experiment, mesh_options] =
+      static_cast<const build::SceneOptions&>(options);
   const auto& [import_repair, scene, files_read, max_decoded, may_lack_images] = import;
   static_cast<void>(mesh_options);     // not known before the import: mesh_rules_text()
   static_cast<void>(max_memory);       // whether, not what
@@ -107,6 +108,8 @@ std::string settings_text(const build::PipelineOptions& options, const scene::Im
       {"cluster-triangles", text_of(std::uint64_t{max_cluster_triangles})},
       {"cluster-vertices", text_of(std::uint64_t{max_cluster_vertices})},
       {"group-clusters", text_of(std::uint64_t{group_clusters})},
+      {"care-left-out", text_of(build::names_of_missing(experiment.care))},
+      {"simplifier", build::name_of(experiment.simplifier)},
       {"position-error", text_of(position_error)},
       {"normal-error", text_of(normal_error)},
       {"uv-error", text_of(uv_error)},

@@ -30,6 +30,7 @@ struct Hierarchy {
   std::vector<format::NodeRecord> nodes;  ///< ids per mesh; root first; children contiguous
 };
 
-[[nodiscard]] Hierarchy build_hierarchy(const LodDag& dag, const PreparedMesh& mesh);
+/// `has_small_spheres` is enclosing_ball()'s `is_near_smallest`.
+[[nodiscard]] Hierarchy build_hierarchy(const LodDag& dag, const PreparedMesh& mesh, bool has_small_spheres = true);
 
 }  // namespace meshlode::build

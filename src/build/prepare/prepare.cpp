@@ -122,7 +122,8 @@ std::vector<Vec3i> place_on_grid(const Corners& corners, const std::vector<std::
     points[v] = mesh.grid.quantize(relative[v]);
   });
   // Meshes that must abut share nothing but the grid: there each vertex goes to its own point and nowhere else.
-  if (!(options.grid_step > 0.0)) separate_needles(relative, corners.triangles, mesh.grid, points);
+  if (options.separates_needles && !(options.grid_step > 0.0))
+    separate_needles(relative, corners.triangles, mesh.grid, points);
   const std::vector<double> deviations2 = sums_of_chunks(points.size(), 0.0, [&](std::size_t v, double& most) {
     if (is_used[v] == 0) return;
     const Vec3d moved = mesh.grid.decode(points[v]) - relative[v];

@@ -36,6 +36,11 @@ constexpr std::array<SettingInfo, kSettingCount> kSettings{{
     {Setting::kRepair, "repair",
      "remove unusable, degenerate and duplicate triangles, orient the rest, split where it is no surface", "false",
      false},
+    {Setting::kCare, "care",
+     "experimental: NAME=off, comma by comma, builds without double-quadrics, fallback, spheres or needles", "all",
+     false, true},
+    {Setting::kSimplifier, "simplifier", "experimental: openmesh's decimater reduces the groups, to compare", "own",
+     false, true},
 }};
 
 /// A finite number above 0, all of the text.
@@ -189,6 +194,9 @@ PipelineOptions options_of(const std::array<SettledWord, kSettingCount>& words) 
       parse_cluster_triangles(word(Setting::kClusterTriangles)).value_or(options.max_cluster_triangles);
   options.group_clusters = parse_group_clusters(word(Setting::kGroupClusters)).value_or(options.group_clusters);
   options.repair = word(Setting::kRepair) == "true";
+  if (const auto care = parse_care(word(Setting::kCare))) options.experiment.care = *care;
+  options.experiment.simplifier =
+      value_in(kSimplifierNames, word(Setting::kSimplifier)).value_or(options.experiment.simplifier);
   return options;
 }
 
@@ -221,6 +229,7 @@ std::vector<std::string> choices_of(Setting setting) {
     case Setting::kAttributes: return all_names(kAttributeChoiceNames);
     case Setting::kCodec: return all_names(format::kCodecNames);
     case Setting::kRepair: return {"false", "true"};
+    case Setting::kSimplifier: return all_names(kSimplifierNames);
     default: return {};
   }
 }
@@ -237,6 +246,10 @@ std::string find_fault(Setting setting, std::string_view word) {
     case Setting::kDrop: {
       const auto bits = parse_attributes(word);
       return bits ? "" : bits.error().detail;
+    }
+    case Setting::kCare: {
+      const auto care = parse_care(word);
+      return care ? "" : care.error().detail;
     }
     case Setting::kGrid:
       return word == "auto" || parse_positive(word) ? "" : "give auto or a step above 0 in mesh units";

@@ -34,15 +34,18 @@ enum class Setting : std::uint8_t {
   kClusterTriangles,
   kGroupClusters,
   kRepair,
+  kCare,
+  kSimplifier,
 };
-constexpr std::size_t kSettingCount = 13;
+constexpr std::size_t kSettingCount = 15;
 
 struct SettingInfo {
   Setting setting;
   const char* name;  ///< of the long option, without its dashes
   const char* help;
-  const char* usual;  ///< the word where nobody says anything
-  bool is_of_mesh;    ///< each mesh may have its own
+  const char* usual;             ///< the word where nobody says anything
+  bool is_of_mesh;               ///< each mesh may have its own
+  bool is_experimental = false;  ///< for studies: the command line says it, no file
 };
 [[nodiscard]] std::span<const SettingInfo, kSettingCount> all_settings();
 [[nodiscard]] const SettingInfo& info_of(Setting setting);

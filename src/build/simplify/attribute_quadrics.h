@@ -21,7 +21,8 @@
 namespace meshlode::build {
 
 /// For at most Capacity floats a wedge: quadrics of few attributes are small, and copying them is most of the work.
-template <std::size_t Capacity>
+/// `Real`, of the quadrics: double or float.
+template <class Real, std::size_t Capacity>
 class AttributeQuadrics {
  public:
   /// `scales` as from attribute_scales, one per float. The input must outlive this.
@@ -38,7 +39,8 @@ class AttributeQuadrics {
 
   /// Adds to `total` what the classes cost with their best values. Returns the error of those whose values are fixed,
   /// for a vertex at `given`.
-  [[nodiscard]] double add_classes(Quadric& total, std::span<const WedgeClass> classes, const Vec3d& given) const;
+  [[nodiscard]] double add_classes(BasicQuadric<Real>& total, std::span<const WedgeClass> classes,
+                                   const Vec3d& given) const;
 
   /// The class becomes its keeper, with the best values at `place` where they are not fixed.
   void join(const WedgeClass& joined, const Vec3d& place);
@@ -59,12 +61,12 @@ class AttributeQuadrics {
 
   const SimplifyInput& input_;
   std::vector<double> scale_;  ///< stored value -> weighted value
-  std::vector<WedgeQuadric<Capacity>> wedge_;
+  std::vector<WedgeQuadric<Real, Capacity>> wedge_;
   std::vector<std::array<double, Capacity>> value_;  ///< weighted
 };
 
-template <std::size_t C>
-AttributeQuadrics<C>::AttributeQuadrics(const SimplifyInput& input, std::vector<double> scales)
+template <class Real, std::size_t C>
+AttributeQuadrics<Real, C>::AttributeQuadrics(const SimplifyInput& input, std::vector<double> scales)
     : input_(input),
       scale_(std::move(scales)),
       wedge_(scale_.empty() ? 0 : input.wedge_position.size()),
@@ -76,8 +78,8 @@ AttributeQuadrics<C>::AttributeQuadrics(const SimplifyInput& input, std::vector<
   }
 }
 
-template <std::size_t C>
-void AttributeQuadrics<C>::add_face(const std::array<std::uint32_t, 3>& wedges, const Face& face) {
+template <class Real, std::size_t C>
+void AttributeQuadrics<Real, C>::add_face(const std::array<std::uint32_t, 3>& wedges, const Face& face) {
   const double area = 0.5 * face.twice_area;
   // Across a sliver a gradient means nothing: there the attribute is taken as constant.
   const Vec3d e3 = face.e2 - face.e1;
@@ -85,7 +87,7 @@ void AttributeQuadrics<C>::add_face(const std::array<std::uint32_t, 3>& wedges, 
   const bool is_sliver = face.twice_area < 1e-3 * longest2;
   const Vec3d to_1 = glm::cross(face.e2, face.normal) / face.twice_area;
   const Vec3d to_2 = glm::cross(face.normal, face.e1) / face.twice_area;
-  for (const std::uint32_t wedge : wedges) wedge_[wedge].base.weight += area;
+  for (const std::uint32_t wedge : wedges) wedge_[wedge].base.weight += static_cast<Real>(area);
   with_count([&](const auto count) {
     for (std::size_t j = 0; j < count; ++j) {
       const double s0 = value_[wedges[0]][j];
@@ -97,30 +99,33 @@ void AttributeQuadrics<C>::add_face(const std::array<std::uint32_t, 3>& wedges, 
         gradient = to_1 * (s1 - s0) + to_2 * (s2 - s0);
         offset = s0 - glm::dot(gradient, face.p);
       }
-      for (const std::uint32_t wedge : wedges) wedge_[wedge].add_face(j, gradient, offset, area);
+      for (const std::uint32_t wedge : wedges) {
+        wedge_[wedge].add_face(j, glm::vec<3, Real>(gradient), static_cast<Real>(offset), static_cast<Real>(area));
+      }
     }
   });
 }
 
-template <std::size_t C>
-bool AttributeQuadrics<C>::agree(const WedgeClass& joined, const GroupLocks& locks) const {
+template <class Real, std::size_t C>
+bool AttributeQuadrics<Real, C>::agree(const WedgeClass& joined, const GroupLocks& locks) const {
   return std::all_of(joined.members.begin(), joined.members.end(), [&](std::uint32_t w) {
     return w == joined.fixed || locks.is_wedge_locked[w] == 0 || value_[w] == value_[joined.fixed];
   });
 }
 
-template <std::size_t C>
-double AttributeQuadrics<C>::add_classes(Quadric& total, std::span<const WedgeClass> classes,
-                                         const Vec3d& given) const {
+template <class Real, std::size_t C>
+double AttributeQuadrics<Real, C>::add_classes(BasicQuadric<Real>& total, std::span<const WedgeClass> classes,
+                                               const Vec3d& given) const {
   double fixed_error = 0.0;
   with_count([&](const auto count) {
     for (const WedgeClass& c : classes) {
       const std::size_t members = c.members.size();
-      const WedgeQuadric<C>& first = wedge_[c.members[0]];
-      WedgeQuadric<C> joined = members > 1 ? WedgeQuadric<C>::sum(first, wedge_[c.members[1]], count) : first;
+      const WedgeQuadric<Real, C>& first = wedge_[c.members[0]];
+      WedgeQuadric<Real, C> joined =
+          members > 1 ? WedgeQuadric<Real, C>::sum(first, wedge_[c.members[1]], count) : first;
       for (std::size_t k = 2; k < members; ++k) joined.add(wedge_[c.members[k]], count);
       if (c.fixed != kNoId) {
-        fixed_error += joined.evaluate(given, value_[c.fixed].data(), count);
+        fixed_error += double{joined.evaluate(given, value_[c.fixed].data(), count)};
       } else {
         joined.add_reduced_to(total, count);
       }
@@ -129,20 +134,20 @@ double AttributeQuadrics<C>::add_classes(Quadric& total, std::span<const WedgeCl
   return fixed_error;
 }
 
-template <std::size_t C>
-void AttributeQuadrics<C>::join(const WedgeClass& joined, const Vec3d& place) {
+template <class Real, std::size_t C>
+void AttributeQuadrics<Real, C>::join(const WedgeClass& joined, const Vec3d& place) {
   const std::uint32_t keeper = joined.keeper();
   with_count([&](const auto count) {
     for (const std::uint32_t w : joined.members) {
       if (w != keeper) wedge_[keeper].add(wedge_[w], count);
     }
   });
-  if (joined.fixed != kNoId || !(wedge_[keeper].base.weight > 0.0)) return;
-  for (std::size_t j = 0; j < count(); ++j) value_[keeper][j] = wedge_[keeper].best(j, place);
+  if (joined.fixed != kNoId || !(wedge_[keeper].base.weight > Real(0))) return;
+  for (std::size_t j = 0; j < count(); ++j) value_[keeper][j] = double{wedge_[keeper].best(j, place)};
 }
 
-template <std::size_t C>
-void AttributeQuadrics<C>::write(std::uint32_t wedge, bool is_locked, std::vector<float>& out) const {
+template <class Real, std::size_t C>
+void AttributeQuadrics<Real, C>::write(std::uint32_t wedge, bool is_locked, std::vector<float>& out) const {
   const float* given = &input_.wedge_attributes[wedge * count()];
   for (std::size_t j = 0; j < count(); ++j) {
     const bool is_kept = is_locked || !(scale_[j] > 0.0);

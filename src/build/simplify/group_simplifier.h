@@ -32,7 +32,8 @@
 
 namespace meshlode::build {
 
-template <std::size_t Capacity>
+/// `Real` is what its quadrics are summed and solved in.
+template <class Real, std::size_t Capacity>
 class GroupSimplifier {
  public:
   /// Both must outlive this.
@@ -77,8 +78,8 @@ class GroupSimplifier {
   GroupLocks locks_;
   CollapseMesh mesh_;
   GroupPlaces places_;
-  SurfaceQuadrics surface_;
-  AttributeQuadrics<Capacity> attributes_;
+  SurfaceQuadrics<Real> surface_;
+  AttributeQuadrics<Real, Capacity> attributes_;
   WedgeClasses classes_;
   LeftBehind left_behind_;
   std::vector<std::uint8_t> is_border_;  ///< per vertex
@@ -94,8 +95,8 @@ class GroupSimplifier {
   StarEnd joined_;     ///< the vertex that came of it
 };
 
-template <std::size_t C>
-GroupSimplifier<C>::GroupSimplifier(const SimplifyInput& input, const SimplifyOptions& options)
+template <class Real, std::size_t C>
+GroupSimplifier<Real, C>::GroupSimplifier(const SimplifyInput& input, const SimplifyOptions& options)
     : input_(input),
       options_(options),
       locks_(input.is_locked, input.is_wedge_shared, input.wedge_position),
@@ -119,8 +120,8 @@ GroupSimplifier<C>::GroupSimplifier(const SimplifyInput& input, const SimplifyOp
   }
 }
 
-template <std::size_t C>
-void GroupSimplifier<C>::add_faces() {
+template <class Real, std::size_t C>
+void GroupSimplifier<Real, C>::add_faces() {
   for (std::uint32_t t = 0; t < mesh_.triangle_count(); ++t) {
     if (!mesh_.is_alive(t)) continue;
     const Face face = face_of(mesh_, places_, t);
@@ -131,8 +132,8 @@ void GroupSimplifier<C>::add_faces() {
   }
 }
 
-template <std::size_t C>
-void GroupSimplifier<C>::run() {
+template <class Real, std::size_t C>
+void GroupSimplifier<Real, C>::run() {
   run_passes();
   if (options_.may_relax_flips && mesh_.alive_count() > options_.target_triangles) {
     are_flips_relaxed_ = true;
@@ -141,8 +142,8 @@ void GroupSimplifier<C>::run() {
   if (options_.keep_area) error_ = std::max(error_, grow_pieces(input_, mesh_, places_));
 }
 
-template <std::size_t C>
-void GroupSimplifier<C>::run_passes() {
+template <class Real, std::size_t C>
+void GroupSimplifier<Real, C>::run_passes() {
   for (int pass = 0; pass < kMaxPasses && mesh_.alive_count() > options_.target_triangles; ++pass) {
     obstacles_.fill(0);
     queue_.clear();
@@ -163,8 +164,8 @@ void GroupSimplifier<C>::run_passes() {
   }
 }
 
-template <std::size_t C>
-void GroupSimplifier<C>::seed_candidates() {
+template <class Real, std::size_t C>
+void GroupSimplifier<Real, C>::seed_candidates() {
   const std::vector<EdgeUse> uses = sorted_edge_uses(mesh_);
   for (std::size_t i = 0; i < uses.size(); ++i) {
     if (i > 0 && uses[i].a == uses[i - 1].a && uses[i].b == uses[i - 1].b) continue;
@@ -173,15 +174,15 @@ void GroupSimplifier<C>::seed_candidates() {
   queue_.order();
 }
 
-template <std::size_t C>
-bool GroupSimplifier<C>::is_free_to_collapse(std::uint32_t a, std::uint32_t b) {
+template <class Real, std::size_t C>
+bool GroupSimplifier<Real, C>::is_free_to_collapse(std::uint32_t a, std::uint32_t b) {
   if (locks_.is_vertex_locked[a] == 0 || locks_.is_vertex_locked[b] == 0) return true;
   ++obstacles_[static_cast<std::size_t>(Obstacle::kLocked)];
   return false;
 }
 
-template <std::size_t C>
-Candidate GroupSimplifier<C>::make_candidate(std::uint32_t a, std::uint32_t b) {
+template <class Real, std::size_t C>
+Candidate GroupSimplifier<Real, C>::make_candidate(std::uint32_t a, std::uint32_t b) {
   if (a > b) std::swap(a, b);
   star_.a.vertex = a;
   star_.b.vertex = b;
@@ -191,26 +192,26 @@ Candidate GroupSimplifier<C>::make_candidate(std::uint32_t a, std::uint32_t b) {
 
 /// Where the joined vertex goes, what its attributes become there, and what both cost. \pre the star has its ends, and
 /// its corners where the wedge classes need them
-template <std::size_t C>
-typename GroupSimplifier<C>::Placement GroupSimplifier<C>::place(std::uint32_t a, std::uint32_t b) {
+template <class Real, std::size_t C>
+typename GroupSimplifier<Real, C>::Placement GroupSimplifier<Real, C>::place(std::uint32_t a, std::uint32_t b) {
   const Vec3d& pa = places_[a];
   const Vec3d& pb = places_[b];
   const bool is_a_locked = locks_.is_vertex_locked[a] != 0;
   const bool is_place_given = is_a_locked || locks_.is_vertex_locked[b] != 0;
   const Vec3d given = is_a_locked ? pa : pb;
-  Quadric total = surface_.around(a, b);
+  BasicQuadric<Real> total = surface_.around(a, b);
   classes_.collect(mesh_, locks_, star_);
   // The error of wedges whose values may not change: only where the place is given.
   const double fixed_error = attributes_.add_classes(total, classes_.classes(), given);
   Placement placement;
-  placement.position = is_place_given ? given : place_vertex(total, pa, pb);
+  placement.position = is_place_given ? given : place_vertex(total, pa, pb, options_.experiment.care.fallback);
   const Vec3d edge = pb - pa;
   placement.cost = cost_of_collapse(total, placement.position, fixed_error, glm::dot(edge, edge));
   return placement;
 }
 
-template <std::size_t C>
-typename GroupSimplifier<C>::Obstacle GroupSimplifier<C>::try_collapse(const Candidate& candidate) {
+template <class Real, std::size_t C>
+typename GroupSimplifier<Real, C>::Obstacle GroupSimplifier<Real, C>::try_collapse(const Candidate& candidate) {
   std::uint32_t a = candidate.a;
   std::uint32_t b = candidate.b;
   gather_corners(mesh_, a, b, star_);
@@ -247,8 +248,8 @@ typename GroupSimplifier<C>::Obstacle GroupSimplifier<C>::try_collapse(const Can
 
 /// What leaving the old surface behind, or reaching beyond it, costs: where that is far more than the quadrics say, the
 /// collapse waits for its turn at that price.
-template <std::size_t C>
-double GroupSimplifier<C>::price_of(const Candidate& candidate) {
+template <class Real, std::size_t C>
+double GroupSimplifier<Real, C>::price_of(const Candidate& candidate) {
   const double left_behind2 = left_behind_.weigh(mesh_, places_, star_, options_.keep_area);
   const double mean_weight = 2.0 * surface_.total_weight() / mesh_.alive_count();
   const double weight = surface_.weight(candidate.a) + surface_.weight(candidate.b);
@@ -261,8 +262,8 @@ double GroupSimplifier<C>::price_of(const Candidate& candidate) {
 }
 
 /// Joins b into a at the star's target. The star and the wedge classes are those of the pair.
-template <std::size_t C>
-void GroupSimplifier<C>::collapse(std::uint32_t a, std::uint32_t b) {
+template <class Real, std::size_t C>
+void GroupSimplifier<Real, C>::collapse(std::uint32_t a, std::uint32_t b) {
   error_ = std::max(error_, surface_.join(a, b, star_.target));
   left_behind_.join(a, b);
   is_border_[a] |= is_border_[b];
@@ -286,8 +287,8 @@ void GroupSimplifier<C>::collapse(std::uint32_t a, std::uint32_t b) {
   }
 }
 
-template <std::size_t C>
-StuckReason GroupSimplifier<C>::reason_for_stopping() const {
+template <class Real, std::size_t C>
+StuckReason GroupSimplifier<Real, C>::reason_for_stopping() const {
   if (mesh_.alive_count() <= options_.target_triangles) return StuckReason::kNotStuck;
   const auto largest = std::max_element(obstacles_.begin() + 1, obstacles_.begin() + 5);
   if (static_cast<Obstacle>(largest - obstacles_.begin()) != Obstacle::kLocked) {
@@ -307,16 +308,16 @@ StuckReason GroupSimplifier<C>::reason_for_stopping() const {
 }
 
 /// Two vertices may have come to lie on one point of the grid. A triangle with both has no area and no border by then.
-template <std::size_t C>
-bool GroupSimplifier<C>::has_corners_in_one_place(std::uint32_t triangle) const {
+template <class Real, std::size_t C>
+bool GroupSimplifier<Real, C>::has_corners_in_one_place(std::uint32_t triangle) const {
   const Vec3i& p = places_.on_grid(mesh_.vertex(3 * triangle));
   const Vec3i& q = places_.on_grid(mesh_.vertex(3 * triangle + 1));
   const Vec3i& r = places_.on_grid(mesh_.vertex(3 * triangle + 2));
   return p == q || q == r || r == p;
 }
 
-template <std::size_t C>
-SimplifyResult GroupSimplifier<C>::result() const {
+template <class Real, std::size_t C>
+SimplifyResult GroupSimplifier<Real, C>::result() const {
   SimplifyResult out;
   out.quadric_error = error_ * places_.scale() * input_.grid.step();
   out.reason = reason_for_stopping();

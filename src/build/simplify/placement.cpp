@@ -8,20 +8,21 @@ namespace meshlode::build {
 namespace {
 
 /// The best point of the edge, then its ends: E along the edge is a parabola.
-Vec3d place_on_edge(const Quadric& total, const Vec3d& pa, const Vec3d& pb) {
-  const Vec3d edge = pb - pa;
-  const auto times = [&](const Vec3d& v) {
-    return Vec3d(total.a00 * v.x + total.a01 * v.y + total.a02 * v.z,
-                 total.a01 * v.x + total.a11 * v.y + total.a12 * v.z,
-                 total.a02 * v.x + total.a12 * v.y + total.a22 * v.z);
+template <class Real>
+Vec3d place_on_edge(const BasicQuadric<Real>& total, const Vec3d& pa, const Vec3d& pb) {
+  using Vec = glm::vec<3, Real>;
+  const Vec edge(pb - pa);
+  const auto times = [&](const Vec& v) {
+    return Vec(total.a00 * v.x + total.a01 * v.y + total.a02 * v.z, total.a01 * v.x + total.a11 * v.y + total.a12 * v.z,
+               total.a02 * v.x + total.a12 * v.y + total.a22 * v.z);
   };
-  const double slope = glm::dot(edge, times(pa) + Vec3d(total.b0, total.b1, total.b2));
-  const double bend = glm::dot(edge, times(edge));
-  const double t = bend > 0.0 ? std::clamp(-slope / bend, 0.0, 1.0) : 0.5;
-  Vec3d best = pa + edge * t;
-  double best_error = total.evaluate(best);
+  const Real slope = glm::dot(edge, times(Vec(pa)) + Vec(total.b0, total.b1, total.b2));
+  const Real bend = glm::dot(edge, times(edge));
+  const Real t = bend > Real(0) ? std::clamp(-slope / bend, Real(0), Real(1)) : Real(0.5);
+  Vec3d best = pa + (pb - pa) * double{t};
+  Real best_error = total.evaluate(Vec(best));
   for (const Vec3d& end : {pa, pb}) {
-    const double error = total.evaluate(end);
+    const Real error = total.evaluate(Vec(end));
     if (error < best_error) {
       best = end;
       best_error = error;
@@ -32,16 +33,22 @@ Vec3d place_on_edge(const Quadric& total, const Vec3d& pa, const Vec3d& pb) {
 
 }  // namespace
 
-Vec3d place_vertex(Quadric& total, const Vec3d& pa, const Vec3d& pb) {
+template <class Real>
+Vec3d place_vertex(BasicQuadric<Real>& total, const Vec3d& pa, const Vec3d& pb, bool has_fallback) {
+  using Vec = glm::vec<3, Real>;
   const Vec3d edge = pb - pa;
   const Vec3d middle = (pa + pb) * 0.5;
-  total.add_point(middle, kPull * total.weight);
-  Vec3d best;
+  Vec best;
+  if (!has_fallback) return total.minimize(best, Real(0)) ? Vec3d(best) : middle;
+  total.add_point(Vec(middle), static_cast<Real>(kPull) * total.weight);
   if (total.minimize(best)) {
-    const Vec3d offset = best - middle;
-    if (glm::dot(offset, offset) <= kMaxOffset * kMaxOffset * glm::dot(edge, edge)) return best;
+    const Vec3d offset = Vec3d(best) - middle;
+    if (glm::dot(offset, offset) <= kMaxOffset * kMaxOffset * glm::dot(edge, edge)) return Vec3d(best);
   }
   return place_on_edge(total, pa, pb);
 }
+
+template Vec3d place_vertex(BasicQuadric<double>&, const Vec3d&, const Vec3d&, bool);
+template Vec3d place_vertex(BasicQuadric<float>&, const Vec3d&, const Vec3d&, bool);
 
 }  // namespace meshlode::build

@@ -17,13 +17,17 @@ inline constexpr double kMaxOffset = 1.5;
 
 /// The cheapest place for the vertex of the edge from pa to pb; `total` is all that its place costs, and is given the
 /// pull towards the edge's middle. Where the minimum cannot be trusted or lies too far off, the best point of the edge.
-[[nodiscard]] Vec3d place_vertex(Quadric& total, const Vec3d& pa, const Vec3d& pb);
+/// Without the fallback there is no pull, and any finite minimum is taken. `Real`: double or float.
+template <class Real>
+[[nodiscard]] Vec3d place_vertex(BasicQuadric<Real>& total, const Vec3d& pa, const Vec3d& pb, bool has_fallback = true);
 
 /// E / √W at the place: E with what of it does not depend on the place, W the summed area, total.weight.
-[[nodiscard]] inline double cost_of_collapse(const Quadric& total, const Vec3d& place, double fixed_error,
-                                             double length2) {
-  const double error = total.evaluate(place) + fixed_error + kPull * total.weight * length2;
-  return total.weight > 0.0 ? error / std::sqrt(total.weight) : error;
+template <class Real>
+[[nodiscard]] double cost_of_collapse(const BasicQuadric<Real>& total, const Vec3d& place, double fixed_error,
+                                      double length2) {
+  const double weight{total.weight};
+  const double error = double{total.evaluate(place)} + fixed_error + kPull * weight * length2;
+  return weight > 0.0 ? error / std::sqrt(weight) : error;
 }
 
 }  // namespace meshlode::build

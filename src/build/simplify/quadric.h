@@ -8,19 +8,27 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <type_traits>
 
 #include "base/vec.h"
 
 namespace meshlode::build {
 
-/// E(p) = pᵀ A p + 2 bᵀ p + c, with the total weight beside it so that E / weight is a mean squared distance.
-struct Quadric {
-  double a00 = 0, a01 = 0, a02 = 0, a11 = 0, a12 = 0, a22 = 0;
-  double b0 = 0, b1 = 0, b2 = 0;
-  double c = 0;
-  double weight = 0;
+/// How small a pivot may be, against the largest diagonal entry, before a minimum is not to be trusted.
+template <class Real>
+inline constexpr Real kSmallestPivot = std::is_same_v<Real, double> ? Real(1e-12) : Real(1e-3);
 
-  Quadric& operator+=(const Quadric& q) {
+/// E(p) = pᵀ A p + 2 bᵀ p + c, with the total weight beside it so that E / weight is a mean squared distance.
+template <class Real>
+struct BasicQuadric {
+  using Vec = glm::vec<3, Real>;
+
+  Real a00 = 0, a01 = 0, a02 = 0, a11 = 0, a12 = 0, a22 = 0;
+  Real b0 = 0, b1 = 0, b2 = 0;
+  Real c = 0;
+  Real weight = 0;
+
+  BasicQuadric& operator+=(const BasicQuadric& q) {
     a00 += q.a00;
     a01 += q.a01;
     a02 += q.a02;
@@ -36,7 +44,7 @@ struct Quadric {
   }
 
   /// Adds w · (n·p + d)².
-  void add_plane(const Vec3d& n, double d, double w) {
+  void add_plane(const Vec& n, Real d, Real w) {
     a00 += w * n.x * n.x;
     a01 += w * n.x * n.y;
     a02 += w * n.x * n.z;
@@ -51,7 +59,7 @@ struct Quadric {
   }
 
   /// Adds s · q, weight untouched.
-  void add_scaled(const Quadric& q, double s) {
+  void add_scaled(const BasicQuadric& q, Real s) {
     a00 += s * q.a00;
     a01 += s * q.a01;
     a02 += s * q.a02;
@@ -65,7 +73,7 @@ struct Quadric {
   }
 
   /// Adds w · |p - q|².
-  void add_point(const Vec3d& q, double w) {
+  void add_point(const Vec& q, Real w) {
     a00 += w;
     a11 += w;
     a22 += w;
@@ -76,31 +84,31 @@ struct Quadric {
   }
 
   /// Never below zero: rounding may not make a perfect fit better than perfect.
-  [[nodiscard]] double evaluate(const Vec3d& p) const {
-    const double rx = a00 * p.x + a01 * p.y + a02 * p.z;
-    const double ry = a01 * p.x + a11 * p.y + a12 * p.z;
-    const double rz = a02 * p.x + a12 * p.y + a22 * p.z;
-    const double e = p.x * rx + p.y * ry + p.z * rz + 2.0 * (b0 * p.x + b1 * p.y + b2 * p.z) + c;
-    return e > 0.0 ? e : 0.0;
+  [[nodiscard]] Real evaluate(const Vec& p) const {
+    const Real rx = a00 * p.x + a01 * p.y + a02 * p.z;
+    const Real ry = a01 * p.x + a11 * p.y + a12 * p.z;
+    const Real rz = a02 * p.x + a12 * p.y + a22 * p.z;
+    const Real e = p.x * rx + p.y * ry + p.z * rz + Real(2) * (b0 * p.x + b1 * p.y + b2 * p.z) + c;
+    return e > Real(0) ? e : Real(0);
   }
 
-  /// Minimum by Cholesky. False where the system is too ill-conditioned to be trusted: a pivot has lost twelve digits
-  /// against the largest diagonal entry.
-  [[nodiscard]] bool minimize(Vec3d& p) const {
-    const double scale = std::max(a00, std::max(a11, a22));
-    const double smallest = 1e-12 * scale;
-    if (!(scale > 0.0) || !(a00 > smallest)) return false;
-    const double l10 = a01 / a00;
-    const double l20 = a02 / a00;
-    const double d1 = a11 - l10 * a01;
+  /// Minimum by Cholesky. False where the system is too ill-conditioned to be trusted: a pivot has lost so many digits
+  /// against the largest diagonal entry that it is at most `smallest_pivot` of it.
+  [[nodiscard]] bool minimize(Vec& p, Real smallest_pivot = kSmallestPivot<Real>) const {
+    const Real scale = std::max(a00, std::max(a11, a22));
+    const Real smallest = smallest_pivot * scale;
+    if (!(scale > Real(0)) || !(a00 > smallest)) return false;
+    const Real l10 = a01 / a00;
+    const Real l20 = a02 / a00;
+    const Real d1 = a11 - l10 * a01;
     if (!(d1 > smallest)) return false;
-    const double e21 = a12 - l10 * a02;
-    const double l21 = e21 / d1;
-    const double d2 = a22 - l20 * a02 - l21 * e21;
+    const Real e21 = a12 - l10 * a02;
+    const Real l21 = e21 / d1;
+    const Real d2 = a22 - l20 * a02 - l21 * e21;
     if (!(d2 > smallest)) return false;
-    const double y0 = -b0;
-    const double y1 = -b1 - l10 * y0;
-    const double y2 = -b2 - l20 * y0 - l21 * y1;
+    const Real y0 = -b0;
+    const Real y1 = -b1 - l10 * y0;
+    const Real y2 = -b2 - l20 * y0 - l21 * y1;
     p.z = y2 / d2;
     p.y = y1 / d1 - l21 * p.z;
     p.x = y0 / a00 - l10 * p.y - l20 * p.z;
@@ -108,13 +116,17 @@ struct Quadric {
   }
 };
 
+using Quadric = BasicQuadric<double>;
+
 /// Attribute error of one wedge: Σ_faces w · Σ_j (g_j·p + d_j - s_j)² for the wedge's values s. `base` holds the part
 /// without s, `gradient` Σ w g_j and `offset` Σ w d_j; base.weight is Σ w. Capacity is the largest attribute count.
-template <std::size_t Capacity>
+template <class Real, std::size_t Capacity>
 struct WedgeQuadric {
-  Quadric base;
-  std::array<Vec3d, Capacity> gradient{};
-  std::array<double, Capacity> offset{};
+  using Vec = glm::vec<3, Real>;
+
+  BasicQuadric<Real> base;
+  std::array<Vec, Capacity> gradient{};
+  std::array<Real, Capacity> offset{};
 
   void add(const WedgeQuadric& q, std::size_t attribute_count) {
     base += q.base;
@@ -137,7 +149,7 @@ struct WedgeQuadric {
   }
 
   /// Adds a face of weight w on which attribute j is g·p + d.
-  void add_face(std::size_t j, const Vec3d& g, double d, double w) {
+  void add_face(std::size_t j, const Vec& g, Real d, Real w) {
     base.add_plane(g, d, w);
     base.weight -= w;  // counted once per face, by the caller
     gradient[j] += g * w;
@@ -145,18 +157,18 @@ struct WedgeQuadric {
   }
 
   /// The best value of attribute j at p. \pre base.weight > 0
-  [[nodiscard]] double best(std::size_t j, const Vec3d& p) const {
+  [[nodiscard]] Real best(std::size_t j, const Vec& p) const {
     return (glm::dot(gradient[j], p) + offset[j]) / base.weight;
   }
 
   /// Adds to q the error with the best values put in: a quadric of the position alone.
-  void add_reduced_to(Quadric& q, std::size_t attribute_count) const {
-    if (!(base.weight > 0.0)) return;
-    q.add_scaled(base, 1.0);
-    const double inverse = -1.0 / base.weight;
+  void add_reduced_to(BasicQuadric<Real>& q, std::size_t attribute_count) const {
+    if (!(base.weight > Real(0))) return;
+    q.add_scaled(base, Real(1));
+    const Real inverse = Real(-1) / base.weight;
     for (std::size_t j = 0; j < attribute_count; ++j) {
-      const Vec3d& g = gradient[j];
-      const double d = offset[j];
+      const Vec& g = gradient[j];
+      const Real d = offset[j];
       q.a00 += inverse * g.x * g.x;
       q.a01 += inverse * g.x * g.y;
       q.a02 += inverse * g.x * g.z;
@@ -171,12 +183,13 @@ struct WedgeQuadric {
   }
 
   /// The error for given values at p.
-  [[nodiscard]] double evaluate(const Vec3d& p, const double* values, std::size_t attribute_count) const {
-    double e = base.evaluate(p);
+  [[nodiscard]] Real evaluate(const Vec& p, const double* values, std::size_t attribute_count) const {
+    Real e = base.evaluate(p);
     for (std::size_t j = 0; j < attribute_count; ++j) {
-      e += values[j] * (base.weight * values[j] - 2.0 * (glm::dot(gradient[j], p) + offset[j]));
+      const auto value = static_cast<Real>(values[j]);
+      e += value * (base.weight * value - Real(2) * (glm::dot(gradient[j], p) + offset[j]));
     }
-    return e > 0.0 ? e : 0.0;
+    return e > Real(0) ? e : Real(0);
   }
 };
 

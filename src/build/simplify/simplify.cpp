@@ -15,21 +15,27 @@ struct Attempt {
   bool keeps_border = false;
 };
 
-template <std::size_t Capacity>
+template <class Real, std::size_t Capacity>
 Attempt simplify_with(const SimplifyInput& input, const SimplifyOptions& options) {
-  GroupSimplifier<Capacity> simplifier(input, options);
+  GroupSimplifier<Real, Capacity> simplifier(input, options);
   simplifier.run();
   Attempt attempt{simplifier.result()};
   attempt.keeps_border = !simplifier.has_free_border() || keeps_border(input, attempt.result);
   return attempt;
 }
 
-Attempt simplify_once(const SimplifyInput& input, const SimplifyOptions& options) {
+template <class Real>
+Attempt simplify_in(const SimplifyInput& input, const SimplifyOptions& options) {
   // Quadrics of few attributes are small, and copying them is most of the work.
   const std::uint32_t attributes = input.layout.stride();
-  if (attributes <= 3) return simplify_with<3>(input, options);
-  if (attributes <= 5) return simplify_with<5>(input, options);
-  return simplify_with<3 + 2 * scene::kMaxUvSets + 4>(input, options);
+  if (attributes <= 3) return simplify_with<Real, 3>(input, options);
+  if (attributes <= 5) return simplify_with<Real, 5>(input, options);
+  return simplify_with<Real, 3 + 2 * scene::kMaxUvSets + 4>(input, options);
+}
+
+Attempt simplify_once(const SimplifyInput& input, const SimplifyOptions& options) {
+  return options.experiment.care.double_quadrics ? simplify_in<double>(input, options)
+                                                 : simplify_in<float>(input, options);
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include <span>
 #include <vector>
 
+#include "build/experiment.h"
 #include "build/lod_dag.h"
 #include "build/prepared.h"
 #include "format/grid.h"
@@ -32,6 +33,7 @@ struct SimplifyOptions {
   /// thins out nor fades (Cook, Halstead, Planck and Ryu 2007). Only pieces without a locked vertex can grow.
   bool keep_area = false;
   bool may_relax_topology = true;  ///< break the link condition (small holes, handles, fans) where that is far cheaper
+  Experiment experiment;           ///< none but in studies
   bool may_relax_flips = false;    ///< where the target is out of reach, go on without the flip test: a last resort
 };
 

@@ -14,16 +14,22 @@ Face face_of(const CollapseMesh& mesh, const GroupPlaces& places, std::uint32_t 
   return face;
 }
 
-SurfaceQuadrics::SurfaceQuadrics(std::size_t vertex_count, double border_weight)
+template <class Real>
+SurfaceQuadrics<Real>::SurfaceQuadrics(std::size_t vertex_count, double border_weight)
     : plane_(vertex_count), border_(vertex_count), has_wall_(vertex_count, 0), border_weight_(border_weight) {}
 
-void SurfaceQuadrics::add_face(const std::array<std::uint32_t, 3>& vertices, const Face& face) {
+template <class Real>
+void SurfaceQuadrics<Real>::add_face(const std::array<std::uint32_t, 3>& vertices, const Face& face) {
   const double area = 0.5 * face.twice_area;
-  for (const std::uint32_t v : vertices) plane_[v].add_plane(face.normal, -glm::dot(face.normal, face.p), area);
+  const glm::vec<3, Real> normal(face.normal);
+  const auto offset = static_cast<Real>(-glm::dot(face.normal, face.p));
+  for (const std::uint32_t v : vertices) plane_[v].add_plane(normal, offset, static_cast<Real>(area));
   total_weight_ += 3.0 * area;
 }
 
-void SurfaceQuadrics::add_walls(std::span<const HeldEdge> edges, const CollapseMesh& mesh, const GroupPlaces& places) {
+template <class Real>
+void SurfaceQuadrics<Real>::add_walls(std::span<const HeldEdge> edges, const CollapseMesh& mesh,
+                                      const GroupPlaces& places) {
   for (const HeldEdge& held : edges) {
     if (!held.is_border && seam_.empty()) seam_.resize(plane_.size());
     const std::uint32_t first = 3 * held.triangle;
@@ -34,25 +40,29 @@ void SurfaceQuadrics::add_walls(std::span<const HeldEdge> edges, const CollapseM
     const double length = std::sqrt(glm::dot(wall, wall));
     if (!(length > 0.0)) continue;
     wall /= length;
-    const double d = -glm::dot(wall, places[held.a]);
-    const double weight = held.weight * glm::dot(edge, edge);
-    std::vector<Quadric>& quadrics = held.is_border ? border_ : seam_;
+    const auto d = static_cast<Real>(-glm::dot(wall, places[held.a]));
+    const auto weight = static_cast<Real>(held.weight * glm::dot(edge, edge));
+    std::vector<BasicQuadric<Real>>& quadrics = held.is_border ? border_ : seam_;
     has_wall_[held.a] = has_wall_[held.b] = 1;
-    quadrics[held.a].add_plane(wall, d, weight);
-    quadrics[held.b].add_plane(wall, d, weight);
+    quadrics[held.a].add_plane(glm::vec<3, Real>(wall), d, weight);
+    quadrics[held.b].add_plane(glm::vec<3, Real>(wall), d, weight);
   }
 }
 
-double SurfaceQuadrics::join(std::uint32_t into, std::uint32_t from, const Vec3d& place) {
+template <class Real>
+double SurfaceQuadrics<Real>::join(std::uint32_t into, std::uint32_t from, const Vec3d& place) {
   plane_[into] += plane_[from];
   border_[into] += border_[from];
   if (!seam_.empty()) seam_[into] += seam_[from];
   has_wall_[into] |= has_wall_[from];
   double error = 0.0;
-  for (const Quadric* q : {&plane_[into], &border_[into]}) {
-    if (q->weight > 0.0) error = std::max(error, std::sqrt(q->evaluate(place) / q->weight));
+  for (const BasicQuadric<Real>* q : {&plane_[into], &border_[into]}) {
+    if (q->weight > Real(0)) error = std::max(error, std::sqrt(double{q->evaluate(place)} / double{q->weight}));
   }
   return error;
 }
+
+template class SurfaceQuadrics<double>;
+template class SurfaceQuadrics<float>;
 
 }  // namespace meshlode::build

@@ -27,7 +27,8 @@ struct Face {
 
 [[nodiscard]] Face face_of(const CollapseMesh& mesh, const GroupPlaces& places, std::uint32_t triangle);
 
-/// Per vertex, the quadrics of the faces and of the held edges that it stands for.
+/// Per vertex, the quadrics of the faces and of the held edges that it stands for. `Real`: double or float.
+template <class Real>
 class SurfaceQuadrics {
  public:
   /// `border_weight` is the weight of walls on borders against the planes of faces.
@@ -39,8 +40,8 @@ class SurfaceQuadrics {
   void add_walls(std::span<const HeldEdge> edges, const CollapseMesh& mesh, const GroupPlaces& places);
 
   /// What the joined vertex of a and b costs; its weight is that of the faces alone.
-  [[nodiscard]] Quadric around(std::uint32_t a, std::uint32_t b) const {
-    Quadric total = plane_[a];
+  [[nodiscard]] BasicQuadric<Real> around(std::uint32_t a, std::uint32_t b) const {
+    BasicQuadric<Real> total = plane_[a];
     total += plane_[b];
     if ((has_wall_[a] | has_wall_[b]) != 0) add_walls_around(a, b, total);
     return total;
@@ -50,21 +51,22 @@ class SurfaceQuadrics {
   double join(std::uint32_t into, std::uint32_t from, const Vec3d& place);
 
   /// Area of the faces that a vertex stands for.
-  [[nodiscard]] double weight(std::uint32_t vertex) const { return plane_[vertex].weight; }
+  [[nodiscard]] double weight(std::uint32_t vertex) const { return double{plane_[vertex].weight}; }
   /// Over all vertices: three times the area.
   [[nodiscard]] double total_weight() const { return total_weight_; }
 
  private:
-  void add_walls_around(std::uint32_t a, std::uint32_t b, Quadric& total) const {
-    total.add_scaled(border_[a], border_weight_);
-    total.add_scaled(border_[b], border_weight_);
+  void add_walls_around(std::uint32_t a, std::uint32_t b, BasicQuadric<Real>& total) const {
+    const auto weight = static_cast<Real>(border_weight_);
+    total.add_scaled(border_[a], weight);
+    total.add_scaled(border_[b], weight);
     if (seam_.empty()) return;
-    total.add_scaled(seam_[a], 1.0);
-    total.add_scaled(seam_[b], 1.0);
+    total.add_scaled(seam_[a], Real(1));
+    total.add_scaled(seam_[b], Real(1));
   }
 
-  std::vector<Quadric> plane_, border_, seam_;  ///< seam_ is empty where there is none
-  std::vector<std::uint8_t> has_wall_;          ///< per vertex: most stand on no border and no seam
+  std::vector<BasicQuadric<Real>> plane_, border_, seam_;  ///< seam_ is empty where there is none
+  std::vector<std::uint8_t> has_wall_;                     ///< per vertex: most stand on no border and no seam
   double border_weight_;
   double total_weight_ = 0.0;
 };

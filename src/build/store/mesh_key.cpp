@@ -92,14 +92,22 @@ void add_own_options(KeyHasher& key, const MeshOptions& own) {
   static_cast<void>(uv_error_is_default);
 }
 
+void add_experiment(KeyHasher& key, const Experiment& experiment) {
+  const auto& [care, simplifier] = experiment;
+  const auto& [double_quadrics, fallback, spheres, needles] = care;
+  for (const bool is_taken : {double_quadrics, fallback, spheres, needles}) key.value(is_taken);
+  key.value(simplifier);
+}
+
 void add_scene_options(KeyHasher& key, const SceneOptions& options) {
   const auto& [preset, codec, partition_seed, repair, max_cluster_triangles, max_cluster_vertices, group_clusters,
-               max_memory, spills, mesh_store, mesh_options] = options;
+               max_memory, spills, mesh_store, experiment, mesh_options] = options;
   key.value(preset);
   key.value(partition_seed);
   key.value(max_cluster_triangles);
   key.value(max_cluster_vertices);
   key.value(group_clusters);
+  add_experiment(key, experiment);
   static_cast<void>(codec);   // of the pages on disk, later
   static_cast<void>(repair);  // the triangles are as they are
   static_cast<void>(max_memory);

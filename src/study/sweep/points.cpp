@@ -98,7 +98,9 @@ std::vector<std::string> arguments_of(std::span<const Knob> knobs, const Point& 
 
 }  // namespace
 
-std::vector<Knob> make_knobs(const SceneFacts& facts) {
+namespace {
+
+std::vector<Knob> list_knobs(const SceneFacts& facts) {
   std::vector<Knob> knobs;
   knobs.push_back({"preset",
                    "preset",
@@ -166,7 +168,35 @@ std::vector<Knob> make_knobs(const SceneFacts& facts) {
                    KnobKind::kDraw,
                    1,
                    {{"0.5", 0.0, kSecond}, {"1", 0.0, 0.0}, {"2", 0.0, kFirst}, {"4", 0.0, kSecond}}});
+  knobs.push_back({"care",
+                   "care",
+                   "--care",
+                   "",
+                   KnobKind::kStudy,
+                   0,
+                   {{"all", 1.0, 0.0},
+                    {"double-quadrics=off", 1.0, kFirst},
+                    {"fallback=off", 1.0, kFirst},
+                    {"spheres=off", 1.0, kFirst},
+                    {"needles=off", 1.0, kFirst}}});
   return knobs;
+}
+
+}  // namespace
+
+std::vector<Knob> make_knobs(const SceneFacts& facts, std::span<const std::string> chosen) {
+  std::vector<Knob> knobs = list_knobs(facts);
+  std::erase_if(knobs, [&](const Knob& knob) {
+    if (chosen.empty()) return knob.kind == KnobKind::kStudy;
+    return std::find(chosen.begin(), chosen.end(), knob.name) == chosen.end();
+  });
+  return knobs;
+}
+
+std::vector<std::string> all_knob_names() {
+  std::vector<std::string> names;
+  for (const Knob& knob : list_knobs({1.0, true, true})) names.push_back(knob.name);
+  return names;
 }
 
 std::vector<Point> make_points(std::span<const Knob> knobs) {

@@ -135,7 +135,7 @@ class Sweep {
     }
     auto asset = run::Asset::open(file, options_.max_decoded);
     if (!asset) return asset.error();
-    result_.knobs = make_knobs(facts_of(*asset));
+    result_.knobs = make_knobs(facts_of(*asset), options_.knobs);
     views_.views = make_views(options_.frame_scene(*asset));
     views_.max_decoded = options_.max_decoded;
     if (Status drawn = draw_full(*asset, views_); !drawn) return drawn;

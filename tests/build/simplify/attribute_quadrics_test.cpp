@@ -23,8 +23,9 @@ SimplifyInput linear_texture(const DrawnMesh& drawn) {
   return input;
 }
 
-AttributeQuadrics<3> quadrics_of(const DrawnMesh& drawn, const SimplifyInput& input, std::vector<double> scales) {
-  AttributeQuadrics<3> attributes(input, std::move(scales));
+AttributeQuadrics<double, 3> quadrics_of(const DrawnMesh& drawn, const SimplifyInput& input,
+                                         std::vector<double> scales) {
+  AttributeQuadrics<double, 3> attributes(input, std::move(scales));
   for (std::uint32_t t = 0; t < drawn.mesh.triangle_count(); ++t) {
     attributes.add_face({drawn.mesh.wedge(3 * t), drawn.mesh.wedge(3 * t + 1), drawn.mesh.wedge(3 * t + 2)},
                         face_of(drawn.mesh, drawn.places, t));
@@ -32,7 +33,8 @@ AttributeQuadrics<3> quadrics_of(const DrawnMesh& drawn, const SimplifyInput& in
   return attributes;
 }
 
-std::vector<float> written(const AttributeQuadrics<3>& attributes, std::uint32_t wedge, bool is_locked = false) {
+std::vector<float> written(const AttributeQuadrics<double, 3>& attributes, std::uint32_t wedge,
+                           bool is_locked = false) {
   std::vector<float> out;
   attributes.write(wedge, is_locked, out);
   return out;
@@ -41,7 +43,7 @@ std::vector<float> written(const AttributeQuadrics<3>& attributes, std::uint32_t
 TEST(AttributeQuadrics, ALinearTextureMayBeMovedFreelyAndStaysWhereItWas) {
   const DrawnMesh drawn = closed_fan();
   const SimplifyInput input = linear_texture(drawn);
-  AttributeQuadrics<3> attributes = quadrics_of(drawn, input, {1.0, 1.0});
+  AttributeQuadrics<double, 3> attributes = quadrics_of(drawn, input, {1.0, 1.0});
   const std::vector<WedgeClass> classes{{{0, 1}}};
   const Vec3d place = drawn.places.to_frame({3, 1, 0});
   Quadric total;
@@ -55,7 +57,7 @@ TEST(AttributeQuadrics, ALinearTextureMayBeMovedFreelyAndStaysWhereItWas) {
 TEST(AttributeQuadrics, AFixedValueCostsWhatItIsOff) {
   const DrawnMesh drawn = closed_fan();
   const SimplifyInput input = linear_texture(drawn);
-  AttributeQuadrics<3> attributes = quadrics_of(drawn, input, {1.0, 1.0});
+  AttributeQuadrics<double, 3> attributes = quadrics_of(drawn, input, {1.0, 1.0});
   const std::vector<WedgeClass> classes{{{0, 1}, 0}};
   Quadric total;
   EXPECT_NEAR(attributes.add_classes(total, classes, drawn.places[0]), 0.0, 1e-9) << "where it belongs";
@@ -72,7 +74,7 @@ TEST(AttributeQuadrics, LockedWedgesOfOneValueAgree) {
   SimplifyInput input = linear_texture(drawn);
   input.wedge_attributes[2] = input.wedge_attributes[0];  // of 1 as of 0
   input.wedge_attributes[3] = input.wedge_attributes[1];
-  const AttributeQuadrics<3> attributes = quadrics_of(drawn, input, {1.0, 1.0});
+  const AttributeQuadrics<double, 3> attributes = quadrics_of(drawn, input, {1.0, 1.0});
   GroupLocks locks(std::vector<std::uint8_t>(10, 0), std::vector<std::uint8_t>(10, 0), drawn.wedge_position);
   EXPECT_TRUE(attributes.agree({{0, 1, 2}}, locks)) << "none is locked";
   locks.is_wedge_locked = {1, 1, 0, 0, 0, 0, 0, 0, 0, 0};
@@ -84,7 +86,7 @@ TEST(AttributeQuadrics, LockedWedgesOfOneValueAgree) {
 TEST(AttributeQuadrics, WhatIsLockedOrDoesNotCountIsWrittenAsItCame) {
   const DrawnMesh drawn = closed_fan();
   const SimplifyInput input = linear_texture(drawn);
-  AttributeQuadrics<3> attributes = quadrics_of(drawn, input, {0.7, 0.0});
+  AttributeQuadrics<double, 3> attributes = quadrics_of(drawn, input, {0.7, 0.0});
   attributes.join({{0, 1}}, drawn.places[1]);
   EXPECT_NEAR(written(attributes, 0)[0], 5.0F, 1e-5F) << "moved to the place of 1";
   EXPECT_EQ(written(attributes, 0)[1], 0.0F);
@@ -100,7 +102,7 @@ TEST(AttributeQuadrics, NormalsAreWrittenOfUnitLength) {
     const float x = p.x <= 0 ? -0.6F : p.x >= 4 ? 0.6F : 0.0F;
     for (const float n : {x, 0.0F, x == 0.0F ? 1.0F : 0.8F}) input.wedge_attributes.push_back(n);
   }
-  AttributeQuadrics<3> attributes = quadrics_of(drawn, input, {1.0, 1.0, 1.0});
+  AttributeQuadrics<double, 3> attributes = quadrics_of(drawn, input, {1.0, 1.0, 1.0});
   attributes.join({{0, 1}}, drawn.places.to_frame({2, 0, 0}));
   const std::vector<float> n = written(attributes, 0);
   EXPECT_NEAR(n[0] * n[0] + n[1] * n[1] + n[2] * n[2], 1.0F, 1e-6F);
@@ -113,7 +115,7 @@ TEST(AttributeQuadrics, AcrossASliverAttributesAreConstant) {
   SimplifyInput input = as_input(drawn);
   input.layout.uv_set_count = 1;
   input.wedge_attributes = {0.0F, 0.0F, 0.0F, 0.0F, 3.0F, 0.0F};
-  AttributeQuadrics<3> attributes = quadrics_of(drawn, input, {1.0, 1.0});
+  AttributeQuadrics<double, 3> attributes = quadrics_of(drawn, input, {1.0, 1.0});
   attributes.join({{0}}, drawn.places[1]);
   EXPECT_NEAR(written(attributes, 0)[0], 1.0F, 1e-6F) << "the mean of the three, wherever it is";
 }
@@ -124,7 +126,7 @@ TEST(AttributeQuadrics, ANormalThatVanishesIsWrittenAsItCame) {
   SimplifyInput input = as_input(drawn);
   input.layout.has_normal = true;
   input.wedge_attributes = {1.0F, 0.0F, 0.0F, -1.0F, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F};
-  AttributeQuadrics<3> attributes = quadrics_of(drawn, input, {1.0, 1.0, 1.0});
+  AttributeQuadrics<double, 3> attributes = quadrics_of(drawn, input, {1.0, 1.0, 1.0});
   attributes.join({{0}}, drawn.places[0]);
   EXPECT_EQ(written(attributes, 0), (std::vector<float>{1.0F, 0.0F, 0.0F}));
 }
@@ -132,7 +134,7 @@ TEST(AttributeQuadrics, ANormalThatVanishesIsWrittenAsItCame) {
 TEST(AttributeQuadrics, WithoutAttributesThereAreNone) {
   const DrawnMesh drawn = closed_fan();
   const SimplifyInput input = as_input(drawn);
-  const AttributeQuadrics<3> attributes(input, {});
+  const AttributeQuadrics<double, 3> attributes(input, {});
   EXPECT_EQ(attributes.count(), 0U);
   Quadric total;
   EXPECT_EQ(attributes.add_classes(total, {}, Vec3d(0.0)), 0.0);

@@ -60,6 +60,25 @@ TEST(Placement, ADegenerateSystemFallsBackToTheEdge) {
   EXPECT_NEAR(glm::distance(place_vertex(q, kA, kB), Vec3d(3, 0, 0)), 0.0, 1e-12);
 }
 
+TEST(Placement, WithoutTheFallbackAnyFiniteMinimumIsTaken) {
+  Quadric q;  // the three planes of above meet far off
+  add_plane(q, {1, 0, 0}, 6.0, 1.0);
+  add_plane(q, {0, 1, 0}, 20.0, 1.0);
+  add_plane(q, {0, 0, 1}, 0.0, 1.0);
+  EXPECT_NEAR(glm::distance(place_vertex(q, kA, kB, false), Vec3d(6, 20, 0)), 0.0, 1e-9);
+  Quadric flat;
+  add_plane(flat, {0, 0, 1}, 0.0, 1.0);
+  EXPECT_EQ(place_vertex(flat, kA, kB, false), (kA + kB) * 0.5) << "nothing to solve";
+}
+
+TEST(Placement, InFloatsItIsTheSameToTheirDigits) {
+  BasicQuadric<float> q;
+  q.add_plane({1, 0, 0}, -3.0F, 1.0F);
+  q.add_plane({0, 1, 0}, -5.0F, 2.0F);
+  q.add_plane({0, 0, 1}, 1.0F, 1.0F);
+  EXPECT_NEAR(glm::distance(place_vertex(q, kA, kB), Vec3d(3, 5, -1)), 0.0, 1e-4);
+}
+
 TEST(Placement, BeyondTheEdgeItsEndIsTaken) {
   Quadric right, left;
   add_plane(right, {1, 0, 0}, 20.0, 1.0);

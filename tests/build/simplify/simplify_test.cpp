@@ -80,7 +80,7 @@ TEST(Quadric, ParallelPlanesHaveNoTrustedMinimum) {
 TEST(WedgeQuadric, ALinearAttributeIsReproducedWithoutError) {
   // s(p) = 2x - y + 3z + 1 on faces of different normals: the gradient along each face is what counts.
   const Vec3d slope(2, -1, 3);
-  WedgeQuadric<1> q;
+  WedgeQuadric<double, 1> q;
   for (const Vec3d& n : {Vec3d(0, 0, 1), glm::normalize(Vec3d(0, 1, 1)), glm::normalize(Vec3d(1, 1, 1))}) {
     const Vec3d tangential = slope - n * glm::dot(slope, n);
     q.base.weight += 0.5;

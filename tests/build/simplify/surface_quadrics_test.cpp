@@ -32,8 +32,8 @@ SimplifyInput with_texture(const DrawnMesh& drawn, float offset) {
   return input;
 }
 
-SurfaceQuadrics quadrics_of(const DrawnMesh& drawn, const HeldEdges& held) {
-  SurfaceQuadrics surface(drawn.points.size(), SimplifyOptions{}.border_weight);
+SurfaceQuadrics<double> quadrics_of(const DrawnMesh& drawn, const HeldEdges& held) {
+  SurfaceQuadrics<double> surface(drawn.points.size(), SimplifyOptions{}.border_weight);
   for (std::uint32_t t = 0; t < drawn.mesh.triangle_count(); ++t) {
     surface.add_face({drawn.mesh.vertex(3 * t), drawn.mesh.vertex(3 * t + 1), drawn.mesh.vertex(3 * t + 2)},
                      face_of(drawn.mesh, drawn.places, t));
@@ -106,7 +106,7 @@ TEST(HeldEdges, ASeamIsHeldWhereItsTextureBreaks) {
 
 TEST(SurfaceQuadrics, RaisingAnEdgeCostsItsAreasTimesTheSquare) {
   const DrawnMesh drawn = closed_fan();
-  const SurfaceQuadrics surface = quadrics_of(drawn, {});
+  const SurfaceQuadrics<double> surface = quadrics_of(drawn, {});
   // Twelve faces at the two ends (those on the edge count twice), each of 8 grid units squared.
   const double scale = drawn.places.scale(), area = 12.0 * 8.0 / (scale * scale), height = 3.0 / scale;
   const Quadric total = surface.around(0, 1);
@@ -119,7 +119,7 @@ TEST(SurfaceQuadrics, RaisingAnEdgeCostsItsAreasTimesTheSquare) {
 
 TEST(SurfaceQuadrics, ABorderMayBeSlidAlongAndNotMovedOff) {
   const DrawnMesh drawn = open_fan();
-  const SurfaceQuadrics surface = quadrics_of(drawn, find_held_edges(as_input(drawn), {}, drawn.mesh));
+  const SurfaceQuadrics<double> surface = quadrics_of(drawn, find_held_edges(as_input(drawn), {}, drawn.mesh));
   const Quadric total = surface.around(0, 1);
   EXPECT_NEAR(total.evaluate(drawn.places.to_frame({3, 0, 0})), 0.0, 1e-12);
   // Walls on (6, 0), (0, 1) twice, and (1, 2), each of length 4; 2 grid units off.
@@ -132,7 +132,8 @@ TEST(SurfaceQuadrics, ABorderMayBeSlidAlongAndNotMovedOff) {
 
 TEST(SurfaceQuadrics, ASeamIsAWallFromBothSides) {
   const DrawnMesh drawn = seamed_fan();
-  const SurfaceQuadrics surface = quadrics_of(drawn, find_held_edges(with_texture(drawn, 0.5F), {}, drawn.mesh));
+  const SurfaceQuadrics<double> surface =
+      quadrics_of(drawn, find_held_edges(with_texture(drawn, 0.5F), {}, drawn.mesh));
   const double scale = drawn.places.scale();
   const double walls = 2.0 * 4.0 * 16.0 / (scale * scale), off = 1.0 / scale;
   EXPECT_NEAR(surface.around(0, 1).evaluate(drawn.places.to_frame({2, 1, 0})),
@@ -141,14 +142,14 @@ TEST(SurfaceQuadrics, ASeamIsAWallFromBothSides) {
 
 TEST(SurfaceQuadrics, AJoinedVertexStandsForBothAndTellsItsError) {
   const DrawnMesh drawn = open_fan();
-  SurfaceQuadrics surface = quadrics_of(drawn, find_held_edges(as_input(drawn), {}, drawn.mesh));
+  SurfaceQuadrics<double> surface = quadrics_of(drawn, find_held_edges(as_input(drawn), {}, drawn.mesh));
   const Quadric before = surface.around(0, 1);
   const double scale = drawn.places.scale();
   const double error = surface.join(0, 1, drawn.places.to_frame({2, 3, 1}));
   EXPECT_NEAR(error, 3.0 / scale, 1e-12) << "3 off the border is more than 1 off the plane";
   EXPECT_NEAR(surface.weight(0), before.weight, 1e-15);
   EXPECT_NEAR(surface.around(0, 3).weight, before.weight + surface.weight(3), 1e-12);
-  SurfaceQuadrics nothing(drawn.points.size(), SimplifyOptions{}.border_weight);
+  SurfaceQuadrics<double> nothing(drawn.points.size(), SimplifyOptions{}.border_weight);
   EXPECT_EQ(nothing.join(0, 1, drawn.places[5]), 0.0) << "no face, no border, no error";
 }
 

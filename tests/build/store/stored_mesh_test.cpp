@@ -177,6 +177,14 @@ TEST(StoredMesh, EveryPartOfAMeshIsInItsKey) {
   PipelineOptions options;
   options.partition_seed = 2;
   EXPECT_TRUE(keys.emplace(mesh_key(mesh, {}, {}, options, options), 0).second);
+  options.partition_seed = 1;
+  for (const CareName& care : kCareNames) {
+    PipelineOptions study;
+    study.experiment.care.*care.member = false;
+    EXPECT_TRUE(keys.emplace(mesh_key(mesh, {}, {}, study, study), 0).second) << care.name;
+  }
+  options.experiment.simplifier = Simplifier::kOpenMesh;
+  EXPECT_TRUE(keys.emplace(mesh_key(mesh, {}, {}, options, options), 0).second);
   meshes[0].name = "renamed";
   EXPECT_FALSE(keys.emplace(mesh_key(meshes[0], {}, {}, {}, {}), 0).second);
 }
@@ -215,7 +223,7 @@ TEST(StoredMesh, HostileBytesAreRefusedOrBuildSomethingWithoutACrash) {
     PipelineReport report;
     static_cast<void>(build_lode(scene, options, {}, report));
   }
-  EXPECT_GT(refused, 400U);
+  EXPECT_GT(refused, 200U) << "most bytes are vertices, of which any are as good";
   std::vector<std::uint8_t> longer = sound;
   longer.push_back(0);
   EXPECT_FALSE(read_stored_mesh(longer, "mesh 0"));

@@ -34,9 +34,10 @@ Trial refused(const Error& error) {
 
 }  // namespace
 
-Trial try_case(const HardCase& hard_case, double parameter, bool all_laws) {
+Trial try_case(const HardCase& hard_case, double parameter, bool all_laws, const build::Care& care) {
   Result<Sample> sample = hard_case.make(parameter);
   if (!sample) return refused(sample.error());
+  sample->options.experiment.care = care;
   const Result<Built> built = build_sample(std::move(*sample));
   if (!built) return refused(built.error());
   Trial trial;
@@ -90,11 +91,13 @@ bool parse_trial(const std::string& text, Trial& trial) {
   return true;
 }
 
-Trial try_apart(const std::string& program, const HardCase& hard_case, double parameter, bool all_laws) {
+Trial try_apart(const std::string& program, const HardCase& hard_case, double parameter, bool all_laws,
+                const std::string& care) {
   char number[40];
   std::snprintf(number, sizeof number, "%.17g", parameter);
   std::vector<std::string> arguments{"trial", hard_case.name, number};
   if (all_laws) arguments.emplace_back("--laws");
+  if (!care.empty()) arguments.insert(arguments.end(), {"--care", care});
   ChildLimits limits;
   if (all_laws) limits.cpu_seconds *= 8.0;
   const ChildResult ran = run_child(program, std::move(arguments), limits);

@@ -92,6 +92,22 @@ TEST(SweepPoints, PositionBudgetsAreRoundAndNearTheirShareOfTheDiagonal) {
   }
 }
 
+TEST(SweepPoints, ChosenKnobsAloneAreTurned) {
+  const std::vector<std::string> chosen{"care", "codec"};
+  const std::vector<Knob> knobs = make_knobs(kAll, chosen);
+  ASSERT_EQ(knobs.size(), 2U);
+  std::size_t experiments = 0;
+  for (const Point& point : make_points(knobs)) {
+    const bool is_care = changed_knobs(knobs, point) == std::vector<std::string>{"care"};
+    EXPECT_EQ(is_experimental(knobs, point), is_care);
+    experiments += is_care ? 1U : 0U;
+  }
+  EXPECT_EQ(experiments, knobs[1].values.size() - 1);
+  for (const Knob& knob : make_knobs(kAll)) EXPECT_NE(knob.kind, KnobKind::kStudy) << "only where it is asked for";
+  const std::vector<std::string> names = all_knob_names();
+  EXPECT_EQ(std::count(names.begin(), names.end(), "care"), 1);
+}
+
 TEST(SweepPoints, DrawKnobsChangeNoAsset) {
   const std::vector<Knob> knobs = make_knobs(kAll);
   bool has_draw = false;
