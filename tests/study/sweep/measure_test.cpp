@@ -29,7 +29,7 @@ struct Sample {
 };
 
 Sample make_sample() {
-  scene::Scene scene = scene::as_scene(scene::as_mesh(scene::make_torus(130, 66)));
+  scene::Scene scene = scene::as_scene(scene::as_mesh(scene::make_torus(100, 50)));
   for (Vec3d& p : scene.meshes[0].primitives[0].positions) p += 0.01 * glm::sin(p * 17.0);  // not too smooth
   build::PipelineReport report;
   auto bytes = build::build_lode(scene, {}, {}, report);
@@ -39,7 +39,7 @@ Sample make_sample() {
   return {std::move(scene), std::move(*asset)};
 }
 
-constexpr std::uint64_t kSamples = 20000;
+constexpr std::uint64_t kSamples = 10000;
 
 TEST(SweepMeasure, FiguresAreThoseOfTheJudge) {
   const Sample s = make_sample();
@@ -65,12 +65,7 @@ TEST(SweepMeasure, FiguresAreThoseOfTheJudge) {
   std::uint64_t triangles = 0;
   for (const std::uint64_t level : m.asset.level_triangles) triangles += level;
   EXPECT_EQ(triangles, m.asset.stored_triangles);
-}
-
-TEST(SweepMeasure, CoarserCutsHaveFewerTrianglesAndNoLessStored) {
-  const Sample s = make_sample();
-  Measurement m;
-  ASSERT_TRUE(SourceMeasure(s.scene, kSamples).measure(s.asset, m));
+  // Coarser cuts have fewer triangles, and no less error stored.
   ASSERT_GE(m.cuts.size(), 3U);
   for (std::size_t i = 1; i < m.cuts.size(); ++i) {
     EXPECT_LE(m.cuts[i].triangles, m.cuts[i - 1].triangles);
