@@ -12,6 +12,7 @@ packages=(
   libtbb-dev libglm-dev libxxhash-dev        # base
   nlohmann-json3-dev libtinygltf-dev libdraco-dev libmeshoptimizer-dev  # import
   libmetis-dev libcgal-dev                   # partition, hierarchy and repair
+  libopenmesh-dev                            # another simplifier, to compare; an oracle of topology in tests
   libzstd-dev liblz4-dev                     # pack, unpack
   libpng-dev libjpeg62-turbo-dev libwebp-dev # image
   libstb-dev libcli11-dev                    # raster, command line
@@ -21,7 +22,6 @@ if [ "${1:-}" = --tests ]; then
   packages+=(libgtest-dev clang-14 libclang-rt-14-dev lld-14 assimp-testmodels
              git clang-format-14 clang-tidy-14             # the form of the sources
              python3                                       # the independent readers of the format and of glTF
-             libopenmesh-dev                               # an oracle of topology, a reference simplifier
              make                                          # a stranger's project, built by what CMake takes by itself
              zsh fish mandoc man-db                        # readers of completion scripts and of man pages
              mesa-vulkan-drivers vulkan-validationlayers)  # a Vulkan device on any machine, and its judge

@@ -9,6 +9,7 @@
 #include <meshlode/format.h>
 
 #include <CGAL/version.h>
+#include <OpenMesh/Core/System/config.h>
 #include <draco/core/draco_version.h>
 #include <jpeglib.h>
 #include <lz4.h>
@@ -85,6 +86,7 @@ std::vector<LibraryVersion> library_versions() {
       {"nlohmann-json", dotted(NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH),
        "JSON"},
       {"oneTBB", onetbb_version(), "threads"},
+      {"OpenMesh", dotted(OM_VERSION >> 16, OM_VERSION >> 8 & 0xFF, OM_VERSION & 0xFF), "groups, to compare"},
       {"stb_image", MESHLODE_STB_IMAGE_VERSION, "sizes of images"},
       {"stb_image_write", MESHLODE_STB_IMAGE_WRITE_VERSION, "pictures"},
       {"tinygltf", MESHLODE_TINYGLTF_VERSION, "glTF"},

@@ -5,6 +5,7 @@
 
 #include "build/simplify/border_rule.h"
 #include "build/simplify/group_simplifier.h"
+#include "build/simplify/openmesh_decimater.h"
 
 namespace meshlode::build {
 
@@ -41,6 +42,7 @@ Attempt simplify_once(const SimplifyInput& input, const SimplifyOptions& options
 }  // namespace
 
 SimplifyResult simplify_group(const SimplifyInput& input, const SimplifyOptions& options) {
+  if (options.experiment.simplifier == Simplifier::kOpenMesh) return simplify_group_by_openmesh(input, options);
   Attempt attempt = simplify_once(input, options);
   if (attempt.keeps_border) return std::move(attempt.result);
   // Where the link condition was broken, or vertices came to lie on each other, the border can be another one. Under
