@@ -221,7 +221,7 @@ int run_sweep(const Verb& verb, std::span<char* const> args) {
   parser.add_value("--want", words.want,
                    "bounds and a goal, as in 'deviation<=1e-4, bytes min'; several with semicolons between them");
   parser.add_value("--knobs", words.knobs,
-                   "names of the knobs to turn, comma by comma (docs/sweep.md); not given: the usual ones");
+                   "names of the knobs to turn, comma by comma (docs/sweep.md); not given: all");
   parser.add_value("--rounds", options.rounds, "how often each asset is built (3)");
   parser.add_value("--samples", options.samples, "area-uniform samples of deviations, each way (100000)");
   parser.add_value("--scene", options.scene_choice, "glTF: the name or index of the scene to build, or all");

@@ -16,7 +16,7 @@ namespace meshlode::study {
 namespace {
 
 /// A knob's first other value says whether it matters at all; further ones say how it bends.
-constexpr double kFirst = 1.0, kSecond = 0.8, kThird = 0.5, kCornerWorth = 0.6;
+constexpr double kFirst = 1.0, kSecond = 0.8, kThird = 0.5, kCornerWorth = 0.6, kOfStudy = 0.3;
 
 /// The nearest of 1, 2 and 5 times a power of ten, as a word: what a person would write.
 std::string round_word(double value) {
@@ -161,13 +161,13 @@ std::vector<Knob> list_knobs(const SceneFacts& facts) {
                    KnobKind::kBuild,
                    1,
                    {{"12", 1.0, kFirst}, {"20", 1.0, 0.0}, {"28", 1.0, kSecond}}});
-  knobs.push_back({"pixel_error",
-                   "pixel error",
-                   "--pixel-error",
-                   "pixels",
-                   KnobKind::kDraw,
-                   1,
-                   {{"0.5", 0.0, kSecond}, {"1", 0.0, 0.0}, {"2", 0.0, kFirst}, {"4", 0.0, kSecond}}});
+  knobs.push_back({"simplifier",
+                   "simplifier",
+                   "--simplifier",
+                   "",
+                   KnobKind::kStudy,
+                   0,
+                   {{"own", 1.0, 0.0}, {"openmesh", 2.0, kSecond}}});
   knobs.push_back({"care",
                    "care",
                    "--care",
@@ -175,10 +175,17 @@ std::vector<Knob> list_knobs(const SceneFacts& facts) {
                    KnobKind::kStudy,
                    0,
                    {{"all", 1.0, 0.0},
-                    {"double-quadrics=off", 1.0, kFirst},
-                    {"fallback=off", 1.0, kFirst},
-                    {"spheres=off", 1.0, kFirst},
-                    {"needles=off", 1.0, kFirst}}});
+                    {"double-quadrics=off", 1.0, kSecond},
+                    {"fallback=off", 1.0, kOfStudy},
+                    {"spheres=off", 1.0, kOfStudy},
+                    {"needles=off", 1.0, kOfStudy}}});
+  knobs.push_back({"pixel_error",
+                   "pixel error",
+                   "--pixel-error",
+                   "pixels",
+                   KnobKind::kDraw,
+                   1,
+                   {{"0.5", 0.0, kSecond}, {"1", 0.0, 0.0}, {"2", 0.0, kFirst}, {"4", 0.0, kSecond}}});
   return knobs;
 }
 
@@ -187,8 +194,7 @@ std::vector<Knob> list_knobs(const SceneFacts& facts) {
 std::vector<Knob> make_knobs(const SceneFacts& facts, std::span<const std::string> chosen) {
   std::vector<Knob> knobs = list_knobs(facts);
   std::erase_if(knobs, [&](const Knob& knob) {
-    if (chosen.empty()) return knob.kind == KnobKind::kStudy;
-    return std::find(chosen.begin(), chosen.end(), knob.name) == chosen.end();
+    return !chosen.empty() && std::find(chosen.begin(), chosen.end(), knob.name) == chosen.end();
   });
   return knobs;
 }

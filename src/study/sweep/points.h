@@ -43,8 +43,7 @@ struct SceneFacts {
   bool has_uvs = false;
 };
 
-/// Budgets of attributes that the scene does not store are left out, and knobs that only study wants where nobody names
-/// them. `chosen`: names of knobs, none for the usual ones.
+/// Budgets of attributes that the scene does not store are left out. `chosen`: names of knobs; none: all.
 [[nodiscard]] std::vector<Knob> make_knobs(const SceneFacts& facts, std::span<const std::string> chosen = {});
 /// Every name that there is.
 [[nodiscard]] std::vector<std::string> all_knob_names();

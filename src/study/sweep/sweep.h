@@ -37,7 +37,7 @@ struct SweepOptions {
   double budget = 0.0;             ///< wall seconds; 0: none
   std::uint64_t max_decoded = 0;   ///< bytes
   std::string max_decoded_text;    ///< the same as `build` takes it; empty: its default
-  std::vector<std::string> knobs;  ///< names of those that are turned; empty: the usual ones
+  std::vector<std::string> knobs;  ///< names of those that are turned; empty: all
   std::vector<Wish> wishes;        ///< empty: some usual ones
   std::string command;             ///< that makes the report again
   /// The camera that frames an asset.
