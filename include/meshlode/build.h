@@ -123,6 +123,9 @@ enum class UvErrorUnit : std::uint8_t {
             ///< no texture's size is known, as in scenes from arrays
 };
 
+/// How long fewer bytes a triangle are looked for: as a preset does.
+enum class StripEffort : std::uint8_t { kOfPreset, kFast, kDefault, kBest };
+
 /// What `meshlode build` can be told, under the names of its options: `--error-tier`, `--grid` and so on.
 struct BuildOptions {
   std::optional<format::ErrorTier> error_tier;  ///< what the stored errors are worth; nothing: what the preset says
@@ -136,8 +139,9 @@ struct BuildOptions {
   double uv_error = 0.0;        ///< what a texture coordinate may move at most; 0: chosen, invisible
   UvErrorUnit uv_error_unit = UvErrorUnit::kUv;  ///< of uv_error
   format::Codec codec = format::Codec::kNone;    ///< of the pages on disk
-  std::uint32_t cluster_triangles = 128;         ///< the most of a cluster, 1 to 256
-  std::uint32_t group_clusters = 20;             ///< how many clusters are simplified together, about: 4 to 32
+  StripEffort strip_effort = StripEffort::kOfPreset;
+  std::uint32_t cluster_triangles = 128;  ///< the most of a cluster, 1 to 256
+  std::uint32_t group_clusters = 20;      ///< how many clusters are simplified together, about: 4 to 32
   /// Remove and count triangles that touch a bad index or non-finite position, instead of refusing them, that have two
   /// corners in one place, or the same three as an earlier one of their material; orient the rest coherently.
   bool repair = false;

@@ -92,7 +92,8 @@ typedef struct meshlode_build_options {
   /* Sets of attributes, bit 0 normals, bit 1 + k UV set k, bit 5 colours: stored although `attributes` would not, where
    * the source has them, and not stored although it would. None is in both. */
   uint32_t keep, drop;
-  uint32_t codec;             /* of the pages on disk: 0 none, 1 LZ4, 2 Zstandard, 3 Draco, 4 strips */
+  uint32_t codec;        /* of the pages on disk: 0 none, 1 LZ4, 2 Zstandard, 3 Draco, 4 strips */
+  uint32_t strip_effort; /* how long fewer bytes a triangle are looked for: 0 as preset, 1 fast, 2 default, 3 best */
   uint32_t cluster_triangles; /* the most of a cluster, 1 to 256 */
   uint32_t group_clusters;    /* how many are simplified together, about: 4 to 32 */
   double grid_step, position_error, normal_error, uv_error;

@@ -110,7 +110,7 @@ Result<BuiltMesh> build_mesh(const Source& from, std::size_t index,
   built.decisions = std::move(plan.decisions);
   built.clock.end(Stage::kPlan);
 
-  const EncodeOptions encoding = encode_options(options.preset, own, source, plan.layout, texels);
+  const EncodeOptions encoding = encode_options(options, own, source, plan.layout, texels);
   const StoredPlace place(source, plan.layout, encoding, own, options);
   const std::size_t planned = built.decisions.size();
   if (place.take(label, built)) {

@@ -41,6 +41,7 @@ constexpr std::uint32_t kUsualGroupClusters = 20, kFewestGroupClusters = 4, kMos
 struct SceneOptions {
   Preset preset = Preset::kDefault;
   format::Codec codec = format::Codec::kNone;
+  StripEffort strip_effort = StripEffort::kOfPreset;
   std::uint32_t partition_seed = 1;  ///< of METIS; benchmarks vary it, to tell a change from luck
   bool repair = false;               ///< the scene was imported with repair: recorded, because it changes the bytes
   std::uint32_t max_cluster_triangles = 128;           ///< I2; at most format::kMaxClusterTriangles

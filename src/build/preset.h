@@ -20,6 +20,14 @@ constexpr const char* name_of(Preset preset) {
   return name_in(kPresetNames, preset);
 }
 
+inline constexpr std::array<EnumName<StripEffort>, 4> kStripEffortNames{{{StripEffort::kOfPreset, "auto"},
+                                                                         {StripEffort::kFast, "fast"},
+                                                                         {StripEffort::kDefault, "default"},
+                                                                         {StripEffort::kBest, "best"}}};
+constexpr const char* name_of(StripEffort effort) {
+  return name_in(kStripEffortNames, effort);
+}
+
 struct PresetSettings {
   format::ErrorTier error_tier;      ///< where the caller asks for none
   std::uint32_t strip_trials;        ///< EncodeOptions::strip_trials: fewer bytes for time
@@ -37,6 +45,17 @@ inline constexpr std::array<PresetSettings, 3> kPresetSettings{{
 /// \pre one of the enumerators
 constexpr const PresetSettings& settings_of(Preset preset) {
   return kPresetSettings[static_cast<std::size_t>(preset)];
+}
+
+/// Whose trials of strips.
+constexpr const PresetSettings& settings_of(StripEffort effort, Preset preset) {
+  switch (effort) {
+    case StripEffort::kFast: return settings_of(Preset::kFast);
+    case StripEffort::kDefault: return settings_of(Preset::kDefault);
+    case StripEffort::kBest: return settings_of(Preset::kBest);
+    case StripEffort::kOfPreset: break;
+  }
+  return settings_of(preset);
 }
 
 }  // namespace meshlode::build

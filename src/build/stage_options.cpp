@@ -86,15 +86,16 @@ PrepareOptions prepare_options(const MeshOptions& options, const Care& care) {
   return prepare;
 }
 
-EncodeOptions encode_options(Preset preset, const MeshOptions& options, const scene::SourceMesh& source,
+EncodeOptions encode_options(const SceneOptions& whole, const MeshOptions& options, const scene::SourceMesh& source,
                              const AttributeLayout& layout,
                              std::span<const std::array<double, scene::kMaxUvSets>> texels) {
   EncodeOptions encode;
   encode.normal_error = options.normal_error;
   encode.uv_error = uv_errors(options, source, layout, texels);
   encode.uv_error_may_fall_short = options.uv_error_is_default;
-  encode.strip_trials = settings_of(preset).strip_trials;
-  encode.mixed_strip_trials = settings_of(preset).mixed_strip_trials;
+  const PresetSettings& effort = settings_of(whole.strip_effort, whole.preset);
+  encode.strip_trials = effort.strip_trials;
+  encode.mixed_strip_trials = effort.mixed_strip_trials;
   return encode;
 }
 

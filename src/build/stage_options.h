@@ -26,8 +26,8 @@ namespace meshlode::build {
 [[nodiscard]] PrepareOptions prepare_options(const MeshOptions& options, const Care& care = {});
 
 /// `texels`: texels_of_materials() of the scene, for a budget that is given in texels.
-[[nodiscard]] EncodeOptions encode_options(Preset preset, const MeshOptions& options, const scene::SourceMesh& source,
-                                           const AttributeLayout& layout,
+[[nodiscard]] EncodeOptions encode_options(const SceneOptions& whole, const MeshOptions& options,
+                                           const scene::SourceMesh& source, const AttributeLayout& layout,
                                            std::span<const std::array<double, scene::kMaxUvSets>> texels);
 
 /// `own` are the mesh's; `encode` says what a cluster will take in a page. \pre the mesh outlives what is returned

@@ -118,6 +118,7 @@ Json settings_json(const scene::Scene& scene, const PipelineOptions& options,
   put_names(settings, forced);
   settings["grid"] = grid_of(options);
   settings["codec"] = format::name_of(options.codec);
+  if (options.strip_effort != StripEffort::kOfPreset) settings["strip_effort"] = name_of(options.strip_effort);
   settings["repair"] = options.repair;
   if (!scene.choice.empty()) settings["scene"] = scene.choice;
   settings["cluster_triangles"] = options.max_cluster_triangles;

@@ -170,6 +170,7 @@ TEST(ApiBuild, OptionsThatMakeNoSenseAreUsageErrors) {
   expect_usage("thread_count", [](BuildOptions& o) { o.thread_count = 4097; });
   expect_usage("error_tier", [](BuildOptions& o) { o.error_tier = static_cast<format::ErrorTier>(3); });
   expect_usage("preset", [](BuildOptions& o) { o.preset = static_cast<Preset>(3); });
+  expect_usage("strip_effort", [](BuildOptions& o) { o.strip_effort = static_cast<StripEffort>(4); });
   expect_usage("attributes", [](BuildOptions& o) { o.attributes = static_cast<AttributeChoice>(3); });
   expect_usage("uv_error_unit", [](BuildOptions& o) { o.uv_error_unit = static_cast<UvErrorUnit>(2); });
   expect_usage("codec", [](BuildOptions& o) { o.codec = static_cast<format::Codec>(5); });

@@ -81,6 +81,7 @@ TEST(CBuild, TheSameBytesAsInCpp) {
   options.preset = 2;
   options.attributes = 1;
   options.codec = 4;
+  options.strip_effort = 1;
   options.position_error = 0.01;
   options.thread_count = 1;
   BuildOptions same;
@@ -88,6 +89,7 @@ TEST(CBuild, TheSameBytesAsInCpp) {
   same.preset = Preset::kBest;
   same.attributes = AttributeChoice::kNone;
   same.codec = format::Codec::kStrips;
+  same.strip_effort = StripEffort::kFast;
   same.position_error = 0.01;
   EXPECT_EQ(build_in_c(scene, &options), build_in_cpp(arrays, same));
 }
@@ -134,6 +136,7 @@ TEST(CBuild, WhatMakesNoSenseIsAnErrorWithItsPlace) {
   expect(MESHLODE_INVALID, "material", [](CScene& s, O&) { s.primitive.material = 1; });
   expect(MESHLODE_USAGE, "error_tier", [](CScene&, O& o) { o.error_tier = 3; });
   expect(MESHLODE_USAGE, "preset", [](CScene&, O& o) { o.preset = 256; });
+  expect(MESHLODE_USAGE, "strip_effort", [](CScene&, O& o) { o.strip_effort = 4; });
   expect(MESHLODE_USAGE, "attributes", [](CScene&, O& o) { o.attributes = 3; });
   expect(MESHLODE_USAGE, "codec", [](CScene&, O& o) { o.codec = 5; });
   const CScene sound(arrays);

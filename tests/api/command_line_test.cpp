@@ -48,6 +48,8 @@ const Saying kSayings[] = {
      "foliage.glb"},
     {"--codec strips", [](BuildOptions& o) { o.codec = format::Codec::kStrips; }},
     {"--codec zstd --jobs 2", [](BuildOptions& o) { o.codec = format::Codec::kZstd, o.thread_count = 2; }},
+    {"--strip-effort fast --codec strips",
+     [](BuildOptions& o) { o.strip_effort = StripEffort::kFast, o.codec = format::Codec::kStrips; }},
     {"--cluster-triangles 64", [](BuildOptions& o) { o.cluster_triangles = 64; }},
     {"--group-clusters 12", [](BuildOptions& o) { o.group_clusters = 12; }},
     {"--strict", [](BuildOptions&) {}},  // the library always is

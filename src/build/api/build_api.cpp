@@ -34,6 +34,7 @@ Status check_choices(const BuildOptions& options) {
   if (options.error_tier && *options.error_tier > format::ErrorTier::kCertified)
     return usage("BuildOptions::error_tier");
   if (options.preset > Preset::kBest) return usage("BuildOptions::preset");
+  if (options.strip_effort > StripEffort::kBest) return usage("BuildOptions::strip_effort");
   if (options.attributes > AttributeChoice::kAll) return usage("BuildOptions::attributes");
   if (options.uv_error_unit > UvErrorUnit::kTexels) return usage("BuildOptions::uv_error_unit");
   if (options.codec > format::Codec::kStrips) return usage("BuildOptions::codec");
@@ -84,6 +85,7 @@ Result<build::PipelineOptions> make_pipeline_options(const BuildOptions& options
     pipeline.uv_error_is_default = false;
   }
   pipeline.codec = options.codec;
+  pipeline.strip_effort = options.strip_effort;
   pipeline.max_cluster_triangles = options.cluster_triangles;
   pipeline.group_clusters = options.group_clusters;
   pipeline.repair = options.repair;

@@ -126,10 +126,12 @@ Result<BuildOptions> read_options(const meshlode_build_options& in) {
   const auto limit = [](const char* field) { return usage(field, "is not one of its enumerators"); };
   if (in.error_tier > 2 && in.error_tier != MESHLODE_TIER_OF_PRESET) return limit("error_tier");
   if (in.preset > 2) return limit("preset");
+  if (in.strip_effort > 3) return limit("strip_effort");
   if (in.attributes > 2) return limit("attributes");
   BuildOptions out;
   if (in.error_tier != MESHLODE_TIER_OF_PRESET) out.error_tier = static_cast<format::ErrorTier>(in.error_tier);
   out.preset = static_cast<Preset>(in.preset);
+  out.strip_effort = static_cast<StripEffort>(in.strip_effort);
   out.attributes = static_cast<AttributeChoice>(in.attributes);
   out.keep = in.keep;
   out.drop = in.drop;
@@ -222,6 +224,7 @@ void meshlode_build_defaults(meshlode_build_options* options) {
   const meshlode::BuildOptions defaults;
   *options = {};
   options->error_tier = MESHLODE_TIER_OF_PRESET;
+  options->strip_effort = static_cast<uint32_t>(defaults.strip_effort);
   options->preset = static_cast<uint32_t>(defaults.preset);
   options->attributes = static_cast<uint32_t>(defaults.attributes);
   options->keep = defaults.keep;

@@ -70,7 +70,7 @@ class MeshPlanner {
     for (std::uint32_t set = 0; set < scene::kMaxUvSets; ++set) {
       all.uv_set_source[all.uv_set_count++] = static_cast<std::uint8_t>(set);
     }
-    encode_ = encode_options(options_.preset, own_, mesh_, all, texels);
+    encode_ = encode_options(options_, own_, mesh_, all, texels);
     for (std::size_t set = 0; set < scene::kMaxUvSets; ++set) {
       UvRange range;
       for (const scene::Primitive& primitive : mesh_.primitives) {

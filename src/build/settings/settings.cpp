@@ -30,6 +30,8 @@ constexpr std::array<SettingInfo, kSettingCount> kSettings{{
     {Setting::kNormalError, "normal-error", "the largest angle a stored normal may be off, degrees", "0.1", true},
     {Setting::kUvError, "uv-error", "auto, or the largest move of a UV: UV units, or 0.25px for texels", "auto", true},
     {Setting::kCodec, "codec", "disk codec of the pages", "none", false},
+    {Setting::kStripEffort, "strip-effort", "how long fewer bytes a triangle are looked for; auto: as the preset",
+     "auto", false},
     {Setting::kClusterTriangles, "cluster-triangles", "the most triangles of a cluster, 1 to 256", "128", false},
     {Setting::kGroupClusters, "group-clusters", "how many clusters are simplified together, about: 4 to 32", "20",
      false},
@@ -179,6 +181,7 @@ PipelineOptions options_of(const std::array<SettledWord, kSettingCount>& words) 
   options.error_tier =
       value_in(format::kErrorTierNames, word(Setting::kErrorTier)).value_or(settings_of(options.preset).error_tier);
   options.codec = value_in(format::kCodecNames, word(Setting::kCodec)).value_or(options.codec);
+  options.strip_effort = value_in(kStripEffortNames, word(Setting::kStripEffort)).value_or(options.strip_effort);
   options.attributes = value_in(kAttributeChoiceNames, word(Setting::kAttributes)).value_or(options.attributes);
   options.keep = attributes_of(word(Setting::kKeep));
   options.drop = attributes_of(word(Setting::kDrop));
@@ -228,6 +231,7 @@ std::vector<std::string> choices_of(Setting setting) {
     case Setting::kPreset: return all_names(kPresetNames);
     case Setting::kAttributes: return all_names(kAttributeChoiceNames);
     case Setting::kCodec: return all_names(format::kCodecNames);
+    case Setting::kStripEffort: return all_names(kStripEffortNames);
     case Setting::kRepair: return {"false", "true"};
     case Setting::kSimplifier: return all_names(kSimplifierNames);
     default: return {};

@@ -31,13 +31,14 @@ enum class Setting : std::uint8_t {
   kNormalError,
   kUvError,
   kCodec,
+  kStripEffort,
   kClusterTriangles,
   kGroupClusters,
   kRepair,
   kCare,
   kSimplifier,
 };
-constexpr std::size_t kSettingCount = 15;
+constexpr std::size_t kSettingCount = 16;
 
 struct SettingInfo {
   Setting setting;

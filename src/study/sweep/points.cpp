@@ -44,10 +44,15 @@ struct Setting {
 };
 /// Settings that interact: what a strip costs depends on how long clusters let it be, what a proof costs on who asks.
 const std::vector<Setting> kCorners[] = {
-    {{"preset", "fast"}, {"codec", "strips"}},           {{"preset", "best"}, {"codec", "strips"}},
-    {{"codec", "strips"}, {"cluster_triangles", "256"}}, {{"codec", "strips"}, {"cluster_triangles", "64"}},
-    {{"preset", "fast"}, {"error_tier", "measured"}},    {{"preset", "best"}, {"error_tier", "certified"}},
-    {{"codec", "strips"}, {"normal_error", "1"}},        {{"preset", "best"}, {"codec", "draco"}},
+    {{"preset", "fast"}, {"codec", "strips"}},
+    {{"preset", "best"}, {"codec", "strips"}},
+    {{"codec", "strips"}, {"cluster_triangles", "256"}},
+    {{"codec", "strips"}, {"cluster_triangles", "64"}},
+    {{"preset", "fast"}, {"error_tier", "measured"}},
+    {{"preset", "best"}, {"error_tier", "certified"}},
+    {{"codec", "strips"}, {"normal_error", "1"}},
+    {{"codec", "strips"}, {"strip_effort", "best"}},
+    {{"preset", "best"}, {"codec", "draco"}},
 };
 
 std::optional<std::size_t> find_value(const Knob& knob, const std::string& word) {
@@ -147,6 +152,13 @@ std::vector<Knob> list_knobs(const SceneFacts& facts) {
                     {"strips", 1.2, kFirst},
                     {"draco", 1.2, kSecond}},
                    true});
+  knobs.push_back({"strip_effort",
+                   "strip effort",
+                   "--strip-effort",
+                   "",
+                   KnobKind::kBuild,
+                   0,
+                   {{"auto", 1.0, 0.0}, {"fast", 0.9, kFirst}, {"best", 1.2, kThird}}});
   knobs.push_back({"cluster_triangles",
                    "cluster size",
                    "--cluster-triangles",

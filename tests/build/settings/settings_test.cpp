@@ -96,6 +96,9 @@ TEST(Settings, ClustersHaveASize) {
   const SettingLayer groups = layer_of({{Setting::kGroupClusters, "12"}});
   EXPECT_EQ(settle({&groups, 1})->options.group_clusters, 12U);
   EXPECT_EQ(settle({})->options.group_clusters, 20U);
+  const SettingLayer effort = layer_of({{Setting::kStripEffort, "best"}});
+  EXPECT_EQ(settle({&effort, 1})->options.strip_effort, StripEffort::kBest);
+  EXPECT_EQ(settle({})->options.strip_effort, StripEffort::kOfPreset);
 }
 
 TEST(Settings, UvErrorsKnowTheirUnit) {
