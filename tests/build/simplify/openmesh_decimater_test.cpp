@@ -195,14 +195,37 @@ TEST(OpenMeshDecimater, ASphereStaysNearTheSphere) {
   EXPECT_LT(result.quadric_error, 0.05);
 }
 
+/// Also where roundings make its errors a little less than nothing.
 TEST(OpenMeshDecimater, AFlatPatchCostsNothing) {
-  SimplifyInput input = as_input(scene::make_plane(16));
-  lock_border(input);
-  const SimplifyResult result = simplify(input, 1);
-  EXPECT_EQ(fault_of(input, result), "");
-  EXPECT_LE(result.triangles.size(), 66U) << "64 vertices on the border and hardly one inside";
-  EXPECT_LT(result.quadric_error, 1e-3 * input.grid.step());
-  EXPECT_EQ(result.reason, StuckReason::kLocked);
+  for (const bool is_tilted : {false, true}) {
+    SimplifyInput input = as_input(scene::make_plane(16));
+    lock_border(input);
+    for (Vec3i& p : input.positions) p.y = is_tilted ? 3 * p.x + 7 * p.z : p.y;
+    const SimplifyResult result = simplify(input, 1);
+    EXPECT_EQ(fault_of(input, result), "");
+    EXPECT_LE(result.triangles.size(), 66U) << "64 vertices on the border and hardly one inside";
+    EXPECT_LT(result.quadric_error, input.grid.step());
+    EXPECT_EQ(result.reason, StuckReason::kLocked);
+  }
+}
+
+/// A free vertex between two locked ones: were it to go, an open edge would lie where another group may have one.
+TEST(OpenMeshDecimater, NoOpenEdgeComesBetweenLockedVertices) {
+  SimplifyInput input;
+  input.positions = {{0, 0, 0}, {100, 0, 0}, {200, 0, 0}, {100, 100, 0}, {0, 100, 0}, {200, 100, 0}};
+  input.is_locked = {1, 0, 1, 1, 1, 1};
+  input.triangles = {{0, 1, 3}, {1, 2, 3}, {0, 3, 4}, {2, 5, 3}};
+  for (std::uint32_t v = 0; v < 6; ++v) {
+    input.witnesses.push_back({{input.positions[v]}, 1});
+    input.wedge_position.push_back(v);
+  }
+  input.is_wedge_shared.assign(6, 0);
+  input.triangle_material.assign(4, 0);
+  const SimplifyResult kept = simplify(input, 1);
+  EXPECT_EQ(border_of(kept), border_of(input));
+  EXPECT_EQ(kept.reason, StuckReason::kLocked);
+  input.is_locked[2] = 0;
+  EXPECT_LT(simplify(input, 1).triangles.size(), 4U);
 }
 
 TEST(OpenMeshDecimater, NoTextureCrossesItsSeam) {
