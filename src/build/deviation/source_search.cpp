@@ -70,7 +70,7 @@ class SourceSearch {
     look_inside(first, radius, start);
     for (std::size_t next = 0; next < frontier_.size() && points < kMaxPointsPerSeed; ++next) {
       const Reached reached = frontier_[next];
-      for (const std::uint32_t triangle : source_.triangles_around(reached.vertex)) {
+      for (const std::uint32_t triangle : source_.triangles_on_from(reached.vertex)) {
         for (const std::uint32_t vertex : source_.vertices(triangle)) visit(vertex, triangle, reached.place);
         look_inside(triangle, radius, reached.place);
       }
@@ -87,7 +87,7 @@ class SourceSearch {
     const TreeSlot place = place_near(point);
     look_inside(triangle, 0.0, place);
     for (const std::uint32_t corner : source_.vertices(triangle)) {
-      for (const std::uint32_t around : source_.triangles_around(corner)) look_inside(around, 0.0, place);
+      for (const std::uint32_t around : source_.triangles_on_from(corner)) look_inside(around, 0.0, place);
     }
   }
 

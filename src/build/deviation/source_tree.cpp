@@ -65,7 +65,7 @@ SourceTree::SourceTree(std::span<const Vec3d> positions, std::span<const std::ar
   impl_->positions = positions;
   impl_->triangles = triangles;
   impl_->vertex_of = weld(positions);
-  impl_->tree.build({positions, triangles}, SurfaceTree::Leaves::kMade);
+  impl_->tree.build({positions, triangles, impl_->vertex_of}, SurfaceTree::Leaves::kMade);
   std::vector<std::uint32_t>& first = impl_->first_corner;
   first.assign(positions.size() + 2, 0);
   for (std::uint32_t t = 0; t < triangles.size(); ++t) {

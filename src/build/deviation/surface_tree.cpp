@@ -167,6 +167,7 @@ void SurfaceTree::build(const Surface& surface, Leaves leaves) {
   leaves_.clear();
   terms_.clear();
   nodes_.clear();
+  capsules_.clear();
   level_start_.clear();
   if (surface.triangles.empty()) return;
   static std::atomic<std::uint64_t> trees = 0;
@@ -204,6 +205,7 @@ void SurfaceTree::build(const Surface& surface, Leaves leaves) {
     for (const Leaf& leaf : leaves_) terms_.push_back(terms_of(leaf));
   }
   fill_nodes();
+  if (has_hub(surface.triangles, surface.positions.size(), surface.vertex_of)) fill_capsules();
 }
 
 void SurfaceTree::set_frame() {
@@ -289,6 +291,37 @@ void SurfaceTree::fill_nodes() {
           node.low[axis][k] = low;
           node.high[axis][k] = high;
         }
+      }
+    });
+  }
+}
+
+void SurfaceTree::fill_capsules() {
+  capsules_.resize(nodes_.size());
+  const std::size_t depth = level_start_.size() - 1;
+  const auto around_leaf = [&](std::size_t index) {
+    const Leaf leaf = leaves_.empty() ? make_leaf(index) : leaves_[index];
+    std::array<std::array<Vec3f, 3>, kLeafSize> triangles;
+    for (std::size_t k = 0; k < kLeafSize; ++k) {
+      const auto at = [&](const auto& from) { return Vec3f(from[0][k], from[1][k], from[2][k]); };
+      triangles[k] = {at(leaf.a), at(leaf.a) + at(leaf.ab), at(leaf.a) + at(leaf.ac)};
+    }
+    return capsule_around(triangles);
+  };
+  for (std::size_t level = depth; level-- > 0;) {
+    const bool is_last = level + 1 == depth;
+    const std::size_t child_count = is_last ? leaf_count() : level_start_[level + 2] - level_start_[level + 1];
+    parallel_for_each_index(level_start_[level + 1] - level_start_[level], 1024, [&](std::size_t i) {
+      for (std::size_t k = 0; k < 4; ++k) {
+        const std::size_t child = 4 * i + k;
+        Capsule capsule;
+        if (child < child_count && is_last) {
+          capsule = around_leaf(child);
+        } else if (child < child_count) {
+          const FourCapsules& below = capsules_[level_start_[level + 1] + child];
+          capsule = capsule_around(std::array{below.get(0), below.get(1), below.get(2), below.get(3)});
+        }
+        capsules_[level_start_[level] + i].set(k, capsule);
       }
     });
   }
@@ -426,8 +459,15 @@ SurfaceTree::Hit SurfaceTree::find_nearest(const Vec3f& point, Hit best, float e
   const auto depth = static_cast<std::uint32_t>(level_start_.size() - 1);
   Stack stack;
   std::size_t size = 0;
+  const auto distances2_to_children = [&](std::uint32_t node) {
+    const Lanes distance2 = distances2_to_boxes(nodes_[node], p);
+    if (capsules_.empty() || !any_lane(distance2 < lanes(best.distance2))) return distance2;
+    // They only dismiss: what is left is looked at in the order of the boxes.
+    const LaneMask is_near = distances2_to_capsules(capsules_[node], point) < lanes(best.distance2);
+    return choose(is_near, distance2, lanes(std::numeric_limits<float>::infinity()));
+  };
   const auto open = [&](std::uint32_t level, std::uint32_t index) {
-    const Lanes distance2 = distances2_to_boxes(nodes_[level_start_[level] + index], p);
+    const Lanes distance2 = distances2_to_children(level_start_[level] + index);
     push_children(4 * index, level + 1, distance2, best.distance2, stack, size);
   };
   /// Down whatever is on the stack; false where something is near enough.
@@ -455,7 +495,7 @@ SurfaceTree::Hit SurfaceTree::find_nearest(const Vec3f& point, Hit best, float e
   for (std::uint32_t level = depth; level-- > 0;) {
     const std::uint32_t known = index & 3U;
     index >>= 2U;
-    Lanes distance2 = distances2_to_boxes(nodes_[level_start_[level] + index], p);
+    Lanes distance2 = distances2_to_children(level_start_[level] + index);
     distance2[known] = std::numeric_limits<float>::infinity();
     if (!any_lane(distance2 < lanes(best.distance2))) continue;
     push_children(4 * index, level + 1, distance2, best.distance2, stack, size);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/vec.h"
+#include "build/deviation/capsules.h"
 #include "build/deviation/point_distance.h"
 #include "build/deviation/tree_slot.h"
 
@@ -27,6 +28,7 @@ class SurfaceTree {
   struct Surface {
     std::span<const Vec3d> positions;
     std::span<const std::array<std::uint32_t, 3>> triangles;
+    std::span<const std::uint32_t> vertex_of = {};  ///< per position: the first in the same place; empty: all are apart
   };
 
   /// Leaves hold 36 bytes a triangle, or are made from the surface whenever they are looked at: the same numbers.
@@ -115,6 +117,7 @@ class SurfaceTree {
   /// Makes the leaf, unless this thread has it from a look before.
   [[nodiscard]] const CachedLeaf& made_leaf(std::uint32_t index) const;
   void fill_nodes();
+  void fill_capsules();
   [[nodiscard]] Hit test_leaf(const Vec3f& point, std::uint32_t leaf, Hit best) const;
   [[nodiscard]] Hit test_triangles(const Vec3f& point, std::uint32_t index, const Leaf& leaf, const LeafTerms& terms,
                                    Hit best) const;
@@ -127,6 +130,7 @@ class SurfaceTree {
   std::vector<LeafTerms> terms_;  ///< of the leaves that are held, where they are few
   std::uint64_t serial_ = 0;      ///< no other tree of the process has it
   std::vector<Node> nodes_;
+  std::vector<FourCapsules> capsules_;      ///< by node, where some vertex has very many triangles
   std::vector<std::uint32_t> level_start_;  ///< of nodes_, from the root; node i of a level has children 4i … 4i+3
 };
 

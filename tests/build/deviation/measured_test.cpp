@@ -7,7 +7,9 @@
 
 #include <limits>
 
+#include "build/deviation/capsules.h"
 #include "build/deviation/surfaces.h"
+#include "build/odd_shapes.h"
 #include "judge/metrics/triangle_tree.h"
 
 namespace meshlode::build {
@@ -251,6 +253,21 @@ TEST(Measured, SeamsDoNotStopTheSearch) {
   EXPECT_NEAR(a.deviation, 0.25, 0.03);
   const SourceTree tree(split.positions, split.triangles);
   EXPECT_EQ(initial_samples(tree).size(), initial_samples(SourceTree(whole.positions, whole.triangles)).size());
+}
+
+TEST(Measured, AHubHidesNoPeakOfItsRim) {
+  // No search goes on through the hub: what lies beside its triangles is found along the rim, and from the samples.
+  constexpr std::uint32_t kCount = 4000, kStep = 8;
+  static_assert(kCount / kStep >= kHubTriangles, "the coarse one has a hub, too");
+  judge::Surface fine = test::as_surface(test::make_fan(kCount));
+  for (std::uint32_t i = 0; i < kCount; ++i) fine.positions[i + 1].y += i % kStep == 0 ? 0.0 : 0.001 * (i % kStep);
+  fine.positions[2003].y = -0.02;
+  judge::Surface coarse = fine;
+  coarse.triangles.clear();
+  for (std::uint32_t i = 0; i < kCount; i += kStep) coarse.triangles.push_back({0, i + 1, (i + kStep) % kCount + 1});
+  const double truth = test::dense_truth(fine, coarse);
+  EXPECT_NEAR(truth, 0.02, 0.001);
+  EXPECT_NEAR(test::measure_one_step(fine, coarse).deviation, truth, 0.002 * truth);
 }
 
 TEST(Measured, TheSameBitsForAnyThreadCount) {

@@ -4,9 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
+#include <vector>
 
 #include "build/deviation/surfaces.h"
+#include "build/odd_shapes.h"
 
 namespace meshlode::build {
 namespace {
@@ -115,6 +118,81 @@ TEST(SurfaceTree, AnEarlyStopIsWithinWhatWasAskedFor) {
         tree.find_nearest(tree.to_frame(p), tree.look_around(tree.to_frame(p), TreeSlot(7U), {}), 0.0F);
     EXPECT_EQ(hinted.distance2, nearest.distance2);
   }
+}
+
+/// Needles around one vertex, out of every plane, and a second vertex below that has all of the rim, too.
+judge::Surface two_fans(std::uint32_t count) {
+  const scene::Primitive fan = test::make_fan(count);
+  judge::Surface surface = test::as_surface(fan);
+  surface.positions.emplace_back(0.1, -0.4, 0.2);
+  for (std::uint32_t i = 0; i < count; ++i) surface.triangles.push_back({count + 1, (i + 1) % count + 1, i + 1});
+  return surface;
+}
+
+TEST(SurfaceTree, CapsulesAroundAHubMissNothing) {
+  Random random(4);
+  for (const std::uint32_t count : {kHubTriangles - 1, kHubTriangles, 3000U}) {
+    const judge::Surface surface = two_fans(count);
+    ASSERT_EQ(has_hub(surface.triangles, surface.positions.size(), {}), count >= kHubTriangles);
+    SurfaceTree tree, made;
+    tree.build({surface.positions, surface.triangles});
+    made.build({surface.positions, surface.triangles}, SurfaceTree::Leaves::kMade);
+    TreeSlot place{0U};
+    for (int i = 0; i < 400; ++i) {
+      // Far and near, on the surface, and at its two hubs.
+      Vec3d p = (i % 4 == 0 ? 3.0 : 1.0) * Vec3d(random.signed_unit(), random.signed_unit(), random.signed_unit());
+      if (i % 4 == 1) p = surface.positions[i % 8 == 1 ? 0 : count + 1] + 1e-3 * p;
+      if (i % 4 == 2) p = surface.positions[0] * std::abs(p.x) + surface.positions[1 + i] * (1.0 - std::abs(p.x));
+      const Vec3f at = tree.to_frame(p);
+      const SurfaceTree::Hit hit = tree.find_nearest(at, tree.look_around(at, place, {}), 0.0F);
+      ASSERT_TRUE(hit.slot.is_valid());
+      EXPECT_EQ(made.find_nearest(at, made.look_around(at, place, {}), 0.0F).slot, hit.slot);
+      const double found = std::sqrt(tree.distance2_at(p, hit.slot)), truth = brute_force(surface, p);
+      EXPECT_GE(found, truth);
+      EXPECT_LE(found, truth + 4e-6) << "count " << count << " point " << i;
+      place = hit.slot;
+    }
+  }
+}
+
+TEST(SurfaceTree, CapsulesAreCloseAroundNeedles) {
+  const judge::Surface fan = test::as_surface(test::make_fan(100000));
+  const auto corners = [&](std::size_t t) {
+    std::array<Vec3f, 3> at;
+    for (std::size_t k = 0; k < 3; ++k) at[k] = Vec3f(fan.positions[fan.triangles[t][k]]);
+    return at;
+  };
+  for (const std::size_t first : {0U, 12500U, 40000U}) {  // along an axis and across
+    std::array<Capsule, 4> four;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const std::size_t t = first + 4 * i;
+      four[i] = capsule_around(std::array{corners(t), corners(t + 1), corners(t + 2), corners(t + 3)});
+      EXPECT_LT(four[i].radius, 4.0F * 6.3e-5F) << "the rim of four";
+      FourCapsules lanes_of;
+      lanes_of.set(2, four[i]);
+      const Vec3f middle = (corners(t + 1)[0] + corners(t + 1)[1]) * 0.5F;
+      EXPECT_EQ(distances2_to_capsules(lanes_of, middle)[2], 0.0F);
+      const float above = std::sqrt(distances2_to_capsules(lanes_of, middle + Vec3f(0.0F, 2.0F, 0.0F))[2]);
+      EXPECT_GT(above, 1.9F);
+      EXPECT_LT(above, 2.0F);
+    }
+    EXPECT_LT(capsule_around(four).radius, 16.0F * 6.3e-5F);
+    const std::array<Capsule, 3> some{four[0], Capsule{}, four[1]};
+    EXPECT_LT(capsule_around(some).radius, 8.0F * 6.3e-5F) << "what is not there counts for nothing";
+  }
+}
+
+TEST(SurfaceTree, AHubIsOneThoughItsCornersAreNumberedApart) {
+  judge::Surface fan = test::as_surface(test::make_fan(kHubTriangles));
+  std::vector<std::uint32_t> vertex_of(fan.positions.size());
+  for (std::uint32_t i = 0; i < vertex_of.size(); ++i) vertex_of[i] = i;
+  for (auto& t : fan.triangles) {
+    t[0] = static_cast<std::uint32_t>(fan.positions.size());
+    fan.positions.push_back(fan.positions[0]);
+    vertex_of.push_back(0);
+  }
+  EXPECT_FALSE(has_hub(fan.triangles, fan.positions.size(), {}));
+  EXPECT_TRUE(has_hub(fan.triangles, fan.positions.size(), vertex_of));
 }
 
 }  // namespace

@@ -94,7 +94,7 @@ std::vector<HardCase> size_cases() {
       {.room = "sizes",
        .name = "valence",
        .parameter = "triangles around one vertex",
-       .sweep = {3, 300, 10000},
+       .sweep = {3, 300, 10000, 100000},
        .is_whole = true,
        .is_quick = true,
        .make = fan},
