@@ -30,6 +30,9 @@ struct AttributeLayout {
   [[nodiscard]] std::uint32_t stride() const { return color_offset() + (has_color ? 4U : 0U); }
 };
 
+// What a grid's step may be: below, decoded positions would be denormal floats, above they would overflow.
+constexpr int kMinGridLog2 = -126, kMaxGridLog2 = 104;
+
 using WedgeTriangle = std::array<std::uint32_t, 3>;
 
 struct PreparedMesh {

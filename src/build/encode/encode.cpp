@@ -25,9 +25,6 @@ namespace {
 
 static_assert(kNoId == format::kNone, "ids of the build become the format's as they are");
 
-constexpr std::int32_t kMinGridLog2 = -126;  ///< below, decoded positions would be denormal floats
-constexpr std::int32_t kMaxGridLog2 = 104;   ///< above, they would overflow
-
 std::string name_mesh(const PreparedMesh& mesh) {
   return "mesh \"" + mesh.name + "\"";
 }
@@ -187,7 +184,12 @@ Status check_input(const PreparedMesh& mesh, const LodDag& dag, const Hierarchy&
     };
     bool fits = is_whole(sphere.radius, 65535.0);
     for (const float c : sphere.center) fits &= is_whole(c, 32767.0);
-    if (!fits) return fail(ErrorCode::kBuildFailed, "a culling sphere is not in whole units of 16 bits");
+    if (fits) continue;
+    // In the largest unit that there is, it is the mesh that is too large.
+    if (hierarchy.sphere_log2 == format::kMaxSphereLog2) {
+      return fail(ErrorCode::kUnsupported, "a culling sphere leaves the range of the format");
+    }
+    return fail(ErrorCode::kBuildFailed, "a culling sphere is not in whole units of 16 bits");
   }
   std::size_t next_cluster = 0;
   for (const DagGroup& group : dag.groups) {

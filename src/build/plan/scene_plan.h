@@ -39,8 +39,8 @@ struct ScenePlan {
   std::vector<PlanDecision> features;  ///< list_features()
 };
 
-/// Errors: those of a build that are known before any work: kUnsupported where a grid needs more than 24 bits,
-/// kInvalid where a position is not finite.
+/// Errors: those of a build that are known before any work: kUnsupported where a grid needs more than 24 bits
+/// or an extent is more or less than the format holds, kInvalid where a position is not finite.
 [[nodiscard]] Result<ScenePlan> plan_scene(const scene::Scene& scene, const PipelineOptions& options);
 
 }  // namespace meshlode::build

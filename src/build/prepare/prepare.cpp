@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include <meshlode/format.h>
+
 #include "base/disjoint_sets.h"
 #include "base/parallel.h"
 #include "build/prepare/corners.h"
@@ -67,6 +69,10 @@ std::uint64_t drop_undrawn(Corners& corners) {
 
 constexpr double kSmallestDiagonal = 0x1p-500;  ///< its square keeps all bits of a double, with room to spare
 
+/// Culling spheres have 16 bits a coordinate, and the largest unit that is; one unit is left for rounding.
+constexpr double kLargestHalf = 32766.0 * 0x1p104;
+static_assert(format::kMaxSphereLog2 == 104);
+
 struct Box {
   Vec3d low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
   void add(const Vec3d& from, const Vec3d& to) {
@@ -105,6 +111,13 @@ Status choose_frame(const Corners& corners, const PrepareOptions& options, Prepa
       choose_grid(largest_half, mesh.diagonal, median_edge_length(corners), options);
   if (!grid) return grid.error();
   mesh.grid = *grid;
+  // What the format cannot hold is refused here, where it is known, and not when all is built.
+  if (grid->log2 < kMinGridLog2 || grid->log2 > kMaxGridLog2) {
+    return Error{ErrorCode::kUnsupported, {}, "the grid's step leaves the range of floats"};
+  }
+  if (largest_half > kLargestHalf) {
+    return Error{ErrorCode::kUnsupported, {}, "its extent leaves the range of culling spheres: more than 1.3e36"};
+  }
   // The origin lies on the grid through zero, so that meshes built with the same step abut.
   const double step = mesh.grid.step();
   for (int k = 0; k < 3; ++k) mesh.origin[k] = std::floor((low[k] + half[k]) / step + 0.5) * step;

@@ -37,8 +37,8 @@ struct GridPlan {
 /// Errors: those of prepare_mesh().
 [[nodiscard]] Result<GridPlan> plan_grid(const scene::SourceMesh& mesh, const PrepareOptions& options);
 
-/// Errors: kUnsupported (the grid needs more than 24 bits; the extent is too large or too small for a double to
-/// square), kInvalid (a position is not finite).
+/// Errors: kUnsupported (the grid needs more than 24 bits, or its step leaves the range of floats; the extent is more
+/// than culling spheres hold, or too large or too small for a double to square), kInvalid (a position is not finite).
 [[nodiscard]] Result<PreparedMesh> prepare_mesh(const scene::SourceMesh& mesh, const AttributeLayout& layout,
                                                 const PrepareOptions& options);
 

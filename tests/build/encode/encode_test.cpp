@@ -262,6 +262,12 @@ TEST(Encode, ADagThatTheFormatCannotHoldIsRefused) {
       {"an unknown group", [](auto& s) { s.dag.clusters[0].own_group = GroupId{99U}; }, ErrorCode::kBuildFailed},
       {"a sphere between the units", [](auto& s) { s.hierarchy.cluster_spheres[0].center[0] += 1e-5F; },
        ErrorCode::kBuildFailed},
+      {"a sphere beyond the largest unit",
+       [](auto& s) {
+         s.hierarchy.sphere_log2 = format::kMaxSphereLog2;
+         s.hierarchy.cluster_spheres[0].center[0] = 0x1p120F;
+       },
+       ErrorCode::kUnsupported},
       {"a hierarchy of another mesh", [](auto& s) { s.hierarchy.group_errors.pop_back(); }, ErrorCode::kBuildFailed},
       {"attributes of another mesh", [](auto& s) { s.dag.vertex_attributes.pop_back(); }, ErrorCode::kBuildFailed},
       {"a grid below floats", [](auto& s) { s.mesh.grid.log2 = -127; }, ErrorCode::kUnsupported},

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -245,6 +246,31 @@ TEST(Prepare, RefusesExtentsWhoseSquareADoubleCannotHold) {
     ASSERT_TRUE(mesh.ok()) << scale;
     EXPECT_EQ(mesh->triangles.size(), std::size_t{6 * 2 * 2 * 2}) << scale;
   }
+}
+
+TEST(Prepare, RefusesWhatTheFormatCannotHoldBeforeAnythingIsBuilt) {
+  const auto refusal = [](const scene::Primitive& shape) {
+    const auto mesh = prepare_mesh(scene::as_mesh(shape), {}, {});
+    const auto plan = plan_grid(scene::as_mesh(shape), {});
+    EXPECT_EQ(mesh.ok(), plan.ok());
+    if (mesh.ok()) return std::string();
+    EXPECT_EQ(mesh.error().code, ErrorCode::kUnsupported);
+    EXPECT_EQ(mesh.error().message(), plan.error().message());
+    return mesh.error().detail;
+  };
+  for (const double scale : {1e-37, 1e37}) {
+    EXPECT_EQ(refusal(scene::scaled(scene::make_cube(2), scale)), "the grid's step leaves the range of floats");
+  }
+  // Short edges ask for a step that would do; it is the extent that is too large.
+  scene::Primitive outlier = scene::make_cube(2);
+  outlier.positions[0] = {1e36, 0.0, 0.0};
+  EXPECT_EQ(refusal(outlier), "");
+  for (const double far : {1.4e36, 1e37, 1e38}) {
+    outlier.positions[0] = {far, 0.0, 0.0};
+    EXPECT_NE(refusal(outlier), "") << far;
+  }
+  outlier.positions[0] = {1e37, 0.0, 0.0};
+  EXPECT_EQ(refusal(outlier), "its extent leaves the range of culling spheres: more than 1.3e36");
 }
 
 TEST(Prepare, RefusesPositionsThatAreNotFinite) {
