@@ -119,12 +119,34 @@ DagOptions dag_options(const PipelineOptions& options, const MeshOptions& own, c
   return dag;
 }
 
+namespace {
+
+/// From this share of level 0 on it is said that triangles have no area.
+constexpr double kManyFlat = 0.5;
+
+std::uint64_t count_finest(const EncodedMesh& encoded) {
+  std::uint64_t triangles = 0;
+  for (const format::ClusterRecord& cluster : encoded.clusters) {
+    if (cluster.level == 0) triangles += cluster.triangles_less_1 + std::uint64_t{1};
+  }
+  return triangles;
+}
+
+}  // namespace
+
 std::vector<PlanDecision> late_decisions(const PreparedMesh& mesh, const DagOptions& dag, const EncodeOptions& encode,
                                          const EncodedMesh& encoded, const std::string& label) {
   std::vector<PlanDecision> decisions;
   if (dag.simplify.keep_area) {
     decisions.push_back({label + ": covered area", true,
                          std::to_string(mesh.piece_count) + " loose pieces: those that stay grow when others go"});
+  }
+  const std::uint64_t finest = count_finest(encoded), flat = encoded.record.grid_collapsed;
+  if (flat > 0 && static_cast<double>(flat) >= kManyFlat * static_cast<double>(finest)) {
+    decisions.push_back({label + ": area on the position grid", false,
+                         std::to_string(flat) + " of " + std::to_string(finest) +
+                             " triangles have none: a smaller --position-error keeps what the source has",
+                         true});
   }
   for (std::uint32_t set = 0; set < mesh.layout.uv_set_count; ++set) {
     const double asked = encode.uv_error[set], kept = 0.5 * format::exp2_exact(encoded.record.uv_log2[set]);

@@ -34,8 +34,8 @@ namespace meshlode::build {
 [[nodiscard]] DagOptions dag_options(const PipelineOptions& options, const MeshOptions& own, const PreparedMesh& mesh,
                                      const EncodeOptions& encode);
 
-/// What was decided after the plan: that pieces which stay grow, and where texture coordinates are too large for their
-/// budget. `label` names the mesh.
+/// What was decided after the plan: that pieces which stay grow, that half of the finest triangles or more have no area
+/// on the grid, and where texture coordinates are too large for their budget. `label` names the mesh.
 [[nodiscard]] std::vector<PlanDecision> late_decisions(const PreparedMesh& mesh, const DagOptions& dag,
                                                        const EncodeOptions& encode, const EncodedMesh& encoded,
                                                        const std::string& label);

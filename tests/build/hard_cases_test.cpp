@@ -286,6 +286,36 @@ TEST(HardNumbers, AGivenGridKeepsAbuttingPiecesTogetherAtTheHardCasesToo) {
   EXPECT_GT(asset->meshes()[0].grid_collapsed, 0U);
 }
 
+TEST(HardNumbers, ABuildSaysWhereHalfOfItsFinestTrianglesHaveNoArea) {
+  // One vertex far away makes the grid coarse for all that is near.
+  const auto losses_at = [](double distance) {
+    scene::Primitive shape = scene::make_sphere(6);
+    shape.positions[0] = {distance, 0.0, 0.0};
+    PipelineReport report;
+    const auto bytes = build_lode(alone(std::move(shape)), {}, {}, report);
+    EXPECT_TRUE(bytes.ok());
+    std::vector<std::string> losses;
+    for (const PlanDecision& decision : report.decisions) {
+      if (decision.is_loss && !decision.kept) losses.push_back(decision.what + ": " + decision.reason);
+    }
+    if (!bytes) return losses;
+    const auto asset = run::Asset::from_bytes(*bytes);
+    EXPECT_TRUE(asset.ok());
+    const format::MeshRecord& mesh = asset->meshes()[0];
+    EXPECT_EQ(losses.empty(), 2 * mesh.grid_collapsed < mesh.source_triangles) << distance;
+    EXPECT_EQ(asset->meta_json().find("area on the position grid") == std::string_view::npos, losses.empty());
+    return losses;
+  };
+  EXPECT_TRUE(losses_at(2.0).empty());
+  EXPECT_TRUE(losses_at(1e5).empty());
+  const std::vector<std::string> losses = losses_at(1e15);
+  ASSERT_EQ(losses.size(), 1U);
+  EXPECT_EQ(
+      losses[0],
+      "mesh 0 'sample': area on the position grid: 432 of 432 triangles have none: a smaller --position-error keeps "
+      "what the source has");
+}
+
 TEST(HardNumbers, AScannedSphereOfMirroredInstancesMarksThem) {
   const auto bytes = prove(mirrored_instances());
   const auto asset = run::Asset::from_bytes(bytes);

@@ -47,7 +47,7 @@ struct JobFacts {
   scene::MeshRepairs repairs;               ///< of all meshes
   std::vector<scene::LeftOut> left_out;     ///< by the importer
   std::vector<scene::LeftOut> planned_out;  ///< by the plan
-  std::vector<scene::LeftOut> losses;       ///< those of them that the scene's materials can show
+  std::vector<scene::LeftOut> losses;       ///< those of them that can be seen
 };
 
 struct JobResult {

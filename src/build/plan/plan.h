@@ -26,7 +26,7 @@ struct PlanDecision {
   std::string what;  ///< "mesh 0: TEXCOORD_0"
   bool kept = false;
   std::string reason;       ///< "no material samples a texture through it"
-  bool is_loss = false;     ///< left out although the scene's materials can show it
+  bool is_loss = false;     ///< left out although it can be seen
   std::string attribute{};  ///< "TEXCOORD_0"; empty where the decision is about something else
   bool is_forced = false;   ///< by a name in AttributeRequest::keep or drop, against what would have been decided
   std::uint32_t mesh = 0;   ///< which mesh of the scene, kNone for none; set where decisions of several are in one list

@@ -10,7 +10,7 @@ namespace meshlode::build {
 
 namespace {
 
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;  // 1 knew nothing of the decision about area on the grid
 constexpr std::size_t kFewestPageBytes = 4 * sizeof(std::uint32_t) + 2 * sizeof(std::uint64_t);
 constexpr std::size_t kFewestDecisionBytes = 2 * sizeof(std::uint64_t) + 2;
 
