@@ -20,6 +20,7 @@
 #include "batch/cache/program_id.h"
 #include "batch/tell/time_left.h"
 #include "camera_options.h"
+#include "doctor_words.h"
 #include "options.h"
 #include "study/page/page.h"
 #include "study/page/read_sweep.h"
@@ -162,6 +163,7 @@ Status set_options(const SweepWords& words, study::SweepOptions& options) {
   options.report = words.report;
   options.command = command_of(words, options);
   options.frame_scene = [](const run::Asset& asset) { return frame_scene(asset, kWidth, kHeight); };
+  options.diagnose_scene = diagnose_scene;
   // Before any thread is started: libraries that are loaded later are not this program's.
   const auto program = batch::find_program_id();
   if (!program) return program.error();

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "base/append_format.h"
-#include "base/json_writer.h"
 #include "base/nearest_name.h"
 #include "base/printable.h"
 
@@ -18,27 +17,12 @@ constexpr double kHighShare = 0.1, kMediumShare = 0.01;
 constexpr std::string_view kHigh = "high", kMedium = "medium", kLow = "low", kAny = "any";
 constexpr std::size_t kMaxPlaces = 4;  ///< of a diagnosis in the text; JSON has all
 
-std::string describe_cost(const DiagnosisCost& cost) {
-  std::string text = cost.kind;
-  const auto whole = static_cast<std::uint64_t>(std::clamp(cost.amount, 0.0, 0x1p63));
-  if (cost.unit == "object units") {
-    append_format(text, " (%.3g object units)", cost.amount);
-  } else if (cost.unit == "triangles") {
-    text += " (" + counted(whole, cost.unit) + ")";
-  } else {
-    const bool is_estimate = cost.unit == "asset bytes";
-    append_format(text, " (%s%s of the %s)", is_estimate ? "about " : "", grouped_digits(whole).c_str(),
-                  is_estimate ? "asset" : "source");
-  }
-  return text;
-}
-
 void add_place_text(const DiagnosisPlace& place, std::string& text) {
   text += "     " + place.where + ": " + place.detail + "\n";
   if (!place.costs.empty()) {
     text += "       costs";
     for (std::size_t i = 0; i < place.costs.size(); ++i) {
-      text += (i == 0 ? " " : ", ") + describe_cost(place.costs[i]);
+      text += (i == 0 ? " " : ", ") + cost_text(place.costs[i]);
     }
     text += '\n';
   }
@@ -147,16 +131,36 @@ void rank(std::vector<Diagnosis>& diagnoses) {
             [](const Diagnosis& a, const Diagnosis& b) { return std::tie(b.share, a.id) < std::tie(a.share, b.id); });
 }
 
+std::string share_text(double share) {
+  std::string text = severity_of(share);
+  const double percent = 100.0 * share;
+  if (percent > 0.0) append_format(text, percent < 10.0 ? ", %.2g%%" : ", %.0f%%", percent);
+  return text;
+}
+
+std::string cost_text(const DiagnosisCost& cost) {
+  std::string text = cost.kind;
+  const auto whole = static_cast<std::uint64_t>(std::clamp(cost.amount, 0.0, 0x1p63));
+  if (cost.unit == "object units") {
+    append_format(text, " (%.3g object units)", cost.amount);
+  } else if (cost.unit == "triangles") {
+    text += " (" + counted(whole, cost.unit) + ")";
+  } else {
+    const bool is_estimate = cost.unit == "asset bytes";
+    append_format(text, " (%s%s of the %s)", is_estimate ? "about " : "", grouped_digits(whole).c_str(),
+                  is_estimate ? "asset" : "source");
+  }
+  return text;
+}
+
 std::string doctor_text(const DoctorReport& report) {
   std::string text =
       report.file + ": " + counted(report.triangles, "triangles") + " in " + counted(report.meshes, "meshes") + ", ";
   text += report.diagnoses.empty() ? "nothing found\n" : counted(report.diagnoses.size(), "faults") + ", worst first\n";
   std::size_t number = 0;
   for (const Diagnosis& diagnosis : report.diagnoses) {
-    append_format(text, "\n%2zu. %s [%s", ++number, diagnosis.id.c_str(), severity_of(diagnosis.share));
-    const double percent = 100.0 * diagnosis.share;
-    if (percent > 0.0) append_format(text, percent < 10.0 ? ", %.2g%%" : ", %.0f%%", percent);
-    text += "]: " + diagnosis.title;
+    append_format(text, "\n%2zu. %s [", ++number, diagnosis.id.c_str());
+    text += share_text(diagnosis.share) + "]: " + diagnosis.title;
     if (diagnosis.places.size() > 1) text += ", " + grouped_digits(diagnosis.count) + " in all";
     text += '\n';
     for (std::size_t i = 0; i < std::min(kMaxPlaces, diagnosis.places.size()); ++i) {
@@ -171,16 +175,9 @@ std::string doctor_text(const DoctorReport& report) {
   return text;
 }
 
-std::string doctor_json(const DoctorReport& report) {
-  JsonWriter json;
-  json.begin_object();
-  json.field("file", report.file);
-  json.field("kind", report.is_asset ? "asset" : "scene");
-  json.field("meshes", report.meshes);
-  json.field("triangles", report.triangles);
-  json.key("faults");
+void write_diagnoses(JsonWriter& json, const std::vector<Diagnosis>& diagnoses) {
   json.begin_array();
-  for (const Diagnosis& diagnosis : report.diagnoses) {
+  for (const Diagnosis& diagnosis : diagnoses) {
     json.begin_object();
     json.field("id", diagnosis.id);
     json.field("title", diagnosis.title);
@@ -196,6 +193,17 @@ std::string doctor_json(const DoctorReport& report) {
     json.end_object();
   }
   json.end_array();
+}
+
+std::string doctor_json(const DoctorReport& report) {
+  JsonWriter json;
+  json.begin_object();
+  json.field("file", report.file);
+  json.field("kind", report.is_asset ? "asset" : "scene");
+  json.field("meshes", report.meshes);
+  json.field("triangles", report.triangles);
+  json.key("faults");
+  write_diagnoses(json, report.diagnoses);
   json.key("failed_on");
   json.begin_array();
   for (const std::string& id : report.failed_on) json.value(id);

@@ -11,6 +11,8 @@
 
 #include <meshlode/result.h>
 
+#include "base/json_writer.h"
+
 namespace meshlode::out {
 
 struct DiagnosisCost {
@@ -77,6 +79,13 @@ struct DoctorReport {
 
 [[nodiscard]] std::string doctor_text(const DoctorReport& report);
 [[nodiscard]] std::string doctor_json(const DoctorReport& report);
+/// The array `faults` of that JSON, for documents that have it too.
+void write_diagnoses(JsonWriter& json, const std::vector<Diagnosis>& diagnoses);
+
+/// "high, 34%": severity and share, which is left out where it is 0.
+[[nodiscard]] std::string share_text(double share);
+/// "bytes (about 1,234 of the asset)".
+[[nodiscard]] std::string cost_text(const DiagnosisCost& cost);
 
 /// "a,b": those of the words that were found; "any": whatever was, "medium" and "high": of that severity or a higher
 /// one. Errors: kUsage for a word that is none of these and no id of `known`, with the nearest that is.

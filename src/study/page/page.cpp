@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study/page/page.h"
 
+#include <algorithm>
 #include <span>
 #include <system_error>
 #include <utility>
 
 #include "base/printable.h"
+#include "out/doctor/diagnosis.h"
 #include "study/page/charts.h"
 #include "study/page/markup.h"
 #include "study/page/numbers.h"
@@ -94,6 +96,53 @@ Section write_answers(const ReportData& data) {
                   std::to_string(beaten) + " of " + std::to_string(data.points.size()) +
                       " points are dominated: another is no worse in build time, bytes, deviation and triangles, and "
                       "clearly better in one of them.");
+  return section;
+}
+
+void write_fault_place(Markup& html, const out::DiagnosisPlace& place) {
+  html.open("li").name(place.where).text(": " + place.detail);
+  for (std::size_t i = 0; i < place.costs.size(); ++i) {
+    html.text((i == 0 ? "; costs " : ", ") + out::cost_text(place.costs[i]));
+  }
+  html.close().line();
+}
+
+void write_fault(Markup& html, const out::Diagnosis& fault) {
+  constexpr std::size_t kMostPlaces = 4;
+  html.open("li").open("p").element("strong", fault.title).text(" (" + out::share_text(fault.share) + "; ");
+  html.element("code", fault.id).text(")");
+  if (fault.places.size() > 1) html.text(", " + grouped_digits(fault.count) + " in all");
+  html.close().line().open("ul").line();
+  for (std::size_t i = 0; i < std::min(kMostPlaces, fault.places.size()); ++i) write_fault_place(html, fault.places[i]);
+  if (fault.places.size() > kMostPlaces) {
+    html.element("li", "and " + grouped_digits(fault.places.size() - kMostPlaces) + " more").line();
+  }
+  html.close().line();
+  write_paragraph(html, "What to do: " + fault.remedy + ".");
+  if (!fault.hard_case.empty()) {
+    html.open("p").text("What a build makes of it from easy to absurd: the hard case ");
+    html.element("code", fault.hard_case).text(" of docs/hard-cases.md.").close().line();
+  }
+  html.close().line();
+}
+
+Section write_doctor(const ReportData& data) {
+  Section section{"doctor", "What the scene itself calls for", {}};
+  Markup& html = section.body;
+  if (!data.scene_faults) {
+    write_paragraph(html, "The scene was not examined.");
+    return section;
+  }
+  if (data.scene_faults->ranked.empty()) {
+    write_paragraph(html, "Nothing was found in the source that costs accuracy, bytes or time under every setting.");
+  } else {
+    write_paragraph(html,
+                    "Found in the source, worst first, with estimated shares of the scene: what no setting mends.");
+    html.open("ol", {{"class", "answers"}}).line();
+    for (const out::Diagnosis& fault : data.scene_faults->ranked) write_fault(html, fault);
+    html.close().line();
+  }
+  write_command(html, "Told by", data.scene_faults->command);
   return section;
 }
 
@@ -257,6 +306,7 @@ std::span<const std::uint8_t> as_bytes(const std::string& text) {
 std::string write_page(const ReportData& data, const PageOptions& options) {
   std::vector<Section> sections;
   sections.push_back(write_answers(data));
+  sections.push_back(write_doctor(data));
   sections.push_back(write_charts(data));
   sections.push_back(write_knobs(data));
   sections.push_back(write_errors(data));

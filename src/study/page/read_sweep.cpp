@@ -224,6 +224,34 @@ void read_answers(Reader& in, const Json& json, ReportData& data) {
   }
 }
 
+out::Diagnosis read_fault(Reader& in, const Json& json) {
+  out::Diagnosis fault;
+  fault.id = in.text(json, "id");
+  fault.title = in.text(json, "title");
+  fault.remedy = in.text(json, "remedy");
+  fault.hard_case = in.text(json, "hard_case");
+  fault.count = in.count(json, "count");
+  fault.share = std::clamp(in.number(json, "share"), 0.0, 1.0);
+  for (const Json& one : in.list(json, "places")) {
+    out::DiagnosisPlace place;
+    place.where = in.text(one, "where");
+    place.detail = in.text(one, "detail");
+    for (const Json& cost : in.list(one, "costs")) {
+      place.costs.push_back(
+          {in.text(cost, "kind"), in.maybe_number(cost, "amount").value_or(HUGE_VAL), in.text(cost, "unit")});
+    }
+    fault.places.push_back(std::move(place));
+  }
+  return fault;
+}
+
+void read_doctor(Reader& in, const Json& json, ReportData& data) {
+  if (in.member(json, "doctor") == nullptr) return;
+  const Json& doctor = in.object(json, "doctor");
+  data.scene_faults.emplace().command = in.text(doctor, "command");
+  for (const Json& one : in.list(doctor, "faults")) data.scene_faults->ranked.push_back(read_fault(in, one));
+}
+
 /// A path that stays below the folder that it is in.
 bool is_inside(const std::filesystem::path& path) {
   if (path.empty() || path.is_absolute() || path.has_root_name()) return false;
@@ -259,6 +287,7 @@ Result<ReportData> read_sweep(std::string_view text) {
   read_axes(in, *json, data);
   for (const Json& one : in.list(*json, "points")) data.points.push_back(read_point(in, one));
   read_answers(in, *json, data);
+  read_doctor(in, *json, data);
   if (in.error()) return *in.error();
   return data;
 }

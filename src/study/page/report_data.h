@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "out/doctor/diagnosis.h"
+
 namespace meshlode::study::page {
 
 /// One measured number. Without a spread `low` and `high` are the value.
@@ -101,6 +103,12 @@ struct Recommendation {
   std::vector<std::string> as_good;  ///< ids
 };
 
+/// What doctor finds in the scene. A cost beyond what a number can say is infinite.
+struct SceneFaults {
+  std::string command;                 ///< that tells more of them
+  std::vector<out::Diagnosis> ranked;  ///< without their triangles
+};
+
 struct ReportData {
   std::string scene_file, scene_hash;
   std::uint64_t meshes = 0, instances = 0, triangles = 0, vertices = 0;
@@ -120,6 +128,7 @@ struct ReportData {
   std::vector<LeftOut> left_out;
   std::vector<Frontier> frontiers;
   std::vector<Recommendation> recommendations;
+  std::optional<SceneFaults> scene_faults;  ///< none: the scene was not examined
 
   /// PNG files by their path below the report's folder. One that is named and not here is not shown.
   std::map<std::string, std::vector<std::uint8_t>> pictures;

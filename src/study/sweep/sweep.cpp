@@ -454,6 +454,7 @@ Status run_sweep(const SweepOptions& options, const SweepWatcher& watcher, const
   if (!work) return work.error();
   SweepResult result;
   result.scene = summary_of(*scene);
+  if (options.diagnose_scene) result.diagnoses = options.diagnose_scene(*scene);
   const MachineFacts machine = describe_machine();
   result.machine = {
       machine.processor, machine.system, options.jobs > 0 ? options.jobs : machine.threads, machine.memory_bytes, {}};

@@ -16,8 +16,10 @@
 
 #include <meshlode/result.h>
 
+#include "out/doctor/diagnosis.h"
 #include "run/read/asset.h"
 #include "run/select/select.h"
+#include "scene/scene.h"
 #include "study/sweep/answers.h"
 #include "study/sweep/draw_views.h"
 #include "study/sweep/measurement.h"
@@ -42,6 +44,8 @@ struct SweepOptions {
   std::string command;             ///< that makes the report again
   /// The camera that frames an asset.
   std::function<run::Camera(const run::Asset& asset)> frame_scene;
+  /// What in the scene costs under every setting, ranked; where it is missing, the report does not say.
+  std::function<std::vector<out::Diagnosis>(const scene::Scene& scene)> diagnose_scene;
 };
 
 struct SceneSummary {
@@ -87,7 +91,8 @@ struct Frontier {
 struct SweepResult {
   SceneSummary scene;
   MachineSummary machine;
-  double spent = 0.0;  ///< wall seconds of all measurements
+  std::vector<out::Diagnosis> diagnoses;  ///< of SweepOptions::diagnose_scene
+  double spent = 0.0;                     ///< wall seconds of all measurements
   bool is_complete = false;
   std::vector<Knob> knobs;
   std::vector<View> views;
@@ -122,6 +127,8 @@ using KeepResult = std::function<Status(const SweepResult& result)>;
 /// The command lines that build a point's asset and draw it.
 [[nodiscard]] std::string build_command(const SweepOptions& options, const SweepResult& result, const Point& point);
 [[nodiscard]] std::string draw_command(const SweepOptions& options, const SweepResult& result, const Point& point);
+/// That which tells SweepResult::diagnoses, with all their triangles.
+[[nodiscard]] std::string doctor_command(const SweepOptions& options);
 /// A word as a shell takes it.
 [[nodiscard]] std::string shell_word(const std::string& word);
 

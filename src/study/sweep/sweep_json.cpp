@@ -55,6 +55,15 @@ void write_head(JsonWriter& w, const SweepOptions& options, const SweepResult& r
   w.field("seed", 1);
 }
 
+void write_doctor(JsonWriter& w, const SweepOptions& options, const SweepResult& result) {
+  w.key("doctor");
+  w.begin_object();
+  w.field("command", doctor_command(options));
+  w.key("faults");
+  out::write_diagnoses(w, result.diagnoses);
+  w.end_object();
+}
+
 void write_knobs(JsonWriter& w, const SweepResult& result) {
   w.key("knobs");
   w.begin_array();
@@ -312,6 +321,13 @@ std::string build_command(const SweepOptions& options, const SweepResult& result
   return joined(words);
 }
 
+std::string doctor_command(const SweepOptions& options) {
+  std::vector<std::string> words{"meshlode", "doctor", options.scene.string()};
+  if (!options.scene_choice.empty()) words.insert(words.end(), {"--scene", options.scene_choice});
+  if (!options.max_decoded_text.empty()) words.insert(words.end(), {"--max-decoded", options.max_decoded_text});
+  return joined(words);
+}
+
 std::string draw_command(const SweepOptions&, const SweepResult& result, const Point& point) {
   std::vector<std::string> words{"meshlode", "render", "out.lode", "-o", "out.png"};
   if (!result.views.empty()) {
@@ -327,6 +343,7 @@ std::string sweep_json(const SweepOptions& options, const SweepResult& result) {
   JsonWriter w;
   w.begin_object();
   write_head(w, options, result);
+  if (options.diagnose_scene) write_doctor(w, options, result);
   write_knobs(w, result);
   write_metrics(w);
   write_views(w, result);

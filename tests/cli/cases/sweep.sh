@@ -29,11 +29,15 @@ head -c "$(stat -c %s before.txt)" killed/sweep-state.txt | cmp - before.txt && 
 [ -z "$(cut -d ' ' -f 3- killed/sweep-state.txt | grep -o '"kind":"[a-z]*","key":"[^"]*","round":[0-9]*' | sort | uniq -d)" ] &&
   echo "nothing was measured twice"
 run sweep missing.glb -o other
-# A folder with other things is no report; a scene's name is no option.
+# A folder with other things is no report; a scene's name is no option; what the scene itself calls for is doctor's word.
 mkdir others
 touch others/photo.jpg
 run sweep a.glb -o others
 ls -A others
-cp a.glb ./-a.glb
-code sweep -o dash --quiet --rounds 1 --samples 500 --budget 1s --want 'deviation<=1, bytes min' -- -a.glb
-grep -o 'meshlode build ./-a.glb' dash/sweep.json | sort -u
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 2 0\nf 1 2 3\nf 1 2 3\nf 1 3 4\n' >./-a.obj
+code sweep -o dash --quiet --rounds 1 --samples 500 --budget 1s --want 'deviation<=1, bytes min' -- -a.obj
+grep -o 'meshlode build ./-a.obj' dash/sweep.json | sort -u
+"$JSON_CHECK" "$SCHEMAS/sweep.schema.json" <dash/sweep.json
+"$MESHLODE" doctor ./-a.obj --format json | tr -d ' \n' | sed 's/.*"faults":\(.*\),"failed_on".*/\1/' >said
+tr -d ' \n' <dash/sweep.json | sed 's/.*"faults":\(.*\)},"knobs".*/\1/' | cmp - said && grep -o '"id":"[a-z-]*"' said
+grep -o '<strong>triangles without area.*</p>\|hard case <code>.*</code>' dash/index.html

@@ -61,6 +61,12 @@ TEST(Page, NoNameGetsOutOfItsPlace) {
                             &data.metrics[0].title, &data.metrics[0].description, &data.metrics[4].title}) {
     *text = name;
   }
+  out::Diagnosis& fault = data.scene_faults->ranked[0];
+  for (std::string* text :
+       {&fault.id, &fault.title, &fault.remedy, &fault.hard_case, &fault.places[0].where, &fault.places[0].detail,
+        &fault.places[0].costs[0].kind, &fault.places[0].costs[0].unit, &data.scene_faults->command}) {
+    *text = name;
+  }
   for (Point& point : data.points) {
     point.label = name;
     point.command = name;
@@ -95,6 +101,25 @@ TEST(Page, SaysHowItWasMeasured) {
                            "meshlode sweep made-up.glb -o report --budget 5m", "none: this sweep was made up"}) {
     EXPECT_NE(page.find(fact), std::string::npos) << fact;
   }
+}
+
+TEST(Page, SaysWhatTheSceneItselfCallsFor) {
+  ReportData data = made_up();
+  std::string page = write_page(data);
+  for (const char* part :
+       {"<strong>triangles much longer than high</strong> (high, 34%; <code>needles</code>), 6,000 in all",
+        "<bdi>mesh 3 &#39;made up&#39;</bdi>: 1,000 triangles; costs bytes (about 1,234 of the asset)",
+        "<li>and 2 more</li>", "What to do: remesh.", "the hard case <code>needles</code> of docs/hard-cases.md",
+        "<strong>meshes that no node draws</strong> (low; <code>undrawn-meshes</code>)<",
+        "<code>meshlode doctor made-up.glb</code>", "href=\"#doctor\""}) {
+    EXPECT_NE(page.find(part), std::string::npos) << part;
+  }
+  EXPECT_EQ(page.find("mesh 4 &#39;made"), std::string::npos) << "the command tells the rest";
+  data.scene_faults->ranked.clear();
+  page = write_page(data);
+  EXPECT_NE(page.find("Nothing was found in the source"), std::string::npos);
+  data.scene_faults.reset();
+  EXPECT_NE(write_page(data).find("The scene was not examined."), std::string::npos);
 }
 
 TEST(Page, PicturesAreInItOnceAndWithinTheBudget) {

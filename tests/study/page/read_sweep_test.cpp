@@ -38,6 +38,16 @@ TEST(ReadSweep, TakesWhatTheSchemaNames) {
   EXPECT_EQ(data->recommendations.at(0).point, "p2");
   EXPECT_FALSE(data->recommendations.at(1).point.has_value());
   EXPECT_EQ(data->left_out.at(0).reason, "budget");
+  ASSERT_TRUE(data->scene_faults);
+  ASSERT_EQ(data->scene_faults->ranked.size(), 2U);
+  const out::Diagnosis& fault = data->scene_faults->ranked[0];
+  EXPECT_EQ(fault.id, "needles");
+  EXPECT_EQ(fault.hard_case, "needles");
+  EXPECT_EQ(fault.share, 0.34);
+  EXPECT_EQ(fault.count, 6000U);
+  ASSERT_EQ(fault.places.size(), 6U);
+  EXPECT_EQ(fault.places[5].where, "mesh 5 'made up'");
+  EXPECT_EQ(fault.places[5].costs.at(0).amount, 1234.0);
 }
 
 TEST(ReadSweep, RefusesWhatIsNone) {
@@ -46,7 +56,9 @@ TEST(ReadSweep, RefusesWhatIsNone) {
         R"({"sweep_version": 1, "points": [{"id": 3}]})", R"({"sweep_version": 1, "command": []})",
         R"({"sweep_version": 1, "seed": -1})", R"({"sweep_version": 1, "spent_seconds": 1e301})",
         R"({"sweep_version": 1, "points": [{"settings": {"a": 1}}]})", R"({"sweep_version": 1, "complete": "yes"})",
-        R"({"sweep_version": 1, "points": [{"figures": {"x": 3}}]})"}) {
+        R"({"sweep_version": 1, "points": [{"figures": {"x": 3}}]})", R"({"sweep_version": 1, "doctor": []})",
+        R"({"sweep_version": 1, "doctor": {"faults": [{"share": "all"}]}})",
+        R"({"sweep_version": 1, "doctor": {"faults": [{"places": 1}]}})"}) {
     const auto data = read_sweep(text);
     ASSERT_FALSE(data) << text;
     EXPECT_EQ(data.error().code, ErrorCode::kInvalid);

@@ -66,7 +66,7 @@ std::vector<MadeUpPoint> made_up_points() {
   MadeUpPoint base{"p0", "baseline", {}, {}};
   for (const MadeUpKnob& knob : knobs) base.places.push_back(knob.usual);
   std::vector<MadeUpPoint> points = {base};
-  const auto add = [&](std::vector<std::pair<std::size_t, std::size_t>> turned) {
+  const auto add = [&](const std::vector<std::pair<std::size_t, std::size_t>>& turned) {
     MadeUpPoint point = base;
     point.id = "p" + std::to_string(points.size());
     point.label.clear();
@@ -271,6 +271,45 @@ void write_head(JsonWriter& w, const std::string& scene) {
   w.field("baseline", "p0");
 }
 
+/// A fault in six meshes and one of the scene.
+void write_doctor(JsonWriter& w) {
+  w.key("doctor");
+  w.begin_object();
+  w.field("command", "meshlode doctor made-up.glb");
+  w.key("faults");
+  w.begin_array();
+  for (const bool is_of_scene : {false, true}) {
+    w.begin_object();
+    w.field("id", is_of_scene ? "undrawn-meshes" : "needles");
+    w.field("title", is_of_scene ? "meshes that no node draws" : "triangles much longer than high");
+    w.field("severity", is_of_scene ? "low" : "high");
+    w.field("share", is_of_scene ? 0.0 : 0.34);
+    w.field("count", is_of_scene ? 1 : 6000);
+    w.field("remedy", is_of_scene ? "delete them" : "remesh");
+    if (!is_of_scene) w.field("hard_case", "needles");
+    w.key("places");
+    w.begin_array();
+    for (int i = 0; i < (is_of_scene ? 1 : 6); ++i) {
+      w.begin_object();
+      w.field("where", is_of_scene ? "scene" : "mesh " + std::to_string(i) + " 'made up'");
+      w.field("detail", is_of_scene ? "mesh 2" : "1,000 triangles");
+      w.key("costs");
+      w.begin_array();
+      w.begin_object();
+      w.field("kind", "bytes");
+      w.field("amount", 1234.0);
+      w.field("unit", "asset bytes");
+      w.end_object();
+      w.end_array();
+      w.end_object();
+    }
+    w.end_array();
+    w.end_object();
+  }
+  w.end_array();
+  w.end_object();
+}
+
 void write_axes(JsonWriter& w) {
   w.key("knobs");
   w.begin_array();
@@ -452,6 +491,7 @@ std::string made_up_sweep(const std::string& scene) {
   JsonWriter w;
   w.begin_object();
   write_head(w, scene);
+  write_doctor(w);
   write_axes(w);
   w.key("points");
   w.begin_array();
