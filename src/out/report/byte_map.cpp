@@ -2,6 +2,7 @@
 #include "out/report/byte_map.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include <meshlode/page.h>
 
@@ -28,6 +29,26 @@ PageBits bits_of(const format::MeshRecord& mesh, const format::ClusterLayout& at
   return bits;
 }
 
+/// 0 where the parts share bytes, as names and blobs of a file may.
+std::uint64_t beside(std::uint64_t whole, std::uint64_t parts) {
+  return whole > parts ? whole - parts : 0;
+}
+
+/// What is left of the file beside what its parts are made of.
+void map_rest(const run::Asset& asset, ByteMap& map) {
+  using format::SectionId;
+  std::uint64_t in_sections = 0, in_blobs = 0;
+  for (const format::BlobRecord& blob : asset.blobs()) in_blobs += blob.bytes;
+  map.head_bytes = sizeof(format::FileHeader) + asset.sections().size_bytes();
+  for (const format::SectionEntry& section : asset.sections()) {
+    in_sections += section.bytes;
+    const auto id = static_cast<SectionId>(section.id);
+    if (id == SectionId::kPageData) map.page_alignment_bytes = beside(section.bytes, map.stored_page_bytes);
+    if (id == SectionId::kBlobData) map.blob_alignment_bytes = beside(section.bytes, in_blobs);
+  }
+  map.alignment_bytes = beside(asset.bytes().size(), map.head_bytes + in_sections);
+}
+
 }  // namespace
 
 PageBits& PageBits::operator+=(const PageBits& other) {
@@ -50,6 +71,7 @@ Result<ByteMap> map_bytes(const run::Asset& asset) {
     if (!page) return page.error();
     map.stored_page_bytes += record.stored_bytes;
     const format::MeshRecord& mesh = asset.meshes()[asset.groups()[record.first_group].mesh];
+    std::vector<std::uint64_t> page_bits;  // by level
     for (std::uint32_t i = 0; i < record.cluster_count; ++i) {
       format::ClusterLayout layout;
       if (format::read_cluster_layout(mesh, page->words(), i, layout) != nullptr) continue;  // load_page has checked it
@@ -59,6 +81,14 @@ Result<ByteMap> map_bytes(const run::Asset& asset) {
       if (map.levels.size() <= level) map.levels.resize(level + 1);
       map.levels[level] += bits;
       map.total += bits;
+      if (page_bits.size() <= level) page_bits.resize(level + 1);
+      page_bits[level] += bits.total();
+    }
+    if (map.stored_by_level.size() < page_bits.size()) map.stored_by_level.resize(page_bits.size());
+    const auto all = static_cast<double>(std::accumulate(page_bits.begin(), page_bits.end(), std::uint64_t{0}));
+    for (std::size_t level = 0; level < page_bits.size(); ++level) {
+      map.stored_by_level[level] +=
+          static_cast<double>(record.stored_bytes) * (static_cast<double>(page_bits[level]) / all);
     }
   }
   for (const format::SectionEntry& section : asset.sections()) {
@@ -73,6 +103,7 @@ Result<ByteMap> map_bytes(const run::Asset& asset) {
       default: break;
     }
   }
+  map_rest(asset, map);
   return map;
 }
 

@@ -187,6 +187,10 @@ void write_byte_map(JsonWriter& w, const ByteMap& map) {
   w.begin_object();
   w.field("table_bytes", map.table_bytes);
   w.field("stored_page_bytes", map.stored_page_bytes);
+  w.field("head_bytes", map.head_bytes);
+  w.field("alignment_bytes", map.alignment_bytes);
+  w.field("page_alignment_bytes", map.page_alignment_bytes);
+  w.field("blob_alignment_bytes", map.blob_alignment_bytes);
   w.key("pages");
   w.begin_object();
   write_page_bits(w, map.total);
@@ -196,6 +200,7 @@ void write_byte_map(JsonWriter& w, const ByteMap& map) {
   for (std::size_t level = 0; level < map.levels.size(); ++level) {
     w.begin_object();
     w.field("level", level);
+    w.field("stored", map.stored_by_level[level]);
     write_page_bits(w, map.levels[level]);
     w.end_object();
   }
