@@ -51,7 +51,6 @@ Result<std::string> info_page(const run::Asset& asset, const std::string& path,
   out::ViewerInput input;
   const std::string name = std::filesystem::path(path).filename().string();
   input.title = name;
-  input.file_bytes = asset.bytes().size();
   input.runtime = kRuntime;
   input.byte_map = byte_map;
   input.max_page_bytes = max_page_bytes;
@@ -60,6 +59,7 @@ Result<std::string> info_page(const run::Asset& asset, const std::string& path,
   const auto smaller = run::Asset::from_bytes(*strips);
   if (!smaller) return smaller.error();
   const bool is_own = are_readable(asset) && stored_bytes(asset) <= stored_bytes(*smaller);
+  if (!is_own) input.file = &asset;
   return out::viewer_page(is_own ? asset : *smaller, input);
 }
 

@@ -93,7 +93,7 @@ int run_info(const Verb& verb, std::span<char* const> args) {
       Error error = byte_map.error();
       error.where = path + ": " + error.where;
       const int broken_page = print_error(error);
-      if (is_map_judged) return broken_page;
+      if (is_map_judged || page.path) return broken_page;
       // What the tables say is still true.
     }
   }

@@ -258,6 +258,8 @@ class Viewer {
     const own = cluster.ownGroup === NONE ? null : asset.groups[cluster.ownGroup];
     const page = asset.pages[group.page];
     const ratio = errorRatio(asset, c);
+    // As in the file, which may have another codec than what is embedded of it.
+    const [stored, codec] = this.facts.stored_pages?.[group.page] ?? [page.storedBytes, CODECS[page.codec]];
     const lines = [
       ['Cluster', `${number(c)} of level ${cluster.level}${this.graph.inCut.has(c) ? ', in the cut' : ''}`],
       ['Triangles', `${cluster.triangleCount} of ${this.cap} (${Math.round((100 * cluster.triangleCount) / this.cap)}%)`],
@@ -266,7 +268,7 @@ class Viewer {
       ['Coarser error', `${short(group.error)} (group ${number(cluster.coarserGroup)}, ${group.clusterCount} clusters)`],
       ['Ratio', ratio === null ? 'none' : `${short(ratio)} times`],
       ['Stuck', stuckReason(asset, c)?.replace('_', ' ') ?? 'no'],
-      ['Page', `${number(group.page)}: ${number(page.storedBytes)} bytes stored as ${CODECS[page.codec]}, ` +
+      ['Page', `${number(group.page)}: ${number(stored)} bytes stored as ${codec}, ` +
         `${number(page.bytes)} decoded${this.present[group.page] ? '' : ', not in this page'}`],
       ['Mesh', asset.meshes[group.mesh].name || '(no name)'],
     ];

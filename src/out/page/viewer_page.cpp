@@ -63,12 +63,26 @@ void write_bits(JsonWriter& w, const PageBits& bits) {
   w.end_object();
 }
 
+/// [stored bytes, codec] of each.
+void write_stored_pages(JsonWriter& w, const run::Asset& file) {
+  w.key("stored_pages");
+  w.begin_array();
+  for (const format::PageRecord& page : file.pages()) {
+    w.begin_array();
+    w.value(page.stored_bytes);
+    w.value(format::name_of(page.codec));
+    w.end_array();
+  }
+  w.end_array();
+}
+
 /// What the page knows that the asset's own tables do not say.
 std::string facts_json(const run::Asset& asset, const ViewerInput& input, const std::vector<bool>& chosen) {
   JsonWriter w;
   w.begin_object();
   w.field("file", as_utf8(input.title));
-  w.field("file_bytes", input.file_bytes);
+  const run::Asset& file = input.file != nullptr ? *input.file : asset;
+  w.field("file_bytes", file.bytes().size());
   w.field("embedded_file_bytes", asset.bytes().size());
   w.key("embedded_pages");  // [first, count] of each run
   w.begin_array();
@@ -90,13 +104,14 @@ std::string facts_json(const run::Asset& asset, const ViewerInput& input, const 
   w.field("page_bytes", all);
   w.key("sections");
   w.begin_array();
-  for (const format::SectionEntry& section : asset.sections()) {
+  for (const format::SectionEntry& section : file.sections()) {
     w.begin_array();
     w.value(section_name(section.id));
     w.value(section.bytes);
     w.end_array();
   }
   w.end_array();
+  if (input.file != nullptr) write_stored_pages(w, file);
   if (input.byte_map) {
     w.key("level_bits");
     w.begin_array();

@@ -21,8 +21,10 @@ namespace meshlode::out {
 constexpr std::uint64_t kDefaultPageBytes = std::uint64_t{32} << 20U;
 
 struct ViewerInput {
-  std::string_view title;                 ///< any bytes: the file's name
-  std::uint64_t file_bytes = 0;           ///< of the file as the user has it, whose pages may have another codec
+  std::string_view title;  ///< any bytes: the file's name
+  /// The file as the user has it, where the asset of the page is that with another codec: sections, pages and bytes are
+  /// told as they are there. Null: it is the asset of the page.
+  const run::Asset* file = nullptr;
   std::span<const std::uint8_t> runtime;  ///< meshlode.wasm
   std::optional<ByteMap> byte_map;        ///< what the page says of bytes by level; left out where not given
   std::uint64_t max_page_bytes = kDefaultPageBytes;

@@ -10,6 +10,10 @@ OMP_NUM_THREADS=1 taskset -c 0 "$MESHLODE" info --quiet again/a.lode --html agai
 # Beside what is printed, not instead of it.
 "$MESHLODE" info a.lode --format csv --html b.html | head -1 | cut -c 1-9
 cmp a.html b.html && echo "the same"
+# What it tells of the file's bytes is what info tells, whatever codec is embedded.
+code build --quiet a.glb -o draco.lode --codec draco
+"$MESHLODE" info draco.lode --format json --html draco.html | tr -d ' \n' | grep -o '"name":"PAGE","bytes":[0-9]*' | cut -d : -f 3 >said
+tr -d ' \n' <draco.html | grep -o '\["PAGE",[0-9]*\]' | tr -dc '0-9\n' | cmp - said && echo "the same bytes"
 # What was read is not written over, what was written neither.
 run info --quiet a.lode --html a.lode
 run info --quiet a.lode --html no/such/folder/a.html
@@ -28,4 +32,5 @@ cp plain.lode broken.lode
 printf 'broken' | dd of=broken.lode bs=1 seek=$(($(stat -c %s broken.lode) * 3 / 4)) conv=notrunc 2>../stderr
 "$MESHLODE" info --quiet broken.lode --html broken.html 2>../stderr
 echo "exit $?"
+grep -c '' <../stderr
 files

@@ -12,6 +12,7 @@
 
 #include "out/page/page_texts.h"
 #include "out/page/viewer_page.h"
+#include "out/report/info.h"
 #include "run/unpack/content_hash.h"
 #include "run/unpack/unpack.h"
 #include "support/sample_asset.h"
@@ -31,7 +32,6 @@ constexpr std::array<std::uint8_t, 5> kModule{0, 'a', 's', 'm', 1};
 ViewerInput input_of(std::string_view title) {
   ViewerInput input;
   input.title = title;
-  input.file_bytes = sample().bytes().size();
   input.runtime = kModule;
   return input;
 }
@@ -103,6 +103,23 @@ TEST(ViewerPage, HoldsTheAssetButForItsImages) {
     const auto bytes = asset->blob_bytes(blob);
     EXPECT_TRUE(std::all_of(bytes.begin(), bytes.end(), [](std::uint8_t byte) { return byte == 0; }));
   }
+}
+
+/// What is embedded may have another codec; what is told is the file's.
+TEST(ViewerPage, TellsTheBytesOfTheFileAsItIs) {
+  const run::Asset strips = *run::Asset::from_vector(test::sample_asset_bytes(format::Codec::kStrips));
+  ASSERT_NE(strips.bytes().size(), sample().bytes().size());
+  ViewerInput input = input_of("a.lode");
+  input.file = &sample();
+  std::string page = page_of(strips, input);
+  std::erase_if(page, [](char c) { return c == ' ' || c == '\n'; });
+  EXPECT_EQ(count_of(page, "\"file_bytes\":" + std::to_string(sample().bytes().size()) + ","), 1U);
+  for (const format::SectionEntry& section : sample().sections()) {
+    EXPECT_EQ(count_of(page, "[\"" + section_name(section.id) + "\"," + std::to_string(section.bytes) + "]"), 1U)
+        << section_name(section.id);
+  }
+  EXPECT_EQ(count_of(page, ",\"none\"]"), sample().pages().size());
+  EXPECT_EQ(count_of(page, ",\"strips\"]"), 0U);
 }
 
 TEST(ViewerPage, NamesNoPlaceElsewhere) {
