@@ -15,6 +15,7 @@
 
 #include "broken_scenes.h"
 #include "hard_case.h"
+#include "out/doctor/asset_faults.h"
 #include "scene/detect/detect.h"
 #include "scene/import/import.h"
 
@@ -91,6 +92,14 @@ TEST(Doctor, TheHardCaseThatItNamesHasTheFault) {
     EXPECT_TRUE(has_fault(*found, kind)) << name << " names " << case_name;
   }
   EXPECT_GE(count, 8U);
+}
+
+TEST(Doctor, TheHardCasesThatAnAssetsFaultsNameExist) {
+  EXPECT_FALSE(out::asset_hard_cases().empty());
+  for (const std::string& name : out::asset_hard_cases()) {
+    const auto cases = test::hard::hard_cases();
+    EXPECT_TRUE(std::any_of(cases.begin(), cases.end(), [&](const auto& one) { return one.name == name; })) << name;
+  }
 }
 
 TEST(Doctor, SaysWhatTheImportLeftOutLast) {

@@ -5,7 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <fstream>
+#include <iterator>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -14,6 +18,7 @@
 #include "run/child.h"
 #include "run/sweep.h"
 #include "scene/samples/samples.h"
+#include "support/reseal.h"
 #include "table/table.h"
 
 namespace meshlode::test::hard {
@@ -52,6 +57,95 @@ TEST(HardSuite, ALawFindsAnAssetOfAnotherSource) {
   EXPECT_EQ(check_unused_vertex(wrong).verdict, Verdict::kFails);
   EXPECT_EQ(check_doubled(wrong).verdict, Verdict::kFails);
   EXPECT_EQ(check_company(wrong).verdict, Verdict::kFails);
+}
+
+/// A mesh of levels, closed, with coordinates that are 0.
+Built closed_with_zeros() {
+  scene::Primitive shape = scene::make_rock(10);
+  for (Vec3d& p : shape.positions) {
+    if (p.x == shape.positions[0].x && p.y == shape.positions[0].y) p.z = 0.0;
+  }
+  return built(std::move(shape));
+}
+
+/// The asset after a change of one section's records, with its checksums made true again.
+template <class Record>
+void change_records(Built& base, format::SectionId section, std::size_t count, const auto& change) {
+  for (std::size_t i = 0; i < count; ++i) {
+    Record record;
+    std::uint8_t* at = base.bytes.data() + test::section_offset(base.bytes, section) + i * sizeof(Record);
+    std::memcpy(&record, at, sizeof(Record));
+    change(record);
+    std::memcpy(at, &record, sizeof(Record));
+  }
+  test::reseal(base.bytes);
+  Result<run::Asset> asset = run::Asset::from_bytes(base.bytes);
+  ASSERT_TRUE(asset) << asset.error().message();
+  base.asset = std::move(*asset);
+}
+
+/// The asset has a triangle that the source lacks: what must be the same bytes, floats or triangles is not.
+TEST(HardSuite, EveryLawOfEqualityFindsATriangleTooMany) {
+  Built wrong = closed_with_zeros();
+  auto& indices = wrong.sample.scene.meshes[0].primitives[0].indices;
+  indices.resize(indices.size() - 3);
+  for (const auto check :
+       {check_invariants, check_renumbered, check_reordered, check_turned_corners, check_unused_vertex,
+        check_negative_zeros, check_doubled, check_quarter_turn, check_mirrored, check_company}) {
+    const LawResult result = check(wrong);
+    const auto law = std::find_if(laws().begin(), laws().end(), [&](const Law& one) { return one.check == check; });
+    EXPECT_EQ(result.verdict, Verdict::kFails) << law->name << ": " << result.detail;
+  }
+}
+
+/// Translation and the factor 3 compare two builds: what they compare with finds a shift and a factor that were not.
+TEST(HardSuite, ShiftsAndFactorsAreCompared) {
+  const Built a = built(scene::make_rock(10));
+  const auto difference = [&](const Change& change) {
+    return compare_meshes(*a.asset, MeshId(0U), *a.asset, MeshId(0U), change).difference;
+  };
+  EXPECT_EQ(difference({}), "");
+  const format::Grid grid = a.asset->meshes()[0].grid;
+  Change change;
+  change.shift = Vec3d(0.0, std::ldexp(grid.mantissa, grid.log2), 0.0);
+  EXPECT_NE(difference(change), "");
+  change = {};
+  change.factor = 3.0;
+  EXPECT_NE(difference(change), "");
+  change.factor = 1.0;
+  EXPECT_EQ(difference(change), "");
+}
+
+TEST(HardSuite, ACutThatIsOpenIsFound) {
+  Built wrong = built(scene::make_rock(20));
+  ASSERT_EQ(check_closed_cuts(wrong).verdict, Verdict::kHolds);
+  const auto is_fine = [](const format::GroupRecord& group) {
+    return group.level == 0 && group.error < format::kInfiniteError;
+  };
+  const auto groups = wrong.asset->groups();
+  ASSERT_GE(std::count_if(groups.begin(), groups.end(), is_fine), 2);
+  // A group of level 0 stays when all around it has been replaced.
+  bool is_done = false;
+  change_records<format::GroupRecord>(wrong, format::SectionId::kGroups, groups.size(), [&](auto& group) {
+    if (!is_done && is_fine(group)) group.error = 1e20F;
+    is_done |= is_fine(group);
+  });
+  EXPECT_EQ(check_closed_cuts(wrong).verdict, Verdict::kFails);
+}
+
+TEST(HardSuite, AHierarchyThatHidesAGroupIsFound) {
+  Sample sample = sample_of(scene::make_rock(10));
+  HardView view;
+  view.camera.eye = Vec3d(0.0, 0.0, 3.0);
+  view.camera.target = Vec3d(0.0);
+  sample.views.push_back(view);
+  Result<Built> result = build_sample(std::move(sample));
+  ASSERT_TRUE(result.ok());
+  Built wrong = std::move(*result);
+  ASSERT_EQ(check_views(wrong).verdict, Verdict::kHolds);
+  change_records<format::NodeRecord>(wrong, format::SectionId::kNodes, wrong.asset->nodes().size(),
+                                     [](format::NodeRecord& node) { node.error = 0.0F; });
+  EXPECT_EQ(check_views(wrong).verdict, Verdict::kFails);
 }
 
 /// Squares of its distances vanish from doubles; the judge's own may not.
@@ -127,6 +221,42 @@ TEST(HardSuite, AChildThatFailsIsSeenToFail) {
   const ChildResult slow = run_child("/bin/sh", {"-c", "exec sleep 20"}, limits);
   EXPECT_TRUE(slow.timed_out);
   EXPECT_EQ(slow.exit_code, -1);
+}
+
+TEST(HardSuite, ACaseThatHoldsLessThanThePageSaysIsFound) {
+  const HardCase fake{.room = "-", .name = "fake", .parameter = "-", .sweep = {1.0, 100.0}};
+  Verdict at_easy = Verdict::kHolds, beyond = Verdict::kHolds;
+  const Ask ask = [&](double parameter, bool all_laws) {
+    Trial trial = with_verdict(parameter == 1.0 ? at_easy : beyond);
+    if (all_laws && at_easy == Verdict::kHolds) trial.laws[0].verdict = trial.laws[1].verdict = Verdict::kHolds;
+    return trial;
+  };
+  const auto sweep = [&] { return sweep_case(fake, ask, {.steps = 1}, false); };
+  const Swept sound = sweep();
+  const std::string page = table_of({&sound, 1});
+  EXPECT_EQ(difference_from_page(sound, page, true), "");
+  beyond = Verdict::kRefused;
+  EXPECT_FALSE(has_failed(sweep()));
+  EXPECT_EQ(difference_from_page(sweep(), page, true), "holds to 1, the page says to the end");
+  EXPECT_EQ(difference_from_page(sweep(), page, false), "");
+  at_easy = Verdict::kRefused;
+  EXPECT_FALSE(has_failed(sweep()));
+  EXPECT_EQ(difference_from_page(sweep(), page, false), "0 of 0 laws hold, the page says 2 of 2");
+  EXPECT_NE(difference_from_page(sound, "", false), "");
+}
+
+/// doctor links to its rows.
+TEST(HardSuite, ThePageHasARowForEveryCaseAndNoOther) {
+  std::ifstream in(MESHLODE_SOURCE_DIR "/docs/hard-cases.md", std::ios::binary);
+  const std::string page(std::istreambuf_iterator<char>(in), {});
+  std::vector<std::string> rows, names;
+  constexpr std::string_view kAnchor = "<a id=\"";
+  for (std::size_t at = page.find(kAnchor); at != std::string::npos; at = page.find(kAnchor, at + 1)) {
+    const std::size_t begin = at + kAnchor.size();
+    rows.push_back(page.substr(begin, page.find('"', begin) - begin));
+  }
+  for (const HardCase& one : hard_cases()) names.emplace_back(one.name);
+  EXPECT_EQ(rows, names);
 }
 
 TEST(HardSuite, CasesHaveNamesOfTheirOwnAndSomethingToSweep) {

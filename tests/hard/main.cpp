@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <iterator>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -23,7 +24,7 @@ constexpr std::uint32_t kPictureColumns = 10;
 
 struct Arguments {
   std::vector<std::string> names;
-  std::string table, picture;
+  std::string table, picture, against;
   bool is_quick = false;
   std::size_t jobs = 2;
 };
@@ -39,6 +40,7 @@ int usage() {
       "usage: hard_cases list\n"
       "       hard_cases trial CASE PARAMETER [--laws] [--care NAME=off]      the lines that a sweep reads\n"
       "       hard_cases sweep [CASE...] [--quick] [--jobs N] [--table FILE] [--picture FILE]\n"
+      "                  [--against FILE]    fails where a case is not as that page says of it\n"
       "       hard_cases care NAME=off [CASE...] [--quick] [--jobs N]      whose verdict is worse without that care\n",
       stderr);
   return 1;
@@ -63,6 +65,20 @@ bool write_file(const std::string& path, const std::string& bytes) {
   out.close();
   if (!out) std::fprintf(stderr, "%s: cannot be written\n", path.c_str());
   return static_cast<bool>(out);
+}
+
+/// How many of the cases are not as the page says.
+std::size_t count_differences(const std::vector<Swept>& swept, const Arguments& arguments) {
+  std::ifstream in(arguments.against, std::ios::binary);
+  const std::string page(std::istreambuf_iterator<char>(in), {});
+  std::size_t count = 0;
+  for (const Swept& one : swept) {
+    const std::string difference = difference_from_page(one, page, !arguments.is_quick);
+    if (difference.empty()) continue;
+    std::printf("%s: %s\n", one.hard_case->name, difference.c_str());
+    ++count;
+  }
+  return count;
 }
 
 /// Those that are named; none named: all, or the quick ones. Empty where a name is none.
@@ -141,8 +157,9 @@ int sweep(const std::string& program, const Arguments& arguments) {
     if (!write_file(arguments.picture, {png.begin(), png.end()})) return 2;
   }
   const auto failed = std::count_if(swept.begin(), swept.end(), has_failed);
-  std::printf("%zu cases, %td fail\n", swept.size(), failed);
-  return failed == 0 ? 0 : 6;
+  const std::size_t different = arguments.against.empty() ? 0 : count_differences(swept, arguments);
+  std::printf("%zu cases, %td fail, %zu are not as the page says\n", swept.size(), failed, different);
+  return failed == 0 && different == 0 ? 0 : 6;
 }
 
 int dispatch(const std::string& program, const std::vector<std::string>& words) {
@@ -164,6 +181,8 @@ int dispatch(const std::string& program, const std::vector<std::string>& words) 
       arguments.table = words[++i];
     } else if (words[i] == "--picture" && i + 1 < words.size()) {
       arguments.picture = words[++i];
+    } else if (words[i] == "--against" && i + 1 < words.size()) {
+      arguments.against = words[++i];
     } else if (words[i] == "--jobs" && i + 1 < words.size()) {
       const std::string& text = words[++i];
       const auto parsed = std::from_chars(text.data(), text.data() + text.size(), arguments.jobs);

@@ -259,6 +259,16 @@ std::vector<std::string> asset_fault_ids() {
   return ids;
 }
 
+std::vector<std::string> asset_hard_cases() {
+  std::vector<std::string> cases;
+  const auto add = [&](const Words& words) {
+    if (*words.hard_case != '\0') cases.emplace_back(words.hard_case);
+  };
+  for (const Words* words : {&kFewGroups, &kDropped, &kCollapsed, &kSmall, &kUnmeasured}) add(*words);
+  for (const StuckWords& stuck : kStuck) add(stuck.words);
+  return cases;
+}
+
 std::vector<Diagnosis> diagnose_asset(const run::Asset& asset) {
   return Examiner(asset).take();
 }

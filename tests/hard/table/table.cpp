@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <vector>
 
 namespace meshlode::test::hard {
 
@@ -99,12 +100,19 @@ LawCount count_laws(const Swept& swept) {
   return count;
 }
 
+std::string laws_of(const LawCount& count) {
+  return std::to_string(count.kept) + " of " + std::to_string(count.asked);
+}
+
+std::string anchor_of(const std::string& name) {
+  return "<a id=\"" + name + "\"></a>";
+}
+
 std::string row_of(const Swept& swept, std::size_t number_of_row) {
   const LawCount count = count_laws(swept);
   const std::string name = swept.hard_case->name;
-  std::string row = "| " + std::to_string(number_of_row) + " | <a id=\"" + name + "\"></a>`" + name + "` | " +
-                    swept.hard_case->parameter + " | " + end_of(swept) + " | " + std::to_string(count.kept) + " of " +
-                    std::to_string(count.asked);
+  std::string row = "| " + std::to_string(number_of_row) + " | " + anchor_of(name) + "`" + name + "` | " +
+                    swept.hard_case->parameter + " | " + end_of(swept) + " | " + laws_of(count);
   if (!count.broken.empty()) row += "; **fails**: " + count.broken;
   row += " | " + (count.worst > 0.0 ? number(count.worst) + " (" + count.worst_law + ")" : std::string("-"));
   return row + " | " + verdicts_of(swept, "<br>") + " |\n";
@@ -191,6 +199,22 @@ std::string line_of(const Swept& swept) {
     if (law.verdict == Verdict::kFails) text += "    " + std::string(laws()[i].name) + ": " + law.detail + "\n";
   }
   return text;
+}
+
+std::string difference_from_page(const Swept& swept, std::string_view page, bool is_whole) {
+  const std::size_t at = page.find(anchor_of(swept.hard_case->name));
+  if (at == std::string_view::npos) return "the page has no such case";
+  std::string_view rest = page.substr(at, page.find('\n', at) - at);
+  std::vector<std::string> cells;  // name, parameter, holds, laws, ...
+  for (std::size_t bar = rest.find(" | "); bar != std::string_view::npos; bar = rest.find(" | ")) {
+    cells.emplace_back(rest.substr(0, bar));
+    rest.remove_prefix(bar + 3);
+  }
+  if (cells.size() < 4) return "the page's row is none";
+  const std::string laws_now = laws_of(count_laws(swept)), end_now = end_of(swept);
+  if (cells[3] != laws_now) return laws_now + " laws hold, the page says " + cells[3];
+  if (is_whole && cells[2] != end_now) return "holds " + end_now + ", the page says " + cells[2];
+  return {};
 }
 
 bool has_failed(const Swept& swept) {
