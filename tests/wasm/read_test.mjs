@@ -77,6 +77,27 @@ function decoded(path) {
   return { bytes: Buffer.concat(parts), refusal: null };
 }
 
+/** How many of an asset's texts are no JSON, which is a refusal like any other. */
+function badTexts(path) {
+  let asset;
+  let count = 0;
+  try {
+    asset = runtime.open(readFileSync(path));
+  } catch {
+    return 0; // decoded() has looked at that
+  }
+  for (const name of ['meta', 'scene']) {
+    try {
+      void asset[name];
+    } catch (error) {
+      if (!(error instanceof MeshlodeError) || error.status !== 'invalid') throw error;
+      ++count;
+    }
+  }
+  asset.close();
+  return count;
+}
+
 const hash = (bytes) => createHash('sha256').update(bytes).digest('hex').slice(0, 16);
 
 /** Whether what the module made is what native made; a refusal has native's text, behind what was read before it. */
@@ -127,10 +148,12 @@ try {
     execFileSync(writeBroken, [join(work, `${name}.lode`), resealed, String(count)]);
     let refused = 0;
     let different = 0;
+    let noJson = 0;
     for (let k = 0; k < count; ++k) {
       const path = join(resealed, String(k));
       const here = decoded(path);
       refused += here.refusal ? 1 : 0;
+      noJson += badTexts(path);
       if (!isSame(here, native(path))) {
         ++different;
         console.log(`  ${name} ${k}: ${here.refusal?.message}`);
@@ -138,6 +161,7 @@ try {
     }
     expect(different === 0, `${name}: ${count} broken ones are what they are natively, ${refused} of them refused`);
     expect(refused > count / 4 && refused < count, `${name}: some are refused and some are not`);
+    expect(noJson > 0, `${name}: ${noJson} texts are no JSON, and refused`);
     rmSync(resealed, { recursive: true });
     compare(join(work, `${name}.lode`), `${name} after them`);
   }
@@ -155,6 +179,8 @@ try {
   expect(refused(() => asset.selectUniform(0, NaN)) === 'usage', 'an error that is no number');
   expect(refused(() => asset.selectView({ fovyRadians: 9, nearDistance: 1, heightPx: 1 }, 1)) === 'usage', 'a view that is none');
   expect(asset.streamingOrder().length === asset.pages.length, 'an order of all pages');
+  const huge = Object.defineProperty(new Uint8Array(1), 'byteLength', { value: 2 ** 32 + 16 });
+  expect(refused(() => runtime.open(huge)) === 'out_of_memory', 'more bytes than a module can have');
   expect(asset.meta.settings !== undefined, 'META is JSON');
   expect(asset.meshes[0].name.length > 0, 'a mesh has its name');
   asset.close();

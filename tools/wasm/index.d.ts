@@ -150,6 +150,7 @@ export interface Asset {
   readonly groups: Group[];
   readonly clusters: Cluster[];
   readonly pages: Page[];
+  /** Text of the asset as JSON, which opening does not check: throws MeshlodeError `invalid` where it is none; `scene` too. */
   readonly meta: unknown;
   readonly scene: unknown;
   selectUniform(mesh: number, maxError: number): { clusters: Uint32Array; storedError: number };

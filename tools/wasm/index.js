@@ -91,6 +91,8 @@ class Runtime {
     return new Uint8Array(this.#wasm.memory.buffer, at, count);
   }
   allocate(count) {
+    // The module would take it modulo 2^32.
+    if (!(count < 2 ** 32)) throw new MeshlodeError('out_of_memory', `${count} bytes`);
     const at = this.#wasm.meshlode_web_allocate(count) >>> 0;
     if (at === 0) throw new MeshlodeError('out_of_memory', `${count} bytes`);
     return at;
@@ -117,7 +119,7 @@ class Frame {
 }
 
 function decodeText(bytes) {
-  return new TextDecoder().decode(bytes.slice());
+  return new TextDecoder('utf-8', { ignoreBOM: true }).decode(bytes.slice());
 }
 
 /** A number of 64 bits; counts and offsets of a file are far below 2^53. */
@@ -387,6 +389,10 @@ class Asset {
       const at = this.#wasm[`meshlode_${name}`](this.#at, frame.at) >>> 0;
       const text = decodeText(this.#runtime.bytes(at, this.#runtime.view().getUint32(frame.at, true)));
       return JSON.parse(text);
+    } catch (error) {
+      // Nothing checks these texts on opening. Nor is this a trap, after which the module may not be used.
+      if (!(error instanceof SyntaxError)) throw error;
+      throw new MeshlodeError('invalid', `section ${name === 'meta_json' ? 'META' : 'SCNE'}: is no JSON`);
     } finally {
       frame.end();
     }
