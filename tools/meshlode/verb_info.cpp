@@ -46,6 +46,7 @@ Status check_page_options(PageOptions& page) {
     if (!bytes) return Error{ErrorCode::kUsage, "--html-limit", "give a size, such as 8MiB"};
     page.max_page_bytes = *bytes;
   }
+  if (page.path && page.path->empty()) return Error{ErrorCode::kUsage, "--html", "name the file of the page"};
   return page.path ? can_write_info_page() : Ok{};
 }
 

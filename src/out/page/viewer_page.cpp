@@ -9,7 +9,6 @@
 #include <meshlode/meshlode.h>
 
 #include "base/json_writer.h"
-#include "base/utf8.h"
 #include "format/names.h"
 #include "out/page/page_texts.h"
 #include "out/report/info.h"
@@ -80,7 +79,6 @@ void write_stored_pages(JsonWriter& w, const run::Asset& file) {
 std::string facts_json(const run::Asset& asset, const ViewerInput& input, const std::vector<bool>& chosen) {
   JsonWriter w;
   w.begin_object();
-  w.field("file", as_utf8(input.title));
   const run::Asset& file = input.file != nullptr ? *input.file : asset;
   w.field("file_bytes", file.bytes().size());
   w.field("embedded_file_bytes", asset.bytes().size());

@@ -17,6 +17,7 @@ tr -d ' \n' <draco.html | grep -o '\["PAGE",[0-9]*\]' | tr -dc '0-9\n' | cmp - s
 # What was read is not written over, what was written neither.
 run info --quiet a.lode --html a.lode
 run info --quiet a.lode --html no/such/folder/a.html
+run info --quiet a.lode --html ''
 # Of a smaller page the coarse levels.
 run info --quiet a.lode --html small.html --html-limit 0
 [ "$(stat -c %s small.html)" -lt "$(stat -c %s a.html)" ] && echo smaller

@@ -130,7 +130,7 @@ TEST(ViewerPage, NamesNoPlaceElsewhere) {
 }
 
 TEST(ViewerPage, TakesATitleForText) {
-  const std::string hostile = "</title></script><script>alert(1)</script>&\"'@RUNTIME@\x01\xFF.lode";
+  const std::string hostile = "</title></script><script>alert(1)</script>&\"'@RUNTIME@\x01\xFF\xE2\x80\xAE.lode";
   const std::string page = page_of(sample(), input_of(hostile));
   const std::string plain = page_of(sample(), input_of("a.lode"));
   EXPECT_EQ(count_of(page, "<script"), count_of(plain, "<script"));
@@ -139,6 +139,8 @@ TEST(ViewerPage, TakesATitleForText) {
   EXPECT_EQ(count_of(page, encode_base64(kModule)), 1U) << "a hole in a title was filled";
   EXPECT_EQ(count_of(page, "\x01"), 0U);
   EXPECT_EQ(count_of(page, "\xFF"), 0U);
+  EXPECT_EQ(count_of(page, "\xE2\x80\xAE"), 0U) << "U+202E";
+  EXPECT_EQ(escape_html("\xC3\xA9\xE2\x82\xAC&"), "\xC3\xA9\xE2\x82\xAC&amp;");
 }
 
 TEST(ViewerPage, HasNoEndOfAScriptInItsScripts) {
