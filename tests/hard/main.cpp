@@ -125,9 +125,10 @@ int study_care(const std::string& program, const Arguments& arguments, const std
     const HardCase& one = *chosen[i];
     std::string text;
     for (std::size_t p = 0; p < one.sweep.size() && (p == 0 || !arguments.is_quick); ++p) {
-      const Trial with = try_apart(program, one, one.sweep[p], p == 0);
       const Trial without = try_apart(program, one, one.sweep[p], p == 0, care);
       ++tried;
+      if (without.verdict == Verdict::kHolds) continue;  // no worse than anything
+      const Trial with = try_apart(program, one, one.sweep[p], p == 0);
       if (without.verdict <= with.verdict) continue;
       ++worse;
       append_format(text, "%s\t%s\t%.6g\t%s\t%s\t%.200s\n", care.c_str(), one.name, one.sweep[p],
