@@ -105,6 +105,49 @@ std::vector<std::string> arguments_of(std::span<const Knob> knobs, const Point& 
 
 namespace {
 
+void add_codec_knobs(std::vector<Knob>& knobs) {
+  knobs.push_back({"codec",
+                   "codec",
+                   "--codec",
+                   "",
+                   KnobKind::kBuild,
+                   0,
+                   {{"none", 1.0, 0.0},
+                    {"lz4", 1.0, kSecond},
+                    {"zstd", 1.1, kSecond},
+                    {"strips", 1.2, kFirst},
+                    {"draco", 1.2, kSecond}},
+                   true});
+  knobs.push_back({"strip_effort",
+                   "strip effort",
+                   "--strip-effort",
+                   "",
+                   KnobKind::kBuild,
+                   0,
+                   {{"auto", 1.0, 0.0}, {"fast", 0.9, kFirst}, {"best", 1.2, kThird}}});
+}
+
+void add_study_knobs(std::vector<Knob>& knobs) {
+  knobs.push_back({"simplifier",
+                   "simplifier",
+                   "--simplifier",
+                   "",
+                   KnobKind::kStudy,
+                   0,
+                   {{"own", 1.0, 0.0}, {"openmesh", 2.0, kSecond}}});
+  knobs.push_back({"care",
+                   "care",
+                   "--care",
+                   "",
+                   KnobKind::kStudy,
+                   0,
+                   {{"all", 1.0, 0.0},
+                    {"double-quadrics=off", 1.0, kSecond},
+                    {"fallback=off", 1.0, kOfStudy},
+                    {"spheres=off", 1.0, kOfStudy},
+                    {"needles=off", 1.0, kOfStudy}}});
+}
+
 std::vector<Knob> list_knobs(const SceneFacts& facts) {
   std::vector<Knob> knobs;
   knobs.push_back({"preset",
@@ -140,25 +183,7 @@ std::vector<Knob> list_knobs(const SceneFacts& facts) {
                      0,
                      {{"auto", 1.0, 0.0}, {"0.25px", 1.0, kSecond}, {"1px", 1.0, kFirst}}});
   }
-  knobs.push_back({"codec",
-                   "codec",
-                   "--codec",
-                   "",
-                   KnobKind::kBuild,
-                   0,
-                   {{"none", 1.0, 0.0},
-                    {"lz4", 1.0, kSecond},
-                    {"zstd", 1.1, kSecond},
-                    {"strips", 1.2, kFirst},
-                    {"draco", 1.2, kSecond}},
-                   true});
-  knobs.push_back({"strip_effort",
-                   "strip effort",
-                   "--strip-effort",
-                   "",
-                   KnobKind::kBuild,
-                   0,
-                   {{"auto", 1.0, 0.0}, {"fast", 0.9, kFirst}, {"best", 1.2, kThird}}});
+  add_codec_knobs(knobs);
   knobs.push_back({"cluster_triangles",
                    "cluster size",
                    "--cluster-triangles",
@@ -173,24 +198,7 @@ std::vector<Knob> list_knobs(const SceneFacts& facts) {
                    KnobKind::kBuild,
                    1,
                    {{"12", 1.0, kFirst}, {"20", 1.0, 0.0}, {"28", 1.0, kSecond}}});
-  knobs.push_back({"simplifier",
-                   "simplifier",
-                   "--simplifier",
-                   "",
-                   KnobKind::kStudy,
-                   0,
-                   {{"own", 1.0, 0.0}, {"openmesh", 2.0, kSecond}}});
-  knobs.push_back({"care",
-                   "care",
-                   "--care",
-                   "",
-                   KnobKind::kStudy,
-                   0,
-                   {{"all", 1.0, 0.0},
-                    {"double-quadrics=off", 1.0, kSecond},
-                    {"fallback=off", 1.0, kOfStudy},
-                    {"spheres=off", 1.0, kOfStudy},
-                    {"needles=off", 1.0, kOfStudy}}});
+  add_study_knobs(knobs);
   knobs.push_back({"pixel_error",
                    "pixel error",
                    "--pixel-error",
