@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Texts and bytes as HTML may hold them.
+#include "out/page/text_forms.h"
+
 #include <cstddef>
 
 #include "base/utf8.h"
-#include "out/page/viewer_page.h"
 
 namespace meshlode::out {
 
@@ -11,24 +11,30 @@ namespace {
 
 constexpr std::string_view kReplacement = "\xEF\xBF\xBD";
 
-/// U+202A to U+202E, U+2066 to U+2069: they turn the text that stands around them.
-bool turns_text(std::string_view character) {
+/// U+202A to U+202E, U+2066 to U+2069 turn the text that stands around them; U+FFFE and U+FFFF are no characters.
+bool is_refused(std::string_view character) {
+  if (character.size() == 1) {
+    const auto byte = static_cast<unsigned char>(character[0]);
+    return (byte < 0x20 && byte != '\t' && byte != '\n') || byte == 0x7F;
+  }
   if (character.size() != 3) return false;
+  const std::string_view head = character.substr(0, 2);
   const auto last = static_cast<unsigned char>(character[2]);
-  if (character.starts_with("\xE2\x80")) return last >= 0xAA && last <= 0xAE;
-  return character.starts_with("\xE2\x81") && last >= 0xA6 && last <= 0xA9;
+  if (head == "\xE2\x80") return last >= 0xAA && last <= 0xAE;
+  if (head == "\xE2\x81") return last >= 0xA6 && last <= 0xA9;
+  return head == "\xEF\xBF" && last >= 0xBE;
 }
 
 }  // namespace
 
 std::string escape_html(std::string_view text) {
   std::string out;
+  out.reserve(text.size());
   while (!text.empty()) {
     const std::size_t n = utf8_length(text);
     const std::string_view character = text.substr(0, n == 0 ? 1 : n);
     text.remove_prefix(character.size());
-    const auto byte = static_cast<unsigned char>(character[0]);
-    if (n == 0 || byte < 0x20 || byte == 0x7F || turns_text(character)) {
+    if (n == 0 || is_refused(character)) {
       out += kReplacement;
     } else if (character == "&") {
       out += "&amp;";

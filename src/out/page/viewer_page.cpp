@@ -11,6 +11,7 @@
 #include "base/json_writer.h"
 #include "format/names.h"
 #include "out/page/page_texts.h"
+#include "out/page/text_forms.h"
 #include "out/report/info.h"
 
 namespace meshlode::out {

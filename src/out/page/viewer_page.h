@@ -39,10 +39,4 @@ struct ViewerInput {
 /// streaming order as fit. Each comes with those it depends on, so that there is a cut of what is there.
 [[nodiscard]] Result<std::vector<bool>> choose_pages(const run::Asset& asset, std::uint64_t max_bytes);
 
-/// Text for the inside of an element or a quoted attribute: no byte of it is markup; what is not UTF-8, not printable
-/// or turns the direction of text becomes a mark of replacement.
-[[nodiscard]] std::string escape_html(std::string_view text);
-
-[[nodiscard]] std::string encode_base64(std::span<const std::uint8_t> bytes);
-
 }  // namespace meshlode::out

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Writes markup that is both HTML and well-formed XML: every element is closed, every attribute has a value in quotes,
-// and nothing gets in but through escaped().
+// and nothing gets in but through out::escape_html().
 #pragma once
 
 #include <initializer_list>
@@ -9,10 +9,6 @@
 #include <vector>
 
 namespace meshlode::study::page {
-
-/// Text as it may stand in an element and in a quoted attribute. Bytes that are not UTF-8, characters that XML forbids
-/// and those that turn the direction of what follows them become U+FFFD.
-[[nodiscard]] std::string escaped(std::string_view text);
 
 struct Attribute {
   std::string_view name;

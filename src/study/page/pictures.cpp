@@ -2,9 +2,10 @@
 #include "study/page/pictures.h"
 
 #include <algorithm>
-#include <string_view>
+#include <string>
 #include <vector>
 
+#include "out/page/text_forms.h"
 #include "study/page/charts.h"
 #include "study/page/numbers.h"
 
@@ -20,7 +21,7 @@ const Bytes* find_picture(const ReportData& data, const std::string& path) {
 }
 
 std::string data_uri(const Bytes& png) {
-  return "data:image/png;base64," + base64(png);
+  return "data:image/png;base64," + out::encode_base64(png);
 }
 
 /// A point and its picture in one view.
@@ -73,19 +74,6 @@ std::size_t size_of(const ReportData& data, const Shown& shown) {
 }
 
 }  // namespace
-
-std::string base64(std::span<const std::uint8_t> bytes) {
-  static constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string out;
-  out.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
-    std::uint32_t bits = 0;
-    for (std::size_t k = 0; k < 3; ++k) bits = bits << 8 | (k < count ? bytes[i + k] : 0U);
-    for (std::size_t k = 0; k < 4; ++k) out += k <= count ? kDigits[bits >> (18 - 6 * k) & 63U] : '=';
-  }
-  return out;
-}
 
 PictureCount write_pictures(Markup& html, const ReportData& data, std::size_t most_bytes) {
   PictureCount count;

@@ -4,17 +4,12 @@
 // them.
 #pragma once
 
-#include <cstdint>
-#include <span>
-#include <string>
+#include <cstddef>
 
 #include "study/page/markup.h"
 #include "study/page/report_data.h"
 
 namespace meshlode::study::page {
-
-/// RFC 4648, with padding.
-[[nodiscard]] std::string base64(std::span<const std::uint8_t> bytes);
 
 struct PictureCount {
   std::size_t shown = 0, left_out = 0;  ///< points' pictures

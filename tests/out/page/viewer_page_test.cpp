@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "out/page/page_texts.h"
+#include "out/page/text_forms.h"
 #include "out/page/viewer_page.h"
 #include "out/report/info.h"
 #include "run/unpack/content_hash.h"

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "out/page/text_forms.h"
 #include "study/page/well_formed.h"
 
 namespace meshlode::study::page {
@@ -13,25 +14,25 @@ namespace {
 constexpr const char* kReplacement = "\xEF\xBF\xBD";
 
 TEST(Markup, EscapesWhatEndsATextOrAValue) {
-  EXPECT_EQ(escaped("</script><img src=x onerror='a(\"b\")'>&amp;"),
+  EXPECT_EQ(out::escape_html("</script><img src=x onerror='a(\"b\")'>&amp;"),
             "&lt;/script&gt;&lt;img src=x onerror=&#39;a(&quot;b&quot;)&#39;&gt;&amp;amp;");
-  EXPECT_EQ(escaped("Häuschen — 石\n\t"), "Häuschen — 石\n\t");
+  EXPECT_EQ(out::escape_html("Häuschen — 石\n\t"), "Häuschen — 石\n\t");
 }
 
 TEST(Markup, LetsNoCharacterInThatXmlForbids) {
-  EXPECT_EQ(escaped(std::string("a\0b", 3)), std::string("a") + kReplacement + "b");
-  EXPECT_EQ(escaped("\x1B[31m\x7F"), std::string(kReplacement) + "[31m" + kReplacement);
-  EXPECT_EQ(escaped("\xFF\xC0\xAF"), std::string(kReplacement) + kReplacement + kReplacement) << "no UTF-8";
-  EXPECT_EQ(escaped("\xEF\xBF\xBE"), kReplacement) << "U+FFFE";
-  EXPECT_EQ(escaped("\xEF\xBF\xBC"), "\xEF\xBF\xBC") << "U+FFFC is a character";
+  EXPECT_EQ(out::escape_html(std::string("a\0b", 3)), std::string("a") + kReplacement + "b");
+  EXPECT_EQ(out::escape_html("\x1B[31m\x7F"), std::string(kReplacement) + "[31m" + kReplacement);
+  EXPECT_EQ(out::escape_html("\xFF\xC0\xAF"), std::string(kReplacement) + kReplacement + kReplacement) << "no UTF-8";
+  EXPECT_EQ(out::escape_html("\xEF\xBF\xBE"), kReplacement) << "U+FFFE";
+  EXPECT_EQ(out::escape_html("\xEF\xBF\xBC"), "\xEF\xBF\xBC") << "U+FFFC is a character";
 }
 
 TEST(Markup, LetsNoCharacterInThatTurnTheTextAroundIt) {
-  EXPECT_EQ(escaped("gpj\xE2\x80\xAE"
-                    "exe"),
+  EXPECT_EQ(out::escape_html("gpj\xE2\x80\xAE"
+                             "exe"),
             std::string("gpj") + kReplacement + "exe");
-  EXPECT_EQ(escaped("\xE2\x81\xA6"), kReplacement) << "U+2066";
-  EXPECT_EQ(escaped("\xE2\x80\x94"), "\xE2\x80\x94") << "a dash is none";
+  EXPECT_EQ(out::escape_html("\xE2\x81\xA6"), kReplacement) << "U+2066";
+  EXPECT_EQ(out::escape_html("\xE2\x80\x94"), "\xE2\x80\x94") << "a dash is none";
 }
 
 TEST(Markup, NestsWhatIsOpened) {

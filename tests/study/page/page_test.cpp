@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "out/page/text_forms.h"
 #include "study/page/palette.h"
 #include "study/page/pictures.h"
 #include "study/page/read_sweep.h"
@@ -125,7 +126,7 @@ TEST(Page, SaysWhatTheSceneItselfCallsFor) {
 TEST(Page, PicturesAreInItOnceAndWithinTheBudget) {
   const ReportData data = made_up();
   const std::string page = write_page(data);
-  for (const auto& [path, png] : data.pictures) EXPECT_EQ(count_of(page, base64(png)), 1U) << path;
+  for (const auto& [path, png] : data.pictures) EXPECT_EQ(count_of(page, out::encode_base64(png)), 1U) << path;
   PageOptions options;
   options.most_picture_bytes = 1;
   const std::string small = write_page(data, options);
@@ -142,7 +143,7 @@ TEST(Page, ScriptAndStylesAreXmlAsTheyStand) {
 
 TEST(Page, Base64IsThatOfTheStandard) {
   const auto encoded = [](const std::string& text) {
-    return base64({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+    return out::encode_base64({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
   };
   EXPECT_EQ(encoded(""), "");  // RFC 4648, section 10
   EXPECT_EQ(encoded("f"), "Zg==");
