@@ -14,6 +14,7 @@
 #include "base/random.h"
 #include "build/prepare/prepare.h"
 #include "build/simplify/border_rule.h"
+#include "build/simplify/two_charts.h"
 #include "scene/samples/samples.h"
 #include "support/border_chain.h"
 
@@ -229,19 +230,7 @@ TEST(OpenMeshDecimater, NoOpenEdgeComesBetweenLockedVertices) {
 }
 
 TEST(OpenMeshDecimater, NoTextureCrossesItsSeam) {
-  // Two charts side by side, cut at x = 0.
-  const scene::Primitive plane = scene::make_plane(16);
-  scene::Primitive cut;
-  for (std::size_t i = 0; i < plane.indices.size(); i += 3) {
-    double x = 0.0;
-    for (std::size_t k = 0; k < 3; ++k) x += plane.positions[plane.indices[i + k]].x;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3d p = plane.positions[plane.indices[i + k]];
-      cut.indices.push_back(static_cast<std::uint32_t>(cut.positions.size()));
-      cut.positions.push_back(p);
-      cut.uvs[0].emplace_back(float(p.x) + (x < 0 ? 10.0F : 0.0F), float(p.z));
-    }
-  }
+  const scene::Primitive cut = make_two_charts(16);
   AttributeLayout layout;
   layout.uv_set_count = 1;
   const SimplifyInput input = as_input(cut, layout);
