@@ -60,12 +60,19 @@ function(meshlode_set_up_floor_target target)
   meshlode_share_floor_headers(${target} ${how})
 endfunction()
 
-# meshlode_add_floor(NAME SOURCES room/a.cpp ... [FLOORS base format ...] [LIBS Some::target ...] [QUICKLY])
+# meshlode_compile_alone(FILE ...): with MESHLODE_UNITY too.
+function(meshlode_compile_alone)
+  set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+endfunction()
+
+# meshlode_add_floor(NAME SOURCES room/a.cpp ... [FLOORS base format ...] [LIBS Some::target ...] [QUICKLY] [ALONE room/a.cpp ...])
 # FLOORS are public: their headers are included by this floor's headers. QUICKLY: see meshlode_share_floor_headers().
+# ALONE: sources that have a name of their own which others have too (MESHLODE_UNITY).
 function(meshlode_add_floor name)
-  cmake_parse_arguments(arg "QUICKLY" "" "SOURCES;FLOORS;LIBS" ${ARGN})
+  cmake_parse_arguments(arg "QUICKLY" "" "SOURCES;FLOORS;LIBS;ALONE" ${ARGN})
   list(TRANSFORM arg_FLOORS PREPEND meshlode_)
   add_library(meshlode_${name} STATIC ${arg_SOURCES})
+  meshlode_compile_alone(${arg_ALONE})
   set(how)
   if(arg_QUICKLY)
     set(how QUICKLY)
@@ -116,13 +123,14 @@ function(meshlode_compile_quickly name)
 endfunction()
 
 # meshlode_add_test(NAME SOURCES a_test.cpp ... FLOORS ... [LIBS ...] [LABELS unit property ...] [TIMEOUT seconds]
-#                   [SANITIZED])
+#                   [SANITIZED] [ALONE a_test.cpp ...])
 # One GoogleTest program per room or property; ctest runs each GoogleTest case on its own line. SANITIZED: tools/test.sh
 # runs it under sanitizers too, as it does everything labelled malformed: for rooms whose own arithmetic makes indices.
 # Programs labelled slow are built by the target slow_tests alone.
 function(meshlode_add_test name)
-  cmake_parse_arguments(arg "SANITIZED" "TIMEOUT" "SOURCES;FLOORS;LIBS;LABELS" ${ARGN})
+  cmake_parse_arguments(arg "SANITIZED" "TIMEOUT" "SOURCES;FLOORS;LIBS;LABELS;ALONE" ${ARGN})
   add_executable(${name} ${arg_SOURCES})
+  meshlode_compile_alone(${arg_ALONE})
   meshlode_compile_quickly(${name})
   meshlode_share_test_headers(${name})
   target_link_libraries(${name} PRIVATE meshlode_flags GTest::gtest_main ${arg_LIBS})

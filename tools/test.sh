@@ -60,7 +60,7 @@ run_ctest() {
 release_targets=(all)
 [ "$all$group" = no ] || release_targets=(all slow_tests)
 build_release() {
-  cmake --preset release -DMESHLODE_TESTS=ON && within 25 ninja -C build/release -j "$jobs" "${release_targets[@]}"
+  cmake --preset release -DMESHLODE_TESTS=ON -DMESHLODE_UNITY=ON && within 25 ninja -C build/release -j "$jobs" "${release_targets[@]}"
 }
 release_filter=(-LE slow)
 [ $all = yes ] && release_filter=()
@@ -73,7 +73,7 @@ else
   sanitized_targets=(sanitized_core meshlode_cli) sanitized_vulkan=OFF sanitized_filter=(-L sanitized)
 fi
 build_sanitized() {
-  cmake --preset sanitize -DMESHLODE_VULKAN=$sanitized_vulkan &&
+  cmake --preset sanitize -DMESHLODE_VULKAN=$sanitized_vulkan -DMESHLODE_UNITY=ON &&
     within 12 ninja -C build/sanitize -j "$jobs" "${sanitized_targets[@]}"
 }
 test_sanitized() { run_ctest 12 build/sanitize "sanitized tests" "${sanitized_filter[@]}"; }

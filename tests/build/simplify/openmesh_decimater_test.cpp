@@ -349,7 +349,7 @@ SimplifyInput random_soup(SplitMix64& random) {
 TEST(OpenMeshDecimater, RandomSoupsKeepTheContract) {
   SplitMix64 random(7);
   std::size_t simplified = 0;
-  for (int i = 0; i < 1200; ++i) {
+  for (int i = 0; i < 400; ++i) {
     const SimplifyInput input = random_soup(random);
     const SimplifyResult result = simplify(input, 1, i % 2 == 0);
     ASSERT_EQ(fault_of(input, result), "") << "soup " << i;
@@ -365,14 +365,14 @@ TEST(OpenMeshDecimater, RandomSoupsKeepTheContract) {
         << "soup " << i << ": a locked vertex has attributes of another";
     ASSERT_EQ(count_torn(input, result, locked), 0U) << "soup " << i;
   }
-  EXPECT_GT(simplified, 600U);
+  EXPECT_GT(simplified, 200U);
 }
 
 /// Random surfaces proper: patches of a torus with random holes and locks.
 TEST(OpenMeshDecimater, PatchesWithHolesKeepTheContract) {
   SplitMix64 random(11);
   const SimplifyInput whole = as_input(scene::make_torus(24, 12));
-  for (int i = 0; i < 150; ++i) {
+  for (int i = 0; i < 60; ++i) {
     SimplifyInput input = whole;
     std::vector<WedgeTriangle> kept;
     const std::uint64_t holes = random.below(6);

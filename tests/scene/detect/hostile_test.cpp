@@ -91,7 +91,7 @@ TEST(DetectHostile, NothingAtAll) {
 /// Border points that all lie within one cell, edges that all meet in one point, one edge of all triangles, all
 /// vertices in one place.
 TEST(DetectHostile, ManyThingsInOnePlace) {
-  constexpr std::uint32_t kCount = 30'000;
+  constexpr std::uint32_t kCount = 12'000;
   Primitive heap, fan, book, point;
   SplitMix64 random(1);
   fan.positions.emplace_back(0.0);
