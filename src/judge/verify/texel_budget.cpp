@@ -45,6 +45,7 @@ std::array<bool, scene::kMaxUvSets> has_finest_step(const run::Asset& asset, Mes
   const format::MeshRecord& record = asset.meshes()[mesh.value];
   const std::size_t first_uv = record.normal_mode == format::NormalMode::kStored ? 6 : 3;
   std::array<bool, scene::kMaxUvSets> is_finest{};
+  if (record.uv_set_count == 0) return is_finest;  // vertices end where the first UV would be
   for (const run::DecodedCluster& cluster : clusters.subspan(record.first_cluster, record.cluster_count)) {
     for (std::uint32_t v = 0; v < cluster.vertex_count; ++v) {
       const std::int32_t* uv = &cluster.channels[std::size_t{v} * cluster.channel_count + first_uv];
