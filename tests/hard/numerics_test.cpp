@@ -8,12 +8,12 @@
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <boost/multiprecision/cpp_int.hpp>
 #include <cmath>
-#include <cstdio>
 #include <vector>
 
 #include "build/hierarchy/lod_bounds.h"
 #include "build/simplify/quadric.h"
 #include "format/grid.h"
+#include "hard/share.h"
 #include "run/select/nesting.h"
 #include "run/select/random_dag.h"
 #include "run/select/select.h"
@@ -25,24 +25,6 @@ using Rational = boost::multiprecision::cpp_rational;
 using Quad = boost::multiprecision::cpp_bin_float_quad;
 
 constexpr double kFloat = 0x1p-24, kDouble = 0x1p-53;
-
-/// The largest share, and where it was.
-struct Worst {
-  double share = 0.0;
-  int at = -1;
-  void take(double value, int where) {
-    if (!(value <= share)) {
-      share = value;
-      at = where;
-    }
-  }
-};
-
-void expect_kept(const char* bound, const Worst& worst, double used_at_least) {
-  std::printf("[ SHARE    ] %s: %.4f, in round %d\n", bound, worst.share, worst.at);
-  EXPECT_LE(worst.share, 1.0) << bound;
-  EXPECT_GE(worst.share, used_at_least) << bound << ": the test is not near the bound, and says nothing";
-}
 
 TEST(Numerics, QuantizationMovesACoordinateByHalfAStepAndItsRounding) {
   RandomSource random(71);
