@@ -145,6 +145,9 @@ struct BuildOptions {
   /// Remove and count triangles that touch a bad index or non-finite position, instead of refusing them, that have two
   /// corners in one place, or the same three as an earlier one of their material; orient the rest coherently.
   bool repair = false;
+  /// Every cut of a manifold mesh is a manifold, with its holes, handles and pieces: no edge has more than two
+  /// triangles. Takes more triangles, since small holes and handles else close where that is far cheaper.
+  bool keep_topology = false;
   std::uint64_t max_memory_bytes = 0;  ///< meshes wait for each other to keep it, or it is refused; 0: what is left
   /// Of build_file: what compressed geometry may take decoded beyond what the size of its file justifies.
   std::uint64_t max_decoded_bytes = std::uint64_t{512} << 20U;

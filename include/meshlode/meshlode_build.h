@@ -99,6 +99,7 @@ typedef struct meshlode_build_options {
   double grid_step, position_error, normal_error, uv_error;
   int uv_error_is_texels;
   int repair;
+  int keep_topology; /* every cut of a manifold is one, with its holes, handles and pieces */
   uint64_t max_memory_bytes;
   uint32_t thread_count; /* 0: all */
   meshlode_build_progress on_progress;

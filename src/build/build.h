@@ -44,6 +44,7 @@ struct SceneOptions {
   StripEffort strip_effort = StripEffort::kOfPreset;
   std::uint32_t partition_seed = 1;  ///< of METIS; benchmarks vary it, to tell a change from luck
   bool repair = false;               ///< the scene was imported with repair: recorded, because it changes the bytes
+  bool keep_topology = false;        ///< every cut of a manifold is one (build/simplify/kept_topology.h)
   std::uint32_t max_cluster_triangles = 128;           ///< I2; at most format::kMaxClusterTriangles
   std::uint32_t max_cluster_vertices = 256;            ///< I2; at most format::kMaxClusterVertices
   std::uint32_t group_clusters = kUsualGroupClusters;  ///< what groups aim at, kFewestGroupClusters to 32

@@ -66,6 +66,9 @@ Status check_options(const PipelineOptions& options, std::size_t mesh_count) {
   if (!options.mesh_options.empty() && options.mesh_options.size() != mesh_count) {
     return Error{ErrorCode::kUsage, "", "options of meshes are as many as there are meshes"};
   }
+  if (options.keep_topology && options.experiment.simplifier != Simplifier::kOwn) {
+    return Error{ErrorCode::kUsage, "", "topology is kept by the own simplifier alone"};
+  }
   for (std::size_t i = 0; i < mesh_count; ++i) {
     const MeshOptions& own = options.of_mesh(i);
     if ((own.keep & own.drop) == 0) continue;
@@ -110,7 +113,8 @@ DagOptions dag_options(const PipelineOptions& options, const MeshOptions& own, c
   dag.grouping.seed = options.partition_seed;
   dag.grouping.target_clusters = options.group_clusters;
   dag.caps.merge_triangles = settings_of(options.preset).merge_triangles && mesh.triangles.size() >= kSmallMesh;
-  dag.simplify.keep_area = is_aggregate(mesh);
+  dag.simplify.keep_topology = options.keep_topology;
+  dag.simplify.keep_area = !options.keep_topology && is_aggregate(mesh);
   dag.simplify.experiment = options.experiment;
   dag.max_group_bytes = format::kMaxPageBytes - kPageFrameBytes;
   dag.cluster_bytes = [&mesh, encode](std::uint32_t vertices, std::uint32_t triangles, std::uint32_t materials) {

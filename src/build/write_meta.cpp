@@ -120,6 +120,7 @@ Json settings_json(const scene::Scene& scene, const PipelineOptions& options,
   settings["codec"] = format::name_of(options.codec);
   if (options.strip_effort != StripEffort::kOfPreset) settings["strip_effort"] = name_of(options.strip_effort);
   settings["repair"] = options.repair;
+  if (options.keep_topology) settings["keep_topology"] = true;
   if (!scene.choice.empty()) settings["scene"] = scene.choice;
   settings["cluster_triangles"] = options.max_cluster_triangles;
   settings["cluster_vertices"] = options.max_cluster_vertices;

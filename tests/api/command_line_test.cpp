@@ -51,6 +51,7 @@ const Saying kSayings[] = {
     {"--strip-effort fast --codec strips",
      [](BuildOptions& o) { o.strip_effort = StripEffort::kFast, o.codec = format::Codec::kStrips; }},
     {"--cluster-triangles 64", [](BuildOptions& o) { o.cluster_triangles = 64; }},
+    {"--keep-topology", [](BuildOptions& o) { o.keep_topology = true; }},
     {"--group-clusters 12", [](BuildOptions& o) { o.group_clusters = 12; }},
     {"--strict", [](BuildOptions&) {}},  // the library always is
     {"--repair", [](BuildOptions& o) { o.repair = true; }},

@@ -12,8 +12,8 @@ namespace meshlode::cli {
 void add_build_options(OptionParser& parser, BuildWords& words) {
   for (const build::SettingInfo& info : build::all_settings()) {
     const std::string name = std::string("--") + info.name;
-    if (info.setting == build::Setting::kRepair) {
-      parser.add_flag(name.c_str(), words.repair, info.help);
+    if (build::is_flag(info.setting)) {
+      parser.add_flag(name.c_str(), words.flags[static_cast<std::size_t>(info.setting)], info.help);
     } else {
       parser.add_value(name.c_str(), words.layer[info.setting], info.help, build::choices_of(info.setting));
     }
@@ -27,7 +27,9 @@ void add_build_options(OptionParser& parser, BuildWords& words) {
 
 build::SettingLayer given_settings(const BuildWords& words) {
   build::SettingLayer layer = words.layer;
-  if (words.repair) layer[build::Setting::kRepair] = "true";
+  for (const build::SettingInfo& info : build::all_settings()) {
+    if (words.flags[static_cast<std::size_t>(info.setting)]) layer[info.setting] = "true";
+  }
   return layer;
 }
 

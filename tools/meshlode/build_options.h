@@ -2,6 +2,7 @@
 // The options of every verb that builds or plans a build: a table of settings (build/settings/), read as one layer.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -14,8 +15,8 @@ namespace meshlode::cli {
 
 struct BuildWords {
   build::SettingLayer layer{"the command line", ErrorCode::kUsage, {}, {}};
-  bool repair = false;
-  std::string scene;  ///< of the file: a name, an index or `all`; empty: its default
+  std::array<bool, build::kSettingCount> flags{};  ///< of the settings that are flags
+  std::string scene;                               ///< of the file: a name, an index or `all`; empty: its default
   bool no_file = false;
   std::string root;  ///< the outermost folder whose file counts; empty: the caller's
 };

@@ -75,6 +75,15 @@ std::string to_json(const std::string& path, const std::string& source, const ju
     json.end_object();
   }
   json.end_array();
+  if (report.crowded_edges) {
+    json.key("crowded_edges");
+    json.begin_object();
+    json.field("cuts", report.crowded_edges->cuts);
+    json.field("level0", report.crowded_edges->level0);
+    json.field("most", report.crowded_edges->most);
+    json.field("keeps_topology", report.crowded_edges->keeps_topology);
+    json.end_object();
+  }
   write_findings(json, report.findings);
   json.end_object();
   return json.text();

@@ -89,6 +89,7 @@ Result<build::PipelineOptions> make_pipeline_options(const BuildOptions& options
   pipeline.max_cluster_triangles = options.cluster_triangles;
   pipeline.group_clusters = options.group_clusters;
   pipeline.repair = options.repair;
+  pipeline.keep_topology = options.keep_topology;
   pipeline.max_memory = options.max_memory_bytes;
   return pipeline;
 }

@@ -144,6 +144,7 @@ Result<BuildOptions> read_options(const meshlode_build_options& in) {
   out.uv_error = in.uv_error;
   out.uv_error_unit = in.uv_error_is_texels != 0 ? UvErrorUnit::kTexels : UvErrorUnit::kUv;
   out.repair = in.repair != 0;
+  out.keep_topology = in.keep_topology != 0;
   out.max_memory_bytes = in.max_memory_bytes;
   out.thread_count = in.thread_count;
   return out;
@@ -238,6 +239,7 @@ void meshlode_build_defaults(meshlode_build_options* options) {
   options->uv_error = defaults.uv_error;
   options->uv_error_is_texels = defaults.uv_error_unit == meshlode::UvErrorUnit::kTexels ? 1 : 0;
   options->repair = defaults.repair ? 1 : 0;
+  options->keep_topology = defaults.keep_topology ? 1 : 0;
   options->max_memory_bytes = defaults.max_memory_bytes;
   options->thread_count = defaults.thread_count;
 }

@@ -13,6 +13,7 @@
 #include "build/dag/group_errors.h"
 #include "build/dag/level_pool.h"
 #include "build/dag/whole_cuts.h"
+#include "build/simplify/kept_topology.h"
 
 namespace meshlode::build {
 
@@ -30,6 +31,7 @@ struct Attempt {
   SimplifyResult result;
   Clustering clustering;
   GroupErrors errors;
+  std::vector<Vec3i> new_places;  ///< where topology is kept
   std::uint32_t source_triangles = 0;
   bool is_accepted = false;
 };
@@ -239,9 +241,12 @@ std::vector<ClusterId> clusters_of(const Front& front, const std::vector<std::ui
 Attempt attempt_group(const BuildPool& pool, const PreparedMesh& mesh, const GroupMeter& meter,
                       const std::vector<ClusterId>& clusters, const Shared& shared, double share,
                       std::size_t groups_of_round, const DagOptions& options, const Effort& effort) {
-  const SimplifyInput finer = group_input(pool, mesh, clusters, shared);
+  SimplifyInput finer = group_input(pool, mesh, clusters, shared);
+  if (options.simplify.keep_topology) finer.is_place_taken = [&](const Vec3i& place) { return pool.had_place(place); };
   Attempt attempt = simplify_and_cluster(finer, share, groups_of_round == 1, options, effort);
-  if (attempt.is_accepted) attempt.errors = meter.measure(pool, clusters, finer, attempt.result, groups_of_round);
+  if (!attempt.is_accepted) return attempt;
+  if (options.simplify.keep_topology) attempt.new_places = new_places(finer, attempt.result);
+  attempt.errors = meter.measure(pool, clusters, finer, attempt.result, groups_of_round);
   return attempt;
 }
 
@@ -298,6 +303,21 @@ void advance(BuildPool& pool, const GroupMeter& meter, const Front& front,
   pool.add_simplified(accepted);
 }
 
+/// Groups see nothing of each other: of those that put a vertex in the same place the first keeps it, the others try
+/// again in the next round. `taken`: the places of the round's earlier groups.
+void refuse_shared_places(std::span<Attempt> attempts, PlaceSet& taken) {
+  for (Attempt& attempt : attempts) {
+    if (!attempt.is_accepted) continue;
+    const auto is_taken = [&](const Vec3i& place) { return taken.contains(place); };
+    if (std::any_of(attempt.new_places.begin(), attempt.new_places.end(), is_taken)) {
+      attempt.is_accepted = false;
+      attempt.result.reason = StuckReason::kTopology;
+    } else {
+      taken.insert(attempt.new_places.begin(), attempt.new_places.end());
+    }
+  }
+}
+
 /// All groups of a front, a run of them at a time: what a run became is in the pool before the next one begins, so that
 /// the results of a whole round are never held at once. Groups see nothing of each other (BuildPool::begin_round), so
 /// that runs of any length give the same. \returns whether any group was accepted
@@ -306,6 +326,7 @@ bool run_round(BuildPool& pool, const PreparedMesh& mesh, const GroupMeter& mete
   const std::size_t run = std::max<std::size_t>(64, 16 * thread_limit());
   const Shared shared = find_shared(pool, front.live, groups);
   bool any_accepted = false;
+  PlaceSet taken;
   Front next;
   pool.begin_round();
   for (std::size_t first = 0; first < groups.size(); first += run) {
@@ -315,6 +336,7 @@ bool run_round(BuildPool& pool, const PreparedMesh& mesh, const GroupMeter& mete
       attempts[i] = attempt_group(pool, mesh, meter, clusters_of(front, groups[first + i]), shared, share,
                                   groups.size(), options, effort);
     });
+    refuse_shared_places(attempts, taken);
     any_accepted = any_accepted || std::any_of(attempts.begin(), attempts.end(),
                                                [](const Attempt& attempt) { return attempt.is_accepted; });
     advance(pool, meter, front, std::span(groups).subspan(first, attempts.size()), attempts, next);

@@ -102,6 +102,12 @@ std::uint32_t BuildPool::position_id(const Vec3i& position) {
   return entry.id;
 }
 
+bool BuildPool::had_place(const Vec3i& position) const {
+  const std::uint32_t id =
+      position_table_.find(hash_position(position), [&](std::uint32_t other) { return positions[other] == position; });
+  return id < round_positions_;  // kNone is greater
+}
+
 std::uint32_t BuildPool::wedge_id(std::uint32_t position, const float* attributes) {
   const auto next = static_cast<std::uint32_t>(wedge_position.size());
   const IdTable::Entry entry = wedge_table_.find_or_insert(

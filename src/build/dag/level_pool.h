@@ -75,6 +75,8 @@ class BuildPool {
   /// of a round sees the same.
   void add_simplified(std::span<const NewClusters> added);
   void begin_round() { round_positions_ = positions.size(); }
+  /// Whether a vertex of any level was there when the round began.
+  [[nodiscard]] bool had_place(const Vec3i& position) const;
   void end_round();
   /// Nothing will be added, simplified or measured any more: frees what only that needs.
   void finish();

@@ -38,6 +38,8 @@ constexpr std::array<SettingInfo, kSettingCount> kSettings{{
     {Setting::kRepair, "repair",
      "remove unusable, degenerate and duplicate triangles, orient the rest, split where it is no surface", "false",
      false},
+    {Setting::kKeepTopology, "keep-topology",
+     "every cut of a manifold is a manifold with its holes, handles and pieces, for more triangles", "false", false},
     {Setting::kCare, "care",
      "experimental: NAME=off, comma by comma, builds without double-quadrics, fallback, spheres or needles", "all",
      false, true},
@@ -197,6 +199,7 @@ PipelineOptions options_of(const std::array<SettledWord, kSettingCount>& words) 
       parse_cluster_triangles(word(Setting::kClusterTriangles)).value_or(options.max_cluster_triangles);
   options.group_clusters = parse_group_clusters(word(Setting::kGroupClusters)).value_or(options.group_clusters);
   options.repair = word(Setting::kRepair) == "true";
+  options.keep_topology = word(Setting::kKeepTopology) == "true";
   if (const auto care = parse_care(word(Setting::kCare))) options.experiment.care = *care;
   options.experiment.simplifier =
       value_in(kSimplifierNames, word(Setting::kSimplifier)).value_or(options.experiment.simplifier);
@@ -221,6 +224,10 @@ const SettingInfo& info_of(Setting setting) {
   return kSettings[index_of(setting)];
 }
 
+bool is_flag(Setting setting) {
+  return setting == Setting::kRepair || setting == Setting::kKeepTopology;
+}
+
 std::vector<std::string> choices_of(Setting setting) {
   switch (setting) {
     case Setting::kErrorTier: {
@@ -232,7 +239,8 @@ std::vector<std::string> choices_of(Setting setting) {
     case Setting::kAttributes: return all_names(kAttributeChoiceNames);
     case Setting::kCodec: return all_names(format::kCodecNames);
     case Setting::kStripEffort: return all_names(kStripEffortNames);
-    case Setting::kRepair: return {"false", "true"};
+    case Setting::kRepair:
+    case Setting::kKeepTopology: return {"false", "true"};
     case Setting::kSimplifier: return all_names(kSimplifierNames);
     default: return {};
   }

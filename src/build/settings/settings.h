@@ -35,10 +35,11 @@ enum class Setting : std::uint8_t {
   kClusterTriangles,
   kGroupClusters,
   kRepair,
+  kKeepTopology,
   kCare,
   kSimplifier,
 };
-constexpr std::size_t kSettingCount = 16;
+constexpr std::size_t kSettingCount = 17;
 
 struct SettingInfo {
   Setting setting;
@@ -50,6 +51,8 @@ struct SettingInfo {
 };
 [[nodiscard]] std::span<const SettingInfo, kSettingCount> all_settings();
 [[nodiscard]] const SettingInfo& info_of(Setting setting);
+/// True or false: on the command line its name alone says true.
+[[nodiscard]] bool is_flag(Setting setting);
 /// The words that a setting may be; none where it is a number.
 [[nodiscard]] std::vector<std::string> choices_of(Setting setting);
 

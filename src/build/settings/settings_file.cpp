@@ -56,7 +56,7 @@ bool is_list(Setting setting) {
 
 /// The word that a value stands for; nothing where it is of another kind.
 std::optional<std::string> word_of(Setting setting, const Json& value) {
-  if (setting == Setting::kRepair) {
+  if (is_flag(setting)) {
     if (!value.is_bool()) return std::nullopt;
     return std::get<bool>(value.value) ? "true" : "false";
   }
@@ -76,7 +76,7 @@ std::optional<std::string> word_of(Setting setting, const Json& value) {
 }
 
 const char* kind_of(Setting setting) {
-  if (setting == Setting::kRepair) return "give true or false";
+  if (is_flag(setting)) return "give true or false";
   if (is_list(setting)) return "give a text or an array of texts";
   return choices_of(setting).empty() ? "give a number or a text" : "give a text";
 }

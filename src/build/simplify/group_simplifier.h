@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -23,6 +24,7 @@
 #include "build/simplify/group_places.h"
 #include "build/simplify/guards.h"
 #include "build/simplify/held_edges.h"
+#include "build/simplify/kept_topology.h"
 #include "build/simplify/left_behind.h"
 #include "build/simplify/pieces.h"
 #include "build/simplify/placement.h"
@@ -82,6 +84,7 @@ class GroupSimplifier {
   AttributeQuadrics<Real, Capacity> attributes_;
   WedgeClasses classes_;
   LeftBehind left_behind_;
+  std::optional<OwnPlaces> own_places_;  ///< where topology is kept
   std::vector<std::uint8_t> is_border_;  ///< per vertex
   std::vector<std::uint32_t> version_;   ///< per vertex
 
@@ -108,6 +111,7 @@ GroupSimplifier<Real, C>::GroupSimplifier(const SimplifyInput& input, const Simp
       left_behind_(input.witnesses, places_),
       version_(input.positions.size(), 0),
       marks_(input.positions.size()) {
+  if (options.keep_topology) own_places_.emplace(input);
   add_faces();
   HeldEdges held = find_held_edges(input, options, mesh_);
   surface_.add_walls(held.edges, mesh_, places_);
@@ -221,18 +225,25 @@ typename GroupSimplifier<Real, C>::Obstacle GroupSimplifier<Real, C>::try_collap
   }
   star_.target = placement.position;
   const bool is_free = locks_.is_vertex_locked[a] == 0 && locks_.is_vertex_locked[b] == 0;
-  if (is_free) star_.target = places_.to_frame(places_.to_grid(star_.target));
+  if (is_free) {
+    Vec3i place = places_.to_grid(star_.target);
+    if (own_places_ && !own_places_->find_free(places_.on_grid(a), places_.on_grid(b), place)) {
+      return Obstacle::kTopology;
+    }
+    star_.target = places_.to_frame(place);
+  }
   if (!keeps_shared_edges(mesh_, locks_, star_)) return Obstacle::kLocked;
   if (attributes_.count() > 0 && !keeps_shared_corners(mesh_, locks_, classes_, star_)) return Obstacle::kSeams;
   bool breaks_topology = false;
   if (!keeps_topology(mesh_, is_border_, marks_, star_)) {
-    if (!options_.may_relax_topology) return Obstacle::kTopology;
+    if (!options_.may_relax_topology || options_.keep_topology) return Obstacle::kTopology;
     if (!candidate.may_break_topology) {
       queue_.push({kTopologyPrice * candidate.cost, a, b, versions_of(a, b), true});
       return Obstacle::kPutBack;
     }
     breaks_topology = true;
   }
+  if (options_.keep_topology && !keeps_to_itself(mesh_, locks_, star_)) return Obstacle::kTopology;
   if (!are_flips_relaxed_ && turns_over(mesh_, places_, star_)) return Obstacle::kFlips;
   gather_outer_edges(mesh_, breaks_topology || has_broken_topology_, star_);
   const double price = price_of(candidate);
@@ -267,7 +278,9 @@ void GroupSimplifier<Real, C>::collapse(std::uint32_t a, std::uint32_t b) {
   error_ = std::max(error_, surface_.join(a, b, star_.target));
   left_behind_.join(a, b);
   is_border_[a] |= is_border_[b];
+  const Vec3i place_a = places_.on_grid(a), place_b = places_.on_grid(b);
   if (locks_.is_vertex_locked[a] == 0) places_.move(a, star_.target);
+  if (own_places_) own_places_->join(place_a, place_b, places_.on_grid(a));
   for (const WedgeClass& c : classes_.classes()) {
     attributes_.join(c, places_[a]);
     relabel_wedges(mesh_, star_, c);

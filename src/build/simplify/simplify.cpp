@@ -49,7 +49,7 @@ SimplifyResult simplify_group(const SimplifyInput& input, const SimplifyOptions&
   // the condition it seldom is; where its vertices do not move, never.
   SimplifyOptions careful = options;
   careful.may_relax_topology = false;
-  attempt = simplify_once(input, careful);
+  if (!options.keep_topology) attempt = simplify_once(input, careful);  // else it was careful before
   if (attempt.keeps_border) return std::move(attempt.result);
   return simplify_once(with_locked_border(input), careful).result;
 }

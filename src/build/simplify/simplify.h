@@ -10,6 +10,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -33,8 +34,11 @@ struct SimplifyOptions {
   /// thins out nor fades (Cook, Halstead, Planck and Ryu 2007). Only pieces without a locked vertex can grow.
   bool keep_area = false;
   bool may_relax_topology = true;  ///< break the link condition (small holes, handles, fans) where that is far cheaper
-  Experiment experiment;           ///< none but in studies
-  bool may_relax_flips = false;    ///< where the target is out of reach, go on without the flip test: a last resort
+  /// Every cut of a manifold is one, and of its topology: the link condition is never broken, nor what it needs beyond
+  /// the group (kept_topology.h). Not with keep_area, which moves vertices later.
+  bool keep_topology = false;
+  Experiment experiment;         ///< none but in studies
+  bool may_relax_flips = false;  ///< where the target is out of reach, go on without the flip test: a last resort
 };
 
 /// Source points that a vertex has come to stand for: those farthest from the surface around it. They are carried up
@@ -58,6 +62,8 @@ struct SimplifyInput {
   std::vector<float> wedge_attributes;
   std::vector<WedgeTriangle> triangles;
   std::vector<std::uint32_t> triangle_material;
+  /// Where keep_topology is asked: whether another group has, or ever had, a vertex there. None: nowhere.
+  std::function<bool(const Vec3i& place)> is_place_taken;
 };
 
 struct SimplifyResult {

@@ -100,13 +100,15 @@ void add_experiment(KeyHasher& key, const Experiment& experiment) {
 }
 
 void add_scene_options(KeyHasher& key, const SceneOptions& options) {
-  const auto& [preset, codec, strip_effort, partition_seed, repair, max_cluster_triangles, max_cluster_vertices,
-               group_clusters, max_memory, spills, mesh_store, experiment, mesh_options] = options;
+  const auto& [preset, codec, strip_effort, partition_seed, repair, keep_topology, max_cluster_triangles,
+               max_cluster_vertices, group_clusters, max_memory, spills, mesh_store, experiment, mesh_options] =
+      options;
   key.value(preset);
   key.value(partition_seed);
   key.value(max_cluster_triangles);
   key.value(max_cluster_vertices);
   key.value(group_clusters);
+  key.value(keep_topology);
   add_experiment(key, experiment);
   static_cast<void>(strip_effort);  // EncodeOptions has what it came to
   static_cast<void>(codec);         // of the pages on disk, later

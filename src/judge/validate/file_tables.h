@@ -29,6 +29,7 @@ struct MetaFacts {
   std::string source_hash;
   std::optional<std::uint64_t> cluster_triangles, cluster_vertices;  ///< settings
   std::optional<double> error_margin;                                ///< settings
+  bool keeps_topology = false;                                       ///< settings
   OfMesh whole;                                                      ///< settings
   std::vector<OfMesh> apart;                                         ///< settings/mesh_settings …
   std::map<std::uint64_t, std::size_t> apart_of_mesh;                ///< … of these meshes

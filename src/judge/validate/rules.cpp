@@ -128,6 +128,7 @@ constexpr std::array kRules{
     RULE(V204, "I5", "the selection is the one the rule gives in double precision, but for rounding"),
     RULE(V205, "I5", "a uniform cut's stored error is its largest selected error, or level 0's deviation"),
     RULE(V206, "I7", "a uniform cut deviates from the source by no more than it stores (measured: within 5%)"),
+    RULE(V207, "I6", "where keep_topology is set, no cut has more edges of more than two triangles than level 0"),
     // verify --gpu
     RULE(V401, "I9", "`--gpu`: the device decodes every cluster to the CPU's integers"),
     RULE(V402, "I8", "`--gpu`: the device's traversal selects what the flat rule selects"),

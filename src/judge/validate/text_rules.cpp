@@ -82,6 +82,7 @@ MetaFacts facts_of(const nlohmann::json& meta) {
   facts.cluster_triangles = number("cluster_triangles");
   facts.cluster_vertices = number("cluster_vertices");
   facts.error_margin = real_at(settings, "error_margin");
+  facts.keeps_topology = value_at(settings, "keep_topology") == true;
   for (const nlohmann::json& apart : value_at(settings, "mesh_settings")) {
     for (const nlohmann::json& mesh : value_at(apart, "meshes")) {
       if (mesh.is_number_unsigned()) facts.apart_of_mesh[mesh.get<std::uint64_t>()] = facts.apart.size();

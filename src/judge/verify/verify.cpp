@@ -9,6 +9,7 @@
 
 #include "base/memory.h"
 #include "base/release.h"
+#include "judge/validate/file_tables.h"
 #include "judge/verify/cuts.h"
 #include "judge/verify/deviations.h"
 #include "judge/verify/source_rules.h"
@@ -121,6 +122,24 @@ void add_source(const run::Asset& asset, const scene::Scene& source, std::span<c
   report.take(log);
 }
 
+void add_crowded_cuts(const run::Asset& asset, std::span<const MeshJudge> judges, std::uint32_t uniform_cuts,
+                      Report& report) {
+  const bool keeps_topology = read_meta_facts(asset.meta_json()).keeps_topology;
+  const std::uint32_t count = keeps_topology ? uniform_cuts : std::min(uniform_cuts, kCrowdedCuts);
+  RuleLog log;
+  CrowdedTotals totals;
+  for (const MeshJudge& judge : judges) {
+    count_crowded_cuts(asset, judge.surface, count, keeps_topology, totals, log);
+  }
+  report.add_check(keeps_topology ? "I6" : "",
+                   std::string(keeps_topology ? "no cut has more than level 0" : "told, no fault") +
+                       ": edges of more than two triangles, " + std::to_string(totals.of_source) +
+                       " at level 0, at most " + std::to_string(totals.of_cuts) + " in a cut",
+                   totals.cuts, failures_of(log, {Rule::kV207}));
+  report.out.crowded_edges = {totals.cuts, totals.of_source, totals.of_cuts, keeps_topology};
+  report.take(log);
+}
+
 void add_cuts(const run::Asset& asset, std::span<const run::DecodedCluster> clusters, const VerifyOptions& options,
               Report& report) {
   RuleLog log;
@@ -139,15 +158,7 @@ void add_cuts(const run::Asset& asset, std::span<const run::DecodedCluster> clus
       "uniform cuts have no border that the source has not (" + std::to_string(uniform.open_cuts) + " of open meshes)",
       uniform.cuts, failures_of(log, {Rule::kV202}));
   report.take(log);
-  CrowdedTotals crowded;
-  for (const MeshJudge& judge : judges) {
-    count_crowded_cuts(asset, judge.surface, std::min(options.uniform_cuts, kCrowdedCuts), crowded);
-  }
-  report.add_check("",
-                   "edges of more than two triangles are told: " + std::to_string(crowded.of_source) +
-                       " at level 0, at most " + std::to_string(crowded.of_cuts) + " in a cut",
-                   crowded.cuts, 0);
-
+  add_crowded_cuts(asset, judges, options.uniform_cuts, report);
   RuleLog camera_log;
   const CameraTotals cameras = check_cameras(asset, judges, options.cameras, options.seed, camera_log);
   report.add_check("I5", "camera cuts draw each piece of surface exactly once", cameras.cuts,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,14 @@ struct VerifyReport {
     bool skipped = false;  ///< with the reason in `what`: I7 in the qem tier, I1 in a quick look
   };
   std::vector<Check> checks;
+  /// Edges of more than two triangles, by docs/validation.md; nothing where no cut was looked at.
+  struct CrowdedEdges {
+    std::uint64_t cuts = 0;       ///< looked at
+    std::uint64_t level0 = 0;     ///< summed over meshes
+    std::uint64_t most = 0;       ///< of each mesh's cut that has most, summed
+    bool keeps_topology = false;  ///< as the asset says: no cut may have more than level 0 then (V207)
+  };
+  std::optional<CrowdedEdges> crowded_edges;
 };
 
 [[nodiscard]] VerifyReport verify_asset(const run::Asset& asset, const scene::Scene& source,

@@ -30,6 +30,7 @@ TEST(Settings, WithoutLayersTheyAreTheDefaults) {
   EXPECT_EQ(settled->options.uv_error_is_default, usual.uv_error_is_default);
   EXPECT_EQ(settled->options.codec, usual.codec);
   EXPECT_EQ(settled->options.repair, usual.repair);
+  EXPECT_EQ(settled->options.keep_topology, usual.keep_topology);
   for (const SettledWord& word : settled->words) EXPECT_EQ(word.from, "default");
 }
 

@@ -178,6 +178,9 @@ TEST(StoredMesh, EveryPartOfAMeshIsInItsKey) {
   options.partition_seed = 2;
   EXPECT_TRUE(keys.emplace(mesh_key(mesh, {}, {}, options, options), 0).second);
   options.partition_seed = 1;
+  options.keep_topology = true;
+  EXPECT_TRUE(keys.emplace(mesh_key(mesh, {}, {}, options, options), 0).second);
+  options.keep_topology = false;
   for (const CareName& care : kCareNames) {
     PipelineOptions study;
     study.experiment.care.*care.member = false;
