@@ -75,6 +75,15 @@ TEST(AttributeDeviation, OfATurnAndAShiftIsThatAngleAndThatLength) {
   }
 }
 
+// Below and above 60 degrees the angle is from another series; up to normals that are opposite.
+TEST(AttributeDeviation, OfAnyTurnIsThatAngle) {
+  for (const double angle : {0.5, 30.0, 59.9, 60.1, 90.0, 120.0, 179.0}) {
+    const AttributeDeviation deviation = compare(make_sheet(
+        10, [&](double, double) { return angle; }, [](double, double) { return 0.0; }));
+    EXPECT_NEAR(deviation.normal, angle, 1e-3) << angle;
+  }
+}
+
 // Degrees grow from 0 to 12 across: their root mean square is 12 / sqrt(3). Shifts grow to 1: 95% are below 0.95.
 TEST(AttributeDeviation, IsARootMeanSquareOfNormalsAndAQuantileOfUvs) {
   for (const std::uint32_t side : kSides) {

@@ -243,6 +243,15 @@ TEST(Encode, StoredBoundsAreNeverBelowTheTruth) {
 }
 
 /// Each breaks one limit of the format: the encoder must see it, not the reader.
+TEST(Encode, TheLargestSphereOfSixteenBitsFits) {
+  test::SampleMesh sample = test::sample_patch();
+  const float unit = static_cast<float>(format::exp2_exact(sample.hierarchy.sphere_log2));
+  sample.hierarchy.cluster_spheres[0] = {{32767.0F * unit, -32767.0F * unit, 0.0F}, 65535.0F * unit};
+  EXPECT_TRUE(encode(sample).ok());
+  sample.hierarchy.cluster_spheres[0].radius = 65536.0F * unit;
+  EXPECT_FALSE(encode(sample).ok());
+}
+
 TEST(Encode, ADagThatTheFormatCannotHoldIsRefused) {
   struct Mistake {
     const char* name;

@@ -1,0 +1,325 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Would the tests of the numerics notice? Small seeded changes of the source, each judged by `ctest -L numerics`.
+
+    cmake --preset release -DMESHLODE_TESTS=ON && ninja -C build/release
+    tests/hard/mutate.py --count 150 --seed 1 --jobs 2        # run again, it goes on; --list shows what would be tried
+
+A mutant is one change of one line in a room that decides numbers (ROOMS): an operator, a comparison, a constant off by a factor, a
+float for a double, a minimum for a maximum, a truncation for a floor, an epsilon where 0 stood, a statement or a rounding up left
+out. It is compiled (at -O1, into a folder of its own below --out) with all objects that see the changed file, linked in front of
+the build's libraries into the programs that `ctest -L numerics` runs, those of its own room first, and is killed by the first
+that fails or takes more than --limit seconds. What does not compile, and what compiles to the same object code as the source,
+is counted apart and is no part of the rate. Draws are even over the rooms; the same seed draws the same mutants of the same
+source. Nothing in the tree is changed.
+"""
+import argparse
+import hashlib
+import json
+import os
+import random
+import re
+import shlex
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+# Room: its files, and the program that is asked first.
+ROOMS = {
+    "prepare": (["src/build/prepare/*.cpp"], "prepare_test"),
+    "simplify": (["src/build/simplify/quadric.h", "src/build/simplify/attribute_quadrics.h", "src/build/simplify/placement.cpp",
+                  "src/build/simplify/surface_quadrics.*", "src/build/simplify/attribute_scales.cpp",
+                  "src/build/simplify/point_triangle.h", "src/build/simplify/guards.cpp", "src/build/simplify/left_behind.cpp",
+                  "src/build/simplify/group_places.*", "src/build/simplify/pieces.cpp"], "simplify_test"),
+    "deviation": (["src/build/deviation/certify.cpp", "src/build/deviation/measure.cpp", "src/build/deviation/patch.h",
+                   "src/build/deviation/point_distance.h", "src/build/deviation/capsules.*",
+                   "src/build/deviation/attribute_deviation.*"], "deviation_test"),
+    "hierarchy": (["src/build/hierarchy/*.cpp", "src/build/hierarchy/margins.h"], "hierarchy_test"),
+    "encode": (["src/build/encode/encode.cpp", "src/build/encode/fits.cpp", "src/build/encode/quantize_normal.cpp",
+                "src/build/encode/uv_grid.cpp"], "encode_test"),
+    "select": (["src/run/select/*.cpp", "src/run/select/metric.h", "src/run/select/nesting.h"], "select_test"),
+}
+
+NUMBER = r"(?<![\w.])(\d+\.\d+(?:[eE][-+]?\d+)?|\d+[eE][-+]?\d+|0x[0-9a-fA-F]+p[-+]\d+)(F?)(?![\w.])"
+
+
+def scaled(factor):
+    return lambda m: f"({m[0]} * {factor}{'F' if m[2] else ''})"
+
+
+# Name, what is changed, what it becomes. Spaces tell an operator from a pointer, a template or a sign.
+OPERATORS = [
+    ("+ to -", r" \+ ", " - "), ("- to +", r" - ", " + "), ("* to /", r" \* ", " / "), ("/ to *", r" / ", " * "),
+    ("< to <=", r" < ", " <= "), ("<= to <", r" <= ", " < "), ("> to >=", r" > ", " >= "), (">= to >", r" >= ", " > "),
+    ("< to >", r" < ", " > "), ("> to <", r" > ", " < "), ("== to !=", r" == ", " != "),
+    ("&& to ||", r" && ", " || "), ("|| to &&", r" \|\| ", " && "),
+    ("max to min", r"(?:std|glm)::max\b", lambda m: m[0].replace("max", "min")),
+    ("min to max", r"(?:std|glm)::min\b", lambda m: m[0].replace("min", "max")),
+    ("float for double", r"\bdouble\b", "float"),
+    ("constant doubled", NUMBER, scaled("2.0")), ("constant halved", NUMBER, scaled("0.5")),
+    ("epsilon for 0", r"([<>]=?) 0\.0(?![\w.])", lambda m: f"{m[1]} 1e-9"),
+    ("trunc for floor", r"std::floor\(", "std::trunc("), ("floor for ceil", r"std::ceil\(", "std::floor("),
+    ("abs dropped", r"std::f?abs\(", "("), ("sqrt dropped", r"std::sqrt\(", "("),
+    ("rounding up dropped", r"\bfloat_above\(", "static_cast<float>("),
+    ("negation dropped", r"if \(!", "if ("),
+    ("statement dropped", r"^( +)[\w.\[\]>-]+ (?:[-+*/|&]=|= std::(?:max|min)\().*;$", lambda m: f"{m[1]};"),
+    ("return turned", r"\breturn (true|false);", lambda m: f"return {'false' if m[1] == 'true' else 'true'};"),
+]
+
+
+def blank(match):
+    return re.sub(r"[^\n]", " ", match[0])
+
+
+def code_of(text):
+    """Comments, strings and includes as blanks, so that places stay."""
+    text = re.sub(r'//[^\n]*|/\*.*?\*/|"(?:[^"\\\n]|\\.)*"', blank, text, flags=re.S)
+    return re.sub(r"^#[^\n]*$", blank, text, flags=re.M)
+
+
+def mutants_of(path):
+    """Every change of the file: line, operator, and the new line."""
+    text = path.read_text()
+    found = []
+    for number, (line, code) in enumerate(zip(text.splitlines(), code_of(text).splitlines())):
+        if "static_assert" in code or re.match(r" *(template|for \()", code):  # how far a loop runs is no number's matter
+            continue
+        for name, pattern, becomes in OPERATORS:
+            for match in re.finditer(pattern, code):
+                new = match.expand(becomes) if isinstance(becomes, str) else becomes(match)
+                changed = line[:match.start()] + new + line[match.end():]
+                if changed == line:
+                    continue
+                file = str(path.relative_to(ROOT))
+                key = f"{file}\n{number}\n{match.start()}\n{name}\n{line}"
+                found.append({"id": hashlib.sha256(key.encode()).hexdigest()[:12], "file": file, "line": number + 1, "operator": name,
+                              "before": line.strip(), "after": changed.strip(), "text": changed})
+    return found
+
+
+def draw(count, seed):
+    """Round by round one of each room; within a room any operator, then any place, as likely as another."""
+    source = random.Random(seed)
+    pools = {}
+    for room, (patterns, _) in ROOMS.items():
+        files = sorted({path for pattern in patterns for path in ROOT.glob(pattern)})
+        by_operator = {}
+        for path in files:
+            for mutant in mutants_of(path):
+                by_operator.setdefault(mutant["operator"], []).append({**mutant, "room": room})
+        for one in by_operator.values():
+            source.shuffle(one)
+        pools[room] = by_operator
+    drawn = []
+    while len(drawn) < count and any(pools.values()):
+        for room in ROOMS:
+            by_operator = pools[room]
+            if not by_operator or len(drawn) == count:
+                continue
+            name = source.choice(sorted(by_operator))
+            drawn.append(by_operator[name].pop())
+            if not by_operator[name]:
+                del by_operator[name]
+    return drawn
+
+
+class Build:
+    """What a finished build says of itself: how each object is made, what it depends on, how a program is linked."""
+
+    def __init__(self, folder):
+        self.folder = folder
+        said = subprocess.run(["ninja", "-C", folder, "-t", "deps"], check=True, capture_output=True, text=True).stdout
+        self.objects_of = {}
+        for block in said.split("\n\n"):
+            lines = block.splitlines()
+            if not lines or ": #deps" not in lines[0]:
+                continue
+            for line in lines[1:]:
+                path = os.path.normpath(folder / line.strip())
+                self.objects_of.setdefault(path, set()).add(lines[0].split(":")[0])
+        commands = json.loads(subprocess.run(["ninja", "-C", folder, "-t", "compdb"], check=True, capture_output=True,
+                                             text=True).stdout)
+        self.command_of = {one["output"]: one["command"] for one in commands}
+        listed = subprocess.run(["ctest", "--test-dir", folder, "-L", "numerics", "--show-only=json-v1"], check=True,
+                                capture_output=True, text=True).stdout
+        programs = {test["command"][0] for test in json.loads(listed)["tests"] if test.get("command")}
+        self.programs = {Path(program).name: self.link_of(Path(program)) for program in sorted(programs)}
+
+    def link_of(self, program):
+        """Objects, libraries' members, and the command: ninja's last step for the program, without what runs after it."""
+        target = str(program.relative_to(self.folder))
+        said = subprocess.run(["ninja", "-C", self.folder, "-t", "commands", "-s", target], check=True, capture_output=True, text=True)
+        command = next(part for part in said.stdout.strip().split(" && ") if f" -o {target}" in part)
+        words = shlex.split(command)
+        objects = {word for word in words if word.endswith(".o")}
+        members = set()
+        for word in words:
+            if word.endswith(".a") and not os.path.isabs(word):
+                members |= {one for one in shlex.split(self.command_of[word]) if one.endswith(".o")}
+        # Of the libraries only what the linker takes: it names each member, without its folder.
+        traced = subprocess.run([*words[:words.index("-o")], "-o", "/dev/null", "-Wl,-M", *words[words.index("-o") + 2:]], check=True,
+                                cwd=self.folder, capture_output=True, text=True).stdout
+        taken = set(re.findall(r"^\S+\.a\((\S+\.o)\)", traced, flags=re.M))
+        members = {member for member in members if Path(member).name in taken}
+        return {"target": target, "words": words, "objects": objects, "members": members}
+
+    def compile(self, output, source, before, after, to):
+        """`output` again, with the file `before` replaced by `after`; headers are found in `after`'s tree first."""
+        words = shlex.split(self.command_of[output])
+        words = words[1:] if Path(words[0]).name == "ccache" else words
+        words = ["-O1" if word == "-O3" else word for word in words if not word.startswith("-W")]
+        overlay = str(after)[:-len(str(before))].rstrip("/")
+        for flag in ("-o", "-MF"):
+            words[words.index(flag) + 1] = str(to) if flag == "-o" else f"{to}.d"
+        at = words.index("-c") + 1
+        if os.path.normpath(self.folder / words[at]) == str(source):
+            words[at] = str(after)
+        words[1:1] = ["-w", f"-I{overlay}/src"]
+        return subprocess.run(words, cwd=self.folder, capture_output=True, text=True)
+
+
+def judge(build, mutant, out, limit, most_objects, is_quick):
+    """killed by a program, survived, open (survived its own room's program alone), equivalent (the same object code), refused
+    (does not compile), or too wide."""
+    folder = out / mutant["id"]
+    source = ROOT / mutant["file"]
+    lines = source.read_text().split("\n")
+    lines[mutant["line"] - 1] = mutant["text"]
+    changed = folder / mutant["file"]
+    changed.parent.mkdir(parents=True, exist_ok=True)
+    changed.write_text("\n".join(lines))
+    seen = build.objects_of.get(str(source), set())
+    first = ROOMS[mutant["room"]][1]
+    order = sorted(build.programs, key=lambda name: (name != first, name != "numerics_test", name))
+    made = {}
+    for name in order[:1] if is_quick else order:
+        program = build.programs[name]
+        needed = sorted(seen & (program["objects"] | program["members"]))
+        if not needed:
+            continue
+        if len(needed) > most_objects:
+            return "too wide", f"{len(needed)} objects"
+        for output in needed:
+            if output in made:
+                continue
+            to = folder / (hashlib.sha256(output.encode()).hexdigest()[:16] + ".o")
+            result = build.compile(output, source, mutant["file"], changed, to)
+            if result.returncode != 0:
+                return "refused", next((line for line in result.stderr.splitlines() if "error" in line), "")[-160:]
+            made[output] = to
+        words = list(program["words"])
+        replaced = [str(made[output]) for output in needed]
+        words = [word for word in words if word not in needed]
+        words[words.index("-o") + 1] = str(folder / name)
+        words[1:1] = replaced
+        linked = subprocess.run(words, cwd=build.folder, capture_output=True, text=True)
+        if linked.returncode != 0:
+            return "refused", linked.stderr[-160:]
+        try:
+            run = subprocess.run([folder / name, "--gtest_fail_fast", "--gtest_brief=1"], cwd=folder, capture_output=True, text=True,
+                                 timeout=limit, errors="replace")
+        except subprocess.TimeoutExpired:
+            return "killed", f"{name}: more than {limit} s"
+        (folder / name).unlink()
+        if run.returncode != 0:
+            case = re.search(r"\[  FAILED  \] (\S+)", run.stdout)
+            return "killed", f"{name}: {case[1].rstrip(',') if case else f'exit code {run.returncode}'}"
+    if not made:
+        return "survived", "no program has it"
+    plain = folder / "plain.o"
+    for output, to in made.items():
+        build.compile(output, source, mutant["file"], source, plain)
+        if plain.read_bytes() != to.read_bytes():
+            break
+    else:
+        return "equivalent", "the same object code"
+    return ("open" if is_quick else "survived"), ""
+
+
+def report(drawn, results, explained):
+    rows = ["| room | mutants | killed | survived | rate | same object code | equivalent, explained | did not compile |",
+            "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |"]
+    totals = [0] * 6
+    for room in [*ROOMS, None]:
+        mine = [m for m in drawn if m["room"] == room and m["id"] in results]
+
+        def count(verdict):
+            return sum(results[m["id"]][0] == verdict for m in mine)
+        why = sum(results[m["id"]][0] in ("survived", "open") and m["id"] in explained for m in mine)
+        numbers = [len(mine), count("killed"), count("survived") + count("open") - why, count("equivalent"), why, count("refused") + count("too wide")]
+        totals = [a + b for a, b in zip(totals, numbers)]
+        n = numbers if room else totals
+        judged = n[1] + n[2]
+        rate = f"{100 * n[1] / judged:.0f}%" if judged else "–"
+        rows.append(f"| {room or 'all'} | {judged} | {n[1]} | {n[2]} | {rate} | {n[3]} | {n[4]} | {n[5]} |")
+    for m in drawn:
+        if results.get(m["id"], ("",))[0] in ("survived", "open"):
+            why = ": " + explained[m["id"]] if m["id"] in explained else ""
+            rows.append(f"\n{m['id']} {m['file']}:{m['line']} ({m['operator']}){why}"
+                        f"\n  - {m['before']}\n  + {m['after']}")
+    return "\n".join(rows)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--build", default="build/release", help="a finished build with tests; nothing in it is changed")
+    parser.add_argument("--out", default="build/mutants", help="folder of mutants and of what was found: it goes on where it was")
+    parser.add_argument("--count", type=int, default=150)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--limit", type=int, default=60, help="seconds that a program may take")
+    parser.add_argument("--most-objects", type=int, default=12, help="of a header that more objects see no mutant is built")
+    parser.add_argument("--quick", action="store_true",
+                        help="ask the room's own program alone; what survives it is open, and judged by all the next time")
+    parser.add_argument("--only", default="", help="ids, comma by comma, judged again")
+    parser.add_argument("--explained", default=str(ROOT / "tests" / "hard" / "equivalent_mutants.txt"),
+                        help="a line each: id, a space, why no test can tell it from the source")
+    parser.add_argument("--list", action="store_true", help="show the mutants that would be tried")
+    parser.add_argument("--report", action="store_true", help="show what was found so far, and try nothing")
+    options = parser.parse_args()
+    drawn = draw(options.count, options.seed)
+    if options.list:
+        for m in drawn:
+            print(f"{m['id']} {m['file']}:{m['line']} ({m['operator']})\n  - {m['before']}\n  + {m['after']}")
+        return 0
+    out = ROOT / options.out
+    out.mkdir(parents=True, exist_ok=True)
+    kept = out / "results.jsonl"
+    results = {}
+    if kept.exists():
+        for line in kept.read_text().splitlines():
+            one = json.loads(line)
+            results[one["id"]] = (one["verdict"], one["by"])
+    explained = {}
+    if Path(options.explained).exists():
+        for line in Path(options.explained).read_text().splitlines():
+            if line and not line.startswith("#"):
+                explained[line.split(" ", 1)[0]] = line.split(" ", 1)[1]
+    again = set(filter(None, options.only.split(",")))
+    wanted = ("open",) if not options.quick else ()
+    todo = [m for m in drawn if (m["id"] in again if again else m["id"] not in results or results[m["id"]][0] in wanted)]
+    if not options.report and todo:
+        build = Build((ROOT / options.build).resolve())
+        for name, program in build.programs.items() if not results else ():
+            if subprocess.run([build.folder / program["target"], "--gtest_brief=1"], capture_output=True).returncode != 0:
+                sys.exit(f"{name} fails without a mutant")
+
+        def one(mutant):
+            verdict, by = judge(build, mutant, out, options.limit, options.most_objects, options.quick)
+            subprocess.run(["rm", "-rf", out / mutant["id"]], check=True)
+            with kept.open("a") as file:
+                file.write(json.dumps({"id": mutant["id"], "verdict": verdict, "by": by}) + "\n")
+            results[mutant["id"]] = (verdict, by)
+            print(f"{len(results)}: {mutant['file']}:{mutant['line']} ({mutant['operator']}): {verdict} {by}", file=sys.stderr, flush=True)
+        with ThreadPoolExecutor(options.jobs) as pool:
+            list(pool.map(one, todo))
+    print(report(drawn, results, explained))
+    survived = sum(results.get(m["id"], ("",))[0] in ("survived", "open") and m["id"] not in explained for m in drawn)
+    killed = sum(results.get(m["id"], ("",))[0] == "killed" for m in drawn)
+    return 0 if killed >= 9 * survived else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
