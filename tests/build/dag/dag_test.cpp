@@ -14,6 +14,7 @@
 #include "build/prepare/prepare.h"
 #include "scene/samples/samples.h"
 #include "support/border_chain.h"
+#include "support/sanitized.h"
 
 namespace meshlode::build {
 namespace {
@@ -278,7 +279,8 @@ TEST(Dag, FoliageAndSoupsKeepTheirAreaAtEveryLevel) {
 TEST(Dag, AnErrorIsTheDeviationWithTheMarginAndTheLargestBelow) {
   for (const ErrorSource tier : {ErrorSource::kMeasured, ErrorSource::kCertified}) {
     const double margin = tier == ErrorSource::kMeasured ? kMeasuredMargin : 1.0;
-    for (const scene::Primitive& shape : {scene::make_rock(9), scene::make_loose_pieces(600)}) {
+    for (const scene::Primitive& shape :
+         {scene::make_rock(9), scene::make_loose_pieces(test::kIsSanitized ? 300 : 600)}) {
       DagOptions options;
       options.error = tier;
       const Built built = build(shape, options);

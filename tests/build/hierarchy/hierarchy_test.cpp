@@ -14,6 +14,7 @@
 #include "build/hierarchy/margins.h"
 #include "run/select/nesting.h"
 #include "run/select/random_dag.h"
+#include "support/sanitized.h"
 
 namespace meshlode::build {
 namespace {
@@ -144,7 +145,7 @@ TEST(Hierarchy, GroupSphereContainsAllGeometryBelowIt) {
 
 TEST(Hierarchy, CullingSphereIsTightAroundTheDecodedVertices) {
   RandomSource random(43);
-  for (int i = 0; i < 400; ++i) {
+  for (int i = 0; i < (test::kIsSanitized ? 100 : 400); ++i) {
     format::PositionGrid grid;
     grid.log2 = std::vector<int>{-40, -20, 0, 10}[random.below(4)];
     grid.mantissa = 1 + 2 * random.below(4);

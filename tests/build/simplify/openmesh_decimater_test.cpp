@@ -17,6 +17,7 @@
 #include "build/simplify/two_charts.h"
 #include "scene/samples/samples.h"
 #include "support/border_chain.h"
+#include "support/sanitized.h"
 
 namespace meshlode::build {
 namespace {
@@ -287,7 +288,7 @@ TEST(OpenMeshDecimater, WhatItDoesNotTakeIsCarriedThrough) {
       scene::make_duplicates(10),   scene::make_zero_areas(10),  scene::make_blade(16),    scene::make_box_soup(40)};
   SplitMix64 random(42);
   for (const scene::Primitive& shape : shapes) {
-    for (int trial = 0; trial < 4; ++trial) {
+    for (int trial = 0; trial < (test::kIsSanitized ? 2 : 4); ++trial) {
       SimplifyInput input = as_input(shape);
       const std::size_t kept = trial == 0 ? input.triangles.size() : 1 + random.below(input.triangles.size());
       input.triangles.resize(kept);
@@ -348,8 +349,9 @@ SimplifyInput random_soup(SplitMix64& random) {
 
 TEST(OpenMeshDecimater, RandomSoupsKeepTheContract) {
   SplitMix64 random(7);
-  std::size_t simplified = 0;
-  for (int i = 0; i < 400; ++i) {
+  constexpr int kSoups = test::kIsSanitized ? 100 : 400;
+  int simplified = 0;
+  for (int i = 0; i < kSoups; ++i) {
     const SimplifyInput input = random_soup(random);
     const SimplifyResult result = simplify(input, 1, i % 2 == 0);
     ASSERT_EQ(fault_of(input, result), "") << "soup " << i;
@@ -365,14 +367,14 @@ TEST(OpenMeshDecimater, RandomSoupsKeepTheContract) {
         << "soup " << i << ": a locked vertex has attributes of another";
     ASSERT_EQ(count_torn(input, result, locked), 0U) << "soup " << i;
   }
-  EXPECT_GT(simplified, 200U);
+  EXPECT_GT(simplified, kSoups / 2);
 }
 
 /// Random surfaces proper: patches of a torus with random holes and locks.
 TEST(OpenMeshDecimater, PatchesWithHolesKeepTheContract) {
   SplitMix64 random(11);
   const SimplifyInput whole = as_input(scene::make_torus(24, 12));
-  for (int i = 0; i < 60; ++i) {
+  for (int i = 0; i < (test::kIsSanitized ? 20 : 60); ++i) {
     SimplifyInput input = whole;
     std::vector<WedgeTriangle> kept;
     const std::uint64_t holes = random.below(6);

@@ -104,7 +104,7 @@ std::vector<std::uint8_t> build(const scene::Scene& scene, const PipelineOptions
 }
 
 /// Two hundred in all; a sanitized build, ten times slower, tries fewer.
-constexpr int kEditsOfASeed = test::kIsSanitized ? 10 : 50;
+constexpr int kEditsOfASeed = test::kIsSanitized ? 5 : 50;
 
 TEST(StoredMesh, RandomEditsGiveTheBytesOfCleanBuilds) {
   std::uint64_t stored = 0, meshes = 0;
