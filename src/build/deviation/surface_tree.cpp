@@ -25,36 +25,10 @@ constexpr std::size_t kCachedLeaves = 1024;
 // Trees of at most so many leaves hold their terms too, 32 bytes a triangle.
 constexpr std::size_t kFewLeaves = 16384;
 
-// Below this sine a triangle's normal is not trusted in floats: its edges answer for it.
-constexpr float kNeedleSine = 1e-4F;
-
 // How many items are parted by counting each against each, and how many by bins, on the stack.
 constexpr std::size_t kFewItems = 32, kManyItems = 4096;
 // Items of a smaller extent are not put into bins: its reciprocal would be infinite.
 constexpr float kLeastSize = 1e-30F;
-
-struct Vec3Lanes {
-  Lanes x, y, z;
-};
-
-inline Vec3Lanes load3(const std::array<std::array<float, 4>, 3>& from) {
-  return {load_lanes(from[0].data()), load_lanes(from[1].data()), load_lanes(from[2].data())};
-}
-inline Vec3Lanes operator-(const Vec3Lanes& a, const Vec3Lanes& b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-inline Lanes dot(const Vec3Lanes& a, const Vec3Lanes& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-inline Vec3Lanes cross(const Vec3Lanes& a, const Vec3Lanes& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
-inline Lanes segment_distance2(const Vec3Lanes& pa, const Vec3Lanes& edge, Lanes along, Lanes length2) {
-  const Lanes t = min_lanes(max_lanes(along, lanes(0.0F)) / max_lanes(length2, lanes(1e-35F)), lanes(1.0F));
-  const Vec3Lanes away{pa.x - edge.x * t, pa.y - edge.y * t, pa.z - edge.z * t};
-  return dot(away, away);
-}
 
 // The order of a pair of numbers that both decide: no two items are equal.
 struct AlongAxis {
@@ -252,11 +226,7 @@ SurfaceTree::Leaf SurfaceTree::make_leaf(std::size_t index) const {
     const TriangleCorners corners = corners_at(TreeSlot(slot));
     const Vec3f a = to_frame(corners[0]);
     const Vec3f ab((corners[1] - corners[0]) * scale_), ac((corners[2] - corners[0]) * scale_);
-    for (int axis = 0; axis < 3; ++axis) {
-      leaf.a[static_cast<std::size_t>(axis)][k] = a[axis];
-      leaf.ab[static_cast<std::size_t>(axis)][k] = ab[axis];
-      leaf.ac[static_cast<std::size_t>(axis)][k] = ac[axis];
-    }
+    leaf.set(k, a, ab, ac);
   }
   return leaf;
 }
@@ -327,26 +297,6 @@ void SurfaceTree::fill_capsules() {
   }
 }
 
-SurfaceTree::LeafTerms SurfaceTree::terms_of(const Leaf& leaf) {
-  const Vec3Lanes ab = load3(leaf.ab), ac = load3(leaf.ac);
-  const Vec3Lanes bc = ac - ab;
-  const Vec3Lanes n = cross(ab, ac);
-  const Lanes nn = dot(n, n);
-  const Lanes ab2 = dot(ab, ab), ac2 = dot(ac, ac), bc2 = dot(bc, bc);
-  const Lanes longest2 = max_lanes(ab2, max_lanes(ac2, bc2));
-  const LaneMask is_sound = nn > kNeedleSine * kNeedleSine * longest2 * longest2;
-  LeafTerms terms;
-  store_lanes(n.x, terms.normal[0].data());
-  store_lanes(n.y, terms.normal[1].data());
-  store_lanes(n.z, terms.normal[2].data());
-  store_lanes(nn, terms.normal2.data());
-  store_lanes(ab2, terms.ab2.data());
-  store_lanes(ac2, terms.ac2.data());
-  store_lanes(bc2, terms.bc2.data());
-  std::memcpy(terms.is_sound.data(), &is_sound, sizeof(is_sound));
-  return terms;
-}
-
 const SurfaceTree::CachedLeaf& SurfaceTree::made_leaf(std::uint32_t index) const {
   thread_local std::vector<CachedLeaf> cache;
   if (cache.empty()) cache.resize(kCachedLeaves);
@@ -371,27 +321,9 @@ SurfaceTree::Hit SurfaceTree::test_leaf(const Vec3f& point, std::uint32_t index,
                         : test_triangles(point, index, leaf, terms_[index], best);
 }
 
-// Four triangles at once: over the inside the plane answers, elsewhere the nearest edge.
 inline SurfaceTree::Hit SurfaceTree::test_triangles(const Vec3f& point, std::uint32_t index, const Leaf& leaf,
                                                     const LeafTerms& terms, Hit best) const {
-  const Vec3Lanes p{lanes(point.x), lanes(point.y), lanes(point.z)};
-  const Vec3Lanes ab = load3(leaf.ab), ac = load3(leaf.ac);
-  const Vec3Lanes pa = p - load3(leaf.a);
-  const Vec3Lanes bc = ac - ab, pb = pa - ab;
-  const Vec3Lanes n = load3(terms.normal);
-  const Lanes nn = load_lanes(terms.normal2.data());
-  const Lanes ab2 = load_lanes(terms.ab2.data()), ac2 = load_lanes(terms.ac2.data());
-  const Lanes bc2 = load_lanes(terms.bc2.data());
-  LaneMask is_sound;
-  std::memcpy(&is_sound, terms.is_sound.data(), sizeof(is_sound));
-  const Lanes u = dot(cross(ab, pa), n), v = dot(cross(pa, ac), n), w = nn - u - v;
-  const Lanes height = dot(pa, n);
-  const LaneMask is_over = (u >= 0.0F) & (v >= 0.0F) & (w >= 0.0F) & is_sound;
-  const Lanes by_plane = height * height / max_lanes(nn, lanes(1e-37F));
-  const Lanes by_edge =
-      min_lanes(segment_distance2(pa, ab, dot(pa, ab), ab2),
-                min_lanes(segment_distance2(pa, ac, dot(pa, ac), ac2), segment_distance2(pb, bc, dot(pb, bc), bc2)));
-  const Lanes distance2 = choose(is_over, by_plane, by_edge);
+  const Lanes distance2 = distances2_to(leaf, terms, {lanes(point.x), lanes(point.y), lanes(point.z)});
   if (!any_lane(distance2 < lanes(best.distance2))) return best;
   for (std::uint32_t k = 0; k < kLeafSize; ++k) {
     if (distance2[k] < best.distance2) best = {TreeSlot(std::min(4 * index + k, size() - 1)), distance2[k]};

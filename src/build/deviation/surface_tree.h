@@ -13,6 +13,7 @@
 
 #include "base/vec.h"
 #include "build/deviation/capsules.h"
+#include "build/deviation/four_triangles.h"
 #include "build/deviation/point_distance.h"
 #include "build/deviation/tree_slot.h"
 
@@ -88,15 +89,8 @@ class SurfaceTree {
   struct Node {
     std::array<std::array<float, 4>, 3> low, high;  ///< [axis][child]
   };
-  struct Leaf {
-    std::array<std::array<float, 4>, 3> a, ab, ac;  ///< [axis][triangle]
-  };
-  /// What of a leaf's distances does not depend on the point: worked out once where a leaf is asked often.
-  struct LeafTerms {
-    std::array<std::array<float, 4>, 3> normal;   ///< [axis][triangle]
-    std::array<float, 4> normal2, ab2, ac2, bc2;  ///< squared lengths, by triangle
-    std::array<std::int32_t, 4> is_sound;         ///< all bits: the normal is trusted
-  };
+  using Leaf = FourTriangles;
+  using LeafTerms = FourTriangleTerms;
   /// Of a leaf that is made when it is looked at.
   struct CachedLeaf {
     Leaf leaf;
@@ -113,7 +107,6 @@ class SurfaceTree {
   void sort_items(std::vector<Item>& items) const;
   [[nodiscard]] std::size_t leaf_count() const { return (slot_triangle_.size() + 3) / 4; }
   [[nodiscard]] Leaf make_leaf(std::size_t index) const;
-  [[nodiscard]] static LeafTerms terms_of(const Leaf& leaf);
   /// Makes the leaf, unless this thread has it from a look before.
   [[nodiscard]] const CachedLeaf& made_leaf(std::uint32_t index) const;
   void fill_nodes();

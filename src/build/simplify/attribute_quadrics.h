@@ -42,6 +42,9 @@ class AttributeQuadrics {
   [[nodiscard]] double add_classes(BasicQuadric<Real>& total, std::span<const WedgeClass> classes,
                                    const Vec3d& given) const;
 
+  /// The same of a single class: of two wedges, of which `fixed` rules if any.
+  [[nodiscard]] double add_pair(BasicQuadric<Real>& total, const WedgePair& pair, const Vec3d& given) const;
+
   /// The class becomes its keeper, with the best values at `place` where they are not fixed.
   void join(const WedgeClass& joined, const Vec3d& place);
 
@@ -87,8 +90,9 @@ void AttributeQuadrics<Real, C>::add_face(const std::array<std::uint32_t, 3>& we
   const bool is_sliver = face.twice_area < 1e-3 * longest2;
   const Vec3d to_1 = glm::cross(face.e2, face.normal) / face.twice_area;
   const Vec3d to_2 = glm::cross(face.normal, face.e1) / face.twice_area;
-  for (const std::uint32_t wedge : wedges) wedge_[wedge].base.weight += static_cast<Real>(area);
   with_count([&](const auto count) {
+    WedgeQuadric<Real, C> of_face;
+    of_face.base.weight = static_cast<Real>(area);
     for (std::size_t j = 0; j < count; ++j) {
       const double s0 = value_[wedges[0]][j];
       const double s1 = value_[wedges[1]][j];
@@ -99,10 +103,9 @@ void AttributeQuadrics<Real, C>::add_face(const std::array<std::uint32_t, 3>& we
         gradient = to_1 * (s1 - s0) + to_2 * (s2 - s0);
         offset = s0 - glm::dot(gradient, face.p);
       }
-      for (const std::uint32_t wedge : wedges) {
-        wedge_[wedge].add_face(j, glm::vec<3, Real>(gradient), static_cast<Real>(offset), static_cast<Real>(area));
-      }
+      of_face.add_face(j, glm::vec<3, Real>(gradient), static_cast<Real>(offset), static_cast<Real>(area));
     }
+    for (const std::uint32_t wedge : wedges) wedge_[wedge].add(of_face, count);
   });
 }
 
@@ -129,6 +132,21 @@ double AttributeQuadrics<Real, C>::add_classes(BasicQuadric<Real>& total, std::s
       } else {
         joined.add_reduced_to(total, count);
       }
+    }
+  });
+  return fixed_error;
+}
+
+template <class Real, std::size_t C>
+double AttributeQuadrics<Real, C>::add_pair(BasicQuadric<Real>& total, const WedgePair& pair,
+                                            const Vec3d& given) const {
+  double fixed_error = 0.0;
+  with_count([&](const auto count) {
+    const auto joined = WedgeQuadric<Real, C>::sum(wedge_[pair.least], wedge_[pair.greatest], count);
+    if (pair.fixed != kNoId) {
+      fixed_error = double{joined.evaluate(given, value_[pair.fixed].data(), count)};
+    } else {
+      joined.add_reduced_to(total, count);
     }
   });
   return fixed_error;

@@ -41,6 +41,10 @@ class CandidateQueue {
   }
 
   /// \pre not empty
+  [[nodiscard]] const Candidate& front() const { return heap_.front(); }
+  /// \pre not empty
+  void replace_front(const Candidate& candidate) { sink(0, candidate); }
+  /// \pre not empty
   Candidate pop() {
     const Candidate first = heap_.front();
     const Candidate last = heap_.back();

@@ -44,6 +44,13 @@ void gather_corners(CollapseMesh& mesh, std::uint32_t a, std::uint32_t b, Collap
   mesh.corners_of(b, star.b.corners);
 }
 
+bool has_shared_triangle(const CollapseMesh& mesh, const CollapseStar& star) {
+  return std::any_of(star.a.corners.begin(), star.a.corners.end(), [&](std::uint32_t corner) {
+    const auto [x, y] = mesh.others(corner);
+    return x == star.b.vertex || y == star.b.vertex;
+  });
+}
+
 void gather_neighbors(const CollapseMesh& mesh, VertexMarks& marks, StarEnd& end) {
   end.neighbors.clear();
   marks.start_search();

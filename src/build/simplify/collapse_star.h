@@ -53,6 +53,9 @@ struct CollapseStar {
 /// The corners at both ends, which are named here.
 void gather_corners(CollapseMesh& mesh, std::uint32_t a, std::uint32_t b, CollapseStar& star);
 
+/// Whether a triangle has both ends. \pre the corners are gathered
+[[nodiscard]] bool has_shared_triangle(const CollapseMesh& mesh, const CollapseStar& star);
+
 /// They alone are marked then. \pre the corners are gathered
 void gather_neighbors(const CollapseMesh& mesh, VertexMarks& marks, StarEnd& end);
 

@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -26,6 +27,7 @@
 #include "build/simplify/held_edges.h"
 #include "build/simplify/kept_topology.h"
 #include "build/simplify/left_behind.h"
+#include "build/simplify/new_surface.h"
 #include "build/simplify/pieces.h"
 #include "build/simplify/placement.h"
 #include "build/simplify/simplify.h"
@@ -66,9 +68,21 @@ class GroupSimplifier {
   /// False where both ends are locked, which is counted.
   [[nodiscard]] bool is_free_to_collapse(std::uint32_t a, std::uint32_t b);
   [[nodiscard]] Candidate make_candidate(std::uint32_t a, std::uint32_t b);
+  /// Weighs a candidate again whose ends have changed or been joined into others. False where there is no such edge any
+  /// more, or none that may go.
+  [[nodiscard]] bool refresh(Candidate& candidate);
+  /// The vertex that a vertex was joined into, or itself.
+  [[nodiscard]] std::uint32_t vertex_of(std::uint32_t joined);
+  void set_aside(const Candidate& refused);
+  void take_up_again(std::uint32_t vertex);
   /// Versions only grow: their sum is the same where neither has.
   [[nodiscard]] std::uint32_t versions_of(std::uint32_t a, std::uint32_t b) const { return version_[a] + version_[b]; }
-  [[nodiscard]] Placement place(std::uint32_t a, std::uint32_t b);
+  [[nodiscard]] double add_classes(BasicQuadric<Real>& total);
+  /// Where a vertex goes whose place is not free.
+  [[nodiscard]] const Vec3d& given_place(std::uint32_t a, std::uint32_t b) const {
+    return places_[locks_.is_vertex_locked[a] != 0 ? a : b];
+  }
+  [[nodiscard]] Placement place(std::uint32_t a, std::uint32_t b, BasicQuadric<Real>& total, double fixed_error) const;
   [[nodiscard]] Obstacle try_collapse(const Candidate& candidate);
   [[nodiscard]] double price_of(const Candidate& candidate);
   void collapse(std::uint32_t a, std::uint32_t b);
@@ -84,11 +98,14 @@ class GroupSimplifier {
   AttributeQuadrics<Real, Capacity> attributes_;
   WedgeClasses classes_;
   LeftBehind left_behind_;
-  std::optional<OwnPlaces> own_places_;  ///< where topology is kept
-  std::vector<std::uint8_t> is_border_;  ///< per vertex
-  std::vector<std::uint32_t> version_;   ///< per vertex
+  std::optional<OwnPlaces> own_places_;     ///< where topology is kept
+  std::vector<std::uint8_t> is_border_;     ///< per vertex
+  std::vector<std::uint32_t> version_;      ///< per vertex
+  std::vector<std::uint32_t> joined_into_;  ///< per vertex, itself where it was not joined into another
 
+  std::vector<EdgeUse> edge_uses_;  ///< before the first collapse; then nothing
   CandidateQueue queue_;
+  std::vector<std::vector<std::uint32_t>> refused_;  ///< per vertex: the other ends of candidates that were refused
   std::array<std::uint64_t, 6> obstacles_{};
   double error_ = 0.0;  ///< frame units
   bool has_free_border_ = false, has_broken_topology_ = false, are_flips_relaxed_ = false;
@@ -96,6 +113,7 @@ class GroupSimplifier {
   VertexMarks marks_;
   CollapseStar star_;  ///< of the collapse that is weighed or done
   StarEnd joined_;     ///< the vertex that came of it
+  NewSurface new_surface_;
 };
 
 template <class Real, std::size_t C>
@@ -110,13 +128,16 @@ GroupSimplifier<Real, C>::GroupSimplifier(const SimplifyInput& input, const Simp
       classes_(attributes_.count() == 0 ? 0 : input.wedge_position.size(), input.positions.size()),
       left_behind_(input.witnesses, places_),
       version_(input.positions.size(), 0),
+      joined_into_(input.positions.size()),
       marks_(input.positions.size()) {
+  std::iota(joined_into_.begin(), joined_into_.end(), 0U);
   if (options.keep_topology) own_places_.emplace(input);
   add_faces();
   HeldEdges held = find_held_edges(input, options, mesh_);
   surface_.add_walls(held.edges, mesh_, places_);
   is_border_ = std::move(held.is_border);
   has_free_border_ = held.has_free_border;
+  edge_uses_ = std::move(held.uses);
   if (attributes_.count() == 0) return;
   for (joined_.vertex = 0; joined_.vertex < places_.size(); ++joined_.vertex) {
     mesh_.corners_of(joined_.vertex, joined_.corners);
@@ -151,16 +172,26 @@ void GroupSimplifier<Real, C>::run_passes() {
   for (int pass = 0; pass < kMaxPasses && mesh_.alive_count() > options_.target_triangles; ++pass) {
     obstacles_.fill(0);
     queue_.clear();
+    refused_.assign(places_.size(), {});
     seed_candidates();
     bool any = false;
     while (!queue_.empty() && mesh_.alive_count() > options_.target_triangles) {
-      const Candidate candidate = queue_.pop();
-      if (versions_of(candidate.a, candidate.b) != candidate.versions) continue;
+      Candidate candidate = queue_.front();
+      if (versions_of(candidate.a, candidate.b) != candidate.versions) {
+        if (refresh(candidate)) {
+          queue_.replace_front(candidate);
+        } else {
+          (void)queue_.pop();
+        }
+        continue;
+      }
+      (void)queue_.pop();
       const Obstacle obstacle = try_collapse(candidate);
       if (obstacle == Obstacle::kNone) {
         any = true;
       } else {
         ++obstacles_[static_cast<std::size_t>(obstacle)];
+        if (obstacle != Obstacle::kPutBack) set_aside(candidate);
       }
     }
     if (!any)
@@ -170,7 +201,9 @@ void GroupSimplifier<Real, C>::run_passes() {
 
 template <class Real, std::size_t C>
 void GroupSimplifier<Real, C>::seed_candidates() {
-  const std::vector<EdgeUse> uses = sorted_edge_uses(mesh_);
+  std::vector<EdgeUse> uses;
+  std::swap(uses, edge_uses_);
+  if (uses.empty()) uses = sorted_edge_uses(mesh_);
   for (std::size_t i = 0; i < uses.size(); ++i) {
     if (i > 0 && uses[i].a == uses[i - 1].a && uses[i].b == uses[i - 1].b) continue;
     if (is_free_to_collapse(uses[i].a, uses[i].b)) queue_.append(make_candidate(uses[i].a, uses[i].b));
@@ -190,25 +223,70 @@ Candidate GroupSimplifier<Real, C>::make_candidate(std::uint32_t a, std::uint32_
   if (a > b) std::swap(a, b);
   star_.a.vertex = a;
   star_.b.vertex = b;
-  if (classes_.needs_corners(a, b)) gather_corners(mesh_, a, b, star_);
-  return {place(a, b).cost, a, b, versions_of(a, b)};
+  BasicQuadric<Real> total = surface_.around(a, b);
+  double fixed_error = 0.0;
+  if (classes_.needs_corners(a, b)) {
+    gather_corners(mesh_, a, b, star_);
+    fixed_error = add_classes(total);
+  } else if (attributes_.count() > 0) {
+    fixed_error = attributes_.add_pair(total, classes_.pair_of(locks_, a, b), given_place(a, b));
+  }
+  return {place(a, b, total, fixed_error).cost, a, b, versions_of(a, b)};
 }
 
-/// Where the joined vertex goes, what its attributes become there, and what both cost. \pre the star has its ends, and
-/// its corners where the wedge classes need them
+/// What the wedge classes of the star add to it. They are left behind. \pre the star's corners are gathered
 template <class Real, std::size_t C>
-typename GroupSimplifier<Real, C>::Placement GroupSimplifier<Real, C>::place(std::uint32_t a, std::uint32_t b) {
+double GroupSimplifier<Real, C>::add_classes(BasicQuadric<Real>& total) {
+  classes_.collect(mesh_, locks_, star_);
+  return attributes_.add_classes(total, classes_.classes(), given_place(star_.a.vertex, star_.b.vertex));
+}
+
+template <class Real, std::size_t C>
+std::uint32_t GroupSimplifier<Real, C>::vertex_of(std::uint32_t joined) {
+  while (joined_into_[joined] != joined) {
+    joined_into_[joined] = joined_into_[joined_into_[joined]];
+    joined = joined_into_[joined];
+  }
+  return joined;
+}
+
+template <class Real, std::size_t C>
+bool GroupSimplifier<Real, C>::refresh(Candidate& candidate) {
+  const std::uint32_t a = vertex_of(candidate.a), b = vertex_of(candidate.b);
+  if (a == b || !is_free_to_collapse(a, b)) return false;
+  candidate = make_candidate(a, b);
+  return true;
+}
+
+template <class Real, std::size_t C>
+void GroupSimplifier<Real, C>::set_aside(const Candidate& refused) {
+  refused_[refused.a].push_back(refused.b);
+  refused_[refused.b].push_back(refused.a);
+}
+
+/// What stood in the way depends on what is around the vertex, which has changed.
+template <class Real, std::size_t C>
+void GroupSimplifier<Real, C>::take_up_again(std::uint32_t vertex) {
+  const std::uint32_t a = vertex_of(vertex);
+  for (const std::uint32_t other : refused_[vertex]) {
+    const std::uint32_t b = vertex_of(other);
+    if (a != b && is_free_to_collapse(a, b)) queue_.push(make_candidate(a, b));
+  }
+  refused_[vertex].clear();
+}
+
+/// Where the joined vertex goes and what it costs there: `total`, and the error of wedges whose values may not change
+/// (only where the place is given).
+template <class Real, std::size_t C>
+typename GroupSimplifier<Real, C>::Placement GroupSimplifier<Real, C>::place(std::uint32_t a, std::uint32_t b,
+                                                                             BasicQuadric<Real>& total,
+                                                                             double fixed_error) const {
   const Vec3d& pa = places_[a];
   const Vec3d& pb = places_[b];
-  const bool is_a_locked = locks_.is_vertex_locked[a] != 0;
-  const bool is_place_given = is_a_locked || locks_.is_vertex_locked[b] != 0;
-  const Vec3d given = is_a_locked ? pa : pb;
-  BasicQuadric<Real> total = surface_.around(a, b);
-  classes_.collect(mesh_, locks_, star_);
-  // The error of wedges whose values may not change: only where the place is given.
-  const double fixed_error = attributes_.add_classes(total, classes_.classes(), given);
+  const bool is_place_given = locks_.is_vertex_locked[a] != 0 || locks_.is_vertex_locked[b] != 0;
   Placement placement;
-  placement.position = is_place_given ? given : place_vertex(total, pa, pb, options_.experiment.care.fallback);
+  placement.position =
+      is_place_given ? given_place(a, b) : place_vertex(total, pa, pb, options_.experiment.care.fallback);
   const Vec3d edge = pb - pa;
   placement.cost = cost_of_collapse(total, placement.position, fixed_error, glm::dot(edge, edge));
   return placement;
@@ -219,7 +297,10 @@ typename GroupSimplifier<Real, C>::Obstacle GroupSimplifier<Real, C>::try_collap
   std::uint32_t a = candidate.a;
   std::uint32_t b = candidate.b;
   gather_corners(mesh_, a, b, star_);
-  const Placement placement = place(a, b);  // leaves the wedge classes behind
+  if (!has_shared_triangle(mesh_, star_)) return Obstacle::kPutBack;
+  BasicQuadric<Real> total = surface_.around(a, b);
+  const double fixed_error = add_classes(total);
+  const Placement placement = place(a, b, total, fixed_error);
   for (const WedgeClass& joined : classes_.classes()) {
     if (!attributes_.agree(joined, locks_)) return Obstacle::kSeams;
   }
@@ -268,7 +349,7 @@ double GroupSimplifier<Real, C>::price_of(const Candidate& candidate) {
   const double price = price_of_distance2 * left_behind2;
   if (price > candidate.cost) return price;
   const double affordable2 = price_of_distance2 > 0.0 ? candidate.cost / price_of_distance2 : 0.0;
-  const double reached2 = new_surface_distance2(mesh_, places_, star_, affordable2);
+  const double reached2 = new_surface_.distance2(mesh_, places_, star_, affordable2);
   return reached2 > affordable2 ? price_of_distance2 * reached2 : price;
 }
 
@@ -286,6 +367,7 @@ void GroupSimplifier<Real, C>::collapse(std::uint32_t a, std::uint32_t b) {
     relabel_wedges(mesh_, star_, c);
   }
   mesh_.merge_vertices(a, b);
+  joined_into_[b] = a;
   ++version_[a];
   ++version_[b];
 
@@ -294,10 +376,8 @@ void GroupSimplifier<Real, C>::collapse(std::uint32_t a, std::uint32_t b) {
   mesh_.corners_of(a, joined_.corners);
   classes_.update(mesh_, joined_);
   if (joined_.corners.empty()) error_ = std::max(error_, left_behind_.size(a));
-  gather_neighbors(mesh_, marks_, joined_);
-  for (const std::uint32_t n : joined_.neighbors) {
-    if (is_free_to_collapse(a, n)) queue_.push(make_candidate(a, n));
-  }
+  take_up_again(a);
+  take_up_again(b);
 }
 
 template <class Real, std::size_t C>

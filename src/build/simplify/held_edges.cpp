@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "build/simplify/edge_uses.h"
@@ -38,7 +39,7 @@ double weight_between(const SimplifyInput& input, const SimplifyOptions& options
 HeldEdges find_held_edges(const SimplifyInput& input, const SimplifyOptions& options, const CollapseMesh& mesh) {
   HeldEdges held;
   held.is_border.assign(input.positions.size(), 0);
-  const std::vector<EdgeUse> uses = sorted_edge_uses(mesh);
+  std::vector<EdgeUse> uses = sorted_edge_uses(mesh);
   for (std::size_t i = 0; i < uses.size();) {
     std::size_t end = i + 1;
     while (end < uses.size() && uses[end].a == uses[i].a && uses[end].b == uses[i].b) ++end;
@@ -54,6 +55,7 @@ HeldEdges find_held_edges(const SimplifyInput& input, const SimplifyOptions& opt
     if (!(weight > 0.0)) continue;
     for (const EdgeUse& use : edge) held.edges.push_back({a, b, use.corner / 3, weight, is_border});
   }
+  held.uses = std::move(uses);
   return held;
 }
 

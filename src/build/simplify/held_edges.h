@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "build/simplify/collapse_mesh.h"
+#include "build/simplify/edge_uses.h"
 #include "build/simplify/simplify.h"
 
 namespace meshlode::build {
@@ -22,6 +23,7 @@ struct HeldEdges {
   std::vector<HeldEdge> edges;          ///< ascending by a, b, and corners of the triangle
   std::vector<std::uint8_t> is_border;  ///< per vertex: on an edge that has not just two triangles
   bool has_free_border = false;         ///< an edge of the oriented border has an end that may move
+  std::vector<EdgeUse> uses;            ///< sorted_edge_uses() of the mesh
 };
 
 [[nodiscard]] HeldEdges find_held_edges(const SimplifyInput& input, const SimplifyOptions& options,

@@ -69,10 +69,9 @@ double LeftBehind::collect_vanishing(CollapseMesh& mesh, const GroupPlaces& plac
 }
 
 void LeftBehind::gather_facets(const GroupPlaces& places, const CollapseStar& star) {
-  facets_.clear();
-  for (const CollapseStar::OuterEdge& edge : star.outer) {
-    facets_.emplace_back(star.target, places[edge.x], places[edge.y]);
-  }
+  facets_.start(star.target);
+  for (const CollapseStar::OuterEdge& edge : star.outer) facets_.add(star.target, places[edge.x], places[edge.y]);
+  facets_.finish();
 }
 
 /// The largest squared distance from the vertex's witnesses to the new star.
@@ -80,11 +79,7 @@ double LeftBehind::weigh_witnesses(std::uint32_t vertex, const GroupPlaces& plac
   const Witnesses& w = witnesses_[vertex];
   double largest = 0.0;
   for (std::uint32_t i = 0; i < w.count; ++i) {
-    const Vec3d point = places.to_frame(w.points[i]);
-    double nearest = std::numeric_limits<double>::infinity();
-    for (const Facet& facet : facets_) {
-      nearest = std::min(nearest, distance2_to_facet(point, facet));
-    }
+    const double nearest{facets_.distance2_to(places.to_frame(w.points[i]))};
     weighed_.push_back({nearest, w.points[i], w.ids[i]});
     largest = std::max(largest, nearest);
   }
@@ -159,52 +154,6 @@ double LeftBehind::drop_sheets(CollapseMesh& mesh, const GroupPlaces& places, st
     }
   }
   return lost;
-}
-
-namespace {
-
-/// Whether the middle of the edge to `outer[i].y` is asked about with another triangle, that begins there.
-bool begins_another(const std::vector<CollapseStar::OuterEdge>& outer, std::size_t i) {
-  constexpr std::size_t kFew = 32;  // at a hub the search would cost more than asking twice
-  if (outer.size() > kFew) return false;
-  for (std::size_t k = 0; k < outer.size(); ++k) {
-    if (outer[k].x == outer[i].y) return true;
-  }
-  return false;
-}
-
-}  // namespace
-
-// The largest over the points of the least over the triangles: neither order nor repetition changes it, so that a point
-// is asked about once, and of the triangles first the one that the new one replaces, which is mostly near.
-double new_surface_distance2(const CollapseMesh& mesh, const GroupPlaces& places, const CollapseStar& star,
-                             double least) {
-  double farthest = least;
-  const auto facet_of = [&](std::uint32_t corner) {
-    const std::uint32_t t = corner / 3;
-    return Facet(places[mesh.vertex(3 * t)], places[mesh.vertex(3 * t + 1)], places[mesh.vertex(3 * t + 2)]);
-  };
-  const auto reach = [&](const Vec3d& point, const Facet& likely) {
-    double nearest = distance2_to_facet(point, likely);
-    if (nearest <= farthest) return;
-    for (const StarEnd* end : {&star.a, &star.b}) {
-      for (const std::uint32_t corner : end->corners) {
-        nearest = std::min(nearest, distance2_to_facet(point, facet_of(corner)));
-        if (nearest <= farthest) return;
-      }
-    }
-    farthest = nearest;
-  };
-  for (std::size_t i = 0; i < star.outer.size(); ++i) {
-    const CollapseStar::OuterEdge& edge = star.outer[i];
-    const Vec3d& x = places[edge.x];
-    const Vec3d& y = places[edge.y];
-    const Facet replaced = facet_of(edge.corner);
-    reach((star.target + x + y) / 3.0, replaced);
-    reach((star.target + x) * 0.5, replaced);
-    if (!begins_another(star.outer, i)) reach((star.target + y) * 0.5, replaced);
-  }
-  return farthest;
 }
 
 }  // namespace meshlode::build

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How far a collapse leaves the old surface from the new and the new from the old, beyond what quadrics say.
+// How far a collapse leaves the old surface from the new, beyond what quadrics say.
 //
 // Thin closed features vanish almost free of plane error, and crevices and tunnels close so. What the source points
-// behind both vertices would be left at, and how far the new triangles are from the old, is the truth of it.
+// behind both vertices would be left at, and how far the new triangles are from the old (new_surface.h), is the truth
+// of it.
 #pragma once
 
 #include <cmath>
@@ -12,8 +13,8 @@
 #include "build/simplify/collapse_mesh.h"
 #include "build/simplify/collapse_star.h"
 #include "build/simplify/group_places.h"
-#include "build/simplify/point_triangle.h"
 #include "build/simplify/simplify.h"
+#include "build/simplify/star_facets.h"
 
 namespace meshlode::build {
 
@@ -62,15 +63,10 @@ class LeftBehind {
   // Of the collapse weighed last.
   std::vector<std::uint32_t> vanishing_;  ///< vertices that lose their last triangle with it
   std::vector<WeighedWitness> weighed_;
-  std::vector<Facet> facets_;  ///< the new star
+  StarFacets facets_;  ///< the new star
   std::vector<std::uint32_t> corners_;
   std::uint64_t stamp_ = 0;  ///< what is marked with it was marked in this search
   std::vector<std::uint64_t> vertex_stamp_;
 };
-
-/// How far the new star is from the triangles that it replaces, squared, where that exceeds `least`; else `least`. By
-/// the middles of its triangles and of their edges at the target. \pre star.outer is gathered
-[[nodiscard]] double new_surface_distance2(const CollapseMesh& mesh, const GroupPlaces& places,
-                                           const CollapseStar& star, double least);
 
 }  // namespace meshlode::build

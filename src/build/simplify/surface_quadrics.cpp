@@ -23,7 +23,9 @@ void SurfaceQuadrics<Real>::add_face(const std::array<std::uint32_t, 3>& vertice
   const double area = 0.5 * face.twice_area;
   const glm::vec<3, Real> normal(face.normal);
   const auto offset = static_cast<Real>(-glm::dot(face.normal, face.p));
-  for (const std::uint32_t v : vertices) plane_[v].add_plane(normal, offset, static_cast<Real>(area));
+  BasicQuadric<Real> plane;
+  plane.add_plane(normal, offset, static_cast<Real>(area));
+  for (const std::uint32_t v : vertices) plane_[v] += plane;
   total_weight_ += 3.0 * area;
 }
 

@@ -71,11 +71,10 @@ void WedgeClasses::collect(const CollapseMesh& mesh, const GroupLocks& locks, co
   count_ = 0;
   if (class_of_.empty()) return;
   if (!needs_corners(star.a.vertex, star.b.vertex)) {
-    const auto [least, greatest] = std::minmax(only_wedge_[star.a.vertex], only_wedge_[star.b.vertex]);
+    const WedgePair pair = pair_of(locks, star.a.vertex, star.b.vertex);
     WedgeClass& c = add_class();
-    c.members.push_back(least);
-    c.members.push_back(greatest);
-    c.fixed = locks.is_wedge_locked[least] != 0 ? least : locks.is_wedge_locked[greatest] != 0 ? greatest : kNoId;
+    c.members.assign({pair.least, pair.greatest});
+    c.fixed = pair.fixed;
     return;
   }
   join_along_edge(mesh, star);

@@ -2,6 +2,7 @@
 // Which wedges become one in a collapse: those that meet in a triangle on its edge. Seams part them.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -23,6 +24,12 @@ struct WedgeClass {
   [[nodiscard]] std::uint32_t keeper() const { return fixed != kNoId ? fixed : members[0]; }
 };
 
+/// The one class of two vertices with a single wedge each.
+struct WedgePair {
+  std::uint32_t least, greatest;
+  std::uint32_t fixed;  ///< as WedgeClass::fixed
+};
+
 /// Knows of each vertex whether it has a single wedge: most have, and then no triangle need be asked.
 class WedgeClasses {
  public:
@@ -35,6 +42,12 @@ class WedgeClasses {
   /// Whether `collect` reads the corners of a star between these two.
   [[nodiscard]] bool needs_corners(std::uint32_t a, std::uint32_t b) const {
     return !class_of_.empty() && (only_wedge_[a] == kSeveral || only_wedge_[b] == kSeveral);
+  }
+  /// \pre there are wedges, and !needs_corners(a, b)
+  [[nodiscard]] WedgePair pair_of(const GroupLocks& locks, std::uint32_t a, std::uint32_t b) const {
+    const auto [least, greatest] = std::minmax(only_wedge_[a], only_wedge_[b]);
+    const std::uint32_t locked = locks.is_wedge_locked[greatest] != 0 ? greatest : kNoId;
+    return {least, greatest, locks.is_wedge_locked[least] != 0 ? least : locked};
   }
   /// The classes of a collapse.
   void collect(const CollapseMesh& mesh, const GroupLocks& locks, const CollapseStar& star);

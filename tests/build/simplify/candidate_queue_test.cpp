@@ -58,6 +58,19 @@ TEST(CandidateQueue, KeepsWhatACandidateIs) {
   EXPECT_TRUE(queue.empty());
 }
 
+TEST(CandidateQueue, WhatIsWeighedAgainTakesItsPlace) {
+  CandidateQueue queue;
+  for (std::uint32_t i = 0; i < 30; ++i) queue.push({1.0 + i, i, i + 1, 0});
+  EXPECT_EQ(queue.front().cost, 1.0);
+  queue.replace_front({15.5, 0, 1, 1});
+  std::vector<double> costs;
+  while (!queue.empty()) costs.push_back(queue.pop().cost);
+  EXPECT_TRUE(std::is_sorted(costs.begin(), costs.end()));
+  EXPECT_EQ(costs.size(), 30U);
+  EXPECT_EQ(costs.front(), 2.0);
+  EXPECT_EQ(costs[14], 15.5);
+}
+
 TEST(EdgeUses, AreAllOfTheLivingTrianglesInOrder) {
   test::RandomSource random(59);
   for (int round = 0; round < 60; ++round) {
