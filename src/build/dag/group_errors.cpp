@@ -14,7 +14,7 @@ namespace {
 /// Carried on at least: where few triangles stand for many vanished pieces, each stands for more than two samples say.
 constexpr std::size_t kSamplesPerGroup = 4096;
 /// Spread over the groups of a round: coarse rounds have few, of large triangles, and cost next to nothing.
-constexpr std::size_t kExtraEffort = 3000;
+constexpr std::size_t kExtraEffort = 1500;
 
 /// A surface as the deviation room wants it, off the grid.
 struct Decoded {
@@ -86,6 +86,7 @@ GroupErrors GroupMeter::measure(const BuildPool& pool, const std::vector<Cluster
     errors.normal_deviation = std::max(errors.normal_deviation, pool.group(own).normal_deviation);
     errors.uv_deviation = std::max(errors.uv_deviation, pool.group(own).uv_deviation);
   }
+  std::vector<TreeSlot> places;
   if (is_certified_) {
     std::vector<TriangleBound> bounds;
     bounds.reserve(finer.triangles.size());
@@ -119,10 +120,11 @@ GroupErrors GroupMeter::measure(const BuildPool& pool, const std::vector<Cluster
     errors.deviation = group.deviation;
     errors.error = std::max(floor, kMeasuredMargin * group.deviation);
     errors.carried.samples = std::move(group.carried);
+    places = std::move(group.places);
   }
   const AttributeDeviation attributes =
       measure_attributes(*source_, {pool.wedge_attributes, mesh_.exact_triangles, wedge_of_exact_}, after.surface(),
-                         {coarser.wedge_attributes, coarser.triangles}, mesh_.layout);
+                         {coarser.wedge_attributes, coarser.triangles}, mesh_.layout, places);
   errors.normal_deviation = std::max(errors.normal_deviation, attributes.normal);
   errors.uv_deviation = std::max(errors.uv_deviation, attributes.uv);
   return errors;

@@ -91,7 +91,7 @@ double upper_value(std::vector<UvError>& errors) {
 
 AttributeDeviation measure_attributes(const SourceTree& source, const SurfaceAttributes& source_attributes,
                                       const GroupSurface& group, const SurfaceAttributes& group_attributes,
-                                      const AttributeLayout& layout) {
+                                      const AttributeLayout& layout, std::span<const TreeSlot> near) {
   const SurfaceTree& tree = source.impl().tree;
   const std::size_t stride = layout.stride();
   if ((!layout.has_normal && layout.uv_set_count == 0) || tree.size() == 0) return {};
@@ -114,6 +114,7 @@ AttributeDeviation measure_attributes(const SourceTree& source, const SurfaceAtt
       total += area;
       const Vec3d point = corners[0] * w.a + corners[1] * w.b + corners[2] * w.c;
       const Vec3f at = tree.to_frame(point);
+      if (!near.empty()) place = near[t];
       const SurfaceTree::Hit hit = tree.find_nearest(at, tree.look_around(at, place, {}), 0.0F);
       if (!hit.slot.is_valid()) continue;
       place = hit.slot;

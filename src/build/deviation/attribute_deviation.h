@@ -30,11 +30,11 @@ struct AttributeDeviation {
 /// Compares the group's attributes with the source's where the source is nearest: at three points of each triangle of
 /// the group (Hammer, Marlowe and Stroud 1956, exact for squares of linear functions), of more than kFewTriangles at
 /// every kPointStep-th of them. What comes of it is a mean and a quantile, which a few hundred points tell to some
-/// percent.
+/// percent. `near` is GroupDeviation::places, or nothing.
 [[nodiscard]] AttributeDeviation measure_attributes(const SourceTree& source,
                                                     const SurfaceAttributes& source_attributes,
                                                     const GroupSurface& group,
                                                     const SurfaceAttributes& group_attributes,
-                                                    const AttributeLayout& layout);
+                                                    const AttributeLayout& layout, std::span<const TreeSlot> near = {});
 
 }  // namespace meshlode::build

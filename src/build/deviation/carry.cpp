@@ -9,16 +9,24 @@
 namespace meshlode::build {
 
 double project_samples(const SurfaceTree& group_tree, std::vector<CarriedSample>& samples) {
+  // Below this share of the largest distance it is enough to know that a sample is near: nothing is done around it, and
+  // of its triangle's samples the farther ones are kept.
+  constexpr double kNearShare = 0.4;
+  const double frame2 = kNearShare * kNearShare * group_tree.scale() * group_tree.scale();
   double largest2 = 0.0;
+  float enough = 0.0F;
   TreeSlot place{0U};  // of the sample before: samples come in the order of the surface that carried them
   for (CarriedSample& sample : samples) {
     const Vec3f point = group_tree.to_frame(sample.point);
-    const SurfaceTree::Hit hit = group_tree.find_nearest(point, group_tree.look_around(point, place, {}), 0.0F);
+    SurfaceTree::Hit hit = group_tree.look_around(point, place, {});
+    if (!(hit.distance2 <= enough)) hit = group_tree.find_nearest(point, hit, enough);
     place = hit.slot.is_valid() ? hit.slot : TreeSlot{0U};
     const double distance2 = group_tree.distance2_at(sample.point, place);
     sample.triangle = group_tree.triangle_at(place);
     sample.distance = static_cast<float>(std::sqrt(distance2));
-    largest2 = std::max(largest2, distance2);
+    if (!(distance2 > largest2)) continue;
+    largest2 = distance2;
+    enough = static_cast<float>(frame2 * largest2);
   }
   return std::sqrt(largest2);
 }

@@ -73,6 +73,7 @@ struct DeviationTierOptions {
 struct GroupDeviation {
   double deviation = 0.0;              ///< object units: the largest distance that was found, of whichever direction
   std::vector<CarriedSample> carried;  ///< thinned, triangle = index into the group's triangles
+  std::vector<TreeSlot> places;  ///< of the SourceTree, by triangle of the group: near what is nearest to its middle
 };
 
 /// Level 0: the samples that each source triangle starts with (its corners and more), carried by itself. `triangle` of

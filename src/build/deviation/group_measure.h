@@ -21,7 +21,8 @@ struct Farthest {
   void take(double value) { found = value > found ? value : found; }
 };
 
-/// Source to group. Sets each sample's triangle and distance; returns the largest distance.
+/// Source to group. Sets each sample's triangle and distance, of samples that are near against the others one near
+/// enough; returns the largest distance.
 [[nodiscard]] double project_samples(const SurfaceTree& group_tree, std::vector<CarriedSample>& samples);
 
 /// What goes on to the next level: for each triangle of the group the farthest samples, some spread, and whatever is
@@ -32,7 +33,7 @@ struct Farthest {
 
 /// With less effort on top (DeviationTierOptions::extra_effort) nothing is spared: the groups are many, and small
 /// against the mesh.
-constexpr std::uint32_t kLeastExtra = 300;
+constexpr std::uint32_t kLeastExtra = 150;
 
 /// Triangles and their parts that may be divided.
 struct Effort {
@@ -41,11 +42,11 @@ struct Effort {
   double rise = 1.0;      ///< what a patch promises: how far it may rise above its points (patch.h)
 };
 
-/// Group to source, by adaptive subdivision near the maximum. `places` has
-/// for each triangle of the group where its search may begin. `high` gets points of the group near the maximum; their
+/// Group to source, by adaptive subdivision near the maximum. `places` has for each triangle of the group where its
+/// search may begin, and gets where its middle was found. `high` gets points of the group near the maximum; their
 /// places are those of their nearest triangles of the source.
 [[nodiscard]] Farthest measure_to_source(const SurfaceTree& source, const GroupSurface& group, const GroupEdges& edges,
-                                         const std::vector<TreeSlot>& places, Farthest farthest, Effort budget,
+                                         std::vector<TreeSlot>& places, Farthest farthest, Effort budget,
                                          std::vector<CarriedSample>& high);
 
 /// Which points of the source a group stands for: those that were near enough to what it replaces, on the same side and

@@ -63,7 +63,7 @@ class SourceProbe {
 }  // namespace
 
 Farthest measure_to_source(const SurfaceTree& source, const GroupSurface& group, const GroupEdges& edges,
-                           const std::vector<TreeSlot>& places, Farthest farthest, Effort budget,
+                           std::vector<TreeSlot>& places, Farthest farthest, Effort budget,
                            std::vector<CarriedSample>& high) {
   SourceProbe probe(source, budget.rise, farthest);
   const std::size_t count = group.triangles.size();
@@ -77,7 +77,7 @@ Farthest measure_to_source(const SurfaceTree& source, const GroupSurface& group,
     if (places[t].is_valid()) place = places[t];
     for (std::size_t k = 0; k < 3; ++k) patch.corner[k] = group.positions[ids[k]];
     const Probe center = probe.measure((patch.corner[0] + patch.corner[1] + patch.corner[2]) / 3.0, place);
-    place = center.place;
+    places[t] = place = center.place;
     for (std::size_t k = 0; k < 3; ++k) {
       Probe& vertex = at_vertex[ids[k]];
       if (!vertex.place.is_valid()) vertex = probe.measure(patch.corner[k], place);
@@ -109,7 +109,8 @@ GroupDeviation measure_group(const SourceTree& source, const GroupSurface& group
   std::vector<CarriedSample> projected(samples.begin(), samples.end());
   const GroupEdges edges(group);
   Farthest farthest{project_samples(group_tree, projected), options.least};
-  std::vector<TreeSlot> places(group.triangles.size());
+  std::vector<TreeSlot>& places = result.places;
+  places.resize(group.triangles.size());
   for (const CarriedSample& sample : projected) places[sample.triangle] = sample.place;
   std::vector<CarriedSample> high;
   const bool is_spared = options.extra_effort >= kLeastExtra;
