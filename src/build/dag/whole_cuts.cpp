@@ -23,9 +23,12 @@ namespace meshlode::build {
 namespace {
 
 constexpr std::size_t kChunk = 1024;  // points that share a hint, whatever the thread count
-/// Points on triangles beside the corners: so many in all, but within so many a triangle.
+/// Points on triangles beside the corners: so many in all, but within so many a triangle on average.
 constexpr std::size_t kPoints = 100000;
 constexpr std::size_t kFewestPerTriangle = 1, kMostPerTriangle = 24;
+/// One half of them goes to all triangles alike, the other by their longest edges: what a cut is off by changes along
+/// a needle as it does along a row of small triangles.
+constexpr double kShareByLength = 0.5;
 /// Of larger meshes a part of the triangles is looked at.
 constexpr std::size_t kMostTriangles = 100000;
 /// Points nearer to a cut than this share of its error are left alone: they belong to groups of smaller errors, which
@@ -92,23 +95,49 @@ std::array<Vec3d, 3> corners_of(const PreparedMesh& mesh, std::uint32_t triangle
   return {mesh.exact_positions[ids[0]], mesh.exact_positions[ids[1]], mesh.exact_positions[ids[2]]};
 }
 
+/// How many points each triangle gets beside its corners, `each` on average.
+std::vector<std::uint32_t> share_points(const PreparedMesh& mesh, std::span<const std::uint32_t> triangles,
+                                        std::size_t each) {
+  std::vector<double> length(triangles.size());
+  double sum = 0.0;
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const std::array<Vec3d, 3> p = corners_of(mesh, triangles[i]);
+    length[i] = std::max({glm::distance(p[0], p[1]), glm::distance(p[1], p[2]), glm::distance(p[2], p[0])});
+    sum += length[i];
+  }
+  const double by_length = sum > 0.0 ? kShareByLength : 0.0;
+  const double alike = static_cast<double>(each) * (1.0 - by_length);
+  const double per_length =
+      sum > 0.0 ? static_cast<double>(each) * by_length * static_cast<double>(triangles.size()) / sum : 0.0;
+  std::vector<std::uint32_t> counts(triangles.size());
+  double owed = 0.0;  // of a point: what is left of one goes to the next triangle
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    owed += alike + per_length * length[i];
+    counts[i] = static_cast<std::uint32_t>(owed);
+    owed -= counts[i];
+  }
+  return counts;
+}
+
 /// Corners, points of edges and points inside, of triangles spread over the whole source.
 std::vector<SourcePoint> choose_points(const PreparedMesh& mesh) {
   const std::size_t count = mesh.exact_triangles.size();
   const std::size_t step = (count + kMostTriangles - 1) / kMostTriangles;
   const std::size_t each = std::clamp(kPoints / std::max<std::size_t>(1, count), kFewestPerTriangle, kMostPerTriangle);
+  std::vector<std::uint32_t> triangles;
+  for (std::size_t i = 0; i < count; i += step) triangles.push_back(static_cast<std::uint32_t>(i));
+  const std::vector<std::uint32_t> counts = share_points(mesh, triangles, each);
   std::vector<SourcePoint> points;
   std::vector<std::uint8_t> is_taken(mesh.exact_positions.size(), 0);
   SplitMix64 random(0x77686F6C65ULL);
-  for (std::size_t i = 0; i < count; i += step) {
-    const auto t = static_cast<std::uint32_t>(i);
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const std::uint32_t t = triangles[i];
     for (const std::uint32_t id : mesh.exact_triangles[t]) {
       if (is_taken[id] == 0) points.push_back({mesh.exact_positions[id], t});
       is_taken[id] = 1;
     }
     const std::array<Vec3d, 3> corners = corners_of(mesh, t);
-    for (std::size_t k = 0; k < each; ++k)
-      points.push_back({random_point(corners, (i / step + k) % 2 == 0, random), t});
+    for (std::size_t k = 0; k < counts[i]; ++k) points.push_back({random_point(corners, (i + k) % 2 == 0, random), t});
   }
   return points;
 }
