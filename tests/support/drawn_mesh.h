@@ -13,6 +13,7 @@
 #include "build/simplify/collapse_star.h"
 #include "build/simplify/group_places.h"
 #include "build/simplify/simplify.h"
+#include "support/random.h"
 
 namespace meshlode::test {
 
@@ -53,6 +54,21 @@ struct DrawnMesh {
     return own;
   }
 };
+
+/// What a squared distance of floats may be off by, in the frame, for stars as large as it.
+constexpr double kFloats = 1e-5;
+
+/// A squared distance in the frame, from one in grid units.
+inline double in_frame(const DrawnMesh& drawn, double distance2) {
+  return distance2 / (drawn.places.scale() * drawn.places.scale());
+}
+
+/// Coordinates from 0 to below `size`.
+inline Vec3i random_point(RandomSource& random, std::uint32_t size) {
+  const auto coordinate = [&] { return static_cast<std::int32_t>(random.below(size)); };
+  const std::int32_t x = coordinate(), y = coordinate(), z = coordinate();
+  return {x, y, z};
+}
 
 /// Nothing locked, each vertex its own witness, one material, and no attributes.
 inline SimplifyInput as_input(const DrawnMesh& drawn) {

@@ -18,21 +18,16 @@ namespace {
 
 using test::closed_fan;
 using test::DrawnMesh;
+using test::in_frame;
+using test::kFloats;
 using test::open_fan;
+using test::random_point;
 
 /// Each vertex its own witness.
 std::vector<Witnesses> own_witnesses(const DrawnMesh& drawn) {
   std::vector<Witnesses> out;
   for (const Vec3i& p : drawn.points) out.push_back({{p}, 1});
   return out;
-}
-
-/// What a squared distance of floats may be off by, for stars as large as the frame.
-constexpr double kFloats = 1e-5;
-
-/// A squared distance in the frame, from one in grid units.
-double in_frame(const DrawnMesh& drawn, double distance2) {
-  return distance2 / (drawn.places.scale() * drawn.places.scale());
 }
 
 TEST(LeftBehind, AFlatFanLeavesNothing) {
@@ -119,12 +114,6 @@ TEST(LeftBehind, SheetsThatAreDroppedTellTheirHeightOrWhatTheyStoodFor) {
   behind.join(2, 3);
   // 2 has no triangle left then, and it stands for 3 too: the box from (0, 6, 0) to (0, 0, 9).
   EXPECT_NEAR(behind.drop_sheets(alone.mesh, alone.places, 0), std::sqrt(117.0) / alone.places.scale(), 1e-12);
-}
-
-Vec3i random_point(test::RandomSource& random, std::uint32_t size) {
-  const auto coordinate = [&] { return static_cast<std::int32_t>(random.below(size)); };
-  const std::int32_t x = coordinate(), y = coordinate(), z = coordinate();
-  return {x, y, z};
 }
 
 TEST(LeftBehind, WitnessesAreWeighedAgainstTheWholeStar) {

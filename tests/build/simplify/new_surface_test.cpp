@@ -16,14 +16,9 @@ namespace {
 
 using test::closed_fan;
 using test::DrawnMesh;
-
-/// What a squared distance of floats may be off by, for stars as large as the frame.
-constexpr double kFloats = 1e-5;
-
-/// A squared distance in the frame, from one in grid units.
-double in_frame(const DrawnMesh& drawn, double distance2) {
-  return distance2 / (drawn.places.scale() * drawn.places.scale());
-}
+using test::in_frame;
+using test::kFloats;
+using test::random_point;
 
 TEST(NewSurface, IsAsFarAsItsMiddlesAreFromWhatItReplaces) {
   DrawnMesh drawn = closed_fan();
@@ -54,12 +49,6 @@ double plain_new_surface_distance2(const DrawnMesh& drawn, const CollapseStar& s
     }
   }
   return farthest;
-}
-
-Vec3i random_point(test::RandomSource& random, std::uint32_t size) {
-  const auto coordinate = [&] { return static_cast<std::int32_t>(random.below(size)); };
-  const std::int32_t x = coordinate(), y = coordinate(), z = coordinate();
-  return {x, y, z};
 }
 
 TEST(NewSurface, IsThatOfEveryPointAgainstEveryTriangle) {
