@@ -2,6 +2,7 @@
 #include "build/prepare/prepare.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -85,6 +86,59 @@ TEST(MedianEdge, IsThatOfAllEdgesThatHaveALength) {
     EXPECT_LE(median, expected * (1.0 + 1e-15)) << pairs;
     EXPECT_GE(median, expected * (1.0 - 0x1p-21)) << pairs;
     EXPECT_EQ(std::ilogb(median), std::ilogb(expected)) << pairs;
+    if (pairs < 5000) {
+      EXPECT_NEAR(median, expected, 1e-15 * expected) << pairs << ": only of large meshes is it rounded";
+    }
+  }
+}
+
+AttributeLayout with_normals() {
+  AttributeLayout layout;
+  layout.has_normal = true;
+  return layout;
+}
+
+TEST(Corners, WhereNormalsAreMissingEachTriangleGetsItsOwnOfLengthOne) {
+  for (const double scale : {1e-9, 1.0, 1e9}) {
+    const scene::Primitive shape = scene::scaled(scene::make_torus(12, 8), scale);
+    const Corners corners = gather_corners(scene::as_mesh(shape), with_normals());
+    ASSERT_EQ(corners.positions.size(), shape.indices.size()) << "each corner is a vertex of its own";
+    for (std::size_t i = 0; i < shape.indices.size(); ++i) {
+      ASSERT_EQ(corners.triangles[i], i);
+      ASSERT_EQ(corners.positions[i], shape.positions[shape.indices[i]]);
+      const std::size_t t = i / 3 * 3;
+      const Vec3d& a = shape.positions[shape.indices[t]];
+      const Vec3d u = (shape.positions[shape.indices[t + 1]] - a) / scale,
+                  v = (shape.positions[shape.indices[t + 2]] - a) / scale;
+      const float* n = corners.attributes_of(static_cast<std::uint32_t>(i), 3);
+      EXPECT_LT(glm::length(Vec3d(n[0], n[1], n[2]) - glm::normalize(glm::cross(u, v))), 1e-6) << scale;
+    }
+  }
+}
+
+/// Whether `a` comes before `b` along the Z-curve over cubes of 8 grid points, with x least and z most significant: by
+/// the axis whose coordinates differ in the highest bit (Chan 2002). Within a cube by x, y and z.
+bool is_before_on_z_curve(const Vec3i& a, const Vec3i& b) {
+  const auto bits = [](int value) { return static_cast<std::uint32_t>(value + (1 << 23)) >> 3U; };
+  int decisive = 2;
+  std::uint32_t most = 0;
+  for (const int axis : {2, 1, 0}) {
+    const std::uint32_t differs = bits(a[axis]) ^ bits(b[axis]);
+    if (most < differs && most < (most ^ differs)) {
+      decisive = axis;
+      most = differs;
+    }
+  }
+  if (most != 0) return bits(a[decisive]) < bits(b[decisive]);
+  return std::array{a.x, a.y, a.z} < std::array{b.x, b.y, b.z};
+}
+
+TEST(Prepare, PositionsStandInZOrder) {
+  for (const scene::Primitive& shape : {scene::make_torus(40, 20), scene::make_far_plane(32)}) {
+    const PreparedMesh mesh = prepare(shape);
+    for (std::size_t i = 1; i < mesh.positions.size(); ++i) {
+      ASSERT_TRUE(is_before_on_z_curve(mesh.positions[i - 1], mesh.positions[i])) << i;
+    }
   }
 }
 
@@ -330,6 +384,46 @@ TEST(ChooseGrid, APositionErrorIsKeptAndNearlyUsed) {
   PrepareOptions options;
   options.position_error = 1e-9;
   EXPECT_EQ(choose_grid(1.0, 2.0, 0.1, options).error().code, ErrorCode::kUnsupported);
+}
+
+/// Position errors that a step of eight bits would break by next to nothing: the next smaller step is due.
+TEST(ChooseGrid, APositionErrorThatAStepBarelyBreaksIsKept) {
+  for (std::uint32_t mantissa = 129; mantissa < 256; mantissa += 2) {
+    PrepareOptions options;
+    options.position_error = mantissa * 0x1p-12 * std::sqrt(3.0) / 2.0 * (1.0 - 2e-13);
+    const auto grid = choose_grid(1.0, 2.0, 0.1, options);
+    ASSERT_TRUE(grid.ok());
+    const long double step = static_cast<long double>(grid->step()), error = options.position_error;
+    EXPECT_LE(3.0L * step * step, 4.0L * error * error) << mantissa;
+  }
+}
+
+TEST(ChooseGrid, ARefusalNamesWhatWasAskedAndTheExtent) {
+  PrepareOptions options;
+  options.grid_step = 0x1p-40;
+  EXPECT_EQ(choose_grid(16.0, 50.0, 0.1, options).error().detail,
+            "a grid step of 9.09495e-13 needs more than 24 bits for an extent of 32");
+}
+
+TEST(ChooseGrid, IsTheCoarsestPowerOfTwoThatKeepsItsShareOfTheDiagonal) {
+  for (int i = 0; i < 100; ++i) {
+    const double diagonal = 1.7 * std::pow(1.37, i - 50);
+    const auto grid = choose_grid(0.25 * diagonal, diagonal, 0.0, {});
+    ASSERT_TRUE(grid.ok());
+    const double farthest = grid->step() * std::sqrt(3.0) / 2.0;
+    EXPECT_LE(farthest, 2.5e-5 * diagonal);
+    EXPECT_GT(2.0 * farthest, 2.5e-5 * diagonal) << diagonal;
+  }
+}
+
+TEST(ChooseGrid, IsTheFinestWhoseCoordinatesKeepTwoBitsInReserve) {
+  constexpr double kMost = format::kMaxGridCoordinate / 4.0;
+  for (const double half : {1.0, 1.3, 1e-20, 7e15, kMost, kMost * 0x1p-30, kMost * 0x1p9}) {
+    const auto grid = choose_grid(half, 1.5 * half, 1e-15 * half, {});  // edges that ask for a far finer one
+    ASSERT_TRUE(grid.ok());
+    EXPECT_LE(half / grid->step(), kMost) << half;
+    EXPECT_GT(half / (0.5 * grid->step()), kMost) << half;
+  }
 }
 
 TEST(Prepare, NoVertexMovesFartherThanThePositionError) {
