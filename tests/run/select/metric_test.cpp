@@ -38,6 +38,68 @@ TEST(Metric, FollowsTheRuleOnAnExampleDoneByHand) {
   EXPECT_FALSE(passes(view, {{0, 0, -2}, 0.0F, 0.0241F}));
 }
 
+// docs/selection.md: E <= near or (E + R)^2 <= d^2. All of these are small whole numbers, so that nothing is rounded.
+TEST(Metric, PassesWhereBothSidesAreEqual) {
+  MetricView view{};
+  view.row0.x = view.row1.y = view.row2.z = 1.0F;
+  view.scale = view.error_scale = 1.0F;
+  view.near_distance = 0.5F;
+  EXPECT_TRUE(passes(view, {{3, 4, 0}, 3.0F, 2.0F}));
+  EXPECT_FALSE(passes(view, {{3, 4, 0}, 3.0F, 2.0F + 0x1p-20F}));
+  EXPECT_FALSE(passes(view, {{3, 4, 0}, 3.0F + 0x1p-20F, 2.0F}));
+  EXPECT_TRUE(passes(view, {{3, 4, 0}, 9.0F, 0.5F})) << "inside of the sphere, by the near distance";
+  EXPECT_FALSE(passes(view, {{3, 4, 0}, 9.0F, 0.5F + 0x1p-20F}));
+}
+
+// The example done by hand, with the world and the mesh as small and as large as floats hold the bounds.
+TEST(Metric, FollowsTheRuleAtEverySizeOfMeshAndInstance) {
+  for (int mesh_log2 = -110; mesh_log2 <= 110; mesh_log2 += 11) {
+    for (int scale_log2 = -300; scale_log2 <= 300; scale_log2 += 20) {
+      const double unit = std::ldexp(1.0, mesh_log2), sigma = std::ldexp(1.0, scale_log2);
+      format::InstanceRecord instance = identity_instance();
+      for (double& x : instance.transform) x *= sigma;
+      instance.scale = sigma;
+      Camera camera;
+      camera.eye = {0.0, 0.0, 10.0 * unit * sigma};
+      camera.near_distance = 1e-6 * unit * sigma;
+      camera.fovy = 2.0 * std::atan(1.0);
+      camera.height = 2000;
+      const MetricView view = make_metric_view(camera, 2.0, instance, format::MeshRecord{}, 4.0 * unit);
+      const auto f = static_cast<float>(unit);
+      EXPECT_TRUE(passes(view, {{0, 0, 0}, 2.0F * f, 0.01599F * f})) << mesh_log2 << " " << scale_log2;
+      EXPECT_FALSE(passes(view, {{0, 0, 0}, 2.0F * f, 0.01601F * f})) << mesh_log2 << " " << scale_log2;
+    }
+  }
+}
+
+// From pixels to distances: never below the quotient, and above it by no more than the growth, as far as normal floats
+// go. An orthographic camera's lengths are those of the world.
+TEST(Metric, TheFactorOfErrorsIsTightAsFarAsNormalFloatsGo) {
+  Camera camera;
+  camera.is_orthographic = true;
+  camera.ortho_height = 1.0;
+  camera.height = 1000;
+  for (int log2 = -125; log2 <= 125; ++log2) {
+    for (const double part : {0.51, 0.73, 0.98}) {
+      const double exact = std::ldexp(part, log2);
+      const double pixel_error = camera.height / exact;
+      if (exact < 0x1p-126) continue;
+      const MetricView view = make_metric_view(camera, pixel_error, identity_instance(), format::MeshRecord{}, 1.0);
+      EXPECT_GE(double{view.error_scale}, exact) << log2;
+      EXPECT_LE(double{view.error_scale}, exact * (1.0 + 0x1p-19)) << log2;
+    }
+  }
+}
+
+// docs/selection.md derives how much of each margin rounding may use, in units of 2^-24.
+TEST(Metric, TheMarginsAreWhatTheProofNeeds) {
+  constexpr double kUnit = 0x1p-24;
+  EXPECT_GE(kNestingRadiusMargin, 5.1 * kUnit);
+  EXPECT_GE(kNestingCenterMargin, 5.2 * kUnit);
+  EXPECT_GE(kNestingErrorMargin, 10.3 * kUnit);
+  EXPECT_GT(kNestingErrorGrowth, kNestingErrorMargin);
+}
+
 TEST(Metric, UsesTheNearDistanceInsideASphere) {
   Camera camera;
   camera.eye = {0.1, 0.2, 0.3};

@@ -223,6 +223,15 @@ TEST(Select, WithAttributeBoundsEachPieceIsDrawnOnceAndTheBvhAgrees) {
     const CutAttributeDeviation deviation = attribute_deviation_of(tables, ids);
     ASSERT_LE(deviation.normal_degrees, bounds.normal_degrees) << "camera " << n << ", seed 29";
     ASSERT_LE(deviation.uv, bounds.uv) << "camera " << n << ", seed 29";
+    CutAttributeDeviation worst;
+    for (const std::uint32_t id : drawn) {
+      if (tables.clusters[id].own_group == format::kNone) continue;
+      const format::GroupRecord& own = tables.groups[tables.clusters[id].own_group];
+      if (own.normal_deviation > worst.normal_degrees) worst.normal_degrees = own.normal_deviation;
+      if (own.uv_deviation > worst.uv) worst.uv = own.uv_deviation;
+    }
+    ASSERT_EQ(deviation.normal_degrees, worst.normal_degrees) << "camera " << n << ", seed 29";
+    ASSERT_EQ(deviation.uv, worst.uv) << "camera " << n << ", seed 29";
     expect_each_path_has_one_drawn_cluster(random, tables, tables.instances[i].mesh, drawn);
     if (HasFatalFailure()) FAIL() << "instance " << i << ", camera " << n << ", seed 29";
   }
