@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "build/encode/encode.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -9,6 +10,7 @@
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>
 
+#include "build/encode/uv_grid.h"
 #include "run/decode/decode.h"
 #include "support/random.h"
 #include "support/sample_asset.h"
@@ -151,6 +153,49 @@ TEST(Encode, DependenciesAreThePagesOfTheCoarserClusters) {
   EXPECT_EQ(mesh->pages[2].dependencies, std::vector<std::uint32_t>{0});
 }
 
+TEST(Encode, BoundsAreThoseOfTheVerticesOfLevelZero) {
+  test::SampleMesh sample = heavy_mesh(3, 2, AttributeLayout{});
+  sample.dag.level_count = 2;
+  sample.dag.groups[0].level = 1;
+  for (std::uint32_t c = 0; c < 2; ++c) {
+    sample.dag.clusters[c].level = 1;
+    sample.dag.clusters[c].own_group = GroupId{1 + c};
+  }
+  for (std::uint32_t g = 1; g < 3; ++g) sample.dag.groups[g].is_terminal = false;
+  for (std::size_t v = 2 * 256; v < sample.dag.vertex_position.size(); ++v) {
+    sample.dag.vertex_position[v] /= 3;  // the coarser clusters reach farther
+    sample.dag.vertex_position[v].y += 1000000;
+  }
+  const auto mesh = encode(sample);
+  ASSERT_TRUE(mesh.ok()) << mesh.error().message();
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<int> values;
+    for (std::size_t v = 2 * 256; v < sample.dag.vertex_position.size(); ++v)
+      values.push_back(sample.dag.vertex_position[v][axis]);
+    EXPECT_EQ(mesh->record.bounds_min[axis], *std::min_element(values.begin(), values.end())) << axis;
+    EXPECT_EQ(mesh->record.bounds_max[axis], *std::max_element(values.begin(), values.end())) << axis;
+  }
+}
+
+TEST(Encode, TheStepOfUvsIsTheLargestPowerOfTwoWithinTheErrorAskedOrTheDefault) {
+  AttributeLayout layout;
+  layout.uv_set_count = 1;
+  const test::SampleMesh sample = heavy_mesh(1, 1, layout);
+  UvRange range;
+  for (const float value : sample.dag.vertex_attributes) range.add(value);
+  for (const double asked : {0.0, 0.01, 0x1p-12, 1e-5}) {
+    EncodeOptions options;
+    options.uv_error.fill(asked);
+    options.uv_error_may_fall_short = false;  // no limit is asked for by 0, and the others are kept
+    const auto mesh = encode(sample, options);
+    ASSERT_TRUE(mesh.ok()) << mesh.error().message();
+    const double error = asked > 0.0 ? asked : default_uv_error(range);
+    const double half_step = 0.5 * format::exp2_exact(mesh->record.uv_log2[0]);
+    EXPECT_LE(half_step, error) << asked;
+    EXPECT_GT(2.0 * half_step, error) << asked;
+  }
+}
+
 TEST(Encode, IsTheSameForAnyNumberOfThreads) {  // I10
   const test::SampleMesh sample = heavy_mesh(20, 10, full_layout());
   std::vector<std::vector<std::vector<std::uint8_t>>> results;
@@ -242,7 +287,6 @@ TEST(Encode, StoredBoundsAreNeverBelowTheTruth) {
   }
 }
 
-/// Each breaks one limit of the format: the encoder must see it, not the reader.
 TEST(Encode, TheLargestSphereOfSixteenBitsFits) {
   test::SampleMesh sample = test::sample_patch();
   const float unit = static_cast<float>(format::exp2_exact(sample.hierarchy.sphere_log2));
@@ -252,6 +296,7 @@ TEST(Encode, TheLargestSphereOfSixteenBitsFits) {
   EXPECT_FALSE(encode(sample).ok());
 }
 
+/// Each breaks one limit of the format: the encoder must see it, not the reader.
 TEST(Encode, ADagThatTheFormatCannotHoldIsRefused) {
   struct Mistake {
     const char* name;

@@ -112,6 +112,72 @@ TEST(Fits, AnAffineMapLeavesNextToNothing) {
   EXPECT_FALSE(fit_uv(values, positions, false).has_slope);
 }
 
+/// Bits of the least range that holds the values as they are.
+std::uint32_t plain_bits(const std::vector<std::int32_t>& values) {
+  const auto [least, most] = std::minmax_element(values.begin(), values.end());
+  std::uint32_t bits = 0;
+  while ((std::int64_t{1} << bits) <= std::int64_t{*most} - *least) ++bits;
+  return bits;
+}
+
+// A slope takes room in the cluster's head: it is kept where it makes values shorter, and only there.
+TEST(Fits, ASlopeIsKeptOnlyWhereItSavesBits) {
+  test::Random random(43);
+  int sloped = 0, plain = 0;
+  for (int round = 0; round < 2000; ++round) {
+    std::vector<RawPosition> positions;
+    std::vector<std::int32_t> values;
+    const std::uint64_t noise = 1 + random.below(std::uint64_t{1} << random.below(12));
+    for (std::uint64_t i = 0; i < 4 + random.below(60); ++i) {
+      positions.push_back({static_cast<std::uint32_t>(random.below(256)), static_cast<std::uint32_t>(random.below(256)),
+                           static_cast<std::uint32_t>(random.below(256))});
+      values.push_back(static_cast<std::int32_t>(positions.back()[0] + random.below(noise)));
+    }
+    const UvFit fit = fit_uv(values, positions, true);
+    if (fit.has_slope) {
+      EXPECT_LT(fit.range.bits, plain_bits(values)) << "seed 43, round " << round;
+    } else {
+      EXPECT_EQ(fit.range.bits, plain_bits(values)) << "seed 43, round " << round;
+    }
+    ++(fit.has_slope ? sloped : plain);
+  }
+  EXPECT_GT(sloped, 200);
+  EXPECT_GT(plain, 200);
+}
+
+// By one coordinate alone, the others being what they are: no slope of theirs is needed for this one's.
+TEST(Fits, AMapOfOneCoordinateLosesItsRange) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::vector<RawPosition> positions;
+    std::vector<std::int32_t> values;
+    for (std::uint32_t i = 0; i < 64; ++i) {
+      RawPosition p{};
+      p[axis] = 16 * i;
+      positions.push_back(p);
+      values.push_back(static_cast<std::int32_t>(3 * 16 * i));
+    }
+    const UvFit fit = fit_uv(values, positions, true);
+    expect_undone(values, positions, fit);
+    EXPECT_TRUE(fit.has_slope);
+    EXPECT_EQ(fit.range.bits, 0U) << axis;
+  }
+}
+
+// Coefficients have ten bits with the sign: 510.5 / 512 is kept as 511 / 2^9, and twice as fine would not fit.
+TEST(Fits, SlopesAreKeptAsFineAsTenBitsHold) {
+  std::vector<RawPosition> positions;
+  std::vector<std::int32_t> values;
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    positions.push_back({i % 2 * 1024, i / 2 * 1024, 0});
+    values.push_back(static_cast<std::int32_t>(i % 2 * 1021 + i / 2 * 6));
+  }
+  const UvFit fit = fit_uv(values, positions, true);
+  expect_undone(values, positions, fit);
+  ASSERT_TRUE(fit.has_slope);
+  EXPECT_EQ(fit.shift, 9U);
+  EXPECT_EQ(fit.slope, (std::array<std::int32_t, 3>{511, 3, 0}));
+}
+
 TEST(Fits, AnyCoordinatesComeBack) {
   test::Random random(41);
   for (int round = 0; round < 400; ++round) {

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <vector>
 
+#include "build/hierarchy/bvh.h"
 #include "build/hierarchy/culling_bounds.h"
 #include "build/hierarchy/hierarchy.h"
 #include "build/hierarchy/lod_bounds.h"
@@ -278,6 +279,98 @@ TEST(Hierarchy, BvhHasEachGroupInOneLeafAndNestsItsChildren) {
     }
     for (std::size_t n = 0; n < parents.size(); ++n) EXPECT_EQ(parents[n], n == 0 ? 0 : 1);
     for (const int count : leaves) EXPECT_EQ(count, 1);
+  }
+}
+
+TEST(Hierarchy, ClusterSpheresHoldTheirVerticesInWholeUnits) {
+  for (const RandomDag& d : make_dags(47)) {
+    const Hierarchy h = build_hierarchy(d.dag, d.mesh);
+    for (std::size_t c = 0; c < d.dag.clusters.size(); ++c) {
+      const DagCluster& cluster = d.dag.clusters[c];
+      const Hierarchy::Sphere& sphere = h.cluster_spheres[c];
+      for (std::uint32_t v = cluster.first_vertex; v < cluster.first_vertex + cluster.vertex_count; ++v) {
+        const Vec3d p = d.mesh.grid.decode(d.dag.vertex_position[v]);
+        Rational distance2 = 0;
+        for (int axis = 0; axis < 3; ++axis) {
+          const Rational away = Rational(p[axis]) - Rational(sphere.center[axis]);
+          distance2 += away * away;
+        }
+        ASSERT_LE(distance2, Rational(sphere.radius) * Rational(sphere.radius));
+      }
+    }
+  }
+}
+
+std::vector<std::uint32_t> groups_below(const std::vector<format::NodeRecord>& nodes, std::uint32_t node) {
+  if (nodes[node].child_count == 0) return {nodes[node].first};
+  std::vector<std::uint32_t> groups;
+  for (std::uint32_t c = 0; c < nodes[node].child_count; ++c) {
+    const std::vector<std::uint32_t> below = groups_below(nodes, nodes[node].first + c);
+    groups.insert(groups.end(), below.begin(), below.end());
+  }
+  return groups;
+}
+
+// Groups along a line, which is the longest axis of any two of them: each node's children follow each other on it.
+TEST(Hierarchy, BvhKeepsNeighboursTogetherAlongAnyAxisInAnyOrder) {
+  RandomSource random(48);
+  constexpr std::uint32_t kCount = 300;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const std::uint32_t stride : {1U, kCount - 1, 7U, 101U}) {  // forwards, backwards, mixed
+      std::vector<Hierarchy::Sphere> spheres(kCount);
+      for (std::uint32_t g = 0; g < kCount; ++g) {
+        for (float& c : spheres[g].center) c = static_cast<float>(random.between(-1.0, 1.0));
+        spheres[g].center[axis] = 10.0F * static_cast<float>(g * stride % kCount) - 1000.0F;
+        spheres[g].radius = 1.0F;
+      }
+      const std::vector<format::NodeRecord> nodes =
+          build_bvh(spheres, std::vector<float>(kCount, 1.0F), std::vector<std::uint32_t>(kCount, 3));
+      for (const format::NodeRecord& node : nodes) {
+        std::vector<std::array<float, 2>> ranges;
+        for (std::uint32_t c = 0; c < node.child_count; ++c) {
+          std::array<float, 2> range{HUGE_VALF, -HUGE_VALF};
+          for (const std::uint32_t g : groups_below(nodes, node.first + c)) {
+            range = {std::min(range[0], spheres[g].center[axis]), std::max(range[1], spheres[g].center[axis])};
+          }
+          ranges.push_back(range);
+        }
+        std::sort(ranges.begin(), ranges.end());
+        for (std::size_t i = 1; i < ranges.size(); ++i) {
+          ASSERT_LT(ranges[i - 1][1], ranges[i][0]) << "axis " << axis << ", stride " << stride;
+        }
+      }
+    }
+  }
+}
+
+// A group that never passes keeps what is above it open: below that there is one closed subtree for each level.
+TEST(Hierarchy, TerminalGroupsHoldNothingElseOpen) {
+  RandomSource random(49);
+  for (const std::uint32_t count : {20U, 300U, 2000U}) {
+    constexpr std::uint32_t kLevels = 5;
+    std::vector<Hierarchy::Sphere> spheres(count);
+    std::vector<float> errors(count);
+    std::vector<std::uint32_t> levels(count);
+    for (std::uint32_t g = 0; g < count; ++g) {
+      const Vec3d c = random.in_cube(100.0);
+      spheres[g] = {{static_cast<float>(c.x), static_cast<float>(c.y), static_cast<float>(c.z)}, 1.0F};
+      levels[g] = g % kLevels;
+      errors[g] = random.chance(0.1) ? format::kInfiniteError : static_cast<float>(levels[g] + 1);
+    }
+    const std::vector<format::NodeRecord> nodes = build_bvh(spheres, errors, levels);
+    std::vector<std::uint32_t> closed_of_level(kLevels, 0), open{0};
+    while (!open.empty()) {
+      const std::uint32_t at = open.back();
+      open.pop_back();
+      if (nodes[at].error >= format::kInfiniteError) {
+        for (std::uint32_t c = 0; c < nodes[at].child_count; ++c) open.push_back(nodes[at].first + c);
+        continue;
+      }
+      const std::vector<std::uint32_t> groups = groups_below(nodes, at);
+      for (const std::uint32_t g : groups) EXPECT_EQ(levels[g], levels[groups[0]]);
+      ++closed_of_level[levels[groups[0]]];
+    }
+    for (const std::uint32_t closed : closed_of_level) EXPECT_EQ(closed, 1U) << count << " groups";
   }
 }
 

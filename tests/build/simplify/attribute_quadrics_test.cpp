@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "build/simplify/attribute_quadrics.h"
 
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
 #include <gtest/gtest.h>
 
+#include "build/simplify/attribute_scales.h"
 #include "support/drawn_mesh.h"
+#include "support/random.h"
 
 namespace meshlode::build {
 namespace {
@@ -138,6 +144,60 @@ TEST(AttributeQuadrics, WithoutAttributesThereAreNone) {
   EXPECT_EQ(attributes.count(), 0U);
   Quadric total;
   EXPECT_EQ(attributes.add_classes(total, {}, Vec3d(0.0)), 0.0);
+}
+
+// SimplifyOptions says what they are: a normal that is off counts like a distance of its weight times the side of a
+// mean triangle (at most a twentieth of half the extent), and texture coordinates by the density of their set.
+TEST(AttributeScales, AreThoseOfTheMeanTriangleAndOfEachSetsDensity) {
+  // A strip 1000 long: half of it is 1 in the frame.
+  for (const int width : {1, 2, 400}) {
+    DrawnMesh drawn({{0, 0, 0}, {1000, 0, 0}, {1000, width, 0}, {0, width, 0}}, {{0, 1, 2}, {0, 2, 3}});
+    SimplifyInput input = as_input(drawn);
+    input.layout.has_normal = true;
+    input.layout.uv_set_count = 2;
+    input.layout.has_color = true;
+    for (const Vec3i& p : drawn.points) {
+      // The first set covers 4 by 1, the second 1/2 by 3, turned.
+      const float x = p.x == 0 ? 0.0F : 1.0F, y = p.y == 0 ? 0.0F : 1.0F;
+      for (const float value : {0.0F, 0.0F, 1.0F, 4.0F * x, y, 7.0F - 3.0F * y, 0.5F * x, 1.0F, 1.0F, 1.0F, 1.0F})
+        input.wedge_attributes.push_back(value);
+    }
+    SimplifyOptions options;
+    options.normal_weight = 3.0;
+    options.uv_weight = 5.0;
+    options.color_weight = 11.0;
+    const std::vector<double> scales = attribute_scales(input, options, drawn.mesh, drawn.places);
+    ASSERT_EQ(scales.size(), 11U);
+    const double area = 2.0 * (width / 500.0);
+    const double side = std::min(0.05, std::sqrt(area / 2.0));
+    const std::vector<double> expected{3.0 * side, 5.0 * std::sqrt(area / 4.0), 5.0 * std::sqrt(area / 1.5),
+                                       11.0 * side};
+    const std::vector<std::size_t> of{0, 0, 0, 1, 1, 2, 2, 3, 3, 3, 3};
+    for (std::size_t j = 0; j < of.size(); ++j) EXPECT_NEAR(scales[j], expected[of[j]], 1e-12) << width << " " << j;
+  }
+}
+
+TEST(AttributeScales, OfCoordinatesThatCoverNothingIsZero) {
+  DrawnMesh drawn = closed_fan();
+  SimplifyInput input = linear_texture(drawn);
+  std::fill(input.wedge_attributes.begin(), input.wedge_attributes.end(), 0.5F);
+  EXPECT_EQ(attribute_scales(input, {}, drawn.mesh, drawn.places), (std::vector<double>{0.0, 0.0}));
+}
+
+// To the nearest point of the grid, on either side of zero.
+TEST(GroupPlaces, ComeBackFromTheFrameAndRoundToTheNearest) {
+  test::RandomSource random(52);
+  for (int round = 0; round < 300; ++round) {
+    std::vector<Vec3i> points;
+    const double size = random.log_between(1.0, 4e6);
+    for (int i = 0; i < 6; ++i) points.push_back(Vec3i(random.in_cube(size)));
+    const GroupPlaces places(points);
+    for (std::uint32_t v = 0; v < places.size(); ++v) {
+      EXPECT_EQ(places.to_grid(places[v]), points[v]) << "seed 52, round " << round;
+      const Vec3d off = random.in_cube(0.49);
+      EXPECT_EQ(places.to_grid(places[v] + off / places.scale()), points[v]) << "seed 52, round " << round;
+    }
+  }
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "support/drawn_mesh.h"
+#include "support/random.h"
 
 namespace meshlode::build {
 namespace {
@@ -135,6 +136,81 @@ TEST(SharedEdges, WithoutALockedEndAllIsKept) {
   DrawnMesh drawn(kEarPoints, {{0, 1, 2}});
   const GroupLocks locks({0, 0, 1, 0, 0}, Flags(5, 0), drawn.wedge_position);
   EXPECT_TRUE(build::keeps_shared_edges(drawn.mesh, locks, drawn.star(0, 1)));
+}
+
+/// How often a triangle of vertices runs from one to another, less how often back.
+int runs(const WedgeTriangle& t, std::uint32_t from, std::uint32_t to) {
+  int sum = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::uint32_t a = t[k], b = t[(k + 1) % 3];
+    sum += a == from && b == to ? 1 : a == to && b == from ? -1 : 0;
+  }
+  return sum;
+}
+
+/// The rule by all triangles, tip by tip: 0 is locked and 1 comes to it. What runs between 0 and a locked tip must run
+/// as before where a triangle of 1 did; and where none did, what comes may not run against what is there.
+bool plain_keeps_shared_edges(const std::vector<WedgeTriangle>& triangles, const Flags& is_locked) {
+  const auto has = [](const WedgeTriangle& t, std::uint32_t v) { return t[0] == v || t[1] == v || t[2] == v; };
+  for (std::uint32_t tip = 2; tip < is_locked.size(); ++tip) {
+    if (is_locked[tip] == 0) continue;
+    int going = 0, coming = 0, staying = 0;
+    bool is_covered = false;
+    for (const WedgeTriangle& t : triangles) {
+      const int on_edge = has(t, tip) ? runs(t, tip, 0) : 0;
+      staying += on_edge;
+      if (!has(t, 1) || !has(t, tip)) continue;
+      is_covered |= on_edge != 0;
+      going += on_edge;
+      if (on_edge == 0) coming += runs(t, tip, 1);
+    }
+    if (is_covered ? going != coming : coming * staying < 0) return false;
+  }
+  return true;
+}
+
+// Of hubs, which are counted another way, too: with many triangles that no locked vertex sees, and with books, whose
+// pages all have one locked edge.
+TEST(SharedEdges, FollowTheRuleAroundFewTrianglesAndAroundHubs) {
+  test::RandomSource random(47);
+  int kept = 0, lost = 0;
+  for (int round = 0; round < 900; ++round) {
+    const std::uint32_t few = 8, fillers = round % 3 == 0 ? 0 : 80;
+    std::vector<WedgeTriangle> triangles{{0, 1, 2}};
+    for (std::uint32_t n = 1 + random.below(7); n > 0; --n) {
+      const std::uint32_t x = 2 + random.below(few - 2), y = 2 + random.below(few - 2);
+      if (x != y) triangles.push_back({random.below(2), x, y});
+    }
+    for (std::uint32_t f = few; f + 1 < few + fillers; ++f) {
+      if (round % 3 == 1) {
+        triangles.push_back({1, f, f + 1});
+      } else {  // pages of the edge (1, 2), as many this way as that, or not
+        triangles.push_back(random.chance(0.5) ? WedgeTriangle{1, 2, f} : WedgeTriangle{2, 1, f});
+      }
+    }
+    if (round % 6 == 2) {
+      int balance = 0;
+      for (const WedgeTriangle& t : triangles) balance += runs(t, 2, 0) == 0 ? runs(t, 2, 1) : -runs(t, 2, 0);
+      for (; balance != 0; balance += balance > 0 ? -1 : 1) {
+        const std::uint32_t page = few + random.below(fillers);
+        triangles.push_back(balance > 0 ? WedgeTriangle{1, 2, page} : WedgeTriangle{2, 1, page});
+      }
+    }
+    std::vector<Vec3i> points;
+    for (std::uint32_t v = 0; v < few + fillers; ++v) {
+      points.push_back({static_cast<int>(v * 37 % 101), static_cast<int>(v * 53 % 97), static_cast<int>(v)});
+    }
+    Flags is_locked(points.size(), 0);
+    is_locked[0] = 1;
+    for (std::uint32_t v = 2; v < few; ++v) is_locked[v] = random.chance(0.5) ? 1 : 0;
+    DrawnMesh drawn(points, triangles);
+    const GroupLocks locks(is_locked, Flags(points.size(), 0), drawn.wedge_position);
+    const bool expected = plain_keeps_shared_edges(triangles, is_locked);
+    ++(expected ? kept : lost);
+    ASSERT_EQ(build::keeps_shared_edges(drawn.mesh, locks, drawn.star(0, 1)), expected) << "seed 47, round " << round;
+  }
+  EXPECT_GT(kept, 100);
+  EXPECT_GT(lost, 100);
 }
 
 /// The triangle (0, 1, 2) goes and (1, 3, 2), by its wedges, is the heir of (0, 2). 0 and 2 are locked, 1 comes to 0.

@@ -116,6 +116,36 @@ TEST(LeftBehind, SheetsThatAreDroppedTellTheirHeightOrWhatTheyStoodFor) {
   EXPECT_NEAR(behind.drop_sheets(alone.mesh, alone.places, 0), std::sqrt(117.0) / alone.places.scale(), 1e-12);
 }
 
+// Only products and sums are compared, none with a number of its own: a power of two changes no bit of the result.
+TEST(PointTriangle, DistanceIsTheSameAtEveryScaleAndThatOfTheNearestOfAllPoints) {
+  test::RandomSource random(51);
+  for (int round = 0; round < 3000; ++round) {
+    Vec3d p = random.in_cube(1.0);
+    const Vec3d a = random.in_cube(1.0), b = random.in_cube(1.0);
+    Vec3d c = random.in_cube(1.0);
+    if (round % 4 == 0) p = a + (b - a) * random.unit() + (c - a) * random.unit();  // in the plane
+    if (round % 8 == 1) c = a + (b - a) * random.between(-1.0, 2.0) + random.in_cube(1e-6);
+    const double distance2 = distance2_to_facet(p, a, b, c);
+    for (const double scale : {0x1p-40, 0x1p-12, 0x1p20}) {
+      ASSERT_EQ(distance2_to_facet(p * scale, a * scale, b * scale, c * scale), distance2 * scale * scale)
+          << "seed 51, round " << round;
+    }
+    if (round % 8 == 1) continue;  // of needles the steps below are too coarse
+    // No point of a fine net is nearer; the nearest of it is within its mesh size.
+    double nearest = std::numeric_limits<double>::infinity();
+    constexpr int kSteps = 24;
+    for (int i = 0; i <= kSteps; ++i) {
+      for (int j = 0; i + j <= kSteps; ++j) {
+        const Vec3d q = a + (b - a) * (static_cast<double>(i) / kSteps) + (c - a) * (static_cast<double>(j) / kSteps);
+        nearest = std::min(nearest, glm::length(p - q));
+      }
+    }
+    const double longest = std::max({glm::length(b - a), glm::length(c - a), glm::length(c - b)});
+    ASSERT_LE(std::sqrt(distance2), nearest + 1e-12) << "seed 51, round " << round;
+    ASSERT_GE(std::sqrt(distance2), nearest - longest / kSteps) << "seed 51, round " << round;
+  }
+}
+
 TEST(LeftBehind, WitnessesAreWeighedAgainstTheWholeStar) {
   test::RandomSource random(43);
   for (int round = 0; round < 300; ++round) {
