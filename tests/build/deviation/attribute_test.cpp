@@ -104,5 +104,41 @@ TEST(AttributeDeviation, IsToldByTrianglesWithAreaAlone) {
   EXPECT_NEAR(compare(sheet).normal, 5.0, 1e-4);
 }
 
+/// Of the attributes only normals, or only UVs.
+Sheet only(const Sheet& sheet, bool has_normal) {
+  Sheet out{sheet.positions, sheet.triangles, {}};
+  for (std::size_t i = 0; i < sheet.attributes.size(); ++i) {
+    if ((i % 5 < 3) == has_normal) out.attributes.push_back(sheet.attributes[i]);
+  }
+  return out;
+}
+
+TEST(AttributeDeviation, OfOneAttributeAloneIsWhatItIsAmongOthers) {
+  const auto nothing = [](double, double) { return 0.0; };
+  const Sheet group = make_sheet(
+      10, [](double, double) { return 7.0; }, [](double, double) { return 0.25; });
+  for (const bool has_normal : {true, false}) {
+    const Sheet source = only(make_sheet(40, nothing, nothing), has_normal), part = only(group, has_normal);
+    AttributeLayout one;
+    one.has_normal = has_normal;
+    one.uv_set_count = has_normal ? 0 : 1;
+    const AttributeDeviation deviation =
+        measure_attributes(SourceTree(source.positions, source.triangles), {source.attributes, source.triangles},
+                           {part.positions, part.triangles}, {part.attributes, part.triangles}, one);
+    EXPECT_NEAR(deviation.normal, has_normal ? 7.0 : 0.0, 1e-4);
+    EXPECT_NEAR(deviation.uv, has_normal ? 0.0 : 0.25, 1e-5);
+  }
+}
+
+TEST(AttributeDeviation, WithoutASourceThereIsNothingToDeviateFrom) {
+  const auto nothing = [](double, double) { return 0.0; };
+  const Sheet group = make_sheet(3, nothing, nothing), none;
+  const AttributeDeviation deviation =
+      measure_attributes(SourceTree(none.positions, none.triangles), {none.attributes, none.triangles},
+                         {group.positions, group.triangles}, {group.attributes, group.triangles}, layout());
+  EXPECT_EQ(deviation.normal, 0.0);
+  EXPECT_EQ(deviation.uv, 0.0);
+}
+
 }  // namespace
 }  // namespace meshlode::build

@@ -4,10 +4,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
 
+#include "build/deviation/capsules.h"
+#include "build/deviation/patch.h"
 #include "build/deviation/surfaces.h"
 #include "build/odd_shapes.h"
 
@@ -179,6 +183,104 @@ TEST(SurfaceTree, CapsulesAreCloseAroundNeedles) {
     EXPECT_LT(capsule_around(four).radius, 16.0F * 6.3e-5F);
     const std::array<Capsule, 3> some{four[0], Capsule{}, four[1]};
     EXPECT_LT(capsule_around(some).radius, 8.0F * 6.3e-5F) << "what is not there counts for nothing";
+  }
+}
+
+/// In doubles, of floats.
+double distance_to_axis(const Capsule& capsule, const Vec3f& p) {
+  const Vec3d along(capsule.along), away = Vec3d(p) - Vec3d(capsule.from);
+  const double length2 = glm::dot(along, along);
+  const double t = length2 > 0.0 ? std::min(std::max(glm::dot(away, along) / length2, 0.0), 1.0) : 0.0;
+  return glm::length(away - along * t);
+}
+
+// Triangles of any shape, not only the needles of a hub: corners lie beyond both ends of the mean segment, too.
+TEST(SurfaceTree, CapsulesHoldWhatTheyWereMadeAroundAndAreNoFartherThanIt) {
+  Random random(7);
+  const auto vector = [&](double size) {
+    return Vec3f(size * Vec3d(random.signed_unit(), random.signed_unit(), random.signed_unit()));
+  };
+  for (int round = 0; round < 300; ++round) {
+    std::array<Capsule, 4> four;
+    std::vector<Vec3f> corners;
+    FourCapsules lanes_of;
+    for (std::size_t i = 0; i < 4; ++i) {
+      std::array<std::array<Vec3f, 3>, 4> triangles;
+      const Vec3f at = vector(0.5);
+      for (auto& triangle : triangles) {
+        for (Vec3f& corner : triangle) {
+          corner = at + vector(round % 2 == 0 ? 0.4 : 0.01);
+          corners.push_back(corner);
+        }
+      }
+      four[i] = capsule_around(triangles);
+      lanes_of.set(i, four[i]);
+      for (std::size_t c = corners.size() - 12; c < corners.size(); ++c) {
+        ASSERT_LE(distance_to_axis(four[i], corners[c]), double{four[i].radius}) << "seed 7, round " << round;
+        ASSERT_EQ(distances2_to_capsules(lanes_of, corners[c])[static_cast<int>(i)], 0.0F) << "round " << round;
+      }
+    }
+    const Capsule all = capsule_around(four);
+    for (const Vec3f& corner : corners) ASSERT_LE(distance_to_axis(all, corner), double{all.radius}) << round;
+    const Vec3f p = vector(1.0);
+    const auto distances2 = distances2_to_capsules(lanes_of, p);
+    for (std::size_t c = 0; c < corners.size(); ++c) {
+      const Vec3d away = Vec3d(p) - Vec3d(corners[c]);
+      ASSERT_LE(double{distances2[static_cast<int>(c / 12)]}, glm::dot(away, away)) << "seed 7, round " << round;
+    }
+  }
+}
+
+/// Counts what it is asked; the distances are exact.
+class CountingProbes {
+ public:
+  CountingProbes(const SurfaceTree& tree, double maximum) : tree_(tree), maximum_(maximum) {}
+  Probe measure(const Vec3d& point, TreeSlot place, std::uint32_t /*owner*/) {
+    ++count;
+    const Vec3f at = tree_.to_frame(point);
+    const TreeSlot slot = tree_.find_nearest(at, tree_.look_around(at, place, {}), 0.0F).slot;
+    const double value = std::sqrt(tree_.distance2_at(point, slot));
+    maximum_ = std::max(maximum_, value);
+    return {value, slot};
+  }
+  [[nodiscard]] double maximum() const { return maximum_; }
+  [[nodiscard]] const SurfaceTree& tree() const { return tree_; }
+
+  int count = 0;
+
+ private:
+  const SurfaceTree& tree_;
+  double maximum_;
+};
+
+// The distance to one triangle is convex: over it a corner of a patch is the farthest, and nothing is to be found
+// inside, whatever its points promise. Over a valley between two triangles there is.
+TEST(PatchQueue, DividesOnlyWhatMayRaiseTheMaximum) {
+  for (const bool is_valley : {false, true}) {
+    judge::Surface surface{{{-9, 0, -9}, {9, 0, -9}, {0, 0, 18}}, {{0, 1, 2}}};
+    if (is_valley) {
+      surface = {{{-9, 0, 1}, {9, 0, 1}, {0, 0, 18}, {-9, 0, -1}, {9, 0, -1}, {0, 0, -18}}, {{0, 1, 2}, {3, 4, 5}}};
+    }
+    SurfaceTree tree;
+    tree.build({surface.positions, surface.triangles});
+    CountingProbes probes(tree, 0.0);
+    Patch patch;
+    patch.corner = {Vec3d(-1, 0.1, -1.5), Vec3d(1, 0.2, -1.5), Vec3d(0, 0.3, 1.4)};
+    for (std::size_t k = 0; k < 3; ++k) {
+      patch.at_corner[k] = probes.measure(patch.corner[k], TreeSlot{0U}, 0);
+      patch.at_middle[k] = probes.measure(patch.middle(k), TreeSlot{0U}, 0);
+    }
+    patch.set_estimate(patch.at_corner[0].value, kUsualRise);
+    ASSERT_GT(patch.estimate, 1.1 * probes.maximum()) << "its points promise something";
+    PatchQueue<CountingProbes> queue(probes, kUsualRise, 0);
+    queue.add(patch);
+    queue.refine(100);
+    if (is_valley) {
+      EXPECT_GT(probes.count, 6);
+      EXPECT_GT(probes.maximum(), 0.95) << "the middle of the valley is 1 from both sides";
+    } else {
+      EXPECT_EQ(probes.count, 6);
+    }
   }
 }
 

@@ -72,8 +72,8 @@ TEST(Metric, FollowsTheRuleAtEverySizeOfMeshAndInstance) {
   }
 }
 
-// From pixels to distances: never below the quotient, and above it by no more than the growth, as far as normal floats
-// go. An orthographic camera's lengths are those of the world.
+// From pixels to distances: the quotient times 1 + 2^-20, rounded up, as far as normal floats go. An orthographic
+// camera's lengths are those of the world.
 TEST(Metric, TheFactorOfErrorsIsTightAsFarAsNormalFloatsGo) {
   Camera camera;
   camera.is_orthographic = true;
@@ -85,9 +85,26 @@ TEST(Metric, TheFactorOfErrorsIsTightAsFarAsNormalFloatsGo) {
       const double pixel_error = camera.height / exact;
       if (exact < 0x1p-126) continue;
       const MetricView view = make_metric_view(camera, pixel_error, identity_instance(), format::MeshRecord{}, 1.0);
-      EXPECT_GE(double{view.error_scale}, exact) << log2;
-      EXPECT_LE(double{view.error_scale}, exact * (1.0 + 0x1p-19)) << log2;
+      EXPECT_GE(double{view.error_scale}, exact * (1.0 + 0x1p-20) * (1.0 - 1e-14)) << log2;
+      EXPECT_LE(double{view.error_scale}, exact * (1.0 + 0x1p-20) * (1.0 + 0x1p-23)) << log2 << ": an ulp";
     }
+  }
+}
+
+// docs/selection.md: the scale is sigma * (1 + 2^-20), rounded up.
+TEST(Metric, TheScaleIsRoundedUp) {
+  RandomSource random(6);
+  for (int i = 0; i < 1000; ++i) {
+    const double sigma = random.between(1.0, 2.0);
+    format::InstanceRecord instance = identity_instance();
+    for (double& x : instance.transform) x *= sigma;
+    instance.scale = sigma;
+    Camera camera;
+    camera.eye = {0.0, 0.0, 3.0};
+    const MetricView view = make_metric_view(camera, 1.0, instance, format::MeshRecord{}, 1.0);
+    const double unit = std::ldexp(1.0, std::ilogb(double{view.row0.x} / sigma * 1.5));
+    EXPECT_GE(double{view.scale}, sigma * (1.0 + 0x1p-20) * unit * (1.0 - 1e-15)) << i;
+    EXPECT_LE(double{view.scale}, sigma * (1.0 + 0x1p-20) * unit * (1.0 + 0x1p-23)) << i;
   }
 }
 
