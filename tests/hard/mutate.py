@@ -239,21 +239,23 @@ def judge(build, mutant, out, limit, most_objects, is_quick):
 
 
 def report(drawn, results, explained):
-    rows = ["| room | mutants | killed | survived | rate | same object code | equivalent, explained | did not compile |",
-            "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |"]
-    totals = [0] * 6
+    rows = ["| room | mutants | killed | survived | rate | same object code | equivalent, explained | did not compile | too wide, or in no program |",
+            "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |"]
+    unseen = {m["id"] for m in drawn if results.get(m["id"]) == ("survived", "no program has it")}
     for room in [*ROOMS, None]:
-        mine = [m for m in drawn if m["room"] == room and m["id"] in results]
+        mine = [m for m in drawn if room in (m["room"], None) and m["id"] in results]
 
-        def count(verdict):
-            return sum(results[m["id"]][0] == verdict for m in mine)
-        why = sum(results[m["id"]][0] in ("survived", "open") and m["id"] in explained for m in mine)
-        numbers = [len(mine), count("killed"), count("survived") + count("open") - why, count("equivalent"), why, count("refused") + count("too wide")]
-        totals = [a + b for a, b in zip(totals, numbers)]
-        n = numbers if room else totals
-        judged = n[1] + n[2]
-        rate = f"{100 * n[1] / judged:.0f}%" if judged else "–"
-        rows.append(f"| {room or 'all'} | {judged} | {n[1]} | {n[2]} | {rate} | {n[3]} | {n[4]} | {n[5]} |")
+        def count(*verdicts):
+            return sum(results[m["id"]][0] in verdicts and m["id"] not in unseen for m in mine)
+        why = sum(results[m["id"]][0] in ("survived", "open") and m["id"] in explained for m in mine if m["id"] not in unseen)
+        killed, survived = count("killed"), count("survived", "open") - why
+        apart = [count("equivalent"), why, count("refused"), count("too wide") + sum(m["id"] in unseen for m in mine)]
+        assert killed + survived + sum(apart) == len(mine)
+        judged = killed + survived
+        rate = f"{100 * killed / judged:.0f}%" if judged else "–"
+        rows.append(f"| {room or 'all'} | {judged} | {killed} | {survived} | {rate} | {' | '.join(map(str, apart))} |")
+    by_time = sum(results.get(m["id"], ("", ""))[0] == "killed" and ": more than " in results[m["id"]][1] for m in drawn)
+    rows.append(f"\n{len([m for m in drawn if m['id'] in results])} of {len(drawn)} drawn; of those killed, {by_time} by time alone.")
     for m in drawn:
         if results.get(m["id"], ("",))[0] in ("survived", "open"):
             why = ": " + explained[m["id"]] if m["id"] in explained else ""
