@@ -16,7 +16,8 @@ struct Candidate {
   std::uint32_t versions;           ///< of both vertices, summed: stale if either has changed since
   bool may_break_topology = false;  ///< the cost already counts that the link condition is broken
 
-  /// By cost, then by vertices: no two valid ones are equal.
+  bool operator==(const Candidate&) const = default;
+  /// By cost, then by vertices: valid ones that are equal follow one another.
   [[nodiscard]] bool is_before(const Candidate& other) const {
     if (cost != other.cost) return cost < other.cost;
     return a != other.a ? a < other.a : b < other.b;

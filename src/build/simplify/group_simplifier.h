@@ -175,6 +175,7 @@ void GroupSimplifier<Real, C>::run_passes() {
     refused_.assign(places_.size(), {});
     seed_candidates();
     bool any = false;
+    Candidate last{-1.0, 0, 0, 0};
     while (!queue_.empty() && mesh_.alive_count() > options_.target_triangles) {
       Candidate candidate = queue_.front();
       if (versions_of(candidate.a, candidate.b) != candidate.versions) {
@@ -186,6 +187,9 @@ void GroupSimplifier<Real, C>::run_passes() {
         continue;
       }
       (void)queue_.pop();
+      // Edges that have become one, or that both of their ends took up again, follow one another.
+      if (candidate == last) continue;
+      last = candidate;
       const Obstacle obstacle = try_collapse(candidate);
       if (obstacle == Obstacle::kNone) {
         any = true;
@@ -268,11 +272,15 @@ void GroupSimplifier<Real, C>::set_aside(const Candidate& refused) {
 template <class Real, std::size_t C>
 void GroupSimplifier<Real, C>::take_up_again(std::uint32_t vertex) {
   const std::uint32_t a = vertex_of(vertex);
-  for (const std::uint32_t other : refused_[vertex]) {
-    const std::uint32_t b = vertex_of(other);
+  std::vector<std::uint32_t>& others = refused_[vertex];
+  // Each refusal is noted at both ends: without this, what one of them takes up again would be twice as much each time.
+  for (std::uint32_t& other : others) other = vertex_of(other);
+  std::sort(others.begin(), others.end());
+  others.erase(std::unique(others.begin(), others.end()), others.end());
+  for (const std::uint32_t b : others) {
     if (a != b && is_free_to_collapse(a, b)) queue_.push(make_candidate(a, b));
   }
-  refused_[vertex].clear();
+  others.clear();
 }
 
 /// Where the joined vertex goes and what it costs there: `total`, and the error of wedges whose values may not change
