@@ -55,8 +55,9 @@ struct DrawnMesh {
   }
 };
 
-/// What a squared distance of floats may be off by, in the frame, for stars as large as it.
-constexpr double kFloats = 1e-5;
+/// What a squared distance of floats may be off by, in the frame, for stars as large as it: a dozen roundings of
+/// numbers of up to 1.
+constexpr double kFloats = 1e-6;
 
 /// A squared distance in the frame, from one in grid units.
 inline double in_frame(const DrawnMesh& drawn, double distance2) {

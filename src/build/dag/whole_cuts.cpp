@@ -105,10 +105,9 @@ std::vector<std::uint32_t> share_points(const PreparedMesh& mesh, std::span<cons
     length[i] = std::max({glm::distance(p[0], p[1]), glm::distance(p[1], p[2]), glm::distance(p[2], p[0])});
     sum += length[i];
   }
-  const double by_length = sum > 0.0 ? kShareByLength : 0.0;
-  const double alike = static_cast<double>(each) * (1.0 - by_length);
-  const double per_length =
-      sum > 0.0 ? static_cast<double>(each) * by_length * static_cast<double>(triangles.size()) / sum : 0.0;
+  const auto average = static_cast<double>(each);
+  const double alike = average * (1.0 - kShareByLength);
+  const double per_length = sum > 0.0 ? average * kShareByLength * static_cast<double>(triangles.size()) / sum : 0.0;
   std::vector<std::uint32_t> counts(triangles.size());
   double owed = 0.0;  // of a point: what is left of one goes to the next triangle
   for (std::size_t i = 0; i < triangles.size(); ++i) {

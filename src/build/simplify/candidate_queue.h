@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The collapses that are waited for, cheapest first. Four of five that come up are stale by then, so that what counts
-// is what a pop touches: a heap of four children a node over small entries.
+// The collapses that are waited for, cheapest first. Many are stale when they come up, and are weighed again and put
+// back in their place, so that what counts is what a pop touches: a heap of four children a node over small entries.
 #pragma once
 
 #include <algorithm>

@@ -60,7 +60,8 @@ class GroupSimplifier {
     Vec3d position{0.0};
     double cost = 0.0;
   };
-  enum class Obstacle : std::uint8_t { kNone, kLocked, kFlips, kSeams, kTopology, kPutBack };
+  /// The last two are none: the candidate waits at another price, or its edge went with a sheet.
+  enum class Obstacle : std::uint8_t { kNone, kLocked, kFlips, kSeams, kTopology, kPutBack, kNoEdge };
 
   void add_faces();
   void run_passes();
@@ -68,8 +69,8 @@ class GroupSimplifier {
   /// False where both ends are locked, which is counted.
   [[nodiscard]] bool is_free_to_collapse(std::uint32_t a, std::uint32_t b);
   [[nodiscard]] Candidate make_candidate(std::uint32_t a, std::uint32_t b);
-  /// Weighs a candidate again whose ends have changed or been joined into others. False where there is no such edge any
-  /// more, or none that may go.
+  /// Weighs a candidate again whose ends have changed or been joined into others. False where they have become one, or
+  /// may not.
   [[nodiscard]] bool refresh(Candidate& candidate);
   /// The vertex that a vertex was joined into, or itself.
   [[nodiscard]] std::uint32_t vertex_of(std::uint32_t joined);
@@ -106,7 +107,7 @@ class GroupSimplifier {
   std::vector<EdgeUse> edge_uses_;  ///< before the first collapse; then nothing
   CandidateQueue queue_;
   std::vector<std::vector<std::uint32_t>> refused_;  ///< per vertex: the other ends of candidates that were refused
-  std::array<std::uint64_t, 6> obstacles_{};
+  std::array<std::uint64_t, 7> obstacles_{};
   double error_ = 0.0;  ///< frame units
   bool has_free_border_ = false, has_broken_topology_ = false, are_flips_relaxed_ = false;
 
@@ -195,7 +196,7 @@ void GroupSimplifier<Real, C>::run_passes() {
         any = true;
       } else {
         ++obstacles_[static_cast<std::size_t>(obstacle)];
-        if (obstacle != Obstacle::kPutBack) set_aside(candidate);
+        if (obstacle < Obstacle::kPutBack) set_aside(candidate);
       }
     }
     if (!any)
@@ -305,7 +306,7 @@ typename GroupSimplifier<Real, C>::Obstacle GroupSimplifier<Real, C>::try_collap
   std::uint32_t a = candidate.a;
   std::uint32_t b = candidate.b;
   gather_corners(mesh_, a, b, star_);
-  if (!has_shared_triangle(mesh_, star_)) return Obstacle::kPutBack;
+  if (!has_shared_triangle(mesh_, star_)) return Obstacle::kNoEdge;
   BasicQuadric<Real> total = surface_.around(a, b);
   const double fixed_error = add_classes(total);
   const Placement placement = place(a, b, total, fixed_error);
@@ -403,7 +404,8 @@ StuckReason GroupSimplifier<Real, C>::reason_for_stopping() const {
     case Obstacle::kSeams: return StuckReason::kSeams;
     case Obstacle::kTopology: return StuckReason::kTopology;
     case Obstacle::kNone:
-    case Obstacle::kPutBack: break;
+    case Obstacle::kPutBack:
+    case Obstacle::kNoEdge: break;
   }
   return StuckReason::kTooSmall;
 }

@@ -75,6 +75,23 @@ TEST(AttributeQuadrics, AFixedValueCostsWhatItIsOff) {
   EXPECT_EQ(written(attributes, 0), (std::vector<float>{1.0F, 0.0F})) << "and it stays as it is";
 }
 
+// Two single wedges are one class, whichever of them is fixed.
+TEST(AttributeQuadrics, APairIsTheClassOfItsTwo) {
+  const DrawnMesh drawn = closed_fan();
+  const SimplifyInput input = linear_texture(drawn);
+  const AttributeQuadrics<double, 3> attributes = quadrics_of(drawn, input, {1.0, 3.0});
+  const Vec3d given = drawn.places.to_frame({3, 1, 2});
+  for (const std::uint32_t fixed : {kNoId, 0U, 1U}) {
+    const std::vector<WedgeClass> classes{{{0, 1}, fixed}};
+    Quadric of_pair, of_class;
+    EXPECT_EQ(attributes.add_pair(of_pair, {0, 1, fixed}, given), attributes.add_classes(of_class, classes, given));
+    for (const Vec3d& at : {given, drawn.places[0], Vec3d(0.25, -0.5, 1.0)}) {
+      EXPECT_EQ(of_pair.evaluate(at), of_class.evaluate(at)) << fixed;
+    }
+    EXPECT_EQ(of_pair.evaluate(Vec3d(0.25, -0.5, 1.0)) > 0.0, fixed == kNoId) << "or there is nothing to compare";
+  }
+}
+
 TEST(AttributeQuadrics, LockedWedgesOfOneValueAgree) {
   const DrawnMesh drawn = closed_fan();
   SimplifyInput input = linear_texture(drawn);

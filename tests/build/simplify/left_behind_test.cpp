@@ -177,7 +177,8 @@ TEST(LeftBehind, WitnessesAreWeighedAgainstTheWholeStar) {
         << "seed 43, round " << round;
     left.join(0, 1);
     const auto distance2_of = [&](const Vec3i& point) {
-      return std::find_if(weighed.begin(), weighed.end(), [&](const auto& w) { return w.second == point; })->first;
+      const auto found = std::find_if(weighed.begin(), weighed.end(), [&](const auto& w) { return w.second == point; });
+      return found == weighed.end() ? std::numeric_limits<double>::infinity() : found->first;
     };
     for (std::size_t i = 0; i < Witnesses::kCapacity; ++i) {  // equals, but for what floats do not tell
       EXPECT_NEAR(distance2_of(left.witnesses(0).points[i]), weighed[i].first, kFloats) << "seed 43, round " << round;
