@@ -45,7 +45,8 @@ for _ in $(seq "${KILLS:-10}"); do
   [ $((RANDOM % 2)) -ne 0 ] || kill -KILL "$second" 2>/dev/null
   wait "$first" 2>/dev/null; [ $? -ne 137 ] || first_killed=$((first_killed + 1))
   wait "$second" 2>/dev/null; [ $? -ne 137 ] || killed=$((killed + 1))
-  leftovers=$((leftovers + $(find cache one two -name '.meshlode-*' | wc -l)))
+  # On a busy machine both may be gone before there is a cache.
+  leftovers=$((leftovers + $(find cache one two -name '.meshlode-*' 2>/dev/null | wc -l)))
   check
 done
 killed=$((killed + first_killed))
