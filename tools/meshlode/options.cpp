@@ -115,6 +115,12 @@ void add_max_decoded_option(OptionParser& parser, std::string& size) {
       "what images, and geometry beyond 64 times the file, may take in memory: bytes, or with KiB, MiB, GiB (512MiB)");
 }
 
+Status check_samples(std::uint64_t samples) {
+  constexpr std::uint64_t kMost = 100'000'000;
+  if (samples >= 1 && samples <= kMost) return Ok{};
+  return Error{ErrorCode::kUsage, "--samples", "give 1 to 100000000"};
+}
+
 Result<std::uint64_t> parse_max_decoded(const std::string& size) {
   const std::optional<std::uint64_t> bytes = parse_byte_size(size);
   if (!bytes) return Error{ErrorCode::kUsage, "--max-decoded", "give a size, such as 512MiB"};

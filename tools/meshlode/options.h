@@ -71,6 +71,9 @@ void add_max_decoded_option(OptionParser& parser, std::string& size);
 [[nodiscard]] Result<std::uint64_t> parse_max_decoded(const std::string& size);
 constexpr const char* kDefaultMaxDecodedText = "512MiB";
 
+/// --samples of verbs that measure deviations. Error: kUsage unless 1 to 100,000,000.
+[[nodiscard]] Status check_samples(std::uint64_t samples);
+
 /// Limits oneTBB to `jobs` threads while it lives; 0 leaves it alone.
 class JobLimit {
  public:

@@ -138,10 +138,7 @@ std::string as_operand(const std::string& path) {
 Status set_options(const SweepWords& words, study::SweepOptions& options) {
   if (words.report.empty()) return Error{ErrorCode::kUsage, "--output", "name the folder of the report"};
   if (options.rounds < 1 || options.rounds > 1000) return Error{ErrorCode::kUsage, "--rounds", "give 1 to 1000"};
-  constexpr std::uint64_t kMostSamples = 100'000'000;
-  if (options.samples < 1 || options.samples > kMostSamples) {
-    return Error{ErrorCode::kUsage, "--samples", "give 1 to 100000000"};
-  }
+  if (Status samples = check_samples(options.samples); !samples) return samples;
   if (words.budget) {
     const auto seconds = parse_duration(*words.budget);
     if (!seconds) return Error{ErrorCode::kUsage, "--budget", "give a time such as 90s, 5m or 1h"};

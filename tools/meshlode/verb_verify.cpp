@@ -60,6 +60,8 @@ std::string to_json(const std::string& path, const std::string& source, const ju
   json.field("quick", options.is_quick);
   json.field("uniform_cuts", options.uniform_cuts);
   json.field("cameras", options.cameras);
+  json.field("deviation_cuts", options.is_quick ? 1 : options.deviation_cuts);
+  json.field("deviation_samples", options.deviation_samples);
   json.field("seed", options.seed);
   json.field("verified", report.finding_count == 0);
   json.field("finding_count", report.finding_count);
@@ -125,6 +127,7 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
   parser.add_value("--cameras", options.cameras, "random cameras that cross-check selection and hierarchy");
   parser.add_value("--deviation-cuts", options.deviation_cuts,
                    "uniform cuts per mesh that are measured against the source");
+  parser.add_value("--samples", options.deviation_samples, "area-uniform samples of each such cut, each way (200000)");
   parser.add_value("--seed", options.seed, "of the random cameras");
   parser.add_flag("--gpu", gpu_options.is_on, "let a Vulkan device decode, select and draw the same, and compare");
   parser.add_value("--device", gpu_options.device, "with --gpu: an index or a part of the name (the first that can)");
@@ -142,6 +145,7 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
   if (const auto exit_code = parser.parse(args)) return *exit_code;
   if (source_path.empty())
     return print_error({ErrorCode::kUsage, "--source", "the scene to verify against is missing"});
+  if (const Status samples = check_samples(options.deviation_samples); !samples) return print_error(samples.error());
 
   const Result<std::uint64_t> max_decoded = parse_max_decoded(max_decoded_text);
   if (!max_decoded) return print_error(max_decoded.error());
