@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <string_view>
 
 #include "format/names.h"
 #include "shapes.h"
+#include "surgery.h"
 
 namespace meshlode::test {
 
@@ -35,12 +37,33 @@ Vec3f to_float(const Vec3d& p) {
   return out;
 }
 
-Shape random_piece(Dice& dice, const Layout& layout, std::uint32_t triangles, std::string& contents) {
+/// Of any kind, damaged.
+Shape damaged_piece(Dice& dice, std::uint32_t triangles, std::string& contents) {
   const auto kinds = shape_kinds();
   const ShapeKind& kind = kinds[dice.below(kinds.size())];
-  contents += (contents.empty() || contents.back() == '[' ? "" : ", ") + std::string(kind.name);
+  contents += kind.name;
   Shape shape = kind.make(dice, std::max(triangles, 1U));
   damage(shape, dice);
+  return shape;
+}
+
+/// Of a kind whose surface is a good one, operated on. A third of the budget: operations double what there is.
+Shape operated_piece(Dice& dice, std::uint32_t triangles, std::string& contents) {
+  constexpr std::array<std::string_view, 6> kGood{"ball", "torus", "patch", "cylinder", "blocks", "plate"};
+  const std::string_view name = kGood[dice.below(kGood.size())];
+  const auto kinds = shape_kinds();
+  const auto kind = std::find_if(kinds.begin(), kinds.end(), [&](const ShapeKind& k) { return k.name == name; });
+  Shape shape = kind->make(dice, std::max(triangles / 3, 1U));
+  contents += std::string(name) + " (";
+  operate(shape, dice, 2 * triangles / 3, contents);
+  contents += ")";
+  return shape;
+}
+
+Shape random_piece(Dice& dice, const Layout& layout, Harm harm, std::uint32_t triangles, std::string& contents) {
+  if (!contents.empty() && contents.back() != '[') contents += ", ";
+  Shape shape =
+      harm == Harm::kSurgery ? operated_piece(dice, triangles, contents) : damaged_piece(dice, triangles, contents);
   const double size = layout.unit * dice.octaves(layout.smallest, layout.largest);
   const Vec3d place = layout.unit * dice.vector(layout.spread) + layout.offset;
   const Vec3d u = dice.direction();
@@ -176,7 +199,7 @@ std::uint32_t part_of(std::uint32_t& left, std::uint32_t parts, Dice& dice) {
   return part;
 }
 
-RandomMesh random_mesh(Dice& dice, std::uint32_t triangles, std::uint32_t materials, std::string& contents) {
+RandomMesh random_mesh(Dice& dice, Harm harm, std::uint32_t triangles, std::uint32_t materials, std::string& contents) {
   RandomMesh mesh;
   const Layout layout(dice);
   std::uint32_t left = triangles;
@@ -186,7 +209,7 @@ RandomMesh random_mesh(Dice& dice, std::uint32_t triangles, std::uint32_t materi
     Shape shape;
     for (std::uint32_t k = 0; k < pieces; ++k) {
       const std::uint32_t share = part_of(left, (primitives - p) * pieces - k, dice);
-      shape.append(random_piece(dice, layout, share, contents));
+      shape.append(random_piece(dice, layout, harm, share, contents));
     }
     RandomPrimitive primitive;
     for (const Vec3d& point : shape.points) primitive.positions.push_back(to_float(point));
@@ -292,6 +315,10 @@ std::uint64_t RandomScene::triangle_count() const {
 }
 
 RandomScene random_scene(std::uint64_t seed) {
+  return random_scene(seed, Harm::kDamage);
+}
+
+RandomScene random_scene(std::uint64_t seed, Harm harm) {
   Dice dice(Random(seed).next());  // seeds beside each other must not be the same stream, shifted
   RandomScene scene;
   std::uint32_t left = random_triangles(dice);
@@ -306,7 +333,7 @@ RandomScene random_scene(std::uint64_t seed) {
   for (std::uint32_t m = 0; m < meshes; ++m) {
     scene.contents += m == 0 ? "[" : " [";
     const std::uint32_t triangles = part_of(left, meshes - m, dice);
-    scene.meshes.push_back(random_mesh(dice, triangles, materials, scene.contents));
+    scene.meshes.push_back(random_mesh(dice, harm, triangles, materials, scene.contents));
     scene.contents += "]";
     RandomInstance instance;
     instance.mesh = m;

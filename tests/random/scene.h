@@ -49,6 +49,14 @@ struct RandomScene {
 /// than 50,000. The same on every machine and with every compiler.
 [[nodiscard]] RandomScene random_scene(std::uint64_t seed);
 
+/// Where the harm of a scene's pieces comes from.
+enum class Harm {
+  kDamage,   ///< pieces of all kinds, damaged (shapes.h): random_scene(seed)
+  kSurgery,  ///< good surfaces, operated on (surgery.h)
+};
+/// The same, with harm of the kind; a seed is another scene for each.
+[[nodiscard]] RandomScene random_scene(std::uint64_t seed, Harm harm);
+
 /// The scene of one piece alone, undamaged, of about so many triangles: what kinds cost is compared with it. `torn`
 /// gives every corner texture coordinates of its own. \pre kind < shape_kinds().size()
 [[nodiscard]] RandomScene scene_of_one_piece(std::size_t kind, std::uint32_t triangles, bool torn);

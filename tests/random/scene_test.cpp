@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A seed is one scene, whoever compiles; it is a scene that importers accept, and together they are what is promised.
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -10,6 +11,7 @@
 #include "scene/import/import.h"
 #include "shapes.h"
 #include "shrink.h"
+#include "surgery.h"
 
 namespace meshlode::test {
 namespace {
@@ -72,6 +74,57 @@ TEST(RandomScene, EveryKindOfPieceOptionAndAttributeOccurs) {
   EXPECT_GT(with_normals, 100U);
   EXPECT_GT(with_uvs, 100U);
   EXPECT_GT(with_colors, 30U);
+}
+
+TEST(Surgery, ASeedIsTheSameSceneWithEveryCompiler) {
+  std::uint64_t hash = 0xCBF29CE484222325ULL;
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    const RandomScene scene = random_scene(seed, Harm::kSurgery);
+    hash = fnv1a(write_glb(scene), hash);
+    hash = fnv1a({scene.contents.begin(), scene.contents.end()}, hash);
+  }
+  EXPECT_EQ(hash, 12217106984756931642ULL);
+}
+
+TEST(Surgery, EveryOperationOccursAndScenesAreSound) {
+  std::map<std::string, std::uint32_t> operations;
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    const RandomScene scene = random_scene(seed, Harm::kSurgery);
+    for (const Operation& operation : surgery_operations()) {
+      operations[operation.name] += scene.contents.find(operation.name) != std::string::npos ? 1U : 0U;
+    }
+    EXPECT_GT(scene.triangle_count(), 0U) << seed;
+    EXPECT_LT(scene.triangle_count(), 50000U) << seed;
+    for (const RandomMesh& mesh : scene.meshes) {
+      for (const RandomPrimitive& primitive : mesh.primitives) {
+        for (const Vec3f& p : primitive.positions) {
+          ASSERT_TRUE(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)) << seed;
+        }
+        for (const auto& t : primitive.triangles) {
+          for (const std::uint32_t v : t) ASSERT_LT(v, primitive.positions.size()) << seed;
+        }
+      }
+    }
+  }
+  for (const Operation& operation : surgery_operations()) EXPECT_GE(operations[operation.name], 20U) << operation.name;
+}
+
+// One triangle is the least that an operation may be given, and what it leaves may be operated on again.
+TEST(Surgery, NoOperationNeedsMoreThanOneTriangle) {
+  for (const Operation& operation : surgery_operations()) {
+    for (std::uint64_t seed = 0; seed < 50; ++seed) {
+      Dice dice(Random(seed).next());
+      Shape shape;
+      for (const Vec3d& p : {Vec3d(0.0), Vec3d(1.0, 0.0, 0.0), Vec3d(0.0, 1.0, 0.0)}) shape.add(p);
+      shape.triangle(0, 1, 2);
+      for (int i = 0; i < 4; ++i) operation.apply(shape, dice);
+      ASSERT_FALSE(shape.triangles.empty()) << operation.name;
+      ASSERT_LE(shape.triangles.size(), 16U) << operation.name;
+      for (const auto& t : shape.triangles) {
+        for (const std::uint32_t v : t) ASSERT_LT(v, shape.points.size()) << operation.name;
+      }
+    }
+  }
 }
 
 TEST(RandomScene, TheImporterReadsWhatWasWritten) {

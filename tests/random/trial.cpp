@@ -177,6 +177,7 @@ void verify(TrialResult& result, const TrialOptions& options, const std::string&
   std::vector<std::string> arguments = {"verify",   asset,  "--source", (options.folder / "scene.glb").string(),
                                         "--format", "json", "--jobs",   "1"};
   if (options.depth == Depth::kVerifyWithoutDeviation) arguments.insert(arguments.end(), {"--deviation-cuts", "0"});
+  if (options.samples) arguments.insert(arguments.end(), {"--samples", std::to_string(*options.samples)});
   const StepResult ran = run_step(options, arguments);
   if (!ended_well(result, "verify", ran, true)) return;
   const json report = json::parse(ran.out, nullptr, false);

@@ -34,6 +34,7 @@ class Trial : public testing::Test {
     fs::permissions(program, fs::perms::owner_all);
     TrialOptions options{.program = program, .folder = folder_, .build_options = {"--codec", "lz4"}};
     options.cpu_seconds = 1.0;
+    options.samples = samples_;
     options.other_jobs_too = true;
     return try_scene({1, 2, 3}, options);
   }
@@ -43,6 +44,7 @@ class Trial : public testing::Test {
   }
 
   fs::path folder_;
+  std::optional<std::uint64_t> samples_;
 };
 
 TEST_F(Trial, AProgramThatIsWellIsClean) {
@@ -51,6 +53,14 @@ TEST_F(Trial, AProgramThatIsWellIsClean) {
   EXPECT_EQ(result.cuts, 12U);
   EXPECT_EQ(result.cuts_above, 2U);
   EXPECT_EQ(result.largest_ratio, 1.037);
+}
+
+TEST_F(Trial, VerifyIsToldTheSamples) {
+  const char* told =
+      R"(case "$*" in *"--samples 77"*) echo '{"checks": [], "findings": []}' ;; *) exit 3 ;; esac; exit 0)";
+  EXPECT_TRUE(try_with("verify", told).rules.contains("verify:exit 3"));
+  samples_ = 77;
+  EXPECT_TRUE(try_with("verify", told).is_clean());
 }
 
 TEST_F(Trial, FindingsOfTheJudgesCountByRule) {
