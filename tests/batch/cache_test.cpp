@@ -116,12 +116,14 @@ TEST(Store, TrimsWhatWasUsedLongestAgo) {
   for (const std::uint64_t i : {2, 5, 7}) EXPECT_EQ(text_in(store, EntryKind::kMesh, key_of_number(i)), kilobyte);
   folder.write("c/mesh/not an entry.txt", kilobyte);
   folder.write("c/mesh/00/.meshlode-0123456789abcdef.tmp", "left by a killed writer");
+  folder.write("c/.meshlode-0123456789abcdef.tmp", "half a tag, left by another");
   store.trim();
   for (std::uint64_t i = 0; i < 10; ++i) {
     EXPECT_EQ(store.has(EntryKind::kMesh, key_of_number(i)), i == 2 || i == 5 || i == 7) << i;
   }
   EXPECT_TRUE(fs::exists(folder.path("c/mesh/not an entry.txt")));
   EXPECT_FALSE(fs::exists(folder.path("c/mesh/00/.meshlode-0123456789abcdef.tmp")));
+  EXPECT_FALSE(fs::exists(folder.path("c/.meshlode-0123456789abcdef.tmp")));
 }
 
 // Writers, readers and trimmers side by side: whatever is found is whole.
