@@ -22,8 +22,8 @@ struct Arguments {
   std::uint64_t max_refused_percent = 100;
   double cpu_seconds = 120.0;
   std::optional<std::uint64_t> samples{};  ///< verify's --samples; its own default without
-  std::filesystem::path shrink_into;     ///< failures are shrunk into this folder
-  double shrink_seconds = 60.0;          ///< each
+  std::filesystem::path shrink_into;       ///< failures are shrunk into this folder
+  double shrink_seconds = 60.0;            ///< each
   std::string rule;
   Harm harm = Harm::kDamage;
   bool verbose = false;

@@ -179,7 +179,8 @@ int soak(const Arguments& arguments, std::uint64_t first, double minutes) {
   const WorkFolder work;
   Series series(arguments.verbose);
   const Clock::time_point begin = Clock::now();
-  const Clock::time_point end = begin + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(60.0 * minutes));
+  const Clock::time_point end =
+      begin + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(60.0 * minutes));
   std::atomic<std::uint64_t> next = first, minutes_told = 0;
   const auto next_seed = [&]() -> std::optional<std::uint64_t> {
     const Clock::time_point now = Clock::now();

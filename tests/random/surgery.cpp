@@ -273,8 +273,7 @@ void tear(Shape& shape, Dice& dice) {
 void double_shell(Shape& shape, Dice& dice) {
   std::vector<Vec3d> normals(shape.points.size(), Vec3d(0.0));
   for (const Triangle& t : shape.triangles) {
-    const Vec3d n =
-        glm::cross(shape.points[t[1]] - shape.points[t[0]], shape.points[t[2]] - shape.points[t[0]]);
+    const Vec3d n = glm::cross(shape.points[t[1]] - shape.points[t[0]], shape.points[t[2]] - shape.points[t[0]]);
     for (const std::uint32_t v : t) normals[v] += n;
   }
   const double distance = small_distance(dice);

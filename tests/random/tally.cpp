@@ -67,8 +67,7 @@ void print_tally(const Tally& sum) {
 int verdict(const Tally& sum, std::uint64_t max_refused_percent) {
   bool is_well = sum.failed == 0;
   if (100 * sum.refused > max_refused_percent * sum.scenes) {
-    std::printf("too many refused: at most %llu%% may be\n",
-                static_cast<unsigned long long>(max_refused_percent));
+    std::printf("too many refused: at most %llu%% may be\n", static_cast<unsigned long long>(max_refused_percent));
     is_well = false;
   }
   if (sum.cuts >= 1000 && 100 * sum.cuts_above > sum.cuts) {

@@ -25,7 +25,7 @@ struct Tally {
   std::uint64_t scenes = 0, clean = 0, refused = 0, failed = 0, triangles = 0, cuts = 0, cuts_above = 0;
   double build_seconds = 0.0, total_seconds = 0.0, largest_ratio = 0.0;
   std::map<std::string, std::uint64_t> rules, refusals;
-  std::string slowest;  ///< of scenes of 1,000 triangles and more
+  std::string slowest;        ///< of scenes of 1,000 triangles and more
   double slowest_rate = 0.0;  ///< its processor seconds to build 10,000 triangles
   std::uint64_t slowest_triangles = 0;
 
