@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kWell = R"(#!/bin/sh
+constexpr const char* kCleanProgram = R"(#!/bin/sh
 case $1 in
   build) echo asset > "$4" ;;
   validate) echo '{"files": [{"findings": []}]}' ;;
@@ -42,7 +42,7 @@ class SeriesOfTrials : public testing::Test {
 };
 
 TEST_F(SeriesOfTrials, ASoakEndsByTheClock) {
-  set_program(kWell);
+  set_program(kCleanProgram);
   const auto begin = std::chrono::steady_clock::now();
   testing::internal::CaptureStdout();
   const int code = soak(arguments_, 5, 0.02);
@@ -56,7 +56,7 @@ TEST_F(SeriesOfTrials, ASoakEndsByTheClock) {
 }
 
 TEST_F(SeriesOfTrials, WhatFailsIsShrunkAndKept) {
-  set_program("#!/bin/sh\n[ $1 = build ] && kill -SEGV $$\n" + std::string(kWell));
+  set_program("#!/bin/sh\n[ $1 = build ] && kill -SEGV $$\n" + std::string(kCleanProgram));
   arguments_.shrink_into = folder_ / "kept";
   arguments_.shrink_seconds = 1.0;
   testing::internal::CaptureStdout();
@@ -68,7 +68,7 @@ TEST_F(SeriesOfTrials, WhatFailsIsShrunkAndKept) {
 }
 
 TEST_F(SeriesOfTrials, SurgeryMakesOtherScenes) {
-  set_program(kWell);
+  set_program(kCleanProgram);
   arguments_.verbose = true;
   testing::internal::CaptureStdout();
   EXPECT_EQ(run_seeds(arguments_, {1}), 0);

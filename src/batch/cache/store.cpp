@@ -188,8 +188,8 @@ void Store::trim() const {
   if (lock < 0) return;
   if (::flock(lock, LOCK_EX | LOCK_NB) == 0) {
     std::vector<StoredFile> files;
-    static_cast<void>(
-        OutputFiles().claim(folder_ / kTagName));  // nobody writes there again who would remove a half tag
+    // Beside the tag nobody writes again who would remove what a killed writer left there.
+    static_cast<void>(OutputFiles().claim(folder_ / kTagName));
     for (const char* folder : kFolders) list_entries(folder_ / folder, files);
     std::sort(files.begin(), files.end(),
               [](const StoredFile& a, const StoredFile& b) { return a.was_used_before(b); });
