@@ -55,8 +55,8 @@ class LeftBehind {
   void gather_facets(const GroupPlaces& places, const CollapseStar& star);
   /// \pre the facets are gathered
   [[nodiscard]] double weigh_witnesses(std::uint32_t vertex, const GroupPlaces& places);
-  [[nodiscard]] double distance2_to_rest(const CollapseMesh& mesh, const GroupPlaces& places,
-                                         const CollapseStar& star) const;
+  [[nodiscard]] double distance2_to_rest(const CollapseMesh& mesh, const GroupPlaces& places, const CollapseStar& star,
+                                         double least) const;
 
   std::vector<Witnesses> witnesses_;
   std::vector<Box> merged_;
