@@ -29,6 +29,10 @@ constexpr std::size_t kFewestPerTriangle = 1, kMostPerTriangle = 24;
 /// One half of them goes to all triangles alike, the other by their longest edges: what a cut is off by changes along
 /// a needle as it does along a row of small triangles.
 constexpr double kShareByLength = 0.5;
+/// And so many besides to triangles that are so much larger than the mean, by their areas: behind one that lies across
+/// half of the mesh is much that its length says nothing of.
+constexpr std::size_t kPointsOfLarge = 40000;
+constexpr double kLarge = 16.0;
 /// Of larger meshes a part of the triangles is looked at.
 constexpr std::size_t kMostTriangles = 100000;
 /// Points nearer to a cut than this share of its error are left alone: they belong to groups of smaller errors, which
@@ -118,6 +122,26 @@ std::vector<std::uint32_t> share_points(const PreparedMesh& mesh, std::span<cons
   return counts;
 }
 
+/// More points, inside of triangles that are far larger than the others.
+void add_points_of_large(const PreparedMesh& mesh, std::vector<SourcePoint>& points) {
+  const auto area_of = [&](std::uint32_t triangle) {
+    const std::array<Vec3d, 3> p = corners_of(mesh, triangle);
+    return glm::length(glm::cross(p[1] - p[0], p[2] - p[0]));
+  };
+  const auto count = static_cast<std::uint32_t>(mesh.exact_triangles.size());
+  double sum = 0.0;
+  for (std::uint32_t t = 0; t < count; ++t) sum += area_of(t);
+  if (!(sum > 0.0)) return;
+  SplitMix64 random(0x6C61726765ULL);
+  for (std::uint32_t t = 0; t < count; ++t) {
+    const double area = area_of(t);
+    if (!(area * count > kLarge * sum)) continue;
+    const std::array<Vec3d, 3> corners = corners_of(mesh, t);
+    const auto more = static_cast<std::size_t>(area / sum * static_cast<double>(kPointsOfLarge));
+    for (std::size_t k = 0; k < more; ++k) points.push_back({random_point(corners, true, random), t});
+  }
+}
+
 /// Corners, points of edges and points inside, of triangles spread over the whole source.
 std::vector<SourcePoint> choose_points(const PreparedMesh& mesh) {
   const std::size_t count = mesh.exact_triangles.size();
@@ -138,6 +162,7 @@ std::vector<SourcePoint> choose_points(const PreparedMesh& mesh) {
     const std::array<Vec3d, 3> corners = corners_of(mesh, t);
     for (std::size_t k = 0; k < counts[i]; ++k) points.push_back({random_point(corners, (i + k) % 2 == 0, random), t});
   }
+  add_points_of_large(mesh, points);
   return points;
 }
 

@@ -49,6 +49,12 @@ struct Effort {
                                          std::vector<TreeSlot>& places, Farthest farthest, Effort budget,
                                          std::vector<CarriedSample>& high);
 
+/// Group to source beyond the borders of `finer`, with `edges`, that the group may have closed. Those between two
+/// positions of `is_shared` are the group's own border and stay; empty: all are taken so.
+[[nodiscard]] Farthest measure_closed_borders(const SurfaceTree& source, const SurfaceTree& group_tree,
+                                              const GroupSurface& finer, const GroupEdges& edges,
+                                              std::span<const std::uint8_t> is_shared, Farthest farthest);
+
 /// Which points of the source a group stands for: those that were near enough to what it replaces, on the same side and
 /// not beyond the border that it shares with other groups. Beyond the source's own border there is nobody else.
 class OwnerTest {

@@ -112,12 +112,14 @@ GroupDeviation measure_group(const SourceTree& source, const GroupSurface& group
   std::vector<TreeSlot>& places = result.places;
   places.resize(group.triangles.size());
   for (const CarriedSample& sample : projected) places[sample.triangle] = sample.place;
+  const GroupEdges finer_edges(options.finer);
+  farthest =
+      measure_closed_borders(source_tree, group_tree, options.finer, finer_edges, options.finer_is_shared, farthest);
   std::vector<CarriedSample> high;
   const bool is_spared = options.extra_effort >= kLeastExtra;
   const Effort effort{64 + group.triangles.size() / (is_spared ? 4 : 16) + options.extra_effort,
                       is_spared ? options.extra_effort / kSpareShare : 0, is_spared ? kHighestRise : kUsualRise};
   farthest = measure_to_source(source_tree, group, edges, places, farthest, effort, high);
-  const GroupEdges finer_edges(options.finer);
   OwnerTest owner(options.finer, finer_edges, options.finer_is_shared, kReach * options.floor, options.is_whole);
   const std::vector<std::uint8_t> is_folded = find_folded(options.finer, finer_edges);
   farthest = search_source(source.impl(), group, group_tree, owner, is_folded, farthest, high, options.extra_effort,

@@ -62,6 +62,23 @@ TEST(Measured, AClosedHoleCostsItsRadius) {
   EXPECT_GE(measured, 0.5 * 0.95);
 }
 
+TEST(Measured, AClosedSliverOfAHoleCostsItsRadius) {
+  // A hole that is ten times as long as wide, in two triangles that span it: no point spread over them lies in it.
+  const double half = 0.1, high = 2.0;
+  const std::vector<Vec3d> positions = {
+      {0, 0, 0}, {10, 0, 0}, {10, 10, 0}, {0, 10, 0}, {5, 4, 0}, {5 + 2 * half, 4, 0}, {5 + half, 4 + high, 0}};
+  const judge::Surface fine{positions, {{0, 1, 5}, {0, 5, 4}, {1, 2, 5}, {5, 2, 6}, {6, 2, 3}, {6, 3, 4}, {4, 3, 0}}};
+  const judge::Surface coarse{positions, {{0, 1, 2}, {0, 2, 3}}};
+  const double side = std::sqrt(half * half + high * high);
+  const double radius = half * high / (half + side);
+  const std::vector<std::uint8_t> nothing_shared(positions.size(), 0);
+  DeviationTierOptions options;
+  options.finer_is_shared = nothing_shared;
+  const double measured = test::measure_one_step(fine, coarse, options).deviation;
+  EXPECT_LE(measured, radius * (1.0 + 1e-12));
+  EXPECT_GE(measured, radius * 0.98);
+}
+
 TEST(Measured, ARemovedPieceIsAsFarAsItWas) {
   judge::Surface fine = test::as_surface(scene::make_sphere(4));
   const judge::Surface coarse = fine;
