@@ -123,6 +123,15 @@ enum class UvErrorUnit : std::uint8_t {
             ///< no texture's size is known, as in scenes from arrays
 };
 
+/// Which meshes are thinned out as aggregates (foliage, grass, soups): pieces are merged so that a picture stays as
+/// much covered, where a simplifier would keep each of them. Errors of such a mesh are of coverage
+/// (docs/aggregates.md).
+enum class AggregateChoice : std::uint8_t {
+  kNever,
+  kAuto,   ///< meshes of many small loose pieces
+  kAlways  ///< every mesh whose pieces have at most 512 triangles
+};
+
 /// How long fewer bytes a triangle are looked for: as a preset does.
 enum class StripEffort : std::uint8_t { kOfPreset, kFast, kDefault, kBest };
 
@@ -148,6 +157,7 @@ struct BuildOptions {
   /// Every cut of a manifold mesh is a manifold, with its holes, handles and pieces: no edge has more than two
   /// triangles. Takes more triangles, since small holes and handles else close where that is far cheaper.
   bool keep_topology = false;
+  AggregateChoice aggregate = AggregateChoice::kNever;
   std::uint64_t max_memory_bytes = 0;  ///< meshes wait for each other to keep it, or it is refused; 0: what is left
   /// Of build_file: what compressed geometry may take decoded beyond what the size of its file justifies.
   std::uint64_t max_decoded_bytes = std::uint64_t{512} << 20U;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The bytes of a .lode asset, version 1. docs/format.md is the normative text; this header is the same thing as
+// The bytes of a .lode asset, versions 1 and 2. docs/format.md is the normative text; this header is the same thing as
 // structs.
 //
 // Everything is little-endian. Every struct here is copied as it lies in the file: sizes are asserted, there is no
@@ -27,7 +27,8 @@ constexpr std::uint32_t four_cc(char a, char b, char c, char d) {
 }
 
 constexpr std::uint32_t kMagic = four_cc('L', 'O', 'D', 'E');
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;         ///< the newest: of an asset that has a group flagged kGroupAggregate
+constexpr std::uint32_t kPlainVersion = 1;    ///< of every other asset
 constexpr std::uint32_t kNone = 0xFFFFFFFFu;  ///< "no such id"
 
 /// A root's coarser error: it never passes. Written as null in JSON.
@@ -44,7 +45,7 @@ constexpr std::uint32_t kSectionAlignment = 16;  ///< file offsets of sections a
 
 struct FileHeader {
   std::uint32_t magic;         ///< kMagic
-  std::uint32_t version;       ///< kVersion
+  std::uint32_t version;       ///< kPlainVersion or kVersion
   std::uint32_t header_bytes;  ///< sizeof(FileHeader); a later version may be longer
   std::uint32_t section_count;
   std::uint64_t file_bytes;            ///< size of the whole file
@@ -192,6 +193,9 @@ static_assert(sizeof(InstanceRecord) == 128);
 constexpr std::uint16_t kGroupTerminal =
     1u;                                    ///< nothing coarser replaces its members: they are roots, error is infinite
 constexpr std::uint16_t kGroupStuck = 2u;  ///< terminal, and not because the top was reached
+/// Never terminal. Its pieces (leaves, blades) are replaced by fewer ones that cover as much of a picture: `error` is
+/// the pixel size from which on they do (docs/format.md, "Aggregates"), not a distance between surfaces.
+constexpr std::uint16_t kGroupAggregate = 4u;
 
 /// Why a group could not be simplified further.
 enum class StuckReason : std::uint16_t {

@@ -156,8 +156,9 @@ typedef struct meshlode_instance {
   meshlode_string name;
 } meshlode_instance;
 
-#define MESHLODE_GROUP_TERMINAL 1u /* nothing coarser replaces its members: they are roots, its error is infinite */
-#define MESHLODE_GROUP_STUCK 2u    /* terminal, and not because the top was reached */
+#define MESHLODE_GROUP_TERMINAL 1u  /* nothing coarser replaces its members: they are roots, its error is infinite */
+#define MESHLODE_GROUP_STUCK 2u     /* terminal, and not because the top was reached */
+#define MESHLODE_GROUP_AGGREGATE 4u /* its error is of coverage: the pixel size from which on as much is covered */
 
 /* Clusters that are replaced together. Its error and sphere are the coarser values of its members and the own values of
  * the clusters made from it. */

@@ -99,7 +99,8 @@ typedef struct meshlode_build_options {
   double grid_step, position_error, normal_error, uv_error;
   int uv_error_is_texels;
   int repair;
-  int keep_topology; /* every cut of a manifold is one, with its holes, handles and pieces */
+  int keep_topology;  /* every cut of a manifold is one, with its holes, handles and pieces */
+  uint32_t aggregate; /* which meshes are thinned out by coverage: 0 none, 1 those of many small pieces, 2 all */
   uint64_t max_memory_bytes;
   uint32_t thread_count; /* 0: all */
   meshlode_build_progress on_progress;

@@ -5,11 +5,16 @@
 #include <algorithm>
 #include <array>
 #include <numeric>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
 
 #include "base/parallel.h"
+#include "build/aggregate/aggregate_choice.h"
+#include "build/aggregate/coarse_materials.h"
+#include "build/aggregate/material_looks.h"
+#include "build/dag/aggregate_dag.h"
 #include "build/dag/build_dag.h"
 #include "build/encode/encode.h"
 #include "build/hierarchy/hierarchy.h"
@@ -58,6 +63,7 @@ struct StoredPlace {
   MeshStore* store = nullptr;  ///< none: it is not asked
   Hash128 key{};
 
+  StoredPlace() = default;
   StoredPlace(const scene::SourceMesh& source, const AttributeLayout& layout, const EncodeOptions& encoding,
               const MeshOptions& own, const SceneOptions& options) {
     if (options.mesh_store == nullptr || !options.mesh_store->wants(count_mesh(source).triangles)) return;
@@ -97,10 +103,47 @@ struct Source {
   }
 };
 
-/// One mesh from its source triangles to pages. `texels`: texels_of_materials() of the scene.
-Result<BuiltMesh> build_mesh(const Source& from, std::size_t index,
-                             std::span<const std::array<double, scene::kMaxUvSets>> texels,
-                             const PipelineOptions& options, ProgressMeter& progress) {
+/// What is found out about the whole scene before any mesh is built.
+struct Survey {
+  std::vector<std::array<double, scene::kMaxUvSets>> texels;  ///< texels_of_materials()
+  std::vector<AggregateDecision> aggregates;                  ///< by mesh
+  CoarseMaterials coarse;                                     ///< where some mesh is an aggregate
+  [[nodiscard]] bool has_aggregates() const {
+    return std::any_of(aggregates.begin(), aggregates.end(), [](const AggregateDecision& d) { return d.is_aggregate; });
+  }
+};
+
+Result<Survey> survey(const scene::Scene& scene, const PipelineOptions& options) {
+  Survey found;
+  found.texels = texels_of_materials(scene);
+  std::vector<std::uint8_t> is_aggregate;
+  for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
+    found.aggregates.push_back(decide_aggregate(scene.meshes[i], options.of_mesh(i).aggregate, options.keep_topology));
+    is_aggregate.push_back(found.aggregates.back().is_aggregate ? 1 : 0);
+  }
+  if (!found.has_aggregates()) return found;
+  std::vector<std::uint8_t> wanted = materials_of(scene, is_aggregate);
+  for (std::size_t i = 0; i < wanted.size(); ++i) wanted[i] = wanted[i] != 0 && needs_look(scene.materials[i]) ? 1 : 0;
+  std::vector<std::optional<MaterialLook>> looks(scene.materials.size());
+  if (options.looks != nullptr) looks = options.looks->read(scene, wanted);
+  for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
+    if (is_aggregate[i] == 0) continue;
+    for (const scene::Primitive& primitive : scene.meshes[i].primitives) {
+      if (wanted[primitive.material.value] == 0 || looks[primitive.material.value]) continue;
+      is_aggregate[i] = 0;
+      found.aggregates[i] = {false, "what its texture shows is not known"};
+    }
+  }
+  if (!found.has_aggregates()) return found;
+  Result<CoarseMaterials> coarse = derive_materials(scene, is_aggregate, looks);
+  if (!coarse) return coarse.error();
+  found.coarse = std::move(*coarse);
+  return found;
+}
+
+/// One mesh from its source triangles to pages.
+Result<BuiltMesh> build_mesh(const Source& from, std::size_t index, const Survey& found, const PipelineOptions& options,
+                             ProgressMeter& progress) {
   const scene::SourceMesh& source = from.scene.meshes[index];
   const std::string label = mesh_label(source, index);
   const MeshOptions& own = options.of_mesh(index);
@@ -108,10 +151,16 @@ Result<BuiltMesh> build_mesh(const Source& from, std::size_t index,
 
   MeshPlan plan = plan_mesh(source, from.scene.materials, request_of(own), label);
   built.decisions = std::move(plan.decisions);
+  const AggregateDecision& aggregate = found.aggregates[index];
+  if (!aggregate.reason.empty()) {
+    built.decisions.push_back({label + ": aggregate", aggregate.is_aggregate, aggregate.reason});
+  }
   built.clock.end(Stage::kPlan);
 
-  const EncodeOptions encoding = encode_options(options, own, source, plan.layout, texels);
-  const StoredPlace place(source, plan.layout, encoding, own, options);
+  const EncodeOptions encoding = encode_options(options, own, source, plan.layout, found.texels);
+  // What an aggregate becomes depends on images too: the key would have to have them.
+  const StoredPlace place =
+      aggregate.is_aggregate ? StoredPlace() : StoredPlace(source, plan.layout, encoding, own, options);
   const std::size_t planned = built.decisions.size();
   if (place.take(label, built)) {
     from.free_mesh(index);
@@ -125,12 +174,15 @@ Result<BuiltMesh> build_mesh(const Source& from, std::size_t index,
   built.clock.end(Stage::kPrepare);
 
   DagOptions coarsening = dag_options(options, own, *mesh, encoding);
+  if (aggregate.is_aggregate) coarsening.simplify.keep_area = false;  // nothing is collapsed
   LevelClock levels(index);
   coarsening.on_level = [&](std::uint32_t level, std::uint64_t triangles) {
     levels.end(level, triangles);
     return progress.report(index, level, triangles);
   };
-  const Result<LodDag> dag = build_dag_and_free(*mesh, coarsening);
+  const Result<LodDag> dag = aggregate.is_aggregate
+                                 ? build_aggregate_dag_and_free(*mesh, found.coarse.of_source, coarsening)
+                                 : build_dag_and_free(*mesh, coarsening);
   if (!dag) return Error{dag.error().code, label, dag.error().detail};
   built.levels = levels.times();
   built.clock.end(Stage::kDag);
@@ -162,14 +214,13 @@ std::vector<std::size_t> largest_first(const scene::Scene& scene) {
 }
 
 /// Every mesh once, so many side by side. Error: the first mesh's that has one.
-Result<std::vector<BuiltMesh>> build_meshes(const Source& from, const PipelineOptions& options, std::size_t at_once,
-                                            const ProgressCallback& progress) {
+Result<std::vector<BuiltMesh>> build_meshes(const Source& from, const PipelineOptions& options, const Survey& found,
+                                            std::size_t at_once, const ProgressCallback& progress) {
   ProgressMeter meter(from.scene, progress);
-  const auto texels = texels_of_materials(from.scene);
   const std::vector<std::size_t> order = largest_first(from.scene);
   std::vector<Result<BuiltMesh>> results(order.size(), Error{});
   parallel_for_each_in_order(order.size(), at_once, [&](std::size_t i) {
-    results[order[i]] = build_mesh(from, order[i], texels, options, meter);
+    results[order[i]] = build_mesh(from, order[i], found, options, meter);
   });
   std::vector<BuiltMesh> meshes;
   for (Result<BuiltMesh>& result : results) {
@@ -206,12 +257,18 @@ Result<std::vector<std::uint8_t>> build_asset_of(const Source& from, const Pipel
   const scene::Scene& scene = from.scene;
   const Result<std::size_t> at_once = check_build(scene, options, report);
   if (!at_once) return at_once.error();
-  Result<std::vector<BuiltMesh>> meshes = build_meshes(from, options, *at_once, progress);
+  const Result<Survey> found = survey(scene, options);
+  if (!found) return found.error();
+  Result<std::vector<BuiltMesh>> meshes = build_meshes(from, options, *found, *at_once, progress);
   if (!meshes) return meshes.error();
 
   WriteInput input;
   input.scene = &scene;
   input.codec = options.codec;
+  if (found->has_aggregates()) {
+    input.materials = &found->coarse.materials;
+    input.document = &found->coarse.document;
+  }
   report.decisions.clear();
   report.levels.clear();
   report.stored_meshes = 0;

@@ -18,6 +18,7 @@
 
 namespace meshlode::build {
 
+class LookReader;
 class MeshStore;
 
 /// What may be set for each mesh by itself.
@@ -31,6 +32,7 @@ struct MeshOptions {
   double uv_error = 0.125;           ///< the largest move of a texture coordinate, in the unit below
   bool uv_error_is_texels = true;    ///< of the material's largest texture; else UV units
   bool uv_error_is_default = true;   ///< no texture counts as smaller than 2,048 texels then
+  AggregateChoice aggregate = AggregateChoice::kNever;
 
   bool operator==(const MeshOptions&) const = default;
 };
@@ -52,7 +54,9 @@ struct SceneOptions {
   /// Large arrays of the process go to a file before they would exceed max_memory (tools/meshlode/spill.h).
   bool spills = false;
   MeshStore* mesh_store = nullptr;  ///< meshes that were built before (build/store/mesh_store.h); the same bytes
-  Experiment experiment;            ///< none but in studies
+  /// Images of materials, for aggregates (build/aggregate/material_looks.h). None: textured meshes are no aggregates.
+  const LookReader* looks = nullptr;
+  Experiment experiment;  ///< none but in studies
   /// One for each mesh of the scene, in the place of the whole's; empty: all as the whole.
   std::vector<MeshOptions> mesh_options;
 };

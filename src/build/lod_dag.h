@@ -42,6 +42,7 @@ struct DagGroup {
   double normal_deviation = std::numeric_limits<double>::infinity();
   double uv_deviation = std::numeric_limits<double>::infinity();
   bool is_terminal = false;
+  bool is_aggregate = false;  ///< its error is of coverage (format::kGroupAggregate); never where terminal
   StuckReason stuck_reason = StuckReason::kNotStuck;  ///< not kNotStuck only where terminal
 };
 

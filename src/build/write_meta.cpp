@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "build/write_meta.h"
+#include "build/aggregate/aggregate_choice.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -96,6 +97,7 @@ void put_mesh_settings(Json& settings, const PipelineOptions& options, const std
     entry["error_tier"] = format::name_of(of_group.options.error_tier);
     entry["attributes"] = name_of(of_group.options.attributes);
     put_names(entry, of_group.forced);
+    if (of_group.options.aggregate != options.aggregate) entry["aggregate"] = name_of(of_group.options.aggregate);
     entry["grid"] = grid_of(of_group.options);
     put_budgets(entry, of_group.options);
     settings["mesh_settings"].push_back(std::move(entry));
@@ -121,6 +123,7 @@ Json settings_json(const scene::Scene& scene, const PipelineOptions& options,
   if (options.strip_effort != StripEffort::kOfPreset) settings["strip_effort"] = name_of(options.strip_effort);
   settings["repair"] = options.repair;
   if (options.keep_topology) settings["keep_topology"] = true;
+  if (options.aggregate != AggregateChoice::kNever) settings["aggregate"] = name_of(options.aggregate);
   if (!scene.choice.empty()) settings["scene"] = scene.choice;
   settings["cluster_triangles"] = options.max_cluster_triangles;
   settings["cluster_vertices"] = options.max_cluster_vertices;

@@ -52,6 +52,8 @@ const Saying kSayings[] = {
      [](BuildOptions& o) { o.strip_effort = StripEffort::kFast, o.codec = format::Codec::kStrips; }},
     {"--cluster-triangles 64", [](BuildOptions& o) { o.cluster_triangles = 64; }},
     {"--keep-topology", [](BuildOptions& o) { o.keep_topology = true; }},
+    {"--aggregate auto", [](BuildOptions& o) { o.aggregate = AggregateChoice::kAuto; }},
+    {"--aggregate always", [](BuildOptions& o) { o.aggregate = AggregateChoice::kAlways; }},
     {"--group-clusters 12", [](BuildOptions& o) { o.group_clusters = 12; }},
     {"--strict", [](BuildOptions&) {}},  // the library always is
     {"--repair", [](BuildOptions& o) { o.repair = true; }},

@@ -234,6 +234,8 @@ TEST(Ingredients, AreOtherOnesForEverySettingThatChangesBytes) {
   changed.back().uv_error_is_default = false;
   changed.push_back(plain);
   changed.back().keep_topology = true;
+  changed.push_back(plain);
+  changed.back().aggregate = AggregateChoice::kAuto;
   std::vector<std::string> texts{settings_text(plain, {}), settings_text(plain, {.repair = true})};
   for (const build::PipelineOptions& options : changed) texts.push_back(settings_text(options, {}));
   std::sort(texts.begin(), texts.end());

@@ -23,7 +23,7 @@ from xxh3 import canonical_128, xxh3_64
 FORMATS = {"u8": "B", "u16": "H", "u32": "I", "u64": "Q", "i8": "b", "i16": "h", "i32": "i", "f32": "I", "f64": "Q",
            "str": "II"}
 EXPONENTS = {"f32": 0x7F800000, "f64": 0x7FF0000000000000}
-VERSION = 1
+VERSIONS = (1, 2)
 TEXTS = ("META", "SCNE", "STRS")
 SECTIONS = ("META", "SCNE", "STRS", "MESH", "MATL", "INST", "GRUP", "CLUS", "NODE", "PAGT", "PDEP", "BLBT", "PAGE",
             "BLOB")
@@ -88,7 +88,7 @@ class Lode:
         check(len(data) >= 64, "header", "is cut off")
         header = self.header = read_record(data, 0, "HEADER")
         check(bytes(header["magic"]) == b"LODE", "header, field magic")
-        if header["version"] != VERSION:
+        if header["version"] not in VERSIONS:
             raise Unsupported(f"header, field version: {header['version']}")
         check(header["header_bytes"] == 64, "header, field header_bytes")
         check(header["section_entry_bytes"] == 64, "header, field section_entry_bytes")

@@ -41,6 +41,7 @@ Result<std::vector<std::uint8_t>> repacked(const run::Asset& asset, format::Code
   for (const format::SectionEntry& entry : asset.sections()) {
     input.sections.push_back({entry, asset.section_bytes(entry)});
   }
+  input.version = asset.header().version;
   input.content_hash = stated_hash(asset);
   input.meta_json = build::meta_with_codec(asset.meta_json(), codec);
   input.load_page = [&](std::size_t p) -> Result<std::vector<std::uint8_t>> {

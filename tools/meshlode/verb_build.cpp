@@ -26,6 +26,7 @@
 #include "build/settings/settings.h"
 #include "build_options.h"
 #include "explain.h"
+#include "material_looks.h"
 #include "memory_limit.h"
 #include "options.h"
 #include "outputs.h"
@@ -225,6 +226,7 @@ Status set_options(const BuildWords& words, const LimitWords& limits, batch::Bat
   const Result<build::Settled> settled = build::settle({&given, 1});
   if (!settled) return settled.error();
   options.pipeline = settled->options;
+  options.pipeline.looks = &image_looks();
   options.settings_of = [words](const Job& job) { return settings_for(words, job.input, job.root); };
   options.import.repair = options.pipeline.repair;
   options.import.scene = words.scene;

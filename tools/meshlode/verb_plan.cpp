@@ -11,6 +11,7 @@
 #include "build/settings/settings.h"
 #include "build_options.h"
 #include "explain.h"
+#include "material_looks.h"
 #include "measure_plan.h"
 #include "options.h"
 #include "scene/import/import.h"
@@ -120,6 +121,7 @@ int run_plan(const Verb& verb, std::span<char* const> args) {
   Result<build::Settled> settled = build::settle(*layers);
   if (!settled) return print_error(settled.error());
   build::PipelineOptions options = settled->options;
+  options.looks = &image_looks();
 
   JobLimit limit(jobs);
   const Result<scene::Scene> scene = scene::import_scene(

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "build/aggregate/aggregate_choice.h"
 #include "build/plan/attributes.h"
 #include "build/preset.h"
 #include "format/names.h"
@@ -81,15 +82,16 @@ std::string describe(const std::string& key, const std::string* before, const st
 std::string settings_text(const build::PipelineOptions& options, const scene::ImportOptions& import) {
   // Every member has a name here, so that one more does not compile before it is written down or left out on purpose.
   const auto& [error_tier, attributes, keep, drop, grid_step, position_error, normal_error, uv_error,
-               uv_error_is_texels, uv_error_is_default] = static_cast<const build::MeshOptions&>(options);
+               uv_error_is_texels, uv_error_is_default, aggregate] = static_cast<const build::MeshOptions&>(options);
   const auto& [preset, codec, strip_effort, partition_seed, repair, keep_topology, max_cluster_triangles,
-               max_cluster_vertices, group_clusters, max_memory, spills, mesh_store, experiment, mesh_options] =
+               max_cluster_vertices, group_clusters, max_memory, spills, mesh_store, looks, experiment, mesh_options] =
       static_cast<const build::SceneOptions&>(options);
   const auto& [import_repair, scene, files_read, max_decoded, may_lack_images] = import;
   static_cast<void>(mesh_options);     // not known before the import: mesh_rules_text()
   static_cast<void>(max_memory);       // whether, not what
   static_cast<void>(spills);           // where it lies meanwhile
   static_cast<void>(mesh_store);       // how soon
+  static_cast<void>(looks);            // the program always has it; images are ingredients
   static_cast<void>(max_decoded);      // the same
   static_cast<void>(may_lack_images);  // the same: a missing image is an ingredient of its own
   static_cast<void>(files_read);       // an output
@@ -117,6 +119,7 @@ std::string settings_text(const build::PipelineOptions& options, const scene::Im
       {"uv-error", text_of(uv_error)},
       {"uv-error-is-texels", text_of(uv_error_is_texels)},
       {"uv-error-is-default", text_of(uv_error_is_default)},
+      {"aggregate", build::name_of(aggregate)},
   };
   std::string text;
   for (const auto& [name, value] : lines) text += std::string(name) + " " + value + "\n";

@@ -90,6 +90,7 @@ Result<build::PipelineOptions> make_pipeline_options(const BuildOptions& options
   pipeline.group_clusters = options.group_clusters;
   pipeline.repair = options.repair;
   pipeline.keep_topology = options.keep_topology;
+  pipeline.aggregate = options.aggregate;
   pipeline.max_memory = options.max_memory_bytes;
   return pipeline;
 }

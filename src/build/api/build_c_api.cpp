@@ -128,6 +128,7 @@ Result<BuildOptions> read_options(const meshlode_build_options& in) {
   if (in.preset > 2) return limit("preset");
   if (in.strip_effort > 3) return limit("strip_effort");
   if (in.attributes > 2) return limit("attributes");
+  if (in.aggregate > 2) return limit("aggregate");
   BuildOptions out;
   if (in.error_tier != MESHLODE_TIER_OF_PRESET) out.error_tier = static_cast<format::ErrorTier>(in.error_tier);
   out.preset = static_cast<Preset>(in.preset);
@@ -145,6 +146,7 @@ Result<BuildOptions> read_options(const meshlode_build_options& in) {
   out.uv_error_unit = in.uv_error_is_texels != 0 ? UvErrorUnit::kTexels : UvErrorUnit::kUv;
   out.repair = in.repair != 0;
   out.keep_topology = in.keep_topology != 0;
+  out.aggregate = static_cast<AggregateChoice>(in.aggregate);
   out.max_memory_bytes = in.max_memory_bytes;
   out.thread_count = in.thread_count;
   return out;
@@ -240,6 +242,7 @@ void meshlode_build_defaults(meshlode_build_options* options) {
   options->uv_error_is_texels = defaults.uv_error_unit == meshlode::UvErrorUnit::kTexels ? 1 : 0;
   options->repair = defaults.repair ? 1 : 0;
   options->keep_topology = defaults.keep_topology ? 1 : 0;
+  options->aggregate = static_cast<uint32_t>(defaults.aggregate);
   options->max_memory_bytes = defaults.max_memory_bytes;
   options->thread_count = defaults.thread_count;
 }

@@ -114,6 +114,7 @@ LodDag assemble_dag(BuildPool&& pool, const PreparedMesh& mesh) {
     group.first_cluster = static_cast<std::uint32_t>(dag.clusters.size());
     group.cluster_count = static_cast<std::uint32_t>(source.clusters.size());
     group.is_terminal = source.is_terminal;
+    group.is_aggregate = source.is_aggregate;
     group.stuck_reason = source.stuck_reason;
     const double infinity = std::numeric_limits<double>::infinity();
     group.error = source.is_terminal ? infinity : source.error;

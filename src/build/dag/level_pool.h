@@ -44,6 +44,7 @@ struct BuildGroup {
   double normal_deviation = std::numeric_limits<double>::infinity();  ///< running maxima, +inf where not measured
   double uv_deviation = std::numeric_limits<double>::infinity();
   bool is_terminal = false;
+  bool is_aggregate = false;
   StuckReason stuck_reason = StuckReason::kNotStuck;
 };
 

@@ -121,6 +121,7 @@ format::GroupRecord group_record(const DagGroup& group, const Hierarchy::Sphere&
   record.cluster_count = static_cast<std::uint16_t>(group.cluster_count);
   record.level = static_cast<std::uint16_t>(group.level);
   if (group.is_terminal) record.flags |= format::kGroupTerminal;
+  if (group.is_aggregate) record.flags |= format::kGroupAggregate;
   if (group.is_terminal && group.stuck_reason != StuckReason::kNotStuck) record.flags |= format::kGroupStuck;
   record.stuck_reason = static_cast<format::StuckReason>(group.stuck_reason);
   return record;

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "build/aggregate/aggregate_choice.h"
 #include "build/encode/encode.h"
 #include "build/encode/uv_grid.h"
 #include "build/needs.h"
@@ -159,6 +160,14 @@ Result<ScenePlan> plan_scene(const scene::Scene& scene, const PipelineOptions& o
     plan.meshes.push_back(std::move(*mesh));
   }
   plan.features = list_features(scene);
+  for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
+    const AggregateDecision aggregate =
+        decide_aggregate(scene.meshes[i], options.of_mesh(i).aggregate, options.keep_topology);
+    if (aggregate.reason.empty()) continue;
+    plan.features.push_back(
+        {mesh_label(scene.meshes[i], i) + ": aggregate", aggregate.is_aggregate,
+         aggregate.is_aggregate ? aggregate.reason + ": thinned out by what they cover" : aggregate.reason});
+  }
   return plan;
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/nearest_name.h"
+#include "build/aggregate/aggregate_choice.h"
 #include "build/plan/attributes.h"
 #include "build/preset.h"
 #include "format/names.h"
@@ -40,6 +41,9 @@ constexpr std::array<SettingInfo, kSettingCount> kSettings{{
      false},
     {Setting::kKeepTopology, "keep-topology",
      "every cut of a manifold is a manifold with its holes, handles and pieces, for more triangles", "false", false},
+    {Setting::kAggregate, "aggregate",
+     "which meshes are thinned out by coverage, not by distance: those of many small loose pieces, or all", "never",
+     true},
     {Setting::kCare, "care",
      "experimental: NAME=off, comma by comma, builds without double-quadrics, fallback, spheres or needles", "all",
      false, true},
@@ -200,6 +204,7 @@ PipelineOptions options_of(const std::array<SettledWord, kSettingCount>& words) 
   options.group_clusters = parse_group_clusters(word(Setting::kGroupClusters)).value_or(options.group_clusters);
   options.repair = word(Setting::kRepair) == "true";
   options.keep_topology = word(Setting::kKeepTopology) == "true";
+  options.aggregate = value_in(kAggregateChoiceNames, word(Setting::kAggregate)).value_or(options.aggregate);
   if (const auto care = parse_care(word(Setting::kCare))) options.experiment.care = *care;
   options.experiment.simplifier =
       value_in(kSimplifierNames, word(Setting::kSimplifier)).value_or(options.experiment.simplifier);
@@ -241,6 +246,7 @@ std::vector<std::string> choices_of(Setting setting) {
     case Setting::kStripEffort: return all_names(kStripEffortNames);
     case Setting::kRepair:
     case Setting::kKeepTopology: return {"false", "true"};
+    case Setting::kAggregate: return all_names(kAggregateChoiceNames);
     case Setting::kSimplifier: return all_names(kSimplifierNames);
     default: return {};
   }

@@ -36,10 +36,11 @@ enum class Setting : std::uint8_t {
   kGroupClusters,
   kRepair,
   kKeepTopology,
+  kAggregate,
   kCare,
   kSimplifier,
 };
-constexpr std::size_t kSettingCount = 17;
+constexpr std::size_t kSettingCount = 18;
 
 struct SettingInfo {
   Setting setting;

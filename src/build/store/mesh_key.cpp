@@ -79,7 +79,7 @@ void add_encoding(KeyHasher& key, const EncodeOptions& encode) {
 
 void add_own_options(KeyHasher& key, const MeshOptions& own) {
   const auto& [error_tier, attributes, keep, drop, grid_step, position_error, normal_error, uv_error,
-               uv_error_is_texels, uv_error_is_default] = own;
+               uv_error_is_texels, uv_error_is_default, aggregate] = own;
   key.value(error_tier);
   key.value(grid_step);
   key.value(position_error);
@@ -90,6 +90,7 @@ void add_own_options(KeyHasher& key, const MeshOptions& own) {
   static_cast<void>(uv_error);
   static_cast<void>(uv_error_is_texels);
   static_cast<void>(uv_error_is_default);
+  key.value(aggregate);
 }
 
 void add_experiment(KeyHasher& key, const Experiment& experiment) {
@@ -101,7 +102,7 @@ void add_experiment(KeyHasher& key, const Experiment& experiment) {
 
 void add_scene_options(KeyHasher& key, const SceneOptions& options) {
   const auto& [preset, codec, strip_effort, partition_seed, repair, keep_topology, max_cluster_triangles,
-               max_cluster_vertices, group_clusters, max_memory, spills, mesh_store, experiment, mesh_options] =
+               max_cluster_vertices, group_clusters, max_memory, spills, mesh_store, looks, experiment, mesh_options] =
       options;
   key.value(preset);
   key.value(partition_seed);
@@ -116,6 +117,7 @@ void add_scene_options(KeyHasher& key, const SceneOptions& options) {
   static_cast<void>(max_memory);
   static_cast<void>(spills);
   static_cast<void>(mesh_store);
+  static_cast<void>(looks);         // of aggregates, which are not stored
   static_cast<void>(mesh_options);  // this mesh's are its own
 }
 

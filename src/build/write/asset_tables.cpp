@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "build/write/asset_tables.h"
 
+#include <algorithm>
 #include <cstring>
 #include <limits>
 
@@ -138,11 +139,18 @@ format::StringRef StringTable::add(const std::string& text) {
   return ref;
 }
 
+std::uint32_t version_of(const AssetTables& tables) {
+  const bool has_aggregates =
+      std::any_of(tables.groups.begin(), tables.groups.end(),
+                  [](const format::GroupRecord& group) { return (group.flags & format::kGroupAggregate) != 0; });
+  return has_aggregates ? format::kVersion : format::kPlainVersion;
+}
+
 Result<AssetTables> make_tables(WriteInput& input) {
   if (Status status = check_counts(input); !status) return status.error();
   AssetTables out;
   for (std::size_t m = 0; m < input.meshes.size(); ++m) append_mesh(input.meshes[m], input.mesh_names[m], out);
-  for (const scene::SceneMaterial& material : input.scene->materials) {
+  for (const scene::SceneMaterial& material : input.all_materials()) {
     out.materials.push_back(material_record(material, out.strings));
   }
   for (const scene::SceneInstance& instance : input.scene->instances) {

@@ -40,6 +40,9 @@ struct AssetTables {
   std::vector<std::vector<std::uint8_t>> page_bytes;  ///< decoded, PageHeader::first_cluster global
 };
 
+/// The oldest version that says what is in the tables: format::kPlainVersion, but where there are aggregates.
+[[nodiscard]] std::uint32_t version_of(const AssetTables& tables);
+
 /// Moves the pages out of `input`. Errors: kBuildFailed where a count leaves 32 bits or an id is out of range.
 [[nodiscard]] Result<AssetTables> make_tables(WriteInput& input);
 

@@ -75,15 +75,15 @@ void copy_sections(std::span<const SectionPlan> plans, std::span<const format::S
   }
 }
 
-void seal(const Hash128& content_hash, std::span<const SectionPlan> plans, std::span<format::SectionEntry> entries,
-          std::vector<std::uint8_t>& file) {
+void seal(std::uint32_t version, const Hash128& content_hash, std::span<const SectionPlan> plans,
+          std::span<format::SectionEntry> entries, std::vector<std::uint8_t>& file) {
   for (std::size_t s = 0; s < plans.size(); ++s) {
     if (plans[s].kept != nullptr || plans[s].id == format::SectionId::kPageData) continue;  // pages carry their own
     entries[s].checksum = hash64({file.data() + entries[s].offset, entries[s].bytes});
   }
   format::FileHeader header{};
   header.magic = format::kMagic;
-  header.version = format::kVersion;
+  header.version = version;
   header.header_bytes = sizeof(header);
   header.section_count = static_cast<std::uint32_t>(entries.size());
   header.file_bytes = file.size();

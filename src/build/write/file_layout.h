@@ -51,7 +51,7 @@ void copy_sections(std::span<const SectionPlan> plans, std::span<const format::S
                    std::vector<std::uint8_t>& file);
 
 /// Header and table of sections, with their checksums. \pre all sections are in their place
-void seal(const Hash128& content_hash, std::span<const SectionPlan> plans, std::span<format::SectionEntry> entries,
-          std::vector<std::uint8_t>& file);
+void seal(std::uint32_t version, const Hash128& content_hash, std::span<const SectionPlan> plans,
+          std::span<format::SectionEntry> entries, std::vector<std::uint8_t>& file);
 
 }  // namespace meshlode::build

@@ -40,10 +40,10 @@ class SectionHasher {
 
 }  // namespace
 
-Hash128 hash_content(const AssetTables& tables, const scene::Scene& scene) {
+Hash128 hash_content(const AssetTables& tables, std::string_view document, std::span<const scene::SceneBlob> blobs) {
   SectionHasher hasher;
-  hasher.add(format::kVersion);
-  hasher.text(format::SectionId::kScene, scene.document);
+  hasher.add(version_of(tables));
+  hasher.text(format::SectionId::kScene, document);
   hasher.text(format::SectionId::kStrings, tables.strings.bytes());
   hasher.table(format::SectionId::kMeshes, tables.meshes);
   hasher.table(format::SectionId::kMaterials, tables.materials);
@@ -66,7 +66,7 @@ Hash128 hash_content(const AssetTables& tables, const scene::Scene& scene) {
     blob.offset = 0;
     hasher.add(blob);
   }
-  for (const scene::SceneBlob& blob : scene.blobs) hasher.raw(blob.bytes);
+  for (const scene::SceneBlob& blob : blobs) hasher.raw(blob.bytes);
   return hasher.digest();
 }
 

@@ -9,6 +9,7 @@
 
 namespace meshlode::build {
 
-[[nodiscard]] Hash128 hash_content(const AssetTables& tables, const scene::Scene& scene);
+[[nodiscard]] Hash128 hash_content(const AssetTables& tables, std::string_view document,
+                                   std::span<const scene::SceneBlob> blobs);
 
 }  // namespace meshlode::build

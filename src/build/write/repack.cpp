@@ -143,7 +143,7 @@ Result<std::vector<std::uint8_t>> repack_asset(const RepackInput& input) {
   for (std::size_t p = 0; p < pages.size(); ++p) {
     copy_bytes(file, pages[p].offset, (*stored)[p].bytes.data(), (*stored)[p].bytes.size());
   }
-  seal(input.content_hash, plans, entries, file);
+  seal(input.version, input.content_hash, plans, entries, file);
   return file;
 }
 

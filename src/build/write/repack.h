@@ -24,9 +24,10 @@ struct RepackSection {
 /// An asset as its reader sees it. \pre everything that a reader checks on opening holds (docs/format.md, What a reader
 /// must refuse)
 struct RepackInput {
-  std::vector<RepackSection> sections;  ///< all of the file, in its order
-  Hash128 content_hash{};               ///< as the asset says
-  std::string meta_json;                ///< kMeta of the result
+  std::vector<RepackSection> sections;            ///< all of the file, in its order
+  std::uint32_t version = format::kPlainVersion;  ///< as the asset says
+  Hash128 content_hash{};                         ///< the same
+  std::string meta_json;                          ///< kMeta of the result
   /// One page, decoded and checked; called from several threads at once.
   std::function<Result<std::vector<std::uint8_t>>(std::size_t page)> load_page;
   format::Codec codec = format::Codec::kNone;

@@ -76,7 +76,7 @@ SectionPlans plan_sections(const WriteInput& input, const AssetTables& tables, s
   using enum format::SectionId;
   return {
       text_section(kMeta, input.meta_json),
-      text_section(kScene, input.scene->document),
+      text_section(kScene, input.whole_document()),
       text_section(kStrings, tables.strings.bytes()),
       table_section(kMeshes, tables.meshes),
       table_section(kMaterials, tables.materials),
@@ -122,7 +122,7 @@ Result<std::vector<std::uint8_t>> write_asset(WriteInput input) {
   if (!made) return made.error();
   AssetTables tables = std::move(*made);
   const scene::Scene& scene = *input.scene;
-  const Hash128 content_hash = hash_content(tables, scene);
+  const Hash128 content_hash = hash_content(tables, input.whole_document(), scene.blobs);
   auto packed = pack_pages(tables, input.codec);
   if (!packed) return packed.error();
   const std::uint64_t page_data_bytes = place_pages(tables, *packed);
@@ -135,7 +135,7 @@ Result<std::vector<std::uint8_t>> write_asset(WriteInput input) {
   move_to_sections(entries, tables);
   copy_sections(plans, entries, file);
   copy_pages_and_blobs(tables, *packed, scene.blobs, file);
-  seal(content_hash, plans, entries, file);
+  seal(version_of(tables), content_hash, plans, entries, file);
   return file;
 }
 

@@ -18,9 +18,16 @@ namespace meshlode::build {
 struct WriteInput {
   std::vector<EncodedMesh> meshes;
   std::vector<std::string> mesh_names;
-  const scene::Scene* scene = nullptr;  ///< materials, instances, blobs and document
-  std::string meta_json;                ///< kMeta, already serialised
+  const scene::Scene* scene = nullptr;  ///< instances and blobs; materials and document where there are none below
+  const std::vector<scene::SceneMaterial>* materials = nullptr;  ///< with those that the build derived
+  const std::string* document = nullptr;                         ///< with these
+  std::string meta_json;                                         ///< kMeta, already serialised
   format::Codec codec = format::Codec::kNone;
+
+  [[nodiscard]] const std::vector<scene::SceneMaterial>& all_materials() const {
+    return materials != nullptr ? *materials : scene->materials;
+  }
+  [[nodiscard]] const std::string& whole_document() const { return document != nullptr ? *document : scene->document; }
 };
 
 /// The whole file. Deterministic: no time, no path, no thread count. Errors: kUnsupported codec, kBuildFailed limits.

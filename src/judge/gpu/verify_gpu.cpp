@@ -12,6 +12,7 @@
 #include "judge/gpu/compare_frame.h"
 #include "judge/gpu/hardware_judge.h"
 #include "judge/gpu/judge_picture.h"
+#include "judge/metrics/coverage.h"
 
 namespace meshlode::judge {
 
@@ -129,6 +130,7 @@ bool is_closed(const Surface& surface) {
 
 /// Which promises the asset makes, so that pictures can be held to them.
 struct Promise {
+  bool has_aggregates = false;    ///< which are judged by what they cover (V208)
   bool has_displacement = false;  ///< how far a pixel may be displaced: there is a source, and a tier that speaks of it
   bool is_closed = false;         ///< every mesh of the source is
   bool has_holes = false;         ///< that nothing shows through: of what is closed and opaque
@@ -143,6 +145,10 @@ Promise promise_of(const run::Asset& asset, const std::vector<SourceSurface>& so
     if (mesh.error_tier == format::ErrorTier::kQem) out.has_displacement = false;
     if (mesh.error_tier == format::ErrorTier::kMeasured) out.tolerance = 1.05;
   }
+  for (std::uint32_t m = 0; m < asset.meshes().size(); ++m) {
+    out.has_aggregates = out.has_aggregates || has_aggregates(asset, MeshId(m));
+  }
+  out.has_displacement = out.has_displacement && !out.has_aggregates;
   out.is_closed = std::all_of(source.begin(), source.end(), [](const SourceSurface& mesh) {
     return mesh.surface.triangles.empty() || is_closed(mesh.surface);
   });
@@ -289,10 +295,14 @@ void describe_promises(const Promise& promise, const GpuVerifyReport& report, do
   checks.displaced.what = format_px("pixels are displaced by %.3f px at most", report.largest_px) +
                           format_px(", %.3f of what is allowed:", report.largest_share) +
                           format_px(" %.3g or level 0's own", pixel_error) +
-                          (promise.has_displacement ? "" : " (not judged: tier qem states the quadric's estimate)");
+                          (promise.has_displacement ? ""
+                           : promise.has_aggregates ? " (not judged: aggregates are held to what they cover)"
+                                                    : " (not judged: tier qem states the quadric's estimate)");
   checks.holes.is_skipped = !promise.has_holes;
   if (!promise.has_holes) {
-    checks.holes.what += promise.is_closed ? " (not judged: tier qem)" : " (not judged: the source is open)";
+    checks.holes.what += promise.has_aggregates ? " (not judged: aggregates are open)"
+                         : promise.is_closed    ? " (not judged: tier qem)"
+                                                : " (not judged: the source is open)";
   }
 }
 

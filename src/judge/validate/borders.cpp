@@ -40,6 +40,35 @@ std::vector<std::uint32_t> groups_from_fine_to_coarse(const run::Asset& asset, c
   return order;
 }
 
+/// Per edge: whether a cluster has it on its border that neither goes into an aggregate's group nor was made from one.
+std::vector<std::uint8_t> edges_outside_aggregates(const run::Asset& asset, const MeshSurface& surface) {
+  std::vector<std::uint8_t> outside(surface.edges.size(), 0);
+  const auto is_aggregate = [&](std::uint32_t group) {
+    return group != format::kNone && (asset.groups()[group].flags & format::kGroupAggregate) != 0;
+  };
+  for (std::uint32_t c = 0; c < surface.cluster_count; ++c) {
+    const format::ClusterRecord& cluster = asset.clusters()[surface.first_cluster + c];
+    if (is_aggregate(cluster.own_group) || is_aggregate(cluster.coarser_group)) continue;
+    for (const EdgeUse& use : surface.chain(c)) outside[use.edge] = 1;
+  }
+  return outside;
+}
+
+/// What an aggregate's group may do: pieces go, and others come. Of nothing that goes or comes may anybody else have an
+/// edge, and what goes must have been a border.
+std::string refuse_new_pieces(const MeshSurface& surface, const BorderSet& border, std::span<const Exchange> exchanges,
+                              std::span<const std::uint8_t> outside) {
+  for (const Exchange& exchange : exchanges) {
+    if (outside[exchange.edge] != 0) {
+      return "changes the border edge " + edge_text(surface, exchange.edge) + " that is not an aggregate's alone";
+    }
+    if (exchange.removed != 0 && !border.allows(exchange.edge, exchange.removed)) {
+      return "takes away the border edge " + edge_text(surface, exchange.edge) + " that others lean on";
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 BorderProof prove_borders(const run::Asset& asset, const MeshSurface& surface) {
@@ -56,6 +85,7 @@ BorderProof prove_borders(const run::Asset& asset, const MeshSurface& surface) {
     border.is_closed = false;
   }
 
+  const std::vector<std::uint8_t> outside = edges_outside_aggregates(asset, surface);
   for (const std::uint32_t g : groups_from_fine_to_coarse(asset, surface)) {
     const GroupRecord& group = asset.groups()[g];
     if ((group.flags & format::kGroupTerminal) != 0) continue;
@@ -64,7 +94,10 @@ BorderProof prove_borders(const run::Asset& asset, const MeshSurface& surface) {
     const std::vector<std::uint32_t>& made = surface.made[g - surface.first_group];
     const std::vector<Exchange> exchanges = exchanges_of(sum_chains(surface, members), sum_chains(surface, made));
     if (exchanges.empty()) continue;
-    std::string reason = refuse_exchange(surface, border, exchanges, set_of(surface, members), set_of(surface, made));
+    const bool is_aggregate = (group.flags & format::kGroupAggregate) != 0;
+    std::string reason =
+        is_aggregate ? refuse_new_pieces(surface, border, exchanges, outside)
+                     : refuse_exchange(surface, border, exchanges, set_of(surface, members), set_of(surface, made));
     if (!reason.empty()) {
       proof.violations.push_back({g, std::move(reason)});
       continue;  // what a broken group adds is no border of the source

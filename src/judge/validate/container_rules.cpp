@@ -66,8 +66,8 @@ bool read_header(std::span<const std::uint8_t> bytes, format::FileHeader& header
   bool sound = log.expect(header.magic == format::kMagic, Rule::kL001, where,
                           [] { return std::string("the magic is not LODE"); });
   if (!sound) return false;
-  sound = log.expect(header.version == format::kVersion, Rule::kL001, where,
-                     [&] { return "version " + std::to_string(header.version) + " is not 1"; });
+  sound = log.expect(header.version == format::kPlainVersion || header.version == format::kVersion, Rule::kL001, where,
+                     [&] { return "version " + std::to_string(header.version) + " is neither 1 nor 2"; });
   sound &= log.expect(header.header_bytes == sizeof header, Rule::kL001, where,
                       [&] { return "header_bytes is " + std::to_string(header.header_bytes) + ", not 64"; });
   log.expect(header.file_bytes == bytes.size(), Rule::kL002, where,

@@ -46,7 +46,7 @@ class ContentHasher {
 
 Hash128 content_hash_of(const FileTables& file, std::span<const std::span<const std::uint8_t>> page_bytes) {
   ContentHasher hasher;
-  hasher.value(format::kVersion);
+  hasher.value(file.header.version);
   hasher.section(SectionId::kScene, std::span<const char>(file.scene));
   hasher.section(SectionId::kStrings, std::span<const char>(file.strings));
   hasher.table(SectionId::kMeshes, file.meshes);

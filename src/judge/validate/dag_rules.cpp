@@ -114,6 +114,8 @@ void check_groups(const FileTables& file, RuleLog& log) {
       log.expect(terminal == (group.error == format::kInfiniteError), Rule::kL305, at, [&] {
         return std::string(terminal ? "terminal with a finite error" : "infinite error and not terminal");
       });
+      log.expect((group.flags & format::kGroupAggregate) == 0 || !terminal, Rule::kL305, at,
+                 [] { return std::string("an aggregate and terminal"); });
       log.expect(!stuck || terminal, Rule::kL305, at, [] { return std::string("stuck and not terminal"); });
       log.expect(stuck == (group.stuck_reason != format::StuckReason::kNotStuck), Rule::kL305, at,
                  [] { return std::string("the stuck flag and its reason disagree"); });

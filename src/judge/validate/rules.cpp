@@ -34,7 +34,8 @@ constexpr std::array kRules{
     // tables
     RULE(L101, "I11", "string references lie inside the string table and are UTF-8"),
     RULE(L102, "", "enumerated values are known ones"),
-    RULE(L103, "", "reserved fields and unused entries are zero"),
+    RULE(L103, "",
+         "reserved fields and unused entries are zero; the version is 2 exactly where a group is an aggregate's"),
     RULE(L104, "I11", "a mesh's origin, grid and bounds are finite, in range and ordered"),
     RULE(L105, "", "diagonal and level-0 deviation are finite, not negative and of the grid's size"),
     RULE(L106, "", "normal scale, UV sets, colour flag, material and sphere unit are in range and agree"),
@@ -129,6 +130,10 @@ constexpr std::array kRules{
     RULE(V205, "I5", "a uniform cut's stored error is its largest selected error, or level 0's deviation"),
     RULE(V206, "I7", "a uniform cut deviates from the source by no more than it stores (measured: within 5%)"),
     RULE(V207, "I6", "where keep_topology is set, no cut has more edges of more than two triangles than level 0"),
+    RULE(
+        V208, "I7",
+        "a uniform cut of an aggregate covers what level 0 covers: pixels of its error's size within 22%, all together "
+        "within 2%, their contrast at most 1.25 times"),
     // verify --gpu
     RULE(V401, "I9", "`--gpu`: the device decodes every cluster to the CPU's integers"),
     RULE(V402, "I8", "`--gpu`: the device's traversal selects what the flat rule selects"),

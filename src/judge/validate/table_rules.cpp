@@ -318,6 +318,7 @@ class TableChecker {
 
   bool check_groups() {
     bool sound = true;
+    bool has_aggregate = false;
     log_.check(Rule::kL110);
     for (std::size_t m = 0; m < file_.meshes.size(); ++m) {
       const format::MeshRecord& mesh = file_.meshes[m];
@@ -331,8 +332,11 @@ class TableChecker {
             log_.expect(group.mesh == m, Rule::kL110, at, [&] { return "names mesh " + std::to_string(group.mesh); });
         sound &= is_range_next(group.first_cluster, group.cluster_count, next, end, Rule::kL110, at());
         log_.expect(group.cluster_count > 0, Rule::kL501, at, [] { return Text("has no member"); });
-        log_.expect((group.flags & ~(format::kGroupTerminal | format::kGroupStuck)) == 0, Rule::kL103, at,
+        // Aggregates came with version 2.
+        const std::uint16_t aggregate = file_.header.version == format::kPlainVersion ? 0 : format::kGroupAggregate;
+        log_.expect((group.flags & ~(format::kGroupTerminal | format::kGroupStuck | aggregate)) == 0, Rule::kL103, at,
                     [] { return Text("unknown flags"); });
+        has_aggregate = has_aggregate || (group.flags & format::kGroupAggregate) != 0;
         log_.expect(static_cast<std::uint32_t>(group.stuck_reason) <= 6, Rule::kL102, at,
                     [&] { return "stuck_reason " + std::to_string(static_cast<std::uint32_t>(group.stuck_reason)); });
         sound &= log_.expect(group.page < file_.pages.size(), Rule::kL111, at,
@@ -342,6 +346,9 @@ class TableChecker {
           next == end, Rule::kL110, [&] { return place("mesh", m); },
           [&] { return differs("clusters in groups", next, "end of the mesh's", end); });
     }
+    log_.expect(
+        has_aggregate || file_.header.version == format::kPlainVersion, Rule::kL103, [] { return Text("header"); },
+        [] { return Text("version 2, and no group is an aggregate's"); });
     return sound;
   }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "judge/metrics/coverage.h"
 #include "run/select/select.h"
 
 namespace meshlode::judge {
@@ -69,7 +70,7 @@ DeviationTotals check_deviations(const run::Asset& asset, const scene::Scene& so
   std::vector<double> ratios;
   for (std::uint32_t m = 0; m < std::min(asset.meshes().size(), source.meshes.size()); ++m) {
     const format::ErrorTier tier = asset.meshes()[m].error_tier;
-    if (tier == format::ErrorTier::kQem) continue;
+    if (tier == format::ErrorTier::kQem || has_aggregates(asset, MeshId(m))) continue;
     const double limit = tier == format::ErrorTier::kCertified ? 1.0 : 1.0 + kMeasuredShortfall;
     const auto measured = measure_cuts(asset, MeshId(m), source.meshes[m], cuts, samples);
     if (!measured) {

@@ -7,6 +7,8 @@
 #include <optional>
 #include <string>
 
+#include <nlohmann/json.hpp>
+
 #include "format/grid.h"
 #include "format/names.h"
 #include "judge/validate/file_tables.h"
@@ -47,13 +49,44 @@ bool is_same_transform(const format::InstanceRecord& stored, const Mat4d& source
   return same || (zero && marked) || (!is_finite && marked);
 }
 
+bool has_any_aggregate(const run::Asset& asset) {
+  return std::any_of(asset.groups().begin(), asset.groups().end(),
+                     [](const format::GroupRecord& group) { return (group.flags & format::kGroupAggregate) != 0; });
+}
+
+/// The source's, byte for byte; with materials behind its own where aggregates have some that stand for their pieces.
+bool is_same_document(const run::Asset& asset, const scene::Scene& source) {
+  if (asset.scene_json() == source.document) return true;
+  if (!has_any_aggregate(asset)) return false;
+  using Json = nlohmann::json;
+  const Json theirs = Json::parse(source.document, nullptr, false);
+  Json ours = Json::parse(asset.scene_json(), nullptr, false);
+  if (!theirs.is_object() || !ours.is_object() || !ours.contains("materials")) return false;
+  Json& materials = ours["materials"];
+  const std::size_t count = theirs.contains("materials") ? theirs["materials"].size() : 0;
+  if (!materials.is_array() || materials.size() < count) return false;
+  materials.erase(materials.begin() + static_cast<std::ptrdiff_t>(count), materials.end());
+  if (!theirs.contains("materials")) ours.erase("materials");
+  return ours == theirs;
+}
+
 void check_materials(const run::Asset& asset, const scene::Scene& source, RuleLog& log) {
   log.expect(
-      asset.materials().size() == source.materials.size(), Rule::kV106, [] { return std::string("materials"); },
+      asset.materials().size() == source.materials.size() ||
+          (has_any_aggregate(asset) && asset.materials().size() > source.materials.size()),
+      Rule::kV106, [] { return std::string("materials"); },
       [&] {
         return differs("stored", std::uint64_t{asset.materials().size()}, "source",
                        std::uint64_t{source.materials.size()});
       });
+  for (std::size_t i = source.materials.size(); i < asset.materials().size(); ++i) {
+    const format::MaterialRecord& material = asset.materials()[i];
+    log.expect(
+        material.alpha_mode == format::AlphaMode::kOpaque && material.double_sided != 0 &&
+            material.base_color_texture == format::kNone,
+        Rule::kV106, [&] { return place("material", i); },
+        [] { return std::string("is not the source's, and none that stands for an aggregate"); });
+  }
   const std::size_t count = std::min(asset.materials().size(), source.materials.size());
   for (std::size_t i = 0; i < count; ++i) {
     log.expect(
@@ -102,7 +135,7 @@ void check_blobs(const run::Asset& asset, const scene::Scene& source, RuleLog& l
         same, Rule::kV109, [&] { return place("blob", i); }, [] { return std::string("is not the source's"); });
   }
   log.expect(
-      asset.scene_json() == source.document, Rule::kV109, [] { return std::string("section SCNE"); },
+      is_same_document(asset, source), Rule::kV109, [] { return std::string("section SCNE"); },
       [] { return std::string("is not the source's scene document"); });
 }
 

@@ -10,6 +10,7 @@
 #include "base/memory.h"
 #include "base/release.h"
 #include "judge/validate/file_tables.h"
+#include "judge/verify/coverage_rule.h"
 #include "judge/verify/cuts.h"
 #include "judge/verify/deviations.h"
 #include "judge/verify/source_rules.h"
@@ -20,6 +21,7 @@ namespace {
 
 /// Uniform cuts of a mesh whose edges are counted: a sort of all their edges each.
 constexpr std::uint32_t kCrowdedCuts = 12;
+constexpr std::uint32_t kCoverageSizes = 10;
 
 class Report {
  public:
@@ -173,10 +175,27 @@ void add_cuts(const run::Asset& asset, std::span<const run::DecodedCluster> clus
   report.take(camera_log);
 }
 
+void add_coverage(const run::Asset& asset, const VerifyOptions& options, Report& report) {
+  const std::uint32_t sizes = options.is_quick ? 1 : std::min(options.deviation_cuts, kCoverageSizes);
+  RuleLog log;
+  const CoverageTotals totals = check_coverage(asset, sizes, log);
+  if (totals.cuts == 0 && failures_of(log, {Rule::kV208}) == 0) return;
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "aggregates cover what they stand for: at most %.3f of noise, %.2f%% more or less, contrast %.3f",
+                totals.rms, 100.0 * totals.mean, totals.contrast);
+  report.add_check("I7", text, totals.cuts, failures_of(log, {Rule::kV208}));
+  report.take(log);
+}
+
 void add_deviations(const run::Asset& asset, const scene::Scene& source, const VerifyOptions& options, Report& report) {
   const auto meshes = asset.meshes();
   const bool is_qem = std::all_of(meshes.begin(), meshes.end(),
                                   [](const format::MeshRecord& m) { return m.error_tier == format::ErrorTier::kQem; });
+  const auto is_aggregate = [&](std::size_t m) { return has_aggregates(asset, MeshId(m)); };
+  std::size_t aggregates = 0;
+  for (std::size_t m = 0; m < meshes.size(); ++m) aggregates += is_aggregate(m) ? 1 : 0;
+  if (aggregates == meshes.size() && aggregates > 0) return;  // judged by what they cover
   if (is_qem) return report.skip("I7", "not checked: tier qem states the quadric's estimate");
   const std::uint32_t cuts = options.is_quick ? 1 : options.deviation_cuts;
   if (cuts == 0) return report.skip("I7", "not checked: no cut was to be measured");
@@ -206,6 +225,7 @@ VerifyReport verify_asset(const run::Asset& asset, const scene::Scene& source, c
     release(*clusters);  // cuts are decoded one by one
     give_back_freed_memory();
     add_deviations(asset, source, options, report);
+    add_coverage(asset, options, report);
   } else {
     report.add_check("I1", "not reached: " + clusters.error().message(), 0, 1);
     if (report.out.finding_count == 0) {

@@ -135,7 +135,8 @@ static_assert(MESHLODE_NORMALS_STORED == static_cast<int>(format::NormalMode::kS
 static_assert(MESHLODE_NORMALS_FLAT == static_cast<int>(format::NormalMode::kFlat));
 static_assert(MESHLODE_INSTANCE_MIRRORED == format::kInstanceMirrored);
 static_assert(MESHLODE_INSTANCE_SINGULAR == format::kInstanceSingular);
-static_assert(MESHLODE_GROUP_TERMINAL == format::kGroupTerminal && MESHLODE_GROUP_STUCK == format::kGroupStuck);
+static_assert(MESHLODE_GROUP_TERMINAL == format::kGroupTerminal && MESHLODE_GROUP_STUCK == format::kGroupStuck &&
+              MESHLODE_GROUP_AGGREGATE == format::kGroupAggregate);
 
 #undef SAME_RECORD
 #undef SAME_FIELD

@@ -109,6 +109,7 @@ Status Asset::index() {
   }
   const auto bytes_of = [&](format::SectionId id) { return section_bytes(sections->entry(id)); };
   RawTables tables;
+  tables.version = sections->header->version;
   tables.meshes = view_table<format::MeshRecord>(bytes_of(kMeshes));
   tables.materials = view_table<format::MaterialRecord>(bytes_of(kMaterials));
   tables.instances = view_table<format::InstanceRecord>(bytes_of(kInstances));

@@ -37,8 +37,13 @@ Status check_group(const RawTables& tables, std::size_t g, std::uint32_t mesh_id
   if (!is_error(group.normal_deviation)) return fail("normal_deviation", "must be finite and not negative");
   if (!is_error(group.uv_deviation)) return fail("uv_deviation", "must be finite and not negative");
   if (group.page >= tables.pages.size()) return fail("page", "is out of range");
-  if ((group.flags & ~(format::kGroupTerminal | format::kGroupStuck)) != 0) return fail("flags", "has an unknown bit");
+  const std::uint16_t aggregate = tables.version == format::kPlainVersion ? 0 : format::kGroupAggregate;
+  if ((group.flags & ~(format::kGroupTerminal | format::kGroupStuck | aggregate)) != 0) {
+    return fail("flags", "has an unknown bit");
+  }
   const bool is_terminal = (group.flags & format::kGroupTerminal) != 0;
+  if (is_terminal && (group.flags & format::kGroupAggregate) != 0)
+    return fail("flags", "a terminal group is no aggregate");
   const bool is_stuck = (group.flags & format::kGroupStuck) != 0;
   if (is_stuck && !is_terminal) return fail("flags", "a stuck group must be terminal");
   if (group.stuck_reason > format::StuckReason::kTopology) return fail("stuck_reason", "is unknown");

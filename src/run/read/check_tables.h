@@ -13,6 +13,7 @@ namespace meshlode::run {
 
 /// The tables as they lie in the file, not trusted yet.
 struct RawTables {
+  std::uint32_t version = format::kPlainVersion;  ///< of the file: what its flags may say
   std::span<const format::MeshRecord> meshes;
   std::span<const format::MaterialRecord> materials;
   std::span<const format::InstanceRecord> instances;

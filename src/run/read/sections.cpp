@@ -43,10 +43,10 @@ constexpr std::array kKnownSections{
 };
 
 Status check_header(std::span<const std::uint8_t> bytes, const format::FileHeader& header) {
-  if (header.version != format::kVersion) {
+  if (header.version != format::kPlainVersion && header.version != format::kVersion) {
     return Error{ErrorCode::kUnsupported, "header, field version",
-                 "version " + std::to_string(header.version) + ", this reader knows version " +
-                     std::to_string(format::kVersion)};
+                 "version " + std::to_string(header.version) + ", this reader knows versions " +
+                     std::to_string(format::kPlainVersion) + " and " + std::to_string(format::kVersion)};
   }
   if (header.header_bytes != sizeof(format::FileHeader)) return invalid_header("header_bytes", "must be 64");
   if (header.section_entry_bytes != sizeof(format::SectionEntry)) {

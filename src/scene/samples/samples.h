@@ -69,6 +69,13 @@ namespace meshlode::scene {
 /// `count` loose quads, leaf cards, with normals and UVs.
 [[nodiscard]] Primitive make_foliage(std::uint32_t count, std::uint64_t seed = 5);
 
+// ------------------------------------------------------------------------------------------- what is seen as a whole
+
+/// The crown of a tree: `count` loose leaf cards with normals and UVs, some 2 wide.
+[[nodiscard]] Primitive make_crown(std::uint32_t count, std::uint64_t seed = 21);
+/// A field of 2 x 2 with `blades` loose upright quads.
+[[nodiscard]] Primitive make_grass(std::uint32_t blades, std::uint64_t seed = 22);
+
 // --------------------------------------------------------------------------------------------------- the files of
 // data/
 
@@ -76,6 +83,12 @@ struct SampleFile {
   std::string name;                 ///< for example "rock.glb"
   std::vector<std::uint8_t> bytes;  ///< a GLB
 };
+
+/// Scenes for benchmarks of aggregates: "tree" (40,000 masked leaf cards), "grass" (20,000 opaque blades) and "soup"
+/// (20,000 opaque boxes).
+[[nodiscard]] std::vector<std::string> aggregate_names();
+/// \pre one of aggregate_names()
+[[nodiscard]] SampleFile make_aggregate_file(const std::string& name);
 
 /// The names of data/, in order.
 [[nodiscard]] std::vector<std::string> sample_names();

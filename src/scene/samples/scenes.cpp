@@ -93,6 +93,22 @@ SampleFile make_sample_file(const std::string& name) {
   return {};
 }
 
+std::vector<std::string> aggregate_names() {
+  return {"tree", "grass", "soup"};
+}
+
+SampleFile make_aggregate_file(const std::string& name) {
+  GlbMaterial material;
+  if (name == "tree") {
+    material.is_masked = material.double_sided = true;
+    return {"tree.glb", write_glb(textured_scene_of("tree", make_crown(40000), material, make_leaf_texture(64)))};
+  }
+  material.base_color = name == "grass" ? Vec4f{0.2F, 0.4F, 0.1F, 1.0F} : Vec4f{0.5F, 0.45F, 0.4F, 1.0F};
+  material.double_sided = name == "grass";
+  Primitive shape = name == "grass" ? make_grass(20000) : make_box_soup(20000);
+  return {name + ".glb", write_glb(scene_of(name.c_str(), std::move(shape), material))};
+}
+
 SampleFile make_terrain_file(std::uint64_t triangles) {
   assert(triangles >= 2 && triangles <= 100'000'000);
   const auto side = static_cast<std::uint32_t>(std::floor(std::sqrt(static_cast<double>(triangles) / 2.0) + 0.5));

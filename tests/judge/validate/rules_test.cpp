@@ -157,7 +157,7 @@ const std::vector<Break>& breaks() {
   static const std::vector<Break> all{
       {"L001", "wrong magic", [](AssetEdit& e) { e.header([](auto& h) { h.magic ^= 1U; }); }},
       {"L001", "version 0", [](AssetEdit& e) { e.header([](auto& h) { h.version = 0; }); }},
-      {"L001", "version 2", [](AssetEdit& e) { e.header([](auto& h) { h.version = 2; }); }},
+      {"L001", "version 3", [](AssetEdit& e) { e.header([](auto& h) { h.version = 3; }); }},
       {"L001", "longer header", [](AssetEdit& e) { e.header([](auto& h) { h.header_bytes = 72; }); }},
       {"L001", "truncated to nothing", [](AssetEdit& e) { e.bytes().resize(63); }, false},
       {"L002", "a byte more", [](AssetEdit& e) { e.bytes().push_back(0); }},
@@ -216,7 +216,16 @@ const std::vector<Break>& breaks() {
       {"L102", "alpha mode",
        [](AssetEdit& e) { e.material(0, [](auto& m) { m.alpha_mode = static_cast<format::AlphaMode>(3); }); }},
       {"L103", "an unused UV set", [](AssetEdit& e) { e.mesh(0, [](auto& m) { m.uv_log2[3] = 1; }); }},
-      {"L103", "group flags", [](AssetEdit& e) { e.group(0, [](auto& g) { g.flags |= 4U; }); }},
+      {"L103", "group flags", [](AssetEdit& e) { e.group(0, [](auto& g) { g.flags |= 8U; }); }},
+      {"L103", "version 2 without an aggregate",
+       [](AssetEdit& e) { e.header([](auto& h) { h.version = format::kVersion; }); }},
+      {"L103", "an aggregate in version 1",
+       [](AssetEdit& e) { e.group(inner_group(e), [](auto& g) { g.flags |= format::kGroupAggregate; }); }},
+      {"L305", "a terminal aggregate",
+       [](AssetEdit& e) {
+         e.header([](auto& h) { h.version = format::kVersion; });
+         e.group(0, [](auto& g) { g.flags |= format::kGroupAggregate; });
+       }},
       {"L104", "origin not finite",
        [](AssetEdit& e) { e.mesh(0, [](auto& m) { m.origin[1] = std::numeric_limits<double>::quiet_NaN(); }); }},
       {"L104", "grid of no step", [](AssetEdit& e) { e.mesh(0, [](auto& m) { m.grid.mantissa = 0; }); }},
@@ -410,6 +419,12 @@ const std::vector<Break>& breaks() {
        }},
       {"L507", "a vertex on a shared border",
        [](AssetEdit& e) { e.move_minimum(cluster_above(e, shared_group(e)), 0, 1); }},
+      {"L507", "an aggregate takes a border of others",
+       [](AssetEdit& e) {
+         e.header([](auto& h) { h.version = format::kVersion; });
+         e.group(shared_group(e), [](auto& g) { g.flags |= format::kGroupAggregate; });
+         e.move_minimum(cluster_above(e, shared_group(e)), 0, 1);
+       }},
       {"L507", "a turn the other way",
        [](AssetEdit& e) {
          const auto c = cluster_above(e, shared_group(e));

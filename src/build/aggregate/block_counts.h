@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Differences of coverage at the scale of pixels: how many samples more one picture has than another in boxes of them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "build/aggregate/sample_mask.h"
+
+namespace meshlode::build {
+
+/// A number for each block of 2 × 2 samples of a box, or of more.
+class BlockCounts {
+ public:
+  explicit BlockCounts(const MaskBox& box)
+      : columns_(32 * static_cast<std::size_t>(box.words())),
+        rows_(static_cast<std::size_t>(box.rows()) / 2),
+        counts_(columns_ * rows_, 0) {}
+
+  /// Adds the samples of a word of the box in two rows, times `sign`: the bits of row 2 · block_row and of the next.
+  void add_word(std::size_t word, std::size_t block_row, std::uint64_t lower, std::uint64_t upper, int sign);
+
+  /// Four blocks become one, and so on for larger pixels. \pre at most 12 times
+  void halve();
+
+  /// The sum of the squares of the sums over all squares of so many blocks a side, wherever they touch the box; around
+  /// it there is nothing.
+  [[nodiscard]] std::int64_t sum_of_squares(std::size_t side) const;
+
+ private:
+  std::size_t columns_, rows_;
+  std::vector<std::int32_t> counts_;
+};
+
+}  // namespace meshlode::build

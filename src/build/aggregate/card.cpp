@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "build/aggregate/card.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace meshlode::build {
+
+Corners Splat::corners(double factor) const {
+  // An equilateral triangle around 0 with corners at a distance of 1 has this area; stretched along the axes of an
+  // ellipse it has the ellipse's second moments but for a factor, which the area decides.
+  constexpr double kUnitArea = 1.299038105676658;  // 3 sqrt(3) / 4
+  constexpr double kHalfSide = 0.8660254037844386;
+  const double wanted = std::min(factor * area, most_area);
+  if (is_blade) {
+    constexpr double kLengthOfHalf = 1.7320508075688772;  // of a rectangle, by the half axis of its moments
+    const Vec3d half = axis_u * (0.5 * kLengthOfHalf * half_u * ((turn & 1U) != 0 ? -1.0 : 1.0));
+    const Vec3d side = axis_v * (wanted / std::max(kLengthOfHalf * half_u, 1e-300) * ((turn & 1U) != 0 ? -1.0 : 1.0));
+    return {center + half, center - half + side, center - half - side};
+  }
+  const double ratio = std::sqrt(wanted / kUnitArea / std::max(half_u * half_v, 1e-300));
+  Vec3d u = axis_u * (half_u * ratio), v = axis_v * (half_v * ratio);
+  if ((turn & 1U) != 0) {
+    const Vec3d old = u;
+    u = v;
+    v = -old;
+  }
+  if ((turn & 2U) != 0) {
+    u = -u;
+    v = -v;
+  }
+  return {center + v, center - kHalfSide * u - 0.5 * v, center + kHalfSide * u - 0.5 * v};
+}
+
+}  // namespace meshlode::build

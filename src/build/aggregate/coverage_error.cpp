@@ -1,0 +1,306 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "build/aggregate/coverage_error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/parallel.h"
+#include "build/aggregate/block_counts.h"
+#include "build/aggregate/sample_mask.h"
+#include "build/aggregate/views.h"
+
+namespace meshlode::build {
+
+namespace {
+
+// Pixels are 12 and 8 samples wide, in blocks of 2 × 2, and twice, four times … as wide in blocks that are. From one
+// size to the next they fall by a third or a quarter, and a pixel has at least 64 samples.
+constexpr std::array<std::size_t, 2> kPixelBlocks{6, 4};
+
+/// From large to small pixels: `octaves` times two sizes.
+using Squares = std::vector<std::int64_t>;
+
+Squares squares_of(BlockCounts counts, std::size_t octaves) {
+  Squares squares(2 * octaves);
+  for (std::size_t octave = octaves; octave-- > 0;) {
+    for (std::size_t s = 0; s < 2; ++s) squares[2 * octave + s] = counts.sum_of_squares(kPixelBlocks[s]);
+    if (octave > 0) counts.halve();
+  }
+  return squares;
+}
+
+/// Of squares_of() at a spacing.
+double pixel_size(double spacing, std::size_t octaves, std::size_t index) {
+  double size = 2.0 * static_cast<double>(kPixelBlocks[index % 2]) * spacing;
+  for (std::size_t octave = index / 2 + 1; octave < octaves; ++octave) size *= 2.0;
+  return size;
+}
+
+using Places = std::array<Vec2d, 3>;
+
+SampleMask source_mask(const SourceSurface& source, const Lattice& lattice, const View& view,
+                       std::span<const std::uint32_t> triangles) {
+  std::vector<Places> places;
+  places.reserve(triangles.size());
+  MaskBox box;
+  std::vector<std::uint32_t> seen;
+  for (const std::uint32_t t : triangles) {
+    const Places at = lattice.places(view, source.corners(t));
+    // What a closed piece's back covers its front does.
+    if (source.is_closed(t) && (at[1].x - at[0].x) * (at[2].y - at[0].y) < (at[1].y - at[0].y) * (at[2].x - at[0].x))
+      continue;
+    seen.push_back(t);
+    places.push_back(at);
+    box.include(at, lattice.side());
+  }
+  SampleMask mask(box);
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    const auto& covers = source.material(seen[i]).covers;
+    if (!covers) {
+      mask.add_triangle(places[i]);
+      continue;
+    }
+    const std::array<Vec2d, 3> uv = source.uvs(seen[i]);
+    mask.add_triangle(places[i], [&](double b, double c) {
+      const Vec2d at = (1.0 - b - c) * uv[0] + b * uv[1] + c * uv[2];
+      return covers(at.x, at.y);
+    });
+  }
+  return mask;
+}
+
+SampleMask mask_of(const Lattice& lattice, const View& view, std::span<const Corners> triangles) {
+  std::vector<Places> places;
+  places.reserve(triangles.size());
+  MaskBox box;
+  for (const Corners& corners : triangles) {
+    places.push_back(lattice.places(view, corners));
+    box.include(places.back(), lattice.side());
+  }
+  SampleMask mask(box);
+  for (const Places& corners : places) mask.add_triangle(corners);
+  return mask;
+}
+
+/// Which samples at least one group of a level covers, and which at least two.
+struct Cover {
+  SampleMask once, twice;
+};
+
+Cover cover_of(std::span<const SampleMask> groups) {
+  MaskBox box;
+  for (const SampleMask& group : groups) box.include(group.box());
+  Cover cover{SampleMask(box), SampleMask(box)};
+  for (const SampleMask& group : groups) {
+    const MaskBox& own = group.box();
+    if (own.is_empty()) continue;
+    for (int y = own.first_row; y < own.end_row; ++y) {
+      const std::uint64_t* from = group.row(y);
+      std::uint64_t* once = cover.once.row(y) + (own.first_word - box.first_word);
+      std::uint64_t* twice = cover.twice.row(y) + (own.first_word - box.first_word);
+      for (int x = 0; x < own.words(); ++x) {
+        twice[x] |= once[x] & from[x];
+        once[x] |= from[x];
+      }
+    }
+  }
+  return cover;
+}
+
+/// Squares of what one proposal changes, for each pixel size. `before`: the group's own samples.
+Squares squares_of_change(const SampleMask& before, const SampleMask& after, const Cover& cover, std::size_t octaves) {
+  MaskBox box = before.box();
+  box.include(after.box());
+  if (box.is_empty()) return Squares(2 * octaves, 0);
+  BlockCounts counts(box);
+  for (int y = box.first_row; y < box.end_row; y += 2) {
+    for (int x = box.first_word; x < box.end_word; ++x) {
+      std::array<std::uint64_t, 2> gone{}, come{};
+      for (int k = 0; k < 2; ++k) {
+        const std::uint64_t old = before.word(x, y + k), now = after.word(x, y + k);
+        // Covered by others: twice where the group itself covers it, once where it does not.
+        const std::uint64_t others = (old & cover.twice.word(x, y + k)) | (~old & cover.once.word(x, y + k));
+        gone[static_cast<std::size_t>(k)] = old & ~now & ~others;
+        come[static_cast<std::size_t>(k)] = now & ~old & ~others;
+      }
+      const auto word = static_cast<std::size_t>(x - box.first_word);
+      const auto row = static_cast<std::size_t>(y - box.first_row) / 2;
+      counts.add_word(word, row, gone[0], gone[1], -1);
+      counts.add_word(word, row, come[0], come[1], 1);
+    }
+  }
+  return squares_of(std::move(counts), octaves);
+}
+
+Squares squares_of_all(const SampleMask& all, std::size_t octaves) {
+  if (all.box().is_empty()) return Squares(2 * octaves, 0);
+  BlockCounts counts(all.box());
+  for (int y = all.box().first_row; y < all.box().end_row; y += 2) {
+    for (int x = 0; x < all.box().words(); ++x) {
+      counts.add_word(static_cast<std::size_t>(x), static_cast<std::size_t>(y - all.box().first_row) / 2, all.row(y)[x],
+                      all.row(y + 1)[x], 1);
+    }
+  }
+  return squares_of(std::move(counts), octaves);
+}
+
+/// A proposal on its way from coarse pixels to fine ones.
+struct Trial {
+  std::size_t level = 0, group = 0, proposal = 0;
+  std::size_t first_step = 0;  ///< the first spacing that is fine enough for its pieces
+  bool is_open = true;
+
+  /// How many octaves of pixel sizes are looked at in a step: all so far in the first one. 0: none.
+  [[nodiscard]] std::size_t octaves_at(std::size_t step) const {
+    if (!is_open || step < first_step) return 0;
+    return step == first_step ? step + 1 : 1;
+  }
+};
+
+/// One spacing, one view: what every open trial changes.
+struct ViewResult {
+  Squares whole;
+  std::vector<Squares> change;  ///< by trial
+};
+
+/// Masks of a level's groups from those of leaves.
+std::vector<SampleMask> group_masks(std::span<const SampleMask> leaves, std::span<const GroupProposals> groups) {
+  std::vector<SampleMask> masks;
+  masks.reserve(groups.size());
+  for (const GroupProposals& group : groups) {
+    MaskBox box;
+    for (std::uint32_t leaf = group.first_leaf; leaf < group.end_leaf; ++leaf) box.include(leaves[leaf].box());
+    SampleMask mask(box);
+    for (std::uint32_t leaf = group.first_leaf; leaf < group.end_leaf; ++leaf) mask.add(leaves[leaf]);
+    masks.push_back(std::move(mask));
+  }
+  return masks;
+}
+
+/// Of twice as many leaves each. \pre an even number of masks
+std::vector<SampleMask> joined_in_pairs(std::span<const SampleMask> masks) {
+  std::vector<SampleMask> joined(masks.size() / 2);
+  parallel_for_each_index(joined.size(), 1, [&](std::size_t i) {
+    MaskBox box = masks[2 * i].box();
+    box.include(masks[2 * i + 1].box());
+    joined[i] = SampleMask(box);
+    joined[i].add(masks[2 * i]);
+    joined[i].add(masks[2 * i + 1]);
+  });
+  return joined;
+}
+
+ViewResult look(const SourceSurface& source, const ByPiece& leaf_triangles, const Lattice& lattice, const View& view,
+                std::span<const std::vector<GroupProposals>> levels, std::span<const Trial> trials, std::size_t step) {
+  std::vector<SampleMask> leaves(leaf_triangles.size());
+  parallel_for_each_index(leaves.size(), 1, [&](std::size_t leaf) {
+    leaves[leaf] = source_mask(source, lattice, view, leaf_triangles.of(leaf));
+  });
+  ViewResult result;
+  result.change.resize(trials.size());
+  result.whole = squares_of_all(cover_of(leaves).once, step + 1);
+  for (std::size_t level = 0, first = 0; level < levels.size(); ++level) {
+    std::size_t end = first;
+    bool is_any_open = false;
+    for (; end < trials.size() && trials[end].level == level; ++end) {
+      is_any_open = is_any_open || trials[end].octaves_at(step) > 0;
+    }
+    if (is_any_open) {
+      const std::vector<SampleMask> masks = group_masks(leaves, levels[level]);
+      const Cover cover = cover_of(masks);
+      parallel_for_each_index(end - first, 1, [&](std::size_t i) {
+        const Trial& trial = trials[first + i];
+        const std::size_t octaves = trial.octaves_at(step);
+        if (octaves == 0) return;
+        const std::vector<Corners>& triangles = levels[level][trial.group].proposals[trial.proposal].triangles;
+        result.change[first + i] =
+            squares_of_change(masks[trial.group], mask_of(lattice, view, triangles), cover, octaves);
+      });
+    }
+    first = end;
+  }
+  return result;
+}
+
+}  // namespace
+
+void measure_proposals(const SourceSurface& source, const MeshFrame& frame, const ByPiece& leaf_triangles,
+                       double finest, std::span<std::vector<GroupProposals>> levels) {
+  // Down to the finest pixel, from one that is as large as the mesh at least.
+  const double smallest_pixel = 2.0 * static_cast<double>(kPixelBlocks.back());
+  const double narrowest = finest / smallest_pixel;
+  std::size_t steps = 1;
+  double widest = narrowest;
+  for (; 1.5 * smallest_pixel * widest < 2.0 * frame.radius; widest *= 2.0) ++steps;
+  std::vector<Trial> trials;
+  for (std::size_t l = 0; l < levels.size(); ++l) {
+    for (std::size_t g = 0; g < levels[l].size(); ++g) {
+      for (std::size_t p = 0; p < levels[l][g].proposals.size(); ++p) {
+        Trial trial{.level = l, .group = g, .proposal = p};
+        // Samples that are much wider than pieces would find them by luck.
+        double spacing = widest;
+        for (; spacing > levels[l][g].grain && trial.first_step + 1 < steps; spacing *= 0.5) ++trial.first_step;
+        trials.push_back(trial);
+      }
+    }
+  }
+  double spacing = widest;
+  for (std::size_t step = 0; step < steps; ++step, spacing *= 0.5) {
+    if (std::none_of(trials.begin(), trials.end(), [](const Trial& trial) { return trial.is_open; })) break;
+    if (std::none_of(trials.begin(), trials.end(), [&](const Trial& t) { return t.octaves_at(step) > 0; })) continue;
+    const Lattice lattice(frame.center, frame.radius, spacing);
+    std::array<ViewResult, kViews> of_view;
+    for (std::size_t v = 0; v < kViews; ++v) {
+      of_view[v] = look(source, leaf_triangles, lattice, views()[v], levels, trials, step);
+    }
+    for (std::size_t i = 0; i < trials.size(); ++i) {
+      Trial& trial = trials[i];
+      const std::size_t octaves = trial.octaves_at(step);
+      const double share = levels[trial.level][trial.group].share;
+      for (std::size_t s = 0; s < 2 * octaves && trial.is_open; ++s) {
+        double whole = 0.0, change = 0.0;
+        for (const ViewResult& result : of_view) {
+          whole += static_cast<double>(result.whole[2 * (step + 1 - octaves) + s]);
+          change += static_cast<double>(result.change[i][s]);
+        }
+        const double size = pixel_size(spacing, octaves, s);
+        const double error = whole > 0.0 && share > 0.0 ? std::sqrt(change / (share * whole)) : 0.0;
+        levels[trial.level][trial.group].proposals[trial.proposal].noise.points.push_back({size, error});
+        trial.is_open = error <= kLoosestNoise;
+      }
+    }
+  }
+}
+
+std::vector<std::vector<Covered>> covered_samples(const SourceSurface& source, const MeshFrame& frame,
+                                                  const ByPiece& leaf_triangles, double spacing,
+                                                  std::span<const View> views,
+                                                  std::span<const std::uint32_t> run_lengths) {
+  const Lattice lattice(frame.center, frame.radius, spacing);
+  std::vector<std::vector<Covered>> sums;
+  for (const std::uint32_t run : run_lengths) sums.emplace_back(leaf_triangles.size() / run, Covered(views.size(), 0));
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    const View& view = views[v];
+    std::vector<SampleMask> masks(leaf_triangles.size());
+    parallel_for_each_index(masks.size(), 1, [&](std::size_t leaf) {
+      masks[leaf] = source_mask(source, lattice, view, leaf_triangles.of(leaf));
+    });
+    for (std::size_t r = 0; r < run_lengths.size(); ++r) {
+      // Masks so far are of runs half as long, or of the same.
+      while (masks.size() > sums[r].size()) masks = joined_in_pairs(masks);
+      for (std::size_t g = 0; g < masks.size(); ++g) sums[r][g][v] = masks[g].count();
+    }
+  }
+  return sums;
+}
+
+Covered covered_samples(const MeshFrame& frame, std::span<const Corners> triangles, double spacing,
+                        std::span<const View> views) {
+  const Lattice lattice(frame.center, frame.radius, spacing);
+  Covered covered;
+  for (const View& view : views) covered.push_back(mask_of(lattice, view, triangles).count());
+  return covered;
+}
+
+}  // namespace meshlode::build

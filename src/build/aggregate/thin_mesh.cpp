@@ -1,0 +1,363 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "build/aggregate/thin_mesh.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "base/parallel.h"
+#include "build/aggregate/blocks.h"
+#include "build/aggregate/candidates.h"
+#include "build/aggregate/coverage_error.h"
+#include "build/aggregate/noise_limits.h"
+
+namespace meshlode::build {
+
+namespace {
+
+constexpr double kMostInAView = 0.75;        // more or less: a level that shows a view so much else stands for nothing
+constexpr std::size_t kFewestTriangles = 8;  // a level below would be a handful of cards across the whole mesh
+constexpr std::size_t kFewCards = 512;       // of a whole mesh: they are seen from more directions
+constexpr double kFinestPixels = 110.0;      // pixels along the mesh's longest side: below, levels are not told apart
+
+MeshFrame frame_of(const PreparedMesh& mesh) {
+  Vec3d low = mesh.exact_positions[mesh.exact_triangles[0][0]], high = low;
+  for (const auto& triangle : mesh.exact_triangles) {
+    for (const std::uint32_t p : triangle) {
+      low = glm::min(low, mesh.exact_positions[p]);
+      high = glm::max(high, mesh.exact_positions[p]);
+    }
+  }
+  const Vec3d size = high - low;
+  return {0.5 * (low + high), 0.5 * glm::length(size), std::max({size.x, size.y, size.z})};
+}
+
+/// Pieces in leaves, and the lists that follow from it.
+struct Leaves {
+  int depth = 0;
+  ByPiece triangles;                      ///< of the source, by leaf
+  std::vector<std::uint32_t> first_card;  ///< by leaf, into `cards`
+  std::vector<std::uint32_t> cards;       ///< of PieceCards, in the order of leaves
+
+  [[nodiscard]] std::size_t size() const { return triangles.size(); }
+  [[nodiscard]] std::span<const std::uint32_t> cards_of(std::uint32_t first_leaf, std::uint32_t end_leaf) const {
+    return {cards.data() + first_card[first_leaf], first_card[end_leaf] - first_card[first_leaf]};
+  }
+};
+
+Leaves make_leaves(const PreparedMesh& mesh, const ByPiece& pieces, const PieceCards& cards,
+                   std::uint32_t leaf_triangles) {
+  std::vector<Vec3d> centers(pieces.size());
+  std::vector<std::uint32_t> weights(pieces.size());
+  for (std::size_t p = 0; p < pieces.size(); ++p) {
+    Vec3d sum(0.0);
+    for (const std::uint32_t t : pieces.of(p)) {
+      for (const std::uint32_t v : mesh.exact_triangles[t]) sum += mesh.exact_positions[v];
+    }
+    weights[p] = static_cast<std::uint32_t>(pieces.of(p).size());
+    centers[p] = sum / (3.0 * weights[p]);
+  }
+  Leaves leaves;
+  while ((mesh.triangles.size() >> static_cast<unsigned>(leaves.depth)) > leaf_triangles) ++leaves.depth;
+  const Blocks blocks = split_by_weight(centers, weights, leaves.depth);
+  leaves.triangles.first.push_back(0);
+  leaves.first_card.push_back(0);
+  for (std::size_t leaf = 0; leaf < blocks.size(); ++leaf) {
+    const auto in_leaf = blocks.of(leaf);
+    std::vector<Vec3d> points;
+    for (const std::uint32_t p : in_leaf) points.push_back(centers[p]);
+    const Blocks order = points.empty() ? Blocks{} : split_evenly(points, points.size());
+    for (const std::uint32_t place : order.order) {
+      const std::uint32_t p = in_leaf[place];
+      const auto triangles = pieces.of(p);
+      leaves.triangles.items.insert(leaves.triangles.items.end(), triangles.begin(), triangles.end());
+      for (std::uint32_t c = cards.first[p]; c < cards.first[p + 1]; ++c) leaves.cards.push_back(c);
+    }
+    leaves.triangles.first.push_back(static_cast<std::uint32_t>(leaves.triangles.items.size()));
+    leaves.first_card.push_back(static_cast<std::uint32_t>(leaves.cards.size()));
+  }
+  return leaves;
+}
+
+/// How samples are looked at to find factors.
+struct Sampling {
+  std::span<const View> views;
+  std::size_t counted = 0;  ///< of the views, the first ones: those over which as much is to be covered
+  double spacing = 0.0;     ///< of the source's; cards that are larger need fewer samples
+  double samples_each = 0.0;
+
+  [[nodiscard]] double sum(const Covered& covered) const {
+    double all = 0.0;
+    for (std::size_t v = 0; v < counted; ++v) all += static_cast<double>(covered[v]);
+    return all;
+  }
+  /// For so many cards of an area together: so many samples each, and as many as a mean over all of them asks for.
+  [[nodiscard]] double spacing_of(double area, std::size_t cards) const {
+    constexpr double kFewestSamples = 8192.0;
+    const double samples = std::max(kFewestSamples, samples_each * static_cast<double>(cards));
+    return std::max(spacing, std::sqrt(area / samples));
+  }
+};
+
+/// A way of thinning out that covers as much, or none.
+struct Fitted {
+  Splats splats;
+  std::vector<Corners> triangles;
+  double worst_view = 0.0;  ///< what a single view's sum changes by at most
+  bool is_there = false;
+};
+
+/// Finds the factor for which the splats, which have an area, cover as much as the source, over all views.
+void fit_factor(const MeshFrame& frame, const Covered& covered, const Sampling& sampling, double area, Fitted& way) {
+  constexpr double kCloseEnough = 0.004;
+  constexpr int kFactorSteps = 12;
+  const double spacing = sampling.spacing_of(area, way.splats.splats.size());
+  const double weight = spacing * spacing / (sampling.spacing * sampling.spacing);  // in samples of the source
+  const double wanted = sampling.sum(covered);
+  if (!(wanted > 0.0)) return;
+  double factor = 1.0;
+  double low = 0.0, low_count = 0.0, high = 0.0, high_count = 0.0;
+  Covered now;
+  for (int step = 0; step < kFactorSteps; ++step) {
+    way.triangles.clear();
+    for (const Splat& splat : way.splats.splats) way.triangles.push_back(splat.corners(factor));
+    now = covered_samples(frame, way.triangles, spacing, sampling.views);
+    const double count = weight * sampling.sum(now);
+    if (std::fabs(count - wanted) <= kCloseEnough * wanted) break;
+    if (count < wanted) {
+      low = factor;
+      low_count = count;
+    } else {
+      high = factor;
+      high_count = count;
+    }
+    if (high > 0.0 && high_count - low_count > 0.0) {
+      const double share = std::clamp((wanted - low_count) / (high_count - low_count), 0.1, 0.9);
+      factor = low + (high - low) * share;
+    } else {
+      // Nothing covers more so far: further than in proportion, since cards come to hide each other.
+      const double more = wanted / std::max(count, 1.0);
+      factor *= std::min(2.0, more * more);
+    }
+  }
+  for (std::size_t v = 0; v < now.size(); ++v) {
+    if (covered[v] == 0) continue;
+    const double share = weight * static_cast<double>(now[v]) / static_cast<double>(covered[v]);
+    way.worst_view = std::max(way.worst_view, std::fabs(share - 1.0));
+  }
+  way.is_there =
+      std::fabs(weight * sampling.sum(now) - wanted) <= kMostCoverageShift * wanted && way.worst_view <= kMostInAView;
+}
+
+/// Where a block has few members, what stays in place is nearest to the picture; where it has many, what is spread.
+bool is_worth_trying(Thinning thinning, int level) {
+  if (thinning == Thinning::kInPlace) return level <= 3;
+  return thinning != Thinning::kMerged || level >= 3;
+}
+
+class Thinner {
+ public:
+  Thinner(const PreparedMesh& mesh, std::span<const SourceMaterial> materials, const ThinOptions& options)
+      : materials_(materials),
+        stride_(mesh.layout.stride()),
+        frame_(frame_of(mesh)),
+        pieces_(find_pieces(mesh)),
+        cards_(make_cards(mesh, pieces_, materials)),
+        source_(mesh, materials, cards_.is_closed),
+        leaves_(make_leaves(mesh, pieces_, cards_, options.leaf_triangles)) {
+    for (const Card& card : cards_.cards.cards) drawn_area_ += card.area;
+    // Four samples a card are enough: the errors of so many of them, from all views, cancel.
+    const double width = std::sqrt(drawn_area_ / static_cast<double>(std::max<std::size_t>(1, cards_.cards.size())));
+    fit_ = {views(), kViews, std::max(0.5 * width, frame_.longest / 4096.0), 8.0};
+    std::vector<std::uint32_t> runs;
+    for (int level = 1; level <= leaves_.depth + 1; ++level) runs.push_back(run_length(level));
+    covered_ = covered_samples(source_, frame_, leaves_.triangles, fit_.spacing, fit_.views, runs);
+    // Of a few thousand cards more samples.
+    const double finer = std::min(1.0, std::sqrt(static_cast<double>(cards_.cards.size()) / 4096.0));
+    few_ = {many_views(), kManyViews, std::max(0.5 * width * finer, frame_.longest / 2048.0), 64.0};
+  }
+
+  ThinMesh run() {
+    std::vector<std::vector<GroupProposals>> proposals;
+    std::vector<std::vector<std::vector<Fitted>>> fitted;
+    for (int level = 1; leaves_.cards.size() >> static_cast<unsigned>(level - 1) >= kFewestTriangles && level < 40;
+         ++level) {
+      const bool is_whole = run_length(level) == leaves_.size();
+      if (is_whole && seen_by_many_.empty() && leaves_.cards.size() >> static_cast<unsigned>(level - 1) <= kFewCards) {
+        const std::array<std::uint32_t, 1> all{static_cast<std::uint32_t>(leaves_.size())};
+        seen_by_many_ = covered_samples(source_, frame_, leaves_.triangles, few_.spacing, few_.views, all)[0][0];
+      }
+      fitted.push_back(fit_level(level));
+      if (is_whole && seen_by_many_.empty()) look_from_many_views(fitted.back().front());
+      proposals.push_back(proposals_of(level, fitted.back()));
+    }
+    measure_proposals(source_, frame_, leaves_.triangles, frame_.longest / kFinestPixels, proposals);
+    ThinMesh out;
+    const std::vector<double> limits = limits_of(proposals, fitted);
+    for (std::size_t l = 0; l < proposals.size(); ++l) out.levels.push_back(choose(proposals[l], fitted[l], limits[l]));
+    out.leaf_triangles = std::move(leaves_.triangles);
+    return out;
+  }
+
+ private:
+  /// What many cards in one group cover stands for what the pieces do, if it does: such a sum hangs on no card's
+  /// direction, and the pieces of a large mesh need not be drawn so often.
+  void look_from_many_views(std::span<const Fitted> whole) {
+    const auto way = std::find_if(whole.begin(), whole.end(), [](const Fitted& f) { return f.is_there; });
+    if (way != whole.end()) seen_by_many_ = covered_samples(frame_, way->triangles, few_.spacing, few_.views);
+  }
+
+  /// Leaves of a group of a level: those of level 1 are single leaves.
+  [[nodiscard]] std::uint32_t run_length(int level) const {
+    return 1U << static_cast<unsigned>(std::min(level - 1, leaves_.depth));
+  }
+
+  /// Group by group, every way of thinning it out.
+  [[nodiscard]] std::vector<std::vector<Fitted>> fit_level(int level) const {
+    const std::uint32_t run = run_length(level);
+    std::vector<std::vector<Fitted>> fitted(leaves_.size() / run);
+    parallel_for_each_index(fitted.size(), 1, [&](std::size_t g) {
+      const auto first = static_cast<std::uint32_t>(g * run);
+      fitted[g] = fit_group(level, first, first + run);
+    });
+    return fitted;
+  }
+
+  [[nodiscard]] std::vector<Fitted> fit_group(int level, std::uint32_t first, std::uint32_t end) const {
+    const auto chosen = leaves_.cards_of(first, end);
+    std::vector<Fitted> ways;
+    if (chosen.empty()) return ways;
+    if (level == 1) {
+      ways.emplace_back().splats = splats_of(cards_.cards, chosen, stride_);
+    } else {
+      std::vector<Vec3d> centers;
+      for (const std::uint32_t c : chosen) centers.push_back(cards_.cards.cards[c].center);
+      const Blocks blocks = split_evenly(centers, splat_count(level, chosen.size(), first, end));
+      for (const Thinning thinning : kThinnings) {
+        if (!is_worth_trying(thinning, level)) continue;
+        ways.emplace_back().splats = thin_out(cards_.cards, chosen, blocks, thinning, stride_);
+      }
+    }
+    const Covered& covered = covered_[std::min<std::size_t>(level - 1, covered_.size() - 1)][first / run_length(level)];
+    double area = 0.0;
+    for (const std::uint32_t c : chosen) area += cards_.cards.cards[c].area;
+    for (Fitted& way : ways) {
+      const bool is_few = !seen_by_many_.empty() && way.splats.splats.size() <= kFewCards;
+      fit_factor(frame_, is_few ? seen_by_many_ : covered, is_few ? few_ : fit_, area, way);
+    }
+    return ways;
+  }
+
+  /// Half as many as the level before, but for regions out of step: if all kept a half, all would be replaced at once.
+  [[nodiscard]] std::size_t splat_count(int level, std::size_t cards, std::uint32_t first, std::uint32_t end) const {
+    const double place = 0.5 * (first + end) / static_cast<double>(leaves_.size());
+    const double share = 1.3 - 0.6 * place;
+    const double count =
+        share * static_cast<double>(cards) / static_cast<double>(std::uint64_t{1} << static_cast<unsigned>(level - 1));
+    return std::clamp<std::size_t>(static_cast<std::size_t>(std::floor(count + 0.5)), 1, cards);
+  }
+
+  [[nodiscard]] std::vector<GroupProposals> proposals_of(int level, std::span<const std::vector<Fitted>> fitted) const {
+    const std::uint32_t run = run_length(level);
+    std::vector<GroupProposals> groups(fitted.size());
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      groups[g].first_leaf = static_cast<std::uint32_t>(g * run);
+      groups[g].end_leaf = groups[g].first_leaf + run;
+      double area = 0.0;
+      for (const std::uint32_t c : leaves_.cards_of(groups[g].first_leaf, groups[g].end_leaf))
+        area += cards_.cards.cards[c].area;
+      groups[g].share = area / drawn_area_;
+      const std::size_t cards = leaves_.cards_of(groups[g].first_leaf, groups[g].end_leaf).size();
+      groups[g].grain = std::sqrt(area / static_cast<double>(std::max<std::size_t>(1, cards)));
+      for (const Fitted& way : fitted[g]) {
+        if (way.is_there) groups[g].proposals.push_back({way.triangles, {}});
+      }
+    }
+    return groups;
+  }
+
+  /// Seen along a field of grass, cards rise out of it: ways that do are left out where there are others.
+  static std::vector<std::uint8_t> fair_ways(std::span<const Fitted> ways) {
+    constexpr double kFineView = 0.05, kNearlyAsGood = 1.1;
+    double fairest = std::numeric_limits<double>::infinity();
+    for (const Fitted& way : ways) {
+      if (way.is_there) fairest = std::min(fairest, way.worst_view);
+    }
+    std::vector<std::uint8_t> is_fair;
+    for (const Fitted& way : ways) {
+      is_fair.push_back(way.is_there && way.worst_view <= std::max(kFineView, kNearlyAsGood * fairest) ? 1 : 0);
+    }
+    return is_fair;
+  }
+
+  /// What the groups of each level may have of noise.
+  [[nodiscard]] static std::vector<double> limits_of(std::span<const std::vector<GroupProposals>> proposals,
+                                                     std::span<const std::vector<std::vector<Fitted>>> fitted) {
+    std::vector<std::vector<NoisyGroup>> levels(proposals.size());
+    for (std::size_t l = 0; l < levels.size(); ++l) {
+      for (std::size_t g = 0; g < proposals[l].size(); ++g) {
+        const GroupProposals& from = proposals[l][g];
+        NoisyGroup group{from.first_leaf, from.end_leaf, from.share, {}};
+        const std::vector<std::uint8_t> is_fair = fair_ways(fitted[l][g]);
+        std::size_t p = 0;
+        for (std::size_t w = 0; w < is_fair.size(); ++w) {
+          if (!fitted[l][g][w].is_there) continue;
+          if (is_fair[w] != 0) group.ways.push_back(&from.proposals[p].noise);
+          ++p;
+        }
+        levels[l].push_back(std::move(group));
+      }
+    }
+    return choose_noise_limits(levels, kMostCoverageError, kMostCoverageError);
+  }
+
+  /// Of each group the way that may be drawn from the smallest pixels on, with so much noise.
+  [[nodiscard]] std::vector<ThinGroup> choose(std::span<const GroupProposals> proposals,
+                                              std::span<const std::vector<Fitted>> fitted, double limit) const {
+    std::vector<ThinGroup> groups(proposals.size());
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      ThinGroup& group = groups[g];
+      group.first_leaf = proposals[g].first_leaf;
+      group.end_leaf = proposals[g].end_leaf;
+      group.pixel_size = std::numeric_limits<double>::infinity();
+      const std::vector<std::uint8_t> is_fair = fair_ways(fitted[g]);
+      std::size_t p = 0;
+      for (std::size_t w = 0; w < is_fair.size(); ++w) {
+        const Fitted& way = fitted[g][w];
+        if (!way.is_there) continue;
+        const double size = proposals[g].proposals[p++].noise.size_for(limit);
+        if (is_fair[w] == 0 || !(size < group.pixel_size)) continue;
+        group.pixel_size = size;
+        group.triangles = way.triangles;
+        group.attributes = way.splats.attributes;
+        group.material.clear();
+        for (const Splat& splat : way.splats.splats) group.material.push_back(materials_[splat.material].coarse);
+      }
+    }
+    return groups;
+  }
+
+  std::span<const SourceMaterial> materials_;
+  std::size_t stride_;
+  MeshFrame frame_;
+  ByPiece pieces_;
+  PieceCards cards_;
+  SourceSurface source_;
+  Leaves leaves_;
+  double drawn_area_ = 0.0;
+  Sampling fit_;  ///< that factors are found by
+  std::vector<std::vector<Covered>>
+      covered_;           ///< what the groups' pieces cover so, by level; the last for all later ones
+  Sampling few_;          ///< the same where cards are few
+  Covered seen_by_many_;  ///< what the whole mesh covers so; empty before few cards stand for it
+};
+
+}  // namespace
+
+ThinMesh thin_mesh(const PreparedMesh& mesh, std::span<const SourceMaterial> materials, const ThinOptions& options) {
+  return Thinner(mesh, materials, options).run();
+}
+
+}  // namespace meshlode::build

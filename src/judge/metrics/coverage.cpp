@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "judge/metrics/coverage.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "base/parallel.h"
+#include "draw/textures/texture_image.h"
+#include "run/decode/decode.h"
+#include "run/unpack/unpack.h"
+
+namespace meshlode::judge {
+
+namespace {
+
+constexpr std::size_t kDirections = 37;
+constexpr std::size_t kFewestSamples = 8;  // of a pixel, each way
+constexpr double kMostSide = 8192.0;
+
+struct Picture {
+  Vec3d right, up;
+};
+
+Picture picture_of(std::size_t direction) {
+  const double z = 1.0 - (static_cast<double>(direction) + 0.5) / static_cast<double>(kDirections);
+  const double around = std::numbers::pi * (3.0 - std::sqrt(5.0)) * static_cast<double>(direction) + 1.7;
+  const double out = std::sqrt(1.0 - z * z);
+  const Vec3d view(out * std::cos(around), z, out * std::sin(around));
+  const Vec3d helper = std::abs(view.y) < 0.9 ? Vec3d(0.0, 1.0, 0.0) : Vec3d(1.0, 0.0, 0.0);
+  const Vec3d a = glm::normalize(glm::cross(helper, view)), b = glm::cross(view, a);
+  const double turn = 1.1 + 0.83 * static_cast<double>(direction);
+  return {std::cos(turn) * a + std::sin(turn) * b, std::cos(turn) * b - std::sin(turn) * a};
+}
+
+bool texel_passes(const draw::AlphaMasks& masks, const CoveringTriangle& triangle, const Vec2d& uv) {
+  const draw::AlphaMask& mask = masks.masks[triangle.mask];
+  std::uint32_t alpha = 255;
+  if (mask.image != format::kNone) {
+    const draw::AlphaImage& image = masks.images[mask.image];
+    const auto texel = [&](const std::array<double, 3>& row, std::uint32_t count, draw::Wrap wrap) {
+      const double at = std::floor(row[0] * uv.x + row[1] * uv.y + row[2]);
+      return draw::wrap_texel(static_cast<std::int64_t>(std::clamp(at, -1e15, 1e15)), count, wrap);
+    };
+    const std::size_t x = texel(mask.row_u, image.width, mask.wrap[0]);
+    const std::size_t y = texel(mask.row_v, image.height, mask.wrap[1]);
+    alpha = image.texels[y * image.width + x];
+  }
+  return alpha * 255U >= mask.threshold;
+}
+
+/// Samples of one picture, a byte each: 1 where something covers.
+class Samples {
+ public:
+  Samples(const Vec2d& low, const Vec2d& high, double spacing, std::size_t samples_a_pixel)
+      : low_(low - Vec2d(2.0 * static_cast<double>(samples_a_pixel) * spacing)),
+        spacing_(spacing),
+        half_pixel_(samples_a_pixel / 2),
+        columns_(count(high.x - low.x)),
+        rows_(count(high.y - low.y)),
+        covered_(columns_ * rows_, 0) {}
+
+  void draw(const CoveringTriangle& triangle, const Picture& picture, const draw::AlphaMasks& masks) {
+    std::array<Vec2d, 3> p;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3d& corner = triangle.corners[k];
+      p[k] = (Vec2d(glm::dot(corner, picture.right), glm::dot(corner, picture.up)) - low_) / spacing_;
+    }
+    const double area = cross(p[1] - p[0], p[2] - p[0]);
+    if (area == 0.0) return;
+    const auto [left, right] = std::minmax({p[0].x, p[1].x, p[2].x});
+    const auto [bottom, top] = std::minmax({p[0].y, p[1].y, p[2].y});
+    // Samples are in the middle of their cells.
+    const auto first = [](double low) { return static_cast<std::size_t>(std::max(0.0, std::ceil(low - 0.5))); };
+    const auto end = [](double high, std::size_t most) {
+      return std::min(most, static_cast<std::size_t>(std::max(0.0, std::floor(high - 0.5) + 1.0)));
+    };
+    for (std::size_t y = first(bottom); y < end(top, rows_); ++y) {
+      for (std::size_t x = first(left); x < end(right, columns_); ++x) {
+        const Vec2d at(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5);
+        const double b = cross(at - p[0], p[2] - p[0]) / area, c = cross(p[1] - p[0], at - p[0]) / area;
+        if (b < 0.0 || c < 0.0 || b + c > 1.0) continue;
+        std::uint8_t& covered = covered_[y * columns_ + x];
+        if (covered != 0) continue;
+        const Vec2d uv = (1.0 - b - c) * triangle.uv[0] + b * triangle.uv[1] + c * triangle.uv[2];
+        if (triangle.mask == format::kNone || texel_passes(masks, triangle, uv)) covered = 1;
+      }
+    }
+  }
+
+  /// The share of each pixel that is covered, for pixels half a pixel apart.
+  [[nodiscard]] std::vector<double> pixels() const {
+    const std::size_t columns = columns_ / half_pixel_ - 1, rows = rows_ / half_pixel_ - 1;
+    // A pixel is four squares of half its width.
+    const std::size_t width = columns + 1;
+    std::vector<std::uint32_t> squares(width * (rows + 1), 0);
+    for (std::size_t y = 0; y < half_pixel_ * (rows + 1); ++y) {
+      const std::uint8_t* row = &covered_[y * columns_];
+      for (std::size_t x = 0; x < width; ++x) {
+        for (std::size_t i = 0; i < half_pixel_; ++i) squares[y / half_pixel_ * width + x] += row[x * half_pixel_ + i];
+      }
+    }
+    const double all = 4.0 * static_cast<double>(half_pixel_ * half_pixel_);
+    std::vector<double> out;
+    out.reserve(columns * rows);
+    for (std::size_t y = 0; y < rows; ++y) {
+      for (std::size_t x = 0; x < columns; ++x) {
+        const std::uint32_t* at = &squares[y * width + x];
+        out.push_back((at[0] + at[1] + at[width] + at[width + 1]) / all);
+      }
+    }
+    return out;
+  }
+
+ private:
+  /// With two pixels of nothing on each side, and a whole number of half pixels.
+  [[nodiscard]] std::size_t count(double extent) const {
+    const auto cells = static_cast<std::size_t>(std::ceil(extent / spacing_)) + 8 * half_pixel_;
+    return (cells + half_pixel_) / half_pixel_ * half_pixel_;
+  }
+  static double cross(const Vec2d& a, const Vec2d& b) { return a.x * b.y - a.y * b.x; }
+
+  Vec2d low_;
+  double spacing_;
+  std::size_t half_pixel_;  ///< samples along it
+  std::size_t columns_, rows_;
+  std::vector<std::uint8_t> covered_;
+};
+
+/// Sums over the pixels of one direction.
+struct Sums {
+  double source = 0.0, cut = 0.0, source_squares = 0.0, cut_squares = 0.0, change_squares = 0.0, pixels = 0.0;
+};
+
+Sums look(std::span<const CoveringTriangle> source, std::span<const CoveringTriangle> cut,
+          const draw::AlphaMasks& masks, double spacing, std::size_t samples_a_pixel, const Picture& picture) {
+  Vec2d low(std::numeric_limits<double>::max()), high(-std::numeric_limits<double>::max());
+  for (const auto set : {source, cut}) {
+    for (const CoveringTriangle& triangle : set) {
+      for (const Vec3d& corner : triangle.corners) {
+        const Vec2d at(glm::dot(corner, picture.right), glm::dot(corner, picture.up));
+        low = glm::min(low, at);
+        high = glm::max(high, at);
+      }
+    }
+  }
+  Samples before(low, high, spacing, samples_a_pixel), after(low, high, spacing, samples_a_pixel);
+  for (const CoveringTriangle& triangle : source) before.draw(triangle, picture, masks);
+  for (const CoveringTriangle& triangle : cut) after.draw(triangle, picture, masks);
+  const std::vector<double> f = before.pixels(), c = after.pixels();
+  Sums sums;
+  for (std::size_t i = 0; i < f.size(); ++i) {
+    sums.source += f[i];
+    sums.cut += c[i];
+    sums.source_squares += f[i] * f[i];
+    sums.cut_squares += c[i] * c[i];
+    sums.change_squares += (c[i] - f[i]) * (c[i] - f[i]);
+  }
+  // The contrast is that of pixels that either covers: how much nothing there is around them is no matter.
+  for (std::size_t i = 0; i < f.size(); ++i) sums.pixels += f[i] > 0.0 || c[i] > 0.0 ? 1.0 : 0.0;
+  return sums;
+}
+
+}  // namespace
+
+std::optional<CoverageDrift> measure_coverage(std::span<const CoveringTriangle> source,
+                                              std::span<const CoveringTriangle> cut, const draw::AlphaMasks& masks,
+                                              double pixel_size) {
+  if (source.empty() || !(pixel_size > 0.0)) return std::nullopt;
+  Vec3d low = source.front().corners[0], high = low;
+  for (const auto set : {source, cut}) {
+    for (const CoveringTriangle& triangle : set) {
+      for (const Vec3d& corner : triangle.corners) {
+        low = glm::min(low, corner);
+        high = glm::max(high, corner);
+      }
+    }
+  }
+  // Samples that are farther apart than triangles are wide would find them by luck.
+  double area = 0.0;
+  for (const CoveringTriangle& triangle : source) {
+    const auto& [a, b, c] = triangle.corners;
+    area += 0.5 * glm::length(glm::cross(b - a, c - a));
+  }
+  const double width = std::sqrt(area / static_cast<double>(source.size()));
+  std::size_t samples_a_pixel = kFewestSamples;
+  const auto side = [&] { return glm::length(high - low) / pixel_size * static_cast<double>(samples_a_pixel); };
+  while (pixel_size > 0.5 * width * static_cast<double>(samples_a_pixel) && 2.0 * side() <= kMostSide)
+    samples_a_pixel *= 2;
+  if (side() > kMostSide) return std::nullopt;
+  const double spacing = pixel_size / static_cast<double>(samples_a_pixel);
+  std::array<Sums, kDirections> of_direction;
+  parallel_for_each_index(kDirections, 1, [&](std::size_t d) {
+    of_direction[d] = look(source, cut, masks, spacing, samples_a_pixel, picture_of(d));
+  });
+  Sums all;
+  CoverageDrift drift;
+  double source_variance = 0.0, cut_variance = 0.0;
+  for (const Sums& sums : of_direction) {
+    all.source += sums.source;
+    all.cut += sums.cut;
+    all.source_squares += sums.source_squares;
+    all.change_squares += sums.change_squares;
+    if (sums.source > 0.0) {
+      drift.worst_direction = std::max(drift.worst_direction, std::abs(sums.cut / sums.source - 1.0));
+      source_variance += sums.source_squares - sums.source * sums.source / sums.pixels;
+      cut_variance += sums.cut_squares - sums.cut * sums.cut / sums.pixels;
+    }
+  }
+  if (!(all.source > 0.0)) return std::nullopt;
+  drift.rms = std::sqrt(all.change_squares / all.source_squares);
+  drift.mean = all.cut / all.source - 1.0;
+  drift.contrast = source_variance > 0.0 ? std::sqrt(std::max(0.0, cut_variance) / source_variance) : 1.0;
+  return drift;
+}
+
+Result<std::vector<CoveringTriangle>> covering_triangles(const run::Asset& asset, const draw::AlphaMasks& masks,
+                                                         MeshId mesh, std::span<const ClusterId> clusters) {
+  const format::MeshRecord& record = asset.meshes()[mesh.value];
+  std::vector<CoveringTriangle> out;
+  std::uint32_t loaded = format::kNone;
+  std::optional<run::PageBytes> page;
+  run::DecodedCluster decoded;
+  run::ClusterAttributes attributes;
+  for (const ClusterId cluster : clusters) {
+    const std::uint32_t id = asset.groups()[asset.clusters()[cluster.value].coarser_group].page;
+    if (id != loaded) {
+      Result<run::PageBytes> next = run::load_page(asset, PageId{id});
+      if (!next) return next.error();
+      page.emplace(std::move(*next));
+      loaded = id;
+    }
+    run::decode_cluster(asset, *page, cluster, decoded);
+    run::decode_attributes(record, decoded, attributes);
+    const double step = std::ldexp(static_cast<double>(record.grid.mantissa), record.grid.log2);
+    for (std::size_t t = 0; t < decoded.triangles.size(); ++t) {
+      CoveringTriangle triangle;
+      triangle.mask = masks.of_material.empty() ? format::kNone : masks.of_material[decoded.triangle_material[t]];
+      std::uint32_t set = format::kMaxUvSets;
+      for (std::uint32_t k = 0; triangle.mask != format::kNone && k < record.uv_set_count; ++k) {
+        if (record.uv_set_source[k] == masks.masks[triangle.mask].uv_set) set = k;
+      }
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint8_t v = decoded.triangles[t][k];
+        triangle.corners[k] = Vec3d(decoded.position(v)) * step;
+        if (set < format::kMaxUvSets) triangle.uv[k] = Vec2d(attributes.uvs[set][v]);
+      }
+      out.push_back(triangle);
+    }
+  }
+  return out;
+}
+
+bool has_aggregates(const run::Asset& asset, MeshId mesh) {
+  const format::MeshRecord& record = asset.meshes()[mesh.value];
+  const auto groups = asset.groups().subspan(record.first_group, record.group_count);
+  return std::any_of(groups.begin(), groups.end(),
+                     [](const format::GroupRecord& group) { return (group.flags & format::kGroupAggregate) != 0; });
+}
+
+std::vector<double> coverage_sizes(const run::Asset& asset, MeshId mesh, std::uint32_t count) {
+  const format::MeshRecord& record = asset.meshes()[mesh.value];
+  double low = std::numeric_limits<double>::max(), high = 0.0;
+  for (std::uint32_t g = record.first_group; g < record.first_group + record.group_count; ++g) {
+    const format::GroupRecord& group = asset.groups()[g];
+    if ((group.flags & format::kGroupAggregate) == 0 || !(group.error > 0.0F)) continue;
+    low = std::min(low, double{group.error});
+    high = std::max(high, double{group.error});
+  }
+  std::vector<double> sizes;
+  if (!(high > 0.0)) return sizes;
+  high = std::max(low, std::min(1.1 * high, record.diagonal));
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const double t = count < 2 ? 0.5 : static_cast<double>(i) / (count - 1);
+    sizes.push_back(low * std::pow(high / low, t) * (1.0 + 1e-12));
+  }
+  return sizes;
+}
+
+}  // namespace meshlode::judge

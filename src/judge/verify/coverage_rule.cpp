@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "judge/verify/coverage_rule.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "run/select/select.h"
+
+namespace meshlode::judge {
+
+CoverageTotals check_coverage(const run::Asset& asset, std::uint32_t sizes, RuleLog& log) {
+  CoverageTotals totals;
+  const draw::AlphaMasks masks = draw::load_alpha_masks(asset);
+  for (std::uint32_t m = 0; m < asset.meshes().size(); ++m) {
+    if (!has_aggregates(asset, MeshId(m))) continue;
+    const auto source =
+        covering_triangles(asset, masks, MeshId(m), run::select_uniform(asset, MeshId(m), -1.0).clusters);
+    if (!source) {
+      log.add(Rule::kL204, source.error().where, source.error().detail);
+      continue;
+    }
+    for (const double size : coverage_sizes(asset, MeshId(m), sizes)) {
+      const auto cut =
+          covering_triangles(asset, masks, MeshId(m), run::select_uniform(asset, MeshId(m), size).clusters);
+      if (!cut) {
+        log.add(Rule::kL204, cut.error().where, cut.error().detail);
+        break;
+      }
+      const std::optional<CoverageDrift> drift = measure_coverage(*source, *cut, masks, size);
+      if (!drift) continue;
+      ++totals.cuts;
+      totals.rms = std::max(totals.rms, drift->rms);
+      totals.mean = std::max(totals.mean, std::abs(drift->mean));
+      totals.contrast = std::max(totals.contrast, drift->contrast);
+      totals.worst_direction = std::max(totals.worst_direction, drift->worst_direction);
+      log.expect(
+          drift->rms <= kMostCoverageRms && std::abs(drift->mean) <= kMostCoverageMean &&
+              drift->contrast <= kMostCoverageContrast,
+          Rule::kV208, [&] { return place("mesh", m); },
+          [&] {
+            char text[200];
+            std::snprintf(
+                text, sizeof text,
+                "the cut at pixel size %.6g covers %+.2f%%, pixels differ by %.3f of what they have, contrast %.3f",
+                size, 100.0 * drift->mean, drift->rms, drift->contrast);
+            return std::string(text);
+          });
+    }
+  }
+  return totals;
+}
+
+}  // namespace meshlode::judge

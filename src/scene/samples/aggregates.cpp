@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Shapes that are seen as a whole and not piece by piece: a crown of leaves, a field of grass, a cloud of crumbs.
+#include <cmath>
+
+#include "base/random.h"
+#include "scene/samples/facets.h"
+#include "scene/samples/noise.h"
+#include "scene/samples/samples.h"
+
+namespace meshlode::scene {
+
+namespace {
+
+/// Evenly from all directions.
+Vec3d random_direction(SplitMix64& random) {
+  const double height = random.between(-1.0, 1.0), turn = random.unit();
+  const double out = std::sqrt(1.0 - height * height);
+  return {out * cos_turns(turn), height, out * sin_turns(turn)};
+}
+
+void add_card(const Vec3d& low, const Vec3d& side, const Vec3d& up, Primitive& out) {
+  const auto first = static_cast<std::uint32_t>(out.positions.size());
+  const Vec3f normal(unit(glm::cross(side, up)));
+  const Vec3d corners[4] = {low - side, low + side, low + side + up, low - side + up};
+  for (int c = 0; c < 4; ++c) {
+    out.positions.push_back(corners[c]);
+    out.normals.push_back(normal);
+    out.uvs[0].emplace_back(c == 1 || c == 2 ? 1.0F : 0.0F, c < 2 ? 1.0F : 0.0F);
+  }
+  add_quad(out.indices, first, first + 1, first + 2, first + 3);
+}
+
+}  // namespace
+
+Primitive make_crown(std::uint32_t count, std::uint64_t seed) {
+  // Leaves in forty balls of twigs, denser towards each ball's surface, as light makes them grow.
+  constexpr std::uint32_t kBalls = 40;
+  Primitive out;
+  SplitMix64 random(seed);
+  std::vector<Vec3d> centers;
+  for (std::uint32_t b = 0; b < kBalls; ++b) {
+    const Vec3d d = random_direction(random) * std::sqrt(random.unit());
+    centers.emplace_back(0.75 * d.x, 1.0 + 0.6 * d.y, 0.75 * d.z);
+  }
+  for (std::uint32_t k = 0; k < count; ++k) {
+    const Vec3d& center = centers[static_cast<std::size_t>(random.unit() * kBalls)];
+    const double radius = 0.3 * std::sqrt(std::sqrt(random.unit()));
+    const Vec3d at = center + random_direction(random) * radius;
+    const Vec3d up = unit(random_direction(random) + Vec3d(0.0, 0.4, 0.0));
+    const Vec3d other = random_direction(random);
+    const Vec3d side = unit(glm::cross(up, other) + up * 1e-9 + Vec3d(1e-9, 0.0, 0.0));
+    const double size = random.between(0.012, 0.024);
+    add_card(at, side * (0.5 * size), glm::cross(glm::cross(side, up), side) * size, out);
+  }
+  return out;
+}
+
+Primitive make_grass(std::uint32_t blades, std::uint64_t seed) {
+  Primitive out;
+  SplitMix64 random(seed);
+  for (std::uint32_t k = 0; k < blades; ++k) {
+    const double x = random.between(-1.0, 1.0), z = random.between(-1.0, 1.0), turn = random.unit();
+    const Vec3d side(cos_turns(turn), 0.0, sin_turns(turn));
+    const Vec3d up = unit(Vec3d(random.between(-0.4, 0.4), 1.0, random.between(-0.4, 0.4)));
+    add_card({x, 0.0, z}, side * random.between(0.002, 0.004), up * random.between(0.04, 0.1), out);
+  }
+  out.normals.clear();
+  out.uvs[0].clear();
+  return out;
+}
+
+}  // namespace meshlode::scene

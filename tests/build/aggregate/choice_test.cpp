@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which meshes are aggregates, and what their coarse materials are.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "build/aggregate/aggregate_choice.h"
+#include "build/aggregate/coarse_materials.h"
+#include "scene/samples/samples.h"
+
+namespace meshlode::build {
+namespace {
+
+bool is_aggregate(scene::Primitive shape, AggregateChoice choice = AggregateChoice::kAuto) {
+  return decide_aggregate(scene::as_mesh(std::move(shape)), choice).is_aggregate;
+}
+
+TEST(AggregateChoice, IsOfManySmallLoosePieces) {
+  EXPECT_TRUE(is_aggregate(scene::make_grass(2000)));
+  EXPECT_TRUE(is_aggregate(scene::make_foliage(2000)));
+  EXPECT_TRUE(is_aggregate(scene::make_box_soup(400)));
+  EXPECT_FALSE(is_aggregate(scene::make_grass(100))) << "few";
+  EXPECT_FALSE(is_aggregate(scene::make_rock(16))) << "one";
+  EXPECT_FALSE(is_aggregate(scene::make_sphere(32)));
+  EXPECT_FALSE(is_aggregate(scene::make_grass(2000), AggregateChoice::kNever));
+  EXPECT_TRUE(is_aggregate(scene::make_grass(100), AggregateChoice::kAlways));
+  const AggregateDecision large = decide_aggregate(scene::as_mesh(scene::make_sphere(32)), AggregateChoice::kAlways);
+  EXPECT_FALSE(large.is_aggregate);
+  EXPECT_NE(large.reason.find("12288 triangles"), std::string::npos) << large.reason;
+  EXPECT_FALSE(decide_aggregate(scene::SourceMesh{}, AggregateChoice::kAlways).is_aggregate);
+  EXPECT_FALSE(decide_aggregate(scene::as_mesh(scene::make_grass(2000)), AggregateChoice::kAlways, true).is_aggregate);
+}
+
+TEST(CoarseMaterials, AreOpaqueDoubleSidedAndInOneColor) {
+  scene::Scene scene = scene::as_scene(scene::as_mesh(scene::make_grass(10)));
+  scene.document =
+      R"({"materials":[{"name":"leaf","pbrMetallicRoughness":{"baseColorTexture":{"index":0},"roughnessFactor":0.5},
+    "alphaMode":"MASK"}],"other":[1,2.5]})";
+  scene.materials.resize(1);
+  scene::SceneMaterial& leaf = scene.materials[0];
+  leaf.name = "leaf";
+  leaf.source_index = 0;
+  leaf.alpha_mode = scene::AlphaMode::kMask;
+  leaf.base_color_texture = 0;
+  leaf.textures.emplace_back();
+  std::vector<std::optional<MaterialLook>> looks(1);
+  looks[0] = MaterialLook{[](double u, double) { return u < 0.5; }, 1, {0.25F, 0.5F, 0.75F}};
+  const std::vector<std::uint8_t> yes{1};
+  EXPECT_TRUE(needs_look(leaf));
+  const auto made = derive_materials(scene, yes, looks);
+  ASSERT_TRUE(made.ok());
+  ASSERT_EQ(made->materials.size(), 2U);
+  EXPECT_EQ(made->of_source[0].coarse, 1U);
+  EXPECT_EQ(made->of_source[0].uv_set, 1U);
+  EXPECT_TRUE(made->of_source[0].covers(0.2, 0.0));
+  const scene::SceneMaterial& coarse = made->materials[1];
+  EXPECT_EQ(coarse.alpha_mode, scene::AlphaMode::kOpaque);
+  EXPECT_TRUE(coarse.double_sided);
+  EXPECT_EQ(coarse.source_index, 1U);
+  EXPECT_EQ(coarse.base_color, Vec4f(0.25F, 0.5F, 0.75F, 1.0F));
+  const auto document = nlohmann::json::parse(made->document);
+  ASSERT_EQ(document["materials"].size(), 2U);
+  EXPECT_EQ(document["materials"][0]["alphaMode"], "MASK") << "the source's own stays";
+  EXPECT_EQ(document["other"], nlohmann::json::parse("[1,2.5]"));
+  EXPECT_EQ(document["materials"][1]["doubleSided"], true);
+  EXPECT_FALSE(document["materials"][1]["pbrMetallicRoughness"].contains("baseColorTexture"));
+  EXPECT_EQ(document["materials"][1]["extras"]["meshlode"]["covers_as"], 0);
+
+  leaf = {};
+  leaf.source_index = 0;
+  leaf.double_sided = true;
+  const auto itself = derive_materials(scene, yes, std::vector<std::optional<MaterialLook>>(1));
+  ASSERT_TRUE(itself.ok());
+  EXPECT_EQ(itself->materials.size(), 1U) << "whole already: it stands for itself";
+  EXPECT_EQ(itself->document, scene.document);
+}
+
+}  // namespace
+}  // namespace meshlode::build

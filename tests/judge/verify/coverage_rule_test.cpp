@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Aggregates that were built are what V208 asks for, everything else holds too; and where they are not, it is found.
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "base/random.h"
+#include "build/build.h"
+#include "judge/metrics/coverage.h"
+#include "judge/validate/edit.h"
+#include "judge/verify/verify.h"
+#include "run/read/asset.h"
+#include "scene/samples/samples.h"
+
+namespace meshlode::judge {
+namespace {
+
+using test::AssetEdit;
+
+std::vector<std::uint8_t> build_aggregate(const scene::Scene& scene,
+                                          format::ErrorTier tier = format::ErrorTier::kMeasured) {
+  build::PipelineOptions options;
+  options.error_tier = tier;
+  options.aggregate = AggregateChoice::kAlways;
+  build::PipelineReport report;
+  auto bytes = build::build_lode(scene, options, {}, report);
+  EXPECT_TRUE(bytes.ok()) << bytes.error().message();
+  return std::move(*bytes);
+}
+
+scene::Scene scene_of(scene::Primitive shape) {
+  shape.normals.clear();
+  shape.uvs[0].clear();
+  return scene::as_scene(scene::as_mesh(std::move(shape)));
+}
+
+std::string found_in(const std::vector<std::uint8_t>& bytes, const scene::Scene& scene) {
+  const Result<run::Asset> asset = run::Asset::from_vector(bytes);
+  EXPECT_TRUE(asset.ok()) << asset.error().message();
+  const VerifyReport report =
+      verify_asset(*asset, scene, {.uniform_cuts = 20, .cameras = 10, .deviation_cuts = 5, .deviation_samples = 2000});
+  std::string text;
+  for (const Finding& finding : report.findings) text += finding.id + " " + finding.detail + "\n";
+  return text;
+}
+
+std::uint32_t groups_of(const AssetEdit& edit) {
+  return static_cast<std::uint32_t>(edit.count(format::SectionId::kGroups, sizeof(format::GroupRecord)));
+}
+
+TEST(Aggregates, OfEveryKindHold) {
+  for (const scene::Primitive& shape : {scene::make_grass(1500), scene::make_box_soup(300), scene::make_crown(1500),
+                                        scene::make_loose_pieces(800), scene::scaled(scene::make_grass(600), 1e-5)}) {
+    const scene::Scene scene = scene_of(shape);
+    const std::vector<std::uint8_t> bytes = build_aggregate(scene);
+    EXPECT_EQ(found_in(bytes, scene), "");
+    const Result<run::Asset> asset = run::Asset::from_vector(bytes);
+    EXPECT_EQ(asset->header().version, format::kVersion);
+    EXPECT_TRUE(has_aggregates(*asset, MeshId(0U)));
+  }
+}
+
+/// A handful of cards stands for all of them soon, and is as large as the mesh.
+TEST(Aggregates, SmallOnesHold) {
+  for (const std::uint32_t count : {150U, 387U, 1617U, 3184U}) {
+    for (const scene::Primitive& shape : {scene::make_grass(count), scene::make_box_soup(count / 5 + 10),
+                                          scene::make_crown(count), scene::make_loose_pieces(count)}) {
+      const scene::Scene scene = scene_of(shape);
+      EXPECT_EQ(found_in(build_aggregate(scene), scene), "") << count;
+    }
+  }
+}
+
+TEST(Aggregates, OfEveryTierHold) {
+  const scene::Scene scene = scene_of(scene::make_grass(800));
+  for (const format::ErrorTier tier : {format::ErrorTier::kQem, format::ErrorTier::kCertified}) {
+    EXPECT_EQ(found_in(build_aggregate(scene, tier), scene), "");
+  }
+}
+
+TEST(Aggregates, ErrorsThatAreTooSmallAreFound) {
+  const scene::Scene scene = scene_of(scene::make_grass(1500));
+  AssetEdit edit(build_aggregate(scene));
+  for (std::uint32_t g = 0; g < groups_of(edit); ++g) {
+    edit.group(g, [](auto& group) {
+      for (float* value : {&group.error, &group.quadric_error, &group.deviation}) {
+        if (*value < format::kInfiniteError) *value *= 0.25F;
+      }
+    });
+  }
+  for (std::uint32_t n = 0; n < edit.count(format::SectionId::kNodes, sizeof(format::NodeRecord)); ++n) {
+    edit.node(n, [](auto& node) {
+      if (node.error < format::kInfiniteError) node.error *= 0.25F;
+    });
+  }
+  edit.seal();
+  EXPECT_EQ(found_in(edit.bytes(), scene).substr(0, 4), "V208");
+}
+
+TEST(Aggregates, WithoutTheFlagTheirBordersAreNone) {
+  const scene::Scene scene = scene_of(scene::make_box_soup(300));  // closed, and cards are not
+  AssetEdit edit(build_aggregate(scene));
+  edit.header([](auto& header) { header.version = format::kPlainVersion; });
+  for (std::uint32_t g = 0; g < groups_of(edit); ++g) {
+    edit.group(g, [](auto& group) { group.flags &= static_cast<std::uint16_t>(~format::kGroupAggregate); });
+  }
+  edit.seal();
+  EXPECT_NE(found_in(edit.bytes(), scene).find("L507"), std::string::npos);
+}
+
+TEST(Aggregates, TheirMaterialsAreWhole) {
+  scene::Scene scene = scene_of(scene::make_grass(800));
+  scene.materials[0].double_sided = false;
+  const std::vector<std::uint8_t> bytes = build_aggregate(scene);
+  const Result<run::Asset> asset = run::Asset::from_vector(bytes);
+  ASSERT_EQ(asset->materials().size(), 2U);
+  EXPECT_EQ(found_in(bytes, scene), "");
+  AssetEdit edit(bytes);
+  edit.material(1, [](auto& material) { material.double_sided = 0; });
+  edit.seal();
+  const std::string found = found_in(edit.bytes(), scene);
+  EXPECT_NE(found.find("L509"), std::string::npos) << found;
+  EXPECT_NE(found.find("V106"), std::string::npos) << found;
+}
+
+std::vector<CoveringTriangle> cards(int count, double size) {
+  std::vector<CoveringTriangle> out;
+  SplitMix64 random(4);
+  for (int k = 0; k < count; ++k) {
+    const Vec3d at(random.unit(), random.unit(), random.unit());
+    const Vec3d u(size * random.signed_unit(), size * random.signed_unit(), size * random.signed_unit());
+    const Vec3d v(size * random.signed_unit(), size * random.signed_unit(), size * random.signed_unit());
+    out.push_back({{at, at + u, at + v}});
+  }
+  return out;
+}
+
+TEST(CoverageDrift, SaysHowMuchMoreOrLess) {
+  const std::vector<CoveringTriangle> source = cards(400, 0.02);
+  const auto same = measure_coverage(source, source, {}, 0.05);
+  ASSERT_TRUE(same);
+  EXPECT_EQ(same->rms, 0.0);
+  EXPECT_EQ(same->mean, 0.0);
+  EXPECT_EQ(same->contrast, 1.0);
+  const auto half = measure_coverage(source, std::span(source).first(200), {}, 0.05);
+  EXPECT_NEAR(half->mean, -0.5, 0.1) << "sparse: few hide each other";
+  EXPECT_GT(half->rms, 0.5);
+  const auto nothing = measure_coverage(source, {}, {}, 0.05);
+  EXPECT_NEAR(nothing->mean, -1.0, 1e-12);
+  EXPECT_NEAR(nothing->rms, 1.0, 1e-12);
+  EXPECT_EQ(nothing->contrast, 0.0);
+  EXPECT_FALSE(measure_coverage(source, source, {}, 1e-9)) << "pictures too large to look at";
+  EXPECT_FALSE(measure_coverage({}, source, {}, 0.05));
+}
+
+TEST(CoverageDrift, LooksThroughMasks) {
+  draw::AlphaMasks masks;
+  masks.images.push_back({2, 1, {255, 0}});
+  draw::AlphaMask mask;
+  mask.threshold = 1;
+  mask.image = 0;
+  mask.row_u = {2.0, 0.0, 0.0};
+  mask.row_v = {0.0, 1.0, 0.0};
+  masks.masks.push_back(mask);
+  CoveringTriangle a{{Vec3d(0, 0, 0), Vec3d(1, 0, 0), Vec3d(1, 1, 0)}, {Vec2d(0, 0), Vec2d(1, 0), Vec2d(1, 1)}, 0};
+  CoveringTriangle b{{Vec3d(0, 0, 0), Vec3d(1, 1, 0), Vec3d(0, 1, 0)}, {Vec2d(0, 0), Vec2d(1, 1), Vec2d(0, 1)}, 0};
+  const std::vector<CoveringTriangle> masked{a, b};
+  a.mask = b.mask = format::kNone;
+  const std::vector<CoveringTriangle> whole{a, b};
+  const auto drift = measure_coverage(whole, masked, masks, 0.1);
+  ASSERT_TRUE(drift);
+  EXPECT_NEAR(drift->mean, -0.5, 0.02) << "the left half passes";
+}
+
+}  // namespace
+}  // namespace meshlode::judge
