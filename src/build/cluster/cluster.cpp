@@ -41,9 +41,13 @@ std::size_t cut_in_two(const std::vector<glm::i64vec3>& centers, std::size_t tar
   const glm::i64vec3 extent = high - low;
   const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : (extent.y >= extent.z ? 1 : 2);
   const std::size_t left = ((range.end - range.begin) / 2 + target / 2) / target * target;
-  std::nth_element(begin, begin + static_cast<std::ptrdiff_t>(left), end, [&](std::uint32_t a, std::uint32_t b) {
-    return centers[a][axis] != centers[b][axis] ? centers[a][axis] < centers[b][axis] : a < b;
-  });
+  // Place and triangle as one number each, side by side: through `order` every comparison would go to two of the
+  // places.
+  std::vector<std::uint64_t> keys(range.end - range.begin);
+  std::transform(begin, end, keys.begin(),
+                 [&](std::uint32_t t) { return static_cast<std::uint64_t>(centers[t][axis] - low[axis]) << 32U | t; });
+  std::nth_element(keys.begin(), keys.begin() + static_cast<std::ptrdiff_t>(left), keys.end());
+  std::transform(keys.begin(), keys.end(), begin, [](std::uint64_t key) { return static_cast<std::uint32_t>(key); });
   return range.begin + left;
 }
 

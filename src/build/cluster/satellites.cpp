@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/local_ids.h"
+#include "base/parallel.h"
 
 namespace meshlode::build {
 
@@ -15,6 +16,7 @@ namespace {
 
 /// Pieces of so many triangles are debris where larger ones lie beside them.
 constexpr std::uint32_t kDebris = 8;
+constexpr std::size_t kChunkOfClusters = 64;
 
 std::array<std::uint32_t, 3> positions_of(const WedgeTriangle& t, std::span<const std::uint32_t> wedge_position) {
   return {wedge_position[t[0]], wedge_position[t[1]], wedge_position[t[2]]};
@@ -22,6 +24,18 @@ std::array<std::uint32_t, 3> positions_of(const WedgeTriangle& t, std::span<cons
 
 bool has_three(const std::array<std::uint32_t, 3>& p) {
   return p[0] != p[1] && p[1] != p[2] && p[2] != p[0];
+}
+
+/// What visit(t, found) finds for t in [0, count), side by side, in the order of t.
+template <class Found, class Visit>
+std::vector<Found> find_in_order(std::size_t count, const Visit& visit) {
+  std::vector<std::vector<Found>> by_chunk(chunk_count(count, kLoopGrain));
+  parallel_for_each_chunk(count, kLoopGrain, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) visit(static_cast<std::uint32_t>(t), by_chunk[chunk]);
+  });
+  std::vector<Found> all;
+  for (const std::vector<Found>& found : by_chunk) all.insert(all.end(), found.begin(), found.end());
+  return all;
 }
 
 /// Triangles without a host, each followed by its satellites, in flat rows: nearly all of them are alone.
@@ -138,18 +152,22 @@ Clustering divide_too_large(const SystemRows& rows, const PartRows& parts, const
     for_each_triangle([&](std::uint32_t t) { clustering.label[t] = part; });
   };
   const std::uint32_t before = clustering.count;
-  for (std::uint32_t part = 0; part < before; ++part) {
-    const auto for_each_triangle = [&](auto&& visit) {
-      for (std::uint32_t i = parts.first[part]; i < parts.first[part + 1]; ++i) {
-        const std::span<const std::uint32_t> members = rows.of(parts.systems[i]);
-        std::for_each(members.begin(), members.end(), visit);
-      }
-    };
-    if (is_too_large(surface.triangles, caps, wedges, for_each_triangle)) {
-      settle(part, systems_of(rows, parts, part));
-    } else {
-      for_each_triangle([&](std::uint32_t t) { clustering.label[t] = part; });
+  std::vector<std::uint8_t> is_large(before, 0);  // they are few: found side by side, divided in order
+  parallel_for_each_chunk(before, kChunkOfClusters, [&](std::size_t, std::size_t begin, std::size_t end) {
+    LocalIds own_wedges(2 * std::size_t{caps.max_vertices});
+    for (auto part = static_cast<std::uint32_t>(begin); part < end; ++part) {
+      const auto for_each_triangle = [&](auto&& visit) {
+        for (std::uint32_t i = parts.first[part]; i < parts.first[part + 1]; ++i) {
+          const std::span<const std::uint32_t> members = rows.of(parts.systems[i]);
+          std::for_each(members.begin(), members.end(), visit);
+        }
+      };
+      is_large[part] = is_too_large(surface.triangles, caps, own_wedges, for_each_triangle) ? 1 : 0;
+      if (is_large[part] == 0) for_each_triangle([&](std::uint32_t t) { clustering.label[t] = part; });
     }
+  });
+  for (std::uint32_t part = 0; part < before; ++part) {
+    if (is_large[part] != 0) settle(part, systems_of(rows, parts, part));
   }
   for (std::uint32_t part = before; part < clustering.count; ++part) {
     Systems systems = std::move(cut_off[part - before]);
@@ -162,28 +180,27 @@ Clustering divide_too_large(const SystemRows& rows, const PartRows& parts, const
 
 Hosts host_collapsed(std::span<const WedgeTriangle> triangles, std::span<const std::uint32_t> wedge_position,
                      std::size_t position_count) {
-  std::vector<std::uint32_t> collapsed;
-  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-    if (!has_three(positions_of(triangles[t], wedge_position))) collapsed.push_back(t);
-  }
+  const std::vector<std::uint32_t> collapsed =
+      find_in_order<std::uint32_t>(triangles.size(), [&](std::uint32_t t, std::vector<std::uint32_t>& found) {
+        if (!has_three(positions_of(triangles[t], wedge_position))) found.push_back(t);
+      });
   if (collapsed.empty()) return {};
   std::vector<std::uint8_t> is_wanted(position_count, 0);
   for (const std::uint32_t t : collapsed) {
     for (const std::uint32_t position : positions_of(triangles[t], wedge_position)) is_wanted[position] = 1;
   }
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> users;  // of wanted positions
-  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+  using User = std::pair<std::uint32_t, std::uint32_t>;  // a wanted position, and a triangle there
+  std::vector<User> users = find_in_order<User>(triangles.size(), [&](std::uint32_t t, std::vector<User>& found) {
     const auto p = positions_of(triangles[t], wedge_position);
-    if (!has_three(p)) continue;
+    if (!has_three(p)) return;
     for (const std::uint32_t position : p) {
-      if (is_wanted[position] != 0) users.emplace_back(position, t);
+      if (is_wanted[position] != 0) found.emplace_back(position, t);
     }
-  }
+  });
   std::sort(users.begin(), users.end());
   Hosts hosts(triangles.size(), kNoId);
   for (const std::uint32_t t : collapsed) {
     const auto own = positions_of(triangles[t], wedge_position);
-    using User = std::pair<std::uint32_t, std::uint32_t>;
     const auto users_of = [&](std::uint32_t position) {
       const auto first = std::lower_bound(users.begin(), users.end(), User{position, 0U});
       return std::span<const User>(first, std::lower_bound(first, users.end(), User{position + 1, 0U}));
