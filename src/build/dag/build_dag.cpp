@@ -12,6 +12,7 @@
 #include "base/release.h"
 #include "build/dag/group_errors.h"
 #include "build/dag/level_pool.h"
+#include "build/dag/level_use.h"
 #include "build/dag/whole_cuts.h"
 #include "build/simplify/kept_topology.h"
 
@@ -60,11 +61,6 @@ std::uint32_t target_triangles(std::uint32_t source, double share, bool is_whole
   return std::min(target, std::max(1U, static_cast<std::uint32_t>(1.1 * share * source)));
 }
 
-/// What more than one group uses, per position and per wedge of the pool.
-struct Shared {
-  std::vector<std::uint8_t> position, wedge;
-};
-
 /// Collects a group's triangles under local ids. Ids of the pool are ascending, and so are the local ones.
 SimplifyInput group_input(const BuildPool& pool, const PreparedMesh& mesh, const std::vector<ClusterId>& clusters,
                           const Shared& shared) {
@@ -100,7 +96,7 @@ SimplifyInput group_input(const BuildPool& pool, const PreparedMesh& mesh, const
   input.wedge_attributes.reserve(stride * wedges.size());
   for (const std::uint32_t w : wedges.numbers()) {
     input.wedge_position.push_back(positions.add(pool.wedge_position[w]));
-    input.is_wedge_shared.push_back(shared.wedge[w]);
+    input.is_wedge_shared.push_back(shared.wedge(w));
     const auto first = pool.wedge_attributes.begin() + static_cast<std::ptrdiff_t>(w * stride);
     input.wedge_attributes.insert(input.wedge_attributes.end(), first, first + static_cast<std::ptrdiff_t>(stride));
   }
@@ -111,62 +107,10 @@ SimplifyInput group_input(const BuildPool& pool, const PreparedMesh& mesh, const
   input.witnesses.reserve(positions.size());
   for (const std::uint32_t p : positions.numbers()) {
     input.positions.push_back(pool.positions[p]);
-    input.is_locked.push_back(shared.position[p]);
+    input.is_locked.push_back(shared.position(p));
     input.witnesses.push_back(pool.witnesses_at(p));
   }
   return input;
-}
-
-GroupInput grouping_input(const BuildPool& pool, const std::vector<ClusterId>& live, const DagOptions& options) {
-  GroupInput input;
-  input.position_count = static_cast<std::uint32_t>(pool.positions.size());
-  std::vector<std::vector<std::uint32_t>> lists(live.size());
-  input.weights.assign(live.size(), 0);
-  input.centers.resize(live.size());
-  parallel_for_each_index(live.size(), 16, [&](std::size_t i) {
-    BuildPool::ClusterUse use = pool.use_of(live[i]);
-    Vec3d sum(0.0);
-    for (const std::uint32_t p : use.positions) sum += Vec3d(pool.positions[p]);
-    input.centers[i] = sum / static_cast<double>(std::max<std::size_t>(1, use.positions.size()));
-    if (options.max_group_bytes > 0) {
-      input.weights[i] = options.cluster_bytes(use.wedges, pool.cluster(live[i]).triangle_count, use.materials);
-    }
-    lists[i] = std::move(use.positions);
-  });
-  input.first_position.assign(live.size() + 1, 0);
-  for (std::size_t i = 0; i < live.size(); ++i) {
-    input.first_position[i + 1] = input.first_position[i] + static_cast<std::uint32_t>(lists[i].size());
-  }
-  input.positions.resize(input.first_position.back());
-  parallel_for_each_index(live.size(), 64, [&](std::size_t i) {
-    std::copy(lists[i].begin(), lists[i].end(), input.positions.begin() + input.first_position[i]);
-  });
-  return input;
-}
-
-Shared find_shared(const BuildPool& pool, const std::vector<ClusterId>& live,
-                   const std::vector<std::vector<std::uint32_t>>& groups) {
-  Shared shared{std::vector<std::uint8_t>(pool.positions.size(), 0),
-                std::vector<std::uint8_t>(pool.wedge_position.size(), 0)};
-  std::vector<std::uint32_t> position_owner(pool.positions.size(), kNoId);
-  std::vector<std::uint32_t> wedge_owner(pool.wedge_position.size(), kNoId);
-  const auto visit = [](std::uint32_t id, std::uint32_t group, std::vector<std::uint32_t>& owner,
-                        std::vector<std::uint8_t>& flag) {
-    if (owner[id] == kNoId) owner[id] = group;
-    if (owner[id] != group) flag[id] = 1;
-  };
-  for (std::uint32_t g = 0; g < groups.size(); ++g) {
-    for (const std::uint32_t i : groups[g]) {
-      const BuildCluster& cluster = pool.cluster(live[i]);
-      for (std::uint32_t t = cluster.first_triangle; t < cluster.first_triangle + cluster.triangle_count; ++t) {
-        for (const std::uint32_t wedge : pool.triangles[t]) {
-          visit(wedge, g, wedge_owner, shared.wedge);
-          visit(pool.wedge_position[wedge], g, position_owner, shared.position);
-        }
-      }
-    }
-  }
-  return shared;
 }
 
 Attempt simplify_and_cluster(const SimplifyInput& input, double share, bool is_whole, const DagOptions& options,
@@ -188,7 +132,8 @@ Attempt simplify_and_cluster(const SimplifyInput& input, double share, bool is_w
 /// Ends the DAG: what is left is never replaced.
 void add_terminal_groups(BuildPool& pool, const std::vector<ClusterId>& live, const GroupOptions& grouping,
                          const DagOptions& options, const std::vector<StuckReason>& reasons) {
-  const std::vector<std::vector<std::uint32_t>> groups = group_clusters(grouping_input(pool, live, options), grouping);
+  const std::vector<std::vector<std::uint32_t>> groups =
+      group_clusters(use_of_level(pool, live, options).grouping, grouping);
   for (const std::vector<std::uint32_t>& members : groups) {
     BuildGroup group;
     group.is_terminal = true;
@@ -322,9 +267,9 @@ void refuse_shared_places(std::span<Attempt> attempts, PlaceSet& taken) {
 /// the results of a whole round are never held at once. Groups see nothing of each other (BuildPool::begin_round), so
 /// that runs of any length give the same. \returns whether any group was accepted
 bool run_round(BuildPool& pool, const PreparedMesh& mesh, const GroupMeter& meter, const Groups& groups,
-               bool is_first_round, const DagOptions& options, const Effort& effort, Front& front) {
+               const Shared& shared, bool is_first_round, const DagOptions& options, const Effort& effort,
+               Front& front) {
   const std::size_t run = std::max<std::size_t>(64, 16 * thread_limit());
-  const Shared shared = find_shared(pool, front.live, groups);
   bool any_accepted = false;
   PlaceSet taken;
   Front next;
@@ -371,9 +316,11 @@ Result<BuildPool> coarsen(PreparedMesh& mesh, const DagOptions& options) {
     if (front.live.size() == 1 || effort_index == std::size(kEfforts)) break;
     const Effort& effort = kEfforts[effort_index];
     grouping.target_clusters = groups_aim_at(effort, options.grouping);
-    const Groups groups = group_clusters(grouping_input(pool, front.live, options), grouping);
+    const LevelUse use = use_of_level(pool, front.live, options);
+    const Groups groups = group_clusters(use.grouping, grouping);
     // Progress keeps the effort where it is; a round without any tries harder, and success at that starts over.
-    const bool any_accepted = run_round(pool, mesh, meter, groups, round == 0, options, effort, front);
+    const bool any_accepted =
+        run_round(pool, mesh, meter, groups, Shared(use, groups), round == 0, options, effort, front);
     effort_index = any_accepted ? 0 : effort_index + 1;
   }
   add_terminal_groups(pool, front.live, grouping, options, front.reasons);

@@ -276,7 +276,7 @@ BuildPool::ClusterUse BuildPool::use_of(ClusterId id) const {
   }
   for (const std::uint32_t wedge : wedges.numbers()) used_positions.add(wedge_position[wedge]);
   ClusterUse use;
-  use.wedges = static_cast<std::uint32_t>(wedges.size());
+  use.wedges = wedges.numbers();
   use.materials = static_cast<std::uint32_t>(materials.size());
   use.positions = used_positions.numbers();
   std::sort(use.positions.begin(), use.positions.end());

@@ -82,10 +82,9 @@ class BuildPool {
   /// Nothing will be added, simplified or measured any more: frees what only that needs.
   void finish();
 
-  /// Of a cluster: its distinct positions, ascending, and its sizes.
+  /// Of a cluster: its distinct positions, ascending, its distinct wedges, and how many materials it has.
   struct ClusterUse {
-    std::vector<std::uint32_t> positions;
-    std::uint32_t wedges = 0;  ///< an upper bound of its vertices
+    std::vector<std::uint32_t> positions, wedges;
     std::uint32_t materials = 0;
   };
   [[nodiscard]] ClusterUse use_of(ClusterId cluster) const;
