@@ -60,6 +60,11 @@ class GroupSimplifier {
     Vec3d position{0.0};
     double cost = 0.0;
   };
+  /// Where make_candidate() has put a vertex.
+  struct Placed {
+    Vec3d position{0.0};
+    std::uint32_t a = kNoId, b = kNoId, versions = 0;
+  };
   /// The last two are none: the candidate waits at another price, or its edge went with a sheet.
   enum class Obstacle : std::uint8_t { kNone, kLocked, kFlips, kSeams, kTopology, kPutBack, kNoEdge };
 
@@ -78,7 +83,8 @@ class GroupSimplifier {
   void take_up_again(std::uint32_t vertex);
   /// Versions only grow: their sum is the same where neither has.
   [[nodiscard]] std::uint32_t versions_of(std::uint32_t a, std::uint32_t b) const { return version_[a] + version_[b]; }
-  [[nodiscard]] double add_classes(BasicQuadric<Real>& total);
+  [[nodiscard]] double add_classes(BasicQuadric<Real>& total) const;
+  [[nodiscard]] Vec3d place_again(std::uint32_t a, std::uint32_t b);
   /// Where a vertex goes whose place is not free.
   [[nodiscard]] const Vec3d& given_place(std::uint32_t a, std::uint32_t b) const {
     return places_[locks_.is_vertex_locked[a] != 0 ? a : b];
@@ -108,6 +114,7 @@ class GroupSimplifier {
   CandidateQueue queue_;
   std::vector<std::vector<std::uint32_t>> refused_;  ///< per vertex: the other ends of candidates that were refused
   std::array<std::uint64_t, 7> obstacles_{};
+  Placed last_placed_;
   double error_ = 0.0;  ///< frame units
   bool has_free_border_ = false, has_broken_topology_ = false, are_flips_relaxed_ = false;
 
@@ -139,11 +146,7 @@ GroupSimplifier<Real, C>::GroupSimplifier(const SimplifyInput& input, const Simp
   is_border_ = std::move(held.is_border);
   has_free_border_ = held.has_free_border;
   edge_uses_ = std::move(held.uses);
-  if (attributes_.count() == 0) return;
-  for (joined_.vertex = 0; joined_.vertex < places_.size(); ++joined_.vertex) {
-    mesh_.corners_of(joined_.vertex, joined_.corners);
-    classes_.update(mesh_, joined_);
-  }
+  classes_.start(mesh_);
 }
 
 template <class Real, std::size_t C>
@@ -232,18 +235,34 @@ Candidate GroupSimplifier<Real, C>::make_candidate(std::uint32_t a, std::uint32_
   double fixed_error = 0.0;
   if (classes_.needs_corners(a, b)) {
     gather_corners(mesh_, a, b, star_);
+    classes_.collect(mesh_, locks_, star_);
     fixed_error = add_classes(total);
   } else if (attributes_.count() > 0) {
     fixed_error = attributes_.add_pair(total, classes_.pair_of(locks_, a, b), given_place(a, b));
   }
-  return {place(a, b, total, fixed_error).cost, a, b, versions_of(a, b)};
+  const Placement placement = place(a, b, total, fixed_error);
+  last_placed_ = {placement.position, a, b, versions_of(a, b)};
+  return {placement.cost, a, b, versions_of(a, b)};
 }
 
-/// What the wedge classes of the star add to it. They are left behind. \pre the star's corners are gathered
+/// What the wedge classes of the star add to it. \pre they are collected
 template <class Real, std::size_t C>
-double GroupSimplifier<Real, C>::add_classes(BasicQuadric<Real>& total) {
-  classes_.collect(mesh_, locks_, star_);
+double GroupSimplifier<Real, C>::add_classes(BasicQuadric<Real>& total) const {
   return attributes_.add_classes(total, classes_.classes(), given_place(star_.a.vertex, star_.b.vertex));
+}
+
+/// Where the vertex of a candidate goes that is tried, and its wedge classes with it: what comes up is often what was
+/// weighed last. \pre the star's corners are gathered
+template <class Real, std::size_t C>
+Vec3d GroupSimplifier<Real, C>::place_again(std::uint32_t a, std::uint32_t b) {
+  classes_.collect(mesh_, locks_, star_);
+  if (locks_.is_vertex_locked[a] != 0 || locks_.is_vertex_locked[b] != 0) return given_place(a, b);
+  if (last_placed_.a == a && last_placed_.b == b && last_placed_.versions == versions_of(a, b)) {
+    return last_placed_.position;
+  }
+  BasicQuadric<Real> total = surface_.around(a, b);
+  const double fixed_error = add_classes(total);
+  return place(a, b, total, fixed_error).position;
 }
 
 template <class Real, std::size_t C>
@@ -307,13 +326,10 @@ typename GroupSimplifier<Real, C>::Obstacle GroupSimplifier<Real, C>::try_collap
   std::uint32_t b = candidate.b;
   gather_corners(mesh_, a, b, star_);
   if (!has_shared_triangle(mesh_, star_)) return Obstacle::kNoEdge;
-  BasicQuadric<Real> total = surface_.around(a, b);
-  const double fixed_error = add_classes(total);
-  const Placement placement = place(a, b, total, fixed_error);
+  star_.target = place_again(a, b);
   for (const WedgeClass& joined : classes_.classes()) {
     if (!attributes_.agree(joined, locks_)) return Obstacle::kSeams;
   }
-  star_.target = placement.position;
   const bool is_free = locks_.is_vertex_locked[a] == 0 && locks_.is_vertex_locked[b] == 0;
   if (is_free) {
     Vec3i place = places_.to_grid(star_.target);

@@ -54,9 +54,11 @@ void SurfaceQuadrics<Real>::add_walls(std::span<const HeldEdge> edges, const Col
 template <class Real>
 double SurfaceQuadrics<Real>::join(std::uint32_t into, std::uint32_t from, const Vec3d& place) {
   plane_[into] += plane_[from];
-  border_[into] += border_[from];
-  if (!seam_.empty()) seam_[into] += seam_[from];
-  has_wall_[into] |= has_wall_[from];
+  if (has_wall_[from] != 0) {
+    border_[into] += border_[from];
+    if (!seam_.empty()) seam_[into] += seam_[from];
+    has_wall_[into] = 1;
+  }
   double error = 0.0;
   for (const BasicQuadric<Real>* q : {&plane_[into], &border_[into]}) {
     if (q->weight > Real(0)) error = std::max(error, std::sqrt(double{q->evaluate(place)} / double{q->weight}));

@@ -8,6 +8,18 @@ namespace meshlode::build {
 WedgeClasses::WedgeClasses(std::size_t wedge_count, std::size_t vertex_count)
     : only_wedge_(vertex_count, kSeveral), wedge_stamp_(wedge_count, 0), class_of_(wedge_count, 0) {}
 
+void WedgeClasses::start(const CollapseMesh& mesh) {
+  if (class_of_.empty()) return;
+  std::vector<std::uint8_t> is_met(only_wedge_.size(), 0);
+  for (std::uint32_t corner = 0; corner < 3 * mesh.triangle_count(); ++corner) {
+    if (!mesh.is_alive(corner / 3)) continue;
+    const std::uint32_t v = mesh.vertex(corner);
+    if (is_met[v] == 0) only_wedge_[v] = mesh.wedge(corner);
+    if (only_wedge_[v] != mesh.wedge(corner)) only_wedge_[v] = kSeveral;
+    is_met[v] = 1;
+  }
+}
+
 void WedgeClasses::update(const CollapseMesh& mesh, const StarEnd& end) {
   if (class_of_.empty()) return;
   std::uint32_t only = kSeveral;

@@ -33,9 +33,11 @@ struct WedgePair {
 /// Knows of each vertex whether it has a single wedge: most have, and then no triangle need be asked.
 class WedgeClasses {
  public:
-  /// Without wedges (of a mesh without attributes) there are no classes. \pre `update` is called for each vertex
+  /// Without wedges (of a mesh without attributes) there are no classes. \pre `start` is called
   WedgeClasses(std::size_t wedge_count, std::size_t vertex_count);
 
+  /// Before the first collapse.
+  void start(const CollapseMesh& mesh);
   /// What stands around the vertex has changed. \pre its corners are gathered
   void update(const CollapseMesh& mesh, const StarEnd& end);
 

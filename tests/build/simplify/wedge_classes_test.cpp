@@ -48,6 +48,21 @@ Members collect(DrawnMesh& drawn, std::uint32_t a, std::uint32_t b) {
   return members_of(classes);
 }
 
+/// In one pass over the corners what a look around each vertex tells.
+TEST(WedgeClasses, StartKnowsWhatUpdatesTell) {
+  for (DrawnMesh drawn : {closed_fan(), seamed_fan()}) {
+    const WedgeClasses told = classes_of(drawn);
+    WedgeClasses started(drawn.wedge_position.size(), drawn.points.size());
+    started.start(drawn.mesh);
+    for (std::uint32_t a = 0; a < drawn.points.size(); ++a) {
+      ASSERT_EQ(started.needs_corners(a, a), told.needs_corners(a, a)) << a;
+      if (!told.needs_corners(a, a)) {
+        EXPECT_EQ(started.pair_of(no_locks(drawn), a, a).least, told.pair_of(no_locks(drawn), a, a).least) << a;
+      }
+    }
+  }
+}
+
 TEST(WedgeClasses, OfTwoVerticesWithoutASeamTheWedgesAreOne) {
   DrawnMesh drawn = closed_fan();
   EXPECT_FALSE(classes_of(drawn).needs_corners(1, 0));
