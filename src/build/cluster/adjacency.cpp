@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/local_ids.h"
+#include "build/cluster/dense_limit.h"
 #include "build/cluster/loose_pieces.h"
 
 namespace meshlode::build {
@@ -14,8 +15,12 @@ namespace {
 
 using Corner3 = std::array<std::uint32_t, 3>;
 
-/// Positions renumbered 0 … n-1. Returns n.
+/// Positions renumbered below n, which is returned.
 std::uint32_t compact(std::span<const Corner3> source, std::vector<Corner3>& out) {
+  if (const std::uint32_t limit = dense_limit(source); limit != 0) {
+    out.assign(source.begin(), source.end());
+    return limit;
+  }
   LocalIds ids(source.size());  // a closed surface has half as many
   out.resize(source.size());
   for (std::size_t t = 0; t < source.size(); ++t) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/local_ids.h"
+#include "build/cluster/dense_limit.h"
 
 namespace meshlode::build {
 
@@ -57,7 +58,11 @@ bool move_one(std::uint32_t part, const Graph& graph, const ClusterCaps& caps, C
 /// Counts distinct wedges of parts, by the part that each was last seen in.
 class WedgeCounter {
  public:
-  explicit WedgeCounter(std::span<const WedgeTriangle> triangles) : local_(triangles.size()) {
+  explicit WedgeCounter(std::span<const WedgeTriangle> triangles) : local_(triangles.begin(), triangles.end()) {
+    if (const std::uint32_t limit = dense_limit(triangles); limit != 0) {
+      seen_.assign(limit, 0);
+      return;
+    }
     LocalIds ids(triangles.size());
     for (std::size_t t = 0; t < triangles.size(); ++t) {
       for (std::size_t k = 0; k < 3; ++k) local_[t][k] = ids.add(triangles[t][k]);

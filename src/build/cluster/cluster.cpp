@@ -11,6 +11,7 @@
 #include "base/parallel.h"
 #include "build/cluster/adjacency.h"
 #include "build/cluster/caps.h"
+#include "build/cluster/dense_limit.h"
 #include "build/cluster/loose_pieces.h"
 #include "build/cluster/merged_partition.h"
 #include "build/cluster/partition.h"
@@ -78,14 +79,23 @@ std::vector<Range> split_into_chunks(const std::vector<glm::i64vec3>& centers, s
   return ranges;
 }
 
-/// How many parts the vertex cap asks for: wedges over the cap, with a little room for those on borders.
-std::size_t parts_for_vertices(std::span<const WedgeTriangle> triangles, std::uint32_t max_vertices) {
+std::size_t count_distinct_wedges(std::span<const WedgeTriangle> triangles) {
+  if (const std::uint32_t limit = dense_limit(triangles); limit != 0) {
+    std::vector<std::uint8_t> is_used(limit, 0);
+    for (const WedgeTriangle& t : triangles) is_used[t[0]] = is_used[t[1]] = is_used[t[2]] = 1;
+    return static_cast<std::size_t>(std::count(is_used.begin(), is_used.end(), 1));
+  }
   LocalIds wedges(triangles.size());
   for (const WedgeTriangle& t : triangles) {
     for (const std::uint32_t wedge : t) wedges.add(wedge);
   }
+  return wedges.size();
+}
+
+/// How many parts the vertex cap asks for: wedges over the cap, with a little room for those on borders.
+std::size_t parts_for_vertices(std::span<const WedgeTriangle> triangles, std::uint32_t max_vertices) {
   const std::size_t room = max_vertices - std::min(max_vertices / 2, 4U);
-  return (wedges.size() + room - 1) / room;
+  return (count_distinct_wedges(triangles) + room - 1) / room;
 }
 
 /// From so many pieces per part on, a chunk is a soup.
