@@ -32,14 +32,21 @@ struct PresetSettings {
   format::ErrorTier error_tier;      ///< where the caller asks for none
   std::uint32_t strip_trials;        ///< EncodeOptions::strip_trials: fewer bytes for time
   std::uint32_t mixed_strip_trials;  ///< EncodeOptions::mixed_strip_trials
-  bool merge_triangles;              ///< ClusterCaps::merge_triangles: time for a little of the partition's quality
+  /// Of meshes of so many triangles and more METIS cuts quads of triangles (ClusterCaps::merge_triangles): time for a
+  /// little of the partition's quality.
+  std::uint64_t merged_from;
 };
+
+/// Below so many triangles a build is quick anyway, and any other partition moves the coarse cuts of a mesh by some
+/// hundredths, up or down: luck that small meshes should not draw anew for speed.
+inline constexpr std::uint64_t kLargeMesh = 262144;
+inline constexpr std::uint64_t kNoMesh = ~std::uint64_t{0};
 
 /// In the order of Preset.
 inline constexpr std::array<PresetSettings, 3> kPresetSettings{{
-    {format::ErrorTier::kQem, 1, 4, true},
-    {format::ErrorTier::kMeasured, 8, 128, true},
-    {format::ErrorTier::kMeasured, 48, 192, false},
+    {format::ErrorTier::kQem, 1, 4, 0},
+    {format::ErrorTier::kMeasured, 8, 128, kLargeMesh},
+    {format::ErrorTier::kMeasured, 48, 192, kNoMesh},
 }};
 
 /// \pre one of the enumerators

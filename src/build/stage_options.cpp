@@ -18,10 +18,6 @@ bool is_aggregate(const PreparedMesh& mesh) {
   return mesh.piece_count >= kFewestPieces && mesh.triangles.size() <= kLargestPiece * mesh.piece_count;
 }
 
-/// Below so many triangles a build is quick anyway, and any other partition moves the coarse cuts of a mesh by some
-/// hundredths, up or down: luck that small meshes should not draw anew for speed.
-constexpr std::size_t kSmallMesh = 262144;
-
 ErrorSource error_source_of(format::ErrorTier tier) {
   switch (tier) {
     case format::ErrorTier::kMeasured: return ErrorSource::kMeasured;
@@ -112,7 +108,7 @@ DagOptions dag_options(const PipelineOptions& options, const MeshOptions& own, c
   dag.caps.seed = options.partition_seed;
   dag.grouping.seed = options.partition_seed;
   dag.grouping.target_clusters = options.group_clusters;
-  dag.caps.merge_triangles = settings_of(options.preset).merge_triangles && mesh.triangles.size() >= kSmallMesh;
+  dag.caps.merge_triangles = mesh.triangles.size() >= settings_of(options.preset).merged_from;
   dag.simplify.keep_topology = options.keep_topology;
   dag.simplify.keep_area = !options.keep_topology && is_aggregate(mesh);
   dag.simplify.experiment = options.experiment;

@@ -19,8 +19,9 @@ namespace {
 
 static_assert(sizeof(idx_t) == sizeof(std::int32_t), "Graph hands its arrays to METIS as they are");
 
-/// False if METIS did not return METIS_OK.
-bool call_metis(Graph& graph, std::uint32_t parts, std::uint32_t seed, std::vector<idx_t>& labels) {
+/// False if METIS did not return METIS_OK. `shares`: of each part, or none where they are equal.
+bool call_metis(Graph& graph, std::uint32_t parts, std::span<const std::uint32_t> shares, std::uint32_t seed,
+                std::vector<idx_t>& labels) {
   idx_t options[METIS_NOPTIONS];
   METIS_SetDefaultOptions(options);
   options[METIS_OPTION_UFACTOR] = 1;
@@ -30,10 +31,16 @@ bool call_metis(Graph& graph, std::uint32_t parts, std::uint32_t seed, std::vect
   idx_t constraint_count = 1;
   auto part_count = static_cast<idx_t>(parts);
   idx_t cut = 0;
+  const std::uint32_t total = std::accumulate(shares.begin(), shares.end(), 0U);
+  std::vector<real_t> part_weights;
+  for (const std::uint32_t share : shares) {
+    part_weights.push_back(static_cast<real_t>(share) / static_cast<real_t>(total));
+  }
   labels.assign(graph.node_count(), 0);
   return METIS_PartGraphRecursive(&node_count, &constraint_count, graph.row_start.data(), graph.neighbor.data(),
                                   graph.node_weight.empty() ? nullptr : graph.node_weight.data(), nullptr,
-                                  graph.edge_weight.data(), &part_count, nullptr, nullptr, options, &cut,
+                                  graph.edge_weight.data(), &part_count,
+                                  part_weights.empty() ? nullptr : part_weights.data(), nullptr, options, &cut,
                                   labels.data()) == METIS_OK;
 }
 
@@ -57,7 +64,7 @@ bool probe_thread_rand() {
   const std::uint64_t before = meshlode_thread_rand_calls();
   Graph graph = ring();
   std::vector<idx_t> labels;
-  (void)call_metis(graph, 4, 1, labels);
+  (void)call_metis(graph, 4, {}, 1, labels);
   return meshlode_thread_rand_calls() != before;
 }
 
@@ -66,7 +73,45 @@ std::mutex& metis_mutex() {
   return mutex;
 }
 
-/// Recursive bisection may leave a part empty on odd graphs. The largest part gives up its last node each time.
+std::vector<std::uint32_t> divide(Graph& graph, std::uint32_t parts, std::span<const std::uint32_t> shares,
+                                  std::uint32_t seed) {
+  const std::size_t node_count = graph.node_count();
+  std::vector<std::uint32_t> labels(node_count, 0);
+  if (parts <= 1 || node_count <= 1) return labels;  // METIS divides by zero at one part
+  if (parts >= node_count) {
+    std::iota(labels.begin(), labels.end(), 0U);
+    return labels;
+  }
+  std::vector<idx_t> metis_labels;
+  bool ok = false;
+  if (is_partition_concurrent()) {
+    ok = call_metis(graph, parts, shares, seed, metis_labels);
+  } else {
+    const std::lock_guard lock(metis_mutex());
+    ok = call_metis(graph, parts, shares, seed, metis_labels);
+  }
+  if (!ok) {
+    for (std::size_t i = 0; i < node_count; ++i) labels[i] = static_cast<std::uint32_t>(i * parts / node_count);
+    return labels;
+  }
+  for (std::size_t i = 0; i < node_count; ++i) {
+    labels[i] = std::min(static_cast<std::uint32_t>(metis_labels[i]), parts - 1);
+  }
+  fill_empty_parts(labels, parts);
+  return labels;
+}
+
+}  // namespace
+
+bool is_partition_concurrent() {
+  static const bool concurrent = [] {
+    const std::lock_guard lock(metis_mutex());
+    return probe_thread_rand();
+  }();
+  return concurrent;
+}
+
+/// Recursive bisection may leave a part empty on odd graphs.
 void fill_empty_parts(std::vector<std::uint32_t>& labels, std::uint32_t parts) {
   std::vector<std::uint32_t> sizes(parts, 0);
   for (const std::uint32_t label : labels) ++sizes[label];
@@ -81,41 +126,12 @@ void fill_empty_parts(std::vector<std::uint32_t>& labels, std::uint32_t parts) {
   }
 }
 
-}  // namespace
-
-bool is_partition_concurrent() {
-  static const bool concurrent = [] {
-    const std::lock_guard lock(metis_mutex());
-    return probe_thread_rand();
-  }();
-  return concurrent;
+std::vector<std::uint32_t> partition_graph(Graph& graph, std::uint32_t parts, std::uint32_t seed) {
+  return divide(graph, parts, {}, seed);
 }
 
-std::vector<std::uint32_t> partition_graph(Graph& graph, std::uint32_t parts, std::uint32_t seed) {
-  const std::size_t node_count = graph.node_count();
-  std::vector<std::uint32_t> labels(node_count, 0);
-  if (parts <= 1 || node_count <= 1) return labels;  // METIS divides by zero at one part
-  if (parts >= node_count) {
-    std::iota(labels.begin(), labels.end(), 0U);
-    return labels;
-  }
-  std::vector<idx_t> metis_labels;
-  bool ok = false;
-  if (is_partition_concurrent()) {
-    ok = call_metis(graph, parts, seed, metis_labels);
-  } else {
-    const std::lock_guard lock(metis_mutex());
-    ok = call_metis(graph, parts, seed, metis_labels);
-  }
-  if (!ok) {
-    for (std::size_t i = 0; i < node_count; ++i) labels[i] = static_cast<std::uint32_t>(i * parts / node_count);
-    return labels;
-  }
-  for (std::size_t i = 0; i < node_count; ++i) {
-    labels[i] = std::min(static_cast<std::uint32_t>(metis_labels[i]), parts - 1);
-  }
-  fill_empty_parts(labels, parts);
-  return labels;
+std::vector<std::uint32_t> partition_graph(Graph& graph, std::span<const std::uint32_t> shares, std::uint32_t seed) {
+  return divide(graph, static_cast<std::uint32_t>(shares.size()), shares, seed);
 }
 
 }  // namespace meshlode::build

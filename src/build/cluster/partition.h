@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace meshlode::build {
@@ -22,6 +23,11 @@ struct Graph {
 /// If METIS refuses (it reports no memory, say) nodes are dealt out in index order: never a failure, seldom good.
 /// Another `seed` gives another partition, no better or worse on average.
 [[nodiscard]] std::vector<std::uint32_t> partition_graph(Graph& graph, std::uint32_t parts, std::uint32_t seed = 1);
+/// The same into parts that weigh as their shares are to each other. \pre each is positive
+[[nodiscard]] std::vector<std::uint32_t> partition_graph(Graph& graph, std::span<const std::uint32_t> shares,
+                                                         std::uint32_t seed);
+/// Of labels below `parts`: where there are empty parts, the largest one gives up its last node each time.
+void fill_empty_parts(std::vector<std::uint32_t>& labels, std::uint32_t parts);
 
 /// True if calls may run side by side: the executable brings its own rand() (meshlode_thread_rand). Otherwise calls
 /// wait for each other; the labels are the same.

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <cstddef>
 #include <numeric>
+#include <span>
 
+#include "build/cluster/halving.h"
 #include "build/cluster/merged_partition.h"
 
 namespace meshlode::build {
@@ -37,6 +39,38 @@ bool is_on_border(const Graph& graph, const std::vector<std::uint32_t>& labels, 
     if (labels[static_cast<std::size_t>(graph.neighbor[i])] != labels[node]) return true;
   }
   return false;
+}
+
+/// How many parts those become that recursive bisection comes down to: a few each.
+void share_out(std::uint32_t parts, std::vector<std::uint32_t>& shares) {
+  constexpr std::uint32_t kFew = 4;
+  if (parts <= kFew) {
+    shares.push_back(parts);
+    return;
+  }
+  share_out(parts / 2, shares);
+  share_out(parts - parts / 2, shares);
+}
+
+/// METIS down to a few parts, and halves of those.
+std::vector<std::uint32_t> partition_quads(Graph& graph, std::uint32_t parts, std::uint32_t seed) {
+  std::vector<std::uint32_t> shares;
+  share_out(parts, shares);
+  const std::vector<std::uint32_t> few = partition_graph(graph, shares, seed);
+  std::vector<std::uint32_t> first(shares.size() + 1, 0);
+  for (const std::uint32_t label : few) ++first[label + 1];
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  std::vector<std::uint32_t> nodes(few.size()), cursor(first.begin(), first.end() - 1);
+  for (std::uint32_t node = 0; node < few.size(); ++node) nodes[cursor[few[node]]++] = node;
+  std::vector<std::uint32_t> labels(few.size());
+  Halving halving(graph);
+  std::uint32_t first_label = 0;
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    halving.cut(std::span(nodes).subspan(first[i], first[i + 1] - first[i]), shares[i], first_label, labels);
+    first_label += shares[i];
+  }
+  fill_empty_parts(labels, parts);
+  return labels;
 }
 
 }  // namespace
@@ -95,7 +129,7 @@ std::vector<std::uint32_t> partition_merged(Graph& graph, std::uint32_t parts, s
     for (std::size_t n = 0; n < node.size(); ++n) labels[n] = coarse[node[n]];
     return labels;
   };
-  std::vector<std::uint32_t> labels = expand(quads.node, partition_graph(quads.graph, parts, seed));
+  std::vector<std::uint32_t> labels = expand(quads.node, partition_quads(quads.graph, parts, seed));
   refine_parts(pairs.graph, weights, kPassesOfPairs, labels, parts);
   labels = expand(pairs.node, labels);
   refine_parts(graph, weights, kPassesOfTriangles, labels, parts);
