@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -129,12 +128,20 @@ void add_points_of_large(const PreparedMesh& mesh, std::vector<SourcePoint>& poi
     return glm::length(glm::cross(p[1] - p[0], p[2] - p[0]));
   };
   const auto count = static_cast<std::uint32_t>(mesh.exact_triangles.size());
+  struct Large {
+    std::uint32_t triangle;
+    double area;
+  };
+  std::vector<Large> large;  // against the sum so far, which only grows
   double sum = 0.0;
-  for (std::uint32_t t = 0; t < count; ++t) sum += area_of(t);
-  if (!(sum > 0.0)) return;
-  SplitMix64 random(0x6C61726765ULL);
   for (std::uint32_t t = 0; t < count; ++t) {
     const double area = area_of(t);
+    sum += area;
+    if (area * count > kLarge * sum) large.push_back({t, area});
+  }
+  if (!(sum > 0.0)) return;
+  SplitMix64 random(0x6C61726765ULL);
+  for (const auto& [t, area] : large) {
     if (!(area * count > kLarge * sum)) continue;
     const std::array<Vec3d, 3> corners = corners_of(mesh, t);
     const auto more = static_cast<std::size_t>(area / sum * static_cast<double>(kPointsOfLarge));
@@ -151,6 +158,7 @@ std::vector<SourcePoint> choose_points(const PreparedMesh& mesh) {
   for (std::size_t i = 0; i < count; i += step) triangles.push_back(static_cast<std::uint32_t>(i));
   const std::vector<std::uint32_t> counts = share_points(mesh, triangles, each);
   std::vector<SourcePoint> points;
+  points.reserve((each + 3) * triangles.size() + kPointsOfLarge);
   std::vector<std::uint8_t> is_taken(mesh.exact_positions.size(), 0);
   SplitMix64 random(0x77686F6C65ULL);
   for (std::size_t i = 0; i < triangles.size(); ++i) {
@@ -171,6 +179,12 @@ std::vector<SourcePoint> choose_points(const PreparedMesh& mesh) {
 struct Near {
   std::uint32_t cluster = kNoId;
   float distance = 0.0F;  ///< to it at most, object units, as a SurfaceTree's floats have it
+};
+
+/// Around a cluster, off the grid.
+struct ClusterBox {
+  std::uint32_t cluster = 0;
+  Vec3d low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
 };
 
 /// A point of the source, far from a cut.
@@ -294,9 +308,15 @@ class WholeCuts {
     });
     std::vector<FarPoint> found;
     for (const auto& partial : partials) found.insert(found.end(), partial.begin(), partial.end());
-    std::sort(found.begin(), found.end(), [](const FarPoint& a, const FarPoint& b) {
+    const auto is_farther = [](const FarPoint& a, const FarPoint& b) {
       return a.distance != b.distance ? a.distance > b.distance : a.point < b.point;
-    });
+    };
+    // The farthest are climbed from whatever they are, of the others the suspects alone.
+    const auto others = found.begin() + static_cast<std::ptrdiff_t>(std::min(found.size(), kClimbed));
+    std::nth_element(found.begin(), others, found.end(), is_farther);
+    const auto is_no_suspect = [&](const FarPoint& far) { return far.distance <= error_of(far.nearest); };
+    found.erase(std::remove_if(others, found.end(), is_no_suspect), found.end());
+    std::sort(found.begin(), found.end(), is_farther);
     std::vector<FarPoint> chosen;
     std::vector<std::uint8_t> taken(dag_.groups.size() + 1, 0);
     for (const FarPoint& far : found) {
@@ -338,16 +358,7 @@ class WholeCuts {
   /// The group that stands for a point of the source in a cut: from the cluster of level 0 that the point lies on,
   /// through what replaced it, always on the nearest side. Invalid for level 0 itself.
   [[nodiscard]] GroupId group_of(const Vec3d& point, double threshold) {
-    if (!level0_) {
-      level0_.emplace();
-      for (std::uint32_t c = 0; c < dag_.clusters.size(); ++c) {
-        if (!dag_.clusters[c].own_group.is_valid()) level0_->add(mesh_, dag_, c);
-      }
-      level0_tree_.build({level0_->positions, level0_->triangles}, SurfaceTree::Leaves::kMade);
-    }
-    const SurfaceTree::Hit hit = level0_tree_.find_nearest(level0_tree_.to_frame(point), {}, 0.0F);
-    if (!hit.slot.is_valid()) return {};
-    std::uint32_t cluster = level0_->cluster[level0_tree_.triangle_at(hit.slot)];
+    std::uint32_t cluster = nearest_of_level0(point);
     for (;;) {
       const GroupId group = dag_.clusters[cluster].coarser_group;
       const std::vector<std::uint32_t>& outputs = outputs_[group.value];
@@ -358,19 +369,56 @@ class WholeCuts {
     }
   }
 
+  /// By the clusters' boxes: few points are asked for, a tree over all of level 0 would cost more than all else here.
+  [[nodiscard]] std::uint32_t nearest_of_level0(const Vec3d& point) {
+    if (level0_.empty()) {
+      for (std::uint32_t c = 0; c < dag_.clusters.size(); ++c) {
+        if (!dag_.clusters[c].own_group.is_valid()) level0_.push_back(box_of(c));
+      }
+    }
+    std::vector<double> distance2;
+    distance2.reserve(level0_.size());
+    for (const ClusterBox& box : level0_) {
+      const Vec3d away = glm::max(glm::max(box.low - point, point - box.high), Vec3d(0.0));
+      distance2.push_back(glm::dot(away, away));
+    }
+    const auto nearest = std::min_element(distance2.begin(), distance2.end()) - distance2.begin();
+    const double enough2 = distance2_to(level0_[static_cast<std::size_t>(nearest)].cluster, point);
+    std::vector<std::uint32_t> clusters;
+    for (std::size_t i = 0; i < level0_.size(); ++i) {
+      if (distance2[i] <= enough2) clusters.push_back(level0_[i].cluster);
+    }
+    return nearest_of(clusters, point);
+  }
+  [[nodiscard]] ClusterBox box_of(std::uint32_t cluster) const {
+    ClusterBox box{cluster};
+    const DagCluster& c = dag_.clusters[cluster];
+    for (std::uint32_t v = c.first_vertex; v < c.first_vertex + c.vertex_count; ++v) {
+      const Vec3d at = mesh_.grid.decode(dag_.vertex_position[v]);
+      box.low = glm::min(box.low, at);
+      box.high = glm::max(box.high, at);
+    }
+    return box;
+  }
+
+  [[nodiscard]] double distance2_to(std::uint32_t cluster, const Vec3d& point) const {
+    Surface one;
+    one.add(mesh_, dag_, cluster);
+    double least2 = std::numeric_limits<double>::infinity();
+    for (const Triangle& t : one.triangles) {
+      least2 = std::min(
+          least2, point_triangle_distance2(point, {one.positions[t[0]], one.positions[t[1]], one.positions[t[2]]}));
+    }
+    return least2;
+  }
   [[nodiscard]] std::uint32_t nearest_of(std::span<const std::uint32_t> clusters, const Vec3d& point) const {
     std::uint32_t best = clusters.front();
     double best2 = std::numeric_limits<double>::infinity();
     for (const std::uint32_t c : clusters) {
-      Surface one;
-      one.add(mesh_, dag_, c);
-      for (const Triangle& t : one.triangles) {
-        const double distance2 =
-            point_triangle_distance2(point, {one.positions[t[0]], one.positions[t[1]], one.positions[t[2]]});
-        if (distance2 < best2) {
-          best2 = distance2;
-          best = c;
-        }
+      const double there2 = distance2_to(c, point);
+      if (there2 < best2) {
+        best2 = there2;
+        best = c;
       }
     }
     return best;
@@ -402,8 +450,7 @@ class WholeCuts {
   std::vector<std::uint64_t> true_cuts_;
   std::vector<Near> near_;                           ///< per point, of the last cut that it was looked for in
   std::vector<std::vector<std::uint32_t>> outputs_;  ///< per group: the clusters made from it
-  std::optional<Surface> level0_;                    ///< made when first asked for
-  SurfaceTree level0_tree_;
+  std::vector<ClusterBox> level0_;                   ///< made when first asked for
 };
 
 }  // namespace

@@ -39,7 +39,6 @@ struct Patch {
   double estimate = 0.0;
   bool is_bounded = false;  ///< the estimate is not above what is possible
   std::uint32_t owner = 0;  ///< the triangle that it is part of
-  std::uint32_t order = 0;  ///< of creation: ties are decided by it
 
   /// `inside` is one more value of the patch; `rise` says how far the patch may rise above its points, as a share of
   /// how much they differ.
@@ -63,9 +62,6 @@ struct Patch {
     return high + 0.5 * 0.57735026918962584 * std::sqrt(longest2);
   }
   [[nodiscard]] Vec3d middle(std::size_t k) const { return (corner[k] + corner[(k + 1) % 3]) * 0.5; }
-  [[nodiscard]] bool operator<(const Patch& other) const {
-    return estimate != other.estimate ? estimate < other.estimate : order > other.order;
-  }
 };
 
 /// The distance to a triangle is convex, so that no point of a patch is farther from it than a corner is: of the
@@ -134,17 +130,35 @@ class PatchQueue {
   }
 
  private:
+  /// A patch in a heap, which moves these instead of some hundred bytes.
+  struct Ranked {
+    double estimate;
+    std::uint32_t order;  ///< of creation: ties are decided by it
+    std::uint32_t patch;  ///< into patches_
+    [[nodiscard]] bool operator<(const Ranked& other) const {
+      return estimate != other.estimate ? estimate < other.estimate : order > other.order;
+    }
+  };
+
   [[nodiscard]] bool is_worthwhile(double value) const { return value > kWorthwhile * probes_.maximum(); }
-  void push(std::vector<Patch>& heap, const Patch& patch) {
-    heap.push_back(patch);
-    heap.back().order = order_++;
+  void push(std::vector<Ranked>& heap, const Patch& patch) {
+    auto at = static_cast<std::uint32_t>(patches_.size());
+    if (free_.empty()) {
+      patches_.push_back(patch);
+    } else {
+      at = free_.back();
+      free_.pop_back();
+      patches_[at] = patch;
+    }
+    heap.push_back({patch.estimate, order_++, at});
     std::push_heap(heap.begin(), heap.end());
   }
-  static Patch pop(std::vector<Patch>& heap) {
+  Patch pop(std::vector<Ranked>& heap) {
     std::pop_heap(heap.begin(), heap.end());
-    const Patch patch = heap.back();
+    const std::uint32_t at = heap.back().patch;
     heap.pop_back();
-    return patch;
+    free_.push_back(at);
+    return patches_[at];
   }
   /// Lowers the estimate to what is possible at all. False where that is not worthwhile.
   bool bound(Patch& patch) {
@@ -192,8 +206,10 @@ class PatchQueue {
   double rise_;
   std::size_t spare_;  ///< patches that may be divided although they promise nothing
   std::uint32_t order_ = 0;
-  std::vector<Patch> heap_;
-  std::vector<Patch> aside_;  ///< by their bounds
+  std::vector<Patch> patches_;       ///< of both heaps, and places of those that left them
+  std::vector<std::uint32_t> free_;  ///< such places
+  std::vector<Ranked> heap_;
+  std::vector<Ranked> aside_;  ///< by their bounds
 };
 
 }  // namespace meshlode::build

@@ -59,8 +59,10 @@ class SourceSearch {
     const double radius2 = radius * radius;
     std::size_t points = 0;
     const auto visit = [&](std::uint32_t vertex, std::uint32_t through, TreeSlot place) {
+      if (seen_.has(vertex)) return;  // each is met by all of its triangles, through each of their corners
       const Vec3d away = source_.positions[vertex] - seed.point;
-      if (glm::dot(away, away) > radius2 || !seen_.insert(vertex)) return;
+      if (glm::dot(away, away) > radius2) return;
+      seen_.insert(vertex);
       ++points;
       const Probe probe = measure_vertex(vertex, place, through);
       if (is_ours_) frontier_.push_back({vertex, probe.place});
@@ -71,7 +73,9 @@ class SourceSearch {
     for (std::size_t next = 0; next < frontier_.size() && points < kMaxPointsPerSeed; ++next) {
       const Reached reached = frontier_[next];
       for (const std::uint32_t triangle : source_.triangles_on_from(reached.vertex)) {
-        for (const std::uint32_t vertex : source_.vertices(triangle)) visit(vertex, triangle, reached.place);
+        for (const std::uint32_t vertex : source_.vertices(triangle)) {
+          if (vertex != reached.vertex) visit(vertex, triangle, reached.place);
+        }
         look_inside(triangle, radius, reached.place);
       }
     }

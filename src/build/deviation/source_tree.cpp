@@ -18,6 +18,9 @@ struct Spacing {
   double length = 0.0;
   static constexpr std::uint32_t kMaxPerEdge = 16;
 
+  /// Whether an edge of this squared length stays whole: parts() of its length, without the root. False near the limit,
+  /// where the rounding of squares might decide otherwise.
+  [[nodiscard]] bool is_short(double edge2) const { return edge2 < 0.999 * length * length; }
   /// Into how many parts an edge is cut.
   [[nodiscard]] std::uint32_t parts(double edge) const {
     if (!(edge > length)) return 1;
@@ -103,9 +106,16 @@ std::vector<CarriedSample> initial_samples(const SourceTree& source) {
       if (is_taken[corners[k]] == 0) add(p[k], corners[k]);
       is_taken[corners[k]] = 1;
     }
+    std::array<double, 3> edge2{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3d edge = p[(k + 1) % 3] - p[k];
+      edge2[k] = glm::dot(edge, edge);
+    }
+    // Of a dense source nearly all: neither its edges nor its height, which is below the longest, are cut.
+    if (spacing.is_short(std::max(edge2[0], std::max(edge2[1], edge2[2])))) continue;
     for (std::size_t k = 0; k < 3; ++k) {
       // From its lower end, so that the edges of a closed surface are cut once.
-      if (corners[k] > corners[(k + 1) % 3]) continue;
+      if (corners[k] > corners[(k + 1) % 3] || spacing.is_short(edge2[k])) continue;
       const std::uint32_t parts = spacing.parts(glm::length(p[(k + 1) % 3] - p[k]));
       for (std::uint32_t i = 1; i < parts; ++i) add(p[k] + (p[(k + 1) % 3] - p[k]) * (static_cast<double>(i) / parts));
     }

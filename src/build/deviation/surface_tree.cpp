@@ -427,8 +427,10 @@ SurfaceTree::Hit SurfaceTree::find_nearest(const Vec3f& point, Hit best, float e
   for (std::uint32_t level = depth; level-- > 0;) {
     const std::uint32_t known = index & 3U;
     index >>= 2U;
-    Lanes distance2 = distances2_to_children(level_start_[level] + index);
-    distance2[known] = std::numeric_limits<float>::infinity();
+    // By a mask: a lane that is written by its number goes through memory.
+    const LaneMask is_known = LaneMask{0, 1, 2, 3} == mask_lanes(static_cast<std::int32_t>(known));
+    const Lanes distance2 = choose(is_known, lanes(std::numeric_limits<float>::infinity()),
+                                   distances2_to_children(level_start_[level] + index));
     if (!any_lane(distance2 < lanes(best.distance2))) continue;
     push_children(4 * index, level + 1, distance2, best.distance2, stack, size);
     if (!descend()) return best;
