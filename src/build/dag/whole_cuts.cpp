@@ -21,7 +21,9 @@ namespace meshlode::build {
 
 namespace {
 
-constexpr std::size_t kChunk = 1024;  // points that share a hint, whatever the thread count
+constexpr std::size_t kChunk = 256;  // source triangles that share a hint, whatever the thread count
+/// Points of one source triangle from which on its corners are asked first: what is near to all three is near to them.
+constexpr std::uint32_t kManyOfTriangle = 10;
 /// Points on triangles beside the corners: so many in all, but within so many a triangle on average.
 constexpr std::size_t kPoints = 100000;
 constexpr std::size_t kFewestPerTriangle = 1, kMostPerTriangle = 24;
@@ -174,6 +176,20 @@ std::vector<SourcePoint> choose_points(const PreparedMesh& mesh) {
   return points;
 }
 
+/// Points of one source triangle, one after another: [first, first + count).
+struct PointRun {
+  std::uint32_t triangle = 0, first = 0, count = 0;
+};
+
+std::vector<PointRun> runs_of(std::span<const SourcePoint> points) {
+  std::vector<PointRun> runs;
+  for (std::uint32_t i = 0; i < points.size(); ++i) {
+    if (runs.empty() || runs.back().triangle != points[i].triangle) runs.push_back({points[i].triangle, i, 0});
+    ++runs.back().count;
+  }
+  return runs;
+}
+
 /// A cluster that a point of the source is near to. Cuts that follow one another have most of their clusters in common:
 /// a point that is near enough to one of them need not be looked for in the others.
 struct Near {
@@ -203,7 +219,9 @@ class WholeCuts {
         margin_(margin),
         dag_(dag),
         points_(choose_points(mesh)),
+        runs_(runs_of(points_)),
         near_(points_.size()),
+        run_near_(runs_.size()),
         outputs_(dag.groups.size()) {
     for (std::uint32_t c = 0; c < dag_.clusters.size(); ++c) {
       if (dag_.clusters[c].own_group.is_valid()) outputs_[dag_.clusters[c].own_group.value].push_back(c);
@@ -277,6 +295,17 @@ class WholeCuts {
     if (hit.slot.is_valid()) place = hit.slot;
     return hit;
   }
+  /// One triangle of the cut that is near to all of a source triangle, if the places looked at have one: at `place`,
+  /// and where the first corner is nearest to. The distance is that of the farthest corner.
+  static SurfaceTree::Hit find_near_throughout(const SurfaceTree& tree, const std::array<Vec3d, 3>& corners,
+                                               float enough, TreeSlot& place) {
+    const std::array<Vec3f, 3> at{tree.to_frame(corners[0]), tree.to_frame(corners[1]), tree.to_frame(corners[2])};
+    const SurfaceTree::Hit hit = tree.look_around(at, place);
+    if (hit.distance2 <= enough) return hit;
+    const TreeSlot before = place;
+    (void)find_near(tree, corners[0], enough, place);
+    return place == before ? hit : tree.look_around(at, place);
+  }
   static bool is_far(const SurfaceTree& tree, const Vec3d& point, float enough, TreeSlot& place) {
     const SurfaceTree::Hit hit = find_near(tree, point, enough, place);
     return hit.slot.is_valid() && hit.distance2 > enough;
@@ -291,19 +320,35 @@ class WholeCuts {
     const double enough_object = std::max(kLookFrom * threshold, mesh_.level0_deviation);
     const double scaled = enough_object * tree.scale();
     const auto enough = static_cast<float>(scaled * scaled);
-    std::vector<std::vector<FarPoint>> partials((points_.size() + kChunk - 1) / kChunk);
-    parallel_for_each_index(partials.size(), 1, [&](std::size_t chunk) {
+    const auto is_still_near = [&](const Near& near) {
+      return near.cluster != kNoId && is_in_cut[near.cluster] != 0 && double{near.distance} <= enough_object;
+    };
+    const auto near_of = [&](const SurfaceTree::Hit& hit) {
+      return Near{cut.cluster[tree.triangle_at(hit.slot)],
+                  static_cast<float>(std::sqrt(double{hit.distance2}) / tree.scale())};
+    };
+    std::vector<std::vector<FarPoint>> partials(chunk_count(runs_.size(), kChunk));
+    parallel_for_each_chunk(runs_.size(), kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
       TreeSlot place{0U};
-      for (std::size_t i = chunk * kChunk; i < std::min(points_.size(), (chunk + 1) * kChunk); ++i) {
-        Near& near = near_[i];
-        if (near.cluster != kNoId && is_in_cut[near.cluster] != 0 && double{near.distance} <= enough_object) continue;
-        const SurfaceTree::Hit hit = find_near(tree, points_[i].at, enough, place);
-        if (!hit.slot.is_valid()) continue;
-        near = {cut.cluster[tree.triangle_at(place)],
-                static_cast<float>(std::sqrt(double{hit.distance2}) / tree.scale())};
-        if (!(hit.distance2 > enough)) continue;
-        partials[chunk].push_back({std::sqrt(tree.distance2_at(points_[i].at, place)), points_[i].at,
-                                   static_cast<std::uint32_t>(i), place, group_at(cut, tree, place)});
+      for (std::size_t r = begin; r < end; ++r) {
+        const PointRun& run = runs_[r];
+        if (run.count >= kManyOfTriangle) {
+          if (is_still_near(run_near_[r])) continue;
+          const SurfaceTree::Hit hit = find_near_throughout(tree, corners_of(mesh_, run.triangle), enough, place);
+          if (hit.distance2 <= enough) {
+            run_near_[r] = near_of(hit);
+            continue;
+          }
+        }
+        for (std::uint32_t i = run.first; i < run.first + run.count; ++i) {
+          if (is_still_near(near_[i])) continue;
+          const SurfaceTree::Hit hit = find_near(tree, points_[i].at, enough, place);
+          if (!hit.slot.is_valid()) continue;
+          near_[i] = near_of({place, hit.distance2});
+          if (!(hit.distance2 > enough)) continue;
+          partials[chunk].push_back({std::sqrt(tree.distance2_at(points_[i].at, place)), points_[i].at, i, place,
+                                     group_at(cut, tree, place)});
+        }
       }
     });
     std::vector<FarPoint> found;
@@ -446,9 +491,11 @@ class WholeCuts {
   double margin_;
   LodDag& dag_;
   std::vector<SourcePoint> points_;
+  std::vector<PointRun> runs_;
   /// Hashes of cuts that raised nothing. A round raises few groups, and leaves most cuts as they were.
   std::vector<std::uint64_t> true_cuts_;
   std::vector<Near> near_;                           ///< per point, of the last cut that it was looked for in
+  std::vector<Near> run_near_;                       ///< per run: of all of its triangle
   std::vector<std::vector<std::uint32_t>> outputs_;  ///< per group: the clusters made from it
   std::vector<ClusterBox> level0_;                   ///< made when first asked for
 };

@@ -13,6 +13,10 @@ namespace meshlode::build {
 
 namespace {
 
+// A source of at most so many triangles has its leaves held, 68 bytes a triangle: the constant part of measuring, the
+// same few thousand points for every mesh, asks small trees over and over.
+constexpr std::size_t kMostHeldTriangles = 65536;
+
 /// Where samples are set so that none of the source is far from one. Dense scans need their vertices only.
 struct Spacing {
   double length = 0.0;
@@ -68,7 +72,8 @@ SourceTree::SourceTree(std::span<const Vec3d> positions, std::span<const std::ar
   impl_->positions = positions;
   impl_->triangles = triangles;
   impl_->vertex_of = weld(positions);
-  impl_->tree.build({positions, triangles, impl_->vertex_of}, SurfaceTree::Leaves::kMade);
+  impl_->tree.build({positions, triangles, impl_->vertex_of},
+                    triangles.size() <= kMostHeldTriangles ? SurfaceTree::Leaves::kHeld : SurfaceTree::Leaves::kMade);
   std::vector<std::uint32_t>& first = impl_->first_corner;
   first.assign(positions.size() + 2, 0);
   for (std::uint32_t t = 0; t < triangles.size(); ++t) {

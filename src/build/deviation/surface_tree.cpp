@@ -321,6 +321,22 @@ SurfaceTree::Hit SurfaceTree::test_leaf(const Vec3f& point, std::uint32_t index,
                         : test_triangles(point, index, leaf, terms_[index], best);
 }
 
+MESHLODE_CLONED_FOR_AVX2
+SurfaceTree::Hit SurfaceTree::look_around(const std::array<Vec3f, 3>& points, TreeSlot slot) const {
+  const std::uint32_t index = slot.value / kLeafSize;
+  const Leaf leaf = leaves_.empty() ? made_leaf(index).leaf : leaves_[index];
+  const LeafTerms terms = terms_.empty() ? terms_of(leaf) : terms_[index];
+  Lanes farthest2 = lanes(0.0F);
+  for (const Vec3f& p : points) {
+    farthest2 = max_lanes(farthest2, distances2_to(leaf, terms, {lanes(p.x), lanes(p.y), lanes(p.z)}));
+  }
+  Hit best;
+  for (std::uint32_t k = 0; k < kLeafSize; ++k) {
+    if (farthest2[k] < best.distance2) best = {TreeSlot(std::min(4 * index + k, size() - 1)), farthest2[k]};
+  }
+  return best;
+}
+
 inline SurfaceTree::Hit SurfaceTree::test_triangles(const Vec3f& point, std::uint32_t index, const Leaf& leaf,
                                                     const LeafTerms& terms, Hit best) const {
   const Lanes distance2 = distances2_to(leaf, terms, {lanes(point.x), lanes(point.y), lanes(point.z)});
@@ -333,12 +349,17 @@ inline SurfaceTree::Hit SurfaceTree::test_triangles(const Vec3f& point, std::uin
 
 namespace {
 
-/// What is still to be looked at, the nearest last.
+/// What is still to be looked at, the nearest last. Eight bytes, so that one store puts it onto the stack.
 struct Entry {
-  std::uint32_t index;  ///< within its level
-  std::uint32_t level;
-  float distance2;
+  std::uint32_t key;  ///< the bits of the squared distance, the lowest two replaced by the child's number
+  std::uint32_t
+      where;  ///< the parent within its level, and in the lowest four bits its level: 2^28 parents, 2^32 slots
+
+  [[nodiscard]] float distance2() const { return std::bit_cast<float>(key & ~3U); }
+  [[nodiscard]] std::uint32_t index() const { return 4 * (where >> 4U) + (key & 3U); }
+  [[nodiscard]] std::uint32_t level() const { return (where & 15U) + 1; }
 };
+static_assert(kMaxDepth <= 16);
 using Stack = std::array<Entry, 3 * kMaxDepth + 8>;
 
 struct PointLanes {
@@ -358,7 +379,7 @@ Lanes distances2_to_boxes(const Node& node, const PointLanes& p) {
 
 /// Puts the children that are nearer than `limit` onto the stack. Non-negative floats order like their bits: the
 /// child's number goes into the lowest two, and four integers are sorted with the far ones first.
-void push_children(std::uint32_t first_child, std::uint32_t level, Lanes distance2, float limit, Stack& stack,
+void push_children(std::uint32_t parent, std::uint32_t level, Lanes distance2, float limit, Stack& stack,
                    std::size_t& size) {
   LaneMask bits;
   std::memcpy(&bits, &distance2, sizeof(bits));
@@ -376,9 +397,8 @@ void push_children(std::uint32_t first_child, std::uint32_t level, Lanes distanc
   order(1, 3);
   order(1, 2);
   for (const std::uint32_t key : keys) {
-    const float at = std::bit_cast<float>(key & ~3U);
-    stack[size] = {first_child + (key & 3U), level, at};  // which of them are near is a toss: no branch
-    size += at < limit ? 1 : 0;
+    stack[size] = {key, parent << 4U | level};  // which of them are near is a toss: no branch
+    size += stack[size].distance2() < limit ? 1 : 0;
   }
 }
 
@@ -400,18 +420,18 @@ SurfaceTree::Hit SurfaceTree::find_nearest(const Vec3f& point, Hit best, float e
   };
   const auto open = [&](std::uint32_t level, std::uint32_t index) {
     const Lanes distance2 = distances2_to_children(level_start_[level] + index);
-    push_children(4 * index, level + 1, distance2, best.distance2, stack, size);
+    push_children(index, level, distance2, best.distance2, stack, size);
   };
   /// Down whatever is on the stack; false where something is near enough.
   const auto descend = [&] {
     while (size > 0) {
       const Entry entry = stack[--size];
-      if (!(entry.distance2 < best.distance2)) continue;
-      if (entry.level < depth) {
-        open(entry.level, entry.index);
+      if (!(entry.distance2() < best.distance2)) continue;
+      if (entry.level() < depth) {
+        open(entry.level(), entry.index());
         continue;
       }
-      best = test_leaf(point, entry.index, best);
+      best = test_leaf(point, entry.index(), best);
       if (best.distance2 <= enough) return false;
     }
     return true;
@@ -432,7 +452,7 @@ SurfaceTree::Hit SurfaceTree::find_nearest(const Vec3f& point, Hit best, float e
     const Lanes distance2 = choose(is_known, lanes(std::numeric_limits<float>::infinity()),
                                    distances2_to_children(level_start_[level] + index));
     if (!any_lane(distance2 < lanes(best.distance2))) continue;
-    push_children(4 * index, level + 1, distance2, best.distance2, stack, size);
+    push_children(index, level, distance2, best.distance2, stack, size);
     if (!descend()) return best;
   }
   return best;

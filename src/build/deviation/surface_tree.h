@@ -64,6 +64,10 @@ class SurfaceTree {
     return test_leaf(point, slot.value / 4, best);
   }
 
+  /// Of the four triangles around a slot the one that is best for all three points: the distance of the farthest of
+  /// them. The distance to a triangle is convex, so that whatever lies between the points is no farther.
+  [[nodiscard]] Hit look_around(const std::array<Vec3f, 3>& points, TreeSlot slot) const;
+
   /// The tree from above: levels of nodes, four children each, and leaves of four slots below the last. Children are
   /// numbered within their level: those of node i are 4·i to 4·i + 3.
   [[nodiscard]] std::uint32_t depth() const {

@@ -51,6 +51,35 @@ TEST(SurfaceTree, LeavesThatAreMadeAnswerAsThoseThatAreHeld) {
   }
 }
 
+// Whole cuts leave out all points of a source triangle whose corners are near to one triangle of the cut.
+TEST(SurfaceTree, WhatLiesBetweenThreePointsIsNoFartherThanTheFarthestOfThem) {
+  Random random(6);
+  const auto anywhere = [&] { return Vec3d(random.signed_unit(), random.signed_unit(), random.signed_unit()); };
+  for (const auto leaves : {SurfaceTree::Leaves::kHeld, SurfaceTree::Leaves::kMade}) {
+    const judge::Surface surface = test::random_soup(random, 101, 1.0, 0.5);
+    SurfaceTree tree;
+    tree.build({surface.positions, surface.triangles}, leaves);
+    for (std::uint32_t first = 0; first < tree.size(); first += 4) {
+      const std::array<Vec3d, 3> corners{anywhere(), anywhere(), anywhere()};
+      const std::array<Vec3f, 3> at{tree.to_frame(corners[0]), tree.to_frame(corners[1]), tree.to_frame(corners[2])};
+      const SurfaceTree::Hit hit = tree.look_around(at, TreeSlot(first));
+      double least2 = std::numeric_limits<double>::infinity();
+      for (std::uint32_t slot = first; slot < std::min(first + 4, tree.size()); ++slot) {
+        double farthest2 = 0.0;
+        for (const Vec3d& p : corners) farthest2 = std::max(farthest2, tree.distance2_at(p, TreeSlot(slot)));
+        least2 = std::min(least2, farthest2);
+      }
+      const double told = std::sqrt(static_cast<double>(hit.distance2)) / tree.scale();
+      EXPECT_NEAR(told, std::sqrt(least2), 1e-5);
+      for (int i = 0; i < 20; ++i) {
+        const double u = random.unit(), v = (1.0 - u) * random.unit();
+        const Vec3d between = corners[0] * (1.0 - u - v) + corners[1] * u + corners[2] * v;
+        EXPECT_LE(std::sqrt(tree.distance2_at(between, hit.slot)), told + 1e-5);
+      }
+    }
+  }
+}
+
 TEST(SurfaceTree, FindsTheNearestTriangleAtEveryScale) {
   Random random(1);
   for (const double scale : {1e-6, 1.0, 1e9}) {
@@ -142,11 +171,12 @@ TEST(SurfaceTree, CapsulesAroundAHubMissNothing) {
     tree.build({surface.positions, surface.triangles});
     made.build({surface.positions, surface.triangles}, SurfaceTree::Leaves::kMade);
     TreeSlot place{0U};
-    for (int i = 0; i < 400; ++i) {
+    for (std::uint32_t i = 0; i < 400; ++i) {
       // Far and near, on the surface, and at its two hubs.
       Vec3d p = (i % 4 == 0 ? 3.0 : 1.0) * Vec3d(random.signed_unit(), random.signed_unit(), random.signed_unit());
       if (i % 4 == 1) p = surface.positions[i % 8 == 1 ? 0 : count + 1] + 1e-3 * p;
-      if (i % 4 == 2) p = surface.positions[0] * std::abs(p.x) + surface.positions[1 + i] * (1.0 - std::abs(p.x));
+      if (i % 4 == 2)
+        p = surface.positions[0] * std::abs(p.x) + surface.positions[1 + i % count] * (1.0 - std::abs(p.x));
       const Vec3f at = tree.to_frame(p);
       const SurfaceTree::Hit hit = tree.find_nearest(at, tree.look_around(at, place, {}), 0.0F);
       ASSERT_TRUE(hit.slot.is_valid());
