@@ -59,20 +59,22 @@ static_assert(sizeof(FileHeader) == 64);
 
 /// Section ids. A reader skips ids it does not know unless kSectionRequired is set.
 enum class SectionId : std::uint32_t {
-  kMeta = four_cc('M', 'E', 'T', 'A'),       ///< JSON text: source, settings, plan, drops (UTF-8, no terminator)
-  kScene = four_cc('S', 'C', 'N', 'E'),      ///< JSON text: the glTF scene graph, materials, textures as they were
-  kStrings = four_cc('S', 'T', 'R', 'S'),    ///< UTF-8 bytes that StringRef points into
-  kMeshes = four_cc('M', 'E', 'S', 'H'),     ///< MeshRecord[]
-  kMaterials = four_cc('M', 'A', 'T', 'L'),  ///< MaterialRecord[]
-  kInstances = four_cc('I', 'N', 'S', 'T'),  ///< InstanceRecord[]
-  kGroups = four_cc('G', 'R', 'U', 'P'),     ///< GroupRecord[]
-  kClusters = four_cc('C', 'L', 'U', 'S'),   ///< ClusterRecord[]
-  kNodes = four_cc('N', 'O', 'D', 'E'),      ///< NodeRecord[]
-  kPages = four_cc('P', 'A', 'G', 'T'),      ///< PageRecord[]
-  kPageDeps = four_cc('P', 'D', 'E', 'P'),   ///< u32[]: page ids
-  kPageData = four_cc('P', 'A', 'G', 'E'),   ///< the pages' stored bytes
-  kBlobs = four_cc('B', 'L', 'B', 'T'),      ///< BlobRecord[]
-  kBlobData = four_cc('B', 'L', 'O', 'B'),   ///< images and animation data as they were
+  kMeta = four_cc('M', 'E', 'T', 'A'),           ///< JSON text: source, settings, plan, drops (UTF-8, no terminator)
+  kScene = four_cc('S', 'C', 'N', 'E'),          ///< JSON text: the glTF scene graph, materials, textures as they were
+  kStrings = four_cc('S', 'T', 'R', 'S'),        ///< UTF-8 bytes that StringRef points into
+  kMeshes = four_cc('M', 'E', 'S', 'H'),         ///< MeshRecord[]
+  kMaterials = four_cc('M', 'A', 'T', 'L'),      ///< MaterialRecord[]
+  kInstances = four_cc('I', 'N', 'S', 'T'),      ///< InstanceRecord[]
+  kGroups = four_cc('G', 'R', 'U', 'P'),         ///< GroupRecord[]
+  kClusters = four_cc('C', 'L', 'U', 'S'),       ///< ClusterRecord[]
+  kNodes = four_cc('N', 'O', 'D', 'E'),          ///< NodeRecord[]
+  kPages = four_cc('P', 'A', 'G', 'T'),          ///< PageRecord[]
+  kPageDeps = four_cc('P', 'D', 'E', 'P'),       ///< u32[]: page ids
+  kPageData = four_cc('P', 'A', 'G', 'E'),       ///< the pages' stored bytes
+  kBlobs = four_cc('B', 'L', 'B', 'T'),          ///< BlobRecord[]
+  kPromises = four_cc('P', 'R', 'M', 'S'),       ///< PromiseMeshRecord[]; optional, not required
+  kPromiseErrors = four_cc('P', 'R', 'M', 'G'),  ///< PromiseGroupRecord[]; there exactly where kPromises is
+  kBlobData = four_cc('B', 'L', 'O', 'B'),       ///< images and animation data as they were
 };
 
 constexpr std::uint32_t kSectionRequired = 1u;  ///< SectionEntry::flags: a reader that does not know the id must refuse
@@ -260,6 +262,36 @@ struct NodeRecord {
   std::uint32_t child_count;  ///< 0 = leaf
 };
 static_assert(sizeof(NodeRecord) == 28);
+
+// ------------------------------------------------------------------------------------------------------------ promises
+
+/// What a cut at t pixels promises to be within t pixels of: see docs/selection.md, "What is promised".
+enum class Promise : std::uint32_t {
+  kPosition = 0,    ///< positions: GroupRecord::error
+  kTexels = 1,      ///< positions and texture coordinates together
+  kAppearance = 2,  ///< and shading normals
+};
+
+constexpr std::uint32_t kPromisesTexels = 1u;      ///< PromiseMeshRecord::promises: texel errors are there, always
+constexpr std::uint32_t kPromisesAppearance = 2u;  ///< appearance errors too
+
+/// A surface point is x = (p, uv_object[k] · uv_k for each stored set k, normal_object · n): all are object units, and
+/// the distance of two points is Euclidean. texels leaves n out, position all but p.
+struct PromiseMeshRecord {
+  std::uint32_t promises;          ///< kPromises…, the same in all meshes
+  float normal_object;             ///< object units of a unit normal; 0: normals are no part
+  float uv_object[kMaxUvSets][2];  ///< object units of a UV unit, along u and along v; 0 both: the set is no part
+  float level0_texels;             ///< how far quantization alone moves the surface so at most, object units
+  float level0_appearance;         ///< the same; 0 without kPromisesAppearance
+};
+static_assert(sizeof(PromiseMeshRecord) == 48);
+
+/// Per group, what takes the place of GroupRecord::error: the same rules, and never below it.
+struct PromiseGroupRecord {
+  float texel_error;       ///< object units
+  float appearance_error;  ///< object units, never below texel_error; 0 without kPromisesAppearance
+};
+static_assert(sizeof(PromiseGroupRecord) == 8);
 
 // --------------------------------------------------------------------------------------------------------------- pages
 

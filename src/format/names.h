@@ -19,6 +19,9 @@ inline constexpr std::array<EnumName<Codec>, 5> kCodecNames{{{Codec::kNone, "non
 inline constexpr std::array<EnumName<ErrorTier>, 3> kErrorTierNames{
     {{ErrorTier::kQem, "qem"}, {ErrorTier::kMeasured, "measured"}, {ErrorTier::kCertified, "certified"}}};
 
+inline constexpr std::array<EnumName<Promise>, 3> kPromiseNames{
+    {{Promise::kPosition, "position"}, {Promise::kTexels, "texels"}, {Promise::kAppearance, "appearance"}}};
+
 inline constexpr std::array<EnumName<NormalMode>, 3> kNormalModeNames{
     {{NormalMode::kNone, "none"}, {NormalMode::kStored, "stored"}, {NormalMode::kFlat, "flat"}}};
 
@@ -39,6 +42,9 @@ constexpr const char* name_of(Codec codec) {
 }
 constexpr const char* name_of(ErrorTier tier) {
   return name_in(kErrorTierNames, tier);
+}
+constexpr const char* name_of(Promise promise) {
+  return name_in(kPromiseNames, promise);
 }
 constexpr const char* name_of(NormalMode mode) {
   return name_in(kNormalModeNames, mode);

@@ -45,6 +45,8 @@ struct EncodedMesh {
   std::vector<format::ClusterRecord> clusters;
   std::vector<format::NodeRecord> nodes;
   std::vector<Page> pages;
+  format::PromiseMeshRecord promise{};                     ///< where there are errors below, or no groups at all
+  std::vector<format::PromiseGroupRecord> promise_errors;  ///< one a group, or none: positions alone are promised
 };
 
 /// The header of a page and the zero word behind it.

@@ -21,7 +21,7 @@ Error limit_error(std::string where, std::string detail) {
   return {ErrorCode::kBuildFailed, std::move(where), std::move(detail)};
 }
 
-void append_mesh(EncodedMesh& mesh, const std::string& name, AssetTables& out) {
+void append_mesh(EncodedMesh& mesh, const std::string& name, std::uint32_t promises, AssetTables& out) {
   const auto mesh_id = count32(out.meshes.size());
   const auto first_group = count32(out.groups.size());
   const auto first_cluster = count32(out.clusters.size());
@@ -48,6 +48,12 @@ void append_mesh(EncodedMesh& mesh, const std::string& name, AssetTables& out) {
   for (format::NodeRecord node : mesh.nodes) {
     node.first += node.child_count == 0 ? first_group : first_node;
     out.nodes.push_back(node);
+  }
+  if (promises != 0) {
+    format::PromiseMeshRecord promise = mesh.promise;
+    promise.promises = promises;
+    out.promises.push_back(promise);
+    out.promise_errors.insert(out.promise_errors.end(), mesh.promise_errors.begin(), mesh.promise_errors.end());
   }
   for (EncodedMesh::Page& page : mesh.pages) {
     format::PageRecord page_record{};
@@ -114,6 +120,9 @@ Status check_counts(const WriteInput& input) {
   std::uint64_t clusters = 0;
   std::uint64_t nodes = 0;
   for (const EncodedMesh& mesh : input.meshes) {
+    if (input.promises != 0 && mesh.promise_errors.size() != mesh.groups.size()) {
+      return limit_error("write", "a mesh lacks the errors of what is promised");
+    }
     clusters += mesh.clusters.size();  // every other table is shorter: groups, pages and dependencies hang on clusters
     nodes += mesh.nodes.size();
   }
@@ -149,7 +158,9 @@ std::uint32_t version_of(const AssetTables& tables) {
 Result<AssetTables> make_tables(WriteInput& input) {
   if (Status status = check_counts(input); !status) return status.error();
   AssetTables out;
-  for (std::size_t m = 0; m < input.meshes.size(); ++m) append_mesh(input.meshes[m], input.mesh_names[m], out);
+  for (std::size_t m = 0; m < input.meshes.size(); ++m) {
+    append_mesh(input.meshes[m], input.mesh_names[m], input.promises, out);
+  }
   for (const scene::SceneMaterial& material : input.all_materials()) {
     out.materials.push_back(material_record(material, out.strings));
   }

@@ -36,8 +36,10 @@ struct AssetTables {
   std::vector<format::NodeRecord> nodes;
   std::vector<format::PageRecord> pages;  ///< offset, stored_bytes, codec and checksum not set yet
   std::vector<std::uint32_t> page_dependencies;
-  std::vector<format::BlobRecord> blobs;              ///< offset not set yet
-  std::vector<std::vector<std::uint8_t>> page_bytes;  ///< decoded, PageHeader::first_cluster global
+  std::vector<format::PromiseMeshRecord> promises;         ///< one a mesh where WriteInput has promises, else none
+  std::vector<format::PromiseGroupRecord> promise_errors;  ///< one a group, or none
+  std::vector<format::BlobRecord> blobs;                   ///< offset not set yet
+  std::vector<std::vector<std::uint8_t>> page_bytes;       ///< decoded, PageHeader::first_cluster global
 };
 
 /// The oldest version that says what is in the tables: format::kPlainVersion, but where there are aggregates.

@@ -40,7 +40,8 @@ class SectionHasher {
 
 }  // namespace
 
-Hash128 hash_content(const AssetTables& tables, std::string_view document, std::span<const scene::SceneBlob> blobs) {
+Hash128 hash_content(const AssetTables& tables, std::string_view document, std::span<const scene::SceneBlob> blobs,
+                     bool has_promises) {
   SectionHasher hasher;
   hasher.add(version_of(tables));
   hasher.text(format::SectionId::kScene, document);
@@ -67,6 +68,10 @@ Hash128 hash_content(const AssetTables& tables, std::string_view document, std::
     hasher.add(blob);
   }
   for (const scene::SceneBlob& blob : blobs) hasher.raw(blob.bytes);
+  if (has_promises) {
+    hasher.table(format::SectionId::kPromises, tables.promises);
+    hasher.table(format::SectionId::kPromiseErrors, tables.promise_errors);
+  }
   return hasher.digest();
 }
 

@@ -10,6 +10,6 @@
 namespace meshlode::build {
 
 [[nodiscard]] Hash128 hash_content(const AssetTables& tables, std::string_view document,
-                                   std::span<const scene::SceneBlob> blobs);
+                                   std::span<const scene::SceneBlob> blobs, bool has_promises = false);
 
 }  // namespace meshlode::build

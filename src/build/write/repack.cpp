@@ -31,6 +31,8 @@ bool is_known(format::SectionId id) {
     case format::SectionId::kNodes:
     case format::SectionId::kPages:
     case format::SectionId::kPageDeps:
+    case format::SectionId::kPromises:
+    case format::SectionId::kPromiseErrors:
     case format::SectionId::kPageData:
     case format::SectionId::kBlobs:
     case format::SectionId::kBlobData: return true;

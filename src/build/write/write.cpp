@@ -2,7 +2,6 @@
 // The layout of a file: header, section table, sections in the order of format::SectionId, each at a multiple of 16.
 #include "build/write/write.h"
 
-#include <array>
 #include <optional>
 
 #include "base/hash.h"
@@ -67,14 +66,14 @@ std::uint64_t place_blobs(AssetTables& tables) {
   return end;
 }
 
-using SectionPlans = std::array<SectionPlan, 14>;
-using SectionEntries = std::array<format::SectionEntry, std::tuple_size_v<SectionPlans>>;
+using SectionPlans = std::vector<SectionPlan>;
+using SectionEntries = std::vector<format::SectionEntry>;
 
 /// What the sections hold, as it lies in memory: all of it must outlive the plans.
 SectionPlans plan_sections(const WriteInput& input, const AssetTables& tables, std::uint64_t page_data_bytes,
                            std::uint64_t blob_data_bytes) {
   using enum format::SectionId;
-  return {
+  SectionPlans plans{
       text_section(kMeta, input.meta_json),
       text_section(kScene, input.whole_document()),
       text_section(kStrings, tables.strings.bytes()),
@@ -87,9 +86,17 @@ SectionPlans plan_sections(const WriteInput& input, const AssetTables& tables, s
       table_section(kPages, tables.pages),
       table_section(kPageDeps, tables.page_dependencies),
       table_section(kBlobs, tables.blobs),
-      SectionPlan{kPageData, page_data_bytes, nullptr, 0, 0},
-      SectionPlan{kBlobData, blob_data_bytes, nullptr, 0, 0},
   };
+  if (input.promises != 0) {
+    // Not required: who does not know them draws by positions, as ever.
+    plans.push_back(table_section(kPromises, tables.promises));
+    plans.back().flags = 0;
+    plans.push_back(table_section(kPromiseErrors, tables.promise_errors));
+    plans.back().flags = 0;
+  }
+  plans.push_back(SectionPlan{kPageData, page_data_bytes, nullptr, 0, 0});
+  plans.push_back(SectionPlan{kBlobData, blob_data_bytes, nullptr, 0, 0});
+  return plans;
 }
 
 /// Offsets of pages and blobs, from within their section to within the file.
@@ -122,7 +129,7 @@ Result<std::vector<std::uint8_t>> write_asset(WriteInput input) {
   if (!made) return made.error();
   AssetTables tables = std::move(*made);
   const scene::Scene& scene = *input.scene;
-  const Hash128 content_hash = hash_content(tables, input.whole_document(), scene.blobs);
+  const Hash128 content_hash = hash_content(tables, input.whole_document(), scene.blobs, input.promises != 0);
   auto packed = pack_pages(tables, input.codec);
   if (!packed) return packed.error();
   const std::uint64_t page_data_bytes = place_pages(tables, *packed);
@@ -130,7 +137,7 @@ Result<std::vector<std::uint8_t>> write_asset(WriteInput input) {
 
   SectionPlans plans = plan_sections(input, tables, page_data_bytes, blob_data_bytes);
   if (input.codec != format::Codec::kNone) pack_tables(plans);
-  SectionEntries entries{};
+  SectionEntries entries(plans.size());
   std::vector<std::uint8_t> file(place_sections(plans, entries));
   move_to_sections(entries, tables);
   copy_sections(plans, entries, file);

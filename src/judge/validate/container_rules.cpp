@@ -20,6 +20,7 @@ using format::SectionId;
 struct KnownSection {
   SectionId id;
   std::uint32_t record_bytes;  ///< 0 for text and raw bytes
+  bool is_optional = false;
 };
 
 constexpr KnownSection kKnownSections[] = {
@@ -34,6 +35,8 @@ constexpr KnownSection kKnownSections[] = {
     {SectionId::kNodes, sizeof(format::NodeRecord)},
     {SectionId::kPages, sizeof(format::PageRecord)},
     {SectionId::kPageDeps, sizeof(std::uint32_t)},
+    {SectionId::kPromises, sizeof(format::PromiseMeshRecord), true},
+    {SectionId::kPromiseErrors, sizeof(format::PromiseGroupRecord), true},
     {SectionId::kPageData, 0},
     {SectionId::kBlobs, sizeof(format::BlobRecord)},
     {SectionId::kBlobData, 0},
@@ -236,6 +239,14 @@ bool take_section(FileTables& file, const SectionEntry& entry) {
     case SectionId::kNodes: copy_records(bytes, file.nodes); break;
     case SectionId::kPages: copy_records(bytes, file.pages); break;
     case SectionId::kPageDeps: copy_records(bytes, file.page_dependencies); break;
+    case SectionId::kPromises:
+      file.has_promises = true;
+      copy_records(bytes, file.promises);
+      break;
+    case SectionId::kPromiseErrors:
+      file.has_promise_errors = true;
+      copy_records(bytes, file.promise_errors);
+      break;
     case SectionId::kPageData: file.page_data = entry; break;
     case SectionId::kBlobs: copy_records(bytes, file.blobs); break;
     case SectionId::kBlobData: file.blob_data = entry; break;
@@ -261,7 +272,8 @@ std::optional<FileTables> read_tables(std::span<const std::uint8_t> bytes, RuleL
   for (const KnownSection& known : kKnownSections) {
     const auto id = static_cast<std::uint32_t>(known.id);
     sound &= log.expect(
-        seen.contains(id), Rule::kL008, [&] { return section_name(id); }, [] { return std::string("is missing"); });
+        known.is_optional || seen.contains(id), Rule::kL008, [&] { return section_name(id); },
+        [] { return std::string("is missing"); });
   }
   if (!sound) return std::nullopt;
   check_extents(file, log);

@@ -72,6 +72,8 @@ Hash128 content_hash_of(const FileTables& file, std::span<const std::span<const 
     hasher.value(blob);
   }
   for (const format::BlobRecord& blob : file.blobs) hasher.raw(file.bytes.subspan(blob.offset, blob.bytes));
+  if (file.has_promises) hasher.table(SectionId::kPromises, file.promises);
+  if (file.has_promise_errors) hasher.table(SectionId::kPromiseErrors, file.promise_errors);
   return hasher.digest();
 }
 

@@ -54,6 +54,9 @@ struct FileTables {
   std::vector<format::PageRecord> pages;
   std::vector<std::uint32_t> page_dependencies;
   std::vector<format::BlobRecord> blobs;
+  bool has_promises = false, has_promise_errors = false;  ///< whether the sections are there
+  std::vector<format::PromiseMeshRecord> promises;
+  std::vector<format::PromiseGroupRecord> promise_errors;
   std::string_view meta, scene, strings;
   MetaFacts facts;                   ///< of meta
   format::SectionEntry page_data{};  ///< zero where the section is missing

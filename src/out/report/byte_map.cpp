@@ -99,7 +99,9 @@ Result<ByteMap> map_bytes(const run::Asset& asset) {
       case SectionId::kClusters:
       case SectionId::kNodes:
       case SectionId::kPages:
-      case SectionId::kPageDeps: map.table_bytes += section.bytes; break;
+      case SectionId::kPageDeps:
+      case SectionId::kPromises:
+      case SectionId::kPromiseErrors: map.table_bytes += section.bytes; break;
       default: break;
     }
   }

@@ -17,6 +17,8 @@ bool is_geometry(std::uint32_t id) {
     case SectionId::kNodes:
     case SectionId::kPages:
     case SectionId::kPageDeps:
+    case SectionId::kPromises:
+    case SectionId::kPromiseErrors:
     case SectionId::kPageData: return true;
     default: return false;
   }

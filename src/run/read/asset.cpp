@@ -119,13 +119,21 @@ Status Asset::index() {
   tables.pages = view_table<format::PageRecord>(bytes_of(kPages));
   tables.page_dependencies = view_table<std::uint32_t>(bytes_of(kPageDeps));
   tables.blobs = view_table<format::BlobRecord>(bytes_of(kBlobs));
+  const format::SectionEntry* const promises = sections->find(kPromises);
+  const format::SectionEntry* const promise_errors = sections->find(kPromiseErrors);
+  tables.has_promises = promises != nullptr || promise_errors != nullptr;
+  if (promises != nullptr) tables.promises = view_table<format::PromiseMeshRecord>(section_bytes(*promises));
+  if (promise_errors != nullptr) {
+    tables.promise_errors = view_table<format::PromiseGroupRecord>(section_bytes(*promise_errors));
+  }
   tables.string_bytes = sections->entry(kStrings).decoded_bytes;
   tables.page_data = &sections->entry(kPageData);
   tables.blob_data = &sections->entry(kBlobData);
 
   using Check = Status (*)(const RawTables&);
-  for (const Check check : {Check{check_meshes}, Check{check_materials}, Check{check_instances}, Check{check_blobs},
-                            Check{check_groups}, Check{check_clusters}, Check{check_nodes}, Check{check_pages}}) {
+  for (const Check check :
+       {Check{check_meshes}, Check{check_materials}, Check{check_instances}, Check{check_blobs}, Check{check_groups},
+        Check{check_clusters}, Check{check_nodes}, Check{check_pages}, Check{check_promises}}) {
     if (Status status = check(tables); !status) return status;
   }
 
@@ -137,15 +145,17 @@ Status Asset::index() {
 
   header_ = sections->header;
   sections_ = sections->entries;
-  meshes_ = tables.meshes;
+  stored_meshes_ = meshes_ = tables.meshes;
   materials_ = tables.materials;
   instances_ = tables.instances;
-  groups_ = tables.groups;
+  stored_groups_ = groups_ = tables.groups;
   clusters_ = tables.clusters;
-  nodes_ = tables.nodes;
+  stored_nodes_ = nodes_ = tables.nodes;
   pages_ = tables.pages;
   page_dependencies_ = tables.page_dependencies;
   blobs_ = tables.blobs;
+  promises_ = tables.promises;
+  promise_errors_ = tables.promise_errors;
   meta_ = view_text(bytes_of(kMeta));
   scene_ = view_text(bytes_of(kScene));
   strings_ = view_text(bytes_of(kStrings));

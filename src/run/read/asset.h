@@ -46,6 +46,17 @@ class Asset {
   [[nodiscard]] std::span<const format::PageRecord> pages() const { return pages_; }
   [[nodiscard]] std::span<const std::uint32_t> page_dependencies() const { return page_dependencies_; }
   [[nodiscard]] std::span<const format::BlobRecord> blobs() const { return blobs_; }
+  /// One a mesh, and one a group; empty where the asset promises positions alone (or has no mesh, or no group).
+  [[nodiscard]] std::span<const format::PromiseMeshRecord> promises() const { return promises_; }
+  [[nodiscard]] std::span<const format::PromiseGroupRecord> promise_errors() const { return promise_errors_; }
+  /// Whether choose() will do: positions always, else where the asset was built to promise it or more.
+  [[nodiscard]] bool has_promise(format::Promise promise) const;
+  /// From here on `error` of groups() and nodes(), and `level0_deviation` of meshes(), are those of this promise, so
+  /// that whoever selects by them keeps it (docs/selection.md). Views taken before keep the promise that they had,
+  /// until choose() is called again. What the file holds stays as it is: section_bytes(), bytes(), content hash. Error:
+  /// kUnsupported where the asset does not promise it, with how to build one that does. Not thread-safe.
+  [[nodiscard]] Status choose(format::Promise promise);
+  [[nodiscard]] format::Promise chosen_promise() const { return chosen_; }
   [[nodiscard]] std::string_view meta_json() const { return meta_; }
   [[nodiscard]] std::string_view scene_json() const { return scene_; }
   [[nodiscard]] std::string_view strings() const { return strings_; }  ///< what StringRef points into
@@ -78,7 +89,18 @@ class Asset {
   std::span<const format::PageRecord> pages_;
   std::span<const std::uint32_t> page_dependencies_;
   std::span<const format::BlobRecord> blobs_;
+  std::span<const format::PromiseMeshRecord> promises_;
+  std::span<const format::PromiseGroupRecord> promise_errors_;
   std::string_view meta_, scene_, strings_;
+  format::Promise chosen_ = format::Promise::kPosition;
+  // Of the chosen promise, where it is not that of positions.
+  std::vector<format::MeshRecord> chosen_meshes_;
+  std::vector<format::GroupRecord> chosen_groups_;
+  std::vector<format::NodeRecord> chosen_nodes_;
+  // As the file has them.
+  std::span<const format::MeshRecord> stored_meshes_;
+  std::span<const format::GroupRecord> stored_groups_;
+  std::span<const format::NodeRecord> stored_nodes_;
 };
 
 }  // namespace meshlode::run

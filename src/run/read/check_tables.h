@@ -23,6 +23,9 @@ struct RawTables {
   std::span<const format::PageRecord> pages;
   std::span<const std::uint32_t> page_dependencies;
   std::span<const format::BlobRecord> blobs;
+  bool has_promises = false;  ///< of the two tables below one is there at least
+  std::span<const format::PromiseMeshRecord> promises;
+  std::span<const format::PromiseGroupRecord> promise_errors;
   std::uint64_t string_bytes = 0;
   const format::SectionEntry* page_data = nullptr;
   const format::SectionEntry* blob_data = nullptr;
@@ -42,5 +45,6 @@ constexpr std::uint32_t kMaxBvhDepth = 64;
 [[nodiscard]] Status check_clusters(const RawTables& tables);  ///< \pre check_groups; the DAG has no cycle
 [[nodiscard]] Status check_nodes(const RawTables& tables);     ///< \pre check_meshes; each BVH is a tree
 [[nodiscard]] Status check_pages(const RawTables& tables);     ///< \pre check_groups; pages partition groups
+[[nodiscard]] Status check_promises(const RawTables& tables);  ///< \pre check_groups
 
 }  // namespace meshlode::run

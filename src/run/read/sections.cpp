@@ -23,6 +23,7 @@ using format::SectionId;
 struct KnownSection {
   SectionId id;
   std::uint32_t record_bytes;  ///< 0: text or raw bytes
+  bool is_optional = false;
 };
 
 constexpr std::array kKnownSections{
@@ -38,6 +39,8 @@ constexpr std::array kKnownSections{
     KnownSection{SectionId::kPages, sizeof(format::PageRecord)},
     KnownSection{SectionId::kPageDeps, sizeof(std::uint32_t)},
     KnownSection{SectionId::kBlobs, sizeof(format::BlobRecord)},
+    KnownSection{SectionId::kPromises, sizeof(format::PromiseMeshRecord), true},
+    KnownSection{SectionId::kPromiseErrors, sizeof(format::PromiseGroupRecord), true},
     KnownSection{SectionId::kPageData, 0},
     KnownSection{SectionId::kBlobData, 0},
 };
@@ -160,7 +163,7 @@ Result<SectionIndex> index_sections(std::span<const std::uint8_t> bytes) {
   }
   if (end != bytes.size()) return invalid_header("file_bytes", "the last section does not end the file");
   for (const KnownSection& section : kKnownSections) {
-    if (index.known.find(section.id) == index.known.end()) {
+    if (!section.is_optional && index.find(section.id) == nullptr) {
       return Error{ErrorCode::kInvalid, "section " + section_tag(static_cast<std::uint32_t>(section.id)), "is missing"};
     }
   }

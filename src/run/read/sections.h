@@ -19,8 +19,13 @@ struct SectionIndex {
   std::span<const format::SectionEntry> entries;  ///< all of them, in file order
   std::map<format::SectionId, const format::SectionEntry*> known;
 
-  /// \pre `id` is one of format::SectionId: index_sections has refused files that lack one
+  /// \pre `id` is one of format::SectionId that every file has: index_sections has refused files that lack one
   [[nodiscard]] const format::SectionEntry& entry(format::SectionId id) const { return *known.at(id); }
+  /// Null where the file has no such section.
+  [[nodiscard]] const format::SectionEntry* find(format::SectionId id) const {
+    const auto found = known.find(id);
+    return found == known.end() ? nullptr : found->second;
+  }
 };
 
 /// Checks sizes, offsets, order, gaps, versions and every checksum but those of pages and blobs.

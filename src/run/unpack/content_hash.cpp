@@ -54,6 +54,8 @@ Result<Hash128> hash_asset_content(const Asset& asset) {
   }
   add_section(kBlobs);
   for (const format::BlobRecord& blob : asset.blobs()) hasher.update(asset.blob_bytes(blob));
+  add_section(kPromises);  // nothing where the file has none
+  add_section(kPromiseErrors);
   return hasher.digest();
 }
 
