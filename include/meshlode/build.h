@@ -158,6 +158,9 @@ struct BuildOptions {
   /// triangles. Takes more triangles, since small holes and handles else close where that is far cheaper.
   bool keep_topology = false;
   AggregateChoice aggregate = AggregateChoice::kNever;
+  /// What errors the asset has, and so what a renderer may choose to keep (docs/selection.md): with kTexels those of
+  /// texture coordinates beside those of positions, with kAppearance those of normals too. Takes the tier kMeasured.
+  format::Promise promise = format::Promise::kPosition;
   std::uint64_t max_memory_bytes = 0;  ///< meshes wait for each other to keep it, or it is refused; 0: what is left
   /// Of build_file: what compressed geometry may take decoded beyond what the size of its file justifies.
   std::uint64_t max_decoded_bytes = std::uint64_t{512} << 20U;

@@ -101,6 +101,7 @@ typedef struct meshlode_build_options {
   int repair;
   int keep_topology;  /* every cut of a manifold is one, with its holes, handles and pieces */
   uint32_t aggregate; /* which meshes are thinned out by coverage: 0 none, 1 those of many small pieces, 2 all */
+  uint32_t promise; /* what errors there are of: 0 positions, 1 texels too, 2 appearance too; takes the tier measured */
   uint64_t max_memory_bytes;
   uint32_t thread_count; /* 0: all */
   meshlode_build_progress on_progress;

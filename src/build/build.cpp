@@ -24,6 +24,8 @@
 #include "build/plan/texel_sizes.h"
 #include "build/prepare/prepare.h"
 #include "build/progress_meter.h"
+#include "build/promise/measure_promise.h"
+#include "build/promise/painted_source.h"
 #include "build/stage_clock.h"
 #include "build/stage_options.h"
 #include "build/store/mesh_key.h"
@@ -65,10 +67,10 @@ struct StoredPlace {
 
   StoredPlace() = default;
   StoredPlace(const scene::SourceMesh& source, const AttributeLayout& layout, const EncodeOptions& encoding,
-              const MeshOptions& own, const SceneOptions& options) {
+              const MeshOptions& own, const SceneOptions& options, std::span<const TexelExtents> extents) {
     if (options.mesh_store == nullptr || !options.mesh_store->wants(count_mesh(source).triangles)) return;
     store = options.mesh_store;
-    key = mesh_key(source, layout, encoding, own, options);
+    key = mesh_key(source, layout, encoding, own, options, extents);
   }
 
   /// What was kept becomes `built`. False: nothing was.
@@ -106,8 +108,9 @@ struct Source {
 /// What is found out about the whole scene before any mesh is built.
 struct Survey {
   std::vector<std::array<double, scene::kMaxUvSets>> texels;  ///< texels_of_materials()
-  std::vector<AggregateDecision> aggregates;                  ///< by mesh
-  CoarseMaterials coarse;                                     ///< where some mesh is an aggregate
+  std::vector<TexelExtents> extents;          ///< texel_extents_of_materials(), where more than positions is promised
+  std::vector<AggregateDecision> aggregates;  ///< by mesh
+  CoarseMaterials coarse;                     ///< where some mesh is an aggregate
   [[nodiscard]] bool has_aggregates() const {
     return std::any_of(aggregates.begin(), aggregates.end(), [](const AggregateDecision& d) { return d.is_aggregate; });
   }
@@ -116,6 +119,7 @@ struct Survey {
 Result<Survey> survey(const scene::Scene& scene, const PipelineOptions& options) {
   Survey found;
   found.texels = texels_of_materials(scene);
+  if (options.promise != format::Promise::kPosition) found.extents = texel_extents_of_materials(scene);
   std::vector<std::uint8_t> is_aggregate;
   for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
     found.aggregates.push_back(decide_aggregate(scene.meshes[i], options.of_mesh(i).aggregate, options.keep_topology));
@@ -141,6 +145,16 @@ Result<Survey> survey(const scene::Scene& scene, const PipelineOptions& options)
   return found;
 }
 
+/// format::kPromises….
+std::uint32_t promises_of(format::Promise promise) {
+  switch (promise) {
+    case format::Promise::kPosition: break;
+    case format::Promise::kTexels: return format::kPromisesTexels;
+    case format::Promise::kAppearance: return format::kPromisesTexels | format::kPromisesAppearance;
+  }
+  return 0;
+}
+
 /// One mesh from its source triangles to pages.
 Result<BuiltMesh> build_mesh(const Source& from, std::size_t index, const Survey& found, const PipelineOptions& options,
                              ProgressMeter& progress) {
@@ -160,7 +174,7 @@ Result<BuiltMesh> build_mesh(const Source& from, std::size_t index, const Survey
   const EncodeOptions encoding = encode_options(options, own, source, plan.layout, found.texels);
   // What an aggregate becomes depends on images too: the key would have to have them.
   const StoredPlace place =
-      aggregate.is_aggregate ? StoredPlace() : StoredPlace(source, plan.layout, encoding, own, options);
+      aggregate.is_aggregate ? StoredPlace() : StoredPlace(source, plan.layout, encoding, own, options, found.extents);
   const std::size_t planned = built.decisions.size();
   if (place.take(label, built)) {
     from.free_mesh(index);
@@ -173,6 +187,11 @@ Result<BuiltMesh> build_mesh(const Source& from, std::size_t index, const Survey
   from.free_mesh(index);
   built.clock.end(Stage::kPrepare);
 
+  const std::uint32_t promises = promises_of(options.promise);
+  std::optional<PaintedSource> painted;
+  if (promises != 0 && !aggregate.is_aggregate) {
+    painted = keep_painted_source(*mesh, found.extents, options.promise == format::Promise::kAppearance);
+  }
   DagOptions coarsening = dag_options(options, own, *mesh, encoding);
   if (aggregate.is_aggregate) coarsening.simplify.keep_area = false;  // nothing is collapsed
   LevelClock levels(index);
@@ -194,6 +213,14 @@ Result<BuiltMesh> build_mesh(const Source& from, std::size_t index, const Survey
   if (!encoded) return encoded.error();
   built.encoded = std::move(*encoded);
   built.encoded.record.error_tier = own.error_tier;
+  if (promises != 0) {
+    const format::MeshRecord& record = built.encoded.record;
+    PromiseErrors errors =
+        painted ? measure_promises(*painted, *dag, record, built.encoded.groups, kMeasuredMargin, promises)
+                : promises_of_positions(record, built.encoded.groups, promises);
+    built.encoded.promise = errors.mesh;
+    built.encoded.promise_errors = std::move(errors.groups);
+  }
   for (PlanDecision& decision : late_decisions(*mesh, coarsening, encoding, built.encoded, label)) {
     built.decisions.push_back(std::move(decision));
   }
@@ -265,6 +292,7 @@ Result<std::vector<std::uint8_t>> build_asset_of(const Source& from, const Pipel
   WriteInput input;
   input.scene = &scene;
   input.codec = options.codec;
+  input.promises = promises_of(options.promise);
   if (found->has_aggregates()) {
     input.materials = &found->coarse.materials;
     input.document = &found->coarse.document;

@@ -46,9 +46,10 @@ struct SceneOptions {
   StripEffort strip_effort = StripEffort::kOfPreset;
   std::uint32_t partition_seed = 1;  ///< of METIS; benchmarks vary it, to tell a change from luck
   bool repair = false;               ///< the scene was imported with repair: recorded, because it changes the bytes
-  bool keep_topology = false;        ///< every cut of a manifold is one (build/simplify/kept_topology.h)
-  std::uint32_t max_cluster_triangles = 128;           ///< I2; at most format::kMaxClusterTriangles
-  std::uint32_t max_cluster_vertices = 256;            ///< I2; at most format::kMaxClusterVertices
+  format::Promise promise = format::Promise::kPosition;  ///< what errors there are (src/build/promise)
+  bool keep_topology = false;                 ///< every cut of a manifold is one (build/simplify/kept_topology.h)
+  std::uint32_t max_cluster_triangles = 128;  ///< I2; at most format::kMaxClusterTriangles
+  std::uint32_t max_cluster_vertices = 256;   ///< I2; at most format::kMaxClusterVertices
   std::uint32_t group_clusters = kUsualGroupClusters;  ///< what groups aim at, kFewestGroupClusters to 32
   std::uint64_t max_memory = 0;  ///< bytes that the process may take (build/needs.h); 0: what the machine has
   /// Large arrays of the process go to a file before they would exceed max_memory (tools/meshlode/spill.h).

@@ -23,6 +23,7 @@ constexpr std::uint64_t kDocumentByte = 40;
 constexpr std::uint64_t kKeptTriangle = 30;
 constexpr std::uint64_t kTriangle = 10;
 constexpr std::uint64_t kTriangleOfCertified = 50;
+constexpr std::uint64_t kTrianglePromised = 400;  // both surfaces, their trees and the samples (src/build/promise)
 constexpr std::uint64_t kPosition = 230;
 constexpr std::uint64_t kPositionOfQuadric = 180;
 constexpr std::uint64_t kVertexFloat = 8;
@@ -101,7 +102,8 @@ MemoryEstimate estimate_memory(const scene::Scene& scene, const PipelineOptions&
     for (const scene::Primitive& primitive : mesh.primitives) estimate.always += bytes_of(primitive);
     estimate.always += kKeptTriangle * counts.triangles;
     estimate.spilled += kUnspilledTriangle * counts.triangles;
-    estimate.working.push_back((is_certified ? kTriangleOfCertified : kTriangle) * counts.triangles +
+    const std::uint64_t promised = options.promise == format::Promise::kPosition ? 0 : kTrianglePromised;
+    estimate.working.push_back(((is_certified ? kTriangleOfCertified : kTriangle) + promised) * counts.triangles +
                                (is_measured ? kPosition : kPositionOfQuadric) * count_wedges(mesh, {}) +
                                kVertexFloat * attribute_floats(mesh, own) * counts.vertices);
   }

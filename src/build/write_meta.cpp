@@ -122,6 +122,7 @@ Json settings_json(const scene::Scene& scene, const PipelineOptions& options,
   settings["codec"] = format::name_of(options.codec);
   if (options.strip_effort != StripEffort::kOfPreset) settings["strip_effort"] = name_of(options.strip_effort);
   settings["repair"] = options.repair;
+  if (options.promise != format::Promise::kPosition) settings["promise"] = format::name_of(options.promise);
   if (options.keep_topology) settings["keep_topology"] = true;
   if (options.aggregate != AggregateChoice::kNever) settings["aggregate"] = name_of(options.aggregate);
   if (!scene.choice.empty()) settings["scene"] = scene.choice;

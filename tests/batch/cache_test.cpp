@@ -236,6 +236,8 @@ TEST(Ingredients, AreOtherOnesForEverySettingThatChangesBytes) {
   changed.back().keep_topology = true;
   changed.push_back(plain);
   changed.back().aggregate = AggregateChoice::kAuto;
+  changed.push_back(plain);
+  changed.back().promise = format::Promise::kTexels;
   std::vector<std::string> texts{settings_text(plain, {}), settings_text(plain, {.repair = true})};
   for (const build::PipelineOptions& options : changed) texts.push_back(settings_text(options, {}));
   std::sort(texts.begin(), texts.end());

@@ -83,7 +83,7 @@ std::string settings_text(const build::PipelineOptions& options, const scene::Im
   // Every member has a name here, so that one more does not compile before it is written down or left out on purpose.
   const auto& [error_tier, attributes, keep, drop, grid_step, position_error, normal_error, uv_error,
                uv_error_is_texels, uv_error_is_default, aggregate] = static_cast<const build::MeshOptions&>(options);
-  const auto& [preset, codec, strip_effort, partition_seed, repair, keep_topology, max_cluster_triangles,
+  const auto& [preset, codec, strip_effort, partition_seed, repair, promise, keep_topology, max_cluster_triangles,
                max_cluster_vertices, group_clusters, max_memory, spills, mesh_store, looks, experiment, mesh_options] =
       static_cast<const build::SceneOptions&>(options);
   const auto& [import_repair, scene, files_read, max_decoded, may_lack_images] = import;
@@ -108,6 +108,7 @@ std::string settings_text(const build::PipelineOptions& options, const scene::Im
       {"partition-seed", text_of(std::uint64_t{partition_seed})},
       {"repair", text_of(repair)},
       {"import-repair", text_of(import_repair)},
+      {"promise", format::name_of(promise)},
       {"keep-topology", text_of(keep_topology)},
       {"cluster-triangles", text_of(std::uint64_t{max_cluster_triangles})},
       {"cluster-vertices", text_of(std::uint64_t{max_cluster_vertices})},

@@ -37,6 +37,7 @@ Status check_choices(const BuildOptions& options) {
   if (options.strip_effort > StripEffort::kBest) return usage("BuildOptions::strip_effort");
   if (options.attributes > AttributeChoice::kAll) return usage("BuildOptions::attributes");
   if (options.uv_error_unit > UvErrorUnit::kTexels) return usage("BuildOptions::uv_error_unit");
+  if (options.promise > format::Promise::kAppearance) return usage("BuildOptions::promise");
   if (options.codec > format::Codec::kStrips) return usage("BuildOptions::codec");
   return Ok{};
 }
@@ -91,6 +92,7 @@ Result<build::PipelineOptions> make_pipeline_options(const BuildOptions& options
   pipeline.repair = options.repair;
   pipeline.keep_topology = options.keep_topology;
   pipeline.aggregate = options.aggregate;
+  pipeline.promise = options.promise;
   pipeline.max_memory = options.max_memory_bytes;
   return pipeline;
 }

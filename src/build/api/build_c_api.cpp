@@ -129,6 +129,7 @@ Result<BuildOptions> read_options(const meshlode_build_options& in) {
   if (in.strip_effort > 3) return limit("strip_effort");
   if (in.attributes > 2) return limit("attributes");
   if (in.aggregate > 2) return limit("aggregate");
+  if (in.promise > 2) return limit("promise");
   BuildOptions out;
   if (in.error_tier != MESHLODE_TIER_OF_PRESET) out.error_tier = static_cast<format::ErrorTier>(in.error_tier);
   out.preset = static_cast<Preset>(in.preset);
@@ -147,6 +148,7 @@ Result<BuildOptions> read_options(const meshlode_build_options& in) {
   out.repair = in.repair != 0;
   out.keep_topology = in.keep_topology != 0;
   out.aggregate = static_cast<AggregateChoice>(in.aggregate);
+  out.promise = static_cast<format::Promise>(in.promise);
   out.max_memory_bytes = in.max_memory_bytes;
   out.thread_count = in.thread_count;
   return out;
@@ -243,6 +245,7 @@ void meshlode_build_defaults(meshlode_build_options* options) {
   options->repair = defaults.repair ? 1 : 0;
   options->keep_topology = defaults.keep_topology ? 1 : 0;
   options->aggregate = static_cast<uint32_t>(defaults.aggregate);
+  options->promise = static_cast<uint32_t>(defaults.promise);
   options->max_memory_bytes = defaults.max_memory_bytes;
   options->thread_count = defaults.thread_count;
 }

@@ -30,6 +30,30 @@ std::vector<std::array<double, scene::kMaxUvSets>> texels_of_materials(const sce
   return out;
 }
 
+std::vector<TexelExtents> texel_extents_of_materials(const scene::Scene& scene) {
+  constexpr std::uint32_t kUnknownSide = 2048;
+  std::map<std::uint32_t, std::optional<ImageSize>> sizes;
+  std::vector<TexelExtents> out;
+  for (const scene::SceneMaterial& material : scene.materials) {
+    TexelExtents& extents = out.emplace_back();
+    for (const scene::TextureUse& use : material.textures) {
+      if (use.uv_set >= scene::kMaxUvSets) continue;
+      std::optional<ImageSize> size;
+      if (use.blob < scene.blobs.size()) {
+        const auto [known, is_new] = sizes.try_emplace(use.blob);
+        if (is_new) known->second = read_image_size(scene.blobs[use.blob].bytes);
+        size = known->second;
+      }
+      const double width = (size ? size->width : kUnknownSide) * std::abs(use.scale[0]);
+      const double height = (size ? size->height : kUnknownSide) * std::abs(use.scale[1]);
+      if (!std::isfinite(width) || !std::isfinite(height)) continue;
+      extents[use.uv_set][0] = std::max(extents[use.uv_set][0], width);
+      extents[use.uv_set][1] = std::max(extents[use.uv_set][1], height);
+    }
+  }
+  return out;
+}
+
 std::array<double, scene::kMaxUvSets> texels_per_unit(
     std::span<const std::array<double, scene::kMaxUvSets>> of_materials, const scene::SourceMesh& mesh) {
   std::array<double, scene::kMaxUvSets> out{};

@@ -21,4 +21,11 @@ namespace meshlode::build {
 [[nodiscard]] std::array<double, scene::kMaxUvSets> texels_per_unit(
     std::span<const std::array<double, scene::kMaxUvSets>> of_materials, const scene::SourceMesh& mesh);
 
+/// Texels that a unit of a TEXCOORD_n spans along u and along v.
+using TexelExtents = std::array<std::array<double, 2>, scene::kMaxUvSets>;
+
+/// The same along each axis by itself, of each of Scene::materials: the largest of the textures that it samples with
+/// the set, where an image of unknown size counts as 2,048 by 2,048; 0 0 where it samples none. Rotations are left out.
+[[nodiscard]] std::vector<TexelExtents> texel_extents_of_materials(const scene::Scene& scene);
+
 }  // namespace meshlode::build

@@ -44,6 +44,9 @@ constexpr std::array<SettingInfo, kSettingCount> kSettings{{
     {Setting::kAggregate, "aggregate",
      "which meshes are thinned out by coverage, not by distance: those of many small loose pieces, or all", "never",
      true},
+    {Setting::kPromise, "promise",
+     "what errors are of: positions; texels, with texture coordinates; appearance, with normals too", "position",
+     false},
     {Setting::kCare, "care",
      "experimental: NAME=off, comma by comma, builds without double-quadrics, fallback, spheres or needles", "all",
      false, true},
@@ -205,6 +208,7 @@ PipelineOptions options_of(const std::array<SettledWord, kSettingCount>& words) 
   options.repair = word(Setting::kRepair) == "true";
   options.keep_topology = word(Setting::kKeepTopology) == "true";
   options.aggregate = value_in(kAggregateChoiceNames, word(Setting::kAggregate)).value_or(options.aggregate);
+  options.promise = value_in(format::kPromiseNames, word(Setting::kPromise)).value_or(options.promise);
   if (const auto care = parse_care(word(Setting::kCare))) options.experiment.care = *care;
   options.experiment.simplifier =
       value_in(kSimplifierNames, word(Setting::kSimplifier)).value_or(options.experiment.simplifier);
@@ -247,6 +251,7 @@ std::vector<std::string> choices_of(Setting setting) {
     case Setting::kRepair:
     case Setting::kKeepTopology: return {"false", "true"};
     case Setting::kAggregate: return all_names(kAggregateChoiceNames);
+    case Setting::kPromise: return all_names(format::kPromiseNames);
     case Setting::kSimplifier: return all_names(kSimplifierNames);
     default: return {};
   }

@@ -37,10 +37,11 @@ enum class Setting : std::uint8_t {
   kRepair,
   kKeepTopology,
   kAggregate,
+  kPromise,
   kCare,
   kSimplifier,
 };
-constexpr std::size_t kSettingCount = 18;
+constexpr std::size_t kSettingCount = 19;
 
 struct SettingInfo {
   Setting setting;

@@ -101,7 +101,7 @@ void add_experiment(KeyHasher& key, const Experiment& experiment) {
 }
 
 void add_scene_options(KeyHasher& key, const SceneOptions& options) {
-  const auto& [preset, codec, strip_effort, partition_seed, repair, keep_topology, max_cluster_triangles,
+  const auto& [preset, codec, strip_effort, partition_seed, repair, promise, keep_topology, max_cluster_triangles,
                max_cluster_vertices, group_clusters, max_memory, spills, mesh_store, looks, experiment, mesh_options] =
       options;
   key.value(preset);
@@ -110,6 +110,7 @@ void add_scene_options(KeyHasher& key, const SceneOptions& options) {
   key.value(max_cluster_vertices);
   key.value(group_clusters);
   key.value(keep_topology);
+  key.value(promise);
   add_experiment(key, experiment);
   static_cast<void>(strip_effort);  // EncodeOptions has what it came to
   static_cast<void>(codec);         // of the pages on disk, later
@@ -124,8 +125,12 @@ void add_scene_options(KeyHasher& key, const SceneOptions& options) {
 }  // namespace
 
 Hash128 mesh_key(const scene::SourceMesh& mesh, const AttributeLayout& layout, const EncodeOptions& encode,
-                 const MeshOptions& own, const SceneOptions& options) {
+                 const MeshOptions& own, const SceneOptions& options, std::span<const TexelExtents> extents) {
   KeyHasher key;
+  for (const scene::Primitive& primitive : mesh.primitives) {
+    if (primitive.material.value >= extents.size()) continue;
+    for (const auto& extent : extents[primitive.material.value]) key.values(extent);
+  }
   add_own_options(key, own);
   add_scene_options(key, options);
   add_layout(key, layout);

@@ -2,9 +2,12 @@
 // All that one built mesh depends on, as a hash.
 #pragma once
 
+#include <span>
+
 #include "base/hash.h"
 #include "build/build.h"
 #include "build/encode/encode.h"
+#include "build/plan/texel_sizes.h"
 #include "build/prepared.h"
 #include "scene/scene.h"
 
@@ -12,8 +15,9 @@ namespace meshlode::build {
 
 /// Over the mesh's triangles, attributes and materials' ids, and over what the plan and the textures made of the
 /// options for it: a material's colour, a texture's pixels, other meshes, nodes and names are not in it. Bits, not
-/// values: -0 is another mesh than 0.
+/// values: -0 is another mesh than 0. `extents`: of the scene's materials, where more than positions is promised.
 [[nodiscard]] Hash128 mesh_key(const scene::SourceMesh& mesh, const AttributeLayout& layout,
-                               const EncodeOptions& encode, const MeshOptions& own, const SceneOptions& options);
+                               const EncodeOptions& encode, const MeshOptions& own, const SceneOptions& options,
+                               std::span<const TexelExtents> extents = {});
 
 }  // namespace meshlode::build

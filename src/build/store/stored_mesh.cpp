@@ -10,7 +10,7 @@ namespace meshlode::build {
 
 namespace {
 
-constexpr std::uint32_t kVersion = 2;  // 1 knew nothing of the decision about area on the grid
+constexpr std::uint32_t kVersion = 3;  // 1 knew nothing of the decision about area on the grid, 2 nothing of promises
 constexpr std::size_t kFewestPageBytes = 4 * sizeof(std::uint32_t) + 2 * sizeof(std::uint64_t);
 constexpr std::size_t kFewestDecisionBytes = 2 * sizeof(std::uint64_t) + 2;
 
@@ -59,7 +59,8 @@ bool is_record_sound(const EncodedMesh& mesh) {
   const format::MeshRecord& record = mesh.record;
   return record.uv_set_count <= format::kMaxUvSets && record.has_color <= 1 &&
          record.group_count == mesh.groups.size() && record.cluster_count == mesh.clusters.size() &&
-         record.node_count == mesh.nodes.size();
+         record.node_count == mesh.nodes.size() &&
+         (mesh.promise_errors.empty() || mesh.promise_errors.size() == mesh.groups.size());
 }
 
 bool read_pages(ByteReader& in, EncodedMesh& mesh) {
@@ -99,6 +100,8 @@ std::vector<std::uint8_t> stored_mesh_bytes(const EncodedMesh& mesh, std::span<c
   out.list(mesh.groups);
   out.list(mesh.clusters);
   out.list(mesh.nodes);
+  out.value(mesh.promise);
+  out.list(mesh.promise_errors);
   out.value(std::uint64_t{mesh.pages.size()});
   for (const EncodedMesh::Page& page : mesh.pages) {
     out.value(page.first_group);
@@ -125,8 +128,8 @@ std::optional<StoredMesh> read_stored_mesh(std::span<const std::uint8_t> bytes, 
   EncodedMesh& mesh = out.encoded;
   std::uint32_t version = 0;
   if (!in.value(version) || version != kVersion || !in.value(mesh.record) || !in.list(mesh.groups) ||
-      !in.list(mesh.clusters) || !in.list(mesh.nodes) || !read_pages(in, mesh) ||
-      !read_decisions(in, label, out.decisions) || !in.is_at_end()) {
+      !in.list(mesh.clusters) || !in.list(mesh.nodes) || !in.value(mesh.promise) || !in.list(mesh.promise_errors) ||
+      !read_pages(in, mesh) || !read_decisions(in, label, out.decisions) || !in.is_at_end()) {
     return std::nullopt;
   }
   const bool is_sound = is_record_sound(mesh) && are_groups_sound(mesh) && are_clusters_sound(mesh) &&

@@ -184,6 +184,12 @@ TEST(StoredMesh, EveryPartOfAMeshIsInItsKey) {
   options.aggregate = AggregateChoice::kAlways;
   EXPECT_TRUE(keys.emplace(mesh_key(mesh, {}, {}, options, options), 0).second);
   options.aggregate = AggregateChoice::kNever;
+  options.promise = format::Promise::kTexels;
+  EXPECT_TRUE(keys.emplace(mesh_key(mesh, {}, {}, options, options), 0).second);
+  std::vector<TexelExtents> extents(1);
+  extents[0][1] = {1024.0, 512.0};
+  EXPECT_TRUE(keys.emplace(mesh_key(mesh, {}, {}, options, options, extents), 0).second);
+  options.promise = format::Promise::kPosition;
   for (const CareName& care : kCareNames) {
     PipelineOptions study;
     study.experiment.care.*care.member = false;

@@ -1,0 +1,616 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "build/promise/measure_promise.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "base/parallel.h"
+#include "base/random.h"
+#include "build/encode/quantize_normal.h"
+#include "build/encode/uv_grid.h"
+#include "build/hierarchy/lod_bounds.h"
+#include "build/hierarchy/margins.h"
+#include "build/promise/product_tree.h"
+#include "format/grid.h"
+
+namespace meshlode::build {
+
+namespace {
+
+/// Points of the source beside the corners and the middle of each triangle: so many in all, by the triangles' longest
+/// sides, as what a cut is off by changes along them.
+constexpr std::size_t kSourcePoints = 100000;
+/// Carried on by a group, about; between so many a triangle of it.
+constexpr std::size_t kCarried = 4096, kFewestCarried = 2, kMostCarried = 64;
+/// Points on a group's triangles beside the corners, the middles of edges and the middle.
+constexpr std::size_t kGroupPoints = 1024, kMostOfTriangle = 32;
+/// Points nearer than this share of the farthest are not looked at closely.
+constexpr double kLookFrom = 0.6;
+/// From so many of the farthest points of either direction a farther one is looked for on the same triangle: so many
+/// steps, each half as long as the one before, and so many points tried at each.
+constexpr std::size_t kClimbed = 12;
+constexpr int kSteps = 7, kTries = 10;
+constexpr std::size_t kChunk = 1024;  // points that share a hint, whatever the thread count
+
+/// Which entries the points have, and in what units.
+struct Space {
+  AttributeLayout layout;
+  double normal = 0.0;
+  std::array<std::array<double, 2>, scene::kMaxUvSets> uv{};
+  [[nodiscard]] std::size_t dimensions() const {
+    std::size_t count = 3 + (normal > 0.0 ? 3 : 0);
+    for (const auto& set : uv) count += set[0] > 0.0 ? 2 : 0;
+    return count;
+  }
+};
+
+Space space_of(const PaintedSource& source, bool has_normals) {
+  Space space;
+  space.layout = source.layout;
+  if (has_normals) space.normal = double{source.units.normal_object};
+  for (std::uint32_t set = 0; set < scene::kMaxUvSets; ++set) {
+    for (int axis = 0; axis < 2; ++axis) space.uv[set][axis] = double{source.units.uv_object[set][axis]};
+  }
+  return space;
+}
+
+Vec3d unit_normal(const float* n) {
+  const Vec3d v(n[0], n[1], n[2]);
+  const double length = std::sqrt(glm::dot(v, v));
+  // As it is stored where there is none: nearest_octahedral_point().
+  return length > 0.0 && std::isfinite(length) ? v / length : Vec3d(0.0, 0.0, 1.0);
+}
+
+/// Of a triangle without area it is zero: as far from every unit vector.
+Vec3d flat_normal(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+  const Vec3d n = glm::cross(b - a, c - a);
+  const double length = std::sqrt(glm::dot(n, n));
+  return length > 0.0 && std::isfinite(length) ? n / length : Vec3d(0.0);
+}
+
+template <std::size_t D>
+class PromiseMeter {
+ public:
+  PromiseMeter(const PaintedSource& source, const Space& space, const LodDag& dag, const format::MeshRecord& record)
+      : space_(space),
+        dag_(dag),
+        record_(record),
+        is_flat_(space.layout.flat_normal && space.normal > 0.0),
+        source_(surface_of_source(source)),
+        tree_(source_) {}
+
+  /// Per group, object units, without a margin; and of level 0 alone.
+  struct Found {
+    std::vector<double> groups;
+    double level0 = 0.0;
+  };
+
+  [[nodiscard]] Found measure() {
+    Found found;
+    found.groups.assign(dag_.groups.size(), 0.0);
+    std::vector<std::vector<Sample>> carried(dag_.clusters.size());
+    found.level0 = place_samples(carried);
+    std::vector<std::vector<std::uint32_t>> outputs(dag_.groups.size());
+    std::uint32_t level_count = 0;
+    for (std::uint32_t c = 0; c < dag_.clusters.size(); ++c) {
+      if (dag_.clusters[c].own_group.is_valid()) outputs[dag_.clusters[c].own_group.value].push_back(c);
+    }
+    for (const DagGroup& group : dag_.groups) level_count = std::max(level_count, group.level + 1);
+    for (std::uint32_t level = 0; level < level_count; ++level) {
+      std::vector<std::uint32_t> groups;
+      for (std::uint32_t g = 0; g < dag_.groups.size(); ++g) {
+        if (dag_.groups[g].level == level) groups.push_back(g);
+      }
+      parallel_for_each_index(groups.size(), 1, [&](std::size_t i) {
+        const std::uint32_t g = groups[i];
+        if (!dag_.groups[g].is_terminal) found.groups[g] = measure_group(g, outputs[g], carried);
+      });
+      for (const std::uint32_t g : groups) {
+        const DagGroup& group = dag_.groups[g];
+        for (std::uint32_t c = group.first_cluster; c < group.first_cluster + group.cluster_count; ++c) carried[c] = {};
+      }
+    }
+    return found;
+  }
+
+ private:
+  using Point = ProductPoint<D>;
+  using Surface = ProductSurface<D>;
+  using Tree = ProductTree<D>;
+
+  struct Sample {
+    std::uint32_t triangle;  ///< of the source
+    float b, c;              ///< weights of its second and third corner
+    float distance = 0.0F;   ///< from the clusters that it was last found on
+    std::uint32_t place = 0;
+  };
+
+  /// A point of a surface from which a farther one may be looked for.
+  struct Far {
+    double distance2;
+    std::uint32_t triangle;
+    double b, c;
+    std::uint32_t place;  ///< the nearest triangle of the other surface
+  };
+
+  /// The farthest so far, at most one of a triangle.
+  class FarList {
+   public:
+    void add(const Far& far) {
+      for (Far& known : list_) {
+        if (known.triangle != far.triangle) continue;
+        if (far.distance2 > known.distance2) known = far;
+        return;
+      }
+      if (list_.size() < kClimbed) {
+        list_.push_back(far);
+        return;
+      }
+      const auto least = std::min_element(list_.begin(), list_.end(),
+                                          [](const Far& a, const Far& b) { return a.distance2 < b.distance2; });
+      if (far.distance2 > least->distance2) *least = far;
+    }
+    [[nodiscard]] const std::vector<Far>& list() const { return list_; }
+
+   private:
+    std::vector<Far> list_;
+  };
+
+  [[nodiscard]] Point make(const Vec3d& p, const std::array<Vec2d, scene::kMaxUvSets>& uv, const Vec3d& n) const {
+    Point out{};
+    std::size_t d = 0;
+    for (int axis = 0; axis < 3; ++axis) out[d++] = p[axis];
+    for (std::uint32_t set = 0; set < scene::kMaxUvSets; ++set) {
+      if (!(space_.uv[set][0] > 0.0)) continue;
+      out[d++] = space_.uv[set][0] * uv[set].x;
+      out[d++] = space_.uv[set][1] * uv[set].y;
+    }
+    if (space_.normal > 0.0) {
+      for (int axis = 0; axis < 3; ++axis) out[d++] = space_.normal * n[axis];
+    }
+    return out;
+  }
+
+  [[nodiscard]] Surface surface_of_source(const PaintedSource& source) const {
+    const AttributeLayout& layout = source.layout;
+    const std::size_t stride = layout.stride();
+    const auto point_of = [&](std::uint32_t position, std::uint32_t wedge, const Vec3d& flat) {
+      const float* const a = source.attributes.data() + wedge * stride;
+      std::array<Vec2d, scene::kMaxUvSets> uv;
+      for (std::uint32_t set = 0; set < layout.uv_set_count; ++set) {
+        const float* const q = a + layout.uv_offset() + 2 * std::size_t{set};
+        uv[set] = {std::isfinite(q[0]) ? q[0] : 0.0F, std::isfinite(q[1]) ? q[1] : 0.0F};
+      }
+      return make(source.positions[position], uv, layout.has_normal ? unit_normal(a) : flat);
+    };
+    Surface surface;
+    surface.triangles.resize(source.triangles.size());
+    if (is_flat_) {
+      surface.points.resize(3 * source.triangles.size());
+      parallel_for_each_index(source.triangles.size(), kLoopGrain, [&](std::size_t t) {
+        const auto& [a, b, c] = source.triangles[t];
+        const Vec3d n = flat_normal(source.positions[a], source.positions[b], source.positions[c]);
+        for (std::uint32_t k = 0; k < 3; ++k) {
+          const auto id = static_cast<std::uint32_t>(3 * t + k);
+          surface.points[id] = point_of(source.triangles[t][k], source.wedges[t][k], n);
+          surface.triangles[t][k] = id;
+        }
+      });
+      return surface;
+    }
+    std::vector<std::uint64_t> keys;  // position and wedge of each corner: each pair is one point
+    keys.reserve(3 * source.triangles.size());
+    const auto key_of = [&](std::size_t t, std::size_t k) {
+      return std::uint64_t{source.triangles[t][k]} << 32U | source.wedges[t][k];
+    };
+    for (std::size_t t = 0; t < source.triangles.size(); ++t) {
+      for (std::size_t k = 0; k < 3; ++k) keys.push_back(key_of(t, k));
+    }
+    std::sort(keys.begin(), keys.end());
+    keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+    surface.points.resize(keys.size());
+    parallel_for_each_index(keys.size(), kLoopGrain, [&](std::size_t i) {
+      surface.points[i] =
+          point_of(static_cast<std::uint32_t>(keys[i] >> 32U), static_cast<std::uint32_t>(keys[i]), Vec3d(0.0));
+    });
+    parallel_for_each_index(source.triangles.size(), kLoopGrain, [&](std::size_t t) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto at = std::lower_bound(keys.begin(), keys.end(), key_of(t, k));
+        surface.triangles[t][k] = static_cast<std::uint32_t>(at - keys.begin());
+      }
+    });
+    return surface;
+  }
+
+  /// Appends a cluster as it will be decoded.
+  void add_cluster(const DagCluster& cluster, Surface& out) const {
+    const AttributeLayout& layout = space_.layout;
+    const std::size_t stride = layout.stride();
+    const format::PositionGrid grid{record_.grid.log2, record_.grid.mantissa};
+    std::vector<Vec3d> positions(cluster.vertex_count);
+    std::vector<std::array<Vec2d, scene::kMaxUvSets>> uvs(cluster.vertex_count);
+    std::vector<Vec3d> normals(cluster.vertex_count, Vec3d(0.0));
+    for (std::uint32_t v = 0; v < cluster.vertex_count; ++v) {
+      const std::size_t id = std::size_t{cluster.first_vertex} + v;
+      const float* const a = dag_.vertex_attributes.data() + id * stride;
+      positions[v] = grid.decode(dag_.vertex_position[id]);
+      for (std::uint32_t set = 0; set < layout.uv_set_count; ++set) {
+        if (!(space_.uv[set][0] > 0.0)) continue;
+        const double step = format::exp2_exact(record_.uv_log2[set]);
+        const float* const q = a + layout.uv_offset() + 2 * std::size_t{set};
+        uvs[v][set] = {step * quantize_uv(q[0], record_.uv_log2[set]), step * quantize_uv(q[1], record_.uv_log2[set])};
+      }
+      if (layout.has_normal && space_.normal > 0.0) {
+        const auto n = nearest_octahedral_point({a[0], a[1], a[2]}, static_cast<std::int32_t>(record_.normal_scale));
+        const Vec3d direction(n[0], n[1], n[2]);
+        normals[v] = direction / std::sqrt(glm::dot(direction, direction));
+      }
+    }
+    const auto base = static_cast<std::uint32_t>(out.points.size());
+    if (!is_flat_) {
+      for (std::uint32_t v = 0; v < cluster.vertex_count; ++v) {
+        out.points.push_back(make(positions[v], uvs[v], normals[v]));
+      }
+    }
+    for (std::uint32_t t = 0; t < cluster.triangle_count; ++t) {
+      const auto& local = dag_.triangles[cluster.first_triangle + t];
+      if (!is_flat_) {
+        out.triangles.push_back({base + local[0], base + local[1], base + local[2]});
+        continue;
+      }
+      const auto id = static_cast<std::uint32_t>(out.points.size());
+      const Vec3d n = flat_normal(positions[local[0]], positions[local[1]], positions[local[2]]);
+      for (const std::uint8_t corner : local) out.points.push_back(make(positions[corner], uvs[corner], n));
+      out.triangles.push_back({id, id + 1, id + 2});
+    }
+  }
+
+  /// Nothing is measured from a triangle without area where its normal would count: it has none, and draws nothing.
+  [[nodiscard]] bool has_points(const Surface& surface, std::uint32_t triangle) const {
+    if (!is_flat_) return true;
+    const Point& p = surface.points[surface.triangles[triangle][0]];
+    const std::size_t d = space_.dimensions() - 3;
+    return p[d] != 0.0 || p[d + 1] != 0.0 || p[d + 2] != 0.0;
+  }
+
+  [[nodiscard]] std::vector<Sample> choose_samples() const {
+    const auto count = static_cast<std::uint32_t>(source_.triangles.size());
+    std::vector<double> length(count);
+    double sum = 0.0;
+    for (std::uint32_t t = 0; t < count; ++t) {
+      double longest2 = 0.0;
+      for (int k = 0; k < 3; ++k) {
+        const Point& a = source_.points[source_.triangles[t][k]];
+        const Point& b = source_.points[source_.triangles[t][(k + 1) % 3]];
+        double side2 = 0.0;
+        for (std::size_t d = 0; d < D; ++d) side2 += (a[d] - b[d]) * (a[d] - b[d]);
+        longest2 = std::max(longest2, side2);
+      }
+      length[t] = std::sqrt(longest2);
+      sum += length[t];
+    }
+    const double per_length = sum > 0.0 && std::isfinite(sum) ? static_cast<double>(kSourcePoints) / sum : 0.0;
+    std::vector<Sample> samples;
+    std::vector<std::uint8_t> is_taken(source_.points.size(), 0);
+    SplitMix64 random(0x7061696E74ULL);
+    double owed = 0.0;
+    for (std::uint32_t t = 0; t < count; ++t) {
+      if (!has_points(source_, t)) continue;
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        std::uint8_t& taken = is_taken[source_.triangles[t][k]];
+        if (taken == 0) samples.push_back({t, k == 1 ? 1.0F : 0.0F, k == 2 ? 1.0F : 0.0F});
+        taken = 1;
+      }
+      samples.push_back({t, 1.0F / 3.0F, 1.0F / 3.0F});
+      for (owed += per_length * length[t]; owed >= 1.0; owed -= 1.0) {
+        const auto [b, c] = random_weights(random);
+        samples.push_back({t, static_cast<float>(b), static_cast<float>(c)});
+      }
+    }
+    return samples;
+  }
+
+  /// Inside of the triangle, or on an edge of it: a needle is nothing but edges.
+  static std::array<double, 2> random_weights(SplitMix64& random) {
+    double b = random.unit(), c = random.unit();
+    switch (random.below(6)) {
+      case 0: return {b, 0.0};
+      case 1: return {0.0, c};
+      case 2: return {b, 1.0 - b};
+      default: break;
+    }
+    if (b + c > 1.0) {
+      b = 1.0 - b;
+      c = 1.0 - c;
+    }
+    return {b, c};
+  }
+
+  /// Each point of the source goes to the cluster of level 0 that it lies on. Returns how far level 0 is off.
+  double place_samples(std::vector<std::vector<Sample>>& carried) const {
+    Surface level0;
+    std::vector<std::uint32_t> cluster_of;
+    for (std::uint32_t c = 0; c < dag_.clusters.size(); ++c) {
+      if (dag_.clusters[c].own_group.is_valid()) continue;
+      add_cluster(dag_.clusters[c], level0);
+      cluster_of.resize(level0.triangles.size(), c);
+    }
+    if (level0.triangles.empty()) return 0.0;
+    const Tree tree(level0);
+    const double quantization = level0_bound();
+    std::vector<Sample> samples = choose_samples();
+    std::vector<double> farthest2(chunk_count(samples.size(), kChunk), 0.0);
+    parallel_for_each_chunk(samples.size(), kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+      std::uint32_t place = kNoId;
+      for (std::size_t i = begin; i < end; ++i) {
+        // Within what quantization moves it by, one triangle is as good as another.
+        const auto hit =
+            tree.find(source_.at(samples[i].triangle, samples[i].b, samples[i].c), place, quantization * quantization);
+        if (hit.triangle == kNoId) continue;  // its distance is not a number
+        samples[i].place = place = hit.triangle;
+        farthest2[chunk] = std::max(farthest2[chunk], hit.distance2);
+      }
+    });
+    for (const Sample& sample : samples) carried[cluster_of[sample.place]].push_back(sample);
+    if (!is_flat_) return quantization;
+    double farthest = 0.0;
+    for (const double d2 : farthest2) farthest = std::max(farthest, d2);
+    std::vector<double> back2(chunk_count(level0.triangles.size(), kChunk), 0.0);
+    parallel_for_each_chunk(level0.triangles.size(), kChunk,
+                            [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+                              std::uint32_t place = kNoId;
+                              for (std::size_t t = begin; t < end; ++t) {
+                                const auto id = static_cast<std::uint32_t>(t);
+                                if (!has_points(level0, id)) continue;
+                                for (const auto& [b, c] : kCorners) {
+                                  const auto hit = tree_.find(level0.at(id, b, c), place, 0.0);
+                                  if (hit.triangle == kNoId) continue;
+                                  place = hit.triangle;
+                                  back2[chunk] = std::max(back2[chunk], hit.distance2);
+                                }
+                              }
+                            });
+    for (const double d2 : back2) farthest = std::max(farthest, d2);
+    return std::sqrt(farthest);
+  }
+
+  /// What the steps of the grids move a corner by at most, and so any point between corners. Says nothing of the
+  /// normals of triangles.
+  [[nodiscard]] double level0_bound() const {
+    double sum = double{record_.level0_deviation} * double{record_.level0_deviation};
+    for (std::uint32_t set = 0; set < space_.layout.uv_set_count; ++set) {
+      const double half = 0.5 * format::exp2_exact(record_.uv_log2[set]);
+      for (const double unit : space_.uv[set]) sum += half * unit * half * unit;
+    }
+    if (space_.layout.has_normal && space_.normal > 0.0) {
+      const double turn = space_.normal * std::sqrt(2.0) / record_.normal_scale;
+      sum += turn * turn;
+    }
+    return std::sqrt(sum);
+  }
+
+  /// Looks for a farther point on the same triangle of `surface`.
+  static void climb(const Surface& surface, const Tree& other, Far& far, SplitMix64& random) {
+    double length = 1.0;
+    for (int step = 0; step < kSteps; ++step, length *= 0.5) {
+      for (int i = 0; i < kTries; ++i) {
+        const auto [b, c] = random_weights(random);
+        const double tried_b = far.b + length * (b - far.b), tried_c = far.c + length * (c - far.c);
+        const auto hit = other.find(surface.at(far.triangle, tried_b, tried_c), far.place, far.distance2);
+        if (hit.triangle == kNoId || hit.distance2 <= far.distance2) continue;
+        far = {hit.distance2, far.triangle, tried_b, tried_c, hit.triangle};
+      }
+    }
+  }
+
+  static double climb_all(const Surface& surface, const Tree& other, const FarList& list, std::uint64_t seed) {
+    double farthest2 = 0.0;
+    for (Far far : list.list()) {
+      SplitMix64 random(seed + far.triangle);
+      climb(surface, other, far, random);
+      farthest2 = std::max(farthest2, far.distance2);
+    }
+    return farthest2;
+  }
+
+  /// Points of the group against the source. Squared.
+  [[nodiscard]] double measure_to_source(const Surface& surface, double farthest2) const {
+    const auto count = static_cast<std::uint32_t>(surface.triangles.size());
+    const std::size_t more = std::min(kMostOfTriangle, kGroupPoints / std::max(1U, count));
+    std::vector<std::uint8_t> is_taken(surface.points.size(), 0);
+    FarList list;
+    std::uint32_t place = kNoId;
+    const auto look = [&](std::uint32_t t, double b, double c) {
+      const auto hit = tree_.find(surface.at(t, b, c), place, kLookFrom * kLookFrom * farthest2);
+      if (hit.triangle == kNoId) return;
+      place = hit.triangle;
+      farthest2 = std::max(farthest2, hit.distance2);
+      if (hit.distance2 >= kLookFrom * kLookFrom * farthest2) list.add({hit.distance2, t, b, c, hit.triangle});
+    };
+    SplitMix64 random(0x67726F7570ULL);
+    for (std::uint32_t t = 0; t < count; ++t) {
+      if (!has_points(surface, t)) continue;
+      const auto& ids = surface.triangles[t];
+      look(t, 1.0 / 3.0, 1.0 / 3.0);
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (is_taken[ids[k]] == 0) look(t, kCorners[k][0], kCorners[k][1]);
+        is_taken[ids[k]] = 1;
+        // Of an edge that two triangles share, in opposite directions, one looks.
+        const std::size_t next = (k + 1) % 3;
+        if (ids[k] > ids[next]) continue;
+        look(t, 0.5 * (kCorners[k][0] + kCorners[next][0]), 0.5 * (kCorners[k][1] + kCorners[next][1]));
+      }
+      for (std::size_t i = 0; i < more; ++i) {
+        const auto [b, c] = random_weights(random);
+        look(t, b, c);
+      }
+    }
+    return std::max(farthest2, climb_all(surface, tree_, list, 0x746FULL));
+  }
+
+  /// Points of the source against the group, each of which finds where it lies there. Squared.
+  [[nodiscard]] double measure_from_source(const Tree& tree, std::vector<Sample>& samples) const {
+    double farthest2 = 0.0;
+    FarList list;
+    std::uint32_t place = kNoId;
+    for (Sample& sample : samples) {
+      const Point point = source_.at(sample.triangle, sample.b, sample.c);
+      const auto hit = tree.find(point, place, kLookFrom * kLookFrom * farthest2);
+      if (hit.triangle == kNoId) continue;
+      sample.place = place = hit.triangle;
+      sample.distance = static_cast<float>(std::sqrt(hit.distance2));
+      farthest2 = std::max(farthest2, hit.distance2);
+      if (hit.distance2 >= kLookFrom * kLookFrom * farthest2) {
+        list.add({hit.distance2, sample.triangle, double{sample.b}, double{sample.c}, hit.triangle});
+      }
+    }
+    return std::max(farthest2, climb_all(source_, tree, list, 0x66726F6DULL));
+  }
+
+  /// The farthest samples of each triangle, and of the others some from all over the source.
+  static std::vector<Sample> thin(std::vector<Sample>& samples, std::size_t triangle_count) {
+    const std::size_t each =
+        std::clamp(kCarried / std::max<std::size_t>(1, triangle_count), kFewestCarried, kMostCarried);
+    std::sort(samples.begin(), samples.end(), [](const Sample& x, const Sample& y) {
+      if (x.place != y.place) return x.place < y.place;
+      if (x.distance != y.distance) return x.distance > y.distance;
+      if (x.triangle != y.triangle) return x.triangle < y.triangle;
+      return x.b != y.b ? x.b < y.b : x.c < y.c;
+    });
+    std::vector<Sample> kept;
+    for (std::size_t begin = 0; begin < samples.size();) {
+      std::size_t end = begin;
+      while (end < samples.size() && samples[end].place == samples[begin].place) ++end;
+      const std::size_t count = end - begin, far = std::min(count, each);
+      kept.insert(kept.end(), samples.begin() + static_cast<std::ptrdiff_t>(begin),
+                  samples.begin() + static_cast<std::ptrdiff_t>(begin + far));
+      const std::size_t rest = std::min(count - far, each / 2);
+      for (std::size_t i = 0; i < rest; ++i) kept.push_back(samples[begin + far + (count - far) * i / rest]);
+      begin = end;
+    }
+    return kept;
+  }
+
+  double measure_group(std::uint32_t g, const std::vector<std::uint32_t>& outputs,
+                       std::vector<std::vector<Sample>>& carried) const {
+    Surface surface;
+    std::vector<std::uint32_t> cluster_of;
+    for (const std::uint32_t c : outputs) {
+      add_cluster(dag_.clusters[c], surface);
+      cluster_of.resize(surface.triangles.size(), c);
+    }
+    if (surface.triangles.empty()) return std::numeric_limits<double>::infinity();
+    const Tree tree(surface);
+    std::vector<Sample> samples;
+    const DagGroup& group = dag_.groups[g];
+    for (std::uint32_t c = group.first_cluster; c < group.first_cluster + group.cluster_count; ++c) {
+      samples.insert(samples.end(), carried[c].begin(), carried[c].end());
+    }
+    const double from2 = measure_from_source(tree, samples);
+    const double farthest2 = measure_to_source(surface, from2);
+    // Clusters made from one group belong to no other: nobody else writes there.
+    for (const Sample& sample : thin(samples, surface.triangles.size())) {
+      carried[cluster_of[sample.place]].push_back(sample);
+    }
+    return std::sqrt(farthest2);
+  }
+
+  static constexpr std::array<std::array<double, 2>, 3> kCorners{{{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}}};
+
+  Space space_;
+  const LodDag& dag_;
+  const format::MeshRecord& record_;
+  bool is_flat_;
+  Surface source_;
+  Tree tree_;
+};
+
+struct Measured {
+  std::vector<double> groups;
+  double level0 = 0.0;
+};
+
+template <std::size_t D>
+Measured measure_in(const PaintedSource& source, const Space& space, const LodDag& dag,
+                    const format::MeshRecord& record) {
+  auto found = PromiseMeter<D>(source, space, dag, record).measure();
+  return {std::move(found.groups), found.level0};
+}
+
+/// Nothing where the space has positions alone: their errors are known.
+std::optional<Measured> measure(const PaintedSource& source, const Space& space, const LodDag& dag,
+                                const format::MeshRecord& record) {
+  const std::size_t dimensions = space.dimensions();
+  if (dimensions <= 3) return std::nullopt;
+  if (dimensions <= 6) return measure_in<6>(source, space, dag, record);
+  if (dimensions <= 8) return measure_in<8>(source, space, dag, record);
+  return measure_in<14>(source, space, dag, record);
+}
+
+/// Makes errors nest along the DAG and above `least`, which does. Groups come coarse to fine.
+std::vector<float> nest(const LodDag& dag, const std::optional<Measured>& measured, double margin,
+                        const std::vector<float>& least) {
+  if (!measured) return least;
+  std::vector<float> errors(least.size());
+  for (std::size_t g = errors.size(); g-- > 0;) {
+    const DagGroup& group = dag.groups[g];
+    if (group.is_terminal) {
+      errors[g] = format::kInfiniteError;
+      continue;
+    }
+    float finer = 0.0F;
+    for (std::uint32_t c = group.first_cluster; c < group.first_cluster + group.cluster_count; ++c) {
+      const GroupId own = dag.clusters[c].own_group;
+      if (own.is_valid()) finer = std::max(finer, errors[own.value]);
+    }
+    errors[g] = grow_error(std::max(margin * measured->groups[g], double{least[g]}), finer);
+  }
+  return errors;
+}
+
+}  // namespace
+
+PromiseErrors measure_promises(const PaintedSource& source, const LodDag& dag, const format::MeshRecord& record,
+                               std::span<const format::GroupRecord> groups, double margin, std::uint32_t promises) {
+  PromiseErrors out;
+  out.mesh = source.units;
+  out.mesh.promises = promises;
+  std::vector<float> least;
+  for (const format::GroupRecord& group : groups) least.push_back(group.error);
+
+  const auto texels = measure(source, space_of(source, false), dag, record);
+  const std::vector<float> texel_errors = nest(dag, texels, margin, least);
+  out.mesh.level0_texels = std::max(record.level0_deviation, texels ? float_above(texels->level0) : 0.0F);
+  const bool has_appearance = (promises & format::kPromisesAppearance) != 0;
+  std::vector<float> appearance_errors(groups.size(), 0.0F);
+  if (has_appearance) {
+    const auto appearance =
+        source.units.normal_object > 0.0F ? measure(source, space_of(source, true), dag, record) : std::nullopt;
+    appearance_errors = nest(dag, appearance, margin, texel_errors);
+    // Level 0 is measured where the normals are those of triangles: with the margin of what samples find.
+    const double level0 = appearance ? appearance->level0 * (source.layout.flat_normal ? margin : 1.0) : 0.0;
+    out.mesh.level0_appearance = std::max(out.mesh.level0_texels, float_above(level0));
+  }
+  for (std::size_t g = 0; g < groups.size(); ++g) out.groups.push_back({texel_errors[g], appearance_errors[g]});
+  return out;
+}
+
+PromiseErrors promises_of_positions(const format::MeshRecord& record, std::span<const format::GroupRecord> groups,
+                                    std::uint32_t promises) {
+  PromiseErrors out;
+  out.mesh.promises = promises;
+  const bool has_appearance = (promises & format::kPromisesAppearance) != 0;
+  out.mesh.level0_texels = record.level0_deviation;
+  out.mesh.level0_appearance = has_appearance ? record.level0_deviation : 0.0F;
+  for (const format::GroupRecord& group : groups) {
+    out.groups.push_back({group.error, has_appearance ? group.error : 0.0F});
+  }
+  return out;
+}
+
+}  // namespace meshlode::build

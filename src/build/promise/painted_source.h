@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The source with what is painted on it, kept for the measuring of promises while the DAG takes the mesh apart, and the
+// units that make texture coordinates and normals lengths.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <meshlode/format.h>
+
+#include "build/plan/texel_sizes.h"
+#include "build/prepared.h"
+#include "scene/scene.h"
+
+namespace meshlode::build {
+
+struct PaintedSource {
+  AttributeLayout layout;
+  std::vector<Vec3d> positions;                         ///< before the grid, relative to the origin
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< of positions
+  std::vector<WedgeTriangle> wedges;                    ///< the same triangles, of attributes
+  std::vector<float> attributes;                        ///< per wedge, layout.stride() floats
+  format::PromiseMeshRecord units{};                    ///< promises and level0_… are not set
+};
+
+/// `extents`: of each of the scene's materials; 0 0 where no texture of it samples a set. Units (docs/selection.md):
+///   N = diagonal / 8
+///   U = s · W, V = s · H with the largest extents of the mesh's materials, s = √(area of the surface that samples the
+///       set / the texels that it samples)
+/// A set that nothing samples, or that covers no texel, is no part: 0 0.
+[[nodiscard]] PaintedSource keep_painted_source(const PreparedMesh& mesh, std::span<const TexelExtents> extents,
+                                                bool has_normals);
+
+}  // namespace meshlode::build
