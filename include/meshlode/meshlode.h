@@ -250,6 +250,21 @@ MESHLODE_API const void* meshlode_blob_bytes(const meshlode_asset* asset, uint32
 MESHLODE_API const char* meshlode_meta_json(const meshlode_asset* asset, size_t* bytes);
 MESHLODE_API const char* meshlode_scene_json(const meshlode_asset* asset, size_t* bytes);
 
+/* ------------------------------------------------------------------------------------------------------ promises */
+
+/* What a cut at t pixels is within t pixels of (docs/selection.md). */
+typedef enum meshlode_promise {
+  MESHLODE_PROMISE_POSITION = 0,  /* positions; every asset has it, and it is chosen when one is opened */
+  MESHLODE_PROMISE_TEXELS = 1,    /* texture coordinates too */
+  MESHLODE_PROMISE_APPEARANCE = 2 /* and shading normals */
+} meshlode_promise;
+
+/* Chooses by which errors cuts are made: from here on level0_deviation of the meshes, and error of the groups and
+ * nodes, are those of the promise, in the tables too, so that whoever selects on a GPU uploads them anew. Tables handed
+ * out before stay valid until the next choice. Not while another thread uses the asset. Errors: MESHLODE_USAGE for no
+ * enumerator; MESHLODE_UNSUPPORTED where the asset was not built with it. */
+MESHLODE_API meshlode_status meshlode_choose_promise(meshlode_asset* asset, uint32_t promise, meshlode_error* error);
+
 /* ----------------------------------------------------------------------------------------------------- selecting */
 
 /* Where the scene is looked at from, as far as choosing a cut needs it: a view direction plays no part in it, and

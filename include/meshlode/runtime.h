@@ -124,6 +124,9 @@ class AssetFile {
   [[nodiscard]] std::span<const format::PageRecord> pages() const;
   [[nodiscard]] std::span<const std::uint32_t> page_dependencies() const;
   [[nodiscard]] std::span<const format::BlobRecord> blobs() const;
+  /// What the asset promises besides positions (docs/selection.md): one record a mesh, and one a group; or none.
+  [[nodiscard]] std::span<const format::PromiseMeshRecord> promises() const;
+  [[nodiscard]] std::span<const format::PromiseGroupRecord> promise_errors() const;
   /// Text of a record's StringRef, UTF-8 as the source had it.
   [[nodiscard]] std::string_view text(format::StringRef ref) const;
   /// An image's or buffer's bytes as they were in the source. \pre `blob` is a record of this asset
@@ -132,6 +135,12 @@ class AssetFile {
   [[nodiscard]] std::string_view meta_json() const;
   /// JSON in the shape of glTF: nodes, materials, textures, cameras, animations.
   [[nodiscard]] std::string_view scene_json() const;
+
+  /// From here on cuts keep this promise: the errors of meshes(), groups() and nodes() are those of it, for whoever
+  /// selects by these tables too. Views taken before stay valid until the next choice. It is that of positions when an
+  /// asset is opened. Errors: kUsage for no enumerator; kUnsupported where the asset has no such errors, with how to
+  /// build it. Not while another thread uses the asset.
+  [[nodiscard]] Status choose_promise(format::Promise promise);
 
   /// What to draw so that no point of the surface moves by more than max(pixel_error, level 0's own deviation) pixels,
   /// as far as the asset's error tier promises it. Each piece of each instance's surface is drawn exactly once, without

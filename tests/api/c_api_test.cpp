@@ -276,6 +276,45 @@ TEST_P(CApi, ArgumentsThatMakeNoSenseAreUsageErrors) {
   EXPECT_TRUE(refuses([](meshlode_view& v) { v.is_orthographic = 1, v.ortho_height = 0.0; }));
 }
 
+TEST_P(CApi, AnAssetWithoutPromisesKeepsThatOfPositions) {
+  EXPECT_EQ(meshlode_choose_promise(asset_, MESHLODE_PROMISE_POSITION, &error_), MESHLODE_OK);
+  EXPECT_EQ(meshlode_choose_promise(asset_, MESHLODE_PROMISE_TEXELS, &error_), MESHLODE_UNSUPPORTED);
+  EXPECT_NE(std::string(error_.text).find("--promise texels"), std::string::npos) << error_.text;
+  EXPECT_EQ(meshlode_choose_promise(asset_, 3, &error_), MESHLODE_USAGE);
+}
+
+TEST(CApiPromise, CutsAreMadeByTheChosenErrors) {
+  const Arrays arrays(scene::with_smooth_normals(scene::make_sphere(48)));
+  BuildOptions options;
+  options.promise = format::Promise::kAppearance;
+  const auto bytes = test::build_one(arrays.primitive(), options);
+  ASSERT_TRUE(bytes.ok());
+  meshlode_asset* asset = nullptr;
+  meshlode_error error{};
+  ASSERT_EQ(meshlode_open_buffer(bytes->data(), bytes->size(), &asset, &error), MESHLODE_OK) << error.text;
+  auto expected = AssetFile::view(*bytes);
+  ASSERT_TRUE(expected.ok());
+  std::size_t counts[3] = {};
+  for (std::uint32_t promise = 0; promise < 3; ++promise) {
+    ASSERT_EQ(meshlode_choose_promise(asset, promise, &error), MESHLODE_OK) << error.text;
+    ASSERT_TRUE(expected->choose_promise(static_cast<format::Promise>(promise)));
+    std::uint32_t count = 0;
+    const meshlode_group* groups = meshlode_groups(asset, &count);
+    for (std::uint32_t g = 0; g < count; ++g) EXPECT_EQ(groups[g].error, expected->groups()[g].error);
+    std::vector<std::uint32_t> clusters(4096);
+    ASSERT_EQ(
+        meshlode_select_uniform(asset, 0, 0.01, clusters.data(), clusters.size(), &counts[promise], nullptr, &error),
+        MESHLODE_OK)
+        << error.text;
+    clusters.resize(counts[promise]);
+    EXPECT_EQ(clusters, expected->select_uniform(0, 0.01)->clusters);
+  }
+  EXPECT_EQ(counts[0], counts[1]) << "nothing samples a texture";
+  EXPECT_GT(counts[2], counts[0]) << "normals ask for more";
+  EXPECT_FALSE(expected->choose_promise(static_cast<format::Promise>(7)));
+  meshlode_close(asset);
+}
+
 INSTANTIATE_TEST_SUITE_P(Codecs, CApi, testing::Values(format::Codec::kNone, format::Codec::kZstd),
                          [](const auto& codec) { return codec.param == format::Codec::kNone ? "none" : "zstd"; });
 

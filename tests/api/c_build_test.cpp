@@ -96,6 +96,12 @@ TEST(CBuild, TheSameBytesAsInCpp) {
   same.aggregate = AggregateChoice::kAuto;
   same.position_error = 0.01;
   EXPECT_EQ(build_in_c(scene, &options), build_in_cpp(arrays, same));
+
+  meshlode_build_defaults(&options);
+  options.promise = 2;
+  same = {};
+  same.promise = format::Promise::kAppearance;
+  EXPECT_EQ(build_in_c(scene, &options), build_in_cpp(arrays, same));
 }
 
 TEST(CBuild, AFileHasTheSameBytes) {

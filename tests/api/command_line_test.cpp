@@ -54,6 +54,9 @@ const Saying kSayings[] = {
     {"--keep-topology", [](BuildOptions& o) { o.keep_topology = true; }},
     {"--aggregate auto", [](BuildOptions& o) { o.aggregate = AggregateChoice::kAuto; }},
     {"--aggregate always", [](BuildOptions& o) { o.aggregate = AggregateChoice::kAlways; }},
+    {"--promise texels --error-tier measured",
+     [](BuildOptions& o) { o.promise = format::Promise::kTexels, o.error_tier = format::ErrorTier::kMeasured; },
+     "foliage.glb"},
     {"--group-clusters 12", [](BuildOptions& o) { o.group_clusters = 12; }},
     {"--strict", [](BuildOptions&) {}},  // the library always is
     {"--repair", [](BuildOptions& o) { o.repair = true; }},

@@ -34,6 +34,7 @@ void expect_both_ways(const std::array<EnumName<Enum>, N>& names) {
 TEST(EnumNames, EachValueOfTheFormatHasOneNameAndEachNameOneValue) {
   expect_both_ways(format::kCodecNames);
   expect_both_ways(format::kErrorTierNames);
+  expect_both_ways(format::kPromiseNames);
   expect_both_ways(format::kNormalModeNames);
   expect_both_ways(format::kAlphaModeNames);
   expect_both_ways(format::kStuckReasonNames);

@@ -83,6 +83,15 @@ void print(Line& line, const format::BlobRecord& r) {
   line << r.name << r.mime_type << r.offset << r.bytes << r.kind << r.source_index << r.checksum;
 }
 
+void print(Line& line, const format::PromiseMeshRecord& r) {
+  line << r.promises << r.normal_object;
+  for (const auto& set : r.uv_object) line << set;
+  line << r.level0_texels << r.level0_appearance;
+}
+void print(Line& line, const format::PromiseGroupRecord& r) {
+  line << r.texel_error << r.appearance_error;
+}
+
 template <class Record>
 void print_table(const char* name, std::span<const Record> records) {
   for (std::size_t i = 0; i < records.size(); ++i) {
@@ -148,6 +157,8 @@ int main(int argc, char** argv) {
   print_table("NODE", asset->nodes());
   print_table("PAGT", asset->pages());
   print_table("BLBT", asset->blobs());
+  print_table("PRMS", asset->promises());
+  print_table("PRMG", asset->promise_errors());
   for (std::size_t i = 0; i < asset->page_dependencies().size(); ++i) {
     Line("PDEP") << i << asset->page_dependencies()[i];
   }

@@ -118,6 +118,17 @@ size 200""",
 52 u16 flags
 54 u16 stuck_reason
 size 56""",
+    "PRMS": """
+0 u32 promises
+4 f32 normal_object
+8 f32[8] uv_object
+40 f32 level0_texels
+44 f32 level0_appearance
+size 48""",
+    "PRMG": """
+0 f32 texel_error
+4 f32 appearance_error
+size 8""",
     "CLUS": """
 0 i16[3] center
 6 u16 radius

@@ -27,6 +27,7 @@ VERSIONS = (1, 2)
 TEXTS = ("META", "SCNE", "STRS")
 SECTIONS = ("META", "SCNE", "STRS", "MESH", "MATL", "INST", "GRUP", "CLUS", "NODE", "PAGT", "PDEP", "BLBT", "PAGE",
             "BLOB")
+OPTIONAL = ("PRMS", "PRMG")  # both or neither
 
 
 def parse_layout(text):
@@ -75,6 +76,10 @@ class Lode:
         self.read_sections()
         self.tables = {name: self.read_table(name) for name in ("MESH", "MATL", "INST", "GRUP", "CLUS", "NODE", "PAGT",
                                                                  "BLBT")}
+        check(len([name for name in OPTIONAL if name in self.sections]) != 1, "section PRMS", "is there without PRMG, or PRMG without it")
+        for name in OPTIONAL:
+            self.tables[name] = self.read_table(name) if name in self.sections else []
+        self.tables["has_promises"] = "PRMS" in self.sections
         raw = self.section("PDEP")
         check(len(raw) % 4 == 0, "section PDEP", "is not whole records")
         self.tables["PDEP"] = list(struct.unpack(f"<{len(raw) // 4}I", raw))
@@ -111,7 +116,7 @@ class Lode:
             check(entry["bytes"] <= len(self.data) - entry["offset"], place + ", field bytes", "leaves the file")
             check(is_zero(self.data[end:entry["offset"]]), place, "the padding before it is not zero")
             end = entry["offset"] + entry["bytes"]
-            if name not in SECTIONS:
+            if name not in SECTIONS + OPTIONAL:
                 if entry["flags"] & 1:
                     raise Unsupported(f"{place}: is required and not known")
                 continue
@@ -205,6 +210,9 @@ class Lode:
         parts += [self.page_bytes(i) for i in range(len(self.tables["PAGT"]))]
         parts += [head("BLBT"), without("BLBT", ("offset",))]
         parts += [self.data[b["offset"]:b["offset"] + b["bytes"]] for b in self.tables["BLBT"]]
+        for name in OPTIONAL:
+            if name in self.sections:
+                parts += [head(name), self.section(name)]
         return canonical_128(b"".join(parts))
 
 
@@ -213,7 +221,7 @@ def canonical_lines(lode):
     yield f"lode {lode.header['version']} {bytes(lode.header['content_hash']).hex()}"
     for name in TEXTS:
         yield f"{name} {lode.section(name).hex()}"
-    for name in ("MESH", "MATL", "INST", "GRUP", "CLUS", "NODE", "PAGT", "BLBT"):
+    for name in ("MESH", "MATL", "INST", "GRUP", "CLUS", "NODE", "PAGT", "BLBT", "PRMS", "PRMG"):
         for i, record in enumerate(lode.tables[name]):
             words = []
             for field, _, kind, _ in LAYOUTS[name][1]:

@@ -84,6 +84,37 @@ def check_dag(tables):
         check(max(levels) == group["level"], f"section GRUP, record {g}, field level")
 
 
+def check_promises(tables):
+    """Floats are their bits: of those that are not negative the order is that of the numbers."""
+    if not tables["has_promises"]:
+        return
+    meshes, groups = tables["PRMS"], tables["PRMG"]
+    check(len(meshes) == len(tables["MESH"]), "section PRMS, field record_count")
+    check(len(groups) == len(tables["GRUP"]), "section PRMG, field record_count")
+    for i, (promise, mesh) in enumerate(zip(meshes, tables["MESH"])):
+        place = f"section PRMS, record {i}, field "
+        check(promise["promises"] in (1, 3) and promise["promises"] == meshes[0]["promises"], place + "promises")
+        appears = promise["promises"] & 2
+        check(promise["normal_object"] <= (INFINITE if appears else 0), place + "normal_object")
+        for k in range(4):
+            u, v = promise["uv_object"][2 * k:2 * k + 2]
+            check(max(u, v) <= INFINITE and (u == 0) == (v == 0) and (k < mesh["uv_set_count"] or u == 0),
+                  place + "uv_object")
+        check(mesh["level0_deviation"] & ~(1 << 31) <= promise["level0_texels"] <= INFINITE, place + "level0_texels")
+        least = promise["level0_texels"] if appears else 0
+        check(least <= promise["level0_appearance"] <= (INFINITE if appears else 0), place + "level0_appearance")
+    for i, (promise, group) in enumerate(zip(groups, tables["GRUP"])):
+        place = f"section PRMG, record {i}, field "
+        terminal = bool(group["flags"] & TERMINAL)
+        texels, appearance = promise["texel_error"], promise["appearance_error"]
+        check(group["error"] & ~(1 << 31) <= texels <= INFINITE and (texels == INFINITE) == terminal,
+              place + "texel_error")
+        if meshes[group["mesh"]]["promises"] & 2:
+            check(texels <= appearance <= INFINITE and (appearance == INFINITE) == terminal, place + "appearance_error")
+        else:
+            check(appearance == 0, place + "appearance_error")
+
+
 def check_nodes(tables):
     nodes = tables["NODE"]
     for mesh in tables["MESH"]:
@@ -170,6 +201,7 @@ def check_tables(tables):
         check(material["double_sided"] <= 1, f"section MATL, record {i}, field double_sided")
     check_instances(tables)
     check_dag(tables)
+    check_promises(tables)
     check_nodes(tables)
     check_pages(tables)
     check_blobs(tables)

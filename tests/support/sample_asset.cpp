@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "build/promise/measure_promise.h"
 #include "build/write/write.h"
 
 namespace meshlode::test {
@@ -101,7 +102,23 @@ std::vector<std::uint8_t> sample_asset_bytes(format::Codec codec) {
   return sample_asset_bytes(sample_scene(), codec);
 }
 
-std::vector<std::uint8_t> sample_asset_bytes(const scene::Scene& scene, format::Codec codec) {
+void add_promises(build::WriteInput& input) {
+  input.promises = format::kPromisesTexels | format::kPromisesAppearance;
+  for (build::EncodedMesh& mesh : input.meshes) {
+    build::PromiseErrors errors = build::promises_of_positions(mesh.record, mesh.groups, input.promises);
+    if (mesh.record.normal_mode != format::NormalMode::kNone) errors.mesh.normal_object = 0.25F;
+    for (std::uint32_t set = 0; set < mesh.record.uv_set_count; ++set) {
+      errors.mesh.uv_object[set][0] = 2.0F;
+      errors.mesh.uv_object[set][1] = 0.5F;
+    }
+    mesh.promise = errors.mesh;
+    mesh.promise_errors = std::move(errors.groups);
+  }
+}
+
+namespace {
+
+build::WriteInput sample_input(const scene::Scene& scene, format::Codec codec) {
   build::WriteInput input;
   for (const SampleMesh& sample : {sample_patch(), sample_sphere(), sample_tetrahedron()}) {
     input.meshes.push_back(value_or_abort(build::encode_mesh(sample.mesh, sample.dag, sample.hierarchy, {})));
@@ -112,6 +129,19 @@ std::vector<std::uint8_t> sample_asset_bytes(const scene::Scene& scene, format::
   input.scene = &scene;
   input.meta_json = R"({"source":{"file":"sample.glb"},"settings":{}})";
   input.codec = codec;
+  return input;
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> sample_asset_bytes(const scene::Scene& scene, format::Codec codec) {
+  return value_or_abort(build::write_asset(sample_input(scene, codec)));
+}
+
+std::vector<std::uint8_t> promised_asset_bytes(format::Codec codec) {
+  const scene::Scene scene = sample_scene();
+  build::WriteInput input = sample_input(scene, codec);
+  add_promises(input);
   return value_or_abort(build::write_asset(std::move(input)));
 }
 

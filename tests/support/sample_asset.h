@@ -9,6 +9,7 @@
 #include <meshlode/format.h>
 
 #include "build/encode/encode.h"
+#include "build/write/write.h"
 #include "scene/scene.h"
 #include "support/reseal.h"
 #include "support/sample_mesh.h"
@@ -23,6 +24,10 @@ namespace meshlode::test {
 [[nodiscard]] std::vector<std::uint8_t> sample_asset_bytes(format::Codec codec = format::Codec::kNone);
 /// The same for another scene of the same meshes.
 [[nodiscard]] std::vector<std::uint8_t> sample_asset_bytes(const scene::Scene& scene, format::Codec codec);
+/// The asset of sample_scene() with promises of texels and appearance.
+[[nodiscard]] std::vector<std::uint8_t> promised_asset_bytes(format::Codec codec = format::Codec::kNone);
+/// Promises of texels and appearance for what is about to be written: with the groups' own errors, which are sound.
+void add_promises(build::WriteInput& input);
 
 /// An asset with one instance of one mesh; materials are those of sample_scene().
 [[nodiscard]] std::vector<std::uint8_t> asset_bytes_of(const SampleMesh& sample,

@@ -14,6 +14,7 @@
 #include "options.h"
 #include "out/export/export.h"
 #include "outputs.h"
+#include "promise_option.h"
 #include "run/read/asset.h"
 #include "verb.h"
 
@@ -22,7 +23,7 @@ namespace meshlode::cli {
 namespace {
 
 struct ExtractOptions {
-  std::string input;
+  std::string input, promise = "position";
   std::optional<std::string> output;
   std::optional<std::string> mesh;
   bool is_stuck = false;
@@ -207,6 +208,7 @@ int run_extract(const Verb& verb, std::span<char* const> args) {
   parser.add_value("--mesh", o.mesh, "this mesh only, by name or index; the nodes of others stay, without a mesh");
   parser.add_flag("--stuck", o.is_stuck,
                   "instead of a cut the groups where simplification is stuck, coloured by reason");
+  add_promise_option(parser, o.promise);
   add_bounds_options(parser, r.bounds);
   add_camera_options(parser, r.camera);
   add_max_decoded_option(parser, o.max_decoded);
@@ -218,6 +220,7 @@ int run_extract(const Verb& verb, std::span<char* const> args) {
   if (!max_decoded) return print_error(max_decoded.error());
   auto asset = run::Asset::open(o.input, *max_decoded);
   if (!asset) return print_error(asset.error());
+  if (const Status promised = choose_promise(o.promise, *asset); !promised) return print_error(promised.error());
   if (const auto id = asset->file_id()) output_files().keep(*id);
   if (const Status free = output_files().claim(*o.output); !free) return print_error(free.error());
   if (o.is_stuck) return extract_stuck(*asset, *o.output, o.out);

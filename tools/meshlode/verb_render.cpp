@@ -17,6 +17,7 @@
 #include "explain.h"
 #include "options.h"
 #include "outputs.h"
+#include "promise_option.h"
 #include "verb.h"
 
 namespace meshlode::cli {
@@ -24,7 +25,7 @@ namespace meshlode::cli {
 namespace {
 
 struct RenderOptions {
-  std::string input, output, view = "shaded";
+  std::string input, output, view = "shaded", promise = "position";
   CameraOptions camera;
   BoundsOptions bounds;
   std::optional<double> error;
@@ -240,6 +241,7 @@ int run_render(const Verb& verb, std::span<char* const> args) {
   parser.add_value("--error", options.error,
                    "draw the uniform cut at this error in mesh units instead of --pixel-error");
   parser.add_flag("--relative", options.is_relative, "--error is a fraction of each mesh's own diagonal");
+  add_promise_option(parser, options.promise);
   add_bounds_options(parser, options.bounds);
   parser.add_flag("--gpu", options.gpu, "select and draw on a Vulkan device");
   parser.add_value("--device", options.device, "with --gpu: an index or a part of the name (the first that can)");
@@ -268,8 +270,9 @@ int run_render(const Verb& verb, std::span<char* const> args) {
   if (!max_decoded) return print_error(max_decoded.error());
 
   const JobLimit limit(options.jobs);
-  const Result<run::Asset> asset = run::Asset::open(options.input, *max_decoded);
+  Result<run::Asset> asset = run::Asset::open(options.input, *max_decoded);
   if (!asset) return print_error(asset.error());
+  if (const Status chosen = choose_promise(options.promise, *asset); !chosen) return print_error(chosen.error());
   if (const auto id = asset->file_id()) output_files().keep(*id);
   if (const Status free = output_files().claim(options.output); !free) return print_error(free.error());
   const Result<run::Camera> camera = make_camera(options.camera, *asset);

@@ -123,6 +123,37 @@ void write_level(JsonWriter& w, const LevelInfo& level) {
   w.end_object();
 }
 
+/// Errors: the largest of a group that is not terminal.
+void write_promises(JsonWriter& w, const run::Asset& asset, std::uint32_t id) {
+  const format::MeshRecord& mesh = asset.meshes()[id];
+  const format::PromiseMeshRecord& promise = asset.promises()[id];
+  const bool has_appearance = (promise.promises & format::kPromisesAppearance) != 0;
+  float texels = 0.0F, appearance = 0.0F;
+  for (std::uint32_t g = mesh.first_group; g < mesh.first_group + mesh.group_count; ++g) {
+    if ((asset.groups()[g].flags & format::kGroupTerminal) != 0) continue;
+    texels = std::max(texels, asset.promise_errors()[g].texel_error);
+    appearance = std::max(appearance, asset.promise_errors()[g].appearance_error);
+  }
+  w.key("promises");
+  w.begin_object();
+  w.key("uv_object");
+  w.begin_array();
+  for (std::uint32_t k = 0; k < mesh.uv_set_count; ++k) {
+    w.begin_array();
+    for (const float along : promise.uv_object[k]) w.value(along);
+    w.end_array();
+  }
+  w.end_array();
+  w.field("level0_texels", promise.level0_texels);
+  w.field("largest_texel_error", texels);
+  if (has_appearance) {
+    w.field("normal_object", promise.normal_object);
+    w.field("level0_appearance", promise.level0_appearance);
+    w.field("largest_appearance_error", appearance);
+  }
+  w.end_object();
+}
+
 void write_mesh(JsonWriter& w, const run::Asset& asset, std::uint32_t id, const MeshInfo& info) {
   const format::MeshRecord& mesh = asset.meshes()[id];
   w.begin_object();
@@ -146,6 +177,7 @@ void write_mesh(JsonWriter& w, const run::Asset& asset, std::uint32_t id, const 
   for (std::uint32_t k = 0; k < mesh.uv_set_count && k < format::kMaxUvSets; ++k) w.value(mesh.uv_set_source[k]);
   w.end_array();
   w.field("has_color", mesh.has_color != 0);
+  if (!asset.promises().empty()) write_promises(w, asset, id);
   w.key("dropped");
   w.begin_object();
   w.field("degenerate", mesh.dropped_degenerate);

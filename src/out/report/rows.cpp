@@ -103,6 +103,19 @@ std::vector<std::string> mesh_lines(const run::Asset& asset, std::uint32_t id, c
   append_format(lines[1], "%llu root(s) with %llu triangles, %zu stuck group(s), level 0 deviates by %.3g",
                 static_cast<unsigned long long>(info.roots), static_cast<unsigned long long>(info.root_triangles),
                 info.stuck.size(), static_cast<double>(mesh.level0_deviation));
+  if (!asset.promises().empty()) {
+    const format::PromiseMeshRecord& promise = asset.promises()[id];
+    const bool has_appearance = (promise.promises & format::kPromisesAppearance) != 0;
+    lines.emplace_back("promises ");
+    append_format(lines.back(), "%s, level 0 off by %.3g", has_appearance ? "texels and appearance" : "texels",
+                  static_cast<double>(promise.level0_texels));
+    if (has_appearance) append_format(lines.back(), " and %.3g", static_cast<double>(promise.level0_appearance));
+    for (std::uint32_t k = 0; k < mesh.uv_set_count; ++k) {
+      append_format(lines.back(), "; UV unit of set %u %.4g x %.4g", k, static_cast<double>(promise.uv_object[k][0]),
+                    static_cast<double>(promise.uv_object[k][1]));
+    }
+    if (has_appearance) append_format(lines.back(), "; normal %.4g", static_cast<double>(promise.normal_object));
+  }
   if (info.stuck.empty()) return lines;
   std::map<std::string, std::uint64_t> reasons;
   for (const StuckGroupInfo& stuck : info.stuck) ++reasons[format::name_of(stuck.reason)];

@@ -223,6 +223,16 @@ const void* meshlode_blob_bytes(const meshlode_asset* asset, uint32_t blob, size
   return view.data();
 }
 
+meshlode_status meshlode_choose_promise(meshlode_asset* asset, uint32_t promise, meshlode_error* error) {
+  if (promise > MESHLODE_PROMISE_APPEARANCE) {
+    return meshlode::fail(error, MESHLODE_USAGE, "promise: is not one of its enumerators");
+  }
+  return meshlode::guard(error, [&] {
+    const meshlode::Status chosen = asset->asset.choose(static_cast<meshlode::format::Promise>(promise));
+    return chosen ? meshlode::succeed(error) : meshlode::fail(error, chosen.error());
+  });
+}
+
 const char* meshlode_meta_json(const meshlode_asset* asset, size_t* bytes) {
   *bytes = asset->asset.meta_json().size();
   return asset->asset.meta_json().data();

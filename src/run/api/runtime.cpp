@@ -117,6 +117,12 @@ std::span<const std::uint32_t> AssetFile::page_dependencies() const {
 std::span<const format::BlobRecord> AssetFile::blobs() const {
   return state_->asset.blobs();
 }
+std::span<const format::PromiseMeshRecord> AssetFile::promises() const {
+  return state_->asset.promises();
+}
+std::span<const format::PromiseGroupRecord> AssetFile::promise_errors() const {
+  return state_->asset.promise_errors();
+}
 std::string_view AssetFile::text(format::StringRef ref) const {
   return state_->asset.string(ref);
 }
@@ -128,6 +134,11 @@ std::string_view AssetFile::meta_json() const {
 }
 std::string_view AssetFile::scene_json() const {
   return state_->asset.scene_json();
+}
+
+Status AssetFile::choose_promise(format::Promise promise) {
+  if (promise > format::Promise::kAppearance) return usage("promise", "is not one of its enumerators");
+  return state_->asset.choose(promise);
 }
 
 Result<std::vector<DrawItem>> AssetFile::select_view(const View& view, double pixel_error) const {

@@ -12,7 +12,7 @@ namespace {
 using format::SectionId;
 
 bool is_length(float value) {
-  return std::isfinite(value) && value >= 0.0F;
+  return std::isfinite(value) && value >= 0.0F && !std::signbit(value);
 }
 
 Status check_mesh(const RawTables& tables, std::size_t m) {

@@ -125,6 +125,30 @@ TEST(Malformed, EveryFlippedBitWithChecksumsMadeToFitIsRefusedOrRead) {
   }
 }
 
+TEST(Malformed, PromisesWithFlippedBitsAreRefusedOrRead) {
+  for (const format::Codec codec : {format::Codec::kNone, format::Codec::kStrips}) {
+    const auto bytes = test::promised_asset_bytes(codec);
+    const std::uint64_t begin = test::section_offset(bytes, format::SectionId::kPromises);
+    const std::uint64_t end = test::section_offset(bytes, format::SectionId::kPageData);
+    std::size_t counts[3] = {};
+    for (std::uint64_t at = begin; at < end; ++at) {
+      for (int bit = 0; bit < 8; ++bit) {
+        auto broken = bytes;
+        broken[at] ^= static_cast<std::uint8_t>(1U << bit);
+        test::reseal(broken);
+        ++counts[static_cast<int>(read_everything(broken))];
+        auto asset = Asset::from_vector(std::move(broken));
+        for (const format::Promise promise : {format::Promise::kTexels, format::Promise::kAppearance}) {
+          if (!asset || !asset->has_promise(promise)) continue;
+          ASSERT_TRUE(asset->choose(promise));
+          for (const format::NodeRecord& node : asset->nodes()) ASSERT_TRUE(node.error >= 0.0F);
+        }
+      }
+    }
+    EXPECT_GT(counts[0], 100U) << "the checks behind the checksums were reached";
+  }
+}
+
 // Words become the values that break arithmetic: zero, all ones, one less than overflow, another word of the file.
 TEST(Malformed, RandomWordsWithChecksumsMadeToFitAreRefusedOrRead) {
   const char* more = std::getenv("MESHLODE_FUZZ_ROUNDS");

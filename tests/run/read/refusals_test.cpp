@@ -326,6 +326,55 @@ TEST(Read, RefusesBrokenGroups) {
   expect_refused(bytes, "section GRUP, record 0, field level");
 }
 
+TEST(Read, PromisesAreChosenOneAfterAnother) {
+  auto asset = Asset::from_vector(test::promised_asset_bytes());
+  ASSERT_TRUE(asset) << asset.error().message();
+  ASSERT_EQ(asset->promises().size(), asset->meshes().size());
+  ASSERT_EQ(asset->promise_errors().size(), asset->groups().size());
+  ASSERT_TRUE(asset->choose(format::Promise::kAppearance));
+  Asset moved = std::move(*asset);  // with what was chosen
+  EXPECT_EQ(moved.chosen_promise(), format::Promise::kAppearance);
+  for (std::size_t g = 0; g < moved.groups().size(); ++g) {
+    EXPECT_EQ(moved.groups()[g].error, moved.promise_errors()[g].appearance_error);
+  }
+  ASSERT_TRUE(moved.choose(format::Promise::kPosition));
+  EXPECT_EQ(moved.groups().size(), sound_asset().groups().size());
+}
+
+TEST(Read, RefusesBrokenPromises) {
+  using P = format::PromiseMeshRecord;
+  using E = format::PromiseGroupRecord;
+  const std::vector<std::uint8_t> promised = test::promised_asset_bytes();
+  const std::vector<Rule<P>> of_meshes{{"promises", 0, [](P& p) { p.promises = 0; }},
+                                       {"promises", 1, [](P& p) { p.promises = 2; }},
+                                       {"promises", 1, [](P& p) { p.promises = 1; }},
+                                       {"promises", 0, [](P& p) { p.promises |= 8; }},
+                                       {"normal_object", 0, [](P& p) { p.normal_object = kNan; }},
+                                       {"normal_object", 0, [](P& p) { p.normal_object = -0.0F; }},
+                                       {"uv_object", 0, [](P& p) { p.uv_object[0][0] = kInf; }},
+                                       {"uv_object", 0, [](P& p) { p.uv_object[0][1] = 0.0F; }},
+                                       {"uv_object", 0, [](P& p) { p.uv_object[3][0] = p.uv_object[3][1] = 1.0F; }},
+                                       {"level0_texels", 0, [](P& p) { p.level0_texels = kNan; }},
+                                       {"level0_appearance", 0, [](P& p) { p.level0_appearance = -1.0F; }}};
+  for (const Rule<P>& rule : of_meshes) {
+    expect_refused(test::with_changed_record<P>(promised, SectionId::kPromises, rule.record, rule.change),
+                   "section PRMS, record " + std::to_string(rule.record) + ", field " + rule.field);
+  }
+  // Group 0 is terminal.
+  const std::vector<Rule<E>> of_groups{
+      {"texel_error", 0, [](E& e) { e.texel_error = 1.0F; }},
+      {"texel_error", 1, [](E& e) { e.texel_error = kNan; }},
+      {"texel_error", 1, [](E& e) { e.texel_error = 0.5F * e.texel_error - 1.0F; }},
+      {"texel_error", 1, [](E& e) { e.texel_error = format::kInfiniteError; }},
+      {"appearance_error", 1, [](E& e) { e.appearance_error = kInf; }},
+      {"appearance_error", 1, [](E& e) { e.texel_error = 2.0F * e.appearance_error + 1.0F; }},
+      {"appearance_error", 0, [](E& e) { e.appearance_error = 0.0F; }}};
+  for (const Rule<E>& rule : of_groups) {
+    expect_refused(test::with_changed_record<E>(promised, SectionId::kPromiseErrors, rule.record, rule.change),
+                   "section PRMG, record " + std::to_string(rule.record) + ", field " + rule.field);
+  }
+}
+
 TEST(Read, RefusesBrokenClusters) {
   using C = format::ClusterRecord;
   const std::size_t level1 = sound_asset().groups()[1].first_cluster;

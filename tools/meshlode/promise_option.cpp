@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "promise_option.h"
+
+#include "format/names.h"
+
+namespace meshlode::cli {
+
+void add_promise_option(OptionParser& parser, std::string& promise) {
+  parser.add_value("--promise", promise,
+                   "what may be off by the error: position; texels, texture coordinates too; appearance, normals too",
+                   all_names(format::kPromiseNames));
+}
+
+Status choose_promise(const std::string& promise, run::Asset& asset) {
+  return asset.choose(value_in(format::kPromiseNames, promise).value_or(format::Promise::kPosition));
+}
+
+}  // namespace meshlode::cli
