@@ -152,6 +152,48 @@ TEST(Mutation, AFewMutantsOfEachKindAreFound) {
   run_mutants({{"the hand-made sample", test::judged_sample_bytes(), test::sample_scene()}}, MESHLODE_MUTANTS_PER_KIND);
 }
 
+TEST(Mutation, APromiseThatIsNotKeptByTheTablesIsFoundByItsRule) {
+  using Mesh = format::PromiseMeshRecord;
+  using Group = format::PromiseGroupRecord;
+  const std::vector<std::uint8_t> promised = test::judged_sample_bytes(format::Codec::kNone, true);
+  SplitMix64 random(31);
+  const auto is_found = [&](const test::AssetEdit& edit, const char* rule) {
+    const judge::ValidationReport report = judge::validate_asset(edit.bytes());
+    return std::any_of(report.findings.begin(), report.findings.end(),
+                       [&](const judge::Finding& finding) { return finding.id == rule; });
+  };
+  for (int i = 0; i < 60; ++i) {
+    test::AssetEdit edit(promised);
+    const auto groups = edit.groups();
+    const std::uint64_t g = random.below(groups.size());
+    const bool is_terminal = (groups[g].flags & format::kGroupTerminal) != 0;
+    edit.change_at<Group>(edit.offset_of<Group>(format::SectionId::kPromiseErrors, g), [&](Group& e) {
+      float& error = random.below(2) == 0 ? e.texel_error : e.appearance_error;
+      // In the sample all errors of a group are one: whichever falls is below the one before it.
+      error = is_terminal            ? static_cast<float>(random.between(0.0, 9.0))
+              : random.below(3) == 0 ? format::kInfiniteError
+                                     : error * static_cast<float>(random.between(0.1, 0.99)) - 1e-30F;
+    });
+    edit.seal();
+    EXPECT_TRUE(is_found(edit, "L313")) << i;
+  }
+  for (int i = 0; i < 60; ++i) {
+    test::AssetEdit edit(promised);
+    edit.change_at<Mesh>(edit.offset_of<Mesh>(format::SectionId::kPromises, random.below(edit.meshes().size())),
+                         [&](Mesh& m) {
+                           switch (random.below(5)) {
+                             case 0: m.promises ^= 1U << random.below(32); break;
+                             case 1: m.normal_object = -1.0F - m.normal_object; break;
+                             case 2: m.uv_object[random.below(4)][random.below(2)] += -9.0F; break;
+                             case 3: m.level0_texels = m.level0_appearance + 1.0F; break;
+                             default: m.level0_appearance = -1.0F; break;
+                           }
+                         });
+    edit.seal();
+    EXPECT_TRUE(is_found(edit, "L117")) << i;
+  }
+}
+
 TEST(Mutation, ADependencyLeftOutIsFoundByItsRule) {
   test::AssetEdit edit(several_pages().bytes);
   const auto pages = edit.pages();

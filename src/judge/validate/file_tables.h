@@ -84,6 +84,9 @@ void check_content_hash(const FileTables& file, std::span<const std::span<const 
 /// L301 … L311. \pre check_tables()
 void check_dag(const FileTables& file, RuleLog& log);
 
+/// L117 and L313. \pre check_tables()
+void check_promises(const FileTables& file, RuleLog& log);
+
 /// L401 … L404. \pre check_tables()
 void check_trees(const FileTables& file, RuleLog& log);
 

@@ -49,6 +49,9 @@ constexpr std::array kRules{
     RULE(L114, "I11", "blobs fill the blob section in order and match their checksums"),
     RULE(L115, "", "level_count is the number of levels"),
     RULE(L116, "I1", "source triangles are those of level 0 plus those dropped, by kind"),
+    RULE(L117, "I11",
+         "what is promised besides positions has a record of each mesh and group, with lengths for units, or is not "
+         "there"),
     // pages
     RULE(L201, "I2", "pages partition groups and clusters in order, and groups name their page"),
     RULE(L202, "I11", "pages fill the page section in order, each on the next multiple of 16"),
@@ -86,6 +89,9 @@ constexpr std::array kRules{
          "META's error_margin"),
     RULE(L312, "I4",
          "normal and UV deviations never fall along the DAG; infinite where terminal, and measured for all or none"),
+    RULE(L313, "I4",
+         "promised errors are infinite exactly where the group's is, never below it nor appearance below texels, and "
+         "grow along the DAG with the margin"),
     // hierarchy
     RULE(L401, "I8",
          "a mesh's BVH is one tree: children after their parent, at most 8, each node reached once, 64 deep at most"),

@@ -22,10 +22,11 @@ enum class Rule : std::uint8_t {
   kL001, kL002, kL003, kL004, kL005, kL006, kL007, kL008, kL009, kL010, kL011, kL012, kL013, kL014, kL099,
   // tables
   kL101, kL102, kL103, kL104, kL105, kL106, kL107, kL108, kL109, kL110, kL111, kL112, kL113, kL114, kL115, kL116,
+  kL117,
   // pages
   kL201, kL202, kL203, kL204, kL205, kL206, kL207, kL208, kL209, kL210, kL211, kL212, kL213, kL214, kL215, kL216,
   // DAG
-  kL301, kL302, kL303, kL304, kL305, kL306, kL307, kL308, kL309, kL310, kL311, kL312,
+  kL301, kL302, kL303, kL304, kL305, kL306, kL307, kL308, kL309, kL310, kL311, kL312, kL313,
   // hierarchy
   kL401, kL402, kL403, kL404,
   // geometry

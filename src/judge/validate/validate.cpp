@@ -21,6 +21,7 @@ void run_rules(std::span<const std::uint8_t> bytes, RuleLog& log) {
   if (!file || !check_tables(*file, log)) return;
   check_dag(*file, log);
   check_trees(*file, log);
+  check_promises(*file, log);
   if (!check_page_table(*file, log)) return;
 
   const Result<run::Asset> asset = run::Asset::from_bytes(bytes);

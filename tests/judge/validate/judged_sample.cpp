@@ -23,7 +23,7 @@ T value_or_abort(Result<T> result) {
 
 }  // namespace
 
-std::vector<std::uint8_t> judged_sample_bytes(format::Codec codec) {
+std::vector<std::uint8_t> judged_sample_bytes(format::Codec codec, bool has_promises) {
   const scene::Scene scene = sample_scene();
   build::WriteInput input;
   for (const SampleMesh& sample : {sample_patch(), sample_sphere(), sample_tetrahedron()}) {
@@ -43,6 +43,7 @@ std::vector<std::uint8_t> judged_sample_bytes(format::Codec codec) {
       R"({"generator":"a test","source":{"file":"sample.glb","hash":")" + scene.source_hash +
       R"("},"settings":{"error_tier":"qem","cluster_triangles":256,"normal_error":0.1,"uv_error":0.0001,"uv_error_unit":"uv"},"plan":[],"left_out":[]})";
   input.codec = codec;
+  if (has_promises) add_promises(input);
   return value_or_abort(build::write_asset(std::move(input)));
 }
 

@@ -153,6 +153,32 @@ std::uint32_t leaf_node(const AssetEdit& edit) {
   return format::kNone;
 }
 
+AssetEdit promised() {
+  return AssetEdit(test::judged_sample_bytes(format::Codec::kNone, true));
+}
+
+/// What is promised of a mesh, changed.
+template <class Change>
+void promise(AssetEdit& e, std::uint64_t mesh, const Change& change) {
+  e = promised();
+  e.change_at<format::PromiseMeshRecord>(e.offset_of<format::PromiseMeshRecord>(SectionId::kPromises, mesh), change);
+}
+
+/// The same of a group that is not terminal.
+template <class Change>
+void promised_error(AssetEdit& e, const Change& change) {
+  e = promised();
+  e.change_at<format::PromiseGroupRecord>(
+      e.offset_of<format::PromiseGroupRecord>(SectionId::kPromiseErrors, inner_group(e)), change);
+}
+
+TEST(Validate, FindsNothingInPromises) {
+  for (const format::Codec codec : {format::Codec::kNone, format::Codec::kStrips}) {
+    const ValidationReport report = validate_asset(test::judged_sample_bytes(codec, true));
+    EXPECT_EQ(report.finding_count, 0U) << describe(report);
+  }
+}
+
 const std::vector<Break>& breaks() {
   static const std::vector<Break> all{
       {"L001", "wrong magic", [](AssetEdit& e) { e.header([](auto& h) { h.magic ^= 1U; }); }},
@@ -390,6 +416,43 @@ const std::vector<Break>& breaks() {
        [](AssetEdit& e) { e.group(inner_group(e), [](auto& g) { g.uv_deviation = 1.0F; }); }},
       {"L312", "normal deviation is negative",
        [](AssetEdit& e) { e.group(inner_group(e), [](auto& g) { g.normal_deviation = -0.0F; }); }},
+      {"L117", "one of its sections alone",
+       [](AssetEdit& e) {
+         e = promised();
+         // Not required: a reader that does not know the id skips it.
+         e.entry(SectionId::kPromiseErrors, [](auto& s) { s.id = format::four_cc('P', 'R', 'M', 'X'); });
+       }},
+      {"L117", "an unknown promise", [](AssetEdit& e) { promise(e, 0, [](auto& p) { p.promises |= 4; }); }},
+      {"L117", "no promise", [](AssetEdit& e) { promise(e, 0, [](auto& p) { p.promises = 0; }); }},
+      {"L117", "promises of one mesh", [](AssetEdit& e) { promise(e, 1, [](auto& p) { p.promises = 1; }); }},
+      {"L117", "a negative unit", [](AssetEdit& e) { promise(e, 0, [](auto& p) { p.normal_object = -1.0F; }); }},
+      {"L117", "a unit along one axis", [](AssetEdit& e) { promise(e, 0, [](auto& p) { p.uv_object[0][1] = 0.0F; }); }},
+      {"L117", "a unit of no set",
+       [](AssetEdit& e) { promise(e, 0, [](auto& p) { p.uv_object[3][0] = p.uv_object[3][1] = 1.0F; }); }},
+      {"L117", "level 0 below its deviation",
+       [](AssetEdit& e) { promise(e, 0, [](auto& p) { p.level0_texels = -1.0F; }); }},
+      {"L117", "level 0 below its texels",
+       [](AssetEdit& e) { promise(e, 0, [](auto& p) { p.level0_texels = 2.0F * p.level0_appearance + 1.0F; }); }},
+      {"L313", "texels below positions",
+       [](AssetEdit& e) { promised_error(e, [](auto& p) { p.texel_error *= 0.9F; }); }},
+      {"L313", "appearance below texels",
+       [](AssetEdit& e) { promised_error(e, [](auto& p) { p.appearance_error *= 0.9F; }); }},
+      {"L313", "infinite and not terminal",
+       [](AssetEdit& e) { promised_error(e, [](auto& p) { p.appearance_error = format::kInfiniteError; }); }},
+      {"L313", "a terminal one is finite",
+       [](AssetEdit& e) {
+         e = promised();
+         e.change_at<format::PromiseGroupRecord>(e.section(SectionId::kPromiseErrors).offset,
+                                                 [](auto& p) { p.appearance_error = 1.0F; });
+       }},
+      {"L313", "a finer one is above a coarser one",
+       [](AssetEdit& e) {
+         e = promised();
+         const std::uint32_t finer = e.clusters()[cluster_above(e, shared_group(e))].own_group;
+         e.change_at<format::PromiseGroupRecord>(
+             e.offset_of<format::PromiseGroupRecord>(SectionId::kPromiseErrors, finer),
+             [](auto& p) { p.appearance_error = 1e30F; });
+       }},
       {"L401", "child before its parent",
        [](AssetEdit& e) {
          const auto n = inner_node(e);
