@@ -14,6 +14,9 @@ cp seeds/reader/*-none.lode seeds/reader/*-lz4.lode seeds/reader/*-strips.lode .
 for name in rock city crystal foliage; do
   "$meshlode" build "$data/$name.glb" -o "$name.lode" --codec none --quiet || exit 2
 done
+for promise in texels appearance; do
+  "$meshlode" build "$data/foliage.glb" -o "foliage-$promise.lode" --promise $promise --codec none --quiet || exit 2
+done
 "$meshlode" build "$data/rock.glb" -o rock-lz4.lode --codec lz4 --quiet || exit 2
 for name in crystal foliage; do
   "$meshlode" build "$data/$name.glb" -o "$name-strips.lode" --codec strips --quiet || exit 2
