@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "judge/metrics/shaded_surface.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "judge/metrics/triangle_area.h"
@@ -81,6 +82,23 @@ ShadedSurface shaded_surface_of_clusters(const run::Asset& asset, std::span<cons
     shade_flat(out, 0);
   }
   return out;
+}
+
+Result<ShadedSurface> shaded_surface_of_clusters(const run::Asset& asset, MeshId mesh,
+                                                 std::span<const ClusterId> clusters) {
+  const auto page_of = [&](ClusterId id) { return asset.groups()[asset.clusters()[id.value].coarser_group].page; };
+  std::vector<ClusterId> order(clusters.begin(), clusters.end());
+  std::stable_sort(order.begin(), order.end(), [&](ClusterId a, ClusterId b) { return page_of(a) < page_of(b); });
+  std::vector<run::DecodedCluster> decoded(asset.clusters().size());  // of the cut alone: the others stay empty
+  for (std::size_t i = 0; i < order.size();) {
+    const std::uint32_t id = page_of(order[i]);
+    const auto page = run::load_page(asset, PageId{id});
+    if (!page) return page.error();
+    for (; i < order.size() && page_of(order[i]) == id; ++i) {
+      run::decode_cluster(asset, *page, order[i], decoded[order[i].value]);
+    }
+  }
+  return shaded_surface_of_clusters(asset, decoded, mesh, clusters);
 }
 
 }  // namespace meshlode::judge

@@ -31,4 +31,8 @@ struct ShadedSurface {
                                                        std::span<const run::DecodedCluster> decoded, MeshId mesh,
                                                        std::span<const ClusterId> clusters);
 
+/// The same, decoded here, page by page. Errors: as run::load_page().
+[[nodiscard]] Result<ShadedSurface> shaded_surface_of_clusters(const run::Asset& asset, MeshId mesh,
+                                                               std::span<const ClusterId> clusters);
+
 }  // namespace meshlode::judge

@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "judge/metrics/product_distance.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "base/parallel.h"
+#include "judge/metrics/area_samples.h"
+#include "judge/metrics/product_tree.h"
+
+namespace meshlode::judge {
+namespace {
+
+constexpr std::size_t kChunk = 512;  // queries that share a hint, whatever the thread count
+// By what a distance may differ with where the search began, for boxes prune, and roundings of needles differ: as
+// shares of the distance and of the surfaces' extent.
+constexpr double kSearchRounding = 1e-9, kSearchFloor = 1e-12;
+
+/// Which UV sets count, in the order of their coordinates.
+struct Coordinates {
+  std::vector<std::size_t> uv_sets;
+  ProductLayout layout;
+};
+
+Coordinates coordinates_of(const ProductScales& scales) {
+  Coordinates out;
+  for (std::size_t n = 0; n < scales.uv.size(); ++n) {
+    if (scales.uv[n].x > 0.0 && scales.uv[n].y > 0.0) out.uv_sets.push_back(n);
+  }
+  out.layout.uv_sets = static_cast<std::uint32_t>(out.uv_sets.size());
+  out.layout.has_normal = scales.normal > 0.0;
+  return out;
+}
+
+bool is_finite(const Vec2f& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y);
+}
+
+template <std::size_t N>
+std::vector<ProductPoint<N>> vertices_of(const ShadedSurface& s, const ProductScales& scales, const Coordinates& at) {
+  std::vector<ProductPoint<N>> out(s.surface.positions.size());
+  for (std::size_t v = 0; v < out.size(); ++v) {
+    ProductPoint<N>& point = out[v];
+    for (int k = 0; k < 3; ++k) point.x[static_cast<std::size_t>(k)] = s.surface.positions[v][k];
+    for (std::size_t k = 0; k < at.uv_sets.size(); ++k) {
+      const std::size_t set = at.uv_sets[k];
+      if (s.uvs[set].empty() || !is_finite(s.uvs[set][v])) continue;
+      point.x[3 + 2 * k] = scales.uv[set].x * double{s.uvs[set][v].x};
+      point.x[4 + 2 * k] = scales.uv[set].y * double{s.uvs[set][v].y};
+      point.known |= 1U << k;
+    }
+    if (!at.layout.has_normal || s.normals.empty()) continue;
+    const Vec3d n(s.normals[v]);
+    const double length = glm::length(n);
+    if (!std::isfinite(length) || !(length > 0.0)) continue;
+    product::put_normal<N>(point.x, at.layout.normal_at(), n * (scales.normal / length));
+    point.known |= 1U << at.layout.uv_sets;
+  }
+  return out;
+}
+
+/// The point of a triangle at the weights of its second and third corner.
+template <std::size_t N>
+ProductPoint<N> point_at(const std::vector<ProductPoint<N>>& vertices, const std::array<std::uint32_t, 3>& triangle,
+                         const SurfacePoint& at, const ProductLayout& layout) {
+  ProductPoint<N> out;
+  out.known = layout.all_known();
+  product::Corners<N> corners;
+  for (std::size_t k = 0; k < 3; ++k) {
+    out.known &= vertices[triangle[k]].known;
+    corners[k] = vertices[triangle[k]].x;
+  }
+  for (std::size_t k = 0; k < N; ++k) {
+    out.x[k] = corners[0][k] + at.u * (corners[1][k] - corners[0][k]) + at.v * (corners[2][k] - corners[0][k]);
+  }
+  for (std::uint32_t k = 0; k < layout.uv_sets; ++k) {
+    if ((out.known >> k & 1U) == 0) out.x[3 + 2 * k] = out.x[4 + 2 * k] = 0.0;
+  }
+  if (layout.has_normal && (out.known >> layout.uv_sets & 1U) == 0) {
+    product::put_normal<N>(out.x, layout.normal_at(), Vec3d(0.0));
+  }
+  return out;
+}
+
+template <std::size_t N>
+double distance_between(const ProductPoint<N>& a, const ProductPoint<N>& b) {
+  const product::Row<N> d = product::minus<N>(a.x, b.x);
+  return std::sqrt(product::dot<N>(d, d));
+}
+
+struct Bounds {
+  Vec3d low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
+};
+
+Bounds bounds_of(const Surface& surface) {
+  Bounds bounds;
+  for (const Vec3d& p : surface.positions) {
+    bounds.low = glm::min(bounds.low, p);
+    bounds.high = glm::max(bounds.high, p);
+  }
+  return bounds;
+}
+
+/// A surface as points and a tree.
+template <std::size_t N>
+struct Measured {
+  std::vector<ProductPoint<N>> points;  ///< near ones one after another
+  std::vector<std::uint32_t> id;        ///< of a point: samples first, then vertices, as they come
+  ProductTree<N> tree;
+};
+
+template <std::size_t N>
+Measured<N> make_measured(const ShadedSurface& s, const ProductScales& scales, const DeviationOptions& options) {
+  const Coordinates at = coordinates_of(scales);
+  std::vector<ProductPoint<N>> vertices = vertices_of<N>(s, scales, at);
+  Measured<N> out{{}, {}, ProductTree<N>(vertices, s.surface.triangles, at.layout)};
+  const AreaSamples samples(s.surface, options.samples, options.seed);
+  const auto sample_count = static_cast<std::uint32_t>(samples.count());
+  std::vector<std::uint32_t> place(s.surface.triangles.size(), 0);
+  const std::vector<std::uint32_t>& order = out.tree.triangles_in_order();
+  for (std::uint32_t i = 0; i < order.size(); ++i) place[order[i]] = i;
+  std::vector<std::array<std::uint32_t, 2>> sorted(sample_count);
+  std::vector<SurfacePoint> sampled(sample_count);
+  for (std::uint32_t i = 0; i < sample_count; ++i) {
+    sampled[i] = samples.sample(i);
+    sorted[i] = {place[sampled[i].triangle], i};
+  }
+  std::sort(sorted.begin(), sorted.end());
+  for (const auto& [unused, i] : sorted) {
+    const SurfacePoint& sample = sampled[i];
+    out.points.push_back(point_at<N>(vertices, s.surface.triangles[sample.triangle], sample, at.layout));
+    out.id.push_back(i);
+  }
+  std::vector<std::uint32_t> id_of_vertex(vertices.size(), 0xFFFFFFFFu);
+  std::uint32_t next = sample_count;
+  for (const std::uint32_t v : used_vertices(s.surface)) id_of_vertex[v] = next++;
+  for (const std::uint32_t triangle : order) {
+    for (const std::uint32_t v : s.surface.triangles[triangle]) {
+      if (id_of_vertex[v] == 0xFFFFFFFFu) continue;
+      out.points.push_back(vertices[v]);
+      out.id.push_back(id_of_vertex[v]);
+      id_of_vertex[v] = 0xFFFFFFFFu;
+    }
+  }
+  return out;
+}
+
+struct Farthest {
+  double distance = -1.0;
+  std::uint32_t id = 0;
+  Vec3d position{0.0};
+
+  /// The farther one, of those that are as far the first.
+  void take(const Farthest& other) {
+    if (other.distance > distance || (other.distance == distance && other.id < id)) *this = other;
+  }
+};
+
+/// The first of the points that is farthest, weighted, from the triangles of `to`; `largest` is what is known of other
+/// points, and grows.
+template <std::size_t N>
+Farthest find_farthest(const Measured<N>& from, const ProductTree<N>& to, double extent, const DistanceWeight& weight,
+                       std::atomic<double>& largest) {
+  std::vector<Farthest> partials(chunk_count(from.points.size(), kChunk));
+  parallel_for_each_chunk(from.points.size(), kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+    std::uint32_t hint = 0xFFFFFFFFu;
+    double reach = std::numeric_limits<double>::infinity();  // the surface is no farther from the point before
+    for (std::size_t i = begin; i < end; ++i) {
+      // What is known so far decides how long the search takes, not what comes of it: the farthest point is never
+      // nearer than that but by rounding, and what counts is its distance without a hint.
+      const ProductPoint<N>& point = from.points[i];
+      const double counts = weight ? weight(point.position()) : 1.0;
+      double known = largest.load(std::memory_order_relaxed);
+      const double near = std::max(0.0, known / counts * (1.0 - kSearchRounding) - kSearchFloor * extent);
+      reach = i > begin && point.known == from.points[i - 1].known
+                  ? reach + distance_between<N>(point, from.points[i - 1])
+                  : std::numeric_limits<double>::infinity();
+      if (reach * (1.0 + kSearchRounding) < near) continue;
+      const auto nearest = to.nearest(point, near * near, hint);
+      hint = nearest.triangle;
+      reach = std::sqrt(nearest.distance2);
+      if (reach < near) continue;
+      const double distance = counts * std::sqrt(to.nearest(point).distance2);
+      partials[chunk].take({distance, from.id[i], point.position()});
+      while (distance > known && !largest.compare_exchange_weak(known, distance)) {
+      }
+    }
+  });
+  Farthest farthest;
+  for (const Farthest& partial : partials) farthest.take(partial);
+  return farthest;
+}
+
+template <std::size_t N>
+LargestDeviation find_largest_of(const Measured<N>& a, const Bounds& bounds_a, const ShadedSurface& surface_b,
+                                 const ProductScales& scales, const DeviationOptions& options,
+                                 const DistanceWeight& weight) {
+  LargestDeviation out;
+  if (a.tree.empty() || surface_b.surface.triangles.empty()) {
+    if (a.tree.empty() == surface_b.surface.triangles.empty()) return out;
+    out.max = std::numeric_limits<double>::infinity();
+    out.is_of_a = !a.tree.empty();
+    return out;
+  }
+  const Measured<N> b = make_measured<N>(surface_b, scales, options);
+  const Bounds bounds_b = bounds_of(surface_b.surface);
+  const double extent = glm::length(glm::max(bounds_a.high, bounds_b.high) - glm::min(bounds_a.low, bounds_b.low));
+  std::atomic<double> largest = 0.0;
+  const Farthest of_a = find_farthest<N>(a, b.tree, extent, weight, largest);
+  const Farthest of_b = find_farthest<N>(b, a.tree, extent, weight, largest);
+  out.is_of_a = of_a.distance >= of_b.distance;
+  const Farthest& farthest = out.is_of_a ? of_a : of_b;
+  out.max = std::max(0.0, farthest.distance);
+  out.worst = farthest.position;
+  out.points = a.points.size() + b.points.size();
+  return out;
+}
+
+constexpr std::size_t kFew = 8, kMany = 16;  // coordinates: multiples of a vector's, so that loops over them are short
+static_assert(3 + 2 * scene::kMaxUvSets + 3 <= kMany);
+
+}  // namespace
+
+struct ProductDistanceFrom::Parts {
+  ProductScales scales;
+  DeviationOptions options;
+  Bounds bounds;
+  std::optional<Measured<kFew>> few;  ///< one of them
+  std::optional<Measured<kMany>> many;
+};
+
+ProductDistanceFrom::ProductDistanceFrom(const ShadedSurface& a, const ProductScales& scales,
+                                         const DeviationOptions& options)
+    : parts_(std::make_unique<Parts>()) {
+  parts_->scales = scales;
+  parts_->options = options;
+  parts_->bounds = bounds_of(a.surface);
+  if (coordinates_of(scales).layout.size() <= kFew) {
+    parts_->few.emplace(make_measured<kFew>(a, scales, options));
+  } else {
+    parts_->many.emplace(make_measured<kMany>(a, scales, options));
+  }
+}
+ProductDistanceFrom::~ProductDistanceFrom() = default;
+ProductDistanceFrom::ProductDistanceFrom(ProductDistanceFrom&&) noexcept = default;
+
+LargestDeviation ProductDistanceFrom::find_largest(const ShadedSurface& b, const DistanceWeight& weight) const {
+  const Parts& p = *parts_;
+  return p.few ? find_largest_of<kFew>(*p.few, p.bounds, b, p.scales, p.options, weight)
+               : find_largest_of<kMany>(*p.many, p.bounds, b, p.scales, p.options, weight);
+}
+
+}  // namespace meshlode::judge

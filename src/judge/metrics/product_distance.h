@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How far two surfaces are apart in what is painted on them too: both as surfaces of a product space, whose points are
+//
+//   x = (position, s_u · u and s_v · v of each UV set that counts, lambda · unit normal)
+//
+// with the Euclidean metric, in object units (docs/selection.md, "Promises"). A texture that swims, a seam that moved
+// sideways and a normal that turned are lengths there, as a dent is; the two-sided Hausdorff distance counts them
+// together. Where a chart ends nothing special happens: a point beyond a moved seam has its own chart's point nearby,
+// as far away as the seam moved.
+//
+// Between the corners of a triangle all coordinates are linear, the normal's too, which is not made unit length again:
+// so surfaces are flat piece by piece, and the nearest point is found exactly (product_tree.h).
+#pragma once
+
+#include <array>
+#include <functional>
+#include <memory>
+
+#include "base/vec.h"
+#include "judge/metrics/metrics.h"
+#include "judge/metrics/shaded_surface.h"
+#include "scene/scene.h"
+
+namespace meshlode::judge {
+
+/// What counts beside positions, as lengths. Where all are 0 the distance is that of the positions.
+struct ProductScales {
+  std::array<Vec2d, scene::kMaxUvSets> uv{};  ///< object units per UV unit in u and v, by TEXCOORD_n; 0: does not count
+  double normal = 0.0;                        ///< lambda: object units that a unit normal counts; 0: does not count
+};
+
+/// How much a distance at a position counts; above 0 and finite.
+using DistanceWeight = std::function<double(const Vec3d&)>;
+
+/// A surface a that others are measured against, one after another. What a surface does not know (an entry that is not
+/// finite, a normal of no length, at any corner of a triangle) is not compared there: the distance is then that of the
+/// rest.
+class ProductDistanceFrom {
+ public:
+  /// `options`: as of DeviationFrom. `a` may go afterwards.
+  ProductDistanceFrom(const ShadedSurface& a, const ProductScales& scales, const DeviationOptions& options);
+  ~ProductDistanceFrom();
+  ProductDistanceFrom(ProductDistanceFrom&&) noexcept;
+
+  /// The two-sided maximum over area-uniform samples (in the area of the positions) and all vertices, and the first
+  /// point where it is found; the same for any thread count. With a weight the largest of weight(position) · distance.
+  /// Infinite where one surface has no triangle and the other has; 0 where both have none.
+  [[nodiscard]] LargestDeviation find_largest(const ShadedSurface& b, const DistanceWeight& weight = {}) const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace meshlode::judge
