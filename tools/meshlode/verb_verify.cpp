@@ -86,6 +86,20 @@ std::string to_json(const std::string& path, const std::string& source, const ju
     json.field("keeps_topology", report.crowded_edges->keeps_topology);
     json.end_object();
   }
+  if (!report.promises.empty()) {
+    json.key("promises");
+    json.begin_array();
+    for (const judge::VerifyReport::PromisedCuts& promised : report.promises) {
+      json.begin_object();
+      json.field("promise", promised.promise);
+      json.field("cuts", promised.cuts);
+      json.field("exceeded", promised.exceeded);
+      json.field("median", promised.median);
+      json.field("largest", promised.largest);
+      json.end_object();
+    }
+    json.end_array();
+  }
   write_findings(json, report.findings);
   json.end_object();
   return json.text();

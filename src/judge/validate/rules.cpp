@@ -140,6 +140,13 @@ constexpr std::array kRules{
         V208, "I7",
         "a uniform cut of an aggregate covers what level 0 covers: pixels of its error's size within 22%, all together "
         "within 2%, their contrast at most 1.25 times"),
+    RULE(V209, "I7",
+         "what is promised of texels or appearance holds: a uniform cut is no farther from the source, UVs or normals "
+         "counted as lengths, than it stores (within 5%)"),
+    RULE(V210, "I7",
+         "what UVs and normals count as in promises is the mean size of a texel times the texture's sides, and an "
+         "eighth "
+         "of the diagonal"),
     // verify --gpu
     RULE(V401, "I9", "`--gpu`: the device decodes every cluster to the CPU's integers"),
     RULE(V402, "I8", "`--gpu`: the device's traversal selects what the flat rule selects"),

@@ -12,20 +12,15 @@
 
 namespace meshlode::judge {
 
-namespace {
-
-/// Errors to cut at: 0 where a group says that, and from the smallest positive to the largest finite one, evenly in the
-/// logarithm. One alone is in the middle; 0 only where there is no other.
-std::vector<double> thresholds_of(const run::Asset& asset, const format::MeshRecord& mesh, std::uint32_t count) {
+std::vector<double> spread_thresholds(std::span<const format::GroupRecord> groups, std::uint32_t count) {
   float low = format::kInfiniteError;
   float high = 0.0F;
   bool any_zero = false;
-  for (std::uint32_t g = mesh.first_group; g < mesh.first_group + mesh.group_count; ++g) {
-    const float error = asset.groups()[g].error;
-    if (error == 0.0F) any_zero = true;
-    if (error >= format::kInfiniteError || !(error > 0.0F)) continue;
-    low = std::min(low, error);
-    high = std::max(high, error);
+  for (const format::GroupRecord& group : groups) {
+    if (group.error == 0.0F) any_zero = true;
+    if (group.error >= format::kInfiniteError || !(group.error > 0.0F)) continue;
+    low = std::min(low, group.error);
+    high = std::max(high, group.error);
   }
   std::vector<double> thresholds;
   if (any_zero && (count > 1 || (count == 1 && !(high > 0.0F)))) thresholds.push_back(0.0);
@@ -37,14 +32,17 @@ std::vector<double> thresholds_of(const run::Asset& asset, const format::MeshRec
   return thresholds;
 }
 
-/// What decoded positions may be off by: the last bits of doubles as large as they are, and of what is worked out from
-/// them. A flat cut deviates by that and stores 0.
-double rounding_of(const format::MeshRecord& mesh) {
+double position_rounding(const format::MeshRecord& mesh) {
   const double farthest = std::max({std::abs(mesh.origin[0]), std::abs(mesh.origin[1]), std::abs(mesh.origin[2])});
   return 1e-12 * mesh.diagonal + 0x1p-51 * (farthest + mesh.diagonal);
 }
 
-}  // namespace
+void summarize(std::vector<double> ratios, DeviationTotals& totals) {
+  if (ratios.empty()) return;
+  std::sort(ratios.begin(), ratios.end());
+  totals.worst = ratios.back();
+  totals.median = ratios[ratios.size() / 2];
+}
 
 Result<std::vector<CutDeviation>> measure_cuts(const run::Asset& asset, MeshId mesh, const scene::SourceMesh& source,
                                                std::uint32_t cuts, std::uint64_t samples) {
@@ -53,13 +51,14 @@ Result<std::vector<CutDeviation>> measure_cuts(const run::Asset& asset, MeshId m
   const DeviationFrom from_truth(truth, {.samples = samples});
   std::vector<CutDeviation> measured;
   std::vector<ClusterId> previous;
-  for (const double threshold : thresholds_of(asset, record, cuts)) {
+  for (const double threshold :
+       spread_thresholds(asset.groups().subspan(record.first_group, record.group_count), cuts)) {
     const run::UniformCut cut = run::select_uniform(asset, mesh, threshold);
     if (cut.clusters == previous) continue;
     previous = cut.clusters;
     const Result<Surface> surface = surface_of_clusters(asset, mesh, cut.clusters);
     if (!surface) return surface.error();
-    measured.push_back({threshold, cut.stored_error, from_truth.find_largest(*surface), rounding_of(record)});
+    measured.push_back({threshold, cut.stored_error, from_truth.find_largest(*surface), position_rounding(record)});
   }
   return measured;
 }
@@ -91,11 +90,7 @@ DeviationTotals check_deviations(const run::Asset& asset, const scene::Scene& so
           });
     }
   }
-  std::sort(ratios.begin(), ratios.end());
-  if (!ratios.empty()) {
-    totals.worst = ratios.back();
-    totals.median = ratios[ratios.size() / 2];
-  }
+  summarize(std::move(ratios), totals);
   return totals;
 }
 

@@ -17,6 +17,14 @@ namespace meshlode::judge {
 /// How far a `measured` error may fall short of the true deviation.
 constexpr double kMeasuredShortfall = 0.05;
 
+/// Errors to cut at: 0 where a group says that, and from the smallest positive to the largest finite one, evenly in the
+/// logarithm. One alone is in the middle; 0 only where there is no other.
+[[nodiscard]] std::vector<double> spread_thresholds(std::span<const format::GroupRecord> groups, std::uint32_t count);
+
+/// What decoded positions may be off by: the last bits of doubles as large as they are, and of what is worked out from
+/// them. A flat cut deviates by that and stores 0.
+[[nodiscard]] double position_rounding(const format::MeshRecord& mesh);
+
 /// A uniform cut with what it stores and what it was found to deviate by. Object units.
 struct CutDeviation {
   double threshold = 0.0, stored = 0.0;
@@ -43,6 +51,9 @@ struct DeviationTotals {
   double worst = 0.0;          ///< largest true / stored
   double median = 0.0;         ///< of true / stored
 };
+
+/// Largest and median; neither changes where there is none.
+void summarize(std::vector<double> ratios, DeviationTotals& totals);
 
 /// measure_cuts() of every mesh whose tier promises something. A `measured` cut fails above 1 + kMeasuredShortfall, a
 /// `certified` one above 1.

@@ -9,10 +9,12 @@
 
 #include "base/memory.h"
 #include "base/release.h"
+#include "format/names.h"
 #include "judge/validate/file_tables.h"
 #include "judge/verify/coverage_rule.h"
 #include "judge/verify/cuts.h"
 #include "judge/verify/deviations.h"
+#include "judge/verify/promises.h"
 #include "judge/verify/source_rules.h"
 
 namespace meshlode::judge {
@@ -209,6 +211,34 @@ void add_deviations(const run::Asset& asset, const scene::Scene& source, const V
   report.take(log);
 }
 
+/// Nothing is said of an asset that promises positions alone.
+void add_promises(const run::Asset& asset, const scene::Scene& source, const VerifyOptions& options, Report& report) {
+  if (asset.promises().empty()) return;
+  RuleLog units;
+  check_promise_units(asset, source, units);
+  report.add_check("I7", "what UVs and normals count as in promises is what the source says", asset.meshes().size(),
+                   failures_of(units, {Rule::kV210}));
+  report.take(units);
+  const std::uint32_t cuts = options.is_quick ? 1 : options.deviation_cuts;
+  for (const format::Promise promise : {format::Promise::kTexels, format::Promise::kAppearance}) {
+    if (!asset.has_promise(promise)) continue;
+    const std::string name(format::name_of(promise));
+    if (cuts == 0) {
+      report.skip("I7", "not checked: no cut was to be measured for the promise of " + name);
+      continue;
+    }
+    RuleLog log;
+    const DeviationTotals totals = check_promise(asset, source, promise, cuts, options.deviation_samples, log);
+    char text[200];
+    std::snprintf(text, sizeof text,
+                  "cuts keep what is promised of %s: true/stored median %.2f, largest %.3f, above 1 in %llu cuts",
+                  name.c_str(), totals.median, totals.worst, static_cast<unsigned long long>(totals.exceeded));
+    report.add_check("I7", text, totals.cuts, failures_of(log, {Rule::kV209}));
+    report.out.promises.push_back({name, totals.cuts, totals.exceeded, totals.median, totals.worst});
+    report.take(log);
+  }
+}
+
 }  // namespace
 
 VerifyReport verify_asset(const run::Asset& asset, const scene::Scene& source, const VerifyOptions& options) {
@@ -225,6 +255,7 @@ VerifyReport verify_asset(const run::Asset& asset, const scene::Scene& source, c
     release(*clusters);  // cuts are decoded one by one
     give_back_freed_memory();
     add_deviations(asset, source, options, report);
+    add_promises(asset, source, options, report);
     add_coverage(asset, options, report);
   } else {
     report.add_check("I1", "not reached: " + clusters.error().message(), 0, 1);

@@ -45,6 +45,15 @@ struct VerifyReport {
     bool keeps_topology = false;  ///< as the asset says: no cut may have more than level 0 then (V207)
   };
   std::optional<CrowdedEdges> crowded_edges;
+  /// What is promised besides positions, measured (V209); one for each promise that the asset has.
+  struct PromisedCuts {
+    std::string promise;         ///< "texels"
+    std::uint64_t cuts = 0;      ///< measured
+    std::uint64_t exceeded = 0;  ///< farther from the source than they store, by however little
+    double median = 0.0;         ///< of true over stored
+    double largest = 0.0;        ///< of true over stored; infinite where a cut stores 0 and is not there
+  };
+  std::vector<PromisedCuts> promises;
 };
 
 [[nodiscard]] VerifyReport verify_asset(const run::Asset& asset, const scene::Scene& source,

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What an asset promises besides positions against the truth, by measuring whole cuts in the product space of
+// positions, UVs and normals (V209). Internal to the judge.
+#pragma once
+
+#include <cstdint>
+
+#include <meshlode/format.h>
+
+#include "judge/metrics/product_distance.h"
+#include "judge/validate/rules.h"
+#include "judge/verify/deviations.h"
+#include "run/read/asset.h"
+#include "run/select/select.h"
+#include "scene/scene.h"
+
+namespace meshlode::judge {
+
+/// What counts for a promise, as the asset says of a mesh. \pre the asset has the promise
+[[nodiscard]] ProductScales scales_of(const run::Asset& asset, MeshId mesh, format::Promise promise);
+
+/// measure_cuts() of a promise: level 0, and up to `cuts` uniform cuts by its errors. Object units of the product
+/// space. Errors: as run::load_page(). \pre the asset has the promise
+[[nodiscard]] Result<std::vector<CutDeviation>> measure_promised_cuts(const run::Asset& asset, MeshId mesh,
+                                                                      const scene::SourceMesh& source,
+                                                                      format::Promise promise, std::uint32_t cuts,
+                                                                      std::uint64_t samples);
+
+/// V209 for one promise: every mesh that is no aggregate and whose tier promises something. A cut fails above
+/// 1 + kMeasuredShortfall times what it stores. \pre the asset has the promise
+DeviationTotals check_promise(const run::Asset& asset, const scene::Scene& source, format::Promise promise,
+                              std::uint32_t cuts, std::uint64_t samples, RuleLog& log);
+
+/// V210: what UVs and normals count as is what the source's surface, its textures and its diagonal say. A UV set is not
+/// judged where an image's size is not known, or where duplicates were dropped, whose area counts once.
+/// \pre the asset has promises
+void check_promise_units(const run::Asset& asset, const scene::Scene& source, RuleLog& log);
+
+}  // namespace meshlode::judge
