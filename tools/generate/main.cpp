@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // meshlode_generate OUTDIR                writes the scenes of data/
 // meshlode_generate OUTDIR --aggregates   writes a tree of leaves, a field of grass and a soup of boxes, for benchmarks
+// meshlode_generate OUTDIR --painted      writes a tree of bark and leaves, for measurements of what is painted
 // meshlode_generate OUTDIR --triangles N  writes a terrain of about N triangles (16M, 500K, 42), for benchmarks
 #include <cstdint>
 #include <cstdio>
@@ -28,7 +29,7 @@ int write(const std::filesystem::path& folder, const scene::SampleFile& file) {
   return 0;
 }
 
-int run(const char* out_dir, const char* triangles_text, bool is_of_aggregates) {
+int run(const char* out_dir, const char* triangles_text, std::string_view option) {
   constexpr std::uint64_t kFewest = 2, kMost = 100'000'000;
   const std::optional<std::uint64_t> triangles = triangles_text == nullptr ? std::nullopt : parse_count(triangles_text);
   if (triangles_text != nullptr && (!triangles || *triangles < kFewest || *triangles > kMost)) {
@@ -42,7 +43,8 @@ int run(const char* out_dir, const char* triangles_text, bool is_of_aggregates) 
     return static_cast<int>(ErrorCode::kIo);
   }
   if (triangles) return write(out_dir, scene::make_terrain_file(*triangles));
-  if (is_of_aggregates) {
+  if (option == "--painted") return write(out_dir, scene::make_painted_tree_file());
+  if (option == "--aggregates") {
     for (const std::string& name : scene::aggregate_names()) {
       if (const int code = write(out_dir, scene::make_aggregate_file(name)); code != 0) return code;
     }
@@ -58,10 +60,11 @@ int run(const char* out_dir, const char* triangles_text, bool is_of_aggregates) 
 
 int main(int argc, char** argv) {
   const bool has_triangles = argc == 4 && std::string_view(argv[2]) == "--triangles";
-  const bool is_of_aggregates = argc == 3 && std::string_view(argv[2]) == "--aggregates";
-  if ((argc != 2 && !has_triangles && !is_of_aggregates) || argv[1][0] == '-') {
-    std::fputs("usage: meshlode_generate OUTDIR [--triangles NUMBER | --aggregates]\n", stderr);
+  const std::string_view option = argc == 3 ? argv[2] : "";
+  const bool is_known = argc == 2 || has_triangles || option == "--aggregates" || option == "--painted";
+  if (!is_known || argv[1][0] == '-') {
+    std::fputs("usage: meshlode_generate OUTDIR [--triangles NUMBER | --aggregates | --painted]\n", stderr);
     return static_cast<int>(ErrorCode::kUsage);
   }
-  return run(argv[1], has_triangles ? argv[3] : nullptr, is_of_aggregates);
+  return run(argv[1], has_triangles ? argv[3] : nullptr, option);
 }

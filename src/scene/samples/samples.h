@@ -76,6 +76,14 @@ namespace meshlode::scene {
 /// A field of 2 x 2 with `blades` loose upright quads.
 [[nodiscard]] Primitive make_grass(std::uint32_t blades, std::uint64_t seed = 22);
 
+// ---------------------------------------------------------------------------------------------------- what is painted
+
+/// The wood of a tree, a trunk and its limbs: open tubes of rough bark with normals and UVs, a seam along each.
+/// `around` cells around the trunk and half as many around a limb. \pre around >= 6
+[[nodiscard]] Primitive make_tree_wood(std::uint32_t around, std::uint64_t seed = 31);
+/// `count` leaf cards around the ends of the same limbs, with normals and UVs.
+[[nodiscard]] Primitive make_tree_leaves(std::uint32_t count, std::uint64_t seed = 31);
+
 // --------------------------------------------------------------------------------------------------- the files of
 // data/
 
@@ -89,6 +97,9 @@ struct SampleFile {
 [[nodiscard]] std::vector<std::string> aggregate_names();
 /// \pre one of aggregate_names()
 [[nodiscard]] SampleFile make_aggregate_file(const std::string& name);
+
+/// "painted-tree.glb", a scene for measurements of what is painted: bark and masked leaves in one mesh.
+[[nodiscard]] SampleFile make_painted_tree_file();
 
 /// The names of data/, in order.
 [[nodiscard]] std::vector<std::string> sample_names();

@@ -109,6 +109,20 @@ SampleFile make_aggregate_file(const std::string& name) {
   return {name + ".glb", write_glb(scene_of(name.c_str(), std::move(shape), material))};
 }
 
+SampleFile make_painted_tree_file() {
+  GlbScene scene = textured_scene_of("painted-tree", make_tree_wood(48), {}, make_bark_texture(256));
+  Primitive leaves = make_tree_leaves(2400);
+  leaves.material = MaterialId(1u);
+  scene.meshes[0].primitives.push_back(std::move(leaves));
+  GlbMaterial leaf;
+  leaf.name = "leaf";
+  leaf.is_masked = leaf.double_sided = true;
+  leaf.base_color_image = 1u;
+  scene.materials.push_back(std::move(leaf));
+  scene.images.push_back({"leaf", encode_png(make_leaf_texture(64))});
+  return {"painted-tree.glb", write_glb(scene)};
+}
+
 SampleFile make_terrain_file(std::uint64_t triangles) {
   assert(triangles >= 2 && triangles <= 100'000'000);
   const auto side = static_cast<std::uint32_t>(std::floor(std::sqrt(static_cast<double>(triangles) / 2.0) + 0.5));

@@ -52,6 +52,18 @@ Texture make_ground_texture(std::uint32_t size) {
   });
 }
 
+Texture make_bark_texture(std::uint32_t size) {
+  // Noise on a torus, so that neither edge is seen.
+  return paint(size, [](double u, double v) {
+    const Vec3d round(1.5 * cos_turns(u), 1.5 * sin_turns(u), 0.0), high(0.0, 0.3 * cos_turns(v), 0.3 * sin_turns(v));
+    const double bend = 0.15 * value_noise(round * 0.7 + high * 3.0, 41);
+    const double furrow = 0.5 + 0.5 * sin_turns(9.0 * u + 9.0 * bend);
+    const double grain = fractal_noise(round * 6.0 + high * 5.0, 3, 42);
+    const double g = 0.16 + 0.34 * furrow + 0.14 * grain;
+    return glm::dvec4(g * 1.2, g * 0.92, g * 0.7, 1.0);
+  });
+}
+
 Texture make_leaf_texture(std::uint32_t size) {
   return paint(size, [size](double u, double v) {
     const double y = 1.0 - v, x = (u - 0.5 < 0.0 ? 0.5 - u : u - 0.5);

@@ -16,6 +16,8 @@ struct Texture {
 [[nodiscard]] Texture make_stone_texture(std::uint32_t size);
 /// Grass green to rock by noise.
 [[nodiscard]] Texture make_ground_texture(std::uint32_t size);
+/// Furrows along v in brown bark, which tiles along both.
+[[nodiscard]] Texture make_bark_texture(std::uint32_t size);
 /// A leaf with a stem: alpha 255 inside, 0 outside, a ramp of one pixel between.
 [[nodiscard]] Texture make_leaf_texture(std::uint32_t size);
 

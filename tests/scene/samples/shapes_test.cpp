@@ -194,5 +194,34 @@ TEST(Samples, ScaledShapesKeepTheirForm) {
   }
 }
 
+TEST(Samples, TreeWoodIsOpenTubesThatFaceOutwardsWithASeamAlongEach) {
+  const Primitive wood = make_tree_wood(12);
+  EXPECT_EQ(wood.uvs[0].size(), wood.positions.size());
+  // Ten tubes: a trunk of 12 cells around and nine limbs of six, open at both ends and closed along their seams.
+  EXPECT_EQ(count_border(wood), 2U * 12U + 9U * 2U * 6U);
+  for (std::size_t t = 0; t < wood.indices.size(); t += 3) {
+    const std::uint32_t* v = &wood.indices[t];
+    const Vec3d n =
+        glm::cross(wood.positions[v[1]] - wood.positions[v[0]], wood.positions[v[2]] - wood.positions[v[0]]);
+    ASSERT_GT(glm::length(n), 0.0);
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_NEAR(glm::length(wood.normals[v[k]]), 1.0F, 1e-5F);
+      EXPECT_GT(glm::dot(n, Vec3d(wood.normals[v[k]])), 0.0) << "normals are on the side that is seen";
+    }
+  }
+}
+
+TEST(Samples, TreeLeavesAreCardsAroundItsLimbs) {
+  const Primitive leaves = make_tree_leaves(50);
+  EXPECT_EQ(leaves.positions.size(), 4U * 50U);
+  EXPECT_EQ(leaves.indices.size(), 6U * 50U);
+  const Primitive wood = make_tree_wood(12);
+  for (std::size_t v = 0; v < leaves.positions.size(); ++v) {
+    double nearest = 1e9;
+    for (const Vec3d& p : wood.positions) nearest = std::min(nearest, glm::length(p - leaves.positions[v]));
+    EXPECT_LT(nearest, 0.4);
+  }
+}
+
 }  // namespace
 }  // namespace meshlode::scene
