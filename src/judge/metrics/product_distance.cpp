@@ -15,7 +15,8 @@
 namespace meshlode::judge {
 namespace {
 
-constexpr std::size_t kChunk = 512;  // queries that share a hint, whatever the thread count
+constexpr std::size_t kFirstStride = 61;  // of the points that are looked at first
+constexpr std::size_t kChunk = 512;       // queries that share a hint, whatever the thread count
 // By what a distance may differ with where the search began, for boxes prune, and roundings of needles differ: as
 // shares of the distance and of the surfaces' extent.
 constexpr double kSearchRounding = 1e-9, kSearchFloor = 1e-12;
@@ -165,6 +166,19 @@ struct Farthest {
 template <std::size_t N>
 Farthest find_farthest(const Measured<N>& from, const ProductTree<N>& to, double extent, const DistanceWeight& weight,
                        std::atomic<double>& largest) {
+  const auto raise = [&](double known, double distance) {
+    while (distance > known && !largest.compare_exchange_weak(known, distance)) {
+    }
+  };
+  // A few points from everywhere first: what they find spares most others the end of their search.
+  parallel_for_each_chunk(
+      chunk_count(from.points.size(), kFirstStride), 16, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+          const ProductPoint<N>& point = from.points[i * kFirstStride];
+          const double counts = weight ? weight(point.position()) : 1.0;
+          raise(largest.load(std::memory_order_relaxed), counts * std::sqrt(to.nearest(point).distance2));
+        }
+      });
   std::vector<Farthest> partials(chunk_count(from.points.size(), kChunk));
   parallel_for_each_chunk(from.points.size(), kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
     std::uint32_t hint = 0xFFFFFFFFu;
@@ -174,7 +188,7 @@ Farthest find_farthest(const Measured<N>& from, const ProductTree<N>& to, double
       // nearer than that but by rounding, and what counts is its distance without a hint.
       const ProductPoint<N>& point = from.points[i];
       const double counts = weight ? weight(point.position()) : 1.0;
-      double known = largest.load(std::memory_order_relaxed);
+      const double known = largest.load(std::memory_order_relaxed);
       const double near = std::max(0.0, known / counts * (1.0 - kSearchRounding) - kSearchFloor * extent);
       reach = i > begin && point.known == from.points[i - 1].known
                   ? reach + distance_between<N>(point, from.points[i - 1])
@@ -186,8 +200,7 @@ Farthest find_farthest(const Measured<N>& from, const ProductTree<N>& to, double
       if (reach < near) continue;
       const double distance = counts * std::sqrt(to.nearest(point).distance2);
       partials[chunk].take({distance, from.id[i], point.position()});
-      while (distance > known && !largest.compare_exchange_weak(known, distance)) {
-      }
+      raise(known, distance);
     }
   });
   Farthest farthest;
