@@ -21,7 +21,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 BEGIN, END = "<!-- promise: begin -->", "<!-- promise: end -->"
 PROMISES = ["position", "texels", "appearance"]
-PICTURES = ["spot", "painted-tree"]
+PICTURES = ["FlightHelmet", "painted-tree"]
 
 
 def measure(build, scene, folder, options):
