@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// I7 for what is painted, on assets that were built: what is promised of texels and appearance is true, and where an
+// asset promises too much, or counts in other units than it should, it is found (V209, V210).
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "build/build.h"
+#include "judge/validate/edit.h"
+#include "judge/verify/promises.h"
+#include "judge/verify/verify.h"
+#include "run/read/asset.h"
+#include "scene/samples/samples.h"
+
+namespace meshlode::judge {
+namespace {
+
+using test::AssetEdit;
+
+/// A PNG's signature and header.
+std::vector<std::uint8_t> png_of(std::uint32_t width, std::uint32_t height) {
+  std::vector<std::uint8_t> bytes{0x89, 'P', 'N', 'G', 0x0D, 0x0A, 0x1A, 0x0A, 0, 0, 0, 13, 'I', 'H', 'D', 'R'};
+  for (const std::uint32_t size : {width, height}) {
+    for (std::uint32_t shift = 32; shift > 0; shift -= 8)
+      bytes.push_back(static_cast<std::uint8_t>(size >> (shift - 8)));
+  }
+  for (const int b : {8, 6, 0, 0, 0, 0, 0, 0, 0}) bytes.push_back(static_cast<std::uint8_t>(b));
+  return bytes;
+}
+
+/// A smooth ball that shows a picture of texels that are twice as wide as high, cast on it from the front.
+scene::Scene painted_scene() {
+  scene::Primitive ball = scene::with_smooth_normals(scene::make_sphere(16));
+  for (const Vec3d& p : ball.positions) ball.uvs[0].emplace_back(Vec2f(Vec2d(0.5 + 0.5 * p.x, 0.5 + 0.5 * p.y)));
+  scene::Scene scene = scene::as_scene(scene::as_mesh(std::move(ball)));
+  scene::SceneBlob& blob = scene.blobs.emplace_back();
+  blob.name = "picture";
+  blob.bytes = png_of(256, 512);
+  scene.materials[0].uv_sets_used = 1;
+  scene.materials[0].textures.emplace_back().blob = 0;
+  return scene;
+}
+
+struct Built {
+  scene::Scene scene;
+  std::vector<std::uint8_t> bytes;
+};
+
+Built build_promised(scene::Scene scene, format::Promise promise) {
+  Built built{std::move(scene), {}};
+  build::PipelineOptions options;
+  options.promise = promise;
+  build::PipelineReport report;
+  auto bytes = build::build_lode(built.scene, options, {}, report);
+  EXPECT_TRUE(bytes.ok()) << bytes.error().message();
+  built.bytes = std::move(*bytes);
+  return built;
+}
+
+const Built& painted_ball() {
+  static const Built ball = build_promised(painted_scene(), format::Promise::kAppearance);
+  return ball;
+}
+
+VerifyReport verify_bytes(const std::vector<std::uint8_t>& bytes, const scene::Scene& scene, bool is_quick = false) {
+  const Result<run::Asset> asset = run::Asset::from_vector(bytes);
+  EXPECT_TRUE(asset.ok()) << asset.error().message();
+  return verify_asset(
+      *asset, scene,
+      {.is_quick = is_quick, .uniform_cuts = 4, .cameras = 2, .deviation_cuts = 5, .deviation_samples = 20000});
+}
+
+/// The ids of what was found, each once, in the order of the findings.
+std::string ids_of(const VerifyReport& report) {
+  std::string ids;
+  for (const Finding& finding : report.findings) {
+    if (ids.find(finding.id) == std::string::npos) ids += (ids.empty() ? "" : " ") + finding.id;
+  }
+  return ids;
+}
+
+std::string details_of(const VerifyReport& report) {
+  std::string text;
+  for (const Finding& finding : report.findings) text += finding.id + " " + finding.detail + "\n";
+  return text;
+}
+
+template <class Change>
+void change_groups(AssetEdit& edit, const Change& change) {
+  const std::uint64_t count = edit.count(format::SectionId::kPromiseErrors, sizeof(format::PromiseGroupRecord));
+  for (std::uint64_t g = 0; g < count; ++g) {
+    const float position = edit.groups()[g].error;
+    edit.change_at<format::PromiseGroupRecord>(
+        edit.offset_of<format::PromiseGroupRecord>(format::SectionId::kPromiseErrors, g),
+        [&](format::PromiseGroupRecord& record) { change(record, position); });
+  }
+  edit.seal();
+}
+
+TEST(PromisesOf, ABallAreTrueInEveryUnit) {
+  const VerifyReport report = verify_bytes(painted_ball().bytes, painted_ball().scene);
+  EXPECT_EQ(details_of(report), "");
+  ASSERT_EQ(report.promises.size(), 2U);
+  EXPECT_EQ(report.promises[0].promise, "texels");
+  EXPECT_EQ(report.promises[1].promise, "appearance");
+  for (const VerifyReport::PromisedCuts& promised : report.promises) {
+    EXPECT_GE(promised.cuts, 4U) << promised.promise;
+    EXPECT_LE(promised.largest, 1.05) << promised.promise;
+    EXPECT_GT(promised.median, 0.5) << promised.promise << ": it promises about what it keeps";
+  }
+}
+
+TEST(PromisesOf, TexelsSayNothingOfAppearance) {
+  const Built built = build_promised(painted_scene(), format::Promise::kTexels);
+  const VerifyReport report = verify_bytes(built.bytes, built.scene);
+  EXPECT_EQ(details_of(report), "");
+  ASSERT_EQ(report.promises.size(), 1U);
+  EXPECT_EQ(report.promises[0].promise, "texels");
+}
+
+TEST(PromisesOf, PositionsAloneAreNotLookedFor) {
+  const Built built = build_promised(scene::as_scene(scene::as_mesh(scene::make_rock(12))), format::Promise::kPosition);
+  const VerifyReport report = verify_bytes(built.bytes, built.scene);
+  EXPECT_EQ(details_of(report), "");
+  EXPECT_TRUE(report.promises.empty());
+  EXPECT_TRUE(std::none_of(report.checks.begin(), report.checks.end(),
+                           [](const auto& check) { return check.what.find("promise") != std::string::npos; }));
+}
+
+// What a builder writes that measured positions and took them for all: nothing in the asset contradicts it.
+TEST(PromisesOf, PositionsInThePlaceOfTexelsAndAppearanceAreFound) {
+  AssetEdit edit(painted_ball().bytes);
+  change_groups(edit, [](format::PromiseGroupRecord& record, float position) {
+    record.texel_error = record.appearance_error = position;
+  });
+  EXPECT_EQ(ids_of(verify_bytes(edit.bytes(), painted_ball().scene)), "V209");
+  EXPECT_EQ(ids_of(verify_bytes(edit.bytes(), painted_ball().scene, true)), "V209") << "in one cut";
+}
+
+TEST(PromisesOf, NormalsThatAreLeftOutAreFoundInAppearanceAlone) {
+  AssetEdit edit(painted_ball().bytes);
+  change_groups(edit, [](format::PromiseGroupRecord& record, float) { record.appearance_error = record.texel_error; });
+  const VerifyReport report = verify_bytes(edit.bytes(), painted_ball().scene);
+  EXPECT_EQ(ids_of(report), "V209");
+  for (const Finding& finding : report.findings) EXPECT_EQ(finding.detail.rfind("appearance:", 0), 0U);
+}
+
+TEST(PromisesOf, OtherUnitsAreFound) {
+  const auto change_units = [](const auto& change) {
+    AssetEdit edit(painted_ball().bytes);
+    edit.change_at<format::PromiseMeshRecord>(
+        edit.offset_of<format::PromiseMeshRecord>(format::SectionId::kPromises, 0), change);
+    edit.seal();
+    return ids_of(verify_bytes(edit.bytes(), painted_ball().scene))
+        .substr(0, 4);  // the errors may be wrong in them too
+  };
+  EXPECT_EQ(change_units([](format::PromiseMeshRecord& units) { units.normal_object *= 0.99F; }), "V210");
+  EXPECT_EQ(change_units([](format::PromiseMeshRecord& units) { units.uv_object[0][0] *= 0.99F; }), "V210");
+  EXPECT_EQ(change_units([](format::PromiseMeshRecord& units) { units.uv_object[0][1] *= 0.5F; }), "V210");
+}
+
+TEST(PromisesOf, CountInTheUnitsThatTheAssetSays) {
+  const Result<run::Asset> asset = run::Asset::from_vector(painted_ball().bytes);
+  ASSERT_TRUE(asset.ok());
+  const format::PromiseMeshRecord& units = asset->promises()[0];
+  const ProductScales texels = scales_of(*asset, MeshId(0U), format::Promise::kTexels);
+  const ProductScales appearance = scales_of(*asset, MeshId(0U), format::Promise::kAppearance);
+  EXPECT_EQ(texels.normal, 0.0);
+  EXPECT_EQ(appearance.normal, double{units.normal_object});
+  EXPECT_EQ(appearance.uv[0], Vec2d(units.uv_object[0][0], units.uv_object[0][1]));
+  EXPECT_EQ(texels.uv[0], appearance.uv[0]);
+  EXPECT_NEAR(texels.uv[0].y, 2.0 * texels.uv[0].x, 1e-5 * texels.uv[0].y) << "a picture twice as high as wide";
+}
+
+}  // namespace
+}  // namespace meshlode::judge
