@@ -102,6 +102,8 @@ void run_kind(const test::MutantKind& kind, const Original& original, std::uint6
 
 /// A built asset of several pages, so that there are dependencies.
 const Original& several_pages();
+/// One that promises appearance, of small clusters so that it has many groups.
+const Original& promised();
 
 void run_mutants(const std::vector<Original>& originals, std::uint64_t per_kind) {
   std::uint64_t must = 0;
@@ -113,6 +115,7 @@ void run_mutants(const std::vector<Original>& originals, std::uint64_t per_kind)
     Tally tally;
     for (std::size_t o = 0; o < originals.size(); ++o) run_kind(kind, originals[o], kSeed + o, per_kind, tally);
     if (tally.mutants == 0) run_kind(kind, several_pages(), kSeed, per_kind, tally);
+    if (tally.mutants == 0) run_kind(kind, promised(), kSeed, per_kind, tally);
     EXPECT_GT(tally.mutants, 0U) << kind.name;
     (kind.equivalent == nullptr ? must : may) += tally.mutants;
     (kind.equivalent == nullptr ? must_killed : may_killed) += tally.killed;
@@ -145,6 +148,17 @@ scene::Scene alone(scene::Primitive shape) {
 const Original& several_pages() {
   static const Original rock = make_built("a rock of several pages", alone(scene::make_rock(48)));
   return rock;
+}
+
+const Original& promised() {
+  static const Original ball = [] {
+    build::PipelineOptions options;
+    options.max_cluster_triangles = 48;
+    options.promise = format::Promise::kAppearance;
+    return make_built("a ball that promises appearance", alone(scene::with_smooth_normals(scene::make_sphere(16))),
+                      options);
+  }();
+  return ball;
 }
 
 #ifndef MESHLODE_LONG_SERIES

@@ -104,6 +104,27 @@ float largest_finer_error(const Edit& e, std::uint32_t g) {
   return largest;
 }
 
+/// What is promised of a group besides its position.
+std::uint64_t promise_offset(const Edit& e, std::uint32_t g) {
+  return e.offset_of<format::PromiseGroupRecord>(SectionId::kPromiseErrors, g);
+}
+bool has_promises(const Edit& e) {
+  return e.section_entry_offset(SectionId::kPromiseErrors) != 0;
+}
+
+/// The least appearance that the rules of validate let a group promise, where it is no terminal one.
+float least_appearance(const Edit& e, std::uint32_t g) {
+  const auto groups = e.groups();
+  const auto clusters = e.clusters();
+  float least = std::max(groups[g].error, e.get<format::PromiseGroupRecord>(promise_offset(e, g)).texel_error);
+  for (std::uint32_t c = groups[g].first_cluster; c < groups[g].first_cluster + groups[g].cluster_count; ++c) {
+    if (clusters[c].own_group == format::kNone) continue;
+    const auto finer = e.get<format::PromiseGroupRecord>(promise_offset(e, clusters[c].own_group));
+    least = std::max(least, finer.appearance_error * 1.001F);
+  }
+  return least;
+}
+
 // -------------------------------------------------------------------------------------------------------------
 // vertices
 
@@ -349,6 +370,32 @@ std::vector<MutantKind> make_kinds() {
            e.group(g, [&](auto& x) { x.deviation *= x.deviation < 1e30F ? f : 1.0F; });
            return true;
          });
+  mostly("promised appearance lowered",
+         "less than 5% too low, or another group's error is as large in every cut that was measured",
+         [=](Edit& e, Random& r) {
+           if (!has_promises(e)) return false;
+           const auto g = any_group(e, r);
+           const float least = least_appearance(e, g);
+           if (e.groups()[g].error > 1e30F) return false;
+           bool done = false;
+           e.change_at<format::PromiseGroupRecord>(promise_offset(e, g), [&](auto& x) {
+             done = x.appearance_error > 1.2F * least;
+             if (done)
+               x.appearance_error = std::max(least, x.appearance_error * static_cast<float>(r.between(0.3, 0.8)));
+           });
+           return done;
+         });
+  always("promised unit of normals", [=](Edit& e, Random& r) {
+    if (!has_promises(e)) return false;
+    const auto m = pick(r, e.meshes().size());
+    bool done = false;
+    e.change_at<format::PromiseMeshRecord>(e.offset_of<format::PromiseMeshRecord>(SectionId::kPromises, m),
+                                           [&](auto& x) {
+                                             done = x.normal_object > 0.0F;
+                                             x.normal_object *= r.below(2) == 0 ? shrink(r) : grow(r);
+                                           });
+    return done;
+  });
   mostly("deviation lowered", "it is a figure to read: what cuts are chosen by is the error, and that is measured",
          [=](Edit& e, Random& r) {
            const auto g = any_group(e, r);
