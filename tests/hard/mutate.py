@@ -12,6 +12,10 @@ the build's libraries into the programs that `ctest -L numerics` runs, those of 
 that fails or takes more than --limit seconds. What does not compile, and what compiles to the same object code as the source,
 is counted apart and is no part of the rate. Draws are even over the rooms; the same seed draws the same mutants of the same
 source. Nothing in the tree is changed.
+
+Elsewhere, on a machine with more processors and the same compiler: `--describe build.json` writes down what the finished build says
+of itself; with `--build build.json` neither ninja nor ctest is asked any more, and of the tree only the sources of ROOMS, the objects
+and libraries that the programs are linked of, and the headers that those objects include are read. `--seconds` starts no mutant later.
 """
 import argparse
 import hashlib
@@ -22,6 +26,7 @@ import re
 import shlex
 import subprocess
 import sys
+import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -83,7 +88,10 @@ def mutants_of(path):
     """Every change of the file: line, operator, and the new line."""
     text = path.read_text()
     found = []
+    seen = {}
     for number, (line, code) in enumerate(zip(text.splitlines(), code_of(text).splitlines())):
+        # An id is of the line's words and not of its number, which any edit above it would change.
+        occurrence = seen[line] = seen.get(line, -1) + 1
         if "static_assert" in code or re.match(r" *(template|for \()", code):  # how far a loop runs is no number's matter
             continue
         for name, pattern, becomes in OPERATORS:
@@ -93,14 +101,14 @@ def mutants_of(path):
                 if changed == line:
                     continue
                 file = str(path.relative_to(ROOT))
-                key = f"{file}\n{number}\n{match.start()}\n{name}\n{line}"
+                key = f"{file}\n{occurrence}\n{match.start()}\n{name}\n{line}"
                 found.append({"id": hashlib.sha256(key.encode()).hexdigest()[:12], "file": file, "line": number + 1, "operator": name,
                               "before": line.strip(), "after": changed.strip(), "text": changed})
     return found
 
 
-def draw(count, seed):
-    """Round by round one of each room; within a room any operator, then any place, as likely as another."""
+def draw(count, seed, seen=()):
+    """Round by round one of each room; within a room any operator, then any place, as likely as another. None of `seen`."""
     source = random.Random(seed)
     pools = {}
     for room, (patterns, _) in ROOMS.items():
@@ -108,6 +116,8 @@ def draw(count, seed):
         by_operator = {}
         for path in files:
             for mutant in mutants_of(path):
+                if mutant["id"] in seen:
+                    continue
                 by_operator.setdefault(mutant["operator"], []).append({**mutant, "room": room})
         for one in by_operator.values():
             source.shuffle(one)
@@ -130,6 +140,14 @@ class Build:
 
     def __init__(self, folder):
         self.folder = folder
+        if folder.suffix == ".json":
+            described = json.loads(folder.read_text())
+            self.folder = Path(described["folder"])
+            self.objects_of = {path: set(objects) for path, objects in described["objects_of"].items()}
+            self.command_of = described["command_of"]
+            self.programs = {name: {**one, "objects": set(one["objects"]), "members": set(one["members"])}
+                             for name, one in described["programs"].items()}
+            return
         said = subprocess.run(["ninja", "-C", folder, "-t", "deps"], check=True, capture_output=True, text=True).stdout
         self.objects_of = {}
         for block in said.split("\n\n"):
@@ -146,6 +164,18 @@ class Build:
                                 capture_output=True, text=True).stdout
         programs = {test["command"][0] for test in json.loads(listed)["tests"] if test.get("command")}
         self.programs = {Path(program).name: self.link_of(Path(program)) for program in sorted(programs)}
+
+    def describe(self):
+        """As JSON, of what the mutants of ROOMS need alone."""
+        sources = {str(path) for patterns, _ in ROOMS.values() for pattern in patterns for path in ROOT.glob(pattern)}
+        linked = set().union(*(one["objects"] | one["members"] for one in self.programs.values()))
+        objects_of = {path: sorted(self.objects_of.get(path, set()) & linked) for path in sorted(sources)}
+        compiled = sorted(set().union(*objects_of.values()))
+        programs = {name: {**one, "objects": sorted(one["objects"]), "members": sorted(one["members"])}
+                    for name, one in self.programs.items()}
+        includes = sorted(path for path, objects in self.objects_of.items() if objects & set(compiled))
+        return {"folder": str(self.folder), "objects_of": objects_of, "command_of": {one: self.command_of[one] for one in compiled},
+                "programs": programs, "includes": includes}
 
     def link_of(self, program):
         """Objects, libraries' members, and the command: ninja's last step for the program, without what runs after it."""
@@ -266,12 +296,18 @@ def report(drawn, results, explained):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--build", default="build/release", help="a finished build with tests; nothing in it is changed")
+    parser.add_argument("--build", default="build/release",
+                        help="a finished build with tests, or what --describe wrote of one; nothing in it is changed")
+    parser.add_argument("--describe", default="", metavar="FILE", help="write down what --build says of itself, and try nothing")
     parser.add_argument("--out", default="build/mutants", help="folder of mutants and of what was found: it goes on where it was")
     parser.add_argument("--count", type=int, default=150)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--unseen", default="", metavar="FILES",
+                        help="results.jsonl of earlier draws, comma by comma: none of their mutants is drawn")
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--limit", type=int, default=60, help="seconds that a program may take")
+    parser.add_argument("--seconds", type=float, default=float("inf"),
+                        help="start no mutant later than that; run again, it goes on")
     parser.add_argument("--most-objects", type=int, default=12, help="of a header that more objects see no mutant is built")
     parser.add_argument("--quick", action="store_true",
                         help="ask the room's own program alone; what survives it is open, and judged by all the next time")
@@ -281,7 +317,12 @@ def main():
     parser.add_argument("--list", action="store_true", help="show the mutants that would be tried")
     parser.add_argument("--report", action="store_true", help="show what was found so far, and try nothing")
     options = parser.parse_args()
-    drawn = draw(options.count, options.seed)
+    started = time.monotonic()
+    if options.describe:
+        Path(options.describe).write_text(json.dumps(Build((ROOT / options.build).resolve()).describe(), indent=1) + "\n")
+        return 0
+    seen = {json.loads(line)["id"] for file in filter(None, options.unseen.split(",")) for line in Path(file).read_text().splitlines()}
+    drawn = draw(options.count, options.seed, seen)
     if options.list:
         for m in drawn:
             print(f"{m['id']} {m['file']}:{m['line']} ({m['operator']})\n  - {m['before']}\n  + {m['after']}")
@@ -309,6 +350,8 @@ def main():
                 sys.exit(f"{name} fails without a mutant")
 
         def one(mutant):
+            if time.monotonic() - started > options.seconds:
+                return
             verdict, by = judge(build, mutant, out, options.limit, options.most_objects, options.quick)
             subprocess.run(["rm", "-rf", out / mutant["id"]], check=True)
             with kept.open("a") as file:
