@@ -225,5 +225,34 @@ TEST(AttributeOracle, BeyondTheBorderItsEdgesAnswer) {
   }
 }
 
+// Of 60 points of one area each 57 are 95%: what these do not exceed, and not the next.
+TEST(AttributeOracle, TheQuantileIsMetAtItsPoint) {
+  ShadedSurface source, group;
+  source.positions = {{-100, 0, -100}, {300, 0, -100}, {-100, 0, 300}};
+  source.triangles = {{0, 2, 1}};
+  source.attributes.assign(3 * kStride, 0.0F);
+  for (std::uint32_t t = 0; t < 20; ++t) {
+    for (const Vec3d& p : {Vec3d(t, 0, 0), Vec3d(t + 1.0, 0, 0), Vec3d(t, 0, 1)}) {
+      group.positions.push_back(p);
+      for (std::size_t j = 0; j < kStride; ++j)
+        group.attributes.push_back(j == 3 ? 1.0F + static_cast<float>(t) : 0.0F);
+    }
+    group.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
+  }
+  EXPECT_NEAR(measured(source, group).uv, 19.0, 1e-9);
+}
+
+// Where the source has no area there, its first corner answers.
+TEST(AttributeOracle, ASourceWithoutAreaHasTheAttributesOfACorner) {
+  ShadedSurface source, group;
+  source.positions = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
+  source.triangles = {{0, 1, 2}};
+  source.attributes.assign(3 * kStride, 3.0F);
+  group.positions = {{0.5, 0, 1}, {1.0, 0, 1}, {0.5, 1, 1}};
+  group.triangles = {{0, 1, 2}};
+  group.attributes.assign(3 * kStride, 3.0F);
+  EXPECT_NEAR(measured(source, group).uv, 0.0, 1e-12);
+}
+
 }  // namespace
 }  // namespace meshlode::build

@@ -7,13 +7,13 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <limits>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "base/random.h"
+#include "build/deviation/capsules.h"
 #include "build/deviation/deviation.h"
 #include "build/deviation/point_distance.h"
 #include "build/deviation/surfaces.h"
@@ -109,10 +109,12 @@ TEST(PointDistance, TheNearestFeatureIsThatOfTheRegion) {
   RandomSource random(173);
   std::array<int, 3> count{};
   for (int round = 0; round < 20000; ++round) {
-    const TriangleCorners t = draw_triangle(random);
+    const double scale = round % 3 == 0 ? 1e-12 : round % 3 == 1 ? 1.0 : 1e12;
+    TriangleCorners t = draw_triangle(random);
     const Vec3d n = glm::cross(t[1] - t[0], t[2] - t[0]);
     const double v = random.between(-1.0, 2.0), w = random.between(-1.0, 2.0);
-    Vec3d p = t[0] + (t[1] - t[0]) * v + (t[2] - t[0]) * w + n * random.between(-1.0, 1.0);
+    Vec3d p = (t[0] + (t[1] - t[0]) * v + (t[2] - t[0]) * w + n * random.between(-1.0, 1.0)) * scale;
+    for (Vec3d& corner : t) corner *= scale;
     if (round % 5 == 0) p = t[round / 5 % 3];  // on a corner
     const Foot exact = exact_foot(p, t);
     // Where an edge is as near as the inside, but for a billionth, either may be told.
@@ -374,9 +376,9 @@ judge::Surface height_field(RandomSource& random, std::uint32_t side, double hei
   return surface;
 }
 
-// Pieces are cut until each is bounded to 5% above its own corners or 3% of the largest: 8% above the truth in all,
-// where the effort goes that far. That much is used, too.
-TEST(CertifiedTightness, IsWithinEightPercentOfTheTruthAndUsesIt) {
+// Pieces are cut until each is bounded to 5% above its own corners and 3% of the largest: 8% above the truth in all.
+// The truth is of samples, which may miss 2%. More than 7% is used: what is allowed is what saves effort.
+TEST(CertifiedTightness, IsWithinTenPercentOfTheTruthAndUsesSeven) {
   RandomSource random(178);
   double largest = 0.0;
   for (int round = 0; round < 60; ++round) {
@@ -390,7 +392,7 @@ TEST(CertifiedTightness, IsWithinEightPercentOfTheTruthAndUsesIt) {
     EXPECT_LE(certified.deviation, 1.1 * truth) << "seed 178, round " << round;
     largest = std::max(largest, certified.deviation / truth);
   }
-  std::printf("[ SHARE    ] certified over measured: %.4f\n", largest);
+  EXPECT_GE(largest, 1.07);
 }
 
 // What was proven of the finer level is handed on in full, whichever side it is of.
@@ -441,22 +443,40 @@ TEST(CertifiedTightness, TheMarginIsOfTheBoundAndOfTheLargestCoordinate) {
   }
 }
 
-// Two parallel squares, as far apart as said: the bound is that and the margin, at any distance from the origin.
-TEST(CertifiedTightness, OfParallelSquaresItIsTheirDistanceAndTheMargin) {
+// Two parallel triangles, as far apart as said: the bound is that and the margin, at any distance from the origin.
+TEST(CertifiedTightness, OfParallelTrianglesItIsTheirDistanceAndTheMargin) {
   for (const double away : {0.0, 1e3, 1e9}) {
-    for (const double apart : {0.0, 0x1p-10, 0.5}) {
-      const judge::Surface one{{{away, 0, 0}, {away + 1, 0, 0}, {away, 0, 1}, {away + 1, 0, 1}},
-                               {{0, 2, 1}, {1, 2, 3}}};
+    for (const double apart : {0.0, 0x1p-10, 0.5, 0x1p20}) {
+      const judge::Surface one{{{away, 0, 0}, {away + 1, 0, 0}, {away, 0, 1}}, {{0, 2, 1}}};
       judge::Surface other = one;
       for (Vec3d& p : other.positions) p.y = apart;
-      const CertifiedGroup certified =
-          certify_group(test::as_group(one), std::vector<TriangleBound>(2), test::as_group(other));
-      const double coordinate = away + 1.0;
-      EXPECT_NEAR(certified.deviation, apart * (1.0 + 0x1p-49) + coordinate * 0x1p-43,
-                  1e-16 + apart * 2e-16 + 1e-3 * coordinate * 0x1p-43)
-          << away << ", " << apart;
+      for (const bool is_up : {false, true}) {
+        const judge::Surface &finer = is_up ? other : one, &coarser = is_up ? one : other;
+        const CertifiedGroup certified =
+            certify_group(test::as_group(finer), std::vector<TriangleBound>(1), test::as_group(coarser));
+        const double margin = std::max(away + 1.0, apart) * 0x1p-43;
+        EXPECT_NEAR(certified.deviation, apart * (1.0 + 0x1p-49) + margin, 1e-16 + apart * 4e-16 + 1e-3 * margin)
+            << away << ", " << apart;
+      }
     }
   }
+}
+
+TEST(CertifiedTightness, ABoundBeyondFloatsIsABound) {
+  TriangleCorners3 exact{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}}, grid = exact;
+  grid[1].x = 1e100;
+  EXPECT_NEAR(initial_bound(exact, grid).from_source, 1e100, 1e86);
+}
+
+TEST(Capsules, FewTrianglesAreNoHub) {
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  for (std::uint32_t t = 0; t < kHubTriangles; ++t) {
+    EXPECT_FALSE(has_hub(triangles, kHubTriangles + 2, {})) << t;
+    triangles.push_back({0, t + 1, t + 2});
+  }
+  EXPECT_TRUE(has_hub(triangles, kHubTriangles + 2, {}));
+  for (auto& t : triangles) t[0] = t[1];  // each in two corners of its triangle, and no vertex in many
+  EXPECT_FALSE(has_hub(triangles, kHubTriangles + 2, {}));
 }
 
 }  // namespace

@@ -200,5 +200,102 @@ TEST(Fits, AnyCoordinatesComeBack) {
   }
 }
 
+// The slopes that the positions were made with, to the nearest, leave no fewer bits, whichever way they lean.
+TEST(Fits, TheShearThatWasMadeIsNoShorter) {
+  test::Random random(47);
+  int sheared = 0;
+  for (int round = 0; round < 400; ++round) {
+    const std::size_t axis = static_cast<std::size_t>(round) % 3, u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
+    const double scale = 1 << format::kShearShift;
+    const double su = 1.9 * random.signed_unit(), sv = 1.9 * random.signed_unit();
+    std::vector<Position> positions;
+    for (int i = 0; i < 40; ++i) {
+      Position p{};
+      p[u] = static_cast<std::int32_t>(random.below(5000));
+      p[v] = static_cast<std::int32_t>(random.below(5000));
+      p[axis] = static_cast<std::int32_t>(std::floor(su * p[u] + sv * p[v] + 6.0 * random.unit()));
+      positions.push_back(p);
+    }
+    const PositionFit fit = fit_positions(positions);
+    expect_undone(positions, fit);
+    const std::uint32_t bits = fit.range[0].bits + fit.range[1].bits + fit.range[2].bits;
+    sheared += fit.axis == axis ? 1 : 0;
+    std::array<std::int32_t, 3> least = positions[0];
+    for (const Position& p : positions) {
+      for (std::size_t k = 0; k < 3; ++k) least[k] = std::min(least[k], p[k]);
+    }
+    const auto tu = static_cast<std::int32_t>(std::floor(su * scale + 0.5));
+    const auto tv = static_cast<std::int32_t>(std::floor(sv * scale + 0.5));
+    if (std::abs(tu) > 126 || std::abs(tv) > 126) continue;
+    std::vector<std::int32_t> rest, of_u, of_v;
+    for (const Position& p : positions) {
+      rest.push_back(p[axis] - ((tu * (p[u] - least[u]) + tv * (p[v] - least[v])) >> format::kShearShift));
+      of_u.push_back(p[u]);
+      of_v.push_back(p[v]);
+    }
+    EXPECT_LE(bits, range_of(rest).bits + range_of(of_u).bits + range_of(of_v).bits) << "seed 47, round " << round;
+  }
+  EXPECT_GT(sheared, 50);
+}
+
+// Coefficients are rounded to the nearest, whichever sign they have and whichever axis they are of.
+TEST(Fits, NegativeSlopesAreKeptAsFineAsPositiveOnes) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (const std::int32_t sign : {1, -1}) {
+      for (const std::int32_t rise : {1021, 1023, 777, 300}) {
+        std::vector<RawPosition> positions;
+        std::vector<std::int32_t> values;
+        for (std::uint32_t i = 0; i < 8; ++i) {
+          RawPosition p{};
+          p[axis] = i * 1024;
+          positions.push_back(p);
+          values.push_back(sign * static_cast<std::int32_t>(i) * rise);
+        }
+        const UvFit fit = fit_uv(values, positions, true);
+        expect_undone(values, positions, fit);
+        ASSERT_TRUE(fit.has_slope);
+        const double exact = sign * rise / 1024.0 * std::ldexp(1.0, static_cast<int>(fit.shift));
+        EXPECT_EQ(fit.slope[axis], static_cast<std::int32_t>(std::floor(exact + 0.5))) << axis << ", " << sign * rise;
+        EXPECT_LE(std::abs(exact), 511.0);
+        EXPECT_GT(2.0 * std::abs(exact) + 0.5, 511.0) << "as fine as ten bits hold";
+      }
+    }
+  }
+}
+
+TEST(Fits, SlopesUpToTheLimitAreKept) {
+  for (const std::int32_t slope : {511, -511}) {
+    std::vector<RawPosition> positions;
+    std::vector<std::int32_t> values;
+    for (std::uint32_t i = 0; i < 8; ++i) {
+      positions.push_back({i, 0, 0});
+      values.push_back(slope * static_cast<std::int32_t>(i));
+    }
+    const UvFit fit = fit_uv(values, positions, true);
+    EXPECT_TRUE(fit.has_slope);
+    EXPECT_EQ(fit.range.bits, 0U);
+  }
+}
+
+// Beside ranges of up to 22 bits an axis is sheared, beside wider ones its products would not fit.
+TEST(Fits, PlanesOfUpToTwentyTwoBitsLoseAnAxis) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (const std::int32_t side : {(1 << 22) - 1, 1 << 22}) {
+      std::vector<Position> positions;
+      for (int i = 0; i < 16; ++i) {
+        Position p{};
+        const std::size_t u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
+        p[u] = i % 2 * side;
+        p[v] = i / 2 % 2 * side;
+        p[axis] = p[u] / 64 * 32 + p[v] / 64 * 16;  // slopes of 1/2 and 1/4
+        positions.push_back(p);
+      }
+      const PositionFit fit = fit_positions(positions);
+      expect_undone(positions, fit);
+      EXPECT_EQ(fit.axis == axis && fit.range[axis].bits < 7, side < (1 << 22)) << axis << ", " << side;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace meshlode::build

@@ -361,5 +361,44 @@ TEST(Records, TheScaleOfNormalsIsTheLeastThatKeepsTheError) {
   EXPECT_GT(octahedral_scale_for(1e-16), std::uint64_t{800000000000000000U});
 }
 
+TEST(Records, ATinyBudgetIsABudget) {
+  SampleMesh sample = test::sample_patch();
+  EncodeOptions options;
+  options.uv_error_may_fall_short = false;
+  options.uv_error[0] = 1e-12;
+  EXPECT_FALSE(encoded(sample, options).ok()) << "coordinates of up to 1 leave it no bits";
+}
+
+// A group of 65,535 clusters is one of a page's limits, one of 65,536 of a number's.
+TEST(Records, AGroupHasSixteenBitsOfClusters) {
+  for (const std::uint32_t count : {65535U, 65536U}) {
+    SampleMesh sample = test::sample_tetrahedron();
+    sample.dag.clusters.resize(count, sample.dag.clusters[0]);
+    sample.dag.groups[0].cluster_count = count;
+    sample.hierarchy.cluster_spheres.resize(count, sample.hierarchy.cluster_spheres[0]);
+    sample.hierarchy.cluster_cones.resize(count, sample.hierarchy.cluster_cones[0]);
+    const auto mesh = encoded(sample);
+    ASSERT_FALSE(mesh.ok());
+    EXPECT_EQ(mesh.error().code, ErrorCode::kUnsupported);
+    EXPECT_EQ(mesh.error().detail.find("more than 65,535 clusters") != std::string::npos, count > 65535) << count;
+  }
+}
+
+TEST(UvGridSigns, NegativeCoordinatesAndTinyChartsCount) {
+  const auto range = [](float a, float b) {
+    UvRange out;
+    out.add(a);
+    out.add(b);
+    return out;
+  };
+  for (const float size : {1.0F, 3e6F, 1e30F}) {
+    EXPECT_EQ(choose_uv_log2(range(-size, 0.0F), 1e-5), choose_uv_log2(range(0.0F, size), 1e-5)) << size;
+    EXPECT_EQ(choose_uv_log2(range(-size, size), 1e-5), choose_uv_log2(range(0.0F, size), 1e-5)) << size;
+  }
+  for (const int log2 : {-1, -20, -40, -60}) {
+    EXPECT_EQ(default_uv_error(range(0.0F, std::ldexp(1.0F, log2))), std::ldexp(1.0, log2 - 14)) << log2;
+  }
+}
+
 }  // namespace
 }  // namespace meshlode::build

@@ -9,6 +9,8 @@
 
 #include <gtest/gtest.h>
 
+#include "build/hierarchy/bvh.h"
+#include "build/hierarchy/enclosing_ball.h"
 #include "build/hierarchy/lod_bounds.h"
 #include "build/hierarchy/margins.h"
 #include "support/random.h"
@@ -212,6 +214,38 @@ TEST(CullingBounds, AnErrorIsTheLargerOfItsOwnAndTheFinerGrown) {
   EXPECT_EQ(grow_error(0x1p121, 0.0F), 0x1p120F);
   EXPECT_EQ(grow_error(std::numeric_limits<double>::infinity(), 0.0F), 0x1p120F);
   EXPECT_EQ(grow_error(-1.0, 1.0F), float_above(1.0 + 0x1p-18));
+}
+
+// Along one axis alone, whichever it is, two points have their middle.
+TEST(CullingBounds, TwoPointsOnAnAxisHaveTheirMiddle) {
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double size : {1e-30, 1.0, 1e30}) {
+      Ball low, high;
+      high.center[axis] = 2.0 * size;
+      for (const bool is_near_smallest : {false, true}) {
+        const Ball ball = enclosing_ball(std::vector{low, high}, is_near_smallest);
+        EXPECT_NEAR(ball.center[axis], size, 1e-12 * size);
+        EXPECT_NEAR(ball.radius, size, 1e-12 * size);
+      }
+    }
+  }
+}
+
+// Where a node has not room for all levels, the coarser ones, which are asked first, lie nearer to the root.
+TEST(CullingBounds, CoarserLevelsLieNearerToTheRoot) {
+  constexpr std::uint32_t kLevels = 30;
+  std::vector<Hierarchy::Sphere> spheres(kLevels, {{0.0F, 0.0F, 0.0F}, 1.0F});
+  std::vector<float> errors(kLevels, 1.0F);
+  std::vector<std::uint32_t> levels(kLevels), depth(kLevels, 0);
+  for (std::uint32_t g = 0; g < kLevels; ++g) levels[g] = (7 * g) % kLevels;
+  const std::vector<format::NodeRecord> nodes = build_bvh(spheres, errors, levels);
+  std::vector<std::uint32_t> depth_of_node(nodes.size(), 0);
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    if (nodes[n].child_count == 0) depth[levels[nodes[n].first]] = depth_of_node[n];
+    for (std::uint32_t c = 0; c < nodes[n].child_count; ++c) depth_of_node[nodes[n].first + c] = depth_of_node[n] + 1;
+  }
+  for (std::uint32_t level = 1; level < kLevels; ++level) EXPECT_LE(depth[level], depth[level - 1]) << level;
+  EXPECT_LT(depth[kLevels - 1], depth[0]);
 }
 
 }  // namespace

@@ -9,12 +9,15 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <string>
 #include <tuple>
 #include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "build/prepare/corners.h"
+#include "build/prepare/median_edge.h"
 #include "build/prepare/prepare.h"
 #include "build/prepare/separate_needles.h"
 #include "build/prepare/zero_area.h"
@@ -381,6 +384,155 @@ TEST(PrepareOracle, ANeedleAtTheEndOfTheGridStaysOnIt) {
       EXPECT_EQ(separate_needles(positions, triangles, grid, cells), 0U);
       EXPECT_EQ(cells[0], cells[1]);
     }
+  }
+}
+
+// The last extent that 24 bits hold is taken, and the next double is not; so it is with the range of steps.
+TEST(GridLimits, AreTheLastThatFit) {
+  for (const std::uint32_t mantissa : {1U, 3U, 255U}) {
+    PrepareOptions options;
+    options.grid_step = mantissa * 0x1p-5;
+    const double most = std::floor(static_cast<double>(format::kMaxGridCoordinate) / mantissa) * options.grid_step;
+    EXPECT_TRUE(choose_grid(most, 2.0 * most, 0.0, options).ok()) << mantissa;
+    EXPECT_FALSE(choose_grid(std::nextafter(most, 2.0 * most), 2.0 * most, 0.0, options).ok()) << mantissa;
+  }
+  for (const auto& [log2, is_held] :
+       {std::pair{-1000, true}, std::pair{-1001, false}, std::pair{1000, true}, std::pair{1001, false}}) {
+    PrepareOptions options;
+    options.grid_step = std::ldexp(1.0, log2);
+    EXPECT_EQ(choose_grid(options.grid_step, 2.0 * options.grid_step, 0.0, options).ok(), is_held) << log2;
+  }
+  constexpr double kMost = format::kMaxGridCoordinate / 4.0;
+  for (const double half : {kMost, std::nextafter(kMost, HUGE_VAL)}) {
+    const auto grid = choose_grid(half, 1.5 * half, 1e-15 * half, {});
+    ASSERT_TRUE(grid.ok());
+    EXPECT_EQ(grid->log2, half > kMost ? 1 : 0) << half;
+  }
+  EXPECT_LE(choose_grid(1.7e308, 1.7e308, 1.0, {})->log2, 1000) << "however large";
+  EXPECT_GE(choose_grid(1e-305, 1e-305, 1e-307, {})->log2, -1000) << "however small";
+}
+
+scene::Primitive one_triangle(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+  scene::Primitive shape;
+  shape.positions = {a, b, c};
+  shape.indices = {0, 1, 2};
+  return shape;
+}
+
+TEST(GridLimits, OfTheFormatAndOfSquaresAreTheLastThatFit) {
+  const auto refusal = [](double size, double step) {
+    PrepareOptions options;
+    options.grid_step = step;
+    const auto mesh =
+        prepare_mesh(scene::as_mesh(one_triangle({0, 0, 0}, {size, 0, 0}, {0, size * 0x1p-20, 0})), {}, options);
+    return mesh.ok() ? std::string() : mesh.error().detail;
+  };
+  EXPECT_EQ(refusal(0x1p-110, 0x1p-126), "");
+  EXPECT_NE(refusal(0x1p-110, 0x1p-127).find("leaves the range of floats"), std::string::npos);
+  EXPECT_EQ(refusal(0x1p115, 0x1p104), "");
+  EXPECT_NE(refusal(0x1p115, 0x1p105).find("leaves the range of floats"), std::string::npos);
+  // So flat that the diagonal is the longest side to the last bit: at 2^-500 its square is whole, and the grid is what
+  // has no such step.
+  const auto detail = [](double size) {
+    return prepare_mesh(scene::as_mesh(one_triangle({0, 0, 0}, {size, 0, 0}, {0, size * 0x1p-40, 0})), {}, {})
+        .error()
+        .detail;
+  };
+  for (const double size : {0x1p-500, 0x1.8p-500}) EXPECT_NE(detail(size).find("step"), std::string::npos) << size;
+  for (const double size : {std::nextafter(0x1p-500, 0.0), 0x1.8p-501})
+    EXPECT_NE(detail(size).find("vanishes"), std::string::npos) << size;
+}
+
+// A step that was given holds needles in place, however small it is.
+TEST(PrepareOracle, OnAGivenStepNoNeedleMoves) {
+  for (const double unit : {1.0, 0x1p-60}) {
+    PrepareOptions options;
+    options.grid_step = unit * 0x1p-4;
+    const auto mesh =
+        prepare_mesh(scene::as_mesh(one_triangle(Vec3d(0.01, 0.01, 0.0) * unit, Vec3d(0.02, 0.015, 0.0) * unit,
+                                                 Vec3d(0.0, 0.0, 9.0) * unit)),
+                     {}, options);
+    ASSERT_TRUE(mesh.ok());
+    EXPECT_EQ(mesh->grid_collapsed, 1U) << unit;
+  }
+}
+
+// Corners that are level along an axis do not part along it: nothing says which way.
+TEST(PrepareOracle, LevelCornersDoNotPartAlongTheirAxis) {
+  RandomSource random(185);
+  for (int round = 0; round < 600; ++round) {
+    format::PositionGrid grid;
+    Vec3d a = random.in_cube(0.49), b = random.in_cube(0.49);
+    const int level = round % 3, other = (round + 1) % 3;
+    b[level] = a[level];
+    if (round % 2 == 0) b[other] = a[other];
+    const std::vector<Vec3d> positions{a, b, Vec3d(0.0, 0.0, 9.0)};
+    const std::vector<std::uint32_t> triangles{0, 1, 2};
+    std::vector<Vec3i> cells(2, Vec3i(0));
+    cells.push_back(Vec3i(0, 0, 9));
+    (void)separate_needles(positions, triangles, grid, cells);
+    for (const std::uint32_t v : {0U, 1U}) {
+      ASSERT_EQ(cells[v][level], 0) << "seed 185, round " << round;
+      ASSERT_TRUE(round % 2 == 1 || cells[v][other] == 0) << "seed 185, round " << round;
+    }
+  }
+}
+
+// Lengths scale by powers of two to the last bit, of short lists and long ones.
+TEST(MedianEdgeScale, IsExactUnderPowersOfTwo) {
+  RandomSource random(186);
+  for (const std::uint32_t count : {5U, 30000U}) {
+    scene::Primitive shape;
+    for (std::uint32_t t = 0; t < count; ++t) {
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        shape.positions.push_back(random.in_cube(1.0));
+        shape.indices.push_back(3 * t + k);
+      }
+    }
+    const double median = median_edge_length(gather_corners(scene::as_mesh(shape), {}));
+    for (const double scale : {0x1p-100, 0x1p-30, 0x1p20}) {
+      EXPECT_EQ(median_edge_length(gather_corners(scene::as_mesh(scene::scaled(shape, scale)), {})), median * scale);
+    }
+  }
+}
+
+// Normals that the file lacks have length one, of triangles without area and of such as overflow too; 0 has no sign.
+TEST(CornersOfAnyTriangle, HaveANormalOfLengthOneAndNoNegativeZero) {
+  AttributeLayout layout;
+  layout.has_normal = true;
+  for (const double size : {0.0, 1e-300, 1.0, 1e150, 1e300}) {
+    const Corners corners =
+        gather_corners(scene::as_mesh(one_triangle({-0.0, -0.0, -0.0}, {size, -0.0, 0.0}, {-0.0, size, size})), layout);
+    for (std::uint32_t v = 0; v < 3; ++v) {
+      const float* n = corners.attributes_of(v, 3);
+      EXPECT_NEAR(n[0] * n[0] + n[1] * n[1] + n[2] * n[2], 1.0F, 1e-6F) << size;
+      for (int axis = 0; axis < 3; ++axis) {
+        EXPECT_FALSE(std::signbit(corners.positions[v][axis]) && corners.positions[v][axis] == 0.0) << size;
+        EXPECT_FALSE(std::signbit(n[axis]) && n[axis] == 0.0F) << size;
+      }
+    }
+  }
+}
+
+// Multiples of one direction lie on a line, though neither their differences nor the products of these are exact; half
+// a bit aside they do not.
+TEST(ZeroAreaRounding, DecidesWhereDifferencesAndProductsRound) {
+  RandomSource random(187);
+  for (int round = 0; round < 20000; ++round) {
+    Vec3d direction;
+    for (int axis = 0; axis < 3; ++axis)
+      direction[axis] = (random.chance(0.5) ? 1.0 : -1.0) * std::floor(random.between(0x1p47, 0x1p50));
+    const double unit = std::ldexp(1.0, round % 4 == 0   ? -1000
+                                        : round % 4 == 1 ? -560
+                                                         : static_cast<int>(random.below(300)) - 150);
+    const std::array<double, 6> factors{-7.0, -5.0, -3.0, 3.0, 5.0, 7.0};
+    std::array<Vec3d, 3> p;
+    const std::uint32_t first = random.below(6);
+    for (std::uint32_t k = 0; k < 3; ++k) p[k] = direction * (factors[(first + k * (1 + round % 2)) % 6] * unit);
+    ASSERT_TRUE(are_collinear(p[0], p[1], p[2])) << "seed 187, round " << round;
+    const std::uint32_t moved = random.below(3), axis = random.below(3);
+    p[moved][static_cast<int>(axis)] = std::nextafter(p[moved][static_cast<int>(axis)], HUGE_VAL);
+    ASSERT_FALSE(are_collinear(p[0], p[1], p[2])) << "seed 187, round " << round;
   }
 }
 

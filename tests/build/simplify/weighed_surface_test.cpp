@@ -125,11 +125,14 @@ TEST(WeighedSurface, AttributesCostWhatEachFaceSaysOfThem) {
     attributes.join(classes[0], place);
     std::vector<float> written;
     attributes.write(members[0], false, written);
-    long double length2 = 0.0L;
-    for (std::size_t j = 0; j < 3; ++j) length2 += best[j] * best[j] / scales[j] / scales[j];
+    // What is stored is a float, and of that the normal of length one.
+    std::array<float, kCount> stored;
+    for (std::size_t j = 0; j < kCount; ++j) stored[j] = static_cast<float>(static_cast<double>(best[j] / scales[j]));
+    const Real3 normal(stored[0], stored[1], stored[2]);
+    const Real3 unit = normal / std::sqrt(glm::dot(normal, normal));
     for (std::size_t j = 0; j < kCount; ++j) {
-      const long double value = best[j] / scales[j] / (j < 3 ? std::sqrt(length2) : 1.0L);
-      EXPECT_NEAR(written[j], static_cast<double>(value), 2e-7 * (1.0 + std::fabs(static_cast<double>(value))));
+      const double value = j < 3 ? static_cast<double>(unit[static_cast<int>(j)]) : double{stored[j]};
+      EXPECT_NEAR(written[j], value, 0x1.001p-24 * std::fabs(value) + 1e-11) << "seed 141, round " << round;
     }
   }
 }
@@ -403,6 +406,16 @@ TEST(WeighedSurface, FreePiecesGrowByOneFactorAboutTheirMiddles) {
     }
     ASSERT_NEAR(moved, static_cast<double>(growth > 1.0L ? farthest : 0.0L), 1e-14) << "seed 147, round " << round;
   }
+}
+
+// A piece of a few units of the grid in a group of millions is a piece.
+TEST(WeighedSurface, TinyPiecesGrowToo) {
+  const int most = 1 << 22;
+  DrawnMesh drawn({{0, 0, 0}, {3, 0, 0}, {0, 3, 0}, {-most, 0, 0}, {most, 0, 0}, {0, most, 0}}, {{0, 1, 2}, {3, 4, 5}});
+  SimplifyInput input = as_input(drawn);
+  for (int copy = 0; copy < 8; ++copy) input.triangles.push_back({3, 4, 5});
+  EXPECT_GT(grow_pieces(input, drawn.mesh, drawn.places), 0.0);
+  EXPECT_EQ(drawn.places.on_grid(1), Vec3i(5, -1, 0)) << "twice as far from its middle (1, 1, 0)";
 }
 
 }  // namespace

@@ -183,6 +183,11 @@ TEST(MetricView, TheUnitLeavesTheRowsFarFromOverflow) {
       EXPECT_LE(view.row2.z, 0x1p100F) << log2 << ", " << sigma_log2;
     }
   }
+  // A scale of 0 limits nothing.
+  Shot flat;
+  flat.instance.transform[0] = 0.75;
+  flat.camera.eye = Vec3d(0x1p-90, 0.0, 0.0);
+  EXPECT_EQ(flat.view().row0.x, static_cast<float>(0.75 * 0x1p119));
   for (const double none : {0.0, HUGE_VAL, std::nan("")}) {
     Shot shot;
     shot.instance.transform[0] = 0.75;

@@ -241,5 +241,32 @@ TEST(Traversal, TheFarBoundIsTheRootsSphereAndTheCoarsestError) {
   }
 }
 
+TEST(Traversal, AMeshWithoutNodesDrawsNothingThroughThem) {
+  RandomSource random(206);
+  TestTables tables = two_meshes(random, 20);
+  tables.meshes[0].node_count = 0;
+  for (const ClusterInstance& d : select_bvh(tables.view(), Camera{}, 0.0)) EXPECT_GE(d.instance.value, 2U);
+}
+
+// Whatever error is allowed, and whatever their other numbers say: terminal groups never pass, and their members are
+// drawn.
+TEST(Traversal, AtAnyErrorTheRootsAreDrawn) {
+  RandomSource random(207);
+  TestTables tables = two_meshes(random, 40);
+  for (format::GroupRecord& group : tables.groups) {
+    if ((group.flags & format::kGroupTerminal) != 0) group.quadric_error = 0.0F;
+  }
+  for (std::uint32_t m = 0; m < 2; ++m) {
+    for (const CutError by : {CutError::kSelection, CutError::kQuadric}) {
+      for (const double error : {1e30, static_cast<double>(format::kInfiniteError), HUGE_VAL}) {
+        const UniformCut cut = select_uniform(tables.view(), MeshId(m), error, by);
+        ASSERT_FALSE(cut.clusters.empty());
+        for (const ClusterId id : cut.clusters)
+          EXPECT_NE(tables.groups[tables.clusters[id.value].coarser_group].flags & format::kGroupTerminal, 0);
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace meshlode::run
