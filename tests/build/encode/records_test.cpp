@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -13,7 +14,9 @@
 #include "build/encode/encode.h"
 #include "build/encode/quantize_normal.h"
 #include "build/encode/uv_grid.h"
+#include "run/decode/decode.h"
 #include "support/random.h"
+#include "support/sample_asset.h"
 #include "support/sample_mesh.h"
 
 namespace meshlode::build {
@@ -397,6 +400,28 @@ TEST(UvGridSigns, NegativeCoordinatesAndTinyChartsCount) {
   }
   for (const int log2 : {-1, -20, -40, -60}) {
     EXPECT_EQ(default_uv_error(range(0.0F, std::ldexp(1.0F, log2))), std::ldexp(1.0, log2 - 14)) << log2;
+  }
+}
+
+// Each cluster of a page is found where its head says it is, with the vertices that it had.
+TEST(Records, EveryClusterOfAPageComesBack) {
+  for (const SampleMesh& sample : {test::sample_patch(), test::sample_sphere()}) {
+    const auto asset = run::Asset::from_vector(test::asset_bytes_of(sample));
+    ASSERT_TRUE(asset.ok()) << asset.error().message();
+    const auto clusters = run::decode_all(*asset);
+    ASSERT_TRUE(clusters.ok()) << clusters.error().message();
+    ASSERT_EQ(clusters->size(), sample.dag.clusters.size());
+    for (std::size_t c = 0; c < clusters->size(); ++c) {
+      const DagCluster& cluster = sample.dag.clusters[c];
+      std::multiset<std::array<int, 3>> expected, stored;
+      for (std::uint32_t v = 0; v < cluster.vertex_count; ++v) {
+        const Vec3i& p = sample.dag.vertex_position[cluster.first_vertex + v];
+        const Vec3i q = (*clusters)[c].position(v);
+        expected.insert({p.x, p.y, p.z});
+        stored.insert({q.x, q.y, q.z});
+      }
+      EXPECT_EQ(stored, expected) << c;
+    }
   }
 }
 
