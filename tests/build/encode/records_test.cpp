@@ -398,6 +398,10 @@ TEST(UvGridSigns, NegativeCoordinatesAndTinyChartsCount) {
     EXPECT_EQ(choose_uv_log2(range(-size, 0.0F), 1e-5), choose_uv_log2(range(0.0F, size), 1e-5)) << size;
     EXPECT_EQ(choose_uv_log2(range(-size, size), 1e-5), choose_uv_log2(range(0.0F, size), 1e-5)) << size;
   }
+  // The largest coordinate that a step holds has that step, and the next float the next.
+  const auto most = static_cast<float>(kMaxUvInteger);
+  EXPECT_EQ(choose_uv_log2(range(0.0F, most), 0.25), 0);
+  EXPECT_EQ(choose_uv_log2(range(0.0F, std::nextafter(most, 2.0F * most)), 0.25), 1);
   for (const int log2 : {-1, -20, -40, -60}) {
     EXPECT_EQ(default_uv_error(range(0.0F, std::ldexp(1.0F, log2))), std::ldexp(1.0, log2 - 14)) << log2;
   }

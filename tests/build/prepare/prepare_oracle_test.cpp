@@ -443,6 +443,20 @@ TEST(GridLimits, OfTheFormatAndOfSquaresAreTheLastThatFit) {
     EXPECT_NE(detail(size).find("vanishes"), std::string::npos) << size;
 }
 
+// Of a given step eight bits are kept, odd, so that there is one spelling.
+TEST(GridLimits, AGivenStepHasAMantissaOfEightBits) {
+  RandomSource random(188);
+  for (int round = 0; round < 1000; ++round) {
+    PrepareOptions options;
+    options.grid_step = random.log_between(1e-6, 1e6);
+    const auto grid = choose_grid(options.grid_step, options.grid_step, 0.0, options);
+    ASSERT_TRUE(grid.ok());
+    EXPECT_EQ(grid->mantissa % 2, 1U) << "seed 188, round " << round;
+    EXPECT_LT(grid->mantissa, 256U) << "seed 188, round " << round;
+    EXPECT_NEAR(grid->step(), options.grid_step, options.grid_step * 0x1.001p-8) << "seed 188, round " << round;
+  }
+}
+
 // A step that was given holds needles in place, however small it is.
 TEST(PrepareOracle, OnAGivenStepNoNeedleMoves) {
   for (const double unit : {1.0, 0x1p-60}) {

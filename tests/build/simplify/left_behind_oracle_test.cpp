@@ -196,5 +196,14 @@ TEST(LeftBehindOracle, ASheetIsAsHighAsItsSmallestHeight) {
   }
 }
 
+// A sheet of a few units in a group of millions is a sheet.
+TEST(LeftBehindOracle, TinySheetsHaveAHeight) {
+  const int most = 1 << 22;
+  DrawnMesh drawn({{0, 0, 0}, {4, 0, 0}, {0, 3, 0}, {-most, 0, 0}, {most, 0, 1}},
+                  {{0, 1, 2}, {2, 1, 0}, {0, 1, 3}, {1, 2, 4}});
+  const LeftBehind left(std::vector<Witnesses>(5), drawn.places);
+  EXPECT_NEAR(left.drop_sheets(drawn.mesh, drawn.places, 0) * drawn.places.scale(), 12.0 / 5.0, 1e-9);
+}
+
 }  // namespace
 }  // namespace meshlode::build
