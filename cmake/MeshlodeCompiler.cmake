@@ -21,9 +21,6 @@ target_compile_options(meshlode_flags INTERFACE -ffp-contract=off
   $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wold-style-cast
                             -Wnon-virtual-dtor -Woverloaded-virtual>
   $<$<COMPILE_LANGUAGE:C>:-Wall -Wextra>)
-# GCC 12 leaves out the rounding of two doubles that go to floats and back where it makes one vector of both: what a value is
-# would depend on what lies beside it, and on the level of optimisation. tests/environment holds it.
-target_compile_options(meshlode_flags INTERFACE $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-fno-tree-slp-vectorize>)
 # GCC 12 sees overlapping copies and overflows in std::string's insert and operator+ that cannot be (GCC bugs 105329 and
 # 105651); which of them it sees depends on what it inlines, so that any change of a test may bring one. Clang's own
 # warnings of arrays stay on.

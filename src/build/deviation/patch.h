@@ -64,6 +64,16 @@ struct Patch {
   [[nodiscard]] Vec3d middle(std::size_t k) const { return (corner[k] + corner[(k + 1) % 3]) * 0.5; }
 };
 
+/// A patch in a heap, which moves these instead of some hundred bytes.
+struct RankedPatch {
+  double estimate = 0.0;
+  std::uint32_t order = 0;  ///< of creation: ties are decided by it
+  std::uint32_t patch = 0;  ///< its place among the patches of the queue
+  [[nodiscard]] bool operator<(const RankedPatch& other) const {
+    return estimate != other.estimate ? estimate < other.estimate : order > other.order;
+  }
+};
+
 /// The distance to a triangle is convex, so that no point of a patch is farther from it than a corner is: of the
 /// triangles of the other side that are near the six points, the one that is best for all three corners bounds the
 /// patch. A bound of no more than `enough` is as good as a lower one.
@@ -130,18 +140,8 @@ class PatchQueue {
   }
 
  private:
-  /// A patch in a heap, which moves these instead of some hundred bytes.
-  struct Ranked {
-    double estimate;
-    std::uint32_t order;  ///< of creation: ties are decided by it
-    std::uint32_t patch;  ///< into patches_
-    [[nodiscard]] bool operator<(const Ranked& other) const {
-      return estimate != other.estimate ? estimate < other.estimate : order > other.order;
-    }
-  };
-
   [[nodiscard]] bool is_worthwhile(double value) const { return value > kWorthwhile * probes_.maximum(); }
-  void push(std::vector<Ranked>& heap, const Patch& patch) {
+  void push(std::vector<RankedPatch>& heap, const Patch& patch) {
     auto at = static_cast<std::uint32_t>(patches_.size());
     if (free_.empty()) {
       patches_.push_back(patch);
@@ -153,7 +153,7 @@ class PatchQueue {
     heap.push_back({patch.estimate, order_++, at});
     std::push_heap(heap.begin(), heap.end());
   }
-  Patch pop(std::vector<Ranked>& heap) {
+  Patch pop(std::vector<RankedPatch>& heap) {
     std::pop_heap(heap.begin(), heap.end());
     const std::uint32_t at = heap.back().patch;
     heap.pop_back();
@@ -208,8 +208,8 @@ class PatchQueue {
   std::uint32_t order_ = 0;
   std::vector<Patch> patches_;       ///< of both heaps, and places of those that left them
   std::vector<std::uint32_t> free_;  ///< such places
-  std::vector<Ranked> heap_;
-  std::vector<Ranked> aside_;  ///< by their bounds
+  std::vector<RankedPatch> heap_;
+  std::vector<RankedPatch> aside_;  ///< by their bounds
 };
 
 }  // namespace meshlode::build

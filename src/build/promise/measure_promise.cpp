@@ -27,6 +27,9 @@ namespace {
 constexpr std::size_t kSourcePoints = 100000;
 /// Carried on by a group, about; between so many a triangle of it.
 constexpr std::size_t kCarried = 4096, kFewestCarried = 2, kMostCarried = 64;
+/// The same of vertices of the source, of which corners of charts and peaks of normals are: all of them, but where a
+/// triangle has very many, so that those of small meshes are there to the end.
+constexpr std::size_t kCarriedVertices = 32768, kFewestVertices = 64;
 /// Points on a group's triangles beside the corners, the middles of edges and the middle.
 constexpr std::size_t kGroupPoints = 1024, kMostOfTriangle = 32;
 /// Points nearer than this share of the farthest are not looked at closely.
@@ -128,6 +131,7 @@ class PromiseMeter {
     float b, c;              ///< weights of its second and third corner
     float distance = 0.0F;   ///< from the clusters that it was last found on
     std::uint32_t place = 0;
+    [[nodiscard]] bool is_vertex() const { return (b == 0.0F || b == 1.0F) && (c == 0.0F || c == 1.0F); }
   };
 
   /// A point of a surface from which a farther one may be looked for.
@@ -472,10 +476,11 @@ class PromiseMeter {
     return std::max(farthest2, climb_all(source_, tree, list, 0x66726F6DULL));
   }
 
-  /// The farthest samples of each triangle, and of the others some from all over the source.
+  /// The farthest samples of each triangle, and of the others some from all over the source and the farthest vertices.
   static std::vector<Sample> thin(std::vector<Sample>& samples, std::size_t triangle_count) {
     const std::size_t each =
         std::clamp(kCarried / std::max<std::size_t>(1, triangle_count), kFewestCarried, kMostCarried);
+    const std::size_t vertices = std::max(kCarriedVertices / std::max<std::size_t>(1, triangle_count), kFewestVertices);
     std::sort(samples.begin(), samples.end(), [](const Sample& x, const Sample& y) {
       if (x.place != y.place) return x.place < y.place;
       if (x.distance != y.distance) return x.distance > y.distance;
@@ -487,10 +492,16 @@ class PromiseMeter {
       std::size_t end = begin;
       while (end < samples.size() && samples[end].place == samples[begin].place) ++end;
       const std::size_t count = end - begin, far = std::min(count, each);
-      kept.insert(kept.end(), samples.begin() + static_cast<std::ptrdiff_t>(begin),
-                  samples.begin() + static_cast<std::ptrdiff_t>(begin + far));
       const std::size_t rest = std::min(count - far, each / 2);
-      for (std::size_t i = 0; i < rest; ++i) kept.push_back(samples[begin + far + (count - far) * i / rest]);
+      std::size_t taken = 0, vertices_taken = 0;  // of the rest; of all
+      for (std::size_t i = 0; i < count; ++i) {
+        const Sample& sample = samples[begin + i];
+        const bool is_of_rest = i >= far && taken < rest && i == far + (count - far) * taken / rest;
+        const bool is_wanted_vertex = sample.is_vertex() && vertices_taken < vertices;
+        if (i < far || is_of_rest || is_wanted_vertex) kept.push_back(sample);
+        taken += is_of_rest ? 1 : 0;
+        vertices_taken += is_wanted_vertex ? 1 : 0;
+      }
       begin = end;
     }
     return kept;

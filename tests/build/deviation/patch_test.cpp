@@ -177,10 +177,7 @@ TEST(Patch, IsBoundedByWhatNoPointCanBeBeyond) {
 }
 
 TEST(Patch, OfEqualPromiseTheFirstIsDividedFirst) {
-  Patch a, b;
-  a.estimate = 1.0;
-  b.estimate = 2.0;
-  a.order = 5;
+  RankedPatch a{1.0, 5, 0}, b{2.0, 0, 1};
   EXPECT_TRUE(a < b);
   EXPECT_FALSE(b < a);
   b.estimate = 1.0;
