@@ -61,11 +61,7 @@ SampleMask source_mask(const SourceSurface& source, const Lattice& lattice, cons
       mask.add_triangle(places[i]);
       continue;
     }
-    const std::array<Vec2d, 3> uv = source.uvs(seen[i]);
-    mask.add_triangle(places[i], [&](double b, double c) {
-      const Vec2d at = (1.0 - b - c) * uv[0] + b * uv[1] + c * uv[2];
-      return covers(at.x, at.y);
-    });
+    mask.add_triangle(places[i], source.uvs(seen[i]), covers);
   }
   return mask;
 }
@@ -191,12 +187,23 @@ std::vector<SampleMask> joined_in_pairs(std::span<const SampleMask> masks) {
   return joined;
 }
 
-ViewResult look(const SourceSurface& source, const ByPiece& leaf_triangles, const Lattice& lattice, const View& view,
-                std::span<const std::vector<GroupProposals>> levels, std::span<const Trial> trials, std::size_t step) {
-  std::vector<SampleMask> leaves(leaf_triangles.size());
-  parallel_for_each_index(leaves.size(), 1, [&](std::size_t leaf) {
-    leaves[leaf] = source_mask(source, lattice, view, leaf_triangles.of(leaf));
+/// What the leaves cover in one view, at one spacing after the other.
+using LeafMasks = std::vector<std::vector<SampleMask>>;
+
+/// For the spacings of `first_step` to that of `finest`, which is the last one: the source is drawn once, and what it
+/// covers of the coarser lattices are samples of the finest.
+LeafMasks draw_leaves(const SourceSurface& source, const ByPiece& leaf_triangles, const Lattice& finest,
+                      const View& view, std::size_t first_step, std::size_t steps) {
+  LeafMasks masks(steps, std::vector<SampleMask>(leaf_triangles.size()));
+  parallel_for_each_index(leaf_triangles.size(), 1, [&](std::size_t leaf) {
+    masks[steps - 1][leaf] = source_mask(source, finest, view, leaf_triangles.of(leaf));
+    for (std::size_t step = steps - 1; step-- > first_step;) masks[step][leaf] = masks[step + 1][leaf].even_samples();
   });
+  return masks;
+}
+
+ViewResult look(std::span<const SampleMask> leaves, const Lattice& lattice, const View& view,
+                std::span<const std::vector<GroupProposals>> levels, std::span<const Trial> trials, std::size_t step) {
   ViewResult result;
   result.change.resize(trials.size());
   result.whole = squares_of_all(cover_of(leaves).once, step + 1);
@@ -223,6 +230,28 @@ ViewResult look(const SourceSurface& source, const ByPiece& leaf_triangles, cons
   return result;
 }
 
+/// Of a group's ways one is taken in the end. Which one shows from large pixels on: those that have clearly more noise
+/// there are looked at no further.
+void close_worse_ways(std::span<const std::vector<GroupProposals>> levels, std::span<Trial> trials) {
+  constexpr double kClearlyMore = 1.2, kHardlyAny = 0.02;
+  const auto noise_of = [&](const Trial& trial) {
+    const auto& points = levels[trial.level][trial.group].proposals[trial.proposal].noise.points;
+    return points.empty() ? 0.0 : points.back().noise;
+  };
+  for (std::size_t first = 0, end = 0; first < trials.size(); first = end) {
+    double least = std::numeric_limits<double>::infinity();
+    for (; end < trials.size() && trials[end].level == trials[first].level && trials[end].group == trials[first].group;
+         ++end) {
+      if (trials[end].is_open) least = std::min(least, noise_of(trials[end]));
+    }
+    for (std::size_t i = first; i < end; ++i) {
+      if (trials[i].is_open && noise_of(trials[i]) > std::max(kHardlyAny, kClearlyMore * least)) {
+        trials[i].is_open = false;
+      }
+    }
+  }
+}
+
 }  // namespace
 
 void measure_proposals(const SourceSurface& source, const MeshFrame& frame, const ByPiece& leaf_triangles,
@@ -245,14 +274,21 @@ void measure_proposals(const SourceSurface& source, const MeshFrame& frame, cons
       }
     }
   }
-  double spacing = widest;
-  for (std::size_t step = 0; step < steps; ++step, spacing *= 0.5) {
+  std::size_t first_step = steps - 1;
+  for (const Trial& trial : trials) first_step = std::min(first_step, trial.first_step);
+  std::vector<Lattice> lattices{Lattice(frame.center, frame.radius, widest)};
+  while (lattices.size() < steps) lattices.push_back(lattices.back().finer());
+  std::array<LeafMasks, kViews> leaves;
+  for (std::size_t v = 0; v < kViews; ++v) {
+    leaves[v] = draw_leaves(source, leaf_triangles, lattices.back(), views()[v], first_step, steps);
+  }
+  for (std::size_t step = first_step; step < steps; ++step) {
     if (std::none_of(trials.begin(), trials.end(), [](const Trial& trial) { return trial.is_open; })) break;
     if (std::none_of(trials.begin(), trials.end(), [&](const Trial& t) { return t.octaves_at(step) > 0; })) continue;
-    const Lattice lattice(frame.center, frame.radius, spacing);
+    const double spacing = lattices[step].spacing;
     std::array<ViewResult, kViews> of_view;
     for (std::size_t v = 0; v < kViews; ++v) {
-      of_view[v] = look(source, leaf_triangles, lattice, views()[v], levels, trials, step);
+      of_view[v] = look(leaves[v][step], lattices[step], views()[v], levels, trials, step);
     }
     for (std::size_t i = 0; i < trials.size(); ++i) {
       Trial& trial = trials[i];
@@ -270,6 +306,7 @@ void measure_proposals(const SourceSurface& source, const MeshFrame& frame, cons
         trial.is_open = error <= kLoosestNoise;
       }
     }
+    close_worse_ways(levels, trials);
   }
 }
 

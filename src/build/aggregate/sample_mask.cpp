@@ -26,24 +26,18 @@ std::int64_t floor_samples(std::int64_t place) {
   return place >> 8;
 }
 
-/// One side of a triangle: what it leaves of a row, row by row. The bound is a quotient that changes by the same amount
-/// from row to row; its remainder goes along, so that it is exact.
+/// One side of a triangle that is not level: the last column it leaves of a row, or the first one, row by row. That is
+/// a quotient that changes by the same amount from row to row; its remainder goes along, so that it is exact.
 class Side {
  public:
-  /// From the given row on.
+  Side() = default;
+  /// From the given row on. Right of it is inside where it goes down, left where it goes up.
   Side(const Point& a, const Point& b, std::int64_t row) {
     const std::int64_t dx = b.x - a.x, dy = b.y - a.y;
     // Inside: dx (y - a.y) - dy (x - a.x) is at least 0, or 1 on the sides whose own samples are the neighbour's.
-    const std::int64_t bias = dy > 0 || (dy == 0 && dx > 0) ? 0 : 1;
+    const std::int64_t bias = dy > 0 ? 0 : 1;
     const std::int64_t rest = dx * (row * kUnit - a.y) - bias;
-    if (dy == 0) {  // all of a row, or nothing
-      is_level_ = true;
-      quotient_ = rest;
-      step_ = dx * kUnit;
-      return;
-    }
     // dy > 0: x at most (rest + dy a.x) / dy. dy < 0: -x at most (rest + dy a.x) / -dy.
-    is_left_ = dy < 0;
     divisor_ = (dy > 0 ? dy : -dy) * kUnit;
     quotient_ = floor_div(rest + dy * a.x, divisor_);
     remainder_ = rest + dy * a.x - quotient_ * divisor_;
@@ -51,50 +45,60 @@ class Side {
     step_remainder_ = dx * kUnit - step_ * divisor_;
   }
 
-  void clip(std::int64_t& first, std::int64_t& last) const {
-    if (is_level_) {
-      if (quotient_ < 0) first = last + 1;
-    } else if (is_left_) {
-      first = std::max(first, -quotient_);
-    } else {
-      last = std::min(last, quotient_);
-    }
-  }
+  /// The last column, or of a side that goes down the first one with its sign turned.
+  [[nodiscard]] std::int64_t bound() const { return quotient_; }
   void next_row() {
     quotient_ += step_;
     remainder_ += step_remainder_;
-    if (remainder_ >= divisor_) {
-      remainder_ -= divisor_;
-      ++quotient_;
-    }
+    const bool is_over = remainder_ >= divisor_;
+    quotient_ += is_over ? 1 : 0;
+    remainder_ -= is_over ? divisor_ : 0;
   }
 
  private:
-  bool is_level_ = false, is_left_ = false;
   std::int64_t divisor_ = 1, quotient_ = 0, remainder_ = 0, step_ = 0, step_remainder_ = 0;
 };
 
-/// As Side, sample by sample and without a division: for triangles that are a few samples wide, which most are.
+constexpr std::size_t kFewColumns = 16;
+constexpr std::array<std::int32_t, kFewColumns> kColumnBits{1,   2,   4,    8,    16,   32,   64,    128,
+                                                            256, 512, 1024, 2048, 4096, 8192, 16384, 32768};
+
+/// As Side, sample by sample and without a division: for triangles that are a few samples wide, which most are. Numbers
+/// are relative to the first column and row, and small: all columns at once are a few instructions of a processor.
 class SmallSide {
  public:
-  /// From the given column and row on.
-  SmallSide(const Point& a, const Point& b, std::int64_t column, std::int64_t row)
-      : along_(-(b.y - a.y) * kUnit), up_((b.x - a.x) * kUnit) {
-    const std::int64_t dx = b.x - a.x, dy = b.y - a.y;
-    const std::int64_t bias = dy > 0 || (dy == 0 && dx > 0) ? 0 : 1;
-    at_ = dx * (row * kUnit - a.y) - dy * (column * kUnit - a.x) - bias;
+  /// From the given column and row on. \pre a and b are within kFewColumns of the column and kFewRows of the row
+  SmallSide(const Point& a, const Point& b, std::int64_t column, std::int64_t row) {
+    const auto dx = static_cast<std::int32_t>(b.x - a.x), dy = static_cast<std::int32_t>(b.y - a.y);
+    const std::int32_t bias = dy > 0 || (dy == 0 && dx > 0) ? 0 : 1;
+    const std::int32_t at =
+        dx * static_cast<std::int32_t>(row * kUnit - a.y) - dy * static_cast<std::int32_t>(column * kUnit - a.x) - bias;
+    const std::int32_t along = -dy * static_cast<std::int32_t>(kUnit);
+    up_ = dx * static_cast<std::int32_t>(kUnit);
+#pragma GCC unroll 1
+    for (std::size_t x = 0; x < kFewColumns; ++x) at_[x] = at + along * static_cast<std::int32_t>(x);
   }
   /// Not negative inside.
-  [[nodiscard]] std::int64_t at(std::int64_t column) const { return at_ + along_ * column; }
-  void next_row() { at_ += up_; }
+  [[nodiscard]] std::int32_t at(std::size_t column) const {
+    return at_[column];
+  }
+  void next_row() {
+#pragma GCC unroll 1
+    for (std::int32_t& at : at_) at += up_;
+  }
+
+  /// Sides of a triangle of so many rows and kFewColumns columns stay below 2^31: 2 · (64 · 256) · (66 · 256).
+  static constexpr std::int64_t kFewRows = 64;
 
  private:
-  std::int64_t along_, up_, at_ = 0;
+  std::array<std::int32_t, kFewColumns> at_{};
+  std::int32_t up_ = 0;
 };
 
 /// Columns and rows of a box that hold all samples of a triangle, the last ones included.
 struct Extent {
   std::int64_t first_column, last_column, first_row, last_row;
+  bool is_few = false;  ///< what SmallSide asks for
 
   Extent(const std::array<Point, 3>& p, const MaskBox& box) {
     const auto [left, right] = std::minmax({p[0].x, p[1].x, p[2].x});
@@ -103,6 +107,10 @@ struct Extent {
     last_column = std::min<std::int64_t>(std::int64_t{64} * box.end_word - 1, floor_samples(right));
     first_row = std::max<std::int64_t>(box.first_row, floor_samples(low + kUnit - 1));
     last_row = std::min<std::int64_t>(box.end_row - 1, floor_samples(high));
+    // The triangle itself, not what the box leaves of it.
+    is_few = right - left < static_cast<std::int64_t>(kFewColumns - 1) * kUnit &&
+             high - low < (SmallSide::kFewRows - 2) * kUnit && left >= (first_column - 1) * kUnit &&
+             low >= (first_row - 1) * kUnit;
   }
   [[nodiscard]] bool is_empty() const { return first_column > last_column || first_row > last_row; }
 };
@@ -112,38 +120,64 @@ template <class Visit>
 void for_each_row(const std::array<Point, 3>& p, const MaskBox& box, const Visit& visit) {
   const Extent extent(p, box);
   if (extent.is_empty()) return;
-  constexpr std::int64_t kFewColumns = 12;
-  if (extent.last_column - extent.first_column < kFewColumns) {
+  if (extent.is_few) {
     const std::int64_t columns = extent.last_column - extent.first_column + 1;
+    const std::uint32_t in_box = 0xFFFFFFFFU >> (32 - static_cast<unsigned>(columns));
     const auto side = [&](std::size_t k) {
       return SmallSide(p[k], p[(k + 1) % 3], extent.first_column, extent.first_row);
     };
     SmallSide a = side(0), b = side(1), c = side(2);
     for (std::int64_t y = extent.first_row; y <= extent.last_row; ++y) {
-      std::uint32_t inside = 0;
-      for (std::int64_t x = 0; x < columns; ++x) {
-        const bool is_outside = (a.at(x) | b.at(x) | c.at(x)) < 0;
-        inside |= (is_outside ? 0U : 1U) << static_cast<unsigned>(x);
-      }
+      std::int32_t outside = 0;
+#pragma GCC unroll 1
+      for (std::size_t x = 0; x < kFewColumns; ++x) outside |= ((a.at(x) | b.at(x) | c.at(x)) >> 31) & kColumnBits[x];
       a.next_row();
       b.next_row();
       c.next_row();
+      const std::uint32_t inside = ~static_cast<std::uint32_t>(outside) & in_box;
       if (inside == 0) continue;
       visit(static_cast<int>(y), static_cast<int>(extent.first_column) + std::countr_zero(inside),
             static_cast<int>(extent.first_column) + 31 - std::countl_zero(inside));
     }
     return;
   }
-  std::array<Side, 3> sides{Side(p[0], p[1], extent.first_row), Side(p[1], p[2], extent.first_row),
-                            Side(p[2], p[0], extent.first_row)};
-  for (std::int64_t y = extent.first_row; y <= extent.last_row; ++y) {
-    std::int64_t first = extent.first_column, last = extent.last_column;
-    for (Side& side : sides) {
-      side.clip(first, last);
-      side.next_row();
-    }
-    if (first <= last) visit(static_cast<int>(y), static_cast<int>(first), static_cast<int>(last));
+  // From the lowest corner up two chains of sides bound each row; one of them bends at the middle corner.
+  std::size_t low = 0;
+  for (std::size_t k = 1; k < 3; ++k) {
+    if (p[k].y < p[low].y || (p[k].y == p[low].y && p[k].x < p[low].x)) low = k;
   }
+  const Point &bottom = p[low], &next = p[(low + 1) % 3], &last = p[(low + 2) % 3];
+  std::int64_t last_row = extent.last_row;
+  // The samples of a level side at the top are the neighbour's.
+  if (next.y == last.y && last_row * kUnit == next.y) --last_row;
+  // Counter-clockwise: bottom, next, last. Up from the bottom on the right, and down to it on the left.
+  const auto fill = [&](std::int64_t first_row, std::int64_t end_row, Side& right, Side& left) {
+    for (std::int64_t y = first_row; y < end_row; ++y) {
+      const std::int64_t first = std::max(extent.first_column, -left.bound());
+      const std::int64_t end = std::min(extent.last_column, right.bound());
+      right.next_row();
+      left.next_row();
+      if (first <= end) visit(static_cast<int>(y), static_cast<int>(first), static_cast<int>(end));
+    }
+  };
+  const bool bends_right = next.y < last.y;  // the right chain's side ends before the left one's
+  const Point& middle = bends_right ? next : last;
+  // Rows up to the middle corner, then those above it.
+  const bool has_bend = middle.y > bottom.y;  // else the bottom is a level side
+  const std::int64_t bend =
+      has_bend ? std::clamp(floor_samples(middle.y) + 1, extent.first_row, last_row + 1) : extent.first_row;
+  const bool has_lower = bend > extent.first_row;
+  Side right, left;
+  if (has_lower) {
+    right = Side(bottom, next, extent.first_row);
+    left = Side(last, bottom, extent.first_row);
+    fill(extent.first_row, bend, right, left);
+  }
+  if (bend > last_row) return;
+  if (next.y == last.y) return;  // nothing is above a level top
+  if (bends_right || !has_lower) right = bends_right ? Side(next, last, bend) : Side(bottom, next, bend);
+  if (!bends_right || !has_lower) left = bends_right ? Side(last, bottom, bend) : Side(next, last, bend);
+  fill(bend, last_row + 1, right, left);
 }
 
 std::int64_t area_of(const std::array<Point, 3>& p) {
@@ -217,24 +251,35 @@ void SampleMask::add_triangle(const std::array<Vec2d, 3>& corners) {
   });
 }
 
-void SampleMask::add_triangle(const std::array<Vec2d, 3>& corners,
-                              const std::function<bool(double b, double c)>& covers) {
+void SampleMask::add_triangle(const std::array<Vec2d, 3>& corners, const std::array<Vec2d, 3>& uv,
+                              const std::function<bool(double u, double v)>& covers) {
   std::array<Point, 3> p = rounded(corners);
+  std::array<Vec2d, 3> at = uv;
   const std::int64_t area = area_of(p);
   if (area == 0) return;
-  const bool is_turned = area < 0;
-  if (is_turned) std::swap(p[1], p[2]);
+  if (area < 0) {
+    std::swap(p[1], p[2]);
+    std::swap(at[1], at[2]);
+  }
+  // Affine over the picture: by column and by row, from the first corner.
   const double whole = std::fabs(static_cast<double>(area));
+  const auto side = [&](std::size_t a, std::size_t b) {
+    return Vec2d(static_cast<double>(p[b].x - p[a].x), static_cast<double>(p[b].y - p[a].y));
+  };
+  const Vec2d ab = side(0, 1), ac = side(0, 2), to_b = at[1] - at[0], to_c = at[2] - at[0];
+  constexpr auto kSample = static_cast<double>(kUnit);
+  const Vec2d by_column = (to_b * ac.y - to_c * ab.y) * (kSample / whole);
+  const Vec2d by_row = (to_c * ab.x - to_b * ac.x) * (kSample / whole);
+  const Vec2d origin(static_cast<double>(p[0].x) / kSample, static_cast<double>(p[0].y) / kSample);
   for_each_row(p, box_, [&](int y, int first, int last) {
     std::uint64_t* words = row(y);
+    const Vec2d start = at[0] + by_row * (y - origin.y) - by_column * origin.x;
     for (int x = first; x <= last; ++x) {
       std::uint64_t& word = words[x / 64 - box_.first_word];
       const std::uint64_t bit = std::uint64_t{1} << (x & 63);
       if ((word & bit) != 0) continue;
-      const Point at{x * kUnit, y * kUnit};
-      const double b = static_cast<double>(area_of({p[2], p[0], at})) / whole;
-      const double c = static_cast<double>(area_of({p[0], p[1], at})) / whole;
-      if (is_turned ? covers(c, b) : covers(b, c)) word |= bit;
+      const Vec2d here = start + by_column * static_cast<double>(x);
+      if (covers(here.x, here.y)) word |= bit;
     }
   });
 }
@@ -246,6 +291,38 @@ void SampleMask::add(const SampleMask& other) {
     std::uint64_t* to = row(y) + (other.box_.first_word - box_.first_word);
     for (int x = 0; x < other.box_.words(); ++x) to[x] |= from[x];
   }
+}
+
+namespace {
+
+/// The even bits of a word, side by side.
+std::uint64_t even_bits(std::uint64_t x) {
+  x &= 0x5555555555555555U;
+  x = (x | x >> 1U) & 0x3333333333333333U;
+  x = (x | x >> 2U) & 0x0F0F0F0F0F0F0F0FU;
+  x = (x | x >> 4U) & 0x00FF00FF00FF00FFU;
+  x = (x | x >> 8U) & 0x0000FFFF0000FFFFU;
+  return (x | x >> 16U) & 0x00000000FFFFFFFFU;
+}
+
+}  // namespace
+
+SampleMask SampleMask::even_samples() const {
+  if (box_.is_empty()) return {};
+  MaskBox box;
+  box.first_word = box_.first_word / 2;
+  box.end_word = (box_.end_word + 1) / 2;
+  box.first_row = box_.first_row / 4 * 2;
+  box.end_row = (box_.end_row + 3) / 4 * 2;
+  SampleMask even(box);
+  for (int y = std::max(box.first_row, (box_.first_row + 1) / 2); 2 * y < box_.end_row; ++y) {
+    const std::uint64_t* from = row(2 * y);
+    std::uint64_t* to = even.row(y);
+    for (int x = box_.first_word; x < box_.end_word; ++x) {
+      to[x / 2 - box.first_word] |= even_bits(from[x - box_.first_word]) << (x % 2 == 0 ? 0U : 32U);
+    }
+  }
+  return even;
 }
 
 std::uint64_t SampleMask::count() const {

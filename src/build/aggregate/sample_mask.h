@@ -45,11 +45,14 @@ class SampleMask {
   /// Adds the samples inside a triangle, whichever way round it is; of two that share an edge a sample is in one.
   /// What is outside the box is left out. \pre places are finite and within 2^20
   void add_triangle(const std::array<Vec2d, 3>& corners);
-  /// The same of samples that `covers` has at their barycentric coordinates of corners 1 and 2.
-  void add_triangle(const std::array<Vec2d, 3>& corners, const std::function<bool(double b, double c)>& covers);
+  /// The same of samples that `covers` has at their texture coordinates, of which `uv` are the corners'.
+  void add_triangle(const std::array<Vec2d, 3>& corners, const std::array<Vec2d, 3>& uv,
+                    const std::function<bool(double u, double v)>& covers);
   /// Adds another mask's samples. \pre its box is within this one's
   void add(const SampleMask& other);
   [[nodiscard]] std::uint64_t count() const;
+  /// Every other sample, each way: the even ones, as samples of half their coordinates.
+  [[nodiscard]] SampleMask even_samples() const;
 
  private:
   [[nodiscard]] std::size_t at(int y) const {

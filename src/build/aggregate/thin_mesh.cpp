@@ -107,7 +107,20 @@ struct Fitted {
   std::vector<Corners> triangles;
   double worst_view = 0.0;  ///< what a single view's sum changes by at most
   bool is_there = false;
+  bool is_fair = false;  ///< is there, and changes single views no more than other ways do
 };
+
+/// Seen along a field of grass, cards rise out of it: ways that do are left out where there are others.
+void leave_out_unfair(std::span<Fitted> ways) {
+  constexpr double kFineView = 0.05, kNearlyAsGood = 1.1;
+  double fairest = std::numeric_limits<double>::infinity();
+  for (const Fitted& way : ways) {
+    if (way.is_there) fairest = std::min(fairest, way.worst_view);
+  }
+  for (Fitted& way : ways) {
+    way.is_fair = way.is_there && way.worst_view <= std::max(kFineView, kNearlyAsGood * fairest);
+  }
+}
 
 /// Finds the factor for which the splats, which have an area, cover as much as the source, over all views.
 void fit_factor(const MeshFrame& frame, const Covered& covered, const Sampling& sampling, double area, Fitted& way) {
@@ -186,8 +199,11 @@ class Thinner {
          ++level) {
       const bool is_whole = run_length(level) == leaves_.size();
       if (is_whole && seen_by_many_.empty() && leaves_.cards.size() >> static_cast<unsigned>(level - 1) <= kFewCards) {
-        const std::array<std::uint32_t, 1> all{static_cast<std::uint32_t>(leaves_.size())};
-        seen_by_many_ = covered_samples(source_, frame_, leaves_.triangles, few_.spacing, few_.views, all)[0][0];
+        if (!fitted.empty()) look_from_many_views_at_groups(fitted.back());
+        if (seen_by_many_.empty()) {
+          const std::array<std::uint32_t, 1> all{static_cast<std::uint32_t>(leaves_.size())};
+          seen_by_many_ = covered_samples(source_, frame_, leaves_.triangles, few_.spacing, few_.views, all)[0][0];
+        }
       }
       fitted.push_back(fit_level(level));
       if (is_whole && seen_by_many_.empty()) look_from_many_views(fitted.back().front());
@@ -195,7 +211,7 @@ class Thinner {
     }
     measure_proposals(source_, frame_, leaves_.triangles, frame_.longest / kFinestPixels, proposals);
     ThinMesh out;
-    const std::vector<double> limits = limits_of(proposals, fitted);
+    const std::vector<double> limits = limits_of(proposals);
     for (std::size_t l = 0; l < proposals.size(); ++l) out.levels.push_back(choose(proposals[l], fitted[l], limits[l]));
     out.leaf_triangles = std::move(leaves_.triangles);
     return out;
@@ -207,6 +223,24 @@ class Thinner {
   void look_from_many_views(std::span<const Fitted> whole) {
     const auto way = std::find_if(whole.begin(), whole.end(), [](const Fitted& f) { return f.is_there; });
     if (way != whole.end()) seen_by_many_ = covered_samples(frame_, way->triangles, few_.spacing, few_.views);
+  }
+
+  /// The same where the cards are in several groups, each of which covers what its own pieces do. Together they hide
+  /// more or less of each other than these: by how much, the usual views tell.
+  void look_from_many_views_at_groups(std::span<const std::vector<Fitted>> groups) {
+    std::vector<Corners> all;
+    for (const std::vector<Fitted>& ways : groups) {
+      const auto way = std::find_if(ways.begin(), ways.end(), [](const Fitted& f) { return f.is_there; });
+      if (way == ways.end()) return;
+      all.insert(all.end(), way->triangles.begin(), way->triangles.end());
+    }
+    const double seen = fit_.sum(covered_samples(frame_, all, fit_.spacing, fit_.views));
+    const double wanted = fit_.sum(covered_.back().front());
+    if (!(seen > 0.0)) return;
+    seen_by_many_ = covered_samples(frame_, all, few_.spacing, few_.views);
+    for (std::uint64_t& count : seen_by_many_) {
+      count = static_cast<std::uint64_t>(static_cast<double>(count) * wanted / seen + 0.5);
+    }
   }
 
   /// Leaves of a group of a level: those of level 1 are single leaves.
@@ -247,6 +281,7 @@ class Thinner {
       const bool is_few = !seen_by_many_.empty() && way.splats.splats.size() <= kFewCards;
       fit_factor(frame_, is_few ? seen_by_many_ : covered, is_few ? few_ : fit_, area, way);
     }
+    leave_out_unfair(ways);
     return ways;
   }
 
@@ -272,41 +307,20 @@ class Thinner {
       const std::size_t cards = leaves_.cards_of(groups[g].first_leaf, groups[g].end_leaf).size();
       groups[g].grain = std::sqrt(area / static_cast<double>(std::max<std::size_t>(1, cards)));
       for (const Fitted& way : fitted[g]) {
-        if (way.is_there) groups[g].proposals.push_back({way.triangles, {}});
+        if (way.is_fair) groups[g].proposals.push_back({way.triangles, {}});
       }
     }
     return groups;
   }
 
-  /// Seen along a field of grass, cards rise out of it: ways that do are left out where there are others.
-  static std::vector<std::uint8_t> fair_ways(std::span<const Fitted> ways) {
-    constexpr double kFineView = 0.05, kNearlyAsGood = 1.1;
-    double fairest = std::numeric_limits<double>::infinity();
-    for (const Fitted& way : ways) {
-      if (way.is_there) fairest = std::min(fairest, way.worst_view);
-    }
-    std::vector<std::uint8_t> is_fair;
-    for (const Fitted& way : ways) {
-      is_fair.push_back(way.is_there && way.worst_view <= std::max(kFineView, kNearlyAsGood * fairest) ? 1 : 0);
-    }
-    return is_fair;
-  }
-
   /// What the groups of each level may have of noise.
-  [[nodiscard]] static std::vector<double> limits_of(std::span<const std::vector<GroupProposals>> proposals,
-                                                     std::span<const std::vector<std::vector<Fitted>>> fitted) {
+  [[nodiscard]] static std::vector<double> limits_of(std::span<const std::vector<GroupProposals>> proposals) {
     std::vector<std::vector<NoisyGroup>> levels(proposals.size());
     for (std::size_t l = 0; l < levels.size(); ++l) {
       for (std::size_t g = 0; g < proposals[l].size(); ++g) {
         const GroupProposals& from = proposals[l][g];
         NoisyGroup group{from.first_leaf, from.end_leaf, from.share, {}};
-        const std::vector<std::uint8_t> is_fair = fair_ways(fitted[l][g]);
-        std::size_t p = 0;
-        for (std::size_t w = 0; w < is_fair.size(); ++w) {
-          if (!fitted[l][g][w].is_there) continue;
-          if (is_fair[w] != 0) group.ways.push_back(&from.proposals[p].noise);
-          ++p;
-        }
+        for (const Proposal& proposal : from.proposals) group.ways.push_back(&proposal.noise);
         levels[l].push_back(std::move(group));
       }
     }
@@ -322,13 +336,11 @@ class Thinner {
       group.first_leaf = proposals[g].first_leaf;
       group.end_leaf = proposals[g].end_leaf;
       group.pixel_size = std::numeric_limits<double>::infinity();
-      const std::vector<std::uint8_t> is_fair = fair_ways(fitted[g]);
       std::size_t p = 0;
-      for (std::size_t w = 0; w < is_fair.size(); ++w) {
-        const Fitted& way = fitted[g][w];
-        if (!way.is_there) continue;
+      for (const Fitted& way : fitted[g]) {
+        if (!way.is_fair) continue;
         const double size = proposals[g].proposals[p++].noise.size_for(limit);
-        if (is_fair[w] == 0 || !(size < group.pixel_size)) continue;
+        if (!(size < group.pixel_size)) continue;
         group.pixel_size = size;
         group.triangles = way.triangles;
         group.attributes = way.splats.attributes;

@@ -32,6 +32,13 @@ struct Lattice {
 
   /// Of a mesh inside a ball.
   Lattice(const Vec3d& ball_center, double ball_radius, double sample_spacing);
+  /// Twice as fine: its even samples are this one's.
+  [[nodiscard]] Lattice finer() const {
+    Lattice twice = *this;
+    twice.spacing = 0.5 * spacing;
+    twice.offset = 2.0 * offset;
+    return twice;
+  }
   /// All samples have coordinates from 0 to below this, and so have those of what sticks out, up to four times as far
   /// from the middle as the ball: a dozen cards for a whole mesh are that large.
   [[nodiscard]] int side() const { return static_cast<int>(2.0 * offset) + 2; }

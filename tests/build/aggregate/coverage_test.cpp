@@ -89,11 +89,12 @@ TEST(SampleMask, OfTwoTrianglesThatShareAnEdgeASampleIsInOne) {
 TEST(SampleMask, AMaskedTriangleAsksAtTheRightPlace) {
   SampleMask mask = picture(), mirrored = picture();
   const auto near_b = [](double b, double) { return b > 0.5; };
-  mask.add_triangle({Vec2d(10.3, 10.2), Vec2d(100.3, 12.2), Vec2d(14.1, 90.7)}, near_b);
+  const std::array<Vec2d, 3> uv{Vec2d(0, 0), Vec2d(1, 0), Vec2d(0, 1)};  // of the second and the third corner
+  mask.add_triangle({Vec2d(10.3, 10.2), Vec2d(100.3, 12.2), Vec2d(14.1, 90.7)}, uv, near_b);
   EXPECT_TRUE(has(mask, 90, 13));
   EXPECT_FALSE(has(mask, 15, 70));
   EXPECT_FALSE(has(mask, 12, 12));
-  mirrored.add_triangle({Vec2d(10.3, 10.2), Vec2d(14.1, 90.7), Vec2d(100.3, 12.2)},
+  mirrored.add_triangle({Vec2d(10.3, 10.2), Vec2d(14.1, 90.7), Vec2d(100.3, 12.2)}, uv,
                         [](double, double c) { return c > 0.5; });
   EXPECT_EQ(mask.count(), mirrored.count()) << "whichever way round";
 }
