@@ -33,12 +33,15 @@ int measure(const char* path) {
   const double step = std::ldexp(static_cast<double>(mesh.grid.mantissa), mesh.grid.log2);
   for (int k = 0; k < 3; ++k) longest = std::max(longest, (double{1} * mesh.bounds_max[k] - mesh.bounds_min[k]) * step);
   const draw::AlphaMasks masks = draw::load_alpha_masks(asset);
-  const auto source =
-      judge::covering_triangles(asset, masks, MeshId(0U), run::select_uniform(asset, MeshId(0U), -1.0).clusters);
+  const auto covering = [&](const std::vector<ClusterId>& clusters) {
+    return judge::covering_triangles(asset, masks, MeshId(0U),
+                                     judge::clusters_of_part(asset, clusters, judge::Part::kAggregate));
+  };
+  const auto source = covering(run::select_uniform(asset, MeshId(0U), -1.0).clusters);
   if (!source) return 3;
   for (const double pixels : {300.0, 150.0, 100.0, 72.0, 50.0, 30.0, 20.0, 10.0, 5.0}) {
     const run::UniformCut cut = run::select_uniform(asset, MeshId(0U), longest / pixels);
-    const auto drawn = judge::covering_triangles(asset, masks, MeshId(0U), cut.clusters);
+    const auto drawn = covering(cut.clusters);
     if (!drawn) return 3;
     const auto drift = judge::measure_coverage(*source, *drawn, masks, longest / pixels);
     if (!drift) continue;

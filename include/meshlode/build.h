@@ -128,8 +128,9 @@ enum class UvErrorUnit : std::uint8_t {
 /// (docs/aggregates.md).
 enum class AggregateChoice : std::uint8_t {
   kNever,
-  kAuto,   ///< meshes of many small loose pieces
-  kAlways  ///< every mesh whose pieces have at most 512 triangles
+  kAuto,    ///< meshes of many small loose pieces, and parts of meshes that are: the leaves of a tree, its trunk not
+  kAlways,  ///< all pieces of at most 512 triangles
+  kNamed,   ///< those of BuildOptions::aggregate_names
 };
 
 /// How long fewer bytes a triangle are looked for: as a preset does.
@@ -158,6 +159,9 @@ struct BuildOptions {
   /// triangles. Takes more triangles, since small holes and handles else close where that is far cheaper.
   bool keep_topology = false;
   AggregateChoice aggregate = AggregateChoice::kNever;
+  /// kNamed: names of meshes, of which all pieces of at most 512 triangles are thinned out, and of materials, of whose
+  /// pieces the same holds; comma by comma, '*' is any characters and '?' is one.
+  std::string aggregate_names;
   /// What errors the asset has, and so what a renderer may choose to keep (docs/selection.md): with kTexels those of
   /// texture coordinates beside those of positions, with kAppearance those of normals too. Takes the tier kMeasured.
   format::Promise promise = format::Promise::kPosition;

@@ -99,8 +99,11 @@ typedef struct meshlode_build_options {
   double grid_step, position_error, normal_error, uv_error;
   int uv_error_is_texels;
   int repair;
-  int keep_topology;  /* every cut of a manifold is one, with its holes, handles and pieces */
-  uint32_t aggregate; /* which meshes are thinned out by coverage: 0 none, 1 those of many small pieces, 2 all */
+  int keep_topology; /* every cut of a manifold is one, with its holes, handles and pieces */
+  /* What is thinned out by coverage: 0 nothing, 1 meshes and parts of many small pieces, 2 all small pieces, 3 those of
+   * meshes and materials by aggregate_names: comma by comma, '*' is any characters and '?' is one. */
+  uint32_t aggregate;
+  const char* aggregate_names; /* may be NULL where `aggregate` is not 3 */
   uint32_t promise; /* what errors there are of: 0 positions, 1 texels too, 2 appearance too; takes the tier measured */
   uint64_t max_memory_bytes;
   uint32_t thread_count; /* 0: all */

@@ -14,8 +14,10 @@
 #include "build/aggregate/aggregate_choice.h"
 #include "build/aggregate/coarse_materials.h"
 #include "build/aggregate/material_looks.h"
+#include "build/aggregate/split_mesh.h"
 #include "build/dag/aggregate_dag.h"
 #include "build/dag/build_dag.h"
+#include "build/dag/join_dags.h"
 #include "build/encode/encode.h"
 #include "build/hierarchy/hierarchy.h"
 #include "build/needs.h"
@@ -110,36 +112,52 @@ struct Survey {
   std::vector<std::array<double, scene::kMaxUvSets>> texels;  ///< texels_of_materials()
   std::vector<TexelExtents> extents;          ///< texel_extents_of_materials(), where more than positions is promised
   std::vector<AggregateDecision> aggregates;  ///< by mesh
-  CoarseMaterials coarse;                     ///< where some mesh is an aggregate
+  CoarseMaterials coarse;                     ///< where some mesh has an aggregate
   [[nodiscard]] bool has_aggregates() const {
     return std::any_of(aggregates.begin(), aggregates.end(), [](const AggregateDecision& d) { return d.is_aggregate; });
   }
 };
 
+/// What the looks of textures leave of a decision: pieces whose texture cannot be read stay as they are.
+void leave_out_unknown(const scene::SourceMesh& mesh, std::span<const std::uint8_t> is_unknown,
+                       AggregateDecision& decision) {
+  if (!decision.is_aggregate) return;
+  const std::string reason = "what its texture shows is not known";
+  bool is_any_left = false;
+  for (const scene::Primitive& primitive : mesh.primitives) {
+    const std::uint32_t m = primitive.material.value;
+    if (decision.most_triangles.empty() && is_unknown[m] != 0) decision = {false, reason, {}};
+    if (!decision.is_aggregate) return;
+    if (decision.most_triangles.empty()) continue;
+    if (is_unknown[m] != 0) decision.most_triangles[m] = 0;
+    is_any_left = is_any_left || decision.most_triangles[m] > 0;
+  }
+  if (!decision.most_triangles.empty() && !is_any_left) decision = {false, reason, {}};
+}
+
 Result<Survey> survey(const scene::Scene& scene, const PipelineOptions& options) {
   Survey found;
   found.texels = texels_of_materials(scene);
   if (options.promise != format::Promise::kPosition) found.extents = texel_extents_of_materials(scene);
-  std::vector<std::uint8_t> is_aggregate;
+  std::vector<std::uint8_t> is_used(scene.materials.size(), 0);
   for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
-    found.aggregates.push_back(decide_aggregate(scene.meshes[i], options.of_mesh(i).aggregate, options.keep_topology));
-    is_aggregate.push_back(found.aggregates.back().is_aggregate ? 1 : 0);
+    found.aggregates.push_back(decide_aggregate(scene.meshes[i], aggregate_question(scene, i, options)));
+    add_materials(scene.meshes[i], found.aggregates.back(), is_used);
   }
   if (!found.has_aggregates()) return found;
-  std::vector<std::uint8_t> wanted = materials_of(scene, is_aggregate);
+  std::vector<std::uint8_t> wanted = is_used;
   for (std::size_t i = 0; i < wanted.size(); ++i) wanted[i] = wanted[i] != 0 && needs_look(scene.materials[i]) ? 1 : 0;
   std::vector<std::optional<MaterialLook>> looks(scene.materials.size());
   if (options.looks != nullptr) looks = options.looks->read(scene, wanted);
+  std::vector<std::uint8_t> is_unknown = wanted;
+  for (std::size_t i = 0; i < wanted.size(); ++i) is_unknown[i] = wanted[i] != 0 && !looks[i] ? 1 : 0;
+  is_used.assign(is_used.size(), 0);
   for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
-    if (is_aggregate[i] == 0) continue;
-    for (const scene::Primitive& primitive : scene.meshes[i].primitives) {
-      if (wanted[primitive.material.value] == 0 || looks[primitive.material.value]) continue;
-      is_aggregate[i] = 0;
-      found.aggregates[i] = {false, "what its texture shows is not known"};
-    }
+    leave_out_unknown(scene.meshes[i], is_unknown, found.aggregates[i]);
+    add_materials(scene.meshes[i], found.aggregates[i], is_used);
   }
   if (!found.has_aggregates()) return found;
-  Result<CoarseMaterials> coarse = derive_materials(scene, is_aggregate, looks);
+  Result<CoarseMaterials> coarse = derive_materials(scene, is_used, looks);
   if (!coarse) return coarse.error();
   found.coarse = std::move(*coarse);
   return found;
@@ -153,6 +171,28 @@ std::uint32_t promises_of(format::Promise promise) {
     case format::Promise::kAppearance: return format::kPromisesTexels | format::kPromisesAppearance;
   }
   return 0;
+}
+
+/// The levels of one prepared mesh, whose surface is freed: by distances, by coverage, or each part by its own.
+Result<LodDag> build_levels(PreparedMesh& mesh, const AggregateDecision& aggregate, const Survey& found,
+                            const PipelineOptions& options, const MeshOptions& own, const EncodeOptions& encoding,
+                            const std::function<bool(std::uint32_t, std::uint64_t)>& on_level) {
+  const auto coarsening = [&](const PreparedMesh& part) {
+    DagOptions dag = dag_options(options, own, part, encoding);
+    dag.on_level = on_level;
+    return dag;
+  };
+  if (!aggregate.is_aggregate) return build_dag_and_free(mesh, coarsening(mesh));
+  if (aggregate.most_triangles.empty()) {
+    return build_aggregate_dag_and_free(mesh, found.coarse.of_source, coarsening(mesh));
+  }
+  SplitMesh parts = split_and_free(mesh, aggregate.most_triangles);
+  const Result<LodDag> loose =
+      build_aggregate_dag_and_free(parts.loose, found.coarse.of_source, coarsening(parts.loose));
+  if (!loose) return loose.error();
+  const Result<LodDag> solid = build_dag_and_free(parts.solid, coarsening(parts.solid));
+  if (!solid) return solid.error();
+  return join_dags(*loose, *solid, mesh.layout);
 }
 
 /// One mesh from its source triangles to pages.
@@ -192,16 +232,13 @@ Result<BuiltMesh> build_mesh(const Source& from, std::size_t index, const Survey
   if (promises != 0 && !aggregate.is_aggregate) {
     painted = keep_painted_source(*mesh, found.extents, options.promise == format::Promise::kAppearance);
   }
-  DagOptions coarsening = dag_options(options, own, *mesh, encoding);
-  if (aggregate.is_aggregate) coarsening.simplify.keep_area = false;  // nothing is collapsed
+  const DagOptions coarsening = dag_options(options, own, *mesh, encoding);
   LevelClock levels(index);
-  coarsening.on_level = [&](std::uint32_t level, std::uint64_t triangles) {
-    levels.end(level, triangles);
-    return progress.report(index, level, triangles);
-  };
-  const Result<LodDag> dag = aggregate.is_aggregate
-                                 ? build_aggregate_dag_and_free(*mesh, found.coarse.of_source, coarsening)
-                                 : build_dag_and_free(*mesh, coarsening);
+  const Result<LodDag> dag =
+      build_levels(*mesh, aggregate, found, options, own, encoding, [&](std::uint32_t level, std::uint64_t triangles) {
+        levels.end(level, triangles);
+        return progress.report(index, level, triangles);
+      });
   if (!dag) return Error{dag.error().code, label, dag.error().detail};
   built.levels = levels.times();
   built.clock.end(Stage::kDag);
@@ -221,7 +258,8 @@ Result<BuiltMesh> build_mesh(const Source& from, std::size_t index, const Survey
     built.encoded.promise = errors.mesh;
     built.encoded.promise_errors = std::move(errors.groups);
   }
-  for (PlanDecision& decision : late_decisions(*mesh, coarsening, encoding, built.encoded, label)) {
+  const bool keeps_area = coarsening.simplify.keep_area && !aggregate.is_aggregate;  // there nothing collapses
+  for (PlanDecision& decision : late_decisions(*mesh, keeps_area, encoding, built.encoded, label)) {
     built.decisions.push_back(std::move(decision));
   }
   place.keep(built, planned, label);
@@ -259,9 +297,10 @@ Result<std::vector<BuiltMesh>> build_meshes(const Source& from, const PipelineOp
 
 /// What the asset says of its scene beside the meshes' decisions.
 void add_scene_decisions(const scene::Scene& scene, const std::vector<EncodedMesh>& meshes,
-                         const Experiment& experiment, std::vector<PlanDecision>& decisions) {
-  if (!experiment.is_none()) {
-    PlanDecision decision{"scene: experimental", true, describe(experiment)};
+                         const PipelineOptions& options, std::vector<PlanDecision>& decisions) {
+  for (PlanDecision& decision : unknown_names(scene, options)) decisions.push_back(std::move(decision));
+  if (!options.experiment.is_none()) {
+    PlanDecision decision{"scene: experimental", true, describe(options.experiment)};
     decision.mesh = format::kNone;
     decisions.push_back(std::move(decision));
   }
@@ -310,7 +349,7 @@ Result<std::vector<std::uint8_t>> build_asset_of(const Source& from, const Pipel
     input.meshes.push_back(std::move(mesh.encoded));
     input.mesh_names.push_back(scene.meshes[i].name);
   }
-  add_scene_decisions(scene, input.meshes, options.experiment, report.decisions);
+  add_scene_decisions(scene, input.meshes, options, report.decisions);
   input.meta_json = meta_json(scene, options, report.decisions);
 
   StageClock clock;

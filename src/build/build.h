@@ -33,6 +33,7 @@ struct MeshOptions {
   bool uv_error_is_texels = true;    ///< of the material's largest texture; else UV units
   bool uv_error_is_default = true;   ///< no texture counts as smaller than 2,048 texels then
   AggregateChoice aggregate = AggregateChoice::kNever;
+  std::string aggregate_names;  ///< of AggregateChoice::kNamed: globs of meshes and materials, comma by comma
 
   bool operator==(const MeshOptions&) const = default;
 };

@@ -126,6 +126,31 @@ DagOptions dag_options(const PipelineOptions& options, const MeshOptions& own, c
   return dag;
 }
 
+AggregateQuestion aggregate_question(const scene::Scene& scene, std::size_t mesh, const PipelineOptions& options) {
+  const MeshOptions& own = options.of_mesh(mesh);
+  return {own.aggregate, own.aggregate_names, options.keep_topology, options.promise == format::Promise::kPosition,
+          scene.materials};
+}
+
+std::vector<PlanDecision> unknown_names(const scene::Scene& scene, const PipelineOptions& options) {
+  std::vector<std::string> asked;
+  const auto ask = [&](const MeshOptions& own) {
+    if (own.aggregate == AggregateChoice::kNamed) asked.push_back(own.aggregate_names);
+  };
+  ask(options);
+  for (const MeshOptions& own : options.mesh_options) ask(own);
+  std::sort(asked.begin(), asked.end());
+  asked.erase(std::unique(asked.begin(), asked.end()), asked.end());
+  std::vector<PlanDecision> decisions;
+  for (const std::string& names : asked) {
+    for (const std::string& name : find_unknown_names(scene, names)) {
+      decisions.push_back({"scene: aggregate '" + name + "'", false, "no mesh and no material has that name", true});
+      decisions.back().mesh = format::kNone;
+    }
+  }
+  return decisions;
+}
+
 namespace {
 
 /// From this share of level 0 on it is said that triangles have no area.
@@ -141,10 +166,10 @@ std::uint64_t count_finest(const EncodedMesh& encoded) {
 
 }  // namespace
 
-std::vector<PlanDecision> late_decisions(const PreparedMesh& mesh, const DagOptions& dag, const EncodeOptions& encode,
+std::vector<PlanDecision> late_decisions(const PreparedMesh& mesh, bool keeps_area, const EncodeOptions& encode,
                                          const EncodedMesh& encoded, const std::string& label) {
   std::vector<PlanDecision> decisions;
-  if (dag.simplify.keep_area) {
+  if (keeps_area) {
     decisions.push_back({label + ": covered area", true,
                          std::to_string(mesh.piece_count) + " loose pieces: those that stay grow when others go"});
   }

@@ -9,6 +9,7 @@
 
 #include <meshlode/result.h>
 
+#include "build/aggregate/aggregate_choice.h"
 #include "build/build.h"
 #include "build/dag/build_dag.h"
 #include "build/encode/encode.h"
@@ -34,9 +35,15 @@ namespace meshlode::build {
 [[nodiscard]] DagOptions dag_options(const PipelineOptions& options, const MeshOptions& own, const PreparedMesh& mesh,
                                      const EncodeOptions& encode);
 
-/// What was decided after the plan: that pieces which stay grow, that half of the finest triangles or more have no area
-/// on the grid, and where texture coordinates are too large for their budget. `label` names the mesh.
-[[nodiscard]] std::vector<PlanDecision> late_decisions(const PreparedMesh& mesh, const DagOptions& dag,
+/// What is asked of a mesh of the scene; the scene and the options outlive it.
+[[nodiscard]] AggregateQuestion aggregate_question(const scene::Scene& scene, std::size_t mesh,
+                                                   const PipelineOptions& options);
+/// One for each name in AggregateChoice::kNamed that nothing has.
+[[nodiscard]] std::vector<PlanDecision> unknown_names(const scene::Scene& scene, const PipelineOptions& options);
+
+/// What was decided after the plan: that pieces which stay grow (`keeps_area`), that half of the finest triangles or
+/// more have no area on the grid, and where texture coordinates are too large for their budget. `label` names the mesh.
+[[nodiscard]] std::vector<PlanDecision> late_decisions(const PreparedMesh& mesh, bool keeps_area,
                                                        const EncodeOptions& encode, const EncodedMesh& encoded,
                                                        const std::string& label);
 

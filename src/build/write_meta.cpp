@@ -97,7 +97,9 @@ void put_mesh_settings(Json& settings, const PipelineOptions& options, const std
     entry["error_tier"] = format::name_of(of_group.options.error_tier);
     entry["attributes"] = name_of(of_group.options.attributes);
     put_names(entry, of_group.forced);
-    if (of_group.options.aggregate != options.aggregate) entry["aggregate"] = name_of(of_group.options.aggregate);
+    if (aggregate_word(of_group.options) != aggregate_word(options)) {
+      entry["aggregate"] = aggregate_word(of_group.options);
+    }
     entry["grid"] = grid_of(of_group.options);
     put_budgets(entry, of_group.options);
     settings["mesh_settings"].push_back(std::move(entry));
@@ -124,7 +126,7 @@ Json settings_json(const scene::Scene& scene, const PipelineOptions& options,
   settings["repair"] = options.repair;
   if (options.promise != format::Promise::kPosition) settings["promise"] = format::name_of(options.promise);
   if (options.keep_topology) settings["keep_topology"] = true;
-  if (options.aggregate != AggregateChoice::kNever) settings["aggregate"] = name_of(options.aggregate);
+  if (options.aggregate != AggregateChoice::kNever) settings["aggregate"] = aggregate_word(options);
   if (!scene.choice.empty()) settings["scene"] = scene.choice;
   settings["cluster_triangles"] = options.max_cluster_triangles;
   settings["cluster_vertices"] = options.max_cluster_vertices;

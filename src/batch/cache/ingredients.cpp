@@ -82,7 +82,8 @@ std::string describe(const std::string& key, const std::string* before, const st
 std::string settings_text(const build::PipelineOptions& options, const scene::ImportOptions& import) {
   // Every member has a name here, so that one more does not compile before it is written down or left out on purpose.
   const auto& [error_tier, attributes, keep, drop, grid_step, position_error, normal_error, uv_error,
-               uv_error_is_texels, uv_error_is_default, aggregate] = static_cast<const build::MeshOptions&>(options);
+               uv_error_is_texels, uv_error_is_default, aggregate, aggregate_names] =
+      static_cast<const build::MeshOptions&>(options);
   const auto& [preset, codec, strip_effort, partition_seed, repair, promise, keep_topology, max_cluster_triangles,
                max_cluster_vertices, group_clusters, max_memory, spills, mesh_store, looks, experiment, mesh_options] =
       static_cast<const build::SceneOptions&>(options);
@@ -120,7 +121,7 @@ std::string settings_text(const build::PipelineOptions& options, const scene::Im
       {"uv-error", text_of(uv_error)},
       {"uv-error-is-texels", text_of(uv_error_is_texels)},
       {"uv-error-is-default", text_of(uv_error_is_default)},
-      {"aggregate", build::name_of(aggregate)},
+      {"aggregate", build::aggregate_word(options)},
   };
   std::string text;
   for (const auto& [name, value] : lines) text += std::string(name) + " " + value + "\n";

@@ -44,21 +44,11 @@ bool needs_look(const scene::SceneMaterial& material) {
   return material.base_color_texture != kNoId;
 }
 
-std::vector<std::uint8_t> materials_of(const scene::Scene& scene, std::span<const std::uint8_t> is_aggregate) {
-  std::vector<std::uint8_t> is_used(scene.materials.size(), 0);
-  for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
-    if (is_aggregate[m] == 0) continue;
-    for (const scene::Primitive& primitive : scene.meshes[m].primitives) is_used[primitive.material.value] = 1;
-  }
-  return is_used;
-}
-
-Result<CoarseMaterials> derive_materials(const scene::Scene& scene, std::span<const std::uint8_t> is_aggregate,
+Result<CoarseMaterials> derive_materials(const scene::Scene& scene, std::span<const std::uint8_t> is_used,
                                          std::span<const std::optional<MaterialLook>> looks) {
   CoarseMaterials out;
   out.materials = scene.materials;
   out.of_source.resize(scene.materials.size());
-  const std::vector<std::uint8_t> is_used = materials_of(scene, is_aggregate);
   Json document = Json::parse(scene.document, nullptr, false);
   if (!document.is_object()) return Error{ErrorCode::kInvalid, "document", "is no JSON object"};
   Json& list = document["materials"];

@@ -25,14 +25,10 @@ struct CoarseMaterials {
 /// Whether pixels have to be looked at to know what a material draws, and in which colour.
 [[nodiscard]] bool needs_look(const scene::SceneMaterial& material);
 
-/// Materials that some mesh of these (`is_aggregate`, by mesh) has, by id.
-[[nodiscard]] std::vector<std::uint8_t> materials_of(const scene::Scene& scene,
-                                                     std::span<const std::uint8_t> is_aggregate);
-
-/// For the materials of meshes that are aggregates. A material that is opaque, double sided and without texture stands
-/// for itself. `looks`: by material, those that need one. Errors: kInvalid for a document that is no JSON object.
-[[nodiscard]] Result<CoarseMaterials> derive_materials(const scene::Scene& scene,
-                                                       std::span<const std::uint8_t> is_aggregate,
+/// For the materials that pieces of aggregates have (`is_used`, by id). A material that is opaque, double sided and
+/// without texture stands for itself. `looks`: by material, those that need one. Errors: kInvalid for a document that
+/// is no JSON object.
+[[nodiscard]] Result<CoarseMaterials> derive_materials(const scene::Scene& scene, std::span<const std::uint8_t> is_used,
                                                        std::span<const std::optional<MaterialLook>> looks);
 
 }  // namespace meshlode::build

@@ -92,6 +92,7 @@ Result<build::PipelineOptions> make_pipeline_options(const BuildOptions& options
   pipeline.repair = options.repair;
   pipeline.keep_topology = options.keep_topology;
   pipeline.aggregate = options.aggregate;
+  pipeline.aggregate_names = options.aggregate_names;
   pipeline.promise = options.promise;
   pipeline.max_memory = options.max_memory_bytes;
   return pipeline;

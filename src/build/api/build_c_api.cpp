@@ -128,7 +128,7 @@ Result<BuildOptions> read_options(const meshlode_build_options& in) {
   if (in.preset > 2) return limit("preset");
   if (in.strip_effort > 3) return limit("strip_effort");
   if (in.attributes > 2) return limit("attributes");
-  if (in.aggregate > 2) return limit("aggregate");
+  if (in.aggregate > 3) return limit("aggregate");
   if (in.promise > 2) return limit("promise");
   BuildOptions out;
   if (in.error_tier != MESHLODE_TIER_OF_PRESET) out.error_tier = static_cast<format::ErrorTier>(in.error_tier);
@@ -148,6 +148,7 @@ Result<BuildOptions> read_options(const meshlode_build_options& in) {
   out.repair = in.repair != 0;
   out.keep_topology = in.keep_topology != 0;
   out.aggregate = static_cast<AggregateChoice>(in.aggregate);
+  out.aggregate_names = text_of(in.aggregate_names);
   out.promise = static_cast<format::Promise>(in.promise);
   out.max_memory_bytes = in.max_memory_bytes;
   out.thread_count = in.thread_count;
@@ -245,6 +246,7 @@ void meshlode_build_defaults(meshlode_build_options* options) {
   options->repair = defaults.repair ? 1 : 0;
   options->keep_topology = defaults.keep_topology ? 1 : 0;
   options->aggregate = static_cast<uint32_t>(defaults.aggregate);
+  options->aggregate_names = nullptr;
   options->promise = static_cast<uint32_t>(defaults.promise);
   options->max_memory_bytes = defaults.max_memory_bytes;
   options->thread_count = defaults.thread_count;

@@ -161,13 +161,13 @@ Result<ScenePlan> plan_scene(const scene::Scene& scene, const PipelineOptions& o
   }
   plan.features = list_features(scene);
   for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
-    const AggregateDecision aggregate =
-        decide_aggregate(scene.meshes[i], options.of_mesh(i).aggregate, options.keep_topology);
+    const AggregateDecision aggregate = decide_aggregate(scene.meshes[i], aggregate_question(scene, i, options));
     if (aggregate.reason.empty()) continue;
     plan.features.push_back(
         {mesh_label(scene.meshes[i], i) + ": aggregate", aggregate.is_aggregate,
          aggregate.is_aggregate ? aggregate.reason + ": thinned out by what they cover" : aggregate.reason});
   }
+  for (PlanDecision& decision : unknown_names(scene, options)) plan.features.push_back(std::move(decision));
   return plan;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/glob.h"
 #include "base/nearest_name.h"
 #include "build/aggregate/aggregate_choice.h"
 #include "build/plan/attributes.h"
@@ -42,8 +43,9 @@ constexpr std::array<SettingInfo, kSettingCount> kSettings{{
     {Setting::kKeepTopology, "keep-topology",
      "every cut of a manifold is a manifold with its holes, handles and pieces, for more triangles", "false", false},
     {Setting::kAggregate, "aggregate",
-     "which meshes are thinned out by coverage, not by distance: those of many small loose pieces, or all", "never",
-     true},
+     "what is thinned out by coverage, not by distance: nothing (never), meshes and parts of many small loose pieces "
+     "(auto), all small pieces (always), or meshes and materials by name, comma by comma",
+     "never", true},
     {Setting::kPromise, "promise",
      "what errors are of: positions; texels, with texture coordinates; appearance, with normals too", "position",
      false},
@@ -207,7 +209,8 @@ PipelineOptions options_of(const std::array<SettledWord, kSettingCount>& words) 
   options.group_clusters = parse_group_clusters(word(Setting::kGroupClusters)).value_or(options.group_clusters);
   options.repair = word(Setting::kRepair) == "true";
   options.keep_topology = word(Setting::kKeepTopology) == "true";
-  options.aggregate = value_in(kAggregateChoiceNames, word(Setting::kAggregate)).value_or(options.aggregate);
+  options.aggregate = value_in(kAggregateChoiceNames, word(Setting::kAggregate)).value_or(AggregateChoice::kNamed);
+  if (options.aggregate == AggregateChoice::kNamed) options.aggregate_names = word(Setting::kAggregate);
   options.promise = value_in(format::kPromiseNames, word(Setting::kPromise)).value_or(options.promise);
   if (const auto care = parse_care(word(Setting::kCare))) options.experiment.care = *care;
   options.experiment.simplifier =
@@ -250,7 +253,6 @@ std::vector<std::string> choices_of(Setting setting) {
     case Setting::kStripEffort: return all_names(kStripEffortNames);
     case Setting::kRepair:
     case Setting::kKeepTopology: return {"false", "true"};
-    case Setting::kAggregate: return all_names(kAggregateChoiceNames);
     case Setting::kPromise: return all_names(format::kPromiseNames);
     case Setting::kSimplifier: return all_names(kSimplifierNames);
     default: return {};
@@ -278,6 +280,9 @@ std::string find_fault(Setting setting, std::string_view word) {
       return word == "auto" || parse_positive(word) ? "" : "give auto or a step above 0 in mesh units";
     case Setting::kPositionError:
       return word == "auto" || parse_positive(word) ? "" : "give auto or a distance above 0 in mesh units";
+
+    case Setting::kAggregate:
+      return !word.empty() ? "" : "give never, auto, always, or names of meshes and materials, comma by comma";
     case Setting::kClusterTriangles:
       return parse_cluster_triangles(word) ? "" : "give a whole number of triangles from 1 to 256";
     case Setting::kGroupClusters:
@@ -288,28 +293,6 @@ std::string find_fault(Setting setting, std::string_view word) {
                                                     : "give auto, a number above 0 in UV units, or texels as 0.25px";
     default: return {};
   }
-}
-
-bool is_match(std::string_view glob, std::string_view name) {
-  std::size_t g = 0, n = 0;
-  std::optional<std::size_t> star;  // the last one met, and what it has taken
-  std::size_t taken = 0;
-  while (n < name.size()) {
-    if (g < glob.size() && glob[g] == '*') {
-      star = g++;
-      taken = n;
-    } else if (g < glob.size() && (glob[g] == '?' || glob[g] == name[n])) {
-      ++g;
-      ++n;
-    } else if (star) {
-      g = *star + 1;
-      n = ++taken;
-    } else {
-      return false;
-    }
-  }
-  while (g < glob.size() && glob[g] == '*') ++g;
-  return g == glob.size();
 }
 
 Result<Settled> settle(std::span<const SettingLayer> layers) {

@@ -69,7 +69,7 @@ struct SettingLayer {
   ErrorCode code = ErrorCode::kUsage;  ///< of what is wrong here
   SettingWords words;
   struct MeshRule {
-    std::string glob;    ///< of the names of meshes: is_match()
+    std::string glob;    ///< of the names of meshes: base/glob.h
     SettingWords words;  ///< of those that a mesh may have
   };
   std::vector<MeshRule> mesh_rules;  ///< after `words`; a later one wins over an earlier one
@@ -93,9 +93,6 @@ struct Settled {
     return words[static_cast<std::size_t>(setting)];
   }
 };
-
-/// '*' is any number of characters, '?' is one, all others are themselves; the whole name.
-[[nodiscard]] bool is_match(std::string_view glob, std::string_view name);
 
 /// All layers together, for the scene as a whole. Errors: a layer's code, with its place, for a word that is none and
 /// for two that exclude each other in one layer (a grid and a position error, a name kept and dropped); across layers

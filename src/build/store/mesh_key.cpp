@@ -79,7 +79,7 @@ void add_encoding(KeyHasher& key, const EncodeOptions& encode) {
 
 void add_own_options(KeyHasher& key, const MeshOptions& own) {
   const auto& [error_tier, attributes, keep, drop, grid_step, position_error, normal_error, uv_error,
-               uv_error_is_texels, uv_error_is_default, aggregate] = own;
+               uv_error_is_texels, uv_error_is_default, aggregate, aggregate_names] = own;
   key.value(error_tier);
   key.value(grid_step);
   key.value(position_error);
@@ -91,6 +91,7 @@ void add_own_options(KeyHasher& key, const MeshOptions& own) {
   static_cast<void>(uv_error_is_texels);
   static_cast<void>(uv_error_is_default);
   key.value(aggregate);
+  static_cast<void>(aggregate_names);  // of aggregates, which are not stored
 }
 
 void add_experiment(KeyHasher& key, const Experiment& experiment) {

@@ -14,17 +14,19 @@ namespace meshlode::judge {
 CoverageTotals check_coverage(const run::Asset& asset, std::uint32_t sizes, RuleLog& log) {
   CoverageTotals totals;
   const draw::AlphaMasks masks = draw::load_alpha_masks(asset);
+  const auto triangles_at = [&](std::uint32_t mesh, double size) {
+    const std::vector<ClusterId> drawn = run::select_uniform(asset, MeshId(mesh), size).clusters;
+    return covering_triangles(asset, masks, MeshId(mesh), clusters_of_part(asset, drawn, Part::kAggregate));
+  };
   for (std::uint32_t m = 0; m < asset.meshes().size(); ++m) {
     if (!has_aggregates(asset, MeshId(m))) continue;
-    const auto source =
-        covering_triangles(asset, masks, MeshId(m), run::select_uniform(asset, MeshId(m), -1.0).clusters);
+    const auto source = triangles_at(m, -1.0);
     if (!source) {
       log.add(Rule::kL204, source.error().where, source.error().detail);
       continue;
     }
     for (const double size : coverage_sizes(asset, MeshId(m), sizes)) {
-      const auto cut =
-          covering_triangles(asset, masks, MeshId(m), run::select_uniform(asset, MeshId(m), size).clusters);
+      const auto cut = triangles_at(m, size);
       if (!cut) {
         log.add(Rule::kL204, cut.error().where, cut.error().detail);
         break;

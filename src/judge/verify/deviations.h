@@ -55,7 +55,8 @@ struct DeviationTotals {
 /// Largest and median; neither changes where there is none.
 void summarize(std::vector<double> ratios, DeviationTotals& totals);
 
-/// measure_cuts() of every mesh whose tier promises something. A `measured` cut fails above 1 + kMeasuredShortfall, a
+/// measure_cuts() of every mesh whose tier promises something; of one with an aggregate the other part, against its
+/// level 0. A `measured` cut fails above 1 + kMeasuredShortfall, a
 /// `certified` one above 1.
 DeviationTotals check_deviations(const run::Asset& asset, const scene::Scene& source, std::uint32_t cuts,
                                  std::uint64_t samples, RuleLog& log);

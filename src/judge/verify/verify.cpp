@@ -194,10 +194,14 @@ void add_deviations(const run::Asset& asset, const scene::Scene& source, const V
   const auto meshes = asset.meshes();
   const bool is_qem = std::all_of(meshes.begin(), meshes.end(),
                                   [](const format::MeshRecord& m) { return m.error_tier == format::ErrorTier::kQem; });
-  const auto is_aggregate = [&](std::size_t m) { return has_aggregates(asset, MeshId(m)); };
-  std::size_t aggregates = 0;
-  for (std::size_t m = 0; m < meshes.size(); ++m) aggregates += is_aggregate(m) ? 1 : 0;
-  if (aggregates == meshes.size() && aggregates > 0) return;  // judged by what they cover
+  const auto groups = asset.groups();
+  const auto goes_by_coverage = [](const format::GroupRecord& group) {
+    return (group.flags & (format::kGroupAggregate | format::kGroupTerminal)) != 0;
+  };
+  const bool has_aggregate = std::any_of(groups.begin(), groups.end(), [](const format::GroupRecord& group) {
+    return (group.flags & format::kGroupAggregate) != 0;
+  });
+  if (has_aggregate && std::all_of(groups.begin(), groups.end(), goes_by_coverage)) return;  // all by what they cover
   if (is_qem) return report.skip("I7", "not checked: tier qem states the quadric's estimate");
   const std::uint32_t cuts = options.is_quick ? 1 : options.deviation_cuts;
   if (cuts == 0) return report.skip("I7", "not checked: no cut was to be measured");

@@ -12,7 +12,7 @@ namespace meshlode::build {
 namespace {
 
 bool is_aggregate(scene::Primitive shape, AggregateChoice choice = AggregateChoice::kAuto) {
-  return decide_aggregate(scene::as_mesh(std::move(shape)), choice).is_aggregate;
+  return decide_aggregate(scene::as_mesh(std::move(shape)), {.choice = choice}).is_aggregate;
 }
 
 TEST(AggregateChoice, IsOfManySmallLoosePieces) {
@@ -24,11 +24,79 @@ TEST(AggregateChoice, IsOfManySmallLoosePieces) {
   EXPECT_FALSE(is_aggregate(scene::make_sphere(32)));
   EXPECT_FALSE(is_aggregate(scene::make_grass(2000), AggregateChoice::kNever));
   EXPECT_TRUE(is_aggregate(scene::make_grass(100), AggregateChoice::kAlways));
-  const AggregateDecision large = decide_aggregate(scene::as_mesh(scene::make_sphere(32)), AggregateChoice::kAlways);
+  const AggregateDecision large =
+      decide_aggregate(scene::as_mesh(scene::make_sphere(32)), {.choice = AggregateChoice::kAlways});
   EXPECT_FALSE(large.is_aggregate);
   EXPECT_NE(large.reason.find("12288 triangles"), std::string::npos) << large.reason;
-  EXPECT_FALSE(decide_aggregate(scene::SourceMesh{}, AggregateChoice::kAlways).is_aggregate);
-  EXPECT_FALSE(decide_aggregate(scene::as_mesh(scene::make_grass(2000)), AggregateChoice::kAlways, true).is_aggregate);
+  EXPECT_FALSE(decide_aggregate(scene::SourceMesh{}, {.choice = AggregateChoice::kAlways}).is_aggregate);
+  EXPECT_FALSE(decide_aggregate(scene::as_mesh(scene::make_grass(2000)),
+                                {.choice = AggregateChoice::kAlways, .keep_topology = true})
+                   .is_aggregate);
+}
+
+/// Primitives with materials 0, 1, 2 …
+scene::SourceMesh mesh_of(std::vector<scene::Primitive> parts, const std::string& name = "tree") {
+  scene::SourceMesh mesh;
+  mesh.name = name;
+  for (std::uint32_t m = 0; m < parts.size(); ++m) {
+    parts[m].material = MaterialId(m);
+    mesh.primitives.push_back(std::move(parts[m]));
+  }
+  return mesh;
+}
+
+using Most = std::vector<std::uint32_t>;
+
+TEST(AggregateParts, LeavesOfATreeAreOneAndItsTrunkIsNot) {
+  const scene::SourceMesh tree = mesh_of({scene::make_rock(16), scene::make_foliage(2000)});
+  const AggregateDecision parts = decide_aggregate(tree, {.choice = AggregateChoice::kAuto});
+  EXPECT_TRUE(parts.is_aggregate);
+  EXPECT_EQ(parts.most_triangles, (Most{0, 512}));
+  EXPECT_NE(parts.reason.find("2000 pieces"), std::string::npos) << parts.reason;
+  std::vector<std::uint8_t> is_used(2, 0);
+  add_materials(tree, parts, is_used);
+  EXPECT_EQ(is_used, (std::vector<std::uint8_t>{0, 1}));
+  const AggregateDecision all = decide_aggregate(tree, {.choice = AggregateChoice::kAlways});
+  EXPECT_EQ(all.most_triangles, (Most{0, 512}));
+  EXPECT_FALSE(decide_aggregate(tree, {.choice = AggregateChoice::kAuto, .may_be_part = false}).is_aggregate);
+  EXPECT_TRUE(decide_aggregate(mesh_of({scene::make_grass(2000), scene::make_foliage(2000)}),
+                               {.choice = AggregateChoice::kAuto})
+                  .most_triangles.empty())
+      << "all of it";
+  EXPECT_FALSE(
+      decide_aggregate(mesh_of({scene::make_rock(16), scene::make_foliage(200)}), {.choice = AggregateChoice::kAuto})
+          .is_aggregate)
+      << "few";
+}
+
+TEST(AggregateParts, OfOneMaterialSmallPiecesAreOneIfTheyAreMostOfIt) {
+  const auto both = [](std::uint32_t leaves) {
+    scene::SourceMesh mesh = mesh_of({scene::make_rock(16), scene::make_foliage(leaves)});
+    for (scene::Primitive& primitive : mesh.primitives) primitive.material = MaterialId(0U);
+    return decide_aggregate(mesh, {.choice = AggregateChoice::kAuto});
+  };
+  EXPECT_EQ(both(2000).most_triangles, (Most{32})) << "3,072 triangles of rock, 4,000 of leaves";
+  EXPECT_FALSE(both(1000).is_aggregate) << "crumbs of a rock";
+}
+
+TEST(AggregateParts, AreFoundByName) {
+  std::vector<scene::SceneMaterial> materials(2);
+  materials[0].name = "bark";
+  materials[1].name = "leaf green";
+  const scene::SourceMesh tree = mesh_of({scene::make_rock(16), scene::make_foliage(100)}, "oak");
+  const auto decide = [&](const char* names) {
+    return decide_aggregate(tree, {.choice = AggregateChoice::kNamed, .names = names, .materials = materials});
+  };
+  EXPECT_EQ(decide("leaf*").most_triangles, (Most{0, 512}));
+  EXPECT_EQ(decide("elm,oa?").most_triangles, (Most{0, 512})) << "the mesh: all of its small pieces";
+  EXPECT_NE(decide("leaf*").reason.find("'leaf green'"), std::string::npos);
+  EXPECT_TRUE(decide("elm").reason.empty()) << "nobody asked for it";
+  EXPECT_FALSE(decide("bark").is_aggregate);
+  EXPECT_FALSE(decide("bark").reason.empty()) << "asked for, and too large";
+  EXPECT_FALSE(decide("").is_aggregate);
+  scene::Scene scene = scene::as_scene(tree);
+  scene.materials = materials;
+  EXPECT_EQ(find_unknown_names(scene, "elm,oak,,leaf*,be?ch"), (std::vector<std::string>{"elm", "be?ch"}));
 }
 
 TEST(CoarseMaterials, AreOpaqueDoubleSidedAndInOneColor) {

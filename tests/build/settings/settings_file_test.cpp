@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "build/settings/settings_file.h"
+#include "base/glob.h"
 
 #include <filesystem>
 #include <fstream>
@@ -106,6 +107,9 @@ TEST(Globs, MatchWholeNames) {
   EXPECT_TRUE(is_match("a*ab", "aab"));
   EXPECT_FALSE(is_match("", "a"));
   EXPECT_FALSE(is_match("wall", "walls"));
+  EXPECT_TRUE(is_match_of_any("door,w*", "wall"));
+  EXPECT_FALSE(is_match_of_any("door,,window", ""));
+  EXPECT_FALSE(is_match_of_any("", "wall"));
   EXPECT_FALSE(is_match("?", ""));
   EXPECT_FALSE(is_match("*b", "abc"));
   EXPECT_FALSE(is_match("WALL", "wall"));

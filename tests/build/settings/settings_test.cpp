@@ -141,6 +141,18 @@ TEST(Settings, WordsThatAreNoneAreRefusedWithTheNearest) {
   EXPECT_NE(find_fault(Setting::kCodec, "strip").find("the nearest is strips"), std::string::npos);
 }
 
+TEST(Settings, AggregatesAreAChoiceOrNames) {
+  const auto settled = [](const char* word) {
+    const SettingLayer layer = layer_of({{Setting::kAggregate, word}});
+    return settle({&layer, 1});
+  };
+  EXPECT_EQ(settled("auto")->options.aggregate, AggregateChoice::kAuto);
+  EXPECT_EQ(settled("auto")->options.aggregate_names, "");
+  EXPECT_EQ(settled("oak,leaf*")->options.aggregate, AggregateChoice::kNamed);
+  EXPECT_EQ(settled("oak,leaf*")->options.aggregate_names, "oak,leaf*");
+  EXPECT_FALSE(settled(""));
+}
+
 TEST(Settings, EachHasItsRow) {
   for (std::size_t i = 0; i < kSettingCount; ++i) {
     const SettingInfo& info = all_settings()[i];

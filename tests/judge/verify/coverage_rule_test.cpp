@@ -124,6 +124,58 @@ TEST(Aggregates, TheirMaterialsAreWhole) {
   EXPECT_NE(found.find("V106"), std::string::npos) << found;
 }
 
+/// A trunk that goes by distances and leaves that go by coverage, in one mesh.
+scene::Scene trunk_and_leaves() {
+  scene::SourceMesh mesh = scene::as_mesh(scene::scaled(scene::make_sphere(24), 0.4));
+  mesh.primitives.push_back(scene::make_crown(2000));
+  for (std::uint32_t m = 0; m < 2; ++m) {
+    mesh.primitives[m].material = MaterialId(m);
+    mesh.primitives[m].normals.clear();
+    mesh.primitives[m].uvs[0].clear();
+  }
+  scene::Scene scene = scene::as_scene(std::move(mesh));
+  scene.materials.resize(2, scene.materials[0]);
+  return scene;
+}
+
+TEST(AggregateParts, EachGoesByItsOwnRule) {
+  const scene::Scene scene = trunk_and_leaves();
+  for (const format::ErrorTier tier :
+       {format::ErrorTier::kMeasured, format::ErrorTier::kCertified, format::ErrorTier::kQem}) {
+    const std::vector<std::uint8_t> bytes = build_aggregate(scene, tier);
+    EXPECT_EQ(found_in(bytes, scene), "");
+    const Result<run::Asset> asset = run::Asset::from_vector(bytes);
+    ASSERT_TRUE(asset.ok());
+    std::uint64_t by_coverage = 0, by_distance = 0;
+    for (const format::GroupRecord& group : asset->groups()) {
+      if ((group.flags & format::kGroupTerminal) != 0) continue;
+      ++((group.flags & format::kGroupAggregate) != 0 ? by_coverage : by_distance);
+    }
+    EXPECT_GE(by_coverage, 4U);
+    EXPECT_GE(by_distance, 4U);
+  }
+}
+
+TEST(AggregateParts, OfEachErrorsThatAreTooSmallAreFound) {
+  const scene::Scene scene = trunk_and_leaves();
+  const std::vector<std::uint8_t> bytes = build_aggregate(scene);
+  for (const bool is_of_trunk : {false, true}) {
+    AssetEdit edit(bytes);
+    for (std::uint32_t g = 0; g < groups_of(edit); ++g) {
+      edit.group(g, [&](auto& group) {
+        const bool is_aggregate = (group.flags & format::kGroupAggregate) != 0;
+        if (is_aggregate == is_of_trunk) return;
+        for (float* value : {&group.error, &group.quadric_error, &group.deviation}) {
+          if (*value < format::kInfiniteError) *value *= 0.25F;
+        }
+      });
+    }
+    edit.seal();
+    const std::string found = found_in(edit.bytes(), scene);
+    EXPECT_NE(found.find(is_of_trunk ? "V206" : "V208"), std::string::npos) << found;
+  }
+}
+
 std::vector<CoveringTriangle> cards(int count, double size) {
   std::vector<CoveringTriangle> out;
   SplitMix64 random(4);
