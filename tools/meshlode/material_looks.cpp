@@ -55,12 +55,6 @@ double linear_of(std::uint32_t value) {
   return std::floor(linear * 65535.0 + 0.5) / 65535.0;
 }
 
-/// GCC 12's SLP vectorizer leaves out the rounding of two doubles to floats and back where it makes one vector of both.
-double rounded_to_float(double x) {
-  const volatile float rounded = static_cast<float>(x);
-  return rounded;
-}
-
 /// The mean of the texels that pass the test; of all where none does.
 Vec3f mean_color(const Sampled& sampled, const Vec4f& factor) {
   std::array<double, 256> linear{};
@@ -98,7 +92,7 @@ std::optional<build::MaterialLook> look_of(const scene::Scene& scene, const Json
   const Json* sampler = number ? item_at(document, "samplers", *number) : nullptr;
   sampled->wrap = {wrap_of(sampler, "wrapS"), wrap_of(sampler, "wrapT")};
   // KHR_texture_transform: scaled, then turned, then moved. Turned by floats, which C libraries agree on.
-  const double cosine = rounded_to_float(std::cos(use->rotation)), sine = rounded_to_float(std::sin(use->rotation));
+  const double cosine = static_cast<float>(std::cos(use->rotation)), sine = static_cast<float>(std::sin(use->rotation));
   sampled->row_u = {cosine * use->scale[0], sine * use->scale[1], use->offset[0]};
   sampled->row_v = {-sine * use->scale[0], cosine * use->scale[1], use->offset[1]};
   for (double& x : sampled->row_u) x *= sampled->image.width;

@@ -2,6 +2,7 @@
 #include "build/simplify/star_facets.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 
 namespace meshlode::build {
@@ -46,13 +47,14 @@ MESHLODE_CLONED_FOR_AVX2
 void StarFacets::distances2_one_by_one(std::span<const Vec3d> points, std::vector<float>& out) const {
   out.resize((points.size() + 3) / 4 * 4);
   for (std::size_t i = 0; 4 * i < points.size(); ++i) {
-    Vec3Lanes p;
+    std::array<float, 4> x, y, z;
     for (std::size_t k = 0; k < 4; ++k) {
       const Vec3f at(points[std::min(4 * i + k, points.size() - 1)] - origin_);
-      p.x[k] = at.x;
-      p.y[k] = at.y;
-      p.z[k] = at.z;
+      x[k] = at.x;
+      y[k] = at.y;
+      z[k] = at.z;
     }
+    const Vec3Lanes p{load_lanes(x.data()), load_lanes(y.data()), load_lanes(z.data())};
     store_lanes(distances2_to(blocks_[i].triangles, blocks_[i].terms, p), &out[4 * i]);
   }
 }
