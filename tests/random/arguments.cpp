@@ -22,6 +22,10 @@ bool parse(int argc, char** argv, Arguments& arguments) {
       arguments.verbose = true;
       continue;
     }
+    if (word == "--started") {
+      arguments.is_started = true;
+      continue;
+    }
     if (word == "--surgery") {
       arguments.harm = Harm::kSurgery;
       continue;
@@ -64,6 +68,7 @@ int usage() {
   std::fputs(
       "usage: random_scenes run FIRST COUNT [--jobs N] [--max-triangles N] [--max-refused PERCENT]\n"
       "                     [--shrink-into FOLDER] [--verbose] [--without-deviation] [--samples N] [--surgery]\n"
+      "                     [--started]   steps are forks of one process: soaks under sanitizers take a third\n"
       "       random_scenes seeds SEED... [the same]\n"
       "       random_scenes soak FIRST MINUTES [the same]\n"
       "       random_scenes replay FOLDER [--jobs N] [--verbose]\n"

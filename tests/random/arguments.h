@@ -27,6 +27,7 @@ struct Arguments {
   std::string rule;
   Harm harm = Harm::kDamage;
   bool verbose = false;
+  bool is_started = false;  ///< steps are forks of one process a job (StartedProgram)
   Depth depth = Depth::kAll;
 };
 

@@ -57,14 +57,23 @@ class Series {
   bool verbose_;
 };
 
-/// Calls judge(item, folder) with what `next` gives, until it gives nothing, on as many threads as asked for.
-void for_each(std::uint64_t jobs, const fs::path& folder, const std::function<std::optional<std::uint64_t>()>& next,
-              const std::function<void(std::uint64_t, const fs::path&)>& judge) {
+/// What a thread has for itself.
+struct Own {
+  fs::path folder;
+  StartedProgram* started = nullptr;  ///< null where each step is to start the program anew
+};
+
+/// Calls judge(item, own) with what `next` gives, until it gives nothing, on as many threads as asked for.
+void for_each(const Arguments& arguments, const fs::path& folder,
+              const std::function<std::optional<std::uint64_t>()>& next,
+              const std::function<void(std::uint64_t, const Own&)>& judge) {
   std::vector<std::thread> threads;
-  for (std::uint64_t job = 0; job < std::max<std::uint64_t>(1, jobs); ++job) {
-    const fs::path own = folder / std::to_string(job);
-    fs::create_directory(own);
-    threads.emplace_back([&, own] {
+  for (std::uint64_t job = 0; job < std::max<std::uint64_t>(1, arguments.jobs); ++job) {
+    threads.emplace_back([&, own_folder = folder / std::to_string(job)] {
+      fs::create_directory(own_folder);
+      std::optional<StartedProgram> started;
+      if (arguments.is_started) started.emplace(arguments.program, MESHLODE_STARTED);
+      const Own own{own_folder, started ? &*started : nullptr};
       while (const auto item = next()) judge(*item, own);
     });
   }
@@ -107,7 +116,7 @@ void keep_shrunk(std::uint64_t seed, const Entry& entry, const Arguments& argume
   }
 }
 
-void try_seed(std::uint64_t seed, const Arguments& arguments, const fs::path& folder, Series& series) {
+void try_seed(std::uint64_t seed, const Arguments& arguments, const Own& own, Series& series) {
   Entry entry;
   const RandomScene scene = random_scene(seed, arguments.harm);
   entry.name = "seed " + std::to_string(seed);
@@ -116,7 +125,8 @@ void try_seed(std::uint64_t seed, const Arguments& arguments, const fs::path& fo
   entry.build_options = scene.build_options;
   entry.was_skipped = entry.triangles > arguments.max_triangles;
   if (!entry.was_skipped) {
-    TrialOptions options = trial_options(arguments, folder, entry.build_options);
+    TrialOptions options = trial_options(arguments, own.folder, entry.build_options);
+    options.started = own.started;
     options.other_jobs_too = seed % 8 == 0;
     entry.result = try_scene(write_glb(scene), options);
     if (entry.result.refusal && !asks_for_accuracy(scene)) {
@@ -125,7 +135,7 @@ void try_seed(std::uint64_t seed, const Arguments& arguments, const fs::path& fo
     }
   }
   series.add(entry);
-  if (!arguments.shrink_into.empty()) keep_shrunk(seed, entry, arguments, folder);
+  if (!arguments.shrink_into.empty()) keep_shrunk(seed, entry, arguments, own.folder);
 }
 
 int conclude(Series& series, const Arguments& arguments) {
@@ -169,8 +179,8 @@ int run_seeds(const Arguments& arguments, const std::vector<std::uint64_t>& seed
   const WorkFolder work;
   Series series(arguments.verbose);
   std::atomic<std::uint64_t> next = 0;
-  for_each(arguments.jobs, work.path(), up_to(seeds.size(), next),
-           [&](std::uint64_t i, const fs::path& folder) { try_seed(seeds[i], arguments, folder, series); });
+  for_each(arguments, work.path(), up_to(seeds.size(), next),
+           [&](std::uint64_t i, const Own& own) { try_seed(seeds[i], arguments, own, series); });
   return conclude(series, arguments);
 }
 
@@ -193,8 +203,8 @@ int soak(const Arguments& arguments, std::uint64_t first, double minutes) {
     }
     return next++;
   };
-  for_each(arguments.jobs, work.path(), next_seed,
-           [&](std::uint64_t seed, const fs::path& folder) { try_seed(seed, arguments, folder, series); });
+  for_each(arguments, work.path(), next_seed,
+           [&](std::uint64_t seed, const Own& own) { try_seed(seed, arguments, own, series); });
   std::printf("seeds %llu to %llu in %.1f min:\n", static_cast<unsigned long long>(first),
               static_cast<unsigned long long>(next.load() - 1),
               std::chrono::duration<double>(Clock::now() - begin).count() / 60.0);
@@ -210,7 +220,7 @@ int replay(const Arguments& arguments, const fs::path& folder) {
   std::sort(files.begin(), files.end());
   Series series(arguments.verbose);
   std::atomic<std::uint64_t> next = 0;
-  for_each(arguments.jobs, work.path(), up_to(files.size(), next), [&](std::uint64_t i, const fs::path& own) {
+  for_each(arguments, work.path(), up_to(files.size(), next), [&](std::uint64_t i, const Own& own) {
     Entry entry;
     entry.name = files[i].filename().string();
     entry.triangles = 1;  // not counted: speed is not the question here
@@ -218,7 +228,9 @@ int replay(const Arguments& arguments, const fs::path& folder) {
     options_file.replace_extension(".options");
     std::ifstream in(options_file);
     for (std::string word; in >> word;) entry.build_options.push_back(word);
-    entry.result = try_scene(read_file(files[i]), trial_options(arguments, own, entry.build_options));
+    TrialOptions options = trial_options(arguments, own.folder, entry.build_options);
+    options.started = own.started;
+    entry.result = try_scene(read_file(files[i]), options);
     series.add(entry);
   });
   return conclude(series, arguments);

@@ -1,19 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "trial.h"
 
-#include <fcntl.h>
-#include <signal.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <chrono>
-#include <cmath>
-#include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
-#include <thread>
 
 #include <nlohmann/json.hpp>
 
@@ -23,74 +14,16 @@ namespace {
 
 using nlohmann::json;
 
-struct StepResult {
-  int exit_code = -1;  ///< -1 where a signal ended it
-  int signal = 0;
-  bool timed_out = false;
-  double cpu_seconds = 0.0;
-  std::string out, err;
-};
-
 std::string read_text(const std::filesystem::path& path) {
   std::ifstream in(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
 }
 
-double seconds_of(const timeval& time) {
-  return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
-}
-
-void redirect(const char* path, int descriptor) {
-  const int file = open(path, O_WRONLY | O_CREAT | O_TRUNC, 0600);
-  if (file < 0 || dup2(file, descriptor) < 0) _exit(127);
-}
-
-/// Waits until the child ends or `deadline` passes; then kills it.
-bool wait_or_kill(pid_t child, double wall_seconds, int& status, rusage& usage) {
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::duration<double>(wall_seconds);
-  auto pause = std::chrono::milliseconds(1);
-  for (;;) {
-    if (wait4(child, &status, WNOHANG, &usage) == child) return false;
-    if (std::chrono::steady_clock::now() > deadline) break;
-    std::this_thread::sleep_for(pause);
-    pause = std::min(pause * 2, std::chrono::milliseconds(20));
-  }
-  kill(child, SIGKILL);
-  wait4(child, &status, 0, &usage);
-  return true;
-}
-
 StepResult run_step(const TrialOptions& options, std::vector<std::string> arguments) {
-  const std::filesystem::path out = options.folder / "stdout", err = options.folder / "stderr";
+  const StepOutput output{options.folder / "stdout", options.folder / "stderr"};
   arguments.insert(arguments.begin(), options.program.string());
-  std::vector<char*> argv;
-  for (std::string& argument : arguments) argv.push_back(argument.data());
-  argv.push_back(nullptr);
-  const std::string out_name = out.string(), err_name = err.string();
-  const rlimit cpu{static_cast<rlim_t>(std::ceil(options.cpu_seconds)),
-                   static_cast<rlim_t>(std::ceil(options.cpu_seconds)) + 1};
-  const pid_t child = fork();
-  StepResult result;
-  if (child < 0) return result;
-  if (child == 0) {  // only what is safe between fork and exec
-    redirect(out_name.c_str(), STDOUT_FILENO);
-    redirect(err_name.c_str(), STDERR_FILENO);
-    setrlimit(RLIMIT_CPU, &cpu);
-    const rlimit no_core{0, 0};
-    setrlimit(RLIMIT_CORE, &no_core);
-    execv(argv[0], argv.data());
-    _exit(127);
-  }
-  int status = 0;
-  rusage usage{};
-  result.timed_out = wait_or_kill(child, 4.0 * options.cpu_seconds, status, usage);
-  if (WIFEXITED(status)) result.exit_code = WEXITSTATUS(status);
-  if (WIFSIGNALED(status)) result.signal = WTERMSIG(status);
-  if (result.signal == SIGXCPU) result.timed_out = true;
-  result.cpu_seconds = seconds_of(usage.ru_utime) + seconds_of(usage.ru_stime);
-  result.out = read_text(out);
-  result.err = read_text(err);
-  return result;
+  return options.started != nullptr ? options.started->run(arguments, output, options.cpu_seconds)
+                                    : run_process(arguments, output, options.cpu_seconds);
 }
 
 void note(TrialResult& result, const std::string& rule, const std::string& detail, std::uint64_t count = 1) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One scene put to the test by the program itself: built, validated, verified against the source, decoded to a cut.
-// Every step is a process of its own, so that a crash, a hang or a flood of memory is a finding like any other.
+// Every step is a process of its own (step.h), so that a crash, a hang or a flood of memory is a finding like any
+// other.
 #pragma once
 
 #include <cstdint>
@@ -10,14 +11,17 @@
 #include <string>
 #include <vector>
 
+#include "step.h"
+
 namespace meshlode::test {
 
 /// How far a trial goes; shrinking repeats only what it needs.
 enum class Depth { kBuild, kValidate, kVerifyWithoutDeviation, kAll };
 
 struct TrialOptions {
-  std::filesystem::path program;  ///< meshlode
-  std::filesystem::path folder;   ///< existing; what a trial writes there it removes
+  std::filesystem::path program;      ///< meshlode
+  StartedProgram* started = nullptr;  ///< where steps are to be its forks
+  std::filesystem::path folder;       ///< existing; what a trial writes there it removes
   std::vector<std::string> build_options;
   Depth depth = Depth::kAll;
   std::optional<std::uint64_t> samples{};  ///< verify's --samples; its own default without
