@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Preloaded into a program: its main() runs once an order (started.h), each time in a fork. What a sanitized program does
- * before main() and what it is to load takes more time than most scenes, and is the same each time. */
+/* Preloaded into a program: its main() runs once an order (started.h), each time in a fork. What a sanitized program
+ * does before main() and what it is to load takes more time than most scenes, and is the same each time. */
 #define _GNU_SOURCE
 #include "started.h"
 
@@ -82,7 +82,9 @@ static int wait_or_kill(pid_t child, double seconds, int* status, struct rusage*
   return 1;
 }
 
-static double seconds_of(struct timeval time) { return (double)time.tv_sec + 1e-6 * (double)time.tv_usec; }
+static double seconds_of(struct timeval time) {
+  return (double)time.tv_sec + 1e-6 * (double)time.tv_usec;
+}
 
 static int serve(int argc, char** argv, char** environment) {
   (void)argc;

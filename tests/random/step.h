@@ -23,7 +23,8 @@ struct StepOutput {
   std::filesystem::path out, err;
 };
 
-/// Starts arguments[0] with the others. `cpu_seconds`: of processor time; a hang that sleeps ends after four times that.
+/// Starts arguments[0] with the others. `cpu_seconds`: of processor time; a hang that sleeps ends after four times
+/// that.
 [[nodiscard]] StepResult run_process(std::vector<std::string> arguments, const StepOutput& output, double cpu_seconds);
 
 /// A program that has been started, up to its main(), and runs what it is told in forks of itself (started.c). Starting

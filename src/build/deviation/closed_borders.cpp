@@ -19,18 +19,6 @@ constexpr double kBeyond = 1.05;
 constexpr double kBeside = 0.5;
 constexpr int kDoublings = 6, kHalvings = 7;
 
-Vec3d nearest_point(const Vec3d& p, const TriangleCorners& corners) {
-  const NearestFeature feature = nearest_feature(p, corners);
-  const Vec3d& a = corners[feature.index];
-  if (feature.kind == NearestFeature::Kind::kCorner) return a;
-  if (feature.kind == NearestFeature::Kind::kEdge) {
-    const Vec3d edge = corners[(feature.index + 1) % 3] - a;
-    return a + edge * std::clamp(glm::dot(p - a, edge) / glm::dot(edge, edge), 0.0, 1.0);
-  }
-  const Vec3d normal = glm::cross(corners[1] - a, corners[2] - a);
-  return p - normal * (glm::dot(p - a, normal) / glm::dot(normal, normal));
-}
-
 class ClosedBorders {
  public:
   ClosedBorders(const SurfaceTree& source, const SurfaceTree& group, Farthest farthest)

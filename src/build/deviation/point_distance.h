@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include "base/vec.h"
 
@@ -53,6 +54,9 @@ class TriangleDistance {
                     std::min(point_segment_distance2(pa, ac_), point_segment_distance2(p - b_, bc_)));
   }
 
+  /// False for a needle, a segment or a point: what is nearest lies on an edge then.
+  [[nodiscard]] bool has_inside() const { return has_inside_; }
+
  private:
   Vec3d a_, b_, ab_, ac_, bc_, n_;
   double nn_;
@@ -69,7 +73,8 @@ class TriangleDistance {
   return TriangleDistance(corners).squared_to(p);
 }
 
-/// What of a triangle is nearest to a point: its inside, or an edge (k: from corner k to the next) or a corner.
+/// What of a triangle is nearest to a point: its inside (never of one that has none), or an edge (k: from corner k to
+/// the next) or a corner.
 struct NearestFeature {
   enum class Kind : std::uint8_t { kInside, kEdge, kCorner };
   Kind kind = Kind::kInside;
@@ -77,7 +82,14 @@ struct NearestFeature {
 };
 
 [[nodiscard]] inline NearestFeature nearest_feature(const Vec3d& p, const TriangleCorners& corners) {
-  const double distance2 = point_triangle_distance2(p, corners);
+  const TriangleDistance triangle(corners);
+  double distance2 = triangle.squared_to(p);
+  if (!triangle.has_inside()) {  // the same edges from their other ends are off by another rounding, and one it is
+    distance2 = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < 3; ++k) {
+      distance2 = std::min(distance2, point_segment_distance2(p - corners[k], corners[(k + 1) % 3] - corners[k]));
+    }
+  }
   NearestFeature feature;
   double best2 = distance2 * (1.0 + 1e-9);
   for (std::size_t k = 0; k < 3; ++k) {
@@ -91,6 +103,19 @@ struct NearestFeature {
     best2 = edge2;
   }
   return feature;
+}
+
+/// Where on the triangle that is; of a needle, a segment or a point too.
+[[nodiscard]] inline Vec3d nearest_point(const Vec3d& p, const TriangleCorners& corners) {
+  const NearestFeature feature = nearest_feature(p, corners);
+  const Vec3d& a = corners[feature.index];
+  if (feature.kind == NearestFeature::Kind::kCorner) return a;
+  if (feature.kind == NearestFeature::Kind::kEdge) {
+    const Vec3d edge = corners[(feature.index + 1) % 3] - a;
+    return a + edge * std::clamp(glm::dot(p - a, edge) / glm::dot(edge, edge), 0.0, 1.0);
+  }
+  const Vec3d normal = glm::cross(corners[1] - a, corners[2] - a);
+  return p - normal * (glm::dot(p - a, normal) / glm::dot(normal, normal));
 }
 
 }  // namespace meshlode::build

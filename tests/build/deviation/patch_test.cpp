@@ -135,6 +135,39 @@ TEST(PointDistance, TheNearestFeatureIsThatOfTheRegion) {
   for (const int of_kind : count) EXPECT_GT(of_kind, 500);
 }
 
+// Of a triangle on a line nothing is inside, and what is nearest is a point of one of its edges, whatever rounding says
+// of the edge's two ends.
+TEST(NearestFeature, OfATriangleOnALineItIsAnEdgeOrACorner) {
+  test::RandomSource random(177);
+  for (int round = 0; round < 20000; ++round) {
+    const double scale = round % 3 == 0 ? 1e-30 : round % 3 == 1 ? 1.0 : 1e30;
+    const Vec3d from = random.in_cube(1.0) * scale, along = random.in_cube(4.0) * scale;
+    TriangleCorners t;
+    for (Vec3d& corner : t) corner = from + along * random.between(-1.0, 1.0);
+    if (round % 7 == 0) t[2] = t[1];
+    if (round % 49 == 0) t[1] = t[2] = t[0];
+    Vec3d p = from + along * random.between(-1.5, 1.5);
+    if (round % 2 == 0) p += random.in_cube(scale);
+    ASSERT_NE(nearest_feature(p, t).kind, NearestFeature::Kind::kInside) << "seed 177, round " << round;
+    const Vec3d nearest = nearest_point(p, t);
+    const double distance = std::sqrt(point_triangle_distance2(p, t));
+    ASSERT_LE(std::fabs(glm::length(p - nearest) - distance), 1e-8 * distance + 1e-14 * scale) << "round " << round;
+    ASSERT_LE(std::sqrt(point_triangle_distance2(nearest, t)), 1e-14 * scale) << "of the triangle, round " << round;
+  }
+}
+
+TEST(NearestFeature, NearestPointsAreAsFarAsIsSaid) {
+  test::RandomSource random(178);
+  for (int round = 0; round < 20000; ++round) {
+    const TriangleCorners t = draw_triangle(random);
+    const Vec3d p = random.in_cube(2.0);
+    const Vec3d nearest = nearest_point(p, t);
+    const double distance = std::sqrt(point_triangle_distance2(p, t));
+    ASSERT_LE(std::fabs(glm::length(p - nearest) - distance), 1e-8 * distance + 1e-10) << "seed 178, round " << round;
+    ASSERT_LE(std::sqrt(point_triangle_distance2(nearest, t)), 1e-10) << "seed 178, round " << round;
+  }
+}
+
 Patch draw_patch(RandomSource& random) {
   Patch patch;
   for (Vec3d& corner : patch.corner) corner = random.in_cube(1.0);
