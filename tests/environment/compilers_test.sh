@@ -20,13 +20,13 @@ compare() {
   rm -rf "$build"
   "$cmake" -S "$source" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_C_COMPILER="$2" -DCMAKE_CXX_COMPILER="$3" \
     -DCMAKE_CXX_FLAGS="$4" -DCMAKE_CXX_FLAGS_RELEASE=-DNDEBUG -DMESHLODE_TESTS=OFF -DMESHLODE_VULKAN=OFF -DMESHLODE_WASM=OFF \
-    -DMESHLODE_UNITY=ON -DMESHLODE_WERROR=OFF -DCMAKE_CXX_COMPILER_LAUNCHER="${LAUNCHER:-}" >"$work/log" 2>&1 &&
+    -DCMAKE_UNITY_BUILD=ON -DMESHLODE_WERROR=OFF -DCMAKE_CXX_COMPILER_LAUNCHER="${LAUNCHER:-}" >"$work/log" 2>&1 &&
     ninja -C "$build" meshlode_cli >"$work/log" 2>&1 || { tail -n 40 "$work/log"; echo "FAILED: $name does not build"; exit 1; }
   "$source/tests/cli/compare_compilers.sh" "$work/reference" "$build" || { echo "FAILED: $name"; failed=1; }
 }
-compare "gcc, not optimised" gcc g++ "-O0"
-compare "gcc, -O3 $wide" gcc g++ "-O3 $wide"
-compare "clang, not optimised" clang-14 clang++-14 "-O0"
 compare "clang, -O3 $wide" clang-14 clang++-14 "-O3 $wide"
+compare "gcc, -O3 $wide" gcc g++ "-O3 $wide"
+compare "gcc, not optimised" gcc g++ "-O0"
+compare "clang, not optimised" clang-14 clang++-14 "-O0"
 [ -n "$wide" ] || echo "not tried: AVX2 and FMA, which this processor has not"
 exit $failed
