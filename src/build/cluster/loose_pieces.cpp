@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <utility>
+
+#include "base/local_ids.h"
 
 namespace meshlode::build {
 
@@ -30,6 +33,34 @@ std::uint32_t find_pieces(const Graph& graph, std::vector<std::uint32_t>& piece)
   return count;
 }
 
+namespace {
+
+/// A place that triangles of one piece have a corner at, and the first of them.
+struct PieceCorner {
+  glm::i64vec3 place;
+  std::uint32_t piece, triangle;
+};
+
+/// Each once, by their first triangles: a corner is met by six triangles, and asked about once.
+std::vector<PieceCorner> corners_of_pieces(std::span<const std::array<std::uint32_t, 3>> corner_positions,
+                                           std::span<const Vec3i> positions, const std::vector<std::uint32_t>& piece) {
+  LocalIds ids(corner_positions.size());
+  std::vector<std::uint32_t> last_piece;  // by local id of a position: that it was met with last, mostly the only one
+  std::vector<PieceCorner> corners;
+  corners.reserve(corner_positions.size());
+  for (std::uint32_t t = 0; t < piece.size(); ++t) {
+    for (const std::uint32_t corner : corner_positions[t]) {
+      const std::uint32_t id = ids.add(corner);
+      if (id == last_piece.size()) last_piece.push_back(kNoId);
+      if (std::exchange(last_piece[id], piece[t]) == piece[t]) continue;
+      corners.push_back({glm::i64vec3(positions[corner]), piece[t], t});
+    }
+  }
+  return corners;
+}
+
+}  // namespace
+
 std::vector<TriangleLink> link_to_nearest(std::span<const std::array<std::uint32_t, 3>> corner_positions,
                                           std::span<const Vec3i> positions, const std::vector<std::uint32_t>& piece,
                                           std::uint32_t piece_count) {
@@ -41,23 +72,26 @@ std::vector<TriangleLink> link_to_nearest(std::span<const std::array<std::uint32
     ++size[piece[t]];
   }
   const auto largest = static_cast<std::uint32_t>(std::max_element(size.begin(), size.end()) - size.begin());
+  const std::vector<PieceCorner> corners = corners_of_pieces(corner_positions, positions, piece);
   std::vector<TriangleLink> links;
+  std::vector<std::uint32_t> asked;  // corners of the piece: the next triangle has two of them again
   for (std::uint32_t p = 0; p < piece_count; ++p) {
     if (p == largest) continue;
     std::int64_t nearest = std::numeric_limits<std::int64_t>::max();
     TriangleLink link{};
+    asked.clear();
     for (const std::uint32_t mine : probes[p]) {
       for (const std::uint32_t corner : corner_positions[mine]) {
+        if (std::find(asked.begin(), asked.end(), corner) != asked.end()) continue;
+        asked.push_back(corner);
         const glm::i64vec3 from(positions[corner]);
-        for (std::uint32_t other = 0; other < piece.size(); ++other) {
-          if (piece[other] == p) continue;
-          for (const std::uint32_t there : corner_positions[other]) {
-            const glm::i64vec3 apart = glm::i64vec3(positions[there]) - from;
-            const std::int64_t distance2 = apart.x * apart.x + apart.y * apart.y + apart.z * apart.z;
-            if (distance2 >= nearest) continue;
-            nearest = distance2;
-            link = {mine, other};
-          }
+        for (const PieceCorner& other : corners) {
+          if (other.piece == p) continue;
+          const glm::i64vec3 apart = other.place - from;
+          const std::int64_t distance2 = apart.x * apart.x + apart.y * apart.y + apart.z * apart.z;
+          if (distance2 >= nearest) continue;
+          nearest = distance2;
+          link = {mine, other.triangle};
         }
       }
     }
