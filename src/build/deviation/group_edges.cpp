@@ -3,26 +3,31 @@
 
 #include <algorithm>
 
-#include "base/id_table.h"
 #include "base/ids.h"
 
 namespace meshlode::build {
 
 GroupEdges::GroupEdges(const GroupSurface& group)
     : of_triangle(group.triangles.size()), is_border_position(group.positions.size(), 0) {
-  // Edges are numbered in the order of the triangles.
-  IdTable table(3 * group.triangles.size());
-  std::vector<std::uint64_t> keys;
-  keys.reserve(2 * group.triangles.size());
+  // Edges are numbered in the order of the triangles. Those with the same lower end are a list, the latest first: most
+  // are three, and around a hub what was met last is mostly met next.
+  struct Listed {
+    std::uint32_t higher_end, before;
+  };
+  std::vector<std::uint32_t> latest(group.positions.size(), kNoId);
+  std::vector<Listed> listed;
+  listed.reserve(2 * group.triangles.size());
+  use_count.reserve(2 * group.triangles.size());
   for (std::size_t t = 0; t < group.triangles.size(); ++t) {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t a = group.triangles[t][k], b = group.triangles[t][(k + 1) % 3];
-      const std::uint64_t key = static_cast<std::uint64_t>(std::min(a, b)) << 32U | std::max(a, b);
-      const auto [edge, is_new] = table.find_or_insert(
-          hash_word(0, key), static_cast<std::uint32_t>(keys.size()), [&](std::uint32_t e) { return keys[e] == key; },
-          [&](std::uint32_t e) { return hash_word(0, keys[e]); });
-      if (is_new) {
-        keys.push_back(key);
+      const std::uint32_t low = std::min(a, b), high = std::max(a, b);
+      std::uint32_t edge = latest[low];
+      while (edge != kNoId && listed[edge].higher_end != high) edge = listed[edge].before;
+      if (edge == kNoId) {
+        edge = static_cast<std::uint32_t>(listed.size());
+        listed.push_back({high, latest[low]});
+        latest[low] = edge;
         use_count.push_back(0);
       }
       of_triangle[t][k] = edge;

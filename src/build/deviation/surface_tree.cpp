@@ -379,8 +379,9 @@ Lanes distances2_to_boxes(const Node& node, const PointLanes& p) {
 
 /// Puts the children that are nearer than `limit` onto the stack. Non-negative floats order like their bits: the
 /// child's number goes into the lowest two, and four integers are sorted with the far ones first.
-void push_children(std::uint32_t parent, std::uint32_t level, Lanes distance2, float limit, Stack& stack,
-                   std::size_t& size) {
+/// Always inline: else the clone for AVX2 calls one that is not.
+[[gnu::always_inline]] inline void push_children(std::uint32_t parent, std::uint32_t level, Lanes distance2,
+                                                 float limit, Stack& stack, std::size_t& size) {
   LaneMask bits;
   std::memcpy(&bits, &distance2, sizeof(bits));
   bits = (bits & ~3) | LaneMask{0, 1, 2, 3};
