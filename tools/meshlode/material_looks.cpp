@@ -25,13 +25,17 @@ struct Sampled {
   std::array<double, 3> row_u{}, row_v{};  ///< texture coordinates to texels
   std::uint32_t threshold = 0;
 
-  [[nodiscard]] std::uint32_t texel(double u, double v) const {
+  std::vector<std::uint8_t> does_pass;  ///< texel by texel
+
+  [[nodiscard]] bool passes_at(double u, double v) const {
     const auto place = [&](const std::array<double, 3>& row, std::uint32_t count, draw::Wrap how) {
-      const double at = std::floor(row[0] * u + row[1] * v + row[2]);
-      return draw::wrap_texel(static_cast<std::int64_t>(std::clamp(at, -1e15, 1e15)), count, how);
+      const double at = row[0] * u + row[1] * v + row[2];
+      // Most are on the image, whatever is beside it.
+      if (at >= 0.0 && at < count) return static_cast<std::uint32_t>(at);
+      return draw::wrap_texel(static_cast<std::int64_t>(std::clamp(std::floor(at), -1e15, 1e15)), count, how);
     };
     const std::size_t x = place(row_u, image.width, wrap[0]), y = place(row_v, image.height, wrap[1]);
-    return image.texels[y * image.width + x];
+    return does_pass[y * image.width + x] != 0;
   }
   [[nodiscard]] bool passes(std::uint32_t texel) const { return (texel >> 24U) * 255U >= threshold; }
 };
@@ -103,7 +107,12 @@ std::optional<build::MaterialLook> look_of(const scene::Scene& scene, const Json
   look.color = mean_color(*sampled, material.base_color);
   look.uv_set = use->uv_set;
   if (sampled->threshold > 0) {
-    look.covers = [sampled](double u, double v) { return sampled->passes(sampled->texel(u, v)); };
+    sampled->does_pass.reserve(sampled->image.texels.size());
+    for (const std::uint32_t texel : sampled->image.texels) {
+      sampled->does_pass.push_back(sampled->passes(texel) ? 1 : 0);
+    }
+    sampled->image.texels = {};
+    look.covers = [sampled](double u, double v) { return sampled->passes_at(u, v); };
   }
   return look;
 }

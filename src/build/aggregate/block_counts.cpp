@@ -2,9 +2,16 @@
 #include "build/aggregate/block_counts.h"
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 namespace meshlode::build {
+
+namespace {
+
+constexpr std::size_t kFewSquares = 4096;  // of small numbers, which are summed up in 32 bits
+
+}  // namespace
 
 void BlockCounts::add_word(std::size_t word, std::size_t block_row, std::uint64_t lower, std::uint64_t upper,
                            int sign) {
@@ -33,36 +40,56 @@ void BlockCounts::halve() {
   columns_ = columns;
   rows_ = rows;
   counts_ = std::move(counts);
+  most_ *= 4;
 }
 
-std::int64_t BlockCounts::sum_of_squares(std::size_t side) const {
-  const std::size_t wide = columns_ + side - 1;
-  std::vector<std::int32_t> column_sums(wide, 0);      // of the last `side` rows' row sums
-  std::vector<std::int32_t> row_sums(side * wide, 0);  // of these rows, in a ring
-  std::vector<std::int32_t> padded(columns_ + 2 * (side - 1), 0);
+namespace {
+
+/// As BlockCounts::sum_of_squares, where a Sum holds each square's sum. Most calls are of small blocks, and of 16 bits
+/// a processor adds and squares twice and four times as many at once as of 32.
+template <class Sum>
+std::int64_t sum_squares(std::span<const std::int32_t> counts, std::size_t columns, std::size_t side) {
+  const std::size_t rows = counts.size() / columns, wide = columns + side - 1;
+  std::vector<Sum> column_sums(wide, 0);      // of the last `side` rows' row sums
+  std::vector<Sum> row_sums(side * wide, 0);  // of these rows, in a ring
+  std::vector<Sum> padded(columns + 2 * (side - 1), 0);
   std::int64_t total = 0;
-  for (std::size_t y = 0; y < rows_ + side - 1; ++y) {
-    std::int32_t* ring = row_sums.data() + (y % side) * wide;
-    for (std::size_t x = 0; x < wide; ++x) column_sums[x] -= ring[x];
-    if (y < rows_) {
-      const std::int32_t* row = counts_.data() + y * columns_;
-      std::copy(row, row + columns_, padded.data() + (side - 1));
-      for (std::size_t x = 0; x < wide; ++x) ring[x] = padded[x];
+  for (std::size_t y = 0; y < rows + side - 1; ++y) {
+    Sum* ring = row_sums.data() + (y % side) * wide;
+    for (std::size_t x = 0; x < wide; ++x) column_sums[x] = static_cast<Sum>(column_sums[x] - ring[x]);
+    if (y < rows) {
+      const std::int32_t* row = counts.data() + y * columns;
+      for (std::size_t x = 0; x < columns; ++x) padded[side - 1 + x] = static_cast<Sum>(row[x]);
+      std::copy(padded.data(), padded.data() + wide, ring);
       for (std::size_t k = 1; k < side; ++k) {
-        const std::int32_t* shifted = padded.data() + k;
-        for (std::size_t x = 0; x < wide; ++x) ring[x] += shifted[x];
+        const Sum* shifted = padded.data() + k;
+        for (std::size_t x = 0; x < wide; ++x) ring[x] = static_cast<Sum>(ring[x] + shifted[x]);
+      }
+      for (std::size_t x = 0; x < wide; ++x) column_sums[x] = static_cast<Sum>(column_sums[x] + ring[x]);
+    } else {
+      std::fill(ring, ring + wide, Sum{0});
+    }
+    if constexpr (sizeof(Sum) == sizeof(std::int16_t)) {
+      for (std::size_t first = 0; first < wide; first += kFewSquares) {
+        const std::size_t end = std::min(wide, first + kFewSquares);
+        std::int32_t squares = 0;
+        for (std::size_t x = first; x < end; ++x) squares += std::int32_t{column_sums[x]} * column_sums[x];
+        total += squares;
       }
     } else {
-      std::fill(ring, ring + wide, 0);
+      for (std::size_t x = 0; x < wide; ++x) total += std::int64_t{column_sums[x]} * column_sums[x];
     }
-    std::int64_t squares = 0;
-    for (std::size_t x = 0; x < wide; ++x) {
-      column_sums[x] += ring[x];
-      squares += std::int64_t{column_sums[x]} * column_sums[x];
-    }
-    total += squares;
   }
   return total;
+}
+
+}  // namespace
+
+std::int64_t BlockCounts::sum_of_squares(std::size_t side) const {
+  if (counts_.empty()) return 0;
+  const std::size_t most = most_ * side * side;
+  if (most * most <= 0x7FFFFFFFU / kFewSquares) return sum_squares<std::int16_t>(counts_, columns_, side);
+  return sum_squares<std::int32_t>(counts_, columns_, side);
 }
 
 }  // namespace meshlode::build

@@ -19,6 +19,7 @@ class BlockCounts {
         counts_(columns_ * rows_, 0) {}
 
   /// Adds the samples of a word of the box in two rows, times `sign`: the bits of row 2 · block_row and of the next.
+  /// \pre with each sign a sample is added once at most
   void add_word(std::size_t word, std::size_t block_row, std::uint64_t lower, std::uint64_t upper, int sign);
 
   /// Four blocks become one, and so on for larger pixels. \pre at most 12 times
@@ -30,6 +31,7 @@ class BlockCounts {
 
  private:
   std::size_t columns_, rows_;
+  std::size_t most_ = 4;  ///< samples of a block: no count is above it, with either sign
   std::vector<std::int32_t> counts_;
 };
 

@@ -39,12 +39,37 @@ double pixel_size(double spacing, std::size_t octaves, std::size_t index) {
 
 using Places = std::array<Vec2d, 3>;
 
+/// A box around many triangles, as far as they are in a picture of `side` samples.
+class PlaceBounds {
+ public:
+  explicit PlaceBounds(int side) : side_(side) {}
+  void include(const Places& at) {
+    const auto [a, b, c] = at;
+    const Vec2d low(std::min(std::min(a.x, b.x), c.x), std::min(std::min(a.y, b.y), c.y));
+    const Vec2d high(std::max(std::max(a.x, b.x), c.x), std::max(std::max(a.y, b.y), c.y));
+    if (high.x < 0.0 || high.y < 0.0 || low.x >= side_ || low.y >= side_) return;
+    low_ = {std::min(low_.x, low.x), std::min(low_.y, low.y)};
+    high_ = {std::max(high_.x, high.x), std::max(high_.y, high.y)};
+  }
+  /// Empty if nothing was included.
+  [[nodiscard]] MaskBox box() const {
+    MaskBox all;
+    if (low_.x <= high_.x) all.include(std::array<Vec2d, 2>{low_, high_}, side_);
+    return all;
+  }
+
+ private:
+  int side_;
+  Vec2d low_{std::numeric_limits<double>::max()}, high_{-std::numeric_limits<double>::max()};
+};
+
 SampleMask source_mask(const SourceSurface& source, const Lattice& lattice, const View& view,
                        std::span<const std::uint32_t> triangles) {
   std::vector<Places> places;
   places.reserve(triangles.size());
-  MaskBox box;
+  PlaceBounds bounds(lattice.side());
   std::vector<std::uint32_t> seen;
+  seen.reserve(triangles.size());
   for (const std::uint32_t t : triangles) {
     const Places at = lattice.places(view, source.corners(t));
     // What a closed piece's back covers its front does.
@@ -52,9 +77,9 @@ SampleMask source_mask(const SourceSurface& source, const Lattice& lattice, cons
       continue;
     seen.push_back(t);
     places.push_back(at);
-    box.include(at, lattice.side());
+    bounds.include(at);
   }
-  SampleMask mask(box);
+  SampleMask mask(bounds.box());
   for (std::size_t i = 0; i < seen.size(); ++i) {
     const auto& covers = source.material(seen[i]).covers;
     if (!covers) {
@@ -69,12 +94,12 @@ SampleMask source_mask(const SourceSurface& source, const Lattice& lattice, cons
 SampleMask mask_of(const Lattice& lattice, const View& view, std::span<const Corners> triangles) {
   std::vector<Places> places;
   places.reserve(triangles.size());
-  MaskBox box;
+  PlaceBounds bounds(lattice.side());
   for (const Corners& corners : triangles) {
     places.push_back(lattice.places(view, corners));
-    box.include(places.back(), lattice.side());
+    bounds.include(places.back());
   }
-  SampleMask mask(box);
+  SampleMask mask(bounds.box());
   for (const Places& corners : places) mask.add_triangle(corners);
   return mask;
 }

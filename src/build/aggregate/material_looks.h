@@ -3,22 +3,22 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "base/vec.h"
+#include "build/aggregate/alpha_test.h"
 #include "scene/scene.h"
 
 namespace meshlode::build {
 
 /// Of one material.
 struct MaterialLook {
-  std::function<bool(double u, double v)> covers;  ///< the alpha test at texture coordinates; empty: all is drawn
-  std::uint32_t uv_set = 0;                        ///< TEXCOORD_n of these
-  Vec3f color{1.0F};                               ///< linear, the mean of what is drawn
+  AlphaTest covers;
+  std::uint32_t uv_set = 0;  ///< TEXCOORD_n that it is asked with
+  Vec3f color{1.0F};         ///< linear, the mean of what is drawn
 };
 
 class LookReader {

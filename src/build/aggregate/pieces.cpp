@@ -39,8 +39,8 @@ void add_triangle(const Corners& c, double area, Moments& moments) {
 }
 
 /// The same of the part that is drawn, from the middles of 12 × 12 equal triangles. \returns the share
-double add_drawn_part(const Corners& c, const std::array<Vec2d, 3>& uv, double area,
-                      const std::function<bool(double, double)>& covers, Moments& moments) {
+double add_drawn_part(const Corners& c, const std::array<Vec2d, 3>& uv, double area, const AlphaTest& covers,
+                      Moments& moments) {
   constexpr int kSide = 12;
   const double mass = area / (kSide * kSide);
   int drawn = 0;

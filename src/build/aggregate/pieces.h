@@ -3,18 +3,18 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <vector>
 
+#include "build/aggregate/alpha_test.h"
 #include "build/aggregate/card.h"
 #include "build/prepared.h"
 
 namespace meshlode::build {
 
-/// What a material lets through: whether a point with these texture coordinates is drawn. Empty: every point is.
+/// What a material lets through, and what stands for it.
 struct SourceMaterial {
-  std::function<bool(double u, double v)> covers;
+  AlphaTest covers;
   std::uint32_t uv_set = 0;  ///< TEXCOORD_n that `covers` is asked with
   std::uint32_t coarse = 0;  ///< material of what stands for it: opaque, double sided and without texture
 };

@@ -6,11 +6,11 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <vector>
 
 #include "base/vec.h"
+#include "build/aggregate/alpha_test.h"
 
 namespace meshlode::build {
 
@@ -46,8 +46,7 @@ class SampleMask {
   /// What is outside the box is left out. \pre places are finite and within 2^20
   void add_triangle(const std::array<Vec2d, 3>& corners);
   /// The same of samples that `covers` has at their texture coordinates, of which `uv` are the corners'.
-  void add_triangle(const std::array<Vec2d, 3>& corners, const std::array<Vec2d, 3>& uv,
-                    const std::function<bool(double u, double v)>& covers);
+  void add_triangle(const std::array<Vec2d, 3>& corners, const std::array<Vec2d, 3>& uv, const AlphaTest& covers);
   /// Adds another mask's samples. \pre its box is within this one's
   void add(const SampleMask& other);
   [[nodiscard]] std::uint64_t count() const;

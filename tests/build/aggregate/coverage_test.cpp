@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "base/random.h"
+#include "build/aggregate/alpha_test.h"
 #include "build/aggregate/block_counts.h"
 #include "build/aggregate/sample_mask.h"
 #include "build/aggregate/views.h"
@@ -31,6 +32,32 @@ Vec2d random_place(SplitMix64& random, double far) {
   return random.unit() < 0.3 ? Vec2d(std::floor(p.x), std::floor(p.y)) : p;
 }
 
+/// What a mask of one triangle has, against the signs of its sides sample by sample.
+void expect_inside_alone(const SampleMask& mask, const std::array<Vec2d, 3>& p, const char* which, int round) {
+  std::array<std::array<std::int64_t, 2>, 3> q{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    q[k] = {static_cast<std::int64_t>(std::floor(p[k].x * 256.0 + 0.5)),
+            static_cast<std::int64_t>(std::floor(p[k].y * 256.0 + 0.5))};
+  }
+  for (int y = 0; y < kSide; ++y) {
+    for (int x = 0; x < kSide; ++x) {
+      int left = 0, right = 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto& a = q[k];
+        const auto& b = q[(k + 1) % 3];
+        const std::int64_t side = (b[0] - a[0]) * (256 * y - a[1]) - (b[1] - a[1]) * (256 * x - a[0]);
+        left += side > 0 ? 1 : 0;
+        right += side < 0 ? 1 : 0;
+      }
+      if (left == 3 || right == 3) {
+        ASSERT_TRUE(has(mask, x, y)) << which << ' ' << round << ": " << x << " " << y;
+      } else if (left > 0 && right > 0) {
+        ASSERT_FALSE(has(mask, x, y)) << which << ' ' << round << ": " << x << " " << y;
+      }
+    }
+  }
+}
+
 TEST(SampleMask, CoversWhatIsInsideBySidesInWholeNumbers) {
   SplitMix64 random(1);
   for (int round = 0; round < 400; ++round) {
@@ -38,27 +65,28 @@ TEST(SampleMask, CoversWhatIsInsideBySidesInWholeNumbers) {
     for (Vec2d& corner : p) corner = random_place(random, round % 4 == 0 ? 300.0 : 5.0);
     SampleMask mask = picture();
     mask.add_triangle(p);
-    std::array<std::array<std::int64_t, 2>, 3> q{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      q[k] = {static_cast<std::int64_t>(std::floor(p[k].x * 256.0 + 0.5)),
-              static_cast<std::int64_t>(std::floor(p[k].y * 256.0 + 0.5))};
+    expect_inside_alone(mask, p, "large", round);
+  }
+}
+
+TEST(SampleMask, CoversWhatIsInsideOfTrianglesOfAFewSamplesToo) {
+  SplitMix64 random(3);
+  const auto everywhere = [](double, double) { return true; };
+  for (int round = 0; round < 1500; ++round) {
+    // Up to 20 columns wide, across the border of two words, of the picture, and elsewhere.
+    const double size = 1.0 + round % 20;
+    const Vec2d middle(round % 3 == 0 ? 64.0 : random.between(-3.0, kSide + 3), random.between(-3.0, kSide + 3));
+    std::array<Vec2d, 3> p;
+    for (Vec2d& corner : p) {
+      corner = middle + Vec2d(random.between(-0.5, 0.5) * size, random.between(-1.0, 1.0) * size);
+      if (random.unit() < 0.3) corner = Vec2d(std::floor(corner.x), std::floor(corner.y));
     }
+    SampleMask mask = picture(), asked = picture();
+    mask.add_triangle(p);
+    expect_inside_alone(mask, p, "small", round);
+    asked.add_triangle(p, {Vec2d(0, 0), Vec2d(1, 0), Vec2d(0, 1)}, everywhere);
     for (int y = 0; y < kSide; ++y) {
-      for (int x = 0; x < kSide; ++x) {
-        int left = 0, right = 0;
-        for (std::size_t k = 0; k < 3; ++k) {
-          const auto& a = q[k];
-          const auto& b = q[(k + 1) % 3];
-          const std::int64_t side = (b[0] - a[0]) * (256 * y - a[1]) - (b[1] - a[1]) * (256 * x - a[0]);
-          left += side > 0 ? 1 : 0;
-          right += side < 0 ? 1 : 0;
-        }
-        if (left == 3 || right == 3) {
-          ASSERT_TRUE(has(mask, x, y)) << round << ": " << x << " " << y;
-        } else if (left > 0 && right > 0) {
-          ASSERT_FALSE(has(mask, x, y)) << round << ": " << x << " " << y;
-        }
-      }
+      for (int word = 0; word < 2; ++word) ASSERT_EQ(mask.word(word, y), asked.word(word, y)) << round;
     }
   }
 }
@@ -97,6 +125,26 @@ TEST(SampleMask, AMaskedTriangleAsksAtTheRightPlace) {
   mirrored.add_triangle({Vec2d(10.3, 10.2), Vec2d(14.1, 90.7), Vec2d(100.3, 12.2)}, uv,
                         [](double, double c) { return c > 0.5; });
   EXPECT_EQ(mask.count(), mirrored.count()) << "whichever way round";
+}
+
+TEST(AlphaTest, OfARowIsThatOfItsPoints) {
+  const auto stripes = [](double u, double v) { return static_cast<int>(std::floor(7.0 * u + 3.0 * v)) % 3 == 0; };
+  const AlphaTest test = stripes;
+  EXPECT_FALSE(AlphaTest{});
+  ASSERT_TRUE(test);
+  SplitMix64 random(8);
+  for (int round = 0; round < 100; ++round) {
+    const Vec2d origin(random.between(0.0, 2.0), random.between(0.0, 2.0)), step(random.between(-0.1, 0.1), 0.03);
+    const std::uint64_t asked = random.next();
+    const std::uint64_t drawn = test.of_row(origin, step, 64 * round, asked);
+    for (int bit = 0; bit < 64; ++bit) {
+      const Vec2d at = origin + step * static_cast<double>(64 * round + bit);
+      const bool is_asked = (asked >> bit & 1U) != 0;
+      ASSERT_EQ((drawn >> bit & 1U) != 0, is_asked && stripes(at.x, at.y)) << round << ' ' << bit;
+      EXPECT_EQ(test(at.x, at.y), stripes(at.x, at.y));
+    }
+  }
+  EXPECT_EQ(test.of_row(Vec2d(0.0), Vec2d(0.0), 0, 0), 0U);
 }
 
 TEST(BlockCounts, SumsOfSquaresAreThoseOfEveryPixel) {
@@ -139,6 +187,31 @@ TEST(BlockCounts, SumsOfSquaresAreThoseOfEveryPixel) {
       EXPECT_EQ(counts.sum_of_squares(side), expected) << octave << " " << side;
     }
     counts.halve();
+  }
+}
+
+TEST(BlockCounts, SumsOfSquaresOfFullPixelsDoNotRunOver) {
+  // So wide that squares of 16 bits are summed up in several parts, and the largest that there are.
+  MaskBox box;
+  box.end_word = 300;
+  box.end_row = 64;
+  for (const int sign : {1, -1}) {
+    BlockCounts counts(box);
+    for (std::size_t word = 0; word < 300; ++word) {
+      for (std::size_t row = 0; row < 32; ++row) counts.add_word(word, row, ~std::uint64_t{0}, ~std::uint64_t{0}, sign);
+    }
+    std::int64_t columns = 9600, rows = 32, each = 4;
+    for (int octave = 0; octave < 3; ++octave, columns /= 2, rows /= 2, each *= 4) {
+      for (const std::int64_t side : {4, 6}) {
+        // Along a line of n blocks: 1, 2, … side - 1 of them at either end.
+        const auto line = [&](std::int64_t n) {
+          return (n - side + 1) * side * side + (side - 1) * side * (2 * side - 1) / 3;
+        };
+        EXPECT_EQ(counts.sum_of_squares(static_cast<std::size_t>(side)), each * each * line(columns) * line(rows))
+            << sign << ' ' << octave << ' ' << side;
+      }
+      counts.halve();
+    }
   }
 }
 
