@@ -68,7 +68,7 @@ int usage() {
   std::fputs(
       "usage: random_scenes run FIRST COUNT [--jobs N] [--max-triangles N] [--max-refused PERCENT]\n"
       "                     [--shrink-into FOLDER] [--verbose] [--without-deviation] [--samples N] [--surgery]\n"
-      "                     [--started]   steps are forks of one process: soaks under sanitizers take a third\n"
+      "                     [--started]   steps are forks of one process a job, which is quicker under sanitizers\n"
       "       random_scenes seeds SEED... [the same]\n"
       "       random_scenes soak FIRST MINUTES [the same]\n"
       "       random_scenes replay FOLDER [--jobs N] [--verbose]\n"

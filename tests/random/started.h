@@ -7,14 +7,9 @@
 /* Descriptors in the started program. */
 enum { kStartedOrders = 198, kStartedResults = 199 };
 
-/* Followed by `size` bytes: a file for stdout, a file for stderr and `count` arguments, each ended by a zero. */
+/* Followed by `size` bytes: a file for stdout, a file for stderr and `count` arguments, each ended by a zero. The
+ * answer is a struct ChildEnd (child.h). */
 struct StartedOrder {
   double cpu_seconds; /* that it may take */
   uint32_t size, count;
-};
-
-struct StartedResult {
-  double cpu_seconds; /* that it took */
-  int32_t status;     /* waitpid()'s */
-  int32_t timed_out;  /* 1 where it was killed as it slept */
 };

@@ -57,7 +57,7 @@ class SurfaceTree {
 
   /// The nearest triangle that beats `best`, else `best`. Stops as soon as something is within `enough`. `best` is what
   /// look_around() says of the same point, and the search goes up from there; or nothing, and it goes down from the
-  /// root.
+  /// root. \pre the point is finite: boxes that are not there are as near to a NaN as others, and are looked into
   [[nodiscard]] Hit find_nearest(const Vec3f& point, Hit best, float enough) const;
   /// The nearest of the four triangles around a slot, if it beats `best`.
   [[nodiscard]] Hit look_around(const Vec3f& point, TreeSlot slot, Hit best) const {

@@ -11,10 +11,9 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
-#include "build/encode/quantize_normal.h"
-#include "build/encode/uv_grid.h"
 #include "build/hierarchy/lod_bounds.h"
 #include "build/hierarchy/margins.h"
+#include "build/promise/product_surfaces.h"
 #include "build/promise/product_tree.h"
 #include "format/grid.h"
 
@@ -40,61 +39,26 @@ constexpr std::size_t kClimbed = 12;
 constexpr int kSteps = 7, kTries = 10;
 constexpr std::size_t kChunk = 1024;  // points that share a hint, whatever the thread count
 
-/// Which entries the points have, and in what units.
-struct Space {
-  AttributeLayout layout;
-  double normal = 0.0;
-  std::array<std::array<double, 2>, scene::kMaxUvSets> uv{};
-  [[nodiscard]] std::size_t dimensions() const {
-    std::size_t count = 3 + (normal > 0.0 ? 3 : 0);
-    for (const auto& set : uv) count += set[0] > 0.0 ? 2 : 0;
-    return count;
-  }
+/// Per group, object units, without a margin; and of level 0 alone.
+struct Measured {
+  std::vector<double> groups;
+  double level0 = 0.0;
 };
-
-Space space_of(const PaintedSource& source, bool has_normals) {
-  Space space;
-  space.layout = source.layout;
-  if (has_normals) space.normal = double{source.units.normal_object};
-  for (std::uint32_t set = 0; set < scene::kMaxUvSets; ++set) {
-    for (int axis = 0; axis < 2; ++axis) space.uv[set][axis] = double{source.units.uv_object[set][axis]};
-  }
-  return space;
-}
-
-Vec3d unit_normal(const float* n) {
-  const Vec3d v(n[0], n[1], n[2]);
-  const double length = std::sqrt(glm::dot(v, v));
-  // As it is stored where there is none: nearest_octahedral_point().
-  return length > 0.0 && std::isfinite(length) ? v / length : Vec3d(0.0, 0.0, 1.0);
-}
-
-/// Of a triangle without area it is zero: as far from every unit vector.
-Vec3d flat_normal(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
-  const Vec3d n = glm::cross(b - a, c - a);
-  const double length = std::sqrt(glm::dot(n, n));
-  return length > 0.0 && std::isfinite(length) ? n / length : Vec3d(0.0);
-}
 
 template <std::size_t D>
 class PromiseMeter {
  public:
-  PromiseMeter(const PaintedSource& source, const Space& space, const LodDag& dag, const format::MeshRecord& record)
+  PromiseMeter(const PaintedSource& source, const ProductSpace& space, const LodDag& dag,
+               const format::MeshRecord& record)
       : space_(space),
         dag_(dag),
         record_(record),
-        is_flat_(space.layout.flat_normal && space.normal > 0.0),
-        source_(surface_of_source(source)),
+        surfaces_(space, dag, record),
+        source_(surfaces_.of_source(source)),
         tree_(source_) {}
 
-  /// Per group, object units, without a margin; and of level 0 alone.
-  struct Found {
-    std::vector<double> groups;
-    double level0 = 0.0;
-  };
-
-  [[nodiscard]] Found measure() {
-    Found found;
+  [[nodiscard]] Measured measure() {
+    Measured found;
     found.groups.assign(dag_.groups.size(), 0.0);
     std::vector<std::vector<Sample>> carried(dag_.clusters.size());
     found.level0 = place_samples(carried);
@@ -165,123 +129,6 @@ class PromiseMeter {
     std::vector<Far> list_;
   };
 
-  [[nodiscard]] Point make(const Vec3d& p, const std::array<Vec2d, scene::kMaxUvSets>& uv, const Vec3d& n) const {
-    Point out{};
-    std::size_t d = 0;
-    for (int axis = 0; axis < 3; ++axis) out[d++] = p[axis];
-    for (std::uint32_t set = 0; set < scene::kMaxUvSets; ++set) {
-      if (!(space_.uv[set][0] > 0.0)) continue;
-      out[d++] = space_.uv[set][0] * uv[set].x;
-      out[d++] = space_.uv[set][1] * uv[set].y;
-    }
-    if (space_.normal > 0.0) {
-      for (int axis = 0; axis < 3; ++axis) out[d++] = space_.normal * n[axis];
-    }
-    return out;
-  }
-
-  [[nodiscard]] Surface surface_of_source(const PaintedSource& source) const {
-    const AttributeLayout& layout = source.layout;
-    const std::size_t stride = layout.stride();
-    const auto point_of = [&](std::uint32_t position, std::uint32_t wedge, const Vec3d& flat) {
-      const float* const a = source.attributes.data() + wedge * stride;
-      std::array<Vec2d, scene::kMaxUvSets> uv;
-      for (std::uint32_t set = 0; set < layout.uv_set_count; ++set) {
-        const float* const q = a + layout.uv_offset() + 2 * std::size_t{set};
-        uv[set] = {std::isfinite(q[0]) ? q[0] : 0.0F, std::isfinite(q[1]) ? q[1] : 0.0F};
-      }
-      return make(source.positions[position], uv, layout.has_normal ? unit_normal(a) : flat);
-    };
-    Surface surface;
-    surface.triangles.resize(source.triangles.size());
-    if (is_flat_) {
-      surface.points.resize(3 * source.triangles.size());
-      parallel_for_each_index(source.triangles.size(), kLoopGrain, [&](std::size_t t) {
-        const auto& [a, b, c] = source.triangles[t];
-        const Vec3d n = flat_normal(source.positions[a], source.positions[b], source.positions[c]);
-        for (std::uint32_t k = 0; k < 3; ++k) {
-          const auto id = static_cast<std::uint32_t>(3 * t + k);
-          surface.points[id] = point_of(source.triangles[t][k], source.wedges[t][k], n);
-          surface.triangles[t][k] = id;
-        }
-      });
-      return surface;
-    }
-    std::vector<std::uint64_t> keys;  // position and wedge of each corner: each pair is one point
-    keys.reserve(3 * source.triangles.size());
-    const auto key_of = [&](std::size_t t, std::size_t k) {
-      return std::uint64_t{source.triangles[t][k]} << 32U | source.wedges[t][k];
-    };
-    for (std::size_t t = 0; t < source.triangles.size(); ++t) {
-      for (std::size_t k = 0; k < 3; ++k) keys.push_back(key_of(t, k));
-    }
-    std::sort(keys.begin(), keys.end());
-    keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
-    surface.points.resize(keys.size());
-    parallel_for_each_index(keys.size(), kLoopGrain, [&](std::size_t i) {
-      surface.points[i] =
-          point_of(static_cast<std::uint32_t>(keys[i] >> 32U), static_cast<std::uint32_t>(keys[i]), Vec3d(0.0));
-    });
-    parallel_for_each_index(source.triangles.size(), kLoopGrain, [&](std::size_t t) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        const auto at = std::lower_bound(keys.begin(), keys.end(), key_of(t, k));
-        surface.triangles[t][k] = static_cast<std::uint32_t>(at - keys.begin());
-      }
-    });
-    return surface;
-  }
-
-  /// Appends a cluster as it will be decoded.
-  void add_cluster(const DagCluster& cluster, Surface& out) const {
-    const AttributeLayout& layout = space_.layout;
-    const std::size_t stride = layout.stride();
-    const format::PositionGrid grid{record_.grid.log2, record_.grid.mantissa};
-    std::vector<Vec3d> positions(cluster.vertex_count);
-    std::vector<std::array<Vec2d, scene::kMaxUvSets>> uvs(cluster.vertex_count);
-    std::vector<Vec3d> normals(cluster.vertex_count, Vec3d(0.0));
-    for (std::uint32_t v = 0; v < cluster.vertex_count; ++v) {
-      const std::size_t id = std::size_t{cluster.first_vertex} + v;
-      const float* const a = dag_.vertex_attributes.data() + id * stride;
-      positions[v] = grid.decode(dag_.vertex_position[id]);
-      for (std::uint32_t set = 0; set < layout.uv_set_count; ++set) {
-        if (!(space_.uv[set][0] > 0.0)) continue;
-        const double step = format::exp2_exact(record_.uv_log2[set]);
-        const float* const q = a + layout.uv_offset() + 2 * std::size_t{set};
-        uvs[v][set] = {step * quantize_uv(q[0], record_.uv_log2[set]), step * quantize_uv(q[1], record_.uv_log2[set])};
-      }
-      if (layout.has_normal && space_.normal > 0.0) {
-        const auto n = nearest_octahedral_point({a[0], a[1], a[2]}, static_cast<std::int32_t>(record_.normal_scale));
-        const Vec3d direction(n[0], n[1], n[2]);
-        normals[v] = direction / std::sqrt(glm::dot(direction, direction));
-      }
-    }
-    const auto base = static_cast<std::uint32_t>(out.points.size());
-    if (!is_flat_) {
-      for (std::uint32_t v = 0; v < cluster.vertex_count; ++v) {
-        out.points.push_back(make(positions[v], uvs[v], normals[v]));
-      }
-    }
-    for (std::uint32_t t = 0; t < cluster.triangle_count; ++t) {
-      const auto& local = dag_.triangles[cluster.first_triangle + t];
-      if (!is_flat_) {
-        out.triangles.push_back({base + local[0], base + local[1], base + local[2]});
-        continue;
-      }
-      const auto id = static_cast<std::uint32_t>(out.points.size());
-      const Vec3d n = flat_normal(positions[local[0]], positions[local[1]], positions[local[2]]);
-      for (const std::uint8_t corner : local) out.points.push_back(make(positions[corner], uvs[corner], n));
-      out.triangles.push_back({id, id + 1, id + 2});
-    }
-  }
-
-  /// Nothing is measured from a triangle without area where its normal would count: it has none, and draws nothing.
-  [[nodiscard]] bool has_points(const Surface& surface, std::uint32_t triangle) const {
-    if (!is_flat_) return true;
-    const Point& p = surface.points[surface.triangles[triangle][0]];
-    const std::size_t d = space_.dimensions() - 3;
-    return p[d] != 0.0 || p[d + 1] != 0.0 || p[d + 2] != 0.0;
-  }
-
   [[nodiscard]] std::vector<Sample> choose_samples() const {
     const auto count = static_cast<std::uint32_t>(source_.triangles.size());
     std::vector<double> length(count);
@@ -304,7 +151,7 @@ class PromiseMeter {
     SplitMix64 random(0x7061696E74ULL);
     double owed = 0.0;
     for (std::uint32_t t = 0; t < count; ++t) {
-      if (!has_points(source_, t)) continue;
+      if (!surfaces_.has_points(source_, t)) continue;
       for (std::uint32_t k = 0; k < 3; ++k) {
         std::uint8_t& taken = is_taken[source_.triangles[t][k]];
         if (taken == 0) samples.push_back({t, k == 1 ? 1.0F : 0.0F, k == 2 ? 1.0F : 0.0F});
@@ -341,7 +188,7 @@ class PromiseMeter {
     std::vector<std::uint32_t> cluster_of;
     for (std::uint32_t c = 0; c < dag_.clusters.size(); ++c) {
       if (dag_.clusters[c].own_group.is_valid()) continue;
-      add_cluster(dag_.clusters[c], level0);
+      surfaces_.add_cluster(dag_.clusters[c], level0);
       cluster_of.resize(level0.triangles.size(), c);
     }
     if (level0.triangles.empty()) return 0.0;
@@ -361,7 +208,7 @@ class PromiseMeter {
       }
     });
     for (const Sample& sample : samples) carried[cluster_of[sample.place]].push_back(sample);
-    if (!is_flat_) return quantization;
+    if (!space_.is_flat()) return quantization;
     double farthest = 0.0;
     for (const double d2 : farthest2) farthest = std::max(farthest, d2);
     std::vector<double> back2(chunk_count(level0.triangles.size(), kChunk), 0.0);
@@ -370,7 +217,7 @@ class PromiseMeter {
                               std::uint32_t place = kNoId;
                               for (std::size_t t = begin; t < end; ++t) {
                                 const auto id = static_cast<std::uint32_t>(t);
-                                if (!has_points(level0, id)) continue;
+                                if (!surfaces_.has_points(level0, id)) continue;
                                 for (const auto& [b, c] : kCorners) {
                                   const auto hit = tree_.find(level0.at(id, b, c), place, 0.0);
                                   if (hit.triangle == kNoId) continue;
@@ -438,7 +285,7 @@ class PromiseMeter {
     };
     SplitMix64 random(0x67726F7570ULL);
     for (std::uint32_t t = 0; t < count; ++t) {
-      if (!has_points(surface, t)) continue;
+      if (!surfaces_.has_points(surface, t)) continue;
       const auto& ids = surface.triangles[t];
       look(t, 1.0 / 3.0, 1.0 / 3.0);
       for (std::size_t k = 0; k < 3; ++k) {
@@ -512,7 +359,7 @@ class PromiseMeter {
     Surface surface;
     std::vector<std::uint32_t> cluster_of;
     for (const std::uint32_t c : outputs) {
-      add_cluster(dag_.clusters[c], surface);
+      surfaces_.add_cluster(dag_.clusters[c], surface);
       cluster_of.resize(surface.triangles.size(), c);
     }
     if (surface.triangles.empty()) return std::numeric_limits<double>::infinity();
@@ -533,34 +380,22 @@ class PromiseMeter {
 
   static constexpr std::array<std::array<double, 2>, 3> kCorners{{{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}}};
 
-  Space space_;
+  ProductSpace space_;
   const LodDag& dag_;
   const format::MeshRecord& record_;
-  bool is_flat_;
+  ProductSurfaces<D> surfaces_;
   Surface source_;
   Tree tree_;
 };
 
-struct Measured {
-  std::vector<double> groups;
-  double level0 = 0.0;
-};
-
-template <std::size_t D>
-Measured measure_in(const PaintedSource& source, const Space& space, const LodDag& dag,
-                    const format::MeshRecord& record) {
-  auto found = PromiseMeter<D>(source, space, dag, record).measure();
-  return {std::move(found.groups), found.level0};
-}
-
 /// Nothing where the space has positions alone: their errors are known.
-std::optional<Measured> measure(const PaintedSource& source, const Space& space, const LodDag& dag,
+std::optional<Measured> measure(const PaintedSource& source, const ProductSpace& space, const LodDag& dag,
                                 const format::MeshRecord& record) {
   const std::size_t dimensions = space.dimensions();
   if (dimensions <= 3) return std::nullopt;
-  if (dimensions <= 6) return measure_in<6>(source, space, dag, record);
-  if (dimensions <= 8) return measure_in<8>(source, space, dag, record);
-  return measure_in<14>(source, space, dag, record);
+  if (dimensions <= 6) return PromiseMeter<6>(source, space, dag, record).measure();
+  if (dimensions <= 8) return PromiseMeter<8>(source, space, dag, record).measure();
+  return PromiseMeter<14>(source, space, dag, record).measure();
 }
 
 /// Makes errors nest along the DAG and above `least`, which does. Groups come coarse to fine.
@@ -594,14 +429,14 @@ PromiseErrors measure_promises(const PaintedSource& source, const LodDag& dag, c
   std::vector<float> least;
   for (const format::GroupRecord& group : groups) least.push_back(group.error);
 
-  const auto texels = measure(source, space_of(source, false), dag, record);
+  const auto texels = measure(source, product_space_of(source, false), dag, record);
   const std::vector<float> texel_errors = nest(dag, texels, margin, least);
   out.mesh.level0_texels = std::max(record.level0_deviation, texels ? float_above(texels->level0) : 0.0F);
   const bool has_appearance = (promises & format::kPromisesAppearance) != 0;
   std::vector<float> appearance_errors(groups.size(), 0.0F);
   if (has_appearance) {
     const auto appearance =
-        source.units.normal_object > 0.0F ? measure(source, space_of(source, true), dag, record) : std::nullopt;
+        source.units.normal_object > 0.0F ? measure(source, product_space_of(source, true), dag, record) : std::nullopt;
     appearance_errors = nest(dag, appearance, margin, texel_errors);
     // Level 0 is measured where the normals are those of triangles: with the margin of what samples find.
     const double level0 = appearance ? appearance->level0 * (source.layout.flat_normal ? margin : 1.0) : 0.0;
