@@ -16,8 +16,8 @@ struct ChildEnd {
   int was_killed;     /* 1 where it was still there after four times its processor time */
 };
 
-/* In the child: what it prints goes to these files, written over, and it is ended after so much processor time. Only what
- * is safe between fork and exec. Ends it with 127 where a file cannot be opened. */
+/* In the child: what it prints goes to these files, written over, and it is ended after so much processor time. Only
+ * what is safe between fork and exec. Ends it with 127 where a file cannot be opened. */
 void prepare_child(const char* out, const char* err, double cpu_seconds);
 
 /* Waits for it, four times `cpu_seconds` at most; then kills it. */
