@@ -256,6 +256,7 @@ const std::vector<Break>& breaks() {
        [](AssetEdit& e) { e.mesh(0, [](auto& m) { m.origin[1] = std::numeric_limits<double>::quiet_NaN(); }); }},
       {"L104", "grid of no step", [](AssetEdit& e) { e.mesh(0, [](auto& m) { m.grid.mantissa = 0; }); }},
       {"L105", "negative diagonal", [](AssetEdit& e) { e.mesh(0, [](auto& m) { m.diagonal = -1.0; }); }},
+      {"L105", "diagonal shorter than the bounds", [](AssetEdit& e) { e.mesh(0, [](auto& m) { m.diagonal *= 0.5; }); }},
       {"L105", "deviation beyond the grid",
        [](AssetEdit& e) { e.mesh(0, [](auto& m) { m.level0_deviation = 1e9F; }); }},
       {"L106", "normal scale", [](AssetEdit& e) { e.mesh(0, [](auto& m) { m.normal_scale = 8192; }); }},
