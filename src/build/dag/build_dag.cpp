@@ -330,7 +330,7 @@ Result<BuildPool> coarsen(PreparedMesh& mesh, const DagOptions& options) {
 
 /// Of so many triangles what was freed in small pieces, the samples of clusters above all, is worth giving back before
 /// what comes next takes memory in large ones.
-constexpr std::size_t kLargeDag = 500000;
+constexpr std::size_t kLargeDag = 4000000;
 
 /// The pool and what measured it are gone when this returns.
 Result<LodDag> coarsened_dag(PreparedMesh& mesh, const DagOptions& options) {

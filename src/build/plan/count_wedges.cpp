@@ -34,7 +34,7 @@ std::uint64_t mix_attributes(std::uint64_t hash, const scene::Primitive& primiti
 }  // namespace
 
 std::uint64_t count_wedges(const scene::SourceMesh& mesh, const AttributeLayout& layout) {
-  constexpr std::uint64_t kSample = std::uint64_t{1} << 19U;
+  constexpr std::uint64_t kSample = std::uint64_t{1} << 17U;
   std::uint64_t vertices = 0;
   for (const scene::Primitive& primitive : mesh.primitives) vertices += primitive.positions.size();
   std::uint32_t bits = 0;

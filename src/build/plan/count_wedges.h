@@ -10,7 +10,7 @@
 namespace meshlode::build {
 
 /// Different vertices of all primitives together, told apart by position and by what `layout` keeps: of those whose
-/// position's hash falls into a share that leaves half a million, exactly; the others are taken to be like them
+/// position's hash falls into a share that leaves a hundred thousand, exactly; the others are taken to be like them
 /// (Flajolet 1990). With an empty layout these are positions.
 [[nodiscard]] std::uint64_t count_wedges(const scene::SourceMesh& mesh, const AttributeLayout& layout);
 

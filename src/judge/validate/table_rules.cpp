@@ -102,9 +102,9 @@ class TableChecker {
         squared += side * side;
       }
       const double diagonal = std::sqrt(squared);
-      // The source's box may be larger where its corners belong to triangles that were dropped. Smaller by what the grid
-      // moves both ends of an axis at most, each by half a cell's diagonal, where a needle is kept: sqrt(3) steps an
-      // axis, 3 steps in all.
+      // The source's box may be larger where its corners belong to triangles that were dropped. Smaller by what the
+      // grid moves both ends of an axis at most, each by half a cell's diagonal, where a needle is kept: sqrt(3) steps
+      // an axis, 3 steps in all.
       log_.expect(mesh.diagonal >= (diagonal - 3.0 * step) * (1.0 - 1e-9) - 1e-300, Rule::kL105, at,
                   [&] { return differs("diagonal", mesh.diagonal, "diagonal of the bounds", diagonal); });
     }
