@@ -34,6 +34,9 @@ std::uint32_t scrambled(std::uint32_t x) {
 }
 
 constexpr double kSlender = 1.8;  // from then on a card is a blade
+// Of a needle, by its block's: its ends lie in the neighbours' blocks, as theirs lie in it. Between 2 and 3 there is
+// little to choose; longer ones stick out of a crown.
+constexpr double kNeedleLength = 2.5;
 
 Splat splat_of(const Card& card) {
   Splat splat;
@@ -162,8 +165,11 @@ Splats thin_out(const Cards& cards, std::span<const std::uint32_t> chosen, const
     splat.material = block.material;
     splat.turn = scrambled(member) & 3U;
     if (thinning != Thinning::kInPlace) splat.center = block.center;
-    if (thinning == Thinning::kMerged) splat.is_blade = false;
-    if (thinning == Thinning::kMerged) shape_as_slice(block, splat);
+    if (thinning == Thinning::kMerged || thinning == Thinning::kNeedle) {
+      splat.is_blade = false;
+      shape_as_slice(block, splat);
+    }
+    if (thinning == Thinning::kNeedle) splat.stretch_to_blade(kNeedleLength);
     out.splats.push_back(splat);
     copy_attributes(cards, member, stride, out.attributes);
   }

@@ -16,8 +16,10 @@ enum class Thinning : std::uint8_t {
              ///< where things are
   kMoved,    ///< the same at the middle of the block
   kMerged,   ///< at the middle of the block, in the plane of a member and as wide there as the block: the coarse levels
+  kNeedle,   ///< the same, but longer than the block and only as wide as its area asks: a little of many pixels is less
+             ///< noise than much of one
 };
-inline constexpr std::array kThinnings{Thinning::kInPlace, Thinning::kMoved, Thinning::kMerged};
+inline constexpr std::array kThinnings{Thinning::kInPlace, Thinning::kMoved, Thinning::kMerged, Thinning::kNeedle};
 
 /// Every card by itself, in its own shape.
 [[nodiscard]] Splats splats_of(const Cards& cards, std::span<const std::uint32_t> chosen, std::size_t stride);

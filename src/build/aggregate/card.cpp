@@ -6,6 +6,23 @@
 
 namespace meshlode::build {
 
+namespace {
+
+constexpr double kLengthOfHalf = 1.7320508075688772;  // of a rectangle, by the half axis of its moments
+
+/// Of a blade, from its middle to its tip.
+Vec3d half_blade(const Splat& splat) {
+  return splat.axis_u * (0.5 * kLengthOfHalf * splat.half_u * ((splat.turn & 1U) != 0 ? -1.0 : 1.0));
+}
+
+}  // namespace
+
+void Splat::stretch_to_blade(double times) {
+  is_blade = true;
+  half_u *= times;
+  center += half_blade(*this) / 3.0;  // a triangle's centroid is that much nearer to its base
+}
+
 Corners Splat::corners(double factor) const {
   // An equilateral triangle around 0 with corners at a distance of 1 has this area; stretched along the axes of an
   // ellipse it has the ellipse's second moments but for a factor, which the area decides.
@@ -13,8 +30,7 @@ Corners Splat::corners(double factor) const {
   constexpr double kHalfSide = 0.8660254037844386;
   const double wanted = std::min(factor * area, most_area);
   if (is_blade) {
-    constexpr double kLengthOfHalf = 1.7320508075688772;  // of a rectangle, by the half axis of its moments
-    const Vec3d half = axis_u * (0.5 * kLengthOfHalf * half_u * ((turn & 1U) != 0 ? -1.0 : 1.0));
+    const Vec3d half = half_blade(*this);
     const Vec3d side = axis_v * (wanted / std::max(kLengthOfHalf * half_u, 1e-300) * ((turn & 1U) != 0 ? -1.0 : 1.0));
     return {center + half, center - half + side, center - half - side};
   }

@@ -11,7 +11,7 @@ namespace meshlode::build {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr int kLimitSteps = 5;           // of a limit, from the loosest to the strict one
+constexpr int kLimitSteps = 10;          // of a limit, from the loosest to the strict one
 constexpr std::size_t kMostSizes = 256;  // of pixels, at which cuts are looked at
 
 /// A group's best way under a limit, and from which pixel size on cuts have it: not before what it replaces.

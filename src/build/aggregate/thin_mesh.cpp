@@ -112,7 +112,7 @@ struct Fitted {
 
 /// Seen along a field of grass, cards rise out of it: ways that do are left out where there are others.
 void leave_out_unfair(std::span<Fitted> ways) {
-  constexpr double kFineView = 0.05, kNearlyAsGood = 1.1;
+  constexpr double kFineView = 0.10, kNearlyAsGood = 1.1;
   double fairest = std::numeric_limits<double>::infinity();
   for (const Fitted& way : ways) {
     if (way.is_there) fairest = std::min(fairest, way.worst_view);
@@ -164,10 +164,16 @@ void fit_factor(const MeshFrame& frame, const Covered& covered, const Sampling& 
       std::fabs(weight * sampling.sum(now) - wanted) <= kMostCoverageShift * wanted && way.worst_view <= kMostInAView;
 }
 
-/// Where a block has few members, what stays in place is nearest to the picture; where it has many, what is spread.
+/// Where a block has few members, what stays in place is nearest to the picture; where it has many, what is spread. A
+/// way that is not tried where another is better takes no time.
 bool is_worth_trying(Thinning thinning, int level) {
-  if (thinning == Thinning::kInPlace) return level <= 3;
-  return thinning != Thinning::kMerged || level >= 3;
+  switch (thinning) {
+    case Thinning::kInPlace: return level <= 2;
+    case Thinning::kMoved: return true;
+    case Thinning::kNeedle: return level >= 3;
+    case Thinning::kMerged: return level >= 4;
+  }
+  return false;
 }
 
 class Thinner {
