@@ -245,7 +245,7 @@ class Thinner {
     if (!(seen > 0.0)) return;
     seen_by_many_ = covered_samples(frame_, all, few_.spacing, few_.views);
     for (std::uint64_t& count : seen_by_many_) {
-      count = static_cast<std::uint64_t>(static_cast<double>(count) * wanted / seen + 0.5);
+      count = static_cast<std::uint64_t>(std::llround(static_cast<double>(count) * wanted / seen));
     }
   }
 
