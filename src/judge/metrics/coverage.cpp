@@ -63,6 +63,19 @@ class Samples {
         rows_(count(high.y - low.y)),
         covered_(columns_ * rows_, 0) {}
 
+  /// Where the sides of a triangle cross a row: from the first to the last; nowhere, the wrong way round.
+  [[nodiscard]] static std::pair<double, double> crossing(const std::array<Vec2d, 3>& p, double y) {
+    double from = std::numeric_limits<double>::max(), to = -from;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec2d &a = p[k], &b = p[(k + 1) % 3];
+      if (a.y == b.y || std::min(a.y, b.y) > y || std::max(a.y, b.y) < y) continue;
+      const double x = a.x + (b.x - a.x) * ((y - a.y) / (b.y - a.y));
+      from = std::min(from, x);
+      to = std::max(to, x);
+    }
+    return {from, to};
+  }
+
   void draw(const CoveringTriangle& triangle, const Picture& picture, const draw::AlphaMasks& masks) {
     std::array<Vec2d, 3> p;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -79,7 +92,11 @@ class Samples {
       return std::min(most, static_cast<std::size_t>(std::max(0.0, std::floor(high - 0.5) + 1.0)));
     };
     for (std::size_t y = first(bottom); y < end(top, rows_); ++y) {
-      for (std::size_t x = first(left); x < end(right, columns_); ++x) {
+      // Of a sliver across the picture few samples of a row are near it: a sample more on both sides, for rounding.
+      const auto [from, to] = crossing(p, static_cast<double>(y) + 0.5);
+      if (from > to) continue;
+      const std::size_t last = end(std::min(right, to + 1.0), columns_);
+      for (std::size_t x = first(std::max(left, from - 1.0)); x < last; ++x) {
         const Vec2d at(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5);
         const double b = cross(at - p[0], p[2] - p[0]) / area, c = cross(p[1] - p[0], at - p[0]) / area;
         if (b < 0.0 || c < 0.0 || b + c > 1.0) continue;
