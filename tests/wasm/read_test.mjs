@@ -28,6 +28,29 @@ function native(path) {
 const raw = (array) => Buffer.from(array.buffer, array.byteOffset, array.byteLength);
 const words = (...values) => raw(Uint32Array.from(values));
 
+function putCuts(asset, parts) {
+  for (let step = 0; step < 12; ++step) {
+    const distance = 2 ** step / 8;
+    asset.meshes.forEach((mesh, m) => {
+      const cut = asset.selectUniform(m, (mesh.diagonal * distance) / 256);
+      parts.push(words(cut.clusters.length), raw(cut.clusters), raw(Float64Array.of(cut.storedError)));
+    });
+    const { instances, clusters } = asset.selectView(
+      {
+        eye: [0.25 * distance, 0.5 * distance, distance],
+        isOrthographic: step % 3 === 2,
+        fovyRadians: 0.75,
+        orthoHeight: distance,
+        nearDistance: 0.0625,
+        heightPx: 720,
+      },
+      1.5,
+    );
+    parts.push(words(clusters.length));
+    clusters.forEach((cluster, i) => parts.push(words(instances[i], cluster)));
+  }
+}
+
 /** The stream of write_decoded.c. */
 function decoded(path) {
   const parts = [];
@@ -53,25 +76,15 @@ function decoded(path) {
     asset?.close();
     return { bytes: Buffer.concat(parts), refusal: error };
   }
-  for (let step = 0; step < 12; ++step) {
-    const distance = 2 ** step / 8;
-    asset.meshes.forEach((mesh, m) => {
-      const cut = asset.selectUniform(m, (mesh.diagonal * distance) / 256);
-      parts.push(words(cut.clusters.length), raw(cut.clusters), raw(Float64Array.of(cut.storedError)));
-    });
-    const { instances, clusters } = asset.selectView(
-      {
-        eye: [0.25 * distance, 0.5 * distance, distance],
-        isOrthographic: step % 3 === 2,
-        fovyRadians: 0.75,
-        orthoHeight: distance,
-        nearDistance: 0.0625,
-        heightPx: 720,
-      },
-      1.5,
-    );
-    parts.push(words(clusters.length));
-    clusters.forEach((cluster, i) => parts.push(words(instances[i], cluster)));
+  putCuts(asset, parts);
+  for (const promise of ['texels', 'appearance']) {
+    try {
+      asset.choosePromise(promise);
+    } catch (error) {
+      if (!(error instanceof MeshlodeError) || error.status !== 'unsupported') throw error;
+      continue;
+    }
+    putCuts(asset, parts);
   }
   asset.close();
   return { bytes: Buffer.concat(parts), refusal: null };
@@ -96,6 +109,38 @@ function badTexts(path) {
   }
   asset.close();
   return count;
+}
+
+/** A promise changes cuts and the tables, is refused where there is none, and leaves what it was then. */
+function checkPromises(promising, plain) {
+  const asset = runtime.open(readFileSync(promising));
+  const error = asset.meshes[0].diagonal / 100;
+  const counts = ['position', 'texels', 'appearance'].map((promise) => {
+    asset.choosePromise(promise);
+    const cut = asset.selectUniform(0, error);
+    const worst = Math.max(...Array.from(cut.clusters, (c) => asset.clusters[c].ownGroup)
+      .map((group) => asset.groups[group]?.error ?? asset.meshes[0].level0Deviation));
+    expect(asset.promise === promise && worst <= error && cut.storedError <= error, `${promise}: the tables are those of the cut`);
+    return Array.from(cut.clusters).reduce((sum, c) => sum + asset.clusters[c].triangleCount, 0);
+  });
+  expect(counts[0] <= counts[1] && counts[1] <= counts[2] && counts[0] < counts[2], `more is promised with more triangles: ${counts.join(' ')}`);
+  let refusal = null;
+  try {
+    asset.choosePromise('colour');
+  } catch (caught) {
+    refusal = caught;
+  }
+  expect(refusal?.status === 'usage' && asset.promise === 'appearance', `a promise that is none: ${refusal?.message}`);
+  asset.close();
+  const other = runtime.open(readFileSync(plain));
+  refusal = null;
+  try {
+    other.choosePromise('texels');
+  } catch (caught) {
+    refusal = caught;
+  }
+  expect(refusal?.status === 'unsupported' && other.promise === 'position', `a promise that was not built: ${refusal?.message}`);
+  other.close();
 }
 
 const hash = (bytes) => createHash('sha256').update(bytes).digest('hex').slice(0, 16);
@@ -130,6 +175,10 @@ try {
       }
     }
   }
+  const promising = join(work, 'promising.lode');
+  execFileSync(meshlode, ['build', '--quiet', join(data, 'terrain.glb'), '-o', promising, '--promise', 'appearance']);
+  compare(promising, 'terrain by each promise');
+  checkPromises(promising, join(work, 'rock.none.lode'));
   // Broken files: cut short, and single bytes changed all over the file, header, tables and pages.
   const whole = readFileSync(join(work, 'crystal.strips.lode'));
   const broken = join(work, 'broken.lode');

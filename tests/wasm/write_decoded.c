@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * write_decoded ASSET OUT: what the C API makes of an asset, as one stream of bytes that read_test.mjs makes again from
- * the WebAssembly module: of every cluster the integers and floats, then cuts. Where the asset or a page is refused the
- * stream ends with the status and the text. Little-endian, as assets are. */
+ * the WebAssembly module: of every cluster the integers and floats, then cuts by each promise that it has. Where the
+ * asset or a page is refused the stream ends with the status and the text. Little-endian, as assets are. */
 #include <meshlode/meshlode.h>
 
 #include <stdio.h>
@@ -113,6 +113,9 @@ int main(int argc, char** argv) {
   if (bytes == NULL || fread(bytes, 1, (size_t)size, in) != (size_t)size) return 2;
   if (meshlode_open_buffer(bytes, (size_t)size, &asset, &error) == MESHLODE_OK && put_pages(asset, &error)) {
     put_cuts(asset);
+    for (uint32_t promise = MESHLODE_PROMISE_TEXELS; promise <= MESHLODE_PROMISE_APPEARANCE; ++promise) {
+      if (meshlode_choose_promise(asset, promise, NULL) == MESHLODE_OK) put_cuts(asset);
+    }
   } else {
     put_u32((uint32_t)error.status);
     put(error.text, sizeof error.text);

@@ -12,6 +12,7 @@
 #include "judge/gpu/verify_gpu.h"
 #include "judge/validate/rules.h"
 #include "outputs.h"
+#include "promise_option.h"
 
 namespace meshlode::cli {
 
@@ -23,6 +24,7 @@ std::string gpu_json(const GpuOptions& options, const judge::GpuVerifyReport& ve
   json.begin_object();
   json.field("device", verified.device.name);
   json.field("driver", verified.device.driver);
+  json.field("promise", options.promise);
   json.field("pixel_error", options.pixel_error);
   json.field("largest_displacement_px", verified.largest_px);
   json.field("largest_share_of_allowed", verified.largest_share);
@@ -75,8 +77,9 @@ std::string gpu_json(const GpuOptions& options, const judge::GpuVerifyReport& ve
 
 }  // namespace
 
-Status verify_with_gpu(const run::Asset& asset, const scene::Scene& source, const GpuOptions& options,
+Status verify_with_gpu(run::Asset& asset, const scene::Scene& source, const GpuOptions& options,
                        judge::VerifyReport& report) {
+  if (const Status chosen = choose_promise(options.promise, asset); !chosen) return chosen;
   judge::GpuVerifyOptions judge;
   judge.device.device = options.device;
   judge.orbits = options.orbits;

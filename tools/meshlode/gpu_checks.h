@@ -16,14 +16,15 @@ namespace meshlode::cli {
 struct GpuOptions {
   bool is_on = false;
   bool is_explained = false;
-  std::string device, path, out_folder;
+  std::string device, path, out_folder, promise = "position";
   std::uint32_t orbits = 6;
   double pixel_error = 1.0;
   std::uint64_t max_decoded = 0;  ///< bytes of decoded images
 };
 
 /// What the GPU finds, as checks and findings of the same report; heat maps and gpu.json where a folder is given.
-[[nodiscard]] Status verify_with_gpu(const run::Asset& asset, const scene::Scene& source, const GpuOptions& options,
+/// `asset`: its promise is chosen. Errors: as of choose_promise() and judge::verify_on_gpu().
+[[nodiscard]] Status verify_with_gpu(run::Asset& asset, const scene::Scene& source, const GpuOptions& options,
                                      judge::VerifyReport& report);
 
 }  // namespace meshlode::cli

@@ -14,6 +14,7 @@
 #include "options.h"
 #include "out/report/read_meta.h"
 #include "outputs.h"
+#include "promise_option.h"
 #include "run/decode/decode.h"
 #include "run/read/asset.h"
 #include "run/select/select.h"
@@ -150,6 +151,7 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
   parser.add_value("--out-dir", gpu_options.out_folder,
                    "with --gpu: an existing folder for heat maps of the worst cameras and a report, gpu.json");
   parser.add_value("--pixel-error", gpu_options.pixel_error, "with --gpu: allowed displacement in pixels (1)");
+  add_promise_option(parser, gpu_options.promise);
   parser.add_flag("--explain", gpu_options.is_explained,
                   "say what the asset keeps, and with --gpu which passes the device runs, and why");
   add_max_memory_option(parser, max_memory);
@@ -159,6 +161,10 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
   if (const auto exit_code = parser.parse(args)) return *exit_code;
   if (source_path.empty())
     return print_error({ErrorCode::kUsage, "--source", "the scene to verify against is missing"});
+  if (gpu_options.promise != "position" && !gpu_options.is_on) {
+    return print_error(
+        {ErrorCode::kUsage, "--promise", "chooses what --gpu draws: uniform cuts are measured by all promises"});
+  }
   if (const Status samples = check_samples(options.deviation_samples); !samples) return print_error(samples.error());
 
   const Result<std::uint64_t> max_decoded = parse_max_decoded(max_decoded_text);
@@ -167,9 +173,13 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
   gpu_options.max_decoded = *max_decoded;
 
   const JobLimit limit(jobs);
-  const Result<run::Asset> asset = run::Asset::open(path, *max_decoded);
+  Result<run::Asset> asset = run::Asset::open(path, *max_decoded);
   if (!asset) return print_error(asset.error());
   if (const auto id = asset->file_id()) output_files().keep(*id);
+  if (gpu_options.is_on) {  // asked before anything is measured, and chosen by verify_with_gpu() alone
+    if (const Status chosen = choose_promise(gpu_options.promise, *asset); !chosen) return print_error(chosen.error());
+    if (const Status back = asset->choose(format::Promise::kPosition); !back) return print_error(back.error());
+  }
   if (const Status size = check_size(*asset); !size) {
     return print_error({size.error().code, path + ": " + size.error().where, size.error().detail});
   }

@@ -4,9 +4,13 @@
 export const NONE: number;
 export const INFINITE_ERROR: number;
 export const STUCK_REASONS: readonly string[];
+export const PROMISES: readonly PromiseKind[];
 export const CODECS: readonly string[];
 export const GROUP_TERMINAL: number;
 export const GROUP_STUCK: number;
+
+/** What a cut may be asked to be true of: positions; texture coordinates too; shading normals too. */
+export type PromiseKind = 'position' | 'texels' | 'appearance';
 
 export type Status = 'usage' | 'io' | 'invalid' | 'out_of_memory' | 'unsupported' | 'too_small';
 
@@ -153,6 +157,13 @@ export interface Asset {
   /** Text of the asset as JSON, which opening does not check: throws MeshlodeError `invalid` where it is none; `scene` too. */
   readonly meta: unknown;
   readonly scene: unknown;
+  /** By whose errors cuts are made; `position` when an asset is opened. */
+  readonly promise: PromiseKind;
+  /**
+   * Makes cuts by the errors of another promise; `meshes` and `groups` are then other arrays, with its errors. Errors:
+   * unsupported, where the asset was not built with it.
+   */
+  choosePromise(promise: PromiseKind): void;
   selectUniform(mesh: number, maxError: number): { clusters: Uint32Array; storedError: number };
   selectView(view: View, pixelError: number): { instances: Uint32Array; clusters: Uint32Array };
   pageOf(cluster: number): number;

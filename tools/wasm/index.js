@@ -7,6 +7,8 @@ export const NONE = 0xffffffff;
 /** An error that never passes. */
 export const INFINITE_ERROR = 3.4028234663852886e38;
 export const STUCK_REASONS = ['not_stuck', 'locked', 'flips', 'seams', 'components', 'too_small', 'topology'];
+/** What a cut may be asked to be true of: positions; texture coordinates too; shading normals too. */
+export const PROMISES = ['position', 'texels', 'appearance'];
 export const CODECS = ['none', 'lz4', 'zstd', 'draco', 'strips'];
 export const GROUP_TERMINAL = 1;
 export const GROUP_STUCK = 2;
@@ -133,6 +135,7 @@ class Asset {
   #at;
   #bytes;
   #pages = new Map(); // page -> address of its decoded bytes
+  #promise = PROMISES[0];
   #cluster = 0; // memory for one decoded cluster, made when it is first wanted
 
   constructor(runtime, wasm, at, bytes) {
@@ -140,11 +143,10 @@ class Asset {
     this.#wasm = wasm;
     this.#at = at;
     this.#bytes = bytes;
-    this.meshes = this.#records('meshes', 200, (v, p) => this.#mesh(v, p));
+    this.#readPromised();
     this.materials = this.#records('materials', 48, (v, p) => this.#material(v, p));
     this.instances = this.#records('instances', 128, (v, p) => this.#instance(v, p));
     this.pages = this.#records('pages', 64, readPage);
-    this.groups = this.#records('groups', 56, readGroup);
     this.clusters = this.#records('clusters', 24, readCluster);
   }
 
@@ -163,6 +165,28 @@ class Asset {
   }
   get scene() {
     return this.#json('scene_json');
+  }
+
+  /** The one of PROMISES by whose errors cuts are made: `position` until another one is chosen. */
+  get promise() {
+    return this.#promise;
+  }
+
+  /**
+   * Makes cuts by the errors of one of PROMISES. `meshes` (level0Deviation) and `groups` (error) are then read anew; what was taken
+   * of them before keeps what it said. Refused, and nothing changed, where the asset was not built with it.
+   */
+  choosePromise(promise) {
+    const frame = new Frame(this.#runtime, ERROR_BYTES);
+    try {
+      // What is none of the words has no number, and is refused as that.
+      const number = PROMISES.indexOf(promise) >>> 0;
+      this.#check(this.#wasm.meshlode_choose_promise(this.#at, number, frame.at), frame.at);
+      this.#promise = promise;
+      this.#readPromised();
+    } finally {
+      frame.end();
+    }
   }
 
   /** Clusters of a mesh's cut, ascending: {clusters, storedError}. `maxError` in units of the mesh; Infinity: the coarsest. */
@@ -343,6 +367,11 @@ class Asset {
       valueCapacity: (starts[7] - starts[0]) / 4,
     };
     return { at, arrays };
+  }
+
+  #readPromised() {
+    this.meshes = this.#records('meshes', 200, (v, p) => this.#mesh(v, p));
+    this.groups = this.#records('groups', 56, readGroup);
   }
 
   #check(status, errorAt) {

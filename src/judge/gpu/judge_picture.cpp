@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <optional>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "draw/raster/cut_pages.h"
 #include "draw/raster/legend.h"
 #include "draw/raster/projection.h"
+#include "judge/metrics/shaded_surface.h"
 #include "run/decode/decode.h"
 
 namespace meshlode::judge {
@@ -34,8 +36,23 @@ Vec3d corner_weights(const ClipVertex& a, const ClipVertex& b, const ClipVertex&
 struct PixelPoint {
   std::uint32_t instance = 0xFFFFFFFFu;
   Vec3d point{0.0};
-  Vec3d normal{0.0};  ///< for shading, mesh space, any length
+  Vec3d normal{0.0};           ///< for shading, mesh space, any length
+  std::uint32_t triangle = 0;  ///< of its instance's surface: the cut's clusters one after another, or the source
+  double b = 0.0, c = 0.0;     ///< weights of its second and third corner
 };
+
+/// Where each entry's triangles begin among those of its instance, cluster after cluster.
+std::vector<std::uint32_t> first_triangles(const run::Asset& asset, std::span<const run::ClusterInstance> cut) {
+  std::map<InstanceId, std::uint32_t> count_of;
+  std::vector<std::uint32_t> first;
+  first.reserve(cut.size());
+  for (const run::ClusterInstance& entry : cut) {
+    std::uint32_t& count = count_of[entry.instance];
+    first.push_back(count);
+    count += asset.clusters()[entry.cluster.value].triangle_count();
+  }
+  return first;
+}
 
 Result<std::vector<PixelPoint>> unproject(const run::Asset& asset, std::span<const run::ClusterInstance> cut,
                                           const draw::VisibilityBuffer& drawn, const draw::Projection& projection) {
@@ -45,6 +62,7 @@ Result<std::vector<PixelPoint>> unproject(const run::Asset& asset, std::span<con
   for (std::size_t i = 0; i < drawn.pixel_count(); ++i) {
     if (drawn.item[i] < cut.size()) pixels_of[drawn.item[i]].push_back(static_cast<std::uint32_t>(i));
   }
+  const std::vector<std::uint32_t> first = first_triangles(asset, cut);
   std::vector<PixelPoint> out(drawn.pixel_count());
   parallel_for_each_index(cut.size(), 4, [&](std::size_t item) {
     if (pixels_of[item].empty()) return;
@@ -71,7 +89,12 @@ Result<std::vector<PixelPoint>> unproject(const run::Asset& asset, std::span<con
         normal = Vec3d(0.0);
         for (int k = 0; k < 3; ++k) normal += Vec3d(attributes.normals[t[static_cast<std::size_t>(k)]]) * weights[k];
       }
-      out[pixel] = {cut[item].instance.value, Vec3d(mesh.origin[0], mesh.origin[1], mesh.origin[2]) + step * q, normal};
+      out[pixel] = {cut[item].instance.value,
+                    Vec3d(mesh.origin[0], mesh.origin[1], mesh.origin[2]) + step * q,
+                    normal,
+                    first[item] + drawn.triangle[pixel],
+                    weights[1],
+                    weights[2]};
     }
   });
   return out;
@@ -94,6 +117,9 @@ std::vector<PixelPoint> unproject_source(const run::Asset& asset, std::span<cons
         project_source(projection, instance, corners[2]), x + 0.5 - 0.5 * drawn.width, y + 0.5 - 0.5 * drawn.height);
     out[i].instance = drawn.item[i];
     out[i].point = corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2];
+    out[i].triangle = drawn.triangle[i];
+    out[i].b = weights[1];
+    out[i].c = weights[2];
   });
   return out;
 }
@@ -118,19 +144,21 @@ struct Displacement {
   double px = 0.0, allowed = 0.0;
 };
 
-/// From each point to the nearest of its instance's surface: infinite where there is none.
+/// From a point of an instance to the nearest of its other surface, mesh units: infinite where there is none.
+using DistanceOf = std::function<double(const PixelPoint&)>;
+
 std::vector<Displacement> displace(const run::Asset& asset, const draw::Projection& projection,
-                                   const std::vector<PixelPoint>& points, double pixel_error,
-                                   const std::vector<const TriangleTree*>& tree_of) {
+                                   const std::vector<PixelPoint>& points, const PictureSource& source,
+                                   double pixel_error, const DistanceOf& distance_of) {
   std::vector<Displacement> out(points.size());
   parallel_for_each_index(points.size(), 256, [&](std::size_t i) {
-    if (points[i].instance >= tree_of.size()) return;
+    if (points[i].instance >= asset.instances().size()) return;
     const format::InstanceRecord& instance = asset.instances()[points[i].instance];
-    const TriangleTree* tree = tree_of[points[i].instance];
     const double scale = pixels_per_unit_at(projection, instance, points[i].point);
-    out[i].px = tree == nullptr ? HUGE_VAL : std::sqrt(tree->nearest(points[i].point).distance2) * scale;
+    out[i].px = distance_of(points[i]) * scale;
     const double level0 = static_cast<double>(asset.meshes()[instance.mesh].level0_deviation) * scale;
     out[i].allowed = std::max(pixel_error, level0);
+    if (instance.mesh < source.painted.size()) out[i].allowed += source.painted[instance.mesh].rounding * scale;
   });
   return out;
 }
@@ -243,23 +271,62 @@ struct Displacements {
   std::vector<Displacement> there, back;
 };
 
+/// The cut of each instance as a surface, for the way back.
+std::map<std::uint32_t, std::vector<ClusterId>> clusters_of_instances(std::span<const run::ClusterInstance> cut) {
+  std::map<std::uint32_t, std::vector<ClusterId>> clusters_of;
+  for (const run::ClusterInstance& entry : cut) clusters_of[entry.instance.value].push_back(entry.cluster);
+  return clusters_of;
+}
+
 Displacements find_displacements(const run::Asset& asset, const PictureSource& source,
                                  std::span<const run::ClusterInstance> cut, const Pictures& pictures,
                                  const draw::Projection& projection, double pixel_error) {
-  // The cut of an instance as a surface, for the way back.
-  std::map<std::uint32_t, std::vector<ClusterId>> clusters_of;
-  for (const run::ClusterInstance& entry : cut) clusters_of[entry.instance.value].push_back(entry.cluster);
-  std::map<std::uint32_t, TriangleTree> trees;
-  std::vector<const TriangleTree*> source_of(asset.instances().size(), nullptr),
-      cut_of(asset.instances().size(), nullptr);
-  for (const auto& [instance, clusters] : clusters_of) {
-    const std::uint32_t mesh = asset.instances()[instance].mesh;
-    cut_of[instance] =
-        &trees.try_emplace(instance, surface_of_clusters(asset, source.decoded, MeshId(mesh), clusters)).first->second;
-    if (mesh < source.meshes.size()) source_of[instance] = &source.meshes[mesh].tree;
+  std::map<std::uint32_t, TriangleTree> cut_of;
+  for (const auto& [instance, clusters] : clusters_of_instances(cut)) {
+    const MeshId mesh(asset.instances()[instance].mesh);
+    cut_of.try_emplace(instance, surface_of_clusters(asset, source.decoded, mesh, clusters));
   }
-  return {displace(asset, projection, pictures.cut_points, pixel_error, source_of),
-          displace(asset, projection, pictures.truth_points, pixel_error, cut_of)};
+  const auto distance = [](const TriangleTree* tree, const Vec3d& point) {
+    return tree == nullptr ? HUGE_VAL : std::sqrt(tree->nearest(point).distance2);
+  };
+  const auto to_source = [&](const PixelPoint& p) {
+    const std::uint32_t mesh = asset.instances()[p.instance].mesh;
+    return distance(mesh < source.meshes.size() ? &source.meshes[mesh].tree : nullptr, p.point);
+  };
+  const auto to_cut = [&](const PixelPoint& p) {
+    const auto found = cut_of.find(p.instance);
+    return distance(found != cut_of.end() ? &found->second : nullptr, p.point);
+  };
+  return {displace(asset, projection, pictures.cut_points, source, pixel_error, to_source),
+          displace(asset, projection, pictures.truth_points, source, pixel_error, to_cut)};
+}
+
+/// The same in the product space. \pre source.painted is as long as source.meshes
+Displacements find_painted_displacements(const run::Asset& asset, const PictureSource& source,
+                                         std::span<const run::ClusterInstance> cut, const Pictures& pictures,
+                                         const draw::Projection& projection, double pixel_error) {
+  std::map<std::uint32_t, ProductSurface> cut_of;
+  for (const auto& [instance, clusters] : clusters_of_instances(cut)) {
+    const std::uint32_t mesh = asset.instances()[instance].mesh;
+    if (mesh >= source.painted.size()) continue;
+    cut_of.try_emplace(instance, shaded_surface_of_clusters(asset, source.decoded, MeshId(mesh), clusters),
+                       source.painted[mesh].scales);
+  }
+  const auto distance = [](const ProductSurface* from, const ProductSurface* to, const PixelPoint& p) {
+    return from == nullptr || to == nullptr ? HUGE_VAL : from->distance_to(*to, p.triangle, p.b, p.c);
+  };
+  const auto truth_of = [&](const PixelPoint& p) {
+    const std::uint32_t mesh = asset.instances()[p.instance].mesh;
+    return mesh < source.painted.size() ? &source.painted[mesh].surface : nullptr;
+  };
+  const auto drawn_of = [&](const PixelPoint& p) {
+    const auto found = cut_of.find(p.instance);
+    return found != cut_of.end() ? &found->second : nullptr;
+  };
+  return {displace(asset, projection, pictures.cut_points, source, pixel_error,
+                   [&](const PixelPoint& p) { return distance(drawn_of(p), truth_of(p), p); }),
+          displace(asset, projection, pictures.truth_points, source, pixel_error,
+                   [&](const PixelPoint& p) { return distance(truth_of(p), drawn_of(p), p); })};
 }
 
 /// Pixels of the background that are holes: PictureReport::holes says which.
@@ -348,7 +415,9 @@ Result<PictureReport> judge_picture(const run::Asset& asset, const PictureSource
   projection->far_distance = draw::scene_depth(asset, *projection);
   const auto pictures = draw_pictures(asset, source, cut, drawn, camera, *projection, masks);
   if (!pictures) return pictures.error();
-  const Displacements moves = find_displacements(asset, source, cut, *pictures, *projection, pixel_error);
+  const Displacements moves = source.painted.empty()
+                                  ? find_displacements(asset, source, cut, *pictures, *projection, pixel_error)
+                                  : find_painted_displacements(asset, source, cut, *pictures, *projection, pixel_error);
 
   PictureReport out;
   compare_with_full(drawn, *pictures, out);
@@ -356,6 +425,19 @@ Result<PictureReport> judge_picture(const run::Asset& asset, const PictureSource
   const auto holes = count_holes(asset, cut, drawn, *pictures, moves.back, *projection, source.tolerance);
   if (!holes) return holes.error();
   out.holes = *holes;
+  return out;
+}
+
+std::vector<PaintedSurface> painted_surfaces(const run::Asset& asset, const scene::Scene& scene) {
+  std::vector<PaintedSurface> out;
+  if (asset.chosen_promise() == format::Promise::kPosition) return out;
+  const std::size_t count = std::min(asset.meshes().size(), scene.meshes.size());
+  out.reserve(count);
+  for (std::size_t m = 0; m < count; ++m) {
+    const ProductScales scales = scales_of(asset, MeshId(m), asset.chosen_promise());
+    const ShadedSurface truth = shaded_surface_of_source(scene.meshes[m]);
+    out.push_back({scales, ProductSurface(truth, scales), rounding_of(truth, scales)});
+  }
   return out;
 }
 

@@ -10,6 +10,8 @@
 
 #include "draw/raster/raster.h"
 #include "judge/gpu/source_picture.h"
+#include "judge/metrics/product_distance.h"
+#include "judge/metrics/product_scales.h"
 #include "run/decode/decode.h"
 #include "run/read/asset.h"
 #include "run/select/select.h"
@@ -26,7 +28,7 @@ struct PictureReport {
   /// opens what it cuts. \pre of closed meshes; a masked material is no closed surface
   std::uint64_t holes = 0;
   /// Displacement of any pixel's surface point: of the cut's picture to the source, and of the source's picture to the
-  /// cut.
+  /// cut. By the asset's chosen promise: in the product space of positions and what is painted, where that is one.
   double largest_px = 0.0;
   double largest_share = 0.0;        ///< of what is allowed at its point: above the tolerance, it exceeds
   double mean_px = 0.0;              ///< over the cut's pixels
@@ -44,11 +46,22 @@ struct PictureReport {
 /// Silhouettes may move by a pixel, and a pixel is one sample.
 constexpr int kHoleRadius = 2;
 
+/// A mesh of the source with what is painted on it, in the units of the asset's chosen promise.
+struct PaintedSurface {
+  ProductScales scales;
+  ProductSurface surface;  ///< the triangles of its SourceSurface
+  double rounding = 0.0;   ///< rounding_of()
+};
+
+/// Every mesh of the scene that the asset has, in order; none where positions alone are promised.
+[[nodiscard]] std::vector<PaintedSurface> painted_surfaces(const run::Asset& asset, const scene::Scene& scene);
+
 /// What pictures of an asset are judged by.
 struct PictureSource {
   std::span<const SourceSurface> meshes;         ///< the source, one a mesh of the asset
   std::span<const run::DecodedCluster> decoded;  ///< decode_all() of the asset
   double tolerance = 1.0;                        ///< of the promise, 1.05 in the measured tier
+  std::span<const PaintedSurface> painted{};     ///< painted_surfaces()
 };
 
 /// `cut` was drawn into `drawn`. Displacement and holes are judged by the source's own triangles, normals and

@@ -130,6 +130,7 @@ bool is_closed(const Surface& surface) {
 
 /// Which promises the asset makes, so that pictures can be held to them.
 struct Promise {
+  format::Promise kind = format::Promise::kPosition;
   bool has_aggregates = false;    ///< which are judged by what they cover (V208)
   bool has_displacement = false;  ///< how far a pixel may be displaced: there is a source, and a tier that speaks of it
   bool is_closed = false;         ///< every mesh of the source is
@@ -139,6 +140,7 @@ struct Promise {
 
 Promise promise_of(const run::Asset& asset, const std::vector<SourceSurface>& source, const draw::GpuScene& scene) {
   Promise out;
+  out.kind = asset.chosen_promise();
   out.has_displacement = !source.empty();
   for (const format::MeshRecord& mesh : asset.meshes()) {
     if (mesh.cluster_count == 0) continue;
@@ -292,12 +294,14 @@ class CameraJudge {
 /// What was found of displacement and holes, or why they were not judged.
 void describe_promises(const Promise& promise, const GpuVerifyReport& report, double pixel_error, Checks& checks) {
   checks.displaced.is_skipped = !promise.has_displacement;
-  checks.displaced.what = format_px("pixels are displaced by %.3f px at most", report.largest_px) +
-                          format_px(", %.3f of what is allowed:", report.largest_share) +
-                          format_px(" %.3g or level 0's own", pixel_error) +
-                          (promise.has_displacement ? ""
-                           : promise.has_aggregates ? " (not judged: aggregates are held to what they cover)"
-                                                    : " (not judged: tier qem states the quadric's estimate)");
+  constexpr const char* kWhat[] = {"pixels are displaced by", "pixels and their texels are displaced by",
+                                   "pixels, their texels and their normals are displaced by"};
+  checks.displaced.what =
+      kWhat[static_cast<std::size_t>(promise.kind)] + format_px(" %.3f px at most", report.largest_px) +
+      format_px(", %.3f of what is allowed:", report.largest_share) + format_px(" %.3g or level 0's own", pixel_error) +
+      (promise.has_displacement ? ""
+       : promise.has_aggregates ? " (not judged: aggregates are held to what they cover)"
+                                : " (not judged: tier qem states the quadric's estimate)");
   checks.holes.is_skipped = !promise.has_holes;
   if (!promise.has_holes) {
     checks.holes.what += promise.has_aggregates ? " (not judged: aggregates are open)"
@@ -340,7 +344,8 @@ Result<GpuVerifyReport> verify_on_gpu(const run::Asset& asset, const scene::Scen
     const Status s = judge_hardware(*device, *scene, asset, options, by_mesh_shaders, *check);
     if (!s) return s.error();
   }
-  const PictureSource truth{meshes, *every_cluster, promise.tolerance};
+  const std::vector<PaintedSurface> painted = painted_surfaces(asset, source);
+  const PictureSource truth{meshes, *every_cluster, promise.tolerance, painted};
   CameraJudge judge(asset, options, truth, promise, *scene->alpha_masks, checks, out);
   for (const PictureSize size : options.sizes) {
     if (const Status s = judge.judge_size(*renderers, size); !s) return s.error();

@@ -61,7 +61,8 @@ struct GpuVerifyReport {
   std::string plan;                   ///< which passes draw the asset and why, a line each
 };
 
-/// `source`: what the asset was built from; without meshes no picture is judged by it. Errors: kUnsupported without a
+/// `source`: what the asset was built from; without meshes no picture is judged by it. Cuts are chosen, and judged, by
+/// the asset's chosen promise. Errors: kUnsupported without a
 /// device, kInvalid for a broken page.
 [[nodiscard]] Result<GpuVerifyReport> verify_on_gpu(const run::Asset& asset, const scene::Scene& source,
                                                     const GpuVerifyOptions& options);

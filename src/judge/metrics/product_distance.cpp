@@ -10,6 +10,7 @@
 
 #include "base/parallel.h"
 #include "judge/metrics/area_samples.h"
+#include "judge/metrics/product_points.h"
 #include "judge/metrics/product_tree.h"
 
 namespace meshlode::judge {
@@ -20,72 +21,6 @@ constexpr std::size_t kChunk = 512;       // queries that share a hint, whatever
 // By what a distance may differ with where the search began, for boxes prune, and roundings of needles differ: as
 // shares of the distance and of the surfaces' extent.
 constexpr double kSearchRounding = 1e-9, kSearchFloor = 1e-12;
-
-/// Which UV sets count, in the order of their coordinates.
-struct Coordinates {
-  std::vector<std::size_t> uv_sets;
-  ProductLayout layout;
-};
-
-Coordinates coordinates_of(const ProductScales& scales) {
-  Coordinates out;
-  for (std::size_t n = 0; n < scales.uv.size(); ++n) {
-    if (scales.uv[n].x > 0.0 && scales.uv[n].y > 0.0) out.uv_sets.push_back(n);
-  }
-  out.layout.uv_sets = static_cast<std::uint32_t>(out.uv_sets.size());
-  out.layout.has_normal = scales.normal > 0.0;
-  return out;
-}
-
-bool is_finite(const Vec2f& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y);
-}
-
-template <std::size_t N>
-std::vector<ProductPoint<N>> vertices_of(const ShadedSurface& s, const ProductScales& scales, const Coordinates& at) {
-  std::vector<ProductPoint<N>> out(s.surface.positions.size());
-  for (std::size_t v = 0; v < out.size(); ++v) {
-    ProductPoint<N>& point = out[v];
-    for (int k = 0; k < 3; ++k) point.x[static_cast<std::size_t>(k)] = s.surface.positions[v][k];
-    for (std::size_t k = 0; k < at.uv_sets.size(); ++k) {
-      const std::size_t set = at.uv_sets[k];
-      if (s.uvs[set].empty() || !is_finite(s.uvs[set][v])) continue;
-      point.x[3 + 2 * k] = scales.uv[set].x * double{s.uvs[set][v].x};
-      point.x[4 + 2 * k] = scales.uv[set].y * double{s.uvs[set][v].y};
-      point.known |= 1U << k;
-    }
-    if (!at.layout.has_normal || s.normals.empty()) continue;
-    const Vec3d n(s.normals[v]);
-    const double length = glm::length(n);
-    if (!std::isfinite(length) || !(length > 0.0)) continue;
-    product::put_normal<N>(point.x, at.layout.normal_at(), n * (scales.normal / length));
-    point.known |= 1U << at.layout.uv_sets;
-  }
-  return out;
-}
-
-/// The point of a triangle at the weights of its second and third corner.
-template <std::size_t N>
-ProductPoint<N> point_at(const std::vector<ProductPoint<N>>& vertices, const std::array<std::uint32_t, 3>& triangle,
-                         const SurfacePoint& at, const ProductLayout& layout) {
-  ProductPoint<N> out;
-  out.known = layout.all_known();
-  product::Corners<N> corners;
-  for (std::size_t k = 0; k < 3; ++k) {
-    out.known &= vertices[triangle[k]].known;
-    corners[k] = vertices[triangle[k]].x;
-  }
-  for (std::size_t k = 0; k < N; ++k) {
-    out.x[k] = corners[0][k] + at.u * (corners[1][k] - corners[0][k]) + at.v * (corners[2][k] - corners[0][k]);
-  }
-  for (std::uint32_t k = 0; k < layout.uv_sets; ++k) {
-    if ((out.known >> k & 1U) == 0) out.x[3 + 2 * k] = out.x[4 + 2 * k] = 0.0;
-  }
-  if (layout.has_normal && (out.known >> layout.uv_sets & 1U) == 0) {
-    product::put_normal<N>(out.x, layout.normal_at(), Vec3d(0.0));
-  }
-  return out;
-}
 
 template <std::size_t N>
 double distance_between(const ProductPoint<N>& a, const ProductPoint<N>& b) {
@@ -116,8 +51,8 @@ struct Measured {
 
 template <std::size_t N>
 Measured<N> make_measured(const ShadedSurface& s, const ProductScales& scales, const DeviationOptions& options) {
-  const Coordinates at = coordinates_of(scales);
-  std::vector<ProductPoint<N>> vertices = vertices_of<N>(s, scales, at);
+  const product::Coordinates at = product::coordinates_of(scales);
+  std::vector<ProductPoint<N>> vertices = product::vertices_of<N>(s, scales, at);
   Measured<N> out{{}, {}, ProductTree<N>(vertices, s.surface.triangles, at.layout)};
   const AreaSamples samples(s.surface, options.samples, options.seed);
   const auto sample_count = static_cast<std::uint32_t>(samples.count());
@@ -133,7 +68,7 @@ Measured<N> make_measured(const ShadedSurface& s, const ProductScales& scales, c
   std::sort(sorted.begin(), sorted.end());
   for (const auto& [unused, i] : sorted) {
     const SurfacePoint& sample = sampled[i];
-    out.points.push_back(point_at<N>(vertices, s.surface.triangles[sample.triangle], sample, at.layout));
+    out.points.push_back(product::point_at<N>(vertices, s.surface.triangles[sample.triangle], sample, at.layout));
     out.id.push_back(i);
   }
   std::vector<std::uint32_t> id_of_vertex(vertices.size(), 0xFFFFFFFFu);
@@ -233,17 +168,14 @@ LargestDeviation find_largest_of(const Measured<N>& a, const Bounds& bounds_a, c
   return out;
 }
 
-constexpr std::size_t kFew = 8, kMany = 16;  // coordinates: multiples of a vector's, so that loops over them are short
-static_assert(3 + 2 * scene::kMaxUvSets + 3 <= kMany);
-
 }  // namespace
 
 struct ProductDistanceFrom::Parts {
   ProductScales scales;
   DeviationOptions options;
   Bounds bounds;
-  std::optional<Measured<kFew>> few;  ///< one of them
-  std::optional<Measured<kMany>> many;
+  std::optional<Measured<product::kFew>> few;  ///< one of them
+  std::optional<Measured<product::kMany>> many;
 };
 
 ProductDistanceFrom::ProductDistanceFrom(const ShadedSurface& a, const ProductScales& scales,
@@ -252,10 +184,10 @@ ProductDistanceFrom::ProductDistanceFrom(const ShadedSurface& a, const ProductSc
   parts_->scales = scales;
   parts_->options = options;
   parts_->bounds = bounds_of(a.surface);
-  if (coordinates_of(scales).layout.size() <= kFew) {
-    parts_->few.emplace(make_measured<kFew>(a, scales, options));
+  if (product::coordinates_of(scales).layout.size() <= product::kFew) {
+    parts_->few.emplace(make_measured<product::kFew>(a, scales, options));
   } else {
-    parts_->many.emplace(make_measured<kMany>(a, scales, options));
+    parts_->many.emplace(make_measured<product::kMany>(a, scales, options));
   }
 }
 ProductDistanceFrom::~ProductDistanceFrom() = default;
@@ -263,8 +195,50 @@ ProductDistanceFrom::ProductDistanceFrom(ProductDistanceFrom&&) noexcept = defau
 
 LargestDeviation ProductDistanceFrom::find_largest(const ShadedSurface& b, const DistanceWeight& weight) const {
   const Parts& p = *parts_;
-  return p.few ? find_largest_of<kFew>(*p.few, p.bounds, b, p.scales, p.options, weight)
-               : find_largest_of<kMany>(*p.many, p.bounds, b, p.scales, p.options, weight);
+  return p.few ? find_largest_of<product::kFew>(*p.few, p.bounds, b, p.scales, p.options, weight)
+               : find_largest_of<product::kMany>(*p.many, p.bounds, b, p.scales, p.options, weight);
+}
+
+struct ProductSurface::Parts {
+  template <std::size_t N>
+  struct Points {
+    std::vector<ProductPoint<N>> vertices;
+    ProductTree<N> tree;
+  };
+  ProductLayout layout;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::optional<Points<product::kFew>> few;  ///< one of them
+  std::optional<Points<product::kMany>> many;
+
+  template <std::size_t N>
+  [[nodiscard]] Points<N> points_of(const ShadedSurface& s, const ProductScales& scales) const {
+    std::vector<ProductPoint<N>> vertices = product::vertices_of<N>(s, scales, product::coordinates_of(scales));
+    ProductTree<N> tree(vertices, triangles, layout);
+    return {std::move(vertices), std::move(tree)};
+  }
+};
+
+ProductSurface::ProductSurface(const ShadedSurface& s, const ProductScales& scales)
+    : parts_(std::make_unique<Parts>()) {
+  parts_->layout = product::coordinates_of(scales).layout;
+  parts_->triangles = s.surface.triangles;
+  if (parts_->layout.size() <= product::kFew) {
+    parts_->few.emplace(parts_->points_of<product::kFew>(s, scales));
+  } else {
+    parts_->many.emplace(parts_->points_of<product::kMany>(s, scales));
+  }
+}
+ProductSurface::~ProductSurface() = default;
+ProductSurface::ProductSurface(ProductSurface&&) noexcept = default;
+
+double ProductSurface::distance_to(const ProductSurface& other, std::uint32_t triangle, double b, double c) const {
+  const Parts& own = *parts_;
+  const SurfacePoint at{triangle, b, c};
+  const auto distance = [&](const auto& from, const auto& to) {
+    return std::sqrt(
+        to.tree.nearest(product::point_at(from.vertices, own.triangles[triangle], at, own.layout)).distance2);
+  };
+  return own.few ? distance(*own.few, *other.parts_->few) : distance(*own.many, *other.parts_->many);
 }
 
 }  // namespace meshlode::judge

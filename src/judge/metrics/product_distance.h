@@ -12,22 +12,16 @@
 // so surfaces are flat piece by piece, and the nearest point is found exactly (product_tree.h).
 #pragma once
 
-#include <array>
+#include <cstdint>
 #include <functional>
 #include <memory>
 
 #include "base/vec.h"
 #include "judge/metrics/metrics.h"
+#include "judge/metrics/product_scales.h"
 #include "judge/metrics/shaded_surface.h"
-#include "scene/scene.h"
 
 namespace meshlode::judge {
-
-/// What counts beside positions, as lengths. Where all are 0 the distance is that of the positions.
-struct ProductScales {
-  std::array<Vec2d, scene::kMaxUvSets> uv{};  ///< object units per UV unit in u and v, by TEXCOORD_n; 0: does not count
-  double normal = 0.0;                        ///< lambda: object units that a unit normal counts; 0: does not count
-};
 
 /// How much a distance at a position counts; above 0 and finite.
 using DistanceWeight = std::function<double(const Vec3d&)>;
@@ -46,6 +40,23 @@ class ProductDistanceFrom {
   /// point where it is found; the same for any thread count. With a weight the largest of weight(position) · distance.
   /// Infinite where one surface has no triangle and the other has; 0 where both have none.
   [[nodiscard]] LargestDeviation find_largest(const ShadedSurface& b, const DistanceWeight& weight = {}) const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+/// A surface whose single points are held against another's.
+class ProductSurface {
+ public:
+  /// `s` may go afterwards.
+  ProductSurface(const ShadedSurface& s, const ProductScales& scales);
+  ~ProductSurface();
+  ProductSurface(ProductSurface&&) noexcept;
+
+  /// Of the point of a triangle at the weights of its second and third corner from the nearest point of `other`;
+  /// infinite where that has no triangle. \pre the same scales
+  [[nodiscard]] double distance_to(const ProductSurface& other, std::uint32_t triangle, double b, double c) const;
 
  private:
   struct Parts;

@@ -36,18 +36,6 @@ double level0_of(const run::Asset& asset, MeshId mesh, format::Promise promise) 
   return promise == format::Promise::kTexels ? record.level0_texels : record.level0_appearance;
 }
 
-/// What floats lose of UVs and normals as they are read and decoded.
-double rounding_of(const ShadedSurface& source, const ProductScales& scales) {
-  double farthest = scales.normal;
-  for (std::size_t n = 0; n < source.uvs.size(); ++n) {
-    for (const Vec2f& uv : source.uvs[n]) {
-      const double u = std::abs(scales.uv[n].x * double{uv.x}), v = std::abs(scales.uv[n].y * double{uv.y});
-      if (std::isfinite(u) && std::isfinite(v)) farthest = std::max({farthest, u, v});
-    }
-  }
-  return 0x1p-22 * farthest;
-}
-
 /// How many texels one unit of each TEXCOORD_n crosses in u and in v, the most of any texture that a material samples.
 struct Texels {
   std::array<Vec2d, scene::kMaxUvSets> most{};
@@ -104,18 +92,6 @@ std::optional<Vec2d> uv_units_of(const scene::SourceMesh& mesh, std::span<const 
 }
 
 }  // namespace
-
-ProductScales scales_of(const run::Asset& asset, MeshId mesh, format::Promise promise) {
-  const format::MeshRecord& record = asset.meshes()[mesh.value];
-  const format::PromiseMeshRecord& units = asset.promises()[mesh.value];
-  ProductScales scales;
-  for (std::uint32_t k = 0; k < record.uv_set_count; ++k) {
-    if (record.uv_set_source[k] >= scene::kMaxUvSets) continue;
-    scales.uv[record.uv_set_source[k]] = {units.uv_object[k][0], units.uv_object[k][1]};
-  }
-  if (promise == format::Promise::kAppearance) scales.normal = units.normal_object;
-  return scales;
-}
 
 Result<std::vector<CutDeviation>> measure_promised_cuts(const run::Asset& asset, MeshId mesh,
                                                         const scene::SourceMesh& source, format::Promise promise,

@@ -16,9 +16,6 @@
 
 namespace meshlode::judge {
 
-/// What counts for a promise, as the asset says of a mesh. \pre the asset has the promise
-[[nodiscard]] ProductScales scales_of(const run::Asset& asset, MeshId mesh, format::Promise promise);
-
 /// measure_cuts() of a promise: level 0, and up to `cuts` uniform cuts by its errors. Object units of the product
 /// space. Errors: as run::load_page(). \pre the asset has the promise
 [[nodiscard]] Result<std::vector<CutDeviation>> measure_promised_cuts(const run::Asset& asset, MeshId mesh,

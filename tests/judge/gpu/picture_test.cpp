@@ -5,9 +5,14 @@
 #include "draw/gpu/gpu_support.h"
 #include "judge/gpu/judge_picture.h"
 #include "judge/metrics/metrics.h"
+#include "judge/painted_ball.h"
 
 namespace meshlode::judge::test {
 namespace {
+
+using meshlode::test::build_promised;
+using meshlode::test::Built;
+using meshlode::test::painted_scene;
 
 struct Drawn {
   std::vector<std::uint8_t> bytes;
@@ -84,6 +89,41 @@ TEST(Picture, AMissingClusterIsAHole) {
   const auto report = judge_picture(*rock.asset, {rock.source, rock.decoded, 1.0}, cut, *picture, rock.camera, 1.0);
   ASSERT_TRUE(report);
   EXPECT_GT(report->holes, 10U);
+}
+
+/// The same surface with its picture elsewhere: told where texels are promised, pixel by pixel and both ways, and as
+/// far as the picture swam.
+TEST(Picture, ATextureThatSwamExceedsThePromiseOfTexels) {
+  const Built ball = build_promised(painted_scene(), format::Promise::kTexels);
+  auto asset = run::Asset::from_vector(ball.bytes);
+  ASSERT_TRUE(asset && asset->choose(format::Promise::kTexels));
+  run::Camera camera = adversarial_cameras(*asset, 160, 120)[0].camera;
+  camera.is_orthographic = true;
+  camera.ortho_height = 3.0;
+  const auto decoded = run::decode_all(*asset);
+  ASSERT_TRUE(decoded);
+  const std::vector<run::ClusterInstance> cut = run::select_flat(*asset, camera, 0.0);
+  const auto drawn = draw::draw_cut(*asset, cut, camera);
+  ASSERT_TRUE(drawn);
+  constexpr float kSwum = 0.05F;
+  const double units = scales_of(*asset, MeshId(std::uint32_t{0}), format::Promise::kTexels).uv[0].y;
+  for (const float swum : {0.0F, kSwum}) {
+    scene::Scene scene = ball.scene;
+    for (Vec2f& uv : scene.meshes[0].primitives[0].uvs[0]) uv.y += swum;
+    const std::vector<SourceSurface> source = source_surfaces(scene);
+    const std::vector<PaintedSurface> painted = painted_surfaces(*asset, scene);
+    const auto report = judge_picture(*asset, {source, *decoded, 1.0, painted}, cut, *drawn, camera, 1.0);
+    ASSERT_TRUE(report);
+    EXPECT_GT(report->covered, 3000U);
+    EXPECT_EQ(report->exceeded > report->points / 2, swum > 0.0F);
+    EXPECT_EQ(report->exceeded > 0, swum > 0.0F);
+    const double px = static_cast<double>(swum) * units * 120.0 / 3.0;
+    EXPECT_LE(report->largest_px, px + 0.2) << "no point is farther than its own place";
+    EXPECT_GE(report->largest_px, 0.5 * px);
+    const auto by_position = judge_picture(*asset, {source, *decoded, 1.0}, cut, *drawn, camera, 1.0);
+    ASSERT_TRUE(by_position);
+    EXPECT_EQ(by_position->exceeded, 0U);
+  }
 }
 
 /// Level 0 may have lost what the source has: the cut is level 0 itself, bit for bit, and yet it is told.

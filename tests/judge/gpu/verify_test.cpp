@@ -9,10 +9,15 @@
 
 #include "draw/gpu/gpu_support.h"
 #include "judge/gpu/verify_gpu.h"
+#include "judge/painted_ball.h"
 #include "scene/import/import.h"
 
 namespace meshlode::judge::test {
 namespace {
+
+using meshlode::test::build_promised;
+using meshlode::test::Built;
+using meshlode::test::painted_scene;
 
 using VerifyGpu = draw::test::GpuTest;
 
@@ -51,6 +56,40 @@ TEST_F(VerifyGpu, ABuiltAssetHoldsItsPromise) {
   EXPECT_GT(failures_of(*report, "V405").items, 50000U);
   EXPECT_GT(report->largest_share, 0.1) << "a cut at one pixel does move something";
   EXPECT_LE(report->largest_share, 1.05);
+}
+
+/// What is painted, seen from cameras: a picture that lies elsewhere on the ball is no matter of positions, normals
+/// that turned are one of appearance alone.
+TEST_F(VerifyGpu, EachPromiseIsJudgedByWhatItSpeaksOf) {
+  const Built ball = build_promised(painted_scene(), format::Promise::kAppearance);
+  scene::Scene swum = ball.scene, turned = ball.scene;
+  for (Vec2f& uv : swum.meshes[0].primitives[0].uvs[0]) uv.x += 0.05F;
+  for (Vec3f& n : turned.meshes[0].primitives[0].normals) n.x += 0.5F;
+  GpuVerifyOptions options;
+  options.orbits = 0;
+  options.sizes = {{96, 72}};
+  for (const auto promise : {format::Promise::kPosition, format::Promise::kTexels, format::Promise::kAppearance}) {
+    SCOPED_TRACE(static_cast<int>(promise));
+    auto asset = run::Asset::from_vector(ball.bytes);
+    ASSERT_TRUE(asset && asset->choose(promise));
+    const auto judge = [&](const scene::Scene& scene) {
+      const auto report = verify_on_gpu(*asset, scene, options);
+      EXPECT_TRUE(report) << report.error().message();
+      if (!report) return Failures{};
+      for (const char* id : {"V402", "V403", "V404"}) EXPECT_EQ(failures_of(*report, id).failures, 0U) << id;
+      return failures_of(*report, "V405");
+    };
+    const Failures own = judge(ball.scene);
+    EXPECT_EQ(own.failures, 0U) << own.first;
+    EXPECT_GT(own.items, 5000U);
+    const bool has_texels = promise != format::Promise::kPosition;
+    const bool has_normals = promise == format::Promise::kAppearance;
+    const std::uint64_t of_swum = judge(swum).failures, of_turned = judge(turned).failures;
+    EXPECT_EQ(of_swum > own.items / 4, has_texels) << of_swum << " of " << own.items;
+    EXPECT_EQ(of_swum > 0, has_texels);
+    EXPECT_EQ(of_turned > own.items / 4, has_normals) << of_turned << " of " << own.items;
+    EXPECT_EQ(of_turned > 0, has_normals);
+  }
 }
 
 TEST_F(VerifyGpu, AnotherSourceIsToldFromAnotherDrawing) {

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A small scene with something painted on it, and assets of it that promise that.
+#pragma once
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "build/build.h"
+#include "scene/samples/samples.h"
+
+namespace meshlode::test {
+
+/// A PNG's signature and header.
+inline std::vector<std::uint8_t> png_of(std::uint32_t width, std::uint32_t height) {
+  std::vector<std::uint8_t> bytes{0x89, 'P', 'N', 'G', 0x0D, 0x0A, 0x1A, 0x0A, 0, 0, 0, 13, 'I', 'H', 'D', 'R'};
+  for (const std::uint32_t size : {width, height}) {
+    for (std::uint32_t shift = 32; shift > 0; shift -= 8)
+      bytes.push_back(static_cast<std::uint8_t>(size >> (shift - 8)));
+  }
+  for (const int b : {8, 6, 0, 0, 0, 0, 0, 0, 0}) bytes.push_back(static_cast<std::uint8_t>(b));
+  return bytes;
+}
+
+/// A smooth ball that shows a picture of texels that are twice as wide as high, cast on it from the front.
+inline scene::Scene painted_scene() {
+  scene::Primitive ball = scene::with_smooth_normals(scene::make_sphere(16));
+  for (const Vec3d& p : ball.positions) ball.uvs[0].emplace_back(Vec2f(Vec2d(0.5 + 0.5 * p.x, 0.5 + 0.5 * p.y)));
+  scene::Scene scene = scene::as_scene(scene::as_mesh(std::move(ball)));
+  scene::SceneBlob& blob = scene.blobs.emplace_back();
+  blob.name = "picture";
+  blob.bytes = png_of(256, 512);
+  scene.materials[0].uv_sets_used = 1;
+  scene.materials[0].textures.emplace_back().blob = 0;
+  return scene;
+}
+
+struct Built {
+  scene::Scene scene;
+  std::vector<std::uint8_t> bytes;
+};
+
+inline Built build_promised(scene::Scene scene, format::Promise promise) {
+  Built built{std::move(scene), {}};
+  build::PipelineOptions options;
+  options.promise = promise;
+  build::PipelineReport report;
+  auto bytes = build::build_lode(built.scene, options, {}, report);
+  EXPECT_TRUE(bytes.ok()) << bytes.error().message();
+  built.bytes = std::move(*bytes);
+  return built;
+}
+
+}  // namespace meshlode::test
