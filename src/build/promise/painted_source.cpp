@@ -8,10 +8,6 @@ namespace meshlode::build {
 
 namespace {
 
-/// A normal turned by an angle counts like a way of the angle times this share of the diagonal: what a highlight moves
-/// by on a ball of that radius.
-constexpr double kHighlightRadius = 1.0 / 8.0;
-
 /// A positive, finite float that can be multiplied with.
 bool is_scale(double value) {
   return value >= 0x1p-100 && value <= 0x1p100;

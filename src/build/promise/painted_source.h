@@ -16,6 +16,10 @@
 
 namespace meshlode::build {
 
+/// A normal turned by an angle counts like a way of the angle times this share of the diagonal: what a highlight moves
+/// by on a ball of that radius.
+constexpr double kHighlightRadius = 1.0 / 8.0;
+
 struct PaintedSource {
   AttributeLayout layout;
   std::vector<Vec3d> positions;                         ///< before the grid, relative to the origin

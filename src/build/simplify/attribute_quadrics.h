@@ -48,6 +48,12 @@ class AttributeQuadrics {
   /// The class becomes its keeper, with the best values at `place` where they are not fixed.
   void join(const WedgeClass& joined, const Vec3d& place);
 
+  /// As they are stored, but for the length of normals; 0 where one does not count.
+  void values_of(std::uint32_t wedge, std::array<double, Capacity>& out) const;
+
+  /// The same of what the class would have with its vertex at `place`.
+  void values_of(const WedgeClass& joined, const Vec3d& place, std::array<double, Capacity>& out) const;
+
   /// Appends the wedge as it is stored: of a locked one what came in, and normals of unit length.
   void write(std::uint32_t wedge, bool is_locked, std::vector<float>& out) const;
 
@@ -162,6 +168,21 @@ void AttributeQuadrics<Real, C>::join(const WedgeClass& joined, const Vec3d& pla
   });
   if (joined.fixed != kNoId || !(wedge_[keeper].base.weight > Real(0))) return;
   for (std::size_t j = 0; j < count(); ++j) value_[keeper][j] = double{wedge_[keeper].best(j, place)};
+}
+
+template <class Real, std::size_t C>
+void AttributeQuadrics<Real, C>::values_of(std::uint32_t wedge, std::array<double, C>& out) const {
+  for (std::size_t j = 0; j < count(); ++j) out[j] = scale_[j] > 0.0 ? value_[wedge][j] / scale_[j] : 0.0;
+}
+
+template <class Real, std::size_t C>
+void AttributeQuadrics<Real, C>::values_of(const WedgeClass& joined, const Vec3d& place,
+                                           std::array<double, C>& out) const {
+  if (joined.fixed != kNoId) return values_of(joined.fixed, out);
+  WedgeQuadric<Real, C> sum = wedge_[joined.members[0]];
+  for (std::size_t k = 1; k < joined.members.size(); ++k) sum.add(wedge_[joined.members[k]], count());
+  if (!(sum.base.weight > Real(0))) return values_of(joined.keeper(), out);
+  for (std::size_t j = 0; j < count(); ++j) out[j] = scale_[j] > 0.0 ? double{sum.best(j, place)} / scale_[j] : 0.0;
 }
 
 template <class Real, std::size_t C>

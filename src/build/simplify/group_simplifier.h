@@ -28,6 +28,7 @@
 #include "build/simplify/kept_topology.h"
 #include "build/simplify/left_behind.h"
 #include "build/simplify/new_surface.h"
+#include "build/simplify/painted_guard.h"
 #include "build/simplify/pieces.h"
 #include "build/simplify/placement.h"
 #include "build/simplify/simplify.h"
@@ -52,6 +53,9 @@ class GroupSimplifier {
   /// A collapse costs at least this share of what its largest displacement, of the old surface from the new or of the
   /// new from the old, would cost as a mean distance.
   static constexpr double kGuardShare = 0.7;
+  /// So many times that for what is painted, where that is promised: its largest distance alone then orders collapses
+  /// that move it. (With 1 cuts that keep a promise need more triangles, with 64 no fewer.)
+  static constexpr double kPaintedFactor = 16.0;
   /// What breaking the link condition costs, as a factor: small holes and handles close when everything else has become
   /// about ten times as far off.
   static constexpr double kTopologyPrice = 10.0;
@@ -122,6 +126,7 @@ class GroupSimplifier {
   CollapseStar star_;  ///< of the collapse that is weighed or done
   StarEnd joined_;     ///< the vertex that came of it
   NewSurface new_surface_;
+  PaintedGuard<Real, Capacity> painted_;
 };
 
 template <class Real, std::size_t C>
@@ -137,7 +142,8 @@ GroupSimplifier<Real, C>::GroupSimplifier(const SimplifyInput& input, const Simp
       left_behind_(input.witnesses, places_),
       version_(input.positions.size(), 0),
       joined_into_(input.positions.size()),
-      marks_(input.positions.size()) {
+      marks_(input.positions.size()),
+      painted_(input, options.painted, places_) {
   std::iota(joined_into_.begin(), joined_into_.end(), 0U);
   if (options.keep_topology) own_places_.emplace(input);
   add_faces();
@@ -363,8 +369,8 @@ typename GroupSimplifier<Real, C>::Obstacle GroupSimplifier<Real, C>::try_collap
   return Obstacle::kNone;
 }
 
-/// What leaving the old surface behind, or reaching beyond it, costs: where that is far more than the quadrics say, the
-/// collapse waits for its turn at that price.
+/// What leaving the old surface behind, or reaching beyond it, costs, and moving what is promised of what is painted:
+/// where that is far more than the quadrics say, the collapse waits for its turn at that price.
 template <class Real, std::size_t C>
 double GroupSimplifier<Real, C>::price_of(const Candidate& candidate) {
   const double left_behind2 = left_behind_.weigh(mesh_, places_, star_, options_.keep_area);
@@ -375,7 +381,13 @@ double GroupSimplifier<Real, C>::price_of(const Candidate& candidate) {
   if (price > candidate.cost) return price;
   const double affordable2 = price_of_distance2 > 0.0 ? candidate.cost / price_of_distance2 : 0.0;
   const double reached2 = new_surface_.distance2(mesh_, places_, star_, affordable2);
-  return reached2 > affordable2 ? price_of_distance2 * reached2 : price;
+  if (reached2 > affordable2) return price_of_distance2 * reached2;
+  if (!painted_.is_on()) return price;
+  const double price_of_painted2 = kPaintedFactor * price_of_distance2;
+  const double painted_affordable2 = price_of_painted2 > 0.0 ? candidate.cost / price_of_painted2 : 0.0;
+  const double painted2 =
+      painted_.distance2(mesh_, places_, star_, classes_.classes(), attributes_, painted_affordable2);
+  return painted2 > painted_affordable2 ? price_of_painted2 * painted2 : price;
 }
 
 /// Joins b into a at the star's target. The star and the wedge classes are those of the pair.

@@ -21,6 +21,12 @@
 
 namespace meshlode::build {
 
+/// What a promise counts beside positions (docs/selection.md), object units; 0: nothing.
+struct PaintedUnits {
+  double normal = 0.0;                                        ///< of a unit normal
+  std::array<std::array<double, 2>, scene::kMaxUvSets> uv{};  ///< of a UV unit in u and v, by stored set
+};
+
 struct SimplifyOptions {
   std::uint32_t target_triangles = 0;  ///< stop at or below this
   /// Weights of attribute errors against distance. A normal that is off by δ (length of the difference) counts like a
@@ -30,6 +36,7 @@ struct SimplifyOptions {
   double color_weight = 0.7;   ///< as normals
   double border_weight = 8.0;  ///< of source borders and material borders, against area-weighted planes
   double seam_weight = 1.0;    ///< of texture seams
+  PaintedUnits painted;        ///< collapses are also weighed by the largest distance in what these count
   /// Foliage and soups: grow the pieces that stay by as much as the ones that went covered, so that the whole neither
   /// thins out nor fades (Cook, Halstead, Planck and Ryu 2007). Only pieces without a locked vertex can grow.
   bool keep_area = false;

@@ -154,7 +154,7 @@ constexpr std::array kRules{
     RULE(V404, "I9", "`--gpu`: frustum and occlusion culling change no pixel"),
     RULE(V405, "I7",
          "`--gpu`: no pixel's surface point, of the cut's picture or of the source's own triangles, is displaced "
-         "by more than the allowed pixels (measured: within 5%)"),
+         "by more than the allowed pixels (measured: within 5%); with `--promise` UVs or normals counted as lengths"),
     RULE(V406, "I6", "`--gpu`: no background is seen through the cut of closed meshes"),
     RULE(V407, "I9",
          "`--gpu`: hardware raster, vertices pulled, draws the CPU's picture within the specification's "

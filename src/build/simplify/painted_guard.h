@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How far a collapse moves what is painted, as far as that is promised: the largest distance of the old surface from
+// the new and of the new from the old in the product space of positions, texture coordinates and normals
+// (docs/selection.md, "What is promised"). Quadrics of attributes are means: a collapse that smears a small chart, or
+// turns one corner's normal, hides in them, and the group's error is the largest.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "build/promise/product_point.h"
+#include "build/simplify/attribute_quadrics.h"
+#include "build/simplify/collapse_mesh.h"
+#include "build/simplify/collapse_star.h"
+#include "build/simplify/group_places.h"
+#include "build/simplify/simplify.h"
+#include "build/simplify/wedge_classes.h"
+
+namespace meshlode::build {
+
+/// For at most Capacity floats a wedge, as AttributeQuadrics. All in the group's frame.
+template <class Real, std::size_t Capacity>
+class PaintedGuard {
+ public:
+  PaintedGuard(const SimplifyInput& input, const PaintedUnits& units, const GroupPlaces& places) {
+    const AttributeLayout& layout = input.layout;
+    const double per_object = 1.0 / (places.scale() * input.grid.step());
+    for (std::uint32_t j = 0; j < layout.color_offset(); ++j) {
+      const std::uint32_t in_uv = j - layout.uv_offset();
+      unit_[j] = per_object * (layout.has_normal && j < 3 ? units.normal : units.uv[in_uv / 2][in_uv % 2]);
+      is_on_ = is_on_ || unit_[j] > 0.0;
+    }
+    has_normals_ = layout.has_normal && unit_[0] > 0.0;
+    flat_unit_ = layout.flat_normal ? per_object * units.normal : 0.0;
+    is_on_ = is_on_ || flat_unit_ > 0.0;
+  }
+
+  /// Whether anything but positions counts.
+  [[nodiscard]] bool is_on() const { return is_on_; }
+
+  /// The largest squared distance, or some number up to `least` where none is larger. \pre is_on(); of the star outer
+  /// is gathered; `classes` are those of its collapse
+  [[nodiscard]] double distance2(const CollapseMesh& mesh, const GroupPlaces& places, const CollapseStar& star,
+                                 std::span<const WedgeClass> classes,
+                                 const AttributeQuadrics<Real, Capacity>& attributes, double least) {
+    // At a hub every point would look at thousands of triangles.
+    if (star.a.corners.size() + star.b.corners.size() > kMostFacets) return 0.0;
+    gather_old(mesh, places, star, attributes);
+    gather_new(mesh, places, star, classes, attributes);
+    if (new_.empty()) return 0.0;  // the piece goes: a matter of positions
+    double largest = least;
+    for (std::size_t i = 0; i < old_.size(); ++i) {
+      const Facet& facet = old_[i];
+      // Where triangles have no normals of their own, the corners around the ends are asked about by each of them.
+      for (std::size_t k = 0; k < facet.asked; ++k) reach(facet.corners[k], new_, facet.twin, largest);
+      reach(middle_of(facet.corners[0], facet.corners[1], facet.corners[2]), new_, facet.twin, largest);
+    }
+    for (const Facet& facet : new_) {
+      reach(middle_of(facet.corners[0], facet.corners[1], facet.corners[2]), old_, facet.twin, largest);
+      reach(middle_of(facet.corners[0], facet.corners[1]), old_, facet.twin, largest);
+      reach(middle_of(facet.corners[0], facet.corners[2]), old_, facet.twin, largest);
+    }
+    return std::min(largest, kFarthest2);
+  }
+
+ private:
+  static constexpr std::size_t kDimensions = 3 + Capacity + 3;  ///< the last: normals of triangles
+  static constexpr double kFarthest2 = 1e30;
+  static constexpr std::size_t kMostFacets = 256;
+  using Point = ProductPoint<kDimensions>;
+  using Values = std::array<double, Capacity>;
+
+  /// A triangle, from a corner at the end of the edge on.
+  struct Facet {
+    std::array<Point, 3> corners;
+    Point low, high;
+    std::uint32_t corner = 0;  ///< of the old surface: the one at the end
+    std::size_t asked = 0;  ///< so many corners of the old surface are held against the new
+    std::size_t twin = 0;   ///< the one of the other surface that has its edge across from the end, or any
+  };
+
+  static Point middle_of(const Point& a, const Point& b, const Point& c) {
+    Point out;
+    for (std::size_t d = 0; d < kDimensions; ++d) out[d] = (a[d] + b[d] + c[d]) / 3.0;
+    return out;
+  }
+  static Point middle_of(const Point& a, const Point& b) {
+    Point out;
+    for (std::size_t d = 0; d < kDimensions; ++d) out[d] = 0.5 * (a[d] + b[d]);
+    return out;
+  }
+
+  /// `first` of the surface is looked at first: mostly nothing else needs to be.
+  static void reach(const Point& point, const std::vector<Facet>& surface, std::size_t first, double& largest) {
+    double nearest = distance2_to(point, surface[first]);
+    if (nearest <= largest) return;
+    for (std::size_t i = 0; i < surface.size(); ++i) {
+      if (i == first || !(distance2_to_box(point, surface[i]) < nearest)) continue;
+      nearest = std::min(nearest, distance2_to(point, surface[i]));
+      if (nearest <= largest) return;
+    }
+    if (nearest > largest) largest = nearest;
+  }
+
+  static double distance2_to(const Point& point, const Facet& facet) {
+    const auto& [a, b, c] = facet.corners;
+    return product_distance2<kDimensions>(point, a, b, c);
+  }
+  static double distance2_to_box(const Point& point, const Facet& facet) {
+    double sum = 0.0;
+    for (std::size_t d = 0; d < kDimensions; ++d) {
+      const double off = std::max(std::max(facet.low[d] - point[d], point[d] - facet.high[d]), 0.0);
+      sum += off * off;
+    }
+    return sum;
+  }
+  static void finish(Facet& facet) {
+    const auto& [a, b, c] = facet.corners;
+    for (std::size_t d = 0; d < kDimensions; ++d) {
+      facet.low[d] = std::min(std::min(a[d], b[d]), c[d]);
+      facet.high[d] = std::max(std::max(a[d], b[d]), c[d]);
+    }
+  }
+
+  [[nodiscard]] Point point_of(const Vec3d& place, Values values) const {
+    Point out{};
+    for (int axis = 0; axis < 3; ++axis) out[static_cast<std::size_t>(axis)] = place[axis];
+    if (has_normals_) {
+      const double length = std::sqrt(values[0] * values[0] + values[1] * values[1] + values[2] * values[2]);
+      if (length > 0.0) {
+        for (std::size_t k = 0; k < 3; ++k) values[k] /= length;
+      }
+    }
+    for (std::size_t j = 0; j < Capacity; ++j) {
+      if (unit_[j] > 0.0 && std::isfinite(values[j])) out[3 + j] = unit_[j] * values[j];
+    }
+    return out;
+  }
+  [[nodiscard]] Point point_of(const CollapseMesh& mesh, const GroupPlaces& places, std::uint32_t corner,
+                               const AttributeQuadrics<Real, Capacity>& attributes) const {
+    Values values{};
+    if (attributes.count() > 0) attributes.values_of(mesh.wedge(corner), values);
+    return point_of(places[mesh.vertex(corner)], values);
+  }
+
+  /// The triangle's own normal, where that is what shades it.
+  void shade_flat(Facet& facet) const {
+    if (!(flat_unit_ > 0.0)) return;
+    const auto place = [&](std::size_t k) { return Vec3d(facet.corners[k][0], facet.corners[k][1], facet.corners[k][2]); };
+    const Vec3d n = glm::cross(place(1) - place(0), place(2) - place(0));
+    const double length = std::sqrt(glm::dot(n, n));
+    if (!(length > 0.0)) return;
+    for (Point& corner : facet.corners) {
+      for (int axis = 0; axis < 3; ++axis) corner[3 + Capacity + static_cast<std::size_t>(axis)] = flat_unit_ / length * n[axis];
+    }
+  }
+
+  void gather_old(const CollapseMesh& mesh, const GroupPlaces& places, const CollapseStar& star,
+                  const AttributeQuadrics<Real, Capacity>& attributes) {
+    old_.clear();
+    wedges_.clear();
+    for (const StarEnd* end : {&star.a, &star.b}) {
+      for (const std::uint32_t corner : end->corners) {
+        const std::uint32_t next = CollapseMesh::next_in_triangle(corner), last = CollapseMesh::next_in_triangle(next);
+        Facet& facet = old_.emplace_back();
+        facet.corners = {point_of(mesh, places, corner, attributes), point_of(mesh, places, next, attributes),
+                         point_of(mesh, places, last, attributes)};
+        shade_flat(facet);
+        finish(facet);
+        facet.corner = corner;
+        const std::uint32_t wedge = attributes.count() > 0 ? mesh.wedge(corner) : mesh.vertex(corner);
+        const bool is_new = std::find(wedges_.begin(), wedges_.end(), wedge) == wedges_.end();
+        if (is_new) wedges_.push_back(wedge);
+        facet.asked = flat_unit_ > 0.0 ? 3 : is_new ? 1 : 0;
+      }
+    }
+  }
+
+  void gather_new(const CollapseMesh& mesh, const GroupPlaces& places, const CollapseStar& star,
+                  std::span<const WedgeClass> classes, const AttributeQuadrics<Real, Capacity>& attributes) {
+    joined_.clear();
+    for (const WedgeClass& joined : classes) {
+      Values values{};
+      attributes.values_of(joined, star.target, values);
+      joined_.push_back(point_of(star.target, values));
+    }
+    new_.clear();
+    std::size_t twin = 0;  // outer edges come as their corners do
+    for (const CollapseStar::OuterEdge& edge : star.outer) {
+      Facet& facet = new_.emplace_back();
+      facet.corners[0] = joined_point(mesh, edge.corner, star, classes, attributes);
+      const std::uint32_t next = CollapseMesh::next_in_triangle(edge.corner);
+      facet.corners[1] = point_of(mesh, places, next, attributes);
+      facet.corners[2] = point_of(mesh, places, CollapseMesh::next_in_triangle(next), attributes);
+      shade_flat(facet);
+      finish(facet);
+      while (old_[twin].corner != edge.corner) twin = twin + 1 < old_.size() ? twin + 1 : 0;
+      facet.twin = twin;
+      old_[twin].twin = new_.size() - 1;
+    }
+  }
+
+  /// A wedge that no triangle on the edge has keeps its values.
+  [[nodiscard]] Point joined_point(const CollapseMesh& mesh, std::uint32_t corner, const CollapseStar& star,
+                                   std::span<const WedgeClass> classes,
+                                   const AttributeQuadrics<Real, Capacity>& attributes) const {
+    Values values{};
+    if (attributes.count() == 0) return point_of(star.target, values);
+    const std::uint32_t wedge = mesh.wedge(corner);
+    for (std::size_t i = 0; i < classes.size(); ++i) {
+      const std::vector<std::uint32_t>& members = classes[i].members;
+      if (std::find(members.begin(), members.end(), wedge) != members.end()) return joined_[i];
+    }
+    attributes.values_of(wedge, values);
+    return point_of(star.target, values);
+  }
+
+  std::array<double, Capacity> unit_{};
+  double flat_unit_ = 0.0;
+  bool is_on_ = false, has_normals_ = false;
+  // Of the collapse weighed last.
+  std::vector<Facet> old_, new_;
+  std::vector<Point> joined_;  ///< what each class becomes
+  std::vector<std::uint32_t> wedges_;
+};
+
+}  // namespace meshlode::build
