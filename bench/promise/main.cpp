@@ -69,7 +69,7 @@ struct MeshTruth {
 std::vector<MeshTruth> make_truth(const scene::Scene& source, const run::Asset& units, std::uint64_t samples) {
   std::vector<MeshTruth> truth(units.meshes().size());
   for (std::size_t m = 0; m < truth.size(); ++m) {
-    const judge::ShadedSurface surface = judge::shaded_surface_of_source(source.meshes[m]);
+    const judge::ShadedSurface surface = judge::painted_surface_of_source(source.meshes[m]);
     for (std::size_t unit = 0; unit < kPromises.size(); ++unit) {
       const judge::ProductScales scales = kPromises[unit] == format::Promise::kPosition
                                               ? judge::ProductScales{}

@@ -220,7 +220,7 @@ Result<BuiltMesh> build_mesh(const Source& from, std::size_t index, const Survey
   const MeshOptions& own = options.of_mesh(index);
   BuiltMesh built;
 
-  MeshPlan plan = plan_mesh(source, from.scene.materials, request_of(own), label);
+  MeshPlan plan = plan_mesh(source, from.scene.materials, request_of(own, options.promise), label);
   built.decisions = std::move(plan.decisions);
   const AggregateDecision& aggregate = found.aggregates[index];
   if (!aggregate.reason.empty()) {

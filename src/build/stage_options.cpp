@@ -80,8 +80,8 @@ Status check_options(const PipelineOptions& options, std::size_t mesh_count) {
   return Ok{};
 }
 
-AttributeRequest request_of(const MeshOptions& options) {
-  return {options.attributes, options.keep, options.drop};
+AttributeRequest request_of(const MeshOptions& options, format::Promise promise) {
+  return {options.attributes, options.keep, options.drop, promise == format::Promise::kAppearance};
 }
 
 PrepareOptions prepare_options(const MeshOptions& options, const Care& care) {

@@ -22,7 +22,7 @@ namespace meshlode::build {
 /// and dropped, and for mesh options of another number of meshes.
 [[nodiscard]] Status check_options(const PipelineOptions& options, std::size_t mesh_count);
 
-[[nodiscard]] AttributeRequest request_of(const MeshOptions& options);
+[[nodiscard]] AttributeRequest request_of(const MeshOptions& options, format::Promise promise);
 
 [[nodiscard]] PrepareOptions prepare_options(const MeshOptions& options, const Care& care = {});
 

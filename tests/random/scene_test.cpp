@@ -29,7 +29,7 @@ TEST(RandomScene, ASeedIsTheSameSceneWithEveryCompiler) {
     hash = fnv1a(write_glb(scene), hash);
     for (const std::string& option : scene.build_options) hash = fnv1a({option.begin(), option.end()}, hash);
   }
-  EXPECT_EQ(hash, 15442354462169340045ULL);
+  EXPECT_EQ(hash, 18146139435891518635ULL);
 }
 
 TEST(RandomScene, NineOfTenAreSmallAndNoneIsLarge) {
@@ -66,7 +66,7 @@ TEST(RandomScene, EveryKindOfPieceOptionAndAttributeOccurs) {
   }
   for (const ShapeKind& kind : shape_kinds()) EXPECT_GE(kinds[kind.name], 10U) << kind.name;
   for (const char* option : {"certified", "qem", "draco", "strips", "lz4", "none", "all", "--grid", "--position-error",
-                             "--normal-error", "--uv-error"}) {
+                             "--normal-error", "--uv-error", "texels", "appearance"}) {
     EXPECT_TRUE(options.contains(option)) << option;
   }
   EXPECT_GT(defaults, 100U);

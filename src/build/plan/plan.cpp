@@ -11,12 +11,12 @@ namespace meshlode::build {
 
 namespace {
 
-/// Cosine of the largest angle (about half a degree) between a stored normal and its triangle's that still counts as
-/// flat.
-constexpr double kFlatCosine = 0.99996;
+/// Squared cosine of the largest angle between a stored normal and its triangle's that still counts as flat: about half
+/// a degree, and where normals are promised what floats of unit normals leave open, a millionth.
+constexpr double kFlatCosine2 = 0.99996 * 0.99996, kSameCosine2 = 1.0 - 1e-12;
 
 /// True if every corner's normal is its triangle's own: then nothing needs storing. Triangles without area do not vote.
-bool has_flat_normals(const scene::SourceMesh& mesh) {
+bool has_flat_normals(const scene::SourceMesh& mesh, double least_cosine2) {
   bool any = false;
   for (const scene::Primitive& primitive : mesh.primitives) {
     if (primitive.normals.empty()) continue;
@@ -30,7 +30,7 @@ bool has_flat_normals(const scene::SourceMesh& mesh) {
         const Vec3d normal(primitive.normals[corner[k]]);
         const double length2 = glm::dot(normal, normal);
         const double dot = glm::dot(normal, cross);
-        if (!(dot > 0.0) || dot * dot < kFlatCosine * kFlatCosine * length2 * area2) return false;
+        if (!(dot > 0.0) || dot * dot < least_cosine2 * length2 * area2) return false;
       }
       any = true;
     }
@@ -91,7 +91,7 @@ class Planner {
       add("flat normals", {true, "the source has none: they follow from the triangles"});
       return;
     }
-    const bool is_flat = !is_none && has_flat_normals(mesh);
+    const bool is_flat = !is_none && has_flat_normals(mesh, request_.promises_normals ? kSameCosine2 : kFlatCosine2);
     Verdict verdict{true, "shading differs from the triangles' own normals"};
     if (is_none) verdict = {false, "left out by option"};
     if (is_flat) verdict = {false, "every normal is its triangle's own: they follow from the triangles"};

@@ -36,6 +36,7 @@ struct PlanDecision {
 struct AttributeRequest {
   AttributeChoice choice = AttributeChoice::kAuto;
   std::uint32_t keep = 0, drop = 0;  ///< bits of plan/attributes.h; none is in both
+  bool promises_normals = false;     ///< those that are nearly their triangles' own are not left out
 };
 
 struct MeshPlan {

@@ -37,7 +37,8 @@ class MeshPlanner {
       : mesh_(scene.meshes[index]),
         options_(options),
         own_(options.of_mesh(index)),
-        plan_(plan_mesh(mesh_, scene.materials, request_of(options.of_mesh(index)), mesh_label(mesh_, index))) {
+        plan_(plan_mesh(mesh_, scene.materials, request_of(options.of_mesh(index), options.promise),
+                        mesh_label(mesh_, index))) {
     out_.label = mesh_label(mesh_, index);
     choose_uv_steps(texels);
   }

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "base/parallel.h"
@@ -25,7 +26,7 @@ namespace {
 /// sides, as what a cut is off by changes along them.
 constexpr std::size_t kSourcePoints = 100000;
 /// Carried on by a group, about; between so many a triangle of it.
-constexpr std::size_t kCarried = 4096, kFewestCarried = 2, kMostCarried = 64;
+constexpr std::size_t kCarried = 16384, kFewestCarried = 2, kMostCarried = 64;
 /// The same of vertices of the source, of which corners of charts and peaks of normals are: all of them, but where a
 /// triangle has very many, so that those of small meshes are there to the end.
 constexpr std::size_t kCarriedVertices = 32768, kFewestVertices = 64;
@@ -33,10 +34,12 @@ constexpr std::size_t kCarriedVertices = 32768, kFewestVertices = 64;
 constexpr std::size_t kGroupPoints = 1024, kMostOfTriangle = 32;
 /// Points nearer than this share of the farthest are not looked at closely.
 constexpr double kLookFrom = 0.6;
-/// From so many of the farthest points of either direction a farther one is looked for on the same triangle: so many
-/// steps, each half as long as the one before, and so many points tried at each.
-constexpr std::size_t kClimbed = 12;
-constexpr int kSteps = 7, kTries = 10;
+/// From so many of the farthest points of either direction a farther one is looked for on the same triangle: on a
+/// lattice of so many steps along an edge, then in so many steps, each half as long as the one before.
+constexpr std::size_t kClimbed = 24;
+constexpr int kLattice = 6, kSteps = 5, kNearSteps = 7, kNearTries = 10;
+/// So many samples of one triangle of the source are looked between, each with each.
+constexpr std::size_t kPairedOfTriangle = 4;
 constexpr std::size_t kChunk = 1024;  // points that share a hint, whatever the thread count
 
 /// Per group, object units, without a margin; and of level 0 alone.
@@ -134,15 +137,7 @@ class PromiseMeter {
     std::vector<double> length(count);
     double sum = 0.0;
     for (std::uint32_t t = 0; t < count; ++t) {
-      double longest2 = 0.0;
-      for (int k = 0; k < 3; ++k) {
-        const Point& a = source_.points[source_.triangles[t][k]];
-        const Point& b = source_.points[source_.triangles[t][(k + 1) % 3]];
-        double side2 = 0.0;
-        for (std::size_t d = 0; d < D; ++d) side2 += (a[d] - b[d]) * (a[d] - b[d]);
-        longest2 = std::max(longest2, side2);
-      }
-      length[t] = std::sqrt(longest2);
+      length[t] = std::sqrt(longest2_of(t));
       sum += length[t];
     }
     const double per_length = sum > 0.0 && std::isfinite(sum) ? static_cast<double>(kSourcePoints) / sum : 0.0;
@@ -245,11 +240,30 @@ class PromiseMeter {
     return std::sqrt(sum);
   }
 
-  /// Looks for a farther point on the same triangle of `surface`.
-  static void climb(const Surface& surface, const Tree& other, Far& far, SplitMix64& random) {
-    double length = 1.0;
+  /// Looks for a farther point on the same triangle of `surface`: on a lattice, and around its best point ever closer.
+  static void climb(const Surface& surface, const Tree& other, Far& far) {
+    const auto look = [&](double b, double c) {
+      if (b < 0.0 || c < 0.0 || b + c > 1.0) return;
+      const auto hit = other.find(surface.at(far.triangle, b, c), far.place, far.distance2);
+      if (hit.triangle == kNoId || hit.distance2 <= far.distance2) return;
+      far = {hit.distance2, far.triangle, b, c, hit.triangle};
+    };
+    constexpr double kSpacing = 1.0 / kLattice;
+    for (int i = 0; i <= kLattice; ++i) {
+      for (int k = 0; i + k <= kLattice; ++k) look(i * kSpacing, std::min(k * kSpacing, 1.0 - i * kSpacing));
+    }
+    double length = 0.5 * kSpacing;
     for (int step = 0; step < kSteps; ++step, length *= 0.5) {
-      for (int i = 0; i < kTries; ++i) {
+      const Far from = far;
+      for (const auto& [b, c] : kDirections) look(from.b + length * b, from.c + length * c);
+    }
+  }
+
+  /// The same near the point itself, at random: what lies elsewhere on a triangle of the source may be another group's.
+  static void climb_near(const Surface& surface, const Tree& other, Far& far, SplitMix64& random) {
+    double length = 1.0;
+    for (int step = 0; step < kNearSteps; ++step, length *= 0.5) {
+      for (int i = 0; i < kNearTries; ++i) {
         const auto [b, c] = random_weights(random);
         const double tried_b = far.b + length * (b - far.b), tried_c = far.c + length * (c - far.c);
         const auto hit = other.find(surface.at(far.triangle, tried_b, tried_c), far.place, far.distance2);
@@ -259,11 +273,20 @@ class PromiseMeter {
     }
   }
 
-  static double climb_all(const Surface& surface, const Tree& other, const FarList& list, std::uint64_t seed) {
+  static double climb_near_all(const Surface& surface, const Tree& other, const FarList& list) {
     double farthest2 = 0.0;
     for (Far far : list.list()) {
-      SplitMix64 random(seed + far.triangle);
-      climb(surface, other, far, random);
+      SplitMix64 random(0x66726F6DULL + far.triangle);
+      climb_near(surface, other, far, random);
+      farthest2 = std::max(farthest2, far.distance2);
+    }
+    return farthest2;
+  }
+
+  static double climb_all(const Surface& surface, const Tree& other, const FarList& list) {
+    double farthest2 = 0.0;
+    for (Far far : list.list()) {
+      climb(surface, other, far);
       farthest2 = std::max(farthest2, far.distance2);
     }
     return farthest2;
@@ -273,27 +296,49 @@ class PromiseMeter {
   [[nodiscard]] double measure_to_source(const Surface& surface, double farthest2) const {
     const auto count = static_cast<std::uint32_t>(surface.triangles.size());
     const std::size_t more = std::min(kMostOfTriangle, kGroupPoints / std::max(1U, count));
+    std::vector<typename Tree::Hit> of_corner(surface.points.size());
     std::vector<std::uint8_t> is_taken(surface.points.size(), 0);
     FarList list;
     std::uint32_t place = kNoId;
+    const auto note = [&](const typename Tree::Hit& hit, std::uint32_t t, double b, double c) {
+      if (hit.triangle == kNoId || hit.distance2 < kLookFrom * kLookFrom * farthest2) return;
+      list.add({hit.distance2, t, b, c, hit.triangle});
+    };
     const auto look = [&](std::uint32_t t, double b, double c) {
       const auto hit = tree_.find(surface.at(t, b, c), place, kLookFrom * kLookFrom * farthest2);
-      if (hit.triangle == kNoId) return;
+      if (hit.triangle == kNoId) return hit;
       place = hit.triangle;
       farthest2 = std::max(farthest2, hit.distance2);
-      if (hit.distance2 >= kLookFrom * kLookFrom * farthest2) list.add({hit.distance2, t, b, c, hit.triangle});
+      note(hit, t, b, c);
+      return hit;
     };
+    const auto edge = [](std::uint32_t a, std::uint32_t b) { return std::array<std::uint32_t, 2>{a, b}; };
+    std::vector<std::array<std::uint32_t, 2>> ascending;
+    for (std::uint32_t t = 0; t < count; ++t) {
+      if (!surfaces_.has_points(surface, t)) continue;
+      const auto& [a, b, c] = surface.triangles[t];
+      for (const auto& e : {edge(a, b), edge(b, c), edge(c, a)}) {
+        if (e[0] < e[1]) ascending.push_back(e);
+      }
+    }
+    std::sort(ascending.begin(), ascending.end());
     SplitMix64 random(0x67726F7570ULL);
     for (std::uint32_t t = 0; t < count; ++t) {
       if (!surfaces_.has_points(surface, t)) continue;
       const auto& ids = surface.triangles[t];
       look(t, 1.0 / 3.0, 1.0 / 3.0);
       for (std::size_t k = 0; k < 3; ++k) {
-        if (is_taken[ids[k]] == 0) look(t, kCorners[k][0], kCorners[k][1]);
-        is_taken[ids[k]] = 1;
+        // Looked at once, and where it is far each triangle around it may rise from there.
+        if (is_taken[ids[k]] == 0) {
+          of_corner[ids[k]] = look(t, kCorners[k][0], kCorners[k][1]);
+          is_taken[ids[k]] = 1;
+        } else {
+          note(of_corner[ids[k]], t, kCorners[k][0], kCorners[k][1]);
+        }
         // Of an edge that two triangles share, in opposite directions, one looks.
         const std::size_t next = (k + 1) % 3;
-        if (ids[k] > ids[next]) continue;
+        if (ids[k] > ids[next] && std::binary_search(ascending.begin(), ascending.end(), edge(ids[next], ids[k])))
+          continue;
         look(t, 0.5 * (kCorners[k][0] + kCorners[next][0]), 0.5 * (kCorners[k][1] + kCorners[next][1]));
       }
       for (std::size_t i = 0; i < more; ++i) {
@@ -301,7 +346,7 @@ class PromiseMeter {
         look(t, b, c);
       }
     }
-    return std::max(farthest2, climb_all(surface, tree_, list, 0x746FULL));
+    return std::max(farthest2, climb_all(surface, tree_, list));
   }
 
   /// Points of the source against the group, each of which finds where it lies there. Squared.
@@ -311,7 +356,9 @@ class PromiseMeter {
     std::uint32_t place = kNoId;
     for (Sample& sample : samples) {
       const Point point = source_.at(sample.triangle, sample.b, sample.c);
-      const auto hit = tree.find(point, place, kLookFrom * kLookFrom * farthest2);
+      // The nearest in any case: on some other triangle that is near enough not to matter now, it would be thinned out
+      // among strangers, and be missed where it matters.
+      const auto hit = tree.find(point, place, 0.0);
       if (hit.triangle == kNoId) continue;
       sample.place = place = hit.triangle;
       sample.distance = static_cast<float>(std::sqrt(hit.distance2));
@@ -320,11 +367,49 @@ class PromiseMeter {
         list.add({hit.distance2, sample.triangle, double{sample.b}, double{sample.c}, hit.triangle});
       }
     }
-    return std::max(farthest2, climb_all(source_, tree, list, 0x66726F6DULL));
+    look_between(tree, samples, farthest2, list);
+    return std::max(farthest2, climb_near_all(source_, tree, list));
   }
 
-  /// The farthest samples of each triangle, and of the others some from all over the source and the farthest vertices.
-  static std::vector<Sample> thin(std::vector<Sample>& samples, std::size_t triangle_count) {
+  /// Of a triangle of the source that reaches farther than the group is off, the samples that are left say little of
+  /// what lies between them. What lies elsewhere on it may be another group's.
+  void look_between(const Tree& tree, std::vector<Sample> samples, double& farthest2, FarList& list) const {
+    std::stable_sort(samples.begin(), samples.end(),
+                     [](const Sample& x, const Sample& y) { return x.triangle < y.triangle; });
+    for (std::size_t begin = 0, end = 0; begin < samples.size(); begin = end) {
+      const std::uint32_t triangle = samples[begin].triangle;
+      while (end < samples.size() && samples[end].triangle == triangle) ++end;
+      if (end - begin < 2 || !(longest2_of(triangle) > farthest2)) continue;
+      const std::size_t last = std::min(end, begin + kPairedOfTriangle);
+      for (std::size_t i = begin; i < last; ++i) {
+        for (std::size_t k = i + 1; k < last; ++k) {
+          const double b = 0.5 * (double{samples[i].b} + double{samples[k].b});
+          const double c = 0.5 * (double{samples[i].c} + double{samples[k].c});
+          const auto hit = tree.find(source_.at(triangle, b, c), samples[i].place, kLookFrom * kLookFrom * farthest2);
+          if (hit.triangle == kNoId) continue;
+          farthest2 = std::max(farthest2, hit.distance2);
+          if (hit.distance2 < kLookFrom * kLookFrom * farthest2) continue;
+          list.add({hit.distance2, triangle, b, c, hit.triangle});
+        }
+      }
+    }
+  }
+
+  [[nodiscard]] double longest2_of(std::uint32_t triangle) const {
+    double longest2 = 0.0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Point& a = source_.points[source_.triangles[triangle][k]];
+      const Point& b = source_.points[source_.triangles[triangle][(k + 1) % 3]];
+      double side2 = 0.0;
+      for (std::size_t d = 0; d < D; ++d) side2 += (a[d] - b[d]) * (a[d] - b[d]);
+      longest2 = std::max(longest2, side2);
+    }
+    return longest2;
+  }
+
+  /// The farthest samples of each triangle, of the others some from all over the source and the farthest vertices, and
+  /// those that lie outermost in some coordinate: what is near now and far when the triangle has become another.
+  [[nodiscard]] std::vector<Sample> thin(std::vector<Sample>& samples, std::size_t triangle_count) const {
     const std::size_t each =
         std::clamp(kCarried / std::max<std::size_t>(1, triangle_count), kFewestCarried, kMostCarried);
     const std::size_t vertices = std::max(kCarriedVertices / std::max<std::size_t>(1, triangle_count), kFewestVertices);
@@ -340,18 +425,41 @@ class PromiseMeter {
       while (end < samples.size() && samples[end].place == samples[begin].place) ++end;
       const std::size_t count = end - begin, far = std::min(count, each);
       const std::size_t rest = std::min(count - far, each / 2);
+      const Outermost outermost = find_outermost({samples.data() + begin, count});
       std::size_t taken = 0, vertices_taken = 0;  // of the rest; of all
       for (std::size_t i = 0; i < count; ++i) {
         const Sample& sample = samples[begin + i];
         const bool is_of_rest = i >= far && taken < rest && i == far + (count - far) * taken / rest;
         const bool is_wanted_vertex = sample.is_vertex() && vertices_taken < vertices;
-        if (i < far || is_of_rest || is_wanted_vertex) kept.push_back(sample);
+        const bool is_outermost = std::find(outermost.begin(), outermost.end(), i) != outermost.end();
+        if (i < far || is_of_rest || is_wanted_vertex || is_outermost) kept.push_back(sample);
         taken += is_of_rest ? 1 : 0;
         vertices_taken += is_wanted_vertex ? 1 : 0;
       }
       begin = end;
     }
     return kept;
+  }
+
+  /// Of each coordinate the first sample with the least and the first with the most.
+  using Outermost = std::array<std::size_t, 2 * D>;
+  [[nodiscard]] Outermost find_outermost(std::span<const Sample> samples) const {
+    Outermost at{};
+    Point low{}, high{};
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const Point point = source_.at(samples[i].triangle, samples[i].b, samples[i].c);
+      for (std::size_t d = 0; d < D; ++d) {
+        if (i == 0 || point[d] < low[d]) {
+          low[d] = point[d];
+          at[2 * d] = i;
+        }
+        if (i == 0 || point[d] > high[d]) {
+          high[d] = point[d];
+          at[2 * d + 1] = i;
+        }
+      }
+    }
+    return at;
   }
 
   double measure_group(std::uint32_t g, const std::vector<std::uint32_t>& outputs,
@@ -378,8 +486,10 @@ class PromiseMeter {
     return std::sqrt(farthest2);
   }
 
+  /// Along the edges of a triangle, in weights of its second and third corner.
+  static constexpr std::array<std::array<double, 2>, 6> kDirections{
+      {{1.0, 0.0}, {-1.0, 0.0}, {0.0, 1.0}, {0.0, -1.0}, {1.0, -1.0}, {-1.0, 1.0}}};
   static constexpr std::array<std::array<double, 2>, 3> kCorners{{{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}}};
-
   ProductSpace space_;
   const LodDag& dag_;
   const format::MeshRecord& record_;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "build/prepare/zero_area.h"
+
 namespace meshlode::build {
 
 namespace {
@@ -35,6 +37,8 @@ void set_uv_units(const PreparedMesh& mesh, std::span<const TexelExtents> extent
     width = std::max(width, extent[0]);
     height = std::max(height, extent[1]);
     const auto& [a, b, c] = source.triangles[t];
+    // What draws nothing covers no texels either.
+    if (are_collinear(source.positions[a], source.positions[b], source.positions[c])) continue;
     const Vec3d n = glm::cross(source.positions[b] - source.positions[a], source.positions[c] - source.positions[a]);
     surface += 0.5 * std::sqrt(glm::dot(n, n));
     const std::array<Vec2d, 3> q = uvs_of(source, t, set);

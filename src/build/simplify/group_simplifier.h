@@ -379,15 +379,16 @@ double GroupSimplifier<Real, C>::price_of(const Candidate& candidate) {
   const double price_of_distance2 = kGuardShare * std::sqrt(std::max(mean_weight, weight));
   const double price = price_of_distance2 * left_behind2;
   if (price > candidate.cost) return price;
+  // First what raises the price most, where it counts at all.
+  if (painted_.is_on()) {
+    const double price_of_painted2 = kPaintedFactor * price_of_distance2;
+    const double affordable2 = price_of_painted2 > 0.0 ? candidate.cost / price_of_painted2 : 0.0;
+    const double moved2 = painted_.distance2(mesh_, places_, star_, classes_.classes(), attributes_, affordable2);
+    if (moved2 > affordable2) return price_of_painted2 * moved2;
+  }
   const double affordable2 = price_of_distance2 > 0.0 ? candidate.cost / price_of_distance2 : 0.0;
   const double reached2 = new_surface_.distance2(mesh_, places_, star_, affordable2);
-  if (reached2 > affordable2) return price_of_distance2 * reached2;
-  if (!painted_.is_on()) return price;
-  const double price_of_painted2 = kPaintedFactor * price_of_distance2;
-  const double painted_affordable2 = price_of_painted2 > 0.0 ? candidate.cost / price_of_painted2 : 0.0;
-  const double painted2 =
-      painted_.distance2(mesh_, places_, star_, classes_.classes(), attributes_, painted_affordable2);
-  return painted2 > painted_affordable2 ? price_of_painted2 * painted2 : price;
+  return reached2 > affordable2 ? price_of_distance2 * reached2 : price;
 }
 
 /// Joins b into a at the star's target. The star and the wedge classes are those of the pair.

@@ -49,10 +49,11 @@ class PaintedGuard {
   [[nodiscard]] double distance2(const CollapseMesh& mesh, const GroupPlaces& places, const CollapseStar& star,
                                  std::span<const WedgeClass> classes,
                                  const AttributeQuadrics<Real, Capacity>& attributes, double least) {
-    // At a hub every point would look at thousands of triangles.
-    if (star.a.corners.size() + star.b.corners.size() > kMostFacets) return 0.0;
+    join_classes(star, classes, attributes);
+    if (star.a.corners.size() + star.b.corners.size() > kMostFacets)
+      return hub_distance2(mesh, places, star, attributes);
     gather_old(mesh, places, star, attributes);
-    gather_new(mesh, places, star, classes, attributes);
+    gather_new(mesh, places, star, attributes);
     if (new_.empty()) return 0.0;  // the piece goes: a matter of positions
     double largest = least;
     for (std::size_t i = 0; i < old_.size(); ++i) {
@@ -73,6 +74,7 @@ class PaintedGuard {
   static constexpr std::size_t kDimensions = 3 + Capacity + 3;  ///< the last: normals of triangles
   static constexpr double kFarthest2 = 1e30;
   static constexpr std::size_t kMostFacets = 256;
+  static constexpr std::size_t kNoTwin = std::numeric_limits<std::size_t>::max();
   using Point = ProductPoint<kDimensions>;
   using Values = std::array<double, Capacity>;
 
@@ -80,9 +82,8 @@ class PaintedGuard {
   struct Facet {
     std::array<Point, 3> corners;
     Point low, high;
-    std::uint32_t corner = 0;  ///< of the old surface: the one at the end
-    std::size_t asked = 0;  ///< so many corners of the old surface are held against the new
-    std::size_t twin = 0;   ///< the one of the other surface that has its edge across from the end, or any
+    std::size_t asked = 0;       ///< so many corners of the old surface are held against the new
+    std::size_t twin = kNoTwin;  ///< the one of the other surface that has its edge across from the end
   };
 
   static Point middle_of(const Point& a, const Point& b, const Point& c) {
@@ -96,8 +97,9 @@ class PaintedGuard {
     return out;
   }
 
-  /// `first` of the surface is looked at first: mostly nothing else needs to be.
-  static void reach(const Point& point, const std::vector<Facet>& surface, std::size_t first, double& largest) {
+  /// The twin is looked at first: mostly nothing else needs to be.
+  static void reach(const Point& point, const std::vector<Facet>& surface, std::size_t twin, double& largest) {
+    const std::size_t first = twin != kNoTwin ? twin : 0;
     double nearest = distance2_to(point, surface[first]);
     if (nearest <= largest) return;
     for (std::size_t i = 0; i < surface.size(); ++i) {
@@ -152,12 +154,15 @@ class PaintedGuard {
   /// The triangle's own normal, where that is what shades it.
   void shade_flat(Facet& facet) const {
     if (!(flat_unit_ > 0.0)) return;
-    const auto place = [&](std::size_t k) { return Vec3d(facet.corners[k][0], facet.corners[k][1], facet.corners[k][2]); };
+    const auto place = [&](std::size_t k) {
+      return Vec3d(facet.corners[k][0], facet.corners[k][1], facet.corners[k][2]);
+    };
     const Vec3d n = glm::cross(place(1) - place(0), place(2) - place(0));
     const double length = std::sqrt(glm::dot(n, n));
     if (!(length > 0.0)) return;
     for (Point& corner : facet.corners) {
-      for (int axis = 0; axis < 3; ++axis) corner[3 + Capacity + static_cast<std::size_t>(axis)] = flat_unit_ / length * n[axis];
+      for (int axis = 0; axis < 3; ++axis)
+        corner[3 + Capacity + static_cast<std::size_t>(axis)] = flat_unit_ / length * n[axis];
     }
   }
 
@@ -165,6 +170,7 @@ class PaintedGuard {
                   const AttributeQuadrics<Real, Capacity>& attributes) {
     old_.clear();
     wedges_.clear();
+    place_of_.clear();
     for (const StarEnd* end : {&star.a, &star.b}) {
       for (const std::uint32_t corner : end->corners) {
         const std::uint32_t next = CollapseMesh::next_in_triangle(corner), last = CollapseMesh::next_in_triangle(next);
@@ -173,50 +179,74 @@ class PaintedGuard {
                          point_of(mesh, places, last, attributes)};
         shade_flat(facet);
         finish(facet);
-        facet.corner = corner;
+        place_of_.push_back({corner, static_cast<std::uint32_t>(old_.size() - 1)});
         const std::uint32_t wedge = attributes.count() > 0 ? mesh.wedge(corner) : mesh.vertex(corner);
         const bool is_new = std::find(wedges_.begin(), wedges_.end(), wedge) == wedges_.end();
         if (is_new) wedges_.push_back(wedge);
         facet.asked = flat_unit_ > 0.0 ? 3 : is_new ? 1 : 0;
       }
     }
+    std::sort(place_of_.begin(), place_of_.end());
   }
 
-  void gather_new(const CollapseMesh& mesh, const GroupPlaces& places, const CollapseStar& star,
-                  std::span<const WedgeClass> classes, const AttributeQuadrics<Real, Capacity>& attributes) {
+  /// What each class becomes.
+  void join_classes(const CollapseStar& star, std::span<const WedgeClass> classes,
+                    const AttributeQuadrics<Real, Capacity>& attributes) {
     joined_.clear();
+    class_of_.clear();
     for (const WedgeClass& joined : classes) {
+      for (const std::uint32_t wedge : joined.members) {
+        class_of_.push_back({wedge, static_cast<std::uint32_t>(joined_.size())});
+      }
       Values values{};
       attributes.values_of(joined, star.target, values);
       joined_.push_back(point_of(star.target, values));
     }
+    std::sort(class_of_.begin(), class_of_.end());
+  }
+
+  /// At a hub each point would look at thousands of triangles: no point moves farther than the corners at its ends do.
+  [[nodiscard]] double hub_distance2(const CollapseMesh& mesh, const GroupPlaces& places, const CollapseStar& star,
+                                     const AttributeQuadrics<Real, Capacity>& attributes) const {
+    double largest = 0.0;
+    for (const StarEnd* end : {&star.a, &star.b}) {
+      for (const std::uint32_t corner : end->corners) {
+        const Point before = point_of(mesh, places, corner, attributes);
+        const Point after = joined_point(mesh, corner, star, attributes);
+        double moved2 = 0.0;
+        for (std::size_t d = 0; d < kDimensions; ++d) moved2 += (after[d] - before[d]) * (after[d] - before[d]);
+        largest = std::max(largest, moved2);
+      }
+    }
+    return std::min(largest, kFarthest2);
+  }
+
+  /// \pre the old facets are gathered, and the classes joined
+  void gather_new(const CollapseMesh& mesh, const GroupPlaces& places, const CollapseStar& star,
+                  const AttributeQuadrics<Real, Capacity>& attributes) {
     new_.clear();
-    std::size_t twin = 0;  // outer edges come as their corners do
     for (const CollapseStar::OuterEdge& edge : star.outer) {
       Facet& facet = new_.emplace_back();
-      facet.corners[0] = joined_point(mesh, edge.corner, star, classes, attributes);
+      facet.corners[0] = joined_point(mesh, edge.corner, star, attributes);
       const std::uint32_t next = CollapseMesh::next_in_triangle(edge.corner);
       facet.corners[1] = point_of(mesh, places, next, attributes);
       facet.corners[2] = point_of(mesh, places, CollapseMesh::next_in_triangle(next), attributes);
       shade_flat(facet);
       finish(facet);
-      while (old_[twin].corner != edge.corner) twin = twin + 1 < old_.size() ? twin + 1 : 0;
-      facet.twin = twin;
-      old_[twin].twin = new_.size() - 1;
+      const std::array<std::uint32_t, 2> key{edge.corner, 0};
+      facet.twin = (*std::lower_bound(place_of_.begin(), place_of_.end(), key))[1];
+      old_[facet.twin].twin = new_.size() - 1;
     }
   }
 
   /// A wedge that no triangle on the edge has keeps its values.
   [[nodiscard]] Point joined_point(const CollapseMesh& mesh, std::uint32_t corner, const CollapseStar& star,
-                                   std::span<const WedgeClass> classes,
                                    const AttributeQuadrics<Real, Capacity>& attributes) const {
     Values values{};
     if (attributes.count() == 0) return point_of(star.target, values);
     const std::uint32_t wedge = mesh.wedge(corner);
-    for (std::size_t i = 0; i < classes.size(); ++i) {
-      const std::vector<std::uint32_t>& members = classes[i].members;
-      if (std::find(members.begin(), members.end(), wedge) != members.end()) return joined_[i];
-    }
+    const auto found = std::lower_bound(class_of_.begin(), class_of_.end(), std::array<std::uint32_t, 2>{wedge, 0});
+    if (found != class_of_.end() && (*found)[0] == wedge) return joined_[(*found)[1]];
     attributes.values_of(wedge, values);
     return point_of(star.target, values);
   }
@@ -226,7 +256,9 @@ class PaintedGuard {
   bool is_on_ = false, has_normals_ = false;
   // Of the collapse weighed last.
   std::vector<Facet> old_, new_;
-  std::vector<Point> joined_;  ///< what each class becomes
+  std::vector<Point> joined_;                           ///< what each class becomes
+  std::vector<std::array<std::uint32_t, 2>> class_of_;  ///< wedge and number of its class, ascending
+  std::vector<std::array<std::uint32_t, 2>> place_of_;  ///< corner at the end and number of its old facet, ascending
   std::vector<std::uint32_t> wedges_;
 };
 

@@ -435,7 +435,7 @@ std::vector<PaintedSurface> painted_surfaces(const run::Asset& asset, const scen
   out.reserve(count);
   for (std::size_t m = 0; m < count; ++m) {
     const ProductScales scales = scales_of(asset, MeshId(m), asset.chosen_promise());
-    const ShadedSurface truth = shaded_surface_of_source(scene.meshes[m]);
+    const ShadedSurface truth = painted_surface_of_source(scene.meshes[m]);
     out.push_back({scales, ProductSurface(truth, scales), rounding_of(truth, scales)});
   }
   return out;

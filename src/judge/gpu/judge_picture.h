@@ -49,7 +49,7 @@ constexpr int kHoleRadius = 2;
 /// A mesh of the source with what is painted on it, in the units of the asset's chosen promise.
 struct PaintedSurface {
   ProductScales scales;
-  ProductSurface surface;  ///< the triangles of its SourceSurface
+  ProductSurface surface;  ///< its first triangles are those of the SourceSurface
   double rounding = 0.0;   ///< rounding_of()
 };
 

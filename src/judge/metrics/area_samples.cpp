@@ -48,9 +48,13 @@ Vec3d AreaSamples::position(const SurfacePoint& point) const {
 }
 
 std::vector<std::uint32_t> used_vertices(const Surface& surface) {
+  return used_vertices(surface, surface.triangles.size());
+}
+
+std::vector<std::uint32_t> used_vertices(const Surface& surface, std::size_t triangle_count) {
   std::vector<std::uint8_t> is_used(surface.positions.size(), 0);
-  for (const auto& t : surface.triangles) {
-    for (const std::uint32_t v : t) is_used[v] = 1;
+  for (std::size_t t = 0; t < triangle_count; ++t) {
+    for (const std::uint32_t v : surface.triangles[t]) is_used[v] = 1;
   }
   std::vector<std::uint32_t> used;
   used.reserve(static_cast<std::size_t>(std::count(is_used.begin(), is_used.end(), 1)));

@@ -35,5 +35,7 @@ class AreaSamples {
 
 /// The vertices that triangles use, ascending.
 [[nodiscard]] std::vector<std::uint32_t> used_vertices(const Surface& surface);
+/// Of the first triangles alone.
+[[nodiscard]] std::vector<std::uint32_t> used_vertices(const Surface& surface, std::size_t triangle_count);
 
 }  // namespace meshlode::judge

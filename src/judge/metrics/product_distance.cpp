@@ -73,7 +73,8 @@ Measured<N> make_measured(const ShadedSurface& s, const ProductScales& scales, c
   }
   std::vector<std::uint32_t> id_of_vertex(vertices.size(), 0xFFFFFFFFu);
   std::uint32_t next = sample_count;
-  for (const std::uint32_t v : used_vertices(s.surface)) id_of_vertex[v] = next++;
+  const std::size_t drawn = s.surface.triangles.size() - s.undrawn;
+  for (const std::uint32_t v : used_vertices(s.surface, drawn)) id_of_vertex[v] = next++;
   for (const std::uint32_t triangle : order) {
     for (const std::uint32_t v : s.surface.triangles[triangle]) {
       if (id_of_vertex[v] == 0xFFFFFFFFu) continue;

@@ -36,9 +36,10 @@ class ProductDistanceFrom {
   ~ProductDistanceFrom();
   ProductDistanceFrom(ProductDistanceFrom&&) noexcept;
 
-  /// The two-sided maximum over area-uniform samples (in the area of the positions) and all vertices, and the first
-  /// point where it is found; the same for any thread count. With a weight the largest of weight(position) · distance.
-  /// Infinite where one surface has no triangle and the other has; 0 where both have none.
+  /// The two-sided maximum over area-uniform samples (in the area of the positions) and all vertices, but those of
+  /// undrawn triangles alone, and the first point where it is found; the same for any thread count. With a weight the
+  /// largest of weight(position) · distance. Infinite where one surface has no triangle and the other has; 0 where both
+  /// have none.
   [[nodiscard]] LargestDeviation find_largest(const ShadedSurface& b, const DistanceWeight& weight = {}) const;
 
  private:

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <limits>
 
+#include "judge/metrics/drawn_triangles.h"
 #include "judge/metrics/triangle_area.h"
+#include "judge/metrics/triangle_corners.h"
 
 namespace meshlode::judge {
 namespace {
@@ -32,9 +34,8 @@ void shade_flat(ShadedSurface& out, std::size_t first_triangle) {
   }
 }
 
-}  // namespace
-
-ShadedSurface shaded_surface_of_source(const scene::SourceMesh& mesh) {
+/// The vertices of all primitives, without triangles; flat normals come with these.
+ShadedSurface vertices_of_source(const scene::SourceMesh& mesh) {
   const float unknown = std::numeric_limits<float>::quiet_NaN();
   ShadedSurface out;
   std::array<bool, scene::kMaxUvSets> has_uvs{};
@@ -42,24 +43,68 @@ ShadedSurface shaded_surface_of_source(const scene::SourceMesh& mesh) {
     for (std::size_t n = 0; n < scene::kMaxUvSets; ++n) has_uvs[n] = has_uvs[n] || !p.uvs[n].empty();
   }
   for (const scene::Primitive& p : mesh.primitives) {
-    Surface& s = out.surface;
-    const auto base = static_cast<std::uint32_t>(s.positions.size());
-    const std::size_t first_triangle = s.triangles.size();
-    s.positions.insert(s.positions.end(), p.positions.begin(), p.positions.end());
-    for (std::size_t i = 0; i + 2 < p.indices.size(); i += 3) {
-      const std::uint32_t* corner = &p.indices[i];
-      if (!has_area(p.positions[corner[0]], p.positions[corner[1]], p.positions[corner[2]])) continue;
-      s.triangles.push_back({base + corner[0], base + corner[1], base + corner[2]});
-    }
+    std::vector<Vec3d>& positions = out.surface.positions;
+    positions.insert(positions.end(), p.positions.begin(), p.positions.end());
     for (std::size_t n = 0; n < scene::kMaxUvSets; ++n) {
       if (!has_uvs[n]) continue;
       out.uvs[n].insert(out.uvs[n].end(), p.uvs[n].begin(), p.uvs[n].end());
-      out.uvs[n].resize(s.positions.size(), Vec2f(unknown));
+      out.uvs[n].resize(positions.size(), Vec2f(unknown));
     }
     out.normals.insert(out.normals.end(), p.normals.begin(), p.normals.end());
-    out.normals.resize(s.positions.size(), Vec3f(unknown));
+    out.normals.resize(positions.size(), Vec3f(unknown));
+  }
+  return out;
+}
+
+/// Those triangles of all primitives, of which is_wanted(number among all, corners) is true.
+template <class Wanted>
+void add_triangles(const scene::SourceMesh& mesh, const Wanted& is_wanted, ShadedSurface& out) {
+  std::uint32_t base = 0;
+  std::size_t number = 0;
+  for (const scene::Primitive& p : mesh.primitives) {
+    const std::size_t first_triangle = out.surface.triangles.size();
+    for (std::size_t i = 0; i + 2 < p.indices.size(); i += 3, ++number) {
+      const std::uint32_t* v = &p.indices[i];
+      if (!is_wanted(number, p.positions[v[0]], p.positions[v[1]], p.positions[v[2]])) continue;
+      out.surface.triangles.push_back({base + v[0], base + v[1], base + v[2]});
+    }
+    base += static_cast<std::uint32_t>(p.positions.size());
     if (p.normals.empty()) shade_flat(out, first_triangle);
   }
+}
+
+void add_triangles_with_area(const scene::SourceMesh& mesh, ShadedSurface& out) {
+  add_triangles(
+      mesh, [](std::size_t, const Vec3d& a, const Vec3d& b, const Vec3d& c) { return has_area(a, b, c); }, out);
+}
+
+}  // namespace
+
+ShadedSurface shaded_surface_of_source(const scene::SourceMesh& mesh) {
+  ShadedSurface out = vertices_of_source(mesh);
+  add_triangles_with_area(mesh, out);
+  return out;
+}
+
+ShadedSurface painted_surface_of_source(const scene::SourceMesh& mesh) {
+  std::vector<TriangleCorners::Corners> corners;
+  for (const scene::Primitive& p : mesh.primitives) {
+    for (std::size_t i = 0; i + 2 < p.indices.size(); i += 3) {
+      const std::uint32_t* v = &p.indices[i];
+      corners.push_back({p.positions[v[0]], p.positions[v[1]], p.positions[v[2]]});
+    }
+  }
+  const std::vector<std::uint8_t> is_drawn = find_drawn(corners);
+  ShadedSurface out = vertices_of_source(mesh);
+  add_triangles_with_area(mesh, out);
+  const std::size_t drawn = out.surface.triangles.size();
+  add_triangles(
+      mesh,
+      [&](std::size_t number, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+        return is_drawn[number] != 0 && !has_area(a, b, c);
+      },
+      out);
+  out.undrawn = out.surface.triangles.size() - drawn;
   return out;
 }
 

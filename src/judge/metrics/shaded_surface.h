@@ -19,11 +19,16 @@ struct ShadedSurface {
   Surface surface;
   std::vector<Vec3f> normals;                             ///< of any length above 0
   std::array<std::vector<Vec2f>, scene::kMaxUvSets> uvs;  ///< by TEXCOORD_n
+  std::size_t undrawn = 0;                                ///< so many of the last triangles draw nothing
 };
 
 /// Triangles with area alone, as surface_of_source. A primitive without normals is shaded flat (glTF 2.0, 3.7.2.1): its
 /// triangles get vertices of their own.
 [[nodiscard]] ShadedSurface shaded_surface_of_source(const scene::SourceMesh& mesh);
+
+/// All that belongs into level 0 (drawn_triangles.h): behind these, in the same order, the triangles without area that
+/// lie along edges of others, which draw nothing (`undrawn`). On the asset's grid they may.
+[[nodiscard]] ShadedSurface painted_surface_of_source(const scene::SourceMesh& mesh);
 
 /// Clusters of one mesh as decoded, in mesh space (origin included). No normals where the asset has none by option, a
 /// flat normal per triangle where it says flat. UV sets lie where the source had them.

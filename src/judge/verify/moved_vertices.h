@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "base/vec.h"
-#include "judge/verify/triangle_corners.h"
+#include "judge/metrics/triangle_corners.h"
 #include "judge/verify/triangle_key.h"
 
 namespace meshlode::judge {

@@ -101,7 +101,7 @@ Result<std::vector<CutDeviation>> measure_promised_cuts(const run::Asset& asset,
   run::SelectTables tables = run::tables_of(asset);
   tables.groups = groups;
   const ProductScales scales = scales_of(asset, mesh, promise);
-  const ShadedSurface truth = shaded_surface_of_source(source);
+  const ShadedSurface truth = painted_surface_of_source(source);
   const double rounding = position_rounding(record) + rounding_of(truth, scales);
   const ProductDistanceFrom from_truth(truth, scales, {.samples = samples});
   const auto own = tables.groups.subspan(record.first_group, record.group_count);

@@ -13,10 +13,10 @@
 
 #include "base/parallel.h"
 #include "format/grid.h"
-#include "judge/verify/drawn_triangles.h"
+#include "judge/metrics/drawn_triangles.h"
+#include "judge/metrics/triangle_corners.h"
 #include "judge/verify/moved_vertices.h"
 #include "judge/verify/source_rules.h"
-#include "judge/verify/triangle_corners.h"
 #include "judge/verify/triangle_key.h"
 
 namespace meshlode::judge {

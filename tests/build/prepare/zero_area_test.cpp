@@ -10,8 +10,8 @@
 
 #include <gtest/gtest.h>
 
+#include "judge/metrics/drawn_triangles.h"
 #include "judge/metrics/triangle_area.h"
-#include "judge/verify/drawn_triangles.h"
 #include "support/random.h"
 
 namespace meshlode::build {

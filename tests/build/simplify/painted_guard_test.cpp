@@ -106,7 +106,8 @@ struct Plain {
     const Vec3d n = glm::cross(place(1) - place(0), place(2) - place(0));
     const double length = glm::length(n);
     for (Row& p : t) {
-      for (int k = 0; k < 3 && length > 0.0; ++k) p[8 + static_cast<std::size_t>(k)] = per_object * units.normal * n[k] / length;
+      for (int k = 0; k < 3 && length > 0.0; ++k)
+        p[8 + static_cast<std::size_t>(k)] = per_object * units.normal * n[k] / length;
     }
   }
   static Row mix(const Rows& t, double a, double b, double c) {
@@ -153,7 +154,8 @@ struct Plain {
     };
     double largest = 0.0;
     for (const Rows& t : old) {
-      largest = std::max({largest, nearest(mix(t, 1.0, 0.0, 0.0), made), nearest(mix(t, 1.0 / 3, 1.0 / 3, 1.0 / 3), made)});
+      largest =
+          std::max({largest, nearest(mix(t, 1.0, 0.0, 0.0), made), nearest(mix(t, 1.0 / 3, 1.0 / 3, 1.0 / 3), made)});
       if (!weighed.input.layout.flat_normal) continue;
       largest = std::max({largest, nearest(mix(t, 0.0, 1.0, 0.0), made), nearest(mix(t, 0.0, 0.0, 1.0), made)});
     }
@@ -236,7 +238,8 @@ TEST(PaintedGuard, IsThatOfEveryPointAgainstEveryTriangle) {
     };
     std::vector<WedgeTriangle> triangles;
     const auto other = [&] { return 2 + random.below(count - 2); };
-    for (std::uint32_t n = 1 + random.below(2); n > 0; --n) triangles.push_back({wedge_of(0), wedge_of(1), wedge_of(other())});
+    for (std::uint32_t n = 1 + random.below(2); n > 0; --n)
+      triangles.push_back({wedge_of(0), wedge_of(1), wedge_of(other())});
     for (std::uint32_t n = 1 + random.below(6); n > 0; --n) {
       const std::uint32_t x = other(), y = other();
       if (x != y) triangles.push_back({wedge_of(random.below(2)), wedge_of(x), wedge_of(y)});
@@ -262,6 +265,27 @@ TEST(PaintedGuard, IsThatOfEveryPointAgainstEveryTriangle) {
   }
   EXPECT_GT(moved, 90);
   EXPECT_GT(by_normal, 25);
+}
+
+/// Around a hub of a thousand triangles corners alone are asked about: what is said is no less than what any point
+/// moves.
+TEST(PaintedGuard, AHubIsNeverCheaperThanItsPoints) {
+  constexpr std::uint32_t kSpokes = 400;
+  std::vector<Vec3i> points{{0, 0, 0}};
+  std::vector<WedgeTriangle> triangles;
+  for (std::uint32_t i = 0; i < kSpokes; ++i) {
+    const double turn = 2.0 * 3.14159265358979 * i / kSpokes;
+    points.emplace_back(static_cast<int>(5000.0 * std::cos(turn)), static_cast<int>(5000.0 * std::sin(turn)), 0);
+    triangles.push_back({0, 1 + i, 1 + (i + 1) % kSpokes});
+  }
+  DrawnMesh drawn(points, triangles);
+  SimplifyInput input = two_to_one(drawn);
+  for (std::size_t i = 0; i < input.wedge_attributes.size(); i += 7) input.wedge_attributes[i] += 40.0F;
+  WeighedEdge weighed(drawn, input);
+  const PaintedUnits of = units(1.0, 1.0);
+  const double plain = Plain{weighed, of, 1.0 / (drawn.places.scale() * input.grid.step())}.largest2();
+  EXPECT_GT(plain, 0.0);
+  EXPECT_GE(weighed.distance2(of), plain * (1.0 - 1e-9));
 }
 
 TEST(PaintedGuard, NumbersThatAreNoneDoNotSpread) {

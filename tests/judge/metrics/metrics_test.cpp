@@ -8,6 +8,7 @@
 #include <limits>
 #include <set>
 
+#include "judge/metrics/area_samples.h"
 #include "judge/metrics/cgal_distance.h"
 #include "judge/metrics/metrics.h"
 #include "judge/metrics/shaded_surface.h"
@@ -241,6 +242,24 @@ TEST(Metrics, TheSourceIsItsTrianglesWithArea) {
   EXPECT_EQ(source.triangles[0], (std::array<std::uint32_t, 3>{0, 1, 2}));
   EXPECT_EQ(source.triangles[1], (std::array<std::uint32_t, 3>{0, 4, 5}));
   EXPECT_EQ(shaded_surface_of_source(mesh).surface.triangles.size(), 2U);
+}
+
+/// What is painted is looked for on what draws nothing too, where it lies along edges: of the triangles on lines one
+/// has both of its parts covered by edges of others, one has not.
+TEST(Metrics, WhatIsPaintedLiesOnTrianglesWithoutAreaTooButIsNotAskedAboutThere) {
+  scene::SourceMesh mesh;
+  scene::Primitive& shape = mesh.primitives.emplace_back();
+  shape.positions = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {1, 0, 0}, {0, -2, 0}, {9, 0, 0}};
+  shape.indices = {0, 1, 2, 0, 3, 4, 3, 1, 4, 0, 3, 1, 0, 3, 5};
+  shape.uvs[0].assign(6, Vec2f(0.0F));
+  shape.uvs[0][3] = Vec2f(100.0F, 0.0F);  // of all three that meet there
+  const ShadedSurface painted = painted_surface_of_source(mesh);
+  ASSERT_EQ(painted.surface.triangles.size(), 4U);
+  EXPECT_EQ(painted.undrawn, 1U);
+  EXPECT_EQ(painted.surface.triangles.size(),
+            painted.undrawn + shaded_surface_of_source(mesh).surface.triangles.size());
+  EXPECT_EQ(used_vertices(painted.surface, 1).size(), 3U);
+  EXPECT_EQ(used_vertices(painted.surface).size(), used_vertices(painted.surface, 4).size());
 }
 
 TEST(Metrics, TheLargestDeviationAloneIsTheSameWhereverItLies) {

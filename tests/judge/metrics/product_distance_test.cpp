@@ -314,6 +314,51 @@ TEST(ProductDistance, AnEmptySurfaceIsInfinitelyFar) {
   EXPECT_EQ(largest(square, empty, {}), std::numeric_limits<double>::infinity());
 }
 
+/// A triangle without area far off, behind those of a square.
+ShadedSurface with_strand(ShadedSurface s) {
+  const auto base = static_cast<std::uint32_t>(s.surface.positions.size());
+  for (int k = 0; k < 3; ++k) {
+    s.surface.positions.push_back(Vec3d(5.0 + k, 0.0, 0.0));
+    s.normals.push_back(s.normals[0]);
+    s.uvs[0].push_back(s.uvs[0][0]);
+  }
+  s.surface.triangles.push_back({base, base + 1, base + 2});
+  return s;
+}
+
+TEST(ProductDistance, WhatDrawsNothingIsThereForOthersAlone) {
+  const ShadedSurface square = make_square({});
+  ShadedSurface strand = with_strand(square);
+  EXPECT_GT(largest(square, strand, scales_of(1.0, 1.0)), 4.0) << "were it drawn";
+  EXPECT_GT(largest(strand, square, scales_of(1.0, 1.0)), 4.0);
+  strand.undrawn = 1;
+  EXPECT_LE(largest(square, strand, scales_of(1.0, 1.0)), 1e-12);
+  EXPECT_LE(largest(strand, square, scales_of(1.0, 1.0)), 1e-12);
+  EXPECT_LE(largest(with_strand(square), strand, scales_of(1.0, 1.0)), 1e-9) << "what is drawn there lies on it";
+}
+
+TEST(ProductDistance, OfSinglePointsIsThatOfTheSurfacesAtMost) {
+  RandomSource random(79);
+  const ShadedSurface a = make_soup(random, 60, 1.0), b = make_soup(random, 40, 1.0);
+  const ProductScales scales = scales_of(0.4, 0.3);
+  const ProductSurface from(a, scales), to(b, scales);
+  double farthest = 0.0;
+  for (std::uint32_t t = 0; t < 60; ++t) {
+    for (const auto& [u, v] : {std::array{0.0, 0.0}, std::array{1.0, 0.0}, std::array{0.0, 1.0}})
+      farthest = std::max(farthest, from.distance_to(to, t, u, v));
+    EXPECT_LE(from.distance_to(from, t, 0.2, 0.3), 1e-7) << t;
+  }
+  const LargestDeviation whole = ProductDistanceFrom(a, scales, {.samples = 0}).find_largest(b);
+  ASSERT_TRUE(whole.is_of_a) << "as it falls with this seed";
+  EXPECT_NEAR(farthest, whole.max, 1e-12);
+  // A texture that swam by a tenth, twice as wide: each inner point is off by that.
+  const ShadedSurface here = make_square({}), there = make_square({.left = 0.1});
+  const ProductScales wide = scales_of(2.0, 0.0);
+  EXPECT_GT(ProductSurface(here, wide).distance_to(ProductSurface(there, wide), 0, 0.3, 0.3), 0.01);
+  EXPECT_EQ(ProductSurface(here, wide).distance_to(ProductSurface(ShadedSurface(), wide), 0, 0.3, 0.3),
+            std::numeric_limits<double>::infinity());
+}
+
 TEST(ProductDistance, DoesNotDependOnTheNumberOfThreads) {
   RandomSource random(77);
   const ShadedSurface a = make_soup(random, 400, 1.0), b = make_soup(random, 300, 1.0);

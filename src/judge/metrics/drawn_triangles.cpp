@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "judge/verify/drawn_triangles.h"
+#include "judge/metrics/drawn_triangles.h"
 
 #include <algorithm>
 #include <compare>

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "judge/verify/triangle_corners.h"
+#include "judge/metrics/triangle_corners.h"
 
 namespace meshlode::judge {
 
