@@ -151,7 +151,14 @@ TriangleTree::Items TriangleTree::cut_to_pieces(const Surface& surface) const {
     if (sum <= budget) break;
   }
   Items out{surface, {}, {}};
-  out.items.reserve(count);
+  std::size_t item_count = 0, piece_count = 0;  // room for all of them: growing would hold twice as much for a moment
+  for (const float pieces : wanted) {
+    const auto parts = static_cast<std::size_t>(std::min(double{pieces}, most));
+    item_count += std::max<std::size_t>(1, parts);
+    piece_count += parts > 1 ? parts : 0;
+  }
+  out.items.reserve(item_count);
+  out.pieces.reserve(piece_count);
   for (std::size_t i = 0; i < count; ++i) {
     const std::array<Vec3d, 3> corners = corners_of(i);
     const ExactBox box = box_of(corners[0], corners[1], corners[2]);
