@@ -67,7 +67,7 @@ Status check_options(const PipelineOptions& options, std::size_t mesh_count) {
     return Error{ErrorCode::kUsage, "", "topology is kept by the own simplifier alone"};
   }
   for (std::size_t i = 0; i < mesh_count && options.promise != format::Promise::kPosition; ++i) {
-    if (options.of_mesh(i).error_tier == format::ErrorTier::kMeasured) continue;
+    if (options.of_mesh(i).error_tier != format::ErrorTier::kCertified) continue;  // no bound is known of these
     return Error{
         ErrorCode::kUsage, "",
         std::string("--promise ") + format::name_of(options.promise) + " is measured: give --error-tier measured"};

@@ -291,7 +291,8 @@ std::vector<std::string> random_options(Dice& dice, const RandomScene& scene) {
   }
   if (dice.chance(0.15)) add("--normal-error", number(dice.range(0.02, 5.0)));
   if (dice.chance(0.15)) add("--uv-error", number(dice.octaves(-14, -4)));
-  if (tier >= 0.4 && dice.chance(0.5)) add("--promise", dice.chance(0.5) ? "texels" : "appearance");  // measured
+  const bool is_certified = options.end() != std::find(options.begin(), options.end(), "certified");
+  if (!is_certified && dice.chance(0.5)) add("--promise", dice.chance(0.5) ? "texels" : "appearance");  // measured
   return options;
 }
 

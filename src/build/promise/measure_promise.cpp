@@ -498,11 +498,11 @@ class PromiseMeter {
   Tree tree_;
 };
 
-/// Nothing where the space has positions alone: their errors are known.
+/// Nothing where the space has positions alone and their errors are known.
 std::optional<Measured> measure(const PaintedSource& source, const ProductSpace& space, const LodDag& dag,
                                 const format::MeshRecord& record) {
   const std::size_t dimensions = space.dimensions();
-  if (dimensions <= 3) return std::nullopt;
+  if (dimensions <= 3 && record.error_tier != format::ErrorTier::kQem) return std::nullopt;
   if (dimensions <= 6) return PromiseMeter<6>(source, space, dag, record).measure();
   if (dimensions <= 8) return PromiseMeter<8>(source, space, dag, record).measure();
   return PromiseMeter<14>(source, space, dag, record).measure();

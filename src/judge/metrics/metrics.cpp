@@ -208,7 +208,12 @@ Farthest find_farthest(const PointSequence& points, const TriangleTree& to, doub
 
 struct DeviationFrom::Parts {
   Parts(const Surface& a, const DeviationOptions& o)
-      : surface(a), options(o), points(a, o), tree(a, TriangleTree::Positions::kShared), sequence(points, tree), bounds(bounds_of(a)) {}
+      : surface(a),
+        options(o),
+        points(a, o),
+        tree(a, TriangleTree::Positions::kShared),
+        sequence(points, tree),
+        bounds(bounds_of(a)) {}
   const Surface& surface;
   DeviationOptions options;
   MeasuredPoints points;

@@ -131,7 +131,7 @@ DeviationTotals check_promise(const run::Asset& asset, const scene::Scene& sourc
   DeviationTotals totals;
   std::vector<double> ratios;
   for (std::uint32_t m = 0; m < std::min(asset.meshes().size(), source.meshes.size()); ++m) {
-    if (asset.meshes()[m].error_tier == format::ErrorTier::kQem || has_aggregates(asset, MeshId(m))) continue;
+    if (has_aggregates(asset, MeshId(m))) continue;
     const auto measured = measure_promised_cuts(asset, MeshId(m), source.meshes[m], promise, cuts, samples);
     if (!measured) {
       log.add(Rule::kL204, measured.error().where, measured.error().detail);

@@ -23,7 +23,7 @@ namespace meshlode::judge {
                                                                       format::Promise promise, std::uint32_t cuts,
                                                                       std::uint64_t samples);
 
-/// V209 for one promise: every mesh that is no aggregate and whose tier promises something. A cut fails above
+/// V209 for one promise: every mesh that is no aggregate, in every tier: promises are measured. A cut fails above
 /// 1 + kMeasuredShortfall times what it stores. \pre the asset has the promise
 DeviationTotals check_promise(const run::Asset& asset, const scene::Scene& source, format::Promise promise,
                               std::uint32_t cuts, std::uint64_t samples, RuleLog& log);

@@ -79,6 +79,19 @@ TEST(Plan, StoresNormalsIfASingleOneIsNotItsTrianglesOwn) {
   EXPECT_TRUE(plan_mesh(facets, {}, {AttributeChoice::kAuto}, "m").layout.has_normal);
 }
 
+/// A quarter of a degree is not seen, and is more than a promise of normals allows; what floats lose is not.
+TEST(Plan, WherePromisedNormalsAreFlatOnlyAsFarAsFloatsTell) {
+  scene::SourceMesh facets = scene::as_mesh(scene::with_split_normals(scene::make_sphere(4)));
+  AttributeRequest promised;
+  promised.promises_normals = true;
+  EXPECT_TRUE(plan_mesh(facets, {}, promised, "m").layout.flat_normal);
+  Vec3f& normal = facets.primitives[0].normals[7];
+  normal = glm::normalize(normal + Vec3f(0.003F, 0.003F, -0.003F));
+  EXPECT_TRUE(plan_mesh(facets, {}, {}, "m").layout.flat_normal);
+  EXPECT_TRUE(plan_mesh(facets, {}, promised, "m").layout.has_normal);
+  EXPECT_FALSE(plan_mesh(facets, {}, promised, "m").layout.flat_normal);
+}
+
 TEST(Plan, MissingNormalsAreFlat) {
   const MeshPlan plan = plan_mesh(scene::as_mesh(scene::make_sphere(2)), {}, {AttributeChoice::kAuto}, "m");
   EXPECT_TRUE(plan.layout.flat_normal);
