@@ -173,21 +173,6 @@ std::uint32_t promises_of(format::Promise promise) {
   return 0;
 }
 
-/// What the simplifier weighs by its largest distance. Where texels alone are promised, normals count a little all the
-/// same: else shading would pay for what the texture gains.
-PaintedUnits units_of(const PaintedSource& painted, double diagonal) {
-  constexpr double kShadingShare = 1.0 / 16.0;  // of what appearance counts
-  PaintedUnits units;
-  bool has_texels = false;
-  for (std::size_t set = 0; set < units.uv.size(); ++set) {
-    for (std::size_t axis = 0; axis < 2; ++axis) units.uv[set][axis] = double{painted.units.uv_object[set][axis]};
-    has_texels = has_texels || units.uv[set][0] > 0.0;
-  }
-  units.normal = double{painted.units.normal_object};
-  if (has_texels && units.normal == 0.0) units.normal = kShadingShare * kHighlightRadius * diagonal;
-  return units;
-}
-
 /// The levels of one prepared mesh, whose surface is freed: by distances, by coverage, or each part by its own.
 Result<LodDag> build_levels(PreparedMesh& mesh, const AggregateDecision& aggregate, const Survey& found,
                             const PaintedUnits& painted, const PipelineOptions& options, const MeshOptions& own,
@@ -249,7 +234,7 @@ Result<BuiltMesh> build_mesh(const Source& from, std::size_t index, const Survey
   if (promises != 0 && !aggregate.is_aggregate) {
     painted = keep_painted_source(*mesh, found.extents, options.promise == format::Promise::kAppearance);
   }
-  const PaintedUnits units = painted ? units_of(*painted, mesh->diagonal) : PaintedUnits();
+  const PaintedUnits units = painted ? units_to_simplify_by(*painted, mesh->diagonal) : PaintedUnits();
   const DagOptions coarsening = dag_options(options, own, *mesh, encoding);
   LevelClock levels(index);
   const Result<LodDag> dag = build_levels(*mesh, aggregate, found, units, options, own, encoding,

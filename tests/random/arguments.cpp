@@ -44,6 +44,8 @@ bool parse(int argc, char** argv, Arguments& arguments) {
       arguments.shrink_into = value;
     else if (word == "--rule")
       arguments.rule = value;
+    else if (word == "--promise")
+      arguments.promise = value;
     else if (!is_whole)
       return false;  // NOLINT(bugprone-branch-clone): what follows needs a number
     else if (word == "--jobs")
@@ -68,6 +70,7 @@ int usage() {
   std::fputs(
       "usage: random_scenes run FIRST COUNT [--jobs N] [--max-triangles N] [--max-refused PERCENT]\n"
       "                     [--shrink-into FOLDER] [--verbose] [--without-deviation] [--samples N] [--surgery]\n"
+      "                     [--promise P]   build all of them with it, and with no other of their options\n"
       "                     [--started]   steps are forks of one process a job, which is quicker under sanitizers\n"
       "       random_scenes seeds SEED... [the same]\n"
       "       random_scenes soak FIRST MINUTES [the same]\n"

@@ -116,9 +116,16 @@ void keep_shrunk(std::uint64_t seed, const Entry& entry, const Arguments& argume
   }
 }
 
+/// The scene of a seed as it is built.
+RandomScene scene_of(std::uint64_t seed, const Arguments& arguments) {
+  RandomScene scene = random_scene(seed, arguments.harm);
+  if (!arguments.promise.empty()) scene.build_options = {"--promise", arguments.promise};
+  return scene;
+}
+
 void try_seed(std::uint64_t seed, const Arguments& arguments, const Own& own, Series& series) {
   Entry entry;
-  const RandomScene scene = random_scene(seed, arguments.harm);
+  const RandomScene scene = scene_of(seed, arguments);
   entry.name = "seed " + std::to_string(seed);
   entry.contents = scene.contents;
   entry.triangles = scene.triangle_count();
@@ -172,7 +179,7 @@ RandomScene shrunk(std::uint64_t seed, const std::string& rule, const Arguments&
     options.other_jobs_too = rule == "build:jobs";
     return try_scene(write_glb(scene), options).rules.contains(rule);
   };
-  return shrink_scene(random_scene(seed, arguments.harm), still_fails, arguments.shrink_seconds);
+  return shrink_scene(scene_of(seed, arguments), still_fails, arguments.shrink_seconds);
 }
 
 int run_seeds(const Arguments& arguments, const std::vector<std::uint64_t>& seeds) {

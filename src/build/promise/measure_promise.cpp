@@ -260,7 +260,8 @@ class PromiseMeter {
   }
 
   /// The same near the point itself, at random: what lies elsewhere on a triangle of the source may be another group's.
-  static void climb_near(const Surface& surface, const Tree& other, Far& far, SplitMix64& random) {
+  static void climb_near(const Surface& surface, const Tree& other, Far& far) {
+    SplitMix64 random(0x66726F6DULL + far.triangle);
     double length = 1.0;
     for (int step = 0; step < kNearSteps; ++step, length *= 0.5) {
       for (int i = 0; i < kNearTries; ++i) {
@@ -273,31 +274,11 @@ class PromiseMeter {
     }
   }
 
-  static double climb_near_all(const Surface& surface, const Tree& other, const FarList& list) {
-    double farthest2 = 0.0;
-    for (Far far : list.list()) {
-      SplitMix64 random(0x66726F6DULL + far.triangle);
-      climb_near(surface, other, far, random);
-      farthest2 = std::max(farthest2, far.distance2);
-    }
-    return farthest2;
-  }
-
-  static double climb_all(const Surface& surface, const Tree& other, const FarList& list) {
-    double farthest2 = 0.0;
-    for (Far far : list.list()) {
-      climb(surface, other, far);
-      farthest2 = std::max(farthest2, far.distance2);
-    }
-    return farthest2;
-  }
-
   /// Points of the group against the source. Squared.
   [[nodiscard]] double measure_to_source(const Surface& surface, double farthest2) const {
     const auto count = static_cast<std::uint32_t>(surface.triangles.size());
     const std::size_t more = std::min(kMostOfTriangle, kGroupPoints / std::max(1U, count));
     std::vector<typename Tree::Hit> of_corner(surface.points.size());
-    std::vector<std::uint8_t> is_taken(surface.points.size(), 0);
     FarList list;
     std::uint32_t place = kNoId;
     const auto note = [&](const typename Tree::Hit& hit, std::uint32_t t, double b, double c) {
@@ -329,9 +310,8 @@ class PromiseMeter {
       look(t, 1.0 / 3.0, 1.0 / 3.0);
       for (std::size_t k = 0; k < 3; ++k) {
         // Looked at once, and where it is far each triangle around it may rise from there.
-        if (is_taken[ids[k]] == 0) {
+        if (of_corner[ids[k]].triangle == kNoId) {
           of_corner[ids[k]] = look(t, kCorners[k][0], kCorners[k][1]);
-          is_taken[ids[k]] = 1;
         } else {
           note(of_corner[ids[k]], t, kCorners[k][0], kCorners[k][1]);
         }
@@ -346,7 +326,11 @@ class PromiseMeter {
         look(t, b, c);
       }
     }
-    return std::max(farthest2, climb_all(surface, tree_, list));
+    for (Far far : list.list()) {
+      climb(surface, tree_, far);
+      farthest2 = std::max(farthest2, far.distance2);
+    }
+    return farthest2;
   }
 
   /// Points of the source against the group, each of which finds where it lies there. Squared.
@@ -368,7 +352,11 @@ class PromiseMeter {
       }
     }
     look_between(tree, samples, farthest2, list);
-    return std::max(farthest2, climb_near_all(source_, tree, list));
+    for (Far far : list.list()) {
+      climb_near(source_, tree, far);
+      farthest2 = std::max(farthest2, far.distance2);
+    }
+    return farthest2;
   }
 
   /// Of a triangle of the source that reaches farther than the group is off, the samples that are left say little of

@@ -10,6 +10,10 @@ namespace meshlode::build {
 
 namespace {
 
+/// A normal turned by an angle counts like a way of the angle times this share of the diagonal: what a highlight moves
+/// by on a ball of that radius.
+constexpr double kHighlightRadius = 1.0 / 8.0;
+
 /// A positive, finite float that can be multiplied with.
 bool is_scale(double value) {
   return value >= 0x1p-100 && value <= 0x1p100;
@@ -66,6 +70,19 @@ PaintedSource keep_painted_source(const PreparedMesh& mesh, std::span<const Texe
   }
   for (std::uint32_t set = 0; set < mesh.layout.uv_set_count; ++set) set_uv_units(mesh, extents, set, source);
   return source;
+}
+
+PaintedUnits units_to_simplify_by(const PaintedSource& painted, double diagonal) {
+  constexpr double kShadingShare = 1.0 / 16.0;  // of what appearance counts
+  PaintedUnits units;
+  bool has_texels = false;
+  for (std::size_t set = 0; set < units.uv.size(); ++set) {
+    for (std::size_t axis = 0; axis < 2; ++axis) units.uv[set][axis] = double{painted.units.uv_object[set][axis]};
+    has_texels = has_texels || units.uv[set][0] > 0.0;
+  }
+  units.normal = double{painted.units.normal_object};
+  if (has_texels && units.normal == 0.0) units.normal = kShadingShare * kHighlightRadius * diagonal;
+  return units;
 }
 
 }  // namespace meshlode::build

@@ -12,13 +12,10 @@
 
 #include "build/plan/texel_sizes.h"
 #include "build/prepared.h"
+#include "build/promise/painted_units.h"
 #include "scene/scene.h"
 
 namespace meshlode::build {
-
-/// A normal turned by an angle counts like a way of the angle times this share of the diagonal: what a highlight moves
-/// by on a ball of that radius.
-constexpr double kHighlightRadius = 1.0 / 8.0;
 
 struct PaintedSource {
   AttributeLayout layout;
@@ -36,5 +33,9 @@ struct PaintedSource {
 /// A set that nothing samples, or that covers no texel, is no part: 0 0.
 [[nodiscard]] PaintedSource keep_painted_source(const PreparedMesh& mesh, std::span<const TexelExtents> extents,
                                                 bool has_normals);
+
+/// What the simplifier is to weigh by its largest distance. Where texels alone are promised, normals count a little all
+/// the same: else shading would pay for what the texture gains.
+[[nodiscard]] PaintedUnits units_to_simplify_by(const PaintedSource& painted, double diagonal);
 
 }  // namespace meshlode::build

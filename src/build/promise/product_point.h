@@ -54,4 +54,16 @@ double product_distance2(const ProductPoint<D>& q, const ProductPoint<D>& a, con
   return at(vb / sum, vc / sum);
 }
 
+/// Squared distance of q from the box between two corners.
+template <std::size_t D, class Real>
+double product_distance2_to_box(const ProductPoint<D>& q, const std::array<Real, D>& low,
+                                const std::array<Real, D>& high) {
+  double sum = 0.0;
+  for (std::size_t d = 0; d < D; ++d) {
+    const double off = std::max({double{low[d]} - q[d], q[d] - double{high[d]}, 0.0});
+    sum += off * off;
+  }
+  return sum;
+}
+
 }  // namespace meshlode::build

@@ -100,13 +100,7 @@ class ProductTree {
   };
 
   [[nodiscard]] double distance2_of(const ProductPoint<D>& q, std::uint32_t index) const {
-    const Node& node = nodes_[index];
-    double sum = 0.0;
-    for (std::size_t d = 0; d < D; ++d) {
-      const double off = std::max({double{node.low[d]} - q[d], q[d] - double{node.high[d]}, 0.0});
-      sum += off * off;
-    }
-    return sum;
+    return product_distance2_to_box<D>(q, nodes_[index].low, nodes_[index].high);
   }
 
   void take(const ProductPoint<D>& q, std::uint32_t triangle, Hit& best) const {

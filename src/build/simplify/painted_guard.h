@@ -103,7 +103,8 @@ class PaintedGuard {
     double nearest = distance2_to(point, surface[first]);
     if (nearest <= largest) return;
     for (std::size_t i = 0; i < surface.size(); ++i) {
-      if (i == first || !(distance2_to_box(point, surface[i]) < nearest)) continue;
+      if (i == first || !(product_distance2_to_box<kDimensions>(point, surface[i].low, surface[i].high) < nearest))
+        continue;
       nearest = std::min(nearest, distance2_to(point, surface[i]));
       if (nearest <= largest) return;
     }
@@ -113,14 +114,6 @@ class PaintedGuard {
   static double distance2_to(const Point& point, const Facet& facet) {
     const auto& [a, b, c] = facet.corners;
     return product_distance2<kDimensions>(point, a, b, c);
-  }
-  static double distance2_to_box(const Point& point, const Facet& facet) {
-    double sum = 0.0;
-    for (std::size_t d = 0; d < kDimensions; ++d) {
-      const double off = std::max(std::max(facet.low[d] - point[d], point[d] - facet.high[d]), 0.0);
-      sum += off * off;
-    }
-    return sum;
   }
   static void finish(Facet& facet) {
     const auto& [a, b, c] = facet.corners;

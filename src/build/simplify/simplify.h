@@ -17,15 +17,10 @@
 #include "build/experiment.h"
 #include "build/lod_dag.h"
 #include "build/prepared.h"
+#include "build/promise/painted_units.h"
 #include "format/grid.h"
 
 namespace meshlode::build {
-
-/// What a promise counts beside positions (docs/selection.md), object units; 0: nothing.
-struct PaintedUnits {
-  double normal = 0.0;                                        ///< of a unit normal
-  std::array<std::array<double, 2>, scene::kMaxUvSets> uv{};  ///< of a UV unit in u and v, by stored set
-};
 
 struct SimplifyOptions {
   std::uint32_t target_triangles = 0;  ///< stop at or below this

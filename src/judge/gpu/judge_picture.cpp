@@ -428,19 +428,6 @@ Result<PictureReport> judge_picture(const run::Asset& asset, const PictureSource
   return out;
 }
 
-std::vector<PaintedSurface> painted_surfaces(const run::Asset& asset, const scene::Scene& scene) {
-  std::vector<PaintedSurface> out;
-  if (asset.chosen_promise() == format::Promise::kPosition) return out;
-  const std::size_t count = std::min(asset.meshes().size(), scene.meshes.size());
-  out.reserve(count);
-  for (std::size_t m = 0; m < count; ++m) {
-    const ProductScales scales = scales_of(asset, MeshId(m), asset.chosen_promise());
-    const ShadedSurface truth = painted_surface_of_source(scene.meshes[m]);
-    out.push_back({scales, ProductSurface(truth, scales), rounding_of(truth, scales)});
-  }
-  return out;
-}
-
 draw::Image heat_map(std::span<const float> values, std::uint32_t width, std::uint32_t height, float full) {
   draw::Image image;
   image.width = width;

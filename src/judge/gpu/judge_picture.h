@@ -10,8 +10,6 @@
 
 #include "draw/raster/raster.h"
 #include "judge/gpu/source_picture.h"
-#include "judge/metrics/product_distance.h"
-#include "judge/metrics/product_scales.h"
 #include "run/decode/decode.h"
 #include "run/read/asset.h"
 #include "run/select/select.h"
@@ -45,16 +43,6 @@ struct PictureReport {
 
 /// Silhouettes may move by a pixel, and a pixel is one sample.
 constexpr int kHoleRadius = 2;
-
-/// A mesh of the source with what is painted on it, in the units of the asset's chosen promise.
-struct PaintedSurface {
-  ProductScales scales;
-  ProductSurface surface;  ///< its first triangles are those of the SourceSurface
-  double rounding = 0.0;   ///< rounding_of()
-};
-
-/// Every mesh of the scene that the asset has, in order; none where positions alone are promised.
-[[nodiscard]] std::vector<PaintedSurface> painted_surfaces(const run::Asset& asset, const scene::Scene& scene);
 
 /// What pictures of an asset are judged by.
 struct PictureSource {

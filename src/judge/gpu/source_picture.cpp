@@ -7,6 +7,7 @@
 #include "base/parallel.h"
 #include "draw/raster/coverage.h"
 #include "draw/raster/screen.h"
+#include "judge/metrics/shaded_surface.h"
 
 namespace meshlode::judge {
 
@@ -52,6 +53,19 @@ std::vector<SourceSurface> source_surfaces(const scene::Scene& scene) {
     Surface surface = surface_of_source(mesh);
     if (sides.size() != surface.triangles.size()) sides.clear();
     out.emplace_back(std::move(surface), std::move(sides));
+  }
+  return out;
+}
+
+std::vector<PaintedSurface> painted_surfaces(const run::Asset& asset, const scene::Scene& scene) {
+  std::vector<PaintedSurface> out;
+  if (asset.chosen_promise() == format::Promise::kPosition) return out;
+  const std::size_t count = std::min(asset.meshes().size(), scene.meshes.size());
+  out.reserve(count);
+  for (std::size_t m = 0; m < count; ++m) {
+    const ProductScales scales = scales_of(asset, MeshId(m), asset.chosen_promise());
+    const ShadedSurface truth = painted_surface_of_source(scene.meshes[m]);
+    out.push_back({scales, ProductSurface(truth, scales), rounding_of(truth, scales)});
   }
   return out;
 }

@@ -8,6 +8,8 @@
 
 #include "draw/raster/projection.h"
 #include "draw/raster/raster.h"
+#include "judge/metrics/product_distance.h"
+#include "judge/metrics/product_scales.h"
 #include "judge/metrics/triangle_tree.h"
 #include "run/read/asset.h"
 #include "scene/scene.h"
@@ -26,6 +28,16 @@ struct SourceSurface {
 
 /// Every mesh of the scene, in order.
 [[nodiscard]] std::vector<SourceSurface> source_surfaces(const scene::Scene& scene);
+
+/// A mesh of the source with what is painted on it, in the units of the asset's chosen promise.
+struct PaintedSurface {
+  ProductScales scales;
+  ProductSurface surface;  ///< its first triangles are those of the SourceSurface
+  double rounding = 0.0;   ///< rounding_of()
+};
+
+/// Every mesh of the scene that the asset has, in order; none where positions alone are promised.
+[[nodiscard]] std::vector<PaintedSurface> painted_surfaces(const run::Asset& asset, const scene::Scene& scene);
 
 /// The source drawn for each instance of the asset, as draw_cut() draws the asset: culled by side, opaque. Items are
 /// instances, triangles those of their mesh's surface. Meshes that `source` does not have are not drawn.

@@ -13,21 +13,11 @@
 #include "judge/validate/judged_sample.h"
 #include "judge/verify/texel_budget.h"
 #include "run/read/asset.h"
+#include "support/png_header.h"
 #include "support/sample_asset.h"
 
 namespace meshlode::judge {
 namespace {
-
-/// A PNG's signature and header.
-std::vector<std::uint8_t> png_of(std::uint32_t width, std::uint32_t height) {
-  std::vector<std::uint8_t> bytes{0x89, 'P', 'N', 'G', 0x0D, 0x0A, 0x1A, 0x0A, 0, 0, 0, 13, 'I', 'H', 'D', 'R'};
-  for (const std::uint32_t size : {width, height}) {
-    for (std::uint32_t shift = 32; shift > 0; shift -= 8)
-      bytes.push_back(static_cast<std::uint8_t>(size >> (shift - 8)));
-  }
-  for (const int b : {8, 6, 0, 0, 0, 0, 0, 0, 0}) bytes.push_back(static_cast<std::uint8_t>(b));
-  return bytes;
-}
 
 std::vector<std::optional<double>> same_for_all(const run::Asset& asset, double texels) {
   return std::vector<std::optional<double>>(asset.meshes().size(), texels);
@@ -36,7 +26,7 @@ std::vector<std::optional<double>> same_for_all(const run::Asset& asset, double 
 /// The sample, whose materials all sample one texture of this width by each of their coordinates.
 scene::Scene scene_with(std::uint32_t width) {
   scene::Scene scene = test::sample_scene();
-  scene.blobs[0].bytes = png_of(width, 4);
+  scene.blobs[0].bytes = test::png_of(width, 4);
   for (scene::SceneMaterial& material : scene.materials) {
     const auto add = [&](std::uint32_t uv_set, std::array<double, 2> scale) {
       scene::TextureUse& use = material.textures.emplace_back();
@@ -74,7 +64,7 @@ TEST(TexelBudget, ImagesOfUnknownKindsHaveNoSize) {
   EXPECT_FALSE(stated_image_size({}));
   const std::vector<std::uint8_t> dds{'D', 'D', 'S', ' ', 124, 0, 0, 0, 0, 0, 0, 0, 4, 0, 0, 0, 4, 0, 0, 0};
   EXPECT_FALSE(stated_image_size(dds));
-  const auto png = png_of(7, 9);
+  const auto png = test::png_of(7, 9);
   for (std::size_t size = 0; size < png.size(); ++size) (void)stated_image_size(std::span(png).first(size));
   ASSERT_TRUE(stated_image_size(png));
   EXPECT_EQ(stated_image_size(png)->second, 9U);
