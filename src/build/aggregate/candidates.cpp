@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdlib>
 #include <map>
 
 #include "build/aggregate/symmetric.h"
@@ -46,7 +47,6 @@ Splat splat_of(const Card& card) {
   splat.half_u = card.half_u;
   splat.half_v = card.half_v;
   splat.area = card.area;
-  splat.most_area = 1e300;
   splat.is_blade = card.half_u >= kSlender * card.half_v;
   splat.material = card.material;
   return splat;
@@ -128,8 +128,6 @@ void shape_as_slice(const Block& block, Splat& splat) {
   splat.axis_v = glm::cross(normal, splat.axis_u);
   splat.half_u = 2.0 / std::sqrt(std::max(axes.value[1], 1e-300));
   splat.half_v = 2.0 / std::sqrt(std::max(axes.value[0], 1e-300));
-  constexpr double kPi = 3.14159265358979;
-  splat.most_area = 2.0 * kPi * splat.half_u * splat.half_v;  // more would stick out of the block
 }
 
 /// Those of the member whose plane it is: means of texture coordinates would belong to no leaf.

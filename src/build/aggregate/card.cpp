@@ -28,7 +28,7 @@ Corners Splat::corners(double factor) const {
   // ellipse it has the ellipse's second moments but for a factor, which the area decides.
   constexpr double kUnitArea = 1.299038105676658;  // 3 sqrt(3) / 4
   constexpr double kHalfSide = 0.8660254037844386;
-  const double wanted = std::min(factor * area, most_area);
+  const double wanted = factor * area;
   if (is_blade) {
     const Vec3d half = half_blade(*this);
     const Vec3d side = axis_v * (wanted / std::max(kLengthOfHalf * half_u, 1e-300) * ((turn & 1U) != 0 ? -1.0 : 1.0));

@@ -36,7 +36,6 @@ struct Splat {
   Vec3d center{0.0}, axis_u{0.0}, axis_v{0.0};
   double half_u = 0.0, half_v = 0.0;  ///< its shape, and of a blade its length
   double area = 0.0;                  ///< at a factor of 1
-  double most_area = 0.0;             ///< whatever the factor
   bool is_blade = false;              ///< keeps its length: only its width changes with the area
   std::uint32_t turn = 0;             ///< 0 … 3: which way up
   std::uint32_t material = 0;         ///< of the source
@@ -45,7 +44,7 @@ struct Splat {
   /// centroid.
   void stretch_to_blade(double times);
 
-  /// Counter-clockwise around u × v; of the area min(factor · area, most_area). A blade is as long as the
+  /// Counter-clockwise around u × v; of factor · area. A blade is as long as the
   /// card that it was, others have the shape's second moments.
   [[nodiscard]] Corners corners(double factor) const;
 };

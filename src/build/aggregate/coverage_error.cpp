@@ -129,12 +129,19 @@ Cover cover_of(std::span<const SampleMask> groups) {
   return cover;
 }
 
-/// Squares of what one proposal changes, for each pixel size. `before`: the group's own samples.
-Squares squares_of_change(const SampleMask& before, const SampleMask& after, const Cover& cover, std::size_t octaves) {
+/// What one proposal changes.
+struct Change {
+  Squares squares;         ///< for each pixel size
+  std::int64_t shift = 0;  ///< how many samples more are covered
+};
+
+/// `before`: the group's own samples.
+Change change_of(const SampleMask& before, const SampleMask& after, const Cover& cover, std::size_t octaves) {
   MaskBox box = before.box();
   box.include(after.box());
-  if (box.is_empty()) return Squares(2 * octaves, 0);
+  if (box.is_empty()) return {Squares(2 * octaves, 0), 0};
   BlockCounts counts(box);
+  std::int64_t shift = 0;
   for (int y = box.first_row; y < box.end_row; y += 2) {
     for (int x = box.first_word; x < box.end_word; ++x) {
       std::array<std::uint64_t, 2> gone{}, come{};
@@ -149,9 +156,10 @@ Squares squares_of_change(const SampleMask& before, const SampleMask& after, con
       const auto row = static_cast<std::size_t>(y - box.first_row) / 2;
       counts.add_word(word, row, gone[0], gone[1], -1);
       counts.add_word(word, row, come[0], come[1], 1);
+      shift += std::popcount(come[0]) + std::popcount(come[1]) - std::popcount(gone[0]) - std::popcount(gone[1]);
     }
   }
-  return squares_of(std::move(counts), octaves);
+  return {squares_of(std::move(counts), octaves), shift};
 }
 
 Squares squares_of_all(const SampleMask& all, std::size_t octaves) {
@@ -182,7 +190,8 @@ struct Trial {
 /// One spacing, one view: what every open trial changes.
 struct ViewResult {
   Squares whole;
-  std::vector<Squares> change;  ///< by trial
+  std::int64_t covered = 0;    ///< samples of the whole mesh
+  std::vector<Change> change;  ///< by trial
 };
 
 /// Masks of a level's groups from those of leaves.
@@ -231,7 +240,9 @@ ViewResult look(std::span<const SampleMask> leaves, const Lattice& lattice, cons
                 std::span<const std::vector<GroupProposals>> levels, std::span<const Trial> trials, std::size_t step) {
   ViewResult result;
   result.change.resize(trials.size());
-  result.whole = squares_of_all(cover_of(leaves).once, step + 1);
+  const SampleMask whole = cover_of(leaves).once;
+  result.whole = squares_of_all(whole, step + 1);
+  result.covered = static_cast<std::int64_t>(whole.count());
   for (std::size_t level = 0, first = 0; level < levels.size(); ++level) {
     std::size_t end = first;
     bool is_any_open = false;
@@ -246,8 +257,7 @@ ViewResult look(std::span<const SampleMask> leaves, const Lattice& lattice, cons
         const std::size_t octaves = trial.octaves_at(step);
         if (octaves == 0) return;
         const std::vector<Corners>& triangles = levels[level][trial.group].proposals[trial.proposal].triangles;
-        result.change[first + i] =
-            squares_of_change(masks[trial.group], mask_of(lattice, view, triangles), cover, octaves);
+        result.change[first + i] = change_of(masks[trial.group], mask_of(lattice, view, triangles), cover, octaves);
       });
     }
     first = end;
@@ -319,15 +329,21 @@ void measure_proposals(const SourceSurface& source, const MeshFrame& frame, cons
       Trial& trial = trials[i];
       const std::size_t octaves = trial.octaves_at(step);
       const double share = levels[trial.level][trial.group].share;
+      Proposal& proposal = levels[trial.level][trial.group].proposals[trial.proposal];
+      for (std::size_t v = 0; v < kViews && octaves > 0; ++v) {
+        proposal.shifts[v] = of_view[v].covered > 0 ? static_cast<double>(of_view[v].change[i].shift) /
+                                                          static_cast<double>(of_view[v].covered)
+                                                    : 0.0;
+      }
       for (std::size_t s = 0; s < 2 * octaves && trial.is_open; ++s) {
         double whole = 0.0, change = 0.0;
         for (const ViewResult& result : of_view) {
           whole += static_cast<double>(result.whole[2 * (step + 1 - octaves) + s]);
-          change += static_cast<double>(result.change[i][s]);
+          change += static_cast<double>(result.change[i].squares[s]);
         }
         const double size = pixel_size(spacing, octaves, s);
         const double error = whole > 0.0 && share > 0.0 ? std::sqrt(change / (share * whole)) : 0.0;
-        levels[trial.level][trial.group].proposals[trial.proposal].noise.points.push_back({size, error});
+        proposal.noise.points.push_back({size, error});
         trial.is_open = error <= kLoosestNoise;
       }
     }

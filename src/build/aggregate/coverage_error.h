@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "build/aggregate/card.h"
-#include "build/aggregate/noise_limits.h"
+#include "build/aggregate/noise_budget.h"
 #include "build/aggregate/pieces.h"
 #include "build/aggregate/views.h"
 #include "build/prepared.h"
@@ -23,8 +23,8 @@ namespace meshlode::build {
 /// How large the error of a cut may be. A fifth is noise of some 16 samples a pixel; other directions have some percent
 /// more.
 constexpr double kMostCoverageError = 0.19;
-/// How much more or less of all pictures may be covered.
-constexpr double kMostCoverageShift = 0.02;
+/// How much more or less of all pictures may be covered; from other directions it may be as much again.
+constexpr double kMostCoverageShift = 0.01;
 
 /// What pieces cover, triangle by triangle, and where they are.
 class SourceSurface {
@@ -62,6 +62,7 @@ struct MeshFrame {
 /// One way of thinning out one group: the triangles that would replace its pieces.
 struct Proposal {
   std::vector<Corners> triangles;
+  std::array<double, kViews> shifts{};  ///< out: by view, how much more is covered, of what the whole mesh covers
   NoiseCurve noise;  ///< out: the error by pixel size, down to where it is above kLoosestNoise or pixels are small
 };
 

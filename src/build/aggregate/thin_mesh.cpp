@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -11,7 +12,7 @@
 #include "build/aggregate/blocks.h"
 #include "build/aggregate/candidates.h"
 #include "build/aggregate/coverage_error.h"
-#include "build/aggregate/noise_limits.h"
+#include "build/aggregate/noise_budget.h"
 
 namespace meshlode::build {
 
@@ -20,7 +21,11 @@ namespace {
 constexpr double kMostInAView = 0.75;        // more or less: a level that shows a view so much else stands for nothing
 constexpr std::size_t kFewestTriangles = 8;  // a level below would be a handful of cards across the whole mesh
 constexpr std::size_t kFewCards = 512;       // of a whole mesh: they are seen from more directions
-constexpr double kFinestPixels = 110.0;      // pixels along the mesh's longest side: below, levels are not told apart
+constexpr std::size_t kFewGroups = 1;        // so many are hardly out of step: levels lie closer together
+// What single views may show more or less where a mesh is at least so many pixels across. From 37 directions some show
+// half as much again as the worst of thirteen.
+constexpr double kMostViewShift = 0.10, kViewsHeldFrom = 30.0;
+constexpr double kFinestPixels = 110.0;  // pixels along the mesh's longest side: below, levels are not told apart
 
 MeshFrame frame_of(const PreparedMesh& mesh) {
   Vec3d low = mesh.exact_positions[mesh.exact_triangles[0][0]], high = low;
@@ -41,9 +46,16 @@ struct Leaves {
   std::vector<std::uint32_t> first_card;  ///< by leaf, into `cards`
   std::vector<std::uint32_t> cards;       ///< of PieceCards, in the order of leaves
 
+  /// Before each leaf, how many triangles the leaves so far have in the first level: a card each, and of single
+  /// triangles, which are one card already, half as many.
+  std::vector<std::size_t> first_level;
+
   [[nodiscard]] std::size_t size() const { return triangles.size(); }
   [[nodiscard]] std::span<const std::uint32_t> cards_of(std::uint32_t first_leaf, std::uint32_t end_leaf) const {
     return {cards.data() + first_card[first_leaf], first_card[end_leaf] - first_card[first_leaf]};
+  }
+  [[nodiscard]] std::size_t triangle_count(std::uint32_t first_leaf, std::uint32_t end_leaf) const {
+    return triangles.first[end_leaf] - triangles.first[first_leaf];
   }
 };
 
@@ -64,6 +76,7 @@ Leaves make_leaves(const PreparedMesh& mesh, const ByPiece& pieces, const PieceC
   const Blocks blocks = split_by_weight(centers, weights, leaves.depth);
   leaves.triangles.first.push_back(0);
   leaves.first_card.push_back(0);
+  leaves.first_level.push_back(0);
   for (std::size_t leaf = 0; leaf < blocks.size(); ++leaf) {
     const auto in_leaf = blocks.of(leaf);
     std::vector<Vec3d> points;
@@ -77,6 +90,9 @@ Leaves make_leaves(const PreparedMesh& mesh, const ByPiece& pieces, const PieceC
     }
     leaves.triangles.first.push_back(static_cast<std::uint32_t>(leaves.triangles.items.size()));
     leaves.first_card.push_back(static_cast<std::uint32_t>(leaves.cards.size()));
+    const std::size_t cards_of_leaf = leaves.first_card[leaf + 1] - leaves.first_card[leaf];
+    const std::size_t half = (leaves.triangles.of(leaf).size() + 1) / 2;
+    leaves.first_level.push_back(leaves.first_level.back() + std::min(cards_of_leaf, half));
   }
   return leaves;
 }
@@ -122,15 +138,16 @@ void leave_out_unfair(std::span<Fitted> ways) {
   }
 }
 
-/// Finds the factor for which the splats, which have an area, cover as much as the source, over all views.
-void fit_factor(const MeshFrame& frame, const Covered& covered, const Sampling& sampling, double area, Fitted& way) {
+/// Finds the factor for which the splats, which have an area, cover as much as the source, over all views. It begins
+/// with the one given.
+void fit_factor(const MeshFrame& frame, const Covered& covered, const Sampling& sampling, double area, double& factor,
+                Fitted& way) {
   constexpr double kCloseEnough = 0.004;
   constexpr int kFactorSteps = 12;
   const double spacing = sampling.spacing_of(area, way.splats.splats.size());
   const double weight = spacing * spacing / (sampling.spacing * sampling.spacing);  // in samples of the source
   const double wanted = sampling.sum(covered);
   if (!(wanted > 0.0)) return;
-  double factor = 1.0;
   double low = 0.0, low_count = 0.0, high = 0.0, high_count = 0.0;
   Covered now;
   for (int step = 0; step < kFactorSteps; ++step) {
@@ -166,14 +183,36 @@ void fit_factor(const MeshFrame& frame, const Covered& covered, const Sampling& 
 
 /// Where a block has few members, what stays in place is nearest to the picture; where it has many, what is spread. A
 /// way that is not tried where another is better takes no time.
-bool is_worth_trying(Thinning thinning, int level) {
+bool is_worth_trying(Thinning thinning, double members) {
   switch (thinning) {
-    case Thinning::kInPlace: return level <= 2;
+    case Thinning::kInPlace: return members < 3.0;
     case Thinning::kMoved: return true;
-    case Thinning::kNeedle: return level >= 3;
-    case Thinning::kMerged: return level >= 4;
+    case Thinning::kNeedle: return members > 3.0;
+    case Thinning::kMerged: return members > 7.0;
   }
   return false;
+}
+
+/// How a level is made from the finest one.
+struct LevelPlan {
+  std::uint32_t run = 1;  ///< leaves of a group
+  double members = 1.0;   ///< cards of a block, about
+};
+
+/// Half as many cards each and groups of twice as many leaves; where groups are few, half of that way.
+std::vector<LevelPlan> plan_levels(std::size_t leaves, std::size_t cards) {
+  constexpr int kMostLevels = 80;
+  std::vector<LevelPlan> levels;
+  LevelPlan next;
+  bool is_between = false;
+  while (static_cast<double>(cards) / next.members >= static_cast<double>(kFewestTriangles) &&
+         levels.size() < kMostLevels) {
+    levels.push_back(next);
+    is_between = leaves / next.run <= kFewGroups && !is_between;
+    next.members *= leaves / next.run <= kFewGroups ? std::sqrt(2.0) : 2.0;
+    if (!is_between) next.run = std::min(2 * next.run, static_cast<std::uint32_t>(leaves));
+  }
+  return levels;
 }
 
 class Thinner {
@@ -191,7 +230,8 @@ class Thinner {
     const double width = std::sqrt(drawn_area_ / static_cast<double>(std::max<std::size_t>(1, cards_.cards.size())));
     fit_ = {views(), kViews, std::max(0.5 * width, frame_.longest / 4096.0), 8.0};
     std::vector<std::uint32_t> runs;
-    for (int level = 1; level <= leaves_.depth + 1; ++level) runs.push_back(run_length(level));
+    for (int doublings = 0; doublings <= leaves_.depth; ++doublings)
+      runs.push_back(1U << static_cast<unsigned>(doublings));
     covered_ = covered_samples(source_, frame_, leaves_.triangles, fit_.spacing, fit_.views, runs);
     // Of a few thousand cards more samples.
     const double finer = std::min(1.0, std::sqrt(static_cast<double>(cards_.cards.size()) / 4096.0));
@@ -201,39 +241,33 @@ class Thinner {
   ThinMesh run() {
     std::vector<std::vector<GroupProposals>> proposals;
     std::vector<std::vector<std::vector<Fitted>>> fitted;
-    for (int level = 1; leaves_.cards.size() >> static_cast<unsigned>(level - 1) >= kFewestTriangles && level < 40;
-         ++level) {
-      const bool is_whole = run_length(level) == leaves_.size();
-      if (is_whole && seen_by_many_.empty() && leaves_.cards.size() >> static_cast<unsigned>(level - 1) <= kFewCards) {
-        if (!fitted.empty()) look_from_many_views_at_groups(fitted.back());
+    for (const LevelPlan& level : plan_levels(leaves_.size(), leaves_.first_level.back())) {
+      const bool is_whole = level.run == leaves_.size();
+      const double cards = static_cast<double>(leaves_.first_level.back()) / level.members;
+      if (is_whole && seen_by_many_.empty() && cards <= static_cast<double>(kFewCards)) {
+        if (!fitted.empty()) look_from_many_views(fitted.back());
         if (seen_by_many_.empty()) {
           const std::array<std::uint32_t, 1> all{static_cast<std::uint32_t>(leaves_.size())};
           seen_by_many_ = covered_samples(source_, frame_, leaves_.triangles, few_.spacing, few_.views, all)[0][0];
         }
       }
       fitted.push_back(fit_level(level));
-      if (is_whole && seen_by_many_.empty()) look_from_many_views(fitted.back().front());
+      if (is_whole && seen_by_many_.empty()) look_from_many_views(fitted.back());
       proposals.push_back(proposals_of(level, fitted.back()));
     }
     measure_proposals(source_, frame_, leaves_.triangles, frame_.longest / kFinestPixels, proposals);
     ThinMesh out;
-    const std::vector<double> limits = limits_of(proposals);
-    for (std::size_t l = 0; l < proposals.size(); ++l) out.levels.push_back(choose(proposals[l], fitted[l], limits[l]));
+    const std::vector<std::vector<NoiseUse>> uses = uses_of(proposals);
+    for (std::size_t l = 0; l < proposals.size(); ++l) out.levels.push_back(choose(proposals[l], fitted[l], uses[l]));
     out.leaf_triangles = std::move(leaves_.triangles);
     return out;
   }
 
  private:
-  /// What many cards in one group cover stands for what the pieces do, if it does: such a sum hangs on no card's
-  /// direction, and the pieces of a large mesh need not be drawn so often.
-  void look_from_many_views(std::span<const Fitted> whole) {
-    const auto way = std::find_if(whole.begin(), whole.end(), [](const Fitted& f) { return f.is_there; });
-    if (way != whole.end()) seen_by_many_ = covered_samples(frame_, way->triangles, few_.spacing, few_.views);
-  }
-
-  /// The same where the cards are in several groups, each of which covers what its own pieces do. Together they hide
-  /// more or less of each other than these: by how much, the usual views tell.
-  void look_from_many_views_at_groups(std::span<const std::vector<Fitted>> groups) {
+  /// What many cards cover stands for what the pieces do, if there is a way for each group: such a sum hangs on no
+  /// card's direction, and the pieces of a large mesh need not be drawn so often. Together they cover a little more or
+  /// less, as they hide each other and no factor is exact: how much, the usual views tell.
+  void look_from_many_views(std::span<const std::vector<Fitted>> groups) {
     std::vector<Corners> all;
     for (const std::vector<Fitted>& ways : groups) {
       const auto way = std::find_if(ways.begin(), ways.end(), [](const Fitted& f) { return f.is_there; });
@@ -249,63 +283,62 @@ class Thinner {
     }
   }
 
-  /// Leaves of a group of a level: those of level 1 are single leaves.
-  [[nodiscard]] std::uint32_t run_length(int level) const {
-    return 1U << static_cast<unsigned>(std::min(level - 1, leaves_.depth));
-  }
-
   /// Group by group, every way of thinning it out.
-  [[nodiscard]] std::vector<std::vector<Fitted>> fit_level(int level) const {
-    const std::uint32_t run = run_length(level);
-    std::vector<std::vector<Fitted>> fitted(leaves_.size() / run);
+  [[nodiscard]] std::vector<std::vector<Fitted>> fit_level(const LevelPlan& level) const {
+    std::vector<std::vector<Fitted>> fitted(leaves_.size() / level.run);
     parallel_for_each_index(fitted.size(), 1, [&](std::size_t g) {
-      const auto first = static_cast<std::uint32_t>(g * run);
-      fitted[g] = fit_group(level, first, first + run);
+      const auto first = static_cast<std::uint32_t>(g * level.run);
+      fitted[g] = fit_group(level, first, first + level.run);
     });
     return fitted;
   }
 
-  [[nodiscard]] std::vector<Fitted> fit_group(int level, std::uint32_t first, std::uint32_t end) const {
+  [[nodiscard]] std::vector<Fitted> fit_group(const LevelPlan& level, std::uint32_t first, std::uint32_t end) const {
     const auto chosen = leaves_.cards_of(first, end);
     std::vector<Fitted> ways;
     if (chosen.empty()) return ways;
-    if (level == 1) {
+    const std::size_t count = splat_count(level.members, chosen.size(), first, end);
+    if (count == chosen.size()) {
       ways.emplace_back().splats = splats_of(cards_.cards, chosen, stride_);
     } else {
       std::vector<Vec3d> centers;
       for (const std::uint32_t c : chosen) centers.push_back(cards_.cards.cards[c].center);
-      const Blocks blocks = split_evenly(centers, splat_count(level, chosen.size(), first, end));
+      const Blocks blocks = split_evenly(centers, count);
+      const double members = static_cast<double>(chosen.size()) / static_cast<double>(count);
       for (const Thinning thinning : kThinnings) {
-        if (!is_worth_trying(thinning, level)) continue;
+        if (!is_worth_trying(thinning, members)) continue;
         ways.emplace_back().splats = thin_out(cards_.cards, chosen, blocks, thinning, stride_);
       }
     }
-    const Covered& covered = covered_[std::min<std::size_t>(level - 1, covered_.size() - 1)][first / run_length(level)];
+    const Covered& covered = covered_[static_cast<std::size_t>(std::countr_zero(level.run))][first / level.run];
     double area = 0.0;
     for (const std::uint32_t c : chosen) area += cards_.cards.cards[c].area;
+    double factor = 1.0;  // what one way needs is near what another does
     for (Fitted& way : ways) {
       const bool is_few = !seen_by_many_.empty() && way.splats.splats.size() <= kFewCards;
-      fit_factor(frame_, is_few ? seen_by_many_ : covered, is_few ? few_ : fit_, area, way);
+      fit_factor(frame_, is_few ? seen_by_many_ : covered, is_few ? few_ : fit_, area, factor, way);
     }
     leave_out_unfair(ways);
     return ways;
   }
 
   /// Half as many as the level before, but for regions out of step: if all kept a half, all would be replaced at once.
-  [[nodiscard]] std::size_t splat_count(int level, std::size_t cards, std::uint32_t first, std::uint32_t end) const {
+  [[nodiscard]] std::size_t splat_count(double members, std::size_t cards, std::uint32_t first,
+                                        std::uint32_t end) const {
+    const std::size_t most = leaves_.first_level[end] - leaves_.first_level[first];
+    if (members <= 1.0) return most;
     const double place = 0.5 * (first + end) / static_cast<double>(leaves_.size());
     const double share = 1.3 - 0.6 * place;
-    const double count =
-        share * static_cast<double>(cards) / static_cast<double>(std::uint64_t{1} << static_cast<unsigned>(level - 1));
+    const double count = share * static_cast<double>(most) / members;
     return std::clamp<std::size_t>(static_cast<std::size_t>(std::floor(count + 0.5)), 1, cards);
   }
 
-  [[nodiscard]] std::vector<GroupProposals> proposals_of(int level, std::span<const std::vector<Fitted>> fitted) const {
-    const std::uint32_t run = run_length(level);
+  [[nodiscard]] std::vector<GroupProposals> proposals_of(const LevelPlan& level,
+                                                         std::span<const std::vector<Fitted>> fitted) const {
     std::vector<GroupProposals> groups(fitted.size());
     for (std::size_t g = 0; g < groups.size(); ++g) {
-      groups[g].first_leaf = static_cast<std::uint32_t>(g * run);
-      groups[g].end_leaf = groups[g].first_leaf + run;
+      groups[g].first_leaf = static_cast<std::uint32_t>(g * level.run);
+      groups[g].end_leaf = groups[g].first_leaf + level.run;
       double area = 0.0;
       for (const std::uint32_t c : leaves_.cards_of(groups[g].first_leaf, groups[g].end_leaf))
         area += cards_.cards.cards[c].area;
@@ -313,44 +346,42 @@ class Thinner {
       const std::size_t cards = leaves_.cards_of(groups[g].first_leaf, groups[g].end_leaf).size();
       groups[g].grain = std::sqrt(area / static_cast<double>(std::max<std::size_t>(1, cards)));
       for (const Fitted& way : fitted[g]) {
-        if (way.is_fair) groups[g].proposals.push_back({way.triangles, {}});
+        if (way.is_fair) groups[g].proposals.push_back({way.triangles, {}, {}});
       }
     }
     return groups;
   }
 
-  /// What the groups of each level may have of noise.
-  [[nodiscard]] static std::vector<double> limits_of(std::span<const std::vector<GroupProposals>> proposals) {
+  /// Which way each group is drawn, and from which pixel size on.
+  [[nodiscard]] std::vector<std::vector<NoiseUse>> uses_of(
+      std::span<const std::vector<GroupProposals>> proposals) const {
     std::vector<std::vector<NoisyGroup>> levels(proposals.size());
     for (std::size_t l = 0; l < levels.size(); ++l) {
-      for (std::size_t g = 0; g < proposals[l].size(); ++g) {
-        const GroupProposals& from = proposals[l][g];
-        NoisyGroup group{from.first_leaf, from.end_leaf, from.share, {}};
-        for (const Proposal& proposal : from.proposals) group.ways.push_back(&proposal.noise);
+      for (const GroupProposals& from : proposals[l]) {
+        NoisyGroup group{from.share, leaves_.triangle_count(from.first_leaf, from.end_leaf), {}};
+        for (const Proposal& proposal : from.proposals)
+          group.ways.push_back({&proposal.noise, proposal.shifts, proposal.triangles.size()});
         levels[l].push_back(std::move(group));
       }
     }
-    return choose_noise_limits(levels, kMostCoverageError, kMostCoverageError);
+    return share_out_noise(levels, {kMostCoverageError, kMostViewShift, frame_.longest / kViewsHeldFrom});
   }
 
-  /// Of each group the way that may be drawn from the smallest pixels on, with so much noise.
   [[nodiscard]] std::vector<ThinGroup> choose(std::span<const GroupProposals> proposals,
-                                              std::span<const std::vector<Fitted>> fitted, double limit) const {
+                                              std::span<const std::vector<Fitted>> fitted,
+                                              std::span<const NoiseUse> uses) const {
     std::vector<ThinGroup> groups(proposals.size());
     for (std::size_t g = 0; g < groups.size(); ++g) {
       ThinGroup& group = groups[g];
       group.first_leaf = proposals[g].first_leaf;
       group.end_leaf = proposals[g].end_leaf;
-      group.pixel_size = std::numeric_limits<double>::infinity();
-      std::size_t p = 0;
+      group.pixel_size = uses[g].pixel_size;
+      if (!(group.pixel_size < std::numeric_limits<double>::infinity())) continue;
+      std::size_t p = 0;  // only fair ways are proposed
       for (const Fitted& way : fitted[g]) {
-        if (!way.is_fair) continue;
-        const double size = proposals[g].proposals[p++].noise.size_for(limit);
-        if (!(size < group.pixel_size)) continue;
-        group.pixel_size = size;
+        if (!way.is_fair || p++ != uses[g].way) continue;
         group.triangles = way.triangles;
         group.attributes = way.splats.attributes;
-        group.material.clear();
         for (const Splat& splat : way.splats.splats) group.material.push_back(materials_[splat.material].coarse);
       }
     }

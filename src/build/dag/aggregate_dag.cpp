@@ -16,6 +16,9 @@ namespace meshlode::build {
 
 namespace {
 
+/// A group that keeps more than this share of its triangles ends there: levels are as close as 0.71 together.
+constexpr double kStuckRatio = 0.9;
+
 /// Triangles in their order, as many to a cluster as fit. `wedges_of`: of a triangle.
 template <class WedgesOf>
 Clustering pack_in_order(std::size_t first_label, std::span<const std::uint32_t> triangles, const ClusterCaps& caps,
@@ -141,21 +144,26 @@ class AggregateDag {
         all.triangles += child.triangles;
         all.is_live = all.is_live && child.is_live;
       }
-      next.push_back(replaced(level, groups[g], all) ? std::move(made_) : ended(g * children, children));
+      if (replaced(groups[g], all)) {
+        next.push_back(std::move(made_));
+      } else {
+        // The level above may have a way for the same leaves.
+        const bool has_another = level < thin_.levels.size() && thin_.levels[level].size() == groups.size();
+        next.push_back(has_another ? std::move(all) : ended(g * children, children));
+      }
     }
     pool_.end_round();
     nodes_ = std::move(next);
   }
 
   /// Makes `made_` of a group and its children; false where they stay.
-  bool replaced(std::uint32_t level, const ThinGroup& thin, const Node& children) {
+  bool replaced(const ThinGroup& thin, const Node& children) {
     if (!children.is_live || children.clusters.empty() ||
         !(thin.pixel_size < std::numeric_limits<double>::infinity())) {
       return false;
     }
     const SimplifyResult result = on_grid(thin, mesh_);
-    if (result.triangles.empty() ||
-        static_cast<double>(result.triangles.size()) > options_.stuck_ratio * children.triangles)
+    if (result.triangles.empty() || static_cast<double>(result.triangles.size()) > kStuckRatio * children.triangles)
       return false;
     Clustering clustering;
     clustering.label.resize(result.triangles.size());
@@ -167,11 +175,11 @@ class AggregateDag {
     const bool is_measured = options_.error != ErrorSource::kQuadric;
     const double margin = options_.error == ErrorSource::kMeasured ? kMeasuredMargin : 1.0;
     BuildGroup group;
-    group.level = level - 1;
     group.is_aggregate = true;
     group.clusters = children.clusters;
     made_.pixel_size = std::max(thin.pixel_size, children.pixel_size);
     made_.error = std::max(children.error, margin * thin.pixel_size);
+    for (const ClusterId c : group.clusters) group.level = std::max(group.level, pool_.cluster(c).level);
     group.error = made_.error;
     group.quadric_error = made_.pixel_size;
     if (is_measured) group.deviation = thin.pixel_size;
@@ -179,7 +187,7 @@ class AggregateDag {
     for (std::uint32_t c = 0; c < clustering.count; ++c) made_.clusters.push_back(ClusterId(first + c));
     made_.triangles = static_cast<std::uint32_t>(result.triangles.size());
     const CarriedTruth nothing;
-    const NewClusters added{result, nothing, clustering, level, GroupId(pool_.groups.size())};
+    const NewClusters added{result, nothing, clustering, group.level + 1, GroupId(pool_.groups.size())};
     pool_.groups.push_back(std::move(group));
     pool_.add_simplified({&added, 1});
     return true;

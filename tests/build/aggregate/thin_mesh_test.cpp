@@ -43,12 +43,37 @@ TEST(ThinMesh, LevelsCoverAllLeavesWithEverFewerTriangles) {
       EXPECT_GT(group.pixel_size, 0.0);
     }
     EXPECT_EQ(next, mesh.leaf_triangles.size());
-    if (is_whole) {
-      EXPECT_LT(triangles, before);
-    }
+    if (!is_whole) continue;  // left out, for the next one
+    EXPECT_LT(triangles, before);
     before = triangles;
   }
   EXPECT_LT(mesh.levels[0][0].pixel_size, 0.2) << "of a field that is 2 wide";
+}
+
+TEST(ThinMesh, SingleTrianglesAreThinnedOutFromTheFirstLevelOn) {
+  // A card each is no level: nothing would be fewer.
+  scene::Primitive blades = scene::make_grass(2000);
+  blades.indices.clear();
+  for (std::uint32_t v = 0; v + 3 < blades.positions.size(); v += 4)
+    blades.indices.insert(blades.indices.end(), {v, v + 1, v + 2});
+  const ThinMesh mesh = thin(blades);
+  ASSERT_GE(mesh.levels.size(), 5U);
+  std::vector<std::size_t> before;
+  for (std::size_t leaf = 0; leaf < mesh.leaf_triangles.size(); ++leaf)
+    before.push_back(mesh.leaf_triangles.of(leaf).size());
+  for (const std::vector<ThinGroup>& level : mesh.levels) {
+    std::vector<std::size_t> after;
+    for (std::size_t g = 0; g < level.size(); ++g) {
+      if (!(level[g].pixel_size < std::numeric_limits<double>::infinity())) continue;
+      const std::size_t children = before.size() / level.size();
+      std::size_t replaced = 0;
+      for (std::size_t k = 0; k < children; ++k) replaced += before[g * children + k];
+      after.push_back(level[g].triangles.size());
+      EXPECT_LE(static_cast<double>(after.back()), 0.75 * static_cast<double>(replaced));
+    }
+    if (after.size() == level.size()) before = after;
+  }
+  EXPECT_LT(mesh.levels[0][0].pixel_size, std::numeric_limits<double>::infinity());
 }
 
 TEST(ThinMesh, IsTheSameForAnyThreadCountAndAtAnyScale) {

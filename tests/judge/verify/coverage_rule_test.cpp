@@ -9,8 +9,10 @@
 #include "build/build.h"
 #include "judge/metrics/coverage.h"
 #include "judge/validate/edit.h"
+#include "judge/verify/aggregate_kinds.h"
 #include "judge/verify/verify.h"
 #include "run/read/asset.h"
+#include "run/select/select.h"
 #include "scene/samples/samples.h"
 
 namespace meshlode::judge {
@@ -69,6 +71,20 @@ TEST(Aggregates, SmallOnesHold) {
       const scene::Scene scene = scene_of(shape);
       EXPECT_EQ(found_in(build_aggregate(scene), scene), "") << count;
     }
+  }
+}
+
+TEST(Aggregates, OfOtherKindsHoldAndHaveLevels) {
+  for (const char* kind : test::kAggregateKinds) {
+    const scene::Scene scene = scene_of(test::make_aggregate(kind, 3000, 7));
+    const std::vector<std::uint8_t> bytes = build_aggregate(scene);
+    EXPECT_EQ(found_in(bytes, scene), "") << kind;
+    const Result<run::Asset> asset = run::Asset::from_vector(bytes);
+    EXPECT_TRUE(has_aggregates(*asset, MeshId(0U))) << kind;
+    std::uint64_t triangles = 0;
+    for (const ClusterId c : run::select_uniform(*asset, MeshId(0U), 1e3).clusters)
+      triangles += asset->clusters()[c.value].triangle_count();
+    EXPECT_LT(triangles, 100U) << kind << ": its roots, of " << scene.meshes[0].primitives[0].indices.size() / 3;
   }
 }
 
