@@ -335,7 +335,9 @@ Result<std::vector<std::uint8_t>> build_asset_of(const Source& from, const Pipel
   input.scene = &scene;
   input.codec = options.codec;
   input.promises = promises_of(options.promise);
-  if (found->has_aggregates()) {
+  // Where all of them ended at level 0 nothing has such a material.
+  if (std::any_of(meshes->begin(), meshes->end(),
+                  [](const BuiltMesh& mesh) { return has_aggregates(mesh.encoded.groups); })) {
     input.materials = &found->coarse.materials;
     input.document = &found->coarse.document;
   }

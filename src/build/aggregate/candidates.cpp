@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdlib>
 #include <map>
 
 #include "build/aggregate/symmetric.h"
@@ -128,6 +127,10 @@ void shape_as_slice(const Block& block, Splat& splat) {
   splat.axis_v = glm::cross(normal, splat.axis_u);
   splat.half_u = 2.0 / std::sqrt(std::max(axes.value[1], 1e-300));
   splat.half_v = 2.0 / std::sqrt(std::max(axes.value[0], 1e-300));
+  // A flat block may have more area than its slice: that goes across first, or a card would be longer than the mesh.
+  constexpr double kPi = 3.14159265358979;
+  const double roomy = block.area / (2.0 * kPi * splat.half_u);
+  splat.half_v = std::max(splat.half_v, std::min(splat.half_u, roomy));
 }
 
 /// Those of the member whose plane it is: means of texture coordinates would belong to no leaf.

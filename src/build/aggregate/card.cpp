@@ -30,9 +30,13 @@ Corners Splat::corners(double factor) const {
   constexpr double kHalfSide = 0.8660254037844386;
   const double wanted = factor * area;
   if (is_blade) {
-    const Vec3d half = half_blade(*this);
-    const Vec3d side = axis_v * (wanted / std::max(kLengthOfHalf * half_u, 1e-300) * ((turn & 1U) != 0 ? -1.0 : 1.0));
-    return {center + half, center - half + side, center - half - side};
+    // Of a short one that stands for much the base would be longer than it is high: it grows as high, around its
+    // centroid.
+    const double length = kLengthOfHalf * half_u, high = std::max(length, std::sqrt(2.0 * wanted));
+    const Vec3d was = half_blade(*this), half = length > 0.0 ? was * (high / length) : was;
+    const Vec3d middle = center + (half - was) / 3.0;
+    const Vec3d side = axis_v * (wanted / std::max(high, 1e-300) * ((turn & 1U) != 0 ? -1.0 : 1.0));
+    return {middle + half, middle - half + side, middle - half - side};
   }
   const double ratio = std::sqrt(wanted / kUnitArea / std::max(half_u * half_v, 1e-300));
   Vec3d u = axis_u * (half_u * ratio), v = axis_v * (half_v * ratio);

@@ -40,12 +40,13 @@ struct Splat {
   std::uint32_t turn = 0;             ///< 0 … 3: which way up
   std::uint32_t material = 0;         ///< of the source
 
+  [[nodiscard]] Vec3d normal() const { return glm::cross(axis_u, axis_v); }
   /// Becomes a blade along u, of so many times the length that a rectangle of its second moments has, around the same
   /// centroid.
   void stretch_to_blade(double times);
 
-  /// Counter-clockwise around u × v; of factor · area. A blade is as long as the
-  /// card that it was, others have the shape's second moments.
+  /// Counter-clockwise around u × v; of factor · area. A blade is as long as its shape says, or as wide,
+  /// others have the shape's second moments.
   [[nodiscard]] Corners corners(double factor) const;
 };
 

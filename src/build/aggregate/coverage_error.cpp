@@ -2,6 +2,8 @@
 #include "build/aggregate/coverage_error.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -131,17 +133,17 @@ Cover cover_of(std::span<const SampleMask> groups) {
 
 /// What one proposal changes.
 struct Change {
-  Squares squares;         ///< for each pixel size
-  std::int64_t shift = 0;  ///< how many samples more are covered
+  Squares squares;                     ///< for each pixel size
+  std::int64_t before = 0, after = 0;  ///< samples that nothing else covers
 };
 
 /// `before`: the group's own samples.
 Change change_of(const SampleMask& before, const SampleMask& after, const Cover& cover, std::size_t octaves) {
   MaskBox box = before.box();
   box.include(after.box());
-  if (box.is_empty()) return {Squares(2 * octaves, 0), 0};
+  if (box.is_empty()) return {Squares(2 * octaves, 0), 0, 0};
   BlockCounts counts(box);
-  std::int64_t shift = 0;
+  Change change;
   for (int y = box.first_row; y < box.end_row; y += 2) {
     for (int x = box.first_word; x < box.end_word; ++x) {
       std::array<std::uint64_t, 2> gone{}, come{};
@@ -151,15 +153,17 @@ Change change_of(const SampleMask& before, const SampleMask& after, const Cover&
         const std::uint64_t others = (old & cover.twice.word(x, y + k)) | (~old & cover.once.word(x, y + k));
         gone[static_cast<std::size_t>(k)] = old & ~now & ~others;
         come[static_cast<std::size_t>(k)] = now & ~old & ~others;
+        change.before += std::popcount(old & ~others);
+        change.after += std::popcount(now & ~others);
       }
       const auto word = static_cast<std::size_t>(x - box.first_word);
       const auto row = static_cast<std::size_t>(y - box.first_row) / 2;
       counts.add_word(word, row, gone[0], gone[1], -1);
       counts.add_word(word, row, come[0], come[1], 1);
-      shift += std::popcount(come[0]) + std::popcount(come[1]) - std::popcount(gone[0]) - std::popcount(gone[1]);
     }
   }
-  return {squares_of(std::move(counts), octaves), shift};
+  change.squares = squares_of(std::move(counts), octaves);
+  return change;
 }
 
 Squares squares_of_all(const SampleMask& all, std::size_t octaves) {
@@ -330,11 +334,16 @@ void measure_proposals(const SourceSurface& source, const MeshFrame& frame, cons
       const std::size_t octaves = trial.octaves_at(step);
       const double share = levels[trial.level][trial.group].share;
       Proposal& proposal = levels[trial.level][trial.group].proposals[trial.proposal];
+      double before = 0.0, after = 0.0, all = 0.0;
       for (std::size_t v = 0; v < kViews && octaves > 0; ++v) {
-        proposal.shifts[v] = of_view[v].covered > 0 ? static_cast<double>(of_view[v].change[i].shift) /
-                                                          static_cast<double>(of_view[v].covered)
-                                                    : 0.0;
+        const Change& change = of_view[v].change[i];
+        const auto covered = static_cast<double>(of_view[v].covered);
+        proposal.shifts[v] = covered > 0.0 ? static_cast<double>(change.after - change.before) / covered : 0.0;
+        before += static_cast<double>(change.before);
+        after += static_cast<double>(change.after);
+        all += covered;
       }
+      if (all > 0.0) proposal.sum_shift = (after / proposal.luck - before) / all;
       for (std::size_t s = 0; s < 2 * octaves && trial.is_open; ++s) {
         double whole = 0.0, change = 0.0;
         for (const ViewResult& result : of_view) {
@@ -349,6 +358,39 @@ void measure_proposals(const SourceSurface& source, const MeshFrame& frame, cons
     }
     close_worse_ways(levels, trials);
   }
+}
+
+CutChange measure_cut(const SourceSurface& source, const MeshFrame& frame, const ByPiece& leaf_triangles,
+                      const ThinnedCut& cut, double pixel_size, double grain, double finest) {
+  constexpr std::size_t kSize = 1;  // of the two of an octave
+  const double blocks = 2.0 * static_cast<double>(kPixelBlocks[kSize]);
+  std::size_t octaves = 1;
+  double spacing = pixel_size / blocks;
+  for (; spacing > grain && spacing > finest / blocks; spacing *= 0.5) ++octaves;
+  const Lattice lattice(frame.center, frame.radius, spacing);
+  double whole = 0.0, change = 0.0, before = 0.0, after = 0.0;
+  for (std::size_t v = 0; v < kViews; ++v) {
+    const View& view = views()[v];
+    std::vector<SampleMask> leaves(leaf_triangles.size());
+    parallel_for_each_index(cut.source_leaves.size(), 1, [&](std::size_t i) {
+      const std::uint32_t leaf = cut.source_leaves[i];
+      leaves[leaf] = source_mask(source, lattice, view, leaf_triangles.of(leaf));
+    });
+    const SampleMask coarse = mask_of(lattice, view, cut.triangles);
+    MaskBox box = coarse.box();
+    for (const std::uint32_t leaf : cut.leaves) box.include(leaves[leaf].box());
+    SampleMask drawn(box);
+    drawn.add(coarse);
+    for (const std::uint32_t leaf : cut.leaves) drawn.add(leaves[leaf]);
+    const SampleMask all = cover_of(leaves).once;
+    const Change of_view = change_of(all, drawn, {}, octaves);
+    whole += static_cast<double>(squares_of_all(all, octaves)[kSize]);
+    change += static_cast<double>(of_view.squares[kSize]);
+    before += static_cast<double>(of_view.before);
+    after += static_cast<double>(of_view.after);
+  }
+  if (!(whole > 0.0 && before > 0.0)) return {};
+  return {std::sqrt(change / whole), (after / cut.luck - before) / before};
 }
 
 std::vector<std::vector<Covered>> covered_samples(const SourceSurface& source, const MeshFrame& frame,

@@ -22,7 +22,7 @@ namespace meshlode::build {
 
 /// How large the error of a cut may be. A fifth is noise of some 16 samples a pixel; other directions have some percent
 /// more.
-constexpr double kMostCoverageError = 0.19;
+constexpr double kMostCoverageError = 0.20;
 /// How much more or less of all pictures may be covered; from other directions it may be as much again.
 constexpr double kMostCoverageShift = 0.01;
 
@@ -33,10 +33,7 @@ class SourceSurface {
   SourceSurface(const PreparedMesh& mesh, std::span<const SourceMaterial> materials,
                 std::span<const std::uint8_t> is_closed)
       : mesh_(mesh), materials_(materials), is_closed_(is_closed) {}
-  [[nodiscard]] Corners corners(std::uint32_t triangle) const {
-    const auto& t = mesh_.exact_triangles[triangle];
-    return {mesh_.exact_positions[t[0]], mesh_.exact_positions[t[1]], mesh_.exact_positions[t[2]]};
-  }
+  [[nodiscard]] Corners corners(std::uint32_t triangle) const { return corners_of(mesh_, triangle); }
   [[nodiscard]] const SourceMaterial& material(std::uint32_t triangle) const {
     return materials_[mesh_.triangle_material[triangle]];
   }
@@ -62,12 +59,14 @@ struct MeshFrame {
 /// One way of thinning out one group: the triangles that would replace its pieces.
 struct Proposal {
   std::vector<Corners> triangles;
+  double luck = 1.0;                    ///< how much more the views show of it than of its pieces, of what each has
   std::array<double, kViews> shifts{};  ///< out: by view, how much more is covered, of what the whole mesh covers
+  double sum_shift = 0.0;               ///< out: the same of all views together, without luck
   NoiseCurve noise;  ///< out: the error by pixel size, down to where it is above kLoosestNoise or pixels are small
 };
 
-/// Groups are runs of leaves: those of level k are 2^k times as long as those of level 0, and all of them together all
-/// leaves.
+/// Groups are runs of leaves: those of a level are as long as those of the level before, or twice, and all of them
+/// together all leaves.
 struct GroupProposals {
   std::uint32_t first_leaf = 0, end_leaf = 0;
   double share = 0.0;  ///< of the mesh's area, as far as it is drawn
@@ -75,10 +74,26 @@ struct GroupProposals {
   std::vector<Proposal> proposals;
 };
 
-/// Sets Proposal::noise of all groups of all levels. `leaf_triangles`: the source's, by leaf. Pixels are tried from
-/// the mesh's diameter down to `finest`. The same for any thread count (I10).
+/// Sets what is out in proposals of all groups of all levels. `leaf_triangles`: the source's, by leaf. Pixels are tried
+/// from the mesh's diameter down to `finest`. The same for any thread count (I10).
 void measure_proposals(const SourceSurface& source, const MeshFrame& frame, const ByPiece& leaf_triangles,
                        double finest, std::span<std::vector<GroupProposals>> levels);
+
+/// What is drawn at a pixel size: some leaves as they are, and triangles instead of the others.
+struct ThinnedCut {
+  std::vector<std::uint32_t> source_leaves;  ///< what it is compared with: those that something replaces at some size
+  std::vector<std::uint32_t> leaves;         ///< of these
+  std::vector<Corners> triangles;
+  double luck = 1.0;  ///< how much more the views show of all of it than of the source, of what each has
+};
+struct CutChange {
+  double noise = 0.0;      ///< as Proposal::noise, of the whole
+  double sum_shift = 0.0;  ///< as Proposal::sum_shift
+};
+/// A cut against the source as a whole: what groups measured one by one do not know of each other is in it. Samples
+/// are as wide as `grain` at most, but for the smallest that measure_proposals() has for `finest`.
+[[nodiscard]] CutChange measure_cut(const SourceSurface& source, const MeshFrame& frame, const ByPiece& leaf_triangles,
+                                    const ThinnedCut& cut, double pixel_size, double grain, double finest);
 
 /// Samples by view.
 using Covered = std::vector<std::uint64_t>;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 #include <queue>
+#include <utility>
 
 namespace meshlode::build {
 
@@ -37,6 +38,7 @@ class Cut {
     const bool is_shift_held = pixel_size < budget.shift_below;
     double squares = 0.0;
     shifts_.clear();
+    sum_shift_ = 0.0;
     std::priority_queue<Step> steps;
     for (std::size_t l = 0; l < levels_.size(); ++l) {
       for (std::size_t g = 0; g < levels_[l].size(); ++g) {
@@ -58,7 +60,7 @@ class Cut {
       }
       if (squares + step.cost > budget.noise * budget.noise) continue;
       change_shifts(step, 1.0);
-      if (is_shift_held && largest_shift() > budget.shift) {
+      if (std::abs(sum_shift_) > budget.sum_shift || (is_shift_held && largest_shift() > budget.shift)) {
         change_shifts(step, -1.0);
         continue;
       }
@@ -105,6 +107,7 @@ class Cut {
   void add_shifts(const NoisyWay& way, double sign) {
     if (shifts_.size() < way.shifts.size()) shifts_.resize(way.shifts.size(), 0.0);
     for (std::size_t v = 0; v < way.shifts.size(); ++v) shifts_[v] += sign * way.shifts[v];
+    sum_shift_ += sign * way.sum_shift;
   }
   /// With the step's group instead of what it replaces, or back.
   void change_shifts(const Step& step, double sign) {
@@ -162,6 +165,7 @@ class Cut {
   std::span<const std::vector<NoisyGroup>> levels_;
   std::vector<std::vector<NoiseUse>> uses_;
   std::vector<double> shifts_;  ///< of what is drawn, by view
+  double sum_shift_ = 0.0;
 };
 
 }  // namespace

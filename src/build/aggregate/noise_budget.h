@@ -30,6 +30,7 @@ struct NoiseCurve {
 struct NoisyWay {
   const NoiseCurve* noise = nullptr;
   std::span<const double> shifts;  ///< by view: how much more is covered, as a share of what the whole mesh covers
+  double sum_shift = 0.0;          ///< the same of all views together
   std::size_t triangles = 0;
 };
 
@@ -51,6 +52,7 @@ constexpr double kLoosestNoise = 0.30;
 
 struct NoiseBudget {
   double noise = 0.0;        ///< of the whole
+  double sum_shift = 1.0;    ///< of all views together, more or less
   double shift = 0.0;        ///< of a view, more or less
   double shift_below = 0.0;  ///< in pixels smaller than this
 };

@@ -59,11 +59,6 @@ double add_drawn_part(const Corners& c, const std::array<Vec2d, 3>& uv, double a
   return static_cast<double>(drawn) / (kSide * kSide);
 }
 
-Corners corners_of(const PreparedMesh& mesh, std::size_t triangle) {
-  const auto& t = mesh.exact_triangles[triangle];
-  return {mesh.exact_positions[t[0]], mesh.exact_positions[t[1]], mesh.exact_positions[t[2]]};
-}
-
 /// Does every edge have as many uses one way as the other? By welded positions.
 bool is_closed(const PreparedMesh& mesh, std::span<const std::uint32_t> triangles) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> uses;
@@ -186,6 +181,12 @@ CardsOfPiece cards_of(const PreparedMesh& mesh, std::span<const std::uint32_t> t
 }
 
 }  // namespace
+
+Corners corners_of(const PreparedMesh& mesh, std::size_t triangle) {
+  const WedgeTriangle& t = mesh.triangles[triangle];
+  const auto corner = [&](std::size_t k) { return mesh.grid.decode(mesh.positions[mesh.wedge_position[t[k]]]); };
+  return {corner(0), corner(1), corner(2)};
+}
 
 ByPiece find_pieces(const PreparedMesh& mesh) {
   const std::size_t count = mesh.triangles.size();

@@ -28,6 +28,10 @@ struct ByPiece {
   }
 };
 
+/// Of a triangle as level 0 draws it: on the grid, where thin pieces may have another area than in the source. Levels
+/// are to cover what level 0 does.
+[[nodiscard]] Corners corners_of(const PreparedMesh& mesh, std::size_t triangle);
+
 /// Triangles by piece, each list ascending; pieces by their first triangle.
 [[nodiscard]] ByPiece find_pieces(const PreparedMesh& mesh);
 

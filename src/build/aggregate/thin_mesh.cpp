@@ -21,18 +21,23 @@ namespace {
 constexpr double kMostInAView = 0.75;        // more or less: a level that shows a view so much else stands for nothing
 constexpr std::size_t kFewestTriangles = 8;  // a level below would be a handful of cards across the whole mesh
 constexpr std::size_t kFewCards = 512;       // of a whole mesh: they are seen from more directions
-constexpr std::size_t kFewGroups = 1;        // so many are hardly out of step: levels lie closer together
-// What single views may show more or less where a mesh is at least so many pixels across. From 37 directions some show
-// half as much again as the worst of thirteen.
+// What all views together may show more or less: groups that cover as much as their pieces do alone may hide more or
+// less of each other.
+constexpr double kMostSumShift = 0.012;
+// And single views, where a mesh is at least so many pixels across. From 37 directions some show half as much again as
+// the worst of thirteen.
 constexpr double kMostViewShift = 0.10, kViewsHeldFrom = 30.0;
+// What whole cuts may have, which are looked at where pixels grow by so much. From other directions they have some
+// percent more noise.
+constexpr double kMostCutNoise = 0.21, kMostCutShift = 0.015, kPictureStep = 2.0;
 constexpr double kFinestPixels = 110.0;  // pixels along the mesh's longest side: below, levels are not told apart
 
 MeshFrame frame_of(const PreparedMesh& mesh) {
-  Vec3d low = mesh.exact_positions[mesh.exact_triangles[0][0]], high = low;
-  for (const auto& triangle : mesh.exact_triangles) {
-    for (const std::uint32_t p : triangle) {
-      low = glm::min(low, mesh.exact_positions[p]);
-      high = glm::max(high, mesh.exact_positions[p]);
+  Vec3d low = corners_of(mesh, 0)[0], high = low;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (const Vec3d& corner : corners_of(mesh, t)) {
+      low = glm::min(low, corner);
+      high = glm::max(high, corner);
     }
   }
   const Vec3d size = high - low;
@@ -66,7 +71,7 @@ Leaves make_leaves(const PreparedMesh& mesh, const ByPiece& pieces, const PieceC
   for (std::size_t p = 0; p < pieces.size(); ++p) {
     Vec3d sum(0.0);
     for (const std::uint32_t t : pieces.of(p)) {
-      for (const std::uint32_t v : mesh.exact_triangles[t]) sum += mesh.exact_positions[v];
+      for (const Vec3d& corner : corners_of(mesh, t)) sum += corner;
     }
     weights[p] = static_cast<std::uint32_t>(pieces.of(p).size());
     centers[p] = sum / (3.0 * weights[p]);
@@ -121,6 +126,7 @@ struct Sampling {
 struct Fitted {
   Splats splats;
   std::vector<Corners> triangles;
+  double luck = 1.0;        ///< how much more the usual views show of it than of its pieces, of what each has
   double worst_view = 0.0;  ///< what a single view's sum changes by at most
   bool is_there = false;
   bool is_fair = false;  ///< is there, and changes single views no more than other ways do
@@ -138,21 +144,65 @@ void leave_out_unfair(std::span<Fitted> ways) {
   }
 }
 
+/// What a view shows of cards that do not hide each other, and how much that is over all directions.
+class ShownArea {
+ public:
+  explicit ShownArea(const Sampling& sampling) : sampling_(sampling) {}
+  void add(const Vec3d& normal, double area) {
+    area_ += area;
+    for (std::size_t v = 0; v < sampling_.counted; ++v) {
+      const View& view = sampling_.views[v];
+      shown_ += area * std::fabs(glm::dot(normal, glm::cross(view.right, view.up)));
+    }
+  }
+  /// How much more the views show than as many directions do in the mean, which is half of the area: of a large plate
+  /// or a handful of cards that is luck, some percent of it.
+  [[nodiscard]] double luck() const {
+    const double mean = 0.5 * area_ * static_cast<double>(sampling_.counted);
+    return mean > 0.0 && shown_ > 0.0 ? shown_ / mean : 1.0;
+  }
+
+ private:
+  const Sampling& sampling_;
+  double area_ = 0.0, shown_ = 0.0;
+};
+
+/// As it will be stored: of a needle that is some steps wide much of the area.
+Corners on_grid(const format::PositionGrid& grid, const Corners& corners) {
+  const double most = format::kMaxGridCoordinate * grid.step();
+  Corners stored;
+  for (std::size_t k = 0; k < 3; ++k)
+    stored[k] = grid.decode(grid.quantize(glm::clamp(corners[k], Vec3d(-most), Vec3d(most))));
+  return stored;
+}
+
+double luck_of(const Sampling& sampling, const Splats& splats) {
+  ShownArea shown(sampling);
+  for (const Splat& splat : splats.splats) shown.add(splat.normal(), splat.area);
+  return shown.luck();
+}
+
+/// Only fair ways are proposed: the one that is proposed at that place.
+const Fitted& way_of(std::span<const Fitted> ways, std::size_t proposal) {
+  return *std::find_if(ways.begin(), ways.end(), [&](const Fitted& way) { return way.is_fair && proposal-- == 0; });
+}
+
 /// Finds the factor for which the splats, which have an area, cover as much as the source, over all views. It begins
-/// with the one given.
-void fit_factor(const MeshFrame& frame, const Covered& covered, const Sampling& sampling, double area, double& factor,
-                Fitted& way) {
+/// with the one given, and gives its own where there is one. `luck`: of the cards that covered so much.
+void fit_factor(const MeshFrame& frame, const format::PositionGrid& grid, const Covered& covered,
+                const Sampling& sampling, double area, double luck, double& near_factor, Fitted& way) {
   constexpr double kCloseEnough = 0.004;
   constexpr int kFactorSteps = 12;
   const double spacing = sampling.spacing_of(area, way.splats.splats.size());
   const double weight = spacing * spacing / (sampling.spacing * sampling.spacing);  // in samples of the source
-  const double wanted = sampling.sum(covered);
+  const double wanted = sampling.sum(covered) * luck_of(sampling, way.splats) / luck;
   if (!(wanted > 0.0)) return;
+  double factor = near_factor;
   double low = 0.0, low_count = 0.0, high = 0.0, high_count = 0.0;
   Covered now;
   for (int step = 0; step < kFactorSteps; ++step) {
     way.triangles.clear();
-    for (const Splat& splat : way.splats.splats) way.triangles.push_back(splat.corners(factor));
+    for (const Splat& splat : way.splats.splats) way.triangles.push_back(on_grid(grid, splat.corners(factor)));
     now = covered_samples(frame, way.triangles, spacing, sampling.views);
     const double count = weight * sampling.sum(now);
     if (std::fabs(count - wanted) <= kCloseEnough * wanted) break;
@@ -179,6 +229,7 @@ void fit_factor(const MeshFrame& frame, const Covered& covered, const Sampling& 
   }
   way.is_there =
       std::fabs(weight * sampling.sum(now) - wanted) <= kMostCoverageShift * wanted && way.worst_view <= kMostInAView;
+  if (way.is_there) near_factor = factor;
 }
 
 /// Where a block has few members, what stays in place is nearest to the picture; where it has many, what is spread. A
@@ -188,29 +239,28 @@ bool is_worth_trying(Thinning thinning, double members) {
     case Thinning::kInPlace: return members < 3.0;
     case Thinning::kMoved: return true;
     case Thinning::kNeedle: return members > 3.0;
-    case Thinning::kMerged: return members > 7.0;
+    case Thinning::kMerged: return members > 6.0;
   }
   return false;
 }
 
-/// How a level is made from the finest one.
+/// How a level is made from the first one.
 struct LevelPlan {
   std::uint32_t run = 1;  ///< leaves of a group
-  double members = 1.0;   ///< cards of a block, about
+  double members = 1.0;   ///< triangles of the first level that become one, about
 };
 
-/// Half as many cards each and groups of twice as many leaves; where groups are few, half of that way.
-std::vector<LevelPlan> plan_levels(std::size_t leaves, std::size_t cards) {
+/// Half as many triangles each, in groups of twice as many leaves; once all are in one group, which is out of step with
+/// nothing, half of that way. `triangles`: of the first level.
+std::vector<LevelPlan> plan_levels(std::size_t leaves, std::size_t triangles) {
   constexpr int kMostLevels = 80;
   std::vector<LevelPlan> levels;
   LevelPlan next;
-  bool is_between = false;
-  while (static_cast<double>(cards) / next.members >= static_cast<double>(kFewestTriangles) &&
+  while (static_cast<double>(triangles) / next.members >= static_cast<double>(kFewestTriangles) &&
          levels.size() < kMostLevels) {
     levels.push_back(next);
-    is_between = leaves / next.run <= kFewGroups && !is_between;
-    next.members *= leaves / next.run <= kFewGroups ? std::sqrt(2.0) : 2.0;
-    if (!is_between) next.run = std::min(2 * next.run, static_cast<std::uint32_t>(leaves));
+    next.members *= next.run == leaves ? std::sqrt(2.0) : 2.0;
+    next.run = std::min(2 * next.run, static_cast<std::uint32_t>(leaves));
   }
   return levels;
 }
@@ -220,6 +270,7 @@ class Thinner {
   Thinner(const PreparedMesh& mesh, std::span<const SourceMaterial> materials, const ThinOptions& options)
       : materials_(materials),
         stride_(mesh.layout.stride()),
+        grid_(mesh.grid),
         frame_(frame_of(mesh)),
         pieces_(find_pieces(mesh)),
         cards_(make_cards(mesh, pieces_, materials)),
@@ -249,6 +300,7 @@ class Thinner {
         if (seen_by_many_.empty()) {
           const std::array<std::uint32_t, 1> all{static_cast<std::uint32_t>(leaves_.size())};
           seen_by_many_ = covered_samples(source_, frame_, leaves_.triangles, few_.spacing, few_.views, all)[0][0];
+          luck_of_many_ = luck_of_cards(few_, leaves_.cards);
         }
       }
       fitted.push_back(fit_level(level));
@@ -257,7 +309,9 @@ class Thinner {
     }
     measure_proposals(source_, frame_, leaves_.triangles, frame_.longest / kFinestPixels, proposals);
     ThinMesh out;
-    const std::vector<std::vector<NoiseUse>> uses = uses_of(proposals);
+    std::vector<std::vector<NoiseUse>> uses = uses_of(proposals);
+    hold_to_pictures(proposals, fitted, uses);
+    leave_out_undrawn(uses);
     for (std::size_t l = 0; l < proposals.size(); ++l) out.levels.push_back(choose(proposals[l], fitted[l], uses[l]));
     out.leaf_triangles = std::move(leaves_.triangles);
     return out;
@@ -269,18 +323,30 @@ class Thinner {
   /// less, as they hide each other and no factor is exact: how much, the usual views tell.
   void look_from_many_views(std::span<const std::vector<Fitted>> groups) {
     std::vector<Corners> all;
+    ShownArea shown(fit_), shown_to_many(few_);
     for (const std::vector<Fitted>& ways : groups) {
       const auto way = std::find_if(ways.begin(), ways.end(), [](const Fitted& f) { return f.is_there; });
       if (way == ways.end()) return;
       all.insert(all.end(), way->triangles.begin(), way->triangles.end());
+      for (const Splat& splat : way->splats.splats) {
+        shown.add(splat.normal(), splat.area);
+        shown_to_many.add(splat.normal(), splat.area);
+      }
     }
-    const double seen = fit_.sum(covered_samples(frame_, all, fit_.spacing, fit_.views));
-    const double wanted = fit_.sum(covered_.back().front());
+    const double seen = fit_.sum(covered_samples(frame_, all, fit_.spacing, fit_.views)) / shown.luck();
+    const double wanted = fit_.sum(covered_.back().front()) / luck_of_cards(fit_, leaves_.cards);
     if (!(seen > 0.0)) return;
     seen_by_many_ = covered_samples(frame_, all, few_.spacing, few_.views);
+    luck_of_many_ = shown_to_many.luck();
     for (std::uint64_t& count : seen_by_many_) {
       count = static_cast<std::uint64_t>(std::llround(static_cast<double>(count) * wanted / seen));
     }
+  }
+
+  [[nodiscard]] double luck_of_cards(const Sampling& sampling, std::span<const std::uint32_t> chosen) const {
+    ShownArea shown(sampling);
+    for (const std::uint32_t c : chosen) shown.add(cards_.cards.cards[c].normal(), cards_.cards.cards[c].area);
+    return shown.luck();
   }
 
   /// Group by group, every way of thinning it out.
@@ -313,10 +379,13 @@ class Thinner {
     const Covered& covered = covered_[static_cast<std::size_t>(std::countr_zero(level.run))][first / level.run];
     double area = 0.0;
     for (const std::uint32_t c : chosen) area += cards_.cards.cards[c].area;
+    const double luck = luck_of_cards(fit_, chosen);
     double factor = 1.0;  // what one way needs is near what another does
     for (Fitted& way : ways) {
       const bool is_few = !seen_by_many_.empty() && way.splats.splats.size() <= kFewCards;
-      fit_factor(frame_, is_few ? seen_by_many_ : covered, is_few ? few_ : fit_, area, factor, way);
+      fit_factor(frame_, grid_, is_few ? seen_by_many_ : covered, is_few ? few_ : fit_, area,
+                 is_few ? luck_of_many_ : luck, factor, way);
+      way.luck = luck_of(fit_, way.splats) / luck;
     }
     leave_out_unfair(ways);
     return ways;
@@ -328,7 +397,7 @@ class Thinner {
     const std::size_t most = leaves_.first_level[end] - leaves_.first_level[first];
     if (members <= 1.0) return most;
     const double place = 0.5 * (first + end) / static_cast<double>(leaves_.size());
-    const double share = 1.3 - 0.6 * place;
+    const double share = kMostOfLeaf - 2.0 * (kMostOfLeaf - 1.0) * place;
     const double count = share * static_cast<double>(most) / members;
     return std::clamp<std::size_t>(static_cast<std::size_t>(std::floor(count + 0.5)), 1, cards);
   }
@@ -346,7 +415,7 @@ class Thinner {
       const std::size_t cards = leaves_.cards_of(groups[g].first_leaf, groups[g].end_leaf).size();
       groups[g].grain = std::sqrt(area / static_cast<double>(std::max<std::size_t>(1, cards)));
       for (const Fitted& way : fitted[g]) {
-        if (way.is_fair) groups[g].proposals.push_back({way.triangles, {}, {}});
+        if (way.is_fair) groups[g].proposals.push_back({way.triangles, way.luck, {}, 0.0, {}});
       }
     }
     return groups;
@@ -360,11 +429,113 @@ class Thinner {
       for (const GroupProposals& from : proposals[l]) {
         NoisyGroup group{from.share, leaves_.triangle_count(from.first_leaf, from.end_leaf), {}};
         for (const Proposal& proposal : from.proposals)
-          group.ways.push_back({&proposal.noise, proposal.shifts, proposal.triangles.size()});
+          group.ways.push_back({&proposal.noise, proposal.shifts, proposal.sum_shift, proposal.triangles.size()});
         levels[l].push_back(std::move(group));
       }
     }
-    return share_out_noise(levels, {kMostCoverageError, kMostViewShift, frame_.longest / kViewsHeldFrom});
+    return share_out_noise(levels,
+                           {kMostCoverageError, kMostSumShift, kMostViewShift, frame_.longest / kViewsHeldFrom});
+  }
+
+  using Levels = std::vector<std::vector<GroupProposals>>;
+  using Uses = std::vector<std::vector<NoiseUse>>;
+
+  /// What a cut at a pixel size draws.
+  [[nodiscard]] ThinnedCut cut_at(double pixel_size, const Levels& proposals,
+                                  std::span<const std::vector<std::vector<Fitted>>> fitted, const Uses& uses) const {
+    ThinnedCut cut;
+    ShownArea shown(fit_);
+    std::vector<std::uint8_t> is_replaced(leaves_.size(), 0), is_ever(leaves_.size(), 0);
+    for (std::size_t l = uses.size(); l-- > 0;) {
+      for (std::size_t g = 0; g < uses[l].size(); ++g) {
+        const GroupProposals& group = proposals[l][g];
+        const auto mark = [&](std::vector<std::uint8_t>& leaves) {
+          std::fill(leaves.begin() + group.first_leaf, leaves.begin() + group.end_leaf, std::uint8_t{1});
+        };
+        if (uses[l][g].pixel_size < std::numeric_limits<double>::infinity()) mark(is_ever);
+        if (uses[l][g].pixel_size > pixel_size || is_replaced[group.first_leaf] != 0) continue;
+        mark(is_replaced);
+        const Fitted& way = way_of(fitted[l][g], uses[l][g].way);
+        cut.triangles.insert(cut.triangles.end(), way.triangles.begin(), way.triangles.end());
+        for (const Splat& splat : way.splats.splats) shown.add(splat.normal(), splat.area);
+      }
+    }
+    ShownArea source(fit_);
+    for (std::uint32_t leaf = 0; leaf < is_replaced.size(); ++leaf) {
+      if (is_ever[leaf] == 0) continue;
+      cut.source_leaves.push_back(leaf);
+      if (is_replaced[leaf] == 0) cut.leaves.push_back(leaf);
+      for (const std::uint32_t c : leaves_.cards_of(leaf, leaf + 1)) {
+        const Card& card = cards_.cards.cards[c];
+        source.add(card.normal(), card.area);
+        if (is_replaced[leaf] == 0) shown.add(card.normal(), card.area);
+      }
+    }
+    cut.luck = shown.luck() / source.luck();
+    return cut;
+  }
+
+  /// Groups were measured one by one: what two of them cover together neither knows of. Whole cuts are looked at, from
+  /// small pixels to large ones, and where one has too much what came last waits for larger pixels. Leaves that nothing
+  /// replaces after that are not compared with: then it is of less that the others have to be a part.
+  void hold_to_pictures(const Levels& proposals, std::span<const std::vector<std::vector<Fitted>>> fitted,
+                        Uses& uses) const {
+    constexpr int kPasses = 8;
+    for (int pass = 0; pass < kPasses; ++pass) {
+      if (are_held(proposals, fitted, uses)) return;
+    }
+    for (std::vector<NoiseUse>& level : uses) level.assign(level.size(), {});  // no way to tell what is seen
+  }
+
+  /// False: some never come any more, and all is to be looked at again.
+  [[nodiscard]] bool are_held(const Levels& proposals, std::span<const std::vector<std::vector<Fitted>>> fitted,
+                              Uses& uses) const {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    double smallest = kInfinity, largest = 0.0, grain = kInfinity;
+    for (const std::vector<NoiseUse>& level : uses) {
+      for (const NoiseUse& use : level) {
+        if (!(use.pixel_size < kInfinity)) continue;
+        smallest = std::min(smallest, use.pixel_size);
+        largest = std::max(largest, use.pixel_size);
+      }
+    }
+    for (const std::vector<GroupProposals>& level : proposals) {
+      for (const GroupProposals& group : level) grain = group.grain > 0.0 ? std::min(grain, group.grain) : grain;
+    }
+    const auto move = [&](double from, double to) {
+      for (std::vector<NoiseUse>& level : uses) {
+        for (NoiseUse& use : level) {
+          if (use.pixel_size > from && use.pixel_size < to) use.pixel_size = to;
+        }
+      }
+    };
+    double held = 0.0;  // cuts up to there are as they should be
+    for (double size = smallest; held < largest; size *= kPictureStep) {
+      const double at = std::min(size, largest);
+      const ThinnedCut cut = cut_at(at, proposals, fitted, uses);
+      const CutChange change =
+          measure_cut(source_, frame_, leaves_.triangles, cut, at, grain, frame_.longest / kFinestPixels);
+      if (change.noise <= kMostCutNoise && std::fabs(change.sum_shift) <= kMostCutShift) {
+        held = at;
+      } else if (at < largest) {
+        move(held, std::min(size * kPictureStep, largest));
+      } else {
+        move(held, kInfinity);
+        return false;
+      }
+    }
+    return true;
+  }
+
+  /// Of the same leaves a level that comes no later than one below it is drawn instead of that, always.
+  static void leave_out_undrawn(Uses& uses) {
+    for (std::size_t l = 0; l < uses.size(); ++l) {
+      for (std::size_t above = l + 1; above < uses.size() && uses[above].size() == uses[l].size(); ++above) {
+        for (std::size_t g = 0; g < uses[l].size(); ++g) {
+          if (uses[above][g].pixel_size <= uses[l][g].pixel_size) uses[l][g] = {};
+        }
+      }
+    }
   }
 
   [[nodiscard]] std::vector<ThinGroup> choose(std::span<const GroupProposals> proposals,
@@ -377,19 +548,17 @@ class Thinner {
       group.end_leaf = proposals[g].end_leaf;
       group.pixel_size = uses[g].pixel_size;
       if (!(group.pixel_size < std::numeric_limits<double>::infinity())) continue;
-      std::size_t p = 0;  // only fair ways are proposed
-      for (const Fitted& way : fitted[g]) {
-        if (!way.is_fair || p++ != uses[g].way) continue;
-        group.triangles = way.triangles;
-        group.attributes = way.splats.attributes;
-        for (const Splat& splat : way.splats.splats) group.material.push_back(materials_[splat.material].coarse);
-      }
+      const Fitted& way = way_of(fitted[g], uses[g].way);
+      group.triangles = way.triangles;
+      group.attributes = way.splats.attributes;
+      for (const Splat& splat : way.splats.splats) group.material.push_back(materials_[splat.material].coarse);
     }
     return groups;
   }
 
   std::span<const SourceMaterial> materials_;
   std::size_t stride_;
+  format::PositionGrid grid_;
   MeshFrame frame_;
   ByPiece pieces_;
   PieceCards cards_;
@@ -398,9 +567,10 @@ class Thinner {
   double drawn_area_ = 0.0;
   Sampling fit_;  ///< that factors are found by
   std::vector<std::vector<Covered>>
-      covered_;           ///< what the groups' pieces cover so, by level; the last for all later ones
-  Sampling few_;          ///< the same where cards are few
-  Covered seen_by_many_;  ///< what the whole mesh covers so; empty before few cards stand for it
+      covered_;                ///< what the groups' pieces cover so, by level; the last for all later ones
+  Sampling few_;               ///< the same where cards are few
+  Covered seen_by_many_;       ///< what the whole mesh covers so; empty before few cards stand for it
+  double luck_of_many_ = 1.0;  ///< of the cards that this is of
 };
 
 }  // namespace

@@ -22,6 +22,10 @@ struct ThinOptions {
   std::uint32_t leaf_triangles = 2560;  ///< of the source in a finest group, at most but for single pieces
 };
 
+/// Groups that come late keep less than half of their cards and early ones more: what a group replaces has at most so
+/// many times leaf_triangles.
+inline constexpr double kMostOfLeaf = 1.3;
+
 /// What stands for the pieces of a run of leaves from some level on.
 struct ThinGroup {
   std::uint32_t first_leaf = 0, end_leaf = 0;

@@ -16,7 +16,7 @@ namespace meshlode::build {
 
 namespace {
 
-/// A group that keeps more than this share of its triangles ends there: levels are as close as 0.71 together.
+/// A group that keeps more than this share of its triangles is none: levels are as close as 0.71 together.
 constexpr double kStuckRatio = 0.9;
 
 /// Triangles in their order, as many to a cluster as fit. `wedges_of`: of a triangle.
@@ -148,7 +148,8 @@ class AggregateDag {
         next.push_back(std::move(made_));
       } else {
         // The level above may have a way for the same leaves.
-        const bool has_another = level < thin_.levels.size() && thin_.levels[level].size() == groups.size();
+        const bool has_another =
+            level < thin_.levels.size() ? thin_.levels[level].size() == groups.size() : children == 1;  // or the end
         next.push_back(has_another ? std::move(all) : ended(g * children, children));
       }
     }
@@ -237,7 +238,7 @@ std::uint32_t leaf_triangles(const DagOptions& options) {
   // last.
   const std::uint32_t loose = std::max(1U, std::min(options.caps.max_triangles, options.caps.max_vertices / 3));
   const double bytes = options.cluster_bytes(3 * loose, loose, 2) / static_cast<double>(loose);
-  const double most = 0.9 * options.max_group_bytes / bytes;
+  const double most = 0.9 / kMostOfLeaf * options.max_group_bytes / bytes;
   return std::min(usual.leaf_triangles, static_cast<std::uint32_t>(most));
 }
 

@@ -327,6 +327,11 @@ std::int32_t normal_scale_of(const EncodeOptions& options) {
       std::min(octahedral_scale_for(options.normal_error), std::uint64_t{format::kMaxNormalScale}));
 }
 
+bool has_aggregates(std::span<const format::GroupRecord> groups) {
+  return std::any_of(groups.begin(), groups.end(),
+                     [](const format::GroupRecord& group) { return (group.flags & format::kGroupAggregate) != 0; });
+}
+
 Result<EncodedMesh> encode_mesh(const PreparedMesh& mesh, const LodDag& dag, const Hierarchy& hierarchy,
                                 const EncodeOptions& options) {
   if (Status status = check_input(mesh, dag, hierarchy, options); !status) return status.error();

@@ -49,6 +49,9 @@ struct EncodedMesh {
   std::vector<format::PromiseGroupRecord> promise_errors;  ///< one a group, or none: positions alone are promised
 };
 
+/// Whether something of them is drawn instead of an aggregate's pieces. A mesh that ended at level 0 has none.
+[[nodiscard]] bool has_aggregates(std::span<const format::GroupRecord> groups);
+
 /// The header of a page and the zero word behind it.
 constexpr std::uint32_t kPageFrameBytes = static_cast<std::uint32_t>(sizeof(format::PageHeader)) + 4U;
 

@@ -149,10 +149,7 @@ format::StringRef StringTable::add(const std::string& text) {
 }
 
 std::uint32_t version_of(const AssetTables& tables) {
-  const bool has_aggregates =
-      std::any_of(tables.groups.begin(), tables.groups.end(),
-                  [](const format::GroupRecord& group) { return (group.flags & format::kGroupAggregate) != 0; });
-  return has_aggregates ? format::kVersion : format::kPlainVersion;
+  return has_aggregates(tables.groups) ? format::kVersion : format::kPlainVersion;
 }
 
 Result<AssetTables> make_tables(WriteInput& input) {

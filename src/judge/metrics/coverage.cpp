@@ -20,6 +20,8 @@ namespace {
 constexpr std::size_t kDirections = 37;
 constexpr std::size_t kFewestSamples = 8;  // of a pixel, each way
 constexpr double kMostSide = 8192.0;
+// Samples of triangles that hide nothing of each other, in all directions together.
+constexpr double kFewestCovered = 50000.0, kFewestMasked = 400000.0;
 
 struct Picture {
   Vec3d right, up;
@@ -196,16 +198,21 @@ std::optional<CoverageDrift> measure_coverage(std::span<const CoveringTriangle> 
       }
     }
   }
-  // Samples that are farther apart than triangles are wide would find them by luck.
+  // Samples that are farther apart than triangles are wide would find them by luck, and a few of them what a mask lets
+  // through.
   double area = 0.0;
   for (const CoveringTriangle& triangle : source) {
     const auto& [a, b, c] = triangle.corners;
     area += 0.5 * glm::length(glm::cross(b - a, c - a));
   }
   const double width = std::sqrt(area / static_cast<double>(source.size()));
+  const bool has_masks =
+      std::any_of(source.begin(), source.end(), [](const CoveringTriangle& t) { return t.mask != format::kNone; });
+  const double few =
+      std::sqrt(0.5 * area * static_cast<double>(kDirections) / (has_masks ? kFewestMasked : kFewestCovered));
   std::size_t samples_a_pixel = kFewestSamples;
   const auto side = [&] { return glm::length(high - low) / pixel_size * static_cast<double>(samples_a_pixel); };
-  while (pixel_size > 0.5 * width * static_cast<double>(samples_a_pixel) && 2.0 * side() <= kMostSide)
+  while (pixel_size > std::min(0.5 * width, few) * static_cast<double>(samples_a_pixel) && 2.0 * side() <= kMostSide)
     samples_a_pixel *= 2;
   if (side() > kMostSide) return std::nullopt;
   const double spacing = pixel_size / static_cast<double>(samples_a_pixel);

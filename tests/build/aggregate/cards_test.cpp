@@ -120,6 +120,20 @@ TEST(Splat, HasTheAreaThatIsAskedForWhicheverWayUp) {
   }
 }
 
+TEST(Splat, AShortBladeThatStandsForMuchIsNotWiderThanHigh) {
+  Splat splat;
+  splat.center = {1, 2, 3};
+  splat.axis_u = {1, 0, 0};
+  splat.axis_v = {0, 1, 0};
+  splat.half_u = 1e-6;
+  splat.half_v = 1e-10;
+  splat.area = 2.0;
+  splat.is_blade = true;
+  const Corners c = splat.corners(1.0);
+  EXPECT_NEAR(area_of(c), 2.0, 1e-9);
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_LT(glm::length(c[k] - splat.center), 2.0);
+}
+
 TEST(Splat, StretchedToABladeStaysAroundItsCentroid) {
   for (const std::uint32_t turn : {0U, 1U, 2U, 3U}) {
     Splat splat;

@@ -41,7 +41,7 @@ using Uses = std::vector<std::vector<NoiseUse>>;
 
 /// What a cut has, by the groups that it shows, and how many triangles.
 struct Cut {
-  double noise = 0.0, shift = 0.0;
+  double noise = 0.0;
   std::size_t triangles = 0;
 };
 
@@ -53,7 +53,6 @@ Cut cut_at(const Levels& levels, const Uses& uses, double size) {
     if (use.pixel_size <= size) {
       const NoisyWay& way = from.ways[use.way];
       cut.noise += from.share * way.noise->most_from(size) * way.noise->most_from(size);
-      if (!way.shifts.empty()) cut.shift += way.shifts.front();
       cut.triangles += way.triangles;
     } else if (level == 0) {
       cut.triangles += from.source_triangles;
@@ -69,7 +68,7 @@ Cut cut_at(const Levels& levels, const Uses& uses, double size) {
 
 TEST(NoiseBudget, OneGroupHasWhatTheWholeHas) {
   const NoiseCurve way = falling(1.0);
-  const Levels levels{{{1.0, 100, {{&way, {}, 50}}}}};
+  const Levels levels{{{1.0, 100, {{&way, {}, 0.0, 50}}}}};
   for (const double most : {0.1, 0.19, 0.25}) {
     const double size = share_out_noise(levels, {.noise = most})[0][0].pixel_size;
     EXPECT_LE(way.most_from(size), most);
@@ -85,14 +84,16 @@ TEST(NoiseBudget, OneGroupHasWhatTheWholeHas) {
 TEST(NoiseBudget, OfTheSameLeavesALevelMayBeLeftOut) {
   const NoiseCurve bad = falling(4.0), good = falling(1.0), never{{{4096.0, 0.4}}};
   for (const NoiseCurve* middle : {&bad, &never}) {
-    const Levels levels{
-        {{1.0, 100, {{&good, {}, 50}}}}, {{1.0, 100, {{middle, {}, 35}}}}, {{1.0, 100, {{&good, {}, 25}}}}};
+    const Levels levels{{{1.0, 100, {{&good, {}, 0.0, 50}}}},
+                        {{1.0, 100, {{middle, {}, 0.0, 35}}}},
+                        {{1.0, 100, {{&good, {}, 0.0, 25}}}}};
     const Uses uses = share_out_noise(levels, {.noise = 0.19});
     EXPECT_EQ(uses[1][0].pixel_size, kInfinity) << "when it may come there is fewer already";
     EXPECT_LT(uses[2][0].pixel_size, 6.0);
   }
   // But not where groups merge: what they replace has to be in one page.
-  const Levels merged{{{0.5, 100, {{&never, {}, 50}}}, {0.5, 100, {{&good, {}, 50}}}}, {{1.0, 200, {{&good, {}, 50}}}}};
+  const Levels merged{{{0.5, 100, {{&never, {}, 0.0, 50}}}, {0.5, 100, {{&good, {}, 0.0, 50}}}},
+                      {{1.0, 200, {{&good, {}, 0.0, 50}}}}};
   EXPECT_EQ(share_out_noise(merged, {.noise = 0.19})[1][0].pixel_size, kInfinity);
 }
 
@@ -103,11 +104,11 @@ struct OutOfStep {
     coarse.reserve(8);
     for (std::size_t g = 0; g < 16; ++g) {
       fine.push_back(falling(1.0 + 0.2 * static_cast<double>(g)));
-      levels[0].push_back({1.0 / 16.0, 100, {{&fine.back(), {}, 50}}});
+      levels[0].push_back({1.0 / 16.0, 100, {{&fine.back(), {}, 0.0, 50}}});
     }
     for (std::size_t g = 0; g < 8; ++g) {
       coarse.push_back(falling(3.0 + 0.5 * static_cast<double>(g)));
-      levels[1].push_back({1.0 / 8.0, 200, {{&coarse.back(), {}, 50}}});
+      levels[1].push_back({1.0 / 8.0, 200, {{&coarse.back(), {}, 0.0, 50}}});
     }
   }
   std::vector<NoiseCurve> fine, coarse;
@@ -119,7 +120,14 @@ TEST(NoiseBudget, NoCutHasMoreThanTheWholeMay) {
   const Uses uses = share_out_noise(out.levels, {.noise = 0.19});
   double most = 0.0;
   std::size_t loose = 0;
-  for (double size = 1.0; size < 20000.0; size *= 1.003) most = std::max(most, cut_at(out.levels, uses, size).noise);
+  std::size_t before = 1600;
+  for (double size = 1.0; size < 20000.0; size *= 1.003) {
+    const Cut cut = cut_at(out.levels, uses, size);
+    most = std::max(most, cut.noise);
+    EXPECT_LE(cut.triangles, before);
+    before = cut.triangles;
+  }
+  EXPECT_EQ(before, 400U);
   EXPECT_LE(most, 0.19 * (1.0 + 1e-9));
   EXPECT_GT(most, 0.18) << "and it is spent";
   for (std::size_t l = 0; l < 2; ++l) {
@@ -139,25 +147,25 @@ TEST(NoiseBudget, NoCutHasMoreThanTheWholeMay) {
 TEST(NoiseBudget, WhatSparesMostComesFirst) {
   const NoiseCurve way = falling(1.0);
   // The same noise, but one of them spares nine times as many triangles.
-  const Levels levels{{{0.5, 100, {{&way, {}, 90}}}, {0.5, 100, {{&way, {}, 10}}}}};
+  const Levels levels{{{0.5, 100, {{&way, {}, 0.0, 90}}}, {0.5, 100, {{&way, {}, 0.0, 10}}}}};
   const Uses uses = share_out_noise(levels, {.noise = 0.19});
   EXPECT_LT(uses[0][1].pixel_size, uses[0][0].pixel_size);
 }
 
 TEST(NoiseBudget, TheWayWithLeastNoiseThereIsTaken) {
   const NoiseCurve worse = falling(2.0), better = falling(1.0);
-  const Levels levels{{{1.0, 100, {{&worse, {}, 50}, {&better, {}, 50}}}}};
+  const Levels levels{{{1.0, 100, {{&worse, {}, 0.0, 50}, {&better, {}, 0.0, 50}}}}};
   EXPECT_EQ(share_out_noise(levels, {.noise = 0.19})[0][0].way, 1U);
 }
 
 TEST(NoiseBudget, InSmallPixelsNoViewShowsMuchElse) {
   const NoiseCurve way = falling(1.0);
-  const std::vector<double> more{0.06, 0.0}, less{-0.06, 0.0}, none{0.0, 0.0};
+  const std::vector<double> more{0.06, 0.0}, less{-0.06, 0.0};
   // Two that show more of a view are too much, and a third that shows less of it makes room.
   const auto group = [&](const std::vector<double>& shifts, double share) {
-    return NoisyGroup{share, 100, {{&way, shifts, 50}}};
+    return NoisyGroup{share, 100, {{&way, shifts, 0.0, 50}}};
   };
-  const NoiseBudget budget{.noise = 0.25, .shift = 0.1, .shift_below = 1000.0};
+  const NoiseBudget budget{.noise = 0.25, .sum_shift = 1.0, .shift = 0.1, .shift_below = 1000.0};
   const Levels two{{group(more, 0.4), group(more, 0.6)}};
   const Uses held = share_out_noise(two, budget);
   EXPECT_LT(held[0][0].pixel_size, 10.0);
@@ -170,6 +178,14 @@ TEST(NoiseBudget, InSmallPixelsNoViewShowsMuchElse) {
   Levels replaced = three;
   replaced.push_back({group(more, 1.0)});
   EXPECT_LT(share_out_noise(replaced, budget)[1][0].pixel_size, 10.0);
+}
+
+TEST(NoiseBudget, TogetherViewsShowNoMoreThanTheyMay) {
+  const NoiseCurve way = falling(1.0);
+  const Levels levels{{{0.5, 100, {{&way, {}, 0.01, 50}}}, {0.5, 100, {{&way, {}, 0.01, 50}}}}};
+  const Uses uses = share_out_noise(levels, {.noise = 0.25, .sum_shift = 0.015});
+  EXPECT_LT(uses[0][0].pixel_size, 10.0);
+  EXPECT_EQ(uses[0][1].pixel_size, kInfinity) << "in pixels of any size";
 }
 
 }  // namespace
