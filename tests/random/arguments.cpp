@@ -3,8 +3,20 @@
 
 #include <charconv>
 #include <cstdio>
+#include <sstream>
 
 namespace meshlode::test {
+
+namespace {
+
+std::vector<std::string> words_of(const std::string& text) {
+  std::istringstream in(text);
+  std::vector<std::string> words;
+  for (std::string word; in >> word;) words.push_back(word);
+  return words;
+}
+
+}  // namespace
 
 bool parse(std::string_view text, std::uint64_t& value) {
   const auto parsed = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -44,8 +56,8 @@ bool parse(int argc, char** argv, Arguments& arguments) {
       arguments.shrink_into = value;
     else if (word == "--rule")
       arguments.rule = value;
-    else if (word == "--promise")
-      arguments.promise = value;
+    else if (word == "--with")
+      arguments.with = words_of(value);
     else if (!is_whole)
       return false;  // NOLINT(bugprone-branch-clone): what follows needs a number
     else if (word == "--jobs")
@@ -70,7 +82,7 @@ int usage() {
   std::fputs(
       "usage: random_scenes run FIRST COUNT [--jobs N] [--max-triangles N] [--max-refused PERCENT]\n"
       "                     [--shrink-into FOLDER] [--verbose] [--without-deviation] [--samples N] [--surgery]\n"
-      "                     [--promise P]   build all of them with it, and with no other of their options\n"
+      "                     [--with 'OPTION...']   build all of them with these, and with no other of their options\n"
       "                     [--started]   steps are forks of one process a job, which is quicker under sanitizers\n"
       "       random_scenes seeds SEED... [the same]\n"
       "       random_scenes soak FIRST MINUTES [the same]\n"

@@ -25,7 +25,7 @@ struct Arguments {
   std::filesystem::path shrink_into;       ///< failures are shrunk into this folder
   double shrink_seconds = 60.0;            ///< each
   std::string rule;
-  std::string promise;  ///< every scene is built with it, and by no other of its options
+  std::vector<std::string> with;  ///< every scene is built with these, and by none of its own options; empty: its own
   Harm harm = Harm::kDamage;
   bool verbose = false;
   bool is_started = false;  ///< steps are forks of one process a job (StartedProgram)

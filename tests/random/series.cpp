@@ -119,7 +119,7 @@ void keep_shrunk(std::uint64_t seed, const Entry& entry, const Arguments& argume
 /// The scene of a seed as it is built.
 RandomScene scene_of(std::uint64_t seed, const Arguments& arguments) {
   RandomScene scene = random_scene(seed, arguments.harm);
-  if (!arguments.promise.empty()) scene.build_options = {"--promise", arguments.promise};
+  if (!arguments.with.empty()) scene.build_options = arguments.with;
   return scene;
 }
 
