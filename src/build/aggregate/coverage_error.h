@@ -15,6 +15,7 @@
 #include "build/aggregate/card.h"
 #include "build/aggregate/noise_budget.h"
 #include "build/aggregate/pieces.h"
+#include "build/aggregate/sample_mask.h"
 #include "build/aggregate/views.h"
 #include "build/prepared.h"
 
@@ -90,10 +91,24 @@ struct CutChange {
   double noise = 0.0;      ///< as Proposal::noise, of the whole
   double sum_shift = 0.0;  ///< as Proposal::sum_shift
 };
-/// A cut against the source as a whole: what groups measured one by one do not know of each other is in it. Samples
-/// are as wide as `grain` at most, but for the smallest that measure_proposals() has for `finest`.
-[[nodiscard]] CutChange measure_cut(const SourceSurface& source, const MeshFrame& frame, const ByPiece& leaf_triangles,
-                                    const ThinnedCut& cut, double pixel_size, double grain, double finest);
+/// Cuts against the source as a whole: what groups measured one by one do not know of each other is in it. The source
+/// is drawn once.
+class CutMeter {
+ public:
+  /// At `count` pixel sizes, each twice as large as the one before. Samples are as wide as `grain` at most, but for the
+  /// smallest that measure_proposals() has for `finest`.
+  CutMeter(const SourceSurface& source, const MeshFrame& frame, const ByPiece& leaf_triangles, double smallest,
+           std::size_t count, double grain, double finest);
+  [[nodiscard]] CutChange measure(const ThinnedCut& cut, std::size_t size) const;
+
+ private:
+  struct Size {
+    std::size_t octaves = 1, lattice = 0;
+  };
+  std::vector<Size> sizes_;
+  std::vector<Lattice> lattices_;                                    ///< each half as fine as the one before
+  std::array<std::vector<std::vector<SampleMask>>, kViews> leaves_;  ///< [view][lattice][leaf]
+};
 
 /// Samples by view.
 using Covered = std::vector<std::uint64_t>;

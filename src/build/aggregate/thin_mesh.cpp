@@ -27,9 +27,9 @@ constexpr double kMostSumShift = 0.012;
 // And single views, where a mesh is at least so many pixels across. From 37 directions some show half as much again as
 // the worst of thirteen.
 constexpr double kMostViewShift = 0.10, kViewsHeldFrom = 30.0;
-// What whole cuts may have, which are looked at where pixels grow by so much. From other directions they have some
-// percent more noise.
-constexpr double kMostCutNoise = 0.21, kMostCutShift = 0.015, kPictureStep = 2.0;
+// What whole cuts may have, which are looked at where pixels double. From other directions they have some percent more
+// noise.
+constexpr double kMostCutNoise = 0.21, kMostCutShift = 0.017;
 constexpr double kFinestPixels = 110.0;  // pixels along the mesh's longest side: below, levels are not told apart
 
 MeshFrame frame_of(const PreparedMesh& mesh) {
@@ -509,16 +509,19 @@ class Thinner {
         }
       }
     };
-    double held = 0.0;  // cuts up to there are as they should be
-    for (double size = smallest; held < largest; size *= kPictureStep) {
-      const double at = std::min(size, largest);
-      const ThinnedCut cut = cut_at(at, proposals, fitted, uses);
-      const CutChange change =
-          measure_cut(source_, frame_, leaves_.triangles, cut, at, grain, frame_.longest / kFinestPixels);
+    if (!(largest > 0.0)) return true;
+    std::size_t count = 1;
+    double first = largest;
+    for (; 0.5 * first >= smallest; first *= 0.5) ++count;
+    const CutMeter meter(source_, frame_, leaves_.triangles, first, count, 0.25 * grain,
+                         frame_.longest / kFinestPixels);
+    double held = 0.0, size = first;  // cuts up to there are as they should be
+    for (std::size_t i = 0; i < count; ++i, size *= 2.0) {
+      const CutChange change = meter.measure(cut_at(size, proposals, fitted, uses), i);
       if (change.noise <= kMostCutNoise && std::fabs(change.sum_shift) <= kMostCutShift) {
-        held = at;
-      } else if (at < largest) {
-        move(held, std::min(size * kPictureStep, largest));
+        held = size;
+      } else if (i + 1 < count) {
+        move(held, 2.0 * size);
       } else {
         move(held, kInfinity);
         return false;
