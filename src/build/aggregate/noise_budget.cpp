@@ -201,4 +201,14 @@ std::vector<std::vector<NoiseUse>> share_out_noise(std::span<const std::vector<N
   return cut.take_uses();
 }
 
+void leave_out_undrawn(std::vector<std::vector<NoiseUse>>& uses) {
+  for (std::size_t l = 0; l < uses.size(); ++l) {
+    for (std::size_t above = l + 1; above < uses.size() && uses[above].size() == uses[l].size(); ++above) {
+      for (std::size_t g = 0; g < uses[l].size(); ++g) {
+        if (uses[above][g].pixel_size <= uses[l][g].pixel_size) uses[l][g] = {};
+      }
+    }
+  }
+}
+
 }  // namespace meshlode::build

@@ -63,4 +63,8 @@ struct NoiseBudget {
 [[nodiscard]] std::vector<std::vector<NoiseUse>> share_out_noise(std::span<const std::vector<NoisyGroup>> levels,
                                                                  const NoiseBudget& budget);
 
+/// Of the same leaves a level that comes no later than one below it is drawn instead of that, always: that one is left
+/// out.
+void leave_out_undrawn(std::vector<std::vector<NoiseUse>>& uses);
+
 }  // namespace meshlode::build

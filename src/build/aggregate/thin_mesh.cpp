@@ -12,13 +12,16 @@
 #include "build/aggregate/blocks.h"
 #include "build/aggregate/candidates.h"
 #include "build/aggregate/coverage_error.h"
+#include "build/aggregate/covered_samples.h"
+#include "build/aggregate/fit_factor.h"
+#include "build/aggregate/hold_to_pictures.h"
+#include "build/aggregate/leaves.h"
 #include "build/aggregate/noise_budget.h"
 
 namespace meshlode::build {
 
 namespace {
 
-constexpr double kMostInAView = 0.75;        // more or less: a level that shows a view so much else stands for nothing
 constexpr std::size_t kFewestTriangles = 8;  // a level below would be a handful of cards across the whole mesh
 constexpr std::size_t kFewCards = 512;       // of a whole mesh: they are seen from more directions
 // What all views together may show more or less: groups that cover as much as their pieces do alone may hide more or
@@ -27,9 +30,6 @@ constexpr double kMostSumShift = 0.012;
 // And single views, where a mesh is at least so many pixels across. From 37 directions some show half as much again as
 // the worst of thirteen.
 constexpr double kMostViewShift = 0.10, kViewsHeldFrom = 30.0;
-// What whole cuts may have, which are looked at where pixels double. From other directions they have some percent more
-// noise.
-constexpr double kMostCutNoise = 0.21, kMostCutShift = 0.017;
 constexpr double kFinestPixels = 110.0;  // pixels along the mesh's longest side: below, levels are not told apart
 
 MeshFrame frame_of(const PreparedMesh& mesh) {
@@ -42,194 +42,6 @@ MeshFrame frame_of(const PreparedMesh& mesh) {
   }
   const Vec3d size = high - low;
   return {0.5 * (low + high), 0.5 * glm::length(size), std::max({size.x, size.y, size.z})};
-}
-
-/// Pieces in leaves, and the lists that follow from it.
-struct Leaves {
-  int depth = 0;
-  ByPiece triangles;                      ///< of the source, by leaf
-  std::vector<std::uint32_t> first_card;  ///< by leaf, into `cards`
-  std::vector<std::uint32_t> cards;       ///< of PieceCards, in the order of leaves
-
-  /// Before each leaf, how many triangles the leaves so far have in the first level: a card each, and of single
-  /// triangles, which are one card already, half as many.
-  std::vector<std::size_t> first_level;
-
-  [[nodiscard]] std::size_t size() const { return triangles.size(); }
-  [[nodiscard]] std::span<const std::uint32_t> cards_of(std::uint32_t first_leaf, std::uint32_t end_leaf) const {
-    return {cards.data() + first_card[first_leaf], first_card[end_leaf] - first_card[first_leaf]};
-  }
-  [[nodiscard]] std::size_t triangle_count(std::uint32_t first_leaf, std::uint32_t end_leaf) const {
-    return triangles.first[end_leaf] - triangles.first[first_leaf];
-  }
-};
-
-Leaves make_leaves(const PreparedMesh& mesh, const ByPiece& pieces, const PieceCards& cards,
-                   std::uint32_t leaf_triangles) {
-  std::vector<Vec3d> centers(pieces.size());
-  std::vector<std::uint32_t> weights(pieces.size());
-  for (std::size_t p = 0; p < pieces.size(); ++p) {
-    Vec3d sum(0.0);
-    for (const std::uint32_t t : pieces.of(p)) {
-      for (const Vec3d& corner : corners_of(mesh, t)) sum += corner;
-    }
-    weights[p] = static_cast<std::uint32_t>(pieces.of(p).size());
-    centers[p] = sum / (3.0 * weights[p]);
-  }
-  Leaves leaves;
-  while ((mesh.triangles.size() >> static_cast<unsigned>(leaves.depth)) > leaf_triangles) ++leaves.depth;
-  const Blocks blocks = split_by_weight(centers, weights, leaves.depth);
-  leaves.triangles.first.push_back(0);
-  leaves.first_card.push_back(0);
-  leaves.first_level.push_back(0);
-  for (std::size_t leaf = 0; leaf < blocks.size(); ++leaf) {
-    const auto in_leaf = blocks.of(leaf);
-    std::vector<Vec3d> points;
-    for (const std::uint32_t p : in_leaf) points.push_back(centers[p]);
-    const Blocks order = points.empty() ? Blocks{} : split_evenly(points, points.size());
-    for (const std::uint32_t place : order.order) {
-      const std::uint32_t p = in_leaf[place];
-      const auto triangles = pieces.of(p);
-      leaves.triangles.items.insert(leaves.triangles.items.end(), triangles.begin(), triangles.end());
-      for (std::uint32_t c = cards.first[p]; c < cards.first[p + 1]; ++c) leaves.cards.push_back(c);
-    }
-    leaves.triangles.first.push_back(static_cast<std::uint32_t>(leaves.triangles.items.size()));
-    leaves.first_card.push_back(static_cast<std::uint32_t>(leaves.cards.size()));
-    const std::size_t cards_of_leaf = leaves.first_card[leaf + 1] - leaves.first_card[leaf];
-    const std::size_t half = (leaves.triangles.of(leaf).size() + 1) / 2;
-    leaves.first_level.push_back(leaves.first_level.back() + std::min(cards_of_leaf, half));
-  }
-  return leaves;
-}
-
-/// How samples are looked at to find factors.
-struct Sampling {
-  std::span<const View> views;
-  std::size_t counted = 0;  ///< of the views, the first ones: those over which as much is to be covered
-  double spacing = 0.0;     ///< of the source's; cards that are larger need fewer samples
-  double samples_each = 0.0;
-
-  [[nodiscard]] double sum(const Covered& covered) const {
-    double all = 0.0;
-    for (std::size_t v = 0; v < counted; ++v) all += static_cast<double>(covered[v]);
-    return all;
-  }
-  /// For so many cards of an area together: so many samples each, and as many as a mean over all of them asks for.
-  [[nodiscard]] double spacing_of(double area, std::size_t cards) const {
-    constexpr double kFewestSamples = 8192.0;
-    const double samples = std::max(kFewestSamples, samples_each * static_cast<double>(cards));
-    return std::max(spacing, std::sqrt(area / samples));
-  }
-};
-
-/// A way of thinning out that covers as much, or none.
-struct Fitted {
-  Splats splats;
-  std::vector<Corners> triangles;
-  double luck = 1.0;        ///< how much more the usual views show of it than of its pieces, of what each has
-  double worst_view = 0.0;  ///< what a single view's sum changes by at most
-  bool is_there = false;
-  bool is_fair = false;  ///< is there, and changes single views no more than other ways do
-};
-
-/// Seen along a field of grass, cards rise out of it: ways that do are left out where there are others.
-void leave_out_unfair(std::span<Fitted> ways) {
-  constexpr double kFineView = 0.10, kNearlyAsGood = 1.1;
-  double fairest = std::numeric_limits<double>::infinity();
-  for (const Fitted& way : ways) {
-    if (way.is_there) fairest = std::min(fairest, way.worst_view);
-  }
-  for (Fitted& way : ways) {
-    way.is_fair = way.is_there && way.worst_view <= std::max(kFineView, kNearlyAsGood * fairest);
-  }
-}
-
-/// What a view shows of cards that do not hide each other, and how much that is over all directions.
-class ShownArea {
- public:
-  explicit ShownArea(const Sampling& sampling) : sampling_(sampling) {}
-  void add(const Vec3d& normal, double area) {
-    area_ += area;
-    for (std::size_t v = 0; v < sampling_.counted; ++v) {
-      const View& view = sampling_.views[v];
-      shown_ += area * std::fabs(glm::dot(normal, glm::cross(view.right, view.up)));
-    }
-  }
-  /// How much more the views show than as many directions do in the mean, which is half of the area: of a large plate
-  /// or a handful of cards that is luck, some percent of it.
-  [[nodiscard]] double luck() const {
-    const double mean = 0.5 * area_ * static_cast<double>(sampling_.counted);
-    return mean > 0.0 && shown_ > 0.0 ? shown_ / mean : 1.0;
-  }
-
- private:
-  const Sampling& sampling_;
-  double area_ = 0.0, shown_ = 0.0;
-};
-
-/// As it will be stored: of a needle that is some steps wide much of the area.
-Corners on_grid(const format::PositionGrid& grid, const Corners& corners) {
-  const double most = format::kMaxGridCoordinate * grid.step();
-  Corners stored;
-  for (std::size_t k = 0; k < 3; ++k)
-    stored[k] = grid.decode(grid.quantize(glm::clamp(corners[k], Vec3d(-most), Vec3d(most))));
-  return stored;
-}
-
-double luck_of(const Sampling& sampling, const Splats& splats) {
-  ShownArea shown(sampling);
-  for (const Splat& splat : splats.splats) shown.add(splat.normal(), splat.area);
-  return shown.luck();
-}
-
-/// Only fair ways are proposed: the one that is proposed at that place.
-const Fitted& way_of(std::span<const Fitted> ways, std::size_t proposal) {
-  return *std::find_if(ways.begin(), ways.end(), [&](const Fitted& way) { return way.is_fair && proposal-- == 0; });
-}
-
-/// Finds the factor for which the splats, which have an area, cover as much as the source, over all views. It begins
-/// with the one given, and gives its own where there is one. `luck`: of the cards that covered so much.
-void fit_factor(const MeshFrame& frame, const format::PositionGrid& grid, const Covered& covered,
-                const Sampling& sampling, double area, double luck, double& near_factor, Fitted& way) {
-  constexpr double kCloseEnough = 0.004;
-  constexpr int kFactorSteps = 12;
-  const double spacing = sampling.spacing_of(area, way.splats.splats.size());
-  const double weight = spacing * spacing / (sampling.spacing * sampling.spacing);  // in samples of the source
-  const double wanted = sampling.sum(covered) * luck_of(sampling, way.splats) / luck;
-  if (!(wanted > 0.0)) return;
-  double factor = near_factor;
-  double low = 0.0, low_count = 0.0, high = 0.0, high_count = 0.0;
-  Covered now;
-  for (int step = 0; step < kFactorSteps; ++step) {
-    way.triangles.clear();
-    for (const Splat& splat : way.splats.splats) way.triangles.push_back(on_grid(grid, splat.corners(factor)));
-    now = covered_samples(frame, way.triangles, spacing, sampling.views);
-    const double count = weight * sampling.sum(now);
-    if (std::fabs(count - wanted) <= kCloseEnough * wanted) break;
-    if (count < wanted) {
-      low = factor;
-      low_count = count;
-    } else {
-      high = factor;
-      high_count = count;
-    }
-    if (high > 0.0 && high_count - low_count > 0.0) {
-      const double share = std::clamp((wanted - low_count) / (high_count - low_count), 0.1, 0.9);
-      factor = low + (high - low) * share;
-    } else {
-      // Nothing covers more so far: further than in proportion, since cards come to hide each other.
-      const double more = wanted / std::max(count, 1.0);
-      factor *= std::min(2.0, more * more);
-    }
-  }
-  for (std::size_t v = 0; v < now.size(); ++v) {
-    if (covered[v] == 0) continue;
-    const double share = weight * static_cast<double>(now[v]) / static_cast<double>(covered[v]);
-    way.worst_view = std::max(way.worst_view, std::fabs(share - 1.0));
-  }
-  way.is_there =
-      std::fabs(weight * sampling.sum(now) - wanted) <= kMostCoverageShift * wanted && way.worst_view <= kMostInAView;
-  if (way.is_there) near_factor = factor;
 }
 
 /// Where a block has few members, what stays in place is nearest to the picture; where it has many, what is spread. A
@@ -310,7 +122,8 @@ class Thinner {
     measure_proposals(source_, frame_, leaves_.triangles, frame_.longest / kFinestPixels, proposals);
     ThinMesh out;
     std::vector<std::vector<NoiseUse>> uses = uses_of(proposals);
-    hold_to_pictures(proposals, fitted, uses);
+    hold_to_pictures({source_, frame_, leaves_, cards_.cards, fit_, proposals, fitted}, frame_.longest / kFinestPixels,
+                     uses);
     leave_out_undrawn(uses);
     for (std::size_t l = 0; l < proposals.size(); ++l) out.levels.push_back(choose(proposals[l], fitted[l], uses[l]));
     out.leaf_triangles = std::move(leaves_.triangles);
@@ -435,110 +248,6 @@ class Thinner {
     }
     return share_out_noise(levels,
                            {kMostCoverageError, kMostSumShift, kMostViewShift, frame_.longest / kViewsHeldFrom});
-  }
-
-  using Levels = std::vector<std::vector<GroupProposals>>;
-  using Uses = std::vector<std::vector<NoiseUse>>;
-
-  /// What a cut at a pixel size draws.
-  [[nodiscard]] ThinnedCut cut_at(double pixel_size, const Levels& proposals,
-                                  std::span<const std::vector<std::vector<Fitted>>> fitted, const Uses& uses) const {
-    ThinnedCut cut;
-    ShownArea shown(fit_);
-    std::vector<std::uint8_t> is_replaced(leaves_.size(), 0), is_ever(leaves_.size(), 0);
-    for (std::size_t l = uses.size(); l-- > 0;) {
-      for (std::size_t g = 0; g < uses[l].size(); ++g) {
-        const GroupProposals& group = proposals[l][g];
-        const auto mark = [&](std::vector<std::uint8_t>& leaves) {
-          std::fill(leaves.begin() + group.first_leaf, leaves.begin() + group.end_leaf, std::uint8_t{1});
-        };
-        if (uses[l][g].pixel_size < std::numeric_limits<double>::infinity()) mark(is_ever);
-        if (uses[l][g].pixel_size > pixel_size || is_replaced[group.first_leaf] != 0) continue;
-        mark(is_replaced);
-        const Fitted& way = way_of(fitted[l][g], uses[l][g].way);
-        cut.triangles.insert(cut.triangles.end(), way.triangles.begin(), way.triangles.end());
-        for (const Splat& splat : way.splats.splats) shown.add(splat.normal(), splat.area);
-      }
-    }
-    ShownArea source(fit_);
-    for (std::uint32_t leaf = 0; leaf < is_replaced.size(); ++leaf) {
-      if (is_ever[leaf] == 0) continue;
-      cut.source_leaves.push_back(leaf);
-      if (is_replaced[leaf] == 0) cut.leaves.push_back(leaf);
-      for (const std::uint32_t c : leaves_.cards_of(leaf, leaf + 1)) {
-        const Card& card = cards_.cards.cards[c];
-        source.add(card.normal(), card.area);
-        if (is_replaced[leaf] == 0) shown.add(card.normal(), card.area);
-      }
-    }
-    cut.luck = shown.luck() / source.luck();
-    return cut;
-  }
-
-  /// Groups were measured one by one: what two of them cover together neither knows of. Whole cuts are looked at, from
-  /// small pixels to large ones, and where one has too much what came last waits for larger pixels. Leaves that nothing
-  /// replaces after that are not compared with: then it is of less that the others have to be a part.
-  void hold_to_pictures(const Levels& proposals, std::span<const std::vector<std::vector<Fitted>>> fitted,
-                        Uses& uses) const {
-    constexpr int kPasses = 8;
-    for (int pass = 0; pass < kPasses; ++pass) {
-      if (are_held(proposals, fitted, uses)) return;
-    }
-    for (std::vector<NoiseUse>& level : uses) level.assign(level.size(), {});  // no way to tell what is seen
-  }
-
-  /// False: some never come any more, and all is to be looked at again.
-  [[nodiscard]] bool are_held(const Levels& proposals, std::span<const std::vector<std::vector<Fitted>>> fitted,
-                              Uses& uses) const {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    double smallest = kInfinity, largest = 0.0, grain = kInfinity;
-    for (const std::vector<NoiseUse>& level : uses) {
-      for (const NoiseUse& use : level) {
-        if (!(use.pixel_size < kInfinity)) continue;
-        smallest = std::min(smallest, use.pixel_size);
-        largest = std::max(largest, use.pixel_size);
-      }
-    }
-    for (const std::vector<GroupProposals>& level : proposals) {
-      for (const GroupProposals& group : level) grain = group.grain > 0.0 ? std::min(grain, group.grain) : grain;
-    }
-    const auto move = [&](double from, double to) {
-      for (std::vector<NoiseUse>& level : uses) {
-        for (NoiseUse& use : level) {
-          if (use.pixel_size > from && use.pixel_size < to) use.pixel_size = to;
-        }
-      }
-    };
-    if (!(largest > 0.0)) return true;
-    std::size_t count = 1;
-    double first = largest;
-    for (; 0.5 * first >= smallest; first *= 0.5) ++count;
-    const CutMeter meter(source_, frame_, leaves_.triangles, first, count, 0.25 * grain,
-                         frame_.longest / kFinestPixels);
-    double held = 0.0, size = first;  // cuts up to there are as they should be
-    for (std::size_t i = 0; i < count; ++i, size *= 2.0) {
-      const CutChange change = meter.measure(cut_at(size, proposals, fitted, uses), i);
-      if (change.noise <= kMostCutNoise && std::fabs(change.sum_shift) <= kMostCutShift) {
-        held = size;
-      } else if (i + 1 < count) {
-        move(held, 2.0 * size);
-      } else {
-        move(held, kInfinity);
-        return false;
-      }
-    }
-    return true;
-  }
-
-  /// Of the same leaves a level that comes no later than one below it is drawn instead of that, always.
-  static void leave_out_undrawn(Uses& uses) {
-    for (std::size_t l = 0; l < uses.size(); ++l) {
-      for (std::size_t above = l + 1; above < uses.size() && uses[above].size() == uses[l].size(); ++above) {
-        for (std::size_t g = 0; g < uses[l].size(); ++g) {
-          if (uses[above][g].pixel_size <= uses[l][g].pixel_size) uses[l][g] = {};
-        }
-      }
-    }
   }
 
   [[nodiscard]] std::vector<ThinGroup> choose(std::span<const GroupProposals> proposals,

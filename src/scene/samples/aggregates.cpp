@@ -69,4 +69,53 @@ Primitive make_grass(std::uint32_t blades, std::uint64_t seed) {
   return out;
 }
 
+std::vector<std::string> aggregate_kinds() {
+  return {"hedge", "ivy", "pads", "clumps", "conifer", "blades", "splinters", "fence"};
+}
+
+Primitive make_aggregate_kind(const std::string& kind, std::uint32_t count, std::uint64_t seed) {
+  Primitive out;
+  SplitMix64 random(seed);
+  Vec3d clump(0.0);
+  const auto add_square = [&](const Vec3d& center, const Vec3d& normal, double half_width, double half_height) {
+    const Vec3d side = unit(glm::cross(normal, random_direction(random)) + Vec3d(1e-9, 0.0, 0.0));
+    const Vec3d up = glm::cross(normal, side) * half_height;
+    add_card(center - up, side * half_width, 2.0 * up, out);
+  };
+  const auto add_triangle = [&](const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+    const auto first = static_cast<std::uint32_t>(out.positions.size());
+    out.positions.insert(out.positions.end(), {a, b, c});
+    out.indices.insert(out.indices.end(), {first, first + 1, first + 2});
+  };
+  for (std::uint32_t k = 0; k < count; ++k) {
+    // One number after the other: arguments of a call are worked out in any order.
+    const Vec3d at{random.signed_unit(), random.signed_unit(), random.signed_unit()};
+    const Vec3d one = random_direction(random), other = random_direction(random);
+    const Vec3d around = unit(one * Vec3d(1.0, 0.0, 1.0) + Vec3d(1e-6, 0.0, 0.0));
+    if (kind == "hedge") {
+      add_square(at * Vec3d(5.0, 0.5, 0.4), one, 0.06, 0.06);
+    } else if (kind == "ivy") {
+      add_square(at * Vec3d(2.0, 2.0, 0.05), unit(0.4 * one + Vec3d(0.0, 0.2, 1.0)), 0.05, 0.05);
+    } else if (kind == "pads") {
+      add_square(at * Vec3d(3.0, 0.04, 3.0), unit(0.1 * one + Vec3d(0.0, 1.0, 0.0)), 0.05, 0.05);
+    } else if (kind == "clumps") {
+      if (k % 100 == 0) clump = other;
+      add_square(clump + 0.15 * at, one, 0.02, 0.02);
+    } else if (kind == "conifer") {
+      const double height = 0.5 + 0.5 * at.y;
+      add_square(around * (0.6 * (1.0 - height) * std::fabs(at.x)) + Vec3d(0.0, 2.0 * height, 0.0), other, 0.05, 0.006);
+    } else if (kind == "blades") {
+      const Vec3d foot = at * Vec3d(2.0, 0.0, 2.0), side = 0.01 * around;
+      add_triangle(foot - side, foot + side, foot + Vec3d(0.0, 0.2 + 0.1 * at.y, 0.0) + 2.0 * side);
+    } else if (kind == "splinters") {
+      add_triangle(at, at + 0.05 * one, at + 0.05 * other);
+    } else {  // fence
+      add_square(at * Vec3d(3.0, 0.0, 3.0), around, 0.05, 0.2);
+    }
+  }
+  out.normals.clear();
+  out.uvs[0].clear();
+  return out;
+}
+
 }  // namespace meshlode::scene

@@ -76,6 +76,12 @@ namespace meshlode::scene {
 /// A field of 2 x 2 with `blades` loose upright quads.
 [[nodiscard]] Primitive make_grass(std::uint32_t blades, std::uint64_t seed = 22);
 
+/// Other kinds: "hedge", "ivy" along a wall, "pads" on a pond, "clumps", a "conifer" of slender needles, "blades" and
+/// "splinters" of a triangle each, and a "fence" of cards that stand.
+[[nodiscard]] std::vector<std::string> aggregate_kinds();
+/// `count` loose pieces of one of these.
+[[nodiscard]] Primitive make_aggregate_kind(const std::string& kind, std::uint32_t count, std::uint64_t seed = 23);
+
 // ---------------------------------------------------------------------------------------------------- what is painted
 
 /// The wood of a tree, a trunk and its limbs: open tubes of rough bark with normals and UVs, a seam along each.
@@ -92,8 +98,8 @@ struct SampleFile {
   std::vector<std::uint8_t> bytes;  ///< a GLB
 };
 
-/// Scenes for benchmarks of aggregates: "tree" (40,000 masked leaf cards), "grass" (20,000 opaque blades) and "soup"
-/// (20,000 opaque boxes).
+/// Scenes for benchmarks of aggregates: "tree" (40,000 masked leaf cards), "grass" (20,000 opaque blades), "soup"
+/// (20,000 opaque boxes) and 10,000 opaque pieces of each of aggregate_kinds().
 [[nodiscard]] std::vector<std::string> aggregate_names();
 /// \pre one of aggregate_names()
 [[nodiscard]] SampleFile make_aggregate_file(const std::string& name);

@@ -94,7 +94,9 @@ SampleFile make_sample_file(const std::string& name) {
 }
 
 std::vector<std::string> aggregate_names() {
-  return {"tree", "grass", "soup"};
+  std::vector<std::string> names{"tree", "grass", "soup"};
+  for (std::string& kind : aggregate_kinds()) names.push_back(std::move(kind));
+  return names;
 }
 
 SampleFile make_aggregate_file(const std::string& name) {
@@ -103,9 +105,12 @@ SampleFile make_aggregate_file(const std::string& name) {
     material.is_masked = material.double_sided = true;
     return {"tree.glb", write_glb(textured_scene_of("tree", make_crown(40000), material, make_leaf_texture(64)))};
   }
-  material.base_color = name == "grass" ? Vec4f{0.2F, 0.4F, 0.1F, 1.0F} : Vec4f{0.5F, 0.45F, 0.4F, 1.0F};
-  material.double_sided = name == "grass";
-  Primitive shape = name == "grass" ? make_grass(20000) : make_box_soup(20000);
+  const bool is_soup = name == "soup";
+  material.base_color = is_soup ? Vec4f{0.5F, 0.45F, 0.4F, 1.0F} : Vec4f{0.2F, 0.4F, 0.1F, 1.0F};
+  material.double_sided = !is_soup;
+  Primitive shape = is_soup           ? make_box_soup(20000)
+                    : name == "grass" ? make_grass(20000)
+                                      : make_aggregate_kind(name, 10000);
   return {name + ".glb", write_glb(scene_of(name.c_str(), std::move(shape), material))};
 }
 

@@ -9,7 +9,6 @@
 #include "build/build.h"
 #include "judge/metrics/coverage.h"
 #include "judge/validate/edit.h"
-#include "judge/verify/aggregate_kinds.h"
 #include "judge/verify/verify.h"
 #include "run/read/asset.h"
 #include "run/select/select.h"
@@ -75,8 +74,8 @@ TEST(Aggregates, SmallOnesHold) {
 }
 
 TEST(Aggregates, OfOtherKindsHoldAndHaveLevels) {
-  for (const char* kind : test::kAggregateKinds) {
-    const scene::Scene scene = scene_of(test::make_aggregate(kind, 3000, 7));
+  for (const std::string& kind : scene::aggregate_kinds()) {
+    const scene::Scene scene = scene_of(scene::make_aggregate_kind(kind, 3000));
     const std::vector<std::uint8_t> bytes = build_aggregate(scene);
     EXPECT_EQ(found_in(bytes, scene), "") << kind;
     const Result<run::Asset> asset = run::Asset::from_vector(bytes);

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Whole cuts of an aggregate against its source: what groups measured one by one (coverage_error.h) do not know of each
+// other is in it.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "build/aggregate/card.h"
+#include "build/aggregate/pictures.h"
+#include "build/aggregate/views.h"
+
+namespace meshlode::build {
+
+/// What is drawn at a pixel size: some leaves as they are, and triangles instead of the others.
+struct ThinnedCut {
+  std::vector<std::uint32_t> source_leaves;  ///< what it is compared with: those that something replaces at some size
+  std::vector<std::uint32_t> leaves;         ///< of these
+  std::vector<Corners> triangles;
+  double luck = 1.0;  ///< how much more the views show of all of it than of the source, of what each has
+};
+
+struct CutChange {
+  double noise = 0.0;      ///< as Proposal::noise, of the whole
+  double sum_shift = 0.0;  ///< as Proposal::sum_shift
+};
+/// The source is drawn once.
+class CutMeter {
+ public:
+  /// At `count` pixel sizes, each twice as large as the one before. Samples are as wide as `grain` at most, but for the
+  /// smallest that measure_proposals() has for `finest`.
+  CutMeter(const SourceSurface& source, const MeshFrame& frame, const ByPiece& leaf_triangles, double smallest,
+           std::size_t count, double grain, double finest);
+  [[nodiscard]] CutChange measure(const ThinnedCut& cut, std::size_t size) const;
+
+ private:
+  struct Size {
+    std::size_t octaves = 1, lattice = 0;
+  };
+  std::vector<Size> sizes_;
+  std::vector<Lattice> lattices_;                                    ///< each half as fine as the one before
+  std::array<std::vector<std::vector<SampleMask>>, kViews> leaves_;  ///< [view][lattice][leaf]
+};
+
+}  // namespace meshlode::build

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "build/aggregate/fit_factor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "build/aggregate/coverage_error.h"
+
+namespace meshlode::build {
+
+namespace {
+
+constexpr double kMostInAView = 0.75;  // more or less: a level that shows a view so much else stands for nothing
+
+/// As it will be stored: of a needle that is some steps wide much of the area.
+Corners on_grid(const format::PositionGrid& grid, const Corners& corners) {
+  const double most = format::kMaxGridCoordinate * grid.step();
+  Corners stored;
+  for (std::size_t k = 0; k < 3; ++k)
+    stored[k] = grid.decode(grid.quantize(glm::clamp(corners[k], Vec3d(-most), Vec3d(most))));
+  return stored;
+}
+
+}  // namespace
+
+double luck_of(const Sampling& sampling, const Splats& splats) {
+  ShownArea shown(sampling);
+  for (const Splat& splat : splats.splats) shown.add(splat.normal(), splat.area);
+  return shown.luck();
+}
+
+void fit_factor(const MeshFrame& frame, const format::PositionGrid& grid, const Covered& covered,
+                const Sampling& sampling, double area, double luck, double& near_factor, Fitted& way) {
+  constexpr double kCloseEnough = 0.004;
+  constexpr int kFactorSteps = 12;
+  const double spacing = sampling.spacing_of(area, way.splats.splats.size());
+  const double weight = spacing * spacing / (sampling.spacing * sampling.spacing);  // in samples of the source
+  const double wanted = sampling.sum(covered) * luck_of(sampling, way.splats) / luck;
+  if (!(wanted > 0.0)) return;
+  double factor = near_factor;
+  double low = 0.0, low_count = 0.0, high = 0.0, high_count = 0.0;
+  Covered now;
+  for (int step = 0; step < kFactorSteps; ++step) {
+    way.triangles.clear();
+    for (const Splat& splat : way.splats.splats) way.triangles.push_back(on_grid(grid, splat.corners(factor)));
+    now = covered_samples(frame, way.triangles, spacing, sampling.views);
+    const double count = weight * sampling.sum(now);
+    if (std::fabs(count - wanted) <= kCloseEnough * wanted) break;
+    if (count < wanted) {
+      low = factor;
+      low_count = count;
+    } else {
+      high = factor;
+      high_count = count;
+    }
+    if (high > 0.0 && high_count - low_count > 0.0) {
+      const double share = std::clamp((wanted - low_count) / (high_count - low_count), 0.1, 0.9);
+      factor = low + (high - low) * share;
+    } else {
+      // Nothing covers more so far: further than in proportion, since cards come to hide each other.
+      const double more = wanted / std::max(count, 1.0);
+      factor *= std::min(2.0, more * more);
+    }
+  }
+  for (std::size_t v = 0; v < now.size(); ++v) {
+    if (covered[v] == 0) continue;
+    const double share = weight * static_cast<double>(now[v]) / static_cast<double>(covered[v]);
+    way.worst_view = std::max(way.worst_view, std::fabs(share - 1.0));
+  }
+  way.is_there =
+      std::fabs(weight * sampling.sum(now) - wanted) <= kMostCoverageShift * wanted && way.worst_view <= kMostInAView;
+  if (way.is_there) near_factor = factor;
+}
+
+void leave_out_unfair(std::span<Fitted> ways) {
+  constexpr double kFineView = 0.10, kNearlyAsGood = 1.1;
+  double fairest = std::numeric_limits<double>::infinity();
+  for (const Fitted& way : ways) {
+    if (way.is_there) fairest = std::min(fairest, way.worst_view);
+  }
+  for (Fitted& way : ways) {
+    way.is_fair = way.is_there && way.worst_view <= std::max(kFineView, kNearlyAsGood * fairest);
+  }
+}
+
+const Fitted& way_of(std::span<const Fitted> ways, std::size_t proposal) {
+  return *std::find_if(ways.begin(), ways.end(), [&](const Fitted& way) { return way.is_fair && proposal-- == 0; });
+}
+
+}  // namespace meshlode::build

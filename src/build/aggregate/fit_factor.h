@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Cards that stand for an aggregate's pieces get one factor for their areas, so that they cover as much as the pieces
+// do over all views.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "build/aggregate/card.h"
+#include "build/aggregate/covered_samples.h"
+#include "build/aggregate/pictures.h"
+#include "build/aggregate/views.h"
+#include "format/grid.h"
+
+namespace meshlode::build {
+
+/// How samples are looked at to find factors.
+struct Sampling {
+  std::span<const View> views;
+  std::size_t counted = 0;  ///< of the views, the first ones: those over which as much is to be covered
+  double spacing = 0.0;     ///< of the source's; cards that are larger need fewer samples
+  double samples_each = 0.0;
+
+  [[nodiscard]] double sum(const Covered& covered) const {
+    double all = 0.0;
+    for (std::size_t v = 0; v < counted; ++v) all += static_cast<double>(covered[v]);
+    return all;
+  }
+  /// For so many cards of an area together: so many samples each, and as many as a mean over all of them asks for.
+  [[nodiscard]] double spacing_of(double area, std::size_t cards) const {
+    constexpr double kFewestSamples = 8192.0;
+    const double samples = std::max(kFewestSamples, samples_each * static_cast<double>(cards));
+    return std::max(spacing, std::sqrt(area / samples));
+  }
+};
+
+/// What a view shows of cards that do not hide each other, and how much that is over all directions.
+class ShownArea {
+ public:
+  explicit ShownArea(const Sampling& sampling) : sampling_(sampling) {}
+  void add(const Vec3d& normal, double area) {
+    area_ += area;
+    for (std::size_t v = 0; v < sampling_.counted; ++v) {
+      const View& view = sampling_.views[v];
+      shown_ += area * std::fabs(glm::dot(normal, glm::cross(view.right, view.up)));
+    }
+  }
+  /// How much more the views show than as many directions do in the mean, which is half of the area: of a large plate
+  /// or a handful of cards that is luck, some percent of it.
+  [[nodiscard]] double luck() const {
+    const double mean = 0.5 * area_ * static_cast<double>(sampling_.counted);
+    return mean > 0.0 && shown_ > 0.0 ? shown_ / mean : 1.0;
+  }
+
+ private:
+  const Sampling& sampling_;
+  double area_ = 0.0, shown_ = 0.0;
+};
+
+[[nodiscard]] double luck_of(const Sampling& sampling, const Splats& splats);
+
+/// A way of thinning out that covers as much, or none.
+struct Fitted {
+  Splats splats;
+  std::vector<Corners> triangles;
+  double luck = 1.0;        ///< how much more the usual views show of it than of its pieces, of what each has
+  double worst_view = 0.0;  ///< what a single view's sum changes by at most
+  bool is_there = false;
+  bool is_fair = false;  ///< is there, and changes single views no more than other ways do
+};
+
+/// Finds the factor for which the splats, which have an area, cover as much as the source, over all views. It begins
+/// with the one given, and gives its own where there is one. `luck`: of the cards that covered so much.
+void fit_factor(const MeshFrame& frame, const format::PositionGrid& grid, const Covered& covered,
+                const Sampling& sampling, double area, double luck, double& near_factor, Fitted& way);
+
+/// Seen along a field of grass, cards rise out of it: ways that do are left out where there are others.
+void leave_out_unfair(std::span<Fitted> ways);
+
+/// Only fair ways are proposed: the one that is proposed at that place.
+[[nodiscard]] const Fitted& way_of(std::span<const Fitted> ways, std::size_t proposal);
+
+}  // namespace meshlode::build

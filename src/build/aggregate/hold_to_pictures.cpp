@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "build/aggregate/hold_to_pictures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include "build/aggregate/cut_meter.h"
+
+namespace meshlode::build {
+
+namespace {
+
+// What whole cuts may have. From other directions they have some percent more noise.
+constexpr double kMostCutNoise = 0.21, kMostCutShift = 0.017;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+using Uses = std::vector<std::vector<NoiseUse>>;
+
+/// What a cut at a pixel size draws.
+ThinnedCut cut_at(const ThinnedWays& ways, const Uses& uses, double pixel_size) {
+  ThinnedCut cut;
+  ShownArea shown(ways.sampling), source(ways.sampling);
+  std::vector<std::uint8_t> is_replaced(ways.leaves.size(), 0), is_ever(ways.leaves.size(), 0);
+  for (std::size_t l = uses.size(); l-- > 0;) {
+    for (std::size_t g = 0; g < uses[l].size(); ++g) {
+      const GroupProposals& group = ways.proposals[l][g];
+      const auto mark = [&](std::vector<std::uint8_t>& leaves) {
+        std::fill(leaves.begin() + group.first_leaf, leaves.begin() + group.end_leaf, std::uint8_t{1});
+      };
+      if (uses[l][g].pixel_size < kInfinity) mark(is_ever);
+      if (uses[l][g].pixel_size > pixel_size || is_replaced[group.first_leaf] != 0) continue;
+      mark(is_replaced);
+      const Fitted& way = way_of(ways.fitted[l][g], uses[l][g].way);
+      cut.triangles.insert(cut.triangles.end(), way.triangles.begin(), way.triangles.end());
+      for (const Splat& splat : way.splats.splats) shown.add(splat.normal(), splat.area);
+    }
+  }
+  for (std::uint32_t leaf = 0; leaf < is_replaced.size(); ++leaf) {
+    if (is_ever[leaf] == 0) continue;
+    cut.source_leaves.push_back(leaf);
+    if (is_replaced[leaf] == 0) cut.leaves.push_back(leaf);
+    for (const std::uint32_t c : ways.leaves.cards_of(leaf, leaf + 1)) {
+      const Card& card = ways.cards.cards[c];
+      source.add(card.normal(), card.area);
+      if (is_replaced[leaf] == 0) shown.add(card.normal(), card.area);
+    }
+  }
+  cut.luck = shown.luck() / source.luck();
+  return cut;
+}
+
+/// Whether something comes between two pixel sizes, the larger one included.
+bool is_any_between(const Uses& uses, double low, double high) {
+  return std::any_of(uses.begin(), uses.end(), [&](const std::vector<NoiseUse>& level) {
+    return std::any_of(level.begin(), level.end(),
+                       [&](const NoiseUse& use) { return use.pixel_size > low && use.pixel_size <= high; });
+  });
+}
+
+void move_all_between(Uses& uses, double low, double high, double to) {
+  for (std::vector<NoiseUse>& level : uses) {
+    for (NoiseUse& use : level) {
+      if (use.pixel_size > low && use.pixel_size <= high) use.pixel_size = to;
+    }
+  }
+}
+
+/// From small pixels to large ones. False: some groups never come any more, and all is to be looked at again, since
+/// leaves that nothing replaces are not compared with.
+bool are_held(const ThinnedWays& ways, double finest, Uses& uses) {
+  double smallest = kInfinity, largest = 0.0, grain = kInfinity;
+  for (const std::vector<NoiseUse>& level : uses) {
+    for (const NoiseUse& use : level) {
+      if (!(use.pixel_size < kInfinity)) continue;
+      smallest = std::min(smallest, use.pixel_size);
+      largest = std::max(largest, use.pixel_size);
+    }
+  }
+  if (!(largest > 0.0)) return true;
+  for (const std::vector<GroupProposals>& level : ways.proposals) {
+    for (const GroupProposals& group : level) grain = group.grain > 0.0 ? std::min(grain, group.grain) : grain;
+  }
+  std::size_t count = 1;
+  double size = largest;
+  for (; 0.5 * size >= smallest; size *= 0.5) ++count;
+  // A quarter of a piece: wider samples find the sums of thin blades by luck, to some percent.
+  const CutMeter meter(ways.source, ways.frame, ways.leaves.triangles, size, count, 0.25 * grain, finest);
+  double held = 0.0;  // cuts up to there are as they should be
+  for (std::size_t i = 0; i < count; ++i, size *= 2.0) {
+    // What is drawn in larger pixels too has less noise there, and covers as much.
+    if (is_any_between(uses, held, size)) {
+      const CutChange change = meter.measure(cut_at(ways, uses, size), i);
+      if (change.noise > kMostCutNoise || std::fabs(change.sum_shift) > kMostCutShift) {
+        const bool is_last = i + 1 == count;
+        move_all_between(uses, held, 2.0 * size, is_last ? kInfinity : 2.0 * size);
+        if (is_last) return false;
+        continue;
+      }
+    }
+    held = size;
+  }
+  return true;
+}
+
+}  // namespace
+
+void hold_to_pictures(const ThinnedWays& ways, double finest, std::vector<std::vector<NoiseUse>>& uses) {
+  constexpr int kPasses = 8;
+  for (int pass = 0; pass < kPasses; ++pass) {
+    if (are_held(ways, finest, uses)) return;
+  }
+  for (std::vector<NoiseUse>& level : uses) level.assign(level.size(), {});  // no way to tell what is seen
+}
+
+}  // namespace meshlode::build
