@@ -40,15 +40,21 @@ namespace meshlode::build {
 
 namespace {
 
-/// Refuses what cannot be built, before any work is done. \returns how many meshes may be in work at once
-Result<std::size_t> check_build(const scene::Scene& scene, const PipelineOptions& options, PipelineReport& report) {
+/// Refuses what cannot be built, before any work is done.
+Status check_build(const scene::Scene& scene, const PipelineOptions& options) {
   if (const Status s = check_options(options, scene.meshes.size()); !s) return s.error();
   for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
     const std::string label = mesh_label(scene.meshes[i], i);
     if (const Status counts = check_mesh_counts(count_mesh(scene.meshes[i]), label); !counts) return counts.error();
   }
+  return Ok{};
+}
+
+/// The same of memory. \returns how many meshes may be in work at once
+Result<std::size_t> check_memory(const scene::Scene& scene, const PipelineOptions& options,
+                                 std::span<const AggregateDecision> aggregates, PipelineReport& report) {
   const auto threads = static_cast<std::uint32_t>(thread_limit());
-  const MemoryEstimate estimate = estimate_memory(scene, options, threads);
+  const MemoryEstimate estimate = estimate_memory(scene, options, threads, aggregates);
   const Result<std::size_t> at_once = fit_memory(estimate, threads, options);
   report.memory_estimate = estimate.bytes(at_once ? *at_once : 1);
   return at_once;
@@ -135,15 +141,23 @@ void leave_out_unknown(const scene::SourceMesh& mesh, std::span<const std::uint8
   if (!decision.most_triangles.empty() && !is_any_left) decision = {false, reason, {}};
 }
 
-Result<Survey> survey(const scene::Scene& scene, const PipelineOptions& options) {
+/// By mesh.
+std::vector<AggregateDecision> decide_aggregates(const scene::Scene& scene, const PipelineOptions& options) {
+  std::vector<AggregateDecision> decisions;
+  for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
+    decisions.push_back(decide_aggregate(scene.meshes[i], aggregate_question(scene, i, options)));
+  }
+  return decisions;
+}
+
+Result<Survey> survey(const scene::Scene& scene, const PipelineOptions& options,
+                      std::vector<AggregateDecision> aggregates) {
   Survey found;
+  found.aggregates = std::move(aggregates);
   found.texels = texels_of_materials(scene);
   if (options.promise != format::Promise::kPosition) found.extents = texel_extents_of_materials(scene);
   std::vector<std::uint8_t> is_used(scene.materials.size(), 0);
-  for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
-    found.aggregates.push_back(decide_aggregate(scene.meshes[i], aggregate_question(scene, i, options)));
-    add_materials(scene.meshes[i], found.aggregates.back(), is_used);
-  }
+  for (std::size_t i = 0; i < scene.meshes.size(); ++i) add_materials(scene.meshes[i], found.aggregates[i], is_used);
   if (!found.has_aggregates()) return found;
   std::vector<std::uint8_t> wanted = is_used;
   for (std::size_t i = 0; i < wanted.size(); ++i) wanted[i] = wanted[i] != 0 && needs_look(scene.materials[i]) ? 1 : 0;
@@ -324,9 +338,11 @@ void add_scene_decisions(const scene::Scene& scene, const std::vector<EncodedMes
 Result<std::vector<std::uint8_t>> build_asset_of(const Source& from, const PipelineOptions& options,
                                                  const ProgressCallback& progress, PipelineReport& report) {
   const scene::Scene& scene = from.scene;
-  const Result<std::size_t> at_once = check_build(scene, options, report);
+  if (const Status s = check_build(scene, options); !s) return s.error();
+  std::vector<AggregateDecision> aggregates = decide_aggregates(scene, options);
+  const Result<std::size_t> at_once = check_memory(scene, options, aggregates, report);
   if (!at_once) return at_once.error();
-  const Result<Survey> found = survey(scene, options);
+  const Result<Survey> found = survey(scene, options, std::move(aggregates));
   if (!found) return found.error();
   Result<std::vector<BuiltMesh>> meshes = build_meshes(from, options, *found, *at_once, progress);
   if (!meshes) return meshes.error();

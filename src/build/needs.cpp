@@ -23,7 +23,8 @@ constexpr std::uint64_t kDocumentByte = 40;
 constexpr std::uint64_t kKeptTriangle = 30;
 constexpr std::uint64_t kTriangle = 10;
 constexpr std::uint64_t kTriangleOfCertified = 50;
-constexpr std::uint64_t kTrianglePromised = 400;  // both surfaces, their trees and the samples (src/build/promise)
+constexpr std::uint64_t kTrianglePromised = 550;     // both surfaces, their trees and the samples (src/build/promise)
+constexpr std::uint64_t kTriangleOfAggregate = 150;  // ways to thin it out, and pictures of them in all views
 constexpr std::uint64_t kPosition = 230;
 constexpr std::uint64_t kPositionOfQuadric = 180;
 constexpr std::uint64_t kVertexFloat = 8;
@@ -88,7 +89,8 @@ std::uint64_t MemoryEstimate::bytes(std::size_t at_once) const {
   return sum;
 }
 
-MemoryEstimate estimate_memory(const scene::Scene& scene, const PipelineOptions& options, std::uint32_t threads) {
+MemoryEstimate estimate_memory(const scene::Scene& scene, const PipelineOptions& options, std::uint32_t threads,
+                               std::span<const AggregateDecision> aggregates) {
   MemoryEstimate estimate;
   estimate.always = kProcess + kThread * std::max(threads, 1U) + kDocumentByte * scene.document.size();
   estimate.spilled = estimate.always + kSpillRoom;
@@ -106,6 +108,8 @@ MemoryEstimate estimate_memory(const scene::Scene& scene, const PipelineOptions&
     estimate.working.push_back(((is_certified ? kTriangleOfCertified : kTriangle) + promised) * counts.triangles +
                                (is_measured ? kPosition : kPositionOfQuadric) * count_wedges(mesh, {}) +
                                kVertexFloat * attribute_floats(mesh, own) * counts.vertices);
+    const bool is_aggregate = i < aggregates.size() && aggregates[i].is_aggregate;
+    if (is_aggregate) estimate.working.back() += kTriangleOfAggregate * counts.triangles;
   }
   estimate.spilled += estimate.spilled / 3;
   std::sort(estimate.working.begin(), estimate.working.end(), std::greater<>());

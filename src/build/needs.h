@@ -4,11 +4,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
 #include <meshlode/result.h>
 
+#include "build/aggregate/aggregate_choice.h"
 #include "build/build.h"
 #include "scene/scene.h"
 
@@ -42,8 +44,9 @@ struct MemoryEstimate {
   [[nodiscard]] std::uint64_t bytes(std::size_t at_once) const;
 };
 
+/// `aggregates`: by mesh; none where there are none.
 [[nodiscard]] MemoryEstimate estimate_memory(const scene::Scene& scene, const PipelineOptions& options,
-                                             std::uint32_t threads);
+                                             std::uint32_t threads, std::span<const AggregateDecision> aggregates = {});
 
 /// How many meshes may be in work at once, at most one a thread: fewer where memory asks for it, down to one after
 /// another. The limit is PipelineOptions::max_memory or, where that is 0, what the process has and the machine can

@@ -187,7 +187,8 @@ struct Measured {
 
 /// The scene made and built in a child of its own, so that its peak is nobody else's.
 template <class MakeScene>
-Measured measure(const MakeScene& make_scene, format::ErrorTier tier, int threads) {
+Measured measure(const MakeScene& make_scene, format::ErrorTier tier, int threads,
+                 AggregateChoice aggregate = AggregateChoice::kNever) {
   Measured out;
   int ends[2];
   if (pipe(ends) != 0) return out;
@@ -198,6 +199,7 @@ Measured measure(const MakeScene& make_scene, format::ErrorTier tier, int thread
     arena.execute([&] {
       PipelineOptions options;
       options.error_tier = tier;
+      options.aggregate = aggregate;
       PipelineReport report;
       const scene::Scene scene = make_scene();
       const auto bytes = build_lode(scene, options, {}, report);
@@ -239,6 +241,9 @@ TEST(Needs, MemoryIsEstimatedFromAboveAndCloseEnough) {
   expect_close(measure([] { return loose(20000); }, kMeasured, 1), "20,000 loose triangles");
   expect_close(measure([] { return unshared(sheets(120, 1, false)); }, kMeasured, 1),
                "28,800 triangles, no vertex shared");
+  expect_close(measure([] { return loose(400); }, kMeasured, 2, AggregateChoice::kAlways), "an aggregate of 400");
+  expect_close(measure([] { return loose(20000); }, kMeasured, 1, AggregateChoice::kAlways), "of 20,000 triangles");
+  expect_close(measure([] { return loose(200000); }, kMeasured, 2, AggregateChoice::kAlways), "of 200,000");
 }
 
 TEST(Needs, ALargeMeshSpillsMostOfWhatItTakes) {

@@ -143,6 +143,8 @@ void copy_attributes(const Cards& cards, std::uint32_t member, std::size_t strid
 
 Splats splats_of(const Cards& cards, std::span<const std::uint32_t> chosen, std::size_t stride) {
   Splats out;
+  out.splats.reserve(chosen.size());
+  out.attributes.reserve(stride * chosen.size());
   for (const std::uint32_t c : chosen) {
     Splat splat = splat_of(cards.cards[c]);
     splat.turn = scrambled(c) & 3U;
@@ -155,6 +157,8 @@ Splats splats_of(const Cards& cards, std::span<const std::uint32_t> chosen, std:
 Splats thin_out(const Cards& cards, std::span<const std::uint32_t> chosen, const Blocks& blocks, Thinning thinning,
                 std::size_t stride) {
   Splats out;
+  out.splats.reserve(blocks.size());
+  out.attributes.reserve(stride * blocks.size());
   Shown owed{};
   for (std::size_t b = 0; b < blocks.size(); ++b) {
     const Block block(cards, chosen, blocks.of(b));

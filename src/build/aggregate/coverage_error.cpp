@@ -66,7 +66,7 @@ ViewResult look(std::span<const SampleMask> leaves, const Lattice& lattice, cons
         const Trial& trial = trials[first + i];
         const std::size_t octaves = trial.octaves_at(step);
         if (octaves == 0) return;
-        const std::vector<Corners>& triangles = levels[level][trial.group].proposals[trial.proposal].triangles;
+        const std::span<const Corners> triangles = levels[level][trial.group].proposals[trial.proposal].triangles;
         result.change[first + i] = change_of(masks[trial.group], mask_of(lattice, view, triangles), cover, octaves);
       });
     }

@@ -27,7 +27,7 @@ constexpr double kMostCoverageShift = 0.01;
 
 /// One way of thinning out one group: the triangles that would replace its pieces.
 struct Proposal {
-  std::vector<Corners> triangles;
+  std::span<const Corners> triangles;
   double luck = 1.0;                    ///< how much more the views show of it than of its pieces, of what each has
   std::array<double, kViews> shifts{};  ///< out: by view, how much more is covered, of what the whole mesh covers
   double sum_shift = 0.0;               ///< out: the same of all views together, without luck

@@ -24,23 +24,36 @@ Corners on_grid(const format::PositionGrid& grid, const Corners& corners) {
 
 }  // namespace
 
-double luck_of(const Sampling& sampling, const Splats& splats) {
-  ShownArea shown(sampling);
-  for (const Splat& splat : splats.splats) shown.add(splat.normal(), splat.area);
-  return shown.luck();
+ShownArea shown_by(const Sampling& sampling, const Splats& splats) {
+  ShownArea shown;
+  for (const Splat& splat : splats.splats) shown.add(sampling, splat.normal(), splat.area);
+  return shown;
+}
+
+void Fitted::forget_splats() {
+  if (is_fair) {
+    material.reserve(splats.splats.size());
+    for (const Splat& splat : splats.splats) material.push_back(splat.material);
+  } else {
+    splats.attributes = {};
+    triangles = {};
+  }
+  splats.splats = {};
 }
 
 void fit_factor(const MeshFrame& frame, const format::PositionGrid& grid, const Covered& covered,
-                const Sampling& sampling, double area, double luck, double& near_factor, Fitted& way) {
+                const Sampling& sampling, double area, double luck, const ShownArea& shown, double& near_factor,
+                Fitted& way) {
   constexpr double kCloseEnough = 0.004;
   constexpr int kFactorSteps = 12;
   const double spacing = sampling.spacing_of(area, way.splats.splats.size());
   const double weight = spacing * spacing / (sampling.spacing * sampling.spacing);  // in samples of the source
-  const double wanted = sampling.sum(covered) * luck_of(sampling, way.splats) / luck;
+  const double wanted = sampling.sum(covered) * shown.luck() / luck;
   if (!(wanted > 0.0)) return;
   double factor = near_factor;
   double low = 0.0, low_count = 0.0, high = 0.0, high_count = 0.0;
   Covered now;
+  way.triangles.reserve(way.splats.splats.size());
   for (int step = 0; step < kFactorSteps; ++step) {
     way.triangles.clear();
     for (const Splat& splat : way.splats.splats) way.triangles.push_back(on_grid(grid, splat.corners(factor)));
@@ -84,8 +97,10 @@ void leave_out_unfair(std::span<Fitted> ways) {
   }
 }
 
-const Fitted& way_of(std::span<const Fitted> ways, std::size_t proposal) {
-  return *std::find_if(ways.begin(), ways.end(), [&](const Fitted& way) { return way.is_fair && proposal-- == 0; });
+std::size_t way_of(std::span<const Fitted> ways, std::size_t proposal) {
+  const auto way =
+      std::find_if(ways.begin(), ways.end(), [&](const Fitted& each) { return each.is_fair && proposal-- == 0; });
+  return static_cast<std::size_t>(way - ways.begin());
 }
 
 }  // namespace meshlode::build

@@ -3,8 +3,10 @@
 // do over all views.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -36,50 +38,63 @@ struct Sampling {
   }
 };
 
-/// What a view shows of cards that do not hide each other, and how much that is over all directions.
+/// What views show of cards that do not hide each other, and how much that is over all directions.
 class ShownArea {
  public:
-  explicit ShownArea(const Sampling& sampling) : sampling_(sampling) {}
-  void add(const Vec3d& normal, double area) {
+  void add(const Sampling& sampling, const Vec3d& normal, double area) {
     area_ += area;
-    for (std::size_t v = 0; v < sampling_.counted; ++v) {
-      const View& view = sampling_.views[v];
+    views_ = sampling.counted;
+    for (std::size_t v = 0; v < sampling.counted; ++v) {
+      const View& view = sampling.views[v];
       shown_ += area * std::fabs(glm::dot(normal, glm::cross(view.right, view.up)));
     }
+  }
+  /// \pre by the same sampling
+  void add(const ShownArea& other) {
+    area_ += other.area_;
+    shown_ += other.shown_;
+    views_ = std::max(views_, other.views_);
   }
   /// How much more the views show than as many directions do in the mean, which is half of the area: of a large plate
   /// or a handful of cards that is luck, some percent of it.
   [[nodiscard]] double luck() const {
-    const double mean = 0.5 * area_ * static_cast<double>(sampling_.counted);
+    const double mean = 0.5 * area_ * static_cast<double>(views_);
     return mean > 0.0 && shown_ > 0.0 ? shown_ / mean : 1.0;
   }
 
  private:
-  const Sampling& sampling_;
   double area_ = 0.0, shown_ = 0.0;
+  std::size_t views_ = 0;
 };
 
-[[nodiscard]] double luck_of(const Sampling& sampling, const Splats& splats);
+[[nodiscard]] ShownArea shown_by(const Sampling& sampling, const Splats& splats);
 
 /// A way of thinning out that covers as much, or none.
 struct Fitted {
-  Splats splats;
+  Splats splats;    ///< until they are forgotten, but for their attributes
+  ShownArea shown;  ///< of the splats, as the usual views show it
   std::vector<Corners> triangles;
+  std::vector<std::uint32_t> material;  ///< of the source, per triangle; once the splats are forgotten
   double luck = 1.0;        ///< how much more the usual views show of it than of its pieces, of what each has
   double worst_view = 0.0;  ///< what a single view's sum changes by at most
   bool is_there = false;
   bool is_fair = false;  ///< is there, and changes single views no more than other ways do
+
+  /// Large meshes have many. Of a way that is not fair everything goes.
+  void forget_splats();
 };
 
 /// Finds the factor for which the splats, which have an area, cover as much as the source, over all views. It begins
-/// with the one given, and gives its own where there is one. `luck`: of the cards that covered so much.
+/// with the one given, and gives its own where there is one. `luck`: of the cards that covered so much; `shown`: of
+/// the splats, by the same sampling.
 void fit_factor(const MeshFrame& frame, const format::PositionGrid& grid, const Covered& covered,
-                const Sampling& sampling, double area, double luck, double& near_factor, Fitted& way);
+                const Sampling& sampling, double area, double luck, const ShownArea& shown, double& near_factor,
+                Fitted& way);
 
 /// Seen along a field of grass, cards rise out of it: ways that do are left out where there are others.
 void leave_out_unfair(std::span<Fitted> ways);
 
-/// Only fair ways are proposed: the one that is proposed at that place.
-[[nodiscard]] const Fitted& way_of(std::span<const Fitted> ways, std::size_t proposal);
+/// Only fair ways are proposed: which of all ways is the one proposed at that place.
+[[nodiscard]] std::size_t way_of(std::span<const Fitted> ways, std::size_t proposal);
 
 }  // namespace meshlode::build

@@ -22,7 +22,7 @@ using Uses = std::vector<std::vector<NoiseUse>>;
 /// What a cut at a pixel size draws.
 ThinnedCut cut_at(const ThinnedWays& ways, const Uses& uses, double pixel_size) {
   ThinnedCut cut;
-  ShownArea shown(ways.sampling), source(ways.sampling);
+  ShownArea shown, source;
   std::vector<std::uint8_t> is_replaced(ways.leaves.size(), 0), is_ever(ways.leaves.size(), 0);
   for (std::size_t l = uses.size(); l-- > 0;) {
     for (std::size_t g = 0; g < uses[l].size(); ++g) {
@@ -33,9 +33,9 @@ ThinnedCut cut_at(const ThinnedWays& ways, const Uses& uses, double pixel_size) 
       if (uses[l][g].pixel_size < kInfinity) mark(is_ever);
       if (uses[l][g].pixel_size > pixel_size || is_replaced[group.first_leaf] != 0) continue;
       mark(is_replaced);
-      const Fitted& way = way_of(ways.fitted[l][g], uses[l][g].way);
+      const Fitted& way = ways.fitted[l][g][way_of(ways.fitted[l][g], uses[l][g].way)];
       cut.triangles.insert(cut.triangles.end(), way.triangles.begin(), way.triangles.end());
-      for (const Splat& splat : way.splats.splats) shown.add(splat.normal(), splat.area);
+      shown.add(way.shown);
     }
   }
   for (std::uint32_t leaf = 0; leaf < is_replaced.size(); ++leaf) {
@@ -44,8 +44,8 @@ ThinnedCut cut_at(const ThinnedWays& ways, const Uses& uses, double pixel_size) 
     if (is_replaced[leaf] == 0) cut.leaves.push_back(leaf);
     for (const std::uint32_t c : ways.leaves.cards_of(leaf, leaf + 1)) {
       const Card& card = ways.cards.cards[c];
-      source.add(card.normal(), card.area);
-      if (is_replaced[leaf] == 0) shown.add(card.normal(), card.area);
+      source.add(ways.sampling, card.normal(), card.area);
+      if (is_replaced[leaf] == 0) shown.add(ways.sampling, card.normal(), card.area);
     }
   }
   cut.luck = shown.luck() / source.luck();

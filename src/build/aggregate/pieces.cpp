@@ -229,18 +229,21 @@ std::array<Vec2d, 3> corner_uvs(const PreparedMesh& mesh, std::size_t triangle, 
 }
 
 PieceCards make_cards(const PreparedMesh& mesh, const ByPiece& pieces, std::span<const SourceMaterial> materials) {
-  std::vector<CardsOfPiece> of_piece(pieces.size());
-  parallel_for_each_index(pieces.size(), 64,
-                          [&](std::size_t p) { of_piece[p] = cards_of(mesh, pieces.of(p), materials); });
+  constexpr std::size_t kAtOnce = 16384;  // pieces; of millions the small arrays would take more than all cards do
   PieceCards out;
   out.first.push_back(0);
   out.is_closed.resize(mesh.triangles.size());
-  for (std::size_t p = 0; p < pieces.size(); ++p) {
-    const CardsOfPiece& piece = of_piece[p];
-    for (const std::uint32_t t : pieces.of(p)) out.is_closed[t] = piece.is_closed ? 1 : 0;
-    out.cards.cards.insert(out.cards.cards.end(), piece.cards.begin(), piece.cards.end());
-    out.cards.attributes.insert(out.cards.attributes.end(), piece.attributes.begin(), piece.attributes.end());
-    out.first.push_back(static_cast<std::uint32_t>(out.cards.size()));
+  for (std::size_t begin = 0; begin < pieces.size(); begin += kAtOnce) {
+    std::vector<CardsOfPiece> of_piece(std::min(kAtOnce, pieces.size() - begin));
+    parallel_for_each_index(of_piece.size(), 64,
+                            [&](std::size_t i) { of_piece[i] = cards_of(mesh, pieces.of(begin + i), materials); });
+    for (std::size_t i = 0; i < of_piece.size(); ++i) {
+      const CardsOfPiece& piece = of_piece[i];
+      for (const std::uint32_t t : pieces.of(begin + i)) out.is_closed[t] = piece.is_closed ? 1 : 0;
+      out.cards.cards.insert(out.cards.cards.end(), piece.cards.begin(), piece.cards.end());
+      out.cards.attributes.insert(out.cards.attributes.end(), piece.attributes.begin(), piece.attributes.end());
+      out.first.push_back(static_cast<std::uint32_t>(out.cards.size()));
+    }
   }
   return out;
 }

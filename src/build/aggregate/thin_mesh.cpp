@@ -115,17 +115,20 @@ class Thinner {
           luck_of_many_ = luck_of_cards(few_, leaves_.cards);
         }
       }
+      if (!fitted.empty()) forget_splats(fitted.back());
       fitted.push_back(fit_level(level));
       if (is_whole && seen_by_many_.empty()) look_from_many_views(fitted.back());
       proposals.push_back(proposals_of(level, fitted.back()));
     }
+    if (!fitted.empty()) forget_splats(fitted.back());
     measure_proposals(source_, frame_, leaves_.triangles, frame_.longest / kFinestPixels, proposals);
     ThinMesh out;
     std::vector<std::vector<NoiseUse>> uses = uses_of(proposals);
     hold_to_pictures({source_, frame_, leaves_, cards_.cards, fit_, proposals, fitted}, frame_.longest / kFinestPixels,
                      uses);
     leave_out_undrawn(uses);
-    for (std::size_t l = 0; l < proposals.size(); ++l) out.levels.push_back(choose(proposals[l], fitted[l], uses[l]));
+    for (std::size_t l = 0; l < proposals.size(); ++l)
+      out.levels.push_back(choose_and_free(proposals[l], fitted[l], uses[l]));
     out.leaf_triangles = std::move(leaves_.triangles);
     return out;
   }
@@ -136,15 +139,13 @@ class Thinner {
   /// less, as they hide each other and no factor is exact: how much, the usual views tell.
   void look_from_many_views(std::span<const std::vector<Fitted>> groups) {
     std::vector<Corners> all;
-    ShownArea shown(fit_), shown_to_many(few_);
+    ShownArea shown, shown_to_many;
     for (const std::vector<Fitted>& ways : groups) {
       const auto way = std::find_if(ways.begin(), ways.end(), [](const Fitted& f) { return f.is_there; });
       if (way == ways.end()) return;
       all.insert(all.end(), way->triangles.begin(), way->triangles.end());
-      for (const Splat& splat : way->splats.splats) {
-        shown.add(splat.normal(), splat.area);
-        shown_to_many.add(splat.normal(), splat.area);
-      }
+      shown.add(way->shown);
+      shown_to_many.add(shown_by(few_, way->splats));
     }
     const double seen = fit_.sum(covered_samples(frame_, all, fit_.spacing, fit_.views)) / shown.luck();
     const double wanted = fit_.sum(covered_.back().front()) / luck_of_cards(fit_, leaves_.cards);
@@ -156,9 +157,16 @@ class Thinner {
     }
   }
 
+  static void forget_splats(std::span<std::vector<Fitted>> level) {
+    for (std::vector<Fitted>& ways : level) {
+      for (Fitted& way : ways) way.forget_splats();
+    }
+  }
+
   [[nodiscard]] double luck_of_cards(const Sampling& sampling, std::span<const std::uint32_t> chosen) const {
-    ShownArea shown(sampling);
-    for (const std::uint32_t c : chosen) shown.add(cards_.cards.cards[c].normal(), cards_.cards.cards[c].area);
+    ShownArea shown;
+    for (const std::uint32_t c : chosen)
+      shown.add(sampling, cards_.cards.cards[c].normal(), cards_.cards.cards[c].area);
     return shown.luck();
   }
 
@@ -195,10 +203,11 @@ class Thinner {
     const double luck = luck_of_cards(fit_, chosen);
     double factor = 1.0;  // what one way needs is near what another does
     for (Fitted& way : ways) {
+      way.shown = shown_by(fit_, way.splats);
+      way.luck = way.shown.luck() / luck;
       const bool is_few = !seen_by_many_.empty() && way.splats.splats.size() <= kFewCards;
       fit_factor(frame_, grid_, is_few ? seen_by_many_ : covered, is_few ? few_ : fit_, area,
-                 is_few ? luck_of_many_ : luck, factor, way);
-      way.luck = luck_of(fit_, way.splats) / luck;
+                 is_few ? luck_of_many_ : luck, is_few ? shown_by(few_, way.splats) : way.shown, factor, way);
     }
     leave_out_unfair(ways);
     return ways;
@@ -250,9 +259,9 @@ class Thinner {
                            {kMostCoverageError, kMostSumShift, kMostViewShift, frame_.longest / kViewsHeldFrom});
   }
 
-  [[nodiscard]] std::vector<ThinGroup> choose(std::span<const GroupProposals> proposals,
-                                              std::span<const std::vector<Fitted>> fitted,
-                                              std::span<const NoiseUse> uses) const {
+  [[nodiscard]] std::vector<ThinGroup> choose_and_free(std::span<const GroupProposals> proposals,
+                                                       std::vector<std::vector<Fitted>>& fitted,
+                                                       std::span<const NoiseUse> uses) const {
     std::vector<ThinGroup> groups(proposals.size());
     for (std::size_t g = 0; g < groups.size(); ++g) {
       ThinGroup& group = groups[g];
@@ -260,11 +269,13 @@ class Thinner {
       group.end_leaf = proposals[g].end_leaf;
       group.pixel_size = uses[g].pixel_size;
       if (!(group.pixel_size < std::numeric_limits<double>::infinity())) continue;
-      const Fitted& way = way_of(fitted[g], uses[g].way);
-      group.triangles = way.triangles;
-      group.attributes = way.splats.attributes;
-      for (const Splat& splat : way.splats.splats) group.material.push_back(materials_[splat.material].coarse);
+      Fitted& way = fitted[g][way_of(fitted[g], uses[g].way)];
+      group.triangles = std::move(way.triangles);
+      group.attributes = std::move(way.splats.attributes);
+      group.material = std::move(way.material);
+      for (std::uint32_t& material : group.material) material = materials_[material].coarse;
     }
+    fitted = {};
     return groups;
   }
 

@@ -21,8 +21,8 @@ constexpr double kStuckRatio = 0.9;
 
 /// Triangles in their order, as many to a cluster as fit. `wedges_of`: of a triangle.
 template <class WedgesOf>
-Clustering pack_in_order(std::size_t first_label, std::span<const std::uint32_t> triangles, const ClusterCaps& caps,
-                         const WedgesOf& wedges_of, Clustering& out) {
+void pack_in_order(std::size_t first_label, std::span<const std::uint32_t> triangles, const ClusterCaps& caps,
+                   const WedgesOf& wedges_of, Clustering& out) {
   std::vector<std::uint32_t> used;  // by the cluster at work, ascending
   std::uint32_t in_cluster = 0;
   out.count = static_cast<std::uint32_t>(first_label);
@@ -45,7 +45,6 @@ Clustering pack_in_order(std::size_t first_label, std::span<const std::uint32_t>
     ++in_cluster;
     out.label[t] = out.count - 1;
   }
-  return out;
 }
 
 /// The group's triangles on the mesh's grid, each with corners of its own. One that falls together there is left out:
@@ -74,8 +73,16 @@ SimplifyResult on_grid(const ThinGroup& group, const PreparedMesh& mesh) {
     result.triangles.push_back(triangle);
     result.triangle_material.push_back(group.material[t]);
   }
-  result.witnesses.resize(result.positions.size());
   return result;
+}
+
+/// Every triangle has corners of its own.
+CoarserLevels levels_of(const ThinMesh& thin) {
+  std::size_t triangles = 0;
+  for (const std::vector<ThinGroup>& level : thin.levels) {
+    for (const ThinGroup& group : level) triangles += group.triangles.size();
+  }
+  return {3 * triangles, 3 * triangles, triangles, false};
 }
 
 /// What is live of a run of leaves: clusters, and how good they are.
@@ -89,7 +96,7 @@ struct Node {
 class AggregateDag {
  public:
   AggregateDag(PreparedMesh& mesh, const DagOptions& options, ThinMesh thin)
-      : mesh_(mesh), options_(options), thin_(std::move(thin)), pool_(mesh) {}
+      : mesh_(mesh), options_(options), thin_(std::move(thin)), pool_(mesh, levels_of(thin_)) {}
 
   Result<LodDag> run() {
     add_level0();
@@ -126,6 +133,7 @@ class AggregateDag {
     }
     pool_.add_clusters(mesh_.triangles, mesh_.triangle_material, {}, clustering, 0, GroupId());
     release(mesh_.triangles, mesh_.triangle_material, mesh_.exact_positions, mesh_.exact_triangles);
+    thin_.leaf_triangles = {};
   }
 
   /// Nodes of the next level: two of this one, or one where all leaves are in one node already.
@@ -155,6 +163,7 @@ class AggregateDag {
     }
     pool_.end_round();
     nodes_ = std::move(next);
+    for (ThinGroup& group : thin_.levels[level - 1]) group = {};
   }
 
   /// Makes `made_` of a group and its children; false where they stay.

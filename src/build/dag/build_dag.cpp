@@ -302,7 +302,7 @@ std::uint32_t groups_aim_at(const Effort& effort, const GroupOptions& asked) {
 Result<BuildPool> coarsen(PreparedMesh& mesh, const DagOptions& options) {
   if (options.error == ErrorSource::kQuadric) release(mesh.exact_positions, mesh.exact_triangles);
   const Clustering level0 = cluster_triangles(mesh.triangles, mesh.wedge_position, mesh.positions, options.caps);
-  BuildPool pool(mesh);
+  BuildPool pool(mesh, halved_levels(mesh));
   const GroupMeter meter(mesh, options.error);
   pool.add_clusters(mesh.triangles, mesh.triangle_material, meter.level0(pool), level0, 0, GroupId());
   release(mesh.triangles, mesh.triangle_material);

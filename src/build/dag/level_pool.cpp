@@ -14,17 +14,11 @@ namespace meshlode::build {
 
 namespace {
 
-/// Every level has about half of the finer one's. Room that is never written to takes no memory.
+/// A mesh's array with room for more. Room that is never written to takes no memory.
 template <class T>
-void reserve_for_levels(std::vector<T>& values, std::size_t level0) {
-  values.reserve(level0 + level0 + level0 / 8);
-}
-
-/// A mesh's array with room for the levels to come.
-template <class T>
-std::vector<T> take_level0(std::vector<T>& level0) {
+std::vector<T> take_level0(std::vector<T>& level0, std::size_t more) {
   std::vector<T> taken = std::exchange(level0, {});
-  reserve_for_levels(taken, taken.size());
+  taken.reserve(taken.size() + more);
   return taken;
 }
 
@@ -52,19 +46,27 @@ void add_distinct(WitnessIds& known, const WitnessIds& more) {
 
 }  // namespace
 
-BuildPool::BuildPool(PreparedMesh& mesh)
-    : positions(take_level0(mesh.positions)),
-      wedge_position(take_level0(mesh.wedge_position)),
-      wedge_attributes(take_level0(mesh.wedge_attributes)),
+CoarserLevels halved_levels(const PreparedMesh& mesh) {
+  const auto coarser = [](std::size_t level0) { return level0 + level0 / 8; };
+  return {coarser(mesh.positions.size()), coarser(mesh.wedge_position.size()), coarser(mesh.triangles.size())};
+}
+
+BuildPool::BuildPool(PreparedMesh& mesh, const CoarserLevels& coarser)
+    : positions(take_level0(mesh.positions, coarser.positions)),
+      wedge_position(take_level0(mesh.wedge_position, coarser.wedges)),
+      wedge_attributes(take_level0(mesh.wedge_attributes, coarser.wedges * mesh.layout.stride())),
       stride_(mesh.layout.stride()),
-      position_table_(2 * positions.size()),
-      wedge_table_(2 * wedge_position.size()) {
-  reserve_for_levels(witnesses, positions.size());
-  reserve_for_levels(triangles, mesh.triangles.size());
+      has_witnesses_(coarser.has_witnesses),
+      position_table_(positions.size() + coarser.positions),
+      wedge_table_(wedge_position.size() + coarser.wedges) {
+  triangles.reserve(mesh.triangles.size() + coarser.triangles);
   triangle_material.expect(triangles.capacity());
-  witnesses.resize(positions.size(), kNoWitnesses);
-  parallel_for_each_index(positions.size(), kLoopGrain,
-                          [&](std::size_t p) { witnesses[p].front() = static_cast<std::uint32_t>(p); });
+  if (has_witnesses_) {
+    witnesses.reserve(positions.capacity());
+    witnesses.resize(positions.size(), kNoWitnesses);
+    parallel_for_each_index(positions.size(), kLoopGrain,
+                            [&](std::size_t p) { witnesses[p].front() = static_cast<std::uint32_t>(p); });
+  }
   position_table_.fill(static_cast<std::uint32_t>(positions.size()), kForEachId,
                        [&](std::uint32_t id) { return hash_position(positions[id]); });
   wedge_table_.fill(static_cast<std::uint32_t>(wedge_position.size()), kForEachId, [&](std::uint32_t id) {
@@ -97,7 +99,7 @@ std::uint32_t BuildPool::position_id(const Vec3i& position) {
       [&](std::uint32_t other) { return hash_position(positions[other]); });
   if (entry.is_new) {
     positions.push_back(position);
-    witnesses.push_back(kNoWitnesses);
+    if (has_witnesses_) witnesses.push_back(kNoWitnesses);
   }
   return entry.id;
 }
@@ -226,7 +228,7 @@ Witnesses BuildPool::witnesses_at(std::uint32_t position) const {
 void BuildPool::insert_new(const SimplifyResult& result, Ids& ids) {
   for (std::size_t p = 0; p < ids.positions.size(); ++p) {
     if (ids.positions[p] == kNoId) ids.positions[p] = position_id(result.positions[p]);
-    add_witnesses(ids.positions[p], ids_of(result.witnesses[p]));
+    if (has_witnesses_) add_witnesses(ids.positions[p], ids_of(result.witnesses[p]));
   }
   for (std::size_t w = 0; w < ids.wedges.size(); ++w) {
     if (ids.wedges[w] != kNoId) continue;

@@ -60,10 +60,18 @@ struct NewClusters {
 /// Witnesses are points of level 0: their ids; kNoId where there are fewer.
 using WitnessIds = std::array<std::uint32_t, Witnesses::kCapacity>;
 
+/// What coarser levels will add to a pool, about.
+struct CoarserLevels {
+  std::size_t positions = 0, wedges = 0, triangles = 0;
+  bool has_witnesses = true;  ///< whether anybody asks for witnesses_at()
+};
+/// Every level has about half of the finer one's.
+[[nodiscard]] CoarserLevels halved_levels(const PreparedMesh& mesh);
+
 class BuildPool {
  public:
   /// Takes the mesh's positions and wedges: here they keep their ids.
-  explicit BuildPool(PreparedMesh& mesh);
+  BuildPool(PreparedMesh& mesh, const CoarserLevels& coarser);
 
   /// Adds the clusters of `triangles` (wedges of this pool), in the clustering's order. What is carried names those
   /// triangles and goes with their clusters.
@@ -95,7 +103,7 @@ class BuildPool {
   [[nodiscard]] const BuildGroup& group(GroupId id) const { return groups[id.value]; }
 
   std::vector<Vec3i> positions;
-  std::vector<WitnessIds> witnesses;  ///< per position
+  std::vector<WitnessIds> witnesses;  ///< per position; empty where there are none
   std::vector<std::uint32_t> wedge_position;
   std::vector<float> wedge_attributes;
   std::vector<WedgeTriangle> triangles;
@@ -127,6 +135,7 @@ class BuildPool {
   [[nodiscard]] std::uint64_t hash_wedge(std::uint32_t position, const float* attributes) const;
 
   std::size_t stride_;
+  bool has_witnesses_;
   IdTable position_table_, wedge_table_;
   std::size_t round_positions_ = 0;                                   ///< how many there were when the round began
   std::vector<std::pair<std::uint32_t, WitnessIds>> late_witnesses_;  ///< of older positions, in order

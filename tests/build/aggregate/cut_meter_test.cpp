@@ -19,8 +19,7 @@ constexpr std::uint32_t kCards = 100;
 /// Cards of 0.08 on a lattice of 10 x 10, all of a sheet in one leaf.
 class CutMeterTest : public ::testing::Test {
  protected:
-  CutMeterTest()
-      : mesh_(prepared()), is_closed_(mesh_.triangles.size(), 0), source_(mesh_, materials_, is_closed_) {
+  CutMeterTest() : mesh_(prepared()), is_closed_(mesh_.triangles.size(), 0), source_(mesh_, materials_, is_closed_) {
     std::vector<std::uint32_t> back;
     for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
       const bool is_front = corners_of(mesh_, t)[0].z > 0.0;
