@@ -77,6 +77,7 @@ class Lode:
         self.tables = {name: self.read_table(name) for name in ("MESH", "MATL", "INST", "GRUP", "CLUS", "NODE", "PAGT",
                                                                  "BLBT")}
         check(len([name for name in OPTIONAL if name in self.sections]) != 1, "section PRMS", "is there without PRMG, or PRMG without it")
+        self.tables["version"] = self.header["version"]
         for name in OPTIONAL:
             self.tables[name] = self.read_table(name) if name in self.sections else []
         self.tables["has_promises"] = "PRMS" in self.sections

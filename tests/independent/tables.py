@@ -4,7 +4,7 @@
 from rules import INFINITE, NONE, check
 
 MAX_PAGE = 131072
-TERMINAL, STUCK = 1, 2
+TERMINAL, STUCK, AGGREGATE = 1, 2, 4
 
 
 def check_strings(tables):
@@ -62,7 +62,8 @@ def check_dag(tables):
             check(group["level"] <= level and group["level"] < mesh["level_count"], place + "level")
             level = group["level"]
             check(group["cluster_count"] >= 1, place + "cluster_count")
-            check(group["flags"] in (0, TERMINAL, TERMINAL | STUCK), place + "flags")
+            allowed = (0, TERMINAL, TERMINAL | STUCK) + ((AGGREGATE,) if tables["version"] == 2 else ())
+            check(group["flags"] in allowed, place + "flags")
             for field in ("radius", "error", "quadric_error", "deviation", "normal_deviation", "uv_deviation"):
                 check(group[field] <= 0x80000000, place + field, "is negative")  # -0.0 is not
             check((group["error"] == INFINITE) == bool(group["flags"] & TERMINAL), place + "error")
