@@ -2,8 +2,10 @@
 #include "material_looks.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 
 #include "draw/textures/alpha_mask.h"
@@ -25,17 +27,27 @@ struct Sampled {
   std::array<double, 3> row_u{}, row_v{};  ///< texture coordinates to texels
   std::uint32_t threshold = 0;
 
-  std::vector<std::uint8_t> does_pass;  ///< texel by texel
+  std::vector<std::uint8_t> does_pass;  ///< texel by texel: 0 or 1
 
-  [[nodiscard]] bool passes_at(double u, double v) const {
-    const auto place = [&](const std::array<double, 3>& row, std::uint32_t count, draw::Wrap how) {
-      const double at = row[0] * u + row[1] * v + row[2];
+  /// As build::AlphaTest::of_row(). Texels are linear along a row, too.
+  [[nodiscard]] std::uint64_t passing(const Vec2d& origin, const Vec2d& step, int first, std::uint64_t asked) const {
+    const auto texel = [](const std::array<double, 3>& row, const Vec2d& at) { return row[0] * at.x + row[1] * at.y; };
+    const double x0 = texel(row_u, origin) + row_u[2], y0 = texel(row_v, origin) + row_v[2];
+    const double dx = texel(row_u, step), dy = texel(row_v, step);
+    const auto place = [](double at, std::uint32_t count, draw::Wrap how) {
       // Most are on the image, whatever is beside it.
       if (at >= 0.0 && at < count) return static_cast<std::uint32_t>(at);
       return draw::wrap_texel(static_cast<std::int64_t>(std::clamp(std::floor(at), -1e15, 1e15)), count, how);
     };
-    const std::size_t x = place(row_u, image.width, wrap[0]), y = place(row_v, image.height, wrap[1]);
-    return does_pass[y * image.width + x] != 0;
+    std::uint64_t drawn = 0;
+    for (std::uint64_t rest = asked; rest != 0; rest &= rest - 1) {
+      const int bit = std::countr_zero(rest);
+      const double column = first + bit;
+      const std::size_t x = place(x0 + dx * column, image.width, wrap[0]);
+      const std::size_t y = place(y0 + dy * column, image.height, wrap[1]);
+      drawn |= std::uint64_t{does_pass[y * image.width + x]} << bit;
+    }
+    return drawn;
   }
   [[nodiscard]] bool passes(std::uint32_t texel) const { return (texel >> 24U) * 255U >= threshold; }
 };
@@ -112,7 +124,9 @@ std::optional<build::MaterialLook> look_of(const scene::Scene& scene, const Json
       sampled->does_pass.push_back(sampled->passes(texel) ? 1 : 0);
     }
     sampled->image.texels = {};
-    look.covers = [sampled](double u, double v) { return sampled->passes_at(u, v); };
+    look.covers = [sampled](const Vec2d& origin, const Vec2d& step, int first, std::uint64_t asked) {
+      return sampled->passing(origin, step, first, asked);
+    };
   }
   return look;
 }

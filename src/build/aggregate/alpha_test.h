@@ -32,6 +32,12 @@ class AlphaTest {
               return drawn;
             }) {}
 
+  /// `of_row(origin, step, first, asked)`: as of_row() below. The same whenever it is asked, and from several threads
+  /// at once.
+  template <class OfRow>
+  requires std::invocable<const OfRow&, const Vec2d&, const Vec2d&, int, std::uint64_t> AlphaTest(OfRow of_row)
+      : of_row_(std::move(of_row)) {}
+
   [[nodiscard]] explicit operator bool() const { return static_cast<bool>(of_row_); }
   /// \pre it is not the one that draws everything; the same below
   [[nodiscard]] bool operator()(double u, double v) const { return of_row_(Vec2d(u, v), Vec2d(0.0), 0, 1) != 0; }

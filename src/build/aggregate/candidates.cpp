@@ -19,7 +19,7 @@ using Shown = std::array<double, kViews>;
 Shown shown_by(const Vec3d& normal, double area) {
   Shown shown{};
   for (std::size_t v = 0; v < kViews; ++v) {
-    shown[v] = area * std::fabs(glm::dot(normal, glm::cross(views()[v].right, views()[v].up)));
+    shown[v] = area * std::fabs(glm::dot(normal, views()[v].toward));
   }
   return shown;
 }

@@ -12,11 +12,18 @@ namespace meshlode::build {
 
 namespace {
 
+/// Of a level with so many groups each is looked at in every other view, its neighbours in the others: there the views
+/// of a group differ by less than its neighbours do, and most of the triangles are in such levels.
+constexpr std::size_t kManyGroups = 8;
+
 /// A proposal on its way from coarse pixels to fine ones.
 struct Trial {
   std::size_t level = 0, group = 0, proposal = 0;
   std::size_t first_step = 0;  ///< the first spacing that is fine enough for its pieces
+  bool is_one_of_many = false;
   bool is_open = true;
+
+  [[nodiscard]] bool is_seen_in(std::size_t view) const { return !is_one_of_many || (view + group) % 2 == 0; }
 
   /// How many octaves of pixel sizes are looked at in a step: all so far in the first one. 0: none.
   [[nodiscard]] std::size_t octaves_at(std::size_t step) const {
@@ -46,7 +53,7 @@ std::vector<SampleMask> group_masks(std::span<const SampleMask> leaves, std::spa
   return masks;
 }
 
-ViewResult look(std::span<const SampleMask> leaves, const Lattice& lattice, const View& view,
+ViewResult look(std::span<const SampleMask> leaves, const Lattice& lattice, std::size_t v,
                 std::span<const std::vector<GroupProposals>> levels, std::span<const Trial> trials, std::size_t step) {
   ViewResult result;
   result.change.resize(trials.size());
@@ -65,9 +72,10 @@ ViewResult look(std::span<const SampleMask> leaves, const Lattice& lattice, cons
       parallel_for_each_index(end - first, 1, [&](std::size_t i) {
         const Trial& trial = trials[first + i];
         const std::size_t octaves = trial.octaves_at(step);
-        if (octaves == 0) return;
+        if (octaves == 0 || !trial.is_seen_in(v)) return;
         const std::span<const Corners> triangles = levels[level][trial.group].proposals[trial.proposal].triangles;
-        result.change[first + i] = change_of(masks[trial.group], mask_of(lattice, view, triangles), cover, octaves);
+        result.change[first + i] =
+            change_of(masks[trial.group], mask_of(lattice, views()[v], triangles), cover, octaves);
       });
     }
     first = end;
@@ -111,7 +119,7 @@ void measure_proposals(const SourceSurface& source, const MeshFrame& frame, cons
   for (std::size_t l = 0; l < levels.size(); ++l) {
     for (std::size_t g = 0; g < levels[l].size(); ++g) {
       for (std::size_t p = 0; p < levels[l][g].proposals.size(); ++p) {
-        Trial trial{.level = l, .group = g, .proposal = p};
+        Trial trial{.level = l, .group = g, .proposal = p, .is_one_of_many = levels[l].size() >= kManyGroups};
         // Samples that are much wider than pieces would find them by luck.
         double spacing = widest;
         for (; spacing > levels[l][g].grain && trial.first_step + 1 < steps; spacing *= 0.5) ++trial.first_step;
@@ -132,9 +140,8 @@ void measure_proposals(const SourceSurface& source, const MeshFrame& frame, cons
     if (std::none_of(trials.begin(), trials.end(), [&](const Trial& t) { return t.octaves_at(step) > 0; })) continue;
     const double spacing = lattices[step].spacing;
     std::array<ViewResult, kViews> of_view;
-    for (std::size_t v = 0; v < kViews; ++v) {
-      of_view[v] = look(leaves[v][step], lattices[step], views()[v], levels, trials, step);
-    }
+    parallel_for_each_index(
+        kViews, 1, [&](std::size_t v) { of_view[v] = look(leaves[v][step], lattices[step], v, levels, trials, step); });
     for (std::size_t i = 0; i < trials.size(); ++i) {
       Trial& trial = trials[i];
       const std::size_t octaves = trial.octaves_at(step);
@@ -142,9 +149,12 @@ void measure_proposals(const SourceSurface& source, const MeshFrame& frame, cons
       Proposal& proposal = levels[trial.level][trial.group].proposals[trial.proposal];
       double before = 0.0, after = 0.0, all = 0.0;
       for (std::size_t v = 0; v < kViews && octaves > 0; ++v) {
+        proposal.shifts[v] = 0.0;
+        if (!trial.is_seen_in(v)) continue;  // its neighbours stand for it
+        const double groups = trial.is_one_of_many ? 2.0 : 1.0;
         const Change& change = of_view[v].change[i];
         const auto covered = static_cast<double>(of_view[v].covered);
-        proposal.shifts[v] = covered > 0.0 ? static_cast<double>(change.after - change.before) / covered : 0.0;
+        if (covered > 0.0) proposal.shifts[v] = groups * static_cast<double>(change.after - change.before) / covered;
         before += static_cast<double>(change.before);
         after += static_cast<double>(change.after);
         all += covered;
@@ -152,9 +162,10 @@ void measure_proposals(const SourceSurface& source, const MeshFrame& frame, cons
       if (all > 0.0) proposal.sum_shift = (after / proposal.luck - before) / all;
       for (std::size_t s = 0; s < 2 * octaves && trial.is_open; ++s) {
         double whole = 0.0, change = 0.0;
-        for (const ViewResult& result : of_view) {
-          whole += static_cast<double>(result.whole[2 * (step + 1 - octaves) + s]);
-          change += static_cast<double>(result.change[i].squares[s]);
+        for (std::size_t v = 0; v < kViews; ++v) {
+          if (!trial.is_seen_in(v)) continue;
+          whole += static_cast<double>(of_view[v].whole[2 * (step + 1 - octaves) + s]);
+          change += static_cast<double>(of_view[v].change[i].squares[s]);
         }
         const double size = pixel_size(spacing, octaves, s);
         const double error = whole > 0.0 && share > 0.0 ? std::sqrt(change / (share * whole)) : 0.0;

@@ -47,8 +47,9 @@ std::vector<std::vector<Covered>> covered_samples(const SourceSurface& source, c
 Covered covered_samples(const MeshFrame& frame, std::span<const Corners> triangles, double spacing,
                         std::span<const View> views) {
   const Lattice lattice(frame.center, frame.radius, spacing);
-  Covered covered;
-  for (const View& view : views) covered.push_back(mask_of(lattice, view, triangles).count());
+  Covered covered(views.size());
+  parallel_for_each_index(views.size(), 1,
+                          [&](std::size_t v) { covered[v] = mask_of(lattice, views[v], triangles).count(); });
   return covered;
 }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <span>
 
+#include "base/parallel.h"
+
 namespace meshlode::build {
 
 namespace {
@@ -14,8 +16,9 @@ constexpr double kCutBlocks = 2.0 * static_cast<double>(kPixelBlocks[kCutSize]);
 
 }  // namespace
 
-CutMeter::CutMeter(const SourceSurface& source, const MeshFrame& frame, const ByPiece& leaf_triangles, double smallest,
-                   std::size_t count, double grain, double finest) {
+CutMeter::CutMeter(const SourceSurface& source, const MeshFrame& frame, const ByPiece& leaf_triangles,
+                   std::span<const View> views, double smallest, std::size_t count, double grain, double finest)
+    : views_(views) {
   // Of the smallest pixels, and of each size from there: how often its samples are halved.
   const auto halvings_of = [&](double pixel_size) {
     std::size_t halvings = 0;
@@ -34,16 +37,20 @@ CutMeter::CutMeter(const SourceSurface& source, const MeshFrame& frame, const By
   const double spacing = std::ldexp(smallest / kCutBlocks, -static_cast<int>(most));
   lattices_.emplace_back(frame.center, frame.radius, std::ldexp(spacing, static_cast<int>(coarsest)));
   while (lattices_.size() <= coarsest) lattices_.push_back(lattices_.back().finer());
-  for (std::size_t v = 0; v < kViews; ++v)
-    leaves_[v] = draw_leaves(source, leaf_triangles, lattices_.back(), views()[v], 0, lattices_.size());
+  for (const View& view : views)
+    leaves_.push_back(draw_leaves(source, leaf_triangles, lattices_.back(), view, 0, lattices_.size()));
   for (auto& of_view : leaves_) std::reverse(of_view.begin(), of_view.end());
   std::reverse(lattices_.begin(), lattices_.end());
 }
 
 CutChange CutMeter::measure(const ThinnedCut& cut, std::size_t size) const {
-  const auto [octaves, lattice] = sizes_[size];
-  double whole = 0.0, change = 0.0, before = 0.0, after = 0.0;
-  for (std::size_t v = 0; v < kViews; ++v) {
+  const std::size_t octaves = sizes_[size].octaves, lattice = sizes_[size].lattice;
+  struct Seen {
+    double whole = 0.0;
+    Change change;
+  };
+  std::vector<Seen> seen(views_.size());
+  parallel_for_each_index(views_.size(), 1, [&](std::size_t v) {
     const std::vector<SampleMask>& leaves = leaves_[v][lattice];
     const auto cover_by = [&](std::span<const std::uint32_t> some, const SampleMask& more) {
       MaskBox box = more.box();
@@ -54,12 +61,15 @@ CutChange CutMeter::measure(const ThinnedCut& cut, std::size_t size) const {
       return cover;
     };
     const SampleMask all = cover_by(cut.source_leaves, SampleMask());
-    const SampleMask drawn = cover_by(cut.leaves, mask_of(lattices_[lattice], views()[v], cut.triangles));
-    const Change of_view = change_of(all, drawn, {}, octaves);
-    whole += static_cast<double>(squares_of_all(all, octaves)[kCutSize]);
-    change += static_cast<double>(of_view.squares[kCutSize]);
-    before += static_cast<double>(of_view.before);
-    after += static_cast<double>(of_view.after);
+    const SampleMask drawn = cover_by(cut.leaves, mask_of(lattices_[lattice], views_[v], cut.triangles));
+    seen[v] = {static_cast<double>(squares_of_all(all, octaves)[kCutSize]), change_of(all, drawn, {}, octaves)};
+  });
+  double whole = 0.0, change = 0.0, before = 0.0, after = 0.0;
+  for (const Seen& view : seen) {
+    whole += view.whole;
+    change += static_cast<double>(view.change.squares[kCutSize]);
+    before += static_cast<double>(view.change.before);
+    after += static_cast<double>(view.change.after);
   }
   if (!(whole > 0.0 && before > 0.0)) return {};
   return {std::sqrt(change / whole), (after / cut.luck - before) / before};

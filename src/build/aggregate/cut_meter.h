@@ -3,9 +3,9 @@
 // other is in it.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "build/aggregate/card.h"
@@ -31,8 +31,8 @@ class CutMeter {
  public:
   /// At `count` pixel sizes, each twice as large as the one before. Samples are as wide as `grain` at most, but for the
   /// smallest that measure_proposals() has for `finest`.
-  CutMeter(const SourceSurface& source, const MeshFrame& frame, const ByPiece& leaf_triangles, double smallest,
-           std::size_t count, double grain, double finest);
+  CutMeter(const SourceSurface& source, const MeshFrame& frame, const ByPiece& leaf_triangles,
+           std::span<const View> views, double smallest, std::size_t count, double grain, double finest);
   [[nodiscard]] CutChange measure(const ThinnedCut& cut, std::size_t size) const;
 
  private:
@@ -40,8 +40,9 @@ class CutMeter {
     std::size_t octaves = 1, lattice = 0;
   };
   std::vector<Size> sizes_;
-  std::vector<Lattice> lattices_;                                    ///< each half as fine as the one before
-  std::array<std::vector<std::vector<SampleMask>>, kViews> leaves_;  ///< [view][lattice][leaf]
+  std::vector<Lattice> lattices_;  ///< each half as fine as the one before
+  std::span<const View> views_;
+  std::vector<std::vector<std::vector<SampleMask>>> leaves_;  ///< [view][lattice][leaf]
 };
 
 }  // namespace meshlode::build

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "build/aggregate/coverage_error.h"
 
@@ -44,14 +45,15 @@ void Fitted::forget_splats() {
 void fit_factor(const MeshFrame& frame, const format::PositionGrid& grid, const Covered& covered,
                 const Sampling& sampling, double area, double luck, const ShownArea& shown, double& near_factor,
                 Fitted& way) {
-  constexpr double kCloseEnough = 0.004;
+  constexpr double kCloseEnough = 0.002;
   constexpr int kFactorSteps = 12;
   const double spacing = sampling.spacing_of(area, way.splats.splats.size());
   const double weight = spacing * spacing / (sampling.spacing * sampling.spacing);  // in samples of the source
   const double wanted = sampling.sum(covered) * shown.luck() / luck;
   if (!(wanted > 0.0)) return;
   double factor = near_factor;
-  double low = 0.0, low_count = 0.0, high = 0.0, high_count = 0.0;
+  double low = 0.0, high = 0.0;  // what covers less, and more; 0: nothing so far
+  double last = 0.0, last_count = 0.0;
   Covered now;
   way.triangles.reserve(way.splats.splats.size());
   for (int step = 0; step < kFactorSteps; ++step) {
@@ -60,21 +62,19 @@ void fit_factor(const MeshFrame& frame, const format::PositionGrid& grid, const 
     now = covered_samples(frame, way.triangles, spacing, sampling.views);
     const double count = weight * sampling.sum(now);
     if (std::fabs(count - wanted) <= kCloseEnough * wanted) break;
-    if (count < wanted) {
-      low = factor;
-      low_count = count;
+    (count < wanted ? low : high) = factor;
+    const double slope = step > 0 ? (count - last_count) / (factor - last) : 0.0;
+    // Further than in proportion, since cards come to hide each other.
+    const double more = std::clamp(wanted / std::max(count, 1.0), 0.5, std::sqrt(2.0));
+    double next = slope > 0.0 ? factor + (wanted - count) / slope : factor * more * more;
+    if (low > 0.0 && high > 0.0) {
+      const double margin = 0.1 * (high - low);
+      next = std::clamp(next, low + margin, high - margin);
     } else {
-      high = factor;
-      high_count = count;
+      next = std::clamp(next, 0.5 * factor, 2.0 * factor);
     }
-    if (high > 0.0 && high_count - low_count > 0.0) {
-      const double share = std::clamp((wanted - low_count) / (high_count - low_count), 0.1, 0.9);
-      factor = low + (high - low) * share;
-    } else {
-      // Nothing covers more so far: further than in proportion, since cards come to hide each other.
-      const double more = wanted / std::max(count, 1.0);
-      factor *= std::min(2.0, more * more);
-    }
+    last = std::exchange(factor, next);
+    last_count = count;
   }
   for (std::size_t v = 0; v < now.size(); ++v) {
     if (covered[v] == 0) continue;
@@ -83,6 +83,7 @@ void fit_factor(const MeshFrame& frame, const format::PositionGrid& grid, const 
   }
   way.is_there =
       std::fabs(weight * sampling.sum(now) - wanted) <= kMostCoverageShift * wanted && way.worst_view <= kMostInAView;
+  way.factor = factor;
   if (way.is_there) near_factor = factor;
 }
 

@@ -44,10 +44,8 @@ class ShownArea {
   void add(const Sampling& sampling, const Vec3d& normal, double area) {
     area_ += area;
     views_ = sampling.counted;
-    for (std::size_t v = 0; v < sampling.counted; ++v) {
-      const View& view = sampling.views[v];
-      shown_ += area * std::fabs(glm::dot(normal, glm::cross(view.right, view.up)));
-    }
+    for (const View& view : sampling.views.first(sampling.counted))
+      shown_ += area * std::fabs(glm::dot(normal, view.toward));
   }
   /// \pre by the same sampling
   void add(const ShownArea& other) {
@@ -76,6 +74,7 @@ struct Fitted {
   std::vector<Corners> triangles;
   std::vector<std::uint32_t> material;  ///< of the source, per triangle; once the splats are forgotten
   double luck = 1.0;        ///< how much more the usual views show of it than of its pieces, of what each has
+  double factor = 1.0;      ///< of the splats' areas
   double worst_view = 0.0;  ///< what a single view's sum changes by at most
   bool is_there = false;
   bool is_fair = false;  ///< is there, and changes single views no more than other ways do

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 
 #include "build/aggregate/cut_meter.h"
 
@@ -17,10 +18,15 @@ namespace {
 constexpr double kMostCutNoise = 0.21, kMostCutShift = 0.017;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+// Of a source of so few triangles they may have less: some of its pieces are large, and what a handful covers hangs on
+// the directions that it is looked at from.
+constexpr std::size_t kFewTriangles = 4096;
+constexpr double kMostSmallCutShift = 0.010;
+
 using Uses = std::vector<std::vector<NoiseUse>>;
 
-/// What a cut at a pixel size draws.
-ThinnedCut cut_at(const ThinnedWays& ways, const Uses& uses, double pixel_size) {
+/// What a cut at a pixel size draws; its luck as it is seen from `views`.
+ThinnedCut cut_at(const ThinnedWays& ways, const Uses& uses, double pixel_size, const Sampling& views) {
   ThinnedCut cut;
   ShownArea shown, source;
   std::vector<std::uint8_t> is_replaced(ways.leaves.size(), 0), is_ever(ways.leaves.size(), 0);
@@ -35,7 +41,11 @@ ThinnedCut cut_at(const ThinnedWays& ways, const Uses& uses, double pixel_size) 
       mark(is_replaced);
       const Fitted& way = ways.fitted[l][g][way_of(ways.fitted[l][g], uses[l][g].way)];
       cut.triangles.insert(cut.triangles.end(), way.triangles.begin(), way.triangles.end());
-      shown.add(way.shown);
+      for (const Corners& c : way.triangles) {
+        const Vec3d twice = glm::cross(c[1] - c[0], c[2] - c[0]);
+        const double length = glm::length(twice);
+        if (length > 0.0) shown.add(views, twice / length, 0.5 * length);
+      }
     }
   }
   for (std::uint32_t leaf = 0; leaf < is_replaced.size(); ++leaf) {
@@ -44,8 +54,8 @@ ThinnedCut cut_at(const ThinnedWays& ways, const Uses& uses, double pixel_size) 
     if (is_replaced[leaf] == 0) cut.leaves.push_back(leaf);
     for (const std::uint32_t c : ways.leaves.cards_of(leaf, leaf + 1)) {
       const Card& card = ways.cards.cards[c];
-      source.add(ways.sampling, card.normal(), card.area);
-      if (is_replaced[leaf] == 0) shown.add(ways.sampling, card.normal(), card.area);
+      source.add(views, card.normal(), card.area);
+      if (is_replaced[leaf] == 0) shown.add(views, card.normal(), card.area);
     }
   }
   cut.luck = shown.luck() / source.luck();
@@ -87,13 +97,18 @@ bool are_held(const ThinnedWays& ways, double finest, Uses& uses) {
   double size = largest;
   for (; 0.5 * size >= smallest; size *= 0.5) ++count;
   // A quarter of a piece: wider samples find the sums of thin blades by luck, to some percent.
-  const CutMeter meter(ways.source, ways.frame, ways.leaves.triangles, size, count, 0.25 * grain, finest);
+  const bool is_small = ways.leaves.triangles.items.size() <= kFewTriangles;
+  const Sampling& seen = is_small ? ways.few : ways.usual;
+  const std::span<const View> seen_from = seen.views.first(seen.counted);
+  const CutMeter meter(ways.source, ways.frame, ways.leaves.triangles, seen_from, size, count, 0.25 * grain,
+                       is_small ? ways.frame.longest / 512.0 : finest);
   double held = 0.0;  // cuts up to there are as they should be
   for (std::size_t i = 0; i < count; ++i, size *= 2.0) {
     // What is drawn in larger pixels too has less noise there, and covers as much.
     if (is_any_between(uses, held, size)) {
-      const CutChange change = meter.measure(cut_at(ways, uses, size), i);
-      if (change.noise > kMostCutNoise || std::fabs(change.sum_shift) > kMostCutShift) {
+      const CutChange change = meter.measure(cut_at(ways, uses, size, seen), i);
+      if (change.noise > kMostCutNoise ||
+          std::fabs(change.sum_shift) > (is_small ? kMostSmallCutShift : kMostCutShift)) {
         const bool is_last = i + 1 == count;
         move_all_between(uses, held, 2.0 * size, is_last ? kInfinity : 2.0 * size);
         if (is_last) return false;

@@ -21,7 +21,8 @@ struct ThinnedWays {
   const MeshFrame& frame;
   const Leaves& leaves;
   const Cards& cards;
-  const Sampling& sampling;  ///< of the usual views
+  const Sampling& usual;  ///< of the usual views
+  const Sampling& few;    ///< of many, for what is few
   std::span<const std::vector<GroupProposals>> proposals;
   std::span<const std::vector<std::vector<Fitted>>> fitted;
 };

@@ -61,15 +61,28 @@ double add_drawn_part(const Corners& c, const std::array<Vec2d, 3>& uv, double a
 
 /// Does every edge have as many uses one way as the other? By welded positions.
 bool is_closed(const PreparedMesh& mesh, std::span<const std::uint32_t> triangles) {
-  std::map<std::pair<std::uint32_t, std::uint32_t>, int> uses;
+  struct Use {
+    std::uint32_t low, high;
+    int way;
+  };
+  std::vector<Use> uses;
+  uses.reserve(3 * triangles.size());
   for (const std::uint32_t t : triangles) {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t a = mesh.wedge_position[mesh.triangles[t][k]];
       const std::uint32_t b = mesh.wedge_position[mesh.triangles[t][(k + 1) % 3]];
-      uses[std::minmax(a, b)] += a < b ? 1 : -1;
+      uses.push_back({std::min(a, b), std::max(a, b), a < b ? 1 : -1});
     }
   }
-  return std::all_of(uses.begin(), uses.end(), [](const auto& use) { return use.second == 0; });
+  std::sort(uses.begin(), uses.end(),
+            [](const Use& a, const Use& b) { return a.low != b.low ? a.low < b.low : a.high < b.high; });
+  for (std::size_t i = 0; i < uses.size();) {
+    int sum = 0;
+    const Use edge = uses[i];
+    for (; i < uses.size() && uses[i].low == edge.low && uses[i].high == edge.high; ++i) sum += uses[i].way;
+    if (sum != 0) return false;
+  }
+  return true;
 }
 
 /// What one piece adds.

@@ -116,7 +116,7 @@ class Thinner {
         }
       }
       if (!fitted.empty()) forget_splats(fitted.back());
-      fitted.push_back(fit_level(level));
+      fitted.push_back(fit_level(level, fitted.empty() ? std::vector<std::vector<Fitted>>() : fitted.back()));
       if (is_whole && seen_by_many_.empty()) look_from_many_views(fitted.back());
       proposals.push_back(proposals_of(level, fitted.back()));
     }
@@ -124,8 +124,8 @@ class Thinner {
     measure_proposals(source_, frame_, leaves_.triangles, frame_.longest / kFinestPixels, proposals);
     ThinMesh out;
     std::vector<std::vector<NoiseUse>> uses = uses_of(proposals);
-    hold_to_pictures({source_, frame_, leaves_, cards_.cards, fit_, proposals, fitted}, frame_.longest / kFinestPixels,
-                     uses);
+    hold_to_pictures({source_, frame_, leaves_, cards_.cards, fit_, few_, proposals, fitted},
+                     frame_.longest / kFinestPixels, uses);
     leave_out_undrawn(uses);
     for (std::size_t l = 0; l < proposals.size(); ++l)
       out.levels.push_back(choose_and_free(proposals[l], fitted[l], uses[l]));
@@ -170,17 +170,23 @@ class Thinner {
     return shown.luck();
   }
 
-  /// Group by group, every way of thinning it out.
-  [[nodiscard]] std::vector<std::vector<Fitted>> fit_level(const LevelPlan& level) const {
+  /// Group by group, every way of thinning it out. `finer`: the level before.
+  [[nodiscard]] std::vector<std::vector<Fitted>> fit_level(const LevelPlan& level,
+                                                           std::span<const std::vector<Fitted>> finer) const {
     std::vector<std::vector<Fitted>> fitted(leaves_.size() / level.run);
     parallel_for_each_index(fitted.size(), 1, [&](std::size_t g) {
       const auto first = static_cast<std::uint32_t>(g * level.run);
-      fitted[g] = fit_group(level, first, first + level.run);
+      double factor = 1.0;  // what one way needs is near what another does, or the group before
+      if (!finer.empty()) {
+        for (const Fitted& way : finer[g * finer.size() / fitted.size()]) factor = way.is_there ? way.factor : factor;
+      }
+      fitted[g] = fit_group(level, first, first + level.run, factor);
     });
     return fitted;
   }
 
-  [[nodiscard]] std::vector<Fitted> fit_group(const LevelPlan& level, std::uint32_t first, std::uint32_t end) const {
+  [[nodiscard]] std::vector<Fitted> fit_group(const LevelPlan& level, std::uint32_t first, std::uint32_t end,
+                                              double factor) const {
     const auto chosen = leaves_.cards_of(first, end);
     std::vector<Fitted> ways;
     if (chosen.empty()) return ways;
@@ -201,7 +207,6 @@ class Thinner {
     double area = 0.0;
     for (const std::uint32_t c : chosen) area += cards_.cards.cards[c].area;
     const double luck = luck_of_cards(fit_, chosen);
-    double factor = 1.0;  // what one way needs is near what another does
     for (Fitted& way : ways) {
       way.shown = shown_by(fit_, way.splats);
       way.luck = way.shown.luck() / luck;

@@ -30,7 +30,8 @@ std::array<View, kCount> make_views(std::size_t above) {
     const Vec3d direction(out * around.cosine, height, out * around.sine);
     const Vec3d level(around.sine, 0.0, -around.cosine);  // at right angles to the direction, and flat
     const Vec3d other = glm::cross(direction, level);
-    all[i] = {turn.cosine * level + turn.sine * other, turn.cosine * other - turn.sine * level};
+    const Vec3d right = turn.cosine * level + turn.sine * other, up = turn.cosine * other - turn.sine * level;
+    all[i] = {right, up, glm::cross(right, up)};
     around = around.plus(kGolden);
     turn = turn.plus(kPictureStep);
   }

@@ -18,6 +18,7 @@ constexpr std::size_t kSideViews = 2;
 
 struct View {
   Vec3d right, up;  ///< of the picture, unit; each picture is turned by another angle
+  Vec3d toward;     ///< right × up: to whoever looks
 };
 [[nodiscard]] const std::array<View, kViews + kSideViews>& views();
 /// Many more from all around above. A handful of cards shows itself to thirteen directions by luck.
