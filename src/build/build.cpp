@@ -203,11 +203,12 @@ Result<LodDag> build_levels(PreparedMesh& mesh, const AggregateDecision& aggrega
     return build_aggregate_dag_and_free(mesh, found.coarse.of_source, coarsening(mesh));
   }
   SplitMesh parts = split_and_free(mesh, aggregate.most_triangles);
-  const Result<LodDag> loose =
-      build_aggregate_dag_and_free(parts.loose, found.coarse.of_source, coarsening(parts.loose));
-  if (!loose) return loose.error();
   const Result<LodDag> solid = build_dag_and_free(parts.solid, coarsening(parts.solid));
   if (!solid) return solid.error();
+  const PlaceSet places(solid->vertex_position.begin(), solid->vertex_position.end());
+  const Result<LodDag> loose =
+      build_aggregate_dag_and_free(parts.loose, found.coarse.of_source, coarsening(parts.loose), places);
+  if (!loose) return loose.error();
   return join_dags(*loose, *solid, mesh.layout);
 }
 

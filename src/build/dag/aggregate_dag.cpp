@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <utility>
+#include <vector>
 
 #include "base/local_ids.h"
 #include "base/release.h"
@@ -47,9 +49,58 @@ void pack_in_order(std::size_t first_label, std::span<const std::uint32_t> trian
   }
 }
 
+using IsTaken = std::function<bool(const Vec3i& place)>;
+
+double area_of(const std::array<Vec3i, 3>& corners) {
+  return glm::length(glm::cross(Vec3d(corners[1] - corners[0]), Vec3d(corners[2] - corners[0])));
+}
+
+/// Moves corners by a step or two until no edge can be one that others have: on a coarse grid small cards meet them by
+/// chance, and an edge of two groups is no border any more. Of the free places that one is taken which changes the area
+/// least: a needle may be a step wide. Where there is no room they stay.
+void keep_apart(const IsTaken& is_taken, std::array<Vec3i, 3>& corners) {
+  constexpr int kFarthest = 2;
+  const double area = area_of(corners);
+  const auto is_free = [&](const Vec3i& place) {
+    const auto [low, high] = std::minmax({place.x, place.y, place.z});
+    return low >= -format::kMaxGridCoordinate && high <= format::kMaxGridCoordinate && !is_taken(place) &&
+           std::find(corners.begin(), corners.end(), place) == corners.end();
+  };
+  const auto move = [&](std::size_t corner) {
+    const Vec3i from = corners[corner];
+    Vec3i best = from;
+    double least = std::numeric_limits<double>::infinity();
+    for (int far = 1; far <= kFarthest && best == from; ++far) {
+      for (int x = -far; x <= far; ++x) {
+        for (int y = -far; y <= far; ++y) {
+          for (int z = -far; z <= far; ++z) {
+            const Vec3i place = from + Vec3i(x, y, z);
+            if (!is_free(place)) continue;
+            std::array<Vec3i, 3> moved = corners;
+            moved[corner] = place;
+            const double change = std::fabs(area_of(moved) - area);
+            if (change >= least) continue;
+            least = change;
+            best = place;
+          }
+        }
+      }
+    }
+    corners[corner] = best;
+  };
+  std::array<bool, 3> taken{};
+  for (std::size_t k = 0; k < 3; ++k) taken[k] = is_taken(corners[k]);
+  auto left = std::count(taken.begin(), taken.end(), true);
+  for (std::size_t k = 0; k < 3 && left > 1; ++k) {
+    if (!taken[k]) continue;
+    move(k);
+    --left;
+  }
+}
+
 /// The group's triangles on the mesh's grid, each with corners of its own. One that falls together there is left out:
 /// it covers nothing.
-SimplifyResult on_grid(const ThinGroup& group, const PreparedMesh& mesh) {
+SimplifyResult on_grid(const ThinGroup& group, const PreparedMesh& mesh, const IsTaken& is_taken) {
   SimplifyResult result;
   const std::size_t stride = mesh.layout.stride();
   constexpr double kMost = format::kMaxGridCoordinate;
@@ -62,6 +113,7 @@ SimplifyResult on_grid(const ThinGroup& group, const PreparedMesh& mesh) {
                          static_cast<int>(std::floor(p.z + 0.5)));
     }
     if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) continue;
+    keep_apart(is_taken, corners);
     WedgeTriangle triangle{};
     for (std::size_t k = 0; k < 3; ++k) {
       triangle[k] = static_cast<std::uint32_t>(result.positions.size());
@@ -95,8 +147,8 @@ struct Node {
 
 class AggregateDag {
  public:
-  AggregateDag(PreparedMesh& mesh, const DagOptions& options, ThinMesh thin)
-      : mesh_(mesh), options_(options), thin_(std::move(thin)), pool_(mesh, levels_of(thin_)) {}
+  AggregateDag(PreparedMesh& mesh, const DagOptions& options, ThinMesh thin, const PlaceSet& others)
+      : mesh_(mesh), options_(options), thin_(std::move(thin)), others_(others), pool_(mesh, levels_of(thin_)) {}
 
   Result<LodDag> run() {
     add_level0();
@@ -119,6 +171,12 @@ class AggregateDag {
 
   void add_level0() {
     const ByPiece& leaves = thin_.leaf_triangles;
+    leaf_of_position_.resize(pool_.positions.size());
+    for (std::uint32_t leaf = 0; leaf < leaves.size(); ++leaf) {
+      for (const std::uint32_t t : leaves.of(leaf)) {
+        for (const std::uint32_t wedge : mesh_.triangles[t]) leaf_of_position_[pool_.wedge_position[wedge]] = leaf;
+      }
+    }
     Clustering clustering;
     clustering.label.resize(mesh_.triangles.size());
     std::uint32_t first = 0;
@@ -172,7 +230,13 @@ class AggregateDag {
         !(thin.pixel_size < std::numeric_limits<double>::infinity())) {
       return false;
     }
-    const SimplifyResult result = on_grid(thin, mesh_);
+    const SimplifyResult result = on_grid(thin, mesh_, [&](const Vec3i& place) {
+      const std::uint32_t id = pool_.find_position(place);
+      // What stands where its own pieces stood meets nobody.
+      const bool is_own =
+          id == kNoId || (leaf_of_position_[id] >= thin.first_leaf && leaf_of_position_[id] < thin.end_leaf);
+      return !is_own || others_.contains(place);
+    });
     if (result.triangles.empty() || static_cast<double>(result.triangles.size()) > kStuckRatio * children.triangles)
       return false;
     Clustering clustering;
@@ -200,6 +264,7 @@ class AggregateDag {
     const NewClusters added{result, nothing, clustering, group.level + 1, GroupId(pool_.groups.size())};
     pool_.groups.push_back(std::move(group));
     pool_.add_simplified({&added, 1});
+    leaf_of_position_.resize(pool_.positions.size(), thin.first_leaf);
     return true;
   }
 
@@ -234,7 +299,9 @@ class AggregateDag {
   PreparedMesh& mesh_;
   const DagOptions& options_;
   ThinMesh thin_;
+  const PlaceSet& others_;
   BuildPool pool_;
+  std::vector<std::uint32_t> leaf_of_position_;  ///< of the pool: a leaf of the group that first had it
   std::vector<Node> nodes_;
   Node made_;
 };
@@ -254,10 +321,10 @@ std::uint32_t leaf_triangles(const DagOptions& options) {
 }  // namespace
 
 Result<LodDag> build_aggregate_dag_and_free(PreparedMesh& mesh, std::span<const SourceMaterial> materials,
-                                            const DagOptions& options) {
+                                            const DagOptions& options, const PlaceSet& others) {
   if (mesh.triangles.empty()) return LodDag{};
   ThinMesh thin = thin_mesh(mesh, materials, {.leaf_triangles = leaf_triangles(options)});
-  return AggregateDag(mesh, options, std::move(thin)).run();
+  return AggregateDag(mesh, options, std::move(thin), others).run();
 }
 
 }  // namespace meshlode::build

@@ -8,12 +8,14 @@
 
 #include "build/aggregate/pieces.h"
 #include "build/dag/build_dag.h"
+#include "build/simplify/kept_topology.h"
 
 namespace meshlode::build {
 
 /// Every group that is not terminal is an aggregate (DagGroup::is_aggregate). As build_dag_and_free() of the mesh.
+/// `others`: where other parts of the mesh have vertices, in grid units: no edge comes to lie between two of them.
 /// Errors: kBuildFailed when cancelled.
 [[nodiscard]] Result<LodDag> build_aggregate_dag_and_free(PreparedMesh& mesh, std::span<const SourceMaterial> materials,
-                                                          const DagOptions& options);
+                                                          const DagOptions& options, const PlaceSet& others = {});
 
 }  // namespace meshlode::build

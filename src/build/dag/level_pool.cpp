@@ -104,10 +104,13 @@ std::uint32_t BuildPool::position_id(const Vec3i& position) {
   return entry.id;
 }
 
+std::uint32_t BuildPool::find_position(const Vec3i& position) const {
+  return position_table_.find(hash_position(position),
+                              [&](std::uint32_t other) { return positions[other] == position; });
+}
+
 bool BuildPool::had_place(const Vec3i& position) const {
-  const std::uint32_t id =
-      position_table_.find(hash_position(position), [&](std::uint32_t other) { return positions[other] == position; });
-  return id < round_positions_;  // kNone is greater
+  return find_position(position) < round_positions_;  // kNoId is greater
 }
 
 std::uint32_t BuildPool::wedge_id(std::uint32_t position, const float* attributes) {
@@ -187,9 +190,7 @@ BuildPool::Ids BuildPool::find_known(const SimplifyResult& result) const {
   Ids ids;
   ids.positions.resize(result.positions.size());
   for (std::size_t p = 0; p < ids.positions.size(); ++p) {
-    const Vec3i& position = result.positions[p];
-    ids.positions[p] = position_table_.find(hash_position(position),
-                                            [&](std::uint32_t other) { return positions[other] == position; });
+    ids.positions[p] = find_position(result.positions[p]);
   }
   ids.wedges.resize(result.wedge_position.size());
   for (std::size_t w = 0; w < ids.wedges.size(); ++w) {

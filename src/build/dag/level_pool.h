@@ -84,7 +84,9 @@ class BuildPool {
   /// of a round sees the same.
   void add_simplified(std::span<const NewClusters> added);
   void begin_round() { round_positions_ = positions.size(); }
-  /// Whether a vertex of any level was there when the round began.
+  /// The vertex of any level that is there; kNoId: none.
+  [[nodiscard]] std::uint32_t find_position(const Vec3i& position) const;
+  /// Whether one was when the round began.
   [[nodiscard]] bool had_place(const Vec3i& position) const;
   void end_round();
   /// Nothing will be added, simplified or measured any more: frees what only that needs.
