@@ -187,7 +187,7 @@ Sums look(std::span<const CoveringTriangle> source, std::span<const CoveringTria
 
 std::optional<CoverageDrift> measure_coverage(std::span<const CoveringTriangle> source,
                                               std::span<const CoveringTriangle> cut, const draw::AlphaMasks& masks,
-                                              double pixel_size) {
+                                              double pixel_size, double closer) {
   if (source.empty() || !(pixel_size > 0.0)) return std::nullopt;
   Vec3d low = source.front().corners[0], high = low;
   for (const auto set : {source, cut}) {
@@ -208,8 +208,8 @@ std::optional<CoverageDrift> measure_coverage(std::span<const CoveringTriangle> 
   const double width = std::sqrt(area / static_cast<double>(source.size()));
   const bool has_masks =
       std::any_of(source.begin(), source.end(), [](const CoveringTriangle& t) { return t.mask != format::kNone; });
-  const double few =
-      std::sqrt(0.5 * area * static_cast<double>(kDirections) / (has_masks ? kFewestMasked : kFewestCovered));
+  const double fewest = closer * (has_masks ? kFewestMasked : kFewestCovered);
+  const double few = std::sqrt(0.5 * area * static_cast<double>(kDirections) / fewest);
   std::size_t samples_a_pixel = kFewestSamples;
   const auto side = [&] { return glm::length(high - low) / pixel_size * static_cast<double>(samples_a_pixel); };
   while (pixel_size > std::min(0.5 * width, few) * static_cast<double>(samples_a_pixel) && 2.0 * side() <= kMostSide)

@@ -221,6 +221,29 @@ TEST(CoverageDrift, SaysHowMuchMoreOrLess) {
   EXPECT_FALSE(measure_coverage({}, source, {}, 0.05));
 }
 
+TEST(CoverageDrift, OfNeedlesMoreSamplesHaveLessLuck) {
+  std::vector<CoveringTriangle> source, moved;
+  SplitMix64 random(9);
+  for (int k = 0; k < 60; ++k) {
+    const Vec3d at(4.0 * random.unit(), 4.0 * random.unit(), 4.0 * random.unit());
+    const Vec3d along = glm::normalize(Vec3d(random.signed_unit(), random.signed_unit(), random.signed_unit()));
+    const Vec3d across = 0.01 * glm::normalize(glm::cross(along, Vec3d(0.3, 0.5, 0.8)));
+    const Vec3d to = at + Vec3d(0.37, -0.21, 0.11);
+    source.push_back({{at, at + 0.5 * along, at + across}});
+    moved.push_back({{to, to + 0.5 * along, to + across}});
+  }
+  double worst = 0.0, worst_closer = 0.0;
+  for (const double size : {0.10, 0.11, 0.12, 0.13, 0.14, 0.15}) {
+    const auto drift = measure_coverage(source, moved, {}, size),
+               closer = measure_coverage(source, moved, {}, size, 8.0);
+    ASSERT_TRUE(drift && closer);
+    worst = std::max(worst, std::abs(drift->mean));
+    worst_closer = std::max(worst_closer, std::abs(closer->mean));
+  }
+  EXPECT_LT(worst_closer, worst) << "both cover the same";
+  EXPECT_LT(worst_closer, 0.01);
+}
+
 TEST(CoverageDrift, LooksThroughMasks) {
   draw::AlphaMasks masks;
   masks.images.push_back({2, 1, {255, 0}});
