@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // bench_aggregate ASSET...: the triangles of uniform cuts at one pixel, by pixels across the model, and how far what
-// they cover is from what level 0 covers (judge/metrics/coverage.h), as a Markdown table. Of each asset its first mesh.
+// they cover is from what level 0 covers (judge/metrics/coverage.h), as a Markdown table. Of each asset its first mesh,
+// or the part of it that is an aggregate.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -34,8 +35,10 @@ int measure(const char* path) {
   for (int k = 0; k < 3; ++k) longest = std::max(longest, (double{1} * mesh.bounds_max[k] - mesh.bounds_min[k]) * step);
   const draw::AlphaMasks masks = draw::load_alpha_masks(asset);
   const auto covering = [&](const std::vector<ClusterId>& clusters) {
-    return judge::covering_triangles(asset, masks, MeshId(0U),
-                                     judge::clusters_of_part(asset, clusters, judge::Part::kAggregate));
+    const bool has_part = judge::has_aggregates(asset, MeshId(0U));  // else all is looked at, for comparison
+    return judge::covering_triangles(
+        asset, masks, MeshId(0U),
+        has_part ? judge::clusters_of_part(asset, clusters, judge::Part::kAggregate) : clusters);
   };
   const auto source = covering(run::select_uniform(asset, MeshId(0U), -1.0).clusters);
   if (!source) return 3;
