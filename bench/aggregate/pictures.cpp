@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // bench_aggregate_pictures OUT.png AUTO.lode NEVER.lode [AUTO.lode NEVER.lode ...]: a row for each pair, of the same
 // scene with and without --aggregate. For each of two sizes full resolution, the cut at one pixel of the first, and
-// of the second the finest cut of no more triangles; pixels are box-filtered, and shown as squares.
+// of the second the finest cut of no more triangles, or its coarsest one; pixels are box-filtered, and shown as
+// squares.
 #include <algorithm>
 #include <array>
 #include <cmath>

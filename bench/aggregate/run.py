@@ -82,7 +82,7 @@ def time_table(times, jobs):
 
 
 def curves(found):
-    width, height, left, top, right, bottom, gap = 270, 210, 46, 26, 8, 34, 10
+    width, height, left, top, right, bottom, gap = 270, 210, 52, 26, 10, 34, 10
     out = ['<?xml version="1.0" encoding="UTF-8"?>', "<!-- SPDX-License-Identifier: GPL-3.0-or-later -->",
            f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {4 * width} {2 * height + gap + 20}" '
            'font-family="sans-serif" font-size="11" fill="#222">',
@@ -121,14 +121,14 @@ def curves(found):
     for column, name in enumerate(MAIN):
         panel(column, 0, f"{name}: triangles", 50, 300000, (100, 1000, 10000, 100000), lambda t: f"{t:,}",
               lambda cells: cells[0], True)
-        panel(column, 1, f"{name}: noise", 0.0, 1.0, (0.0, 0.25, 0.5, 0.75, 1.0), lambda t: f"{t:g}",
+        panel(column, 1, f"{name}: noise", 0.0, 0.5, (0.0, 0.1, 0.2, 0.3, 0.4, 0.5), lambda t: f"{t:g}",
               lambda cells: float(cells[1]), False, 0.22)
     y = 2 * height + gap + 12
     for i, (choice, title) in enumerate((("never", "--aggregate never"), ("auto", "--aggregate auto"))):
         out.append(f'<rect x="{left + 150 * i}" y="{y - 9}" width="10" height="10" fill="{COLORS[choice]}"/>'
                    f'<text x="{left + 15 + 150 * i}" y="{y}">{title}</text>')
     out.append(f'<text x="{left + 300}" y="{y}">against pixels across the longest side; dashed: the most that V208 '
-               'allows; noise above 1 is drawn at 1</text>')
+               'allows; noise above 0.5 is drawn at 0.5</text>')
     return "\n".join(out) + "\n</svg>\n"
 
 

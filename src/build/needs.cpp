@@ -23,8 +23,10 @@ constexpr std::uint64_t kDocumentByte = 40;
 constexpr std::uint64_t kKeptTriangle = 30;
 constexpr std::uint64_t kTriangle = 10;
 constexpr std::uint64_t kTriangleOfCertified = 50;
-constexpr std::uint64_t kTrianglePromised = 550;     // both surfaces, their trees and the samples (src/build/promise)
-constexpr std::uint64_t kTriangleOfAggregate = 150;  // ways to thin it out, and pictures of them in all views
+constexpr std::uint64_t kTrianglePromised = 550;  // both surfaces, their trees and the samples (src/build/promise)
+// Of an aggregate the ways to thin it out, and pictures of them in all views.
+constexpr std::uint64_t kAggregate = 12u << 20u;
+constexpr std::uint64_t kTriangleOfAggregate = 50;
 constexpr std::uint64_t kPosition = 230;
 constexpr std::uint64_t kPositionOfQuadric = 180;
 constexpr std::uint64_t kVertexFloat = 8;
@@ -109,7 +111,9 @@ MemoryEstimate estimate_memory(const scene::Scene& scene, const PipelineOptions&
                                (is_measured ? kPosition : kPositionOfQuadric) * count_wedges(mesh, {}) +
                                kVertexFloat * attribute_floats(mesh, own) * counts.vertices);
     const bool is_aggregate = i < aggregates.size() && aggregates[i].is_aggregate;
-    if (is_aggregate) estimate.working.back() += kTriangleOfAggregate * counts.triangles;
+    if (!is_aggregate) continue;
+    estimate.working.back() += kAggregate + kTriangleOfAggregate * counts.triangles;
+    estimate.spilled += kAggregate + kTriangleOfAggregate * counts.triangles;  // small arrays
   }
   estimate.spilled += estimate.spilled / 3;
   std::sort(estimate.working.begin(), estimate.working.end(), std::greater<>());

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // meshlode_generate OUTDIR                writes the scenes of data/
-// meshlode_generate OUTDIR --aggregates   writes a tree of leaves, a field of grass, a soup of boxes and others, for
-// benchmarks meshlode_generate OUTDIR --painted      writes a tree of bark and leaves, for measurements of what is
-// painted meshlode_generate OUTDIR --triangles N  writes a terrain of about N triangles (16M, 500K, 42), for benchmarks
+// meshlode_generate OUTDIR --aggregates   writes trees, grass, soups and other aggregates
+// meshlode_generate OUTDIR --painted      writes a tree of bark and leaves, for measurements of what is painted
+// meshlode_generate OUTDIR --triangles N  writes a terrain of about N triangles (16M, 500K, 42), for benchmarks
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>

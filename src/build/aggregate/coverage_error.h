@@ -28,9 +28,11 @@ constexpr double kMostCoverageShift = 0.01;
 /// One way of thinning out one group: the triangles that would replace its pieces.
 struct Proposal {
   std::span<const Corners> triangles;
-  double luck = 1.0;                    ///< how much more the views show of it than of its pieces, of what each has
-  std::array<double, kViews> shifts{};  ///< out: by view, how much more is covered, of what the whole mesh covers
-  double sum_shift = 0.0;               ///< out: the same of all views together, without luck
+  double luck = 1.0;  ///< how much more the views show of it than of its pieces, of what each has
+  /// Out: by view, how much more is covered, of what the whole mesh covers. Of a level with many groups every other
+  /// view is 0, and the others count twice: neighbours have the others.
+  std::array<double, kViews> shifts{};
+  double sum_shift = 0.0;  ///< out: the same of all views together, without luck
   NoiseCurve noise;  ///< out: the error by pixel size, down to where it is above kLoosestNoise or pixels are small
 };
 

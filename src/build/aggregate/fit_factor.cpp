@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/release.h"
 #include "build/aggregate/coverage_error.h"
 
 namespace meshlode::build {
@@ -36,10 +37,9 @@ void Fitted::forget_splats() {
     material.reserve(splats.splats.size());
     for (const Splat& splat : splats.splats) material.push_back(splat.material);
   } else {
-    splats.attributes = {};
-    triangles = {};
+    release(splats.attributes, triangles);
   }
-  splats.splats = {};
+  release(splats.splats);
 }
 
 void fit_factor(const MeshFrame& frame, const format::PositionGrid& grid, const Covered& covered,
@@ -53,7 +53,7 @@ void fit_factor(const MeshFrame& frame, const format::PositionGrid& grid, const 
   if (!(wanted > 0.0)) return;
   double factor = near_factor;
   double low = 0.0, high = 0.0;  // what covers less, and more; 0: nothing so far
-  double last = 0.0, last_count = 0.0;
+  double tried = 0.0, last_count = 0.0;
   Covered now;
   way.triangles.reserve(way.splats.splats.size());
   for (int step = 0; step < kFactorSteps; ++step) {
@@ -61,9 +61,10 @@ void fit_factor(const MeshFrame& frame, const format::PositionGrid& grid, const 
     for (const Splat& splat : way.splats.splats) way.triangles.push_back(on_grid(grid, splat.corners(factor)));
     now = covered_samples(frame, way.triangles, spacing, sampling.views);
     const double count = weight * sampling.sum(now);
+    const double before = std::exchange(tried, factor);
     if (std::fabs(count - wanted) <= kCloseEnough * wanted) break;
     (count < wanted ? low : high) = factor;
-    const double slope = step > 0 ? (count - last_count) / (factor - last) : 0.0;
+    const double slope = step > 0 ? (count - last_count) / (factor - before) : 0.0;
     // Further than in proportion, since cards come to hide each other.
     const double more = std::clamp(wanted / std::max(count, 1.0), 0.5, std::sqrt(2.0));
     double next = slope > 0.0 ? factor + (wanted - count) / slope : factor * more * more;
@@ -73,7 +74,7 @@ void fit_factor(const MeshFrame& frame, const format::PositionGrid& grid, const 
     } else {
       next = std::clamp(next, 0.5 * factor, 2.0 * factor);
     }
-    last = std::exchange(factor, next);
+    factor = next;
     last_count = count;
   }
   for (std::size_t v = 0; v < now.size(); ++v) {
@@ -83,8 +84,8 @@ void fit_factor(const MeshFrame& frame, const format::PositionGrid& grid, const 
   }
   way.is_there =
       std::fabs(weight * sampling.sum(now) - wanted) <= kMostCoverageShift * wanted && way.worst_view <= kMostInAView;
-  way.factor = factor;
-  if (way.is_there) near_factor = factor;
+  way.factor = tried;
+  if (way.is_there) near_factor = tried;
 }
 
 void leave_out_unfair(std::span<Fitted> ways) {

@@ -22,6 +22,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // the directions that it is looked at from.
 constexpr std::size_t kFewTriangles = 4096;
 constexpr double kMostSmallCutShift = 0.010;
+// And finer pictures, 256 to 1,024 samples across, unless pieces are so small that these miss them too.
+constexpr double kSmallPixels = 128.0, kFewestAcross = 256.0, kMostAcross = 4096.0;
 
 using Uses = std::vector<std::vector<NoiseUse>>;
 
@@ -97,11 +99,15 @@ bool are_held(const ThinnedWays& ways, double finest, Uses& uses) {
   double size = largest;
   for (; 0.5 * size >= smallest; size *= 0.5) ++count;
   // A quarter of a piece: wider samples find the sums of thin blades by luck, to some percent.
+  grain *= 0.25;
   const bool is_small = ways.leaves.triangles.items.size() <= kFewTriangles;
+  if (is_small) {
+    if (grain >= ways.frame.longest / kMostAcross) finest = ways.frame.longest / kSmallPixels;
+    grain = std::min(grain, ways.frame.longest / kFewestAcross);
+  }
   const Sampling& seen = is_small ? ways.few : ways.usual;
-  const std::span<const View> seen_from = seen.views.first(seen.counted);
-  const CutMeter meter(ways.source, ways.frame, ways.leaves.triangles, seen_from, size, count, 0.25 * grain,
-                       is_small ? ways.frame.longest / 512.0 : finest);
+  const CutMeter meter(ways.source, ways.frame, ways.leaves.triangles, seen.views.first(seen.counted), size, count,
+                       grain, finest);
   double held = 0.0;  // cuts up to there are as they should be
   for (std::size_t i = 0; i < count; ++i, size *= 2.0) {
     // What is drawn in larger pixels too has less noise there, and covers as much.

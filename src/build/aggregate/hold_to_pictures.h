@@ -28,7 +28,7 @@ struct ThinnedWays {
 };
 
 /// Moves uses to larger pixels, or takes them away, until every whole cut is as it should be, as pictures tell where
-/// pixels double. `finest`: as measure_proposals() had it.
+/// pixels double. `finest`: as measure_proposals() had it; small meshes have their own.
 void hold_to_pictures(const ThinnedWays& ways, double finest, std::vector<std::vector<NoiseUse>>& uses);
 
 }  // namespace meshlode::build

@@ -59,7 +59,7 @@ struct NoiseBudget {
 
 /// By level, finest first, and group: no uniform cut has more than the budget if groups are independent of each other,
 /// and none comes before what it replaces; what has no use where the same leaves have one above is left out. \pre
-/// levels as ThinMesh's; all ways have shifts from the same views
+/// levels as ThinMesh's; all ways have shifts from as many views
 [[nodiscard]] std::vector<std::vector<NoiseUse>> share_out_noise(std::span<const std::vector<NoisyGroup>> levels,
                                                                  const NoiseBudget& budget);
 

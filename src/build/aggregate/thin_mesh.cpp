@@ -115,8 +115,12 @@ class Thinner {
           luck_of_many_ = luck_of_cards(few_, leaves_.cards);
         }
       }
-      if (!fitted.empty()) forget_splats(fitted.back());
-      fitted.push_back(fit_level(level, fitted.empty() ? std::vector<std::vector<Fitted>>() : fitted.back()));
+      std::span<const std::vector<Fitted>> finer;
+      if (!fitted.empty()) {
+        forget_splats(fitted.back());
+        finer = fitted.back();
+      }
+      fitted.push_back(fit_level(level, finer));
       if (is_whole && seen_by_many_.empty()) look_from_many_views(fitted.back());
       proposals.push_back(proposals_of(level, fitted.back()));
     }

@@ -51,16 +51,17 @@ void pack_in_order(std::size_t first_label, std::span<const std::uint32_t> trian
 
 using IsTaken = std::function<bool(const Vec3i& place)>;
 
-double area_of(const std::array<Vec3i, 3>& corners) {
-  return glm::length(glm::cross(Vec3d(corners[1] - corners[0]), Vec3d(corners[2] - corners[0])));
+/// Twice the triangle's area, along its normal.
+Vec3d vector_area(const std::array<Vec3i, 3>& corners) {
+  return glm::cross(Vec3d(corners[1] - corners[0]), Vec3d(corners[2] - corners[0]));
 }
 
 /// Moves corners by a step or two until no edge can be one that others have: on a coarse grid small cards meet them by
-/// chance, and an edge of two groups is no border any more. Of the free places that one is taken which changes the area
-/// least: a needle may be a step wide. Where there is no room they stay.
+/// chance, and an edge of two groups is no border any more. Of the free places that one is taken which changes area and
+/// direction least: a needle may be a step wide. Where there is no room they stay.
 void keep_apart(const IsTaken& is_taken, std::array<Vec3i, 3>& corners) {
   constexpr int kFarthest = 2;
-  const double area = area_of(corners);
+  const Vec3d area = vector_area(corners);
   const auto is_free = [&](const Vec3i& place) {
     const auto [low, high] = std::minmax({place.x, place.y, place.z});
     return low >= -format::kMaxGridCoordinate && high <= format::kMaxGridCoordinate && !is_taken(place) &&
@@ -78,7 +79,7 @@ void keep_apart(const IsTaken& is_taken, std::array<Vec3i, 3>& corners) {
             if (!is_free(place)) continue;
             std::array<Vec3i, 3> moved = corners;
             moved[corner] = place;
-            const double change = std::fabs(area_of(moved) - area);
+            const double change = glm::length(vector_area(moved) - area);
             if (change >= least) continue;
             least = change;
             best = place;
@@ -265,6 +266,11 @@ class AggregateDag {
     pool_.groups.push_back(std::move(group));
     pool_.add_simplified({&added, 1});
     leaf_of_position_.resize(pool_.positions.size(), thin.first_leaf);
+    // What two have is nobody's own.
+    for (const Vec3i& place : result.positions) {
+      std::uint32_t& leaf = leaf_of_position_[pool_.find_position(place)];
+      if (leaf < thin.first_leaf || leaf >= thin.end_leaf) leaf = kNoId;
+    }
     return true;
   }
 
@@ -301,7 +307,7 @@ class AggregateDag {
   ThinMesh thin_;
   const PlaceSet& others_;
   BuildPool pool_;
-  std::vector<std::uint32_t> leaf_of_position_;  ///< of the pool: a leaf of the group that first had it
+  std::vector<std::uint32_t> leaf_of_position_;  ///< of the pool: a leaf of the group that has it; kNoId: of two
   std::vector<Node> nodes_;
   Node made_;
 };

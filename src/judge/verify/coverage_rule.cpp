@@ -45,7 +45,9 @@ CoverageTotals check_coverage(const run::Asset& asset, std::uint32_t sizes, Rule
       std::optional<CoverageDrift> drift = measure_coverage(*source, *cut, masks, size);
       if (!drift) continue;
       // What seems too much may be luck of the samples.
-      if (!is_within(*drift)) drift = measure_coverage(*source, *cut, masks, size, kCloser);
+      if (!is_within(*drift)) {
+        if (const auto closer = measure_coverage(*source, *cut, masks, size, kCloser)) drift = closer;
+      }
       ++totals.cuts;
       totals.rms = std::max(totals.rms, drift->rms);
       totals.mean = std::max(totals.mean, std::abs(drift->mean));

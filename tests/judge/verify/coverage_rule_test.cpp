@@ -225,8 +225,8 @@ TEST(CoverageDrift, OfNeedlesMoreSamplesHaveLessLuck) {
   std::vector<CoveringTriangle> source, moved;
   SplitMix64 random(9);
   for (int k = 0; k < 60; ++k) {
-    const Vec3d at(4.0 * random.unit(), 4.0 * random.unit(), 4.0 * random.unit());
-    const Vec3d along = glm::normalize(Vec3d(random.signed_unit(), random.signed_unit(), random.signed_unit()));
+    const Vec3d at{4.0 * random.unit(), 4.0 * random.unit(), 4.0 * random.unit()};
+    const Vec3d along = glm::normalize(Vec3d{random.signed_unit(), random.signed_unit(), random.signed_unit()});
     const Vec3d across = 0.01 * glm::normalize(glm::cross(along, Vec3d(0.3, 0.5, 0.8)));
     const Vec3d to = at + Vec3d(0.37, -0.21, 0.11);
     source.push_back({{at, at + 0.5 * along, at + across}});
