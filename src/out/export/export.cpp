@@ -19,22 +19,21 @@
 
 #include <nlohmann/json.hpp>
 
-#include "base/gltf_textures.h"
 #include "base/guarded.h"
 #include "base/json_handle.h"
 #include "format/names.h"
 #include "out/export/cut_geometry.h"
 #include "out/export/float_positions.h"
 #include "out/export/glb_file.h"
+#include "out/export/gltf_document.h"
 #include "out/export/sniff.h"
+#include "out/export/write_primitive.h"
 
 namespace meshlode::out {
 namespace {
 
-using Json = nlohmann::json;  // keys sorted: deterministic bytes
+using Json = GltfJson;
 
-constexpr int kFloat = 5126, kUnsignedInt = 5125, kUnsignedShort = 5123, kUnsignedByte = 5121;
-constexpr int kArrayBuffer = 34962, kElementArrayBuffer = 34963;
 constexpr std::size_t kMaxDepth = 200;  // of JSON nesting: copying and writing a document are recursive
 
 /// Extensions that describe how geometry was stored; the exported geometry is plain.
@@ -50,23 +49,6 @@ struct ExportedMesh {
   [[nodiscard]] bool is_translated() const { return translation != Vec3d(0.0); }
 };
 
-/// Element `index` of the array `key` of an object, or null where there is none of that shape.
-const Json* find_element(const Json& object, const char* key, std::size_t index) {
-  const auto it = object.find(key);
-  return it != object.end() && it->is_array() && index < it->size() ? &(*it)[index] : nullptr;
-}
-
-/// The array under `key`, made empty where it is missing. \pre not another kind of value
-Json& array_of(Json& object, const char* key) {
-  Json& value = object[key];
-  if (value.is_null()) value = Json::array();
-  return value;
-}
-
-Error malformed(std::string detail) {
-  return {ErrorCode::kInvalid, "section SCNE", std::move(detail)};
-}
-
 /// Whether each of these members is an array, where it is there.
 Status check_arrays(const Json& object, std::initializer_list<const char*> keys) {
   for (const char* key : keys) {
@@ -75,19 +57,6 @@ Status check_arrays(const Json& object, std::initializer_list<const char*> keys)
       return malformed(std::string("/") + key + " is not an array");
   }
   return Ok{};
-}
-
-/// Largest TEXCOORD_n that a material's texture infos name, over extensions too (KHR_texture_transform may name another
-/// set than its texture info, and who does not know it reads the texture info's); -1 where nothing is sampled.
-int largest_texcoord(const Json& material) {
-  constexpr std::uint64_t kMost = 63;
-  int largest = -1;
-  for_each_texture_info(TreeHandle(material), [&](const auto& info) {
-    const TextureReference reference = read_texture_info(info);
-    const std::uint64_t set = std::max(reference.tex_coord, reference.uv_set);
-    largest = std::max(largest, static_cast<int>(std::min(set, kMost)));
-  });
-  return largest;
 }
 
 std::string level_name(const std::string& name, std::size_t level) {
@@ -108,14 +77,6 @@ class Exporter {
   Status add_mesh(MeshId mesh);
   Result<Json> make_mesh(const format::MeshRecord& record, const Json* source, std::span<const CutPrimitive> primitives,
                          const Vec3d& baked);
-  Result<Json> make_primitive(const format::MeshRecord& record, const CutPrimitive& primitive, const Vec3d& baked);
-  Status add_positions(const format::MeshRecord& record, const run::DecodedCluster& vertices, const Vec3d& baked,
-                       Json& attributes);
-  void add_texcoords(const format::MeshRecord& record, const run::ClusterAttributes& floats, MaterialId material,
-                     std::size_t count, Json& attributes);
-  void add_colors(const run::DecodedCluster& vertices, Json& attributes);
-  std::size_t add_vertices(int component, const char* type, std::size_t count, GlbBinary::Range range, Json extra);
-  std::size_t add_indices(const std::vector<std::uint32_t>& indices, std::size_t vertex_count);
   Status carry_buffers();
   Status carry_images();
   void move_texture_sources();
@@ -126,11 +87,8 @@ class Exporter {
   Status attach_mesh(std::size_t node);
   void attach_levels(std::size_t node, const ExportedMesh& mesh);
   void finish_document();
-  [[nodiscard]] int texcoords_needed(MaterialId material);
   GlbBinary::Range carry_blob(const format::BlobRecord& blob);
   [[nodiscard]] Result<const format::BlobRecord*> blob_of(const Json& owner) const;
-  std::size_t add_view(GlbBinary::Range range, int target);
-  std::size_t add_accessor(Json accessor);
 
   const run::Asset& asset_;
   std::span<const LodChain> chains_;
@@ -138,24 +96,10 @@ class Exporter {
   Json meshes_ = Json::array();
   std::vector<ExportedMesh> exported_;
   GlbBinary binary_;
+  PrimitiveWriter primitives_{asset_, document_, binary_};
   std::map<std::pair<std::uint64_t, std::uint64_t>, GlbBinary::Range> carried_;  ///< blobs in it, by offset and bytes
-  std::map<std::uint32_t, int> texcoords_;  ///< that materials ask for: each is walked once
   bool has_lods_ = false;
 };
-
-std::size_t Exporter::add_view(GlbBinary::Range range, int target) {
-  Json view = {{"buffer", 0}, {"byteOffset", range.offset}, {"byteLength", range.bytes}};
-  if (target != 0) view["target"] = target;
-  Json& views = array_of(document_, "bufferViews");
-  views.push_back(std::move(view));
-  return views.size() - 1;
-}
-
-std::size_t Exporter::add_accessor(Json accessor) {
-  Json& accessors = array_of(document_, "accessors");
-  accessors.push_back(std::move(accessor));
-  return accessors.size() - 1;
-}
 
 /// The blob that a document entry names with its member "blob".
 Result<const format::BlobRecord*> Exporter::blob_of(const Json& owner) const {
@@ -205,7 +149,7 @@ Status Exporter::carry_images() {
     if (!blob) return blob.error();
     const format::BlobRecord& record = **blob;
     const std::span<const std::uint8_t> bytes = asset_.blob_bytes(record);
-    image["bufferView"] = add_view(carry_blob(record), 0);
+    image["bufferView"] = add_view(document_, carry_blob(record));
     const std::string_view mime_type = asset_.string(record.mime_type);
     if (!image.contains("mimeType"))
       image["mimeType"] =
@@ -275,118 +219,6 @@ Status Exporter::complete_materials() {
   return Ok{};
 }
 
-/// How many TEXCOORD sets, from 0 on, the material's textures ask for.
-int Exporter::texcoords_needed(MaterialId material) {
-  const std::uint32_t index = asset_.materials()[material.value].source_index;
-  const auto [found, is_new] = texcoords_.try_emplace(index, 0);
-  const Json* json = is_new ? find_element(document_, "materials", index) : nullptr;
-  if (json != nullptr) found->second = largest_texcoord(*json) + 1;
-  return found->second;
-}
-
-/// An accessor of vertex data that lies in the BIN chunk.
-std::size_t Exporter::add_vertices(int component, const char* type, std::size_t count, GlbBinary::Range range,
-                                   Json extra) {
-  extra["bufferView"] = add_view(range, kArrayBuffer);
-  extra["componentType"] = component;
-  extra["count"] = count;
-  extra["type"] = type;
-  return add_accessor(std::move(extra));
-}
-
-Status Exporter::add_positions(const format::MeshRecord& record, const run::DecodedCluster& vertices,
-                               const Vec3d& baked, Json& attributes) {
-  const auto positions = bake_positions(record, vertices, baked);
-  if (!positions) {
-    return Error{ErrorCode::kUnsupported, std::string(asset_.string(record.name)),
-                 "a position does not fit glTF's 32-bit floats"};
-  }
-  Vec3f low = positions->front();
-  Vec3f high = low;
-  for (const Vec3f& p : *positions) {
-    low = glm::min(low, p);
-    high = glm::max(high, p);
-  }
-  attributes["POSITION"] =
-      add_vertices(kFloat, "VEC3", positions->size(), binary_.append_values(std::span<const Vec3f>(*positions)),
-                   {{"min", {low.x, low.y, low.z}}, {"max", {high.x, high.y, high.z}}});
-  return Ok{};
-}
-
-void Exporter::add_texcoords(const format::MeshRecord& record, const run::ClusterAttributes& floats,
-                             MaterialId material, std::size_t count, Json& attributes) {
-  int texcoord_end = texcoords_needed(material);
-  for (std::uint32_t k = 0; k < record.uv_set_count; ++k) {
-    attributes["TEXCOORD_" + std::to_string(record.uv_set_source[k])] = add_vertices(
-        kFloat, "VEC2", count, binary_.append_values(std::span<const Vec2f>(floats.uvs[k])), Json::object());
-    texcoord_end = std::max(texcoord_end, record.uv_set_source[k] + 1);
-  }
-  // glTF wants sets without gaps, and those that a material names. One that the asset did not keep is an accessor
-  // without a buffer view: zeros, at no cost.
-  for (int set = 0; set < texcoord_end; ++set) {
-    const std::string name = "TEXCOORD_" + std::to_string(set);
-    if (attributes.contains(name)) continue;
-    attributes[name] = add_accessor({{"componentType", kFloat}, {"count", count}, {"type", "VEC2"}});
-  }
-}
-
-void Exporter::add_colors(const run::DecodedCluster& vertices, Json& attributes) {
-  std::vector<std::array<std::uint8_t, 4>> colors(vertices.vertex_count);
-  const std::size_t first = vertices.channel_count - 4;  // colour is the last channel group
-  for (std::size_t i = 0; i < colors.size(); ++i) {
-    for (std::size_t c = 0; c < 4; ++c) {
-      const std::int32_t value = vertices.channels[i * vertices.channel_count + first + c];
-      colors[i][c] = static_cast<std::uint8_t>(std::clamp(value, 0, 255));
-    }
-  }
-  attributes["COLOR_0"] =
-      add_vertices(kUnsignedByte, "VEC4", colors.size(),
-                   binary_.append_values(std::span<const std::array<std::uint8_t, 4>>(colors)), {{"normalized", true}});
-}
-
-std::size_t Exporter::add_indices(const std::vector<std::uint32_t>& indices, std::size_t vertex_count) {
-  // The largest value of an index type means "restart" and may not be used.
-  const bool is_short = vertex_count <= 65535;
-  GlbBinary::Range range;
-  if (is_short) {
-    const std::vector<std::uint16_t> narrow(indices.begin(), indices.end());
-    range = binary_.append_values(std::span<const std::uint16_t>(narrow));
-  } else {
-    range = binary_.append_values(std::span<const std::uint32_t>(indices));
-  }
-  return add_accessor({{"bufferView", add_view(range, kElementArrayBuffer)},
-                       {"componentType", is_short ? kUnsignedShort : kUnsignedInt},
-                       {"count", indices.size()},
-                       {"type", "SCALAR"}});
-}
-
-Result<Json> Exporter::make_primitive(const format::MeshRecord& record, const CutPrimitive& primitive,
-                                      const Vec3d& baked) {
-  const run::DecodedCluster& vertices = primitive.vertices;
-  const std::size_t count = vertices.vertex_count;
-  Json attributes = Json::object();
-  if (const Status s = add_positions(record, vertices, baked, attributes); !s) return s.error();
-  run::ClusterAttributes floats;
-  run::decode_attributes(record, vertices, floats);
-  // No NORMAL means flat normals in glTF, which is what the other two modes ask for.
-  if (record.normal_mode == format::NormalMode::kStored) {
-    attributes["NORMAL"] = add_vertices(kFloat, "VEC3", count,
-                                        binary_.append_values(std::span<const Vec3f>(floats.normals)), Json::object());
-  }
-  add_texcoords(record, floats, primitive.material, count, attributes);
-  if (record.has_color != 0) add_colors(vertices, attributes);
-  Json result = {{"attributes", std::move(attributes)}};
-  result["indices"] = add_indices(primitive.indices, count);
-  const std::uint32_t material = asset_.materials()[primitive.material.value].source_index;
-  if (material != format::kNone) {
-    if (find_element(document_, "materials", material) == nullptr) {
-      return malformed("material " + std::to_string(material) + " does not exist");
-    }
-    result["material"] = material;
-  }
-  return result;
-}
-
 /// What the document has for the primitives of a mesh, by material (KHR_materials_variants); null: the default one.
 std::map<Json, const Json*> extensions_by_material(const Json* mesh) {
   std::map<Json, const Json*> out;
@@ -406,7 +238,7 @@ Result<Json> Exporter::make_mesh(const format::MeshRecord& record, const Json* s
   json["primitives"] = Json::array();
   const auto extensions = extensions_by_material(source);
   for (const CutPrimitive& primitive : primitives) {
-    auto made = make_primitive(record, primitive, baked);
+    auto made = primitives_.write(record, primitive, baked);
     if (!made) return made.error();
     const auto known = extensions.find(made->value("material", Json()));
     if (known != extensions.end()) (*made)["extensions"] = *known->second;
