@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <numeric>
 #include <optional>
 #include <span>
@@ -125,42 +124,6 @@ struct Survey {
   }
 };
 
-constexpr float kFarthestUv = 4096.0F;  // there floats are 1/2048 of a texture apart
-
-/// Whether a mesh has texture coordinates so large that what is stored of any of that set is no texel any more: then
-/// nobody can say what a mask lets through.
-bool is_beyond_texels(const scene::SourceMesh& mesh, const std::optional<MaterialLook>& look) {
-  if (!look || !look->covers) return false;
-  return std::any_of(mesh.primitives.begin(), mesh.primitives.end(), [&](const scene::Primitive& primitive) {
-    const std::vector<Vec2f>& uvs = primitive.uvs[look->uv_set];
-    return std::any_of(uvs.begin(), uvs.end(), [](const Vec2f& uv) {
-      return !(std::fabs(uv.x) <= kFarthestUv && std::fabs(uv.y) <= kFarthestUv);
-    });
-  });
-}
-
-/// What the looks of textures leave of a decision: pieces whose texture cannot be read stay as they are.
-void leave_out_unknown(const scene::SourceMesh& mesh, std::span<const std::uint8_t> is_unread,
-                       std::span<const std::optional<MaterialLook>> looks, AggregateDecision& decision) {
-  if (!decision.is_aggregate) return;
-  const std::string reason = "what its texture shows is not known";
-  bool is_any_left = false;
-  std::vector<std::uint8_t> is_unknown(is_unread.begin(), is_unread.end());
-  for (const scene::Primitive& primitive : mesh.primitives) {
-    const std::uint32_t m = primitive.material.value;
-    if (is_beyond_texels(mesh, looks[m])) is_unknown[m] = 1;
-  }
-  for (const scene::Primitive& primitive : mesh.primitives) {
-    const std::uint32_t m = primitive.material.value;
-    if (decision.most_triangles.empty() && is_unknown[m] != 0) decision = {false, reason, {}};
-    if (!decision.is_aggregate) return;
-    if (decision.most_triangles.empty()) continue;
-    if (is_unknown[m] != 0) decision.most_triangles[m] = 0;
-    is_any_left = is_any_left || decision.most_triangles[m] > 0;
-  }
-  if (!decision.most_triangles.empty() && !is_any_left) decision = {false, reason, {}};
-}
-
 /// By mesh.
 std::vector<AggregateDecision> decide_aggregates(const scene::Scene& scene, const PipelineOptions& options) {
   std::vector<AggregateDecision> decisions;
@@ -187,7 +150,8 @@ Result<Survey> survey(const scene::Scene& scene, const PipelineOptions& options,
   for (std::size_t i = 0; i < wanted.size(); ++i) is_unknown[i] = wanted[i] != 0 && !looks[i] ? 1 : 0;
   is_used.assign(is_used.size(), 0);
   for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
-    leave_out_unknown(scene.meshes[i], is_unknown, looks, found.aggregates[i]);
+    // Pieces whose texture cannot be read stay as they are.
+    leave_out(scene.meshes[i], is_unknown, "what its texture shows is not known", found.aggregates[i]);
     add_materials(scene.meshes[i], found.aggregates[i], is_used);
   }
   if (!found.has_aggregates()) return found;

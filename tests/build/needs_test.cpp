@@ -149,8 +149,8 @@ TEST(Needs, OneMeshAfterAnotherGivesTheSameBytes) {
   EXPECT_EQ(one_by_one.memory_estimate, estimate.bytes(1));
 }
 
-/// Triangles that share nothing.
-scene::Scene loose(std::uint32_t count) {
+/// Triangles that share nothing, within a box of 2 and of about `size` each.
+scene::Scene loose(std::uint32_t count, double size = 0.05) {
   scene::Scene scene = sheets(1, 1, false);
   scene::Primitive& primitive = scene.meshes[0].primitives[0];
   primitive.positions.clear();
@@ -158,9 +158,9 @@ scene::Scene loose(std::uint32_t count) {
   for (std::uint32_t i = 0; i < 3 * count; ++i) {
     const std::uint32_t triangle = i / 3;
     const double t = triangle;
-    primitive.positions.emplace_back(std::sin(t) + 0.05 * std::sin(7.0 * i),
-                                     std::cos(1.7 * t) + 0.05 * std::cos(5.0 * i),
-                                     std::sin(0.3 * t) + 0.05 * std::sin(3.0 * i));
+    primitive.positions.emplace_back(std::sin(t) + size * std::sin(7.0 * i),
+                                     std::cos(1.7 * t) + size * std::cos(5.0 * i),
+                                     std::sin(0.3 * t) + size * std::sin(3.0 * i));
     primitive.indices.push_back(i);
   }
   return scene;
@@ -242,6 +242,8 @@ TEST(Needs, MemoryIsEstimatedFromAboveAndCloseEnough) {
   expect_close(measure([] { return unshared(sheets(120, 1, false)); }, kMeasured, 1),
                "28,800 triangles, no vertex shared");
   expect_close(measure([] { return loose(400); }, kMeasured, 2, AggregateChoice::kAlways), "an aggregate of 400");
+  expect_close(measure([] { return loose(4000, 0.003); }, kMeasured, 2, AggregateChoice::kAlways), "of 4,000 crumbs");
+  expect_close(measure([] { return loose(4000, 0.0005); }, kMeasured, 2, AggregateChoice::kAlways), "of tiny ones");
   expect_close(measure([] { return loose(20000); }, kMeasured, 1, AggregateChoice::kAlways), "of 20,000 triangles");
   expect_close(measure([] { return loose(200000); }, kMeasured, 2, AggregateChoice::kAlways), "of 200,000");
 }

@@ -34,17 +34,12 @@ struct Sampled {
     const auto texel = [](const std::array<double, 3>& row, const Vec2d& at) { return row[0] * at.x + row[1] * at.y; };
     const double x0 = texel(row_u, origin) + row_u[2], y0 = texel(row_v, origin) + row_v[2];
     const double dx = texel(row_u, step), dy = texel(row_v, step);
-    const auto place = [](double at, std::uint32_t count, draw::Wrap how) {
-      // Most are on the image, whatever is beside it.
-      if (at >= 0.0 && at < count) return static_cast<std::uint32_t>(at);
-      return draw::wrap_texel(static_cast<std::int64_t>(std::clamp(std::floor(at), -1e15, 1e15)), count, how);
-    };
     std::uint64_t drawn = 0;
     for (std::uint64_t rest = asked; rest != 0; rest &= rest - 1) {
       const int bit = std::countr_zero(rest);
       const double column = first + bit;
-      const std::size_t x = place(x0 + dx * column, image.width, wrap[0]);
-      const std::size_t y = place(y0 + dy * column, image.height, wrap[1]);
+      const std::size_t x = draw::texel_at(x0 + dx * column, image.width, wrap[0]);
+      const std::size_t y = draw::texel_at(y0 + dy * column, image.height, wrap[1]);
       drawn |= std::uint64_t{does_pass[y * image.width + x]} << bit;
     }
     return drawn;

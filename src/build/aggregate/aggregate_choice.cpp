@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <numeric>
 #include <utility>
@@ -194,9 +195,38 @@ AggregateDecision decide_by(const scene::SourceMesh& mesh, const Pieces& all, st
           std::move(most)};
 }
 
-}  // namespace
+/// Whether a mesh has texture coordinates in these sets beyond what a float tells texels apart by: at 4,096 they are
+/// 1/2048 of a texture apart.
+std::array<bool, scene::kMaxUvSets> find_far_sets(const scene::SourceMesh& mesh) {
+  constexpr float kFarthest = 4096.0F;
+  std::array<bool, scene::kMaxUvSets> is_far{};
+  for (const scene::Primitive& primitive : mesh.primitives) {
+    for (std::size_t set = 0; set < is_far.size(); ++set) {
+      const auto is_beyond = [](const Vec2f& uv) {
+        return !(std::fabs(uv.x) <= kFarthest && std::fabs(uv.y) <= kFarthest);
+      };
+      is_far[set] = is_far[set] || std::any_of(primitive.uvs[set].begin(), primitive.uvs[set].end(), is_beyond);
+    }
+  }
+  return is_far;
+}
 
-AggregateDecision decide_aggregate(const scene::SourceMesh& mesh, const AggregateQuestion& question) {
+/// Nobody can say what such a mask lets through.
+void leave_out_far_masks(const scene::SourceMesh& mesh, std::span<const scene::SceneMaterial> materials,
+                         AggregateDecision& decision) {
+  if (!decision.is_aggregate) return;
+  const std::array<bool, scene::kMaxUvSets> is_far = find_far_sets(mesh);
+  std::vector<std::uint8_t> is_out(std::max<std::size_t>(materials.size(), count_materials(mesh)), 0);
+  for (std::size_t m = 0; m < materials.size(); ++m) {
+    const std::uint32_t set = materials[m].base_color_uv_set;  // any number, or none
+    const bool is_masked = materials[m].alpha_mode == scene::AlphaMode::kMask && set < is_far.size();
+    is_out[m] = is_masked && is_far[set] ? 1 : 0;
+  }
+  leave_out(mesh, is_out, "its mask lies at texture coordinates beyond 4096, where nothing tells texels apart",
+            decision);
+}
+
+AggregateDecision decide_by_pieces(const scene::SourceMesh& mesh, const AggregateQuestion& question) {
   if (question.choice == AggregateChoice::kNever) return {};
   const std::uint32_t materials = count_materials(mesh);
   const bool is_named = question.choice == AggregateChoice::kNamed;
@@ -224,6 +254,29 @@ AggregateDecision decide_aggregate(const scene::SourceMesh& mesh, const Aggregat
   const std::string fault = whole.fault();
   if (fault.empty()) return {true, describe(whole.count, whole.largest), {}};
   return decide_by(mesh, all, find_parts(mesh, all, materials), question.materials, question.may_be_part, what + fault);
+}
+
+}  // namespace
+
+AggregateDecision decide_aggregate(const scene::SourceMesh& mesh, const AggregateQuestion& question) {
+  AggregateDecision decision = decide_by_pieces(mesh, question);
+  leave_out_far_masks(mesh, question.materials, decision);
+  return decision;
+}
+
+void leave_out(const scene::SourceMesh& mesh, std::span<const std::uint8_t> is_out, const std::string& reason,
+               AggregateDecision& decision) {
+  if (!decision.is_aggregate) return;
+  const bool is_whole = decision.most_triangles.empty();
+  bool is_any_left = false, is_any_out = false;
+  for (const scene::Primitive& primitive : mesh.primitives) {
+    const std::uint32_t m = primitive.material.value;
+    is_any_out = is_any_out || is_out[m] != 0;
+    if (is_whole) continue;
+    if (is_out[m] != 0) decision.most_triangles[m] = 0;
+    is_any_left = is_any_left || decision.most_triangles[m] > 0;
+  }
+  if (is_whole ? is_any_out : !is_any_left) decision = {false, reason, {}};
 }
 
 void add_materials(const scene::SourceMesh& mesh, const AggregateDecision& decision,

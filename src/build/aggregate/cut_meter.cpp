@@ -16,9 +16,8 @@ constexpr double kCutBlocks = 2.0 * static_cast<double>(kPixelBlocks[kCutSize]);
 
 }  // namespace
 
-CutMeter::CutMeter(const SourceSurface& source, const MeshFrame& frame, const ByPiece& leaf_triangles,
-                   std::span<const View> views, double smallest, std::size_t count, double grain, double finest)
-    : views_(views) {
+CutMeter::CutMeter(const SourceSurface& source, const MeshFrame& frame, const ByPiece& leaf_triangles, double smallest,
+                   std::size_t count, double grain, double finest) {
   // Of the smallest pixels, and of each size from there: how often its samples are halved.
   const auto halvings_of = [&](double pixel_size) {
     std::size_t halvings = 0;
@@ -37,9 +36,10 @@ CutMeter::CutMeter(const SourceSurface& source, const MeshFrame& frame, const By
   const double spacing = std::ldexp(smallest / kCutBlocks, -static_cast<int>(most));
   lattices_.emplace_back(frame.center, frame.radius, std::ldexp(spacing, static_cast<int>(coarsest)));
   while (lattices_.size() <= coarsest) lattices_.push_back(lattices_.back().finer());
-  for (const View& view : views)
-    leaves_.push_back(draw_leaves(source, leaf_triangles, lattices_.back(), view, 0, lattices_.size()));
-  for (auto& of_view : leaves_) std::reverse(of_view.begin(), of_view.end());
+  for (std::size_t v = 0; v < kViews; ++v) {
+    leaves_[v] = draw_leaves(source, leaf_triangles, lattices_.back(), views()[v], 0, lattices_.size());
+    std::reverse(leaves_[v].begin(), leaves_[v].end());
+  }
   std::reverse(lattices_.begin(), lattices_.end());
 }
 
@@ -49,8 +49,8 @@ CutChange CutMeter::measure(const ThinnedCut& cut, std::size_t size) const {
     double whole = 0.0;
     Change change;
   };
-  std::vector<Seen> seen(views_.size());
-  parallel_for_each_index(views_.size(), 1, [&](std::size_t v) {
+  std::array<Seen, kViews> seen;
+  parallel_for_each_index(kViews, 1, [&](std::size_t v) {
     const std::vector<SampleMask>& leaves = leaves_[v][lattice];
     const auto cover_by = [&](std::span<const std::uint32_t> some, const SampleMask& more) {
       MaskBox box = more.box();
@@ -61,7 +61,7 @@ CutChange CutMeter::measure(const ThinnedCut& cut, std::size_t size) const {
       return cover;
     };
     const SampleMask all = cover_by(cut.source_leaves, SampleMask());
-    const SampleMask drawn = cover_by(cut.leaves, mask_of(lattices_[lattice], views_[v], cut.triangles));
+    const SampleMask drawn = cover_by(cut.leaves, mask_of(lattices_[lattice], views()[v], cut.triangles));
     seen[v] = {static_cast<double>(squares_of_all(all, octaves)[kCutSize]), change_of(all, drawn, {}, octaves)};
   });
   double whole = 0.0, change = 0.0, before = 0.0, after = 0.0;

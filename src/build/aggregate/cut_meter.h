@@ -3,9 +3,9 @@
 // other is in it.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "build/aggregate/card.h"
@@ -26,13 +26,14 @@ struct CutChange {
   double noise = 0.0;      ///< as Proposal::noise, of the whole
   double sum_shift = 0.0;  ///< as Proposal::sum_shift
 };
+
 /// The source is drawn once.
 class CutMeter {
  public:
-  /// At `count` pixel sizes, each twice as large as the one before. Samples are as wide as `grain` at most, but for the
-  /// smallest that measure_proposals() has for `finest`.
-  CutMeter(const SourceSurface& source, const MeshFrame& frame, const ByPiece& leaf_triangles,
-           std::span<const View> views, double smallest, std::size_t count, double grain, double finest);
+  /// At `count` pixel sizes, each twice as large as the one before. Samples are as wide as `grain` at most, but never
+  /// finer than measure_proposals() has them for pixels of `finest`.
+  CutMeter(const SourceSurface& source, const MeshFrame& frame, const ByPiece& leaf_triangles, double smallest,
+           std::size_t count, double grain, double finest);
   [[nodiscard]] CutChange measure(const ThinnedCut& cut, std::size_t size) const;
 
  private:
@@ -40,9 +41,8 @@ class CutMeter {
     std::size_t octaves = 1, lattice = 0;
   };
   std::vector<Size> sizes_;
-  std::vector<Lattice> lattices_;  ///< each half as fine as the one before
-  std::span<const View> views_;
-  std::vector<std::vector<std::vector<SampleMask>>> leaves_;  ///< [view][lattice][leaf]
+  std::vector<Lattice> lattices_;         ///< each half as fine as the one before
+  std::array<LeafMasks, kViews> leaves_;  ///< by view, from the finest lattice on
 };
 
 }  // namespace meshlode::build

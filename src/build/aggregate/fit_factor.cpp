@@ -42,16 +42,16 @@ void Fitted::forget_splats() {
   release(splats.splats);
 }
 
-void fit_factor(const MeshFrame& frame, const format::PositionGrid& grid, const Covered& covered,
-                const Sampling& sampling, double area, double luck, const ShownArea& shown, double& near_factor,
+void fit_factor(const MeshFrame& frame, const format::PositionGrid& grid, const Target& target, double start,
                 Fitted& way) {
   constexpr double kCloseEnough = 0.002;
   constexpr int kFactorSteps = 12;
-  const double spacing = sampling.spacing_of(area, way.splats.splats.size());
+  const Sampling& sampling = target.sampling;
+  const double spacing = sampling.spacing_of(target.area, way.splats.splats.size());
   const double weight = spacing * spacing / (sampling.spacing * sampling.spacing);  // in samples of the source
-  const double wanted = sampling.sum(covered) * shown.luck() / luck;
+  const double wanted = sampling.sum(target.covered) * shown_by(sampling, way.splats).luck() / target.luck;
   if (!(wanted > 0.0)) return;
-  double factor = near_factor;
+  double factor = start;
   double low = 0.0, high = 0.0;  // what covers less, and more; 0: nothing so far
   double tried = 0.0, last_count = 0.0;
   Covered now;
@@ -78,14 +78,13 @@ void fit_factor(const MeshFrame& frame, const format::PositionGrid& grid, const 
     last_count = count;
   }
   for (std::size_t v = 0; v < now.size(); ++v) {
-    if (covered[v] == 0) continue;
-    const double share = weight * static_cast<double>(now[v]) / static_cast<double>(covered[v]);
+    if (target.covered[v] == 0) continue;
+    const double share = weight * static_cast<double>(now[v]) / static_cast<double>(target.covered[v]);
     way.worst_view = std::max(way.worst_view, std::fabs(share - 1.0));
   }
   way.is_there =
       std::fabs(weight * sampling.sum(now) - wanted) <= kMostCoverageShift * wanted && way.worst_view <= kMostInAView;
   way.factor = tried;
-  if (way.is_there) near_factor = tried;
 }
 
 void leave_out_unfair(std::span<Fitted> ways) {

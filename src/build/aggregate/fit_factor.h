@@ -83,11 +83,15 @@ struct Fitted {
   void forget_splats();
 };
 
-/// Finds the factor for which the splats, which have an area, cover as much as the source, over all views. It begins
-/// with the one given, and gives its own where there is one. `luck`: of the cards that covered so much; `shown`: of
-/// the splats, by the same sampling.
-void fit_factor(const MeshFrame& frame, const format::PositionGrid& grid, const Covered& covered,
-                const Sampling& sampling, double area, double luck, const ShownArea& shown, double& near_factor,
+/// What splats are to cover over all views, of which area, and the luck of the cards that cover it.
+struct Target {
+  const Covered& covered;
+  const Sampling& sampling;  ///< that it is of
+  double area = 0.0, luck = 1.0;
+};
+
+/// Finds the factor for which the splats cover as much as that. `start`: where to begin.
+void fit_factor(const MeshFrame& frame, const format::PositionGrid& grid, const Target& target, double start,
                 Fitted& way);
 
 /// Seen along a field of grass, cards rise out of it: ways that do are left out where there are others.

@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <span>
 
 #include "build/aggregate/cut_meter.h"
 
@@ -18,17 +17,35 @@ namespace {
 constexpr double kMostCutNoise = 0.21, kMostCutShift = 0.017;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Of a source of so few triangles they may have less: some of its pieces are large, and what a handful covers hangs on
-// the directions that it is looked at from.
-constexpr std::size_t kFewTriangles = 4096;
-constexpr double kMostSmallCutShift = 0.010;
-// And finer pictures, 256 to 1,024 samples across, unless pieces are so small that these miss them too.
-constexpr double kSmallPixels = 128.0, kFewestAcross = 256.0, kMostAcross = 4096.0;
-
 using Uses = std::vector<std::vector<NoiseUse>>;
 
-/// What a cut at a pixel size draws; its luck as it is seen from `views`.
-ThinnedCut cut_at(const ThinnedWays& ways, const Uses& uses, double pixel_size, const Sampling& views) {
+/// How finely whole cuts are looked at, and how much more or less they may cover.
+struct Scrutiny {
+  double grain, finest;  ///< as CutMeter's
+  double most_shift;
+};
+
+/// `finest`: pixels that measure_proposals() looked at.
+Scrutiny scrutiny_of(const ThinnedWays& ways, double finest) {
+  double piece = kInfinity;
+  for (const std::vector<GroupProposals>& level : ways.proposals) {
+    for (const GroupProposals& group : level) piece = group.grain > 0.0 ? std::min(piece, group.grain) : piece;
+  }
+  // Wider samples find the sums of thin blades by luck, to some percent.
+  const double grain = 0.25 * piece;
+  // Of few triangles some are large, and what a handful covers hangs on the directions that it is looked at from. They
+  // are looked at in 256 to 1,024 samples across, and not in so many where pieces are so small that these miss them
+  // too.
+  constexpr std::size_t kFewTriangles = 4096;
+  constexpr double kMostFewShift = 0.010, kFewPixels = 128.0, kFewestAcross = 256.0, kMostAcross = 4096.0;
+  if (ways.leaves.triangles.items.size() > kFewTriangles) return {grain, finest, kMostCutShift};
+  const double longest = ways.frame.longest;
+  return {std::min(grain, longest / kFewestAcross),
+          longest / (grain >= longest / kMostAcross ? kFewPixels : 0.5 * kFewPixels), kMostFewShift};
+}
+
+/// What a cut at a pixel size draws.
+ThinnedCut cut_at(const ThinnedWays& ways, const Uses& uses, double pixel_size) {
   ThinnedCut cut;
   ShownArea shown, source;
   std::vector<std::uint8_t> is_replaced(ways.leaves.size(), 0), is_ever(ways.leaves.size(), 0);
@@ -46,7 +63,7 @@ ThinnedCut cut_at(const ThinnedWays& ways, const Uses& uses, double pixel_size, 
       for (const Corners& c : way.triangles) {
         const Vec3d twice = glm::cross(c[1] - c[0], c[2] - c[0]);
         const double length = glm::length(twice);
-        if (length > 0.0) shown.add(views, twice / length, 0.5 * length);
+        if (length > 0.0) shown.add(ways.sampling, twice / length, 0.5 * length);
       }
     }
   }
@@ -56,8 +73,8 @@ ThinnedCut cut_at(const ThinnedWays& ways, const Uses& uses, double pixel_size, 
     if (is_replaced[leaf] == 0) cut.leaves.push_back(leaf);
     for (const std::uint32_t c : ways.leaves.cards_of(leaf, leaf + 1)) {
       const Card& card = ways.cards.cards[c];
-      source.add(views, card.normal(), card.area);
-      if (is_replaced[leaf] == 0) shown.add(views, card.normal(), card.area);
+      source.add(ways.sampling, card.normal(), card.area);
+      if (is_replaced[leaf] == 0) shown.add(ways.sampling, card.normal(), card.area);
     }
   }
   cut.luck = shown.luck() / source.luck();
@@ -82,8 +99,8 @@ void move_all_between(Uses& uses, double low, double high, double to) {
 
 /// From small pixels to large ones. False: some groups never come any more, and all is to be looked at again, since
 /// leaves that nothing replaces are not compared with.
-bool are_held(const ThinnedWays& ways, double finest, Uses& uses) {
-  double smallest = kInfinity, largest = 0.0, grain = kInfinity;
+bool are_held(const ThinnedWays& ways, const Scrutiny& how, Uses& uses) {
+  double smallest = kInfinity, largest = 0.0;
   for (const std::vector<NoiseUse>& level : uses) {
     for (const NoiseUse& use : level) {
       if (!(use.pixel_size < kInfinity)) continue;
@@ -92,29 +109,16 @@ bool are_held(const ThinnedWays& ways, double finest, Uses& uses) {
     }
   }
   if (!(largest > 0.0)) return true;
-  for (const std::vector<GroupProposals>& level : ways.proposals) {
-    for (const GroupProposals& group : level) grain = group.grain > 0.0 ? std::min(grain, group.grain) : grain;
-  }
   std::size_t count = 1;
   double size = largest;
   for (; 0.5 * size >= smallest; size *= 0.5) ++count;
-  // A quarter of a piece: wider samples find the sums of thin blades by luck, to some percent.
-  grain *= 0.25;
-  const bool is_small = ways.leaves.triangles.items.size() <= kFewTriangles;
-  if (is_small) {
-    if (grain >= ways.frame.longest / kMostAcross) finest = ways.frame.longest / kSmallPixels;
-    grain = std::min(grain, ways.frame.longest / kFewestAcross);
-  }
-  const Sampling& seen = is_small ? ways.few : ways.usual;
-  const CutMeter meter(ways.source, ways.frame, ways.leaves.triangles, seen.views.first(seen.counted), size, count,
-                       grain, finest);
+  const CutMeter meter(ways.source, ways.frame, ways.leaves.triangles, size, count, how.grain, how.finest);
   double held = 0.0;  // cuts up to there are as they should be
   for (std::size_t i = 0; i < count; ++i, size *= 2.0) {
     // What is drawn in larger pixels too has less noise there, and covers as much.
     if (is_any_between(uses, held, size)) {
-      const CutChange change = meter.measure(cut_at(ways, uses, size, seen), i);
-      if (change.noise > kMostCutNoise ||
-          std::fabs(change.sum_shift) > (is_small ? kMostSmallCutShift : kMostCutShift)) {
+      const CutChange change = meter.measure(cut_at(ways, uses, size), i);
+      if (change.noise > kMostCutNoise || std::fabs(change.sum_shift) > how.most_shift) {
         const bool is_last = i + 1 == count;
         move_all_between(uses, held, 2.0 * size, is_last ? kInfinity : 2.0 * size);
         if (is_last) return false;
@@ -130,8 +134,9 @@ bool are_held(const ThinnedWays& ways, double finest, Uses& uses) {
 
 void hold_to_pictures(const ThinnedWays& ways, double finest, std::vector<std::vector<NoiseUse>>& uses) {
   constexpr int kPasses = 8;
+  const Scrutiny how = scrutiny_of(ways, finest);
   for (int pass = 0; pass < kPasses; ++pass) {
-    if (are_held(ways, finest, uses)) return;
+    if (are_held(ways, how, uses)) return;
   }
   for (std::vector<NoiseUse>& level : uses) level.assign(level.size(), {});  // no way to tell what is seen
 }

@@ -21,8 +21,7 @@ struct ThinnedWays {
   const MeshFrame& frame;
   const Leaves& leaves;
   const Cards& cards;
-  const Sampling& usual;  ///< of the usual views
-  const Sampling& few;    ///< of many, for what is few
+  const Sampling& sampling;  ///< of the usual views
   std::span<const std::vector<GroupProposals>> proposals;
   std::span<const std::vector<std::vector<Fitted>>> fitted;
 };

@@ -128,8 +128,8 @@ class Thinner {
     measure_proposals(source_, frame_, leaves_.triangles, frame_.longest / kFinestPixels, proposals);
     ThinMesh out;
     std::vector<std::vector<NoiseUse>> uses = uses_of(proposals);
-    hold_to_pictures({source_, frame_, leaves_, cards_.cards, fit_, few_, proposals, fitted},
-                     frame_.longest / kFinestPixels, uses);
+    hold_to_pictures({source_, frame_, leaves_, cards_.cards, fit_, proposals, fitted}, frame_.longest / kFinestPixels,
+                     uses);
     leave_out_undrawn(uses);
     for (std::size_t l = 0; l < proposals.size(); ++l)
       out.levels.push_back(choose_and_free(proposals[l], fitted[l], uses[l]));
@@ -210,13 +210,14 @@ class Thinner {
     const Covered& covered = covered_[static_cast<std::size_t>(std::countr_zero(level.run))][first / level.run];
     double area = 0.0;
     for (const std::uint32_t c : chosen) area += cards_.cards.cards[c].area;
-    const double luck = luck_of_cards(fit_, chosen);
+    const Target usual{covered, fit_, area, luck_of_cards(fit_, chosen)};
+    const Target by_many{seen_by_many_, few_, area, luck_of_many_};
     for (Fitted& way : ways) {
       way.shown = shown_by(fit_, way.splats);
-      way.luck = way.shown.luck() / luck;
+      way.luck = way.shown.luck() / usual.luck;
       const bool is_few = !seen_by_many_.empty() && way.splats.splats.size() <= kFewCards;
-      fit_factor(frame_, grid_, is_few ? seen_by_many_ : covered, is_few ? few_ : fit_, area,
-                 is_few ? luck_of_many_ : luck, is_few ? shown_by(few_, way.splats) : way.shown, factor, way);
+      fit_factor(frame_, grid_, is_few ? by_many : usual, factor, way);
+      if (way.is_there) factor = way.factor;
     }
     leave_out_unfair(ways);
     return ways;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -46,5 +47,12 @@ struct TextureFootprint {
 
 /// Texel `i` of an endless row in one of `count`. \pre count > 0
 [[nodiscard]] std::uint32_t wrap_texel(std::int64_t i, std::uint32_t count, Wrap wrap);
+/// The texel of `count` that a place in texels lies in: any number, and where it is none the first.
+[[nodiscard]] inline std::uint32_t texel_at(double place, std::uint32_t count, Wrap wrap) {
+  if (place >= 0.0 && place < count) return static_cast<std::uint32_t>(place);  // most are, whatever is beside it
+  constexpr double kFar = 1e15;
+  if (!(std::fabs(place) < kFar)) place = std::isnan(place) ? 0.0 : std::copysign(kFar, place);
+  return wrap_texel(static_cast<std::int64_t>(std::floor(place)), count, wrap);
+}
 
 }  // namespace meshlode::draw

@@ -44,8 +44,7 @@ bool texel_passes(const draw::AlphaMasks& masks, const CoveringTriangle& triangl
   if (mask.image != format::kNone) {
     const draw::AlphaImage& image = masks.images[mask.image];
     const auto texel = [&](const std::array<double, 3>& row, std::uint32_t count, draw::Wrap wrap) {
-      const double at = std::floor(row[0] * uv.x + row[1] * uv.y + row[2]);
-      return draw::wrap_texel(static_cast<std::int64_t>(std::clamp(at, -1e15, 1e15)), count, wrap);
+      return draw::texel_at(row[0] * uv.x + row[1] * uv.y + row[2], count, wrap);
     };
     const std::size_t x = texel(mask.row_u, image.width, mask.wrap[0]);
     const std::size_t y = texel(mask.row_v, image.height, mask.wrap[1]);

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which meshes are aggregates, and what their coarse materials are.
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -97,6 +99,46 @@ TEST(AggregateParts, AreFoundByName) {
   scene::Scene scene = scene::as_scene(tree);
   scene.materials = materials;
   EXPECT_EQ(find_unknown_names(scene, "elm,oak,,leaf*,be?ch"), (std::vector<std::string>{"elm", "be?ch"}));
+}
+
+TEST(AggregateParts, WhatAMaskFarOutLetsThroughNobodyKnows) {
+  std::vector<scene::SceneMaterial> materials(3);
+  materials[1].alpha_mode = materials[2].alpha_mode = scene::AlphaMode::kMask;
+  materials[1].base_color_uv_set = 0;
+  materials[2].base_color_uv_set = 7;  // glTF may name any; here are four
+  const auto decide = [&](const scene::SourceMesh& mesh) {
+    return decide_aggregate(mesh, {.choice = AggregateChoice::kAuto, .materials = materials});
+  };
+  scene::SourceMesh meadow = mesh_of({scene::make_grass(2000), scene::make_foliage(2000), scene::make_grass(1000)});
+  EXPECT_TRUE(decide(meadow).is_aggregate);
+  // It is enough that another primitive has such coordinates: one grid is stored for all.
+  meadow.primitives[0].uvs[0].assign(meadow.primitives[0].positions.size(), Vec2f(0.0F, -1e8F));
+  const AggregateDecision far = decide(meadow);
+  EXPECT_FALSE(far.is_aggregate);
+  EXPECT_NE(far.reason.find("mask"), std::string::npos) << far.reason;
+  meadow.primitives[0].uvs[0].assign(meadow.primitives[0].positions.size(), Vec2f(NAN, 0.0F));
+  EXPECT_FALSE(decide(meadow).is_aggregate);
+  materials[1].alpha_mode = scene::AlphaMode::kOpaque;
+  EXPECT_TRUE(decide(meadow).is_aggregate) << "no mask is asked there";
+
+  materials[1].alpha_mode = scene::AlphaMode::kMask;
+  scene::SourceMesh tree = mesh_of({scene::make_rock(16), scene::make_foliage(2000), scene::make_grass(1000)});
+  tree.primitives[0].uvs[0].assign(tree.primitives[0].positions.size(), Vec2f(0.0F, -1e8F));
+  EXPECT_EQ(decide(tree).most_triangles, (Most{0, 0, 512})) << "the grass is left";
+}
+
+TEST(AggregateParts, OfWhatIsLeftOutNothingRemains) {
+  const scene::SourceMesh tree = mesh_of({scene::make_rock(16), scene::make_foliage(2000)});
+  AggregateDecision decision = decide_aggregate(tree, {.choice = AggregateChoice::kAuto});
+  ASSERT_EQ(decision.most_triangles, (Most{0, 512}));
+  leave_out(tree, std::vector<std::uint8_t>{1, 0}, "the trunk is none", decision);
+  EXPECT_EQ(decision.most_triangles, (Most{0, 512}));
+  leave_out(tree, std::vector<std::uint8_t>{0, 1}, "unread", decision);
+  EXPECT_FALSE(decision.is_aggregate);
+  EXPECT_EQ(decision.reason, "unread");
+  EXPECT_TRUE(decision.most_triangles.empty());
+  leave_out(tree, std::vector<std::uint8_t>{1, 1}, "again", decision);
+  EXPECT_EQ(decision.reason, "unread");
 }
 
 TEST(CoarseMaterials, AreOpaqueDoubleSidedAndInOneColor) {

@@ -47,8 +47,7 @@ class CutMeterTest : public ::testing::Test {
   }
 
   [[nodiscard]] CutMeter meter(double grain = 0.02) const {
-    return {source_,    {Vec3d(0.0), 0.7, 1.0}, leaves_, std::span(views()).first(kViews), kSmallest, kSizes, grain,
-            1.0 / 110.0};
+    return {source_, {Vec3d(0.0), 0.7, 1.0}, leaves_, kSmallest, kSizes, grain, 1.0 / 110.0};
   }
   [[nodiscard]] std::vector<Corners> triangles_of(std::uint32_t leaf) const {
     std::vector<Corners> triangles;

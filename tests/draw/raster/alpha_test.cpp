@@ -31,6 +31,17 @@ TEST(AlphaTest, WrappedTexelsAreThoseOfAnEndlessRow) {
   }
 }
 
+TEST(AlphaTest, EveryPlaceHasATexel) {
+  for (const Wrap wrap : {Wrap::kRepeat, Wrap::kMirror, Wrap::kClamp}) {
+    EXPECT_EQ(texel_at(0.0, 7, wrap), 0U);
+    EXPECT_EQ(texel_at(6.999, 7, wrap), 6U);
+    EXPECT_EQ(texel_at(7.5, 7, wrap), wrap_texel(7, 7, wrap));
+    EXPECT_EQ(texel_at(-0.25, 7, wrap), wrap_texel(-1, 7, wrap));
+    for (const double far : {1e300, -1e300, HUGE_VAL, -HUGE_VAL, std::nan("")})
+      EXPECT_LT(texel_at(far, 7, wrap), 7U) << far;
+  }
+}
+
 TEST(AlphaTest, QuotientsAreDefinedByProducts) {
   std::uint64_t state = 3;
   const auto random = [&] {
