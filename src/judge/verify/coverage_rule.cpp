@@ -13,11 +13,13 @@ namespace meshlode::judge {
 
 namespace {
 
-constexpr double kCloser = 8.0;
+// What is beyond the limits by less than this many times may be luck of the samples, and is looked at with so many
+// times as many. What is further off needs no second look, which takes longer.
+constexpr double kMostLuck = 2.0, kCloser = 8.0;
 
-bool is_within(const CoverageDrift& drift) {
-  return drift.rms <= kMostCoverageRms && std::abs(drift.mean) <= kMostCoverageMean &&
-         drift.contrast <= kMostCoverageContrast;
+bool is_within(const CoverageDrift& drift, double times = 1.0) {
+  return drift.rms <= times * kMostCoverageRms && std::abs(drift.mean) <= times * kMostCoverageMean &&
+         drift.contrast <= times * kMostCoverageContrast;
 }
 
 }  // namespace
@@ -44,8 +46,7 @@ CoverageTotals check_coverage(const run::Asset& asset, std::uint32_t sizes, Rule
       }
       std::optional<CoverageDrift> drift = measure_coverage(*source, *cut, masks, size);
       if (!drift) continue;
-      // What seems too much may be luck of the samples.
-      if (!is_within(*drift)) {
+      if (!is_within(*drift) && is_within(*drift, kMostLuck)) {
         if (const auto closer = measure_coverage(*source, *cut, masks, size, kCloser)) drift = closer;
       }
       ++totals.cuts;

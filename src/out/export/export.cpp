@@ -17,8 +17,6 @@
 #include <string_view>
 #include <utility>
 
-#include <nlohmann/json.hpp>
-
 #include "base/guarded.h"
 #include "base/json_handle.h"
 #include "format/names.h"

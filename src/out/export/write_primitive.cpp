@@ -44,7 +44,7 @@ int PrimitiveWriter::texcoords_needed(MaterialId material) {
 
 /// An accessor of vertex data that lies in the BIN chunk.
 std::size_t PrimitiveWriter::add_vertices(int component, const char* type, std::size_t count, GlbBinary::Range range,
-                                   GltfJson extra) {
+                                          GltfJson extra) {
   extra["bufferView"] = add_view(document_, range, ViewTarget::kVertices);
   extra["componentType"] = component;
   extra["count"] = count;
@@ -53,7 +53,7 @@ std::size_t PrimitiveWriter::add_vertices(int component, const char* type, std::
 }
 
 Status PrimitiveWriter::add_positions(const format::MeshRecord& record, const run::DecodedCluster& vertices,
-                               const Vec3d& baked, GltfJson& attributes) {
+                                      const Vec3d& baked, GltfJson& attributes) {
   const auto positions = bake_positions(record, vertices, baked);
   if (!positions) {
     return Error{ErrorCode::kUnsupported, std::string(asset_.string(record.name)),
@@ -72,7 +72,7 @@ Status PrimitiveWriter::add_positions(const format::MeshRecord& record, const ru
 }
 
 void PrimitiveWriter::add_texcoords(const format::MeshRecord& record, const run::ClusterAttributes& floats,
-                             MaterialId material, std::size_t count, GltfJson& attributes) {
+                                    MaterialId material, std::size_t count, GltfJson& attributes) {
   int texcoord_end = texcoords_needed(material);
   for (std::uint32_t k = 0; k < record.uv_set_count; ++k) {
     attributes["TEXCOORD_" + std::to_string(record.uv_set_source[k])] = add_vertices(
@@ -113,13 +113,13 @@ std::size_t PrimitiveWriter::add_indices(const std::vector<std::uint32_t>& indic
     range = binary_.append_values(std::span<const std::uint32_t>(indices));
   }
   return add_accessor(document_, {{"bufferView", add_view(document_, range, ViewTarget::kIndices)},
-                       {"componentType", is_short ? kUnsignedShort : kUnsignedInt},
-                       {"count", indices.size()},
-                       {"type", "SCALAR"}});
+                                  {"componentType", is_short ? kUnsignedShort : kUnsignedInt},
+                                  {"count", indices.size()},
+                                  {"type", "SCALAR"}});
 }
 
 Result<GltfJson> PrimitiveWriter::write(const format::MeshRecord& record, const CutPrimitive& primitive,
-                                      const Vec3d& baked) {
+                                        const Vec3d& baked) {
   const run::DecodedCluster& vertices = primitive.vertices;
   const std::size_t count = vertices.vertex_count;
   GltfJson attributes = GltfJson::object();
@@ -128,8 +128,8 @@ Result<GltfJson> PrimitiveWriter::write(const format::MeshRecord& record, const 
   run::decode_attributes(record, vertices, floats);
   // No NORMAL means flat normals in glTF, which is what the other two modes ask for.
   if (record.normal_mode == format::NormalMode::kStored) {
-    attributes["NORMAL"] = add_vertices(kFloat, "VEC3", count,
-                                        binary_.append_values(std::span<const Vec3f>(floats.normals)), GltfJson::object());
+    attributes["NORMAL"] = add_vertices(
+        kFloat, "VEC3", count, binary_.append_values(std::span<const Vec3f>(floats.normals)), GltfJson::object());
   }
   add_texcoords(record, floats, primitive.material, count, attributes);
   if (record.has_color != 0) add_colors(vertices, attributes);

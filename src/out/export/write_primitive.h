@@ -25,7 +25,8 @@ class PrimitiveWriter {
 
   /// Positions relative to the mesh's frame are moved by `baked` (choose_origin()). Errors: kUnsupported where one does
   /// not fit a float, kInvalid where the document lacks the material.
-  [[nodiscard]] Result<GltfJson> write(const format::MeshRecord& record, const CutPrimitive& primitive, const Vec3d& baked);
+  [[nodiscard]] Result<GltfJson> write(const format::MeshRecord& record, const CutPrimitive& primitive,
+                                       const Vec3d& baked);
 
  private:
   Status add_positions(const format::MeshRecord& record, const run::DecodedCluster& vertices, const Vec3d& baked,
