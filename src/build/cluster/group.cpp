@@ -4,9 +4,12 @@
 #include "build/cluster/group.h"
 
 #include <algorithm>
+#include <array>
+#include <limits>
 #include <numeric>
-#include <tuple>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "base/parallel.h"
 #include "build/cluster/partition.h"
@@ -20,101 +23,157 @@ constexpr std::int32_t kNearbyWeight = 1;
 constexpr std::size_t kNearbyLinks = 4;  ///< links along each axis order
 constexpr std::size_t kMaxFan = 12;      ///< clusters around one vertex that are linked all with all
 
-struct Link {
-  std::uint32_t a, b;  ///< a < b
-  std::int32_t weight;
+/// For each position of a level the clusters that have it, ascending.
+struct Fans {
+  std::vector<std::uint32_t> start;  ///< by position, and one more: into clusters
+  std::vector<std::uint32_t> clusters;
+
+  explicit Fans(const GroupInput& input) : start(input.position_count + 1, 0), clusters(input.positions.size()) {
+    for (const std::uint32_t p : input.positions) ++start[p + 1];
+    std::partial_sum(start.begin(), start.end(), start.begin());
+    std::vector<std::uint32_t> cursor(start.begin(), start.end() - 1);
+    for (std::uint32_t c = 0; c < input.cluster_count(); ++c) {
+      for (std::uint32_t i = input.first_position[c]; i < input.first_position[c + 1]; ++i) {
+        clusters[cursor[input.positions[i]]++] = c;
+      }
+    }
+  }
+  [[nodiscard]] std::span<const std::uint32_t> around(std::uint32_t position) const {
+    return std::span(clusters).subspan(start[position], start[position + 1] - start[position]);
+  }
 };
 
-void add_shared_links(const GroupInput& input, std::vector<Link>& links) {
-  std::vector<std::uint32_t> start(input.position_count + 1, 0);
-  for (const std::uint32_t p : input.positions) ++start[p + 1];
-  std::partial_sum(start.begin(), start.end(), start.begin());
-  std::vector<std::uint32_t> clusters(input.positions.size());
-  std::vector<std::uint32_t> cursor(start.begin(), start.end() - 1);
-  for (std::uint32_t c = 0; c < input.cluster_count(); ++c) {
-    for (std::uint32_t i = input.first_position[c]; i < input.first_position[c + 1]; ++i) {
-      clusters[cursor[input.positions[i]]++] = c;
-    }
-  }
-  for (std::uint32_t p = 0; p < input.position_count; ++p) {
-    const std::uint32_t count = start[p + 1] - start[p];
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const std::uint32_t last = count <= kMaxFan ? count : std::min(count, i + 2);
-      for (std::uint32_t j = i + 1; j < last; ++j) {
-        links.push_back({clusters[start[p] + i], clusters[start[p] + j], kSharedVertexWeight});
+/// A cluster's link to another. Both ends have it.
+struct Link {
+  std::uint32_t to = 0;
+  std::int32_t weight = 0;
+};
+
+/// With all that share a position with it; where very many do, with those before and after it alone.
+void add_shared_links(const GroupInput& input, const Fans& fans, std::uint32_t own, std::vector<Link>& links) {
+  for (std::uint32_t i = input.first_position[own]; i < input.first_position[own + 1]; ++i) {
+    const std::span<const std::uint32_t> fan = fans.around(input.positions[i]);
+    if (fan.size() <= kMaxFan) {
+      for (const std::uint32_t other : fan) {
+        if (other != own) links.push_back({other, kSharedVertexWeight});
       }
+      continue;
     }
+    const auto at = std::lower_bound(fan.begin(), fan.end(), own);
+    if (at != fan.begin()) links.push_back({*(at - 1), kSharedVertexWeight});
+    if (at + 1 != fan.end()) links.push_back({*(at + 1), kSharedVertexWeight});
   }
 }
 
-/// Links each cluster to the next few along every axis whose centres are nearest among those.
-void add_nearby_links(const GroupInput& input, std::vector<Link>& links) {
+/// A cluster's nearest few; as many times itself as there are fewer.
+using Nearest = std::array<std::uint32_t, kNearbyLinks>;
+
+/// Of each cluster the nearest of those whose centres come shortly before or after its own along an axis.
+std::vector<Nearest> find_nearest(const GroupInput& input) {
   const std::uint32_t count = input.cluster_count();
-  constexpr std::size_t kWindow = 16;
-  std::vector<std::uint32_t> order(count);
-  std::vector<std::vector<std::pair<double, std::uint32_t>>> near(count);
-  for (int axis = 0; axis < 3; ++axis) {
-    std::iota(order.begin(), order.end(), 0U);
-    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+  constexpr std::size_t kWindow = 15;
+  std::array<std::vector<std::uint32_t>, 3> order, rank;
+  parallel_for_each_index(3, 1, [&](std::size_t k) {
+    const auto axis = static_cast<int>(k);
+    order[k].resize(count);
+    rank[k].resize(count);
+    std::iota(order[k].begin(), order[k].end(), 0U);
+    std::sort(order[k].begin(), order[k].end(), [&](std::uint32_t a, std::uint32_t b) {
       return input.centers[a][axis] != input.centers[b][axis] ? input.centers[a][axis] < input.centers[b][axis] : a < b;
     });
-    for (std::size_t i = 0; i < count; ++i) {
-      for (std::size_t j = i + 1; j < std::min<std::size_t>(count, i + kWindow); ++j) {
-        const Vec3d d = input.centers[order[i]] - input.centers[order[j]];
-        near[order[i]].emplace_back(glm::dot(d, d), order[j]);
-        near[order[j]].emplace_back(glm::dot(d, d), order[i]);
+    for (std::uint32_t i = 0; i < count; ++i) rank[k][order[k][i]] = i;
+  });
+  std::vector<Nearest> nearest(count);
+  parallel_for_each_index(count, 64, [&](std::size_t c) {
+    const auto own = static_cast<std::uint32_t>(c);
+    std::array<std::pair<double, std::uint32_t>, kNearbyLinks> best;
+    best.fill({std::numeric_limits<double>::infinity(), own});
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t at = rank[k][c], last = std::min<std::size_t>(count, at + kWindow + 1);
+      for (std::size_t i = at - std::min(at, kWindow); i < last; ++i) {
+        const std::uint32_t other = order[k][i];
+        const Vec3d d = input.centers[other] - input.centers[own];
+        const std::pair<double, std::uint32_t> candidate(glm::dot(d, d), other);
+        if (other == own || !(candidate < best.back()) || std::find(best.begin(), best.end(), candidate) != best.end())
+          continue;
+        best.back() = candidate;
+        for (std::size_t j = kNearbyLinks - 1; j > 0 && best[j] < best[j - 1]; --j) std::swap(best[j], best[j - 1]);
       }
     }
-  }
-  const std::size_t first = links.size();
-  links.resize(first + kNearbyLinks * count);
-  parallel_for_each_index(count, 64, [&](std::size_t c) {
-    std::sort(near[c].begin(), near[c].end());
-    near[c].erase(std::unique(near[c].begin(), near[c].end()), near[c].end());
-    for (std::size_t i = 0; i < kNearbyLinks; ++i) {
-      const auto own = static_cast<std::uint32_t>(c);
-      const std::uint32_t other = i < near[c].size() ? near[c][i].second : own;
-      links[first + kNearbyLinks * c + i] = {std::min(own, other), std::max(own, other), kNearbyWeight};
-    }
+    for (std::size_t j = 0; j < kNearbyLinks; ++j) nearest[c][j] = best[j].second;
   });
-  std::erase_if(links, [](const Link& link) { return link.a == link.b; });  // of clusters with few others near by
+  return nearest;
 }
 
-Graph cluster_graph(const GroupInput& input) {
-  std::vector<Link> links;
-  add_shared_links(input, links);
-  add_nearby_links(input, links);
-  std::sort(links.begin(), links.end(), [](const Link& x, const Link& y) {
-    return std::tuple(x.a, x.b, x.weight) < std::tuple(y.a, y.b, y.weight);
-  });
+/// Who has a cluster among its nearest.
+struct NearestTo {
+  std::vector<std::uint32_t> start;  ///< by cluster, and one more: into clusters
+  std::vector<std::uint32_t> clusters;
+
+  explicit NearestTo(const std::vector<Nearest>& nearest)
+      : start(nearest.size() + 1, 0), clusters(kNearbyLinks * nearest.size()) {
+    for (const Nearest& few : nearest) {
+      for (const std::uint32_t c : few) ++start[c + 1];
+    }
+    std::partial_sum(start.begin(), start.end(), start.begin());
+    std::vector<std::uint32_t> cursor(start.begin(), start.end() - 1);
+    for (std::uint32_t c = 0; c < nearest.size(); ++c) {
+      for (const std::uint32_t other : nearest[c]) clusters[cursor[other]++] = c;
+    }
+  }
+  [[nodiscard]] std::span<const std::uint32_t> of(std::uint32_t cluster) const {
+    return std::span(clusters).subspan(start[cluster], start[cluster + 1] - start[cluster]);
+  }
+};
+
+/// One link to each other cluster, ascending, with the weights of all.
+void merge_links(std::vector<Link>& links) {
+  std::sort(links.begin(), links.end(), [](const Link& x, const Link& y) { return x.to < y.to; });
   std::size_t merged = 0;
-  for (std::size_t i = 0; i < links.size(); ++i) {
-    if (merged > 0 && links[merged - 1].a == links[i].a && links[merged - 1].b == links[i].b) {
-      links[merged - 1].weight += links[i].weight;
+  for (const Link& link : links) {
+    if (merged > 0 && links[merged - 1].to == link.to) {
+      links[merged - 1].weight += link.weight;
     } else {
-      links[merged++] = links[i];
+      links[merged++] = link;
     }
   }
   links.resize(merged);
+}
 
+Graph cluster_graph(const GroupInput& input) {
+  constexpr std::size_t kRows = 32;
+  const std::uint32_t count = input.cluster_count();
+  const Fans fans(input);
+  const std::vector<Nearest> nearest = find_nearest(input);
+  const NearestTo nearest_to(nearest);
+  std::vector<std::vector<Link>> rows(chunk_count(count, kRows));
   Graph graph;
-  graph.row_start.assign(input.cluster_count() + 1, 0);
-  for (const Link& link : links) {
-    ++graph.row_start[link.a + 1];
-    ++graph.row_start[link.b + 1];
-  }
+  graph.row_start.assign(count + 1, 0);
+  parallel_for_each_chunk(count, kRows, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+    std::vector<Link> row;
+    for (std::size_t c = begin; c < end; ++c) {
+      const auto own = static_cast<std::uint32_t>(c);
+      row.clear();
+      add_shared_links(input, fans, own, row);
+      for (const std::uint32_t other : nearest[c]) {
+        if (other != own) row.push_back({other, kNearbyWeight});
+      }
+      for (const std::uint32_t other : nearest_to.of(own)) {
+        if (other != own) row.push_back({other, kNearbyWeight});
+      }
+      merge_links(row);
+      graph.row_start[c + 1] = static_cast<std::int32_t>(row.size());
+      rows[chunk].insert(rows[chunk].end(), row.begin(), row.end());
+    }
+  });
   std::partial_sum(graph.row_start.begin(), graph.row_start.end(), graph.row_start.begin());
-  graph.neighbor.resize(2 * links.size());
-  graph.edge_weight.resize(2 * links.size());
-  std::vector<std::int32_t> cursor(graph.row_start.begin(), graph.row_start.end() - 1);
-  const auto add = [&](std::uint32_t from, std::uint32_t to, std::int32_t weight) {
-    const auto slot = static_cast<std::size_t>(cursor[from]++);
-    graph.neighbor[slot] = static_cast<std::int32_t>(to);
-    graph.edge_weight[slot] = weight;
-  };
-  for (const Link& link : links) {
-    add(link.a, link.b, link.weight);
-    add(link.b, link.a, link.weight);
+  graph.neighbor.reserve(static_cast<std::size_t>(graph.row_start.back()));
+  graph.edge_weight.reserve(graph.neighbor.capacity());
+  for (const std::vector<Link>& chunk : rows) {
+    for (const Link& link : chunk) {
+      graph.neighbor.push_back(static_cast<std::int32_t>(link.to));
+      graph.edge_weight.push_back(link.weight);
+    }
   }
   return graph;
 }

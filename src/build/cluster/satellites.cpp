@@ -38,56 +38,55 @@ std::vector<Found> find_in_order(std::size_t count, const Visit& visit) {
   return all;
 }
 
-/// Triangles without a host, each followed by its satellites, in flat rows: nearly all of them are alone.
-struct SystemRows {
-  std::vector<std::uint32_t> first;    ///< of a system, into triangles; system count + 1
-  std::vector<std::uint32_t> members;  ///< triangle ids
+/// Some clusters, ascending, and their triangles in flat rows, ascending.
+struct PartRows {
+  std::vector<std::uint32_t> parts;
+  std::vector<std::uint32_t> first;  ///< of each of them, into triangles; and one more
+  std::vector<std::uint32_t> triangles;
 
-  [[nodiscard]] std::span<const std::uint32_t> of(std::uint32_t system) const {
-    return {members.data() + first[system], members.data() + first[system + 1]};
+  [[nodiscard]] std::span<const std::uint32_t> of(std::size_t row) const {
+    return {triangles.data() + first[row], triangles.data() + first[row + 1]};
   }
 };
 
-/// The systems of a cluster that has to be divided.
+/// Of a cluster that has to be divided: triangles without a host, each followed by its satellites.
 using Systems = std::vector<std::vector<std::uint32_t>>;
 
-/// Systems by cluster, in flat rows, ascending.
-struct PartRows {
-  std::vector<std::uint32_t> first;  ///< of a cluster, into systems; cluster count + 1
-  std::vector<std::uint32_t> systems;
-};
-
-SystemRows rows_of_systems(const std::vector<std::uint32_t>& core, const std::vector<std::uint32_t>& place,
-                           const Hosts& hosts) {
-  SystemRows rows;
-  rows.first.assign(core.size() + 1, 0);
-  for (std::uint32_t t = 0; t < hosts.size(); ++t) ++rows.first[place[hosts[t] == kNoId ? t : hosts[t]] + 1];
-  for (std::size_t i = 0; i < core.size(); ++i) rows.first[i + 1] += rows.first[i];
-  rows.members.resize(hosts.size());
+/// Those clusters that have satellites.
+PartRows rows_with_satellites(const Clustering& clustering, const Hosts& hosts) {
+  std::vector<std::uint32_t> row(clustering.count, kNoId);
+  for (std::size_t t = 0; t < hosts.size(); ++t) {
+    if (hosts[t] != kNoId) row[clustering.label[t]] = 0;
+  }
+  PartRows rows;
+  for (std::uint32_t part = 0; part < clustering.count; ++part) {
+    if (row[part] == kNoId) continue;
+    row[part] = static_cast<std::uint32_t>(rows.parts.size());
+    rows.parts.push_back(part);
+  }
+  rows.first.assign(rows.parts.size() + 1, 0);
+  for (const std::uint32_t label : clustering.label) {
+    if (row[label] != kNoId) ++rows.first[row[label] + 1];
+  }
+  for (std::size_t i = 0; i < rows.parts.size(); ++i) rows.first[i + 1] += rows.first[i];
+  rows.triangles.resize(rows.first.back());
   std::vector<std::uint32_t> cursor(rows.first.begin(), rows.first.end() - 1);
-  for (std::size_t i = 0; i < core.size(); ++i) rows.members[cursor[i]++] = core[i];
   for (std::uint32_t t = 0; t < hosts.size(); ++t) {
-    if (hosts[t] != kNoId) rows.members[cursor[place[hosts[t]]]++] = t;
+    if (const std::uint32_t at = row[clustering.label[t]]; at != kNoId) rows.triangles[cursor[at]++] = t;
   }
   return rows;
 }
 
-PartRows rows_of_parts(const Clustering& clustering) {
-  PartRows rows;
-  rows.first.assign(clustering.count + 1, 0);
-  for (const std::uint32_t label : clustering.label) ++rows.first[label + 1];
-  for (std::uint32_t part = 0; part < clustering.count; ++part) rows.first[part + 1] += rows.first[part];
-  rows.systems.resize(clustering.label.size());
-  std::vector<std::uint32_t> cursor(rows.first.begin(), rows.first.end() - 1);
-  for (std::uint32_t i = 0; i < clustering.label.size(); ++i) rows.systems[cursor[clustering.label[i]]++] = i;
-  return rows;
-}
-
-Systems systems_of(const SystemRows& rows, const PartRows& parts, std::uint32_t part) {
+Systems systems_of(std::span<const std::uint32_t> triangles, const Hosts& hosts) {
   Systems systems;
-  for (std::uint32_t i = parts.first[part]; i < parts.first[part + 1]; ++i) {
-    const std::span<const std::uint32_t> members = rows.of(parts.systems[i]);
-    systems.emplace_back(members.begin(), members.end());
+  for (const std::uint32_t t : triangles) {
+    if (hosts[t] == kNoId) systems.push_back({t});
+  }
+  for (const std::uint32_t t : triangles) {
+    if (hosts[t] == kNoId) continue;
+    const auto own = std::lower_bound(systems.begin(), systems.end(), hosts[t],
+                                      [](const auto& system, std::uint32_t host) { return system[0] < host; });
+    own->push_back(t);
   }
   return systems;
 }
@@ -131,14 +130,22 @@ struct Surface {
   std::span<const std::uint32_t> wedge_position;
 };
 
-/// Labels of all triangles: clusters keep their numbers, and what has to be cut off gets those that follow.
-Clustering divide_too_large(const SystemRows& rows, const PartRows& parts, const Surface& surface,
-                            const ClusterCaps& caps) {
-  Clustering clustering;
-  clustering.count = static_cast<std::uint32_t>(parts.first.size() - 1);
-  clustering.label.resize(surface.triangles.size());
+/// Clusters keep their numbers, and what has to be cut off gets those that follow. Those without satellites are within
+/// their caps.
+void divide_too_large(const Surface& surface, const Hosts& hosts, const ClusterCaps& caps, Clustering& clustering) {
+  const PartRows rows = rows_with_satellites(clustering, hosts);
+  std::vector<std::uint8_t> is_large(rows.parts.size(), 0);  // they are few: found side by side, divided in order
+  parallel_for_each_chunk(is_large.size(), kChunkOfClusters, [&](std::size_t, std::size_t begin, std::size_t end) {
+    LocalIds wedges(2 * std::size_t{caps.max_vertices});
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::span<const std::uint32_t> members = rows.of(i);
+      const auto for_each_triangle = [&](auto&& visit) { std::for_each(members.begin(), members.end(), visit); };
+      is_large[i] = is_too_large(surface.triangles, caps, wedges, for_each_triangle) ? 1 : 0;
+    }
+  });
   LocalIds wedges(2 * std::size_t{caps.max_vertices});
-  std::vector<Systems> cut_off;  // their numbers follow those of `parts`
+  std::vector<Systems> cut_off;  // their numbers follow those that were there
+  const std::uint32_t before = clustering.count;
   const auto settle = [&](std::uint32_t part, Systems systems) {
     const auto for_each_triangle = [&](auto&& visit) {
       for (const auto& system : systems) std::for_each(system.begin(), system.end(), visit);
@@ -151,29 +158,13 @@ Clustering divide_too_large(const SystemRows& rows, const PartRows& parts, const
     }
     for_each_triangle([&](std::uint32_t t) { clustering.label[t] = part; });
   };
-  const std::uint32_t before = clustering.count;
-  std::vector<std::uint8_t> is_large(before, 0);  // they are few: found side by side, divided in order
-  parallel_for_each_chunk(before, kChunkOfClusters, [&](std::size_t, std::size_t begin, std::size_t end) {
-    LocalIds own_wedges(2 * std::size_t{caps.max_vertices});
-    for (auto part = static_cast<std::uint32_t>(begin); part < end; ++part) {
-      const auto for_each_triangle = [&](auto&& visit) {
-        for (std::uint32_t i = parts.first[part]; i < parts.first[part + 1]; ++i) {
-          const std::span<const std::uint32_t> members = rows.of(parts.systems[i]);
-          std::for_each(members.begin(), members.end(), visit);
-        }
-      };
-      is_large[part] = is_too_large(surface.triangles, caps, own_wedges, for_each_triangle) ? 1 : 0;
-      if (is_large[part] == 0) for_each_triangle([&](std::uint32_t t) { clustering.label[t] = part; });
-    }
-  });
-  for (std::uint32_t part = 0; part < before; ++part) {
-    if (is_large[part] != 0) settle(part, systems_of(rows, parts, part));
+  for (std::size_t i = 0; i < is_large.size(); ++i) {
+    if (is_large[i] != 0) settle(rows.parts[i], systems_of(rows.of(i), hosts));
   }
   for (std::uint32_t part = before; part < clustering.count; ++part) {
     Systems systems = std::move(cut_off[part - before]);
     settle(part, std::move(systems));
   }
-  return clustering;
 }
 
 }  // namespace
@@ -247,20 +238,27 @@ Clustering cluster_with_satellites(std::span<const WedgeTriangle> triangles,
   if (std::all_of(hosts.begin(), hosts.end(), [](std::uint32_t host) { return host == kNoId; })) {
     return cluster(triangles, std::vector<std::int32_t>(triangles.size(), 1));
   }
-  std::vector<std::uint32_t> core;  // ids of triangles without a host
-  std::vector<std::uint32_t> place(triangles.size(), kNoId);
-  std::vector<WedgeTriangle> core_triangles;
+  std::vector<std::uint32_t> place(triangles.size(), kNoId);  // among those without a host
+  std::vector<WedgeTriangle> core;
+  core.reserve(triangles.size());
   for (std::uint32_t t = 0; t < triangles.size(); ++t) {
     if (hosts[t] != kNoId) continue;
     place[t] = static_cast<std::uint32_t>(core.size());
-    core.push_back(t);
-    core_triangles.push_back(triangles[t]);
+    core.push_back(triangles[t]);
   }
-  const SystemRows rows = rows_of_systems(core, place, hosts);
-  std::vector<std::int32_t> weights(core.size());
-  for (std::uint32_t i = 0; i < core.size(); ++i) weights[i] = static_cast<std::int32_t>(rows.of(i).size());
-  const Clustering of_core = cluster(core_triangles, weights);
-  return divide_too_large(rows, rows_of_parts(of_core), {triangles, wedge_position}, caps);
+  std::vector<std::int32_t> weights(core.size(), 1);
+  for (const std::uint32_t host : hosts) {
+    if (host != kNoId) ++weights[place[host]];
+  }
+  const Clustering of_core = cluster(core, weights);
+  Clustering clustering;
+  clustering.count = of_core.count;
+  clustering.label.resize(triangles.size());
+  parallel_for_each_index(triangles.size(), kLoopGrain, [&](std::size_t t) {
+    clustering.label[t] = of_core.label[place[hosts[t] == kNoId ? static_cast<std::uint32_t>(t) : hosts[t]]];
+  });
+  divide_too_large({triangles, wedge_position}, hosts, caps, clustering);
+  return clustering;
 }
 
 }  // namespace meshlode::build
