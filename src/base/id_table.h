@@ -58,6 +58,11 @@ class IdTable {
     return kNone;
   }
 
+  /// Tells the processor that the slot of this hash will be asked for soon: tables are larger than its caches.
+  void prefetch(std::uint64_t hash) const {
+    if (!slots_.empty()) __builtin_prefetch(&slots_[first_slot(hash, slots_.size())]);
+  }
+
   /// All of 0 … count - 1 into an empty table, in any order and on any thread: `for_each(count, insert)` calls
   /// insert(id) once for each. Who comes first takes the nearer slot, which no later call can tell. `hash_of` gives the
   /// hash of an id. \pre their keys are distinct

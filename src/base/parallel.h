@@ -9,6 +9,7 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
 #include <tbb/task_arena.h>
 
 namespace meshlode {
@@ -42,6 +43,19 @@ void parallel_for_each_chunk(std::size_t count, std::size_t length, const Body& 
   parallel_for_each_index(chunk_count(count, length), 1, [&](std::size_t chunk) {
     body(chunk, chunk * length, std::min(count, (chunk + 1) * length));
   });
+}
+
+/// Calls all of them, side by side; none may write to what another sees. For few long turns, which may use these loops
+/// themselves.
+template <class... Turns>
+void parallel_all(const Turns&... turns) {
+  tbb::parallel_invoke(turns...);
+}
+
+/// Gives each array its size, side by side: memory is cleared, and new to the process, by whoever touches it first.
+template <class... Arrays>
+void resize_all(std::size_t size, Arrays&... arrays) {
+  parallel_all([size, &arrays] { arrays.resize(size); }...);
 }
 
 /// Calls body(i) once for each i in [0, count), begun in order, at most `at_once` of them at a time. For few and long

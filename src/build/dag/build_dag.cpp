@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -285,6 +286,7 @@ bool run_round(BuildPool& pool, const PreparedMesh& mesh, const GroupMeter& mete
     any_accepted = any_accepted || std::any_of(attempts.begin(), attempts.end(),
                                                [](const Attempt& attempt) { return attempt.is_accepted; });
     advance(pool, meter, front, std::span(groups).subspan(first, attempts.size()), attempts, next);
+    parallel_for_each_index(attempts.size(), 1, [&](std::size_t i) { attempts[i] = {}; });
   }
   pool.end_round();
   front = std::move(next);
@@ -301,9 +303,12 @@ std::uint32_t groups_aim_at(const Effort& effort, const GroupOptions& asked) {
 /// Error: cancelled.
 Result<BuildPool> coarsen(PreparedMesh& mesh, const DagOptions& options) {
   if (options.error == ErrorSource::kQuadric) release(mesh.exact_positions, mesh.exact_triangles);
-  const Clustering level0 = cluster_triangles(mesh.triangles, mesh.wedge_position, mesh.positions, options.caps);
+  Clustering level0;
+  std::optional<GroupMeter> made_meter;
+  parallel_all([&] { level0 = cluster_triangles(mesh.triangles, mesh.wedge_position, mesh.positions, options.caps); },
+               [&] { made_meter.emplace(mesh, options.error); });
+  const GroupMeter& meter = *made_meter;
   BuildPool pool(mesh, halved_levels(mesh));
-  const GroupMeter meter(mesh, options.error);
   pool.add_clusters(mesh.triangles, mesh.triangle_material, meter.level0(pool), level0, 0, GroupId());
   release(mesh.triangles, mesh.triangle_material);
   Front front = level0_of(pool);

@@ -27,6 +27,12 @@ constexpr auto kForEachId = [](std::uint32_t count, const auto& visit) {
   parallel_for_each_index(count, kLoopGrain, [&](std::size_t id) { visit(static_cast<std::uint32_t>(id)); });
 };
 
+/// What is looked up is fetched so many turns before.
+constexpr std::size_t kAhead = 12;
+
+/// Those of a whole level 0 are dealt out side by side.
+constexpr std::size_t kManySamples = 65536;
+
 constexpr WitnessIds kNoWitnesses{kNoId, kNoId, kNoId};
 
 WitnessIds ids_of(const Witnesses& witnesses) {
@@ -151,12 +157,25 @@ void BuildPool::fill_samples(std::span<const CarriedSample> samples, const Clust
     ++count.samples;
     if (sample.vertex == kNoId) ++count.loose;
   }
-  for (std::uint32_t c = 0; c < clustering.count; ++c) {
+  parallel_for_each_index(clustering.count, 256, [&](std::size_t c) {
     clusters[first_cluster + c].samples.reserve(counts[c].samples, counts[c].loose);
-  }
-  for (const CarriedSample& sample : samples) {
+  });
+  const auto add = [&](const CarriedSample& sample) {
     clusters[first_cluster + clustering.label[sample.triangle]].samples.add(sample);
+  };
+  if (samples.size() < kManySamples) {
+    std::for_each(samples.begin(), samples.end(), add);
+    return;
   }
+  // Cluster by cluster, side by side.
+  std::vector<std::uint32_t> end(clustering.count, 0), order(samples.size());
+  for (std::uint32_t c = 1; c < clustering.count; ++c) {
+    end[c] = end[c - 1] + static_cast<std::uint32_t>(counts[c - 1].samples);
+  }
+  for (std::uint32_t i = 0; i < samples.size(); ++i) order[end[clustering.label[samples[i].triangle]]++] = i;
+  parallel_for_each_index(clustering.count, 64, [&](std::size_t c) {
+    for (std::uint32_t i = c == 0 ? 0 : end[c - 1]; i < end[c]; ++i) add(samples[order[i]]);
+  });
 }
 
 void BuildPool::fill_clusters(std::span<const WedgeTriangle> source, std::span<const std::uint32_t> wedges,
@@ -190,10 +209,12 @@ BuildPool::Ids BuildPool::find_known(const SimplifyResult& result) const {
   Ids ids;
   ids.positions.resize(result.positions.size());
   for (std::size_t p = 0; p < ids.positions.size(); ++p) {
+    if (p + kAhead < ids.positions.size()) position_table_.prefetch(hash_position(result.positions[p + kAhead]));
     ids.positions[p] = find_position(result.positions[p]);
   }
   ids.wedges.resize(result.wedge_position.size());
   for (std::size_t w = 0; w < ids.wedges.size(); ++w) {
+    if (w + kAhead < ids.wedges.size()) prefetch_wedge(result, ids, w + kAhead);
     const std::uint32_t position = ids.positions[result.wedge_position[w]];
     const float* const attributes = result.wedge_attributes.data() + w * stride_;
     ids.wedges[w] =
@@ -226,12 +247,20 @@ Witnesses BuildPool::witnesses_at(std::uint32_t position) const {
   return out;
 }
 
+void BuildPool::prefetch_wedge(const SimplifyResult& result, const Ids& ids, std::size_t wedge) const {
+  const std::uint32_t position = ids.positions[result.wedge_position[wedge]];
+  if (position != kNoId) wedge_table_.prefetch(hash_wedge(position, result.wedge_attributes.data() + wedge * stride_));
+}
+
 void BuildPool::insert_new(const SimplifyResult& result, Ids& ids) {
   for (std::size_t p = 0; p < ids.positions.size(); ++p) {
+    if (p + kAhead < ids.positions.size() && ids.positions[p + kAhead] == kNoId)
+      position_table_.prefetch(hash_position(result.positions[p + kAhead]));
     if (ids.positions[p] == kNoId) ids.positions[p] = position_id(result.positions[p]);
     if (has_witnesses_) add_witnesses(ids.positions[p], ids_of(result.witnesses[p]));
   }
   for (std::size_t w = 0; w < ids.wedges.size(); ++w) {
+    if (w + kAhead < ids.wedges.size() && ids.wedges[w + kAhead] == kNoId) prefetch_wedge(result, ids, w + kAhead);
     if (ids.wedges[w] != kNoId) continue;
     ids.wedges[w] = wedge_id(ids.positions[result.wedge_position[w]], result.wedge_attributes.data() + w * stride_);
   }

@@ -121,6 +121,7 @@ class BuildPool {
   };
   [[nodiscard]] Ids find_known(const SimplifyResult& result) const;
   void insert_new(const SimplifyResult& result, Ids& ids);
+  void prefetch_wedge(const SimplifyResult& result, const Ids& ids, std::size_t wedge) const;
   void add_witnesses(std::uint32_t position, const WitnessIds& more);
   /// Makes room for clusters; returns where the triangles of each go.
   std::vector<std::uint32_t> add_ranges(const Clustering& clustering, std::uint32_t level, GroupId own_group);

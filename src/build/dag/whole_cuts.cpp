@@ -48,6 +48,8 @@ constexpr int kSteps = 7, kTries = 12;
 /// where that is more than the mesh has.
 constexpr std::size_t kCutShare = 8;
 constexpr std::size_t kFewTriangles = 250000;
+/// Cuts of so few triangles are put into trees side by side.
+constexpr std::size_t kTrianglesAtOnce = 65536;
 /// What a flat surface may be off by, as a share of the mesh: the arithmetic of doubles.
 constexpr double kNoise = 1e-12;
 /// A raised group leaves the cut that it was found in, and what takes its place is looked at again.
@@ -61,17 +63,32 @@ struct Surface {
   std::vector<Triangle> triangles;
   std::vector<std::uint32_t> cluster;  ///< per triangle, of LodDag::clusters
 
-  void add(const PreparedMesh& mesh, const LodDag& dag, std::uint32_t id) {
-    const DagCluster& source = dag.clusters[id];
-    const auto base = static_cast<std::uint32_t>(positions.size());
-    for (std::uint32_t v = 0; v < source.vertex_count; ++v) {
-      positions.push_back(mesh.grid.decode(dag.vertex_position[source.first_vertex + v]));
+  Surface() = default;
+  Surface(const PreparedMesh& mesh, const LodDag& dag, std::span<const std::uint32_t> clusters) {
+    struct Start {
+      std::size_t vertex = 0, triangle = 0;
+    };
+    std::vector<Start> start{{}};
+    start.reserve(clusters.size() + 1);
+    for (const std::uint32_t id : clusters) {
+      const DagCluster& source = dag.clusters[id];
+      start.push_back({start.back().vertex + source.vertex_count, start.back().triangle + source.triangle_count});
     }
-    for (std::uint32_t t = 0; t < source.triangle_count; ++t) {
-      const auto& local = dag.triangles[source.first_triangle + t];
-      triangles.push_back({base + local[0], base + local[1], base + local[2]});
-      cluster.push_back(id);
-    }
+    positions.resize(start.back().vertex);
+    triangles.resize(start.back().triangle);
+    cluster.resize(start.back().triangle);
+    parallel_for_each_index(clusters.size(), kLoopGrain / 128, [&](std::size_t i) {
+      const DagCluster& source = dag.clusters[clusters[i]];
+      const auto base = static_cast<std::uint32_t>(start[i].vertex);
+      for (std::uint32_t v = 0; v < source.vertex_count; ++v) {
+        positions[base + v] = mesh.grid.decode(dag.vertex_position[source.first_vertex + v]);
+      }
+      for (std::uint32_t t = 0; t < source.triangle_count; ++t) {
+        const auto& local = dag.triangles[source.first_triangle + t];
+        triangles[start[i].triangle + t] = {base + local[0], base + local[1], base + local[2]};
+        cluster[start[i].triangle + t] = clusters[i];
+      }
+    });
   }
 };
 
@@ -239,22 +256,24 @@ class WholeCuts {
     std::vector<double> raised(dag_.groups.size(), 0.0);
     const double noise = kNoise * mesh_.diagonal;
     std::size_t triangles = 0;
-    for (std::size_t k = 0; k < errors.size(); k = next(k)) {
-      const std::vector<std::uint32_t> clusters = cut_at(errors[k]);
-      for (const std::uint32_t c : clusters) triangles += dag_.clusters[c].triangle_count;
-      if (k > 0 && triangles > std::max(mesh_.exact_triangles.size(), kFewTriangles)) break;
-      const std::uint64_t hash = hash_of(errors[k], clusters);
-      if (std::find(true_cuts_.begin(), true_cuts_.end(), hash) != true_cuts_.end()) continue;
-      const Surface cut = surface_of(clusters);
-      bool is_true = true;
-      for (const FarPoint& far : find_far_points(cut, errors[k])) {
-        if (far.distance <= std::max(error_of(far.nearest), noise)) continue;
-        const GroupId group = group_of(far.at, errors[k]);
-        if (!group.is_valid() || far.distance <= dag_.groups[group.value].error) continue;
-        raised[group.value] = std::max(raised[group.value], far.distance);
-        is_true = false;
+    bool is_enough = false;
+    for (std::size_t k = 0; k < errors.size() && !is_enough;) {
+      std::vector<Cut> cuts;
+      std::size_t at_once = 0;
+      for (; k < errors.size() && at_once < kTrianglesAtOnce; k = next(k)) {
+        Cut cut = cut_at(errors[k]);
+        for (const std::uint32_t c : cut.clusters) cut.triangles += dag_.clusters[c].triangle_count;
+        triangles += cut.triangles;
+        is_enough = k > 0 && triangles > std::max(mesh_.exact_triangles.size(), kFewTriangles);
+        if (is_enough) break;
+        if (std::find(true_cuts_.begin(), true_cuts_.end(), hash_of(cut)) != true_cuts_.end()) continue;
+        at_once += cut.triangles;
+        cuts.push_back(std::move(cut));
       }
-      if (is_true) true_cuts_.push_back(hash);
+      parallel_for_each_index(cuts.size(), 1, [&](std::size_t i) { make_surface(cuts[i]); });
+      for (const Cut& cut : cuts) {
+        if (is_true(cut, noise, raised)) true_cuts_.push_back(hash_of(cut));
+      }
     }
     return raise(raised);
   }
@@ -264,26 +283,47 @@ class WholeCuts {
 
   [[nodiscard]] double error_of(GroupId group) const { return group.is_valid() ? dag_.groups[group.value].error : 0.0; }
 
-  /// Its clusters, ascending.
-  [[nodiscard]] std::vector<std::uint32_t> cut_at(double threshold) const {
-    std::vector<std::uint32_t> clusters;
+  struct Cut {
+    double threshold = 0.0;
+    std::vector<std::uint32_t> clusters;  ///< ascending
+    std::size_t triangles = 0;
+    Surface surface;
+    SurfaceTree tree;  ///< over it
+  };
+
+  /// The cut's clusters; no surface yet.
+  [[nodiscard]] Cut cut_at(double threshold) const {
+    Cut cut;
+    cut.threshold = threshold;
     for (std::uint32_t c = 0; c < dag_.clusters.size(); ++c) {
       const DagCluster& cluster = dag_.clusters[c];
       if (error_of(cluster.own_group) <= threshold && error_of(cluster.coarser_group) > threshold)
-        clusters.push_back(c);
+        cut.clusters.push_back(c);
     }
-    return clusters;
+    return cut;
   }
-  [[nodiscard]] Surface surface_of(const std::vector<std::uint32_t>& clusters) const {
-    Surface surface;
-    for (const std::uint32_t c : clusters) surface.add(mesh_, dag_, c);
-    return surface;
+  void make_surface(Cut& cut) const {
+    cut.surface = {mesh_, dag_, cut.clusters};
+    cut.tree.build({cut.surface.positions, cut.surface.triangles});
   }
 
-  static std::uint64_t hash_of(double threshold, const std::vector<std::uint32_t>& clusters) {
-    std::uint64_t hash = hash_word(0, std::bit_cast<std::uint64_t>(threshold));
-    for (const std::uint32_t c : clusters) hash = hash_word(hash, c);
+  static std::uint64_t hash_of(const Cut& cut) {
+    std::uint64_t hash = hash_word(0, std::bit_cast<std::uint64_t>(cut.threshold));
+    for (const std::uint32_t c : cut.clusters) hash = hash_word(hash, c);
     return hash;
+  }
+
+  /// Whether no point is farther from the cut than the errors of its groups say. `raised`, by group, gets what is.
+  bool is_true(const Cut& cut, double noise, std::vector<double>& raised) {
+    bool is_true = true;
+    for (const FarPoint& far : find_far_points(cut.surface, cut.tree, cut.threshold)) {
+      if (far.distance <= std::max(error_of(far.nearest), noise)) continue;
+      const GroupId group = group_of(far.at, cut.threshold);
+      if (!group.is_valid() || far.distance <= dag_.groups[group.value].error) continue;
+      raised[group.value] = std::max(raised[group.value], far.distance);
+      is_true = false;
+    }
+    return is_true;
   }
 
   /// Where a point is farther from a cut than `enough`, squared and in the tree's frame, its nearest triangle; else one
@@ -312,9 +352,7 @@ class WholeCuts {
   }
 
   /// The farthest points, each with the farthest that was found around it.
-  [[nodiscard]] std::vector<FarPoint> find_far_points(const Surface& cut, double threshold) {
-    SurfaceTree tree;
-    tree.build({cut.positions, cut.triangles});
+  [[nodiscard]] std::vector<FarPoint> find_far_points(const Surface& cut, const SurfaceTree& tree, double threshold) {
     std::vector<std::uint8_t> is_in_cut(dag_.clusters.size(), 0);
     for (const std::uint32_t c : cut.cluster) is_in_cut[c] = 1;
     const double enough_object = std::max(kLookFrom * threshold, mesh_.level0_deviation);
@@ -447,8 +485,7 @@ class WholeCuts {
   }
 
   [[nodiscard]] double distance2_to(std::uint32_t cluster, const Vec3d& point) const {
-    Surface one;
-    one.add(mesh_, dag_, cluster);
+    const Surface one(mesh_, dag_, {&cluster, 1});
     double least2 = std::numeric_limits<double>::infinity();
     for (const Triangle& t : one.triangles) {
       least2 = std::min(

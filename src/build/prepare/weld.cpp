@@ -106,11 +106,10 @@ VertexIds weld_vertices(const Corners& corners, const std::vector<Vec3i>& points
     for (std::size_t i = begin; i < end; ++i) add(before[chunk + 1], begins_at(i));
   });
   for (std::size_t chunk = 0; chunk + 1 < before.size(); ++chunk) add(before[chunk + 1], before[chunk]);
-  mesh.positions.resize(before.back().points);
-  mesh.wedge_position.resize(before.back().wedges);
-  mesh.wedge_attributes.resize(std::size_t{before.back().wedges} * stride);
-  mesh.exact_positions.resize(before.back().exacts);
-  ids.wedge_of_exact.resize(before.back().exacts);
+  const Begins all = before.back();
+  parallel_all([&] { mesh.positions.resize(all.points); }, [&] { mesh.wedge_position.resize(all.wedges); },
+               [&] { mesh.wedge_attributes.resize(std::size_t{all.wedges} * stride); },
+               [&] { resize_all(all.exacts, mesh.exact_positions, ids.wedge_of_exact); });
   parallel_for_each_chunk(order.size(), kLength, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
     Begins so_far = before[chunk];
     for (std::size_t i = begin; i < end; ++i) {
@@ -175,9 +174,7 @@ void weld(const Corners& corners, const std::vector<Vec3i>& points, const std::v
           PreparedMesh& mesh) {
   const VertexIds ids = weld_vertices(corners, points, is_used, mesh);
   const std::vector<CanonicalTriangle> triangles = weld_triangles(corners, ids.exact_of, mesh.dropped_duplicate);
-  mesh.triangles.resize(triangles.size());
-  mesh.exact_triangles.resize(triangles.size());
-  mesh.triangle_material.resize(triangles.size());
+  resize_all(triangles.size(), mesh.triangles, mesh.exact_triangles, mesh.triangle_material);
   std::vector<std::uint32_t> collapsed(chunk_count(triangles.size(), kLoopGrain), 0);
   parallel_for_each_chunk(triangles.size(), kLoopGrain, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
