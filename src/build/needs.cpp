@@ -8,6 +8,7 @@
 
 #include "base/byte_size.h"
 #include "base/memory.h"
+#include "build/deviation/deviation.h"
 #include "build/plan/count_wedges.h"
 
 namespace meshlode::build {
@@ -23,6 +24,7 @@ constexpr std::uint64_t kDocumentByte = 40;
 constexpr std::uint64_t kKeptTriangle = 30;
 constexpr std::uint64_t kTriangle = 10;
 constexpr std::uint64_t kTriangleOfCertified = 50;
+constexpr std::uint64_t kTriangleHeld = 36;       // in the leaves of the source's tree
 constexpr std::uint64_t kTrianglePromised = 550;  // both surfaces, their trees and the samples (src/build/promise)
 // Of an aggregate the ways to thin it out, and pictures of them in all views.
 constexpr std::uint64_t kAggregate = 12u << 20u;
@@ -107,7 +109,9 @@ MemoryEstimate estimate_memory(const scene::Scene& scene, const PipelineOptions&
     estimate.always += kKeptTriangle * counts.triangles;
     estimate.spilled += kUnspilledTriangle * counts.triangles;
     const std::uint64_t promised = options.promise == format::Promise::kPosition ? 0 : kTrianglePromised;
-    estimate.working.push_back(((is_certified ? kTriangleOfCertified : kTriangle) + promised) * counts.triangles +
+    const std::uint64_t held = is_measured && counts.triangles <= kMostHeldTriangles ? kTriangleHeld : 0;
+    estimate.working.push_back(((is_certified ? kTriangleOfCertified : kTriangle) + held + promised) *
+                                   counts.triangles +
                                (is_measured ? kPosition : kPositionOfQuadric) * count_wedges(mesh, {}) +
                                kVertexFloat * attribute_floats(mesh, own) * counts.vertices);
     const bool is_aggregate = i < aggregates.size() && aggregates[i].is_aggregate;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/parallel.h"
 #include "build/deviation/source_tree.h"
 
 namespace meshlode::build {
@@ -87,50 +88,98 @@ double upper_value(std::vector<UvError>& errors) {
   return 0.0;
 }
 
-}  // namespace
+/// A point of the group.
+struct Point {
+  std::uint32_t triangle;
+  Vec3d at;
+  Weights weights;
+  double area;  ///< twice the triangle's
+};
 
-AttributeDeviation measure_attributes(const SourceTree& source, const SurfaceAttributes& source_attributes,
-                                      const GroupSurface& group, const SurfaceAttributes& group_attributes,
-                                      const AttributeLayout& layout, std::span<const TreeSlot> near) {
-  const SurfaceTree& tree = source.impl().tree;
-  const std::size_t stride = layout.stride();
-  if ((!layout.has_normal && layout.uv_set_count == 0) || tree.size() == 0) return {};
+/// Three of each triangle, or every so many of all of them.
+std::vector<Point> choose_points(const GroupSurface& group) {
   constexpr std::array<Weights, 3> kPoints{
       {{2.0 / 3, 1.0 / 6, 1.0 / 6}, {1.0 / 6, 2.0 / 3, 1.0 / 6}, {1.0 / 6, 1.0 / 6, 2.0 / 3}}};
   const std::uint32_t step = group.triangles.size() > kFewTriangles ? kPointStep : 1;
-  double total = 0.0, normal2 = 0.0;
-  std::array<std::vector<UvError>, scene::kMaxUvSets> uv_errors;
-  TreeSlot place{0U};
-  std::size_t points = 0;
+  std::vector<Point> points;
+  points.reserve(3 * group.triangles.size() / step + 1);
+  std::size_t count = 0;
   for (std::uint32_t t = 0; t < group.triangles.size(); ++t) {
     const auto& ids = group.triangles[t];
     const TriangleCorners corners{group.positions[ids[0]], group.positions[ids[1]], group.positions[ids[2]]};
     const Vec3d cross = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
     const double area = std::sqrt(glm::dot(cross, cross));
     if (!(area > 0.0)) continue;
-    const Interpolator ours(group_attributes, stride, t);
     for (const Weights& w : kPoints) {
-      if (points++ % step != 0) continue;
-      total += area;
-      const Vec3d point = corners[0] * w.a + corners[1] * w.b + corners[2] * w.c;
-      const Vec3f at = tree.to_frame(point);
-      if (!near.empty()) place = near[t];
+      if (count++ % step == 0) points.push_back({t, corners[0] * w.a + corners[1] * w.b + corners[2] * w.c, w, area});
+    }
+  }
+  return points;
+}
+
+/// How far the attributes of a point are from those of the nearest one of the source.
+struct Drift {
+  double normal2 = 0.0;
+  std::array<double, scene::kMaxUvSets> uv{};
+  bool is_known = false;
+};
+
+/// The two surfaces and what they carry.
+struct Pair {
+  const SurfaceTree& source;
+  const SurfaceAttributes &source_attributes, &group_attributes;
+  const AttributeLayout& layout;
+
+  [[nodiscard]] Drift drift_of(const Point& point, TreeSlot nearest) const {
+    Drift drift;
+    drift.is_known = true;
+    const Interpolator ours(group_attributes, layout.stride(), point.triangle);
+    const Interpolator theirs(source_attributes, layout.stride(), source.triangle_at(nearest));
+    const Weights there = weights_of(point.at, source.corners_at(nearest));
+    if (layout.has_normal) {
+      const Vec3d off = ours.normal(point.weights) - theirs.normal(there);
+      drift.normal2 = glm::dot(off, off);
+    }
+    for (std::size_t s = 0; s < layout.uv_set_count; ++s) {
+      const std::size_t j = layout.uv_offset() + 2 * s;
+      const double u = ours.value(j, point.weights) - theirs.value(j, there);
+      const double v = ours.value(j + 1, point.weights) - theirs.value(j + 1, there);
+      drift.uv[s] = std::sqrt(u * u + v * v);
+    }
+    return drift;
+  }
+};
+
+}  // namespace
+
+AttributeDeviation measure_attributes(const SourceTree& source, const SurfaceAttributes& source_attributes,
+                                      const GroupSurface& group, const SurfaceAttributes& group_attributes,
+                                      const AttributeLayout& layout, std::span<const TreeSlot> near) {
+  const SurfaceTree& tree = source.impl().tree;
+  if ((!layout.has_normal && layout.uv_set_count == 0) || tree.size() == 0) return {};
+  const std::vector<Point> points = choose_points(group);
+  const Pair pair{tree, source_attributes, group_attributes, layout};
+  std::vector<Drift> drifts(points.size());
+  // Side by side where each point knows its place; else one leads to the next.
+  const std::size_t chunk = near.empty() ? std::max<std::size_t>(1, points.size()) : 64;
+  parallel_for_each_chunk(points.size(), chunk, [&](std::size_t, std::size_t begin, std::size_t end) {
+    TreeSlot place{0U};
+    for (std::size_t i = begin; i < end; ++i) {
+      if (!near.empty()) place = near[points[i].triangle];
+      const Vec3f at = tree.to_frame(points[i].at);
       const SurfaceTree::Hit hit = tree.find_nearest(at, tree.look_around(at, place, {}), 0.0F);
       if (!hit.slot.is_valid()) continue;
       place = hit.slot;
-      const Interpolator theirs(source_attributes, stride, tree.triangle_at(place));
-      const Weights there = weights_of(point, tree.corners_at(place));
-      if (layout.has_normal) {
-        const Vec3d off = ours.normal(w) - theirs.normal(there);
-        normal2 += area * glm::dot(off, off);
-      }
-      for (std::size_t s = 0; s < layout.uv_set_count; ++s) {
-        const std::size_t j = layout.uv_offset() + 2 * s;
-        const double u = ours.value(j, w) - theirs.value(j, there);
-        const double v = ours.value(j + 1, w) - theirs.value(j + 1, there);
-        uv_errors[s].push_back({std::sqrt(u * u + v * v), area});
-      }
+      drifts[i] = pair.drift_of(points[i], place);
     }
+  });
+  double total = 0.0, normal2 = 0.0;
+  std::array<std::vector<UvError>, scene::kMaxUvSets> uv_errors;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    total += points[i].area;
+    if (!drifts[i].is_known) continue;
+    normal2 += points[i].area * drifts[i].normal2;
+    for (std::size_t s = 0; s < layout.uv_set_count; ++s) uv_errors[s].push_back({drifts[i].uv[s], points[i].area});
   }
   if (!(total > 0.0)) return {};
   AttributeDeviation result;

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -17,6 +18,10 @@
 #include "build/deviation/tree_slot.h"
 
 namespace meshlode::build {
+
+/// Of a source of at most so many triangles the tree's leaves are held, 36 bytes a triangle; of a larger one they are
+/// made whenever they are looked at.
+inline constexpr std::size_t kMostHeldTriangles = 1048576;
 
 /// The source's surface before the grid, relative to the mesh's origin, in object units. Built once per mesh; queries
 /// are const and may run side by side. Deterministic: same bits for any thread count, compiler and processor (I10).

@@ -4,6 +4,8 @@
 // among them.
 #pragma once
 
+#include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 
@@ -66,6 +68,30 @@ inline void store_lanes(Lanes value, float* to) {
   std::uint64_t halves[2];
   std::memcpy(halves, &mask, sizeof(mask));
   return (halves[0] | halves[1]) != 0;
+}
+
+/// How many of the lanes are set.
+[[nodiscard]] inline std::size_t count_lanes(LaneMask mask) {
+  std::uint64_t halves[2];
+  std::memcpy(halves, &mask, sizeof(mask));
+  return (halves[0] & 1U) + (halves[0] >> 63U) + (halves[1] & 1U) + (halves[1] >> 63U);
+}
+/// The first lane that is set. \pre one is
+[[nodiscard]] inline std::uint32_t first_lane(LaneMask mask) {
+  std::uint64_t halves[2];
+  std::memcpy(halves, &mask, sizeof(mask));
+  const std::uint64_t bits = (halves[0] & 1U) | (halves[0] >> 63U) << 1U | (halves[1] & 1U) << 2U | 8U;
+  return static_cast<std::uint32_t>(std::countr_zero(bits));
+}
+/// The lanes one, two or three places on.
+template <int Places, class Vector>
+[[nodiscard]] inline Vector rotate_lanes(Vector vector) {
+  return __builtin_shufflevector(vector, vector, Places, (Places + 1) % 4, (Places + 2) % 4, (Places + 3) % 4);
+}
+/// The least of all, in every lane.
+[[nodiscard]] inline Lanes least_lane(Lanes a) {
+  const Lanes two = min_lanes(a, rotate_lanes<1>(a));
+  return min_lanes(two, rotate_lanes<2>(two));
 }
 
 }  // namespace meshlode::build

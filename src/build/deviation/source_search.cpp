@@ -35,6 +35,10 @@ constexpr std::size_t kRefineBudget = 48;
 constexpr double kLargeShare = 0.25;
 // Of a part of the source that is searched from above, to be compared with dividing a triangle.
 constexpr std::size_t kPointsPerPart = 4;
+// A source of so many triangles is large against those of a group that is all of its mesh: discs around samples hold
+// thousands of its vertices each, where from above some ten thousand points are enough to know the maximum.
+constexpr std::size_t kManyTriangles = 262144;
+constexpr std::size_t kPointsOfMany = 24000;
 // What cannot raise the maximum by more than this is left alone.
 constexpr double kWorthwhile = 1.002;
 
@@ -97,8 +101,9 @@ class SourceSearch {
 
   /// All of the source, from above: whatever a ball around a part of it says cannot be farther than the maximum is left
   /// alone, and what may be farthest comes first. About `budget` points are measured. Complete where the deviation is
-  /// large against the source's triangles; where it is small the samples are dense against the group's.
-  void search_everywhere(std::size_t budget, std::vector<CarriedSample>& found) {
+  /// large against the source's triangles; where it is small the samples are dense against the group's. \returns
+  /// whether nothing is left that may be farther, but for the insides of triangles, which are refine()'s.
+  bool search_everywhere(std::size_t budget, std::vector<CarriedSample>& found) {
     struct Part {
       double bound;
       std::uint32_t level, index;
@@ -113,11 +118,11 @@ class SourceSearch {
     std::vector<Part> heap{{std::numeric_limits<double>::infinity(), 0, 0, TreeSlot{0U}, 0}};
     std::uint32_t order = 0;
     std::size_t measured = 0;
-    while (measured < budget && !heap.empty()) {
+    const auto is_done = [&] { return heap.empty() || !(heap.front().bound > kWorthwhile * maximum()); };
+    while (measured < budget && !is_done()) {
       std::pop_heap(heap.begin(), heap.end());
       const Part part = heap.back();
       heap.pop_back();
-      if (!(part.bound > kWorthwhile * maximum())) break;
       if (part.level == tree.depth()) {
         for (std::uint32_t slot = 4 * part.index; slot < std::min(4 * part.index + 4, tree.size()); ++slot) {
           measured += look_at(tree.triangle_at(TreeSlot(slot)), part.place);
@@ -140,6 +145,7 @@ class SourceSearch {
       }
     }
     if (maximum() > before) found.push_back(farthest_point_);
+    return is_done();
   }
 
   /// Large triangles of the source that were met: the maximum may lie between their corners.
@@ -393,13 +399,17 @@ Farthest search_source(const SourceTree::Impl& source, const GroupSurface& group
       }
     }
   };
-  search_around_all(choose_seeds(samples, kSeedShare * farthest.to_beat()), radius);
-  search_around_all(choose_seeds(high, kSeedShare * farthest.to_beat()), 0.5 * radius);
-  for (const Vec3d& point : choose_far_points(owner.finer(), is_folded, group_tree, kFarShare * search.maximum())) {
-    search.search_behind(point);
+  const bool is_known =
+      owner.is_whole() && source.triangles.size() >= kManyTriangles && search.search_everywhere(kPointsOfMany, found);
+  if (!is_known) {
+    search_around_all(choose_seeds(samples, kSeedShare * farthest.to_beat()), radius);
+    search_around_all(choose_seeds(high, kSeedShare * farthest.to_beat()), 0.5 * radius);
+    for (const Vec3d& point : choose_far_points(owner.finer(), is_folded, group_tree, kFarShare * search.maximum())) {
+      search.search_behind(point);
+    }
   }
   if (owner.is_whole()) {
-    search.search_everywhere(kPointsPerPart * budget, found);
+    if (!is_known) search.search_everywhere(kPointsPerPart * budget, found);
     search.refine({kRefineBudget + budget / 4, budget / 4}, found);
   } else {
     search.refine({kRefineBudget, 0}, found);

@@ -5,17 +5,15 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numeric>
 
 #include "base/id_table.h"
+#include "base/parallel.h"
 #include "base/release.h"
 
 namespace meshlode::build {
 
 namespace {
-
-// A source of at most so many triangles has its leaves held, 68 bytes a triangle: the constant part of measuring, the
-// same few thousand points for every mesh, asks small trees over and over.
-constexpr std::size_t kMostHeldTriangles = 65536;
 
 /// Where samples are set so that none of the source is far from one. Dense scans need their vertices only.
 struct Spacing {
@@ -33,17 +31,65 @@ struct Spacing {
 };
 
 Spacing choose_spacing(const SourceTree::Impl& source) {
-  double edges = 0.0, area = 0.0;
-  for (const auto& t : source.triangles) {
-    const Vec3d& a = source.positions[t[0]];
-    const Vec3d& b = source.positions[t[1]];
-    const Vec3d& c = source.positions[t[2]];
-    edges += glm::length(b - a) + glm::length(c - b) + glm::length(a - c);
-    area += 0.5 * glm::length(glm::cross(b - a, c - a));
+  constexpr std::size_t kChunk = 16384;
+  struct Sums {
+    double edges = 0.0, area = 0.0;
+  };
+  std::vector<Sums> partials(chunk_count(source.triangles.size(), kChunk));
+  parallel_for_each_chunk(source.triangles.size(), kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+    Sums sums;
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto [a, b, c] = source.corners(static_cast<std::uint32_t>(i));
+      sums.edges += glm::length(b - a) + glm::length(c - b) + glm::length(a - c);
+      sums.area += 0.5 * glm::length(glm::cross(b - a, c - a));
+    }
+    partials[chunk] = sums;
+  });
+  Sums all;
+  for (const Sums& sums : partials) {
+    all.edges += sums.edges;
+    all.area += sums.area;
   }
-  const double mean_edge = edges / (3.0 * static_cast<double>(source.triangles.size()));
+  const double mean_edge = all.edges / (3.0 * static_cast<double>(source.triangles.size()));
   constexpr double kLeastSamples = 10000.0;  // of a coarse mesh
-  return {std::min(2.0 * mean_edge, std::sqrt(area / kLeastSamples))};
+  return {std::min(2.0 * mean_edge, std::sqrt(all.area / kLeastSamples))};
+}
+
+/// Calls add(point, vertex) for the samples of one triangle; no vertex: kNoId. A vertex is one of the first triangle
+/// that has it.
+template <class Add>
+void for_each_sample(const SourceTree::Impl& source, const Spacing& spacing, std::uint32_t triangle, const Add& add) {
+  const std::array<std::uint32_t, 3> corners = source.vertices(triangle);
+  const TriangleCorners p = source.corners(triangle);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const bool is_again = std::find(corners.begin(), corners.begin() + k, corners[k]) != corners.begin() + k;
+    if (!is_again && source.triangles_around(corners[k]).front() == triangle) add(p[k], corners[k]);
+  }
+  std::array<double, 3> edge2{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3d edge = p[(k + 1) % 3] - p[k];
+    edge2[k] = glm::dot(edge, edge);
+  }
+  // Of a dense source nearly all: neither its edges nor its height, which is below the longest, are cut.
+  if (spacing.is_short(std::max(edge2[0], std::max(edge2[1], edge2[2])))) return;
+  for (std::size_t k = 0; k < 3; ++k) {
+    // From its lower end, so that the edges of a closed surface are cut once.
+    if (corners[k] > corners[(k + 1) % 3] || spacing.is_short(edge2[k])) continue;
+    const std::uint32_t parts = spacing.parts(glm::length(p[(k + 1) % 3] - p[k]));
+    for (std::uint32_t i = 1; i < parts; ++i)
+      add(p[k] + (p[(k + 1) % 3] - p[k]) * (static_cast<double>(i) / parts), kNoId);
+  }
+  // The inside: a lattice along the two shorter edges, where the height asks for one.
+  const double longest =
+      std::max(glm::length(p[1] - p[0]), std::max(glm::length(p[2] - p[1]), glm::length(p[0] - p[2])));
+  const double height = longest > 0.0 ? glm::length(glm::cross(p[1] - p[0], p[2] - p[0])) / longest : 0.0;
+  const std::uint32_t parts = height > spacing.length ? spacing.parts(longest) : 1;
+  for (std::uint32_t i = 1; i < parts; ++i) {
+    for (std::uint32_t j = 1; i + j < parts; ++j) {
+      const double u = static_cast<double>(i) / parts, v = static_cast<double>(j) / parts;
+      add(p[0] + (p[1] - p[0]) * u + (p[2] - p[0]) * v, kNoId);
+    }
+  }
 }
 
 /// Of each position the first one in the same place; nothing where no two are.
@@ -96,45 +142,28 @@ SourceTree& SourceTree::operator=(SourceTree&&) noexcept = default;
 
 std::vector<CarriedSample> initial_samples(const SourceTree& source) {
   const SourceTree::Impl& impl = source.impl();
-  std::vector<CarriedSample> samples;
-  if (impl.triangles.empty()) return samples;
+  if (impl.triangles.empty()) return {};
   const Spacing spacing = choose_spacing(impl);
-  std::vector<std::uint8_t> is_taken(impl.positions.size(), 0);
-  samples.reserve(impl.positions.size());
-  for (std::uint32_t t = 0; t < impl.triangles.size(); ++t) {
-    const std::array<std::uint32_t, 3> corners = impl.vertices(t);
-    const TriangleCorners p = impl.corners(t);
-    const auto add = [&](const Vec3d& point, std::uint32_t vertex = kNoId) {
-      samples.push_back({point, t, 0.0F, impl.place_of(t), vertex});
-    };
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (is_taken[corners[k]] == 0) add(p[k], corners[k]);
-      is_taken[corners[k]] = 1;
+  constexpr std::size_t kChunk = 4096;
+  std::vector<std::size_t> start(chunk_count(impl.triangles.size(), kChunk) + 1, 0);
+  parallel_for_each_chunk(impl.triangles.size(), kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+    std::size_t count = 0;
+    for (std::size_t t = begin; t < end; ++t) {
+      for_each_sample(impl, spacing, static_cast<std::uint32_t>(t), [&](const Vec3d&, std::uint32_t) { ++count; });
     }
-    std::array<double, 3> edge2{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3d edge = p[(k + 1) % 3] - p[k];
-      edge2[k] = glm::dot(edge, edge);
+    start[chunk + 1] = count;
+  });
+  std::partial_sum(start.begin(), start.end(), start.begin());
+  std::vector<CarriedSample> samples(start.back());
+  parallel_for_each_chunk(impl.triangles.size(), kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+    std::size_t next = start[chunk];
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto t = static_cast<std::uint32_t>(i);
+      for_each_sample(impl, spacing, t, [&](const Vec3d& point, std::uint32_t vertex) {
+        samples[next++] = {point, t, 0.0F, impl.place_of(t), vertex};
+      });
     }
-    // Of a dense source nearly all: neither its edges nor its height, which is below the longest, are cut.
-    if (spacing.is_short(std::max(edge2[0], std::max(edge2[1], edge2[2])))) continue;
-    for (std::size_t k = 0; k < 3; ++k) {
-      // From its lower end, so that the edges of a closed surface are cut once.
-      if (corners[k] > corners[(k + 1) % 3] || spacing.is_short(edge2[k])) continue;
-      const std::uint32_t parts = spacing.parts(glm::length(p[(k + 1) % 3] - p[k]));
-      for (std::uint32_t i = 1; i < parts; ++i) add(p[k] + (p[(k + 1) % 3] - p[k]) * (static_cast<double>(i) / parts));
-    }
-    // The inside: a lattice along the two shorter edges, where the height asks for one.
-    const double longest =
-        std::max(glm::length(p[1] - p[0]), std::max(glm::length(p[2] - p[1]), glm::length(p[0] - p[2])));
-    const double height = longest > 0.0 ? glm::length(glm::cross(p[1] - p[0], p[2] - p[0])) / longest : 0.0;
-    const std::uint32_t parts = height > spacing.length ? spacing.parts(longest) : 1;
-    for (std::uint32_t i = 1; i < parts; ++i) {
-      for (std::uint32_t j = 1; i + j < parts; ++j) {
-        add(p[0] + (p[1] - p[0]) * (static_cast<double>(i) / parts) + (p[2] - p[0]) * (static_cast<double>(j) / parts));
-      }
-    }
-  }
+  });
   return samples;
 }
 

@@ -340,11 +340,13 @@ SurfaceTree::Hit SurfaceTree::look_around(const std::array<Vec3f, 3>& points, Tr
 inline SurfaceTree::Hit SurfaceTree::test_triangles(const Vec3f& point, std::uint32_t index, const Leaf& leaf,
                                                     const LeafTerms& terms, Hit best) const {
   const Lanes distance2 = distances2_to(leaf, terms, {lanes(point.x), lanes(point.y), lanes(point.z)});
-  if (!any_lane(distance2 < lanes(best.distance2))) return best;
-  for (std::uint32_t k = 0; k < kLeafSize; ++k) {
-    if (distance2[k] < best.distance2) best = {TreeSlot(std::min(4 * index + k, size() - 1)), distance2[k]};
-  }
-  return best;
+  // The first of those that are nearest, if it is nearer: a toss, so no branch.
+  const Lanes known = lanes(best.distance2);
+  const Lanes d = choose(distance2 < known, distance2, known);  // of a NaN too
+  const Lanes least = least_lane(d);
+  const std::uint32_t slot = std::min(4 * index + first_lane(d == least), size() - 1);
+  const bool is_nearer = least[0] < best.distance2;
+  return {TreeSlot(is_nearer ? slot : best.slot.value), least[0]};
 }
 
 namespace {
@@ -377,30 +379,27 @@ Lanes distances2_to_boxes(const Node& node, const PointLanes& p) {
   return dx * dx + dy * dy + dz * dz;
 }
 
-/// Puts the children that are nearer than `limit` onto the stack. Non-negative floats order like their bits: the
-/// child's number goes into the lowest two, and four integers are sorted with the far ones first.
-/// Always inline: else the clone for AVX2 calls one that is not.
+/// Puts the children that are nearer than `limit` onto the stack, the far ones first. Non-negative floats order like
+/// their bits: the child's number goes into the lowest two, and how many near ones are farther is a child's place.
+/// Which of them are near, and in what order, is a toss: no branch. Always inline: else the clone for AVX2 calls one
+/// that is not.
 [[gnu::always_inline]] inline void push_children(std::uint32_t parent, std::uint32_t level, Lanes distance2,
                                                  float limit, Stack& stack, std::size_t& size) {
   LaneMask bits;
   std::memcpy(&bits, &distance2, sizeof(bits));
-  bits = (bits & ~3) | LaneMask{0, 1, 2, 3};
-  std::array<std::uint32_t, 4> keys;
-  std::memcpy(keys.data(), &bits, sizeof(bits));
-  const auto order = [&](std::size_t i, std::size_t j) {
-    const std::uint32_t a = std::max(keys[i], keys[j]);
-    keys[j] = std::min(keys[i], keys[j]);
-    keys[i] = a;
-  };
-  order(0, 1);
-  order(2, 3);
-  order(0, 2);
-  order(1, 3);
-  order(1, 2);
-  for (const std::uint32_t key : keys) {
-    stack[size] = {key, parent << 4U | level};  // which of them are near is a toss: no branch
-    size += stack[size].distance2() < limit ? 1 : 0;
-  }
+  bits &= ~3;
+  Lanes lower;
+  std::memcpy(&lower, &bits, sizeof(lower));
+  const LaneMask is_near = lower < lanes(limit);
+  const LaneMask keys = ((bits | LaneMask{0, 1, 2, 3}) & is_near) | ~is_near;  // -1: less than any
+  const LaneMask places =
+      -((rotate_lanes<1>(keys) > keys) + (rotate_lanes<2>(keys) > keys) + (rotate_lanes<3>(keys) > keys));
+  std::array<std::uint32_t, 4> key, place;
+  std::memcpy(key.data(), &keys, sizeof(keys));
+  std::memcpy(place.data(), &places, sizeof(places));
+  const std::uint32_t where = parent << 4U | level;
+  for (std::size_t k = 0; k < 4; ++k) stack[size + place[k]] = {key[k], where};  // those that are not near behind all
+  size += count_lanes(is_near);
 }
 
 }  // namespace
