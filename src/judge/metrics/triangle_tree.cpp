@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/parallel.h"
 #include "base/release.h"
 
 namespace meshlode::judge {
@@ -95,6 +96,18 @@ ExactBox box_between(const std::array<Vec3d, 3>& corners, int axis, double from,
   return {box.low - rounding, box.high + rounding};
 }
 
+/// How many nodes there are below one with so many items, and below one with one more.
+std::array<std::uint32_t, 2> nodes_below_two(std::uint32_t count) {
+  if (count < kLeafSize) return {0, 0};
+  const auto [half, more] = nodes_below_two(count / 2);
+  const std::uint32_t even = 2 + 2 * half, odd = 2 + half + more;
+  if (count == kLeafSize) return {0, 2};
+  return count % 2 == 0 ? std::array{even, odd} : std::array{odd, 2 + 2 * more};
+}
+std::uint32_t nodes_below(std::uint32_t count) {
+  return nodes_below_two(count)[0];
+}
+
 template <class Box>
 std::array<float, 3> center_of(const Box& box) {
   std::array<float, 3> center;
@@ -141,10 +154,10 @@ TriangleTree::Items TriangleTree::cut_to_pieces(const Surface& surface) const {
   double most = kMostPieces;
   const double budget = std::max(2.0 * static_cast<double>(count), kPieceBudget);
   std::vector<float> wanted(count);
-  for (std::size_t i = 0; i < count; ++i) {
+  parallel_for_each_index(count, kLoopGrain, [&](std::size_t i) {
     const auto [a, b, c] = corners_of(i);
     wanted[i] = static_cast<float>(wanted_pieces(a, b, c));  // small whole numbers
-  }
+  });
   for (; most > 1.0; most *= 0.5) {
     double sum = 0.0;
     for (const float pieces : wanted) sum += std::min(double{pieces}, most);
@@ -196,45 +209,41 @@ TriangleTree::TriangleTree(const Surface& surface, Positions positions) {
   set_frame(surface);
   Items items = cut_to_pieces(surface);
   const auto count = static_cast<std::uint32_t>(items.items.size());
-  nodes_.reserve(count + 1);  // of more than kLeafSize items each half has two: no more nodes than items
-  nodes_.emplace_back();
-  split(0, items, 0, count);
+  nodes_.resize(1 + nodes_below(count));
+  split({0, 1}, items, 0, count);
   const auto grow = [](Box& box, const Box& other) {
     for (std::size_t k = 0; k < 3; ++k) {
       box.low[k] = std::min(box.low[k], other.low[k]);
       box.high[k] = std::max(box.high[k], other.high[k]);
     }
   };
-  for (std::size_t n = nodes_.size(); n-- > 0;) {  // children lie behind their node
+  parallel_for_each_index(nodes_.size(), kLoopGrain, [&](std::size_t n) {
     Node& node = nodes_[n];
-    if (node.count == 0) {
-      node.box = nodes_[node.first].box;
-      grow(node.box, nodes_[node.first + 1].box);
-      continue;
-    }
+    if (node.count == 0) return;
     node.box = box_of_item(items, items.items[node.first]);
     for (std::uint32_t i = node.first + 1; i < node.first + node.count; ++i) {
       grow(node.box, box_of_item(items, items.items[i]));
     }
+  });
+  for (std::size_t n = nodes_.size(); n-- > 0;) {  // children lie behind their node
+    Node& node = nodes_[n];
+    if (node.count != 0) continue;
+    node.box = nodes_[node.first].box;
+    grow(node.box, nodes_[node.first + 1].box);
   }
   triangle_.resize(count);
   for (std::size_t i = 0; i < count; ++i) triangle_[i] = items.triangle_of(items.items[i]);
   release(items.items, items.pieces);
-  copy_triangles(surface);
-  positions_ = surface.positions;
-  if (positions == Positions::kCopied) copy_positions(surface);
-}
-
-void TriangleTree::copy_triangles(const Surface& surface) {
-  corners_.resize(triangle_.size());
   place_.resize(surface.triangles.size());
-  for (std::uint32_t i = 0; i < triangle_.size(); ++i) {
-    place_[triangle_[i]] = i;
-    corners_[i] = surface.triangles[triangle_[i]];
-  }
+  for (std::uint32_t i = 0; i < count; ++i) place_[triangle_[i]] = i;
+  positions_ = surface.positions;
+  shared_ = surface.triangles;
+  if (positions == Positions::kCopied) copy(surface);
 }
 
-void TriangleTree::copy_positions(const Surface& surface) {
+void TriangleTree::copy(const Surface& surface) {
+  corners_.reserve(triangle_.size());
+  for (const std::uint32_t triangle : triangle_) corners_.push_back(surface.triangles[triangle]);
   constexpr std::uint32_t kUnused = 0xFFFFFFFFU;
   std::vector<std::uint32_t> renamed(surface.positions.size(), kUnused);
   std::uint32_t used = 0;
@@ -250,12 +259,14 @@ void TriangleTree::copy_positions(const Surface& surface) {
     if (renamed[v] != kUnused) copied_[renamed[v]] = surface.positions[v];
   }
   positions_ = copied_;
+  shared_ = {};
 }
 
-void TriangleTree::split(std::uint32_t node, Items& items, std::uint32_t first, std::uint32_t count) {
+void TriangleTree::split(const Place& place, Items& items, std::uint32_t first, std::uint32_t count) {
+  Node& node = nodes_[place.node];
   if (count <= kLeafSize) {
-    nodes_[node].first = first;
-    nodes_[node].count = count;
+    node.first = first;
+    node.count = count;
     return;
   }
   std::array<float, 3> low, high;
@@ -279,11 +290,18 @@ void TriangleTree::split(std::uint32_t node, Items& items, std::uint32_t first, 
     return a.center[axis] != b.center[axis] ? a.center[axis] < b.center[axis]
                                             : items.triangle_of(a) < items.triangle_of(b);
   });
-  const std::uint32_t left = static_cast<std::uint32_t>(nodes_.size());
-  nodes_[node].first = left;
-  nodes_.resize(nodes_.size() + 2);
-  split(left, items, first, half);  // depth: log2 of the number of pieces
-  split(left + 1, items, first + half, count - half);
+  node.first = place.below;  // the two children, then what is below the left one, then what is below the right one
+  const auto left = [&] { split({place.below, place.below + 2}, items, first, half); };
+  const auto right = [&] {
+    split({place.below + 1, place.below + 2 + nodes_below(half)}, items, first + half, count - half);
+  };
+  constexpr std::uint32_t kMany = 8192;  // items: worth a task
+  if (count >= kMany) {
+    parallel_all(left, right);
+  } else {
+    left();  // depth: log2 of the number of pieces
+    right();
+  }
 }
 
 inline double TriangleTree::distance2_to_box(const Box& box, const Vec3d& p) {
@@ -294,7 +312,7 @@ inline double TriangleTree::distance2_to_box(const Box& box, const Vec3d& p) {
 }
 
 inline double TriangleTree::distance2_at(const Vec3d& point, std::uint32_t place) const {
-  const auto& t = corners_[place];
+  const auto& t = shared_.empty() ? corners_[place] : shared_[triangle_[place]];
   return distance2_to_triangle(point, positions_[t[0]], positions_[t[1]], positions_[t[2]]);
 }
 

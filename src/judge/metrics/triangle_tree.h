@@ -26,8 +26,8 @@ struct NearestPoint {
 /// floats, rounded outwards, so that a node is half as large.
 class TriangleTree {
  public:
-  /// A copy of the positions lies in the order of the leaves, which is quicker where that of the surface leaps. Without
-  /// one the surface must outlive the tree.
+  /// A copy of positions and triangles lies in the order of the leaves, which is quicker where that of the surface
+  /// leaps. Without one the surface must outlive the tree.
   enum class Positions : std::uint8_t { kCopied, kShared };
   explicit TriangleTree(const Surface& surface, Positions positions = Positions::kCopied);
   TriangleTree(const TriangleTree&) = delete;
@@ -80,9 +80,12 @@ class TriangleTree {
   [[nodiscard]] Box to_frame(const Vec3d& low, const Vec3d& high) const;
   [[nodiscard]] Items cut_to_pieces(const Surface& surface) const;
   [[nodiscard]] Box box_of_item(const Items& items, const Item& item) const;
-  void split(std::uint32_t node, Items& items, std::uint32_t first, std::uint32_t count);
-  void copy_triangles(const Surface& surface);
-  void copy_positions(const Surface& surface);
+  /// Of a node, and of all that will be below it.
+  struct Place {
+    std::uint32_t node = 0, below = 0;
+  };
+  void split(const Place& place, Items& items, std::uint32_t first, std::uint32_t count);
+  void copy(const Surface& surface);
   [[nodiscard]] static double distance2_to_box(const Box& box, const Vec3d& p);
   [[nodiscard]] double distance2_at(const Vec3d& point, std::uint32_t place) const;
 
@@ -90,11 +93,12 @@ class TriangleTree {
   double scale_ = 1.0;     ///< a power of two: distances in the frame are so many times those outside
   double rounding_ = 0.0;  ///< what a point of the surface may be off by in the frame, twice
   std::vector<Node> nodes_;
-  std::vector<Vec3d> copied_;                          ///< in the order in which leaves use them
-  std::span<const Vec3d> positions_;                   ///< the copied ones, or the surface's
-  std::vector<std::array<std::uint32_t, 3>> corners_;  ///< in leaf order
-  std::vector<std::uint32_t> triangle_;                ///< leaf order -> surface
-  std::vector<std::uint32_t> place_;                   ///< surface -> leaf order, a place of several
+  std::vector<Vec3d> copied_;                             ///< in the order in which leaves use them
+  std::span<const Vec3d> positions_;                      ///< the copied ones, or the surface's
+  std::span<const std::array<std::uint32_t, 3>> shared_;  ///< the surface's triangles, where there is no copy
+  std::vector<std::array<std::uint32_t, 3>> corners_;     ///< in leaf order; or none
+  std::vector<std::uint32_t> triangle_;                   ///< leaf order -> surface
+  std::vector<std::uint32_t> place_;                      ///< surface -> leaf order, a place of several
 };
 
 }  // namespace meshlode::judge
