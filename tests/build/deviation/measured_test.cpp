@@ -137,6 +137,50 @@ TEST(Measured, ASoupIsSearchedToItsEndWhereTheGroupIsAllOfIt) {
   }
 }
 
+TEST(Measured, OfALargeSourceTheWholeIsSearchedFromAbove) {
+  // A quarter of a million triangles, no sample to lead to the one vertex that stands out, and as little effort as a
+  // group among many gets: what is found is found from above.
+  judge::Surface fine = test::as_surface(scene::make_plane(363));
+  ASSERT_GT(fine.triangles.size(), 262144U);
+  fine.positions[91234].y += 0.0625;
+  const judge::Surface coarse = test::as_surface(scene::make_plane(3));
+  const SourceTree source(fine.positions, fine.triangles);
+  DeviationTierOptions options;
+  options.finer = test::as_group(coarse);
+  options.is_whole = true;
+  EXPECT_NEAR(measure_group(source, test::as_group(coarse), {}, options).deviation, 0.0625, 1e-4);
+}
+
+TEST(Measured, EveryVertexIsASampleOfTheFirstTriangleThatHasIt) {
+  // More triangles than are counted at a time, a vertex that none has, a triangle with one twice, and one that is long.
+  judge::Surface surface = test::as_surface(scene::make_plane(70));
+  ASSERT_GT(surface.triangles.size(), 2 * 4096U);
+  surface.positions.emplace_back(9.0, 9.0, 9.0);
+  surface.triangles[5][1] = surface.triangles[5][0];
+  surface.positions[surface.triangles.back()[0]].y = 3.0;
+  const SourceTree source(surface.positions, surface.triangles);
+  std::vector<std::uint32_t> first_of(surface.positions.size(), kNoId);
+  for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
+    for (const std::uint32_t v : surface.triangles[t]) first_of[v] = std::min(first_of[v], t);
+  }
+  std::vector<std::uint32_t> sampled_at(surface.positions.size(), kNoId);
+  std::uint32_t before = 0;
+  std::size_t loose = 0;
+  for (const CarriedSample& sample : initial_samples(source)) {
+    EXPECT_GE(sample.triangle, before) << "in the order of triangles";
+    before = sample.triangle;
+    if (sample.vertex == kNoId) {
+      ++loose;
+      continue;
+    }
+    EXPECT_EQ(sample.point, surface.positions[sample.vertex]);
+    EXPECT_EQ(sampled_at[sample.vertex], kNoId) << "once";
+    sampled_at[sample.vertex] = sample.triangle;
+  }
+  EXPECT_EQ(sampled_at, first_of);
+  EXPECT_GT(loose, 10U) << "along the long one";
+}
+
 TEST(Measured, APeakBetweenNeedlesIsFoundThoughNoPointNearItTells) {
   // Large triangles over a thicket of needles: the farthest point from all of them is the middle of the widest gap.
   Random random(6);

@@ -108,6 +108,32 @@ TEST(Metrics, NearestIsTheSmallestOverAllTrianglesIncludingDegenerateOnes) {
   }
 }
 
+TEST(Metrics, TreesThatSeveralThreadsMakeAreComplete) {
+  RandomSource random(57);
+  for (const std::uint32_t count : {1U, 4U, 5U, 8191U, 8192U, 30001U}) {
+    const Surface s = make_soup(random, count, 1.0, Vec3d(0.0));
+    std::vector<Vec3d> points;
+    std::vector<double> expected;
+    for (int i = 0; i < 40; ++i) {
+      points.push_back(random.in_cube(1.5));
+      expected.push_back(std::numeric_limits<double>::infinity());
+      for (const auto& t : s.triangles) {
+        const double there =
+            distance2_to_triangle(points.back(), s.positions[t[0]], s.positions[t[1]], s.positions[t[2]]);
+        expected.back() = std::min(expected.back(), there);
+      }
+    }
+    for (const int threads : {1, 4}) {
+      for (const auto positions : {TriangleTree::Positions::kCopied, TriangleTree::Positions::kShared}) {
+        tbb::task_arena(threads).execute([&] {
+          const TriangleTree tree(s, positions);
+          for (std::size_t i = 0; i < points.size(); ++i) EXPECT_EQ(tree.nearest(points[i]).distance2, expected[i]);
+        });
+      }
+    }
+  }
+}
+
 /// Spokes of a wheel that lies askew, and loose needles: triangles that fill next to nothing of their boxes.
 Surface make_spokes(RandomSource& random, std::uint32_t count, double offset) {
   Surface s;
