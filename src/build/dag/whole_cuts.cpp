@@ -49,7 +49,7 @@ constexpr int kSteps = 7, kTries = 12;
 constexpr std::size_t kCutShare = 8;
 constexpr std::size_t kFewTriangles = 250000;
 /// Cuts of so few triangles are put into trees side by side.
-constexpr std::size_t kTrianglesAtOnce = 65536;
+constexpr std::size_t kTrianglesAtOnce = 16384;
 /// What a flat surface may be off by, as a share of the mesh: the arithmetic of doubles.
 constexpr double kNoise = 1e-12;
 /// A raised group leaves the cut that it was found in, and what takes its place is looked at again.
