@@ -18,9 +18,8 @@ TEST(Parallel, AllTurnsAreTakenByAnyNumberOfThreads) {
       const auto turn = [&](std::size_t which) {
         return [&sums, which] {
           std::vector<std::uint32_t> squares(20000);
-          parallel_for_each_index(squares.size(), 64, [&](std::size_t i) {
-            squares[i] = static_cast<std::uint32_t>((i + which) % 7);
-          });
+          parallel_for_each_index(squares.size(), 64,
+                                  [&](std::size_t i) { squares[i] = static_cast<std::uint32_t>((i + which) % 7); });
           for (const std::uint32_t square : squares) sums[which] += square;
         };
       };

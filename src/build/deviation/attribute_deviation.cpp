@@ -88,8 +88,8 @@ double upper_value(std::vector<UvError>& errors) {
   return 0.0;
 }
 
-/// A point of the group.
-struct Point {
+/// A point of the group that is compared.
+struct PaintedPoint {
   std::uint32_t triangle;
   Vec3d at;
   Weights weights;
@@ -97,11 +97,11 @@ struct Point {
 };
 
 /// Three of each triangle, or every so many of all of them.
-std::vector<Point> choose_points(const GroupSurface& group) {
+std::vector<PaintedPoint> choose_points(const GroupSurface& group) {
   constexpr std::array<Weights, 3> kPoints{
       {{2.0 / 3, 1.0 / 6, 1.0 / 6}, {1.0 / 6, 2.0 / 3, 1.0 / 6}, {1.0 / 6, 1.0 / 6, 2.0 / 3}}};
   const std::uint32_t step = group.triangles.size() > kFewTriangles ? kPointStep : 1;
-  std::vector<Point> points;
+  std::vector<PaintedPoint> points;
   points.reserve(3 * group.triangles.size() / step + 1);
   std::size_t count = 0;
   for (std::uint32_t t = 0; t < group.triangles.size(); ++t) {
@@ -118,20 +118,20 @@ std::vector<Point> choose_points(const GroupSurface& group) {
 }
 
 /// How far the attributes of a point are from those of the nearest one of the source.
-struct Drift {
+struct PointDrift {
   double normal2 = 0.0;
   std::array<double, scene::kMaxUvSets> uv{};
   bool is_known = false;
 };
 
 /// The two surfaces and what they carry.
-struct Pair {
+struct PaintedSurfaces {
   const SurfaceTree& source;
   const SurfaceAttributes &source_attributes, &group_attributes;
   const AttributeLayout& layout;
 
-  [[nodiscard]] Drift drift_of(const Point& point, TreeSlot nearest) const {
-    Drift drift;
+  [[nodiscard]] PointDrift drift_of(const PaintedPoint& point, TreeSlot nearest) const {
+    PointDrift drift;
     drift.is_known = true;
     const Interpolator ours(group_attributes, layout.stride(), point.triangle);
     const Interpolator theirs(source_attributes, layout.stride(), source.triangle_at(nearest));
@@ -157,9 +157,9 @@ AttributeDeviation measure_attributes(const SourceTree& source, const SurfaceAtt
                                       const AttributeLayout& layout, std::span<const TreeSlot> near) {
   const SurfaceTree& tree = source.impl().tree;
   if ((!layout.has_normal && layout.uv_set_count == 0) || tree.size() == 0) return {};
-  const std::vector<Point> points = choose_points(group);
-  const Pair pair{tree, source_attributes, group_attributes, layout};
-  std::vector<Drift> drifts(points.size());
+  const std::vector<PaintedPoint> points = choose_points(group);
+  const PaintedSurfaces surfaces{tree, source_attributes, group_attributes, layout};
+  std::vector<PointDrift> drifts(points.size());
   // Side by side where each point knows its place; else one leads to the next.
   const std::size_t chunk = near.empty() ? std::max<std::size_t>(1, points.size()) : 64;
   parallel_for_each_chunk(points.size(), chunk, [&](std::size_t, std::size_t begin, std::size_t end) {
@@ -170,7 +170,7 @@ AttributeDeviation measure_attributes(const SourceTree& source, const SurfaceAtt
       const SurfaceTree::Hit hit = tree.find_nearest(at, tree.look_around(at, place, {}), 0.0F);
       if (!hit.slot.is_valid()) continue;
       place = hit.slot;
-      drifts[i] = pair.drift_of(points[i], place);
+      drifts[i] = surfaces.drift_of(points[i], place);
     }
   });
   double total = 0.0, normal2 = 0.0;
