@@ -50,14 +50,21 @@ Status check_build(const scene::Scene& scene, const PipelineOptions& options) {
   return Ok{};
 }
 
-/// The same of memory. \returns how many meshes may be in work at once
-Result<std::size_t> check_memory(const scene::Scene& scene, const PipelineOptions& options,
-                                 std::span<const AggregateDecision> aggregates, PipelineReport& report) {
+/// How many meshes may be in work at once, and whether even one takes more than there is.
+struct MemoryFit {
+  std::size_t at_once = 1;
+  bool is_short = false;  ///< large arrays go to a file
+};
+
+/// The same of memory.
+Result<MemoryFit> check_memory(const scene::Scene& scene, const PipelineOptions& options,
+                               std::span<const AggregateDecision> aggregates, PipelineReport& report) {
   const auto threads = static_cast<std::uint32_t>(thread_limit());
   const MemoryEstimate estimate = estimate_memory(scene, options, threads, aggregates);
   const Result<std::size_t> at_once = fit_memory(estimate, threads, options);
   report.memory_estimate = estimate.bytes(at_once ? *at_once : 1);
-  return at_once;
+  if (!at_once) return at_once.error();
+  return MemoryFit{*at_once, options.max_memory > 0 && report.memory_estimate > options.max_memory};
 }
 
 struct BuiltMesh {
@@ -119,6 +126,7 @@ struct Survey {
   std::vector<TexelExtents> extents;          ///< texel_extents_of_materials(), where more than positions is promised
   std::vector<AggregateDecision> aggregates;  ///< by mesh
   CoarseMaterials coarse;                     ///< where some mesh has an aggregate
+  bool is_memory_short = false;
   [[nodiscard]] bool has_aggregates() const {
     return std::any_of(aggregates.begin(), aggregates.end(), [](const AggregateDecision& d) { return d.is_aggregate; });
   }
@@ -180,6 +188,7 @@ Result<LodDag> build_levels(PreparedMesh& mesh, const AggregateDecision& aggrega
     DagOptions dag = dag_options(options, own, part, encoding);
     dag.on_level = on_level;
     dag.simplify.painted = painted;
+    dag.is_memory_short = found.is_memory_short;
     return dag;
   };
   if (!aggregate.is_aggregate) return build_dag_and_free(mesh, coarsening(mesh));
@@ -325,11 +334,12 @@ Result<std::vector<std::uint8_t>> build_asset_of(const Source& from, const Pipel
   const scene::Scene& scene = from.scene;
   if (const Status s = check_build(scene, options); !s) return s.error();
   std::vector<AggregateDecision> aggregates = decide_aggregates(scene, options);
-  const Result<std::size_t> at_once = check_memory(scene, options, aggregates, report);
-  if (!at_once) return at_once.error();
-  const Result<Survey> found = survey(scene, options, std::move(aggregates));
+  const Result<MemoryFit> fit = check_memory(scene, options, aggregates, report);
+  if (!fit) return fit.error();
+  Result<Survey> found = survey(scene, options, std::move(aggregates));
   if (!found) return found.error();
-  Result<std::vector<BuiltMesh>> meshes = build_meshes(from, options, *found, *at_once, progress);
+  found->is_memory_short = fit->is_short;
+  Result<std::vector<BuiltMesh>> meshes = build_meshes(from, options, *found, fit->at_once, progress);
   if (!meshes) return meshes.error();
 
   WriteInput input;

@@ -113,13 +113,14 @@ std::vector<std::uint32_t> weld(std::span<const Vec3d> positions) {
 
 }  // namespace
 
-SourceTree::SourceTree(std::span<const Vec3d> positions, std::span<const std::array<std::uint32_t, 3>> triangles)
+SourceTree::SourceTree(std::span<const Vec3d> positions, std::span<const std::array<std::uint32_t, 3>> triangles,
+                       std::size_t most_held)
     : impl_(std::make_unique<Impl>()) {
   impl_->positions = positions;
   impl_->triangles = triangles;
   impl_->vertex_of = weld(positions);
   impl_->tree.build({positions, triangles, impl_->vertex_of},
-                    triangles.size() <= kMostHeldTriangles ? SurfaceTree::Leaves::kHeld : SurfaceTree::Leaves::kMade);
+                    triangles.size() <= most_held ? SurfaceTree::Leaves::kHeld : SurfaceTree::Leaves::kMade);
   std::vector<std::uint32_t>& first = impl_->first_corner;
   first.assign(positions.size() + 2, 0);
   for (std::uint32_t t = 0; t < triangles.size(); ++t) {
