@@ -51,9 +51,10 @@ constexpr std::array kLibraries = {
 /// Those of an operating system that are in use: of POSIX, of glibc, of Windows.
 bool is_of_a_system(const std::string& path) {
   static const std::set<std::string> headers = {
-      "unistd.h",       "fcntl.h",     "sys/mman.h",    "sys/stat.h", "sys/types.h", "sys/file.h", "sys/wait.h",
-      "sys/resource.h", "sys/vfs.h",   "linux/magic.h", "dlfcn.h",    "link.h",      "pthread.h",  "malloc.h",
-      "poll.h",         "sys/prctl.h", "sys/utsname.h", "windows.h",  "ntsecapi.h",  "psapi.h"};
+      "unistd.h",      "fcntl.h",        "sys/mman.h", "sys/stat.h",    "sys/types.h",   "sys/file.h",
+      "sys/wait.h",    "sys/resource.h", "sys/vfs.h",  "linux/magic.h", "dlfcn.h",       "link.h",
+      "pthread.h",     "malloc.h",       "poll.h",     "dirent.h",      "sys/syscall.h", "sys/prctl.h",
+      "sys/utsname.h", "windows.h",      "ntsecapi.h", "psapi.h"};
   return headers.contains(path);
 }
 

@@ -18,6 +18,7 @@
 
 #include "base/memory.h"
 #include "spill_area.h"
+#include "stop_threads.h"
 
 namespace meshlode::cli {
 
@@ -30,8 +31,8 @@ constexpr std::size_t kLargeArray = std::size_t{1} << 20U;
 constexpr std::size_t kSlack = std::size_t{1} << 16U;
 /// Large arrays take this part of the limit before the first of them goes to the file.
 constexpr std::uint64_t kSharesInMemory = 4;
-/// Shares of the limit where dropping begins and ends, in eighths. Several threads that read what is in the page cache
-/// map a hundred MiB in the time between two looks, on a busy machine.
+/// Shares of the limit where dropping begins and ends, in eighths. Threads that read here and there what is in the page
+/// cache map more in a millisecond than can be dropped in one: they wait until it is done.
 constexpr std::uint64_t kBegin = 5, kEnd = 4;
 constexpr std::size_t kDropped = std::size_t{32} << 20U;  // of addresses, at a time
 constexpr std::chrono::milliseconds kBetweenLooks{1};
@@ -84,6 +85,7 @@ class Spill {
     for (;;) {
       std::this_thread::sleep_for(kBetweenLooks);
       if (resident() <= limit_ / 8 * kBegin) continue;
+      const StoppedThreads stopped;
       bool is_round_over = false;
       while (!is_round_over && resident() > limit_ / 8 * kEnd) is_round_over = !area_->drop(kDropped);
     }

@@ -42,6 +42,15 @@ bool is_in_memory(int file) {
   return type == TMPFS_MAGIC || type == RAMFS_MAGIC || type == HUGETLBFS_MAGIC;
 }
 
+/// As often as a signal comes between.
+int allocate_in_file(int file, int mode, std::size_t offset, std::size_t bytes) {
+  int result = 0;
+  do {
+    result = ::fallocate(file, mode, static_cast<off_t>(offset), static_cast<off_t>(bytes));
+  } while (result != 0 && errno == EINTR);
+  return result;
+}
+
 /// Addresses that nothing lies at.
 void* reserve(void* at, std::size_t bytes, int flags) {
   return ::mmap(at, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE | flags, -1, 0);
@@ -58,7 +67,7 @@ Result<std::unique_ptr<SpillArea>> SpillArea::open(const std::filesystem::path& 
     return fail(std::move(detail));
   };
   if (is_in_memory(file)) return close_and_fail("what is written here stays in memory");
-  if (::fallocate(file, 0, 0, static_cast<off_t>(page_bytes())) != 0) {
+  if (allocate_in_file(file, 0, 0, page_bytes()) != 0) {
     return close_and_fail(std::string("no room can be reserved: ") + std::strerror(errno));
   }
   const std::size_t size = addresses / page_bytes() * page_bytes();
@@ -123,7 +132,7 @@ std::size_t SpillArea::take_range(std::size_t bytes) noexcept {
 
 void SpillArea::release_range(std::size_t offset, std::size_t bytes) noexcept {
   reserve(base_ + offset, bytes, MAP_FIXED);
-  ::fallocate(file_, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, static_cast<off_t>(offset), static_cast<off_t>(bytes));
+  (void)allocate_in_file(file_, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, offset, bytes);
   const std::lock_guard lock(mutex_);
   try {
     taken_.erase(offset);
@@ -141,7 +150,7 @@ void* SpillArea::allocate(std::size_t bytes) noexcept {
   if (offset == size_) return nullptr;
   const auto place = static_cast<off_t>(offset);
   // Reserved now: a page that finds no room when it is written to ends the process.
-  if (::fallocate(file_, 0, place, static_cast<off_t>(whole)) == 0) {
+  if (allocate_in_file(file_, 0, offset, whole) == 0) {
     void* const at = ::mmap(base_ + offset, whole, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_FIXED, file_, place);
     if (at != MAP_FAILED) return at;
   }
@@ -164,7 +173,8 @@ bool SpillArea::drop(std::size_t bytes) noexcept {
   std::size_t begin = 0, length = 0;
   bool goes_on = false;
   {
-    const std::lock_guard lock(mutex_);
+    const std::unique_lock lock(mutex_, std::try_to_lock);
+    if (!lock) return false;
     if (hand_ >= end_) hand_ = 0;
     begin = hand_;
     length = std::min((bytes + page_bytes() - 1) / page_bytes() * page_bytes(), end_ - hand_);

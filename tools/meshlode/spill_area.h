@@ -35,7 +35,8 @@ class SpillArea {
     return byte >= base_ && byte < base_ + size_;
   }
   /// Writes `bytes` of addresses back to the file as need be, and takes them out of memory. Each call goes on where the
-  /// one before ended, around and around. \returns false where a round is over
+  /// one before ended, around and around. Waits for nobody. \returns false where a round is over, and where somebody
+  /// is taking or giving back addresses
   bool drop(std::size_t bytes) noexcept;
 
   [[nodiscard]] std::size_t used() const noexcept;  ///< bytes of all arrays

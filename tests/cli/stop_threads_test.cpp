@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "meshlode/stop_threads.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <thread>
+#include <vector>
+
+namespace meshlode::cli {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Threads that count, each for itself, until this ends.
+class Counters {
+ public:
+  Counters() {
+    for (std::atomic<std::uint64_t>& count : counts_) {
+      threads_.emplace_back([this, &count] {
+        while (!is_over_.load()) count.fetch_add(1);
+      });
+    }
+  }
+  ~Counters() {
+    is_over_ = true;
+    for (std::thread& thread : threads_) thread.join();
+  }
+  [[nodiscard]] std::array<std::uint64_t, 3> read() const {
+    return {counts_[0].load(), counts_[1].load(), counts_[2].load()};
+  }
+  /// Until each has counted on.
+  void wait_for_all() const {
+    const auto before = read();
+    for (bool all = false; !all; std::this_thread::sleep_for(1ms)) {
+      const auto now = read();
+      all = now[0] != before[0] && now[1] != before[1] && now[2] != before[2];
+    }
+  }
+
+ private:
+  std::array<std::atomic<std::uint64_t>, 3> counts_{};
+  std::atomic<bool> is_over_ = false;
+  std::vector<std::thread> threads_;
+};
+
+TEST(StoppedThreads, StandUntilTheStopIsOver) {
+  const Counters counters;
+  for (int round = 0; round < 20; ++round) {
+    counters.wait_for_all();
+    const StoppedThreads stopped;
+    EXPECT_GE(stopped.count(), 3U);
+    // Those that were not running have not come to the signal yet: they do so before anything else.
+    std::array<std::uint64_t, 3> before{}, after{};
+    for (int look = 0; look < 200; ++look) {
+      before = counters.read();
+      std::this_thread::sleep_for(1ms);
+      after = counters.read();
+      if (before == after) break;
+    }
+    EXPECT_EQ(before, after);
+  }
+  counters.wait_for_all();
+}
+
+TEST(StoppedThreads, OneThatSleepsIsNotWokenUp) {
+  std::chrono::steady_clock::duration slept{};
+  std::thread sleeper([&] {
+    const auto begin = std::chrono::steady_clock::now();
+    std::this_thread::sleep_for(200ms);
+    slept = std::chrono::steady_clock::now() - begin;
+  });
+  for (int round = 0; round < 5; ++round) {
+    const StoppedThreads stopped;
+    std::this_thread::sleep_for(1ms);
+  }
+  sleeper.join();
+  EXPECT_GE(slept, 200ms);
+}
+
+}  // namespace
+}  // namespace meshlode::cli
