@@ -6,8 +6,8 @@
 
 namespace meshlode::cli {
 
-/// One at a time. Whatever a thread holds when it is stopped it goes on holding: until the end of the stop nothing may be
-/// asked for that it could hold, memory of the C library and locks among it.
+/// One at a time. Whatever a thread holds when it is stopped it goes on holding: until the end of the stop nothing may
+/// be asked for that it could hold, memory of the C library and locks among it.
 class StoppedThreads {
  public:
   /// Stops all but the calling thread, and waits until they stand, though not for long: one that is inside the system
