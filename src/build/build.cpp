@@ -56,7 +56,7 @@ struct MemoryFit {
   bool is_short = false;  ///< large arrays go to a file
 };
 
-/// The same of memory.
+/// Refuses what memory has no room for, before any mesh is built.
 Result<MemoryFit> check_memory(const scene::Scene& scene, const PipelineOptions& options,
                                std::span<const AggregateDecision> aggregates, PipelineReport& report) {
   const auto threads = static_cast<std::uint32_t>(thread_limit());
@@ -126,7 +126,7 @@ struct Survey {
   std::vector<TexelExtents> extents;          ///< texel_extents_of_materials(), where more than positions is promised
   std::vector<AggregateDecision> aggregates;  ///< by mesh
   CoarseMaterials coarse;                     ///< where some mesh has an aggregate
-  bool is_memory_short = false;
+  bool is_memory_short = false;               ///< MemoryFit::is_short
   [[nodiscard]] bool has_aggregates() const {
     return std::any_of(aggregates.begin(), aggregates.end(), [](const AggregateDecision& d) { return d.is_aggregate; });
   }

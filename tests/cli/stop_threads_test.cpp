@@ -2,6 +2,7 @@
 #include "meshlode/stop_threads.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <array>
 #include <atomic>
@@ -66,19 +67,22 @@ TEST(StoppedThreads, StandUntilTheStopIsOver) {
   counters.wait_for_all();
 }
 
-TEST(StoppedThreads, OneThatSleepsIsNotWokenUp) {
-  std::chrono::steady_clock::duration slept{};
-  std::thread sleeper([&] {
-    const auto begin = std::chrono::steady_clock::now();
-    std::this_thread::sleep_for(200ms);
-    slept = std::chrono::steady_clock::now() - begin;
-  });
-  for (int round = 0; round < 5; ++round) {
+TEST(StoppedThreads, WhatASystemCallWaitsForComesAfterwards) {
+  int ends[2] = {-1, -1};
+  ASSERT_EQ(::pipe(ends), 0);
+  ssize_t length = -1;
+  char letter = ' ';
+  std::thread reader([&] { length = ::read(ends[0], &letter, 1); });
+  for (int round = 0; round < 20; ++round) {
     const StoppedThreads stopped;
     std::this_thread::sleep_for(1ms);
   }
-  sleeper.join();
-  EXPECT_GE(slept, 200ms);
+  ASSERT_EQ(::write(ends[1], "x", 1), 1);
+  reader.join();
+  EXPECT_EQ(length, 1) << "nothing was interrupted";
+  EXPECT_EQ(letter, 'x');
+  ::close(ends[0]);
+  ::close(ends[1]);
 }
 
 }  // namespace
