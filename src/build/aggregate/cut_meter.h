@@ -3,9 +3,9 @@
 // other is in it.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "build/aggregate/card.h"
@@ -25,24 +25,31 @@ struct ThinnedCut {
 struct CutChange {
   double noise = 0.0;      ///< as Proposal::noise, of the whole
   double sum_shift = 0.0;  ///< as Proposal::sum_shift
+  double samples = 0.0;    ///< of the source that were seen, in all views together
 };
 
-/// The source is drawn once.
+/// Of the usual views and fewer the source is drawn once and held; of more for each cut, for it is small.
 class CutMeter {
  public:
-  /// At `count` pixel sizes, each twice as large as the one before. Samples are as wide as `grain` at most, but never
-  /// finer than measure_proposals() has them for pixels of `finest`.
-  CutMeter(const SourceSurface& source, const MeshFrame& frame, const ByPiece& leaf_triangles, double smallest,
-           std::size_t count, double grain, double finest);
+  /// From `views`, which as all else must outlive this, at `count` pixel sizes, each twice as large as the one before.
+  /// Samples are as wide as `grain` at most, but never finer than measure_proposals() has them for pixels of `finest`.
+  CutMeter(const SourceSurface& source, const MeshFrame& frame, const ByPiece& leaf_triangles,
+           std::span<const View> views, double smallest, std::size_t count, double grain, double finest);
   [[nodiscard]] CutChange measure(const ThinnedCut& cut, std::size_t size) const;
 
  private:
   struct Size {
     std::size_t octaves = 1, lattice = 0;
   };
+  /// What leaves of the source cover.
+  [[nodiscard]] SampleMask draw(std::size_t view, std::size_t lattice, std::span<const std::uint32_t> leaves) const;
+
+  const SourceSurface& source_;
+  const ByPiece& leaf_triangles_;
+  std::span<const View> views_;
   std::vector<Size> sizes_;
-  std::vector<Lattice> lattices_;         ///< each half as fine as the one before
-  std::array<LeafMasks, kViews> leaves_;  ///< by view, from the finest lattice on
+  std::vector<Lattice> lattices_;  ///< each half as fine as the one before
+  std::vector<LeafMasks> leaves_;  ///< by view, from the finest lattice on; none where they are drawn anew
 };
 
 }  // namespace meshlode::build

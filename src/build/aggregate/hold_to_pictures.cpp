@@ -19,10 +19,19 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 using Uses = std::vector<std::vector<NoiseUse>>;
 
-/// How finely whole cuts are looked at, and how much more or less they may cover.
+/// How finely whole cuts are looked at, from where, and how much more or less they may cover.
 struct Scrutiny {
+  Sampling views;        ///< all that counts of it
   double grain, finest;  ///< as CutMeter's
+  double closest;        ///< as `finest`, where fewer samples than these see anything
+  double fewest_seen;
   double most_shift;
+
+  [[nodiscard]] bool may_be_closer() const { return finest > closest; }
+  void be_closer() {
+    grain *= 0.5;
+    finest *= 0.5;
+  }
 };
 
 /// `finest`: pixels that measure_proposals() looked at.
@@ -33,19 +42,28 @@ Scrutiny scrutiny_of(const ThinnedWays& ways, double finest) {
   }
   // Wider samples find the sums of thin blades by luck, to some percent.
   const double grain = 0.25 * piece;
-  // Of few triangles some are large, and what a handful covers hangs on the directions that it is looked at from. They
-  // are looked at in 256 to 1,024 samples across, and not in so many where pieces are so small that these miss them
-  // too.
-  constexpr std::size_t kFewTriangles = 4096;
-  constexpr double kMostFewShift = 0.010, kFewPixels = 128.0, kFewestAcross = 256.0, kMostAcross = 4096.0;
-  if (ways.leaves.triangles.items.size() > kFewTriangles) return {grain, finest, kMostCutShift};
+  // Of few triangles some are large, and what a handful covers, and how much noise it has, hangs on the directions that
+  // it is looked at from. They are looked at from many, in 256 to 1,024 samples across, and not in so many where pieces
+  // are so small that these miss them too, unless so few see anything that a sum has more than half a percent of luck.
+  // If it has even so, nothing can be told of needles like these.
+  constexpr double kFewestSeen = 40'000.0;
+  constexpr std::size_t kFewTriangles = 4096, kAHandful = 1024;
+  constexpr double kMostFewShift = 0.015, kFewPixels = 128.0, kFewestAcross = 256.0, kMostAcross = 4096.0;
+  const std::size_t triangles = ways.leaves.triangles.items.size();
+  if (triangles > kFewTriangles) return {ways.sampling, grain, finest, finest, 0.0, kMostCutShift};
+  const std::span<const View> from =
+      triangles > kAHandful ? std::span<const View>(many_views()) : std::span<const View>(most_views());
   const double longest = ways.frame.longest;
-  return {std::min(grain, longest / kFewestAcross),
-          longest / (grain >= longest / kMostAcross ? kFewPixels : 0.5 * kFewPixels), kMostFewShift};
+  return {{from, from.size()},
+          std::min(grain, longest / kFewestAcross),
+          longest / (grain >= longest / kMostAcross ? kFewPixels : 0.5 * kFewPixels),
+          longest / kFewPixels,
+          kFewestSeen,
+          kMostFewShift};
 }
 
-/// What a cut at a pixel size draws.
-ThinnedCut cut_at(const ThinnedWays& ways, const Uses& uses, double pixel_size) {
+/// What a cut at a pixel size draws, and what that shows of itself in the sampling's views.
+ThinnedCut cut_at(const ThinnedWays& ways, const Sampling& sampling, const Uses& uses, double pixel_size) {
   ThinnedCut cut;
   ShownArea shown, source;
   std::vector<std::uint8_t> is_replaced(ways.leaves.size(), 0), is_ever(ways.leaves.size(), 0);
@@ -63,7 +81,7 @@ ThinnedCut cut_at(const ThinnedWays& ways, const Uses& uses, double pixel_size) 
       for (const Corners& c : way.triangles) {
         const Vec3d twice = glm::cross(c[1] - c[0], c[2] - c[0]);
         const double length = glm::length(twice);
-        if (length > 0.0) shown.add(ways.sampling, twice / length, 0.5 * length);
+        if (length > 0.0) shown.add(sampling, twice / length, 0.5 * length);
       }
     }
   }
@@ -73,8 +91,8 @@ ThinnedCut cut_at(const ThinnedWays& ways, const Uses& uses, double pixel_size) 
     if (is_replaced[leaf] == 0) cut.leaves.push_back(leaf);
     for (const std::uint32_t c : ways.leaves.cards_of(leaf, leaf + 1)) {
       const Card& card = ways.cards.cards[c];
-      source.add(ways.sampling, card.normal(), card.area);
-      if (is_replaced[leaf] == 0) shown.add(ways.sampling, card.normal(), card.area);
+      source.add(sampling, card.normal(), card.area);
+      if (is_replaced[leaf] == 0) shown.add(sampling, card.normal(), card.area);
     }
   }
   cut.luck = shown.luck() / source.luck();
@@ -97,9 +115,9 @@ void move_all_between(Uses& uses, double low, double high, double to) {
   }
 }
 
-/// From small pixels to large ones. False: some groups never come any more, and all is to be looked at again, since
-/// leaves that nothing replaces are not compared with.
-bool are_held(const ThinnedWays& ways, const Scrutiny& how, Uses& uses) {
+/// From small pixels to large ones. False: all is to be looked at again, since some groups never come any more, and
+/// leaves that nothing replaces are not compared with; or more closely than so far.
+bool are_held(const ThinnedWays& ways, Scrutiny& how, Uses& uses) {
   double smallest = kInfinity, largest = 0.0;
   for (const std::vector<NoiseUse>& level : uses) {
     for (const NoiseUse& use : level) {
@@ -112,13 +130,19 @@ bool are_held(const ThinnedWays& ways, const Scrutiny& how, Uses& uses) {
   std::size_t count = 1;
   double size = largest;
   for (; 0.5 * size >= smallest; size *= 0.5) ++count;
-  const CutMeter meter(ways.source, ways.frame, ways.leaves.triangles, size, count, how.grain, how.finest);
+  const CutMeter meter(ways.source, ways.frame, ways.leaves.triangles, how.views.views.first(how.views.counted), size,
+                       count, how.grain, how.finest);
   double held = 0.0;  // cuts up to there are as they should be
   for (std::size_t i = 0; i < count; ++i, size *= 2.0) {
     // What is drawn in larger pixels too has less noise there, and covers as much.
     if (is_any_between(uses, held, size)) {
-      const CutChange change = meter.measure(cut_at(ways, uses, size), i);
-      if (change.noise > kMostCutNoise || std::fabs(change.sum_shift) > how.most_shift) {
+      const CutChange change = meter.measure(cut_at(ways, how.views, uses, size), i);
+      if (change.samples < how.fewest_seen && how.may_be_closer()) {
+        how.be_closer();
+        return false;
+      }
+      if (change.noise > kMostCutNoise || std::fabs(change.sum_shift) > how.most_shift ||
+          change.samples < how.fewest_seen) {
         const bool is_last = i + 1 == count;
         move_all_between(uses, held, 2.0 * size, is_last ? kInfinity : 2.0 * size);
         if (is_last) return false;
@@ -134,7 +158,7 @@ bool are_held(const ThinnedWays& ways, const Scrutiny& how, Uses& uses) {
 
 void hold_to_pictures(const ThinnedWays& ways, double finest, std::vector<std::vector<NoiseUse>>& uses) {
   constexpr int kPasses = 8;
-  const Scrutiny how = scrutiny_of(ways, finest);
+  Scrutiny how = scrutiny_of(ways, finest);
   for (int pass = 0; pass < kPasses; ++pass) {
     if (are_held(ways, how, uses)) return;
   }

@@ -50,6 +50,11 @@ const std::array<View, kManyViews>& many_views() {
   return all;
 }
 
+const std::array<View, kMostViews>& most_views() {
+  static const auto all = make_views<kMostViews>(kMostViews);
+  return all;
+}
+
 Lattice::Lattice(const Vec3d& ball_center, double ball_radius, double sample_spacing)
     : center(ball_center), spacing(sample_spacing), offset(std::ceil(4.0 * ball_radius / sample_spacing) + 16.0) {}
 

@@ -24,6 +24,9 @@ struct View {
 /// Many more from all around above. A handful of cards shows itself to thirteen directions by luck.
 constexpr std::size_t kManyViews = 48;
 [[nodiscard]] const std::array<View, kManyViews>& many_views();
+/// More still: the noise of a handful of cards hangs on the direction more than what they cover does.
+constexpr std::size_t kMostViews = 144;
+[[nodiscard]] const std::array<View, kMostViews>& most_views();
 
 /// Samples of a picture: a point's place in whole samples, the first ones at least some samples from the border.
 struct Lattice {

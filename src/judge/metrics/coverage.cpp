@@ -17,18 +17,20 @@ namespace meshlode::judge {
 
 namespace {
 
-constexpr std::size_t kDirections = 37;
+constexpr std::size_t kDirections = 37, kCloserDirections = 149;
 constexpr std::size_t kFewestSamples = 8;  // of a pixel, each way
 constexpr double kMostSide = 8192.0;
 // Samples of triangles that hide nothing of each other, in all directions together.
 constexpr double kFewestCovered = 50000.0, kFewestMasked = 400000.0;
+// Samples that are covered in fact, whatever hides what and whatever masks let through: a percent of luck.
+constexpr double kFewestSeen = 10000.0;
 
 struct Picture {
   Vec3d right, up;
 };
 
-Picture picture_of(std::size_t direction) {
-  const double z = 1.0 - (static_cast<double>(direction) + 0.5) / static_cast<double>(kDirections);
+Picture picture_of(std::size_t direction, std::size_t count) {
+  const double z = 1.0 - (static_cast<double>(direction) + 0.5) / static_cast<double>(count);
   const double around = std::numbers::pi * (3.0 - std::sqrt(5.0)) * static_cast<double>(direction) + 1.7;
   const double out = std::sqrt(1.0 - z * z);
   const Vec3d view(out * std::cos(around), z, out * std::sin(around));
@@ -207,18 +209,25 @@ std::optional<CoverageDrift> measure_coverage(std::span<const CoveringTriangle> 
   const double width = std::sqrt(area / static_cast<double>(source.size()));
   const bool has_masks =
       std::any_of(source.begin(), source.end(), [](const CoveringTriangle& t) { return t.mask != format::kNone; });
+  const std::size_t directions = closer > 1.0 ? kCloserDirections : kDirections;
   const double fewest = closer * (has_masks ? kFewestMasked : kFewestCovered);
-  const double few = std::sqrt(0.5 * area * static_cast<double>(kDirections) / fewest);
+  const double few = std::sqrt(0.5 * area * static_cast<double>(directions) / fewest);
   std::size_t samples_a_pixel = kFewestSamples;
   const auto side = [&] { return glm::length(high - low) / pixel_size * static_cast<double>(samples_a_pixel); };
   while (pixel_size > std::min(0.5 * width, few) * static_cast<double>(samples_a_pixel) && 2.0 * side() <= kMostSide)
     samples_a_pixel *= 2;
   if (side() > kMostSide) return std::nullopt;
-  const double spacing = pixel_size / static_cast<double>(samples_a_pixel);
-  std::array<Sums, kDirections> of_direction;
-  parallel_for_each_index(kDirections, 1, [&](std::size_t d) {
-    of_direction[d] = look(source, cut, masks, spacing, samples_a_pixel, picture_of(d));
-  });
+  std::vector<Sums> of_direction(directions);
+  for (;; samples_a_pixel *= 2) {
+    const double spacing = pixel_size / static_cast<double>(samples_a_pixel);
+    parallel_for_each_index(directions, 1, [&](std::size_t d) {
+      of_direction[d] = look(source, cut, masks, spacing, samples_a_pixel, picture_of(d, directions));
+    });
+    double seen = 0.0;  // in each of the four pixels that have it
+    for (const Sums& sums : of_direction) seen += 0.25 * sums.source;
+    seen *= static_cast<double>(samples_a_pixel * samples_a_pixel);
+    if (seen >= closer * kFewestSeen || 2.0 * side() > kMostSide) break;
+  }
   Sums all;
   CoverageDrift drift;
   double source_variance = 0.0, cut_variance = 0.0;

@@ -91,12 +91,13 @@ FlatNearest nearest_on_flat(const Row<N>& x, const Corners<N>& corners) {
   for (std::size_t k = 0; k < N; ++k) across[k] -= foot * along[k];
   const double height2 = dot(across, across);
   const double t = dot(v, along) / longest2;
-  const double h = height2 > 1e-28 * longest2 ? dot(v, across) / height2 : 0.0;
-  double residual2 = 0.0;
-  for (std::size_t k = 0; k < N; ++k) {
-    const double rest = v[k] - t * along[k] - h * across[k];
-    residual2 += rest * rest;
-  }
+  // What is left of v without its part along the edge, not v itself: `across` is rounded by the edge's length, and a
+  // needle's height is small beside that.
+  Row<N> rest = v;
+  for (std::size_t k = 0; k < N; ++k) rest[k] -= t * along[k];
+  const double h = height2 > 1e-28 * longest2 ? dot(rest, across) / height2 : 0.0;
+  for (std::size_t k = 0; k < N; ++k) rest[k] -= h * across[k];
+  const double residual2 = dot(rest, rest);
   // In the plane: corners at (0, 0), (1, 0) and (foot, 1), lengths `along` and `across`.
   const double w2 = h, w1 = t - h * foot;
   if (height2 > 1e-28 * longest2 && w1 >= 0.0 && w2 >= 0.0 && w1 + w2 <= 1.0) {

@@ -2,6 +2,7 @@
 // Whole cuts against a source of two sheets, one close behind the other: either hides what becomes of the other.
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -46,9 +47,10 @@ class CutMeterTest : public ::testing::Test {
     return std::move(*mesh);
   }
 
-  [[nodiscard]] CutMeter meter(double grain = 0.02) const {
-    return {source_, {Vec3d(0.0), 0.7, 1.0}, leaves_, kSmallest, kSizes, grain, 1.0 / 110.0};
+  [[nodiscard]] CutMeter meter(double grain = 0.02, std::span<const View> from = views_above()) const {
+    return {source_, {Vec3d(0.0), 0.7, 1.0}, leaves_, from, kSmallest, kSizes, grain, 1.0 / 110.0};
   }
+  static std::span<const View> views_above() { return std::span(views()).first(kViews); }
   [[nodiscard]] std::vector<Corners> triangles_of(std::uint32_t leaf) const {
     std::vector<Corners> triangles;
     for (const std::uint32_t t : leaves_.of(leaf)) triangles.push_back(corners_of(mesh_, t));
@@ -107,6 +109,18 @@ TEST_F(CutMeterTest, LeavesThatNothingReplacesAreNoPartOfIt) {
   const CutChange change = meter.measure({{1}, {}, triangles_of(1), 1.0}, 0);
   EXPECT_LT(change.noise, 0.02);
   EXPECT_DOUBLE_EQ(meter.measure({{1}, {}, {}, 1.0}, 0).noise, 1.0) << "leaf 0 would hide it";
+}
+
+TEST_F(CutMeterTest, ManyViewsSeeSoManyMoreSamplesAndFindTheSame) {
+  const CutMeter few = meter(), many = meter(0.02, many_views());
+  for (std::size_t size = 0; size < kSizes; ++size) {
+    const ThinnedCut cut{{0, 1}, {0}, {}, 1.0};
+    const CutChange by_few = few.measure(cut, size), by_many = many.measure(cut, size);
+    EXPECT_GT(by_few.samples, 0.0);
+    EXPECT_NEAR(by_many.samples / by_few.samples, 48.0 / 13.0, 0.15) << size;
+    EXPECT_NEAR(by_many.sum_shift, by_few.sum_shift, 0.02) << size;
+    EXPECT_NEAR(by_many.noise, by_few.noise, 0.03) << size;
+  }
 }
 
 TEST_F(CutMeterTest, FinerSamplesFindTheSame) {

@@ -176,6 +176,34 @@ TEST(ProductDistance, FlatTrianglesAreMetInTheirInsideOnEdgesAndAtCorners) {
   EXPECT_NEAR(edge.weight[0] + edge.weight[1], 1.0, 1e-12);
 }
 
+TEST(ProductDistance, ANeedlesOwnPointsAreOnItButForTheLastBitsOfItsLength) {
+  RandomSource random(41);
+  const auto row = [&] {
+    product::Row<8> out{};
+    for (std::size_t k = 0; k < 8; ++k) out[k] = random.signed_unit();
+    return out;
+  };
+  for (const double height : {1e-1, 1e-3, 1e-5, 1e-8, 1e-11, 1e-13}) {
+    for (int round = 0; round < 200; ++round) {
+      const product::Row<8> at = row(), along = row(), aside = row();
+      product::Corners<8> corners{at, at, at};
+      const double foot = random.unit();
+      for (std::size_t k = 0; k < 8; ++k) {
+        corners[1][k] += along[k];
+        corners[2][k] += foot * along[k] + height * aside[k];
+      }
+      const double b = 0.5 * random.unit(), c = 0.5 * random.unit();
+      product::Row<8> inside{};
+      for (std::size_t k = 0; k < 8; ++k) {
+        inside[k] = corners[0][k] + b * (corners[1][k] - corners[0][k]) + c * (corners[2][k] - corners[0][k]);
+      }
+      for (const product::Row<8>& point : {corners[0], corners[1], corners[2], inside}) {
+        EXPECT_LE(std::sqrt(product::nearest_on_flat<8>(point, corners).distance2), 2e-15) << "height " << height;
+      }
+    }
+  }
+}
+
 TEST(ProductDistance, IsThatOfThePositionsWhereNothingElseCounts) {
   RandomSource random(5);
   for (int round = 0; round < 4; ++round) {

@@ -263,5 +263,30 @@ TEST(CoverageDrift, LooksThroughMasks) {
   EXPECT_NEAR(drift->mean, -0.5, 0.02) << "the left half passes";
 }
 
+TEST(CoverageDrift, SamplesThatSeeSomethingCountNotThoseOfWhatAMaskHides) {
+  // Crumbs, and around them a sheet two thousand times their area that lets everything through.
+  draw::AlphaMasks masks;
+  masks.images.push_back({1, 1, {0}});
+  draw::AlphaMask mask;
+  mask.threshold = 1;
+  mask.image = 0;
+  masks.masks.push_back(mask);
+  std::vector<CoveringTriangle> source{{{Vec3d(-0.5, -0.5, 0), Vec3d(1.5, -0.5, 0), Vec3d(0.5, 1.5, 0)}, {}, 0}}, moved;
+  for (const CoveringTriangle& crumb : cards(40, 0.01)) {
+    CoveringTriangle there = crumb, elsewhere = crumb;
+    for (std::size_t k = 0; k < 3; ++k) {
+      there.corners[k] *= 0.2;
+      elsewhere.corners[k] = there.corners[k] + Vec3d(0.0037, -0.0021, 0.0011);
+    }
+    source.push_back(there);
+    moved.push_back(elsewhere);
+  }
+  for (const double size : {0.040, 0.043, 0.046, 0.050, 0.054}) {
+    const auto drift = measure_coverage(source, moved, masks, size);
+    ASSERT_TRUE(drift);
+    EXPECT_NEAR(drift->mean, 0.0, 0.02) << size;
+  }
+}
+
 }  // namespace
 }  // namespace meshlode::judge
