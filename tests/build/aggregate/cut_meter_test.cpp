@@ -124,8 +124,8 @@ TEST_F(CutMeterTest, ManyViewsSeeSoManyMoreSamplesAndFindTheSame) {
 }
 
 TEST_F(CutMeterTest, FinerSamplesFindTheSame) {
-  // Pixels of 0.02 to 0.32 with samples an eighth of them wide, or of 0.02 at most, or of a thousandth.
-  const CutMeter wide = meter(1.0), narrow = meter(0.0);
+  // Pixels of 0.02 to 0.32 with samples an eighth of them wide, or of 0.005 at most.
+  const CutMeter wide = meter(1.0), narrow = meter(0.005);
   for (std::size_t size = 0; size < kSizes; ++size) {
     const ThinnedCut cut{{0, 1}, {0}, {}, 1.0};
     EXPECT_NEAR(wide.measure(cut, size).sum_shift, narrow.measure(cut, size).sum_shift, 0.03) << size;
