@@ -22,6 +22,14 @@ inline std::size_t thread_limit() {
   return static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
 }
 
+/// Runs the body with so many threads at most, and returns what it does.
+template <class Body>
+auto with_threads_at_most(std::size_t count, const Body& body) {
+  if (count >= thread_limit()) return body();
+  tbb::task_arena arena(static_cast<int>(std::max<std::size_t>(1, count)));
+  return arena.execute(body);
+}
+
 /// How many chunks of `length` cover `count`.
 constexpr std::size_t chunk_count(std::size_t count, std::size_t length) {
   return (count + length - 1) / length;

@@ -54,7 +54,12 @@ Status check_build(const scene::Scene& scene, const PipelineOptions& options) {
 struct MemoryFit {
   std::size_t at_once = 1;
   bool is_short = false;  ///< large arrays go to a file
+  std::size_t threads = 1;
 };
+
+/// Each thread that comes here and there to what lies in the file brings more of it into memory than it asks for, and
+/// sooner than it can be taken out again: sixteen of them under 1 GiB went beyond it, and were no quicker than eight.
+constexpr std::uint64_t kLimitOfThread = std::uint64_t{128} << 20U;
 
 /// Refuses what memory has no room for, before any mesh is built.
 Result<MemoryFit> check_memory(const scene::Scene& scene, const PipelineOptions& options,
@@ -64,7 +69,10 @@ Result<MemoryFit> check_memory(const scene::Scene& scene, const PipelineOptions&
   const Result<std::size_t> at_once = fit_memory(estimate, threads, options);
   report.memory_estimate = estimate.bytes(at_once ? *at_once : 1);
   if (!at_once) return at_once.error();
-  return MemoryFit{*at_once, options.max_memory > 0 && report.memory_estimate > options.max_memory};
+  MemoryFit fit{*at_once, options.max_memory > 0 && report.memory_estimate > options.max_memory, threads};
+  if (fit.is_short)
+    fit.threads = std::min<std::size_t>(threads, std::max<std::uint64_t>(2, options.max_memory / kLimitOfThread));
+  return fit;
 }
 
 struct BuiltMesh {
@@ -339,7 +347,8 @@ Result<std::vector<std::uint8_t>> build_asset_of(const Source& from, const Pipel
   Result<Survey> found = survey(scene, options, std::move(aggregates));
   if (!found) return found.error();
   found->is_memory_short = fit->is_short;
-  Result<std::vector<BuiltMesh>> meshes = build_meshes(from, options, *found, fit->at_once, progress);
+  Result<std::vector<BuiltMesh>> meshes =
+      with_threads_at_most(fit->threads, [&] { return build_meshes(from, options, *found, fit->at_once, progress); });
   if (!meshes) return meshes.error();
 
   WriteInput input;

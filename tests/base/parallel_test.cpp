@@ -33,6 +33,16 @@ TEST(Parallel, AllTurnsAreTakenByAnyNumberOfThreads) {
   }
 }
 
+TEST(Parallel, FewerThreadsAreAskedForAndNeverMore) {
+  tbb::task_arena arena(4);
+  arena.execute([] {
+    EXPECT_EQ(with_threads_at_most(2, [] { return thread_limit(); }), 2U);
+    EXPECT_EQ(with_threads_at_most(0, [] { return thread_limit(); }), 1U);
+    EXPECT_EQ(with_threads_at_most(9, [] { return thread_limit(); }), 4U);
+    EXPECT_EQ(thread_limit(), 4U);
+  });
+}
+
 TEST(Parallel, ResizedArraysKeepWhatTheyHadAndAreClearedBehind) {
   std::vector<int> numbers{1, 2};
   std::vector<double> others;
