@@ -54,25 +54,23 @@ Status check_build(const scene::Scene& scene, const PipelineOptions& options) {
 struct MemoryFit {
   std::size_t at_once = 1;
   bool is_short = false;  ///< large arrays go to a file
-  std::size_t threads = 1;
+  std::uint32_t threads = 1;
 };
-
-/// Each thread that comes here and there to what lies in the file brings more of it into memory than it asks for, and
-/// sooner than it can be taken out again: sixteen of them under 1 GiB went beyond it, and were no quicker than eight.
-constexpr std::uint64_t kLimitOfThread = std::uint64_t{128} << 20U;
 
 /// Refuses what memory has no room for, before any mesh is built.
 Result<MemoryFit> check_memory(const scene::Scene& scene, const PipelineOptions& options,
                                std::span<const AggregateDecision> aggregates, PipelineReport& report) {
-  const auto threads = static_cast<std::uint32_t>(thread_limit());
-  const MemoryEstimate estimate = estimate_memory(scene, options, threads, aggregates);
+  auto threads = static_cast<std::uint32_t>(thread_limit());
+  MemoryEstimate estimate = estimate_memory(scene, options, threads, aggregates);
+  const auto is_short = [&] { return options.max_memory > 0 && estimate.bytes(1) > options.max_memory; };
+  if (is_short()) {
+    threads = threads_within(options.max_memory, threads);
+    estimate = estimate_memory(scene, options, threads, aggregates);
+  }
   const Result<std::size_t> at_once = fit_memory(estimate, threads, options);
   report.memory_estimate = estimate.bytes(at_once ? *at_once : 1);
   if (!at_once) return at_once.error();
-  MemoryFit fit{*at_once, options.max_memory > 0 && report.memory_estimate > options.max_memory, threads};
-  if (fit.is_short)
-    fit.threads = std::min<std::size_t>(threads, std::max<std::uint64_t>(2, options.max_memory / kLimitOfThread));
-  return fit;
+  return MemoryFit{*at_once, is_short(), threads};
 }
 
 struct BuiltMesh {

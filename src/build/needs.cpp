@@ -36,6 +36,7 @@ constexpr std::uint64_t kVertexFloat = 8;
 // quarter of the limit is for the arrays.
 constexpr std::uint64_t kUnspilledTriangle = 30;
 constexpr std::uint64_t kSpillRoom = 24u << 20u;
+constexpr std::uint64_t kLimitOfThread = 128u << 20u;
 
 template <class T>
 std::uint64_t bytes_of(const std::vector<T>& values) {
@@ -122,6 +123,11 @@ MemoryEstimate estimate_memory(const scene::Scene& scene, const PipelineOptions&
   estimate.spilled += estimate.spilled / 3;
   std::sort(estimate.working.begin(), estimate.working.end(), std::greater<>());
   return estimate;
+}
+
+std::uint32_t threads_within(std::uint64_t limit, std::uint32_t threads) {
+  return static_cast<std::uint32_t>(
+      std::min<std::uint64_t>(threads, std::max<std::uint64_t>(2, limit / kLimitOfThread)));
 }
 
 Result<std::size_t> fit_memory(const MemoryEstimate& estimate, std::uint32_t threads, const PipelineOptions& options) {

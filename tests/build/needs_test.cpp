@@ -97,6 +97,15 @@ TEST(Needs, AsManyMeshesAreInWorkAtOnceAsFit) {
   EXPECT_EQ(*fit_memory({1, {}}, 0, options), 1u) << "a scene without meshes";
 }
 
+TEST(Needs, AThreadForEachSoManyBytesOfALimitTwoAtLeast) {
+  EXPECT_EQ(threads_within(1024 * kMiB, 16), 8u);
+  EXPECT_EQ(threads_within(1024 * kMiB, 4), 4u);
+  EXPECT_EQ(threads_within(4096 * kMiB, 16), 16u);
+  EXPECT_EQ(threads_within(100 * kMiB, 16), 2u);
+  EXPECT_EQ(threads_within(100 * kMiB, 1), 1u);
+  EXPECT_EQ(threads_within(~std::uint64_t{0}, 16), 16u);
+}
+
 /// A wavy sheet of 2 · n² triangles, `count` times.
 scene::Scene sheets(std::uint32_t n, std::size_t count, bool has_attributes) {
   scene::Scene scene;
@@ -142,8 +151,9 @@ TEST(Needs, OneMeshAfterAnotherGivesTheSameBytes) {
     const auto taken_apart = build_lode(scene::Scene(scene), options, {}, one_by_one);
     ASSERT_TRUE(taken_apart);
     EXPECT_EQ(*all, *taken_apart) << "the scene is freed along the way";
-    options.max_memory = estimate.bytes(1) - 1;
-    EXPECT_FALSE(build_lode(scene, options, {}, one_by_one));
+    options.max_memory = estimate_memory(scene, options, 2).bytes(1) - 1;
+    PipelineReport refused;
+    EXPECT_FALSE(build_lode(scene, options, {}, refused)) << "too much for two threads";
   });
   EXPECT_EQ(side_by_side.memory_estimate, estimate.bytes(4));
   EXPECT_EQ(one_by_one.memory_estimate, estimate.bytes(1));
@@ -227,6 +237,20 @@ void expect_close(const Measured& measured, const std::string& what) {
               static_cast<double>(measured.estimate) / 0x1p20, static_cast<double>(measured.peak) / 0x1p20, ratio);
   EXPECT_GE(ratio, 1.0) << what;
   EXPECT_LE(static_cast<double>(measured.estimate), 1.8 * static_cast<double>(measured.peak) + 24.0 * 0x1p20) << what;
+}
+
+TEST(Needs, WhatTwoThreadsKeepIsNotRefusedToSixteen) {
+  const scene::Scene scene = sheets(20, 1, false);
+  PipelineOptions options;
+  options.max_memory = estimate_memory(scene, options, 2).bytes(1);
+  ASSERT_LT(options.max_memory, estimate_memory(scene, options, 16).bytes(1));
+  tbb::task_arena arena(16);
+  arena.execute([&] {
+    PipelineReport report;
+    const auto bytes = build_lode(scene, options, {}, report);
+    EXPECT_TRUE(bytes) << bytes.error().message();
+    EXPECT_EQ(report.memory_estimate, options.max_memory);
+  });
 }
 
 TEST(Needs, MemoryIsEstimatedFromAboveAndCloseEnough) {

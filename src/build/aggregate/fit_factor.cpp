@@ -26,9 +26,9 @@ Corners on_grid(const format::PositionGrid& grid, const Corners& corners) {
 
 }  // namespace
 
-ShownArea shown_by(const Sampling& sampling, const Splats& splats) {
+ShownArea shown_by(std::span<const View> views, const Splats& splats) {
   ShownArea shown;
-  for (const Splat& splat : splats.splats) shown.add(sampling, splat.normal(), splat.area);
+  for (const Splat& splat : splats.splats) shown.add(views, splat.normal(), splat.area);
   return shown;
 }
 
@@ -49,7 +49,8 @@ void fit_factor(const MeshFrame& frame, const format::PositionGrid& grid, const 
   const Sampling& sampling = target.sampling;
   const double spacing = sampling.spacing_of(target.area, way.splats.splats.size());
   const double weight = spacing * spacing / (sampling.spacing * sampling.spacing);  // in samples of the source
-  const double wanted = sampling.sum(target.covered) * shown_by(sampling, way.splats).luck() / target.luck;
+  const double wanted =
+      sampling.sum(target.covered) * shown_by(sampling.counted_views(), way.splats).luck() / target.luck;
   if (!(wanted > 0.0)) return;
   double factor = start;
   double low = 0.0, high = 0.0;  // what covers less, and more; 0: nothing so far

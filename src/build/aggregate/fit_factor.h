@@ -25,6 +25,7 @@ struct Sampling {
   double spacing = 0.0;     ///< of the source's; cards that are larger need fewer samples
   double samples_each = 0.0;
 
+  [[nodiscard]] std::span<const View> counted_views() const { return views.first(counted); }
   [[nodiscard]] double sum(const Covered& covered) const {
     double all = 0.0;
     for (std::size_t v = 0; v < counted; ++v) all += static_cast<double>(covered[v]);
@@ -41,13 +42,12 @@ struct Sampling {
 /// What views show of cards that do not hide each other, and how much that is over all directions.
 class ShownArea {
  public:
-  void add(const Sampling& sampling, const Vec3d& normal, double area) {
+  void add(std::span<const View> views, const Vec3d& normal, double area) {
     area_ += area;
-    views_ = sampling.counted;
-    for (const View& view : sampling.views.first(sampling.counted))
-      shown_ += area * std::fabs(glm::dot(normal, view.toward));
+    views_ = views.size();
+    for (const View& view : views) shown_ += area * std::fabs(glm::dot(normal, view.toward));
   }
-  /// \pre by the same sampling
+  /// \pre in the same views
   void add(const ShownArea& other) {
     area_ += other.area_;
     shown_ += other.shown_;
@@ -65,7 +65,7 @@ class ShownArea {
   std::size_t views_ = 0;
 };
 
-[[nodiscard]] ShownArea shown_by(const Sampling& sampling, const Splats& splats);
+[[nodiscard]] ShownArea shown_by(std::span<const View> views, const Splats& splats);
 
 /// A way of thinning out that covers as much, or none.
 struct Fitted {

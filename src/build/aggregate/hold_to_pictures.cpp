@@ -21,7 +21,7 @@ using Uses = std::vector<std::vector<NoiseUse>>;
 
 /// How finely whole cuts are looked at, from where, and how much more or less they may cover.
 struct Scrutiny {
-  Sampling views;        ///< all that counts of it
+  std::span<const View> views;
   double grain, finest;  ///< as CutMeter's
   double closest;        ///< as `finest`, where fewer samples than these see anything
   double fewest_seen;
@@ -50,11 +50,11 @@ Scrutiny scrutiny_of(const ThinnedWays& ways, double finest) {
   constexpr std::size_t kFewTriangles = 4096, kAHandful = 1024;
   constexpr double kMostFewShift = 0.015, kFewPixels = 128.0, kFewestAcross = 256.0, kMostAcross = 4096.0;
   const std::size_t triangles = ways.leaves.triangles.items.size();
-  if (triangles > kFewTriangles) return {ways.sampling, grain, finest, finest, 0.0, kMostCutShift};
+  if (triangles > kFewTriangles) return {std::span(views()).first(kViews), grain, finest, finest, 0.0, kMostCutShift};
   const std::span<const View> from =
       triangles > kAHandful ? std::span<const View>(many_views()) : std::span<const View>(most_views());
   const double longest = ways.frame.longest;
-  return {{from, from.size()},
+  return {from,
           std::min(grain, longest / kFewestAcross),
           longest / (grain >= longest / kMostAcross ? kFewPixels : 0.5 * kFewPixels),
           longest / kFewPixels,
@@ -62,8 +62,8 @@ Scrutiny scrutiny_of(const ThinnedWays& ways, double finest) {
           kMostFewShift};
 }
 
-/// What a cut at a pixel size draws, and what that shows of itself in the sampling's views.
-ThinnedCut cut_at(const ThinnedWays& ways, const Sampling& sampling, const Uses& uses, double pixel_size) {
+/// What a cut at a pixel size draws, and by what luck the views show more of it.
+ThinnedCut cut_at(const ThinnedWays& ways, std::span<const View> views, const Uses& uses, double pixel_size) {
   ThinnedCut cut;
   ShownArea shown, source;
   std::vector<std::uint8_t> is_replaced(ways.leaves.size(), 0), is_ever(ways.leaves.size(), 0);
@@ -81,7 +81,7 @@ ThinnedCut cut_at(const ThinnedWays& ways, const Sampling& sampling, const Uses&
       for (const Corners& c : way.triangles) {
         const Vec3d twice = glm::cross(c[1] - c[0], c[2] - c[0]);
         const double length = glm::length(twice);
-        if (length > 0.0) shown.add(sampling, twice / length, 0.5 * length);
+        if (length > 0.0) shown.add(views, twice / length, 0.5 * length);
       }
     }
   }
@@ -91,8 +91,8 @@ ThinnedCut cut_at(const ThinnedWays& ways, const Sampling& sampling, const Uses&
     if (is_replaced[leaf] == 0) cut.leaves.push_back(leaf);
     for (const std::uint32_t c : ways.leaves.cards_of(leaf, leaf + 1)) {
       const Card& card = ways.cards.cards[c];
-      source.add(sampling, card.normal(), card.area);
-      if (is_replaced[leaf] == 0) shown.add(sampling, card.normal(), card.area);
+      source.add(views, card.normal(), card.area);
+      if (is_replaced[leaf] == 0) shown.add(views, card.normal(), card.area);
     }
   }
   cut.luck = shown.luck() / source.luck();
@@ -130,8 +130,7 @@ bool are_held(const ThinnedWays& ways, Scrutiny& how, Uses& uses) {
   std::size_t count = 1;
   double size = largest;
   for (; 0.5 * size >= smallest; size *= 0.5) ++count;
-  const CutMeter meter(ways.source, ways.frame, ways.leaves.triangles, how.views.views.first(how.views.counted), size,
-                       count, how.grain, how.finest);
+  const CutMeter meter(ways.source, ways.frame, ways.leaves.triangles, how.views, size, count, how.grain, how.finest);
   double held = 0.0;  // cuts up to there are as they should be
   for (std::size_t i = 0; i < count; ++i, size *= 2.0) {
     // What is drawn in larger pixels too has less noise there, and covers as much.

@@ -21,7 +21,6 @@ struct ThinnedWays {
   const MeshFrame& frame;
   const Leaves& leaves;
   const Cards& cards;
-  const Sampling& sampling;  ///< of the usual views
   std::span<const std::vector<GroupProposals>> proposals;
   std::span<const std::vector<std::vector<Fitted>>> fitted;
 };

@@ -128,8 +128,7 @@ class Thinner {
     measure_proposals(source_, frame_, leaves_.triangles, frame_.longest / kFinestPixels, proposals);
     ThinMesh out;
     std::vector<std::vector<NoiseUse>> uses = uses_of(proposals);
-    hold_to_pictures({source_, frame_, leaves_, cards_.cards, fit_, proposals, fitted}, frame_.longest / kFinestPixels,
-                     uses);
+    hold_to_pictures({source_, frame_, leaves_, cards_.cards, proposals, fitted}, frame_.longest / kFinestPixels, uses);
     leave_out_undrawn(uses);
     for (std::size_t l = 0; l < proposals.size(); ++l)
       out.levels.push_back(choose_and_free(proposals[l], fitted[l], uses[l]));
@@ -149,7 +148,7 @@ class Thinner {
       if (way == ways.end()) return;
       all.insert(all.end(), way->triangles.begin(), way->triangles.end());
       shown.add(way->shown);
-      shown_to_many.add(shown_by(few_, way->splats));
+      shown_to_many.add(shown_by(few_.counted_views(), way->splats));
     }
     const double seen = fit_.sum(covered_samples(frame_, all, fit_.spacing, fit_.views)) / shown.luck();
     const double wanted = fit_.sum(covered_.back().front()) / luck_of_cards(fit_, leaves_.cards);
@@ -170,7 +169,7 @@ class Thinner {
   [[nodiscard]] double luck_of_cards(const Sampling& sampling, std::span<const std::uint32_t> chosen) const {
     ShownArea shown;
     for (const std::uint32_t c : chosen)
-      shown.add(sampling, cards_.cards.cards[c].normal(), cards_.cards.cards[c].area);
+      shown.add(sampling.counted_views(), cards_.cards.cards[c].normal(), cards_.cards.cards[c].area);
     return shown.luck();
   }
 
@@ -213,7 +212,7 @@ class Thinner {
     const Target usual{covered, fit_, area, luck_of_cards(fit_, chosen)};
     const Target by_many{seen_by_many_, few_, area, luck_of_many_};
     for (Fitted& way : ways) {
-      way.shown = shown_by(fit_, way.splats);
+      way.shown = shown_by(fit_.counted_views(), way.splats);
       way.luck = way.shown.luck() / usual.luck;
       const bool is_few = !seen_by_many_.empty() && way.splats.splats.size() <= kFewCards;
       fit_factor(frame_, grid_, is_few ? by_many : usual, factor, way);

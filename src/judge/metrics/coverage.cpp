@@ -20,6 +20,8 @@ namespace {
 constexpr std::size_t kDirections = 37, kCloserDirections = 149;
 constexpr std::size_t kFewestSamples = 8;  // of a pixel, each way
 constexpr double kMostSide = 8192.0;
+// Of needles that few samples see: as many samples as triangles may reach, in a picture of one direction.
+constexpr double kMostFineSide = 131072.0, kMostReach = kMostSide * kMostSide;
 // Samples of triangles that hide nothing of each other, in all directions together.
 constexpr double kFewestCovered = 50000.0, kFewestMasked = 400000.0;
 // Samples that are covered in fact, whatever hides what and whatever masks let through: a percent of luck.
@@ -55,19 +57,70 @@ bool texel_passes(const draw::AlphaMasks& masks, const CoveringTriangle& triangl
   return alpha * 255U >= mask.threshold;
 }
 
-/// Samples of one picture, a byte each: 1 where something covers.
+using Places = std::array<Vec2d, 3>;
+
+/// Samples of one picture, a byte each: 1 where something covers. They are in the middle of their cells, and of a row
+/// there are those that some triangle may reach.
 class Samples {
  public:
+  /// Between two corners of the picture; pixels start at the lower one, and two pixels of nothing are on each side.
   Samples(const Vec2d& low, const Vec2d& high, double spacing, std::size_t samples_a_pixel)
-      : low_(low - Vec2d(2.0 * static_cast<double>(samples_a_pixel) * spacing)),
+      : low_(low),
         spacing_(spacing),
         half_pixel_(samples_a_pixel / 2),
-        columns_(count(high.x - low.x)),
-        rows_(count(high.y - low.y)),
-        covered_(columns_ * rows_, 0) {}
+        squares_wide_(squares(high.x - low.x)),
+        squares_high_(squares(high.y - low.y)),
+        rows_(half_pixel_ * (squares_high_ - kAround)) {}
+
+  /// For all that will be drawn, before anything is.
+  void make_room_for(std::span<const std::span<const CoveringTriangle>> sets, const Picture& picture) {
+    for (const auto& triangles : sets) {
+      for (const CoveringTriangle& triangle : triangles) {
+        for_each_row(places(triangle, picture), [](Row& row, std::size_t, std::size_t first, std::size_t end) {
+          row.first = std::min(row.first, first);
+          row.end = std::max(row.end, end);
+        });
+      }
+    }
+    for (Row& row : rows_) {
+      row.at = reach_;
+      if (row.end > row.first) reach_ += row.end - row.first;
+    }
+  }
+  [[nodiscard]] std::size_t reach() const { return reach_; }  ///< samples that there is room for
+
+  /// The share of each pixel that the triangles cover, for pixels half a pixel apart.
+  [[nodiscard]] std::vector<double> draw(std::span<const CoveringTriangle> triangles, const Picture& picture,
+                                         const draw::AlphaMasks& masks) {
+    covered_.assign(reach_, 0);
+    for (const CoveringTriangle& triangle : triangles) draw(triangle, places(triangle, picture), masks);
+    return pixels();
+  }
+
+ private:
+  static constexpr std::size_t kBefore = 4, kAround = 8;  ///< squares of half a pixel, of nothing
+
+  struct Row {
+    std::size_t first = std::numeric_limits<std::size_t>::max(), end = 0;  ///< columns
+    std::size_t at = 0;                                                    ///< of `first` in covered_
+  };
+
+  static double cross(const Vec2d& a, const Vec2d& b) { return a.x * b.y - a.y * b.x; }
+  [[nodiscard]] std::size_t squares(double extent) const {
+    return static_cast<std::size_t>(std::ceil(extent / spacing_)) / half_pixel_ + 1 + kAround;
+  }
+
+  [[nodiscard]] Places places(const CoveringTriangle& triangle, const Picture& picture) const {
+    Places p;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3d& corner = triangle.corners[k];
+      p[k] = (Vec2d(glm::dot(corner, picture.right), glm::dot(corner, picture.up)) - low_) / spacing_;
+    }
+    return p;
+  }
 
   /// Where the sides of a triangle cross a row: from the first to the last; nowhere, the wrong way round.
-  [[nodiscard]] static std::pair<double, double> crossing(const std::array<Vec2d, 3>& p, double y) {
+  [[nodiscard]] static std::pair<double, double> crossing(const Places& p, double y) {
     double from = std::numeric_limits<double>::max(), to = -from;
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec2d &a = p[k], &b = p[(k + 1) % 3];
@@ -79,80 +132,74 @@ class Samples {
     return {from, to};
   }
 
-  void draw(const CoveringTriangle& triangle, const Picture& picture, const draw::AlphaMasks& masks) {
-    std::array<Vec2d, 3> p;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3d& corner = triangle.corners[k];
-      p[k] = (Vec2d(glm::dot(corner, picture.right), glm::dot(corner, picture.up)) - low_) / spacing_;
-    }
-    const double area = cross(p[1] - p[0], p[2] - p[0]);
-    if (area == 0.0) return;
+  /// body(row, y, first, end): of each row the columns that a triangle with area may cover.
+  template <class Body>
+  void for_each_row(const Places& p, const Body& body) {
+    if (cross(p[1] - p[0], p[2] - p[0]) == 0.0) return;
     const auto [left, right] = std::minmax({p[0].x, p[1].x, p[2].x});
     const auto [bottom, top] = std::minmax({p[0].y, p[1].y, p[2].y});
-    // Samples are in the middle of their cells.
     const auto first = [](double low) { return static_cast<std::size_t>(std::max(0.0, std::ceil(low - 0.5))); };
     const auto end = [](double high, std::size_t most) {
       return std::min(most, static_cast<std::size_t>(std::max(0.0, std::floor(high - 0.5) + 1.0)));
     };
-    for (std::size_t y = first(bottom); y < end(top, rows_); ++y) {
+    const std::size_t columns = half_pixel_ * (squares_wide_ - kAround);
+    for (std::size_t y = first(bottom); y < end(top, rows_.size()); ++y) {
       // Of a sliver across the picture few samples of a row are near it: a sample more on both sides, for rounding.
       const auto [from, to] = crossing(p, static_cast<double>(y) + 0.5);
       if (from > to) continue;
-      const std::size_t last = end(std::min(right, to + 1.0), columns_);
-      for (std::size_t x = first(std::max(left, from - 1.0)); x < last; ++x) {
+      const std::size_t x = first(std::max(left, from - 1.0)), x_end = end(std::min(right, to + 1.0), columns);
+      if (x < x_end) body(rows_[y], y, x, x_end);
+    }
+  }
+
+  void draw(const CoveringTriangle& triangle, const Places& p, const draw::AlphaMasks& masks) {
+    const double area = cross(p[1] - p[0], p[2] - p[0]);
+    for_each_row(p, [&](const Row& row, std::size_t y, std::size_t first, std::size_t end) {
+      for (std::size_t x = first; x < end; ++x) {
         const Vec2d at(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5);
         const double b = cross(at - p[0], p[2] - p[0]) / area, c = cross(p[1] - p[0], at - p[0]) / area;
         if (b < 0.0 || c < 0.0 || b + c > 1.0) continue;
-        std::uint8_t& covered = covered_[y * columns_ + x];
+        std::uint8_t& covered = covered_[row.at + (x - row.first)];
         if (covered != 0) continue;
         const Vec2d uv = (1.0 - b - c) * triangle.uv[0] + b * triangle.uv[1] + c * triangle.uv[2];
         if (triangle.mask == format::kNone || texel_passes(masks, triangle, uv)) covered = 1;
       }
-    }
+    });
   }
 
-  /// The share of each pixel that is covered, for pixels half a pixel apart.
   [[nodiscard]] std::vector<double> pixels() const {
-    const std::size_t columns = columns_ / half_pixel_ - 1, rows = rows_ / half_pixel_ - 1;
-    // A pixel is four squares of half its width.
-    const std::size_t width = columns + 1;
-    std::vector<std::uint32_t> squares(width * (rows + 1), 0);
-    for (std::size_t y = 0; y < half_pixel_ * (rows + 1); ++y) {
-      const std::uint8_t* row = &covered_[y * columns_];
-      for (std::size_t x = 0; x < width; ++x) {
-        for (std::size_t i = 0; i < half_pixel_; ++i) squares[y / half_pixel_ * width + x] += row[x * half_pixel_ + i];
-      }
+    std::vector<std::uint32_t> squares(squares_wide_ * squares_high_, 0);
+    for (std::size_t y = 0; y < rows_.size(); ++y) {
+      const Row& row = rows_[y];
+      std::uint32_t* const in_row = &squares[(kBefore + y / half_pixel_) * squares_wide_ + kBefore];
+      for (std::size_t x = row.first; x < row.end; ++x) in_row[x / half_pixel_] += covered_[row.at + (x - row.first)];
     }
+    // A pixel is four squares of half its width.
     const double all = 4.0 * static_cast<double>(half_pixel_ * half_pixel_);
     std::vector<double> out;
-    out.reserve(columns * rows);
-    for (std::size_t y = 0; y < rows; ++y) {
-      for (std::size_t x = 0; x < columns; ++x) {
-        const std::uint32_t* at = &squares[y * width + x];
-        out.push_back((at[0] + at[1] + at[width] + at[width + 1]) / all);
+    out.reserve((squares_wide_ - 1) * (squares_high_ - 1));
+    for (std::size_t y = 0; y + 1 < squares_high_; ++y) {
+      for (std::size_t x = 0; x + 1 < squares_wide_; ++x) {
+        const std::uint32_t* at = &squares[y * squares_wide_ + x];
+        out.push_back((at[0] + at[1] + at[squares_wide_] + at[squares_wide_ + 1]) / all);
       }
     }
     return out;
   }
 
- private:
-  /// With two pixels of nothing on each side, and a whole number of half pixels.
-  [[nodiscard]] std::size_t count(double extent) const {
-    const auto cells = static_cast<std::size_t>(std::ceil(extent / spacing_)) + 8 * half_pixel_;
-    return (cells + half_pixel_) / half_pixel_ * half_pixel_;
-  }
-  static double cross(const Vec2d& a, const Vec2d& b) { return a.x * b.y - a.y * b.x; }
-
   Vec2d low_;
   double spacing_;
   std::size_t half_pixel_;  ///< samples along it
-  std::size_t columns_, rows_;
+  std::size_t squares_wide_, squares_high_;
+  std::vector<Row> rows_;
+  std::size_t reach_ = 0;
   std::vector<std::uint8_t> covered_;
 };
 
 /// Sums over the pixels of one direction.
 struct Sums {
   double source = 0.0, cut = 0.0, source_squares = 0.0, cut_squares = 0.0, change_squares = 0.0, pixels = 0.0;
+  double reach = 0.0;  ///< samples
 };
 
 Sums look(std::span<const CoveringTriangle> source, std::span<const CoveringTriangle> cut,
@@ -167,11 +214,12 @@ Sums look(std::span<const CoveringTriangle> source, std::span<const CoveringTria
       }
     }
   }
-  Samples before(low, high, spacing, samples_a_pixel), after(low, high, spacing, samples_a_pixel);
-  for (const CoveringTriangle& triangle : source) before.draw(triangle, picture, masks);
-  for (const CoveringTriangle& triangle : cut) after.draw(triangle, picture, masks);
-  const std::vector<double> f = before.pixels(), c = after.pixels();
+  Samples samples(low, high, spacing, samples_a_pixel);
+  const std::array sets{source, cut};
+  samples.make_room_for(sets, picture);
+  const std::vector<double> f = samples.draw(source, picture, masks), c = samples.draw(cut, picture, masks);
   Sums sums;
+  sums.reach = static_cast<double>(samples.reach());
   for (std::size_t i = 0; i < f.size(); ++i) {
     sums.source += f[i];
     sums.cut += c[i];
@@ -223,10 +271,13 @@ std::optional<CoverageDrift> measure_coverage(std::span<const CoveringTriangle> 
     parallel_for_each_index(directions, 1, [&](std::size_t d) {
       of_direction[d] = look(source, cut, masks, spacing, samples_a_pixel, picture_of(d, directions));
     });
-    double seen = 0.0;  // in each of the four pixels that have it
-    for (const Sums& sums : of_direction) seen += 0.25 * sums.source;
+    double seen = 0.0, reach = 0.0;
+    for (const Sums& sums : of_direction) {
+      seen += 0.25 * sums.source;  // in each of the four pixels that have it
+      reach = std::max(reach, sums.reach);
+    }
     seen *= static_cast<double>(samples_a_pixel * samples_a_pixel);
-    if (seen >= closer * kFewestSeen || 2.0 * side() > kMostSide) break;
+    if (seen >= closer * kFewestSeen || 2.0 * side() > kMostFineSide || 4.0 * reach > kMostReach) break;
   }
   Sums all;
   CoverageDrift drift;
