@@ -240,13 +240,15 @@ Result<BuiltMesh> build_mesh(const Source& from, std::size_t index, const Survey
 
   Result<PreparedMesh> mesh = prepare_mesh(source, plan.layout, prepare_options(own, options.experiment.care));
   if (!mesh) return mesh.error();
+  const std::uint32_t promises = promises_of(options.promise);
+  const UvUnits uv_units = promises != 0 ? uv_units_of(source, plan.layout, found.extents) : UvUnits{};
   from.free_mesh(index);
   built.clock.end(Stage::kPrepare);
 
-  const std::uint32_t promises = promises_of(options.promise);
   std::optional<PaintedSource> painted;
   if (promises != 0 && !aggregate.is_aggregate) {
-    painted = keep_painted_source(*mesh, found.extents, options.promise == format::Promise::kAppearance);
+    painted = keep_painted_source(*mesh, uv_units, options.promise == format::Promise::kAppearance,
+                                  own.error_tier == format::ErrorTier::kCertified);
   }
   const PaintedUnits units = painted ? units_to_simplify_by(*painted, mesh->diagonal) : PaintedUnits();
   const DagOptions coarsening = dag_options(options, own, *mesh, encoding);
@@ -269,9 +271,9 @@ Result<BuiltMesh> build_mesh(const Source& from, std::size_t index, const Survey
   built.encoded.record.error_tier = own.error_tier;
   if (promises != 0) {
     const format::MeshRecord& record = built.encoded.record;
-    PromiseErrors errors =
-        painted ? measure_promises(*painted, *dag, record, built.encoded.groups, kMeasuredMargin, promises)
-                : promises_of_positions(record, built.encoded.groups, promises);
+    const double margin = own.error_tier == format::ErrorTier::kCertified ? 1.0 : kMeasuredMargin;
+    PromiseErrors errors = painted ? measure_promises(*painted, *dag, record, built.encoded.groups, margin, promises)
+                                   : promises_of_positions(record, built.encoded.groups, promises);
     built.encoded.promise = errors.mesh;
     built.encoded.promise_errors = std::move(errors.groups);
   }

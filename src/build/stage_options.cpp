@@ -66,12 +66,6 @@ Status check_options(const PipelineOptions& options, std::size_t mesh_count) {
   if (options.keep_topology && options.experiment.simplifier != Simplifier::kOwn) {
     return Error{ErrorCode::kUsage, "", "topology is kept by the own simplifier alone"};
   }
-  for (std::size_t i = 0; i < mesh_count && options.promise != format::Promise::kPosition; ++i) {
-    if (options.of_mesh(i).error_tier != format::ErrorTier::kCertified) continue;  // no bound is known of these
-    return Error{
-        ErrorCode::kUsage, "",
-        std::string("--promise ") + format::name_of(options.promise) + " is measured: give --error-tier measured"};
-  }
   for (std::size_t i = 0; i < mesh_count; ++i) {
     const MeshOptions& own = options.of_mesh(i);
     if ((own.keep & own.drop) == 0) continue;

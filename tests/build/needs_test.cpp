@@ -198,7 +198,8 @@ struct Measured {
 /// The scene made and built in a child of its own, so that its peak is nobody else's.
 template <class MakeScene>
 Measured measure(const MakeScene& make_scene, format::ErrorTier tier, int threads,
-                 AggregateChoice aggregate = AggregateChoice::kNever) {
+                 AggregateChoice aggregate = AggregateChoice::kNever,
+                 format::Promise promise = format::Promise::kPosition) {
   Measured out;
   int ends[2];
   if (pipe(ends) != 0) return out;
@@ -210,6 +211,7 @@ Measured measure(const MakeScene& make_scene, format::ErrorTier tier, int thread
       PipelineOptions options;
       options.error_tier = tier;
       options.aggregate = aggregate;
+      options.promise = promise;
       PipelineReport report;
       const scene::Scene scene = make_scene();
       const auto bytes = build_lode(scene, options, {}, report);
@@ -270,6 +272,11 @@ TEST(Needs, MemoryIsEstimatedFromAboveAndCloseEnough) {
   expect_close(measure([] { return loose(4000, 0.0005); }, kMeasured, 2, AggregateChoice::kAlways), "of tiny ones");
   expect_close(measure([] { return loose(20000); }, kMeasured, 1, AggregateChoice::kAlways), "of 20,000 triangles");
   expect_close(measure([] { return loose(200000); }, kMeasured, 2, AggregateChoice::kAlways), "of 200,000");
+  for (const format::ErrorTier tier : {kMeasured, kCertified}) {
+    expect_close(
+        measure([] { return sheets(80, 1, true); }, tier, 2, AggregateChoice::kNever, format::Promise::kAppearance),
+        "12,800 triangles whose appearance is promised");
+  }
 }
 
 TEST(Needs, ALargeMeshSpillsMostOfWhatItTakes) {

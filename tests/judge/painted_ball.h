@@ -32,10 +32,12 @@ struct Built {
   std::vector<std::uint8_t> bytes;
 };
 
-inline Built build_promised(scene::Scene scene, format::Promise promise) {
+inline Built build_promised(scene::Scene scene, format::Promise promise,
+                            format::ErrorTier tier = format::ErrorTier::kMeasured) {
   Built built{std::move(scene), {}};
   build::PipelineOptions options;
   options.promise = promise;
+  options.error_tier = tier;
   build::PipelineReport report;
   auto bytes = build::build_lode(built.scene, options, {}, report);
   EXPECT_TRUE(bytes.ok()) << bytes.error().message();

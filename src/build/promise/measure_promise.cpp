@@ -16,6 +16,7 @@
 #include "build/hierarchy/margins.h"
 #include "build/promise/product_surfaces.h"
 #include "build/promise/product_tree.h"
+#include "build/promise/promise_certifier.h"
 #include "format/grid.h"
 
 namespace meshlode::build {
@@ -42,11 +43,20 @@ constexpr int kLattice = 6, kSteps = 5, kNearSteps = 7, kNearTries = 10;
 constexpr std::size_t kPairedOfTriangle = 4;
 constexpr std::size_t kChunk = 1024;  // points that share a hint, whatever the thread count
 
-/// Per group, object units, without a margin; and of level 0 alone.
-struct Measured {
-  std::vector<double> groups;
-  double level0 = 0.0;
-};
+/// What the steps of the grids move a corner by at most, and so any point between corners. Says nothing of the normals
+/// of triangles.
+double quantization_of(const ProductSpace& space, const format::MeshRecord& record) {
+  double sum = double{record.level0_deviation} * double{record.level0_deviation};
+  for (std::uint32_t set = 0; set < space.layout.uv_set_count; ++set) {
+    const double half = 0.5 * format::exp2_exact(record.uv_log2[set]);
+    for (const double unit : space.uv[set]) sum += half * unit * half * unit;
+  }
+  if (space.layout.has_normal && space.normal > 0.0) {
+    const double turn = space.normal * std::sqrt(2.0) / record.normal_scale;
+    sum += turn * turn;
+  }
+  return std::sqrt(sum);
+}
 
 template <std::size_t D>
 class PromiseMeter {
@@ -60,8 +70,8 @@ class PromiseMeter {
         source_(surfaces_.of_source(source)),
         tree_(source_) {}
 
-  [[nodiscard]] Measured measure() {
-    Measured found;
+  [[nodiscard]] ProductDeviations measure() {
+    ProductDeviations found;
     found.groups.assign(dag_.groups.size(), 0.0);
     std::vector<std::vector<Sample>> carried(dag_.clusters.size());
     found.level0 = place_samples(carried);
@@ -188,7 +198,7 @@ class PromiseMeter {
     }
     if (level0.triangles.empty()) return 0.0;
     const Tree tree(level0);
-    const double quantization = level0_bound();
+    const double quantization = quantization_of(space_, record_);
     std::vector<Sample> samples = choose_samples();
     std::vector<double> farthest2(chunk_count(samples.size(), kChunk), 0.0);
     parallel_for_each_chunk(samples.size(), kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
@@ -223,21 +233,6 @@ class PromiseMeter {
                             });
     for (const double d2 : back2) farthest = std::max(farthest, d2);
     return std::sqrt(farthest);
-  }
-
-  /// What the steps of the grids move a corner by at most, and so any point between corners. Says nothing of the
-  /// normals of triangles.
-  [[nodiscard]] double level0_bound() const {
-    double sum = double{record_.level0_deviation} * double{record_.level0_deviation};
-    for (std::uint32_t set = 0; set < space_.layout.uv_set_count; ++set) {
-      const double half = 0.5 * format::exp2_exact(record_.uv_log2[set]);
-      for (const double unit : space_.uv[set]) sum += half * unit * half * unit;
-    }
-    if (space_.layout.has_normal && space_.normal > 0.0) {
-      const double turn = space_.normal * std::sqrt(2.0) / record_.normal_scale;
-      sum += turn * turn;
-    }
-    return std::sqrt(sum);
   }
 
   /// Looks for a farther point on the same triangle of `surface`: on a lattice, and around its best point ever closer.
@@ -486,18 +481,28 @@ class PromiseMeter {
   Tree tree_;
 };
 
+/// Measured, or of the tier certified proven.
+template <std::size_t D>
+ProductDeviations measure_in(const PaintedSource& source, const ProductSpace& space, const LodDag& dag,
+                             const format::MeshRecord& record) {
+  if (record.error_tier != format::ErrorTier::kCertified) return PromiseMeter<D>(source, space, dag, record).measure();
+  const ProductSurfaces<D> surfaces(space, dag, record);
+  return PromiseCertifier<D>(surfaces, dag, {record.grid.log2, record.grid.mantissa}, quantization_of(space, record))
+      .certify(source);
+}
+
 /// Nothing where the space has positions alone and their errors are known.
-std::optional<Measured> measure(const PaintedSource& source, const ProductSpace& space, const LodDag& dag,
-                                const format::MeshRecord& record) {
+std::optional<ProductDeviations> measure(const PaintedSource& source, const ProductSpace& space, const LodDag& dag,
+                                         const format::MeshRecord& record) {
   const std::size_t dimensions = space.dimensions();
   if (dimensions <= 3 && record.error_tier != format::ErrorTier::kQem) return std::nullopt;
-  if (dimensions <= 6) return PromiseMeter<6>(source, space, dag, record).measure();
-  if (dimensions <= 8) return PromiseMeter<8>(source, space, dag, record).measure();
-  return PromiseMeter<14>(source, space, dag, record).measure();
+  if (dimensions <= 6) return measure_in<6>(source, space, dag, record);
+  if (dimensions <= 8) return measure_in<8>(source, space, dag, record);
+  return measure_in<14>(source, space, dag, record);
 }
 
 /// Makes errors nest along the DAG and above `least`, which does. Groups come coarse to fine.
-std::vector<float> nest(const LodDag& dag, const std::optional<Measured>& measured, double margin,
+std::vector<float> nest(const LodDag& dag, const std::optional<ProductDeviations>& measured, double margin,
                         const std::vector<float>& least) {
   if (!measured) return least;
   std::vector<float> errors(least.size());
@@ -536,7 +541,8 @@ PromiseErrors measure_promises(const PaintedSource& source, const LodDag& dag, c
     const auto appearance =
         source.units.normal_object > 0.0F ? measure(source, product_space_of(source, true), dag, record) : std::nullopt;
     appearance_errors = nest(dag, appearance, margin, texel_errors);
-    // Level 0 is measured where the normals are those of triangles: with the margin of what samples find.
+    // Level 0 is measured where the normals are those of triangles: with the margin of what samples find. Proven it is
+    // in any case, and the margin is 1 then.
     const double level0 = appearance ? appearance->level0 * (source.layout.flat_normal ? margin : 1.0) : 0.0;
     out.mesh.level0_appearance = std::max(out.mesh.level0_texels, float_above(level0));
   }

@@ -4,7 +4,8 @@
 //
 // Points of a group are held against all of the source. Points of the source are carried through the finished DAG: each
 // lies on a cluster of level 0, and where a group replaces that, on the nearest of the clusters made from it. One
-// cluster of each such chain is in any cut, so that what is found for the groups holds for cuts.
+// cluster of each such chain is in any cut, so that what is found for the groups holds for cuts. In the tier certified
+// nothing is sampled: promise_certifier.h.
 #pragma once
 
 #include <span>
@@ -22,9 +23,9 @@ struct PromiseErrors {
   std::vector<format::PromiseGroupRecord> groups;
 };
 
-/// `record` and `errors` are what encoding the DAG came to: the steps that attributes are stored with, and the groups'
-/// errors for positions. `margin`: on what samples found. `promises`: format::kPromises…. The same for any thread
-/// count (I10).
+/// `record` and `groups` are what encoding the DAG came to: the steps that attributes are stored with, and the groups'
+/// errors for positions. `margin`: on what samples found; 1 in the tier certified. `promises`: format::kPromises…. The
+/// same for any thread count (I10).
 [[nodiscard]] PromiseErrors measure_promises(const PaintedSource& source, const LodDag& dag,
                                              const format::MeshRecord& record,
                                              std::span<const format::GroupRecord> groups, double margin,

@@ -19,56 +19,68 @@ bool is_scale(double value) {
   return value >= 0x1p-100 && value <= 0x1p100;
 }
 
-std::array<Vec2d, 3> uvs_of(const PaintedSource& source, std::size_t triangle, std::uint32_t set) {
-  std::array<Vec2d, 3> out;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const float* const a = &source.attributes[std::size_t{source.wedges[triangle][k]} * source.layout.stride() +
-                                              source.layout.uv_offset() + 2 * std::size_t{set}];
-    out[k] = {std::isfinite(a[0]) ? a[0] : 0.0F, std::isfinite(a[1]) ? a[1] : 0.0F};
-  }
-  return out;
+Vec2d uv_of(const scene::Primitive& primitive, std::uint32_t set, std::uint32_t vertex) {
+  if (primitive.uvs[set].empty()) return Vec2d(0.0);
+  const auto& uv = primitive.uvs[set][vertex];
+  return {std::isfinite(uv.x) ? uv.x : 0.0F, std::isfinite(uv.y) ? uv.y : 0.0F};
 }
 
-void set_uv_units(const PreparedMesh& mesh, std::span<const TexelExtents> extents, std::uint32_t set,
-                  PaintedSource& source) {
-  const std::uint8_t texcoord = mesh.layout.uv_set_source[set];
+/// U and V of one TEXCOORD_n; 0 0 where nothing samples it, or no texel is covered.
+std::array<double, 2> uv_units_of(const scene::SourceMesh& mesh, std::span<const TexelExtents> extents,
+                                  std::uint32_t set) {
   double width = 0.0, height = 0.0, surface = 0.0, uv = 0.0;
-  for (std::size_t t = 0; t < source.triangles.size(); ++t) {
-    const std::uint32_t material = mesh.triangle_material[t];
-    if (material >= extents.size()) continue;
-    const std::array<double, 2>& extent = extents[material][texcoord];
+  for (const scene::Primitive& primitive : mesh.primitives) {
+    if (primitive.material.value >= extents.size()) continue;
+    const std::array<double, 2>& extent = extents[primitive.material.value][set];
     if (!(extent[0] > 0.0) || !(extent[1] > 0.0)) continue;
     width = std::max(width, extent[0]);
     height = std::max(height, extent[1]);
-    const auto& [a, b, c] = source.triangles[t];
-    // What draws nothing covers no texels either.
-    if (are_collinear(source.positions[a], source.positions[b], source.positions[c])) continue;
-    const Vec3d n = glm::cross(source.positions[b] - source.positions[a], source.positions[c] - source.positions[a]);
-    surface += 0.5 * std::sqrt(glm::dot(n, n));
-    const std::array<Vec2d, 3> q = uvs_of(source, t, set);
-    const Vec2d e = q[1] - q[0], f = q[2] - q[0];
-    uv += 0.5 * std::abs(e.x * f.y - e.y * f.x);
+    for (std::size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
+      const std::uint32_t* const v = &primitive.indices[i];
+      const Vec3d &a = primitive.positions[v[0]], &b = primitive.positions[v[1]], &c = primitive.positions[v[2]];
+      // What draws nothing covers no texels either.
+      if (are_collinear(a, b, c)) continue;
+      const Vec3d n = glm::cross(b - a, c - a);
+      surface += 0.5 * std::sqrt(glm::dot(n, n));
+      const Vec2d corner = uv_of(primitive, set, v[0]);
+      const Vec2d e = uv_of(primitive, set, v[1]) - corner, f = uv_of(primitive, set, v[2]) - corner;
+      uv += 0.5 * std::abs(e.x * f.y - e.y * f.x);
+    }
   }
   const double texel = std::sqrt(surface / (width * height * uv));
-  if (!is_scale(texel * width) || !is_scale(texel * height)) return;
-  source.units.uv_object[set][0] = static_cast<float>(texel * width);
-  source.units.uv_object[set][1] = static_cast<float>(texel * height);
+  if (!is_scale(texel * width) || !is_scale(texel * height)) return {0.0, 0.0};
+  return {texel * width, texel * height};
 }
 
 }  // namespace
 
-PaintedSource keep_painted_source(const PreparedMesh& mesh, std::span<const TexelExtents> extents, bool has_normals) {
+UvUnits uv_units_of(const scene::SourceMesh& mesh, const AttributeLayout& layout,
+                    std::span<const TexelExtents> extents) {
+  UvUnits units{};
+  for (std::uint32_t set = 0; set < layout.uv_set_count; ++set)
+    units[set] = uv_units_of(mesh, extents, layout.uv_set_source[set]);
+  return units;
+}
+
+PaintedSource keep_painted_source(const PreparedMesh& mesh, const UvUnits& uv_units, bool has_normals,
+                                  bool keeps_grid) {
   PaintedSource source;
   source.layout = mesh.layout;
   source.positions = mesh.exact_positions;
   source.triangles = mesh.exact_triangles;
   source.wedges = mesh.triangles;
   source.attributes = mesh.wedge_attributes;
+  if (keeps_grid) {
+    for (const std::uint32_t position : mesh.wedge_position) source.on_grid.push_back(mesh.positions[position]);
+  }
   const double radius = kHighlightRadius * mesh.diagonal;
   if (has_normals && (mesh.layout.has_normal || mesh.layout.flat_normal) && is_scale(radius)) {
     source.units.normal_object = static_cast<float>(radius);
   }
-  for (std::uint32_t set = 0; set < mesh.layout.uv_set_count; ++set) set_uv_units(mesh, extents, set, source);
+  for (std::size_t set = 0; set < uv_units.size(); ++set) {
+    for (std::size_t axis = 0; axis < 2; ++axis)
+      source.units.uv_object[set][axis] = static_cast<float>(uv_units[set][axis]);
+  }
   return source;
 }
 

@@ -23,16 +23,24 @@ struct PaintedSource {
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< of positions
   std::vector<WedgeTriangle> wedges;                    ///< the same triangles, of attributes
   std::vector<float> attributes;                        ///< per wedge, layout.stride() floats
-  format::PromiseMeshRecord units{};                    ///< promises and level0_… are not set
+  std::vector<Vec3i> on_grid;         ///< per wedge, where the grid has its position; empty where nobody asks
+  format::PromiseMeshRecord units{};  ///< promises and level0_… are not set
 };
 
+/// U and V of each stored UV set, object units of a UV unit; 0 0: it is no part.
+using UvUnits = std::array<std::array<double, 2>, scene::kMaxUvSets>;
+
 /// `extents`: of each of the scene's materials; 0 0 where no texture of it samples a set. Units (docs/selection.md):
-///   N = diagonal / 8
 ///   U = s · W, V = s · H with the largest extents of the mesh's materials, s = √(area of the surface that samples the
 ///       set / the texels that it samples)
-/// A set that nothing samples, or that covers no texel, is no part: 0 0.
-[[nodiscard]] PaintedSource keep_painted_source(const PreparedMesh& mesh, std::span<const TexelExtents> extents,
-                                                bool has_normals);
+/// A set that nothing samples, or that covers no texel, is no part. Of the source as it came: about an origin, what is
+/// thinner than the last bits of doubles would have no area. \pre indices are in range, and UVs as many as positions
+[[nodiscard]] UvUnits uv_units_of(const scene::SourceMesh& mesh, const AttributeLayout& layout,
+                                  std::span<const TexelExtents> extents);
+
+/// With N = diagonal / 8. `keeps_grid`: what proving asks for, not measuring.
+[[nodiscard]] PaintedSource keep_painted_source(const PreparedMesh& mesh, const UvUnits& uv_units, bool has_normals,
+                                                bool keeps_grid);
 
 /// What the simplifier is to weigh by its largest distance. Where texels alone are promised, normals count a little all
 /// the same: else shading would pay for what the texture gains.

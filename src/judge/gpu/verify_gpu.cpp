@@ -144,10 +144,10 @@ Promise promise_of(const run::Asset& asset, const std::vector<SourceSurface>& so
   out.has_displacement = !source.empty();
   for (const format::MeshRecord& mesh : asset.meshes()) {
     if (mesh.cluster_count == 0) continue;
-    // What is promised of more than positions is measured in every tier.
-    const bool is_measured = out.kind != format::Promise::kPosition;
-    if (mesh.error_tier == format::ErrorTier::kQem && !is_measured) out.has_displacement = false;
-    if (mesh.error_tier == format::ErrorTier::kMeasured || is_measured) out.tolerance = 1.05;
+    // What is promised of more than positions is measured where positions are estimated.
+    const bool is_estimated = mesh.error_tier == format::ErrorTier::kQem && out.kind == format::Promise::kPosition;
+    if (is_estimated) out.has_displacement = false;
+    if (mesh.error_tier != format::ErrorTier::kCertified && !is_estimated) out.tolerance = 1.05;
   }
   for (std::uint32_t m = 0; m < asset.meshes().size(); ++m) {
     out.has_aggregates = out.has_aggregates || has_aggregates(asset, MeshId(m));

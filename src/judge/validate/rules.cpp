@@ -142,7 +142,7 @@ constexpr std::array kRules{
         "within 2%, their contrast at most 1.25 times"),
     RULE(V209, "I7",
          "what is promised of texels or appearance holds: a uniform cut is no farther from the source, UVs or normals "
-         "counted as lengths, than it stores (within 5%)"),
+         "counted as lengths, than it stores (within 5%, `certified` exactly)"),
     RULE(V210, "I7",
          "what UVs and normals count as in promises is the mean size of a texel times the texture's sides, and an "
          "eighth "

@@ -23,14 +23,14 @@ namespace meshlode::judge {
                                                                       format::Promise promise, std::uint32_t cuts,
                                                                       std::uint64_t samples);
 
-/// V209 for one promise: every mesh that is no aggregate, in every tier: promises are measured. A cut fails above
-/// 1 + kMeasuredShortfall times what it stores. \pre the asset has the promise
+/// V209 for one promise: every mesh that is no aggregate, in every tier: where positions are estimated, promises are
+/// measured. A cut fails above 1 + kMeasuredShortfall times what it stores, a `certified` one above 1.
+/// \pre the asset has the promise
 DeviationTotals check_promise(const run::Asset& asset, const scene::Scene& source, format::Promise promise,
                               std::uint32_t cuts, std::uint64_t samples, RuleLog& log);
 
 /// V210: what UVs and normals count as is what the source's surface, its textures and its diagonal say. A UV set is not
-/// judged where an image's size is not known, or where duplicates were dropped, whose area counts once.
-/// \pre the asset has promises
+/// judged where an image's size is not known. \pre the asset has promises
 void check_promise_units(const run::Asset& asset, const scene::Scene& source, RuleLog& log);
 
 }  // namespace meshlode::judge

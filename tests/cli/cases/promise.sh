@@ -22,7 +22,11 @@ code build --quiet in.glb -o strips.lode --promise appearance --codec strips
 cmp small.lode strips.lode && echo "as built with that codec"
 code render --quiet small.lode -o same.png --size 64x48 --promise texels
 cmp cut.png same.png && echo "the same picture"
-run build in.glb -o no.lode --promise texels --error-tier certified
+# Where positions are proven, so is what is promised.
+code build --quiet in.glb -o proven.lode --promise appearance --error-tier certified
+code validate --quiet proven.lode
+code verify --quiet proven.lode --source in.glb
+rm proven.lode
 # Where positions are estimated, what is promised is measured all the same.
 code build --quiet in.glb -o fast.lode --promise appearance --preset fast
 code validate --quiet fast.lode

@@ -15,6 +15,7 @@
 #include "build/build.h"
 #include "build/odd_shapes.h"
 #include "judge/metrics/metrics.h"
+#include "judge/verify/promises.h"
 #include "judge/verify/verify.h"
 #include "run/read/asset.h"
 #include "run/select/select.h"
@@ -86,19 +87,24 @@ class CertifiedScene : public testing::TestWithParam<CertifiedCase> {
  protected:
   void SetUp() override {
     scene_ = scene::as_scene(scene::as_mesh(GetParam().make()));
-    build::PipelineReport report;
-    build::PipelineOptions options;
-    options.error_tier = format::ErrorTier::kCertified;
-    options.max_cluster_triangles = kClusterCap;
-    auto bytes = build::build_lode(scene_, options, {}, report);
-    ASSERT_TRUE(bytes.ok()) << bytes.error().message();
-    auto asset = run::Asset::from_vector(std::move(*bytes));
-    ASSERT_TRUE(asset.ok()) << asset.error().message();
-    asset_.emplace_back(std::move(*asset));
+    asset_.push_back(build_scene(format::Promise::kPosition));
     auto decoded = run::decode_all(asset_[0]);
     ASSERT_TRUE(decoded.ok()) << decoded.error().message();
     decoded_ = std::move(*decoded);
     source_ = surface_of_source(scene_.meshes[0]);
+  }
+
+  [[nodiscard]] run::Asset build_scene(format::Promise promise) const {
+    build::PipelineReport report;
+    build::PipelineOptions options;
+    options.error_tier = format::ErrorTier::kCertified;
+    options.max_cluster_triangles = kClusterCap;
+    options.promise = promise;
+    auto bytes = build::build_lode(scene_, options, {}, report);
+    EXPECT_TRUE(bytes.ok()) << bytes.error().message();
+    auto asset = run::Asset::from_vector(std::move(*bytes));
+    EXPECT_TRUE(asset.ok()) << asset.error().message();
+    return std::move(*asset);
   }
 
   void expect_within(const std::vector<ClusterId>& cut, double stored, const char* what) {
@@ -170,6 +176,18 @@ TEST_P(CertifiedScene, NoCutIsFartherFromTheSourceThanItStores) {
   const VerifyReport report = verify_asset(asset, scene_, {.deviation_cuts = cuts, .deviation_samples = kSamples});
   for (const Finding& f : report.findings) ADD_FAILURE() << f.id << ": " << f.where << ": " << f.detail;
   EXPECT_EQ(report.finding_count, 0U);
+}
+
+/// The same of the product space of positions and normals, which are the triangles' own where a shape has none.
+TEST_P(CertifiedScene, NoCutIsFartherInWhatIsPaintedOnItThanItPromises) {
+  const run::Asset asset = build_scene(format::Promise::kAppearance);
+  ASSERT_EQ(asset.promises().size(), 1U);
+  RuleLog log;
+  const DeviationTotals totals =
+      check_promise(asset, scene_, format::Promise::kAppearance, 4 * kMixedCuts, kSamples, log);
+  for (const Finding& f : log.take_findings()) ADD_FAILURE() << f.id << ": " << f.where << ": " << f.detail;
+  std::printf("%llu cuts: true/promised at most %.3f\n", static_cast<unsigned long long>(totals.cuts), totals.worst);
+  EXPECT_GT(totals.cuts, 1U);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, CertifiedScene, testing::ValuesIn(certified_cases()),

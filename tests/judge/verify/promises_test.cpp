@@ -110,6 +110,40 @@ TEST(PromisesOf, NormalsThatAreLeftOutAreFoundInAppearanceAlone) {
   for (const Finding& finding : report.findings) EXPECT_EQ(finding.detail.rfind("appearance:", 0), 0U);
 }
 
+/// By two percent too small: what samples found may be, what is proven not.
+TEST(PromisesOf, WhatIsProvenMayNotFallShortAtAll) {
+  const Built proven = build_promised(painted_scene(), format::Promise::kAppearance, format::ErrorTier::kCertified);
+  EXPECT_EQ(details_of(verify_bytes(proven.bytes, proven.scene)), "");
+  const auto check = [&](const std::vector<std::uint8_t>& bytes, std::uint64_t& findings) {
+    const Result<run::Asset> asset = run::Asset::from_vector(bytes);
+    EXPECT_TRUE(asset.ok()) << asset.error().message();
+    RuleLog log;
+    const DeviationTotals totals = check_promise(*asset, proven.scene, format::Promise::kAppearance, 5, 20000, log);
+    findings = log.count_of(Rule::kV209);
+    return totals.worst;
+  };
+  std::uint64_t findings = 0;
+  const double worst = check(proven.bytes, findings);
+  EXPECT_GT(worst, 0.3);
+  EXPECT_LE(worst, 1.0);
+  EXPECT_EQ(findings, 0U);
+  AssetEdit edit(proven.bytes);
+  const auto less = [&](float error) { return static_cast<float>(worst / 1.02) * error; };
+  edit.change_at<format::PromiseMeshRecord>(
+      edit.offset_of<format::PromiseMeshRecord>(format::SectionId::kPromises, 0), [&](format::PromiseMeshRecord& mesh) {
+        mesh.level0_appearance = std::max(mesh.level0_texels, less(mesh.level0_appearance));
+      });
+  change_groups(edit, [&](format::PromiseGroupRecord& record, float) {
+    record.appearance_error = std::max(record.texel_error, less(record.appearance_error));
+  });
+  EXPECT_GT(check(edit.bytes(), findings), 1.0);
+  EXPECT_GT(findings, 0U);
+  edit.mesh(0, [](format::MeshRecord& mesh) { mesh.error_tier = format::ErrorTier::kMeasured; });
+  edit.seal();
+  check(edit.bytes(), findings);
+  EXPECT_EQ(findings, 0U) << "within what samples miss";
+}
+
 TEST(PromisesOf, OtherUnitsAreFound) {
   const auto change_units = [](const auto& change) {
     AssetEdit edit(painted_ball().bytes);
