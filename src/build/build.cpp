@@ -64,8 +64,14 @@ Result<MemoryFit> check_memory(const scene::Scene& scene, const PipelineOptions&
   MemoryEstimate estimate = estimate_memory(scene, options, threads, aggregates);
   const auto is_short = [&] { return options.max_memory > 0 && estimate.bytes(1) > options.max_memory; };
   if (is_short()) {
-    threads = threads_within(options.max_memory, threads);
-    estimate = estimate_memory(scene, options, threads, aggregates);
+    // As many as keep the limit by themselves; where not even two do, large arrays go to a file.
+    const auto with = [&](std::uint32_t count) {
+      threads = count;
+      estimate = estimate_memory(scene, options, threads, aggregates);
+    };
+    const std::uint32_t all = threads;
+    while (is_short() && threads > 2) with(threads - 1);
+    if (is_short()) with(threads_within(options.max_memory, all));
   }
   const Result<std::size_t> at_once = fit_memory(estimate, threads, options);
   report.memory_estimate = estimate.bytes(at_once ? *at_once : 1);
@@ -238,17 +244,21 @@ Result<BuiltMesh> build_mesh(const Source& from, std::size_t index, const Survey
     return built;
   }
 
-  Result<PreparedMesh> mesh = prepare_mesh(source, plan.layout, prepare_options(own, options.experiment.care));
-  if (!mesh) return mesh.error();
   const std::uint32_t promises = promises_of(options.promise);
-  const UvUnits uv_units = promises != 0 ? uv_units_of(source, plan.layout, found.extents) : UvUnits{};
+  const bool is_painted = promises != 0 && !aggregate.is_aggregate;
+  PrepareOptions preparing = prepare_options(own, options.experiment.care);
+  preparing.keeps_flat_normals = is_painted && options.promise == format::Promise::kAppearance;
+  Result<PreparedMesh> mesh = prepare_mesh(source, plan.layout, preparing);
+  if (!mesh) return mesh.error();
+  const UvUnits uv_units = is_painted ? uv_units_of(source, plan.layout, found.extents) : UvUnits{};
   from.free_mesh(index);
   built.clock.end(Stage::kPrepare);
 
   std::optional<PaintedSource> painted;
-  if (promises != 0 && !aggregate.is_aggregate) {
+  if (is_painted) {
     painted = keep_painted_source(*mesh, uv_units, options.promise == format::Promise::kAppearance,
                                   own.error_tier == format::ErrorTier::kCertified);
+    mesh->exact_normals = {};
   }
   const PaintedUnits units = painted ? units_to_simplify_by(*painted, mesh->diagonal) : PaintedUnits();
   const DagOptions coarsening = dag_options(options, own, *mesh, encoding);

@@ -50,6 +50,9 @@ struct PreparedMesh {
   /// The same triangles before the grid: what deviations are measured against. Relative to the origin, object units.
   std::vector<Vec3d> exact_positions;
   std::vector<std::array<std::uint32_t, 3>> exact_triangles;  ///< as long as triangles, corner by corner
+  /// Of the exact triangles, worked out before the origin was taken away, where a thin one would lose its area; 0: it
+  /// has none. Empty where nobody asks.
+  std::vector<Vec3d> exact_normals;
   std::uint64_t source_triangles = 0;
   std::uint64_t source_vertices = 0;
   /// Without area and no part of the source (docs/format.md, "The source"). A triangle without area that lies along

@@ -244,15 +244,17 @@ void expect_close(const Measured& measured, const std::string& what) {
 TEST(Needs, WhatTwoThreadsKeepIsNotRefusedToSixteen) {
   const scene::Scene scene = sheets(20, 1, false);
   PipelineOptions options;
-  options.max_memory = estimate_memory(scene, options, 2).bytes(1);
-  ASSERT_LT(options.max_memory, estimate_memory(scene, options, 16).bytes(1));
   tbb::task_arena arena(16);
-  arena.execute([&] {
-    PipelineReport report;
-    const auto bytes = build_lode(scene, options, {}, report);
-    EXPECT_TRUE(bytes) << bytes.error().message();
-    EXPECT_EQ(report.memory_estimate, options.max_memory);
-  });
+  for (const std::uint32_t threads : {2U, 5U}) {
+    options.max_memory = estimate_memory(scene, options, threads).bytes(1);
+    ASSERT_LT(options.max_memory, estimate_memory(scene, options, 16).bytes(1));
+    arena.execute([&] {
+      PipelineReport report;
+      const auto bytes = build_lode(scene, options, {}, report);
+      EXPECT_TRUE(bytes) << bytes.error().message();
+      EXPECT_EQ(report.memory_estimate, options.max_memory) << "as many threads as fit";
+    });
+  }
 }
 
 TEST(Needs, MemoryIsEstimatedFromAboveAndCloseEnough) {

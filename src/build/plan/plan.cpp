@@ -12,8 +12,8 @@ namespace meshlode::build {
 namespace {
 
 /// Squared cosine of the largest angle between a stored normal and its triangle's that still counts as flat: about half
-/// a degree, and where normals are promised what floats of unit normals leave open, a millionth.
-constexpr double kFlatCosine2 = 0.99996 * 0.99996, kSameCosine2 = 1.0 - 1e-12;
+/// a degree, and where normals are promised what floats of unit normals leave open, a ten-millionth.
+constexpr double kFlatCosine2 = 0.99996 * 0.99996, kSameCosine2 = 1.0 - 0x1p-46;
 
 /// True if every corner's normal is its triangle's own: then nothing needs storing. Triangles without area do not vote.
 bool has_flat_normals(const scene::SourceMesh& mesh, double least_cosine2) {

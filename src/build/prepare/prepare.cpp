@@ -201,7 +201,7 @@ Result<PreparedMesh> prepare_mesh(const scene::SourceMesh& source, const Attribu
   std::vector<std::uint8_t> is_used(corners.positions.size(), 0);
   for (const std::uint32_t vertex : corners.triangles) is_used[vertex] = 1;
   const std::vector<Vec3i> points = place_on_grid(corners, is_used, options, mesh);
-  weld(corners, points, is_used, mesh);
+  weld(corners, points, is_used, options.keeps_flat_normals && layout.flat_normal, mesh);
   mesh.piece_count = count_pieces(mesh);
   return mesh;
 }

@@ -10,6 +10,7 @@
 #include <tbb/parallel_sort.h>
 
 #include "base/parallel.h"
+#include "build/prepare/flat_normal.h"
 
 namespace meshlode::build {
 
@@ -171,7 +172,7 @@ bool has_area(const PreparedMesh& mesh, const WedgeTriangle& triangle) {
 }  // namespace
 
 void weld(const Corners& corners, const std::vector<Vec3i>& points, const std::vector<std::uint8_t>& is_used,
-          PreparedMesh& mesh) {
+          bool keeps_normals, PreparedMesh& mesh) {
   const VertexIds ids = weld_vertices(corners, points, is_used, mesh);
   const std::vector<CanonicalTriangle> triangles = weld_triangles(corners, ids.exact_of, mesh.dropped_duplicate);
   resize_all(triangles.size(), mesh.triangles, mesh.exact_triangles, mesh.triangle_material);
@@ -186,6 +187,17 @@ void weld(const Corners& corners, const std::vector<Vec3i>& points, const std::v
     }
   });
   for (const std::uint32_t count : collapsed) mesh.grid_collapsed += count;
+  if (!keeps_normals) return;
+  std::vector<std::uint32_t> vertex_of(mesh.exact_positions.size());
+  for (std::uint32_t v = 0; v < is_used.size(); ++v) {
+    if (is_used[v] != 0) vertex_of[ids.exact_of[v]] = v;
+  }
+  mesh.exact_normals.resize(triangles.size());
+  parallel_for_each_index(triangles.size(), kLoopGrain, [&](std::size_t t) {
+    const auto& [a, b, c] = triangles[t].exact;
+    mesh.exact_normals[t] =
+        flat_normal(corners.positions[vertex_of[a]], corners.positions[vertex_of[b]], corners.positions[vertex_of[c]]);
+  });
 }
 
 }  // namespace meshlode::build

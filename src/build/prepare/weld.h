@@ -13,8 +13,9 @@
 namespace meshlode::build {
 
 /// Fills positions, wedges, exact positions and triangles of `mesh`, and counts duplicates and what the grid collapsed.
-/// `points`: the grid point of each vertex that a triangle uses; `is_used`: 1 for those. \pre layout and origin are set
+/// `points`: the grid point of each vertex that a triangle uses; `is_used`: 1 for those. `keeps_normals`: exact_normals
+/// too. \pre layout and origin are set
 void weld(const Corners& corners, const std::vector<Vec3i>& points, const std::vector<std::uint8_t>& is_used,
-          PreparedMesh& mesh);
+          bool keeps_normals, PreparedMesh& mesh);
 
 }  // namespace meshlode::build

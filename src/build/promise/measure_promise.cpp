@@ -538,8 +538,17 @@ PromiseErrors measure_promises(const PaintedSource& source, const LodDag& dag, c
   const bool has_appearance = (promises & format::kPromisesAppearance) != 0;
   std::vector<float> appearance_errors(groups.size(), 0.0F);
   if (has_appearance) {
-    const auto appearance =
+    auto appearance =
         source.units.normal_object > 0.0F ? measure(source, product_space_of(source, true), dag, record) : std::nullopt;
+    if (appearance && record.error_tier == format::ErrorTier::kCertified) {
+      // Normals are at most 2 apart, and what has none is not compared in them.
+      const auto at_most = [&](double proven, float proven_texels) {
+        return std::min(proven, std::hypot(double{proven_texels}, 2.0 * double{source.units.normal_object}));
+      };
+      appearance->level0 = at_most(appearance->level0, out.mesh.level0_texels);
+      for (std::size_t g = 0; g < groups.size(); ++g)
+        appearance->groups[g] = at_most(appearance->groups[g], std::max(out.mesh.level0_texels, texel_errors[g]));
+    }
     appearance_errors = nest(dag, appearance, margin, texel_errors);
     // Level 0 is measured where the normals are those of triangles: with the margin of what samples find. Proven it is
     // in any case, and the margin is 1 then.

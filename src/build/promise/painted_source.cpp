@@ -70,6 +70,7 @@ PaintedSource keep_painted_source(const PreparedMesh& mesh, const UvUnits& uv_un
   source.triangles = mesh.exact_triangles;
   source.wedges = mesh.triangles;
   source.attributes = mesh.wedge_attributes;
+  source.flat_normals = mesh.exact_normals;
   if (keeps_grid) {
     for (const std::uint32_t position : mesh.wedge_position) source.on_grid.push_back(mesh.positions[position]);
   }

@@ -23,6 +23,7 @@ struct PaintedSource {
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< of positions
   std::vector<WedgeTriangle> wedges;                    ///< the same triangles, of attributes
   std::vector<float> attributes;                        ///< per wedge, layout.stride() floats
+  std::vector<Vec3d> flat_normals;    ///< PreparedMesh::exact_normals, where the layout's normals are flat
   std::vector<Vec3i> on_grid;         ///< per wedge, where the grid has its position; empty where nobody asks
   format::PromiseMeshRecord units{};  ///< promises and level0_… are not set
 };
@@ -38,7 +39,8 @@ using UvUnits = std::array<std::array<double, 2>, scene::kMaxUvSets>;
 [[nodiscard]] UvUnits uv_units_of(const scene::SourceMesh& mesh, const AttributeLayout& layout,
                                   std::span<const TexelExtents> extents);
 
-/// With N = diagonal / 8. `keeps_grid`: what proving asks for, not measuring.
+/// With N = diagonal / 8. `keeps_grid`: what proving asks for, not measuring. \pre where normals are wanted and flat,
+/// the mesh has exact_normals
 [[nodiscard]] PaintedSource keep_painted_source(const PreparedMesh& mesh, const UvUnits& uv_units, bool has_normals,
                                                 bool keeps_grid);
 

@@ -14,6 +14,7 @@
 #include "build/encode/quantize_normal.h"
 #include "build/encode/uv_grid.h"
 #include "build/lod_dag.h"
+#include "build/prepare/flat_normal.h"
 #include "build/promise/painted_source.h"
 #include "build/promise/product_tree.h"
 #include "format/grid.h"
@@ -51,13 +52,6 @@ struct ProductSpace {
   return length > 0.0 && std::isfinite(length) ? v / length : Vec3d(0.0, 0.0, 1.0);
 }
 
-/// Of a triangle without area it is zero: as far from every unit vector.
-[[nodiscard]] inline Vec3d flat_normal(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
-  const Vec3d n = glm::cross(b - a, c - a);
-  const double length = std::sqrt(glm::dot(n, n));
-  return length > 0.0 && std::isfinite(length) ? n / length : Vec3d(0.0);
-}
-
 /// Makes surfaces of points with D coordinates. \pre D >= space.dimensions(). What it is given must outlive it.
 template <std::size_t D>
 class ProductSurfaces {
@@ -85,8 +79,7 @@ class ProductSurfaces {
     if (space_.is_flat()) {
       surface.points.resize(3 * source.triangles.size());
       parallel_for_each_index(source.triangles.size(), kLoopGrain, [&](std::size_t t) {
-        const auto& [a, b, c] = source.triangles[t];
-        const Vec3d n = flat_normal(source.positions[a], source.positions[b], source.positions[c]);
+        const Vec3d& n = source.flat_normals[t];
         for (std::uint32_t k = 0; k < 3; ++k) {
           const auto id = static_cast<std::uint32_t>(3 * t + k);
           surface.points[id] = point_of(source.triangles[t][k], source.wedges[t][k], n);

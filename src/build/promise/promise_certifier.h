@@ -18,12 +18,15 @@
 
 #include "base/ids.h"
 #include "base/parallel.h"
+#include "base/vec.h"
 #include "build/deviation/cover.h"
 #include "build/deviation/deviation.h"
 #include "build/lod_dag.h"
 #include "build/promise/painted_source.h"
+#include "build/promise/product_point.h"
 #include "build/promise/product_surfaces.h"
 #include "build/promise/product_tree.h"
+#include "format/grid.h"
 
 namespace meshlode::build {
 
@@ -185,24 +188,25 @@ class PromiseCertifier {
   static void cover_surface(const Surface& surface, const Target& target, double enough,
                             std::span<const std::uint32_t> partners, const Give& give) {
     const std::size_t count = surface.triangles.size();
-    std::vector<std::uint8_t> is_covered(count, 0), is_looked_for(surface.points.size(), 1);
+    std::vector<std::uint8_t> is_covered(count, 0), is_looked_for(surface.points.size(), 0);
     if (!partners.empty()) {
       parallel_for_each_chunk(count, kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
         for (std::size_t t = begin; t < end; ++t) {
           if (partners[t] == kNoId) continue;
           double farthest2 = 0.0;
-          for (const std::uint32_t v : surface.triangles[t])
-            farthest2 = std::max(farthest2, target.distance2_at(surface.points[v], partners[t]));
+          for (const std::uint32_t v : surface.triangles[t]) {
+            const double distance2 = target.distance2_at(surface.points[v], partners[t]);
+            if (!(distance2 <= farthest2)) farthest2 = distance2;  // not a number either
+          }
           if (!(std::sqrt(farthest2) <= enough)) continue;
           is_covered[t] = 1;
           give(chunk, t, partners[t], std::sqrt(farthest2));
         }
       });
-      is_looked_for.assign(surface.points.size(), 0);
-      for (std::size_t t = 0; t < count; ++t) {
-        if (is_covered[t] != 0) continue;
-        for (const std::uint32_t v : surface.triangles[t]) is_looked_for[v] = 1;
-      }
+    }
+    for (std::size_t t = 0; t < count; ++t) {
+      if (is_covered[t] != 0) continue;
+      for (const std::uint32_t v : surface.triangles[t]) is_looked_for[v] = 1;
     }
     std::vector<std::uint32_t> place(surface.points.size());
     std::vector<double> distance(surface.points.size());
@@ -289,7 +293,7 @@ class PromiseCertifier {
     std::sort(known.begin(), known.end());
     Partners partners{std::vector<std::uint32_t>(numbers.size(), kNoId),
                       std::vector<std::uint32_t>(known.size(), kNoId)};
-    std::vector<std::uint8_t> is_taken(known.size(), 0);
+    std::vector<std::uint32_t> taken(known.size(), 0);  // of those from here on that are in the same place
     for (std::size_t i = 0; i < numbers.size(); ++i) {
       GridCorners corners;
       for (std::size_t k = 0; k < 3; ++k) {
@@ -298,15 +302,13 @@ class PromiseCertifier {
       }
       // Of triangles in the same place, which differ in what is painted on them, each has its own.
       const std::pair<GridCorners, std::uint32_t> wanted{least_turn(corners), 0};
-      for (auto at = std::lower_bound(known.begin(), known.end(), wanted);
-           at != known.end() && at->first == wanted.first; ++at) {
-        const auto place = static_cast<std::size_t>(at - known.begin());
-        if (is_taken[place] != 0) continue;
-        is_taken[place] = 1;
-        partners.of_finer[i] = at->second;
-        partners.of_coarser[at->second] = static_cast<std::uint32_t>(i);
-        break;
-      }
+      const auto first = static_cast<std::size_t>(std::lower_bound(known.begin(), known.end(), wanted) - known.begin());
+      if (first == known.size()) continue;
+      const std::size_t next = first + taken[first];
+      if (next >= known.size() || known[next].first != wanted.first) continue;
+      ++taken[first];
+      partners.of_finer[i] = known[next].second;
+      partners.of_coarser[known[next].second] = static_cast<std::uint32_t>(i);
     }
     return partners;
   }

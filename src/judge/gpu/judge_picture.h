@@ -48,7 +48,7 @@ constexpr int kHoleRadius = 2;
 struct PictureSource {
   std::span<const SourceSurface> meshes;         ///< the source, one a mesh of the asset
   std::span<const run::DecodedCluster> decoded;  ///< decode_all() of the asset
-  double tolerance = 1.0;                        ///< of the promise, 1.05 in the measured tier
+  double tolerance = 1.0;                        ///< of the promise, 1.05 where it is measured
   std::span<const PaintedSurface> painted{};     ///< painted_surfaces()
 };
 

@@ -86,6 +86,10 @@ TEST(Plan, WherePromisedNormalsAreFlatOnlyAsFarAsFloatsTell) {
   promised.promises_normals = true;
   EXPECT_TRUE(plan_mesh(facets, {}, promised, "m").layout.flat_normal);
   Vec3f& normal = facets.primitives[0].normals[7];
+  const Vec3f exact = normal;
+  normal = glm::normalize(exact + Vec3f(4e-7F, 4e-7F, -4e-7F));  // as six decimals may leave it
+  EXPECT_TRUE(plan_mesh(facets, {}, promised, "m").layout.has_normal);
+  normal = exact;
   normal = glm::normalize(normal + Vec3f(0.003F, 0.003F, -0.003F));
   EXPECT_TRUE(plan_mesh(facets, {}, {}, "m").layout.flat_normal);
   EXPECT_TRUE(plan_mesh(facets, {}, promised, "m").layout.has_normal);

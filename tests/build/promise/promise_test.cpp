@@ -15,6 +15,7 @@
 #include "build/build.h"
 #include "build/promise/painted_source.h"
 #include "judge/validate/validate.h"
+#include "judge/verify/verify.h"
 #include "run/decode/decode.h"
 #include "run/read/asset.h"
 #include "run/select/select.h"
@@ -274,6 +275,51 @@ TEST(Promise, HardTexturesKeepIt) {
 
 TEST(Promise, HardTexturesKeepWhatIsProven) {
   expect_hard_textures_kept(format::ErrorTier::kCertified);
+}
+
+/// Flat, and thinner than what doubles hold about the mesh's origin: its normal is its own all the same, and what cuts
+/// make of it is promised (V209).
+TEST(Promise, ANeedleKeepsItsNormalAboutAnyOrigin) {
+  scene::Primitive plate = scene::make_plane(12);
+  plate.normals.clear();
+  for (Vec3d& p : plate.positions) p = 4.0 * (p + Vec3d(1.0, 0.0, 1.0));
+  scene::Primitive above = plate;  // so that the origin lies between them, far from both
+  for (Vec3d& p : above.positions) p.y += 8.0;
+  for (const std::uint32_t i : above.indices)
+    plate.indices.push_back(i + static_cast<std::uint32_t>(plate.positions.size()));
+  plate.positions.insert(plate.positions.end(), above.positions.begin(), above.positions.end());
+  for (int n = 0; n < 200; ++n) {
+    const auto base = static_cast<std::uint32_t>(plate.positions.size());
+    const double x = 0.01 * n;
+    for (const Vec3d& p : {Vec3d(x, 0.0, 0.0), Vec3d(x + 1.0, 0.0, 0.0), Vec3d(x + 0.5, 1e-17, 0.0)})
+      plate.positions.push_back(p);
+    for (std::uint32_t k = 0; k < 3; ++k) plate.indices.push_back(base + k);
+  }
+  const scene::Scene scene = scene::as_scene(scene::as_mesh(std::move(plate)));
+  for (const format::ErrorTier tier : {format::ErrorTier::kMeasured, format::ErrorTier::kCertified}) {
+    const run::Asset asset = opened(built(scene, format::Promise::kAppearance, tier));
+    const judge::VerifyReport report = judge::verify_asset(asset, scene, {.uniform_cuts = 4, .cameras = 2});
+    for (const judge::Finding& f : report.findings) ADD_FAILURE() << f.id << " " << f.where << ": " << f.detail;
+  }
+}
+
+/// Triangles in the same place that differ in what is painted on them: each is proven by its own, and their number
+/// costs nothing.
+TEST(Promise, ManyInOnePlaceAreProven) {
+  scene::Primitive pile = painted_sheet(4, 0.1, [](double x, double y) { return Vec2d(x, y); });
+  SplitMix64 random(8);
+  for (int n = 0; n < 6000; ++n) {
+    const auto base = static_cast<std::uint32_t>(pile.positions.size());
+    for (const Vec3d& p : {Vec3d(0.0, 0.5, 0.0), Vec3d(0.2, 0.5, 0.0), Vec3d(0.0, 0.5, 0.2)}) {
+      pile.positions.push_back(p);
+      pile.uvs[0].emplace_back(static_cast<float>(random.unit()), static_cast<float>(random.unit()));
+      if (!pile.normals.empty()) pile.normals.push_back(pile.normals[0]);
+    }
+    for (std::uint32_t k = 0; k < 3; ++k) pile.indices.push_back(base + k);
+  }
+  const run::Asset asset = opened(built(textured(pile), format::Promise::kTexels, format::ErrorTier::kCertified));
+  ASSERT_EQ(asset.promises().size(), 1U);
+  EXPECT_LT(asset.promises()[0].level0_texels, 0.01F) << "what quantization moves";
 }
 
 /// A bound is no less than what is found, and not many times as much.
