@@ -17,7 +17,7 @@ files
 interrupt INT --ignore-signal=INT
 rm r.lode r.json
 "$MESHLODE" build --quiet r.glb -o r.lode &
-kill -KILL $!; wait $! 2>../stderr
+{ kill -KILL $!; wait $!; } 2>../stderr  # the shell tells of a killed child, wherever that finds it
 # What a killed writer leaves has such a name; any command that writes into the folder removes it.
 for verb in "build --quiet a.glb -o a.lode" "render a.lode -o a.png --size 16x16" "extract a.lode --error 0 -o cut.glb"; do
   printf 'half' >.meshlode-0123456789abcdef.tmp

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # kill -9 at random moments, of two batches at once that share a cache: nothing broken is ever there, neither an asset nor an
-# entry of the cache, the next run completes, and its bytes are those of a clean run. KILLS: how often (10; the slow test
-# takes 50).
+# entry of the cache, the next run completes, and its bytes are those of a clean run. KILLS: how many batches are killed before
+# they are done, at least (10; the slow test takes 50).
 RANDOM=${SEED:-20}
 mkdir in
 # terrain SIDE SEED: an OBJ of 2 SIDE^2 triangles
@@ -18,7 +18,9 @@ terrain() {
 for i in 1 2 3 4 5 6 7 8; do terrain $((10 + 5 * i)) "$i" >"in/$i.obj"; done
 "$MESHLODE" build --quiet in -O clean --preset fast
 # What undisturbed batches keep: entries have the same bytes under the same key, last/ under the output's.
+started=${EPOCHREALTIME/[.,]/}
 for folder in one two; do "$MESHLODE" build --quiet in -O $folder --preset fast --cache clean_cache; done
+microseconds=$((${EPOCHREALTIME/[.,]/} - started))  # one builds all, the other copies: about what both take side by side
 rm -r one/* two/*
 # Whole files, each the clean one or none: also in the moment after a kill.
 to_be_there='^Only in clean\|^Only in .*: \.meshlode-[^ ]*\.tmp$'
@@ -29,8 +31,9 @@ check() {
     [ ! -d cache/$kind ] || diff -rq clean_cache/$kind cache/$kind
   done | grep -v "$to_be_there"
 }
-killed=0 first_killed=0 leftovers=0
-for _ in $(seq "${KILLS:-10}"); do
+killed=0 first_killed=0 leftovers=0 rounds=0
+while [ $((killed + first_killed)) -lt "${KILLS:-10}" ] && [ $rounds -lt $((20 * ${KILLS:-10})) ]; do
+  rounds=$((rounds + 1))
   rm -rf one/*.lode
   case $((RANDOM % 3)) in
     0) rm -rf cache ;;
@@ -40,18 +43,21 @@ for _ in $(seq "${KILLS:-10}"); do
   first=$!
   "$MESHLODE" build --quiet in -O two --preset fast --cache cache --cache-limit 200KiB 2>>../stderr &
   second=$!
-  sleep "0.$(printf '%03d' $((RANDOM % 400)))"
-  kill -KILL "$first" 2>/dev/null
-  [ $((RANDOM % 2)) -ne 0 ] || kill -KILL "$second" 2>/dev/null
-  wait "$first" 2>/dev/null; [ $? -ne 137 ] || first_killed=$((first_killed + 1))
-  wait "$second" 2>/dev/null; [ $? -ne 137 ] || killed=$((killed + 1))
+  late=$((RANDOM * microseconds / 32768))
+  sleep "$((late / 1000000)).$(printf '%06d' $((late % 1000000)))"
+  {  # The shell tells of a killed child, wherever that finds it.
+    kill -KILL "$first"
+    [ $((RANDOM % 2)) -ne 0 ] || kill -KILL "$second"
+    wait "$first"; [ $? -ne 137 ] || first_killed=$((first_killed + 1))
+    wait "$second"; [ $? -ne 137 ] || killed=$((killed + 1))
+  } 2>>../stderr
   # On a busy machine both may be gone before there is a cache.
   leftovers=$((leftovers + $(find cache one two -name '.meshlode-*' 2>/dev/null | wc -l)))
   check
 done
 killed=$((killed + first_killed))
-echo "killed in the middle: $killed batches, $first_killed of them the first of two; they left $leftovers temporary files" >&3
-[ "$killed" -gt 0 ] && echo "some were killed"
+echo "killed in the middle: $killed batches, $first_killed of them the first of two, in $rounds rounds; they left $leftovers temporary files" >&3
+[ "$killed" -ge "${KILLS:-10}" ] && echo "enough were killed"
 "$MESHLODE" build --quiet in -O one --preset fast --cache cache; echo "exit $?"
 "$MESHLODE" build --quiet in -O two --preset fast --cache cache; echo "exit $?"
 for folder in one two; do diff -r clean "$folder" && echo "$folder: as a clean run"; done

@@ -87,7 +87,7 @@ terrain 200 7 >in/deep/large.obj
 for i in 1 2 3; do shard "$i/3" --dry-run; done
 "$MESHLODE" build --quiet in -O out --shard 1/3 --manifest parts/shard-1.json 2>/dev/null &
 until [ ! -e parts/shard-1.json ]; do sleep 0.01; done
-kill -KILL $!; wait $! 2>/dev/null
+{ kill -KILL $!; wait $!; } 2>/dev/null  # the shell tells of a killed child, wherever that finds it
 [ -e parts/shard-1.json ] || echo "its manifest is gone"
 rm in/deep/large.obj
 run merge parts/*.json -o m.json
