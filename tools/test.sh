@@ -8,7 +8,8 @@
 #   3. GCC against clang: the optimised program of part 1 and the sanitized one of part 2 must build assets with equal
 #      content hashes (I10),
 #   4. the form of the sources (tools/format.sh), and clang-tidy over those that changed (tools/tidy.sh; --all: over all).
-# All parts run even where one fails; the exit code is 0 only where all passed. What was skipped is named with its reason.
+# All parts run even where one fails; the exit code is 0 only where all passed. What was skipped is named at the end with its
+# reason, and what failed with the last that it said.
 # The last lines are ctest's summaries. Without --all no part can hang: each has a limit, 85 minutes in all.
 set -uo pipefail
 cd "$(dirname "$0")/.."
@@ -99,6 +100,20 @@ skipped() {
   ' "$logs/$1.said" "$logs/$1.log"
 }
 
+# failures NAME: what the tests of a part that failed said last, for who sees only the end of all this.
+failures() {
+  awk -v most=40 '
+    / Testing: / { name = $0; sub(/.* Testing: /, "", name); is_said = 0 }
+    /^Output:$/ { count = -1; next }  # a line of dashes follows
+    /^<end of output>$/ { is_said = 1 }
+    !is_said && count++ >= 0 { said[count] = $0 }
+    /^Test Failed\.$/ {
+      print "-- " name ": failed"
+      for (i = count > most ? count - most + 1 : 1; i <= count; i++) print "  " said[i]
+    }
+  ' "$logs/$1.said"
+}
+
 groups=()
 for name in browser npm packages portability slurm wasm; do
   [ $all = no ] && [[ $group != *$name* ]] || groups+=(--"$name")
@@ -122,6 +137,9 @@ for name in release-tests long-tests sanitized-tests; do
   [ -f "$logs/$name.said" ] && [ -f "$logs/$name.log" ] || continue
   echo "-- skipped of the ${name//-/ }:"
   skipped "$name"
+done
+for name in release-tests long-tests sanitized-tests; do
+  [ ! -f "$logs/$name.said" ] || failures "$name"
 done
 for log in "$logs/gcc-against-clang.log" "$logs/sanitized-tests.log" "$logs/long-tests.log" "$logs/release-tests.log"; do
   [ -f "$log" ] || continue
