@@ -64,14 +64,8 @@ Result<MemoryFit> check_memory(const scene::Scene& scene, const PipelineOptions&
   MemoryEstimate estimate = estimate_memory(scene, options, threads, aggregates);
   const auto is_short = [&] { return options.max_memory > 0 && estimate.bytes(1) > options.max_memory; };
   if (is_short()) {
-    // As many as keep the limit by themselves; where not even two do, large arrays go to a file.
-    const auto with = [&](std::uint32_t count) {
-      threads = count;
-      estimate = estimate_memory(scene, options, threads, aggregates);
-    };
-    const std::uint32_t all = threads;
-    while (is_short() && threads > 2) with(threads - 1);
-    if (is_short()) with(threads_within(options.max_memory, all));
+    threads = threads_within(estimate, threads, options.max_memory);
+    estimate = estimate_memory(scene, options, threads, aggregates);
   }
   const Result<std::size_t> at_once = fit_memory(estimate, threads, options);
   report.memory_estimate = estimate.bytes(at_once ? *at_once : 1);
@@ -258,7 +252,6 @@ Result<BuiltMesh> build_mesh(const Source& from, std::size_t index, const Survey
   if (is_painted) {
     painted = keep_painted_source(*mesh, uv_units, options.promise == format::Promise::kAppearance,
                                   own.error_tier == format::ErrorTier::kCertified);
-    mesh->exact_normals = {};
   }
   const PaintedUnits units = painted ? units_to_simplify_by(*painted, mesh->diagonal) : PaintedUnits();
   const DagOptions coarsening = dag_options(options, own, *mesh, encoding);

@@ -125,7 +125,10 @@ MemoryEstimate estimate_memory(const scene::Scene& scene, const PipelineOptions&
   return estimate;
 }
 
-std::uint32_t threads_within(std::uint64_t limit, std::uint32_t threads) {
+std::uint32_t threads_within(const MemoryEstimate& estimate, std::uint32_t threads, std::uint64_t limit) {
+  if (estimate.bytes(1) <= limit) return threads;
+  const std::uint64_t too_many = (estimate.bytes(1) - limit + kThread - 1) / kThread;
+  if (too_many + 2 <= threads) return threads - static_cast<std::uint32_t>(too_many);
   return static_cast<std::uint32_t>(
       std::min<std::uint64_t>(threads, std::max<std::uint64_t>(2, limit / kLimitOfThread)));
 }

@@ -54,9 +54,10 @@ struct MemoryEstimate {
 [[nodiscard]] Result<std::size_t> fit_memory(const MemoryEstimate& estimate, std::uint32_t threads,
                                              const PipelineOptions& options);
 
-/// How many of the threads build under a limit that one mesh may exceed with all of them. What each has in hand counts;
-/// and where large arrays go to a file, each that comes to them here and there brings more into memory than it asks
-/// for, and sooner than it can be taken out again: sixteen under 1 GiB went beyond it, and were no quicker than eight.
-[[nodiscard]] std::uint32_t threads_within(std::uint64_t limit, std::uint32_t threads);
+/// How many of the threads that an estimate is of build one mesh under a limit: as many as fit, each with what it has
+/// in hand. Where not even two do, large arrays go to a file, and one for each 128 MiB, two at least: each that comes
+/// to the file here and there brings more into memory than it asks for, and sooner than it can be taken out again
+/// (sixteen under 1 GiB went beyond it, and were no quicker than eight).
+[[nodiscard]] std::uint32_t threads_within(const MemoryEstimate& estimate, std::uint32_t threads, std::uint64_t limit);
 
 }  // namespace meshlode::build

@@ -97,13 +97,20 @@ TEST(Needs, AsManyMeshesAreInWorkAtOnceAsFit) {
   EXPECT_EQ(*fit_memory({1, {}}, 0, options), 1u) << "a scene without meshes";
 }
 
-TEST(Needs, AThreadForEachSoManyBytesOfALimitTwoAtLeast) {
-  EXPECT_EQ(threads_within(1024 * kMiB, 16), 8u);
-  EXPECT_EQ(threads_within(1024 * kMiB, 4), 4u);
-  EXPECT_EQ(threads_within(4096 * kMiB, 16), 16u);
-  EXPECT_EQ(threads_within(100 * kMiB, 16), 2u);
-  EXPECT_EQ(threads_within(100 * kMiB, 1), 1u);
-  EXPECT_EQ(threads_within(~std::uint64_t{0}, 16), 16u);
+TEST(Needs, AsManyThreadsAsFitAndWithAFileOneForEachSoManyBytes) {
+  const auto within = [](std::uint64_t limit, std::uint32_t threads, std::uint64_t bytes) {
+    return threads_within({bytes, {}}, threads, limit);
+  };
+  EXPECT_EQ(within(1024 * kMiB, 16, 1024 * kMiB), 16u);
+  EXPECT_EQ(within(1024 * kMiB, 16, 1024 * kMiB + 1), 15u);
+  EXPECT_EQ(within(300 * kMiB, 16, 342 * kMiB), 2u) << "fourteen of 3 MiB are too many";
+  EXPECT_EQ(within(300 * kMiB, 16, 342 * kMiB + 1), 2u) << "not even two fit";
+  EXPECT_EQ(within(1024 * kMiB, 16, 4096 * kMiB), 8u);
+  EXPECT_EQ(within(1024 * kMiB, 4, 4096 * kMiB), 4u);
+  EXPECT_EQ(within(4096 * kMiB, 16, 13000 * kMiB), 16u);
+  EXPECT_EQ(within(100 * kMiB, 16, 4096 * kMiB), 2u);
+  EXPECT_EQ(within(100 * kMiB, 1, 4096 * kMiB), 1u);
+  EXPECT_EQ(within(100 * kMiB, 1, 101 * kMiB), 1u);
 }
 
 /// A wavy sheet of 2 · n² triangles, `count` times.
@@ -257,7 +264,9 @@ TEST(Needs, WhatTwoThreadsKeepIsNotRefusedToSixteen) {
   }
 }
 
-TEST(Needs, MemoryIsEstimatedFromAboveAndCloseEnough) {
+// GoogleTest runs such suites first: a child that is forked once there are threads has none of them, and waits for
+// ever.
+TEST(NeedsDeathTest, MemoryIsEstimatedFromAboveAndCloseEnough) {
   using enum format::ErrorTier;
   expect_close(measure([] { return sheets(160, 1, false); }, kMeasured, 1), "51,200 triangles, one thread");
   expect_close(measure([] { return sheets(160, 1, true); }, kMeasured, 2),
@@ -278,6 +287,9 @@ TEST(Needs, MemoryIsEstimatedFromAboveAndCloseEnough) {
     expect_close(
         measure([] { return sheets(80, 1, true); }, tier, 2, AggregateChoice::kNever, format::Promise::kAppearance),
         "12,800 triangles whose appearance is promised");
+    expect_close(
+        measure([] { return sheets(80, 1, false); }, tier, 2, AggregateChoice::kNever, format::Promise::kAppearance),
+        "flat ones");
   }
 }
 

@@ -17,10 +17,13 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <span>
 #include <vector>
+
+#include "build/deviation/deviation.h"
 
 namespace meshlode::build {
 
@@ -216,12 +219,44 @@ class Cover {
   std::vector<Piece> stack_;
 };
 
-/// The bound with what `margins` of doubles may have lost added; what is not a number, or not finite, is no bound.
-/// `coordinate_margin`: of the largest coordinate.
-[[nodiscard]] inline double rounded_up(double bound, double largest_coordinate, double coordinate_margin) {
+/// A piece of one side's triangle `from`, given to the other side's triangle `to`.
+struct GivenPiece {
+  std::uint32_t from, to;
+  double bound;
+};
+
+/// A bound with what doubles may have lost on the way to it added, and `slack`, which is the largest coordinate's
+/// share. What is not a number, or not finite, is no bound.
+[[nodiscard]] inline double rounded_up(double bound, double slack) {
   constexpr double kRelativeMargin = 0x1p-49;  // 16u: roots, squares, sums and this margin itself
-  const double up = bound * (1.0 + kRelativeMargin) + largest_coordinate * coordinate_margin;
+  const double up = bound * (1.0 + kRelativeMargin) + slack;
   return up <= std::numeric_limits<double>::max() ? up : std::numeric_limits<double>::infinity();
+}
+
+/// One step of the induction (certify.cpp): from what is proven of finer triangles to what is proven of the coarser
+/// ones that replace them. cover_finer() and cover_coarser() give the pieces that cover all of either side; they are
+/// not asked where there is nothing on one.
+template <class CoverFiner, class CoverCoarser>
+[[nodiscard]] CertifiedGroup hand_on(std::span<const TriangleBound> finer, std::size_t coarser_count, double slack,
+                                     const CoverFiner& cover_finer, const CoverCoarser& cover_coarser) {
+  CertifiedGroup result;
+  result.bounds.resize(coarser_count);
+  if (finer.empty() || coarser_count == 0) {
+    if (finer.size() != coarser_count) result.deviation = std::numeric_limits<double>::infinity();
+    for (TriangleBound& bound : result.bounds) bound.to_source = result.deviation;
+    return result;
+  }
+  for (const GivenPiece& piece : cover_finer()) {
+    double& known = result.bounds[piece.to].from_source;
+    known = std::max(known, rounded_up(finer[piece.from].from_source + piece.bound, slack));
+  }
+  for (const GivenPiece& piece : cover_coarser()) {
+    double& known = result.bounds[piece.from].to_source;
+    known = std::max(known, rounded_up(piece.bound + finer[piece.to].to_source, slack));
+  }
+  for (const TriangleBound& bound : result.bounds)
+    result.deviation = std::max({result.deviation, bound.from_source, bound.to_source});
+  return result;
 }
 
 }  // namespace meshlode::build

@@ -14,6 +14,7 @@
 #include "base/random.h"
 #include "build/hierarchy/lod_bounds.h"
 #include "build/hierarchy/margins.h"
+#include "build/promise/groups_by_level.h"
 #include "build/promise/product_surfaces.h"
 #include "build/promise/product_tree.h"
 #include "build/promise/promise_certifier.h"
@@ -37,7 +38,7 @@ constexpr std::size_t kGroupPoints = 1024, kMostOfTriangle = 32;
 constexpr double kLookFrom = 0.6;
 /// From so many of the farthest points of either direction a farther one is looked for on the same triangle: on a
 /// lattice of so many steps along an edge, then in so many steps, each half as long as the one before.
-constexpr std::size_t kClimbed = 24;
+constexpr std::size_t kClimbed = 64;
 constexpr int kLattice = 6, kSteps = 5, kNearSteps = 7, kNearTries = 10;
 /// So many samples of one triangle of the source are looked between, each with each.
 constexpr std::size_t kPairedOfTriangle = 4;
@@ -75,17 +76,8 @@ class PromiseMeter {
     found.groups.assign(dag_.groups.size(), 0.0);
     std::vector<std::vector<Sample>> carried(dag_.clusters.size());
     found.level0 = place_samples(carried);
-    std::vector<std::vector<std::uint32_t>> outputs(dag_.groups.size());
-    std::uint32_t level_count = 0;
-    for (std::uint32_t c = 0; c < dag_.clusters.size(); ++c) {
-      if (dag_.clusters[c].own_group.is_valid()) outputs[dag_.clusters[c].own_group.value].push_back(c);
-    }
-    for (const DagGroup& group : dag_.groups) level_count = std::max(level_count, group.level + 1);
-    for (std::uint32_t level = 0; level < level_count; ++level) {
-      std::vector<std::uint32_t> groups;
-      for (std::uint32_t g = 0; g < dag_.groups.size(); ++g) {
-        if (dag_.groups[g].level == level) groups.push_back(g);
-      }
+    const std::vector<std::vector<std::uint32_t>> outputs = clusters_made_of_groups(dag_);
+    for (const std::vector<std::uint32_t>& groups : groups_by_level(dag_)) {
       parallel_for_each_index(groups.size(), 1, [&](std::size_t i) {
         const std::uint32_t g = groups[i];
         if (!dag_.groups[g].is_terminal) found.groups[g] = measure_group(g, outputs[g], carried);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "build/prepare/zero_area.h"
 
@@ -62,15 +63,14 @@ UvUnits uv_units_of(const scene::SourceMesh& mesh, const AttributeLayout& layout
   return units;
 }
 
-PaintedSource keep_painted_source(const PreparedMesh& mesh, const UvUnits& uv_units, bool has_normals,
-                                  bool keeps_grid) {
+PaintedSource keep_painted_source(PreparedMesh& mesh, const UvUnits& uv_units, bool has_normals, bool keeps_grid) {
   PaintedSource source;
   source.layout = mesh.layout;
   source.positions = mesh.exact_positions;
   source.triangles = mesh.exact_triangles;
   source.wedges = mesh.triangles;
   source.attributes = mesh.wedge_attributes;
-  source.flat_normals = mesh.exact_normals;
+  source.flat_normals = std::move(mesh.exact_normals);
   if (keeps_grid) {
     for (const std::uint32_t position : mesh.wedge_position) source.on_grid.push_back(mesh.positions[position]);
   }

@@ -39,9 +39,9 @@ using UvUnits = std::array<std::array<double, 2>, scene::kMaxUvSets>;
 [[nodiscard]] UvUnits uv_units_of(const scene::SourceMesh& mesh, const AttributeLayout& layout,
                                   std::span<const TexelExtents> extents);
 
-/// With N = diagonal / 8. `keeps_grid`: what proving asks for, not measuring. \pre where normals are wanted and flat,
-/// the mesh has exact_normals
-[[nodiscard]] PaintedSource keep_painted_source(const PreparedMesh& mesh, const UvUnits& uv_units, bool has_normals,
+/// With N = diagonal / 8. Takes the mesh's exact_normals. `keeps_grid`: what proving asks for, not measuring. \pre
+/// where normals are wanted and flat, the mesh has exact_normals
+[[nodiscard]] PaintedSource keep_painted_source(PreparedMesh& mesh, const UvUnits& uv_units, bool has_normals,
                                                 bool keeps_grid);
 
 /// What the simplifier is to weigh by its largest distance. Where texels alone are promised, normals count a little all

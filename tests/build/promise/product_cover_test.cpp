@@ -8,13 +8,12 @@
 #include <vector>
 
 #include "base/random.h"
-#include "build/promise/promise_certifier.h"
+#include "build/promise/product_cover.h"
 
 namespace meshlode::build {
 namespace {
 
 constexpr std::size_t kSpace = 8;  // positions, one set of UVs and normals
-using Certifier8 = PromiseCertifier<kSpace>;
 using Surface8 = ProductSurface<kSpace>;
 
 /// Loose triangles of about `size` in a cube of `extent`; every so many of them needles, segments and points.
@@ -59,7 +58,7 @@ std::vector<TriangleBound> no_bounds8(const Surface8& surface) {
   return std::vector<TriangleBound>(surface.triangles.size());
 }
 
-TEST(PromiseCertifier, HoldsForRandomSurfaces) {
+TEST(ProductCover, HoldsForRandomSurfaces) {
   SplitMix64 random(31);
   for (int round = 0; round < 150; ++round) {
     const double scale = round % 3 == 0 ? 1e-6 : round % 3 == 1 ? 1.0 : 1e9;
@@ -69,13 +68,13 @@ TEST(PromiseCertifier, HoldsForRandomSurfaces) {
     };
     const Surface8 a = soup(), b = soup();
     const double truth = std::max(farthest8(a, b, random, 1500), farthest8(b, a, random, 1500));
-    const double bound = Certifier8::hand_on(a, no_bounds8(a), b, 0.0).deviation;
+    const double bound = hand_on(a, no_bounds8(a), b, 0.0).deviation;
     ASSERT_GE(bound, truth) << "round " << round;
     ASSERT_LE(bound, 1.25 * truth) << "round " << round;
   }
 }
 
-TEST(PromiseCertifier, HoldsAlongAChain) {
+TEST(ProductCover, HoldsAlongAChain) {
   SplitMix64 random(32);
   const Surface8 source = soup8(random, 40, 1.0, 0.5, 5);
   Surface8 finer = source;
@@ -86,7 +85,7 @@ TEST(PromiseCertifier, HoldsAlongAChain) {
     for (auto& point : coarser.points) {
       for (double& x : point) x += 0.02 * random.signed_unit();
     }
-    const auto step = Certifier8::hand_on(finer, bounds, coarser, 0.0);
+    const auto step = hand_on(finer, bounds, coarser, 0.0);
     ASSERT_EQ(step.bounds.size(), coarser.triangles.size());
     EXPECT_GE(step.deviation, farthest8(source, coarser, random, 4000)) << level;
     // What is proven of each triangle by itself: of its points, that the source is so near.
@@ -100,23 +99,22 @@ TEST(PromiseCertifier, HoldsAlongAChain) {
   }
 }
 
-TEST(PromiseCertifier, ASurfaceIsAsGoodAsItselfAndNothingIsAsGoodAsNothing) {
+TEST(ProductCover, ASurfaceIsAsGoodAsItselfAndNothingIsAsGoodAsNothing) {
   SplitMix64 random(33);
   const Surface8 some = soup8(random, 60, 1.0, 0.3, 4), nothing;
-  EXPECT_LE(Certifier8::hand_on(some, no_bounds8(some), some, 0.0).deviation, 1e-7);
-  EXPECT_EQ(Certifier8::hand_on(nothing, {}, nothing, 0.0).deviation, 0.0);
-  EXPECT_EQ(Certifier8::hand_on(some, no_bounds8(some), nothing, 0.0).deviation,
-            std::numeric_limits<double>::infinity());
-  const auto step = Certifier8::hand_on(nothing, {}, some, 0.0);
+  EXPECT_LE(hand_on(some, no_bounds8(some), some, 0.0).deviation, 1e-7);
+  EXPECT_EQ(hand_on(nothing, {}, nothing, 0.0).deviation, 0.0);
+  EXPECT_EQ(hand_on(some, no_bounds8(some), nothing, 0.0).deviation, std::numeric_limits<double>::infinity());
+  const auto step = hand_on(nothing, {}, some, 0.0);
   EXPECT_EQ(step.deviation, std::numeric_limits<double>::infinity());
   for (const TriangleBound& bound : step.bounds) EXPECT_EQ(bound.to_source, std::numeric_limits<double>::infinity());
 }
 
-TEST(PromiseCertifier, WhatIsGoodEnoughIsNotLookedAtCloser) {
+TEST(ProductCover, WhatIsGoodEnoughIsNotLookedAtCloser) {
   SplitMix64 random(34);
   const Surface8 a = soup8(random, 30, 1.0, 0.5, 0), b = soup8(random, 30, 1.0, 0.5, 0);
-  const double close = Certifier8::hand_on(a, no_bounds8(a), b, 0.0).deviation;
-  const double loose = Certifier8::hand_on(a, no_bounds8(a), b, 10.0).deviation;
+  const double close = hand_on(a, no_bounds8(a), b, 0.0).deviation;
+  const double loose = hand_on(a, no_bounds8(a), b, 10.0).deviation;
   EXPECT_GE(loose, close);
   EXPECT_LE(loose, 10.0);
 }
