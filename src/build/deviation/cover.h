@@ -3,7 +3,7 @@
 // of another surface. The distance to a convex set is convex, so that no point of a piece is farther from its triangle
 // than the piece's farthest corner. Where a piece is cut does not matter for the proof, only for how good it is.
 //
-// A `Target` is the other surface, in three dimensions or in more (certify.cpp, promise/promise_certifier.h):
+// A `Target` is the other surface, in three dimensions or in more (certify.cpp, promise/product_cover.h):
 //
 //   Point, Place, Corners     a point; which triangle, comparable by ==; its corners
 //   Plane                     with `double side(Point) const`, 0 on it and negative towards the first triangle
