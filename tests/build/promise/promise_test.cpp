@@ -303,8 +303,7 @@ TEST(Promise, ANeedleKeepsItsNormalAboutAnyOrigin) {
   }
 }
 
-/// Triangles in the same place that differ in what is painted on them: each is proven by its own, and their number
-/// costs nothing.
+/// Triangles in the same place that differ in what is painted on them: each is proven by its own.
 TEST(Promise, ManyInOnePlaceAreProven) {
   scene::Primitive pile = painted_sheet(4, 0.1, [](double x, double y) { return Vec2d(x, y); });
   SplitMix64 random(8);
