@@ -23,6 +23,12 @@ void Splat::stretch_to_blade(double times) {
   center += half_blade(*this) / 3.0;  // a triangle's centroid is that much nearer to its base
 }
 
+void Splat::turn_to(std::uint32_t way_up) {
+  const Vec3d was = half_blade(*this);
+  turn = way_up;
+  if (is_blade) center += (half_blade(*this) - was) / 3.0;
+}
+
 Corners Splat::corners(double factor) const {
   // An equilateral triangle around 0 with corners at a distance of 1 has this area; stretched along the axes of an
   // ellipse it has the ellipse's second moments but for a factor, which the area decides.

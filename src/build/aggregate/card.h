@@ -44,6 +44,8 @@ struct Splat {
   /// Becomes a blade along u, of so many times the length that a rectangle of its second moments has, around the same
   /// centroid.
   void stretch_to_blade(double times);
+  /// Lies another way up, around the same centroid.
+  void turn_to(std::uint32_t way_up);
 
   /// Counter-clockwise around u × v; of factor · area. A blade is as long as its shape says, or as wide,
   /// others have the shape's second moments.

@@ -170,7 +170,7 @@ void measure_proposals(const SourceSurface& source, const MeshFrame& frame, cons
         const double size = pixel_size(spacing, octaves, s);
         const double error = whole > 0.0 && share > 0.0 ? std::sqrt(change / (share * whole)) : 0.0;
         proposal.noise.points.push_back({size, error});
-        trial.is_open = error <= kLoosestNoise;
+        trial.is_open = error <= kLoosestNoise && size > proposal.noise.finest;
       }
     }
     close_worse_ways(levels, trials);

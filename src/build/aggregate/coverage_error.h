@@ -33,7 +33,8 @@ struct Proposal {
   /// view is 0, and the others count twice: neighbours have the others.
   std::array<double, kViews> shifts{};
   double sum_shift = 0.0;  ///< out: the same of all views together, without luck
-  NoiseCurve noise;  ///< out: the error by pixel size, down to where it is above kLoosestNoise or pixels are small
+  NoiseCurve noise;        ///< out but for `finest`: the error by pixel size, down to that, to where it is above
+                           ///< kLoosestNoise or pixels are small
 };
 
 /// Groups are runs of leaves: those of a level are as long as those of the level before, or twice, and all of them

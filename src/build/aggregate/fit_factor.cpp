@@ -78,6 +78,7 @@ void fit_factor(const MeshFrame& frame, const format::PositionGrid& grid, const 
     factor = next;
     last_count = count;
   }
+  way.worst_view = 0.0;
   for (std::size_t v = 0; v < now.size(); ++v) {
     if (target.covered[v] == 0) continue;
     const double share = weight * static_cast<double>(now[v]) / static_cast<double>(target.covered[v]);

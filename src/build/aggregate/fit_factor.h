@@ -76,6 +76,7 @@ struct Fitted {
   double luck = 1.0;        ///< how much more the usual views show of it than of its pieces, of what each has
   double factor = 1.0;      ///< of the splats' areas
   double worst_view = 0.0;  ///< what a single view's sum changes by at most
+  double finest = 0.0;      ///< as NoiseCurve::finest
   bool is_there = false;
   bool is_fair = false;  ///< is there, and changes single views no more than other ways do
 

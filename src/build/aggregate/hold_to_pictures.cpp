@@ -115,6 +115,19 @@ void move_all_between(Uses& uses, double low, double high, double to) {
   }
 }
 
+/// The coarsest of what comes between never does.
+void drop_coarsest_between(Uses& uses, double low, double high) {
+  for (std::size_t l = uses.size(); l-- > 0;) {
+    bool is_any = false;
+    for (NoiseUse& use : uses[l]) {
+      if (!(use.pixel_size > low && use.pixel_size <= high)) continue;
+      use.pixel_size = kInfinity;
+      is_any = true;
+    }
+    if (is_any) return;
+  }
+}
+
 /// From small pixels to large ones. False: all is to be looked at again, since some groups never come any more, and
 /// leaves that nothing replaces are not compared with; or more closely than so far.
 bool are_held(const ThinnedWays& ways, Scrutiny& how, Uses& uses) {
@@ -133,22 +146,28 @@ bool are_held(const ThinnedWays& ways, Scrutiny& how, Uses& uses) {
   const CutMeter meter(ways.source, ways.frame, ways.leaves.triangles, how.views, size, count, how.grain, how.finest);
   double held = 0.0;  // cuts up to there are as they should be
   for (std::size_t i = 0; i < count; ++i, size *= 2.0) {
+    const bool is_last = i + 1 == count;
+    bool is_held = true, is_dropped = false;
     // What is drawn in larger pixels too has less noise there, and covers as much.
-    if (is_any_between(uses, held, size)) {
+    while (is_any_between(uses, held, size)) {
       const CutChange change = meter.measure(cut_at(ways, how.views, uses, size), i);
       if (change.samples < how.fewest_seen && how.may_be_closer()) {
         how.be_closer();
         return false;
       }
-      if (change.noise > kMostCutNoise || std::fabs(change.sum_shift) > how.most_shift ||
-          change.samples < how.fewest_seen) {
-        const bool is_last = i + 1 == count;
-        move_all_between(uses, held, 2.0 * size, is_last ? kInfinity : 2.0 * size);
-        if (is_last) return false;
-        continue;
-      }
+      is_held = change.noise <= kMostCutNoise && std::fabs(change.sum_shift) <= how.most_shift &&
+                change.samples >= how.fewest_seen;
+      if (is_held || !is_last) break;
+      // There are no larger pixels to wait for: what is finer may do.
+      drop_coarsest_between(uses, held, size);
+      is_dropped = true;
     }
-    held = size;
+    if (is_dropped) return false;
+    if (is_held) {
+      held = size;
+    } else {
+      move_all_between(uses, held, 2.0 * size, 2.0 * size);
+    }
   }
   return true;
 }
@@ -156,7 +175,7 @@ bool are_held(const ThinnedWays& ways, Scrutiny& how, Uses& uses) {
 }  // namespace
 
 void hold_to_pictures(const ThinnedWays& ways, double finest, std::vector<std::vector<NoiseUse>>& uses) {
-  constexpr int kPasses = 8;
+  constexpr int kPasses = 24;
   Scrutiny how = scrutiny_of(ways, finest);
   for (int pass = 0; pass < kPasses; ++pass) {
     if (are_held(ways, how, uses)) return;

@@ -171,7 +171,7 @@ class Cut {
 }  // namespace
 
 double NoiseCurve::most_from(double pixel_size) const {
-  if (points.empty() || pixel_size < points.back().pixel_size) return kInfinity;
+  if (points.empty() || pixel_size < std::max(finest, points.back().pixel_size)) return kInfinity;
   double most = points.front().noise;
   for (std::size_t i = 1; i < points.size(); ++i) {
     const Point &large = points[i - 1], &small = points[i];

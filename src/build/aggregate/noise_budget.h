@@ -19,9 +19,11 @@ struct NoiseCurve {
     double pixel_size, noise;
   };
   std::vector<Point> points;  ///< from large pixels to small ones, as far as anybody looked
+  double finest = 0.0;        ///< in smaller pixels it is not drawn, however little it is
 
   /// The most that it is from this pixel size on. In between points it is taken to grow evenly: it grows slower at
-  /// first, so that this is on the safe side. +inf for pixels smaller than anybody looked at; of larger ones that of
+  /// first, so that this is on the safe side. +inf for pixels smaller than anybody looked at, or
+  /// than the finest; of larger ones that of
   /// the largest.
   [[nodiscard]] double most_from(double pixel_size) const;
 };

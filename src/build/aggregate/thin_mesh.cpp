@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "base/parallel.h"
@@ -17,19 +18,27 @@
 #include "build/aggregate/hold_to_pictures.h"
 #include "build/aggregate/leaves.h"
 #include "build/aggregate/noise_budget.h"
+#include "build/aggregate/settle.h"
 
 namespace meshlode::build {
 
 namespace {
 
 constexpr std::size_t kFewestTriangles = 8;  // a level below would be a handful of cards across the whole mesh
-constexpr std::size_t kFewCards = 512;       // of a whole mesh: they are seen from more directions
+// Of a whole mesh: they are seen from more directions, and moved to where they have less noise.
+constexpr std::size_t kFewCards = 512;
+constexpr double kSettlingPixels = 55.0;  // in pictures of that size at most: in finer ones so few have much noise
 // What all views together may show more or less: groups that cover as much as their pieces do alone may hide more or
 // less of each other.
 constexpr double kMostSumShift = 0.012;
 // And single views, where a mesh is at least so many pixels across. From 37 directions some show half as much again as
 // the worst of thirteen.
 constexpr double kMostViewShift = 0.10, kViewsHeldFrom = 30.0;
+// Few cards are seen from 48, and more of these: what is seen of a thin wall along itself few directions tell.
+constexpr double kMostOfManyViews = 0.08;
+// Cards that have settled cover as much as they should however large they are, but one comes to see how they are
+// shaded. Pixels, of a card in the mean.
+constexpr double kMostCardArea = 25.0;
 constexpr double kFinestPixels = 110.0;  // pixels along the mesh's longest side: below, levels are not told apart
 
 MeshFrame frame_of(const PreparedMesh& mesh) {
@@ -45,7 +54,7 @@ MeshFrame frame_of(const PreparedMesh& mesh) {
 }
 
 /// Where a block has few members, what stays in place is nearest to the picture; where it has many, what is spread. A
-/// way that is not tried where another is better takes no time.
+/// way that is not fair where another is better takes no time.
 bool is_worth_trying(Thinning thinning, double members) {
   switch (thinning) {
     case Thinning::kInPlace: return members < 3.0;
@@ -104,10 +113,10 @@ class Thinner {
   ThinMesh run() {
     std::vector<std::vector<GroupProposals>> proposals;
     std::vector<std::vector<std::vector<Fitted>>> fitted;
+    std::vector<LevelPlan> plans;
     for (const LevelPlan& level : plan_levels(leaves_.size(), leaves_.first_level.back())) {
-      const bool is_whole = level.run == leaves_.size();
       const double cards = static_cast<double>(leaves_.first_level.back()) / level.members;
-      if (is_whole && seen_by_many_.empty() && cards <= static_cast<double>(kFewCards)) {
+      if (is_whole(level) && seen_by_many_.empty() && cards <= static_cast<double>(kFewCards)) {
         if (!fitted.empty()) look_from_many_views(fitted.back());
         if (seen_by_many_.empty()) {
           const std::array<std::uint32_t, 1> all{static_cast<std::uint32_t>(leaves_.size())};
@@ -117,14 +126,18 @@ class Thinner {
       }
       std::span<const std::vector<Fitted>> finer;
       if (!fitted.empty()) {
-        forget_splats(fitted.back());
+        if (!is_of_few(fitted.back())) forget_splats(fitted.back());
         finer = fitted.back();
       }
       fitted.push_back(fit_level(level, finer));
-      if (is_whole && seen_by_many_.empty()) look_from_many_views(fitted.back());
-      proposals.push_back(proposals_of(level, fitted.back()));
+      if (is_whole(level) && seen_by_many_.empty()) look_from_many_views(fitted.back());
+      plans.push_back(level);
     }
-    if (!fitted.empty()) forget_splats(fitted.back());
+    settle_levels(fitted);
+    for (std::size_t l = 0; l < fitted.size(); ++l) {
+      forget_splats(fitted[l]);
+      proposals.push_back(proposals_of(plans[l], fitted[l]));
+    }
     measure_proposals(source_, frame_, leaves_.triangles, frame_.longest / kFinestPixels, proposals);
     ThinMesh out;
     std::vector<std::vector<NoiseUse>> uses = uses_of(proposals);
@@ -206,20 +219,82 @@ class Thinner {
         ways.emplace_back().splats = thin_out(cards_.cards, chosen, blocks, thinning, stride_);
       }
     }
+    const double luck = luck_of_cards(fit_, chosen);
+    const bool is_few = is_whole(level) && !seen_by_many_.empty() && count <= kFewCards;
     const Covered& covered = covered_[static_cast<std::size_t>(std::countr_zero(level.run))][first / level.run];
     double area = 0.0;
     for (const std::uint32_t c : chosen) area += cards_.cards.cards[c].area;
-    const Target usual{covered, fit_, area, luck_of_cards(fit_, chosen)};
-    const Target by_many{seen_by_many_, few_, area, luck_of_many_};
     for (Fitted& way : ways) {
-      way.shown = shown_by(fit_.counted_views(), way.splats);
-      way.luck = way.shown.luck() / usual.luck;
-      const bool is_few = !seen_by_many_.empty() && way.splats.splats.size() <= kFewCards;
-      fit_factor(frame_, grid_, is_few ? by_many : usual, factor, way);
+      if (is_few) {
+        fit_few(luck, factor, way);
+      } else {
+        fit({covered, fit_, area, luck}, luck, factor, way);
+      }
       if (way.is_there) factor = way.factor;
     }
     leave_out_unfair(ways);
     return ways;
+  }
+
+  /// `luck`: of the cards that it stands for.
+  void fit(const Target& target, double luck, double start, Fitted& way) const {
+    way.shown = shown_by(fit_.counted_views(), way.splats);
+    way.luck = way.shown.luck() / luck;
+    fit_factor(frame_, grid_, target, start, way);
+  }
+  void fit_few(double luck, double start, Fitted& way) const {
+    fit({seen_by_many_, few_, drawn_area_, luck_of_many_}, luck, start, way);
+    way.finest = way.worst_view > kMostOfManyViews ? frame_.longest / kViewsHeldFrom : 0.0;
+  }
+
+  [[nodiscard]] bool is_whole(const LevelPlan& level) const { return level.run == leaves_.size(); }
+  /// Whether few cards stand for the whole mesh, and fewer than it has.
+  [[nodiscard]] bool is_of_few(std::span<const std::vector<Fitted>> level) const {
+    if (level.size() != 1 || level.front().empty()) return false;
+    const std::size_t count = level.front().front().splats.splats.size();  // 0: forgotten
+    return count > 0 && count <= kFewCards && count < leaves_.cards.size();
+  }
+
+  void settle_levels(std::span<std::vector<std::vector<Fitted>>> levels) const {
+    std::vector<std::size_t> few;
+    for (std::size_t l = 0; l < levels.size(); ++l) {
+      if (is_of_few(levels[l])) few.push_back(l);
+    }
+    if (few.empty()) return;
+    const SourcePictures pictures(source_, frame_, leaves_.triangles, frame_.longest / kSettlingPixels);
+    const double luck = luck_of_cards(fit_, leaves_.cards);
+    parallel_for_each_index(few.size(), 1, [&](std::size_t i) {
+      std::vector<Fitted>& ways = levels[few[i]].front();
+      if (auto settled = settled_way(pictures, luck, ways)) {
+        ways.clear();
+        ways.push_back(std::move(*settled));
+      }
+    });
+  }
+
+  /// Of all ways the one with least noise, with less of it; none where it does not cover as much any more.
+  [[nodiscard]] std::optional<Fitted> settled_way(const SourcePictures& pictures, double luck,
+                                                  std::span<const Fitted> ways) const {
+    std::vector<const Fitted*> fair;
+    double finest = 0.0;
+    for (const Fitted& way : ways) {
+      if (!way.is_fair) continue;
+      fair.push_back(&way);
+      double area = 0.0;
+      for (const Splat& splat : way.splats.splats) area += way.factor * splat.area;
+      finest = std::max(finest, std::sqrt(area / static_cast<double>(way.splats.splats.size()) / kMostCardArea));
+    }
+    if (fair.empty()) return std::nullopt;
+    std::vector<WayToSettle> unsettled;
+    unsettled.reserve(fair.size());
+    for (const Fitted* way : fair) unsettled.push_back({way->splats, way->factor});
+    const std::size_t best = settle(pictures, finest, unsettled);
+    Fitted settled = *fair[best];
+    settled.splats = std::move(unsettled[best].splats);
+    fit_few(luck, settled.factor, settled);
+    if (!settled.is_there) return std::nullopt;
+    settled.finest = std::max(settled.finest, finest);
+    return settled;
   }
 
   /// Half as many as the level before, but for regions out of step: if all kept a half, all would be replaced at once.
@@ -246,7 +321,7 @@ class Thinner {
       const std::size_t cards = leaves_.cards_of(groups[g].first_leaf, groups[g].end_leaf).size();
       groups[g].grain = std::sqrt(area / static_cast<double>(std::max<std::size_t>(1, cards)));
       for (const Fitted& way : fitted[g]) {
-        if (way.is_fair) groups[g].proposals.push_back({way.triangles, way.luck, {}, 0.0, {}});
+        if (way.is_fair) groups[g].proposals.push_back({way.triangles, way.luck, {}, 0.0, {{}, way.finest}});
       }
     }
     return groups;

@@ -55,6 +55,11 @@ const std::array<View, kMostViews>& most_views() {
   return all;
 }
 
+const std::array<View, kSettlingViews>& settling_views() {
+  static const auto all = make_views<kSettlingViews>(kSettlingViews - kSideViews);
+  return all;
+}
+
 Lattice::Lattice(const Vec3d& ball_center, double ball_radius, double sample_spacing)
     : center(ball_center), spacing(sample_spacing), offset(std::ceil(4.0 * ball_radius / sample_spacing) + 16.0) {}
 

@@ -27,6 +27,10 @@ constexpr std::size_t kManyViews = 48;
 /// More still: the noise of a handful of cards hangs on the direction more than what they cover does.
 constexpr std::size_t kMostViews = 144;
 [[nodiscard]] const std::array<View, kMostViews>& most_views();
+/// Others, for cards that are moved to where these show least noise: it is measured from the ones above, which know
+/// nothing of that. The last ones are from the side.
+constexpr std::size_t kSettlingViews = 16 + kSideViews;
+[[nodiscard]] const std::array<View, kSettlingViews>& settling_views();
 
 /// Samples of a picture: a point's place in whole samples, the first ones at least some samples from the border.
 struct Lattice {

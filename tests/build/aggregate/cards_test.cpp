@@ -100,6 +100,18 @@ TEST(PieceCards, ABoxIsThreeCardsThatShowWhatItShows) {
   EXPECT_EQ(areas, (std::multiset<long>{2000, 4000, 8000}));
 }
 
+/// Around (3, -1, 2), 0.02 large.
+Splat leaning_splat() {
+  Splat splat;
+  splat.center = {3, -1, 2};
+  splat.axis_u = {0, 0.6, 0.8};
+  splat.axis_v = {0, -0.8, 0.6};
+  splat.half_u = 0.3;
+  splat.half_v = 0.1;
+  splat.area = 0.02;
+  return splat;
+}
+
 TEST(Splat, HasTheAreaThatIsAskedForWhicheverWayUp) {
   for (const bool is_blade : {false, true}) {
     for (std::uint32_t turn = 0; turn < 4; ++turn) {
@@ -136,13 +148,7 @@ TEST(Splat, AShortBladeThatStandsForMuchIsNotWiderThanHigh) {
 
 TEST(Splat, StretchedToABladeStaysAroundItsCentroid) {
   for (const std::uint32_t turn : {0U, 1U, 2U, 3U}) {
-    Splat splat;
-    splat.center = {3, -1, 2};
-    splat.axis_u = {0, 0.6, 0.8};
-    splat.axis_v = {0, -0.8, 0.6};
-    splat.half_u = 0.3;
-    splat.half_v = 0.1;
-    splat.area = 0.02;
+    Splat splat = leaning_splat();
     splat.turn = turn;
     splat.stretch_to_blade(2.0);
     const Corners c = splat.corners(1.0);
@@ -150,6 +156,19 @@ TEST(Splat, StretchedToABladeStaysAroundItsCentroid) {
     EXPECT_LT(glm::length((c[0] + c[1] + c[2]) / 3.0 - Vec3d(3, -1, 2)), 1e-12);
     const Vec3d base = 0.5 * (c[1] + c[2]);
     EXPECT_NEAR(glm::length(c[0] - base), 2.0 * std::sqrt(3.0) * 0.3, 1e-12) << "twice a rectangle of its moments";
+  }
+}
+
+TEST(Splat, TurnedAnotherWayUpStaysAroundItsCentroid) {
+  for (const bool is_blade : {false, true}) {
+    Splat splat = leaning_splat();
+    if (is_blade) splat.stretch_to_blade(2.0);
+    for (const std::uint32_t way_up : {1U, 2U, 3U, 0U, 1U}) {
+      splat.turn_to(way_up);
+      const Corners c = splat.corners(1.0);
+      EXPECT_NEAR(area_of(c), 0.02, 1e-12);
+      EXPECT_LT(glm::length((c[0] + c[1] + c[2]) / 3.0 - Vec3d(3, -1, 2)), 1e-12);
+    }
   }
 }
 

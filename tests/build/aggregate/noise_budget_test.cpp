@@ -21,6 +21,9 @@ TEST(NoiseCurve, IsEvenBetweenWhatWasMeasured) {
   EXPECT_DOUBLE_EQ(curve.most_from(16.0), 0.05);
   EXPECT_EQ(curve.most_from(1.9), kInfinity) << "nobody looked further";
   EXPECT_EQ(NoiseCurve{}.most_from(1.0), kInfinity);
+  const NoiseCurve of_large_cards{{{8.0, 0.05}, {4.0, 0.10}, {2.0, 0.30}}, 3.0};
+  EXPECT_DOUBLE_EQ(of_large_cards.most_from(3.0), 0.20);
+  EXPECT_EQ(of_large_cards.most_from(2.9), kInfinity) << "not drawn";
 }
 
 TEST(NoiseCurve, WhatRoseAgainCountsBelow) {

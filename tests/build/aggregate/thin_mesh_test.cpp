@@ -97,6 +97,22 @@ TEST(ThinMesh, IsTheSameForAnyThreadCountAndAtAnyScale) {
   }
 }
 
+TEST(ThinMesh, FewCardsAreFivePixelsWideAtMost) {
+  // A soup is full: however large its cards are, each pixel is covered.
+  const ThinMesh mesh = thin(scene::make_box_soup(2000));
+  std::size_t seen = 0;
+  for (const std::vector<ThinGroup>& level : mesh.levels) {
+    const ThinGroup& group = level.front();
+    if (level.size() > 1 || group.triangles.size() > 512 || !std::isfinite(group.pixel_size)) continue;
+    double area = 0.0;
+    for (const Corners& c : group.triangles) area += 0.5 * glm::length(glm::cross(c[1] - c[0], c[2] - c[0]));
+    // Settling changes the factor by little.
+    EXPECT_LT(area / static_cast<double>(group.triangles.size()), 1.1 * 25.0 * group.pixel_size * group.pixel_size);
+    ++seen;
+  }
+  EXPECT_GT(seen, 3U);
+}
+
 TEST(ThinMesh, OddPiecesEndInLevelsOrInNone) {
   // All in one place; in one line; flat on the ground; one piece; far apart and tiny; huge.
   scene::Primitive heap, flat = scene::make_grass(300), line = scene::make_grass(300), dust = scene::make_grass(300);
