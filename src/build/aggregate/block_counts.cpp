@@ -2,6 +2,7 @@
 #include "build/aggregate/block_counts.h"
 
 #include <algorithm>
+#include <bit>
 #include <span>
 #include <utility>
 
@@ -13,9 +14,26 @@ constexpr std::size_t kFewSquares = 4096;  // of small numbers, which are summed
 
 }  // namespace
 
+BlockCounts::BlockCounts(const MaskBox& box, unsigned halvings)
+    : halvings_(halvings),
+      columns_(((std::size_t{32} * static_cast<std::size_t>(box.words()) - 1) >> halvings) + 1),
+      rows_(((static_cast<std::size_t>(box.rows()) / 2 - 1) >> halvings) + 1),
+      most_(std::size_t{4} << 2 * halvings),
+      counts_(columns_ * rows_, 0) {}
+
 void BlockCounts::add_word(std::size_t word, std::size_t block_row, std::uint64_t lower, std::uint64_t upper,
                            int sign) {
   if ((lower | upper) == 0) return;
+  if (halvings_ > 0) {
+    std::int32_t* at = counts_.data() + (block_row >> halvings_) * columns_ + (32 * word >> halvings_);
+    // Of a large block the word is a part.
+    const unsigned wide = std::min(64U, 2U << halvings_);
+    const std::uint64_t first = ~std::uint64_t{0} >> (64 - wide);
+    for (unsigned x = 0; x < 64; x += wide, ++at) {
+      *at += sign * (std::popcount(lower >> x & first) + std::popcount(upper >> x & first));
+    }
+    return;
+  }
   // Two bits a block and row, counted in place (0 … 2), then both rows together in four bits.
   constexpr std::uint64_t kOdd = 0x5555555555555555U, kPairs = 0x3333333333333333U;
   const std::uint64_t low = (lower & kOdd) + (lower >> 1U & kOdd);

@@ -31,7 +31,7 @@ CutMeter::CutMeter(const SourceSurface& source, const MeshFrame& frame, const By
   double size = smallest;
   for (std::size_t i = 0; i < count; ++i, size *= 2.0) {
     const std::size_t halvings = halvings_of(size);
-    sizes_.push_back({halvings + 1, i + most - halvings});  // one halving more a size at most
+    sizes_.push_back({static_cast<unsigned>(halvings), i + most - halvings});  // one halving more a size at most
     coarsest = std::max(coarsest, sizes_.back().lattice);
   }
   const double spacing = std::ldexp(smallest / kCutBlocks, -static_cast<int>(most));
@@ -62,7 +62,8 @@ SampleMask CutMeter::draw(std::size_t view, std::size_t lattice, std::span<const
 }
 
 CutChange CutMeter::measure(const ThinnedCut& cut, std::size_t size) const {
-  const std::size_t octaves = sizes_[size].octaves, lattice = sizes_[size].lattice;
+  const std::size_t lattice = sizes_[size].lattice;
+  const unsigned halvings = sizes_[size].halvings;
   struct Seen {
     double whole = 0.0;
     Change change;
@@ -77,7 +78,7 @@ CutChange CutMeter::measure(const ThinnedCut& cut, std::size_t size) const {
     SampleMask drawn(box);
     drawn.add(as_they_are);
     drawn.add(instead);
-    seen[v] = {static_cast<double>(squares_of_all(all, octaves)[kCutSize]), change_of(all, drawn, {}, octaves)};
+    seen[v] = {static_cast<double>(squares_of_all(all, 1, halvings)[kCutSize]), change_of(all, drawn, {}, 1, halvings)};
   });
   double whole = 0.0, change = 0.0, before = 0.0, after = 0.0;
   for (const Seen& view : seen) {

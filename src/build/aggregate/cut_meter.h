@@ -39,7 +39,8 @@ class CutMeter {
 
  private:
   struct Size {
-    std::size_t octaves = 1, lattice = 0;
+    unsigned halvings = 0;  ///< of the samples' blocks
+    std::size_t lattice = 0;
   };
   /// What leaves of the source cover.
   [[nodiscard]] SampleMask draw(std::size_t view, std::size_t lattice, std::span<const std::uint32_t> leaves) const;

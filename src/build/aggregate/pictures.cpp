@@ -117,11 +117,12 @@ Cover cover_of(std::span<const SampleMask> groups) {
   return cover;
 }
 
-Change change_of(const SampleMask& before, const SampleMask& after, const Cover& cover, std::size_t octaves) {
+Change change_of(const SampleMask& before, const SampleMask& after, const Cover& cover, std::size_t octaves,
+                 unsigned halvings) {
   MaskBox box = before.box();
   box.include(after.box());
   if (box.is_empty()) return {Squares(2 * octaves, 0), 0, 0};
-  BlockCounts counts(box);
+  BlockCounts counts(box, halvings);
   Change change;
   for (int y = box.first_row; y < box.end_row; y += 2) {
     for (int x = box.first_word; x < box.end_word; ++x) {
@@ -145,9 +146,9 @@ Change change_of(const SampleMask& before, const SampleMask& after, const Cover&
   return change;
 }
 
-Squares squares_of_all(const SampleMask& all, std::size_t octaves) {
+Squares squares_of_all(const SampleMask& all, std::size_t octaves, unsigned halvings) {
   if (all.box().is_empty()) return Squares(2 * octaves, 0);
-  BlockCounts counts(all.box());
+  BlockCounts counts(all.box(), halvings);
   for (int y = all.box().first_row; y < all.box().end_row; y += 2) {
     for (int x = 0; x < all.box().words(); ++x) {
       counts.add_word(static_cast<std::size_t>(x), static_cast<std::size_t>(y - all.box().first_row) / 2, all.row(y)[x],

@@ -73,10 +73,11 @@ struct Change {
   std::int64_t before = 0, after = 0;  ///< samples that nothing else covers
 };
 
-/// `before`: the group's own samples; `cover`: of all groups before.
+/// `before`: the group's own samples; `cover`: of all groups before. `halvings`: the smallest pixels are so many
+/// octaves above kPixelBlocks.
 [[nodiscard]] Change change_of(const SampleMask& before, const SampleMask& after, const Cover& cover,
-                               std::size_t octaves);
-[[nodiscard]] Squares squares_of_all(const SampleMask& all, std::size_t octaves);
+                               std::size_t octaves, unsigned halvings = 0);
+[[nodiscard]] Squares squares_of_all(const SampleMask& all, std::size_t octaves, unsigned halvings = 0);
 
 /// What the leaves cover in one view, at one spacing after the other.
 using LeafMasks = std::vector<std::vector<SampleMask>>;

@@ -26,7 +26,7 @@ constexpr std::size_t kSweeps = 5, kTries = 3;
 constexpr double kReach = 0.6, kTurn = 0.3, kShrink = 0.75;
 
 /// Samples of the source along half of the smallest pixel: of pieces that are smaller many count.
-constexpr int kFinestHalf = 8;
+constexpr int kFinestHalf = 4;
 
 /// A number's bits, well mixed (SplitMix64, public domain).
 std::uint64_t mixed(std::uint64_t x) {

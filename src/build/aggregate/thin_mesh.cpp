@@ -27,7 +27,9 @@ namespace {
 constexpr std::size_t kFewestTriangles = 8;  // a level below would be a handful of cards across the whole mesh
 // Of a whole mesh: they are seen from more directions, and moved to where they have less noise.
 constexpr std::size_t kFewCards = 512;
-constexpr double kSettlingPixels = 55.0;  // in pictures of that size at most: in finer ones so few have much noise
+// In pictures of so many pixels along the longest side, and of so many times the root of how many there are: in finer
+// ones they have more noise than can be settled, most of them, and such pictures take room.
+constexpr double kSettlingPixels = 55.0, kPixelsOfCard = 3.0;
 // What all views together may show more or less: groups that cover as much as their pieces do alone may hide more or
 // less of each other.
 constexpr double kMostSumShift = 0.012;
@@ -276,19 +278,22 @@ class Thinner {
   [[nodiscard]] std::optional<Fitted> settled_way(const SourcePictures& pictures, double luck,
                                                   std::span<const Fitted> ways) const {
     std::vector<const Fitted*> fair;
-    double finest = 0.0;
+    double most_area = 0.0, count = 1.0;
     for (const Fitted& way : ways) {
       if (!way.is_fair) continue;
       fair.push_back(&way);
       double area = 0.0;
       for (const Splat& splat : way.splats.splats) area += way.factor * splat.area;
-      finest = std::max(finest, std::sqrt(area / static_cast<double>(way.splats.splats.size()) / kMostCardArea));
+      count = static_cast<double>(way.splats.splats.size());
+      most_area = std::max(most_area, area / count);
     }
     if (fair.empty()) return std::nullopt;
     std::vector<WayToSettle> unsettled;
     unsettled.reserve(fair.size());
     for (const Fitted* way : fair) unsettled.push_back({way->splats, way->factor});
-    const std::size_t best = settle(pictures, finest, unsettled);
+    const double finest = std::sqrt(most_area / kMostCardArea);
+    const std::size_t best =
+        settle(pictures, std::max(finest, frame_.longest / (kPixelsOfCard * std::sqrt(count))), unsettled);
     Fitted settled = *fair[best];
     settled.splats = std::move(unsettled[best].splats);
     fit_few(luck, settled.factor, settled);

@@ -165,12 +165,15 @@ TEST(BlockCounts, SumsOfSquaresAreThoseOfEveryPixel) {
   box.end_word = 2;
   box.end_row = 38;
   BlockCounts counts(box);
+  std::vector<BlockCounts> halved;  // from the start
+  for (unsigned halvings = 1; halvings <= 7; ++halvings) halved.emplace_back(box, halvings);
   std::vector<std::vector<int>> samples(38, std::vector<int>(128, 0));
   for (int y = 0; y < 38; y += 2) {
     for (std::size_t w = 0; w < 2; ++w) {
       for (const int sign : {1, -1}) {
         std::array<std::uint64_t, 2> rows{random.next() & random.next(), random.next() & random.next()};
         counts.add_word(w, static_cast<std::size_t>(y) / 2, rows[0], rows[1], sign);
+        for (BlockCounts& each : halved) each.add_word(w, static_cast<std::size_t>(y) / 2, rows[0], rows[1], sign);
         for (std::size_t k = 0; k < 2; ++k) {
           for (unsigned x = 0; x < 64; ++x) {
             samples[static_cast<std::size_t>(y) + k][64 * w + x] += sign * static_cast<int>(rows[k] >> x & 1U);
@@ -196,9 +199,16 @@ TEST(BlockCounts, SumsOfSquaresAreThoseOfEveryPixel) {
           expected += sum * sum;
         }
       }
+      if (octave > 0) {
+        EXPECT_EQ(halved[static_cast<std::size_t>(octave) - 1].sum_of_squares(side), expected);
+      }
       EXPECT_EQ(counts.sum_of_squares(side), expected) << octave << " " << side;
     }
     counts.halve();
+  }
+  for (std::size_t h = 3; h <= 7; ++h, counts.halve()) {
+    for (const std::size_t side : {1U, 4U, 6U})
+      EXPECT_EQ(halved[h - 1].sum_of_squares(side), counts.sum_of_squares(side));
   }
 }
 
