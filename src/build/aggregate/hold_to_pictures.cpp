@@ -99,6 +99,21 @@ ThinnedCut cut_at(const ThinnedWays& ways, std::span<const View> views, const Us
   return cut;
 }
 
+/// Whether there is something that nothing replaces.
+bool is_any_kept(const ThinnedWays& ways, const Uses& uses) {
+  std::vector<std::uint8_t> is_replaced(ways.leaves.size(), 0);
+  for (std::uint32_t leaf = 0; leaf < is_replaced.size(); ++leaf)
+    is_replaced[leaf] = ways.leaves.triangles.of(leaf).empty() ? 1 : 0;
+  for (std::size_t l = 0; l < uses.size(); ++l) {
+    for (std::size_t g = 0; g < uses[l].size(); ++g) {
+      const GroupProposals& group = ways.proposals[l][g];
+      if (uses[l][g].pixel_size < kInfinity)
+        std::fill(is_replaced.begin() + group.first_leaf, is_replaced.begin() + group.end_leaf, std::uint8_t{1});
+    }
+  }
+  return std::find(is_replaced.begin(), is_replaced.end(), std::uint8_t{0}) != is_replaced.end();
+}
+
 /// Whether something comes between two pixel sizes, the larger one included.
 bool is_any_between(const Uses& uses, double low, double high) {
   return std::any_of(uses.begin(), uses.end(), [&](const std::vector<NoiseUse>& level) {
@@ -144,6 +159,8 @@ bool are_held(const ThinnedWays& ways, Scrutiny& how, Uses& uses) {
   double size = largest;
   for (; 0.5 * size >= smallest; size *= 0.5) ++count;
   const CutMeter meter(ways.source, ways.frame, ways.leaves.triangles, how.views, size, count, how.grain, how.finest);
+  // What is kept has no part of the noise, which was shared out as if it did: of the rest it is more in smaller pixels.
+  const bool is_for_all = !is_any_kept(ways, uses);
   double held = 0.0;  // cuts up to there are as they should be
   for (std::size_t i = 0; i < count; ++i, size *= 2.0) {
     const bool is_last = i + 1 == count;
@@ -164,6 +181,7 @@ bool are_held(const ThinnedWays& ways, Scrutiny& how, Uses& uses) {
     }
     if (is_dropped) return false;
     if (is_held) {
+      if (!is_for_all) move_all_between(uses, held, size, size);
       held = size;
     } else {
       move_all_between(uses, held, 2.0 * size, 2.0 * size);

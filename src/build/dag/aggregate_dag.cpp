@@ -240,6 +240,9 @@ class AggregateDag {
     });
     if (result.triangles.empty() || static_cast<double>(result.triangles.size()) > kStuckRatio * children.triangles)
       return false;
+    std::size_t bytes = 0;
+    for (const ClusterId c : children.clusters) bytes += bytes_of(c);
+    if (does_not_fit(bytes)) return false;  // pieces of thousands of triangles, which no leaf parts
     Clustering clustering;
     clustering.label.resize(result.triangles.size());
     std::vector<std::uint32_t> order(result.triangles.size());
@@ -274,6 +277,17 @@ class AggregateDag {
     return true;
   }
 
+  /// Of a page, at most; 0 where pages have no limit.
+  [[nodiscard]] std::size_t bytes_of(ClusterId cluster) const {
+    if (options_.max_group_bytes == 0) return 0;
+    const BuildPool::ClusterUse use = pool_.use_of(cluster);
+    return options_.cluster_bytes(static_cast<std::uint32_t>(use.wedges.size()), pool_.cluster(cluster).triangle_count,
+                                  use.materials);
+  }
+  [[nodiscard]] bool does_not_fit(std::size_t bytes) const {
+    return options_.max_group_bytes > 0 && bytes > options_.max_group_bytes;
+  }
+
   /// What stays of a run of nodes becomes terminal groups.
   Node ended(std::size_t first, std::size_t count) {
     for (std::size_t k = first; k < first + count; ++k) end(nodes_[k], StuckReason::kComponents);
@@ -283,14 +297,26 @@ class AggregateDag {
     return node;
   }
 
+  /// As many groups as its clusters need pages.
   void end(Node& node, StuckReason reason) {
-    if (node.clusters.empty()) return;
     BuildGroup group;
     group.is_terminal = true;
     group.stuck_reason = reason;
-    group.clusters = std::exchange(node.clusters, {});
-    for (const ClusterId c : group.clusters) group.level = std::max(group.level, pool_.cluster(c).level);
-    pool_.groups.push_back(std::move(group));
+    std::size_t bytes = 0;
+    const auto end_group = [&] {
+      if (!group.clusters.empty()) pool_.groups.push_back(group);
+      group.clusters.clear();
+      group.level = 0;
+      bytes = 0;
+    };
+    for (const ClusterId c : std::exchange(node.clusters, {})) {
+      const std::size_t more = bytes_of(c);
+      if (does_not_fit(bytes + more)) end_group();
+      bytes += more;
+      group.clusters.push_back(c);
+      group.level = std::max(group.level, pool_.cluster(c).level);
+    }
+    end_group();
   }
 
   void end_all() {

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <utility>
 
 #include "base/parallel.h"
@@ -20,6 +21,10 @@ namespace {
 constexpr std::size_t kDirections = 37, kCloserDirections = 149;
 constexpr std::size_t kFewestSamples = 8;  // of a pixel, each way
 constexpr double kMostSide = 8192.0;
+// Pixels start so many times a pixel; more often where a mesh is few pixels across: how they lie there is luck, by
+// which noise is a quarter more or less.
+constexpr std::size_t kSteps = 2, kStepsOfFew = 4;
+constexpr double kFewPixels = 8.0;
 // Of needles that few samples see: as many samples as triangles may reach, in a picture of one direction.
 constexpr double kMostFineSide = 131072.0, kMostReach = kMostSide * kMostSide;
 // Samples of triangles that hide nothing of each other, in all directions together.
@@ -63,14 +68,16 @@ using Places = std::array<Vec2d, 3>;
 /// there are those that some triangle may reach.
 class Samples {
  public:
-  /// Between two corners of the picture; pixels start at the lower one, and two pixels of nothing are on each side.
-  Samples(const Vec2d& low, const Vec2d& high, double spacing, std::size_t samples_a_pixel)
+  /// Between two corners of the picture; pixels start at the lower one, so often a pixel, and two pixels of nothing are
+  /// on each side.
+  Samples(const Vec2d& low, const Vec2d& high, double spacing, std::size_t samples_a_pixel, std::size_t steps)
       : low_(low),
         spacing_(spacing),
-        half_pixel_(samples_a_pixel / 2),
+        steps_(steps),
+        step_(samples_a_pixel / steps),
         squares_wide_(squares(high.x - low.x)),
         squares_high_(squares(high.y - low.y)),
-        rows_(half_pixel_ * (squares_high_ - kAround)) {}
+        rows_(step_ * (squares_high_ - 2 * before())) {}
 
   /// For all that will be drawn, before anything is.
   void make_room_for(std::span<const std::span<const CoveringTriangle>> sets, const Picture& picture) {
@@ -89,7 +96,7 @@ class Samples {
   }
   [[nodiscard]] std::size_t reach() const { return reach_; }  ///< samples that there is room for
 
-  /// The share of each pixel that the triangles cover, for pixels half a pixel apart.
+  /// The share of each pixel that the triangles cover, for pixels a step apart.
   [[nodiscard]] std::vector<double> draw(std::span<const CoveringTriangle> triangles, const Picture& picture,
                                          const draw::AlphaMasks& masks) {
     covered_.assign(reach_, 0);
@@ -98,7 +105,7 @@ class Samples {
   }
 
  private:
-  static constexpr std::size_t kBefore = 4, kAround = 8;  ///< squares of half a pixel, of nothing
+  [[nodiscard]] std::size_t before() const { return 2 * steps_; }  ///< squares of nothing
 
   struct Row {
     std::size_t first = std::numeric_limits<std::size_t>::max(), end = 0;  ///< columns
@@ -107,7 +114,7 @@ class Samples {
 
   static double cross(const Vec2d& a, const Vec2d& b) { return a.x * b.y - a.y * b.x; }
   [[nodiscard]] std::size_t squares(double extent) const {
-    return static_cast<std::size_t>(std::ceil(extent / spacing_)) / half_pixel_ + 1 + kAround;
+    return static_cast<std::size_t>(std::ceil(extent / spacing_)) / step_ + 1 + 2 * before();
   }
 
   [[nodiscard]] Places places(const CoveringTriangle& triangle, const Picture& picture) const {
@@ -142,7 +149,7 @@ class Samples {
     const auto end = [](double high, std::size_t most) {
       return std::min(most, static_cast<std::size_t>(std::max(0.0, std::floor(high - 0.5) + 1.0)));
     };
-    const std::size_t columns = half_pixel_ * (squares_wide_ - kAround);
+    const std::size_t columns = step_ * (squares_wide_ - 2 * before());
     for (std::size_t y = first(bottom); y < end(top, rows_.size()); ++y) {
       // Of a sliver across the picture few samples of a row are near it: a sample more on both sides, for rounding.
       const auto [from, to] = crossing(p, static_cast<double>(y) + 0.5);
@@ -171,17 +178,21 @@ class Samples {
     std::vector<std::uint32_t> squares(squares_wide_ * squares_high_, 0);
     for (std::size_t y = 0; y < rows_.size(); ++y) {
       const Row& row = rows_[y];
-      std::uint32_t* const in_row = &squares[(kBefore + y / half_pixel_) * squares_wide_ + kBefore];
-      for (std::size_t x = row.first; x < row.end; ++x) in_row[x / half_pixel_] += covered_[row.at + (x - row.first)];
+      std::uint32_t* const in_row = &squares[(before() + y / step_) * squares_wide_ + before()];
+      for (std::size_t x = row.first; x < row.end; ++x) in_row[x / step_] += covered_[row.at + (x - row.first)];
     }
-    // A pixel is four squares of half its width.
-    const double all = 4.0 * static_cast<double>(half_pixel_ * half_pixel_);
+    // A pixel is steps_ × steps_ squares.
+    const double all = static_cast<double>(steps_ * steps_) * static_cast<double>(step_ * step_);
     std::vector<double> out;
-    out.reserve((squares_wide_ - 1) * (squares_high_ - 1));
-    for (std::size_t y = 0; y + 1 < squares_high_; ++y) {
-      for (std::size_t x = 0; x + 1 < squares_wide_; ++x) {
-        const std::uint32_t* at = &squares[y * squares_wide_ + x];
-        out.push_back((at[0] + at[1] + at[squares_wide_] + at[squares_wide_ + 1]) / all);
+    out.reserve((squares_wide_ - steps_ + 1) * (squares_high_ - steps_ + 1));
+    for (std::size_t y = 0; y + steps_ <= squares_high_; ++y) {
+      for (std::size_t x = 0; x + steps_ <= squares_wide_; ++x) {
+        std::uint32_t sum = 0;
+        for (std::size_t k = 0; k < steps_; ++k) {
+          const std::uint32_t* at = &squares[(y + k) * squares_wide_ + x];
+          sum = std::accumulate(at, at + steps_, sum);
+        }
+        out.push_back(sum / all);
       }
     }
     return out;
@@ -189,7 +200,8 @@ class Samples {
 
   Vec2d low_;
   double spacing_;
-  std::size_t half_pixel_;  ///< samples along it
+  std::size_t steps_;  ///< of a pixel
+  std::size_t step_;   ///< samples along it
   std::size_t squares_wide_, squares_high_;
   std::vector<Row> rows_;
   std::size_t reach_ = 0;
@@ -203,7 +215,8 @@ struct Sums {
 };
 
 Sums look(std::span<const CoveringTriangle> source, std::span<const CoveringTriangle> cut,
-          const draw::AlphaMasks& masks, double spacing, std::size_t samples_a_pixel, const Picture& picture) {
+          const draw::AlphaMasks& masks, double spacing, std::size_t samples_a_pixel, std::size_t steps,
+          const Picture& picture) {
   Vec2d low(std::numeric_limits<double>::max()), high(-std::numeric_limits<double>::max());
   for (const auto set : {source, cut}) {
     for (const CoveringTriangle& triangle : set) {
@@ -214,7 +227,7 @@ Sums look(std::span<const CoveringTriangle> source, std::span<const CoveringTria
       }
     }
   }
-  Samples samples(low, high, spacing, samples_a_pixel);
+  Samples samples(low, high, spacing, samples_a_pixel, steps);
   const std::array sets{source, cut};
   samples.make_room_for(sets, picture);
   const std::vector<double> f = samples.draw(source, picture, masks), c = samples.draw(cut, picture, masks);
@@ -265,15 +278,16 @@ std::optional<CoverageDrift> measure_coverage(std::span<const CoveringTriangle> 
   while (pixel_size > std::min(0.5 * width, few) * static_cast<double>(samples_a_pixel) && 2.0 * side() <= kMostSide)
     samples_a_pixel *= 2;
   if (side() > kMostSide) return std::nullopt;
+  const std::size_t steps = glm::length(high - low) < kFewPixels * pixel_size ? kStepsOfFew : kSteps;
   std::vector<Sums> of_direction(directions);
   for (;; samples_a_pixel *= 2) {
     const double spacing = pixel_size / static_cast<double>(samples_a_pixel);
     parallel_for_each_index(directions, 1, [&](std::size_t d) {
-      of_direction[d] = look(source, cut, masks, spacing, samples_a_pixel, picture_of(d, directions));
+      of_direction[d] = look(source, cut, masks, spacing, samples_a_pixel, steps, picture_of(d, directions));
     });
     double seen = 0.0, reach = 0.0;
     for (const Sums& sums : of_direction) {
-      seen += 0.25 * sums.source;  // in each of the four pixels that have it
+      seen += sums.source / static_cast<double>(steps * steps);  // in each of the pixels that have it
       reach = std::max(reach, sums.reach);
     }
     seen *= static_cast<double>(samples_a_pixel * samples_a_pixel);

@@ -33,11 +33,11 @@ struct CoverageDrift {
 };
 
 /// 37 directions of a hemisphere; pixels are squares of `pixel_size` with at least 64 samples each, every half a pixel,
-/// and with more where triangles are small against them, or few samples see anything. The side that triangles are seen
-/// from does not matter. Nothing where pictures of pixels with 8 samples across would have more than 8,192 a side. The
-/// same for any thread count. `closer` than 1: so many times as many samples where they are few, of a handful of
-/// needles, where a sum has half a percent of luck; and from 149 directions, for what a handful of triangles shows
-/// hangs on the direction.
+/// or a quarter where that is less than 8 of them across, and with more where triangles are small against them, or few
+/// samples see anything. The side that triangles are seen from does not matter. Nothing where pictures of pixels with 8
+/// samples across would have more than 8,192 a side. The same for any thread count. `closer` than 1: so many times as
+/// many samples where they are few, of a handful of needles, where a sum has half a percent of luck; and from 149
+/// directions, for what a handful of triangles shows hangs on the direction.
 [[nodiscard]] std::optional<CoverageDrift> measure_coverage(std::span<const CoveringTriangle> source,
                                                             std::span<const CoveringTriangle> cut,
                                                             const draw::AlphaMasks& masks, double pixel_size,

@@ -121,5 +121,45 @@ TEST(AggregateDag, GroupsShareNoEdgeButWithWhatTheyReplace) {
   EXPECT_GT(shared, 1000U) << "a blade stays where it was, in another level";
 }
 
+TEST(AggregateDag, NoGroupTakesMoreThanAPageThoughAPieceDoes) {
+  scene::Primitive grass = scene::make_grass(1000);
+  grass.normals.clear();
+  grass.uvs[0].clear();
+  constexpr std::uint32_t kSide = 100;
+  const auto first = static_cast<std::uint32_t>(grass.positions.size());
+  for (std::uint32_t y = 0; y < kSide; ++y) {
+    for (std::uint32_t x = 0; x < kSide; ++x)
+      grass.positions.emplace_back(0.01F * static_cast<float>(x), 0.5F, 0.01F * static_cast<float>(y));
+  }
+  for (std::uint32_t y = 0; y + 1 < kSide; ++y) {
+    for (std::uint32_t x = 0; x + 1 < kSide; ++x) {
+      const std::uint32_t v = first + kSide * y + x;
+      for (const std::uint32_t corner : {v, v + 1, v + kSide, v + kSide, v + 1, v + kSide + 1})
+        grass.indices.push_back(corner);
+    }
+  }
+  Result<PreparedMesh> mesh = prepare_mesh(scene::as_mesh(std::move(grass)), {}, {});
+  ASSERT_TRUE(mesh.ok()) << mesh.error().message();
+  const std::size_t triangles = mesh->triangles.size();
+  DagOptions options;
+  options.max_group_bytes = 65536;
+  const auto bytes_of = [](std::uint32_t vertices, std::uint32_t count, std::uint32_t materials) {
+    return 64 * materials + 12 * vertices + 3 * count;
+  };
+  options.cluster_bytes = bytes_of;
+  const std::vector<SourceMaterial> materials(1);
+  Result<LodDag> dag = build_aggregate_dag_and_free(*mesh, materials, options, {});
+  ASSERT_TRUE(dag.ok()) << dag.error().message();
+  std::vector<std::uint32_t> bytes(dag->groups.size(), 0);
+  std::size_t at_level_0 = 0;
+  for (const DagCluster& cluster : dag->clusters) {
+    bytes[cluster.coarser_group.value] += bytes_of(cluster.vertex_count, cluster.triangle_count, 1);
+    at_level_0 += cluster.level == 0 ? cluster.triangle_count : 0;
+  }
+  EXPECT_EQ(at_level_0, triangles);
+  EXPECT_LE(*std::max_element(bytes.begin(), bytes.end()), options.max_group_bytes);
+  EXPECT_GT(dag->level_count, 1U) << "what fits is replaced";
+}
+
 }  // namespace
 }  // namespace meshlode::build

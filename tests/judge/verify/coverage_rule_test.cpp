@@ -224,6 +224,33 @@ TEST(CoverageDrift, SaysHowMuchMoreOrLess) {
   EXPECT_FALSE(measure_coverage({}, source, {}, 0.05));
 }
 
+TEST(CoverageDrift, HowFewPixelsLieIsNoMatter) {
+  const std::vector<CoveringTriangle> source = cards(60, 0.5);
+  std::vector<CoveringTriangle> moved = source;
+  for (CoveringTriangle& triangle : moved) {
+    for (Vec3d& corner : triangle.corners) corner += Vec3d(0.11, 0.07, -0.09);
+  }
+  constexpr double kPixel = 1.2;
+  double least = 1.0, most = 0.0;
+  for (const double out : {0.0, 0.1, 0.2, 0.3, 0.4, 0.5}) {
+    // Crumbs all around move where the first pixel starts.
+    std::vector<CoveringTriangle> with = source, moved_with = moved;
+    for (const Vec3d& at : {Vec3d(1, 0, 0), Vec3d(0, 1, 0), Vec3d(0, 0, 1)}) {
+      for (const double side : {-1.0, 1.0}) {
+        const Vec3d corner = Vec3d(0.5) + side * (1.0 + out * kPixel) * at;
+        const CoveringTriangle crumb{{corner, corner + 1e-3 * Vec3d(at.y, at.z, at.x), corner + 1e-3 * at}};
+        with.push_back(crumb);
+        moved_with.push_back(crumb);
+      }
+    }
+    const auto drift = measure_coverage(with, moved_with, {}, kPixel);
+    ASSERT_TRUE(drift);
+    least = std::min(least, drift->rms);
+    most = std::max(most, drift->rms);
+  }
+  EXPECT_LT(most, 1.03 * least);
+}
+
 TEST(CoverageDrift, OfNeedlesMoreSamplesHaveLessLuck) {
   std::vector<CoveringTriangle> source, moved;
   SplitMix64 random(9);
