@@ -42,6 +42,16 @@ void Fitted::forget_splats() {
   release(splats.splats);
 }
 
+double worst_view(const Covered& before, const Covered& now, double weight) {
+  double worst = 0.0;
+  for (std::size_t v = 0; v < now.size(); ++v) {
+    if (before[v] == 0) continue;
+    const double share = weight * static_cast<double>(now[v]) / static_cast<double>(before[v]);
+    worst = std::max(worst, std::fabs(share - 1.0));
+  }
+  return worst;
+}
+
 void fit_factor(const MeshFrame& frame, const format::PositionGrid& grid, const Target& target, double start,
                 Fitted& way) {
   constexpr double kCloseEnough = 0.002;
@@ -78,12 +88,7 @@ void fit_factor(const MeshFrame& frame, const format::PositionGrid& grid, const 
     factor = next;
     last_count = count;
   }
-  way.worst_view = 0.0;
-  for (std::size_t v = 0; v < now.size(); ++v) {
-    if (target.covered[v] == 0) continue;
-    const double share = weight * static_cast<double>(now[v]) / static_cast<double>(target.covered[v]);
-    way.worst_view = std::max(way.worst_view, std::fabs(share - 1.0));
-  }
+  way.worst_view = worst_view(target.covered, now, weight);
   way.is_there =
       std::fabs(weight * sampling.sum(now) - wanted) <= kMostCoverageShift * wanted && way.worst_view <= kMostInAView;
   way.factor = tried;

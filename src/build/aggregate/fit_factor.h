@@ -91,6 +91,9 @@ struct Target {
   double area = 0.0, luck = 1.0;
 };
 
+/// What a single view's sum changes by at most, as a share of it. `weight`: samples of `before` for one of `now`.
+[[nodiscard]] double worst_view(const Covered& before, const Covered& now, double weight);
+
 /// Finds the factor for which the splats cover as much as that. `start`: where to begin.
 void fit_factor(const MeshFrame& frame, const format::PositionGrid& grid, const Target& target, double start,
                 Fitted& way);

@@ -25,8 +25,9 @@ namespace meshlode::build {
 namespace {
 
 constexpr std::size_t kFewestTriangles = 8;  // a level below would be a handful of cards across the whole mesh
-// Of a whole mesh: they are seen from more directions, and moved to where they have less noise.
-constexpr std::size_t kFewCards = 512;
+// Of a whole mesh: they are seen from more directions, and moved to where they have less noise. So many are looked at
+// from there.
+constexpr std::size_t kFewCards = 512, kSomeCards = 1024;
 // In pictures of so many pixels along the longest side, and of so many times the root of how many there are: in finer
 // ones they have more noise than can be settled, most of them, and such pictures take room.
 constexpr double kSettlingPixels = 55.0, kPixelsOfCard = 3.0;
@@ -121,8 +122,7 @@ class Thinner {
       if (is_whole(level) && seen_by_many_.empty() && cards <= static_cast<double>(kFewCards)) {
         if (!fitted.empty()) look_from_many_views(fitted.back());
         if (seen_by_many_.empty()) {
-          const std::array<std::uint32_t, 1> all{static_cast<std::uint32_t>(leaves_.size())};
-          seen_by_many_ = covered_samples(source_, frame_, leaves_.triangles, few_.spacing, few_.views, all)[0][0];
+          seen_by_many_ = seen_in_fact_.empty() ? seen_from(few_) : seen_in_fact_;
           luck_of_many_ = luck_of_cards(few_, leaves_.cards);
         }
       }
@@ -132,6 +132,8 @@ class Thinner {
         finer = fitted.back();
       }
       fitted.push_back(fit_level(level, finer));
+      if (is_whole(level) && cards > static_cast<double>(kFewCards) && cards <= static_cast<double>(kSomeCards))
+        hold_to_many_views(fitted.back().front());
       if (is_whole(level) && seen_by_many_.empty()) look_from_many_views(fitted.back());
       plans.push_back(level);
     }
@@ -173,6 +175,24 @@ class Thinner {
     for (std::uint64_t& count : seen_by_many_) {
       count = static_cast<std::uint64_t>(std::llround(static_cast<double>(count) * wanted / seen));
     }
+  }
+
+  /// As fit_few() does, of some more cards.
+  void hold_to_many_views(std::span<Fitted> ways) {
+    if (seen_in_fact_.empty()) seen_in_fact_ = seen_from(few_);
+    for (Fitted& way : ways) {
+      if (!way.is_there) continue;
+      const double spacing = few_.spacing_of(drawn_area_, way.triangles.size());
+      const Covered now = covered_samples(frame_, way.triangles, spacing, few_.views);
+      const double worst = worst_view(seen_in_fact_, now, spacing * spacing / (few_.spacing * few_.spacing));
+      if (worst > kMostOfManyViews) way.finest = frame_.longest / kViewsHeldFrom;
+    }
+  }
+
+  /// What the whole mesh covers.
+  [[nodiscard]] Covered seen_from(const Sampling& sampling) const {
+    const std::array<std::uint32_t, 1> all{static_cast<std::uint32_t>(leaves_.size())};
+    return covered_samples(source_, frame_, leaves_.triangles, sampling.spacing, sampling.views, all)[0][0];
   }
 
   static void forget_splats(std::span<std::vector<Fitted>> level) {
@@ -382,6 +402,7 @@ class Thinner {
       covered_;                ///< what the groups' pieces cover so, by level; the last for all later ones
   Sampling few_;               ///< the same where cards are few
   Covered seen_by_many_;       ///< what the whole mesh covers so; empty before few cards stand for it
+  Covered seen_in_fact_;       ///< the same, of its own triangles; empty before some cards stand for it
   double luck_of_many_ = 1.0;  ///< of the cards that this is of
 };
 

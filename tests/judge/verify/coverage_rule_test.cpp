@@ -90,6 +90,23 @@ TEST(Aggregates, OfOtherKindsHoldAndHaveLevels) {
   }
 }
 
+TEST(Aggregates, OfAWallNoDirectionIsFarOffAtThirtyPixels) {
+  const std::vector<std::uint8_t> bytes = build_aggregate(scene_of(scene::make_aggregate_kind("ivy", 10000)));
+  const Result<run::Asset> asset = run::Asset::from_vector(bytes);
+  ASSERT_TRUE(asset.ok());
+  const auto triangles_at = [&](double size) {
+    auto triangles = covering_triangles(*asset, {}, MeshId(0U), run::select_uniform(*asset, MeshId(0U), size).clusters);
+    EXPECT_TRUE(triangles.ok());
+    return std::move(*triangles);
+  };
+  constexpr double kLongest = 4.14;
+  const std::vector<CoveringTriangle> source = triangles_at(-1.0), cut = triangles_at(kLongest / 30.0);
+  EXPECT_LT(cut.size(), source.size() / 10);
+  const auto drift = measure_coverage(source, cut, {}, kLongest / 30.0);
+  ASSERT_TRUE(drift);
+  EXPECT_LT(drift->worst_direction, 0.15) << "seen along itself it shows little";
+}
+
 TEST(Aggregates, OfEveryTierHold) {
   const scene::Scene scene = scene_of(scene::make_grass(800));
   for (const format::ErrorTier tier : {format::ErrorTier::kQem, format::ErrorTier::kCertified}) {
