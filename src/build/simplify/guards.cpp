@@ -193,6 +193,20 @@ bool keeps_shared_edges(const CollapseMesh& mesh, const GroupLocks& locks, const
   return is_kept(star.a, star.b) && is_kept(star.b, star.a);
 }
 
+bool lands_on_locked(const CollapseMesh& mesh, const GroupLocks& locks, const GroupPlaces& places,
+                     const CollapseStar& star) {
+  const auto is_there = [&](std::uint32_t vertex) {
+    return locks.is_vertex_locked[vertex] != 0 && places[vertex] == star.target;
+  };
+  const auto has_one = [&](const StarEnd& end) {
+    return std::any_of(end.corners.begin(), end.corners.end(), [&](std::uint32_t corner) {
+      const auto [x, y] = mesh.others(corner);
+      return is_there(x) || is_there(y);
+    });
+  };
+  return has_one(star.a) || has_one(star.b);
+}
+
 bool keeps_shared_corners(const CollapseMesh& mesh, const GroupLocks& locks, const WedgeClasses& classes,
                           const CollapseStar& star) {
   const auto is_kept = [&](const StarEnd& locked, const StarEnd& moved) {
