@@ -62,20 +62,30 @@ Scrutiny scrutiny_of(const ThinnedWays& ways, double finest) {
           kMostFewShift};
 }
 
+/// Of each leaf whether something replaces it, at whatever size.
+std::vector<std::uint8_t> ever_replaced(const ThinnedWays& ways, const Uses& uses) {
+  std::vector<std::uint8_t> is_ever(ways.leaves.size(), 0);
+  for (std::size_t l = 0; l < uses.size(); ++l) {
+    for (std::size_t g = 0; g < uses[l].size(); ++g) {
+      const GroupProposals& group = ways.proposals[l][g];
+      if (uses[l][g].pixel_size < kInfinity)
+        std::fill(is_ever.begin() + group.first_leaf, is_ever.begin() + group.end_leaf, std::uint8_t{1});
+    }
+  }
+  return is_ever;
+}
+
 /// What a cut at a pixel size draws, and by what luck the views show more of it.
 ThinnedCut cut_at(const ThinnedWays& ways, std::span<const View> views, const Uses& uses, double pixel_size) {
   ThinnedCut cut;
   ShownArea shown, source;
-  std::vector<std::uint8_t> is_replaced(ways.leaves.size(), 0), is_ever(ways.leaves.size(), 0);
+  std::vector<std::uint8_t> is_replaced(ways.leaves.size(), 0);
+  const std::vector<std::uint8_t> is_ever = ever_replaced(ways, uses);
   for (std::size_t l = uses.size(); l-- > 0;) {
     for (std::size_t g = 0; g < uses[l].size(); ++g) {
       const GroupProposals& group = ways.proposals[l][g];
-      const auto mark = [&](std::vector<std::uint8_t>& leaves) {
-        std::fill(leaves.begin() + group.first_leaf, leaves.begin() + group.end_leaf, std::uint8_t{1});
-      };
-      if (uses[l][g].pixel_size < kInfinity) mark(is_ever);
       if (uses[l][g].pixel_size > pixel_size || is_replaced[group.first_leaf] != 0) continue;
-      mark(is_replaced);
+      std::fill(is_replaced.begin() + group.first_leaf, is_replaced.begin() + group.end_leaf, std::uint8_t{1});
       const Fitted& way = ways.fitted[l][g][way_of(ways.fitted[l][g], uses[l][g].way)];
       cut.triangles.insert(cut.triangles.end(), way.triangles.begin(), way.triangles.end());
       for (const Corners& c : way.triangles) {
@@ -99,19 +109,13 @@ ThinnedCut cut_at(const ThinnedWays& ways, std::span<const View> views, const Us
   return cut;
 }
 
-/// Whether there is something that nothing replaces.
+/// Whether there are leaves that nothing replaces.
 bool is_any_kept(const ThinnedWays& ways, const Uses& uses) {
-  std::vector<std::uint8_t> is_replaced(ways.leaves.size(), 0);
-  for (std::uint32_t leaf = 0; leaf < is_replaced.size(); ++leaf)
-    is_replaced[leaf] = ways.leaves.triangles.of(leaf).empty() ? 1 : 0;
-  for (std::size_t l = 0; l < uses.size(); ++l) {
-    for (std::size_t g = 0; g < uses[l].size(); ++g) {
-      const GroupProposals& group = ways.proposals[l][g];
-      if (uses[l][g].pixel_size < kInfinity)
-        std::fill(is_replaced.begin() + group.first_leaf, is_replaced.begin() + group.end_leaf, std::uint8_t{1});
-    }
+  const std::vector<std::uint8_t> is_ever = ever_replaced(ways, uses);
+  for (std::uint32_t leaf = 0; leaf < is_ever.size(); ++leaf) {
+    if (is_ever[leaf] == 0 && !ways.leaves.triangles.of(leaf).empty()) return true;
   }
-  return std::find(is_replaced.begin(), is_replaced.end(), std::uint8_t{0}) != is_replaced.end();
+  return false;
 }
 
 /// Whether something comes between two pixel sizes, the larger one included.

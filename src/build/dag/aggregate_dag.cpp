@@ -242,7 +242,7 @@ class AggregateDag {
       return false;
     std::size_t bytes = 0;
     for (const ClusterId c : children.clusters) bytes += bytes_of(c);
-    if (does_not_fit(bytes)) return false;  // pieces of thousands of triangles, which no leaf parts
+    if (does_not_fit(bytes)) return false;  // what stayed so far, or pieces that no leaf parts
     Clustering clustering;
     clustering.label.resize(result.triangles.size());
     std::vector<std::uint32_t> order(result.triangles.size());

@@ -343,10 +343,12 @@ typename GroupSimplifier<Real, C>::Obstacle GroupSimplifier<Real, C>::try_collap
       return Obstacle::kTopology;
     }
     star_.target = places_.to_frame(place);
-    if (attributes_.count() > 0 && lands_on_locked(mesh_, locks_, places_, star_)) return Obstacle::kSeams;
   }
   if (!keeps_shared_edges(mesh_, locks_, star_)) return Obstacle::kLocked;
-  if (attributes_.count() > 0 && !keeps_shared_corners(mesh_, locks_, classes_, star_)) return Obstacle::kSeams;
+  if (attributes_.count() > 0 &&
+      (falls_together(mesh_, locks_, places_, star_) || !keeps_shared_corners(mesh_, locks_, classes_, star_))) {
+    return Obstacle::kSeams;
+  }
   bool breaks_topology = false;
   if (!keeps_topology(mesh_, is_border_, marks_, star_)) {
     if (!options_.may_relax_topology || options_.keep_topology) return Obstacle::kTopology;

@@ -193,10 +193,13 @@ bool keeps_shared_edges(const CollapseMesh& mesh, const GroupLocks& locks, const
   return is_kept(star.a, star.b) && is_kept(star.b, star.a);
 }
 
-bool lands_on_locked(const CollapseMesh& mesh, const GroupLocks& locks, const GroupPlaces& places,
-                     const CollapseStar& star) {
+bool falls_together(const CollapseMesh& mesh, const GroupLocks& locks, const GroupPlaces& places,
+                    const CollapseStar& star) {
+  const std::uint32_t a = star.a.vertex, b = star.b.vertex;
+  const bool is_end_locked = locks.is_vertex_locked[a] != 0 || locks.is_vertex_locked[b] != 0;
   const auto is_there = [&](std::uint32_t vertex) {
-    return locks.is_vertex_locked[vertex] != 0 && places[vertex] == star.target;
+    return vertex != a && vertex != b && (is_end_locked || locks.is_vertex_locked[vertex] != 0) &&
+           places[vertex] == star.target;
   };
   const auto has_one = [&](const StarEnd& end) {
     return std::any_of(end.corners.begin(), end.corners.end(), [&](std::uint32_t corner) {

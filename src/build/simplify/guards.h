@@ -20,10 +20,11 @@ namespace meshlode::build {
 /// border. Where neither end of the star is locked, all is kept.
 [[nodiscard]] bool keeps_shared_edges(const CollapseMesh& mesh, const GroupLocks& locks, const CollapseStar& star);
 
-/// Whether the star of two free ends would come to lie on a locked vertex beside it. A triangle between the two would
-/// have no area on the grid and go, and the one across would come to a border edge with attributes of its own (I3).
-[[nodiscard]] bool lands_on_locked(const CollapseMesh& mesh, const GroupLocks& locks, const GroupPlaces& places,
-                                   const CollapseStar& star);
+/// Whether on the grid the star would come to lie where a vertex beside it does, and one of the two is locked. A
+/// triangle between them would have no area and go, and the one across would come to a border edge with attributes of
+/// its own (I3).
+[[nodiscard]] bool falls_together(const CollapseMesh& mesh, const GroupLocks& locks, const GroupPlaces& places,
+                                  const CollapseStar& star);
 
 /// I3 for attributes. A triangle (locked, moved, c) with c locked goes; the triangle across (moved, c) inherits the
 /// edge (locked, c), which may lie on the group's border. If another group shades that edge with the same wedges, the

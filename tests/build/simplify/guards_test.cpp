@@ -261,21 +261,23 @@ TEST(SharedCorners, NoBorderEdgeGetsAttributesThatNothingHadThere) {
   EXPECT_FALSE(newcomer.keeps_corners()) << "as if wedge 2 had come with a vertex that was joined into it";
 }
 
-TEST(SharedCorners, NoFreeVertexComesToLieOnALockedOneBesideIt) {
-  DrawnMesh drawn(kEarPoints, {{0, 1, 2}, {1, 3, 2}});
-  CollapseStar star = drawn.star(0, 1);
-  Flags is_locked{0, 0, 1, 0, 0};
-  const auto lands = [&](const Vec3i& target) {
+TEST(SharedCorners, NoVertexFallsTogetherWithALockedOneBesideIt) {
+  const auto falls = [&](const std::vector<Vec3i>& points, const Flags& is_locked, const Vec3i& target) {
+    DrawnMesh drawn(points, {{0, 1, 2}, {1, 3, 2}});
+    CollapseStar star = drawn.star(0, 1);
     star.target = drawn.places.to_frame(target);
-    const GroupLocks locks(is_locked, Flags(kEarPoints.size(), 0), drawn.wedge_position);
-    return lands_on_locked(drawn.mesh, locks, drawn.places, star);
+    const GroupLocks locks(is_locked, Flags(points.size(), 0), drawn.wedge_position);
+    return falls_together(drawn.mesh, locks, drawn.places, star);
   };
-  EXPECT_TRUE(lands({0, 8, 0}));
-  EXPECT_FALSE(lands({0, 7, 0})) << "beside it";
-  EXPECT_FALSE(lands({8, 8, 0})) << "on one that is not locked";
-  is_locked = {0, 0, 0, 1, 1};
-  EXPECT_TRUE(lands({8, 8, 0})) << "which a triangle of one end alone has";
-  EXPECT_FALSE(lands({-8, 8, 0})) << "on one that no triangle of the star has";
+  EXPECT_TRUE(falls(kEarPoints, {0, 0, 1, 0, 0}, {0, 8, 0}));
+  EXPECT_FALSE(falls(kEarPoints, {0, 0, 1, 0, 0}, {0, 7, 0})) << "beside it";
+  EXPECT_FALSE(falls(kEarPoints, {0, 0, 1, 0, 0}, {8, 8, 0})) << "on one that is not locked";
+  EXPECT_TRUE(falls(kEarPoints, {0, 0, 0, 1, 1}, {8, 8, 0})) << "which a triangle of one end alone has";
+  EXPECT_FALSE(falls(kEarPoints, {0, 0, 0, 1, 1}, {-8, 8, 0})) << "on one that no triangle of the star has";
+  std::vector<Vec3i> points = kEarPoints;
+  points[3] = points[0];
+  EXPECT_TRUE(falls(points, {1, 0, 1, 0, 0}, points[0])) << "a free one that came to where the locked end is before";
+  EXPECT_FALSE(falls(kEarPoints, {1, 0, 1, 0, 0}, kEarPoints[0])) << "an end itself";
 }
 
 }  // namespace

@@ -99,10 +99,18 @@ TEST(Aggregates, OfAWallNoDirectionIsFarOffAtThirtyPixels) {
     EXPECT_TRUE(triangles.ok());
     return std::move(*triangles);
   };
-  constexpr double kLongest = 4.14;
-  const std::vector<CoveringTriangle> source = triangles_at(-1.0), cut = triangles_at(kLongest / 30.0);
+  const std::vector<CoveringTriangle> source = triangles_at(-1.0);
+  Vec3d low = source[0].corners[0], high = low;
+  for (const CoveringTriangle& triangle : source) {
+    for (const Vec3d& corner : triangle.corners) {
+      low = glm::min(low, corner);
+      high = glm::max(high, corner);
+    }
+  }
+  const double pixel = std::max({high.x - low.x, high.y - low.y, high.z - low.z}) / 30.0;
+  const std::vector<CoveringTriangle> cut = triangles_at(pixel);
   EXPECT_LT(cut.size(), source.size() / 10);
-  const auto drift = measure_coverage(source, cut, {}, kLongest / 30.0);
+  const auto drift = measure_coverage(source, cut, {}, pixel);
   ASSERT_TRUE(drift);
   EXPECT_LT(drift->worst_direction, 0.15) << "seen along itself it shows little";
 }
