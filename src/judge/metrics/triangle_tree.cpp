@@ -48,6 +48,22 @@ double distance2_to_triangle(const Vec3d& p, const Vec3d& corner_a, const Vec3d&
 
 namespace {
 
+// Where its sharpest corner has a greater sine a triangle's normal is known to 1e-12.
+constexpr double kPlaneSine = 1e-4;
+
+/// Whether the plane of a triangle is farther from a point than this, by more than rounding may say: then the triangle
+/// is, for a fifth of the arithmetic. Where large triangles cross their boxes hold every point, and nearly all that are
+/// asked are dismissed so.
+bool has_far_plane(const Vec3d& p, const Vec3d& corner_a, const Vec3d& corner_b, const Vec3d& corner_c,
+                   double distance2) {
+  const Vec3d a = corner_a - p, ab = corner_b - corner_a, ac = corner_c - corner_a;
+  const Vec3d n = glm::cross(ab, ac);
+  const double nn = glm::dot(n, n), h = glm::dot(a, n);
+  const double sides2 = glm::dot(ab, ab) + glm::dot(ac, ac);  // at least half the square of the longest
+  return nn > kPlaneSine * kPlaneSine * sides2 * sides2 &&
+         h * h > nn * ((1.0 + 1e-6) * distance2 + 1e-16 * glm::dot(a, a));
+}
+
 // A box may have this many times the area of its triangle before it is cut; an equilateral triangle has up to 3.5.
 constexpr double kMaxWaste = 16.0;
 constexpr double kMostPieces = 8.0;  // of one triangle
@@ -311,9 +327,11 @@ inline double TriangleTree::distance2_to_box(const Box& box, const Vec3d& p) {
   return x * x + y * y + z * z;
 }
 
-inline double TriangleTree::distance2_at(const Vec3d& point, std::uint32_t place) const {
+inline double TriangleTree::distance2_at(const Vec3d& point, std::uint32_t place, double limit) const {
   const auto& t = shared_.empty() ? corners_[place] : shared_[triangle_[place]];
-  return distance2_to_triangle(point, positions_[t[0]], positions_[t[1]], positions_[t[2]]);
+  const Vec3d &a = positions_[t[0]], &b = positions_[t[1]], &c = positions_[t[2]];
+  if (has_far_plane(point, a, b, c, limit)) return std::numeric_limits<double>::infinity();
+  return distance2_to_triangle(point, a, b, c);
 }
 
 NearestPoint TriangleTree::nearest_unless_below(double enough, const Vec3d& point, std::uint32_t hint) const {
@@ -323,7 +341,7 @@ NearestPoint TriangleTree::nearest_unless_below(double enough, const Vec3d& poin
   const double scale2 = scale_ * scale_;
   double limit = std::numeric_limits<double>::infinity();  // of the best, in the frame
   const auto try_triangle = [&](std::uint32_t i) {
-    const double d = distance2_at(point, i);
+    const double d = distance2_at(point, i, best.distance2);
     if (!(d < best.distance2)) return;
     best = {d, triangle_[i]};
     limit = d * scale2;
@@ -371,7 +389,7 @@ void TriangleTree::find_within(const Vec3d& point, double distance2, std::vector
       continue;
     }
     for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-      const double d = distance2_at(point, i);
+      const double d = distance2_at(point, i, distance2);
       if (d <= distance2) found.push_back({d, triangle_[i]});
     }
   }

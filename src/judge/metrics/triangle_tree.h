@@ -87,7 +87,8 @@ class TriangleTree {
   void split(const Place& place, Items& items, std::uint32_t first, std::uint32_t count);
   void copy(const Surface& surface);
   [[nodiscard]] static double distance2_to_box(const Box& box, const Vec3d& p);
-  [[nodiscard]] double distance2_at(const Vec3d& point, std::uint32_t place) const;
+  /// To the triangle of a leaf; any number that is greater than `limit` where the true one is.
+  [[nodiscard]] double distance2_at(const Vec3d& point, std::uint32_t place, double limit) const;
 
   Vec3d origin_{0.0};
   double scale_ = 1.0;     ///< a power of two: distances in the frame are so many times those outside

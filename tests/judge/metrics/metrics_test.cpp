@@ -108,6 +108,54 @@ TEST(Metrics, NearestIsTheSmallestOverAllTrianglesIncludingDegenerateOnes) {
   }
 }
 
+/// A triangle across the unit cube; at its sharpest corner a sine that may be tiny.
+std::array<Vec3d, 3> make_crossing(RandomSource& random, const Vec3d& offset) {
+  const Vec3d a = random.in_cube(1.0), b = random.in_cube(1.0);
+  const Vec3d beside = glm::cross(b - a, random.direction()) * random.log_between(1e-9, 1.0);
+  return {offset + a, offset + b, offset + a + (b - a) * random.unit() + beside};
+}
+
+// A triangle is dismissed where its plane is too far: not one that is the nearest, to the last bit. Points lie on and
+// near the planes, needles' too, far from the origin too.
+TEST(Metrics, NearestAmongTrianglesThatCrossIsTheSmallestOverAll) {
+  RandomSource random(58);
+  for (const double offset : {0.0, 1e6}) {
+    for (const double size : {1e-9, 1.0, 1e9}) {
+      Surface s;
+      const Vec3d center = random.direction() * offset;
+      for (std::uint32_t i = 0; i < 300; ++i) {
+        for (const Vec3d& p : make_crossing(random, center)) s.positions.push_back(p * size);
+        s.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+      }
+      const TriangleTree tree(s);
+      const auto corners_of = [&](std::size_t t) {
+        return std::array<Vec3d, 3>{s.positions[3 * t], s.positions[3 * t + 1], s.positions[3 * t + 2]};
+      };
+      for (int i = 0; i < 2000; ++i) {
+        const std::array<Vec3d, 3> corner = corners_of(random.below(300));
+        const double u = random.unit(), v = random.unit() * (1.0 - u);
+        const Vec3d p = corner[0] + (corner[1] - corner[0]) * u + (corner[2] - corner[0]) * v +
+                        random.direction() * (size * random.log_between(1e-17, 1.0));
+        double expected = std::numeric_limits<double>::infinity();
+        std::set<std::uint32_t> within;
+        const double reach2 = size * size * random.log_between(1e-20, 1.0);
+        for (std::uint32_t t = 0; t < 300; ++t) {
+          const std::array<Vec3d, 3> at = corners_of(t);
+          const double d = distance2_to_triangle(p, at[0], at[1], at[2]);
+          expected = std::min(expected, d);
+          if (d <= reach2) within.insert(t);
+        }
+        EXPECT_EQ(tree.nearest(p).distance2, expected) << "seed 58, offset " << offset << ", size " << size;
+        std::vector<NearestPoint> found;
+        tree.find_within(p, reach2, found);
+        std::set<std::uint32_t> names;
+        for (const NearestPoint& one : found) names.insert(one.triangle);
+        EXPECT_EQ(names, within);
+      }
+    }
+  }
+}
+
 TEST(Metrics, TreesThatSeveralThreadsMakeAreComplete) {
   RandomSource random(57);
   for (const std::uint32_t count : {1U, 4U, 5U, 8191U, 8192U, 30001U}) {
