@@ -112,6 +112,7 @@ GroupErrors GroupMeter::measure(const BuildPool& pool, const std::vector<Cluster
         *source_, after.surface(), samples,
         {.floor = floor,
          .least = floor / kMeasuredMargin,
+         .margin = kMeasuredMargin,
          .samples_per_triangle = std::clamp(per_triangle, 2U, 64U),
          .extra_effort = static_cast<std::uint32_t>(kExtraEffort / std::max<std::size_t>(1, groups_of_round)),
          .finer = before.surface(),

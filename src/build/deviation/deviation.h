@@ -62,6 +62,7 @@ struct DeviationTierOptions {
   double floor = 0.0;
   /// Object units: a maximum below this is of no use. What the samples say of it is still told, but no more are taken.
   double least = 0.0;
+  double margin = 1.0;  ///< the group's error will be so many times what is found: in between nothing is looked for
   std::uint32_t samples_per_triangle = 2;  ///< carried samples are thinned to so many per triangle, the farthest first
   /// Triangles of the group that may be divided in search of the maximum, on top of a share of all. Groups of large
   /// triangles need many: a narrow peak lies between the points of several that promise more.

@@ -8,6 +8,7 @@
 
 #include "build/deviation/deviation.h"
 #include "build/deviation/group_edges.h"
+#include "build/deviation/patch.h"
 #include "build/deviation/source_tree.h"
 #include "build/deviation/surface_tree.h"
 
@@ -39,7 +40,7 @@ constexpr std::uint32_t kLeastExtra = 150;
 struct Effort {
   std::size_t promising = 0;
   std::size_t spare = 0;  ///< where nothing is promised, but a bound leaves room
-  double rise = 1.0;      ///< what a patch promises: how far it may rise above its points (patch.h)
+  Rise rise;              ///< what a patch promises
 };
 
 /// Group to source, by adaptive subdivision near the maximum. `places` has for each triangle of the group where its
@@ -48,6 +49,11 @@ struct Effort {
 [[nodiscard]] Farthest measure_to_source(const SurfaceTree& source, const GroupSurface& group, const GroupEdges& edges,
                                          std::vector<TreeSlot>& places, Farthest farthest, Effort budget,
                                          std::vector<CarriedSample>& high);
+
+/// Group to source once more, by bounds: what is farther than `margin` times what is known. Where it ends within its
+/// effort, nothing is. Little is looked at where that would take much. `places`: as measure_to_source() leaves them.
+[[nodiscard]] Farthest search_by_bounds(const SurfaceTree& source, const GroupSurface& group,
+                                        std::span<const TreeSlot> places, double margin, Farthest farthest);
 
 /// Group to source beyond the borders of `finer`, with `edges`, that the group may have closed. Those between two
 /// positions of `is_shared` are the group's own border and stay; empty: all are taken so.

@@ -65,7 +65,7 @@ class SourceProbe {
 Farthest measure_to_source(const SurfaceTree& source, const GroupSurface& group, const GroupEdges& edges,
                            std::vector<TreeSlot>& places, Farthest farthest, Effort budget,
                            std::vector<CarriedSample>& high) {
-  SourceProbe probe(source, budget.rise, farthest);
+  SourceProbe probe(source, budget.rise.first, farthest);
   const std::size_t count = group.triangles.size();
   std::vector<Probe> at_vertex(group.positions.size(), {0.0, TreeSlot()});
   std::vector<Probe> at_edge(edges.use_count.size(), {0.0, TreeSlot()});
@@ -88,7 +88,7 @@ Farthest measure_to_source(const SurfaceTree& source, const GroupSurface& group,
       if (!middle.place.is_valid()) middle = probe.measure(patch.middle(k), place);
       patch.at_middle[k] = middle;
     }
-    patch.set_estimate(center.value, budget.rise);
+    patch.set_range(center.value);
     queue.add(patch);
   }
   queue.refine(budget.promising);
@@ -120,6 +120,7 @@ GroupDeviation measure_group(const SourceTree& source, const GroupSurface& group
   const Effort effort{64 + group.triangles.size() / (is_spared ? 4 : 16) + options.extra_effort,
                       is_spared ? options.extra_effort / kSpareShare : 0, is_spared ? kHighestRise : kUsualRise};
   farthest = measure_to_source(source_tree, group, edges, places, farthest, effort, high);
+  farthest = search_by_bounds(source_tree, group, places, options.margin, farthest);
   OwnerTest owner(options.finer, finer_edges, options.finer_is_shared, kReach * options.floor, options.is_whole);
   const std::vector<std::uint8_t> is_folded = find_folded(options.finer, finer_edges);
   farthest = search_source(source.impl(), group, group_tree, owner, is_folded, farthest, high, options.extra_effort,

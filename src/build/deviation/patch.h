@@ -23,43 +23,50 @@ struct Probe {
   TreeSlot place{0U};  ///< of the tree over the other side, near the point's nearest
 };
 
-// How far a patch may rise above its points, as a share of how much they differ. A parabola's top lies at most 1/3
-// above and the ridge of a crease 1/2, but a peak that is narrower than the points' spacing may be missed by all of
-// them: on a faceted rock one between an edge's end and its middle stood 0.6 above, and 1.15 times the maximum found.
-constexpr double kHighestRise = 1.0;
+/// How far a patch may rise above its points, as a share of how much they differ. The effort goes first where the first
+/// of the two promises more than is known, and what is left of it where the last does.
+struct Rise {
+  double first = 1.0, last = 1.0;
+};
+// A parabola's top lies at most 1/3 above and the ridge of a crease 1/2, but a peak that is narrower than the points'
+// spacing may be missed by all of them: on a faceted rock one between an edge's end and its middle stood 0.6 above, and
+// 1.15 times the maximum found; beside the risers of terraces several stood more than 1.0 above.
+constexpr Rise kHighestRise{1.0, 2.0};
 // Where a group has many small triangles effort is short, and goes farther when it is spent on what is likely: with 0.6
 // and a quarter of the effort the maxima of the dragon's groups are the same in the mean as with 1.0, and of 1% of them
-// more than 1.2% lower.
-constexpr double kUsualRise = 0.6;
+// more than 1.2% lower. On terraces hardly any of it is spent so, and peaks are missed that 1.0 finds.
+constexpr Rise kUsualRise{0.6, 1.0};
 
 /// A triangle with six points: its corners, and the middles of its edges (of the edge that starts at corner k).
 struct Patch {
   std::array<Vec3d, 3> corner;
   std::array<Probe, 3> at_corner, at_middle;
+  double highest = 0.0, range = 0.0;                         ///< of its values
+  double ceiling = std::numeric_limits<double>::infinity();  ///< no point of it is farther, where it is bounded
   double estimate = 0.0;
-  bool is_bounded = false;  ///< the estimate is not above what is possible
   std::uint32_t owner = 0;  ///< the triangle that it is part of
 
-  /// `inside` is one more value of the patch; `rise` says how far the patch may rise above its points, as a share of
-  /// how much they differ.
-  void set_estimate(double inside, double rise) {
-    double low = inside, high = inside;
+  [[nodiscard]] bool is_bounded() const { return ceiling < std::numeric_limits<double>::infinity(); }
+  /// `inside` is one more value of the patch.
+  void set_range(double inside) {
+    double low = inside;
+    highest = inside;
     for (std::size_t k = 0; k < 3; ++k) {
       low = std::min(low, std::min(at_corner[k].value, at_middle[k].value));
-      high = std::max(high, std::max(at_corner[k].value, at_middle[k].value));
+      highest = std::max(highest, std::max(at_corner[k].value, at_middle[k].value));
     }
-    estimate = high + rise * (high - low);
+    range = highest - low;
   }
+  [[nodiscard]] double promise(double rise) const { return std::min(highest + rise * range, ceiling); }
   /// No point of the patch is farther than this. The six points are the corners of four triangles, and no point of a
   /// triangle is farther from the nearest corner than 1 / sqrt(3) of the longest edge.
   [[nodiscard]] double bound() const {
-    double high = 0.0, longest2 = 0.0;
+    double longest2 = 0.0;
     for (std::size_t k = 0; k < 3; ++k) {
-      high = std::max(high, std::max(at_corner[k].value, at_middle[k].value));
       const Vec3d edge = corner[(k + 1) % 3] - corner[k];
       longest2 = std::max(longest2, glm::dot(edge, edge));
     }
-    return high + 0.5 * 0.57735026918962584 * std::sqrt(longest2);
+    return highest + 0.5 * 0.57735026918962584 * std::sqrt(longest2);
   }
   [[nodiscard]] Vec3d middle(std::size_t k) const { return (corner[k] + corner[(k + 1) % 3]) * 0.5; }
 };
@@ -104,13 +111,16 @@ struct RankedPatch {
 template <class Probes>
 class PatchQueue {
  public:
-  PatchQueue(Probes& probes, double rise, std::size_t spare) : probes_(probes), rise_(rise), spare_(spare) {}
+  PatchQueue(Probes& probes, Rise rise, std::size_t spare)
+      : probes_(probes), rise_(rise.first), last_rise_(rise.last), spare_(spare) {}
 
-  void add(const Patch& patch) {
+  /// \pre set_range()
+  void add(Patch patch) {
+    patch.estimate = patch.promise(rise_);
     if (is_worthwhile(patch.estimate)) {
       push(heap_, patch);
-    } else if (spare_ > 0) {
-      set_aside(patch);
+    } else {
+      put_off(patch);
     }
   }
 
@@ -121,12 +131,23 @@ class PatchQueue {
       if (budget > 0 && !heap_.empty()) {
         Patch patch = pop(heap_);
         if (!is_worthwhile(patch.estimate)) {
-          if (spare_ > 0) set_aside(patch);
-        } else if (patch.is_bounded) {
+          put_off(patch);
+        } else if (patch.is_bounded()) {
           --budget;
           divide(patch);
         } else if (bound(patch)) {
           push(heap_, patch);  // behind those that promise more than its bound
+        }
+      } else if (!late_.empty() && (budget > 0 || spare_ > 0)) {
+        rise_ = last_rise_;
+        std::vector<Patch> late;
+        late.swap(late_);
+        for (const Patch& patch : late) {
+          if (budget > 0) {
+            add(patch);
+          } else {
+            set_aside(patch);
+          }
         }
       } else if (spare_ > 0 && !aside_.empty()) {
         const Patch patch = pop(aside_);
@@ -162,13 +183,21 @@ class PatchQueue {
   }
   /// Lowers the estimate to what is possible at all. False where that is not worthwhile.
   bool bound(Patch& patch) {
-    patch.estimate = std::min(patch.estimate, patch.bound());
-    if (is_worthwhile(patch.estimate)) {
+    patch.ceiling = patch.bound();
+    if (is_worthwhile(patch.ceiling)) {
       const double enough = kWorthwhile * probes_.maximum();
-      patch.estimate = std::min(patch.estimate, bound_by_one_triangle(probes_.tree(), patch, enough));
+      patch.ceiling = std::min(patch.ceiling, bound_by_one_triangle(probes_.tree(), patch, enough));
     }
-    patch.is_bounded = true;
-    return is_worthwhile(patch.estimate);
+    patch.estimate = std::min(patch.estimate, patch.ceiling);
+    return is_worthwhile(patch.ceiling);
+  }
+  /// What does not promise enough.
+  void put_off(const Patch& patch) {
+    if (rise_ < last_rise_ && is_worthwhile(patch.promise(last_rise_))) {
+      late_.push_back(patch);
+    } else if (spare_ > 0) {
+      set_aside(patch);
+    }
   }
   void set_aside(Patch patch) {
     patch.estimate = std::numeric_limits<double>::infinity();
@@ -197,18 +226,19 @@ class PatchQueue {
     for (std::size_t k = 0; k < 3; ++k) parts[3].at_middle[k] = parts[(k + 1) % 3].at_middle[1];
     for (Patch& part : parts) {
       part.owner = patch.owner;
-      part.set_estimate(part.at_corner[0].value, rise_);
+      part.set_range(part.at_corner[0].value);
       add(part);
     }
   }
 
   Probes& probes_;
-  double rise_;
+  double rise_, last_rise_;
   std::size_t spare_;  ///< patches that may be divided although they promise nothing
   std::uint32_t order_ = 0;
   std::vector<Patch> patches_;       ///< of both heaps, and places of those that left them
   std::vector<std::uint32_t> free_;  ///< such places
   std::vector<RankedPatch> heap_;
+  std::vector<Patch> late_;         ///< worthwhile by the last rise only
   std::vector<RankedPatch> aside_;  ///< by their bounds
 };
 

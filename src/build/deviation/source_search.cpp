@@ -251,7 +251,7 @@ class SourceSearch {
       patch.at_middle[k] = measure(patch.middle(k), patch.at_corner[k].place, triangle);
     }
     const Vec3d center = (patch.corner[0] + patch.corner[1] + patch.corner[2]) / 3.0;
-    patch.set_estimate(measure(center, place, triangle).value, kHighestRise);
+    patch.set_range(measure(center, place, triangle).value);
     large_.push_back(patch);
   }
 
@@ -410,9 +410,9 @@ Farthest search_source(const SourceTree::Impl& source, const GroupSurface& group
   }
   if (owner.is_whole()) {
     if (!is_known) search.search_everywhere(kPointsPerPart * budget, found);
-    search.refine({kRefineBudget + budget / 4, budget / 4}, found);
+    search.refine({kRefineBudget + budget / 4, budget / 4, kHighestRise}, found);
   } else {
-    search.refine({kRefineBudget, 0}, found);
+    search.refine({kRefineBudget, 0, kHighestRise}, found);
   }
   samples.insert(samples.end(), found.begin(), found.end());
   return search.farthest();

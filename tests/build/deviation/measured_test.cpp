@@ -5,9 +5,11 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "build/deviation/capsules.h"
+#include "build/deviation/group_measure.h"
 #include "build/deviation/surfaces.h"
 #include "build/odd_shapes.h"
 #include "judge/metrics/triangle_tree.h"
@@ -198,6 +200,98 @@ TEST(Measured, APeakBetweenNeedlesIsFoundThoughNoPointNearItTells) {
     options.is_whole = true;
     EXPECT_GE(test::measure_one_step(fine, coarse, options).deviation, test::dense_truth(fine, coarse, 100000) / 1.005)
         << "round " << round;
+  }
+}
+
+/// Stairs over the unit square along x: treads and risers of two triangles each.
+judge::Surface make_stairs(Random& random, std::uint32_t steps) {
+  judge::Surface stairs;
+  double x = 0.0, height = 0.0;
+  const auto add = [&](double x1, double height1) {
+    const auto first = static_cast<std::uint32_t>(stairs.positions.size());
+    for (const double z : {0.0, 1.0}) {
+      stairs.positions.push_back({x, height, z});
+      stairs.positions.push_back({x1, height1, z});
+    }
+    stairs.triangles.push_back({first, first + 1, first + 3});
+    stairs.triangles.push_back({first, first + 3, first + 2});
+    x = x1;
+    height = height1;
+  };
+  for (std::uint32_t step = 0; step < steps; ++step) {
+    add(x + (0.4 + 1.2 * random.unit()) / steps, height);
+    add(x, height + 0.3 * random.signed_unit());
+  }
+  return stairs;
+}
+
+/// A sheet over x from 0 to `length`, z from 0 to 1, its corners at the height of their x.
+template <class Height>
+judge::Surface make_sheet(double length, std::uint32_t along, std::uint32_t across, const Height& height) {
+  judge::Surface sheet;
+  for (std::uint32_t i = 0; i <= along; ++i) {
+    const double x = length * i / along;
+    for (std::uint32_t j = 0; j <= across; ++j) {
+      sheet.positions.push_back({x, height(x), static_cast<double>(j) / across});
+    }
+  }
+  for (std::uint32_t i = 0; i < along; ++i) {
+    for (std::uint32_t j = 0; j < across; ++j) {
+      const std::uint32_t a = i * (across + 1) + j, b = a + across + 1;
+      sheet.triangles.push_back({a, b, b + 1});
+      sheet.triangles.push_back({a, b + 1, a + 1});
+    }
+  }
+  return sheet;
+}
+
+// Between the points of a triangle that goes from one tread to the next the distance has narrow peaks.
+TEST(Measured, PeaksBesideRisersAreFound) {
+  Random random(9);
+  for (int round = 0; round < 60; ++round) {
+    const judge::Surface stairs = make_stairs(random, 3 + static_cast<std::uint32_t>(random.below(12)));
+    const auto height = [&](double x) {
+      double at = 0.0;
+      for (const auto& t : stairs.triangles) {
+        const Vec3d &a = stairs.positions[t[0]], &b = stairs.positions[t[1]];
+        if (a.y == b.y && a.x <= x && x <= b.x) at = a.y;
+      }
+      return at;
+    };
+    const auto along = 5 + static_cast<std::uint32_t>(random.below(20));
+    const judge::Surface sheet =
+        make_sheet(stairs.positions.back().x, along, 5 + static_cast<std::uint32_t>(random.below(20)), height);
+    const double truth = test::dense_truth(stairs, sheet, 100000);
+    EXPECT_GE(test::measure_one_step(stairs, sheet).deviation, truth / 1.02) << "seed 9, round " << round;
+  }
+}
+
+// A sheet under a roof of two large triangles: where it does not cross the ridge it is near one of them. By bounds
+// alone, whatever is known: what is beyond is found, to the margin and a percent that the effort may leave, and nothing
+// where nothing is.
+TEST(Measured, BoundsLeaveNothingBeyond) {
+  Random random(10);
+  for (int round = 0; round < 40; ++round) {
+    const double ridge = random.between(0.2, 0.8), left = random.between(0.2, 1.0), right = random.between(0.2, 1.0);
+    const judge::Surface roof{
+        {{ridge, 0, -20}, {ridge, 0, 21}, {ridge - 20, -20 * left, 0.5}, {ridge + 20, -20 * right, 0.5}},
+        {{0, 1, 2}, {0, 1, 3}}};
+    const auto height = [&](double x) { return x < ridge ? left * (x - ridge) : right * (ridge - x); };
+    const auto along = 8 + static_cast<std::uint32_t>(random.below(30));
+    judge::Surface sheet = make_sheet(1.0, along, 2 + static_cast<std::uint32_t>(random.below(9)), height);
+    for (Vec3d& p : sheet.positions) p.y -= 0.05 * std::min(left, right) * random.unit() / along;  // no two peaks alike
+    SurfaceTree tree;
+    tree.build({roof.positions, roof.triangles});
+    const double truth = judge::DeviationFrom(roof, {.samples = 400000}).measure(sheet).b_to_a.max;
+    const std::vector<TreeSlot> places(sheet.triangles.size());
+    const auto found = [&](const Farthest& known) {
+      return search_by_bounds(tree, test::as_group(sheet), places, 1.02, known).found;
+    };
+    for (const double share : {0.7, 0.8, 0.9, 0.98}) {
+      EXPECT_GE(found({share * truth, 0.0}), truth / 1.03) << "seed 10, round " << round << ", from " << share;
+    }
+    EXPECT_EQ(found({1.01 * truth, 0.0}), 1.01 * truth);
+    EXPECT_EQ(found({0.0, 1.01 * truth}), 0.0) << "nothing that is of no use";
   }
 }
 

@@ -189,8 +189,13 @@ TEST(Patch, PromisesARiseOverItsHighestPoint) {
       values.push_back(patch.at_middle[k].value);
     }
     const auto [low, high] = std::minmax_element(values.begin(), values.end());
-    patch.set_estimate(inside, rise);
-    ASSERT_NEAR(patch.estimate, *high + rise * (*high - *low), 1e-15 * (1.0 + rise)) << "seed 174, round " << round;
+    patch.set_range(inside);
+    ASSERT_NEAR(patch.promise(rise), *high + rise * (*high - *low), 1e-15 * (1.0 + rise))
+        << "seed 174, round " << round;
+    EXPECT_FALSE(patch.is_bounded());
+    patch.ceiling = 0.5 * *high;
+    EXPECT_TRUE(patch.is_bounded());
+    EXPECT_EQ(patch.promise(rise), 0.5 * *high) << "no more than is possible";
   }
 }
 
@@ -199,7 +204,8 @@ TEST(Patch, PromisesARiseOverItsHighestPoint) {
 TEST(Patch, IsBoundedByWhatNoPointCanBeBeyond) {
   RandomSource random(175);
   for (int round = 0; round < 2000; ++round) {
-    const Patch patch = draw_patch(random);
+    Patch patch = draw_patch(random);
+    patch.set_range(patch.at_corner[0].value);
     double high = 0.0, longest = 0.0;
     for (std::size_t k = 0; k < 3; ++k) {
       high = std::max({high, patch.at_corner[k].value, patch.at_middle[k].value});
@@ -292,9 +298,9 @@ struct Search {
     }
   }
   /// How many patches are divided, at nine points each.
-  std::size_t divided(std::size_t budget, std::size_t spare, double rise = 1.0) {
+  std::size_t divided(std::size_t budget, std::size_t spare, Rise rise = {1.0, 1.0}) {
     PatchQueue<ScriptedProbes<Value>> queue(probes, rise, spare);
-    patch.set_estimate(patch.at_corner[0].value, rise);
+    patch.set_range(patch.at_corner[0].value);
     queue.add(patch);
     queue.refine(budget);
     EXPECT_EQ(probes.points.size() % 9, 0U);
@@ -326,8 +332,38 @@ TEST(PatchQueue, SetsAsideWhatOnlyABoundLeavesRoomFor) {
   EXPECT_EQ((Search{bound / 1.0019, constant}.divided(10, 1)), 0U);
   // A rise of r over values of 0 and 1 promises 1 + r.
   const auto halves = [](const Vec3d& p) { return p.x + p.y < 0.75 ? 0.0 : 1.0; };
-  EXPECT_EQ((Search{1.3 / 1.0021, halves}.divided(1, 0, 0.3)), 1U);
-  EXPECT_EQ((Search{1.3 / 1.0019, halves}.divided(1, 0, 0.3)), 0U);
+  EXPECT_EQ((Search{1.3 / 1.0021, halves}.divided(1, 0, {0.3, 0.3})), 1U);
+  EXPECT_EQ((Search{1.3 / 1.0019, halves}.divided(1, 0, {0.3, 0.3})), 0U);
+}
+
+// The first rise has the effort; what is left of it is the last one's, and what that promises is not set aside for the
+// spare effort as long as there is any.
+TEST(PatchQueue, SpendsWhatIsLeftWhereTheLastRisePromises) {
+  const auto halves = [](const Vec3d& p) { return p.x + p.y < 0.75 ? 0.0 : 1.0; };
+  EXPECT_EQ((Search{1.5, halves}.divided(1, 0, {0.3, 0.3})), 0U);
+  EXPECT_EQ((Search{1.4 / 1.0021, halves}.divided(1, 0, {0.3, 0.4})), 1U);
+  EXPECT_EQ((Search{1.4 / 1.0019, halves}.divided(1, 0, {0.3, 0.4})), 0U);
+  EXPECT_EQ((Search{1.35, halves}.divided(0, 1, {0.3, 0.6})), 1U) << "with no effort left by its bound";
+  // Two patches, one that both rises promise of and one that the last does alone: one effort is the first one's.
+  auto towards = [](const Vec3d& p) { return p.z > 0.5 ? (p.x + p.y < 0.75 ? 0.0 : 1.0) : (p.x < 0.6 ? 0.9 : 1.0); };
+  for (const std::size_t budget : {1U, 2U}) {
+    Search search{1.35, towards};  // parts of either are bounded by less
+    PatchQueue<ScriptedProbes<decltype(towards)>> queue(search.probes, {0.4, 4.0}, 0);
+    for (const double z : {0.0, 1.0}) {
+      Patch patch = search.patch;
+      for (Vec3d& p : patch.corner) p.z = z;
+      for (std::size_t k = 0; k < 3; ++k) {
+        patch.at_corner[k].value = towards(patch.corner[k]);
+        patch.at_middle[k].value = towards(patch.middle(k));
+      }
+      patch.set_range(patch.at_corner[0].value);
+      queue.add(patch);
+    }
+    queue.refine(budget);
+    EXPECT_EQ(search.probes.points.size(), 9 * budget);
+    EXPECT_EQ(search.probes.points.front().z, 1.0);
+    EXPECT_EQ(search.probes.points.back().z, budget == 1 ? 1.0 : 0.0);
+  }
 }
 
 // The nine points are the middles of the four parts' edges, each once; parts know whose they are.
@@ -375,8 +411,8 @@ TEST(PatchQueue, FindsTheTopOfASmoothHill) {
       patch.at_corner[k] = probes.measure(patch.corner[k], TreeSlot{0U}, 0);
       patch.at_middle[k] = probes.measure(patch.middle(k), TreeSlot{0U}, 0);
     }
-    patch.set_estimate(patch.at_corner[0].value, 1.0);
-    PatchQueue<HillProbes> queue(probes, 1.0, 0);
+    patch.set_range(patch.at_corner[0].value);
+    PatchQueue<HillProbes> queue(probes, {1.0, 1.0}, 0);
     queue.add(patch);
     queue.refine(60);
     EXPECT_GE(maximum, 2.0 / 1.005) << "seed 177, round " << round;

@@ -300,8 +300,8 @@ TEST(PatchQueue, DividesOnlyWhatMayRaiseTheMaximum) {
       patch.at_corner[k] = probes.measure(patch.corner[k], TreeSlot{0U}, 0);
       patch.at_middle[k] = probes.measure(patch.middle(k), TreeSlot{0U}, 0);
     }
-    patch.set_estimate(patch.at_corner[0].value, kUsualRise);
-    ASSERT_GT(patch.estimate, 1.1 * probes.maximum()) << "its points promise something";
+    patch.set_range(patch.at_corner[0].value);
+    ASSERT_GT(patch.promise(kUsualRise.first), 1.1 * probes.maximum()) << "its points promise something";
     PatchQueue<CountingProbes> queue(probes, kUsualRise, 0);
     queue.add(patch);
     queue.refine(100);
