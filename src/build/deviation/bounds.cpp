@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Group to source, second part: by bounds, where bounds say much. The points of measure_to_source() may miss a narrow
-// peak: beside the riser of a step one stood a fifth above all of them. Where the source's triangles are large against
-// the deviation, a triangle of the group mostly lies within it of a single one, and then all of it does; only where
-// that is not so it is divided, and little is left after little work. On smooth scans much would be left: a few
+// peak: beside the riser of a step one stood a quarter above all of them. Where the source's triangles are large
+// against the deviation, a triangle of the group mostly lies within it of a single one, and then all of it does; only
+// where that is not so it is divided, and little is left after little work. On smooth scans much would be left: a few
 // triangles of the group say so, and the points, which tell enough there, are believed.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "build/deviation/group_measure.h"
@@ -17,7 +18,7 @@ namespace meshlode::build {
 
 namespace {
 
-/// One triangle of so many is tried first, but so many at least. Of more than this share may be left.
+/// One triangle of so many is tried first, but so many at least. No more than this share of them may be left.
 constexpr std::size_t kTriedOf = 16, kFewestTried = 32;
 constexpr double kMostLeft = 1.0 / 3.0;
 /// Parts that a group may be divided into: for each triangle, and besides.
