@@ -11,7 +11,7 @@ namespace meshlode::build {
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNoPixelSize = std::numeric_limits<double>::infinity();
 constexpr double kSizeStep = 1.0108892860517005;  // 2^(1/64): pixel sizes that are looked at
 
 /// A group in a cut, as it would be from now on.
@@ -82,7 +82,7 @@ class Cut {
     return levels_[level - 1].size() / levels_[level].size();
   }
   [[nodiscard]] bool is_used(std::size_t level, std::size_t group) const {
-    return uses_[level][group].pixel_size < kInfinity;
+    return uses_[level][group].pixel_size < kNoPixelSize;
   }
   /// Whether a group above stands for this one.
   [[nodiscard]] bool is_replaced(std::size_t level, std::size_t group) const {
@@ -141,7 +141,7 @@ class Cut {
     if (is_used(level, group) || is_replaced(level, group)) return std::nullopt;
     const NoisyGroup& from = levels_[level][group];
     Step step{.level = level, .group = group};
-    double least = kInfinity;
+    double least = kNoPixelSize;
     for (std::size_t w = 0; w < from.ways.size(); ++w) {
       const double noise = from.ways[w].noise->most_from(pixel_size);
       if (!(noise < least)) continue;
@@ -171,7 +171,7 @@ class Cut {
 }  // namespace
 
 double NoiseCurve::most_from(double pixel_size) const {
-  if (points.empty() || pixel_size < std::max(finest, points.back().pixel_size)) return kInfinity;
+  if (points.empty() || pixel_size < std::max(finest, points.back().pixel_size)) return kNoPixelSize;
   double most = points.front().noise;
   for (std::size_t i = 1; i < points.size(); ++i) {
     const Point &large = points[i - 1], &small = points[i];
@@ -184,7 +184,7 @@ double NoiseCurve::most_from(double pixel_size) const {
 
 std::vector<std::vector<NoiseUse>> share_out_noise(std::span<const std::vector<NoisyGroup>> levels,
                                                    const NoiseBudget& budget) {
-  double smallest = kInfinity, largest = 0.0;
+  double smallest = kNoPixelSize, largest = 0.0;
   for (const std::vector<NoisyGroup>& level : levels) {
     for (const NoisyGroup& group : level) {
       for (const NoisyWay& way : group.ways) {

@@ -7,9 +7,9 @@
 namespace meshlode::build {
 
 Axes axes_of(Mat3d m) {
-  constexpr int kSweeps = 12;  // convergence is quadratic; 3 × 3 needs four or five
+  constexpr int kMostSweeps = 12;  // convergence is quadratic; 3 × 3 needs four or five
   Mat3d v(1.0);
-  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+  for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
     for (int p = 0; p < 2; ++p) {
       for (int q = p + 1; q < 3; ++q) {
         if (m[p][q] == 0.0) continue;
