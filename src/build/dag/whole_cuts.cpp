@@ -356,8 +356,7 @@ class WholeCuts {
     std::vector<std::uint8_t> is_in_cut(dag_.clusters.size(), 0);
     for (const std::uint32_t c : cut.cluster) is_in_cut[c] = 1;
     const double enough_object = std::max(kLookFrom * threshold, mesh_.level0_deviation);
-    const double scaled = enough_object * tree.scale();
-    const auto enough = static_cast<float>(scaled * scaled);
+    const float enough = tree.squared_in_frame(enough_object);
     const auto is_still_near = [&](const Near& near) {
       return near.cluster != kNoId && is_in_cut[near.cluster] != 0 && double{near.distance} <= enough_object;
     };
@@ -420,10 +419,7 @@ class WholeCuts {
   void climb(const Surface& cut, const SurfaceTree& tree, FarPoint& far) const {
     const std::array<Vec3d, 3> corners = corners_of(mesh_, points_[far.point].triangle);
     SplitMix64 random(far.point);
-    const auto squared_in_frame = [&](double distance) {
-      return static_cast<float>(distance * tree.scale() * distance * tree.scale());
-    };
-    float enough = squared_in_frame(far.distance);
+    float enough = tree.squared_in_frame(far.distance);
     TreeSlot place = far.place;
     double length = 1.0;
     for (int step = 0; step < kSteps; ++step, length *= 0.5) {
@@ -433,7 +429,7 @@ class WholeCuts {
         const double distance = std::sqrt(tree.distance2_at(tried, place));
         if (distance <= far.distance) continue;
         far = {distance, tried, far.point, place, group_at(cut, tree, place)};
-        enough = squared_in_frame(distance);
+        enough = tree.squared_in_frame(distance);
       }
     }
   }

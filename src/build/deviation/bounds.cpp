@@ -95,7 +95,7 @@ class BoundedSearch {
     const Vec3d middle = (part.corner[0] + part.corner[1] + part.corner[2]) / 3.0;
     double radius = 0.0;
     for (const Vec3d& p : part.corner) radius = std::max(radius, glm::distance(p, middle));
-    const float enough = squared_in_frame(std::max(0.0, beyond_ - radius));
+    const float enough = tree_.squared_in_frame(std::max(0.0, beyond_ - radius));
     const Vec3f at = tree_.to_frame(middle);
     SurfaceTree::Hit hit;
     if (part.place.is_valid()) hit = tree_.look_around(at, part.place, hit);
@@ -111,11 +111,7 @@ class BoundedSearch {
     part.bound = std::min(part.bound, distance + radius);
     const std::array<Vec3f, 3> corners{tree_.to_frame(part.corner[0]), tree_.to_frame(part.corner[1]),
                                        tree_.to_frame(part.corner[2])};
-    return tree_.look_around(corners, part.place).distance2 <= squared_in_frame(beyond_);
-  }
-
-  [[nodiscard]] float squared_in_frame(double distance) const {
-    return static_cast<float>(distance * tree_.scale() * distance * tree_.scale());
+    return tree_.look_around(corners, part.place).distance2 <= tree_.squared_in_frame(beyond_);
   }
 
   const SurfaceTree& tree_;

@@ -56,15 +56,13 @@ class ClosedBorders {
 
   /// 0 where it is not above the maximum.
   double distance_to_source(const Vec3d& point) {
-    const double enough = farthest_.to_beat() * source_.scale();
+    const float enough = source_.squared_in_frame(farthest_.to_beat());
     const Vec3f at = source_.to_frame(point);
     SurfaceTree::Hit hit = source_.look_around(at, place_, {});
-    if (!(hit.distance2 <= static_cast<float>(enough * enough))) {
-      hit = source_.find_nearest(at, hit, static_cast<float>(enough * enough));
-    }
+    if (!(hit.distance2 <= enough)) hit = source_.find_nearest(at, hit, enough);
     if (!hit.slot.is_valid()) return 0.0;
     place_ = hit.slot;
-    if (hit.distance2 <= static_cast<float>(enough * enough)) return 0.0;
+    if (hit.distance2 <= enough) return 0.0;
     return std::sqrt(source_.distance2_at(point, hit.slot));
   }
 

@@ -47,10 +47,7 @@ class SourceProbe {
   [[nodiscard]] std::vector<CarriedSample> take_high() { return std::move(high_); }
 
  private:
-  void set_enough() {
-    const double enough = dismiss_share_ * maximum() * tree_.scale();
-    enough_ = static_cast<float>(enough * enough);
-  }
+  void set_enough() { enough_ = tree_.squared_in_frame(dismiss_share_ * maximum()); }
 
   const SurfaceTree& tree_;
   /// Points nearer than this share of the maximum are not measured exactly: no patch of such points may rise above it.

@@ -134,8 +134,7 @@ class SourceSearch {
         if (ball.radius < 0.0) continue;
         ++measured;
         const Vec3f at = tree_.to_frame(ball.center);
-        const double near = std::max(0.0, kWorthwhile * maximum() - ball.radius) * tree_.scale();
-        const auto enough = static_cast<float>(near * near);
+        const float enough = tree_.squared_in_frame(std::max(0.0, kWorthwhile * maximum() - ball.radius));
         SurfaceTree::Hit hit = tree_.look_around(at, part.place, {});
         if (!(hit.distance2 <= enough)) hit = tree_.find_nearest(at, hit, enough);
         if (hit.distance2 <= enough || !hit.slot.is_valid()) continue;
@@ -212,10 +211,7 @@ class SourceSearch {
     return nearest.is_valid() ? nearest : TreeSlot{0U};
   }
 
-  void set_enough() {
-    const double enough = kDismissShare * maximum() * tree_.scale();
-    enough_ = static_cast<float>(enough * enough);
-  }
+  void set_enough() { enough_ = tree_.squared_in_frame(kDismissShare * maximum()); }
 
   /// A triangle of the source: its corners, and its inside where that may be farther than the maximum. Returns how many
   /// points were measured.
@@ -321,7 +317,7 @@ std::vector<Vec3d> choose_far_points(const GroupSurface& finer, std::span<const 
     }
   };
   std::vector<Far> far;
-  const auto enough2 = static_cast<float>(least * least * group_tree.scale() * group_tree.scale());
+  const float enough2 = group_tree.squared_in_frame(least);
   TreeSlot place{0U};
   std::uint32_t order = 0;
   const auto consider = [&](const Vec3d& point) {

@@ -54,6 +54,10 @@ class SurfaceTree {
   /// The tree's frame: floats of about unit size. Distances there are `scale` times those outside; a power of two.
   [[nodiscard]] Vec3f to_frame(const Vec3d& point) const { return Vec3f((point - center_) * scale_); }
   [[nodiscard]] double scale() const { return scale_; }
+  /// A distance from outside, squared and in the frame, as searches compare.
+  [[nodiscard]] float squared_in_frame(double distance) const {
+    return static_cast<float>(distance * scale_ * (distance * scale_));
+  }
 
   /// The nearest triangle that beats `best`, else `best`. Stops as soon as something is within `enough`. `best` is what
   /// look_around() says of the same point, and the search goes up from there; or nothing, and it goes down from the

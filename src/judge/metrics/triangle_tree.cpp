@@ -52,8 +52,8 @@ namespace {
 constexpr double kPlaneSine = 1e-4;
 
 /// Whether the plane of a triangle is farther from a point than this, by more than rounding may say: then the triangle
-/// is, for a fifth of the arithmetic. Where large triangles cross their boxes hold every point, and nearly all that are
-/// asked are dismissed so.
+/// is. Where large triangles cross their boxes hold every point, and nearly all that are asked are dismissed so, for
+/// little of the arithmetic.
 bool has_far_plane(const Vec3d& p, const Vec3d& corner_a, const Vec3d& corner_b, const Vec3d& corner_c,
                    double distance2) {
   const Vec3d a = corner_a - p, ab = corner_b - corner_a, ac = corner_c - corner_a;
