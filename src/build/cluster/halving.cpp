@@ -15,6 +15,16 @@ constexpr std::int32_t kSlack = 4;      ///< on the way to a better cut: a quad
 constexpr int kPasses = 4;
 constexpr std::size_t kPatience = 16;  ///< moves in a row that bring no better cut
 
+/// Of two nodes the one with the greater gain has the greater rank, of equals the first. One number, so that a search
+/// for the best has no branch: which node is better than all before it is a toss.
+std::int64_t rank_of(std::int32_t gain, std::uint32_t node) {
+  return std::int64_t{gain} * (std::int64_t{1} << 32U) + static_cast<std::int64_t>(~node);
+}
+constexpr std::int64_t kNoRank = std::numeric_limits<std::int64_t>::min();
+std::uint32_t node_of(std::int64_t rank) {
+  return ~static_cast<std::uint32_t>(static_cast<std::uint64_t>(rank));
+}
+
 }  // namespace
 
 void Halving::take(std::span<const std::uint32_t> nodes) {
@@ -98,9 +108,11 @@ void Halving::grow(std::uint32_t seed) {
       moves_.push_back(next_piece);
     }
     std::size_t best = 0;
-    for (std::size_t i = 1; i < moves_.size(); ++i) {
-      const std::uint32_t node = moves_[i], other = moves_[best];
-      if (gain_[node] > gain_[other] || (gain_[node] == gain_[other] && node < other)) best = i;
+    std::int64_t best_rank = kNoRank;
+    for (std::size_t i = 0; i < moves_.size(); ++i) {
+      const std::int64_t rank = rank_of(gain_[moves_[i]], moves_[i]);
+      best = rank > best_rank ? i : best;
+      best_rank = std::max(rank, best_rank);
     }
     const std::uint32_t node = moves_[best];
     if (left_ > 0 && std::abs(left_ + weight_[node] - target_) > std::abs(left_ - target_)) return;
@@ -136,17 +148,16 @@ bool Halving::refine_once() {
   std::size_t best_moves = 0;
   std::int32_t best_imbalance = imbalance(), best_cut = cut_;
   while (moves_.size() < count && moves_.size() < best_moves + kPatience) {
-    std::uint32_t best = kNoId;
-    std::int32_t best_gain = std::numeric_limits<std::int32_t>::min();
-    const std::int32_t off = std::abs(left_ - target_);
+    std::int64_t best_rank = kNoRank;
+    const std::int32_t over = left_ - target_;
+    const std::int32_t most = std::max(kSlack, std::abs(over) - 1);  // off the share, afterwards
     for (const std::uint32_t node : border_) {
-      if (gain_[node] < best_gain || is_moved_[node] != 0 || (gain_[node] == best_gain && node > best)) continue;
-      const std::int32_t after = std::abs(left_ + (is_right_[node] != 0 ? weight_[node] : -weight_[node]) - target_);
-      if (after > kSlack && after >= off) continue;
-      best = node;
-      best_gain = gain_[node];
+      const std::int32_t after = std::abs(over + (is_right_[node] != 0 ? weight_[node] : -weight_[node]));
+      const bool is_allowed = (after <= most) & (is_moved_[node] == 0);
+      best_rank = std::max(best_rank, is_allowed ? rank_of(gain_[node], node) : kNoRank);
     }
-    if (best == kNoId) break;
+    if (best_rank == kNoRank) break;
+    const std::uint32_t best = node_of(best_rank);
     move(best);
     is_moved_[best] = 1;
     moves_.push_back(best);
