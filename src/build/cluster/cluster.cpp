@@ -4,11 +4,11 @@
 #include "build/cluster/cluster.h"
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
 #include "base/local_ids.h"
 #include "base/parallel.h"
+#include "base/unset_vector.h"
 #include "build/cluster/adjacency.h"
 #include "build/cluster/caps.h"
 #include "build/cluster/dense_limit.h"
@@ -29,8 +29,8 @@ struct Range {
 
 /// Cuts a range in two at the median of its longest axis. \returns where the second half begins: a multiple of the
 /// target from the first.
-std::size_t cut_in_two(const std::vector<glm::i64vec3>& centers, std::size_t target, const Range& range,
-                       std::vector<std::uint32_t>& order) {
+std::size_t cut_in_two(std::span<const glm::i64vec3> centers, std::size_t target, const Range& range,
+                       std::span<std::uint32_t> order) {
   const auto begin = order.begin() + static_cast<std::ptrdiff_t>(range.begin);
   const auto end = order.begin() + static_cast<std::ptrdiff_t>(range.end);
   glm::i64vec3 low = centers[*begin];
@@ -44,7 +44,7 @@ std::size_t cut_in_two(const std::vector<glm::i64vec3>& centers, std::size_t tar
   const std::size_t left = ((range.end - range.begin) / 2 + target / 2) / target * target;
   // Place and triangle as one number each, side by side: through `order` every comparison would go to two of the
   // places.
-  std::vector<std::uint64_t> keys(range.end - range.begin);
+  UnsetVector<std::uint64_t> keys(range.end - range.begin);
   std::transform(begin, end, keys.begin(),
                  [&](std::uint32_t t) { return static_cast<std::uint64_t>(centers[t][axis] - low[axis]) << 32U | t; });
   std::nth_element(keys.begin(), keys.begin() + static_cast<std::ptrdiff_t>(left), keys.end());
@@ -55,8 +55,8 @@ std::size_t cut_in_two(const std::vector<glm::i64vec3>& centers, std::size_t tar
 /// Splits triangles into chunks at medians. All chunks but those at the far ends hold a multiple of the target, so that
 /// their clusters come out full. `order` is permuted; each chunk's part of it is ascending. Ranges that are as deep as
 /// each other are cut side by side.
-std::vector<Range> split_into_chunks(const std::vector<glm::i64vec3>& centers, std::size_t target,
-                                     std::vector<std::uint32_t>& order) {
+std::vector<Range> split_into_chunks(std::span<const glm::i64vec3> centers, std::size_t target,
+                                     std::span<std::uint32_t> order) {
   std::vector<Range> ranges{{0, order.size()}};
   const auto is_large = [](const Range& range) { return range.end - range.begin > kChunkTriangles; };
   while (std::any_of(ranges.begin(), ranges.end(), is_large)) {
@@ -158,12 +158,13 @@ Clustering cluster_surface(std::span<const WedgeTriangle> triangles, std::span<c
   if (triangles.empty()) return {};
   if (triangles.size() <= kChunkTriangles) return cluster_chunk(triangles, wedge_position, positions, caps);
 
-  std::vector<glm::i64vec3> centers(triangles.size());  // times three: exact
+  UnsetVector<glm::i64vec3> centers(triangles.size());  // times three: exact
+  UnsetVector<std::uint32_t> order(triangles.size());
   parallel_for_each_index(triangles.size(), kLoopGrain, [&](std::size_t t) {
+    centers[t] = glm::i64vec3(0);
     for (const std::uint32_t wedge : triangles[t]) centers[t] += glm::i64vec3(positions[wedge_position[wedge]]);
+    order[t] = static_cast<std::uint32_t>(t);
   });
-  std::vector<std::uint32_t> order(triangles.size());
-  std::iota(order.begin(), order.end(), 0U);
   const std::vector<Range> chunks = split_into_chunks(centers, caps.target_triangles, order);
 
   std::vector<Clustering> parts(chunks.size());

@@ -31,7 +31,7 @@ struct BuildCluster {
 
 /// What a tier knows of triangles and hands on with them; empty where it needs none.
 struct CarriedTruth {
-  std::vector<CarriedSample> samples;  ///< each names its triangle
+  UnsetVector<CarriedSample> samples;  ///< each names its triangle
   std::vector<TriangleBound> bounds;   ///< per triangle
 };
 

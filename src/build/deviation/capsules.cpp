@@ -41,13 +41,12 @@ class MeanSegment {
 
 }  // namespace
 
-bool has_hub(std::span<const std::array<std::uint32_t, 3>> triangles, std::size_t position_count,
-             std::span<const std::uint32_t> vertex_of) {
+bool has_hub(std::span<const std::array<std::uint32_t, 3>> triangles, std::size_t position_count) {
   if (triangles.size() < kHubTriangles) return false;
   std::vector<std::uint32_t> uses(position_count, 0);
   for (const auto& t : triangles) {
     for (const std::uint32_t corner : t) {
-      if (++uses[vertex_of.empty() ? corner : vertex_of[corner]] >= kHubTriangles) return true;
+      if (++uses[corner] >= kHubTriangles) return true;
     }
   }
   return false;

@@ -19,9 +19,8 @@ namespace meshlode::build {
 /// have none: theirs are the trees that they were.
 inline constexpr std::uint32_t kHubTriangles = 256;
 
-/// Whether so many triangles meet in one vertex. `vertex_of`, unless empty: per position the vertex that it is.
-[[nodiscard]] bool has_hub(std::span<const std::array<std::uint32_t, 3>> triangles, std::size_t position_count,
-                           std::span<const std::uint32_t> vertex_of);
+/// Whether so many triangles meet in one position.
+[[nodiscard]] bool has_hub(std::span<const std::array<std::uint32_t, 3>> triangles, std::size_t position_count);
 
 /// In a tree's frame. What it was made around lies inside, and the rounding of distances_to() is allowed for.
 struct Capsule {

@@ -31,7 +31,7 @@ double project_samples(const SurfaceTree& group_tree, std::vector<CarriedSample>
   return std::sqrt(largest2);
 }
 
-std::vector<CarriedSample> thin_samples(std::span<const CarriedSample> samples, std::size_t triangle_count,
+UnsetVector<CarriedSample> thin_samples(std::span<const CarriedSample> samples, std::size_t triangle_count,
                                         std::uint32_t samples_per_triangle, double maximum) {
   std::vector<std::uint32_t> start(triangle_count + 1, 0);
   for (const CarriedSample& sample : samples) ++start[sample.triangle + 1];
@@ -40,7 +40,7 @@ std::vector<CarriedSample> thin_samples(std::span<const CarriedSample> samples, 
   std::vector<std::uint32_t> next(start.begin(), start.end() - 1);
   for (std::uint32_t i = 0; i < samples.size(); ++i) order[next[samples[i].triangle]++] = i;
 
-  std::vector<CarriedSample> kept;
+  UnsetVector<CarriedSample> kept;
   kept.reserve(std::min(samples.size(), triangle_count * (samples_per_triangle + 1)));
   const auto high = static_cast<float>(0.5 * maximum);
   const std::uint32_t most = 3 * samples_per_triangle;  // of those near the maximum

@@ -14,6 +14,7 @@
 #include <span>
 #include <vector>
 
+#include "base/unset_vector.h"
 #include "base/vec.h"
 #include "build/deviation/tree_slot.h"
 
@@ -79,13 +80,13 @@ struct DeviationTierOptions {
 
 struct GroupDeviation {
   double deviation = 0.0;              ///< object units: the largest distance that was found, of whichever direction
-  std::vector<CarriedSample> carried;  ///< thinned, triangle = index into the group's triangles
+  UnsetVector<CarriedSample> carried;  ///< thinned, triangle = index into the group's triangles
   std::vector<TreeSlot> places;  ///< of the SourceTree, by triangle of the group: near what is nearest to its middle
 };
 
 /// Level 0: the samples that each source triangle starts with (its corners and more), carried by itself. `triangle` of
 /// a sample is the index of the source triangle.
-[[nodiscard]] std::vector<CarriedSample> initial_samples(const SourceTree& source);
+[[nodiscard]] UnsetVector<CarriedSample> initial_samples(const SourceTree& source);
 
 /// Measures one simplified group. `samples` are those of all its members. Errors cannot happen: degenerate triangles
 /// are points or segments. An empty surface with samples has an infinite deviation.

@@ -28,7 +28,7 @@ struct Farthest {
 
 /// What goes on to the next level: for each triangle of the group the farthest samples, some spread, and whatever is
 /// near the group's maximum. Ordered by triangle.
-[[nodiscard]] std::vector<CarriedSample> thin_samples(std::span<const CarriedSample> samples,
+[[nodiscard]] UnsetVector<CarriedSample> thin_samples(std::span<const CarriedSample> samples,
                                                       std::size_t triangle_count, std::uint32_t samples_per_triangle,
                                                       double maximum);
 

@@ -118,30 +118,47 @@ SourceTree::SourceTree(std::span<const Vec3d> positions, std::span<const std::ar
     : impl_(std::make_unique<Impl>()) {
   impl_->positions = positions;
   impl_->triangles = triangles;
-  impl_->vertex_of = weld(positions);
-  impl_->tree.build({positions, triangles, impl_->vertex_of},
-                    triangles.size() <= most_held ? SurfaceTree::Leaves::kHeld : SurfaceTree::Leaves::kMade);
-  std::vector<std::uint32_t>& first = impl_->first_corner;
-  first.assign(positions.size() + 2, 0);
-  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-    for (const std::uint32_t v : impl_->vertices(t)) ++first[v + 2];
-  }
-  for (std::size_t v = 2; v < first.size(); ++v) first[v] += first[v - 1];
-  impl_->triangle_of_corner.resize(3 * triangles.size());
-  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-    for (const std::uint32_t v : impl_->vertices(t)) impl_->triangle_of_corner[first[v + 1]++] = t;
-  }
-  first.pop_back();
+  parallel_all(
+      [&] {
+        impl_->tree.build({positions, triangles},
+                          triangles.size() <= most_held ? SurfaceTree::Leaves::kHeld : SurfaceTree::Leaves::kMade,
+                          SurfaceTree::Capsules::kLater);
+      },
+      [&] { impl_->list_corners(); });
+  if (impl_->has_hub()) impl_->tree.add_capsules();
   impl_->place.resize(triangles.size());
-  for (std::uint32_t i = 0; i < impl_->tree.size(); ++i)
-    impl_->place[impl_->tree.triangle_at(TreeSlot(i))] = TreeSlot(i);
+  parallel_for_each_index(triangles.size(), kLoopGrain, [&](std::size_t i) {
+    const TreeSlot slot(i);
+    impl_->place[impl_->tree.triangle_at(slot)] = slot;
+  });
+}
+
+void SourceTree::Impl::list_corners() {
+  vertex_of = weld(positions);
+  first_corner.assign(positions.size() + 2, 0);
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+    for (const std::uint32_t v : vertices(t)) ++first_corner[v + 2];
+  }
+  for (std::size_t v = 2; v < first_corner.size(); ++v) first_corner[v] += first_corner[v - 1];
+  triangle_of_corner.resize(3 * triangles.size());
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+    for (const std::uint32_t v : vertices(t)) triangle_of_corner[first_corner[v + 1]++] = t;
+  }
+  first_corner.pop_back();
+}
+
+bool SourceTree::Impl::has_hub() const {
+  for (std::uint32_t v = 0; v < positions.size(); ++v) {
+    if (triangles_around(v).size() >= kHubTriangles) return true;
+  }
+  return false;
 }
 
 SourceTree::~SourceTree() = default;
 SourceTree::SourceTree(SourceTree&&) noexcept = default;
 SourceTree& SourceTree::operator=(SourceTree&&) noexcept = default;
 
-std::vector<CarriedSample> initial_samples(const SourceTree& source) {
+UnsetVector<CarriedSample> initial_samples(const SourceTree& source) {
   const SourceTree::Impl& impl = source.impl();
   if (impl.triangles.empty()) return {};
   const Spacing spacing = choose_spacing(impl);
@@ -155,7 +172,7 @@ std::vector<CarriedSample> initial_samples(const SourceTree& source) {
     start[chunk + 1] = count;
   });
   std::partial_sum(start.begin(), start.end(), start.begin());
-  std::vector<CarriedSample> samples(start.back());
+  UnsetVector<CarriedSample> samples(start.back());
   parallel_for_each_chunk(impl.triangles.size(), kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
     std::size_t next = start[chunk];
     for (std::size_t i = begin; i < end; ++i) {

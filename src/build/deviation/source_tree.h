@@ -18,9 +18,13 @@ struct SourceTree::Impl {
   std::vector<std::uint32_t> vertex_of;     ///< per position: the first in the same place; empty: all are apart
   SurfaceTree tree;                         ///< over positions and triangles
   std::vector<std::uint32_t> first_corner;  ///< per vertex and one more: into triangle_of_corner
-  std::vector<std::uint32_t> triangle_of_corner;
-  std::vector<TreeSlot> place;  ///< per triangle: its place in the tree
+  UnsetVector<std::uint32_t> triangle_of_corner;
+  UnsetVector<TreeSlot> place;  ///< per triangle: its place in the tree
 
+  /// Fills vertex_of and the lists of corners, from positions and triangles.
+  void list_corners();
+  /// Whether very many triangles meet in some vertex. \pre corners are listed
+  [[nodiscard]] bool has_hub() const;
   [[nodiscard]] TreeSlot place_of(std::uint32_t triangle) const { return place[triangle]; }
   [[nodiscard]] TriangleCorners corners(std::uint32_t triangle) const {
     const auto& t = triangles[triangle];

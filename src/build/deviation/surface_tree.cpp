@@ -135,7 +135,7 @@ void part_at_median(std::span<Item> items, std::size_t half) {
 
 }  // namespace
 
-void SurfaceTree::build(const Surface& surface, Leaves leaves) {
+void SurfaceTree::build(const Surface& surface, Leaves leaves, Capsules capsules) {
   surface_ = surface;
   slot_triangle_.clear();
   leaves_.clear();
@@ -147,7 +147,7 @@ void SurfaceTree::build(const Surface& surface, Leaves leaves) {
   static std::atomic<std::uint64_t> trees = 0;
   serial_ = ++trees;
   set_frame();
-  std::vector<Item> items(surface.triangles.size());
+  UnsetVector<Item> items(surface.triangles.size());
   parallel_for_each_index(items.size(), 4096, [&](std::size_t i) {
     const auto& t = surface.triangles[i];
     const Vec3f center =
@@ -168,7 +168,7 @@ void SurfaceTree::build(const Surface& surface, Leaves leaves) {
   nodes_.resize(at);
   sort_items(items);
   slot_triangle_.resize(items.size());
-  for (std::size_t i = 0; i < items.size(); ++i) slot_triangle_[i] = items[i].triangle;
+  parallel_for_each_index(items.size(), kLoopGrain, [&](std::size_t i) { slot_triangle_[i] = items[i].triangle; });
   release(items);
   if (leaves == Leaves::kHeld) {
     leaves_.resize(leaf_count);
@@ -179,7 +179,7 @@ void SurfaceTree::build(const Surface& surface, Leaves leaves) {
     for (const Leaf& leaf : leaves_) terms_.push_back(terms_of(leaf));
   }
   fill_nodes();
-  if (has_hub(surface.triangles, surface.positions.size(), surface.vertex_of)) fill_capsules();
+  if (capsules == Capsules::kWhereTheyHelp && has_hub(surface.triangles, surface.positions.size())) fill_capsules();
 }
 
 void SurfaceTree::set_frame() {
@@ -200,14 +200,14 @@ void SurfaceTree::set_frame() {
 
 // Halves by the median along the longest side, twice a level. Counts are those of whole subtrees, so that only the last
 // one is not full.
-void SurfaceTree::sort_items(std::vector<Item>& items) const {
+void SurfaceTree::sort_items(std::span<Item> items) const {
   const std::size_t depth = level_start_.size() - 1;
   for (std::size_t halving = 2 * depth; halving-- > 0;) {
     const std::size_t half = kLeafSize << halving;
     const std::size_t pieces = (items.size() + 2 * half - 1) / (2 * half);
     parallel_for_each_index(pieces, std::max<std::size_t>(1, 8192 / half), [&](std::size_t piece) {
       const std::size_t count = std::min(2 * half, items.size() - 2 * half * piece);
-      if (count > half) part_at_median(std::span(items).subspan(2 * half * piece, count), half);
+      if (count > half) part_at_median(items.subspan(2 * half * piece, count), half);
     });
   }
   // The order of each side is nobody's choice so far: inside a leaf it is made ours.

@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "base/unset_vector.h"
 #include "base/vec.h"
 #include "build/deviation/capsules.h"
 #include "build/deviation/four_triangles.h"
@@ -29,14 +30,19 @@ class SurfaceTree {
   struct Surface {
     std::span<const Vec3d> positions;
     std::span<const std::array<std::uint32_t, 3>> triangles;
-    std::span<const std::uint32_t> vertex_of = {};  ///< per position: the first in the same place; empty: all are apart
   };
 
   /// Leaves hold 36 bytes a triangle, or are made from the surface whenever they are looked at: the same numbers.
   enum class Leaves : std::uint8_t { kHeld, kMade };
 
+  /// Capsules help where very many triangles meet in one vertex, and are of no use elsewhere: made where a position has
+  /// so many, or left to add_capsules().
+  enum class Capsules : std::uint8_t { kWhereTheyHelp, kLater };
+
   /// The spans must outlive the tree. Every index in range, every position finite.
-  void build(const Surface& surface, Leaves leaves = Leaves::kHeld);
+  void build(const Surface& surface, Leaves leaves = Leaves::kHeld, Capsules capsules = Capsules::kWhereTheyHelp);
+  /// The same triangles are found with and without. \pre it is built, and has none
+  void add_capsules() { fill_capsules(); }
 
   [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(slot_triangle_.size()); }
   [[nodiscard]] std::uint32_t triangle_at(TreeSlot slot) const { return slot_triangle_[slot.value]; }
@@ -112,7 +118,7 @@ class SurfaceTree {
   };
 
   void set_frame();
-  void sort_items(std::vector<Item>& items) const;
+  void sort_items(std::span<Item> items) const;
   [[nodiscard]] std::size_t leaf_count() const { return (slot_triangle_.size() + 3) / 4; }
   [[nodiscard]] Leaf make_leaf(std::size_t index) const;
   /// Makes the leaf, unless this thread has it from a look before.
@@ -126,11 +132,11 @@ class SurfaceTree {
   Surface surface_;
   Vec3d center_{0.0};
   double scale_ = 1.0;
-  std::vector<std::uint32_t> slot_triangle_;
-  std::vector<Leaf> leaves_;      ///< or none, where they are made
+  UnsetVector<std::uint32_t> slot_triangle_;
+  UnsetVector<Leaf> leaves_;      ///< or none, where they are made
   std::vector<LeafTerms> terms_;  ///< of the leaves that are held, where they are few
   std::uint64_t serial_ = 0;      ///< no other tree of the process has it
-  std::vector<Node> nodes_;
+  UnsetVector<Node> nodes_;
   std::vector<FourCapsules> capsules_;      ///< by node, where some vertex has very many triangles
   std::vector<std::uint32_t> level_start_;  ///< of nodes_, from the root; node i of a level has children 4i … 4i+3
 };

@@ -80,9 +80,9 @@ Corners gather_corners(const scene::SourceMesh& mesh, const AttributeLayout& lay
     first_corner.push_back(first_corner.back() + corners);
   }
   Corners out;
-  parallel_all([&] { out.positions.resize(first.back()); },
-               [&] { out.attributes.resize(first.back() * layout.stride()); },
-               [&] { out.triangles.resize(first_corner.back()); });
+  out.positions.resize(first.back());
+  out.attributes.resize(first.back() * layout.stride());
+  out.triangles.resize(first_corner.back());
   out.materials.reserve(first_corner.back() / 3);
   for (std::size_t p = 0; p < mesh.primitives.size(); ++p) {
     const scene::Primitive& primitive = mesh.primitives[p];

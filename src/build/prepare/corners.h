@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/unset_vector.h"
 #include "base/vec.h"
 #include "build/prepared.h"
 #include "scene/scene.h"
@@ -14,10 +15,10 @@ namespace meshlode::build {
 
 /// `vertex` ids run over all primitives.
 struct Corners {
-  std::vector<Vec3d> positions;          ///< per vertex, object units
-  std::vector<float> attributes;         ///< per vertex, layout.stride() floats
-  std::vector<std::uint32_t> triangles;  ///< 3 vertex ids each
-  std::vector<std::uint32_t> materials;  ///< per triangle
+  UnsetVector<Vec3d> positions;          ///< per vertex, object units
+  UnsetVector<float> attributes;         ///< per vertex, layout.stride() floats
+  UnsetVector<std::uint32_t> triangles;  ///< 3 vertex ids each
+  UnsetVector<std::uint32_t> materials;  ///< per triangle
 
   [[nodiscard]] const float* attributes_of(std::uint32_t vertex, std::uint32_t stride) const {
     return attributes.data() + std::size_t{vertex} * stride;

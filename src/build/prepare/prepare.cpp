@@ -125,14 +125,13 @@ Status choose_frame(const Corners& corners, const PrepareOptions& options, Prepa
 }
 
 /// The grid point of each vertex that is used, and level 0's own deviation.
-std::vector<Vec3i> place_on_grid(const Corners& corners, const std::vector<std::uint8_t>& is_used,
+UnsetVector<Vec3i> place_on_grid(const Corners& corners, const std::vector<std::uint8_t>& is_used,
                                  const PrepareOptions& options, PreparedMesh& mesh) {
-  std::vector<Vec3i> points(corners.positions.size(), Vec3i(0));
-  std::vector<Vec3d> relative(corners.positions.size(), Vec3d(0.0));
+  UnsetVector<Vec3i> points(corners.positions.size());
+  UnsetVector<Vec3d> relative(corners.positions.size());
   parallel_for_each_index(points.size(), kLoopGrain, [&](std::size_t v) {
-    if (is_used[v] == 0) return;
-    relative[v] = corners.positions[v] - mesh.origin;
-    points[v] = mesh.grid.quantize(relative[v]);
+    relative[v] = is_used[v] != 0 ? corners.positions[v] - mesh.origin : Vec3d(0.0);
+    points[v] = is_used[v] != 0 ? mesh.grid.quantize(relative[v]) : Vec3i(0);
   });
   // Meshes that must abut share nothing but the grid: there each vertex goes to its own point and nowhere else.
   if (options.separates_needles && !(options.grid_step > 0.0))
@@ -200,7 +199,7 @@ Result<PreparedMesh> prepare_mesh(const scene::SourceMesh& source, const Attribu
   }
   std::vector<std::uint8_t> is_used(corners.positions.size(), 0);
   for (const std::uint32_t vertex : corners.triangles) is_used[vertex] = 1;
-  const std::vector<Vec3i> points = place_on_grid(corners, is_used, options, mesh);
+  const UnsetVector<Vec3i> points = place_on_grid(corners, is_used, options, mesh);
   weld(corners, points, is_used, options.keeps_flat_normals && layout.flat_normal, mesh);
   mesh.piece_count = count_pieces(mesh);
   return mesh;

@@ -14,6 +14,7 @@
 
 #include "base/id_table.h"
 #include "base/parallel.h"
+#include "base/unset_vector.h"
 
 namespace meshlode::build {
 
@@ -38,7 +39,7 @@ struct Needle {
 
 /// The needle that lies along the k-th edge of a triangle, if there is one.
 std::optional<Needle> needle_at(std::span<const Vec3d> positions, std::span<const std::uint32_t> triangles,
-                                const std::vector<Vec3i>& cells, std::size_t t, std::size_t k) {
+                                std::span<const Vec3i> cells, std::size_t t, std::size_t k) {
   Needle needle{triangles[t + k], triangles[t + (k + 1) % 3], triangles[t + (k + 2) % 3]};
   if (cells[needle.a] != cells[needle.b] || positions[needle.a] == positions[needle.b]) return {};
   const Vec3i along = cells[needle.tip] - cells[needle.a];
@@ -48,7 +49,7 @@ std::optional<Needle> needle_at(std::span<const Vec3d> positions, std::span<cons
 }
 
 std::vector<Needle> find_needles(std::span<const Vec3d> positions, std::span<const std::uint32_t> triangles,
-                                 const std::vector<Vec3i>& cells) {
+                                 std::span<const Vec3i> cells) {
   const std::size_t count = triangles.size() / 3;
   std::vector<std::uint8_t> has_needle(count, 0);  // they are few: found side by side, collected in order
   parallel_for_each_index(count, kLoopGrain, [&](std::size_t t) {
@@ -107,7 +108,7 @@ struct Surroundings {
 };
 
 Surroundings find_surroundings(std::span<const Vec3d> positions, std::span<const std::uint32_t> triangles,
-                               const std::vector<Vec3i>& cells, const std::vector<Needle>& needles) {
+                               std::span<const Vec3i> cells, const std::vector<Needle>& needles) {
   SmallSet<Point> corners;
   SmallSet<Cell> beside;
   for (const Needle& needle : needles) {
@@ -126,11 +127,19 @@ Surroundings find_surroundings(std::span<const Vec3d> positions, std::span<const
   beside.finish();
   std::vector<std::uint8_t> is_used(positions.size(), 0);
   for (const std::uint32_t v : triangles) is_used[v] = 1;
+  // They are few: found side by side, collected in order.
+  constexpr std::uint8_t kCorner = 1, kBeside = 2;
+  UnsetVector<std::uint8_t> what(positions.size());
+  parallel_for_each_index(positions.size(), kLoopGrain, [&](std::size_t v) {
+    what[v] = 0;
+    if (is_used[v] == 0) return;
+    if (corners.contains(tuple_of(positions[v]))) what[v] |= kCorner;
+    if (beside.contains(tuple_of(cells[v]))) what[v] |= kBeside;
+  });
   Surroundings found;
   for (std::uint32_t v = 0; v < positions.size(); ++v) {
-    if (is_used[v] == 0) continue;
-    if (corners.contains(tuple_of(positions[v]))) found.by_position.push_back(v);
-    if (beside.contains(tuple_of(cells[v]))) found.taken.insert(tuple_of(cells[v]));
+    if ((what[v] & kCorner) != 0) found.by_position.push_back(v);
+    if ((what[v] & kBeside) != 0) found.taken.insert(tuple_of(cells[v]));
   }
   return found;
 }
@@ -138,7 +147,7 @@ Surroundings find_surroundings(std::span<const Vec3d> positions, std::span<const
 }  // namespace
 
 std::uint64_t separate_needles(std::span<const Vec3d> positions, std::span<const std::uint32_t> triangles,
-                               const format::PositionGrid& grid, std::vector<Vec3i>& cells) {
+                               const format::PositionGrid& grid, std::span<Vec3i> cells) {
   const std::vector<Needle> needles = find_needles(positions, triangles, cells);
   if (needles.empty()) return 0;
 

@@ -21,6 +21,6 @@ namespace meshlode::build {
 /// `positions` are relative to the grid's origin, in object units; `triangles` holds three vertex ids each; `cells` is
 /// the grid point of each vertex that a triangle uses.
 std::uint64_t separate_needles(std::span<const Vec3d> positions, std::span<const std::uint32_t> triangles,
-                               const format::PositionGrid& grid, std::vector<Vec3i>& cells);
+                               const format::PositionGrid& grid, std::span<Vec3i> cells);
 
 }  // namespace meshlode::build

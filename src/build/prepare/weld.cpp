@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <numeric>
 #include <tuple>
 
 #include <tbb/parallel_sort.h>
 
 #include "base/parallel.h"
+#include "base/unset_vector.h"
 #include "build/prepare/flat_normal.h"
 
 namespace meshlode::build {
@@ -46,12 +46,14 @@ int compare_attributes(const float* a, const float* b, std::uint32_t stride) {
 
 /// Vertex ids sorted by Z-order of the grid point, then the point, then attributes, then exact position: equal wedges,
 /// positions and source points become runs, whatever their numbers were.
-std::vector<std::uint32_t> canonical_vertex_order(const Corners& corners, const std::vector<Vec3i>& quantized,
+UnsetVector<std::uint32_t> canonical_vertex_order(const Corners& corners, std::span<const Vec3i> quantized,
                                                   std::uint32_t stride) {
-  std::vector<std::uint64_t> keys(quantized.size());
-  parallel_for_each_index(keys.size(), 4096, [&](std::size_t i) { keys[i] = morton(quantized[i]); });
-  std::vector<std::uint32_t> order(quantized.size());
-  std::iota(order.begin(), order.end(), 0U);
+  UnsetVector<std::uint64_t> keys(quantized.size());
+  UnsetVector<std::uint32_t> order(quantized.size());
+  parallel_for_each_index(keys.size(), kLoopGrain, [&](std::size_t i) {
+    keys[i] = morton(quantized[i]);
+    order[i] = static_cast<std::uint32_t>(i);
+  });
   tbb::parallel_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
     if (keys[a] != keys[b]) return keys[a] < keys[b];
     if (quantized[a] != quantized[b]) return as_tuple(quantized[a]) < as_tuple(quantized[b]);
@@ -68,8 +70,8 @@ std::vector<std::uint32_t> canonical_vertex_order(const Corners& corners, const 
 
 /// Two ids of a vertex: of its exact position with its attributes, as in the source, and of that one's wedge.
 struct VertexIds {
-  std::vector<std::uint32_t> exact_of;  ///< per vertex; of those that no triangle uses, nothing
-  std::vector<std::uint32_t> wedge_of_exact;
+  UnsetVector<std::uint32_t> exact_of;  ///< per vertex; of those that no triangle uses, nothing
+  UnsetVector<std::uint32_t> wedge_of_exact;
 };
 
 /// Of a vertex in canonical order: what it begins. A new point is a new wedge, and that a new exact position.
@@ -85,11 +87,11 @@ void add(Begins& sum, const Begins& more) {
 
 /// Runs of the canonical order become positions (grid point), wedges (grid point and attributes) and exact positions:
 /// counted by chunk, then written to where the chunks before end.
-VertexIds weld_vertices(const Corners& corners, const std::vector<Vec3i>& points,
+VertexIds weld_vertices(const Corners& corners, std::span<const Vec3i> points,
                         const std::vector<std::uint8_t>& is_used, PreparedMesh& mesh) {
   constexpr std::size_t kLength = 4 * kLoopGrain;
   const std::uint32_t stride = mesh.layout.stride();
-  std::vector<std::uint32_t> order = canonical_vertex_order(corners, points, stride);
+  UnsetVector<std::uint32_t> order = canonical_vertex_order(corners, points, stride);
   VertexIds ids;
   ids.exact_of.resize(order.size());
   std::erase_if(order, [&](std::uint32_t v) { return is_used[v] == 0; });
@@ -110,7 +112,8 @@ VertexIds weld_vertices(const Corners& corners, const std::vector<Vec3i>& points
   const Begins all = before.back();
   parallel_all([&] { mesh.positions.resize(all.points); }, [&] { mesh.wedge_position.resize(all.wedges); },
                [&] { mesh.wedge_attributes.resize(std::size_t{all.wedges} * stride); },
-               [&] { resize_all(all.exacts, mesh.exact_positions, ids.wedge_of_exact); });
+               [&] { mesh.exact_positions.resize(all.exacts); });
+  ids.wedge_of_exact.resize(all.exacts);
   parallel_for_each_chunk(order.size(), kLength, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
     Begins so_far = before[chunk];
     for (std::size_t i = begin; i < end; ++i) {
@@ -142,9 +145,9 @@ struct CanonicalTriangle {
 };
 
 /// In order, and each once; counts what was there more often.
-std::vector<CanonicalTriangle> weld_triangles(const Corners& corners, const std::vector<std::uint32_t>& exact_of,
+UnsetVector<CanonicalTriangle> weld_triangles(const Corners& corners, std::span<const std::uint32_t> exact_of,
                                               std::uint64_t& duplicates) {
-  std::vector<CanonicalTriangle> triangles(corners.materials.size());
+  UnsetVector<CanonicalTriangle> triangles(corners.materials.size());
   parallel_for_each_index(triangles.size(), kLoopGrain, [&](std::size_t t) {
     const std::uint32_t* c = &corners.triangles[3 * t];
     std::array<std::uint32_t, 3> exact{exact_of[c[0]], exact_of[c[1]], exact_of[c[2]]};
@@ -171,10 +174,10 @@ bool has_area(const PreparedMesh& mesh, const WedgeTriangle& triangle) {
 
 }  // namespace
 
-void weld(const Corners& corners, const std::vector<Vec3i>& points, const std::vector<std::uint8_t>& is_used,
+void weld(const Corners& corners, std::span<const Vec3i> points, const std::vector<std::uint8_t>& is_used,
           bool keeps_normals, PreparedMesh& mesh) {
   const VertexIds ids = weld_vertices(corners, points, is_used, mesh);
-  const std::vector<CanonicalTriangle> triangles = weld_triangles(corners, ids.exact_of, mesh.dropped_duplicate);
+  const UnsetVector<CanonicalTriangle> triangles = weld_triangles(corners, ids.exact_of, mesh.dropped_duplicate);
   resize_all(triangles.size(), mesh.triangles, mesh.exact_triangles, mesh.triangle_material);
   std::vector<std::uint32_t> collapsed(chunk_count(triangles.size(), kLoopGrain), 0);
   parallel_for_each_chunk(triangles.size(), kLoopGrain, [&](std::size_t chunk, std::size_t begin, std::size_t end) {

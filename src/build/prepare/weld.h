@@ -6,6 +6,10 @@
 #include <cstdint>
 #include <vector>
 
+#include <cstdint>
+#include <span>
+#include <vector>
+
 #include "base/vec.h"
 #include "build/prepare/corners.h"
 #include "build/prepared.h"
@@ -15,7 +19,7 @@ namespace meshlode::build {
 /// Fills positions, wedges, exact positions and triangles of `mesh`, and counts duplicates and what the grid collapsed.
 /// `points`: the grid point of each vertex that a triangle uses; `is_used`: 1 for those. `keeps_normals`: exact_normals
 /// too. \pre layout and origin are set
-void weld(const Corners& corners, const std::vector<Vec3i>& points, const std::vector<std::uint8_t>& is_used,
+void weld(const Corners& corners, std::span<const Vec3i> points, const std::vector<std::uint8_t>& is_used,
           bool keeps_normals, PreparedMesh& mesh);
 
 }  // namespace meshlode::build

@@ -128,7 +128,7 @@ TEST(Measured, ASoupIsSearchedToItsEndWhereTheGroupIsAllOfIt) {
   for (int round = 0; round < 8; ++round) {
     const judge::Surface fine = test::random_soup(random, 400, 1.0, 0.02 + 0.05 * round), coarse = part_of(fine, 8);
     const SourceTree source(fine.positions, fine.triangles);
-    std::vector<CarriedSample> samples = initial_samples(source);
+    auto samples = initial_samples(source);
     std::erase_if(samples, [](const CarriedSample& sample) { return sample.triangle % 40 != 0; });
     DeviationTierOptions options;
     options.extra_effort = 3000;
@@ -356,7 +356,7 @@ TEST(Measured, RandomSimplificationsAreWithinFivePercentOfTheDenseTruth) {
 TEST(Measured, SamplesAreThinnedButTheFarthestStay) {
   const judge::Surface fine = test::as_surface(scene::make_rock(24)), coarse = test::as_surface(scene::make_rock(6));
   const SourceTree source(fine.positions, fine.triangles);
-  const std::vector<CarriedSample> samples = initial_samples(source);
+  const auto samples = initial_samples(source);
   const GroupDeviation result = measure_group(source, test::as_group(coarse), samples, {});
   EXPECT_LT(result.carried.size(), samples.size());
   float farthest = 0.0F;
@@ -376,7 +376,7 @@ TEST(Measured, AChainOfLevelsKeepsWhatTheFirstHad) {
   judge::Surface fine = test::as_surface(scene::make_sphere(32));
   fine.positions[1234] *= 1.5;
   const SourceTree source(fine.positions, fine.triangles);
-  std::vector<CarriedSample> samples = initial_samples(source);
+  auto samples = initial_samples(source);
   for (const std::uint32_t n : {16U, 8U, 4U, 2U}) {
     const judge::Surface coarse = test::as_surface(scene::make_sphere(n));
     GroupDeviation result = measure_group(source, test::as_group(coarse), samples, {});
@@ -402,7 +402,7 @@ TEST(Measured, TheSourcesOwnBorderBelongsToTheGroup) {
   };
   const judge::Surface exact = strip(0.2), finer = strip(0.1), group = strip(0.0);
   const SourceTree source(exact.positions, exact.triangles);
-  std::vector<CarriedSample> samples = initial_samples(source);
+  auto samples = initial_samples(source);
   std::erase_if(samples, [](const CarriedSample& sample) { return sample.point.y > 1.15; });
   const std::vector<std::uint8_t> nothing(finer.positions.size(), 0), everything(finer.positions.size(), 1);
   const auto measure = [&](std::span<const std::uint8_t> is_shared) {

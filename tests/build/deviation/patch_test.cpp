@@ -537,12 +537,12 @@ TEST(CertifiedTightness, ABoundBeyondFloatsIsABound) {
 TEST(Capsules, FewTrianglesAreNoHub) {
   std::vector<std::array<std::uint32_t, 3>> triangles;
   for (std::uint32_t t = 0; t < kHubTriangles; ++t) {
-    EXPECT_FALSE(has_hub(triangles, kHubTriangles + 2, {})) << t;
+    EXPECT_FALSE(has_hub(triangles, kHubTriangles + 2)) << t;
     triangles.push_back({0, t + 1, t + 2});
   }
-  EXPECT_TRUE(has_hub(triangles, kHubTriangles + 2, {}));
+  EXPECT_TRUE(has_hub(triangles, kHubTriangles + 2));
   for (auto& t : triangles) t[0] = t[1];  // each in two corners of its triangle, and no vertex in many
-  EXPECT_FALSE(has_hub(triangles, kHubTriangles + 2, {}));
+  EXPECT_FALSE(has_hub(triangles, kHubTriangles + 2));
 }
 
 }  // namespace
