@@ -87,8 +87,8 @@ void add(Begins& sum, const Begins& more) {
 
 /// Runs of the canonical order become positions (grid point), wedges (grid point and attributes) and exact positions:
 /// counted by chunk, then written to where the chunks before end.
-VertexIds weld_vertices(const Corners& corners, std::span<const Vec3i> points,
-                        const std::vector<std::uint8_t>& is_used, PreparedMesh& mesh) {
+VertexIds weld_vertices(const Corners& corners, std::span<const Vec3i> points, const std::vector<std::uint8_t>& is_used,
+                        PreparedMesh& mesh) {
   constexpr std::size_t kLength = 4 * kLoopGrain;
   const std::uint32_t stride = mesh.layout.stride();
   UnsetVector<std::uint32_t> order = canonical_vertex_order(corners, points, stride);

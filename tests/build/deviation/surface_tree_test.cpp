@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The tree against brute force: what it finds is the nearest up to the rounding of floats, never nearer than the truth.
-#include "build/deviation/source_tree.h"
 #include "build/deviation/surface_tree.h"
+#include "build/deviation/source_tree.h"
 
 #include <gtest/gtest.h>
 
