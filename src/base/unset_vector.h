@@ -15,11 +15,6 @@ template <class T>
 struct UnsetAllocator : std::allocator<T> {
   static_assert(std::is_trivially_destructible_v<T>);
 
-  template <class U>
-  struct rebind {
-    using other = UnsetAllocator<U>;
-  };
-
   UnsetAllocator() = default;
   template <class U>
   UnsetAllocator(const UnsetAllocator<U>& /*other*/) noexcept {}

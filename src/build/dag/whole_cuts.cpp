@@ -44,6 +44,11 @@ constexpr double kLookFrom = 0.7;
 constexpr std::size_t kClimbed = 32, kClimbedOfGroup = 4;
 /// Steps of such a search, each half as long as the one before, and points tried at each.
 constexpr int kSteps = 7, kTries = 12;
+/// Triangles that no single one of the cut is near to throughout may have a peak between their points, where a fold of
+/// the cut leaves them. Those whose points are farthest are searched by bounds: so many a cut, in so many parts each.
+constexpr std::size_t kDoubtful = 512, kPartsOfDoubtful = 96;
+/// And none whose points are all nearer than this share of the cut's error.
+constexpr double kDoubtfulFrom = 0.35;
 /// From cut to cut so many more groups are finer, as a share of those that are; and what all cuts together may have,
 /// where that is more than the mesh has.
 constexpr std::size_t kCutShare = 8;
@@ -229,6 +234,34 @@ struct FarPoint {
   GroupId nearest;          ///< that it is of; invalid for level 0
 };
 
+/// A source triangle, with the largest distance that its points have from a cut.
+struct Doubtful {
+  double distance = 0.0;
+  std::uint32_t run = 0;
+  TreeSlot place{0U};
+};
+
+/// Of a source triangle.
+struct SourcePart {
+  std::array<Vec3d, 3> corner;
+  double bound = std::numeric_limits<double>::infinity();  ///< no point of it is farther from the cut
+  std::uint32_t order = 0;
+
+  [[nodiscard]] bool operator<(const SourcePart& other) const {
+    return bound != other.bound ? bound < other.bound : order > other.order;
+  }
+  [[nodiscard]] Vec3d center() const { return (corner[0] + corner[1] + corner[2]) / 3.0; }
+  [[nodiscard]] double radius() const {
+    const Vec3d at = center();
+    return std::max({glm::distance(at, corner[0]), glm::distance(at, corner[1]), glm::distance(at, corner[2])});
+  }
+  [[nodiscard]] std::array<SourcePart, 4> divided() const {
+    const auto middle = [&](std::size_t k) { return (corner[k] + corner[(k + 1) % 3]) * 0.5; };
+    const std::array<Vec3d, 3> m{middle(0), middle(1), middle(2)};
+    return {{{{corner[0], m[0], m[2]}}, {{corner[1], m[1], m[0]}}, {{corner[2], m[2], m[1]}}, {m}}};
+  }
+};
+
 class WholeCuts {
  public:
   WholeCuts(const PreparedMesh& mesh, double margin, LodDag& dag)
@@ -365,6 +398,7 @@ class WholeCuts {
                   static_cast<float>(std::sqrt(double{hit.distance2}) / tree.scale())};
     };
     std::vector<std::vector<FarPoint>> partials(chunk_count(runs_.size(), kChunk));
+    std::vector<std::vector<Doubtful>> doubtful(partials.size());
     parallel_for_each_chunk(runs_.size(), kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
       TreeSlot place{0U};
       for (std::size_t r = begin; r < end; ++r) {
@@ -377,17 +411,28 @@ class WholeCuts {
             continue;
           }
         }
+        Doubtful doubt{0.0, static_cast<std::uint32_t>(r), place};
         for (std::uint32_t i = run.first; i < run.first + run.count; ++i) {
-          if (is_still_near(near_[i])) continue;
+          if (is_still_near(near_[i])) {
+            doubt.distance = std::max(doubt.distance, double{near_[i].distance});
+            continue;
+          }
           const SurfaceTree::Hit hit = find_near(tree, points_[i].at, enough, place);
           if (!hit.slot.is_valid()) continue;
           near_[i] = near_of({place, hit.distance2});
+          if (double{near_[i].distance} > doubt.distance) {
+            doubt.distance = double{near_[i].distance};
+            doubt.place = place;
+          }
           if (!(hit.distance2 > enough)) continue;
           partials[chunk].push_back({std::sqrt(tree.distance2_at(points_[i].at, place)), points_[i].at, i, place,
                                      group_at(cut, tree, place)});
         }
+        if (run.count >= kManyOfTriangle && doubt.distance > kDoubtfulFrom * threshold)
+          doubtful[chunk].push_back(doubt);
       }
     });
+    partials.push_back(search_doubtful(cut, tree, threshold, doubtful));
     std::vector<FarPoint> found;
     for (const auto& partial : partials) found.insert(found.end(), partial.begin(), partial.end());
     const auto is_farther = [](const FarPoint& a, const FarPoint& b) {
@@ -409,6 +454,58 @@ class WholeCuts {
     }
     parallel_for_each_index(chosen.size(), 1, [&](std::size_t i) { climb(cut, tree, chosen[i]); });
     return chosen;
+  }
+
+  /// What is farther than `threshold` between the points of triangles, of those whose points are farthest.
+  [[nodiscard]] std::vector<FarPoint> search_doubtful(const Surface& cut, const SurfaceTree& tree, double threshold,
+                                                      std::span<const std::vector<Doubtful>> by_chunk) const {
+    std::vector<Doubtful> doubtful;
+    for (const auto& some : by_chunk) doubtful.insert(doubtful.end(), some.begin(), some.end());
+    const auto first = doubtful.begin();
+    const auto end = first + static_cast<std::ptrdiff_t>(std::min(doubtful.size(), kDoubtful));
+    std::partial_sort(first, end, doubtful.end(), [](const Doubtful& a, const Doubtful& b) {
+      return a.distance != b.distance ? a.distance > b.distance : a.run < b.run;
+    });
+    doubtful.erase(end, doubtful.end());
+    std::vector<FarPoint> found(doubtful.size());
+    parallel_for_each_index(doubtful.size(), 1,
+                            [&](std::size_t i) { found[i] = farthest_between(cut, tree, threshold, doubtful[i]); });
+    std::erase_if(found, [&](const FarPoint& far) { return !(far.distance > threshold); });
+    return found;
+  }
+
+  /// The farthest point that the parts of a triangle show, those with the most room first: a part is left where its
+  /// middle and its size say that it has none, or one triangle of the cut is near to all of it.
+  [[nodiscard]] FarPoint farthest_between(const Surface& cut, const SurfaceTree& tree, double threshold,
+                                          const Doubtful& doubt) const {
+    const PointRun& run = runs_[doubt.run];
+    FarPoint far{threshold, Vec3d(0.0), run.first, doubt.place, GroupId()};
+    TreeSlot place = doubt.place;
+    std::vector<SourcePart> heap(1);
+    heap.front().corner = corners_of(mesh_, run.triangle);
+    std::uint32_t order = 0;
+    for (std::size_t parts = 0; parts < kPartsOfDoubtful && !heap.empty(); ++parts) {
+      std::pop_heap(heap.begin(), heap.end());
+      const SourcePart part = heap.back();
+      heap.pop_back();
+      if (!(part.bound > far.distance)) break;
+      const Vec3d center = part.center();
+      const double radius = part.radius();
+      const float enough = tree.squared_in_frame(std::max(0.0, far.distance - radius));
+      if (!is_far(tree, center, enough, place)) continue;
+      const double distance = std::sqrt(tree.distance2_at(center, place));
+      if (distance > far.distance) far = {distance, center, run.first, place, group_at(cut, tree, place)};
+      const SurfaceTree::Hit around = tree.look_around(
+          {tree.to_frame(part.corner[0]), tree.to_frame(part.corner[1]), tree.to_frame(part.corner[2])}, place);
+      if (around.distance2 <= tree.squared_in_frame(far.distance)) continue;
+      for (SourcePart next : part.divided()) {
+        next.bound = distance + radius;
+        next.order = ++order;
+        heap.push_back(next);
+        std::push_heap(heap.begin(), heap.end());
+      }
+    }
+    return far;
   }
 
   [[nodiscard]] GroupId group_at(const Surface& cut, const SurfaceTree& tree, TreeSlot place) const {
