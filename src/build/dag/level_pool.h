@@ -11,6 +11,7 @@
 
 #include "base/id_table.h"
 #include "base/ids.h"
+#include "base/unset_vector.h"
 #include "build/cluster/cluster.h"
 #include "build/dag/kept_samples.h"
 #include "build/dag/triangle_materials.h"

@@ -15,6 +15,8 @@
 #include "base/ids.h"
 #include "base/parallel.h"
 #include "base/random.h"
+#include "build/dag/source_points.h"
+#include "build/deviation/bounded_search.h"
 #include "build/deviation/surface_tree.h"
 
 namespace meshlode::build {
@@ -24,18 +26,6 @@ namespace {
 constexpr std::size_t kChunk = 256;  // source triangles that share a hint, whatever the thread count
 /// Points of one source triangle from which on its corners are asked first: what is near to all three is near to them.
 constexpr std::uint32_t kManyOfTriangle = 10;
-/// Points on triangles beside the corners: so many in all, but within so many a triangle on average.
-constexpr std::size_t kPoints = 100000;
-constexpr std::size_t kFewestPerTriangle = 1, kMostPerTriangle = 24;
-/// One half of them goes to all triangles alike, the other by their longest edges: what a cut is off by changes along
-/// a needle as it does along a row of small triangles.
-constexpr double kShareByLength = 0.5;
-/// And so many besides to triangles that are so much larger than the mean, by their areas: behind one that lies across
-/// half of the mesh is much that its length says nothing of.
-constexpr std::size_t kPointsOfLarge = 40000;
-constexpr double kLarge = 16.0;
-/// Of larger meshes a part of the triangles is looked at.
-constexpr std::size_t kMostTriangles = 100000;
 /// Points nearer to a cut than this share of its error are left alone: they belong to groups of smaller errors, which
 /// other cuts show.
 constexpr double kLookFrom = 0.7;
@@ -46,9 +36,7 @@ constexpr std::size_t kClimbed = 32, kClimbedOfGroup = 4;
 constexpr int kSteps = 7, kTries = 12;
 /// Triangles that no single one of the cut is near to throughout may have a peak between their points, where a fold of
 /// the cut leaves them. Those whose points are farthest are searched by bounds: so many a cut, in so many parts each.
-constexpr std::size_t kDoubtful = 512, kPartsOfDoubtful = 96;
-/// And none whose points are all nearer than this share of the cut's error.
-constexpr double kDoubtfulFrom = 0.35;
+constexpr std::size_t kDoubtful = 512, kPartsOfDoubtful = 192;
 /// From cut to cut so many more groups are finer, as a share of those that are; and what all cuts together may have,
 /// where that is more than the mesh has.
 constexpr std::size_t kCutShare = 8;
@@ -97,121 +85,6 @@ struct Surface {
   }
 };
 
-/// A point of a source triangle.
-struct SourcePoint {
-  Vec3d at;
-  std::uint32_t triangle = 0;
-};
-
-/// A random point: of the triangle where `inside`, else of an edge. A needle is nothing but edges.
-Vec3d random_point(const std::array<Vec3d, 3>& p, bool inside, SplitMix64& random) {
-  double u = random.unit(), v = random.unit();
-  if (!inside) {
-    const std::size_t k = random.below(3);
-    return p[k] + u * (p[(k + 1) % 3] - p[k]);
-  }
-  if (u + v > 1.0) {
-    u = 1.0 - u;
-    v = 1.0 - v;
-  }
-  return p[0] + u * (p[1] - p[0]) + v * (p[2] - p[0]);
-}
-
-std::array<Vec3d, 3> corners_of(const PreparedMesh& mesh, std::uint32_t triangle) {
-  const auto& ids = mesh.exact_triangles[triangle];
-  return {mesh.exact_positions[ids[0]], mesh.exact_positions[ids[1]], mesh.exact_positions[ids[2]]};
-}
-
-/// How many points each triangle gets beside its corners, `each` on average.
-std::vector<std::uint32_t> share_points(const PreparedMesh& mesh, std::span<const std::uint32_t> triangles,
-                                        std::size_t each) {
-  std::vector<double> length(triangles.size());
-  double sum = 0.0;
-  for (std::size_t i = 0; i < triangles.size(); ++i) {
-    const std::array<Vec3d, 3> p = corners_of(mesh, triangles[i]);
-    length[i] = std::max({glm::distance(p[0], p[1]), glm::distance(p[1], p[2]), glm::distance(p[2], p[0])});
-    sum += length[i];
-  }
-  const auto average = static_cast<double>(each);
-  const double alike = average * (1.0 - kShareByLength);
-  const double per_length = sum > 0.0 ? average * kShareByLength * static_cast<double>(triangles.size()) / sum : 0.0;
-  std::vector<std::uint32_t> counts(triangles.size());
-  double owed = 0.0;  // of a point: what is left of one goes to the next triangle
-  for (std::size_t i = 0; i < triangles.size(); ++i) {
-    owed += alike + per_length * length[i];
-    counts[i] = static_cast<std::uint32_t>(owed);
-    owed -= counts[i];
-  }
-  return counts;
-}
-
-/// More points, inside of triangles that are far larger than the others.
-void add_points_of_large(const PreparedMesh& mesh, std::vector<SourcePoint>& points) {
-  const auto area_of = [&](std::uint32_t triangle) {
-    const std::array<Vec3d, 3> p = corners_of(mesh, triangle);
-    return glm::length(glm::cross(p[1] - p[0], p[2] - p[0]));
-  };
-  const auto count = static_cast<std::uint32_t>(mesh.exact_triangles.size());
-  struct Large {
-    std::uint32_t triangle;
-    double area;
-  };
-  std::vector<Large> large;  // against the sum so far, which only grows
-  double sum = 0.0;
-  for (std::uint32_t t = 0; t < count; ++t) {
-    const double area = area_of(t);
-    sum += area;
-    if (area * count > kLarge * sum) large.push_back({t, area});
-  }
-  if (!(sum > 0.0)) return;
-  SplitMix64 random(0x6C61726765ULL);
-  for (const auto& [t, area] : large) {
-    if (!(area * count > kLarge * sum)) continue;
-    const std::array<Vec3d, 3> corners = corners_of(mesh, t);
-    const auto more = static_cast<std::size_t>(area / sum * static_cast<double>(kPointsOfLarge));
-    for (std::size_t k = 0; k < more; ++k) points.push_back({random_point(corners, true, random), t});
-  }
-}
-
-/// Corners, points of edges and points inside, of triangles spread over the whole source.
-std::vector<SourcePoint> choose_points(const PreparedMesh& mesh) {
-  const std::size_t count = mesh.exact_triangles.size();
-  const std::size_t step = (count + kMostTriangles - 1) / kMostTriangles;
-  const std::size_t each = std::clamp(kPoints / std::max<std::size_t>(1, count), kFewestPerTriangle, kMostPerTriangle);
-  std::vector<std::uint32_t> triangles;
-  for (std::size_t i = 0; i < count; i += step) triangles.push_back(static_cast<std::uint32_t>(i));
-  const std::vector<std::uint32_t> counts = share_points(mesh, triangles, each);
-  std::vector<SourcePoint> points;
-  points.reserve((each + 3) * triangles.size() + kPointsOfLarge);
-  std::vector<std::uint8_t> is_taken(mesh.exact_positions.size(), 0);
-  SplitMix64 random(0x77686F6C65ULL);
-  for (std::size_t i = 0; i < triangles.size(); ++i) {
-    const std::uint32_t t = triangles[i];
-    for (const std::uint32_t id : mesh.exact_triangles[t]) {
-      if (is_taken[id] == 0) points.push_back({mesh.exact_positions[id], t});
-      is_taken[id] = 1;
-    }
-    const std::array<Vec3d, 3> corners = corners_of(mesh, t);
-    for (std::size_t k = 0; k < counts[i]; ++k) points.push_back({random_point(corners, (i + k) % 2 == 0, random), t});
-  }
-  add_points_of_large(mesh, points);
-  return points;
-}
-
-/// Points of one source triangle, one after another: [first, first + count).
-struct PointRun {
-  std::uint32_t triangle = 0, first = 0, count = 0;
-};
-
-std::vector<PointRun> runs_of(std::span<const SourcePoint> points) {
-  std::vector<PointRun> runs;
-  for (std::uint32_t i = 0; i < points.size(); ++i) {
-    if (runs.empty() || runs.back().triangle != points[i].triangle) runs.push_back({points[i].triangle, i, 0});
-    ++runs.back().count;
-  }
-  return runs;
-}
-
 /// A cluster that a point of the source is near to. Cuts that follow one another have most of their clusters in common:
 /// a point that is near enough to one of them need not be looked for in the others.
 struct Near {
@@ -241,34 +114,13 @@ struct Doubtful {
   TreeSlot place{0U};
 };
 
-/// Of a source triangle.
-struct SourcePart {
-  std::array<Vec3d, 3> corner;
-  double bound = std::numeric_limits<double>::infinity();  ///< no point of it is farther from the cut
-  std::uint32_t order = 0;
-
-  [[nodiscard]] bool operator<(const SourcePart& other) const {
-    return bound != other.bound ? bound < other.bound : order > other.order;
-  }
-  [[nodiscard]] Vec3d center() const { return (corner[0] + corner[1] + corner[2]) / 3.0; }
-  [[nodiscard]] double radius() const {
-    const Vec3d at = center();
-    return std::max({glm::distance(at, corner[0]), glm::distance(at, corner[1]), glm::distance(at, corner[2])});
-  }
-  [[nodiscard]] std::array<SourcePart, 4> divided() const {
-    const auto middle = [&](std::size_t k) { return (corner[k] + corner[(k + 1) % 3]) * 0.5; };
-    const std::array<Vec3d, 3> m{middle(0), middle(1), middle(2)};
-    return {{{{corner[0], m[0], m[2]}}, {{corner[1], m[1], m[0]}}, {{corner[2], m[2], m[1]}}, {m}}};
-  }
-};
-
 class WholeCuts {
  public:
   WholeCuts(const PreparedMesh& mesh, double margin, LodDag& dag)
       : mesh_(mesh),
         margin_(margin),
         dag_(dag),
-        points_(choose_points(mesh)),
+        points_(choose_source_points(mesh)),
         runs_(runs_of(points_)),
         near_(points_.size()),
         run_near_(runs_.size()),
@@ -405,7 +257,7 @@ class WholeCuts {
         const PointRun& run = runs_[r];
         if (run.count >= kManyOfTriangle) {
           if (is_still_near(run_near_[r])) continue;
-          const SurfaceTree::Hit hit = find_near_throughout(tree, corners_of(mesh_, run.triangle), enough, place);
+          const SurfaceTree::Hit hit = find_near_throughout(tree, source_corners(mesh_, run.triangle), enough, place);
           if (hit.distance2 <= enough) {
             run_near_[r] = near_of(hit);
             continue;
@@ -428,8 +280,7 @@ class WholeCuts {
           partials[chunk].push_back({std::sqrt(tree.distance2_at(points_[i].at, place)), points_[i].at, i, place,
                                      group_at(cut, tree, place)});
         }
-        if (run.count >= kManyOfTriangle && doubt.distance > kDoubtfulFrom * threshold)
-          doubtful[chunk].push_back(doubt);
+        if (run.count >= kManyOfTriangle) doubtful[chunk].push_back(doubt);
       }
     });
     partials.push_back(search_doubtful(cut, tree, threshold, doubtful));
@@ -468,44 +319,16 @@ class WholeCuts {
     });
     doubtful.erase(end, doubtful.end());
     std::vector<FarPoint> found(doubtful.size());
-    parallel_for_each_index(doubtful.size(), 1,
-                            [&](std::size_t i) { found[i] = farthest_between(cut, tree, threshold, doubtful[i]); });
-    std::erase_if(found, [&](const FarPoint& far) { return !(far.distance > threshold); });
+    parallel_for_each_index(doubtful.size(), 1, [&](std::size_t i) {
+      const PointRun& run = runs_[doubtful[i].run];
+      BoundedSearch search(tree, 1.0, threshold);
+      search.add(source_corners(mesh_, run.triangle), doubtful[i].place);
+      search.run(kPartsOfDoubtful);
+      const auto& [distance, at, place] = search.found();
+      if (distance > 0.0) found[i] = {distance, at, run.first, place, group_at(cut, tree, place)};
+    });
+    std::erase_if(found, [](const FarPoint& far) { return !(far.distance > 0.0); });
     return found;
-  }
-
-  /// The farthest point that the parts of a triangle show, those with the most room first: a part is left where its
-  /// middle and its size say that it has none, or one triangle of the cut is near to all of it.
-  [[nodiscard]] FarPoint farthest_between(const Surface& cut, const SurfaceTree& tree, double threshold,
-                                          const Doubtful& doubt) const {
-    const PointRun& run = runs_[doubt.run];
-    FarPoint far{threshold, Vec3d(0.0), run.first, doubt.place, GroupId()};
-    TreeSlot place = doubt.place;
-    std::vector<SourcePart> heap(1);
-    heap.front().corner = corners_of(mesh_, run.triangle);
-    std::uint32_t order = 0;
-    for (std::size_t parts = 0; parts < kPartsOfDoubtful && !heap.empty(); ++parts) {
-      std::pop_heap(heap.begin(), heap.end());
-      const SourcePart part = heap.back();
-      heap.pop_back();
-      if (!(part.bound > far.distance)) break;
-      const Vec3d center = part.center();
-      const double radius = part.radius();
-      const float enough = tree.squared_in_frame(std::max(0.0, far.distance - radius));
-      if (!is_far(tree, center, enough, place)) continue;
-      const double distance = std::sqrt(tree.distance2_at(center, place));
-      if (distance > far.distance) far = {distance, center, run.first, place, group_at(cut, tree, place)};
-      const SurfaceTree::Hit around = tree.look_around(
-          {tree.to_frame(part.corner[0]), tree.to_frame(part.corner[1]), tree.to_frame(part.corner[2])}, place);
-      if (around.distance2 <= tree.squared_in_frame(far.distance)) continue;
-      for (SourcePart next : part.divided()) {
-        next.bound = distance + radius;
-        next.order = ++order;
-        heap.push_back(next);
-        std::push_heap(heap.begin(), heap.end());
-      }
-    }
-    return far;
   }
 
   [[nodiscard]] GroupId group_at(const Surface& cut, const SurfaceTree& tree, TreeSlot place) const {
@@ -514,7 +337,7 @@ class WholeCuts {
 
   /// Looks for a farther point on the same triangle of the source.
   void climb(const Surface& cut, const SurfaceTree& tree, FarPoint& far) const {
-    const std::array<Vec3d, 3> corners = corners_of(mesh_, points_[far.point].triangle);
+    const std::array<Vec3d, 3> corners = source_corners(mesh_, points_[far.point].triangle);
     SplitMix64 random(far.point);
     float enough = tree.squared_in_frame(far.distance);
     TreeSlot place = far.place;

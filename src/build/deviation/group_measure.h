@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "base/unset_vector.h"
 #include "build/deviation/deviation.h"
 #include "build/deviation/group_edges.h"
 #include "build/deviation/patch.h"

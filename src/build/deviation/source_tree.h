@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "base/unset_vector.h"
 #include "build/deviation/deviation.h"
 #include "build/deviation/surface_tree.h"
 

@@ -11,6 +11,7 @@
 
 #include "base/disjoint_sets.h"
 #include "base/parallel.h"
+#include "base/unset_vector.h"
 #include "build/prepare/corners.h"
 #include "build/prepare/median_edge.h"
 #include "build/prepare/separate_needles.h"

@@ -13,13 +13,13 @@
 namespace meshlode::build {
 
 struct Candidate {
-  double cost;
+  double cost;                      ///< no NaN
   std::uint32_t a, b;               ///< a < b
   std::uint32_t versions;           ///< of both vertices, summed: stale if either has changed since
   bool may_break_topology = false;  ///< the cost already counts that the link condition is broken
 
   bool operator==(const Candidate&) const = default;
-  /// The cost as a whole number that orders as costs do, NaN behind all: of those a processor chooses without a branch.
+  /// The cost as a whole number that orders as costs do: of those a processor chooses without a branch.
   [[nodiscard]] std::int64_t rank() const {
     const auto bits = std::bit_cast<std::int64_t>(cost + 0.0);  // one zero, not two
     return bits ^ (bits < 0 ? std::numeric_limits<std::int64_t>::max() : 0);

@@ -2,6 +2,8 @@
 #include "build/simplify/candidate_queue.h"
 
 #include <algorithm>
+#include <cmath>
+#include <tuple>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -20,7 +22,14 @@ TEST(CandidateQueue, TheCheapestComesFirstAndEqualsByTheirVertices) {
   for (int round = 0; round < 100; ++round) {
     CandidateQueue queue;
     std::vector<Candidate> waiting;
-    const auto make = [&] { return Candidate{0.125 * random.below(8), random.below(40), random.below(40), 0}; };
+    // Many are equal, of either sign and with both zeros, or none are, over all that doubles span.
+    const auto make_cost = [&] {
+      const double cost = 0.125 * random.below(8) * (random.below(4) == 0 ? -1.0 : 1.0);
+      return round % 2 == 0
+                 ? cost
+                 : std::ldexp(cost, static_cast<int>(random.below(2000)) - 1000) + 1e-18 * random.below(9999);
+    };
+    const auto make = [&] { return Candidate{make_cost(), random.below(40), random.below(40), 0}; };
     for (std::uint32_t n = random.below(200); n > 0; --n) {
       waiting.push_back(make());
       queue.append(waiting.back());
@@ -31,8 +40,9 @@ TEST(CandidateQueue, TheCheapestComesFirstAndEqualsByTheirVertices) {
         waiting.push_back(make());
         queue.push(waiting.back());
       }
-      const auto first = std::min_element(waiting.begin(), waiting.end(),
-                                          [](const Candidate& x, const Candidate& y) { return x.is_before(y); });
+      const auto first = std::min_element(waiting.begin(), waiting.end(), [](const Candidate& x, const Candidate& y) {
+        return std::tie(x.cost, x.a, x.b) < std::tie(y.cost, y.a, y.b);
+      });
       ASSERT_FALSE(queue.empty());
       const Candidate popped = queue.pop();
       ASSERT_EQ(popped.cost, first->cost) << "seed 53, round " << round;
