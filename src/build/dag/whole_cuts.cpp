@@ -35,8 +35,10 @@ constexpr std::size_t kClimbed = 32, kClimbedOfGroup = 4;
 /// Steps of such a search, each half as long as the one before, and points tried at each.
 constexpr int kSteps = 7, kTries = 12;
 /// Triangles that no single one of the cut is near to throughout may have a peak between their points, where a fold of
-/// the cut leaves them. Those whose points are farthest are searched by bounds: so many a cut, in so many parts each.
-constexpr std::size_t kDoubtful = 512, kPartsOfDoubtful = 192;
+/// the cut leaves them. They are searched by bounds, so many at once, those first whose points are farthest, for as
+/// long as some of them have one: in so many parts each, and so many more for those that these do not bound.
+constexpr std::ptrdiff_t kDoubtful = 512;
+constexpr std::size_t kPartsOfDoubtful = 128, kMoreParts = 100000;
 /// From cut to cut so many more groups are finer, as a share of those that are; and what all cuts together may have,
 /// where that is more than the mesh has.
 constexpr std::size_t kCutShare = 8;
@@ -307,28 +309,43 @@ class WholeCuts {
     return chosen;
   }
 
-  /// What is farther than `threshold` between the points of triangles, of those whose points are farthest.
+  /// What is farther than `threshold` between the points of triangles.
   [[nodiscard]] std::vector<FarPoint> search_doubtful(const Surface& cut, const SurfaceTree& tree, double threshold,
                                                       std::span<const std::vector<Doubtful>> by_chunk) const {
     std::vector<Doubtful> doubtful;
     for (const auto& some : by_chunk) doubtful.insert(doubtful.end(), some.begin(), some.end());
-    const auto first = doubtful.begin();
-    const auto end = first + static_cast<std::ptrdiff_t>(std::min(doubtful.size(), kDoubtful));
-    std::partial_sort(first, end, doubtful.end(), [](const Doubtful& a, const Doubtful& b) {
-      return a.distance != b.distance ? a.distance > b.distance : a.run < b.run;
-    });
-    doubtful.erase(end, doubtful.end());
-    std::vector<FarPoint> found(doubtful.size());
-    parallel_for_each_index(doubtful.size(), 1, [&](std::size_t i) {
-      const PointRun& run = runs_[doubtful[i].run];
-      BoundedSearch search(tree, 1.0, threshold);
-      search.add(source_corners(mesh_, run.triangle), doubtful[i].place);
-      search.run(kPartsOfDoubtful);
-      const auto& [distance, at, place] = search.found();
-      if (distance > 0.0) found[i] = {distance, at, run.first, place, group_at(cut, tree, place)};
-    });
-    std::erase_if(found, [](const FarPoint& far) { return !(far.distance > 0.0); });
+    std::vector<FarPoint> found;
+    for (auto first = doubtful.begin(); first != doubtful.end();) {
+      const auto end = first + std::min<std::ptrdiff_t>(doubtful.end() - first, kDoubtful);
+      std::partial_sort(first, end, doubtful.end(), [](const Doubtful& a, const Doubtful& b) {
+        return a.distance != b.distance ? a.distance > b.distance : a.run < b.run;
+      });
+      const std::size_t before = found.size();
+      search_some(cut, tree, threshold, std::span(first, end), found);
+      if (found.size() == before) break;
+      first = end;
+    }
     return found;
+  }
+  void search_some(const Surface& cut, const SurfaceTree& tree, double threshold, std::span<const Doubtful> doubtful,
+                   std::vector<FarPoint>& found) const {
+    std::vector<BoundedSearch> searches(doubtful.size(),
+                                        BoundedSearch(tree, 1.0, std::max(threshold, mesh_.level0_deviation)));
+    parallel_for_each_index(searches.size(), 1, [&](std::size_t i) {
+      searches[i].add(source_corners(mesh_, runs_[doubtful[i].run].triangle), doubtful[i].place);
+      searches[i].run(kPartsOfDoubtful);
+    });
+    std::vector<BoundedSearch*> left;
+    for (BoundedSearch& search : searches) {
+      if (!search.is_done()) left.push_back(&search);
+    }
+    parallel_for_each_index(left.size(), 1, [&](std::size_t i) { left[i]->run(kMoreParts / left.size()); });
+    for (std::size_t i = 0; i < searches.size(); ++i) {
+      const auto& [distance, at, place] = searches[i].found();
+      if (distance > 0.0) {
+        found.push_back({distance, at, runs_[doubtful[i].run].first, place, group_at(cut, tree, place)});
+      }
+    }
   }
 
   [[nodiscard]] GroupId group_at(const Surface& cut, const SurfaceTree& tree, TreeSlot place) const {

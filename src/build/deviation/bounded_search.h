@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What of some triangles is farther from a surface than what is known, by bounds. A part of a triangle is left where
-// its middle is near and it is small, or one triangle of the surface is near to all of it; what may be farthest is
-// divided first. Complete where the surface's triangles are large against the distance, and else as far as its effort
-// goes.
+// What of some triangles is farther from a surface than what is known, by bounds. The distance to one triangle of the
+// surface is convex: in a part of a triangle it is nowhere more than what lies linearly between its values at the
+// corners. So the distance to the surface is nowhere more than the least of some such linear functions, and where that
+// is largest follows exactly. There the surface is asked for: what is nearest is far, and a peak is found, or it is
+// near, and one more function says so. Parts that keep a bound beyond what is known are divided, those with the most
+// room first. Few are left where a mesh is smooth, flat or a crowd of large triangles; else the effort ends.
 #pragma once
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -24,37 +27,54 @@ class BoundedSearch {
     TreeSlot place;  ///< of what is nearest to it
   };
 
-  /// Nothing is looked for within `margin` times what is known: `known`, and then what is found. \pre margin >= 1. The
-  /// tree must outlive this.
-  BoundedSearch(const SurfaceTree& tree, double margin, double known)
-      : tree_(tree), margin_(margin), beyond_(margin * known) {}
+  /// Nothing is looked for within `margin` times what is known: `known`, and then what is found. Trees tell apart what
+  /// differs by a millionth of their extent, so that no less is known. \pre margin >= 1. The tree must outlive this.
+  BoundedSearch(const SurfaceTree& tree, double margin, double known);
 
-  /// Whether all of a triangle is known not to be beyond. Its middle is measured. `place`: of the tree, where the
-  /// search for what is nearest to the middle begins; may be invalid.
-  [[nodiscard]] bool is_within(const std::array<Vec3d, 3>& corners, TreeSlot place) {
-    Part part{corners, place};
-    return is_within(part);
-  }
-  /// The same, and what may be beyond is divided by run().
+  /// Whether all of a triangle is seen at once not to be beyond. `place`: of the tree, where the search for what is
+  /// nearest begins; may be invalid.
+  [[nodiscard]] bool is_within(const std::array<Vec3d, 3>& corners, TreeSlot place) const;
+  /// What of it may be beyond is divided by run().
   void add(const std::array<Vec3d, 3>& corners, TreeSlot place);
-  /// At most so many parts are made.
-  void run(std::size_t parts);
+  /// Makes at most so many parts, and returns how many.
+  std::size_t run(std::size_t parts);
+  /// Nothing is left to be divided.
+  [[nodiscard]] bool is_done() const { return parts_.empty() || !is_beyond(parts_.front().bound); }
 
   /// The farthest.
   [[nodiscard]] const Found& found() const { return found_; }
 
  private:
+  struct Corner {
+    Vec3d at;
+    TreeSlot near;  ///< a triangle that is near to it
+  };
   /// Of a triangle, or all of it.
   struct Part {
-    std::array<Vec3d, 3> corner;
-    TreeSlot place;
+    std::array<Corner, 3> corner;
+    TreeSlot near_peak;  ///< near where its bound was largest, or that of what it is a part of; invalid: not known
+    std::uint8_t peak_edge = kInside;  ///< from that corner to the next: where that was; or inside
     double bound = std::numeric_limits<double>::infinity();  ///< no point of it is farther from the surface
 
     [[nodiscard]] bool operator<(const Part& other) const { return bound < other.bound; }
-    [[nodiscard]] std::array<Part, 4> divided() const;
+    [[nodiscard]] std::uint8_t longest_edge() const;
+
+    static constexpr std::uint8_t kInside = 3;
   };
 
+  [[nodiscard]] bool is_beyond(double distance) const;
+  /// A triangle around `place` is, to all three and so to all between them.
+  [[nodiscard]] bool is_near_throughout(const std::array<Vec3d, 3>& corners, TreeSlot place) const;
+  [[nodiscard]] SurfaceTree::Hit find_near(const Corner& corner, float enough) const;
+  /// Asks for what is near to a point, and takes it where it is the farthest so far. False: nothing is.
+  [[nodiscard]] bool measure(Corner& corner);
   [[nodiscard]] bool is_within(Part& part);
+  /// Where a part is divided: so far along the edge from that corner to the next.
+  struct Division {
+    std::size_t edge = 0;
+    double share = 0.5;
+  };
+  [[nodiscard]] Division choose_division(const Part& part) const;
 
   const SurfaceTree& tree_;
   double margin_, beyond_;  ///< no nearer point is of use

@@ -21,15 +21,6 @@ namespace {
 
 using test::Random;
 
-double brute_force(const judge::Surface& surface, const Vec3d& p) {
-  double best = std::numeric_limits<double>::infinity();
-  for (const auto& t : surface.triangles) {
-    best = std::min(
-        best, point_triangle_distance2(p, {surface.positions[t[0]], surface.positions[t[1]], surface.positions[t[2]]}));
-  }
-  return std::sqrt(best);
-}
-
 TEST(SurfaceTree, LeavesThatAreMadeAnswerAsThoseThatAreHeld) {
   Random random(5);
   for (const std::uint32_t count : {1U, 4U, 7U, 64U, 65U, 1500U}) {
@@ -94,7 +85,7 @@ TEST(SurfaceTree, FindsTheNearestTriangleAtEveryScale) {
         const SurfaceTree::Hit hit = tree.find_nearest(tree.to_frame(p), {}, 0.0F);
         ASSERT_TRUE(hit.slot.is_valid());
         const double found = std::sqrt(tree.distance2_at(p, hit.slot));
-        const double truth = brute_force(surface, p);
+        const double truth = test::brute_force(surface, p);
         EXPECT_GE(found, truth);
         EXPECT_LE(found, truth + 2e-6 * scale) << "scale " << scale << " count " << count;
       }
@@ -182,7 +173,7 @@ TEST(SurfaceTree, CapsulesAroundAHubMissNothing) {
       const SurfaceTree::Hit hit = tree.find_nearest(at, tree.look_around(at, place, {}), 0.0F);
       ASSERT_TRUE(hit.slot.is_valid());
       EXPECT_EQ(made.find_nearest(at, made.look_around(at, place, {}), 0.0F).slot, hit.slot);
-      const double found = std::sqrt(tree.distance2_at(p, hit.slot)), truth = brute_force(surface, p);
+      const double found = std::sqrt(tree.distance2_at(p, hit.slot)), truth = test::brute_force(surface, p);
       EXPECT_GE(found, truth);
       EXPECT_LE(found, truth + 4e-6) << "count " << count << " point " << i;
       place = hit.slot;

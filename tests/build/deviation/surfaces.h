@@ -2,12 +2,15 @@
 // Surfaces to measure, and the judge's metrics as the oracle.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "build/deviation/deviation.h"
+#include "build/deviation/point_distance.h"
 #include "judge/metrics/metrics.h"
 #include "scene/samples/samples.h"
 #include "support/random.h"
@@ -38,6 +41,16 @@ inline build::GroupDeviation measure_one_step(const judge::Surface& fine, const 
   const build::SourceTree source(fine.positions, fine.triangles);
   options.finer = as_group(fine);
   return build::measure_group(source, as_group(coarse), build::initial_samples(source), options);
+}
+
+/// From a point to the nearest of all triangles.
+inline double brute_force(const judge::Surface& surface, const Vec3d& p) {
+  double best = std::numeric_limits<double>::infinity();
+  for (const auto& t : surface.triangles) {
+    best = std::min(best, build::point_triangle_distance2(
+                              p, {surface.positions[t[0]], surface.positions[t[1]], surface.positions[t[2]]}));
+  }
+  return std::sqrt(best);
 }
 
 /// The larger of the two maxima over dense samples and all vertices.
