@@ -58,56 +58,81 @@ Row<N> minus(const Row<N>& a, const Row<N>& b) {
 template <std::size_t N>
 using Corners = std::array<Row<N>, 3>;
 
+/// Of a flat triangle: along the longest edge and across it, which is well conditioned for needles too.
+template <std::size_t N>
+struct Frame {
+  Row<N> along, across;     ///< from the edge's first corner to its second; from the foot of the third to the third
+  double along2, across2;   ///< their squared lengths
+  double foot = 0.0;        ///< of the third corner, in lengths of the edge
+  std::uint32_t first = 0;  ///< the corner where the edge begins; the others follow
+
+  [[nodiscard]] bool is_point() const { return !(along2 > 0.0); }
+  [[nodiscard]] bool is_line() const { return !(across2 > 1e-28 * along2); }
+};
+
+template <std::size_t N>
+Frame<N> frame_of(const Corners<N>& corners) {
+  Frame<N> frame;
+  frame.along2 = -1.0;
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    const Row<N> edge = minus(corners[(k + 1) % 3], corners[k]);
+    const double length2 = dot(edge, edge);
+    if (length2 > frame.along2) {
+      frame.along2 = length2;
+      frame.along = edge;
+      frame.first = k;
+    }
+  }
+  frame.across = minus(corners[(frame.first + 2) % 3], corners[frame.first]);
+  if (!frame.is_point()) {
+    frame.foot = dot(frame.across, frame.along) / frame.along2;
+    for (std::size_t k = 0; k < N; ++k) frame.across[k] -= frame.foot * frame.along[k];
+  }
+  frame.across2 = dot(frame.across, frame.across);
+  return frame;
+}
+
 /// The nearest point of a flat triangle, which may be a needle, a segment or a point.
 struct FlatNearest {
   double distance2 = 0.0;
   std::array<double, 3> weight{};  ///< of the corners
 };
 
+/// `v`: from the corner where the frame begins. `enough`: what is not nearer than that, squared, may be found to be
+/// infinitely far.
 template <std::size_t N>
-FlatNearest nearest_on_flat(const Row<N>& x, const Corners<N>& corners) {
-  // In a frame along the longest edge and across it: that is well conditioned for needles too.
-  std::size_t first = 0;
-  double longest2 = -1.0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Row<N> edge = minus(corners[(k + 1) % 3], corners[k]);
-    const double length2 = dot(edge, edge);
-    if (length2 > longest2) {
-      longest2 = length2;
-      first = k;
-    }
-  }
-  const std::size_t second = (first + 1) % 3, third = (first + 2) % 3;
-  const Row<N> v = minus(x, corners[first]);
+FlatNearest nearest_on_flat(const Row<N>& v, const Frame<N>& frame,
+                            double enough = std::numeric_limits<double>::infinity()) {
+  const std::size_t first = frame.first, second = (first + 1) % 3, third = (first + 2) % 3;
   FlatNearest out;
-  if (!(longest2 > 0.0)) {
+  if (frame.is_point()) {
     out.weight[first] = 1.0;
     out.distance2 = dot(v, v);
     return out;
   }
-  const Row<N> along = minus(corners[second], corners[first]);
-  Row<N> across = minus(corners[third], corners[first]);
-  const double foot = dot(across, along) / longest2;
-  for (std::size_t k = 0; k < N; ++k) across[k] -= foot * along[k];
-  const double height2 = dot(across, across);
-  const double t = dot(v, along) / longest2;
+  const double foot = frame.foot;
+  const double t = dot(v, frame.along) / frame.along2;
   // What is left of v without its part along the edge, not v itself: `across` is rounded by the edge's length, and a
   // needle's height is small beside that.
   Row<N> rest = v;
-  for (std::size_t k = 0; k < N; ++k) rest[k] -= t * along[k];
-  const double h = height2 > 1e-28 * longest2 ? dot(rest, across) / height2 : 0.0;
-  for (std::size_t k = 0; k < N; ++k) rest[k] -= h * across[k];
+  for (std::size_t k = 0; k < N; ++k) rest[k] -= t * frame.along[k];
+  const double h = !frame.is_line() ? dot(rest, frame.across) / frame.across2 : 0.0;
+  for (std::size_t k = 0; k < N; ++k) rest[k] -= h * frame.across[k];
   const double residual2 = dot(rest, rest);
+  if (residual2 >= enough) {
+    out.distance2 = std::numeric_limits<double>::infinity();
+    return out;
+  }
   // In the plane: corners at (0, 0), (1, 0) and (foot, 1), lengths `along` and `across`.
   const double w2 = h, w1 = t - h * foot;
-  if (height2 > 1e-28 * longest2 && w1 >= 0.0 && w2 >= 0.0 && w1 + w2 <= 1.0) {
+  if (!frame.is_line() && w1 >= 0.0 && w2 >= 0.0 && w1 + w2 <= 1.0) {
     out.weight[first] = 1.0 - w1 - w2;
     out.weight[second] = w1;
     out.weight[third] = w2;
     out.distance2 = residual2;
     return out;
   }
-  const double length = std::sqrt(longest2), height = std::sqrt(height2);
+  const double length = std::sqrt(frame.along2), height = std::sqrt(frame.across2);
   const double px = t * length, py = h * height;
   const std::array<double, 3> corner_x{0.0, length, foot * length}, corner_y{0.0, 0.0, height};
   double best = std::numeric_limits<double>::infinity();
@@ -126,6 +151,13 @@ FlatNearest nearest_on_flat(const Row<N>& x, const Corners<N>& corners) {
   }
   out.distance2 = residual2 + best;
   return out;
+}
+
+template <std::size_t N>
+FlatNearest nearest_on_flat(const Row<N>& x, const Corners<N>& corners,
+                            double enough = std::numeric_limits<double>::infinity()) {
+  const Frame<N> frame = frame_of<N>(corners);
+  return nearest_on_flat<N>(minus(x, corners[frame.first]), frame, enough);
 }
 
 template <std::size_t N>
@@ -152,8 +184,12 @@ class ProductTree {
     std::uint32_t triangle = 0xFFFFFFFFu;
   };
 
+  /// Of more triangles frames are made whenever they are looked at: the same distances. They take 170 bytes each and
+  /// more.
+  static constexpr std::uint32_t kMostFrames = 1U << 17U;
+
   ProductTree(std::vector<ProductPoint<N>> vertices, const std::vector<std::array<std::uint32_t, 3>>& triangles,
-              const ProductLayout& layout)
+              const ProductLayout& layout, std::uint32_t most_frames = kMostFrames)
       : layout_(layout) {
     vertices_ = std::move(vertices);
     const auto count = static_cast<std::uint32_t>(triangles.size());
@@ -167,6 +203,12 @@ class ProductTree {
       known_[i] = layout_.all_known();
       for (const std::uint32_t v : corners_[i]) known_[i] &= vertices_[v].known;
       boxes[i] = box_of(corners_of(i, known_[i]), known_[i]);
+    }
+    if (count <= most_frames) {
+      frames_.reserve(count);
+      for (std::uint32_t i = 0; i < count; ++i) {
+        frames_.push_back(product::frame_of<N>(corners_of(i, known_[i])));
+      }
     }
     nodes_.reserve(count + 1);
     nodes_.emplace_back();
@@ -193,13 +235,15 @@ class ProductTree {
     const auto try_triangle = [&](std::uint32_t i) {
       const std::uint32_t known = known_[i] & point.known;
       double distance2 = 0.0;
-      if (known == layout_.all_known()) {
-        const auto& [a, b, c] = corners_[i];
-        distance2 = product::nearest_on_flat<N>(point.x, {vertices_[a].x, vertices_[b].x, vertices_[c].x}).distance2;
+      if (known == known_[i] && !frames_.empty()) {
+        const product::Frame<N>& frame = frames_[i];
+        Row v = product::minus<N>(point.x, vertices_[corners_[i][frame.first]].x);
+        if (known != layout_.all_known()) forget(v, known);
+        distance2 = product::nearest_on_flat<N>(v, frame, best.distance2).distance2;
       } else {
         Row x = point.x;
         forget(x, known);
-        distance2 = product::nearest_on_flat<N>(x, corners_of(i, known)).distance2;
+        distance2 = product::nearest_on_flat<N>(x, corners_of(i, known), best.distance2).distance2;
       }
       if (distance2 < best.distance2) best = {distance2, i};
     };
@@ -361,8 +405,9 @@ class ProductTree {
   ProductLayout layout_;
   std::vector<ProductPoint<N>> vertices_;
   std::vector<std::array<std::uint32_t, 3>> corners_;
-  std::vector<std::uint32_t> known_;  ///< of a triangle: what all corners know
-  std::vector<std::uint32_t> order_;  ///< leaf order -> triangle
+  std::vector<product::Frame<N>> frames_;  ///< of triangles, in what they know; none where they are many
+  std::vector<std::uint32_t> known_;       ///< of a triangle: what all corners know
+  std::vector<std::uint32_t> order_;       ///< leaf order -> triangle
   std::vector<Node> nodes_;
 };
 

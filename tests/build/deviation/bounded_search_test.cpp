@@ -27,8 +27,8 @@ double farthest_of_points(const judge::Surface& surface, const Corners& corners,
   for (int i = 0; i <= steps; ++i) {
     for (int k = 0; i + k <= steps; ++k) {
       const double u = double(i) / steps, v = double(k) / steps;
-      farthest = std::max(
-          farthest, test::brute_force(surface, corners[0] + u * (corners[1] - corners[0]) + v * (corners[2] - corners[0])));
+      farthest = std::max(farthest, test::brute_force(surface, corners[0] + u * (corners[1] - corners[0]) +
+                                                                   v * (corners[2] - corners[0])));
     }
   }
   return farthest;
@@ -170,7 +170,8 @@ TEST(BoundedSearch, TakesTrianglesWithoutArea) {
     surface.triangles = {{0, 1, 2}, {1, 1, 1}, {0, 0, 1}};
     const SurfaceTree tree = tree_over(surface);
     const Vec3d up(0.0, 0.0, size);
-    for (const Corners& corners : {Corners{up, up, up}, Corners{up, up * 0.5, up * 0.25}, Corners{Vec3d(0.0), up, up}}) {
+    for (const Corners& corners :
+         {Corners{up, up, up}, Corners{up, up * 0.5, up * 0.25}, Corners{Vec3d(0.0), up, up}}) {
       BoundedSearch search(tree, 1.0, 0.01 * size);
       search.add(corners, TreeSlot());
       search.run(kWithoutEnd);

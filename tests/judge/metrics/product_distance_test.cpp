@@ -160,6 +160,36 @@ TEST(ProductDistance, NearestPointsAreThoseThatLookingFinds) {
   }
 }
 
+// Some points and corners know no normal, or no UV: what both know counts.
+TEST(ProductDistance, FramesThatAreMadeWhenLookedAtGiveTheSameDistances) {
+  RandomSource random(32);
+  const ProductLayout layout{1, true};
+  const auto forget_some = [&](Embedded& embedded) {
+    for (ProductPoint<8>& point : embedded.vertices) {
+      if (random.below(6) == 0) {
+        point.known &= ~2U;
+        product::put_normal<8>(point.x, layout.normal_at(), Vec3d(0.0));
+      }
+      if (random.below(6) == 0) {
+        point.known &= ~1U;
+        point.x[3] = point.x[4] = 0.0;
+      }
+    }
+  };
+  Embedded to = embed(make_soup(random, 300, 1.0), layout, 0.4),
+           points = embed(make_soup(random, 60, 1.0), layout, 0.4);
+  forget_some(to);
+  forget_some(points);
+  const ProductTree<8> held(to.vertices, to.triangles, layout), made(to.vertices, to.triangles, layout, 0);
+  for (const ProductPoint<8>& point : points.vertices) {
+    const auto nearest = held.nearest(point), same = made.nearest(point);
+    EXPECT_EQ(nearest.triangle, same.triangle);
+    EXPECT_EQ(nearest.distance2, same.distance2) << "the same bits";
+    EXPECT_LT(nearest.distance2, std::numeric_limits<double>::infinity());
+    EXPECT_EQ(held.nearest(point, 0.0, 11).distance2, made.nearest(point, 0.0, 11).distance2);
+  }
+}
+
 TEST(ProductDistance, FlatTrianglesAreMetInTheirInsideOnEdgesAndAtCorners) {
   // (4, 0, 0 | 0 …), (0, 4, 0 | 0 …), (0, 0, 0 | 4 …): one corner lies in another coordinate.
   product::Corners<8> corners{};
