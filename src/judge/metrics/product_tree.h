@@ -179,9 +179,10 @@ class ProductTree {
  public:
   using Row = product::Row<N>;
   using Corners = product::Corners<N>;
+  static constexpr std::uint32_t kNone = 0xFFFFFFFFu;
   struct Nearest {
     double distance2 = std::numeric_limits<double>::infinity();
-    std::uint32_t triangle = 0xFFFFFFFFu;
+    std::uint32_t triangle = kNone;
   };
 
   /// Of more triangles frames are made whenever they are looked at: the same distances. They take 170 bytes each and
@@ -225,11 +226,30 @@ class ProductTree {
     }
   }
 
-  /// The nearest triangle, or some that is nearer than the squared distance `enough`. `hint` names one that is probably
-  /// near; it may be none. Safe from several threads.
-  [[nodiscard]] Nearest nearest(const ProductPoint<N>& point, double enough = 0.0,
-                                std::uint32_t hint = 0xFFFFFFFFu) const {
-    Nearest best;
+  /// The nearest triangle. Safe from several threads, as is what follows.
+  [[nodiscard]] Nearest nearest(const ProductPoint<N>& point) const { return search(point, Nearest()); }
+  /// Some triangle that is nearer than a squared distance, or kNone. `hint` names one that probably is; it may be
+  /// kNone.
+  [[nodiscard]] Nearest any_within(double distance2, const ProductPoint<N>& point, std::uint32_t hint) const {
+    return search(point, {distance2, kNone}, true, hint);
+  }
+
+  [[nodiscard]] bool empty() const { return nodes_.empty(); }
+  /// Triangles that are near each other one after another.
+  [[nodiscard]] const std::vector<std::uint32_t>& triangles_in_order() const { return order_; }
+
+ private:
+  struct Box {
+    Row low, high;
+  };
+  struct Node {
+    Box box;
+    std::uint32_t first = 0, count = 0;  ///< as of TriangleTree
+  };
+
+  /// The nearest triangle that is nearer than `best`, or any.
+  [[nodiscard]] Nearest search(const ProductPoint<N>& point, Nearest best, bool is_any_enough = false,
+                               std::uint32_t hint = kNone) const {
     if (nodes_.empty()) return best;
     const bool knows_all = point.known == layout_.all_known();
     const auto try_triangle = [&](std::uint32_t i) {
@@ -260,7 +280,7 @@ class ProductTree {
     };
     stack[size++] = {0, distance2_of(0)};
     while (size > 0) {
-      if (best.distance2 < enough) return best;
+      if (is_any_enough && best.triangle != kNone) return best;
       const Entry entry = stack[--size];
       if (entry.distance2 >= best.distance2) continue;
       const Node& node = nodes_[entry.node];
@@ -276,19 +296,6 @@ class ProductTree {
     }
     return best;
   }
-
-  [[nodiscard]] bool empty() const { return nodes_.empty(); }
-  /// Triangles that are near each other one after another.
-  [[nodiscard]] const std::vector<std::uint32_t>& triangles_in_order() const { return order_; }
-
- private:
-  struct Box {
-    Row low, high;
-  };
-  struct Node {
-    Box box;
-    std::uint32_t first = 0, count = 0;  ///< as of TriangleTree
-  };
 
   [[nodiscard]] bool knows_normal(std::uint32_t known) const {
     return layout_.has_normal && (known >> layout_.uv_sets & 1U) != 0;

@@ -155,7 +155,12 @@ TEST(ProductDistance, NearestPointsAreThoseThatLookingFinds) {
       }
       const double found = std::sqrt(tree.nearest(point).distance2);
       EXPECT_NEAR(found, std::sqrt(looked), 1e-6 * found) << "turn " << turn;
-      EXPECT_NEAR(std::sqrt(tree.nearest(point, 0.0, 7).distance2), found, 1e-12);
+      for (const std::uint32_t hint : {ProductTree<8>::kNone, 7U}) {
+        EXPECT_EQ(tree.any_within(0.998 * found * found, point, hint).triangle, ProductTree<8>::kNone);
+        const auto within = tree.any_within(1.5 * found * found + 1e-12, point, hint);
+        EXPECT_NE(within.triangle, ProductTree<8>::kNone);
+        EXPECT_LT(within.distance2, 1.5 * found * found + 1e-12);
+      }
     }
   }
 }
@@ -186,7 +191,7 @@ TEST(ProductDistance, FramesThatAreMadeWhenLookedAtGiveTheSameDistances) {
     EXPECT_EQ(nearest.triangle, same.triangle);
     EXPECT_EQ(nearest.distance2, same.distance2) << "the same bits";
     EXPECT_LT(nearest.distance2, std::numeric_limits<double>::infinity());
-    EXPECT_EQ(held.nearest(point, 0.0, 11).distance2, made.nearest(point, 0.0, 11).distance2);
+    EXPECT_EQ(held.any_within(0.5, point, 11).distance2, made.any_within(0.5, point, 11).distance2);
   }
 }
 
