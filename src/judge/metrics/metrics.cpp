@@ -183,17 +183,18 @@ Farthest find_farthest(const PointSequence& points, const TriangleTree& to, doub
       // distance without a hint.
       double known = largest2.load(std::memory_order_relaxed);
       const double near = std::max(0.0, std::sqrt(known) * (1.0 - kSearchRounding) - kEdgeRounding * extent);
-      const double enough = near * near;
       const Vec3d point = points.at(i);
       // Nor is it farther than the point before and the way from there.
       walk.reach += glm::length(point - walk.point);
       walk.point = point;
       if (walk.reach * (1.0 + kSearchRounding) < near) continue;
-      const NearestPoint nearest = to.nearest_unless_below(enough, point, walk.hint);
+      const NearestPoint within = to.any_within(near * near, point, walk.hint);
+      const bool is_within = within.triangle != NearestPoint::kNone;
+      const NearestPoint nearest = is_within ? within : to.nearest(point);
       walk.hint = nearest.triangle;
       walk.reach = std::sqrt(nearest.distance2);
-      if (nearest.distance2 < enough) continue;
-      const double distance2 = to.nearest(point).distance2;
+      if (is_within) continue;
+      const double distance2 = nearest.distance2;
       partials[chunk].take({distance2, points.id(i)});
       while (distance2 > known && !largest2.compare_exchange_weak(known, distance2)) {
       }

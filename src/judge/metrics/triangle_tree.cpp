@@ -334,12 +334,11 @@ inline double TriangleTree::distance2_at(const Vec3d& point, std::uint32_t place
   return distance2_to_triangle(point, a, b, c);
 }
 
-NearestPoint TriangleTree::nearest_unless_below(double enough, const Vec3d& point, std::uint32_t hint) const {
-  NearestPoint best;
+NearestPoint TriangleTree::search(const Vec3d& point, std::uint32_t hint, NearestPoint best, bool is_any_enough) const {
   if (nodes_.empty()) return best;
   const Vec3d at = to_frame(point);
   const double scale2 = scale_ * scale_;
-  double limit = std::numeric_limits<double>::infinity();  // of the best, in the frame
+  double limit = best.distance2 * scale2;  // in the frame
   const auto try_triangle = [&](std::uint32_t i) {
     const double d = distance2_at(point, i, best.distance2);
     if (!(d < best.distance2)) return;
@@ -355,7 +354,7 @@ NearestPoint TriangleTree::nearest_unless_below(double enough, const Vec3d& poin
   std::size_t size = 0;
   stack[size++] = {0, distance2_to_box(nodes_[0].box, at)};
   while (size > 0) {
-    if (best.distance2 < enough) return best;
+    if (is_any_enough && best.triangle != NearestPoint::kNone) return best;
     const Entry entry = stack[--size];
     if (entry.distance2 >= limit) continue;
     const Node& node = nodes_[entry.node];

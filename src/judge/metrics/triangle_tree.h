@@ -13,8 +13,9 @@
 namespace meshlode::judge {
 
 struct NearestPoint {
+  static constexpr std::uint32_t kNone = 0xFFFFFFFFu;
   double distance2 = std::numeric_limits<double>::infinity();
-  std::uint32_t triangle = 0xFFFFFFFFu;  ///< of the surface; ties go to any
+  std::uint32_t triangle = kNone;  ///< of the surface; ties go to any
 };
 
 /// Squared distance from a point to a triangle, which may be a needle, a segment or a point.
@@ -34,19 +35,23 @@ class TriangleTree {
   TriangleTree(TriangleTree&&) = default;
 
   /// The nearest triangle. `hint` names a triangle that is probably near, and changes the time taken alone; it may be
-  /// none. Infinite for an empty tree. Safe from several threads.
-  [[nodiscard]] NearestPoint nearest(const Vec3d& point, std::uint32_t hint = 0xFFFFFFFFu) const {
-    return nearest_unless_below(0.0, point, hint);
+  /// kNone. Infinite for an empty tree. Safe from several threads.
+  [[nodiscard]] NearestPoint nearest(const Vec3d& point, std::uint32_t hint = NearestPoint::kNone) const {
+    return search(point, hint, NearestPoint(), false);
   }
-  /// The same for a point that is as far away as the squared distance `enough` or farther; of a nearer one some
-  /// triangle that is nearer than that.
-  [[nodiscard]] NearestPoint nearest_unless_below(double enough, const Vec3d& point, std::uint32_t hint) const;
+  /// Some triangle that is nearer than a squared distance; kNone where there is none, but for the rounding of boxes.
+  [[nodiscard]] NearestPoint any_within(double distance2, const Vec3d& point, std::uint32_t hint) const {
+    return search(point, hint, {distance2, NearestPoint::kNone}, true);
+  }
   /// Triangles of the surface, those that are near each other one after another; one in several leaves several times.
   [[nodiscard]] std::span<const std::uint32_t> triangles_in_order() const { return triangle_; }
   /// Every triangle within a squared distance (inclusive), appended in no particular order that is always the same.
   void find_within(const Vec3d& point, double distance2, std::vector<NearestPoint>& found) const;
 
  private:
+  /// The nearest triangle that is nearer than `best`, or any.
+  [[nodiscard]] NearestPoint search(const Vec3d& point, std::uint32_t hint, NearestPoint best,
+                                    bool is_any_enough) const;
   /// In the tree's frame: floats of about unit size.
   struct Box {
     std::array<float, 3> low, high;
