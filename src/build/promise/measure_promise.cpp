@@ -69,7 +69,7 @@ class PromiseMeter {
         record_(record),
         surfaces_(space, dag, record),
         source_(surfaces_.of_source(source)),
-        tree_(source_) {}
+        tree_(source_, triangles_with_points(surfaces_, source_)) {}
 
   [[nodiscard]] ProductDeviations measure() {
     ProductDeviations found;
@@ -102,6 +102,16 @@ class PromiseMeter {
     std::uint32_t place = 0;
     [[nodiscard]] bool is_vertex() const { return (b == 0.0F || b == 1.0F) && (c == 0.0F || c == 1.0F); }
   };
+
+  /// What is nearest to a point may be a triangle without area no more than a point may be of it: its normal, if the
+  /// source has given it one, is not known here.
+  static std::vector<std::uint32_t> triangles_with_points(const ProductSurfaces<D>& surfaces, const Surface& surface) {
+    std::vector<std::uint32_t> triangles;
+    for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
+      if (surfaces.has_points(surface, t)) triangles.push_back(t);
+    }
+    return triangles;
+  }
 
   /// A point of a surface from which a farther one may be looked for.
   struct Far {

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <numeric>
 #include <span>
 #include <utility>
 #include <vector>
@@ -42,10 +43,12 @@ class ProductTree {
     std::uint32_t triangle = kNoId;
   };
 
-  /// The surface must outlive the tree.
-  explicit ProductTree(const ProductSurface<D>& surface) : surface_(surface), order_(surface.triangles.size()) {
+  /// Over all triangles of a surface, which must outlive the tree.
+  explicit ProductTree(const ProductSurface<D>& surface) : ProductTree(surface, all_of(surface)) {}
+  /// Over some of them.
+  ProductTree(const ProductSurface<D>& surface, std::vector<std::uint32_t> triangles)
+      : surface_(surface), order_(std::move(triangles)) {
     if (order_.empty()) return;
-    for (std::uint32_t t = 0; t < order_.size(); ++t) order_[t] = t;
     nodes_.reserve(2 * order_.size() / kLeaf + 2);
     nodes_.emplace_back();
     std::vector<Range> open{{0, 0, static_cast<std::uint32_t>(order_.size())}};
@@ -98,6 +101,12 @@ class ProductTree {
   struct Range {
     std::uint32_t node, first, count;
   };
+
+  static std::vector<std::uint32_t> all_of(const ProductSurface<D>& surface) {
+    std::vector<std::uint32_t> triangles(surface.triangles.size());
+    std::iota(triangles.begin(), triangles.end(), 0U);
+    return triangles;
+  }
 
   [[nodiscard]] double distance2_of(const ProductPoint<D>& q, std::uint32_t index) const {
     return product_distance2_to_box<D>(q, nodes_[index].low, nodes_[index].high);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "base/random.h"
 #include "build/promise/product_tree.h"
@@ -83,6 +84,29 @@ TEST(ProductTree, ItFindsWhatLookingAtAllFinds) {
       const auto near = tree.find(q, hint, 4.0 * best);
       EXPECT_LE(near.distance2, 4.0 * best) << "near enough is near enough";
     }
+  }
+}
+
+TEST(ProductTree, OfSomeTrianglesTheOthersAreNotFound) {
+  SplitMix64 random(12);
+  ProductSurface<8> surface;
+  std::vector<std::uint32_t> some;
+  for (std::uint32_t t = 0; t < 60; ++t) {
+    for (int k = 0; k < 3; ++k) surface.points.push_back(random_product_point(random, 1.0));
+    surface.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
+    if (t % 3 != 0) some.push_back(t);
+  }
+  const ProductTree<8> tree(surface, some);
+  for (int i = 0; i < 200; ++i) {
+    const ProductPoint8 q = random_product_point(random, 1.5);
+    double best = std::numeric_limits<double>::infinity();
+    for (const std::uint32_t t : some) {
+      const auto& [a, b, c] = surface.triangles[t];
+      best = std::min(best, product_distance2<8>(q, surface.points[a], surface.points[b], surface.points[c]));
+    }
+    const auto hit = tree.find(q, i % 2 == 0 ? kNoId : some[random.below(some.size())], 0.0);
+    EXPECT_EQ(hit.distance2, best) << i;
+    EXPECT_NE(hit.triangle % 3, 0U) << i;
   }
 }
 
