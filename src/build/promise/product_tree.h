@@ -114,7 +114,8 @@ class ProductTree {
 
   void take(const ProductPoint<D>& q, std::uint32_t triangle, Hit& best) const {
     const auto& [a, b, c] = surface_.triangles[triangle];
-    const double distance2 = product_distance2<D>(q, surface_.points[a], surface_.points[b], surface_.points[c]);
+    const double distance2 =
+        product_distance2<D>(q, surface_.points[a], surface_.points[b], surface_.points[c], best.distance2);
     if (distance2 < best.distance2) best = {distance2, triangle};
   }
 

@@ -41,6 +41,7 @@ double product_lattice2(const ProductPoint8& q, const ProductSurface<8>& one) {
 
 TEST(ProductTree, TheNearestPointOfATriangleIsThatOfALattice) {
   SplitMix64 random(7);
+  int dismissed = 0;  // by their planes
   for (int i = 0; i < 200; ++i) {
     ProductSurface<8> one;
     for (int k = 0; k < 3; ++k) one.points.push_back(random_product_point(random, 1.0));
@@ -54,7 +55,14 @@ TEST(ProductTree, TheNearestPointOfATriangleIsThatOfALattice) {
     const double lattice = std::sqrt(product_lattice2(q, one));
     EXPECT_LE(found, lattice * (1.0 + 1e-12)) << i;
     EXPECT_GE(found, lattice - 0.03) << i;  // no farther than the lattice is fine
+    const auto distance2_within = [&](double share) {
+      return product_distance2<8>(q, one.points[0], one.points[1], one.points[2], share * found * found);
+    };
+    EXPECT_EQ(distance2_within(1.0 + 1e-12), distance2_within(std::numeric_limits<double>::infinity())) << i;
+    EXPECT_GE(distance2_within(0.9), 0.9 * found * found) << i;
+    if (i % 4 == 0 && std::isinf(distance2_within(0.5))) ++dismissed;
   }
+  EXPECT_GT(dismissed, 10);
 }
 
 TEST(ProductTree, ItFindsWhatLookingAtAllFinds) {
