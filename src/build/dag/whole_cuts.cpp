@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -36,9 +37,10 @@ constexpr std::size_t kClimbed = 32, kClimbedOfGroup = 4;
 constexpr int kSteps = 7, kTries = 12;
 /// Triangles that no single one of the cut is near to throughout may have a peak between their points, where a fold of
 /// the cut leaves them. They are searched by bounds, so many at once, those first whose points are farthest, for as
-/// long as some of them have one: in so many parts each, and so many more for those that these do not bound.
+/// long as some of them have one: in so many parts each, so many more for all that these do not bound, and so many of a
+/// cut.
 constexpr std::ptrdiff_t kDoubtful = 512;
-constexpr std::size_t kPartsOfDoubtful = 128, kMoreParts = 100000;
+constexpr std::size_t kPartsOfDoubtful = 128, kMoreParts = 100000, kMostParts = 1000000;
 /// From cut to cut so many more groups are finer, as a share of those that are; and what all cuts together may have,
 /// where that is more than the mesh has.
 constexpr std::size_t kCutShare = 8;
@@ -315,25 +317,28 @@ class WholeCuts {
     std::vector<Doubtful> doubtful;
     for (const auto& some : by_chunk) doubtful.insert(doubtful.end(), some.begin(), some.end());
     std::vector<FarPoint> found;
-    for (auto first = doubtful.begin(); first != doubtful.end();) {
+    std::size_t parts = 0;
+    for (auto first = doubtful.begin(); first != doubtful.end() && parts < kMostParts;) {
       const auto end = first + std::min<std::ptrdiff_t>(doubtful.end() - first, kDoubtful);
       std::partial_sort(first, end, doubtful.end(), [](const Doubtful& a, const Doubtful& b) {
         return a.distance != b.distance ? a.distance > b.distance : a.run < b.run;
       });
       const std::size_t before = found.size();
-      search_some(cut, tree, threshold, std::span(first, end), found);
+      parts += search_some(cut, tree, threshold, std::span(first, end), found);
       if (found.size() == before) break;
       first = end;
     }
     return found;
   }
-  void search_some(const Surface& cut, const SurfaceTree& tree, double threshold, std::span<const Doubtful> doubtful,
-                   std::vector<FarPoint>& found) const {
+  /// Returns the parts that were made.
+  std::size_t search_some(const Surface& cut, const SurfaceTree& tree, double threshold,
+                          std::span<const Doubtful> doubtful, std::vector<FarPoint>& found) const {
     std::vector<BoundedSearch> searches(doubtful.size(),
                                         BoundedSearch(tree, 1.0, std::max(threshold, mesh_.level0_deviation)));
+    std::vector<std::size_t> parts(searches.size());
     parallel_for_each_index(searches.size(), 1, [&](std::size_t i) {
       searches[i].add(source_corners(mesh_, runs_[doubtful[i].run].triangle), doubtful[i].place);
-      searches[i].run(kPartsOfDoubtful);
+      parts[i] = searches[i].run(kPartsOfDoubtful);
     });
     std::vector<BoundedSearch*> left;
     for (BoundedSearch& search : searches) {
@@ -346,6 +351,7 @@ class WholeCuts {
         found.push_back({distance, at, runs_[doubtful[i].run].first, place, group_at(cut, tree, place)});
       }
     }
+    return std::accumulate(parts.begin(), parts.end(), left.empty() ? std::size_t{0} : kMoreParts);
   }
 
   [[nodiscard]] GroupId group_at(const Surface& cut, const SurfaceTree& tree, TreeSlot place) const {

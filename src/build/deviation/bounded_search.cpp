@@ -12,8 +12,8 @@ namespace {
 constexpr double kEnough = 0.1;
 /// What is farther by no more than this share is not looked for.
 constexpr double kOfNoUse = 1e-3;
-/// Of the tree's extent: what floats tell apart, with room.
-constexpr double kSmallest = 1e-6;
+/// Of the tree's extent: what floats tell apart, and as much again.
+constexpr double kSmallest = 2e-7;
 /// Triangles of the surface that bound a part.
 constexpr std::size_t kMostBounds = 5;
 /// No division nearer to the end of an edge, as a share of it.
@@ -103,7 +103,7 @@ bool BoundedSearch::is_within(const std::array<Vec3d, 3>& corners, TreeSlot plac
   for (const Vec3d& corner : corners) radius = std::max(radius, glm::distance(corner, middle.at));
   const float enough = tree_.squared_in_frame(std::max(0.0, beyond_ - radius));
   const SurfaceTree::Hit hit = find_near(middle, enough);
-  return hit.distance2 <= enough || is_near_throughout(corners, hit.slot);
+  return (radius < beyond_ && hit.distance2 <= enough) || is_near_throughout(corners, hit.slot);
 }
 
 void BoundedSearch::add(const std::array<Vec3d, 3>& corners, TreeSlot place) {
@@ -113,11 +113,10 @@ void BoundedSearch::add(const std::array<Vec3d, 3>& corners, TreeSlot place) {
     part.corner[k] = {corners[k], place};
     if (!measure(part.corner[k])) return;
   }
-  if (!is_within(part)) parts_.push_back(part);
+  if (!is_within(part)) push(part);
 }
 
 std::size_t BoundedSearch::run(std::size_t parts) {
-  std::make_heap(parts_.begin(), parts_.end());
   std::size_t made = 0;
   for (; !is_done() && made + 2 <= parts; made += 2) {
     std::pop_heap(parts_.begin(), parts_.end());
@@ -130,12 +129,16 @@ std::size_t BoundedSearch::run(std::size_t parts) {
     for (const std::size_t replaced : {from, to}) {
       Part half = part;
       half.corner[replaced] = middle;
-      if (is_within(half)) continue;
-      parts_.push_back(half);
-      std::push_heap(parts_.begin(), parts_.end());
+      if (!is_within(half)) push(half);
     }
   }
   return made;
+}
+
+void BoundedSearch::push(Part& part) {
+  part.order = made_++;
+  parts_.push_back(part);
+  std::push_heap(parts_.begin(), parts_.end());
 }
 
 bool BoundedSearch::is_beyond(double distance) const {
@@ -145,7 +148,11 @@ bool BoundedSearch::is_beyond(double distance) const {
 bool BoundedSearch::is_near_throughout(const std::array<Vec3d, 3>& corners, TreeSlot place) const {
   if (!place.is_valid()) return false;
   const std::array<Vec3f, 3> at{tree_.to_frame(corners[0]), tree_.to_frame(corners[1]), tree_.to_frame(corners[2])};
-  return tree_.look_around(at, place).distance2 <= tree_.squared_in_frame(beyond_);
+  const SurfaceTree::Hit hit = tree_.look_around(at, place);
+  if (!(hit.distance2 <= tree_.squared_in_frame(beyond_))) return false;
+  // Floats are off by a share of the extent, and what is beyond may be a small one.
+  return std::all_of(corners.begin(), corners.end(),
+                     [&](const Vec3d& p) { return tree_.distance2_at(p, hit.slot) <= beyond_ * beyond_; });
 }
 
 SurfaceTree::Hit BoundedSearch::find_near(const Corner& corner, float enough) const {

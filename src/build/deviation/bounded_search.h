@@ -27,8 +27,10 @@ class BoundedSearch {
     TreeSlot place;  ///< of what is nearest to it
   };
 
-  /// Nothing is looked for within `margin` times what is known: `known`, and then what is found. Trees tell apart what
-  /// differs by a millionth of their extent, so that no less is known. \pre margin >= 1. The tree must outlive this.
+  /// Nothing is looked for within `margin` times what is known, nor within a thousandth more: `known`, and then what is
+  /// found. What floats of the tree do not tell apart, a few ten-millionths of its extent, is always within. \pre
+  /// margin
+  /// >= 1. The tree must outlive this.
   BoundedSearch(const SurfaceTree& tree, double margin, double known);
 
   /// Whether all of a triangle is seen at once not to be beyond. `place`: of the tree, where the search for what is
@@ -54,9 +56,12 @@ class BoundedSearch {
     std::array<Corner, 3> corner;
     TreeSlot near_peak;  ///< near where its bound was largest, or that of what it is a part of; invalid: not known
     std::uint8_t peak_edge = kInside;  ///< from that corner to the next: where that was; or inside
+    std::uint32_t order = 0;           ///< as they were made
     double bound = std::numeric_limits<double>::infinity();  ///< no point of it is farther from the surface
 
-    [[nodiscard]] bool operator<(const Part& other) const { return bound < other.bound; }
+    [[nodiscard]] bool operator<(const Part& other) const {
+      return bound != other.bound ? bound < other.bound : order > other.order;
+    }
     [[nodiscard]] std::uint8_t longest_edge() const;
 
     static constexpr std::uint8_t kInside = 3;
@@ -75,11 +80,13 @@ class BoundedSearch {
     double share = 0.5;
   };
   [[nodiscard]] Division choose_division(const Part& part) const;
+  void push(Part& part);
 
   const SurfaceTree& tree_;
   double margin_, beyond_;  ///< no nearer point is of use
   Found found_;
-  std::vector<Part> parts_;
+  std::vector<Part> parts_;  ///< a heap
+  std::uint32_t made_ = 0;
 };
 
 }  // namespace meshlode::build

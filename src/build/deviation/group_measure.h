@@ -52,7 +52,8 @@ struct Effort {
                                          std::vector<CarriedSample>& high);
 
 /// Group to source once more, by bounds: what is farther than `margin` times what is known. Where it ends within its
-/// effort, nothing is. Little is looked at where that would take much. `places`: as measure_to_source() leaves them.
+/// effort, nothing is by more than BoundedSearch leaves. Little is looked at where that would take much. `places`: as
+/// measure_to_source() leaves them.
 [[nodiscard]] Farthest search_by_bounds(const SurfaceTree& source, const GroupSurface& group,
                                         std::span<const TreeSlot> places, double margin, Farthest farthest);
 

@@ -62,7 +62,7 @@ class ProductTree {
   [[nodiscard]] bool is_empty() const { return order_.empty(); }
 
   /// The nearest triangle, or the first that is found within the square root of `enough2`; of `hint` first, where it is
-  /// one.
+  /// one. \pre the tree is over `hint`, too
   [[nodiscard]] Hit find(const ProductPoint<D>& q, std::uint32_t hint, double enough2) const {
     Hit best;
     if (order_.empty()) return best;

@@ -165,7 +165,7 @@ double extent_of(const Bounds& a, const Bounds& b) {
 
 /// What one thread knows of a stretch of points that are near each other.
 struct Walk {
-  std::uint32_t hint = 0xFFFFFFFFu;
+  std::uint32_t hint = NearestPoint::kNone;
   Vec3d point{0.0};
   double reach = std::numeric_limits<double>::infinity();  ///< the surface is no farther than that from the point
 };

@@ -61,10 +61,10 @@ using Corners = std::array<Row<N>, 3>;
 /// Of a flat triangle: along the longest edge and across it, which is well conditioned for needles too.
 template <std::size_t N>
 struct Frame {
-  Row<N> along, across;     ///< from the edge's first corner to its second; from the foot of the third to the third
-  double along2, across2;   ///< their squared lengths
-  double foot = 0.0;        ///< of the third corner, in lengths of the edge
-  std::uint32_t first = 0;  ///< the corner where the edge begins; the others follow
+  Row<N> along{}, across{};  ///< from the edge's first corner to its second; from the foot of the third to the third
+  double along2, across2;    ///< their squared lengths
+  double foot = 0.0;         ///< of the third corner, in lengths of the edge
+  std::uint32_t first = 0;   ///< the corner where the edge begins; the others follow
 
   [[nodiscard]] bool is_point() const { return !(along2 > 0.0); }
   [[nodiscard]] bool is_line() const { return !(across2 > 1e-28 * along2); }
@@ -185,7 +185,7 @@ class ProductTree {
     std::uint32_t triangle = kNone;
   };
 
-  /// Of more triangles frames are made whenever they are looked at: the same distances. They take 170 bytes each and
+  /// Of more triangles frames are made whenever they are looked at: the same distances. They take 160 bytes each and
   /// more.
   static constexpr std::uint32_t kMostFrames = 1U << 17U;
 
@@ -228,8 +228,8 @@ class ProductTree {
 
   /// The nearest triangle. Safe from several threads, as is what follows.
   [[nodiscard]] Nearest nearest(const ProductPoint<N>& point) const { return search(point, Nearest()); }
-  /// Some triangle that is nearer than a squared distance, or kNone. `hint` names one that probably is; it may be
-  /// kNone.
+  /// Some triangle that is nearer than a squared distance, or kNone and that distance. `hint` names one that probably
+  /// is; it may be kNone.
   [[nodiscard]] Nearest any_within(double distance2, const ProductPoint<N>& point, std::uint32_t hint) const {
     return search(point, {distance2, kNone}, true, hint);
   }

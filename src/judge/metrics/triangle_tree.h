@@ -39,7 +39,8 @@ class TriangleTree {
   [[nodiscard]] NearestPoint nearest(const Vec3d& point, std::uint32_t hint = NearestPoint::kNone) const {
     return search(point, hint, NearestPoint(), false);
   }
-  /// Some triangle that is nearer than a squared distance; kNone where there is none, but for the rounding of boxes.
+  /// Some triangle that is nearer than a squared distance, or kNone and that distance where there is none, but for the
+  /// rounding of boxes.
   [[nodiscard]] NearestPoint any_within(double distance2, const Vec3d& point, std::uint32_t hint) const {
     return search(point, hint, {distance2, NearestPoint::kNone}, true);
   }

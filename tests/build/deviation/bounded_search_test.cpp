@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "build/deviation/surfaces.h"
 
@@ -83,6 +82,7 @@ TEST(BoundedSearch, FindsWhatNoPointIsFartherThan) {
       EXPECT_LT(search.run(kWithoutEnd), 20000U) << "round " << round;
       EXPECT_TRUE(search.is_done());
       const BoundedSearch::Found& found = search.found();
+      ASSERT_TRUE(found.place.is_valid()) << "round " << round;
       EXPECT_GE(found.distance * kTolerance, sampled) << "round " << round << ", from " << known;
       EXPECT_NEAR(found.distance, test::brute_force(surface, found.at), 1e-6) << "where it says";
       EXPECT_NEAR(std::sqrt(tree.distance2_at(found.at, found.place)), found.distance, 1e-12);
@@ -103,12 +103,18 @@ TEST(BoundedSearch, LooksForNothingWithinTheMargin) {
     const SurfaceTree tree = tree_over(surface);
     const judge::Surface one = test::random_soup(random, 1, 0.1, 2.0);
     const Corners corners{one.positions[0], one.positions[1], one.positions[2]};
-    const double sampled = farthest_of_points(surface, corners, 30);
-    BoundedSearch search(tree, 1.5, 0.1 * sampled);
-    search.add(corners, TreeSlot());
-    search.run(kWithoutEnd);
-    EXPECT_TRUE(search.is_done());
-    EXPECT_GE(search.found().distance * 1.5 * kTolerance, sampled) << "round " << round;
+    const auto farthest = [&](double margin, double known) {
+      BoundedSearch search(tree, margin, known);
+      search.add(corners, TreeSlot());
+      search.run(kWithoutEnd);
+      EXPECT_TRUE(search.is_done());
+      return search.found().distance;
+    };
+    const double truth = farthest(1.0, 0.1);
+    ASSERT_GT(truth, 0.1);
+    EXPECT_EQ(farthest(1.5, truth / 1.49), 0.0) << "round " << round;
+    EXPECT_GT(farthest(1.5, truth / 1.52), 0.98 * truth) << "round " << round;
+    EXPECT_GE(farthest(1.5, 0.01) * 1.5 * kTolerance, truth) << "of what is found, too; round " << round;
   }
 }
 
@@ -162,6 +168,16 @@ TEST(BoundedSearch, WhatIsSeenAtOnceToBeWithinIs) {
   EXPECT_LT(within, 290U);
 }
 
+// Its middle lies on a small plate, its corners far beside it.
+TEST(BoundedSearch, ATriangleIsNotWithinBecauseItsMiddleIs) {
+  judge::Surface surface;
+  surface.positions = {Vec3d(0.9, 0.9, 0.0), Vec3d(1.1, 0.9, 0.0), Vec3d(1.0, 1.1, 0.0)};
+  surface.triangles = {{0, 1, 2}};
+  const SurfaceTree tree = tree_over(surface);
+  const Corners corners{Vec3d(0.0), Vec3d(3.0, 0.0, 0.0), Vec3d(0.0, 3.0, 0.0)};
+  EXPECT_FALSE(BoundedSearch(tree, 1.0, 0.1).is_within(corners, TreeSlot(0U)));
+}
+
 // Triangles that are a point or a line, of the source and of the surface, and any size.
 TEST(BoundedSearch, TakesTrianglesWithoutArea) {
   for (const double size : {1e-6, 1.0, 1e9}) {
@@ -178,6 +194,15 @@ TEST(BoundedSearch, TakesTrianglesWithoutArea) {
       EXPECT_TRUE(search.is_done());
       EXPECT_NEAR(search.found().distance, size, 1e-9 * size);
     }
+    // Between two that it begins and ends at, farthest in its middle.
+    surface.positions = {Vec3d(0.0), Vec3d(0.0, size, 0.0), Vec3d(4.0 * size, 0.0, 0.0), Vec3d(4.0 * size, size, 0.0)};
+    surface.triangles = {{0, 1, 1}, {2, 3, 3}};
+    const SurfaceTree apart = tree_over(surface);
+    BoundedSearch search(apart, 1.0, 0.01 * size);
+    search.add({surface.positions[0], surface.positions[2], surface.positions[2]}, TreeSlot());
+    search.run(kWithoutEnd);
+    EXPECT_TRUE(search.is_done());
+    EXPECT_NEAR(search.found().distance, 2.0 * size, 2e-3 * size);
   }
 }
 

@@ -50,6 +50,9 @@ TEST(ProductTree, TheNearestPointOfATriangleIsThatOfALattice) {
     if (i % 4 == 2) {  // three corners in a line
       for (std::size_t d = 0; d < 8; ++d) one.points[2][d] = 0.3 * one.points[0][d] + 0.7 * one.points[1][d];
     }
+    if (i % 4 == 3) {  // a needle, far away
+      for (std::size_t d = 0; d < 8; ++d) one.points[2][d] = one.points[1][d] + 0.02 * one.points[2][d];
+    }
     const ProductPoint8 q = random_product_point(random, i % 2 == 0 ? 0.5 : 3.0);
     const double found = std::sqrt(product_distance2<8>(q, one.points[0], one.points[1], one.points[2]));
     const double lattice = std::sqrt(product_lattice2(q, one));
@@ -59,7 +62,6 @@ TEST(ProductTree, TheNearestPointOfATriangleIsThatOfALattice) {
       return product_distance2<8>(q, one.points[0], one.points[1], one.points[2], share * found * found);
     };
     EXPECT_EQ(distance2_within(1.0 + 1e-12), distance2_within(std::numeric_limits<double>::infinity())) << i;
-    EXPECT_GE(distance2_within(0.9), 0.9 * found * found) << i;
     if (i % 4 == 0 && std::isinf(distance2_within(0.5))) ++dismissed;
   }
   EXPECT_GT(dismissed, 10);
