@@ -19,10 +19,10 @@ constexpr std::size_t kMostBounds = 5;
 /// No division nearer to the end of an edge, as a share of it.
 constexpr double kFromEnd = 1e-3;
 
-using Weights = std::array<double, 3>;
+using CornerShares = std::array<double, 3>;
 
 /// Linear functions in a triangle, by their values at its corners: each the distance to a triangle, or more.
-struct Bounds {
+struct LinearBounds {
   std::array<std::array<double, 3>, kMostBounds> at_corner;
   std::array<TreeSlot, kMostBounds> of;
   std::size_t count = 0;
@@ -31,7 +31,7 @@ struct Bounds {
     const auto end = of.begin() + static_cast<std::ptrdiff_t>(count);
     return std::find(of.begin(), end, slot) != end;
   }
-  [[nodiscard]] double least_at(const Weights& w) const {
+  [[nodiscard]] double least_at(const CornerShares& w) const {
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < count; ++k) {
       least = std::min(least, w[0] * at_corner[k][0] + w[1] * at_corner[k][1] + w[2] * at_corner[k][2]);
@@ -47,20 +47,20 @@ struct Bounds {
 
 struct Highest {
   double value = -1.0;
-  Weights weight{};
+  CornerShares weight{};
 
-  void take(const Bounds& bounds, const Weights& w) {
+  void take(const LinearBounds& bounds, const CornerShares& w) {
     const double value_there = bounds.least_at(w);
     if (value_there > value) *this = {value_there, w};
   }
 };
 
 /// Where two functions are equal on an edge.
-void try_edges(const Bounds& bounds, const std::array<double, 3>& difference, Highest& best) {
+void try_edges(const LinearBounds& bounds, const std::array<double, 3>& difference, Highest& best) {
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t j = (i + 1) % 3;
     if ((difference[i] < 0.0) == (difference[j] < 0.0)) continue;
-    Weights w{};
+    CornerShares w{};
     w[i] = difference[j] / (difference[j] - difference[i]);
     w[j] = 1.0 - w[i];
     best.take(bounds, w);
@@ -68,15 +68,16 @@ void try_edges(const Bounds& bounds, const std::array<double, 3>& difference, Hi
 }
 
 /// Where three are equal inside.
-void try_inside(const Bounds& bounds, const std::array<double, 3>& d, const std::array<double, 3>& e, Highest& best) {
-  Weights w{d[1] * e[2] - d[2] * e[1], d[2] * e[0] - d[0] * e[2], d[0] * e[1] - d[1] * e[0]};
+void try_inside(const LinearBounds& bounds, const std::array<double, 3>& d, const std::array<double, 3>& e,
+                Highest& best) {
+  CornerShares w{d[1] * e[2] - d[2] * e[1], d[2] * e[0] - d[0] * e[2], d[0] * e[1] - d[1] * e[0]};
   const double sum = w[0] + w[1] + w[2];
   for (double& share : w) share /= sum;
   if (w[0] > 0.0 && w[1] > 0.0 && w[2] > 0.0) best.take(bounds, w);
 }
 
 /// Where the least of the functions is largest: at a corner, on an edge where two are equal, or inside where three are.
-Highest highest_of(const Bounds& bounds) {
+Highest highest_of(const LinearBounds& bounds) {
   Highest best;
   best.take(bounds, {1.0, 0.0, 0.0});
   best.take(bounds, {0.0, 1.0, 0.0});
@@ -175,7 +176,7 @@ bool BoundedSearch::measure(Corner& corner) {
 }
 
 bool BoundedSearch::is_within(Part& part) {
-  Bounds bounds;
+  LinearBounds bounds;
   const auto bound_by = [&](TreeSlot slot) {
     if (!slot.is_valid() || bounds.has(slot)) return false;
     for (std::size_t k = 0; k < 3; ++k) {
