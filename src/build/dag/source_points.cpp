@@ -21,6 +21,7 @@ constexpr std::size_t kPointsOfLarge = 40000;
 constexpr double kLarge = 16.0;
 /// Of larger meshes a part of the triangles is looked at.
 constexpr std::size_t kMostTriangles = 100000;
+
 /// How many points each triangle gets beside its corners, `each` on average.
 std::vector<std::uint32_t> share_points(const PreparedMesh& mesh, std::span<const std::uint32_t> triangles,
                                         std::size_t each) {

@@ -8,7 +8,8 @@ namespace meshlode::build {
 
 namespace {
 
-/// A search ends at what is within this share of what is known: it bounds as well as what is nearest.
+/// A search ends at what is within this share of what is known: it bounds nearly as well as what is nearest, and is
+/// found sooner.
 constexpr double kEnough = 0.1;
 /// What is farther by no more than this share is not looked for.
 constexpr double kOfNoUse = 1e-3;

@@ -28,9 +28,8 @@ class BoundedSearch {
   };
 
   /// Nothing is looked for within `margin` times what is known, nor within a thousandth more: `known`, and then what is
-  /// found. What floats of the tree do not tell apart, a few ten-millionths of its extent, is always within. \pre
-  /// margin
-  /// >= 1. The tree must outlive this.
+  /// found. What floats of the tree do not tell apart, a few ten-millionths of its extent, is always within. The tree
+  /// must outlive this. \pre margin >= 1
   BoundedSearch(const SurfaceTree& tree, double margin, double known);
 
   /// Whether all of a triangle is seen at once not to be beyond. `place`: of the tree, where the search for what is
