@@ -12,6 +12,7 @@
 #include "base/file.h"
 #include "doctor_words.h"
 #include "options.h"
+#include "out/compare/stored_bytes.h"
 #include "out/doctor/asset_faults.h"
 #include "out/doctor/diagnosis.h"
 #include "run/read/asset.h"
@@ -33,9 +34,11 @@ Result<bool> is_asset(const std::string& path) {
   return magic == format::kMagic;
 }
 
-Result<out::DoctorReport> examine_asset(const std::string& path, std::uint64_t max_decoded) {
+/// `sound`: whether pages and images, which the tables do not speak of, are what was written.
+Result<out::DoctorReport> examine_asset(const std::string& path, std::uint64_t max_decoded, Status& sound) {
   const Result<run::Asset> asset = run::Asset::open(path, max_decoded);
   if (!asset) return asset.error();
+  sound = out::check_stored_bytes(*asset);
   out::DoctorReport report;
   report.is_asset = true;
   report.meshes = asset->meshes().size();
@@ -45,10 +48,10 @@ Result<out::DoctorReport> examine_asset(const std::string& path, std::uint64_t m
   return report;
 }
 
-Result<out::DoctorReport> examine(const std::string& path, const scene::ImportOptions& options) {
+Result<out::DoctorReport> examine(const std::string& path, const scene::ImportOptions& options, Status& sound) {
   const Result<bool> asset = is_asset(path);
   if (!asset) return asset.error();
-  if (*asset) return examine_asset(path, options.max_decoded);
+  if (*asset) return examine_asset(path, options.max_decoded, sound);
   const Result<scene::Scene> scene = scene::import_scene(path, options);
   if (!scene) return scene.error();
   return report_on_scene(*scene);
@@ -83,13 +86,15 @@ int run_doctor(const Verb& verb, std::span<char* const> args) {
   if (fail_on) {
     if (auto known = out::find_failures(*fail_on, all_fault_ids(), {}); !known) return print_error(known.error());
   }
-  Result<out::DoctorReport> report = examine(path, options);
+  Status sound = Ok{};
+  Result<out::DoctorReport> report = examine(path, options, sound);
   if (!report) return print_error(report.error());
   report->file = path;
   if (fail_on) report->failed_on = *out::find_failures(*fail_on, all_fault_ids(), report->diagnoses);
   const std::string text = output.json() ? out::doctor_json(*report) : out::doctor_text(*report);
   const bool is_silent = output.quiet && !output.json() && report->diagnoses.empty();
   if (!is_silent && !print_out(text)) return static_cast<int>(ErrorCode::kIo);
+  if (!sound) return print_error({sound.error().code, path + ": " + sound.error().where, sound.error().detail});
   return report->failed_on.empty() ? 0 : static_cast<int>(ErrorCode::kCheckFailed);
 }
 

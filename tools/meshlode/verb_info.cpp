@@ -7,6 +7,7 @@
 #include "budget_options.h"
 #include "info_page.h"
 #include "options.h"
+#include "out/compare/stored_bytes.h"
 #include "out/page/viewer_page.h"
 #include "out/report/info.h"
 #include "outputs.h"
@@ -84,29 +85,30 @@ int run_info(const Verb& verb, std::span<char* const> args) {
   if (!asset) return print_error(asset.error());
   if (const Status free = claim_page(*asset, page); !free) return print_error(free.error());
   out::AssetInfo info = out::describe_asset(*asset);
-  // CSV has no byte map; it takes a reading of every page.
-  const bool is_map_judged = out::mentions(*budget, "byte_map");
-  if (output.format != "csv" || is_map_judged || page.path) {
-    Result<out::ByteMap> byte_map = out::map_bytes(*asset);
-    if (byte_map) {
-      info.byte_map = std::move(*byte_map);
-    } else {
-      Error error = byte_map.error();
-      error.where = path + ": " + error.where;
-      const int broken_page = print_error(error);
-      if (is_map_judged || page.path) return broken_page;
-      // What the tables say is still true.
-    }
+  // Whatever is printed, every page and image is read: an exit code of 0 says that the asset is whole.
+  Result<out::ByteMap> byte_map = out::map_bytes(*asset);
+  const bool has_map = static_cast<bool>(byte_map);
+  const Status sound = has_map ? out::check_stored_bytes(*asset) : Status(byte_map.error());
+  if (has_map) info.byte_map = std::move(*byte_map);
+  int exit_code = 0;
+  if (!sound) {
+    Error error = sound.error();
+    error.where = path + ": " + error.where;
+    exit_code = print_error(error);  // what the tables say is still true
   }
-  if (const Status written = write_page(*asset, path, info.byte_map, page); !written)
-    return print_error(written.error());
+  if (has_map) {
+    const Status written = write_page(*asset, path, info.byte_map, page);
+    if (!written) return print_error(written.error());
+  }
   const bool is_silent = output.quiet && output.format == "text";
   if (!is_silent && !print_out(describe(*asset, info, output.format, list_stuck))) {
     return static_cast<int>(ErrorCode::kIo);
   }
-  if (budget->empty()) return 0;
+  // Of a figure that is not known nobody says that it is within its limit.
+  if (budget->empty() || (!has_map && out::mentions(*budget, "byte_map"))) return exit_code;
   const auto broken = out::judge_budget(*budget, out::info_json(*asset, info, true));
-  return broken ? print_broken(path, *broken) : print_error(broken.error());
+  const int judged = broken ? print_broken(path, *broken) : print_error(broken.error());
+  return exit_code != 0 ? exit_code : judged;
 }
 
 }  // namespace

@@ -18,6 +18,7 @@
 #include <utility>
 
 #include "base/guarded.h"
+#include "base/hash.h"
 #include "base/json_handle.h"
 #include "format/names.h"
 #include "out/export/cut_geometry.h"
@@ -85,7 +86,7 @@ class Exporter {
   Status attach_mesh(std::size_t node);
   void attach_levels(std::size_t node, const ExportedMesh& mesh);
   void finish_document();
-  GlbBinary::Range carry_blob(const format::BlobRecord& blob);
+  Result<GlbBinary::Range> carry_blob(const format::BlobRecord& blob);
   [[nodiscard]] Result<const format::BlobRecord*> blob_of(const Json& owner) const;
 
   const run::Asset& asset_;
@@ -106,10 +107,18 @@ Result<const format::BlobRecord*> Exporter::blob_of(const Json& owner) const {
   return &asset_.blobs()[index];
 }
 
-/// The bytes of a blob in the BIN chunk: once, however many entries of the document name it.
-GlbBinary::Range Exporter::carry_blob(const format::BlobRecord& blob) {
+/// The bytes of a blob in the BIN chunk: once, however many entries of the document name it. Opening an asset does not
+/// look at them.
+Result<GlbBinary::Range> Exporter::carry_blob(const format::BlobRecord& blob) {
   const auto [found, is_new] = carried_.try_emplace({blob.offset, blob.bytes});
-  if (is_new) found->second = binary_.append(asset_.blob_bytes(blob));
+  if (!is_new) return found->second;
+  const std::span<const std::uint8_t> bytes = asset_.blob_bytes(blob);
+  if (hash64(bytes) != blob.checksum) {
+    const auto index = static_cast<std::size_t>(&blob - asset_.blobs().data());
+    return Error{ErrorCode::kInvalid, "blob " + std::to_string(index) + ", field checksum",
+                 "does not match the stored bytes"};
+  }
+  found->second = binary_.append(bytes);
   return found->second;
 }
 
@@ -120,7 +129,9 @@ Status Exporter::carry_buffers() {
     for (const Json& buffer : *buffers) {
       const auto blob = blob_of(buffer);
       if (!blob) return blob.error();
-      ranges.push_back(carry_blob(**blob));
+      const auto range = carry_blob(**blob);
+      if (!range) return range.error();
+      ranges.push_back(*range);
     }
     document_.erase("buffers");
   }
@@ -147,7 +158,9 @@ Status Exporter::carry_images() {
     if (!blob) return blob.error();
     const format::BlobRecord& record = **blob;
     const std::span<const std::uint8_t> bytes = asset_.blob_bytes(record);
-    image["bufferView"] = add_view(document_, carry_blob(record));
+    const auto range = carry_blob(record);
+    if (!range) return range.error();
+    image["bufferView"] = add_view(document_, *range);
     const std::string_view mime_type = asset_.string(record.mime_type);
     if (!image.contains("mimeType"))
       image["mimeType"] =

@@ -56,7 +56,7 @@ for format in text json csv markdown; do
 done
 run info large.lode --quiet --fail-if 'totals.meshes>0'
 rm plain judged errors
-# A page that is broken: of no figure of the byte map may be said that it is within its limit; the tables are sound.
+# A page that is broken: 3 in every form, whatever else holds; of the byte map no figure is within its limit.
 cp large.lode broken.lode
 printf '\377' | dd of=broken.lode bs=1 seek=$(($(wc -c <broken.lode) - 40)) conv=notrunc status=none
 for format in text json csv markdown; do
