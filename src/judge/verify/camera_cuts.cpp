@@ -20,10 +20,27 @@ struct View {
   const char* kind = "";
 };
 
-Vec3d transform_point(const format::InstanceRecord& instance, const Vec3d& p) {
+Vec3d turn(const format::InstanceRecord& instance, const Vec3d& p) {
   const double* m = instance.transform;
-  return {m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3], m[4] * p.x + m[5] * p.y + m[6] * p.z + m[7],
-          m[8] * p.x + m[9] * p.y + m[10] * p.z + m[11]};
+  return {m[0] * p.x + m[1] * p.y + m[2] * p.z, m[4] * p.x + m[5] * p.y + m[6] * p.z,
+          m[8] * p.x + m[9] * p.y + m[10] * p.z};
+}
+
+Vec3d translation_of(const format::InstanceRecord& instance) {
+  return {instance.transform[3], instance.transform[7], instance.transform[11]};
+}
+
+Vec3d transform_point(const format::InstanceRecord& instance, const Vec3d& p) {
+  return turn(instance, p) + translation_of(instance);
+}
+
+/// Of the products that make turn(): their magnitudes, all rows together.
+double sum_of_magnitudes(const format::InstanceRecord& instance, const Vec3d& p) {
+  double sum = 0.0;
+  for (int row = 0; row < 3; ++row) {
+    for (int k = 0; k < 3; ++k) sum += std::fabs(instance.transform[4 * row + k] * p[k]);
+  }
+  return sum;
 }
 
 Vec3d random_direction(SplitMix64& random) {
@@ -87,6 +104,9 @@ View random_view(const run::Asset& asset, std::span<const std::uint32_t> instanc
 
 enum class Answer : std::uint8_t { kFails, kPasses, kTooClose };
 
+/// What the runtime's and the judge's translation may be off by together, of the products that make it.
+constexpr double kCancelled = 0x1p-49;
+
 /// The rule of docs/selection.md in doubles: e·s·k <= t·max(|M·c - eye| - r·s, near); orthographic e·s·k <= t.
 Answer decide(const View& view, const format::InstanceRecord& instance, const format::MeshRecord& mesh,
               const format::GroupRecord& group) {
@@ -98,11 +118,15 @@ Answer decide(const View& view, const format::InstanceRecord& instance, const fo
   const double left = group.error * sigma * k;
   double right = view.pixel_error;
   double slack = 0.0;
+  double cancelled = 0.0;
   if (!camera.is_orthographic) {
     const Vec3d c(group.center[0], group.center[1], group.center[2]);
     const Vec3d origin(mesh.origin[0], mesh.origin[1], mesh.origin[2]);
-    const Vec3d away = transform_point(instance, origin + c) - camera.eye;
-    const Vec3d translation = transform_point(instance, origin) - camera.eye;
+    // The eye is taken from the translation before anything is added that their size would swallow: a mesh of 1e-20
+    // at 30 lies where it lies, and not at 30.
+    const Vec3d moved = translation_of(instance) - camera.eye;
+    const Vec3d away = turn(instance, origin + c) + moved;
+    const Vec3d translation = turn(instance, origin) + moved;
     // Where squares overflow the runtime draws what is finest (docs/numerics.md); where they vanish it does not care.
     if (!std::isfinite(glm::dot(away, away) + glm::dot(translation, translation))) return Answer::kTooClose;
     const double distance = std::hypot(away.x, away.y, away.z);
@@ -110,8 +134,10 @@ Answer decide(const View& view, const format::InstanceRecord& instance, const fo
     right *= std::max(distance - group.radius * sigma, camera.near_distance);
     // Single precision relative to everything that was added or subtracted on the way.
     slack = view.pixel_error * (distance + reach + std::hypot(translation.x, translation.y, translation.z));
+    // And double precision relative to what cancelled before: docs/numerics.md, "Where translations cancel".
+    cancelled = view.pixel_error * kCancelled * sum_of_magnitudes(instance, origin);
   }
-  slack = (slack + left + right) * 4e-6;
+  slack = (slack + left + right) * 4e-6 + cancelled;
   if (std::fabs(left - right) <= slack || !std::isfinite(left) || !std::isfinite(right)) return Answer::kTooClose;
   return left <= right ? Answer::kPasses : Answer::kFails;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Cuts as a cross-check: a selection that is wrong in one way is found by the rule for that way.
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <string>
 
@@ -107,6 +108,79 @@ TEST_F(CutChecks, AnotherThresholdIsNotTheRule) {
   EXPECT_GT(log.count_of(Rule::kV204), 0U);
   EXPECT_EQ(log.count_of(Rule::kV201), 0U);  // the cut is whole, only not the one that was asked for
   EXPECT_EQ(log.count_of(Rule::kV202), 0U);
+}
+
+/// The sample so small at so far a place that no double lies between its corners there: every instance scaled by 2^-k,
+/// with 30 for each translation.
+run::Asset shrink_at_30(int k) {
+  test::AssetEdit edit(test::judged_sample_bytes());
+  for (std::uint32_t i = 0; i < edit.instances().size(); ++i) {
+    edit.instance(i, [&](auto& instance) {
+      for (int row = 0; row < 3; ++row) {
+        for (int column = 0; column < 3; ++column) {
+          instance.transform[4 * row + column] = std::ldexp(instance.transform[4 * row + column], -k);
+        }
+        instance.transform[4 * row + 3] = 30.0;
+      }
+      instance.scale = std::ldexp(instance.scale, -k);
+    });
+  }
+  edit.seal();
+  return std::move(*run::Asset::from_vector(edit.bytes()));
+}
+
+/// From 2^-40 of the distance to 2^-140: what is drawn is right, and another rule is not.
+TEST_F(CutChecks, AnInstanceThatItsPlaceSwallowsIsJudgedByItsShape) {
+  Selectors wrong;
+  wrong.flat = [](const run::Asset& asset, const run::Camera& camera, double t) {
+    return run::select_flat(asset, camera, t * 1.5);
+  };
+  wrong.bvh = wrong.flat;
+  for (const int k : {30, 40, 50, 55, 60, 70, 90, 140}) {
+    SCOPED_TRACE(k);
+    const run::Asset tiny = shrink_at_30(k);
+    RuleLog log, other;
+    const CameraTotals totals = check_cameras(tiny, judges_, 200, 7, log);
+    EXPECT_EQ(log.finding_count(), 0U);
+    EXPECT_LT(totals.too_close * 100, totals.decisions) << "nearly all is decided";
+    check_cameras(tiny, judges_, 200, 7, other, wrong);
+    EXPECT_GT(other.count_of(Rule::kV204), 0U) << "a fault of the same size is found";
+  }
+}
+
+/// A mesh that is authored far away and brought back: what is left of its place by the difference of two large numbers
+/// is as wrong as they were rounded, and no more is held against the selection than that.
+TEST_F(CutChecks, WhatCancelsIsJudgedAsFarAsDoublesHoldIt) {
+  Selectors wrong;
+  wrong.flat = [](const run::Asset& asset, const run::Camera& camera, double t) {
+    return run::select_flat(asset, camera, t * 1.5);
+  };
+  wrong.bvh = wrong.flat;
+  for (const double far : {0x1p20, 0x1p30, 0x1p44, 0x1p47}) {
+    SCOPED_TRACE(far);
+    test::AssetEdit edit(test::judged_sample_bytes());
+    const Vec3d moved(far, 0.7 * far, -0.3 * far);
+    for (std::uint32_t m = 0; m < edit.meshes().size(); ++m) {
+      edit.mesh(m, [&](auto& mesh) {
+        for (int k = 0; k < 3; ++k) mesh.origin[k] += moved[k];
+      });
+    }
+    for (std::uint32_t i = 0; i < edit.instances().size(); ++i) {
+      edit.instance(i, [&](auto& instance) {
+        for (int row = 0; row < 3; ++row) {
+          double* m = instance.transform + 4 * row;
+          m[3] -= m[0] * moved.x + m[1] * moved.y + m[2] * moved.z;
+        }
+      });
+    }
+    edit.seal();
+    const run::Asset away = std::move(*run::Asset::from_vector(edit.bytes()));
+    RuleLog log, other;
+    check_cameras(away, judges_, 2000, 7, log);
+    EXPECT_EQ(log.count_of(Rule::kV204), 0U);
+    check_cameras(away, judges_, 2000, 7, other, wrong);
+    EXPECT_GT(other.count_of(Rule::kV204), 0U);
+  }
 }
 
 TEST_F(CutChecks, AWrongStoredErrorIsFound) {
