@@ -155,4 +155,21 @@ Result<CutComparison> compare_frame(draw::Renderer& renderer, const run::Asset& 
   return out;
 }
 
+Result<HardwareComparison> compare_hardware(draw::Renderer& renderer, const run::Asset& asset,
+                                            const run::Camera& camera, double pixel_error) {
+  const auto depth = draw::depth_of_scene(asset, camera);
+  if (!depth) return depth.error();
+  const auto frame = renderer.draw(camera, pixel_error, *depth);
+  if (!frame) return frame.error();
+  const auto cut = renderer.read_cut();
+  if (!cut) return cut.error();
+  const auto pixels = renderer.read_pixels_of_cut();
+  if (!pixels) return pixels.error();
+  const std::vector<run::ClusterInstance> expected = run::select_flat(asset, camera, pixel_error);
+  const auto reference = draw::draw_cut(asset, expected, camera, *renderer.scene().alpha_masks);
+  if (!reference) return reference.error();
+  return HardwareComparison{frame->hardware_items == expected.size() && *cut == expected,
+                            measure_distance(*reference, *pixels, camera.is_orthographic)};
+}
+
 }  // namespace meshlode::judge

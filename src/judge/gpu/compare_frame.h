@@ -12,6 +12,7 @@
 #include "draw/gpu/gpu_scene.h"
 #include "draw/gpu/renderer.h"
 #include "draw/gpu/vulkan/vulkan.h"
+#include "judge/gpu/picture_distance.h"
 #include "run/select/select.h"
 
 namespace meshlode::judge {
@@ -38,5 +39,13 @@ struct CutComparison {
 [[nodiscard]] Result<CutComparison> compare_frame(draw::Renderer& renderer, const run::Asset& asset,
                                                   const run::Camera& camera, double pixel_error,
                                                   const run::AttributeBounds& bounds = {});
+
+struct HardwareComparison {
+  bool is_same_cut = false;  ///< as the flat rule's
+  PictureDistance picture;   ///< from draw_cut()'s of that
+};
+/// Draws the whole cut by a `renderer` with a hardware path and no culling, everything in hardware (V409).
+[[nodiscard]] Result<HardwareComparison> compare_hardware(draw::Renderer& renderer, const run::Asset& asset,
+                                                          const run::Camera& camera, double pixel_error);
 
 }  // namespace meshlode::judge

@@ -156,10 +156,7 @@ constexpr std::array kRules{
          "`--gpu`: no pixel's surface point, of the cut's picture or of the source's own triangles, is displaced "
          "by more than the allowed pixels (measured: within 5%); with `--promise` UVs or normals counted as lengths"),
     RULE(V406, "I6", "`--gpu`: no background is seen through the cut of closed meshes"),
-    RULE(V407, "I9",
-         "`--gpu`: hardware raster, vertices pulled, draws the CPU's picture within the specification's "
-         "freedom"),
-    RULE(V408, "I9", "`--gpu`: the same by mesh shaders, where the device has them"),
+    RULE(V409, "I9", "`--gpu`: hardware raster is held within a stated distance of the CPU's coverage and depth"),
 };
 
 #undef RULE
@@ -172,7 +169,7 @@ constexpr bool is_each_in_its_row() {
   for (std::size_t i = 0; i < kRules.size(); ++i) {
     if (index_of(kRules[i].rule) != i || (i > 0 && kRules[i].id <= kRules[i - 1].id)) return false;
   }
-  return kRules.size() == index_of(Rule::kV408) + 1;
+  return kRules.size() == index_of(Rule::kV409) + 1;
 }
 static_assert(is_each_in_its_row(), "the table has the rules of enum Rule, in its order");
 

@@ -11,7 +11,6 @@
 #include "gpu_support.h"
 #include "judge/gpu/cameras.h"
 #include "judge/gpu/compare_frame.h"
-#include "judge/gpu/hardware_judge.h"
 #include "support/sample_asset.h"
 
 namespace meshlode::draw::test {
@@ -197,7 +196,7 @@ TEST_F(Scenes, PersistentTraversalDrawsTheSame) {
   }
 }
 
-/// Hardware raster draws what its specification allows, every pixel; and the judge finds another picture.
+/// Hardware raster draws what is near to the CPU's picture; and the judge finds another one.
 TEST_F(Scenes, HardwareRasterHoldsAndItsJudgeCanFail) {
   const auto asset = run::Asset::from_vector(meshlode::test::sample_asset_bytes());
   ASSERT_TRUE(asset);
@@ -211,22 +210,24 @@ TEST_F(Scenes, HardwareRasterHoldsAndItsJudgeCanFail) {
   options.double_sided = false;
   auto one_sided = Renderer::make(*device_, *scene, options);
   ASSERT_TRUE(one_sided);
-  const std::uint32_t bits = device_->info().subpixel_bits;
-  std::uint64_t missed = 0, items = 0;
+  std::uint64_t found = 0, differing = 0, covered = 0;
   std::vector<judge::NamedCamera> cameras = judge::orbit_cameras(*asset, 4, 640, 360);
   for (const judge::NamedCamera& named : judge::adversarial_cameras(*asset, 640, 360)) cameras.push_back(named);
   for (const judge::NamedCamera& named : cameras) {
     SCOPED_TRACE(named.name);
-    const auto result = judge::compare_hardware(*renderer, *asset, named.camera, 1.0, bits);
+    const auto result = judge::compare_hardware(*renderer, *asset, named.camera, 1.0);
     ASSERT_TRUE(result);
-    EXPECT_EQ(result->differences, 0U) << result->first;
-    items += result->items;
-    const auto other = judge::compare_hardware(*one_sided, *asset, named.camera, 1.0, bits);
+    EXPECT_TRUE(result->is_same_cut);
+    EXPECT_TRUE(result->picture.is_within_bounds()) << judge::describe(result->picture);
+    covered += result->picture.covered;
+    const auto other = judge::compare_hardware(*one_sided, *asset, named.camera, 1.0);
     ASSERT_TRUE(other);
-    missed += other->differences;
+    found += other->picture.is_within_bounds() ? 0 : 1;
+    differing += other->picture.differing;
   }
-  EXPECT_GT(items, 100000U);
-  EXPECT_GT(missed, 1000U) << "the sample is double-sided in part, and the other culls";
+  EXPECT_GT(covered, 100000U);
+  EXPECT_GT(differing, 1000U) << "the sample is double-sided in part, and the other culls";
+  EXPECT_GE(found, 2U) << "frames of which a back is a large part";
 }
 
 /// From far away a mesh's root alone is open: then its instance goes past the hierarchy, to the same cut.

@@ -134,7 +134,6 @@ Candidate describe(const Functions& f, VkPhysicalDevice device) {
   info.driver = std::string(driver.driverName) + " " + driver.driverInfo;
   info.is_software = properties.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
   info.subgroup_size = v11.subgroupSize;
-  info.subpixel_bits = properties.properties.limits.subPixelPrecisionBits;
   info.timestamp_ns = static_cast<double>(properties.properties.limits.timestampPeriod);
   if (properties.properties.apiVersion < VK_API_VERSION_1_3) {
     info.missing = "Vulkan 1.3";

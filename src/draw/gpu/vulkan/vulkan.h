@@ -23,8 +23,7 @@ struct DeviceInfo {
   bool is_software = false;
   bool has_mesh_shaders = false;
   std::uint32_t subgroup_size = 0;
-  std::uint32_t subpixel_bits = 4;  ///< of the hardware rasterizer: subPixelPrecisionBits
-  double timestamp_ns = 1.0;        ///< of one tick
+  double timestamp_ns = 1.0;  ///< of one tick
 };
 
 /// Every device that the loader shows, in its order. Errors: kUnsupported without a loader or driver.
