@@ -129,6 +129,8 @@ TEST_F(ImportOutside, LinksLeadWhereAFolderIsAllowedAndNowhereElse) {
   EXPECT_EQ(image_of("../textures/out.png", {textures}), "-");
   EXPECT_EQ(image_of("../textures/out.png", {textures, folder.path() / "other"}), "oak");
   EXPECT_EQ(image_of("../by%20name/wood.png", {folder.path() / "by name"}), "wood");
+  EXPECT_EQ(image_of("../by%20name/wood.png", {folder.path() / "by name/"}), "wood");
+  EXPECT_EQ(image_of("../by%20name/wood.png", {folder.path() / "by name/."}), "wood");
   EXPECT_EQ(image_of("../by%20name/wood.png", {textures}), "-");  // by its letters it lies elsewhere
 }
 

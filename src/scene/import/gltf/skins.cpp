@@ -133,6 +133,16 @@ class SkinSettler {
     return Ok{};
   }
 
+  /// Corners, and influences of vertices by fours.
+  [[nodiscard]] std::uint64_t work_on(std::uint32_t m) const {
+    std::uint64_t sum = 1;
+    for (std::size_t p = 0; p < scene_.meshes[m].primitives.size(); ++p) {
+      const Primitive& primitive = scene_.meshes[m].primitives[p];
+      sum += primitive.indices.size() + primitive.positions.size() * (1 + weights_[m][p].width / 4);
+    }
+    return sum;
+  }
+
   Status settle(const Pair& pair) {
     if (settled_.contains(pair)) return Ok{};
     const auto [m, s] = pair;
@@ -140,9 +150,7 @@ class SkinSettler {
     how.mesh = m;
     if (Status read = read_matrices(s); !read) return read;
     const std::vector<Mat4d>& matrices = *matrices_[s];
-    std::uint64_t corners = 1;
-    for (const Primitive& primitive : scene_.meshes[m].primitives) corners += primitive.indices.size();
-    if (!budget_.take(corners + matrices.size())) return no_budget(s);
+    if (!budget_.take(work_on(m) + matrices.size())) return no_budget(s);
     const MeshJoints joints = find_joints(scene_.meshes[m], weights_[m], matrices.size());
     if (!joints.has_weights || matrices.empty()) return Ok{};
     bad_vertices_[s] += joints.bad_vertices;
@@ -185,11 +193,9 @@ class SkinSettler {
   }
 
   Status copy_mesh(std::uint32_t m, std::uint32_t s) {
-    std::uint64_t elements = 16 * (1 + asset_.root.items("meshes")[m].items("primitives").size());
-    for (const Primitive& primitive : scene_.meshes[m].primitives) {
-      elements += 10 * primitive.positions.size() + primitive.indices.size();
-    }
-    if (!budget_.take(elements)) return no_budget(s);
+    // Its text too, with extras of any size.
+    const std::uint64_t text_bytes = dump_json(asset_.root.items("meshes")[m]).size();
+    if (!budget_.take(8 * work_on(m) + text_bytes / 4)) return no_budget(s);
     SourceMesh copy = scene_.meshes[m];
     scene_.meshes.push_back(std::move(copy));
     auto& meshes = std::get<Json::Array>(asset_.root.find("meshes")->value);

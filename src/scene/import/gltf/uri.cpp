@@ -77,7 +77,7 @@ bool is_below(const std::filesystem::path& folder, const std::filesystem::path& 
   auto f = folder.begin();
   auto p = file.begin();
   for (; f != folder.end(); ++f, ++p) {
-    if (f->empty()) continue;  // a trailing slash
+    if (f->empty()) break;  // a trailing slash
     if (p == file.end() || *p != *f) return false;
   }
   return p != file.end();
