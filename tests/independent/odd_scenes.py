@@ -16,6 +16,8 @@ import struct
 import sys
 import zlib
 
+from odd_skins import add_skin
+
 SIZES = {5120: ("b", 1), 5121: ("B", 1), 5122: ("h", 2), 5123: ("H", 2), 5125: ("I", 4), 5126: ("f", 4)}
 LARGEST = {5120: 127, 5121: 255, 5122: 32767, 5123: 65535}
 WIDTHS = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4"}
@@ -344,50 +346,6 @@ class Scene:
             out["_ID"] = self.accessor([(i,) for i in range(count)], 5121, is_vertex=False)
         return out
 
-    def skin(self):
-        """One mesh gets joints and weights, and the nodes that draw it get a skin: one in four scenes."""
-        r = random.Random(f"skin {self.root['asset']['generator']}")
-        if r.random() > 0.25:
-            return
-        nodes, mesh = self.root["nodes"], r.randrange(len(self.root["meshes"]))
-        joints = []
-        for _ in range(r.choice((1, 2, 3))):
-            joint = {"translation": [as_f32(r.uniform(-2, 2)) for _ in range(3)], "scale": [r.choice((-1, 0.5, 1, 2))] * 3}
-            if r.random() < 0.5:
-                nodes[r.randrange(len(nodes))].setdefault("children", []).append(len(nodes))
-            elif "scenes" in self.root:
-                self.root["scenes"][-1]["nodes"].append(len(nodes))
-            joints.append(len(nodes))
-            nodes.append(joint)
-        skin = {"joints": joints}
-        if r.random() < 0.7:
-            rows = [tuple(as_f32(r.uniform(-1, 1)) for _ in range(12)) for _ in joints]
-            rows = [sum((row[3 * c:3 * c + 3] + ((1.0,) if c == 3 else (0.0,)) for c in range(4)), ()) for row in rows]
-            data = b"".join(struct.pack("<16f", *row) for row in rows)
-            self.root["accessors"].append({"bufferView": self.view(data), "componentType": 5126, "count": len(rows),
-                                           "type": "MAT4"})
-            skin["inverseBindMatrices"] = len(self.root["accessors"]) - 1
-        self.root["skins"] = [skin]
-        is_rigid = r.random() < 0.3  # all of it by one joint
-        for primitive in self.root["meshes"][mesh]["primitives"]:
-            if primitive.get("mode", 4) < 4:
-                continue
-            count = self.root["accessors"][primitive["attributes"]["POSITION"]]["count"]
-            for n in range(r.choice((1, 1, 2))):
-                kind = r.choice((5121, 5123))
-                rows = [tuple(0 if is_rigid else r.randrange(len(joints)) for _ in range(4)) for _ in range(count)]
-                primitive["attributes"][f"JOINTS_{n}"] = self.accessor(rows, kind)
-                rows = [tuple(r.choice((0, 0, 64, 100, 255)) for _ in range(4)) for _ in range(count)]
-                if r.random() < 0.5:
-                    primitive["attributes"][f"WEIGHTS_{n}"] = self.accessor(rows, 5121, True)
-                else:
-                    rows = [tuple(as_f32(w / 255) for w in row) for row in rows]
-                    primitive["attributes"][f"WEIGHTS_{n}"] = self.accessor(rows, 5126)
-        for node in nodes:
-            if node.get("mesh") == mesh and "EXT_mesh_gpu_instancing" not in node.get("extensions", {}):
-                if r.random() < 0.8:
-                    node["skin"] = 0
-
     def build(self):
         r, root = self.random, self.root
         materials = self.materials()
@@ -410,7 +368,7 @@ class Scene:
             meshes.append(mesh)
         root["meshes"] = meshes
         self.nodes(len(meshes))
-        self.skin()
+        add_skin(self)
         if self.extensions:
             root["extensionsUsed"] = sorted(self.extensions)
             required = [e for e in sorted(self.extensions) if e in ("KHR_mesh_quantization", "EXT_mesh_gpu_instancing")]
