@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/import/gltf/skins.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -127,8 +124,6 @@ class SkinSettler {
     for (std::size_t j = 0; j < skin.joints.size(); ++j) {
       const Mat4d bind = inverse ? affine_matrix(inverse->raw(j)) : Mat4d(1.0);
       out.push_back(world_[static_cast<std::size_t>(skin.joints[j])] * bind);
-      if (!is_finite(out.back()))
-        return asset_.invalid(skin_path(s) + "/joints", "the matrix of joint " + std::to_string(j) + " is not finite");
     }
     return Ok{};
   }
@@ -153,6 +148,10 @@ class SkinSettler {
     if (!budget_.take(work_on(m) + matrices.size())) return no_budget(s);
     const MeshJoints joints = find_joints(scene_.meshes[m], weights_[m], matrices.size());
     if (!joints.has_weights || matrices.empty()) return Ok{};
+    for (const std::uint32_t j : joints.used) {
+      if (is_finite(matrices[j])) continue;
+      return asset_.invalid(skin_path(s) + "/joints/" + std::to_string(j), "its matrix is not finite");
+    }
     bad_vertices_[s] += joints.bad_vertices;
     const auto matrix = common_matrix(joints, matrices);
     how.kind = matrix ? Settled::Kind::kRigid : Settled::Kind::kBaked;

@@ -231,12 +231,14 @@ Result<std::filesystem::path> resolve_below(const std::filesystem::path& folder,
     is_allowed = is_allowed || is_below(named, where) || is_below(real, where);
     roots.push_back(real);
   }
-  if (!is_allowed && tidy.is_absolute()) return invalid("an absolute path: \"" + shown_name(path) + "\"");
-  if (!is_allowed) return invalid("a path that leaves the scene's folder: \"" + shown_name(path) + "\"");
+  if (!is_allowed && tidy.is_absolute())
+    return invalid("an absolute path, in no folder of --allow-outside: \"" + shown_name(path) + "\"");
+  if (!is_allowed)
+    return invalid("a path that leaves the scene's folder, into none of --allow-outside: \"" + shown_name(path) + "\"");
   const fs::path file = fs::canonical(where, error);
   if (error) return Error{ErrorCode::kIo, "", "cannot open \"" + shown_name(path) + "\": " + error.message()};
   if (std::none_of(roots.begin(), roots.end(), [&](const fs::path& each) { return is_below(each, file); })) {
-    return invalid("a link that leaves the scene's folder: \"" + shown_name(path) + "\"");
+    return invalid("a link that leaves the scene's folder, into none of --allow-outside: \"" + shown_name(path) + "\"");
   }
   return file;
 }
