@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A second reader of glTF 2.0, written from the specification (Khronos, glTF 2.0.1) and with Python's standard library
-alone: accessors of every type, sparse ones, strips and fans, node transforms, materials and images. It reads sound files
-and refuses nothing but what it does not do (Draco, meshopt): whether a file is sound is not its question."""
+alone: accessors of every type, sparse ones, strips and fans, node transforms, skins (skins.py), materials and images. It
+reads sound files and refuses nothing but what it does not do (Draco, meshopt): whether a file is sound is not its
+question."""
 
 import base64
 import json
@@ -11,6 +12,7 @@ import struct
 from urllib.parse import unquote
 
 from rules import NONE, Unsupported
+from skins import Skins, pose
 
 COMPONENTS = {5120: ("b", 1, 127), 5121: ("B", 1, 255), 5122: ("h", 2, 32767), 5123: ("H", 2, 65535), 5125: ("I", 4, 0),
               5126: ("f", 4, 0)}
@@ -35,7 +37,10 @@ def split_glb(data):
             text = body
         elif kind == 0x004E4942 and binary is None:
             binary = body
-        at += 8 + (size + 3) // 4 * 4
+        at += 8 + size
+        # Padding is part of a chunk, but not all writers have it, nor do all of them count it.
+        if not (at + 8 <= length and struct.unpack_from("<I", data, at + 4)[0] == 0x004E4942):
+            at = (at + 3) // 4 * 4
     return text, binary
 
 
@@ -75,6 +80,12 @@ class Gltf:
             data = binary if i == 0 and binary is not None and "uri" not in buffer else self.bytes_of(buffer)
             self.buffers.append(data)
         self.expand_instances()
+        self.posed = {}
+        if self.root.get("skins") and self.root.get("meshes"):
+            try:
+                self.posed = Skins(self, local_matrix, multiply).settle()
+            except KeyError:  # a document without its geometry
+                pass
         if len(self.root.get("meshes", [])) > 1:
             self.merge_meshes()
 
@@ -140,9 +151,15 @@ class Gltf:
             return None
         if uri.startswith("data:"):
             head, _, text = uri.partition(",")
-            return base64.b64decode(unquote(text)) if head.endswith(";base64") else unquote(text).encode("latin-1")
-        with open(os.path.join(self.folder, unquote(uri)), "rb") as file:
-            return file.read()
+            if head.endswith(";base64"):
+                return base64.b64decode("".join(unquote(text).split()))
+            return unquote(text, "latin-1").encode("latin-1")
+        for name in (unquote(uri), uri):  # "100%wood.png" is no escape
+            path = os.path.join(self.folder, name)
+            if os.path.exists(path):
+                with open(path, "rb") as file:
+                    return file.read()
+        return None
 
     def view(self, index):
         """(bytes, stride or None)"""
@@ -180,6 +197,16 @@ class Gltf:
 
     def primitives(self, mesh):
         """Those that have triangles: (attributes by name, triangles as triples of vertices, material or None)."""
+        if mesh not in self.posed or not self.root["meshes"][mesh]["primitives"]:
+            yield from self.stored_primitives(mesh)
+            return
+        source, matrices = self.posed[mesh]
+        for attributes, triangles, material in self.stored_primitives(source):
+            yield pose(attributes, triangles, matrices) + (material,)
+
+    def stored_primitives(self, mesh):
+        restarts = any(name.endswith("_mesh_primitive_restart") for key in ("extensionsUsed", "extensionsRequired")
+                       for name in self.root.get(key, []))
         for primitive in self.root["meshes"][mesh]["primitives"]:
             mode = primitive.get("mode", 4)
             if mode < 4 or "POSITION" not in primitive["attributes"]:
@@ -187,11 +214,26 @@ class Gltf:
             if "KHR_draco_mesh_compression" in primitive.get("extensions", {}):
                 raise Unsupported("KHR_draco_mesh_compression")
             attributes = {name: self.accessor(a) for name, a in primitive["attributes"].items()}
+            color = self.root["accessors"][primitive["attributes"].get("COLOR_0", 0)]
+            if "COLOR_0" in attributes and color["componentType"] != 5126 and not color.get("normalized", False):
+                if any(c > 1 for row in attributes["COLOR_0"] for c in row):  # whole numbers can only be meant normalized
+                    largest = COMPONENTS[color["componentType"]][2]
+                    attributes["COLOR_0"] = [tuple(c / largest for c in row) for row in attributes["COLOR_0"]]
             if "indices" in primitive:
                 corners = [i for i, in self.accessor(primitive["indices"])]
             else:
                 corners = list(range(len(attributes["POSITION"])))
-            yield attributes, triangles_of(mode, corners), primitive.get("material")
+            parts = [corners]
+            if restarts and mode != 4 and "indices" in primitive:
+                restart = 256 ** COMPONENTS[self.root["accessors"][primitive["indices"]]["componentType"]][1] - 1
+                parts = [[]]
+                for corner in corners:
+                    if corner == restart:
+                        parts.append([])
+                    else:
+                        parts[-1].append(corner)
+            triangles = [t for part in parts for t in triangles_of(mode, part)]
+            yield attributes, triangles, primitive.get("material")
 
     def instances(self):
         """(node, world matrix) of every visible node with a mesh, depth first over the default scene."""

@@ -16,6 +16,8 @@ import struct
 import sys
 import zlib
 
+from odd_skins import add_skin
+
 SIZES = {5120: ("b", 1), 5121: ("B", 1), 5122: ("h", 2), 5123: ("H", 2), 5125: ("I", 4), 5126: ("f", 4)}
 LARGEST = {5120: 127, 5121: 255, 5122: 32767, 5123: 65535}
 WIDTHS = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4"}
@@ -366,6 +368,7 @@ class Scene:
             meshes.append(mesh)
         root["meshes"] = meshes
         self.nodes(len(meshes))
+        add_skin(self)
         if self.extensions:
             root["extensionsUsed"] = sorted(self.extensions)
             required = [e for e in sorted(self.extensions) if e in ("KHR_mesh_quantization", "EXT_mesh_gpu_instancing")]

@@ -98,6 +98,11 @@ void OptionParser::add_value(const char* name, std::optional<std::string>& targe
                              const std::vector<std::string>& choices) {
   state_->add(name, target, help, choices);
 }
+void OptionParser::add_values(const char* name, std::vector<std::string>& target, const char* help) {
+  CLI::Option& option = *state_->app.add_option(name, target, help);
+  option.allow_extra_args(false);  // else it takes the scene that stands behind its value
+  state_->note(option, option.get_type_name(), {});
+}
 void OptionParser::add_positional(const char* name, std::string& target, const char* help) {
   state_->add(name, target, help, {}, true);
 }
@@ -113,6 +118,23 @@ void add_max_decoded_option(OptionParser& parser, std::string& size) {
   parser.add_value(
       "--max-decoded", size,
       "what images, and geometry beyond 64 times the file, may take in memory: bytes, or with KiB, MiB, GiB (512MiB)");
+}
+
+void add_allow_outside_option(OptionParser& parser, std::vector<std::string>& folders) {
+  parser.add_values("--allow-outside", folders,
+                    "a folder beside the scene's from which files that the scene names may be read; may be repeated");
+}
+
+Result<std::vector<std::filesystem::path>> parse_allow_outside(const std::vector<std::string>& folders) {
+  std::vector<std::filesystem::path> out;
+  for (const std::string& folder : folders) {
+    std::error_code error;
+    if (!std::filesystem::is_directory(folder, error)) {
+      return Error{ErrorCode::kIo, "--allow-outside", "'" + printable(folder) + "' is no folder"};
+    }
+    out.emplace_back(folder);
+  }
+  return out;
 }
 
 Status check_samples(std::uint64_t samples) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -39,6 +40,8 @@ class OptionParser {
   void add_value(const char* name, std::optional<std::uint64_t>& target, const char* help);
   void add_value(const char* name, std::optional<std::string>& target, const char* help,
                  const std::vector<std::string>& choices = {});
+  /// May be given several times, a value each time.
+  void add_values(const char* name, std::vector<std::string>& target, const char* help);
   void add_positional(const char* name, std::string& target, const char* help);  ///< exactly one
   void add_positional(const char* name, std::optional<std::string>& target, const char* help,
                       const std::vector<std::string>& choices);                                ///< one or none
@@ -70,6 +73,11 @@ void add_max_decoded_option(OptionParser& parser, std::string& size);
 /// Errors: kUsage for what is no size.
 [[nodiscard]] Result<std::uint64_t> parse_max_decoded(const std::string& size);
 constexpr const char* kDefaultMaxDecodedText = "512MiB";
+
+/// `--allow-outside DIR`, of verbs that import a scene.
+void add_allow_outside_option(OptionParser& parser, std::vector<std::string>& folders);
+/// As scene::ImportOptions takes them. Errors: kIo for what is no folder.
+[[nodiscard]] Result<std::vector<std::filesystem::path>> parse_allow_outside(const std::vector<std::string>& folders);
 
 /// --samples of verbs that measure deviations. Error: kUsage unless 1 to 100,000,000.
 [[nodiscard]] Status check_samples(std::uint64_t samples);

@@ -153,7 +153,9 @@ std::string depfile_of(const std::vector<JobResult>& results) {
   std::vector<batch::DepfileRule> rules;
   for (const JobResult& r : results) {
     batch::DepfileRule rule{r.job.output, {}};
-    for (const batch::Dependency& file : r.files) rule.inputs.push_back(file.path);
+    for (const batch::Dependency& file : r.files) {
+      if (!file.path.empty()) rule.inputs.push_back(file.path);
+    }
     if (rule.inputs.empty()) rule.inputs.push_back(r.job.input);
     rules.push_back(std::move(rule));
   }
@@ -215,9 +217,10 @@ int run_jobs(const std::vector<Job>& jobs, const BuildCommand& command) {
   return worst;
 }
 
-/// Words that change no byte of an asset.
+/// What may be taken and read.
 struct LimitWords {
   std::string max_memory = "auto", max_decoded = kDefaultMaxDecodedText;
+  std::vector<std::string> allow_outside;
   fs::path outputs;  ///< the folder of the assets
 };
 
@@ -238,6 +241,9 @@ Status set_options(const BuildWords& words, const LimitWords& limits, batch::Bat
   const Result<std::uint64_t> decoded = parse_max_decoded(limits.max_decoded);
   if (!decoded) return decoded.error();
   options.import.max_decoded = *decoded;
+  auto allowed = parse_allow_outside(limits.allow_outside);
+  if (!allowed) return allowed.error();
+  options.import.allow_outside = std::move(*allowed);
   return Ok{};
 }
 
@@ -267,6 +273,7 @@ int run_build(const Verb& verb, std::span<char* const> args) {
   parser.add_value("--max-memory", limits.max_memory,
                    "what the build may take, such as 8GiB: meshes one by one and large arrays in a temporary file "
                    "to keep it, or refused; auto: what is left");
+  add_allow_outside_option(parser, limits.allow_outside);
   add_max_decoded_option(parser, limits.max_decoded);
   add_jobs_option(parser, command.jobs);
   parser.add_value("--report", command.report_path,

@@ -67,6 +67,7 @@ std::vector<std::string> all_fault_ids() {
 
 int run_doctor(const Verb& verb, std::span<char* const> args) {
   std::string path, max_decoded = kDefaultMaxDecodedText;
+  std::vector<std::string> allow_outside;
   std::optional<std::string> fail_on;
   scene::ImportOptions options;
   OutputOptions output;
@@ -75,6 +76,7 @@ int run_doctor(const Verb& verb, std::span<char* const> args) {
   parser.add_value("--fail-on", fail_on,
                    "exit with 6 where one of these is found: ids, high, medium (and worse) or any, between commas");
   parser.add_value("--scene", options.scene, "glTF: the name or index of the scene to examine, or all");
+  add_allow_outside_option(parser, allow_outside);
   add_max_decoded_option(parser, max_decoded);
   add_output_options(parser, output);
   if (const auto exit_code = parser.parse(args)) return *exit_code;
@@ -82,6 +84,9 @@ int run_doctor(const Verb& verb, std::span<char* const> args) {
   if (!decoded) return print_error(decoded.error());
   options.max_decoded = *decoded;
   options.may_lack_images = true;
+  auto allowed = parse_allow_outside(allow_outside);
+  if (!allowed) return print_error(allowed.error());
+  options.allow_outside = std::move(*allowed);
   // Before any work: a misspelt id.
   if (fail_on) {
     if (auto known = out::find_failures(*fail_on, all_fault_ids(), {}); !known) return print_error(known.error());

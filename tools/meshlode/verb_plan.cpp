@@ -99,6 +99,7 @@ std::string plan_json(const scene::Scene& scene, const Planned& planned) {
 
 int run_plan(const Verb& verb, std::span<char* const> args) {
   std::string path, max_decoded = kDefaultMaxDecodedText;
+  std::vector<std::string> allow_outside;
   BuildWords words;
   MeasureOptions measure;
   bool is_measured = false;
@@ -110,12 +111,15 @@ int run_plan(const Verb& verb, std::span<char* const> args) {
                   "build by the plan and with --keep all, three times each, and compare both");
   parser.add_value("--device", measure.device, "with --measure: a Vulkan device by index or a part of its name");
   add_build_options(parser, words);
+  add_allow_outside_option(parser, allow_outside);
   add_max_decoded_option(parser, max_decoded);
   add_jobs_option(parser, jobs);
   add_output_options(parser, output);
   if (const auto exit_code = parser.parse(args)) return *exit_code;
   const Result<std::uint64_t> decoded = parse_max_decoded(max_decoded);
   if (!decoded) return print_error(decoded.error());
+  auto allowed = parse_allow_outside(allow_outside);
+  if (!allowed) return print_error(allowed.error());
   const auto layers = settings_for(words, path, {});
   if (!layers) return print_error(layers.error());
   Result<build::Settled> settled = build::settle(*layers);
@@ -124,8 +128,11 @@ int run_plan(const Verb& verb, std::span<char* const> args) {
   options.looks = &image_looks();
 
   JobLimit limit(jobs);
-  const Result<scene::Scene> scene = scene::import_scene(
-      path, {.repair = options.repair, .scene = words.scene, .max_decoded = *decoded, .may_lack_images = true});
+  const Result<scene::Scene> scene = scene::import_scene(path, {.repair = options.repair,
+                                                                .scene = words.scene,
+                                                                .max_decoded = *decoded,
+                                                                .may_lack_images = true,
+                                                                .allow_outside = std::move(*allowed)});
   if (!scene) return print_error(scene.error());
   const auto fail = [&](Error error) {
     error.where = path + (error.where.empty() ? "" : ": ") + error.where;

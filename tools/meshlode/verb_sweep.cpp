@@ -79,6 +79,7 @@ Result<std::vector<std::string>> parse_knobs(std::string text) {
 struct SweepWords {
   std::string scene, report, max_decoded = kDefaultMaxDecodedText;
   std::optional<std::string> budget, want, knobs;
+  std::vector<std::string> allow_outside;
   OutputOptions out;
 };
 
@@ -126,6 +127,7 @@ std::string command_of(const SweepWords& words, const study::SweepOptions& optio
   if (!options.scene_choice.empty()) text += " --scene " + study::shell_word(options.scene_choice);
   text += " --rounds " + std::to_string(options.rounds) + " --samples " + std::to_string(options.samples);
   if (!options.max_decoded_text.empty()) text += " --max-decoded " + study::shell_word(options.max_decoded_text);
+  for (const auto& folder : options.allow_outside) text += " --allow-outside " + study::shell_word(folder.string());
   if (options.jobs > 0) text += " --jobs " + std::to_string(options.jobs);
   return text;
 }
@@ -156,6 +158,9 @@ Status set_options(const SweepWords& words, study::SweepOptions& options) {
   if (!decoded) return decoded.error();
   options.max_decoded = *decoded;
   if (words.max_decoded != kDefaultMaxDecodedText) options.max_decoded_text = words.max_decoded;
+  auto allowed = parse_allow_outside(words.allow_outside);
+  if (!allowed) return allowed.error();
+  options.allow_outside = std::move(*allowed);
   options.scene = words.scene;
   options.report = words.report;
   options.command = command_of(words, options);
@@ -224,6 +229,7 @@ int run_sweep(const Verb& verb, std::span<char* const> args) {
   parser.add_value("--rounds", options.rounds, "how often each asset is built (3)");
   parser.add_value("--samples", options.samples, "area-uniform samples of deviations, each way (100000)");
   parser.add_value("--scene", options.scene_choice, "glTF: the name or index of the scene to build, or all");
+  add_allow_outside_option(parser, words.allow_outside);
   add_max_decoded_option(parser, words.max_decoded);
   add_jobs_option(parser, options.jobs);
   add_output_options(parser, words.out);

@@ -129,6 +129,7 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
   GpuOptions gpu_options;
   std::uint32_t jobs = 0;
   std::string max_decoded_text = kDefaultMaxDecodedText, max_memory = "auto";
+  std::vector<std::string> allow_outside;
   bool repair = false;
   judge::VerifyOptions options;
   OutputOptions output;
@@ -155,6 +156,7 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
   parser.add_flag("--explain", gpu_options.is_explained,
                   "say what the asset keeps, and with --gpu which passes the device runs, and why");
   add_max_memory_option(parser, max_memory);
+  add_allow_outside_option(parser, allow_outside);
   add_max_decoded_option(parser, max_decoded_text);
   add_jobs_option(parser, jobs);
   add_output_options(parser, output);
@@ -169,6 +171,8 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
 
   const Result<std::uint64_t> max_decoded = parse_max_decoded(max_decoded_text);
   if (!max_decoded) return print_error(max_decoded.error());
+  auto allowed = parse_allow_outside(allow_outside);
+  if (!allowed) return print_error(allowed.error());
   if (const Status kept = keep_memory_limit_of_check(max_memory); !kept) return print_error(kept.error());
   gpu_options.max_decoded = *max_decoded;
 
@@ -189,7 +193,8 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
                                                                   .scene = out::read_meta(asset->meta_json()).scene,
                                                                   .files_read = &files_read,
                                                                   .max_decoded = *max_decoded,
-                                                                  .may_lack_images = true});
+                                                                  .may_lack_images = true,
+                                                                  .allow_outside = std::move(*allowed)});
   output_files().keep(files_read);
   if (!source) return print_error(source.error());
   if (options.is_quick) options.uniform_cuts = options.cameras = 0;  // as it is reported

@@ -87,7 +87,7 @@ std::string settings_text(const build::PipelineOptions& options, const scene::Im
   const auto& [preset, codec, strip_effort, partition_seed, repair, promise, keep_topology, max_cluster_triangles,
                max_cluster_vertices, group_clusters, max_memory, spills, mesh_store, looks, experiment, mesh_options] =
       static_cast<const build::SceneOptions&>(options);
-  const auto& [import_repair, scene, files_read, max_decoded, may_lack_images] = import;
+  const auto& [import_repair, scene, files_read, max_decoded, may_lack_images, allow_outside] = import;
   static_cast<void>(mesh_options);     // not known before the import: mesh_rules_text()
   static_cast<void>(max_memory);       // whether, not what
   static_cast<void>(spills);           // where it lies meanwhile
@@ -95,6 +95,7 @@ std::string settings_text(const build::PipelineOptions& options, const scene::Im
   static_cast<void>(looks);            // the program always has it; images are ingredients
   static_cast<void>(max_decoded);      // the same
   static_cast<void>(may_lack_images);  // the same: a missing image is an ingredient of its own
+  static_cast<void>(allow_outside);    // the same: a file that may not be opened is a missing one
   static_cast<void>(files_read);       // an output
   const std::pair<const char*, std::string> lines[] = {
       {"preset", build::name_of(preset)},

@@ -59,12 +59,13 @@ Result<Dependency> find_file(FileKind kind, const std::filesystem::path& path) {
   return file;
 }
 
-Result<std::vector<Dependency>> find_dependencies(const std::filesystem::path& scene) {
+Result<std::vector<Dependency>> find_dependencies(const std::filesystem::path& scene,
+                                                  std::span<const std::filesystem::path> allow_outside) {
   std::vector<Dependency> files;
   auto own = find_file(FileKind::kScene, scene);
   if (!own) return own.error();
   files.push_back(std::move(*own));
-  const auto references = scene::list_references(scene);
+  const auto references = scene::list_references(scene, allow_outside);
   if (!references) return references.error();
   for (const scene::FileReference& reference : *references) {
     files.push_back({kind_of(reference.kind), reference.uri, reference.path, std::nullopt, {}});

@@ -30,14 +30,15 @@ struct FileStamp {
 struct Dependency {
   FileKind kind = FileKind::kScene;
   std::string name;                ///< as the scene has it; of the scene its file name
-  std::filesystem::path path;      ///< to open it by
+  std::filesystem::path path;      ///< to open it by; empty: it may not be opened, wherever it is
   std::optional<FileStamp> stamp;  ///< nothing: it cannot be opened
   Hash128 hash{};                  ///< of its bytes; zeros where it cannot be opened
 };
 
 /// The scene first, then in the order of import, each file once. Errors: as scene::list_references; kIo the scene
-/// itself cannot be opened.
-[[nodiscard]] Result<std::vector<Dependency>> find_dependencies(const std::filesystem::path& scene);
+/// itself cannot be opened. `allow_outside`: scene::ImportOptions'.
+[[nodiscard]] Result<std::vector<Dependency>> find_dependencies(
+    const std::filesystem::path& scene, std::span<const std::filesystem::path> allow_outside = {});
 
 /// One file beside these. Errors: kIo it cannot be opened.
 [[nodiscard]] Result<Dependency> find_file(FileKind kind, const std::filesystem::path& path);

@@ -28,7 +28,7 @@ void write_settings(JsonWriter& w, std::string_view settings) {
 void write_file(JsonWriter& w, const Dependency& file) {
   w.begin_object();
   w.field("kind", name_of(file.kind));
-  w.field("path", file.path.string());
+  w.field("path", file.path.empty() ? file.name : file.path.string());
   w.key("hash");
   if (file.stamp) {
     w.value(to_hex(file.hash));

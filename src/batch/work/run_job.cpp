@@ -77,7 +77,7 @@ class Run {
     const bool wants_files = options_.cache != nullptr || options_.lists_files || options_.is_dry_run;
     std::optional<Error> unreadable;
     if (wants_files) {
-      auto found = find_dependencies(result_.job.input);
+      auto found = find_dependencies(result_.job.input, import_.allow_outside);
       if (found) {
         result_.files = std::move(*found);
         const std::string settings = settings_text(pipeline_, import_) + mesh_rules_text(layers_);
@@ -138,7 +138,8 @@ class Run {
     for (const Dependency& file : result_.files) {
       const bool is_needed =
           file.kind == FileKind::kBuffer || (file.kind == FileKind::kImage && !import_.may_lack_images);
-      if (!file.stamp && is_needed) return Error{ErrorCode::kIo, file.path.string(), "cannot be opened"};
+      if (file.stamp || !is_needed) continue;
+      return Error{ErrorCode::kIo, file.path.empty() ? file.name : file.path.string(), "cannot be opened"};
     }
     result_.status = JobStatus::kWouldBuild;
     result_.reason = "no cache is used";

@@ -110,13 +110,14 @@ Result<Scene> import_scene(const std::filesystem::path& path, const ImportOption
   });
 }
 
-Result<std::vector<FileReference>> list_references(const std::filesystem::path& path) {
+Result<std::vector<FileReference>> list_references(const std::filesystem::path& path,
+                                                   std::span<const std::filesystem::path> allow_outside) {
   return guarded(path, [&]() -> Result<std::vector<FileReference>> {
     const auto file = MappedFile::open(path);
     if (!file) return file.error();
     const auto format = find_format(path, file->bytes());
-    if (format == Format::kGltf) return list_gltf_references(path, file->bytes());
-    if (format == Format::kObj) return list_obj_references(path, file->bytes());
+    if (format == Format::kGltf) return list_gltf_references(path, file->bytes(), allow_outside);
+    if (format == Format::kObj) return list_obj_references(path, file->bytes(), allow_outside);
     return std::vector<FileReference>{};
   });
 }

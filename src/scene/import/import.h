@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -23,9 +24,13 @@ struct ImportOptions {
   std::vector<FileId>* files_read = nullptr;  ///< gets every file that was opened, also where the import fails
   /// Bytes of indices and vertices that compressed geometry may take beyond what its own size justifies.
   std::uint64_t max_decoded = std::uint64_t{512} << 20U;
-  /// An image whose file cannot be opened, and a library of an OBJ's materials, is left out and said so
-  /// (Scene::left_out), for geometry does not need it; else it is kIo, as a missing buffer always is.
+  /// An image that cannot be read (its file is missing, or lies where nothing may be opened; its data URI is broken),
+  /// and a library of an OBJ's materials, is left out and said so (Scene::left_out), for geometry does not need it;
+  /// else it is an error, as it always is of a buffer.
   bool may_lack_images = false;
+  /// Folders beside the scene's own from which files may be opened that the scene names; links that leave all of them
+  /// are not followed.
+  std::vector<std::filesystem::path> allow_outside{};
 };
 
 /// Reads .gltf, .glb, .ply, .obj or .stl (told apart by content where possible, else by extension).
@@ -38,13 +43,17 @@ struct FileReference {
   /// Materials are an OBJ's libraries, which it can do without.
   enum class Kind : std::uint8_t { kBuffer, kImage, kMaterials };
   Kind kind = Kind::kBuffer;
-  std::string uri;             ///< as the scene, or its library, has it
-  std::filesystem::path path;  ///< below the scene's folder, whether or not there is such a file; links not followed
+  std::string uri;  ///< as the scene, or its library, has it
+  /// To open it by, whether or not there is such a file; links not followed. Empty: import opens no file for it, such
+  /// as an image outside the scene's folder or on the web.
+  std::filesystem::path path;
 };
 
 /// Every file that import_scene opens, or would open were it there, beside the scene's own: each path once, in the
 /// order of import. Reads the scene's text and looks for the files, but opens none. Errors: as import_scene, as far as
 /// it looks; what it finds nothing wrong with may still be refused there.
-[[nodiscard]] Result<std::vector<FileReference>> list_references(const std::filesystem::path& path);
+/// `allow_outside`: ImportOptions'.
+[[nodiscard]] Result<std::vector<FileReference>> list_references(
+    const std::filesystem::path& path, std::span<const std::filesystem::path> allow_outside = {});
 
 }  // namespace meshlode::scene

@@ -262,6 +262,9 @@ class Sweep {
     if (!options_.max_decoded_text.empty()) {
       arguments.insert(arguments.end(), {"--max-decoded", options_.max_decoded_text});
     }
+    for (const fs::path& folder : options_.allow_outside) {
+      arguments.insert(arguments.end(), {"--allow-outside", folder.string()});
+    }
     if (!point.values.empty()) {
       const std::vector<std::string> settings = build_arguments(result_.knobs, point);
       arguments.insert(arguments.end(), settings.begin(), settings.end());
@@ -446,6 +449,7 @@ Status run_sweep(const SweepOptions& options, const SweepWatcher& watcher, const
   import.scene = options.scene_choice;
   import.max_decoded = options.max_decoded;
   import.may_lack_images = true;
+  import.allow_outside = options.allow_outside;
   Result<scene::Scene> scene = scene::import_scene(options.scene, import);
   if (!scene) return scene.error();
   const fs::path state_file = options.report / "sweep-state.txt";

@@ -42,6 +42,8 @@ struct SweepOptions {
   std::vector<std::string> knobs;  ///< names of those that are turned; empty: all
   std::vector<Wish> wishes;        ///< empty: some usual ones
   std::string command;             ///< that makes the report again
+  /// scene::ImportOptions'.
+  std::vector<std::filesystem::path> allow_outside;
   /// The camera that frames an asset.
   std::function<run::Camera(const run::Asset& asset)> frame_scene;
   /// What in the scene costs under every setting, ranked; where it is missing, the report does not say.

@@ -316,6 +316,7 @@ std::string build_command(const SweepOptions& options, const SweepResult& result
   std::vector<std::string> words{"meshlode", "build", options.scene.string(), "-o", "out.lode", "--no-settings-file"};
   if (!options.scene_choice.empty()) words.insert(words.end(), {"--scene", options.scene_choice});
   if (!options.max_decoded_text.empty()) words.insert(words.end(), {"--max-decoded", options.max_decoded_text});
+  for (const auto& folder : options.allow_outside) words.insert(words.end(), {"--allow-outside", folder.string()});
   const std::vector<std::string> settings = build_arguments(result.knobs, point);
   words.insert(words.end(), settings.begin(), settings.end());
   return joined(words);
@@ -325,6 +326,7 @@ std::string doctor_command(const SweepOptions& options) {
   std::vector<std::string> words{"meshlode", "doctor", options.scene.string()};
   if (!options.scene_choice.empty()) words.insert(words.end(), {"--scene", options.scene_choice});
   if (!options.max_decoded_text.empty()) words.insert(words.end(), {"--max-decoded", options.max_decoded_text});
+  for (const auto& folder : options.allow_outside) words.insert(words.end(), {"--allow-outside", folder.string()});
   return joined(words);
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "gltf_builder.h"
@@ -257,6 +258,160 @@ TEST(ImportGeometry, AccessorsWithoutAViewAreZero) {
   const auto scene = b.import(mesh_text("\"POSITION\":0"));
   ASSERT_TRUE(scene) << describe(scene);
   EXPECT_EQ(only_primitive(scene).positions[2], Vec3d(0.0));
+}
+
+/// By the letter a stride is a multiple of 4 and at most 252; three.js wrote 6 and 2 for years.
+TEST(ImportGeometry, AnyStrideThatTheElementFitsIsRead) {
+  for (const std::size_t stride : {6U, 7U, 8U, 9U, 300U}) {
+    std::vector<std::uint8_t> bytes(3 * stride - (stride - 6), 0);
+    const std::int16_t corners[3][3] = {{0, 0, 0}, {300, 0, 0}, {0, -400, 5}};
+    for (std::size_t v = 0; v < 3; ++v) std::memcpy(bytes.data() + v * stride, corners[v], 6);
+    GltfBuilder b;
+    b.view(bytes);
+    b.views[0].insert(b.views[0].size() - 1, ",\"byteStride\":" + std::to_string(stride));
+    b.accessor(0, 5122, 3, "VEC3");
+    const auto scene = b.import(mesh_text("\"POSITION\":0"));
+    ASSERT_TRUE(scene) << stride << ": " << describe(scene);
+    EXPECT_EQ(only_primitive(scene).positions,
+              (std::vector<Vec3d>{Vec3d(0, 0, 0), Vec3d(300, 0, 0), Vec3d(0, -400, 5)}));
+  }
+  GltfBuilder b;
+  b.view<std::uint8_t>(std::vector<std::uint8_t>(18, 0));
+  b.views[0].insert(b.views[0].size() - 1, ",\"byteStride\":5");
+  b.accessor(0, 5122, 3, "VEC3");
+  EXPECT_FALSE(b.import(mesh_text("\"POSITION\":0")));
+}
+
+/// Columns start at multiples of 4 bytes, and nothing need follow the last one's numbers.
+TEST(ImportGeometry, TheLastColumnOfAMatrixNeedsNoPadding) {
+  struct Matrix {
+    const char* type;
+    int component;
+    std::size_t used;
+  };
+  for (const Matrix& matrix : {Matrix{"MAT2", 5121, 6}, Matrix{"MAT3", 5121, 11}, Matrix{"MAT3", 5123, 22}}) {
+    for (const std::size_t missing : {0U, 1U}) {
+      GltfBuilder b;
+      b.view<std::uint8_t>(std::vector<std::uint8_t>(matrix.used - missing, 1));
+      b.accessor(0, matrix.component, 1, matrix.type);
+      EXPECT_EQ(static_cast<bool>(b.import("\"nodes\":[{}]")), missing == 0) << matrix.type << " " << missing;
+    }
+  }
+}
+
+/// The same file with chunks whose lengths leave their padding out, or that have none.
+TEST(ImportGeometry, GlbChunksAreFoundWhereTheirLengthsOrTheirPaddingPutThem) {
+  GltfBuilder b;
+  b.floats(kSquare, "VEC3", 3);
+  const std::string good = b.glb(mesh_text("\"POSITION\":0"));
+  std::uint32_t text_bytes = 0;
+  std::memcpy(&text_bytes, good.data() + 12, 4);
+  std::string text = good.substr(20, text_bytes);
+  text.erase(text.find_last_of('}') + 1);
+  const std::string rest = good.substr(20 + text_bytes);
+  const TempFolder folder;
+  for (std::size_t blanks = 0; blanks < 4; ++blanks) {
+    for (std::size_t hidden = 0; hidden < 4; ++hidden) {
+      const std::string padded = text + std::string(blanks, ' ');
+      // Hidden padding: up to the next multiple of 4 and not counted.
+      if (hidden != 0 && (padded.size() + hidden) % 4 != 0) continue;
+      std::string glb = good.substr(0, 20) + padded + std::string(hidden, ' ') + rest;
+      const auto length = static_cast<std::uint32_t>(glb.size()), size = static_cast<std::uint32_t>(padded.size());
+      std::memcpy(glb.data() + 8, &length, 4);
+      std::memcpy(glb.data() + 12, &size, 4);
+      const auto scene = scene::import_scene(folder.write("scene.glb", glb), {});
+      ASSERT_TRUE(scene) << blanks << " blanks, " << hidden << " hidden: " << describe(scene);
+      EXPECT_EQ(only_primitive(scene).positions.size(), 3U);
+    }
+  }
+}
+
+/// After a restart value a strip begins anew, and with it which triangles turn; the same of fans.
+TEST(ImportGeometry, StripsAndFansAreSplitAtRestartValuesWhereAnExtensionAllowsIt) {
+  struct Case {
+    int mode;
+    std::vector<std::uint8_t> indices;
+    Corners expected;
+  };
+  const std::vector<Case> cases = {
+      {5, {0, 1, 2, 255, 3, 4, 5, 6}, {0, 1, 2, 3, 4, 5, 4, 6, 5}},
+      {5, {255, 0, 1, 255, 255, 0, 1, 2, 3, 255}, {0, 1, 2, 1, 3, 2}},
+      {6, {0, 1, 2, 3, 255, 4, 5, 6}, {1, 2, 0, 2, 3, 0, 5, 6, 4}},
+  };
+  for (const Case& each : cases) {
+    GltfBuilder b;
+    b.floats({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 0, 2, 0, 1, 2, 0, 0, 3, 0}, "VEC3", 3);
+    b.array<std::uint8_t>(each.indices, 5121, "SCALAR", 1);
+    const std::string text = mesh_text("\"POSITION\":0", ",\"indices\":1,\"mode\":" + std::to_string(each.mode));
+    // What the corners are by their positions, for vertices that nothing names may not be stored.
+    const auto corners_of = [](const scene::Scene& scene) {
+      Corners out;
+      const scene::Primitive& p = scene.meshes.at(0).primitives.at(0);
+      for (const std::uint32_t i : p.indices) {
+        out.push_back(static_cast<std::uint32_t>(p.positions[i].x + 2 * p.positions[i].y));
+      }
+      return out;
+    };
+    for (const char* extension : {"KHR_mesh_primitive_restart", "EXT_mesh_primitive_restart"}) {
+      const std::string list = "[\"" + std::string(extension) + "\"]";
+      const auto scene = b.import(text + ",\"extensionsUsed\":" + list + ",\"extensionsRequired\":" + list);
+      ASSERT_TRUE(scene) << describe(scene);
+      EXPECT_EQ(corners_of(*scene), each.expected);
+      EXPECT_TRUE(scene->left_out.empty());
+      EXPECT_EQ(scene->document.find("restart"), std::string::npos);  // an asset has none
+    }
+    const auto refused = b.import(text);
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().detail.find("--repair gives the triangles"), std::string::npos) << describe(refused);
+    const auto repaired = b.import(text, {.repair = true});
+    ASSERT_TRUE(repaired) << describe(repaired);
+    EXPECT_EQ(corners_of(*repaired).size(), each.expected.size());
+    EXPECT_EQ(repaired->meshes[0].drops.repaired, 0U);
+    ASSERT_EQ(repaired->left_out.size(), 1U);
+    EXPECT_NE(repaired->left_out[0].why.find("restart values"), std::string::npos);
+  }
+  GltfBuilder b;
+  b.floats(kSquare, "VEC3", 3);
+  b.array<std::uint8_t>({0, 1, 2, 255, 1, 2}, 5121, "SCALAR", 1);
+  EXPECT_FALSE(b.import(mesh_text("\"POSITION\":0", ",\"indices\":1") +
+                        ",\"extensionsUsed\":[\"KHR_mesh_primitive_restart\"]"));  // not of lists
+}
+
+/// glTF has normalized whole numbers alone, and colours from 0 to 1.
+TEST(ImportGeometry, ColoursThatAreTakenOtherwiseThanWrittenAreSaid) {
+  const auto left_out_of = [](const Result<scene::Scene>& scene) {
+    std::string out;
+    for (const scene::LeftOut& each : scene.value().left_out) out += each.what + ": " + each.why + "\n";
+    return out;
+  };
+  GltfBuilder bytes;
+  bytes.floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3", 3);
+  bytes.array<std::uint8_t>({139, 0, 255, 0, 1, 0, 0, 0, 51, 255, 0, 0}, 5121, "VEC4", 4);
+  bytes.array<std::uint8_t>({1, 0, 1, 1, 0, 1, 0, 1, 1, 1, 0, 1}, 5121, "VEC4", 4);
+  bytes.array<std::uint16_t>({65535, 0, 13107, 0, 0, 0, 0, 0, 0}, 5123, "VEC3", 3);
+  const auto whole = bytes.import(mesh_text("\"POSITION\":0,\"COLOR_0\":1"));
+  ASSERT_TRUE(whole) << describe(whole);
+  EXPECT_EQ(only_primitive(whole).colors.at(0), Vec4f(139.0F / 255.0F, 0, 1, 0));
+  EXPECT_EQ(only_primitive(whole).colors.at(2), Vec4f(0.2F, 1, 0, 0));
+  EXPECT_EQ(
+      left_out_of(whole),
+      "COLOR_0 of 3 vertices: whole numbers that are not said to be normalized; they are taken as if they were\n");
+  // Zeros and ones mean what they say.
+  const auto flags = bytes.import(mesh_text("\"POSITION\":0,\"COLOR_0\":2"));
+  ASSERT_TRUE(flags) << describe(flags);
+  EXPECT_EQ(only_primitive(flags).colors.at(1), Vec4f(0, 1, 0, 1));
+  EXPECT_TRUE(flags->left_out.empty());
+  const auto shorts = bytes.import(mesh_text("\"POSITION\":0,\"COLOR_0\":3"));
+  ASSERT_TRUE(shorts) << describe(shorts);
+  EXPECT_EQ(only_primitive(shorts).colors.at(0), Vec4f(1, 0, 0.2F, 1));
+
+  GltfBuilder floats;
+  floats.floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3", 3);
+  floats.floats({2, 0.5F, 0, 1, 0.5F, 0, 0.5F, -1, 0}, "VEC3", 3);
+  const auto bright = floats.import(mesh_text("\"POSITION\":0,\"COLOR_0\":1"));
+  ASSERT_TRUE(bright) << describe(bright);
+  EXPECT_EQ(only_primitive(bright).colors.at(0), Vec4f(1, 0.5F, 0, 1));
+  EXPECT_EQ(left_out_of(bright), "COLOR_0 of 2 vertices: values above 1 or below 0 are clamped to 0 … 1\n");
 }
 
 }  // namespace

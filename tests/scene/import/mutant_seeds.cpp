@@ -61,6 +61,26 @@ void fill_rich(GltfBuilder& b, std::string& rest) {
       "\"output\":7}],\"channels\":[{\"sampler\":0,\"target\":{\"node\":1,\"path\":\"translation\"}}]}]";
 }
 
+/// Two skins on one mesh, a strip with restart values, colours of whole numbers.
+std::string make_skinned_seed() {
+  GltfBuilder b;
+  b.floats(kSquare, "VEC3", 3);                                                              // 0
+  b.array<std::uint8_t>({0, 1, 2, 255, 2, 1, 3, 0}, 5121, "SCALAR", 1);                      // 1
+  b.array<std::uint8_t>({0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 1, 1, 0, 0}, 5121, "VEC4", 4);  // 2
+  b.floats({1, 0, 0, 0, 0.5F, 0.5F, 0, 0, 0, 1, 0, 0, 0.25F, 0.25F, 0.5F, 0}, "VEC4", 4);    // 3
+  b.floats({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0, 1, 1, 1, 1}, "MAT4",
+           16);                                                                                     // 4
+  b.array<std::uint8_t>({139, 0, 255, 0, 1, 0, 0, 0, 51, 255, 0, 0, 9, 9, 9, 9}, 5121, "VEC4", 4);  // 5
+  return b.glb(
+      "\"extensionsUsed\":[\"KHR_mesh_primitive_restart\"],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":"
+      "0,"
+      "\"NORMAL\":0,\"JOINTS_0\":2,\"WEIGHTS_0\":3,\"COLOR_0\":5},\"indices\":1,\"mode\":5}]}],\"nodes\":[{\"mesh\":0,"
+      "\"skin\":0},{\"mesh\":0,\"skin\":1,\"extras\":1},{\"translation\":[1,2,3],\"children\":[3,0]},{\"scale\":[1,-2,"
+      "1]}],"
+      "\"skins\":[{\"joints\":[2,3],\"inverseBindMatrices\":4},{\"joints\":[3,2]}],\"scenes\":[{\"nodes\":[1,2]}],"
+      "\"scene\":0");
+}
+
 void add_model(std::vector<SeedFile>& seeds, const std::string& folder, const std::string& name) {
   std::ifstream in(folder + "/" + name, std::ios::binary);
   std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
@@ -85,6 +105,7 @@ std::vector<SeedFile> make_seed_files() {
   }
   seeds.push_back({"meshopt.glb", make_meshopt_pair(5).meshopt_glb});
   seeds.push_back({"filtered.glb", make_filtered_glb(5)});
+  seeds.push_back({"skinned.glb", make_skinned_seed()});
   GltfBuilder many;
   many.floats(kSquare, "VEC3", 3);
   many.floats({1, 2, 3, 4, 5, 6}, "VEC3", 3);

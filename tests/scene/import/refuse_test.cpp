@@ -47,7 +47,7 @@ TEST(ImportRefuses, StructuralFaultsByTheirJsonPath) {
        "/bufferViews/0/buffer"},
       {gltf("\"buffers\":[{\"byteLength\":4}],\"bufferViews\":[{\"buffer\":0,\"byteOffset\":2,\"byteLength\":4}]"),
        "/bufferViews/0"},
-      {gltf("\"buffers\":[{\"byteLength\":4}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":4,\"byteStride\":6}]"),
+      {gltf("\"buffers\":[{\"byteLength\":4}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":4,\"byteStride\":4097}]"),
        "/bufferViews/0/byteStride"},
       {gltf("\"buffers\":[{\"byteLength\":4}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":1e300}]"),
        "/bufferViews/0/byteLength"},
@@ -335,6 +335,20 @@ TEST(ImportUri, DecodesWhatItMustAndNothingElse) {
   ASSERT_TRUE(plain);
   EXPECT_EQ(plain->bytes.size(), 3U);
   EXPECT_EQ(plain->mime_type, "text/plain");
+}
+
+/// Lines of 76 characters and escaped padding are what mail tools and URL builders write.
+TEST(ImportUri, Base64MayBeWrappedAndEscaped) {
+  const std::vector<std::uint8_t> bytes{0xFF, 0xEF, 0x10, 0x20};
+  for (const char* body : {"/+8QIA==", "/+8Q\r\nIA==\n", " /+8Q\tIA", "%2F%2B8QIA%3D%3D", "/+8QIA%3d%3D"}) {
+    const auto data = scene::decode_data_uri(std::string("data:application/octet-stream;base64,") + body);
+    ASSERT_TRUE(data) << body << ": " << data.error().detail;
+    EXPECT_EQ(data->bytes, bytes) << body;
+  }
+  EXPECT_TRUE(scene::decode_data_uri("data:;BASE64,AA=="));
+  for (const char* body : {"/+8QI*==", "/+8Q-A", "/+8Q%2", "A"}) {
+    EXPECT_FALSE(scene::decode_data_uri(std::string("data:;base64,") + body)) << body;
+  }
 }
 
 TEST(ImportUri, FindsFilesInFoldersWithSpacesButNeverOutside) {

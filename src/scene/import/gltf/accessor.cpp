@@ -125,13 +125,13 @@ const std::uint8_t* AccessorReader::bytes_of(std::uint64_t i) const {
   return base_ == nullptr ? nullptr : base_ + i * stride_;
 }
 
-std::array<double, 4> AccessorReader::element(std::uint64_t i) const {
+std::array<double, 4> AccessorReader::element(std::uint64_t i, bool normalized) const {
   std::array<double, 4> out{};
   const std::uint8_t* bytes = bytes_of(i);
   if (bytes == nullptr) return out;
   const std::uint32_t count = std::min<std::uint32_t>(component_count_, 4);
   for (std::uint32_t c = 0; c < count; ++c) {
-    out[c] = read_component(bytes + c * component_size_, component_type_, normalized_);
+    out[c] = read_component(bytes + c * component_size_, component_type_, normalized);
   }
   return out;
 }

@@ -36,7 +36,9 @@ class AccessorReader {
   [[nodiscard]] std::uint32_t component_count() const { return component_count_; }
   [[nodiscard]] bool is_normalized() const { return normalized_; }
   /// The components of an element, up to 4. \pre i < count()
-  [[nodiscard]] std::array<double, 4> element(std::uint64_t i) const;
+  [[nodiscard]] std::array<double, 4> element(std::uint64_t i) const { return element(i, normalized_); }
+  /// The same, normalized or not whatever the accessor says.
+  [[nodiscard]] std::array<double, 4> element(std::uint64_t i, bool normalized) const;
   /// The stored bytes of an element, or nullptr where they are all zero. \pre i < count()
   [[nodiscard]] const std::uint8_t* raw(std::uint64_t i) const { return bytes_of(i); }
   /// A scalar unsigned integer. \pre i < count()

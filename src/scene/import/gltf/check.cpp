@@ -185,6 +185,8 @@ bool is_known_extension(std::string_view name) {
                                          "EXT_meshopt_compression",
                                          "KHR_meshopt_compression",
                                          "EXT_mesh_gpu_instancing",
+                                         "KHR_mesh_primitive_restart",
+                                         "EXT_mesh_primitive_restart",
                                          "KHR_node_visibility",
                                          "KHR_texture_transform",
                                          "KHR_texture_basisu",

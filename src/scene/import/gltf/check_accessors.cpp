@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Bounds of buffers, buffer views, accessors and sparse parts (glTF 2.0, sections 3.6.1 and 3.6.2). Every length is
-// compared by subtraction, so that no sum can overflow: all numbers are below 2^48 and strides below 2^8.
+// compared by subtraction, so that no sum can overflow: all numbers are below 2^48 and strides at most 2^12.
 #include "scene/import/gltf/check_base.h"
 #include "scene/import/gltf/gltf.h"
 
@@ -9,6 +9,7 @@ namespace meshlode::scene {
 namespace {
 
 constexpr std::uint64_t kByteLimit = std::uint64_t{1} << 48U;
+constexpr std::uint64_t kMaxStride = 4096;
 constexpr std::uint64_t kIntMax = 0x7FFFFFFFu;  // tinygltf keeps sparse counts and offsets in an int
 
 struct TypeShape {
@@ -18,10 +19,18 @@ struct TypeShape {
 constexpr TypeShape kShapes[] = {{"SCALAR", 1, 1}, {"VEC2", 1, 2}, {"VEC3", 1, 3}, {"VEC4", 1, 4},
                                  {"MAT2", 2, 2},   {"MAT3", 3, 3}, {"MAT4", 4, 4}};
 
-/// Bytes of one element; columns of matrices start at multiples of 4 bytes.
-std::uint64_t element_size(const TypeShape& shape, std::uint32_t component_bytes) {
+/// Bytes of an element.
+struct ElementSize {
+  std::uint64_t step = 0;  ///< to the next one, where nothing else is said
+  std::uint64_t used = 0;  ///< those that hold numbers: without the padding behind the last column
+};
+
+/// Columns of matrices start at multiples of 4 bytes (glTF 2.0, section 3.6.2.4).
+ElementSize element_size(const TypeShape& shape, std::uint32_t component_bytes) {
   const std::uint64_t column = std::uint64_t{shape.rows} * component_bytes;
-  return shape.columns == 1 ? column : shape.columns * ((column + 3) / 4 * 4);
+  if (shape.columns == 1) return {column, column};
+  const std::uint64_t padded = (column + 3) / 4 * 4;
+  return {shape.columns * padded, (shape.columns - 1) * padded + column};
 }
 
 class AccessorChecker : public JsonChecker {
@@ -49,10 +58,10 @@ class AccessorChecker : public JsonChecker {
   bool check_view(const Json& view, const std::string& path) {
     if (!required_index(view, path, "buffer", root_.items("buffers").size()) ||
         !optional_index(view, path, "byteOffset", kByteLimit) ||
-        !required_index(view, path, "byteLength", kByteLimit) || !optional_index(view, path, "byteStride", 253)) {
+        !required_index(view, path, "byteLength", kByteLimit) ||
+        !optional_index(view, path, "byteStride", kMaxStride + 1)) {  // 252 and multiples of 4 only, by the letter
       return false;
     }
-    if (index_or(view, "byteStride", 0) % 4 != 0) return fail(path + "/byteStride", "not a multiple of 4");
     const std::uint64_t size = index_or(root_.items("buffers")[index_or(view, "buffer", 0)], "byteLength", 0);
     const std::uint64_t offset = index_or(view, "byteOffset", 0);
     const std::uint64_t length = index_or(view, "byteLength", 0);
@@ -75,7 +84,7 @@ class AccessorChecker : public JsonChecker {
                    std::uint64_t size, std::uint64_t stride) {
     const std::uint64_t length = index_or(root_.items("bufferViews")[view_index], "byteLength", 0);
     if (count == 0) return offset <= length || fail(path, "its offset lies outside its buffer view");
-    // count < 2^48 and stride < 2^8: no overflow.
+    // count < 2^48 and stride <= 2^12: no overflow.
     const std::uint64_t needed = (count - 1) * stride + size;
     if (offset > length || needed > length - offset) {
       return fail(path, std::to_string(count) + " elements need " + std::to_string(needed) + " bytes from offset " +
@@ -102,20 +111,20 @@ class AccessorChecker : public JsonChecker {
     }
     if (shape == nullptr) return fail(path + "/type", "not one of glTF's types");
     const std::uint64_t count = index_or(accessor, "count", 0);
-    const std::uint64_t size = element_size(*shape, component);
+    const ElementSize size = element_size(*shape, component);
     if (accessor.find("bufferView") != nullptr) {
       const std::uint64_t view = index_or(accessor, "bufferView", 0);
       std::uint64_t stride = index_or(root_.items("bufferViews")[view], "byteStride", 0);
-      if (stride == 0) stride = size;
-      if (stride < size) return fail(path, "its buffer view's byteStride is smaller than one element");
-      if (!check_range(path, view, index_or(accessor, "byteOffset", 0), count, size, stride)) return false;
+      if (stride == 0) stride = size.step;
+      if (stride < size.used) return fail(path, "its buffer view's byteStride is smaller than one element");
+      if (!check_range(path, view, index_or(accessor, "byteOffset", 0), count, size.used, stride)) return false;
     }
     if (!fits_int(path + "/count", count)) return false;
     if (const Json* sparse = accessor.find("sparse")) return check_sparse(*sparse, path + "/sparse", count, size);
     return true;
   }
 
-  bool check_sparse(const Json& sparse, const std::string& path, std::uint64_t element_count, std::uint64_t size) {
+  bool check_sparse(const Json& sparse, const std::string& path, std::uint64_t element_count, ElementSize size) {
     if (!required_index(sparse, path, "count", element_count + 1)) return false;
     const std::uint64_t view_count = root_.items("bufferViews").size();
     for (const std::string_view part : {"indices", "values"}) {
@@ -138,7 +147,7 @@ class AccessorChecker : public JsonChecker {
     return check_range(path + "/indices", index_or(indices, "bufferView", 0), index_or(indices, "byteOffset", 0), count,
                        index_size, index_size) &&
            check_range(path + "/values", index_or(values, "bufferView", 0), index_or(values, "byteOffset", 0), count,
-                       size, size) &&
+                       size.used, size.step) &&
            fits_int(path + "/indices/byteOffset", index_or(indices, "byteOffset", 0)) &&
            fits_int(path + "/values/byteOffset", index_or(values, "byteOffset", 0));
   }

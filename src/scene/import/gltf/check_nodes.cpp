@@ -22,7 +22,9 @@ class NodeChecker : public JsonChecker {
     if (ok()) check_scenes();
     const auto& skins = root_.items("skins");
     for (std::size_t i = 0; i < skins.size() && ok(); ++i) {
-      optional_indices(skins[i], "/skins/" + std::to_string(i), "joints", nodes.size());
+      const std::string path = "/skins/" + std::to_string(i);
+      optional_indices(skins[i], path, "joints", nodes.size());
+      optional_index(skins[i], path, "inverseBindMatrices", root_.items("accessors").size());
     }
   }
 

@@ -5,9 +5,11 @@
 #include <optional>
 #include <utility>
 
+#include "base/printable.h"
 #include "scene/import/gltf/check_base.h"
 #include "scene/import/gltf/gltf.h"
 #include "scene/import/gltf/gltf_import.h"
+#include "scene/import/gltf/uri.h"
 #include "scene/import/gltf/variants.h"
 #include "scene/import/image_mime.h"
 
@@ -46,9 +48,17 @@ void drop_binary_extensions(Json& object, const std::string& what, std::vector<L
 std::string image_name(const Json& image) {
   if (const Json* name = image.find("name")) return *name->string();
   const Json* uri = image.find("uri");
-  if (uri == nullptr || uri->string()->starts_with("data:")) return "";
+  if (uri == nullptr || is_data_uri(*uri->string())) return "";
   const std::string& path = *uri->string();
-  return path.substr(path.find_last_of('/') + 1);  // npos + 1 == 0
+  return path.substr(path.find_last_of("/\\") + 1);  // npos + 1 == 0
+}
+
+/// A URI in a message: no control characters, and not all of a long one.
+std::string shown_uri(const std::string& uri) {
+  constexpr std::size_t kMost = 200;
+  std::size_t size = std::min(uri.size(), kMost);
+  while (size > 0 && size < uri.size() && (static_cast<unsigned char>(uri[size]) & 0xC0U) == 0x80U) --size;
+  return uri.empty() ? uri : printable(std::string_view(uri).substr(0, size), kMost);
 }
 
 /// The bytes of an image where it names any, and else why it has none.
@@ -62,9 +72,11 @@ Result<ImageBytes> find_image_bytes(const GltfAsset& asset, GltfFiles& files, co
   using Found = ImageBytes;
   if (const Json* uri = image.find("uri")) {
     auto opened = files.open(*uri->string());
-    if (!opened && opened.error().code == ErrorCode::kIo && options.may_lack_images) {
+    if (!opened && options.may_lack_images) {
       // In the words of the scene: what the machine says would be another text on another one (I10).
-      return Found{std::nullopt, "its file \"" + *uri->string() + "\" cannot be opened"};
+      if (is_data_uri(*uri->string()))
+        return Found{std::nullopt, "its data URI cannot be read: " + opened.error().detail};
+      return Found{std::nullopt, "its file \"" + shown_uri(*uri->string()) + "\" cannot be opened"};
     }
     if (!opened) return asset.error(opened.error().code, path + "/uri", opened.error().detail);
     return Found{*opened, {}};
@@ -72,6 +84,7 @@ Result<ImageBytes> find_image_bytes(const GltfAsset& asset, GltfFiles& files, co
   const Json* view = image.find("bufferView");
   if (view == nullptr) return Found{std::nullopt, "it names no bytes"};
   const auto bytes = asset.view_bytes(view->index().value_or(0), path + "/bufferView");
+  if (!bytes && options.may_lack_images) return Found{std::nullopt, bytes.error().detail};
   if (!bytes) return bytes.error();
   return Found{*bytes, {}};
 }
@@ -138,8 +151,9 @@ Status carry_images(const GltfAsset& asset, GltfFiles& files, const ImportOption
 
 void carry_extension_names(const Json& root, Json& document) {
   constexpr std::string_view kGone[] = {"KHR_draco_mesh_compression", "KHR_mesh_quantization",
-                                        "EXT_meshopt_compression", "KHR_meshopt_compression",
-                                        "EXT_mesh_gpu_instancing"};
+                                        "EXT_meshopt_compression",    "KHR_meshopt_compression",
+                                        "EXT_mesh_gpu_instancing",    "KHR_mesh_primitive_restart",
+                                        "EXT_mesh_primitive_restart"};
   for (const std::string_view key : {"extensionsUsed", "extensionsRequired"}) {
     Json::Array kept;
     for (const Json& name : root.items(key)) {

@@ -11,7 +11,7 @@ Result<std::span<const std::uint8_t>> GltfFiles::open(const std::string& uri) {
     decoded_.push_back(std::move(data->bytes));
     return std::span<const std::uint8_t>(decoded_.back());
   }
-  auto path = resolve_uri(folder_, uri);
+  auto path = resolve_uri(folder_, uri, allow_outside_);
   if (!path) return path.error();
   const auto known = by_path_.find(path->string());
   if (known != by_path_.end()) return mapped_[known->second].bytes();

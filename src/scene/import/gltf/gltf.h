@@ -42,8 +42,9 @@ enum GltfComponent : std::uint32_t {
 class GltfFiles {
  public:
   /// `files_read`, where given, gets every file that is opened.
-  explicit GltfFiles(std::filesystem::path folder, std::vector<FileId>* files_read = nullptr)
-      : folder_(std::move(folder)), files_read_(files_read) {}
+  explicit GltfFiles(std::filesystem::path folder, std::vector<FileId>* files_read,
+                     std::vector<std::filesystem::path> allow_outside)
+      : folder_(std::move(folder)), files_read_(files_read), allow_outside_(std::move(allow_outside)) {}
   /// The bytes of a URI; they live as long as this object.
   [[nodiscard]] Result<std::span<const std::uint8_t>> open(const std::string& uri);
   void hash(std::span<const std::uint8_t> bytes) { hasher_.update(bytes); }
@@ -53,6 +54,7 @@ class GltfFiles {
  private:
   std::filesystem::path folder_;
   std::vector<FileId>* files_read_;
+  std::vector<std::filesystem::path> allow_outside_;
   std::map<std::string, std::size_t> by_path_;  ///< canonical path -> mapped_
   std::vector<MappedFile> mapped_;
   std::vector<std::vector<std::uint8_t>> decoded_;

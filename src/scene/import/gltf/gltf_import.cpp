@@ -14,6 +14,7 @@
 #include "scene/import/gltf/merge_meshes.h"
 #include "scene/import/gltf/meshopt_views.h"
 #include "scene/import/gltf/primitive.h"
+#include "scene/import/gltf/skins.h"
 #include "scene/import/gltf/uri.h"
 #include "scene/import/gltf/variants.h"
 
@@ -34,6 +35,22 @@ std::uint32_t load_u32(std::span<const std::uint8_t> bytes, std::size_t at) {
 
 std::string_view as_text(std::span<const std::uint8_t> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+constexpr std::uint32_t kJsonChunk = 0x4E4F534Au, kBinChunk = 0x004E4942u;
+
+/// Whether a chunk that stays inside the file could begin there.
+bool may_be_chunk(std::span<const std::uint8_t> bytes, std::size_t at) {
+  return at <= bytes.size() && bytes.size() - at >= 8 && load_u32(bytes, at) <= bytes.size() - at - 8;
+}
+
+/// Where the chunk after one that ends at `end` begins. Chunks start at multiples of 4 and their lengths count the
+/// padding, but writers exist that leave the padding out, and others that do not count it.
+std::size_t next_chunk(std::span<const std::uint8_t> bytes, std::size_t end) {
+  const std::size_t rounded = std::min(bytes.size(), (end + 3) / 4 * 4);
+  if (end == rounded || !may_be_chunk(bytes, end)) return rounded;
+  const bool is_exact = load_u32(bytes, end + 4) == kBinChunk || !may_be_chunk(bytes, rounded);
+  return is_exact ? end : rounded;
 }
 
 /// GLB (glTF 2.0, section 4.4) or plain text. The binary chunk stays where it is mapped.
@@ -66,13 +83,10 @@ Result<Container> open_container(const std::string& file, std::span<const std::u
       return bad(place, "its length of " + std::to_string(size) + " leaves the file");
     }
     const auto body = bytes.subspan(at, size);
-    constexpr std::uint32_t kJson = 0x4E4F534Au, kBin = 0x004E4942u;
-    if (chunk == 0 && type != kJson) return bad(place, "the first chunk is not JSON");
+    if (chunk == 0 && type != kJsonChunk) return bad(place, "the first chunk is not JSON");
     if (chunk == 0) out.text = as_text(body);
-    if (chunk == 1 && type == kBin) out.binary = body;  // other chunks are to be ignored
-    at += size;
-    // Chunks start at multiples of 4; a last chunk without its padding is common and harmless.
-    at = std::min(bytes.size(), (at + 3) / 4 * 4);
+    if (chunk == 1 && type == kBinChunk) out.binary = body;  // other chunks are to be ignored
+    at = next_chunk(bytes, at + size);
   }
   return out;
 }
@@ -129,8 +143,24 @@ std::uint64_t count_draco_bytes(const GltfAsset& asset) {
   return sum;
 }
 
-Status read_meshes(const GltfAsset& asset, const ImportOptions& options, DecodeBudget& budget, Scene& scene) {
-  const PrimitiveContext context{&asset, &options, &budget, &scene.left_out};
+/// EXT_ has groups of primitives besides, whose parts stand for themselves.
+bool declares_restarts(const Json& root) {
+  for (const Json& name : root.items("extensionsUsed")) {
+    if (name.string()->ends_with("_mesh_primitive_restart")) return true;
+  }
+  for (const Json& name : root.items("extensionsRequired")) {
+    if (name.string()->ends_with("_mesh_primitive_restart")) return true;
+  }
+  return false;
+}
+
+/// `weights`: of the vertices of those that a skin moves, by mesh and primitive.
+Status read_meshes(const GltfAsset& asset, const ImportOptions& options, DecodeBudget& budget, Scene& scene,
+                   std::vector<std::vector<VertexWeights>>& weights) {
+  PrimitiveContext context{&asset, &options, &budget, &scene.left_out};
+  context.has_restarts = declares_restarts(asset.root);
+  const std::vector<bool> is_skinned = find_skinned_meshes(asset);
+  weights.resize(asset.model.meshes.size());
   bool needs_default_material = false;
   const Json::Array& meshes = asset.root.items("meshes");  // looked up once: an object's members are a list
   for (std::size_t m = 0; m < asset.model.meshes.size(); ++m) {
@@ -146,9 +176,11 @@ Status read_meshes(const GltfAsset& asset, const ImportOptions& options, DecodeB
       if (const Json* object = json.find("extensions")) {
         for (const JsonMember& member : *object->object()) extensions.insert(pointer_part(member.key));
       }
-      auto primitive = read_primitive(context, m, p, json, mesh.drops);
+      VertexWeights of_primitive;
+      auto primitive = read_primitive(context, m, p, json, mesh.drops, is_skinned[m] ? &of_primitive : nullptr);
       if (!primitive) return primitive.error();
       if (!*primitive) continue;
+      weights[m].push_back(std::move(of_primitive));
       needs_default_material = needs_default_material || !(*primitive)->material.is_valid();
       mesh.primitives.push_back(std::move(**primitive));
     }
@@ -159,7 +191,21 @@ Status read_meshes(const GltfAsset& asset, const ImportOptions& options, DecodeB
     for (const std::string& name : extensions) {
       scene.left_out.push_back({what + name, "an extension of primitives that is not kept"});
     }
+    if (const Json* object = meshes[m].find("extensions"); object != nullptr && object->is_object()) {
+      for (const JsonMember& member : *object->object()) {
+        if (member.key.ends_with("_mesh_primitive_restart")) continue;  // its groups are of the primitives themselves
+        scene.left_out.push_back({what + pointer_part(member.key), "an extension of meshes that is not kept"});
+      }
+    }
     scene.meshes.push_back(std::move(mesh));
+  }
+  if (context.clamped_colors != 0) {
+    scene.left_out.push_back({"COLOR_0 of " + std::to_string(context.clamped_colors) + " vertices",
+                              "values above 1 or below 0 are clamped to 0 … 1"});
+  }
+  if (context.whole_colors != 0) {
+    scene.left_out.push_back({"COLOR_0 of " + std::to_string(context.whole_colors) + " vertices",
+                              "whole numbers that are not said to be normalized; they are taken as if they were"});
   }
   if (!needs_default_material) return Ok{};
   const MaterialId default_material(scene.materials.size());
@@ -170,6 +216,20 @@ Status read_meshes(const GltfAsset& asset, const ImportOptions& options, DecodeB
     }
   }
   return Ok{};
+}
+
+/// Where import finds the file of a URI, or would find it were it there. Errors: as resolve_uri, but never kIo.
+Result<std::vector<std::filesystem::path>> places_of_uri(const std::filesystem::path& folder, const std::string& uri,
+                                                         std::span<const std::filesystem::path> allow_outside) {
+  std::vector<std::filesystem::path> missing;
+  for (const std::string& name : paths_of_uri(uri)) {
+    const std::filesystem::path where = folder / std::filesystem::path(name).lexically_normal();
+    const auto found = resolve_below(folder, name, allow_outside);
+    if (found) return std::vector{where};
+    if (found.error().code == ErrorCode::kIo) missing.push_back(where);
+  }
+  if (!missing.empty()) return missing;
+  return resolve_uri(folder, uri, allow_outside).error();
 }
 
 }  // namespace
@@ -202,7 +262,7 @@ Result<Scene> import_gltf(const std::filesystem::path& path, std::span<const std
   asset.root = std::move(*root);
   if (auto status = check_gltf(asset.root, asset.file); !status) return status.error();
 
-  GltfFiles files(path.parent_path(), options.files_read);
+  GltfFiles files(path.parent_path(), options.files_read, options.allow_outside);
   files.hash(bytes);
   if (auto status = load_buffers(asset, files, *container); !status) return status.error();
   auto model = read_gltf_model(asset.root);
@@ -222,24 +282,24 @@ Result<Scene> import_gltf(const std::filesystem::path& path, std::span<const std
   DecodeBudget budget(file_bytes, std::min(draco_bytes + stream_bytes, file_bytes), options.max_decoded);
   scene.materials = read_materials(asset, scene.left_out);
   keep_uv_sets_of_variants(asset, scene.materials);
-  if (auto status = read_meshes(asset, options, budget, scene); !status) return status.error();
+  std::vector<std::vector<VertexWeights>> weights;
+  if (auto status = read_meshes(asset, options, budget, scene, weights); !status) return status.error();
   if (auto status = expand_instancing(asset, budget, file_bytes, options.max_decoded, scene.left_out); !status) {
     return status.error();
   }
+  if (auto status = settle_skins(asset, weights, budget, scene); !status) return status.error();
+  weights.clear();
   scene.instances = read_instances(asset, options.scene, scene.left_out);
   scene.choice = options.scene;
   merge_equal_meshes(asset, scene);
-  const std::size_t skin_count = asset.root.items("skins").size();
-  for (std::size_t s = 0; s < skin_count; ++s) {
-    scene.left_out.push_back({"skin " + std::to_string(s), "meshes are built static, in their bind pose"});
-  }
   if (auto status = carry_document(asset, files, options, budget, scene); !status) return status.error();
   scene.source_hash = files.hash_hex();
   return scene;
 }
 
 Result<std::vector<FileReference>> list_gltf_references(const std::filesystem::path& path,
-                                                        std::span<const std::uint8_t> bytes) {
+                                                        std::span<const std::uint8_t> bytes,
+                                                        std::span<const std::filesystem::path> allow_outside) {
   using Kind = FileReference::Kind;
   const std::string file = path.string();
   const auto container = open_container(file, bytes);
@@ -255,15 +315,18 @@ Result<std::vector<FileReference>> list_gltf_references(const std::filesystem::p
       const Json* uri = items[i].find("uri");
       if (uri == nullptr || uri->string() == nullptr || is_data_uri(*uri->string())) continue;
       if (kind == Kind::kBuffer && is_meshopt_fallback(items[i])) continue;
-      const auto found = resolve_uri(path.parent_path(), *uri->string());
-      if (!found && found.error().code != ErrorCode::kIo) {
+      const auto places = places_of_uri(path.parent_path(), *uri->string(), allow_outside);
+      if (!places && kind == Kind::kBuffer) {
         const std::string place = file + ": /" + std::string(key) + "/" + std::to_string(i) + "/uri";
-        return Error{found.error().code, place, found.error().detail};
+        return Error{places.error().code, place, places.error().detail};
       }
-      const auto name = percent_decode(*uri->string());
-      if (!name) return name.error();
-      const std::filesystem::path where = path.parent_path() / std::filesystem::path(*name).lexically_normal();
-      if (known.insert(where).second) references.push_back({kind, *uri->string(), where});
+      if (!places) {
+        references.push_back({kind, *uri->string(), {}});
+        continue;
+      }
+      for (const std::filesystem::path& where : *places) {
+        if (known.insert(where).second) references.push_back({kind, *uri->string(), where});
+      }
     }
   }
   return references;

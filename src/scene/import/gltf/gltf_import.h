@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "scene/import/gltf/tinygltf.h"
 #include "scene/import/import.h"
 #include "scene/scene.h"
 
@@ -23,11 +24,17 @@ struct Json;
                                         const ImportOptions& options);
 
 /// list_references (import/import.h) of a glTF or GLB file.
-[[nodiscard]] Result<std::vector<FileReference>> list_gltf_references(const std::filesystem::path& path,
-                                                                      std::span<const std::uint8_t> bytes);
+[[nodiscard]] Result<std::vector<FileReference>> list_gltf_references(
+    const std::filesystem::path& path, std::span<const std::uint8_t> bytes,
+    std::span<const std::filesystem::path> allow_outside);
 
 /// One SceneMaterial per glTF material, in order; TextureUse::blob is carry_document's. \pre the asset is checked
 [[nodiscard]] std::vector<SceneMaterial> read_materials(const GltfAsset& asset, std::vector<LeftOut>& left_out);
+
+/// Of the node's own frame to its parent's.
+[[nodiscard]] Mat4d local_transform(const tinygltf::Node& node);
+/// Whether KHR_node_visibility hides the node itself; its children are hidden with it.
+[[nodiscard]] bool is_hidden(const Json& node);
 
 /// The visible nodes that draw a mesh, depth first over the default scene, which `choice` made so where it is not empty
 /// (choose_scene.h). \pre the asset is checked: nodes form trees

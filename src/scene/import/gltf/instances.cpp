@@ -9,8 +9,6 @@
 
 namespace meshlode::scene {
 
-namespace {
-
 Mat4d local_transform(const tinygltf::Node& node) {
   if (node.matrix.size() == 16) {
     Mat4d m;
@@ -41,13 +39,14 @@ Mat4d local_transform(const tinygltf::Node& node) {
   return m;
 }
 
-/// Whether the node itself says so; its children are hidden with it.
 bool is_hidden(const Json& node) {
   const Json* extensions = node.find("extensions");
   const Json* visibility = extensions != nullptr ? extensions->find("KHR_node_visibility") : nullptr;
   const Json* visible = visibility != nullptr ? visibility->find("visible") : nullptr;
   return visible != nullptr && !std::get<bool>(visible->value);
 }
+
+namespace {
 
 /// The roots of the default scene.
 std::vector<int> find_roots(const GltfAsset& asset, std::string_view choice, std::vector<LeftOut>& left_out) {

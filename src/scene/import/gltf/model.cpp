@@ -3,6 +3,7 @@
 //   opens what buffers and images name and keeps their bytes: both are withheld, and bytes are read where they are
 //   mapped;
 //   reads 3.0 as no integer, so whole numbers are written as such;
+//   refuses strides that are no multiple of 4: they are withheld, and set in its model afterwards;
 //   refuses indices whose accessor has no view (Draco's), skins without joints and channels without a node: each gets
 //   what says the same and passes;
 //   keeps whole numbers of extensions and extras in 32 bits and drops what is empty or null: both stay on the tree, and
@@ -56,7 +57,7 @@ std::string text_for_tinygltf(const Json& root) {
   const Json empty_view = Json::make_index(root.items("bufferViews").size());
   const auto leave = [](Json&) {};
   Json out = Json::make_object();
-  Json views = mended(root, "bufferViews", leave);
+  Json views = mended(root, "bufferViews", [](Json& view) { view.erase("byteStride"); });
   Json view = Json::make_object();
   view.set("buffer", Json::make_index(0));
   view.set("byteLength", Json::make_index(0));
@@ -138,6 +139,11 @@ Result<tinygltf::Model> read_gltf_model(const Json& root) {
     if (accessor.bufferView == empty_view) accessor.bufferView = -1;
   }
   if (!model->bufferViews.empty()) model->bufferViews.pop_back();
+  const auto& views = root.items("bufferViews");
+  for (std::size_t v = 0; v < views.size() && v < model->bufferViews.size(); ++v) {
+    const Json* stride = views[v].find("byteStride");
+    if (stride != nullptr) model->bufferViews[v].byteStride = stride->index().value_or(0);
+  }
   if (!is_whole(*model, root)) {
     return Error{ErrorCode::kInvalid, "", "tinygltf did not understand every part of it: " + problems};
   }

@@ -11,7 +11,9 @@
 
 #include "base/byte_size.h"
 #include "scene/import/gltf/accessor.h"
+#include "scene/import/gltf/corners.h"
 #include "scene/import/gltf/draco_decode.h"
+#include "scene/import/gltf/normals.h"
 
 namespace meshlode::scene {
 
@@ -19,7 +21,6 @@ namespace {
 
 constexpr int kModeTriangles = TINYGLTF_MODE_TRIANGLES;
 constexpr int kModeStrip = TINYGLTF_MODE_TRIANGLE_STRIP;
-constexpr int kModeFan = TINYGLTF_MODE_TRIANGLE_FAN;
 
 /// Where the vertices and corners of a primitive come from: accessors or a Draco mesh.
 struct PrimitiveSource {
@@ -31,7 +32,7 @@ struct PrimitiveSource {
 
 class PrimitiveReader {
  public:
-  PrimitiveReader(const PrimitiveContext& context, std::size_t mesh, std::size_t primitive, const Json& json,
+  PrimitiveReader(PrimitiveContext& context, std::size_t mesh, std::size_t primitive, const Json& json,
                   ImportDrops& drops)
       : asset_(*context.asset),
         context_(context),
@@ -41,7 +42,7 @@ class PrimitiveReader {
         source_(asset_.model.meshes[mesh].primitives[primitive]),
         json_(json) {}
 
-  Result<std::optional<Primitive>> run();
+  Result<std::optional<Primitive>> run(VertexWeights* weights);
 
  private:
   using Positions = std::vector<Vec3d>;
@@ -62,18 +63,20 @@ class PrimitiveReader {
   Status open_accessors();
   Status open_draco(const Json& draco);
   Status check_types() const;
-  Result<std::vector<std::uint32_t>> read_corners();
+  Result<std::vector<std::uint32_t>> read_triangles();
   Status read_positions(std::vector<std::uint32_t>& corners);
   void keep_used(const std::vector<std::uint32_t>& corners);
   Status read_attributes();
   void read_normals(const AccessorReader& reader);
   void read_uvs(const AccessorReader& reader, std::size_t set);
+  [[nodiscard]] bool has_whole_colors(const AccessorReader& reader) const;
   void read_colors(const AccessorReader& reader);
+  Status read_weights(VertexWeights& out);
   /// The source vertex that stored vertex i was.
   [[nodiscard]] std::uint64_t source_vertex(std::size_t i) const { return is_compact_ ? used_[i] : i; }
 
   const GltfAsset& asset_;
-  const PrimitiveContext& context_;
+  PrimitiveContext& context_;
   ImportDrops& drops_;
   std::string path_, what_;
   const tinygltf::Primitive& source_;
@@ -183,51 +186,27 @@ Status PrimitiveReader::check_types() const {
 }
 
 /// Three corners per triangle, each below vertex_count.
-Result<std::vector<std::uint32_t>> PrimitiveReader::read_corners() {
+Result<std::vector<std::uint32_t>> PrimitiveReader::read_triangles() {
   if (in_.draco) return in_.draco->indices;
-  const std::uint64_t count = in_.indices ? in_.indices->count() : in_.vertex_count;
-  std::uint64_t triangle_count = count / 3;
-  if (source_.mode != kModeTriangles) triangle_count = count < 3 ? 0 : count - 2;
-  if (!context_.budget->take(3 * triangle_count)) return no_budget(path_);
-  if (const std::uint64_t rest = source_.mode == kModeTriangles ? count % 3 : 0; rest != 0) {
+  CornerSource source;
+  source.indices = in_.indices ? &*in_.indices : nullptr;
+  source.mode = source_.mode;
+  source.vertex_count = in_.vertex_count;
+  source.may_restart = context_.has_restarts;
+  source.repair = context_.options->repair;
+  if (!context_.budget->take(3 * source.triangle_count())) return no_budget(path_);
+  if (const std::uint64_t rest = source_.mode == kModeTriangles ? source.count() % 3 : 0; rest != 0) {
     leave_out("", "its last " + std::to_string(rest) + " corners make no triangle");
   }
-  // "indices MUST NOT contain the maximum value of their type": it would mean primitive restart (3.7.2.1).
-  std::uint64_t restart = std::numeric_limits<std::uint64_t>::max();
-  if (in_.indices) {
-    restart = in_.indices->component_type() == kGltfUnsignedByte    ? 0xFFu
-              : in_.indices->component_type() == kGltfUnsignedShort ? 0xFFFFu
-                                                                    : 0xFFFFFFFFu;
+  auto corners = read_corners(source);
+  if (!corners) return asset_.invalid(path_ + "/indices", corners.error().detail);
+  if (corners->restarts != 0 && !context_.has_restarts) {
+    leave_out("indices",
+              std::to_string(corners->restarts) + " restart values that no extension allows; it is split there");
   }
-  std::vector<std::uint32_t> corners;
-  corners.reserve(3 * triangle_count);
-  for (std::uint64_t t = 0; t < triangle_count; ++t) {
-    std::array<std::uint64_t, 3> at{3 * t, 3 * t + 1, 3 * t + 2};
-    // Every second triangle of a strip turns the other way; a fan's centre comes last.
-    if (source_.mode == kModeStrip) at = {t, t + (1 + t % 2), t + (2 - t % 2)};
-    if (source_.mode == kModeFan) at = {t + 1, t + 2, 0};
-    std::array<std::uint32_t, 3> triangle{};
-    bool is_valid = true;
-    for (std::size_t c = 0; c < 3; ++c) {
-      triangle[c] = in_.indices ? in_.indices->index(at[c]) : static_cast<std::uint32_t>(at[c]);
-      if (triangle[c] < in_.vertex_count && triangle[c] != restart) continue;
-      if (!context_.options->repair) {
-        const std::string why = triangle[c] == restart
-                                    ? " is the primitive restart value"
-                                    : " is out of range: there are " + std::to_string(in_.vertex_count) + " vertices";
-        return asset_.invalid(path_ + "/indices",
-                              "index " + std::to_string(triangle[c]) + " at " + std::to_string(at[c]) + why);
-      }
-      is_valid = false;
-    }
-    if (is_valid) {
-      corners.insert(corners.end(), triangle.begin(), triangle.end());
-    } else {
-      ++drops_.repaired;
-    }
-  }
-  if (corners.size() != 3 * triangle_count) is_compact_ = true;
-  return corners;
+  drops_.repaired += corners->broken;
+  if (corners->broken != 0) is_compact_ = true;
+  return std::move(corners->vertices);
 }
 
 void PrimitiveReader::keep_used(const std::vector<std::uint32_t>& corners) {
@@ -282,39 +261,15 @@ Status PrimitiveReader::read_positions(std::vector<std::uint32_t>& corners) {
 }
 
 void PrimitiveReader::read_normals(const AccessorReader& reader) {
-  std::vector<std::uint32_t> bad;
   out_.normals.resize(out_.positions.size());
   for (std::size_t i = 0; i < out_.positions.size(); ++i) {
     const auto e = reader.element(source_vertex(i));
-    const Vec3f n(static_cast<float>(e[0]), static_cast<float>(e[1]), static_cast<float>(e[2]));
-    out_.normals[i] = n;
-    const double length = e[0] * e[0] + e[1] * e[1] + e[2] * e[2];
-    if (!(length > 0.0) || !std::isfinite(length)) bad.push_back(static_cast<std::uint32_t>(i));
+    out_.normals[i] = Vec3f(static_cast<float>(e[0]), static_cast<float>(e[1]), static_cast<float>(e[2]));
   }
-  if (bad.empty()) return;
-  // A broken normal becomes the area-weighted sum of its triangles' own.
-  std::vector<Vec3d> sums(bad.size(), Vec3d(0.0));
-  for (std::size_t t = 0; t < out_.indices.size(); t += 3) {
-    for (std::size_t c = 0; c < 3; ++c) {
-      const auto slot = std::lower_bound(bad.begin(), bad.end(), out_.indices[t + c]);
-      if (slot == bad.end() || *slot != out_.indices[t + c]) continue;
-      const Vec3d& p = out_.positions[out_.indices[t]];
-      sums[static_cast<std::size_t>(slot - bad.begin())] +=
-          glm::cross(out_.positions[out_.indices[t + 1]] - p, out_.positions[out_.indices[t + 2]] - p);
-    }
+  if (const std::size_t bad = mend_normals(out_); bad != 0) {
+    leave_out("NORMAL",
+              std::to_string(bad) + " normals are not finite or have no length; the triangles' own stand in for them");
   }
-  for (std::size_t i = 0; i < bad.size(); ++i) {
-    const Vec3d& s = sums[i];
-    const double largest = std::max({std::fabs(s.x), std::fabs(s.y), std::fabs(s.z)});
-    Vec3d n(0.0, 0.0, 1.0);
-    if (largest > 0.0 && std::isfinite(largest)) {
-      n = s / largest;  // so that squares neither overflow nor vanish
-      n /= std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z);
-    }
-    out_.normals[bad[i]] = Vec3f(n);
-  }
-  leave_out("NORMAL", std::to_string(bad.size()) +
-                          " normals are not finite or have no length; the triangles' own stand in for them");
 }
 
 void PrimitiveReader::read_uvs(const AccessorReader& reader, std::size_t set) {
@@ -334,25 +289,77 @@ void PrimitiveReader::read_uvs(const AccessorReader& reader, std::size_t set) {
   }
 }
 
+/// glTF has normalized whole numbers alone. Where a file forgets to say so, one above 1 tells what is meant.
+bool PrimitiveReader::has_whole_colors(const AccessorReader& reader) const {
+  if (reader.is_normalized() || reader.component_type() == kGltfFloat) return false;
+  for (std::size_t i = 0; i < out_.positions.size(); ++i) {
+    const auto e = reader.element(source_vertex(i));
+    if (std::any_of(e.begin(), e.end(), [](double c) { return c > 1.0; })) return true;
+  }
+  return false;
+}
+
 void PrimitiveReader::read_colors(const AccessorReader& reader) {
   std::size_t bad = 0;
   out_.colors.resize(out_.positions.size());
+  const bool is_whole = has_whole_colors(reader);
+  if (is_whole) context_.whole_colors += out_.colors.size();
   for (std::size_t i = 0; i < out_.colors.size(); ++i) {
-    auto e = reader.element(source_vertex(i));
+    auto e = reader.element(source_vertex(i), is_whole || reader.is_normalized());
     if (reader.component_count() == 3) e[3] = 1.0;
     bool is_finite = true;
+    bool is_clamped = false;
     for (double& c : e) {
       is_finite = is_finite && std::isfinite(c);
+      is_clamped = is_clamped || c < 0.0 || c > 1.0;
       c = std::clamp(c, 0.0, 1.0);
     }
     if (!is_finite) {
       e = {1.0, 1.0, 1.0, 1.0};
       ++bad;
+    } else if (is_clamped) {
+      ++context_.clamped_colors;
     }
     out_.colors[i] =
         Vec4f(static_cast<float>(e[0]), static_cast<float>(e[1]), static_cast<float>(e[2]), static_cast<float>(e[3]));
   }
   if (bad != 0) leave_out("COLOR_0", std::to_string(bad) + " colours are not finite; white stands in for them");
+}
+
+/// JOINTS_n and WEIGHTS_n, as many pairs as there are.
+Status PrimitiveReader::read_weights(VertexWeights& out) {
+  std::vector<std::pair<const AccessorReader*, const AccessorReader*>> pairs;
+  for (std::size_t n = 0;; ++n) {
+    const auto joints = in_.attributes.find("JOINTS_" + std::to_string(n));
+    const auto weights = in_.attributes.find("WEIGHTS_" + std::to_string(n));
+    if (joints == in_.attributes.end() || weights == in_.attributes.end()) break;
+    for (const auto& [name, reader] : {*joints, *weights}) {
+      const std::string path = path_ + "/attributes/" + name;
+      if (reader.component_count() != 4)
+        return asset_.invalid(path, "an accessor type that this attribute cannot have");
+      if (reader.count() != in_.vertex_count) {
+        return asset_.invalid(
+            path, std::to_string(reader.count()) + " elements where POSITION has " + std::to_string(in_.vertex_count));
+      }
+    }
+    pairs.emplace_back(&joints->second, &weights->second);
+  }
+  const std::size_t count = out_.positions.size();
+  if (!context_.budget->take(2 * count * pairs.size())) return no_budget(path_);
+  out.width = 4 * pairs.size();
+  out.joints.reserve(count * out.width);
+  out.weights.reserve(count * out.width);
+  for (std::size_t i = 0; i < count; ++i) {
+    for (const auto& [joints, weights] : pairs) {
+      const auto j = joints->element(source_vertex(i));
+      const auto w = weights->element(source_vertex(i));
+      for (std::size_t c = 0; c < 4; ++c) {
+        out.joints.push_back(j[c] >= 0.0 && j[c] < kNoIndex ? static_cast<std::uint32_t>(j[c]) : kNoIndex);
+        out.weights.push_back(w[c]);
+      }
+    }
+  }
+  return Ok{};
 }
 
 Status PrimitiveReader::read_attributes() {
@@ -375,7 +382,7 @@ Status PrimitiveReader::read_attributes() {
   return Ok{};
 }
 
-Result<std::optional<Primitive>> PrimitiveReader::run() {
+Result<std::optional<Primitive>> PrimitiveReader::run(VertexWeights* weights) {
   if (source_.mode < kModeTriangles) {
     leave_out("", source_.mode == 0 ? "points are not triangles" : "lines are not triangles");
     return std::optional<Primitive>{};
@@ -387,20 +394,25 @@ Result<std::optional<Primitive>> PrimitiveReader::run() {
   const Json* draco = draco_json();
   if (auto status = draco != nullptr ? open_draco(*draco) : open_accessors(); !status) return status.error();
   if (auto status = check_types(); !status) return status.error();
-  auto corners = read_corners();
+  auto corners = read_triangles();
   if (!corners) return corners.error();
   if (auto status = read_positions(*corners); !status) return status.error();
   out_.indices = std::move(*corners);
   if (source_.material >= 0) out_.material = MaterialId(static_cast<std::size_t>(source_.material));
   if (auto status = read_attributes(); !status) return status.error();
+  if (weights != nullptr) {
+    if (auto status = read_weights(*weights); !status) return status.error();
+  } else if (in_.attributes.contains("JOINTS_0")) {
+    leave_out("JOINTS_0", "no node draws the mesh with a skin; joints and weights are left out");
+  }
   return std::optional<Primitive>(std::move(out_));
 }
 
 }  // namespace
 
-Result<std::optional<Primitive>> read_primitive(const PrimitiveContext& context, std::size_t mesh,
-                                                std::size_t primitive, const Json& json, ImportDrops& drops) {
-  return PrimitiveReader(context, mesh, primitive, json, drops).run();
+Result<std::optional<Primitive>> read_primitive(PrimitiveContext& context, std::size_t mesh, std::size_t primitive,
+                                                const Json& json, ImportDrops& drops, VertexWeights* weights) {
+  return PrimitiveReader(context, mesh, primitive, json, drops).run(weights);
 }
 
 }  // namespace meshlode::scene

@@ -4,7 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <iterator>
+#include <optional>
 #include <system_error>
+
+#include "base/printable.h"
+#include "base/utf8.h"
 
 namespace meshlode::scene {
 
@@ -42,14 +47,53 @@ bool has_scheme(std::string_view uri) {
   });
 }
 
+/// Whether the head of a data URI ends in ";base64", in letters of either case.
+bool is_base64(std::string_view header) {
+  constexpr std::string_view kSuffix = ";base64";
+  return header.size() >= kSuffix.size() &&
+         std::equal(kSuffix.begin(), kSuffix.end(), header.end() - static_cast<std::ptrdiff_t>(kSuffix.size()),
+                    [](char a, char b) { return a == std::tolower(static_cast<unsigned char>(b)); });
+}
+
+/// Percent-encoded bytes, which may be anything, NUL too.
+Result<std::vector<std::uint8_t>> percent_decode_bytes(std::string_view body) {
+  std::vector<std::uint8_t> out;
+  out.reserve(body.size());
+  for (std::size_t i = 0; i < body.size(); ++i) {
+    if (body[i] != '%') {
+      out.push_back(static_cast<std::uint8_t>(body[i]));
+      continue;
+    }
+    const int high = i + 2 < body.size() ? hex_digit(body[i + 1]) : -1;
+    const int low = i + 2 < body.size() ? hex_digit(body[i + 2]) : -1;
+    if (high < 0 || low < 0) return invalid("a broken percent escape in a data URI");
+    out.push_back(static_cast<std::uint8_t>(high * 16 + low));
+    i += 2;
+  }
+  return out;
+}
+
 bool is_below(const std::filesystem::path& folder, const std::filesystem::path& file) {
   auto f = folder.begin();
   auto p = file.begin();
   for (; f != folder.end(); ++f, ++p) {
-    if (f->empty()) continue;  // a trailing slash
+    if (f->empty()) break;  // a trailing slash
     if (p == file.end() || *p != *f) return false;
   }
   return p != file.end();
+}
+
+constexpr std::string_view kFileScheme = "file:";
+
+bool is_file_uri(std::string_view uri) {
+  return uri.size() >= kFileScheme.size() &&
+         std::equal(kFileScheme.begin(), kFileScheme.end(), uri.begin(),
+                    [](char a, char b) { return a == std::tolower(static_cast<unsigned char>(b)); });
+}
+
+/// A name of the file's for a terminal: what is decoded from it may be any bytes.
+std::string shown_name(std::string_view name) {
+  return printable(as_utf8(name.substr(0, 200)), std::string::npos);
 }
 
 }  // namespace
@@ -104,59 +148,97 @@ Result<DataUri> decode_data_uri(std::string_view uri) {
   const std::size_t comma = uri.find(',');
   if (comma == std::string_view::npos) return invalid("a data URI without a comma");
   std::string_view header = uri.substr(5, comma - 5);
-  const std::string_view body = uri.substr(comma + 1);
+  std::string_view body = uri.substr(comma + 1);
   DataUri out;
   out.mime_type = std::string(header.substr(0, header.find(';')));
-  constexpr std::string_view kBase64Suffix = ";base64";
-  if (header.size() >= kBase64Suffix.size() && header.substr(header.size() - kBase64Suffix.size()) == kBase64Suffix) {
-    auto bytes = base64_decode(body);
+  if (!is_base64(header)) {
+    auto bytes = percent_decode_bytes(body);
     if (!bytes) return bytes.error();
     out.bytes = std::move(*bytes);
     return out;
   }
-  // Percent-encoded bytes may be anything, NUL too.
-  for (std::size_t i = 0; i < body.size(); ++i) {
-    if (body[i] != '%') {
-      out.bytes.push_back(static_cast<std::uint8_t>(body[i]));
-      continue;
-    }
-    const int high = i + 2 < body.size() ? hex_digit(body[i + 1]) : -1;
-    const int low = i + 2 < body.size() ? hex_digit(body[i + 2]) : -1;
-    if (high < 0 || low < 0) return invalid("a broken percent escape in a data URI");
-    out.bytes.push_back(static_cast<std::uint8_t>(high * 16 + low));
-    i += 2;
+  // "=" and "+" may be escaped, and whoever wraps lines puts breaks between the characters.
+  std::string plain;
+  if (body.find_first_of("% \t\r\n") != std::string_view::npos) {
+    const auto unescaped = percent_decode_bytes(body);
+    if (!unescaped) return unescaped.error();
+    std::copy_if(unescaped->begin(), unescaped->end(), std::back_inserter(plain),
+                 [](std::uint8_t c) { return c != ' ' && c != '\t' && c != '\r' && c != '\n'; });
+    body = plain;
+  }
+  auto bytes = base64_decode(body);
+  if (!bytes) return bytes.error();
+  out.bytes = std::move(*bytes);
+  return out;
+}
+
+std::vector<std::string> paths_of_uri(std::string_view uri) {
+  std::vector<std::string> out;
+  const auto add = [&](std::string path) {
+    if (!path.empty() && std::find(out.begin(), out.end(), path) == out.end()) out.push_back(std::move(path));
+  };
+  std::string_view text = uri;
+  if (has_scheme(uri)) {
+    if (!is_file_uri(uri)) return out;
+    text.remove_prefix(kFileScheme.size());
+    if (text.starts_with("//")) text.remove_prefix(std::min(text.find('/', 2), text.size()));  // file://host/path
+    if (!text.starts_with('/')) return out;
+  }
+  if (auto decoded = percent_decode(text)) add(std::move(*decoded));
+  add(std::string(text));
+  for (std::size_t i = 0, count = out.size(); i < count; ++i) {
+    std::string path = out[i];
+    std::replace(path.begin(), path.end(), '\\', '/');
+    add(std::move(path));
   }
   return out;
 }
 
-Result<std::filesystem::path> resolve_uri(const std::filesystem::path& folder, std::string_view uri) {
-  if (has_scheme(uri)) {
-    return Error{ErrorCode::kUnsupported, "",
-                 "only data URIs and relative paths are read, not \"" + std::string(uri.substr(0, 60)) + "\""};
+Result<std::filesystem::path> resolve_uri(const std::filesystem::path& folder, std::string_view uri,
+                                          std::span<const std::filesystem::path> allowed) {
+  const std::vector<std::string> paths = paths_of_uri(uri);
+  const Error not_read{ErrorCode::kUnsupported, "",
+                       "only data URIs and paths are read, not \"" + shown_name(uri) + "\""};
+  if (paths.empty() && !uri.empty()) return not_read;
+  if (paths.empty()) return invalid("an empty URI");
+  std::optional<Error> first;
+  for (const std::string& path : paths) {
+    auto found = resolve_below(folder, path, allowed);
+    if (found) return found;
+    if (!first) first = found.error();
   }
-  auto decoded = percent_decode(uri);
-  if (!decoded) return decoded.error();
-  if (decoded->empty()) return invalid("an empty URI");
-  return resolve_below(folder, *decoded);
+  if (auto decoded = percent_decode(uri); !decoded) return decoded.error();
+  return is_file_uri(uri) && first->code == ErrorCode::kInvalid ? not_read : *first;
 }
 
-Result<std::filesystem::path> resolve_below(const std::filesystem::path& folder, const std::string& path) {
+Result<std::filesystem::path> resolve_below(const std::filesystem::path& folder, const std::string& path,
+                                            std::span<const std::filesystem::path> allowed) {
   namespace fs = std::filesystem;
   if (path.find('\0') != std::string::npos) return invalid("a NUL byte in a path");
-  const fs::path relative(path);
-  if (relative.is_absolute()) return invalid("an absolute path: \"" + path + "\"");
-  // First by its letters, so that nothing outside is even looked at; then as it is on the disk, links followed.
-  const fs::path tidy = relative.lexically_normal();
-  if (tidy.begin() != tidy.end() && *tidy.begin() == "..") {
-    return invalid("a path that leaves the scene's folder: \"" + path + "\"");
-  }
+  const fs::path tidy = fs::path(path).lexically_normal();
   std::error_code error;
   const fs::path root = fs::canonical(folder.empty() ? fs::path(".") : folder, error);
   if (error) return Error{ErrorCode::kIo, "", "the scene's folder cannot be resolved: " + error.message()};
-  const fs::path file = fs::canonical(root / tidy, error);
-  if (error) return Error{ErrorCode::kIo, "", "cannot open \"" + path + "\": " + error.message()};
-  if (!is_below(root, file)) {
-    return invalid("a link that leaves the scene's folder: \"" + path + "\"");
+  // First by its letters, so that nothing outside is even looked at; then as it is on the disk, links followed.
+  const fs::path where = (root / tidy).lexically_normal();  // an absolute path stands for itself
+  const bool leaves = tidy.is_absolute() || (tidy.begin() != tidy.end() && *tidy.begin() == "..");
+  std::vector<fs::path> roots{root};
+  bool is_allowed = !leaves;
+  for (const fs::path& each : allowed) {
+    const fs::path real = fs::canonical(each, error);
+    if (error) continue;  // a folder that is not there allows nothing
+    const fs::path named = fs::absolute(each, error).lexically_normal();
+    is_allowed = is_allowed || is_below(named, where) || is_below(real, where);
+    roots.push_back(real);
+  }
+  if (!is_allowed && tidy.is_absolute())
+    return invalid("an absolute path, in no folder of --allow-outside: \"" + shown_name(path) + "\"");
+  if (!is_allowed)
+    return invalid("a path that leaves the scene's folder, into none of --allow-outside: \"" + shown_name(path) + "\"");
+  const fs::path file = fs::canonical(where, error);
+  if (error) return Error{ErrorCode::kIo, "", "cannot open \"" + shown_name(path) + "\": " + error.message()};
+  if (std::none_of(roots.begin(), roots.end(), [&](const fs::path& each) { return is_below(each, file); })) {
+    return invalid("a link that leaves the scene's folder, into none of --allow-outside: \"" + shown_name(path) + "\"");
   }
   return file;
 }

@@ -69,7 +69,7 @@ class ObjMaterials {
   }
 
   Result<MappedFile> open(const std::string& name, std::filesystem::path& path) {
-    auto resolved = resolve_below(folder_, with_slashes(name));
+    auto resolved = resolve_below(folder_, with_slashes(name), options_.allow_outside);
     if (!resolved) return resolved.error();
     path = *resolved;
     auto file = MappedFile::open(path);
@@ -201,7 +201,8 @@ class ObjMaterials {
 
 class ReferenceList {
  public:
-  explicit ReferenceList(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  ReferenceList(std::filesystem::path folder, std::span<const std::filesystem::path> allow_outside)
+      : folder_(std::move(folder)), allow_outside_(allow_outside) {}
 
   /// The line of a mtllib: one name with blanks, or several. Where the one is not there, another may be some day.
   void add_libraries(std::string_view line) {
@@ -219,7 +220,7 @@ class ReferenceList {
   /// \returns where it is; nothing where it is not, or may not be opened
   std::optional<std::filesystem::path> add(Kind kind, const std::string& name) {
     const std::string path = with_slashes(name);
-    auto resolved = resolve_below(folder_, path);
+    auto resolved = resolve_below(folder_, path, allow_outside_);
     if (!resolved && resolved.error().code != ErrorCode::kIo) return std::nullopt;
     const std::filesystem::path where = folder_ / std::filesystem::path(path).lexically_normal();
     if (known_.insert(where).second) references_.push_back({kind, name, where});
@@ -238,13 +239,15 @@ class ReferenceList {
   }
 
   std::filesystem::path folder_;
+  std::span<const std::filesystem::path> allow_outside_;
   std::set<std::filesystem::path> known_;
   std::vector<FileReference> references_;
 };
 
 }  // namespace
 
-std::vector<FileReference> list_obj_references(const std::filesystem::path& path, std::span<const std::uint8_t> bytes) {
+std::vector<FileReference> list_obj_references(const std::filesystem::path& path, std::span<const std::uint8_t> bytes,
+                                               std::span<const std::filesystem::path> allow_outside) {
   std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   std::set<std::string> libraries;  // in the order of the import
   std::string joined;
@@ -252,7 +255,7 @@ std::vector<FileReference> list_obj_references(const std::filesystem::path& path
     std::string_view line = take_joined_line(text, joined, lines);
     if (take_word(line) == "mtllib" && !trimmed(line).empty()) libraries.emplace(trimmed(line));
   }
-  ReferenceList list(path.parent_path());
+  ReferenceList list(path.parent_path(), allow_outside);
   for (const std::string& line : libraries) list.add_libraries(line);
   return list.take();
 }

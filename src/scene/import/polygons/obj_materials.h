@@ -26,6 +26,7 @@ namespace meshlode::scene {
 
 /// Every file that add_obj_materials opens, or would open were it there: libraries, and what their map_Kd name.
 [[nodiscard]] std::vector<FileReference> list_obj_references(const std::filesystem::path& path,
-                                                             std::span<const std::uint8_t> bytes);
+                                                             std::span<const std::uint8_t> bytes,
+                                                             std::span<const std::filesystem::path> allow_outside);
 
 }  // namespace meshlode::scene
