@@ -7,6 +7,8 @@ import os
 import struct
 import zlib
 
+from polygons import TYPES
+
 CORNERS = [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
 SIDES = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
 HALVES = [t for a, b, c, d in SIDES for t in ((a, b, c), (a, c, d))]
@@ -31,10 +33,6 @@ PICTURES = {"tex.png": png((200, 60, 20)), "other.png": png((20, 60, 200)), "my 
 
 # PLY ------------------------------------------------------------------------------------------------------------------
 
-LETTERS = {"char": "b", "uchar": "B", "short": "h", "ushort": "H", "int": "i", "uint": "I", "float": "f", "double": "d",
-           "int8": "b", "uint8": "B", "int16": "h", "uint16": "H", "int32": "i", "uint32": "I", "float32": "f",
-           "float64": "d"}
-
 
 def ply(elements, kind="ascii", eol="\n", comments=(), bom=b"", tail=b""):
     """elements: (name, ["type name" or "list counts items name"], rows of values and lists)"""
@@ -49,7 +47,7 @@ def ply(elements, kind="ascii", eol="\n", comments=(), bom=b"", tail=b""):
                 flat = [(t[0], value)] if t[0] != "list" else [(t[1], len(value))] + [(t[2], x) for x in value]
                 words += [f"{x:g}" for _, x in flat]
                 if kind != "ascii":
-                    body += b"".join(struct.pack(order + LETTERS[letter], x) for letter, x in flat)
+                    body += b"".join(struct.pack(order + TYPES[letter], x) for letter, x in flat)
             if kind == "ascii":
                 body += (" ".join(words) + eol).encode()
     return bom + (eol.join(head + ["end_header"]) + eol).encode() + body + tail
@@ -105,6 +103,9 @@ def ply_cases():
     for name, points, area in (("wall", WALL, 12), ("comb", COMB, 8), ("letter", LETTER, 7), ("windows", WINDOWS, 22)):
         element = ("vertex", ["float x", "float y", "float z"], flat_polygon(points))
         yield name, ply([element, faces(sides=[tuple(range(len(points)))])]), area * 3 ** 0.5
+    yield "rgb", ply([vertices(["uchar r", "uchar g", "uchar b"], (9, 9, 9)), faces()]), CUBE
+    yield "index_last", ply([vertices(), ("face", ["uchar kind", "list uchar int vertex_index"], [(3, s) for s in SIDES])]), CUBE
+    yield "small_faces", ply([vertices(), faces(sides=[(0, 1), (), *SIDES, (3,)])]), CUBE
     yield "blank_lines", ply([vertices(), faces()], tail=b"\n\n  \n"), CUBE
 
 
@@ -167,6 +168,10 @@ def obj_cases():
     parts = PLAIN.splitlines(True)
     yield "shared_objects", V + "o front\n" + "".join(parts[:3]) + "o back\n" + "".join(parts[3:]), CUBE
     yield "objects_and_groups", V + "o one\ng front\n" + "".join(parts[:3]) + "g back\n" + "".join(parts[3:]), CUBE
+    yield "two_names", "g left wing\n" + square(0, 1) + "g\n" + square(2, 5), 2
+    yield "library_last", VT + "usemtl painted\n" + square(0, 1, "{0}/{1}") + "mtllib a.mtl\n", 1
+    yield "one_number", "vt 0.5\nvt 0.25\nvt 1\nvt 0\n" + square(0, 1, "{0}/{1}"), 1
+    yield "long_normals", "vn 3 0 4\n" + square(0, 1, "{0}//1"), 1
     yield "smooth", V + "s 1\n" + PLAIN + "s off\nl 1 2\np 3\n", CUBE
     yield "no_library", "mtllib gone.mtl\nusemtl a\n" + V + PLAIN, CUBE
     for number, (name, words, alpha) in enumerate(MATERIALS):

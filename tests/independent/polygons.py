@@ -27,6 +27,7 @@ class Material:
         self.opacity = {}   # "d" and "tr", as they are given
         self.factors = {}   # "roughness", "metallic" and "emissive": values
         self.textures = {}  # role: file
+        self.options = {}   # role: options of it, which are not carried
 
 
 class Model:
@@ -57,6 +58,7 @@ TYPES = {"char": "b", "uchar": "B", "short": "h", "ushort": "H", "int": "i", "ui
          "int8": "b", "uint8": "B", "int16": "h", "uint16": "H", "int32": "i", "uint32": "I", "float32": "f",
          "float64": "d"}
 COLORS = ("red", "green", "blue", "alpha")
+SHORT_NAMES = {"r": "red", "g": "green", "b": "blue", "a": "alpha"}
 UV_NAMES = (("u", "v"), ("s", "t"), ("texture_u", "texture_v"))
 INDEX_NAMES = ("vertex_indices", "vertex_index")
 
@@ -77,7 +79,7 @@ def ply_header(data):
         elif words[:1] == ["property"] and words[1] == "list":
             elements[-1][2].append((words[4], TYPES[words[3]], TYPES[words[2]]))
         elif words[:1] == ["property"]:
-            elements[-1][2].append((words[2], TYPES[words[1]], None))
+            elements[-1][2].append((SHORT_NAMES.get(words[2], words[2]), TYPES[words[1]], None))
     return kind, elements, textures, data[end.end():]
 
 
@@ -162,11 +164,11 @@ def is_number(word):
     return re.fullmatch(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", word) is not None
 
 
-def split_map(rest, unread):
-    """The file's name, behind its options; those are not carried."""
+def split_map(rest, options):
+    """The file's name, behind its options, which are added to the set."""
     while rest.startswith("-"):
         option, _, rest = rest.partition(" ")
-        unread.add(option)
+        options.add(option)
         for i in range(OPTION_WIDTHS.get(option, 0)):
             word, _, tail = rest.strip().partition(" ")
             if i > 0 and not is_number(word):  # the second and third number may be left out
@@ -197,7 +199,7 @@ def read_mtl(path, model):
             name = {"ke": "emissive", "pr": "roughness", "pm": "metallic"}[key]
             material.factors[name] = tuple(map(float, rest.split()))
         elif key in MAPS:
-            material.textures[key] = beside(path, split_map(rest, model.unread))
+            material.textures[key] = beside(path, split_map(rest, material.options.setdefault(key, set())))
         else:
             model.unread.add(word)
     for material in own:
