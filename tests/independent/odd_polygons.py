@@ -81,6 +81,8 @@ def ply_cases():
         more = ("edge", ["int vertex1", "int vertex2", "list uchar float weights"], [(0, 1, (1, 2)), (1, 2, ())])
         yield f"{kind}_extra", ply([vertices(["float confidence", "list uchar short marks"], [0.5, (1, 2, 3)]), more,
                                     faces(["uchar flags", "list int double areas"], [7, (1.5,)])], kind), CUBE
+        strip = [i for a, b, c, d in SIDES for i in (a, b, d, c, -1)]
+        yield f"{kind}_strips", ply([vertices(), ("tristrips", ["list int int vertex_indices"], [(strip[:-1],)])], kind), CUBE
         wedge = [(0, 0, 1, 0, 1, 1), (0, 0, 1, 1, 0, 1)] * 6
         rows = [(t, uv) for t, uv in zip(HALVES, wedge)]
         of_face = ("face", ["list uchar int vertex_indices", "list uchar float texcoord"], rows)

@@ -115,12 +115,23 @@ def ply_color(row, types):
     return tuple(rgba)
 
 
+def strip_triangles(strip):
+    """-1 ends a strip; every other triangle of one is turned."""
+    first = 0
+    for i, index in enumerate(strip):
+        if index < 0:
+            first = i + 1
+        elif i >= first + 2:
+            a, b, c = strip[i - 2:i + 1]
+            yield [b, a, c] if (i - first) % 2 else [a, b, c]
+
+
 def read_ply(path):
     with open(path, "rb") as file:
         kind, elements, textures, body = ply_header(file.read())
     rows, model = ply_rows(kind, elements, body), Model()
     types = {name: {p: t for p, t, _ in properties} for name, _, properties in elements}
-    model.unread |= set(types) - {"vertex", "face"}
+    model.unread |= set(types) - {"vertex", "face", "tristrips"}
     of_vertex, of_face = types["vertex"], types.get("face", {})
     uv_names = next((pair for pair in UV_NAMES if all(n in of_vertex for n in pair)), ())
     read = {"x", "y", "z", "nx", "ny", "nz", *uv_names} | (set(COLORS) if "red" in of_vertex else set())
@@ -128,7 +139,8 @@ def read_ply(path):
     read = {"texcoord", "texnumber", *INDEX_NAMES} | (set(COLORS) if "red" in of_face else set())
     model.unread |= set(of_face) - read
     vertices = rows["vertex"]
-    for row in rows.get("face", []):
+    strips = [{"vertex_indices": t} for row in rows.get("tristrips", []) for t in strip_triangles(row["vertex_indices"])]
+    for row in rows.get("face", []) + strips:
         corners = next(row[n] for n in INDEX_NAMES if n in row)
         at = [vertices[i] for i in corners]
         face = Face([(v["x"], v["y"], v["z"]) for v in at])
