@@ -62,11 +62,11 @@ bool is_text_stl(std::string_view text) {
          text.substr(0, kTextProbe).find('\0') == std::string_view::npos;
 }
 
-using Corner = std::array<float, 3>;
+using StlCorner = std::array<float, 3>;
 
 /// Importers may pass over a facet with two corners in one place, and refuse one that is not finite.
-bool is_sound(const std::array<Corner, 3>& facet) {
-  for (const Corner& corner : facet) {
+bool is_sound_facet(const std::array<StlCorner, 3>& facet) {
+  for (const StlCorner& corner : facet) {
     if (!std::all_of(corner.begin(), corner.end(), [](float x) { return std::isfinite(x); })) return false;
   }
   return facet[0] != facet[1] && facet[1] != facet[2] && facet[2] != facet[0];
@@ -75,9 +75,9 @@ bool is_sound(const std::array<Corner, 3>& facet) {
 FileTriangles of_binary_stl(std::span<const std::uint8_t> bytes) {
   FileTriangles found{.at_least = 0, .at_most = 0, .words = "a binary STL of its size holds"};
   for (std::size_t at = kStlHead; at + kStlFacet <= bytes.size(); at += kStlFacet) {
-    std::array<Corner, 3> facet;
-    std::memcpy(facet.data(), &bytes[at + sizeof(Corner)], sizeof facet);
-    found.at_least += is_sound(facet) ? 1 : 0;
+    std::array<StlCorner, 3> facet;
+    std::memcpy(facet.data(), &bytes[at + sizeof(StlCorner)], sizeof facet);
+    found.at_least += is_sound_facet(facet) ? 1 : 0;
     ++found.at_most;
   }
   return found;
@@ -86,7 +86,7 @@ FileTriangles of_binary_stl(std::span<const std::uint8_t> bytes) {
 /// Corners that are not numbers make no facet.
 FileTriangles of_text_stl(std::string_view text) {
   FileTriangles found{.words = "corners of the text STL make"};
-  std::array<Corner, 3> facet{};
+  std::array<StlCorner, 3> facet{};
   std::size_t corners = 0;
   for_each_line(without_mark(text), [&](std::string_view line) {
     if (has_word(line, "facet")) corners = 0;
@@ -99,7 +99,7 @@ FileTriangles of_text_stl(std::string_view text) {
       std::from_chars(word.data() + (has_sign ? 1 : 0), word.data() + word.size(), number);
       x = static_cast<float>(number);
     }
-    found.at_least += ++corners == facet.size() && is_sound(facet) ? 1 : 0;
+    found.at_least += ++corners == facet.size() && is_sound_facet(facet) ? 1 : 0;
     return true;
   });
   return found;
