@@ -367,10 +367,12 @@ Result<std::vector<std::uint8_t>> build_asset_of(const Source& from, const Pipel
   report.decisions.clear();
   report.levels.clear();
   report.stored_meshes = 0;
+  report.clusters = 0;
   for (std::size_t i = 0; i < meshes->size(); ++i) {
     BuiltMesh& mesh = (*meshes)[i];
     mesh.clock.add_to(report.stages);
     report.stored_meshes += mesh.was_stored ? 1 : 0;
+    report.clusters += mesh.encoded.clusters.size();
     for (PlanDecision& decision : mesh.decisions) decision.mesh = static_cast<std::uint32_t>(i);
     report.decisions.insert(report.decisions.end(), mesh.decisions.begin(), mesh.decisions.end());
     report.levels.insert(report.levels.end(), mesh.levels.begin(), mesh.levels.end());

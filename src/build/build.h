@@ -96,6 +96,7 @@ struct PipelineReport {
   std::vector<LevelTime> levels;        ///< mesh by mesh
   std::vector<PlanDecision> decisions;  ///< of all meshes, in order
   std::uint64_t stored_meshes = 0;      ///< those that came from the mesh store
+  std::uint64_t clusters = 0;           ///< of all meshes; 0: the asset draws nothing
 };
 
 /// Thread count is the caller's: run inside a tbb::task_arena or under tbb::global_control.

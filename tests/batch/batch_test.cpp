@@ -225,6 +225,34 @@ TEST_F(BatchTest, AMissingTextureIsAnErrorWhereStrictWhateverTheCacheHas) {
   EXPECT_EQ(statuses(run({"1"}, "out", lenient)), "built");
 }
 
+// An asset that draws nothing is told of, from the cache and where it already lies too, and refused where strict.
+TEST_F(BatchTest, ASceneOfWhichNothingIsLeftIsNeverSilent) {
+  const std::string points = R"("accessors":[{"componentType":5126,"type":"VEC3","count":3}],)";
+  const std::string rest = R"("nodes":[{"mesh":0}],"scenes":[{"nodes":[0]}]})";
+  const std::string mesh = R"({"asset":{"version":"2.0"},)" + points + R"("meshes":[{"primitives":[{)";
+  folder_.write("in/flat.gltf", mesh + R"("attributes":{"POSITION":0}}]}],)" + rest);
+  folder_.write("in/lines.gltf", mesh + R"("mode":3,"attributes":{"POSITION":0}}]}],)" + rest);
+  for (const char* status : {"built built", "unchanged unchanged", "cached cached"}) {
+    if (status[0] == 'c') fs::remove_all(folder_.path("out"));
+    const auto results = run({"flat", "lines"}, "out");
+    ASSERT_EQ(statuses(results), status);
+    ASSERT_EQ(results[0].warnings.size(), 1U);
+    EXPECT_EQ(results[0].warnings[0].text, "nothing to draw: its one triangle has no area");
+    ASSERT_EQ(results[1].warnings.size(), 1U);
+    EXPECT_EQ(results[1].warnings[0].id, "nothing-to-draw");
+  }
+  BatchOptions strict;
+  strict.is_strict = true;
+  fs::remove_all(folder_.path("out"));
+  for (const bool with_cache : {true, false}) {
+    const auto refused = run({"flat", "lines"}, "out", strict, with_cache);
+    EXPECT_EQ(statuses(refused), "failed failed");
+    EXPECT_EQ(worst_exit_code(refused), 3);
+    EXPECT_NE(refused[1].error.find("--strict: nothing to draw: it has no triangle"), std::string::npos);
+    EXPECT_FALSE(fs::exists(folder_.path("out/flat.lode")));
+  }
+}
+
 // Whoever reads the asset from the cache must not be given what came of files that changed in between.
 TEST_F(BatchTest, ASceneThatChangesWhileItIsBuiltIsNotKept) {
   folder_.write_scene("in/1", 1);

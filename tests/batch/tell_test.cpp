@@ -4,8 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "batch/shard/read_manifest.h"
 #include "batch/tell/tell.h"
 #include "batch/tell/time_left.h"
+#include "batch/work/warnings.h"
 
 namespace meshlode::batch {
 namespace {
@@ -43,6 +45,42 @@ TEST(Table, SumsWhatWasMadeAndCountsTheRest) {
   EXPECT_NE(table.find("2,469,134"), std::string::npos) << table;
   EXPECT_NE(table.find("3 files: 1 built, 1 unchanged, 1 failed\n"), std::string::npos) << table;
   EXPECT_EQ(summary_line({results[2]}), "nothing to do: 1 file unchanged");
+}
+
+TEST(Tell, WarningsAreInEveryAccount) {
+  JobResult r = result_of("a", JobStatus::kBuilt);
+  r.warnings.push_back({"nothing-to-draw", "nothing to draw: it has no triangle"});
+  const std::string text = "nothing to draw: it has no triangle";
+  EXPECT_NE(summary_table({r}).find("  " + text + "\n"), std::string::npos) << summary_table({r});
+  EXPECT_EQ(summary_line({r, result_of("b", JobStatus::kBuilt)}), "2 files: 2 built; 1 with warnings");
+  EXPECT_NE(junit_xml({r}).find("warning: " + text), std::string::npos);
+  for (const std::string& json : {report_json({r}, 1, 0), manifest_json({r}, {}, "", 0)}) {
+    EXPECT_NE(json.find("\"id\": \"nothing-to-draw\""), std::string::npos) << json;
+    EXPECT_NE(json.find(text), std::string::npos) << json;
+  }
+  const auto read = parse_manifest(manifest_json({r}, {}, "", 0));
+  ASSERT_TRUE(read.ok()) << read.error().message();
+  ASSERT_EQ(read->results[0].warnings.size(), 1U);
+  EXPECT_EQ(read->results[0].warnings[0].text, text);
+}
+
+TEST(Warnings, SayWhyNothingIsDrawnAndWhatIsMissing) {
+  const auto said = [](const JobFacts& facts) {
+    std::string text;
+    for (const JobWarning& warning : list_warnings(facts)) text += warning.id + "|" + warning.text + "|";
+    return text;
+  };
+  JobFacts facts;
+  EXPECT_EQ(said(facts), "");
+  facts.draws_nothing = true;
+  EXPECT_EQ(said(facts), "nothing-to-draw|nothing to draw: it has no triangle|");
+  facts.triangles = 1200;
+  EXPECT_EQ(said(facts), "nothing-to-draw|nothing to draw: none of its 1,200 triangles has an area|");
+  facts.triangles = 0, facts.dropped = 12;
+  EXPECT_EQ(said(facts), "nothing-to-draw|nothing to draw: --repair removed every triangle, 12 in all|");
+  facts = {};
+  facts.triangles = 115, facts.file_triangles = 120, facts.missing = 5;
+  EXPECT_EQ(said(facts), "triangles-missing|triangles are missing: 5 of the 120 that the file holds|");
 }
 
 TEST(TimeLeft, IsAtThePaceOfTheFilesThatWereBuilt) {

@@ -198,6 +198,19 @@ Scene with_no_numbers() {
   return scene_of(std::move(shape));
 }
 
+Scene without_triangles() {
+  Primitive shape = sphere();
+  shape.indices.clear();
+  return scene_of(std::move(shape));
+}
+
+/// Two in 4802.
+Scene with_few_missing() {
+  Scene scene = sound_scene();
+  scene.triangles_in_file = scene.meshes[0].primitives[0].indices.size() / 3 + 2;
+  return scene;
+}
+
 }  // namespace
 
 scene::Scene sound_scene() {
@@ -229,6 +242,8 @@ std::vector<std::uint8_t> as_glb(const scene::Scene& scene) {
 std::vector<BrokenScene> broken_scenes() {
   std::vector<BrokenScene> scenes;
   const auto add = [&](const char* id, Scene scene) { scenes.push_back({id, std::move(scene)}); };
+  add("nothing-to-draw", without_triangles());
+  add("triangles-missing", with_few_missing());
   add("not-finite", with_no_numbers());
   add("degenerate-faces", scene_of(scene::with_smooth_normals(scene::make_zero_areas(kCells))));
   add("duplicate-faces", scene_of(scene::with_smooth_normals(scene::make_duplicates(kCells))));

@@ -33,7 +33,9 @@ Result<std::uint64_t> BatchWords::limit() const {
 
 void add_batch_options(OptionParser& parser, BatchWords& words) {
   parser.add_flag("--fail-fast", words.fail_fast, "skip what comes after the first file that fails");
-  parser.add_flag("--strict", words.strict, "a missing texture is an error; else it is left out and named");
+  parser.add_flag(
+      "--strict", words.strict,
+      "errors: a missing texture, else left out and named; nothing to draw, triangles missing, else a warning");
   parser.add_value("--junit", words.junit, "write a JUnit XML file, a test case a scene");
   parser.add_value("--manifest", words.manifest, "write statuses, hashes, seconds and bytes of all files as JSON");
   parser.add_value("--depfile", words.depfile, "write what each asset depends on, for Make and Ninja");

@@ -113,6 +113,8 @@ void BatchShow::end(std::size_t job, const batch::JobResult& result, const Error
   if (error != nullptr || !has_lines_) return;
   if (jobs_.size() > 1) std::fprintf(stderr, "[%zu/%zu] ", job + 1, jobs_.size());
   print_line(result);
+  for (const batch::JobWarning& warning : result.warnings)
+    std::fprintf(stderr, "  warning: %s\n", warning.text.c_str());
   print_left_out(result.facts);
 }
 

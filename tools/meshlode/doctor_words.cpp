@@ -23,6 +23,11 @@ struct Words {
 };
 
 constexpr std::array<Words, scene::kFaultNames.size()> kWords{{
+    {FaultKind::kNothingToDraw, "scene of which nothing is left to draw",
+     "look at the exporter's settings and at what was left out: an asset of it is empty, and build --strict refuses "
+     "it"},
+    {FaultKind::kMissing, "triangles that the file holds and the scene has not",
+     "export the file anew, or mend the faces that are named as left out; build --strict refuses it"},
     {FaultKind::kNotFinite, "vertices with an infinity or what is no number",
      "mend the exporter; build --repair drops triangles at such positions", "nan"},
     {FaultKind::kDegenerate, "triangles without area",
@@ -84,6 +89,9 @@ std::string detail_of(const scene::Fault& fault) {
   const auto measured = [&](const char* many) { return out::counted(whole(fault.measure), many); };
   const std::string triangles = out::counted(fault.triangle_count, "triangles");
   switch (fault.kind) {
+    case FaultKind::kNothingToDraw:
+      return fault.triangle_count == 0 ? "no triangle" : triangles + ", none with an area";
+    case FaultKind::kMissing: return count("triangles") + " of " + measured("triangles") + " in the file";
     case FaultKind::kNotFinite: return count("vertices") + ", " + triangles + " at them";
     case FaultKind::kDegenerate: return triangles;
     case FaultKind::kDuplicate:

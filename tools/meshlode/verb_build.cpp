@@ -304,6 +304,7 @@ int run_build(const Verb& verb, std::span<char* const> args) {
     if (const Status removed = remove_old_manifest(command); !removed) return print_error(removed.error());
   }
   command.options.import.may_lack_images = !command.words.strict;
+  command.options.is_strict = command.words.strict;
   command.options.is_dry_run = command.words.dry_run;
   command.options.fail_fast = command.words.fail_fast;
   command.options.make_folders = !output_folder.empty();

@@ -197,6 +197,8 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
                                                                   .allow_outside = std::move(*allowed)});
   output_files().keep(files_read);
   if (!source) return print_error(source.error());
+  const Result<MappedFile> file = MappedFile::open(source_path);
+  if (file) options.source_bytes = file->bytes();
   if (options.is_quick) options.uniform_cuts = options.cameras = 0;  // as it is reported
   judge::VerifyReport report = judge::verify_asset(*asset, *source, options);
   if (gpu_options.is_on) {

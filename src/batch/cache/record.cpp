@@ -9,17 +9,18 @@ namespace meshlode::batch {
 
 namespace {
 
-constexpr std::size_t kNumberCount = 11;
+constexpr std::size_t kNumberCount = 14;
 
 std::array<std::uint64_t, kNumberCount> numbers_of(const JobFacts& f) {
   const scene::MeshRepairs& r = f.repairs;
-  return {f.triangles, f.meshes, f.instances, f.bytes,     f.dropped, r.degenerate,
-          r.duplicate, r.turned, r.stitched,  r.cut_edges, r.split};
+  return {f.triangles, f.meshes,   f.instances, f.bytes, f.dropped,        r.degenerate, r.duplicate,
+          r.turned,    r.stitched, r.cut_edges, r.split, f.file_triangles, f.missing,    f.draws_nothing ? 1U : 0U};
 }
 
 void set_numbers(JobFacts& f, const std::array<std::uint64_t, kNumberCount>& n) {
   f.triangles = n[0], f.meshes = n[1], f.instances = n[2], f.bytes = n[3], f.dropped = n[4];
   f.repairs = {n[5], n[6], n[7], n[8], n[9], n[10]};
+  f.file_triangles = n[11], f.missing = n[12], f.draws_nothing = n[13] != 0;
 }
 
 void write_items(ByteWriter& out, const std::vector<scene::LeftOut>& items) {

@@ -124,6 +124,10 @@ JobResult read_result(Members& in, const Json& json) {
   const Json* seconds = json.find("seconds");
   if (seconds == nullptr || !seconds->number()) in.refuse("seconds", "no number");
   r.seconds = seconds != nullptr ? seconds->number().value_or(0.0) : 0.0;
+  for (const Json& warning : in.objects(json, "warnings")) {
+    if (!in.is_sound()) break;
+    r.warnings.push_back({in.text(warning, "id"), in.text(warning, "text")});
+  }
   for (const Json& file : in.objects(json, "files")) {
     if (!in.is_sound()) break;
     r.files.push_back(read_file(in, file));

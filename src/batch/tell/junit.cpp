@@ -71,6 +71,7 @@ std::string case_xml(const JobResult& r) {
     text += ">\n      <skipped message=\"a file before it failed\"/>\n    </testcase>\n";
   } else {
     std::string lines;
+    for (const JobWarning& warning : r.warnings) lines += "warning: " + warning.text + "\n";
     for (const scene::LeftOut& left : r.facts.left_out) lines += "left out: " + left.what + ": " + left.why + "\n";
     text += ">\n      <system-out>" +
             escaped(std::string(name_of(r.status)) + ": " + r.job.output.string() + "\n" + lines) +

@@ -8,6 +8,7 @@
 #include "base/json_writer.h"
 #include "base/version.h"
 #include "batch/tell/tell.h"
+#include "batch/tell/write_warnings.h"
 
 namespace meshlode::batch {
 
@@ -66,6 +67,7 @@ void write_result(JsonWriter& w, const JobResult& r, const std::uint64_t* positi
   }
   w.field("bytes", r.has_asset() ? r.facts.bytes : 0);
   w.field("seconds", r.seconds);
+  write_warnings(w, r.warnings);
   w.key("files");
   w.begin_array();
   for (const Dependency& file : r.files) write_file(w, file);

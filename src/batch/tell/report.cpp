@@ -2,6 +2,7 @@
 #include "base/json_writer.h"
 #include "base/version.h"
 #include "batch/tell/tell.h"
+#include "batch/tell/write_warnings.h"
 
 namespace meshlode::batch {
 
@@ -70,6 +71,7 @@ void write_build(JsonWriter& w, const JobResult& r) {
   w.begin_object();
   for (const auto& [kind, count] : list_repairs(r.facts)) w.field(kind, count);
   w.end_object();
+  write_warnings(w, r.warnings);
   w.key("left_out");
   w.begin_array();
   write_left_out(w, r.facts.left_out);

@@ -37,6 +37,9 @@ std::string summary_table(const std::vector<JobResult>& results) {
                   has_facts ? grouped(r.facts.triangles).c_str() : "", has_facts ? grouped(r.facts.bytes).c_str() : "",
                   r.seconds);
     text += plain(r.job.input.string()) + (has_facts ? " -> " + plain(r.job.output.string()) : "") + "\n";
+    for (const JobWarning& warning : r.warnings) {
+      append_format(text, "%-11s %13s %15s %9s  %s\n", "  warning", "", "", "", warning.text.c_str());
+    }
     triangles += has_facts ? r.facts.triangles : 0;
     bytes += has_facts ? r.facts.bytes : 0;
     seconds += r.seconds;
@@ -49,8 +52,11 @@ std::string summary_line(const std::vector<JobResult>& results) {
   std::array<std::size_t, kJobStatusCount> counts{};
   for (const JobResult& r : results) ++counts[static_cast<std::size_t>(r.status)];
   const std::string files = std::to_string(results.size()) + (results.size() == 1 ? " file" : " files");
+  const auto is_warned = [](const JobResult& r) { return !r.warnings.empty() && r.status != JobStatus::kFailed; };
+  const auto warned_count = std::count_if(results.begin(), results.end(), is_warned);
+  const std::string warned = warned_count == 0 ? "" : "; " + std::to_string(warned_count) + " with warnings";
   if (!results.empty() && counts[static_cast<std::size_t>(JobStatus::kUnchanged)] == results.size()) {
-    return "nothing to do: " + files + " unchanged";
+    return "nothing to do: " + files + " unchanged" + warned;
   }
   std::string text = files + ":";
   const char* comma = " ";
@@ -62,7 +68,7 @@ std::string summary_line(const std::vector<JobResult>& results) {
     text += comma + std::to_string(count) + " " + words;
     comma = ", ";
   }
-  return text;
+  return text + warned;
 }
 
 }  // namespace meshlode::batch

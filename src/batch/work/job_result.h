@@ -44,10 +44,19 @@ struct JobFacts {
   std::uint64_t triangles = 0, meshes = 0, instances = 0;
   std::uint64_t bytes = 0;                  ///< of the asset
   std::uint64_t dropped = 0;                ///< by --repair, of all kinds
+  std::uint64_t file_triangles = 0;         ///< that the file plainly holds; 0: the format does not tell
+  std::uint64_t missing = 0;                ///< of these the ones that are neither in the scene nor dropped
+  bool draws_nothing = false;               ///< no triangle of the scene has an area: the asset has no cluster
   scene::MeshRepairs repairs;               ///< of all meshes
   std::vector<scene::LeftOut> left_out;     ///< by the importer
   std::vector<scene::LeftOut> planned_out;  ///< by the plan
   std::vector<scene::LeftOut> losses;       ///< those of them that can be seen
+};
+
+/// What is wrong with an asset that was built all the same.
+struct JobWarning {
+  std::string id;    ///< as doctor has it of the source: "nothing-to-draw", "triangles-missing"
+  std::string text;  ///< one line
 };
 
 struct JobResult {
@@ -57,6 +66,7 @@ struct JobResult {
   std::string error;
   std::string reason;  ///< why it was built, or would be; empty where nobody asked (no cache)
   JobFacts facts;
+  std::vector<JobWarning> warnings;
   Hash128 asset_hash{};               ///< of the asset's bytes; zeros where there is none
   double seconds = 0.0;               ///< wall time
   std::uint64_t memory_estimate = 0;  ///< 0: not reached

@@ -11,6 +11,8 @@
 #include "base/guarded.h"
 #include "batch/cache/ingredients.h"
 #include "batch/cache/mesh_entries.h"
+#include "batch/work/warnings.h"
+#include "scene/detect/detect.h"
 
 namespace meshlode::batch {
 
@@ -48,6 +50,8 @@ void count_scene(const scene::Scene& scene, JobFacts& facts) {
     for (const scene::Primitive& primitive : mesh.primitives) facts.triangles += primitive.indices.size() / 3;
   }
   count_repairs(scene, facts);
+  facts.file_triangles = scene.triangles_in_file;
+  facts.missing = scene::count_missing_triangles(scene);
   facts.left_out = scene.left_out;
 }
 
@@ -145,7 +149,10 @@ class Run {
     result_.reason = "no cache is used";
     if (options_.cache == nullptr) return Ok{};
     const auto record = options_.cache->find_record(ingredients_);
-    if (record) result_.facts = record->facts;
+    if (record) {
+      result_.facts = record->facts;
+      if (Status whole = check_whole(record->facts); !whole) return whole;
+    }
     if (record && holds(result_.job.output, *record)) {
       result_.status = JobStatus::kUnchanged;
       result_.reason = "the asset is there and nothing that it depends on changed";
@@ -156,6 +163,14 @@ class Run {
       result_.reason = options_.cache->explain(result_.job.output, ingredients_);
     }
     return Ok{};
+  }
+
+  /// Whether the asset is one to write, or to leave where it is.
+  [[nodiscard]] Status check_whole(const JobFacts& facts) const {
+    if (!options_.is_strict) return Ok{};
+    const std::vector<JobWarning> warnings = list_warnings(facts);
+    if (warnings.empty()) return Ok{};
+    return Error{ErrorCode::kInvalid, result_.job.input.string(), "--strict: " + warnings.front().text};
   }
 
   Status make_ready() {
@@ -189,6 +204,7 @@ class Run {
       if (file.stamp) read.push_back(file.stamp->id);
     }
     if (Status free = check_outputs(read); !free) return free;
+    if (Status whole = check_whole(record.facts); !whole) return whole;
     const bool is_there = holds(result_.job.output, record);
     if (!is_there) {
       const auto asset = options_.cache->store().find(EntryKind::kAsset, record.asset);
@@ -212,6 +228,7 @@ class Run {
     if (!scene) return scene.error();
     result_.stages.push_back({"import", import_timer.seconds()});
     count_scene(*scene, result_.facts);
+    if (Status whole = check_whole(result_.facts); !whole) return whole;
     if (Status set = build::set_mesh_options(layers_, names_of_meshes(*scene), pipeline_); !set) return set;
     if (watcher_.on_scene) watcher_.on_scene(*scene, layers_, pipeline_);
     build::PipelineReport report;
@@ -221,6 +238,7 @@ class Run {
     pipeline_.mesh_store = nullptr;
     take_report(report);
     if (!bytes) return bytes.error();
+    if (Status whole = check_whole(result_.facts); !whole) return whole;
     const Timer write_timer;
     if (Status ok = files_.write(result_.job.output, *bytes); !ok) return ok;
     result_.stages.push_back({"write_file", write_timer.seconds()});
@@ -238,6 +256,7 @@ class Run {
   void take_report(build::PipelineReport& report) {
     result_.memory_estimate = report.memory_estimate;
     result_.meshes_from_cache = report.stored_meshes;
+    result_.facts.draws_nothing = report.clusters == 0;
     result_.stages.insert(result_.stages.end(), report.stages.begin(), report.stages.end());
     result_.levels = std::move(report.levels);
     for (const build::PlanDecision& decision : report.decisions) {
@@ -265,6 +284,7 @@ JobResult run_job(const Job& job, const BatchOptions& options, OutputFiles& file
   Run run(job, options, files, watcher);
   Status done = run.go();
   JobResult result = run.take();
+  result.warnings = list_warnings(result.facts);
   if (done && options.check_asset && !options.is_dry_run) done = options.check_asset(job.output);
   result.seconds = timer.seconds();
   if (done) return result;

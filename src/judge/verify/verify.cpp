@@ -14,6 +14,7 @@
 #include "judge/verify/coverage_rule.h"
 #include "judge/verify/cuts.h"
 #include "judge/verify/deviations.h"
+#include "judge/verify/file_triangles.h"
 #include "judge/verify/promises.h"
 #include "judge/verify/source_rules.h"
 
@@ -123,6 +124,28 @@ void add_source(const run::Asset& asset, const scene::Scene& source, std::span<c
                    source.materials.size() + source.instances.size() + source.blobs.size(),
                    failures_of(log, {Rule::kV106, Rule::kV107, Rule::kV109}));
   report.add_check("", "the source is the one the asset was built from", 1, failures_of(log, {Rule::kV108}));
+  report.take(log);
+}
+
+/// What no reader that build and verify share can hide.
+void add_file_triangles(const run::Asset& asset, const scene::Scene& source, std::span<const std::uint8_t> file,
+                        Report& report) {
+  const auto found = file.empty() ? std::nullopt : count_file_triangles(file, source.source_name);
+  if (!found) return;
+  std::uint64_t told = 0;  // what --repair removed is among them; a sum that a hostile record chose may wrap around
+  for (const format::MeshRecord& mesh : asset.meshes()) told += mesh.source_triangles;
+  RuleLog log;
+  log.expect(
+      found->at_least <= told && told <= found->at_most, Rule::kV115, [] { return std::string("meshes"); },
+      [&] {
+        return "the asset tells of " + std::to_string(told) + " triangles, " + found->words + " " +
+               std::to_string(found->at_least) +
+               (found->at_least == found->at_most           ? ""
+                : found->at_most == FileTriangles{}.at_most ? " or more"
+                                                            : " to " + std::to_string(found->at_most));
+      });
+  report.add_check("", "the asset has the triangles that the source's file holds, by its size or its lines",
+                   found->at_least, failures_of(log, {Rule::kV115}));
   report.take(log);
 }
 
@@ -251,6 +274,7 @@ VerifyReport verify_asset(const run::Asset& asset, const scene::Scene& source, c
   Result<std::vector<run::DecodedCluster>> clusters = run::decode_all(asset);
   if (clusters) {
     add_source(asset, source, *clusters, options.is_quick, report);
+    add_file_triangles(asset, source, options.source_bytes, report);
     if (options.is_quick) {
       report.skip("I5", "not checked: quick; neither uniform cuts nor cameras");
     } else {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,8 @@ struct VerifyOptions {
   std::uint32_t deviation_cuts = 12;  ///< uniform cuts per mesh that are measured for I7, where the tier promises it
   std::uint64_t deviation_samples = 200000;  ///< area-uniform samples each way of each such cut, beside all vertices
   std::uint64_t seed = 1;
+  /// The source's file as it lies there, for what its size says of it. Empty: that is not looked at.
+  std::span<const std::uint8_t> source_bytes = {};
 };
 
 struct VerifyReport {

@@ -32,6 +32,9 @@ struct Words {
   const char* hard_case = "";  ///< of docs/hard-cases.md
 };
 
+constexpr Words kEmpty{
+    "nothing-to-draw", "asset of which nothing is left to draw",
+    "look at the source with `doctor`, and at what was left out: build --strict refuses such a scene"};
 constexpr Words kFewGroups{"error-in-few-groups", "a twentieth of the groups holds half of the first level's error",
                            "look at them with `extract --error`: spikes and slivers there keep the whole level fine"};
 constexpr Words kDropped{"dropped-faces", "triangles of the source that the build dropped",
@@ -94,6 +97,7 @@ class Examiner {
       add_dropped(m);
       add_unmeasured(m);
     }
+    add_empty();
     add_small();
     add_left_out();
     return std::move(out_);
@@ -207,6 +211,19 @@ class Examiner {
     add_place(out_, diagnosis_of(kUnmeasured), std::move(place));
   }
 
+  void add_empty() {
+    if (!asset_.clusters().empty()) return;
+    DiagnosisPlace place;
+    place.where = "scene";
+    place.count = 1;
+    add_triangles(place, "accuracy", info_.source_triangles);
+    place.share = 1.0;
+    place.detail = info_.source_triangles == 0
+                       ? "no triangle"
+                       : counted(info_.source_triangles, "triangles") + " in the source, none with an area";
+    add_place(out_, diagnosis_of(kEmpty), std::move(place));
+  }
+
   void add_small() {
     DiagnosisPlace place;
     place.where = "scene";
@@ -253,7 +270,8 @@ class Examiner {
 }  // namespace
 
 std::vector<std::string> asset_fault_ids() {
-  std::vector<std::string> ids{kFewGroups.id, kDropped.id, kCollapsed.id, kSmall.id, kUnmeasured.id, kLeftOutId};
+  std::vector<std::string> ids{kEmpty.id, kFewGroups.id,  kDropped.id, kCollapsed.id,
+                               kSmall.id, kUnmeasured.id, kLeftOutId};
   ids.reserve(ids.size() + kStuck.size());
   for (const StuckWords& stuck : kStuck) ids.emplace_back(stuck.words.id);
   return ids;

@@ -42,6 +42,31 @@ double share_of(double part, double whole) {
   return whole > 0.0 ? std::min(1.0, part / whole) : 0.0;
 }
 
+/// It costs all that there is: there may be no triangle to count.
+Fault find_nothing_to_draw(const Scene& scene, std::uint64_t without_area) {
+  Fault fault = fault_of(FaultKind::kNothingToDraw);
+  for (const SourceMesh& mesh : scene.meshes) fault.triangle_count += triangles_of(mesh);
+  if (fault.triangle_count > without_area) return fault;
+  fault.count = 1;
+  fault.measure = static_cast<double>(scene.triangles_in_file);
+  fault.costs.push_back({CostKind::kAccuracy, CostUnit::kTriangles, static_cast<double>(fault.triangle_count), 1.0});
+  return fault;
+}
+
+/// However few are missing, the shape is another one: never less than "high".
+constexpr double kLeastMissingShare = 0.1;
+
+Fault find_missing_triangles(const Scene& scene) {
+  Fault fault = fault_of(FaultKind::kMissing);
+  fault.count = fault.triangle_count = count_missing_triangles(scene);
+  if (fault.count == 0) return fault;
+  fault.measure = static_cast<double>(scene.triangles_in_file);
+  const auto missing = static_cast<double>(fault.count);
+  fault.costs.push_back({CostKind::kAccuracy, CostUnit::kTriangles, missing,
+                         std::max(kLeastMissingShare, share_of(missing, fault.measure))});
+  return fault;
+}
+
 Fault find_small_meshes(const Scene& scene, const std::vector<std::uint64_t>& draws) {
   Fault fault = fault_of(FaultKind::kSmallMeshes);
   double all = 0.0, small = 0.0, small_draws = 0.0;
@@ -128,6 +153,12 @@ std::uint64_t triangles_of(const SourceMesh& mesh) {
   return count;
 }
 
+std::uint64_t count_missing_triangles(const Scene& scene) {
+  std::uint64_t read = 0;
+  for (const SourceMesh& mesh : scene.meshes) read += triangles_of(mesh) + mesh.drops.repaired;
+  return scene.triangles_in_file > read ? scene.triangles_in_file - read : 0;
+}
+
 std::vector<Fault> examine_mesh(const SourceMesh& mesh, std::span<const SceneMaterial> materials) {
   std::vector<Fault> faults;
   if (!is_countable(mesh)) return faults;
@@ -153,9 +184,15 @@ std::vector<Fault> examine_mesh(const SourceMesh& mesh, std::span<const SceneMat
 
 std::vector<Fault> examine_scene(const Scene& scene) {
   std::vector<Fault> faults;
+  std::uint64_t without_area = 0;
   for (std::uint32_t m = 0; m < scene.meshes.size(); ++m) {
-    for (Fault& fault : examine_mesh(scene.meshes[m], scene.materials)) keep_found(std::move(fault), m, faults);
+    for (Fault& fault : examine_mesh(scene.meshes[m], scene.materials)) {
+      if (fault.kind == FaultKind::kDegenerate) without_area += fault.count;
+      keep_found(std::move(fault), m, faults);
+    }
   }
+  keep_found(find_nothing_to_draw(scene, without_area), kNoId, faults);
+  keep_found(find_missing_triangles(scene), kNoId, faults);
   const std::vector<std::uint64_t> draws = count_draws(scene);
   keep_found(find_small_meshes(scene, draws), kNoId, faults);
   keep_found(find_undrawn_meshes(scene, draws), kNoId, faults);

@@ -14,6 +14,10 @@ namespace meshlode::scene {
 
 [[nodiscard]] std::uint64_t triangles_of(const SourceMesh& mesh);
 
+/// Of the triangles that the file plainly holds (Scene::triangles_in_file) those that are neither in a mesh nor counted
+/// as removed by --repair. 0 where the format does not tell.
+[[nodiscard]] std::uint64_t count_missing_triangles(const Scene& scene);
+
 /// Everything that is found in a mesh, in the order of FaultKind; costs by their share. Any indices and any floats:
 /// what import refuses is found here too. A mesh too large for ids of 32 bits has no faults. O(n log n).
 [[nodiscard]] std::vector<Fault> examine_mesh(const SourceMesh& mesh, std::span<const SceneMaterial> materials);

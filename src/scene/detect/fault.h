@@ -15,6 +15,8 @@ namespace meshlode::scene {
 
 /// One fault of a source. What `Fault::count` counts and what `Fault::measure` is stands behind each.
 enum class FaultKind : std::uint8_t {
+  kNothingToDraw,    ///< 1 where no mesh has a triangle with area; triangles that the file plainly holds
+  kMissing,          ///< triangles that the file plainly holds and the scene has not; those that it holds
   kNotFinite,        ///< vertices with an infinity or a NaN, and corners without a vertex
   kDegenerate,       ///< triangles without area
   kDuplicate,        ///< triangles on the points of an earlier one; those of them that face the other way
@@ -36,7 +38,9 @@ enum class FaultKind : std::uint8_t {
 };
 
 /// Stable: what `--fail-on` names.
-inline constexpr std::array<EnumName<FaultKind>, 18> kFaultNames{{
+inline constexpr std::array<EnumName<FaultKind>, 20> kFaultNames{{
+    {FaultKind::kNothingToDraw, "nothing-to-draw"},
+    {FaultKind::kMissing, "triangles-missing"},
     {FaultKind::kNotFinite, "not-finite"},
     {FaultKind::kDegenerate, "degenerate-faces"},
     {FaultKind::kDuplicate, "duplicate-faces"},

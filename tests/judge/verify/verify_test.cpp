@@ -69,6 +69,11 @@ struct Break {
   std::function<void(AssetEdit&)> asset;
 };
 
+/// A binary STL.
+std::vector<std::uint8_t> one_facet() {
+  return std::vector<std::uint8_t>(84 + 50);
+}
+
 const std::vector<Break>& breaks() {
   static const auto keep = [](auto&) {};
   static const std::vector<Break> all{
@@ -188,6 +193,7 @@ const std::vector<Break>& breaks() {
        }},
       {"V112", "another tier", keep,
        [](AssetEdit& e) { e.mesh(2, [](auto& m) { m.error_tier = format::ErrorTier::kCertified; }); }},
+      {"V115", "a file of one facet", [](scene::Scene& s) { s.source_name = "sample.STL"; }, keep},
       {"V109", "an image's byte", [](scene::Scene& s) { s.blobs[0].bytes[0] ^= 1U; }, keep},
       {"V109", "the scene document", [](scene::Scene& s) { s.document += " "; }, keep},
   };
@@ -195,13 +201,15 @@ const std::vector<Break>& breaks() {
 }
 
 TEST(Verify, EachBreakIsFoundByItsRule) {
+  const std::vector<std::uint8_t> file = one_facet();
   for (const Break& broken : breaks()) {
     scene::Scene scene = test::sample_scene();
     broken.source(scene);
     AssetEdit edit(sample());
     broken.asset(edit);
     edit.seal();
-    const VerifyReport report = verify_bytes(edit.bytes(), scene, {.uniform_cuts = 3, .cameras = 3});
+    const VerifyReport report =
+        verify_bytes(edit.bytes(), scene, {.uniform_cuts = 3, .cameras = 3, .source_bytes = file});
     EXPECT_TRUE(has(report, broken.rule)) << broken.rule << ", " << broken.what << "; found:\n" << describe(report);
   }
 }
@@ -217,6 +225,7 @@ TEST(Verify, AQuickLookFindsNothingInTheSampleAndSaysWhatItLeftOut) {
 }
 
 TEST(Verify, AQuickLookFindsEachBreakOfWhatSurroundsTheGeometry) {
+  const std::vector<std::uint8_t> file = one_facet();
   const std::set<std::string> left_out{"V101", "V102", "V104", "V105"};
   std::set<std::string> found;
   for (const Break& broken : breaks()) {
@@ -227,7 +236,7 @@ TEST(Verify, AQuickLookFindsEachBreakOfWhatSurroundsTheGeometry) {
     AssetEdit edit(sample());
     broken.asset(edit);
     edit.seal();
-    const VerifyReport report = verify_bytes(edit.bytes(), scene, {.is_quick = true});
+    const VerifyReport report = verify_bytes(edit.bytes(), scene, {.is_quick = true, .source_bytes = file});
     EXPECT_TRUE(has(report, broken.rule)) << broken.rule << ", " << broken.what << "; found:\n" << describe(report);
     found.insert(broken.rule);
   }
