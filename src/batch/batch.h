@@ -31,6 +31,7 @@ struct BatchOptions {
   scene::ImportOptions import;
   CheckAsset check_asset;                 ///< where there is one, its error is the job's; the asset stays
   const Cache* cache = nullptr;           ///< may be none
+  bool is_strict = false;                 ///< a name of --aggregate that nothing in the scene has is an error
   bool is_dry_run = false;                ///< nothing is written: what would be done, and why
   bool fail_fast = false;                 ///< what comes after a failure is skipped
   bool make_folders = false;              ///< for the outputs
