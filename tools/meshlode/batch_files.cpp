@@ -49,7 +49,8 @@ bool is_batch_file(std::span<const std::uint8_t> bytes) {
 
 BatchFiles::BatchFiles(const std::vector<batch::Job>& jobs, BatchFileNames names)
     : names_(std::move(names)), jobs_(jobs) {
-  is_manifest_early_ = !names_.manifest.empty() && may_be_early(names_.manifest);
+  // A shard's manifest says that the shard is complete, and appears at its end (docs/cluster.md).
+  is_manifest_early_ = !names_.shard && !names_.manifest.empty() && may_be_early(names_.manifest);
   is_junit_early_ = !names_.junit.empty() && may_be_early(names_.junit);
   for (const batch::Job& job : jobs) {
     batch::JobResult& result = results_.emplace_back();  // JobStatus::kSkipped

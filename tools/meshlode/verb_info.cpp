@@ -49,16 +49,14 @@ Status check_page_options(PageOptions& page) {
     page.max_page_bytes = *bytes;
   }
   if (page.path && page.path->empty()) return Error{ErrorCode::kUsage, "--html", "name the file of the page"};
-  if (page.path) {
-    if (Status name = check_output_name("--html", *page.path, {".html", ".htm"}); !name) return name;
-  }
   return page.path ? can_write_info_page() : Ok{};
 }
 
 Status claim_page(const run::Asset& asset, const PageOptions& page) {
   if (!page.path) return Ok{};
   if (const auto id = asset.file_id()) output_files().keep(*id);
-  return output_files().claim(*page.path);
+  if (Status free = output_files().claim(*page.path); !free) return free;
+  return check_output_name("--html", *page.path, {".html", ".htm"});
 }
 
 Status write_page(const run::Asset& asset, const std::string& path, const std::optional<out::ByteMap>& byte_map,
