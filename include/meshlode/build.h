@@ -145,7 +145,7 @@ struct BuildOptions {
   std::uint32_t drop = 0;  ///< attributes that are not stored although `attributes` would; none of `keep`'s
   double grid_step = 0.0;  ///< mesh units between grid points, for meshes that must abut; 0: from position_error
   double position_error = 0.0;  ///< mesh units that a vertex may move at most; 0: chosen, invisible. Not with grid_step
-  double normal_error = 0.1;    ///< degrees, above 0, that a stored normal may be off at most
+  double normal_error = 0.1;    ///< degrees, above 0 and up to 180, that a stored normal may be off at most
   double uv_error = 0.0;        ///< what a texture coordinate may move at most; 0: chosen, invisible
   UvErrorUnit uv_error_unit = UvErrorUnit::kUv;  ///< of uv_error
   format::Codec codec = format::Codec::kNone;    ///< of the pages on disk

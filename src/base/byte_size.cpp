@@ -14,8 +14,17 @@ constexpr std::pair<std::string_view, unsigned> kUnits[] = {{"GiB", 30}, {"MiB",
 }  // namespace
 
 std::optional<std::uint64_t> parse_byte_size(std::string_view text) {
-  constexpr AmountUnit kFactors[] = {
-      {"GiB", std::uint64_t{1} << 30U}, {"MiB", std::uint64_t{1} << 20U}, {"KiB", std::uint64_t{1} << 10U}, {"B", 1}};
+  constexpr std::uint64_t kOne = 1, kKilo = 1000;
+  constexpr AmountUnit kFactors[] = {{"GiB", kOne << 30U},
+                                     {"MiB", kOne << 20U},
+                                     {"KiB", kOne << 10U},
+                                     {"GB", kKilo * kKilo * kKilo},
+                                     {"MB", kKilo * kKilo},
+                                     {"KB", kKilo},
+                                     {"G", kKilo * kKilo * kKilo},
+                                     {"M", kKilo * kKilo},
+                                     {"K", kKilo},
+                                     {"B", 1}};
   return parse_amount(text, kFactors, std::uint64_t{1} << 62U);
 }
 

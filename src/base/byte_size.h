@@ -9,7 +9,8 @@
 
 namespace meshlode {
 
-/// Digits and one of KiB, MiB, GiB, B or nothing behind them: bytes. Nothing for any other text, and beyond 2^62.
+/// Digits and a unit behind them: KiB, MiB, GiB (powers of 1024), KB, MB, GB or K, M, G (powers of 1000), B or nothing.
+/// Nothing for any other text, and beyond 2^62.
 [[nodiscard]] std::optional<std::uint64_t> parse_byte_size(std::string_view text);
 
 /// The shortest of those texts where one is exact, else with one decimal, rounded up: "512MiB", "341.4MiB", "71B".

@@ -9,6 +9,7 @@
 #include <new>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include <meshlode/result.h>
@@ -32,6 +33,11 @@ auto guarded(const std::filesystem::path& where, const Body& body) -> decltype(b
     return body();
   } catch (const std::bad_alloc&) {
     return out_of_memory(where.string());
+  } catch (const std::system_error& thrown) {
+    // A thread that cannot be started lacks its stack.
+    const bool lacks_memory =
+        thrown.code() == std::errc::resource_unavailable_try_again || thrown.code() == std::errc::not_enough_memory;
+    return lacks_memory ? out_of_memory(where.string()) : internal_error(where.string(), thrown.what());
   } catch (const std::exception& thrown) {
     return internal_error(where.string(), thrown.what());
   } catch (...) {

@@ -59,6 +59,16 @@ void remove_left_behind(const fs::path& folder) {
   }
 }
 
+/// Of a folder that is to be made the nearest one that is there; the folder itself where it is there.
+fs::path nearest_folder(fs::path folder) {
+  while (!system::find_info(folder)) {
+    fs::path above = folder_of(folder);
+    if (above == folder) break;
+    folder = std::move(above);
+  }
+  return folder;
+}
+
 /// Devices and pipes: there is nothing to rename over.
 Status write_through(const fs::path& path, std::span<const std::uint8_t> bytes) {
   const system::Handle device = system::open_device(path);
@@ -110,7 +120,8 @@ Status OutputFiles::claim(const fs::path& path) {
     if (!system::may_write(path, info->kind)) return io_error(path, "cannot be written");
     return Ok{};
   }
-  const fs::path folder = folder_of(follow_links(path));
+  fs::path folder = folder_of(follow_links(path));
+  if (makes_folders_) folder = nearest_folder(folder);
   const auto info = system::find_info(folder);
   if (!info) return io_error(path, "cannot be written, its folder");
   if (info->kind != FileKind::kFolder) return Error{ErrorCode::kIo, path.string(), "lies in a file, not in a folder"};
@@ -140,7 +151,7 @@ void OutputFiles::forget(const Temporary& file) {
   temporaries_.erase(std::remove(temporaries_.begin(), temporaries_.end(), file.name), temporaries_.end());
 }
 
-Status OutputFiles::put_in_place(Temporary& file, const fs::path& path, const fs::path& target) {
+Status OutputFiles::put_in_place(Temporary& file, const fs::path& path, const fs::path& target, Durability durability) {
   const std::lock_guard lock(mutex_);
   if (is_abandoned_) return Error{ErrorCode::kIo, path.string(), "not written: interrupted"};
   if (Status status = check_identity(path); !status) return status;
@@ -148,24 +159,38 @@ Status OutputFiles::put_in_place(Temporary& file, const fs::path& path, const fs
   if (!info) return io_error(path, "cannot stat its temporary file");
   if (!system::rename_over(file.name, target)) return io_error(path, "cannot rename into place");
   forget(file);
-  written_.insert(info->id);
+  if (durability == Durability::kSynced) written_.insert(info->id);
   return Ok{};
 }
 
 Status OutputFiles::write(const fs::path& path, std::span<const std::uint8_t> bytes) {
+  return write_as(path, bytes, Durability::kSynced);
+}
+
+Status OutputFiles::rewrite(const fs::path& path, std::span<const std::uint8_t> bytes) {
+  return write_as(path, bytes, Durability::kWrittenAgain);
+}
+
+Status OutputFiles::write_as(const fs::path& path, std::span<const std::uint8_t> bytes, Durability durability) {
   if (Status status = claim(path); !status) return status;
   const auto there = system::find_info(path);
   if (there && there->kind != FileKind::kRegular) return write_through(path, bytes);
   const fs::path target = follow_links(path);
+  if (makes_folders_) {
+    std::error_code error;
+    fs::create_directories(folder_of(target), error);
+    if (error) return Error{ErrorCode::kIo, path.string(), "cannot make its folder: " + error.message()};
+  }
+  const bool is_synced = durability == Durability::kSynced;
   Temporary file;
   if (Status status = create(file, path); !status) return status;
   Status status = Ok{};
   if (!system::write_all(file.handle, bytes)) {
     status = io_error(path, "cannot write");
-  } else if (!system::sync(file.handle)) {
+  } else if (is_synced && !system::sync(file.handle)) {
     status = io_error(path, "cannot sync");
   } else {
-    status = put_in_place(file, path, target);
+    status = put_in_place(file, path, target, durability);
   }
   if (!status) {
     const std::lock_guard lock(mutex_);
@@ -175,7 +200,8 @@ Status OutputFiles::write(const fs::path& path, std::span<const std::uint8_t> by
   system::close(file.handle);  // after the sync it has nothing to report
   if (!status) return status;
   // The rename itself must survive a power cut.
-  if (!system::sync_folder(folder_of(target))) return io_error(path, "written, but its folder cannot be synced");
+  if (is_synced && !system::sync_folder(folder_of(target)))
+    return io_error(path, "written, but its folder cannot be synced");
   return Ok{};
 }
 

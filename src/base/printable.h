@@ -16,6 +16,11 @@ namespace meshlode {
   return out.empty() ? "(no name)" : out;
 }
 
+/// ", got 'WORD'", the end of a message about a word that is not what was expected.
+[[nodiscard]] inline std::string got_text(std::string_view word) {
+  return word.empty() ? std::string(", got nothing") : ", got '" + printable(word, 64) + "'";
+}
+
 /// 1234567 -> "1,234,567".
 [[nodiscard]] inline std::string grouped_digits(std::uint64_t n) {
   std::string digits = std::to_string(n);

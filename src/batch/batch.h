@@ -32,7 +32,7 @@ struct BatchOptions {
   CheckAsset check_asset;                 ///< where there is one, its error is the job's; the asset stays
   const Cache* cache = nullptr;           ///< may be none
   bool is_dry_run = false;                ///< nothing is written: what would be done, and why
-  bool is_strict = false;                 ///< what list_warnings() would say of a job is its error
+  bool is_strict = false;                 ///< what list_warnings() says of a job is its error, and an unknown name of --aggregate
   bool fail_fast = false;                 ///< what comes after a failure is skipped
   bool make_folders = false;              ///< for the outputs
   bool lists_files = false;               ///< JobResult::files is wanted, without a cache too

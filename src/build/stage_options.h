@@ -5,6 +5,7 @@
 #include <array>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <meshlode/result.h>
@@ -38,7 +39,8 @@ namespace meshlode::build {
 /// What is asked of a mesh of the scene; the scene and the options outlive it.
 [[nodiscard]] AggregateQuestion aggregate_question(const scene::Scene& scene, std::size_t mesh,
                                                    const PipelineOptions& options);
-/// One for each name in AggregateChoice::kNamed that nothing has.
+/// One for each name in AggregateChoice::kNamed that nothing has; what it is about begins with kUnknownAggregate.
+inline constexpr std::string_view kUnknownAggregate = "scene: aggregate '";
 [[nodiscard]] std::vector<PlanDecision> unknown_names(const scene::Scene& scene, const PipelineOptions& options);
 
 /// What was decided after the plan: that pieces which stay grow (`keeps_area`), that half of the finest triangles or

@@ -17,8 +17,14 @@ TEST(ByteSize, ReadsUnitsAndNothingElse) {
   EXPECT_EQ(parse_byte_size("3KiB"), 3072u);
   EXPECT_EQ(parse_byte_size("512MiB"), 512 * kMiB);
   EXPECT_EQ(parse_byte_size("8GiB"), 8192 * kMiB);
+  EXPECT_EQ(parse_byte_size("1MB"), 1'000'000U);
+  EXPECT_EQ(parse_byte_size("2KB"), 2000U);
+  EXPECT_EQ(parse_byte_size("3GB"), 3'000'000'000U);
+  EXPECT_EQ(parse_byte_size("5K"), 5000U);
+  EXPECT_EQ(parse_byte_size("16M"), 16'000'000U);
+  EXPECT_EQ(parse_byte_size("4G"), 4'000'000'000U);
   EXPECT_EQ(parse_byte_size("4294967296GiB"), std::uint64_t{1} << 62u);
-  for (const char* text : {"", "MiB", "-1", "+1", "1.5GiB", "1 MiB", "1mib", "1MB", "0x10", "4294967297GiB",
+  for (const char* text : {"", "MiB", "-1", "+1", "1.5GiB", "1 MiB", "1mib", "1mb", "1Mi", "0x10", "4294967297GiB",
                            "18446744073709551616", "1MiBB"}) {
     EXPECT_FALSE(parse_byte_size(text)) << text;
   }

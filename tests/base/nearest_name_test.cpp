@@ -24,5 +24,19 @@ TEST(NearestName, FindsTheFirstOfTheNearest) {
       << "a long word costs no more than a short one";
 }
 
+TEST(NearestName, IsOnlySuggestedWhereItMayHaveBeenMeant) {
+  const std::vector<std::string> known = {"validate", "build", "zstd", "a"};
+  EXPECT_EQ(find_near_name("biuld", known), "build");
+  EXPECT_EQ(find_near_name("zst", known), "zstd");
+  EXPECT_EQ(find_near_name("VLIDATE", known), "validate");
+  EXPECT_FALSE(find_near_name("frobnicate", known));
+  EXPECT_FALSE(find_near_name("b", known)) << "one letter for another";
+  EXPECT_FALSE(find_near_name("", known));
+  EXPECT_FALSE(find_near_name("build", {}));
+  EXPECT_EQ(unknown_choice("zst", known),
+            "unknown value 'zst'; choose validate, build, zstd or a; the nearest is zstd");
+  EXPECT_EQ(nearest_or_all("gzip8", known), "; choose validate, build, zstd or a");
+}
+
 }  // namespace
 }  // namespace meshlode

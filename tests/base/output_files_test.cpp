@@ -142,6 +142,33 @@ TEST_F(OutputFilesTest, WhatCannotBeWrittenIsSaidBeforeTheWork) {
   EXPECT_FALSE(OutputFiles().claim(path("folder/file")));
 }
 
+TEST_F(OutputFilesTest, FoldersAreMadeWhereAskedForAndNotBeforeTheWrite) {
+  put("file", "x");
+  OutputFiles files(OutputFiles::Folders::kAreMade);
+  EXPECT_TRUE(files.claim(path("some/folder/out")));
+  EXPECT_EQ(names(), std::vector<std::string>{"file"});
+  EXPECT_TRUE(files.write(path("some/folder/out"), bytes("new")));
+  EXPECT_EQ(text_of(path("some/folder/out")), "new");
+  const Status below = files.claim(path("file/folder/out"));
+  ASSERT_FALSE(below);
+  EXPECT_EQ(below.error().code, ErrorCode::kIo);
+}
+
+TEST_F(OutputFilesTest, AFileMayBeRewrittenUntilItIsWritten) {
+  OutputFiles files;
+  for (const char* text : {"one", "two"}) {
+    EXPECT_TRUE(files.claim(path("told")));
+    EXPECT_TRUE(files.rewrite(path("told"), bytes(text)));
+    EXPECT_EQ(text_of(path("told")), text);
+  }
+  EXPECT_TRUE(files.write(path("told"), bytes("three")));
+  EXPECT_FALSE(files.rewrite(path("told"), bytes("four")));
+  EXPECT_EQ(names(), std::vector<std::string>{"told"});
+  const fs::path read = put("read", "x");
+  files.keep(*find_file_id(read));
+  EXPECT_FALSE(files.rewrite(read, bytes("y")));
+}
+
 TEST_F(OutputFilesTest, NewFilesHaveTheModeThatTheProcessGivesThem) {
   const mode_t before = ::umask(027);
   EXPECT_TRUE(OutputFiles().write(path("file"), bytes("x")));

@@ -55,11 +55,21 @@ TEST(Dependencies, CoverWhatWasReadOrSayThatTheyDoNot) {
 }
 
 TEST(Depfile, HasARuleForEachOutputAndEmptyOnesForWhatMayGo) {
-  EXPECT_EQ(depfile_text({{"out/a.lode", {"in/a.gltf", "in/a.bin", "in/my pic#1$.png"}}, {"out/b.lode", {"in/b.glb"}}}),
-            "out/a.lode: in/a.gltf \\\n  in/a.bin \\\n  in/my\\ pic\\#1$$.png\n"
-            "out/b.lode: in/b.glb\n"
-            "in/a.bin:\n"
-            "in/my\\ pic\\#1$$.png:\n");
+  EXPECT_EQ(
+      *depfile_text({{"out/a.lode", {"in/a.gltf", "in/a.bin", "in/my pic#1$.png"}}, {"out/b.lode", {"in/b.glb"}}}),
+      "out/a.lode: in/a.gltf \\\n  in/a.bin \\\n  in/my\\ pic\\#1$$.png\n"
+      "out/b.lode: in/b.glb\n"
+      "in/a.bin:\n"
+      "in/my\\ pic\\#1$$.png:\n");
+}
+
+TEST(Depfile, RefusesANameWithALineBreak) {
+  for (const std::vector<DepfileRule>& rules : {std::vector<DepfileRule>{{"out/a\n.lode", {"in/a.gltf"}}},
+                                                std::vector<DepfileRule>{{"a.lode", {"a.gltf", "x\ry.png"}}}}) {
+    const auto text = depfile_text(rules);
+    ASSERT_FALSE(text);
+    EXPECT_EQ(text.error().code, ErrorCode::kUsage);
+  }
 }
 
 }  // namespace

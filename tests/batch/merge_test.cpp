@@ -226,5 +226,21 @@ TEST(Assets, AreWhatTheirManifestTells) {
   EXPECT_TRUE(check_assets({r}));
 }
 
+TEST_F(MergeTest, AShardThatWasInterruptedIsRefused) {
+  const ShardPlan plan = plan_shard(jobs_, kWeights, {2, kShards});
+  std::vector<JobResult> mine;
+  for (const std::uint64_t position : plan.positions) {
+    JobResult& r = mine.emplace_back();
+    r.job = jobs_[position];
+    r.error = "interrupted";
+  }
+  const std::string text = manifest_json(mine, hash_of(1), kSettings, 2, &plan, false);
+  const auto manifest = parse_manifest(text);
+  ASSERT_TRUE(manifest) << manifest.error().message();
+  EXPECT_FALSE(manifest->is_complete);
+  EXPECT_EQ(manifest->exit_code, 2);
+  EXPECT_NE(merged({shard(1), text, shard(3)}).find("shard 2/3 was interrupted"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace meshlode::batch

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // json_check SCHEMA < DOCUMENT: the part of JSON Schema that docs/schemas/ uses: type, required, properties, items,
-// enum, additionalProperties (a schema or false), minimum, $ref to #/$defs. A key that the schema does not know fails
-// where additionalProperties is false, so that a schema which falls behind is noticed.
+// enum, additionalProperties (a schema or false), propertyNames (an enum), minimum, $ref to #/$defs. A key that the
+// schema does not know fails where additionalProperties is false, so that a schema which falls behind is noticed.
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <iostream>
@@ -59,6 +60,10 @@ struct Checker {
     }
     const Json properties = schema.value("properties", Json::object());
     for (const auto& [key, member] : value.items()) {
+      if (const auto names = schema.find("propertyNames"); names != schema.end()) {
+        const Json& known = names->at("enum");
+        if (std::find(known.begin(), known.end(), key) == known.end()) complain(where, "no such name: " + key);
+      }
       if (const auto it = properties.find(key); it != properties.end()) {
         check(*it, member, where + "/" + key);
       } else if (const auto more = schema.find("additionalProperties"); more != schema.end()) {

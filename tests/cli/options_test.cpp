@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "meshlode/output_name.h"
+
 namespace meshlode::cli {
 namespace {
 
@@ -89,6 +91,41 @@ TEST(OptionParser, NamesTheNearestOfItsOptions) {
             "meshlode: unknown option '-flag'; the nearest is --flag; see meshlode test --help\n");
   EXPECT_EQ(told_of({"a", "b"}).find("nearest"), std::string::npos) << "no option";
   EXPECT_EQ(told_of({"a", "--", "--falg"}).find("nearest"), std::string::npos) << "no option";
+}
+
+TEST(OptionParser, NamesNoOptionThatIsNotNear) {
+  EXPECT_EQ(told_of({"a", "--no-such-option"}),
+            "meshlode: unknown option '--no-such-option'; see meshlode test --help\n");
+  EXPECT_EQ(told_of({"a", "-x"}), "meshlode: unknown option '-x'; see meshlode test --help\n") << "not -c";
+}
+
+TEST(OptionParser, SaysWhatAValueShouldHaveBeen) {
+  EXPECT_EQ(told_of({"a", "--count", "many"}), "meshlode: --count: expected a whole number, 0 or more, got 'many'\n");
+  EXPECT_EQ(told_of({"a", "--count", "-1"}), "meshlode: --count: expected a whole number, 0 or more, got '-1'\n");
+  EXPECT_EQ(told_of({"a", "--count="}), "meshlode: --count: needs a whole number\n");
+  EXPECT_EQ(told_of({"a", "--number", "nan"}), "meshlode: --number: expected a number, got 'nan'\n");
+  EXPECT_EQ(told_of({"a", "--maybe", "inf"}), "meshlode: --maybe: expected a number, got 'inf'\n");
+  EXPECT_EQ(told_of({"a", "--maybe", "5%"}), "meshlode: --maybe: expected a number, got '5%'\n");
+  EXPECT_EQ(told_of({"a", "--choice", "aaa"}),
+            "meshlode: --choice: unknown value 'aaa'; choose a or b; the nearest is a\n");
+  EXPECT_EQ(told_of({"a", "--choice", "c"}), "meshlode: --choice: unknown value 'c'; choose a or b\n");
+  EXPECT_EQ(told_of({"a", "--choice"}), "meshlode: --choice: needs a value: a or b\n");
+  EXPECT_EQ(told_of({"a", "--number", "1", "--number", "2"}), "meshlode: --number: given more than once\n");
+  EXPECT_EQ(told_of({"a", "b"}), "meshlode: unexpected argument 'b': test takes one (file)\n");
+}
+
+TEST(OutputName, AnExtensionThatNamesAnotherFormatIsRefused) {
+  for (const char* name : {"x.png", "x.PNG", "x", "x.out", "dir.jpg/x", "/dev/stdout", "", ".png", "x.tmp"}) {
+    EXPECT_TRUE(check_output_name("-o", name, {".png"})) << name;
+  }
+  for (const char* name : {"x.jpg", "x.JPEG", "x.webp", "a.png.jpg", "x.glb", "x.lode", "x.json"}) {
+    EXPECT_FALSE(check_output_name("-o", name, {".png"})) << name;
+  }
+  EXPECT_EQ(check_output_name("-o", "x.gltf", {".glb"}).error().detail,
+            "what is written is a .glb file, not a .gltf file (got 'x.gltf'); give a name that ends in .glb");
+  EXPECT_TRUE(check_output_name("--html", "x.htm", {".html", ".htm"}));
+  EXPECT_TRUE(check_output_name("--depfile", "x.d", {}));
+  EXPECT_FALSE(check_output_name("--depfile", "x.json", {}));
 }
 
 TEST(OptionParser, ListsItsOptionsInsteadOfParsing) {

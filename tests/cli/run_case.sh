@@ -24,7 +24,7 @@ code() {
   "$MESHLODE" "$@" >../stdout 2>../stderr; status=$?
   echo "\$ meshlode $*"
   if [ "$status" -ne 0 ]; then
-    echo "exit $status, $(grep -c '^meshlode: ' ../stderr) error line(s)"
+    echo "exit $status, $(grep -cE '^meshlode( [a-z]+)?: ' ../stderr) error line(s)"
   else
     echo "exit 0"
   fi

@@ -26,7 +26,7 @@ Result<std::uint64_t> BatchWords::limit() const {
   if (cache_limit == "none") return std::uint64_t{0};
   const auto bytes = parse_byte_size(cache_limit);
   if (!bytes || *bytes == 0) {
-    return Error{ErrorCode::kUsage, "--cache-limit", "give none or a size above 0, such as 20GiB"};
+    return wrong_size("--cache-limit", cache_limit, "none or a size above 0, such as 20GiB or 20GB");
   }
   return *bytes;
 }
@@ -35,7 +35,8 @@ void add_batch_options(OptionParser& parser, BatchWords& words) {
   parser.add_flag("--fail-fast", words.fail_fast, "skip what comes after the first file that fails");
   parser.add_flag(
       "--strict", words.strict,
-      "errors: a missing texture, else left out and named; nothing to draw, triangles missing, else a warning");
+      "errors: a missing texture, a name of --aggregate that nothing has, nothing to draw, triangles missing; else these "
+      "are warnings");
   parser.add_value("--junit", words.junit, "write a JUnit XML file, a test case a scene");
   parser.add_value("--manifest", words.manifest, "write statuses, hashes, seconds and bytes of all files as JSON");
   parser.add_value("--depfile", words.depfile, "write what each asset depends on, for Make and Ninja");

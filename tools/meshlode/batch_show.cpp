@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "batch/jobs/weigh.h"
+#include "build/stage_options.h"
 #include "options.h"
 
 namespace meshlode::cli {
@@ -62,10 +63,18 @@ void print_left_out(const batch::JobFacts& facts) {
   for (const scene::LeftOut& left : facts.left_out) {
     std::fprintf(stderr, "  left out: %s: %s\n", plain(left.what).c_str(), plain(left.why).c_str());
   }
-  if (facts.losses.empty()) return;  // one line for all meshes of a scene
-  const std::string more = facts.losses.size() > 1 ? " and " + std::to_string(facts.losses.size() - 1) + " more" : "";
-  std::fprintf(stderr, "  left out: %s%s: %s\n", facts.losses[0].what.c_str(), more.c_str(),
-               facts.losses[0].why.c_str());
+  std::vector<const scene::LeftOut*> losses;
+  for (const scene::LeftOut& loss : facts.losses) {
+    if (!loss.what.starts_with(build::kUnknownAggregate)) {
+      losses.push_back(&loss);
+      continue;
+    }
+    const std::string name = plain(loss.what.substr(build::kUnknownAggregate.size() - 1));
+    std::fprintf(stderr, "  warning: --aggregate %s: %s\n", name.c_str(), loss.why.c_str());
+  }
+  if (losses.empty()) return;  // one line for all meshes of a scene
+  const std::string more = losses.size() > 1 ? " and " + std::to_string(losses.size() - 1) + " more" : "";
+  std::fprintf(stderr, "  left out: %s%s: %s\n", losses[0]->what.c_str(), more.c_str(), losses[0]->why.c_str());
 }
 
 }  // namespace

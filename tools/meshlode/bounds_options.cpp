@@ -38,6 +38,9 @@ void add_bounds_options(OptionParser& parser, BoundsOptions& options) {
 
 Result<run::AttributeBounds> make_bounds(const BoundsOptions& options, const run::Asset& asset) {
   if (Status status = check_number("--normal-error", options.normal_error); !status) return status.error();
+  if (options.normal_error && *options.normal_error > 180.0) {
+    return Error{ErrorCode::kUsage, "--normal-error", "give degrees, 0 to 180"};
+  }
   if (Status status = check_number("--uv-error", options.uv_error); !status) return status.error();
   run::AttributeBounds bounds;
   if (options.normal_error) bounds.normal_degrees = *options.normal_error;

@@ -166,6 +166,26 @@ Status check_request(const CutRequest& r) {
   return Ok{};
 }
 
+namespace {
+
+/// A level that one of the chosen meshes has: of a coarser one there is no cut.
+Status check_level(std::uint32_t level, const run::Asset& asset, const std::vector<bool>& chosen) {
+  std::uint32_t coarsest = 0;
+  for (std::size_t m = 0; m < chosen.size(); ++m) {
+    const format::MeshRecord& mesh = asset.meshes()[m];
+    if (!chosen[m]) continue;
+    for (const format::ClusterRecord& cluster : asset.clusters().subspan(mesh.first_cluster, mesh.cluster_count)) {
+      coarsest = std::max<std::uint32_t>(coarsest, cluster.level);
+    }
+  }
+  if (level <= coarsest) return Ok{};
+  return Error{ErrorCode::kUsage, "--level",
+               "there is no level " + std::to_string(level) + ": the levels are 0, the finest, to " +
+                   std::to_string(coarsest) + ", the coarsest"};
+}
+
+}  // namespace
+
 Result<std::vector<MeshCuts>> choose_cuts(const CutRequest& request, const run::Asset& asset,
                                           const std::vector<bool>& chosen) {
   std::vector<MeshCuts> cuts(asset.meshes().size());
@@ -173,6 +193,9 @@ Result<std::vector<MeshCuts>> choose_cuts(const CutRequest& request, const run::
   const Result<run::AttributeBounds> bounds = make_bounds(request.bounds, asset);
   if (!bounds) return bounds.error();
   Status status = Ok{};
+  if (request.level) {
+    if (const Status there = check_level(*request.level, asset, chosen); !there) return there.error();
+  }
   if (request.has_camera()) {
     status = choose_by_camera(request, *bounds, asset, chosen, cuts);
   } else if (request.triangles) {

@@ -68,16 +68,32 @@ int print_or_fail(const std::string& text) {
   return print_out(text) ? 0 : static_cast<int>(ErrorCode::kIo);
 }
 
+int run_verb(const Verb& verb, std::span<char* const> args) {
+  name_verb_in_errors(verb.name);
+  return verb.run(verb, args);
+}
+
+/// `meshlode help VERB`.
+int help_of(std::string_view name) {
+  std::string option = "--help";
+  char* const args[] = {option.data()};
+  for (const Verb* verb : all_verbs()) {
+    if (name == verb->name) return run_verb(*verb, args);
+  }
+  return unknown_verb(name);
+}
+
 int run(std::span<char* const> args) {
   if (args.empty()) {
     std::fputs(help().c_str(), stderr);
     return static_cast<int>(ErrorCode::kUsage);
   }
   const std::string_view name = args[0];
+  if (name == "help" && args.size() > 1) return help_of(args[1]);
   if (name == "--help" || name == "-h" || name == "help") return print_or_fail(help());
-  if (name == "--version") return print_or_fail(version_text());
+  if (name == "--version" || name == "-V" || name == "version") return print_or_fail(version_text());
   for (const Verb* verb : all_verbs()) {
-    if (name == verb->name) return verb->run(*verb, args.subspan(1));
+    if (name == verb->name) return run_verb(*verb, args.subspan(1));
   }
   return unknown_verb(name);
 }
@@ -100,6 +116,7 @@ int main(int argc, char** argv) {
   using meshlode::cli::print_error;
   meshlode::cli::give_back_large_arrays();
   meshlode::cli::watch_signals();
+  meshlode::cli::end_where_memory_runs_out();
   const auto arguments = std::span<char* const>(argv, static_cast<std::size_t>(argc)).subspan(argc > 0 ? 1 : 0);
   const auto code = meshlode::guarded({}, [&]() -> meshlode::Result<int> { return meshlode::cli::run(arguments); });
   const int exit_code = code ? *code : print_error(code.error());

@@ -14,7 +14,7 @@ Result<MemoryLimit> keep_memory_limit(const std::string& text, const std::filesy
   if (text == "auto") return limit;
   const auto bytes = parse_byte_size(text);
   if (!bytes || *bytes == 0) {
-    return Error{ErrorCode::kUsage, "--max-memory", "give auto or a size above 0, such as 8GiB"};
+    return wrong_size("--max-memory", text, "auto or a size above 0, such as 8GiB or 8GB");
   }
   std::vector<std::filesystem::path> folders;
   const char* const asked = std::getenv("TMPDIR");

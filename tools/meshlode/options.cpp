@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstring>
 #include <iterator>
+#include <type_traits>
 #include <utility>
 
 #include <tbb/global_control.h>
@@ -24,13 +25,47 @@ namespace meshlode::cli {
 
 namespace {
 
+std::string running_verb;  ///< for errors; written once, before any thread is started
+
 constexpr std::uint32_t kMaxJobs = 256;  ///< threads beyond that only cost memory
+
+template <class T>
+struct Plain {
+  using Type = T;
+};
+template <class T>
+struct Plain<std::optional<T>> {
+  using Type = T;
+};
+
+/// Why a word is no value of this type; empty where it is one.
+template <class T>
+std::string value_fault(const std::string& word) {
+  using Value = typename Plain<T>::Type;
+  if constexpr (std::is_unsigned_v<Value>) {
+    Value value = 0;
+    const bool is_number = !word.starts_with('-') && CLI::detail::lexical_cast(word, value);
+    return is_number ? "" : "expected a whole number, 0 or more" + got_text(word);
+  } else if constexpr (std::is_floating_point_v<Value>) {
+    Value value = 0;
+    return CLI::detail::lexical_cast(word, value) && std::isfinite(value) ? "" : "expected a number" + got_text(word);
+  } else {
+    return "";
+  }
+}
+
+std::string choice_fault(const std::string& word, const std::vector<std::string>& choices) {
+  if (std::find(choices.begin(), choices.end(), word) != choices.end()) return "";
+  return unknown_choice(printable(word, 64), choices);
+}
 
 }  // namespace
 
 struct OptionParser::State {
   explicit State(const Verb& verb)
-      : app(verb.summary, std::string("meshlode ") + verb.name), listed_options(verb.listed_options) {
+      : app(verb.summary, std::string("meshlode ") + verb.name),
+        verb_name(verb.name),
+        listed_options(verb.listed_options) {
     app.footer(std::string("Example:\n  ") + verb.example);
     app.allow_extras(false);
     note(*app.get_help_ptr(), {}, {});
@@ -42,7 +77,9 @@ struct OptionParser::State {
            bool is_required = false) {
     CLI::Option& option = *app.add_option(name, target, help);
     const std::string value = option.get_type_name();
-    if (!choices.empty()) option.check(CLI::IsMember(choices));
+    option.check(CLI::Validator(
+        [choices](std::string& word) { return choices.empty() ? value_fault<T>(word) : choice_fault(word, choices); },
+        ""));
     option.required(is_required);
     note(option, value, choices);
   }
@@ -62,6 +99,7 @@ struct OptionParser::State {
   }
 
   CLI::App app;
+  std::string verb_name;
   OptionTable options;  ///< as the app has them, in the order of the help
   OptionTable* listed_options;
 };
@@ -143,9 +181,13 @@ Status check_samples(std::uint64_t samples) {
   return Error{ErrorCode::kUsage, "--samples", "give 1 to 100000000"};
 }
 
+Error wrong_size(const char* option, const std::string& got, const char* wanted) {
+  return {ErrorCode::kUsage, option, "expected " + std::string(wanted) + got_text(got)};
+}
+
 Result<std::uint64_t> parse_max_decoded(const std::string& size) {
   const std::optional<std::uint64_t> bytes = parse_byte_size(size);
-  if (!bytes) return Error{ErrorCode::kUsage, "--max-decoded", "give a size, such as 512MiB"};
+  if (!bytes) return wrong_size("--max-decoded", size, "a size, such as 512MiB or 500MB");
   return *bytes;
 }
 
@@ -160,18 +202,70 @@ std::optional<std::string> find_unknown_option(const CLI::App& app) {
   return std::nullopt;
 }
 
-/// What is wrong with the arguments. An unknown option is named first: that an argument is missing is often its fault.
-std::string usage_fault(const CLI::App& app, const OptionTable& options, const CLI::ParseError& error) {
-  const auto word = find_unknown_option(app);
-  if (!word) return error.what();
-  std::vector<std::string> known;
-  const bool is_long = word->starts_with("--");  // nobody who wrote two dashes meant a letter
+/// The option that CLI11's text is about: it stands before the first colon.
+const OptionInfo* find_option(const OptionTable& options, const std::string& text) {
+  const std::string name = text.substr(0, text.find(':'));
   for (const OptionInfo& option : options) {
-    if (option.is_positional) continue;
-    std::copy_if(option.names.begin(), option.names.end(), std::back_inserter(known),
-                 [&](const std::string& name) { return !is_long || name.starts_with("--"); });
+    if (std::find(option.names.begin(), option.names.end(), name) != option.names.end()) return &option;
   }
-  return unknown_word("option", *word, known);
+  return nullptr;
+}
+
+/// What an option without its value lacks.
+std::string needed_value(const OptionInfo& option) {
+  constexpr std::string_view kFiles[] = {"--output",  "--report", "--manifest", "--junit",
+                                         "--depfile", "--html",   "--source",   "--path"};
+  constexpr std::string_view kFolders[] = {"--output-folder", "--cache", "--settings-root", "--out-dir"};
+  const auto is_among = [&](std::span<const std::string_view> names) {
+    return std::find(names.begin(), names.end(), option.names.back()) != names.end();
+  };
+  if (!option.choices.empty()) return "needs a value: " + list_of_choices(option.choices);
+  if (option.value == "UINT") return "needs a whole number";
+  if (option.value == "FLOAT") return "needs a number";
+  return is_among(kFiles) ? "needs a file name" : is_among(kFolders) ? "needs the name of a folder" : "needs a value";
+}
+
+/// "info takes one argument (file)".
+std::string arguments_of(const std::string& verb, const OptionTable& options) {
+  std::vector<std::string> names;
+  for (const OptionInfo& option : options) {
+    if (option.is_positional) names.push_back(option.names.front());
+  }
+  if (names.empty()) return verb + " takes none";
+  std::string text = verb + " takes " + (names.size() == 1 ? "one" : std::to_string(names.size())) + " (";
+  for (std::size_t i = 0; i < names.size(); ++i) text += (i == 0 ? "" : ", ") + names[i];
+  return text + ")";
+}
+
+struct UsageFault {
+  std::string text;
+  bool is_explained = false;  ///< the text says what to do
+};
+
+/// What is wrong with the arguments. An unknown option is named first: that an argument is missing is often its fault.
+UsageFault usage_fault(const CLI::App& app, const std::string& verb, const OptionTable& options,
+                       const CLI::ParseError& error) {
+  if (const auto word = find_unknown_option(app)) {
+    std::vector<std::string> known;  // of an option of one letter nobody knows which other one was meant
+    for (const OptionInfo& option : options) {
+      if (option.is_positional) continue;
+      std::copy_if(option.names.begin(), option.names.end(), std::back_inserter(known),
+                   [](const std::string& name) { return name.starts_with("--"); });
+    }
+    return {unknown_word("option", *word, known)};
+  }
+  const std::string text = error.what();
+  const OptionInfo* option = find_option(options, text);
+  if (dynamic_cast<const CLI::ValidationError*>(&error) != nullptr) return {text, true};
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr && option != nullptr) {
+    const std::string name = text.substr(0, text.find(':'));
+    return {name + (text.ends_with("missing") ? ": " + needed_value(*option) : ": given more than once"), true};
+  }
+  const std::vector<std::string> rest = app.remaining();
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr && !rest.empty()) {
+    return {"unexpected argument '" + printable(rest.front(), 64) + "': " + arguments_of(verb, options), true};
+  }
+  return {text};
 }
 
 }  // namespace
@@ -189,8 +283,9 @@ std::optional<int> OptionParser::parse(std::span<char* const> args) {
   } catch (const CLI::CallForHelp&) {
     return print_out(state_->app.help()) ? 0 : static_cast<int>(ErrorCode::kIo);
   } catch (const CLI::ParseError& e) {
-    const std::string fault = usage_fault(state_->app, state_->options, e);
-    return print_error({ErrorCode::kUsage, "", fault + "; see " + state_->app.get_name() + " --help"});
+    const UsageFault fault = usage_fault(state_->app, state_->verb_name, state_->options, e);
+    return print_error({ErrorCode::kUsage, "",
+                        fault.text + (fault.is_explained ? "" : "; see " + state_->app.get_name() + " --help")});
   }
 }
 
@@ -200,11 +295,11 @@ void add_output_options(OptionParser& parser, OutputOptions& options, const std:
   std::string help = "what is printed on stdout: " + formats.front();
   for (std::size_t i = 1; i < formats.size(); ++i) help += (i + 1 < formats.size() ? ", " : " or ") + formats[i];
   parser.add_value("--format", options.format, help.c_str(), formats);
-  parser.add_flag("--quiet", options.quiet, "no progress and no summary; errors are still printed");
+  parser.add_flag("-q,--quiet", options.quiet, "no progress and no summary; errors are still printed");
 }
 
 void add_jobs_option(OptionParser& parser, std::uint32_t& jobs) {
-  parser.add_value("--jobs", jobs, "threads; 0 is one per core. The output never depends on it");
+  parser.add_value("-j,--jobs", jobs, "threads; 0 is one per core. The output never depends on it");
 }
 
 struct JobLimit::State {
@@ -238,7 +333,7 @@ std::optional<std::vector<double>> parse_numbers(std::string_view text) {
 }
 
 std::string unknown_word(std::string_view what, std::string_view word, const std::vector<std::string>& known) {
-  return "unknown " + std::string(what) + " '" + printable(word, 64) + "'; the nearest is " + nearest_name(word, known);
+  return "unknown " + std::string(what) + " '" + printable(word, 64) + "'" + nearest_hint(word, known);
 }
 
 std::string cli11_version() {
@@ -249,9 +344,14 @@ std::string onetbb_version() {
   return TBB_runtime_version();
 }
 
+void name_verb_in_errors(std::string_view verb) {
+  running_verb = std::string(verb);
+}
+
 int print_error(const Error& error) {
   // One line whatever the detail holds: file names and JSON texts may have line breaks and control characters.
-  std::string line = "meshlode: " + error.message();
+  const bool is_usage = error.code == ErrorCode::kUsage && !running_verb.empty();
+  std::string line = (is_usage ? "meshlode " + running_verb : "meshlode") + ": " + error.message();
   for (char& c : line) {
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = ' ';
   }
@@ -262,8 +362,11 @@ int print_error(const Error& error) {
 
 bool print_out(const std::string& text) {
   const bool ok = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
-  if (!ok) print_error({ErrorCode::kIo, "stdout", std::string("cannot write: ") + std::strerror(errno)});
-  return ok;
+  if (ok) return true;
+  // A reader that has enough, such as head, is no failure: what the command found still decides the exit code.
+  if (errno == EPIPE) return true;
+  print_error({ErrorCode::kIo, "stdout", std::string("cannot write: ") + std::strerror(errno)});
+  return false;
 }
 
 }  // namespace meshlode::cli

@@ -78,6 +78,8 @@ constexpr const char* kDefaultMaxDecodedText = "512MiB";
 void add_allow_outside_option(OptionParser& parser, std::vector<std::string>& folders);
 /// As scene::ImportOptions takes them. Errors: kIo for what is no folder.
 [[nodiscard]] Result<std::vector<std::filesystem::path>> parse_allow_outside(const std::vector<std::string>& folders);
+/// "expected WANTED, got 'TEXT'": kUsage.
+[[nodiscard]] Error wrong_size(const char* option, const std::string& got, const char* wanted);
 
 /// --samples of verbs that measure deviations. Error: kUsage unless 1 to 100,000,000.
 [[nodiscard]] Status check_samples(std::uint64_t samples);
@@ -100,7 +102,7 @@ class JobLimit {
 /// "1,0.5,2e-3": numbers between commas; nothing where a part is not a finite number.
 [[nodiscard]] std::optional<std::vector<double>> parse_numbers(std::string_view text);
 
-/// "unknown WHAT 'word'; the nearest is NAME", for words of the command line. \pre not empty: known
+/// "unknown WHAT 'word'; the nearest is NAME", for words of the command line; where no name is near, without one.
 [[nodiscard]] std::string unknown_word(std::string_view what, std::string_view word,
                                        const std::vector<std::string>& known);
 
@@ -108,10 +110,14 @@ class JobLimit {
 [[nodiscard]] std::string cli11_version();
 [[nodiscard]] std::string onetbb_version();
 
-/// One line on stderr, "meshlode: where: detail", and the exit code to return.
+/// From here on a usage error is one of this verb's: "meshlode build: …".
+void name_verb_in_errors(std::string_view verb);
+
+/// One line on stderr, "meshlode: where: detail" ("meshlode VERB: …" for kUsage), and the exit code to return.
 int print_error(const Error& error);
 
-/// Writes text to stdout; false (and an error on stderr) where that fails, such as on a full disk.
+/// Writes text to stdout; false (and an error on stderr) where that fails, such as on a full disk. A pipe that is no
+/// longer read is no failure.
 [[nodiscard]] bool print_out(const std::string& text);
 
 }  // namespace meshlode::cli

@@ -4,8 +4,15 @@
 #include "outputs.h"
 
 #include <csignal>
+#include <cstdlib>
+#include <exception>
+#include <functional>
+#include <mutex>
+#include <new>
+#include <string_view>
 #include <system_error>
 #include <thread>
+#include <utility>
 
 #include <unistd.h>
 
@@ -19,7 +26,25 @@ const char* name_of(int signal) {
   return signal == SIGINT ? "SIGINT" : signal == SIGTERM ? "SIGTERM" : "SIGHUP";
 }
 
+/// What is to be done at an interrupt. Never destroyed, for the same reason as output_files().
+struct Interrupt {
+  std::mutex mutex;
+  std::function<void()> action;
+};
+Interrupt& interrupt() {
+  static auto* const one = new Interrupt;
+  return *one;
+}
+
 [[noreturn]] void end_process(int signal) {
+  {
+    const std::lock_guard lock(interrupt().mutex);
+    try {
+      if (interrupt().action) interrupt().action();
+    } catch (const std::exception&) {
+      // The process ends all the same.
+    }
+  }
   output_files().abandon();
   std::string line = std::string("meshlode: interrupted by ") + name_of(signal) + "\n";
   if (::isatty(STDERR_FILENO) == 1) line = "\r\033[K" + line;  // over the progress bar
@@ -29,16 +54,43 @@ const char* name_of(int signal) {
   ::_exit(static_cast<int>(ErrorCode::kIo));
 }
 
+/// Allocates nothing.
+[[noreturn]] void end_without_memory() {
+  try {
+    if (const auto thrown = std::current_exception()) std::rethrow_exception(thrown);
+  } catch (const std::bad_alloc&) {
+    output_files().abandon();
+    constexpr std::string_view kLine = "meshlode: out of memory\n";
+    if (::write(STDERR_FILENO, kLine.data(), kLine.size()) < 0) {
+      // Nobody is left to tell.
+    }
+    ::_exit(static_cast<int>(ErrorCode::kBuildFailed));
+  } catch (...) {
+    // A mistake of this program's: it ends as such.
+  }
+  std::abort();
+}
+
 }  // namespace
 
 OutputFiles& output_files() {
   // Never destroyed: the thread that waits for signals may need it while the process ends.
-  static auto* const files = new OutputFiles;
+  static auto* const files = new OutputFiles(OutputFiles::Folders::kAreMade);
   return *files;
 }
 
 Status write_text(const std::string& path, const std::string& text) {
   return output_files().write(path, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+}
+
+void set_interrupt_action(std::function<void()> action) {
+  const std::lock_guard lock(interrupt().mutex);
+  interrupt().action = std::move(action);
+}
+
+void end_where_memory_runs_out() {
+  static_cast<void>(output_files());  // made while there is memory
+  std::set_terminate(end_without_memory);
 }
 
 void watch_signals() {
@@ -54,7 +106,8 @@ void watch_signals() {
     is_any = true;
   }
   if (!is_any) return;
-  static_cast<void>(output_files());  // made before there are two threads
+  static_cast<void>(output_files());  // both are made before there are two threads
+  static_cast<void>(interrupt());
   sigset_t unblocked;
   if (::pthread_sigmask(SIG_BLOCK, &waited, &unblocked) != 0) return;  // all threads to come inherit it
   try {

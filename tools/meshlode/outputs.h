@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 
@@ -12,7 +13,8 @@
 
 namespace meshlode::cli {
 
-/// The one list of what the command has read and written: one process is one command.
+/// The one list of what the command has read and written: one process is one command. Folders of its outputs that are
+/// missing are made as these are written.
 [[nodiscard]] OutputFiles& output_files();
 
 /// Writes text to a file of output_files().
@@ -22,5 +24,13 @@ namespace meshlode::cli {
 /// left; those that the caller made the process ignore stay ignored. A pipe that nobody reads and a limit on file sizes
 /// are errors of the write, not the end of the process. Call it before any thread is started.
 void watch_signals();
+
+/// Called where such a signal ends the process, before its temporary files are removed, by another thread than the
+/// caller's; empty: nothing more is done. Once this has returned, the action that was there before is not under way.
+void set_interrupt_action(std::function<void()> action);
+
+/// From here on memory that runs out where nothing may be thrown (a library's destructor that allocates) ends the
+/// process as it does elsewhere: one line on stderr, exit code 4 and no temporary file left.
+void end_where_memory_runs_out();
 
 }  // namespace meshlode::cli

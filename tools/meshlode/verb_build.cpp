@@ -20,15 +20,18 @@
 #include "batch/shard/partition.h"
 #include "batch/shard/read_manifest.h"
 #include "batch/tell/tell.h"
+#include "batch_files.h"
 #include "batch_options.h"
 #include "batch_show.h"
 #include "budget_options.h"
 #include "build/settings/settings.h"
 #include "build_options.h"
 #include "explain.h"
+#include "file_kind.h"
 #include "material_looks.h"
 #include "memory_limit.h"
 #include "options.h"
+#include "output_name.h"
 #include "outputs.h"
 #include "verb.h"
 
@@ -149,39 +152,40 @@ std::string plan_text(const std::vector<JobResult>& results) {
   return text + batch::summary_line(results) + "\n";
 }
 
-std::string depfile_of(const std::vector<JobResult>& results) {
-  std::vector<batch::DepfileRule> rules;
-  for (const JobResult& r : results) {
-    batch::DepfileRule rule{r.job.output, {}};
-    for (const batch::Dependency& file : r.files) {
-      if (!file.path.empty()) rule.inputs.push_back(file.path);
-    }
-    if (rule.inputs.empty()) rule.inputs.push_back(r.job.input);
-    rules.push_back(std::move(rule));
-  }
-  return batch::depfile_text(rules);
+BatchFileNames names_of_files(const BuildCommand& command) {
+  return {command.words.manifest, command.words.junit,
+          command.words.depfile,  command.report_path,
+          command.program,        batch::settings_text(command.options.pipeline, command.options.import),
+          command.shard};
 }
 
-/// The files beside the assets; one that turned out to be a file of a scene was refused already. \returns the worst
-/// exit code
-int write_side_outputs(const BuildCommand& command, const std::vector<JobResult>& results, const std::string& report) {
-  const int worst_job = batch::worst_exit_code(results);
-  int worst = 0;
-  const auto write = [&](const std::string& path, const std::string& text) {
-    for (const JobResult& r : results) {
-      if (std::find(r.refused_outputs.begin(), r.refused_outputs.end(), path) != r.refused_outputs.end()) return;
-    }
-    if (const Status ok = write_text(path, text); !ok) worst = std::max(worst, print_error(ok.error()));
-  };
-  if (!command.report_path.empty()) write(command.report_path, report);
-  if (!command.words.junit.empty()) write(command.words.junit, batch::junit_xml(results));
-  if (!command.words.depfile.empty()) write(command.words.depfile, depfile_of(results));
-  if (!command.words.manifest.empty()) {
-    const std::string settings = batch::settings_text(command.options.pipeline, command.options.import);
-    const batch::ShardPlan* shard = command.shard ? &*command.shard : nullptr;
-    write(command.words.manifest, batch::manifest_json(results, command.program, settings, worst_job, shard));
+/// The formats of the files beside the assets, and of the asset that is named.
+Status check_formats(const BuildCommand& command, const std::string& output) {
+  Status checks[] = {check_output_name("-o", output, {".lode"}),
+                     check_output_name("--manifest", command.words.manifest, {".json"}),
+                     check_output_name("--report", command.report_path, {".json"}),
+                     check_output_name("--junit", command.words.junit, {".xml"}),
+                     check_output_name("--depfile", command.words.depfile, {})};
+  for (Status& status : checks) {
+    if (!status) return std::move(status);
   }
-  return worst;
+  return Ok{};
+}
+
+/// Before any work: an asset is no scene, and a depfile cannot hold every name.
+Status check_names(const BuildCommand& command, const std::vector<Job>& jobs) {
+  for (const Job& job : jobs) {
+    if (is_same_place(job.input, job.output) && look_at_file(job.input.string()).form == FileForm::kAsset) {
+      return Error{ErrorCode::kUnsupported, job.input.string(),
+                   "this is a .lode asset already; look at it with 'meshlode info', store it anew with 'meshlode "
+                   "repack'"};
+    }
+    if (command.words.depfile.empty()) continue;
+    for (const fs::path& path : {job.input, job.output}) {
+      if (Status sound = batch::check_depfile_path(path); !sound) return sound;
+    }
+  }
+  return Ok{};
 }
 
 /// --explain.
@@ -195,15 +199,23 @@ void print_plan(const scene::Scene& scene, std::span<const build::SettingLayer> 
 /// Runs the jobs and tells of them. \returns the exit code
 int run_jobs(const std::vector<Job>& jobs, const BuildCommand& command) {
   const bool is_dry = command.words.dry_run;
+  std::optional<BatchFiles> files;
+  if (!is_dry) files.emplace(jobs, names_of_files(command)).begin();
   BatchShow show(jobs, command.out.quiet, !command.out.json() && !is_dry);
   JobLimit limit(command.jobs);
   std::vector<JobResult> results;
   batch::BatchWatcher watcher = show.watcher();
+  if (files) {
+    watcher.on_end = [&files, shown = watcher.on_end](std::size_t job, const JobResult& result, const Error* error) {
+      files->add(job, result);
+      shown(job, result, error);
+    };
+  }
   if (command.is_explained) watcher.on_scene = print_plan;
   limit.run([&] { results = batch::run_batch(jobs, command.options, output_files(), watcher); });
   int worst = batch::worst_exit_code(results);
   const std::string report = batch::report_json(results, command.jobs, worst);
-  if (!is_dry) worst = std::max(worst, write_side_outputs(command, results, report));
+  if (files) worst = std::max(worst, files->finish(results, report));
   if (command.cache) {
     // An asset is no worse for it: the code stays.
     if (const auto error = command.cache->store().first_error()) print_error(*error);
@@ -291,6 +303,7 @@ int run_build(const Verb& verb, std::span<char* const> args) {
   if (const Status set = set_budget(command); !set) return print_error(set.error());
   const auto plan = batch::plan_jobs(inputs, output, output_folder);
   if (!plan) return print_error(plan.error());
+  if (const Status names = check_names(command, *plan); !names) return print_error(names.error());
   const auto share = take_share(*plan, command);
   if (!share) return print_error(share.error());
   if (const Status found = find_program(command); !found) return print_error(found.error());
@@ -301,6 +314,7 @@ int run_build(const Verb& verb, std::span<char* const> args) {
   if (!command.words.dry_run) {
     if (const Status made = make_folder(output_folder); !made) return print_error(made.error());
     if (const Status free = check_outputs(*plan, side_outputs); !free) return print_error(free.error());
+    if (const Status formats = check_formats(command, output); !formats) return print_error(formats.error());
     if (const Status removed = remove_old_manifest(command); !removed) return print_error(removed.error());
   }
   command.options.import.may_lack_images = !command.words.strict;

@@ -9,6 +9,7 @@
 #include "budget_options.h"
 #include "camera_options.h"
 #include "draw_pair.h"
+#include "file_kind.h"
 #include "options.h"
 #include "out/compare/compare.h"
 #include "out/compare/stored_bytes.h"
@@ -42,7 +43,7 @@ Error in_picture(Error error) {
 
 /// Errors: those of opening; kInvalid for damaged pages and images, which opening does not look at.
 Result<run::Asset> open_sound(const std::string& path, std::uint64_t max_decoded) {
-  Result<run::Asset> asset = run::Asset::open(path, max_decoded);
+  Result<run::Asset> asset = open_asset(path, max_decoded);
   if (!asset) return asset;
   if (const Status sound = out::check_stored_bytes(*asset); !sound) {
     Error error = sound.error();
@@ -99,7 +100,7 @@ int run_compare(const Verb& verb, std::span<char* const> args) {
   std::string text;
   if (options.output.json()) {
     text = out::comparison_json(comparison, broken);
-  } else if (!options.output.quiet) {
+  } else if (!options.output.quiet || budget->empty()) {  // with a budget it is the verdict that is asked for
     text = out::comparison_text(comparison);
   }
   if (!print_out(text)) return static_cast<int>(ErrorCode::kIo);

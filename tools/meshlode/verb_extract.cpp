@@ -11,8 +11,10 @@
 #include "base/json_writer.h"
 #include "extract_cuts.h"
 #include "extract_stuck.h"
+#include "file_kind.h"
 #include "options.h"
 #include "out/export/export.h"
+#include "output_name.h"
 #include "outputs.h"
 #include "promise_option.h"
 #include "run/read/asset.h"
@@ -38,6 +40,7 @@ Error usage(const char* option, const char* detail) {
 
 Status check_options(const ExtractOptions& o) {
   if (!o.output) return usage("-o", "say where the GLB goes");
+  if (Status name = check_output_name("-o", *o.output, {".glb"}); !name) return name;
   if (o.is_stuck) {
     if (o.request.has_way() || o.request.bounds.has_any() || o.mesh) return usage("--stuck", "stands alone");
   } else if (auto status = check_request(o.request); !status) {
@@ -218,7 +221,7 @@ int run_extract(const Verb& verb, std::span<char* const> args) {
 
   const Result<std::uint64_t> max_decoded = parse_max_decoded(o.max_decoded);
   if (!max_decoded) return print_error(max_decoded.error());
-  auto asset = run::Asset::open(o.input, *max_decoded);
+  auto asset = open_asset(o.input, *max_decoded);
   if (!asset) return print_error(asset.error());
   if (const Status promised = choose_promise(o.promise, *asset); !promised) return print_error(promised.error());
   if (const auto id = asset->file_id()) output_files().keep(*id);

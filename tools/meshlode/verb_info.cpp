@@ -5,11 +5,13 @@
 
 #include "base/byte_size.h"
 #include "budget_options.h"
+#include "file_kind.h"
 #include "info_page.h"
 #include "options.h"
 #include "out/compare/stored_bytes.h"
 #include "out/page/viewer_page.h"
 #include "out/report/info.h"
+#include "output_name.h"
 #include "outputs.h"
 #include "run/read/asset.h"
 #include "terminal.h"
@@ -44,7 +46,7 @@ Status check_page_options(PageOptions& page) {
   if (page.limit) {
     const auto bytes = parse_byte_size(*page.limit);
     if (!page.path) return Error{ErrorCode::kUsage, "--html-limit", "is for --html"};
-    if (!bytes) return Error{ErrorCode::kUsage, "--html-limit", "give a size, such as 8MiB"};
+    if (!bytes) return wrong_size("--html-limit", *page.limit, "a size, such as 8MiB or 8MB");
     page.max_page_bytes = *bytes;
   }
   if (page.path && page.path->empty()) return Error{ErrorCode::kUsage, "--html", "name the file of the page"};
@@ -54,7 +56,8 @@ Status check_page_options(PageOptions& page) {
 Status claim_page(const run::Asset& asset, const PageOptions& page) {
   if (!page.path) return Ok{};
   if (const auto id = asset.file_id()) output_files().keep(*id);
-  return output_files().claim(*page.path);
+  if (Status free = output_files().claim(*page.path); !free) return free;
+  return check_output_name("--html", *page.path, {".html", ".htm"});
 }
 
 Status write_page(const run::Asset& asset, const std::string& path, const std::optional<out::ByteMap>& byte_map,
@@ -81,7 +84,7 @@ int run_info(const Verb& verb, std::span<char* const> args) {
   const auto budget = read_budget_option(fail_if, out::info_schema());
   if (!budget) return print_error(budget.error());
   if (const Status sane = check_page_options(page); !sane) return print_error(sane.error());
-  const Result<run::Asset> asset = run::Asset::open(path);
+  const Result<run::Asset> asset = open_asset(path);
   if (!asset) return print_error(asset.error());
   if (const Status free = claim_page(*asset, page); !free) return print_error(free.error());
   out::AssetInfo info = out::describe_asset(*asset);
@@ -100,7 +103,8 @@ int run_info(const Verb& verb, std::span<char* const> args) {
     const Status written = write_page(*asset, path, info.byte_map, page);
     if (!written) return print_error(written.error());
   }
-  const bool is_silent = output.quiet && output.format == "text";
+  // With a budget or a page it is these that are asked for.
+  const bool is_silent = output.quiet && output.format == "text" && (fail_if || page.path);
   if (!is_silent && !print_out(describe(*asset, info, output.format, list_stuck))) {
     return static_cast<int>(ErrorCode::kIo);
   }

@@ -14,6 +14,7 @@
 #include "batch/shard/read_manifest.h"
 #include "batch/tell/tell.h"
 #include "options.h"
+#include "output_name.h"
 #include "outputs.h"
 #include "verb.h"
 
@@ -41,9 +42,9 @@ int run_merge(const Verb& verb, std::span<char* const> args) {
   OptionParser parser(verb);
   parser.add_positionals("manifest", paths, "the manifests of all shards, in any order");
   parser.add_value("-o,--output", output, "the manifest to write");
-  parser.add_flag("--quiet", is_quiet, "no summary; errors are still printed");
+  parser.add_flag("-q,--quiet", is_quiet, "no summary; errors are still printed");
   if (const auto exit_code = parser.parse(args)) return *exit_code;
-  if (output.empty()) return print_error({ErrorCode::kUsage, "", "give -o FILE"});
+  if (output.empty()) return print_error({ErrorCode::kUsage, "-o", "name the manifest to write"});
 
   std::vector<batch::ShardManifest> shards;
   for (const std::string& path : paths) {
@@ -56,6 +57,8 @@ int run_merge(const Verb& verb, std::span<char* const> args) {
   if (!merged) return print_error(merged.error());
   keep_files(merged->results);
   if (const Status there = batch::check_assets(merged->results); !there) return print_error(there.error());
+  if (const Status free = output_files().claim(output); !free) return print_error(free.error());
+  if (const Status name = check_output_name("-o", output, {".json"}); !name) return print_error(name.error());
   const std::string text = batch::manifest_json(merged->results, merged->program, merged->settings, merged->exit_code);
   if (const Status written = write_text(output, text); !written) return print_error(written.error());
   for (const batch::JobResult& r : merged->results) {

@@ -15,7 +15,9 @@
 #include "draw/raster/legend.h"
 #include "draw/raster/raster.h"
 #include "explain.h"
+#include "file_kind.h"
 #include "options.h"
+#include "output_name.h"
 #include "outputs.h"
 #include "promise_option.h"
 #include "verb.h"
@@ -254,6 +256,9 @@ int run_render(const Verb& verb, std::span<char* const> args) {
   add_output_options(parser, options.report);
   if (const auto exit_code = parser.parse(args)) return *exit_code;
   if (options.output.empty()) return print_error({ErrorCode::kUsage, "--output", "name the PNG to write"});
+  if (const Status name = check_output_name("--output", options.output, {".png"}); !name) {
+    return print_error(name.error());
+  }
   if (options.error && !(*options.error >= 0.0 && std::isfinite(*options.error))) {
     return print_error({ErrorCode::kUsage, "--error", "give an error of 0 or more"});
   }
@@ -270,7 +275,7 @@ int run_render(const Verb& verb, std::span<char* const> args) {
   if (!max_decoded) return print_error(max_decoded.error());
 
   const JobLimit limit(options.jobs);
-  Result<run::Asset> asset = run::Asset::open(options.input, *max_decoded);
+  Result<run::Asset> asset = open_asset(options.input, *max_decoded);
   if (!asset) return print_error(asset.error());
   if (const Status chosen = choose_promise(options.promise, *asset); !chosen) return print_error(chosen.error());
   if (const auto id = asset->file_id()) output_files().keep(*id);

@@ -9,8 +9,10 @@
 
 #include "base/hash.h"
 #include "base/json_writer.h"
+#include "file_kind.h"
 #include "format/names.h"
 #include "options.h"
+#include "output_name.h"
 #include "outputs.h"
 #include "repacked.h"
 #include "run/read/asset.h"
@@ -64,11 +66,12 @@ int run_repack(const Verb& verb, std::span<char* const> args) {
   if (const auto exit_code = parser.parse(args)) return *exit_code;
   if (!o.output) return print_error({ErrorCode::kUsage, "-o", "say where the asset goes"});
   if (!o.codec) return print_error({ErrorCode::kUsage, "--codec", "say how pages are to be stored"});
+  if (const Status name = check_output_name("-o", *o.output, {".lode"}); !name) return print_error(name.error());
   const std::optional<format::Codec> codec = value_in(format::kCodecNames, *o.codec);
   const Result<std::uint64_t> max_decoded = parse_max_decoded(o.max_decoded);
   if (!max_decoded) return print_error(max_decoded.error());
 
-  const auto asset = run::Asset::open(o.input, *max_decoded);
+  const auto asset = open_asset(o.input, *max_decoded);
   if (!asset) return print_error(asset.error());
   if (const auto id = asset->file_id()) output_files().keep(*id);
   if (const Status free = output_files().claim(*o.output); !free) return print_error(free.error());

@@ -5,6 +5,7 @@
 
 #include "base/file.h"
 #include "base/json_writer.h"
+#include "file_kind.h"
 #include "findings.h"
 #include "judge/validate/rules.h"
 #include "judge/validate/validate.h"
@@ -64,6 +65,9 @@ int run_validate(const Verb& verb, std::span<char* const> args) {
     }
     const judge::ValidationReport report = judge::validate_asset(file->bytes());
     if (report.finding_count > 0) worst = std::max(worst, is_no_asset(report) ? kInvalid : kCheckFailed);
+    if (is_no_asset(report)) {
+      if (const Status named = check_is_no_scene(path); !named) print_error(named.error());
+    }
     text += describe(path, report, output.quiet);
     json.begin_object();
     json.field("file", path);

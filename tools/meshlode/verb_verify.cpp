@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cstdio>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/file.h"
 #include "base/json_writer.h"
+#include "base/printable.h"
 #include "explain.h"
+#include "file_kind.h"
 #include "findings.h"
 #include "gpu_checks.h"
+#include "judge/validate/rules.h"
 #include "judge/verify/verify.h"
 #include "memory_limit.h"
 #include "options.h"
@@ -123,6 +128,30 @@ Status check_size(const run::Asset& asset) {
   return cuts ? cuts : Status(Error{cuts.error().code, "cuts of all instances", cuts.error().detail});
 }
 
+/// Where the scene is another one than the asset was built from there is nothing to compare: a report of that alone.
+std::optional<judge::VerifyReport> find_other_source(const run::Asset& asset, const scene::Scene& source) {
+  const out::MetaInfo meta = out::read_meta(asset.meta_json());
+  if (meta.source_hash.empty() || meta.source_hash == source.source_hash) return std::nullopt;
+  const auto named = [](const std::string& name, const std::string& hash) {
+    return printable(name) + " (" + printable(hash, 8) + ")";
+  };
+  judge::VerifyReport report;
+  report.checks.push_back({"", "the source is the one the asset was built from", 1, 1});
+  report.findings.push_back({std::string(judge::info_of(judge::Rule::kV108).id), "", "section META: /source/hash",
+                             "the asset was built from " + named(meta.source_file, meta.source_hash) +
+                                 ", the source given is " + named(source.source_name, source.source_hash) +
+                                 "; nothing else was compared: give that scene, or --force"});
+  report.finding_count = 1;
+  return report;
+}
+
+/// The asset and its scene the wrong way round.
+Status check_order(const std::string& path, const std::string& source) {
+  if (look_at_file(path).form != FileForm::kScene || look_at_file(source).form != FileForm::kAsset) return Ok{};
+  return Error{ErrorCode::kUsage, "",
+               "the asset and its scene are swapped; give 'meshlode verify " + source + " --source " + path + "'"};
+}
+
 int run_verify(const Verb& verb, std::span<char* const> args) {
   std::string path;
   std::string source_path;
@@ -130,7 +159,7 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
   std::uint32_t jobs = 0;
   std::string max_decoded_text = kDefaultMaxDecodedText, max_memory = "auto";
   std::vector<std::string> allow_outside;
-  bool repair = false;
+  bool repair = false, is_forced = false;
   judge::VerifyOptions options;
   OutputOptions output;
   OptionParser parser(verb);
@@ -139,6 +168,7 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
   parser.add_flag("--quick", options.is_quick,
                   "structure, border proof and one measured cut a mesh; the source's triangles are not looked for");
   parser.add_flag("--repair", repair, "repair the source as build --repair does, also where the asset does not say so");
+  parser.add_flag("--force", is_forced, "compare with another scene, too, than the one that the asset was built from");
   parser.add_value("--cuts", options.uniform_cuts, "uniform cuts per mesh that cross-check the border proof");
   parser.add_value("--cameras", options.cameras, "random cameras that cross-check selection and hierarchy");
   parser.add_value("--deviation-cuts", options.deviation_cuts,
@@ -177,7 +207,8 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
   gpu_options.max_decoded = *max_decoded;
 
   const JobLimit limit(jobs);
-  Result<run::Asset> asset = run::Asset::open(path, *max_decoded);
+  if (const Status order = check_order(path, source_path); !order) return print_error(order.error());
+  Result<run::Asset> asset = open_asset(path, *max_decoded);
   if (!asset) return print_error(asset.error());
   if (const auto id = asset->file_id()) output_files().keep(*id);
   if (gpu_options.is_on) {  // asked before anything is measured, and chosen by verify_with_gpu() alone
@@ -200,8 +231,9 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
   const Result<MappedFile> file = MappedFile::open(source_path);
   if (file) options.source_bytes = file->bytes();
   if (options.is_quick) options.uniform_cuts = options.cameras = 0;  // as it is reported
-  judge::VerifyReport report = judge::verify_asset(*asset, *source, options);
-  if (gpu_options.is_on) {
+  auto other = is_forced ? std::nullopt : find_other_source(*asset, *source);
+  judge::VerifyReport report = other ? std::move(*other) : judge::verify_asset(*asset, *source, options);
+  if (gpu_options.is_on && !other) {
     if (const Status judged = verify_with_gpu(*asset, *source, gpu_options, report); !judged) {
       return print_error(judged.error());
     }

@@ -3,6 +3,8 @@
 
 #include <set>
 
+#include "base/printable.h"
+
 namespace meshlode::batch {
 
 namespace {
@@ -22,7 +24,19 @@ std::string escaped(const std::filesystem::path& path) {
 
 }  // namespace
 
-std::string depfile_text(const std::vector<DepfileRule>& rules) {
+Status check_depfile_path(const std::filesystem::path& path) {
+  if (path.native().find_first_of("\n\r") == std::string::npos) return Ok{};
+  return Error{ErrorCode::kUsage, "--depfile",
+               "a name with a line break cannot be in a depfile (got '" + printable(path.string(), 200) + "')"};
+}
+
+Result<std::string> depfile_text(const std::vector<DepfileRule>& rules) {
+  for (const DepfileRule& rule : rules) {
+    if (const Status sound = check_depfile_path(rule.output); !sound) return sound.error();
+    for (const std::filesystem::path& input : rule.inputs) {
+      if (const Status sound = check_depfile_path(input); !sound) return sound.error();
+    }
+  }
   std::string text;
   std::set<std::string> alone;
   for (const DepfileRule& rule : rules) {

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include <meshlode/result.h>
+
 namespace meshlode::batch {
 
 struct DepfileRule {
@@ -14,8 +16,11 @@ struct DepfileRule {
 };
 
 /// `output: inputs`, one rule a line, and an empty rule for every input behind a first one, so that a file that is no
-/// longer there makes its asset be built again and not an error. Paths as given; a blank, # and $ are
-/// escaped, a line break cannot be.
-[[nodiscard]] std::string depfile_text(const std::vector<DepfileRule>& rules);
+/// longer there makes its asset be built again and not an error. Paths as given; a blank, # and $ are escaped. Errors:
+/// as check_depfile_path().
+[[nodiscard]] Result<std::string> depfile_text(const std::vector<DepfileRule>& rules);
+
+/// Error: kUsage for a path with a line break, which no depfile can hold.
+[[nodiscard]] Status check_depfile_path(const std::filesystem::path& path);
 
 }  // namespace meshlode::batch

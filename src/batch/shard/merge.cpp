@@ -43,6 +43,10 @@ Status check_each(const std::vector<ShardManifest>& shards) {
       return Error{ErrorCode::kCheckFailed, shard.path.string(),
                    "written by " + shard.manifest.generator + ", and this is " + program_version()};
     }
+    if (!shard.manifest.is_complete) {
+      return Error{ErrorCode::kCheckFailed, shard.path.string(),
+                   text_of(shard.manifest.shard->shard) + " was interrupted, or is still at work: build it again"};
+    }
     const std::string words = difference(shards.front(), shard);
     if (!words.empty()) return Error{ErrorCode::kCheckFailed, shard.path.string(), words};
   }
@@ -98,7 +102,7 @@ Result<Manifest> merge_shards(std::vector<ShardManifest> shards) {
   std::sort(places.begin(), places.end());
   const Manifest& first = shards.front().manifest;
   const std::uint64_t batch_jobs = first.shard->batch_jobs;
-  Manifest merged{first.generator, first.program, first.settings, 0, std::nullopt, {}};
+  Manifest merged{first.generator, first.program, first.settings, 0, true, std::nullopt, {}};
   constexpr const char* kAgain = "; inputs changed between shards: build all of them again";
   for (const auto& [position, s, i] : places) {
     JobResult& result = shards[s].manifest.results[i];

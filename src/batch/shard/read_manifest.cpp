@@ -179,6 +179,11 @@ Result<Manifest> parse_manifest(std::string_view text) {
   manifest.program = in.hash(*root, "program");
   manifest.settings = read_settings(in, *root);
   manifest.exit_code = static_cast<int>(in.number(*root, "exit_code", 255));
+  if (const Json* complete = root->find("complete")) {
+    const bool* truth = std::get_if<bool>(&complete->value);
+    if (truth == nullptr) in.refuse("complete", "neither true nor false");
+    manifest.is_complete = truth == nullptr || *truth;
+  }
   if (const Json* shard = root->find("shard")) manifest.shard = read_shard(in, *shard);
   in.enter("");
   const Json::Array& assets = in.objects(*root, "assets");
@@ -195,7 +200,9 @@ Result<Manifest> parse_manifest(std::string_view text) {
     manifest.results.push_back(read_result(in, assets[i]));
   }
   in.enter("");
-  if (manifest.exit_code != worst_exit_code(manifest.results)) in.refuse("exit_code", "contradicts the assets");
+  const int worst = worst_exit_code(manifest.results);
+  if (manifest.is_complete ? manifest.exit_code != worst : manifest.exit_code < worst)
+    in.refuse("exit_code", "contradicts the assets");
   if (!in.is_sound()) return in.error();
   return manifest;
 }

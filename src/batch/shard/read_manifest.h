@@ -21,6 +21,7 @@ struct Manifest {
   Hash128 program{};
   std::string settings;  ///< as settings_text()
   int exit_code = 0;
+  bool is_complete = true;         ///< false: the batch was interrupted, or is still at work
   std::optional<ShardPlan> shard;  ///< nothing: it is of a whole batch
   /// With what a manifest tells: of the facts the bytes, of a file's stamp its bytes.
   std::vector<JobResult> results;

@@ -68,7 +68,8 @@ std::string case_xml(const JobResult& r) {
     text += ">\n      <failure type=\"" + std::string(kind_of(r.exit_code)) + "\" message=\"" + escaped(r.error) +
             "\"/>\n    </testcase>\n";
   } else if (r.status == JobStatus::kSkipped) {
-    text += ">\n      <skipped message=\"a file before it failed\"/>\n    </testcase>\n";
+    const std::string why = r.error.empty() ? "a file before it failed" : r.error;
+    text += ">\n      <skipped message=\"" + escaped(why) + "\"/>\n    </testcase>\n";
   } else {
     std::string lines;
     for (const JobWarning& warning : r.warnings) lines += "warning: " + warning.text + "\n";

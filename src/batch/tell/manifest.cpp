@@ -88,7 +88,7 @@ void write_shard(JsonWriter& w, const ShardPlan& plan) {
 }  // namespace
 
 std::string manifest_json(const std::vector<JobResult>& results, const Hash128& program, const std::string& settings,
-                          int exit_code, const ShardPlan* shard) {
+                          int exit_code, const ShardPlan* shard, bool is_complete) {
   assert(shard == nullptr || shard->positions.size() == results.size());
   JsonWriter w;
   w.begin_object();
@@ -96,6 +96,7 @@ std::string manifest_json(const std::vector<JobResult>& results, const Hash128& 
   w.field("program", to_hex(program));
   write_settings(w, settings);
   w.field("exit_code", exit_code);
+  w.field("complete", is_complete);
   if (shard != nullptr) write_shard(w, *shard);
   w.key("assets");
   w.begin_array();

@@ -17,9 +17,10 @@ namespace meshlode::batch {
 
 /// docs/schemas/manifest.schema.json: every file with its status, what it was made of and what came of it.
 /// `settings`: settings_text(). `program`: find_program_id(). `shard`: what the results are a share of, where they are:
-/// then it has as many positions as there are results.
+/// then it has as many positions as there are results. `is_complete`: the batch is over, and was not interrupted.
 [[nodiscard]] std::string manifest_json(const std::vector<JobResult>& results, const Hash128& program,
-                                        const std::string& settings, int exit_code, const ShardPlan* shard = nullptr);
+                                        const std::string& settings, int exit_code, const ShardPlan* shard = nullptr,
+                                        bool is_complete = true);
 
 /// A test case a file, as build servers show them: a failure with its line, a skipped one as skipped.
 [[nodiscard]] std::string junit_xml(const std::vector<JobResult>& results);

@@ -22,7 +22,7 @@ enum class JobStatus : std::uint8_t {
   kCached,      ///< the output was written from the cache
   kUnchanged,   ///< the output already was what would have been written
   kFailed,      ///< no asset, or one that BatchOptions::check_asset refused
-  kSkipped,     ///< after another one's failure
+  kSkipped,     ///< after another one's failure, or after an interrupt, which `error` then says
   kWouldBuild,  ///< --dry-run
   kWouldCopy,   ///< --dry-run
 };

@@ -13,6 +13,7 @@
 #include "batch/cache/mesh_entries.h"
 #include "batch/work/warnings.h"
 #include "scene/detect/detect.h"
+#include "build/stage_options.h"
 
 namespace meshlode::batch {
 
@@ -197,6 +198,18 @@ class Run {
     return status;
   }
 
+  /// Of --strict.
+  template <class Decisions>
+  [[nodiscard]] Status check_names(const Decisions& decisions) const {
+    for (const auto& decision : decisions) {
+      if (!options_.is_strict || !decision.what.starts_with(build::kUnknownAggregate)) continue;
+      const std::string name = decision.what.substr(build::kUnknownAggregate.size() - 1);  // from its quote on
+      return Error{ErrorCode::kUsage, result_.job.input.string(),
+                   "--aggregate: no mesh and no material has the name " + name};
+    }
+    return Ok{};
+  }
+
   /// Nothing: what the record promises is not there.
   std::optional<Status> take_from_cache(const AssetRecord& record) {
     std::vector<FileId> read;
@@ -205,6 +218,7 @@ class Run {
     }
     if (Status free = check_outputs(read); !free) return free;
     if (Status whole = check_whole(record.facts); !whole) return whole;
+    if (Status names = check_names(record.facts.planned_out); !names) return names;
     const bool is_there = holds(result_.job.output, record);
     if (!is_there) {
       const auto asset = options_.cache->store().find(EntryKind::kAsset, record.asset);
@@ -230,6 +244,7 @@ class Run {
     count_scene(*scene, result_.facts);
     if (Status whole = check_whole(result_.facts); !whole) return whole;
     if (Status set = build::set_mesh_options(layers_, names_of_meshes(*scene), pipeline_); !set) return set;
+    if (Status names = check_names(build::unknown_names(*scene, pipeline_)); !names) return names;
     if (watcher_.on_scene) watcher_.on_scene(*scene, layers_, pipeline_);
     build::PipelineReport report;
     std::optional<MeshEntries> meshes;

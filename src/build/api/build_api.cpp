@@ -49,8 +49,8 @@ Status check_numbers(const BuildOptions& options) {
   if (options.grid_step > 0.0 && options.position_error > 0.0) {
     return usage("BuildOptions::position_error", "not together with grid_step");
   }
-  if (!is_zero_or_more(options.normal_error) || options.normal_error == 0.0) {
-    return usage("BuildOptions::normal_error", "is not a number above 0");
+  if (!is_zero_or_more(options.normal_error) || options.normal_error == 0.0 || options.normal_error > 180.0) {
+    return usage("BuildOptions::normal_error", "is not a number above 0 and up to 180");
   }
   if (!is_zero_or_more(options.uv_error)) return usage("BuildOptions::uv_error", "is not a number >= 0");
   for (const auto& [field, bits] :

@@ -19,8 +19,7 @@ Result<std::uint32_t> parse_attributes(std::string_view names) {
       if (name == "POSITION") return Error{ErrorCode::kUsage, "", "POSITION is always stored"};
       std::vector<std::string> known = all_names(kAttributeNames);
       known.emplace_back("all");
-      return Error{ErrorCode::kUsage, "",
-                   "no attribute is called '" + shown + "'; the nearest is " + nearest_name(name, known)};
+      return Error{ErrorCode::kUsage, "", "no attribute is called '" + shown + "'" + nearest_or_all(name, known)};
     }
     bits |= *bit;
     if (comma == std::string_view::npos) return bits;

@@ -8,6 +8,7 @@
 
 #include "base/glob.h"
 #include "base/nearest_name.h"
+#include "base/printable.h"
 #include "build/aggregate/aggregate_choice.h"
 #include "build/plan/attributes.h"
 #include "build/preset.h"
@@ -66,6 +67,12 @@ std::optional<double> parse_positive(std::string_view text) {
   return value;
 }
 
+/// Degrees: no two directions are further apart than 180.
+std::optional<double> parse_angle(std::string_view text) {
+  const std::optional<double> degrees = parse_positive(text);
+  return degrees && *degrees <= 180.0 ? degrees : std::nullopt;
+}
+
 std::optional<double> parse_uv_error(std::string_view text) {
   if (text.ends_with("px")) text.remove_suffix(2);
   return parse_positive(text);
@@ -85,6 +92,10 @@ std::optional<std::uint32_t> parse_cluster_triangles(std::string_view text) {
 
 std::optional<std::uint32_t> parse_group_clusters(std::string_view text) {
   return parse_count(text, kFewestGroupClusters, kMostGroupClusters);
+}
+
+std::string wanted(const char* what, std::string_view word) {
+  return "expected " + std::string(what) + got_text(word);
 }
 
 std::size_t index_of(Setting setting) {
@@ -218,14 +229,6 @@ PipelineOptions options_of(const std::array<SettledWord, kSettingCount>& words) 
   return options;
 }
 
-std::string list(const std::vector<std::string>& names) {
-  std::string text;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    text += (i == 0 ? "" : i + 1 == names.size() ? " or " : ", ") + names[i];
-  }
-  return text;
-}
-
 }  // namespace
 
 std::span<const SettingInfo, kSettingCount> all_settings() {
@@ -263,8 +266,7 @@ std::string find_fault(Setting setting, std::string_view word) {
   const std::vector<std::string> choices = choices_of(setting);
   if (!choices.empty()) {
     if (std::find(choices.begin(), choices.end(), word) != choices.end()) return {};
-    return "'" + std::string(word.substr(0, 64)) + "' is not one of " + list(choices) + "; the nearest is " +
-           nearest_name(word, choices);
+    return unknown_choice(word, choices);
   }
   switch (setting) {
     case Setting::kKeep:
@@ -277,20 +279,21 @@ std::string find_fault(Setting setting, std::string_view word) {
       return care ? "" : care.error().detail;
     }
     case Setting::kGrid:
-      return word == "auto" || parse_positive(word) ? "" : "give auto or a step above 0 in mesh units";
+      return word == "auto" || parse_positive(word) ? "" : wanted("auto or a step above 0 in mesh units", word);
     case Setting::kPositionError:
-      return word == "auto" || parse_positive(word) ? "" : "give auto or a distance above 0 in mesh units";
+      return word == "auto" || parse_positive(word) ? "" : wanted("auto or a distance above 0 in mesh units", word);
 
     case Setting::kAggregate:
       return !word.empty() ? "" : "give never, auto, always, or names of meshes and materials, comma by comma";
     case Setting::kClusterTriangles:
-      return parse_cluster_triangles(word) ? "" : "give a whole number of triangles from 1 to 256";
+      return parse_cluster_triangles(word) ? "" : wanted("a whole number of triangles from 1 to 256", word);
     case Setting::kGroupClusters:
-      return parse_group_clusters(word) ? "" : "give a whole number of clusters from 4 to 32";
-    case Setting::kNormalError: return parse_positive(word) ? "" : "give an angle above 0 in degrees";
+      return parse_group_clusters(word) ? "" : wanted("a whole number of clusters from 4 to 32", word);
+    case Setting::kNormalError: return parse_angle(word) ? "" : wanted("an angle above 0 and up to 180 degrees", word);
     case Setting::kUvError:
-      return word == "auto" || parse_uv_error(word) ? ""
-                                                    : "give auto, a number above 0 in UV units, or texels as 0.25px";
+      return word == "auto" || parse_uv_error(word)
+                 ? ""
+                 : wanted("auto, a number above 0 in UV units, or texels as 0.25px", word);
     default: return {};
   }
 }

@@ -151,7 +151,7 @@ class FileReader {
       if ((!is_of_mesh || info.is_of_mesh) && !info.is_experimental) known.emplace_back(info.name);
     }
     if (!is_of_mesh) known.emplace_back("meshes");
-    return wrong(path + shown, "no setting has this name; the nearest is " + nearest_name(key, known));
+    return wrong(path + shown, "no setting has this name" + nearest_hint(key, known));
   }
 
   SettingLayer layer_;

@@ -32,8 +32,16 @@ bool is_space(char c) {
 
 /// What may stand behind a number.
 std::optional<double> factor_of(std::string_view unit) {
-  constexpr std::array<std::pair<std::string_view, double>, 6> kUnits{
-      {{"", 1.0}, {"K", 1e3}, {"M", 1e6}, {"KiB", 0x1p10}, {"MiB", 0x1p20}, {"GiB", 0x1p30}}};
+  constexpr std::array<std::pair<std::string_view, double>, 10> kUnits{{{"", 1.0},
+                                                                        {"K", 1e3},
+                                                                        {"M", 1e6},
+                                                                        {"G", 1e9},
+                                                                        {"KB", 1e3},
+                                                                        {"MB", 1e6},
+                                                                        {"GB", 1e9},
+                                                                        {"KiB", 0x1p10},
+                                                                        {"MiB", 0x1p20},
+                                                                        {"GiB", 0x1p30}}};
   for (const auto& [name, factor] : kUnits) {
     if (unit == name) return factor;
   }
@@ -207,7 +215,7 @@ class Scanner {
     const auto factor = factor_of(text_.substr(unit, at_ - unit));
     if (!factor) {
       at_ = unit;
-      return expected("K, M, KiB, MiB, GiB or nothing behind a number");
+      return expected("K, M, G, KB, MB, GB, KiB, MiB, GiB or nothing behind a number");
     }
     skip_spaces();
     number *= *factor;

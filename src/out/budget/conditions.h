@@ -30,6 +30,7 @@ struct Step {
   StepKind kind = StepKind::kKey;
   std::string name;         ///< of kKey and kName
   std::uint64_t index = 0;  ///< of kIndex
+  bool is_count = false;    ///< the key of a map of counts, where one that is absent is 0 (read_budget() knows)
 };
 
 enum class Relation : std::uint8_t { kGreater, kGreaterEqual, kLess, kLessEqual, kEqual, kNotEqual };

@@ -2,6 +2,7 @@
 // nlohmann-json, seen by this file alone in this room.
 #include "out/budget/judge_budget.h"
 
+#include <algorithm>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -24,6 +25,12 @@ Error usage(std::string detail) {
 /// A text of the document or of the command line, on its way to a terminal.
 std::string in_quotes(std::string_view name) {
   return "'" + printable(name, 64) + "'";
+}
+
+std::string nearest_or_all_quoted(std::string_view key, const std::vector<std::string>& known) {
+  const auto near = find_near_name(key, known);
+  if (near) return "; the nearest is '" + *near + "'";
+  return known.empty() ? std::string() : "; it has " + printable(list_of_choices(known), 400);
 }
 
 /// Follows one `$ref` to the schema's own definitions, which refer to no other.
@@ -66,8 +73,9 @@ class SchemaWalk {
  public:
   explicit SchemaWalk(const Json& root) : root_(root), at_(&root) {}
 
-  Status check(const Condition& condition) {
-    for (const Step& step : condition.path) {
+  /// Marks the steps into maps of counts too.
+  Status check(Condition& condition) {
+    for (Step& step : condition.path) {
       const Status taken = take(step);
       if (!taken) return usage(printable(condition.text, 200) + ": " + taken.error().detail);
     }
@@ -85,11 +93,11 @@ class SchemaWalk {
   }
   [[nodiscard]] std::string place() const { return where_.empty() ? "the document" : where_; }
 
-  Status take(const Step& step) {
+  Status take(Step& step) {
     switch (step.kind) {
-      case StepKind::kKey: return take_key(step.name);
+      case StepKind::kKey: return take_key(step);
       case StepKind::kName:
-        if (has_keys(*at_) && !is_list(*at_)) return take_key(step.name);
+        if (has_keys(*at_) && !is_list(*at_)) return take_key(step);
         if (Status item = take_item(); !item) return item;
         if (!at_->contains("properties") || !(*at_)["properties"].contains("name")) {
           return usage("the elements of " + where_ + " have no names");
@@ -115,19 +123,35 @@ class SchemaWalk {
     return Ok{};
   }
 
-  Status take_key(const std::string& key) {
+  Status take_key(Step& step) {
+    const std::string& key = step.name;
     if (is_list(*at_)) return is_a_list();
     if (!has_keys(*at_)) return usage(place() + " has no keys");
     if (at_->contains("properties") && (*at_)["properties"].contains(key)) {
       at_ = &resolve((*at_)["properties"][key], root_);
     } else if (at_->contains("additionalProperties") && (*at_)["additionalProperties"].is_object()) {
+      if (const Status known = check_map_key(key); !known) return known;
       at_ = &resolve((*at_)["additionalProperties"], root_);
+      const auto type = at_->find("type");
+      step.is_count = type != at_->end() && *type == "integer";
     } else {
-      const std::vector<std::string> known = keys_of(*at_);
-      return usage(place() + " has no key " + in_quotes(key) + "; the nearest is '" + nearest_name(key, known) + "'");
+      return no_key(key, keys_of(*at_));
     }
     where_ += (where_.empty() ? "" : ".") + printable(key, 64);
     return Ok{};
+  }
+
+  [[nodiscard]] Error no_key(const std::string& key, const std::vector<std::string>& known) const {
+    return usage(place() + " has no key " + in_quotes(key) + nearest_or_all_quoted(key, known));
+  }
+
+  /// A map whose schema names its keys (propertyNames) has no others.
+  [[nodiscard]] Status check_map_key(const std::string& key) const {
+    const auto names = at_->find("propertyNames");
+    if (names == at_->end()) return Ok{};
+    std::vector<std::string> known;
+    for (const Json& name : names->at("enum")) known.push_back(name.get<std::string>());
+    return std::find(known.begin(), known.end(), key) != known.end() ? Status(Ok{}) : Status(no_key(key, known));
   }
 
   Status take_item() {
@@ -246,7 +270,8 @@ class DocumentWalk {
   bool into_key(const Json& node, std::string_view key, std::size_t step) {
     const auto found = node.is_object() ? node.find(std::string(key)) : node.end();
     places_.push_back({key, 0, nullptr});
-    const bool is_true = holds(found == node.end() ? nothing_ : *found, step + 1);
+    const Json& absent = condition_.path[step].is_count && node.is_object() ? zero_ : nothing_;
+    const bool is_true = holds(found == node.end() ? absent : *found, step + 1);
     places_.pop_back();
     return is_true;
   }
@@ -266,8 +291,8 @@ class DocumentWalk {
       if (other == name) return into_element(list, i, step);
       if (known.size() < kMaxNames) known.emplace_back(other.substr(0, 64));
     }
-    return miss(step, "there is no " + in_quotes(name) +
-                          (known.empty() ? std::string() : "; the nearest is " + in_quotes(nearest_name(name, known))));
+    const auto near = find_near_name(name, known);
+    return miss(step, "there is no " + in_quotes(name) + (near ? "; the nearest is " + in_quotes(*near) : ""));
   }
 
   bool holds_of_list(const Json& list, std::size_t step) {
@@ -331,7 +356,8 @@ class DocumentWalk {
 
   const Condition& condition_;
   std::vector<Place> places_;
-  const Json nothing_;  ///< null
+  const Json nothing_;   ///< null
+  const Json zero_ = 0;  ///< of a count that is absent
   Json count_;
   BrokenCondition found_;
   std::optional<Error> error_;
@@ -351,7 +377,7 @@ Result<std::vector<Condition>> read_budget(std::string_view text, std::string_vi
   if (!conditions) return conditions.error();
   if (conditions->empty()) return std::move(*conditions);
   const Json root = Json::parse(schema.begin(), schema.end());
-  for (const Condition& condition : *conditions) {
+  for (Condition& condition : *conditions) {
     if (Status known = SchemaWalk(root).check(condition); !known) return known.error();
   }
   return std::move(*conditions);

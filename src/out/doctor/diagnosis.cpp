@@ -230,7 +230,7 @@ Result<std::vector<std::string>> find_failures(std::string_view words, const std
     if (word.empty()) return Error{ErrorCode::kUsage, "--fail-on", "give ids between commas, high, medium or any"};
     if (std::find(names.begin(), names.end(), word) == names.end()) {
       return Error{ErrorCode::kUsage, "--fail-on",
-                   "no fault is called '" + printable(word) + "'; the nearest is " + nearest_name(word, names)};
+                   "no fault is called '" + printable(word) + "'" + nearest_or_all(word, names)};
     }
     fail_on(word);
   } while (!words.empty());

@@ -45,6 +45,20 @@ std::optional<Format> find_format(const std::filesystem::path& path, std::span<c
   return std::nullopt;
 }
 
+/// Files that are no scene whatever they are called. Errors: kInvalid nothing is in it; kUnsupported an asset.
+Status check_is_scene(const std::filesystem::path& path, std::span<const std::uint8_t> bytes) {
+  std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  if (text.empty()) return Error{ErrorCode::kInvalid, path.string(), "the file is empty"};
+  if (text.starts_with("LODE")) {
+    return Error{ErrorCode::kUnsupported, path.string(),
+                 "this is a .lode asset, not a scene; look at it with 'meshlode info', store it anew with "
+                 "'meshlode repack'"};
+  }
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  if (text.find_first_not_of(" \t\r\n\f\v") != std::string_view::npos) return Ok{};
+  return Error{ErrorCode::kInvalid, path.string(), "the file is empty: nothing but white space"};
+}
+
 /// OBJ's texture coordinates begin below, glTF's above.
 void turn_uvs(std::vector<Primitive>& primitives) {
   for (Primitive& primitive : primitives) {
@@ -94,6 +108,7 @@ Result<Scene> import_scene(const std::filesystem::path& path, const ImportOption
     if (!file) return file.error();
     if (options.files_read != nullptr) options.files_read->push_back(file->id());
     const auto bytes = file->bytes();
+    if (Status scene = check_is_scene(path, bytes); !scene) return scene.error();
     const auto format = find_format(path, bytes);
     if (!format) {
       return Error{ErrorCode::kUnsupported, path.string(), "not glTF, GLB, PLY, OBJ or STL, by content or extension"};
@@ -115,6 +130,7 @@ Result<std::vector<FileReference>> list_references(const std::filesystem::path& 
   return guarded(path, [&]() -> Result<std::vector<FileReference>> {
     const auto file = MappedFile::open(path);
     if (!file) return file.error();
+    if (Status scene = check_is_scene(path, file->bytes()); !scene) return scene.error();
     const auto format = find_format(path, file->bytes());
     if (format == Format::kGltf) return list_gltf_references(path, file->bytes(), allow_outside);
     if (format == Format::kObj) return list_obj_references(path, file->bytes(), allow_outside);

@@ -4,6 +4,8 @@
 #include "scene/import/json.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <utility>
 
@@ -92,28 +94,68 @@ class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
   std::string key_;
 };
 
-nlohmann::ordered_json to_nlohmann(const Json& json) {
+/// As nlohmann-json writes it. Of text beyond ASCII it checks the UTF-8; a tree of its own is never made, for it cannot
+/// be destroyed where memory is short.
+void append_string(const std::string& text, std::string& out) {
+  const bool is_plain = std::none_of(text.begin(), text.end(), [](char c) {
+    const auto byte = static_cast<unsigned char>(c);
+    return byte < 0x20 || byte >= 0x80 || c == '"' || c == '\\';
+  });
+  if (!is_plain) {
+    out += nlohmann::json(text).dump();
+    return;
+  }
+  out += '"';
+  out += text;
+  out += '"';
+}
+
+template <class Integer>
+void append_integer(Integer number, std::string& out) {
+  std::array<char, 24> digits{};
+  out.append(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr);
+}
+
+void append_double(double number, std::string& out) {
+  if (!std::isfinite(number)) {
+    out += "null";
+    return;
+  }
+  std::array<char, 64> digits{};
+  out.append(digits.data(), nlohmann::detail::to_chars(digits.data(), digits.data() + digits.size(), number));
+}
+
+/// Appends to one text, and allocates nothing else. \pre nested at most about kMaxJsonDepth deep
+void append_json(const Json& json, std::string& out) {
   if (const auto* array = json.array()) {
-    nlohmann::ordered_json out = nlohmann::ordered_json::array();
-    for (const Json& item : *array) out.push_back(to_nlohmann(item));
-    return out;
-  }
-  if (const auto* object = json.object()) {
-    nlohmann::ordered_json out = nlohmann::ordered_json::object();
-    // The vector behind ordered_json is searched on operator[]; keys are unique here, so append.
-    auto& members = out.get_ref<nlohmann::ordered_json::object_t&>();
-    for (const JsonMember& member : *object) {
-      members.std::vector<nlohmann::ordered_json::object_t::value_type>::emplace_back(member.key,
-                                                                                      to_nlohmann(member.value));
+    out += '[';
+    for (const Json& item : *array) {
+      if (&item != array->data()) out += ',';
+      append_json(item, out);
     }
-    return out;
+    out += ']';
+  } else if (const auto* object = json.object()) {
+    out += '{';
+    for (const JsonMember& member : *object) {
+      if (&member != object->data()) out += ',';
+      append_string(member.key, out);
+      out += ':';
+      append_json(member.value, out);
+    }
+    out += '}';
+  } else if (const auto* text = json.string()) {
+    append_string(*text, out);
+  } else if (const auto* flag = std::get_if<bool>(&json.value)) {
+    out += *flag ? "true" : "false";
+  } else if (const auto* n = std::get_if<std::int64_t>(&json.value)) {
+    append_integer(*n, out);
+  } else if (const auto* u = std::get_if<std::uint64_t>(&json.value)) {
+    append_integer(*u, out);
+  } else if (const auto* d = std::get_if<double>(&json.value)) {
+    append_double(*d, out);
+  } else {
+    out += "null";
   }
-  if (const auto* text = json.string()) return *text;
-  if (const auto* flag = std::get_if<bool>(&json.value)) return *flag;
-  if (const auto* n = std::get_if<std::int64_t>(&json.value)) return *n;
-  if (const auto* u = std::get_if<std::uint64_t>(&json.value)) return *u;
-  if (const auto* d = std::get_if<double>(&json.value)) return *d;
-  return nullptr;
 }
 
 }  // namespace
@@ -213,7 +255,9 @@ Result<Json> parse_json(std::string_view text) {
 }
 
 std::string dump_json(const Json& json) {
-  return to_nlohmann(json).dump();
+  std::string out;
+  append_json(json, out);
+  return out;
 }
 
 }  // namespace meshlode::scene

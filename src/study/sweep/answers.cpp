@@ -44,8 +44,7 @@ Error wrong_wish(const std::string& detail) {
 
 Error unknown_metric(std::string_view word) {
   const std::vector<std::string> known = metric_words();
-  return wrong_wish("unknown figure '" + std::string(word.substr(0, 64)) + "'; the nearest is " +
-                    nearest_name(word, known));
+  return wrong_wish("unknown figure '" + std::string(word.substr(0, 64)) + "'" + nearest_or_all(word, known));
 }
 
 Result<Wish::Bound> parse_bound(std::string_view part) {

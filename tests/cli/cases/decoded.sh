@@ -5,7 +5,7 @@ code build --quiet a.glb -o a.lode
 code render --quiet a.lode -o whole.png --size 64x64
 run render --quiet a.lode -o without.png --size 64x64 --max-decoded 10KiB
 cmp -s whole.png without.png || echo "the pictures differ"
-run render a.lode -o x.png --max-decoded 512MB
+run render a.lode -o x.png --max-decoded 512MX
 run verify a.lode --source a.glb --max-decoded 1.5GiB
 run extract a.lode --error 0 -o x.glb --max-decoded ''
 code extract --quiet a.lode --error 0 -o cut.glb --max-decoded 0

@@ -15,8 +15,8 @@ export -f code files
 "${apart[@]}" bash -uc '
   trap "umount full readonly" EXIT
   mount -t tmpfs -o size=16k none full
-  echo old >full/old.lode
-  for output in full/new.lode full/old.lode; do
+  echo old >full/old.out
+  for output in full/new.out full/old.out; do
     code build --quiet a.glb -o "$output"
     code render a.lode -o "$output" --size 640x480
     code extract a.lode --error 0 -o "$output"
@@ -25,7 +25,7 @@ export -f code files
   code build --quiet a.glb -O full/below
   head -c 10k /dev/zero >full/fill
   code build --quiet a.glb -o b.lode --report full/report.json
-  cat full/old.lode
+  cat full/old.out
   rm full/fill
   mount -t tmpfs none readonly; echo old >readonly/old.lode; mount -o remount,ro readonly
   code build --quiet a.glb -o readonly/new.lode

@@ -60,6 +60,7 @@ run plan in/city.glb
 code build --quiet in -O out2
 # It was read: nothing is written over it.
 echo '{}' >in/meshlode.json
-run build in/city.glb -o in/meshlode.json
+ln -s in/meshlode.json link.lode
+run build in/city.glb -o link.lode
 rm -f ./*.lode
 files

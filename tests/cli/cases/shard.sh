@@ -48,7 +48,7 @@ run merge parts/shard-[13].json foreign.json -o m.json
 rm foreign.json
 mkfifo pipe; run merge pipe -o m.json; rm pipe
 run merge parts/*.json -o parts/shard-2.json
-run merge parts/*.json -o out/1.lode
+ln -s out/1.lode asset.json; run merge parts/*.json -o asset.json
 run merge parts/*.json -o in/5.mtl
 run merge parts/*.json
 cp out/2.lode kept; printf 'x' >>out/2.lode
@@ -99,7 +99,8 @@ echo "usage"
 run build in -O out --shard 4/3
 run build in -O out --shard 1/2 --fail-fast
 run build in/1.obj -o 1.lode --shard 2/2 --manifest none.json
-run build in/1.obj -o 1.lode --shard 2/2 --manifest in/1.obj
+ln -s in/1.obj scene.json
+run build in/1.obj -o 1.lode --shard 2/2 --manifest scene.json
 mkdir nothing
 run build nothing -O out --shard 1/1 --manifest none.json
 run merge none.json -o m.json

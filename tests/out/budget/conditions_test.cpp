@@ -90,7 +90,7 @@ TEST(Conditions, SayWhatWasExpectedAndWhatWasFound) {
   EXPECT_EQ(refusal("a[-1]>1"), "expected an index or a name in quotes, found '-1]>1'");
   EXPECT_EQ(refusal("a[18446744073709551616]>1").substr(0, 17), "expected an index");
   EXPECT_EQ(refusal("a['x]>1"), "expected a closing quote, found ''x]>1'");
-  EXPECT_EQ(refusal("a>1kg"), "expected K, M, KiB, MiB, GiB or nothing behind a number, found 'kg'");
+  EXPECT_EQ(refusal("a>1kg"), "expected K, M, G, KB, MB, GB, KiB, MiB, GiB or nothing behind a number, found 'kg'");
   EXPECT_EQ(refusal("a>-inf").substr(0, 17), "expected a number");
   EXPECT_EQ(refusal("a>nan"), "a>nan: > compares numbers");
   EXPECT_EQ(refusal("a>-nan").substr(0, 17), "expected a number");

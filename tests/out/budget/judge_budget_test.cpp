@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include "format/names.h"
+
 namespace meshlode::out {
 namespace {
 
@@ -15,13 +17,17 @@ constexpr const char* kSchema = R"({"type":"object","properties":{
   "psnr":{"type":["number","null"]},"anything":{},
   "totals":{"type":"object","properties":{"clusters":{"type":"integer"},"stuck_groups":{"type":"integer"}}},
   "reasons":{"type":"object","additionalProperties":{"type":"integer"}},
+  "kinds":{"type":"object","propertyNames":{"enum":["red","green"]},"additionalProperties":{"type":"integer"}},
+  "ratios":{"type":"object","additionalProperties":{"type":"number"}},
+  "none":{"type":["object","null"],"additionalProperties":{"type":"integer"}},
   "uv_sets":{"type":"array","items":{"type":"integer"}},
   "meshes":{"type":"array","items":{"$ref":"#/$defs/mesh"}}},
   "$defs":{"mesh":{"type":"object","properties":{"name":{"type":"string"},"roots":{"type":"integer"},
     "levels":{"type":"array","items":{"type":"object","properties":{"error":{"type":["number","null"]}}}}}}}})";
 
 constexpr const char* kDocument = R"({"bytes":1000,"label":"a","tier":"qem","is_good":true,"psnr":null,"anything":[1],
-  "totals":{"clusters":20,"stuck_groups":0},"reasons":{"no progress":3},"uv_sets":[],
+  "totals":{"clusters":20,"stuck_groups":0},"reasons":{"no progress":3},"kinds":{"red":2},"ratios":{},
+  "none":null,"uv_sets":[],
   "meshes":[{"name":"rock","roots":1,"levels":[{"error":0},{"error":0.5}]},
             {"name":"moss","roots":2,"levels":[{"error":0},{"error":null},{"error":0.25}]},
             {"name":"","roots":2,"levels":[]}]})";
@@ -95,7 +101,7 @@ TEST(Budget, ConditionsThatHoldAreToldWithPlaceAndValue) {
 }
 
 TEST(Budget, WhatIsNullOrMissingIsLargerThanAnyNumberAndEqualToNullAlone) {
-  for (const char* key : {"psnr", "reasons['other']"}) {
+  for (const char* key : {"psnr", "ratios['other']", "none['other']"}) {
     const std::string k = key;
     EXPECT_TRUE(holds(k + ">1e300")) << k;
     EXPECT_TRUE(holds(k + ">=0")) << k;
@@ -106,6 +112,26 @@ TEST(Budget, WhatIsNullOrMissingIsLargerThanAnyNumberAndEqualToNullAlone) {
     EXPECT_TRUE(holds(k + "==null")) << k;
   }
   EXPECT_FALSE(holds("bytes==null"));
+}
+
+TEST(Budget, AnAbsentCountOfAMapIsZero) {
+  EXPECT_FALSE(holds("reasons['other']>0"));
+  EXPECT_TRUE(holds("reasons['other']==0"));
+  EXPECT_FALSE(holds("reasons['other']==null"));
+  EXPECT_TRUE(holds("reasons['no progress']>2"));
+  EXPECT_FALSE(holds("kinds.green>0"));
+  EXPECT_EQ(judged("kinds.green<1"), "fails on kinds.green<1: kinds.green is 0");
+  // Where the schema names the keys a misspelt one is no count of nothing.
+  EXPECT_EQ(refusal("kinds.gren>0"), "kinds.gren>0: kinds has no key 'gren'; the nearest is 'green'");
+  EXPECT_EQ(refusal("kinds['violet']>0"), "kinds['violet']>0: kinds has no key 'violet'; it has red or green");
+}
+
+TEST(Budget, TheSchemaKnowsEveryReasonWhyAGroupIsStuck) {
+  for (const auto& [reason, name] : format::kStuckReasonNames) {
+    if (reason == format::StuckReason::kNotStuck) continue;
+    EXPECT_TRUE(read_budget("any(meshes).stuck_reasons['" + std::string(name) + "']>0", info_schema())) << name;
+  }
+  EXPECT_FALSE(read_budget("any(meshes).stuck_reasons['lokced']>0", info_schema()));
 }
 
 TEST(Budget, AnyIsOfOneAndAllIsOfEachAndOfSome) {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <limits>
+
 #include <gtest/gtest.h>
 
 #include "scene/import/json.h"
@@ -40,6 +42,17 @@ TEST(ImportJson, RefusesWhatReadersDisagreeOn) {
   EXPECT_FALSE(parse_json("{} {}"));
   EXPECT_FALSE(parse_json("\"\xff\""));  // not UTF-8
   EXPECT_TRUE(parse_json("{\"a\":{\"a\":{\"a\":1}}}"));
+}
+
+TEST(ImportJson, TextsAreTheShortest) {
+  for (const char* text :
+       {R"({"a":[],"b":{},"c":[1,-2,0.5,1e+300,-0.0,1.0,18446744073709551615],"d":null,"e":true,"f":false})",
+        R"(["","plain","ü","\"\\","\n\t\u0001",{"k\"":"v"}])", "[[[]],[{}]]", "3", "\"x\""}) {
+    const auto json = parse_json(text);
+    ASSERT_TRUE(json) << text;
+    EXPECT_EQ(dump_json(*json), text);
+  }
+  EXPECT_EQ(dump_json(Json::make_number(std::numeric_limits<double>::infinity())), "null");
 }
 
 TEST(ImportJson, DepthIsBoundedExactly) {

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What `build` writes beside its assets. Manifest and JUnit file are there from the start on and told anew after every
+// file, so that a batch that is interrupted or killed has them: what it did not come to is skipped, "interrupted".
+//
+// A manifest of N entries after each of N files is quadratic. So what was just written waits until ten times as long
+// has passed as writing it took: at most about a tenth of the time goes there. An interrupt writes what waits.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/hash.h"
+#include "batch/jobs/jobs.h"
+#include "batch/shard/partition.h"
+#include "batch/work/job_result.h"
+
+namespace meshlode::cli {
+
+/// Paths, empty for none, and what the manifest says of the whole.
+struct BatchFileNames {
+  std::string manifest, junit, depfile, report;
+  Hash128 program{};
+  std::string settings;  ///< batch::settings_text()
+  std::optional<batch::ShardPlan> shard;
+};
+
+class BatchFiles {
+ public:
+  /// While it lives an interrupt of the process writes manifest and JUnit file.
+  BatchFiles(const std::vector<batch::Job>& jobs, BatchFileNames names);
+  ~BatchFiles();
+  BatchFiles(const BatchFiles&) = delete;
+  BatchFiles& operator=(const BatchFiles&) = delete;
+
+  /// Before the first job. Errors are those of the end, and told there.
+  void begin();
+  void add(std::size_t job, const batch::JobResult& result);
+  /// All files, for good; but not one that turned out to be a file of a scene, which its job was refused for. \returns
+  /// the worst exit code of writing them
+  int finish(const std::vector<batch::JobResult>& results, const std::string& report);
+
+ private:
+  using Write = std::function<bool(const std::string& path, const std::string& text)>;
+  /// \pre mutex_ is held
+  void write_both(const Write& write);
+  void write_early();
+  void write_at_interrupt();
+  [[nodiscard]] bool may_be_early(const std::string& path) const;
+
+  const BatchFileNames names_;
+  std::vector<batch::Job> jobs_;
+  bool is_manifest_early_ = false, is_junit_early_ = false;
+  std::mutex mutex_;  ///< of all below
+  std::vector<batch::JobResult> results_;
+  bool is_over_ = false;
+  std::chrono::steady_clock::time_point next_{};  ///< nothing is written before
+};
+
+}  // namespace meshlode::cli

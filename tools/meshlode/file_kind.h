@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a file is that a command was given: an asset where a scene is expected, or the other way round, is named as what
+// it is, with the command to use.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include <meshlode/result.h>
+
+#include "run/read/asset.h"
+
+namespace meshlode::cli {
+
+enum class FileForm : std::uint8_t { kUnreadable, kEmpty, kAsset, kScene, kOther };
+
+struct SeenFile {
+  FileForm form = FileForm::kOther;
+  const char* name = "";  ///< of a scene: "a GLB scene"
+};
+
+/// By its first bytes where they tell, else by its extension.
+[[nodiscard]] SeenFile look_at_file(const std::string& path);
+
+/// Error: kInvalid, for a scene and for an empty file, named as what they are.
+[[nodiscard]] Status check_is_no_scene(const std::string& path);
+
+/// run::Asset::open, with that error first.
+[[nodiscard]] Result<run::Asset> open_asset(const std::string& path,
+                                            std::uint64_t max_decoded = run::kDefaultMaxDecoded);
+
+}  // namespace meshlode::cli
