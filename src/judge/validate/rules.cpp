@@ -129,6 +129,7 @@ constexpr std::array kRules{
          "what V104 and V105 hold level 0 to is within the accuracy budgets of the settings; UV budgets in texels are "
          "held "
          "against the images of the source, and a set so large that 24 bits leave no finer step is within any"),
+    RULE(V114, "I6", "where lock_borders is set, every vertex of the source's open border is in every cut"),
     RULE(V201, "I5", "a cut draws each piece of surface exactly once and is never empty"),
     RULE(V202, "I6", "the border of a cut consists of edges of the source's border alone"),
     RULE(V203, "I8", "hierarchy traversal selects what the flat rule selects"),
