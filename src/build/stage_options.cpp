@@ -168,8 +168,9 @@ std::uint64_t count_finest(const EncodedMesh& encoded) {
 
 }  // namespace
 
-std::vector<PlanDecision> late_decisions(const PreparedMesh& mesh, bool keeps_area, const EncodeOptions& encode,
-                                         const EncodedMesh& encoded, const std::string& label) {
+std::vector<PlanDecision> late_decisions(const MeshOptions& own, const PreparedMesh& mesh, bool keeps_area,
+                                         const EncodeOptions& encode, const EncodedMesh& encoded,
+                                         const std::string& label) {
   std::vector<PlanDecision> decisions;
   if (keeps_area) {
     decisions.push_back({label + ": covered area", true,
@@ -178,7 +179,8 @@ std::vector<PlanDecision> late_decisions(const PreparedMesh& mesh, bool keeps_ar
   if (!mesh.is_border_locked.empty()) {
     const auto locked = std::count(mesh.is_border_locked.begin(), mesh.is_border_locked.end(), 1);
     decisions.push_back({label + ": borders", true,
-                         std::to_string(locked) + " positions of open borders are locked: every cut has them"});
+                         std::to_string(locked) + " positions of open borders are locked: every cut has them" +
+                             (own.grid_step > 0.0 ? "" : "; meshes that are to abut take one --grid too")});
   }
   const std::uint64_t finest = count_finest(encoded), flat = encoded.record.grid_collapsed;
   if (flat > 0 && static_cast<double>(flat) >= kManyFlat * static_cast<double>(finest)) {
