@@ -158,6 +158,9 @@ struct BuildOptions {
   /// Every cut of a manifold mesh is a manifold, with its holes, handles and pieces: no edge has more than two
   /// triangles. Takes more triangles, since small holes and handles else close where that is far cheaper.
   bool keep_topology = false;
+  /// Open borders (edges of one triangle of a mesh, by exact position) keep every vertex in every cut, so that tiles
+  /// that are built apart with the same grid_step abut at any pair of levels. Of positions alone; takes more triangles.
+  bool lock_borders = false;
   AggregateChoice aggregate = AggregateChoice::kNever;
   /// kNamed: names of meshes, of which all pieces of at most 512 triangles are thinned out, and of materials, of whose
   /// pieces the same holds; comma by comma, '*' is any characters and '?' is one.

@@ -208,6 +208,7 @@ enum class StuckReason : std::uint16_t {
   kComponents = 4,  ///< loose pieces that share no vertex
   kTooSmall = 5,    ///< nothing left to remove
   kTopology = 6,    ///< every collapse left would break the link condition
+  kBorder = 7,      ///< it would not be stuck if the open borders of its mesh were not locked (build --lock-borders)
 };
 
 /// A group: clusters that are replaced together. Its error and sphere are the `coarser` values of its members and the

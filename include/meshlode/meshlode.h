@@ -177,7 +177,8 @@ typedef struct meshlode_group {
   uint16_t cluster_count;
   uint16_t level;        /* largest level of a member */
   uint16_t flags;        /* MESHLODE_GROUP_... */
-  uint16_t stuck_reason; /* 0 not stuck, 1 locked, 2 flips, 3 seams, 4 loose components, 5 too small, 6 topology */
+  uint16_t stuck_reason; /* 0 not stuck, 1 locked, 2 flips, 3 seams, 4 loose components, 5 too small, 6 topology,
+                            7 locked border */
 } meshlode_group;
 
 /* Drawn iff its own group's error passes (or it has none) and its coarser group's does not. */

@@ -281,7 +281,7 @@ Result<BuiltMesh> build_mesh(const Source& from, std::size_t index, const Survey
     built.encoded.promise_errors = std::move(errors.groups);
   }
   const bool keeps_area = coarsening.simplify.keep_area && !aggregate.is_aggregate;  // there nothing collapses
-  for (PlanDecision& decision : late_decisions(*mesh, keeps_area, encoding, built.encoded, label)) {
+  for (PlanDecision& decision : late_decisions(own, *mesh, keeps_area, encoding, built.encoded, label)) {
     built.decisions.push_back(std::move(decision));
   }
   place.keep(built, planned, label);

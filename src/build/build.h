@@ -34,6 +34,7 @@ struct MeshOptions {
   bool uv_error_is_default = true;   ///< no texture counts as smaller than 2,048 texels then
   AggregateChoice aggregate = AggregateChoice::kNever;
   std::string aggregate_names;  ///< of AggregateChoice::kNamed: globs of meshes and materials, comma by comma
+  bool lock_borders = false;    ///< open borders keep every vertex in every cut (build/prepare/open_border.h)
 
   bool operator==(const MeshOptions&) const = default;
 };

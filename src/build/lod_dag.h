@@ -20,7 +20,8 @@ enum class StuckReason : std::uint32_t {
   kSeams = 3,
   kComponents = 4,
   kTooSmall = 5,
-  kTopology = 6
+  kTopology = 6,
+  kBorder = 7
 };
 
 struct DagCluster {

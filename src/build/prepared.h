@@ -43,6 +43,7 @@ struct PreparedMesh {
   double level0_deviation = 0.0;  ///< largest distance a vertex moved onto the grid, object units
   AttributeLayout layout;
   std::vector<Vec3i> positions;                  ///< distinct
+  std::vector<std::uint8_t> is_border_locked;    ///< per position: every cut has it. Empty: none
   std::vector<std::uint32_t> wedge_position;     ///< per wedge, into positions
   std::vector<float> wedge_attributes;           ///< per wedge, layout.stride() floats
   std::vector<WedgeTriangle> triangles;          ///< wedge ids

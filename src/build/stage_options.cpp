@@ -68,6 +68,9 @@ Status check_options(const PipelineOptions& options, std::size_t mesh_count) {
   }
   for (std::size_t i = 0; i < mesh_count; ++i) {
     const MeshOptions& own = options.of_mesh(i);
+    if (own.lock_borders && options.experiment.simplifier != Simplifier::kOwn) {
+      return Error{ErrorCode::kUsage, "", "borders are locked by the own simplifier alone"};
+    }
     if ((own.keep & own.drop) == 0) continue;
     return Error{ErrorCode::kUsage, "", "an attribute cannot be both kept and dropped"};
   }
@@ -83,6 +86,7 @@ PrepareOptions prepare_options(const MeshOptions& options, const Care& care) {
   prepare.grid_step = options.grid_step;
   prepare.position_error = options.position_error;
   prepare.separates_needles = care.needles;
+  prepare.locks_borders = options.lock_borders;
   return prepare;
 }
 
@@ -122,7 +126,11 @@ DagOptions dag_options(const PipelineOptions& options, const MeshOptions& own, c
 
 AggregateQuestion aggregate_question(const scene::Scene& scene, std::size_t mesh, const PipelineOptions& options) {
   const MeshOptions& own = options.of_mesh(mesh);
-  return {own.aggregate, own.aggregate_names, options.keep_topology, options.promise == format::Promise::kPosition,
+  return {own.aggregate,
+          own.aggregate_names,
+          options.keep_topology,
+          own.lock_borders,
+          options.promise == format::Promise::kPosition,
           scene.materials};
 }
 
@@ -160,12 +168,19 @@ std::uint64_t count_finest(const EncodedMesh& encoded) {
 
 }  // namespace
 
-std::vector<PlanDecision> late_decisions(const PreparedMesh& mesh, bool keeps_area, const EncodeOptions& encode,
-                                         const EncodedMesh& encoded, const std::string& label) {
+std::vector<PlanDecision> late_decisions(const MeshOptions& own, const PreparedMesh& mesh, bool keeps_area,
+                                         const EncodeOptions& encode, const EncodedMesh& encoded,
+                                         const std::string& label) {
   std::vector<PlanDecision> decisions;
   if (keeps_area) {
     decisions.push_back({label + ": covered area", true,
                          std::to_string(mesh.piece_count) + " loose pieces: those that stay grow when others go"});
+  }
+  if (!mesh.is_border_locked.empty()) {
+    const auto locked = std::count(mesh.is_border_locked.begin(), mesh.is_border_locked.end(), 1);
+    decisions.push_back({label + ": borders", true,
+                         std::to_string(locked) + " positions of open borders are locked: every cut has them" +
+                             (own.grid_step > 0.0 ? "" : "; meshes that are to abut take one --grid too")});
   }
   const std::uint64_t finest = count_finest(encoded), flat = encoded.record.grid_collapsed;
   if (flat > 0 && static_cast<double>(flat) >= kManyFlat * static_cast<double>(finest)) {

@@ -43,10 +43,11 @@ namespace meshlode::build {
 inline constexpr std::string_view kUnknownAggregate = "scene: aggregate '";
 [[nodiscard]] std::vector<PlanDecision> unknown_names(const scene::Scene& scene, const PipelineOptions& options);
 
-/// What was decided after the plan: that pieces which stay grow (`keeps_area`), that half of the finest triangles or
-/// more have no area on the grid, and where texture coordinates are too large for their budget. `label` names the mesh.
-[[nodiscard]] std::vector<PlanDecision> late_decisions(const PreparedMesh& mesh, bool keeps_area,
-                                                       const EncodeOptions& encode, const EncodedMesh& encoded,
-                                                       const std::string& label);
+/// What was decided after the plan: that pieces which stay grow (`keeps_area`), what of borders is locked, that half of
+/// the finest triangles or more have no area on the grid, and where texture coordinates are too large for their budget.
+/// `label` names the mesh.
+[[nodiscard]] std::vector<PlanDecision> late_decisions(const MeshOptions& own, const PreparedMesh& mesh,
+                                                       bool keeps_area, const EncodeOptions& encode,
+                                                       const EncodedMesh& encoded, const std::string& label);
 
 }  // namespace meshlode::build

@@ -100,6 +100,7 @@ void put_mesh_settings(Json& settings, const PipelineOptions& options, const std
     if (aggregate_word(of_group.options) != aggregate_word(options)) {
       entry["aggregate"] = aggregate_word(of_group.options);
     }
+    if (of_group.options.lock_borders != options.lock_borders) entry["lock_borders"] = of_group.options.lock_borders;
     entry["grid"] = grid_of(of_group.options);
     put_budgets(entry, of_group.options);
     settings["mesh_settings"].push_back(std::move(entry));
@@ -126,6 +127,7 @@ Json settings_json(const scene::Scene& scene, const PipelineOptions& options,
   settings["repair"] = options.repair;
   if (options.promise != format::Promise::kPosition) settings["promise"] = format::name_of(options.promise);
   if (options.keep_topology) settings["keep_topology"] = true;
+  if (options.lock_borders) settings["lock_borders"] = true;
   if (options.aggregate != AggregateChoice::kNever) settings["aggregate"] = aggregate_word(options);
   if (!scene.choice.empty()) settings["scene"] = scene.choice;
   settings["cluster_triangles"] = options.max_cluster_triangles;

@@ -29,13 +29,14 @@ inline constexpr std::array<EnumName<NormalMode>, 3> kNormalModeNames{
 inline constexpr std::array<EnumName<AlphaMode>, 3> kAlphaModeNames{
     {{AlphaMode::kOpaque, "OPAQUE"}, {AlphaMode::kMask, "MASK"}, {AlphaMode::kBlend, "BLEND"}}};
 
-inline constexpr std::array<EnumName<StuckReason>, 7> kStuckReasonNames{{{StuckReason::kNotStuck, "not_stuck"},
+inline constexpr std::array<EnumName<StuckReason>, 8> kStuckReasonNames{{{StuckReason::kNotStuck, "not_stuck"},
                                                                          {StuckReason::kLocked, "locked"},
                                                                          {StuckReason::kFlips, "flips"},
                                                                          {StuckReason::kSeams, "seams"},
                                                                          {StuckReason::kComponents, "components"},
                                                                          {StuckReason::kTooSmall, "too_small"},
-                                                                         {StuckReason::kTopology, "topology"}}};
+                                                                         {StuckReason::kTopology, "topology"},
+                                                                         {StuckReason::kBorder, "border"}}};
 
 constexpr const char* name_of(Codec codec) {
   return name_in(kCodecNames, codec);

@@ -83,6 +83,7 @@ TEST(CBuild, TheSameBytesAsInCpp) {
   options.codec = 4;
   options.strip_effort = 1;
   options.keep_topology = 1;
+  options.lock_borders = 1;
   options.aggregate = 1;
   options.position_error = 0.01;
   options.thread_count = 1;
@@ -93,6 +94,7 @@ TEST(CBuild, TheSameBytesAsInCpp) {
   same.codec = format::Codec::kStrips;
   same.strip_effort = StripEffort::kFast;
   same.keep_topology = true;
+  same.lock_borders = true;
   same.aggregate = AggregateChoice::kAuto;
   same.position_error = 0.01;
   EXPECT_EQ(build_in_c(scene, &options), build_in_cpp(arrays, same));

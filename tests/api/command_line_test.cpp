@@ -52,6 +52,7 @@ const Saying kSayings[] = {
      [](BuildOptions& o) { o.strip_effort = StripEffort::kFast, o.codec = format::Codec::kStrips; }},
     {"--cluster-triangles 64", [](BuildOptions& o) { o.cluster_triangles = 64; }},
     {"--keep-topology", [](BuildOptions& o) { o.keep_topology = true; }},
+    {"--lock-borders --grid 0.01", [](BuildOptions& o) { o.lock_borders = true, o.grid_step = 0.01; }, "foliage.glb"},
     {"--aggregate auto", [](BuildOptions& o) { o.aggregate = AggregateChoice::kAuto; }},
     {"--aggregate always", [](BuildOptions& o) { o.aggregate = AggregateChoice::kAlways; }},
     {"--promise texels --error-tier measured",

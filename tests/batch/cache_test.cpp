@@ -235,6 +235,8 @@ TEST(Ingredients, AreOtherOnesForEverySettingThatChangesBytes) {
   changed.push_back(plain);
   changed.back().keep_topology = true;
   changed.push_back(plain);
+  changed.back().lock_borders = true;
+  changed.push_back(plain);
   changed.back().aggregate = AggregateChoice::kAuto;
   changed.push_back(plain);
   changed.back().promise = format::Promise::kTexels;

@@ -67,7 +67,7 @@ def check_dag(tables):
             for field in ("radius", "error", "quadric_error", "deviation", "normal_deviation", "uv_deviation"):
                 check(group[field] <= 0x80000000, place + field, "is negative")  # -0.0 is not
             check((group["error"] == INFINITE) == bool(group["flags"] & TERMINAL), place + "error")
-            check((group["stuck_reason"] != 0) == bool(group["flags"] & STUCK) and group["stuck_reason"] <= 6,
+            check((group["stuck_reason"] != 0) == bool(group["flags"] & STUCK) and group["stuck_reason"] <= 7,
                   place + "stuck_reason")
     check_partition(groups, "first_cluster", "cluster_count", len(clusters), "section GRUP")
     for g, group in enumerate(groups):

@@ -536,7 +536,7 @@ std::vector<MutantKind> make_kinds() {
   });
   always("stuck reason", [=](Edit& e, Random& r) {
     e.group(any_group(e, r), [&](auto& x) {
-      x.stuck_reason = static_cast<format::StuckReason>(static_cast<std::uint32_t>(x.stuck_reason) + 1 + pick(r, 6));
+      x.stuck_reason = static_cast<format::StuckReason>(static_cast<std::uint32_t>(x.stuck_reason) + 1 + pick(r, 7));
     });
     return true;
   });

@@ -22,13 +22,14 @@ struct Look {
   std::array<float, 3> color;  ///< linear
 };
 
-constexpr std::array<Look, 6> kLooks{{
+constexpr std::array<Look, 7> kLooks{{
     {format::StuckReason::kLocked, "red", {0.80F, 0.03F, 0.03F}},
     {format::StuckReason::kFlips, "orange", {0.90F, 0.30F, 0.01F}},
     {format::StuckReason::kSeams, "blue", {0.02F, 0.15F, 0.80F}},
     {format::StuckReason::kComponents, "green", {0.03F, 0.45F, 0.05F}},
     {format::StuckReason::kTooSmall, "grey", {0.35F, 0.35F, 0.35F}},
     {format::StuckReason::kTopology, "purple", {0.35F, 0.05F, 0.55F}},
+    {format::StuckReason::kBorder, "yellow", {0.80F, 0.60F, 0.02F}},
 }};
 
 struct ReasonCount {
@@ -93,7 +94,7 @@ int extract_stuck(const run::Asset& asset, const std::string& output, const Outp
                   format::name_of(kLooks[k].reason), counts[k].groups, counts[k].triangles, kLooks[k].color_name);
     text += line;
   }
-  if (info.stuck_groups == 0) text += "no stuck group: a glTF without meshes\n";
+  if (sets.empty()) text += "no stuck group: a glTF without meshes\n";
   text += output + ": " + std::to_string(triangles) + " triangles, " + std::to_string(glb->size()) + " bytes\n";
   return print_out(text) ? 0 : static_cast<int>(ErrorCode::kIo);
 }

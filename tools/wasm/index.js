@@ -6,7 +6,7 @@
 export const NONE = 0xffffffff;
 /** An error that never passes. */
 export const INFINITE_ERROR = 3.4028234663852886e38;
-export const STUCK_REASONS = ['not_stuck', 'locked', 'flips', 'seams', 'components', 'too_small', 'topology'];
+export const STUCK_REASONS = ['not_stuck', 'locked', 'flips', 'seams', 'components', 'too_small', 'topology', 'border'];
 /** What a cut may be asked to be true of: positions; texture coordinates too; shading normals too. */
 export const PROMISES = ['position', 'texels', 'appearance'];
 export const CODECS = ['none', 'lz4', 'zstd', 'draco', 'strips'];

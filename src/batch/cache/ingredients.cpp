@@ -82,7 +82,7 @@ std::string describe(const std::string& key, const std::string* before, const st
 std::string settings_text(const build::PipelineOptions& options, const scene::ImportOptions& import) {
   // Every member has a name here, so that one more does not compile before it is written down or left out on purpose.
   const auto& [error_tier, attributes, keep, drop, grid_step, position_error, normal_error, uv_error,
-               uv_error_is_texels, uv_error_is_default, aggregate, aggregate_names] =
+               uv_error_is_texels, uv_error_is_default, aggregate, aggregate_names, lock_borders] =
       static_cast<const build::MeshOptions&>(options);
   const auto& [preset, codec, strip_effort, partition_seed, repair, promise, keep_topology, max_cluster_triangles,
                max_cluster_vertices, group_clusters, max_memory, spills, mesh_store, looks, experiment, mesh_options] =
@@ -112,6 +112,7 @@ std::string settings_text(const build::PipelineOptions& options, const scene::Im
       {"import-repair", text_of(import_repair)},
       {"promise", format::name_of(promise)},
       {"keep-topology", text_of(keep_topology)},
+      {"lock-borders", text_of(lock_borders)},
       {"cluster-triangles", text_of(std::uint64_t{max_cluster_triangles})},
       {"cluster-vertices", text_of(std::uint64_t{max_cluster_vertices})},
       {"group-clusters", text_of(std::uint64_t{group_clusters})},

@@ -243,6 +243,7 @@ AggregateDecision decide_by_pieces(const scene::SourceMesh& mesh, const Aggregat
     if (!is_asked) return {};
   }
   if (question.keep_topology) return {false, "its topology is kept, and so is each piece", {}};
+  if (question.lock_borders) return {false, "its borders are locked, and so is each piece", {}};
   const Pieces all(mesh);
   if (all.pieces.empty()) return {false, "it has no triangles", {}};
   Look whole = look_at(all.pieces);

@@ -30,6 +30,7 @@ struct AggregateQuestion {
   AggregateChoice choice = AggregateChoice::kNever;
   std::string_view names = {};  ///< kNamed: globs of meshes and materials, comma by comma
   bool keep_topology = false;
+  bool lock_borders = false;
   bool may_be_part = true;                               ///< else all of a mesh is an aggregate or nothing
   std::span<const scene::SceneMaterial> materials = {};  ///< of the scene; none where nobody asks for them
 };
@@ -46,8 +47,9 @@ struct AggregateDecision {
 /// that does not hold for the mesh it may for a part of it: all pieces of a material (of several where a piece has
 /// several), or those of at most 32 triangles, if they are at least half of these. kAlways: all pieces of at most 512
 /// triangles: a larger one is never one of many cards. kNamed: the same where the mesh has one of the names, else its
-/// pieces of the materials that have. Where topology is kept each piece stays, and one with a mask in a mesh whose
-/// texture coordinates are so large that no float of them, and nothing that is stored, is a texel any more. O(n log n).
+/// pieces of the materials that have. Where topology is kept or borders are locked each piece stays, and one with a
+/// mask in a mesh whose texture coordinates are so large that no float of them, and nothing that is stored, is a texel
+/// any more. O(n log n).
 [[nodiscard]] AggregateDecision decide_aggregate(const scene::SourceMesh& mesh, const AggregateQuestion& question);
 
 /// Pieces of these materials (`is_out`, by the scene's id) stay as they are: what is left of a decision, or the reason

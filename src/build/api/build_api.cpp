@@ -91,6 +91,7 @@ Result<build::PipelineOptions> make_pipeline_options(const BuildOptions& options
   pipeline.group_clusters = options.group_clusters;
   pipeline.repair = options.repair;
   pipeline.keep_topology = options.keep_topology;
+  pipeline.lock_borders = options.lock_borders;
   pipeline.aggregate = options.aggregate;
   pipeline.aggregate_names = options.aggregate_names;
   pipeline.promise = options.promise;

@@ -109,6 +109,9 @@ SimplifyInput group_input(const BuildPool& pool, const PreparedMesh& mesh, const
   for (const std::uint32_t p : positions.numbers()) {
     input.positions.push_back(pool.positions[p]);
     input.is_locked.push_back(shared.position(p));
+    if (!mesh.is_border_locked.empty()) {
+      input.is_border_locked.push_back(p < mesh.is_border_locked.size() ? mesh.is_border_locked[p] : 0);
+    }
     input.witnesses.push_back(pool.witnesses_at(p));
   }
   return input;
@@ -130,6 +133,14 @@ Attempt simplify_and_cluster(const SimplifyInput& input, double share, bool is_w
   return attempt;
 }
 
+/// Whether a group that got stuck would be reduced if its mesh's borders were not locked.
+bool is_stuck_by_border(SimplifyInput& input, double share, bool is_whole, const DagOptions& options,
+                        const Effort& effort) {
+  const std::vector<std::uint8_t> locked = std::exchange(input.is_border_locked, {});
+  if (std::find(locked.begin(), locked.end(), 1) == locked.end()) return false;
+  return simplify_and_cluster(input, share, is_whole, options, effort).is_accepted;
+}
+
 /// Ends the DAG: what is left is never replaced.
 void add_terminal_groups(BuildPool& pool, const std::vector<ClusterId>& live, const GroupOptions& grouping,
                          const DagOptions& options, const std::vector<StuckReason>& reasons) {
@@ -141,7 +152,9 @@ void add_terminal_groups(BuildPool& pool, const std::vector<ClusterId>& live, co
     for (const std::uint32_t i : members) {
       group.clusters.push_back(live[i]);
       group.level = std::max(group.level, pool.cluster(live[i]).level);
-      if (group.stuck_reason == StuckReason::kNotStuck) group.stuck_reason = reasons[i];
+      // Where something else stands in the way too, that is said.
+      const bool is_open = group.stuck_reason == StuckReason::kNotStuck || group.stuck_reason == StuckReason::kBorder;
+      if (is_open && reasons[i] != StuckReason::kNotStuck) group.stuck_reason = reasons[i];
     }
     pool.groups.push_back(std::move(group));
   }
@@ -190,7 +203,11 @@ Attempt attempt_group(const BuildPool& pool, const PreparedMesh& mesh, const Gro
   SimplifyInput finer = group_input(pool, mesh, clusters, shared);
   if (options.simplify.keep_topology) finer.is_place_taken = [&](const Vec3i& place) { return pool.had_place(place); };
   Attempt attempt = simplify_and_cluster(finer, share, groups_of_round == 1, options, effort);
-  if (!attempt.is_accepted) return attempt;
+  if (!attempt.is_accepted) {
+    const bool is_by_border = is_stuck_by_border(finer, share, groups_of_round == 1, options, effort);
+    if (is_by_border) attempt.result.reason = StuckReason::kBorder;
+    return attempt;
+  }
   if (options.simplify.keep_topology) attempt.new_places = new_places(finer, attempt.result);
   attempt.errors = meter.measure(pool, clusters, finer, attempt.result, groups_of_round);
   return attempt;

@@ -14,6 +14,7 @@
 #include "base/unset_vector.h"
 #include "build/prepare/corners.h"
 #include "build/prepare/median_edge.h"
+#include "build/prepare/open_border.h"
 #include "build/prepare/separate_needles.h"
 #include "build/prepare/weld.h"
 #include "build/prepare/zero_area.h"
@@ -202,6 +203,7 @@ Result<PreparedMesh> prepare_mesh(const scene::SourceMesh& source, const Attribu
   for (const std::uint32_t vertex : corners.triangles) is_used[vertex] = 1;
   const UnsetVector<Vec3i> points = place_on_grid(corners, is_used, options, mesh);
   weld(corners, points, is_used, options.keeps_flat_normals && layout.flat_normal, mesh);
+  if (options.locks_borders) mesh.is_border_locked = find_open_border(corners, is_used, points, mesh.positions);
   mesh.piece_count = count_pieces(mesh);
   return mesh;
 }

@@ -16,6 +16,7 @@ namespace meshlode::build {
 
 struct PrepareOptions {
   bool separates_needles = true;    ///< thin triangles that the grid would flatten (separate_needles.h)
+  bool locks_borders = false;       ///< PreparedMesh::is_border_locked
   bool keeps_flat_normals = false;  ///< exact_normals, where the layout's are flat
   double grid_step = 0.0;           ///< object units; 0: chosen from the budgets below
   double position_error = 0.0;  ///< largest distance that the grid may move a vertex, object units; 0: the share below

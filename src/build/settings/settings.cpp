@@ -43,6 +43,9 @@ constexpr std::array<SettingInfo, kSettingCount> kSettings{{
      false},
     {Setting::kKeepTopology, "keep-topology",
      "every cut of a manifold is a manifold with its holes, handles and pieces, for more triangles", "false", false},
+    {Setting::kLockBorders, "lock-borders",
+     "open borders keep every vertex in every cut, so that tiles built apart with one --grid abut, for more triangles",
+     "false", true},
     {Setting::kAggregate, "aggregate",
      "what is thinned out by coverage, not by distance: nothing (never), meshes and parts of many small loose pieces "
      "(auto), all small pieces (always), or meshes and materials by name, comma by comma",
@@ -220,6 +223,7 @@ PipelineOptions options_of(const std::array<SettledWord, kSettingCount>& words) 
   options.group_clusters = parse_group_clusters(word(Setting::kGroupClusters)).value_or(options.group_clusters);
   options.repair = word(Setting::kRepair) == "true";
   options.keep_topology = word(Setting::kKeepTopology) == "true";
+  options.lock_borders = word(Setting::kLockBorders) == "true";
   options.aggregate = value_in(kAggregateChoiceNames, word(Setting::kAggregate)).value_or(AggregateChoice::kNamed);
   if (options.aggregate == AggregateChoice::kNamed) options.aggregate_names = word(Setting::kAggregate);
   options.promise = value_in(format::kPromiseNames, word(Setting::kPromise)).value_or(options.promise);
@@ -240,7 +244,7 @@ const SettingInfo& info_of(Setting setting) {
 }
 
 bool is_flag(Setting setting) {
-  return setting == Setting::kRepair || setting == Setting::kKeepTopology;
+  return setting == Setting::kRepair || setting == Setting::kKeepTopology || setting == Setting::kLockBorders;
 }
 
 std::vector<std::string> choices_of(Setting setting) {
@@ -255,7 +259,8 @@ std::vector<std::string> choices_of(Setting setting) {
     case Setting::kCodec: return all_names(format::kCodecNames);
     case Setting::kStripEffort: return all_names(kStripEffortNames);
     case Setting::kRepair:
-    case Setting::kKeepTopology: return {"false", "true"};
+    case Setting::kKeepTopology:
+    case Setting::kLockBorders: return {"false", "true"};
     case Setting::kPromise: return all_names(format::kPromiseNames);
     case Setting::kSimplifier: return all_names(kSimplifierNames);
     default: return {};

@@ -36,12 +36,13 @@ enum class Setting : std::uint8_t {
   kGroupClusters,
   kRepair,
   kKeepTopology,
+  kLockBorders,
   kAggregate,
   kPromise,
   kCare,
   kSimplifier,
 };
-constexpr std::size_t kSettingCount = 19;
+constexpr std::size_t kSettingCount = 20;
 
 struct SettingInfo {
   Setting setting;

@@ -173,6 +173,22 @@ bool keeps_border(const SimplifyInput& finer, const SimplifyResult& coarser) {
          count_holes(after, places.size()) <= count_holes(before, places.size());
 }
 
+bool keeps_locked_border(const SimplifyInput& finer, const SimplifyResult& coarser) {
+  if (finer.is_border_locked.empty()) return true;
+  std::vector<Vec3i> places = coarser.positions;
+  std::sort(places.begin(), places.end(), precedes);
+  return std::all_of(finer.triangles.begin(), finer.triangles.end(), [&](const WedgeTriangle& triangle) {
+    const std::uint32_t a = finer.wedge_position[triangle[0]], b = finer.wedge_position[triangle[1]],
+                        c = finer.wedge_position[triangle[2]];
+    if (a == b || b == c || c == a) return true;
+    const auto is_kept = [&](std::uint32_t p) {
+      return finer.is_border_locked[p] == 0 ||
+             std::binary_search(places.begin(), places.end(), finer.positions[p], precedes);
+    };
+    return is_kept(a) && is_kept(b) && is_kept(c);
+  });
+}
+
 SimplifyInput with_locked_border(SimplifyInput input) {
   std::vector<std::uint32_t> names(input.positions.size());
   for (std::uint32_t p = 0; p < names.size(); ++p) names[p] = p;

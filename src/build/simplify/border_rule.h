@@ -12,6 +12,10 @@ namespace meshlode::build {
 /// counts as border of the source nowhere.
 [[nodiscard]] bool keeps_border(const SimplifyInput& finer, const SimplifyResult& coarser);
 
+/// Whether each position of a locked border that a triangle of `finer` has, one with three distinct corners, is a
+/// corner in `coarser` too.
+[[nodiscard]] bool keeps_locked_border(const SimplifyInput& finer, const SimplifyResult& coarser);
+
 /// The input with every position of its border locked: whatever is collapsed then, the border stays edge by edge.
 [[nodiscard]] SimplifyInput with_locked_border(SimplifyInput input);
 

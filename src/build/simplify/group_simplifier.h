@@ -133,7 +133,7 @@ template <class Real, std::size_t C>
 GroupSimplifier<Real, C>::GroupSimplifier(const SimplifyInput& input, const SimplifyOptions& options)
     : input_(input),
       options_(options),
-      locks_(input.is_locked, input.is_wedge_shared, input.wedge_position),
+      locks_(input.is_locked, input.is_wedge_shared, input.wedge_position, input.is_border_locked),
       mesh_(input.triangles, input.wedge_position, input.positions.size()),
       places_(input.positions),
       surface_(input.positions.size(), options.border_weight),

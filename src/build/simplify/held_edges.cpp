@@ -48,7 +48,7 @@ HeldEdges find_held_edges(const SimplifyInput& input, const SimplifyOptions& opt
     const std::uint32_t a = edge[0].a, b = edge[0].b;
     int net = 0;
     for (const EdgeUse& use : edge) net += mesh.vertex(use.corner) == a ? 1 : -1;
-    held.has_free_border |= net != 0 && (input.is_locked[a] == 0 || input.is_locked[b] == 0);
+    held.has_free_border |= net != 0 && !(input.stays(a) && input.stays(b));
     const bool is_border = edge.size() != 2;
     const double weight = is_border ? 1.0 : weight_between(input, options, mesh, edge);
     if (is_border) held.is_border[a] = held.is_border[b] = 1;

@@ -18,7 +18,7 @@ bool has(const std::vector<std::uint32_t>& vertices, std::uint32_t v) {
 
 /// For both ends of the edge, with the locked one first.
 bool joins_no_locked(const CollapseMesh& mesh, const GroupLocks& locks, const StarEnd& locked, const StarEnd& moved) {
-  const auto is_locked = [&](std::uint32_t v) { return locks.is_vertex_locked[v] != 0; };
+  const auto is_locked = [&](std::uint32_t v) { return locks.is_vertex_shared[v] != 0; };
   const bool has_no_new_edge = std::all_of(moved.neighbors.begin(), moved.neighbors.end(), [&](std::uint32_t v) {
     return v == locked.vertex || !is_locked(v) || has(locked.neighbors, v);
   });
@@ -75,7 +75,7 @@ bool is_on_grid(const Vec3i& place) {
 bool keeps_to_itself(const CollapseMesh& mesh, const GroupLocks& locks, const CollapseStar& star) {
   if (is_lone_triangle(mesh, star)) return false;
   const auto is_kept = [&](const StarEnd& locked, const StarEnd& moved) {
-    return locks.is_vertex_locked[locked.vertex] == 0 || joins_no_locked(mesh, locks, locked, moved);
+    return locks.is_vertex_shared[locked.vertex] == 0 || joins_no_locked(mesh, locks, locked, moved);
   };
   return is_kept(star.a, star.b) && is_kept(star.b, star.a);
 }

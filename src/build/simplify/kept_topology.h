@@ -26,7 +26,7 @@
 
 namespace meshlode::build {
 
-/// Whether the collapse makes no edge between two locked vertices, no triangle of three, and does not take the last
+/// Whether the collapse makes no edge between two shared vertices, no triangle of three, and does not take the last
 /// triangle of a piece. \pre keeps_topology() holds and has gathered the neighbours of both ends
 [[nodiscard]] bool keeps_to_itself(const CollapseMesh& mesh, const GroupLocks& locks, const CollapseStar& star);
 

@@ -42,7 +42,7 @@ std::vector<Piece> measure_pieces(const SimplifyInput& input, const CollapseMesh
     const double area = area_of(places[v[0]], places[v[1]], places[v[2]]);
     piece.area += area;
     piece.moment += (places[v[0]] + places[v[1]] + places[v[2]]) * (area / 3.0);
-    for (const std::uint32_t corner : v) piece.is_locked |= input.is_locked[corner] != 0;
+    for (const std::uint32_t corner : v) piece.is_locked |= input.stays(corner);
   }
   return pieces;
 }

@@ -21,7 +21,8 @@ Attempt simplify_with(const SimplifyInput& input, const SimplifyOptions& options
   GroupSimplifier<Real, Capacity> simplifier(input, options);
   simplifier.run();
   Attempt attempt{simplifier.result()};
-  attempt.keeps_border = !simplifier.has_free_border() || keeps_border(input, attempt.result);
+  attempt.keeps_border = (!simplifier.has_free_border() || keeps_border(input, attempt.result)) &&
+                         keeps_locked_border(input, attempt.result);
   return attempt;
 }
 
@@ -51,7 +52,12 @@ SimplifyResult simplify_group(const SimplifyInput& input, const SimplifyOptions&
   careful.may_relax_topology = false;
   if (!options.keep_topology) attempt = simplify_once(input, careful);  // else it was careful before
   if (attempt.keeps_border) return std::move(attempt.result);
-  return simplify_once(with_locked_border(input), careful).result;
+  SimplifyResult result = simplify_once(with_locked_border(input), careful).result;
+  if (keeps_locked_border(input, result)) return result;
+  // Vertices of a locked border that the grid left no border edge at, and that nothing held.
+  result.triangles.clear();
+  result.reason = StuckReason::kBorder;
+  return result;
 }
 
 }  // namespace meshlode::build

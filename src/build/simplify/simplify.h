@@ -58,6 +58,8 @@ struct SimplifyInput {
   AttributeLayout layout;
   std::vector<Vec3i> positions;
   std::vector<std::uint8_t> is_locked;  ///< per position: shared with another group
+  /// Per position: on an open border that every cut keeps, wherever groups are drawn. Empty: none.
+  std::vector<std::uint8_t> is_border_locked;
   std::vector<Witnesses> witnesses;     ///< per position
   std::vector<std::uint32_t> wedge_position;
   std::vector<std::uint8_t> is_wedge_shared;  ///< per wedge: another group has it too, so shading is smooth across
@@ -66,6 +68,11 @@ struct SimplifyInput {
   std::vector<std::uint32_t> triangle_material;
   /// Where keep_topology is asked: whether another group has, or ever had, a vertex there. None: nowhere.
   std::function<bool(const Vec3i& place)> is_place_taken;
+
+  /// Whether the position stays where it is.
+  [[nodiscard]] bool stays(std::uint32_t position) const {
+    return is_locked[position] != 0 || (!is_border_locked.empty() && is_border_locked[position] != 0);
+  }
 };
 
 struct SimplifyResult {
@@ -80,7 +87,8 @@ struct SimplifyResult {
 };
 
 /// The result has the input's border (I6, docs/validation.md): edge by edge where both ends are locked, simplified
-/// where the surface is open. No triangle of it has two corners in one place.
+/// where the surface is open. No triangle of it has two corners in one place. It has every position of a locked border
+/// that a triangle of the input has; no triangle at all where that cannot be had.
 [[nodiscard]] SimplifyResult simplify_group(const SimplifyInput& input, const SimplifyOptions& options);
 
 }  // namespace meshlode::build

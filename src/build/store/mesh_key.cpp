@@ -79,10 +79,11 @@ void add_encoding(KeyHasher& key, const EncodeOptions& encode) {
 
 void add_own_options(KeyHasher& key, const MeshOptions& own) {
   const auto& [error_tier, attributes, keep, drop, grid_step, position_error, normal_error, uv_error,
-               uv_error_is_texels, uv_error_is_default, aggregate, aggregate_names] = own;
+               uv_error_is_texels, uv_error_is_default, aggregate, aggregate_names, lock_borders] = own;
   key.value(error_tier);
   key.value(grid_step);
   key.value(position_error);
+  key.value(lock_borders);
   static_cast<void>(attributes);  // the layout says what they came to, and EncodeOptions what the budgets did
   static_cast<void>(keep);
   static_cast<void>(drop);

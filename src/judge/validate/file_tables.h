@@ -25,6 +25,7 @@ struct MetaFacts {
     std::string attributes, error_tier, uv_error_unit;
     std::vector<std::string> dropped;                              ///< attributes, by name
     std::optional<double> position_error, normal_error, uv_error;  ///< uv_error in uv_error_unit
+    bool locks_borders = false;
   };
   std::string source_hash;
   std::optional<std::uint64_t> cluster_triangles, cluster_vertices;  ///< settings

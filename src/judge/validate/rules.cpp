@@ -129,6 +129,7 @@ constexpr std::array kRules{
          "what V104 and V105 hold level 0 to is within the accuracy budgets of the settings; UV budgets in texels are "
          "held "
          "against the images of the source, and a set so large that 24 bits leave no finer step is within any"),
+    RULE(V114, "I6", "where lock_borders is set, every vertex of the source's open border is in every cut"),
     RULE(V115, "",
          "the asset tells of as many triangles as the source's file holds by its size (binary STL), and of no fewer than "
          "its faces (text STL, OBJ, PLY), told without the importer"),

@@ -32,7 +32,7 @@ enum class Rule : std::uint8_t {
   // geometry
   kL501, kL502, kL503, kL504, kL505, kL506, kL507, kL508, kL509,
   // verify: against the source
-  kV101, kV102, kV103, kV104, kV105, kV106, kV107, kV108, kV109, kV110, kV111, kV112, kV113, kV115,
+  kV101, kV102, kV103, kV104, kV105, kV106, kV107, kV108, kV109, kV110, kV111, kV112, kV113, kV114, kV115,
   // verify: cuts
   kV201, kV202, kV203, kV204, kV205, kV206, kV207, kV208, kV209, kV210,
   // verify --gpu

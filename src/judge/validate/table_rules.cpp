@@ -339,7 +339,7 @@ class TableChecker {
         log_.expect((group.flags & ~(format::kGroupTerminal | format::kGroupStuck | aggregate)) == 0, Rule::kL103, at,
                     [] { return Text("unknown flags"); });
         has_aggregate = has_aggregate || (group.flags & format::kGroupAggregate) != 0;
-        log_.expect(static_cast<std::uint32_t>(group.stuck_reason) <= 6, Rule::kL102, at,
+        log_.expect(static_cast<std::uint32_t>(group.stuck_reason) <= 7, Rule::kL102, at,
                     [&] { return "stuck_reason " + std::to_string(static_cast<std::uint32_t>(group.stuck_reason)); });
         sound &= log_.expect(group.page < file_.pages.size(), Rule::kL111, at,
                              [&] { return "page " + std::to_string(group.page) + " does not exist"; });

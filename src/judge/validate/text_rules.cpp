@@ -56,7 +56,8 @@ std::optional<double> real_at(const nlohmann::json& object, const char* key) {
   return found.is_number() ? std::optional(found.get<double>()) : std::nullopt;
 }
 
-MetaFacts::OfMesh mesh_facts_of(const nlohmann::json& settings) {
+/// `whole`: what holds where a mesh's own settings say nothing.
+MetaFacts::OfMesh mesh_facts_of(const nlohmann::json& settings, const MetaFacts::OfMesh& whole) {
   MetaFacts::OfMesh facts;
   facts.attributes = text_at(settings, "attributes");
   facts.error_tier = text_at(settings, "error_tier");
@@ -67,6 +68,8 @@ MetaFacts::OfMesh mesh_facts_of(const nlohmann::json& settings) {
   facts.position_error = real_at(settings, "position_error");
   facts.normal_error = real_at(settings, "normal_error");
   facts.uv_error = real_at(settings, "uv_error");
+  const nlohmann::json locked = value_at(settings, "lock_borders");
+  facts.locks_borders = locked.is_boolean() ? locked.get<bool>() : whole.locks_borders;
   return facts;
 }
 
@@ -78,7 +81,7 @@ MetaFacts facts_of(const nlohmann::json& meta) {
   };
   MetaFacts facts;
   facts.source_hash = text_at(value_at(meta, "source"), "hash");
-  facts.whole = mesh_facts_of(settings);
+  facts.whole = mesh_facts_of(settings, {});
   facts.cluster_triangles = number("cluster_triangles");
   facts.cluster_vertices = number("cluster_vertices");
   facts.error_margin = real_at(settings, "error_margin");
@@ -87,7 +90,7 @@ MetaFacts facts_of(const nlohmann::json& meta) {
     for (const nlohmann::json& mesh : value_at(apart, "meshes")) {
       if (mesh.is_number_unsigned()) facts.apart_of_mesh[mesh.get<std::uint64_t>()] = facts.apart.size();
     }
-    facts.apart.push_back(mesh_facts_of(apart));
+    facts.apart.push_back(mesh_facts_of(apart, facts.whole));
   }
   return facts;
 }

@@ -15,6 +15,7 @@
 #include "format/grid.h"
 #include "judge/metrics/drawn_triangles.h"
 #include "judge/metrics/triangle_corners.h"
+#include "judge/verify/locked_borders.h"
 #include "judge/verify/moved_vertices.h"
 #include "judge/verify/source_rules.h"
 #include "judge/verify/triangle_key.h"
@@ -81,7 +82,7 @@ class SourceMatcher {
         origin_(mesh_.origin[0], mesh_.origin[1], mesh_.origin[2]),
         vertices_(origin_, step_) {}
 
-  SourceCounts run() {
+  SourceCounts run(bool wants_border) {
     check_counts();
     gather_source();
     gather_stored();
@@ -90,7 +91,10 @@ class SourceMatcher {
     check_moves();
     match();
     check_dropped();
-    return counts_;
+    if (wants_border) {
+      for (const Vec3d& p : find_open_border(source_corners())) counts_.border.push_back(vertices_.point_of(p));
+    }
+    return std::move(counts_);
   }
 
  private:
@@ -486,9 +490,9 @@ class SourceMatcher {
 }  // namespace
 
 SourceCounts check_source_triangles(const run::Asset& asset, MeshId mesh, const scene::SourceMesh& source,
-                                    std::span<const run::DecodedCluster> clusters, RuleLog& log) {
+                                    std::span<const run::DecodedCluster> clusters, bool wants_border, RuleLog& log) {
   for (const Rule rule : {Rule::kV101, Rule::kV102, Rule::kV103, Rule::kV104, Rule::kV105}) log.check(rule);
-  return SourceMatcher(asset, mesh, source, clusters, log).run();
+  return SourceMatcher(asset, mesh, source, clusters, log).run(wants_border);
 }
 
 }  // namespace meshlode::judge

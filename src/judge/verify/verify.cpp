@@ -15,6 +15,7 @@
 #include "judge/verify/cuts.h"
 #include "judge/verify/deviations.h"
 #include "judge/verify/file_triangles.h"
+#include "judge/verify/locked_borders.h"
 #include "judge/verify/promises.h"
 #include "judge/verify/source_rules.h"
 
@@ -81,10 +82,19 @@ void add_structure(const run::Asset& asset, Report& report) {
   std::move(structure.findings.begin(), structure.findings.end(), std::back_inserter(report.out.findings));
 }
 
+bool locks_any(const run::Asset& asset, const MetaFacts& facts) {
+  for (std::size_t m = 0; m < asset.meshes().size(); ++m) {
+    if (facts.of_mesh(m).locks_borders) return true;
+  }
+  return false;
+}
+
 void add_source(const run::Asset& asset, const scene::Scene& source, std::span<const run::DecodedCluster> clusters,
                 bool is_quick, Report& report) {
   RuleLog log;
   SourceCounts totals;
+  LockedTotals locked;
+  const MetaFacts facts = read_meta_facts(asset.meta_json());
   const std::size_t count = std::min(asset.meshes().size(), source.meshes.size());
   log.expect(
       asset.meshes().size() == source.meshes.size(), Rule::kV103, [] { return std::string("meshes"); },
@@ -92,7 +102,11 @@ void add_source(const run::Asset& asset, const scene::Scene& source, std::span<c
         return differs("stored", std::uint64_t{asset.meshes().size()}, "source", std::uint64_t{source.meshes.size()});
       });
   for (std::size_t m = 0; m < count && !is_quick; ++m) {
-    const SourceCounts counts = check_source_triangles(asset, MeshId(m), source.meshes[m], clusters, log);
+    const bool is_locked = facts.of_mesh(m).locks_borders;
+    const SourceCounts counts = check_source_triangles(asset, MeshId(m), source.meshes[m], clusters, is_locked, log);
+    if (is_locked) {
+      check_locked_border(asset, build_surface(asset, MeshId(m), clusters), counts.border, locked, log);
+    }
     totals.source_triangles += counts.source_triangles;
     totals.level0_triangles += counts.level0_triangles;
     totals.corners += counts.corners;
@@ -102,6 +116,7 @@ void add_source(const run::Asset& asset, const scene::Scene& source, std::span<c
     report.add_check("", "the source has as many meshes", 1, failures_of(log, {Rule::kV103}));
     report.skip("I1", "not checked: quick; triangles are not looked for in the source");
     report.skip("I3", "not checked: quick; level-0 attributes are not held against the source's");
+    if (locks_any(asset, facts)) report.skip("I6", "not checked: quick; locked borders are not looked for");
   } else {
     report.add_check("I1", "every source triangle is in exactly one level-0 cluster", totals.source_triangles,
                      failures_of(log, {Rule::kV101}));
@@ -109,6 +124,12 @@ void add_source(const run::Asset& asset, const scene::Scene& source, std::span<c
                      failures_of(log, {Rule::kV102, Rule::kV103}));
     report.add_check("I3", "level-0 attributes are the source's within their quantization", totals.corners,
                      failures_of(log, {Rule::kV104}));
+    if (locked.meshes > 0) {
+      report.add_check("I6",
+                       "every vertex of locked borders is in every cut, by " + std::to_string(locked.groups) +
+                           " groups and " + std::to_string(locked.cuts) + " random cuts",
+                       locked.vertices, failures_of(log, {Rule::kV114}));
+    }
   }
   report.add_check("", "attributes that the source's shading needs are stored", count, failures_of(log, {Rule::kV110}));
   report.add_check("I2", "clusters keep the caps of the settings", asset.clusters().size(),

@@ -116,7 +116,7 @@ MeshChange compare_mesh(const Described& before, const Described& after, const E
                  count("groups", a.group_count, b.group_count),
                  count("roots", info_a.roots, info_b.roots),
                  count("root_triangles", info_a.root_triangles, info_b.root_triangles),
-                 count("stuck_groups", info_a.stuck.size(), info_b.stuck.size()),
+                 count("stuck_groups", info_a.stuck_groups, info_b.stuck_groups),
                  count("grid_collapsed", a.grid_collapsed, b.grid_collapsed),
                  {"diagonal", a.diagonal, b.diagonal, Change::Kind::kDouble},
                  float_change("level0_deviation", a.level0_deviation, b.level0_deviation),

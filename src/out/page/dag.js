@@ -89,7 +89,7 @@ export function measureOf(asset, cap, measure, c) {
 export const LEGENDS = {
   fill: 'Height and depth of colour: how full a cluster is of triangles.',
   ratio: 'Height and depth of colour: error of the coarser group over that of the own one, from 1 to 64 times. Roots and level 0 have none.',
-  stuck: 'Full height and a letter: its group could not be simplified. L locked, F flips, S seams, C components, T too small or topology.',
+  stuck: 'Full height and a letter: its group could not be simplified. L locked, F flips, S seams, C components, T too small or topology, B locked border.',
   page: 'Hue: the page; pages with odd numbers are lower.',
   cluster: 'Each cluster has a hue of its own.',
 };

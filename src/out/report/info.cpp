@@ -59,8 +59,10 @@ MeshInfo describe_mesh(const run::Asset& asset, std::uint32_t mesh_id, std::uint
   }
   for (std::uint32_t g = mesh.first_group; g < mesh.first_group + mesh.group_count; ++g) {
     const format::GroupRecord& group = asset.groups()[g];
-    const bool is_stuck = (group.flags & format::kGroupStuck) != 0;
-    if (is_stuck) {
+    const bool is_listed = (group.flags & format::kGroupStuck) != 0;
+    const bool is_stuck = is_listed && group.stuck_reason != format::StuckReason::kBorder;
+    info.stuck_groups += is_stuck ? 1U : 0U;
+    if (is_listed) {
       info.stuck.push_back(
           {mesh_id, g, group.level, group.stuck_reason, group.cluster_count, group_triangles[g - mesh.first_group]});
     }
@@ -104,7 +106,8 @@ AssetInfo describe_asset(const run::Asset& asset) {
     info.levels = std::max<std::uint64_t>(info.levels, mesh.level_count);
     info.roots += one.roots;
     info.max_roots_per_mesh = std::max(info.max_roots_per_mesh, one.roots);
-    info.stuck_groups += one.stuck.size();
+    info.stuck_groups += one.stuck_groups;
+    info.border_groups += one.stuck.size() - one.stuck_groups;
     info.dropped_degenerate += mesh.dropped_degenerate;
     info.dropped_duplicate += mesh.dropped_duplicate;
     info.dropped_repaired += mesh.dropped_repaired;

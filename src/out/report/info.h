@@ -22,7 +22,7 @@ struct LevelInfo {
   std::uint64_t clusters = 0, triangles = 0, vertices = 0;  ///< stored; a vertex counts once per cluster it is in
   std::uint64_t full_clusters = 0;                          ///< at the cap
   double fill = 0.0;                                        ///< triangles / (clusters · cap)
-  std::uint64_t groups = 0, stuck_groups = 0;               ///< groups that consume this level
+  std::uint64_t groups = 0, stuck_groups = 0;  ///< groups that consume this level; as MeshInfo::stuck_groups
   float error_min = 0.0F, error_max = 0.0F;                 ///< own errors of the level's clusters, object units
   float normal_deviation_max = 0.0F;  ///< of their own groups, degrees; kInfiniteError: not measured
   float uv_deviation_max = 0.0F;      ///< UV units
@@ -37,7 +37,8 @@ struct StuckGroupInfo {
 struct MeshInfo {
   std::uint64_t roots = 0, root_triangles = 0;  ///< a root is a cluster that nothing coarser replaces
   std::uint64_t clusters = 0, triangles = 0, vertices = 0;
-  std::vector<StuckGroupInfo> stuck;
+  std::vector<StuckGroupInfo> stuck;  ///< those of a locked border among them
+  std::uint64_t stuck_groups = 0;     ///< without those: a border that was to be kept is no fault
   std::vector<LevelInfo> levels;
 };
 
@@ -48,6 +49,7 @@ struct AssetInfo {
   std::uint64_t source_triangles = 0, source_vertices = 0;
   std::uint64_t stored_triangles = 0, stored_vertices = 0;
   std::uint64_t levels = 0, roots = 0, max_roots_per_mesh = 0, stuck_groups = 0;
+  std::uint64_t border_groups = 0;  ///< stuck by a locked border alone: listed as stuck, not counted as such
   std::uint64_t dropped_degenerate = 0, dropped_duplicate = 0, dropped_repaired = 0;
   std::uint32_t cluster_cap = 0;  ///< triangles: from the settings, else the smallest of 128 and 256 that holds
   std::vector<MeshInfo> meshes;

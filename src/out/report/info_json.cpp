@@ -187,7 +187,7 @@ void write_mesh(JsonWriter& w, const run::Asset& asset, std::uint32_t id, const 
   w.field("grid_collapsed", mesh.grid_collapsed);
   w.field("roots", info.roots);
   w.field("root_triangles", info.root_triangles);
-  w.field("stuck_groups", info.stuck.size());
+  w.field("stuck_groups", info.stuck_groups);
   std::map<std::string, std::uint64_t> reasons;
   for (const StuckGroupInfo& stuck : info.stuck) ++reasons[format::name_of(stuck.reason)];
   w.key("stuck_reasons");

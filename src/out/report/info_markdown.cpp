@@ -81,7 +81,7 @@ void add_mesh(std::string& out, const run::Asset& asset, std::uint32_t id, const
 
 void add_stuck(std::string& out, const AssetInfo& info) {
   out += "\n## Stuck groups\n\n";
-  if (info.stuck_groups == 0) {
+  if (info.stuck_groups + info.border_groups == 0) {
     out += "none\n";
     return;
   }

@@ -74,7 +74,7 @@ void add_stuck(std::string& out, const AssetInfo& info) {
                     static_cast<unsigned long long>(stuck.clusters), static_cast<unsigned long long>(stuck.triangles));
     }
   }
-  if (info.stuck_groups == 0) append_format(out, "  none\n");
+  if (info.stuck_groups + info.border_groups == 0) append_format(out, "  none\n");
 }
 
 void add_materials(std::string& out, const run::Asset& asset) {

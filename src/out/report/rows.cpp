@@ -43,8 +43,10 @@ void add_count_rows(std::vector<Row>& rows, const run::Asset& asset, const Asset
       {"stored", grouped_digits(info.stored_triangles) + " triangles, " + grouped_digits(info.stored_vertices) +
                      " vertices in " + grouped_digits(asset.clusters().size()) + " clusters, " +
                      grouped_digits(asset.groups().size()) + " groups, " + grouped_digits(info.levels) + " level(s)"});
-  rows.push_back({"roots", grouped_digits(info.roots) + " (at most " + grouped_digits(info.max_roots_per_mesh) +
-                               " a mesh), " + grouped_digits(info.stuck_groups) + " stuck group(s)"});
+  rows.push_back(
+      {"roots", grouped_digits(info.roots) + " (at most " + grouped_digits(info.max_roots_per_mesh) + " a mesh), " +
+                    grouped_digits(info.stuck_groups) + " stuck group(s)" +
+                    (info.border_groups > 0 ? ", " + grouped_digits(info.border_groups) + " of locked borders" : "")});
   rows.push_back({"dropped", grouped_digits(info.dropped_degenerate) + " degenerate, " +
                                  grouped_digits(info.dropped_duplicate) + " duplicate, " +
                                  grouped_digits(info.dropped_repaired) + " repaired"});
@@ -100,9 +102,9 @@ std::vector<std::string> mesh_lines(const run::Asset& asset, std::uint32_t id, c
                     ? 0.0
                     : static_cast<double>(info.triangles) / static_cast<double>(mesh.source_triangles),
                 mesh.diagonal, mesh.grid.mantissa, mesh.grid.log2, format::name_of(mesh.error_tier));
-  append_format(lines[1], "%llu root(s) with %llu triangles, %zu stuck group(s), level 0 deviates by %.3g",
+  append_format(lines[1], "%llu root(s) with %llu triangles, %llu stuck group(s), level 0 deviates by %.3g",
                 static_cast<unsigned long long>(info.roots), static_cast<unsigned long long>(info.root_triangles),
-                info.stuck.size(), static_cast<double>(mesh.level0_deviation));
+                static_cast<unsigned long long>(info.stuck_groups), static_cast<double>(mesh.level0_deviation));
   if (!asset.promises().empty()) {
     const format::PromiseMeshRecord& promise = asset.promises()[id];
     const bool has_appearance = (promise.promises & format::kPromisesAppearance) != 0;

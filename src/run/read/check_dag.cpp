@@ -46,7 +46,7 @@ Status check_group(const RawTables& tables, std::size_t g, std::uint32_t mesh_id
     return fail("flags", "a terminal group is no aggregate");
   const bool is_stuck = (group.flags & format::kGroupStuck) != 0;
   if (is_stuck && !is_terminal) return fail("flags", "a stuck group must be terminal");
-  if (group.stuck_reason > format::StuckReason::kTopology) return fail("stuck_reason", "is unknown");
+  if (group.stuck_reason > format::StuckReason::kBorder) return fail("stuck_reason", "is unknown");
   if (is_stuck != (group.stuck_reason != format::StuckReason::kNotStuck)) {
     return fail("stuck_reason", "does not match the flags");
   }

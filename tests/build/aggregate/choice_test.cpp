@@ -34,6 +34,9 @@ TEST(AggregateChoice, IsOfManySmallLoosePieces) {
   EXPECT_FALSE(decide_aggregate(scene::as_mesh(scene::make_grass(2000)),
                                 {.choice = AggregateChoice::kAlways, .keep_topology = true})
                    .is_aggregate);
+  EXPECT_FALSE(decide_aggregate(scene::as_mesh(scene::make_grass(2000)),
+                                {.choice = AggregateChoice::kAlways, .lock_borders = true})
+                   .is_aggregate);
 }
 
 /// Primitives with materials 0, 1, 2 …

@@ -23,7 +23,7 @@ std::string fault_of(std::string_view text) {
 
 TEST(SettingsFile, HasTheNamesOfTheOptions) {
   const auto layer = parse_settings(R"({"$schema": "x", "preset": "fast", "grid": 0.5, "normal-error": 2,
-    "uv-error": "0.25px", "repair": true, "keep-topology": true, "aggregate": "auto", "keep": ["NORMAL", "COLOR_0"], "drop": "TEXCOORD_1"})",
+    "uv-error": "0.25px", "repair": true, "keep-topology": true, "lock-borders": true, "aggregate": "auto", "keep": ["NORMAL", "COLOR_0"], "drop": "TEXCOORD_1"})",
                                     "f");
   ASSERT_TRUE(layer) << layer.error().message();
   const auto settled = settle({&*layer, 1});
@@ -34,6 +34,7 @@ TEST(SettingsFile, HasTheNamesOfTheOptions) {
   EXPECT_EQ(settled->options.uv_error, 0.25);
   EXPECT_TRUE(settled->options.repair);
   EXPECT_TRUE(settled->options.keep_topology);
+  EXPECT_TRUE(settled->options.lock_borders);
   EXPECT_EQ(settled->options.aggregate, AggregateChoice::kAuto);
   EXPECT_EQ(settled->options.keep, kAttributeNormal | kAttributeColor);
   EXPECT_EQ(settled->options.drop, attribute_texcoord(1));
@@ -74,6 +75,7 @@ TEST(SettingsFile, HostileTextsAreErrors) {
                                   std::string("{\"codec\":4}"),
                                   std::string("{\"repair\":\"true\"}"),
                                   std::string("{\"keep-topology\":1}"),
+                                  std::string("{\"lock-borders\":\"yes\"}"),
                                   std::string("{\"keep\":[1]}"),
                                   std::string("{\"keep\":[\"NORMAL,\"]}"),
                                   std::string("{\"keep\":\"TANGENT\"}"),

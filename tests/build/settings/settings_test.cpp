@@ -31,6 +31,7 @@ TEST(Settings, WithoutLayersTheyAreTheDefaults) {
   EXPECT_EQ(settled->options.codec, usual.codec);
   EXPECT_EQ(settled->options.repair, usual.repair);
   EXPECT_EQ(settled->options.keep_topology, usual.keep_topology);
+  EXPECT_EQ(settled->options.lock_borders, usual.lock_borders);
   EXPECT_EQ(settled->options.aggregate, usual.aggregate);
   EXPECT_EQ(settled->options.promise, usual.promise);
   for (const SettledWord& word : settled->words) EXPECT_EQ(word.from, "default");

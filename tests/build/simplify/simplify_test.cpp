@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "build/simplify/simplify.h"
 
+#include <algorithm>
 #include <cmath>
 #include <ctime>
 #include <set>
@@ -9,6 +10,7 @@
 
 #include "base/random.h"
 #include "build/prepare/prepare.h"
+#include "build/simplify/border_rule.h"
 #include "build/simplify/quadric.h"
 #include "build/simplify/two_charts.h"
 #include "scene/samples/samples.h"
@@ -315,11 +317,13 @@ TEST(Simplify, AnEarOnASharedEdgeStays) {
   }
 }
 
-TEST(Simplify, LoosePiecesThatLeaveNoRoomAreTheReason) {
+constexpr int kPieces = 50;
+
+/// A tetrahedron each, as small as closed pieces get under the link condition.
+SimplifyInput make_tetrahedra() {
   SimplifyInput input;
   input.layout = {};
-  constexpr int kPieces = 50;
-  for (int i = 0; i < kPieces; ++i) {  // a tetrahedron each, as small as closed pieces get under the link condition
+  for (int i = 0; i < kPieces; ++i) {
     const auto first = static_cast<std::uint32_t>(input.positions.size());
     for (const Vec3i& p : {Vec3i(0, 0, 0), Vec3i(60, 0, 0), Vec3i(0, 60, 0), Vec3i(0, 0, 60)}) {
       input.positions.push_back(p + Vec3i(1000 * i, 0, 0));
@@ -334,6 +338,11 @@ TEST(Simplify, LoosePiecesThatLeaveNoRoomAreTheReason) {
   input.is_locked.assign(input.positions.size(), 0);
   input.is_wedge_shared.assign(input.wedge_position.size(), 0);
   input.triangle_material.assign(input.triangles.size(), 0);
+  return input;
+}
+
+TEST(Simplify, LoosePiecesThatLeaveNoRoomAreTheReason) {
+  const SimplifyInput input = make_tetrahedra();
   SimplifyOptions options;
   options.may_relax_topology = false;
   options.target_triangles = 2 * kPieces - 1;
@@ -345,6 +354,31 @@ TEST(Simplify, LoosePiecesThatLeaveNoRoomAreTheReason) {
   options.target_triangles = 2 * kPieces - 1;
   options.may_relax_topology = true;
   EXPECT_EQ(simplify_group(input, options).reason, StuckReason::kNotStuck);
+}
+
+/// Every vertex of a locked border, and it alone, even where no edge of a border is left to hold it.
+TEST(Simplify, VerticesOfALockedBorderStayAndAreThere) {
+  SimplifyInput input = make_tetrahedra();
+  input.is_border_locked.assign(input.positions.size(), 0);
+  for (std::size_t p = 0; p < input.positions.size(); p += 4) input.is_border_locked[p] = 1;
+  SimplifyOptions options;
+  options.target_triangles = 2;
+  const auto is_there = [](const SimplifyResult& result, const Vec3i& place) {
+    return std::find(result.positions.begin(), result.positions.end(), place) != result.positions.end();
+  };
+  const SimplifyResult kept = simplify_group(input, options);
+  for (std::size_t p = 0; p < input.positions.size(); p += 4) EXPECT_TRUE(is_there(kept, input.positions[p])) << p;
+  input.is_border_locked.clear();
+  const SimplifyResult free = simplify_group(input, options);
+  EXPECT_FALSE(is_there(free, input.positions[0]) && is_there(free, input.positions[4])) << "or it says nothing";
+
+  SimplifyInput plane = as_input(prepare(scene::make_plane(16)));
+  plane.is_border_locked = with_locked_border(plane).is_locked;
+  SimplifyOptions to_the_border;
+  to_the_border.target_triangles = 2;
+  const SimplifyResult flat = simplify_group(plane, to_the_border);
+  EXPECT_LE(flat.triangles.size(), 66U) << "62 are what 64 vertices of the border take";
+  EXPECT_EQ(border_of(flat), border_of(plane));
 }
 
 TEST(Simplify, ScaleChangesNothing) {

@@ -181,6 +181,9 @@ TEST(StoredMesh, EveryPartOfAMeshIsInItsKey) {
   options.keep_topology = true;
   EXPECT_TRUE(keys.emplace(mesh_key(mesh, {}, {}, options, options), 0).second);
   options.keep_topology = false;
+  options.lock_borders = true;
+  EXPECT_TRUE(keys.emplace(mesh_key(mesh, {}, {}, options, options), 0).second);
+  options.lock_borders = false;
   options.aggregate = AggregateChoice::kAlways;
   EXPECT_TRUE(keys.emplace(mesh_key(mesh, {}, {}, options, options), 0).second);
   options.aggregate = AggregateChoice::kNever;

@@ -177,6 +177,19 @@ const std::vector<Break>& breaks() {
          // "016" is no JSON number: a space keeps the length
          found[static_cast<std::ptrdiff_t>(from.size()) - 3] = ' ';
        }},
+      {"V114", "a border that coarser levels do not have",
+       [](scene::Scene& s) {
+         for (scene::SourceMesh& mesh : s.meshes) {
+           if (!mesh.primitives.empty()) mesh.primitives[0].indices.resize(mesh.primitives[0].indices.size() / 6 * 3);
+         }
+       },
+       [](AssetEdit& e) {
+         const std::string from = "\"cluster_triangles\":256", to = "\"lock_borders\":    true";
+         ASSERT_EQ(from.size(), to.size());
+         const auto found = std::search(e.bytes().begin(), e.bytes().end(), from.begin(), from.end());
+         ASSERT_NE(found, e.bytes().end());
+         std::copy(to.begin(), to.end(), found);
+       }},
       {"V113", "a budget that the normals do not keep", keep,
        [](AssetEdit& e) {
          const std::string from = "\"normal_error\":0.1";

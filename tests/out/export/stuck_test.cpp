@@ -39,7 +39,7 @@ std::vector<std::uint8_t> with_all_reasons() {
   std::uint32_t next = 0;
   for (std::size_t g = 0; g < edit.groups().size(); ++g) {
     if ((edit.groups()[g].flags & format::kGroupStuck) == 0) continue;
-    edit.group(g, [&](auto& r) { r.stuck_reason = static_cast<format::StuckReason>(1 + next++ % 6); });
+    edit.group(g, [&](auto& r) { r.stuck_reason = static_cast<format::StuckReason>(1 + next++ % 7); });
   }
   edit.seal();
   return edit.bytes();
@@ -77,6 +77,25 @@ TEST(Stuck, ASceneThatCannotBeSimplifiedHasAReasonForEachGroup) {
   EXPECT_EQ(by_reason, info.stuck_groups);
 }
 
+/// What a locked border holds was asked for: it is listed, and counts against nobody's budget.
+TEST(Stuck, GroupsOfLockedBordersAreListedAndNotCounted) {
+  const run::Asset asset = open(with_all_reasons());
+  const AssetInfo info = describe_asset(asset);
+  const auto json = nlohmann::json::parse(info_json(asset, info, true));
+  const auto& mesh = json.at("meshes")[0];
+  std::uint64_t by_reason = 0, by_level = 0;
+  for (const auto& [reason, count] : mesh.at("stuck_reasons").items()) by_reason += count.get<std::uint64_t>();
+  for (const auto& level : mesh.at("levels")) by_level += level.at("stuck_groups").get<std::uint64_t>();
+  const auto of_borders = mesh.at("stuck_reasons").at("border").get<std::uint64_t>();
+  EXPECT_GT(of_borders, 0U);
+  EXPECT_EQ(info.border_groups, of_borders);
+  EXPECT_EQ(info.stuck_groups, by_reason - of_borders);
+  EXPECT_EQ(json.at("totals").at("stuck_groups"), info.stuck_groups);
+  EXPECT_EQ(mesh.at("stuck_groups"), info.stuck_groups);
+  EXPECT_EQ(by_level, info.stuck_groups);
+  EXPECT_EQ(json.at("stuck").size(), by_reason);
+}
+
 TEST(Stuck, TheGlbHasTheStuckTrianglesAndAColourForEachReason) {
   const run::Asset asset = open(with_all_reasons());
   const AssetInfo info = describe_asset(asset);
@@ -86,7 +105,7 @@ TEST(Stuck, TheGlbHasTheStuckTrianglesAndAColourForEachReason) {
     expected[format::name_of(stuck.reason)] += stuck.triangles;
     total += stuck.triangles;
   }
-  ASSERT_EQ(expected.size(), 6U) << "enough groups for every reason";
+  ASSERT_EQ(expected.size(), 7U) << "enough groups for every reason";
   const TempFile file;
   testing::internal::CaptureStdout();
   EXPECT_EQ(cli::extract_stuck(asset, file.path, {.format = "json"}), 0);

@@ -311,7 +311,7 @@ TEST(Read, RefusesBrokenGroups) {
                          {"flags", 1, [](G& g) { g.flags = 8; }},
                          {"flags", 1, [](G& g) { g.flags = format::kGroupAggregate; }},
                          {"flags", 1, [](G& g) { g.flags = format::kGroupStuck; }},
-                         {"stuck_reason", 1, [](G& g) { g.stuck_reason = static_cast<format::StuckReason>(7); }},
+                         {"stuck_reason", 1, [](G& g) { g.stuck_reason = static_cast<format::StuckReason>(8); }},
                          {"stuck_reason", 1, [](G& g) { g.stuck_reason = format::StuckReason::kFlips; }},
                          {"first_cluster", 1, [](G& g) { g.first_cluster += 1; }},
                          {"first_cluster", 1, [](G& g) { g.cluster_count = 0; }},
