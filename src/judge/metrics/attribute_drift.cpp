@@ -9,6 +9,7 @@
 
 #include "base/parallel.h"
 #include "judge/metrics/area_samples.h"
+#include "judge/metrics/layers.h"
 #include "judge/metrics/seams.h"
 #include "judge/metrics/triangle_tree.h"
 
@@ -135,61 +136,166 @@ double slope_of(const Field& field, std::uint32_t triangle) {
   return std::sqrt(std::max(0.0, sum));
 }
 
+constexpr std::size_t kFields = 1 + scene::kMaxUvSets;  // normals, then UV sets
+using Fields = std::array<std::optional<Field>, kFields>;
+/// A value of each field; not finite where unknown.
+using Values = std::array<Vec3d, kFields>;
+
+/// A difference that weighs as much as one of any other field by its own: half a turn of a normal, a hundredth of what
+/// the surface has of the atlas. On a narrow rim a slide within the rounding of positions turns normals by degrees,
+/// where UVs move by thousandths of that.
+constexpr double kShareOfUvs = 0.01;
+
+double range_of(const Field& field) {
+  if (field.is_normal) return 180.0;
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Vec3d low(kInfinity), high(-kInfinity);
+  for (const Vec3f& value : field.values) {
+    if (!is_known(Vec3d(value))) continue;
+    low = glm::min(low, Vec3d(value));
+    high = glm::max(high, Vec3d(value));
+  }
+  const double range = glm::length(high - low);
+  return kShareOfUvs * (range > 0.0 && std::isfinite(range) ? range : 1.0);
+}
+
 struct Candidate {
-  Vec3d point{0.0}, value{0.0};
-  double slope = 0.0;
+  Vec3d point{0.0};
+  std::uint32_t triangle = 0;
+  Values values{};
 };
 
 /// Scratch of one thread's chunk.
 struct Search {
   std::vector<NearestPoint> found;
   std::vector<Candidate> sides;
+  Layers::Scratch layers;
 };
 
-/// The smallest difference over the candidates; nothing where the nearest side's value is unknown.
-std::optional<double> best_difference(const Field& to, const TriangleTree& tree, const Vec3d& p, const Vec3d& value,
-                                      const NearestPoint& nearest, const DriftOptions& options, Search& search) {
-  const auto candidate = [&](std::uint32_t triangle, const ClosestPoint& c) {
-    return Candidate{c.point, value_at(to, triangle, c.u, c.v), slope_of(to, triangle)};
-  };
-  const double distance = std::sqrt(nearest.distance2);
-  search.sides.clear();
-  search.sides.push_back(candidate(nearest.triangle, closest_on_triangle(p, *to.surface, nearest.triangle)));
-
-  search.found.clear();
-  const double tied = distance + options.tie;
-  tree.find_within(p, tied * tied, search.found);
-  for (const NearestPoint& f : search.found) {
-    search.sides.push_back(candidate(f.triangle, closest_on_triangle(p, *to.surface, f.triangle)));
+/// Finds what a point of one surface is held against on the other.
+class Pairing {
+ public:
+  Pairing(const Fields& from, const Surface& surface, const TriangleTree& tree, const Layers& layers, const Fields& to,
+          const DriftOptions& options)
+      : surface_(surface), tree_(tree), layers_(layers), to_(to), options_(options) {
+    for (std::size_t f = 0; f < kFields; ++f) {
+      if (!from[f] || !to[f]) continue;
+      compared_.push_back(f);
+      range_[f] = range_of(*to[f]);
+    }
   }
-  if (to.seam_tree && options.seam_reach > 0.0) {
+
+  /// The fields that both surfaces have.
+  [[nodiscard]] const std::vector<std::size_t>& compared() const { return compared_; }
+
+  /// The differences of a point's values from those of its counterpart; below 0 where one of the two is unknown.
+  std::array<double, kFields> differences(const Vec3d& p, const Values& values, const NearestPoint& nearest,
+                                          Search& search) const {
+    collect(p, nearest, search);
+    std::array<double, kFields> best{};
+    Cost least;
+    for (const Candidate& side : search.sides) {
+      std::array<double, kFields> found{};
+      const Cost cost = cost_of(values, side.values, found);
+      if (&side != &search.sides.front() && !(cost < least)) continue;
+      least = cost;
+      best = found;
+    }
+    return best;
+  }
+
+ private:
+  /// What is not known on the other surface alone comes first.
+  struct Cost {
+    std::size_t missing = 0;
+    double sum = 0.0;  ///< of the squared shares
+    bool operator<(const Cost& other) const {
+      return missing != other.missing ? missing < other.missing : sum < other.sum;
+    }
+  };
+
+  Cost cost_of(const Values& values, const Values& others, std::array<double, kFields>& found) const {
+    found.fill(-1.0);
+    Cost cost;
+    for (const std::size_t f : compared_) {
+      if (!is_known(values[f])) continue;
+      if (!is_known(others[f])) {
+        ++cost.missing;
+        continue;
+      }
+      found[f] = difference(*to_[f], values[f], others[f]);
+      const double share = found[f] / range_[f];
+      cost.sum += share * share;
+    }
+    return cost;
+  }
+
+  void collect(const Vec3d& p, const NearestPoint& nearest, Search& search) const {
+    const double distance = std::sqrt(nearest.distance2);
+    search.sides.clear();
+    search.sides.push_back(candidate(nearest.triangle, closest_on_triangle(p, surface_, nearest.triangle)));
+    find_ordered(tree_, p, distance + options_.tie, search);
+    for (const NearestPoint& f : search.found) {
+      search.sides.push_back(candidate(f.triangle, closest_on_triangle(p, surface_, f.triangle)));
+    }
+    if (options_.side_reach > 0.0) {
+      const double reach = distance + options_.side_reach;
+      find_ordered(tree_, p, reach, search);
+      layers_.keep_first_of_each(p, reach, search.found, search.layers);
+      for (const NearestPoint& f : search.found) {
+        search.sides.push_back(candidate(f.triangle, closest_on_triangle(p, surface_, f.triangle)));
+      }
+    }
+    if (!(options_.seam_reach > 0.0)) return;
+    for (const std::size_t f : compared_) collect_beyond_seams(p, distance, f, search);
+  }
+
+  void collect_beyond_seams(const Vec3d& p, double distance, std::size_t field, Search& search) const {
+    const Field& to = *to_[field];
+    if (!to.seam_tree) return;
+    find_ordered(*to.seam_tree, p, distance + options_.seam_reach, search);
+    for (const NearestPoint& f : search.found) {
+      const std::uint32_t triangle = to.seam_triangle[f.triangle];
+      const ClosestPoint c = closest_on_triangle(p, surface_, triangle);
+      if ((c.edges & to.seams[triangle]) == 0) continue;  // it goes on beyond: not the end of a side
+      const Candidate other = candidate(triangle, c);
+      if (!is_slide(other, field, search)) search.sides.push_back(other);
+    }
+  }
+
+  /// By distance, so that what is kept does not depend on the tree.
+  static void find_ordered(const TriangleTree& tree, const Vec3d& p, double reach, Search& search) {
     search.found.clear();
-    const double reach = distance + options.seam_reach;
-    to.seam_tree->find_within(p, reach * reach, search.found);
+    tree.find_within(p, reach * reach, search.found);
     std::sort(search.found.begin(), search.found.end(), [](const NearestPoint& x, const NearestPoint& y) {
       return x.distance2 != y.distance2 ? x.distance2 < y.distance2 : x.triangle < y.triangle;
     });
-    for (const NearestPoint& f : search.found) {
-      const std::uint32_t triangle = to.seam_triangle[f.triangle];
-      const ClosestPoint c = closest_on_triangle(p, *to.surface, triangle);
-      if ((c.edges & to.seams[triangle]) == 0) continue;  // it goes on beyond: not the end of a side
-      const Candidate other = candidate(triangle, c);
-      const bool is_slide = std::any_of(search.sides.begin(), search.sides.end(), [&](const Candidate& side) {
-        const double slide = glm::length(side.point - other.point);
-        const double jump = glm::length(side.value - other.value);
-        return slide > options.tie && jump <= 2.0 * std::max(side.slope, other.slope) * slide;
-      });
-      if (!is_slide) search.sides.push_back(other);
-    }
   }
-  std::optional<double> best;
-  for (const Candidate& side : search.sides) {
-    if (!is_known(side.value)) continue;
-    const double d = difference(to, value, side.value);
-    if (!best || d < *best) best = d;
+
+  [[nodiscard]] Candidate candidate(std::uint32_t triangle, const ClosestPoint& c) const {
+    Candidate out{c.point, triangle, {}};
+    for (const std::size_t f : compared_) out.values[f] = value_at(*to_[f], triangle, c.u, c.v);
+    return out;
   }
-  return best;
-}
+
+  /// Whether the surface leads from a candidate before to this one, by what it has there of a field.
+  [[nodiscard]] bool is_slide(const Candidate& other, std::size_t field, const Search& search) const {
+    return std::any_of(search.sides.begin(), search.sides.end(), [&](const Candidate& side) {
+      const double slide = glm::length(side.point - other.point);
+      const double jump = glm::length(side.values[field] - other.values[field]);
+      const double slope = std::max(slope_of(*to_[field], side.triangle), slope_of(*to_[field], other.triangle));
+      return slide > options_.tie && jump <= 2.0 * slope * slide;
+    });
+  }
+
+  const Surface& surface_;  ///< the other one
+  const TriangleTree& tree_;
+  const Layers& layers_;
+  const Fields& to_;
+  const DriftOptions& options_;
+  std::vector<std::size_t> compared_;
+  std::array<double, kFields> range_{};
+};
 
 OneWayDrift summarize(std::vector<double> samples, const std::vector<double>& at_vertices) {
   OneWayDrift out;
@@ -211,8 +317,8 @@ OneWayDrift summarize(std::vector<double> samples, const std::vector<double>& at
   return out;
 }
 
-std::array<std::optional<Field>, 1 + scene::kMaxUvSets> make_fields(const ShadedSurface& s) {
-  std::array<std::optional<Field>, 1 + scene::kMaxUvSets> fields;
+Fields make_fields(const ShadedSurface& s) {
+  Fields fields;
   if (!s.normals.empty()) fields[0].emplace(make_field(s.surface, unit_normals(s.normals), true));
   for (std::size_t n = 0; n < scene::kMaxUvSets; ++n) {
     if (!s.uvs[n].empty()) fields[1 + n].emplace(make_field(s.surface, lifted(s.uvs[n]), false));
@@ -223,10 +329,12 @@ std::array<std::optional<Field>, 1 + scene::kMaxUvSets> make_fields(const Shaded
 }  // namespace
 
 struct DriftSurface::Parts {
-  explicit Parts(ShadedSurface s) : shaded(std::move(s)), tree(shaded.surface), fields(make_fields(shaded)) {}
+  explicit Parts(ShadedSurface s)
+      : shaded(std::move(s)), tree(shaded.surface), layers(shaded), fields(make_fields(shaded)) {}
   ShadedSurface shaded;
   TriangleTree tree;
-  std::array<std::optional<Field>, 1 + scene::kMaxUvSets> fields;  ///< normals, then UV sets
+  Layers layers;
+  Fields fields;
 };
 
 DriftSurface::DriftSurface(ShadedSurface surface) : parts_(std::make_unique<Parts>(std::move(surface))) {}
@@ -248,6 +356,7 @@ BothDrifts measure_one_way(const DriftSurface::Parts& from, const DriftSurface::
   const auto sample_count = static_cast<std::size_t>(samples.count());
   const std::size_t count = sample_count + vertices.size();
   std::vector<double> normal(count, -1.0), uv(count, -1.0);  // below 0: unknown
+  const Pairing pairing(from.fields, to.shaded.surface, to.tree, to.layers, to.fields, options);
   parallel_for_each_index((count + kChunk - 1) / kChunk, 1, [&](std::size_t chunk) {
     Search search;
     std::uint32_t hint = 0xFFFFFFFFu;
@@ -258,14 +367,15 @@ BothDrifts measure_one_way(const DriftSurface::Parts& from, const DriftSurface::
       const Vec3d p = is_sample ? samples.position(at) : surface.positions[vertex];
       const NearestPoint nearest = to.tree.nearest(p, hint);
       hint = nearest.triangle;
-      for (std::size_t f = 0; f < from.fields.size(); ++f) {
-        if (!from.fields[f] || !to.fields[f]) continue;
+      Values values;
+      for (const std::size_t f : pairing.compared()) {
         const Field& field = *from.fields[f];
-        const Vec3d value = is_sample ? value_at(field, at.triangle, at.u, at.v) : Vec3d(field.values[vertex]);
-        if (!is_known(value)) continue;
-        const auto d = best_difference(*to.fields[f], to.tree, p, value, nearest, options, search);
-        double& slot = field.is_normal ? normal[i] : uv[i];
-        if (d) slot = std::max(slot, *d);
+        values[f] = is_sample ? value_at(field, at.triangle, at.u, at.v) : Vec3d(field.values[vertex]);
+      }
+      const auto differences = pairing.differences(p, values, nearest, search);
+      for (const std::size_t f : pairing.compared()) {
+        double& slot = from.fields[f]->is_normal ? normal[i] : uv[i];
+        slot = std::max(slot, differences[f]);
       }
     }
   });
