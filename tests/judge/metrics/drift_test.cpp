@@ -157,14 +157,14 @@ TEST(Drift, OfLevelZeroIsItsQuantization) {
 }
 
 /// A sheet with two sides that are nearer to each other than a grid's step: the unit square from above, and from below
-/// in another place of the atlas (u + 2), `thickness` beneath it.
-ShadedSurface make_plate(double thickness, std::uint32_t n = 20) {
-  ShadedSurface plate = make_square({.n = n});
+/// in another place of the atlas, `thickness` beneath it.
+ShadedSurface make_plate(double thickness, float u_below = 2.0F) {
+  ShadedSurface plate = make_square({});
   const ShadedSurface above = plate;
   for (std::size_t v = 0; v < above.surface.positions.size(); ++v) {
     plate.surface.positions.push_back(above.surface.positions[v] - Vec3d(0.0, 0.0, thickness));
     plate.normals.push_back(-above.normals[v]);
-    plate.uvs[0].push_back(above.uvs[0][v] + Vec2f(2.0F, 0.0F));
+    plate.uvs[0].push_back(above.uvs[0][v] + Vec2f(u_below, 0.0F));
   }
   const auto base = static_cast<std::uint32_t>(above.surface.positions.size());
   for (const auto& t : above.surface.triangles)
@@ -196,6 +196,15 @@ TEST(Drift, OfAThinPlateIsThatOfEachSideByItself) {
       EXPECT_LE(std::max(r.uv_a_to_b.max, r.uv_b_to_a.max), 2 * kStep) << thickness;
     }
   }
+}
+
+TEST(Drift, OfASmallCardIsWhatASlideByTheGridMakes) {
+  // Both sides show the same picture, whose UVs move by a twentieth within a step of the grid.
+  ShadedSurface card = make_plate(0.1 * kStep, 0.0F);
+  for (Vec3d& p : card.surface.positions) p *= 0.02;
+  const DriftReport r = drift(card, rounded(card, kStep), kFine);
+  EXPECT_LE(std::max(r.normal_a_to_b.max, r.normal_b_to_a.max), 1e-3) << "the other side is no better for its UVs";
+  EXPECT_LE(std::max(r.uv_a_to_b.max, r.uv_b_to_a.max), 2.0 * kStep / 0.02);
 }
 
 TEST(Drift, OfAThinPlateFindsWhatIsWrongOnOneSide) {
