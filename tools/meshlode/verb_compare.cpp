@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // compare: two assets side by side, and whether what changed is within limits.
+#include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <optional>
@@ -102,6 +103,12 @@ int run_compare(const Verb& verb, std::span<char* const> args) {
     text = out::comparison_json(comparison, broken);
   } else if (!options.output.quiet || budget->empty()) {  // with a budget it is the verdict that is asked for
     text = out::comparison_text(comparison);
+  }
+  const bool is_of_errors = std::ranges::any_of(broken, [](const out::BrokenCondition& one) {
+    return one.condition.find("error_min") != std::string::npos || one.condition.find("error_max") != std::string::npos;
+  });
+  if (const std::string tiers = out::tiers_text(comparison); is_of_errors && !tiers.empty()) {
+    std::fprintf(stderr, "warning: errors are %s\n", tiers.c_str());
   }
   if (!print_out(text)) return static_cast<int>(ErrorCode::kIo);
   return print_broken(options.after, broken);

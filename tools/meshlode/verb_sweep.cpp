@@ -22,6 +22,7 @@
 #include "camera_options.h"
 #include "doctor_words.h"
 #include "options.h"
+#include "study/page/numbers.h"
 #include "study/page/page.h"
 #include "study/page/read_sweep.h"
 #include "study/sweep/sweep.h"
@@ -30,9 +31,6 @@
 namespace meshlode::cli {
 
 namespace {
-
-/// Pictures are small: FLIP looks at every pixel's surroundings, and a point has two.
-constexpr std::uint32_t kWidth = 640, kHeight = 360;
 
 /// "90", "90s", "5m", "1.5h": seconds above 0.
 std::optional<double> parse_duration(std::string_view text) {
@@ -80,6 +78,7 @@ struct SweepWords {
   std::string scene, report, max_decoded = kDefaultMaxDecodedText;
   std::optional<std::string> budget, want, knobs;
   std::vector<std::string> allow_outside;
+  std::optional<std::uint64_t> samples;
   OutputOptions out;
 };
 
@@ -125,7 +124,8 @@ std::string command_of(const SweepWords& words, const study::SweepOptions& optio
   if (words.want) text += " --want " + study::shell_word(*words.want);
   if (words.knobs) text += " --knobs " + study::shell_word(*words.knobs);
   if (!options.scene_choice.empty()) text += " --scene " + study::shell_word(options.scene_choice);
-  text += " --rounds " + std::to_string(options.rounds) + " --samples " + std::to_string(options.samples);
+  text += " --rounds " + std::to_string(options.rounds);
+  if (words.samples) text += " --samples " + std::to_string(*words.samples);
   if (!options.max_decoded_text.empty()) text += " --max-decoded " + study::shell_word(options.max_decoded_text);
   for (const auto& folder : options.allow_outside) text += " --allow-outside " + study::shell_word(folder.string());
   if (options.jobs > 0) text += " --jobs " + std::to_string(options.jobs);
@@ -140,7 +140,10 @@ std::string as_operand(const std::string& path) {
 Status set_options(const SweepWords& words, study::SweepOptions& options) {
   if (words.report.empty()) return Error{ErrorCode::kUsage, "--output", "name the folder of the report"};
   if (options.rounds < 1 || options.rounds > 1000) return Error{ErrorCode::kUsage, "--rounds", "give 1 to 1000"};
-  if (Status samples = check_samples(options.samples); !samples) return samples;
+  if (words.samples) {
+    if (Status samples = check_samples(*words.samples); !samples) return samples;
+    options.samples = *words.samples;
+  }
   if (words.budget) {
     const auto seconds = parse_duration(*words.budget);
     if (!seconds) return Error{ErrorCode::kUsage, "--budget", "give a time such as 90s, 5m or 1h"};
@@ -164,7 +167,9 @@ Status set_options(const SweepWords& words, study::SweepOptions& options) {
   options.scene = words.scene;
   options.report = words.report;
   options.command = command_of(words, options);
-  options.frame_scene = [](const run::Asset& asset) { return frame_scene(asset, kWidth, kHeight); };
+  options.frame_scene = [](const run::Asset& asset, std::uint32_t width, std::uint32_t height) {
+    return frame_scene(asset, width, height);
+  };
   options.diagnose_scene = diagnose_scene;
   // Before any thread is started: libraries that are loaded later are not this program's.
   const auto program = batch::find_program_id();
@@ -193,7 +198,8 @@ std::string summary_text(const study::SweepOptions& options, const study::SweepR
       continue;
     }
     const study::PointResult& point = result.points[*one.answer.point];
-    append_format(text, "%s %.6g, ", one.wish.goal->key, point.figures.at(one.wish.goal->key).value);
+    text += std::string(one.wish.goal->key) + " " +
+            study::page::amount_text(point.figures.at(one.wish.goal->key).value, one.wish.goal->unit) + ", ";
     text += one.answer.why + "\n  " + printable(study::build_command(options, result, point.point), std::string::npos) +
             "\n";
   }
@@ -227,7 +233,8 @@ int run_sweep(const Verb& verb, std::span<char* const> args) {
   parser.add_value("--knobs", words.knobs,
                    "names of the knobs to turn, comma by comma (docs/sweep.md); not given: all");
   parser.add_value("--rounds", options.rounds, "how often each asset is built (3)");
-  parser.add_value("--samples", options.samples, "area-uniform samples of deviations, each way (100000)");
+  parser.add_value("--samples", words.samples,
+                   "area-uniform samples of deviations, each way (100000, or fewer for a short --budget)");
   parser.add_value("--scene", options.scene_choice, "glTF: the name or index of the scene to build, or all");
   add_allow_outside_option(parser, words.allow_outside);
   add_max_decoded_option(parser, words.max_decoded);

@@ -85,7 +85,13 @@ Change level_change(const char* name, const LevelInfo* before, const LevelInfo* 
   return {name, get(before), get(after), kind};
 }
 
-LevelChange compare_level(std::uint32_t level, const MeshInfo& a, const MeshInfo& b) {
+LevelChange compare_level(std::uint32_t level, const MeshInfo& a, const MeshInfo& b, const TierChange& tier) {
+  const auto error_change = [&](const char* name, const LevelInfo* before, const LevelInfo* after,
+                                auto LevelInfo::*member) {
+    Change change = level_change(name, before, after, member);
+    change.is_comparable = tier.is_comparable();
+    return change;
+  };
   const LevelInfo* before = level < a.levels.size() ? &a.levels[level] : nullptr;
   const LevelInfo* after = level < b.levels.size() ? &b.levels[level] : nullptr;
   return {
@@ -95,8 +101,8 @@ LevelChange compare_level(std::uint32_t level, const MeshInfo& a, const MeshInfo
        level_change("vertices", before, after, &LevelInfo::vertices),
        level_change("fill", before, after, &LevelInfo::fill), level_change("groups", before, after, &LevelInfo::groups),
        level_change("stuck_groups", before, after, &LevelInfo::stuck_groups),
-       level_change("error_min", before, after, &LevelInfo::error_min),
-       level_change("error_max", before, after, &LevelInfo::error_max),
+       error_change("error_min", before, after, &LevelInfo::error_min),
+       error_change("error_max", before, after, &LevelInfo::error_max),
        level_change("normal_deviation_max", before, after, &LevelInfo::normal_deviation_max),
        level_change("uv_deviation_max", before, after, &LevelInfo::uv_deviation_max)}};
 }
@@ -108,6 +114,7 @@ MeshChange compare_mesh(const Described& before, const Described& after, const E
   const MeshInfo& info_b = after.info.meshes[pair.new_index];
   MeshChange out;
   out.mesh = pair;
+  out.tier = {a.error_tier, b.error_tier};
   out.changes = {count("source_triangles", a.source_triangles, b.source_triangles),
                  count("source_vertices", a.source_vertices, b.source_vertices),
                  count("stored_triangles", info_a.triangles, info_b.triangles),
@@ -123,7 +130,7 @@ MeshChange compare_mesh(const Described& before, const Described& after, const E
                  count("levels", info_a.levels.size(), info_b.levels.size())};
   const std::size_t levels = std::max(info_a.levels.size(), info_b.levels.size());
   for (std::size_t level = 0; level < levels; ++level) {
-    out.levels.push_back(compare_level(static_cast<std::uint32_t>(level), info_a, info_b));
+    out.levels.push_back(compare_level(static_cast<std::uint32_t>(level), info_a, info_b, out.tier));
   }
   return out;
 }
@@ -255,14 +262,14 @@ bool is_infinite(double number) {
 }  // namespace
 
 std::optional<double> Change::difference() const {
-  if (!before || !after) return std::nullopt;
+  if (!before || !after || !is_comparable) return std::nullopt;
   if (*before == *after) return 0.0;
   if (is_infinite(*before) || is_infinite(*after)) return std::nullopt;
   return *after - *before;
 }
 
 std::optional<double> Change::ratio() const {
-  if (!before || !after) return std::nullopt;
+  if (!before || !after || !is_comparable) return std::nullopt;
   if (*before == *after) return 1.0;
   if (*before == 0.0 || is_infinite(*before) || is_infinite(*after)) return std::nullopt;
   return *after / *before;

@@ -22,11 +22,13 @@ struct Change {
   const char* name = "";  ///< the JSON's key
   std::optional<double> before = std::nullopt, after = std::nullopt;
   Kind kind = Kind::kCount;
+  bool is_comparable = true;  ///< both mean the same
 
   [[nodiscard]] bool is_equal() const { return before == after; }
-  /// new - old; nothing where a side is missing, or one alone is infinite.
+  /// new - old; nothing where a side is missing, or one alone is infinite, or they are not comparable.
   [[nodiscard]] std::optional<double> difference() const;
-  /// new / old, 1 where they are equal; nothing where a side is missing, or the old one is 0 or infinite.
+  /// new / old, 1 where they are equal; nothing where a side is missing, or the old one is 0 or infinite, or they are
+  /// not comparable.
   [[nodiscard]] std::optional<double> ratio() const;
 };
 
@@ -47,8 +49,16 @@ struct EntryPair {
   std::uint32_t old_index = 0, new_index = 0;
 };
 
+/// Errors of different tiers are other things: a proven bound, the largest of samples, a guess by quadrics. Which is
+/// larger says nothing about which asset is more accurate.
+struct TierChange {
+  format::ErrorTier before{}, after{};
+  [[nodiscard]] bool is_comparable() const { return before == after; }
+};
+
 struct MeshChange {
   EntryPair mesh;
+  TierChange tier;
   std::vector<Change> changes;
   std::vector<LevelChange> levels;
 };
@@ -99,5 +109,7 @@ struct AssetComparison {
 [[nodiscard]] std::string comparison_json(const AssetComparison& comparison,
                                           const std::vector<BrokenCondition>& broken = {});
 [[nodiscard]] std::string comparison_text(const AssetComparison& comparison);
+/// "not comparable in 2 of 3 meshes: …"; empty where all are.
+[[nodiscard]] std::string tiers_text(const AssetComparison& comparison);
 
 }  // namespace meshlode::out

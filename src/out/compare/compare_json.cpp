@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/json_writer.h"
+#include "format/names.h"
 #include "out/compare/compare.h"
 
 namespace meshlode::out {
@@ -93,6 +94,12 @@ void write_meshes(JsonWriter& w, const AssetComparison& comparison) {
   for (const MeshChange& mesh : comparison.meshes) {
     w.begin_object();
     write_pair(w, mesh.mesh);
+    w.key("error_tier");
+    w.begin_object();
+    w.field("old", format::name_of(mesh.tier.before));
+    w.field("new", format::name_of(mesh.tier.after));
+    w.field("comparable", mesh.tier.is_comparable());
+    w.end_object();
     write_changes(w, mesh.changes);
     w.key("by_level");
     w.begin_array();

@@ -4,6 +4,7 @@
 
 #include "base/append_format.h"
 #include "base/printable.h"
+#include "format/names.h"
 #include "out/compare/compare.h"
 
 namespace meshlode::out {
@@ -140,6 +141,21 @@ void add_text_row(std::string& out, const char* name, const std::string& before,
 
 }  // namespace
 
+std::string tiers_text(const AssetComparison& comparison) {
+  std::size_t count = 0;
+  const MeshChange* first = nullptr;
+  for (const MeshChange& mesh : comparison.meshes) {
+    if (mesh.tier.is_comparable()) continue;
+    if (first == nullptr) first = &mesh;
+    ++count;
+  }
+  if (first == nullptr) return {};
+  std::string text;
+  append_format(text, "not comparable in %zu of %zu meshes: their error tiers differ (%s -> %s)", count,
+                comparison.meshes.size(), format::name_of(first->tier.before), format::name_of(first->tier.after));
+  return text;
+}
+
 std::string comparison_text(const AssetComparison& comparison) {
   const Side& before = comparison.before;
   const Side& after = comparison.after;
@@ -150,6 +166,10 @@ std::string comparison_text(const AssetComparison& comparison) {
   add_text_row(out, "source", before.source_file + " " + before.source_hash,
                after.source_file + " " + after.source_hash, comparison.is_source_equal);
   if (before.generator != after.generator) add_text_row(out, "program", before.generator, after.generator, false);
+
+  if (const std::string tiers = tiers_text(comparison); !tiers.empty()) {
+    append_format(out, "%-10s%s\n", "errors", tiers.c_str());
+  }
 
   std::string rows =
       rows_of("", comparison.sizes) + rows_of("", comparison.totals) + rows_of("dropped ", comparison.dropped);

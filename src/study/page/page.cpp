@@ -59,6 +59,15 @@ std::string joined(const std::vector<std::string>& texts) {
   return out;
 }
 
+std::string labels_of(const ReportData& data, const std::vector<std::string>& ids, const Point* but) {
+  std::vector<std::string> labels;
+  for (const std::string& id : ids) {
+    const Point* const other = data.find_point(id);
+    if (other != nullptr && other != but) labels.push_back(other->label);
+  }
+  return joined(labels);
+}
+
 void write_recommendation(Markup& html, const ReportData& data, const Recommendation& one) {
   html.open("li").open("p").text("For ").element("code", one.want).text(": ");
   const Point* const point = one.point ? data.find_point(*one.point) : nullptr;
@@ -67,16 +76,14 @@ void write_recommendation(Markup& html, const ReportData& data, const Recommenda
     html.open("strong").name(point->label).close();
     if (one.value && goal != nullptr) html.text(", " + goal->title + " " + amount_text(*one.value, goal->unit));
   } else {
-    html.element("strong", "no measured point keeps this");
+    html.element("strong", one.not_compared.empty() ? "no measured point keeps this" : "nothing could be compared");
   }
   html.text(". ").text(one.why).close();
   if (one.command) write_command(html, "Build it", *one.command);
-  std::vector<std::string> labels;
-  for (const std::string& id : one.as_good) {
-    const Point* const other = data.find_point(id);
-    if (other != nullptr && other != point) labels.push_back(other->label);
-  }
-  if (!labels.empty()) write_paragraph(html, "Within the spread of it, so as good: " + joined(labels) + ".");
+  const std::string as_good = labels_of(data, one.as_good, point);
+  const std::string not_compared = labels_of(data, one.not_compared, point);
+  if (!as_good.empty()) write_paragraph(html, "Within the spread of it, so as good: " + as_good + ".");
+  if (!not_compared.empty()) write_paragraph(html, "Not compared, one round: " + not_compared + ".");
   html.close().line();
 }
 
@@ -160,7 +167,8 @@ Section write_knobs(const ReportData& data) {
   Section section{"knobs", "What each setting costs", {}};
   write_paragraph(section.body,
                   "One setting at a time, all others as in the baseline. ≈ stands where the spreads of a timed figure "
-                  "overlap, so that no difference was measured.");
+                  "overlap, so that no difference was measured. Of processor time that was measured once a spread is "
+                  "assumed; any other time that was measured once is not compared.");
   for (const Table& table : tabulate_knobs(data)) write_table(section.body, table);
   return section;
 }

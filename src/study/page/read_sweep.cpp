@@ -100,6 +100,8 @@ Figure read_figure(Reader& in, const Json& json) {
   figure.low = in.maybe_number(json, "min").value_or(figure.value);
   figure.high = in.maybe_number(json, "max").value_or(figure.value);
   figure.count = in.maybe_count(json, "n").value_or(1);
+  const auto low = in.maybe_number(json, "range_low"), high = in.maybe_number(json, "range_high");
+  if (low && high) figure.range = Figure::Range{*low, *high};
   return figure;
 }
 
@@ -220,7 +222,8 @@ void read_answers(Reader& in, const Json& json, ReportData& data) {
   for (const Json& one : in.list(json, "recommendations")) {
     data.recommendations.push_back({in.text(one, "want"), in.text(one, "goal"), in.text(one, "why"),
                                     in.maybe_text(one, "point"), in.maybe_text(one, "command"),
-                                    in.maybe_number(one, "value"), in.texts(one, "as_good")});
+                                    in.maybe_number(one, "value"), in.texts(one, "as_good"),
+                                    in.texts(one, "not_compared")});
   }
 }
 

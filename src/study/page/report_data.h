@@ -19,6 +19,10 @@ struct Figure {
   double value = 0.0;
   double low = 0.0, high = 0.0;  ///< of the `count` measurements
   std::uint64_t count = 1;
+  struct Range {
+    double low = 0.0, high = 0.0;
+  };
+  std::optional<Range> range = std::nullopt;  ///< what a timed one is compared by; nothing: it is not compared
 };
 
 /// One thing that is measured of every point.
@@ -100,7 +104,7 @@ struct Recommendation {
   std::string want, goal, why;
   std::optional<std::string> point, command;
   std::optional<double> value;
-  std::vector<std::string> as_good;  ///< ids
+  std::vector<std::string> as_good, not_compared = {};  ///< ids
 };
 
 /// What doctor finds in the scene. A cost beyond what a number can say is infinite.

@@ -28,8 +28,9 @@ Cell change_cell(const Figure* base, const Figure* figure, const Metric& metric)
   if (figure == nullptr) return {"-", {}, {}};
   const std::string amount = amount_text(figure->value, metric.unit);
   if (base == nullptr || base == figure) return {amount, figure->value, {}};
-  const bool has_spread = figure->count >= 2 && base->count >= 2;
-  const bool is_within = metric.is_timed && (!has_spread || (figure->low <= base->high && base->low <= figure->high));
+  if (metric.is_timed && !(figure->range && base->range)) return {amount, figure->value, "not compared"};
+  const bool is_within =
+      metric.is_timed && figure->range->low <= base->range->high && base->range->low <= figure->range->high;
   return {amount, figure->value, is_within ? "≈" : change_text(base->value, figure->value)};
 }
 

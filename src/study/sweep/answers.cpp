@@ -21,11 +21,17 @@ const Figure* find_figure(const Candidate& candidate, const Metric& metric) {
   return found == candidate.figures->end() ? nullptr : &found->second;
 }
 
+/// Null where the figure is not there or says nothing beside others.
+const Figure* find_comparable(const Candidate& candidate, const Metric& metric) {
+  const Figure* figure = find_figure(candidate, metric);
+  return figure != nullptr && range_of(metric, *figure) ? figure : nullptr;
+}
+
 /// No worse in any metric and clearly better in one; false where one of the two lacks a figure.
 bool dominates(const Candidate& a, const Candidate& b, std::span<const Metric* const> metrics) {
   bool is_better = false;
   for (const Metric* metric : metrics) {
-    const Figure *of_a = find_figure(a, *metric), *of_b = find_figure(b, *metric);
+    const Figure *of_a = find_comparable(a, *metric), *of_b = find_comparable(b, *metric);
     if (of_a == nullptr || of_b == nullptr || is_clearly_better(*metric, *of_b, *of_a)) return false;
     is_better = is_better || is_clearly_better(*metric, *of_a, *of_b);
   }
@@ -95,6 +101,22 @@ bool keeps_all(const Wish& wish, const Candidate& candidate) {
   });
 }
 
+/// Why the chosen one, of those that could be compared.
+std::string reason_of(const Answer& answer, std::size_t points, std::size_t kept, bool has_assumed) {
+  std::string why = std::to_string(kept) + " of " + std::to_string(points) + " points keep all bounds; ";
+  if (answer.as_good.empty()) {
+    why += answer.not_compared.empty() ? "this one is clearly the best of them"
+                                       : "this one is clearly the best of those compared";
+  } else {
+    why += "the spread does not tell this one from " + std::to_string(answer.as_good.size()) + " more, ";
+    why += answer.as_good.size() == 1 ? "which changes no fewer settings" : "none of which changes fewer settings";
+  }
+  if (has_assumed) why += "; a spread of 25% either way is assumed of what was measured once";
+  if (!answer.not_compared.empty())
+    why += "; " + std::to_string(answer.not_compared.size()) + " not compared: one round";
+  return why;
+}
+
 }  // namespace
 
 std::vector<std::vector<std::size_t>> find_dominators(std::span<const Candidate> candidates) {
@@ -113,7 +135,7 @@ std::vector<std::size_t> find_frontier(std::span<const Candidate> candidates, co
   const std::array<const Metric*, 2> metrics{&x, &y};
   std::vector<std::size_t> out;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    if (find_figure(candidates[i], x) == nullptr || find_figure(candidates[i], y) == nullptr) continue;
+    if (find_comparable(candidates[i], x) == nullptr || find_comparable(candidates[i], y) == nullptr) continue;
     const bool is_beaten = std::any_of(candidates.begin(), candidates.end(), [&](const Candidate& other) {
       return dominates(other, candidates[i], metrics);
     });
@@ -151,38 +173,39 @@ Result<Wish> parse_wish(std::string_view text) {
 
 Answer answer_wish(std::span<const Candidate> candidates, const Wish& wish) {
   Answer answer;
-  std::vector<std::size_t> kept;
+  std::vector<std::size_t> compared;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    if (keeps_all(wish, candidates[i])) kept.push_back(i);
+    if (!keeps_all(wish, candidates[i])) continue;
+    (find_comparable(candidates[i], *wish.goal) ? compared : answer.not_compared).push_back(i);
   }
-  if (kept.empty()) {
-    answer.why = "no measured point keeps all bounds";
+  const std::size_t kept = compared.size() + answer.not_compared.size();
+  if (compared.empty()) {
+    answer.why = kept == 0 ? "no measured point keeps all bounds"
+                           : "not compared: one round says nothing about the spread of " + std::string(wish.goal->key) +
+                                 "; measure with --rounds 2 or more";
     return answer;
   }
   const auto goal_of = [&](std::size_t i) -> const Figure& { return *find_figure(candidates[i], *wish.goal); };
-  const std::size_t best = *std::min_element(kept.begin(), kept.end(), [&](std::size_t a, std::size_t b) {
+  const std::size_t best = *std::min_element(compared.begin(), compared.end(), [&](std::size_t a, std::size_t b) {
     return wish.goal->is_less_better ? goal_of(a).value < goal_of(b).value : goal_of(a).value > goal_of(b).value;
   });
   std::size_t chosen = best;
-  for (const std::size_t i : kept) {
+  for (const std::size_t i : compared) {
     if (is_clearly_better(*wish.goal, goal_of(best), goal_of(i))) continue;
     answer.as_good.push_back(i);
     if (std::tuple(candidates[i].changes, i) < std::tuple(candidates[chosen].changes, chosen)) chosen = i;
   }
   // The chosen asset, drawn in another way, is no other answer to what an asset is or costs.
   const bool is_of_pictures = std::string_view(wish.goal->group) == "picture";
-  std::erase_if(answer.as_good, [&](std::size_t i) {
+  const auto is_chosen = [&](std::size_t i) {
     return i == chosen || (!is_of_pictures && candidates[i].asset == candidates[chosen].asset);
-  });
+  };
+  std::erase_if(answer.as_good, is_chosen);
+  std::erase_if(answer.not_compared, is_chosen);
   answer.point = chosen;
-  answer.why = std::to_string(kept.size()) + " of " + std::to_string(candidates.size()) + " points keep all bounds; ";
-  if (answer.as_good.empty()) {
-    answer.why += "this one is clearly the best of them";
-  } else {
-    answer.why += "the spread does not tell this one from " + std::to_string(answer.as_good.size()) + " more, ";
-    answer.why +=
-        answer.as_good.size() == 1 ? "which changes no fewer settings" : "none of which changes fewer settings";
-  }
+  const bool has_assumed =
+      std::any_of(compared.begin(), compared.end(), [&](std::size_t i) { return is_assumed(*wish.goal, goal_of(i)); });
+  answer.why = reason_of(answer, candidates.size(), kept, has_assumed);
   return answer;
 }
 

@@ -65,9 +65,10 @@ void recommend(const std::vector<Wish>& wishes, std::span<const Candidate> candi
                const std::vector<std::size_t>& places, bool needs_point, SweepResult& result) {
   for (const Wish& wish : wishes) {
     Answer answer = answer_wish(candidates, wish);
-    if (needs_point && !answer.point) continue;
+    if (needs_point && !answer.point && answer.not_compared.empty()) continue;
     if (answer.point) answer.point = places[*answer.point];
     place(answer.as_good, places);
+    place(answer.not_compared, places);
     result.recommendations.push_back({wish, std::move(answer)});
   }
 }

@@ -66,9 +66,10 @@ class MeshMeasure {
     raise(figures, "deviation", measured.max() / diagonal_);
     raise(figures, "deviation_rms", measured.rms() / diagonal_);
     const judge::DriftSurface surface(judge::shaded_surface_of_clusters(asset_, decoded_, mesh_, cut.clusters));
-    // A seam may have moved sideways by as much as the surface has moved at all.
-    const judge::DriftReport drift = judge::measure_drift(
-        shaded_, surface, {.samples = samples_, .tie = 1e-7 * diagonal_, .seam_reach = measured.max()});
+    // A layer beside another, and a chart beside its neighbour, may have moved by as much as the surface has at all.
+    const double moved = std::max(measured.max(), double{asset_.meshes()[mesh_.value].level0_deviation});
+    const judge::DriftReport drift =
+        judge::measure_drift(shaded_, surface, {.samples = samples_, .tie = 1e-7 * diagonal_, .side_reach = moved});
     if (drift.has_normals()) {
       raise(row.normal, std::max(drift.normal_a_to_b.rms, drift.normal_b_to_a.rms));
       raise(figures, "normal_rms", std::max(drift.normal_a_to_b.rms, drift.normal_b_to_a.rms));
@@ -135,8 +136,8 @@ struct SourceMeasure::Mesh {
   judge::DriftSurface shaded;
 };
 
-SourceMeasure::SourceMeasure(const scene::Scene& source, std::uint64_t samples)
-    : source_(source), samples_(samples), meshes_(source.meshes.size()) {}
+SourceMeasure::SourceMeasure(const scene::Scene& source, std::uint64_t samples, Searches searches)
+    : source_(source), samples_(samples), searches_(searches), meshes_(source.meshes.size()) {}
 SourceMeasure::~SourceMeasure() = default;
 SourceMeasure::SourceMeasure(SourceMeasure&&) noexcept = default;
 
@@ -174,8 +175,10 @@ Status SourceMeasure::measure(const run::Asset& asset, Measurement& out) {
   if (!decoded) return decoded.error();
   describe_sizes(asset, out);
   for (const double threshold : kThresholds) out.cuts.push_back({threshold, 0, 0.0, 0.0, 0.0, {}, {}});
-  for (const double x : kEqualMax) out.equal.push_back({"max", x, 0, std::nullopt});
-  out.equal.push_back({"rms", kAtRms, 0, std::nullopt});
+  for (const double x : kEqualMax) {
+    if (searches_ == Searches::kAll || x == kAtMax) out.equal.push_back({"max", x, 0, std::nullopt});
+  }
+  if (searches_ == Searches::kAll) out.equal.push_back({"rms", kAtRms, 0, std::nullopt});
   bool is_any_measured = false;
   for (std::uint32_t m = 0; m < asset.meshes().size(); ++m) {
     if (!meshes_[m]) {

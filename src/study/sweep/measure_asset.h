@@ -15,11 +15,14 @@
 
 namespace meshlode::study {
 
+/// At how many true deviations the fewest triangles are looked for: most of the time of a measurement.
+enum class Searches : std::uint8_t { kAll, kFew };
+
 /// A scene's meshes made ready to be measured from, each when it is first asked for.
 class SourceMeasure {
  public:
   /// `samples`: area-uniform ones each way, all vertices on top. \pre the scene outlives this
-  SourceMeasure(const scene::Scene& source, std::uint64_t samples);
+  SourceMeasure(const scene::Scene& source, std::uint64_t samples, Searches searches = Searches::kAll);
   ~SourceMeasure();
   SourceMeasure(SourceMeasure&&) noexcept;
 
@@ -31,6 +34,7 @@ class SourceMeasure {
   struct Mesh;
   const scene::Scene& source_;
   std::uint64_t samples_;
+  Searches searches_;
   std::vector<std::unique_ptr<Mesh>> meshes_;
 };
 

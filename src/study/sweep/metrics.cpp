@@ -99,9 +99,21 @@ Figure figure_of(std::vector<double> values) {
   return {median, values.front(), values.back(), static_cast<std::uint32_t>(values.size())};
 }
 
+bool is_assumed(const Metric& metric, const Figure& figure) {
+  return metric.is_timed && figure.count < 2 && std::string_view(metric.key) == "build_user_seconds";
+}
+
+std::optional<FigureRange> range_of(const Metric& metric, const Figure& figure) {
+  if (!metric.is_timed || figure.count >= 2) return FigureRange{figure.min, figure.max};
+  if (!is_assumed(metric, figure)) return std::nullopt;  // waiting is in it, and nobody knows how much
+  return FigureRange{std::max(0.0, figure.value * (1.0 - kAssumedSpread) - kAssumedSeconds),
+                     figure.value * (1.0 + kAssumedSpread) + kAssumedSeconds};
+}
+
 bool is_clearly_better(const Metric& metric, const Figure& a, const Figure& b) {
-  if (metric.is_timed && (a.count < 2 || b.count < 2)) return false;  // nobody knows what noise is in it
-  return metric.is_less_better ? a.max < b.min : a.min > b.max;
+  const auto of_a = range_of(metric, a), of_b = range_of(metric, b);
+  if (!of_a || !of_b) return false;
+  return metric.is_less_better ? of_a->high < of_b->low : of_a->low > of_b->high;
 }
 
 }  // namespace meshlode::study

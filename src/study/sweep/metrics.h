@@ -45,7 +45,19 @@ struct Figure {
 /// By the metric's key.
 using Figures = std::map<std::string, Figure>;
 
-/// Whether one figure is better than another beyond doubt: every measurement of it than every one of the other.
+/// What a figure may have been. One measurement of processor time stands for a spread that is assumed
+/// (kAssumedSpread); one of any other time says nothing about its spread.
+struct FigureRange {
+  double low = 0.0, high = 0.0;
+};
+/// A single build's processor time is taken to be off by a quarter either way, and by 20 ms.
+constexpr double kAssumedSpread = 0.25, kAssumedSeconds = 0.02;
+/// Nothing where the figure cannot be compared: a time that was measured once.
+[[nodiscard]] std::optional<FigureRange> range_of(const Metric& metric, const Figure& figure);
+/// Whether the range is an assumed one.
+[[nodiscard]] bool is_assumed(const Metric& metric, const Figure& figure);
+
+/// Whether one figure is better than another beyond doubt: their ranges do not touch.
 [[nodiscard]] bool is_clearly_better(const Metric& metric, const Figure& a, const Figure& b);
 
 }  // namespace meshlode::study

@@ -15,8 +15,9 @@ namespace meshlode::study {
 
 namespace {
 
-/// A knob's first other value says whether it matters at all; further ones say how it bends.
-constexpr double kFirst = 1.0, kSecond = 0.8, kThird = 0.5, kCornerWorth = 0.6, kOfStudy = 0.3;
+/// A knob's first other value says whether it matters at all; further ones say how it bends. Any value of a knob of
+/// accuracy is worth more than all others.
+constexpr double kFirst = 1.0, kSecond = 0.8, kThird = 0.5, kCornerWorth = 0.6, kOfStudy = 0.3, kOfAccuracy = 1.0;
 
 /// The nearest of 1, 2 and 5 times a power of ten, as a word: what a person would write.
 std::string round_word(double value) {
@@ -33,7 +34,9 @@ std::string round_word(double value) {
 Knob position_knob(double diagonal) {
   Knob knob{"position_error", "position budget", "--position-error", "mesh units", KnobKind::kBuild, 0, {}};
   knob.values.push_back({"auto", 1.0, 0.0});
-  constexpr std::pair<double, double> kShares[] = {{1e-5, kSecond}, {1e-4, kFirst}, {1e-3, kSecond}};
+  // Six with the usual one: a curve.
+  constexpr std::pair<double, double> kShares[] = {
+      {1e-5, kSecond}, {3e-5, kSecond}, {1e-4, kFirst}, {3e-4, kSecond}, {1e-3, kSecond}};
   for (const auto& [share, worth] : kShares) knob.values.push_back({round_word(share * diagonal), 1.0, worth});
   return knob;
 }
@@ -94,7 +97,8 @@ std::string key_of(std::span<const Knob> knobs, const Point& point, KeyOf what) 
 std::vector<std::string> arguments_of(std::span<const Knob> knobs, const Point& point, bool of_draw) {
   std::vector<std::string> arguments;
   for (std::size_t k = 0; k < knobs.size(); ++k) {
-    if (point.values[k] == knobs[k].usual || (knobs[k].kind == KnobKind::kDraw) != of_draw) continue;
+    const bool is_meant = (knobs[k].kind == KnobKind::kDraw) == of_draw || (of_draw && knobs[k].is_drawn_too);
+    if (point.values[k] == knobs[k].usual || !is_meant) continue;
     arguments.push_back(knobs[k].option);
     arguments.push_back(knobs[k].values[point.values[k]].word);
   }
@@ -148,23 +152,7 @@ void add_study_knobs(std::vector<Knob>& knobs) {
                     {"needles=off", 1.0, kOfStudy}}});
 }
 
-std::vector<Knob> list_knobs(const SceneFacts& facts) {
-  std::vector<Knob> knobs;
-  knobs.push_back({"preset",
-                   "preset",
-                   "--preset",
-                   "",
-                   KnobKind::kBuild,
-                   1,
-                   {{"fast", 0.6, kFirst}, {"default", 1.0, 0.0}, {"best", 1.8, kFirst}}});
-  knobs.push_back({"error_tier",
-                   "error tier",
-                   "--error-tier",
-                   "",
-                   KnobKind::kBuild,
-                   0,
-                   {{"auto", 1.0, 0.0}, {"qem", 0.6, kFirst}, {"measured", 1.0, 0.0}, {"certified", 4.0, kSecond}}});
-  if (facts.largest_diagonal > 0.0) knobs.push_back(position_knob(facts.largest_diagonal));
+void add_attribute_knobs(const SceneFacts& facts, std::vector<Knob>& knobs) {
   if (facts.has_normals) {
     knobs.push_back({"normal_error",
                      "normal budget",
@@ -183,6 +171,33 @@ std::vector<Knob> list_knobs(const SceneFacts& facts) {
                      0,
                      {{"auto", 1.0, 0.0}, {"0.25px", 1.0, kSecond}, {"1px", 1.0, kFirst}}});
   }
+  if (!facts.has_uvs && !facts.has_normals) return;
+  Knob promise{"promise", "promise", "--promise", "", KnobKind::kBuild, 0, {{"position", 1.0, 0.0}}};
+  if (facts.has_uvs) promise.values.push_back({"texels", 4.0, kFirst});
+  if (facts.has_normals) promise.values.push_back({"appearance", 5.0, facts.has_uvs ? kThird : kFirst});
+  promise.is_drawn_too = true;
+  knobs.push_back(std::move(promise));
+}
+
+std::vector<Knob> list_knobs(const SceneFacts& facts) {
+  std::vector<Knob> knobs;
+  knobs.push_back({"preset",
+                   "preset",
+                   "--preset",
+                   "",
+                   KnobKind::kBuild,
+                   1,
+                   {{"fast", 0.6, kFirst}, {"default", 1.0, 0.0}, {"best", 1.8, kSecond}}});
+  knobs.push_back({"error_tier",
+                   "error tier",
+                   "--error-tier",
+                   "",
+                   KnobKind::kBuild,
+                   0,
+                   {{"auto", 1.0, 0.0}, {"qem", 0.6, kFirst}, {"measured", 1.0, 0.0}, {"certified", 4.0, kSecond}}});
+  if (facts.largest_diagonal > 0.0) knobs.push_back(position_knob(facts.largest_diagonal));
+  add_attribute_knobs(facts, knobs);
+  for (Knob& knob : knobs) knob.is_of_accuracy = true;
   add_codec_knobs(knobs);
   knobs.push_back({"cluster_triangles",
                    "cluster size",
@@ -228,7 +243,7 @@ std::vector<std::string> all_knob_names() {
 std::vector<Point> make_points(std::span<const Knob> knobs) {
   Point baseline;
   for (const Knob& knob : knobs) baseline.values.push_back(knob.usual);
-  baseline.worth = 2.0 * kFirst;
+  baseline.worth = 2.0 * (kFirst + kOfAccuracy);
   std::vector<Point> points{baseline};
   for (std::size_t k = 0; k < knobs.size(); ++k) {
     for (std::size_t v = 0; v < knobs[k].values.size(); ++v) {
@@ -236,7 +251,7 @@ std::vector<Point> make_points(std::span<const Knob> knobs) {
       Point point = baseline;
       point.kind = PointKind::kOneFactor;
       point.values[k] = v;
-      point.worth = knobs[k].values[v].worth;
+      point.worth = knobs[k].values[v].worth + (knobs[k].is_of_accuracy ? kOfAccuracy : 0.0);
       points.push_back(std::move(point));
     }
   }
@@ -305,15 +320,18 @@ double build_factor(std::span<const Knob> knobs, const Point& point) {
   return factor;
 }
 
-double number_of(std::span<const Knob> knobs, const Point& point, const std::string& knob, double otherwise) {
+std::string word_of(std::span<const Knob> knobs, const Point& point, const std::string& knob) {
   for (std::size_t k = 0; k < knobs.size(); ++k) {
-    if (knobs[k].name != knob) continue;
-    const std::string& word = knobs[k].values[point.values[k]].word;
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    return error == std::errc{} && end == word.data() + word.size() ? value : otherwise;
+    if (knobs[k].name == knob) return knobs[k].values[point.values[k]].word;
   }
-  return otherwise;
+  return {};
+}
+
+double number_of(std::span<const Knob> knobs, const Point& point, const std::string& knob, double otherwise) {
+  const std::string word = word_of(knobs, point, knob);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  return error == std::errc{} && end == word.data() + word.size() ? value : otherwise;
 }
 
 }  // namespace meshlode::study

@@ -34,6 +34,8 @@ struct Knob {
   std::size_t usual = 0;          ///< of `values`
   std::vector<KnobValue> values;  ///< in their own order: from cheap to dear, or from fine to coarse
   bool is_of_pages = false;       ///< how pages lie on disk alone: what an asset decodes to is the same
+  bool is_of_accuracy = false;    ///< what a sweep is for: a short budget turns these first
+  bool is_drawn_too = false;      ///< `render` takes the option as well
 };
 
 /// What the knobs' values are chosen by.
@@ -80,6 +82,8 @@ struct Point {
 [[nodiscard]] std::vector<std::string> draw_arguments(std::span<const Knob> knobs, const Point& point);
 /// Expected build time over the baseline's.
 [[nodiscard]] double build_factor(std::span<const Knob> knobs, const Point& point);
+/// A knob's word; empty where there is no such knob.
+[[nodiscard]] std::string word_of(std::span<const Knob> knobs, const Point& point, const std::string& knob);
 /// The number that a knob's word is; `otherwise` where there is no such knob or the word is no number.
 [[nodiscard]] double number_of(std::span<const Knob> knobs, const Point& point, const std::string& knob,
                                double otherwise);

@@ -76,7 +76,7 @@ Status State::add(Measurement measurement) {
   const std::string rest = fingerprint_ + " " + measurement_line(measurement);
   // What a killed sweep left of a line is ended first.
   const std::string line = (ends_in_line_ ? "" : "\n") + hash_of(rest) + " " + rest + "\n";
-  const int out = ::open(file_.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0666);
+  const int out = ::open(file_.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
   if (out < 0) return failed(file_);
   const bool is_whole = ::write(out, line.data(), line.size()) == static_cast<ssize_t>(line.size());
   ends_in_line_ = is_whole;

@@ -29,7 +29,7 @@ class State {
   [[nodiscard]] const Measurement* find(MeasurementKind kind, const std::string& key, std::uint32_t round = 0) const;
   /// A measurement of an asset with that content; null where there is none.
   [[nodiscard]] const Measurement* find_content(const std::string& content_hash) const;
-  /// Keeps it, on disk first. Errors: kIo.
+  /// Keeps it, on disk first; a link is not followed. Errors: kIo.
   [[nodiscard]] Status add(Measurement measurement);
   /// In memory alone.
   void keep_for_this_run(Measurement measurement);

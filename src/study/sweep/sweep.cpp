@@ -5,20 +5,21 @@
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
-#include <fstream>
-#include <map>
 #include <system_error>
 #include <utility>
 
 #include "base/file.h"
-#include "base/hash.h"
+#include "format/names.h"
 #include "run/decode/decode.h"
 #include "scene/import/import.h"
 #include "study/child/child.h"
 #include "study/sweep/collect.h"
+#include "study/sweep/facts.h"
 #include "study/sweep/machine.h"
 #include "study/sweep/measure_asset.h"
+#include "study/sweep/report_folder.h"
 #include "study/sweep/state.h"
+#include "study/sweep/work_folder.h"
 
 namespace meshlode::study {
 
@@ -48,52 +49,6 @@ bool was_interrupted(const ChildRun& run) {
   return run.exit_code == 128 + SIGINT || run.exit_code == 128 + SIGTERM || run.exit_code == 128 + SIGHUP;
 }
 
-SceneSummary summary_of(const scene::Scene& scene) {
-  SceneSummary summary{scene.source_name, scene.source_hash, scene.meshes.size(), scene.instances.size(), 0, 0};
-  for (const scene::SourceMesh& mesh : scene.meshes) {
-    for (const scene::Primitive& primitive : mesh.primitives) {
-      summary.triangles += primitive.indices.size() / 3;
-      summary.vertices += primitive.positions.size();
-    }
-  }
-  return summary;
-}
-
-SceneFacts facts_of(const run::Asset& asset) {
-  SceneFacts facts;
-  for (const format::MeshRecord& mesh : asset.meshes()) {
-    facts.largest_diagonal = std::max(facts.largest_diagonal, mesh.diagonal);
-    facts.has_normals = facts.has_normals || mesh.normal_mode == format::NormalMode::kStored;
-    facts.has_uvs = facts.has_uvs || mesh.uv_set_count > 0;
-  }
-  return facts;
-}
-
-/// A folder of this run's own for assets, gone when it ends.
-class WorkFolder {
- public:
-  /// Below `parent`. Error: kIo.
-  static Result<WorkFolder> make(const fs::path& parent) {
-    std::string name = (parent / ".meshlode-sweep-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) {
-      return Error{ErrorCode::kIo, parent.string(), std::error_code(errno, std::generic_category()).message()};
-    }
-    return WorkFolder(name);
-  }
-  WorkFolder(WorkFolder&& other) noexcept : path_(std::exchange(other.path_, {})) {}
-  WorkFolder(const WorkFolder&) = delete;
-  WorkFolder& operator=(const WorkFolder&) = delete;
-  ~WorkFolder() {
-    std::error_code ignored;
-    if (!path_.empty()) fs::remove_all(path_, ignored);
-  }
-  [[nodiscard]] const fs::path& path() const { return path_; }
-
- private:
-  explicit WorkFolder(fs::path path) : path_(std::move(path)) {}
-  fs::path path_;
-};
-
 class Sweep {
  public:
   Sweep(const SweepOptions& options, const SweepWatcher& watcher, scene::Scene scene, State state, WorkFolder work,
@@ -101,7 +56,7 @@ class Sweep {
       : options_(options),
         watcher_(watcher),
         scene_(std::move(scene)),
-        source_(scene_, options.samples),
+        source_(scene_, result.fineness.samples, result.fineness.searches),
         state_(std::move(state)),
         work_(std::move(work)),
         picture_tag_(std::move(picture_tag)),
@@ -111,9 +66,7 @@ class Sweep {
     if (Status ready = measure_baseline(); !ready) return ready;
     plan();
     for (round_ = 1; round_ <= options_.rounds; ++round_) {
-      for (const Group& group : groups_) {
-        if (Status done = do_group(group); !done) return done;
-      }
+      if (Status done = round_ == 1 ? do_first_round() : do_groups(); !done) return done;
       result_.is_complete = round_ == options_.rounds;
       result_.spent = spent();
       collect_results(state_, options_.rounds, result_);
@@ -136,7 +89,7 @@ class Sweep {
     auto asset = run::Asset::open(file, options_.max_decoded);
     if (!asset) return asset.error();
     result_.knobs = make_knobs(facts_of(*asset), options_.knobs);
-    views_.views = make_views(options_.frame_scene(*asset));
+    views_.views = make_views(options_.frame_scene(*asset, result_.fineness.width, result_.fineness.height));
     views_.max_decoded = options_.max_decoded;
     if (Status drawn = draw_full(*asset, views_); !drawn) return drawn;
     result_.views = views_.views;
@@ -144,7 +97,8 @@ class Sweep {
       result_.full_pictures.push_back("pictures/full-" + views_.views[v].name + ".png");
       if (Status written = write_picture(result_.full_pictures.back(), views_.full[v]); !written) return written;
     }
-    result_.machine.vulkan = ask_device(*asset, views_);
+    result_.machine.vulkan = result_.fineness.is_device_asked ? ask_device(*asset, views_)
+                                                              : DeviceAnswer{"", "not asked for a short budget"};
     for (Point& point : make_points(result_.knobs)) {
       PointResult one;
       one.id = point_id(result_.knobs, point);
@@ -157,22 +111,56 @@ class Sweep {
   }
 
   void plan() {
-    std::vector<Point> points;
-    for (const PointResult& one : result_.points) points.push_back(one.point);
+    for (const PointResult& one : result_.points) points_.push_back(one.point);
     const std::string none;
-    BaselineCost cost;
-    cost.build = seconds_of(MeasurementKind::kBuild, none, 1);
-    cost.measure = seconds_of(MeasurementKind::kAsset, none, 0) + seconds_of(MeasurementKind::kDraw, none, 0);
-    cost.draw = seconds_of(MeasurementKind::kFrames, none, 1);
-    std::map<std::string, std::size_t> group_of;
-    for (const PlannedPoint& one : plan_points(result_.knobs, points, cost, options_.rounds, options_.budget)) {
+    cost_.build = seconds_of(MeasurementKind::kBuild, none, 1);
+    cost_.measure = seconds_of(MeasurementKind::kAsset, none, 0) + seconds_of(MeasurementKind::kDraw, none, 0);
+    cost_.draw = seconds_of(MeasurementKind::kFrames, none, 1);
+    planned_ = plan_points(result_.knobs, points_, cost_, options_.rounds, options_.budget);
+    group_chosen();
+  }
+
+  /// Those that are chosen and in no group yet.
+  void group_chosen() {
+    for (const PlannedPoint& one : planned_) {
       PointResult& point = result_.points[one.point];
+      if (point.is_chosen) continue;
       point.is_chosen = one.is_chosen;
       point.estimate = one.estimate;
+      point.first = one.first;
       if (!one.is_chosen) continue;
-      const auto [at, is_new] = group_of.try_emplace(build_key(result_.knobs, point.point), groups_.size());
-      if (is_new) groups_.push_back({at->first, {}});
-      groups_[at->second].points.push_back(one.point);
+      const std::string key = build_key(result_.knobs, point.point);
+      auto group = std::ranges::find(groups_, key, &Group::key);
+      if (group == groups_.end()) group = groups_.insert(group, {key, {}});
+      group->points.push_back(one.point);
+    }
+  }
+
+  Status do_groups() {
+    for (const Group& group : groups_) {
+      if (Status done = do_group(group); !done) return done;
+    }
+    return Ok{};
+  }
+
+  /// The first round, and as many points more as it leaves time for.
+  Status do_first_round() {
+    round_ = 1;
+    for (;;) {
+      if (Status done = do_groups(); !done) return done;
+      if (options_.budget <= 0.0) return Ok{};
+      // By the first rounds alone, which a run that goes on finds in the state: to the same plan.
+      double took = 0.0;
+      for (const Group& group : groups_) {
+        if (is_missing(group) && !has_failed(group)) return Ok{};
+        took += seconds_of(MeasurementKind::kAsset, group.key, 0) + seconds_of(MeasurementKind::kBuild, group.key, 1);
+        for (const std::size_t p : group.points) {
+          took += seconds_of(MeasurementKind::kDraw, key_of(p), 0) + seconds_of(MeasurementKind::kFrames, key_of(p), 1);
+        }
+      }
+      if (choose_more(result_.knobs, points_, cost_, options_.rounds, options_.budget, took, planned_) == 0)
+        return Ok{};
+      group_chosen();
     }
   }
 
@@ -210,8 +198,8 @@ class Sweep {
     }
     if (round_ > 1 && seconds > 0.0) return seconds;
     double planned = 0.0;
-    for (const std::size_t p : group.points) planned += result_.points[p].estimate;
-    return planned / options_.rounds;
+    for (const std::size_t p : group.points) planned += result_.points[p].first;
+    return planned;
   }
 
   Status do_group(const Group& group) {
@@ -222,8 +210,12 @@ class Sweep {
     const fs::path file = work_.path() / (is_baseline ? "baseline.lode" : "point.lode");
     if (Status built = build(result_.points[group.points.front()].point, file, round_); !built) return built;
     if (has_failed(group)) return Ok{};
-    const auto asset = run::Asset::open(file, options_.max_decoded);
+    auto asset = run::Asset::open(file, options_.max_decoded);
     if (!asset) return asset.error();
+    // What was promised is what is drawn, and what cuts are chosen by.
+    const std::string word = word_of(result_.knobs, result_.points[group.points.front()].point, "promise");
+    const auto promise = value_in(format::kPromiseNames, word).value_or(format::Promise::kPosition);
+    if (Status chosen = asset->choose(promise); !chosen) return chosen;
     const Status looked = look_at(*asset, group);
     std::error_code ignored;
     if (!is_baseline) fs::remove(file, ignored);
@@ -411,36 +403,14 @@ class Sweep {
   std::string picture_tag_;  ///< in pictures' names: another scene or program has others of the same settings
   SweepResult& result_;
   ViewSet views_;
+  std::vector<Point> points_;  ///< of result_
+  BaselineCost cost_;
+  std::vector<PlannedPoint> planned_;
   std::vector<Group> groups_;
   std::uint32_t round_ = 1;
   double unrecorded_ = 0.0;  ///< of what was built again because its asset is gone
   bool is_baseline_there_ = false;
 };
-
-/// All that figures depend on beside a point's settings.
-std::string fingerprint_of(const SweepOptions& options, const SweepResult& result) {
-  const std::string text = options.program_id + "\n" + result.machine.name + "\n" + result.machine.system + "\n" +
-                           std::to_string(result.machine.threads) + "\n" + result.scene.hash + "\n" +
-                           options.scene_choice + "\n" + std::to_string(options.samples) + "\n" +
-                           std::to_string(options.max_decoded) + "\n";
-  return to_hex(hash128({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}));
-}
-
-/// The report's folder: new, empty or an earlier sweep's, so that nothing of anybody else's is written over.
-Status make_folders(const fs::path& report, const fs::path& state) {
-  std::error_code error;
-  fs::create_directories(report, error);
-  if (error) return Error{ErrorCode::kIo, report.string(), error.message()};
-  const bool is_empty = fs::is_empty(report, error);
-  if (error) return Error{ErrorCode::kIo, report.string(), error.message()};
-  if (!is_empty && !fs::exists(state, error)) {
-    return Error{ErrorCode::kUsage, report.string(), "has other things in it; name a new folder, or that of a sweep"};
-  }
-  if (!std::ofstream(state, std::ios::app)) return Error{ErrorCode::kIo, state.string(), "cannot write"};
-  fs::create_directories(report / "pictures", error);
-  if (error) return Error{ErrorCode::kIo, (report / "pictures").string(), error.message()};
-  return Ok{};
-}
 
 }  // namespace
 
@@ -450,20 +420,23 @@ Status run_sweep(const SweepOptions& options, const SweepWatcher& watcher, const
   import.max_decoded = options.max_decoded;
   import.may_lack_images = true;
   import.allow_outside = options.allow_outside;
+  std::vector<FileId> read;
+  import.files_read = &read;
   Result<scene::Scene> scene = scene::import_scene(options.scene, import);
   if (!scene) return scene.error();
-  const fs::path state_file = options.report / "sweep-state.txt";
-  if (Status made = make_folders(options.report, state_file); !made) return made;
+  if (Status made = make_report_folder(options.report, read); !made) return made;
   Result<WorkFolder> work = WorkFolder::make(options.report);
   if (!work) return work.error();
   SweepResult result;
   result.scene = summary_of(*scene);
+  result.fineness = choose_fineness(options.budget, result.scene.meshes, result.scene.vertices);
+  if (options.samples > 0) result.fineness.samples = options.samples;
   if (options.diagnose_scene) result.diagnoses = options.diagnose_scene(*scene);
   const MachineFacts machine = describe_machine();
   result.machine = {
       machine.processor, machine.system, options.jobs > 0 ? options.jobs : machine.threads, machine.memory_bytes, {}};
   const std::string fingerprint = fingerprint_of(options, result);
-  Result<State> state = State::open(state_file, fingerprint);
+  Result<State> state = State::open(state_file_of(options.report), fingerprint);
   if (!state) return state.error();
   Sweep sweep(options, watcher, std::move(*scene), std::move(*state), std::move(*work), fingerprint.substr(0, 8),
               result);

@@ -35,7 +35,7 @@ struct SweepOptions {
   std::string scene_choice;             ///< glTF: --scene
   std::uint32_t jobs = 0;               ///< threads of builds and of measurements; 0: one per core
   std::uint32_t rounds = 3;
-  std::uint64_t samples = 100000;  ///< of deviations, each way
+  std::uint64_t samples = 0;       ///< of deviations, each way; 0: as the budget allows (choose_fineness)
   double budget = 0.0;             ///< wall seconds; 0: none
   std::uint64_t max_decoded = 0;   ///< bytes
   std::string max_decoded_text;    ///< the same as `build` takes it; empty: its default
@@ -44,8 +44,8 @@ struct SweepOptions {
   std::string command;             ///< that makes the report again
   /// scene::ImportOptions'.
   std::vector<std::filesystem::path> allow_outside;
-  /// The camera that frames an asset.
-  std::function<run::Camera(const run::Asset& asset)> frame_scene;
+  /// The camera that frames an asset, for pictures of a size.
+  std::function<run::Camera(const run::Asset& asset, std::uint32_t width, std::uint32_t height)> frame_scene;
   /// What in the scene costs under every setting, ranked; where it is missing, the report does not say.
   std::function<std::vector<out::Diagnosis>(const scene::Scene& scene)> diagnose_scene;
 };
@@ -71,6 +71,7 @@ struct PointResult {
   bool is_chosen = false;  ///< planned; else left out
   LeftOutReason reason = LeftOutReason::kBudget;
   double estimate = 0.0;  ///< wall seconds, all rounds
+  double first = 0.0;     ///< of these the first round
   bool is_done = false;   ///< measured, or failed
   std::string error;      ///< why it failed; empty: it did not
   Figures figures;
@@ -96,6 +97,7 @@ struct SweepResult {
   std::vector<out::Diagnosis> diagnoses;  ///< of SweepOptions::diagnose_scene
   double spent = 0.0;                     ///< wall seconds of all measurements
   bool is_complete = false;
+  Fineness fineness;  ///< as measured
   std::vector<Knob> knobs;
   std::vector<View> views;
   std::vector<std::string> full_pictures;              ///< of the views, paths below the report's folder

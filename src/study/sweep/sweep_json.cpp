@@ -51,7 +51,7 @@ void write_head(JsonWriter& w, const SweepOptions& options, const SweepResult& r
   w.field("spent_seconds", result.spent);
   w.field("rounds", options.rounds);
   w.field("complete", result.is_complete);
-  w.field("samples", options.samples);
+  w.field("samples", result.fineness.samples);
   w.field("seed", 1);
 }
 
@@ -141,6 +141,9 @@ void write_figures(JsonWriter& w, const Figures& figures) {
       w.field("min", found->second.min);
       w.field("max", found->second.max);
       w.field("n", found->second.count);
+      const auto range = range_of(metric, found->second);
+      w.optional_field("range_low", range ? std::optional(range->low) : std::nullopt);
+      w.optional_field("range_high", range ? std::optional(range->high) : std::nullopt);
     }
     w.end_object();
   }
@@ -292,6 +295,7 @@ void write_recommendation(JsonWriter& w, const SweepOptions& options, const Swee
   w.text_or_null_field("command", point ? build_command(options, result, point->point) : "");
   w.optional_field("value", point ? std::optional(point->figures.at(one.wish.goal->key).value) : std::nullopt);
   write_ids(w, "as_good", result, one.answer.as_good);
+  write_ids(w, "not_compared", result, one.answer.not_compared);
   w.field("why", one.answer.why);
   w.end_object();
 }

@@ -156,5 +156,84 @@ TEST(Drift, OfLevelZeroIsItsQuantization) {
   EXPECT_GT(coarsest.normal_a_to_b.rms, 1.0) << "a hundred triangles are no torus of 6,400";
 }
 
+/// A sheet with two sides that are nearer to each other than a grid's step: the unit square from above, and from below
+/// in another place of the atlas, `thickness` beneath it.
+ShadedSurface make_plate(double thickness, float u_below = 2.0F) {
+  ShadedSurface plate = make_square({});
+  const ShadedSurface above = plate;
+  for (std::size_t v = 0; v < above.surface.positions.size(); ++v) {
+    plate.surface.positions.push_back(above.surface.positions[v] - Vec3d(0.0, 0.0, thickness));
+    plate.normals.push_back(-above.normals[v]);
+    plate.uvs[0].push_back(above.uvs[0][v] + Vec2f(u_below, 0.0F));
+  }
+  const auto base = static_cast<std::uint32_t>(above.surface.positions.size());
+  for (const auto& t : above.surface.triangles)
+    plate.surface.triangles.push_back({base + t[0], base + t[2], base + t[1]});
+  return plate;
+}
+
+/// Positions on a grid, as quantization has them.
+ShadedSurface rounded(ShadedSurface s, double step) {
+  for (Vec3d& p : s.surface.positions) p = step * glm::round(p / step);
+  return s;
+}
+
+constexpr double kStep = 1e-3;
+constexpr DriftOptions kFine{
+    .samples = 20000, .seed = 1, .tie = 1e-9, .side_reach = 2 * kStep, .seam_reach = 2 * kStep};
+
+TEST(Drift, OfAThinPlateIsThatOfEachSideByItself) {
+  // The grid puts the lower side where the upper one was, or even above it.
+  for (const double thickness : {0.0, 0.1 * kStep, 0.6 * kStep, 1.2 * kStep}) {
+    const ShadedSurface plate = make_plate(thickness);
+    ShadedSurface moved = plate;
+    for (std::size_t v = 0; v < moved.surface.positions.size(); ++v) {
+      moved.surface.positions[v].z += v < moved.surface.positions.size() / 2 ? -0.5 * kStep : 0.5 * kStep;
+    }
+    for (const ShadedSurface& other : {rounded(plate, kStep), moved}) {
+      const DriftReport r = drift(plate, other, kFine);
+      EXPECT_LE(std::max(r.normal_a_to_b.max, r.normal_b_to_a.max), 1e-3) << thickness;
+      EXPECT_LE(std::max(r.uv_a_to_b.max, r.uv_b_to_a.max), 2 * kStep) << thickness;
+    }
+  }
+}
+
+TEST(Drift, OfASmallCardIsWhatASlideByTheGridMakes) {
+  // Both sides show the same picture, whose UVs move by a twentieth within a step of the grid.
+  ShadedSurface card = make_plate(0.1 * kStep, 0.0F);
+  for (Vec3d& p : card.surface.positions) p *= 0.02;
+  const DriftReport r = drift(card, rounded(card, kStep), kFine);
+  EXPECT_LE(std::max(r.normal_a_to_b.max, r.normal_b_to_a.max), 1e-3) << "the other side is no better for its UVs";
+  EXPECT_LE(std::max(r.uv_a_to_b.max, r.uv_b_to_a.max), 2.0 * kStep / 0.02);
+}
+
+TEST(Drift, OfAThinPlateFindsWhatIsWrongOnOneSide) {
+  const ShadedSurface plate = make_plate(0.1 * kStep);
+  const std::size_t half = plate.surface.positions.size() / 2;
+  ShadedSurface flipped = rounded(plate, kStep), shifted = flipped, swapped = flipped;
+  flipped.normals[half / 2] *= -1.0F;
+  const DriftReport normal = drift(plate, flipped, kFine);
+  EXPECT_GT(std::max(normal.normal_a_to_b.max, normal.normal_b_to_a.max), 170.0) << "the other side has such a normal";
+  for (std::size_t v = half; v < 2 * half; ++v) shifted.uvs[0][v].y += 0.05F;
+  const DriftReport uv = drift(plate, shifted, kFine);
+  EXPECT_NEAR(uv.uv_a_to_b.max, 0.05, 1e-3);
+  EXPECT_NEAR(uv.uv_b_to_a.max, 0.05, 1e-3);
+  EXPECT_LE(uv.normal_a_to_b.max, 1e-3);
+  // Each side painted as the other one: its UVs agree with the other side's, and its normals with its own.
+  for (std::size_t v = 0; v < half; ++v) std::swap(swapped.uvs[0][v], swapped.uvs[0][half + v]);
+  const DriftReport both = drift(plate, swapped, kFine);
+  EXPECT_TRUE(both.uv_a_to_b.max > 1.9 || both.normal_a_to_b.max > 170.0);
+}
+
+TEST(Drift, AtASeamThatIsRoundedIsThatOfEachChart) {
+  const ShadedSurface a = make_square({.n = 7, .seam = 3.0 / 7.0, .right = 0.5});
+  const DriftReport sound = drift(a, rounded(a, kStep), kFine);
+  for (const OneWayDrift& d : {sound.uv_a_to_b, sound.uv_b_to_a}) EXPECT_LE(d.max, 2 * kStep);
+  ShadedSurface shifted = rounded(a, kStep);
+  for (Vec2f& uv : shifted.uvs[0]) uv += uv.x > 0.7F ? Vec2f(0.0F, 0.02F) : Vec2f(0.0F);
+  const DriftReport r = drift(a, shifted, kFine);
+  for (const OneWayDrift& d : {r.uv_a_to_b, r.uv_b_to_a}) EXPECT_NEAR(d.max, 0.02, 2e-3);
+}
+
 }  // namespace
 }  // namespace meshlode::judge

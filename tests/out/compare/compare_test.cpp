@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "build/build.h"
 #include "out/export/build_scene.h"
 #include "scene/scene.h"
 
@@ -69,6 +70,50 @@ TEST(Change, IsTheDifferenceAndTheRatioWhereThereAreSuch) {
   EXPECT_EQ(change(infinite, 1.0).difference(), std::nullopt);
 }
 
+TEST(Change, OfWhatIsNotComparableThereIsNone) {
+  Change same{"", 2.0, 2.0, Change::Kind::kDouble, false}, other{"", 2.0, 1.0, Change::Kind::kDouble, false};
+  for (const Change& one : {same, other}) {
+    EXPECT_EQ(one.difference(), std::nullopt);
+    EXPECT_EQ(one.ratio(), std::nullopt);
+  }
+}
+
+run::Asset asset_of_tier(const scene::Scene& scene, format::ErrorTier tier) {
+  build::PipelineOptions options;
+  options.error_tier = tier;
+  build::PipelineReport report;
+  return run::Asset::from_vector(build::build_lode(scene, options, {}, report).value()).value();
+}
+
+TEST(Compare, ErrorsOfDifferentTiersAreNotComparable) {
+  const scene::Scene scene = test::make_rock_scene(24);
+  const run::Asset measured = asset_of_tier(scene, format::ErrorTier::kMeasured);
+  const run::Asset qem = asset_of_tier(scene, format::ErrorTier::kQem);
+  const AssetComparison comparison = compare_assets(measured, qem);
+  const Json mesh = Json::parse(comparison_json(comparison)).at("meshes")[0];
+  EXPECT_EQ(mesh.at("error_tier"), (Json{{"old", "measured"}, {"new", "qem"}, {"comparable", false}}));
+  ASSERT_GT(mesh.at("by_level").size(), 1U);
+  for (const Json& level : mesh.at("by_level")) {
+    for (const char* error : {"error_min", "error_max"}) {
+      EXPECT_TRUE(level.at(error).at("change").is_null());
+      EXPECT_TRUE(level.at(error).at("ratio").is_null());
+    }
+    EXPECT_FALSE(level.at("triangles").at("ratio").is_null()) << "what is counted is comparable";
+  }
+  EXPECT_FALSE(mesh.at("level0_deviation").at("ratio").is_null()) << "how far the grid moves a vertex is no estimate";
+  EXPECT_NE(comparison_text(comparison).find("not comparable in 1 of 1 meshes"), std::string::npos);
+  EXPECT_TRUE(tiers_text(compare_assets(qem, qem)).empty());
+  // What nobody knows breaks what bounds it from above.
+  const auto breaks = [&](const char* condition) {
+    const auto budget = read_budget(condition, compare_schema());
+    EXPECT_TRUE(budget.ok()) << budget.error().detail;
+    return !judge_budget(*budget, comparison_json(comparison))->empty();
+  };
+  EXPECT_TRUE(breaks("any(meshes).any(by_level).error_max.ratio>1.05"));
+  EXPECT_FALSE(breaks("any(meshes).any(by_level).error_max.ratio<1"));
+  EXPECT_TRUE(breaks("any(meshes).error_tier.comparable==false"));
+}
+
 TEST(Compare, AnAssetIsEqualToItself) {
   const run::Asset asset = asset_of(test::make_rock_scene(8));
   const AssetComparison comparison = compare_assets(asset, asset);
@@ -110,9 +155,11 @@ TEST(Compare, SaysOfBothWhatInfoSaysOfEach) {
   const Json& mesh = json.at("meshes").at(0);
   const Json &mesh_before = before.at("meshes").at(0), &mesh_after = after.at("meshes").at(0);
   for (const auto& [key, value] : mesh.items()) {
-    if (!value.is_object() || key == "levels") continue;
+    if (!value.is_object() || key == "levels" || key == "error_tier") continue;
     check_change(value, mesh_before.at(key), mesh_after.at(key));
   }
+  EXPECT_EQ(mesh.at("error_tier").at("old"), mesh_before.at("error_tier"));
+  EXPECT_EQ(mesh.at("error_tier").at("new"), mesh_after.at("error_tier"));
   const Json &levels_before = mesh_before.at("levels"), &levels_after = mesh_after.at("levels");
   EXPECT_LT(levels_before.size(), levels_after.size());
   check_change(mesh.at("levels"), levels_before.size(), levels_after.size());

@@ -117,6 +117,8 @@ void write_figures(JsonWriter& w, std::size_t number, const MadeUpPoint& point) 
       w.field("min", value * 0.97);
       w.field("max", value * 1.04);
       w.field("n", 3);
+      w.field("range_low", value * 0.97);
+      w.field("range_high", value * 1.04);
     }
     w.end_object();
   }
@@ -392,6 +394,9 @@ void write_answers(JsonWriter& w, const std::vector<MadeUpPoint>& points) {
     w.key("as_good");
     w.begin_array();
     if (is_kept) w.value("p0");
+    w.end_array();
+    w.key("not_compared");
+    w.begin_array();
     w.end_array();
     w.field("why", is_kept ? "It was made up to be the smallest of those within the bound." : "The least was 3e-6.");
     w.end_object();

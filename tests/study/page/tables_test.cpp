@@ -23,15 +23,15 @@ ReportData two_points() {
   base.id = "a";
   base.label = "baseline";
   base.settings["codec"] = "zstd";
-  base.figures["build_user_seconds"] = {2.0, 1.9, 2.2, 3};
-  base.figures["file_bytes"] = {1000.0, 1000.0, 1000.0, 1};
+  base.figures["build_user_seconds"] = {2.0, 1.9, 2.2, 3, Figure::Range{1.9, 2.2}};
+  base.figures["file_bytes"] = {1000.0, 1000.0, 1000.0, 1, {}};
   other = base;
   other.id = "b";
   other.label = "codec none";
   other.changed = {"codec"};
   other.settings["codec"] = "none";
-  other.figures["build_user_seconds"] = {2.3, 2.1, 2.4, 3};
-  other.figures["file_bytes"] = {1250.0, 1250.0, 1250.0, 1};
+  other.figures["build_user_seconds"] = {2.3, 2.1, 2.4, 3, Figure::Range{2.1, 2.4}};
+  other.figures["file_bytes"] = {1250.0, 1250.0, 1250.0, 1, {}};
   data.points = {base, other};
   return data;
 }
@@ -50,14 +50,18 @@ TEST(Tables, ClaimNothingInsideTheSpread) {
 
 TEST(Tables, SayAChangeBeyondTheSpread) {
   ReportData data = two_points();
-  data.points[1].figures["build_user_seconds"] = {4.0, 3.9, 4.1, 3};
+  data.points[1].figures["build_user_seconds"] = {4.0, 3.9, 4.1, 3, Figure::Range{3.9, 4.1}};
   EXPECT_EQ(tabulate_knobs(data)[0].rows[1].cells[1].note, "×2");
 }
 
-TEST(Tables, OneMeasurementOfTimeHasNoSpreadToBeBeyond) {
+TEST(Tables, OneMeasurementIsComparedByTheRangeThatTheSweepGivesItOrNotAtAll) {
   ReportData data = two_points();
-  data.points[1].figures["build_user_seconds"] = {9.0, 9.0, 9.0, 1};
+  data.points[1].figures["build_user_seconds"] = {9.0, 9.0, 9.0, 1, Figure::Range{6.7, 11.3}};
+  EXPECT_EQ(tabulate_knobs(data)[0].rows[1].cells[1].note, "×4.5");
+  data.points[1].figures["build_user_seconds"] = {2.5, 2.5, 2.5, 1, Figure::Range{1.8, 3.2}};
   EXPECT_EQ(tabulate_knobs(data)[0].rows[1].cells[1].note, "≈");
+  data.points[1].figures["build_user_seconds"] = {9.0, 9.0, 9.0, 1, {}};
+  EXPECT_EQ(tabulate_knobs(data)[0].rows[1].cells[1].note, "not compared");
 }
 
 TEST(Tables, AKnobThatWasNotTurnedHasNone) {

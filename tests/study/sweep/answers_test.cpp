@@ -44,11 +44,55 @@ TEST(SweepAnswers, DominatedIsWhoIsClearlyWorseInOneAndBetterInNone) {
   EXPECT_TRUE(dominated[3].empty()) << "slower and smaller";
 }
 
-TEST(SweepAnswers, OneMeasurementOfTimeWinsNothing) {
-  std::vector<Figures> all{figures(1.0, 1.0, 100, 1e-4, 50), figures(9.0, 9.0, 100, 1e-4, 50)};
-  EXPECT_EQ(find_dominators(candidates_of(all))[1], std::vector<std::size_t>{0});
-  all[1]["build_user_seconds"].count = 1;
-  EXPECT_TRUE(find_dominators(candidates_of(all))[1].empty()) << "nobody knows what noise is in it";
+/// One round.
+Figures figures_once(double user, double bytes = 100.0) {
+  Figures out = figures(user, user, bytes, 1e-4, 50);
+  out["build_user_seconds"].count = 1;
+  out["build_wall_seconds"] = figure_of({user});
+  return out;
+}
+
+TEST(SweepAnswers, OfProcessorTimeThatWasMeasuredOnceASpreadIsAssumed) {
+  const std::vector<Figures> all{figures_once(1.0), figures_once(3.5), figures_once(1.3)};
+  const auto dominated = find_dominators(candidates_of(all));
+  EXPECT_EQ(dominated[1], (std::vector<std::size_t>{0, 2})) << "three times the time is no noise";
+  EXPECT_TRUE(dominated[2].empty()) << "a third more may be";
+  const Answer answer = answer_wish(candidates_of(all), *parse_wish("deviation<=1e-4, time min"));
+  EXPECT_EQ(answer.point, 0U);
+  EXPECT_EQ(answer.as_good, std::vector<std::size_t>{2});
+  EXPECT_TRUE(answer.not_compared.empty());
+  EXPECT_NE(answer.why.find("25%"), std::string::npos) << answer.why;
+}
+
+TEST(SweepAnswers, AFastBuildIsNeverAsGoodAsOneOfThreeAndAHalfTimesItsTime) {
+  // The baseline changes fewest settings, which must not help it.
+  for (const std::uint32_t count : {1U, 2U, 3U}) {
+    for (const double seconds : {0.126, 0.679, 30.0}) {
+      std::vector<Figures> all{figures_once(3.5 * seconds), figures_once(seconds)};
+      for (Figures& one : all) one["build_user_seconds"].count = count;
+      const Answer answer = answer_wish(candidates_of(all), *parse_wish("deviation<=1e-3, time min"));
+      EXPECT_EQ(answer.point, 1U) << count << " " << seconds;
+      EXPECT_TRUE(answer.as_good.empty()) << count << " " << seconds;
+    }
+  }
+}
+
+TEST(SweepAnswers, AnyOtherTimeThatWasMeasuredOnceIsNotCompared) {
+  std::vector<Figures> all{figures_once(1.0), figures_once(9.0), figures_once(2.0)};
+  const Wish wish = *parse_wish("build min");
+  Answer answer = answer_wish(candidates_of(all), wish);
+  EXPECT_FALSE(answer.point.has_value());
+  EXPECT_TRUE(answer.as_good.empty());
+  EXPECT_EQ(answer.not_compared, (std::vector<std::size_t>{0, 1, 2}));
+  EXPECT_NE(answer.why.find("not compared: one round"), std::string::npos) << answer.why;
+  EXPECT_TRUE(find_frontier(candidates_of(all), *find_metric("build"), *find_metric("bytes")).empty());
+  // Of those measured more often one is chosen, and the rest is named.
+  for (const std::size_t i : {1U, 2U}) all[i]["build_wall_seconds"].count = 2;
+  answer = answer_wish(candidates_of(all), wish);
+  EXPECT_EQ(answer.point, 2U);
+  EXPECT_EQ(answer.not_compared, std::vector<std::size_t>{0});
+  EXPECT_EQ(find_frontier(candidates_of(all), *find_metric("build"), *find_metric("bytes")),
+            std::vector<std::size_t>{2});
 }
 
 TEST(SweepAnswers, WhoLacksAFigureIsLeftAlone) {
