@@ -20,6 +20,15 @@ namespace meshlode {
   return {ErrorCode::kBuildFailed, std::move(where), "out of memory"};
 }
 
+/// A thread that cannot be started lacks its stack; oneTBB says so by a text alone.
+[[nodiscard]] inline bool is_out_of_memory(const std::exception& thrown) {
+  if (dynamic_cast<const std::bad_alloc*>(&thrown) != nullptr) return true;
+  if (const auto* error = dynamic_cast<const std::system_error*>(&thrown)) {
+    return error->code() == std::errc::resource_unavailable_try_again || error->code() == std::errc::not_enough_memory;
+  }
+  return std::string_view(thrown.what()).starts_with("pthread_create has failed");
+}
+
 [[nodiscard]] inline Error internal_error(std::string where, std::string_view what) {
   return {ErrorCode::kBuildFailed, std::move(where),
           "internal error (" + std::string(what) +
@@ -31,15 +40,8 @@ template <class Body>
 auto guarded(const std::filesystem::path& where, const Body& body) -> decltype(body()) {
   try {
     return body();
-  } catch (const std::bad_alloc&) {
-    return out_of_memory(where.string());
-  } catch (const std::system_error& thrown) {
-    // A thread that cannot be started lacks its stack.
-    const bool lacks_memory =
-        thrown.code() == std::errc::resource_unavailable_try_again || thrown.code() == std::errc::not_enough_memory;
-    return lacks_memory ? out_of_memory(where.string()) : internal_error(where.string(), thrown.what());
   } catch (const std::exception& thrown) {
-    return internal_error(where.string(), thrown.what());
+    return is_out_of_memory(thrown) ? out_of_memory(where.string()) : internal_error(where.string(), thrown.what());
   } catch (...) {
     return internal_error(where.string(), "an exception of an unknown type");
   }

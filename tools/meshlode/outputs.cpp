@@ -16,6 +16,8 @@
 
 #include <unistd.h>
 
+#include "base/guarded.h"
+
 namespace meshlode::cli {
 
 namespace {
@@ -54,20 +56,25 @@ Interrupt& interrupt() {
   ::_exit(static_cast<int>(ErrorCode::kIo));
 }
 
-/// Allocates nothing.
+/// What cannot be thrown is memory that ran out, or a mistake of this program's. Allocates nothing.
 [[noreturn]] void end_without_memory() {
+  bool is_memory = false;
   try {
     if (const auto thrown = std::current_exception()) std::rethrow_exception(thrown);
-  } catch (const std::bad_alloc&) {
+  } catch (const std::exception& thrown) {
+    is_memory = is_out_of_memory(thrown);
+  } catch (...) {
+    // A mistake.
+  }
+  if (is_memory) {
     output_files().abandon();
     constexpr std::string_view kLine = "meshlode: out of memory\n";
     if (::write(STDERR_FILENO, kLine.data(), kLine.size()) < 0) {
       // Nobody is left to tell.
     }
     ::_exit(static_cast<int>(ErrorCode::kBuildFailed));
-  } catch (...) {
-    // A mistake of this program's: it ends as such.
   }
+  std::signal(SIGABRT, SIG_DFL);  // METIS may have left a handler of its own
   std::abort();
 }
 

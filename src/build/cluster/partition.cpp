@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <mutex>
+#include <new>
 #include <numeric>
 
 #include <metis.h>
@@ -19,7 +20,8 @@ namespace {
 
 static_assert(sizeof(idx_t) == sizeof(std::int32_t), "Graph hands its arrays to METIS as they are");
 
-/// False if METIS did not return METIS_OK. `shares`: of each part, or none where they are equal.
+/// False if METIS did not return METIS_OK; throws std::bad_alloc where it ran out of memory. `shares`: of each part, or
+/// none where they are equal.
 bool call_metis(Graph& graph, std::uint32_t parts, std::span<const std::uint32_t> shares, std::uint32_t seed,
                 std::vector<idx_t>& labels) {
   idx_t options[METIS_NOPTIONS];
@@ -37,11 +39,12 @@ bool call_metis(Graph& graph, std::uint32_t parts, std::span<const std::uint32_t
     part_weights.push_back(static_cast<real_t>(share) / static_cast<real_t>(total));
   }
   labels.assign(graph.node_count(), 0);
-  return METIS_PartGraphRecursive(&node_count, &constraint_count, graph.row_start.data(), graph.neighbor.data(),
-                                  graph.node_weight.empty() ? nullptr : graph.node_weight.data(), nullptr,
-                                  graph.edge_weight.data(), &part_count,
-                                  part_weights.empty() ? nullptr : part_weights.data(), nullptr, options, &cut,
-                                  labels.data()) == METIS_OK;
+  const int code = METIS_PartGraphRecursive(
+      &node_count, &constraint_count, graph.row_start.data(), graph.neighbor.data(),
+      graph.node_weight.empty() ? nullptr : graph.node_weight.data(), nullptr, graph.edge_weight.data(), &part_count,
+      part_weights.empty() ? nullptr : part_weights.data(), nullptr, options, &cut, labels.data());
+  if (code == METIS_ERROR_MEMORY) throw std::bad_alloc();  // another partition would be another asset
+  return code == METIS_OK;
 }
 
 /// A ring of 64 nodes, large enough that METIS draws random numbers for it.
