@@ -112,8 +112,8 @@ std::string reason_of(const Answer& answer, std::size_t points, std::size_t kept
     why += answer.as_good.size() == 1 ? "which changes no fewer settings" : "none of which changes fewer settings";
   }
   if (has_assumed) why += "; a spread of 25% either way is assumed of what was measured once";
-  if (!answer.not_compared.empty())
-    why += "; " + std::to_string(answer.not_compared.size()) + " not compared: one round";
+  const std::size_t others = answer.not_compared.size();
+  if (others > 0) why += "; " + std::to_string(others) + " not compared: one round";
   return why;
 }
 

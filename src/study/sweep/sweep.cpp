@@ -158,8 +158,9 @@ class Sweep {
           took += seconds_of(MeasurementKind::kDraw, key_of(p), 0) + seconds_of(MeasurementKind::kFrames, key_of(p), 1);
         }
       }
-      if (choose_more(result_.knobs, points_, cost_, options_.rounds, options_.budget, took, planned_) == 0)
-        return Ok{};
+      const std::size_t more =
+          choose_more(result_.knobs, points_, cost_, options_.rounds, options_.budget, took, planned_);
+      if (more == 0) return Ok{};
       group_chosen();
     }
   }
@@ -191,20 +192,22 @@ class Sweep {
   }
 
   /// What a round of the group will take: as it took before, else as planned.
-  [[nodiscard]] double expected(const Group& group) const {
+  [[nodiscard]] double expected(const Group& group, std::uint32_t round) const {
     double seconds = seconds_of(MeasurementKind::kBuild, group.key, 1);
     for (const std::size_t p : group.points) {
       seconds += seconds_of(MeasurementKind::kFrames, key_of(p), 1);
     }
-    if (round_ > 1 && seconds > 0.0) return seconds;
+    if (round > 1 && seconds > 0.0) return seconds;
     double planned = 0.0;
-    for (const std::size_t p : group.points) planned += result_.points[p].first;
+    for (const std::size_t p : group.points) {
+      if (!state_.find(MeasurementKind::kFrames, key_of(p), round)) planned += result_.points[p].first;
+    }
     return planned;
   }
 
   Status do_group(const Group& group) {
     if (!is_missing(group) || has_failed(group)) return Ok{};
-    if (options_.budget > 0.0 && spent() + expected(group) > options_.budget) return Ok{};
+    if (options_.budget > 0.0 && spent() + expected(group, round_) > options_.budget) return Ok{};
     tell(group);
     const bool is_baseline = group.key.empty();
     const fs::path file = work_.path() / (is_baseline ? "baseline.lode" : "point.lode");
@@ -212,10 +215,6 @@ class Sweep {
     if (has_failed(group)) return Ok{};
     auto asset = run::Asset::open(file, options_.max_decoded);
     if (!asset) return asset.error();
-    // What was promised is what is drawn, and what cuts are chosen by.
-    const std::string word = word_of(result_.knobs, result_.points[group.points.front()].point, "promise");
-    const auto promise = value_in(format::kPromiseNames, word).value_or(format::Promise::kPosition);
-    if (Status chosen = asset->choose(promise); !chosen) return chosen;
     const Status looked = look_at(*asset, group);
     std::error_code ignored;
     if (!is_baseline) fs::remove(file, ignored);
@@ -233,7 +232,7 @@ class Sweep {
     double left = 0.0;
     for (std::uint32_t round = round_; round <= options_.rounds; ++round) {
       const std::size_t first = round == round_ ? progress.point : 0;
-      for (std::size_t g = first; g < groups_.size(); ++g) left += expected(groups_[g]);
+      for (std::size_t g = first; g < groups_.size(); ++g) left += expected(groups_[g], round);
     }
     if (options_.budget > 0.0) left = std::min(left, std::max(0.0, options_.budget - spent()));
     progress.seconds_left = left;
@@ -325,9 +324,12 @@ class Sweep {
     return state_.add(std::move(m));
   }
 
-  Status look_at(const run::Asset& asset, const Group& group) {
+  /// Deviations are those of cuts by positions, pictures those of what the asset promises.
+  Status look_at(run::Asset& asset, const Group& group) {
     Status done =
         take(MeasurementKind::kAsset, group.key, 0, [&](Measurement& m) { return measure_content(asset, m); });
+    const std::string word = word_of(result_.knobs, result_.points[group.points.front()].point, "promise");
+    if (done) done = asset.choose(value_in(format::kPromiseNames, word).value_or(format::Promise::kPosition));
     for (std::size_t i = 0; done && i < group.points.size(); ++i) {
       const PointResult& one = result_.points[group.points[i]];
       const double pixels = number_of(result_.knobs, one.point, "pixel_error", 1.0);

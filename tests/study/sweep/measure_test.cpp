@@ -78,6 +78,19 @@ TEST(SweepMeasure, FiguresAreThoseOfTheJudge) {
   }
 }
 
+TEST(SweepMeasure, FewSearchesHaveTheSameFiguresAndFewerRows) {
+  const Sample s = make_sample();
+  Measurement all, few;
+  ASSERT_TRUE(SourceMeasure(s.scene, kSamples).measure(s.asset, all));
+  ASSERT_TRUE(SourceMeasure(s.scene, kSamples, Searches::kFew).measure(s.asset, few));
+  EXPECT_EQ(all.equal.size(), 4U);
+  ASSERT_EQ(few.equal.size(), 1U);
+  EXPECT_EQ(few.equal[0].x, kAtMax);
+  EXPECT_FALSE(few.figures.contains("triangles_at_rms"));
+  all.figures.erase("triangles_at_rms");
+  EXPECT_EQ(few.figures, all.figures);
+}
+
 TEST(SweepMeasure, ASceneWithOtherMeshesIsRefused) {
   const Sample s = make_sample();
   scene::Scene other = s.scene;

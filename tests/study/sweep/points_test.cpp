@@ -121,6 +121,39 @@ TEST(SweepPoints, ChosenKnobsAloneAreTurned) {
   EXPECT_EQ(all_knob_names().size(), make_knobs(kAll).size());
 }
 
+TEST(SweepPoints, APromiseIsBuiltAndDrawn) {
+  const std::vector<Knob> knobs = make_knobs(kAll);
+  std::set<std::string> promises;
+  for (const Point& point : make_points(knobs)) {
+    if (changed_knobs(knobs, point) != std::vector<std::string>{"promise"}) continue;
+    promises.insert(word_of(knobs, point, "promise"));
+    EXPECT_EQ(build_arguments(knobs, point), draw_arguments(knobs, point));
+    EXPECT_EQ(build_arguments(knobs, point)[0], "--promise");
+    EXPECT_NE(build_key(knobs, point), "");
+  }
+  EXPECT_EQ(promises, (std::set<std::string>{"appearance", "texels"}));
+  EXPECT_EQ(word_of(make_knobs({1.0, false, false}), make_points(make_knobs({1.0, false, false}))[0], "promise"), "");
+}
+
+TEST(SweepPoints, KnobsOfAccuracyAreWorthMoreThanAllOthers) {
+  const std::vector<Knob> knobs = make_knobs(kAll);
+  double least_of_accuracy = 1e9, most_of_others = 0.0;
+  std::size_t positions = 0;
+  for (const Point& point : make_points(knobs)) {
+    if (point.kind == PointKind::kBaseline) continue;
+    const std::vector<std::string> changed = changed_knobs(knobs, point);
+    positions += changed == std::vector<std::string>{"position_error"} ? 1U : 0U;
+    const auto knob = std::find_if(knobs.begin(), knobs.end(), [&](const Knob& k) { return k.name == changed[0]; });
+    if (changed.size() == 1 && knob->is_of_accuracy) {
+      least_of_accuracy = std::min(least_of_accuracy, point.worth);
+    } else {
+      most_of_others = std::max(most_of_others, point.worth);
+    }
+  }
+  EXPECT_GT(least_of_accuracy, most_of_others);
+  EXPECT_EQ(positions, 5U) << "with the baseline six points of a curve";
+}
+
 TEST(SweepPoints, DrawKnobsChangeNoAsset) {
   const std::vector<Knob> knobs = make_knobs(kAll);
   bool has_draw = false;
