@@ -124,8 +124,11 @@ int run_plan(const Verb& verb, std::span<char* const> args) {
   options.looks = &image_looks();
 
   JobLimit limit(jobs);
-  const Result<scene::Scene> scene = scene::import_scene(
-      path, {.repair = options.repair, .scene = words.scene, .max_decoded = *decoded, .may_lack_images = true});
+  const Result<scene::Scene> scene = scene::import_scene(path, {.repair = options.repair,
+                                                                .scene = words.scene,
+                                                                .max_decoded = *decoded,
+                                                                .may_lack_images = true,
+                                                                .linear_colors = options.linear_colors});
   if (!scene) return print_error(scene.error());
   const auto fail = [&](Error error) {
     error.where = path + (error.where.empty() ? "" : ": ") + error.where;

@@ -129,7 +129,7 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
   GpuOptions gpu_options;
   std::uint32_t jobs = 0;
   std::string max_decoded_text = kDefaultMaxDecodedText, max_memory = "auto";
-  bool repair = false;
+  bool repair = false, linear_colors = false;
   judge::VerifyOptions options;
   OutputOptions output;
   OptionParser parser(verb);
@@ -138,6 +138,8 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
   parser.add_flag("--quick", options.is_quick,
                   "structure, border proof and one measured cut a mesh; the source's triangles are not looked for");
   parser.add_flag("--repair", repair, "repair the source as build --repair does, also where the asset does not say so");
+  parser.add_flag("--linear-colors", linear_colors,
+                  "take colours as build --linear-colors does, also where the asset does not say so");
   parser.add_value("--cuts", options.uniform_cuts, "uniform cuts per mesh that cross-check the border proof");
   parser.add_value("--cameras", options.cameras, "random cameras that cross-check selection and hierarchy");
   parser.add_value("--deviation-cuts", options.deviation_cuts,
@@ -185,11 +187,14 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
   }
   if (gpu_options.is_explained) std::fprintf(stderr, "%s", describe_recorded_plan(*asset).c_str());
   std::vector<FileId> files_read;
-  Result<scene::Scene> source = scene::import_scene(source_path, {.repair = repair || was_repaired(*asset),
-                                                                  .scene = out::read_meta(asset->meta_json()).scene,
-                                                                  .files_read = &files_read,
-                                                                  .max_decoded = *max_decoded,
-                                                                  .may_lack_images = true});
+  const out::MetaInfo meta = out::read_meta(asset->meta_json());
+  Result<scene::Scene> source =
+      scene::import_scene(source_path, {.repair = repair || was_repaired(*asset),
+                                        .scene = meta.scene,
+                                        .files_read = &files_read,
+                                        .max_decoded = *max_decoded,
+                                        .may_lack_images = true,
+                                        .linear_colors = linear_colors || meta.linear_colors});
   output_files().keep(files_read);
   if (!source) return print_error(source.error());
   if (options.is_quick) options.uniform_cuts = options.cameras = 0;  // as it is reported

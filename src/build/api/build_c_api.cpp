@@ -146,6 +146,7 @@ Result<BuildOptions> read_options(const meshlode_build_options& in) {
   out.uv_error = in.uv_error;
   out.uv_error_unit = in.uv_error_is_texels != 0 ? UvErrorUnit::kTexels : UvErrorUnit::kUv;
   out.repair = in.repair != 0;
+  out.linear_colors = in.linear_colors != 0;
   out.keep_topology = in.keep_topology != 0;
   out.aggregate = static_cast<AggregateChoice>(in.aggregate);
   out.aggregate_names = text_of(in.aggregate_names);
@@ -244,6 +245,7 @@ void meshlode_build_defaults(meshlode_build_options* options) {
   options->uv_error = defaults.uv_error;
   options->uv_error_is_texels = defaults.uv_error_unit == meshlode::UvErrorUnit::kTexels ? 1 : 0;
   options->repair = defaults.repair ? 1 : 0;
+  options->linear_colors = defaults.linear_colors ? 1 : 0;
   options->keep_topology = defaults.keep_topology ? 1 : 0;
   options->aggregate = static_cast<uint32_t>(defaults.aggregate);
   options->aggregate_names = nullptr;

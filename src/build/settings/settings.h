@@ -35,13 +35,14 @@ enum class Setting : std::uint8_t {
   kClusterTriangles,
   kGroupClusters,
   kRepair,
+  kLinearColors,
   kKeepTopology,
   kAggregate,
   kPromise,
   kCare,
   kSimplifier,
 };
-constexpr std::size_t kSettingCount = 19;
+constexpr std::size_t kSettingCount = 20;
 
 struct SettingInfo {
   Setting setting;

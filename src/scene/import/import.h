@@ -26,6 +26,8 @@ struct ImportOptions {
   /// An image whose file cannot be opened, and a library of an OBJ's materials, is left out and said so
   /// (Scene::left_out), for geometry does not need it; else it is kIo, as a missing buffer always is.
   bool may_lack_images = false;
+  /// Colours of PLY and STL that are levels (whole numbers) are taken as linear, not as sRGB.
+  bool linear_colors = false;
 };
 
 /// Reads .gltf, .glb, .ply, .obj or .stl (told apart by content where possible, else by extension).
