@@ -123,7 +123,7 @@ TEST_F(ObjAsWritten, WhatIsNotReadIsNamedOnceWithACount) {
   EXPECT_EQ(all_left_out(*scene),
             "the fourth number of v: 1 vertex: a weight for curves; the third number of vt: 1 line: it is not 0; "
             "smoothing groups (s): 1 line: without vn a face is flat; the names of 2 groups (g): groups are no meshes; "
-            "l: 2 lines, points and lines are not triangles; lod: 1 line, not a keyword that is read; ");
+            "l: 2 lines: points and lines are not triangles; lod: 1 line: not a keyword that is read; ");
 }
 
 TEST_F(ObjAsWritten, ObjectsThatStandApartAreMeshesWithNames) {

@@ -14,7 +14,7 @@ namespace meshlode::scene {
 class FaceTriangles {
  public:
   explicit FaceTriangles(const std::vector<Vec3d>& positions) : positions_(positions) {}
-  /// Appends polygon.size() - 2 triangles, or as many as its points allow, to `indices`.
+  /// Appends triangles to `indices`: polygon.size() - 2 where no corner lies on another or on a side.
   /// \pre three corners or more, whose positions are finite
   void append(std::span<const std::uint32_t> polygon, std::vector<std::uint32_t>& indices);
   /// Says what could not be done as it should.

@@ -73,7 +73,7 @@ class ObjMaterials {
     std::uint64_t lines = 0;
     for (const auto& [what, count] : skipped_.counts()) {
       const bool is_phong = std::any_of(std::begin(kPhong), std::end(kPhong),
-                                        [&](std::string_view known) { return is_word(what, known); });
+                                        [&name = what](std::string_view known) { return is_word(name, known); });
       if (is_phong) {
         names += " " + what;
         lines += count;

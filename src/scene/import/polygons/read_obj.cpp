@@ -262,7 +262,7 @@ void ObjReader::report() {
   for (const auto& [keyword, count] : skipped_.counts()) {
     const bool is_line = keyword == "p" || keyword == "l";
     leave_out(shown(keyword), counted(count, "line") +
-                                  (is_line ? ", points and lines are not triangles" : ", not a keyword that is read"));
+                                  (is_line ? ": points and lines are not triangles" : ": not a keyword that is read"));
   }
 }
 

@@ -168,7 +168,7 @@ PolygonFile StlReader::finish() {
   if (points_ != 0) leave_out(counted(points_, "triangle"), "two of their corners are the same point");
   if (solids_ > 1) leave_out("the names of " + counted(solids_, "solid"), "an STL becomes one mesh");
   for (const auto& [word, count] : unknown_.counts()) {
-    leave_out("STL keyword " + shown(word), counted(count, "time") + ", it is not one that is read");
+    leave_out("STL keyword " + shown(word), counted(count, "time") + ": not one that is read");
   }
   PolygonSoup& soup = out_.soup;
   const bool is_colored =
