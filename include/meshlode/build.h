@@ -155,6 +155,8 @@ struct BuildOptions {
   /// Remove and count triangles that touch a bad index or non-finite position, instead of refusing them, that have two
   /// corners in one place, or the same three as an earlier one of their material; orient the rest coherently.
   bool repair = false;
+  /// build_file: whole-number colours of PLY and STL are taken as linear, not as sRGB.
+  bool linear_colors = false;
   /// Every cut of a manifold mesh is a manifold, with its holes, handles and pieces: no edge has more than two
   /// triangles. Takes more triangles, since small holes and handles else close where that is far cheaper.
   bool keep_topology = false;

@@ -99,6 +99,7 @@ typedef struct meshlode_build_options {
   double grid_step, position_error, normal_error, uv_error;
   int uv_error_is_texels;
   int repair;
+  int linear_colors; /* colour levels of PLY and STL are linear, not sRGB */
   int keep_topology; /* every cut of a manifold is one, with its holes, handles and pieces */
   int lock_borders;  /* open borders keep every vertex in every cut: tiles with one grid_step abut at any levels */
   /* What is thinned out by coverage: 0 nothing, 1 meshes and parts of many small pieces, 2 all small pieces, 3 those of

@@ -48,6 +48,7 @@ struct SceneOptions {
   StripEffort strip_effort = StripEffort::kOfPreset;
   std::uint32_t partition_seed = 1;  ///< of METIS; benchmarks vary it, to tell a change from luck
   bool repair = false;               ///< the scene was imported with repair: recorded, because it changes the bytes
+  bool linear_colors = false;        ///< the same of ImportOptions::linear_colors
   format::Promise promise = format::Promise::kPosition;  ///< what errors there are (src/build/promise)
   bool keep_topology = false;                 ///< every cut of a manifold is one (build/simplify/kept_topology.h)
   std::uint32_t max_cluster_triangles = 128;  ///< I2; at most format::kMaxClusterTriangles

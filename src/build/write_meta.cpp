@@ -125,6 +125,7 @@ Json settings_json(const scene::Scene& scene, const PipelineOptions& options,
   settings["codec"] = format::name_of(options.codec);
   if (options.strip_effort != StripEffort::kOfPreset) settings["strip_effort"] = name_of(options.strip_effort);
   settings["repair"] = options.repair;
+  if (options.linear_colors) settings["linear_colors"] = true;
   if (options.promise != format::Promise::kPosition) settings["promise"] = format::name_of(options.promise);
   if (options.keep_topology) settings["keep_topology"] = true;
   if (options.lock_borders) settings["lock_borders"] = true;

@@ -61,6 +61,7 @@ const Saying kSayings[] = {
     {"--group-clusters 12", [](BuildOptions& o) { o.group_clusters = 12; }},
     {"--strict", [](BuildOptions&) {}},  // the library always is
     {"--repair", [](BuildOptions& o) { o.repair = true; }},
+    {"--linear-colors", [](BuildOptions& o) { o.linear_colors = true; }},
     {"--max-memory 64GiB", [](BuildOptions& o) { o.max_memory_bytes = std::uint64_t{64} << 30U; }},
     {"--max-decoded 1MiB", [](BuildOptions& o) { o.max_decoded_bytes = std::uint64_t{1} << 20U; }},
 };

@@ -237,10 +237,13 @@ TEST(Ingredients, AreOtherOnesForEverySettingThatChangesBytes) {
   changed.push_back(plain);
   changed.back().lock_borders = true;
   changed.push_back(plain);
+  changed.back().linear_colors = true;
+  changed.push_back(plain);
   changed.back().aggregate = AggregateChoice::kAuto;
   changed.push_back(plain);
   changed.back().promise = format::Promise::kTexels;
-  std::vector<std::string> texts{settings_text(plain, {}), settings_text(plain, {.repair = true})};
+  std::vector<std::string> texts{settings_text(plain, {}), settings_text(plain, {.repair = true}),
+                                 settings_text(plain, {.linear_colors = true})};
   for (const build::PipelineOptions& options : changed) texts.push_back(settings_text(options, {}));
   std::sort(texts.begin(), texts.end());
   EXPECT_EQ(std::unique(texts.begin(), texts.end()), texts.end());

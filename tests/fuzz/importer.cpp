@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The importer on any bytes, and what lists the files of a scene. The first byte chooses the kind of file, --repair,
-// and whether all scenes are instanced and missing images allowed; a GLB comes as the length of its JSON, its JSON and
+// and whether all scenes are instanced and missing images allowed; what follows "#mtl" in an OBJ is its library, which
+// names a picture that is there; a GLB comes as the length of its JSON, its JSON and
 // its binary chunk, because a fuzzer would spend its time on the three lengths of the container.
 #include <unistd.h>
 
@@ -98,7 +99,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string_view rest(reinterpret_cast<const char*>(data) + 1, size - 1);
   constexpr const char* kNames[] = {"a.glb", "a.gltf", "a.ply", "a.obj", "a.stl"};
   const std::size_t kind = (data[0] & 0x3FU) % std::size(kNames);
-  const auto path = scratch.write(kNames[kind], kind == 0 ? assemble_glb(rest) : std::string(rest));
+  const std::size_t library = kind == 3 ? rest.find("#mtl\n") : std::string_view::npos;
+  if (kind == 3) scratch.write("a.mtl", std::string(library < rest.size() ? rest.substr(library) : ""));
+  if (kind == 2 || kind == 3) scratch.write("a.png", "\x89PNG\r\n");
+  const auto path = scratch.write(kNames[kind], kind == 0 ? assemble_glb(rest) : std::string(rest.substr(0, library)));
   const bool repair = (data[0] & 0x80U) != 0;
   const bool takes_all = (data[0] & 0x40U) != 0;
   const auto scene = meshlode::scene::import_scene(

@@ -71,7 +71,7 @@ std::string jpeg_version() {
 std::vector<LibraryVersion> library_versions() {
   return {
       {"Boost", boost_version(), "exact integers"},
-      {"CGAL", MESHLODE_TEXT(CGAL_VERSION), "enclosing balls, repair"},
+      {"CGAL", MESHLODE_TEXT(CGAL_VERSION), "enclosing balls, repair, dented polygons"},
       {"CLI11", cli11_version(), "the command line"},
       {"Draco", draco::kDracoVersion, "pages, meshes of glTF"},
       {"GLM",

@@ -244,6 +244,7 @@ Status set_options(const BuildWords& words, const LimitWords& limits, batch::Bat
   options.pipeline.looks = &image_looks();
   options.settings_of = [words](const Job& job) { return settings_for(words, job.input, job.root); };
   options.import.repair = options.pipeline.repair;
+  options.import.linear_colors = options.pipeline.linear_colors;
   options.import.scene = words.scene;
   const auto memory = keep_memory_limit(limits.max_memory, limits.outputs);
   if (!memory) return memory.error();

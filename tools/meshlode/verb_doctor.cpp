@@ -77,6 +77,8 @@ int run_doctor(const Verb& verb, std::span<char* const> args) {
                    "exit with 6 where one of these is found: ids, high, medium (and worse) or any, between commas");
   parser.add_value("--scene", options.scene, "glTF: the name or index of the scene to examine, or all");
   add_allow_outside_option(parser, allow_outside);
+  parser.add_flag("--linear-colors", options.linear_colors,
+                  "colour levels of PLY and STL are taken as linear, as build --linear-colors does");
   add_max_decoded_option(parser, max_decoded);
   add_output_options(parser, output);
   if (const auto exit_code = parser.parse(args)) return *exit_code;

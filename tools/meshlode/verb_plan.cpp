@@ -132,7 +132,8 @@ int run_plan(const Verb& verb, std::span<char* const> args) {
                                                                 .scene = words.scene,
                                                                 .max_decoded = *decoded,
                                                                 .may_lack_images = true,
-                                                                .allow_outside = std::move(*allowed)});
+                                                                 .allow_outside = std::move(*allowed),
+                                                                 .linear_colors = options.linear_colors});
   if (!scene) return print_error(scene.error());
   const auto fail = [&](Error error) {
     error.where = path + (error.where.empty() ? "" : ": ") + error.where;

@@ -159,7 +159,7 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
   std::uint32_t jobs = 0;
   std::string max_decoded_text = kDefaultMaxDecodedText, max_memory = "auto";
   std::vector<std::string> allow_outside;
-  bool repair = false, is_forced = false;
+  bool repair = false, linear_colors = false, is_forced = false;
   judge::VerifyOptions options;
   OutputOptions output;
   OptionParser parser(verb);
@@ -168,6 +168,8 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
   parser.add_flag("--quick", options.is_quick,
                   "structure, border proof and one measured cut a mesh; the source's triangles are not looked for");
   parser.add_flag("--repair", repair, "repair the source as build --repair does, also where the asset does not say so");
+  parser.add_flag("--linear-colors", linear_colors,
+                  "take colours as build --linear-colors does, also where the asset does not say so");
   parser.add_flag("--force", is_forced, "compare with another scene, too, than the one that the asset was built from");
   parser.add_value("--cuts", options.uniform_cuts, "uniform cuts per mesh that cross-check the border proof");
   parser.add_value("--cameras", options.cameras, "random cameras that cross-check selection and hierarchy");
@@ -220,12 +222,14 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
   }
   if (gpu_options.is_explained) std::fprintf(stderr, "%s", describe_recorded_plan(*asset).c_str());
   std::vector<FileId> files_read;
-  Result<scene::Scene> source = scene::import_scene(source_path, {.repair = repair || was_repaired(*asset),
-                                                                  .scene = out::read_meta(asset->meta_json()).scene,
-                                                                  .files_read = &files_read,
-                                                                  .max_decoded = *max_decoded,
-                                                                  .may_lack_images = true,
-                                                                  .allow_outside = std::move(*allowed)});
+  const out::MetaInfo meta = out::read_meta(asset->meta_json());
+  Result<scene::Scene> source =
+      scene::import_scene(source_path, {.repair = repair || was_repaired(*asset),
+                                        .scene = meta.scene,
+                                        .files_read = &files_read,
+                                        .max_decoded = *max_decoded,
+                                        .may_lack_images = true,
+                                        .linear_colors = linear_colors || meta.linear_colors});
   output_files().keep(files_read);
   if (!source) return print_error(source.error());
   const Result<MappedFile> file = MappedFile::open(source_path);

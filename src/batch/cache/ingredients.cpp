@@ -84,10 +84,10 @@ std::string settings_text(const build::PipelineOptions& options, const scene::Im
   const auto& [error_tier, attributes, keep, drop, grid_step, position_error, normal_error, uv_error,
                uv_error_is_texels, uv_error_is_default, aggregate, aggregate_names, lock_borders] =
       static_cast<const build::MeshOptions&>(options);
-  const auto& [preset, codec, strip_effort, partition_seed, repair, promise, keep_topology, max_cluster_triangles,
-               max_cluster_vertices, group_clusters, max_memory, spills, mesh_store, looks, experiment, mesh_options] =
-      static_cast<const build::SceneOptions&>(options);
-  const auto& [import_repair, scene, files_read, max_decoded, may_lack_images, allow_outside] = import;
+  const auto& [preset, codec, strip_effort, partition_seed, repair, linear_colors, promise, keep_topology,
+               max_cluster_triangles, max_cluster_vertices, group_clusters, max_memory, spills, mesh_store, looks,
+               experiment, mesh_options] = static_cast<const build::SceneOptions&>(options);
+  const auto& [import_repair, scene, files_read, max_decoded, may_lack_images, allow_outside, import_linear] = import;
   static_cast<void>(mesh_options);     // not known before the import: mesh_rules_text()
   static_cast<void>(max_memory);       // whether, not what
   static_cast<void>(spills);           // where it lies meanwhile
@@ -110,6 +110,8 @@ std::string settings_text(const build::PipelineOptions& options, const scene::Im
       {"partition-seed", text_of(std::uint64_t{partition_seed})},
       {"repair", text_of(repair)},
       {"import-repair", text_of(import_repair)},
+      {"linear-colors", text_of(linear_colors)},
+      {"import-linear-colors", text_of(import_linear)},
       {"promise", format::name_of(promise)},
       {"keep-topology", text_of(keep_topology)},
       {"lock-borders", text_of(lock_borders)},

@@ -120,6 +120,7 @@ class Run {
     settled->options.looks = pipeline_.looks;
     pipeline_ = std::move(settled->options);
     import_.repair = pipeline_.repair;
+    import_.linear_colors = pipeline_.linear_colors;
     return Ok{};
   }
 

@@ -90,6 +90,7 @@ Result<build::PipelineOptions> make_pipeline_options(const BuildOptions& options
   pipeline.max_cluster_triangles = options.cluster_triangles;
   pipeline.group_clusters = options.group_clusters;
   pipeline.repair = options.repair;
+  pipeline.linear_colors = options.linear_colors;
   pipeline.keep_topology = options.keep_topology;
   pipeline.lock_borders = options.lock_borders;
   pipeline.aggregate = options.aggregate;
@@ -189,6 +190,7 @@ Status build_file(const std::filesystem::path& input, const std::filesystem::pat
   return guarded({}, [&]() -> Status {
     scene::ImportOptions import_options;
     import_options.repair = options.repair;
+    import_options.linear_colors = options.linear_colors;
     import_options.max_decoded = options.max_decoded_bytes;
     std::vector<FileId> files_read;
     import_options.files_read = &files_read;

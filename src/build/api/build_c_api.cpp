@@ -146,6 +146,7 @@ Result<BuildOptions> read_options(const meshlode_build_options& in) {
   out.uv_error = in.uv_error;
   out.uv_error_unit = in.uv_error_is_texels != 0 ? UvErrorUnit::kTexels : UvErrorUnit::kUv;
   out.repair = in.repair != 0;
+  out.linear_colors = in.linear_colors != 0;
   out.keep_topology = in.keep_topology != 0;
   out.lock_borders = in.lock_borders != 0;
   out.aggregate = static_cast<AggregateChoice>(in.aggregate);
@@ -245,6 +246,7 @@ void meshlode_build_defaults(meshlode_build_options* options) {
   options->uv_error = defaults.uv_error;
   options->uv_error_is_texels = defaults.uv_error_unit == meshlode::UvErrorUnit::kTexels ? 1 : 0;
   options->repair = defaults.repair ? 1 : 0;
+  options->linear_colors = defaults.linear_colors ? 1 : 0;
   options->keep_topology = defaults.keep_topology ? 1 : 0;
   options->lock_borders = defaults.lock_borders ? 1 : 0;
   options->aggregate = static_cast<uint32_t>(defaults.aggregate);

@@ -41,6 +41,8 @@ constexpr std::array<SettingInfo, kSettingCount> kSettings{{
     {Setting::kRepair, "repair",
      "remove unusable, degenerate and duplicate triangles, orient the rest, split where it is no surface", "false",
      false},
+    {Setting::kLinearColors, "linear-colors", "colour levels of PLY and STL are taken as linear, not as sRGB", "false",
+     false},
     {Setting::kKeepTopology, "keep-topology",
      "every cut of a manifold is a manifold with its holes, handles and pieces, for more triangles", "false", false},
     {Setting::kLockBorders, "lock-borders",
@@ -222,6 +224,7 @@ PipelineOptions options_of(const std::array<SettledWord, kSettingCount>& words) 
       parse_cluster_triangles(word(Setting::kClusterTriangles)).value_or(options.max_cluster_triangles);
   options.group_clusters = parse_group_clusters(word(Setting::kGroupClusters)).value_or(options.group_clusters);
   options.repair = word(Setting::kRepair) == "true";
+  options.linear_colors = word(Setting::kLinearColors) == "true";
   options.keep_topology = word(Setting::kKeepTopology) == "true";
   options.lock_borders = word(Setting::kLockBorders) == "true";
   options.aggregate = value_in(kAggregateChoiceNames, word(Setting::kAggregate)).value_or(AggregateChoice::kNamed);
@@ -244,7 +247,8 @@ const SettingInfo& info_of(Setting setting) {
 }
 
 bool is_flag(Setting setting) {
-  return setting == Setting::kRepair || setting == Setting::kKeepTopology || setting == Setting::kLockBorders;
+  return setting == Setting::kRepair || setting == Setting::kLinearColors || setting == Setting::kKeepTopology ||
+         setting == Setting::kLockBorders;
 }
 
 std::vector<std::string> choices_of(Setting setting) {
@@ -259,6 +263,7 @@ std::vector<std::string> choices_of(Setting setting) {
     case Setting::kCodec: return all_names(format::kCodecNames);
     case Setting::kStripEffort: return all_names(kStripEffortNames);
     case Setting::kRepair:
+    case Setting::kLinearColors:
     case Setting::kKeepTopology:
     case Setting::kLockBorders: return {"false", "true"};
     case Setting::kPromise: return all_names(format::kPromiseNames);

@@ -35,6 +35,7 @@ enum class Setting : std::uint8_t {
   kClusterTriangles,
   kGroupClusters,
   kRepair,
+  kLinearColors,
   kKeepTopology,
   kLockBorders,
   kAggregate,

@@ -103,9 +103,9 @@ void add_experiment(KeyHasher& key, const Experiment& experiment) {
 }
 
 void add_scene_options(KeyHasher& key, const SceneOptions& options) {
-  const auto& [preset, codec, strip_effort, partition_seed, repair, promise, keep_topology, max_cluster_triangles,
-               max_cluster_vertices, group_clusters, max_memory, spills, mesh_store, looks, experiment, mesh_options] =
-      options;
+  const auto& [preset, codec, strip_effort, partition_seed, repair, linear_colors, promise, keep_topology,
+               max_cluster_triangles, max_cluster_vertices, group_clusters, max_memory, spills, mesh_store, looks,
+               experiment, mesh_options] = options;
   key.value(preset);
   key.value(partition_seed);
   key.value(max_cluster_triangles);
@@ -114,9 +114,10 @@ void add_scene_options(KeyHasher& key, const SceneOptions& options) {
   key.value(keep_topology);
   key.value(promise);
   add_experiment(key, experiment);
-  static_cast<void>(strip_effort);  // EncodeOptions has what it came to
-  static_cast<void>(codec);         // of the pages on disk, later
-  static_cast<void>(repair);        // the triangles are as they are
+  static_cast<void>(strip_effort);   // EncodeOptions has what it came to
+  static_cast<void>(codec);          // of the pages on disk, later
+  static_cast<void>(repair);         // the triangles are as they are
+  static_cast<void>(linear_colors);  // the same
   static_cast<void>(max_memory);
   static_cast<void>(spills);
   static_cast<void>(mesh_store);

@@ -83,6 +83,7 @@ MetaInfo read_meta(std::string_view meta_json) {
     meta.preset = string_at(*settings, "preset");
     meta.scene = string_at(*settings, "scene");
     meta.repair = settings->contains("repair") && (*settings)["repair"] == true;
+    meta.linear_colors = settings->contains("linear_colors") && (*settings)["linear_colors"] == true;
     for (const char* key : {"cluster_triangles", "max_cluster_triangles", "triangles_per_cluster"}) {
       const auto cap = TreeHandle(*settings).find(key).index().value_or(0);
       if (cap >= 1 && cap <= 256) meta.cluster_triangles = static_cast<std::uint32_t>(cap);

@@ -28,6 +28,7 @@ struct MetaInfo {
   std::vector<LeftOut> left_outs;          ///< of `left_out`, for text
   std::uint32_t cluster_triangles = 0;     ///< of the settings; 0 where it is not said
   bool repair = false;                     ///< of the settings: the source was repaired
+  bool linear_colors = false;              ///< the same: colour levels were taken as linear
   std::string scene;                       ///< of the settings: the scene that was asked for; empty: the default
 };
 [[nodiscard]] MetaInfo read_meta(std::string_view meta_json);

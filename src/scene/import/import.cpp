@@ -10,11 +10,11 @@
 
 #include "base/file.h"
 #include "base/guarded.h"
-#include "base/hash.h"
-#include "base/utf8.h"
 #include "scene/import/gltf/gltf_import.h"
+#include "scene/import/polygons/import_polygons.h"
 #include "scene/import/polygons/obj_materials.h"
 #include "scene/import/polygons/polygon_soup.h"
+#include "scene/import/polygons/text_scan.h"
 #include "scene/repair/repair.h"
 
 namespace meshlode::scene {
@@ -34,7 +34,8 @@ std::string lower_extension(const std::filesystem::path& path) {
 std::optional<Format> find_format(const std::filesystem::path& path, std::span<const std::uint8_t> bytes) {
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   if (text.starts_with("glTF")) return Format::kGltf;
-  if (text.starts_with("ply\n") || text.starts_with("ply\r\n")) return Format::kPly;
+  std::string_view rest = text_of(bytes.first(std::min<std::size_t>(bytes.size(), 16)));
+  if (rest.starts_with("ply") && trimmed(take_line(rest)) == "ply") return Format::kPly;
   const std::string extension = lower_extension(path);
   if (extension == ".gltf" || extension == ".glb") return Format::kGltf;
   if (extension == ".ply") return Format::kPly;
@@ -59,45 +60,8 @@ Status check_is_scene(const std::filesystem::path& path, std::span<const std::ui
   return Error{ErrorCode::kInvalid, path.string(), "the file is empty: nothing but white space"};
 }
 
-/// OBJ's texture coordinates begin below, glTF's above.
-void turn_uvs(std::vector<Primitive>& primitives) {
-  for (Primitive& primitive : primitives) {
-    for (Vec2f& uv : primitive.uvs[0]) uv.y = 1.0F - uv.y;
-  }
-}
-
-/// One mesh, one instance; the materials that an OBJ names, or the default one.
-Result<Scene> import_polygons(Format format, const std::filesystem::path& path, std::span<const std::uint8_t> bytes,
-                              const ImportOptions& options) {
-  const auto named = [&](const Error& error) {
-    return Error{error.code, error.where.empty() ? path.string() : path.string() + ": " + error.where, error.detail};
-  };
-  auto file = format == Format::kPly   ? read_ply(bytes, options)
-              : format == Format::kObj ? read_obj(bytes, options)
-                                       : read_stl(bytes, options);
-  if (!file) return named(file.error());
-  Scene scene;
-  scene.left_out = std::move(file->left_out);
-  SourceMesh mesh;
-  mesh.name = as_utf8(path.stem().string());
-  mesh.drops = file->drops;
-  Hasher hasher;
-  hasher.update(bytes);
-  if (const Status added = add_obj_materials(path, *file, options, hasher, scene); !added) return named(added.error());
-  auto primitives = triangulate(std::move(file->soup), options, mesh.drops, scene.left_out);
-  if (!primitives) return named(primitives.error());
-  for (Primitive& primitive : *primitives) {
-    if (!primitive.material.is_valid()) primitive.material = MaterialId(scene.materials.size() - 1);
-  }
-  if (primitives->size() == 1 && primitives->front().indices.empty() && !primitives->front().positions.empty()) {
-    scene.left_out.push_back({"points", "the file has no faces"});
-  }
-  if (!scene.blobs.empty()) turn_uvs(*primitives);  // without a texture nobody samples with them
-  mesh.primitives = std::move(*primitives);
-  scene.instances.push_back({mesh.name, 0, MeshId(0U), Mat4d(1.0)});
-  scene.meshes.push_back(std::move(mesh));
-  scene.source_hash = to_hex(hasher.digest());
-  return scene;
+PolygonReader reader_of(Format format) {
+  return format == Format::kPly ? &read_ply : format == Format::kObj ? &read_obj : &read_stl;
 }
 
 }  // namespace
@@ -116,8 +80,8 @@ Result<Scene> import_scene(const std::filesystem::path& path, const ImportOption
     if (*format != Format::kGltf && !options.scene.empty() && options.scene != "all") {
       return Error{ErrorCode::kUsage, path.string(), "--scene: only glTF has scenes"};
     }
-    auto scene =
-        *format == Format::kGltf ? import_gltf(path, bytes, options) : import_polygons(*format, path, bytes, options);
+    auto scene = *format == Format::kGltf ? import_gltf(path, bytes, options)
+                                          : import_polygons(reader_of(*format), path, bytes, options);
     if (!scene) return scene;
     scene->source_name = path.filename().string();
     if (options.repair) repair_scene(*scene);
@@ -134,6 +98,7 @@ Result<std::vector<FileReference>> list_references(const std::filesystem::path& 
     const auto format = find_format(path, file->bytes());
     if (format == Format::kGltf) return list_gltf_references(path, file->bytes(), allow_outside);
     if (format == Format::kObj) return list_obj_references(path, file->bytes(), allow_outside);
+    if (format == Format::kPly) return list_ply_references(path, file->bytes(), allow_outside);
     return std::vector<FileReference>{};
   });
 }

@@ -31,6 +31,8 @@ struct ImportOptions {
   /// Folders beside the scene's own from which files may be opened that the scene names; links that leave all of them
   /// are not followed.
   std::vector<std::filesystem::path> allow_outside{};
+  /// Colours of PLY and STL that are levels (whole numbers) are taken as linear, not as sRGB.
+  bool linear_colors = false;
 };
 
 /// Reads .gltf, .glb, .ply, .obj or .stl (told apart by content where possible, else by extension).

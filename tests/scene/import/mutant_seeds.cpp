@@ -88,6 +88,37 @@ void add_model(std::vector<SeedFile>& seeds, const std::string& folder, const st
   seeds.push_back({name.substr(name.find_last_of('/') + 1), std::move(bytes)});
 }
 
+/// What programs write beyond plain triangles.
+void add_polygon_seeds(std::vector<SeedFile>& seeds) {
+  seeds.push_back(
+      {"wedges.ply",
+       "ply\rformat ascii 1.0\rcomment TextureFile a.png\relement vertex 4\rproperty float x\r"
+       "property float y\rproperty float z\rproperty uchar quality\relement face 2\r"
+       "property list uchar int vertex_indices\rproperty list uchar float texcoord\rproperty int texnumber\r"
+       "property uchar red\rproperty uchar green\rproperty uchar blue\rend_header\r0 0 0 1\r1 0 0 2\r"
+       "1 1 0 3\r0 1 0 4\r3 0 1 2 6 0 0 1 0 1 1 0 9 8 7\r3 0 2 3 0 -1 1 2 3 4 5\r"});
+  seeds.push_back({"strips.ply",
+                   "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+                   "element tristrips 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n"
+                   "6 0 1 2 -1 2 3\n"});
+  seeds.push_back(
+      {"frame.obj",
+       "mtllib a.mtl\nv 0 0 0\nv 4 0 0 1 0 0\nv 4 4 0\nv 0 4 0\nv 1 1 0\nv 1 3 0\nv 3 3 0\nv 3 1 0\nvt 0 0\n"
+       "vn 0 0 1\no one\ng part\ns 1\nusemtl m\nf 1/1 2/1 3/1 4/1 1/1 5/1 6/1 7/1 8/1 5/1\no two\n"
+       "f 5//1 8//1 \\\n 7//1\n#mtl\nnewmtl m\nKd 1 0 0\nKe 2 1 0\nTr 1\nPr 0.5\nmap_Kd -s 1 1 1 a.png\n"
+       "map_d a.png\nnorm a.png\nmap_Pr a.png\nmap_Pm a.png\nnewmtl n\nd 0.5\nillum 2\n"});
+  std::string stl = "COLOR=" + std::string("\xFF\x80\0\xFF", 4);
+  stl.resize(84, '\0');
+  stl.append(12, '\0');
+  for (const float f : {0.0F, 0.0F, 0.0F, 1.0F, 0.0F, 0.0F, 0.0F, 1.0F, 0.0F}) {
+    stl.append(reinterpret_cast<const char*>(&f), 4);
+  }
+  seeds.push_back({"colored.stl", stl + "\x1F\x80rest"});
+  seeds.push_back({"capitals.stl",
+                   "\xEF\xBB\xBF SOLID A\rFACET NORMAL 0 0 -1.#IND\rOUTER LOOP\rVERTEX 0 0 0\rVERTEX 1 0 0\r"
+                   "VERTEX 0 1 0\rEND LOOP\rENDFACET\rENDSOLID A\r"});
+}
+
 }  // namespace
 
 std::vector<SeedFile> make_seed_files() {
@@ -132,6 +163,7 @@ std::vector<SeedFile> make_seed_files() {
   seeds.push_back({"seam.obj",
                    "mtllib a.mtl\nv 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 1 1 0 0 0 1\nv 0 1 0 1 1 1\nvt 0 0\nvt 1 0\nvt 1 1\n"
                    "vn 0 0 1\nusemtl b\nf 1/1/1 2/2/1 3/3/1\nf -4/3/-1 -2/1/1 -1/2/1\n"});
+  add_polygon_seeds(seeds);
   seeds.push_back({"text.stl",
                    "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"
                    "endfacet\nendsolid a\n"});

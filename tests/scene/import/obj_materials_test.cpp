@@ -5,6 +5,7 @@
 
 #include "gltf_builder.h"
 #include "scene/import/json.h"
+#include "scene/import/polygons/mtl_material.h"
 #include "scene/import/polygons/read_mtl.h"
 
 namespace meshlode::testing {
@@ -33,7 +34,7 @@ TEST(ImportObjMaterials, ColoursTexturesAndOpacityAreTheScenes) {
   folder.write("my tex.png", kPng);
   const auto scene = scene::import_scene(folder.write("a.obj", obj(kRed + kGlass)), {});
   ASSERT_TRUE(scene) << describe(scene);
-  EXPECT_EQ(left_out(*scene), "");
+  EXPECT_EQ(left_out(*scene), "MTL option -clamp of map_Kd; MTL option -s of map_Kd; MTL Ns; ");
   ASSERT_EQ(scene->materials.size(), 2U);
   const scene::SceneMaterial &red = scene->materials[0], &glass = scene->materials[1];
   EXPECT_EQ(red.name, "red");
@@ -98,7 +99,7 @@ TEST(ImportObjMaterials, WhatIsMissingIsAWarningOrAnError) {
   const auto untextured = scene::import_scene(path, {.may_lack_images = true});
   EXPECT_EQ(strict(), path.string() + ": map_Kd my tex.png: it cannot be opened below the scene's folder");
   ASSERT_TRUE(untextured) << describe(untextured);
-  EXPECT_EQ(left_out(*untextured), "map_Kd my tex.png; ");
+  EXPECT_EQ(left_out(*untextured), "map_Kd my tex.png; MTL option -clamp of map_Kd; MTL option -s of map_Kd; MTL Ns; ");
   EXPECT_EQ(untextured->materials[1].base_color_texture, kNoId);
   EXPECT_EQ(untextured->meshes[0].primitives[1].uvs[0][1], Vec2f(1.0F, 0.25F));  // nobody samples with them
   EXPECT_NE(untextured->source_hash, bare->source_hash);                         // it covers the library
@@ -169,14 +170,26 @@ TEST(ReadMtl, WhatMakesNoSenseIsPassedOver) {
       "Kd 1 1 1\nmap_Kd lost.png\nnewmtl a\nKd nan 0 0\nKd 1 x 0\nKd spectral a.rfl\nd -halo 0.5\nTr 0.25\nKd 2 -1 "
       "0.5\n"
       "map_Kd -o 0.1 0.2 0.3 -mm 0 1 -bm 1e99 dir/b c.png \t\r\nnewmtl\nnewmtl b\nmap_Kd\nmap_Kd -s\nTr inf\n";
-  const auto materials = scene::read_mtl({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+  const auto read = scene::read_mtl({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+  const auto& materials = read.materials;
   ASSERT_EQ(materials.size(), 3U);
   EXPECT_EQ(materials[0].name, "a");
   EXPECT_EQ(materials[0].diffuse, (std::array{1.0, 0.0, 0.5}));
-  EXPECT_EQ(materials[0].opacity, 0.75);
-  EXPECT_EQ(materials[0].texture, "dir/b c.png");
-  EXPECT_EQ(materials[2].texture, "");
-  EXPECT_EQ(materials[2].opacity, 1.0);
+  EXPECT_EQ(scene::opacity_of(materials[0]), 0.75);
+  EXPECT_EQ(materials[0].base_color.file, "dir/b c.png");
+  EXPECT_EQ(materials[2].base_color.file, "");
+  EXPECT_EQ(scene::opacity_of(materials[2]), 1.0);
+  const std::map<std::string, std::uint64_t, std::less<>> skipped{{"Kd before any newmtl", 1},
+                                                                  {"map_Kd before any newmtl", 1},
+                                                                  {"Kd without a value that makes sense", 3},
+                                                                  {"d without a value that makes sense", 1},
+                                                                  {"option -o of map_Kd", 1},
+                                                                  {"option -mm of map_Kd", 1},
+                                                                  {"option -bm of map_Kd", 1},
+                                                                  {"map_Kd without a value that makes sense", 2},
+                                                                  {"option -s of map_Kd", 1},
+                                                                  {"Tr without a value that makes sense", 1}};
+  EXPECT_EQ(read.skipped.counts(), skipped);
 }
 
 }  // namespace

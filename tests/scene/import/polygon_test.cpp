@@ -77,10 +77,13 @@ TEST_F(ImportPolygons, PlyBinaryOfBothOrdersIsTheSameMesh) {
     EXPECT_EQ(p.indices, (Corners{0, 1, 2}));
     EXPECT_EQ(p.positions[1], Vec3d(2.5, 0, -0.25));
     ASSERT_EQ(p.colors.size(), 3U);
-    EXPECT_FLOAT_EQ(p.colors[0].z, 0.2F);
+    EXPECT_FLOAT_EQ(p.colors[0].z, 0.033104766F);  // level 51 of sRGB
     EXPECT_FLOAT_EQ(p.colors[0].w, 1.0F);
     EXPECT_EQ(p.normals[2], Vec3f(0, 0, 1));
-    EXPECT_EQ(scene->left_out.size(), 1U);  // flavour
+    ASSERT_EQ(scene->left_out.size(), 2U);
+    EXPECT_EQ(scene->left_out[0].what, "vertex property flavour");
+    EXPECT_EQ(scene->left_out[1].what, "face property kind");
+    EXPECT_EQ(scene->left_out[1].why, "it is not one that is kept: 1 face");
   }
 }
 
@@ -210,10 +213,12 @@ TEST_F(ImportPolygons, PlyColoursOfAnyTypeAreEightBits) {
                                            {"float", "2", 255},
                                            {"int", "-5", 0}}) {
     const std::string t = std::string("property ") + type + " ";
-    const auto scene = read("a.ply", "ply\nformat ascii 1.0\nelement vertex 3\n" + t + "red\n" + t + "green\n" + t +
-                                         "blue\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n"
-                                         "property list uchar int vertex_indices\nend_header\n0 0 0 0 0 0\n" +
-                                         value + " 0 0 1 0 0\n0 0 0 0 1 0\n3 0 1 2\n");
+    const auto scene = read("a.ply",
+                            "ply\nformat ascii 1.0\nelement vertex 3\n" + t + "red\n" + t + "green\n" + t +
+                                "blue\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n"
+                                "property list uchar int vertex_indices\nend_header\n0 0 0 0 0 0\n" +
+                                value + " 0 0 1 0 0\n0 0 0 0 1 0\n3 0 1 2\n",
+                            {.linear_colors = true});
     ASSERT_TRUE(scene) << describe(scene);
     EXPECT_EQ(primitive(scene).colors[1], Vec4f(static_cast<float>(level) / 255.0F, 0.0F, 0.0F, 1.0F)) << type;
   }
@@ -260,8 +265,6 @@ TEST_F(ImportPolygons, StlCornersAreOneVertexWhereTheyAreEqualAndOnlyThere) {
 
 TEST_F(ImportPolygons, StlFaultsAreRefusedAndNothingIsDroppedQuietly) {
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-  expect_invalid(read("a.stl", stl_binary(4000000000U, {{0, 0, 0, 1, 0, 0, 0, 1, 0}})), "header");
-  expect_invalid(read("a.stl", stl_binary(2, {{0, 0, 0, 1, 0, 0, 0, 1, 0}})), "header");
   expect_invalid(read("a.stl", "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n"), "facet 0");
   expect_invalid(read("a.stl", "solid\nfacet\nouter loop\nvertex 0 0 x\n"), "facet 0");
   const std::vector<std::array<float, 9>> facets = {
@@ -272,7 +275,7 @@ TEST_F(ImportPolygons, StlFaultsAreRefusedAndNothingIsDroppedQuietly) {
   EXPECT_EQ(repaired->meshes[0].drops.repaired, 1U);
   EXPECT_EQ(primitive(repaired).indices.size(), 3U);
   ASSERT_EQ(repaired->left_out.size(), 1U);
-  EXPECT_EQ(repaired->left_out[0].what, "1 triangles");
+  EXPECT_EQ(repaired->left_out[0].what, "1 triangle");
 }
 
 TEST_F(ImportPolygons, ExtremeSizesSurvive) {

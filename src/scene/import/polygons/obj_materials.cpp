@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <map>
-#include <optional>
 #include <set>
 #include <utility>
 #include <vector>
@@ -13,6 +12,7 @@
 #include "scene/import/gltf/uri.h"
 #include "scene/import/image_mime.h"
 #include "scene/import/json.h"
+#include "scene/import/polygons/mtl_material.h"
 #include "scene/import/polygons/read_mtl.h"
 #include "scene/import/polygons/text_scan.h"
 
@@ -20,18 +20,21 @@ namespace meshlode::scene {
 
 namespace {
 
-/// A name of the file's for a terminal.
-std::string shown(std::string_view name) {
-  std::string out(name.substr(0, 64));
-  std::replace_if(
-      out.begin(), out.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }, '?');
-  return out;
-}
-
-/// Windows writes its paths the other way.
-std::string with_slashes(std::string name) {
-  std::replace(name.begin(), name.end(), '\\', '/');
-  return name;
+/// False where the image plainly has no alpha: JPEG, and a PNG of a colour type without and no tRNS.
+bool may_have_alpha(std::span<const std::uint8_t> bytes) {
+  const std::string_view mime = sniff_image_mime(bytes);
+  if (mime == "image/jpeg") return false;
+  if (mime != "image/png" || bytes.size() < 33) return true;
+  if ((bytes[25] & 4U) != 0) return true;
+  for (std::size_t at = 8; bytes.size() - at >= 12;) {
+    const std::size_t length = std::size_t{bytes[at]} << 24U | std::size_t{bytes[at + 1]} << 16U |
+                               std::size_t{bytes[at + 2]} << 8U | bytes[at + 3];
+    const std::string_view type(reinterpret_cast<const char*>(bytes.data()) + at + 4, 4);
+    if (type == "tRNS") return true;
+    if (type == "IDAT" || length > bytes.size() - at - 12) return false;
+    at += 12 + length;
+  }
+  return false;
 }
 
 class ObjMaterials {
@@ -41,6 +44,7 @@ class ObjMaterials {
 
   Status run(const PolygonFile& file) {
     for (const std::string& line : file.material_libraries) open_library(line);
+    for (const MtlMaterial& material : file.materials) add(material.name, material);
     std::set<std::string> unknown;
     for (const std::string& name : file.material_names) {
       const auto found = by_name_.find(name);
@@ -52,6 +56,7 @@ class ObjMaterials {
                     (unknown.size() > 1 ? " and " + std::to_string(unknown.size() - 1) + " more" : ""),
                 "no mtllib that could be read has it; it is plain white");
     }
+    report();
     const auto& used = file.soup.polygon_materials;  // kNoId before any usemtl
     if (used.empty() || std::find(used.begin(), used.end(), kNoId) != used.end()) scene_.materials.emplace_back();
     if (!materials_.empty()) write_document();
@@ -61,6 +66,29 @@ class ObjMaterials {
  private:
   void leave_out(std::string what, std::string why) { scene_.left_out.push_back({std::move(what), std::move(why)}); }
 
+  /// What the libraries have and glTF, or its place here, has not.
+  void report() {
+    constexpr std::string_view kPhong[] = {"ka", "ks", "ns", "ni", "illum", "tf", "sharpness"};
+    std::string names;
+    std::uint64_t lines = 0;
+    for (const auto& [what, count] : skipped_.counts()) {
+      const bool is_phong = std::any_of(std::begin(kPhong), std::end(kPhong),
+                                        [&name = what](std::string_view known) { return is_word(name, known); });
+      if (is_phong) {
+        names += " " + what;
+        lines += count;
+      } else {
+        leave_out("MTL " + what, counted(count, "line") + " passed over");
+      }
+    }
+    if (lines != 0) leave_out("MTL" + names, counted(lines, "line") + " of another shading than glTF's");
+    if (!invisible_.empty()) {
+      leave_out("MTL Tr 1 of " + counted(invisible_.size(), "material"),
+                "nobody would see them, so that they are opaque: " + shown(*invisible_.begin()));
+    }
+    for (const auto& [what, why] : lost_maps_) leave_out(what, why);
+  }
+
   /// A file that geometry does not need.
   void lack(const std::string& what) {
     const char* const why = "it cannot be opened below the scene's folder";
@@ -69,7 +97,7 @@ class ObjMaterials {
   }
 
   Result<MappedFile> open(const std::string& name, std::filesystem::path& path) {
-    auto resolved = resolve_below(folder_, with_slashes(name), options_.allow_outside);
+    auto resolved = resolve_named(folder_, name, options_.allow_outside);
     if (!resolved) return resolved.error();
     path = *resolved;
     auto file = MappedFile::open(path);
@@ -84,10 +112,12 @@ class ObjMaterials {
     if (!file) return false;
     if (!read_.insert(path).second) return true;
     hasher_.update(file->bytes());
-    for (MtlMaterial& material : read_mtl(file->bytes())) {
+    MtlFile library = read_mtl(file->bytes());
+    for (MtlMaterial& material : library.materials) {
       std::string key = material.name;
       by_name_.try_emplace(std::move(key), std::move(material));  // the first of a name counts
     }
+    for (const auto& [what, count] : library.skipped.counts()) skipped_.add(what, count);
     return true;
   }
 
@@ -102,69 +132,76 @@ class ObjMaterials {
     }
   }
 
-  /// The image of that name; kNoId where it cannot be opened, which is said once.
-  std::uint32_t image_of(const std::string& name) {
-    if (const auto known = image_by_name_.find(name); known != image_by_name_.end()) return known->second;
-    std::uint32_t& image = image_by_name_[name];
+  /// The image of a map; kNoId where there is none, or it cannot be opened, which is said once.
+  std::uint32_t image_of(const MtlMap& map) {
+    if (map.file.empty()) return kNoId;
+    if (const auto known = image_by_name_.find(map.file); known != image_by_name_.end()) return known->second;
+    std::uint32_t& image = image_by_name_[map.file];
     image = kNoId;
     std::filesystem::path path;
-    const auto file = open(name, path);
+    const auto file = open(map.file, path);
     if (!file) {
-      lack("map_Kd " + shown(name));
+      lack(map.keyword + " " + shown(map.file));
       return kNoId;
     }
     const auto [known, is_new] = image_by_path_.try_emplace(path, static_cast<std::uint32_t>(images_.size()));
     image = known->second;
-    if (!is_new) return image;
-    hasher_.update(file->bytes());
+    if (is_new) add_image(path, file->bytes());
+    return image;
+  }
+
+  void add_image(const std::filesystem::path& path, std::span<const std::uint8_t> bytes) {
+    hasher_.update(bytes);
     SceneBlob blob;
     blob.name = as_utf8(path.filename().string());
-    blob.mime_type = std::string(sniff_image_mime(file->bytes()));
-    blob.source_index = image;
-    blob.bytes.assign(file->bytes().begin(), file->bytes().end());
+    blob.mime_type = std::string(sniff_image_mime(bytes));
+    blob.source_index = static_cast<std::uint32_t>(images_.size());
+    blob.bytes.assign(bytes.begin(), bytes.end());
     Json json = Json::make_object();
     json.set("name", Json::make_string(blob.name));
     if (!blob.mime_type.empty()) json.set("mimeType", Json::make_string(blob.mime_type));
     json.set("blob", Json::make_index(scene_.blobs.size()));
     images_.push_back(std::move(json));
     scene_.blobs.push_back(std::move(blob));
-    return image;
+  }
+
+  void lose(const MtlMap& map, const char* why) { lost_maps_.emplace(map.keyword + " " + shown(map.file), why); }
+
+  /// map_d can be the alpha of the base colour texture, and of no other.
+  bool is_masked(const MtlMaterial& from, std::uint32_t base_color) {
+    if (from.alpha.file.empty()) return false;
+    const auto same = resolve_named(folder_, from.alpha.file, options_.allow_outside);
+    const auto known = same ? image_by_path_.find(*same) : image_by_path_.end();
+    if (base_color == kNoId || known == image_by_path_.end() || known->second != base_color) {
+      lose(from.alpha, "glTF has the alpha in the base colour texture, and this is another file");
+      return false;
+    }
+    if (!may_have_alpha(scene_.blobs[base_color].bytes)) lose(from.alpha, "the image has no alpha channel");
+    return true;
+  }
+
+  MtlImages images_of(const MtlMaterial& from) {
+    MtlImages images;
+    images.base_color = image_of(from.base_color);
+    images.masks = is_masked(from, images.base_color);
+    if (can_have_roughness_map(from)) {
+      images.metallic_roughness = image_of(from.rough);
+    } else {
+      for (const MtlMap* map : {&from.rough, &from.metal}) {
+        if (!map->file.empty()) lose(*map, "glTF has roughness and metalness in one image");
+      }
+    }
+    images.normal = image_of(from.normal);
+    images.emissive = image_of(from.emissive);
+    return images;
   }
 
   void add(const std::string& name, const MtlMaterial& from) {
     SceneMaterial material;
     material.name = as_utf8(name);
     material.source_index = static_cast<std::uint32_t>(materials_.size());
-    const std::uint32_t image = from.texture.empty() ? kNoId : image_of(from.texture);
-    Json factor = Json::make_array();
-    for (int c = 0; c < 4; ++c) {
-      const double value = c < 3 ? from.diffuse[static_cast<std::size_t>(c)] : from.opacity;
-      material.base_color[c] = static_cast<float>(value);
-      std::get<Json::Array>(factor.value).push_back(Json::make_number(value));
-    }
-    Json pbr = Json::make_object();
-    pbr.set("baseColorFactor", std::move(factor));
-    if (image != kNoId) {
-      Json info = Json::make_object();
-      info.set("index", Json::make_index(image));  // each image has one texture
-      pbr.set("baseColorTexture", std::move(info));
-      material.base_color_texture = image;
-      material.base_color_uv_set = 0;
-      material.uv_sets_used = 1;
-      TextureUse use;
-      use.role = TextureRole::kBaseColor;
-      use.texture = use.image = use.blob = image;  // an OBJ has no other blobs
-      material.textures.push_back(use);
-    }
-    pbr.set("metallicFactor", Json::make_number(0.0));
-    Json json = Json::make_object();
-    json.set("name", Json::make_string(material.name));
-    json.set("pbrMetallicRoughness", std::move(pbr));
-    if (from.opacity < 1.0) {
-      material.alpha_mode = AlphaMode::kBlend;
-      json.set("alphaMode", Json::make_string("BLEND"));
-    }
-    materials_.push_back(std::move(json));
+    if (!from.dissolve && from.transparency == 1.0) invisible_.insert(name);
+    materials_.push_back(make_material(from, images_of(from), material, has_strength_));
     scene_.materials.push_back(std::move(material));
   }
 
@@ -173,6 +210,11 @@ class ObjMaterials {
     Json asset = Json::make_object();
     asset.set("version", Json::make_string("2.0"));
     document.set("asset", std::move(asset));
+    if (has_strength_) {
+      Json used = Json::make_array();
+      std::get<Json::Array>(used.value).push_back(Json::make_string("KHR_materials_emissive_strength"));
+      document.set("extensionsUsed", std::move(used));
+    }
     document.set("materials", Json{std::move(materials_)});
     if (!images_.empty()) {
       Json::Array textures;
@@ -196,68 +238,23 @@ class ObjMaterials {
   std::map<std::string, std::uint32_t> image_by_name_;
   std::map<std::filesystem::path, std::uint32_t> image_by_path_;
   Json::Array materials_, images_;
-  Status missing_ = Ok{};  ///< the first file that may not be missing
-};
-
-class ReferenceList {
- public:
-  ReferenceList(std::filesystem::path folder, std::span<const std::filesystem::path> allow_outside)
-      : folder_(std::move(folder)), allow_outside_(allow_outside) {}
-
-  /// The line of a mtllib: one name with blanks, or several. Where the one is not there, another may be some day.
-  void add_libraries(std::string_view line) {
-    if (add_library(std::string(line))) return;
-    for (std::string_view name = take_word(line); !name.empty(); name = take_word(line)) {
-      add_library(std::string(name));
-    }
-  }
-
-  [[nodiscard]] std::vector<FileReference> take() { return std::move(references_); }
-
- private:
-  using Kind = FileReference::Kind;
-
-  /// \returns where it is; nothing where it is not, or may not be opened
-  std::optional<std::filesystem::path> add(Kind kind, const std::string& name) {
-    const std::string path = with_slashes(name);
-    auto resolved = resolve_below(folder_, path, allow_outside_);
-    if (!resolved && resolved.error().code != ErrorCode::kIo) return std::nullopt;
-    const std::filesystem::path where = folder_ / std::filesystem::path(path).lexically_normal();
-    if (known_.insert(where).second) references_.push_back({kind, name, where});
-    return resolved ? std::optional(std::move(*resolved)) : std::nullopt;
-  }
-
-  bool add_library(const std::string& name) {
-    const auto path = add(Kind::kMaterials, name);
-    if (!path) return false;
-    const auto file = MappedFile::open(*path);
-    if (!file) return false;
-    for (const MtlMaterial& material : read_mtl(file->bytes())) {
-      if (!material.texture.empty()) add(Kind::kImage, material.texture);
-    }
-    return true;
-  }
-
-  std::filesystem::path folder_;
-  std::span<const std::filesystem::path> allow_outside_;
-  std::set<std::filesystem::path> known_;
-  std::vector<FileReference> references_;
+  bool has_strength_ = false;
+  Tally skipped_;
+  std::set<std::string> invisible_;
+  std::map<std::string, std::string> lost_maps_;  ///< with the reason
+  Status missing_ = Ok{};                         ///< the first file that may not be missing
 };
 
 }  // namespace
 
-std::vector<FileReference> list_obj_references(const std::filesystem::path& path, std::span<const std::uint8_t> bytes,
-                                               std::span<const std::filesystem::path> allow_outside) {
-  std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  std::set<std::string> libraries;  // in the order of the import
-  std::string joined;
-  for (std::size_t lines = 0; !text.empty();) {
-    std::string_view line = take_joined_line(text, joined, lines);
-    if (take_word(line) == "mtllib" && !trimmed(line).empty()) libraries.emplace(trimmed(line));
-  }
-  ReferenceList list(path.parent_path(), allow_outside);
-  for (const std::string& line : libraries) list.add_libraries(line);
-  return list.take();
+std::string with_slashes(std::string name) {
+  std::replace(name.begin(), name.end(), '\\', '/');
+  return name;
+}
+
+Result<std::filesystem::path> resolve_named(const std::filesystem::path& folder, const std::string& name,
+                                            std::span<const std::filesystem::path> allow_outside) {
+  return resolve_below(folder, with_slashes(name), allow_outside);
 }
 
 Status add_obj_materials(const std::filesystem::path& path, const PolygonFile& file, const ImportOptions& options,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The materials that an OBJ's faces name become materials of the scene, as a glTF would have them.
+// The materials that the faces of an OBJ or a PLY name become materials of the scene, as a glTF would have them.
 #pragma once
 
 #include <cstdint>
@@ -24,8 +24,18 @@ namespace meshlode::scene {
 [[nodiscard]] Status add_obj_materials(const std::filesystem::path& path, const PolygonFile& file,
                                        const ImportOptions& options, Hasher& hasher, Scene& scene);
 
-/// Every file that add_obj_materials opens, or would open were it there: libraries, and what their map_Kd name.
+/// Windows writes its paths the other way.
+[[nodiscard]] std::string with_slashes(std::string name);
+/// The file that a mtllib, a map or a TextureFile names. Errors: as resolve_below has them.
+[[nodiscard]] Result<std::filesystem::path> resolve_named(const std::filesystem::path& folder, const std::string& name,
+                                                          std::span<const std::filesystem::path> allow_outside);
+
+/// Every file that add_obj_materials opens, or would open were it there: libraries, and what their maps name.
 [[nodiscard]] std::vector<FileReference> list_obj_references(const std::filesystem::path& path,
+                                                             std::span<const std::uint8_t> bytes,
+                                                             std::span<const std::filesystem::path> allow_outside);
+/// The same of a PLY's TextureFile comments.
+[[nodiscard]] std::vector<FileReference> list_ply_references(const std::filesystem::path& path,
                                                              std::span<const std::uint8_t> bytes,
                                                              std::span<const std::filesystem::path> allow_outside);
 

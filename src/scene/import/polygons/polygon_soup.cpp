@@ -5,41 +5,15 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <tuple>
 #include <utility>
+
+#include "scene/import/polygons/face_triangles.h"
+#include "scene/import/polygons/text_scan.h"
 
 namespace meshlode::scene {
 
 namespace {
-
-/// Twice the area vector of a polygon (Newell), with its first corner as the origin.
-Vec3d area_vector(const std::vector<Vec3d>& positions, std::span<const std::uint32_t> polygon) {
-  Vec3d sum(0.0);
-  const Vec3d& origin = positions[polygon[0]];
-  for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
-    sum += glm::cross(positions[polygon[i]] - origin, positions[polygon[i + 1]] - origin);
-  }
-  return sum;
-}
-
-/// A corner from which the fan's triangles all face the way the polygon does: any corner of a convex polygon, the
-/// reflex one of a dented quad. Corner 0 where there is none; a few are tried, so that a huge polygon stays linear.
-std::size_t find_fan_corner(const std::vector<Vec3d>& positions, std::span<const std::uint32_t> polygon) {
-  constexpr std::size_t kTries = 16;
-  const std::size_t n = polygon.size();
-  if (n == 3) return 0;
-  const Vec3d whole = area_vector(positions, polygon);
-  for (std::size_t start = 0; start < std::min(n, kTries); ++start) {
-    bool is_good = true;
-    const Vec3d& origin = positions[polygon[start]];
-    for (std::size_t i = 1; i + 1 < n && is_good; ++i) {
-      const Vec3d part =
-          glm::cross(positions[polygon[(start + i) % n]] - origin, positions[polygon[(start + i + 1) % n]] - origin);
-      is_good = glm::dot(part, whole) > 0.0;
-    }
-    if (is_good) return start;
-  }
-  return 0;
-}
 
 bool is_stored_exactly(const Vec3d& p) {
   constexpr double kMax = std::numeric_limits<float>::max();
@@ -72,23 +46,41 @@ MaterialId material_id(std::uint32_t material) {
   return material == kNoId ? MaterialId() : MaterialId(std::size_t{material});
 }
 
-/// One primitive for each material. `materials`: of the triangles, or empty.
-std::vector<Primitive> split(Primitive whole, const std::vector<std::uint32_t>& materials) {
-  std::map<std::uint32_t, std::vector<std::uint32_t>> corners;  // kNoId is the last
-  for (std::size_t t = 0; t < materials.size(); ++t) {
-    std::vector<std::uint32_t>& list = corners[materials[t]];
-    list.insert(list.end(), whole.indices.begin() + static_cast<std::ptrdiff_t>(3 * t),
-                whole.indices.begin() + static_cast<std::ptrdiff_t>(3 * t + 3));
-  }
-  std::vector<Primitive> out;
-  if (corners.size() < 2) {
-    if (!corners.empty()) whole.material = material_id(corners.begin()->first);
-    out.push_back(std::move(whole));
-    return out;
-  }
-  for (auto& [material, list] : corners) {
-    out.push_back(part_of(whole, std::move(list)));
-    out.back().material = material_id(material);
+/// What the triangles of one primitive have in common, in the order of the meshes and their primitives.
+struct PartKey {
+  std::uint32_t object = kNoId, material = kNoId;
+  std::uint8_t traits = kHasAll;
+
+  /// What is in no object comes first, what has no material and what lacks attributes last.
+  [[nodiscard]] auto order() const { return std::tuple(object + 1, material, static_cast<int>(kHasAll) - traits); }
+  bool operator<(const PartKey& other) const { return order() < other.order(); }
+};
+
+using Parts = std::map<PartKey, std::vector<std::uint32_t>>;  // corners of triangles
+
+void drop_what_is_not_of_all(Primitive& part, const PartKey& key) {
+  if ((key.traits & kHasUvs) == 0) part.uvs[0].clear();
+  if ((key.traits & kHasNormals) == 0) part.normals.clear();
+  if ((key.traits & kHasColors) == 0) part.colors.clear();
+  part.material = material_id(key.material);
+}
+
+/// A mesh for each object, a primitive for each of the rest of the key.
+std::vector<PolygonMesh> split(Primitive whole, Parts parts, bool is_compacted) {
+  std::vector<PolygonMesh> out;
+  if (parts.empty()) parts[PartKey{}];
+  const bool is_one = parts.size() == 1;
+  for (auto& [key, corners] : parts) {
+    if (out.empty() || out.back().object != key.object) out.push_back({key.object, {}});
+    Primitive part;
+    if (is_one && !is_compacted) {
+      whole.indices = std::move(corners);
+      part = std::move(whole);
+    } else {
+      part = part_of(whole, std::move(corners));
+    }
+    drop_what_is_not_of_all(part, key);
+    out.back().primitives.push_back(std::move(part));
   }
   return out;
 }
@@ -110,11 +102,49 @@ std::size_t replace_broken(std::vector<Vec>& values, int components, const Vec& 
   return bad;
 }
 
+/// Broken attributes get something in their place, which is said once for all meshes.
+void replace_all_broken(std::vector<PolygonMesh>& meshes, std::vector<LeftOut>& left_out) {
+  std::uint64_t normals = 0, uvs = 0, colors = 0, clamped = 0;
+  for (PolygonMesh& mesh : meshes) {
+    for (Primitive& part : mesh.primitives) {
+      if (const std::size_t bad = replace_broken(part.normals, 3, Vec3f(0.0F, 0.0F, 1.0F), true); bad != 0) {
+        normals += bad;
+        part.normals.clear();
+      }
+      uvs += replace_broken(part.uvs[0], 2, Vec2f(0.0F), false);
+      colors += replace_broken(part.colors, 4, Vec4f(1.0F), false);
+      for (Vec4f& color : part.colors) {
+        const Vec4f inside = glm::clamp(color, Vec4f(0.0F), Vec4f(1.0F));
+        if (inside != color) ++clamped;
+        color = inside;
+      }
+    }
+  }
+  // Half a set of normals is worse than none: flat ones are what a file without normals gets.
+  if (normals != 0) {
+    left_out.push_back({"normals", std::to_string(normals) + " are not finite or have no length; flat ones stand in"});
+  }
+  if (uvs != 0) {
+    left_out.push_back({"texture coordinates", std::to_string(uvs) + " are not finite; zero stands in for them"});
+  }
+  if (colors != 0) {
+    left_out.push_back({"colours", std::to_string(colors) + " are not finite; white stands in for them"});
+  }
+  if (clamped != 0) left_out.push_back({"colours", std::to_string(clamped) + " are clamped to 0 … 1"});
+}
+
+PartKey key_of(const PolygonSoup& soup, std::size_t polygon) {
+  PartKey key;
+  if (!soup.polygon_objects.empty()) key.object = soup.polygon_objects[polygon];
+  if (!soup.polygon_materials.empty()) key.material = soup.polygon_materials[polygon];
+  if (!soup.polygon_traits.empty()) key.traits = soup.polygon_traits[polygon];
+  return key;
+}
+
 }  // namespace
 
-Result<std::vector<Primitive>> triangulate(PolygonSoup soup, const ImportOptions& options, ImportDrops& drops,
-                                           std::vector<LeftOut>& left_out) {
-  Primitive out;
+Result<std::vector<PolygonMesh>> triangulate(PolygonSoup soup, const ImportOptions& options, ImportDrops& drops,
+                                             std::vector<LeftOut>& left_out) {
   bool needs_compaction = false;
   for (std::size_t v = 0; v < soup.positions.size(); ++v) {
     if (is_stored_exactly(soup.positions[v])) continue;
@@ -124,8 +154,10 @@ Result<std::vector<Primitive>> triangulate(PolygonSoup soup, const ImportOptions
     }
     needs_compaction = true;
   }
-  out.indices.reserve(soup.corners.size());
-  std::vector<std::uint32_t> materials;
+  Parts parts;
+  FaceTriangles faces(soup.positions);
+  PartKey known;
+  std::vector<std::uint32_t>* list = nullptr;  // of `known`: neighbours in the file mostly go together
   std::size_t first = 0;
   for (std::size_t p = 0; p < soup.polygon_sizes.size(); ++p) {
     const std::uint32_t size = soup.polygon_sizes[p];
@@ -138,36 +170,22 @@ Result<std::vector<Primitive>> triangulate(PolygonSoup soup, const ImportOptions
       drops.repaired += size - 2;
       continue;
     }
-    if (!soup.polygon_materials.empty()) materials.insert(materials.end(), size - 2, soup.polygon_materials[p]);
-    const std::size_t start = find_fan_corner(soup.positions, polygon);
-    for (std::size_t i = 1; i + 1 < size; ++i) {
-      out.indices.insert(out.indices.end(),
-                         {polygon[start], polygon[(start + i) % size], polygon[(start + i + 1) % size]});
+    const PartKey key = key_of(soup, p);
+    if (list == nullptr || key < known || known < key) {
+      list = &parts[key];
+      known = key;
     }
+    faces.append(polygon, *list);
   }
+  faces.report(left_out);
+  Primitive out;
   out.positions = std::move(soup.positions);
   out.normals = std::move(soup.normals);
   out.uvs[0] = std::move(soup.uvs);
   out.colors = std::move(soup.colors);
-  if (needs_compaction) {
-    std::vector<std::uint32_t> corners = std::move(out.indices);
-    out = part_of(out, std::move(corners));
-  }
-  if (const std::size_t bad = replace_broken(out.normals, 3, Vec3f(0.0F, 0.0F, 1.0F), true); bad != 0) {
-    // Half a set of normals is worse than none: flat ones are what a file without normals gets.
-    out.normals.clear();
-    left_out.push_back({"normals", std::to_string(bad) + " are not finite or have no length; flat ones stand in"});
-  }
-  if (const std::size_t bad = replace_broken(out.uvs[0], 2, Vec2f(0.0F), false); bad != 0) {
-    left_out.push_back({"texture coordinates", std::to_string(bad) + " are not finite; zero stands in for them"});
-  }
-  if (const std::size_t bad = replace_broken(out.colors, 4, Vec4f(1.0F), false); bad != 0) {
-    left_out.push_back({"colours", std::to_string(bad) + " are not finite; white stands in for them"});
-  }
-  for (Vec4f& color : out.colors) {
-    for (int c = 0; c < 4; ++c) color[c] = std::clamp(color[c], 0.0F, 1.0F);
-  }
-  return split(std::move(out), materials);
+  std::vector<PolygonMesh> meshes = split(std::move(out), std::move(parts), needs_compaction);
+  replace_all_broken(meshes, left_out);
+  return meshes;
 }
 
 }  // namespace meshlode::scene

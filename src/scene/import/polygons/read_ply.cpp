@@ -1,361 +1,402 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// PLY (Turk 1994), ascii and both binary orders: every element is walked, vertices and faces are kept.
+// PLY (Turk 1994), ascii and both binary orders: every element is walked; vertices, faces and strips are kept.
 #include <algorithm>
-#include <cstring>
+#include <array>
+#include <filesystem>
 #include <optional>
 
+#include "scene/import/polygons/ply_body.h"
+#include "scene/import/polygons/ply_colors.h"
+#include "scene/import/polygons/ply_columns.h"
+#include "scene/import/polygons/ply_header.h"
 #include "scene/import/polygons/polygon_soup.h"
 #include "scene/import/polygons/text_scan.h"
+#include "scene/import/polygons/wedges.h"
 
 namespace meshlode::scene {
 
 namespace {
 
-enum class PlyType : std::uint8_t { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat, kDouble };
-
-struct PlyProperty {
-  std::string name;
-  PlyType type = PlyType::kFloat;
-  std::optional<PlyType> list_count;  ///< the type of the length, for lists
-};
-
-struct PlyElement {
-  std::string name;
-  std::uint64_t count = 0;
-  std::vector<PlyProperty> properties;
-};
-
-std::optional<PlyType> parse_type(std::string_view word) {
-  constexpr std::pair<std::string_view, PlyType> kTypes[] = {
-      {"char", PlyType::kInt8},     {"int8", PlyType::kInt8},     {"uchar", PlyType::kUint8},
-      {"uint8", PlyType::kUint8},   {"short", PlyType::kInt16},   {"int16", PlyType::kInt16},
-      {"ushort", PlyType::kUint16}, {"uint16", PlyType::kUint16}, {"int", PlyType::kInt32},
-      {"int32", PlyType::kInt32},   {"uint", PlyType::kUint32},   {"uint32", PlyType::kUint32},
-      {"float", PlyType::kFloat},   {"float32", PlyType::kFloat}, {"double", PlyType::kDouble},
-      {"float64", PlyType::kDouble}};
-  for (const auto& [name, type] : kTypes) {
-    if (name == word) return type;
-  }
-  return std::nullopt;
-}
-
-std::size_t size_of(PlyType type) {
-  switch (type) {
-    case PlyType::kInt8:
-    case PlyType::kUint8: return 1;
-    case PlyType::kInt16:
-    case PlyType::kUint16: return 2;
-    case PlyType::kDouble: return 8;
-    default: return 4;
-  }
-}
-
 Error invalid(std::string where, std::string detail) {
   return {ErrorCode::kInvalid, std::move(where), std::move(detail)};
 }
 
-/// What a vertex may have.
-enum Column : std::size_t { kX, kY, kZ, kNx, kNy, kNz, kU, kV, kRed, kGreen, kBlue, kAlpha, kColumnCount };
+using Values = std::array<double, kColumnCount>;
 
-std::optional<Column> column_of(std::string_view name) {
-  constexpr std::pair<std::string_view, Column> kNames[] = {{"x", kX},
-                                                            {"y", kY},
-                                                            {"z", kZ},
-                                                            {"nx", kNx},
-                                                            {"ny", kNy},
-                                                            {"nz", kNz},
-                                                            {"u", kU},
-                                                            {"s", kU},
-                                                            {"v", kV},
-                                                            {"t", kV},
-                                                            {"texture_u", kU},
-                                                            {"texture_v", kV},
-                                                            {"red", kRed},
-                                                            {"green", kGreen},
-                                                            {"blue", kBlue},
-                                                            {"alpha", kAlpha},
-                                                            {"diffuse_red", kRed},
-                                                            {"diffuse_green", kGreen},
-                                                            {"diffuse_blue", kBlue}};
-  for (const auto& [known, column] : kNames) {
-    if (known == name) return column;
-  }
-  return std::nullopt;
+Vec4f color_of(const Values& value) {
+  return {value[kRed], value[kGreen], value[kBlue], value[kAlpha]};
 }
 
 class PlyReader {
  public:
-  PlyReader(std::span<const std::uint8_t> bytes, const ImportOptions& options)
-      : text_(reinterpret_cast<const char*>(bytes.data()), bytes.size()), options_(options) {}
+  PlyReader(const PlyHeader& header, std::string_view body, const ImportOptions& options)
+      : header_(header), body_(header, body), options_(options) {
+    for (const PlyElement& element : header.elements) {
+      if (element.name == "vertex") vertex_count_ = element.count;  // known even where faces come first
+    }
+  }
 
   Result<PolygonFile> run() {
-    if (auto status = read_header(); !status) return status.error();
-    for (const PlyElement& element : elements_) {
-      Status status = Ok{};
-      if (element.name == "vertex") {
-        status = read_vertices(element);
-      } else if (element.name == "face") {
-        status = read_faces(element);
-      } else {
-        status = skip_element(element);
-      }
+    for (const PlyElement& element : header_.elements) {
+      const Status status = element.name == "vertex"      ? read_vertices(element)
+                            : element.name == "face"      ? read_faces(element)
+                            : element.name == "tristrips" ? read_strips(element)
+                                                          : skip_element(element);
       if (!status) return status.error();
     }
-    if (small_faces_ != 0) {
-      out_.left_out.push_back({std::to_string(small_faces_) + " faces", "they have fewer than three corners"});
-    }
-    return std::move(out_);
+    return finish();
   }
 
  private:
-  Status read_header();
   Status read_vertices(const PlyElement& element);
   Status read_faces(const PlyElement& element);
+  Status read_strips(const PlyElement& element);
   Status skip_element(const PlyElement& element);
-  void keep_vertex(const std::array<double, kColumnCount>& value);
-  /// The next value of the body; nothing at its end or where it is no number.
-  std::optional<double> next(PlyType type) {
-    if (is_ascii_) {
-      const std::string_view word = take_word(text_);
-      return word.empty() ? std::nullopt : parse_number(word);
-    }
-    const std::size_t size = size_of(type);
-    if (text_.size() < size) return std::nullopt;
-    std::array<char, 8> raw{};
-    std::copy_n(text_.begin(), size, raw.begin());
-    if (is_big_endian_) std::reverse(raw.begin(), raw.begin() + static_cast<std::ptrdiff_t>(size));
-    text_.remove_prefix(size);
-    switch (type) {
-      case PlyType::kInt8: return load<std::int8_t>(raw);
-      case PlyType::kUint8: return load<std::uint8_t>(raw);
-      case PlyType::kInt16: return load<std::int16_t>(raw);
-      case PlyType::kUint16: return load<std::uint16_t>(raw);
-      case PlyType::kInt32: return load<std::int32_t>(raw);
-      case PlyType::kUint32: return load<std::uint32_t>(raw);
-      case PlyType::kFloat: return static_cast<double>(load<float>(raw));
-      default: return load<double>(raw);
-    }
-  }
-  template <class T>
-  static T load(const std::array<char, 8>& raw) {
-    T value;
-    std::memcpy(&value, raw.data(), sizeof(T));
-    return value;
-  }
-  /// A list's length, or a vertex index: a whole number of zero or more.
-  std::optional<std::uint64_t> next_index(PlyType type) {
-    const auto value = next(type);
-    if (!value || !(*value >= 0.0) || *value > 4294967295.0) return std::nullopt;
-    const auto index = static_cast<std::uint64_t>(*value);
-    return static_cast<double>(index) == *value ? std::optional(index) : std::nullopt;
-  }
-  /// Skips a property's value or list.
-  bool skip(const PlyProperty& property) {
-    if (!property.list_count) return next(property.type).has_value();
-    const auto count = next_index(*property.list_count);
-    for (std::uint64_t i = 0; count && i < *count; ++i) {
-      if (!next(property.type)) return false;
-    }
-    return count.has_value();
-  }
-  /// True where the rest of the file could hold that many elements at all: at least one byte a property.
-  [[nodiscard]] bool is_justified(const PlyElement& element) const {
-    return element.count == 0 ||
-           (!element.properties.empty() && element.count <= text_.size() / element.properties.size() + 1);
-  }
+  /// The indices of a list; where one is no vertex, it is refused, or else `is_valid` becomes false. -1 is one where
+  /// `has_breaks`.
+  Status read_indices(const PlyProperty& property, const std::string& where, bool has_breaks,
+                      std::vector<std::int64_t>& out, bool& is_valid);
+  Status read_wedges(const PlyProperty& property, const std::string& where);
+  void keep_vertex(const PlyColumns& set, const Values& value);
+  void keep_face(const PlyColumns& set, const Values& value, bool is_valid);
+  void keep_strip(const std::vector<std::int64_t>& strip, bool is_valid);
+  void leave_out(std::string what, std::string why) { out_.left_out.push_back({std::move(what), std::move(why)}); }
+  void leave_out_properties(const PlyElement& element, const std::vector<bool>& is_kept);
+  void add_materials();
+  void make_wedges();
+  PolygonFile finish();
 
-  std::string_view text_;
+  const PlyHeader& header_;
+  PlyBody body_;
   const ImportOptions& options_;
-  bool is_ascii_ = true, is_big_endian_ = false;
-  std::vector<PlyElement> elements_;
-  std::array<bool, kColumnCount> has_{};
-  std::uint64_t small_faces_ = 0;
+  std::uint64_t vertex_count_ = 0;
+  PlyColors vertex_colors_, face_colors_;
+  bool has_wedges_ = false, has_texture_numbers_ = false;
+  std::vector<std::int64_t> corners_;        ///< of the face that is read
+  std::vector<Vec2f> wedge_uvs_, face_uvs_;  ///< one per corner of all faces, and of the face that is read
+  std::uint64_t wedge_numbers_ = 0;          ///< of the face that is read
+  std::vector<bool> face_has_uvs_;
+  std::vector<double> texture_numbers_;
+  std::uint64_t small_faces_ = 0, odd_wedges_ = 0, odd_textures_ = 0, clamped_ = 0;
   PolygonFile out_;
 };
 
-Status PlyReader::read_header() {
-  if (take_line(text_) != "ply") return invalid("header", "it does not begin with ply");
-  bool has_format = false;
-  for (std::size_t line_number = 2;; ++line_number) {
-    const std::string where = "header line " + std::to_string(line_number);
-    if (text_.empty() || line_number > 4096) return invalid(where, "end_header is missing");
-    std::string_view line = take_line(text_);
-    const std::string_view keyword = take_word(line);
-    if (keyword == "end_header") break;
-    if (keyword == "format") {
-      const std::string_view format = take_word(line);
-      is_ascii_ = format == "ascii";
-      is_big_endian_ = format == "binary_big_endian";
-      if (!is_ascii_ && !is_big_endian_ && format != "binary_little_endian") return invalid(where, "an unknown format");
-      has_format = true;
-    } else if (keyword == "element") {
-      PlyElement element;
-      element.name = std::string(take_word(line));
-      const auto count = parse_integer(take_word(line));
-      if (!count || *count < 0 || *count > 0x7FFFFFFF) return invalid(where, "not a count of elements");
-      element.count = static_cast<std::uint64_t>(*count);
-      for (const PlyElement& other : elements_) {
-        if (other.name == element.name) return invalid(where, "an element of that name exists already");
-      }
-      elements_.push_back(std::move(element));
-    } else if (keyword == "property") {
-      if (elements_.empty()) return invalid(where, "a property before any element");
-      PlyProperty property;
-      std::string_view word = take_word(line);
-      if (word == "list") {
-        property.list_count = parse_type(take_word(line));
-        if (!property.list_count || size_of(*property.list_count) == 8 || *property.list_count == PlyType::kFloat) {
-          return invalid(where, "not a type for the length of a list");
-        }
-        word = take_word(line);
-      }
-      const auto type = parse_type(word);
-      if (!type) return invalid(where, "an unknown type");
-      property.type = *type;
-      property.name = std::string(take_word(line));
-      elements_.back().properties.push_back(std::move(property));
-    }  // comment, obj_info and unknown keywords say nothing about the body
+void PlyReader::leave_out_properties(const PlyElement& element, const std::vector<bool>& is_kept) {
+  if (element.count == 0) return;
+  for (std::size_t p = 0; p < element.properties.size(); ++p) {
+    if (is_kept[p]) continue;
+    leave_out(element.name + " property " + shown(element.properties[p].name),
+              "it is not one that is kept: " +
+                  counted(element.count, element.name, element.name == "vertex" ? "vertices" : ""));
   }
-  return has_format ? Status(Ok{}) : Status(invalid("header", "the format line is missing"));
 }
 
 Status PlyReader::read_vertices(const PlyElement& element) {
-  if (!is_justified(element)) return invalid("element vertex", "more vertices than the file has bytes for");
-  std::vector<std::optional<Column>> columns;
-  std::array<double, kColumnCount> scale{};
-  for (const PlyProperty& property : element.properties) {
-    auto column = property.list_count ? std::nullopt : column_of(property.name);
-    if (column && has_[*column]) column = std::nullopt;  // "u" and "texture_u": the first one counts
-    if (column) {
-      has_[*column] = true;
-      // Integer colours cover 0 … their type's largest; float ones 0 … 1. All become 0 … 255.
-      const bool is_float = property.type == PlyType::kFloat || property.type == PlyType::kDouble;
-      scale[*column] = is_float ? 255.0 : size_of(property.type) == 1 ? 1.0 : 255.0 / 65535.0;
-    } else if (!property.list_count) {
-      out_.left_out.push_back({"vertex property " + property.name.substr(0, 64), "it is not one that is kept"});
-    }
-    columns.push_back(column);
-  }
-  if (!has_[kX] || !has_[kY] || !has_[kZ]) return invalid("element vertex", "x, y or z is missing");
+  if (!body_.is_justified(element)) return invalid("element vertex", "more vertices than the file has bytes for");
+  const PlyColumns set(element, {{kX, kY, kZ}, {kNx, kNy, kNz}, {kU, kV}, {kRed, kGreen, kBlue}});
+  if (!set.has[kX]) return invalid("element vertex", "x, y or z is missing");
+  std::vector<bool> is_kept;
+  for (const auto& column : set.columns) is_kept.push_back(column.has_value());
+  leave_out_properties(element, is_kept);
+  vertex_colors_.is_float = set.has_float_colors;
+  vertex_colors_.has_alpha = set.has[kAlpha];
   out_.soup.positions.reserve(element.count);
   for (std::uint64_t v = 0; v < element.count; ++v) {
-    std::array<double, kColumnCount> value{};
-    value[kAlpha] = 255.0;
+    Values value{};
     for (std::size_t p = 0; p < element.properties.size(); ++p) {
       const PlyProperty& property = element.properties[p];
       bool is_read = true;
-      if (columns[p]) {
-        const auto number = next(property.type);
+      if (set.columns[p]) {
+        const auto number = body_.next(property.type);
         is_read = number.has_value();
-        value[*columns[p]] = number.value_or(0.0) * (*columns[p] >= kRed ? scale[*columns[p]] : 1.0);
+        value[*set.columns[p]] = number.value_or(0.0);
       } else {
-        is_read = skip(property);
+        is_read = body_.skip(property);
       }
       if (!is_read) {
         return invalid("vertex " + std::to_string(v),
-                       "property " + property.name.substr(0, 64) + " is cut short or not a number");
+                       "property " + shown(property.name) + " is cut short or not a number");
       }
     }
-    keep_vertex(value);
+    body_.end_row();
+    keep_vertex(set, value);
   }
   return Ok{};
 }
 
-void PlyReader::keep_vertex(const std::array<double, kColumnCount>& value) {
+void PlyReader::keep_vertex(const PlyColumns& set, const Values& value) {
   PolygonSoup& soup = out_.soup;
   soup.positions.emplace_back(value[kX], value[kY], value[kZ]);
-  if (has_[kNx] && has_[kNy] && has_[kNz]) soup.normals.emplace_back(value[kNx], value[kNy], value[kNz]);
-  if (has_[kU] && has_[kV]) soup.uvs.emplace_back(value[kU], value[kV]);
-  if (has_[kRed] && has_[kGreen] && has_[kBlue]) {
-    Vec4f color;
-    for (std::size_t c = 0; c < 4; ++c) {
-      const double level = value[kRed + c];
-      // Eight bits of whatever type; NaN becomes 0.
-      color[static_cast<int>(c)] = static_cast<std::uint8_t>(level >= 0.0 ? std::min(level + 0.5, 255.0) : 0.0);
+  if (set.has[kNx]) soup.normals.emplace_back(value[kNx], value[kNy], value[kNz]);
+  if (set.has[kU]) soup.uvs.emplace_back(value[kU], value[kV]);
+  if (set.has[kRed]) vertex_colors_.raw.push_back(color_of(value));
+}
+
+Status PlyReader::read_indices(const PlyProperty& property, const std::string& where, bool has_breaks,
+                               std::vector<std::int64_t>& out, bool& is_valid) {
+  out.clear();
+  const auto count = body_.next_count(*property.list_count);
+  if (!count) return invalid(where, "not a number of corners");
+  for (std::uint64_t c = 0; c < *count; ++c) {
+    const auto value = body_.next(property.type);
+    if (!value) return invalid(where, "it is cut short or not a number");
+    const bool is_break = has_breaks && *value == -1.0;
+    const bool is_in_range = is_break || (*value >= 0.0 && *value < static_cast<double>(vertex_count_) &&
+                                          static_cast<double>(static_cast<std::uint32_t>(*value)) == *value);
+    if (!is_in_range && !options_.repair) {
+      return invalid(where, "a vertex index is out of range: there are " + std::to_string(vertex_count_) + " vertices");
     }
-    soup.colors.push_back(color / 255.0F);
+    is_valid = is_valid && is_in_range;
+    out.push_back(is_in_range ? static_cast<std::int64_t>(*value) : 0);
   }
+  return Ok{};
+}
+
+/// Two numbers for each corner; how many corners there are is known when the whole face is.
+Status PlyReader::read_wedges(const PlyProperty& property, const std::string& where) {
+  const auto count = body_.next_count(*property.list_count);
+  if (!count) return invalid(where, "not a number of texture coordinates");
+  float u = 0.0F;
+  for (std::uint64_t i = 0; i < *count; ++i) {
+    const auto value = body_.next(property.type);
+    if (!value) return invalid(where, "it is cut short or not a number");
+    if (i % 2 == 0) u = static_cast<float>(*value);
+    if (i % 2 == 1) face_uvs_.emplace_back(u, static_cast<float>(*value));
+  }
+  wedge_numbers_ = *count;
+  return Ok{};
 }
 
 Status PlyReader::read_faces(const PlyElement& element) {
-  if (!is_justified(element)) return invalid("element face", "more faces than the file has bytes for");
-  std::size_t list = element.properties.size();
-  for (std::size_t p = 0; p < element.properties.size(); ++p) {
-    const PlyProperty& property = element.properties[p];
-    if (property.list_count && (property.name == "vertex_indices" || property.name == "vertex_index")) list = p;
-  }
-  if (element.count > 0 && list == element.properties.size()) {
-    return invalid("element face", "vertex_indices is missing");
-  }
-  // The vertices' count is known from the header even where faces come first.
-  std::uint64_t vertex_count = 0;
-  for (const PlyElement& other : elements_) {
-    if (other.name == "vertex") vertex_count = other.count;
-  }
-  std::vector<std::uint32_t> corners;
+  if (!body_.is_justified(element)) return invalid("element face", "more faces than the file has bytes for");
+  const PlyColumns set(element, {{kRed, kGreen, kBlue}, {kTexture}});
+  const std::size_t none = element.properties.size();
+  const auto find_list = [&](auto is_name) {
+    std::size_t p = 0;
+    while (p < none && !(element.properties[p].list_count && is_name(element.properties[p].name))) ++p;
+    return p;
+  };
+  const std::size_t list = find_list([](std::string_view n) { return n == "vertex_indices" || n == "vertex_index"; });
+  const std::size_t wedges = find_list([](std::string_view n) { return n == "texcoord" || n == "texcoords"; });
+  if (element.count > 0 && list == none) return invalid("element face", "vertex_indices is missing");
+  std::vector<bool> is_kept;
+  for (std::size_t p = 0; p < none; ++p) is_kept.push_back(p == list || p == wedges || set.columns[p]);
+  leave_out_properties(element, is_kept);
+  has_wedges_ = wedges != none;
+  has_texture_numbers_ = set.has[kTexture];
+  face_colors_.is_float = set.has_float_colors;
+  face_colors_.has_alpha = set.has[kAlpha];
   for (std::uint64_t f = 0; f < element.count; ++f) {
     const std::string where = "face " + std::to_string(f);
-    corners.clear();
+    Values value{};
     bool is_valid = true;
-    for (std::size_t p = 0; p < element.properties.size(); ++p) {
+    face_uvs_.clear();
+    for (std::size_t p = 0; p < none; ++p) {
       const PlyProperty& property = element.properties[p];
-      if (p != list) {
-        if (!skip(property)) return invalid(where, "it is cut short or not a number");
-        continue;
+      Status status = Ok{};
+      if (p == list) {
+        status = read_indices(property, where, false, corners_, is_valid);
+      } else if (p == wedges) {
+        status = read_wedges(property, where);
+      } else if (set.columns[p]) {
+        const auto number = body_.next(property.type);
+        if (!number) status = invalid(where, "it is cut short or not a number");
+        value[*set.columns[p]] = number.value_or(0.0);
+      } else if (!body_.skip(property)) {
+        status = invalid(where, "it is cut short or not a number");
       }
-      const auto count = next_index(*property.list_count);
-      if (!count) return invalid(where, "not a number of corners");
-      for (std::uint64_t c = 0; c < *count; ++c) {
-        const auto value = next(property.type);
-        if (!value) return invalid(where, "it is cut short or not a number");
-        const bool is_in_range = *value >= 0.0 && *value < static_cast<double>(vertex_count) &&
-                                 static_cast<double>(static_cast<std::uint32_t>(*value)) == *value;
-        if (!is_in_range && !options_.repair) {
-          return invalid(where,
-                         "a vertex index is out of range: there are " + std::to_string(vertex_count) + " vertices");
-        }
-        is_valid = is_valid && is_in_range;
-        corners.push_back(is_in_range ? static_cast<std::uint32_t>(*value) : 0);
-      }
+      if (!status) return status;
     }
-    if (corners.size() < 3) {
-      ++small_faces_;
-      continue;
-    }
-    if (!is_valid) {
-      out_.drops.repaired += corners.size() - 2;
-      continue;
-    }
-    out_.soup.polygon_sizes.push_back(static_cast<std::uint32_t>(corners.size()));
-    out_.soup.corners.insert(out_.soup.corners.end(), corners.begin(), corners.end());
+    body_.end_row();
+    keep_face(set, value, is_valid);
   }
   return Ok{};
 }
 
-Status PlyReader::skip_element(const PlyElement& element) {
-  if (!is_justified(element))
-    return invalid("element " + element.name.substr(0, 64), "more than the file has bytes for");
-  if (element.count > 0) {
-    if (element.name == "tristrips") {
-      return Error{ErrorCode::kUnsupported, "element tristrips", "triangle strips in PLY are not supported"};
+void PlyReader::keep_face(const PlyColumns& set, const Values& value, bool is_valid) {
+  if (corners_.size() < 3) {
+    ++small_faces_;
+    return;
+  }
+  out_.triangles += corners_.size() - 2;
+  if (!is_valid) {
+    out_.drops.repaired += corners_.size() - 2;
+    return;
+  }
+  out_.soup.polygon_sizes.push_back(static_cast<std::uint32_t>(corners_.size()));
+  out_.soup.corners.insert(out_.soup.corners.end(), corners_.begin(), corners_.end());
+  if (has_wedges_) {
+    const bool has_uvs = wedge_numbers_ == 2 * corners_.size();
+    if (!has_uvs && wedge_numbers_ != 0) ++odd_wedges_;
+    face_uvs_.resize(corners_.size(), Vec2f(0.0F));
+    wedge_uvs_.insert(wedge_uvs_.end(), face_uvs_.begin(), face_uvs_.end());
+    face_has_uvs_.push_back(has_uvs);
+  }
+  if (set.has[kTexture]) texture_numbers_.push_back(value[kTexture]);
+  if (set.has[kRed]) face_colors_.raw.push_back(color_of(value));
+}
+
+/// Each three indices in a row are a triangle, of which every second is turned; -1 begins a new strip.
+Status PlyReader::read_strips(const PlyElement& element) {
+  if (!body_.is_justified(element)) return invalid("element tristrips", "more strips than the file has bytes for");
+  std::size_t list = 0;
+  while (list < element.properties.size() &&
+         !(element.properties[list].list_count && element.properties[list].name.starts_with("vertex_ind"))) {
+    ++list;
+  }
+  if (element.count > 0 && list == element.properties.size()) {
+    return invalid("element tristrips", "vertex_indices is missing");
+  }
+  if (element.count > 0 && std::any_of(header_.elements.begin(), header_.elements.end(), [](const PlyElement& other) {
+        return other.name == "face" && other.count > 0;
+      })) {
+    return Error{ErrorCode::kUnsupported, "element tristrips", "triangle strips beside faces are not supported"};
+  }
+  std::vector<bool> is_kept(element.properties.size(), false);
+  if (element.count > 0) is_kept[list] = true;
+  leave_out_properties(element, is_kept);
+  std::vector<std::int64_t> strip;
+  for (std::uint64_t s = 0; s < element.count; ++s) {
+    const std::string where = "strip " + std::to_string(s);
+    bool is_valid = true;
+    for (std::size_t p = 0; p < element.properties.size(); ++p) {
+      Status status = Ok{};
+      if (p == list) {
+        status = read_indices(element.properties[p], where, true, strip, is_valid);
+      } else if (!body_.skip(element.properties[p])) {
+        status = invalid(where, "it is cut short or not a number");
+      }
+      if (!status) return status;
     }
-    out_.left_out.push_back({"element " + element.name.substr(0, 64), "only vertices and faces are read"});
+    body_.end_row();
+    keep_strip(strip, is_valid);
+  }
+  return Ok{};
+}
+
+void PlyReader::keep_strip(const std::vector<std::int64_t>& strip, bool is_valid) {
+  std::size_t begin = 0;  // of the strip since the last break
+  for (std::size_t i = 0; i < strip.size(); ++i) {
+    if (strip[i] < 0) begin = i + 1;
+    if (i < begin + 2 || strip[i - 2] == strip[i - 1] || strip[i - 1] == strip[i] || strip[i - 2] == strip[i]) continue;
+    corners_ = {strip[i - 2], strip[i - 1], strip[i]};
+    if ((i - begin) % 2 == 1) std::swap(corners_[0], corners_[1]);
+    ++out_.triangles;
+    if (!is_valid) {
+      ++out_.drops.repaired;
+      continue;
+    }
+    out_.soup.polygon_sizes.push_back(3);
+    out_.soup.corners.insert(out_.soup.corners.end(), corners_.begin(), corners_.end());
+  }
+}
+
+Status PlyReader::skip_element(const PlyElement& element) {
+  const std::string name = shown(element.name);
+  if (!body_.is_justified(element)) return invalid("element " + name, "more than the file has bytes for");
+  if (element.count > 0) {
+    leave_out("element " + name, std::to_string(element.count) + " of it; only vertices and faces are read");
   }
   for (std::uint64_t i = 0; i < element.count; ++i) {
     for (const PlyProperty& property : element.properties) {
-      if (!skip(property)) {
-        return invalid("element " + element.name.substr(0, 64) + " " + std::to_string(i),
-                       "it is cut short or not a number");
+      if (!body_.skip(property)) {
+        return invalid("element " + name + " " + std::to_string(i), "it is cut short or not a number");
       }
     }
+    body_.end_row();
   }
   return Ok{};
+}
+
+/// Attributes of corners and of whole faces become vertices of their own.
+void PlyReader::make_wedges() {
+  PolygonSoup& soup = out_.soup;
+  const bool has_wedges = std::find(face_has_uvs_.begin(), face_has_uvs_.end(), true) != face_has_uvs_.end();
+  if (has_wedges && !soup.uvs.empty()) leave_out("vertex properties of texture coordinates", "faces have their own");
+  if (has_wedges) soup.uvs.assign(soup.positions.size(), Vec2f(0.0F));
+  const bool paints_faces = !face_colors_.raw.empty() && vertex_colors_.raw.empty();
+  if (!face_colors_.raw.empty() && !paints_faces) {
+    leave_out("face properties red, green and blue",
+              counted(face_colors_.raw.size(), "face") + "; the vertices have colours too");
+  }
+  soup.colors = vertex_colors_.take(options_.linear_colors, clamped_);
+  std::vector<Vec4f> face_colors;
+  if (paints_faces) {
+    face_colors = face_colors_.take(options_.linear_colors, clamped_);
+    soup.colors.assign(soup.positions.size(), Vec4f(1.0F));
+  }
+  if (!has_wedges && !paints_faces) return;
+  WedgeBuilder wedges(soup);
+  std::size_t corner = 0;
+  for (std::size_t p = 0; p < soup.polygon_sizes.size(); ++p) {
+    WedgeAttributes attributes;
+    if (paints_faces) attributes.color = face_colors[p];
+    for (const std::size_t end = corner + soup.polygon_sizes[p]; corner < end; ++corner) {
+      if (has_wedges && face_has_uvs_[p]) attributes.uv = wedge_uvs_[corner];
+      soup.corners[corner] = wedges.take(soup.corners[corner], attributes);
+    }
+    if (has_wedges) soup.polygon_traits.push_back(face_has_uvs_[p] ? kHasAll : kHasNormals | kHasColors);
+  }
+}
+
+/// One material for each texture; a face without texture coordinates has none.
+void PlyReader::add_materials() {
+  PolygonSoup& soup = out_.soup;
+  const std::size_t count = header_.textures.size();
+  if (soup.uvs.empty() || count == 0) {
+    for (const std::string& name : header_.textures) {
+      leave_out("TextureFile " + shown(name), "the file has no texture coordinates");
+    }
+    if (has_texture_numbers_) leave_out("face property texnumber", "no comment TextureFile says what it counts");
+    return;
+  }
+  for (const std::string& name : header_.textures) {
+    MtlMaterial material;
+    material.name = std::filesystem::path(name).stem().string();
+    material.base_color.file = name;
+    material.base_color.keyword = "TextureFile";
+    out_.materials.push_back(std::move(material));
+  }
+  for (std::size_t p = 0; p < soup.polygon_sizes.size(); ++p) {
+    const bool has_uvs = soup.polygon_traits.empty() || (soup.polygon_traits[p] & kHasUvs) != 0;
+    const double number = has_texture_numbers_ ? texture_numbers_[p] : 0.0;
+    const bool is_known = number >= 0.0 && number < static_cast<double>(count);
+    if (!is_known && number != -1.0) ++odd_textures_;
+    soup.polygon_materials.push_back(has_uvs && is_known ? static_cast<std::uint32_t>(number) : kNoId);
+  }
+  if (!has_texture_numbers_ && count > 1) {
+    leave_out(counted(count - 1, "TextureFile"), "no face property texnumber says which face has it");
+  }
+}
+
+PolygonFile PlyReader::finish() {
+  make_wedges();
+  add_materials();
+  if (small_faces_ != 0) leave_out(counted(small_faces_, "face"), "they have fewer than three corners");
+  if (odd_wedges_ != 0) {
+    leave_out("texture coordinates (texcoord)",
+              counted(odd_wedges_, "face") + " with another number than two a corner");
+  }
+  if (odd_textures_ != 0)
+    leave_out("face property texnumber", counted(odd_textures_, "face") + " without such a texture");
+  if (clamped_ != 0) leave_out("colours", std::to_string(clamped_) + " outside of what their type covers are clamped");
+  for (const auto& [keyword, lines] : header_.other.counts()) {
+    leave_out("header keyword " + shown(keyword), counted(lines, "line"));
+  }
+  if (body_.surplus() != 0) {
+    leave_out(counted(body_.surplus(), "number"), "rows have more than the header says, at their ends");
+  }
+  if (body_.rest() != 0) leave_out(counted(body_.rest(), "byte"), "they follow the last element");
+  return std::move(out_);
 }
 
 }  // namespace
 
 Result<PolygonFile> read_ply(std::span<const std::uint8_t> bytes, const ImportOptions& options) {
-  return PlyReader(bytes, options).run();
+  std::string_view text = text_of(bytes);
+  const auto header = take_ply_header(text);
+  if (!header) return header.error();
+  return PlyReader(*header, text, options).run();
 }
 
 }  // namespace meshlode::scene

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/import/polygons/face_triangles.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <string>
+
+#include "scene/import/polygons/text_scan.h"
+#include "scene/import/polygons/triangulate_polygon.h"
+
+namespace meshlode::scene {
+
+namespace {
+
+/// Polygons of up to this many corners do not count towards the bound of the work.
+constexpr std::size_t kSmall = 64;
+constexpr std::uint64_t kMaxWork = std::uint64_t{1} << 31U;
+
+/// Twice the area vector of a polygon (Newell), with its first corner as the origin.
+Vec3d area_vector(const std::vector<Vec3d>& positions, std::span<const std::uint32_t> polygon) {
+  Vec3d sum(0.0);
+  const Vec3d& origin = positions[polygon[0]];
+  for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
+    sum += glm::cross(positions[polygon[i]] - origin, positions[polygon[i + 1]] - origin);
+  }
+  return sum;
+}
+
+struct Fan {
+  std::size_t start = 0;
+  bool is_good = false;    ///< every triangle faces the way the polygon does
+  bool is_folded = false;  ///< some face the other way
+};
+
+Fan fan_from(const std::vector<Vec3d>& positions, std::span<const std::uint32_t> polygon, std::size_t start,
+             const Vec3d& whole) {
+  const std::size_t n = polygon.size();
+  const Vec3d& origin = positions[polygon[start]];
+  Fan fan{start, true, false};
+  for (std::size_t i = 1; i + 1 < n; ++i) {
+    const double part = glm::dot(
+        glm::cross(positions[polygon[(start + i) % n]] - origin, positions[polygon[(start + i + 1) % n]] - origin),
+        whole);
+    fan.is_good = fan.is_good && part > 0.0;
+    fan.is_folded = fan.is_folded || part < 0.0;
+  }
+  return fan;
+}
+
+/// From any corner of a convex polygon, the reflex one of a dented quad; corner 0 where there is none that is good. A
+/// few are tried, so that a huge polygon stays linear.
+Fan find_fan(const std::vector<Vec3d>& positions, std::span<const std::uint32_t> polygon, const Vec3d& whole) {
+  constexpr std::size_t kTries = 16;
+  Fan first;
+  for (std::size_t start = 0; start < std::min(polygon.size(), kTries); ++start) {
+    const Fan fan = fan_from(positions, polygon, start, whole);
+    if (fan.is_good) return fan;
+    if (start == 0) first = fan;
+  }
+  return first;
+}
+
+/// The two coordinates in which the polygon is largest, as they are, so that the way around stays what it is. What lies
+/// on a line stays on it, and no digit is lost.
+std::array<int, 2> plane_axes(const Vec3d& area) {
+  const Vec3d size = glm::abs(area);
+  const int axis = size.z >= size.x && size.z >= size.y ? 2 : size.y >= size.x ? 1 : 0;
+  const int first = (axis + 1) % 3, second = (axis + 2) % 3;
+  return area[axis] >= 0.0 ? std::array{first, second} : std::array{second, first};
+}
+
+}  // namespace
+
+bool FaceTriangles::append_triangulated(std::span<const std::uint32_t> polygon, const Vec3d& area,
+                                        std::vector<std::uint32_t>& indices) {
+  const std::uint64_t n = polygon.size();
+  if (n > kSmall) {
+    if (n > kMaxTriangulatedCorners || work_ + n * n > kMaxWork) {
+      ++too_large_;
+      return false;
+    }
+    work_ += n * n;
+  }
+  const std::array<int, 2> axes = plane_axes(area);
+  std::vector<std::array<double, 2>> points;
+  points.reserve(n);
+  for (const std::uint32_t v : polygon) points.push_back({positions_[v][axes[0]], positions_[v][axes[1]]});
+  const PolygonTriangles made = triangulate_polygon(points);
+  if (made.triangles.empty() || !made.is_simple) ++crossing_;
+  for (const auto& [a, b, c] : made.triangles) indices.insert(indices.end(), {polygon[a], polygon[b], polygon[c]});
+  return !made.triangles.empty();
+}
+
+void FaceTriangles::append(std::span<const std::uint32_t> polygon, std::vector<std::uint32_t>& indices) {
+  const std::size_t n = polygon.size();
+  Fan fan{0, true, false};
+  if (n > 3) {
+    const Vec3d area = area_vector(positions_, polygon);
+    fan = find_fan(positions_, polygon, area);
+    if (!fan.is_good && n > 4 && area != Vec3d(0.0) && append_triangulated(polygon, area, indices)) return;
+    if (n == 4 && fan.is_folded) ++crossing_;  // each other diagonal was tried
+  }
+  for (std::size_t i = 1; i + 1 < n; ++i) {
+    indices.insert(indices.end(), {polygon[fan.start], polygon[(fan.start + i) % n], polygon[(fan.start + i + 1) % n]});
+  }
+}
+
+void FaceTriangles::report(std::vector<LeftOut>& left_out) const {
+  if (crossing_ != 0) {
+    left_out.push_back({"the shape of " + counted(crossing_, "face"),
+                        "their sides cross or touch each other, so that what is inside is a guess"});
+  }
+  if (too_large_ != 0) {
+    left_out.push_back({"the shape of " + counted(too_large_, "dented face"),
+                        "they have too many corners to be triangulated; triangles from one corner stand in"});
+  }
+}
+
+}  // namespace meshlode::scene

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Polygons that no fan covers: areas by the shoelace formula, corners of bridges, and what crosses itself.
+#include "scene/import/polygons/triangulate_polygon.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <random>
+#include <set>
+
+#include "scene/import/polygons/face_triangles.h"
+
+namespace meshlode::scene {
+namespace {
+
+using Points = std::vector<std::array<double, 2>>;
+
+double shoelace(const Points& p) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const auto& [x, y] = p[i];
+    const auto& [u, v] = p[(i + 1) % p.size()];
+    sum += x * v - u * y;
+  }
+  return sum / 2.0;
+}
+
+/// The sum over the triangles, none of which may be turned over.
+double covered(const Points& p, const PolygonTriangles& made) {
+  double sum = 0.0;
+  for (const auto& [a, b, c] : made.triangles) {
+    const double twice = (p[b][0] - p[a][0]) * (p[c][1] - p[a][1]) - (p[c][0] - p[a][0]) * (p[b][1] - p[a][1]);
+    EXPECT_GT(twice, 0.0);
+    sum += twice / 2.0;
+  }
+  return sum;
+}
+
+const Points kFrame{{0, 0}, {4, 0}, {4, 4}, {0, 4}, {0, 0}, {1, 1}, {1, 3}, {3, 3}, {3, 1}, {1, 1}};
+const Points kComb{{0, 0}, {5, 0}, {5, 2}, {4, 2}, {4, 1}, {3, 1}, {3, 2}, {2, 2}, {2, 1}, {1, 1}, {1, 2}, {0, 2}};
+
+TEST(TriangulatePolygon, DentedAndBridgedPolygonsAreCoveredOnce) {
+  const Points u{{0, 0}, {3, 0}, {3, 3}, {2, 3}, {2, 1}, {1, 1}, {1, 3}, {0, 3}};
+  for (const Points& points : {kFrame, kComb, u}) {
+    const auto made = triangulate_polygon(points);
+    EXPECT_TRUE(made.is_simple);
+    EXPECT_EQ(made.triangles.size(), points.size() - 2);
+    EXPECT_DOUBLE_EQ(covered(points, made), shoelace(points));
+  }
+}
+
+TEST(TriangulatePolygon, EachEndOfABridgeIsTheCornerOfItsSide) {
+  // Corners 0 and 4 are one point, 5 and 9 too: what lies below the bridge has 0 and 9, above it 4 and 5.
+  const auto made = triangulate_polygon(kFrame);
+  for (const auto& t : made.triangles) {
+    const std::set<std::uint32_t> corners(t.begin(), t.end());
+    const bool is_below = corners.contains(0) || corners.contains(9) || corners.contains(8) || corners.contains(1);
+    const bool is_above = corners.contains(4) || corners.contains(5) || corners.contains(3) || corners.contains(6);
+    EXPECT_FALSE(is_below && is_above && !corners.contains(2) && !corners.contains(7)) << t[0] << t[1] << t[2];
+    EXPECT_FALSE(corners.contains(0) && corners.contains(4));
+    EXPECT_FALSE(corners.contains(0) && corners.contains(5));
+    EXPECT_FALSE(corners.contains(4) && corners.contains(9));
+  }
+}
+
+TEST(TriangulatePolygon, TheNumberingDoesNotDecideWhereTheDiagonalsAre) {
+  for (const Points& points : {kFrame, kComb}) {
+    std::set<std::set<std::array<double, 2>>> first;
+    for (std::size_t turn = 0; turn < points.size(); ++turn) {
+      Points turned;
+      for (std::size_t i = 0; i < points.size(); ++i) turned.push_back(points[(i + turn) % points.size()]);
+      std::set<std::set<std::array<double, 2>>> places;
+      for (const auto& t : triangulate_polygon(turned).triangles)
+        places.insert({turned[t[0]], turned[t[1]], turned[t[2]]});
+      if (turn == 0) first = places;
+      EXPECT_EQ(places, first);
+    }
+  }
+}
+
+TEST(TriangulatePolygon, CornersOnASideAndRepeatedOnesAreNoCrossing) {
+  const Points on_side{{0, 0}, {2, 0}, {4, 0}, {4, 4}, {2, 0}, {0, 4}};  // touches its own lower side
+  EXPECT_DOUBLE_EQ(covered(on_side, triangulate_polygon(on_side)), shoelace(on_side));
+  const Points repeated{{0, 0}, {0, 0}, {2, 0}, {1, 0.5}, {2, 2}, {2, 2}, {0, 2}};
+  EXPECT_DOUBLE_EQ(covered(repeated, triangulate_polygon(repeated)), shoelace(repeated));
+}
+
+TEST(TriangulatePolygon, WhatCrossesItselfIsSaidSo) {
+  EXPECT_TRUE(triangulate_polygon(Points{{0, 0}, {2, 2}, {2, 0}, {0, 2.5}}).triangles.empty());
+  EXPECT_TRUE(triangulate_polygon(Points{{0, 0}, {1, 0}, {2, 0}}).triangles.empty());
+  // A hole that turns the same way as the border: what lies inside both is outside.
+  const Points same{{0, 0}, {4, 0}, {4, 4}, {0, 4}, {0, 0}, {1, 1}, {3, 1}, {3, 3}, {1, 3}, {1, 1}};
+  const auto made = triangulate_polygon(same);
+  EXPECT_FALSE(made.is_simple);
+  EXPECT_DOUBLE_EQ(covered(same, made), 12.0);
+}
+
+TEST(TriangulatePolygon, StarsOfRandomRadiiAreCoveredExactly) {
+  std::mt19937 random(7);
+  for (int i = 0; i < 200; ++i) {
+    const std::size_t n = 5 + random() % 60;
+    Points points;
+    for (std::size_t k = 0; k < n; ++k) {
+      const double angle = 6.283185307179586 * static_cast<double>(k) / static_cast<double>(n);
+      const double radius = 0.05 + static_cast<double>(random() % 1000) / 1000.0;
+      points.push_back({radius * std::cos(angle), radius * std::sin(angle)});
+    }
+    const auto made = triangulate_polygon(points);
+    EXPECT_EQ(made.triangles.size(), n - 2);
+    EXPECT_NEAR(covered(points, made), shoelace(points), 1e-12);
+  }
+}
+
+TEST(TriangulatePolygon, AnyPointsAtAllEnd) {
+  std::mt19937 random(11);
+  for (int i = 0; i < 2000; ++i) {
+    Points points(3 + random() % 14);
+    for (auto& [x, y] : points) x = static_cast<double>(random() % 4), y = static_cast<double>(random() % 4);
+    for (const auto& t : triangulate_polygon(points).triangles) {
+      for (const std::uint32_t corner : t) EXPECT_LT(corner, points.size());
+    }
+  }
+  const double huge = 3.4e38, tiny = 1e-300;
+  for (const double s : {huge, tiny}) {
+    Points points = kComb;
+    for (auto& [x, y] : points) x *= s / 8, y *= s / 8;
+    EXPECT_EQ(triangulate_polygon(points).triangles.size(), 10U);
+  }
+}
+
+/// Large faces of an odd shape: the work of one, and of all together, is bounded.
+TEST(FaceTriangles, ManyLargeDentedFacesTakeBoundedTime) {
+  constexpr std::uint32_t kCorners = 4096;
+  std::vector<Vec3d> positions;
+  for (std::uint32_t i = 0; i < kCorners; ++i) {
+    const double angle = 6.283185307179586 * i / kCorners, radius = i % 2 == 0 ? 1000.0 : 1.0;
+    positions.emplace_back(radius * std::cos(angle), radius * std::sin(angle), 0.0);
+  }
+  std::vector<std::uint32_t> polygon(kCorners);
+  for (std::uint32_t i = 0; i < kCorners; ++i) polygon[i] = i;
+  const auto start = std::chrono::steady_clock::now();
+  FaceTriangles faces(positions);
+  for (int i = 0; i < 200; ++i) {
+    std::vector<std::uint32_t> indices;
+    faces.append(polygon, indices);
+    EXPECT_EQ(indices.size(), 3 * (kCorners - 2));
+  }
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(120));
+  std::vector<LeftOut> left_out;
+  faces.report(left_out);
+  ASSERT_EQ(left_out.size(), 1U);
+  EXPECT_EQ(left_out[0].what, "the shape of 72 dented faces");  // 128 are within 2^31 squares
+}
+
+}  // namespace
+}  // namespace meshlode::scene
