@@ -43,7 +43,7 @@ enum class Setting : std::uint8_t {
   kCare,
   kSimplifier,
 };
-constexpr std::size_t kSettingCount = 20;
+constexpr std::size_t kSettingCount = 21;
 
 struct SettingInfo {
   Setting setting;
