@@ -24,11 +24,11 @@ int floor_log2(double x) {
   return exponent - 1;
 }
 
-/// mantissa · 2^log2 with a mantissa of at most kMantissaBits, made odd so that it is the only spelling: nearest to the
+/// mantissa · 2^log2 with a mantissa of at most so many bits, made odd so that it is the only spelling: nearest to the
 /// step, or the largest not above it.
-format::PositionGrid spell_step(double step, bool may_round_up) {
+format::PositionGrid spell_step(double step, bool may_round_up, int mantissa_bits = kMantissaBits) {
   format::PositionGrid grid;
-  grid.log2 = floor_log2(step) - (kMantissaBits - 1);
+  grid.log2 = floor_log2(step) - (mantissa_bits - 1);
   auto mantissa = static_cast<std::uint32_t>(std::floor(std::ldexp(step, -grid.log2) + (may_round_up ? 0.5 : 0.0)));
   while (mantissa % 2 == 0) {
     mantissa /= 2;
@@ -61,7 +61,13 @@ Result<format::PositionGrid> choose_grid(double largest_half_extent, double diag
   if (options.position_error > 0.0) {
     // The farthest a vertex moves is half the diagonal of a cell: step · √3 / 2.
     const double step = options.position_error * 2.0 / std::sqrt(3.0) * (1.0 - 1e-12);
-    return checked_grid(spell_step(step, false), largest_half_extent, "position error", options.position_error);
+    // A mantissa of many bits comes near to the budget and leaves few for coordinates: as many as the extent allows.
+    for (int bits = kMantissaBits; bits > 1; --bits) {
+      auto grid =
+          checked_grid(spell_step(step, false, bits), largest_half_extent, "position error", options.position_error);
+      if (grid) return grid;
+    }
+    return checked_grid(spell_step(step, false, 1), largest_half_extent, "position error", options.position_error);
   }
   format::PositionGrid grid;
   if (!(diagonal > 0.0)) return grid;  // a single point: any grid will do

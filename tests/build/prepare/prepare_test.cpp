@@ -371,6 +371,22 @@ TEST(ChooseGrid, AGivenStepIsASmallOddMantissa) {
   EXPECT_NEAR(choose_grid(1.0, 2.0, 0.1, options)->step(), 0.01, 0.01 * 0.004);
 }
 
+// The largest step below the budget often has a mantissa of eight bits, which leave 16 for coordinates: a budget that
+// 24 bits can keep is kept with a shorter one.
+TEST(ChooseGrid, APositionErrorThatTwentyFourBitsCanKeepIsNotRefused) {
+  PrepareOptions options;
+  for (double error = 1e-4; error > 1.1e-7; error *= 0.98) {
+    options.position_error = error;
+    const auto grid = choose_grid(1.0, std::sqrt(12.0), 0.01, options);
+    ASSERT_TRUE(grid) << error;
+    EXPECT_LE(grid->step() * std::sqrt(3.0) / 2.0, error);
+    EXPECT_GT(grid->step() * std::sqrt(3.0) / 2.0, error / 2.0) << error;
+    EXPECT_LE(grid->mantissa / grid->step(), 0x1p23) << error;
+  }
+  options.position_error = 5e-8;
+  EXPECT_FALSE(choose_grid(1.0, std::sqrt(12.0), 0.01, options));
+}
+
 TEST(ChooseGrid, APositionErrorIsKeptAndNearlyUsed) {
   for (const double error : {1e-4, 0.001, 1.0 / 1600.0, 0.37, 5.0}) {
     PrepareOptions options;
