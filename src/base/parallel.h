@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
+#include <exception>
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 #include <tbb/task_arena.h>
+#include <tbb/task_group.h>
 
 namespace meshlode {
 
@@ -35,13 +37,26 @@ constexpr std::size_t chunk_count(std::size_t count, std::size_t length) {
   return (count + length - 1) / length;
 }
 
+/// Out of a loop that oneTBB cut short because a turn of a loop around it has thrown: what it was to fill is not
+/// filled. Outside comes what was thrown first.
+struct LoopCutShort : std::exception {
+  [[nodiscard]] const char* what() const noexcept override { return "a loop around this one has ended"; }
+};
+inline void check_is_whole(tbb::task_group_context& context) {
+  if (context.is_group_execution_cancelled()) throw LoopCutShort();
+}
+
 /// Calls body(i) for i in [0, count), in any order and thread; `body` may write only to what belongs to i.
 template <class Body>
 void parallel_for_each_index(std::size_t count, std::size_t grain, const Body& body) {
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
-                    [&](const tbb::blocked_range<std::size_t>& range) {
-                      for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
-                    });
+  tbb::task_group_context context;
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, count, grain),
+      [&](const tbb::blocked_range<std::size_t>& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
+      },
+      context);
+  check_is_whole(context);
 }
 
 /// Calls body(chunk, begin, end) for the chunks of `length` that [0, count) falls into, side by side. What each finds
@@ -57,7 +72,9 @@ void parallel_for_each_chunk(std::size_t count, std::size_t length, const Body& 
 /// themselves.
 template <class... Turns>
 void parallel_all(const Turns&... turns) {
-  tbb::parallel_invoke(turns...);
+  tbb::task_group_context context;
+  tbb::parallel_invoke(turns..., context);
+  check_is_whole(context);
 }
 
 /// Gives each array its size, side by side: memory is cleared, and new to the process, by whoever touches it first.

@@ -146,7 +146,8 @@ std::vector<PlanDecision> unknown_names(const scene::Scene& scene, const Pipelin
   std::vector<PlanDecision> decisions;
   for (const std::string& names : asked) {
     for (const std::string& name : find_unknown_names(scene, names)) {
-      decisions.push_back({std::string(kUnknownAggregate) + name + "'", false, "no mesh and no material has that name", true});
+      decisions.push_back(
+          {std::string(kUnknownAggregate) + name + "'", false, "no mesh and no material has that name", true});
       decisions.back().mesh = format::kNone;
     }
   }

@@ -4,8 +4,13 @@
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <array>
+#include <atomic>
+#include <cstddef>
 #include <cstdint>
+#include <new>
+#include <thread>
 #include <vector>
 
 namespace meshlode {
@@ -67,6 +72,37 @@ TEST(Parallel, ChunksCoverEverythingOnce) {
     EXPECT_EQ(seen, std::vector<std::uint8_t>(count, 1));
     for (std::size_t chunk = 0; chunk < begin_of.size(); ++chunk) EXPECT_EQ(begin_of[chunk], 10 * chunk);
   }
+}
+
+/// A turn that throws ends the loops within the other turns too. None of them may come back with its work half done.
+TEST(Parallel, ALoopWithinOneThatEndedDoesNotReturnAsIfItWereWhole) {
+  constexpr std::size_t kInner = 2000;
+  tbb::task_arena(4).execute([&] {
+    for (int round = 0; round < 20; ++round) {
+      std::atomic<int> half_done = 0, is_begun = 0;
+      const auto outer = [&](std::size_t turn) {
+        if (turn == 0) {
+          for (int i = 0; i < 1000 && is_begun == 0; ++i) std::this_thread::yield();
+          throw std::bad_alloc();
+        }
+        std::vector<std::uint8_t> filled(kInner, 0);
+        const auto fill = [&](std::size_t i) {
+          is_begun = 1;
+          for (int k = 0; k < 20; ++k) std::this_thread::yield();
+          filled[i] = 1;
+        };
+        if (turn % 2 == 0) {
+          parallel_for_each_index(kInner, 1, fill);
+        } else {
+          parallel_all([&] { parallel_for_each_index(kInner / 2, 1, fill); },
+                       [&] { parallel_for_each_index(kInner / 2, 1, [&](std::size_t i) { fill(kInner / 2 + i); }); });
+        }
+        if (std::count(filled.begin(), filled.end(), 0) > 0) ++half_done;
+      };
+      EXPECT_THROW(parallel_for_each_index(8, 1, outer), std::bad_alloc);
+      EXPECT_EQ(half_done, 0);
+    }
+  });
 }
 
 }  // namespace
