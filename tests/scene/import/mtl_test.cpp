@@ -34,7 +34,7 @@ class MtlAsWritten : public PolygonFiles {
 TEST_F(MtlAsWritten, LineEndsMarksAndCaseAreAnyones) {
   for (const std::string text :
        {"newmtl a\nkd 1 0 0\nMAP_KD rgb.png\n", "\xEF\xBB\xBFnewmtl a\rKd 1 0 0\rmap_Kd rgb.png \f\r",
-        "newmtl\ta\r\nKd\t1 0 0\r\nmap_kd rgb.png\r\n"}) {
+        "newmtl\ta\r\nKd\t1 0 0\r\nmap_kd \"rgb.png\"\r\n"}) {
     const auto scene = read_mtl(text);
     ASSERT_TRUE(scene) << describe(scene);
     EXPECT_EQ(scene->materials[0].base_color, Vec4f(1, 0, 0, 1));

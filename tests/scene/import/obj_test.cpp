@@ -63,6 +63,17 @@ TEST_F(ObjAsWritten, FacesThatCrossThemselvesAreNamed) {
   EXPECT_EQ(scene->left_out[0].what, "the shape of 2 faces");
 }
 
+TEST_F(ObjAsWritten, AFaceThatGoesRoundManyTimesIsThereOnce) {
+  for (const int rounds : {2, 3, 4}) {
+    std::string face = "f";
+    for (int i = 0; i < rounds; ++i) face += " 1 2 3 4";
+    const auto scene = read("a.obj", kSquareObj + face + "\n");
+    ASSERT_TRUE(scene) << describe(scene);
+    EXPECT_EQ(area(*scene), 1.0) << rounds;
+    EXPECT_EQ(triangle_count(*scene), 2U);
+  }
+}
+
 TEST_F(ObjAsWritten, CornersThatRepeatTheOneBeforeAreOne) {
   const auto scene = read("a.obj", kSquareObj + "f 1 1 2 3 3\nf 1 2 3 1\nf 1 1 2\nf 1 2 1 2\nf 1 2\n");
   ASSERT_TRUE(scene) << describe(scene);

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <set>
 #include <string>
 
 #include "scene/import/polygons/text_scan.h"
@@ -28,11 +29,7 @@ Vec3d area_vector(const std::vector<Vec3d>& positions, std::span<const std::uint
   return sum;
 }
 
-struct Fan {
-  std::size_t start = 0;
-  bool is_good = false;    ///< every triangle faces the way the polygon does
-  bool is_folded = false;  ///< some face the other way
-};
+using Fan = FaceTriangles::Fan;
 
 Fan fan_from(const std::vector<Vec3d>& positions, std::span<const std::uint32_t> polygon, std::size_t start,
              const Vec3d& whole) {
@@ -89,8 +86,29 @@ bool FaceTriangles::append_triangulated(std::span<const std::uint32_t> polygon, 
   for (const std::uint32_t v : polygon) points.push_back({positions_[v][axes[0]], positions_[v][axes[1]]});
   const PolygonTriangles made = triangulate_polygon(points);
   if (made.triangles.empty() || !made.is_simple) ++crossing_;
+  if (made.triangles.empty()) return append_first_visits(polygon, indices);
   for (const auto& [a, b, c] : made.triangles) indices.insert(indices.end(), {polygon[a], polygon[b], polygon[c]});
-  return !made.triangles.empty();
+  return true;
+}
+
+bool FaceTriangles::append_first_visits(std::span<const std::uint32_t> polygon, std::vector<std::uint32_t>& indices) {
+  std::vector<std::uint32_t> once;
+  std::set<std::array<double, 3>> places;
+  for (const std::uint32_t v : polygon) {
+    const Vec3d& p = positions_[v];
+    if (places.insert({p.x, p.y, p.z}).second) once.push_back(v);
+  }
+  if (once.size() < 3 || once.size() == polygon.size()) return false;
+  append_fan(once, find_fan(positions_, once, area_vector(positions_, once)), indices);
+  return true;
+}
+
+void FaceTriangles::append_fan(std::span<const std::uint32_t> polygon, const Fan& fan,
+                               std::vector<std::uint32_t>& indices) {
+  const std::size_t n = polygon.size();
+  for (std::size_t i = 1; i + 1 < n; ++i) {
+    indices.insert(indices.end(), {polygon[fan.start], polygon[(fan.start + i) % n], polygon[(fan.start + i + 1) % n]});
+  }
 }
 
 void FaceTriangles::append(std::span<const std::uint32_t> polygon, std::vector<std::uint32_t>& indices) {
@@ -102,9 +120,7 @@ void FaceTriangles::append(std::span<const std::uint32_t> polygon, std::vector<s
     if (!fan.is_good && n > 4 && area != Vec3d(0.0) && append_triangulated(polygon, area, indices)) return;
     if (n == 4 && fan.is_folded) ++crossing_;  // each other diagonal was tried
   }
-  for (std::size_t i = 1; i + 1 < n; ++i) {
-    indices.insert(indices.end(), {polygon[fan.start], polygon[(fan.start + i) % n], polygon[(fan.start + i + 1) % n]});
-  }
+  append_fan(polygon, fan, indices);
 }
 
 void FaceTriangles::report(std::vector<LeftOut>& left_out) const {

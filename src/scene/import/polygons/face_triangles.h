@@ -2,6 +2,7 @@
 // A polygon of three dimensions becomes triangles.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -13,6 +14,12 @@ namespace meshlode::scene {
 
 class FaceTriangles {
  public:
+  /// Of all triangles that one corner has with the sides.
+  struct Fan {
+    std::size_t start = 0;
+    bool is_good = false;    ///< every triangle faces the way the polygon does
+    bool is_folded = false;  ///< some face the other way
+  };
   explicit FaceTriangles(const std::vector<Vec3d>& positions) : positions_(positions) {}
   /// Appends triangles to `indices`: polygon.size() - 2 where no corner lies on another or on a side.
   /// \pre three corners or more, whose positions are finite
@@ -23,6 +30,9 @@ class FaceTriangles {
  private:
   bool append_triangulated(std::span<const std::uint32_t> polygon, const Vec3d& area,
                            std::vector<std::uint32_t>& indices);
+  /// Where sides cross: without the corners at places where it was before, as of a face that goes round twice.
+  bool append_first_visits(std::span<const std::uint32_t> polygon, std::vector<std::uint32_t>& indices);
+  static void append_fan(std::span<const std::uint32_t> polygon, const Fan& fan, std::vector<std::uint32_t>& indices);
   const std::vector<Vec3d>& positions_;
   std::uint64_t work_ = 0;  ///< squares of the corners of large polygons so far
   std::uint64_t crossing_ = 0, too_large_ = 0;

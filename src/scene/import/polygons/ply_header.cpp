@@ -113,7 +113,7 @@ Result<PlyHeader> take_ply_header(std::string_view& text) {
       status = add_property(line, where, header);
     } else if (keyword == "comment") {
       if (is_word(take_word(line), "texturefile") && !trimmed(line).empty())
-        header.textures.emplace_back(trimmed(line));
+        header.textures.emplace_back(unquoted(line));
     } else if (!keyword.empty()) {
       header.other.add(keyword.substr(0, 16));
     }

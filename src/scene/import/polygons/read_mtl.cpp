@@ -33,7 +33,7 @@ std::string_view texture_name(std::string_view line, std::string_view keyword, T
     const std::string_view word = take_word(rest);
     const auto* option = std::find_if(std::begin(kMapOptions), std::end(kMapOptions),
                                       [&](const auto& known) { return is_word(word, known.first); });
-    if (option == std::end(kMapOptions)) return line;
+    if (option == std::end(kMapOptions)) return unquoted(line);
     skipped.add("option " + std::string(option->first) + " of " + shown(keyword));
     line = rest;
     for (int i = 0; i < option->second; ++i) {

@@ -25,6 +25,8 @@ namespace meshlode::scene {
 std::string_view take_word(std::string_view& text);
 /// Without blanks at either end.
 [[nodiscard]] std::string_view trimmed(std::string_view text);
+/// The same without quotation marks around all of it: some writers put a file's name into them.
+[[nodiscard]] std::string_view unquoted(std::string_view text);
 /// Takes a line off the front, without its end.
 std::string_view take_line(std::string_view& text);
 /// The same of a line that goes on where it ends with a backslash, in `joined` then; adds the lines to `count` but the
