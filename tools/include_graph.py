@@ -3,7 +3,8 @@
 """The floors of src/ and who includes whom, as a Mermaid graph: an arrow's number counts the #include lines behind it.
 
   tools/include_graph.py             prints the graph
-  tools/include_graph.py --rooms     prints the arrows between rooms as text, most first
+  tools/include_graph.py --rooms     prints the arrows between rooms as text, most first; exits 1 where rooms of a floor,
+                                     and files that lie in the floor itself, include each other in a circle
   tools/include_graph.py --write     rewrites the block between the markers in docs/architecture.md
   tools/include_graph.py --check     exits 1 where that block is not the graph
 
@@ -31,7 +32,13 @@ def room_of(path):
     return parts[1] if len(parts) == 3 else f"{parts[1]}/{parts[2]}"
 
 
-def read_arrows():
+def box_of(path):
+    """As room_of(), but `floor/name` of a file of the floor itself, with its header."""
+    room = room_of(path)
+    return room if "/" in room or room == "cli" else f"{room}/{path.name.split('.')[0]}"
+
+
+def read_arrows(room_of=room_of):
     """(including room, included room) -> #include lines, for rooms that differ."""
     arrows = collections.Counter()
     for root in ROOTS:
@@ -44,6 +51,18 @@ def read_arrows():
                 if "/" in target and (REPOSITORY / included).is_file() and room_of(included) != room:
                     arrows[room, room_of(included)] += 1
     return arrows
+
+
+def circle_of(arrows):
+    """The boxes of one floor that are left when those without an arrow inside the floor are taken away, again and again."""
+    inside = {(source, target) for source, target in arrows if source.split("/")[0] == target.split("/")[0]}
+    while True:
+        ends = {target for _, target in inside} - {source for source, _ in inside}
+        starts = {source for source, _ in inside} - {target for _, target in inside}
+        kept = {(source, target) for source, target in inside if target not in ends and source not in starts}
+        if kept == inside:
+            return sorted({box for arrow in inside for box in arrow})
+        inside = kept
 
 
 def floors_of(arrows):
@@ -95,7 +114,10 @@ def main(arguments):
     if arguments == ["--rooms"]:
         for (source, target), count in sorted(arrows.items(), key=lambda item: (-item[1], item[0])):
             print(f"{count:4}  {source} -> {target}")
-        return 0
+        circle = circle_of(read_arrows(box_of))
+        if circle:
+            print("include_graph.py: rooms include each other in a circle: " + ", ".join(circle), file=sys.stderr)
+        return 1 if circle else 0
     graph = mermaid(floors_of(arrows))
     if not arguments:
         print(graph)

@@ -2,7 +2,6 @@
 // Files appear whole or not at all; inputs are mapped, not copied.
 #pragma once
 
-#include <compare>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -10,13 +9,9 @@
 
 #include <meshlode/result.h>
 
-namespace meshlode {
+#include "base/file_id.h"
 
-/// Which file it is, whatever it is called: the same for every link to it. Of this machine and moment only.
-struct FileId {
-  std::uint64_t device = 0, inode = 0;
-  friend auto operator<=>(const FileId&, const FileId&) = default;
-};
+namespace meshlode {
 
 /// Links are followed; nothing where there is no such file.
 [[nodiscard]] std::optional<FileId> find_file_id(const std::filesystem::path& path);

@@ -12,7 +12,7 @@
 
 #include <meshlode/result.h>
 
-#include "base/file.h"
+#include "base/file_id.h"
 
 namespace meshlode::system {
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "batch/cache/cache.h"
 #include "batch/work/run_job.h"
 
 namespace meshlode::batch {

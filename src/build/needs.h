@@ -11,7 +11,7 @@
 #include <meshlode/result.h>
 
 #include "build/aggregate/aggregate_choice.h"
-#include "build/build.h"
+#include "build/options.h"
 #include "scene/scene.h"
 
 namespace meshlode::build {

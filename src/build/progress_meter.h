@@ -6,7 +6,7 @@
 #include <mutex>
 #include <vector>
 
-#include "build/build.h"
+#include "build/progress.h"
 #include "scene/scene.h"
 
 namespace meshlode::build {

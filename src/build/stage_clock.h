@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "build/build.h"
+#include "build/progress.h"
 
 namespace meshlode::build {
 

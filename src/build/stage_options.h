@@ -11,9 +11,10 @@
 #include <meshlode/result.h>
 
 #include "build/aggregate/aggregate_choice.h"
-#include "build/build.h"
+#include "build/options.h"
 #include "build/dag/build_dag.h"
 #include "build/encode/encode.h"
+#include "build/plan/plan.h"
 #include "build/prepare/prepare.h"
 #include "build/prepared.h"
 

@@ -8,7 +8,7 @@
 
 #include <meshlode/format.h>
 
-#include "build/build.h"
+#include "build/options.h"
 #include "build/plan/plan.h"
 
 namespace meshlode::build {

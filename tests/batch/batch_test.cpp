@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "batch/batch.h"
+#include "batch/cache/cache.h"
 #include "batch/cache/program_id.h"
 #include "batch_folder.h"
 #include "support/random.h"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a build needs, known before it: counts within 32 bits, and memory, held against what builds in children took.
+#include "build/build.h"
 #include "build/needs.h"
 
 #include <sys/resource.h>

@@ -44,7 +44,7 @@ ROOMS = {
     "hierarchy": (["src/build/hierarchy/*.cpp", "src/build/hierarchy/margins.h"], "hierarchy_test"),
     "encode": (["src/build/encode/encode.cpp", "src/build/encode/fits.cpp", "src/build/encode/quantize_normal.cpp",
                 "src/build/encode/uv_grid.cpp"], "encode_test"),
-    "select": (["src/run/select/*.cpp", "src/run/select/metric.h", "src/run/select/nesting.h"], "select_test"),
+    "select": (["src/run/select/*.cpp", "src/run/select/metric.h", "src/run/read/nesting.h"], "select_test"),
 }
 
 NUMBER = r"(?<![\w.])(\d+\.\d+(?:[eE][-+]?\d+)?|\d+[eE][-+]?\d+|0x[0-9a-fA-F]+p[-+]\d+)(F?)(?![\w.])"

@@ -14,7 +14,7 @@
 #include "build/simplify/quadric.h"
 #include "format/grid.h"
 #include "hard/share.h"
-#include "run/select/nesting.h"
+#include "run/read/nesting.h"
 #include "run/select/random_dag.h"
 #include "run/select/select.h"
 

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The borders between floors, and the few inside them: every #include of src/ and tools/ against cmake/layers.txt.
+#include <algorithm>
+#include <filesystem>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <set>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -64,6 +68,67 @@ TEST(Layers, EveryIncludeIsAnAllowedEdge) {
       EXPECT_TRUE(complaint.empty()) << file.path.string() << ":" << include.line << ": " << complaint;
     }
   }
+}
+
+using Arrows = std::map<std::string, std::set<std::string>>;
+
+/// A room, or a file that lies in the floor itself with its header: "builder/dag", "base/file".
+std::string box_of(const std::filesystem::path& path) {
+  const std::string room = room_of(path);
+  if (room.empty() || room.find('/') != std::string::npos) return room;
+  const std::string name = path.filename().string();
+  return room + "/" + name.substr(0, name.find('.'));
+}
+
+/// Boxes of a circle in `arrows`, each including the next; empty where there is none.
+std::vector<std::string> find_circle(const Arrows& arrows) {
+  std::set<std::string> done;
+  for (const auto& [start, ignored] : arrows) {
+    std::vector<std::string> path;
+    std::set<std::string> on_path;
+    const std::function<bool(const std::string&)> walk = [&](const std::string& box) {
+      if (on_path.contains(box)) {
+        path.erase(path.begin(), std::find(path.begin(), path.end(), box));
+        return true;
+      }
+      if (done.contains(box)) return false;
+      path.push_back(box);
+      on_path.insert(box);
+      if (const auto it = arrows.find(box); it != arrows.end()) {
+        for (const std::string& target : it->second) {
+          if (walk(target)) return true;
+        }
+      }
+      path.pop_back();
+      on_path.erase(box);
+      done.insert(box);
+      return false;
+    };
+    if (walk(start)) return path;
+  }
+  return {};
+}
+
+TEST(Layers, TheRoomsOfAFloorIncludeEachOtherInNoCircle) {
+  Arrows arrows;
+  for (const SourceFile& file : read_tree({"src"}, kSources)) {
+    const std::string box = box_of(file.path);
+    for (const Include& include : file.includes()) {
+      const std::filesystem::path target = std::filesystem::path("src") / include.path;
+      if (!include.is_quoted || !std::filesystem::is_regular_file(repository() / target)) continue;
+      const std::string other = box_of(target);
+      if (other != box && floor_of(other) == floor_of(box)) arrows[box].insert(other);
+    }
+  }
+  ASSERT_GT(arrows.size(), 50U);
+  std::string shown;
+  for (const std::string& box : find_circle(arrows)) shown += box + " -> ";
+  EXPECT_EQ(shown, "");
+}
+
+TEST(Layers, ACircleIsFound) {
+  EXPECT_EQ(find_circle({{"a", {"b", "d"}}, {"b", {"c"}}, {"c", {"d"}}}), std::vector<std::string>{});
+  EXPECT_EQ(find_circle({{"a", {"b"}}, {"b", {"c"}}, {"c", {"d", "b"}}}), (std::vector<std::string>{"b", "c"}));
 }
 
 TEST(Layers, EveryNameIsAFolder) {

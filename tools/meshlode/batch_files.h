@@ -17,7 +17,7 @@
 #include "base/hash.h"
 #include "batch/jobs/jobs.h"
 #include "batch/shard/partition.h"
-#include "batch/work/job_result.h"
+#include "batch/jobs/job_result.h"
 
 namespace meshlode::cli {
 

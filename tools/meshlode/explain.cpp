@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "base/printable.h"
-#include "build/plan/plan_report.h"
-#include "build/plan/scene_plan.h"
+#include "build/preview/plan_report.h"
+#include "build/preview/scene_plan.h"
 #include "build_options.h"
 #include "draw/gpu/pass_plan.h"
 #include "out/report/read_meta.h"

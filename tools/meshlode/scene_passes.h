@@ -2,7 +2,7 @@
 // The passes of the device's renderer that a scene will call for, from the plan of a build that has not been made.
 #pragma once
 
-#include "build/plan/scene_plan.h"
+#include "build/preview/scene_plan.h"
 #include "draw/gpu/pass_plan.h"
 #include "scene/scene.h"
 

@@ -12,6 +12,7 @@
 
 #include "base/printable.h"
 #include "batch/batch.h"
+#include "batch/cache/cache.h"
 #include "batch/cache/ingredients.h"
 #include "batch/cache/program_id.h"
 #include "batch/depend/depfile.h"

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "base/json_writer.h"
-#include "build/plan/plan_report.h"
-#include "build/plan/scene_plan.h"
+#include "build/preview/plan_report.h"
+#include "build/preview/scene_plan.h"
 #include "build/settings/settings.h"
 #include "build_options.h"
 #include "explain.h"

@@ -8,7 +8,7 @@
 
 #include "base/hash.h"
 #include "batch/depend/dependencies.h"
-#include "build/build.h"
+#include "build/options.h"
 #include "build/settings/settings.h"
 #include "scene/import/import.h"
 

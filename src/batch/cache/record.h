@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/hash.h"
-#include "batch/work/job_result.h"
+#include "batch/jobs/job_result.h"
 
 namespace meshlode::batch {
 

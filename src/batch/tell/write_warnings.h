@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/json_writer.h"
-#include "batch/work/job_result.h"
+#include "batch/jobs/job_result.h"
 
 namespace meshlode::batch {
 

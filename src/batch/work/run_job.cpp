@@ -9,11 +9,13 @@
 #include <utility>
 
 #include "base/guarded.h"
+#include "batch/cache/cache.h"
 #include "batch/cache/ingredients.h"
 #include "batch/cache/mesh_entries.h"
 #include "batch/work/warnings.h"
-#include "scene/detect/detect.h"
+#include "build/build.h"
 #include "build/stage_options.h"
+#include "scene/detect/detect.h"
 
 namespace meshlode::batch {
 

@@ -2,7 +2,10 @@
 // One scene of a batch: found unchanged, taken from the cache, or imported, built and written.
 #pragma once
 
-#include "batch/batch.h"
+#include "base/output_files.h"
+#include "batch/jobs/job_result.h"
+#include "batch/jobs/jobs.h"
+#include "batch/work/job_options.h"
 
 namespace meshlode::batch {
 

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "batch/work/job_result.h"
+#include "batch/jobs/job_result.h"
 
 namespace meshlode::batch {
 

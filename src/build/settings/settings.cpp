@@ -11,6 +11,7 @@
 #include "base/printable.h"
 #include "build/aggregate/aggregate_choice.h"
 #include "build/plan/attributes.h"
+#include "build/plan/plan.h"
 #include "build/preset.h"
 #include "format/names.h"
 

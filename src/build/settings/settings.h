@@ -15,7 +15,7 @@
 
 #include <meshlode/result.h>
 
-#include "build/build.h"
+#include "build/options.h"
 
 namespace meshlode::build {
 

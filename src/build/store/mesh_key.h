@@ -5,7 +5,7 @@
 #include <span>
 
 #include "base/hash.h"
-#include "build/build.h"
+#include "build/options.h"
 #include "build/encode/encode.h"
 #include "build/plan/texel_sizes.h"
 #include "build/prepared.h"

@@ -5,7 +5,7 @@
 
 #include "format/names.h"
 #include "run/read/asset.h"
-#include "run/select/nesting.h"
+#include "run/read/nesting.h"
 
 namespace meshlode::run {
 

@@ -8,7 +8,7 @@
 
 #include <meshlode/format.h>
 
-#include "run/select/nesting.h"
+#include "run/read/nesting.h"
 #include "run/select/select.h"
 
 namespace meshlode::run {

@@ -13,7 +13,7 @@
 #include "build/hierarchy/hierarchy.h"
 #include "build/hierarchy/lod_bounds.h"
 #include "build/hierarchy/margins.h"
-#include "run/select/nesting.h"
+#include "run/read/nesting.h"
 #include "run/select/random_dag.h"
 #include "support/sanitized.h"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "run/select/nesting.h"
+#include "run/read/nesting.h"
 #include "run/select/random_dag.h"
 #include "run/select/select.h"
 

@@ -10,7 +10,7 @@
 #include <limits>
 #include <vector>
 
-#include "run/select/nesting.h"
+#include "run/read/nesting.h"
 #include "run/select/select.h"
 #include "support/random.h"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-#include "run/select/nesting.h"
+#include "run/read/nesting.h"
 #include "run/select/random_dag.h"
 #include "run/select/select.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "build/plan/scene_plan.h"
+#include "build/preview/scene_plan.h"
 
 #include <algorithm>
 #include <array>
@@ -13,7 +13,7 @@
 #include "build/encode/encode.h"
 #include "build/encode/uv_grid.h"
 #include "build/needs.h"
-#include "build/plan/estimate.h"
+#include "build/preview/estimate.h"
 #include "build/plan/features.h"
 #include "build/plan/texel_sizes.h"
 #include "build/prepare/prepare.h"

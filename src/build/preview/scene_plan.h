@@ -9,7 +9,7 @@
 
 #include <meshlode/result.h>
 
-#include "build/build.h"
+#include "build/options.h"
 #include "build/plan/plan.h"
 #include "format/grid.h"
 #include "scene/scene.h"

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "base/json_writer.h"
-#include "build/plan/scene_plan.h"
+#include "build/preview/scene_plan.h"
 
 namespace meshlode::build {
 

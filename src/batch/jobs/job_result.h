@@ -12,7 +12,7 @@
 #include "base/hash.h"
 #include "batch/depend/dependencies.h"
 #include "batch/jobs/jobs.h"
-#include "build/build.h"
+#include "build/progress.h"
 #include "scene/scene.h"
 
 namespace meshlode::batch {

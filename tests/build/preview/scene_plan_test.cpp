@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a plan says before a build is what the build does.
-#include "build/plan/scene_plan.h"
+#include "build/build.h"
+#include "build/preview/scene_plan.h"
 
 #include <algorithm>
 
@@ -8,7 +9,7 @@
 
 #include "build/plan/count_wedges.h"
 #include "build/plan/features.h"
-#include "build/plan/plan_report.h"
+#include "build/preview/plan_report.h"
 #include "run/read/asset.h"
 #include "scene/samples/samples.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The constants are those of the models of docs/size.md and of data/, built with the default options.
-#include "build/plan/estimate.h"
+#include "build/preview/estimate.h"
 
 #include <algorithm>
 #include <cmath>

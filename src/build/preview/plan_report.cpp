@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "build/plan/plan_report.h"
+#include "build/preview/plan_report.h"
 
 #include <cmath>
 
