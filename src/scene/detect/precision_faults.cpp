@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kStepsInAnEdge = 256.0;
 constexpr double kDiagonalsAway = 4.0;
-// What a build chooses its grid by (build/prepare/choose_grid.cpp; a test of out/doctor holds the two together).
+// What a build chooses its grid by (builder/prepare/choose_grid.cpp; a test of out/doctor holds the two together).
 constexpr double kGridOfDiagonal = 2.5e-5, kStepsPerEdge = 8.0, kMostSteps = 0x1p21;
 constexpr double kStepsOfDetail = 4.0;  ///< that an edge of a triangle has at most, or it is a sliver
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A small GLB writer for the samples. It shares nothing with src/out/export, so that one can be tested with the other.
+// A small GLB writer for the samples. It shares nothing with src/app/export, so that one can be tested with the other.
 #pragma once
 
 #include <array>

@@ -55,16 +55,17 @@ std::vector<bool> find_joined(const PolygonSoup& soup, std::size_t object_count)
   return is_joined;
 }
 
-void say(std::vector<std::string> names, const char* why, std::vector<LeftOut>& left_out) {
-  if (names.empty()) return;
-  std::string list;
-  for (std::size_t i = 0; i < std::min<std::size_t>(names.size(), 8); ++i)
-    list += (i == 0 ? "" : ", ") + shown(names[i]);
-  if (names.size() > 8) list += " …";
-  left_out.push_back({"the names of " + counted(names.size(), "object"), why + (": " + list)});
-}
-
 }  // namespace
+
+void leave_out_names(const std::vector<std::string>& names, const char* noun, const char* why,
+                     std::vector<LeftOut>& left_out) {
+  if (names.empty()) return;
+  constexpr std::size_t kMostShown = 8;  // a line of the terminal or two
+  std::string list;
+  for (std::size_t i = 0; i < std::min(names.size(), kMostShown); ++i) list += (i == 0 ? "" : ", ") + shown(names[i]);
+  if (names.size() > kMostShown) list += " …";
+  left_out.push_back({"the names of " + counted(names.size(), noun), why + (": " + list)});
+}
 
 void separate_objects(PolygonSoup& soup, const std::vector<std::string>& names, std::vector<LeftOut>& left_out) {
   if (names.empty()) return;
@@ -80,9 +81,9 @@ void separate_objects(PolygonSoup& soup, const std::vector<std::string>& names, 
     if (!has_faces[i]) empty.push_back(names[i]);
     if (has_faces[i] && is_joined[i]) joined.push_back(names[i]);
   }
-  say(std::move(joined), names.size() > kMaxMeshes ? "there are too many" : "they share positions and stay one mesh",
-      left_out);
-  say(std::move(empty), "they have no faces", left_out);
+  leave_out_names(joined, "object",
+                  names.size() > kMaxMeshes ? "there are too many" : "they share positions and stay one mesh", left_out);
+  leave_out_names(empty, "object", "they have no faces", left_out);
 }
 
 }  // namespace meshlode::scene

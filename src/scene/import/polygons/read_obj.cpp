@@ -196,7 +196,6 @@ Status ObjReader::read_face(std::string_view line) {
     out_.triangles += stated;
     out_.drops.repaired += std::max<std::uint64_t>(stated, 1);
   } else if (!has_three_positions(face.corners)) {
-    out_.triangles += stated;
     ++small_faces_;
   } else {
     keep_face(face);
@@ -257,7 +256,7 @@ void ObjReader::report() {
   say(extra_, "vertex", "further numbers of v", "more than a position and a colour, or less than both");
   say(third_uvs_, "line", "the third number of vt", "it is not 0");
   say(smooth_, "line", "smoothing groups (s)", "without vn a face is flat");
-  if (!groups_.empty()) leave_out("the names of " + counted(groups_.size(), "group") + " (g)", "groups are no meshes");
+  leave_out_names({groups_.begin(), groups_.end()}, "group", "groups (g) are no meshes", out_.left_out);
   if (small_faces_ != 0) leave_out(counted(small_faces_, "face"), "they have fewer than three distinct corners");
   for (const auto& [keyword, count] : skipped_.counts()) {
     const bool is_line = keyword == "p" || keyword == "l";
