@@ -68,8 +68,8 @@ install(FILES include/meshlode/format.h include/meshlode/page.h include/meshlode
 # Shows the functions of <meshlode/build.h> and <meshlode/meshlode_build.h>, and nothing else: CGAL and what else is inside
 # is nobody's business.
 # meshlode_thread_rand stays out: a library must not replace its host's rand().
-add_library(meshlode_build_library SHARED $<TARGET_OBJECTS:meshlode_build>)
-target_link_libraries(meshlode_build_library PRIVATE meshlode_build)
+add_library(meshlode_build_library SHARED $<TARGET_OBJECTS:meshlode_builder>)
+target_link_libraries(meshlode_build_library PRIVATE meshlode_builder)
 set_target_properties(meshlode_build_library PROPERTIES OUTPUT_NAME meshlode_build EXPORT_NAME build LINKER_LANGUAGE CXX
                                                         VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})
 target_include_directories(meshlode_build_library INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)

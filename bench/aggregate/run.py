@@ -135,7 +135,7 @@ def curves(found):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", type=Path, default=ROOT / "build/release")
-    parser.add_argument("--out", type=Path, default=ROOT / "build/aggregate", help="assets are written there")
+    parser.add_argument("--out", type=Path, default=ROOT / "builder/aggregate", help="assets are written there")
     parser.add_argument("--rounds", type=int, default=7, help="of timed builds")
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--document", action="store_true", help="write docs/aggregates.md and its pictures")

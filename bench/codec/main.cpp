@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "build/pack/pack.h"
+#include "builder/pack/pack.h"
 #include "format/names.h"
 #include "format/page_streams.h"
 #include "run/read/asset.h"
@@ -51,7 +51,7 @@ Totals count_triangles(const run::Asset& asset) {
 }
 
 /// What the streams of the codec strips weigh, over all pages.
-void print_streams(const run::Asset& asset, const std::vector<build::PackedPage>& packed) {
+void print_streams(const run::Asset& asset, const std::vector<builder::PackedPage>& packed) {
   static constexpr const char* kNames[] = {"triples", "starts", "lengths", "references", "twins"};
   const double triangles = count_triangles(asset).source_triangles;
   std::array<double, format::kMaxStreams> bytes{};
@@ -60,7 +60,7 @@ void print_streams(const run::Asset& asset, const std::vector<build::PackedPage>
   double vertices = 0.0;
   for (const format::ClusterRecord& cluster : asset.clusters()) vertices += cluster.vertex_count();
   const std::uint32_t streams = format::kFieldStreams + format::field_count(asset.meshes()[0]);
-  for (const build::PackedPage& page : packed) {
+  for (const builder::PackedPage& page : packed) {
     if (page.codec != format::Codec::kStrips) continue;
     format::StoredHeader header;
     std::memcpy(&header, page.bytes.data(), sizeof(header));
@@ -85,14 +85,14 @@ void print_streams(const run::Asset& asset, const std::vector<build::PackedPage>
 void measure_codec(const run::Asset& asset, const std::vector<std::vector<std::uint32_t>>& pages, format::Codec codec,
                    const char* name, int repetitions) {
   const Totals totals = count_triangles(asset);
-  std::vector<build::PackedPage> packed;
+  std::vector<builder::PackedPage> packed;
   double decoded_bytes = 0.0;
   double stored_bytes = 0.0;
   for (std::size_t p = 0; p < pages.size(); ++p) {
     const auto& mesh = asset.meshes()[asset.groups()[asset.pages()[p].first_group].mesh];
     const std::span<const std::uint8_t> bytes{reinterpret_cast<const std::uint8_t*>(pages[p].data()),
                                               pages[p].size() * 4};
-    auto page = build::pack_page(mesh, bytes, codec);
+    auto page = builder::pack_page(mesh, bytes, codec);
     if (!page) fail(name, page.error().detail);
     decoded_bytes += static_cast<double>(bytes.size());
     stored_bytes += static_cast<double>(page->codec == format::Codec::kNone ? bytes.size() : page->bytes.size());

@@ -25,7 +25,7 @@
 #include "run/decode/decode.h"
 #include "run/select/select.h"
 #include "scene/import/import.h"
-#include "study/flip/flip.h"
+#include "lab/flip/flip.h"
 
 namespace {
 
@@ -167,9 +167,9 @@ struct Difference {
   double flip = 0.0, mse = 0.0, pixels = 0.0;
 };
 
-Difference compare(const study::FlipReference& reference, const Promised::Picture& full,
+Difference compare(const lab::FlipReference& reference, const Promised::Picture& full,
                    const Promised::Picture& picture) {
-  const study::FlipPicture flip = reference.compare(picture.image.rgba);
+  const lab::FlipPicture flip = reference.compare(picture.image.rgba);
   Difference out;
   for (std::size_t p = 0; p < flip.difference.size(); ++p) {
     constexpr auto kNothing = draw::VisibilityBuffer::kNothing;
@@ -204,7 +204,7 @@ draw::Image side_by_side(const std::vector<Promised::Picture>& pictures, std::ui
 }
 
 /// Where a square of `size` pixels has the largest sum of differences between the first two pictures; its corner.
-std::array<std::uint32_t, 2> find_most_changed(const study::FlipPicture& flip, std::uint32_t size) {
+std::array<std::uint32_t, 2> find_most_changed(const lab::FlipPicture& flip, std::uint32_t size) {
   std::array<std::uint32_t, 2> best{0, 0};
   double most = -1.0;
   for (std::uint32_t top = 0; top + size <= flip.height; top += 20) {
@@ -258,7 +258,7 @@ int measure(const Options& o) {
     const run::Camera& camera = cameras[c].camera;
     const bool is_drawn = c % o.picture_every == 0;
     std::optional<Promised::Picture> full;
-    std::optional<study::FlipReference> reference;
+    std::optional<lab::FlipReference> reference;
     if (is_drawn) {
       full = promised[0].draw(promised[0].select(camera, 0.0), camera);
       reference.emplace(full->image.rgba, full->image.width, full->image.height);
@@ -285,7 +285,7 @@ int measure(const Options& o) {
     for (const Promised& one : promised) {
       pictures.push_back(one.draw(one.select(*worst_camera, o.picture_error), *worst_camera));
     }
-    const study::FlipPicture flip = study::flip(pictures[0].image.rgba, pictures[1].image.rgba, o.width, o.height);
+    const lab::FlipPicture flip = lab::flip(pictures[0].image.rgba, pictures[1].image.rgba, o.width, o.height);
     const auto [left, top] = find_most_changed(flip, o.crop);
     const std::vector<std::uint8_t> png = draw::encode_png(side_by_side(pictures, o.crop, left, top));
     std::ofstream(o.pictures, std::ios::binary)

@@ -75,7 +75,7 @@ def table_of(results):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", default="build/release")
-    parser.add_argument("--out", default="build/promise", help="folder of assets and figures")
+    parser.add_argument("--out", default="builder/promise", help="folder of assets and figures")
     parser.add_argument("--orbits", type=int, default=50)
     parser.add_argument("--jobs", type=int, default=0, help="threads; 0 is one per core")
     parser.add_argument("--document", action="store_true", help="write docs/quality.md and docs/pictures/promise-*.png")

@@ -18,7 +18,7 @@
 #include "judge/metrics/attribute_drift.h"
 #include "judge/metrics/cut_judge.h"
 #include "judge/metrics/cut_search.h"
-#include "out/report/info.h"
+#include "app/report/info.h"
 #include "quality_report.h"
 #include "reference.h"
 #include "run/decode/decode.h"

@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "build/build.h"
-#include "build/dag/build_dag.h"
+#include "builder/builder.h"
+#include "builder/dag/build_dag.h"
 #include "command_line.h"
 #include "judge/verify/deviations.h"
 #include "random/scene.h"
@@ -57,9 +57,9 @@ struct Series {
 };
 
 void measure_scene(const std::string& name, const scene::Scene& scene, const Options& options, Series& series) {
-  build::PipelineReport report;
+  builder::PipelineReport report;
   const auto start = std::chrono::steady_clock::now();
-  auto bytes = build::build_lode(scene, {}, {}, report);
+  auto bytes = builder::build_lode(scene, {}, {}, report);
   series.build_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   ++series.scenes;
   if (!bytes) {
@@ -132,7 +132,7 @@ int main(int argc, char** argv) {
   std::printf("%zu scenes (%zu refused), %llu triangles, built in %.2f s\n", series.scenes, series.refused,
               static_cast<unsigned long long>(series.triangles), series.build_seconds);
   std::printf("%zu cuts, margin %.3f: true/stored median %.3f, largest %.4f\n", series.ratios.size(),
-              build::kMeasuredMargin, series.ratios[series.ratios.size() / 2], series.ratios.back());
+              builder::kMeasuredMargin, series.ratios[series.ratios.size() / 2], series.ratios.back());
   for (const double x : {0.97, 0.98, 0.99, 1.0, 1.01, 1.02, 1.05}) {
     std::printf("above %.2f: %zu (%.2f%%)\n", x, count_above(series, x),
                 100.0 * static_cast<double>(count_above(series, x)) / static_cast<double>(series.ratios.size()));

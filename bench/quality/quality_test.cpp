@@ -6,7 +6,7 @@
 
 #include <glm/trigonometric.hpp>
 
-#include "build/build.h"
+#include "builder/builder.h"
 #include "judge/metrics/cut_judge.h"
 #include "judge/metrics/cut_search.h"
 #include "reference.h"
@@ -35,8 +35,8 @@ Sample make_sample() {
   for (std::size_t i = 0; i < primitive.indices.size(); i += 3) {
     source.triangles.push_back({primitive.indices[i], primitive.indices[i + 1], primitive.indices[i + 2]});
   }
-  build::PipelineReport report;
-  auto bytes = build::build_lode(scene, {}, {}, report);
+  builder::PipelineReport report;
+  auto bytes = builder::build_lode(scene, {}, {}, report);
   EXPECT_TRUE(bytes.ok());
   auto asset = run::Asset::from_vector(std::move(*bytes));
   EXPECT_TRUE(asset.ok());

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "base/json_writer.h"
-#include "build/build.h"
-#include "build/preset.h"
+#include "builder/builder.h"
+#include "builder/preset.h"
 #include "command_line.h"
 #include "judge/metrics/cut_judge.h"
 #include "judge/metrics/cut_search.h"
@@ -81,14 +81,14 @@ void measure_mesh(const scene::SourceMesh& source, const run::Asset& asset,
 }
 
 /// Error: what the build or the reader says.
-Status measure_scene(const std::string& path, const Options& options, build::PipelineOptions pipeline,
+Status measure_scene(const std::string& path, const Options& options, builder::PipelineOptions pipeline,
                      std::vector<SeedCut>& out) {
   const Result<scene::Scene> scene = scene::import_scene(path, {});
   if (!scene) return scene.error();
   for (std::uint32_t seed = 1; seed <= options.seeds; ++seed) {
     pipeline.partition_seed = seed;
-    build::PipelineReport report;
-    auto bytes = build::build_lode(*scene, pipeline, {}, report);
+    builder::PipelineReport report;
+    auto bytes = builder::build_lode(*scene, pipeline, {}, report);
     if (!bytes) return bytes.error();
     const Result<run::Asset> asset = run::Asset::from_vector(std::move(*bytes));
     if (!asset) return asset.error();
@@ -127,9 +127,9 @@ std::string seeds_json(const std::vector<SeedCut>& cuts) {
 int main(int argc, char** argv) {
   Options options;
   if (const std::optional<int> exit_code = read_options(argc, argv, options)) return *exit_code;
-  build::PipelineOptions pipeline;
-  pipeline.preset = *value_in(build::kPresetNames, options.preset);
-  pipeline.error_tier = build::settings_of(pipeline.preset).error_tier;
+  builder::PipelineOptions pipeline;
+  pipeline.preset = *value_in(builder::kPresetNames, options.preset);
+  pipeline.error_tier = builder::settings_of(pipeline.preset).error_tier;
   const bench::ThreadLimit limit(options.jobs);
   std::vector<SeedCut> cuts;
   for (const std::string& path : options.scenes) {

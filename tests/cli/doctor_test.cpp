@@ -15,16 +15,16 @@
 
 #include "broken_scenes.h"
 #include "hard_case.h"
-#include "out/doctor/asset_faults.h"
+#include "app/doctor/asset_faults.h"
 #include "scene/detect/detect.h"
 #include "scene/import/import.h"
 
 namespace meshlode::cli {
 namespace {
 
-std::string ids_of(const std::vector<out::Diagnosis>& diagnoses) {
+std::string ids_of(const std::vector<app::Diagnosis>& diagnoses) {
   std::string text;
-  for (const out::Diagnosis& one : diagnoses) text += one.id + " " + std::to_string(one.share) + "; ";
+  for (const app::Diagnosis& one : diagnoses) text += one.id + " " + std::to_string(one.share) + "; ";
   return text;
 }
 
@@ -34,7 +34,7 @@ TEST(Doctor, FindsNothingInASoundScene) {
 
 TEST(Doctor, NamesTheFaultOfABrokenSceneFirst) {
   for (const test::BrokenScene& broken : test::broken_scenes()) {
-    const std::vector<out::Diagnosis> diagnoses = diagnose_scene(broken.scene);
+    const std::vector<app::Diagnosis> diagnoses = diagnose_scene(broken.scene);
     ASSERT_FALSE(diagnoses.empty()) << broken.id;
     EXPECT_EQ(diagnoses[0].id, broken.id) << ids_of(diagnoses);
     EXPECT_FALSE(diagnoses[0].title.empty());
@@ -55,7 +55,7 @@ TEST(Doctor, NamesTheFaultOfABrokenFileFirst) {
     std::ofstream(path, std::ios::binary).write(reinterpret_cast<const char*>(bytes.data()), std::ssize(bytes));
     const Result<scene::Scene> scene = scene::import_scene(path, {});
     ASSERT_TRUE(scene.ok()) << broken.id << ": " << scene.error().detail;
-    const std::vector<out::Diagnosis> diagnoses = diagnose_scene(*scene);
+    const std::vector<app::Diagnosis> diagnoses = diagnose_scene(*scene);
     ASSERT_FALSE(diagnoses.empty()) << broken.id;
     // Import mends normals that are no numbers, and says so.
     EXPECT_EQ(diagnoses[0].id, broken.id == "not-finite" ? "left-out" : broken.id) << ids_of(diagnoses);
@@ -65,8 +65,8 @@ TEST(Doctor, NamesTheFaultOfABrokenFileFirst) {
 
 TEST(Doctor, ASceneOfWhichNothingIsLeftIsHigh) {
   const auto severity = [](const scene::Scene& scene, const char* id) -> std::string {
-    for (const out::Diagnosis& one : diagnose_scene(scene)) {
-      if (one.id == id) return out::severity_of(one.share);
+    for (const app::Diagnosis& one : diagnose_scene(scene)) {
+      if (one.id == id) return app::severity_of(one.share);
     }
     return "";
   };
@@ -116,8 +116,8 @@ TEST(Doctor, TheHardCaseThatItNamesHasTheFault) {
 }
 
 TEST(Doctor, TheHardCasesThatAnAssetsFaultsNameExist) {
-  EXPECT_FALSE(out::asset_hard_cases().empty());
-  for (const std::string& name : out::asset_hard_cases()) {
+  EXPECT_FALSE(app::asset_hard_cases().empty());
+  for (const std::string& name : app::asset_hard_cases()) {
     const auto cases = test::hard::hard_cases();
     EXPECT_TRUE(std::any_of(cases.begin(), cases.end(), [&](const auto& one) { return one.name == name; })) << name;
   }
@@ -126,7 +126,7 @@ TEST(Doctor, TheHardCasesThatAnAssetsFaultsNameExist) {
 TEST(Doctor, SaysWhatTheImportLeftOutLast) {
   scene::Scene scene = test::broken_scenes()[0].scene;
   scene.left_out.push_back({"skin 0", "meshes are static"});
-  const std::vector<out::Diagnosis> diagnoses = diagnose_scene(scene);
+  const std::vector<app::Diagnosis> diagnoses = diagnose_scene(scene);
   ASSERT_EQ(diagnoses.size(), 2U) << ids_of(diagnoses);
   EXPECT_EQ(diagnoses[1].id, "left-out");
   EXPECT_EQ(diagnoses[1].places.at(0).where, "skin 0");
@@ -145,7 +145,7 @@ TEST(Doctor, RanksByShareOfTheWholeScene) {
   both.meshes.push_back(named("inconsistent-orientation").meshes[0]);
   both.instances.push_back(both.instances[0]);
   both.instances[1].mesh = MeshId(1U);
-  std::vector<out::Diagnosis> diagnoses = diagnose_scene(both);
+  std::vector<app::Diagnosis> diagnoses = diagnose_scene(both);
   ASSERT_EQ(diagnoses.size(), 2U) << ids_of(diagnoses);
   EXPECT_EQ(diagnoses[0].id, "inconsistent-orientation");
   // Twenty more degenerate spheres, and the turned one is a small part.

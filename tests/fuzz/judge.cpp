@@ -8,9 +8,9 @@
 #include "asset_mutator.h"
 #include "harness.h"
 #include "judge/validate/validate.h"
-#include "out/compare/compare.h"
-#include "out/export/choose_cuts.h"
-#include "out/export/export.h"
+#include "app/compare/compare.h"
+#include "app/export/choose_cuts.h"
+#include "app/export/export.h"
 
 namespace {
 
@@ -18,18 +18,18 @@ namespace {
 void print_reports(const meshlode::run::Asset& asset) {
   using namespace meshlode;
   const auto judge = [](std::string_view text, std::string_view schema, const std::string& document) {
-    const auto budget = out::read_budget(text, schema);
-    fuzz::require(budget.ok() && out::judge_budget(*budget, document).ok(), "a document is no JSON");
+    const auto budget = app::read_budget(text, schema);
+    fuzz::require(budget.ok() && app::judge_budget(*budget, document).ok(), "a document is no JSON");
   };
-  const out::AssetComparison same = out::compare_assets(asset, asset);
+  const app::AssetComparison same = app::compare_assets(asset, asset);
   fuzz::require(same.is_content_equal && same.settings.empty() && same.meshes_added.empty() &&
                     same.meshes_removed.empty() && same.images.changed.empty(),
                 "an asset differs from itself");
-  judge("any(meshes).any(by_level).error_max.change!=0, any(settings).key==a", out::compare_schema(),
-        out::comparison_json(same));
-  fuzz::require(!out::comparison_text(same).empty(), "no text");
-  judge("any(meshes).stuck_groups>0, any(stuck).triangles>1", out::info_schema(),
-        out::info_json(asset, out::describe_asset(asset), true));
+  judge("any(meshes).any(by_level).error_max.change!=0, any(settings).key==a", app::compare_schema(),
+        app::comparison_json(same));
+  fuzz::require(!app::comparison_text(same).empty(), "no text");
+  judge("any(meshes).stuck_groups>0, any(stuck).triangles>1", app::info_schema(),
+        app::info_json(asset, app::describe_asset(asset), true));
 }
 
 }  // namespace
@@ -42,13 +42,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   fuzz::require(asset.ok() || report.finding_count > 0, "the judge finds nothing in a file that does not open");
   if (!asset || asset->instances().size() > 1000) return 0;
   print_reports(*asset);
-  std::vector<out::LodChain> chains(asset->meshes().size());
+  std::vector<app::LodChain> chains(asset->meshes().size());
   for (std::size_t m = 0; m < chains.size(); ++m) {
-    chains[m].cuts = {out::choose_level_cut(*asset, MeshId(m), 0).clusters};
-    const auto coarse = out::choose_level_cut(*asset, MeshId(m), 0xFFFF).clusters;
+    chains[m].cuts = {app::choose_level_cut(*asset, MeshId(m), 0).clusters};
+    const auto coarse = app::choose_level_cut(*asset, MeshId(m), 0xFFFF).clusters;
     if (!coarse.empty() && coarse != chains[m].cuts[0] && !chains[m].cuts[0].empty()) chains[m].cuts.push_back(coarse);
   }
-  const auto glb = out::export_glb_lods(*asset, chains);
+  const auto glb = app::export_glb_lods(*asset, chains);
   fuzz::require(glb.ok() || !glb.error().message().empty(), "a refusal without a reason");
   return 0;
 }

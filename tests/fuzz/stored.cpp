@@ -7,14 +7,14 @@
 #include <string_view>
 #include <vector>
 
-#include "batch/cache/ingredients.h"
-#include "batch/cache/record.h"
-#include "batch/shard/merge.h"
-#include "batch/shard/read_manifest.h"
-#include "batch/tell/tell.h"
-#include "build/settings/settings_file.h"
-#include "build/store/stored_mesh.h"
-#include "build/write/write.h"
+#include "app/batch/cache/ingredients.h"
+#include "app/batch/cache/record.h"
+#include "app/batch/shard/merge.h"
+#include "app/batch/shard/read_manifest.h"
+#include "app/batch/tell/tell.h"
+#include "app/settings/settings_file.h"
+#include "builder/store/stored_mesh.h"
+#include "builder/write/write.h"
 #include "format/names.h"
 #include "harness.h"
 
@@ -29,78 +29,78 @@ std::string_view text_of(Bytes bytes) {
 }
 
 void read_record(Bytes bytes) {
-  const auto record = batch::read_record(bytes);
+  const auto record = app::read_record(bytes);
   if (!record) return;
-  const auto again = batch::record_bytes(*record);
+  const auto again = app::record_bytes(*record);
   require(std::equal(again.begin(), again.end(), bytes.begin(), bytes.end()), "a record is written as other bytes");
 }
 
 void read_mesh(Bytes bytes) {
   if (bytes.empty()) return;
   const format::Codec codec = format::kCodecNames[bytes[0] % format::kCodecNames.size()].value;
-  auto mesh = build::read_stored_mesh(bytes.subspan(1), "mesh 0");
+  auto mesh = builder::read_stored_mesh(bytes.subspan(1), "mesh 0");
   if (!mesh) return;
-  const auto first = build::stored_mesh_bytes(mesh->encoded, mesh->decisions, "mesh 0");
-  const auto again = build::read_stored_mesh(first, "mesh 0");
-  require(again && build::stored_mesh_bytes(again->encoded, again->decisions, "mesh 0") == first,
+  const auto first = builder::stored_mesh_bytes(mesh->encoded, mesh->decisions, "mesh 0");
+  const auto again = builder::read_stored_mesh(first, "mesh 0");
+  require(again && builder::stored_mesh_bytes(again->encoded, again->decisions, "mesh 0") == first,
           "a mesh is not read as it was written");
   scene::Scene scene;
   scene.materials.resize(2);
   scene.instances.push_back({"one", 0, MeshId(0U), Mat4d(1.0)});
-  build::WriteInput input;
+  builder::WriteInput input;
   input.meshes.push_back(std::move(mesh->encoded));
   input.mesh_names = {"mesh"};
   input.scene = &scene;
   input.codec = codec;
-  const auto asset = build::write_asset(std::move(input));
+  const auto asset = builder::write_asset(std::move(input));
   require(asset || !asset.error().detail.empty(), "a refusal without a reason");
 }
 
-std::string written(const batch::Manifest& manifest) {
-  return batch::manifest_json(manifest.results, manifest.program, manifest.settings, manifest.exit_code,
+std::string written(const app::Manifest& manifest) {
+  return app::manifest_json(manifest.results, manifest.program, manifest.settings, manifest.exit_code,
                               manifest.shard ? &*manifest.shard : nullptr);
 }
 
 void read_manifest(Bytes bytes) {
-  const auto manifest = batch::parse_manifest(text_of(bytes));
+  const auto manifest = app::parse_manifest(text_of(bytes));
   if (!manifest) {
     require(!manifest.error().detail.empty(), "a refusal without a reason");
     return;
   }
   // The generator alone is this program's in what is written.
   const std::string first = written(*manifest);
-  const auto again = batch::parse_manifest(first);
+  const auto again = app::parse_manifest(first);
   require(again && written(*again) == first, "a manifest is not read as it was written");
-  static_cast<void>(batch::junit_xml(manifest->results));
-  static_cast<void>(batch::summary_table(manifest->results));
-  const auto merged = batch::merge_shards({{"one", *manifest}});
+  static_cast<void>(app::junit_xml(manifest->results));
+  static_cast<void>(app::summary_table(manifest->results));
+  const auto merged = app::merge_shards({{"one", *manifest}});
   require(!merged || (manifest->shard && merged->results.size() == manifest->shard->batch_jobs),
           "a batch has another number of files");
-  static_cast<void>(batch::merge_shards({{"one", *manifest}, {"two", *manifest}}));
+  static_cast<void>(app::merge_shards({{"one", *manifest}, {"two", *manifest}}));
 }
 
 void read_settings(Bytes bytes) {
-  const auto layer = build::parse_settings(text_of(bytes), "meshlode.json");
+  const auto layer = app::parse_settings(text_of(bytes), "meshlode.json");
   if (!layer) {
     require(!layer.error().detail.empty(), "a refusal without a reason");
     return;
   }
   const std::vector<std::string> names{"", "rock", "tree.001"};
-  const auto settled = build::settle({&*layer, 1});
-  const auto meshes = build::settle_meshes({&*layer, 1}, names);
+  const auto settled = app::settle({&*layer, 1});
+  const auto meshes = app::settle_meshes({&*layer, 1}, names);
   require(!meshes || meshes->empty() || meshes->size() == names.size(), "meshes without settings");
   if (!settled) return;
   auto options = settled->options;
-  static_cast<void>(build::set_mesh_options({&*layer, 1}, names, options));
-  static_cast<void>(batch::mesh_rules_text({&*layer, 1}));
+  static_cast<void>(app::set_mesh_options({&*layer, 1}, names, options));
+  static_cast<void>(app::mesh_rules_text({&*layer, 1}));
 }
 
 void explain(Bytes bytes) {
   if (bytes.size() < 2) return;
   const std::size_t size = std::min<std::size_t>(bytes[0] + 256U * bytes[1], bytes.size() - 2);
   const std::string before(text_of(bytes.subspan(2, size))), now(text_of(bytes.subspan(2 + size)));
-  static_cast<void>(batch::explain_change(before, now));
-  require(batch::explain_change(now, now).empty(), "a text differs from itself");
+  static_cast<void>(app::explain_change(before, now));
+  require(app::explain_change(now, now).empty(), "a text differs from itself");
 }
 
 }  // namespace

@@ -6,12 +6,12 @@
 #include <mutex>
 #include <optional>
 
-#include "batch/cache/ingredients.h"
-#include "batch/cache/record.h"
-#include "batch/shard/partition.h"
-#include "batch/tell/tell.h"
-#include "build/build.h"
-#include "build/store/mesh_store.h"
+#include "app/batch/cache/ingredients.h"
+#include "app/batch/cache/record.h"
+#include "app/batch/shard/partition.h"
+#include "app/batch/tell/tell.h"
+#include "builder/builder.h"
+#include "builder/store/mesh_store.h"
 #include "support/sample_asset.h"
 
 namespace meshlode::fuzz {
@@ -20,7 +20,7 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-class MemoryStore : public build::MeshStore {
+class MemoryStore : public builder::MeshStore {
  public:
   [[nodiscard]] bool wants(std::uint64_t /*triangles*/) const override { return true; }
   std::optional<Bytes> find(const Hash128& /*key*/) override { return std::nullopt; }
@@ -36,10 +36,10 @@ class MemoryStore : public build::MeshStore {
 
 std::map<Hash128, Bytes> stored_meshes() {
   MemoryStore store;
-  build::PipelineOptions options;
+  builder::PipelineOptions options;
   options.mesh_store = &store;
-  build::PipelineReport report;
-  static_cast<void>(build::build_lode(test::sample_scene(), options, {}, report));
+  builder::PipelineReport report;
+  static_cast<void>(builder::build_lode(test::sample_scene(), options, {}, report));
   return store.entries;
 }
 
@@ -48,34 +48,34 @@ Bytes behind(Bytes prefix, const std::string& text) {
   return prefix;
 }
 
-std::vector<batch::Dependency> sample_files() {
-  const batch::FileStamp stamp{{}, 100, 0, 0};
-  return {{batch::FileKind::kScene, "", "in/a.gltf", stamp, {1}},
-          {batch::FileKind::kBuffer, "a.bin", "in/a.bin", stamp, {2}},
-          {batch::FileKind::kImage, "a.png", "in/a.png", std::nullopt, {}}};
+std::vector<app::Dependency> sample_files() {
+  const app::FileStamp stamp{{}, 100, 0, 0};
+  return {{app::FileKind::kScene, "", "in/a.gltf", stamp, {1}},
+          {app::FileKind::kBuffer, "a.bin", "in/a.bin", stamp, {2}},
+          {app::FileKind::kImage, "a.png", "in/a.png", std::nullopt, {}}};
 }
 
-std::vector<batch::JobResult> sample_results() {
-  std::vector<batch::JobResult> results(2);
+std::vector<app::JobResult> sample_results() {
+  std::vector<app::JobResult> results(2);
   results[0].job = {"in/a.gltf", "out/a.lode"};
-  results[0].status = batch::JobStatus::kBuilt;
+  results[0].status = app::JobStatus::kBuilt;
   results[0].facts.bytes = 1000;
   results[0].asset_hash.fill(7);
   results[0].files = sample_files();
   results[1].job = {"in/b.gltf", "out/b.lode"};
-  results[1].status = batch::JobStatus::kFailed;
+  results[1].status = app::JobStatus::kFailed;
   results[1].exit_code = 3;
   results[1].error = "in/b.gltf: /accessors/0: broken";
   return results;
 }
 
-std::string manifest_of(std::vector<batch::JobResult> results, std::uint32_t shards) {
+std::string manifest_of(std::vector<app::JobResult> results, std::uint32_t shards) {
   const std::string settings = "codec strips\npreset fast\n";
-  if (shards == 0) return batch::manifest_json(results, {1}, settings, 3);
-  const std::vector<batch::Job> jobs{results[0].job, results[1].job};
-  const batch::ShardPlan plan = batch::plan_shard(jobs, std::array<std::uint64_t, 2>{2, 1}, {1, shards});
+  if (shards == 0) return app::manifest_json(results, {1}, settings, 3);
+  const std::vector<app::Job> jobs{results[0].job, results[1].job};
+  const app::ShardPlan plan = app::plan_shard(jobs, std::array<std::uint64_t, 2>{2, 1}, {1, shards});
   results.resize(plan.positions.size());
-  return batch::manifest_json(results, {1}, settings, results.size() == 2 ? 3 : 0, &plan);
+  return app::manifest_json(results, {1}, settings, results.size() == 2 ? 3 : 0, &plan);
 }
 
 }  // namespace
@@ -83,13 +83,13 @@ std::string manifest_of(std::vector<batch::JobResult> results, std::uint32_t sha
 std::vector<std::pair<std::string, Bytes>> make_stored_seeds() {
   std::vector<std::pair<std::string, Bytes>> seeds;
   const auto files = sample_files();
-  const std::string ingredients = batch::ingredients_text({1}, "codec strips\npreset fast\n", files);
-  batch::AssetRecord record{ingredients, {3}, {}};
+  const std::string ingredients = app::ingredients_text({1}, "codec strips\npreset fast\n", files);
+  app::AssetRecord record{ingredients, {3}, {}};
   record.facts.bytes = 1000;
   record.facts.left_out = {{"image 0", "cannot be opened"}};
   record.facts.losses = {{"uv set 1", "nothing uses it"}};
   Bytes bytes{0};
-  const Bytes stored = batch::record_bytes(record);
+  const Bytes stored = app::record_bytes(record);
   bytes.insert(bytes.end(), stored.begin(), stored.end());
   seeds.emplace_back("record", bytes);
 
@@ -104,7 +104,7 @@ std::vector<std::pair<std::string, Bytes>> make_stored_seeds() {
   }
   seeds.emplace_back("settings", behind({3}, R"({"codec": "zstd", "preset": "fast", "keep": ["NORMAL"], "grid": 0.001,
  "meshes": {"rock*": {"normal-error": 0.5, "drop": "COLOR_0"}, "*": {"uv-error": 0.01}}})"));
-  const std::string other = batch::ingredients_text({2}, "codec none\n", std::span(files).first(2));
+  const std::string other = app::ingredients_text({2}, "codec none\n", std::span(files).first(2));
   seeds.emplace_back("changes", behind({4, static_cast<std::uint8_t>(ingredients.size()),
                                         static_cast<std::uint8_t>(ingredients.size() >> 8U)},
                                        ingredients + other));

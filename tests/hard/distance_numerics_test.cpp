@@ -9,15 +9,15 @@
 #include <cstdint>
 #include <vector>
 
-#include "build/deviation/deviation.h"
-#include "build/deviation/point_distance.h"
+#include "builder/deviation/deviation.h"
+#include "builder/deviation/point_distance.h"
 #include "hard/share.h"
 #include "support/random.h"
 
 namespace meshlode::test::hard {
 namespace {
 
-using build::TriangleCorners;
+using builder::TriangleCorners;
 using Quad = boost::multiprecision::cpp_bin_float_quad;
 
 constexpr double kDouble = 0x1p-53;
@@ -80,7 +80,7 @@ TEST(Numerics, ADistanceToATriangleIsTooSmallByLessThanItsAllowance) {
     const double side = std::ldexp(random.between(-1.0, 1.0), -static_cast<int>(random.below(40)));
     Vec3d p = t[at] + (t[at] - t[(at + 1) % 3]) * reach + (t[at] - t[(at + 2) % 3]) * side;
     p += random.direction() * std::ldexp(1.0, -static_cast<int>(random.below(60)));
-    const double found = std::sqrt(build::point_triangle_distance2(p, t));
+    const double found = std::sqrt(builder::point_triangle_distance2(p, t));
     const Quad allowance = 8 * Quad(kDouble) * found + 9 * Quad(kDouble) * longest_edge(t);
     worst.take(((true_distance(p, t) - found) / allowance).convert_to<double>(), round);
   }
@@ -90,7 +90,7 @@ TEST(Numerics, ADistanceToATriangleIsTooSmallByLessThanItsAllowance) {
 struct Patch {
   std::vector<Vec3d> positions;
   std::vector<std::array<std::uint32_t, 3>> triangles;
-  [[nodiscard]] build::GroupSurface as_group() const { return {positions, triangles}; }
+  [[nodiscard]] builder::GroupSurface as_group() const { return {positions, triangles}; }
   [[nodiscard]] TriangleCorners corners(const std::array<std::uint32_t, 3>& t) const {
     return {positions[t[0]], positions[t[1]], positions[t[2]]};
   }
@@ -154,8 +154,8 @@ TEST(Numerics, ACertifiedDeviationIsNoSmallerThanAnyDistanceOfPoints) {
     const Frame frame = random_frame(random, width, round % 2 == 0 ? 0.0 : 100.0);
     const double height = is_flat ? 0.0 : random.log_between(1e-6, 0.3);
     const Patch fine = bumpy_patch(random, 4, height, frame), coarse = bumpy_patch(random, 2, height, frame);
-    const std::vector<build::TriangleBound> none(fine.triangles.size());
-    const build::CertifiedGroup certified = build::certify_group(fine.as_group(), none, coarse.as_group());
+    const std::vector<builder::TriangleBound> none(fine.triangles.size());
+    const builder::CertifiedGroup certified = builder::certify_group(fine.as_group(), none, coarse.as_group());
     const Quad truth = std::max(farthest(fine, coarse), farthest(coarse, fine));
     (is_flat ? flat : usual).take((truth / Quad(certified.deviation)).convert_to<double>(), round);
   }

@@ -11,7 +11,7 @@
 
 #include <meshlode/result.h>
 
-#include "build/build.h"
+#include "builder/builder.h"
 #include "run/select/select.h"
 #include "scene/scene.h"
 
@@ -26,7 +26,7 @@ struct HardView {
 /// One case at one parameter.
 struct Sample {
   scene::Scene scene;
-  build::PipelineOptions options;
+  builder::PipelineOptions options;
   /// The smallest detail that the case is about, object units; 0: it has none. Where the stored positions are off by
   /// more than half of it the detail is lost, by no more than the asset says.
   double feature = 0.0;

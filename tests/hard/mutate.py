@@ -33,17 +33,17 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 # Room: its files, and the program that is asked first.
 ROOMS = {
-    "prepare": (["src/build/prepare/*.cpp"], "prepare_test"),
-    "simplify": (["src/build/simplify/quadric.h", "src/build/simplify/attribute_quadrics.h", "src/build/simplify/placement.cpp",
-                  "src/build/simplify/surface_quadrics.*", "src/build/simplify/attribute_scales.cpp",
-                  "src/build/simplify/point_triangle.h", "src/build/simplify/guards.cpp", "src/build/simplify/left_behind.cpp",
-                  "src/build/simplify/group_places.*", "src/build/simplify/pieces.cpp"], "simplify_test"),
-    "deviation": (["src/build/deviation/certify.cpp", "src/build/deviation/measure.cpp", "src/build/deviation/patch.h",
-                   "src/build/deviation/point_distance.h", "src/build/deviation/capsules.*",
-                   "src/build/deviation/attribute_deviation.*"], "deviation_test"),
-    "hierarchy": (["src/build/hierarchy/*.cpp", "src/build/hierarchy/margins.h"], "hierarchy_test"),
-    "encode": (["src/build/encode/encode.cpp", "src/build/encode/fits.cpp", "src/build/encode/quantize_normal.cpp",
-                "src/build/encode/uv_grid.cpp"], "encode_test"),
+    "prepare": (["src/builder/prepare/*.cpp"], "prepare_test"),
+    "simplify": (["src/builder/simplify/quadric.h", "src/builder/simplify/attribute_quadrics.h", "src/builder/simplify/placement.cpp",
+                  "src/builder/simplify/surface_quadrics.*", "src/builder/simplify/attribute_scales.cpp",
+                  "src/builder/simplify/point_triangle.h", "src/builder/simplify/guards.cpp", "src/builder/simplify/left_behind.cpp",
+                  "src/builder/simplify/group_places.*", "src/builder/simplify/pieces.cpp"], "simplify_test"),
+    "deviation": (["src/builder/deviation/certify.cpp", "src/builder/deviation/measure.cpp", "src/builder/deviation/patch.h",
+                   "src/builder/deviation/point_distance.h", "src/builder/deviation/capsules.*",
+                   "src/builder/deviation/attribute_deviation.*"], "deviation_test"),
+    "hierarchy": (["src/builder/hierarchy/*.cpp", "src/builder/hierarchy/margins.h"], "hierarchy_test"),
+    "encode": (["src/builder/encode/encode.cpp", "src/builder/encode/fits.cpp", "src/builder/encode/quantize_normal.cpp",
+                "src/builder/encode/uv_grid.cpp"], "encode_test"),
     "select": (["src/run/select/*.cpp", "src/run/select/metric.h", "src/run/read/nesting.h"], "select_test"),
 }
 

@@ -10,8 +10,8 @@
 #include <cmath>
 #include <vector>
 
-#include "build/hierarchy/lod_bounds.h"
-#include "build/simplify/quadric.h"
+#include "builder/hierarchy/lod_bounds.h"
+#include "builder/simplify/quadric.h"
 #include "format/grid.h"
 #include "hard/share.h"
 #include "run/read/nesting.h"
@@ -67,15 +67,15 @@ TEST(Numerics, ASphereOfSpheresHoldsThemWithTheMargin) {
   for (int round = 0; round < 4000; ++round) {
     const double size = random.log_between(1e-20, 1e20), away = size * random.log_between(1e-3, 1e6);
     const Vec3d middle = random.in_cube(away);
-    std::vector<build::Hierarchy::Sphere> inner(1 + random.below(6));
-    for (build::Hierarchy::Sphere& s : inner) {
+    std::vector<builder::Hierarchy::Sphere> inner(1 + random.below(6));
+    for (builder::Hierarchy::Sphere& s : inner) {
       const Vec3d c = middle + random.in_cube(size);
       s = {{static_cast<float>(c.x), static_cast<float>(c.y), static_cast<float>(c.z)},
            static_cast<float>(size * random.log_between(1e-6, 1.0))};
     }
-    const build::Hierarchy::Sphere outer = build::enclose_spheres(inner);
+    const builder::Hierarchy::Sphere outer = builder::enclose_spheres(inner);
     const auto center = quads(outer.center);
-    for (const build::Hierarchy::Sphere& s : inner) {
+    for (const builder::Hierarchy::Sphere& s : inner) {
       const auto c = quads(s.center);
       const Quad between = length_of({center[0] - c[0], center[1] - c[1], center[2] - c[2]});
       const Quad needed = between + Quad(s.radius) * (1 + 8 * u) + 8 * u * (length_of(center) + length_of(c));
@@ -159,7 +159,7 @@ TEST(Numerics, AQuadricThatIsTrustedIsSolvedToItsResidual) {
   int refused = 0;
   for (int round = 0; round < 60000; ++round) {
     // Planes that meet at angles down to 1e-8, of very different weights.
-    build::Quadric quadric;
+    builder::Quadric quadric;
     const Vec3d first = random.direction();
     const double spread = random.log_between(1e-8, 1.0);
     for (std::uint32_t i = 0; i < 3 + random.below(5); ++i) {

@@ -21,7 +21,7 @@ std::vector<SourceFile> documents() {
   return files;
 }
 
-/// `src/build/build.cpp` and the like in backticks: paths from the repository's root that name a file or a folder. What
+/// `src/builder/builder.cpp` and the like in backticks: paths from the repository's root that name a file or a folder. What
 /// has a placeholder or a pattern in it is no path.
 std::vector<std::string> named_paths(const std::string& text) {
   static const std::regex path("`((?:src|include|tests|tools|cmake|bench|docs|data)/[A-Za-z0-9_./-]+)`");

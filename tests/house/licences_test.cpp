@@ -25,7 +25,7 @@ bool is_mit(const SourceFile& file) {
   if (path.starts_with("tools/wasm/")) return true;  // what engines on the web get
   // What goes into pages that users give away; the program that writes them does not.
   static const std::set<std::string> page_texts = {".js", ".css", ".html"};
-  if (path.starts_with("src/out/page/") && page_texts.contains(file.path.extension().string())) return true;
+  if (path.starts_with("src/app/page/") && page_texts.contains(file.path.extension().string())) return true;
   if (floor_of(file.room) == "base") return path != "src/base/parallel.h";  // oneTBB: of the builder alone
   return floors.contains(floor_of(file.room)) || headers.contains(path);
 }

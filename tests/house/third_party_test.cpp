@@ -82,7 +82,7 @@ struct Wrapper {
 constexpr std::array kWrappers = {
     Wrapper{"vulkan", "src/draw/gpu/vulkan/types.h"},
     Wrapper{"tinygltf", "src/scene/import/gltf/tinygltf.h", true},
-    Wrapper{"nlohmann", "src/out/export/gltf_document.h", true, true},
+    Wrapper{"nlohmann", "src/app/export/gltf_document.h", true, true},
 };
 
 const Wrapper* wrapper_at(std::string_view path) {

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "build/build.h"
+#include "builder/builder.h"
 #include "scene/samples/samples.h"
 #include "support/png_header.h"
 
@@ -35,11 +35,11 @@ struct Built {
 inline Built build_promised(scene::Scene scene, format::Promise promise,
                             format::ErrorTier tier = format::ErrorTier::kMeasured) {
   Built built{std::move(scene), {}};
-  build::PipelineOptions options;
+  builder::PipelineOptions options;
   options.promise = promise;
   options.error_tier = tier;
-  build::PipelineReport report;
-  auto bytes = build::build_lode(built.scene, options, {}, report);
+  builder::PipelineReport report;
+  auto bytes = builder::build_lode(built.scene, options, {}, report);
   EXPECT_TRUE(bytes.ok()) << bytes.error().message();
   built.bytes = std::move(*bytes);
   return built;

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "build/build.h"
+#include "builder/builder.h"
 #include "judge/metrics/metrics.h"
 #include "judge/validate/validate.h"
 #include "judge/verify/verify.h"
@@ -69,8 +69,8 @@ std::optional<scene::Scene> import_model(const std::string& name) {
 
 std::optional<Built> build(std::optional<scene::Scene> scene) {
   if (!scene) return std::nullopt;
-  build::PipelineReport report;
-  Result<std::vector<std::uint8_t>> bytes = build::build_lode(*scene, {}, {}, report);
+  builder::PipelineReport report;
+  Result<std::vector<std::uint8_t>> bytes = builder::build_lode(*scene, {}, {}, report);
   EXPECT_TRUE(bytes.ok()) << bytes.error().message();
   if (!bytes) return std::nullopt;
   Result<run::Asset> asset = run::Asset::from_vector(std::move(*bytes));

@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "build/build.h"
+#include "builder/builder.h"
 #include "judge/validate/judged_sample.h"
 #include "judge/validate/validate.h"
 #include "judge/verify/verify.h"
@@ -131,10 +131,10 @@ void run_mutants(const std::vector<Original>& originals, std::uint64_t per_kind)
   EXPECT_EQ(must_killed, must);
 }
 
-Original make_built(const char* name, scene::Scene scene, const build::PipelineOptions& options = {}) {
+Original make_built(const char* name, scene::Scene scene, const builder::PipelineOptions& options = {}) {
   Original out{name, {}, std::move(scene)};
-  build::PipelineReport report;
-  Result<std::vector<std::uint8_t>> bytes = build::build_lode(out.scene, options, {}, report);
+  builder::PipelineReport report;
+  Result<std::vector<std::uint8_t>> bytes = builder::build_lode(out.scene, options, {}, report);
   EXPECT_TRUE(bytes.ok()) << bytes.error().message();
   if (bytes) out.bytes = std::move(*bytes);
   EXPECT_EQ(find_killer(out.bytes, out.scene), "") << name;
@@ -152,7 +152,7 @@ const Original& several_pages() {
 
 const Original& promised() {
   static const Original ball = [] {
-    build::PipelineOptions options;
+    builder::PipelineOptions options;
     options.max_cluster_triangles = 48;
     options.promise = format::Promise::kAppearance;
     return make_built("a ball that promises appearance", alone(scene::with_smooth_normals(scene::make_sphere(16))),
@@ -226,7 +226,7 @@ TEST(Mutation, ADependencyLeftOutIsFoundByItsRule) {
 /// Small clusters, so that few triangles make a DAG of many groups. The sample's scene has what one mesh has not:
 /// several materials, two UV sets, colours, mirrored and singular instances, an empty mesh, blobs.
 TEST(Mutation, ThousandsOfMutantsOfTheMeasuredTierAreFound) {
-  build::PipelineOptions options, smallest;
+  builder::PipelineOptions options, smallest;
   options.max_cluster_triangles = 48;
   smallest.max_cluster_triangles = 16;
   run_mutants({make_built("the sample's scene", test::sample_scene(), smallest),

@@ -9,19 +9,19 @@
 #include <vector>
 
 #include "base/vec.h"
-#include "build/simplify/collapse_mesh.h"
-#include "build/simplify/collapse_star.h"
-#include "build/simplify/group_places.h"
-#include "build/simplify/simplify.h"
+#include "builder/simplify/collapse_mesh.h"
+#include "builder/simplify/collapse_star.h"
+#include "builder/simplify/group_places.h"
+#include "builder/simplify/simplify.h"
 #include "support/random.h"
 
 namespace meshlode::test {
 
-using build::CollapseMesh;
-using build::CollapseStar;
-using build::GroupPlaces;
-using build::SimplifyInput;
-using build::WedgeTriangle;
+using builder::CollapseMesh;
+using builder::CollapseStar;
+using builder::GroupPlaces;
+using builder::SimplifyInput;
+using builder::WedgeTriangle;
 
 /// Triangles of points of the grid. The first wedges are the points' own, of the same numbers; `more` says the points
 /// of further ones.
@@ -41,8 +41,8 @@ struct DrawnMesh {
 
   [[nodiscard]] CollapseStar star(std::uint32_t a, std::uint32_t b, bool drops_sheets = false) {
     CollapseStar star;
-    build::gather_corners(mesh, a, b, star);
-    build::gather_outer_edges(mesh, drops_sheets, star);
+    builder::gather_corners(mesh, a, b, star);
+    builder::gather_outer_edges(mesh, drops_sheets, star);
     star.target = (places[a] + places[b]) * 0.5;
     return star;
   }

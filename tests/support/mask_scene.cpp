@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "build/build.h"
+#include "builder/builder.h"
 #include "scene/samples/write_png.h"
 
 namespace meshlode::test {
@@ -108,8 +108,8 @@ scene::Scene mask_scene(const MaskSceneOptions& options) {
 }
 
 std::vector<std::uint8_t> built(const scene::Scene& scene) {
-  build::PipelineReport report;
-  auto bytes = build::build_lode(scene, {}, {}, report);
+  builder::PipelineReport report;
+  auto bytes = builder::build_lode(scene, {}, {}, report);
   if (bytes) return std::move(*bytes);
   ADD_FAILURE() << bytes.error().message();
   return {};

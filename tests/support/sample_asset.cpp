@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "build/promise/measure_promise.h"
-#include "build/write/write.h"
+#include "builder/promise/measure_promise.h"
+#include "builder/write/write.h"
 
 namespace meshlode::test {
 
@@ -21,8 +21,8 @@ T value_or_abort(Result<T> result) {
   return std::move(*result);
 }
 
-build::PreparedMesh empty_mesh() {
-  build::PreparedMesh mesh;
+builder::PreparedMesh empty_mesh() {
+  builder::PreparedMesh mesh;
   mesh.name = "empty";
   mesh.source_triangles = 1;
   mesh.source_vertices = 3;
@@ -102,10 +102,10 @@ std::vector<std::uint8_t> sample_asset_bytes(format::Codec codec) {
   return sample_asset_bytes(sample_scene(), codec);
 }
 
-void add_promises(build::WriteInput& input) {
+void add_promises(builder::WriteInput& input) {
   input.promises = format::kPromisesTexels | format::kPromisesAppearance;
-  for (build::EncodedMesh& mesh : input.meshes) {
-    build::PromiseErrors errors = build::promises_of_positions(mesh.record, mesh.groups, input.promises);
+  for (builder::EncodedMesh& mesh : input.meshes) {
+    builder::PromiseErrors errors = builder::promises_of_positions(mesh.record, mesh.groups, input.promises);
     if (mesh.record.normal_mode != format::NormalMode::kNone) errors.mesh.normal_object = 0.25F;
     for (std::uint32_t set = 0; set < mesh.record.uv_set_count; ++set) {
       errors.mesh.uv_object[set][0] = 2.0F;
@@ -118,13 +118,13 @@ void add_promises(build::WriteInput& input) {
 
 namespace {
 
-build::WriteInput sample_input(const scene::Scene& scene, format::Codec codec) {
-  build::WriteInput input;
+builder::WriteInput sample_input(const scene::Scene& scene, format::Codec codec) {
+  builder::WriteInput input;
   for (const SampleMesh& sample : {sample_patch(), sample_sphere(), sample_tetrahedron()}) {
-    input.meshes.push_back(value_or_abort(build::encode_mesh(sample.mesh, sample.dag, sample.hierarchy, {})));
+    input.meshes.push_back(value_or_abort(builder::encode_mesh(sample.mesh, sample.dag, sample.hierarchy, {})));
     input.mesh_names.push_back(sample.mesh.name);
   }
-  input.meshes.push_back(value_or_abort(build::encode_mesh(empty_mesh(), {}, {}, {})));
+  input.meshes.push_back(value_or_abort(builder::encode_mesh(empty_mesh(), {}, {}, {})));
   input.mesh_names.emplace_back("empty");
   input.scene = &scene;
   input.meta_json = R"({"source":{"file":"sample.glb"},"settings":{}})";
@@ -135,29 +135,29 @@ build::WriteInput sample_input(const scene::Scene& scene, format::Codec codec) {
 }  // namespace
 
 std::vector<std::uint8_t> sample_asset_bytes(const scene::Scene& scene, format::Codec codec) {
-  return value_or_abort(build::write_asset(sample_input(scene, codec)));
+  return value_or_abort(builder::write_asset(sample_input(scene, codec)));
 }
 
 std::vector<std::uint8_t> promised_asset_bytes(format::Codec codec) {
   const scene::Scene scene = sample_scene();
-  build::WriteInput input = sample_input(scene, codec);
+  builder::WriteInput input = sample_input(scene, codec);
   add_promises(input);
-  return value_or_abort(build::write_asset(std::move(input)));
+  return value_or_abort(builder::write_asset(std::move(input)));
 }
 
 std::vector<std::uint8_t> asset_bytes_of(const SampleMesh& sample, format::Codec codec,
-                                         const build::EncodeOptions& options) {
+                                         const builder::EncodeOptions& options) {
   scene::Scene scene;
   scene.meshes = {sample.source};
   scene.materials = sample_materials();
   scene.instances = {make_instance("one", 0, 0, {1.0, 1.0, 1.0}, {0.0, 0.0, 0.0})};
-  build::WriteInput input;
-  input.meshes.push_back(value_or_abort(build::encode_mesh(sample.mesh, sample.dag, sample.hierarchy, options)));
+  builder::WriteInput input;
+  input.meshes.push_back(value_or_abort(builder::encode_mesh(sample.mesh, sample.dag, sample.hierarchy, options)));
   input.mesh_names.push_back(sample.mesh.name);
   input.scene = &scene;
   input.meta_json = "{}";
   input.codec = codec;
-  return value_or_abort(build::write_asset(std::move(input)));
+  return value_or_abort(builder::write_asset(std::move(input)));
 }
 
 }  // namespace meshlode::test

@@ -8,8 +8,8 @@
 
 #include <meshlode/format.h>
 
-#include "build/encode/encode.h"
-#include "build/write/write.h"
+#include "builder/encode/encode.h"
+#include "builder/write/write.h"
 #include "scene/scene.h"
 #include "support/reseal.h"
 #include "support/sample_mesh.h"
@@ -27,11 +27,11 @@ namespace meshlode::test {
 /// The asset of sample_scene() with promises of texels and appearance.
 [[nodiscard]] std::vector<std::uint8_t> promised_asset_bytes(format::Codec codec = format::Codec::kNone);
 /// Promises of texels and appearance for what is about to be written: with the groups' own errors, which are sound.
-void add_promises(build::WriteInput& input);
+void add_promises(builder::WriteInput& input);
 
 /// An asset with one instance of one mesh; materials are those of sample_scene().
 [[nodiscard]] std::vector<std::uint8_t> asset_bytes_of(const SampleMesh& sample,
                                                        format::Codec codec = format::Codec::kNone,
-                                                       const build::EncodeOptions& options = {});
+                                                       const builder::EncodeOptions& options = {});
 
 }  // namespace meshlode::test

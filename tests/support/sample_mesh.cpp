@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "build/hierarchy/culling_bounds.h"
+#include "builder/hierarchy/culling_bounds.h"
 
 namespace meshlode::test {
 
@@ -95,7 +95,7 @@ class DagMaker {
 
   /// Starts a group; clusters follow with add_cluster.
   GroupId add_group(std::uint32_t level, double error) {
-    build::DagGroup group;
+    builder::DagGroup group;
     group.level = level;
     group.first_cluster = static_cast<std::uint32_t>(out_.dag.clusters.size());
     group.is_terminal = error == kInfinity;
@@ -110,8 +110,8 @@ class DagMaker {
   void add_cluster(std::uint32_t level, GroupId own, TriangleList triangles) {
     std::stable_sort(triangles.begin(), triangles.end(),
                      [](const MaterialTriangle& a, const MaterialTriangle& b) { return a.material < b.material; });
-    build::LodDag& dag = out_.dag;
-    build::DagCluster cluster;
+    builder::LodDag& dag = out_.dag;
+    builder::DagCluster cluster;
     cluster.level = level;
     cluster.own_group = own;
     cluster.coarser_group = GroupId{dag.groups.size() - 1};
@@ -141,7 +141,7 @@ class DagMaker {
   /// The prepared mesh and the source: the same triangles as level 0. Vertices of equal corners are one wedge; corners
   /// with equal positions are one position.
   void set_source(const TriangleList& triangles) {
-    build::PreparedMesh& mesh = out_.mesh;
+    builder::PreparedMesh& mesh = out_.mesh;
     const auto by_value = [](const Vec3i& a, const Vec3i& b) {
       return std::array{a.x, a.y, a.z} < std::array{b.x, b.y, b.z};
     };
@@ -155,7 +155,7 @@ class DagMaker {
     out_.source.primitives.resize(material_count);
     std::vector<std::map<std::uint32_t, std::uint32_t>> primitive_vertex(material_count);
     for (const MaterialTriangle& triangle : triangles) {
-      build::WedgeTriangle wedge_triangle{};
+      builder::WedgeTriangle wedge_triangle{};
       scene::Primitive& primitive = out_.source.primitives[triangle.material];
       primitive.material = MaterialId{triangle.material};
       for (std::size_t k = 0; k < 3; ++k) {
@@ -194,7 +194,7 @@ class DagMaker {
  private:
   void add_source_vertex(scene::Primitive& primitive, const Vec3i& position,
                          const std::vector<float>& attributes) const {
-    const build::AttributeLayout& layout = out_.mesh.layout;
+    const builder::AttributeLayout& layout = out_.mesh.layout;
     primitive.positions.push_back(out_.mesh.origin + out_.mesh.grid.decode(position));
     if (layout.has_normal) primitive.normals.emplace_back(attributes[0], attributes[1], attributes[2]);
     if (layout.uv_set_count > 0) {
@@ -210,7 +210,7 @@ class DagMaker {
   const Shape& shape_;
 };
 
-double radius_around(const Vec3d& center, const SampleMesh& sample, const build::DagCluster& cluster) {
+double radius_around(const Vec3d& center, const SampleMesh& sample, const builder::DagCluster& cluster) {
   double radius = 0.0;
   for (std::size_t v = cluster.first_vertex; v < std::size_t{cluster.first_vertex} + cluster.vertex_count; ++v) {
     radius = std::max(radius, glm::length(sample.mesh.grid.decode(sample.dag.vertex_position[v]) - center));
@@ -221,21 +221,21 @@ double radius_around(const Vec3d& center, const SampleMesh& sample, const build:
 /// Spheres around box centres, grown by a part in a thousand at each step: far above every rounding (I4).
 void fill_hierarchy(SampleMesh& sample) {
   constexpr double kMargin = 1.001;
-  const build::LodDag& dag = sample.dag;
-  build::Hierarchy& out = sample.hierarchy;
+  const builder::LodDag& dag = sample.dag;
+  builder::Hierarchy& out = sample.hierarchy;
   const auto to_sphere = [](const Vec3d& center, double radius) {
-    return build::Hierarchy::Sphere{
+    return builder::Hierarchy::Sphere{
         {static_cast<float>(center.x), static_cast<float>(center.y), static_cast<float>(center.z)},
         static_cast<float>(radius * kMargin)};
   };
-  const auto center_of = [](const build::Hierarchy::Sphere& sphere) {
+  const auto center_of = [](const builder::Hierarchy::Sphere& sphere) {
     return Vec3d(sphere.center[0], sphere.center[1], sphere.center[2]);
   };
   const auto box_center = [&](std::uint32_t first_cluster, std::uint32_t cluster_count) {
     Vec3d low(kInfinity);
     Vec3d high(-kInfinity);
     for (std::uint32_t c = first_cluster; c < first_cluster + cluster_count; ++c) {
-      const build::DagCluster& cluster = dag.clusters[c];
+      const builder::DagCluster& cluster = dag.clusters[c];
       for (std::size_t v = cluster.first_vertex; v < std::size_t{cluster.first_vertex} + cluster.vertex_count; ++v) {
         low = glm::min(low, sample.mesh.grid.decode(dag.vertex_position[v]));
         high = glm::max(high, sample.mesh.grid.decode(dag.vertex_position[v]));
@@ -244,25 +244,25 @@ void fill_hierarchy(SampleMesh& sample) {
     return (low + high) * 0.5;
   };
 
-  out.cluster_cones.assign(dag.clusters.size(), build::Hierarchy::Cone{{0, 0, 127}, 127});  // never culled
+  out.cluster_cones.assign(dag.clusters.size(), builder::Hierarchy::Cone{{0, 0, 127}, 127});  // never culled
   for (std::uint32_t c = 0; c < dag.clusters.size(); ++c) {
     const Vec3d center = box_center(c, 1);
     out.cluster_spheres.push_back(to_sphere(center, radius_around(center, sample, dag.clusters[c])));
   }
-  out.sphere_log2 = build::choose_sphere_log2(out.cluster_spheres);
-  for (build::Hierarchy::Sphere& sphere : out.cluster_spheres) sphere = build::snap_sphere(sphere, out.sphere_log2);
+  out.sphere_log2 = builder::choose_sphere_log2(out.cluster_spheres);
+  for (builder::Hierarchy::Sphere& sphere : out.cluster_spheres) sphere = builder::snap_sphere(sphere, out.sphere_log2);
   out.group_spheres.resize(dag.groups.size());
   out.group_errors.resize(dag.groups.size());
   for (std::size_t g = dag.groups.size(); g-- > 0;) {  // fine to coarse: the spheres below exist already
-    const build::DagGroup& group = dag.groups[g];
+    const builder::DagGroup& group = dag.groups[g];
     const Vec3d center = box_center(group.first_cluster, group.cluster_count);
     double radius = 0.0;
     for (std::uint32_t c = group.first_cluster; c < group.first_cluster + group.cluster_count; ++c) {
-      const build::DagCluster& cluster = dag.clusters[c];
-      const build::Hierarchy::Sphere& tight = out.cluster_spheres[c];
+      const builder::DagCluster& cluster = dag.clusters[c];
+      const builder::Hierarchy::Sphere& tight = out.cluster_spheres[c];
       radius = std::max(radius, glm::length(center_of(tight) - center) + double(tight.radius));
       if (!cluster.own_group.is_valid()) continue;
-      const build::Hierarchy::Sphere& finer = out.group_spheres[cluster.own_group.value];
+      const builder::Hierarchy::Sphere& finer = out.group_spheres[cluster.own_group.value];
       radius = std::max(radius, glm::length(center_of(finer) - center) + double(finer.radius));
     }
     out.group_spheres[g] = to_sphere(center, radius);
@@ -294,7 +294,7 @@ void fill_hierarchy(SampleMesh& sample) {
       radius = std::max(radius, glm::length(apart) + double(child.radius));
       node.error = std::max(node.error, child.error);
     }
-    const build::Hierarchy::Sphere sphere = to_sphere(center, radius);
+    const builder::Hierarchy::Sphere sphere = to_sphere(center, radius);
     std::copy(std::begin(sphere.center), std::end(sphere.center), std::begin(node.center));
     node.radius = sphere.radius;
     node.first = first;

@@ -3,17 +3,17 @@
 // I1 to I6, so that a test may break one thing and know that it is the only one.
 #pragma once
 
-#include "build/hierarchy/hierarchy.h"
-#include "build/lod_dag.h"
-#include "build/prepared.h"
+#include "builder/hierarchy/hierarchy.h"
+#include "builder/lod_dag.h"
+#include "builder/prepared.h"
 #include "scene/scene.h"
 
 namespace meshlode::test {
 
 struct SampleMesh {
-  build::PreparedMesh mesh;
-  build::LodDag dag;
-  build::Hierarchy hierarchy;
+  builder::PreparedMesh mesh;
+  builder::LodDag dag;
+  builder::Hierarchy hierarchy;
   scene::SourceMesh source;  ///< what the mesh was prepared from: positions lie exactly on the grid
 };
 

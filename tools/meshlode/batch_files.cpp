@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "base/file.h"
-#include "batch/batch.h"
-#include "batch/depend/depfile.h"
-#include "batch/tell/tell.h"
+#include "app/batch/batch.h"
+#include "app/batch/depend/depfile.h"
+#include "app/batch/tell/tell.h"
 #include "options.h"
 #include "outputs.h"
 #include "scene/import/import.h"
@@ -27,17 +27,17 @@ std::span<const std::uint8_t> bytes_of(const std::string& text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
-Result<std::string> depfile_of(const std::vector<batch::JobResult>& results) {
-  std::vector<batch::DepfileRule> rules;
-  for (const batch::JobResult& r : results) {
-    batch::DepfileRule rule{r.job.output, {}};
-    for (const batch::Dependency& file : r.files) {
+Result<std::string> depfile_of(const std::vector<app::JobResult>& results) {
+  std::vector<app::DepfileRule> rules;
+  for (const app::JobResult& r : results) {
+    app::DepfileRule rule{r.job.output, {}};
+    for (const app::Dependency& file : r.files) {
       if (!file.path.empty()) rule.inputs.push_back(file.path);
     }
     if (rule.inputs.empty()) rule.inputs.push_back(r.job.input);
     rules.push_back(std::move(rule));
   }
-  return batch::depfile_text(rules);
+  return app::depfile_text(rules);
 }
 
 /// Of an earlier batch, which nobody misses.
@@ -49,13 +49,13 @@ bool is_batch_file(std::span<const std::uint8_t> bytes) {
 
 }  // namespace
 
-BatchFiles::BatchFiles(const std::vector<batch::Job>& jobs, BatchFileNames names)
+BatchFiles::BatchFiles(const std::vector<app::Job>& jobs, BatchFileNames names)
     : names_(std::move(names)), jobs_(jobs) {
   // A shard's manifest says that the shard is complete, and appears at its end (docs/cluster.md).
   is_manifest_early_ = !names_.shard && !names_.manifest.empty() && may_be_early(names_.manifest);
   is_junit_early_ = !names_.junit.empty() && may_be_early(names_.junit);
-  for (const batch::Job& job : jobs) {
-    batch::JobResult& result = results_.emplace_back();  // JobStatus::kSkipped
+  for (const app::Job& job : jobs) {
+    app::JobResult& result = results_.emplace_back();  // JobStatus::kSkipped
     result.job = job;
     result.error = "interrupted";
   }
@@ -75,7 +75,7 @@ bool BatchFiles::may_be_early(const std::string& path) const {
   const auto file = MappedFile::open(path);
   if (!file) return false;
   if (is_batch_file(file->bytes())) return true;
-  return std::none_of(jobs_.begin(), jobs_.end(), [&](const batch::Job& job) {
+  return std::none_of(jobs_.begin(), jobs_.end(), [&](const app::Job& job) {
     const auto references = scene::list_references(job.input);
     return references && std::any_of(references->begin(), references->end(),
                                      [&](const scene::FileReference& one) { return is_same_place(one.path, path); });
@@ -83,13 +83,13 @@ bool BatchFiles::may_be_early(const std::string& path) const {
 }
 
 void BatchFiles::write_both(const Write& write) {
-  const int worst = std::max(batch::worst_exit_code(results_), static_cast<int>(ErrorCode::kIo));
-  const batch::ShardPlan* shard = names_.shard ? &*names_.shard : nullptr;
+  const int worst = std::max(app::worst_exit_code(results_), static_cast<int>(ErrorCode::kIo));
+  const app::ShardPlan* shard = names_.shard ? &*names_.shard : nullptr;
   if (is_manifest_early_) {
     is_manifest_early_ =
-        write(names_.manifest, batch::manifest_json(results_, names_.program, names_.settings, worst, shard, false));
+        write(names_.manifest, app::manifest_json(results_, names_.program, names_.settings, worst, shard, false));
   }
-  if (is_junit_early_) is_junit_early_ = write(names_.junit, batch::junit_xml(results_));
+  if (is_junit_early_) is_junit_early_ = write(names_.junit, app::junit_xml(results_));
 }
 
 void BatchFiles::write_early() {
@@ -107,7 +107,7 @@ void BatchFiles::begin() {
   write_early();
 }
 
-void BatchFiles::add(std::size_t job, const batch::JobResult& result) {
+void BatchFiles::add(std::size_t job, const app::JobResult& result) {
   const std::lock_guard lock(mutex_);
   results_[job] = result;
   const std::vector<std::string>& refused = result.refused_outputs;
@@ -131,24 +131,24 @@ void BatchFiles::write_at_interrupt() {
   });
 }
 
-int BatchFiles::finish(const std::vector<batch::JobResult>& results, const std::string& report) {
+int BatchFiles::finish(const std::vector<app::JobResult>& results, const std::string& report) {
   const std::lock_guard lock(mutex_);
   int worst = 0;
   const auto write = [&](const std::string& path, const Result<std::string>& text) {
     if (path.empty()) return;
-    for (const batch::JobResult& r : results) {
+    for (const app::JobResult& r : results) {
       if (std::find(r.refused_outputs.begin(), r.refused_outputs.end(), path) != r.refused_outputs.end()) return;
     }
     const Status written = text ? write_text(path, *text) : Status(text.error());
     if (!written) worst = std::max(worst, print_error(written.error()));
   };
-  const batch::ShardPlan* shard = names_.shard ? &*names_.shard : nullptr;
+  const app::ShardPlan* shard = names_.shard ? &*names_.shard : nullptr;
   write(names_.report, report);
-  if (!names_.junit.empty()) write(names_.junit, batch::junit_xml(results));
+  if (!names_.junit.empty()) write(names_.junit, app::junit_xml(results));
   if (!names_.depfile.empty()) write(names_.depfile, depfile_of(results));
   if (!names_.manifest.empty()) {
     write(names_.manifest,
-          batch::manifest_json(results, names_.program, names_.settings, batch::worst_exit_code(results), shard));
+          app::manifest_json(results, names_.program, names_.settings, app::worst_exit_code(results), shard));
   }
   is_over_ = true;
   return worst;

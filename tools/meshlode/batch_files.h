@@ -15,9 +15,9 @@
 #include <vector>
 
 #include "base/hash.h"
-#include "batch/jobs/jobs.h"
-#include "batch/shard/partition.h"
-#include "batch/jobs/job_result.h"
+#include "app/batch/jobs/jobs.h"
+#include "app/batch/shard/partition.h"
+#include "app/batch/jobs/job_result.h"
 
 namespace meshlode::cli {
 
@@ -25,24 +25,24 @@ namespace meshlode::cli {
 struct BatchFileNames {
   std::string manifest, junit, depfile, report;
   Hash128 program{};
-  std::string settings;  ///< batch::settings_text()
-  std::optional<batch::ShardPlan> shard;
+  std::string settings;  ///< app::settings_text()
+  std::optional<app::ShardPlan> shard;
 };
 
 class BatchFiles {
  public:
   /// While it lives an interrupt of the process writes manifest and JUnit file.
-  BatchFiles(const std::vector<batch::Job>& jobs, BatchFileNames names);
+  BatchFiles(const std::vector<app::Job>& jobs, BatchFileNames names);
   ~BatchFiles();
   BatchFiles(const BatchFiles&) = delete;
   BatchFiles& operator=(const BatchFiles&) = delete;
 
   /// Before the first job. Errors are those of the end, and told there.
   void begin();
-  void add(std::size_t job, const batch::JobResult& result);
+  void add(std::size_t job, const app::JobResult& result);
   /// All files, for good; but not one that turned out to be a file of a scene, which its job was refused for. \returns
   /// the worst exit code of writing them
-  int finish(const std::vector<batch::JobResult>& results, const std::string& report);
+  int finish(const std::vector<app::JobResult>& results, const std::string& report);
 
  private:
   using Write = std::function<bool(const std::string& path, const std::string& text)>;
@@ -53,10 +53,10 @@ class BatchFiles {
   [[nodiscard]] bool may_be_early(const std::string& path) const;
 
   const BatchFileNames names_;
-  std::vector<batch::Job> jobs_;
+  std::vector<app::Job> jobs_;
   bool is_manifest_early_ = false, is_junit_early_ = false;
   std::mutex mutex_;  ///< of all below
-  std::vector<batch::JobResult> results_;
+  std::vector<app::JobResult> results_;
   bool is_over_ = false;
   std::chrono::steady_clock::time_point next_{};  ///< nothing is written before
 };

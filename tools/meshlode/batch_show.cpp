@@ -6,8 +6,8 @@
 
 #include <unistd.h>
 
-#include "batch/jobs/weigh.h"
-#include "build/stage_options.h"
+#include "app/batch/jobs/weigh.h"
+#include "builder/stage_options.h"
 #include "options.h"
 
 namespace meshlode::cli {
@@ -22,17 +22,17 @@ std::string plain(std::string text) {
 }
 
 /// Only a bar of several files has to tell how long they take.
-std::vector<std::uint64_t> weights_of(const std::vector<batch::Job>& jobs, bool is_wanted) {
+std::vector<std::uint64_t> weights_of(const std::vector<app::Job>& jobs, bool is_wanted) {
   std::vector<std::uint64_t> weights;
   weights.reserve(jobs.size());
-  for (const batch::Job& job : jobs)
-    weights.push_back(is_wanted && jobs.size() > 1 ? batch::weigh_scene(job.input) : 1);
+  for (const app::Job& job : jobs)
+    weights.push_back(is_wanted && jobs.size() > 1 ? app::weigh_scene(job.input) : 1);
   return weights;
 }
 
-void print_repairs(const batch::JobFacts& facts) {
+void print_repairs(const app::JobFacts& facts) {
   std::string text;
-  for (const auto& [kind, count] : batch::list_repairs(facts)) {
+  for (const auto& [kind, count] : app::list_repairs(facts)) {
     if (count == 0) continue;
     text += text.empty() ? "" : ", ";
     text += std::to_string(count) + " " + kind;
@@ -41,16 +41,16 @@ void print_repairs(const batch::JobFacts& facts) {
   if (!text.empty()) std::fprintf(stderr, "  repaired: %s\n", text.c_str());
 }
 
-void print_line(const batch::JobResult& r) {
+void print_line(const app::JobResult& r) {
   const std::string input = plain(r.job.input.string()), output = plain(r.job.output.string());
-  if (r.status == batch::JobStatus::kUnchanged) {
+  if (r.status == app::JobStatus::kUnchanged) {
     std::fprintf(stderr, "%s: unchanged, %s is up to date\n", input.c_str(), output.c_str());
     return;
   }
   std::fprintf(stderr, "%s: %llu triangles in %llu mesh(es) -> %s, %llu bytes, ", input.c_str(),
                static_cast<unsigned long long>(r.facts.triangles), static_cast<unsigned long long>(r.facts.meshes),
                output.c_str(), static_cast<unsigned long long>(r.facts.bytes));
-  if (r.status == batch::JobStatus::kCached) {
+  if (r.status == app::JobStatus::kCached) {
     std::fprintf(stderr, "from the cache, %.2f s\n", r.seconds);
   } else {
     std::fprintf(stderr, "%.2f s (%.0f triangles/s)\n", r.seconds,
@@ -58,18 +58,18 @@ void print_line(const batch::JobResult& r) {
   }
 }
 
-void print_left_out(const batch::JobFacts& facts) {
+void print_left_out(const app::JobFacts& facts) {
   print_repairs(facts);
   for (const scene::LeftOut& left : facts.left_out) {
     std::fprintf(stderr, "  left out: %s: %s\n", plain(left.what).c_str(), plain(left.why).c_str());
   }
   std::vector<const scene::LeftOut*> losses;
   for (const scene::LeftOut& loss : facts.losses) {
-    if (!loss.what.starts_with(build::kUnknownAggregate)) {
+    if (!loss.what.starts_with(builder::kUnknownAggregate)) {
       losses.push_back(&loss);
       continue;
     }
-    const std::string name = plain(loss.what.substr(build::kUnknownAggregate.size() - 1));
+    const std::string name = plain(loss.what.substr(builder::kUnknownAggregate.size() - 1));
     std::fprintf(stderr, "  warning: --aggregate %s: %s\n", name.c_str(), loss.why.c_str());
   }
   if (losses.empty()) return;  // one line for all meshes of a scene
@@ -79,7 +79,7 @@ void print_left_out(const batch::JobFacts& facts) {
 
 }  // namespace
 
-BatchShow::BatchShow(const std::vector<batch::Job>& jobs, bool quiet, bool has_lines)
+BatchShow::BatchShow(const std::vector<app::Job>& jobs, bool quiet, bool has_lines)
     : jobs_(jobs),
       has_bar_(!quiet && ::isatty(STDERR_FILENO) == 1),
       has_lines_(!quiet && has_lines),
@@ -97,7 +97,7 @@ void BatchShow::wipe() {
   is_drawn_ = false;
 }
 
-void BatchShow::show(const build::ProgressEvent& event) {
+void BatchShow::show(const builder::ProgressEvent& event) {
   // Meshes finish in any order: a bar that runs backwards helps nobody.
   fraction_ = std::max(fraction_, std::clamp(event.fraction, 0.0, 1.0));
   const double done = time_left_.fraction_done(job_, fraction_);
@@ -110,31 +110,31 @@ void BatchShow::show(const build::ProgressEvent& event) {
       jobs_.size() > 1 ? "[" + std::to_string(job_ + 1) + "/" + std::to_string(jobs_.size()) + "] " : "";
   std::fprintf(stderr, "\r\033[K%s%.20s [%s] %3d%% mesh %u/%u level %u%s%s", place.c_str(), name_.c_str(), bar.c_str(),
                static_cast<int>(100.0 * done), event.mesh + 1, event.mesh_count, event.level, left ? ", " : "",
-               left ? batch::time_left_text(*left).c_str() : "");
+               left ? app::time_left_text(*left).c_str() : "");
   std::fflush(stderr);
   is_drawn_ = true;
 }
 
-void BatchShow::end(std::size_t job, const batch::JobResult& result, const Error* error) {
+void BatchShow::end(std::size_t job, const app::JobResult& result, const Error* error) {
   wipe();
-  time_left_.finish(job, result.seconds, result.status == batch::JobStatus::kBuilt);
+  time_left_.finish(job, result.seconds, result.status == app::JobStatus::kBuilt);
   if (error != nullptr) print_error(*error);
   if (error != nullptr || !has_lines_) return;
   if (jobs_.size() > 1) std::fprintf(stderr, "[%zu/%zu] ", job + 1, jobs_.size());
   print_line(result);
-  for (const batch::JobWarning& warning : result.warnings)
+  for (const app::JobWarning& warning : result.warnings)
     std::fprintf(stderr, "  warning: %s\n", warning.text.c_str());
   print_left_out(result.facts);
 }
 
-batch::BatchWatcher BatchShow::watcher() {
-  batch::BatchWatcher watcher;
+app::BatchWatcher BatchShow::watcher() {
+  app::BatchWatcher watcher;
   watcher.on_start = [this](std::size_t job) { start(job); };
-  watcher.on_end = [this](std::size_t job, const batch::JobResult& result, const Error* error) {
+  watcher.on_end = [this](std::size_t job, const app::JobResult& result, const Error* error) {
     end(job, result, error);
   };
   if (has_bar_) {
-    watcher.on_progress = [this](const build::ProgressEvent& event) {
+    watcher.on_progress = [this](const builder::ProgressEvent& event) {
       show(event);
       return true;
     };

@@ -8,27 +8,27 @@
 #include <string>
 #include <vector>
 
-#include "batch/batch.h"
-#include "batch/tell/time_left.h"
+#include "app/batch/batch.h"
+#include "app/batch/tell/time_left.h"
 
 namespace meshlode::cli {
 
 class BatchShow {
  public:
   /// `jobs` must outlive it. `has_lines`: a line for each file that did not fail.
-  BatchShow(const std::vector<batch::Job>& jobs, bool quiet, bool has_lines);
-  [[nodiscard]] batch::BatchWatcher watcher();
+  BatchShow(const std::vector<app::Job>& jobs, bool quiet, bool has_lines);
+  [[nodiscard]] app::BatchWatcher watcher();
 
  private:
   void start(std::size_t job);
-  void show(const build::ProgressEvent& event);
-  void end(std::size_t job, const batch::JobResult& result, const Error* error);
+  void show(const builder::ProgressEvent& event);
+  void end(std::size_t job, const app::JobResult& result, const Error* error);
   void wipe();
 
-  const std::vector<batch::Job>& jobs_;
+  const std::vector<app::Job>& jobs_;
   bool has_bar_, has_lines_;
   bool is_drawn_ = false;
-  batch::TimeLeft time_left_;
+  app::TimeLeft time_left_;
   std::size_t job_ = 0;
   std::string name_;
   double fraction_ = 0.0;  ///< of the job

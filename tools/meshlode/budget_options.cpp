@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "out/report/info.h"
+#include "app/report/info.h"
 #include "run/read/asset.h"
 
 namespace meshlode::cli {
@@ -15,33 +15,33 @@ void add_budget_option(OptionParser& parser, std::optional<std::string>& conditi
   parser.add_value("--fail-if", conditions, help.c_str());
 }
 
-Result<std::vector<out::Condition>> read_budget_option(const std::optional<std::string>& conditions,
+Result<std::vector<app::Condition>> read_budget_option(const std::optional<std::string>& conditions,
                                                        std::string_view schema) {
-  if (!conditions) return std::vector<out::Condition>();
-  return out::read_budget(*conditions, schema);
+  if (!conditions) return std::vector<app::Condition>();
+  return app::read_budget(*conditions, schema);
 }
 
-int print_broken(const std::string& where, const std::vector<out::BrokenCondition>& broken) {
+int print_broken(const std::string& where, const std::vector<app::BrokenCondition>& broken) {
   int exit_code = 0;
-  for (const out::BrokenCondition& one : broken) {
+  for (const app::BrokenCondition& one : broken) {
     exit_code = print_error({ErrorCode::kCheckFailed, where, one.message()});
   }
   return exit_code;
 }
 
-Status check_asset_budget(const std::filesystem::path& path, const std::vector<out::Condition>& conditions,
+Status check_asset_budget(const std::filesystem::path& path, const std::vector<app::Condition>& conditions,
                           std::uint64_t max_decoded) {
   const Result<run::Asset> asset = run::Asset::open(path, max_decoded);
   if (!asset) return asset.error();
-  out::AssetInfo info = out::describe_asset(*asset);
-  if (out::mentions(conditions, "byte_map")) {
-    Result<out::ByteMap> byte_map = out::map_bytes(*asset);
+  app::AssetInfo info = app::describe_asset(*asset);
+  if (app::mentions(conditions, "byte_map")) {
+    Result<app::ByteMap> byte_map = app::map_bytes(*asset);
     if (!byte_map) return byte_map.error();
     info.byte_map = std::move(*byte_map);
   }
-  const auto broken = out::judge_budget(conditions, out::info_json(*asset, info, true));
+  const auto broken = app::judge_budget(conditions, app::info_json(*asset, info, true));
   if (!broken) return broken.error();
-  if (!broken->empty()) return out::budget_error(*broken, path.string());
+  if (!broken->empty()) return app::budget_error(*broken, path.string());
   return Ok{};
 }
 

@@ -12,7 +12,7 @@
 #include <meshlode/result.h>
 
 #include "options.h"
-#include "out/budget/judge_budget.h"
+#include "app/budget/judge_budget.h"
 
 namespace meshlode::cli {
 
@@ -20,17 +20,17 @@ namespace meshlode::cli {
 void add_budget_option(OptionParser& parser, std::optional<std::string>& conditions, const std::string& keys,
                        const std::string& example);
 
-/// out::read_budget() of what was given; no conditions where nothing was. Errors: kUsage, for an empty text too: a
+/// app::read_budget() of what was given; no conditions where nothing was. Errors: kUsage, for an empty text too: a
 /// pipeline whose variable is unset must not pass for one whose budget holds.
-[[nodiscard]] Result<std::vector<out::Condition>> read_budget_option(const std::optional<std::string>& conditions,
+[[nodiscard]] Result<std::vector<app::Condition>> read_budget_option(const std::optional<std::string>& conditions,
                                                                      std::string_view schema);
 
 /// One line on stderr for each condition. \returns the exit code, 0 where none is broken
-int print_broken(const std::string& where, const std::vector<out::BrokenCondition>& broken);
+int print_broken(const std::string& where, const std::vector<app::BrokenCondition>& broken);
 
 /// The asset of this file against conditions over `info`. Errors: kCheckFailed with all conditions that hold; those of
 /// opening the file, of which at most so many bytes are decoded.
 [[nodiscard]] Status check_asset_budget(const std::filesystem::path& path,
-                                        const std::vector<out::Condition>& conditions, std::uint64_t max_decoded);
+                                        const std::vector<app::Condition>& conditions, std::uint64_t max_decoded);
 
 }  // namespace meshlode::cli

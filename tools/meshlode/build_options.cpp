@@ -4,18 +4,18 @@
 #include <string>
 #include <utility>
 
-#include "build/settings/settings_file.h"
+#include "app/settings/settings_file.h"
 #include "outputs.h"
 
 namespace meshlode::cli {
 
 void add_build_options(OptionParser& parser, BuildWords& words) {
-  for (const build::SettingInfo& info : build::all_settings()) {
+  for (const app::SettingInfo& info : app::all_settings()) {
     const std::string name = std::string("--") + info.name;
-    if (build::is_flag(info.setting)) {
+    if (app::is_flag(info.setting)) {
       parser.add_flag(name.c_str(), words.flags[static_cast<std::size_t>(info.setting)], info.help);
     } else {
-      parser.add_value(name.c_str(), words.layer[info.setting], info.help, build::choices_of(info.setting));
+      parser.add_value(name.c_str(), words.layer[info.setting], info.help, app::choices_of(info.setting));
     }
   }
   parser.add_value("--scene", words.scene,
@@ -25,21 +25,21 @@ void add_build_options(OptionParser& parser, BuildWords& words) {
   parser.add_flag("--no-settings-file", words.no_file, "pass over meshlode.json beside the scene and in folders above");
 }
 
-build::SettingLayer given_settings(const BuildWords& words) {
-  build::SettingLayer layer = words.layer;
-  for (const build::SettingInfo& info : build::all_settings()) {
+app::SettingLayer given_settings(const BuildWords& words) {
+  app::SettingLayer layer = words.layer;
+  for (const app::SettingInfo& info : app::all_settings()) {
     if (words.flags[static_cast<std::size_t>(info.setting)]) layer[info.setting] = "true";
   }
   return layer;
 }
 
-Result<std::vector<build::SettingLayer>> settings_for(const BuildWords& words, const std::filesystem::path& scene,
+Result<std::vector<app::SettingLayer>> settings_for(const BuildWords& words, const std::filesystem::path& scene,
                                                       const std::filesystem::path& root) {
-  std::vector<build::SettingLayer> layers;
+  std::vector<app::SettingLayer> layers;
   if (!words.no_file) {
     std::vector<FileId> files_read;
     auto files =
-        build::read_settings_files(scene, words.root.empty() ? root : std::filesystem::path(words.root), files_read);
+        app::read_settings_files(scene, words.root.empty() ? root : std::filesystem::path(words.root), files_read);
     output_files().keep(files_read);
     if (!files) return files.error();
     layers = std::move(*files);

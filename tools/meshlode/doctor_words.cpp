@@ -85,9 +85,9 @@ std::string short_of(double figure) {
 
 /// What was counted, and the figure that goes with it (FaultKind says which).
 std::string detail_of(const scene::Fault& fault) {
-  const auto count = [&](const char* many) { return out::counted(fault.count, many); };
-  const auto measured = [&](const char* many) { return out::counted(whole(fault.measure), many); };
-  const std::string triangles = out::counted(fault.triangle_count, "triangles");
+  const auto count = [&](const char* many) { return app::counted(fault.count, many); };
+  const auto measured = [&](const char* many) { return app::counted(whole(fault.measure), many); };
+  const std::string triangles = app::counted(fault.triangle_count, "triangles");
   switch (fault.kind) {
     case FaultKind::kNothingToDraw:
       return fault.triangle_count == 0 ? "no triangle" : triangles + ", none with an area";
@@ -134,14 +134,14 @@ std::uint64_t triangles_of(const scene::Scene& scene) {
   return count;
 }
 
-out::DiagnosisPlace place_of(const scene::Scene& scene, const scene::Fault& fault, std::uint64_t all_triangles) {
-  out::DiagnosisPlace place;
+app::DiagnosisPlace place_of(const scene::Scene& scene, const scene::Fault& fault, std::uint64_t all_triangles) {
+  app::DiagnosisPlace place;
   double weight = 1.0;
   place.where = "scene";
   if (fault.mesh != kNoId) {
     const scene::SourceMesh& mesh = scene.meshes[fault.mesh];
     place.mesh = fault.mesh;
-    place.where = out::mesh_words(fault.mesh, mesh.name);
+    place.where = app::mesh_words(fault.mesh, mesh.name);
     weight =
         all_triangles == 0 ? 0.0 : static_cast<double>(scene::triangles_of(mesh)) / static_cast<double>(all_triangles);
   }
@@ -164,28 +164,28 @@ const char* hard_case_of(FaultKind kind) {
 
 std::vector<std::string> source_fault_ids() {
   std::vector<std::string> ids = all_names(scene::kFaultNames);
-  ids.emplace_back(out::kLeftOutId);
+  ids.emplace_back(app::kLeftOutId);
   return ids;
 }
 
-std::vector<out::Diagnosis> diagnose_scene(const scene::Scene& scene) {
-  std::vector<out::Diagnosis> diagnoses;
+std::vector<app::Diagnosis> diagnose_scene(const scene::Scene& scene) {
+  std::vector<app::Diagnosis> diagnoses;
   const std::uint64_t all = triangles_of(scene);
   for (const scene::Fault& fault : scene::examine_scene(scene)) {
-    out::Diagnosis words;
+    app::Diagnosis words;
     words.id = name_of(fault.kind);
     words.title = words_of(fault.kind).title;
     words.remedy = words_of(fault.kind).remedy;
     words.hard_case = hard_case_of(fault.kind);
-    out::add_place(diagnoses, words, place_of(scene, fault, all));
+    app::add_place(diagnoses, words, place_of(scene, fault, all));
   }
-  for (const scene::LeftOut& left : scene.left_out) out::add_left_out(diagnoses, left.what, left.why);
-  out::rank(diagnoses);
+  for (const scene::LeftOut& left : scene.left_out) app::add_left_out(diagnoses, left.what, left.why);
+  app::rank(diagnoses);
   return diagnoses;
 }
 
-out::DoctorReport report_on_scene(const scene::Scene& scene) {
-  out::DoctorReport report;
+app::DoctorReport report_on_scene(const scene::Scene& scene) {
+  app::DoctorReport report;
   report.meshes = scene.meshes.size();
   report.triangles = triangles_of(scene);
   report.diagnoses = diagnose_scene(scene);

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "out/doctor/diagnosis.h"
+#include "app/doctor/diagnosis.h"
 #include "scene/detect/fault.h"
 #include "scene/scene.h"
 
@@ -19,9 +19,9 @@ namespace meshlode::cli {
 
 /// What scene::examine_scene finds and what the import left out, ranked: a share of a mesh counts as much as the mesh
 /// has triangles.
-[[nodiscard]] std::vector<out::Diagnosis> diagnose_scene(const scene::Scene& scene);
+[[nodiscard]] std::vector<app::Diagnosis> diagnose_scene(const scene::Scene& scene);
 
 /// A report without its file: diagnose_scene() and how large the scene is.
-[[nodiscard]] out::DoctorReport report_on_scene(const scene::Scene& scene);
+[[nodiscard]] app::DoctorReport report_on_scene(const scene::Scene& scene);
 
 }  // namespace meshlode::cli

@@ -40,7 +40,7 @@ Result<Drawn> draw_one(const run::Asset& asset, const run::Camera& camera, doubl
 
 }  // namespace
 
-Result<out::PictureChange> draw_pair(const PairToDraw& pair, const CameraOptions& options,
+Result<app::PictureChange> draw_pair(const PairToDraw& pair, const CameraOptions& options,
                                      std::vector<std::string>& warnings) {
   const Result<run::Camera> camera = make_camera(options, pair.before);
   if (!camera) return camera.error();
@@ -48,13 +48,13 @@ Result<out::PictureChange> draw_pair(const PairToDraw& pair, const CameraOptions
   if (!before) return before.error();
   const auto after = draw_one(pair.after, *camera, options.pixel_error, pair.max_decoded, warnings);
   if (!after) return after.error();
-  out::PictureChange picture;
+  app::PictureChange picture;
   picture.width = camera->width;
   picture.height = camera->height;
   picture.pixel_error = options.pixel_error;
   picture.changes = {{"clusters", static_cast<double>(before->clusters), static_cast<double>(after->clusters)},
                      {"triangles", static_cast<double>(before->triangles), static_cast<double>(after->triangles)}};
-  picture.difference = out::compare_pictures(before->image.rgba, after->image.rgba);
+  picture.difference = app::compare_pictures(before->image.rgba, after->image.rgba);
   return picture;
 }
 

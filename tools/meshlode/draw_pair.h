@@ -9,7 +9,7 @@
 #include <meshlode/result.h>
 
 #include "camera_options.h"
-#include "out/compare/compare.h"
+#include "app/compare/compare.h"
 #include "run/read/asset.h"
 
 namespace meshlode::cli {
@@ -23,7 +23,7 @@ struct PairToDraw {
 /// The camera is the options' or, where they name none, the one that frames the old asset; each asset is drawn as
 /// `render` draws it, at the same pixel error. What could not be drawn of an image is added to `warnings`.
 /// Errors: kUsage for options that make no sense; kInvalid for a broken page; kUnsupported for a cut that is too large.
-[[nodiscard]] Result<out::PictureChange> draw_pair(const PairToDraw& pair, const CameraOptions& options,
+[[nodiscard]] Result<app::PictureChange> draw_pair(const PairToDraw& pair, const CameraOptions& options,
                                                    std::vector<std::string>& warnings);
 
 }  // namespace meshlode::cli

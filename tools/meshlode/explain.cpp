@@ -4,11 +4,11 @@
 #include <algorithm>
 
 #include "base/printable.h"
-#include "build/preview/plan_report.h"
-#include "build/preview/scene_plan.h"
+#include "app/preview/plan_report.h"
+#include "app/preview/scene_plan.h"
 #include "build_options.h"
 #include "draw/gpu/pass_plan.h"
-#include "out/report/read_meta.h"
+#include "app/report/read_meta.h"
 
 namespace meshlode::cli {
 
@@ -23,21 +23,21 @@ std::string more_rows(std::size_t rows) {
 
 }  // namespace
 
-std::string describe_settings(const build::Settled& settled, const std::vector<build::SettledMesh>& meshes,
+std::string describe_settings(const app::Settled& settled, const std::vector<app::SettledMesh>& meshes,
                               const scene::Scene& scene) {
   std::string text = "settings\n";
-  const auto line = [&](const std::string& of, build::Setting setting, const build::SettledWord& word) {
-    text += "  " + of + build::info_of(setting).name + " " +
+  const auto line = [&](const std::string& of, app::Setting setting, const app::SettledWord& word) {
+    text += "  " + of + app::info_of(setting).name + " " +
             (word.word.empty() ? "(none)" : printable(word.word, 100)) + ": " + printable(word.from, 200) + "\n";
   };
-  for (const build::SettingInfo& info : build::all_settings()) {
-    const build::SettledWord& word = settled[info.setting];
+  for (const app::SettingInfo& info : app::all_settings()) {
+    const app::SettledWord& word = settled[info.setting];
     const bool is_silent = info.is_experimental && word.word == info.usual;  // nobody studies anything
     if (!is_silent) line("", info.setting, word);
   }
   std::size_t rows = 0;
   for (std::size_t i = 0; i < meshes.size(); ++i) {
-    const std::string label = printable(build::mesh_label(scene.meshes[i], i), 120) + ": ";
+    const std::string label = printable(builder::mesh_label(scene.meshes[i], i), 120) + ": ";
     for (const auto& [setting, word] : meshes[i].own) {
       if (rows++ < kMaxRows) line(label, setting, word);
     }
@@ -45,29 +45,29 @@ std::string describe_settings(const build::Settled& settled, const std::vector<b
   return text + more_rows(rows);
 }
 
-Result<std::string> explain_build(const std::vector<build::SettingLayer>& layers, const build::PipelineOptions& options,
+Result<std::string> explain_build(const std::vector<app::SettingLayer>& layers, const builder::PipelineOptions& options,
                                   const scene::Scene& scene) {
-  const auto settled = build::settle(layers);
+  const auto settled = app::settle(layers);
   if (!settled) return settled.error();
-  const auto meshes = build::settle_meshes(layers, names_of_meshes(scene));
+  const auto meshes = app::settle_meshes(layers, names_of_meshes(scene));
   if (!meshes) return meshes.error();
-  const auto plan = build::plan_scene(scene, options);
+  const auto plan = app::plan_scene(scene, options);
   if (!plan) return plan.error();
-  return describe_settings(*settled, *meshes, scene) + build::describe_plan(*plan);
+  return describe_settings(*settled, *meshes, scene) + app::describe_plan(*plan);
 }
 
 std::string describe_recorded_plan(const run::Asset& asset) {
-  const out::MetaInfo meta = out::read_meta(asset.meta_json());
+  const app::MetaInfo meta = app::read_meta(asset.meta_json());
   std::string text = "plan of the asset\n";
   std::size_t rows = 0;
   const auto line = [&](const char* fate, const std::string& what, const std::string& reason) {
     if (rows++ < kMaxRows)
       text += std::string("  ") + fate + printable(what, 120) + ": " + printable(reason, 300) + "\n";
   };
-  for (const out::MetaInfo::Decision& decision : meta.decisions) {
+  for (const app::MetaInfo::Decision& decision : meta.decisions) {
     if (decision.is_kept) line("kept      ", decision.what, decision.reason);
   }
-  for (const out::MetaInfo::LeftOut& left : meta.left_outs) line("left out  ", left.what, left.why);
+  for (const app::MetaInfo::LeftOut& left : meta.left_outs) line("left out  ", left.what, left.why);
   return text + more_rows(rows);
 }
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "build/settings/settings.h"
+#include "app/settings/settings.h"
 #include "draw/raster/raster.h"
 #include "run/read/asset.h"
 #include "scene/scene.h"
@@ -13,12 +13,12 @@
 namespace meshlode::cli {
 
 /// A line for each setting and who said it; then those that meshes have for themselves.
-[[nodiscard]] std::string describe_settings(const build::Settled& settled,
-                                            const std::vector<build::SettledMesh>& meshes, const scene::Scene& scene);
+[[nodiscard]] std::string describe_settings(const app::Settled& settled,
+                                            const std::vector<app::SettledMesh>& meshes, const scene::Scene& scene);
 
 /// Settings and plan of a build that is to come. Errors: plan_scene()'s.
-[[nodiscard]] Result<std::string> explain_build(const std::vector<build::SettingLayer>& layers,
-                                                const build::PipelineOptions& options, const scene::Scene& scene);
+[[nodiscard]] Result<std::string> explain_build(const std::vector<app::SettingLayer>& layers,
+                                                const builder::PipelineOptions& options, const scene::Scene& scene);
 
 /// What the asset says that its build kept and left out; of very many decisions the first.
 [[nodiscard]] std::string describe_recorded_plan(const run::Asset& asset);

@@ -6,7 +6,7 @@
 #include <functional>
 #include <utility>
 
-#include "out/export/choose_cuts.h"
+#include "app/export/choose_cuts.h"
 
 namespace meshlode::cli {
 
@@ -50,7 +50,7 @@ Status choose_by_camera(const CutRequest& request, const run::AttributeBounds& b
                         const std::vector<bool>& chosen, std::vector<MeshCuts>& out) {
   const auto camera = make_camera(request.camera, asset);
   if (!camera) return camera.error();
-  std::vector<run::UniformCut> cuts = out::choose_camera_cuts(asset, *camera, request.camera.pixel_error, bounds);
+  std::vector<run::UniformCut> cuts = app::choose_camera_cuts(asset, *camera, request.camera.pixel_error, bounds);
   for (std::size_t m = 0; m < out.size(); ++m) {
     if (chosen[m]) out[m].levels.push_back(make_level(asset, std::move(cuts[m])));
   }
@@ -65,7 +65,7 @@ Status choose_by_budget(const CutRequest& request, const run::Asset& asset, cons
     const double unit = error_unit(request, asset, m);
     units[m] = unit > 0.0 ? unit : 1.0;  // a mesh that is one point has no diagonal
   }
-  out::BudgetCuts budget = out::choose_budget_cuts(asset, units, *request.triangles);
+  app::BudgetCuts budget = app::choose_budget_cuts(asset, units, *request.triangles);
   if (!budget.is_met) {
     return Error{ErrorCode::kCheckFailed, "--triangles",
                  "the coarsest cut has " + std::to_string(budget.triangles) + " triangles"};
@@ -82,7 +82,7 @@ CutLevel cut_at_ratio(const run::Asset& asset, MeshId mesh, double ratio, std::u
   units[mesh.value] = 1.0;
   const double budget = std::floor(ratio * static_cast<double>(finest_triangles));
   return make_level(
-      asset, std::move(out::choose_budget_cuts(asset, units, static_cast<std::uint64_t>(budget)).cuts[mesh.value]));
+      asset, std::move(app::choose_budget_cuts(asset, units, static_cast<std::uint64_t>(budget)).cuts[mesh.value]));
 }
 
 /// A level may be shown where it is off by at most t pixels: at a distance where t pixels are its error, the mesh's
@@ -135,7 +135,7 @@ Status choose_chains(const CutRequest& request, const run::AttributeBounds& boun
     };
     for (const double error : errors) add(cut_at_error(request, bounds, asset, mesh, error));
     const std::uint64_t finest =
-        ratios.empty() ? 0 : make_level(asset, out::choose_level_cut(asset, mesh, 0)).triangles;
+        ratios.empty() ? 0 : make_level(asset, app::choose_level_cut(asset, mesh, 0)).triangles;
     for (const double ratio : ratios) add(cut_at_ratio(asset, mesh, ratio, finest));
     set_coverage(request, asset.meshes()[m].diagonal, camera->height, levels);
   }
@@ -207,7 +207,7 @@ Result<std::vector<MeshCuts>> choose_cuts(const CutRequest& request, const run::
       if (!chosen[m]) continue;
       cuts[m].levels.push_back(request.error
                                    ? cut_at_error(request, *bounds, asset, MeshId(m), *request.error)
-                                   : make_level(asset, out::choose_level_cut(asset, MeshId(m), *request.level)));
+                                   : make_level(asset, app::choose_level_cut(asset, MeshId(m), *request.level)));
     }
   }
   if (!status) return status.error();

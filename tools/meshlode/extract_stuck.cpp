@@ -8,8 +8,8 @@
 
 #include "base/json_writer.h"
 #include "format/names.h"
-#include "out/export/colored_sets.h"
-#include "out/report/info.h"
+#include "app/export/colored_sets.h"
+#include "app/report/info.h"
 #include "outputs.h"
 
 namespace meshlode::cli {
@@ -39,13 +39,13 @@ struct ReasonCount {
 }  // namespace
 
 int extract_stuck(const run::Asset& asset, const std::string& output, const OutputOptions& out) {
-  const out::AssetInfo info = out::describe_asset(asset);
+  const app::AssetInfo info = app::describe_asset(asset);
   std::array<ReasonCount, kLooks.size()> counts{};
-  std::vector<out::ColoredSet> sets;
-  for (const out::MeshInfo& mesh : info.meshes) {
+  std::vector<app::ColoredSet> sets;
+  for (const app::MeshInfo& mesh : info.meshes) {
     for (std::size_t k = 0; k < kLooks.size(); ++k) {
-      out::ColoredSet set{MeshId(), format::name_of(kLooks[k].reason), kLooks[k].color, {}};
-      for (const out::StuckGroupInfo& stuck : mesh.stuck) {
+      app::ColoredSet set{MeshId(), format::name_of(kLooks[k].reason), kLooks[k].color, {}};
+      for (const app::StuckGroupInfo& stuck : mesh.stuck) {
         if (stuck.reason != kLooks[k].reason) continue;
         set.mesh = MeshId(stuck.mesh);
         const format::GroupRecord& group = asset.groups()[stuck.group];
@@ -56,7 +56,7 @@ int extract_stuck(const run::Asset& asset, const std::string& output, const Outp
       if (!set.clusters.empty()) sets.push_back(std::move(set));
     }
   }
-  const auto glb = out::export_colored_sets(asset, sets);
+  const auto glb = app::export_colored_sets(asset, sets);
   if (!glb) return print_error(glb.error());
   if (const Status status = output_files().write(output, *glb); !status) return print_error(status.error());
 

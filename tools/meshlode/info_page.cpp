@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "out/page/viewer_page.h"
+#include "app/page/viewer_page.h"
 #include "repacked.h"
 
 namespace meshlode::cli {
@@ -46,9 +46,9 @@ Status can_write_info_page() {
 }
 
 Result<std::string> info_page(const run::Asset& asset, const std::string& path,
-                              const std::optional<out::ByteMap>& byte_map, std::uint64_t max_page_bytes) {
+                              const std::optional<app::ByteMap>& byte_map, std::uint64_t max_page_bytes) {
   if (const Status can = can_write_info_page(); !can) return can.error();
-  out::ViewerInput input;
+  app::ViewerInput input;
   const std::string name = std::filesystem::path(path).filename().string();
   input.title = name;
   input.runtime = kRuntime;
@@ -60,7 +60,7 @@ Result<std::string> info_page(const run::Asset& asset, const std::string& path,
   if (!smaller) return smaller.error();
   const bool is_own = are_readable(asset) && stored_bytes(asset) <= stored_bytes(*smaller);
   if (!is_own) input.file = &asset;
-  return out::viewer_page(is_own ? asset : *smaller, input);
+  return app::viewer_page(is_own ? asset : *smaller, input);
 }
 
 }  // namespace meshlode::cli

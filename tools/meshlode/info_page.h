@@ -8,7 +8,7 @@
 
 #include <meshlode/result.h>
 
-#include "out/report/byte_map.h"
+#include "app/report/byte_map.h"
 #include "run/read/asset.h"
 
 namespace meshlode::cli {
@@ -19,6 +19,6 @@ namespace meshlode::cli {
 /// The HTML, with at most `max_page_bytes` of stored pages. `path` is the asset's, of which the page says the name.
 /// Errors: those of can_write_info_page(), and of reading and packing pages.
 [[nodiscard]] Result<std::string> info_page(const run::Asset& asset, const std::string& path,
-                                            const std::optional<out::ByteMap>& byte_map, std::uint64_t max_page_bytes);
+                                            const std::optional<app::ByteMap>& byte_map, std::uint64_t max_page_bytes);
 
 }  // namespace meshlode::cli

@@ -26,7 +26,7 @@
 #include "base/hash.h"
 #include "base/vec.h"
 #include "base/version.h"
-#include "batch/cache/program_id.h"
+#include "app/batch/cache/program_id.h"
 #include "options.h"
 
 namespace meshlode::cli {
@@ -107,7 +107,7 @@ const char* compiler() {
 
 std::string version_text() {
   std::string text = std::string(program_version()) + "\n";
-  const Result<Hash128> id = batch::find_program_id();
+  const Result<Hash128> id = app::find_program_id();
   const std::string build_id = id ? to_hex(*id) : "unknown: " + id.error().message();
   append_format(text, "build id        %s\n", build_id.c_str());
   append_format(text, "compiler        %s\n", compiler());

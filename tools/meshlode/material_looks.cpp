@@ -29,7 +29,7 @@ struct Sampled {
 
   std::vector<std::uint8_t> does_pass;  ///< texel by texel: 0 or 1
 
-  /// As build::AlphaTest::of_row(). Texels are linear along a row, too.
+  /// As builder::AlphaTest::of_row(). Texels are linear along a row, too.
   [[nodiscard]] std::uint64_t passing(const Vec2d& origin, const Vec2d& step, int first, std::uint64_t asked) const {
     const auto texel = [](const std::array<double, 3>& row, const Vec2d& at) { return row[0] * at.x + row[1] * at.y; };
     const double x0 = texel(row_u, origin) + row_u[2], y0 = texel(row_v, origin) + row_v[2];
@@ -83,7 +83,7 @@ Vec3f mean_color(const Sampled& sampled, const Vec4f& factor) {
   return Vec3f(sum / std::max(weight, 1.0)) * Vec3f(factor);
 }
 
-std::optional<build::MaterialLook> look_of(const scene::Scene& scene, const Json& document,
+std::optional<builder::MaterialLook> look_of(const scene::Scene& scene, const Json& document,
                                            const scene::SceneMaterial& material) {
   const auto use = std::find_if(material.textures.begin(), material.textures.end(),
                                 [](const scene::TextureUse& t) { return t.role == scene::TextureRole::kBaseColor; });
@@ -110,7 +110,7 @@ std::optional<build::MaterialLook> look_of(const scene::Scene& scene, const Json
   for (double& x : sampled->row_v) x *= sampled->image.height;
   const bool is_masked = material.alpha_mode == scene::AlphaMode::kMask;
   sampled->threshold = is_masked ? draw::mask_threshold(material.base_color[3], material.alpha_cutoff) : 0;
-  build::MaterialLook look;
+  builder::MaterialLook look;
   look.color = mean_color(*sampled, material.base_color);
   look.uv_set = use->uv_set;
   if (sampled->threshold > 0) {
@@ -126,11 +126,11 @@ std::optional<build::MaterialLook> look_of(const scene::Scene& scene, const Json
   return look;
 }
 
-class ImageLooks : public build::LookReader {
+class ImageLooks : public builder::LookReader {
  public:
-  [[nodiscard]] std::vector<std::optional<build::MaterialLook>> read(
+  [[nodiscard]] std::vector<std::optional<builder::MaterialLook>> read(
       const scene::Scene& scene, std::span<const std::uint8_t> wanted) const override {
-    std::vector<std::optional<build::MaterialLook>> looks(scene.materials.size());
+    std::vector<std::optional<builder::MaterialLook>> looks(scene.materials.size());
     const Result<Json> document = scene::parse_json(scene.document);
     if (!document) return looks;
     for (std::size_t i = 0; i < looks.size(); ++i) {
@@ -142,7 +142,7 @@ class ImageLooks : public build::LookReader {
 
 }  // namespace
 
-const build::LookReader& image_looks() {
+const builder::LookReader& image_looks() {
   static const ImageLooks reader;
   return reader;
 }

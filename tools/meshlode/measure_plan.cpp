@@ -9,7 +9,7 @@
 #include "camera_options.h"
 #include "draw/gpu/render.h"
 #include "draw/raster/raster.h"
-#include "out/report/info.h"
+#include "app/report/info.h"
 #include "run/read/asset.h"
 #include "run/select/select.h"
 
@@ -45,13 +45,13 @@ Result<Loaded> load(std::vector<std::uint8_t> bytes, std::uint64_t max_decoded) 
 
 Status count_bytes(const run::Asset& asset, MeasuredAsset& out) {
   out.file_bytes = asset.header().file_bytes;
-  out.geometry_bytes = out::describe_asset(asset).geometry_bytes;
+  out.geometry_bytes = app::describe_asset(asset).geometry_bytes;
   for (const format::SectionEntry& section : asset.sections()) {
-    out.sections.emplace_back(out::section_name(section.id), section.bytes);
+    out.sections.emplace_back(app::section_name(section.id), section.bytes);
   }
-  const auto map = out::map_bytes(asset);
+  const auto map = app::map_bytes(asset);
   if (!map) return map.error();
-  const out::PageBits& bits = map->total;
+  const app::PageBits& bits = map->total;
   for (const auto& [name, count] : {std::pair("positions", bits.positions),
                                     {"normals", bits.normals},
                                     {"uvs", bits.uvs},
@@ -149,14 +149,14 @@ void write_times(JsonWriter& json, const char* name, const std::vector<double>& 
 
 /// One round of builds and, at the first, their bytes. Then frames, so that neither disturbs the other.
 Result<std::array<Loaded, 2>> build_rounds(const scene::Scene& scene,
-                                           const std::array<build::PipelineOptions, 2>& options,
+                                           const std::array<builder::PipelineOptions, 2>& options,
                                            const MeasureOptions& measure, PlanMeasurement& out) {
   std::array<std::vector<std::uint8_t>, 2> bytes;
   for (std::uint32_t round = 0; round < measure.rounds; ++round) {
     for (std::size_t side = 0; side < 2; ++side) {
-      build::PipelineReport report;
+      builder::PipelineReport report;
       Result<std::vector<std::uint8_t>> built = Error{};
-      const double ms = milliseconds_of([&] { built = build::build_lode(scene, options[side], {}, report); });
+      const double ms = milliseconds_of([&] { built = builder::build_lode(scene, options[side], {}, report); });
       if (!built) return built.error();
       out.assets[side].build_seconds.push_back(ms / 1000.0);
       bytes[side] = std::move(*built);
@@ -171,19 +171,19 @@ Result<std::array<Loaded, 2>> build_rounds(const scene::Scene& scene,
 
 }  // namespace
 
-Result<PlanMeasurement> measure_plan(const scene::Scene& scene, const build::PipelineOptions& options,
+Result<PlanMeasurement> measure_plan(const scene::Scene& scene, const builder::PipelineOptions& options,
                                      const MeasureOptions& measure) {
   PlanMeasurement out;
   out.assets[0].name = "plan";
   out.assets[1].name = "keep_all";
-  build::PipelineOptions all = options;
-  const auto keep_all = [](build::MeshOptions& own) {
+  builder::PipelineOptions all = options;
+  const auto keep_all = [](builder::MeshOptions& own) {
     own.attributes = AttributeChoice::kAll;
     own.keep = kAllAttributes;
     own.drop = 0;
   };
   keep_all(all);
-  for (build::MeshOptions& own : all.mesh_options) keep_all(own);
+  for (builder::MeshOptions& own : all.mesh_options) keep_all(own);
   auto loaded = build_rounds(scene, {options, all}, measure, out);
   if (!loaded) return loaded.error();
   for (std::size_t side = 0; side < 2; ++side) {

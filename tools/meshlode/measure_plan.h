@@ -12,7 +12,7 @@
 #include <meshlode/result.h>
 
 #include "base/json_writer.h"
-#include "build/build.h"
+#include "builder/builder.h"
 #include "scene/scene.h"
 
 namespace meshlode::cli {
@@ -44,7 +44,7 @@ struct MeasureOptions {
 };
 
 /// Errors: those of a build.
-[[nodiscard]] Result<PlanMeasurement> measure_plan(const scene::Scene& scene, const build::PipelineOptions& options,
+[[nodiscard]] Result<PlanMeasurement> measure_plan(const scene::Scene& scene, const builder::PipelineOptions& options,
                                                    const MeasureOptions& measure);
 
 [[nodiscard]] std::string describe_measurement(const PlanMeasurement& measured);

@@ -5,8 +5,8 @@
 #include <string>
 #include <utility>
 
-#include "build/write/repack.h"
-#include "build/write_meta.h"
+#include "builder/write/repack.h"
+#include "builder/write_meta.h"
 #include "run/decode/decode.h"
 #include "run/unpack/content_hash.h"
 #include "run/unpack/unpack.h"
@@ -37,20 +37,20 @@ Result<std::vector<std::uint8_t>> repacked(const run::Asset& asset, format::Code
   if (const Status status = run::check_decoded_bytes(asset, page_bytes); !status) return status.error();
   if (const Status status = check_content(asset); !status) return status.error();
 
-  build::RepackInput input;
+  builder::RepackInput input;
   for (const format::SectionEntry& entry : asset.sections()) {
     input.sections.push_back({entry, asset.section_bytes(entry)});
   }
   input.version = asset.header().version;
   input.content_hash = stated_hash(asset);
-  input.meta_json = build::meta_with_codec(asset.meta_json(), codec);
+  input.meta_json = builder::meta_with_codec(asset.meta_json(), codec);
   input.load_page = [&](std::size_t p) -> Result<std::vector<std::uint8_t>> {
     const auto page = run::load_page(asset, PageId{p});
     if (!page) return page.error();
     return std::vector<std::uint8_t>(page->bytes().begin(), page->bytes().end());
   };
   input.codec = codec;
-  auto bytes = build::repack_asset(input);
+  auto bytes = builder::repack_asset(input);
   if (!bytes) return bytes.error();
 
   const auto written = run::Asset::from_bytes(*bytes);

@@ -20,20 +20,20 @@ bool has_texture(const scene::SceneMaterial& material) {
 }
 
 /// Of all levels: twice the source's triangles.
-std::uint64_t estimate_clusters(const build::PlannedMesh& mesh, std::uint32_t cluster_triangles) {
+std::uint64_t estimate_clusters(const app::PlannedMesh& mesh, std::uint32_t cluster_triangles) {
   if (mesh.triangles == 0) return 0;
   return mesh.is_whole ? 1 : 2 * mesh.triangles / cluster_triangles + 1;
 }
 
 }  // namespace
 
-draw::PassPlan plan_scene_passes(const scene::Scene& scene, const build::ScenePlan& plan,
+draw::PassPlan plan_scene_passes(const scene::Scene& scene, const app::ScenePlan& plan,
                                  std::uint32_t cluster_triangles) {
   draw::PassFacts facts;
   facts.instance_count = static_cast<std::uint32_t>(
       std::min<std::size_t>(scene.instances.size(), std::numeric_limits<std::uint32_t>::max()));
   for (const scene::SceneInstance& instance : scene.instances) {
-    const build::PlannedMesh& mesh = plan.meshes[instance.mesh.value];
+    const app::PlannedMesh& mesh = plan.meshes[instance.mesh.value];
     facts.cluster_instances += estimate_clusters(mesh, cluster_triangles);
     facts.has_single_root = facts.has_single_root || mesh.triangles > 0;
   }

@@ -11,21 +11,21 @@
 #include <utility>
 
 #include "base/printable.h"
-#include "batch/batch.h"
-#include "batch/cache/cache.h"
-#include "batch/cache/ingredients.h"
-#include "batch/cache/program_id.h"
-#include "batch/depend/depfile.h"
-#include "batch/jobs/jobs.h"
-#include "batch/jobs/weigh.h"
-#include "batch/shard/partition.h"
-#include "batch/shard/read_manifest.h"
-#include "batch/tell/tell.h"
+#include "app/batch/batch.h"
+#include "app/batch/cache/cache.h"
+#include "app/batch/cache/ingredients.h"
+#include "app/batch/cache/program_id.h"
+#include "app/batch/depend/depfile.h"
+#include "app/batch/jobs/jobs.h"
+#include "app/batch/jobs/weigh.h"
+#include "app/batch/shard/partition.h"
+#include "app/batch/shard/read_manifest.h"
+#include "app/batch/tell/tell.h"
 #include "batch_files.h"
 #include "batch_options.h"
 #include "batch_show.h"
 #include "budget_options.h"
-#include "build/settings/settings.h"
+#include "app/settings/settings.h"
 #include "build_options.h"
 #include "explain.h"
 #include "file_kind.h"
@@ -42,8 +42,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-using batch::Job;
-using batch::JobResult;
+using app::Job;
+using app::JobResult;
 
 /// No output may be any input, nor a file beside the assets one of these or another of its kind: checked before the
 /// first job has written anything.
@@ -76,12 +76,12 @@ Status make_folder(const fs::path& folder) {
 /// What comes of the command line beside the jobs.
 struct BuildCommand {
   BatchWords words;
-  batch::BatchOptions options;
+  app::BatchOptions options;
   Hash128 program{};  ///< where a cache or a manifest wants it
-  std::optional<batch::Cache> cache;
+  std::optional<app::Cache> cache;
   std::string report_path;
   std::optional<std::string> fail_if;
-  std::optional<batch::ShardPlan> shard;
+  std::optional<app::ShardPlan> shard;
   bool is_explained = false;
   std::uint32_t jobs = 0;
   OutputOptions out;
@@ -90,7 +90,7 @@ struct BuildCommand {
 /// Before anything is built: TBB loads further libraries as it starts, which are not to be told apart by.
 Status find_program(BuildCommand& command) {
   if (command.words.cache_folder().empty() && command.words.manifest.empty()) return Ok{};
-  const auto program = batch::find_program_id();
+  const auto program = app::find_program_id();
   if (!program) return program.error();
   command.program = *program;
   return Ok{};
@@ -102,7 +102,7 @@ Status open_cache(BuildCommand& command) {
   const Result<std::uint64_t> limit = command.words.limit();
   if (!limit) return limit.error();
   if (folder.empty()) return Ok{};
-  auto store = batch::Store::open(folder, {*limit, command.words.dry_run});
+  auto store = app::Store::open(folder, {*limit, command.words.dry_run});
   if (!store) return store.error();
   command.cache.emplace(std::move(*store), command.program);
   command.options.cache = &*command.cache;
@@ -112,7 +112,7 @@ Status open_cache(BuildCommand& command) {
 /// Of all jobs those that this command is to do.
 Result<std::vector<Job>> take_share(const std::vector<Job>& jobs, BuildCommand& command) {
   if (command.words.shard.empty()) return jobs;
-  const auto shard = batch::parse_shard(command.words.shard);
+  const auto shard = app::parse_shard(command.words.shard);
   if (!shard) return shard.error();
   if (command.words.fail_fast) {
     return Error{ErrorCode::kUsage, "--shard",
@@ -120,8 +120,8 @@ Result<std::vector<Job>> take_share(const std::vector<Job>& jobs, BuildCommand& 
   }
   std::vector<std::uint64_t> weights;
   weights.reserve(jobs.size());
-  for (const Job& job : jobs) weights.push_back(batch::weigh_scene(job.input));
-  command.shard = batch::plan_shard(jobs, weights, *shard);
+  for (const Job& job : jobs) weights.push_back(app::weigh_scene(job.input));
+  command.shard = app::plan_shard(jobs, weights, *shard);
   std::vector<Job> mine;
   for (const std::uint64_t position : command.shard->positions) mine.push_back(jobs[position]);
   return mine;
@@ -132,7 +132,7 @@ Result<std::vector<Job>> take_share(const std::vector<Job>& jobs, BuildCommand& 
 Status remove_old_manifest(const BuildCommand& command) {
   const fs::path path = command.words.manifest;
   if (!command.shard || path.empty() || command.words.dry_run) return Ok{};
-  const auto old = batch::read_manifest(path);
+  const auto old = app::read_manifest(path);
   if (!old || !old->shard) return Ok{};  // none, or a file of another kind, which is not ours to remove
   std::error_code error;
   const fs::path target = fs::canonical(path, error);
@@ -145,18 +145,18 @@ Status remove_old_manifest(const BuildCommand& command) {
 std::string plan_text(const std::vector<JobResult>& results) {
   std::string text;
   for (const JobResult& r : results) {
-    std::string words = batch::name_of(r.status);
+    std::string words = app::name_of(r.status);
     std::replace(words.begin(), words.end(), '_', ' ');
     text += words + ": " + r.job.input.string() + " -> " + r.job.output.string();
     text += r.reason.empty() ? "\n" : ": " + r.reason + "\n";
   }
-  return text + batch::summary_line(results) + "\n";
+  return text + app::summary_line(results) + "\n";
 }
 
 BatchFileNames names_of_files(const BuildCommand& command) {
   return {command.words.manifest, command.words.junit,
           command.words.depfile,  command.report_path,
-          command.program,        batch::settings_text(command.options.pipeline, command.options.import),
+          command.program,        app::settings_text(command.options.pipeline, command.options.import),
           command.shard};
 }
 
@@ -183,15 +183,15 @@ Status check_names(const BuildCommand& command, const std::vector<Job>& jobs) {
     }
     if (command.words.depfile.empty()) continue;
     for (const fs::path& path : {job.input, job.output}) {
-      if (Status sound = batch::check_depfile_path(path); !sound) return sound;
+      if (Status sound = app::check_depfile_path(path); !sound) return sound;
     }
   }
   return Ok{};
 }
 
 /// --explain.
-void print_plan(const scene::Scene& scene, std::span<const build::SettingLayer> layers,
-                const build::PipelineOptions& options) {
+void print_plan(const scene::Scene& scene, std::span<const app::SettingLayer> layers,
+                const builder::PipelineOptions& options) {
   const Result<std::string> text = explain_build({layers.begin(), layers.end()}, options, scene);
   if (!text) return;  // the build will refuse it for the same reason
   std::fprintf(stderr, "plan of %s\n%s", printable(scene.source_name, 200).c_str(), text->c_str());
@@ -205,7 +205,7 @@ int run_jobs(const std::vector<Job>& jobs, const BuildCommand& command) {
   BatchShow show(jobs, command.out.quiet, !command.out.json() && !is_dry);
   JobLimit limit(command.jobs);
   std::vector<JobResult> results;
-  batch::BatchWatcher watcher = show.watcher();
+  app::BatchWatcher watcher = show.watcher();
   if (files) {
     watcher.on_end = [&files, shown = watcher.on_end](std::size_t job, const JobResult& result, const Error* error) {
       files->add(job, result);
@@ -213,16 +213,16 @@ int run_jobs(const std::vector<Job>& jobs, const BuildCommand& command) {
     };
   }
   if (command.is_explained) watcher.on_scene = print_plan;
-  limit.run([&] { results = batch::run_batch(jobs, command.options, output_files(), watcher); });
-  int worst = batch::worst_exit_code(results);
-  const std::string report = batch::report_json(results, command.jobs, worst);
+  limit.run([&] { results = app::run_batch(jobs, command.options, output_files(), watcher); });
+  int worst = app::worst_exit_code(results);
+  const std::string report = app::report_json(results, command.jobs, worst);
   if (files) worst = std::max(worst, files->finish(results, report));
   if (command.cache) {
     // An asset is no worse for it: the code stays.
     if (const auto error = command.cache->store().first_error()) print_error(*error);
   }
   const bool is_told = !command.out.quiet && !command.out.json() && !is_dry;
-  if (is_told && jobs.size() > 1) std::fputs(batch::summary_table(results).c_str(), stderr);
+  if (is_told && jobs.size() > 1) std::fputs(app::summary_table(results).c_str(), stderr);
   if (command.out.json() && !print_out(report)) worst = std::max(worst, static_cast<int>(ErrorCode::kIo));
   if (is_dry && !command.out.json() && !print_out(plan_text(results))) {
     worst = std::max(worst, static_cast<int>(ErrorCode::kIo));
@@ -237,9 +237,9 @@ struct LimitWords {
   fs::path outputs;  ///< the folder of the assets
 };
 
-Status set_options(const BuildWords& words, const LimitWords& limits, batch::BatchOptions& options) {
-  const build::SettingLayer given = given_settings(words);
-  const Result<build::Settled> settled = build::settle({&given, 1});
+Status set_options(const BuildWords& words, const LimitWords& limits, app::BatchOptions& options) {
+  const app::SettingLayer given = given_settings(words);
+  const Result<app::Settled> settled = app::settle({&given, 1});
   if (!settled) return settled.error();
   options.pipeline = settled->options;
   options.pipeline.looks = &image_looks();
@@ -263,7 +263,7 @@ Status set_options(const BuildWords& words, const LimitWords& limits, batch::Bat
 
 /// --fail-if: each asset is looked at when it is there.
 Status set_budget(BuildCommand& command) {
-  auto conditions = read_budget_option(command.fail_if, out::info_schema());
+  auto conditions = read_budget_option(command.fail_if, app::info_schema());
   if (!conditions) return conditions.error();
   if (conditions->empty()) return Ok{};
   command.options.check_asset = [budget = std::move(*conditions), max_decoded = command.options.import.max_decoded](
@@ -303,7 +303,7 @@ int run_build(const Verb& verb, std::span<char* const> args) {
   limits.outputs = output_folder.empty() ? fs::path(output).parent_path() : fs::path(output_folder);
   if (const Status set = set_options(words, limits, command.options); !set) return print_error(set.error());
   if (const Status set = set_budget(command); !set) return print_error(set.error());
-  const auto plan = batch::plan_jobs(inputs, output, output_folder);
+  const auto plan = app::plan_jobs(inputs, output, output_folder);
   if (!plan) return print_error(plan.error());
   if (const Status names = check_names(command, *plan); !names) return print_error(names.error());
   const auto share = take_share(*plan, command);

@@ -12,8 +12,8 @@
 #include "draw_pair.h"
 #include "file_kind.h"
 #include "options.h"
-#include "out/compare/compare.h"
-#include "out/compare/stored_bytes.h"
+#include "app/compare/compare.h"
+#include "app/compare/stored_bytes.h"
 #include "run/read/asset.h"
 #include "verb.h"
 
@@ -46,7 +46,7 @@ Error in_picture(Error error) {
 Result<run::Asset> open_sound(const std::string& path, std::uint64_t max_decoded) {
   Result<run::Asset> asset = open_asset(path, max_decoded);
   if (!asset) return asset;
-  if (const Status sound = out::check_stored_bytes(*asset); !sound) {
+  if (const Status sound = app::check_stored_bytes(*asset); !sound) {
     Error error = sound.error();
     error.where = path + ": " + error.where;
     return error;
@@ -66,9 +66,9 @@ int run_compare(const Verb& verb, std::span<char* const> args) {
   add_jobs_option(parser, options.jobs);
   add_output_options(parser, options.output);
   if (const auto exit_code = parser.parse(args)) return *exit_code;
-  const auto budget = read_budget_option(options.fail_if, out::compare_schema());
+  const auto budget = read_budget_option(options.fail_if, app::compare_schema());
   if (!budget) return print_error(budget.error());
-  if (out::mentions(*budget, "picture") && !options.is_rendered) {
+  if (app::mentions(*budget, "picture") && !options.is_rendered) {
     return print_error({ErrorCode::kUsage, "--fail-if", "picture needs --render"});
   }
   if (!options.is_rendered && is_camera_given(options.camera)) {
@@ -82,7 +82,7 @@ int run_compare(const Verb& verb, std::span<char* const> args) {
   if (!before) return print_error(before.error());
   const Result<run::Asset> after = open_sound(options.after, *max_decoded);
   if (!after) return print_error(after.error());
-  out::AssetComparison comparison = out::compare_assets(*before, *after);
+  app::AssetComparison comparison = app::compare_assets(*before, *after);
   comparison.before.file = options.before;
   comparison.after.file = options.after;
   if (options.is_rendered) {
@@ -92,22 +92,22 @@ int run_compare(const Verb& verb, std::span<char* const> args) {
     if (!picture) return print_error(in_picture(picture.error()));
     comparison.picture = std::move(*picture);
   }
-  std::vector<out::BrokenCondition> broken;
+  std::vector<app::BrokenCondition> broken;
   if (!budget->empty()) {
-    auto judged = out::judge_budget(*budget, out::comparison_json(comparison));
+    auto judged = app::judge_budget(*budget, app::comparison_json(comparison));
     if (!judged) return print_error(judged.error());
     broken = std::move(*judged);
   }
   std::string text;
   if (options.output.json()) {
-    text = out::comparison_json(comparison, broken);
+    text = app::comparison_json(comparison, broken);
   } else if (!options.output.quiet || budget->empty()) {  // with a budget it is the verdict that is asked for
-    text = out::comparison_text(comparison);
+    text = app::comparison_text(comparison);
   }
-  const bool is_of_errors = std::ranges::any_of(broken, [](const out::BrokenCondition& one) {
+  const bool is_of_errors = std::ranges::any_of(broken, [](const app::BrokenCondition& one) {
     return one.condition.find("error_min") != std::string::npos || one.condition.find("error_max") != std::string::npos;
   });
-  if (const std::string tiers = out::tiers_text(comparison); is_of_errors && !tiers.empty()) {
+  if (const std::string tiers = app::tiers_text(comparison); is_of_errors && !tiers.empty()) {
     std::fprintf(stderr, "warning: errors are %s\n", tiers.c_str());
   }
   if (!print_out(text)) return static_cast<int>(ErrorCode::kIo);

@@ -12,9 +12,9 @@
 #include "base/file.h"
 #include "doctor_words.h"
 #include "options.h"
-#include "out/compare/stored_bytes.h"
-#include "out/doctor/asset_faults.h"
-#include "out/doctor/diagnosis.h"
+#include "app/compare/stored_bytes.h"
+#include "app/doctor/asset_faults.h"
+#include "app/doctor/diagnosis.h"
 #include "run/read/asset.h"
 #include "scene/import/import.h"
 #include "verb.h"
@@ -35,20 +35,20 @@ Result<bool> is_asset(const std::string& path) {
 }
 
 /// `sound`: whether pages and images, which the tables do not speak of, are what was written.
-Result<out::DoctorReport> examine_asset(const std::string& path, std::uint64_t max_decoded, Status& sound) {
+Result<app::DoctorReport> examine_asset(const std::string& path, std::uint64_t max_decoded, Status& sound) {
   const Result<run::Asset> asset = run::Asset::open(path, max_decoded);
   if (!asset) return asset.error();
-  sound = out::check_stored_bytes(*asset);
-  out::DoctorReport report;
+  sound = app::check_stored_bytes(*asset);
+  app::DoctorReport report;
   report.is_asset = true;
   report.meshes = asset->meshes().size();
   for (const format::MeshRecord& mesh : asset->meshes()) report.triangles += mesh.source_triangles;
-  report.diagnoses = out::diagnose_asset(*asset);
-  out::rank(report.diagnoses);
+  report.diagnoses = app::diagnose_asset(*asset);
+  app::rank(report.diagnoses);
   return report;
 }
 
-Result<out::DoctorReport> examine(const std::string& path, const scene::ImportOptions& options, Status& sound) {
+Result<app::DoctorReport> examine(const std::string& path, const scene::ImportOptions& options, Status& sound) {
   const Result<bool> asset = is_asset(path);
   if (!asset) return asset.error();
   if (*asset) return examine_asset(path, options.max_decoded, sound);
@@ -59,7 +59,7 @@ Result<out::DoctorReport> examine(const std::string& path, const scene::ImportOp
 
 std::vector<std::string> all_fault_ids() {
   std::vector<std::string> ids = source_fault_ids();
-  for (std::string& id : out::asset_fault_ids()) {
+  for (std::string& id : app::asset_fault_ids()) {
     if (std::find(ids.begin(), ids.end(), id) == ids.end()) ids.push_back(std::move(id));
   }
   return ids;
@@ -91,14 +91,14 @@ int run_doctor(const Verb& verb, std::span<char* const> args) {
   options.allow_outside = std::move(*allowed);
   // Before any work: a misspelt id.
   if (fail_on) {
-    if (auto known = out::find_failures(*fail_on, all_fault_ids(), {}); !known) return print_error(known.error());
+    if (auto known = app::find_failures(*fail_on, all_fault_ids(), {}); !known) return print_error(known.error());
   }
   Status sound = Ok{};
-  Result<out::DoctorReport> report = examine(path, options, sound);
+  Result<app::DoctorReport> report = examine(path, options, sound);
   if (!report) return print_error(report.error());
   report->file = path;
-  if (fail_on) report->failed_on = *out::find_failures(*fail_on, all_fault_ids(), report->diagnoses);
-  const std::string text = output.json() ? out::doctor_json(*report) : out::doctor_text(*report);
+  if (fail_on) report->failed_on = *app::find_failures(*fail_on, all_fault_ids(), report->diagnoses);
+  const std::string text = output.json() ? app::doctor_json(*report) : app::doctor_text(*report);
   const bool is_silent = output.quiet && !output.json() && report->diagnoses.empty();
   if (!is_silent && !print_out(text)) return static_cast<int>(ErrorCode::kIo);
   if (!sound) return print_error({sound.error().code, path + ": " + sound.error().where, sound.error().detail});

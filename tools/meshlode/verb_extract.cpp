@@ -13,7 +13,7 @@
 #include "extract_stuck.h"
 #include "file_kind.h"
 #include "options.h"
-#include "out/export/export.h"
+#include "app/export/export.h"
 #include "output_name.h"
 #include "outputs.h"
 #include "promise_option.h"
@@ -180,14 +180,14 @@ std::string describe_text(const run::Asset& asset, const std::vector<MeshCuts>& 
 }
 
 Result<std::vector<std::uint8_t>> export_cuts(const run::Asset& asset, const std::vector<MeshCuts>& cuts) {
-  std::vector<out::LodChain> chains(cuts.size());
+  std::vector<app::LodChain> chains(cuts.size());
   for (std::size_t m = 0; m < cuts.size(); ++m) {
     for (const CutLevel& level : cuts[m].levels) {
       chains[m].cuts.push_back(level.cut.clusters);
       chains[m].screen_coverage.push_back(level.screen_coverage);
     }
   }
-  return out::export_glb_lods(asset, chains);
+  return app::export_glb_lods(asset, chains);
 }
 
 int run_extract(const Verb& verb, std::span<char* const> args) {

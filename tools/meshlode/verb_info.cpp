@@ -8,9 +8,9 @@
 #include "file_kind.h"
 #include "info_page.h"
 #include "options.h"
-#include "out/compare/stored_bytes.h"
-#include "out/page/viewer_page.h"
-#include "out/report/info.h"
+#include "app/compare/stored_bytes.h"
+#include "app/page/viewer_page.h"
+#include "app/report/info.h"
 #include "output_name.h"
 #include "outputs.h"
 #include "run/read/asset.h"
@@ -21,18 +21,18 @@ namespace meshlode::cli {
 
 namespace {
 
-std::string describe(const run::Asset& asset, const out::AssetInfo& info, const std::string& format, bool list_stuck) {
-  if (format == "json") return out::info_json(asset, info, list_stuck);
-  if (format == "csv") return out::info_csv(asset, info, list_stuck);
-  if (format == "markdown") return out::info_markdown(asset, info, list_stuck);
-  const auto style = is_unicode_terminal() ? out::BarStyle::kBlocks : out::BarStyle::kAscii;
-  return out::info_text(asset, info, list_stuck, style);
+std::string describe(const run::Asset& asset, const app::AssetInfo& info, const std::string& format, bool list_stuck) {
+  if (format == "json") return app::info_json(asset, info, list_stuck);
+  if (format == "csv") return app::info_csv(asset, info, list_stuck);
+  if (format == "markdown") return app::info_markdown(asset, info, list_stuck);
+  const auto style = is_unicode_terminal() ? app::BarStyle::kBlocks : app::BarStyle::kAscii;
+  return app::info_text(asset, info, list_stuck, style);
 }
 
 /// `--html`: the page beside what is printed.
 struct PageOptions {
   std::optional<std::string> path, limit;
-  std::uint64_t max_page_bytes = out::kDefaultPageBytes;
+  std::uint64_t max_page_bytes = app::kDefaultPageBytes;
 };
 
 void add_page_options(OptionParser& parser, PageOptions& page) {
@@ -60,7 +60,7 @@ Status claim_page(const run::Asset& asset, const PageOptions& page) {
   return check_output_name("--html", *page.path, {".html", ".htm"});
 }
 
-Status write_page(const run::Asset& asset, const std::string& path, const std::optional<out::ByteMap>& byte_map,
+Status write_page(const run::Asset& asset, const std::string& path, const std::optional<app::ByteMap>& byte_map,
                   const PageOptions& options) {
   if (!options.path) return Ok{};
   const auto page = info_page(asset, path, byte_map, options.max_page_bytes);
@@ -81,17 +81,17 @@ int run_info(const Verb& verb, std::span<char* const> args) {
   add_page_options(parser, page);
   add_budget_option(parser, fail_if, "--format json", "totals.clusters>5000, any(meshes).stuck_groups>0");
   if (const auto exit_code = parser.parse(args)) return *exit_code;
-  const auto budget = read_budget_option(fail_if, out::info_schema());
+  const auto budget = read_budget_option(fail_if, app::info_schema());
   if (!budget) return print_error(budget.error());
   if (const Status sane = check_page_options(page); !sane) return print_error(sane.error());
   const Result<run::Asset> asset = open_asset(path);
   if (!asset) return print_error(asset.error());
   if (const Status free = claim_page(*asset, page); !free) return print_error(free.error());
-  out::AssetInfo info = out::describe_asset(*asset);
+  app::AssetInfo info = app::describe_asset(*asset);
   // Whatever is printed, every page and image is read: an exit code of 0 says that the asset is whole.
-  Result<out::ByteMap> byte_map = out::map_bytes(*asset);
+  Result<app::ByteMap> byte_map = app::map_bytes(*asset);
   const bool has_map = static_cast<bool>(byte_map);
-  const Status sound = has_map ? out::check_stored_bytes(*asset) : Status(byte_map.error());
+  const Status sound = has_map ? app::check_stored_bytes(*asset) : Status(byte_map.error());
   if (has_map) info.byte_map = std::move(*byte_map);
   int exit_code = 0;
   if (!sound) {
@@ -109,8 +109,8 @@ int run_info(const Verb& verb, std::span<char* const> args) {
     return static_cast<int>(ErrorCode::kIo);
   }
   // Of a figure that is not known nobody says that it is within its limit.
-  if (budget->empty() || (!has_map && out::mentions(*budget, "byte_map"))) return exit_code;
-  const auto broken = out::judge_budget(*budget, out::info_json(*asset, info, true));
+  if (budget->empty() || (!has_map && app::mentions(*budget, "byte_map"))) return exit_code;
+  const auto broken = app::judge_budget(*budget, app::info_json(*asset, info, true));
   const int judged = broken ? print_broken(path, *broken) : print_error(broken.error());
   return exit_code != 0 ? exit_code : judged;
 }

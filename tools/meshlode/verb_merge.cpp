@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "base/file.h"
-#include "batch/shard/merge.h"
-#include "batch/shard/read_manifest.h"
-#include "batch/tell/tell.h"
+#include "app/batch/shard/merge.h"
+#include "app/batch/shard/read_manifest.h"
+#include "app/batch/tell/tell.h"
 #include "options.h"
 #include "output_name.h"
 #include "outputs.h"
@@ -27,11 +27,11 @@ void keep(const std::filesystem::path& path) {
 }
 
 /// Neither scenes and what they name nor assets are written over.
-void keep_files(const std::vector<batch::JobResult>& results) {
-  for (const batch::JobResult& r : results) {
+void keep_files(const std::vector<app::JobResult>& results) {
+  for (const app::JobResult& r : results) {
     keep(r.job.input);
     keep(r.job.output);
-    for (const batch::Dependency& file : r.files) keep(file.path);
+    for (const app::Dependency& file : r.files) keep(file.path);
   }
 }
 
@@ -46,27 +46,27 @@ int run_merge(const Verb& verb, std::span<char* const> args) {
   if (const auto exit_code = parser.parse(args)) return *exit_code;
   if (output.empty()) return print_error({ErrorCode::kUsage, "-o", "name the manifest to write"});
 
-  std::vector<batch::ShardManifest> shards;
+  std::vector<app::ShardManifest> shards;
   for (const std::string& path : paths) {
     keep(path);
-    auto manifest = batch::read_manifest(path);
+    auto manifest = app::read_manifest(path);
     if (!manifest) return print_error(manifest.error());
     shards.push_back({path, std::move(*manifest)});
   }
-  const auto merged = batch::merge_shards(std::move(shards));
+  const auto merged = app::merge_shards(std::move(shards));
   if (!merged) return print_error(merged.error());
   keep_files(merged->results);
-  if (const Status there = batch::check_assets(merged->results); !there) return print_error(there.error());
+  if (const Status there = app::check_assets(merged->results); !there) return print_error(there.error());
   if (const Status free = output_files().claim(output); !free) return print_error(free.error());
   if (const Status name = check_output_name("-o", output, {".json"}); !name) return print_error(name.error());
-  const std::string text = batch::manifest_json(merged->results, merged->program, merged->settings, merged->exit_code);
+  const std::string text = app::manifest_json(merged->results, merged->program, merged->settings, merged->exit_code);
   if (const Status written = write_text(output, text); !written) return print_error(written.error());
-  for (const batch::JobResult& r : merged->results) {
+  for (const app::JobResult& r : merged->results) {
     if (r.exit_code != 0) print_error({static_cast<ErrorCode>(r.exit_code), "", r.error});
   }
   // As build says of such a batch.
   if (merged->results.empty()) return print_error({ErrorCode::kIo, "", "the shards are those of a batch of no files"});
-  if (!is_quiet) std::fprintf(stderr, "%s\n", batch::summary_line(merged->results).c_str());
+  if (!is_quiet) std::fprintf(stderr, "%s\n", app::summary_line(merged->results).c_str());
   return merged->exit_code;
 }
 

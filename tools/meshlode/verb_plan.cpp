@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "base/json_writer.h"
-#include "build/preview/plan_report.h"
-#include "build/preview/scene_plan.h"
-#include "build/settings/settings.h"
+#include "app/preview/plan_report.h"
+#include "app/preview/scene_plan.h"
+#include "app/settings/settings.h"
 #include "build_options.h"
 #include "explain.h"
 #include "material_looks.h"
@@ -24,23 +24,23 @@ namespace {
 
 /// All that is printed.
 struct Planned {
-  build::Settled settings;
-  std::vector<build::SettledMesh> meshes;  ///< empty: none has settings of its own
-  build::ScenePlan scene;
+  app::Settled settings;
+  std::vector<app::SettledMesh> meshes;  ///< empty: none has settings of its own
+  app::ScenePlan scene;
   draw::PassPlan passes;
   std::optional<PlanMeasurement> measured;
 };
 
 void write_settings(JsonWriter& json, const Planned& planned) {
-  const auto write = [&](build::Setting setting, const build::SettledWord& word) {
-    json.field("name", build::info_of(setting).name);
+  const auto write = [&](app::Setting setting, const app::SettledWord& word) {
+    json.field("name", app::info_of(setting).name);
     json.field("word", word.word);
     json.field("from", word.from);
     json.end_object();
   };
   json.key("settings");
   json.begin_array();
-  for (const build::SettingInfo& info : build::all_settings()) {
+  for (const app::SettingInfo& info : app::all_settings()) {
     json.begin_object();
     write(info.setting, planned.settings[info.setting]);
   }
@@ -58,13 +58,13 @@ void write_settings(JsonWriter& json, const Planned& planned) {
 }
 
 std::string plan_text(const scene::Scene& scene, const Planned& planned) {
-  const build::ScenePlan& plan = planned.scene;
+  const app::ScenePlan& plan = planned.scene;
   std::uint64_t triangles = 0;
-  for (const build::PlannedMesh& mesh : plan.meshes) triangles += mesh.triangles;
+  for (const app::PlannedMesh& mesh : plan.meshes) triangles += mesh.triangles;
   std::string text = "scene: " + std::to_string(triangles) + " triangles in " + std::to_string(plan.meshes.size()) +
                      " mesh(es), " + std::to_string(scene.instances.size()) + " instance(s), " +
                      std::to_string(scene.materials.size()) + " material(s)\n";
-  text += describe_settings(planned.settings, planned.meshes, scene) + build::describe_plan(plan);
+  text += describe_settings(planned.settings, planned.meshes, scene) + app::describe_plan(plan);
   text += "passes of render --gpu and verify --gpu\n" + draw::describe_plan(planned.passes, "  ");
   return planned.measured ? text + describe_measurement(*planned.measured) : text;
 }
@@ -76,7 +76,7 @@ std::string plan_json(const scene::Scene& scene, const Planned& planned) {
   json.field("instances", scene.instances.size());
   json.field("materials", scene.materials.size());
   write_settings(json, planned);
-  build::write_plan(json, planned.scene);
+  app::write_plan(json, planned.scene);
   json.key("passes");
   json.begin_array();
   for (const draw::PassDecision& pass : planned.passes.decisions) {
@@ -122,9 +122,9 @@ int run_plan(const Verb& verb, std::span<char* const> args) {
   if (!allowed) return print_error(allowed.error());
   const auto layers = settings_for(words, path, {});
   if (!layers) return print_error(layers.error());
-  Result<build::Settled> settled = build::settle(*layers);
+  Result<app::Settled> settled = app::settle(*layers);
   if (!settled) return print_error(settled.error());
-  build::PipelineOptions options = settled->options;
+  builder::PipelineOptions options = settled->options;
   options.looks = &image_looks();
 
   JobLimit limit(jobs);
@@ -139,10 +139,10 @@ int run_plan(const Verb& verb, std::span<char* const> args) {
     error.where = path + (error.where.empty() ? "" : ": ") + error.where;
     return print_error(error);
   };
-  auto meshes = build::settle_meshes(*layers, names_of_meshes(*scene));
+  auto meshes = app::settle_meshes(*layers, names_of_meshes(*scene));
   if (!meshes) return print_error(meshes.error());
-  for (const build::SettledMesh& mesh : *meshes) options.mesh_options.push_back(mesh.options);
-  Result<build::ScenePlan> plan = build::plan_scene(*scene, options);
+  for (const app::SettledMesh& mesh : *meshes) options.mesh_options.push_back(mesh.options);
+  Result<app::ScenePlan> plan = app::plan_scene(*scene, options);
   if (!plan) return fail(plan.error());
   Planned planned{std::move(*settled), std::move(*meshes), std::move(*plan), {}, {}};
   planned.passes = plan_scene_passes(*scene, planned.scene, options.max_cluster_triangles);

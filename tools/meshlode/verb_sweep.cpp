@@ -17,15 +17,15 @@
 #include "base/nearest_name.h"
 #include "base/output_files.h"
 #include "base/printable.h"
-#include "batch/cache/program_id.h"
-#include "batch/tell/time_left.h"
+#include "app/batch/cache/program_id.h"
+#include "app/batch/tell/time_left.h"
 #include "camera_options.h"
 #include "doctor_words.h"
 #include "options.h"
-#include "study/page/numbers.h"
-#include "study/page/page.h"
-#include "study/page/read_sweep.h"
-#include "study/sweep/sweep.h"
+#include "lab/page/numbers.h"
+#include "lab/page/page.h"
+#include "lab/page/read_sweep.h"
+#include "lab/sweep/sweep.h"
 #include "verb.h"
 
 namespace meshlode::cli {
@@ -46,11 +46,11 @@ std::optional<double> parse_duration(std::string_view text) {
 }
 
 /// Wishes with semicolons between them.
-Result<std::vector<study::Wish>> parse_wishes(const std::string& text) {
-  std::vector<study::Wish> wishes;
+Result<std::vector<lab::Wish>> parse_wishes(const std::string& text) {
+  std::vector<lab::Wish> wishes;
   for (std::size_t at = 0; at <= text.size() && !text.empty();) {
     const std::size_t end = std::min(text.find(';', at), text.size());
-    auto wish = study::parse_wish(std::string_view(text).substr(at, end - at));
+    auto wish = lab::parse_wish(std::string_view(text).substr(at, end - at));
     if (!wish) return wish.error();
     wishes.push_back(std::move(*wish));
     at = end + 1;
@@ -61,7 +61,7 @@ Result<std::vector<study::Wish>> parse_wishes(const std::string& text) {
 /// Names with commas between them. Error: kUsage for one that no knob has.
 Result<std::vector<std::string>> parse_knobs(std::string text) {
   std::replace(text.begin(), text.end(), '-', '_');
-  const std::vector<std::string> known = study::all_knob_names();
+  const std::vector<std::string> known = lab::all_knob_names();
   std::vector<std::string> names;
   for (std::size_t at = 0; at <= text.size(); at = std::min(text.find(',', at), text.size()) + 1) {
     const std::string name = text.substr(at, text.find(',', at) - at);
@@ -90,12 +90,12 @@ class SweepShow {
   SweepShow(const SweepShow&) = delete;
   SweepShow& operator=(const SweepShow&) = delete;
 
-  void show(const study::SweepProgress& progress) {
+  void show(const lab::SweepProgress& progress) {
     if (is_quiet_) return;
     std::string line;
     append_format(line, "round %u/%u, asset %zu/%zu: %.60s", progress.round, progress.rounds, progress.point + 1,
                   progress.points, progress.label.c_str());
-    if (progress.seconds_left > 0.0) line += ", " + batch::time_left_text(progress.seconds_left);
+    if (progress.seconds_left > 0.0) line += ", " + app::time_left_text(progress.seconds_left);
     if (!has_bar_) {
       std::fprintf(stderr, "%s\n", line.c_str());
       return;
@@ -118,16 +118,16 @@ class SweepShow {
   bool is_quiet_, has_bar_, is_drawn_ = false;
 };
 
-std::string command_of(const SweepWords& words, const study::SweepOptions& options) {
-  std::string text = "meshlode sweep " + study::shell_word(words.scene) + " -o " + study::shell_word(words.report);
-  if (words.budget) text += " --budget " + study::shell_word(*words.budget);
-  if (words.want) text += " --want " + study::shell_word(*words.want);
-  if (words.knobs) text += " --knobs " + study::shell_word(*words.knobs);
-  if (!options.scene_choice.empty()) text += " --scene " + study::shell_word(options.scene_choice);
+std::string command_of(const SweepWords& words, const lab::SweepOptions& options) {
+  std::string text = "meshlode sweep " + lab::shell_word(words.scene) + " -o " + lab::shell_word(words.report);
+  if (words.budget) text += " --budget " + lab::shell_word(*words.budget);
+  if (words.want) text += " --want " + lab::shell_word(*words.want);
+  if (words.knobs) text += " --knobs " + lab::shell_word(*words.knobs);
+  if (!options.scene_choice.empty()) text += " --scene " + lab::shell_word(options.scene_choice);
   text += " --rounds " + std::to_string(options.rounds);
   if (words.samples) text += " --samples " + std::to_string(*words.samples);
-  if (!options.max_decoded_text.empty()) text += " --max-decoded " + study::shell_word(options.max_decoded_text);
-  for (const auto& folder : options.allow_outside) text += " --allow-outside " + study::shell_word(folder.string());
+  if (!options.max_decoded_text.empty()) text += " --max-decoded " + lab::shell_word(options.max_decoded_text);
+  for (const auto& folder : options.allow_outside) text += " --allow-outside " + lab::shell_word(folder.string());
   if (options.jobs > 0) text += " --jobs " + std::to_string(options.jobs);
   return text;
 }
@@ -137,7 +137,7 @@ std::string as_operand(const std::string& path) {
   return path.starts_with('-') ? "./" + path : path;
 }
 
-Status set_options(const SweepWords& words, study::SweepOptions& options) {
+Status set_options(const SweepWords& words, lab::SweepOptions& options) {
   if (words.report.empty()) return Error{ErrorCode::kUsage, "--output", "name the folder of the report"};
   if (options.rounds < 1 || options.rounds > 1000) return Error{ErrorCode::kUsage, "--rounds", "give 1 to 1000"};
   if (words.samples) {
@@ -172,7 +172,7 @@ Status set_options(const SweepWords& words, study::SweepOptions& options) {
   };
   options.diagnose_scene = diagnose_scene;
   // Before any thread is started: libraries that are loaded later are not this program's.
-  const auto program = batch::find_program_id();
+  const auto program = app::find_program_id();
   if (!program) return program.error();
   options.program_id = to_hex(*program);
   // Not its path: that may be another program's by the time of the last round.
@@ -181,49 +181,49 @@ Status set_options(const SweepWords& words, study::SweepOptions& options) {
 }
 
 /// The answers, a line each.
-std::string summary_text(const study::SweepOptions& options, const study::SweepResult& result) {
+std::string summary_text(const lab::SweepOptions& options, const lab::SweepResult& result) {
   std::string text;
   std::size_t done = 0, failed = 0;
-  for (const study::PointResult& one : result.points) {
+  for (const lab::PointResult& one : result.points) {
     done += one.is_done && one.error.empty() ? 1U : 0U;
     failed += one.error.empty() ? 0U : 1U;
   }
   append_format(text, "%zu points measured, %zu failed, %zu left out, %.0f s: ", done, failed,
                 result.points.size() - done - failed, result.spent);
   text += printable(options.report.string(), std::string::npos) + "/index.html\n";
-  for (const study::Recommendation& one : result.recommendations) {
+  for (const lab::Recommendation& one : result.recommendations) {
     text += one.wish.text + ": ";
     if (!one.answer.point) {
       text += one.answer.why + "\n";
       continue;
     }
-    const study::PointResult& point = result.points[*one.answer.point];
+    const lab::PointResult& point = result.points[*one.answer.point];
     text += std::string(one.wish.goal->key) + " " +
-            study::page::amount_text(point.figures.at(one.wish.goal->key).value, one.wish.goal->unit) + ", ";
-    text += one.answer.why + "\n  " + printable(study::build_command(options, result, point.point), std::string::npos) +
+            lab::page::amount_text(point.figures.at(one.wish.goal->key).value, one.wish.goal->unit) + ", ";
+    text += one.answer.why + "\n  " + printable(lab::build_command(options, result, point.point), std::string::npos) +
             "\n";
   }
   return text;
 }
 
-Status keep_result(const study::SweepOptions& options, const study::SweepResult& result) {
+Status keep_result(const lab::SweepOptions& options, const lab::SweepResult& result) {
   const auto write = [&](const char* name, const std::string& text) {
     return write_file_atomically(options.report / name,
                                  {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
   };
-  if (Status written = write("sweep.csv", study::sweep_csv(result)); !written) return written;
-  const std::string json = study::sweep_json(options, result);
+  if (Status written = write("sweep.csv", lab::sweep_csv(result)); !written) return written;
+  const std::string json = lab::sweep_json(options, result);
   if (Status written = write("sweep.json", json); !written) return written;
-  auto data = study::page::read_sweep(json);
+  auto data = lab::page::read_sweep(json);
   if (!data) return data.error();
-  if (Status read = study::page::read_pictures(*data, options.report); !read) return read;
+  if (Status read = lab::page::read_pictures(*data, options.report); !read) return read;
   OutputFiles files;
-  return study::page::write_report(*data, options.report, files);
+  return lab::page::write_report(*data, options.report, files);
 }
 
 int run_sweep(const Verb& verb, std::span<char* const> args) {
   SweepWords words;
-  study::SweepOptions options;
+  lab::SweepOptions options;
   OptionParser parser(verb);
   parser.add_positional("scene", words.scene, "a .gltf, .glb, .ply, .obj or .stl scene");
   parser.add_value("-o,--output", words.report, "the folder of the report (required); a sweep in it goes on");
@@ -250,10 +250,10 @@ int run_sweep(const Verb& verb, std::span<char* const> args) {
   Status swept = Ok{};
   JobLimit limit(options.jobs);
   limit.run([&] {
-    swept = study::run_sweep(
-        options, [&](const study::SweepProgress& progress) { show.show(progress); },
-        [&](const study::SweepResult& result) {
-          text = words.out.json() ? study::sweep_json(options, result) : summary_text(options, result);
+    swept = lab::run_sweep(
+        options, [&](const lab::SweepProgress& progress) { show.show(progress); },
+        [&](const lab::SweepResult& result) {
+          text = words.out.json() ? lab::sweep_json(options, result) : summary_text(options, result);
           return keep_result(options, result);
         });
   });

@@ -17,7 +17,7 @@
 #include "judge/verify/verify.h"
 #include "memory_limit.h"
 #include "options.h"
-#include "out/report/read_meta.h"
+#include "app/report/read_meta.h"
 #include "outputs.h"
 #include "promise_option.h"
 #include "run/decode/decode.h"
@@ -114,7 +114,7 @@ std::string to_json(const std::string& path, const std::string& source, const ju
 /// What --repair did to the source is found again by repairing it in the same way.
 bool was_repaired(const run::Asset& asset) {
   const auto meshes = asset.meshes();
-  return out::read_meta(asset.meta_json()).repair ||
+  return app::read_meta(asset.meta_json()).repair ||
          std::any_of(meshes.begin(), meshes.end(), [](const format::MeshRecord& m) { return m.dropped_repaired > 0; });
 }
 
@@ -130,7 +130,7 @@ Status check_size(const run::Asset& asset) {
 
 /// Where the scene is another one than the asset was built from there is nothing to compare: a report of that alone.
 std::optional<judge::VerifyReport> find_other_source(const run::Asset& asset, const scene::Scene& source) {
-  const out::MetaInfo meta = out::read_meta(asset.meta_json());
+  const app::MetaInfo meta = app::read_meta(asset.meta_json());
   if (meta.source_hash.empty() || meta.source_hash == source.source_hash) return std::nullopt;
   const auto named = [](const std::string& name, const std::string& hash) {
     return printable(name) + " (" + printable(hash, 8) + ")";
@@ -222,7 +222,7 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
   }
   if (gpu_options.is_explained) std::fprintf(stderr, "%s", describe_recorded_plan(*asset).c_str());
   std::vector<FileId> files_read;
-  const out::MetaInfo meta = out::read_meta(asset->meta_json());
+  const app::MetaInfo meta = app::read_meta(asset->meta_json());
   Result<scene::Scene> source =
       scene::import_scene(source_path, {.repair = repair || was_repaired(*asset),
                                         .scene = meta.scene,

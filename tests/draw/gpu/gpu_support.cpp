@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "build/build.h"
+#include "builder/builder.h"
 #include "scene/import/import.h"
 
 namespace meshlode::draw::test {
@@ -40,8 +40,8 @@ std::vector<std::uint8_t> build_file(const std::string& path) {
     ADD_FAILURE() << scene.error().message();
     return {};
   }
-  build::PipelineReport report;
-  auto bytes = build::build_lode(*scene, {}, {}, report);
+  builder::PipelineReport report;
+  auto bytes = builder::build_lode(*scene, {}, {}, report);
   if (bytes) return std::move(*bytes);
   ADD_FAILURE() << bytes.error().message();
   return {};

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <utility>
 
-#include "build/odd_shapes.h"
+#include "builder/odd_shapes.h"
 #include "cases/shapes.h"
 #include "hard_case.h"
 #include "scene/samples/samples.h"

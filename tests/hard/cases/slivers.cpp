@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "base/random.h"
-#include "build/odd_shapes.h"
+#include "builder/odd_shapes.h"
 #include "cases/shapes.h"
 #include "hard_case.h"
 #include "scene/samples/samples.h"

@@ -7,8 +7,8 @@
 namespace meshlode::test::hard {
 
 Result<Built> build_sample(Sample sample) {
-  build::PipelineReport report;
-  auto bytes = build::build_lode(sample.scene, sample.options, {}, report);
+  builder::PipelineReport report;
+  auto bytes = builder::build_lode(sample.scene, sample.options, {}, report);
   if (!bytes) return bytes.error();
   Built built;
   built.sample = std::move(sample);

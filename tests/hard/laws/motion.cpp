@@ -82,7 +82,7 @@ struct Missed {
 };
 
 /// Of the triangles of source and asset: u (16 D + 48 (l + d) / s), l the longest edge and s twice the area over l², at
-/// least the 1e-4 from which on a triangle's normal is trusted (src/build/deviation/surface_tree.cpp).
+/// least the 1e-4 from which on a triangle's normal is trusted (src/builder/deviation/surface_tree.cpp).
 std::optional<Missed> missed_by_choice(const Built& built) {
   constexpr double kLeastSine = 1e-4;
   double longest_over_sine = 0.0, least_sine = 1.0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the order of a file's lists may not change: prepare welds and sorts vertices by grid point, attributes and exact
-// position, and triangles by what came of that (src/build/prepare/weld.cpp).
+// position, and triangles by what came of that (src/builder/prepare/weld.cpp).
 #include <algorithm>
 #include <cstddef>
 #include <numeric>

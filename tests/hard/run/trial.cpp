@@ -34,7 +34,7 @@ Trial refused(const Error& error) {
 
 }  // namespace
 
-Trial try_case(const HardCase& hard_case, double parameter, bool all_laws, const build::Care& care) {
+Trial try_case(const HardCase& hard_case, double parameter, bool all_laws, const builder::Care& care) {
   Result<Sample> sample = hard_case.make(parameter);
   if (!sample) return refused(sample.error());
   sample->options.experiment.care = care;

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "build/build.h"
+#include "builder/builder.h"
 #include "judge/metrics/attribute_drift.h"
 #include "judge/metrics/seams.h"
 #include "run/select/select.h"
@@ -133,10 +133,10 @@ TEST(Drift, OfLevelZeroIsItsQuantization) {
   scene::SourceMesh mesh = scene::as_mesh(scene::with_smooth_normals(scene::make_torus(80, 40)));
   scene::Primitive& p = mesh.primitives[0];
   for (const Vec3d& at : p.positions) p.uvs[0].push_back(Vec2f(Vec2d(at.x, at.y)));
-  build::PipelineOptions options;
+  builder::PipelineOptions options;
   options.attributes = AttributeChoice::kAll;
-  build::PipelineReport report;
-  auto bytes = build::build_lode(scene::as_scene(mesh), options, {}, report);
+  builder::PipelineReport report;
+  auto bytes = builder::build_lode(scene::as_scene(mesh), options, {}, report);
   ASSERT_TRUE(bytes.ok()) << bytes.error().message();
   const auto asset = run::Asset::from_vector(std::move(*bytes));
   ASSERT_TRUE(asset.ok());

@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "build/hierarchy/hierarchy.h"
-#include "build/write/write.h"
+#include "builder/hierarchy/hierarchy.h"
+#include "builder/write/write.h"
 #include "support/sample_asset.h"
 
 namespace meshlode::test {
@@ -25,18 +25,18 @@ T value_or_abort(Result<T> result) {
 
 std::vector<std::uint8_t> judged_sample_bytes(format::Codec codec, bool has_promises) {
   const scene::Scene scene = sample_scene();
-  build::WriteInput input;
+  builder::WriteInput input;
   for (const SampleMesh& sample : {sample_patch(), sample_sphere(), sample_tetrahedron()}) {
-    const build::Hierarchy hierarchy = build::build_hierarchy(sample.dag, sample.mesh);
-    input.meshes.push_back(value_or_abort(build::encode_mesh(sample.mesh, sample.dag, hierarchy, {})));
+    const builder::Hierarchy hierarchy = builder::build_hierarchy(sample.dag, sample.mesh);
+    input.meshes.push_back(value_or_abort(builder::encode_mesh(sample.mesh, sample.dag, hierarchy, {})));
     input.mesh_names.push_back(sample.mesh.name);
   }
-  build::PreparedMesh empty;  // one triangle that is a point: nothing is left of it
+  builder::PreparedMesh empty;  // one triangle that is a point: nothing is left of it
   empty.name = "empty";
   empty.source_triangles = 1;
   empty.source_vertices = 3;
   empty.dropped_degenerate = 1;
-  input.meshes.push_back(value_or_abort(build::encode_mesh(empty, {}, {}, {})));
+  input.meshes.push_back(value_or_abort(builder::encode_mesh(empty, {}, {}, {})));
   input.mesh_names.emplace_back("empty");
   input.scene = &scene;
   input.meta_json =
@@ -44,7 +44,7 @@ std::vector<std::uint8_t> judged_sample_bytes(format::Codec codec, bool has_prom
       R"("},"settings":{"error_tier":"qem","cluster_triangles":256,"normal_error":0.1,"uv_error":0.0001,"uv_error_unit":"uv"},"plan":[],"left_out":[]})";
   input.codec = codec;
   if (has_promises) add_promises(input);
-  return value_or_abort(build::write_asset(std::move(input)));
+  return value_or_abort(builder::write_asset(std::move(input)));
 }
 
 }  // namespace meshlode::test

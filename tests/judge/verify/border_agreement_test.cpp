@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include "build/simplify/border_rule.h"
-#include "build/simplify/simplify.h"
+#include "builder/simplify/border_rule.h"
+#include "builder/simplify/simplify.h"
 #include "drawn_surface.h"
 #include "judge/validate/borders.h"
 #include "run/decode/decode.h"
@@ -21,8 +21,8 @@ using test::Corner;
 using test::Patch;
 using test::Random;
 
-build::SimplifyInput as_input(const test::IntegerMesh& mesh) {
-  build::SimplifyInput input;
+builder::SimplifyInput as_input(const test::IntegerMesh& mesh) {
+  builder::SimplifyInput input;
   std::map<Corner, std::uint32_t> first;  // what lies on one point of the grid is one position
   std::vector<std::uint32_t> name;
   for (const Vec3i& p : mesh.positions) {
@@ -44,7 +44,7 @@ build::SimplifyInput as_input(const test::IntegerMesh& mesh) {
 template <class Surface>
 Patch as_patch(const Surface& surface) {
   Patch patch;
-  for (const build::WedgeTriangle& t : surface.triangles) {
+  for (const builder::WedgeTriangle& t : surface.triangles) {
     test::Triangle corners;
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3i& p = surface.positions[surface.wedge_position[t[k]]];
@@ -55,7 +55,7 @@ Patch as_patch(const Surface& surface) {
   return patch;
 }
 
-bool judge_accepts(const build::SimplifyInput& finer, const build::SimplifyResult& coarser) {
+bool judge_accepts(const builder::SimplifyInput& finer, const builder::SimplifyResult& coarser) {
   const run::Asset asset = test::asset_of({as_patch(finer)}, as_patch(coarser));
   const auto clusters = run::decode_all(asset);
   EXPECT_TRUE(clusters.ok());
@@ -63,7 +63,7 @@ bool judge_accepts(const build::SimplifyInput& finer, const build::SimplifyResul
 }
 
 /// What a faulty builder might have made of it.
-void spoil(build::SimplifyResult& result, Random& random) {
+void spoil(builder::SimplifyResult& result, Random& random) {
   const std::size_t t = random.below(result.triangles.size());
   switch (random.below(4)) {
     case 0: result.triangles.erase(result.triangles.begin() + static_cast<std::ptrdiff_t>(t)); break;
@@ -82,16 +82,16 @@ TEST(BorderAgreement, BuilderAndJudgeAcceptTheSame) {
   int accepted = 0, refused = 0;
   for (std::uint64_t seed = 1; seed <= 600; ++seed) {
     Random random(seed);
-    const build::SimplifyInput input =
+    const builder::SimplifyInput input =
         as_input(test::make_open_surface(test::random_surface_options(random, 7), random));
-    build::SimplifyOptions options;
+    builder::SimplifyOptions options;
     options.target_triangles = static_cast<std::uint32_t>(input.triangles.size() / (1 + random.below(6)));
-    build::SimplifyResult result = build::simplify_group(input, options);
+    builder::SimplifyResult result = builder::simplify_group(input, options);
     if (result.triangles.size() < 2) continue;
-    ASSERT_TRUE(build::keeps_border(input, result)) << "seed " << seed;
+    ASSERT_TRUE(builder::keeps_border(input, result)) << "seed " << seed;
     ASSERT_TRUE(judge_accepts(input, result)) << "seed " << seed;
     spoil(result, random);
-    const bool is_accepted = build::keeps_border(input, result);
+    const bool is_accepted = builder::keeps_border(input, result);
     ASSERT_EQ(judge_accepts(input, result), is_accepted) << "seed " << seed << ", spoiled";
     ++(is_accepted ? accepted : refused);
   }

@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "build/build.h"
-#include "build/odd_shapes.h"
+#include "builder/builder.h"
+#include "builder/odd_shapes.h"
 #include "judge/metrics/metrics.h"
 #include "judge/verify/promises.h"
 #include "judge/verify/verify.h"
@@ -95,12 +95,12 @@ class CertifiedScene : public testing::TestWithParam<CertifiedCase> {
   }
 
   [[nodiscard]] run::Asset build_scene(format::Promise promise) const {
-    build::PipelineReport report;
-    build::PipelineOptions options;
+    builder::PipelineReport report;
+    builder::PipelineOptions options;
     options.error_tier = format::ErrorTier::kCertified;
     options.max_cluster_triangles = kClusterCap;
     options.promise = promise;
-    auto bytes = build::build_lode(scene_, options, {}, report);
+    auto bytes = builder::build_lode(scene_, options, {}, report);
     EXPECT_TRUE(bytes.ok()) << bytes.error().message();
     auto asset = run::Asset::from_vector(std::move(*bytes));
     EXPECT_TRUE(asset.ok()) << asset.error().message();

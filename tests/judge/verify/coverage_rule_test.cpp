@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "base/random.h"
-#include "build/build.h"
+#include "builder/builder.h"
 #include "judge/metrics/coverage.h"
 #include "judge/validate/edit.h"
 #include "judge/verify/verify.h"
@@ -24,11 +24,11 @@ using test::AssetEdit;
 
 std::vector<std::uint8_t> build_aggregate(const scene::Scene& scene,
                                           format::ErrorTier tier = format::ErrorTier::kMeasured) {
-  build::PipelineOptions options;
+  builder::PipelineOptions options;
   options.error_tier = tier;
   options.aggregate = AggregateChoice::kAlways;
-  build::PipelineReport report;
-  auto bytes = build::build_lode(scene, options, {}, report);
+  builder::PipelineReport report;
+  auto bytes = builder::build_lode(scene, options, {}, report);
   EXPECT_TRUE(bytes.ok()) << bytes.error().message();
   return std::move(*bytes);
 }

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "build/build.h"
+#include "builder/builder.h"
 #include "judge/validate/edit.h"
 #include "judge/verify/verify.h"
 #include "run/read/asset.h"
@@ -23,12 +23,12 @@ scene::Scene threads() {
 }
 
 std::vector<std::uint8_t> build_threads(bool keep_topology) {
-  build::PipelineOptions options;
+  builder::PipelineOptions options;
   options.error_tier = format::ErrorTier::kQem;
   options.keep_topology = keep_topology;
   options.max_cluster_triangles = 64;
-  build::PipelineReport report;
-  auto bytes = build::build_lode(threads(), options, {}, report);
+  builder::PipelineReport report;
+  auto bytes = builder::build_lode(threads(), options, {}, report);
   EXPECT_TRUE(bytes) << bytes.error().message();
   return bytes ? std::move(*bytes) : std::vector<std::uint8_t>{};
 }

@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include "build/build.h"
-#include "build/dag/build_dag.h"
+#include "builder/builder.h"
+#include "builder/dag/build_dag.h"
 #include "judge/validate/edit.h"
 #include "judge/validate/validate.h"
 #include "judge/verify/verify.h"
@@ -28,10 +28,10 @@ struct Built {
 Built build_rock(format::ErrorTier tier) {
   Built built;
   built.scene = scene::as_scene(scene::as_mesh(scene::with_smooth_normals(scene::make_rock(16))));
-  build::PipelineOptions options;
+  builder::PipelineOptions options;
   options.error_tier = tier;
-  build::PipelineReport report;
-  auto bytes = build::build_lode(built.scene, options, {}, report);
+  builder::PipelineReport report;
+  auto bytes = builder::build_lode(built.scene, options, {}, report);
   EXPECT_TRUE(bytes.ok());
   built.bytes = std::move(*bytes);
   return built;
@@ -95,7 +95,7 @@ TEST_P(StoredErrors, AreFoundWhereTheySayNothingDeviates) {
 
 TEST_P(StoredErrors, AreAtLeastTheDeviationTimesTheMarginOfTheSettings) {
   const Built built = build_rock(GetParam());
-  const double margin = GetParam() == format::ErrorTier::kMeasured ? build::kMeasuredMargin : 1.0;
+  const double margin = GetParam() == format::ErrorTier::kMeasured ? builder::kMeasuredMargin : 1.0;
   AssetEdit edit(built.bytes);
   const auto count = static_cast<std::uint32_t>(edit.count(format::SectionId::kGroups, sizeof(format::GroupRecord)));
   std::uint32_t finite = 0, inner = 0;

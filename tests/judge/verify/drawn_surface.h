@@ -9,9 +9,9 @@
 
 #include <gtest/gtest.h>
 
-#include "build/encode/encode.h"
-#include "build/hierarchy/hierarchy.h"
-#include "build/write/write.h"
+#include "builder/encode/encode.h"
+#include "builder/hierarchy/hierarchy.h"
+#include "builder/write/write.h"
 #include "run/read/asset.h"
 
 namespace meshlode::test {
@@ -20,8 +20,8 @@ using Corner = std::array<int, 3>;
 using Triangle = std::array<Corner, 3>;
 using Patch = std::vector<Triangle>;
 
-inline void append_cluster(const Patch& patch, std::uint32_t level, GroupId own, GroupId coarser, build::LodDag& dag) {
-  build::DagCluster cluster;
+inline void append_cluster(const Patch& patch, std::uint32_t level, GroupId own, GroupId coarser, builder::LodDag& dag) {
+  builder::DagCluster cluster;
   cluster.level = level;
   cluster.own_group = own;
   cluster.coarser_group = coarser;
@@ -47,17 +47,17 @@ inline void append_cluster(const Patch& patch, std::uint32_t level, GroupId own,
 /// One group that replaces `finer` by `coarser`, beside `rest`, which stays as it is.
 [[nodiscard]] inline run::Asset asset_of(const std::vector<Patch>& finer, const Patch& coarser,
                                          const std::vector<Patch>& rest = {}) {
-  build::LodDag dag;
+  builder::LodDag dag;
   append_cluster(coarser, 1, GroupId(1U), GroupId(0U), dag);
   for (const Patch& patch : rest) append_cluster(patch, 0, GroupId(), GroupId(0U), dag);
   const auto terminal_count = static_cast<std::uint32_t>(dag.clusters.size());
   for (const Patch& patch : finer) append_cluster(patch, 0, GroupId(), GroupId(1U), dag);
-  build::DagGroup top;
+  builder::DagGroup top;
   top.level = 1;
   top.cluster_count = terminal_count;
   top.is_terminal = true;
   top.error = top.quadric_error = top.deviation = std::numeric_limits<double>::infinity();
-  build::DagGroup group;
+  builder::DagGroup group;
   group.first_cluster = terminal_count;
   group.cluster_count = static_cast<std::uint32_t>(finer.size());
   group.error = group.quadric_error = 1.0;
@@ -65,17 +65,17 @@ inline void append_cluster(const Patch& patch, std::uint32_t level, GroupId own,
   dag.groups = {top, group};
   dag.level_count = 2;
 
-  build::PreparedMesh mesh;
+  builder::PreparedMesh mesh;
   scene::Scene scene;
   scene.materials.resize(1);
-  build::WriteInput input;
-  auto encoded = build::encode_mesh(mesh, dag, build::build_hierarchy(dag, mesh), {});
+  builder::WriteInput input;
+  auto encoded = builder::encode_mesh(mesh, dag, builder::build_hierarchy(dag, mesh), {});
   EXPECT_TRUE(encoded.ok()) << encoded.error().message();
   input.meshes.push_back(std::move(*encoded));
   input.mesh_names = {"drawn"};
   input.scene = &scene;
   input.meta_json = "{}";
-  auto bytes = build::write_asset(std::move(input));
+  auto bytes = builder::write_asset(std::move(input));
   EXPECT_TRUE(bytes.ok());
   auto asset = run::Asset::from_vector(std::move(*bytes));
   EXPECT_TRUE(asset.ok()) << asset.error().message();

@@ -10,13 +10,13 @@
 
 #include <gtest/gtest.h>
 
-#include "build/build.h"
-#include "build/dag/build_dag.h"
-#include "build/encode/encode.h"
-#include "build/hierarchy/hierarchy.h"
-#include "build/prepare/prepare.h"
-#include "build/stage_options.h"
-#include "build/write/write.h"
+#include "builder/builder.h"
+#include "builder/dag/build_dag.h"
+#include "builder/encode/encode.h"
+#include "builder/hierarchy/hierarchy.h"
+#include "builder/prepare/prepare.h"
+#include "builder/stage_options.h"
+#include "builder/write/write.h"
 #include "drawn_surface.h"
 #include "judge/verify/locked_borders.h"
 #include "judge/verify/verify.h"
@@ -35,10 +35,10 @@ scene::Scene tile() {
 /// since it is flat. META says that all are.
 run::Asset build_tile(std::size_t unlocked) {
   const scene::Scene scene = tile();
-  build::PipelineOptions options;
+  builder::PipelineOptions options;
   options.error_tier = format::ErrorTier::kQem;
   options.lock_borders = true;
-  auto mesh = build::prepare_mesh(scene.meshes[0], {}, build::prepare_options(options, {}));
+  auto mesh = builder::prepare_mesh(scene.meshes[0], {}, builder::prepare_options(options, {}));
   EXPECT_TRUE(mesh) << mesh.error().message();
   for (std::size_t p = 0; p < mesh->positions.size() && unlocked > 0; ++p) {
     const Vec3i& place = mesh->positions[p];
@@ -47,17 +47,17 @@ run::Asset build_tile(std::size_t unlocked) {
     mesh->is_border_locked[p] = 0;
     --unlocked;
   }
-  const auto dag = build::build_dag(*mesh, build::dag_options(options, options, *mesh, {}));
+  const auto dag = builder::build_dag(*mesh, builder::dag_options(options, options, *mesh, {}));
   EXPECT_TRUE(dag) << dag.error().message();
-  auto encoded = build::encode_mesh(*mesh, *dag, build::build_hierarchy(*dag, *mesh), {});
+  auto encoded = builder::encode_mesh(*mesh, *dag, builder::build_hierarchy(*dag, *mesh), {});
   EXPECT_TRUE(encoded) << encoded.error().message();
   encoded->record.error_tier = options.error_tier;
-  build::WriteInput input;
+  builder::WriteInput input;
   input.meshes.push_back(std::move(*encoded));
   input.mesh_names = {scene.meshes[0].name};
   input.scene = &scene;
   input.meta_json = R"({"settings":{"attributes":"none","lock_borders":true}})";
-  auto bytes = build::write_asset(std::move(input));
+  auto bytes = builder::write_asset(std::move(input));
   EXPECT_TRUE(bytes) << bytes.error().message();
   auto asset = run::Asset::from_vector(std::move(*bytes));
   EXPECT_TRUE(asset) << asset.error().message();

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "build/build.h"
+#include "builder/builder.h"
 #include "judge/validate/edit.h"
 #include "judge/verify/verify.h"
 #include "run/read/asset.h"
@@ -29,14 +29,14 @@ scene::Scene two_spheres() {
 }
 
 std::vector<std::uint8_t> build_apart(const scene::Scene& scene) {
-  build::PipelineOptions options;
+  builder::PipelineOptions options;
   options.position_error = 0.001;
   options.mesh_options.assign(2, options);
   options.mesh_options[1].position_error = 0.05;
   options.mesh_options[1].error_tier = format::ErrorTier::kCertified;
   options.mesh_options[1].drop = kAttributeNormal;
-  build::PipelineReport report;
-  auto bytes = build::build_lode(scene, options, {}, report);
+  builder::PipelineReport report;
+  auto bytes = builder::build_lode(scene, options, {}, report);
   EXPECT_TRUE(bytes) << bytes.error().message();
   return bytes ? std::move(*bytes) : std::vector<std::uint8_t>{};
 }

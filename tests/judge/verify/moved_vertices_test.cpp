@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-#include "build/prepare/separate_needles.h"
+#include "builder/prepare/separate_needles.h"
 #include "support/random.h"
 
 namespace meshlode::judge {
@@ -108,7 +108,7 @@ TEST(MovedVertices, TheBuilderPutsEveryVertexThere) {
       relative.push_back(p - origin);
       points.push_back(grid.quantize(relative.back()));
     }
-    needles += build::separate_needles(relative, triangles, grid, points);
+    needles += builder::separate_needles(relative, triangles, grid, points);
 
     std::vector<Corners> corners;
     for (std::size_t i = 0; i < triangles.size(); i += 3) {

@@ -8,8 +8,8 @@
 
 #include <gtest/gtest.h>
 
-#include "build/plan/image_size.h"
-#include "build/plan/texel_sizes.h"
+#include "builder/plan/image_size.h"
+#include "builder/plan/texel_sizes.h"
 #include "judge/validate/judged_sample.h"
 #include "judge/verify/texel_budget.h"
 #include "run/read/asset.h"
@@ -48,7 +48,7 @@ TEST(TexelBudget, TexelsAreCountedAsTheBuildCountsThem) {
   const auto of_materials = most_texels_of_materials(scene);
   for (const scene::SourceMesh& mesh : scene.meshes) {
     const auto most = most_texels(of_materials, mesh);
-    EXPECT_EQ(most, build::texels_per_unit(scene, mesh));
+    EXPECT_EQ(most, builder::texels_per_unit(scene, mesh));
     const bool has_material =
         std::any_of(mesh.primitives.begin(), mesh.primitives.end(),
                     [&](const scene::Primitive& p) { return p.material.value < scene.materials.size(); });
@@ -94,7 +94,7 @@ TEST(TexelBudget, KtxAndWebpStateTheirSizeToBothReaders) {
         bytes[random() % bytes.size()] ^= static_cast<std::uint8_t>(1 + random() % 255);
       if (round % 5 == 4) bytes.resize(random() % bytes.size());
       const auto judged = stated_image_size(bytes);
-      const auto built = build::read_image_size(bytes);
+      const auto built = builder::read_image_size(bytes);
       ASSERT_EQ(judged.has_value(), built.has_value()) << "round " << round;
       if (!built) continue;
       ASSERT_EQ(judged->first, built->width) << "round " << round;

@@ -64,7 +64,7 @@ TEST(Decode, GivesBackTrianglesWithOrientationAndMaterialExactly) {  // I1
       const auto clusters = decode_or_abort(asset);
       ASSERT_EQ(clusters.size(), sample.dag.clusters.size()) << c.name;
       for (std::size_t i = 0; i < clusters.size(); ++i) {
-        const build::DagCluster& dag_cluster = sample.dag.clusters[i];
+        const builder::DagCluster& dag_cluster = sample.dag.clusters[i];
         ASSERT_EQ(clusters[i].vertex_count, dag_cluster.vertex_count);
         ASSERT_EQ(clusters[i].triangle_count, dag_cluster.triangle_count);
         std::multiset<Corners> expected;
@@ -141,8 +141,8 @@ TEST(Decode, PositionsAreExactInFloat) {
 /// there are several, and they are far apart).
 std::vector<std::size_t> match_vertices(const test::SampleMesh& sample, std::size_t cluster_id,
                                         const DecodedCluster& cluster) {
-  const build::DagCluster& dag_cluster = sample.dag.clusters[cluster_id];
-  const build::AttributeLayout& layout = sample.mesh.layout;
+  const builder::DagCluster& dag_cluster = sample.dag.clusters[cluster_id];
+  const builder::AttributeLayout& layout = sample.mesh.layout;
   const Asset asset = open_asset(test::asset_bytes_of(sample));
   ClusterAttributes attributes;
   decode_attributes(asset.meshes()[0], cluster, attributes);
@@ -171,7 +171,7 @@ std::vector<std::size_t> match_vertices(const test::SampleMesh& sample, std::siz
 TEST(Decode, AttributesStayWithinTheirSteps) {
   for (const Case& c : kCases) {
     const test::SampleMesh sample = c.make();
-    const build::AttributeLayout& layout = sample.mesh.layout;
+    const builder::AttributeLayout& layout = sample.mesh.layout;
     const Asset asset = open_asset(test::asset_bytes_of(sample));
     const format::MeshRecord& mesh = asset.meshes()[0];
     const auto clusters = decode_or_abort(asset);

@@ -31,7 +31,7 @@ TestTables make_tables(RandomSource& random) {
   test::RandomDagOptions options;
   options.leaf_clusters = 200;
   const test::RandomDag made = test::make_random_dag(random, options);
-  tables.add_mesh(made.dag, build::build_hierarchy(made.dag, made.mesh), random.in_cube(1e3));
+  tables.add_mesh(made.dag, builder::build_hierarchy(made.dag, made.mesh), random.in_cube(1e3));
   for (const TransformKind kind : {TransformKind::kIdentity, TransformKind::kRigid, TransformKind::kMirrored,
                                    TransformKind::kNonUniform, TransformKind::kSheared}) {
     tables.instances.push_back(test::make_random_instance(random, kind, random.chance(0.5) ? 0.0 : 100.0));

@@ -28,7 +28,7 @@ std::vector<float> errors_of(const SelectTables& tables) {
 test::TestTables make_tables(RandomSource& random, const test::RandomDagOptions& options) {
   const test::RandomDag dag = test::make_random_dag(random, options);
   test::TestTables tables;
-  tables.add_mesh(dag.dag, build::build_hierarchy(dag.dag, dag.mesh),
+  tables.add_mesh(dag.dag, builder::build_hierarchy(dag.dag, dag.mesh),
                   random.chance(0.5) ? Vec3d(0.0) : random.in_cube(1e3));
   return tables;
 }

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <vector>
 
-#include "build/hierarchy/hierarchy.h"
-#include "build/lod_dag.h"
-#include "build/prepared.h"
+#include "builder/hierarchy/hierarchy.h"
+#include "builder/lod_dag.h"
+#include "builder/prepared.h"
 #include "run/select/select.h"
 #include "support/random.h"
 
@@ -23,8 +23,8 @@ struct RandomDagOptions {
 };
 
 struct RandomDag {
-  build::LodDag dag;
-  build::PreparedMesh mesh;
+  builder::LodDag dag;
+  builder::PreparedMesh mesh;
 };
 
 /// A DAG whose errors do not nest and whose coarser clusters leave the finer ones' bounds: the hierarchy has to mend
@@ -102,7 +102,7 @@ inline RandomDag make_random_dag(RandomSource& random, const RandomDagOptions& o
   RandomDag out;
   out.mesh.grid.log2 = options.grid_log2;
   for (const std::uint32_t g : order) {
-    build::DagGroup group;
+    builder::DagGroup group;
     group.level = groups[g].level;
     group.first_cluster = static_cast<std::uint32_t>(out.dag.clusters.size());
     group.cluster_count = static_cast<std::uint32_t>(groups[g].members.size());
@@ -110,7 +110,7 @@ inline RandomDag make_random_dag(RandomSource& random, const RandomDagOptions& o
     group.error = group.quadric_error = groups[g].error;
     group.deviation = HUGE_VAL;
     for (const std::uint32_t m : groups[g].members) {
-      build::DagCluster c;
+      builder::DagCluster c;
       c.level = clusters[m].level;
       if (clusters[m].own_group != kNoId) c.own_group = GroupId(new_id[clusters[m].own_group]);
       c.coarser_group = GroupId(new_id[g]);
@@ -198,7 +198,7 @@ struct TestTables {
   std::vector<format::NodeRecord> nodes;
   [[nodiscard]] run::SelectTables view() const { return {meshes, instances, groups, clusters, nodes}; }
 
-  void add_mesh(const build::LodDag& dag, const build::Hierarchy& hierarchy, const Vec3d& origin) {
+  void add_mesh(const builder::LodDag& dag, const builder::Hierarchy& hierarchy, const Vec3d& origin) {
     format::MeshRecord mesh{};
     for (int i = 0; i < 3; ++i) mesh.origin[i] = origin[i];
     mesh.first_group = static_cast<std::uint32_t>(groups.size());
@@ -210,7 +210,7 @@ struct TestTables {
     mesh.level_count = dag.level_count;
     for (std::size_t g = 0; g < dag.groups.size(); ++g) {
       format::GroupRecord r{};
-      const build::Hierarchy::Sphere& s = hierarchy.group_spheres[g];
+      const builder::Hierarchy::Sphere& s = hierarchy.group_spheres[g];
       std::copy(s.center, s.center + 3, r.center);
       r.radius = s.radius;
       r.error = hierarchy.group_errors[g];
@@ -223,7 +223,7 @@ struct TestTables {
       r.flags = dag.groups[g].is_terminal ? format::kGroupTerminal : std::uint16_t{0};
       groups.push_back(r);
     }
-    for (const build::DagCluster& c : dag.clusters) {
+    for (const builder::DagCluster& c : dag.clusters) {
       format::ClusterRecord r{};
       r.own_group = c.own_group.is_valid() ? mesh.first_group + c.own_group.value : format::kNone;
       r.coarser_group = mesh.first_group + c.coarser_group.value;

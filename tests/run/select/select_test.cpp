@@ -29,7 +29,7 @@ TestTables make_tables(RandomSource& random, std::uint32_t leaf_clusters) {
     const test::RandomDag made = test::make_random_dag(random, options);
     const double size = std::ldexp(1.0, log2 + 20);
     const std::uint32_t mesh = static_cast<std::uint32_t>(tables.meshes.size());
-    tables.add_mesh(made.dag, build::build_hierarchy(made.dag, made.mesh), random.in_cube(size * 1e6));
+    tables.add_mesh(made.dag, builder::build_hierarchy(made.dag, made.mesh), random.in_cube(size * 1e6));
     for (const TransformKind kind : kKinds) {
       tables.instances.push_back(test::make_random_instance(random, kind, random.chance(0.5) ? 0.0 : size * 100.0));
       tables.instances.back().mesh = mesh;
@@ -123,7 +123,7 @@ TEST(Select, BvhLooksAtLittleWhenTheCameraIsFar) {
   options.leaf_clusters = 4000;
   options.stuck_chance = 0.0;
   const test::RandomDag made = test::make_random_dag(random, options);
-  owned.add_mesh(made.dag, build::build_hierarchy(made.dag, made.mesh), Vec3d(0.0));
+  owned.add_mesh(made.dag, builder::build_hierarchy(made.dag, made.mesh), Vec3d(0.0));
   owned.instances.push_back(test::make_random_instance(random, TransformKind::kIdentity, 0.0));
   Camera camera;
   camera.eye = {0.0, 0.0, 1e4};

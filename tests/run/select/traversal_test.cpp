@@ -25,7 +25,7 @@ TestTables two_meshes(RandomSource& random, std::uint32_t leaf_clusters) {
     test::RandomDagOptions options;
     options.leaf_clusters = leaf_clusters + mesh;
     const test::RandomDag made = test::make_random_dag(random, options);
-    tables.add_mesh(made.dag, build::build_hierarchy(made.dag, made.mesh), random.in_cube(10.0));
+    tables.add_mesh(made.dag, builder::build_hierarchy(made.dag, made.mesh), random.in_cube(10.0));
     for (const TransformKind kind : {TransformKind::kRigid, TransformKind::kSheared}) {
       tables.instances.push_back(test::make_random_instance(random, kind, 10.0));
       tables.instances.back().mesh = mesh;

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "build/pack/pack.h"
+#include "builder/pack/pack.h"
 #include "format/page_streams.h"
 #include "run/unpack/unpack_page.h"
 #include "support/random.h"
@@ -25,7 +25,7 @@ struct Stored {
 
 Stored store(const test::RandomPageOptions& options, Codec codec) {
   Stored stored{test::make_random_page(options), {}, {}};
-  const auto bytes = build::store_page(
+  const auto bytes = builder::store_page(
       stored.page.mesh, {reinterpret_cast<const std::uint8_t*>(stored.page.words.data()), stored.page.words.size() * 4},
       codec);
   EXPECT_TRUE(bytes);

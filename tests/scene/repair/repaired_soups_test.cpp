@@ -9,7 +9,7 @@
 #include <map>
 #include <vector>
 
-#include "build/build.h"
+#include "builder/builder.h"
 #include "judge/validate/validate.h"
 #include "judge/verify/verify.h"
 #include "run/read/asset.h"
@@ -42,15 +42,15 @@ std::map<Places, int> triangles_by_places(const Primitive& p) {
   return out;
 }
 
-build::PipelineOptions repairing(bool repair) {
-  build::PipelineOptions options;
+builder::PipelineOptions repairing(bool repair) {
+  builder::PipelineOptions options;
   options.repair = repair;
   return options;
 }
 
 Result<run::Asset> build_asset(const Scene& scene, bool repair) {
-  build::PipelineReport report;
-  auto bytes = build::build_lode(scene, repairing(repair), {}, report);
+  builder::PipelineReport report;
+  auto bytes = builder::build_lode(scene, repairing(repair), {}, report);
   if (!bytes) return bytes.error();
   EXPECT_EQ(judge::validate_asset(*bytes).finding_count, 0U);
   return run::Asset::from_vector(std::move(*bytes));

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a batch says of itself when it is over, each as one text.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/hash.h"
+#include "app/batch/shard/partition.h"
+#include "app/batch/jobs/job_result.h"
+
+namespace meshlode::app {
+
+/// docs/schemas/report.schema.json. Times and paths live here and never in an asset. `jobs`: threads asked for.
+[[nodiscard]] std::string report_json(const std::vector<JobResult>& results, std::uint32_t jobs, int exit_code);
+
+/// docs/schemas/manifest.schema.json: every file with its status, what it was made of and what came of it.
+/// `settings`: settings_text(). `program`: find_program_id(). `shard`: what the results are a share of, where they are:
+/// then it has as many positions as there are results. `is_complete`: the batch is over, and was not interrupted.
+[[nodiscard]] std::string manifest_json(const std::vector<JobResult>& results, const Hash128& program,
+                                        const std::string& settings, int exit_code, const ShardPlan* shard = nullptr,
+                                        bool is_complete = true);
+
+/// A test case a file, as build servers show them: a failure with its line, a skipped one as skipped.
+[[nodiscard]] std::string junit_xml(const std::vector<JobResult>& results);
+
+/// A row a file and one for each of its warnings, and the sums.
+[[nodiscard]] std::string summary_table(const std::vector<JobResult>& results);
+/// "3 files: 1 built, 1 unchanged, 1 failed", kinds that occur alone; "nothing to do …" where all are unchanged; how
+/// many have warnings.
+[[nodiscard]] std::string summary_line(const std::vector<JobResult>& results);
+
+}  // namespace meshlode::app

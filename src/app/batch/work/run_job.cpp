@@ -1,0 +1,317 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/batch/work/run_job.h"
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+#include <span>
+#include <system_error>
+#include <utility>
+
+#include "base/guarded.h"
+#include "app/batch/cache/cache.h"
+#include "app/batch/cache/ingredients.h"
+#include "app/batch/cache/mesh_entries.h"
+#include "app/batch/work/warnings.h"
+#include "builder/builder.h"
+#include "builder/stage_options.h"
+#include "scene/detect/detect.h"
+
+namespace meshlode::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+class Timer {
+ public:
+  [[nodiscard]] double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// What --repair did, summed over the meshes.
+void count_repairs(const scene::Scene& scene, JobFacts& facts) {
+  for (const scene::SourceMesh& mesh : scene.meshes) {
+    facts.dropped += mesh.drops.repaired;
+    facts.repairs.degenerate += mesh.repairs.degenerate;
+    facts.repairs.duplicate += mesh.repairs.duplicate;
+    facts.repairs.turned += mesh.repairs.turned;
+    facts.repairs.stitched += mesh.repairs.stitched;
+    facts.repairs.cut_edges += mesh.repairs.cut_edges;
+    facts.repairs.split += mesh.repairs.split;
+  }
+}
+
+void count_scene(const scene::Scene& scene, JobFacts& facts) {
+  facts.meshes = scene.meshes.size();
+  facts.instances = scene.instances.size();
+  for (const scene::SourceMesh& mesh : scene.meshes) {
+    for (const scene::Primitive& primitive : mesh.primitives) facts.triangles += primitive.indices.size() / 3;
+  }
+  count_repairs(scene, facts);
+  facts.file_triangles = scene.triangles_in_file;
+  facts.missing = scene::count_missing_triangles(scene);
+  facts.left_out = scene.left_out;
+}
+
+std::vector<std::string> names_of_meshes(const scene::Scene& scene) {
+  std::vector<std::string> names;
+  for (const scene::SourceMesh& mesh : scene.meshes) names.push_back(mesh.name);
+  return names;
+}
+
+/// Whether the file at `path` holds an asset already.
+bool holds(const fs::path& path, const AssetRecord& record) {
+  const auto file = MappedFile::open(path);
+  return file && file->bytes().size() == record.facts.bytes && hash128(file->bytes()) == record.asset;
+}
+
+class Run {
+ public:
+  Run(const Job& job, const BatchOptions& options, OutputFiles& files, const BatchWatcher& watcher)
+      : options_(options), pipeline_(options.pipeline), import_(options.import), files_(files), watcher_(watcher) {
+    result_.job = job;
+  }
+
+  JobResult take() { return std::move(result_); }
+
+  Status go() {
+    if (Status settled = settle(); !settled) return settled;
+    const bool wants_files = options_.cache != nullptr || options_.lists_files || options_.is_dry_run;
+    std::optional<Error> unreadable;
+    if (wants_files) {
+      auto found = find_dependencies(result_.job.input, import_.allow_outside);
+      if (found) {
+        result_.files = std::move(*found);
+        const std::string settings = settings_text(pipeline_, import_) + mesh_rules_text(layers_);
+        if (options_.cache != nullptr) {
+          ingredients_ = ingredients_text(options_.cache->program(), settings, result_.files);
+        }
+        add_settings_files();
+      } else {
+        unreadable = found.error();  // the import will say the same, and more
+      }
+    }
+    if (options_.is_dry_run) return unreadable ? Status(*unreadable) : plan();
+    if (Status ready = make_ready(); !ready) return ready;
+    if (!ingredients_.empty() && !lacks_files()) {
+      if (auto record = options_.cache->find_record(ingredients_)) {
+        if (auto done = take_from_cache(*record)) return std::move(*done);
+      }
+      result_.reason = options_.cache->explain(result_.job.output, ingredients_);
+    }
+    // One scene that runs out of memory is one failed job.
+    return guarded(result_.job.input, [&] { return build_and_write(); });
+  }
+
+ private:
+  /// What files say of this job, and what was given.
+  Status settle() {
+    if (!options_.settings_of) return Ok{};
+    auto layers = options_.settings_of(result_.job);
+    if (!layers) return layers.error();
+    layers_ = std::move(*layers);
+    auto settled = app::settle(layers_);
+    if (!settled) return settled.error();
+    settled->options.max_memory = pipeline_.max_memory;
+    settled->options.spills = pipeline_.spills;
+    settled->options.looks = pipeline_.looks;
+    pipeline_ = std::move(settled->options);
+    import_.repair = pipeline_.repair;
+    import_.linear_colors = pipeline_.linear_colors;
+    return Ok{};
+  }
+
+  /// For who lists the files. What they say is in the settings, where they lie is nobody's business: not in the key.
+  void add_settings_files() {
+    for (const app::SettingLayer& layer : layers_) {
+      if (layer.code == ErrorCode::kUsage) continue;  // the command line
+      auto file = find_file(FileKind::kSettings, layer.from);
+      if (file) result_.files.push_back(std::move(*file));
+    }
+  }
+
+  /// What the import refuses is not taken from a run that was allowed more.
+  [[nodiscard]] bool lacks_files() const {
+    return !import_.may_lack_images &&
+           std::any_of(result_.files.begin(), result_.files.end(), [](const Dependency& f) { return !f.stamp; });
+  }
+
+  /// --dry-run.
+  Status plan() {
+    for (const Dependency& file : result_.files) {
+      const bool is_needed =
+          file.kind == FileKind::kBuffer || (file.kind == FileKind::kImage && !import_.may_lack_images);
+      if (file.stamp || !is_needed) continue;
+      return Error{ErrorCode::kIo, file.path.empty() ? file.name : file.path.string(), "cannot be opened"};
+    }
+    result_.status = JobStatus::kWouldBuild;
+    result_.reason = "no cache is used";
+    if (options_.cache == nullptr) return Ok{};
+    const auto record = options_.cache->find_record(ingredients_);
+    if (record) {
+      result_.facts = record->facts;
+      if (Status whole = check_whole(record->facts); !whole) return whole;
+    }
+    if (record && holds(result_.job.output, *record)) {
+      result_.status = JobStatus::kUnchanged;
+      result_.reason = "the asset is there and nothing that it depends on changed";
+    } else if (record && options_.cache->store().has(EntryKind::kAsset, record->asset)) {
+      result_.status = JobStatus::kWouldCopy;
+      result_.reason = "the cache has this asset";
+    } else {
+      result_.reason = options_.cache->explain(result_.job.output, ingredients_);
+    }
+    return Ok{};
+  }
+
+  /// Whether the asset is one to write, or to leave where it is.
+  [[nodiscard]] Status check_whole(const JobFacts& facts) const {
+    if (!options_.is_strict) return Ok{};
+    const std::vector<JobWarning> warnings = list_warnings(facts);
+    if (warnings.empty()) return Ok{};
+    return Error{ErrorCode::kInvalid, result_.job.input.string(), "--strict: " + warnings.front().text};
+  }
+
+  Status make_ready() {
+    const fs::path folder = result_.job.output.parent_path();
+    if (options_.make_folders && !folder.empty()) {
+      std::error_code ec;
+      fs::create_directories(folder, ec);
+      if (ec) return Error{ErrorCode::kIo, folder.string(), ec.message()};
+    }
+    return files_.claim(result_.job.output);
+  }
+
+  /// What the scene is made of is no place for an output.
+  Status check_outputs(std::span<const FileId> read) {
+    files_.keep(read);
+    if (Status free = files_.claim(result_.job.output); !free) return free;
+    Status status = Ok{};
+    for (const std::string& path : options_.side_outputs) {
+      Status free = files_.claim(path);
+      if (free) continue;
+      result_.refused_outputs.push_back(path);
+      if (status) status = std::move(free);
+    }
+    return status;
+  }
+
+  /// Of --strict.
+  template <class Decisions>
+  [[nodiscard]] Status check_names(const Decisions& decisions) const {
+    for (const auto& decision : decisions) {
+      if (!options_.is_strict || !decision.what.starts_with(builder::kUnknownAggregate)) continue;
+      const std::string name = decision.what.substr(builder::kUnknownAggregate.size() - 1);  // from its quote on
+      return Error{ErrorCode::kUsage, result_.job.input.string(),
+                   "--aggregate: no mesh and no material has the name " + name};
+    }
+    return Ok{};
+  }
+
+  /// Nothing: what the record promises is not there.
+  std::optional<Status> take_from_cache(const AssetRecord& record) {
+    std::vector<FileId> read;
+    for (const Dependency& file : result_.files) {
+      if (file.stamp) read.push_back(file.stamp->id);
+    }
+    if (Status free = check_outputs(read); !free) return free;
+    if (Status whole = check_whole(record.facts); !whole) return whole;
+    if (Status names = check_names(record.facts.planned_out); !names) return names;
+    const bool is_there = holds(result_.job.output, record);
+    if (!is_there) {
+      const auto asset = options_.cache->store().find(EntryKind::kAsset, record.asset);
+      if (!asset || asset->bytes.size() != record.facts.bytes) return std::nullopt;
+      if (Status written = files_.write(result_.job.output, asset->bytes); !written) return written;
+    }
+    result_.status = is_there ? JobStatus::kUnchanged : JobStatus::kCached;
+    result_.facts = record.facts;
+    result_.asset_hash = record.asset;
+    options_.cache->remember(result_.job.output, ingredients_);
+    return Status(Ok{});
+  }
+
+  Status build_and_write() {
+    const Timer import_timer;
+    std::vector<FileId> read;
+    import_.files_read = &read;
+    Result<scene::Scene> scene = scene::import_scene(result_.job.input, import_);
+    import_.files_read = nullptr;
+    if (Status free = check_outputs(read); !free) return free;
+    if (!scene) return scene.error();
+    result_.stages.push_back({"import", import_timer.seconds()});
+    count_scene(*scene, result_.facts);
+    if (Status whole = check_whole(result_.facts); !whole) return whole;
+    if (Status set = app::set_mesh_options(layers_, names_of_meshes(*scene), pipeline_); !set) return set;
+    if (Status names = check_names(builder::unknown_names(*scene, pipeline_)); !names) return names;
+    if (watcher_.on_scene) watcher_.on_scene(*scene, layers_, pipeline_);
+    builder::PipelineReport report;
+    std::optional<MeshEntries> meshes;
+    if (options_.cache != nullptr) pipeline_.mesh_store = &meshes.emplace(*options_.cache);
+    const auto bytes = builder::build_lode(std::move(*scene), pipeline_, watcher_.on_progress, report);
+    pipeline_.mesh_store = nullptr;
+    take_report(report);
+    if (!bytes) return bytes.error();
+    if (Status whole = check_whole(result_.facts); !whole) return whole;
+    const Timer write_timer;
+    if (Status ok = files_.write(result_.job.output, *bytes); !ok) return ok;
+    result_.stages.push_back({"write_file", write_timer.seconds()});
+    result_.status = JobStatus::kBuilt;
+    result_.facts.bytes = bytes->size();
+    if (options_.cache != nullptr || options_.lists_files) result_.asset_hash = hash128(*bytes);
+    // Only what was read as it was hashed, and nothing beside it, is known to make these bytes.
+    if (!ingredients_.empty() && are_unchanged(result_.files) && cover(result_.files, read)) {
+      options_.cache->keep({ingredients_, result_.asset_hash, result_.facts}, *bytes);
+      options_.cache->remember(result_.job.output, ingredients_);
+    }
+    return Ok{};
+  }
+
+  void take_report(builder::PipelineReport& report) {
+    result_.memory_estimate = report.memory_estimate;
+    result_.meshes_from_cache = report.stored_meshes;
+    result_.facts.draws_nothing = report.clusters == 0;
+    result_.stages.insert(result_.stages.end(), report.stages.begin(), report.stages.end());
+    result_.levels = std::move(report.levels);
+    for (const builder::PlanDecision& decision : report.decisions) {
+      if (decision.kept) continue;
+      result_.facts.planned_out.push_back({decision.what, decision.reason});
+      if (decision.is_loss) result_.facts.losses.push_back(result_.facts.planned_out.back());
+    }
+  }
+
+  const BatchOptions& options_;
+  builder::PipelineOptions pipeline_;  ///< this job's
+  scene::ImportOptions import_;
+  std::vector<app::SettingLayer> layers_;  ///< empty where nobody asked for files
+  OutputFiles& files_;
+  const BatchWatcher& watcher_;
+  std::string ingredients_;  ///< empty: not known, so neither looked up nor kept
+  JobResult result_;
+};
+
+}  // namespace
+
+JobResult run_job(const Job& job, const BatchOptions& options, OutputFiles& files, const BatchWatcher& watcher,
+                  Error& error) {
+  const Timer timer;
+  Run run(job, options, files, watcher);
+  Status done = run.go();
+  JobResult result = run.take();
+  result.warnings = list_warnings(result.facts);
+  if (done && options.check_asset && !options.is_dry_run) done = options.check_asset(job.output);
+  result.seconds = timer.seconds();
+  if (done) return result;
+  error = done.error();
+  if (error.where.empty()) error.where = job.input.string();
+  result.status = JobStatus::kFailed;
+  result.error = error.message();
+  result.exit_code = static_cast<int>(error.code);
+  return result;
+}
+
+}  // namespace meshlode::app

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/page/page_texts.h"
+
+#include <array>
+#include <cstddef>
+#include <string>
+
+namespace meshlode::app {
+
+namespace {
+
+constexpr unsigned char kFrame[] = {
+#include "viewer.html.inc"
+};
+constexpr unsigned char kStyle[] = {
+#include "viewer.css.inc"
+};
+constexpr unsigned char kLicence[] = {
+#include "MIT.txt.inc"
+};
+constexpr unsigned char kNotice[] = {
+#include "NOTICE.inc"
+};
+constexpr unsigned char kRuntime[] = {
+#include "index.js.inc"
+};
+constexpr unsigned char kDag[] = {
+#include "dag.js.inc"
+};
+constexpr unsigned char kGraph[] = {
+#include "graph.js.inc"
+};
+constexpr unsigned char kMeshView[] = {
+#include "mesh_view.js.inc"
+};
+constexpr unsigned char kViewer[] = {
+#include "viewer.js.inc"
+};
+
+template <std::size_t N>
+std::string_view text_of(const unsigned char (&bytes)[N]) {
+  return {reinterpret_cast<const char*>(bytes), N};
+}
+
+}  // namespace
+
+std::string_view page_frame() {
+  return text_of(kFrame);
+}
+
+std::string_view page_style() {
+  return text_of(kStyle);
+}
+
+std::string_view page_licences() {
+  static const std::string text = std::string(text_of(kLicence)) + "\n" + std::string(text_of(kNotice));
+  return text;
+}
+
+std::span<const std::string_view> page_scripts() {
+  static const std::array texts{text_of(kRuntime), text_of(kDag), text_of(kGraph), text_of(kMeshView),
+                                text_of(kViewer)};
+  return texts;
+}
+
+}  // namespace meshlode::app

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The fixed texts of the page, which lie beside this file as they are edited: viewer.html, viewer.css and the scripts.
+// These go into other people's pages, and are MIT.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+namespace meshlode::app {
+
+/// The page with its holes, @NAME@.
+[[nodiscard]] std::string_view page_frame();
+[[nodiscard]] std::string_view page_style();
+/// Of page and runtime: what a copy of them must say.
+[[nodiscard]] std::string_view page_licences();
+/// In the order in which they become one script.
+[[nodiscard]] std::span<const std::string_view> page_scripts();
+
+}  // namespace meshlode::app

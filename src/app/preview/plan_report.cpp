@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/preview/plan_report.h"
+
+#include <cmath>
+
+#include "base/append_format.h"
+#include "base/byte_size.h"
+#include "base/printable.h"
+
+namespace meshlode::app {
+
+namespace {
+
+constexpr std::size_t kMaxRows = 40;  ///< of meshes and features: a city has thousands; JSON lists all
+
+std::uint64_t whole(double bytes) {
+  return static_cast<std::uint64_t>(std::llround(bytes));
+}
+
+void add_line(std::string& out, bool kept, const std::string& what, const std::string& reason) {
+  append_format(out, "  %-9s %s: %s\n", kept ? "kept" : "left out", printable(what, 120).c_str(),
+                printable(reason, 300).c_str());
+}
+
+void add_attribute(std::string& out, const PlannedAttribute& item) {
+  const builder::PlanDecision& decision = item.decision;
+  std::string reason = decision.reason;
+  if (!item.precision.empty()) reason += "; " + item.precision;
+  if (whole(item.bytes) > 0) {
+    reason += "; about " + byte_size_text(whole(item.bytes)) + (decision.kept ? "" : " saved");
+  }
+  append_format(out, "    %-9s %s: %s\n", decision.kept ? "kept" : "left out", decision.attribute.c_str(),
+                reason.c_str());
+}
+
+void add_more(std::string& out, std::size_t total, const char* what) {
+  if (total > kMaxRows)
+    append_format(out, "  … and %zu more %s (plan --format json lists all)\n", total - kMaxRows, what);
+}
+
+}  // namespace
+
+std::string describe_plan(const ScenePlan& plan) {
+  std::string out = "attributes (bytes are estimates)\n";
+  std::size_t small = 0;
+  for (std::size_t i = 0; i < plan.meshes.size(); ++i) {
+    const PlannedMesh& mesh = plan.meshes[i];
+    small += mesh.is_whole ? 1 : 0;
+    if (i >= kMaxRows) continue;
+    append_format(out, "  %s: %s triangles, about %s\n", printable(mesh.label, 120).c_str(),
+                  grouped_digits(mesh.triangles).c_str(), byte_size_text(whole(mesh.bytes)).c_str());
+    for (const PlannedAttribute& item : mesh.attributes) add_attribute(out, item);
+    if (mesh.is_whole)
+      append_format(out, "    passed through: one cluster holds all of it, there is nothing to coarsen\n");
+    if (mesh.triangles == 0) append_format(out, "    passed through: it has no triangles\n");
+  }
+  add_more(out, plan.meshes.size(), "meshes");
+  append_format(out, "features\n");
+  for (std::size_t i = 0; i < plan.features.size() && i < kMaxRows; ++i) {
+    add_line(out, plan.features[i].kept, plan.features[i].what, plan.features[i].reason);
+  }
+  add_more(out, plan.features.size(), "features");
+  if (small > 0) {
+    add_line(out, true, std::to_string(small) + " of " + std::to_string(plan.meshes.size()) + " meshes",
+             "one cluster each: passed through without levels of detail");
+  } else if (plan.features.empty()) {
+    append_format(out, "  none beside its triangles\n");
+  }
+  return out;
+}
+
+void write_plan(JsonWriter& json, const ScenePlan& plan) {
+  json.key("meshes");
+  json.begin_array();
+  for (const PlannedMesh& mesh : plan.meshes) {
+    json.begin_object();
+    json.field("label", mesh.label);
+    json.field("source_triangles", mesh.triangles);
+    json.field("source_vertices", mesh.vertices);
+    json.field("is_one_cluster", mesh.is_whole);
+    json.field("grid_log2", mesh.grid.log2);
+    json.field("grid_mantissa", mesh.grid.mantissa);
+    json.field("estimated_bytes", whole(mesh.bytes));
+    json.key("attributes");
+    json.begin_array();
+    for (const PlannedAttribute& item : mesh.attributes) {
+      json.begin_object();
+      json.field("name", item.decision.attribute);
+      json.field("kept", item.decision.kept);
+      json.field("reason", item.decision.reason);
+      json.field("precision", item.precision);
+      json.field("estimated_bytes", whole(item.bytes));
+      json.end_object();
+    }
+    json.end_array();
+    json.end_object();
+  }
+  json.end_array();
+  json.key("features");
+  json.begin_array();
+  for (const builder::PlanDecision& feature : plan.features) {
+    json.begin_object();
+    json.field("what", feature.what);
+    json.field("kept", feature.kept);
+    json.field("reason", feature.reason);
+    json.end_object();
+  }
+  json.end_array();
+}
+
+}  // namespace meshlode::app

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `info` for people: totals, the plan, levels as bars, materials, the byte map, sections.
+#include <algorithm>
+
+#include "base/append_format.h"
+#include "base/printable.h"
+#include "format/names.h"
+#include "app/report/info.h"
+#include "app/report/rows.h"
+
+namespace meshlode::app {
+
+namespace {
+
+constexpr int kBarWidth = 10;  ///< characters
+
+void add_mesh(std::string& out, const run::Asset& asset, std::uint32_t id, const MeshInfo& info, BarStyle style) {
+  const format::MeshRecord& mesh = asset.meshes()[id];
+  append_format(out, "\nmesh %u  %s\n", id, printable(asset.string(mesh.name)).c_str());
+  for (const std::string& line : mesh_lines(asset, id, info)) out += "  " + line + "\n";
+  const DeviationColumns columns = deviation_columns(mesh, info);
+  append_format(out, "  level  clusters   triangles    vertices  %-16s  groups  stuck   error max", " fill");
+  if (columns.normals || columns.uvs) append_format(out, " %*s", kBarWidth, "");
+  append_format(out, "%s%s\n", columns.normals ? "  normals/deg" : "", columns.uvs ? "         UVs" : "");
+  double largest = 0.0;
+  for (const LevelInfo& level : info.levels) largest = std::max(largest, double{level.error_max});
+  for (const LevelInfo& level : info.levels) {
+    append_format(out, "  %5u  %8s  %10s  %10s  %5.3f %s  %6llu  %5llu  %10.4g %s", level.level,
+                  grouped_digits(level.clusters).c_str(), grouped_digits(level.triangles).c_str(),
+                  grouped_digits(level.vertices).c_str(), level.fill, bar(level.fill, kBarWidth, style).c_str(),
+                  static_cast<unsigned long long>(level.groups), static_cast<unsigned long long>(level.stuck_groups),
+                  static_cast<double>(level.error_max),
+                  bar(error_fraction(level.error_max, largest), kBarWidth, style).c_str());
+    if (columns.normals) append_format(out, "  %11.4g", static_cast<double>(level.normal_deviation_max));
+    if (columns.uvs) append_format(out, "  %10.4g", static_cast<double>(level.uv_deviation_max));
+    out += '\n';
+  }
+}
+
+void add_byte_map(std::string& out, const ByteMap& map, const AssetInfo& info) {
+  out += "\nbytes of decoded pages\n  level";
+  for (const ByteColumn& column : byte_columns(map.total)) append_format(out, "  %10s", column.name);
+  out += '\n';
+  const auto row = [&](const char* name, const PageBits& bits, double divisor, int digits) {
+    append_format(out, "  %-5s", name);
+    for (const ByteColumn& column : byte_columns(bits)) {
+      append_format(out, "  %10.*f", digits, static_cast<double>(column.bits) / 8.0 / divisor);
+    }
+    out += '\n';
+  };
+  for (std::size_t level = 0; level < map.levels.size(); ++level) {
+    row(std::to_string(level).c_str(), map.levels[level], 1.0, 0);
+  }
+  row("all", map.total, 1.0, 0);
+  if (map.total.total() > 0) row("%", map.total, static_cast<double>(map.total.total()) / 800.0, 1);
+  if (info.source_triangles > 0) row("/src", map.total, static_cast<double>(info.source_triangles), 3);
+  if (info.stored_triangles > 0) {
+    row("/tri", map.total, static_cast<double>(info.stored_triangles), 3);
+    append_format(out, "  (/src, /tri: bytes per source and per stored triangle; tables beside the pages: %s bytes)\n",
+                  grouped_digits(map.table_bytes).c_str());
+  }
+}
+
+void add_more(std::string& out, std::size_t total, const char* what) {
+  if (const std::string text = more_text(total, what); !text.empty()) out += "  " + text + "\n";
+}
+
+void add_stuck(std::string& out, const AssetInfo& info) {
+  append_format(out, "\nstuck groups\n");
+  for (const MeshInfo& mesh : info.meshes) {
+    for (const StuckGroupInfo& stuck : mesh.stuck) {
+      append_format(out, "  mesh %u  group %u  level %u  %s: %llu cluster(s), %llu triangles\n", stuck.mesh,
+                    stuck.group, stuck.level, format::name_of(stuck.reason),
+                    static_cast<unsigned long long>(stuck.clusters), static_cast<unsigned long long>(stuck.triangles));
+    }
+  }
+  if (info.stuck_groups + info.border_groups == 0) append_format(out, "  none\n");
+}
+
+void add_materials(std::string& out, const run::Asset& asset) {
+  append_format(out, "\nmaterials\n");
+  for (std::size_t i = 0; i < asset.materials().size() && i < kMaxRows; ++i) {
+    const format::MaterialRecord& material = asset.materials()[i];
+    append_format(out, "  %3zu  %s%s: %s%s\n", i, printable(asset.string(material.name)).c_str(),
+                  material.source_index == format::kNone ? " (default)" : "", alpha_text(material).c_str(),
+                  material.double_sided != 0 ? ", double sided" : "");
+  }
+  add_more(out, asset.materials().size(), "materials");
+}
+
+void append_sections(std::string& out, const run::Asset& asset) {
+  append_format(out, "\nsections        bytes     decoded\n");
+  for (const format::SectionEntry& section : asset.sections()) {
+    append_format(out, "  %s  %12s %11s\n", section_name(section.id).c_str(), grouped_digits(section.bytes).c_str(),
+                  grouped_digits(section_decoded_bytes(asset, section)).c_str());
+  }
+}
+
+}  // namespace
+
+std::string info_text(const run::Asset& asset, const AssetInfo& info, bool list_stuck, BarStyle style) {
+  std::string out;
+  for (const Row& row : summary_rows(asset, info)) {
+    append_format(out, "%-16s  ", row.label.c_str());
+    out += row.value + "\n";
+  }
+  for (std::uint32_t m = 0; m < info.meshes.size() && m < kMaxRows; ++m) add_mesh(out, asset, m, info.meshes[m], style);
+  add_more(out, info.meshes.size(), "meshes");
+  if (!info.meshes.empty()) out += "  (the bar of an error is half as long for a quarter of it)\n";
+  if (list_stuck) add_stuck(out, info);
+  add_materials(out, asset);
+  if (info.byte_map) add_byte_map(out, *info.byte_map, info);
+  append_sections(out, asset);
+  return out;
+}
+
+}  // namespace meshlode::app

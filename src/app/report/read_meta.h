@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The asset's JSON sections, taken apart for statistics. They come from a file: nothing in them is trusted.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace meshlode::app {
+
+struct MetaInfo {
+  struct Decision {
+    std::string what, reason;
+    bool is_kept = true;
+  };
+  struct LeftOut {
+    std::string what, why;
+  };
+  bool is_valid = false;  ///< false: not JSON, or not an object; everything below is then as here
+  std::string generator, source_file, source_hash;
+  std::string settings = "{}";             ///< JSON object
+  std::vector<std::string> setting_lines;  ///< of `settings`, for text: the whole's, then those of meshes
+  std::string preset;                      ///< of the settings; empty where it is not said
+  std::string plan = "[]";                 ///< JSON array
+  std::string left_out = "[]";             ///< JSON array
+  std::vector<Decision> decisions;         ///< of `plan`, for text
+  std::vector<LeftOut> left_outs;          ///< of `left_out`, for text
+  std::uint32_t cluster_triangles = 0;     ///< of the settings; 0 where it is not said
+  bool repair = false;                     ///< of the settings: the source was repaired
+  bool linear_colors = false;              ///< the same: colour levels were taken as linear
+  std::string scene;                       ///< of the settings: the scene that was asked for; empty: the default
+};
+[[nodiscard]] MetaInfo read_meta(std::string_view meta_json);
+
+struct TextureInfo {
+  std::string name;
+  std::int64_t image = -1;  ///< of the document, by the rule of base/gltf_textures.h; -1: none
+  std::int64_t sampler = -1;
+};
+[[nodiscard]] std::vector<TextureInfo> read_textures(std::string_view scene_json);
+
+}  // namespace meshlode::app

@@ -1,0 +1,362 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/settings/settings.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <utility>
+
+#include "base/glob.h"
+#include "base/nearest_name.h"
+#include "base/printable.h"
+#include "builder/aggregate/aggregate_choice.h"
+#include "builder/plan/attributes.h"
+#include "builder/plan/plan.h"
+#include "builder/preset.h"
+#include "format/names.h"
+
+namespace meshlode::app {
+
+namespace {
+
+constexpr std::array<SettingInfo, kSettingCount> kSettings{{
+    {Setting::kErrorTier, "error-tier",
+     "what the errors are worth: qem estimates, measured measures, certified proves; auto: the preset's", "auto", true},
+    {Setting::kPreset, "preset", "fast builds fastest and estimates errors, best spends time on clusters and bytes",
+     "default", false},
+    {Setting::kAttributes, "attributes", "auto keeps what the materials call for, none positions only", "auto", true},
+    {Setting::kKeep, "keep",
+     "attributes to store all the same: NORMAL, TEXCOORD_0 to 3, COLOR_0, comma by comma, or all", "", true},
+    {Setting::kDrop, "drop", "attributes to leave out all the same", "", true},
+    {Setting::kGrid, "grid", "auto, or a step in mesh units for meshes that must abut", "auto", true},
+    {Setting::kPositionError, "position-error", "auto, or the largest distance a vertex may move, mesh units", "auto",
+     true},
+    {Setting::kNormalError, "normal-error", "the largest angle a stored normal may be off, degrees", "0.1", true},
+    {Setting::kUvError, "uv-error", "auto, or the largest move of a UV: UV units, or 0.25px for texels", "auto", true},
+    {Setting::kCodec, "codec", "disk codec of the pages", "none", false},
+    {Setting::kStripEffort, "strip-effort", "how long fewer bytes a triangle are looked for; auto: as the preset",
+     "auto", false},
+    {Setting::kClusterTriangles, "cluster-triangles", "the most triangles of a cluster, 1 to 256", "128", false},
+    {Setting::kGroupClusters, "group-clusters", "how many clusters are simplified together, about: 4 to 32", "20",
+     false},
+    {Setting::kRepair, "repair",
+     "remove unusable, degenerate and duplicate triangles, orient the rest, split where it is no surface", "false",
+     false},
+    {Setting::kLinearColors, "linear-colors", "colour levels of PLY and STL are taken as linear, not as sRGB", "false",
+     false},
+    {Setting::kKeepTopology, "keep-topology",
+     "every cut of a manifold is a manifold with its holes, handles and pieces, for more triangles", "false", false},
+    {Setting::kLockBorders, "lock-borders",
+     "open borders keep every vertex in every cut, so that tiles built apart with one --grid abut, for more triangles",
+     "false", true},
+    {Setting::kAggregate, "aggregate",
+     "what is thinned out by coverage, not by distance: nothing (never), meshes and parts of many small loose pieces "
+     "(auto), all small pieces (always), or meshes and materials by name, comma by comma",
+     "never", true},
+    {Setting::kPromise, "promise",
+     "what errors are of: positions; texels, with texture coordinates; appearance, with normals too", "position",
+     false},
+    {Setting::kCare, "care",
+     "experimental: NAME=off, comma by comma, builds without double-quadrics, fallback, spheres or needles", "all",
+     false, true},
+    {Setting::kSimplifier, "simplifier", "experimental: openmesh's decimater reduces the groups, to compare", "own",
+     false, true},
+}};
+
+/// A finite number above 0, all of the text.
+std::optional<double> parse_positive(std::string_view text) {
+  double value = 0.0;
+  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || rest != text.data() + text.size() || !(value > 0.0) || !std::isfinite(value)) {
+    return std::nullopt;
+  }
+  return value;
+}
+
+/// Degrees: no two directions are further apart than 180.
+std::optional<double> parse_angle(std::string_view text) {
+  const std::optional<double> degrees = parse_positive(text);
+  return degrees && *degrees <= 180.0 ? degrees : std::nullopt;
+}
+
+std::optional<double> parse_uv_error(std::string_view text) {
+  if (text.ends_with("px")) text.remove_suffix(2);
+  return parse_positive(text);
+}
+
+std::optional<std::uint32_t> parse_count(std::string_view text, std::uint32_t fewest, std::uint32_t most) {
+  std::uint32_t value = 0;
+  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool is_number = error == std::errc{} && rest == text.data() + text.size();
+  if (!is_number || value < fewest || value > most) return std::nullopt;
+  return value;
+}
+
+std::optional<std::uint32_t> parse_cluster_triangles(std::string_view text) {
+  return parse_count(text, 1, format::kMaxClusterTriangles);
+}
+
+std::optional<std::uint32_t> parse_group_clusters(std::string_view text) {
+  return parse_count(text, builder::kFewestGroupClusters, builder::kMostGroupClusters);
+}
+
+std::string wanted(const char* what, std::string_view word) {
+  return "expected " + std::string(what) + got_text(word);
+}
+
+std::size_t index_of(Setting setting) {
+  return static_cast<std::size_t>(setting);
+}
+
+/// Words of one place that are looked at together.
+struct Saying {
+  const SettingWords& words;
+  std::string from;         ///< for those who ask where a word came from
+  std::string prefix = {};  ///< of its settings in error messages: "--", or a file and the path to them
+  ErrorCode code = ErrorCode::kUsage;
+
+  [[nodiscard]] const std::optional<std::string>& word(Setting setting) const { return words[index_of(setting)]; }
+  [[nodiscard]] std::string place(Setting setting) const { return prefix + info_of(setting).name; }
+};
+
+Saying saying_of(const SettingLayer& layer) {
+  return {layer.words, layer.from, layer.code == ErrorCode::kUsage ? "--" : layer.from + ": /", layer.code};
+}
+
+Saying saying_of(const SettingLayer& layer, const SettingLayer::MeshRule& rule) {
+  return {rule.words, layer.from + ": meshes/" + rule.glob, layer.from + ": /meshes/" + rule.glob + "/", layer.code};
+}
+
+/// \pre find_fault() finds none
+std::uint32_t attributes_of(const std::string& word) {
+  const auto bits = builder::parse_attributes(word);
+  return bits ? *bits : 0;
+}
+
+std::string join(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ",") + name;
+  return text;
+}
+
+/// The words of all layers so far.
+class Settling {
+ public:
+  Settling() {
+    for (const SettingInfo& info : kSettings) words_[index_of(info.setting)] = {info.usual, "default"};
+  }
+
+  Status add(const Saying& saying) {
+    for (const SettingInfo& info : kSettings) {
+      const auto& word = saying.word(info.setting);
+      if (!word) continue;
+      const std::string fault = find_fault(info.setting, *word);
+      if (!fault.empty()) return Error{saying.code, saying.place(info.setting), fault};
+    }
+    if (Status grids = choose_grid_word(saying); !grids) return grids;
+    if (Status names = choose_names(saying); !names) return names;
+    for (std::size_t i = 0; i < kSettingCount; ++i) {
+      if (saying.words[i]) words_[i] = {*saying.words[i], saying.from};
+    }
+    return Ok{};
+  }
+
+  [[nodiscard]] const std::array<SettledWord, kSettingCount>& words() const { return words_; }
+
+ private:
+  /// A grid and a position error exclude each other: the later one stays.
+  Status choose_grid_word(const Saying& saying) {
+    const auto says = [&](Setting setting) { return saying.word(setting) && *saying.word(setting) != "auto"; };
+    if (says(Setting::kGrid) && says(Setting::kPositionError)) {
+      const std::string other = (saying.code == ErrorCode::kUsage ? "--" : "") + std::string("grid");
+      return Error{saying.code, saying.place(Setting::kPositionError), "give this or " + other + ", not both"};
+    }
+    if (says(Setting::kGrid)) words_[index_of(Setting::kPositionError)] = {"auto", saying.from};
+    if (says(Setting::kPositionError)) words_[index_of(Setting::kGrid)] = {"auto", saying.from};
+    return Ok{};
+  }
+
+  /// A name that is kept and dropped: the later one stays.
+  Status choose_names(const Saying& saying) {
+    const auto& kept = saying.word(Setting::kKeep);
+    const auto& dropped = saying.word(Setting::kDrop);
+    const std::uint32_t both = attributes_of(kept.value_or("")) & attributes_of(dropped.value_or(""));
+    if (both != 0) {
+      return Error{saying.code, saying.place(Setting::kDrop), builder::names_of_attributes(both)[0] + " is kept by name too"};
+    }
+    if (saying.word(Setting::kAttributes)) {
+      for (const Setting setting : {Setting::kKeep, Setting::kDrop}) words_[index_of(setting)] = {"", saying.from};
+    }
+    if (kept) remove_names(Setting::kDrop, attributes_of(*kept), saying.from);
+    if (dropped) remove_names(Setting::kKeep, attributes_of(*dropped), saying.from);
+    return Ok{};
+  }
+
+  void remove_names(Setting setting, std::uint32_t bits, const std::string& from) {
+    SettledWord& word = words_[index_of(setting)];
+    const std::uint32_t before = attributes_of(word.word);
+    if ((before & bits) != 0) word = {join(builder::names_of_attributes(before & ~bits)), from};
+  }
+
+  std::array<SettledWord, kSettingCount> words_;
+};
+
+/// \pre every word is one: find_fault()
+builder::PipelineOptions options_of(const std::array<SettledWord, kSettingCount>& words) {
+  const auto word = [&](Setting setting) -> const std::string& { return words[index_of(setting)].word; };
+  builder::PipelineOptions options;
+  options.preset = value_in(builder::kPresetNames, word(Setting::kPreset)).value_or(options.preset);
+  options.error_tier =
+      value_in(format::kErrorTierNames, word(Setting::kErrorTier)).value_or(builder::settings_of(options.preset).error_tier);
+  options.codec = value_in(format::kCodecNames, word(Setting::kCodec)).value_or(options.codec);
+  options.strip_effort = value_in(builder::kStripEffortNames, word(Setting::kStripEffort)).value_or(options.strip_effort);
+  options.attributes = value_in(builder::kAttributeChoiceNames, word(Setting::kAttributes)).value_or(options.attributes);
+  options.keep = attributes_of(word(Setting::kKeep));
+  options.drop = attributes_of(word(Setting::kDrop));
+  options.grid_step = parse_positive(word(Setting::kGrid)).value_or(0.0);
+  options.position_error = parse_positive(word(Setting::kPositionError)).value_or(0.0);
+  options.normal_error = parse_positive(word(Setting::kNormalError)).value_or(options.normal_error);
+  if (const auto uv_error = parse_uv_error(word(Setting::kUvError))) {
+    options.uv_error = *uv_error;
+    options.uv_error_is_texels = word(Setting::kUvError).ends_with("px");
+    options.uv_error_is_default = false;
+  }
+  options.max_cluster_triangles =
+      parse_cluster_triangles(word(Setting::kClusterTriangles)).value_or(options.max_cluster_triangles);
+  options.group_clusters = parse_group_clusters(word(Setting::kGroupClusters)).value_or(options.group_clusters);
+  options.repair = word(Setting::kRepair) == "true";
+  options.linear_colors = word(Setting::kLinearColors) == "true";
+  options.keep_topology = word(Setting::kKeepTopology) == "true";
+  options.lock_borders = word(Setting::kLockBorders) == "true";
+  options.aggregate = value_in(builder::kAggregateChoiceNames, word(Setting::kAggregate)).value_or(AggregateChoice::kNamed);
+  if (options.aggregate == AggregateChoice::kNamed) options.aggregate_names = word(Setting::kAggregate);
+  options.promise = value_in(format::kPromiseNames, word(Setting::kPromise)).value_or(options.promise);
+  if (const auto care = builder::parse_care(word(Setting::kCare))) options.experiment.care = *care;
+  options.experiment.simplifier =
+      value_in(builder::kSimplifierNames, word(Setting::kSimplifier)).value_or(options.experiment.simplifier);
+  return options;
+}
+
+}  // namespace
+
+std::span<const SettingInfo, kSettingCount> all_settings() {
+  return kSettings;
+}
+
+const SettingInfo& info_of(Setting setting) {
+  return kSettings[index_of(setting)];
+}
+
+bool is_flag(Setting setting) {
+  return setting == Setting::kRepair || setting == Setting::kLinearColors || setting == Setting::kKeepTopology ||
+         setting == Setting::kLockBorders;
+}
+
+std::vector<std::string> choices_of(Setting setting) {
+  switch (setting) {
+    case Setting::kErrorTier: {
+      std::vector<std::string> names = all_names(format::kErrorTierNames);
+      names.insert(names.begin(), "auto");
+      return names;
+    }
+    case Setting::kPreset: return all_names(builder::kPresetNames);
+    case Setting::kAttributes: return all_names(builder::kAttributeChoiceNames);
+    case Setting::kCodec: return all_names(format::kCodecNames);
+    case Setting::kStripEffort: return all_names(builder::kStripEffortNames);
+    case Setting::kRepair:
+    case Setting::kLinearColors:
+    case Setting::kKeepTopology:
+    case Setting::kLockBorders: return {"false", "true"};
+    case Setting::kPromise: return all_names(format::kPromiseNames);
+    case Setting::kSimplifier: return all_names(builder::kSimplifierNames);
+    default: return {};
+  }
+}
+
+std::string find_fault(Setting setting, std::string_view word) {
+  const std::vector<std::string> choices = choices_of(setting);
+  if (!choices.empty()) {
+    if (std::find(choices.begin(), choices.end(), word) != choices.end()) return {};
+    return unknown_choice(word, choices);
+  }
+  switch (setting) {
+    case Setting::kKeep:
+    case Setting::kDrop: {
+      const auto bits = builder::parse_attributes(word);
+      return bits ? "" : bits.error().detail;
+    }
+    case Setting::kCare: {
+      const auto care = builder::parse_care(word);
+      return care ? "" : care.error().detail;
+    }
+    case Setting::kGrid:
+      return word == "auto" || parse_positive(word) ? "" : wanted("auto or a step above 0 in mesh units", word);
+    case Setting::kPositionError:
+      return word == "auto" || parse_positive(word) ? "" : wanted("auto or a distance above 0 in mesh units", word);
+
+    case Setting::kAggregate:
+      return !word.empty() ? "" : "give never, auto, always, or names of meshes and materials, comma by comma";
+    case Setting::kClusterTriangles:
+      return parse_cluster_triangles(word) ? "" : wanted("a whole number of triangles from 1 to 256", word);
+    case Setting::kGroupClusters:
+      return parse_group_clusters(word) ? "" : wanted("a whole number of clusters from 4 to 32", word);
+    case Setting::kNormalError: return parse_angle(word) ? "" : wanted("an angle above 0 and up to 180 degrees", word);
+    case Setting::kUvError:
+      return word == "auto" || parse_uv_error(word)
+                 ? ""
+                 : wanted("auto, a number above 0 in UV units, or texels as 0.25px", word);
+    default: return {};
+  }
+}
+
+Result<Settled> settle(std::span<const SettingLayer> layers) {
+  Settling settling;
+  for (const SettingLayer& layer : layers) {
+    if (const Status added = settling.add(saying_of(layer)); !added) return added.error();
+    for (const SettingLayer::MeshRule& rule : layer.mesh_rules) {
+      Settling alone;
+      if (const Status sound = alone.add(saying_of(layer, rule)); !sound) return sound.error();
+    }
+  }
+  return Settled{options_of(settling.words()), settling.words()};
+}
+
+Result<std::vector<SettledMesh>> settle_meshes(std::span<const SettingLayer> layers,
+                                               std::span<const std::string> mesh_names) {
+  const Result<Settled> whole = settle(layers);
+  if (!whole) return whole.error();
+  const bool has_rules =
+      std::any_of(layers.begin(), layers.end(), [](const SettingLayer& layer) { return !layer.mesh_rules.empty(); });
+  bool is_any = false;
+  std::vector<SettledMesh> out;
+  for (std::size_t i = 0; has_rules && i < mesh_names.size(); ++i) {
+    Settling settling;
+    for (const SettingLayer& layer : layers) {
+      if (const Status added = settling.add(saying_of(layer)); !added) return added.error();
+      for (const SettingLayer::MeshRule& rule : layer.mesh_rules) {
+        if (!is_match(rule.glob, mesh_names[i])) continue;
+        is_any = true;
+        if (const Status added = settling.add(saying_of(layer, rule)); !added) return added.error();
+      }
+    }
+    SettledMesh& mesh = out.emplace_back();
+    mesh.options = options_of(settling.words());
+    for (const SettingInfo& info : kSettings) {
+      const SettledWord& word = settling.words()[index_of(info.setting)];
+      if (word.word != (*whole)[info.setting].word) mesh.own.emplace_back(info.setting, word);
+    }
+  }
+  if (!is_any) out.clear();
+  return out;
+}
+
+Status set_mesh_options(std::span<const SettingLayer> layers, std::span<const std::string> mesh_names,
+                        builder::PipelineOptions& options) {
+  Result<std::vector<SettledMesh>> meshes = settle_meshes(layers, mesh_names);
+  if (!meshes) return meshes.error();
+  options.mesh_options.clear();
+  for (const SettledMesh& mesh : *meshes) options.mesh_options.push_back(mesh.options);
+  return Ok{};
+}
+
+}  // namespace meshlode::app

@@ -1,0 +1,318 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "builder/dag/level_pool.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <utility>
+
+#include "base/local_ids.h"
+#include "base/parallel.h"
+#include "base/release.h"
+
+namespace meshlode::builder {
+
+namespace {
+
+/// A mesh's array with room for more. Room that is never written to takes no memory.
+template <class T>
+std::vector<T> take_level0(std::vector<T>& level0, std::size_t more) {
+  std::vector<T> taken = std::exchange(level0, {});
+  taken.reserve(taken.size() + more);
+  return taken;
+}
+
+/// Side by side, in tasks of many.
+constexpr auto kForEachId = [](std::uint32_t count, const auto& visit) {
+  parallel_for_each_index(count, kLoopGrain, [&](std::size_t id) { visit(static_cast<std::uint32_t>(id)); });
+};
+
+/// What is looked up is fetched so many turns before.
+constexpr std::size_t kAhead = 12;
+
+/// Those of a whole level 0 are dealt out side by side.
+constexpr std::size_t kManySamples = 65536;
+
+constexpr WitnessIds kNoWitnesses{kNoId, kNoId, kNoId};
+
+WitnessIds ids_of(const Witnesses& witnesses) {
+  WitnessIds ids = kNoWitnesses;
+  std::copy_n(witnesses.ids.begin(), witnesses.count, ids.begin());
+  return ids;
+}
+
+/// As far as there is room.
+void add_distinct(WitnessIds& known, const WitnessIds& more) {
+  for (const std::uint32_t id : more) {
+    const auto same_or_free =
+        std::find_if(known.begin(), known.end(), [&](std::uint32_t other) { return other == id || other == kNoId; });
+    if (same_or_free != known.end()) *same_or_free = id;
+  }
+}
+
+}  // namespace
+
+CoarserLevels halved_levels(const PreparedMesh& mesh) {
+  const auto coarser = [](std::size_t level0) { return level0 + level0 / 8; };
+  return {coarser(mesh.positions.size()), coarser(mesh.wedge_position.size()), coarser(mesh.triangles.size())};
+}
+
+BuildPool::BuildPool(PreparedMesh& mesh, const CoarserLevels& coarser)
+    : positions(take_level0(mesh.positions, coarser.positions)),
+      wedge_position(take_level0(mesh.wedge_position, coarser.wedges)),
+      wedge_attributes(take_level0(mesh.wedge_attributes, coarser.wedges * mesh.layout.stride())),
+      stride_(mesh.layout.stride()),
+      has_witnesses_(coarser.has_witnesses),
+      position_table_(positions.size() + coarser.positions),
+      wedge_table_(wedge_position.size() + coarser.wedges) {
+  triangles.reserve(mesh.triangles.size() + coarser.triangles);
+  triangle_material.expect(triangles.capacity());
+  if (has_witnesses_) {
+    witnesses.reserve(positions.capacity());
+    witnesses.resize(positions.size(), kNoWitnesses);
+    parallel_for_each_index(positions.size(), kLoopGrain,
+                            [&](std::size_t p) { witnesses[p].front() = static_cast<std::uint32_t>(p); });
+  }
+  position_table_.fill(static_cast<std::uint32_t>(positions.size()), kForEachId,
+                       [&](std::uint32_t id) { return hash_position(positions[id]); });
+  wedge_table_.fill(static_cast<std::uint32_t>(wedge_position.size()), kForEachId, [&](std::uint32_t id) {
+    return hash_wedge(wedge_position[id], wedge_attributes.data() + id * stride_);
+  });
+}
+
+std::uint64_t BuildPool::hash_position(const Vec3i& position) {
+  std::uint64_t h = 0;
+  for (int k = 0; k < 3; ++k) h = hash_word(h, static_cast<std::uint32_t>(position[k]));
+  return h;
+}
+
+std::uint64_t BuildPool::hash_wedge(std::uint32_t position, const float* attributes) const {
+  std::uint64_t h = hash_word(0, position);
+  for (std::size_t j = 0; j < stride_; ++j) h = hash_word(h, std::bit_cast<std::uint32_t>(attributes[j]));
+  return h;
+}
+
+bool BuildPool::is_wedge(std::uint32_t wedge, std::uint32_t position, const float* attributes) const {
+  // Bits, not values: what differs in the sign of a zero is another wedge, as everywhere in the build.
+  return wedge_position[wedge] == position && (stride_ == 0 || std::memcmp(wedge_attributes.data() + wedge * stride_,
+                                                                           attributes, stride_ * sizeof(float)) == 0);
+}
+
+std::uint32_t BuildPool::position_id(const Vec3i& position) {
+  const auto next = static_cast<std::uint32_t>(positions.size());
+  const IdTable::Entry entry = position_table_.find_or_insert(
+      hash_position(position), next, [&](std::uint32_t other) { return positions[other] == position; },
+      [&](std::uint32_t other) { return hash_position(positions[other]); });
+  if (entry.is_new) {
+    positions.push_back(position);
+    if (has_witnesses_) witnesses.push_back(kNoWitnesses);
+  }
+  return entry.id;
+}
+
+std::uint32_t BuildPool::find_position(const Vec3i& position) const {
+  return position_table_.find(hash_position(position),
+                              [&](std::uint32_t other) { return positions[other] == position; });
+}
+
+bool BuildPool::had_place(const Vec3i& position) const {
+  return find_position(position) < round_positions_;  // kNoId is greater
+}
+
+std::uint32_t BuildPool::wedge_id(std::uint32_t position, const float* attributes) {
+  const auto next = static_cast<std::uint32_t>(wedge_position.size());
+  const IdTable::Entry entry = wedge_table_.find_or_insert(
+      hash_wedge(position, attributes), next,
+      [&](std::uint32_t other) { return is_wedge(other, position, attributes); },
+      [&](std::uint32_t other) {
+        return hash_wedge(wedge_position[other], wedge_attributes.data() + other * stride_);
+      });
+  if (entry.is_new) {
+    wedge_position.push_back(position);
+    wedge_attributes.insert(wedge_attributes.end(), attributes, attributes + stride_);
+  }
+  return entry.id;
+}
+
+std::vector<std::uint32_t> BuildPool::add_ranges(const Clustering& clustering, std::uint32_t level, GroupId own_group) {
+  std::vector<std::uint32_t> start(clustering.count + 1, 0);
+  for (const std::uint32_t label : clustering.label) ++start[label + 1];
+  start[0] = static_cast<std::uint32_t>(triangles.size());
+  for (std::size_t i = 1; i < start.size(); ++i) start[i] += start[i - 1];
+  for (std::uint32_t c = 0; c < clustering.count; ++c) {
+    clusters.push_back({level, own_group, start[c], start[c + 1] - start[c], {}});
+  }
+  triangles.resize(triangles.size() + clustering.label.size());
+  return start;
+}
+
+void BuildPool::fill_samples(std::span<const CarriedSample> samples, const Clustering& clustering,
+                             std::uint32_t first_cluster) {
+  struct Count {
+    std::size_t samples = 0, loose = 0;
+  };
+  std::vector<Count> counts(clustering.count);
+  for (const CarriedSample& sample : samples) {
+    Count& count = counts[clustering.label[sample.triangle]];
+    ++count.samples;
+    if (sample.vertex == kNoId) ++count.loose;
+  }
+  parallel_for_each_index(clustering.count, 256, [&](std::size_t c) {
+    clusters[first_cluster + c].samples.reserve(counts[c].samples, counts[c].loose);
+  });
+  const auto add = [&](const CarriedSample& sample) {
+    clusters[first_cluster + clustering.label[sample.triangle]].samples.add(sample);
+  };
+  if (samples.size() < kManySamples) {
+    std::for_each(samples.begin(), samples.end(), add);
+    return;
+  }
+  // Cluster by cluster, side by side.
+  std::vector<std::uint32_t> end(clustering.count, 0), order(samples.size());
+  for (std::uint32_t c = 1; c < clustering.count; ++c) {
+    end[c] = end[c - 1] + static_cast<std::uint32_t>(counts[c - 1].samples);
+  }
+  for (std::uint32_t i = 0; i < samples.size(); ++i) order[end[clustering.label[samples[i].triangle]]++] = i;
+  parallel_for_each_index(clustering.count, 64, [&](std::size_t c) {
+    for (std::uint32_t i = c == 0 ? 0 : end[c - 1]; i < end[c]; ++i) add(samples[order[i]]);
+  });
+}
+
+void BuildPool::fill_clusters(std::span<const WedgeTriangle> source, std::span<const std::uint32_t> wedges,
+                              std::span<const std::uint32_t> materials, const CarriedTruth& carried,
+                              const Clustering& clustering, std::vector<std::uint32_t> start,
+                              std::uint32_t first_cluster) {
+  fill_samples(carried.samples, clustering, first_cluster);
+  // Places are dealt out in order, one after the other; what goes there is written side by side.
+  std::vector<std::uint32_t> slot(source.size());
+  for (std::size_t t = 0; t < source.size(); ++t) slot[t] = start[clustering.label[t]]++;
+  parallel_for_each_index(source.size(), kLoopGrain, [&](std::size_t t) {
+    WedgeTriangle& triangle = triangles[slot[t]];
+    triangle = source[t];
+    for (std::size_t k = 0; !wedges.empty() && k < 3; ++k) triangle[k] = wedges[triangle[k]];
+    triangle_material.set(slot[t], materials[t]);
+    if (!carried.bounds.empty()) triangle_bounds[slot[t]] = carried.bounds[t];
+  });
+}
+
+void BuildPool::add_clusters(const std::vector<WedgeTriangle>& source, const std::vector<std::uint32_t>& materials,
+                             const CarriedTruth& carried, const Clustering& clustering, std::uint32_t level,
+                             GroupId own_group) {
+  const auto first_cluster = static_cast<std::uint32_t>(clusters.size());
+  std::vector<std::uint32_t> start = add_ranges(clustering, level, own_group);
+  triangle_material.add(materials);
+  if (!carried.bounds.empty()) triangle_bounds.resize(triangles.size());
+  fill_clusters(source, {}, materials, carried, clustering, std::move(start), first_cluster);
+}
+
+BuildPool::Ids BuildPool::find_known(const SimplifyResult& result) const {
+  Ids ids;
+  ids.positions.resize(result.positions.size());
+  for (std::size_t p = 0; p < ids.positions.size(); ++p) {
+    if (p + kAhead < ids.positions.size()) position_table_.prefetch(hash_position(result.positions[p + kAhead]));
+    ids.positions[p] = find_position(result.positions[p]);
+  }
+  ids.wedges.resize(result.wedge_position.size());
+  for (std::size_t w = 0; w < ids.wedges.size(); ++w) {
+    if (w + kAhead < ids.wedges.size()) prefetch_wedge(result, ids, w + kAhead);
+    const std::uint32_t position = ids.positions[result.wedge_position[w]];
+    const float* const attributes = result.wedge_attributes.data() + w * stride_;
+    ids.wedges[w] =
+        position == kNoId ? kNoId : wedge_table_.find(hash_wedge(position, attributes), [&](std::uint32_t other) {
+          return is_wedge(other, position, attributes);
+        });
+  }
+  return ids;
+}
+
+/// A locked position keeps what it had and takes over what a group left at it, as far as there is room.
+void BuildPool::add_witnesses(std::uint32_t position, const WitnessIds& more) {
+  WitnessIds known = witnesses[position];
+  add_distinct(known, more);
+  if (known == witnesses[position]) return;
+  if (position < round_positions_) {
+    late_witnesses_.emplace_back(position, more);
+  } else {
+    witnesses[position] = known;
+  }
+}
+
+Witnesses BuildPool::witnesses_at(std::uint32_t position) const {
+  Witnesses out;
+  for (const std::uint32_t id : witnesses[position]) {
+    if (id == kNoId) break;
+    out.points[out.count] = positions[id];
+    out.ids[out.count++] = id;
+  }
+  return out;
+}
+
+void BuildPool::prefetch_wedge(const SimplifyResult& result, const Ids& ids, std::size_t wedge) const {
+  const std::uint32_t position = ids.positions[result.wedge_position[wedge]];
+  if (position != kNoId) wedge_table_.prefetch(hash_wedge(position, result.wedge_attributes.data() + wedge * stride_));
+}
+
+void BuildPool::insert_new(const SimplifyResult& result, Ids& ids) {
+  for (std::size_t p = 0; p < ids.positions.size(); ++p) {
+    if (p + kAhead < ids.positions.size() && ids.positions[p + kAhead] == kNoId)
+      position_table_.prefetch(hash_position(result.positions[p + kAhead]));
+    if (ids.positions[p] == kNoId) ids.positions[p] = position_id(result.positions[p]);
+    if (has_witnesses_) add_witnesses(ids.positions[p], ids_of(result.witnesses[p]));
+  }
+  for (std::size_t w = 0; w < ids.wedges.size(); ++w) {
+    if (w + kAhead < ids.wedges.size() && ids.wedges[w + kAhead] == kNoId) prefetch_wedge(result, ids, w + kAhead);
+    if (ids.wedges[w] != kNoId) continue;
+    ids.wedges[w] = wedge_id(ids.positions[result.wedge_position[w]], result.wedge_attributes.data() + w * stride_);
+  }
+}
+
+void BuildPool::add_simplified(std::span<const NewClusters> added) {
+  std::vector<Ids> ids(added.size());
+  parallel_for_each_index(added.size(), 1, [&](std::size_t g) { ids[g] = find_known(added[g].result); });
+  std::vector<std::vector<std::uint32_t>> start(added.size());
+  std::vector<std::uint32_t> first_cluster(added.size());
+  bool has_bounds = false;
+  for (std::size_t g = 0; g < added.size(); ++g) {
+    insert_new(added[g].result, ids[g]);
+    first_cluster[g] = static_cast<std::uint32_t>(clusters.size());
+    start[g] = add_ranges(added[g].clustering, added[g].level, added[g].own_group);
+    triangle_material.add(added[g].result.triangle_material);
+    has_bounds = has_bounds || !added[g].carried.bounds.empty();
+  }
+  if (has_bounds) triangle_bounds.resize(triangles.size());
+  parallel_for_each_index(added.size(), 1, [&](std::size_t g) {
+    const NewClusters& group = added[g];
+    fill_clusters(group.result.triangles, ids[g].wedges, group.result.triangle_material, group.carried,
+                  group.clustering, std::move(start[g]), first_cluster[g]);
+  });
+}
+
+void BuildPool::end_round() {
+  for (const auto& [position, more] : late_witnesses_) add_distinct(witnesses[position], more);
+  late_witnesses_.clear();
+}
+
+void BuildPool::finish() {
+  position_table_ = {};
+  wedge_table_ = {};
+  release(witnesses, late_witnesses_, triangle_bounds);
+  for (BuildCluster& cluster : clusters) cluster.samples.free();
+}
+
+BuildPool::ClusterUse BuildPool::use_of(ClusterId id) const {
+  const BuildCluster& c = cluster(id);
+  LocalIds wedges(c.triangle_count), used_positions(c.triangle_count), materials(1);
+  for (std::uint32_t t = c.first_triangle; t < c.first_triangle + c.triangle_count; ++t) {
+    for (const std::uint32_t wedge : triangles[t]) wedges.add(wedge);
+    if (t == c.first_triangle || triangle_material[t] != triangle_material[t - 1]) materials.add(triangle_material[t]);
+  }
+  for (const std::uint32_t wedge : wedges.numbers()) used_positions.add(wedge_position[wedge]);
+  ClusterUse use;
+  use.wedges = wedges.numbers();
+  use.materials = static_cast<std::uint32_t>(materials.size());
+  use.positions = used_positions.numbers();
+  std::sort(use.positions.begin(), use.positions.end());
+  return use;
+}
+
+}  // namespace meshlode::builder

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The growing store of a build: positions, wedges and clusters of all levels so far. Used by the dag room alone.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "base/id_table.h"
+#include "base/ids.h"
+#include "base/unset_vector.h"
+#include "builder/cluster/cluster.h"
+#include "builder/dag/kept_samples.h"
+#include "builder/dag/triangle_materials.h"
+#include "builder/deviation/deviation.h"
+#include "builder/lod_dag.h"
+#include "builder/prepared.h"
+#include "builder/simplify/simplify.h"
+
+namespace meshlode::builder {
+
+/// A cluster under construction: a range of BuildPool::triangles.
+struct BuildCluster {
+  std::uint32_t level = 0;
+  GroupId own_group;  ///< of BuildPool::groups; invalid at level 0
+  std::uint32_t first_triangle = 0, triangle_count = 0;
+  KeptSamples samples;  ///< of the source, where deviations are measured
+};
+
+/// What a tier knows of triangles and hands on with them; empty where it needs none.
+struct CarriedTruth {
+  UnsetVector<CarriedSample> samples;  ///< each names its triangle
+  std::vector<TriangleBound> bounds;   ///< per triangle
+};
+
+/// A group that has been replaced by coarser clusters.
+struct BuildGroup {
+  std::uint32_t level = 0;
+  std::vector<ClusterId> clusters;  ///< of BuildPool::clusters
+  double error = 0.0, quadric_error = 0.0;
+  double deviation = std::numeric_limits<double>::infinity();
+  double normal_deviation = std::numeric_limits<double>::infinity();  ///< running maxima, +inf where not measured
+  double uv_deviation = std::numeric_limits<double>::infinity();
+  bool is_terminal = false;
+  bool is_aggregate = false;
+  StuckReason stuck_reason = StuckReason::kNotStuck;
+};
+
+/// What a group became, on its way into the pool.
+struct NewClusters {
+  const SimplifyResult& result;
+  const CarriedTruth& carried;
+  const Clustering& clustering;
+  std::uint32_t level = 0;
+  GroupId own_group;
+};
+
+/// Witnesses are points of level 0: their ids; kNoId where there are fewer.
+using WitnessIds = std::array<std::uint32_t, Witnesses::kCapacity>;
+
+/// What coarser levels will add to a pool, about.
+struct CoarserLevels {
+  std::size_t positions = 0, wedges = 0, triangles = 0;
+  bool has_witnesses = true;  ///< whether anybody asks for witnesses_at()
+};
+/// Every level has about half of the finer one's.
+[[nodiscard]] CoarserLevels halved_levels(const PreparedMesh& mesh);
+
+class BuildPool {
+ public:
+  /// Takes the mesh's positions and wedges: here they keep their ids.
+  BuildPool(PreparedMesh& mesh, const CoarserLevels& coarser);
+
+  /// Adds the clusters of `triangles` (wedges of this pool), in the clustering's order. What is carried names those
+  /// triangles and goes with their clusters.
+  void add_clusters(const std::vector<WedgeTriangle>& triangles, const std::vector<std::uint32_t>& materials,
+                    const CarriedTruth& carried, const Clustering& clustering, std::uint32_t level, GroupId own_group);
+
+  /// Adds what groups became, one after the other. Positions and wedges that are already known (locked ones, or a
+  /// coincidence on the grid) keep their id, so that equal integers are equal ids at every level, and equal attributes
+  /// with them. Witnesses of positions that were there at begin_round() change at end_round(): until then every group
+  /// of a round sees the same.
+  void add_simplified(std::span<const NewClusters> added);
+  void begin_round() { round_positions_ = positions.size(); }
+  /// The vertex of any level that is there; kNoId: none.
+  [[nodiscard]] std::uint32_t find_position(const Vec3i& position) const;
+  /// Whether one was when the round began.
+  [[nodiscard]] bool had_place(const Vec3i& position) const;
+  void end_round();
+  /// Nothing will be added, simplified or measured any more: frees what only that needs.
+  void finish();
+
+  /// Of a cluster: its distinct positions, ascending, its distinct wedges, and how many materials it has.
+  struct ClusterUse {
+    std::vector<std::uint32_t> positions, wedges;
+    std::uint32_t materials = 0;
+  };
+  [[nodiscard]] ClusterUse use_of(ClusterId cluster) const;
+
+  [[nodiscard]] Witnesses witnesses_at(std::uint32_t position) const;
+  [[nodiscard]] BuildCluster& cluster(ClusterId id) { return clusters[id.value]; }
+  [[nodiscard]] const BuildCluster& cluster(ClusterId id) const { return clusters[id.value]; }
+  [[nodiscard]] const BuildGroup& group(GroupId id) const { return groups[id.value]; }
+
+  std::vector<Vec3i> positions;
+  std::vector<WitnessIds> witnesses;  ///< per position; empty where there are none
+  std::vector<std::uint32_t> wedge_position;
+  std::vector<float> wedge_attributes;
+  std::vector<WedgeTriangle> triangles;
+  TriangleMaterials triangle_material;
+  std::vector<TriangleBound> triangle_bounds;  ///< certified tier only
+  std::vector<BuildCluster> clusters;
+  std::vector<BuildGroup> groups;
+
+ private:
+  /// Ids in the pool of what a group became; kNoId: not known yet.
+  struct Ids {
+    std::vector<std::uint32_t> positions, wedges;
+  };
+  [[nodiscard]] Ids find_known(const SimplifyResult& result) const;
+  void insert_new(const SimplifyResult& result, Ids& ids);
+  void prefetch_wedge(const SimplifyResult& result, const Ids& ids, std::size_t wedge) const;
+  void add_witnesses(std::uint32_t position, const WitnessIds& more);
+  /// Makes room for clusters; returns where the triangles of each go.
+  std::vector<std::uint32_t> add_ranges(const Clustering& clustering, std::uint32_t level, GroupId own_group);
+  void fill_samples(std::span<const CarriedSample> samples, const Clustering& clustering, std::uint32_t first_cluster);
+  /// `start`: of add_ranges. `wedges`: pool ids by the ids in `source`, or nothing where they are pool ids already.
+  void fill_clusters(std::span<const WedgeTriangle> source, std::span<const std::uint32_t> wedges,
+                     std::span<const std::uint32_t> materials, const CarriedTruth& carried,
+                     const Clustering& clustering, std::vector<std::uint32_t> start, std::uint32_t first_cluster);
+
+  std::uint32_t position_id(const Vec3i& position);
+  std::uint32_t wedge_id(std::uint32_t position, const float* attributes);
+  [[nodiscard]] bool is_wedge(std::uint32_t wedge, std::uint32_t position, const float* attributes) const;
+  [[nodiscard]] static std::uint64_t hash_position(const Vec3i& position);
+  [[nodiscard]] std::uint64_t hash_wedge(std::uint32_t position, const float* attributes) const;
+
+  std::size_t stride_;
+  bool has_witnesses_;
+  IdTable position_table_, wedge_table_;
+  std::size_t round_positions_ = 0;                                   ///< how many there were when the round began
+  std::vector<std::pair<std::uint32_t, WitnessIds>> late_witnesses_;  ///< of older positions, in order
+};
+
+/// The pool as a LodDag: groups from coarse to fine, clusters by group, vertices by first use. Takes the pool apart.
+[[nodiscard]] LodDag assemble_dag(BuildPool&& pool, const PreparedMesh& mesh);
+
+}  // namespace meshlode::builder

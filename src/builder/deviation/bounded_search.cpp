@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "builder/deviation/bounded_search.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace meshlode::builder {
+
+namespace {
+
+/// A search ends at what is within this share of what is known: it bounds nearly as well as what is nearest, and is
+/// found sooner.
+constexpr double kEnough = 0.1;
+/// What is farther by no more than this share is not looked for.
+constexpr double kOfNoUse = 1e-3;
+/// Of the tree's extent: what floats tell apart, and as much again.
+constexpr double kSmallest = 2e-7;
+/// Triangles of the surface that bound a part.
+constexpr std::size_t kMostBounds = 5;
+/// No division nearer to the end of an edge, as a share of it.
+constexpr double kFromEnd = 1e-3;
+
+using CornerShares = std::array<double, 3>;
+
+/// Linear functions in a triangle, by their values at its corners: each the distance to a triangle, or more.
+struct LinearBounds {
+  std::array<std::array<double, 3>, kMostBounds> at_corner;
+  std::array<TreeSlot, kMostBounds> of;
+  std::size_t count = 0;
+
+  [[nodiscard]] bool has(TreeSlot slot) const {
+    const auto end = of.begin() + static_cast<std::ptrdiff_t>(count);
+    return std::find(of.begin(), end, slot) != end;
+  }
+  [[nodiscard]] double least_at(const CornerShares& w) const {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < count; ++k) {
+      least = std::min(least, w[0] * at_corner[k][0] + w[1] * at_corner[k][1] + w[2] * at_corner[k][2]);
+    }
+    return least;
+  }
+  [[nodiscard]] std::array<double, 3> difference(std::size_t a, std::size_t b) const {
+    std::array<double, 3> d;
+    for (std::size_t i = 0; i < 3; ++i) d[i] = at_corner[a][i] - at_corner[b][i];
+    return d;
+  }
+};
+
+struct Highest {
+  double value = -1.0;
+  CornerShares weight{};
+
+  void take(const LinearBounds& bounds, const CornerShares& w) {
+    const double value_there = bounds.least_at(w);
+    if (value_there > value) *this = {value_there, w};
+  }
+};
+
+/// Where two functions are equal on an edge.
+void try_edges(const LinearBounds& bounds, const std::array<double, 3>& difference, Highest& best) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t j = (i + 1) % 3;
+    if ((difference[i] < 0.0) == (difference[j] < 0.0)) continue;
+    CornerShares w{};
+    w[i] = difference[j] / (difference[j] - difference[i]);
+    w[j] = 1.0 - w[i];
+    best.take(bounds, w);
+  }
+}
+
+/// Where three are equal inside.
+void try_inside(const LinearBounds& bounds, const std::array<double, 3>& d, const std::array<double, 3>& e,
+                Highest& best) {
+  CornerShares w{d[1] * e[2] - d[2] * e[1], d[2] * e[0] - d[0] * e[2], d[0] * e[1] - d[1] * e[0]};
+  const double sum = w[0] + w[1] + w[2];
+  for (double& share : w) share /= sum;
+  if (w[0] > 0.0 && w[1] > 0.0 && w[2] > 0.0) best.take(bounds, w);
+}
+
+/// Where the least of the functions is largest: at a corner, on an edge where two are equal, or inside where three are.
+Highest highest_of(const LinearBounds& bounds) {
+  Highest best;
+  best.take(bounds, {1.0, 0.0, 0.0});
+  best.take(bounds, {0.0, 1.0, 0.0});
+  best.take(bounds, {0.0, 0.0, 1.0});
+  for (std::size_t a = 0; a < bounds.count; ++a) {
+    for (std::size_t b = a + 1; b < bounds.count; ++b) {
+      const std::array<double, 3> d = bounds.difference(a, b);
+      try_edges(bounds, d, best);
+      for (std::size_t c = b + 1; c < bounds.count; ++c) try_inside(bounds, d, bounds.difference(a, c), best);
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+BoundedSearch::BoundedSearch(const SurfaceTree& tree, double margin, double known)
+    : tree_(tree), margin_(margin), beyond_(std::max(margin * known, kSmallest / tree.scale())) {}
+
+bool BoundedSearch::is_within(const std::array<Vec3d, 3>& corners, TreeSlot place) const {
+  if (is_near_throughout(corners, place)) return true;
+  Corner middle{(corners[0] + corners[1] + corners[2]) / 3.0, place};
+  double radius = 0.0;
+  for (const Vec3d& corner : corners) radius = std::max(radius, glm::distance(corner, middle.at));
+  const float enough = tree_.squared_in_frame(std::max(0.0, beyond_ - radius));
+  const SurfaceTree::Hit hit = find_near(middle, enough);
+  return (radius < beyond_ && hit.distance2 <= enough) || is_near_throughout(corners, hit.slot);
+}
+
+void BoundedSearch::add(const std::array<Vec3d, 3>& corners, TreeSlot place) {
+  if (is_near_throughout(corners, place)) return;
+  Part part;
+  for (std::size_t k = 0; k < 3; ++k) {
+    part.corner[k] = {corners[k], place};
+    if (!measure(part.corner[k])) return;
+  }
+  if (!is_within(part)) push(part);
+}
+
+std::size_t BoundedSearch::run(std::size_t parts) {
+  std::size_t made = 0;
+  for (; !is_done() && made + 2 <= parts; made += 2) {
+    std::pop_heap(parts_.begin(), parts_.end());
+    const Part part = parts_.back();
+    parts_.pop_back();
+    const auto [from, share] = choose_division(part);
+    const std::size_t to = (from + 1) % 3;
+    Corner middle{(1.0 - share) * part.corner[from].at + share * part.corner[to].at, part.corner[from].near};
+    if (!measure(middle)) continue;
+    for (const std::size_t replaced : {from, to}) {
+      Part half = part;
+      half.corner[replaced] = middle;
+      if (!is_within(half)) push(half);
+    }
+  }
+  return made;
+}
+
+void BoundedSearch::push(Part& part) {
+  part.order = made_++;
+  parts_.push_back(part);
+  std::push_heap(parts_.begin(), parts_.end());
+}
+
+bool BoundedSearch::is_beyond(double distance) const {
+  return distance > beyond_ * (1.0 + kOfNoUse);
+}
+
+bool BoundedSearch::is_near_throughout(const std::array<Vec3d, 3>& corners, TreeSlot place) const {
+  if (!place.is_valid()) return false;
+  const std::array<Vec3f, 3> at{tree_.to_frame(corners[0]), tree_.to_frame(corners[1]), tree_.to_frame(corners[2])};
+  const SurfaceTree::Hit hit = tree_.look_around(at, place);
+  if (!(hit.distance2 <= tree_.squared_in_frame(beyond_))) return false;
+  // Floats are off by a share of the extent, and what is beyond may be a small one.
+  return std::all_of(corners.begin(), corners.end(),
+                     [&](const Vec3d& p) { return tree_.distance2_at(p, hit.slot) <= beyond_ * beyond_; });
+}
+
+SurfaceTree::Hit BoundedSearch::find_near(const Corner& corner, float enough) const {
+  const Vec3f at = tree_.to_frame(corner.at);
+  SurfaceTree::Hit hit;
+  if (corner.near.is_valid()) hit = tree_.look_around(at, corner.near, hit);
+  return hit.distance2 <= enough ? hit : tree_.find_nearest(at, hit, enough);
+}
+
+bool BoundedSearch::measure(Corner& corner) {
+  const SurfaceTree::Hit hit = find_near(corner, tree_.squared_in_frame(kEnough * beyond_));
+  if (!hit.slot.is_valid()) return false;  // farther than floats reach: not on any real mesh
+  corner.near = hit.slot;
+  const double distance = std::sqrt(tree_.distance2_at(corner.at, hit.slot));
+  if (distance > beyond_) {
+    found_ = {distance, corner.at, hit.slot};
+    beyond_ = margin_ * distance;
+  }
+  return true;
+}
+
+bool BoundedSearch::is_within(Part& part) {
+  LinearBounds bounds;
+  const auto bound_by = [&](TreeSlot slot) {
+    if (!slot.is_valid() || bounds.has(slot)) return false;
+    for (std::size_t k = 0; k < 3; ++k) {
+      bounds.at_corner[bounds.count][k] = std::sqrt(tree_.distance2_at(part.corner[k].at, slot));
+    }
+    bounds.of[bounds.count++] = slot;
+    return true;
+  };
+  for (const Corner& corner : part.corner) bound_by(corner.near);
+  bound_by(part.near_peak);
+  for (;;) {
+    const auto [value, weight] = highest_of(bounds);
+    part.bound = std::min(part.bound, value);
+    if (!is_beyond(part.bound)) return true;
+    part.peak_edge = Part::kInside;
+    for (std::uint8_t k = 0; k < 3; ++k) {
+      if (weight[(k + 2U) % 3] == 0.0) part.peak_edge = k;
+    }
+    if (bounds.count == kMostBounds) return false;
+    Corner peak{Vec3d(0.0), part.corner[0].near};
+    for (std::size_t k = 0; k < 3; ++k) peak.at += weight[k] * part.corner[k].at;
+    if (!measure(peak)) return true;
+    part.near_peak = peak.near;
+    if (!bound_by(peak.near)) return !is_beyond(part.bound);
+  }
+}
+
+/// Where triangles of the surface that meet in an edge cover the part together, no single one is near to it throughout;
+/// but two are to its halves, if it is divided at that edge: where it is as far to the one as to the other, by what the
+/// distances to them are at the ends. Else in the middle of the longest edge, so that no needles come of it.
+BoundedSearch::Division BoundedSearch::choose_division(const Part& part) const {
+  const Division longest{part.longest_edge(), 0.5};
+  if (part.peak_edge == Part::kInside) return longest;
+  const Corner &from = part.corner[part.peak_edge], &to = part.corner[(part.peak_edge + 1U) % 3];
+  const auto how_much_farther = [&](const Corner& corner, TreeSlot other) {
+    return std::sqrt(tree_.distance2_at(corner.at, other)) - std::sqrt(tree_.distance2_at(corner.at, corner.near));
+  };
+  const double at_from = how_much_farther(from, to.near), at_to = how_much_farther(to, from.near);
+  const double share = at_from / (at_from + at_to);
+  if (at_from > 0.0 && at_to > 0.0 && share > kFromEnd && share < 1.0 - kFromEnd) return {part.peak_edge, share};
+  return longest;
+}
+
+std::uint8_t BoundedSearch::Part::longest_edge() const {
+  const auto length2 = [&](std::size_t k) {
+    const Vec3d along = corner[(k + 1) % 3].at - corner[k].at;
+    return glm::dot(along, along);
+  };
+  const double first = length2(0), second = length2(1), third = length2(2);
+  if (first >= second && first >= third) return 0;
+  return second >= third ? 1 : 2;
+}
+
+}  // namespace meshlode::builder

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What of some triangles is farther from a surface than what is known, by bounds. The distance to one triangle of the
+// surface is convex: in a part of a triangle it is nowhere more than what lies linearly between its values at the
+// corners. So the distance to the surface is nowhere more than the least of some such linear functions, and where that
+// is largest follows exactly. There the surface is asked for: what is nearest is far, and a peak is found, or it is
+// near, and one more function says so. Parts that keep a bound beyond what is known are divided, those with the most
+// room first. Few are left where a mesh is smooth, flat or a crowd of large triangles; else the effort ends.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "base/vec.h"
+#include "builder/deviation/surface_tree.h"
+
+namespace meshlode::builder {
+
+class BoundedSearch {
+ public:
+  /// A point that was farther.
+  struct Found {
+    double distance = 0.0;  ///< object units, measured exactly; 0: there was none
+    Vec3d at{0.0};
+    TreeSlot place;  ///< of what is nearest to it
+  };
+
+  /// Nothing is looked for within `margin` times what is known, nor within a thousandth more: `known`, and then what is
+  /// found. What floats of the tree do not tell apart, a few ten-millionths of its extent, is always within. The tree
+  /// must outlive this. \pre margin >= 1
+  BoundedSearch(const SurfaceTree& tree, double margin, double known);
+
+  /// Whether all of a triangle is seen at once not to be beyond. `place`: of the tree, where the search for what is
+  /// nearest begins; may be invalid.
+  [[nodiscard]] bool is_within(const std::array<Vec3d, 3>& corners, TreeSlot place) const;
+  /// What of it may be beyond is divided by run().
+  void add(const std::array<Vec3d, 3>& corners, TreeSlot place);
+  /// Makes at most so many parts, and returns how many.
+  std::size_t run(std::size_t parts);
+  /// Nothing is left to be divided.
+  [[nodiscard]] bool is_done() const { return parts_.empty() || !is_beyond(parts_.front().bound); }
+
+  /// The farthest.
+  [[nodiscard]] const Found& found() const { return found_; }
+
+ private:
+  struct Corner {
+    Vec3d at;
+    TreeSlot near;  ///< a triangle that is near to it
+  };
+  /// Of a triangle, or all of it.
+  struct Part {
+    std::array<Corner, 3> corner;
+    TreeSlot near_peak;  ///< near where its bound was largest, or that of what it is a part of; invalid: not known
+    std::uint8_t peak_edge = kInside;  ///< from that corner to the next: where that was; or inside
+    std::uint32_t order = 0;           ///< as they were made
+    double bound = std::numeric_limits<double>::infinity();  ///< no point of it is farther from the surface
+
+    [[nodiscard]] bool operator<(const Part& other) const {
+      return bound != other.bound ? bound < other.bound : order > other.order;
+    }
+    [[nodiscard]] std::uint8_t longest_edge() const;
+
+    static constexpr std::uint8_t kInside = 3;
+  };
+
+  [[nodiscard]] bool is_beyond(double distance) const;
+  /// A triangle around `place` is, to all three and so to all between them.
+  [[nodiscard]] bool is_near_throughout(const std::array<Vec3d, 3>& corners, TreeSlot place) const;
+  [[nodiscard]] SurfaceTree::Hit find_near(const Corner& corner, float enough) const;
+  /// Asks for what is near to a point, and takes it where it is the farthest so far. False: nothing is.
+  [[nodiscard]] bool measure(Corner& corner);
+  [[nodiscard]] bool is_within(Part& part);
+  /// Where a part is divided: so far along the edge from that corner to the next.
+  struct Division {
+    std::size_t edge = 0;
+    double share = 0.5;
+  };
+  [[nodiscard]] Division choose_division(const Part& part) const;
+  void push(Part& part);
+
+  const SurfaceTree& tree_;
+  double margin_, beyond_;  ///< no nearer point is of use
+  Found found_;
+  std::vector<Part> parts_;  ///< a heap
+  std::uint32_t made_ = 0;
+};
+
+}  // namespace meshlode::builder

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A tree over the triangles of a surface that finds what lies near a point: four boxes a node, four triangles a leaf,
+// in floats; the children's places follow from the node's own, so that no links are stored.
+//
+// Floats only choose: whatever triangle comes out, its exact distance (in doubles) is an upper bound of the distance to
+// the surface, and it misses the least by about 1e-7 of the surface's extent.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/unset_vector.h"
+#include "base/vec.h"
+#include "builder/deviation/capsules.h"
+#include "builder/deviation/four_triangles.h"
+#include "builder/deviation/point_distance.h"
+#include "builder/deviation/tree_slot.h"
+
+namespace meshlode::builder {
+
+class SurfaceTree {
+ public:
+  struct Hit {
+    TreeSlot slot;              ///< invalid: nothing was near enough
+    float distance2 = 3.0e38F;  ///< in the tree's frame, approximate
+  };
+
+  struct Surface {
+    std::span<const Vec3d> positions;
+    std::span<const std::array<std::uint32_t, 3>> triangles;
+  };
+
+  /// Leaves hold 36 bytes a triangle, or are made from the surface whenever they are looked at: the same numbers.
+  enum class Leaves : std::uint8_t { kHeld, kMade };
+
+  /// Capsules help where very many triangles meet in one vertex, and are of no use elsewhere: made where a position has
+  /// so many, or left to add_capsules().
+  enum class Capsules : std::uint8_t { kWhereTheyHelp, kLater };
+
+  /// The spans must outlive the tree. Every index in range, every position finite.
+  void build(const Surface& surface, Leaves leaves = Leaves::kHeld, Capsules capsules = Capsules::kWhereTheyHelp);
+  /// The same triangles are found with and without. \pre it is built, and has none
+  void add_capsules() { fill_capsules(); }
+
+  [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(slot_triangle_.size()); }
+  [[nodiscard]] std::uint32_t triangle_at(TreeSlot slot) const { return slot_triangle_[slot.value]; }
+  [[nodiscard]] const std::array<std::uint32_t, 3>& indices_at(TreeSlot slot) const {
+    return surface_.triangles[triangle_at(slot)];
+  }
+  [[nodiscard]] TriangleCorners corners_at(TreeSlot slot) const {
+    const auto& t = indices_at(slot);
+    return {surface_.positions[t[0]], surface_.positions[t[1]], surface_.positions[t[2]]};
+  }
+  [[nodiscard]] double distance2_at(const Vec3d& point, TreeSlot slot) const {
+    return point_triangle_distance2(point, corners_at(slot));
+  }
+
+  /// The tree's frame: floats of about unit size. Distances there are `scale` times those outside; a power of two.
+  [[nodiscard]] Vec3f to_frame(const Vec3d& point) const { return Vec3f((point - center_) * scale_); }
+  [[nodiscard]] double scale() const { return scale_; }
+  /// A distance from outside, squared and in the frame, as searches compare.
+  [[nodiscard]] float squared_in_frame(double distance) const {
+    return static_cast<float>(distance * scale_ * (distance * scale_));
+  }
+
+  /// The nearest triangle that beats `best`, else `best`. Stops as soon as something is within `enough`. `best` is what
+  /// look_around() says of the same point, and the search goes up from there; or nothing, and it goes down from the
+  /// root. \pre the point is finite: boxes that are not there are as near to a NaN as others, and are looked into
+  [[nodiscard]] Hit find_nearest(const Vec3f& point, Hit best, float enough) const;
+  /// The nearest of the four triangles around a slot, if it beats `best`.
+  [[nodiscard]] Hit look_around(const Vec3f& point, TreeSlot slot, Hit best) const {
+    return test_leaf(point, slot.value / 4, best);
+  }
+
+  /// Of the four triangles around a slot the one that is best for all three points: the distance of the farthest of
+  /// them. The distance to a triangle is convex, so that whatever lies between the points is no farther.
+  [[nodiscard]] Hit look_around(const std::array<Vec3f, 3>& points, TreeSlot slot) const;
+
+  /// The tree from above: levels of nodes, four children each, and leaves of four slots below the last. Children are
+  /// numbered within their level: those of node i are 4·i to 4·i + 3.
+  [[nodiscard]] std::uint32_t depth() const {
+    return level_start_.empty() ? 0 : static_cast<std::uint32_t>(level_start_.size() - 1);
+  }
+  struct Ball {
+    Vec3d center;
+    double radius = 0.0;  ///< negative: there is no such child
+  };
+  /// Around everything below child `child` of node `index` of a level, outside the tree's frame. \pre level < depth()
+  [[nodiscard]] Ball ball_of_child(std::uint32_t level, std::uint32_t index, std::uint32_t child) const {
+    const Node& node = nodes_[level_start_[level] + index];
+    Vec3d low, high;
+    for (int axis = 0; axis < 3; ++axis) {
+      low[axis] = static_cast<double>(node.low[static_cast<std::size_t>(axis)][child]);
+      high[axis] = static_cast<double>(node.high[static_cast<std::size_t>(axis)][child]);
+    }
+    if (!(low.x <= high.x)) return {Vec3d(0.0), -1.0};
+    return {center_ + (low + high) * (0.5 / scale_), 0.5 * glm::length(high - low) / scale_};
+  }
+
+ private:
+  struct Node {
+    std::array<std::array<float, 4>, 3> low, high;  ///< [axis][child]
+  };
+  using Leaf = FourTriangles;
+  using LeafTerms = FourTriangleTerms;
+  /// Of a leaf that is made when it is looked at.
+  struct CachedLeaf {
+    Leaf leaf;
+    LeafTerms terms;
+    std::uint64_t tree = 0;  ///< its serial number
+    std::uint32_t index = 0;
+  };
+  struct Item {
+    std::array<float, 3> center;
+    std::uint32_t triangle;
+  };
+
+  void set_frame();
+  void sort_items(std::span<Item> items) const;
+  [[nodiscard]] std::size_t leaf_count() const { return (slot_triangle_.size() + 3) / 4; }
+  [[nodiscard]] Leaf make_leaf(std::size_t index) const;
+  /// Makes the leaf, unless this thread has it from a look before.
+  [[nodiscard]] const CachedLeaf& made_leaf(std::uint32_t index) const;
+  void fill_nodes();
+  void fill_capsules();
+  [[nodiscard]] Hit test_leaf(const Vec3f& point, std::uint32_t leaf, Hit best) const;
+  [[nodiscard]] Hit test_triangles(const Vec3f& point, std::uint32_t index, const Leaf& leaf, const LeafTerms& terms,
+                                   Hit best) const;
+
+  Surface surface_;
+  Vec3d center_{0.0};
+  double scale_ = 1.0;
+  UnsetVector<std::uint32_t> slot_triangle_;
+  UnsetVector<Leaf> leaves_;      ///< or none, where they are made
+  std::vector<LeafTerms> terms_;  ///< of the leaves that are held, where they are few
+  std::uint64_t serial_ = 0;      ///< no other tree of the process has it
+  UnsetVector<Node> nodes_;
+  std::vector<FourCapsules> capsules_;      ///< by node, where some vertex has very many triangles
+  std::vector<std::uint32_t> level_start_;  ///< of nodes_, from the root; node i of a level has children 4i … 4i+3
+};
+
+}  // namespace meshlode::builder

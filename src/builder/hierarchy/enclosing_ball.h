@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <span>
+
+#include "base/vec.h"
+
+namespace meshlode::builder {
+
+struct Ball {
+  Vec3d center{0.0};
+  double radius = 0.0;
+};
+
+/// The centre of a near-smallest ball around `balls`, and its radius up to rounding: callers measure the radius they
+/// store themselves. Exactly reproducible: + - * / sqrt in a fixed order, no randomness. Scale-free: any finite size.
+/// \pre `balls` is not empty and finite, radii are not negative.
+/// Where not `is_near_smallest`, the ball around the box's centre: for those who study what the better one saves.
+[[nodiscard]] Ball enclosing_ball(std::span<const Ball> balls, bool is_near_smallest = true);
+
+}  // namespace meshlode::builder

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How many vertices a mesh has once equal ones are one: by position, or by position and the attributes that are kept.
+#pragma once
+
+#include <cstdint>
+
+#include "builder/prepared.h"
+#include "scene/scene.h"
+
+namespace meshlode::builder {
+
+/// Different vertices of all primitives together, told apart by position and by what `layout` keeps: of those whose
+/// position's hash falls into a share that leaves a hundred thousand, exactly; the others are taken to be like them
+/// (Flajolet 1990). With an empty layout these are positions.
+[[nodiscard]] std::uint64_t count_wedges(const scene::SourceMesh& mesh, const AttributeLayout& layout);
+
+}  // namespace meshlode::builder

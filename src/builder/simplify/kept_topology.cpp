@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "builder/simplify/kept_topology.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+
+#include "base/id_table.h"
+#include "format/grid.h"
+
+namespace meshlode::builder {
+
+namespace {
+
+bool has(const std::vector<std::uint32_t>& vertices, std::uint32_t v) {
+  return std::find(vertices.begin(), vertices.end(), v) != vertices.end();
+}
+
+/// For both ends of the edge, with the locked one first.
+bool joins_no_locked(const CollapseMesh& mesh, const GroupLocks& locks, const StarEnd& locked, const StarEnd& moved) {
+  const auto is_locked = [&](std::uint32_t v) { return locks.is_vertex_shared[v] != 0; };
+  const bool has_no_new_edge = std::all_of(moved.neighbors.begin(), moved.neighbors.end(), [&](std::uint32_t v) {
+    return v == locked.vertex || !is_locked(v) || has(locked.neighbors, v);
+  });
+  if (!has_no_new_edge) return false;
+  return std::none_of(moved.corners.begin(), moved.corners.end(), [&](std::uint32_t corner) {
+    const auto [x, y] = mesh.others(corner);
+    return x != locked.vertex && y != locked.vertex && is_locked(x) && is_locked(y);
+  });
+}
+
+/// Of the end's triangles those that have `v`.
+std::size_t count_with(const CollapseMesh& mesh, const StarEnd& end, std::uint32_t v) {
+  return static_cast<std::size_t>(std::count_if(end.corners.begin(), end.corners.end(), [&](std::uint32_t corner) {
+    const auto [x, y] = mesh.others(corner);
+    return x == v || y == v;
+  }));
+}
+
+/// Whether the edge has one triangle, and that has no neighbour across its other edges either.
+bool is_lone_triangle(const CollapseMesh& mesh, const CollapseStar& star) {
+  if (count_with(mesh, star.a, star.b.vertex) != 1) return false;
+  for (const std::uint32_t corner : star.a.corners) {
+    const auto [x, y] = mesh.others(corner);
+    if (x != star.b.vertex && y != star.b.vertex) continue;
+    const std::uint32_t tip = x == star.b.vertex ? y : x;
+    return count_with(mesh, star.a, tip) == 1 && count_with(mesh, star.b, tip) == 1;
+  }
+  return false;
+}
+
+/// All that are at most a step off along each axis, the nearest first.
+constexpr std::array<std::array<int, 3>, 27> make_steps() {
+  std::array<std::array<int, 3>, 27> steps{};
+  std::size_t count = 0;
+  for (int axes = 0; axes <= 3; ++axes) {
+    for (int x = -1; x <= 1; ++x) {
+      for (int y = -1; y <= 1; ++y) {
+        for (int z = -1; z <= 1; ++z) {
+          if (x * x + y * y + z * z == axes) steps[count++] = {x, y, z};
+        }
+      }
+    }
+  }
+  return steps;
+}
+constexpr auto kSteps = make_steps();
+
+bool is_on_grid(const Vec3i& place) {
+  return std::max({std::abs(place.x), std::abs(place.y), std::abs(place.z)}) <= format::kMaxGridCoordinate;
+}
+
+}  // namespace
+
+bool keeps_to_itself(const CollapseMesh& mesh, const GroupLocks& locks, const CollapseStar& star) {
+  if (is_lone_triangle(mesh, star)) return false;
+  const auto is_kept = [&](const StarEnd& locked, const StarEnd& moved) {
+    return locks.is_vertex_shared[locked.vertex] == 0 || joins_no_locked(mesh, locks, locked, moved);
+  };
+  return is_kept(star.a, star.b) && is_kept(star.b, star.a);
+}
+
+std::size_t HashOfPlace::operator()(const Vec3i& place) const {
+  std::uint64_t h = 0;
+  for (int k = 0; k < 3; ++k) h = hash_word(h, static_cast<std::uint32_t>(place[k]));
+  return static_cast<std::size_t>(h);
+}
+
+OwnPlaces::OwnPlaces(const SimplifyInput& input) : input_(input), now_(2 * input.positions.size()) {
+  now_.insert(input.positions.begin(), input.positions.end());
+  for (std::size_t p = 0; p < input.positions.size(); ++p) {
+    if (input.is_locked[p] == 0) given_.insert(input.positions[p]);
+  }
+}
+
+bool OwnPlaces::is_free(const Vec3i& place, const Vec3i& a, const Vec3i& b) const {
+  if (place == a || place == b) return true;
+  if (now_.contains(place)) return false;
+  return given_.contains(place) || !input_.is_place_taken || !input_.is_place_taken(place);
+}
+
+bool OwnPlaces::find_free(const Vec3i& a, const Vec3i& b, Vec3i& wanted) const {
+  for (const auto& [x, y, z] : kSteps) {
+    const Vec3i place = wanted + Vec3i(x, y, z);
+    if (!is_on_grid(place) || !is_free(place, a, b)) continue;
+    wanted = place;
+    return true;
+  }
+  return false;
+}
+
+void OwnPlaces::join(const Vec3i& a, const Vec3i& b, const Vec3i& to) {
+  now_.erase(a);
+  now_.erase(b);
+  now_.insert(to);
+}
+
+std::vector<Vec3i> new_places(const SimplifyInput& input, const SimplifyResult& result) {
+  const PlaceSet before(input.positions.begin(), input.positions.end());
+  std::vector<Vec3i> places;
+  for (const Vec3i& place : result.positions) {
+    if (!before.contains(place)) places.push_back(place);
+  }
+  return places;
+}
+
+}  // namespace meshlode::builder

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The search by bounds against many points, measured by brute force.
+#include "builder/deviation/bounded_search.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "builder/deviation/surfaces.h"
+
+namespace meshlode::builder {
+namespace {
+
+using test::Random;
+using Corners = std::array<Vec3d, 3>;
+
+constexpr std::size_t kWithoutEnd = 1000000;
+/// What a search takes as near enough, as it says of itself.
+constexpr double kTolerance = 1.002;
+
+/// The largest distance of points spread evenly over a triangle, its corners among them.
+double farthest_of_points(const judge::Surface& surface, const Corners& corners, int steps) {
+  double farthest = 0.0;
+  for (int i = 0; i <= steps; ++i) {
+    for (int k = 0; i + k <= steps; ++k) {
+      const double u = double(i) / steps, v = double(k) / steps;
+      farthest = std::max(farthest, test::brute_force(surface, corners[0] + u * (corners[1] - corners[0]) +
+                                                                   v * (corners[2] - corners[0])));
+    }
+  }
+  return farthest;
+}
+
+/// Triangles between points of a coarse grid: they cross, lie in each other, and some are none.
+judge::Surface lattice(Random& random, std::uint32_t count, int size) {
+  judge::Surface surface;
+  const auto coordinate = [&] { return double(random.below(static_cast<std::uint32_t>(size))); };
+  for (std::uint32_t i = 0; i < count; ++i) {
+    for (int k = 0; k < 3; ++k) surface.positions.emplace_back(coordinate(), coordinate(), coordinate());
+    surface.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  return surface;
+}
+
+SurfaceTree tree_over(const judge::Surface& surface) {
+  SurfaceTree tree;
+  tree.build({surface.positions, surface.triangles});
+  return tree;
+}
+
+TEST(BoundedSearch, FindsWhatNoPointIsFartherThan) {
+  Random random(81);
+  for (int round = 0; round < 40; ++round) {
+    const bool is_lattice = round % 2 == 0;
+    const judge::Surface surface = is_lattice ? lattice(random, 30, 4) : test::random_soup(random, 200, 2.0, 0.6);
+    const SurfaceTree tree = tree_over(surface);
+    const judge::Surface one = is_lattice ? lattice(random, 1, 4) : test::random_soup(random, 1, 0.1, 2.0);
+    const Corners corners{one.positions[0], one.positions[1], one.positions[2]};
+    const double sampled = farthest_of_points(surface, corners, 60);
+    if (!(sampled > 0.0)) continue;
+    for (const double known : {0.2 * sampled, 0.9 * sampled}) {
+      BoundedSearch search(tree, 1.0, known);
+      search.add(corners, round % 3 == 0 ? TreeSlot() : TreeSlot(random.below(tree.size())));
+      EXPECT_LT(search.run(kWithoutEnd), 20000U) << "round " << round;
+      EXPECT_TRUE(search.is_done());
+      const BoundedSearch::Found& found = search.found();
+      ASSERT_TRUE(found.place.is_valid()) << "round " << round;
+      EXPECT_GE(found.distance * kTolerance, sampled) << "round " << round << ", from " << known;
+      EXPECT_NEAR(found.distance, test::brute_force(surface, found.at), 1e-6) << "where it says";
+      EXPECT_NEAR(std::sqrt(tree.distance2_at(found.at, found.place)), found.distance, 1e-12);
+
+      BoundedSearch nothing(tree, 1.0, kTolerance * found.distance);
+      nothing.add(corners, found.place);
+      nothing.run(kWithoutEnd);
+      EXPECT_TRUE(nothing.is_done());
+      EXPECT_EQ(nothing.found().distance, 0.0) << "round " << round;
+    }
+  }
+}
+
+TEST(BoundedSearch, LooksForNothingWithinTheMargin) {
+  Random random(82);
+  for (int round = 0; round < 20; ++round) {
+    const judge::Surface surface = test::random_soup(random, 100, 2.0, 0.6);
+    const SurfaceTree tree = tree_over(surface);
+    const judge::Surface one = test::random_soup(random, 1, 0.1, 2.0);
+    const Corners corners{one.positions[0], one.positions[1], one.positions[2]};
+    const auto farthest = [&](double margin, double known) {
+      BoundedSearch search(tree, margin, known);
+      search.add(corners, TreeSlot());
+      search.run(kWithoutEnd);
+      EXPECT_TRUE(search.is_done());
+      return search.found().distance;
+    };
+    const double truth = farthest(1.0, 0.1);
+    ASSERT_GT(truth, 0.1);
+    EXPECT_EQ(farthest(1.5, truth / 1.49), 0.0) << "round " << round;
+    EXPECT_GT(farthest(1.5, truth / 1.52), 0.98 * truth) << "round " << round;
+    EXPECT_GE(farthest(1.5, 0.01) * 1.5 * kTolerance, truth) << "of what is found, too; round " << round;
+  }
+}
+
+// A wall of the source that a cut has in other triangles: none is near to all of it, but together they are.
+TEST(BoundedSearch, DividesAlongTheEdgesOfWhatCoversItTogether) {
+  constexpr double kHeight = 1e-5, kKnown = 1e-4;
+  const judge::Surface surface = test::as_surface(scene::make_plane(12, 0.5));
+  const SurfaceTree tree = tree_over(surface);
+  const Corners corners{Vec3d(-0.47, kHeight, -0.48), Vec3d(0.47, kHeight, -0.39), Vec3d(-0.19, kHeight, 0.43)};
+  BoundedSearch search(tree, 1.0, kKnown);
+  search.add(corners, TreeSlot(0U));
+  const std::size_t parts = search.run(kWithoutEnd);
+  EXPECT_TRUE(search.is_done());
+  EXPECT_EQ(search.found().distance, 0.0);
+  // Halving the longest edges alone makes 509,408.
+  EXPECT_LT(parts, 30000U);
+}
+
+TEST(BoundedSearch, StopsWhereItsEffortEnds) {
+  Random random(83);
+  const judge::Surface surface = lattice(random, 60, 6);
+  const SurfaceTree tree = tree_over(surface);
+  const Corners corners{Vec3d(0.1, 0.2, 0.3), Vec3d(5.1, 0.4, 0.9), Vec3d(1.1, 4.9, 4.7)};
+  BoundedSearch search(tree, 1.0, 0.01);
+  search.add(corners, TreeSlot());
+  EXPECT_FALSE(search.is_done());
+  EXPECT_EQ(search.run(0), 0U);
+  EXPECT_EQ(search.run(1), 0U) << "a division makes two";
+  EXPECT_EQ(search.run(9), 8U);
+  const double after_some = search.found().distance;
+  search.run(kWithoutEnd);
+  EXPECT_TRUE(search.is_done());
+  EXPECT_GE(search.found().distance, after_some);
+  EXPECT_EQ(search.run(kWithoutEnd), 0U) << "and again";
+}
+
+TEST(BoundedSearch, WhatIsSeenAtOnceToBeWithinIs) {
+  Random random(84);
+  std::size_t within = 0;
+  for (int round = 0; round < 300; ++round) {
+    const judge::Surface surface = test::random_soup(random, 40, 1.0, 1.0);
+    const SurfaceTree tree = tree_over(surface);
+    const judge::Surface one = test::random_soup(random, 1, 1.0, 0.3);
+    const Corners corners{one.positions[0], one.positions[1], one.positions[2]};
+    const BoundedSearch search(tree, 1.0, 0.5);
+    if (!search.is_within(corners, round % 2 == 0 ? TreeSlot() : TreeSlot(0U))) continue;
+    ++within;
+    EXPECT_LE(farthest_of_points(surface, corners, 12), 0.5 + 1e-6) << "round " << round;
+  }
+  EXPECT_GT(within, 100U);
+  EXPECT_LT(within, 290U);
+}
+
+// Its middle lies on a small plate, its corners far beside it.
+TEST(BoundedSearch, ATriangleIsNotWithinBecauseItsMiddleIs) {
+  judge::Surface surface;
+  surface.positions = {Vec3d(0.9, 0.9, 0.0), Vec3d(1.1, 0.9, 0.0), Vec3d(1.0, 1.1, 0.0)};
+  surface.triangles = {{0, 1, 2}};
+  const SurfaceTree tree = tree_over(surface);
+  const Corners corners{Vec3d(0.0), Vec3d(3.0, 0.0, 0.0), Vec3d(0.0, 3.0, 0.0)};
+  EXPECT_FALSE(BoundedSearch(tree, 1.0, 0.1).is_within(corners, TreeSlot(0U)));
+}
+
+// Triangles that are a point or a line, of the source and of the surface, and any size.
+TEST(BoundedSearch, TakesTrianglesWithoutArea) {
+  for (const double size : {1e-6, 1.0, 1e9}) {
+    judge::Surface surface;
+    surface.positions = {Vec3d(0.0), Vec3d(size, 0.0, 0.0), Vec3d(2.0 * size, 0.0, 0.0)};
+    surface.triangles = {{0, 1, 2}, {1, 1, 1}, {0, 0, 1}};
+    const SurfaceTree tree = tree_over(surface);
+    const Vec3d up(0.0, 0.0, size);
+    for (const Corners& corners :
+         {Corners{up, up, up}, Corners{up, up * 0.5, up * 0.25}, Corners{Vec3d(0.0), up, up}}) {
+      BoundedSearch search(tree, 1.0, 0.01 * size);
+      search.add(corners, TreeSlot());
+      search.run(kWithoutEnd);
+      EXPECT_TRUE(search.is_done());
+      EXPECT_NEAR(search.found().distance, size, 1e-9 * size);
+    }
+    // Between two that it begins and ends at, farthest in its middle.
+    surface.positions = {Vec3d(0.0), Vec3d(0.0, size, 0.0), Vec3d(4.0 * size, 0.0, 0.0), Vec3d(4.0 * size, size, 0.0)};
+    surface.triangles = {{0, 1, 1}, {2, 3, 3}};
+    const SurfaceTree apart = tree_over(surface);
+    BoundedSearch search(apart, 1.0, 0.01 * size);
+    search.add({surface.positions[0], surface.positions[2], surface.positions[2]}, TreeSlot());
+    search.run(kWithoutEnd);
+    EXPECT_TRUE(search.is_done());
+    EXPECT_NEAR(search.found().distance, 2.0 * size, 2e-3 * size);
+  }
+}
+
+// A distance of zero: the rounding of the tree's floats is not taken for one.
+TEST(BoundedSearch, OfTheSameSurfaceNothingIsFound) {
+  Random random(85);
+  const judge::Surface surface = test::random_soup(random, 50, 1.0, 1.0);
+  const SurfaceTree tree = tree_over(surface);
+  BoundedSearch search(tree, 1.02, 0.0);
+  for (const auto& t : surface.triangles) {
+    search.add({surface.positions[t[0]], surface.positions[t[1]], surface.positions[t[2]]}, TreeSlot());
+  }
+  EXPECT_TRUE(search.is_done());
+  EXPECT_EQ(search.found().distance, 0.0);
+}
+
+}  // namespace
+}  // namespace meshlode::builder

@@ -1,0 +1,313 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a build needs, known before it: counts within 32 bits, and memory, held against what builds in children took.
+#include "builder/builder.h"
+#include "builder/needs.h"
+
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#include "support/sanitized.h"
+
+namespace meshlode::builder {
+namespace {
+
+TEST(Needs, CountsBeyondWhatIdsHoldAreRefusedInOneLine) {
+  EXPECT_TRUE(check_mesh_counts({kMaxMeshTriangles, kMaxMeshVertices}, "mesh 0"));
+  const Status triangles = check_mesh_counts({kMaxMeshTriangles + 1, 3}, "mesh 7 'scan'");
+  ASSERT_FALSE(triangles);
+  EXPECT_EQ(triangles.error().code, ErrorCode::kUnsupported);
+  EXPECT_EQ(triangles.error().message(),
+            "mesh 7 'scan': 214000001 triangles, at most 214000000 are built into one mesh: split it");
+  EXPECT_FALSE(check_mesh_counts({1, kMaxMeshVertices + 1}, "mesh 0"));
+  EXPECT_FALSE(check_mesh_counts({UINT64_MAX, UINT64_MAX}, "mesh 0")) << "no product wraps";
+  // All levels together, in corners, and the corners of the source.
+  EXPECT_LT(static_cast<double>(kMaxMeshTriangles) * 3.0 / (1.0 - 0.85), std::exp2(32));
+}
+
+TEST(Needs, FlatNormalsBesideOthersMakeAVertexOfEachCorner) {
+  scene::SourceMesh mesh;
+  mesh.primitives.resize(2);
+  mesh.primitives[0].positions.resize(4);
+  mesh.primitives[0].indices = {0, 1, 2, 0, 2, 3};
+  mesh.primitives[1] = mesh.primitives[0];
+  EXPECT_EQ(count_mesh(mesh).triangles, 4u);
+  EXPECT_EQ(count_mesh(mesh).vertices, 8u);
+  mesh.primitives[0].normals.resize(4);
+  EXPECT_EQ(count_mesh(mesh).vertices, 10u);
+}
+
+constexpr std::uint64_t kMiB = 1u << 20u;
+
+TEST(Needs, MoreThanIsAllowedIsRefusedAndNamesBoth) {
+  PipelineOptions options;
+  options.max_memory = 100 * kMiB;
+  EXPECT_TRUE(fit_memory({60 * kMiB, {40 * kMiB}}, 1, options));
+  const Result<std::size_t> refused = fit_memory({60 * kMiB + 1, {40 * kMiB}}, 1, options);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::kBuildFailed);
+  EXPECT_EQ(refused.error().detail, "the build needs about 100.1MiB of memory, 100MiB are allowed by --max-memory");
+  options.max_memory = 0;
+  EXPECT_TRUE(fit_memory({1, {}}, 4, options));
+  const Result<std::size_t> machine = fit_memory({std::uint64_t{1} << 60u, {}}, 1, options);
+  ASSERT_FALSE(machine);
+  EXPECT_NE(machine.error().detail.find("are available"), std::string::npos) << machine.error().detail;
+}
+
+TEST(Needs, WhatSpillsIsRefusedOnlyBelowWhatStaysInMemory) {
+  PipelineOptions options;
+  options.max_memory = 70 * kMiB;
+  const MemoryEstimate estimate{60 * kMiB, {40 * kMiB, 5 * kMiB}, 70 * kMiB};
+  EXPECT_FALSE(fit_memory(estimate, 2, options));
+  options.spills = true;
+  const Result<std::size_t> kept = fit_memory(estimate, 2, options);
+  ASSERT_TRUE(kept);
+  EXPECT_EQ(*kept, 1u) << "one mesh after another";
+  options.max_memory = 70 * kMiB - 1;
+  const Result<std::size_t> refused = fit_memory(estimate, 2, options);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().detail, "the build needs about 70MiB of memory, 70MiB are allowed by --max-memory");
+  options.max_memory = 110 * kMiB;
+  EXPECT_EQ(*fit_memory(estimate, 2, options), 2u) << "no need to";
+}
+
+TEST(Needs, AsManyMeshesAreInWorkAtOnceAsFit) {
+  const MemoryEstimate estimate{10 * kMiB, {50 * kMiB, 30 * kMiB, 20 * kMiB, 20 * kMiB}};
+  EXPECT_EQ(estimate.bytes(0), 10 * kMiB);
+  EXPECT_EQ(estimate.bytes(2), 90 * kMiB);
+  EXPECT_EQ(estimate.bytes(9), 130 * kMiB);
+  PipelineOptions options;
+  const auto at_once = [&](std::uint64_t limit, std::uint32_t threads) {
+    options.max_memory = limit;
+    return fit_memory(estimate, threads, options);
+  };
+  EXPECT_EQ(*at_once(130 * kMiB, 16), 4u);
+  EXPECT_EQ(*at_once(130 * kMiB, 3), 3u) << "one a thread";
+  EXPECT_EQ(*at_once(130 * kMiB - 1, 16), 3u);
+  EXPECT_EQ(*at_once(90 * kMiB, 16), 2u);
+  EXPECT_EQ(*at_once(60 * kMiB, 16), 1u);
+  EXPECT_FALSE(at_once(60 * kMiB - 1, 16));
+  EXPECT_EQ(*fit_memory({1, {}}, 0, options), 1u) << "a scene without meshes";
+}
+
+TEST(Needs, AsManyThreadsAsFitAndWithAFileOneForEachSoManyBytes) {
+  const auto within = [](std::uint64_t limit, std::uint32_t threads, std::uint64_t bytes) {
+    return threads_within({bytes, {}}, threads, limit);
+  };
+  EXPECT_EQ(within(1024 * kMiB, 16, 1024 * kMiB), 16u);
+  EXPECT_EQ(within(1024 * kMiB, 16, 1024 * kMiB + 1), 15u);
+  EXPECT_EQ(within(300 * kMiB, 16, 342 * kMiB), 2u) << "fourteen of 3 MiB are too many";
+  EXPECT_EQ(within(300 * kMiB, 16, 342 * kMiB + 1), 2u) << "not even two fit";
+  EXPECT_EQ(within(1024 * kMiB, 16, 4096 * kMiB), 8u);
+  EXPECT_EQ(within(1024 * kMiB, 4, 4096 * kMiB), 4u);
+  EXPECT_EQ(within(4096 * kMiB, 16, 13000 * kMiB), 16u);
+  EXPECT_EQ(within(100 * kMiB, 16, 4096 * kMiB), 2u);
+  EXPECT_EQ(within(100 * kMiB, 1, 4096 * kMiB), 1u);
+  EXPECT_EQ(within(100 * kMiB, 1, 101 * kMiB), 1u);
+}
+
+/// A wavy sheet of 2 · n² triangles, `count` times.
+scene::Scene sheets(std::uint32_t n, std::size_t count, bool has_attributes) {
+  scene::Scene scene;
+  scene.materials.resize(1);
+  scene.materials[0].uv_sets_used = has_attributes ? 1 : 0;
+  scene::Primitive sheet;
+  for (std::uint32_t j = 0; j <= n; ++j) {
+    for (std::uint32_t i = 0; i <= n; ++i) {
+      const double x = static_cast<double>(i) / n, y = static_cast<double>(j) / n;
+      sheet.positions.emplace_back(x, y,
+                                   0.03 * std::sin(40.0 * x) * std::cos(31.0 * y) + 0.002 * ((i * 7 + j * 13) % 5));
+      if (!has_attributes) continue;
+      sheet.uvs[0].emplace_back(static_cast<float>(x), static_cast<float>(y));
+      sheet.normals.emplace_back(0.0F, static_cast<float>(std::sin(x)), static_cast<float>(std::cos(x)));
+      sheet.colors.emplace_back(static_cast<float>(x), 0.5F, static_cast<float>(y), 1.0F);
+    }
+  }
+  for (std::uint32_t j = 0; j < n; ++j) {
+    for (std::uint32_t i = 0; i < n; ++i) {
+      const std::uint32_t q = j * (n + 1) + i;
+      for (const std::uint32_t corner : {q, q + 1, q + n + 2, q, q + n + 2, q + n + 1}) sheet.indices.push_back(corner);
+    }
+  }
+  sheet.material = MaterialId(0U);
+  scene::SourceMesh mesh;
+  mesh.primitives.push_back(std::move(sheet));
+  scene.meshes.assign(count, mesh);
+  return scene;
+}
+
+TEST(Needs, OneMeshAfterAnotherGivesTheSameBytes) {
+  const scene::Scene scene = sheets(40, 5, false);
+  PipelineOptions options;
+  PipelineReport side_by_side, one_by_one;
+  const MemoryEstimate estimate = estimate_memory(scene, options, 4);
+  tbb::task_arena arena(4);
+  arena.execute([&] {
+    const auto all = build_lode(scene, options, {}, side_by_side);
+    options.max_memory = estimate.bytes(1);
+    const auto each = build_lode(scene, options, {}, one_by_one);
+    ASSERT_TRUE(all && each);
+    EXPECT_EQ(*all, *each);
+    const auto taken_apart = build_lode(scene::Scene(scene), options, {}, one_by_one);
+    ASSERT_TRUE(taken_apart);
+    EXPECT_EQ(*all, *taken_apart) << "the scene is freed along the way";
+    options.max_memory = estimate_memory(scene, options, 2).bytes(1) - 1;
+    PipelineReport refused;
+    EXPECT_FALSE(build_lode(scene, options, {}, refused)) << "too much for two threads";
+  });
+  EXPECT_EQ(side_by_side.memory_estimate, estimate.bytes(4));
+  EXPECT_EQ(one_by_one.memory_estimate, estimate.bytes(1));
+}
+
+/// Triangles that share nothing, within a box of 2 and of about `size` each.
+scene::Scene loose(std::uint32_t count, double size = 0.05) {
+  scene::Scene scene = sheets(1, 1, false);
+  scene::Primitive& primitive = scene.meshes[0].primitives[0];
+  primitive.positions.clear();
+  primitive.indices.clear();
+  for (std::uint32_t i = 0; i < 3 * count; ++i) {
+    const std::uint32_t triangle = i / 3;
+    const double t = triangle;
+    primitive.positions.emplace_back(std::sin(t) + size * std::sin(7.0 * i),
+                                     std::cos(1.7 * t) + size * std::cos(5.0 * i),
+                                     std::sin(0.3 * t) + size * std::sin(3.0 * i));
+    primitive.indices.push_back(i);
+  }
+  return scene;
+}
+
+/// The same surface with a vertex for each corner.
+scene::Scene unshared(scene::Scene scene) {
+  for (scene::SourceMesh& mesh : scene.meshes) {
+    for (scene::Primitive& primitive : mesh.primitives) {
+      std::vector<Vec3d> positions;
+      for (std::uint32_t& index : primitive.indices) {
+        positions.push_back(primitive.positions[index]);
+        index = static_cast<std::uint32_t>(positions.size() - 1);
+      }
+      primitive.positions = std::move(positions);
+    }
+  }
+  return scene;
+}
+
+struct Measured {
+  std::uint64_t estimate = 0, peak = 0;  ///< bytes
+};
+
+/// The scene made and built in a child of its own, so that its peak is nobody else's.
+template <class MakeScene>
+Measured measure(const MakeScene& make_scene, format::ErrorTier tier, int threads,
+                 AggregateChoice aggregate = AggregateChoice::kNever,
+                 format::Promise promise = format::Promise::kPosition) {
+  Measured out;
+  int ends[2];
+  if (pipe(ends) != 0) return out;
+  const pid_t child = fork();
+  if (child == 0) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+    tbb::task_arena arena(threads);
+    arena.execute([&] {
+      PipelineOptions options;
+      options.error_tier = tier;
+      options.aggregate = aggregate;
+      options.promise = promise;
+      PipelineReport report;
+      const scene::Scene scene = make_scene();
+      const auto bytes = build_lode(scene, options, {}, report);
+      if (!bytes) _exit(2);
+      if (write(ends[1], &report.memory_estimate, sizeof(report.memory_estimate)) < 0) _exit(3);
+    });
+    _exit(0);
+  }
+  close(ends[1]);
+  const bool has_estimate = read(ends[0], &out.estimate, sizeof(out.estimate)) == sizeof(out.estimate);
+  close(ends[0]);
+  int status = 0;
+  rusage usage{};
+  EXPECT_EQ(wait4(child, &status, 0, &usage), child);
+  EXPECT_TRUE(has_estimate && WIFEXITED(status) && WEXITSTATUS(status) == 0);
+  out.peak = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+  return out;
+}
+
+/// Never less than what is taken, and at most 1.8 times as much and what the program itself is taken for.
+void expect_close(const Measured& measured, const std::string& what) {
+  if (test::kIsSanitized) GTEST_SKIP() << "a sanitizer's own memory is not estimated";
+  const double ratio = static_cast<double>(measured.estimate) / static_cast<double>(measured.peak);
+  std::printf("%s: %.1f MiB estimated, %.1f MiB taken, %.2f\n", what.c_str(),
+              static_cast<double>(measured.estimate) / 0x1p20, static_cast<double>(measured.peak) / 0x1p20, ratio);
+  EXPECT_GE(ratio, 1.0) << what;
+  EXPECT_LE(static_cast<double>(measured.estimate), 1.8 * static_cast<double>(measured.peak) + 24.0 * 0x1p20) << what;
+}
+
+TEST(Needs, WhatTwoThreadsKeepIsNotRefusedToSixteen) {
+  const scene::Scene scene = sheets(20, 1, false);
+  PipelineOptions options;
+  tbb::task_arena arena(16);
+  for (const std::uint32_t threads : {2U, 5U}) {
+    options.max_memory = estimate_memory(scene, options, threads).bytes(1);
+    ASSERT_LT(options.max_memory, estimate_memory(scene, options, 16).bytes(1));
+    arena.execute([&] {
+      PipelineReport report;
+      const auto bytes = build_lode(scene, options, {}, report);
+      EXPECT_TRUE(bytes) << bytes.error().message();
+      EXPECT_EQ(report.memory_estimate, options.max_memory) << "as many threads as fit";
+    });
+  }
+}
+
+// GoogleTest runs such suites first: a child that is forked once there are threads has none of them, and waits for
+// ever.
+TEST(NeedsDeathTest, MemoryIsEstimatedFromAboveAndCloseEnough) {
+  using enum format::ErrorTier;
+  expect_close(measure([] { return sheets(160, 1, false); }, kMeasured, 1), "51,200 triangles, one thread");
+  expect_close(measure([] { return sheets(160, 1, true); }, kMeasured, 2),
+               "with normals, UVs and colours, two threads");
+  expect_close(measure([] { return sheets(160, 1, false); }, kQem, 2), "the quadric's tier");
+  expect_close(measure([] { return sheets(160, 1, false); }, kCertified, 2), "the certified tier");
+  expect_close(measure([] { return sheets(50, 12, false); }, kMeasured, 2), "twelve meshes of 5,000");
+  expect_close(measure([] { return sheets(20, 1, false); }, kMeasured, 1), "800 triangles");
+  expect_close(measure([] { return loose(20000); }, kMeasured, 1), "20,000 loose triangles");
+  expect_close(measure([] { return unshared(sheets(120, 1, false)); }, kMeasured, 1),
+               "28,800 triangles, no vertex shared");
+  expect_close(measure([] { return loose(400); }, kMeasured, 2, AggregateChoice::kAlways), "an aggregate of 400");
+  expect_close(measure([] { return loose(4000, 0.003); }, kMeasured, 2, AggregateChoice::kAlways), "of 4,000 crumbs");
+  expect_close(measure([] { return loose(4000, 0.0005); }, kMeasured, 2, AggregateChoice::kAlways), "of tiny ones");
+  expect_close(measure([] { return loose(20000); }, kMeasured, 1, AggregateChoice::kAlways), "of 20,000 triangles");
+  expect_close(measure([] { return loose(200000); }, kMeasured, 2, AggregateChoice::kAlways), "of 200,000");
+  for (const format::ErrorTier tier : {kMeasured, kCertified}) {
+    expect_close(
+        measure([] { return sheets(80, 1, true); }, tier, 2, AggregateChoice::kNever, format::Promise::kAppearance),
+        "12,800 triangles whose appearance is promised");
+    expect_close(
+        measure([] { return sheets(80, 1, false); }, tier, 2, AggregateChoice::kNever, format::Promise::kAppearance),
+        "flat ones");
+  }
+}
+
+TEST(Needs, ALargeMeshSpillsMostOfWhatItTakes) {
+  const scene::Scene scene = sheets(500, 1, true);  // 500,000 triangles
+  const MemoryEstimate estimate = estimate_memory(scene, {}, 1);
+  EXPECT_LT(estimate.spilled, estimate.bytes(1));
+  EXPECT_GT(estimate.spilled, 500000u * 30u);
+}
+
+TEST(Needs, AScenesImagesAreCounted) {
+  scene::Scene scene = sheets(4, 1, false);
+  const std::uint64_t without = estimate_memory(scene, {}, 1).always;
+  scene.blobs.resize(1);
+  scene.blobs[0].bytes.resize(1000000);
+  EXPECT_EQ(estimate_memory(scene, {}, 1).always, without + 2000000);
+}
+
+}  // namespace
+}  // namespace meshlode::builder
