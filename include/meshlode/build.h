@@ -157,6 +157,8 @@ struct BuildOptions {
   bool repair = false;
   /// build_file: whole-number colours of PLY and STL are taken as linear, not as sRGB.
   bool linear_colors = false;
+  /// build_file: folders besides the scene's own from which files may be read that the scene names.
+  std::vector<std::filesystem::path> allow_outside;
   /// Every cut of a manifold mesh is a manifold, with its holes, handles and pieces: no edge has more than two
   /// triangles. Takes more triangles, since small holes and handles else close where that is far cheaper.
   bool keep_topology = false;
@@ -168,7 +170,7 @@ struct BuildOptions {
   /// pieces the same holds; comma by comma, '*' is any characters and '?' is one.
   std::string aggregate_names;
   /// What errors the asset has, and so what a renderer may choose to keep (docs/selection.md): with kTexels those of
-  /// texture coordinates beside those of positions, with kAppearance those of normals too. Takes the tier kMeasured.
+  /// texture coordinates beside those of positions, with kAppearance those of normals too. Works with every tier.
   format::Promise promise = format::Promise::kPosition;
   std::uint64_t max_memory_bytes = 0;  ///< meshes wait for each other to keep it, or it is refused; 0: what is left
   /// Of build_file: what compressed geometry may take decoded beyond what the size of its file justifies.
@@ -185,8 +187,8 @@ struct BuildOptions {
 [[nodiscard]] Status build_asset_file(const SceneInput& scene, const std::filesystem::path& output,
                                       const BuildOptions& options);
 
-/// Reads a .gltf, .glb, .ply, .obj or .stl, builds it and writes the asset. Files that a glTF refers to are read from
-/// below its own folder only. Errors as above, kUnsupported for an extension that cannot be done
+/// Reads a .gltf, .glb, .ply, .obj or .stl, builds it and writes the asset. Files that it refers to are read from
+/// below its own folder and those of allow_outside only. Errors as above, kUnsupported for an extension that cannot be done
 /// without, and kUsage where the output is one of the files that were read, by whatever name.
 [[nodiscard]] Status build_file(const std::filesystem::path& input, const std::filesystem::path& output,
                                 const BuildOptions& options);

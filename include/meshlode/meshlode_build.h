@@ -106,7 +106,7 @@ typedef struct meshlode_build_options {
    * meshes and materials by aggregate_names: comma by comma, '*' is any characters and '?' is one. */
   uint32_t aggregate;
   const char* aggregate_names; /* may be NULL where `aggregate` is not 3 */
-  uint32_t promise; /* what errors there are of: 0 positions, 1 texels too, 2 appearance too; takes the tier measured */
+  uint32_t promise; /* what errors there are of: 0 positions, 1 texels too, 2 appearance too; works with every tier */
   uint64_t max_memory_bytes;
   uint32_t thread_count; /* 0: all */
   meshlode_build_progress on_progress;

@@ -62,6 +62,7 @@ const Saying kSayings[] = {
     {"--strict", [](BuildOptions&) {}},  // the library always is
     {"--repair", [](BuildOptions& o) { o.repair = true; }},
     {"--linear-colors", [](BuildOptions& o) { o.linear_colors = true; }},
+    {"--allow-outside .", [](BuildOptions& o) { o.allow_outside = {"."}; }},  // no file of data/ names another
     {"--max-memory 64GiB", [](BuildOptions& o) { o.max_memory_bytes = std::uint64_t{64} << 30U; }},
     {"--max-decoded 1MiB", [](BuildOptions& o) { o.max_decoded_bytes = std::uint64_t{1} << 20U; }},
 };

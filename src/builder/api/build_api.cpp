@@ -191,6 +191,7 @@ Status build_file(const std::filesystem::path& input, const std::filesystem::pat
     scene::ImportOptions import_options;
     import_options.repair = options.repair;
     import_options.linear_colors = options.linear_colors;
+    import_options.allow_outside = options.allow_outside;
     import_options.max_decoded = options.max_decoded_bytes;
     std::vector<FileId> files_read;
     import_options.files_read = &files_read;
