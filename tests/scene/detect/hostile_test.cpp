@@ -78,7 +78,9 @@ TEST(DetectHostile, AnyNumbersAndAnyIndices) {
 TEST(DetectHostile, NothingAtAll) {
   EXPECT_TRUE(examine_mesh(SourceMesh{}, {}).empty());
   EXPECT_TRUE(examine_mesh(as_mesh(Primitive{}), {}).empty());
-  EXPECT_TRUE(examine_scene(Scene{}).empty());
+  const std::vector<Fault> of_none = examine_scene(Scene{});
+  ASSERT_EQ(of_none.size(), 1U);
+  EXPECT_EQ(of_none[0].kind, FaultKind::kNothingToDraw);
   Primitive rest;
   rest.indices = {7, 7};  // no triangle
   EXPECT_TRUE(examine_mesh(as_mesh(rest), {}).empty());
