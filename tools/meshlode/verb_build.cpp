@@ -163,7 +163,7 @@ BatchFileNames names_of_files(const BuildCommand& command) {
   return {command.words.manifest, command.words.junit,
           command.words.depfile,  command.report_path,
           command.program,        app::settings_text(command.options.pipeline, command.options.import),
-          command.shard};
+          command.shard,          command.options.import.allow_outside};
 }
 
 /// The formats of the files beside the assets, and of the asset that is named.
@@ -212,7 +212,13 @@ int run_jobs(const std::vector<Job>& jobs, const BuildCommand& command) {
   JobLimit limit(command.jobs);
   std::vector<JobResult> results;
   app::BatchWatcher watcher = show.watcher();
+  std::size_t running = 0;
   if (files) {
+    watcher.on_start = [&running, shown = watcher.on_start](std::size_t job) {
+      running = job;
+      if (shown) shown(job);
+    };
+    watcher.on_write = [&files, &running](const JobResult& result) { files->expect(running, result); };
     watcher.on_end = [&files, shown = watcher.on_end](std::size_t job, const JobResult& result, const Error* error) {
       files->add(job, result);
       shown(job, result, error);
