@@ -205,6 +205,12 @@ Status OutputFiles::write_as(const fs::path& path, std::span<const std::uint8_t>
   return Ok{};
 }
 
+bool OutputFiles::has_written(const fs::path& path) {
+  const std::lock_guard lock(mutex_);
+  const auto info = system::find_info(path);
+  return info && written_.contains(info->id);
+}
+
 void OutputFiles::abandon() {
   const std::lock_guard lock(mutex_);
   is_abandoned_ = true;

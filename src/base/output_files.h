@@ -51,6 +51,9 @@ class OutputFiles {
   /// synced, and not held to be an output that nothing is written over.
   [[nodiscard]] Status rewrite(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
 
+  /// Whether the file at `path` is one that write() put in place, or has just renamed into it.
+  [[nodiscard]] bool has_written(const std::filesystem::path& path);
+
   /// Removes the temporary files of writes under way; these and all later ones fail. For a process about to end.
   void abandon();
 

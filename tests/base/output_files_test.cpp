@@ -230,6 +230,7 @@ TEST_F(OutputFilesTest, AnAbandonedWriteLeavesNothing) {
     std::this_thread::sleep_for(std::chrono::microseconds(microseconds));
     files.abandon();
     const std::vector<std::string> left = names();  // as the process would leave it, ending here
+    EXPECT_EQ(files.has_written(path("asset")), !left.empty());
     writer.join();
     if (!left.empty()) {
       EXPECT_EQ(left, (std::vector<std::string>{"asset"}));

@@ -114,18 +114,24 @@ TEST(OptionParser, SaysWhatAValueShouldHaveBeen) {
   EXPECT_EQ(told_of({"a", "b"}), "meshlode: unexpected argument 'b': test takes one (file)\n");
 }
 
-TEST(OutputName, AnExtensionThatNamesAnotherFormatIsRefused) {
-  for (const char* name : {"x.png", "x.PNG", "x", "x.out", "dir.jpg/x", "/dev/stdout", "", ".png", "x.tmp"}) {
-    EXPECT_TRUE(check_output_name("-o", name, {".png"})) << name;
+TEST(OutputName, AnExtensionOfAnotherFormatIsRefused) {
+  for (const char* name : {"x.png", "x.PNG", "x", "x.out", "dir.jpg/x", "/dev/stdout", "", ".png", "x.tmp", "x.part",
+                           "x.bak", "x.old", "x.new", "x.2", "x.v2", "tmp.Ab3dE"}) {
+    EXPECT_TRUE(check_output_name("-o", name, ".png")) << name;
   }
-  for (const char* name : {"x.jpg", "x.JPEG", "x.webp", "a.png.jpg", "x.glb", "x.lode", "x.json"}) {
-    EXPECT_FALSE(check_output_name("-o", name, {".png"})) << name;
+  for (const char* name : {"x.jpg", "x.JPEG", "x.webp", "a.png.jpg", "x.glb", "x.lode", "x.json", "x.jpe", "x.heic",
+                           "x.ico", "x.b3dm", "x.step", "x.mtl", "x.anything"}) {
+    EXPECT_FALSE(check_output_name("-o", name, ".png")) << name;
   }
-  EXPECT_EQ(check_output_name("-o", "x.gltf", {".glb"}).error().detail,
+  EXPECT_EQ(check_output_name("-o", "x.gltf", ".glb").error().detail,
             "what is written is a .glb file, not a .gltf file (got 'x.gltf'); give a name that ends in .glb");
-  EXPECT_TRUE(check_output_name("--html", "x.htm", {".html", ".htm"}));
-  EXPECT_TRUE(check_output_name("--depfile", "x.d", {}));
-  EXPECT_FALSE(check_output_name("--depfile", "x.json", {}));
+}
+
+TEST(OutputName, AnExtensionOfAKnownFormatIsRefusedForText) {
+  EXPECT_TRUE(check_text_name("--html", "x.htm", {".html", ".htm"}));
+  EXPECT_FALSE(check_text_name("--manifest", "x.txt", {".json"}));
+  for (const char* name : {"x.d", "x.txt", "x.fish", "x"}) EXPECT_TRUE(check_text_name("--depfile", name, {})) << name;
+  for (const char* name : {"x.json", "x.png"}) EXPECT_FALSE(check_text_name("--depfile", name, {})) << name;
 }
 
 TEST(OptionParser, ListsItsOptionsInsteadOfParsing) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What `build` writes beside its assets. Manifest and JUnit file are there from the start on and told anew after every
-// file, so that a batch that is interrupted or killed has them: what it did not come to is skipped, "interrupted".
+// file, so that a batch that is interrupted or killed has them: what it did not come to is skipped, "interrupted", and
+// an asset that was put in place before an interrupt is not.
 //
 // A manifest of N entries after each of N files is quadratic. So what was just written waits until ten times as long
 // has passed as writing it took: at most about a tenth of the time goes there. An interrupt writes what waits.
@@ -8,10 +9,12 @@
 
 #include <chrono>
 #include <cstddef>
+#include <filesystem>
 #include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/hash.h"
@@ -27,6 +30,7 @@ struct BatchFileNames {
   Hash128 program{};
   std::string settings;  ///< app::settings_text()
   std::optional<app::ShardPlan> shard;
+  std::vector<std::filesystem::path> allow_outside = {};  ///< scene::ImportOptions'
 };
 
 class BatchFiles {
@@ -39,6 +43,8 @@ class BatchFiles {
 
   /// Before the first job. Errors are those of the end, and told there.
   void begin();
+  /// The asset of this job is about to be written; `result` is the job's once it is in place.
+  void expect(std::size_t job, const app::JobResult& result);
   void add(std::size_t job, const app::JobResult& result);
   /// All files, for good; but not one that turned out to be a file of a scene, which its job was refused for. \returns
   /// the worst exit code of writing them
@@ -57,6 +63,7 @@ class BatchFiles {
   bool is_manifest_early_ = false, is_junit_early_ = false;
   std::mutex mutex_;  ///< of all below
   std::vector<app::JobResult> results_;
+  std::optional<std::pair<std::size_t, app::JobResult>> written_;  ///< of expect(), until add()
   bool is_over_ = false;
   std::chrono::steady_clock::time_point next_{};  ///< nothing is written before
 };

@@ -35,8 +35,8 @@ void add_batch_options(OptionParser& parser, BatchWords& words) {
   parser.add_flag("--fail-fast", words.fail_fast, "skip what comes after the first file that fails");
   parser.add_flag(
       "--strict", words.strict,
-      "errors: a missing texture, a name of --aggregate that nothing has, nothing to draw, triangles missing; else these "
-      "are warnings");
+      "errors: a missing texture, which else is left out, and a name of --aggregate that nothing has, nothing to draw, "
+      "triangles missing, which else are warnings");
   parser.add_value("--junit", words.junit, "write a JUnit XML file, a test case a scene");
   parser.add_value("--manifest", words.manifest, "write statuses, hashes, seconds and bytes of all files as JSON");
   parser.add_value("--depfile", words.depfile, "write what each asset depends on, for Make and Ninja");

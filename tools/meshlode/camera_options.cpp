@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "base/printable.h"
+
 namespace meshlode::cli {
 
 namespace {
@@ -163,7 +165,8 @@ run::Camera frame_scene(const run::Asset& asset, std::uint32_t width, std::uint3
 Result<run::Camera> make_camera(const CameraOptions& options, const run::Asset& asset) {
   const auto usage = [](const char* option, const char* detail) { return Error{ErrorCode::kUsage, option, detail}; };
   std::uint32_t width = 0, height = 0;
-  if (!parse_size(options.size, width, height)) return usage("--size", "give WIDTHxHEIGHT, each 1 to 16384");
+  if (!parse_size(options.size, width, height))
+    return Error{ErrorCode::kUsage, "--size", "give WIDTHxHEIGHT, each 1 to 16384" + got_text(options.size)};
   if (!(options.pixel_error >= 0.0) || !std::isfinite(options.pixel_error)) {
     return usage("--pixel-error", "give a number of pixels, 0 or more");
   }
@@ -171,7 +174,8 @@ Result<run::Camera> make_camera(const CameraOptions& options, const run::Asset& 
   if (options.camera) {
     const auto numbers = parse_numbers(*options.camera);
     if (!numbers || numbers->size() < 6 || numbers->size() > 8) {
-      return usage("--camera", "give ex,ey,ez,tx,ty,tz[,fovy_deg[,near]]");
+      return Error{ErrorCode::kUsage, "--camera",
+                   "give ex,ey,ez,tx,ty,tz[,fovy_deg[,near]]" + got_text(*options.camera)};
     }
     const std::vector<double>& n = *numbers;
     camera.eye = {n[0], n[1], n[2]};

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/guarded.h"
+#include "base/printable.h"
 #include "exit_codes.h"
 #include "library_versions.h"
 #include "options.h"
@@ -83,15 +84,27 @@ int help_of(std::string_view name) {
   return unknown_verb(name);
 }
 
+bool is_help(std::string_view word) {
+  return word == "--help" || word == "-h" || word == "help";
+}
+
+int unexpected(std::string_view word, const char* what_is_taken) {
+  return print_error({ErrorCode::kUsage, "", "unexpected argument '" + printable(word, 64) + "': " + what_is_taken});
+}
+
 int run(std::span<char* const> args) {
   if (args.empty()) {
     std::fputs(help().c_str(), stderr);
     return static_cast<int>(ErrorCode::kUsage);
   }
   const std::string_view name = args[0];
-  if (name == "help" && args.size() > 1) return help_of(args[1]);
-  if (name == "--help" || name == "-h" || name == "help") return print_or_fail(help());
-  if (name == "--version" || name == "-V" || name == "version") return print_or_fail(version_text());
+  const bool is_version = name == "--version" || name == "-V" || name == "version";
+  if (is_version && args.size() > 1 && is_help(args[1])) return print_or_fail(help());
+  if (is_version && args.size() > 1) return unexpected(args[1], "version takes none");
+  if (is_version) return print_or_fail(version_text());
+  if (name == "help" && args.size() > 2) return unexpected(args[2], "help takes one (verb)");
+  if (name == "help" && args.size() > 1 && !is_help(args[1])) return help_of(args[1]);
+  if (is_help(name)) return print_or_fail(help());
   for (const Verb* verb : all_verbs()) {
     if (name == verb->name) return run_verb(*verb, args.subspan(1));
   }

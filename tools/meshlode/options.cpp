@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstring>
 #include <iterator>
+#include <limits>
 #include <type_traits>
 #include <utility>
 
@@ -45,6 +46,11 @@ std::string value_fault(const std::string& word) {
   if constexpr (std::is_unsigned_v<Value>) {
     Value value = 0;
     const bool is_number = !word.starts_with('-') && CLI::detail::lexical_cast(word, value);
+    const char* const end = word.data() + word.size();
+    const auto [stop, error] = std::from_chars(word.data(), end, value);
+    if (error == std::errc::result_out_of_range && stop == end) {
+      return "expected a whole number, at most " + std::to_string(std::numeric_limits<Value>::max()) + got_text(word);
+    }
     return is_number ? "" : "expected a whole number, 0 or more" + got_text(word);
   } else if constexpr (std::is_floating_point_v<Value>) {
     Value value = 0;
@@ -56,7 +62,28 @@ std::string value_fault(const std::string& word) {
 
 std::string choice_fault(const std::string& word, const std::vector<std::string>& choices) {
   if (std::find(choices.begin(), choices.end(), word) != choices.end()) return "";
+  if (word.empty()) return "needs a value: " + list_of_choices(choices);
   return unknown_choice(printable(word, 64), choices);
+}
+
+/// What an option that names a file or a folder is given; nullptr for all others.
+const char* place_of(std::string_view option) {
+  constexpr std::string_view kFiles[] = {"--output",  "--report", "--manifest", "--junit",
+                                         "--depfile", "--html",   "--source",   "--path"};
+  constexpr std::string_view kFolders[] = {"--output-folder", "--cache", "--settings-root", "--out-dir",
+                                           "--allow-outside"};
+  const auto is_among = [&](std::span<const std::string_view> names) {
+    return std::find(names.begin(), names.end(), option) != names.end();
+  };
+  return is_among(kFiles) ? "a file name" : is_among(kFolders) ? "the name of a folder" : nullptr;
+}
+
+/// An empty name is none: a variable of a script that is not set.
+std::string empty_fault(const CLI::Option& option, const std::string& word) {
+  if (!word.empty()) return "";
+  if (option.get_positional()) return "the argument is empty";
+  const char* const place = option.get_lnames().empty() ? nullptr : place_of("--" + option.get_lnames().back());
+  return place != nullptr ? std::string("needs ") + place : "";
 }
 
 }  // namespace
@@ -78,7 +105,10 @@ struct OptionParser::State {
     CLI::Option& option = *app.add_option(name, target, help);
     const std::string value = option.get_type_name();
     option.check(CLI::Validator(
-        [choices](std::string& word) { return choices.empty() ? value_fault<T>(word) : choice_fault(word, choices); },
+        [choices, &option](std::string& word) {
+          if (std::string fault = empty_fault(option, word); !fault.empty()) return fault;
+          return choices.empty() ? value_fault<T>(word) : choice_fault(word, choices);
+        },
         ""));
     option.required(is_required);
     note(option, value, choices);
@@ -139,6 +169,7 @@ void OptionParser::add_value(const char* name, std::optional<std::string>& targe
 void OptionParser::add_values(const char* name, std::vector<std::string>& target, const char* help) {
   CLI::Option& option = *state_->app.add_option(name, target, help);
   option.allow_extra_args(false);  // else it takes the scene that stands behind its value
+  option.check(CLI::Validator([&option](std::string& word) { return empty_fault(option, word); }, ""));
   state_->note(option, option.get_type_name(), {});
 }
 void OptionParser::add_positional(const char* name, std::string& target, const char* help) {
@@ -153,14 +184,13 @@ void OptionParser::add_positionals(const char* name, std::vector<std::string>& t
 }
 
 void add_max_decoded_option(OptionParser& parser, std::string& size) {
-  parser.add_value(
-      "--max-decoded", size,
-      "what images, and geometry beyond 64 times the file, may take in memory: bytes, or with KiB, MiB, GiB (512MiB)");
+  parser.add_value("--max-decoded", size,
+                   "what images, and geometry beyond 64 times the file, may take in memory: bytes, or with KiB, MiB, "
+                   "GiB, KB, MB, GB (512MiB)");
 }
 
 void add_allow_outside_option(OptionParser& parser, std::vector<std::string>& folders) {
-  parser.add_values("--allow-outside", folders,
-                    "a folder beside the scene's from which files that the scene names may be read; may be repeated");
+  parser.add_values("--allow-outside", folders, "read files that the scene names from below DIR too; may be repeated");
 }
 
 Result<std::vector<std::filesystem::path>> parse_allow_outside(const std::vector<std::string>& folders) {
@@ -213,16 +243,11 @@ const OptionInfo* find_option(const OptionTable& options, const std::string& tex
 
 /// What an option without its value lacks.
 std::string needed_value(const OptionInfo& option) {
-  constexpr std::string_view kFiles[] = {"--output",  "--report", "--manifest", "--junit",
-                                         "--depfile", "--html",   "--source",   "--path"};
-  constexpr std::string_view kFolders[] = {"--output-folder", "--cache", "--settings-root", "--out-dir"};
-  const auto is_among = [&](std::span<const std::string_view> names) {
-    return std::find(names.begin(), names.end(), option.names.back()) != names.end();
-  };
   if (!option.choices.empty()) return "needs a value: " + list_of_choices(option.choices);
   if (option.value == "UINT") return "needs a whole number";
   if (option.value == "FLOAT") return "needs a number";
-  return is_among(kFiles) ? "needs a file name" : is_among(kFolders) ? "needs the name of a folder" : "needs a value";
+  const char* const place = place_of(option.names.back());
+  return place != nullptr ? std::string("needs ") + place : "needs a value";
 }
 
 /// "info takes one argument (file)".
@@ -256,10 +281,20 @@ UsageFault usage_fault(const CLI::App& app, const std::string& verb, const Optio
   }
   const std::string text = error.what();
   const OptionInfo* option = find_option(options, text);
-  if (dynamic_cast<const CLI::ValidationError*>(&error) != nullptr) return {text, true};
+  if (dynamic_cast<const CLI::ValidationError*>(&error) != nullptr) {
+    // By the short name where it is the one that all use.
+    const bool is_empty = text.starts_with("--output: needs");
+    return {is_empty ? "-o" + text.substr(text.find(':')) : text, true};
+  }
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr && option != nullptr) {
     const std::string name = text.substr(0, text.find(':'));
     return {name + (text.ends_with("missing") ? ": " + needed_value(*option) : ": given more than once"), true};
+  }
+  if (dynamic_cast<const CLI::ConversionError*>(&error) != nullptr) {  // "Could not convert: --strict = maybe"
+    const std::size_t name = text.find("--"), equals = text.find(" = ", name);
+    if (equals != std::string::npos) {
+      return {text.substr(name, equals - name) + ": takes no value" + got_text(text.substr(equals + 3)), true};
+    }
   }
   const std::vector<std::string> rest = app.remaining();
   if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr && !rest.empty()) {

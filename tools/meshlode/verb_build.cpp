@@ -46,19 +46,25 @@ using app::Job;
 using app::JobResult;
 
 /// No output may be any input, nor a file beside the assets one of these or another of its kind: checked before the
-/// first job has written anything.
-Status check_outputs(const std::vector<Job>& jobs, const std::vector<std::string>& side_outputs) {
+/// first job has written anything. With --dry-run nothing is claimed: that may remove what killed writers left.
+Status check_outputs(const std::vector<Job>& jobs, const std::vector<std::string>& side_outputs, bool is_dry) {
+  std::error_code error;
   for (const Job& job : jobs) {
     if (const auto id = find_file_id(job.input)) output_files().keep(*id);
+    if (fs::is_directory(job.output, error)) return Error{ErrorCode::kIo, job.output.string(), "is a folder"};
   }
   for (std::size_t i = 0; i < side_outputs.size(); ++i) {
     const std::string& path = side_outputs[i];
-    if (Status free = output_files().claim(path); !free) return free;
+    if (fs::is_directory(path, error)) return Error{ErrorCode::kIo, path, "is a folder"};
+    if (Status free = is_dry ? Status(Ok{}) : output_files().claim(path); !free) return free;
     for (std::size_t other = 0; other < i; ++other) {
       if (!is_same_place(side_outputs[other], path)) continue;
       return Error{ErrorCode::kUsage, path, "two outputs would both become this file"};
     }
     for (const Job& job : jobs) {
+      if (is_dry && is_same_place(job.input, path)) {
+        return Error{ErrorCode::kUsage, path, "the output would overwrite a file that was read"};
+      }
       if (!is_same_place(job.output, path)) continue;
       return Error{ErrorCode::kUsage, path, "would overwrite the asset " + job.output.string()};
     }
@@ -157,16 +163,16 @@ BatchFileNames names_of_files(const BuildCommand& command) {
   return {command.words.manifest, command.words.junit,
           command.words.depfile,  command.report_path,
           command.program,        app::settings_text(command.options.pipeline, command.options.import),
-          command.shard};
+          command.shard,          command.options.import.allow_outside};
 }
 
 /// The formats of the files beside the assets, and of the asset that is named.
 Status check_formats(const BuildCommand& command, const std::string& output) {
-  Status checks[] = {check_output_name("-o", output, {".lode"}),
-                     check_output_name("--manifest", command.words.manifest, {".json"}),
-                     check_output_name("--report", command.report_path, {".json"}),
-                     check_output_name("--junit", command.words.junit, {".xml"}),
-                     check_output_name("--depfile", command.words.depfile, {})};
+  Status checks[] = {check_output_name("-o", output, ".lode"),
+                     check_text_name("--manifest", command.words.manifest, {".json"}),
+                     check_text_name("--report", command.report_path, {".json"}),
+                     check_text_name("--junit", command.words.junit, {".xml"}),
+                     check_text_name("--depfile", command.words.depfile, {})};
   for (Status& status : checks) {
     if (!status) return std::move(status);
   }
@@ -206,7 +212,13 @@ int run_jobs(const std::vector<Job>& jobs, const BuildCommand& command) {
   JobLimit limit(command.jobs);
   std::vector<JobResult> results;
   app::BatchWatcher watcher = show.watcher();
+  std::size_t running = 0;
   if (files) {
+    watcher.on_start = [&running, shown = watcher.on_start](std::size_t job) {
+      running = job;
+      if (shown) shown(job);
+    };
+    watcher.on_write = [&files, &running](const JobResult& result) { files->expect(running, result); };
     watcher.on_end = [&files, shown = watcher.on_end](std::size_t job, const JobResult& result, const Error* error) {
       files->add(job, result);
       shown(job, result, error);
@@ -308,15 +320,16 @@ int run_build(const Verb& verb, std::span<char* const> args) {
   if (const Status names = check_names(command, *plan); !names) return print_error(names.error());
   const auto share = take_share(*plan, command);
   if (!share) return print_error(share.error());
+  std::vector<std::string> side_outputs = command.words.outputs();
+  if (!command.report_path.empty()) side_outputs.push_back(command.report_path);
+  const bool is_dry = command.words.dry_run;
+  if (const Status free = check_outputs(*plan, side_outputs, is_dry); !free) return print_error(free.error());
+  if (const Status formats = check_formats(command, output); !formats) return print_error(formats.error());
   if (const Status found = find_program(command); !found) return print_error(found.error());
   if (const Status opened = open_cache(command); !opened) return print_error(opened.error());
 
-  std::vector<std::string> side_outputs = command.words.outputs();
-  if (!command.report_path.empty()) side_outputs.push_back(command.report_path);
-  if (!command.words.dry_run) {
+  if (!is_dry) {
     if (const Status made = make_folder(output_folder); !made) return print_error(made.error());
-    if (const Status free = check_outputs(*plan, side_outputs); !free) return print_error(free.error());
-    if (const Status formats = check_formats(command, output); !formats) return print_error(formats.error());
     if (const Status removed = remove_old_manifest(command); !removed) return print_error(removed.error());
   }
   command.options.import.may_lack_images = !command.words.strict;

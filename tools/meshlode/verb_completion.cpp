@@ -6,6 +6,7 @@
 
 #include "completion.h"
 #include "options.h"
+#include "output_name.h"
 #include "outputs.h"
 #include "verb.h"
 
@@ -28,6 +29,7 @@ int run_completion(const Verb& verb, std::span<char* const> args) {
   parser.add_positional("shell", name, "whose script", names);
   parser.add_value("-o,--output", output, "the file to write; stdout where not given");
   if (const auto exit_code = parser.parse(args)) return *exit_code;
+  if (const Status sound = check_text_name("-o", output, {}); !sound) return print_error(sound.error());
   for (const Shell& shell : kShells) {
     if (name != shell.name) continue;
     const std::string text = shell.script(all_verb_help());

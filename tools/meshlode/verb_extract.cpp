@@ -40,7 +40,7 @@ Error usage(const char* option, const char* detail) {
 
 Status check_options(const ExtractOptions& o) {
   if (!o.output) return usage("-o", "say where the GLB goes");
-  if (Status name = check_output_name("-o", *o.output, {".glb"}); !name) return name;
+  if (Status name = check_output_name("-o", *o.output, ".glb"); !name) return name;
   if (o.is_stuck) {
     if (o.request.has_way() || o.request.bounds.has_any() || o.mesh) return usage("--stuck", "stands alone");
   } else if (auto status = check_request(o.request); !status) {

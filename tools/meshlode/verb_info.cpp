@@ -57,7 +57,7 @@ Status claim_page(const run::Asset& asset, const PageOptions& page) {
   if (!page.path) return Ok{};
   if (const auto id = asset.file_id()) output_files().keep(*id);
   if (Status free = output_files().claim(*page.path); !free) return free;
-  return check_output_name("--html", *page.path, {".html", ".htm"});
+  return check_text_name("--html", *page.path, {".html", ".htm"});
 }
 
 Status write_page(const run::Asset& asset, const std::string& path, const std::optional<app::ByteMap>& byte_map,

@@ -256,7 +256,7 @@ int run_render(const Verb& verb, std::span<char* const> args) {
   add_output_options(parser, options.report);
   if (const auto exit_code = parser.parse(args)) return *exit_code;
   if (options.output.empty()) return print_error({ErrorCode::kUsage, "--output", "name the PNG to write"});
-  if (const Status name = check_output_name("--output", options.output, {".png"}); !name) {
+  if (const Status name = check_output_name("--output", options.output, ".png"); !name) {
     return print_error(name.error());
   }
   if (options.error && !(*options.error >= 0.0 && std::isfinite(*options.error))) {

@@ -66,7 +66,7 @@ int run_repack(const Verb& verb, std::span<char* const> args) {
   if (const auto exit_code = parser.parse(args)) return *exit_code;
   if (!o.output) return print_error({ErrorCode::kUsage, "-o", "say where the asset goes"});
   if (!o.codec) return print_error({ErrorCode::kUsage, "--codec", "say how pages are to be stored"});
-  if (const Status name = check_output_name("-o", *o.output, {".lode"}); !name) return print_error(name.error());
+  if (const Status name = check_output_name("-o", *o.output, ".lode"); !name) return print_error(name.error());
   const std::optional<format::Codec> codec = value_in(format::kCodecNames, *o.codec);
   const Result<std::uint64_t> max_decoded = parse_max_decoded(o.max_decoded);
   if (!max_decoded) return print_error(max_decoded.error());

@@ -146,7 +146,8 @@ Status set_options(const SweepWords& words, lab::SweepOptions& options) {
   }
   if (words.budget) {
     const auto seconds = parse_duration(*words.budget);
-    if (!seconds) return Error{ErrorCode::kUsage, "--budget", "give a time such as 90s, 5m or 1h"};
+    if (!seconds)
+      return Error{ErrorCode::kUsage, "--budget", "give a time such as 90s, 5m or 1h" + got_text(*words.budget)};
     options.budget = *seconds;
   }
   auto wishes = parse_wishes(words.want.value_or(""));

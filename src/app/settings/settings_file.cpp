@@ -87,6 +87,7 @@ class FileReader {
 
   Result<SettingLayer> read(std::string_view text) {
     if (text.size() > kMaxBytes) return Error{ErrorCode::kInvalid, layer_.from, "a file of settings has at most 1MiB"};
+    if (text.empty()) return Error{ErrorCode::kInvalid, layer_.from, "the file is empty"};
     const Result<Json> root = scene::parse_json(text);
     if (!root) return Error{ErrorCode::kInvalid, layer_.from, root.error().detail};
     if (!root->is_object()) return Error{ErrorCode::kInvalid, layer_.from, "is no object of settings"};

@@ -56,6 +56,10 @@ class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
     std::string text = error.what();
     // "[json.exception.parse_error.101] parse error at line 1, column 2: …": the bracket says nothing to a user.
     if (const std::size_t end = text.find("] "); end != std::string::npos) text.erase(0, end + 2);
+    // Of "syntax error while parsing value - invalid literal; last read: 'b'" what is in the middle.
+    const std::size_t syntax = text.find("syntax error while parsing "), dash = text.find(" - ", syntax);
+    if (syntax != std::string::npos && dash != std::string::npos) text.erase(syntax, dash + 3 - syntax);
+    text.erase(std::min(text.find("; last read: "), text.size()));
     for (char& c : text) {
       if (static_cast<unsigned char>(c) < 0x20) c = ' ';
     }

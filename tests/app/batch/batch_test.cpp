@@ -36,7 +36,7 @@ class BatchTest : public testing::Test {
       jobs.push_back({folder_.path("in/" + name + ".gltf"), folder_.path(out + "/" + name + ".lode")});
     }
     OutputFiles files;
-    return run_batch(jobs, options, files, {});
+    return run_batch(jobs, options, files, watcher_);
   }
   static std::string statuses(const std::vector<JobResult>& results) {
     std::string text;
@@ -46,6 +46,7 @@ class BatchTest : public testing::Test {
   [[nodiscard]] std::string asset(const std::string& name) const { return BatchFolder::text_of(folder_.path(name)); }
 
   BatchFolder folder_;
+  BatchWatcher watcher_;
 };
 
 TEST_F(BatchTest, ASecondRunDoesNothingAndAChangeRebuildsItsDependantsAlone) {
@@ -198,6 +199,32 @@ TEST_F(BatchTest, AnEntryThatWasSpoiltIsBuiltAnew) {
     EXPECT_EQ(statuses(run({"1"}, "out")), "built") << kind;
     EXPECT_EQ(asset("out/1.lode"), sound);
   }
+}
+
+/// So that an interrupt between the asset's name and the end of its job can say what is there.
+TEST_F(BatchTest, BeforeAnAssetIsWrittenItsResultIsTold) {
+  folder_.write_scene("in/1", 1);
+  std::vector<JobResult> told;
+  watcher_.on_write = [&](const JobResult& result) {
+    EXPECT_FALSE(fs::exists(result.job.output));
+    told.push_back(result);
+  };
+  const auto expect_told = [&](const JobResult& result) {
+    ASSERT_EQ(told.size(), 1U);
+    EXPECT_EQ(told[0].status, result.status);
+    EXPECT_EQ(told[0].facts.bytes, fs::file_size(result.job.output));
+    EXPECT_EQ(told[0].asset_hash, result.asset_hash);
+    EXPECT_EQ(told[0].exit_code, 0);
+    told.clear();
+  };
+  const auto built = run({"1"}, "out");
+  EXPECT_EQ(statuses(built), "built");
+  expect_told(built[0]);
+  const auto cached = run({"1"}, "other");
+  EXPECT_EQ(statuses(cached), "cached");
+  expect_told(cached[0]);
+  run({"1"}, "other");
+  EXPECT_TRUE(told.empty());
 }
 
 TEST_F(BatchTest, OneFailureStopsTheOthersOnlyWhereAsked) {

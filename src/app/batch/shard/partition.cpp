@@ -12,6 +12,8 @@
 #include <string>
 #include <utility>
 
+#include "base/printable.h"
+
 namespace meshlode::app {
 
 namespace {
@@ -48,7 +50,8 @@ Result<Shard> parse_shard(std::string_view text) {
   const auto count = parse_number(slash == std::string_view::npos ? std::string_view() : text.substr(slash + 1));
   if (!index || !count || *index < 1 || *index > *count || *count > kMaxShards) {
     return Error{ErrorCode::kUsage, "--shard",
-                 "give I/N, such as 3/8: share I, 1 to N, of N, which is at most " + std::to_string(kMaxShards)};
+                 "give I/N, such as 3/8: share I, 1 to N, of N, which is at most " + std::to_string(kMaxShards) +
+                     got_text(text)};
   }
   return Shard{*index, *count};
 }

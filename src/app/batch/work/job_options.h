@@ -49,6 +49,9 @@ struct BatchWatcher {
                      const builder::PipelineOptions& options)>
       on_scene;
   builder::ProgressCallback on_progress;  ///< of the job started last
+  /// The asset of the job started last is about to be written. `result`: the job's, as far as it is known then, if the
+  /// asset gets its name and nothing comes after.
+  std::function<void(const JobResult& result)> on_write;
   std::function<void(std::size_t job, const JobResult& result, const Error* error)> on_end;
 };
 

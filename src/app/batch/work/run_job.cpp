@@ -156,6 +156,7 @@ class Run {
     if (record) {
       result_.facts = record->facts;
       if (Status whole = check_whole(record->facts); !whole) return whole;
+      if (Status names = check_names(record->facts.planned_out); !names) return names;
     }
     if (record && holds(result_.job.output, *record)) {
       result_.status = JobStatus::kUnchanged;
@@ -226,6 +227,7 @@ class Run {
     if (!is_there) {
       const auto asset = options_.cache->store().find(EntryKind::kAsset, record.asset);
       if (!asset || asset->bytes.size() != record.facts.bytes) return std::nullopt;
+      tell_write(JobStatus::kCached, record.facts, record.asset);
       if (Status written = files_.write(result_.job.output, asset->bytes); !written) return written;
     }
     result_.status = is_there ? JobStatus::kUnchanged : JobStatus::kCached;
@@ -233,6 +235,18 @@ class Run {
     result_.asset_hash = record.asset;
     options_.cache->remember(result_.job.output, ingredients_);
     return Status(Ok{});
+  }
+
+  /// What the result is if the process ends when the asset has its name, and before the job is over.
+  void tell_write(JobStatus status, const JobFacts& facts, const Hash128& hash) const {
+    if (!watcher_.on_write) return;
+    JobResult result = result_;
+    result.status = status;
+    result.facts = facts;
+    result.asset_hash = hash;
+    result.warnings = list_warnings(facts);
+    result.seconds = timer_.seconds();
+    watcher_.on_write(result);
   }
 
   Status build_and_write() {
@@ -257,12 +271,17 @@ class Run {
     take_report(report);
     if (!bytes) return bytes.error();
     if (Status whole = check_whole(result_.facts); !whole) return whole;
+    JobFacts facts = result_.facts;
+    facts.bytes = bytes->size();
+    const bool has_hash = options_.cache != nullptr || options_.lists_files;
+    const Hash128 hash = has_hash ? hash128(*bytes) : Hash128{};
+    tell_write(JobStatus::kBuilt, facts, hash);
     const Timer write_timer;
     if (Status ok = files_.write(result_.job.output, *bytes); !ok) return ok;
     result_.stages.push_back({"write_file", write_timer.seconds()});
     result_.status = JobStatus::kBuilt;
-    result_.facts.bytes = bytes->size();
-    if (options_.cache != nullptr || options_.lists_files) result_.asset_hash = hash128(*bytes);
+    result_.facts = std::move(facts);
+    result_.asset_hash = hash;
     // Only what was read as it was hashed, and nothing beside it, is known to make these bytes.
     if (!ingredients_.empty() && are_unchanged(result_.files) && cover(result_.files, read)) {
       options_.cache->keep({ingredients_, result_.asset_hash, result_.facts}, *bytes);
@@ -284,6 +303,7 @@ class Run {
     }
   }
 
+  const Timer timer_;
   const BatchOptions& options_;
   builder::PipelineOptions pipeline_;  ///< this job's
   scene::ImportOptions import_;
