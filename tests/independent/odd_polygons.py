@@ -245,6 +245,9 @@ def stl_cases():
     red, blue = 31 << 10 | 1 << 15, 31 | 1 << 15
     yield "viscam", binary_stl(attributes=[red, blue, 0] * 4), CUBE
     yield "magics", binary_stl(head=b"COLOR=\x40\x80\xff\xff,MATERIAL=" + bytes(12), attributes=[31, 31 << 10, 1 << 15] * 4), CUBE
+    head = b"COLOR=\x40\x80\xff\xff"
+    yield "meshlab", binary_stl(head=head, attributes=[31 | 1 << 15, 31 << 10 | 1 << 15, 0xFFFF] * 4), CUBE
+    yield "magics_zero", binary_stl(head=head, attributes=[0] * 12), CUBE
     yield "attributes", binary_stl(attributes=[7] * 12), CUBE
 
 

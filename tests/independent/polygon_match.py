@@ -207,10 +207,9 @@ class Match:
         low = [min((p[k] for p in points), default=0.0) for k in range(3)]
         high = [max((p[k] for p in points), default=0.0) for k in range(3)]
         center = tuple((a + b) / 2.0 for a, b in zip(low, high))
-        turned = "images" in self.gltf.root  # else nobody samples with them
         expected, found = {}, {}
         for face in faces:
-            if face.uvs is not None and turned:  # theirs begin below, glTF's above
+            if face.uvs is not None:  # theirs begin below, glTF's above
                 face.uvs = [(u, 1.0 - v) for u, v in face.uvs]
             key = face.material if face.material in self.model.materials else None
             expected.setdefault(key, Sum()).add(face, center)
@@ -285,6 +284,9 @@ class Match:
                    "metallic": ("Pm", (pbr.get("metallicFactor", 1.0),)), "emissive": ("Ke", emissive)}
         for factor, values in want.factors.items():
             word, have = carried[factor]
+            if values == (0.0,) and {"roughness": "map_pr", "metallic": "map_pm"}.get(factor) in want.textures and \
+                    "metallicRoughnessTexture" in pbr:
+                values = (1.0,)  # the 0 that writers always write would switch the map off
             same = len(have) == len(values) and max(abs(a - b) for a, b in zip(have, values)) < 1e-6
             self.expect(same or self.is_named(word), f"material {name!r}: {word} is {have}, not {values}")
         roles = {"map_kd": pbr.get("baseColorTexture"), "norm": record.get("normalTexture"),

@@ -230,7 +230,8 @@ def obj_lines(path):
     with open(path, "rb") as file:
         waiting = ""
         for line in text_lines(file.read()):
-            if line.endswith("\\"):
+            named = line.split()[:1] and line.split()[0] in ("g", "o", "usemtl", "mtllib")
+            if line.endswith("\\") and not (named and line[-2] not in BLANKS):  # a folder of Windows
                 waiting += line[:-1] + " "
                 continue
             yield (waiting + line).strip(BLANKS)
@@ -239,8 +240,10 @@ def obj_lines(path):
 
 def obj_libraries(path, rest):
     folder = os.path.dirname(path)
-    whole = os.path.join(folder, rest)
-    return [whole] if os.path.exists(whole) else [os.path.join(folder, name) for name in rest.split()]
+    whole = os.path.join(folder, rest.strip('"'))
+    if os.path.exists(whole):
+        return [whole]
+    return [os.path.join(folder, a or b) for a, b in re.findall(r'"([^"]+)"|(\S+)', rest)]
 
 
 def read_obj(path):
@@ -292,6 +295,8 @@ def read_obj(path):
             names = [n for n in names if n[0] != word] + ([(word, rest)] if rest else [])
         else:
             model.unread.add(word)
+    if all(face.normals is not None for face in model.faces):  # nothing that smoothing would change
+        model.unread.discard("s")
     model.names = sorted({name for _, name in used})
     return model
 
@@ -325,8 +330,9 @@ def read_stl(path):
         model.faces.append(Face([numbers[3:6], numbers[6:9], numbers[9:12]]))
         attributes.append(numbers[12])
     five = [[(a >> shift & 31) / 31.0 for shift in (0, 5, 10)] for a in attributes]
-    if magics:  # bit 15: the colour of the whole; else red is lowest
-        rows = [whole if a >> 15 else tuple(rgb) for a, rgb in zip(attributes, five)]
+    if magics:  # bit 15 alone, or all bits: the colour of the whole; else red is lowest
+        rows = [whole if a in (0x8000, 0xFFFF) or not any(attributes) else tuple(rgb)
+                for a, rgb in zip(attributes, five)]
     elif any(a >> 15 for a in attributes):  # VisCAM: bit 15: there is a colour; blue is lowest
         rows = [tuple(rgb[::-1]) if a >> 15 else (1.0, 1.0, 1.0) for a, rgb in zip(attributes, five)]
     else:

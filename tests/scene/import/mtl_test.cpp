@@ -153,5 +153,23 @@ TEST_F(MtlAsWritten, HostileBytesEnd) {
   EXPECT_LT(scene->left_out.size(), 300U);
 }
 
+TEST_F(MtlAsWritten, ZerosThatWritersAlwaysWriteDoNotSwitchAMapOff) {
+  const auto scene =
+      read_mtl("newmtl a\nPr 0\nPm 0\nmap_Pr rgb.png\nmap_Pm rgb.png\nnewmtl b\nPr 0\nPm 0\n", {"a", "b"});
+  ASSERT_TRUE(scene) << describe(scene);
+  EXPECT_NE(material(scene).find("\"metallicFactor\":1.0,\"metallicRoughnessTexture\""), std::string::npos)
+      << material(scene);
+  EXPECT_NE(material(scene, 1).find("\"metallicFactor\":0.0,\"roughnessFactor\":0.0"), std::string::npos)
+      << material(scene, 1);
+}
+
+TEST_F(MtlAsWritten, ValuesThatAreClampedAreCounted) {
+  const auto scene = read_mtl("newmtl a\nKd 2 0 0\nPr 7\nnewmtl b\nKd 0 -1 0\nd 1\n", {"a", "b"});
+  ASSERT_TRUE(scene) << describe(scene);
+  EXPECT_EQ(all_left_out(*scene),
+            "MTL Kd: 2 lines with a value out of range, which is clamped; MTL Pr: 1 line with a value out of range, "
+            "which is clamped; ");
+}
+
 }  // namespace
 }  // namespace meshlode::testing

@@ -101,6 +101,12 @@ void add_polygon_seeds(std::vector<SeedFile>& seeds) {
                    "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
                    "element tristrips 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n"
                    "6 0 1 2 -1 2 3\n"});
+  seeds.push_back({"no_faces.ply",
+                   "ply\nformat ascii 1.0\ncomment TextureFile a.png\nelement vertex 4\nproperty float x\n"
+                   "property float y\nproperty float z\nproperty float u\nproperty float v\nelement face 0\n"
+                   "property list uchar int vertex_indices\nproperty int texnumber\nelement tristrips 1\n"
+                   "property list int int vertex_indices\nend_header\n0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\n1 1 0 1 1\n"
+                   "4 0 1 2 3\n"});
   seeds.push_back(
       {"frame.obj",
        "mtllib a.mtl\nv 0 0 0\nv 4 0 0 1 0 0\nv 4 4 0\nv 0 4 0\nv 1 1 0\nv 1 3 0\nv 3 3 0\nv 3 1 0\nvt 0 0\n"

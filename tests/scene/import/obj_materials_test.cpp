@@ -101,7 +101,7 @@ TEST(ImportObjMaterials, WhatIsMissingIsAWarningOrAnError) {
   ASSERT_TRUE(untextured) << describe(untextured);
   EXPECT_EQ(left_out(*untextured), "map_Kd my tex.png; MTL option -clamp of map_Kd; MTL option -s of map_Kd; MTL Ns; ");
   EXPECT_EQ(untextured->materials[1].base_color_texture, kNoId);
-  EXPECT_EQ(untextured->meshes[0].primitives[1].uvs[0][1], Vec2f(1.0F, 0.25F));  // nobody samples with them
+  EXPECT_EQ(untextured->meshes[0].primitives[1].uvs[0][1], Vec2f(1.0F, 0.75F));  // with and without the picture
   EXPECT_NE(untextured->source_hash, bare->source_hash);                         // it covers the library
 }
 
@@ -190,6 +190,32 @@ TEST(ReadMtl, WhatMakesNoSenseIsPassedOver) {
                                                                   {"option -s of map_Kd", 1},
                                                                   {"Tr without a value that makes sense", 1}};
   EXPECT_EQ(read.skipped.counts(), skipped);
+}
+
+TEST(ImportObjMaterials, LibrariesMayBeQuotedAndCountInTheirOrder) {
+  const TempFolder folder;
+  folder.write("m m.mtl", "newmtl red\nKd 0 0 1\n");
+  folder.write("a.mtl", "newmtl red\nKd 1 0 0\n");
+  const std::string text = obj(kRed, "mtllib \"m m.mtl\"\nmtllib \"m m.mtl\" a.mtl\nmtllib a.mtl\n");
+  const auto path = folder.write("a.obj", text);
+  const auto scene = scene::import_scene(path, {});
+  ASSERT_TRUE(scene) << describe(scene);
+  EXPECT_EQ(scene->materials[0].base_color, Vec4f(0, 0, 1, 1));  // the first that has it
+  const auto references = scene::list_references(path);
+  ASSERT_TRUE(references && !references->empty());
+  EXPECT_EQ(references->front().path.filename(), "m m.mtl");
+}
+
+TEST(ImportObjMaterials, LibrariesThatAreMissingAreNamedOnceAndTheFirstFew) {
+  const TempFolder folder;
+  std::string names = "mtllib";
+  for (int i = 0; i < 1000; ++i) names += " a " + std::to_string(i);
+  const auto scene =
+      scene::import_scene(folder.write("a.obj", obj("f 1 2 3\n", names + "\n")), {.may_lack_images = true});
+  ASSERT_TRUE(scene) << describe(scene);
+  ASSERT_EQ(scene->left_out.size(), 9U) << left_out(*scene);
+  EXPECT_EQ(scene->left_out[0].what, "mtllib a");
+  EXPECT_EQ(scene->left_out[8].why, "993 more names: they cannot be opened below the scene's folder");
 }
 
 }  // namespace

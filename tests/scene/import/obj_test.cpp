@@ -88,7 +88,7 @@ TEST_F(ObjAsWritten, FacesKeepTheAttributesThatTheyHave) {
   ASSERT_EQ(scene->meshes.size(), 1U);
   const auto& parts = scene->meshes[0].primitives;
   ASSERT_EQ(parts.size(), 3U);  // both, normals alone, neither
-  EXPECT_EQ(parts[0].uvs[0][parts[0].indices[2]], Vec2f(1, 1));
+  EXPECT_EQ(parts[0].uvs[0][parts[0].indices[2]], Vec2f(1, 0));
   EXPECT_EQ(parts[0].normals[0], Vec3f(0, 0, 1));
   EXPECT_TRUE(parts[1].uvs[0].empty());
   EXPECT_EQ(parts[1].normals.size(), 3U);
@@ -133,7 +133,8 @@ TEST_F(ObjAsWritten, WhatIsNotReadIsNamedOnceWithACount) {
   ASSERT_TRUE(scene) << describe(scene);
   EXPECT_EQ(all_left_out(*scene),
             "the fourth number of v: 1 vertex: a weight for curves; the third number of vt: 1 line: it is not 0; "
-            "smoothing groups (s): 1 line: without vn a face is flat; the names of 2 groups: groups (g) are no meshes: a b, c; "
+            "smoothing groups (s): 1 line: without vn a face is flat; the names of 2 groups: groups (g) are no meshes: "
+            "a b, c; "
             "l: 2 lines: points and lines are not triangles; lod: 1 line: not a keyword that is read; ");
 }
 
@@ -206,6 +207,37 @@ TEST_F(ObjAsWritten, HostileFacesEnd) {
   std::string objects = kSquareObj;
   for (int i = 0; i < 70000; ++i) objects += "o n" + std::to_string(i) + "\n";
   EXPECT_TRUE(read("a.obj", objects + "f 1 2 3\n"));
+}
+
+TEST_F(ObjAsWritten, ANormalThatSaysNothingCostsNoOther) {
+  const std::string corners = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 5 5 5\nvn 0 0.6 0.8\nvn 0 0 nan\n";
+  const auto whole = read("a.obj", corners + "s 1\nf 1//1 2//1 3//1\nf 1//1 3//1 4//1\n");
+  ASSERT_TRUE(whole) << describe(whole);
+  EXPECT_EQ(primitive(whole).normals.at(3), Vec3f(0, 0.6F, 0.8F));
+  EXPECT_EQ(all_left_out(*whole), "");  // nor is there a flat face that would be smooth
+  const auto scene = read("a.obj", corners + "f 1//1 2//1 3//1\nf 1//1 3//1 4//2\n");
+  ASSERT_TRUE(scene) << describe(scene);
+  EXPECT_EQ(primitive(scene).normals.at(0), Vec3f(0, 0.6F, 0.8F));
+  EXPECT_EQ(primitive(scene).normals.at(3), Vec3f(0, 0, 1));
+  EXPECT_EQ(all_left_out(*scene),
+            "normals: 1 are not finite or have no length; the triangles' own stand in for them; ");
+}
+
+TEST_F(ObjAsWritten, TextureCoordinatesThatAreNotFiniteAreCounted) {
+  const auto scene = read("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt nan 0\nvt 0 -inf\nvt 1 1\nf 1/1 2/2 3/3\n");
+  ASSERT_TRUE(scene) << describe(scene);
+  EXPECT_EQ(all_left_out(*scene), "texture coordinates: 2 are not finite; zero stands in for them; ");
+}
+
+TEST_F(ObjAsWritten, FacesWhosePartsCancelOutCrossThemselves) {
+  const auto bow = read("a.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 4 3\n");
+  ASSERT_TRUE(bow) << describe(bow);
+  EXPECT_EQ(all_left_out(*bow),
+            "the shape of 1 face: their sides cross or touch each other, so that what is inside is a guess; ");
+  const auto five = read("a.obj", "v 0 0 0\nv 1 1 0\nv 2 2 0\nv 2 0 0\nv 0 2 0\nf 1 3 4 5\nf 1 2 3 4 5\n");
+  ASSERT_TRUE(five) << describe(five);
+  EXPECT_EQ(all_left_out(*five),
+            "the shape of 2 faces: their sides cross or touch each other, so that what is inside is a guess; ");
 }
 
 }  // namespace

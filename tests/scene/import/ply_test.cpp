@@ -232,5 +232,53 @@ TEST_F(PlyAsWritten, ListsOfTheWrongLengthAreNamedOrRefused) {
   EXPECT_FALSE(read("a.ply", header("", kUv) + kVertices + "3 0 1 2 6 0 0 x 0 1 1\n3 0 2 3 0\n"));
 }
 
+TEST_F(PlyAsWritten, StripsBesideAnElementOfNoFacesHaveNoTextureNumbers) {
+  folder_.write("a.png", kPng);
+  const auto scene = read("a.ply",
+                          "ply\nformat ascii 1.0\ncomment TextureFile a.png\nelement vertex 4\nproperty float x\n"
+                          "property float y\nproperty float z\nproperty float u\nproperty float v\nelement face 0\n"
+                          "property list uchar int vertex_indices\nproperty list uchar float texcoord\n"
+                          "property int texnumber\nelement tristrips 1\nproperty list int int vertex_indices\n"
+                          "end_header\n0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\n1 1 0 1 1\n4 0 1 2 3\n");
+  ASSERT_TRUE(scene) << describe(scene);
+  EXPECT_EQ(triangle_count(*scene), 2U);
+  EXPECT_EQ(primitive(scene).material.value, 0U);
+  EXPECT_EQ(scene->materials.at(0).base_color_texture, 0U);
+  EXPECT_EQ(all_left_out(*scene), "");
+}
+
+TEST_F(PlyAsWritten, ColoursOfEightBitsEndAt255) {
+  const std::string color = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+  const auto scene =
+      read("a.ply", header(color, "", "", 1) + "0 0 0 255 0 0\n1 0 0 0 0 0\n1 1 0 256 0 0\n0 1 0 0 0 0\n4 0 1 2 3\n");
+  ASSERT_TRUE(scene) << describe(scene);
+  EXPECT_EQ(primitive(scene).colors[0], Vec4f(1, 0, 0, 1));
+  EXPECT_EQ(primitive(scene).colors[2], Vec4f(1, 0, 0, 1));
+  EXPECT_EQ(all_left_out(*scene), "colours: 1 outside of what their type covers are clamped; ");
+}
+
+TEST_F(PlyAsWritten, AnElementWithoutPropertiesIsNamed) {
+  for (const char* count : {"2", "2000000000"}) {
+    const auto scene =
+        read("a.ply", header("", "", "element material " + std::string(count) + "\n", 1) + kVertices + "4 0 1 2 3 9\n");
+    ASSERT_TRUE(scene) << describe(scene);
+    EXPECT_EQ(area(*scene), 1.0);
+    EXPECT_EQ(all_left_out(*scene), "element material: " + std::string(count) +
+                                        " of it; only vertices and faces are read; 1 number: rows have more than the "
+                                        "header says, at their ends; ");
+  }
+}
+
+TEST_F(PlyAsWritten, AVertexThatNoFaceNamesDecidesNothing) {
+  const std::string normals = "property float nx\nproperty float ny\nproperty float nz\n";
+  const auto scene = read(
+      "a.ply", header(normals, "", "", 1) + "0 0 0 0 .6 .8\n1 0 0 0 .6 .8\n0 1 0 0 .6 .8\nnan 9 9 0 0 0\n3 0 1 2\n");
+  ASSERT_TRUE(scene) << describe(scene);
+  ASSERT_EQ(primitive(scene).normals.size(), 3U);
+  EXPECT_EQ(primitive(scene).normals[2], Vec3f(0, 0.6F, 0.8F));
+  EXPECT_EQ(all_left_out(*scene),
+            "1 vertex: no face names them, and their positions are not finite or beyond what a float can hold; ");
+}
+
 }  // namespace
 }  // namespace meshlode::testing

@@ -93,7 +93,8 @@ TEST_F(ImportPolygons, PlyThatLiesAboutItsSizesIsRefusedAtOnce) {
   const std::string properties = "\nproperty float x\nproperty float y\nproperty float z\n";
   expect_invalid(read("a.ply", head + "2000000000" + properties + "end_header\n"), "element vertex");
   expect_invalid(read("a.ply", head + "-1" + properties + "end_header\n"), "header line");
-  expect_invalid(read("a.ply", "ply\nformat ascii 1.0\nelement x 2000000000\nend_header\n"), "element x");
+  expect_invalid(read("a.ply", "ply\nformat ascii 1.0\nelement x 2000000000\nproperty int a\nend_header\n"),
+                 "element x");
   std::string list = head + "1" + properties + "element face 1\nproperty list uint int vertex_indices\nend_header\n";
   list += std::string(12, '\0');
   put(list, std::uint32_t{4000000000U});
@@ -153,7 +154,7 @@ TEST_F(ImportPolygons, ObjCornersBecomeWedges) {
   EXPECT_EQ(p.positions[p.indices[3]], p.positions[p.indices[0]]);
   EXPECT_NE(p.indices[3], p.indices[0]);
   EXPECT_EQ(p.indices[4], p.indices[2]);
-  EXPECT_EQ(p.uvs[0][p.indices[0]], Vec2f(0, 0));
+  EXPECT_EQ(p.uvs[0][p.indices[0]], Vec2f(0, 1));
   EXPECT_EQ(p.uvs[0][p.indices[3]], Vec2f(0.5F, 0.5F));
   EXPECT_EQ(p.normals[p.indices[5]], Vec3f(0, 0, 1));
   ASSERT_EQ(scene->left_out.size(), 1U);
@@ -192,9 +193,10 @@ TEST_F(ImportPolygons, ObjNumbersAreRoundedOnce) {
                                        "00000000000001\nvt +0.5 1e-50\nvt 4e38\nf 1/1 2/2 3/3\n");
   ASSERT_TRUE(scene) << describe(scene);
   const scene::Primitive& p = primitive(scene);
-  EXPECT_EQ(p.uvs[0][0], Vec2f(1.0F, std::nextafter(1.0F, 2.0F)));
-  EXPECT_EQ(p.uvs[0][1], Vec2f(0.5F, 0.0F));
-  EXPECT_EQ(p.uvs[0][2], Vec2f(0.0F, 0.0F));
+  EXPECT_EQ(p.uvs[0][0], Vec2f(1.0F, 1.0F - std::nextafter(1.0F, 2.0F)));
+  EXPECT_EQ(p.uvs[0][1], Vec2f(0.5F, 1.0F));
+  EXPECT_EQ(p.uvs[0][2], Vec2f(0.0F, 1.0F));
+  EXPECT_EQ(scene->left_out.at(0).why, "1 are not finite; zero stands in for them");
   EXPECT_EQ(p.colors[0], Vec4f(0.799999F, 1.0F, 0.0F, 1.0F));  // six digits, of which 999,999 is the last but 1
 }
 

@@ -198,6 +198,32 @@ TEST(ImportSkins, WeightsThatMeanNothingAreCountedAndTheFirstJointStandsIn) {
   EXPECT_TRUE(says(*scene, "weights of 3 vertices", "joints that it does not have"));
 }
 
+TEST(ImportSkins, APrimitiveWithoutWeightsIsNamedAsSuch) {
+  SkinnedTriangle t;
+  const std::string bare = t.attributes;
+  t.joints({1, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0});
+  t.weights({1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0});
+  t.attributes += "}},{\"attributes\":{" + bare;
+  const auto scene = t.b.import(t.text("{\"mesh\":0,\"skin\":0},{},{\"translation\":[0,0,8]}", "{\"joints\":[1,2]}"));
+  ASSERT_TRUE(scene) << describe(scene);
+  EXPECT_TRUE(says(*scene, "skin 0: 3 vertices", "have no JOINTS_0 and WEIGHTS_0"));
+  EXPECT_FALSE(says(*scene, "weights of", ""));
+}
+
+/// Where such a vertex would go, nobody sees.
+TEST(ImportSkins, VerticesThatNoTriangleNamesAreNotMoved) {
+  SkinnedTriangle t;
+  t.positions = t.b.floats({0, 0, 0, 1, 0, 0, 0, 1, 0, 3e38F, 3e38F, 3e38F}, "VEC3", 3);
+  t.attributes = "\"POSITION\":" + std::to_string(t.positions);
+  t.joints({0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0});
+  t.weights({1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0});
+  t.attributes += "},\"indices\":" + std::to_string(t.b.array<std::uint8_t>({0, 1, 2, 2, 1, 0}, 5121, "SCALAR", 1)) +
+                  ",\"extras\":{";
+  const auto scene =
+      t.b.import(t.text("{\"mesh\":0,\"skin\":0},{},{\"scale\":[1e300,1e300,1e300]}", "{\"joints\":[1,2]}"));
+  ASSERT_TRUE(scene) << describe(scene);
+}
+
 TEST(ImportSkins, WithoutWeightsOrJointsTheNodePlacesTheMesh) {
   SkinnedTriangle bare;
   const auto scene = bare.b.import(bare.text("{\"mesh\":0,\"skin\":0,\"translation\":[3,0,0]},{}", "{\"joints\":[1]}"));

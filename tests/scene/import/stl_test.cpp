@@ -153,5 +153,21 @@ TEST_F(StlAsWritten, AttributeBytesThatAreNoColourAreNamed) {
   EXPECT_EQ(all_left_out(*scene), "attribute bytes: of 1 facet: they are no colour; ");
 }
 
+/// MeshLab's "Materialise": bit 15 of every facet, the colour of the facet in the rest.
+TEST_F(StlAsWritten, FacetColoursOfMagicsWithBit15) {
+  const std::string head("COLOR=\xFF\xFF\0\xFF", 10);
+  const auto scene = read("a.stl", binary(2, {0x801FU, 0xFFFFU}, head));
+  ASSERT_TRUE(scene) << describe(scene);
+  const scene::Primitive& p = primitive(scene);
+  EXPECT_EQ(p.colors[p.indices[0]], Vec4f(1, 0, 0, 1));
+  EXPECT_EQ(p.colors[p.indices[3]], Vec4f(1, 1, 0, 1));
+  const auto plain = read("a.stl", binary(2, {0, 0}, head));  // nobody wrote the facets' own
+  ASSERT_TRUE(plain) << describe(plain);
+  for (const Vec4f& color : primitive(plain).colors) EXPECT_EQ(color, Vec4f(1, 1, 0, 1));
+  const auto black = read("a.stl", binary(2, {31, 0}, head));
+  ASSERT_TRUE(black) << describe(black);
+  EXPECT_EQ(primitive(black).colors[primitive(black).indices[3]], Vec4f(0, 0, 0, 1));
+}
+
 }  // namespace
 }  // namespace meshlode::testing

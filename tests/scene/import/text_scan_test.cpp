@@ -47,6 +47,9 @@ TEST(TextScan, ABackslashJoinsLinesButNotInAComment) {
   EXPECT_EQ(take_joined_line(text, joined, count), "v 0");
   EXPECT_EQ(take_joined_line(text, joined, count), "# C:\\parts\\");
   EXPECT_EQ(take_joined_line(text, joined, count), "v 1");
+  text = "g C:\\parts\\\nmtllib a.mtl \\\nb.mtl\n";
+  EXPECT_EQ(take_joined_line(text, joined, count), "g C:\\parts\\");
+  EXPECT_EQ(take_joined_line(text, joined, count), "mtllib a.mtl  b.mtl");
   text = "a \\";
   EXPECT_EQ(take_joined_line(text, joined, count), "a ");
 }

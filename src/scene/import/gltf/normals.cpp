@@ -17,11 +17,13 @@ std::size_t mend_normals(Primitive& primitive) {
   }
   if (bad.empty()) return 0;
   std::vector<Vec3d> sums(bad.size(), Vec3d(0.0));
+  std::vector<bool> is_named(bad.size(), false);
   for (std::size_t t = 0; t < primitive.indices.size(); t += 3) {
     for (std::size_t c = 0; c < 3; ++c) {
       const auto slot = std::lower_bound(bad.begin(), bad.end(), primitive.indices[t + c]);
       if (slot == bad.end() || *slot != primitive.indices[t + c]) continue;
       const Vec3d& p = primitive.positions[primitive.indices[t]];
+      is_named[static_cast<std::size_t>(slot - bad.begin())] = true;
       sums[static_cast<std::size_t>(slot - bad.begin())] += glm::cross(
           primitive.positions[primitive.indices[t + 1]] - p, primitive.positions[primitive.indices[t + 2]] - p);
     }
@@ -36,7 +38,7 @@ std::size_t mend_normals(Primitive& primitive) {
     }
     primitive.normals[bad[i]] = Vec3f(n);
   }
-  return bad.size();
+  return static_cast<std::size_t>(std::count(is_named.begin(), is_named.end(), true));
 }
 
 }  // namespace meshlode::scene

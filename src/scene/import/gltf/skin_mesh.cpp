@@ -138,7 +138,9 @@ MeshJoints find_joints(const SourceMesh& mesh, const std::vector<VertexWeights>&
     for (const std::uint32_t v : primitive.indices) {
       if (is_seen[v]) continue;
       is_seen[v] = true;
-      if (find_influences(weights[p], v, joint_count, influences)) ++out.bad_vertices;
+      if (find_influences(weights[p], v, joint_count, influences)) {
+        ++(weights[p].width == 0 ? out.unweighted_vertices : out.bad_vertices);
+      }
       for (const Influence& each : influences) is_used[each.joint] = true;
       out.low = glm::min(out.low, primitive.positions[v]);
       out.high = glm::max(out.high, primitive.positions[v]);
@@ -166,7 +168,10 @@ bool bake_mesh(SourceMesh& mesh, const std::vector<VertexWeights>& weights, cons
   for (std::size_t p = 0; p < mesh.primitives.size(); ++p) {
     Primitive& primitive = mesh.primitives[p];
     std::vector<bool> is_mirrored(primitive.positions.size(), false);
+    std::vector<bool> is_named(primitive.positions.size(), false);
+    for (const std::uint32_t v : primitive.indices) is_named[v] = true;
     for (std::size_t v = 0; v < primitive.positions.size(); ++v) {
+      if (!is_named[v]) continue;
       find_influences(weights[p], v, matrices.size(), influences);
       const Mat4d matrix = blend(influences, matrices);
       const NormalMatrix turn(matrix);

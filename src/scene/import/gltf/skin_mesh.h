@@ -17,10 +17,11 @@ namespace meshlode::scene {
 
 /// What of a skin moves a mesh. A vertex counts where a triangle names it.
 struct MeshJoints {
-  bool has_weights = false;         ///< some primitive has them
-  std::vector<std::uint32_t> used;  ///< ascending
-  std::uint64_t bad_vertices = 0;   ///< that have weights which mean nothing
-  Vec3d low{0.0}, high{0.0};        ///< of the vertices
+  bool has_weights = false;               ///< some primitive has them
+  std::vector<std::uint32_t> used;        ///< ascending
+  std::uint64_t bad_vertices = 0;         ///< that have weights which mean nothing
+  std::uint64_t unweighted_vertices = 0;  ///< of primitives without weights
+  Vec3d low{0.0}, high{0.0};              ///< of the vertices
 };
 [[nodiscard]] MeshJoints find_joints(const SourceMesh& mesh, const std::vector<VertexWeights>& weights,
                                      std::size_t joint_count);

@@ -34,6 +34,7 @@ class SkinSettler {
     find_places();
     matrices_.resize(skin_count);
     bad_vertices_.resize(skin_count);
+    unweighted_.resize(skin_count);
     const std::size_t node_count = asset_.model.nodes.size();
     for (std::size_t n = 0; n < node_count; ++n) {
       if (!is_skinned(n)) continue;
@@ -153,6 +154,7 @@ class SkinSettler {
       return asset_.invalid(skin_path(s) + "/joints/" + std::to_string(j), "its matrix is not finite");
     }
     bad_vertices_[s] += joints.bad_vertices;
+    unweighted_[s] += joints.unweighted_vertices;
     const auto matrix = common_matrix(joints, matrices);
     how.kind = matrix ? Settled::Kind::kRigid : Settled::Kind::kBaked;
     if (matrix) how.matrix = *matrix;
@@ -267,6 +269,10 @@ class SkinSettler {
                           moves[s] ? "its meshes are built where its joints put them in the rest pose of the file; "
                                      "joints and weights are left out"
                                    : "no mesh is moved by it"});
+      if (unweighted_[s] != 0) {
+        left_out.push_back({"skin " + std::to_string(s) + ": " + std::to_string(unweighted_[s]) + " vertices",
+                            "their primitives have no JOINTS_0 and WEIGHTS_0; they follow the skin's first joint"});
+      }
       if (bad_vertices_[s] == 0) continue;
       left_out.push_back(
           {"skin " + std::to_string(s) + ": weights of " + std::to_string(bad_vertices_[s]) + " vertices",
@@ -284,7 +290,7 @@ class SkinSettler {
   std::vector<std::size_t> root_;
   std::map<std::size_t, std::vector<std::size_t>> scenes_of_;  ///< of a root
   std::vector<std::optional<std::vector<Mat4d>>> matrices_;    ///< by skin: of its joints
-  std::vector<std::uint64_t> bad_vertices_;                    ///< by skin
+  std::vector<std::uint64_t> bad_vertices_, unweighted_;       ///< by skin
   std::map<Pair, Settled> settled_;
 };
 

@@ -29,6 +29,15 @@ Vec3d area_vector(const std::vector<Vec3d>& positions, std::span<const std::uint
   return sum;
 }
 
+/// The same; where it is 0, because parts of the polygon run one way around and parts the other, of the first part.
+Vec3d any_area_vector(const std::vector<Vec3d>& positions, std::span<const std::uint32_t> polygon) {
+  Vec3d area = area_vector(positions, polygon);
+  for (std::size_t i = 1; area == Vec3d(0.0) && i + 1 < polygon.size(); ++i) {
+    area = area_vector(positions, std::array{polygon[0], polygon[i], polygon[i + 1]});
+  }
+  return area;
+}
+
 using Fan = FaceTriangles::Fan;
 
 Fan fan_from(const std::vector<Vec3d>& positions, std::span<const std::uint32_t> polygon, std::size_t start,
@@ -115,7 +124,7 @@ void FaceTriangles::append(std::span<const std::uint32_t> polygon, std::vector<s
   const std::size_t n = polygon.size();
   Fan fan{0, true, false};
   if (n > 3) {
-    const Vec3d area = area_vector(positions_, polygon);
+    const Vec3d area = any_area_vector(positions_, polygon);
     fan = find_fan(positions_, polygon, area);
     if (!fan.is_good && n > 4 && area != Vec3d(0.0) && append_triangulated(polygon, area, indices)) return;
     if (n == 4 && fan.is_folded) ++crossing_;  // each other diagonal was tried

@@ -27,7 +27,7 @@ void add_mesh(Scene& scene, std::string name, std::vector<Primitive> primitives)
   for (Primitive& primitive : mesh.primitives) {
     if (!primitive.material.is_valid()) primitive.material = MaterialId(scene.materials.size() - 1);
   }
-  if (!scene.blobs.empty()) turn_uvs(mesh.primitives);  // without a texture nobody samples with them
+  turn_uvs(mesh.primitives);
   scene.instances.push_back({mesh.name, 0, MeshId(scene.meshes.size()), Mat4d(1.0)});
   scene.meshes.push_back(std::move(mesh));
 }

@@ -39,8 +39,11 @@ Json make_pbr(const MtlMaterial& from, const MtlImages& images, SceneMaterial& o
     out.base_color_uv_set = 0;
   }
   const bool has_metal_map = images.metallic_roughness != kNoId && !from.metal.file.empty();
-  pbr.set("metallicFactor", Json::make_number(from.metalness.value_or(has_metal_map ? 1.0 : 0.0)));
-  if (from.roughness) pbr.set("roughnessFactor", Json::make_number(*from.roughness));
+  // A 0 that writers always write would switch the map off.
+  const double metalness = from.metalness.value_or(0.0);
+  pbr.set("metallicFactor", Json::make_number(has_metal_map && metalness == 0.0 ? 1.0 : metalness));
+  const bool is_off = images.metallic_roughness != kNoId && from.roughness == 0.0;
+  if (from.roughness && !is_off) pbr.set("roughnessFactor", Json::make_number(*from.roughness));
   add_texture(pbr, "metallicRoughnessTexture", TextureRole::kMetallicRoughness, images.metallic_roughness, out);
   return pbr;
 }

@@ -86,6 +86,12 @@ class ObjMaterials {
       leave_out("MTL Tr 1 of " + counted(invisible_.size(), "material"),
                 "nobody would see them, so that they are opaque: " + shown(*invisible_.begin()));
     }
+    for (const auto& [what, count] : clamped_.counts()) {
+      leave_out("MTL " + what, counted(count, "line") + " with a value out of range, which is clamped");
+    }
+    if (more_lacked_ != 0) {
+      leave_out("mtllib …", counted(more_lacked_, "more name") + ": they cannot be opened below the scene's folder");
+    }
     for (const auto& [what, why] : lost_maps_) leave_out(what, why);
   }
 
@@ -107,6 +113,12 @@ class ObjMaterials {
   }
 
   bool read_library(const std::string& name) {
+    const auto [known, is_new] = is_readable_.try_emplace(name, false);
+    if (is_new) known->second = open_and_read(name);
+    return known->second;
+  }
+
+  bool open_and_read(const std::string& name) {
     std::filesystem::path path;
     const auto file = open(name, path);
     if (!file) return false;
@@ -118,16 +130,21 @@ class ObjMaterials {
       by_name_.try_emplace(std::move(key), std::move(material));  // the first of a name counts
     }
     for (const auto& [what, count] : library.skipped.counts()) skipped_.add(what, count);
+    for (const auto& [what, count] : library.clamped.counts()) clamped_.add(what, count);
     return true;
   }
 
   /// One name with blanks, or several.
   void open_library(const std::string& line) {
-    if (read_library(line)) return;
+    if (read_library(std::string(unquoted(line)))) return;
+    constexpr std::size_t kShown = 8;
     std::string_view rest = line;
-    for (std::string_view name = take_word(rest); !name.empty(); name = take_word(rest)) {
-      if (!read_library(std::string(name))) {
+    for (std::string_view name = take_name(rest); !name.empty(); name = take_name(rest)) {
+      if (read_library(std::string(name)) || !lacked_.emplace(name).second) continue;
+      if (lacked_.size() <= kShown) {
         lack("mtllib " + shown(name));
+      } else {
+        ++more_lacked_;
       }
     }
   }
@@ -239,7 +256,10 @@ class ObjMaterials {
   std::map<std::filesystem::path, std::uint32_t> image_by_path_;
   Json::Array materials_, images_;
   bool has_strength_ = false;
-  Tally skipped_;
+  Tally skipped_, clamped_;
+  std::map<std::string, bool> is_readable_;  ///< libraries that were tried
+  std::set<std::string, std::less<>> lacked_;
+  std::uint64_t more_lacked_ = 0;  ///< that are not named
   std::set<std::string> invisible_;
   std::map<std::string, std::string> lost_maps_;  ///< with the reason
   Status missing_ = Ok{};                         ///< the first file that may not be missing

@@ -7,7 +7,7 @@ PlyBody::PlyBody(const PlyHeader& header, std::string_view text)
     : is_ascii_(header.is_ascii), is_big_endian_(header.is_big_endian), text_(text) {
   if (!is_ascii_) return;
   std::uint64_t rows = 0, lines = 0;
-  for (const PlyElement& element : header.elements) rows += element.count;
+  for (const PlyElement& element : header.elements) rows += element.properties.empty() ? 0 : element.count;
   while (!text.empty() && lines <= rows) lines += trimmed(take_line(text)).empty() ? 0U : 1U;
   has_rows_ = lines == rows;
 }

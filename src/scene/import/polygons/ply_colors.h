@@ -6,17 +6,18 @@
 #include <vector>
 
 #include "base/vec.h"
+#include "scene/import/polygons/ply_header.h"
 
 namespace meshlode::scene {
 
 /// Values as the file has them, and what they become together: 8 bits each.
 struct PlyColors {
   std::vector<Vec4f> raw;
-  bool is_float = false;  ///< of red's type
+  PlyType type = PlyType::kUint8;  ///< red's
   bool has_alpha = false;
 
-  /// Floats are linear and cover 0 … 1. Whole numbers are levels of sRGB, unless `is_linear`: of 0 … 255 where none is
-  /// larger, else of 0 … 65535. Adds the colours that are outside to `clamped`.
+  /// Floats are linear and cover 0 … 1. Whole numbers are levels of sRGB, unless `is_linear`: of 0 … 255 in 8 bits and
+  /// where none is larger, else of 0 … 65535. Adds the colours that are outside to `clamped`.
   [[nodiscard]] std::vector<Vec4f> take(bool is_linear, std::uint64_t& clamped);
 };
 

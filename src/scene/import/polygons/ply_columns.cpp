@@ -60,7 +60,7 @@ PlyColumns::PlyColumns(const PlyElement& element, const std::vector<std::vector<
     auto column = column_of(property);
     if (column && (!has[*column] || is_taken[*column])) column = std::nullopt;  // "u" and "texture_u": the first counts
     if (column) is_taken[*column] = true;
-    if (column == kRed) has_float_colors = is_float(property.type);
+    if (column == kRed) color_type = property.type;
     columns.push_back(column);
   }
 }

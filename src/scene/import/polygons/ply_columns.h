@@ -20,7 +20,7 @@ struct PlyColumns {
 
   std::array<bool, kColumnCount> has{};
   std::vector<std::optional<PlyColumn>> columns;  ///< of each property; nothing for lists and what is not kept
-  bool has_float_colors = false;
+  PlyType color_type = PlyType::kUint8;           ///< of red
 };
 
 }  // namespace meshlode::scene

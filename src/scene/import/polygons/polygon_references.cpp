@@ -23,8 +23,8 @@ class ReferenceList {
 
   /// The line of a mtllib: one name with blanks, or several. Where the one is not there, another may be some day.
   void add_libraries(std::string_view line) {
-    if (add_library(std::string(line))) return;
-    for (std::string_view name = take_word(line); !name.empty(); name = take_word(line)) {
+    if (add_library(std::string(unquoted(line)))) return;
+    for (std::string_view name = take_name(line); !name.empty(); name = take_name(line)) {
       add_library(std::string(name));
     }
   }
@@ -75,11 +75,13 @@ class ReferenceList {
 std::vector<FileReference> list_obj_references(const std::filesystem::path& path, std::span<const std::uint8_t> bytes,
                                                std::span<const std::filesystem::path> allow_outside) {
   std::string_view text = text_of(bytes);
-  std::set<std::string> libraries;  // in the order of the import
+  std::set<std::string> known;
+  std::vector<std::string> libraries;  // in the order of the import
   std::string joined;
   for (std::size_t lines = 0; !text.empty();) {
     std::string_view line = take_joined_line(text, joined, lines);
-    if (take_word(line) == "mtllib" && !trimmed(line).empty()) libraries.emplace(trimmed(line));
+    if (take_word(line) != "mtllib" || trimmed(line).empty()) continue;
+    if (known.emplace(trimmed(line)).second) libraries.emplace_back(trimmed(line));
   }
   ReferenceList list(path.parent_path(), allow_outside);
   for (const std::string& line : libraries) list.add_libraries(line);

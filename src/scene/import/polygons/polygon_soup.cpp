@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "scene/import/gltf/normals.h"
 #include "scene/import/polygons/face_triangles.h"
 #include "scene/import/polygons/text_scan.h"
 
@@ -85,19 +86,17 @@ std::vector<PolygonMesh> split(Primitive whole, Parts parts, bool is_compacted) 
   return out;
 }
 
+/// Counts those that a triangle names.
 template <class Vec>
-std::size_t replace_broken(std::vector<Vec>& values, int components, const Vec& stand_in, bool is_direction) {
+std::size_t replace_broken(std::vector<Vec>& values, int components, const Vec& stand_in,
+                           const std::vector<bool>& is_named) {
   std::size_t bad = 0;
-  for (Vec& value : values) {
+  for (std::size_t v = 0; v < values.size(); ++v) {
     bool is_finite = true;
-    bool is_zero = true;
-    for (int c = 0; c < components; ++c) {
-      is_finite = is_finite && std::isfinite(value[c]);
-      is_zero = is_zero && value[c] == 0.0F;
-    }
-    if (is_finite && !(is_direction && is_zero)) continue;
-    value = stand_in;
-    ++bad;
+    for (int c = 0; c < components; ++c) is_finite = is_finite && std::isfinite(values[v][c]);
+    if (is_finite) continue;
+    values[v] = stand_in;
+    bad += is_named[v] ? 1U : 0U;
   }
   return bad;
 }
@@ -107,12 +106,11 @@ void replace_all_broken(std::vector<PolygonMesh>& meshes, std::vector<LeftOut>& 
   std::uint64_t normals = 0, uvs = 0, colors = 0, clamped = 0;
   for (PolygonMesh& mesh : meshes) {
     for (Primitive& part : mesh.primitives) {
-      if (const std::size_t bad = replace_broken(part.normals, 3, Vec3f(0.0F, 0.0F, 1.0F), true); bad != 0) {
-        normals += bad;
-        part.normals.clear();
-      }
-      uvs += replace_broken(part.uvs[0], 2, Vec2f(0.0F), false);
-      colors += replace_broken(part.colors, 4, Vec4f(1.0F), false);
+      std::vector<bool> is_named(part.positions.size(), false);
+      for (const std::uint32_t v : part.indices) is_named[v] = true;
+      normals += mend_normals(part);
+      uvs += replace_broken(part.uvs[0], 2, Vec2f(0.0F), is_named);
+      colors += replace_broken(part.colors, 4, Vec4f(1.0F), is_named);
       for (Vec4f& color : part.colors) {
         const Vec4f inside = glm::clamp(color, Vec4f(0.0F), Vec4f(1.0F));
         if (inside != color) ++clamped;
@@ -120,9 +118,9 @@ void replace_all_broken(std::vector<PolygonMesh>& meshes, std::vector<LeftOut>& 
       }
     }
   }
-  // Half a set of normals is worse than none: flat ones are what a file without normals gets.
   if (normals != 0) {
-    left_out.push_back({"normals", std::to_string(normals) + " are not finite or have no length; flat ones stand in"});
+    left_out.push_back({"normals", std::to_string(normals) +
+                                       " are not finite or have no length; the triangles' own stand in for them"});
   }
   if (uvs != 0) {
     left_out.push_back({"texture coordinates", std::to_string(uvs) + " are not finite; zero stands in for them"});
@@ -145,14 +143,20 @@ PartKey key_of(const PolygonSoup& soup, std::size_t polygon) {
 
 Result<std::vector<PolygonMesh>> triangulate(PolygonSoup soup, const ImportOptions& options, ImportDrops& drops,
                                              std::vector<LeftOut>& left_out) {
-  bool needs_compaction = false;
-  for (std::size_t v = 0; v < soup.positions.size(); ++v) {
-    if (is_stored_exactly(soup.positions[v])) continue;
-    if (!options.repair) {
-      return Error{ErrorCode::kInvalid, "vertex " + std::to_string(v),
-                   "its position is not finite, or beyond what a float can hold"};
-    }
-    needs_compaction = true;
+  const bool needs_compaction = !std::all_of(soup.positions.begin(), soup.positions.end(), is_stored_exactly);
+  std::uint32_t bad = kNoId;  // the first that a polygon names
+  for (std::size_t c = 0; needs_compaction && c < soup.corners.size(); ++c) {
+    if (!is_stored_exactly(soup.positions[soup.corners[c]])) bad = std::min(bad, soup.corners[c]);
+  }
+  if (bad != kNoId && !options.repair) {
+    return Error{ErrorCode::kInvalid, "vertex " + std::to_string(bad),
+                 "its position is not finite, or beyond what a float can hold"};
+  }
+  if (needs_compaction && bad == kNoId) {
+    const auto count = std::count_if(soup.positions.begin(), soup.positions.end(),
+                                     [](const Vec3d& p) { return !is_stored_exactly(p); });
+    left_out.push_back({counted(static_cast<std::uint64_t>(count), "vertex", "vertices"),
+                        "no face names them, and their positions are not finite or beyond what a float can hold"});
   }
   Parts parts;
   FaceTriangles faces(soup.positions);

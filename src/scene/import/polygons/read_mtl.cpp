@@ -79,7 +79,9 @@ class MtlReader {
     auto color = read_color(line);
     if (!color) return make_no_sense(keyword);
     const double most = name == "kd" ? 1.0 : 1e6;
+    const auto given = *color;
     for (double& c : *color) c = std::clamp(c, 0.0, most);
+    if (*color != given) out.clamped.add(shown(keyword));
     if (name == "kd") {
       out.materials.back().diffuse = *color;
     } else {
@@ -93,7 +95,9 @@ class MtlReader {
       if (known != name) continue;
       const auto number = parse_number(take_word(line));
       if (!number || !std::isfinite(*number)) return make_no_sense(keyword);  // "d -halo" too
-      out.materials.back().*member = std::clamp(*number, 0.0, 1.0);
+      const double inside = std::clamp(*number, 0.0, 1.0);
+      if (inside != *number) out.clamped.add(shown(keyword));
+      out.materials.back().*member = inside;
       return true;
     }
     return false;

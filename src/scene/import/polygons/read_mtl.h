@@ -34,6 +34,7 @@ struct MtlFile {
   std::vector<MtlMaterial> materials;
   /// Lines that are passed over, by what they are: a keyword, one whose values make no sense, an option of a map.
   Tally skipped;
+  Tally clamped;  ///< lines by keyword
 };
 
 /// Keywords in whatever case.

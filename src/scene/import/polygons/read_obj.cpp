@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <map>
 #include <optional>
 #include <set>
@@ -82,9 +83,9 @@ class ObjReader {
   std::vector<Vec3f> normals_;
   std::vector<ObjCorner> corners_;
   std::uint8_t all_traits_ = 0;                      ///< that any face has
+  bool has_flat_ = false;                            ///< faces without normals
   std::uint32_t material_ = kNoId, object_ = kNoId;  ///< of the faces that follow
-  Names materials_, objects_;
-  std::set<std::string> libraries_;
+  Names materials_, objects_, libraries_;
   std::set<std::string, std::less<>> groups_;
   // What is not carried, counted.
   Tally skipped_;
@@ -99,13 +100,14 @@ float six_digits(double level) {
   return level >= 1.0 ? 1.0F : static_cast<float>(std::floor(level * 999999.0 + 0.5) / 1000000.0);
 }
 
-/// A number of vt and vn, rounded once. What no float has becomes 0, which a normal of no length and a UV show for what
-/// they are; nothing where it is no number.
+/// A number of vt and vn, rounded once: too large is infinite, too small 0; nothing where it is no number.
 std::optional<float> parse_float(std::string_view word) {
   const auto number = parse_number(word);
   if (!number) return std::nullopt;
   const double size = std::fabs(*number);
-  if (!(size > 1.0e-37 && size <= 3.0e38)) return 0.0F;
+  if (std::isnan(size)) return std::numeric_limits<float>::quiet_NaN();
+  if (size > 3.0e38) return std::numeric_limits<float>::infinity();
+  if (size <= 1.0e-37) return 0.0F;
   if (word.front() == '+') word.remove_prefix(1);
   float value = 0.0F;
   std::from_chars(word.data(), word.data() + word.size(), value);
@@ -128,7 +130,7 @@ Status ObjReader::read_statement(std::string_view keyword, std::string_view line
   if (keyword == "usemtl") return use_material(trimmed(line));
   const std::string_view name = trimmed(line);
   if (keyword == "mtllib") {
-    if (!name.empty()) libraries_.emplace(name);
+    if (!name.empty()) libraries_.number_of(name);
   } else if (keyword == "o") {
     object_ = name.empty() ? kNoId : objects_.number_of(name);
   } else if (keyword == "g") {
@@ -209,6 +211,7 @@ void ObjReader::keep_face(const ObjFace& face) {
   dangling_normals_ += face.lacks_normals ? 1U : 0U;
   const std::uint8_t traits = traits_of(face);
   all_traits_ |= traits;
+  has_flat_ = has_flat_ || (traits & kHasNormals) == 0;
   out_.triangles += corners.size() - 2;
   corners_.insert(corners_.end(), corners.begin(), corners.end());
   PolygonSoup& soup = out_.soup;
@@ -255,7 +258,7 @@ void ObjReader::report() {
   say(weights_, "vertex", "the fourth number of v", "a weight for curves");
   say(extra_, "vertex", "further numbers of v", "more than a position and a colour, or less than both");
   say(third_uvs_, "line", "the third number of vt", "it is not 0");
-  say(smooth_, "line", "smoothing groups (s)", "without vn a face is flat");
+  if (has_flat_) say(smooth_, "line", "smoothing groups (s)", "without vn a face is flat");
   leave_out_names({groups_.begin(), groups_.end()}, "group", "groups (g) are no meshes", out_.left_out);
   if (small_faces_ != 0) leave_out(counted(small_faces_, "face"), "they have fewer than three distinct corners");
   for (const auto& [keyword, count] : skipped_.counts()) {
@@ -298,7 +301,7 @@ PolygonFile ObjReader::finish() {
   if (materials_.list.empty()) soup.polygon_materials.clear();
   out_.material_names = std::move(materials_.list);
   out_.object_names = std::move(objects_.list);
-  out_.material_libraries.assign(libraries_.begin(), libraries_.end());
+  out_.material_libraries = std::move(libraries_.list);
   return std::move(out_);
 }
 

@@ -98,7 +98,7 @@ Status PlyReader::read_vertices(const PlyElement& element) {
   std::vector<bool> is_kept;
   for (const auto& column : set.columns) is_kept.push_back(column.has_value());
   leave_out_properties(element, is_kept);
-  vertex_colors_.is_float = set.has_float_colors;
+  vertex_colors_.type = set.color_type;
   vertex_colors_.has_alpha = set.has[kAlpha];
   out_.soup.positions.reserve(element.count);
   for (std::uint64_t v = 0; v < element.count; ++v) {
@@ -182,9 +182,9 @@ Status PlyReader::read_faces(const PlyElement& element) {
   std::vector<bool> is_kept;
   for (std::size_t p = 0; p < none; ++p) is_kept.push_back(p == list || p == wedges || set.columns[p]);
   leave_out_properties(element, is_kept);
-  has_wedges_ = wedges != none;
-  has_texture_numbers_ = set.has[kTexture];
-  face_colors_.is_float = set.has_float_colors;
+  has_wedges_ = element.count > 0 && wedges != none;
+  has_texture_numbers_ = element.count > 0 && set.has[kTexture];
+  face_colors_.type = set.color_type;
   face_colors_.has_alpha = set.has[kAlpha];
   for (std::uint64_t f = 0; f < element.count; ++f) {
     const std::string where = "face " + std::to_string(f);
@@ -293,10 +293,13 @@ void PlyReader::keep_strip(const std::vector<std::int64_t>& strip, bool is_valid
 
 Status PlyReader::skip_element(const PlyElement& element) {
   const std::string name = shown(element.name);
-  if (!body_.is_justified(element)) return invalid("element " + name, "more than the file has bytes for");
+  if (!element.properties.empty() && !body_.is_justified(element)) {
+    return invalid("element " + name, "more than the file has bytes for");
+  }
   if (element.count > 0) {
     leave_out("element " + name, std::to_string(element.count) + " of it; only vertices and faces are read");
   }
+  if (element.properties.empty()) return Ok{};
   for (std::uint64_t i = 0; i < element.count; ++i) {
     for (const PlyProperty& property : element.properties) {
       if (!body_.skip(property)) {
@@ -359,7 +362,7 @@ void PlyReader::add_materials() {
   }
   for (std::size_t p = 0; p < soup.polygon_sizes.size(); ++p) {
     const bool has_uvs = soup.polygon_traits.empty() || (soup.polygon_traits[p] & kHasUvs) != 0;
-    const double number = has_texture_numbers_ ? texture_numbers_[p] : 0.0;
+    const double number = p < texture_numbers_.size() ? texture_numbers_[p] : 0.0;
     const bool is_known = number >= 0.0 && number < static_cast<double>(count);
     if (!is_known && number != -1.0) ++odd_textures_;
     soup.polygon_materials.push_back(has_uvs && is_known ? static_cast<std::uint32_t>(number) : kNoId);

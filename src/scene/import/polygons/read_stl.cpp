@@ -108,13 +108,19 @@ Status StlReader::read_binary(std::span<const std::uint8_t> bytes) {
               "they follow the last whole facet");
   }
   StlColors colors({reinterpret_cast<const char*>(bytes.data()), 80}, options_.linear_colors);
+  const auto attribute_of = [&](std::uint64_t i) {
+    std::uint16_t attribute;
+    std::memcpy(&attribute, bytes.data() + kHead + kFacet * i + 48, 2);
+    return attribute;
+  };
+  std::uint64_t zeros = 0;
+  while (zeros < count && attribute_of(zeros) == 0) ++zeros;
+  if (zeros == count) colors.set_all_zero();
   for (std::uint64_t i = 0; i < count; ++i) {
     const std::uint8_t* const at = bytes.data() + kHead + kFacet * i;
     Facet facet;
     std::memcpy(facet.data(), at + 12, sizeof(facet));
-    std::uint16_t attribute;
-    std::memcpy(&attribute, at + 48, 2);
-    if (auto status = add(facet, colors.color_of(attribute)); !status) return status;
+    if (auto status = add(facet, colors.color_of(attribute_of(i))); !status) return status;
   }
   colors.report(out_.left_out);
   return Ok{};

@@ -34,7 +34,8 @@ Vec4f StlColors::color(std::uint8_t red, std::uint8_t green, std::uint8_t blue) 
 std::optional<Vec4f> StlColors::color_of(std::uint16_t attribute) {
   const std::uint8_t low = level_of(attribute), middle = level_of(attribute >> 5U), high = level_of(attribute >> 10U);
   const bool has_bit = (attribute & 0x8000U) != 0;
-  if (is_magics_) return has_bit ? of_header_ : color(low, middle, high);
+  const bool is_of_header = attribute == 0x8000U || attribute == 0xFFFFU || is_all_zero_;
+  if (is_magics_) return is_of_header ? of_header_ : color(low, middle, high);
   if (has_bit) return color(high, middle, low);
   if (attribute != 0) ++unknown_;
   return std::nullopt;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <iterator>
 #include <limits>
 #include <system_error>
 
@@ -67,6 +68,15 @@ std::string_view unquoted(std::string_view text) {
   return text.size() > 2 && text.front() == '"' && text.back() == '"' ? text.substr(1, text.size() - 2) : text;
 }
 
+std::string_view take_name(std::string_view& text) {
+  std::string_view rest = text;
+  while (!rest.empty() && is_blank(rest.front())) rest.remove_prefix(1);
+  const std::size_t end = rest.starts_with('"') ? rest.find('"', 1) : std::string_view::npos;
+  if (end == std::string_view::npos || end == 1) return take_word(text);
+  text = rest.substr(end + 1);
+  return rest.substr(1, end - 1);
+}
+
 std::string_view take_line(std::string_view& text) {
   std::size_t end = 0;
   while (end < text.size() && text[end] != '\n' && text[end] != '\r') ++end;
@@ -85,7 +95,13 @@ std::string_view take_joined_line(std::string_view& text, std::string& joined, s
     return true;
   };
   std::string_view line = take_line(text);
-  if (trimmed(line).starts_with('#') || !goes_on(line)) return line;  // a comment may end with a folder's name
+  std::string_view rest = line;
+  const std::string_view keyword = take_word(rest);
+  constexpr std::string_view kNamed[] = {"g", "o", "usemtl", "mtllib", "usemap", "maplib"};
+  const bool takes_name = std::find(std::begin(kNamed), std::end(kNamed), keyword) != std::end(kNamed);
+  const std::string_view whole = line;
+  if (keyword.starts_with('#') || !goes_on(line)) return line;
+  if (takes_name && !line.empty() && !is_blank(line.back())) return whole;
   joined.assign(line);
   while (!text.empty()) {
     ++count;

@@ -27,10 +27,13 @@ std::string_view take_word(std::string_view& text);
 [[nodiscard]] std::string_view trimmed(std::string_view text);
 /// The same without quotation marks around all of it: some writers put a file's name into them.
 [[nodiscard]] std::string_view unquoted(std::string_view text);
+/// Takes a word, or what stands between quotation marks, off the front.
+std::string_view take_name(std::string_view& text);
 /// Takes a line off the front, without its end.
 std::string_view take_line(std::string_view& text);
 /// The same of a line that goes on where it ends with a backslash, in `joined` then; adds the lines to `count` but the
-/// first.
+/// first. A comment goes on nowhere; a statement of OBJ that takes a name only where a blank stands before the
+/// backslash, since the name may be a folder's of Windows.
 std::string_view take_joined_line(std::string_view& text, std::string& joined, std::size_t& count);
 /// ASCII letters in lower case.
 [[nodiscard]] std::string folded(std::string_view word);
