@@ -89,9 +89,9 @@ class ObjMaterials {
     for (const auto& [what, why] : lost_maps_) leave_out(what, why);
   }
 
-  /// A file that geometry does not need.
-  void lack(const std::string& what) {
-    const char* const why = "it cannot be opened below the scene's folder";
+  /// A file that geometry does not need. `error`: of open().
+  void lack(const std::string& what, const Error& error) {
+    const std::string why = "it " + reason_not_opened(error);
     if (!options_.may_lack_images && missing_) missing_ = Error{ErrorCode::kIo, what, why};
     leave_out(what, why);
   }
@@ -106,11 +106,11 @@ class ObjMaterials {
     return file;
   }
 
-  bool read_library(const std::string& name) {
+  Status read_library(const std::string& name) {
     std::filesystem::path path;
     const auto file = open(name, path);
-    if (!file) return false;
-    if (!read_.insert(path).second) return true;
+    if (!file) return file.error();
+    if (!read_.insert(path).second) return Ok{};
     hasher_.update(file->bytes());
     MtlFile library = read_mtl(file->bytes());
     for (MtlMaterial& material : library.materials) {
@@ -118,7 +118,7 @@ class ObjMaterials {
       by_name_.try_emplace(std::move(key), std::move(material));  // the first of a name counts
     }
     for (const auto& [what, count] : library.skipped.counts()) skipped_.add(what, count);
-    return true;
+    return Ok{};
   }
 
   /// One name with blanks, or several.
@@ -126,9 +126,7 @@ class ObjMaterials {
     if (read_library(line)) return;
     std::string_view rest = line;
     for (std::string_view name = take_word(rest); !name.empty(); name = take_word(rest)) {
-      if (!read_library(std::string(name))) {
-        lack("mtllib " + shown(name));
-      }
+      if (const Status read = read_library(std::string(name)); !read) lack("mtllib " + shown(name), read.error());
     }
   }
 
@@ -141,7 +139,7 @@ class ObjMaterials {
     std::filesystem::path path;
     const auto file = open(map.file, path);
     if (!file) {
-      lack(map.keyword + " " + shown(map.file));
+      lack(map.keyword + " " + shown(map.file), file.error());
       return kNoId;
     }
     const auto [known, is_new] = image_by_path_.try_emplace(path, static_cast<std::uint32_t>(images_.size()));
