@@ -24,9 +24,11 @@ Result<Drawn> draw_one(const run::Asset& asset, const run::Camera& camera, doubl
   draw::ImageBudget images(max_decoded);
   const std::vector<draw::MaterialTextures> materials = draw::read_material_textures(asset);
   const draw::AlphaMasks masks = draw::load_alpha_masks(asset, materials, images);
+  if (!masks.damage) return masks.damage.error();
   const auto visibility = draw::draw_cut(asset, *cut, camera, masks);
   if (!visibility) return visibility.error();
   const draw::TextureSet textures = draw::load_textures(asset, materials, images);
+  if (!textures.damage) return textures.damage.error();
   auto image = draw::shade_view(asset, *cut, camera, *visibility, draw::View::kShaded, textures);
   if (!image) return image.error();
   Drawn drawn{std::move(*image), 0, cut->size()};

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "file_kind.h"
 
-#include <algorithm>
-#include <cctype>
 #include <cstring>
-#include <filesystem>
 #include <span>
 #include <string_view>
+#include <utility>
 
 #include <meshlode/format.h>
 
 #include "base/file.h"
+#include "scene/import/import.h"
 
 namespace meshlode::cli {
 
@@ -23,19 +22,13 @@ bool is_asset(std::span<const std::uint8_t> bytes) {
   return magic == format::kMagic;
 }
 
-/// nullptr: no scene.
-const char* scene_name(const std::string& path, std::string_view text) {
-  if (text.starts_with("glTF")) return "a GLB scene";
-  if (text.starts_with("ply\n") || text.starts_with("ply\r")) return "a PLY scene";
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); });
-  const std::size_t first = text.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
-  const bool is_json = first != std::string_view::npos && text[first] == '{';
-  if (extension == ".gltf" && is_json) return "a glTF scene";
-  if (extension == ".obj") return "an OBJ scene";
-  if (extension == ".stl") return "an STL scene";
-  return nullptr;
+/// As import takes the file; empty: no scene. JSON is glTF only where it may have glTF's one required member.
+std::string scene_name(const std::string& path, std::span<const std::uint8_t> bytes) {
+  const std::string_view format = scene::find_format_name(path, bytes);
+  if (format.empty()) return {};
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  if (format == "glTF" && text.find("\"asset\"") == std::string_view::npos) return {};
+  return (format == "OBJ" || format == "STL" ? "an " : "a ") + std::string(format) + " scene";
 }
 
 }  // namespace
@@ -46,23 +39,23 @@ SeenFile look_at_file(const std::string& path) {
   const std::span<const std::uint8_t> bytes = file->bytes();
   if (bytes.empty()) return {FileForm::kEmpty};
   if (is_asset(bytes)) return {FileForm::kAsset};
-  const char* const name =
-      scene_name(path, std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
-  return name != nullptr ? SeenFile{FileForm::kScene, name} : SeenFile{};
+  std::string name = scene_name(path, bytes);
+  return name.empty() ? SeenFile{} : SeenFile{FileForm::kScene, std::move(name)};
 }
 
-Status check_is_no_scene(const std::string& path) {
+Status check_may_be_asset(const std::string& path) {
   const SeenFile seen = look_at_file(path);
   if (seen.form == FileForm::kEmpty) return Error{ErrorCode::kInvalid, path, "the file is empty"};
+  if (seen.form == FileForm::kOther) return Error{ErrorCode::kInvalid, path, "not a .lode asset"};
   if (seen.form != FileForm::kScene) return Ok{};
   return Error{ErrorCode::kInvalid, path,
-               std::string("this is ") + seen.name +
+               "this is " + seen.name +
                    ", not a .lode asset; make one with 'meshlode build', or look at the scene with 'meshlode plan' or "
                    "'meshlode doctor'"};
 }
 
 Result<run::Asset> open_asset(const std::string& path, std::uint64_t max_decoded) {
-  if (const Status asset = check_is_no_scene(path); !asset) return asset.error();
+  if (const Status asset = check_may_be_asset(path); !asset) return asset.error();
   return run::Asset::open(path, max_decoded);
 }
 

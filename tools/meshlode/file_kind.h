@@ -16,14 +16,14 @@ enum class FileForm : std::uint8_t { kUnreadable, kEmpty, kAsset, kScene, kOther
 
 struct SeenFile {
   FileForm form = FileForm::kOther;
-  const char* name = "";  ///< of a scene: "a GLB scene"
+  std::string name{};  ///< of a scene: "a GLB scene"
 };
 
-/// By its first bytes where they tell, else by its extension.
+/// By its first bytes where they tell, else by its extension: a scene is what import takes for one.
 [[nodiscard]] SeenFile look_at_file(const std::string& path);
 
-/// Error: kInvalid, for a scene and for an empty file, named as what they are.
-[[nodiscard]] Status check_is_no_scene(const std::string& path);
+/// Error: kInvalid, for a scene, an empty file, and what does not begin as an asset does, named as what they are.
+[[nodiscard]] Status check_may_be_asset(const std::string& path);
 
 /// run::Asset::open, with that error first.
 [[nodiscard]] Result<run::Asset> open_asset(const std::string& path,

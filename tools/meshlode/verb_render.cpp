@@ -178,9 +178,11 @@ struct Drawn {
   draw::Image image;
 };
 
-/// Errors: with --strict kUnsupported, where there is a warning: the picture would not be what the asset describes.
-Status print_warnings(const std::vector<std::string>& warnings, const RenderOptions& options) {
+/// Errors: `damage`; with --strict kUnsupported, where there is a warning: the picture would not be what the asset
+/// describes.
+Status print_warnings(const std::vector<std::string>& warnings, const Status& damage, const RenderOptions& options) {
   for (const std::string& warning : warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  if (!damage) return damage;
   if (warnings.empty() || !options.is_strict) return Ok{};
   return Error{ErrorCode::kUnsupported, options.input, "--strict: not all images can be drawn"};
 }
@@ -196,9 +198,8 @@ Result<Drawn> draw_on_gpu(const run::Asset& asset, const run::Camera& camera, co
   if (!options.force.empty()) render.force.push_back(options.force);
   draw::GpuPicture picture;
   const Status drawn = draw::render_on_gpu(asset, camera, render, images, picture);
-  const Status complete = print_warnings(picture.warnings, options);
+  const Status complete = print_warnings(picture.warnings, drawn, options);
   if (options.explain) std::fprintf(stderr, "passes of %s\n%s", picture.device.c_str(), picture.plan.c_str());
-  if (!drawn) return drawn.error();
   if (!complete) return complete.error();
   return Drawn{std::move(picture.cut), std::move(picture.visibility), std::move(picture.image)};
 }
@@ -218,14 +219,15 @@ Result<Drawn> draw_on_cpu(const run::Asset& asset, const run::Camera& camera, co
   }
   const std::vector<draw::MaterialTextures> materials = draw::read_material_textures(asset);
   const draw::AlphaMasks masks = draw::load_alpha_masks(asset, materials, images);
-  if (const Status complete = print_warnings(masks.warnings, options); !complete) return complete.error();
+  if (const Status complete = print_warnings(masks.warnings, masks.damage, options); !complete) return complete.error();
   const auto view = static_cast<draw::View>(view_number(options.view));
   if (options.explain) std::fprintf(stderr, "%s", describe_cpu_passes(asset, masks, view).c_str());
   auto visibility = draw::draw_cut(asset, cut, camera, masks);
   if (!visibility) return visibility.error();
   draw::TextureSet textures;
   if (view == draw::View::kShaded) textures = draw::load_textures(asset, materials, images);
-  if (const Status complete = print_warnings(textures.warnings, options); !complete) return complete.error();
+  if (const Status complete = print_warnings(textures.warnings, textures.damage, options); !complete)
+    return complete.error();
   auto image = draw::shade_view(asset, cut, camera, *visibility, view, textures);
   if (!image) return image.error();
   return Drawn{std::move(cut), std::move(*visibility), std::move(*image)};

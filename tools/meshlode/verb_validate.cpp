@@ -66,7 +66,7 @@ int run_validate(const Verb& verb, std::span<char* const> args) {
     const judge::ValidationReport report = judge::validate_asset(file->bytes());
     if (report.finding_count > 0) worst = std::max(worst, is_no_asset(report) ? kInvalid : kCheckFailed);
     if (is_no_asset(report)) {
-      if (const Status named = check_is_no_scene(path); !named) print_error(named.error());
+      if (const Status named = check_may_be_asset(path); !named) print_error(named.error());
     }
     text += describe(path, report, output.quiet);
     json.begin_object();

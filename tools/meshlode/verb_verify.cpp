@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/report/read_meta.h"
 #include "base/file.h"
 #include "base/json_writer.h"
 #include "base/printable.h"
@@ -17,7 +18,6 @@
 #include "judge/verify/verify.h"
 #include "memory_limit.h"
 #include "options.h"
-#include "app/report/read_meta.h"
 #include "outputs.h"
 #include "promise_option.h"
 #include "run/decode/decode.h"
@@ -135,11 +135,15 @@ std::optional<judge::VerifyReport> find_other_source(const run::Asset& asset, co
   const auto named = [](const std::string& name, const std::string& hash) {
     return printable(name) + " (" + printable(hash, 8) + ")";
   };
+  // The hash is of all files that were read: the scene's own may be the very one.
+  const char* const others = meta.source_file == source.source_name
+                                 ? ", or a file that it names (a texture, a library) is missing or changed"
+                                 : "";
   judge::VerifyReport report;
   report.checks.push_back({"", "the source is the one the asset was built from", 1, 1});
   report.findings.push_back({std::string(judge::info_of(judge::Rule::kV108).id), "", "section META: /source/hash",
                              "the asset was built from " + named(meta.source_file, meta.source_hash) +
-                                 ", the source given is " + named(source.source_name, source.source_hash) +
+                                 ", the source given is " + named(source.source_name, source.source_hash) + others +
                                  "; nothing else was compared: give that scene, or --force"});
   report.finding_count = 1;
   return report;
@@ -229,6 +233,7 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
                                         .files_read = &files_read,
                                         .max_decoded = *max_decoded,
                                         .may_lack_images = true,
+                                        .allow_outside = std::move(*allowed),
                                         .linear_colors = linear_colors || meta.linear_colors});
   output_files().keep(files_read);
   if (!source) return print_error(source.error());

@@ -320,6 +320,7 @@ Result<GpuScene> upload_scene(Device& device, const run::Asset& asset,
   out.material_textures = read_material_textures(asset);
   out.alpha_masks = std::make_shared<const AlphaMasks>(
       load_alpha_masks(asset, out.material_textures, images != nullptr ? *images : own_budget));
+  if (!out.alpha_masks->damage) return out.alpha_masks->damage.error();
   find_needs(asset, out);
   const Errors errors = find_errors(asset, bounds);
   if (const Status s = upload_tables(device, asset, instances, errors, *pages, out); !s) return s.error();

@@ -111,6 +111,7 @@ Status render_on_gpu(const run::Asset& asset, const run::Camera& camera, const G
   if (plan->textures) {
     const TextureSet textures = load_textures(asset, scene->material_textures, images);
     append(out.warnings, textures.warnings);
+    if (!textures.damage) return textures.damage;
     if (const Status s = upload_textures(*device, textures, *scene); !s) return s;
   }
   auto renderer = Renderer::make(*device, *scene, plan->options);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 #include "draw/textures/image.h"
 
@@ -12,16 +13,20 @@ namespace {
 
 /// Alpha of a blob's image; empty texels where all are opaque, a warning where there is none.
 AlphaImage load_image(const run::Asset& asset, std::uint32_t blob, const std::string& material, ImageBudget& budget,
-                      std::vector<std::string>& warnings) {
+                      AlphaMasks& masks) {
   AlphaImage out;
   if (blob >= asset.blobs().size()) {
-    warnings.push_back("material " + material + ": the image of its mask is not in the asset, drawn opaque");
+    masks.warnings.push_back("material " + material + ": the image of its mask is not in the asset, drawn opaque");
     return out;
   }
   const auto refuse = [&](const std::string& why) {
-    warnings.push_back("material " + material + ": " + why + ", drawn opaque");
+    masks.warnings.push_back("material " + material + ": " + why + ", drawn opaque");
     return AlphaImage{};
   };
+  if (Status intact = check_image(asset, blob); !intact) {
+    if (masks.damage) masks.damage = std::move(intact);
+    return out;
+  }
   const auto bytes = asset.blob_bytes(asset.blobs()[blob]);
   const auto header = read_image_header(bytes);
   if (!header) return refuse(header.error().message());
@@ -90,7 +95,7 @@ AlphaMasks load_alpha_masks(const run::Asset& asset, std::span<const MaterialTex
     if (mask.threshold == 0) continue;
     if (const std::optional<TextureUse>& use = textures[i].base_color) {
       const auto [found, is_new] = image_of_blob.try_emplace(use->blob, static_cast<std::uint32_t>(out.images.size()));
-      if (is_new) out.images.push_back(load_image(asset, use->blob, name_of(asset, i), budget, out.warnings));
+      if (is_new) out.images.push_back(load_image(asset, use->blob, name_of(asset, i), budget, out));
       const AlphaImage& image = out.images[found->second];
       if (!image.texels.empty()) mask.image = found->second;
       mask.uv_set = use->uv_set;

@@ -41,6 +41,7 @@ struct AlphaMasks {
   std::vector<std::uint32_t> of_material;  ///< by index in Asset::materials(): index of masks, or format::kNone
   std::vector<AlphaImage> images;
   std::vector<std::string> warnings;  ///< textures that could not be read; they count as opaque
+  Status damage = Ok{};               ///< check_image() of the first image that is not what was written, if any
 
   /// Nothing has to be tested.
   [[nodiscard]] bool is_empty() const { return masks.empty(); }

@@ -38,4 +38,8 @@ class ImageBudget {
 /// "image 'texture.png'", or "image 3" by its number among the blobs where it has no name.
 [[nodiscard]] std::string image_name(const run::Asset& asset, std::uint32_t blob);
 
+/// Opening an asset does not look at the bytes of its blobs. Error: kInvalid, where they are not those that were
+/// written.
+[[nodiscard]] Status check_image(const run::Asset& asset, std::uint32_t blob);
+
 }  // namespace meshlode::draw

@@ -19,10 +19,12 @@ struct Wanted {
   std::uint64_t texels = 0, decoder_bytes = 0;  ///< 0 texels: not to be decoded
   std::optional<TextureImage> image;
   std::string warning;
+  Status damage = Ok{};
 };
 
 /// Takes what the image will need, or says why it is not decoded.
 void reserve(const run::Asset& asset, ImageBudget& budget, std::uint64_t& texture_bytes, Wanted& wanted) {
+  if (wanted.damage = check_image(asset, wanted.blob); !wanted.damage) return;
   const auto refuse = [&](const std::string& why) { wanted.warning = why + ", not drawn"; };
   const std::string name = image_name(asset, wanted.blob);
   const auto header = read_image_header(asset.blob_bytes(asset.blobs()[wanted.blob]));
@@ -75,7 +77,7 @@ TextureSet load_textures(const run::Asset& asset, std::span<const MaterialTextur
       return sampled;
     }
     const auto [found, is_new] = index.try_emplace({use->blob, is_srgb}, static_cast<std::uint32_t>(wanted.size()));
-    if (is_new) wanted.push_back({use->blob, is_srgb, 0, 0, std::nullopt, {}});
+    if (is_new) wanted.push_back({use->blob, is_srgb, 0, 0, std::nullopt, {}, Ok{}});
     sampled = SampledTexture{*use, found->second};
     return sampled;
   };
@@ -94,6 +96,7 @@ TextureSet load_textures(const run::Asset& asset, std::span<const MaterialTextur
   std::vector<std::uint32_t> image_of(wanted.size(), format::kNone);
   for (std::size_t i = 0; i < wanted.size(); ++i) {
     budget.give_back(wanted[i].decoder_bytes + (wanted[i].image ? 0 : 4 * wanted[i].texels));
+    if (out.damage && !wanted[i].damage) out.damage = wanted[i].damage;
     if (!wanted[i].warning.empty()) out.warnings.push_back(wanted[i].warning);
     if (!wanted[i].image) continue;
     image_of[i] = static_cast<std::uint32_t>(out.images.size());

@@ -28,6 +28,7 @@ struct TextureSet {
   std::vector<SampledMaterial> materials;  ///< by index in Asset::materials(); empty: nothing is sampled
   std::vector<TextureImage> images;
   std::vector<std::string> warnings;  ///< images that could not be read: their materials have no such texture
+  Status damage = Ok{};               ///< check_image() of the first image that is not what was written, if any
 
   [[nodiscard]] bool is_empty() const { return images.empty(); }
 };

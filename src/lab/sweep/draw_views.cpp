@@ -5,10 +5,10 @@
 #include <chrono>
 #include <utility>
 
+#include "app/compare/pictures.h"
 #include "draw/gpu/render.h"
 #include "draw/textures/texture_set.h"
 #include "draw/textures/texture_use.h"
-#include "app/compare/pictures.h"
 
 namespace meshlode::lab {
 
@@ -39,6 +39,8 @@ struct Drawable {
         textures(draw::load_textures(of, materials, images)) {}
 
   [[nodiscard]] Result<draw::Image> shade(const Cut& cut, const run::Camera& camera) const {
+    if (!masks.damage) return masks.damage.error();
+    if (!textures.damage) return textures.damage.error();
     const auto visibility = draw::draw_cut(asset, cut, camera, masks);
     if (!visibility) return visibility.error();
     return draw::shade_view(asset, cut, camera, *visibility, draw::View::kShaded, textures);

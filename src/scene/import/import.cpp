@@ -89,6 +89,18 @@ Result<Scene> import_scene(const std::filesystem::path& path, const ImportOption
   });
 }
 
+std::string_view find_format_name(const std::filesystem::path& path, std::span<const std::uint8_t> bytes) {
+  const auto format = check_is_scene(path, bytes) ? find_format(path, bytes) : std::nullopt;
+  if (!format) return {};
+  switch (*format) {
+    case Format::kPly: return "PLY";
+    case Format::kObj: return "OBJ";
+    case Format::kStl: return "STL";
+    default: break;
+  }
+  return bytes.front() == 'g' ? "GLB" : "glTF";
+}
+
 Result<std::vector<FileReference>> list_references(const std::filesystem::path& path,
                                                    std::span<const std::filesystem::path> allow_outside) {
   return guarded(path, [&]() -> Result<std::vector<FileReference>> {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <meshlode/result.h>
@@ -39,6 +40,9 @@ struct ImportOptions {
 /// Errors: kIo the file (or one it refers to) cannot be read; kInvalid it breaks its format; kUnsupported it requires a
 /// geometry extension that is not known; kUsage there is no such scene.
 [[nodiscard]] Result<Scene> import_scene(const std::filesystem::path& path, const ImportOptions& options);
+
+/// What import_scene reads such a file as: "GLB", "glTF", "PLY", "OBJ" or "STL"; empty where it refuses it unread.
+[[nodiscard]] std::string_view find_format_name(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
 
 /// A file that a scene names.
 struct FileReference {

@@ -39,6 +39,8 @@ for file in page.lode image.lode; do
   told validate $file --quiet
   told verify $file --quick --quiet --source "$DATA/foliage.glb" | sed 's, [^ ]*/foliage, foliage,'
   told render $file -o out.png --size 64x64 --pixel-error 0.001 --strict --quiet
+  told render $file -o out.png --size 64x64 --pixel-error 0.001 --quiet
+  told render $file -o out.png --size 64x64 --view clusters --quiet
   told extract $file -o out.glb --level 0 --quiet
   told repack $file -o out.lode --codec none --quiet
 done

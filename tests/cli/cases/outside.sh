@@ -27,6 +27,11 @@ code doctor models/s.gltf --allow-outside textures
 code verify with.lode --source models/s.gltf --quick --allow-outside textures
 code verify without.lode --source models/s.gltf --quick
 code verify with.lode --source models/s.gltf --quick
+# The scene's own file is the same: the message says what may be another.
+"$MESHLODE" verify with.lode --source models/s.gltf --quick | grep -o 'the source given is s.gltf.*' | sed -E 's/\([0-9a-f]+\)/(hash)/'
+printf 'oak' >'textures/100%wood.png'
+code verify with.lode --source models/s.gltf --quick --allow-outside textures
+printf 'wood' >'textures/100%wood.png'
 run build models/s.gltf -o none.lode --allow-outside nowhere
 # What one run may not read, another's cache does not give it.
 code build models/s.gltf -o a.lode --cache cache

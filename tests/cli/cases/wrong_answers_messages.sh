@@ -17,6 +17,11 @@ run build a.lode -o b.lode
 run build a.lode -O out
 run build a.lode -o b.lode --dry-run
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >t.obj; run info t.obj
+printf '\xEF\xBB\xBF{"asset":{"version":"2.0"}}' >scene; run info scene; cp scene scene.json; run info scene.json
+run verify scene --source a.lode
+printf '\xEF\xBB\xBFply\rformat ascii 1.0\r' >cloud; run info cloud
+for text in hello '{"a":1}'; do printf %s "$text" >h.txt; run info h.txt; run render h.txt -o x.png; done; printf LODE >h.txt; run info h.txt
+rm scene scene.json cloud h.txt
 echo "another scene than the one that the asset was built from"
 run verify a.lode --source crystal.glb
 run verify a.lode --source crystal.glb --quiet

@@ -45,6 +45,27 @@ TEST(ImageBudget, TakesWhatThereIsAndGivesItBack) {
   EXPECT_FALSE(budget.take(UINT64_MAX)) << "no sum overflows";
 }
 
+TEST(ImageBudget, AnImageThatIsNotWhatWasWrittenIsDamageAndNoWarning) {
+  test::MaskSceneOptions options;
+  options.image = grey_png(64);
+  Bytes bytes = test::built(test::mask_scene(options));
+  const auto whole = run::Asset::from_vector(Bytes(bytes));
+  ASSERT_TRUE(whole);
+  EXPECT_TRUE(load_textures(*whole).damage);
+  EXPECT_TRUE(load_alpha_masks(*whole).damage);
+  const format::BlobRecord& blob = whole->blobs()[0];
+  bytes[blob.offset + blob.bytes - 1] ^= 1U;  // of the last chunk's checksum: it may well be decoded
+  const auto damaged = run::Asset::from_vector(std::move(bytes));
+  ASSERT_TRUE(damaged);
+  const TextureSet textures = load_textures(*damaged);
+  ASSERT_FALSE(textures.damage);
+  EXPECT_EQ(textures.damage.error().code, ErrorCode::kInvalid);
+  EXPECT_EQ(textures.damage.error().message(), "blob 0, field checksum: does not match the stored bytes");
+  EXPECT_TRUE(textures.images.empty());
+  EXPECT_TRUE(textures.warnings.empty());
+  EXPECT_FALSE(load_alpha_masks(*damaged).damage);
+}
+
 TEST(ImageBudget, ATextureIsLoadedWithItsLevelsOrNotAtAll) {
   const run::Asset asset = scene_with(grey_png(64));
   const std::uint64_t texels = 64 * 64 + 32 * 32 + 16 * 16 + 8 * 8 + 4 * 4 + 2 * 2 + 1;

@@ -89,7 +89,8 @@ TEST(ImportObjMaterials, WhatIsMissingIsAWarningOrAnError) {
   const auto path = folder.write("a.obj", obj(kRed + kGlass));
   const auto strict = [&] { return describe(scene::import_scene(path, {})); };
   const auto bare = scene::import_scene(path, {.may_lack_images = true});
-  EXPECT_EQ(strict(), path.string() + ": mtllib a.mtl: it cannot be opened below the scene's folder");
+  EXPECT_EQ(strict(),
+            path.string() + ": mtllib a.mtl: it cannot be opened: there is no such file, or it cannot be read");
   ASSERT_TRUE(bare) << describe(bare);
   EXPECT_EQ(left_out(*bare), "mtllib a.mtl; material old glass and 1 more; ");
   EXPECT_EQ(bare->materials[0].name, "red");
@@ -97,7 +98,8 @@ TEST(ImportObjMaterials, WhatIsMissingIsAWarningOrAnError) {
   EXPECT_EQ(bare->meshes[0].primitives.size(), 2U);
   folder.write("a.mtl", kMtl);
   const auto untextured = scene::import_scene(path, {.may_lack_images = true});
-  EXPECT_EQ(strict(), path.string() + ": map_Kd my tex.png: it cannot be opened below the scene's folder");
+  EXPECT_EQ(strict(),
+            path.string() + ": map_Kd my tex.png: it cannot be opened: there is no such file, or it cannot be read");
   ASSERT_TRUE(untextured) << describe(untextured);
   EXPECT_EQ(left_out(*untextured), "map_Kd my tex.png; MTL option -clamp of map_Kd; MTL option -s of map_Kd; MTL Ns; ");
   EXPECT_EQ(untextured->materials[1].base_color_texture, kNoId);

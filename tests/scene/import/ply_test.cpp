@@ -92,7 +92,9 @@ TEST_F(PlyAsWritten, ATextureThatIsMissingOrOutsideIsNamed) {
   EXPECT_FALSE(read("a.ply", bytes));
   const auto scene = read("a.ply", bytes, {.may_lack_images = true});
   ASSERT_TRUE(scene) << describe(scene);
-  EXPECT_EQ(all_left_out(*scene), "TextureFile ../gone.png: it cannot be opened below the scene's folder; ");
+  EXPECT_EQ(all_left_out(*scene),
+            "TextureFile ../gone.png: it cannot be opened: a path that leaves the scene's folder, into none of "
+            "--allow-outside; ");
   EXPECT_EQ(primitive(scene).uvs[0].size(), 4U);
 }
 

@@ -153,7 +153,8 @@ TEST(ImportReferences, AMissingImageIsLeftOutAndNamedWhereThatIsAllowed) {
   ASSERT_TRUE(scene) << describe(scene);
   ASSERT_FALSE(scene->left_out.empty());
   EXPECT_EQ(scene->left_out.back().what, "image 0");
-  EXPECT_EQ(scene->left_out.back().why, "its file \"gone.png\" cannot be opened");
+  EXPECT_EQ(scene->left_out.back().why,
+            "its file \"gone.png\" cannot be opened: there is no such file, or it cannot be read");
   ASSERT_EQ(scene->blobs.size(), 1U);
   EXPECT_EQ(scene->blobs[0].name, "b.png");
   ASSERT_EQ(scene->materials.at(0).textures.size(), 1U);

@@ -76,7 +76,7 @@ Result<ImageBytes> find_image_bytes(const GltfAsset& asset, GltfFiles& files, co
       // In the words of the scene: what the machine says would be another text on another one (I10).
       if (is_data_uri(*uri->string()))
         return Found{std::nullopt, "its data URI cannot be read: " + opened.error().detail};
-      return Found{std::nullopt, "its file \"" + shown_uri(*uri->string()) + "\" cannot be opened"};
+      return Found{std::nullopt, "its file \"" + shown_uri(*uri->string()) + "\" " + reason_not_opened(opened.error())};
     }
     if (!opened) return asset.error(opened.error().code, path + "/uri", opened.error().detail);
     return Found{*opened, {}};

@@ -207,8 +207,9 @@ Result<std::filesystem::path> resolve_uri(const std::filesystem::path& folder, s
     if (found) return found;
     if (!first) first = found.error();
   }
-  if (auto decoded = percent_decode(uri); !decoded) return decoded.error();
-  return is_file_uri(uri) && first->code == ErrorCode::kInvalid ? not_read : *first;
+  const bool is_outside = first->code == ErrorCode::kInvalid;  // worth more than how its letters are written
+  if (auto decoded = percent_decode(uri); !decoded && !is_outside) return decoded.error();
+  return is_file_uri(uri) && is_outside ? not_read : *first;
 }
 
 Result<std::filesystem::path> resolve_below(const std::filesystem::path& folder, const std::string& path,
@@ -241,6 +242,12 @@ Result<std::filesystem::path> resolve_below(const std::filesystem::path& folder,
     return invalid("a link that leaves the scene's folder, into none of --allow-outside: \"" + shown_name(path) + "\"");
   }
   return file;
+}
+
+std::string reason_not_opened(const Error& error) {
+  if (error.code == ErrorCode::kIo) return "cannot be opened: there is no such file, or it cannot be read";
+  if (error.code == ErrorCode::kUnsupported) return "cannot be opened: only data URIs and paths are read";
+  return "cannot be opened: " + error.detail.substr(0, error.detail.find(": \""));  // the name is said already
 }
 
 }  // namespace meshlode::scene

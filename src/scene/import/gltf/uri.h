@@ -45,4 +45,8 @@ struct DataUri {
 [[nodiscard]] Result<std::filesystem::path> resolve_below(const std::filesystem::path& folder, const std::string& path,
                                                           std::span<const std::filesystem::path> allowed = {});
 
+/// Why a file that a scene names is done without, to be said after its name: in words that are the same on every
+/// machine, without what the machine says. `error`: of resolve_uri() or resolve_below(), or of opening what they found.
+[[nodiscard]] std::string reason_not_opened(const Error& error);
+
 }  // namespace meshlode::scene

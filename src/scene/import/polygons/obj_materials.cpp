@@ -95,9 +95,9 @@ class ObjMaterials {
     for (const auto& [what, why] : lost_maps_) leave_out(what, why);
   }
 
-  /// A file that geometry does not need.
-  void lack(const std::string& what) {
-    const char* const why = "it cannot be opened below the scene's folder";
+  /// A file that geometry does not need. `error`: of open().
+  void lack(const std::string& what, const Error& error) {
+    const std::string why = "it " + reason_not_opened(error);
     if (!options_.may_lack_images && missing_) missing_ = Error{ErrorCode::kIo, what, why};
     leave_out(what, why);
   }
@@ -112,17 +112,18 @@ class ObjMaterials {
     return file;
   }
 
-  bool read_library(const std::string& name) {
-    const auto [known, is_new] = is_readable_.try_emplace(name, false);
+  /// Each name is tried once.
+  const Status& read_library(const std::string& name) {
+    const auto [known, is_new] = reads_.try_emplace(name, Ok{});
     if (is_new) known->second = open_and_read(name);
     return known->second;
   }
 
-  bool open_and_read(const std::string& name) {
+  Status open_and_read(const std::string& name) {
     std::filesystem::path path;
     const auto file = open(name, path);
-    if (!file) return false;
-    if (!read_.insert(path).second) return true;
+    if (!file) return file.error();
+    if (!read_.insert(path).second) return Ok{};
     hasher_.update(file->bytes());
     MtlFile library = read_mtl(file->bytes());
     for (MtlMaterial& material : library.materials) {
@@ -131,7 +132,7 @@ class ObjMaterials {
     }
     for (const auto& [what, count] : library.skipped.counts()) skipped_.add(what, count);
     for (const auto& [what, count] : library.clamped.counts()) clamped_.add(what, count);
-    return true;
+    return Ok{};
   }
 
   /// One name with blanks, or several.
@@ -140,9 +141,10 @@ class ObjMaterials {
     constexpr std::size_t kShown = 8;
     std::string_view rest = line;
     for (std::string_view name = take_name(rest); !name.empty(); name = take_name(rest)) {
-      if (read_library(std::string(name)) || !lacked_.emplace(name).second) continue;
+      const Status& read = read_library(std::string(name));
+      if (read || !lacked_.emplace(name).second) continue;
       if (lacked_.size() <= kShown) {
-        lack("mtllib " + shown(name));
+        lack("mtllib " + shown(name), read.error());
       } else {
         ++more_lacked_;
       }
@@ -158,7 +160,7 @@ class ObjMaterials {
     std::filesystem::path path;
     const auto file = open(map.file, path);
     if (!file) {
-      lack(map.keyword + " " + shown(map.file));
+      lack(map.keyword + " " + shown(map.file), file.error());
       return kNoId;
     }
     const auto [known, is_new] = image_by_path_.try_emplace(path, static_cast<std::uint32_t>(images_.size()));
@@ -257,7 +259,7 @@ class ObjMaterials {
   Json::Array materials_, images_;
   bool has_strength_ = false;
   Tally skipped_, clamped_;
-  std::map<std::string, bool> is_readable_;  ///< libraries that were tried
+  std::map<std::string, Status> reads_;  ///< libraries that were tried
   std::set<std::string, std::less<>> lacked_;
   std::uint64_t more_lacked_ = 0;  ///< that are not named
   std::set<std::string> invisible_;
