@@ -11,21 +11,21 @@
 
 #include <unistd.h>
 
+#include "app/batch/cache/program_id.h"
+#include "app/batch/tell/time_left.h"
 #include "base/append_format.h"
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/nearest_name.h"
 #include "base/output_files.h"
 #include "base/printable.h"
-#include "app/batch/cache/program_id.h"
-#include "app/batch/tell/time_left.h"
 #include "camera_options.h"
 #include "doctor_words.h"
-#include "options.h"
 #include "lab/page/numbers.h"
 #include "lab/page/page.h"
 #include "lab/page/read_sweep.h"
 #include "lab/sweep/sweep.h"
+#include "options.h"
 #include "verb.h"
 
 namespace meshlode::cli {
@@ -189,9 +189,12 @@ std::string summary_text(const lab::SweepOptions& options, const lab::SweepResul
     done += one.is_done && one.error.empty() ? 1U : 0U;
     failed += one.error.empty() ? 0U : 1U;
   }
-  append_format(text, "%zu points measured, %zu failed, %zu left out, %.0f s: ", done, failed,
-                result.points.size() - done - failed, result.spent);
+  append_format(text, "%zu %s measured, %zu failed, %zu left out, %.0f s: ", done, done == 1 ? "point" : "points",
+                failed, result.points.size() - done - failed, result.spent);
   text += printable(options.report.string(), std::string::npos) + "/index.html\n";
+  for (const lab::IdleKnob& knob : result.idle_knobs) {
+    append_format(text, "%s has nothing to turn: %s\n", knob.name.c_str(), knob.why);
+  }
   for (const lab::Recommendation& one : result.recommendations) {
     text += one.wish.text + ": ";
     if (!one.answer.point) {
@@ -201,8 +204,8 @@ std::string summary_text(const lab::SweepOptions& options, const lab::SweepResul
     const lab::PointResult& point = result.points[*one.answer.point];
     text += std::string(one.wish.goal->key) + " " +
             lab::page::amount_text(point.figures.at(one.wish.goal->key).value, one.wish.goal->unit) + ", ";
-    text += one.answer.why + "\n  " + printable(lab::build_command(options, result, point.point), std::string::npos) +
-            "\n";
+    text +=
+        one.answer.why + "\n  " + printable(lab::build_command(options, result, point.point), std::string::npos) + "\n";
   }
   return text;
 }

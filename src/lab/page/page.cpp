@@ -6,8 +6,8 @@
 #include <system_error>
 #include <utility>
 
-#include "base/printable.h"
 #include "app/doctor/diagnosis.h"
+#include "base/printable.h"
 #include "lab/page/charts.h"
 #include "lab/page/markup.h"
 #include "lab/page/numbers.h"
@@ -280,7 +280,8 @@ void write_top(Markup& html, const ReportData& data, const std::vector<Section>&
   html.open("h1").text("What accuracy costs: ").name(data.scene_file).close().line();
   html.open("p", {{"class", "lead"}});
   html.text(grouped_digits(data.triangles) + " triangles, " + std::to_string(data.points.size()) +
-            " points measured, " + std::to_string(data.left_out.size()) + " left out. ");
+            (data.points.size() == 1 ? " point measured, " : " points measured, ") +
+            std::to_string(data.left_out.size()) + " left out. ");
   if (!data.is_complete) html.element("strong", "The sweep was interrupted: what follows is a part of it.");
   html.close().line();
   html.open("fieldset", {{"class", "theme"}, {"hidden", "hidden"}}).element("legend", "Colours");

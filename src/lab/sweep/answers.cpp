@@ -103,8 +103,14 @@ bool keeps_all(const Wish& wish, const Candidate& candidate) {
 
 /// Why the chosen one, of those that could be compared.
 std::string reason_of(const Answer& answer, std::size_t points, std::size_t kept, bool has_assumed) {
-  std::string why = std::to_string(kept) + " of " + std::to_string(points) + " points keep all bounds; ";
-  if (answer.as_good.empty()) {
+  std::string why = std::to_string(kept) + " of " + std::to_string(points) +
+                    (points == 1 ? " point keeps"
+                     : kept == 1 ? " points keeps"
+                                 : " points keep") +
+                    " all bounds; ";
+  if (kept == 1) {
+    why += "this is the only one";
+  } else if (answer.as_good.empty()) {
     why += answer.not_compared.empty() ? "this one is clearly the best of them"
                                        : "this one is clearly the best of those compared";
   } else {

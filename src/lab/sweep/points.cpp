@@ -234,6 +234,19 @@ std::vector<Knob> make_knobs(const SceneFacts& facts, std::span<const std::strin
   return knobs;
 }
 
+std::vector<IdleKnob> find_idle_knobs(const SceneFacts& facts, std::span<const std::string> chosen) {
+  std::vector<IdleKnob> idle;
+  const auto add = [&](const char* name, bool is_idle, const char* why) {
+    const bool is_chosen = chosen.empty() || std::find(chosen.begin(), chosen.end(), name) != chosen.end();
+    if (is_idle && is_chosen) idle.push_back({name, why});
+  };
+  add("position_error", !(facts.largest_diagonal > 0.0), "no mesh has an extent");
+  add("normal_error", !facts.has_normals, "no mesh stores normals");
+  add("uv_error", !facts.has_uvs, "no mesh has texture coordinates");
+  add("promise", !facts.has_normals && !facts.has_uvs, "no mesh has normals or texture coordinates");
+  return idle;
+}
+
 std::vector<std::string> all_knob_names() {
   std::vector<std::string> names;
   for (const Knob& knob : list_knobs({1.0, true, true})) names.push_back(knob.name);

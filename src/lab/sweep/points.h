@@ -47,6 +47,13 @@ struct SceneFacts {
 
 /// Budgets of attributes that the scene does not store are left out. `chosen`: names of knobs; none: all.
 [[nodiscard]] std::vector<Knob> make_knobs(const SceneFacts& facts, std::span<const std::string> chosen = {});
+/// A knob that the scene gives nothing to turn.
+struct IdleKnob {
+  std::string name;
+  const char* why = "";
+};
+/// Those of `chosen` that make_knobs() leaves out.
+[[nodiscard]] std::vector<IdleKnob> find_idle_knobs(const SceneFacts& facts, std::span<const std::string> chosen = {});
 /// Every name that there is.
 [[nodiscard]] std::vector<std::string> all_knob_names();
 

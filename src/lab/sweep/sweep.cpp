@@ -10,8 +10,6 @@
 
 #include "base/file.h"
 #include "format/names.h"
-#include "run/decode/decode.h"
-#include "scene/import/import.h"
 #include "lab/child/child.h"
 #include "lab/sweep/collect.h"
 #include "lab/sweep/facts.h"
@@ -20,6 +18,8 @@
 #include "lab/sweep/report_folder.h"
 #include "lab/sweep/state.h"
 #include "lab/sweep/work_folder.h"
+#include "run/decode/decode.h"
+#include "scene/import/import.h"
 
 namespace meshlode::lab {
 
@@ -88,7 +88,9 @@ class Sweep {
     }
     auto asset = run::Asset::open(file, options_.max_decoded);
     if (!asset) return asset.error();
-    result_.knobs = make_knobs(facts_of(*asset), options_.knobs);
+    const SceneFacts facts = facts_of(*asset);
+    result_.knobs = make_knobs(facts, options_.knobs);
+    result_.idle_knobs = find_idle_knobs(facts, options_.knobs);
     views_.views = make_views(options_.frame_scene(*asset, result_.fineness.width, result_.fineness.height));
     views_.max_decoded = options_.max_decoded;
     if (Status drawn = draw_full(*asset, views_); !drawn) return drawn;

@@ -17,14 +17,14 @@
 #include <meshlode/result.h>
 
 #include "app/doctor/diagnosis.h"
-#include "run/read/asset.h"
-#include "run/select/select.h"
-#include "scene/scene.h"
 #include "lab/sweep/answers.h"
 #include "lab/sweep/draw_views.h"
 #include "lab/sweep/measurement.h"
 #include "lab/sweep/plan.h"
 #include "lab/sweep/points.h"
+#include "run/read/asset.h"
+#include "run/select/select.h"
+#include "scene/scene.h"
 
 namespace meshlode::lab {
 
@@ -99,6 +99,7 @@ struct SweepResult {
   bool is_complete = false;
   Fineness fineness;  ///< as measured
   std::vector<Knob> knobs;
+  std::vector<IdleKnob> idle_knobs;
   std::vector<View> views;
   std::vector<std::string> full_pictures;              ///< of the views, paths below the report's folder
   std::vector<PointResult> points;                     ///< in the order of make_points()

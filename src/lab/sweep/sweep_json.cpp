@@ -275,6 +275,18 @@ void write_left_out(JsonWriter& w, const SweepOptions& options, const SweepResul
   w.end_array();
 }
 
+void write_idle_knobs(JsonWriter& w, const SweepResult& result) {
+  w.key("knobs_left_out");
+  w.begin_array();
+  for (const IdleKnob& knob : result.idle_knobs) {
+    w.begin_object();
+    w.field("name", knob.name);
+    w.field("why", knob.why);
+    w.end_object();
+  }
+  w.end_array();
+}
+
 void write_recommendation(JsonWriter& w, const SweepOptions& options, const SweepResult& result,
                           const Recommendation& one) {
   w.begin_object();
@@ -361,6 +373,7 @@ std::string sweep_json(const SweepOptions& options, const SweepResult& result) {
   }
   w.end_array();
   write_left_out(w, options, result);
+  write_idle_knobs(w, result);
   w.key("frontiers");
   w.begin_array();
   for (const Frontier& frontier : result.frontiers) {

@@ -18,6 +18,12 @@ tr -d ' \n' <report/sweep.json | grep -oE '"build_user_seconds":\{"value":[^}]*\
 grep -o 'nothing could be compared' report/index.html
 grep -c 'so as good.*build_wall' report/index.html
 grep -o 'not compared' report/index.html | sort -u
+# One point, of one point; a knob that the scene gives nothing to turn.
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >t.obj
+"$MESHLODE" sweep t.obj -o bare --rounds 1 --samples 200 --knobs normal-error --jobs 1 --want 'bytes min' 2>/dev/null |
+  sed -E 's/, [0-9]+ s:/, N s:/; s/[0-9.]+ (B|kB),/N B,/'
+"$JSON_CHECK" "$SCHEMAS/sweep.schema.json" <bare/sweep.json
+tr -d '\n' <bare/sweep.json | grep -oE '"knobs_left_out": *\[[^]]*\]' | tr -s ' '
 # Two rounds have a spread.
 "$MESHLODE" sweep a.glb -o report --rounds 2 --samples 200 --knobs preset,codec --jobs 1 --want 'build min' 2>/dev/null >said
 grep -c 'not compared' said

@@ -90,6 +90,19 @@ TEST(SweepPoints, AScenesBudgetsAreLeftOutWhereItHasNone) {
   }
 }
 
+TEST(SweepPoints, KnobsThatAreLeftOutAreNamed) {
+  for (const SceneFacts& facts : {SceneFacts{0.0, false, false}, {1.0, true, false}, {1.0, false, true}, kAll}) {
+    std::set<std::string> names;
+    for (const Knob& knob : make_knobs(facts)) names.insert(knob.name);
+    for (const IdleKnob& knob : find_idle_knobs(facts)) EXPECT_TRUE(names.insert(knob.name).second) << knob.name;
+    EXPECT_EQ(names.size(), all_knob_names().size());
+  }
+  const std::vector<std::string> chosen{"codec", "uv_error"};
+  const auto idle = find_idle_knobs({0.0, false, false}, chosen);
+  ASSERT_EQ(idle.size(), 1U);
+  EXPECT_EQ(idle[0].name, "uv_error");
+}
+
 TEST(SweepPoints, PositionBudgetsAreRoundAndNearTheirShareOfTheDiagonal) {
   for (const double diagonal : {1.0, 2.5, 0.0173, 4200.0}) {
     const std::vector<Knob> knobs = make_knobs({diagonal, false, false});
