@@ -193,7 +193,6 @@ Status ObjReader::read_face(std::string_view line) {
   }
   const std::uint64_t stated = face.stated > 2 ? face.stated - 2 : 0;
   if (!face.is_valid) {
-    out_.triangles += stated;
     out_.drops.repaired += std::max<std::uint64_t>(stated, 1);
   } else if (!has_three_positions(face.corners)) {
     ++small_faces_;
@@ -209,7 +208,6 @@ void ObjReader::keep_face(const ObjFace& face) {
   dangling_normals_ += face.lacks_normals ? 1U : 0U;
   const std::uint8_t traits = traits_of(face);
   all_traits_ |= traits;
-  out_.triangles += corners.size() - 2;
   corners_.insert(corners_.end(), corners.begin(), corners.end());
   PolygonSoup& soup = out_.soup;
   soup.polygon_sizes.push_back(static_cast<std::uint32_t>(corners.size()));
