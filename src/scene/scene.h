@@ -123,9 +123,9 @@ struct Scene {
   /// `images[].blob` and `buffers[].blob` name entries of `blobs`, and geometry is gone. "{}" for formats without.
   std::string document = "{}";
   std::vector<LeftOut> left_out;
-  /// Triangles that the file plainly holds, whatever became of them: facets of an STL by its size, of PLY and OBJ those
-  /// that faces are cut into, and n - 2 for a dropped face of n corners. What has no three different corners is none.
-  /// 0 where the format does not tell (glTF).
+  /// Triangles that the file plainly holds, no fewer: counted by count/file_triangles.h from the file's bytes, whatever
+  /// the importer made of them. Sound facets of an STL, and one for each face of PLY and OBJ with three different
+  /// corners. 0 where the format does not tell (glTF).
   std::uint64_t triangles_in_file = 0;
 };
 

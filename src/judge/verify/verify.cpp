@@ -14,10 +14,10 @@
 #include "judge/verify/coverage_rule.h"
 #include "judge/verify/cuts.h"
 #include "judge/verify/deviations.h"
-#include "judge/verify/file_triangles.h"
 #include "judge/verify/locked_borders.h"
 #include "judge/verify/promises.h"
 #include "judge/verify/source_rules.h"
+#include "scene/count/file_triangles.h"
 
 namespace meshlode::judge {
 
@@ -151,7 +151,7 @@ void add_source(const run::Asset& asset, const scene::Scene& source, std::span<c
 /// What no reader that build and verify share can hide.
 void add_file_triangles(const run::Asset& asset, const scene::Scene& source, std::span<const std::uint8_t> file,
                         Report& report) {
-  const auto found = file.empty() ? std::nullopt : count_file_triangles(file, source.source_name);
+  const auto found = file.empty() ? std::nullopt : scene::count_file_triangles(file, source.source_name);
   if (!found) return;
   std::uint64_t told = 0;  // what --repair removed is among them; a sum that a hostile record chose may wrap around
   for (const format::MeshRecord& mesh : asset.meshes()) told += mesh.source_triangles;
@@ -161,9 +161,9 @@ void add_file_triangles(const run::Asset& asset, const scene::Scene& source, std
       [&] {
         return "the asset tells of " + std::to_string(told) + " triangles, " + found->words + " " +
                std::to_string(found->at_least) +
-               (found->at_least == found->at_most           ? ""
-                : found->at_most == FileTriangles{}.at_most ? " or more"
-                                                            : " to " + std::to_string(found->at_most));
+               (found->at_least == found->at_most                  ? ""
+                : found->at_most == scene::FileTriangles{}.at_most ? " or more"
+                                                                   : " to " + std::to_string(found->at_most));
       });
   report.add_check("", "the asset has the triangles that the source's file holds, by its size or its lines",
                    found->at_least, failures_of(log, {Rule::kV115}));

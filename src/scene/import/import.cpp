@@ -10,6 +10,7 @@
 
 #include "base/file.h"
 #include "base/guarded.h"
+#include "scene/count/file_triangles.h"
 #include "scene/import/gltf/gltf_import.h"
 #include "scene/import/polygons/import_polygons.h"
 #include "scene/import/polygons/obj_materials.h"
@@ -84,6 +85,7 @@ Result<Scene> import_scene(const std::filesystem::path& path, const ImportOption
                                           : import_polygons(reader_of(*format), path, bytes, options);
     if (!scene) return scene;
     scene->source_name = path.filename().string();
+    if (const auto held = count_file_triangles(bytes, scene->source_name)) scene->triangles_in_file = held->at_least;
     if (options.repair) repair_scene(*scene);
     return scene;
   });

@@ -43,21 +43,12 @@ Result<Scene> import_polygons(PolygonReader read, const std::filesystem::path& p
   if (!file) return named(file.error());
   Scene scene;
   scene.left_out = std::move(file->left_out);
-  scene.triangles_in_file = file->triangles;
   Hasher hasher;
   hasher.update(bytes);
   if (const Status added = add_obj_materials(path, *file, options, hasher, scene); !added) return named(added.error());
   const std::size_t polygon_count = file->soup.polygon_sizes.size(), point_count = file->soup.positions.size();
-  // A polygon holds the triangles that it is cut into: fewer than its corners less two where one lies on a side.
-  std::uint64_t kept = file->drops.repaired;
-  for (const std::uint32_t size : file->soup.polygon_sizes) kept += size - 2;
   auto meshes = triangulate(std::move(file->soup), options, file->drops, scene.left_out);
   if (!meshes) return named(meshes.error());
-  std::uint64_t made = file->drops.repaired;
-  for (const PolygonMesh& mesh : *meshes) {
-    for (const Primitive& primitive : mesh.primitives) made += primitive.indices.size() / 3;
-  }
-  scene.triangles_in_file = scene.triangles_in_file - kept + made;
   for (PolygonMesh& mesh : *meshes) {
     add_mesh(scene, as_utf8(mesh.object == kNoId ? path.stem().string() : file->object_names[mesh.object]),
              std::move(mesh.primitives));

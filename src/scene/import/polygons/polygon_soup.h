@@ -43,7 +43,6 @@ struct PolygonFile {
   std::vector<std::string> material_libraries;  ///< of its mtllib, a line each
   std::vector<MtlMaterial> materials;           ///< those that the file itself describes: PLY's TextureFile
   std::vector<std::string> object_names;        ///< of OBJ's o, each once
-  std::uint64_t triangles = 0;                  ///< Scene::triangles_in_file
 };
 
 /// Errors: kInvalid or kUnsupported, with the place in `where` for the caller to put the file's name before.

@@ -195,7 +195,6 @@ Status ObjReader::read_face(std::string_view line) {
   }
   const std::uint64_t stated = face.stated > 2 ? face.stated - 2 : 0;
   if (!face.is_valid) {
-    out_.triangles += stated;
     out_.drops.repaired += std::max<std::uint64_t>(stated, 1);
   } else if (!has_three_positions(face.corners)) {
     ++small_faces_;
@@ -212,7 +211,6 @@ void ObjReader::keep_face(const ObjFace& face) {
   const std::uint8_t traits = traits_of(face);
   all_traits_ |= traits;
   has_flat_ = has_flat_ || (traits & kHasNormals) == 0;
-  out_.triangles += corners.size() - 2;
   corners_.insert(corners_.end(), corners.begin(), corners.end());
   PolygonSoup& soup = out_.soup;
   soup.polygon_sizes.push_back(static_cast<std::uint32_t>(corners.size()));

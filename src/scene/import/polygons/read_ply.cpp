@@ -218,7 +218,6 @@ void PlyReader::keep_face(const PlyColumns& set, const Values& value, bool is_va
     ++small_faces_;
     return;
   }
-  out_.triangles += corners_.size() - 2;
   if (!is_valid) {
     out_.drops.repaired += corners_.size() - 2;
     return;
@@ -281,7 +280,6 @@ void PlyReader::keep_strip(const std::vector<std::int64_t>& strip, bool is_valid
     if (i < begin + 2 || strip[i - 2] == strip[i - 1] || strip[i - 1] == strip[i] || strip[i - 2] == strip[i]) continue;
     corners_ = {strip[i - 2], strip[i - 1], strip[i]};
     if ((i - begin) % 2 == 1) std::swap(corners_[0], corners_[1]);
-    ++out_.triangles;
     if (!is_valid) {
       ++out_.drops.repaired;
       continue;

@@ -170,7 +170,6 @@ Status StlReader::read_text(std::string_view text) {
 
 PolygonFile StlReader::finish() {
   out_.drops.repaired = repaired_;
-  out_.triangles = seen_ - points_;
   if (points_ != 0) leave_out(counted(points_, "triangle"), "two of their corners are the same point");
   if (solids_ > 1) leave_out("the names of " + counted(solids_, "solid"), "an STL becomes one mesh");
   for (const auto& [word, count] : unknown_.counts()) {
