@@ -22,10 +22,10 @@
 #include "judge/gpu/cameras.h"
 #include "judge/metrics/product_distance.h"
 #include "judge/verify/promises.h"
+#include "lab/flip/flip.h"
 #include "run/decode/decode.h"
 #include "run/select/select.h"
 #include "scene/import/import.h"
-#include "lab/flip/flip.h"
 
 namespace {
 

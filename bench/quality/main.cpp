@@ -13,12 +13,12 @@
 #include <string>
 #include <vector>
 
+#include "app/report/info.h"
 #include "command_line.h"
 #include "format/names.h"
 #include "judge/metrics/attribute_drift.h"
 #include "judge/metrics/cut_judge.h"
 #include "judge/metrics/cut_search.h"
-#include "app/report/info.h"
 #include "quality_report.h"
 #include "reference.h"
 #include "run/decode/decode.h"

@@ -188,8 +188,8 @@ struct BuildOptions {
                                       const BuildOptions& options);
 
 /// Reads a .gltf, .glb, .ply, .obj or .stl, builds it and writes the asset. Files that it refers to are read from
-/// below its own folder and those of allow_outside only. Errors as above, kUnsupported for an extension that cannot be done
-/// without, and kUsage where the output is one of the files that were read, by whatever name.
+/// below its own folder and those of allow_outside only. Errors as above, kUnsupported for an extension that cannot be
+/// done without, and kUsage where the output is one of the files that were read, by whatever name.
 [[nodiscard]] Status build_file(const std::filesystem::path& input, const std::filesystem::path& output,
                                 const BuildOptions& options);
 

@@ -11,9 +11,9 @@
 #include <meshlode/result.h>
 
 #include "builder/aggregate/aggregate_choice.h"
-#include "builder/options.h"
 #include "builder/dag/build_dag.h"
 #include "builder/encode/encode.h"
+#include "builder/options.h"
 #include "builder/plan/plan.h"
 #include "builder/prepare/prepare.h"
 #include "builder/prepared.h"

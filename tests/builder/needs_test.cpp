@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a build needs, known before it: counts within 32 bits, and memory, held against what builds in children took.
-#include "builder/builder.h"
 #include "builder/needs.h"
+#include "builder/builder.h"
 
 #include <sys/resource.h>
 #include <sys/wait.h>

@@ -13,9 +13,9 @@
 
 #include <gtest/gtest.h>
 
+#include "app/doctor/asset_faults.h"
 #include "broken_scenes.h"
 #include "hard_case.h"
-#include "app/doctor/asset_faults.h"
 #include "scene/detect/detect.h"
 #include "scene/import/import.h"
 

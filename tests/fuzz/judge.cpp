@@ -5,12 +5,12 @@
 #include <string_view>
 #include <vector>
 
-#include "asset_mutator.h"
-#include "harness.h"
-#include "judge/validate/validate.h"
 #include "app/compare/compare.h"
 #include "app/export/choose_cuts.h"
 #include "app/export/export.h"
+#include "asset_mutator.h"
+#include "harness.h"
+#include "judge/validate/validate.h"
 
 namespace {
 

@@ -58,7 +58,7 @@ void read_mesh(Bytes bytes) {
 
 std::string written(const app::Manifest& manifest) {
   return app::manifest_json(manifest.results, manifest.program, manifest.settings, manifest.exit_code,
-                              manifest.shard ? &*manifest.shard : nullptr);
+                            manifest.shard ? &*manifest.shard : nullptr);
 }
 
 void read_manifest(Bytes bytes) {

@@ -52,7 +52,8 @@ int trial(const std::vector<std::string>& words) {
   if (hard_case == nullptr) return usage();
   const bool all_laws = std::find(words.begin() + 3, words.end(), "--laws") != words.end();
   const auto care_word = std::find(words.begin() + 3, words.end(), "--care");
-  const auto care = builder::parse_care(care_word == words.end() || care_word + 1 == words.end() ? "all" : care_word[1]);
+  const auto care =
+      builder::parse_care(care_word == words.end() || care_word + 1 == words.end() ? "all" : care_word[1]);
   if (!care) return usage();
   const Trial result = try_case(*hard_case, std::strtod(words[2].c_str(), nullptr), all_laws, *care);
   std::fputs(text_of(result).c_str(), stdout);

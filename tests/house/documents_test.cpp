@@ -21,8 +21,8 @@ std::vector<SourceFile> documents() {
   return files;
 }
 
-/// `src/builder/builder.cpp` and the like in backticks: paths from the repository's root that name a file or a folder. What
-/// has a placeholder or a pattern in it is no path.
+/// `src/builder/builder.cpp` and the like in backticks: paths from the repository's root that name a file or a folder.
+/// What has a placeholder or a pattern in it is no path.
 std::vector<std::string> named_paths(const std::string& text) {
   static const std::regex path("`((?:src|include|tests|tools|cmake|bench|docs|data)/[A-Za-z0-9_./-]+)`");
   std::vector<std::string> paths;

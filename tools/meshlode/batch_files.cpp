@@ -7,10 +7,10 @@
 #include <string_view>
 #include <utility>
 
-#include "base/file.h"
 #include "app/batch/batch.h"
 #include "app/batch/depend/depfile.h"
 #include "app/batch/tell/tell.h"
+#include "base/file.h"
 #include "options.h"
 #include "outputs.h"
 #include "scene/import/import.h"

@@ -17,10 +17,10 @@
 #include <utility>
 #include <vector>
 
-#include "base/hash.h"
+#include "app/batch/jobs/job_result.h"
 #include "app/batch/jobs/jobs.h"
 #include "app/batch/shard/partition.h"
-#include "app/batch/jobs/job_result.h"
+#include "base/hash.h"
 
 namespace meshlode::cli {
 

@@ -25,8 +25,7 @@ std::string plain(std::string text) {
 std::vector<std::uint64_t> weights_of(const std::vector<app::Job>& jobs, bool is_wanted) {
   std::vector<std::uint64_t> weights;
   weights.reserve(jobs.size());
-  for (const app::Job& job : jobs)
-    weights.push_back(is_wanted && jobs.size() > 1 ? app::weigh_scene(job.input) : 1);
+  for (const app::Job& job : jobs) weights.push_back(is_wanted && jobs.size() > 1 ? app::weigh_scene(job.input) : 1);
   return weights;
 }
 
@@ -122,8 +121,7 @@ void BatchShow::end(std::size_t job, const app::JobResult& result, const Error* 
   if (error != nullptr || !has_lines_) return;
   if (jobs_.size() > 1) std::fprintf(stderr, "[%zu/%zu] ", job + 1, jobs_.size());
   print_line(result);
-  for (const app::JobWarning& warning : result.warnings)
-    std::fprintf(stderr, "  warning: %s\n", warning.text.c_str());
+  for (const app::JobWarning& warning : result.warnings) std::fprintf(stderr, "  warning: %s\n", warning.text.c_str());
   print_left_out(result.facts);
 }
 

@@ -11,8 +11,8 @@
 
 #include <meshlode/result.h>
 
-#include "options.h"
 #include "app/budget/judge_budget.h"
+#include "options.h"
 
 namespace meshlode::cli {
 

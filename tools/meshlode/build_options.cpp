@@ -34,7 +34,7 @@ app::SettingLayer given_settings(const BuildWords& words) {
 }
 
 Result<std::vector<app::SettingLayer>> settings_for(const BuildWords& words, const std::filesystem::path& scene,
-                                                      const std::filesystem::path& root) {
+                                                    const std::filesystem::path& root) {
   std::vector<app::SettingLayer> layers;
   if (!words.no_file) {
     std::vector<FileId> files_read;

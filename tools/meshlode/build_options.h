@@ -16,7 +16,7 @@ namespace meshlode::cli {
 struct BuildWords {
   app::SettingLayer layer{"the command line", ErrorCode::kUsage, {}, {}};
   std::array<bool, app::kSettingCount> flags{};  ///< of the settings that are flags
-  std::string scene;                               ///< of the file: a name, an index or `all`; empty: its default
+  std::string scene;                             ///< of the file: a name, an index or `all`; empty: its default
   bool no_file = false;
   std::string root;  ///< the outermost folder whose file counts; empty: the caller's
 };
@@ -30,8 +30,8 @@ void add_build_options(OptionParser& parser, BuildWords& words);
 /// The files' layers from `root` down to the scene's folder, then what was given: app/settings/settings_file.h. Files
 /// that were read are no outputs from here on.
 [[nodiscard]] Result<std::vector<app::SettingLayer>> settings_for(const BuildWords& words,
-                                                                    const std::filesystem::path& scene,
-                                                                    const std::filesystem::path& root);
+                                                                  const std::filesystem::path& scene,
+                                                                  const std::filesystem::path& root);
 
 [[nodiscard]] std::vector<std::string> names_of_meshes(const scene::Scene& scene);
 

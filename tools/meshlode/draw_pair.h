@@ -8,8 +8,8 @@
 
 #include <meshlode/result.h>
 
-#include "camera_options.h"
 #include "app/compare/compare.h"
+#include "camera_options.h"
 #include "run/read/asset.h"
 
 namespace meshlode::cli {

@@ -3,12 +3,12 @@
 
 #include <algorithm>
 
-#include "base/printable.h"
 #include "app/preview/plan_report.h"
 #include "app/preview/scene_plan.h"
+#include "app/report/read_meta.h"
+#include "base/printable.h"
 #include "build_options.h"
 #include "draw/gpu/pass_plan.h"
-#include "app/report/read_meta.h"
 
 namespace meshlode::cli {
 
@@ -27,8 +27,8 @@ std::string describe_settings(const app::Settled& settled, const std::vector<app
                               const scene::Scene& scene) {
   std::string text = "settings\n";
   const auto line = [&](const std::string& of, app::Setting setting, const app::SettledWord& word) {
-    text += "  " + of + app::info_of(setting).name + " " +
-            (word.word.empty() ? "(none)" : printable(word.word, 100)) + ": " + printable(word.from, 200) + "\n";
+    text += "  " + of + app::info_of(setting).name + " " + (word.word.empty() ? "(none)" : printable(word.word, 100)) +
+            ": " + printable(word.from, 200) + "\n";
   };
   for (const app::SettingInfo& info : app::all_settings()) {
     const app::SettledWord& word = settled[info.setting];

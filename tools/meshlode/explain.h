@@ -13,8 +13,8 @@
 namespace meshlode::cli {
 
 /// A line for each setting and who said it; then those that meshes have for themselves.
-[[nodiscard]] std::string describe_settings(const app::Settled& settled,
-                                            const std::vector<app::SettledMesh>& meshes, const scene::Scene& scene);
+[[nodiscard]] std::string describe_settings(const app::Settled& settled, const std::vector<app::SettledMesh>& meshes,
+                                            const scene::Scene& scene);
 
 /// Settings and plan of a build that is to come. Errors: plan_scene()'s.
 [[nodiscard]] Result<std::string> explain_build(const std::vector<app::SettingLayer>& layers,

@@ -6,10 +6,10 @@
 #include <cstdio>
 #include <vector>
 
-#include "base/json_writer.h"
-#include "format/names.h"
 #include "app/export/colored_sets.h"
 #include "app/report/info.h"
+#include "base/json_writer.h"
+#include "format/names.h"
 #include "outputs.h"
 
 namespace meshlode::cli {

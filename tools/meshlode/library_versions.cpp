@@ -22,11 +22,11 @@
 #include <boost/version.hpp>
 #include <nlohmann/json_fwd.hpp>
 
+#include "app/batch/cache/program_id.h"
 #include "base/append_format.h"
 #include "base/hash.h"
 #include "base/vec.h"
 #include "base/version.h"
-#include "app/batch/cache/program_id.h"
 #include "options.h"
 
 namespace meshlode::cli {

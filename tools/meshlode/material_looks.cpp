@@ -84,7 +84,7 @@ Vec3f mean_color(const Sampled& sampled, const Vec4f& factor) {
 }
 
 std::optional<builder::MaterialLook> look_of(const scene::Scene& scene, const Json& document,
-                                           const scene::SceneMaterial& material) {
+                                             const scene::SceneMaterial& material) {
   const auto use = std::find_if(material.textures.begin(), material.textures.end(),
                                 [](const scene::TextureUse& t) { return t.role == scene::TextureRole::kBaseColor; });
   if (use == material.textures.end() || use->blob >= scene.blobs.size()) return std::nullopt;

@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <chrono>
 
+#include "app/report/info.h"
 #include "base/append_format.h"
 #include "base/printable.h"
 #include "camera_options.h"
 #include "draw/gpu/render.h"
 #include "draw/raster/raster.h"
-#include "app/report/info.h"
 #include "run/read/asset.h"
 #include "run/select/select.h"
 

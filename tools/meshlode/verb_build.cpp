@@ -10,7 +10,6 @@
 #include <system_error>
 #include <utility>
 
-#include "base/printable.h"
 #include "app/batch/batch.h"
 #include "app/batch/cache/cache.h"
 #include "app/batch/cache/ingredients.h"
@@ -21,11 +20,12 @@
 #include "app/batch/shard/partition.h"
 #include "app/batch/shard/read_manifest.h"
 #include "app/batch/tell/tell.h"
+#include "app/settings/settings.h"
+#include "base/printable.h"
 #include "batch_files.h"
 #include "batch_options.h"
 #include "batch_show.h"
 #include "budget_options.h"
-#include "app/settings/settings.h"
 #include "build_options.h"
 #include "explain.h"
 #include "file_kind.h"

@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
+#include "app/compare/compare.h"
+#include "app/compare/stored_bytes.h"
 #include "budget_options.h"
 #include "camera_options.h"
 #include "draw_pair.h"
 #include "file_kind.h"
 #include "options.h"
-#include "app/compare/compare.h"
-#include "app/compare/stored_bytes.h"
 #include "run/read/asset.h"
 #include "verb.h"
 

@@ -9,12 +9,12 @@
 
 #include <meshlode/format.h>
 
-#include "base/file.h"
-#include "doctor_words.h"
-#include "options.h"
 #include "app/compare/stored_bytes.h"
 #include "app/doctor/asset_faults.h"
 #include "app/doctor/diagnosis.h"
+#include "base/file.h"
+#include "doctor_words.h"
+#include "options.h"
 #include "run/read/asset.h"
 #include "scene/import/import.h"
 #include "verb.h"

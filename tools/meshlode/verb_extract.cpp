@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
+#include "app/export/export.h"
 #include "base/json_writer.h"
 #include "extract_cuts.h"
 #include "extract_stuck.h"
 #include "file_kind.h"
 #include "options.h"
-#include "app/export/export.h"
 #include "output_name.h"
 #include "outputs.h"
 #include "promise_option.h"

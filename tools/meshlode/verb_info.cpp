@@ -3,14 +3,14 @@
 #include <string>
 #include <utility>
 
+#include "app/compare/stored_bytes.h"
+#include "app/page/viewer_page.h"
+#include "app/report/info.h"
 #include "base/byte_size.h"
 #include "budget_options.h"
 #include "file_kind.h"
 #include "info_page.h"
 #include "options.h"
-#include "app/compare/stored_bytes.h"
-#include "app/page/viewer_page.h"
-#include "app/report/info.h"
 #include "output_name.h"
 #include "outputs.h"
 #include "run/read/asset.h"

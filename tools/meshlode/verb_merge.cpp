@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "base/file.h"
 #include "app/batch/shard/merge.h"
 #include "app/batch/shard/read_manifest.h"
 #include "app/batch/tell/tell.h"
+#include "base/file.h"
 #include "file_kind.h"
 #include "options.h"
 #include "output_name.h"

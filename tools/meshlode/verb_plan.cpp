@@ -5,10 +5,10 @@
 #include <utility>
 #include <vector>
 
-#include "base/json_writer.h"
 #include "app/preview/plan_report.h"
 #include "app/preview/scene_plan.h"
 #include "app/settings/settings.h"
+#include "base/json_writer.h"
 #include "build_options.h"
 #include "explain.h"
 #include "material_looks.h"
@@ -132,8 +132,8 @@ int run_plan(const Verb& verb, std::span<char* const> args) {
                                                                 .scene = words.scene,
                                                                 .max_decoded = *decoded,
                                                                 .may_lack_images = true,
-                                                                 .allow_outside = std::move(*allowed),
-                                                                 .linear_colors = options.linear_colors});
+                                                                .allow_outside = std::move(*allowed),
+                                                                .linear_colors = options.linear_colors});
   if (!scene) return print_error(scene.error());
   const auto fail = [&](Error error) {
     error.where = path + (error.where.empty() ? "" : ": ") + error.where;

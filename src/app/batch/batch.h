@@ -4,10 +4,10 @@
 
 #include <vector>
 
-#include "base/output_files.h"
 #include "app/batch/jobs/job_result.h"
 #include "app/batch/jobs/jobs.h"
 #include "app/batch/work/job_options.h"
+#include "base/output_files.h"
 
 namespace meshlode::app {
 

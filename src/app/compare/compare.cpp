@@ -9,8 +9,8 @@
 #include <type_traits>
 #include <utility>
 
-#include "base/hash.h"
 #include "app/compare/match.h"
+#include "base/hash.h"
 
 namespace meshlode::app {
 

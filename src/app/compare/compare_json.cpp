@@ -2,9 +2,9 @@
 // `compare --format json`: the keys here are a promise; docs/schemas/compare.schema.json lists them.
 #include <cmath>
 
+#include "app/compare/compare.h"
 #include "base/json_writer.h"
 #include "format/names.h"
-#include "app/compare/compare.h"
 
 namespace meshlode::app {
 

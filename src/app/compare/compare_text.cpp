@@ -2,10 +2,10 @@
 // `compare` for people: what differs, in one table; what is equal is not listed.
 #include <cmath>
 
+#include "app/compare/compare.h"
 #include "base/append_format.h"
 #include "base/printable.h"
 #include "format/names.h"
-#include "app/compare/compare.h"
 
 namespace meshlode::app {
 

@@ -10,10 +10,10 @@
 
 #include <meshlode/format.h>
 
-#include "base/append_format.h"
-#include "base/printable.h"
 #include "app/report/info.h"
 #include "app/report/read_meta.h"
+#include "base/append_format.h"
+#include "base/printable.h"
 
 namespace meshlode::app {
 

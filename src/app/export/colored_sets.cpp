@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <tuple>
 
-#include "base/json_writer.h"
 #include "app/export/cut_geometry.h"
 #include "app/export/float_positions.h"
 #include "app/export/glb_file.h"
+#include "base/json_writer.h"
 
 namespace meshlode::app {
 namespace {

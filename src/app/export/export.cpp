@@ -17,16 +17,16 @@
 #include <string_view>
 #include <utility>
 
-#include "base/guarded.h"
-#include "base/hash.h"
-#include "base/json_handle.h"
-#include "format/names.h"
 #include "app/export/cut_geometry.h"
 #include "app/export/float_positions.h"
 #include "app/export/glb_file.h"
 #include "app/export/gltf_document.h"
 #include "app/export/sniff.h"
 #include "app/export/write_primitive.h"
+#include "base/guarded.h"
+#include "base/hash.h"
+#include "base/json_handle.h"
+#include "format/names.h"
 
 namespace meshlode::app {
 namespace {

@@ -8,8 +8,8 @@
 
 #include <meshlode/format.h>
 
-#include "base/vec.h"
 #include "app/export/cut_geometry.h"
+#include "base/vec.h"
 
 namespace meshlode::app {
 

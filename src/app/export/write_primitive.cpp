@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include "app/export/float_positions.h"
 #include "base/gltf_textures.h"
 #include "base/json_handle.h"
-#include "app/export/float_positions.h"
 
 namespace meshlode::app {
 

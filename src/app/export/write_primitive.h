@@ -9,10 +9,10 @@
 #include <meshlode/format.h>
 #include <meshlode/result.h>
 
-#include "base/vec.h"
 #include "app/export/cut_geometry.h"
 #include "app/export/glb_file.h"
 #include "app/export/gltf_document.h"
+#include "base/vec.h"
 #include "run/read/asset.h"
 
 namespace meshlode::app {

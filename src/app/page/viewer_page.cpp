@@ -8,11 +8,11 @@
 
 #include <meshlode/meshlode.h>
 
-#include "base/json_writer.h"
-#include "format/names.h"
 #include "app/page/page_texts.h"
 #include "app/page/text_forms.h"
 #include "app/report/info.h"
+#include "base/json_writer.h"
+#include "format/names.h"
 
 namespace meshlode::app {
 

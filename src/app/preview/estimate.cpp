@@ -89,15 +89,17 @@ SizeFacts size_facts(const scene::SourceMesh& mesh, const builder::GridPlan& gri
   return facts;
 }
 
-SizeEstimate estimate_size(const scene::SourceMesh& mesh, const builder::AttributeLayout& layout, const SizeFacts& facts,
-                           std::int32_t normal_scale, const std::array<std::int32_t, scene::kMaxUvSets>& uv_log2,
+SizeEstimate estimate_size(const scene::SourceMesh& mesh, const builder::AttributeLayout& layout,
+                           const SizeFacts& facts, std::int32_t normal_scale,
+                           const std::array<std::int32_t, scene::kMaxUvSets>& uv_log2,
                            std::uint32_t cluster_triangles) {
   SizeEstimate out;
   if (facts.triangles == 0) return out;
   const bool is_whole = facts.triangles <= cluster_triangles;
   const auto source = static_cast<double>(facts.triangles);
   const double stored = is_whole ? source : kStoredPerSource * source;
-  const double wedges = static_cast<double>(builder::count_wedges(mesh, layout)) / source + (is_whole ? 0.0 : kBorderVertices);
+  const double wedges =
+      static_cast<double>(builder::count_wedges(mesh, layout)) / source + (is_whole ? 0.0 : kBorderVertices);
   const double vertices = stored * std::min(3.0, wedges);
   const auto bytes = [&](double bits) { return vertices * bits / 8.0; };
   out.positions = bytes(std::max(0.0, 3.0 * facts.position_bits - kFlatBits));

@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "base/json_writer.h"
 #include "app/preview/scene_plan.h"
+#include "base/json_writer.h"
 
 namespace meshlode::app {
 

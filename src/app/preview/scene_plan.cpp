@@ -8,12 +8,12 @@
 #include <span>
 #include <utility>
 
+#include "app/preview/estimate.h"
 #include "base/parallel.h"
 #include "builder/aggregate/aggregate_choice.h"
 #include "builder/encode/encode.h"
 #include "builder/encode/uv_grid.h"
 #include "builder/needs.h"
-#include "app/preview/estimate.h"
 #include "builder/plan/features.h"
 #include "builder/plan/texel_sizes.h"
 #include "builder/prepare/prepare.h"
@@ -38,7 +38,7 @@ class MeshPlanner {
         options_(options),
         own_(options.of_mesh(index)),
         plan_(builder::plan_mesh(mesh_, scene.materials, builder::request_of(options.of_mesh(index), options.promise),
-                        builder::mesh_label(mesh_, index))) {
+                                 builder::mesh_label(mesh_, index))) {
     out_.label = builder::mesh_label(mesh_, index);
     choose_uv_steps(texels);
   }
@@ -63,7 +63,8 @@ class MeshPlanner {
 
  private:
   [[nodiscard]] SizeEstimate estimate(const builder::AttributeLayout& layout) const {
-    return estimate_size(mesh_, layout, facts_, builder::normal_scale_of(encode_), uv_log2_, options_.max_cluster_triangles);
+    return estimate_size(mesh_, layout, facts_, builder::normal_scale_of(encode_), uv_log2_,
+                         options_.max_cluster_triangles);
   }
 
   /// The step of every set that the source has, kept or not.
@@ -162,13 +163,15 @@ Result<ScenePlan> plan_scene(const scene::Scene& scene, const builder::PipelineO
   }
   plan.features = builder::list_features(scene);
   for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
-    const builder::AggregateDecision aggregate = builder::decide_aggregate(scene.meshes[i], builder::aggregate_question(scene, i, options));
+    const builder::AggregateDecision aggregate =
+        builder::decide_aggregate(scene.meshes[i], builder::aggregate_question(scene, i, options));
     if (aggregate.reason.empty()) continue;
     plan.features.push_back(
         {builder::mesh_label(scene.meshes[i], i) + ": aggregate", aggregate.is_aggregate,
          aggregate.is_aggregate ? aggregate.reason + ": thinned out by what they cover" : aggregate.reason});
   }
-  for (builder::PlanDecision& decision : builder::unknown_names(scene, options)) plan.features.push_back(std::move(decision));
+  for (builder::PlanDecision& decision : builder::unknown_names(scene, options))
+    plan.features.push_back(std::move(decision));
   return plan;
 }
 

@@ -36,7 +36,8 @@ struct PlannedMesh {
 
 struct ScenePlan {
   std::vector<PlannedMesh> meshes;
-  std::vector<builder::PlanDecision> features;  ///< list_features(), and which meshes are aggregates where that was asked
+  std::vector<builder::PlanDecision>
+      features;  ///< list_features(), and which meshes are aggregates where that was asked
 };
 
 /// Errors: those of a build that are known before any work: kUnsupported where a grid needs more than 24 bits

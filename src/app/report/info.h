@@ -23,9 +23,9 @@ struct LevelInfo {
   std::uint64_t full_clusters = 0;                          ///< at the cap
   double fill = 0.0;                                        ///< triangles / (clusters · cap)
   std::uint64_t groups = 0, stuck_groups = 0;  ///< groups that consume this level; as MeshInfo::stuck_groups
-  float error_min = 0.0F, error_max = 0.0F;                 ///< own errors of the level's clusters, object units
-  float normal_deviation_max = 0.0F;  ///< of their own groups, degrees; kInfiniteError: not measured
-  float uv_deviation_max = 0.0F;      ///< UV units
+  float error_min = 0.0F, error_max = 0.0F;    ///< own errors of the level's clusters, object units
+  float normal_deviation_max = 0.0F;           ///< of their own groups, degrees; kInfiniteError: not measured
+  float uv_deviation_max = 0.0F;               ///< UV units
 };
 
 struct StuckGroupInfo {

@@ -7,8 +7,8 @@
 #include <string>
 #include <string_view>
 
-#include "format/names.h"
 #include "app/report/info.h"
+#include "format/names.h"
 
 namespace meshlode::app {
 

@@ -2,10 +2,10 @@
 // `info --format json`: the keys here are a promise; docs/schemas/info.schema.json lists them.
 #include <map>
 
+#include "app/report/info.h"
 #include "base/hash.h"
 #include "base/json_writer.h"
 #include "format/names.h"
-#include "app/report/info.h"
 
 namespace meshlode::app {
 

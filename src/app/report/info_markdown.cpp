@@ -5,11 +5,11 @@
 #include <utility>
 #include <vector>
 
+#include "app/report/info.h"
+#include "app/report/rows.h"
 #include "base/append_format.h"
 #include "base/printable.h"
 #include "format/names.h"
-#include "app/report/info.h"
-#include "app/report/rows.h"
 
 namespace meshlode::app {
 

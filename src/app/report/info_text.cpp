@@ -2,11 +2,11 @@
 // `info` for people: totals, the plan, levels as bars, materials, the byte map, sections.
 #include <algorithm>
 
+#include "app/report/info.h"
+#include "app/report/rows.h"
 #include "base/append_format.h"
 #include "base/printable.h"
 #include "format/names.h"
-#include "app/report/info.h"
-#include "app/report/rows.h"
 
 namespace meshlode::app {
 

@@ -182,7 +182,8 @@ class Settling {
     const auto& dropped = saying.word(Setting::kDrop);
     const std::uint32_t both = attributes_of(kept.value_or("")) & attributes_of(dropped.value_or(""));
     if (both != 0) {
-      return Error{saying.code, saying.place(Setting::kDrop), builder::names_of_attributes(both)[0] + " is kept by name too"};
+      return Error{saying.code, saying.place(Setting::kDrop),
+                   builder::names_of_attributes(both)[0] + " is kept by name too"};
     }
     if (saying.word(Setting::kAttributes)) {
       for (const Setting setting : {Setting::kKeep, Setting::kDrop}) words_[index_of(setting)] = {"", saying.from};
@@ -206,11 +207,13 @@ builder::PipelineOptions options_of(const std::array<SettledWord, kSettingCount>
   const auto word = [&](Setting setting) -> const std::string& { return words[index_of(setting)].word; };
   builder::PipelineOptions options;
   options.preset = value_in(builder::kPresetNames, word(Setting::kPreset)).value_or(options.preset);
-  options.error_tier =
-      value_in(format::kErrorTierNames, word(Setting::kErrorTier)).value_or(builder::settings_of(options.preset).error_tier);
+  options.error_tier = value_in(format::kErrorTierNames, word(Setting::kErrorTier))
+                           .value_or(builder::settings_of(options.preset).error_tier);
   options.codec = value_in(format::kCodecNames, word(Setting::kCodec)).value_or(options.codec);
-  options.strip_effort = value_in(builder::kStripEffortNames, word(Setting::kStripEffort)).value_or(options.strip_effort);
-  options.attributes = value_in(builder::kAttributeChoiceNames, word(Setting::kAttributes)).value_or(options.attributes);
+  options.strip_effort =
+      value_in(builder::kStripEffortNames, word(Setting::kStripEffort)).value_or(options.strip_effort);
+  options.attributes =
+      value_in(builder::kAttributeChoiceNames, word(Setting::kAttributes)).value_or(options.attributes);
   options.keep = attributes_of(word(Setting::kKeep));
   options.drop = attributes_of(word(Setting::kDrop));
   options.grid_step = parse_positive(word(Setting::kGrid)).value_or(0.0);
@@ -228,7 +231,8 @@ builder::PipelineOptions options_of(const std::array<SettledWord, kSettingCount>
   options.linear_colors = word(Setting::kLinearColors) == "true";
   options.keep_topology = word(Setting::kKeepTopology) == "true";
   options.lock_borders = word(Setting::kLockBorders) == "true";
-  options.aggregate = value_in(builder::kAggregateChoiceNames, word(Setting::kAggregate)).value_or(AggregateChoice::kNamed);
+  options.aggregate =
+      value_in(builder::kAggregateChoiceNames, word(Setting::kAggregate)).value_or(AggregateChoice::kNamed);
   if (options.aggregate == AggregateChoice::kNamed) options.aggregate_names = word(Setting::kAggregate);
   options.promise = value_in(format::kPromiseNames, word(Setting::kPromise)).value_or(options.promise);
   if (const auto care = builder::parse_care(word(Setting::kCare))) options.experiment.care = *care;

@@ -9,8 +9,8 @@
 
 #include <meshlode/result.h>
 
-#include "base/file.h"
 #include "app/settings/settings.h"
+#include "base/file.h"
 
 namespace meshlode::app {
 

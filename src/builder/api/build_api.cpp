@@ -147,7 +147,9 @@ Result<std::vector<std::uint8_t>> run_pipeline(scene::Scene&& scene, const Build
   if (!pipeline) return pipeline.error();
   Callbacks callbacks(options);
   if (!callbacks.may_begin()) return callbacks.reason();
-  const builder::ProgressCallback progress = [&](const builder::ProgressEvent& event) { return callbacks.report(event); };
+  const builder::ProgressCallback progress = [&](const builder::ProgressEvent& event) {
+    return callbacks.report(event);
+  };
   builder::PipelineReport report;
   const auto build = [&] { return builder::build_lode(std::move(scene), *pipeline, progress, report); };
   const auto build_in_threads = [&] {

@@ -60,7 +60,7 @@ struct SimplifyInput {
   std::vector<std::uint8_t> is_locked;  ///< per position: shared with another group
   /// Per position: on an open border that every cut keeps, wherever groups are drawn. Empty: none.
   std::vector<std::uint8_t> is_border_locked;
-  std::vector<Witnesses> witnesses;     ///< per position
+  std::vector<Witnesses> witnesses;  ///< per position
   std::vector<std::uint32_t> wedge_position;
   std::vector<std::uint8_t> is_wedge_shared;  ///< per wedge: another group has it too, so shading is smooth across
   std::vector<float> wedge_attributes;

@@ -5,8 +5,8 @@
 #include <span>
 
 #include "base/hash.h"
-#include "builder/options.h"
 #include "builder/encode/encode.h"
+#include "builder/options.h"
 #include "builder/plan/texel_sizes.h"
 #include "builder/prepared.h"
 #include "scene/scene.h"

@@ -131,7 +131,8 @@ constexpr std::array kRules{
          "against the images of the source, and a set so large that 24 bits leave no finer step is within any"),
     RULE(V114, "I6", "where lock_borders is set, every vertex of the source's open border is in every cut"),
     RULE(V115, "",
-         "the asset tells of as many triangles as the source's file holds by its size (binary STL), and of no fewer than "
+         "the asset tells of as many triangles as the source's file holds by its size (binary STL), and of no fewer "
+         "than "
          "its faces (text STL, OBJ, PLY), told without the importer"),
     RULE(V201, "I5", "a cut draws each piece of surface exactly once and is never empty"),
     RULE(V202, "I6", "the border of a cut consists of edges of the source's border alone"),

@@ -12,10 +12,10 @@
 
 #include "draw/raster/raster.h"
 #include "draw/textures/image_budget.h"
-#include "run/read/asset.h"
-#include "run/select/select.h"
 #include "lab/flip/flip.h"
 #include "lab/sweep/measurement.h"
+#include "run/read/asset.h"
+#include "run/select/select.h"
 
 namespace meshlode::lab {
 

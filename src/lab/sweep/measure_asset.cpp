@@ -8,13 +8,13 @@
 #include <string_view>
 #include <utility>
 
+#include "app/report/info.h"
 #include "base/hash.h"
 #include "judge/metrics/attribute_drift.h"
 #include "judge/metrics/cut_judge.h"
 #include "judge/metrics/cut_search.h"
-#include "app/report/info.h"
-#include "run/decode/decode.h"
 #include "lab/sweep/metrics.h"
+#include "run/decode/decode.h"
 
 namespace meshlode::lab {
 

@@ -9,9 +9,9 @@
 
 #include <meshlode/result.h>
 
+#include "lab/sweep/measurement.h"
 #include "run/read/asset.h"
 #include "scene/scene.h"
-#include "lab/sweep/measurement.h"
 
 namespace meshlode::lab {
 

@@ -11,8 +11,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "builder/builder.h"
 #include "app/export/build_scene.h"
+#include "builder/builder.h"
 #include "scene/scene.h"
 
 namespace meshlode::app {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <map>
 
-#include "build_scene.h"
 #include "app/export/choose_cuts.h"
+#include "build_scene.h"
 #include "scene/samples/samples.h"
 
 namespace meshlode::app {

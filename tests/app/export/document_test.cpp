@@ -6,8 +6,8 @@
 #include <cstring>
 #include <string>
 
-#include "build_scene.h"
 #include "app/export/export.h"
+#include "build_scene.h"
 #include "scene/samples/samples.h"
 
 namespace meshlode::app {

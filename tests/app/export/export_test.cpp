@@ -6,8 +6,8 @@
 #include <cmath>
 #include <set>
 
-#include "build_scene.h"
 #include "app/export/export.h"
+#include "build_scene.h"
 #include "run/decode/decode.h"
 #include "scene/samples/samples.h"
 

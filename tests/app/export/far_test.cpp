@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "build_scene.h"
 #include "app/export/export.h"
+#include "build_scene.h"
 #include "scene/samples/samples.h"
 
 namespace meshlode::app {

@@ -5,9 +5,9 @@
 
 #include <algorithm>
 
-#include "build_scene.h"
 #include "app/export/choose_cuts.h"
 #include "app/export/export.h"
+#include "build_scene.h"
 #include "scene/samples/samples.h"
 
 namespace meshlode::app {

@@ -8,8 +8,8 @@
 #include <fstream>
 #include <string>
 
-#include "build_scene.h"
 #include "app/export/export.h"
+#include "build_scene.h"
 #include "scene/import/import.h"
 
 namespace meshlode::app {

@@ -8,13 +8,13 @@
 #include <fstream>
 #include <map>
 
-#include "builder/odd_shapes.h"
+#include "app/export/colored_sets.h"
+#include "app/report/info.h"
 #include "build_scene.h"
+#include "builder/odd_shapes.h"
 #include "format/names.h"
 #include "judge/validate/edit.h"
 #include "meshlode/extract_stuck.h"
-#include "app/export/colored_sets.h"
-#include "app/report/info.h"
 #include "scene/samples/samples.h"
 
 namespace meshlode::app {

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a plan says before a build is what the build does.
-#include "builder/builder.h"
 #include "app/preview/scene_plan.h"
+#include "builder/builder.h"
 
 #include <algorithm>
 
 #include <gtest/gtest.h>
 
+#include "app/preview/plan_report.h"
 #include "builder/plan/count_wedges.h"
 #include "builder/plan/features.h"
-#include "app/preview/plan_report.h"
 #include "run/read/asset.h"
 #include "scene/samples/samples.h"
 
@@ -154,8 +154,9 @@ TEST(Features, SayWhatBecomesOfEach) {
   scene.left_out.push_back({"skin 0", "meshes are built static, in their bind pose"});
   const std::vector<builder::PlanDecision> features = builder::list_features(scene);
   const auto has = [&](const char* what, bool kept) {
-    return std::any_of(features.begin(), features.end(),
-                       [&](const builder::PlanDecision& f) { return f.what == what && f.kept == kept && !f.reason.empty(); });
+    return std::any_of(features.begin(), features.end(), [&](const builder::PlanDecision& f) {
+      return f.what == what && f.kept == kept && !f.reason.empty();
+    });
   };
   EXPECT_TRUE(has("1 blended material", true));
   EXPECT_TRUE(has("1 double-sided material", true));

@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "format/names.h"
 #include "app/report/info.h"
+#include "format/names.h"
 #include "support/sample_asset.h"
 
 namespace meshlode::app {

@@ -17,7 +17,8 @@ struct Trial {
 };
 
 /// In this process. \pre the parameter is one that the case takes
-[[nodiscard]] Trial try_case(const HardCase& hard_case, double parameter, bool all_laws, const builder::Care& care = {});
+[[nodiscard]] Trial try_case(const HardCase& hard_case, double parameter, bool all_laws,
+                             const builder::Care& care = {});
 
 /// What a child prints and its parent reads: one line the whole, one line each law.
 [[nodiscard]] std::string text_of(const Trial& trial);

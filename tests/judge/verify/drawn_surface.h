@@ -20,7 +20,8 @@ using Corner = std::array<int, 3>;
 using Triangle = std::array<Corner, 3>;
 using Patch = std::vector<Triangle>;
 
-inline void append_cluster(const Patch& patch, std::uint32_t level, GroupId own, GroupId coarser, builder::LodDag& dag) {
+inline void append_cluster(const Patch& patch, std::uint32_t level, GroupId own, GroupId coarser,
+                           builder::LodDag& dag) {
   builder::DagCluster cluster;
   cluster.level = level;
   cluster.own_group = own;

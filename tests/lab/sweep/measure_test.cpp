@@ -15,10 +15,10 @@
 #include "builder/builder.h"
 #include "judge/metrics/cut_judge.h"
 #include "judge/metrics/cut_search.h"
-#include "run/decode/decode.h"
-#include "scene/samples/samples.h"
 #include "lab/sweep/draw_views.h"
 #include "lab/sweep/metrics.h"
+#include "run/decode/decode.h"
+#include "scene/samples/samples.h"
 
 namespace meshlode::lab {
 namespace {

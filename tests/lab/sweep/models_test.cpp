@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "builder/builder.h"
-#include "scene/import/import.h"
 #include "lab/sweep/measure_asset.h"
+#include "scene/import/import.h"
 
 namespace meshlode::lab {
 namespace {

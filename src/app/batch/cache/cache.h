@@ -8,9 +8,9 @@
 #include <string>
 #include <utility>
 
-#include "base/hash.h"
 #include "app/batch/cache/record.h"
 #include "app/batch/cache/store.h"
+#include "base/hash.h"
 
 namespace meshlode::app {
 

@@ -6,10 +6,10 @@
 #include <span>
 #include <string>
 
-#include "base/hash.h"
 #include "app/batch/depend/dependencies.h"
-#include "builder/options.h"
 #include "app/settings/settings.h"
+#include "base/hash.h"
+#include "builder/options.h"
 #include "scene/import/import.h"
 
 namespace meshlode::app {

@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "base/hash.h"
 #include "app/batch/cache/cache.h"
+#include "base/hash.h"
 #include "builder/store/mesh_store.h"
 
 namespace meshlode::app {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "base/hash.h"
 #include "app/batch/jobs/job_result.h"
+#include "base/hash.h"
 
 namespace meshlode::app {
 

@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include "base/enum_names.h"
-#include "base/hash.h"
 #include "app/batch/depend/dependencies.h"
 #include "app/batch/jobs/jobs.h"
+#include "base/enum_names.h"
+#include "base/hash.h"
 #include "builder/progress.h"
 #include "scene/scene.h"
 

@@ -9,9 +9,9 @@
 #include <tuple>
 #include <utility>
 
+#include "app/batch/batch.h"
 #include "base/file.h"
 #include "base/version.h"
-#include "app/batch/batch.h"
 
 namespace meshlode::app {
 

@@ -11,8 +11,8 @@
 
 #include <meshlode/result.h>
 
-#include "base/hash.h"
 #include "app/batch/jobs/jobs.h"
+#include "base/hash.h"
 
 namespace meshlode::app {
 

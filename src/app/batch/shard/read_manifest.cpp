@@ -4,8 +4,8 @@
 #include <array>
 #include <utility>
 
-#include "base/file.h"
 #include "app/batch/batch.h"
+#include "base/file.h"
 #include "scene/import/json.h"
 
 namespace meshlode::app {

@@ -10,9 +10,9 @@
 
 #include <meshlode/result.h>
 
-#include "base/hash.h"
-#include "app/batch/shard/partition.h"
 #include "app/batch/jobs/job_result.h"
+#include "app/batch/shard/partition.h"
+#include "base/hash.h"
 
 namespace meshlode::app {
 

@@ -2,8 +2,8 @@
 #include <cstdint>
 #include <string_view>
 
-#include "base/append_format.h"
 #include "app/batch/tell/tell.h"
+#include "base/append_format.h"
 
 namespace meshlode::app {
 

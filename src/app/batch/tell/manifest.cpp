@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <string_view>
 
-#include "base/json_writer.h"
-#include "base/version.h"
 #include "app/batch/tell/tell.h"
 #include "app/batch/tell/write_warnings.h"
+#include "base/json_writer.h"
+#include "base/version.h"
 
 namespace meshlode::app {
 

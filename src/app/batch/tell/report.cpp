@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "base/json_writer.h"
-#include "base/version.h"
 #include "app/batch/tell/tell.h"
 #include "app/batch/tell/write_warnings.h"
+#include "base/json_writer.h"
+#include "base/version.h"
 
 namespace meshlode::app {
 

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <array>
 
-#include "base/append_format.h"
 #include "app/batch/tell/tell.h"
+#include "base/append_format.h"
 
 namespace meshlode::app {
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "base/hash.h"
-#include "app/batch/shard/partition.h"
 #include "app/batch/jobs/job_result.h"
+#include "app/batch/shard/partition.h"
+#include "base/hash.h"
 
 namespace meshlode::app {
 

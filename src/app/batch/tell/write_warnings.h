@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "base/json_writer.h"
 #include "app/batch/jobs/job_result.h"
+#include "base/json_writer.h"
 
 namespace meshlode::app {
 

@@ -11,9 +11,9 @@
 
 #include "app/batch/jobs/job_result.h"
 #include "app/batch/jobs/jobs.h"
+#include "app/settings/settings.h"
 #include "builder/options.h"
 #include "builder/progress.h"
-#include "app/settings/settings.h"
 #include "scene/import/import.h"
 
 namespace meshlode::app {
@@ -28,11 +28,11 @@ using CheckAsset = std::function<Status(const std::filesystem::path& asset)>;
 
 struct BatchOptions {
   builder::PipelineOptions pipeline;  ///< of all jobs
-  SettingsOf settings_of;           ///< where there is one, a job's own settings go before `pipeline`
+  SettingsOf settings_of;             ///< where there is one, a job's own settings go before `pipeline`
   scene::ImportOptions import;
-  CheckAsset check_asset;                 ///< where there is one, its error is the job's; the asset stays
-  const Cache* cache = nullptr;           ///< may be none
-  bool is_dry_run = false;                ///< nothing is written: what would be done, and why
+  CheckAsset check_asset;        ///< where there is one, its error is the job's; the asset stays
+  const Cache* cache = nullptr;  ///< may be none
+  bool is_dry_run = false;       ///< nothing is written: what would be done, and why
   /// What list_warnings() says of a job is its error, and so is a name of --aggregate that nothing has.
   bool is_strict = false;
   bool fail_fast = false;                 ///< what comes after a failure is skipped

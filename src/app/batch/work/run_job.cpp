@@ -8,11 +8,11 @@
 #include <system_error>
 #include <utility>
 
-#include "base/guarded.h"
 #include "app/batch/cache/cache.h"
 #include "app/batch/cache/ingredients.h"
 #include "app/batch/cache/mesh_entries.h"
 #include "app/batch/work/warnings.h"
+#include "base/guarded.h"
 #include "builder/builder.h"
 #include "builder/stage_options.h"
 #include "scene/detect/detect.h"

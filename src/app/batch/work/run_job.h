@@ -2,10 +2,10 @@
 // One scene of a batch: found unchanged, taken from the cache, or imported, built and written.
 #pragma once
 
-#include "base/output_files.h"
 #include "app/batch/jobs/job_result.h"
 #include "app/batch/jobs/jobs.h"
 #include "app/batch/work/job_options.h"
+#include "base/output_files.h"
 
 namespace meshlode::app {
 

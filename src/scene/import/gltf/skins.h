@@ -22,8 +22,8 @@ namespace meshlode::scene {
 /// mesh behind the others if not.
 /// `weights`: by mesh and primitive of scene.meshes. Skins, and what of their weights is not used, are said in
 /// scene.left_out. \pre the asset is checked, its instancing expanded, scene.meshes read.
-/// Errors: kInvalid inverse bind matrices that are too few or of another type, joints in use whose matrix is not finite,
-/// or more copies than the files justify.
+/// Errors: kInvalid inverse bind matrices that are too few or of another type, joints in use whose matrix is not
+/// finite, or more copies than the files justify.
 [[nodiscard]] Status settle_skins(GltfAsset& asset, const std::vector<std::vector<VertexWeights>>& weights,
                                   DecodeBudget& budget, Scene& scene);
 

@@ -82,7 +82,8 @@ void separate_objects(PolygonSoup& soup, const std::vector<std::string>& names, 
     if (has_faces[i] && is_joined[i]) joined.push_back(names[i]);
   }
   leave_out_names(joined, "object",
-                  names.size() > kMaxMeshes ? "there are too many" : "they share positions and stay one mesh", left_out);
+                  names.size() > kMaxMeshes ? "there are too many" : "they share positions and stay one mesh",
+                  left_out);
   leave_out_names(empty, "object", "they have no faces", left_out);
 }
 
