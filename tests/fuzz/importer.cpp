@@ -100,8 +100,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   constexpr const char* kNames[] = {"a.glb", "a.gltf", "a.ply", "a.obj", "a.stl"};
   const std::size_t kind = (data[0] & 0x3FU) % std::size(kNames);
   const std::size_t library = kind == 3 ? rest.find("#mtl\n") : std::string_view::npos;
-  if (kind == 3) scratch.write("a.mtl", std::string(library < rest.size() ? rest.substr(library) : ""));
-  if (kind == 2 || kind == 3) scratch.write("a.png", "\x89PNG\r\n");
+  if (kind == 3)
+    static_cast<void>(scratch.write("a.mtl", std::string(library < rest.size() ? rest.substr(library) : "")));
+  if (kind == 2 || kind == 3) static_cast<void>(scratch.write("a.png", "\x89PNG\r\n"));
   const auto path = scratch.write(kNames[kind], kind == 0 ? assemble_glb(rest) : std::string(rest.substr(0, library)));
   const bool repair = (data[0] & 0x80U) != 0;
   const bool takes_all = (data[0] & 0x40U) != 0;
