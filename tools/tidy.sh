@@ -25,7 +25,7 @@ esac
 [ ${#files[@]} -ne 0 ] || { echo "clang-tidy: no source changed since $base"; exit 0; }
 
 cmake --preset clang -DMESHLODE_TESTS=ON -DMESHLODE_BENCH=ON -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON >/dev/null || exit 1
-ninja -C build/clang meshlode_shaders meshlode_out_embedded >/dev/null || exit 1
+ninja -C build/clang meshlode_shaders meshlode_app_embedded >/dev/null || exit 1
 # Only what the build compiles: the consumer of tests/install has its own.
 known=()
 for file in "${files[@]}"; do
