@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "builder/builder.h"
-#include "builder/dag/build_dag.h"
+#include "builder/measure/measure.h"
 #include "command_line.h"
 #include "judge/verify/deviations.h"
 #include "random/scene.h"

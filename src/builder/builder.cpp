@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "base/release.h"
 #include "builder/aggregate/aggregate_choice.h"
 #include "builder/aggregate/coarse_materials.h"
 #include "builder/aggregate/material_looks.h"
@@ -20,6 +21,7 @@
 #include "builder/dag/join_dags.h"
 #include "builder/encode/encode.h"
 #include "builder/hierarchy/hierarchy.h"
+#include "builder/measure/measure.h"
 #include "builder/needs.h"
 #include "builder/plan/features.h"
 #include "builder/plan/plan.h"
@@ -191,22 +193,32 @@ Result<LodDag> build_levels(PreparedMesh& mesh, const AggregateDecision& aggrega
                             const EncodeOptions& encoding,
                             const std::function<bool(std::uint32_t, std::uint64_t)>& on_level) {
   const auto coarsening = [&](const PreparedMesh& part) {
-    DagOptions dag = dag_options(options, own, part, encoding);
+    DagOptions dag = dag_options(options, part, encoding);
     dag.on_level = on_level;
     dag.simplify.painted = painted;
-    dag.is_memory_short = found.is_memory_short;
     return dag;
   };
-  if (!aggregate.is_aggregate) return build_dag_and_free(mesh, coarsening(mesh));
-  if (aggregate.most_triangles.empty()) {
-    return build_aggregate_dag_and_free(mesh, found.coarse.of_source, coarsening(mesh));
-  }
+  const auto measured = [&](PreparedMesh& part, const auto& build) {
+    if (own.error_tier == format::ErrorTier::kQem) release(part.exact_positions, part.exact_triangles);
+    Result<LodDag> dag = build();
+    if (dag) measure(part, own.error_tier, *dag);
+    release(part.exact_positions, part.exact_triangles);
+    return dag;
+  };
+  const auto by_distance = [&](PreparedMesh& part) {
+    return measured(part, [&] { return build_dag_and_free(part, coarsening(part)); });
+  };
+  const auto by_coverage = [&](PreparedMesh& part, const PlaceSet& others) {
+    return measured(
+        part, [&] { return build_aggregate_dag_and_free(part, found.coarse.of_source, coarsening(part), others); });
+  };
+  if (!aggregate.is_aggregate) return by_distance(mesh);
+  if (aggregate.most_triangles.empty()) return by_coverage(mesh, {});
   SplitMesh parts = split_and_free(mesh, aggregate.most_triangles);
-  const Result<LodDag> solid = build_dag_and_free(parts.solid, coarsening(parts.solid));
+  const Result<LodDag> solid = by_distance(parts.solid);
   if (!solid) return solid.error();
   const PlaceSet places(solid->vertex_position.begin(), solid->vertex_position.end());
-  const Result<LodDag> loose =
-      build_aggregate_dag_and_free(parts.loose, found.coarse.of_source, coarsening(parts.loose), places);
+  const Result<LodDag> loose = by_coverage(parts.loose, places);
   if (!loose) return loose.error();
   return join_dags(*loose, *solid, mesh.layout);
 }
@@ -254,7 +266,7 @@ Result<BuiltMesh> build_mesh(const Source& from, std::size_t index, const Survey
                                   own.error_tier == format::ErrorTier::kCertified);
   }
   const PaintedUnits units = painted ? units_to_simplify_by(*painted, mesh->diagonal) : PaintedUnits();
-  const DagOptions coarsening = dag_options(options, own, *mesh, encoding);
+  const DagOptions coarsening = dag_options(options, *mesh, encoding);
   LevelClock levels(index);
   const Result<LodDag> dag = build_levels(*mesh, aggregate, found, units, options, own, encoding,
                                           [&](std::uint32_t level, std::uint64_t triangles) {

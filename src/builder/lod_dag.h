@@ -34,8 +34,10 @@ struct DagCluster {
 
 struct DagGroup {
   std::uint32_t level = 0;                             ///< largest level of a member
+  std::uint32_t round = 0;                             ///< of the build that replaced it; of no use where terminal
   std::uint32_t first_cluster = 0, cluster_count = 0;  ///< members, contiguous in LodDag::clusters
-  double error = 0.0;                                  ///< selection error, object units; +inf if terminal
+  /// Selection error, object units; +inf if terminal. The same as quadric_error until measure() is through.
+  double error = 0.0;
   double quadric_error = 0.0;                          ///< the quadric's own estimate, object units; +inf if terminal
   double deviation = 0.0;                              ///< of this group alone, without margin; +inf where not measured
   /// Shading normals (root mean square angle, degrees) and UVs (95% of the surface is within it, UV units) against the
@@ -58,6 +60,10 @@ struct LodDag {
   std::vector<std::array<std::uint8_t, 3>> triangles;  ///< local vertex indices of the cluster
   std::vector<std::uint32_t> triangle_material;
   std::uint32_t level_count = 0;
+
+  // For measure(), which frees them.
+  std::vector<std::uint32_t> vertex_position_id;  ///< per vertex: the same for all vertices of one position
+  std::vector<std::uint32_t> level0_source;  ///< of level 0, cluster by cluster: triangles of the prepared mesh
 };
 
 }  // namespace meshlode::builder

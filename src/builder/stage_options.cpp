@@ -19,15 +19,6 @@ bool is_aggregate(const PreparedMesh& mesh) {
   return mesh.piece_count >= kFewestPieces && mesh.triangles.size() <= kLargestPiece * mesh.piece_count;
 }
 
-ErrorSource error_source_of(format::ErrorTier tier) {
-  switch (tier) {
-    case format::ErrorTier::kMeasured: return ErrorSource::kMeasured;
-    case format::ErrorTier::kCertified: return ErrorSource::kCertified;
-    case format::ErrorTier::kQem: break;
-  }
-  return ErrorSource::kQuadric;
-}
-
 /// The budget of each stored UV set in UV units; 0 leaves it to encode, where no texture's size is known.
 std::array<double, scene::kMaxUvSets> uv_errors(const MeshOptions& options, const scene::SourceMesh& source,
                                                 const AttributeLayout& layout,
@@ -103,10 +94,8 @@ EncodeOptions encode_options(const SceneOptions& whole, const MeshOptions& optio
   return encode;
 }
 
-DagOptions dag_options(const PipelineOptions& options, const MeshOptions& own, const PreparedMesh& mesh,
-                       const EncodeOptions& encode) {
+DagOptions dag_options(const PipelineOptions& options, const PreparedMesh& mesh, const EncodeOptions& encode) {
   DagOptions dag;
-  dag.error = error_source_of(own.error_tier);
   dag.caps.max_triangles = options.max_cluster_triangles;
   dag.caps.max_vertices = options.max_cluster_vertices;
   dag.caps.target_triangles = options.max_cluster_triangles - std::min(2U, options.max_cluster_triangles / 16);

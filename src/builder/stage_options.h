@@ -33,8 +33,8 @@ namespace meshlode::builder {
                                            const scene::SourceMesh& source, const AttributeLayout& layout,
                                            std::span<const std::array<double, scene::kMaxUvSets>> texels);
 
-/// `own` are the mesh's; `encode` says what a cluster will take in a page. \pre the mesh outlives what is returned
-[[nodiscard]] DagOptions dag_options(const PipelineOptions& options, const MeshOptions& own, const PreparedMesh& mesh,
+/// `encode` says what a cluster will take in a page. \pre the mesh outlives what is returned
+[[nodiscard]] DagOptions dag_options(const PipelineOptions& options, const PreparedMesh& mesh,
                                      const EncodeOptions& encode);
 
 /// What is asked of a mesh of the scene; the scene and the options outlive it.

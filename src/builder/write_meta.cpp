@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/version.h"
-#include "builder/dag/build_dag.h"
+#include "builder/measure/measure.h"
 #include "builder/plan/attributes.h"
 #include "builder/preset.h"
 #include "format/names.h"

@@ -154,7 +154,7 @@ LodDag build_kept(const Shape& shape, bool keep_topology = true) {
   const auto prepared = prepare_mesh(shape.mesh, plan.layout, prepare_options(options));
   EXPECT_TRUE(prepared.ok());
   if (!prepared) return {};
-  const auto dag = build_dag(*prepared, dag_options(options, options, *prepared, EncodeOptions{}));
+  const auto dag = build_dag(*prepared, dag_options(options, *prepared, EncodeOptions{}));
   EXPECT_TRUE(dag.ok());
   return dag ? *dag : LodDag{};
 }

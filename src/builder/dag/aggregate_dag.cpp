@@ -141,7 +141,7 @@ CoarserLevels levels_of(const ThinMesh& thin) {
 /// What is live of a run of leaves: clusters, and how good they are.
 struct Node {
   std::vector<ClusterId> clusters;
-  double error = 0.0, pixel_size = 0.0;  ///< of the group that they were made from; 0 at level 0
+  double pixel_size = 0.0;  ///< the error of the group that they were made from; 0 at level 0
   std::uint32_t triangles = 0;
   bool is_live = true;  ///< nothing has replaced them so far, and something may
 };
@@ -190,8 +190,8 @@ class AggregateDag {
       first = clustering.count;
       nodes_.push_back(std::move(node));
     }
-    pool_.add_clusters(mesh_.triangles, mesh_.triangle_material, {}, clustering, 0, GroupId());
-    release(mesh_.triangles, mesh_.triangle_material, mesh_.exact_positions, mesh_.exact_triangles);
+    pool_.add_level0(mesh_.triangles, mesh_.triangle_material, clustering);
+    release(mesh_.triangles, mesh_.triangle_material);
     thin_.leaf_triangles = {};
   }
 
@@ -206,7 +206,6 @@ class AggregateDag {
       for (std::size_t k = 0; k < children; ++k) {
         const Node& child = nodes_[g * children + k];
         all.clusters.insert(all.clusters.end(), child.clusters.begin(), child.clusters.end());
-        all.error = std::max(all.error, child.error);
         all.pixel_size = std::max(all.pixel_size, child.pixel_size);
         all.triangles += child.triangles;
         all.is_live = all.is_live && child.is_live;
@@ -250,22 +249,17 @@ class AggregateDag {
     pack_in_order(
         0, order, options_.caps, [&](std::uint32_t t) { return result.triangles[t]; }, clustering);
     made_ = {};
-    const bool is_measured = options_.error != ErrorSource::kQuadric;
-    const double margin = options_.error == ErrorSource::kMeasured ? kMeasuredMargin : 1.0;
     BuildGroup group;
     group.is_aggregate = true;
     group.clusters = children.clusters;
     made_.pixel_size = std::max(thin.pixel_size, children.pixel_size);
-    made_.error = std::max(children.error, margin * thin.pixel_size);
     for (const ClusterId c : group.clusters) group.level = std::max(group.level, pool_.cluster(c).level);
-    group.error = made_.error;
     group.quadric_error = made_.pixel_size;
-    if (is_measured) group.deviation = thin.pixel_size;
+    group.deviation = thin.pixel_size;
     const auto first = static_cast<std::uint32_t>(pool_.clusters.size());
     for (std::uint32_t c = 0; c < clustering.count; ++c) made_.clusters.push_back(ClusterId(first + c));
     made_.triangles = static_cast<std::uint32_t>(result.triangles.size());
-    const CarriedTruth nothing;
-    const NewClusters added{result, nothing, clustering, group.level + 1, GroupId(pool_.groups.size())};
+    const NewClusters added{result, clustering, group.level + 1, GroupId(pool_.groups.size())};
     pool_.groups.push_back(std::move(group));
     pool_.add_simplified({&added, 1});
     leaf_of_position_.resize(pool_.positions.size(), thin.first_leaf);

@@ -3,18 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <span>
 #include <utility>
 
 #include "base/local_ids.h"
-#include "base/memory.h"
 #include "base/parallel.h"
 #include "base/release.h"
-#include "builder/dag/group_errors.h"
 #include "builder/dag/level_pool.h"
 #include "builder/dag/level_use.h"
-#include "builder/dag/whole_cuts.h"
 #include "builder/simplify/kept_topology.h"
 
 namespace meshlode::builder {
@@ -32,7 +28,6 @@ constexpr Effort kEfforts[] = {{20, false}, {28, false}, {13, false}, {32, true}
 struct Attempt {
   SimplifyResult result;
   Clustering clustering;
-  GroupErrors errors;
   std::vector<Vec3i> new_places;  ///< where topology is kept
   std::uint32_t source_triangles = 0;
   bool is_accepted = false;
@@ -196,27 +191,27 @@ std::vector<ClusterId> clusters_of(const Front& front, const std::vector<std::ui
   return clusters;
 }
 
-/// One group simplified, clustered and measured; nothing of the pool is changed.
-Attempt attempt_group(const BuildPool& pool, const PreparedMesh& mesh, const GroupMeter& meter,
-                      const std::vector<ClusterId>& clusters, const Shared& shared, double share,
-                      std::size_t groups_of_round, const DagOptions& options, const Effort& effort) {
+/// One group simplified and clustered; nothing of the pool is changed. `is_whole`: it is all that is left.
+Attempt attempt_group(const BuildPool& pool, const PreparedMesh& mesh, const std::vector<ClusterId>& clusters,
+                      const Shared& shared, double share, bool is_whole, const DagOptions& options,
+                      const Effort& effort) {
   SimplifyInput finer = group_input(pool, mesh, clusters, shared);
   if (options.simplify.keep_topology) finer.is_place_taken = [&](const Vec3i& place) { return pool.had_place(place); };
-  Attempt attempt = simplify_and_cluster(finer, share, groups_of_round == 1, options, effort);
+  Attempt attempt = simplify_and_cluster(finer, share, is_whole, options, effort);
   if (!attempt.is_accepted) {
-    const bool is_by_border = is_stuck_by_border(finer, share, groups_of_round == 1, options, effort);
+    const bool is_by_border = is_stuck_by_border(finer, share, is_whole, options, effort);
     if (is_by_border) attempt.result.reason = StuckReason::kBorder;
     return attempt;
   }
   if (options.simplify.keep_topology) attempt.new_places = new_places(finer, attempt.result);
-  attempt.errors = meter.measure(pool, clusters, finer, attempt.result, groups_of_round);
   return attempt;
 }
 
 /// The group of `clusters` as what an accepted attempt replaces it by says.
-BuildGroup replaced_group(const BuildPool& pool, const GroupMeter& meter, std::vector<ClusterId> clusters,
-                          const Attempt& attempt) {
+BuildGroup replaced_group(const BuildPool& pool, std::vector<ClusterId> clusters, const Attempt& attempt,
+                          std::uint32_t round) {
   BuildGroup group;
+  group.round = round;
   group.clusters = std::move(clusters);
   group.quadric_error = attempt.result.quadric_error;
   for (const ClusterId c : group.clusters) {
@@ -226,20 +221,13 @@ BuildGroup replaced_group(const BuildPool& pool, const GroupMeter& meter, std::v
       group.quadric_error = std::max(group.quadric_error, pool.group(cluster.own_group).quadric_error);
     }
   }
-  group.error = group.quadric_error;
-  if (meter.is_measuring()) {
-    group.deviation = attempt.errors.deviation;
-    group.error = attempt.errors.error;
-    group.normal_deviation = attempt.errors.normal_deviation;
-    group.uv_deviation = attempt.errors.uv_deviation;
-  }
   return group;
 }
 
 /// Adds a run of groups, and the coarser clusters that replace those that were accepted, to the pool and to the next
 /// front: the same clusters where a group got stuck. In the order of groups.
-void advance(BuildPool& pool, const GroupMeter& meter, const Front& front,
-             std::span<const std::vector<std::uint32_t>> groups, std::span<const Attempt> attempts, Front& next) {
+void advance(BuildPool& pool, const Front& front, std::span<const std::vector<std::uint32_t>> groups,
+             std::span<const Attempt> attempts, std::uint32_t round, Front& next) {
   std::vector<NewClusters> accepted;
   auto cluster_count = static_cast<std::uint32_t>(pool.clusters.size());
   for (std::size_t g = 0; g < groups.size(); ++g) {
@@ -255,12 +243,8 @@ void advance(BuildPool& pool, const GroupMeter& meter, const Front& front,
     for (std::uint32_t c = 0; c < attempt.clustering.count; ++c) {
       next.add(ClusterId(cluster_count++), StuckReason::kNotStuck);
     }
-    BuildGroup group = replaced_group(pool, meter, std::move(clusters), attempt);
-    if (meter.is_measuring()) {
-      for (const ClusterId c : group.clusters) pool.cluster(c).samples.free();  // carried on by the coarser clusters
-    }
-    accepted.push_back(
-        {attempt.result, attempt.errors.carried, attempt.clustering, group.level + 1, GroupId(pool.groups.size())});
+    BuildGroup group = replaced_group(pool, std::move(clusters), attempt, round);
+    accepted.push_back({attempt.result, attempt.clustering, group.level + 1, GroupId(pool.groups.size())});
     pool.groups.push_back(std::move(group));
   }
   pool.add_simplified(accepted);
@@ -284,9 +268,8 @@ void refuse_shared_places(std::span<Attempt> attempts, PlaceSet& taken) {
 /// All groups of a front, a run of them at a time: what a run became is in the pool before the next one begins, so that
 /// the results of a whole round are never held at once. Groups see nothing of each other (BuildPool::begin_round), so
 /// that runs of any length give the same. \returns whether any group was accepted
-bool run_round(BuildPool& pool, const PreparedMesh& mesh, const GroupMeter& meter, const Groups& groups,
-               const Shared& shared, bool is_first_round, const DagOptions& options, const Effort& effort,
-               Front& front) {
+bool run_round(BuildPool& pool, const PreparedMesh& mesh, const Groups& groups, const Shared& shared,
+               std::uint32_t round, const DagOptions& options, const Effort& effort, Front& front) {
   const std::size_t run = std::max<std::size_t>(64, 16 * thread_limit());
   bool any_accepted = false;
   PlaceSet taken;
@@ -295,14 +278,14 @@ bool run_round(BuildPool& pool, const PreparedMesh& mesh, const GroupMeter& mete
   for (std::size_t first = 0; first < groups.size(); first += run) {
     std::vector<Attempt> attempts(std::min(run, groups.size() - first));
     parallel_for_each_index(attempts.size(), 1, [&](std::size_t i) {
-      const double share = is_first_round ? first_share(first + i, groups.size()) : 0.5;
-      attempts[i] = attempt_group(pool, mesh, meter, clusters_of(front, groups[first + i]), shared, share,
-                                  groups.size(), options, effort);
+      const double share = round == 0 ? first_share(first + i, groups.size()) : 0.5;
+      attempts[i] = attempt_group(pool, mesh, clusters_of(front, groups[first + i]), shared, share, groups.size() == 1,
+                                  options, effort);
     });
     refuse_shared_places(attempts, taken);
     any_accepted = any_accepted || std::any_of(attempts.begin(), attempts.end(),
                                                [](const Attempt& attempt) { return attempt.is_accepted; });
-    advance(pool, meter, front, std::span(groups).subspan(first, attempts.size()), attempts, next);
+    advance(pool, front, std::span(groups).subspan(first, attempts.size()), attempts, round, next);
     parallel_for_each_index(attempts.size(), 1, [&](std::size_t i) { attempts[i] = {}; });
   }
   pool.end_round();
@@ -316,25 +299,11 @@ std::uint32_t groups_aim_at(const Effort& effort, const GroupOptions& asked) {
   return std::clamp(effort.target_clusters * asked.target_clusters / usual, 2U, asked.max_clusters);
 }
 
-/// Every level of a mesh that is not empty; of the mesh its exact triangles are left, where they are measured against.
-/// Error: cancelled.
+/// Every level of a mesh that is not empty. Error: cancelled.
 Result<BuildPool> coarsen(PreparedMesh& mesh, const DagOptions& options) {
-  if (options.error == ErrorSource::kQuadric) release(mesh.exact_positions, mesh.exact_triangles);
-  Clustering level0;
-  std::optional<GroupMeter> made_meter;
-  const auto cluster = [&] {
-    level0 = cluster_triangles(mesh.triangles, mesh.wedge_position, mesh.positions, options.caps);
-  };
-  const auto make_meter = [&] { made_meter.emplace(mesh, options.error, options.is_memory_short); };
-  if (options.is_memory_short) {
-    cluster();
-    make_meter();
-  } else {
-    parallel_all(cluster, make_meter);
-  }
-  const GroupMeter& meter = *made_meter;
+  const Clustering level0 = cluster_triangles(mesh.triangles, mesh.wedge_position, mesh.positions, options.caps);
   BuildPool pool(mesh, halved_levels(mesh));
-  pool.add_clusters(mesh.triangles, mesh.triangle_material, meter.level0(pool), level0, 0, GroupId());
+  pool.add_level0(mesh.triangles, mesh.triangle_material, level0);
   release(mesh.triangles, mesh.triangle_material);
   Front front = level0_of(pool);
   GroupOptions grouping = options.grouping;
@@ -349,24 +318,12 @@ Result<BuildPool> coarsen(PreparedMesh& mesh, const DagOptions& options) {
     const LevelUse use = use_of_level(pool, front.live, options);
     const Groups groups = group_clusters(use.grouping, grouping);
     // Progress keeps the effort where it is; a round without any tries harder, and success at that starts over.
-    const bool any_accepted =
-        run_round(pool, mesh, meter, groups, Shared(use, groups), round == 0, options, effort, front);
+    const bool any_accepted = run_round(pool, mesh, groups, Shared(use, groups), round, options, effort, front);
     effort_index = any_accepted ? 0 : effort_index + 1;
   }
   add_terminal_groups(pool, front.live, grouping, options, front.reasons);
   pool.finish();
   return pool;
-}
-
-/// Of so many triangles what was freed in small pieces, the samples of clusters above all, is worth giving back before
-/// what comes next takes memory in large ones.
-constexpr std::size_t kLargeDag = 4000000;
-
-/// The pool and what measured it are gone when this returns.
-Result<LodDag> coarsened_dag(PreparedMesh& mesh, const DagOptions& options) {
-  Result<BuildPool> pool = coarsen(mesh, options);
-  if (!pool) return pool.error();
-  return assemble_dag(std::move(*pool), mesh);
 }
 
 }  // namespace
@@ -378,11 +335,9 @@ Result<LodDag> build_dag(const PreparedMesh& mesh, const DagOptions& options) {
 
 Result<LodDag> build_dag_and_free(PreparedMesh& mesh, const DagOptions& options) {
   if (mesh.triangles.empty()) return LodDag{};
-  Result<LodDag> dag = coarsened_dag(mesh, options);
-  if (dag && dag->triangles.size() >= kLargeDag) give_back_freed_memory();
-  if (dag && options.error == ErrorSource::kMeasured) hold_to_whole_cuts(mesh, kMeasuredMargin, *dag);
-  release(mesh.exact_positions, mesh.exact_triangles);
-  return dag;
+  Result<BuildPool> pool = coarsen(mesh, options);
+  if (!pool) return pool.error();
+  return assemble_dag(std::move(*pool), mesh);
 }
 
 }  // namespace meshlode::builder

@@ -18,19 +18,7 @@
 
 namespace meshlode::builder {
 
-/// Where a group's selection error comes from (I7, docs/architecture.md).
-enum class ErrorSource : std::uint8_t {
-  kQuadric,    ///< the quadric's own estimate
-  kMeasured,   ///< the deviation from the source, as samples find it, of groups and then of whole cuts
-  kCertified,  ///< an upper bound of the deviation
-};
-
-/// Samples find a maximum from below. In the tier kMeasured an error is the deviation that they found times this.
-/// Chosen on one set of scenes and reported on another: docs/quality.md, "How true the stored errors are".
-constexpr double kMeasuredMargin = 1.02;
-
 struct DagOptions {
-  ErrorSource error = ErrorSource::kQuadric;
   ClusterCaps caps;
   GroupOptions grouping;
   SimplifyOptions simplify;           ///< target_triangles and may_relax_flips are set by the DAG
@@ -38,14 +26,15 @@ struct DagOptions {
   std::uint32_t max_group_bytes = 0;  ///< decoded bytes that a group's clusters may take together; 0 = no limit
   /// Upper bound of the bytes of a cluster of so many vertices, triangles and materials. Needed with max_group_bytes.
   std::function<std::uint32_t(std::uint32_t vertices, std::uint32_t triangles, std::uint32_t materials)> cluster_bytes;
-  bool is_memory_short = false;  ///< what saves time alone is not held, and done one after another; the same bytes
   /// Called after each level with the level's number and its triangles. Returning false cancels.
   std::function<bool(std::uint32_t level, std::uint64_t triangles)> on_level;
 };
 
-/// Errors: kBuildFailed when cancelled.
+/// Errors of groups are the simplifier's own estimates: measure() finds the true ones, and changes nothing else. Error:
+/// kBuildFailed when cancelled.
 [[nodiscard]] Result<LodDag> build_dag(const PreparedMesh& mesh, const DagOptions& options);
-/// The same. The mesh's surface is taken apart and freed along the way: its name, frame, layout and counts are left.
+/// The same. The mesh's surface on the grid is taken apart and freed along the way: its name, frame, layout, counts and
+/// exact triangles are left.
 [[nodiscard]] Result<LodDag> build_dag_and_free(PreparedMesh& mesh, const DagOptions& options);
 
 }  // namespace meshlode::builder

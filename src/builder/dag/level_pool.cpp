@@ -30,9 +30,6 @@ constexpr auto kForEachId = [](std::uint32_t count, const auto& visit) {
 /// What is looked up is fetched so many turns before.
 constexpr std::size_t kAhead = 12;
 
-/// Those of a whole level 0 are dealt out side by side.
-constexpr std::size_t kManySamples = 65536;
-
 constexpr WitnessIds kNoWitnesses{kNoId, kNoId, kNoId};
 
 WitnessIds ids_of(const Witnesses& witnesses) {
@@ -140,49 +137,16 @@ std::vector<std::uint32_t> BuildPool::add_ranges(const Clustering& clustering, s
   start[0] = static_cast<std::uint32_t>(triangles.size());
   for (std::size_t i = 1; i < start.size(); ++i) start[i] += start[i - 1];
   for (std::uint32_t c = 0; c < clustering.count; ++c) {
-    clusters.push_back({level, own_group, start[c], start[c + 1] - start[c], {}});
+    clusters.push_back({level, own_group, start[c], start[c + 1] - start[c]});
   }
   triangles.resize(triangles.size() + clustering.label.size());
   return start;
 }
 
-void BuildPool::fill_samples(std::span<const CarriedSample> samples, const Clustering& clustering,
-                             std::uint32_t first_cluster) {
-  struct Count {
-    std::size_t samples = 0, loose = 0;
-  };
-  std::vector<Count> counts(clustering.count);
-  for (const CarriedSample& sample : samples) {
-    Count& count = counts[clustering.label[sample.triangle]];
-    ++count.samples;
-    if (sample.vertex == kNoId) ++count.loose;
-  }
-  parallel_for_each_index(clustering.count, 256, [&](std::size_t c) {
-    clusters[first_cluster + c].samples.reserve(counts[c].samples, counts[c].loose);
-  });
-  const auto add = [&](const CarriedSample& sample) {
-    clusters[first_cluster + clustering.label[sample.triangle]].samples.add(sample);
-  };
-  if (samples.size() < kManySamples) {
-    std::for_each(samples.begin(), samples.end(), add);
-    return;
-  }
-  // Cluster by cluster, side by side.
-  std::vector<std::uint32_t> end(clustering.count, 0), order(samples.size());
-  for (std::uint32_t c = 1; c < clustering.count; ++c) {
-    end[c] = end[c - 1] + static_cast<std::uint32_t>(counts[c - 1].samples);
-  }
-  for (std::uint32_t i = 0; i < samples.size(); ++i) order[end[clustering.label[samples[i].triangle]]++] = i;
-  parallel_for_each_index(clustering.count, 64, [&](std::size_t c) {
-    for (std::uint32_t i = c == 0 ? 0 : end[c - 1]; i < end[c]; ++i) add(samples[order[i]]);
-  });
-}
-
-void BuildPool::fill_clusters(std::span<const WedgeTriangle> source, std::span<const std::uint32_t> wedges,
-                              std::span<const std::uint32_t> materials, const CarriedTruth& carried,
-                              const Clustering& clustering, std::vector<std::uint32_t> start,
-                              std::uint32_t first_cluster) {
-  fill_samples(carried.samples, clustering, first_cluster);
+std::vector<std::uint32_t> BuildPool::fill_clusters(std::span<const WedgeTriangle> source,
+                                                    std::span<const std::uint32_t> wedges,
+                                                    std::span<const std::uint32_t> materials,
+                                                    const Clustering& clustering, std::vector<std::uint32_t> start) {
   // Places are dealt out in order, one after the other; what goes there is written side by side.
   std::vector<std::uint32_t> slot(source.size());
   for (std::size_t t = 0; t < source.size(); ++t) slot[t] = start[clustering.label[t]]++;
@@ -191,18 +155,18 @@ void BuildPool::fill_clusters(std::span<const WedgeTriangle> source, std::span<c
     triangle = source[t];
     for (std::size_t k = 0; !wedges.empty() && k < 3; ++k) triangle[k] = wedges[triangle[k]];
     triangle_material.set(slot[t], materials[t]);
-    if (!carried.bounds.empty()) triangle_bounds[slot[t]] = carried.bounds[t];
   });
+  return slot;
 }
 
-void BuildPool::add_clusters(const std::vector<WedgeTriangle>& source, const std::vector<std::uint32_t>& materials,
-                             const CarriedTruth& carried, const Clustering& clustering, std::uint32_t level,
-                             GroupId own_group) {
-  const auto first_cluster = static_cast<std::uint32_t>(clusters.size());
-  std::vector<std::uint32_t> start = add_ranges(clustering, level, own_group);
+void BuildPool::add_level0(const std::vector<WedgeTriangle>& source, const std::vector<std::uint32_t>& materials,
+                           const Clustering& clustering) {
+  std::vector<std::uint32_t> start = add_ranges(clustering, 0, GroupId());
   triangle_material.add(materials);
-  if (!carried.bounds.empty()) triangle_bounds.resize(triangles.size());
-  fill_clusters(source, {}, materials, carried, clustering, std::move(start), first_cluster);
+  const std::vector<std::uint32_t> slot = fill_clusters(source, {}, materials, clustering, std::move(start));
+  level0_source.resize(source.size());
+  parallel_for_each_index(source.size(), kLoopGrain,
+                          [&](std::size_t t) { level0_source[slot[t]] = static_cast<std::uint32_t>(t); });
 }
 
 BuildPool::Ids BuildPool::find_known(const SimplifyResult& result) const {
@@ -270,20 +234,15 @@ void BuildPool::add_simplified(std::span<const NewClusters> added) {
   std::vector<Ids> ids(added.size());
   parallel_for_each_index(added.size(), 1, [&](std::size_t g) { ids[g] = find_known(added[g].result); });
   std::vector<std::vector<std::uint32_t>> start(added.size());
-  std::vector<std::uint32_t> first_cluster(added.size());
-  bool has_bounds = false;
   for (std::size_t g = 0; g < added.size(); ++g) {
     insert_new(added[g].result, ids[g]);
-    first_cluster[g] = static_cast<std::uint32_t>(clusters.size());
     start[g] = add_ranges(added[g].clustering, added[g].level, added[g].own_group);
     triangle_material.add(added[g].result.triangle_material);
-    has_bounds = has_bounds || !added[g].carried.bounds.empty();
   }
-  if (has_bounds) triangle_bounds.resize(triangles.size());
   parallel_for_each_index(added.size(), 1, [&](std::size_t g) {
     const NewClusters& group = added[g];
-    fill_clusters(group.result.triangles, ids[g].wedges, group.result.triangle_material, group.carried,
-                  group.clustering, std::move(start[g]), first_cluster[g]);
+    fill_clusters(group.result.triangles, ids[g].wedges, group.result.triangle_material, group.clustering,
+                  std::move(start[g]));
   });
 }
 
@@ -295,8 +254,7 @@ void BuildPool::end_round() {
 void BuildPool::finish() {
   position_table_ = {};
   wedge_table_ = {};
-  release(witnesses, late_witnesses_, triangle_bounds);
-  for (BuildCluster& cluster : clusters) cluster.samples.free();
+  release(witnesses, late_witnesses_);
 }
 
 BuildPool::ClusterUse BuildPool::use_of(ClusterId id) const {

@@ -13,9 +13,7 @@
 #include "base/ids.h"
 #include "base/unset_vector.h"
 #include "builder/cluster/cluster.h"
-#include "builder/dag/kept_samples.h"
 #include "builder/dag/triangle_materials.h"
-#include "builder/deviation/deviation.h"
 #include "builder/lod_dag.h"
 #include "builder/prepared.h"
 #include "builder/simplify/simplify.h"
@@ -27,23 +25,15 @@ struct BuildCluster {
   std::uint32_t level = 0;
   GroupId own_group;  ///< of BuildPool::groups; invalid at level 0
   std::uint32_t first_triangle = 0, triangle_count = 0;
-  KeptSamples samples;  ///< of the source, where deviations are measured
-};
-
-/// What a tier knows of triangles and hands on with them; empty where it needs none.
-struct CarriedTruth {
-  UnsetVector<CarriedSample> samples;  ///< each names its triangle
-  std::vector<TriangleBound> bounds;   ///< per triangle
 };
 
 /// A group that has been replaced by coarser clusters.
 struct BuildGroup {
   std::uint32_t level = 0;
-  std::vector<ClusterId> clusters;  ///< of BuildPool::clusters
-  double error = 0.0, quadric_error = 0.0;
-  double deviation = std::numeric_limits<double>::infinity();
-  double normal_deviation = std::numeric_limits<double>::infinity();  ///< running maxima, +inf where not measured
-  double uv_deviation = std::numeric_limits<double>::infinity();
+  std::vector<ClusterId> clusters;                             ///< of BuildPool::clusters
+  std::uint32_t round = 0;                                     ///< in which it was replaced
+  double quadric_error = 0.0;                                  ///< the simplifier's own estimate, running maximum
+  double deviation = std::numeric_limits<double>::infinity();  ///< of an aggregate: what its coverage is off by
   bool is_terminal = false;
   bool is_aggregate = false;
   StuckReason stuck_reason = StuckReason::kNotStuck;
@@ -52,7 +42,6 @@ struct BuildGroup {
 /// What a group became, on its way into the pool.
 struct NewClusters {
   const SimplifyResult& result;
-  const CarriedTruth& carried;
   const Clustering& clustering;
   std::uint32_t level = 0;
   GroupId own_group;
@@ -74,10 +63,9 @@ class BuildPool {
   /// Takes the mesh's positions and wedges: here they keep their ids.
   BuildPool(PreparedMesh& mesh, const CoarserLevels& coarser);
 
-  /// Adds the clusters of `triangles` (wedges of this pool), in the clustering's order. What is carried names those
-  /// triangles and goes with their clusters.
-  void add_clusters(const std::vector<WedgeTriangle>& triangles, const std::vector<std::uint32_t>& materials,
-                    const CarriedTruth& carried, const Clustering& clustering, std::uint32_t level, GroupId own_group);
+  /// Adds the clusters of level 0, in the clustering's order. `triangles` are of wedges of this pool.
+  void add_level0(const std::vector<WedgeTriangle>& triangles, const std::vector<std::uint32_t>& materials,
+                  const Clustering& clustering);
 
   /// Adds what groups became, one after the other. Positions and wedges that are already known (locked ones, or a
   /// coincidence on the grid) keep their id, so that equal integers are equal ids at every level, and equal attributes
@@ -90,7 +78,7 @@ class BuildPool {
   /// Whether one was when the round began.
   [[nodiscard]] bool had_place(const Vec3i& position) const;
   void end_round();
-  /// Nothing will be added, simplified or measured any more: frees what only that needs.
+  /// Nothing will be added or simplified any more: frees what only that needs.
   void finish();
 
   /// Of a cluster: its distinct positions, ascending, its distinct wedges, and how many materials it has.
@@ -111,7 +99,7 @@ class BuildPool {
   std::vector<float> wedge_attributes;
   std::vector<WedgeTriangle> triangles;
   TriangleMaterials triangle_material;
-  std::vector<TriangleBound> triangle_bounds;  ///< certified tier only
+  std::vector<std::uint32_t> level0_source;  ///< per triangle of level 0, which come first: of the prepared mesh
   std::vector<BuildCluster> clusters;
   std::vector<BuildGroup> groups;
 
@@ -126,11 +114,11 @@ class BuildPool {
   void add_witnesses(std::uint32_t position, const WitnessIds& more);
   /// Makes room for clusters; returns where the triangles of each go.
   std::vector<std::uint32_t> add_ranges(const Clustering& clustering, std::uint32_t level, GroupId own_group);
-  void fill_samples(std::span<const CarriedSample> samples, const Clustering& clustering, std::uint32_t first_cluster);
   /// `start`: of add_ranges. `wedges`: pool ids by the ids in `source`, or nothing where they are pool ids already.
-  void fill_clusters(std::span<const WedgeTriangle> source, std::span<const std::uint32_t> wedges,
-                     std::span<const std::uint32_t> materials, const CarriedTruth& carried,
-                     const Clustering& clustering, std::vector<std::uint32_t> start, std::uint32_t first_cluster);
+  /// \returns where each triangle went
+  std::vector<std::uint32_t> fill_clusters(std::span<const WedgeTriangle> source, std::span<const std::uint32_t> wedges,
+                                           std::span<const std::uint32_t> materials, const Clustering& clustering,
+                                           std::vector<std::uint32_t> start);
 
   std::uint32_t position_id(const Vec3i& position);
   std::uint32_t wedge_id(std::uint32_t position, const float* attributes);

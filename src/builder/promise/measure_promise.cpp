@@ -14,7 +14,7 @@
 #include "base/random.h"
 #include "builder/hierarchy/lod_bounds.h"
 #include "builder/hierarchy/margins.h"
-#include "builder/promise/groups_by_level.h"
+#include "builder/measure/groups_by_level.h"
 #include "builder/promise/product_surfaces.h"
 #include "builder/promise/product_tree.h"
 #include "builder/promise/promise_certifier.h"

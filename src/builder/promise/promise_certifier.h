@@ -14,7 +14,7 @@
 #include "base/parallel.h"
 #include "builder/deviation/deviation.h"
 #include "builder/lod_dag.h"
-#include "builder/promise/groups_by_level.h"
+#include "builder/measure/groups_by_level.h"
 #include "builder/promise/painted_source.h"
 #include "builder/promise/partners.h"
 #include "builder/promise/product_cover.h"

@@ -14,7 +14,6 @@
 #include "builder/prepare/prepare.h"
 #include "scene/samples/samples.h"
 #include "support/border_chain.h"
-#include "support/sanitized.h"
 
 namespace meshlode::builder {
 namespace {
@@ -242,22 +241,6 @@ TEST(Dag, ThreadsChangeNothing) {
   }
 }
 
-TEST(Dag, ShortMemoryChangesNothing) {
-  const scene::Primitive shape = scene::make_rock(40);
-  DagOptions options;
-  options.error = ErrorSource::kMeasured;
-  const LodDag held = build(shape, options).dag;
-  options.is_memory_short = true;
-  const LodDag made = build(shape, options).dag;
-  EXPECT_EQ(held.vertex_position, made.vertex_position);
-  EXPECT_EQ(held.triangles, made.triangles);
-  ASSERT_EQ(held.groups.size(), made.groups.size());
-  for (std::size_t g = 0; g < held.groups.size(); ++g) {
-    EXPECT_EQ(held.groups[g].error, made.groups[g].error);
-    EXPECT_EQ(held.groups[g].normal_deviation, made.groups[g].normal_deviation);
-  }
-}
-
 TEST(Dag, ItCanBeCancelled) {
   DagOptions options;
   int calls = 0;
@@ -287,32 +270,6 @@ TEST(Dag, FoliageAndSoupsKeepTheirAreaAtEveryLevel) {
     }
     EXPECT_GE(area.size(), 4U);
     for (const auto& [level, covered] : area) EXPECT_NEAR(covered / area[0], 1.0, 0.1) << "level " << level;
-  }
-}
-
-/// The error of every group is the largest of what was found for it, times the margin, and of the errors below it; what
-/// was found is stored as it is. So it is told whether an error is a group's own or another's.
-TEST(Dag, AnErrorIsTheDeviationWithTheMarginAndTheLargestBelow) {
-  for (const ErrorSource tier : {ErrorSource::kMeasured, ErrorSource::kCertified}) {
-    const double margin = tier == ErrorSource::kMeasured ? kMeasuredMargin : 1.0;
-    for (const scene::Primitive& shape :
-         {scene::make_rock(9), scene::make_loose_pieces(test::kIsSanitized ? 300 : 600)}) {
-      DagOptions options;
-      options.error = tier;
-      const Built built = build(shape, options);
-      std::size_t replaced = 0;
-      for (const DagGroup& group : built.dag.groups) {
-        if (group.is_terminal) continue;
-        ++replaced;
-        double expected = std::max(built.mesh.level0_deviation, margin * group.deviation);
-        for (std::uint32_t c = group.first_cluster; c < group.first_cluster + group.cluster_count; ++c) {
-          if (!built.dag.clusters[c].own_group.is_valid()) continue;
-          expected = std::max(expected, built.dag.groups[built.dag.clusters[c].own_group.value].error);
-        }
-        EXPECT_EQ(group.error, expected);
-      }
-      EXPECT_GE(replaced, 2U);
-    }
   }
 }
 

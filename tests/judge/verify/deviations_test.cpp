@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "builder/builder.h"
-#include "builder/dag/build_dag.h"
+#include "builder/measure/measure.h"
 #include "judge/validate/edit.h"
 #include "judge/validate/validate.h"
 #include "judge/verify/verify.h"

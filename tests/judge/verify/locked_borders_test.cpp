@@ -47,7 +47,7 @@ run::Asset build_tile(std::size_t unlocked) {
     mesh->is_border_locked[p] = 0;
     --unlocked;
   }
-  const auto dag = builder::build_dag(*mesh, builder::dag_options(options, options, *mesh, {}));
+  const auto dag = builder::build_dag(*mesh, builder::dag_options(options, *mesh, {}));
   EXPECT_TRUE(dag) << dag.error().message();
   auto encoded = builder::encode_mesh(*mesh, *dag, builder::build_hierarchy(*dag, *mesh), {});
   EXPECT_TRUE(encoded) << encoded.error().message();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "builder/dag/source_points.h"
+#include "builder/measure/source_points.h"
 
 #include <algorithm>
 #include <cmath>

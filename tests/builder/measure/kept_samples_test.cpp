@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "builder/dag/kept_samples.h"
+#include "builder/measure/kept_samples.h"
 
 #include <vector>
 

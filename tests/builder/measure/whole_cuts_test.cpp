@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Errors of groups held to whole cuts: true ones stay, too small ones are raised to the truth, and so is what is
 // coarser.
-#include "builder/dag/whole_cuts.h"
+#include "builder/measure/whole_cuts.h"
 
 #include <cmath>
 #include <limits>
@@ -10,6 +10,7 @@
 #include <tbb/task_arena.h>
 
 #include "builder/dag/build_dag.h"
+#include "builder/measure/measure.h"
 #include "builder/plan/plan.h"
 #include "builder/prepare/prepare.h"
 #include "scene/samples/samples.h"
@@ -26,11 +27,11 @@ Built build(const scene::Primitive& shape) {
   const scene::SourceMesh source = scene::as_mesh(shape);
   const MeshPlan plan = plan_mesh(source, {}, {AttributeChoice::kNone}, "m");
   Built built{*prepare_mesh(source, plan.layout, {}), {}};
-  DagOptions options;
-  options.error = ErrorSource::kMeasured;
-  Result<LodDag> dag = build_dag(built.mesh, options);
+  Result<LodDag> dag = build_dag(built.mesh, {});
   EXPECT_TRUE(dag.ok());
-  if (dag.ok()) built.dag = std::move(*dag);
+  if (!dag.ok()) return built;
+  built.dag = std::move(*dag);
+  measure(built.mesh, format::ErrorTier::kMeasured, built.dag);
   return built;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "builder/dag/whole_cuts.h"
+#include "builder/measure/whole_cuts.h"
 
 #include <algorithm>
 #include <array>
@@ -16,9 +16,9 @@
 #include "base/ids.h"
 #include "base/parallel.h"
 #include "base/random.h"
-#include "builder/dag/source_points.h"
 #include "builder/deviation/bounded_search.h"
 #include "builder/deviation/surface_tree.h"
+#include "builder/measure/source_points.h"
 
 namespace meshlode::builder {
 

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How far a finished DAG is from its source. Nothing of the DAG's geometry depends on it: build_dag() first makes all
+// triangles, then measure() finds the errors of its groups, once.
+#pragma once
+
+#include <meshlode/format.h>
+
+#include "builder/lod_dag.h"
+#include "builder/prepared.h"
+
+namespace meshlode::builder {
+
+/// Samples find a maximum from below. In the tier kMeasured an error is the deviation that they found times this.
+/// Chosen on one set of scenes and reported on another: docs/quality.md, "How true the stored errors are".
+constexpr double kMeasuredMargin = 1.02;
+
+/// Sets error, deviation, normal_deviation and uv_deviation of the groups that are not terminal, in object units,
+/// degrees and UV units; errors never fall from fine to coarse (I4). Where errors come from (I7, docs/architecture.md):
+///   kQem        the simplifier's own estimate: the DAG stays as build_dag() made it
+///   kMeasured   the deviation from the source, as samples find it, of groups and then of whole cuts
+///   kCertified  an upper bound of the deviation
+/// A group of an aggregate (DagGroup::is_aggregate) keeps what its coverage is off by, with the tier's margin. Frees
+/// vertex_position_id and level0_source of the DAG. The same for any thread count (I10).
+/// \pre `mesh` has its frame, its layout and its exact triangles
+void measure(const PreparedMesh& mesh, format::ErrorTier tier, LodDag& dag);
+
+}  // namespace meshlode::builder
