@@ -325,13 +325,7 @@ Result<BuildPool> coarsen(PreparedMesh& mesh, const DagOptions& options) {
   const auto cluster = [&] {
     level0 = cluster_triangles(mesh.triangles, mesh.wedge_position, mesh.positions, options.caps);
   };
-  const auto make_meter = [&] { made_meter.emplace(mesh, options.error, options.is_memory_short); };
-  if (options.is_memory_short) {
-    cluster();
-    make_meter();
-  } else {
-    parallel_all(cluster, make_meter);
-  }
+  parallel_all(cluster, [&] { made_meter.emplace(mesh, options.error); });
   const GroupMeter& meter = *made_meter;
   BuildPool pool(mesh, halved_levels(mesh));
   pool.add_clusters(mesh.triangles, mesh.triangle_material, meter.level0(pool), level0, 0, GroupId());

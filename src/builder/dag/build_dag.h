@@ -38,7 +38,6 @@ struct DagOptions {
   std::uint32_t max_group_bytes = 0;  ///< decoded bytes that a group's clusters may take together; 0 = no limit
   /// Upper bound of the bytes of a cluster of so many vertices, triangles and materials. Needed with max_group_bytes.
   std::function<std::uint32_t(std::uint32_t vertices, std::uint32_t triangles, std::uint32_t materials)> cluster_bytes;
-  bool is_memory_short = false;  ///< what saves time alone is not held, and done one after another; the same bytes
   /// Called after each level with the level's number and its triangles. Returning false cancels.
   std::function<bool(std::uint32_t level, std::uint64_t triangles)> on_level;
 };

@@ -46,10 +46,10 @@ std::vector<std::uint32_t> wedges_of_exact(const PreparedMesh& mesh) {
 
 }  // namespace
 
-GroupMeter::GroupMeter(const PreparedMesh& mesh, ErrorSource tier, bool is_memory_short)
+GroupMeter::GroupMeter(const PreparedMesh& mesh, ErrorSource tier)
     : mesh_(mesh), is_certified_(tier == ErrorSource::kCertified) {
   if (tier == ErrorSource::kQuadric) return;
-  source_.emplace(mesh.exact_positions, mesh.exact_triangles, is_memory_short ? 0 : kMostHeldTriangles);
+  source_.emplace(mesh.exact_positions, mesh.exact_triangles);
   wedge_of_exact_ = wedges_of_exact(mesh);
 }
 

@@ -26,9 +26,8 @@ struct GroupErrors {
 
 class GroupMeter {
  public:
-  /// The mesh's frame and exact triangles must outlive the meter. kQuadric measures nothing. `is_memory_short`: as in
-  /// DagOptions.
-  GroupMeter(const PreparedMesh& mesh, ErrorSource tier, bool is_memory_short);
+  /// The mesh's frame and exact triangles must outlive the meter. kQuadric measures nothing.
+  GroupMeter(const PreparedMesh& mesh, ErrorSource tier);
 
   [[nodiscard]] bool is_measuring() const { return source_.has_value(); }
   /// For the triangles of level 0, which the mesh still has; `pool` has its positions.

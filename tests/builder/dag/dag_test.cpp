@@ -242,22 +242,6 @@ TEST(Dag, ThreadsChangeNothing) {
   }
 }
 
-TEST(Dag, ShortMemoryChangesNothing) {
-  const scene::Primitive shape = scene::make_rock(40);
-  DagOptions options;
-  options.error = ErrorSource::kMeasured;
-  const LodDag held = build(shape, options).dag;
-  options.is_memory_short = true;
-  const LodDag made = build(shape, options).dag;
-  EXPECT_EQ(held.vertex_position, made.vertex_position);
-  EXPECT_EQ(held.triangles, made.triangles);
-  ASSERT_EQ(held.groups.size(), made.groups.size());
-  for (std::size_t g = 0; g < held.groups.size(); ++g) {
-    EXPECT_EQ(held.groups[g].error, made.groups[g].error);
-    EXPECT_EQ(held.groups[g].normal_deviation, made.groups[g].normal_deviation);
-  }
-}
-
 TEST(Dag, ItCanBeCancelled) {
   DagOptions options;
   int calls = 0;
