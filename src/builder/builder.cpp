@@ -52,27 +52,13 @@ Status check_build(const scene::Scene& scene, const PipelineOptions& options) {
   return Ok{};
 }
 
-/// How many meshes may be in work at once, and whether even one takes more than there is.
-struct MemoryFit {
-  std::size_t at_once = 1;
-  bool is_short = false;  ///< large arrays go to a file
-  std::uint32_t threads = 1;
-};
-
 /// Refuses what memory has no room for, before any mesh is built.
 Result<MemoryFit> check_memory(const scene::Scene& scene, const PipelineOptions& options,
                                std::span<const AggregateDecision> aggregates, PipelineReport& report) {
-  auto threads = static_cast<std::uint32_t>(thread_limit());
-  MemoryEstimate estimate = estimate_memory(scene, options, threads, aggregates);
-  const auto is_short = [&] { return options.max_memory > 0 && estimate.bytes(1) > options.max_memory; };
-  if (is_short()) {
-    threads = threads_within(estimate, threads, options.max_memory);
-    estimate = estimate_memory(scene, options, threads, aggregates);
-  }
-  const Result<std::size_t> at_once = fit_memory(estimate, threads, options);
-  report.memory_estimate = estimate.bytes(at_once ? *at_once : 1);
-  if (!at_once) return at_once.error();
-  return MemoryFit{*at_once, is_short(), threads};
+  const MemoryEstimate estimate = estimate_memory(scene, options, aggregates);
+  const auto fit = fit_memory(estimate, scene, static_cast<std::uint32_t>(thread_limit()), options.max_memory);
+  report.memory_estimate = fit ? estimate.bytes(fit->at_once, fit->threads) : estimate.bytes(1, 1);
+  return fit;
 }
 
 struct BuiltMesh {
@@ -134,7 +120,6 @@ struct Survey {
   std::vector<TexelExtents> extents;          ///< texel_extents_of_materials(), where more than positions is promised
   std::vector<AggregateDecision> aggregates;  ///< by mesh
   CoarseMaterials coarse;                     ///< where some mesh has an aggregate
-  bool is_memory_short = false;               ///< MemoryFit::is_short
   [[nodiscard]] bool has_aggregates() const {
     return std::any_of(aggregates.begin(), aggregates.end(), [](const AggregateDecision& d) { return d.is_aggregate; });
   }
@@ -361,7 +346,6 @@ Result<std::vector<std::uint8_t>> build_asset_of(const Source& from, const Pipel
   if (!fit) return fit.error();
   Result<Survey> found = survey(scene, options, std::move(aggregates));
   if (!found) return found.error();
-  found->is_memory_short = fit->is_short;
   Result<std::vector<BuiltMesh>> meshes =
       with_threads_at_most(fit->threads, [&] { return build_meshes(from, options, *found, fit->at_once, progress); });
   if (!meshes) return meshes.error();

@@ -2,7 +2,6 @@
 #include "builder/needs.h"
 
 #include <algorithm>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -10,6 +9,7 @@
 #include "base/memory.h"
 #include "builder/deviation/deviation.h"
 #include "builder/plan/count_wedges.h"
+#include "builder/plan/plan.h"
 
 namespace meshlode::builder {
 
@@ -32,11 +32,6 @@ constexpr std::uint64_t kTriangleOfAggregate = 50;
 constexpr std::uint64_t kPosition = 230;
 constexpr std::uint64_t kPositionOfQuadric = 180;
 constexpr std::uint64_t kVertexFloat = 8;
-// Where large arrays go to a file: of a triangle what stays in memory all the same, and what the groups in hand take. A
-// quarter of the limit is for the arrays.
-constexpr std::uint64_t kUnspilledTriangle = 30;
-constexpr std::uint64_t kSpillRoom = 24u << 20u;
-constexpr std::uint64_t kLimitOfThread = 128u << 20u;
 
 template <class T>
 std::uint64_t bytes_of(const std::vector<T>& values) {
@@ -61,6 +56,19 @@ std::uint64_t attribute_floats(const scene::SourceMesh& mesh, const MeshOptions&
     floats = std::max(floats, own);
   }
   return floats;
+}
+
+/// What is needed, for what, and what to do.
+Error refuse_memory(const MemoryEstimate& estimate, const scene::Scene& scene, std::uint64_t limit, bool is_asked) {
+  std::string text = "the build needs about " + byte_size_text(estimate.bytes(1, 1)) + " of memory";
+  if (!estimate.working.empty()) {
+    const auto& [bytes, mesh] = estimate.working.front();
+    text += ", " + byte_size_text(bytes) + " of it for " + mesh_label(scene.meshes[mesh], mesh) + " of " +
+            std::to_string(count_mesh(scene.meshes[mesh]).triangles) + " triangles";
+  }
+  text += "; " + byte_size_text(limit);
+  text += is_asked ? " are allowed by --max-memory: allow more" : " are available: free some";
+  return {ErrorCode::kBuildFailed, "", text + ", or split the mesh or the scene"};
 }
 
 }  // namespace
@@ -88,17 +96,16 @@ Status check_mesh_counts(const MeshCounts& counts, const std::string& mesh) {
   return Ok{};
 }
 
-std::uint64_t MemoryEstimate::bytes(std::size_t at_once) const {
-  std::uint64_t sum = always;
-  for (std::size_t i = 0; i < std::min(at_once, working.size()); ++i) sum += working[i];
+std::uint64_t MemoryEstimate::bytes(std::size_t at_once, std::uint32_t threads) const {
+  std::uint64_t sum = always + kThread * threads;
+  for (std::size_t i = 0; i < std::min(at_once, working.size()); ++i) sum += working[i].bytes;
   return sum;
 }
 
-MemoryEstimate estimate_memory(const scene::Scene& scene, const PipelineOptions& options, std::uint32_t threads,
+MemoryEstimate estimate_memory(const scene::Scene& scene, const PipelineOptions& options,
                                std::span<const AggregateDecision> aggregates) {
   MemoryEstimate estimate;
-  estimate.always = kProcess + kThread * std::max(threads, 1U) + kDocumentByte * scene.document.size();
-  estimate.spilled = estimate.always + kSpillRoom;
+  estimate.always = kProcess + kDocumentByte * scene.document.size();
   for (const scene::SceneBlob& blob : scene.blobs) estimate.always += 2 * bytes_of(blob.bytes);  // and the file's
   for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
     const scene::SourceMesh& mesh = scene.meshes[i];
@@ -108,46 +115,35 @@ MemoryEstimate estimate_memory(const scene::Scene& scene, const PipelineOptions&
     const MeshCounts counts = count_mesh(mesh);
     for (const scene::Primitive& primitive : mesh.primitives) estimate.always += bytes_of(primitive);
     estimate.always += kKeptTriangle * counts.triangles;
-    estimate.spilled += kUnspilledTriangle * counts.triangles;
     const std::uint64_t promised = options.promise == format::Promise::kPosition ? 0 : kTrianglePromised;
     const std::uint64_t held = is_measured && counts.triangles <= kMostHeldTriangles ? kTriangleHeld : 0;
-    estimate.working.push_back(((is_certified ? kTriangleOfCertified : kTriangle) + held + promised) *
-                                   counts.triangles +
-                               (is_measured ? kPosition : kPositionOfQuadric) * count_wedges(mesh, {}) +
-                               kVertexFloat * attribute_floats(mesh, own) * counts.vertices);
+    std::uint64_t bytes = ((is_certified ? kTriangleOfCertified : kTriangle) + held + promised) * counts.triangles +
+                          (is_measured ? kPosition : kPositionOfQuadric) * count_wedges(mesh, {}) +
+                          kVertexFloat * attribute_floats(mesh, own) * counts.vertices;
     const bool is_aggregate = i < aggregates.size() && aggregates[i].is_aggregate;
-    if (!is_aggregate) continue;
-    estimate.working.back() += kAggregate + kTriangleOfAggregate * counts.triangles;
-    estimate.spilled += kAggregate + kTriangleOfAggregate * counts.triangles;  // small arrays
+    if (is_aggregate) bytes += kAggregate + kTriangleOfAggregate * counts.triangles;
+    estimate.working.push_back({bytes, i});
   }
-  estimate.spilled += estimate.spilled / 3;
-  std::sort(estimate.working.begin(), estimate.working.end(), std::greater<>());
+  std::stable_sort(estimate.working.begin(), estimate.working.end(),
+                   [](const auto& a, const auto& b) { return a.bytes > b.bytes; });
   return estimate;
 }
 
-std::uint32_t threads_within(const MemoryEstimate& estimate, std::uint32_t threads, std::uint64_t limit) {
-  if (estimate.bytes(1) <= limit) return threads;
-  const std::uint64_t too_many = (estimate.bytes(1) - limit + kThread - 1) / kThread;
-  if (too_many + 2 <= threads) return threads - static_cast<std::uint32_t>(too_many);
-  return static_cast<std::uint32_t>(
-      std::min<std::uint64_t>(threads, std::max<std::uint64_t>(2, limit / kLimitOfThread)));
-}
-
-Result<std::size_t> fit_memory(const MemoryEstimate& estimate, std::uint32_t threads, const PipelineOptions& options) {
-  std::size_t at_once = std::max<std::size_t>(1, std::min<std::size_t>(threads, estimate.working.size()));
-  std::uint64_t limit = options.max_memory;
+Result<MemoryFit> fit_memory(const MemoryEstimate& estimate, const scene::Scene& scene, std::uint32_t threads,
+                             std::uint64_t max_memory) {
+  MemoryFit fit;
+  fit.threads = std::max(threads, 1U);
+  fit.at_once = std::max<std::size_t>(1, std::min<std::size_t>(fit.threads, estimate.working.size()));
+  std::uint64_t limit = max_memory;
   if (limit == 0) {
     const auto available = available_memory();
-    if (!available) return at_once;
+    if (!available) return fit;
     limit = resident_memory() + *available;
   }
-  while (at_once > 1 && estimate.bytes(at_once) > limit) --at_once;
-  if (estimate.bytes(at_once) <= limit || (options.spills && estimate.spilled <= limit)) return at_once;
-  const std::uint64_t needed = options.spills ? std::min(estimate.spilled, estimate.bytes(1)) : estimate.bytes(1);
-  return Error{ErrorCode::kBuildFailed, "",
-               "the build needs about " + byte_size_text(needed) + " of memory, " + byte_size_text(limit) +
-                   (options.max_memory == 0 ? " are available (meshlode --max-memory SIZE keeps to SIZE with a file)"
-                                            : " are allowed by --max-memory")};
+  while (fit.at_once > 1 && estimate.bytes(fit.at_once, fit.threads) > limit) --fit.at_once;
+  while (fit.threads > 1 && estimate.bytes(1, fit.threads) > limit) --fit.threads;
+  if (estimate.bytes(fit.at_once, fit.threads) <= limit) return fit;
+  return refuse_memory(estimate, scene, limit, max_memory != 0);
 }
 
 }  // namespace meshlode::builder

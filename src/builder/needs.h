@@ -35,29 +35,30 @@ constexpr std::uint64_t kMaxMeshVertices = 4294967295;
 /// more while a mesh is in work. Measured (docs/performance.md, "Memory") and meant to be a little more than what will
 /// be found.
 struct MemoryEstimate {
-  std::uint64_t always = 0;            ///< bytes, never 0
-  std::vector<std::uint64_t> working;  ///< bytes by mesh, the largest first
-  /// Where large arrays go to a file (PipelineOptions::spills): what is too small for that, and room to work in.
-  std::uint64_t spilled = 0;
+  struct Mesh {
+    std::uint64_t bytes = 0;
+    std::size_t mesh = 0;  ///< of the scene
+  };
+  std::uint64_t always = 0;   ///< bytes, never 0
+  std::vector<Mesh> working;  ///< the largest first
 
-  /// With so many meshes in work at once: the largest, at worst.
-  [[nodiscard]] std::uint64_t bytes(std::size_t at_once) const;
+  /// With so many meshes in work at once, the largest at worst, by so many threads.
+  [[nodiscard]] std::uint64_t bytes(std::size_t at_once, std::uint32_t threads) const;
 };
 
 /// `aggregates`: by mesh; none where there are none.
 [[nodiscard]] MemoryEstimate estimate_memory(const scene::Scene& scene, const PipelineOptions& options,
-                                             std::uint32_t threads, std::span<const AggregateDecision> aggregates = {});
+                                             std::span<const AggregateDecision> aggregates = {});
 
-/// How many meshes may be in work at once, at most one a thread: fewer where memory asks for it, down to one after
-/// another. The limit is PipelineOptions::max_memory or, where that is 0, what the process has and the machine can
-/// still give it. Error: kBuildFailed where one at a time is too much, and spilling does not help.
-[[nodiscard]] Result<std::size_t> fit_memory(const MemoryEstimate& estimate, std::uint32_t threads,
-                                             const PipelineOptions& options);
+struct MemoryFit {
+  std::size_t at_once = 1;    ///< meshes in work
+  std::uint32_t threads = 1;  ///< of the whole build
+};
 
-/// How many of the threads that an estimate is of build one mesh under a limit: as many as fit, each with what it has
-/// in hand. Where not even two do, large arrays go to a file, and one for each 128 MiB, two at least: each that comes
-/// to the file here and there brings more into memory than it asks for, and sooner than it can be taken out again
-/// (sixteen under 1 GiB went beyond it, and were no quicker than eight).
-[[nodiscard]] std::uint32_t threads_within(const MemoryEstimate& estimate, std::uint32_t threads, std::uint64_t limit);
+/// As many meshes in work at once as memory has room for, at most one a thread; where not even one fits, with fewer
+/// threads. The limit is `max_memory` or, where that is 0, what the process has and the machine can still give it.
+/// Error: kBuildFailed, naming the largest mesh of `scene`, where one at a time by one thread is too much.
+[[nodiscard]] Result<MemoryFit> fit_memory(const MemoryEstimate& estimate, const scene::Scene& scene,
+                                           std::uint32_t threads, std::uint64_t max_memory);
 
 }  // namespace meshlode::builder

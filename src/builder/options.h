@@ -50,9 +50,7 @@ struct SceneOptions {
   std::uint32_t max_cluster_triangles = 128;  ///< I2; at most format::kMaxClusterTriangles
   std::uint32_t max_cluster_vertices = 256;   ///< I2; at most format::kMaxClusterVertices
   std::uint32_t group_clusters = kUsualGroupClusters;  ///< what groups aim at, kFewestGroupClusters to 32
-  std::uint64_t max_memory = 0;  ///< bytes that the process may take (builder/needs.h); 0: what the machine has
-  /// Large arrays of the process go to a file before they would exceed max_memory (tools/meshlode/spill.h).
-  bool spills = false;
+  std::uint64_t max_memory = 0;     ///< bytes that the process may take (builder/needs.h); 0: what the machine has
   MeshStore* mesh_store = nullptr;  ///< meshes that were built before (builder/store/mesh_store.h); the same bytes
   /// Images of materials, for aggregates (builder/aggregate/material_looks.h). None: textured meshes are no aggregates.
   const LookReader* looks = nullptr;

@@ -10,6 +10,8 @@
 #include <cmath>
 #include <cstdio>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -47,71 +49,56 @@ TEST(Needs, FlatNormalsBesideOthersMakeAVertexOfEachCorner) {
 
 constexpr std::uint64_t kMiB = 1u << 20u;
 
-TEST(Needs, MoreThanIsAllowedIsRefusedAndNamesBoth) {
-  PipelineOptions options;
-  options.max_memory = 100 * kMiB;
-  EXPECT_TRUE(fit_memory({60 * kMiB, {40 * kMiB}}, 1, options));
-  const Result<std::size_t> refused = fit_memory({60 * kMiB + 1, {40 * kMiB}}, 1, options);
+/// Meshes that take so many bytes in work, beside `always` without the threads'.
+MemoryEstimate estimate_of(std::uint64_t always, const std::vector<std::uint64_t>& meshes) {
+  MemoryEstimate estimate{always, {}};
+  for (std::size_t i = 0; i < meshes.size(); ++i) estimate.working.push_back({meshes[i], i});
+  return estimate;
+}
+
+TEST(Needs, MoreThanIsAllowedIsRefusedAndSaysForWhatAndWhatToDo) {
+  scene::Scene scene;
+  scene.meshes.resize(2);
+  scene.meshes[1].name = "hill";
+  scene.meshes[1].primitives.resize(1);
+  scene.meshes[1].primitives[0].indices.resize(15);
+  EXPECT_TRUE(fit_memory(estimate_of(57 * kMiB, {40 * kMiB}), scene, 1, 100 * kMiB));
+  MemoryEstimate estimate{57 * kMiB + 1, {{40 * kMiB, 1}, {2 * kMiB, 0}}};
+  const auto refused = fit_memory(estimate, scene, 8, 100 * kMiB);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, ErrorCode::kBuildFailed);
-  EXPECT_EQ(refused.error().detail, "the build needs about 100.1MiB of memory, 100MiB are allowed by --max-memory");
-  options.max_memory = 0;
-  EXPECT_TRUE(fit_memory({1, {}}, 4, options));
-  const Result<std::size_t> machine = fit_memory({std::uint64_t{1} << 60u, {}}, 1, options);
+  EXPECT_EQ(
+      refused.error().detail,
+      "the build needs about 100.1MiB of memory, 40MiB of it for mesh 1 'hill' of 5 triangles; 100MiB are allowed "
+      "by --max-memory: allow more, or split the mesh or the scene");
+  EXPECT_TRUE(fit_memory(estimate_of(1, {}), scene, 4, 0));
+  const auto machine = fit_memory(estimate_of(std::uint64_t{1} << 60u, {}), scene, 1, 0);
   ASSERT_FALSE(machine);
-  EXPECT_NE(machine.error().detail.find("are available"), std::string::npos) << machine.error().detail;
+  EXPECT_NE(machine.error().detail.find("are available: free some"), std::string::npos) << machine.error().detail;
 }
 
-TEST(Needs, WhatSpillsIsRefusedOnlyBelowWhatStaysInMemory) {
-  PipelineOptions options;
-  options.max_memory = 70 * kMiB;
-  const MemoryEstimate estimate{60 * kMiB, {40 * kMiB, 5 * kMiB}, 70 * kMiB};
-  EXPECT_FALSE(fit_memory(estimate, 2, options));
-  options.spills = true;
-  const Result<std::size_t> kept = fit_memory(estimate, 2, options);
-  ASSERT_TRUE(kept);
-  EXPECT_EQ(*kept, 1u) << "one mesh after another";
-  options.max_memory = 70 * kMiB - 1;
-  const Result<std::size_t> refused = fit_memory(estimate, 2, options);
-  ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().detail, "the build needs about 70MiB of memory, 70MiB are allowed by --max-memory");
-  options.max_memory = 110 * kMiB;
-  EXPECT_EQ(*fit_memory(estimate, 2, options), 2u) << "no need to";
-}
-
-TEST(Needs, AsManyMeshesAreInWorkAtOnceAsFit) {
-  const MemoryEstimate estimate{10 * kMiB, {50 * kMiB, 30 * kMiB, 20 * kMiB, 20 * kMiB}};
-  EXPECT_EQ(estimate.bytes(0), 10 * kMiB);
-  EXPECT_EQ(estimate.bytes(2), 90 * kMiB);
-  EXPECT_EQ(estimate.bytes(9), 130 * kMiB);
-  PipelineOptions options;
-  const auto at_once = [&](std::uint64_t limit, std::uint32_t threads) {
-    options.max_memory = limit;
-    return fit_memory(estimate, threads, options);
+TEST(Needs, AsManyMeshesAreInWorkAtOnceAsFitAndThenFewerThreads) {
+  const MemoryEstimate estimate = estimate_of(10 * kMiB, {50 * kMiB, 30 * kMiB, 20 * kMiB, 20 * kMiB});
+  EXPECT_EQ(estimate.bytes(0, 0), 10 * kMiB);
+  EXPECT_EQ(estimate.bytes(2, 1), 93 * kMiB);
+  EXPECT_EQ(estimate.bytes(9, 16), 178 * kMiB);
+  const auto fit = [&](std::uint64_t limit, std::uint32_t threads) {
+    const auto found = fit_memory(estimate, {}, threads, limit);
+    EXPECT_TRUE(found);
+    return found ? std::pair(found->at_once, found->threads) : std::pair<std::size_t, std::uint32_t>();
   };
-  EXPECT_EQ(*at_once(130 * kMiB, 16), 4u);
-  EXPECT_EQ(*at_once(130 * kMiB, 3), 3u) << "one a thread";
-  EXPECT_EQ(*at_once(130 * kMiB - 1, 16), 3u);
-  EXPECT_EQ(*at_once(90 * kMiB, 16), 2u);
-  EXPECT_EQ(*at_once(60 * kMiB, 16), 1u);
-  EXPECT_FALSE(at_once(60 * kMiB - 1, 16));
-  EXPECT_EQ(*fit_memory({1, {}}, 0, options), 1u) << "a scene without meshes";
-}
-
-TEST(Needs, AsManyThreadsAsFitAndWithAFileOneForEachSoManyBytes) {
-  const auto within = [](std::uint64_t limit, std::uint32_t threads, std::uint64_t bytes) {
-    return threads_within({bytes, {}}, threads, limit);
-  };
-  EXPECT_EQ(within(1024 * kMiB, 16, 1024 * kMiB), 16u);
-  EXPECT_EQ(within(1024 * kMiB, 16, 1024 * kMiB + 1), 15u);
-  EXPECT_EQ(within(300 * kMiB, 16, 342 * kMiB), 2u) << "fourteen of 3 MiB are too many";
-  EXPECT_EQ(within(300 * kMiB, 16, 342 * kMiB + 1), 2u) << "not even two fit";
-  EXPECT_EQ(within(1024 * kMiB, 16, 4096 * kMiB), 8u);
-  EXPECT_EQ(within(1024 * kMiB, 4, 4096 * kMiB), 4u);
-  EXPECT_EQ(within(4096 * kMiB, 16, 13000 * kMiB), 16u);
-  EXPECT_EQ(within(100 * kMiB, 16, 4096 * kMiB), 2u);
-  EXPECT_EQ(within(100 * kMiB, 1, 4096 * kMiB), 1u);
-  EXPECT_EQ(within(100 * kMiB, 1, 101 * kMiB), 1u);
+  using Fit = std::pair<std::size_t, std::uint32_t>;
+  EXPECT_EQ(fit(178 * kMiB, 16), Fit(4, 16));
+  EXPECT_EQ(fit(178 * kMiB, 3), Fit(3, 3)) << "one a thread";
+  EXPECT_EQ(fit(178 * kMiB - 1, 16), Fit(3, 16));
+  EXPECT_EQ(fit(138 * kMiB, 16), Fit(2, 16));
+  EXPECT_EQ(fit(108 * kMiB, 16), Fit(1, 16));
+  EXPECT_EQ(fit(108 * kMiB - 1, 16), Fit(1, 15));
+  EXPECT_EQ(fit(63 * kMiB, 16), Fit(1, 1));
+  scene::Scene scene;
+  scene.meshes.resize(4);
+  EXPECT_FALSE(fit_memory(estimate, scene, 16, 63 * kMiB - 1));
+  EXPECT_EQ(fit_memory(estimate_of(1, {}), {}, 0, 100 * kMiB)->at_once, 1u) << "a scene without meshes";
 }
 
 /// A wavy sheet of 2 · n² triangles, `count` times.
@@ -148,23 +135,24 @@ TEST(Needs, OneMeshAfterAnotherGivesTheSameBytes) {
   const scene::Scene scene = sheets(40, 5, false);
   PipelineOptions options;
   PipelineReport side_by_side, one_by_one;
-  const MemoryEstimate estimate = estimate_memory(scene, options, 4);
+  const MemoryEstimate estimate = estimate_memory(scene, options);
   tbb::task_arena arena(4);
   arena.execute([&] {
     const auto all = build_lode(scene, options, {}, side_by_side);
-    options.max_memory = estimate.bytes(1);
+    options.max_memory = estimate.bytes(1, 4);
     const auto each = build_lode(scene, options, {}, one_by_one);
     ASSERT_TRUE(all && each);
     EXPECT_EQ(*all, *each);
     const auto taken_apart = build_lode(scene::Scene(scene), options, {}, one_by_one);
     ASSERT_TRUE(taken_apart);
     EXPECT_EQ(*all, *taken_apart) << "the scene is freed along the way";
-    options.max_memory = estimate_memory(scene, options, 2).bytes(1) - 1;
+    options.max_memory = estimate.bytes(1, 1) - 1;
     PipelineReport refused;
-    EXPECT_FALSE(build_lode(scene, options, {}, refused)) << "too much for two threads";
+    EXPECT_FALSE(build_lode(scene, options, {}, refused)) << "too much for one thread";
+    EXPECT_EQ(refused.memory_estimate, estimate.bytes(1, 1));
   });
-  EXPECT_EQ(side_by_side.memory_estimate, estimate.bytes(4));
-  EXPECT_EQ(one_by_one.memory_estimate, estimate.bytes(1));
+  EXPECT_EQ(side_by_side.memory_estimate, estimate.bytes(4, 4));
+  EXPECT_EQ(one_by_one.memory_estimate, estimate.bytes(1, 4));
 }
 
 /// Triangles that share nothing, within a box of 2 and of about `size` each.
@@ -254,8 +242,7 @@ TEST(Needs, WhatTwoThreadsKeepIsNotRefusedToSixteen) {
   PipelineOptions options;
   tbb::task_arena arena(16);
   for (const std::uint32_t threads : {2U, 5U}) {
-    options.max_memory = estimate_memory(scene, options, threads).bytes(1);
-    ASSERT_LT(options.max_memory, estimate_memory(scene, options, 16).bytes(1));
+    options.max_memory = estimate_memory(scene, options).bytes(1, threads);
     arena.execute([&] {
       PipelineReport report;
       const auto bytes = build_lode(scene, options, {}, report);
@@ -294,19 +281,12 @@ TEST(NeedsDeathTest, MemoryIsEstimatedFromAboveAndCloseEnough) {
   }
 }
 
-TEST(Needs, ALargeMeshSpillsMostOfWhatItTakes) {
-  const scene::Scene scene = sheets(500, 1, true);  // 500,000 triangles
-  const MemoryEstimate estimate = estimate_memory(scene, {}, 1);
-  EXPECT_LT(estimate.spilled, estimate.bytes(1));
-  EXPECT_GT(estimate.spilled, 500000u * 30u);
-}
-
 TEST(Needs, AScenesImagesAreCounted) {
   scene::Scene scene = sheets(4, 1, false);
-  const std::uint64_t without = estimate_memory(scene, {}, 1).always;
+  const std::uint64_t without = estimate_memory(scene, {}).always;
   scene.blobs.resize(1);
   scene.blobs[0].bytes.resize(1000000);
-  EXPECT_EQ(estimate_memory(scene, {}, 1).always, without + 2000000);
+  EXPECT_EQ(estimate_memory(scene, {}).always, without + 2000000);
 }
 
 }  // namespace

@@ -15,7 +15,6 @@
 #include "library_versions.h"
 #include "options.h"
 #include "outputs.h"
-#include "spill.h"
 #include "verb.h"
 
 namespace meshlode::cli {
@@ -132,9 +131,5 @@ int main(int argc, char** argv) {
   meshlode::cli::end_where_memory_runs_out();
   const auto arguments = std::span<char* const>(argv, static_cast<std::size_t>(argc)).subspan(argc > 0 ? 1 : 0);
   const auto code = meshlode::guarded({}, [&]() -> meshlode::Result<int> { return meshlode::cli::run(arguments); });
-  const int exit_code = code ? *code : print_error(code.error());
-  if (const auto folder = meshlode::cli::full_spill_folder()) {
-    print_error({meshlode::ErrorCode::kIo, folder->string(), "no room for the temporary file of --max-memory"});
-  }
-  return exit_code;
+  return code ? *code : print_error(code.error());
 }

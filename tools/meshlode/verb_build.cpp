@@ -21,6 +21,7 @@
 #include "app/batch/shard/read_manifest.h"
 #include "app/batch/tell/tell.h"
 #include "app/settings/settings.h"
+#include "base/byte_size.h"
 #include "base/printable.h"
 #include "batch_files.h"
 #include "batch_options.h"
@@ -30,7 +31,6 @@
 #include "explain.h"
 #include "file_kind.h"
 #include "material_looks.h"
-#include "memory_limit.h"
 #include "options.h"
 #include "output_name.h"
 #include "outputs.h"
@@ -246,8 +246,15 @@ int run_jobs(const std::vector<Job>& jobs, const BuildCommand& command) {
 struct LimitWords {
   std::string max_memory = "auto", max_decoded = kDefaultMaxDecodedText;
   std::vector<std::string> allow_outside;
-  fs::path outputs;  ///< the folder of the assets
 };
+
+/// `--max-memory` in bytes; 0: what the machine has. Error: kUsage.
+Result<std::uint64_t> parse_max_memory(const std::string& text) {
+  if (text == "auto") return std::uint64_t{0};
+  const auto bytes = parse_byte_size(text);
+  if (bytes && *bytes > 0) return *bytes;
+  return wrong_size("--max-memory", text, "auto or a size above 0, such as 8GiB or 8GB");
+}
 
 Status set_options(const BuildWords& words, const LimitWords& limits, app::BatchOptions& options) {
   const app::SettingLayer given = given_settings(words);
@@ -259,11 +266,9 @@ Status set_options(const BuildWords& words, const LimitWords& limits, app::Batch
   options.import.repair = options.pipeline.repair;
   options.import.linear_colors = options.pipeline.linear_colors;
   options.import.scene = words.scene;
-  const auto memory = keep_memory_limit(limits.max_memory, limits.outputs);
+  const Result<std::uint64_t> memory = parse_max_memory(limits.max_memory);
   if (!memory) return memory.error();
-  options.pipeline.max_memory = memory->bytes;
-  // Where no file can be made, what is too large is refused, as it would be without one.
-  options.pipeline.spills = memory->bytes > 0 && memory->spilling;
+  options.pipeline.max_memory = *memory;
   const Result<std::uint64_t> decoded = parse_max_decoded(limits.max_decoded);
   if (!decoded) return decoded.error();
   options.import.max_decoded = *decoded;
@@ -297,8 +302,8 @@ int run_build(const Verb& verb, std::span<char* const> args) {
   add_build_options(parser, words);
   parser.add_flag("--explain", command.is_explained, "say what is kept, and why, as plan does");
   parser.add_value("--max-memory", limits.max_memory,
-                   "what the build may take, such as 8GiB: meshes one by one and large arrays in a temporary file "
-                   "to keep it, or refused; auto: what is left");
+                   "what the build may take, such as 8GiB: meshes one by one to keep it, or refused before it begins; "
+                   "auto: what is left");
   add_allow_outside_option(parser, limits.allow_outside);
   add_max_decoded_option(parser, limits.max_decoded);
   add_jobs_option(parser, command.jobs);
@@ -312,7 +317,6 @@ int run_build(const Verb& verb, std::span<char* const> args) {
   if (!output.empty() && !output_folder.empty()) {
     return print_error({ErrorCode::kUsage, "", "give -o or -O, not both"});
   }
-  limits.outputs = output_folder.empty() ? fs::path(output).parent_path() : fs::path(output_folder);
   if (const Status set = set_options(words, limits, command.options); !set) return print_error(set.error());
   if (const Status set = set_budget(command); !set) return print_error(set.error());
   const auto plan = app::plan_jobs(inputs, output, output_folder);

@@ -9,7 +9,6 @@
 #include "findings.h"
 #include "judge/validate/rules.h"
 #include "judge/validate/validate.h"
-#include "memory_limit.h"
 #include "options.h"
 #include "verb.h"
 
@@ -43,13 +42,10 @@ std::string describe(const std::string& path, const judge::ValidationReport& rep
 int run_validate(const Verb& verb, std::span<char* const> args) {
   std::vector<std::string> paths;
   OutputOptions output;
-  std::string max_memory = "auto";
   OptionParser parser(verb);
   parser.add_positionals("file", paths, "one or more .lode assets");
-  add_max_memory_option(parser, max_memory);
   add_output_options(parser, output);
   if (const auto exit_code = parser.parse(args)) return *exit_code;
-  if (const Status kept = keep_memory_limit_of_check(max_memory); !kept) return print_error(kept.error());
 
   int worst = 0;
   std::string text;

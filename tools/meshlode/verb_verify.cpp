@@ -16,7 +16,6 @@
 #include "gpu_checks.h"
 #include "judge/validate/rules.h"
 #include "judge/verify/verify.h"
-#include "memory_limit.h"
 #include "options.h"
 #include "outputs.h"
 #include "promise_option.h"
@@ -161,7 +160,7 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
   std::string source_path;
   GpuOptions gpu_options;
   std::uint32_t jobs = 0;
-  std::string max_decoded_text = kDefaultMaxDecodedText, max_memory = "auto";
+  std::string max_decoded_text = kDefaultMaxDecodedText;
   std::vector<std::string> allow_outside;
   bool repair = false, linear_colors = false, is_forced = false;
   judge::VerifyOptions options;
@@ -191,7 +190,6 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
   add_promise_option(parser, gpu_options.promise);
   parser.add_flag("--explain", gpu_options.is_explained,
                   "say what the asset keeps, and with --gpu which passes the device runs, and why");
-  add_max_memory_option(parser, max_memory);
   add_allow_outside_option(parser, allow_outside);
   add_max_decoded_option(parser, max_decoded_text);
   add_jobs_option(parser, jobs);
@@ -209,7 +207,6 @@ int run_verify(const Verb& verb, std::span<char* const> args) {
   if (!max_decoded) return print_error(max_decoded.error());
   auto allowed = parse_allow_outside(allow_outside);
   if (!allowed) return print_error(allowed.error());
-  if (const Status kept = keep_memory_limit_of_check(max_memory); !kept) return print_error(kept.error());
   gpu_options.max_decoded = *max_decoded;
 
   const JobLimit limit(jobs);

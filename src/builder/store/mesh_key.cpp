@@ -104,8 +104,8 @@ void add_experiment(KeyHasher& key, const Experiment& experiment) {
 
 void add_scene_options(KeyHasher& key, const SceneOptions& options) {
   const auto& [preset, codec, strip_effort, partition_seed, repair, linear_colors, promise, keep_topology,
-               max_cluster_triangles, max_cluster_vertices, group_clusters, max_memory, spills, mesh_store, looks,
-               experiment, mesh_options] = options;
+               max_cluster_triangles, max_cluster_vertices, group_clusters, max_memory, mesh_store, looks, experiment,
+               mesh_options] = options;
   key.value(preset);
   key.value(partition_seed);
   key.value(max_cluster_triangles);
@@ -119,7 +119,6 @@ void add_scene_options(KeyHasher& key, const SceneOptions& options) {
   static_cast<void>(repair);         // the triangles are as they are
   static_cast<void>(linear_colors);  // the same
   static_cast<void>(max_memory);
-  static_cast<void>(spills);
   static_cast<void>(mesh_store);
   static_cast<void>(looks);         // of aggregates, which are not stored
   static_cast<void>(mesh_options);  // this mesh's are its own

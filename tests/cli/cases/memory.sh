@@ -4,13 +4,9 @@ cp "$DATA/crystal.glb" a.glb
 code build --quiet a.glb -o a.lode --max-memory 4GiB --report enough.json
 "$JSON_CHECK" "$SCHEMAS/report.schema.json" <enough.json
 code build a.glb -o b.lode --max-memory 1MiB --report small.json
-grep -c 'a.glb: the build needs about .* of memory, 1MiB are allowed by --max-memory' ../stderr
+grep -c 'a.glb: the build needs about .* of memory, .* of it for mesh 0 .*; 1MiB are allowed by --max-memory: allow more' ../stderr
 "$JSON_CHECK" "$SCHEMAS/report.schema.json" <small.json
 for report in enough small; do grep -cE '"memory_estimate_bytes": ?[1-9][0-9]{7}' $report.json; done
 run build a.glb -o b.lode --max-memory 0
 run build a.glb -o b.lode --max-memory lots
-run validate a.lode --max-memory 1GiB
-run validate a.lode --max-memory lots
-code verify a.lode --source a.glb --quick --quiet --max-memory 1GiB
-run verify a.lode --source a.glb --max-memory 0
 files

@@ -86,12 +86,11 @@ std::string settings_text(const builder::PipelineOptions& options, const scene::
                uv_error_is_texels, uv_error_is_default, aggregate, aggregate_names, lock_borders] =
       static_cast<const builder::MeshOptions&>(options);
   const auto& [preset, codec, strip_effort, partition_seed, repair, linear_colors, promise, keep_topology,
-               max_cluster_triangles, max_cluster_vertices, group_clusters, max_memory, spills, mesh_store, looks,
-               experiment, mesh_options] = static_cast<const builder::SceneOptions&>(options);
+               max_cluster_triangles, max_cluster_vertices, group_clusters, max_memory, mesh_store, looks, experiment,
+               mesh_options] = static_cast<const builder::SceneOptions&>(options);
   const auto& [import_repair, scene, files_read, max_decoded, may_lack_images, allow_outside, import_linear] = import;
   static_cast<void>(mesh_options);     // not known before the import: mesh_rules_text()
   static_cast<void>(max_memory);       // whether, not what
-  static_cast<void>(spills);           // where it lies meanwhile
   static_cast<void>(mesh_store);       // how soon
   static_cast<void>(looks);            // the program always has it; images are ingredients
   static_cast<void>(max_decoded);      // the same

@@ -118,7 +118,6 @@ class Run {
     auto settled = app::settle(layers_);
     if (!settled) return settled.error();
     settled->options.max_memory = pipeline_.max_memory;
-    settled->options.spills = pipeline_.spills;
     settled->options.looks = pipeline_.looks;
     pipeline_ = std::move(settled->options);
     import_.repair = pipeline_.repair;
