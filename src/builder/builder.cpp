@@ -21,6 +21,7 @@
 #include "builder/dag/join_dags.h"
 #include "builder/encode/encode.h"
 #include "builder/hierarchy/hierarchy.h"
+#include "builder/hooks.h"
 #include "builder/measure/measure.h"
 #include "builder/needs.h"
 #include "builder/plan/features.h"
@@ -237,7 +238,8 @@ Result<BuiltMesh> build_mesh(const Source& from, std::size_t index, const Survey
 
   const std::uint32_t promises = promises_of(options.promise);
   const bool is_painted = promises != 0 && !aggregate.is_aggregate;
-  PrepareOptions preparing = prepare_options(own, options.experiment.care);
+  PrepareOptions preparing = prepare_options(own);
+  if (options.hooks != nullptr) preparing.separates_needles = options.hooks->separates_needles;
   preparing.keeps_flat_normals = is_painted && options.promise == format::Promise::kAppearance;
   Result<PreparedMesh> mesh = prepare_mesh(source, plan.layout, preparing);
   if (!mesh) return mesh.error();
@@ -262,7 +264,8 @@ Result<BuiltMesh> build_mesh(const Source& from, std::size_t index, const Survey
   built.levels = levels.times();
   built.clock.end(Stage::kDag);
 
-  const Hierarchy hierarchy = build_hierarchy(*dag, *mesh, options.experiment.care.spheres);
+  const Hierarchy hierarchy =
+      build_hierarchy(*dag, *mesh, options.hooks != nullptr ? options.hooks->enclosing_ball : enclosing_ball);
   built.clock.end(Stage::kHierarchy);
 
   Result<EncodedMesh> encoded = encode_mesh(*mesh, *dag, hierarchy, encoding);
@@ -318,8 +321,8 @@ Result<std::vector<BuiltMesh>> build_meshes(const Source& from, const PipelineOp
 void add_scene_decisions(const scene::Scene& scene, const std::vector<EncodedMesh>& meshes,
                          const PipelineOptions& options, std::vector<PlanDecision>& decisions) {
   for (PlanDecision& decision : unknown_names(scene, options)) decisions.push_back(std::move(decision));
-  if (!options.experiment.is_none()) {
-    PlanDecision decision{"scene: experimental", true, describe(options.experiment)};
+  if (options.hooks != nullptr) {
+    PlanDecision decision{"scene: experimental", true, options.hooks->words};
     decision.mesh = format::kNone;
     decisions.push_back(std::move(decision));
   }

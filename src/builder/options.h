@@ -10,12 +10,11 @@
 #include <meshlode/build.h>
 #include <meshlode/format.h>
 
-#include "builder/experiment.h"
-
 namespace meshlode::builder {
 
 class LookReader;
 class MeshStore;
+struct BuildHooks;
 
 /// What may be set for each mesh by itself.
 struct MeshOptions {
@@ -54,7 +53,7 @@ struct SceneOptions {
   MeshStore* mesh_store = nullptr;  ///< meshes that were built before (builder/store/mesh_store.h); the same bytes
   /// Images of materials, for aggregates (builder/aggregate/material_looks.h). None: textured meshes are no aggregates.
   const LookReader* looks = nullptr;
-  Experiment experiment;  ///< none but in studies
+  const BuildHooks* hooks = nullptr;  ///< of a study (builder/hooks.h)
   /// One for each mesh of the scene, in the place of the whole's; empty: all as the whole.
   std::vector<MeshOptions> mesh_options;
 };

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "builder/hooks.h"
 #include "builder/plan/texel_sizes.h"
 #include "builder/preset.h"
 #include "format/grid.h"
@@ -54,12 +55,13 @@ Status check_options(const PipelineOptions& options, std::size_t mesh_count) {
   if (!options.mesh_options.empty() && options.mesh_options.size() != mesh_count) {
     return Error{ErrorCode::kUsage, "", "options of meshes are as many as there are meshes"};
   }
-  if (options.keep_topology && options.experiment.simplifier != Simplifier::kOwn) {
+  const bool heeds_all = options.hooks == nullptr || options.hooks->heeds_all_options;
+  if (options.keep_topology && !heeds_all) {
     return Error{ErrorCode::kUsage, "", "topology is kept by the own simplifier alone"};
   }
   for (std::size_t i = 0; i < mesh_count; ++i) {
     const MeshOptions& own = options.of_mesh(i);
-    if (own.lock_borders && options.experiment.simplifier != Simplifier::kOwn) {
+    if (own.lock_borders && !heeds_all) {
       return Error{ErrorCode::kUsage, "", "borders are locked by the own simplifier alone"};
     }
     if ((own.keep & own.drop) == 0) continue;
@@ -72,11 +74,10 @@ AttributeRequest request_of(const MeshOptions& options, format::Promise promise)
   return {options.attributes, options.keep, options.drop, promise == format::Promise::kAppearance};
 }
 
-PrepareOptions prepare_options(const MeshOptions& options, const Care& care) {
+PrepareOptions prepare_options(const MeshOptions& options) {
   PrepareOptions prepare;
   prepare.grid_step = options.grid_step;
   prepare.position_error = options.position_error;
-  prepare.separates_needles = care.needles;
   prepare.locks_borders = options.lock_borders;
   return prepare;
 }
@@ -105,7 +106,7 @@ DagOptions dag_options(const PipelineOptions& options, const PreparedMesh& mesh,
   dag.caps.merge_triangles = mesh.triangles.size() >= settings_of(options.preset).merged_from;
   dag.simplify.keep_topology = options.keep_topology;
   dag.simplify.keep_area = !options.keep_topology && is_aggregate(mesh);
-  dag.simplify.experiment = options.experiment;
+  if (options.hooks != nullptr) dag.simplify_group = options.hooks->simplify_group;
   dag.max_group_bytes = format::kMaxPageBytes - kPageFrameBytes;
   dag.cluster_bytes = [&mesh, encode](std::uint32_t vertices, std::uint32_t triangles, std::uint32_t materials) {
     return max_cluster_bytes(mesh.layout, encode, vertices, triangles, materials);

@@ -26,7 +26,7 @@ namespace meshlode::builder {
 
 [[nodiscard]] AttributeRequest request_of(const MeshOptions& options, format::Promise promise);
 
-[[nodiscard]] PrepareOptions prepare_options(const MeshOptions& options, const Care& care = {});
+[[nodiscard]] PrepareOptions prepare_options(const MeshOptions& options);
 
 /// `texels`: texels_of_materials() of the scene, for a budget that is given in texels.
 [[nodiscard]] EncodeOptions encode_options(const SceneOptions& whole, const MeshOptions& options,

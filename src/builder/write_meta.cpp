@@ -12,6 +12,7 @@
 
 #include "base/version.h"
 #include "builder/measure/measure.h"
+#include "builder/hooks.h"
 #include "builder/plan/attributes.h"
 #include "builder/preset.h"
 #include "format/names.h"
@@ -134,10 +135,7 @@ Json settings_json(const scene::Scene& scene, const PipelineOptions& options,
   settings["cluster_triangles"] = options.max_cluster_triangles;
   settings["cluster_vertices"] = options.max_cluster_vertices;
   if (options.group_clusters != kUsualGroupClusters) settings["group_clusters"] = options.group_clusters;
-  if (!options.experiment.is_none()) {
-    settings["experimental"] = {{"care_left_out", names_of_missing(options.experiment.care)},
-                                {"simplifier", name_of(options.experiment.simplifier)}};
-  }
+  if (options.hooks != nullptr) settings["experimental"] = Json::parse(options.hooks->record, nullptr, false);
   put_budgets(settings, options);
   put_mesh_settings(settings, options, own);
   return settings;

@@ -404,13 +404,5 @@ TEST(KeepTopology, TheBunnyStaysAManifold) {
   expect_kept({"bunny", scene->meshes[0], 0.0}, 3, 3);
 }
 
-TEST(KeepTopology, OpenMeshsDecimaterDoesNotPromiseIt) {
-  PipelineOptions options;
-  options.keep_topology = true;
-  EXPECT_TRUE(check_options(options, 0).ok());
-  options.experiment.simplifier = Simplifier::kOpenMesh;
-  EXPECT_FALSE(check_options(options, 0).ok());
-}
-
 }  // namespace
 }  // namespace meshlode::builder

@@ -52,8 +52,7 @@ int trial(const std::vector<std::string>& words) {
   if (hard_case == nullptr) return usage();
   const bool all_laws = std::find(words.begin() + 3, words.end(), "--laws") != words.end();
   const auto care_word = std::find(words.begin() + 3, words.end(), "--care");
-  const auto care =
-      builder::parse_care(care_word == words.end() || care_word + 1 == words.end() ? "all" : care_word[1]);
+  const auto care = lab::parse_care(care_word == words.end() || care_word + 1 == words.end() ? "all" : care_word[1]);
   if (!care) return usage();
   const Trial result = try_case(*hard_case, std::strtod(words[2].c_str(), nullptr), all_laws, *care);
   std::fputs(text_of(result).c_str(), stdout);
@@ -118,7 +117,7 @@ void for_each_case(std::size_t count, std::size_t jobs, const Body& body) {
 /// A line each parameter of a case, of those of its sweep, at which the verdict is worse without the care.
 int study_care(const std::string& program, const Arguments& arguments, const std::string& care) {
   const std::vector<const HardCase*> chosen = chosen_cases(arguments);
-  if (chosen.empty() || !builder::parse_care(care)) return usage();
+  if (chosen.empty() || !lab::parse_care(care)) return usage();
   constexpr const char* kVerdicts[] = {"holds", "bound", "refused", "not asked", "fails"};
   static_assert(static_cast<int>(Verdict::kFails) == 4);
   std::atomic<std::size_t> worse = 0, tried = 0;

@@ -180,8 +180,11 @@ TEST(Layers, TheTableKeepsTheBordersOfTheHouse) {
       EXPECT_TRUE(target == "base" || target == "format") << floor << " -> " << target;
     }
   }
-  for (const char* floor : {"base", "format", "scene", "run", "draw", "judge", "lab"}) {
+  for (const char* floor : {"base", "format", "scene", "run", "draw", "judge"}) {
     EXPECT_FALSE(layers.allowed.at(floor).contains("builder") || layers.allowed.at(floor).contains("*")) << floor;
+  }
+  for (const char* room : {"lab/sweep", "lab/page", "lab/flip", "lab/child"}) {  // they run the program
+    EXPECT_TRUE(layers.forbidden.at(room).contains("builder")) << room;
   }
   EXPECT_FALSE(layers.allowed.at("builder").contains("run"));  // encode and decode, pack and unpack
 }

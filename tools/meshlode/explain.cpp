@@ -31,9 +31,7 @@ std::string describe_settings(const app::Settled& settled, const std::vector<app
             ": " + printable(word.from, 200) + "\n";
   };
   for (const app::SettingInfo& info : app::all_settings()) {
-    const app::SettledWord& word = settled[info.setting];
-    const bool is_silent = info.is_experimental && word.word == info.usual;  // nobody studies anything
-    if (!is_silent) line("", info.setting, word);
+    line("", info.setting, settled[info.setting]);
   }
   std::size_t rows = 0;
   for (std::size_t i = 0; i < meshes.size(); ++i) {

@@ -77,10 +77,8 @@ int run_verb(const Verb& verb, std::span<char* const> args) {
 int help_of(std::string_view name) {
   std::string option = "--help";
   char* const args[] = {option.data()};
-  for (const Verb* verb : all_verbs()) {
-    if (name == verb->name) return run_verb(*verb, args);
-  }
-  return unknown_verb(name);
+  const Verb* const verb = find_verb(name);
+  return verb != nullptr ? run_verb(*verb, args) : unknown_verb(name);
 }
 
 bool is_help(std::string_view word) {
@@ -104,10 +102,8 @@ int run(std::span<char* const> args) {
   if (name == "help" && args.size() > 2) return unexpected(args[2], "help takes one (verb)");
   if (name == "help" && args.size() > 1 && !is_help(args[1])) return help_of(args[1]);
   if (is_help(name)) return print_or_fail(help());
-  for (const Verb* verb : all_verbs()) {
-    if (name == verb->name) return run_verb(*verb, args.subspan(1));
-  }
-  return unknown_verb(name);
+  const Verb* const verb = find_verb(name);
+  return verb != nullptr ? run_verb(*verb, args.subspan(1)) : unknown_verb(name);
 }
 
 /// Large arrays go back to the system as soon as they are freed. Left to itself, glibc takes the first one that is

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "option_table.h"
@@ -21,7 +22,9 @@ struct Verb {
   OptionTable* listed_options = nullptr;
 };
 
-/// Every verb that is built in, in the order of the help.
+/// The verb of that name, also one that help does not list; null: there is none.
+[[nodiscard]] const Verb* find_verb(std::string_view name);
+/// Every verb that help, completion and man pages have, in the order of the help.
 [[nodiscard]] std::span<const Verb* const> all_verbs();
 
 /// The same with the options of each, asked of the verbs themselves.
@@ -41,5 +44,6 @@ extern const Verb kExtractVerb;
 extern const Verb kRepackVerb;
 extern const Verb kCompletionVerb;
 extern const Verb kManVerb;
+extern const Verb kStudyVerb;  ///< listed nowhere: for studies (docs/sweep.md)
 
 }  // namespace meshlode::cli

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // build: scenes in, assets out. One input with -o, or many inputs and folders with -O; a batch goes on after a failure
-// and exits with its worst code.
+// and exits with its worst code. study: the same with what only a study asks for.
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -34,6 +34,7 @@
 #include "options.h"
 #include "output_name.h"
 #include "outputs.h"
+#include "study_options.h"
 #include "verb.h"
 
 namespace meshlode::cli {
@@ -87,6 +88,7 @@ struct BuildCommand {
   std::optional<app::Cache> cache;
   std::string report_path;
   std::optional<std::string> fail_if;
+  std::optional<builder::BuildHooks> hooks;  ///< of a study
   std::optional<app::ShardPlan> shard;
   bool is_explained = false;
   std::uint32_t jobs = 0;
@@ -288,11 +290,12 @@ Status set_budget(BuildCommand& command) {
   return Ok{};
 }
 
-int run_build(const Verb& verb, std::span<char* const> args) {
+int run_command(const Verb& verb, std::span<char* const> args, bool is_study) {
   std::vector<std::string> inputs;
   std::string output, output_folder;
   BuildWords words;
   LimitWords limits;
+  StudyWords study;
   BuildCommand command;
   OptionParser parser(verb);
   parser.add_positionals("input", inputs,
@@ -300,6 +303,7 @@ int run_build(const Verb& verb, std::span<char* const> args) {
   parser.add_value("-o,--output", output, "the asset to write; the input's name with .lode where not given");
   parser.add_value("-O,--output-folder", output_folder, "folder for the assets of many inputs; made where missing");
   add_build_options(parser, words);
+  if (is_study) add_study_options(parser, study);
   parser.add_flag("--explain", command.is_explained, "say what is kept, and why, as plan does");
   parser.add_value("--max-memory", limits.max_memory,
                    "what the build may take, such as 8GiB: meshes one by one to keep it, or refused before it begins; "
@@ -318,6 +322,10 @@ int run_build(const Verb& verb, std::span<char* const> args) {
     return print_error({ErrorCode::kUsage, "", "give -o or -O, not both"});
   }
   if (const Status set = set_options(words, limits, command.options); !set) return print_error(set.error());
+  auto hooks = hooks_of(study);
+  if (!hooks) return print_error(hooks.error());
+  command.hooks = std::move(*hooks);
+  if (command.hooks) command.options.pipeline.hooks = &*command.hooks;
   if (const Status set = set_budget(command); !set) return print_error(set.error());
   const auto plan = app::plan_jobs(inputs, output, output_folder);
   if (!plan) return print_error(plan.error());
@@ -348,11 +356,22 @@ int run_build(const Verb& verb, std::span<char* const> args) {
   return std::max(none, run_jobs(*share, command));
 }
 
+int run_build(const Verb& verb, std::span<char* const> args) {
+  return run_command(verb, args, false);
+}
+
+int run_study(const Verb& verb, std::span<char* const> args) {
+  return run_command(verb, args, true);
+}
+
 }  // namespace
 
 const Verb kBuildVerb{
     "build", "turn glTF, PLY, OBJ or STL scenes into .lode assets",
     "meshlode build scene.glb -o scene.lode\n  meshlode build a.glb folder/ 'more/**/*.gltf' -O out/ --cache cache/",
     run_build};
+
+const Verb kStudyVerb{"study", "build as a study wants it: the asset says so, and is for no scene that ships",
+                      "meshlode study scene.glb -o scene.lode --care needles=off", run_study};
 
 }  // namespace meshlode::cli

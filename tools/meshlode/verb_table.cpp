@@ -19,6 +19,13 @@ std::span<const Verb* const> all_verbs() {
   return kVerbs;
 }
 
+const Verb* find_verb(std::string_view name) {
+  for (const Verb* verb : all_verbs()) {
+    if (name == verb->name) return verb;
+  }
+  return name == kStudyVerb.name ? &kStudyVerb : nullptr;
+}
+
 std::vector<VerbHelp> all_verb_help() {
   std::vector<VerbHelp> all;
   for (const Verb* verb : all_verbs()) {

@@ -56,11 +56,6 @@ constexpr std::array<SettingInfo, kSettingCount> kSettings{{
     {Setting::kPromise, "promise",
      "what errors are of: positions; texels, with texture coordinates; appearance, with normals too", "position",
      false},
-    {Setting::kCare, "care",
-     "experimental: NAME=off, comma by comma, builds without double-quadrics, fallback, spheres or needles", "all",
-     false, true},
-    {Setting::kSimplifier, "simplifier", "experimental: openmesh's decimater reduces the groups, to compare", "own",
-     false, true},
 }};
 
 /// A finite number above 0, all of the text.
@@ -235,9 +230,6 @@ builder::PipelineOptions options_of(const std::array<SettledWord, kSettingCount>
       value_in(builder::kAggregateChoiceNames, word(Setting::kAggregate)).value_or(AggregateChoice::kNamed);
   if (options.aggregate == AggregateChoice::kNamed) options.aggregate_names = word(Setting::kAggregate);
   options.promise = value_in(format::kPromiseNames, word(Setting::kPromise)).value_or(options.promise);
-  if (const auto care = builder::parse_care(word(Setting::kCare))) options.experiment.care = *care;
-  options.experiment.simplifier =
-      value_in(builder::kSimplifierNames, word(Setting::kSimplifier)).value_or(options.experiment.simplifier);
   return options;
 }
 
@@ -272,7 +264,6 @@ std::vector<std::string> choices_of(Setting setting) {
     case Setting::kKeepTopology:
     case Setting::kLockBorders: return {"false", "true"};
     case Setting::kPromise: return all_names(format::kPromiseNames);
-    case Setting::kSimplifier: return all_names(builder::kSimplifierNames);
     default: return {};
   }
 }
@@ -288,10 +279,6 @@ std::string find_fault(Setting setting, std::string_view word) {
     case Setting::kDrop: {
       const auto bits = builder::parse_attributes(word);
       return bits ? "" : bits.error().detail;
-    }
-    case Setting::kCare: {
-      const auto care = builder::parse_care(word);
-      return care ? "" : care.error().detail;
     }
     case Setting::kGrid:
       return word == "auto" || parse_positive(word) ? "" : wanted("auto or a step above 0 in mesh units", word);

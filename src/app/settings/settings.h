@@ -40,18 +40,15 @@ enum class Setting : std::uint8_t {
   kLockBorders,
   kAggregate,
   kPromise,
-  kCare,
-  kSimplifier,
 };
-constexpr std::size_t kSettingCount = 21;
+constexpr std::size_t kSettingCount = 19;
 
 struct SettingInfo {
   Setting setting;
   const char* name;  ///< of the long option, without its dashes
   const char* help;
-  const char* usual;             ///< the word where nobody says anything
-  bool is_of_mesh;               ///< each mesh may have its own
-  bool is_experimental = false;  ///< for studies: the command line says it, no file
+  const char* usual;  ///< the word where nobody says anything
+  bool is_of_mesh;    ///< each mesh may have its own
 };
 [[nodiscard]] std::span<const SettingInfo, kSettingCount> all_settings();
 [[nodiscard]] const SettingInfo& info_of(Setting setting);

@@ -29,17 +29,13 @@ constexpr std::array<std::string_view, 11> kOptionsOfTheCall{
     "output", "output-folder", "max-memory",    "max-decoded",     "jobs", "report", "format",
     "quiet",  "explain",       "settings-root", "no-settings-file"};
 
-/// Such an option, or a setting of studies.
 bool is_of_the_call(std::string_view key) {
-  const auto infos = all_settings();
-  return std::find(kOptionsOfTheCall.begin(), kOptionsOfTheCall.end(), key) != kOptionsOfTheCall.end() ||
-         std::any_of(infos.begin(), infos.end(),
-                     [&](const SettingInfo& info) { return info.is_experimental && key == info.name; });
+  return std::find(kOptionsOfTheCall.begin(), kOptionsOfTheCall.end(), key) != kOptionsOfTheCall.end();
 }
 
 std::optional<Setting> setting_of(std::string_view name) {
   for (const SettingInfo& info : all_settings()) {
-    if (name == info.name && !info.is_experimental) return info.setting;
+    if (name == info.name) return info.setting;
   }
   return std::nullopt;
 }
@@ -149,7 +145,7 @@ class FileReader {
     }
     std::vector<std::string> known;
     for (const SettingInfo& info : all_settings()) {
-      if ((!is_of_mesh || info.is_of_mesh) && !info.is_experimental) known.emplace_back(info.name);
+      if (!is_of_mesh || info.is_of_mesh) known.emplace_back(info.name);
     }
     if (!is_of_mesh) known.emplace_back("meshes");
     return wrong(path + shown, "no setting has this name" + nearest_hint(key, known));

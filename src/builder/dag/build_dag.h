@@ -21,6 +21,7 @@ namespace meshlode::builder {
 struct DagOptions {
   ClusterCaps caps;
   GroupOptions grouping;
+  SimplifyGroup simplify_group = builder::simplify_group;
   SimplifyOptions simplify;           ///< target_triangles and may_relax_flips are set by the DAG
   double stuck_ratio = 0.85;          ///< a group that keeps more than this share of its triangles is retried
   std::uint32_t max_group_bytes = 0;  ///< decoded bytes that a group's clusters may take together; 0 = no limit

@@ -32,7 +32,7 @@ Attempt simplify_and_cluster(const SimplifyInput& input, const GroupTask& task, 
   SimplifyOptions simplify = options.simplify;
   simplify.target_triangles = target_triangles(attempt.source_triangles, task.share, task.is_whole, options.caps);
   simplify.may_relax_flips = task.effort.may_relax_flips;
-  attempt.result = simplify_group(input, simplify);
+  attempt.result = options.simplify_group(input, simplify);
   const auto kept = static_cast<double>(attempt.result.triangles.size());
   if (attempt.result.triangles.empty() || kept > options.stuck_ratio * attempt.source_triangles) return attempt;
   attempt.clustering = cluster_triangles(attempt.result.triangles, attempt.result.wedge_position,

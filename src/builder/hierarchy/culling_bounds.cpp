@@ -5,7 +5,6 @@
 #include <cmath>
 #include <vector>
 
-#include "builder/hierarchy/enclosing_ball.h"
 #include "builder/hierarchy/margins.h"
 
 namespace meshlode::builder {
@@ -30,13 +29,13 @@ constexpr Hierarchy::Cone kNoCone{{0, 0, 0}, 127};
 }  // namespace
 
 Hierarchy::Sphere culling_sphere(const LodDag& dag, const DagCluster& cluster, const format::PositionGrid& grid,
-                                 bool is_near_smallest) {
+                                 EnclosingBall enclose) {
   if (cluster.vertex_count == 0) return {};
   std::vector<Ball> points(cluster.vertex_count);
   for (std::uint32_t i = 0; i < cluster.vertex_count; ++i) {
     points[i].center = grid.decode(dag.vertex_position[cluster.first_vertex + i]);
   }
-  const Vec3d middle = enclosing_ball(points, is_near_smallest).center;
+  const Vec3d middle = enclose(points).center;
   const Hierarchy::Sphere sphere{
       {static_cast<float>(middle.x), static_cast<float>(middle.y), static_cast<float>(middle.z)}, 0.0F};
   const Vec3d center = center_of(sphere);

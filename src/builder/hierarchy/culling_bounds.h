@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 
+#include "builder/hierarchy/enclosing_ball.h"
 #include "builder/hierarchy/hierarchy.h"
 #include "builder/lod_dag.h"
 #include "format/grid.h"
@@ -13,7 +14,8 @@ namespace meshlode::builder {
 
 /// Contains every vertex of the cluster as decoded, in doubles and in floats. Near-smallest.
 [[nodiscard]] Hierarchy::Sphere culling_sphere(const LodDag& dag, const DagCluster& cluster,
-                                               const format::PositionGrid& grid, bool is_near_smallest = true);
+                                               const format::PositionGrid& grid,
+                                               EnclosingBall enclose = enclosing_ball);
 
 /// The unit 2^log2 in which spheres are stored: the smallest in which every centre fits 16 bits, and every radius.
 [[nodiscard]] std::int32_t choose_sphere_log2(std::span<const Hierarchy::Sphere> spheres);

@@ -44,7 +44,7 @@ double radius_around(const std::vector<Packed>& balls, const Vec3d& center) {
 
 }  // namespace
 
-Ball enclosing_ball(std::span<const Ball> balls, bool is_near_smallest) {
+Ball enclosing_ball(std::span<const Ball> balls) {
   Vec3d low = balls[0].center - Vec3d(balls[0].radius), high = balls[0].center + Vec3d(balls[0].radius);
   for (const Ball& b : balls) {
     low = glm::min(low, b.center - Vec3d(b.radius));
@@ -69,15 +69,13 @@ Ball enclosing_ball(std::span<const Ball> balls, bool is_near_smallest) {
   }
   Vec3d center(0.0);
   double radius = radius_around(packed, center);
-  if (is_near_smallest) {
-    CGAL::Min_sphere_of_spheres_d<PackedTraits> smallest(packed.begin(), packed.end());
-    const double* c = smallest.center_cartesian_begin();
-    const Vec3d candidate(c[0], c[1], c[2]);
-    const double candidate_radius = radius_around(packed, candidate);
-    if (candidate_radius < radius) {  // false for NaN
-      center = candidate;
-      radius = candidate_radius;
-    }
+  CGAL::Min_sphere_of_spheres_d<PackedTraits> smallest(packed.begin(), packed.end());
+  const double* c = smallest.center_cartesian_begin();
+  const Vec3d candidate(c[0], c[1], c[2]);
+  const double candidate_radius = radius_around(packed, candidate);
+  if (candidate_radius < radius) {  // false for NaN
+    center = candidate;
+    radius = candidate_radius;
   }
   const double scale = std::ldexp(1.0, exponent);
   return {middle + center * scale, radius * scale};

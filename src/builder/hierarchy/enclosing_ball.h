@@ -15,7 +15,9 @@ struct Ball {
 /// The centre of a near-smallest ball around `balls`, and its radius up to rounding: callers measure the radius they
 /// store themselves. Exactly reproducible: + - * / sqrt in a fixed order, no randomness. Scale-free: any finite size.
 /// \pre `balls` is not empty and finite, radii are not negative.
-/// Where not `is_near_smallest`, the ball around the box's centre: for those who study what the better one saves.
-[[nodiscard]] Ball enclosing_ball(std::span<const Ball> balls, bool is_near_smallest = true);
+[[nodiscard]] Ball enclosing_ball(std::span<const Ball> balls);
+
+/// What may stand in its place, under the same contract.
+using EnclosingBall = Ball (*)(std::span<const Ball> balls);
 
 }  // namespace meshlode::builder

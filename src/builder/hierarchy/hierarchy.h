@@ -7,6 +7,7 @@
 
 #include <meshlode/format.h>
 
+#include "builder/hierarchy/enclosing_ball.h"
 #include "builder/lod_dag.h"
 #include "builder/prepared.h"
 
@@ -30,7 +31,7 @@ struct Hierarchy {
   std::vector<format::NodeRecord> nodes;  ///< ids per mesh; root first; children contiguous
 };
 
-/// `has_small_spheres` is enclosing_ball()'s `is_near_smallest`.
-[[nodiscard]] Hierarchy build_hierarchy(const LodDag& dag, const PreparedMesh& mesh, bool has_small_spheres = true);
+[[nodiscard]] Hierarchy build_hierarchy(const LodDag& dag, const PreparedMesh& mesh,
+                                        EnclosingBall enclose = enclosing_ball);
 
 }  // namespace meshlode::builder

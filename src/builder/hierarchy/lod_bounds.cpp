@@ -5,7 +5,6 @@
 #include <cassert>
 
 #include "base/parallel.h"
-#include "builder/hierarchy/enclosing_ball.h"
 #include "builder/hierarchy/margins.h"
 
 namespace meshlode::builder {
@@ -38,11 +37,11 @@ Lists list_by_key(std::size_t item_count, std::size_t key_count, const KeyOf& ke
 
 }  // namespace
 
-Hierarchy::Sphere enclose_spheres(std::span<const Hierarchy::Sphere> inner, bool is_near_smallest) {
+Hierarchy::Sphere enclose_spheres(std::span<const Hierarchy::Sphere> inner, EnclosingBall enclose) {
   if (inner.empty()) return {};
   std::vector<Ball> balls(inner.size());
   for (std::size_t i = 0; i < inner.size(); ++i) balls[i] = {center_of(inner[i]), inner[i].radius};
-  const Vec3d middle = enclosing_ball(balls, is_near_smallest).center;
+  const Vec3d middle = enclose(balls).center;
   Hierarchy::Sphere outer{{static_cast<float>(middle.x), static_cast<float>(middle.y), static_cast<float>(middle.z)},
                           0.0F};
   // The centre is rounded first and the radius measured from where it fell.
@@ -59,7 +58,7 @@ float grow_error(double error, float finer) {
   return grown > 0.0 ? std::max(kMinStoredError, float_above(grown)) : 0.0F;
 }
 
-LodBounds nest_lod_bounds(const LodDag& dag, std::span<const Hierarchy::Sphere> culling, bool has_small_spheres) {
+LodBounds nest_lod_bounds(const LodDag& dag, std::span<const Hierarchy::Sphere> culling, EnclosingBall enclose) {
   const std::size_t group_count = dag.groups.size();
   LodBounds bounds;
   bounds.spheres.resize(group_count);
@@ -97,7 +96,7 @@ LodBounds nest_lod_bounds(const LodDag& dag, std::span<const Hierarchy::Sphere> 
         finer_error = std::max(finer_error, bounds.errors[f]);
       }
       for (const std::uint32_t c : made.of(g)) inner.push_back(culling[c]);
-      bounds.spheres[g] = enclose_spheres(inner, has_small_spheres);
+      bounds.spheres[g] = enclose_spheres(inner, enclose);
       bounds.errors[g] = group.is_terminal ? format::kInfiniteError : grow_error(group.error, finer_error);
     });
   }

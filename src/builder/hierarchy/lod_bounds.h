@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "builder/hierarchy/enclosing_ball.h"
 #include "builder/hierarchy/hierarchy.h"
 #include "builder/lod_dag.h"
 
@@ -19,10 +20,11 @@ struct LodBounds {
 /// the culling spheres of members of level 0, and the culling spheres of the clusters made from it (optimal placement
 /// may leave the finer ones' bounds). `culling` has one sphere per cluster of the DAG.
 [[nodiscard]] LodBounds nest_lod_bounds(const LodDag& dag, std::span<const Hierarchy::Sphere> culling,
-                                        bool has_small_spheres = true);
+                                        EnclosingBall enclose = enclosing_ball);
 
 /// The float sphere that `inner` nest in, near-smallest.
-[[nodiscard]] Hierarchy::Sphere enclose_spheres(std::span<const Hierarchy::Sphere> inner, bool is_near_smallest = true);
+[[nodiscard]] Hierarchy::Sphere enclose_spheres(std::span<const Hierarchy::Sphere> inner,
+                                                EnclosingBall enclose = enclosing_ball);
 
 /// The error of something coarser than `finer`: at least `error`, and grown where `finer` is not 0.
 [[nodiscard]] float grow_error(double error, float finer);

@@ -319,8 +319,7 @@ typename GroupSimplifier<Real, C>::Placement GroupSimplifier<Real, C>::place(std
   const Vec3d& pb = places_[b];
   const bool is_place_given = locks_.is_vertex_locked[a] != 0 || locks_.is_vertex_locked[b] != 0;
   Placement placement;
-  placement.position =
-      is_place_given ? given_place(a, b) : place_vertex(total, pa, pb, options_.experiment.care.fallback);
+  placement.position = is_place_given ? given_place(a, b) : place_vertex(total, pa, pb, options_.fallback);
   const Vec3d edge = pb - pa;
   placement.cost = cost_of_collapse(total, placement.position, fixed_error, glm::dot(edge, edge));
   return placement;

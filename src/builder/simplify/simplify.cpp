@@ -5,7 +5,6 @@
 
 #include "builder/simplify/border_rule.h"
 #include "builder/simplify/group_simplifier.h"
-#include "builder/simplify/openmesh_decimater.h"
 
 namespace meshlode::builder {
 
@@ -36,14 +35,12 @@ Attempt simplify_in(const SimplifyInput& input, const SimplifyOptions& options) 
 }
 
 Attempt simplify_once(const SimplifyInput& input, const SimplifyOptions& options) {
-  return options.experiment.care.double_quadrics ? simplify_in<double>(input, options)
-                                                 : simplify_in<float>(input, options);
+  return options.double_quadrics ? simplify_in<double>(input, options) : simplify_in<float>(input, options);
 }
 
 }  // namespace
 
 SimplifyResult simplify_group(const SimplifyInput& input, const SimplifyOptions& options) {
-  if (options.experiment.simplifier == Simplifier::kOpenMesh) return simplify_group_by_openmesh(input, options);
   Attempt attempt = simplify_once(input, options);
   if (attempt.keeps_border) return std::move(attempt.result);
   // Where the link condition was broken, or vertices came to lie on each other, the border can be another one. Under

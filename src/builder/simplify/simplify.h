@@ -14,7 +14,6 @@
 #include <span>
 #include <vector>
 
-#include "builder/experiment.h"
 #include "builder/lod_dag.h"
 #include "builder/prepared.h"
 #include "builder/promise/painted_units.h"
@@ -39,7 +38,9 @@ struct SimplifyOptions {
   /// Every cut of a manifold is one, and of its topology: the link condition is never broken, nor what it needs beyond
   /// the group (kept_topology.h). Not with keep_area, which moves vertices later.
   bool keep_topology = false;
-  Experiment experiment;         ///< none but in studies
+  // Off in studies alone (src/lab/experiment).
+  bool double_quadrics = true;   ///< quadrics are summed and solved in doubles; else in floats
+  bool fallback = true;          ///< an ill-conditioned or far-off minimum is not taken: a point of the edge is
   bool may_relax_flips = false;  ///< where the target is out of reach, go on without the flip test: a last resort
 };
 
@@ -90,5 +91,8 @@ struct SimplifyResult {
 /// where the surface is open. No triangle of it has two corners in one place. It has every position of a locked border
 /// that a triangle of the input has; no triangle at all where that cannot be had.
 [[nodiscard]] SimplifyResult simplify_group(const SimplifyInput& input, const SimplifyOptions& options);
+
+/// What may stand in its place, under the same contract.
+using SimplifyGroup = std::function<SimplifyResult(const SimplifyInput&, const SimplifyOptions&)>;
 
 }  // namespace meshlode::builder

@@ -3,8 +3,11 @@
 
 #include <array>
 #include <span>
+#include <string>
 #include <type_traits>
 #include <vector>
+
+#include "builder/hooks.h"
 
 namespace meshlode::builder {
 
@@ -95,16 +98,9 @@ void add_own_options(KeyHasher& key, const MeshOptions& own) {
   static_cast<void>(aggregate_names);  // of aggregates, which are not stored
 }
 
-void add_experiment(KeyHasher& key, const Experiment& experiment) {
-  const auto& [care, simplifier] = experiment;
-  const auto& [double_quadrics, fallback, spheres, needles] = care;
-  for (const bool is_taken : {double_quadrics, fallback, spheres, needles}) key.value(is_taken);
-  key.value(simplifier);
-}
-
 void add_scene_options(KeyHasher& key, const SceneOptions& options) {
   const auto& [preset, codec, strip_effort, partition_seed, repair, linear_colors, promise, keep_topology,
-               max_cluster_triangles, max_cluster_vertices, group_clusters, max_memory, mesh_store, looks, experiment,
+               max_cluster_triangles, max_cluster_vertices, group_clusters, max_memory, mesh_store, looks, hooks,
                mesh_options] = options;
   key.value(preset);
   key.value(partition_seed);
@@ -113,7 +109,8 @@ void add_scene_options(KeyHasher& key, const SceneOptions& options) {
   key.value(group_clusters);
   key.value(keep_topology);
   key.value(promise);
-  add_experiment(key, experiment);
+  const std::string study = hooks != nullptr ? hooks->record : std::string();
+  key.list(std::vector<char>(study.begin(), study.end()));
   static_cast<void>(strip_effort);   // EncodeOptions has what it came to
   static_cast<void>(codec);          // of the pages on disk, later
   static_cast<void>(repair);         // the triangles are as they are

@@ -311,10 +311,14 @@ std::vector<std::string> changed_knobs(std::span<const Knob> knobs, const Point&
 }
 
 bool is_experimental(std::span<const Knob> knobs, const Point& point) {
-  for (std::size_t k = 0; k < knobs.size(); ++k) {
+  for (std::size_t k = 0; k < point.values.size(); ++k) {  // the baseline has none before the knobs are known
     if (knobs[k].kind == KnobKind::kStudy && point.values[k] != knobs[k].usual) return true;
   }
   return false;
+}
+
+const char* build_verb(std::span<const Knob> knobs, const Point& point) {
+  return is_experimental(knobs, point) ? "study" : "build";
 }
 
 std::vector<std::string> build_arguments(std::span<const Knob> knobs, const Point& point) {

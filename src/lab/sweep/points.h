@@ -17,7 +17,7 @@ namespace meshlode::lab {
 enum class KnobKind : std::uint8_t {
   kBuild,  ///< an option of `build`
   kDraw,   ///< an option of `render`: the asset is the same
-  kStudy,  ///< an option of `build` that only study wants: marked experimental in the asset
+  kStudy,  ///< an option of `study` alone: marked experimental in the asset
 };
 inline constexpr std::array<EnumName<KnobKind>, 3> kKnobKindNames{
     {{KnobKind::kBuild, "build"}, {KnobKind::kDraw, "draw"}, {KnobKind::kStudy, "study"}}};
@@ -84,6 +84,8 @@ struct Point {
 [[nodiscard]] std::vector<std::string> changed_knobs(std::span<const Knob> knobs, const Point& point);
 [[nodiscard]] bool is_experimental(std::span<const Knob> knobs, const Point& point);
 
+/// `build`, or `study` where the point is experimental.
+[[nodiscard]] const char* build_verb(std::span<const Knob> knobs, const Point& point);
 /// Options that are not the usual ones: "--codec", "strips", …
 [[nodiscard]] std::vector<std::string> build_arguments(std::span<const Knob> knobs, const Point& point);
 [[nodiscard]] std::vector<std::string> draw_arguments(std::span<const Knob> knobs, const Point& point);

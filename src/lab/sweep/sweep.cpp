@@ -249,8 +249,14 @@ class Sweep {
     const bool is_known = state_.find(MeasurementKind::kBuild, key, round) != nullptr;
     std::error_code ignored;
     if (is_known && key.empty() && is_baseline_there_) return Ok{};
-    std::vector<std::string> arguments{"build",   options_.scene.string(), "-o",     file.string(),
-                                       "--quiet", "--no-settings-file",    "--jobs", std::to_string(options_.jobs)};
+    std::vector<std::string> arguments{build_verb(result_.knobs, point),
+                                       options_.scene.string(),
+                                       "-o",
+                                       file.string(),
+                                       "--quiet",
+                                       "--no-settings-file",
+                                       "--jobs",
+                                       std::to_string(options_.jobs)};
     if (!options_.scene_choice.empty()) arguments.insert(arguments.end(), {"--scene", options_.scene_choice});
     if (!options_.max_decoded_text.empty()) {
       arguments.insert(arguments.end(), {"--max-decoded", options_.max_decoded_text});

@@ -329,7 +329,8 @@ std::string shell_word(const std::string& word) {
 }
 
 std::string build_command(const SweepOptions& options, const SweepResult& result, const Point& point) {
-  std::vector<std::string> words{"meshlode", "build", options.scene.string(), "-o", "out.lode", "--no-settings-file"};
+  std::vector<std::string> words{
+      "meshlode", build_verb(result.knobs, point), options.scene.string(), "-o", "out.lode", "--no-settings-file"};
   if (!options.scene_choice.empty()) words.insert(words.end(), {"--scene", options.scene_choice});
   if (!options.max_decoded_text.empty()) words.insert(words.end(), {"--max-decoded", options.max_decoded_text});
   for (const auto& folder : options.allow_outside) words.insert(words.end(), {"--allow-outside", folder.string()});

@@ -52,7 +52,6 @@ TEST(SettingsFile, UnknownKeysAreRefusedWithTheNearest) {
             "f: /normal_eror: no setting has this name; the nearest is normal-error");
   EXPECT_EQ(fault_of(R"({"mesh": {}})"), "f: /mesh: no setting has this name; the nearest is meshes");
   EXPECT_EQ(fault_of(R"({"jobs": 1})"), "f: /jobs: is given on the command line alone");
-  EXPECT_EQ(fault_of(R"({"care": "needles=off"})"), "f: /care: is given on the command line alone");
   EXPECT_EQ(fault_of(R"({"meshes": {"a*": {"gird": 1}}})"),
             "f: /meshes/a*/gird: no setting has this name; the nearest is grid");
   EXPECT_EQ(fault_of(R"({"meshes": {"a*": {"codec": "lz4"}}})"),

@@ -174,7 +174,7 @@ TEST(CullingBounds, ASnappedSphereIsTheLeastInWholeUnits) {
 }
 
 TEST(CullingBounds, ASphereWithoutVerticesIsNothing) {
-  const Hierarchy::Sphere none = culling_sphere({}, {}, {}, true);
+  const Hierarchy::Sphere none = culling_sphere({}, {}, {});
   EXPECT_EQ(none.radius, 0.0F);
 }
 
@@ -222,11 +222,9 @@ TEST(CullingBounds, TwoPointsOnAnAxisHaveTheirMiddle) {
     for (const double size : {1e-30, 1.0, 1e30}) {
       Ball low, high;
       high.center[axis] = 2.0 * size;
-      for (const bool is_near_smallest : {false, true}) {
-        const Ball ball = enclosing_ball(std::vector{low, high}, is_near_smallest);
-        EXPECT_NEAR(ball.center[axis], size, 1e-12 * size);
-        EXPECT_NEAR(ball.radius, size, 1e-12 * size);
-      }
+      const Ball ball = enclosing_ball(std::vector{low, high});
+      EXPECT_NEAR(ball.center[axis], size, 1e-12 * size);
+      EXPECT_NEAR(ball.radius, size, 1e-12 * size);
     }
   }
 }

@@ -73,24 +73,6 @@ TEST(EnclosingBall, CannotBeImprovedByAnyStepAtAnySizeAndOffset) {
   }
 }
 
-TEST(EnclosingBall, WithoutSearchIsAboutTheMiddleOfTheBox) {
-  RandomSource random(33);
-  for (int i = 0; i < 300; ++i) {
-    std::vector<Ball> balls;
-    for (std::uint32_t n = 2 + random.below(30); n > 0; --n) balls.push_back({random.in_cube(1.0), random.unit()});
-    Vec3d low(HUGE_VAL), high(-HUGE_VAL);
-    for (const Ball& b : balls) {
-      for (int axis = 0; axis < 3; ++axis) {
-        low[axis] = std::min(low[axis], b.center[axis] - b.radius);
-        high[axis] = std::max(high[axis], b.center[axis] + b.radius);
-      }
-    }
-    const Ball ball = enclosing_ball(balls, false);
-    EXPECT_LT(glm::length(ball.center - (low + high) * 0.5), 1e-14);
-    EXPECT_NEAR(ball.radius, radius_at(balls, ball.center), 1e-14);
-  }
-}
-
 TEST(EnclosingBall, DoesNotDependOnTheScaleWhichIsAPowerOfTwo) {
   RandomSource random(32);
   for (int i = 0; i < 300; ++i) {

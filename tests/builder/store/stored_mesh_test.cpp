@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "builder/builder.h"
+#include "builder/hooks.h"
 #include "builder/store/mesh_key.h"
 #include "builder/store/mesh_store.h"
 #include "builder/store/stored_mesh.h"
@@ -193,13 +194,12 @@ TEST(StoredMesh, EveryPartOfAMeshIsInItsKey) {
   extents[0][1] = {1024.0, 512.0};
   EXPECT_TRUE(keys.emplace(mesh_key(mesh, {}, {}, options, options, extents), 0).second);
   options.promise = format::Promise::kPosition;
-  for (const CareName& care : kCareNames) {
-    PipelineOptions study;
-    study.experiment.care.*care.member = false;
-    EXPECT_TRUE(keys.emplace(mesh_key(mesh, {}, {}, study, study), 0).second) << care.name;
+  BuildHooks hooks;
+  options.hooks = &hooks;
+  for (const char* record : {"{}", "[]"}) {
+    hooks.record = record;
+    EXPECT_TRUE(keys.emplace(mesh_key(mesh, {}, {}, options, options), 0).second) << record;
   }
-  options.experiment.simplifier = Simplifier::kOpenMesh;
-  EXPECT_TRUE(keys.emplace(mesh_key(mesh, {}, {}, options, options), 0).second);
   meshes[0].name = "renamed";
   EXPECT_FALSE(keys.emplace(mesh_key(meshes[0], {}, {}, {}, {}), 0).second);
 }

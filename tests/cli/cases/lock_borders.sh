@@ -34,5 +34,5 @@ for asset in west east; do
 done
 code verify --quiet named/east.lode --source east.obj --cuts 20 --cameras 3
 rm meshlode.json
-run build west.obj -o no.lode --lock-borders --simplifier openmesh
+run study west.obj -o no.lode --lock-borders --simplifier openmesh
 files

@@ -34,13 +34,14 @@ cmp meshes.lode again.lode && echo "the same with one thread"
 json plan plan in/city.glb --format json
 json info info meshes.lode --format json
 refuse() { printf '%s' "$1" >in/meshlode.json; run build in/city.glb -o no.lode; }
-# A study's settings are the command line's, and its asset says what it is.
-code build --quiet --no-settings-file --error-tier qem --care needles=off,spheres=off in/city.glb -o study.lode
+# What a study asks for is no setting and no option of build, and its asset says what it is.
+code study --quiet --no-settings-file --error-tier qem --care needles=off,spheres=off in/city.glb -o study.lode
 json info info study.lode --format json
 "$MESHLODE" info study.lode | grep experimental
 code validate --quiet study.lode
 refuse '{"care": "needles=off"}'
-run build in/city.glb -o no.lode --no-settings-file --care needels=off
+run study in/city.glb -o no.lode --no-settings-file --care needels=off
+run build in/city.glb -o no.lode --no-settings-file --care needles=off
 # The example of docs/plan.md is one.
 sed -n '/^```json/,/^```$/p' "$REPOSITORY/docs/plan.md" | grep -v '^```' >in/meshlode.json
 "$JSON_CHECK" "$SCHEMAS/settings.schema.json" <in/meshlode.json

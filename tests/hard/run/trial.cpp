@@ -34,10 +34,14 @@ Trial refused(const Error& error) {
 
 }  // namespace
 
-Trial try_case(const HardCase& hard_case, double parameter, bool all_laws, const builder::Care& care) {
+Trial try_case(const HardCase& hard_case, double parameter, bool all_laws, const lab::Care& care) {
   Result<Sample> sample = hard_case.make(parameter);
   if (!sample) return refused(sample.error());
-  sample->options.experiment.care = care;
+  builder::BuildHooks hooks;
+  if (care != lab::Care{}) {
+    hooks = lab::hooks_of({care, lab::Simplifier::kOwn});
+    sample->options.hooks = &hooks;
+  }
   const Result<Built> built = build_sample(std::move(*sample));
   if (!built) return refused(built.error());
   Trial trial;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "hard_case.h"
+#include "lab/experiment/experiment.h"
 #include "laws/law.h"
 
 namespace meshlode::test::hard {
@@ -17,15 +18,14 @@ struct Trial {
 };
 
 /// In this process. \pre the parameter is one that the case takes
-[[nodiscard]] Trial try_case(const HardCase& hard_case, double parameter, bool all_laws,
-                             const builder::Care& care = {});
+[[nodiscard]] Trial try_case(const HardCase& hard_case, double parameter, bool all_laws, const lab::Care& care = {});
 
 /// What a child prints and its parent reads: one line the whole, one line each law.
 [[nodiscard]] std::string text_of(const Trial& trial);
 /// False where the text is not that of a whole trial.
 [[nodiscard]] bool parse_trial(const std::string& text, Trial& trial);
 
-/// In a process of its own: `program trial NAME PARAMETER [--laws] [--care WORDS]`. `care` as `build --care` takes it.
+/// In a process of its own: `program trial NAME PARAMETER [--laws] [--care WORDS]`. `care` as `study --care` takes it.
 [[nodiscard]] Trial try_apart(const std::string& program, const HardCase& hard_case, double parameter, bool all_laws,
                               const std::string& care = {});
 

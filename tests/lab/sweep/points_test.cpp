@@ -21,6 +21,7 @@ TEST(SweepPoints, TheBaselineIsFirstAndHasNoArguments) {
   ASSERT_FALSE(points.empty());
   EXPECT_EQ(points[0].kind, PointKind::kBaseline);
   EXPECT_TRUE(build_arguments(knobs, points[0]).empty());
+  EXPECT_STREQ(build_verb(knobs, points[0]), "build");
   EXPECT_TRUE(draw_arguments(knobs, points[0]).empty());
   EXPECT_EQ(point_label(knobs, points[0]), "baseline");
   EXPECT_EQ(settings_key(knobs, points[0]), "") << "what is measured before there are knobs is found by it";
@@ -69,6 +70,7 @@ TEST(SweepPoints, AnotherSimplifierIsExperimental) {
     if (option == arguments.end()) continue;
     EXPECT_EQ(*(option + 1), "openmesh");
     EXPECT_TRUE(is_experimental(knobs, point));
+    EXPECT_STREQ(build_verb(knobs, point), "study");
     EXPECT_EQ(changed_knobs(knobs, point), std::vector<std::string>{"simplifier"});
     ++others;
   }

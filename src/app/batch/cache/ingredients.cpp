@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "builder/aggregate/aggregate_choice.h"
+#include "builder/hooks.h"
 #include "builder/plan/attributes.h"
 #include "builder/plan/plan.h"
 #include "builder/preset.h"
@@ -86,7 +87,7 @@ std::string settings_text(const builder::PipelineOptions& options, const scene::
                uv_error_is_texels, uv_error_is_default, aggregate, aggregate_names, lock_borders] =
       static_cast<const builder::MeshOptions&>(options);
   const auto& [preset, codec, strip_effort, partition_seed, repair, linear_colors, promise, keep_topology,
-               max_cluster_triangles, max_cluster_vertices, group_clusters, max_memory, mesh_store, looks, experiment,
+               max_cluster_triangles, max_cluster_vertices, group_clusters, max_memory, mesh_store, looks, hooks,
                mesh_options] = static_cast<const builder::SceneOptions&>(options);
   const auto& [import_repair, scene, files_read, max_decoded, may_lack_images, allow_outside, import_linear] = import;
   static_cast<void>(mesh_options);     // not known before the import: mesh_rules_text()
@@ -118,8 +119,7 @@ std::string settings_text(const builder::PipelineOptions& options, const scene::
       {"cluster-triangles", text_of(std::uint64_t{max_cluster_triangles})},
       {"cluster-vertices", text_of(std::uint64_t{max_cluster_vertices})},
       {"group-clusters", text_of(std::uint64_t{group_clusters})},
-      {"care-left-out", text_of(builder::names_of_missing(experiment.care))},
-      {"simplifier", builder::name_of(experiment.simplifier)},
+      {"study", hooks != nullptr ? hooks->record : "none"},
       {"position-error", text_of(position_error)},
       {"normal-error", text_of(normal_error)},
       {"uv-error", text_of(uv_error)},

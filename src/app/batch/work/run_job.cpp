@@ -119,6 +119,7 @@ class Run {
     if (!settled) return settled.error();
     settled->options.max_memory = pipeline_.max_memory;
     settled->options.looks = pipeline_.looks;
+    settled->options.hooks = pipeline_.hooks;
     pipeline_ = std::move(settled->options);
     import_.repair = pipeline_.repair;
     import_.linear_colors = pipeline_.linear_colors;

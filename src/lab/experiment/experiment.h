@@ -1,20 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What only a study of the build wants: care that it leaves out, to see what care costs, and another simplifier to
-// stand beside ours (docs/numerics.md, "What care costs"). An asset of such a build says so and is for no scene that
-// ships.
+// stand beside ours (docs/numerics.md, "What care costs"). The builder knows neither: it has hooks for them. An asset
+// of such a build says so and is for no scene that ships.
 #pragma once
 
 #include <array>
 #include <cstdint>
-#include <string>
 #include <string_view>
-#include <vector>
 
 #include <meshlode/result.h>
 
 #include "base/enum_names.h"
+#include "builder/hooks.h"
 
-namespace meshlode::builder {
+namespace meshlode::lab {
 
 /// The care that a build takes with numbers.
 struct Care {
@@ -57,10 +56,7 @@ struct Experiment {
   [[nodiscard]] bool is_none() const { return *this == Experiment{}; }
 };
 
-/// What is another than usual, in words.
-[[nodiscard]] std::string describe(const Experiment& experiment);
+/// What a build is to be given for it. \pre not is_none()
+[[nodiscard]] builder::BuildHooks hooks_of(const Experiment& experiment);
 
-/// Names of the care that is left out.
-[[nodiscard]] std::vector<std::string> names_of_missing(const Care& care);
-
-}  // namespace meshlode::builder
+}  // namespace meshlode::lab

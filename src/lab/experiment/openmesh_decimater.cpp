@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "builder/simplify/openmesh_decimater.h"
+#include "lab/experiment/openmesh_decimater.h"
 
 #include <algorithm>
 #include <array>
@@ -17,9 +17,11 @@
 #include "builder/simplify/border_rule.h"
 #include "builder/simplify/group_places.h"
 
-namespace meshlode::builder {
+namespace meshlode::lab {
 
 namespace {
+
+using namespace builder;
 
 namespace om = OpenMesh;
 namespace od = OpenMesh::Decimater;
@@ -502,4 +504,4 @@ SimplifyResult simplify_group_by_openmesh(const SimplifyInput& input, const Simp
   return decimate(with_locked_border(input), options);
 }
 
-}  // namespace meshlode::builder
+}  // namespace meshlode::lab

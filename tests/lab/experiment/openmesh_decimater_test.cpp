@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The contract of simplify.h, kept around a decimater that knows nothing of it.
-#include "builder/simplify/openmesh_decimater.h"
+#include "lab/experiment/openmesh_decimater.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,8 +19,10 @@
 #include "support/border_chain.h"
 #include "support/sanitized.h"
 
-namespace meshlode::builder {
+namespace meshlode::lab {
 namespace {
+
+using namespace builder;
 
 using testing_support::add_triangle;
 using testing_support::Chain;
@@ -68,10 +70,9 @@ void lock_border(SimplifyInput& input) {
 
 SimplifyResult simplify(const SimplifyInput& input, std::uint32_t target, bool may_relax_flips = false) {
   SimplifyOptions options;
-  options.experiment.simplifier = Simplifier::kOpenMesh;
   options.target_triangles = target;
   options.may_relax_flips = may_relax_flips;
-  return simplify_group(input, options);
+  return simplify_group_by_openmesh(input, options);
 }
 
 SimplifyResult halve(const SimplifyInput& input) {
@@ -430,4 +431,4 @@ TEST(OpenMeshDecimater, LoosePiecesAreAReasonAndNothingIsFine) {
 }
 
 }  // namespace
-}  // namespace meshlode::builder
+}  // namespace meshlode::lab

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study_options.h"
+
+#include "lab/experiment/experiment.h"
+
+namespace meshlode::cli {
+
+void add_study_options(OptionParser& parser, StudyWords& words) {
+  parser.add_value("--care", words.care,
+                   "NAME=off, comma by comma: without double-quadrics, fallback, spheres or needles");
+  parser.add_value("--simplifier", words.simplifier, "openmesh's decimater reduces the groups, to compare",
+                   all_names(lab::kSimplifierNames));
+}
+
+Result<std::optional<builder::BuildHooks>> hooks_of(const StudyWords& words) {
+  const auto care = lab::parse_care(words.care);
+  if (!care) return care.error();
+  lab::Experiment experiment;
+  experiment.care = *care;
+  experiment.simplifier = value_in(lab::kSimplifierNames, words.simplifier).value_or(experiment.simplifier);
+  std::optional<builder::BuildHooks> hooks;
+  if (!experiment.is_none()) hooks = lab::hooks_of(experiment);
+  return hooks;
+}
+
+}  // namespace meshlode::cli
