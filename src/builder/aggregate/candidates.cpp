@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <map>
 
-#include "builder/aggregate/symmetric.h"
+#include "builder/symmetric.h"
 #include "builder/aggregate/views.h"
 
 namespace meshlode::builder {

@@ -9,7 +9,7 @@
 
 #include "base/disjoint_sets.h"
 #include "base/parallel.h"
-#include "builder/aggregate/symmetric.h"
+#include "builder/symmetric.h"
 
 namespace meshlode::builder {
 

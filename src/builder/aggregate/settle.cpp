@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "base/parallel.h"
-#include "builder/aggregate/symmetric.h"
+#include "builder/symmetric.h"
 #include "builder/aggregate/views.h"
 
 namespace meshlode::builder {

@@ -101,12 +101,23 @@ std::size_t parts_for_vertices(std::span<const WedgeTriangle> triangles, std::ui
 /// From so many pieces per part on, a chunk is a soup.
 constexpr std::size_t kPiecesPerPart = 4;
 
-Clustering partition_chunk(std::span<const WedgeTriangle> triangles, Graph graph, std::size_t parts,
-                           const ClusterCaps& caps) {
+using Corners = std::vector<std::array<std::uint32_t, 3>>;  ///< positions of triangles
+
+/// Of triangles, times three.
+std::vector<Vec3f> centers_of(const Corners& corners, std::span<const Vec3i> positions) {
+  std::vector<Vec3f> centers;
+  centers.reserve(corners.size());
+  for (const auto& [a, b, c] : corners) centers.emplace_back(positions[a] + positions[b] + positions[c]);
+  return centers;
+}
+
+Clustering partition_chunk(std::span<const WedgeTriangle> triangles, const Corners& corners,
+                           std::span<const Vec3i> positions, Graph graph, std::size_t parts, const ClusterCaps& caps) {
   Clustering clustering;
   clustering.count = static_cast<std::uint32_t>(std::min(parts, triangles.size()));
-  clustering.label = caps.merge_triangles ? partition_merged(graph, clustering.count, caps.seed)
-                                          : partition_graph(graph, clustering.count, caps.seed);
+  clustering.label = caps.merge_triangles
+                         ? partition_merged(graph, centers_of(corners, positions), clustering.count, caps.seed)
+                         : partition_graph(graph, clustering.count, caps.seed);
   enforce_caps(triangles, graph, caps, clustering);
   return clustering;
 }
@@ -114,20 +125,21 @@ Clustering partition_chunk(std::span<const WedgeTriangle> triangles, Graph graph
 Clustering cluster_chunk(std::span<const WedgeTriangle> triangles, std::span<const std::uint32_t> wedge_position,
                          std::span<const Vec3i> positions, const ClusterCaps& caps) {
   const auto corners_of = [&](std::span<const WedgeTriangle> some) {
-    std::vector<std::array<std::uint32_t, 3>> corners(some.size());
+    Corners corners(some.size());
     for (std::size_t t = 0; t < some.size(); ++t) {
       for (std::size_t k = 0; k < 3; ++k) corners[t][k] = wedge_position[some[t][k]];
     }
     return corners;
   };
-  const std::vector<std::array<std::uint32_t, 3>> corners = corners_of(triangles);
+  const Corners corners = corners_of(triangles);
   Graph graph = triangle_graph(corners);
   const std::size_t for_triangles = (triangles.size() + caps.target_triangles - 1) / caps.target_triangles;
   const std::size_t parts = std::max(triangles.size() <= caps.max_triangles ? 1 : for_triangles,
                                      parts_for_vertices(triangles, caps.max_vertices));
   std::vector<std::uint32_t> piece;
   const std::uint32_t piece_count = find_pieces(graph, piece);
-  if (parts == 1 || piece_count == 1) return partition_chunk(triangles, std::move(graph), parts, caps);
+  if (parts == 1 || piece_count == 1)
+    return partition_chunk(triangles, corners, positions, std::move(graph), parts, caps);
   if (piece_count > kPiecesPerPart * parts) {
     Clustering clustering =
         cluster_pieces(triangles, wedge_position, positions, piece, piece_count, std::min(parts, triangles.size()));
@@ -136,7 +148,7 @@ Clustering cluster_chunk(std::span<const WedgeTriangle> triangles, std::span<con
   }
   const std::vector<TriangleLink> links = link_to_nearest(corners, positions, piece, piece_count);
   const Hosts hosts = host_debris(piece, piece_count, links);
-  if (hosts.empty()) return partition_chunk(triangles, triangle_graph(corners, links), parts, caps);
+  if (hosts.empty()) return partition_chunk(triangles, corners, positions, triangle_graph(corners, links), parts, caps);
   const auto cluster_core = [&](std::span<const WedgeTriangle> core, std::span<const std::int32_t> weights) {
     std::vector<TriangleLink> core_links;
     std::vector<std::uint32_t> place(triangles.size(), kNoId);
@@ -146,11 +158,12 @@ Clustering cluster_chunk(std::span<const WedgeTriangle> triangles, std::span<con
     for (const auto& [a, b] : links) {
       if (place[a] != kNoId && place[b] != kNoId) core_links.emplace_back(place[a], place[b]);
     }
-    Graph weighted = triangle_graph(corners_of(core), core_links);
+    const Corners core_corners = corners_of(core);
+    Graph weighted = triangle_graph(core_corners, core_links);
     weighted.node_weight.assign(weights.begin(), weights.end());
-    return partition_chunk(core, std::move(weighted), parts, caps);
+    return partition_chunk(core, core_corners, positions, std::move(weighted), parts, caps);
   };
-  return cluster_with_satellites(triangles, wedge_position, hosts, caps, cluster_core);
+  return cluster_with_satellites(triangles, wedge_position, positions, hosts, caps, cluster_core);
 }
 
 Clustering cluster_surface(std::span<const WedgeTriangle> triangles, std::span<const std::uint32_t> wedge_position,
@@ -199,7 +212,7 @@ Clustering cluster_triangles(std::span<const WedgeTriangle> triangles, std::span
   const auto cluster_core = [&](std::span<const WedgeTriangle> core, std::span<const std::int32_t>) {
     return cluster_surface(core, wedge_position, positions, caps);
   };
-  return cluster_with_satellites(triangles, wedge_position, hosts, caps, cluster_core);
+  return cluster_with_satellites(triangles, wedge_position, positions, hosts, caps, cluster_core);
 }
 
 }  // namespace meshlode::builder

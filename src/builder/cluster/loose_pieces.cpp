@@ -41,14 +41,17 @@ struct PieceCorner {
   std::uint32_t piece, triangle;
 };
 
-/// Each once, by their first triangles: a corner is met by six triangles, and asked about once.
+/// Each once, by their first triangles: a corner is met by six triangles, and asked about once. Of pieces that have
+/// `fewest` triangles at least.
 std::vector<PieceCorner> corners_of_pieces(std::span<const std::array<std::uint32_t, 3>> corner_positions,
-                                           std::span<const Vec3i> positions, const std::vector<std::uint32_t>& piece) {
+                                           std::span<const Vec3i> positions, const std::vector<std::uint32_t>& piece,
+                                           const std::vector<std::uint32_t>& size, std::uint32_t fewest) {
   LocalIds ids(corner_positions.size());
   std::vector<std::uint32_t> last_piece;  // by local id of a position: that it was met with last, mostly the only one
   std::vector<PieceCorner> corners;
   corners.reserve(corner_positions.size());
   for (std::uint32_t t = 0; t < piece.size(); ++t) {
+    if (size[piece[t]] < fewest) continue;
     for (const std::uint32_t corner : corner_positions[t]) {
       const std::uint32_t id = ids.add(corner);
       if (id == last_piece.size()) last_piece.push_back(kNoId);
@@ -72,7 +75,8 @@ std::vector<TriangleLink> link_to_nearest(std::span<const std::array<std::uint32
     ++size[piece[t]];
   }
   const auto largest = static_cast<std::uint32_t>(std::max_element(size.begin(), size.end()) - size.begin());
-  const std::vector<PieceCorner> corners = corners_of_pieces(corner_positions, positions, piece);
+  const std::vector<PieceCorner> corners =
+      corners_of_pieces(corner_positions, positions, piece, size, size[largest] > kDebris ? kDebris + 1 : 1);
   std::vector<TriangleLink> links;
   std::vector<std::uint32_t> asked;  // corners of the piece: the next triangle has two of them again
   for (std::uint32_t p = 0; p < piece_count; ++p) {

@@ -17,8 +17,12 @@ namespace meshlode::builder {
 /// many.
 [[nodiscard]] std::uint32_t find_pieces(const Graph& graph, std::vector<std::uint32_t>& piece);
 
-/// From every piece but the largest to the nearest triangle of another: debris beside a surface belongs to the cluster
-/// that lies there, or nothing near it would stand for it once it is gone.
+/// Pieces of so many triangles are debris where there are larger ones.
+constexpr std::uint32_t kDebris = 8;
+
+/// From every piece but the largest to the nearest triangle of another that is no debris: debris beside a surface
+/// belongs to the cluster that lies there, or nothing near it would stand for it once it is gone. Where all is debris,
+/// to the nearest of any.
 [[nodiscard]] std::vector<TriangleLink> link_to_nearest(std::span<const std::array<std::uint32_t, 3>> corner_positions,
                                                         std::span<const Vec3i> positions,
                                                         const std::vector<std::uint32_t>& piece,

@@ -6,8 +6,10 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "base/vec.h"
 #include "builder/cluster/partition.h"
 
 namespace meshlode::builder {
@@ -35,7 +37,8 @@ void refine_parts(const Graph& graph, const PartWeights& weights, int passes, st
                   std::uint32_t parts);
 
 /// As partition_graph, in less time and with a slightly longer border. Graphs of few nodes a part go to partition_graph
-/// as they are.
-[[nodiscard]] std::vector<std::uint32_t> partition_merged(Graph& graph, std::uint32_t parts, std::uint32_t seed = 1);
+/// as they are. `centers`: where each node lies.
+[[nodiscard]] std::vector<std::uint32_t> partition_merged(Graph& graph, std::span<const Vec3f> centers,
+                                                          std::uint32_t parts, std::uint32_t seed = 1);
 
 }  // namespace meshlode::builder

@@ -53,7 +53,8 @@ void share_out(std::uint32_t parts, std::vector<std::uint32_t>& shares) {
 }
 
 /// METIS down to a few parts, and halves of those.
-std::vector<std::uint32_t> partition_quads(Graph& graph, std::uint32_t parts, std::uint32_t seed) {
+std::vector<std::uint32_t> partition_quads(Graph& graph, std::span<const Vec3f> centers, std::uint32_t parts,
+                                           std::uint32_t seed) {
   std::vector<std::uint32_t> shares;
   share_out(parts, shares);
   const std::vector<std::uint32_t> few = partition_graph(graph, shares, seed);
@@ -63,7 +64,7 @@ std::vector<std::uint32_t> partition_quads(Graph& graph, std::uint32_t parts, st
   std::vector<std::uint32_t> nodes(few.size()), cursor(first.begin(), first.end() - 1);
   for (std::uint32_t node = 0; node < few.size(); ++node) nodes[cursor[few[node]]++] = node;
   std::vector<std::uint32_t> labels(few.size());
-  Halving halving(graph);
+  Halving halving(graph, centers);
   std::uint32_t first_label = 0;
   for (std::size_t i = 0; i < shares.size(); ++i) {
     halving.cut(std::span(nodes).subspan(first[i], first[i + 1] - first[i]), shares[i], first_label, labels);
@@ -71,6 +72,18 @@ std::vector<std::uint32_t> partition_quads(Graph& graph, std::uint32_t parts, st
   }
   fill_empty_parts(labels, parts);
   return labels;
+}
+
+/// Merged nodes lie at the mean of what they are made of.
+std::vector<Vec3f> merge_centers(const MergedGraph& merged, std::span<const Vec3f> centers) {
+  std::vector<Vec3f> sum(merged.graph.node_count(), Vec3f(0.0F));
+  std::vector<float> count(sum.size(), 0.0F);
+  for (std::size_t n = 0; n < centers.size(); ++n) {
+    sum[merged.node[n]] += centers[n];
+    count[merged.node[n]] += 1.0F;
+  }
+  for (std::size_t m = 0; m < sum.size(); ++m) sum[m] /= count[m];
+  return sum;
 }
 
 }  // namespace
@@ -112,7 +125,8 @@ void refine_parts(const Graph& graph, const PartWeights& weights, int passes, st
   }
 }
 
-std::vector<std::uint32_t> partition_merged(Graph& graph, std::uint32_t parts, std::uint32_t seed) {
+std::vector<std::uint32_t> partition_merged(Graph& graph, std::span<const Vec3f> centers, std::uint32_t parts,
+                                            std::uint32_t seed) {
   constexpr std::size_t kFewestNodes = 32;  // a part: eight quads
   constexpr int kPassesOfPairs = 2, kPassesOfTriangles = 4;
   constexpr std::int64_t kOver = 1, kUnder = 6;  // triangles, than the mean
@@ -129,7 +143,8 @@ std::vector<std::uint32_t> partition_merged(Graph& graph, std::uint32_t parts, s
     for (std::size_t n = 0; n < node.size(); ++n) labels[n] = coarse[node[n]];
     return labels;
   };
-  std::vector<std::uint32_t> labels = expand(quads.node, partition_quads(quads.graph, parts, seed));
+  std::vector<std::uint32_t> labels = expand(
+      quads.node, partition_quads(quads.graph, merge_centers(quads, merge_centers(pairs, centers)), parts, seed));
   refine_parts(pairs.graph, weights, kPassesOfPairs, labels, parts);
   labels = expand(pairs.node, labels);
   refine_parts(graph, weights, kPassesOfTriangles, labels, parts);

@@ -9,13 +9,12 @@
 
 #include "base/local_ids.h"
 #include "base/parallel.h"
+#include "builder/cluster/loose_pieces.h"
 
 namespace meshlode::builder {
 
 namespace {
 
-/// Pieces of so many triangles are debris where larger ones lie beside them.
-constexpr std::uint32_t kDebris = 8;
 constexpr std::size_t kChunkOfClusters = 64;
 
 std::array<std::uint32_t, 3> positions_of(const WedgeTriangle& t, std::span<const std::uint32_t> wedge_position) {
@@ -104,9 +103,15 @@ bool is_too_large(std::span<const WedgeTriangle> triangles, const ClusterCaps& c
   return count > caps.max_triangles || wedges.size() > caps.max_vertices;
 }
 
-/// Two clusters of whole systems; a lone system with too many satellites is cut anywhere.
-std::pair<Systems, Systems> divide(const Systems& systems, std::span<const WedgeTriangle> triangles,
-                                   std::span<const std::uint32_t> wedge_position) {
+struct Surface {
+  std::span<const WedgeTriangle> triangles;
+  std::span<const std::uint32_t> wedge_position;
+  std::span<const Vec3i> positions;
+};
+
+/// Two clusters of whole systems, of which loose ones stay beside what is nearest; a lone system with too many
+/// satellites is cut anywhere.
+std::pair<Systems, Systems> divide(const Systems& systems, const Surface& surface) {
   std::pair<Systems, Systems> halves;
   if (systems.size() == 1) {
     const std::vector<std::uint32_t>& all = systems[0];
@@ -117,18 +122,19 @@ std::pair<Systems, Systems> divide(const Systems& systems, std::span<const Wedge
   }
   std::vector<std::array<std::uint32_t, 3>> corners;
   corners.reserve(systems.size());
-  for (const auto& system : systems) corners.push_back(positions_of(triangles[system[0]], wedge_position));
+  for (const auto& system : systems)
+    corners.push_back(positions_of(surface.triangles[system[0]], surface.wedge_position));
   Graph graph = triangle_graph(corners);
+  std::vector<std::uint32_t> piece;
+  const std::uint32_t piece_count = find_pieces(graph, piece);
+  if (piece_count > 1) {
+    graph = triangle_graph(corners, link_to_nearest(corners, surface.positions, piece, piece_count));
+  }
   for (const auto& system : systems) graph.node_weight.push_back(static_cast<std::int32_t>(system.size()));
   const std::vector<std::uint32_t> half = partition_graph(graph, 2);
   for (std::size_t i = 0; i < systems.size(); ++i) (half[i] == 0 ? halves.first : halves.second).push_back(systems[i]);
   return halves;
 }
-
-struct Surface {
-  std::span<const WedgeTriangle> triangles;
-  std::span<const std::uint32_t> wedge_position;
-};
 
 /// Clusters keep their numbers, and what has to be cut off gets those that follow. Those without satellites are within
 /// their caps.
@@ -151,7 +157,7 @@ void divide_too_large(const Surface& surface, const Hosts& hosts, const ClusterC
       for (const auto& system : systems) std::for_each(system.begin(), system.end(), visit);
     };
     while (is_too_large(surface.triangles, caps, wedges, for_each_triangle)) {
-      auto [keep, split] = divide(systems, surface.triangles, surface.wedge_position);
+      auto [keep, split] = divide(systems, surface);
       systems = std::move(keep);
       cut_off.push_back(std::move(split));
       ++clustering.count;
@@ -233,8 +239,8 @@ Hosts host_debris(const std::vector<std::uint32_t>& piece, std::uint32_t piece_c
 }
 
 Clustering cluster_with_satellites(std::span<const WedgeTriangle> triangles,
-                                   std::span<const std::uint32_t> wedge_position, const Hosts& hosts,
-                                   const ClusterCaps& caps, const ClusterWeighted& cluster) {
+                                   std::span<const std::uint32_t> wedge_position, std::span<const Vec3i> positions,
+                                   const Hosts& hosts, const ClusterCaps& caps, const ClusterWeighted& cluster) {
   if (std::all_of(hosts.begin(), hosts.end(), [](std::uint32_t host) { return host == kNoId; })) {
     return cluster(triangles, std::vector<std::int32_t>(triangles.size(), 1));
   }
@@ -257,7 +263,7 @@ Clustering cluster_with_satellites(std::span<const WedgeTriangle> triangles,
   parallel_for_each_index(triangles.size(), kLoopGrain, [&](std::size_t t) {
     clustering.label[t] = of_core.label[place[hosts[t] == kNoId ? static_cast<std::uint32_t>(t) : hosts[t]]];
   });
-  divide_too_large({triangles, wedge_position}, hosts, caps, clustering);
+  divide_too_large({triangles, wedge_position, positions}, hosts, caps, clustering);
   return clustering;
 }
 

@@ -36,7 +36,8 @@ using ClusterWeighted =
 /// Clusters of the triangles that have no host, by `cluster`; the others follow their hosts. Clusters that are too
 /// large nevertheless are divided. No host at all: `hosts` is empty or all kNoId.
 [[nodiscard]] Clustering cluster_with_satellites(std::span<const WedgeTriangle> triangles,
-                                                 std::span<const std::uint32_t> wedge_position, const Hosts& hosts,
+                                                 std::span<const std::uint32_t> wedge_position,
+                                                 std::span<const Vec3i> positions, const Hosts& hosts,
                                                  const ClusterCaps& caps, const ClusterWeighted& cluster);
 
 }  // namespace meshlode::builder

@@ -9,7 +9,7 @@
 #include "builder/aggregate/blocks.h"
 #include "builder/aggregate/candidates.h"
 #include "builder/aggregate/pieces.h"
-#include "builder/aggregate/symmetric.h"
+#include "builder/symmetric.h"
 #include "builder/prepare/prepare.h"
 #include "scene/samples/samples.h"
 

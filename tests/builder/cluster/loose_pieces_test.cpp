@@ -14,7 +14,7 @@ namespace {
 using Corner3 = std::array<std::uint32_t, 3>;
 
 /// The links as their definition has them: all corners of up to four triangles of a piece against all corners of all
-/// triangles of others, and of equals the first.
+/// triangles of others that are no debris, and of equals the first.
 std::vector<TriangleLink> links_by_definition(const std::vector<Corner3>& triangles,
                                               const std::vector<Vec3i>& positions,
                                               const std::vector<std::uint32_t>& piece, std::uint32_t piece_count) {
@@ -32,7 +32,7 @@ std::vector<TriangleLink> links_by_definition(const std::vector<Corner3>& triang
       ++probes;
       for (const std::uint32_t from : triangles[mine]) {
         for (std::uint32_t other = 0; other < triangles.size(); ++other) {
-          if (piece[other] == p) continue;
+          if (piece[other] == p || (size[largest] > kDebris && size[piece[other]] <= kDebris)) continue;
           for (const std::uint32_t to : triangles[other]) {
             const glm::i64vec3 apart = glm::i64vec3(positions[to]) - glm::i64vec3(positions[from]);
             const std::int64_t distance2 = apart.x * apart.x + apart.y * apart.y + apart.z * apart.z;

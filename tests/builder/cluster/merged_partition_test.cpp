@@ -50,6 +50,18 @@ Graph sheet(std::uint32_t n) {
   return triangle_graph(corners);
 }
 
+/// Of the triangles of a sheet.
+std::vector<Vec3f> centers_of_sheet(std::uint32_t n) {
+  std::vector<Vec3f> centers;
+  for (std::uint32_t j = 0; j < n; ++j) {
+    for (std::uint32_t i = 0; i < n; ++i) {
+      centers.emplace_back(3 * i + 2, 3 * j + 1, 0);
+      centers.emplace_back(3 * i + 1, 3 * j + 2, 0);
+    }
+  }
+  return centers;
+}
+
 Graph random_graph(SplitMix64& random, std::uint32_t nodes) {
   std::set<std::pair<std::uint32_t, std::uint32_t>> pairs;
   for (std::uint32_t i = 0; i < 2 * nodes; ++i) {
@@ -188,40 +200,40 @@ TEST(RefineParts, CapsHoldAndTheBorderNeverGrows) {
 }
 
 /// Every node has one label, no label is missing, and no part is far from the mean.
-void expect_partition(Graph graph, std::uint32_t parts, std::int64_t over) {
+void expect_partition(Graph graph, const std::vector<Vec3f>& centers, std::uint32_t parts, std::int64_t over) {
   const auto nodes = static_cast<std::int64_t>(graph.node_count());
-  const std::vector<std::uint32_t> labels = partition_merged(graph, parts);
+  const std::vector<std::uint32_t> labels = partition_merged(graph, centers, parts);
   ASSERT_EQ(labels.size(), graph.node_count());
   for (const std::int64_t size : sizes_of(labels, parts)) {
     EXPECT_GT(size, 0);
     EXPECT_LE(size, (nodes + parts - 1) / parts + over);
   }
-  EXPECT_EQ(partition_merged(graph, parts), labels) << "another time";
+  EXPECT_EQ(partition_merged(graph, centers, parts), labels) << "another time";
 }
 
 TEST(PartitionMerged, CoversASheetInEvenParts) {
-  expect_partition(sheet(60), 57, 2);  // 7,200 triangles, 126.3 a part
-  expect_partition(sheet(8), 2, 1);
+  expect_partition(sheet(60), centers_of_sheet(60), 57, 2);  // 7,200 triangles, 126.3 a part
+  expect_partition(sheet(8), centers_of_sheet(8), 2, 1);
 }
 
 TEST(PartitionMerged, TheBorderIsAboutThatOfMetis) {
   Graph graph = sheet(60);
-  const std::vector<std::uint32_t> merged = partition_merged(graph, 57);
+  const std::vector<std::uint32_t> merged = partition_merged(graph, centers_of_sheet(60), 57);
   const std::vector<std::uint32_t> whole = partition_graph(graph, 57);
   EXPECT_LT(static_cast<double>(cut_weight(graph, merged)), 1.12 * static_cast<double>(cut_weight(graph, whole)));
 }
 
 TEST(PartitionMerged, NothingOneNodeAndLooseNodes) {
   Graph nothing = graph_of(0, {});
-  EXPECT_TRUE(partition_merged(nothing, 1).empty());
+  EXPECT_TRUE(partition_merged(nothing, {}, 1).empty());
   Graph one = graph_of(1, {});
-  EXPECT_EQ(partition_merged(one, 1), (std::vector<std::uint32_t>{0}));
+  EXPECT_EQ(partition_merged(one, std::vector(1, Vec3f(0.0F)), 1), (std::vector<std::uint32_t>{0}));
   Graph soup = graph_of(2000, {});
-  const std::vector<std::uint32_t> labels = partition_merged(soup, 16);
+  const std::vector<std::uint32_t> labels = partition_merged(soup, std::vector(2000, Vec3f(0.0F)), 16);
   for (const std::int64_t size : sizes_of(labels, 16)) EXPECT_GT(size, 0);
   std::vector<std::array<std::uint32_t, 3>> loose(1000);
   for (std::uint32_t t = 0; t < loose.size(); ++t) loose[t] = {3 * t, 3 * t + 1, 3 * t + 2};
-  expect_partition(triangle_graph(loose), 8, 4);
+  expect_partition(triangle_graph(loose), std::vector(loose.size(), Vec3f(0.0F)), 8, 4);
 }
 
 /// A hub of ten thousand neighbours costs what its edges cost, in both directions of the search.
@@ -232,7 +244,7 @@ TEST(PartitionMerged, AHubIsNoTrouble) {
     if (n > 1) edges.emplace_back(n - 1, n, 8);
   }
   Graph graph = graph_of(10000, edges);
-  const std::vector<std::uint32_t> labels = partition_merged(graph, 80);
+  const std::vector<std::uint32_t> labels = partition_merged(graph, std::vector(10000, Vec3f(0.0F)), 80);
   for (const std::int64_t size : sizes_of(labels, 80)) EXPECT_GT(size, 0);
 }
 

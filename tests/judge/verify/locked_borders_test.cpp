@@ -38,7 +38,7 @@ run::Asset build_tile(std::size_t unlocked) {
   builder::PipelineOptions options;
   options.error_tier = format::ErrorTier::kQem;
   options.lock_borders = true;
-  auto mesh = builder::prepare_mesh(scene.meshes[0], {}, builder::prepare_options(options, {}));
+  auto mesh = builder::prepare_mesh(scene.meshes[0], {}, builder::prepare_options(options));
   EXPECT_TRUE(mesh) << mesh.error().message();
   for (std::size_t p = 0; p < mesh->positions.size() && unlocked > 0; ++p) {
     const Vec3i& place = mesh->positions[p];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "builder/aggregate/symmetric.h"
+#include "builder/symmetric.h"
 
 #include <algorithm>
 #include <cmath>
